@@ -1,0 +1,38 @@
+#include "common/bus/bus.hpp"
+
+#include <stdexcept>
+
+namespace lookout::bus {
+
+namespace {
+
+void AddHandlingTime(ChannelTraffic& traffic, std::chrono::steady_clock::duration duration) {
+  traffic.total_handling_time += duration;
+  if (traffic.handling_times.size() == ChannelTraffic::kMaxHandlingTimes) traffic.handling_times.pop_front();
+  traffic.handling_times.push_back(std::chrono::duration_cast<std::chrono::microseconds>(duration));
+}
+
+}  // namespace
+
+void Bus::Publish(const Channel& channel, Bytes bytes) {
+  if (bytes.size() > kMaxMessageBytes) {
+    throw std::runtime_error(std::string(channel.name) + ": a message of " + std::to_string(bytes.size()) + " bytes is larger than " +
+                             std::to_string(kMaxMessageBytes));
+  }
+  Send(channel, bytes);
+  ++outputs_[std::string(channel.name)].num_messages;
+}
+
+void Bus::SubscribeRaw(const Channel& channel, RawHandler handler) {
+  auto& traffic = inputs_[std::string(channel.name)];  // a map: references stay valid
+  Attach(&channel, [&traffic, handler = std::move(handler)](std::string_view name, Bytes bytes) {
+    ++traffic.num_messages;
+    const auto start = std::chrono::steady_clock::now();  // for HEALTH only
+    handler(name, bytes);
+    AddHandlingTime(traffic, std::chrono::steady_clock::now() - start);
+  });
+}
+
+void Bus::SubscribeAll(RawHandler handler) { Attach(nullptr, std::move(handler)); }
+
+}  // namespace lookout::bus

@@ -1,0 +1,99 @@
+// The seam between services and LCM. A service cannot tell a live bus from one in memory.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
+#include "common/bus/sequence.hpp"
+#include "common/core/bytes.hpp"
+
+namespace lookout::bus {
+
+/// Traffic of this process on one channel, for HEALTH.
+struct ChannelTraffic {
+  std::int64_t num_messages = 0;
+  std::int64_t num_undecodable = 0;
+  std::int64_t num_lost = 0;
+  std::chrono::nanoseconds total_handling_time{0};
+  std::deque<std::chrono::microseconds> handling_times;  // of the latest messages, at most kMaxHandlingTimes
+
+  static constexpr std::size_t kMaxHandlingTimes = 1000;
+};
+
+class Bus {
+ public:
+  using RawHandler = std::function<void(std::string_view channel, Bytes bytes)>;
+
+  Bus() = default;
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+  virtual ~Bus() = default;
+
+  /// Sends bytes. @throws std::runtime_error when the message is larger than the transport carries, or the transport fails
+  void Publish(const Channel& channel, Bytes bytes);
+
+  /// Calls `handler` for each message on `channel`. Handlers run inside HandleOnce, one at a time.
+  void SubscribeRaw(const Channel& channel, RawHandler handler);
+
+  /// Calls `handler` for each message on any channel, also unknown ones.
+  void SubscribeAll(RawHandler handler);
+
+  /// Waits at most `timeout` for a message and handles it.
+  ///
+  /// @return whether a message was handled
+  /// @throws what a handler threw, after the transport has let go of the message
+  virtual bool HandleOnce(std::chrono::milliseconds timeout) = 0;
+
+  const std::map<std::string, ChannelTraffic, std::less<>>& input_traffic() const { return inputs_; }
+  const std::map<std::string, ChannelTraffic, std::less<>>& output_traffic() const { return outputs_; }
+  std::map<std::string, ChannelTraffic, std::less<>>& input_traffic() { return inputs_; }
+
+  /// Messages waiting on a subscribed channel; -1 = not known.
+  virtual int QueueDepth(std::string_view channel) const = 0;
+
+ protected:
+  virtual void Send(const Channel& channel, Bytes bytes) = 0;
+  /// `channel` is nullptr for all channels.
+  virtual void Attach(const Channel* channel, RawHandler handler) = 0;
+
+ private:
+  std::map<std::string, ChannelTraffic, std::less<>> inputs_;
+  std::map<std::string, ChannelTraffic, std::less<>> outputs_;
+};
+
+/// Sends a message, encoded.
+template <typename T>
+void Publish(Bus& bus, const Channel& channel, const T& message) {
+  bus.Publish(channel, Encode(message));
+}
+
+/// Calls `handler` for each message on `channel` that decodes to T; the others are counted. Gaps in seq are counted.
+template <typename T, typename Handler>
+void Subscribe(Bus& bus, const Channel& channel, Handler handler) {
+  auto& traffic = bus.input_traffic()[std::string(channel.name)];
+  bus.SubscribeRaw(channel, [&traffic, handler = std::move(handler), sequence = SequenceWatch{}](std::string_view, Bytes bytes) mutable {
+    const auto message = Decode<T>(bytes);
+    if (!message) {
+      ++traffic.num_undecodable;
+      return;
+    }
+    if constexpr (requires { message->part_index; }) {
+      traffic.num_lost += sequence.NumLostBefore(message->seq, message->part_index, message->num_parts);
+    } else if constexpr (requires { message->seq; }) {
+      traffic.num_lost += sequence.NumLostBefore(message->seq);
+    }
+    handler(*message);
+  });
+}
+
+}  // namespace lookout::bus

@@ -1,0 +1,47 @@
+// The channel table: one line per channel. Recorder, health report and README are checked against it.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace lookout::bus {
+
+struct Channel {
+  std::string_view name;
+  std::string_view type;       // struct of package lookout
+  std::string_view publisher;  // the one process that sends it; "all" for HEALTH
+  double max_rate_hz;          // messages per second, greatest expected
+  int queue_depth;             // messages that a subscriber holds before the newest is dropped
+  bool is_raw;                 // input from which all else can be computed again
+  bool is_replayed;            // computed again by replay, byte for byte (or raw); else it tells of the machine
+};
+
+// Depths hold two seconds at the greatest rate. A turn in parts, or a turn in rain, comes as a burst.
+inline constexpr Channel kLidarPackets{"LIDAR_PACKETS", "lidar_packets_t", "vlp16", 100, 200, true, true};
+inline constexpr Channel kLidarScan{"LIDAR_SCAN", "lidar_scan_t", "vlp16", 40, 80, false, true};
+inline constexpr Channel kLidarClock{"LIDAR_CLOCK", "lidar_clock_t", "vlp16", 20, 40, false, true};
+inline constexpr Channel kLidarNmea{"LIDAR_NMEA", "lidar_nmea_t", "vlp16", 150, 300, false, true};
+inline constexpr Channel kSegments{"SEGMENTS", "segments_t", "segmenter", 80, 160, false, true};
+inline constexpr Channel kNavRaw{"NAV_RAW", "nav_raw_t", "navigator", 500, 1000, true, true};
+inline constexpr Channel kGnssFix{"GNSS_FIX", "gnss_fix_t", "navigator", 40, 80, false, true};
+inline constexpr Channel kAttitude{"ATTITUDE", "attitude_t", "navigator", 100, 200, false, true};
+inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, true};  // 0.1 s to 10 s come at once
+inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
+inline constexpr Channel kHealth{"HEALTH", "health_t", "all", 10, 40, false, false};
+inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, false, false};
+
+inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw,
+                                      kGnssFix,      kAttitude,  kPose,       kObstacles, kHealth,   kRunInfo};
+
+/// Greatest size of an encoded message. Measured with LCM 1.3.1: about 120 kB pass with the kernel's default buffers, 212 kB vanish.
+inline constexpr int kMaxMessageBytes = 120'000;
+
+/// @return nullptr when no channel has that name
+constexpr const Channel* FindChannel(std::string_view name) {
+  for (const auto& channel : kChannels) {
+    if (channel.name == name) return &channel;
+  }
+  return nullptr;
+}
+
+}  // namespace lookout::bus

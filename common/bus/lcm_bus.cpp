@@ -1,0 +1,155 @@
+#include "common/bus/lcm_bus.hpp"
+
+#include <arpa/inet.h>
+#include <lcm/lcm-cpp.hpp>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <map>
+#include <stdexcept>
+#include <vector>
+
+namespace lookout::bus {
+
+namespace {
+
+constexpr std::string_view kDefaultGroup = "239.255.76.67";
+constexpr int kDefaultPort = 7667;
+// Two seconds of every channel at its greatest rate fit; the kernel gives at most net.core.rmem_max.
+constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
+// Messages of channels that are not in the table, and of all channels together for a recorder.
+constexpr int kAllChannelsQueueDepth = 4000;
+
+struct MulticastAddress {
+  std::string group{kDefaultGroup};
+  int port = kDefaultPort;
+};
+
+// "udpm://239.255.76.67:7667?ttl=1" -> group and port; what is left out keeps LCM's default.
+MulticastAddress ParseMulticast(const std::string& url) {
+  MulticastAddress address;
+  const auto start = url.find("://");
+  std::string network = url.substr(start == std::string::npos ? 0 : start + 3);
+  network = network.substr(0, network.find('?'));
+  const auto colon = network.find(':');
+  if (colon != 0 && !network.empty()) address.group = network.substr(0, colon);
+  if (colon != std::string::npos) address.port = std::atoi(network.c_str() + colon + 1);
+  return address;
+}
+
+bool HasRoute(const MulticastAddress& address) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return false;
+  sockaddr_in target{};
+  target.sin_family = AF_INET;
+  target.sin_port = htons(static_cast<std::uint16_t>(address.port));
+  bool has_route = inet_pton(AF_INET, address.group.c_str(), &target.sin_addr) == 1;
+  has_route = has_route && connect(descriptor, reinterpret_cast<const sockaddr*>(&target), sizeof target) == 0;
+  close(descriptor);
+  return has_route;
+}
+
+std::string RouteLine(const MulticastAddress& address) {
+  const auto last_dot = address.group.rfind('.');
+  return "ip route add " + address.group.substr(0, last_dot) + ".0/24 dev lo";
+}
+
+std::string WithReceiveBuffer(const std::string& url) {
+  if (url.rfind("udpm://", 0) != 0 || url.find("recv_buf_size") != std::string::npos) return url;
+  return url + (url.find('?') == std::string::npos ? "?" : "&") + "recv_buf_size=" + std::to_string(kReceiveBufferBytes);
+}
+
+// LCM takes channel names as regular expressions.
+std::string Escaped(std::string_view name) {
+  std::string escaped;
+  for (const char letter : name) {
+    const bool is_plain = letter == '_' || (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') || (letter >= 'a' && letter <= 'z');
+    if (!is_plain) escaped += '\\';
+    escaped += letter;
+  }
+  return escaped;
+}
+
+}  // namespace
+
+std::string DefaultLcmUrl() {
+  const char* url = std::getenv("LCM_DEFAULT_URL");
+  if (url != nullptr && *url != '\0') return url;
+  return "udpm://" + std::string(kDefaultGroup) + ":" + std::to_string(kDefaultPort) + "?ttl=0";
+}
+
+struct LcmBus::Implementation {
+  struct Subscription {
+    Implementation* owner;
+    std::string channel;  // empty = all
+    RawHandler handler;
+    lcm_subscription_t* handle = nullptr;
+  };
+
+  lcm_t* lcm = nullptr;
+  std::string url;
+  std::vector<std::unique_ptr<Subscription>> subscriptions;
+  std::exception_ptr thrown;  // by a handler: LCM is C and cannot carry an exception
+
+  static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
+    auto& subscription = *static_cast<Subscription*>(user);
+    if (subscription.owner->thrown) return;
+    try {
+      subscription.handler(channel, Bytes(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size));
+    } catch (...) {
+      subscription.owner->thrown = std::current_exception();
+    }
+  }
+};
+
+LcmBus::LcmBus(const std::string& url) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->url = WithReceiveBuffer(url);
+  if (url.rfind("udpm://", 0) == 0) {
+    const auto address = ParseMulticast(url);
+    if (!HasRoute(address)) {
+      throw std::runtime_error("LCM needs a multicast route to " + address.group + " and there is none. As root: " + RouteLine(address));
+    }
+  }
+  implementation_->lcm = lcm_create(implementation_->url.c_str());
+  if (implementation_->lcm == nullptr) throw std::runtime_error("LCM cannot be opened at " + implementation_->url);
+}
+
+LcmBus::~LcmBus() {
+  if (implementation_->lcm != nullptr) lcm_destroy(implementation_->lcm);
+}
+
+int LcmBus::file_descriptor() const { return lcm_get_fileno(implementation_->lcm); }
+
+bool LcmBus::HandleOnce(std::chrono::milliseconds timeout) {
+  const int handled = lcm_handle_timeout(implementation_->lcm, static_cast<int>(timeout.count()));
+  if (implementation_->thrown) std::rethrow_exception(std::exchange(implementation_->thrown, nullptr));
+  if (handled < 0) throw std::runtime_error("LCM failed at " + implementation_->url);
+  return handled > 0;
+}
+
+// LCM 1.3.1 does not tell how many messages wait.
+int LcmBus::QueueDepth(std::string_view /*channel*/) const { return -1; }
+
+void LcmBus::Send(const Channel& channel, Bytes bytes) {
+  const std::string name(channel.name);
+  if (lcm_publish(implementation_->lcm, name.c_str(), bytes.data(), static_cast<unsigned int>(bytes.size())) != 0) {
+    throw std::runtime_error(name + ": LCM could not send " + std::to_string(bytes.size()) + " bytes");
+  }
+}
+
+void LcmBus::Attach(const Channel* channel, RawHandler handler) {
+  auto subscription = std::make_unique<Implementation::Subscription>();
+  subscription->owner = implementation_.get();
+  subscription->channel = channel == nullptr ? std::string() : std::string(channel->name);
+  subscription->handler = std::move(handler);
+  const std::string pattern = channel == nullptr ? ".*" : Escaped(channel->name);
+  subscription->handle = lcm_subscribe(implementation_->lcm, pattern.c_str(), &Implementation::OnMessage, subscription.get());
+  if (subscription->handle == nullptr) throw std::runtime_error("LCM cannot subscribe to " + pattern);
+  lcm_subscription_set_queue_capacity(subscription->handle, channel == nullptr ? kAllChannelsQueueDepth : channel->queue_depth);
+  implementation_->subscriptions.push_back(std::move(subscription));
+}
+
+}  // namespace lookout::bus

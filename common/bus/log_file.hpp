@@ -1,0 +1,62 @@
+// lcm-log files. Written by LCM's own writer; read by a reader of our own, since LCM's takes a damaged length at its word and then reads
+// over the rest of the file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::bus {
+
+struct LogEvent {
+  Utime time;  // as logged: receive time, or in a replayed log the host time of the raw event
+  std::string channel;
+  std::vector<std::uint8_t> bytes;
+};
+
+class LogReader {
+ public:
+  /// @throws std::runtime_error when the file cannot be opened
+  explicit LogReader(const std::filesystem::path& file);
+  ~LogReader();
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
+
+  /// @return the next whole event; nullopt at the end. Damaged stretches are skipped to the next event and counted.
+  std::optional<LogEvent> Next();
+
+  /// Damaged stretches, and a torn event at the end.
+  std::int64_t num_damaged() const { return num_damaged_; }
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+  std::int64_t num_damaged_ = 0;
+};
+
+class LogWriter {
+ public:
+  /// Makes a new file. @throws std::runtime_error when it cannot be made or exists already and `overwrite` is not set
+  explicit LogWriter(const std::filesystem::path& file, bool overwrite = false);
+  ~LogWriter();
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+
+  /// @throws std::runtime_error when the disk does not take it
+  void Write(Utime time, std::string_view channel, Bytes bytes);
+  void Flush();
+  std::int64_t num_bytes() const { return num_bytes_; }
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+  std::int64_t num_bytes_ = 0;
+};
+
+}  // namespace lookout::bus

@@ -1,0 +1,37 @@
+// Names and fingerprints of all wire types: what a log was written with.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lookout::bus {
+
+struct TypeFingerprint {
+  std::string type;
+  std::uint64_t fingerprint;
+};
+
+/// All types of package lookout, also those that are only parts of others, by name.
+const std::vector<TypeFingerprint>& TypeFingerprints();
+
+/// SHA-256, hexadecimal, over "type fingerprint" lines.
+std::string SchemaDigest();
+
+/// SHA-256 of bytes that come in pieces (OpenSSL's).
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+  Sha256(const Sha256&) = delete;
+  Sha256& operator=(const Sha256&) = delete;
+
+  void Add(const void* data, std::size_t size);
+  /// Hexadecimal. Ends the computation.
+  std::string Finish();
+
+ private:
+  void* context_;
+};
+
+}  // namespace lookout::bus

@@ -1,0 +1,43 @@
+// Counts messages that did not come, from gaps in their sequence numbers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace lookout::bus {
+
+class SequenceWatch {
+ public:
+  /// Takes the number of the next message. A number that is not greater than the last is a new start of the publisher, no loss.
+  ///
+  /// @param part_index, num_parts  place within a turn that goes in parts; parts of one turn share `seq`
+  /// @return how many messages are missing between the last and this one (at least: parts of turns that are missing whole count once)
+  std::int64_t NumLostBefore(std::int64_t seq, std::int64_t part_index = 0, std::int64_t num_parts = 1) {
+    std::int64_t num_lost = 0;
+    // A first message may be in the middle of a run: nothing was lost before it that we asked for.
+    if (last_ && seq == last_->seq && part_index > last_->part_index) {
+      num_lost = part_index - last_->part_index - 1;
+    } else if (last_ && seq > last_->seq) {
+      // Numbers come from outside: subtract as unsigned, so that no pair of them overflows.
+      const std::uint64_t distance = static_cast<std::uint64_t>(seq) - static_cast<std::uint64_t>(last_->seq);
+      if (distance <= kMaxDistance) {
+        num_lost = static_cast<std::int64_t>(distance) - 1 + (last_->num_parts - last_->part_index - 1) + part_index;
+      }
+    }
+    last_ = Place{seq, part_index, num_parts};
+    return num_lost > 0 ? num_lost : 0;
+  }
+
+ private:
+  // A greater jump is a corrupt number, not a loss.
+  static constexpr std::uint64_t kMaxDistance = 1'000'000'000;
+
+  struct Place {
+    std::int64_t seq;
+    std::int64_t part_index;
+    std::int64_t num_parts;
+  };
+  std::optional<Place> last_;
+};
+
+}  // namespace lookout::bus

@@ -1,0 +1,33 @@
+// boat.txtpb as checked values, for the services that need facts of the boat.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/core/frames.hpp"
+
+namespace lookout::config {
+
+/// Geodetic origin of the map frame.
+struct BoatDatum {
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double ellipsoid_height_m = 0.0;
+};
+
+struct BoatFacts {
+  std::string name;
+  Mounting lidar;
+  Eigen::Isometry3d T_vessel_lidar;
+  Eigen::Vector3d p_vessel_antenna_m;
+  double reference_point_above_water_m = 0.0;
+  Eigen::AlignedBox3d own_vessel_box_m;  // vessel frame
+  std::optional<BoatDatum> datum;
+};
+
+/// @param folder  the boat's folder, holding boat.txtpb
+/// @throws ConfigError
+BoatFacts LoadBoat(const std::filesystem::path& folder);
+
+}  // namespace lookout::config

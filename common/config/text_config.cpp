@@ -1,0 +1,224 @@
+#include "common/config/text_config.hpp"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <google/protobuf/text_format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "config/schema/boat.pb.h"
+#include "config/schema/georeferencer.pb.h"
+#include "config/schema/navigator.pb.h"
+#include "config/schema/options.pb.h"
+#include "config/schema/recorder.pb.h"
+#include "config/schema/segmenter.pb.h"
+#include "config/schema/vlp16.pb.h"
+
+namespace lookout::config {
+
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::TextFormat;
+
+std::string Joined(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const auto& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+// Shortest decimal that reads back as the same number.
+std::string NumberText(double value) {
+  std::array<char, 32> text{};
+  for (int digits = 6; digits <= 17; ++digits) {
+    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
+    if (std::strtod(text.data(), nullptr) == value) break;
+  }
+  return text.data();
+}
+
+// All schemas by name. Naming their descriptors here also makes the linker keep them.
+const Descriptor* FindSchema(const std::string& name) {
+  for (const auto* descriptor : {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(),
+                                 Georeferencer::descriptor(), Recorder::descriptor()}) {
+    if (descriptor->full_name() == name) return descriptor;
+  }
+  return nullptr;
+}
+
+class FaultCollector final : public google::protobuf::io::ErrorCollector {
+ public:
+  FaultCollector(std::string name, std::vector<std::string>& faults) : name_(std::move(name)), faults_(faults) {}
+  void AddError(int line, int column, const std::string& message) override {
+    // Lines and columns count from 0; -1 stands for the whole text.
+    faults_.push_back(name_ + ":" + std::to_string(line + 1) + ": column " + std::to_string(column + 1) + ": " + message);
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::string>& faults_;
+};
+
+std::optional<double> NumberOf(const Message& message, const FieldDescriptor& field, int index) {
+  const auto& reflection = *message.GetReflection();
+  const bool is_list = field.is_repeated();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return is_list ? reflection.GetRepeatedDouble(message, &field, index) : reflection.GetDouble(message, &field);
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return is_list ? reflection.GetRepeatedFloat(message, &field, index) : reflection.GetFloat(message, &field);
+    case FieldDescriptor::CPPTYPE_INT32:
+      return is_list ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
+    default:
+      return std::nullopt;
+  }
+}
+
+std::string RangeFault(const google::protobuf::FieldOptions& options, double value) {
+  if (!std::isfinite(value)) return "must be a finite number";
+  if (options.HasExtension(min) && value < options.GetExtension(min)) return "must be at least " + NumberText(options.GetExtension(min));
+  if (options.HasExtension(max) && value > options.GetExtension(max)) return "must be at most " + NumberText(options.GetExtension(max));
+  return "";
+}
+
+// Walks a parsed message and its positions in the text, and collects what the schema's options forbid.
+class Checker {
+ public:
+  Checker(std::string name, std::vector<std::string>& faults) : name_(std::move(name)), faults_(faults) {}
+
+  void Check(const Message& message, const TextFormat::ParseInfoTree* positions, const std::string& prefix, int line_of_message) {
+    const auto& reflection = *message.GetReflection();
+    const Descriptor& descriptor = *message.GetDescriptor();
+    for (int i = 0; i < descriptor.field_count(); ++i) {
+      const FieldDescriptor& field = *descriptor.field(i);
+      const std::string path = prefix + field.name();
+      const bool is_list = field.is_repeated();
+      const int count = is_list ? reflection.FieldSize(message, &field) : (reflection.HasField(message, &field) ? 1 : 0);
+      if (count == 0 && !is_list && !field.has_default_value() && !field.options().GetExtension(may_be_absent)) {
+        Add(line_of_message, path, "must be set");
+      }
+      for (int k = 0; k < count; ++k) {
+        const int index = is_list ? k : -1;
+        const int line = positions == nullptr ? -1 : positions->GetLocation(&field, index).line;
+        if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+          const auto& part = is_list ? reflection.GetRepeatedMessage(message, &field, k) : reflection.GetMessage(message, &field);
+          Check(part, positions == nullptr ? nullptr : positions->GetTreeForNested(&field, index), path + ".", line);
+        } else if (const auto number = NumberOf(message, field, k)) {
+          const std::string reason = RangeFault(field.options(), *number);
+          if (!reason.empty()) Add(line, path, reason + " (is " + NumberText(*number) + ")");
+        }
+      }
+    }
+  }
+
+ private:
+  void Add(int line, const std::string& field, const std::string& reason) {
+    faults_.push_back(name_ + ":" + std::to_string(line < 0 ? 1 : line + 1) + ": " + field + ": " + reason);
+  }
+
+  std::string name_;
+  std::vector<std::string>& faults_;
+};
+
+std::string ReadFile(const std::filesystem::path& file) {
+  std::error_code error;
+  std::ifstream in(file, std::ios::binary);
+  if (!in || !std::filesystem::is_regular_file(file, error)) throw ConfigError({file.string() + ":1: file: cannot be read"});
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void AppendEffective(const Message& message, const std::string& indent, std::string& text) {
+  const auto& reflection = *message.GetReflection();
+  const Descriptor& descriptor = *message.GetDescriptor();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor.field(i);
+    const bool is_list = field.is_repeated();
+    const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    const bool has_value = is_list || reflection.HasField(message, &field) || field.has_default_value();
+    if (!has_value) continue;
+    const int count = is_list ? reflection.FieldSize(message, &field) : 1;
+    for (int k = 0; k < count; ++k) {
+      if (is_message) {
+        text += indent + field.name() + " {\n";
+        AppendEffective(is_list ? reflection.GetRepeatedMessage(message, &field, k) : reflection.GetMessage(message, &field), indent + "  ", text);
+        text += indent + "}\n";
+        continue;
+      }
+      std::string value;
+      TextFormat::PrintFieldValueToString(message, &field, is_list ? k : -1, &value);
+      text += indent + field.name() + ": " + value;
+      text += !is_list && !reflection.HasField(message, &field) ? "  # default\n" : "\n";
+    }
+  }
+}
+
+}  // namespace
+
+ConfigError::ConfigError(std::vector<std::string> faults) : std::runtime_error(Joined(faults)), faults_(std::move(faults)) {}
+
+void ParseText(const std::string& text, const std::string& name, Message& message) {
+  std::vector<std::string> faults;
+  FaultCollector collector(name, faults);
+  TextFormat::ParseInfoTree positions;
+  TextFormat::Parser parser;
+  parser.RecordErrorsTo(&collector);
+  parser.WriteLocationsTo(&positions);
+  google::protobuf::io::ArrayInputStream input(text.data(), static_cast<int>(text.size()));
+  const bool is_parsed = parser.Parse(&input, &message);
+  if (!is_parsed && faults.empty()) faults.push_back(name + ":1: text: cannot be parsed");
+  if (is_parsed) Checker(name, faults).Check(message, &positions, "", -1);
+  if (!faults.empty()) throw ConfigError(faults);
+}
+
+void LoadText(const std::filesystem::path& file, Message& message) { ParseText(ReadFile(file), file.string(), message); }
+
+std::string EffectiveText(const Message& message) {
+  std::string text;
+  AppendEffective(message, "", text);
+  return text;
+}
+
+std::string EffectiveTextOfFile(const std::filesystem::path& file) {
+  static const std::string kMark = "# proto-message: ";
+  const std::string text = ReadFile(file);
+  const auto start = text.find(kMark);
+  if (start == std::string::npos) throw ConfigError({file.string() + ":1: file: has no line \"" + kMark + "...\""});
+  const auto begin = start + kMark.size();
+  std::string name = text.substr(begin, text.find('\n', begin) - begin);
+  while (!name.empty() && (name.back() == '\r' || name.back() == ' ')) name.pop_back();
+  const auto* descriptor = FindSchema(name);
+  if (descriptor == nullptr) throw ConfigError({file.string() + ":1: proto-message: there is no schema " + name});
+  const std::unique_ptr<Message> message(google::protobuf::MessageFactory::generated_factory()->GetPrototype(descriptor)->New());
+  ParseText(text, file.string(), *message);
+  return EffectiveText(*message);
+}
+
+void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason) {
+  // The line of the first place in which the field is set; 1 when it is not (a default is in force).
+  int line_number = 1;
+  std::istringstream text(ReadFile(file));
+  int number = 0;
+  const std::string key = field.substr(field.rfind('.') + 1);
+  for (std::string line; std::getline(text, line);) {
+    ++number;
+    const auto place = line.substr(0, line.find('#')).find(key);
+    if (place != std::string::npos) {
+      line_number = number;
+      break;
+    }
+  }
+  throw ConfigError({file.string() + ":" + std::to_string(line_number) + ": " + field + ": " + reason});
+}
+
+}  // namespace lookout::config

@@ -1,0 +1,48 @@
+// Strict reading of Protobuf text files: what is unknown, mistyped, missing, not finite or out of range stops the start.
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lookout::config {
+
+/// All faults of one or more files, a line each: "path:line: field: reason".
+class ConfigError : public std::runtime_error {
+ public:
+  explicit ConfigError(std::vector<std::string> faults);
+  const std::vector<std::string>& faults() const { return faults_; }
+
+ private:
+  std::vector<std::string> faults_;
+};
+
+/// Fills `message` from a text file and checks it against the options of its schema (config/schema/options.proto).
+///
+/// @throws ConfigError with every fault found; `message` is then not to be used
+void LoadText(const std::filesystem::path& file, google::protobuf::Message& message);
+
+/// The same from text; `name` stands in for the path in faults.
+void ParseText(const std::string& text, const std::string& name, google::protobuf::Message& message);
+
+/// @return the message loaded from `folder`/`file_name`
+template <typename Message>
+Message Load(const std::filesystem::path& folder, const std::string& file_name) {
+  Message message;
+  LoadText(folder / file_name, message);
+  return message;
+}
+
+/// @return values and defaults, a line each, in the order of the schema: what is in force
+std::string EffectiveText(const google::protobuf::Message& message);
+
+/// @return EffectiveText of a file whose line "# proto-message: lookout.config.X" names its schema. @throws ConfigError
+std::string EffectiveTextOfFile(const std::filesystem::path& file);
+
+/// A fault of a relation between fields, found by a service: throws ConfigError "file: field: reason".
+[[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason);
+
+}  // namespace lookout::config

@@ -1,0 +1,98 @@
+#include "common/runtime/health.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <utility>
+#include <vector>
+
+#include "common/runtime/process.hpp"
+
+namespace lookout::runtime {
+
+namespace {
+
+double CpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::int64_t ResidentBytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::int64_t total_pages = 0;
+  std::int64_t resident_pages = 0;
+  statm >> total_pages >> resident_pages;
+  return resident_pages * sysconf(_SC_PAGESIZE);
+}
+
+// The value that a share `quantile` of the times does not exceed; -1 without times.
+std::int64_t QuantileUs(const std::vector<std::chrono::microseconds>& sorted, double quantile) {
+  if (sorted.empty()) return -1;
+  const auto index = static_cast<std::size_t>(quantile * static_cast<double>(sorted.size() - 1) + 0.5);
+  return sorted[index].count();
+}
+
+}  // namespace
+
+HealthReporter::HealthReporter(std::string process)
+    : process_(std::move(process)), start_(std::chrono::steady_clock::now()), last_(start_), last_cpu_s_(CpuSeconds()) {}
+
+health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& bus) {
+  const auto steady_now = std::chrono::steady_clock::now();
+  const double cpu_s = CpuSeconds();
+  health_t message{};
+  message.utime_us = ToUtimeUs(now);
+  message.seq = seq_++;
+  message.process = process_;
+  message.host = HostName();
+  message.pid = getpid();
+  message.state = static_cast<std::int32_t>(report.state);
+  message.reason = report.reason;
+  message.uptime_s = ToSeconds(steady_now - start_);
+  message.interval_s = ToSeconds(steady_now - last_);
+  message.cpu_fraction = message.interval_s > 0.0 ? (cpu_s - last_cpu_s_) / message.interval_s : 0.0;
+  message.resident_bytes = ResidentBytes();
+
+  const auto add_channel = [&](const std::string& name, const bus::ChannelTraffic& traffic, bool is_input) {
+    health_channel_t channel{};
+    channel.channel = name;
+    channel.is_input = is_input;
+    channel.num_messages = traffic.num_messages;
+    channel.num_undecodable = traffic.num_undecodable;
+    channel.num_lost = traffic.num_lost;
+    auto& last_count = last_counts_[(is_input ? "in " : "out ") + name];
+    if (message.interval_s > 0.0) channel.rate_hz = static_cast<double>(traffic.num_messages - last_count) / message.interval_s;
+    last_count = traffic.num_messages;
+    channel.queue_depth = is_input ? bus.QueueDepth(name) : -1;
+    const auto* entry = bus::FindChannel(name);
+    channel.queue_limit = is_input && entry != nullptr ? entry->queue_depth : 0;
+    std::vector<std::chrono::microseconds> times(traffic.handling_times.begin(), traffic.handling_times.end());
+    std::ranges::sort(times);
+    channel.handling_p50_us = QuantileUs(times, 0.50);
+    channel.handling_p99_us = QuantileUs(times, 0.99);
+    message.channels.push_back(channel);
+  };
+  for (auto& [name, traffic] : bus.input_traffic()) {
+    add_channel(name, traffic, true);
+    traffic.handling_times.clear();
+  }
+  for (const auto& [name, traffic] : bus.output_traffic()) add_channel(name, traffic, false);
+  message.num_channels = static_cast<std::int32_t>(message.channels.size());
+
+  for (const auto& counter : report.counters) {
+    health_counter_t entry{};
+    entry.name = counter.name;
+    entry.count = counter.count;
+    message.counters.push_back(entry);
+  }
+  message.num_counters = static_cast<std::int32_t>(message.counters.size());
+  last_ = steady_now;
+  last_cpu_s_ = cpu_s;
+  return message;
+}
+
+}  // namespace lookout::runtime

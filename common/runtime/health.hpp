@@ -1,0 +1,32 @@
+// Makes the HEALTH message of this process.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/health_t.hpp"
+
+namespace lookout::runtime {
+
+class HealthReporter {
+ public:
+  explicit HealthReporter(std::string process);
+
+  /// @param now  host time
+  /// @return the state of the process since the call before; takes the handling times out of `bus`
+  health_t Make(Utime now, const HealthReport& report, bus::Bus& bus);
+
+ private:
+  std::string process_;
+  std::chrono::steady_clock::time_point start_;
+  std::chrono::steady_clock::time_point last_;
+  double last_cpu_s_ = 0.0;
+  std::int64_t seq_ = 0;
+  std::map<std::string, std::int64_t> last_counts_;  // by channel, inputs and outputs apart
+};
+
+}  // namespace lookout::runtime

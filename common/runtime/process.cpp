@@ -1,0 +1,154 @@
+#include "common/runtime/process.hpp"
+
+#include <poll.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "common/config/text_config.hpp"
+#include "common/runtime/health.hpp"
+#include "common/runtime/options.hpp"
+
+namespace lookout::runtime {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds kHealthPeriod(1000);
+// Messages handled before sockets and timers get their turn again.
+constexpr int kMaxMessagesPerRound = 64;
+
+sigset_t StopSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+// Goes before anything that starts a thread (LCM does): threads inherit the blocked signals.
+std::string Prepared(const std::string& name, const std::string& lcm_url) {
+  const sigset_t signals = StopSignals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ " + name + ": %v", spdlog::pattern_time_type::utc);
+  return lcm_url;
+}
+
+}  // namespace
+
+Utime HostNow() { return std::chrono::time_point_cast<std::chrono::microseconds>(std::chrono::system_clock::now()); }
+
+std::string HostName() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";
+  return name.data();
+}
+
+struct Process::Implementation {
+  struct Timer {
+    Clock::duration period;
+    Clock::time_point next;
+    std::function<void()> handler;
+  };
+  struct Readable {
+    int file_descriptor;
+    std::function<void()> handler;
+  };
+
+  std::string name;
+  int signals = -1;
+  bool is_stopping = false;
+  std::vector<Timer> timers;
+  std::vector<Readable> readables;
+
+  std::chrono::milliseconds UntilNextTimer() const {
+    auto next = Clock::now() + std::chrono::seconds(1);
+    for (const auto& timer : timers) next = std::min(next, timer.next);
+    return std::max(std::chrono::milliseconds(0), std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now()));
+  }
+
+  void RunTimers() {
+    for (auto& timer : timers) {
+      const auto now = Clock::now();
+      if (now < timer.next) continue;
+      timer.next = std::max(timer.next + timer.period, now);
+      timer.handler();
+    }
+  }
+};
+
+Process::Process(const std::string& name, const std::string& lcm_url)
+    : bus_(Prepared(name, lcm_url)), implementation_(std::make_unique<Implementation>()) {
+  const sigset_t signals = StopSignals();
+  implementation_->name = name;
+  implementation_->signals = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
+  if (implementation_->signals < 0) throw std::runtime_error("signalfd failed");
+}
+
+Process::~Process() {
+  if (implementation_->signals >= 0) close(implementation_->signals);
+}
+
+void Process::OnReadable(int file_descriptor, std::function<void()> handler) {
+  implementation_->readables.push_back({file_descriptor, std::move(handler)});
+}
+
+void Process::Every(std::chrono::milliseconds period, std::function<void()> handler) {
+  implementation_->timers.push_back({period, Clock::now() + period, std::move(handler)});
+}
+
+void Process::Stop() { implementation_->is_stopping = true; }
+
+void Process::Run(const std::function<HealthReport()>& report) {
+  auto& self = *implementation_;
+  HealthReporter reporter(self.name);
+  Every(kHealthPeriod, [&] { bus::Publish(bus_, bus::kHealth, reporter.Make(HostNow(), report(), bus_)); });
+  spdlog::info("starts, version {}", Version());
+  while (!self.is_stopping) {
+    std::vector<pollfd> descriptors{{self.signals, POLLIN, 0}, {bus_.file_descriptor(), POLLIN, 0}};
+    for (const auto& readable : self.readables) descriptors.push_back({readable.file_descriptor, POLLIN, 0});
+    if (poll(descriptors.data(), descriptors.size(), static_cast<int>(self.UntilNextTimer().count())) < 0 && errno != EINTR) {
+      throw std::runtime_error("poll failed");
+    }
+    if (descriptors[0].revents != 0) {
+      signalfd_siginfo info{};
+      if (read(self.signals, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
+        spdlog::info("stops on signal {}", info.ssi_signo);
+        self.is_stopping = true;
+      }
+    }
+    for (std::size_t i = 0; i < self.readables.size() && !self.is_stopping; ++i) {
+      if (descriptors[i + 2].revents != 0) self.readables[i].handler();
+    }
+    for (int i = 0; i < kMaxMessagesPerRound && descriptors[1].revents != 0 && !self.is_stopping; ++i) {
+      if (!bus_.HandleOnce(std::chrono::milliseconds(0))) break;
+    }
+    if (!self.is_stopping) self.RunTimers();
+  }
+  const auto last_report = report();
+  for (const auto& counter : last_report.counters) {
+    if (counter.count > 0) spdlog::info("{}: {}", counter.name, counter.count);
+  }
+}
+
+int RunMain(const std::string& name, const std::function<void()>& body) try {
+  body();
+  return EXIT_SUCCESS;
+} catch (const config::ConfigError& error) {
+  for (const auto& fault : error.faults()) spdlog::critical("{}", fault);
+  return 2;
+} catch (const std::exception& error) {
+  spdlog::critical("{}: {}", name, error.what());
+  return EXIT_FAILURE;
+}
+
+}  // namespace lookout::runtime

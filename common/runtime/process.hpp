@@ -1,0 +1,55 @@
+// A live process: signals, timers, file descriptors, the LCM bus and HEALTH at 1 Hz, in one thread.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::runtime {
+
+/// Host time. Only main, io and runtime call it; all else gets time as an argument.
+Utime HostNow();
+
+/// Name of this computer.
+std::string HostName();
+
+class Process {
+ public:
+  /// Blocks SIGINT and SIGTERM, sets spdlog's pattern, opens the bus.
+  ///
+  /// @param name  as in HEALTH: "segmenter"
+  /// @throws std::runtime_error when the bus cannot be opened
+  Process(const std::string& name, const std::string& lcm_url);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  bus::LcmBus& bus() { return bus_; }
+
+  /// Calls `handler` while `file_descriptor` is readable. It must read at least once and not wait.
+  void OnReadable(int file_descriptor, std::function<void()> handler);
+
+  /// Calls `handler` about every `period`, late rather than twice.
+  void Every(std::chrono::milliseconds period, std::function<void()> handler);
+
+  /// Runs until SIGINT, SIGTERM or Stop(). Sends HEALTH once a second with what `report` says.
+  /// @throws what a handler threw
+  void Run(const std::function<HealthReport()>& report);
+
+  /// Ends Run after the handler that calls it (end of a capture).
+  void Stop();
+
+ private:
+  struct Implementation;
+  bus::LcmBus bus_;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Runs `body`, and turns what it throws into a line of the log and an exit code: 0 fine, 1 failed, 2 wrong config.
+int RunMain(const std::string& name, const std::function<void()>& body);
+
+}  // namespace lookout::runtime

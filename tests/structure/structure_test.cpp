@@ -1,0 +1,147 @@
+// The house rules that a compiler does not check: who may include whom, and pages that must agree with the code.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = LOOKOUT_SOURCE_DIR;
+
+std::string Read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::vector<fs::path> SourcesBelow(const fs::path& folder) {
+  std::vector<fs::path> files;
+  if (!fs::exists(folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const auto ending = entry.path().extension();
+    if (entry.is_regular_file() && (ending == ".cpp" || ending == ".hpp")) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+std::vector<std::string> Includes(const fs::path& file) {
+  static const std::regex kInclude(R"re(^\s*#include\s*[<"]([^>"]+)[>"])re");
+  std::vector<std::string> includes;
+  std::istringstream text(Read(file));
+  for (std::string line; std::getline(text, line);) {
+    std::smatch match;
+    if (std::regex_search(line, match, kInclude)) includes.push_back(match[1]);
+  }
+  return includes;
+}
+
+// What an include is: the room of ours, the library, or "std".
+std::string KindOf(const std::string& include) {
+  static const std::vector<std::pair<std::string, std::string>> kPrefixes{
+      {"lookout/", "wire types"}, {"config/schema/", "config types"}, {"lcm/", "lcm"},
+      {"google/", "protobuf"},    {"pcap/", "pcap"},                  {"pcap.h", "pcap"},
+      {"spdlog/", "spdlog"},      {"fmt/", "fmt"},                    {"CLI/", "cli"},
+      {"openssl/", "openssl"},    {"Eigen/", "eigen"},                {"GeographicLib/", "geographiclib"},
+      {"sys/socket", "socket"},   {"netinet/", "socket"},             {"arpa/", "socket"}};
+  for (const auto& [prefix, kind] : kPrefixes) {
+    if (include.rfind(prefix, 0) == 0) return kind;
+  }
+  if (include.rfind("common/", 0) == 0) return include.substr(0, include.find('/', 7));
+  if (include.rfind("services/", 0) == 0 || include.rfind("tools/", 0) == 0) return include.substr(0, include.rfind('/'));
+  return "std";
+}
+
+// A room and the kinds that its files may include besides std and Eigen. "OWN" stands for the service's folder.
+struct Rule {
+  std::string room;  // regular expression of the path below the root
+  std::vector<std::string> allowed;
+};
+
+const std::vector<Rule>& Rules() {
+  static const std::vector<Rule> kRules{
+      {"common/core/.*", {"common/core"}},
+      {"common/io/.*", {"common/core", "common/io", "socket"}},
+      {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
+      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
+      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli"}},
+      {"services/(georeferencer|navigator)/core/.*", {"common/core", "OWN/core", "geographiclib"}},
+      {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
+      {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
+      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
+      {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
+      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
+      {"services/[^/]+/main\\.cpp",
+       {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
+  };
+  return kRules;
+}
+
+TEST(Structure, RoomsIncludeOnlyWhatTheyMay) {
+  int num_checked = 0;
+  for (const auto& folder : {"common", "services"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) {
+      const std::string path = fs::relative(file, kRoot).string();
+      const auto rule = std::ranges::find_if(Rules(), [&](const Rule& candidate) { return std::regex_match(path, std::regex(candidate.room)); });
+      ASSERT_NE(rule, Rules().end()) << path << " is in no room that the rules name";
+      const std::string own = path.substr(0, path.find('/', path.find('/') + 1));
+      for (const auto& include : Includes(file)) {
+        const std::string kind = KindOf(include);
+        const bool is_allowed = kind == "std" || kind == "eigen" || std::ranges::any_of(rule->allowed, [&](std::string allowed) {
+                                  if (allowed.rfind("OWN", 0) == 0) allowed.replace(0, 3, own);
+                                  return allowed == kind;
+                                });
+        EXPECT_TRUE(is_allowed) << path << " may not include " << include << " (" << kind << ")";
+        ++num_checked;
+      }
+    }
+  }
+  EXPECT_GT(num_checked, 100);
+}
+
+TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
+  // The bus takes times of its handlers for HEALTH; they decide nothing.
+  const std::regex exempt("common/runtime/.*|common/bus/bus\\.cpp|common/io/.*|services/[^/]+/(main\\.cpp|io/.*)");
+  const std::regex clock(R"(_clock::now|\bHostNow\(|gettimeofday|clock_gettime|\btime\(nullptr\))");
+  for (const auto& folder : {"common", "services"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) {
+      const std::string path = fs::relative(file, kRoot).string();
+      if (std::regex_match(path, exempt)) continue;
+      EXPECT_FALSE(std::regex_search(Read(file), clock)) << path << " reads a clock";
+    }
+  }
+}
+
+TEST(Structure, ReadmeHoldsTheChannelTable) {
+  const std::string readme = Read(kRoot / "README.md");
+  for (const auto& channel : lookout::bus::kChannels) {
+    std::ostringstream row;
+    row << "| " << channel.name << " | " << channel.type << " | " << channel.publisher << " | " << channel.max_rate_hz << " | " << channel.queue_depth
+        << " |";
+    EXPECT_NE(readme.find(row.str()), std::string::npos) << "README.md lacks or differs from: " << row.str();
+  }
+}
+
+TEST(Structure, ReadmeNamesEveryProgram) {
+  const std::string readme = Read(kRoot / "README.md");
+  for (const auto& folder : {"services", "tools"}) {
+    for (const auto& entry : fs::directory_iterator(kRoot / folder)) {
+      if (!entry.is_directory()) continue;
+      const std::string program = "lookout-" + entry.path().filename().string();
+      EXPECT_NE(readme.find(program), std::string::npos) << "README.md does not name " << program;
+      EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path() << " has no README.md";
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,102 @@
+#include "common/bus/log_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace lookout::bus {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LogFile : public ::testing::Test {
+ protected:
+  fs::path file_ = fs::temp_directory_path() / ("lookout_log_file_test_" + std::to_string(::getpid()));
+  void TearDown() override { fs::remove(file_); }
+
+  void WriteThree() {
+    LogWriter writer(file_, true);
+    for (int i = 0; i < 3; ++i) {
+      const std::vector<std::uint8_t> bytes(100, static_cast<std::uint8_t>(i));
+      writer.Write(Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", bytes);
+    }
+  }
+  std::string Content() {
+    std::ifstream in(file_, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+  void SetContent(const std::string& text) { std::ofstream(file_, std::ios::binary) << text; }
+  static constexpr std::size_t kEventBytes = 28 + 7 + 100;
+};
+
+TEST_F(LogFile, GivesBackWhatWasWritten) {
+  WriteThree();
+  LogReader reader(file_);
+  for (int i = 0; i < 3; ++i) {
+    const auto event = reader.Next();
+    ASSERT_TRUE(event);
+    EXPECT_EQ(ToUtimeUs(event->time), 1000 + i);
+    EXPECT_EQ(event->channel, "CHANNEL");
+    EXPECT_EQ(event->bytes, std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
+  }
+  EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 0);
+}
+
+TEST_F(LogFile, CountsATornTail) {
+  WriteThree();
+  SetContent(Content().substr(0, 2 * kEventBytes + 50));
+  LogReader reader(file_);
+  EXPECT_TRUE(reader.Next());
+  EXPECT_TRUE(reader.Next());
+  EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 1);
+}
+
+TEST_F(LogFile, FindsTheNextEventAfterADamagedLength) {
+  WriteThree();
+  auto text = Content();
+  text[kEventBytes + 24] = '\x7F';  // data length of the second event: 2 GB
+  SetContent(text);
+  LogReader reader(file_);
+  EXPECT_EQ(ToUtimeUs(reader.Next()->time), 1000);
+  EXPECT_EQ(ToUtimeUs(reader.Next()->time), 1002);
+  EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 1);
+}
+
+TEST_F(LogFile, SkipsJunkInFrontAndBetween) {
+  WriteThree();
+  const auto text = Content();
+  SetContent("junk" + text.substr(0, kEventBytes) + std::string(1000, '\xED') + text.substr(kEventBytes));
+  LogReader reader(file_);
+  int num_events = 0;
+  while (reader.Next()) ++num_events;
+  EXPECT_EQ(num_events, 3);
+  EXPECT_EQ(reader.num_damaged(), 2);
+}
+
+TEST_F(LogFile, IsNotOverwrittenUnlessAskedFor) {
+  WriteThree();
+  EXPECT_THROW(LogWriter(file_, false), std::runtime_error);
+}
+
+TEST_F(LogFile, ThatDoesNotExistIsAnError) { EXPECT_THROW(LogReader("/nonexistent/file"), std::runtime_error); }
+
+TEST_F(LogFile, OfLcmsOwnToolsCanBeRead) {
+  const fs::path recording = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data/lcm/lcmproj_example.lcmlog";
+  if (!fs::exists(recording)) GTEST_SKIP() << "no recording at " << recording;
+  LogReader reader(recording);
+  int num_events = 0;
+  while (reader.Next()) ++num_events;
+  EXPECT_GT(num_events, 0);
+  EXPECT_EQ(reader.num_damaged(), 0);
+}
+
+}  // namespace
+}  // namespace lookout::bus

@@ -1,0 +1,97 @@
+#include "tools/export/csv.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::exporter {
+
+namespace {
+
+constexpr std::array<double, 10> kPowerOf10{1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+
+// Above it a double holds no fraction.
+constexpr double kLargestExactInteger = 9007199254740992.0;
+
+void AppendInteger(std::int64_t value, std::string& text) {
+  std::array<char, 24> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(digits.data(), end);
+}
+
+void AppendShortest(double value, std::string& text) {
+  std::array<char, 400> digits;  // the longest double without exponent has 1 + 309 digits, or 2 + 324 + 17
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr;
+  text.append(digits.data(), end);
+}
+
+// value / 10^decimals
+void AppendScaled(std::int64_t value, int decimals, std::string& text) {
+  if (value < 0) {
+    text += '-';
+    value = -value;
+  }
+  std::array<char, 24> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  const auto num_digits = static_cast<int>(end - digits.data());
+  const int num_before = num_digits - decimals;
+  if (num_before > 0) {
+    text.append(digits.data(), static_cast<std::size_t>(num_before));
+  } else {
+    text += '0';
+  }
+  if (decimals == 0) return;
+  text += '.';
+  if (num_before < 0) text.append(static_cast<std::size_t>(-num_before), '0');
+  text.append(digits.data() + (num_before > 0 ? num_before : 0), end);
+}
+
+}  // namespace
+
+void CsvWriter::Integer(std::int64_t value) {
+  Separate();
+  AppendInteger(value, text_);
+}
+
+void CsvWriter::Fixed(double value, int decimals) {
+  Separate();
+  if (!std::isfinite(value)) return;
+  const double scaled = std::round(value * kPowerOf10[static_cast<std::size_t>(decimals)]);
+  if (std::abs(scaled) < kLargestExactInteger) {
+    AppendScaled(static_cast<std::int64_t>(scaled), decimals, text_);
+  } else {
+    AppendShortest(value, text_);
+  }
+}
+
+void CsvWriter::Shortest(double value) {
+  Separate();
+  if (!std::isfinite(value)) return;
+  AppendShortest(value == 0.0 ? 0.0 : value, text_);  // no "-0"
+}
+
+void CsvWriter::Direction(double angle_rad) {
+  Separate();
+  if (!std::isfinite(angle_rad)) return;
+  // Rounding may reach the full circle, which is 0 again.
+  const auto scaled = static_cast<std::int64_t>(std::round(RadToDeg(WrapTo2Pi(angle_rad)) * 1e4));
+  AppendScaled(scaled % 3'600'000, 4, text_);
+}
+
+void CsvWriter::Text(std::string_view value) {
+  Separate();
+  if (value.find_first_of(",\"\r\n") == std::string_view::npos) {
+    text_ += value;
+    return;
+  }
+  text_ += '"';
+  for (const char c : value) {
+    if (c == '"') text_ += '"';
+    text_ += c;
+  }
+  text_ += '"';
+}
+
+}  // namespace lookout::exporter

@@ -1,0 +1,39 @@
+// What takes the messages of a log and makes text of them.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+#include "common/core/bytes.hpp"
+
+namespace lookout::exporter {
+
+enum class Taken {
+  kOk,
+  kUndecodable,   // not a whole message of the channel's type
+  kInconsistent,  // decoded, but its own counts or times contradict each other
+};
+
+class Sink {
+ public:
+  virtual ~Sink() = default;
+
+  /// Channels that it takes; the first is the one that must be there.
+  virtual std::vector<bus::Channel> Channels() const = 0;
+
+  /// Takes a message of one of its channels, in the order of the log, and appends to `text` what can be written of it.
+  virtual Taken Take(std::string_view channel, Bytes bytes, std::string& text) = 0;
+
+  /// End of the input: appends the rest.
+  virtual void Finish(std::string& text) = 0;
+
+  /// Whether later messages cannot change the result.
+  virtual bool IsDone() const { return false; }
+
+  /// Lines for people about what was not as expected.
+  virtual std::vector<std::string> Remarks() const { return {}; }
+};
+
+}  // namespace lookout::exporter

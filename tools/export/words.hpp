@@ -1,0 +1,64 @@
+// The words that stand for the codes of the wire in tables and on screens. Defined here only; lcmtypes/README.md lists them (a test compares).
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+
+#include "lookout/gnss_fix_t.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/lidar_clock_t.hpp"
+#include "lookout/obstacle_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/segments_t.hpp"
+
+namespace lookout::words {
+
+struct Word {
+  int code;
+  std::string_view text;
+};
+
+/// Why a return is in no segment; the code is minus its label.
+inline constexpr std::array kReason{Word{segments_t::REASON_RANGE, "range"}, Word{segments_t::REASON_OWN_VESSEL, "own_vessel"},
+                                    Word{segments_t::REASON_FIELD_OF_VIEW, "field_of_view"}, Word{segments_t::REASON_SHADOWED, "shadowed"},
+                                    Word{segments_t::REASON_TOO_SMALL, "too_small"}};
+
+inline constexpr std::array kObstacleStatus{Word{obstacle_t::STATUS_OK, "ok"}, Word{obstacle_t::STATUS_VESSEL_FRAME_ONLY, "vessel_frame_only"},
+                                            Word{obstacle_t::STATUS_POSE_TIMEOUT, "pose_timeout"}};
+
+inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose_t::STATUS_NO_HEADING, "no_heading"},
+                                        Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"}};
+
+inline constexpr std::array kTimeSource{Word{lidar_clock_t::TIME_HOST, "host"}, Word{lidar_clock_t::TIME_SENSOR, "sensor"}};
+
+inline constexpr std::array kClockState{Word{lidar_clock_t::STATE_UNKNOWN, "unknown"},
+                                        Word{lidar_clock_t::STATE_NO_PPS, "no_pps"},
+                                        Word{lidar_clock_t::STATE_ACQUIRING, "acquiring"},
+                                        Word{lidar_clock_t::STATE_LOCKED_WITHOUT_TIME, "locked_without_time"},
+                                        Word{lidar_clock_t::STATE_LOCKED, "locked"},
+                                        Word{lidar_clock_t::STATE_FREE_RUNNING, "free_running"},
+                                        Word{lidar_clock_t::STATE_ERROR, "error"}};
+
+inline constexpr std::array kFixQuality{Word{gnss_fix_t::QUALITY_NONE, "none"},
+                                        Word{gnss_fix_t::QUALITY_GNSS, "gnss"},
+                                        Word{gnss_fix_t::QUALITY_DIFFERENTIAL, "differential"},
+                                        Word{gnss_fix_t::QUALITY_PPS, "pps"},
+                                        Word{gnss_fix_t::QUALITY_RTK_FIXED, "rtk_fixed"},
+                                        Word{gnss_fix_t::QUALITY_RTK_FLOAT, "rtk_float"},
+                                        Word{gnss_fix_t::QUALITY_DEAD_RECKONING, "dead_reckoning"},
+                                        Word{gnss_fix_t::QUALITY_MANUAL, "manual"},
+                                        Word{gnss_fix_t::QUALITY_SIMULATOR, "simulator"}};
+
+inline constexpr std::array kHealthState{Word{health_t::STATE_OK, "ok"}, Word{health_t::STATE_DEGRADED, "degraded"},
+                                         Word{health_t::STATE_ERROR, "error"}};
+
+/// @return the word of `code`; "undefined" for a code that is not of this version
+constexpr std::string_view WordOf(std::span<const Word> words, int code) {
+  for (const auto& word : words) {
+    if (word.code == code) return word.text;
+  }
+  return "undefined";
+}
+
+}  // namespace lookout::words
