@@ -1,13 +1,13 @@
 #include "common/bus/lcm_bus.hpp"
 
 #include <arpa/inet.h>
-#include <lcm/lcm-cpp.hpp>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <exception>
+#include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <stdexcept>
 #include <vector>

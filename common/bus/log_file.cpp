@@ -1,9 +1,8 @@
 #include "common/bus/log_file.hpp"
 
-#include <lcm/eventlog.h>
-
 #include <array>
 #include <cstdio>
+#include <lcm/eventlog.h>
 #include <stdexcept>
 #include <system_error>
 
@@ -30,23 +29,26 @@ std::int64_t ReadI32(Bytes bytes, std::size_t offset) { return static_cast<std::
 
 struct LogReader::Implementation {
   struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
+    void operator()(std::FILE* open_file) const { std::fclose(open_file); }
   };
   std::unique_ptr<std::FILE, Closer> file;
   std::int64_t size_bytes = 0;
   std::int64_t position = 0;  // of the next event
+  std::int64_t cursor = 0;    // of the file: a seek throws the read-ahead away, so there is none while events follow each other
 
-  bool ReadAt(std::int64_t offset, void* target, std::size_t size) {
-    if (fseeko(file.get(), offset, SEEK_SET) != 0) return false;
-    return std::fread(target, 1, size, file.get()) == size;
+  // @return how many bytes were read
+  std::size_t ReadAt(std::int64_t offset, void* target, std::size_t size) {
+    if (offset != cursor && fseeko(file.get(), offset, SEEK_SET) != 0) return 0;
+    const std::size_t size_read = std::fread(target, 1, size, file.get());
+    cursor = offset + static_cast<std::int64_t>(size_read);
+    return size_read;
   }
 
   // The first sync word at or after `offset`; size_bytes when there is none.
   std::int64_t FindSync(std::int64_t offset) {
     std::array<std::uint8_t, 65536> block;
     while (offset + 4 <= size_bytes) {
-      if (fseeko(file.get(), offset, SEEK_SET) != 0) break;
-      const std::size_t size = std::fread(block.data(), 1, block.size(), file.get());
+      const std::size_t size = ReadAt(offset, block.data(), block.size());
       if (size < 4) break;
       for (std::size_t i = 0; i + 4 <= size; ++i) {
         if (ReadBigEndian(block, i, 4) == kSyncWord) return offset + static_cast<std::int64_t>(i);
@@ -73,17 +75,18 @@ std::optional<LogEvent> LogReader::Next() {
   while (in.position < in.size_bytes) {
     std::array<std::uint8_t, kHeaderBytes> header;
     const std::int64_t start = in.position;
-    const bool has_header = start + static_cast<std::int64_t>(kHeaderBytes) <= in.size_bytes && in.ReadAt(start, header.data(), header.size());
+    const bool has_header = in.ReadAt(start, header.data(), header.size()) == header.size();
     if (has_header && ReadBigEndian(header, 0, 4) == kSyncWord) {
       const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
       const std::int64_t channel_size = ReadI32(header, 20);
       const std::int64_t data_size = ReadI32(header, 24);
-      const std::int64_t left = in.size_bytes - start - static_cast<std::int64_t>(kHeaderBytes);
-      if (time && channel_size > 0 && channel_size <= kMaxChannelBytes && data_size >= 0 && channel_size + data_size <= left) {
-        LogEvent event{*time, std::string(static_cast<std::size_t>(channel_size), '\0'), std::vector<std::uint8_t>(static_cast<std::size_t>(data_size))};
-        if (std::fread(event.channel.data(), 1, event.channel.size(), in.file.get()) == event.channel.size() &&
-            std::fread(event.bytes.data(), 1, event.bytes.size(), in.file.get()) == event.bytes.size()) {
-          in.position = start + static_cast<std::int64_t>(kHeaderBytes) + channel_size + data_size;
+      const std::int64_t body = start + static_cast<std::int64_t>(kHeaderBytes);
+      if (time && channel_size > 0 && channel_size <= kMaxChannelBytes && data_size >= 0 && channel_size + data_size <= in.size_bytes - body) {
+        LogEvent event{*time, std::string(static_cast<std::size_t>(channel_size), '\0'),
+                       std::vector<std::uint8_t>(static_cast<std::size_t>(data_size))};
+        if (in.ReadAt(body, event.channel.data(), event.channel.size()) == event.channel.size() &&
+            in.ReadAt(body + channel_size, event.bytes.data(), event.bytes.size()) == event.bytes.size()) {
+          in.position = body + channel_size + data_size;
           return event;
         }
       }

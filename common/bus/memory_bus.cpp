@@ -15,9 +15,7 @@ bool MemoryBus::HandleOnce(std::chrono::milliseconds /*timeout*/) {
   return true;
 }
 
-int MemoryBus::QueueDepth(std::string_view channel) const {
-  return static_cast<int>(std::ranges::count(messages_, channel, &Message::channel));
-}
+int MemoryBus::QueueDepth(std::string_view channel) const { return static_cast<int>(std::ranges::count(messages_, channel, &Message::channel)); }
 
 void MemoryBus::Send(const Channel& channel, Bytes bytes) { messages_.push_back({channel.name, {bytes.begin(), bytes.end()}}); }
 

@@ -1,8 +1,7 @@
-#include <openssl/evp.h>
-
 #include <array>
 #include <cinttypes>
 #include <cstdio>
+#include <openssl/evp.h>
 #include <stdexcept>
 
 #include "common/bus/schema.hpp"

@@ -1,13 +1,12 @@
 #include "common/config/text_config.hpp"
 
+#include <array>
+#include <cmath>
+#include <fstream>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 #include <google/protobuf/text_format.h>
-
-#include <array>
-#include <cmath>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -46,11 +45,11 @@ std::string NumberText(double value) {
   return text.data();
 }
 
-// All schemas by name. Naming their descriptors here also makes the linker keep them.
-const Descriptor* FindSchema(const std::string& name) {
+// The message of a schema file. Naming the descriptors here also makes the linker keep them.
+const Descriptor* FindSchema(const std::string& schema_file) {
   for (const auto* descriptor : {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(),
                                  Georeferencer::descriptor(), Recorder::descriptor()}) {
-    if (descriptor->full_name() == name) return descriptor;
+    if (descriptor->file()->name() == schema_file) return descriptor;
   }
   return nullptr;
 }
@@ -190,15 +189,10 @@ std::string EffectiveText(const Message& message) {
 }
 
 std::string EffectiveTextOfFile(const std::filesystem::path& file) {
-  static const std::string kMark = "# proto-message: ";
   const std::string text = ReadFile(file);
-  const auto start = text.find(kMark);
-  if (start == std::string::npos) throw ConfigError({file.string() + ":1: file: has no line \"" + kMark + "...\""});
-  const auto begin = start + kMark.size();
-  std::string name = text.substr(begin, text.find('\n', begin) - begin);
-  while (!name.empty() && (name.back() == '\r' || name.back() == ' ')) name.pop_back();
-  const auto* descriptor = FindSchema(name);
-  if (descriptor == nullptr) throw ConfigError({file.string() + ":1: proto-message: there is no schema " + name});
+  const std::string schema_file = "config/schema/" + file.stem().string() + ".proto";
+  const auto* descriptor = FindSchema(schema_file);
+  if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});
   const std::unique_ptr<Message> message(google::protobuf::MessageFactory::generated_factory()->GetPrototype(descriptor)->New());
   ParseText(text, file.string(), *message);
   return EffectiveText(*message);

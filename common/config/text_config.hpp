@@ -1,9 +1,8 @@
 // Strict reading of Protobuf text files: what is unknown, mistyped, missing, not finite or out of range stops the start.
 #pragma once
 
-#include <google/protobuf/message.h>
-
 #include <filesystem>
+#include <google/protobuf/message.h>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -39,7 +38,7 @@ Message Load(const std::filesystem::path& folder, const std::string& file_name) 
 /// @return values and defaults, a line each, in the order of the schema: what is in force
 std::string EffectiveText(const google::protobuf::Message& message);
 
-/// @return EffectiveText of a file whose line "# proto-message: lookout.config.X" names its schema. @throws ConfigError
+/// @return EffectiveText of a file; x.txtpb has the schema config/schema/x.proto. @throws ConfigError
 std::string EffectiveTextOfFile(const std::filesystem::path& file);
 
 /// A fault of a relation between fields, found by a service: throws ConfigError "file: field: reason".

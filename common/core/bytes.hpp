@@ -16,8 +16,7 @@ constexpr std::uint16_t ReadU16LittleEndian(Bytes bytes, std::size_t offset) {
 
 /// Precondition: offset + 4 <= bytes.size().
 constexpr std::uint32_t ReadU32LittleEndian(Bytes bytes, std::size_t offset) {
-  return static_cast<std::uint32_t>(ReadU16LittleEndian(bytes, offset)) |
-         static_cast<std::uint32_t>(ReadU16LittleEndian(bytes, offset + 2)) << 16;
+  return static_cast<std::uint32_t>(ReadU16LittleEndian(bytes, offset)) | static_cast<std::uint32_t>(ReadU16LittleEndian(bytes, offset + 2)) << 16;
 }
 
 /// Precondition: offset + 2 <= bytes.size().

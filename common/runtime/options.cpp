@@ -1,7 +1,6 @@
 #include "common/runtime/options.hpp"
 
 #include <CLI/CLI.hpp>
-
 #include <cstdlib>
 
 #include "common/bus/lcm_bus.hpp"

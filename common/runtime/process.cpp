@@ -2,13 +2,13 @@
 
 #include <poll.h>
 #include <pthread.h>
-#include <spdlog/spdlog.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <spdlog/spdlog.h>
 #include <stdexcept>
 #include <utility>
 #include <vector>

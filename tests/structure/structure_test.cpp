@@ -1,9 +1,8 @@
 // The house rules that a compiler does not check: who may include whom, and pages that must agree with the code.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <regex>
 #include <sstream>
 #include <string>
@@ -48,12 +47,21 @@ std::vector<std::string> Includes(const fs::path& file) {
 
 // What an include is: the room of ours, the library, or "std".
 std::string KindOf(const std::string& include) {
-  static const std::vector<std::pair<std::string, std::string>> kPrefixes{
-      {"lookout/", "wire types"}, {"config/schema/", "config types"}, {"lcm/", "lcm"},
-      {"google/", "protobuf"},    {"pcap/", "pcap"},                  {"pcap.h", "pcap"},
-      {"spdlog/", "spdlog"},      {"fmt/", "fmt"},                    {"CLI/", "cli"},
-      {"openssl/", "openssl"},    {"Eigen/", "eigen"},                {"GeographicLib/", "geographiclib"},
-      {"sys/socket", "socket"},   {"netinet/", "socket"},             {"arpa/", "socket"}};
+  static const std::vector<std::pair<std::string, std::string>> kPrefixes{{"lookout/", "wire types"},
+                                                                          {"config/schema/", "config types"},
+                                                                          {"lcm/", "lcm"},
+                                                                          {"google/", "protobuf"},
+                                                                          {"pcap/", "pcap"},
+                                                                          {"pcap.h", "pcap"},
+                                                                          {"spdlog/", "spdlog"},
+                                                                          {"fmt/", "fmt"},
+                                                                          {"CLI/", "cli"},
+                                                                          {"openssl/", "openssl"},
+                                                                          {"Eigen/", "eigen"},
+                                                                          {"GeographicLib/", "geographiclib"},
+                                                                          {"sys/socket", "socket"},
+                                                                          {"netinet/", "socket"},
+                                                                          {"arpa/", "socket"}};
   for (const auto& [prefix, kind] : kPrefixes) {
     if (include.rfind(prefix, 0) == 0) return kind;
   }

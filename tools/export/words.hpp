@@ -32,13 +32,11 @@ inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose
 
 inline constexpr std::array kTimeSource{Word{lidar_clock_t::TIME_HOST, "host"}, Word{lidar_clock_t::TIME_SENSOR, "sensor"}};
 
-inline constexpr std::array kClockState{Word{lidar_clock_t::STATE_UNKNOWN, "unknown"},
-                                        Word{lidar_clock_t::STATE_NO_PPS, "no_pps"},
-                                        Word{lidar_clock_t::STATE_ACQUIRING, "acquiring"},
-                                        Word{lidar_clock_t::STATE_LOCKED_WITHOUT_TIME, "locked_without_time"},
-                                        Word{lidar_clock_t::STATE_LOCKED, "locked"},
-                                        Word{lidar_clock_t::STATE_FREE_RUNNING, "free_running"},
-                                        Word{lidar_clock_t::STATE_ERROR, "error"}};
+inline constexpr std::array kClockState{
+    Word{lidar_clock_t::STATE_UNKNOWN, "unknown"},     Word{lidar_clock_t::STATE_NO_PPS, "no_pps"},
+    Word{lidar_clock_t::STATE_ACQUIRING, "acquiring"}, Word{lidar_clock_t::STATE_LOCKED_WITHOUT_TIME, "locked_without_time"},
+    Word{lidar_clock_t::STATE_LOCKED, "locked"},       Word{lidar_clock_t::STATE_FREE_RUNNING, "free_running"},
+    Word{lidar_clock_t::STATE_ERROR, "error"}};
 
 inline constexpr std::array kFixQuality{Word{gnss_fix_t::QUALITY_NONE, "none"},
                                         Word{gnss_fix_t::QUALITY_GNSS, "gnss"},

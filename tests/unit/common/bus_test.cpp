@@ -1,7 +1,6 @@
 #include "common/bus/bus.hpp"
 
 #include <gtest/gtest.h>
-
 #include <stdexcept>
 #include <string>
 #include <vector>

@@ -1,8 +1,7 @@
 #include "common/core/bytes.hpp"
 
-#include <gtest/gtest.h>
-
 #include <array>
+#include <gtest/gtest.h>
 
 #include "common/core/utime.hpp"
 

@@ -20,10 +20,10 @@ TEST(BeamDirection, TurnsClockwiseSeenFromAbove) {
 }
 
 TEST(RotationMapVessel, PutsTheBowAlongTheHeading) {
-  ExpectNear(RotationMapVessel(0.0, 0.0, 0.0) * Vector3d::UnitX(), Vector3d::UnitY());                // north
-  ExpectNear(RotationMapVessel(DegToRad(90.0), 0.0, 0.0) * Vector3d::UnitX(), Vector3d::UnitX());     // east
-  ExpectNear(RotationMapVessel(DegToRad(90.0), 0.0, 0.0) * Vector3d::UnitY(), Vector3d::UnitY());     // port is north
-  ExpectNear(RotationMapVessel(DegToRad(180.0), 0.0, 0.0) * Vector3d::UnitX(), -Vector3d::UnitY());   // south
+  ExpectNear(RotationMapVessel(0.0, 0.0, 0.0) * Vector3d::UnitX(), Vector3d::UnitY());               // north
+  ExpectNear(RotationMapVessel(DegToRad(90.0), 0.0, 0.0) * Vector3d::UnitX(), Vector3d::UnitX());    // east
+  ExpectNear(RotationMapVessel(DegToRad(90.0), 0.0, 0.0) * Vector3d::UnitY(), Vector3d::UnitY());    // port is north
+  ExpectNear(RotationMapVessel(DegToRad(180.0), 0.0, 0.0) * Vector3d::UnitX(), -Vector3d::UnitY());  // south
 }
 
 TEST(RotationMapVessel, PitchIsPositiveBowUp) {

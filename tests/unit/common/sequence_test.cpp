@@ -1,8 +1,7 @@
 #include "common/bus/sequence.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
+#include <gtest/gtest.h>
 
 namespace lookout::bus {
 namespace {

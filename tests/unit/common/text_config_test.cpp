@@ -1,8 +1,7 @@
 #include "common/config/text_config.hpp"
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
+#include <gtest/gtest.h>
 #include <string>
 
 #include "common/config/boat.hpp"
@@ -37,9 +36,7 @@ TEST(TextConfig, NamesEveryFactThatIsMissing) {
   EXPECT_EQ(VlpFaults("source: UDP\n"), "f.txtpb:1: bind_address: must be set\nf.txtpb:1: cut_azimuth_deg: must be set");
 }
 
-TEST(TextConfig, RefusesUnknownFieldsWithTheirLine) {
-  EXPECT_NE(VlpFaults(kGoodVlp + "\nno_such_field: 1\n").find("f.txtpb:5:"), std::string::npos);
-}
+TEST(TextConfig, RefusesUnknownFieldsWithTheirLine) { EXPECT_NE(VlpFaults(kGoodVlp + "\nno_such_field: 1\n").find("f.txtpb:5:"), std::string::npos); }
 
 TEST(TextConfig, RefusesNumbersThatAreNotFinite) {
   EXPECT_EQ(VlpFaults("source: UDP\nbind_address: \"\"\ncut_azimuth_deg: nan\n"), "f.txtpb:3: cut_azimuth_deg: must be a finite number (is nan)");

@@ -1,0 +1,81 @@
+#include "services/vlp16/io/capture_reader.hpp"
+
+#include <pcap/pcap.h>
+
+#include <chrono>
+#include <stdexcept>
+
+namespace lookout::vlp16 {
+
+namespace {
+
+// The reader asks for nanoseconds: libpcap then leaves them in tv_usec.
+std::optional<Utime> ToUtime(const timeval& stamp) {
+  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+  constexpr std::int64_t kMicrosecondsPerSecond = 1'000'000;
+  const std::int64_t seconds = stamp.tv_sec;
+  const std::int64_t nanoseconds = stamp.tv_usec;
+  if (nanoseconds < 0 || nanoseconds >= kNanosecondsPerSecond) return std::nullopt;
+  if (seconds < kMinUtimeUs / kMicrosecondsPerSecond || seconds > kMaxUtimeUs / kMicrosecondsPerSecond) return std::nullopt;
+  return UtimeFromWire(seconds * kMicrosecondsPerSecond + nanoseconds / 1000);
+}
+
+std::string LinkTypeText(int link_type) {
+  const char* name = pcap_datalink_val_to_name(link_type);
+  return std::to_string(link_type) + (name != nullptr ? std::string(" (") + name + ")" : "");
+}
+
+}  // namespace
+
+void CaptureReader::Closer::operator()(void* capture) const { pcap_close(static_cast<pcap_t*>(capture)); }
+
+CaptureReader::CaptureReader(const std::filesystem::path& file) {
+  std::array<char, PCAP_ERRBUF_SIZE> fault{};
+  // libpcap takes "-" for standard input.
+  const std::string name = file == "-" ? "./-" : file.string();
+  if (std::filesystem::is_directory(file)) throw std::runtime_error(name + ": is a folder, not a capture");
+  pcap_t* capture = pcap_open_offline_with_tstamp_precision(name.c_str(), PCAP_TSTAMP_PRECISION_NANO, fault.data());
+  if (capture == nullptr) throw std::runtime_error(name + ": cannot be read as a capture: " + fault.data());
+  capture_.reset(capture);
+  link_type_ = pcap_datalink(capture);
+  if (!IsLinkTypeUnderstood(link_type_)) {
+    throw std::runtime_error(name + ": link type " + LinkTypeText(link_type_) +
+                             " is not understood; Ethernet, Linux cooked, raw IP and BSD loopback are");
+  }
+}
+
+std::optional<Datagram> CaptureReader::Next() {
+  auto* capture = static_cast<pcap_t*>(capture_.get());
+  while (damage_.empty()) {
+    pcap_pkthdr* header = nullptr;
+    const u_char* data = nullptr;
+    const int outcome = pcap_next_ex(capture, &header, &data);
+    if (outcome == PCAP_ERROR_BREAK) return std::nullopt;  // the end
+    if (outcome != 1) {
+      damage_ = std::string(pcap_geterr(capture)) + ", after " + std::to_string(num_frames_) + " frames";
+      return std::nullopt;
+    }
+    ++num_frames_;
+    const auto frame = ParseFrame(link_type_, Bytes(data, header->caplen), header->caplen < header->len);
+    const auto host_time = ToUtime(header->ts);
+    if (frame.fault == FrameFault::kNone && !host_time) {
+      ++num_bad_times_;
+      continue;
+    }
+    ++num_by_fault_[static_cast<std::size_t>(frame.fault)];
+    if (frame.fault != FrameFault::kNone) continue;
+    ++num_datagrams_;
+    return Datagram{*host_time, frame.source_address, frame.destination_port, {frame.payload.begin(), frame.payload.end()}};
+  }
+  return std::nullopt;
+}
+
+std::vector<Counter> CaptureReader::counters() const {
+  std::vector<Counter> counters{{"frames_read", num_frames_}};
+  for (std::size_t i = 0; i < kFrameFaultNames.size(); ++i) counters.push_back({kFrameFaultNames[i], num_by_fault_[i]});
+  counters.push_back({"frames_bad_time", num_bad_times_});
+  counters.push_back({"capture_damaged", num_damaged()});
+  return counters;
+}
+
+}  // namespace lookout::vlp16

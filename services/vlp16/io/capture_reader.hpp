@@ -1,0 +1,57 @@
+// UDP datagrams out of a capture file: classic pcap (microseconds or nanoseconds) or pcapng.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "services/vlp16/io/frame.hpp"
+
+namespace lookout::vlp16 {
+
+struct Datagram {
+  Utime host_time;             // stamp in the capture; some captures count from 0
+  std::string source_address;  // numeric
+  int destination_port = 0;
+  std::vector<std::uint8_t> payload;
+};
+
+class CaptureReader {
+ public:
+  /// @throws std::runtime_error naming the file when it cannot be opened, is no capture, or is of a link type that is not understood
+  ///         (named too). A capture without packets is valid.
+  explicit CaptureReader(const std::filesystem::path& file);
+
+  /// @return the next datagram, in the order of the file; nullopt at the end. Frames without a whole UDP datagram are skipped and counted.
+  ///         Where the file is damaged reading ends: see num_damaged().
+  std::optional<Datagram> Next();
+
+  std::int64_t num_frames() const { return num_frames_; }        // read so far
+  std::int64_t num_datagrams() const { return num_datagrams_; }  // given so far; 0 at the end with num_frames() above 0: all were refused
+  std::int64_t num_damaged() const { return damage_.empty() ? 0 : 1; }
+  const std::string& damage() const { return damage_; }  // what is wrong, and after how many frames; empty = nothing
+
+  /// frames_read, frames_datagram, then skipped frames by reason.
+  std::vector<Counter> counters() const;
+
+ private:
+  struct Closer {
+    void operator()(void* capture) const;
+  };
+  std::unique_ptr<void, Closer> capture_;  // pcap_t
+  int link_type_ = 0;
+  std::int64_t num_frames_ = 0;
+  std::int64_t num_datagrams_ = 0;
+  std::int64_t num_bad_times_ = 0;
+  std::array<std::int64_t, kFrameFaultNames.size()> num_by_fault_{};
+  std::string damage_;
+};
+
+}  // namespace lookout::vlp16

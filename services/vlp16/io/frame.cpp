@@ -1,0 +1,135 @@
+#include "services/vlp16/io/frame.hpp"
+
+#include <arpa/inet.h>
+#include <pcap/pcap.h>
+
+#include <algorithm>
+
+namespace lookout::vlp16 {
+
+namespace {
+
+// IEEE 802 numbers ("ethertypes").
+constexpr int kEthertypeIpv4 = 0x0800;
+constexpr int kEthertypeIpv6 = 0x86DD;
+constexpr std::array<int, 4> kEthertypesVlan{0x8100, 0x88A8, 0x9100, 0x9200};  // 802.1Q, 802.1ad, and two that older switches stack
+constexpr std::size_t kVlanTagSizeBytes = 4;
+constexpr std::size_t kUdpHeaderSizeBytes = 8;
+constexpr std::size_t kIpv6HeaderSizeBytes = 40;
+// IANA protocol numbers.
+constexpr int kProtocolUdp = 17;
+constexpr int kProtocolIpv6Fragment = 44;
+constexpr std::array<int, 6> kProtocolsIpv6Extension{0, 43, 51, 60, 135, 139};
+constexpr std::uint32_t kFamilyIpv4 = 2;
+constexpr std::array<std::uint32_t, 4> kFamiliesIpv6{10, 24, 28, 30};  // Linux, NetBSD and OpenBSD, FreeBSD, Darwin
+
+int ReadU16BigEndian(Bytes bytes, std::size_t offset) { return bytes[offset] << 8 | bytes[offset + 1]; }
+
+Frame Refused(FrameFault fault) {
+  Frame frame;
+  frame.fault = fault;
+  return frame;
+}
+
+std::string AddressText(int family, Bytes address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  return inet_ntop(family, address.data(), text.data(), text.size()) != nullptr ? text.data() : "";
+}
+
+// What is short is short because the capture cut it, or because a length lies.
+FrameFault Short(bool is_cut) { return is_cut ? FrameFault::kTruncated : FrameFault::kBadLength; }
+
+Frame ParseUdp(Bytes bytes, std::string source_address) {
+  if (bytes.size() < kUdpHeaderSizeBytes) return Refused(FrameFault::kBadLength);
+  const auto size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
+  if (size < kUdpHeaderSizeBytes || size > bytes.size()) return Refused(FrameFault::kBadLength);
+  return {FrameFault::kNone, std::move(source_address), ReadU16BigEndian(bytes, 2), bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes)};
+}
+
+Frame ParseIpv4(Bytes bytes, bool is_cut) {
+  constexpr std::size_t kMinHeaderSizeBytes = 20;
+  if (bytes.size() < kMinHeaderSizeBytes) return Refused(Short(is_cut));
+  const std::size_t header_size = 4U * (bytes[0] & 0x0FU);  // with options
+  const auto total_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 2));
+  if (bytes[0] >> 4 != 4 || header_size < kMinHeaderSizeBytes) return Refused(FrameFault::kBadIpHeader);
+  if (total_size < header_size) return Refused(FrameFault::kBadLength);
+  constexpr int kMoreFragmentsAndOffset = 0x3FFF;
+  if ((ReadU16BigEndian(bytes, 6) & kMoreFragmentsAndOffset) != 0) return Refused(FrameFault::kFragment);
+  if (bytes[9] != kProtocolUdp) return Refused(FrameFault::kNotUdp);
+  if (total_size > bytes.size()) return Refused(Short(is_cut));
+  return ParseUdp(bytes.subspan(header_size, total_size - header_size), AddressText(AF_INET, bytes.subspan(12, 4)));
+}
+
+Frame ParseIpv6(Bytes bytes, bool is_cut) {
+  if (bytes.size() < kIpv6HeaderSizeBytes) return Refused(Short(is_cut));
+  if (bytes[0] >> 4 != 6) return Refused(FrameFault::kBadIpHeader);
+  const int protocol = bytes[6];
+  if (protocol == kProtocolIpv6Fragment) return Refused(FrameFault::kFragment);
+  if (std::ranges::find(kProtocolsIpv6Extension, protocol) != kProtocolsIpv6Extension.end()) return Refused(FrameFault::kIpv6Extension);
+  if (protocol != kProtocolUdp) return Refused(FrameFault::kNotUdp);
+  const auto payload_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
+  if (payload_size > bytes.size() - kIpv6HeaderSizeBytes) return Refused(Short(is_cut));
+  return ParseUdp(bytes.subspan(kIpv6HeaderSizeBytes, payload_size), AddressText(AF_INET6, bytes.subspan(8, 16)));
+}
+
+Frame ParseIp(Bytes bytes, bool is_cut) {
+  if (bytes.empty()) return Refused(Short(is_cut));
+  switch (bytes[0] >> 4) {
+    case 4:
+      return ParseIpv4(bytes, is_cut);
+    case 6:
+      return ParseIpv6(bytes, is_cut);
+    default:
+      return Refused(FrameFault::kBadIpHeader);
+  }
+}
+
+// `offset`: of the ethertype. `header_size`: of what stands before the network layer when there is no VLAN tag.
+Frame ParseEthertype(Bytes bytes, std::size_t offset, std::size_t header_size, bool is_cut) {
+  while (true) {
+    if (bytes.size() < std::max(offset + 2, header_size)) return Refused(Short(is_cut));
+    const int ethertype = ReadU16BigEndian(bytes, offset);
+    if (ethertype == kEthertypeIpv4) return ParseIpv4(bytes.subspan(header_size), is_cut);
+    if (ethertype == kEthertypeIpv6) return ParseIpv6(bytes.subspan(header_size), is_cut);
+    if (std::ranges::find(kEthertypesVlan, ethertype) == kEthertypesVlan.end()) return Refused(FrameFault::kNotIp);
+    offset = header_size + kVlanTagSizeBytes - 2;
+    header_size += kVlanTagSizeBytes;
+  }
+}
+
+Frame ParseLoopback(Bytes bytes, bool is_cut) {
+  constexpr std::size_t kHeaderSizeBytes = 4;
+  if (bytes.size() < kHeaderSizeBytes) return Refused(Short(is_cut));
+  // In the byte order of the computer that captured (NULL) or big-endian (LOOP).
+  const std::uint32_t little = ReadU32LittleEndian(bytes, 0);
+  const std::uint32_t big = static_cast<std::uint32_t>(ReadU16BigEndian(bytes, 0)) << 16 | static_cast<std::uint32_t>(ReadU16BigEndian(bytes, 2));
+  const std::uint32_t family = std::min(little, big);
+  if (family == kFamilyIpv4) return ParseIpv4(bytes.subspan(kHeaderSizeBytes), is_cut);
+  if (std::ranges::find(kFamiliesIpv6, family) != kFamiliesIpv6.end()) return ParseIpv6(bytes.subspan(kHeaderSizeBytes), is_cut);
+  return Refused(FrameFault::kNotIp);
+}
+
+}  // namespace
+
+bool IsLinkTypeUnderstood(int link_type) {
+  constexpr std::array kUnderstood{DLT_EN10MB, DLT_LINUX_SLL, DLT_LINUX_SLL2, DLT_RAW, DLT_IPV4, DLT_IPV6, DLT_NULL, DLT_LOOP};
+  return std::ranges::find(kUnderstood, link_type) != kUnderstood.end();
+}
+
+Frame ParseFrame(int link_type, Bytes bytes, bool is_cut) {
+  switch (link_type) {
+    case DLT_EN10MB:
+      return ParseEthertype(bytes, 12, 14, is_cut);
+    case DLT_LINUX_SLL:
+      return ParseEthertype(bytes, 14, 16, is_cut);
+    case DLT_LINUX_SLL2:
+      return ParseEthertype(bytes, 0, 20, is_cut);
+    case DLT_NULL:
+    case DLT_LOOP:
+      return ParseLoopback(bytes, is_cut);
+    default:
+      return ParseIp(bytes, is_cut);
+  }
+}
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,45 @@
+// Finds the UDP datagram in a captured link-layer frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "common/core/bytes.hpp"
+
+namespace lookout::vlp16 {
+
+enum class FrameFault {
+  kNone,
+  kTruncated,      // the capture kept fewer bytes than were on the wire, and the datagram needs them
+  kNotIp,
+  kNotUdp,
+  kFragment,       // of an IP datagram: not put together again
+  kIpv6Extension,  // IPv6 with extension headers
+  kBadIpHeader,    // version or header length that cannot be
+  kBadLength,      // a length that goes beyond the bytes that hold it
+};
+inline constexpr std::array<std::string_view, 8> kFrameFaultNames{
+    "frames_datagram", "frames_truncated", "frames_not_ip", "frames_not_udp", "frames_fragment", "frames_ipv6_extension", "frames_bad_ip_header", "frames_bad_length"};
+
+struct Frame {
+  FrameFault fault = FrameFault::kNone;  // the rest is set when it is kNone
+  std::string source_address;            // numeric
+  int destination_port = 0;
+  Bytes payload;  // within the bytes of the frame
+};
+
+/// Link types that are understood, by libpcap's DLT numbers: Ethernet (also VLAN-tagged, stacked), Linux cooked v1 and v2, raw IP,
+/// BSD loopback.
+bool IsLinkTypeUnderstood(int link_type);
+
+/// @param link_type  DLT number; IsLinkTypeUnderstood
+/// @param bytes      as captured
+/// @param is_cut     the frame was longer on the wire than in the capture
+///
+/// Checksums are not looked at: with checksum offload a capture holds wrong ones for good datagrams.
+/// Fragments are not put together: a data packet of the lidar fits into one frame.
+Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,51 @@
+// The vlp16 process without its sources: datagrams or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_NMEA, LIDAR_CLOCK and LIDAR_SCAN out.
+#pragma once
+
+#include <optional>
+
+#include "common/bus/bus.hpp"
+#include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/lidar_packets_t.hpp"
+#include "services/vlp16/core/bundler.hpp"
+#include "services/vlp16/core/decoder.hpp"
+#include "services/vlp16/params.hpp"
+
+namespace lookout::vlp16 {
+
+class Service {
+ public:
+  Service(bus::Bus& bus, const Params& params);
+
+  /// A datagram from outside. Those of the right port and size are collected; when a bundle is full or a turn ends, it is published as
+  /// LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
+  void OnDatagram(Utime host_time, int udp_port, Bytes payload);
+
+  /// Host time has come so far: a bundle does not wait for more than 100 ms, and silence of the lidar shows in Report().
+  void AdvanceTo(Utime host_time);
+
+  /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: flushes, unless an END mark did.
+  void Finish(Utime host_time);
+
+  HealthReport Report() const;
+
+ private:
+  void OnMessage(const lidar_packets_t& message);
+  void PublishAndConsume(const PacketBundle& bundle);
+  void Consume(const PacketBundle& bundle);
+  void PublishTurn(const Turn& turn);
+  void PublishSentence(const SentenceOfLidar& sentence);
+
+  bus::Bus& bus_;
+  Params params_;
+  Bundler bundler_;
+  Decoder decoder_;
+  std::int64_t raw_seq_ = 0;  // of the bundle that is being consumed
+  std::int64_t sentence_seq_ = 0;
+  std::int64_t num_refused_messages_ = 0;
+  std::optional<Utime> silent_since_;  // host time of the last usable data packet, or at which waiting began
+  Utime now_{};                        // host time so far
+};
+
+}  // namespace lookout::vlp16

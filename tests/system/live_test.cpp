@@ -1,0 +1,236 @@
+// The boat's processes live on loopback LCM, in a network namespace of their own. Each test takes some seconds of real time.
+#include <chrono>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/bus/log_file.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/segments_t.hpp"
+#include "tests/system/child.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using bus::Bytes;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const std::vector<std::string> kServices{"recorder", "georeferencer", "navigator", "segmenter", "vlp16"};
+
+std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
+
+// Payloads per channel, in their order.
+using Payloads = std::map<std::string, std::vector<std::vector<std::uint8_t>>>;
+
+Payloads ReadLog(const fs::path& file) {
+  Payloads payloads;
+  bus::LogReader reader(file);
+  while (auto event = reader.Next()) payloads[event->channel].push_back(std::move(event->bytes));
+  EXPECT_EQ(reader.num_damaged(), 0);
+  return payloads;
+}
+
+class Live : public ::testing::Test {
+ protected:
+  fs::path folder_;
+  fs::path start_folder_ = fs::current_path();
+  std::map<std::string, std::unique_ptr<Child>> children_;
+
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("lookout_live_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
+    fs::current_path(folder_);  // the recorder's logs/ is made here
+  }
+  void TearDown() override {
+    children_.clear();
+    fs::current_path(start_folder_);
+    if (!HasFailure()) fs::remove_all(folder_);
+  }
+
+  std::string Output(const std::string& name) const { return (folder_ / (name + ".out")).string(); }
+
+  void Start(const std::string& service) {
+    children_[service] = std::make_unique<Child>(std::vector<std::string>{Bin(service), "--config", (folder_ / "config").string()}, Output(service));
+  }
+
+  // All that `services` names, the lidar last so that nobody misses its start mark.
+  void StartAll() {
+    for (const auto& service : kServices) {
+      if (service == "vlp16" || service == "navigator") std::this_thread::sleep_for(milliseconds(700));
+      Start(service);
+    }
+    std::this_thread::sleep_for(milliseconds(700));
+    for (const auto& service : kServices) ASSERT_TRUE(children_[service]->IsRunning()) << children_[service]->Output();
+  }
+
+  void Simulate(int num_seconds) {
+    const auto result = Run({Bin("sim"), "--config", (folder_ / "config").string(), "--scene", "lake", "--seed", "3", "--seconds",
+                             std::to_string(num_seconds), "--udp", "127.0.0.1"},
+                            Output("sim"));
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+  }
+
+  // Sources end first, so that what they send at their end still finds its takers.
+  void StopAll() {
+    for (const auto& service : {"vlp16", "navigator", "segmenter", "georeferencer", "recorder"}) {
+      std::this_thread::sleep_for(milliseconds(300));
+      EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
+    }
+  }
+
+  fs::path Log() const {
+    for (const auto& entry : fs::directory_iterator(folder_ / "logs")) {
+      if (entry.path().extension() == ".lcmlog") return entry.path();
+    }
+    return {};
+  }
+
+  // The last HEALTH of a process in a log.
+  static health_t LastHealth(const Payloads& payloads, const std::string& process) {
+    health_t last{};
+    const auto found = payloads.find("HEALTH");
+    if (found == payloads.end()) return last;
+    for (const auto& bytes : found->second) {
+      const auto message = bus::Decode<health_t>(bytes);
+      if (message && message->process == process) last = *message;
+    }
+    return last;
+  }
+};
+
+TEST_F(Live, MessagesEqualTheReplayOfTheirRawLog) {
+  StartAll();
+  Simulate(4);
+  std::this_thread::sleep_for(milliseconds(500));
+  StopAll();
+  const auto live = ReadLog(Log());
+  const auto result = Run({Bin("replay"), "--config", (folder_ / "config").string(), "--in", Log().string(), "--out", (folder_ / "again").string()},
+                          Output("replay"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const auto again = ReadLog(folder_ / "again");
+  for (const auto& channel : bus::kChannels) {
+    if (!channel.is_replayed) continue;
+    const std::string name(channel.name);
+    ASSERT_TRUE(live.contains(name)) << name;
+    ASSERT_TRUE(again.contains(name)) << name;
+    EXPECT_EQ(live.at(name).size(), again.at(name).size()) << name;
+    EXPECT_TRUE(live.at(name) == again.at(name)) << name << " differs";
+  }
+  EXPECT_GE(live.at("LIDAR_SCAN").size(), 38U);
+  ASSERT_TRUE(live.contains("RUN_INFO"));
+  for (const auto& service : kServices) EXPECT_EQ(LastHealth(live, service).process, service);
+}
+
+TEST_F(Live, AKilledSegmenterComesBackAndTheOthersGoOn) {
+  StartAll();
+  std::thread killer([this] {
+    std::this_thread::sleep_for(milliseconds(1500));
+    children_["segmenter"]->Signal(SIGKILL);
+    std::this_thread::sleep_for(milliseconds(800));
+    Start("segmenter");
+  });
+  Simulate(5);
+  killer.join();
+  std::this_thread::sleep_for(milliseconds(300));
+  StopAll();
+  const auto live = ReadLog(Log());
+  EXPECT_GE(live.at("LIDAR_SCAN").size(), 48U);
+  EXPECT_LT(live.at("SEGMENTS").size(), live.at("LIDAR_SCAN").size() - 5);
+  EXPECT_GE(live.at("SEGMENTS").size(), 20U);
+  EXPECT_EQ(live.at("SEGMENTS").size(), live.at("OBSTACLES").size());
+}
+
+TEST_F(Live, AnUnpluggedLidarDegradesHealthAndRecovers) {
+  StartAll();
+  Simulate(2);
+  std::this_thread::sleep_for(milliseconds(2500));
+  Simulate(3);
+  StopAll();
+  std::vector<int> states;
+  const auto live = ReadLog(Log());
+  for (const auto& bytes : live.at("HEALTH")) {
+    const auto message = bus::Decode<health_t>(bytes);
+    if (message && message->process == "vlp16" && (states.empty() || states.back() != message->state)) states.push_back(message->state);
+  }
+  // Degraded until the first packet, then fine, degraded while it is silent, fine again.
+  ASSERT_GE(states.size(), 3U);
+  EXPECT_EQ(states.back(), health_t::STATE_OK);
+  EXPECT_EQ(states[states.size() - 2], health_t::STATE_DEGRADED);
+  EXPECT_EQ(states[states.size() - 3], health_t::STATE_OK);
+}
+
+TEST_F(Live, CorruptMessagesOnEveryChannelAreCountedAndNothingDies) {
+  StartAll();
+  bus::LcmBus lcm(bus::DefaultLcmUrl());
+  std::mt19937 random(1);
+  // A real message of each channel would have to be known here; its fingerprint is enough to get past the first check.
+  for (const auto& channel : bus::kChannels) {
+    if (channel.name == "HEALTH") continue;  // the test reads it
+    for (int i = 0; i < 20; ++i) {
+      std::vector<std::uint8_t> bytes(random() % 400);
+      for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+      lcm.Publish(channel, bytes);
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+  }
+  // Counts of -1 and of 2^31 - 1 behind a right fingerprint.
+  for (const std::uint8_t top : {std::uint8_t{0xFF}, std::uint8_t{0x7F}}) {
+    auto bytes = bus::Encode(lidar_scan_t{});
+    for (std::size_t i = 8; i < bytes.size(); ++i) bytes[i] = i % 4 == 0 ? top : 0xFF;
+    lcm.Publish(bus::kLidarScan, bytes);
+    auto segments = bus::Encode(segments_t{});
+    for (std::size_t i = 8; i < segments.size(); ++i) segments[i] = i % 4 == 0 ? top : 0xFF;
+    lcm.Publish(bus::kSegments, segments);
+  }
+  Simulate(2);
+  for (const auto& service : kServices) EXPECT_TRUE(children_[service]->IsRunning()) << service << ": " << children_[service]->Output();
+  std::this_thread::sleep_for(milliseconds(1200));
+  StopAll();
+  const auto live = ReadLog(Log());
+  const auto undecodable = [&](const std::string& process, const std::string& channel) {
+    std::int64_t count = -1;
+    for (const auto& entry : LastHealth(live, process).channels) {
+      if (entry.is_input && entry.channel == channel) count = entry.num_undecodable;
+    }
+    return count;
+  };
+  EXPECT_EQ(undecodable("segmenter", "LIDAR_SCAN"), 22);
+  EXPECT_EQ(undecodable("georeferencer", "SEGMENTS"), 22);
+  EXPECT_EQ(undecodable("georeferencer", "POSE"), 20);
+  EXPECT_EQ(undecodable("navigator", "LIDAR_NMEA"), 20);
+  EXPECT_GE(live.at("OBSTACLES").size(), 15U);
+}
+
+TEST_F(Live, LogplayerOfLidarScanAloneGivesTheSameSegments) {
+  const auto config = (folder_ / "config").string();
+  ASSERT_EQ(Run({Bin("sim"), "--config", config, "--scene", "lake", "--seed", "5", "--seconds", "3", "--pcap", "sim.pcap"}, Output("sim")).exit_code,
+            0);
+  ASSERT_EQ(Run({Bin("replay"), "--config", config, "--in", "sim.pcap", "--out", "replay.lcmlog"}, Output("replay")).exit_code, 0);
+  Start("recorder");
+  Start("segmenter");
+  std::this_thread::sleep_for(milliseconds(1000));
+  const auto player = Run({"lcm-logplayer", "-e", "(LIDAR_SCAN)", "replay.lcmlog"}, Output("logplayer"));
+  ASSERT_EQ(player.exit_code, 0) << player.output;
+  std::this_thread::sleep_for(milliseconds(500));
+  children_["segmenter"]->Terminate();
+  EXPECT_EQ(children_["recorder"]->Terminate().value_or(-1), 0);
+  const auto replayed = ReadLog("replay.lcmlog");
+  const auto live = ReadLog(Log());
+  ASSERT_TRUE(live.contains("SEGMENTS"));
+  EXPECT_GE(live.at("SEGMENTS").size(), 30U);
+  EXPECT_TRUE(live.at("SEGMENTS") == replayed.at("SEGMENTS"));
+}
+
+}  // namespace
+}  // namespace lookout::system_test

@@ -1,0 +1,237 @@
+// lookout-replay and lookout-export as a user runs them, on the simulator's capture and on real recordings where they are at hand.
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/bus/decode.hpp"
+#include "common/bus/log_file.hpp"
+#include "lookout/lidar_packets_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "tests/system/child.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
+
+std::string Content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+class Replay : public ::testing::Test {
+ protected:
+  fs::path folder_;
+  const fs::path data_ = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
+  const std::string config_ = std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot";
+
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("lookout_replay_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+  RunResult ReplayTo(const std::string& in, const std::string& out) {
+    return Run({Bin("replay"), "--config", config_, "--in", in, "--out", Path(out)}, Path("replay.out"));
+  }
+
+  template <typename T>
+  std::vector<T> Messages(const std::string& log, const std::string& channel) {
+    std::vector<T> messages;
+    bus::LogReader reader(Path(log));
+    while (const auto event = reader.Next()) {
+      if (event->channel != channel) continue;
+      const auto message = bus::Decode<T>(event->bytes);
+      EXPECT_TRUE(message);
+      if (message) messages.push_back(*message);
+    }
+    return messages;
+  }
+
+  // Replays twice, and the replay once more, and wants the same file each time.
+  void ExpectSameBytes(const std::string& capture) {
+    const auto first = ReplayTo(capture, "first");
+    ASSERT_EQ(first.exit_code, 0) << first.output;
+    ASSERT_EQ(ReplayTo(capture, "second").exit_code, 0);
+    EXPECT_EQ(Content(folder_ / "first"), Content(folder_ / "second"));
+    const auto again = ReplayTo(Path("first"), "again");
+    ASSERT_EQ(again.exit_code, 0) << again.output;
+    EXPECT_EQ(Content(folder_ / "first"), Content(folder_ / "again"));
+  }
+
+  // Turns of a log: whole and partial.
+  std::pair<int, int> CountTurns(const std::string& log) {
+    std::map<std::int64_t, int> flags;
+    for (const auto& scan : Messages<lidar_scan_t>(log, "LIDAR_SCAN")) flags[scan.seq] = scan.flags;
+    int num_whole = 0;
+    for (const auto& [seq, flag] : flags) num_whole += (flag & (lidar_scan_t::FLAG_PARTIAL_START | lidar_scan_t::FLAG_PARTIAL_END)) == 0 ? 1 : 0;
+    return {num_whole, static_cast<int>(flags.size()) - num_whole};
+  }
+
+  // Ranges above 0 in the raw packets, and how often each count occurs.
+  std::map<int, int> RawRanges(const std::string& log) {
+    std::map<int, int> histogram;
+    for (const auto& bundle : Messages<lidar_packets_t>(log, "LIDAR_PACKETS")) {
+      std::size_t offset = 0;
+      for (const int size : bundle.size_bytes) {
+        if (size == 1206) {
+          for (int block = 0; block < 12; ++block) {
+            for (int channel = 0; channel < 32; ++channel) {
+              const std::size_t place = offset + static_cast<std::size_t>(100 * block + 4 + 3 * channel);
+              const int range = bundle.payload[place] | bundle.payload[place + 1] << 8;
+              if (range > 0) ++histogram[range];
+            }
+          }
+        }
+        offset += static_cast<std::size_t>(size);
+      }
+    }
+    return histogram;
+  }
+
+  std::map<int, int> ExportedRanges(const std::string& log) {
+    const auto result = Run({Bin("export"), "--in", Path(log), "--table", "returns", "--out", Path("returns.csv")}, Path("export.out"));
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    std::ifstream in(Path("returns.csv"));
+    std::map<int, int> histogram;
+    std::string line;
+    std::getline(in, line);
+    EXPECT_EQ(line, "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason");
+    while (std::getline(in, line)) {
+      std::istringstream row(line);
+      std::string field;
+      for (int i = 0; i < 6; ++i) std::getline(row, field, ',');
+      const double count = std::stod(field) / 0.002;
+      EXPECT_NEAR(count, std::round(count), 1e-6);
+      ++histogram[static_cast<int>(std::lround(count))];
+    }
+    return histogram;
+  }
+};
+
+TEST_F(Replay, OfTheSimulatorsCaptureGivesTheSameBytesEachTime) {
+  const auto sim =
+      Run({Bin("sim"), "--config", config_, "--scene", "lake", "--seed", "2", "--seconds", "3", "--pcap", Path("sim.pcap")}, Path("sim.out"));
+  ASSERT_EQ(sim.exit_code, 0) << sim.output;
+  ExpectSameBytes(Path("sim.pcap"));
+  EXPECT_EQ(RawRanges("first"), ExportedRanges("first"));
+  int num_placed = 0;
+  for (const auto& message : Messages<obstacles_t>("first", "OBSTACLES")) {
+    for (const auto& obstacle : message.obstacles) num_placed += obstacle.status == obstacle_t::STATUS_OK ? 1 : 0;
+  }
+  EXPECT_GT(num_placed, 100);
+}
+
+struct RealCapture {
+  const char* file;
+  int num_whole;
+  int num_partial;
+};
+
+class ReplayOfRealCaptures : public Replay, public ::testing::WithParamInterface<RealCapture> {};
+
+TEST_P(ReplayOfRealCaptures, CutsTurnsAndGivesTheSameBytesEachTime) {
+  const auto capture = data_ / "vlp16" / GetParam().file;
+  if (!fs::exists(capture)) GTEST_SKIP() << "no recording at " << capture;
+  ExpectSameBytes(capture.string());
+  EXPECT_EQ(CountTurns("first"), std::pair(GetParam().num_whole, GetParam().num_partial));
+  EXPECT_EQ(RawRanges("first"), ExportedRanges("first"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Vlp16, ReplayOfRealCaptures,
+                         ::testing::Values(RealCapture{"mrpt_sample_velodyne_vlp16_gps.pcap", 3, 2}, RealCapture{"einride_vlp16_1000pkt.pcap", 12, 2},
+                                           RealCapture{"rlu_vlp16_example.pcap", 0, 2}),
+                         [](const auto& info) { return std::string(info.param.file).substr(0, std::string(info.param.file).find('_')); });
+
+TEST_F(Replay, OfACaptureWithAFixAndNoHeadingPlacesTheBoatAndNotTheObstacles) {
+  const auto capture = data_ / "vlp16/mrpt_sample_velodyne_vlp16_gps.pcap";
+  if (!fs::exists(capture)) GTEST_SKIP() << "no recording at " << capture;
+  ASSERT_EQ(ReplayTo(capture.string(), "log").exit_code, 0);
+  std::map<int, int> packets;
+  for (const auto& bundle : Messages<lidar_packets_t>("log", "LIDAR_PACKETS")) {
+    for (const int size : bundle.size_bytes) ++packets[size];
+  }
+  EXPECT_EQ(packets, (std::map<int, int>{{512, 57}, {1206, 293}}));
+  int num_known = 0;
+  for (const auto& pose : Messages<pose_t>("log", "POSE")) {
+    if (pose.status != pose_t::STATUS_NO_HEADING) continue;
+    ++num_known;
+    EXPECT_NEAR(pose.latitude_deg, 36.829131, 1.0 / 111000.0);
+    EXPECT_NEAR(pose.longitude_deg, -2.407572, 1.0 / 89000.0);
+  }
+  EXPECT_GT(num_known, 5);
+  std::set<std::int64_t> turns;
+  int num_obstacles = 0;
+  for (const auto& message : Messages<obstacles_t>("log", "OBSTACLES")) {
+    turns.insert(message.seq);
+    for (const auto& obstacle : message.obstacles) {
+      ++num_obstacles;
+      EXPECT_EQ(obstacle.status, obstacle_t::STATUS_VESSEL_FRAME_ONLY);
+      EXPECT_TRUE(std::isnan(obstacle.latitude_deg));
+    }
+  }
+  EXPECT_EQ(turns.size(), 5U);  // the end of input flushes what waits
+  EXPECT_GT(num_obstacles, 0);
+}
+
+TEST_F(Replay, RefusesTheWrongLidar) {
+  const auto capture = data_ / "other_lidar/vv_hdl32_monterey.pcap";
+  if (!fs::exists(capture)) GTEST_SKIP() << "no recording at " << capture;
+  const auto result = ReplayTo(capture.string(), "log");
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_NE(result.output.find("hdl_32e"), std::string::npos) << result.output;
+  EXPECT_EQ(CountTurns("log"), std::pair(0, 0));
+}
+
+TEST_F(Replay, OfBrokenCapturesEndsWithAClearErrorOrACountedRefusal) {
+  if (!fs::exists(data_ / "bad_pcap")) GTEST_SKIP() << "no recordings at " << data_;
+  int num_files = 0;
+  for (const auto& folder : {"bad_pcap", "other_lidar"}) {
+    for (const auto& entry : fs::directory_iterator(data_ / folder)) {
+      const auto result = ReplayTo(entry.path().string(), "log");
+      EXPECT_EQ(result.exit_code, 1) << entry.path() << ": " << result.output;
+      EXPECT_NE(result.output.find("critical"), std::string::npos) << entry.path() << ": " << result.output;
+      ++num_files;
+    }
+  }
+  EXPECT_GE(num_files, 14);
+}
+
+TEST_F(Replay, DoesNotOverwriteItsInput) {
+  std::ofstream(Path("in")) << "x";
+  const auto result = ReplayTo(Path("in"), "in");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(Content(folder_ / "in"), "x");
+}
+
+TEST_F(Replay, SaysWhichLineOfAConfigIsWrong) {
+  fs::copy(config_, folder_ / "config");
+  std::ofstream(folder_ / "config/vlp16.txtpb", std::ios::app) << "no_such_field: 1\n";
+  const auto result = Run({Bin("replay"), "--config", Path("config"), "--check"}, Path("check.out"));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.output.find("vlp16.txtpb:6: "), std::string::npos) << result.output;
+}
+
+TEST_F(Replay, ChecksTheConfigAndPrintsWhatIsInForce) {
+  const auto result = Run({Bin("replay"), "--config", config_, "--check"}, Path("check.out"));
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("e1_cosine: 0.95  # default"), std::string::npos) << result.output;
+}
+
+}  // namespace
+}  // namespace lookout::system_test

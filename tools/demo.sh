@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# The demo: simulate (or take a capture), replay, run all processes live, show the obstacles. Called by ./dev demo [CAPTURE].
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+bin=build/release/bin
+config=config/demo
+work=build/demo
+scene=lake
+seed=1
+seconds=10
+capture=${1:-}
+
+say() { printf '\n== %s\n' "$*"; }
+
+# Live processes need a multicast route. Where there is none, the whole demo goes into a network namespace of its own.
+if [ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] && ! ip route get 239.255.76.67 >/dev/null 2>&1; then
+  if unshare -rn true 2>/dev/null; then
+    export LOOKOUT_DEMO_NAMESPACE=1
+    exec unshare -rn bash -c 'ip link set lo up && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo && exec "$0" "$@"' \
+      "$PWD/tools/demo.sh" "$@"
+  fi
+  echo "LCM needs a multicast route and there is none. As root: ip route add 239.255.76.0/24 dev lo" >&2
+  exit 1
+fi
+
+rm -rf "$work"
+mkdir -p "$work" logs
+
+if [ -n "$capture" ]; then
+  [ -f "$capture" ] || { echo "$capture: no such file" >&2; exit 2; }
+  input=$capture
+  truth=()
+else
+  say "simulating $seconds s of the scene '$scene' to $work/sim.pcap"
+  "$bin/lookout-sim" --config "$config" --scene "$scene" --seed "$seed" --seconds "$seconds" --pcap "$work/sim.pcap" --truth "$work/truth"
+  input=$work/sim.pcap
+  truth=(--truth "$work/truth")
+fi
+
+say "replaying $input: one process, as fast as it goes (channel, messages, SHA-256 of the payloads)"
+"$bin/lookout-replay" --config "$config" --in "$input" --out "$work/replay.lcmlog"
+say "obstacles of the replay"
+"$bin/lookout-eval" --in "$work/replay.lcmlog" "${truth[@]}"
+
+say "all processes live on LCM"
+live_config=$work/config
+cp -r "$config" "$live_config"
+if [ -n "$capture" ]; then
+  # The lidar's process reads the capture at the speed at which it was recorded.
+  sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
+  printf 'capture_file: "%s"\n' "$(realpath "$capture")" >>"$live_config/vlp16.txtpb"
+fi
+
+pids=()
+stop_all() {
+  local pid
+  for pid in "${pids[@]}"; do kill -TERM "$pid" 2>/dev/null || true; done
+  for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null || true; done
+  pids=()
+}
+trap stop_all EXIT
+start() {  # NAME
+  "$bin/lookout-$1" --config "$live_config" >"$work/$1.out" 2>&1 &
+  pids+=($!)
+}
+for service in recorder georeferencer navigator segmenter; do start "$service"; done
+sleep 1  # subscriptions reach LCM's group before the first message does
+start vlp16
+lidar=${pids[-1]}
+sleep 0.5
+for pid in "${pids[@]}"; do
+  kill -0 "$pid" 2>/dev/null || { echo "a process ended at its start:" >&2; cat "$work"/*.out >&2; exit 1; }
+done
+
+if [ -n "$capture" ]; then
+  echo "vlp16 plays $capture (at most 60 s of it)"
+  for _ in $(seq 600); do kill -0 "$lidar" 2>/dev/null || break; sleep 0.1; done
+  sleep 1.5
+else
+  echo "the simulator sends datagrams to 127.0.0.1 for $seconds s"
+  rm -rf "$work/truth-live"
+  "$bin/lookout-sim" --config "$live_config" --scene "$scene" --seed "$seed" --seconds "$seconds" --udp 127.0.0.1 --truth "$work/truth-live"
+  sleep 1.5  # the last HEALTH
+  truth=(--truth "$work/truth-live")
+fi
+# The recorder ends last, so that it has what the others send at their end.
+recorder=${pids[0]}
+pids=("${pids[@]:1}")
+stop_all
+pids=("$recorder")
+sleep 0.3
+stop_all
+trap - EXIT
+
+log=$(sed -n 's/.*writing \(.*\.lcmlog\).*/\1/p' "$work/recorder.out" | head -n 1)
+if [ -z "$log" ] || [ ! -s "$log" ]; then
+  echo "the recorder wrote no log:" >&2
+  cat "$work"/*.out >&2
+  exit 1
+fi
+say "obstacles, losses and times of the live run"
+"$bin/lookout-eval" --in "$log" "${truth[@]}"
+
+picture=${log%.lcmlog}.svg
+"$bin/lookout-export" --in "$log" --table returns --format svg --out "$picture"
+
+say "what is left"
+cat <<TEXT
+log       $log
+          play it:      lcm-logplayer $log
+          again:        $bin/lookout-replay --config $config --in $log --out again.lcmlog
+          tables:       $bin/lookout-export --in $log --table obstacles
+          watch it:     java -Djava.net.preferIPv4Stack=true -cp /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar:build/release/lookout-types.jar lcm.spy.Spy
+                        (Debian packages liblcm-java, libjchart2d-java), then lcm-logplayer in another terminal
+picture   $picture
+          open it in a browser, or: xdg-open $picture
+TEXT

@@ -1,0 +1,122 @@
+#include "tools/export/export.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+#include <system_error>
+
+#include "common/bus/log_file.hpp"
+#include "tools/export/output.hpp"
+#include "tools/export/ply.hpp"
+#include "tools/export/sink.hpp"
+#include "tools/export/svg.hpp"
+#include "tools/export/tables.hpp"
+
+namespace lookout::exporter {
+
+namespace {
+
+constexpr std::string_view kProgram = "lookout-export: ";
+
+// What was met on one of the sink's channels.
+struct Tally {
+  bus::Channel channel;
+  std::int64_t num_taken = 0;
+  std::int64_t num_undecodable = 0;
+  std::int64_t num_inconsistent = 0;
+};
+
+// @return what is wrong with the request; empty when nothing
+std::string Fault(const Request& request) {
+  const auto names = TableNames();
+  if (std::ranges::find(names, request.table) == names.end()) return "there is no table " + request.table;
+  if (request.format == "ply" && request.table != "returns") return "--format ply is for --table returns only";
+  if (request.format == "svg" && request.table != "returns" && request.table != "obstacles") {
+    return "--format svg is for --table returns or obstacles only";
+  }
+  if (request.format != "csv" && request.format != "ply" && request.format != "svg") return "there is no format " + request.format;
+  if (request.format == "csv" && request.turn) return "--turn is for --format ply or svg";
+  for (const auto& input : request.inputs) {
+    std::error_code error;
+    if (request.output && std::filesystem::equivalent(input, *request.output, error)) return "--out is one of the inputs: " + input.string();
+  }
+  return "";
+}
+
+std::unique_ptr<Sink> MakeSink(const Request& request) {
+  if (request.format == "ply") return MakePlySink(request.turn);
+  if (request.format == "svg") return request.table == "returns" ? MakeReturnsSvgSink(request.turn) : MakeObstaclesSvgSink(request.turn);
+  return MakeCsvSink(request.table);
+}
+
+void Tell(std::ostream& errors, const Sink& sink, const std::vector<Tally>& tallies) {
+  for (const auto& tally : tallies) {
+    if (tally.num_undecodable > 0) errors << kProgram << tally.num_undecodable << " messages of " << tally.channel.name << " could not be decoded\n";
+    if (tally.num_inconsistent > 0)
+      errors << kProgram << tally.num_inconsistent << " messages of " << tally.channel.name << " contradict themselves\n";
+  }
+  for (const auto& remark : sink.Remarks()) errors << kProgram << remark << '\n';
+}
+
+int Export(const Request& request, std::ostream& errors, const std::atomic<bool>& stopped) {
+  constexpr std::size_t kBlockBytes = 1 << 18;
+  const auto sink = MakeSink(request);
+  std::vector<Tally> tallies;
+  for (const auto& channel : sink->Channels()) tallies.push_back({.channel = channel});
+  // All inputs are opened first: a mistyped name must not cost an hour of reading.
+  std::vector<std::unique_ptr<bus::LogReader>> readers;
+  for (const auto& input : request.inputs) readers.push_back(std::make_unique<bus::LogReader>(input));
+
+  Output output(request.output);
+  std::string text;
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    while (const auto event = sink->IsDone() ? std::nullopt : readers[i]->Next()) {
+      if (stopped) throw std::runtime_error("stopped");
+      const auto tally = std::ranges::find(tallies, event->channel, [](const Tally& one) { return one.channel.name; });
+      if (tally == tallies.end()) continue;
+      const auto taken = sink->Take(event->channel, event->bytes, text);
+      // The header comes with the first message, so that nothing is written where there is nothing.
+      const bool is_first = taken == Taken::kOk && tally == tallies.begin() && tally->num_taken == 0;
+      if (is_first && request.format == "csv") text.insert(0, std::string(TableHeader(request.table)) + '\n');
+      tally->num_taken += taken == Taken::kOk ? 1 : 0;
+      tally->num_undecodable += taken == Taken::kUndecodable ? 1 : 0;
+      tally->num_inconsistent += taken == Taken::kInconsistent ? 1 : 0;
+      if (text.size() >= kBlockBytes) {
+        output.Write(text);
+        text.clear();
+      }
+    }
+    const auto num_damaged = readers[i]->num_damaged();
+    if (num_damaged > 0) errors << kProgram << request.inputs[i].string() << ": " << num_damaged << " damaged stretches skipped\n";
+  }
+  Tell(errors, *sink, tallies);
+  if (tallies.front().num_taken == 0) throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name));
+  sink->Finish(text);
+  if (request.format != "csv" && text.empty()) {  // nothing is written before the end there
+    throw std::runtime_error(request.turn ? "the input holds no turn " + std::to_string(*request.turn) : "the input holds no turn");
+  }
+  output.Write(text);
+  output.Commit();
+  return kExitFine;
+}
+
+}  // namespace
+
+int Run(const Request& request, std::ostream& errors, const std::atomic<bool>& stopped) {
+  const auto fault = Fault(request);
+  if (!fault.empty()) {
+    errors << kProgram << fault << '\n';
+    return kExitUsage;
+  }
+  try {
+    return Export(request, errors, stopped);
+  } catch (const BrokenPipe&) {
+    return kExitFine;
+  } catch (const std::exception& error) {
+    errors << kProgram << error.what() << '\n';
+    return kExitFailed;
+  }
+}
+
+}  // namespace lookout::exporter

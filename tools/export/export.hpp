@@ -1,0 +1,31 @@
+// From logs to a table, a cloud or a picture.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lookout::exporter {
+
+struct Request {
+  std::vector<std::filesystem::path> inputs;  // lcm-logs, read in this order as one
+  std::string table;
+  std::string format = "csv";                   // "csv", "ply" (returns), "svg" (returns, obstacles)
+  std::optional<std::filesystem::path> output;  // nullopt = standard output
+  std::optional<std::int64_t> turn;             // ply, svg: seq of the turn; nullopt = the last whole one
+};
+
+inline constexpr int kExitFine = 0;
+inline constexpr int kExitFailed = 1;  // an input cannot be read, the output not written, or the log holds nothing of the table's channel
+inline constexpr int kExitUsage = 2;
+
+/// @param errors   gets what went wrong and what was skipped, a line each
+/// @param stopped  when it becomes true, the export ends as failed, without output file
+/// @return exit code
+int Run(const Request& request, std::ostream& errors, const std::atomic<bool>& stopped);
+
+}  // namespace lookout::exporter

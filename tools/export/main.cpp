@@ -1,0 +1,57 @@
+// Logs in, a table, a cloud or a picture out.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "common/runtime/options.hpp"
+#include "tools/export/export.hpp"
+#include "tools/export/tables.hpp"
+
+namespace {
+
+std::atomic<bool> stopped = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal handler");
+
+extern "C" void OnSignal(int) { stopped = true; }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  namespace exporter = lookout::exporter;
+  exporter::Request request;
+  std::vector<std::string> inputs;
+  std::string output;
+  std::string turn = "last";
+
+  CLI::App app("Writes what lcm-logs hold as a CSV table, a PLY cloud or an SVG picture.", "lookout-export");
+  app.add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
+  const auto names = exporter::TableNames();
+  app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
+  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles)")
+      ->check(CLI::IsMember({"csv", "ply", "svg"}))
+      ->capture_default_str();
+  app.add_option("--out", output, "file to write; else standard output");
+  app.add_option("--turn", turn, "ply and svg: seq of the turn, or \"last\": the last whole one")->capture_default_str();
+  app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
+  app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line.");
+  try {
+    app.parse(argc, argv);
+    if (turn != "last") {
+      std::int64_t seq = 0;
+      if (!CLI::detail::lexical_cast(turn, seq)) throw CLI::ValidationError("--turn", "must be a number or \"last\"");
+      request.turn = seq;
+    }
+  } catch (const CLI::ParseError& error) {
+    // --help and --version come here too, with code 0.
+    return app.exit(error) == 0 ? EXIT_SUCCESS : exporter::kExitUsage;
+  }
+  request.inputs.assign(inputs.begin(), inputs.end());
+  if (!output.empty()) request.output = output;
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  return exporter::Run(request, std::cerr, stopped);
+}

@@ -1,0 +1,73 @@
+#include "tools/export/ply.hpp"
+
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "common/bus/decode.hpp"
+#include "tools/export/colour.hpp"
+#include "tools/export/labelled_turn.hpp"
+#include "tools/export/returns.hpp"
+
+namespace lookout::exporter {
+
+namespace {
+
+void AppendLittleEndian(std::uint32_t value, int num_bytes, std::string& text) {
+  for (int i = 0; i < num_bytes; ++i) text += static_cast<char>(value >> (8 * i) & 0xFF);
+}
+
+void AppendFloat(double value, std::string& text) { AppendLittleEndian(std::bit_cast<std::uint32_t>(static_cast<float>(value)), 4, text); }
+
+constexpr int kUnknownLabel = -1;
+
+class PlySink final : public Sink {
+ public:
+  explicit PlySink(std::optional<std::int64_t> turn) : turn_(turn) {}
+
+  std::vector<bus::Channel> Channels() const override { return {bus::kLidarScan, bus::kSegments}; }
+  Taken Take(std::string_view channel, Bytes bytes, std::string&) override { return turn_.Take(channel, bytes); }
+  bool IsDone() const override { return turn_.IsDone(); }
+
+  void Finish(std::string& text) override {
+    turn_.Finish();
+    if (turn_.parts().empty()) return;
+    std::string vertices;
+    int count = 0;
+    for (const auto& part : turn_.parts()) {
+      ForEachReturn(part, [&](const Return& one) {
+        ++count;
+        for (const double coordinate_m : {one.p_lidar_m.x(), one.p_lidar_m.y(), one.p_lidar_m.z()}) AppendFloat(coordinate_m, vertices);
+        const Rgb colour = one.label > 0 ? ColourOfSegment(one.label) : ColourOfReason(one.reason);
+        for (const auto channel : {colour.red, colour.green, colour.blue}) AppendLittleEndian(channel, 1, vertices);
+        AppendFloat(one.reflectivity, vertices);
+        AppendLittleEndian(static_cast<std::uint32_t>(one.has_label ? one.label : kUnknownLabel), 4, vertices);
+        AppendLittleEndian(static_cast<std::uint32_t>(one.ring), 2, vertices);
+      });
+    }
+    text +=
+        "ply\nformat binary_little_endian 1.0\n"
+        "comment Lookout, turn " +
+        std::to_string(turn_.place().seq) + ", first firing at " + std::to_string(turn_.place().utime_us) +
+        " us since 1970 UTC\n"
+        "comment lidar frame, metres: x along azimuth 0, y left, z up\n"
+        "comment label: id of the segment, 0 in none, -1 not labelled; ring from the lowest beam up\n"
+        "element vertex " +
+        std::to_string(count) +
+        "\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+        "property float intensity\nproperty int label\nproperty ushort ring\n"
+        "end_header\n";
+    text += vertices;
+  }
+
+ private:
+  LabelledTurn turn_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> turn) { return std::make_unique<PlySink>(turn); }
+
+}  // namespace lookout::exporter

@@ -1,0 +1,127 @@
+#include "tools/replay/chain.hpp"
+
+#include <utility>
+
+#include "services/georeferencer/params.hpp"
+#include "services/navigator/params.hpp"
+#include "services/segmenter/params.hpp"
+#include "services/vlp16/params.hpp"
+
+namespace lookout::replay {
+
+namespace {
+
+vlp16::Params LidarParams(const std::filesystem::path& config_folder, vlp16::Input input) {
+  auto params = vlp16::LoadParams(config_folder);
+  params.input = input;
+  return params;
+}
+
+navigator::Params NavigationParams(const std::filesystem::path& config_folder, navigator::Input input) {
+  auto params = navigator::LoadParams(config_folder);
+  params.input = input;
+  return params;
+}
+
+// Adds the time that `call` takes to `total`: for the table of stages only.
+template <typename Call>
+void Timed(std::chrono::nanoseconds& total, Call call) {
+  const auto start = std::chrono::steady_clock::now();
+  call();
+  total += std::chrono::steady_clock::now() - start;
+}
+
+}  // namespace
+
+Chain::Chain(const std::filesystem::path& config_folder, const RawInput& input, Sink sink)
+    : sink_(std::move(sink)),
+      is_navigation_live_(input.navigation == navigator::Input::kOutside),
+      ports_(LidarParams(config_folder, input.lidar), NavigationParams(config_folder, input.navigation)),
+      vlp16_(bus_, LidarParams(config_folder, input.lidar)),
+      segmenter_(bus_, segmenter::LoadParams(config_folder)),
+      navigator_(bus_, NavigationParams(config_folder, input.navigation)),
+      georeferencer_(bus_, georeferencer::LoadParams(config_folder)) {
+  bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
+    auto& digest = digests_[std::string(channel)];
+    ++digest.count;
+    digest.sha256.Add(bytes.data(), bytes.size());
+    sink_(time_, channel, bytes);
+  });
+}
+
+Chain::Ports::Ports(const vlp16::Params& lidar, const navigator::Params& navigation)
+    : lidar_data(lidar.data_port), lidar_position(lidar.position_port), nmea(navigation.nmea_port) {}
+
+void Chain::AdvanceTo(Utime time) {
+  time_ = time;
+  Timed(vlp16_time_, [&] { vlp16_.AdvanceTo(time); });
+  Drain();
+  if (is_navigation_live_) {
+    Timed(navigator_time_, [&] { navigator_.AdvanceTo(time); });
+    Drain();
+  }
+}
+
+void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
+  AdvanceTo(host_time);
+  if (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position) {
+    Timed(vlp16_time_, [&] { vlp16_.OnDatagram(host_time, udp_port, payload); });
+  } else if (udp_port == ports_.nmea) {
+    Timed(navigator_time_, [&] { navigator_.OnDatagram(host_time, payload); });
+  } else {
+    ++num_other_ports_;
+  }
+  Drain();
+}
+
+void Chain::OnRaw(Utime log_time, const bus::Channel& channel, Bytes bytes) {
+  AdvanceTo(log_time);
+  bus_.Publish(channel, bytes);
+  Drain();
+}
+
+void Chain::Finish() {
+  Timed(vlp16_time_, [&] { vlp16_.Finish(time_); });
+  Drain();
+  Timed(navigator_time_, [&] { navigator_.Finish(time_); });
+  Drain();
+  georeferencer_.Finish();
+  Drain();
+}
+
+void Chain::Drain() {
+  while (bus_.HandleOnce()) {
+  }
+}
+
+std::vector<Chain::StageTime> Chain::StageTimes() const {
+  const auto handling = [this](const bus::Channel& channel) {
+    const auto traffic = bus_.input_traffic().find(channel.name);
+    return traffic == bus_.input_traffic().end() ? std::chrono::nanoseconds(0) : traffic->second.total_handling_time;
+  };
+  return {{"vlp16", ToSeconds(vlp16_time_ + handling(bus::kLidarPackets))},
+          {"segmenter", ToSeconds(handling(bus::kLidarScan))},
+          {"navigator", ToSeconds(navigator_time_ + handling(bus::kNavRaw) + handling(bus::kLidarNmea))},
+          {"georeferencer", ToSeconds(handling(bus::kSegments) + handling(bus::kPose))}};
+}
+
+std::vector<std::pair<std::string, std::int64_t>> Chain::Counters() const {
+  std::vector<std::pair<std::string, std::int64_t>> counters;
+  const auto add = [&counters](const std::string& service, const HealthReport& report) {
+    for (const auto& counter : report.counters) {
+      if (counter.count != 0) counters.emplace_back(service + "." + std::string(counter.name), counter.count);
+    }
+  };
+  add("vlp16", vlp16_.Report());
+  add("segmenter", segmenter_.Report());
+  add("navigator", navigator_.Report());
+  add("georeferencer", georeferencer_.Report());
+  for (const auto& [channel, traffic] : bus_.input_traffic()) {
+    if (traffic.num_undecodable != 0) counters.emplace_back(channel + ".undecodable", traffic.num_undecodable);
+    if (traffic.num_lost != 0) counters.emplace_back(channel + ".lost", traffic.num_lost);
+  }
+  if (num_other_ports_ != 0) counters.emplace_back("input.other_port", num_other_ports_);
+  return counters;
+}
+
+}  // namespace lookout::replay

@@ -1,0 +1,94 @@
+// All services of the way of the data in one process, over a memory bus, in lockstep.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/bus/log_file.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "common/bus/schema.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "services/georeferencer/service.hpp"
+#include "services/navigator/service.hpp"
+#include "services/segmenter/service.hpp"
+#include "services/vlp16/service.hpp"
+
+namespace lookout::replay {
+
+/// Where the chain begins.
+struct RawInput {
+  vlp16::Input lidar = vlp16::Input::kOutside;               // kLog: LIDAR_PACKETS
+  navigator::Input navigation = navigator::Input::kOutside;  // kLog: NAV_RAW
+};
+
+/// What went over one channel.
+struct ChannelDigest {
+  std::int64_t count = 0;
+  bus::Sha256 sha256;  // over the payloads, one after the other
+};
+
+class Chain {
+ public:
+  /// Each message, with the host time of the raw event that caused it.
+  using Sink = std::function<void(Utime time, std::string_view channel, Bytes bytes)>;
+
+  /// @throws config::ConfigError
+  Chain(const std::filesystem::path& config_folder, const RawInput& input, Sink sink);
+
+  /// A datagram out of a capture. What is on none of the ports of the config is left out and counted.
+  void OnDatagram(Utime host_time, int udp_port, Bytes payload);
+
+  /// A raw message out of a log.
+  void OnRaw(Utime log_time, const bus::Channel& channel, Bytes bytes);
+
+  /// End of input: every service flushes what it holds.
+  void Finish();
+
+  /// Host time of the latest event.
+  Utime time() const { return time_; }
+
+  std::map<std::string, ChannelDigest, std::less<>>& digests() { return digests_; }
+
+  /// Time that each service took, in the order of the data.
+  struct StageTime {
+    std::string service;
+    double seconds;
+  };
+  std::vector<StageTime> StageTimes() const;
+
+  /// Counters of all services that are not 0, as "service.counter".
+  std::vector<std::pair<std::string, std::int64_t>> Counters() const;
+
+ private:
+  // Destination ports by which datagrams of a capture are told apart.
+  struct Ports {
+    Ports(const vlp16::Params& lidar, const navigator::Params& navigation);
+    int lidar_data;
+    int lidar_position;
+    int nmea;
+  };
+
+  void AdvanceTo(Utime time);
+  void Drain();
+
+  bus::MemoryBus bus_;
+  Sink sink_;
+  std::map<std::string, ChannelDigest, std::less<>> digests_;
+  Utime time_{};
+  bool is_navigation_live_;  // else it comes as NAV_RAW
+  Ports ports_;
+  std::int64_t num_other_ports_ = 0;
+  std::chrono::nanoseconds vlp16_time_{0};
+  std::chrono::nanoseconds navigator_time_{0};
+  // They subscribe as they are made; the sink subscribes last, so that it sees a message after the services did.
+  vlp16::Service vlp16_;
+  segmenter::Service segmenter_;
+  navigator::Service navigator_;
+  georeferencer::Service georeferencer_;
+};
+
+}  // namespace lookout::replay

@@ -1,0 +1,64 @@
+// How boats move. Time is in seconds since the start of the simulation; map is east, north, up at the datum of the simulation, up from the
+// calm water.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <vector>
+
+namespace lookout::sim {
+
+/// Place and heading of an object whose frame (x forward, y port, z up) has its origin on the water.
+struct Placement {
+  Eigen::Vector2d position_map_m = Eigen::Vector2d::Zero();
+  double heading_rad = 0.0;
+
+  Eigen::Vector2d ToMap(const Eigen::Vector2d& p_object_m) const;
+};
+
+/// Of another object: a straight line or a circle, at constant speed, bow first.
+struct Track {
+  Placement start;
+  double speed_mps = 0.0;
+  double turn_rate_radps = 0.0;  // clockwise
+
+  bool is_moving() const { return speed_mps != 0.0 || turn_rate_radps != 0.0; }
+  Placement At(double time_s) const;
+};
+
+/// A part of a motion: amplitude x sin(2 pi time / period + phase).
+struct Wave {
+  double amplitude;
+  double period_s;
+  double phase_rad;
+};
+
+/// Of the own boat: round an ellipse, bow along the course but for the leeway, with the waves' motion on top.
+struct OwnMotion {
+  Eigen::Vector2d center_map_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d semi_axes_m = Eigen::Vector2d::Zero();  // east, north; both 0 = the boat lies still
+  double period_s = 1.0;                                  // of one round, counter-clockwise
+  double start_rad = 0.0;                                 // where on the round: 0 = east, pi / 2 = north
+  double still_heading_rad = 0.0;                         // of a boat that lies still
+  std::vector<Wave> leeway_rad;                           // heading minus course
+  std::vector<Wave> roll_rad;
+  std::vector<Wave> pitch_rad;
+  std::vector<Wave> heave_m;
+};
+
+/// State of the vessel frame. Signs as in POSE: heading clockwise from north, pitch positive bow up, roll positive starboard down.
+struct OwnState {
+  Eigen::Vector3d position_map_m;  // of the reference point
+  Eigen::Vector2d velocity_map_mps;
+  double heading_rad;
+  double pitch_rad;
+  double roll_rad;
+  double heave_m;
+
+  Eigen::Isometry3d T_map_vessel() const;
+};
+
+/// @param reference_point_above_water_m  at rest
+OwnState StateAt(const OwnMotion& motion, double reference_point_above_water_m, double time_s);
+
+}  // namespace lookout::sim

@@ -1,0 +1,96 @@
+#include "tools/sim/shore.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr Material kSoil{0.25};
+constexpr Material kBark{0.25};
+constexpr Material kFoliage{0.35, true};
+
+constexpr double kStepM = 2.0;         // between vertices of the waterline
+constexpr double kBankWidthM = 2.5;    // from the waterline to the top of the bank
+constexpr double kSlopeWidthM = 30.0;  // of the ground behind it
+constexpr double kSlopeRise = 0.22;
+
+// Frame of the object: heading 0, so x is north and y is west.
+Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vector2d(std::cos(bearing_rad), -std::sin(bearing_rad)); }
+
+Vector3d WithHeight(const Vector2d& p_m, double z_m) { return {p_m.x(), p_m.y(), z_m}; }
+
+// Bays and headlands: waves around the circle with random phases.
+Waterline MakeWaterline(const ShoreShape& shape, Random& random) {
+  constexpr std::array<int, 4> kWavesPerTurn{2, 5, 11, 29};
+  constexpr std::array<double, 4> kShare{0.45, 0.3, 0.17, 0.08};
+  std::array<double, 4> phases_rad{};
+  for (auto& phase_rad : phases_rad) phase_rad = random.Uniform(0.0, kTwoPi);
+  return [=](double bearing_rad) {
+    double radius_m = shape.mean_radius_m;
+    for (std::size_t i = 0; i < kShare.size(); ++i) {
+      radius_m += shape.roughness_m * kShare[i] * std::sin(kWavesPerTurn[i] * bearing_rad + phases_rad[i]);
+    }
+    return radius_m;
+  };
+}
+
+void AddTree(const Vector2d& foot_m, double ground_m, Random& random, std::vector<Part>& parts) {
+  const double height_m = random.Uniform(5.0, 12.0);
+  const double crown_radius_m = random.Uniform(1.2, 2.6);
+  const double crown_bottom_m = ground_m + random.Uniform(1.0, 2.5);
+  const double crown_half_height_m = (ground_m + height_m - crown_bottom_m) / 2.0;
+  parts.push_back({Cylinder{foot_m, random.Uniform(0.1, 0.25), ground_m - 0.5, crown_bottom_m + crown_half_height_m}, kBark});
+  parts.push_back({Ellipsoid{WithHeight(foot_m, crown_bottom_m + crown_half_height_m), {crown_radius_m, crown_radius_m, crown_half_height_m}}, kFoliage});
+}
+
+}  // namespace
+
+Shore MakeShore(const std::string& name, const ShoreShape& shape, Random& random) {
+  Shore shore{SceneObject{0, name, "shore", Track{}, {}, {}}, MakeWaterline(shape, random)};
+  auto& parts = shore.object.parts;
+  auto& outline_m = shore.object.outline_m;
+
+  const int num_steps = static_cast<int>(std::ceil(shape.width_rad * shape.mean_radius_m / kStepM));
+  const auto bearing_rad = [&](int step) { return shape.from_rad + shape.width_rad * step / num_steps; };
+  struct Profile {
+    Vector3d water_m;
+    Vector3d bank_m;
+    Vector3d slope_m;
+  };
+  std::vector<Profile> profiles;
+  for (int step = 0; step <= num_steps; ++step) {
+    const double radius_m = shore.waterline_m(bearing_rad(step));
+    const double bank_height_m = random.Uniform(0.5, 1.3);
+    profiles.push_back({WithHeight(AtBearing(bearing_rad(step), radius_m), 0.0),
+                        WithHeight(AtBearing(bearing_rad(step), radius_m + kBankWidthM), bank_height_m),
+                        WithHeight(AtBearing(bearing_rad(step), radius_m + kBankWidthM + kSlopeWidthM), bank_height_m + kSlopeRise * kSlopeWidthM)});
+  }
+  for (std::size_t i = 0; i + 1 < profiles.size(); ++i) {
+    const auto& a = profiles[i];
+    const auto& b = profiles[i + 1];
+    parts.push_back({Triangle{a.water_m, b.water_m, b.bank_m}, kSoil});
+    parts.push_back({Triangle{a.water_m, b.bank_m, a.bank_m}, kSoil});
+    parts.push_back({Triangle{a.bank_m, b.bank_m, b.slope_m}, kSoil});
+    parts.push_back({Triangle{a.bank_m, b.slope_m, a.slope_m}, kSoil});
+  }
+  for (int tree = 0; tree < shape.num_trees; ++tree) {
+    // Crowns stay over the land and inside of the outline: at least their greatest radius from its ends.
+    const double margin_rad = 3.0 / shape.mean_radius_m;
+    const double at_rad = shape.from_rad + random.Uniform(margin_rad, shape.width_rad - margin_rad);
+    const double inland_m = random.Uniform(3.0, 18.0);
+    const double ground_m = 0.9 + kSlopeRise * (inland_m > kBankWidthM ? inland_m - kBankWidthM : 0.0);
+    AddTree(AtBearing(at_rad, shore.waterline_m(at_rad) + inland_m), ground_m, random, parts);
+  }
+
+  for (const auto& profile : profiles) outline_m.emplace_back(profile.water_m.head<2>());
+  for (auto profile = profiles.rbegin(); profile != profiles.rend(); ++profile) outline_m.emplace_back(profile->slope_m.head<2>());
+  return shore;
+}
+
+}  // namespace lookout::sim

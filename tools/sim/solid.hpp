@@ -1,0 +1,69 @@
+// Simple solids and where a ray meets them. z is up in every frame used here.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace lookout::sim {
+
+struct Ray {
+  Eigen::Vector3d origin_m;
+  Eigen::Vector3d direction;  // unit vector
+};
+
+/// Where a ray enters a solid.
+struct Hit {
+  double range_m = 0.0;
+  double incidence_cosine = 1.0;  // of the angle between the ray and the normal of the surface, 0 to 1
+};
+
+/// Upright.
+struct Cylinder {
+  Eigen::Vector2d center_m;
+  double radius_m;
+  double bottom_m;
+  double top_m;
+};
+
+/// Axes along x, y, z.
+struct Ellipsoid {
+  Eigen::Vector3d center_m;
+  Eigen::Vector3d radii_m;
+};
+
+/// Upright walls over a convex footprint, counter-clockwise.
+struct Prism {
+  std::vector<Eigen::Vector2d> footprint_m;
+  double bottom_m;
+  double top_m;
+};
+
+/// A piece of ground, seen from both sides.
+struct Triangle {
+  Eigen::Vector3d a_m;
+  Eigen::Vector3d b_m;
+  Eigen::Vector3d c_m;
+};
+
+using Solid = std::variant<Cylinder, Ellipsoid, Prism, Triangle>;
+
+/// @return nullopt when the ray misses, or starts inside
+std::optional<Hit> Intersect(const Solid& solid, const Ray& ray);
+
+/// What holds a solid, seen from above: discs of one radius around points whose convex hull, widened by it, contains the solid.
+struct PlanBounds {
+  std::vector<Eigen::Vector2d> points_m;
+  double radius_m = 0.0;
+};
+PlanBounds BoundsOf(const Solid& solid);
+
+/// @return rectangle from (min_x, min_y) to (max_x, max_y), counter-clockwise
+std::vector<Eigen::Vector2d> Rectangle(double min_x_m, double max_x_m, double min_y_m, double max_y_m);
+
+/// @return regular polygon of `num_vertices` on a circle, counter-clockwise
+std::vector<Eigen::Vector2d> Circle(const Eigen::Vector2d& center_m, double radius_m, int num_vertices);
+
+}  // namespace lookout::sim
