@@ -6,6 +6,7 @@
 #include <string>
 
 #include "services/vlp16/core/decoder.hpp"
+#include "services/vlp16/core/packet_format.hpp"
 
 namespace lookout::vlp16 {
 
@@ -16,6 +17,7 @@ struct Params {
   int data_port = format::kDataPort;
   int position_port = format::kPositionPort;
   DecoderParams decoder;
+  bool use_vertical_origin_offsets = false;
 
   // For main: where datagrams come from.
   std::optional<std::filesystem::path> capture_file;  // set: they are read from it, at the speed at which it was recorded; else from UDP

@@ -44,6 +44,7 @@ class Service {
   std::int64_t raw_seq_ = 0;  // of the bundle that is being consumed
   std::int64_t sentence_seq_ = 0;
   std::int64_t num_refused_messages_ = 0;
+  std::int64_t num_other_port_ = 0;    // payloads in a log that were recorded on ports other than the config says
   std::optional<Utime> silent_since_;  // host time of the last usable data packet, or at which waiting began
   Utime now_{};                        // host time so far
 };

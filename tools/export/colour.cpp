@@ -26,7 +26,13 @@ Rgb ColourOfSegment(int label) {
   constexpr double kGoldenRatio = 0.61803398874989485;
   constexpr std::array kLightness{0.42, 0.52, 0.34};
   const double turns = 0.58 + label * kGoldenRatio;
-  return FromHsl(turns - std::floor(turns), 0.78, kLightness[static_cast<std::size_t>(label) % kLightness.size()]);
+  const auto colour = FromHsl(turns - std::floor(turns), 0.78, kLightness[static_cast<std::size_t>(label) % kLightness.size()]);
+  // Yellow and green look brighter than blue of the same lightness (weights: ITU-R BT.601).
+  constexpr double kMaxLuma = 140.0;
+  const double luma = 0.299 * colour.red + 0.587 * colour.green + 0.114 * colour.blue;
+  const double scale = std::min(1.0, kMaxLuma / luma);
+  const auto dimmed = [scale](std::uint8_t value) { return static_cast<std::uint8_t>(std::lround(value * scale)); };
+  return {dimmed(colour.red), dimmed(colour.green), dimmed(colour.blue)};
 }
 
 Rgb ColourOfReason(std::string_view reason) {

@@ -14,9 +14,9 @@ namespace lookout::exporter {
 struct Request {
   std::vector<std::filesystem::path> inputs;  // lcm-logs, read in this order as one
   std::string table;
-  std::string format = "csv";                   // "csv", "ply" (returns), "svg" (returns, obstacles)
-  std::optional<std::filesystem::path> output;  // nullopt = standard output
-  std::optional<std::int64_t> turn;             // ply, svg: seq of the turn; nullopt = the last whole one
+  std::string format = "csv";                                  // "csv", "ply" (returns), "svg" (returns, obstacles)
+  std::optional<std::filesystem::path> output = std::nullopt;  // nullopt = standard output
+  std::optional<std::int64_t> turn = std::nullopt;             // ply, svg: seq of the turn; nullopt = the last whole one
 };
 
 inline constexpr int kExitFine = 0;

@@ -16,10 +16,9 @@ namespace {
 constexpr double kWidth = 1320.0;
 constexpr double kHeight = 1000.0;
 constexpr double kMiddleX = 500.0;
-constexpr double kMiddleY = 520.0;
-constexpr double kRadius = 440.0;
-constexpr double kLegendX = 1000.0;
-constexpr double kLegendWidth = 290.0;
+constexpr double kMiddleY = 535.0;
+constexpr double kRadius = 430.0;
+constexpr double kLegendX = 985.0;
 constexpr double kLegendTop = 96.0;
 constexpr double kLegendLine = 22.0;
 constexpr double kLegendBottom = 960.0;
@@ -144,7 +143,11 @@ class Drawing {
 
   void DrawTitle() {
     Text({40, 44}, picture_.title, "font-size=\"24\" font-weight=\"bold\" fill=\"#1c2b3a\"");
-    Text({40, 68}, picture_.subtitle, "font-size=\"14\" fill=\"#5b6b7b\"");
+    double y = 68.0;
+    for (const auto& line : picture_.subtitles) {
+      Text({40, y}, line, "font-size=\"14\" fill=\"#5b6b7b\"");
+      y += 20.0;
+    }
   }
 
   void DrawWater() {
@@ -238,18 +241,15 @@ class Drawing {
     for (const auto index : ByDistance()) {
       const auto& outline = picture_.outlines[index];
       if (outline.corners.empty() || !std::ranges::all_of(outline.corners, IsFinite)) continue;
-      double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
-      for (const auto& corner : outline.corners) {
-        const auto pixel = ToPixel(corner);
-        left = std::min(left, pixel.x), right = std::max(right, pixel.x);
-        top = std::min(top, pixel.y), bottom = std::max(bottom, pixel.y);
-      }
-      const Pixel middle{(left + right) / 2.0, (top + bottom) / 2.0};
-      const double width = 8.5 * static_cast<double>(outline.name.size());
+      // Beside the corner that lies farthest to the right, left, top or bottom.
+      std::vector<Pixel> corners;
+      for (const auto& corner : outline.corners) corners.push_back(ToPixel(corner));
+      const auto [left, right] = std::ranges::minmax(corners, {}, &Pixel::x);
+      const auto [top, bottom] = std::ranges::minmax(corners, {}, &Pixel::y);
+      const double width = 9.0 * static_cast<double>(outline.name.size());
       constexpr double kTextHeight = 13.0, kGap = 8.0;
-      const std::array<Pixel, 5> places{Pixel{right + kGap, middle.y + 5.0}, Pixel{left - kGap - width, middle.y + 5.0},
-                                        Pixel{middle.x - width / 2.0, top - kGap}, Pixel{middle.x - width / 2.0, bottom + kGap + kTextHeight},
-                                        Pixel{middle.x - width / 2.0, middle.y + 5.0}};
+      const std::array<Pixel, 4> places{Pixel{right.x + kGap, right.y + 5.0}, Pixel{left.x - kGap - width, left.y + 5.0},
+                                        Pixel{top.x - width / 2.0, top.y - kGap}, Pixel{bottom.x - width / 2.0, bottom.y + kGap + kTextHeight}};
       for (const auto& place : places) {
         const Box box{place.x - 2.0, place.y - kTextHeight, place.x + width + 2.0, place.y + 3.0};
         const bool is_in_view = std::hypot(place.x + width / 2.0 - kMiddleX, place.y - kMiddleY) < kRadius - 14.0;
@@ -268,27 +268,32 @@ class Drawing {
 
   void DrawLegend() {
     double y = kLegendTop;
-    const auto line = [&](const Rgb& colour, const std::string& text) {
+    const auto mark = [&](const Rgb& colour) {
       svg_ += "<circle cx=\"" + Number(kLegendX + 6.0) + "\" cy=\"" + Number(y - 5.0) + "\" r=\"6\" fill=\"" + Css(colour) + "\"/>\n";
-      Text({kLegendX + 22.0, y}, text, "font-size=\"14\" fill=\"#1c2b3a\"");
-      y += kLegendLine;
     };
-    for (const auto& entry : picture_.legend) line(entry.colour, entry.text);
-    if (picture_.outlines.empty()) return;
-    if (!picture_.legend.empty()) {
-      Line({kLegendX, y - 10.0}, {kLegendX + kLegendWidth, y - 10.0}, "stroke=\"#dbe5ed\" stroke-width=\"1\"");
-      y += 10.0;
+    const std::string dark = "font-size=\"14\" fill=\"#1c2b3a\"";
+    const std::string pale = "font-size=\"13\" fill=\"#5b6b7b\"";
+    for (const auto& entry : picture_.legend) {
+      mark(entry.colour);
+      Text({kLegendX + 22.0, y}, entry.text, dark);
+      y += kLegendLine;
     }
+    if (picture_.outlines.empty()) return;
+    if (!picture_.legend.empty()) y += 12.0;
+    Text({kLegendX, y}, picture_.outlines_title, pale);
+    y += kLegendLine + 2.0;
     const auto order = ByDistance();
     std::size_t num_drawn = 0;
     for (const auto index : order) {
       if (y + kLegendLine > kLegendBottom && num_drawn + 1 < order.size()) break;
-      line(picture_.outlines[index].colour, picture_.outlines[index].facts);
+      const auto& outline = picture_.outlines[index];
+      mark(outline.colour);
+      Text({kLegendX + 22.0, y}, outline.name, dark + " font-weight=\"bold\"");
+      Text({kLegendX + 60.0, y}, outline.facts, dark);
+      y += kLegendLine;
       ++num_drawn;
     }
-    if (num_drawn < order.size()) {
-      Text({kLegendX + 22.0, y}, "and " + std::to_string(order.size() - num_drawn) + " more, farther off", "font-size=\"14\" fill=\"#5b6b7b\"");
-    }
+    if (num_drawn < order.size()) Text({kLegendX + 22.0, y}, "and " + std::to_string(order.size() - num_drawn) + " more, farther off", pale);
   }
 
   std::vector<std::size_t> ByDistance() const {

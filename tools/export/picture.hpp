@@ -45,10 +45,11 @@ struct BoatShape {
 
 struct Picture {
   std::string title;
-  std::string subtitle;
-  std::string up;                 // what is above: "N", "bow", "lidar x"
-  std::optional<BoatShape> boat;  // nullopt: only the lidar is known
-  std::vector<Dots> dots;         // in the order of drawing
+  std::vector<std::string> subtitles;  // at most two lines
+  std::string outlines_title;          // stands over the outlines in the legend
+  std::string up;                      // what is above: "N", "bow", "lidar x"
+  std::optional<BoatShape> boat;       // nullopt: only the lidar is known
+  std::vector<Dots> dots;              // in the order of drawing
   std::vector<Outline> outlines;
   std::vector<LegendLine> legend;  // of what is no outline
 };

@@ -109,8 +109,10 @@ class ReturnsSvgSink final : public SvgSink {
 Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
   const auto& place = turn_.place();
   const auto& boat = bearings.boat();
-  const auto heading_rad = boat ? bearings.HeadingAt(place.utime_us) : std::nullopt;
-  const View view(heading_rad.value_or(0.0));
+  const auto heading_rad = bearings.HeadingAt(place.utime_us);
+  const bool is_north_up = boat && heading_rad;
+  const double up_rad = is_north_up ? *heading_rad : 0.0;
+  const View view(up_rad);
   const Isometry3d T_vessel_lidar = boat ? boat->T_vessel_lidar : Isometry3d::Identity();
   const auto to_spot = [&](const Vector3d& p_lidar_m) {
     const Vector3d p_vessel_m = T_vessel_lidar * p_lidar_m;
@@ -118,8 +120,8 @@ Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
   };
 
   Picture picture;
-  picture.up = heading_rad ? "N" : (boat ? "bow" : "lidar x");
-  if (boat) picture.boat = ShapeOf(boat, heading_rad.value_or(0.0));
+  picture.up = is_north_up ? "N" : (boat ? "bow" : "lidar x");
+  if (boat) picture.boat = ShapeOf(boat, up_rad);
 
   // Ordered by reason, then label: what is in no segment lies below.
   std::map<std::string_view, Dots> loose;
@@ -137,7 +139,7 @@ Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
   }
   for (auto& [reason, dots] : loose) {
     const std::string name = reason.empty() ? (has_labels ? "without label" : "not labelled: no SEGMENTS in the log") : std::string(reason);
-    picture.legend.push_back({dots.colour, name + Format("  (%zu returns)", dots.spots.size())});
+    picture.legend.push_back({dots.colour, name + Format(" (%zu returns)", dots.spots.size())});
     picture.dots.push_back(std::move(dots));
   }
   for (auto& [label, dots] : labelled) picture.dots.push_back(std::move(dots));
@@ -147,7 +149,7 @@ Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
     outline.colour = ColourOfSegment(segment.id);
     outline.name = std::to_string(segment.id);
     outline.distance_m = std::hypot(static_cast<double>(segment.nearest_m[0]), static_cast<double>(segment.nearest_m[1]));
-    outline.facts = Format("%d   %.1f m,  %.1f x %.1f m,  %d returns", segment.id, outline.distance_m, static_cast<double>(segment.length_m),
+    outline.facts = Format("%.1f m, %.1f x %.1f m, %d returns", outline.distance_m, static_cast<double>(segment.length_m),
                            static_cast<double>(segment.width_m), segment.num_points);
     const double height_m = static_cast<double>(segment.centroid_m[2]);
     for (std::size_t i = 0; i < segment.hull_x_m.size(); ++i) {
@@ -156,9 +158,10 @@ Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
     picture.outlines.push_back(std::move(outline));
   }
   picture.title = Format("Turn %lld: %d returns, %zu segments", static_cast<long long>(place.seq), num_returns, picture.outlines.size());
-  picture.subtitle = UtcText(place.utime_us) + "   " +
-                     (heading_rad ? Format("north up, heading %.1f deg", RadToDeg(*heading_rad))
-                                  : (boat ? "bow up: no heading in the log" : "lidar frame: no config of the boat in the log"));
+  picture.subtitles = {UtcText(place.utime_us), is_north_up ? Format("north up, heading %.1f deg", RadToDeg(up_rad))
+                                                : boat      ? "bow up: no heading in the log"
+                                                            : "lidar frame: no config of the boat in the log"};
+  picture.outlines_title = "segments, nearest first";
   return picture;
 }
 
@@ -190,10 +193,12 @@ class ObstaclesSvgSink final : public SvgSink {
 Picture ObstaclesSvgSink::MakePicture(const Bearings& bearings) const {
   const auto& place = picker_.place();
   const auto heading_rad = bearings.HeadingAt(place.utime_us);
-  const View view(heading_rad.value_or(0.0));
+  const bool is_north_up = heading_rad.has_value();
+  const double up_rad = is_north_up ? *heading_rad : 0.0;
+  const View view(up_rad);
   Picture picture;
-  picture.up = heading_rad ? "N" : "bow";
-  picture.boat = ShapeOf(bearings.boat(), heading_rad.value_or(0.0));
+  picture.up = is_north_up ? "N" : "bow";
+  picture.boat = ShapeOf(bearings.boat(), up_rad);
   std::map<int, int> num_by_status;
   for (const auto& part : picker_.parts()) {
     for (const auto& obstacle : part.obstacles) {
@@ -202,9 +207,8 @@ Picture ObstaclesSvgSink::MakePicture(const Bearings& bearings) const {
       outline.colour = ColourOfSegment(obstacle.id);
       outline.name = std::to_string(obstacle.id);
       outline.distance_m = static_cast<double>(obstacle.range_m);
-      outline.facts =
-          Format("%d   %.1f m at %.0f deg,  %.1f x %.1f m", obstacle.id, outline.distance_m, RadToDeg(static_cast<double>(obstacle.bearing_rad)),
-                 static_cast<double>(obstacle.length_m), static_cast<double>(obstacle.width_m));
+      outline.facts = Format("%.1f m at %.0f deg, %.1f x %.1f m", outline.distance_m, RadToDeg(static_cast<double>(obstacle.bearing_rad)),
+                             static_cast<double>(obstacle.length_m), static_cast<double>(obstacle.width_m));
       for (std::size_t i = 0; i < obstacle.footprint_vessel_x_m.size(); ++i) {
         outline.corners.push_back(
             view.ToSpot(static_cast<double>(obstacle.footprint_vessel_x_m[i]), static_cast<double>(obstacle.footprint_vessel_y_m[i])));
@@ -217,9 +221,9 @@ Picture ObstaclesSvgSink::MakePicture(const Bearings& bearings) const {
     statuses += (statuses.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(words::WordOf(words::kObstacleStatus, status));
   }
   picture.title = Format("Turn %lld: %zu obstacles", static_cast<long long>(place.seq), picture.outlines.size());
-  picture.subtitle = UtcText(place.utime_us) + "   " +
-                     (heading_rad ? Format("north up, heading %.1f deg", RadToDeg(*heading_rad)) : std::string("bow up: no heading in the log")) +
-                     (statuses.empty() ? "" : "   status: " + statuses);
+  picture.subtitles = {UtcText(place.utime_us) + (statuses.empty() ? "" : ", status: " + statuses),
+                       is_north_up ? Format("north up, heading %.1f deg", RadToDeg(up_rad)) : "bow up: no heading in the log"};
+  picture.outlines_title = "obstacles, nearest first; bearing from the bow";
   return picture;
 }
 

@@ -20,8 +20,8 @@ constexpr int kCircleVertices = 24;  // the polygon lies within 1 % of the radiu
 std::vector<Vector2d> HullOutline(double length_m, double width_m) {
   const double x = length_m / 2.0;
   const double y = width_m / 2.0;
-  return {{-x, -0.85 * y}, {-0.2 * x, -y}, {0.4 * x, -0.8 * y}, {0.8 * x, -0.35 * y}, {x, 0.0},
-          {0.8 * x, 0.35 * y}, {0.4 * x, 0.8 * y}, {-0.2 * x, y}, {-x, 0.85 * y}};
+  return {{-x, -0.85 * y},     {-0.2 * x, -y},     {0.4 * x, -0.8 * y}, {0.8 * x, -0.35 * y}, {x, 0.0},
+          {0.8 * x, 0.35 * y}, {0.4 * x, 0.8 * y}, {-0.2 * x, y},       {-x, 0.85 * y}};
 }
 
 }  // namespace
@@ -29,9 +29,9 @@ std::vector<Vector2d> HullOutline(double length_m, double width_m) {
 SceneObject MakeMotorBoat(const std::string& name, const Track& track) {
   SceneObject boat{0, name, "motor_boat", track, {}, HullOutline(6.0, 2.2)};
   boat.parts = {{Prism{boat.outline_m, -0.3, 0.8}, kGelcoat},
-                {Prism{Rectangle(-0.8, 0.6, -0.6, 0.6), 0.8, 1.5}, kGelcoat},        // console
-                {Prism{Rectangle(0.5, 0.6, -0.6, 0.6), 1.5, 1.9}, kGlassFrame},      // windscreen
-                {Cylinder{{-0.9, 0.0}, 0.2, 0.8, 1.8}, kCloth},                      // helmsman
+                {Prism{Rectangle(-0.8, 0.6, -0.6, 0.6), 0.8, 1.5}, kGelcoat},         // console
+                {Prism{Rectangle(0.5, 0.6, -0.6, 0.6), 1.5, 1.9}, kGlassFrame},       // windscreen
+                {Cylinder{{-0.9, 0.0}, 0.2, 0.8, 1.8}, kCloth},                       // helmsman
                 {Prism{Rectangle(-3.0, -2.6, -0.25, 0.25), 0.8, 1.2}, kGlassFrame}};  // outboard
   return boat;
 }
@@ -47,7 +47,8 @@ SceneObject MakeSailingBoat(const std::string& name, const Track& track) {
 }
 
 SceneObject MakeKayak(const std::string& name, const Track& track) {
-  SceneObject boat{0, name, "kayak", track, {}, {{-2.25, 0.0}, {-1.2, -0.22}, {0.0, -0.3}, {1.2, -0.22}, {2.25, 0.0}, {1.2, 0.22}, {0.0, 0.3}, {-1.2, 0.22}}};
+  SceneObject boat{0,     name, "kayak",
+                   track, {},   {{-2.25, 0.0}, {-1.2, -0.22}, {0.0, -0.3}, {1.2, -0.22}, {2.25, 0.0}, {1.2, 0.22}, {0.0, 0.3}, {-1.2, 0.22}}};
   boat.parts = {{Prism{boat.outline_m, -0.1, 0.3}, kGelcoat}, {Ellipsoid{{-0.1, 0.0, 0.65}, {0.17, 0.25, 0.45}}, kCloth}};
   return boat;
 }

@@ -29,7 +29,8 @@ Placement Track::At(double time_s) const {
     return {start.position_map_m + speed_mps * time_s * Eigen::Vector2d(std::sin(from_rad), std::cos(from_rad)), from_rad};
   }
   const double to_rad = from_rad + turn_rate_radps * time_s;
-  const Eigen::Vector2d way_m = speed_mps / turn_rate_radps * Eigen::Vector2d(std::cos(from_rad) - std::cos(to_rad), std::sin(to_rad) - std::sin(from_rad));
+  const Eigen::Vector2d way_m =
+      speed_mps / turn_rate_radps * Eigen::Vector2d(std::cos(from_rad) - std::cos(to_rad), std::sin(to_rad) - std::sin(from_rad));
   return {start.position_map_m + way_m, WrapTo2Pi(to_rad)};
 }
 

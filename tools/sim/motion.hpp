@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-
 #include <vector>
 
 namespace lookout::sim {
@@ -40,10 +39,10 @@ struct OwnMotion {
   double period_s = 1.0;                                  // of one round, counter-clockwise
   double start_rad = 0.0;                                 // where on the round: 0 = east, pi / 2 = north
   double still_heading_rad = 0.0;                         // of a boat that lies still
-  std::vector<Wave> leeway_rad;                           // heading minus course
-  std::vector<Wave> roll_rad;
-  std::vector<Wave> pitch_rad;
-  std::vector<Wave> heave_m;
+  std::vector<Wave> leeway_rad{};                           // heading minus course
+  std::vector<Wave> roll_rad{};
+  std::vector<Wave> pitch_rad{};
+  std::vector<Wave> heave_m{};
 };
 
 /// State of the vessel frame. Signs as in POSE: heading clockwise from north, pitch positive bow up, roll positive starboard down.

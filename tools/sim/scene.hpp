@@ -14,8 +14,8 @@ namespace lookout::sim {
 
 /// What a surface gives back.
 struct Material {
-  double reflectance;       // diffuse, 0 to 1; the reflectivity of the device is this in per cent
-  bool is_porous = false;   // foliage: a part of the beam goes on behind it
+  double reflectance;      // diffuse, 0 to 1; the reflectivity of the device is this in per cent
+  bool is_porous = false;  // foliage: a part of the beam goes on behind it
 };
 
 struct Part {
@@ -23,7 +23,7 @@ struct Part {
   Material material;
 };
 
-inline constexpr int kNoObject = 0;    // stray return
+inline constexpr int kNoObject = 0;  // stray return
 inline constexpr int kOwnVessel = -1;
 
 struct SceneObject {
@@ -43,7 +43,7 @@ struct Scene {
 /// @return names that MakeScene knows, sorted
 std::vector<std::string_view> SceneNames();
 
-/// @param seed  decides on the line of the shore, trees and waves; named objects have the same places with every seed
+/// @param seed  decides on the line of the shore (with the dock on it), trees and waves; all else has the same place with every seed
 /// @return nullopt when no scene has that name
 std::optional<Scene> MakeScene(std::string_view name, std::uint64_t seed);
 

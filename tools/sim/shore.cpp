@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr Material kSoil{0.25};
+constexpr Material kSoil{0.35};
 constexpr Material kBark{0.25};
 constexpr Material kFoliage{0.35, true};
 
@@ -46,7 +46,8 @@ void AddTree(const Vector2d& foot_m, double ground_m, Random& random, std::vecto
   const double crown_bottom_m = ground_m + random.Uniform(1.0, 2.5);
   const double crown_half_height_m = (ground_m + height_m - crown_bottom_m) / 2.0;
   parts.push_back({Cylinder{foot_m, random.Uniform(0.1, 0.25), ground_m - 0.5, crown_bottom_m + crown_half_height_m}, kBark});
-  parts.push_back({Ellipsoid{WithHeight(foot_m, crown_bottom_m + crown_half_height_m), {crown_radius_m, crown_radius_m, crown_half_height_m}}, kFoliage});
+  parts.push_back(
+      {Ellipsoid{WithHeight(foot_m, crown_bottom_m + crown_half_height_m), {crown_radius_m, crown_radius_m, crown_half_height_m}}, kFoliage});
 }
 
 }  // namespace
@@ -83,7 +84,7 @@ Shore MakeShore(const std::string& name, const ShoreShape& shape, Random& random
     // Crowns stay over the land and inside of the outline: at least their greatest radius from its ends.
     const double margin_rad = 3.0 / shape.mean_radius_m;
     const double at_rad = shape.from_rad + random.Uniform(margin_rad, shape.width_rad - margin_rad);
-    const double inland_m = random.Uniform(3.0, 18.0);
+    const double inland_m = random.Uniform(3.5, 18.0);
     const double ground_m = 0.9 + kSlopeRise * (inland_m > kBankWidthM ? inland_m - kBankWidthM : 0.0);
     AddTree(AtBearing(at_rad, shore.waterline_m(at_rad) + inland_m), ground_m, random, parts);
   }

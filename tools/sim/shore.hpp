@@ -11,10 +11,10 @@ namespace lookout::sim {
 
 /// A stretch of shore around the origin of the map.
 struct ShoreShape {
-  double from_rad;        // bearing of its first end, clockwise from north
-  double width_rad;       // how far it runs on clockwise
-  double mean_radius_m;   // from the origin to the waterline
-  double roughness_m;     // greatest bay or headland
+  double from_rad;       // bearing of its first end, clockwise from north
+  double width_rad;      // how far it runs on clockwise
+  double mean_radius_m;  // from the origin to the waterline
+  double roughness_m;    // greatest bay or headland
   int num_trees;
 };
 

@@ -1,7 +1,6 @@
 #include "tools/sim/solid.hpp"
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,14 +19,15 @@ struct Span {
   double leave_m = std::numeric_limits<double>::infinity();
   double enter_cosine = 1.0;
 
-  // Keeps what lies behind a plane: `distance_m` from the ray's origin to the plane along its outward normal, `rate` = direction . normal.
-  bool Clip(double distance_m, double rate) {
-    if (rate == 0.0) return distance_m >= 0.0;
-    const double at_m = distance_m / rate;
+  // Keeps what lies behind a plane. `distance` is from the ray's origin to the plane along its outward normal, `rate` = direction . normal;
+  // the normal may have any length.
+  bool Clip(double distance, double rate, double normal_squared = 1.0) {
+    if (rate == 0.0) return distance >= 0.0;
+    const double at_m = distance / rate;
     if (rate < 0.0) {
       if (at_m > enter_m) {
         enter_m = at_m;
-        enter_cosine = -rate;
+        enter_cosine = -rate / std::sqrt(normal_squared);
       }
     } else {
       leave_m = std::min(leave_m, at_m);
@@ -82,8 +82,8 @@ std::optional<Hit> IntersectSolid(const Prism& prism, const Ray& ray) {
   for (std::size_t i = 0; i < footprint.size(); ++i) {
     const Vector2d& from_m = footprint[i];
     const Vector2d edge_m = footprint[i + 1 < footprint.size() ? i + 1 : 0] - from_m;
-    const Vector2d normal = Vector2d(edge_m.y(), -edge_m.x()).normalized();
-    if (!span.Clip(normal.dot(from_m - ray.origin_m.head<2>()), normal.dot(ray.direction.head<2>()))) return std::nullopt;
+    const Vector2d normal(edge_m.y(), -edge_m.x());
+    if (!span.Clip(normal.dot(from_m - ray.origin_m.head<2>()), normal.dot(ray.direction.head<2>()), normal.squaredNorm())) return std::nullopt;
   }
   return span.Entry();
 }
@@ -109,9 +109,7 @@ std::optional<Hit> IntersectSolid(const Triangle& triangle, const Ray& ray) {
 PlanBounds BoundsOfSolid(const Cylinder& cylinder) { return {{cylinder.center_m}, cylinder.radius_m}; }
 PlanBounds BoundsOfSolid(const Ellipsoid& ellipsoid) { return {{ellipsoid.center_m.head<2>()}, ellipsoid.radii_m.head<2>().maxCoeff()}; }
 PlanBounds BoundsOfSolid(const Prism& prism) { return {prism.footprint_m, 0.0}; }
-PlanBounds BoundsOfSolid(const Triangle& triangle) {
-  return {{triangle.a_m.head<2>(), triangle.b_m.head<2>(), triangle.c_m.head<2>()}, 0.0};
-}
+PlanBounds BoundsOfSolid(const Triangle& triangle) { return {{triangle.a_m.head<2>(), triangle.b_m.head<2>(), triangle.c_m.head<2>()}, 0.0}; }
 
 }  // namespace
 

@@ -1,8 +1,7 @@
 #include "services/vlp16/io/capture_reader.hpp"
 
-#include <pcap/pcap.h>
-
 #include <chrono>
+#include <pcap/pcap.h>
 #include <stdexcept>
 
 namespace lookout::vlp16 {

@@ -1,9 +1,9 @@
 #include "services/vlp16/io/frame.hpp"
 
 #include <arpa/inet.h>
-#include <pcap/pcap.h>
 
 #include <algorithm>
+#include <pcap/pcap.h>
 
 namespace lookout::vlp16 {
 

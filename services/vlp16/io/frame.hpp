@@ -12,7 +12,7 @@ namespace lookout::vlp16 {
 
 enum class FrameFault {
   kNone,
-  kTruncated,      // the capture kept fewer bytes than were on the wire, and the datagram needs them
+  kTruncated,  // the capture kept fewer bytes than were on the wire, and the datagram needs them
   kNotIp,
   kNotUdp,
   kFragment,       // of an IP datagram: not put together again
@@ -20,8 +20,9 @@ enum class FrameFault {
   kBadIpHeader,    // version or header length that cannot be
   kBadLength,      // a length that goes beyond the bytes that hold it
 };
-inline constexpr std::array<std::string_view, 8> kFrameFaultNames{
-    "frames_datagram", "frames_truncated", "frames_not_ip", "frames_not_udp", "frames_fragment", "frames_ipv6_extension", "frames_bad_ip_header", "frames_bad_length"};
+inline constexpr std::array<std::string_view, 8> kFrameFaultNames{"frames_datagram",      "frames_truncated", "frames_not_ip",
+                                                                  "frames_not_udp",       "frames_fragment",  "frames_ipv6_extension",
+                                                                  "frames_bad_ip_header", "frames_bad_length"};
 
 struct Frame {
   FrameFault fault = FrameFault::kNone;  // the rest is set when it is kNone

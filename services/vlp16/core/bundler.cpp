@@ -1,0 +1,86 @@
+#include "services/vlp16/core/bundler.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "common/core/angles.hpp"
+#include "services/vlp16/core/data_packet.hpp"
+
+namespace lookout::vlp16 {
+
+Bundler::Bundler(int data_port, int position_port, double cut_azimuth_rad)
+    : data_port_(data_port),
+      position_port_(position_port),
+      cut_cdeg_(static_cast<int>(std::llround(RadToDeg(WrapTo2Pi(cut_azimuth_rad)) * 100.0) % format::kAzimuthsPerTurn)) {}
+
+std::optional<PacketBundle> Bundler::Add(Utime host_time, int udp_port, Bytes payload) {
+  const bool is_data = udp_port == data_port_;
+  if (!is_data && udp_port != position_port_) {
+    ++num_other_port_;
+    return std::nullopt;
+  }
+  if (is_data && payload.size() != format::kDataPacketSizeBytes) {
+    ++num_data_wrong_size_;
+    return std::nullopt;
+  }
+  if (!is_data && payload.size() != format::kPositionPacketSizeBytes) {
+    ++num_position_wrong_size_;
+    return std::nullopt;
+  }
+  if (!UtimeFromWire(ToUtimeUs(host_time))) {
+    ++num_bad_host_time_;
+    return std::nullopt;
+  }
+  if (bundle_.items.empty()) bundle_.time = host_time;
+  bundle_.items.push_back({host_time, udp_port, bundle_.payload.size(), payload.size()});
+  bundle_.payload.insert(bundle_.payload.end(), payload.begin(), payload.end());
+  const bool ends_turn = is_data && EndsTurn(payload);
+  if (!ends_turn && bundle_.items.size() < kMaxItems) return std::nullopt;
+  return Close();
+}
+
+std::optional<PacketBundle> Bundler::AdvanceTo(Utime host_time) {
+  if (bundle_.items.empty() || host_time - bundle_.time < kMaxWait) return std::nullopt;
+  return Close();
+}
+
+std::optional<PacketBundle> Bundler::Finish(Utime host_time) {
+  if (bundle_.items.empty() && next_seq_ == 0) return std::nullopt;
+  if (bundle_.items.empty()) bundle_.time = host_time;
+  bundle_.is_end = true;
+  PacketBundle bundle = Close();
+  next_seq_ = 0;
+  last_azimuth_cdeg_.reset();
+  return bundle;
+}
+
+PacketBundle Bundler::Close() {
+  bundle_.seq = next_seq_++;
+  bundle_.is_start = bundle_.seq == 0;
+  return std::exchange(bundle_, PacketBundle{});
+}
+
+// Only when to send depends on this, not what: azimuths are taken as they stand.
+bool Bundler::EndsTurn(Bytes payload) {
+  bool ends_turn = false;
+  for (std::size_t block = 0; block < format::kNumBlocks; ++block) {
+    const int azimuth_cdeg = ReadU16LittleEndian(payload, block * format::kBlockSizeBytes + format::kBlockAzimuthOffset) % format::kAzimuthsPerTurn;
+    if (last_azimuth_cdeg_) {
+      const int to_cut_cdeg = ClockwiseCdeg(*last_azimuth_cdeg_, cut_cdeg_);
+      const int sweep_cdeg = ClockwiseCdeg(*last_azimuth_cdeg_, azimuth_cdeg);
+      if (sweep_cdeg > format::kAzimuthsPerTurn - kMaxGapCdeg) continue;  // noise of the encoder goes back a little
+      ends_turn = ends_turn || (to_cut_cdeg > 0 && to_cut_cdeg <= sweep_cdeg);
+    }
+    last_azimuth_cdeg_ = azimuth_cdeg;
+  }
+  return ends_turn;
+}
+
+std::vector<Counter> Bundler::counters() const {
+  return {{"datagrams_other_port", num_other_port_},
+          {"data_wrong_size", num_data_wrong_size_},
+          {"position_wrong_size", num_position_wrong_size_},
+          {"datagrams_bad_host_time", num_bad_host_time_}};
+}
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,74 @@
+// The edge towards the network: collects raw payloads into bundles, as they go on the bus and into the log.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::vlp16 {
+
+/// Raw payloads as they came.
+struct PacketBundle {
+  Utime time;  // host time of the first payload; of a mark alone, at which it was set
+  std::int64_t seq = 0;
+  bool is_start = false;  // what was before this bundle is void
+  bool is_end = false;    // nothing follows it
+
+  struct Item {
+    Utime host_time;
+    int udp_port = 0;
+    std::size_t offset = 0;  // in payload
+    std::size_t size_bytes = 0;
+  };
+  std::vector<Item> items;
+  std::vector<std::uint8_t> payload;  // back to back, in the order of arrival
+
+  Bytes PayloadOf(const Item& item) const { return Bytes(payload).subspan(item.offset, item.size_bytes); }
+};
+
+class Bundler {
+ public:
+  /// 24 x 1206 bytes make a message of 29 kB, which every bus takes.
+  static constexpr std::size_t kMaxItems = 24;
+  /// Payloads do not wait longer for others.
+  static constexpr std::chrono::milliseconds kMaxWait{100};
+
+  /// @param cut_azimuth_rad  a bundle ends with the packet in which a turn ends
+  Bundler(int data_port, int position_port, double cut_azimuth_rad);
+
+  /// Takes a datagram, or refuses and counts it: another port, or not the size of the packets on that port. What is inside is not judged:
+  /// a bundle is the raw truth.
+  ///
+  /// @return the bundle that this datagram completes
+  std::optional<PacketBundle> Add(Utime host_time, int udp_port, Bytes payload);
+
+  /// @return the bundle that has waited too long
+  std::optional<PacketBundle> AdvanceTo(Utime host_time);
+
+  /// @return the last bundle of the run, with the end mark; nullopt when the run has none. A datagram after it begins a new run.
+  std::optional<PacketBundle> Finish(Utime host_time);
+
+  std::vector<Counter> counters() const;
+
+ private:
+  PacketBundle Close();
+  bool EndsTurn(Bytes payload);
+
+  int data_port_;
+  int position_port_;
+  int cut_cdeg_;
+  PacketBundle bundle_;
+  std::int64_t next_seq_ = 0;
+  std::optional<int> last_azimuth_cdeg_;
+  std::int64_t num_other_port_ = 0;
+  std::int64_t num_data_wrong_size_ = 0;
+  std::int64_t num_position_wrong_size_ = 0;
+  std::int64_t num_bad_host_time_ = 0;
+};
+
+}  // namespace lookout::vlp16

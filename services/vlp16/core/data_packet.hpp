@@ -1,0 +1,74 @@
+// The data packet of the VLP-16 family: checked once as a whole, then read in place.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <string_view>
+
+#include "common/core/bytes.hpp"
+#include "services/vlp16/core/packet_format.hpp"
+
+namespace lookout::vlp16 {
+
+enum class ReturnMode { kStrongest, kLast, kDual };
+
+/// Why a payload is not a data packet.
+enum class DataFault {
+  kNone,
+  kSize,
+  kFlag,          // a block does not begin with the flag
+  kAzimuth,       // 36000 or more: an angle that is not one says that the block cannot be trusted
+  kReturnMode,    // not one of the three
+  kStamp,         // beyond the hour
+  kAzimuthOrder,  // the blocks go round more than once, which no motor does in a millisecond
+  kDualPair,      // dual return, but the two blocks of a pair differ in azimuth
+};
+inline constexpr std::array<std::string_view, 8> kDataFaultNames{"data_packets_whole",     "data_bad_size",        "data_bad_flag",
+                                                                 "data_bad_azimuth",       "data_bad_return_mode", "data_bad_stamp",
+                                                                 "data_bad_azimuth_order", "data_bad_dual_pair"};
+
+/// A step is a block, or in dual return a pair of blocks: two firing sequences in format::kBlockPeriod.
+struct DataPacket {
+  Bytes payload;               // format::kDataPacketSizeBytes, checked; belongs to the caller
+  std::uint32_t stamp_us = 0;  // of the first shot, past the hour
+  ReturnMode mode = ReturnMode::kStrongest;
+  std::uint8_t product = 0;
+  int num_steps = 0;
+  std::array<int, format::kNumBlocks> azimuth_cdeg{};  // [num_steps] of the first shot of each, 0 to 35999
+
+  int num_returns() const { return mode == ReturnMode::kDual ? 2 : 1; }
+  std::chrono::nanoseconds period() const { return num_steps * format::kBlockPeriod; }
+};
+
+struct DataPacketResult {
+  DataFault fault = DataFault::kNone;
+  DataPacket packet;  // only when there is no fault
+};
+
+/// Checks a payload as a whole. The product byte is not judged here: see ModelJudge.
+DataPacketResult ParseDataPacket(Bytes payload);
+
+/// A turn of the head that is more than this in one step is a jump (limited field of view), not a rate: 1200 rpm and a quarter more.
+inline constexpr int kMaxGapCdeg = 99;
+static_assert(kMaxGapCdeg <= 1.25 * format::kMaxRpm / 60.0 * format::kAzimuthsPerTurn * std::chrono::duration<double>(format::kBlockPeriod).count());
+
+/// How far the head turns in each step, and how long the packet took.
+struct Steps {
+  std::array<int, format::kNumBlocks> gap_cdeg{};  // [num_steps] per format::kBlockPeriod
+  std::chrono::nanoseconds duration{0};            // from the first shot of the packet to that of the next, jumps at the same rate included
+};
+
+/// The manual, 9.5: the gap of a step is the azimuth of the next minus its own, across 0. The last step has the last gap before it that is
+/// a rate. Where a gap is a jump, or goes back, the median of the others stands in.
+///
+/// @param fallback_cdeg  for a packet without one gap that is a rate
+Steps MeasureSteps(const DataPacket& packet, int fallback_cdeg);
+
+/// @return azimuth in [0, 36000) after going from `from_cdeg` to `to_cdeg` clockwise
+constexpr int ClockwiseCdeg(int from_cdeg, int to_cdeg) {
+  const int difference = to_cdeg - from_cdeg;
+  return difference < 0 ? difference + format::kAzimuthsPerTurn : difference;
+}
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,182 @@
+#include "services/vlp16/core/scan_assembler.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::vlp16 {
+
+namespace {
+
+using namespace format;
+using std::chrono::nanoseconds;
+
+// Columns lie at block azimuths and half way between them: azimuths in halves of 0.01 deg are exact.
+constexpr int kHalfCdegPerTurn = 2 * kAzimuthsPerTurn;
+constexpr double kRadPerHalfCdeg = kTwoPi / kHalfCdegPerTurn;
+constexpr int kMaxBackHalfCdeg = 2 * kMaxGapCdeg;
+// The slowest turn takes 0.2 s. The caps leave a head that stands or starts some room, and hold times in 32 bits of nanoseconds.
+constexpr nanoseconds kMaxTurnDuration = std::chrono::seconds(2);
+constexpr int kMaxColumns = 65536;
+static_assert(kMaxTurnDuration < nanoseconds(std::numeric_limits<std::int32_t>::max()));
+constexpr int kUsualColumns = 2048;  // a turn at 600 rpm has 1808
+
+int Clockwise(int from_half_cdeg, int to_half_cdeg) {
+  const int difference = to_half_cdeg - from_half_cdeg;
+  return difference < 0 ? difference + kHalfCdegPerTurn : difference;
+}
+
+// One firing of the 16 lasers, in order of laser id, to the rings of a column whose cells stand `kNumReturns` apart.
+template <std::size_t kNumReturns>
+void CopySequence(const std::uint8_t* bytes, const std::array<int, kNumLasers>& ring_of_laser, std::uint16_t* range, std::uint8_t* reflectivity) {
+  for (std::size_t laser = 0; laser < kNumLasers; ++laser, bytes += kReturnSizeBytes) {
+    const std::size_t cell = static_cast<std::size_t>(ring_of_laser[laser]) * kNumReturns;
+    const auto count = static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8);
+    range[cell] = count;
+    reflectivity[cell] = count != 0 ? bytes[2] : std::uint8_t{0};
+  }
+}
+
+}  // namespace
+
+ScanAssembler::ScanAssembler(double cut_azimuth_rad, std::function<void(const Turn&)> on_turn)
+    : cut_half_cdeg_(static_cast<int>(std::llround(WrapTo2Pi(cut_azimuth_rad) / kRadPerHalfCdeg) % kHalfCdegPerTurn)), on_turn_(std::move(on_turn)) {}
+
+void ScanAssembler::Add(const DataPacket& packet, const Steps& steps, const Arrival& arrival) {
+  if (num_columns_ > 0 && (packet.mode != turn_.mode || arrival.model != turn_.model)) End(arrival.counts);
+  if (arrival.num_lost > 0) AddLoss(arrival, 2 * packet.azimuth_cdeg[0]);
+  nanoseconds time = arrival.time;
+  for (int step = 0; step < packet.num_steps; ++step) {
+    const int gap_cdeg = steps.gap_cdeg[step];
+    for (int sequence = 0; sequence < kSequencesPerBlock; ++sequence) {
+      const int azimuth_half_cdeg = (2 * packet.azimuth_cdeg[step] + sequence * gap_cdeg) % kHalfCdegPerTurn;
+      if (num_columns_ > 0 && CrossesCut(azimuth_half_cdeg)) {
+        is_after_cut_ = true;
+        Finish(arrival.counts);
+      } else if (num_columns_ == kMaxColumns || (num_columns_ > 0 && time - start_ > kMaxTurnDuration)) {
+        ++num_capped_;
+        End(arrival.counts);
+      }
+      if (num_columns_ == 0) Begin(packet, arrival, azimuth_half_cdeg, gap_cdeg, time);
+      AddColumn(packet, step, sequence, azimuth_half_cdeg, gap_cdeg, time);
+      time += kSequencePeriod;
+    }
+  }
+  last_gap_cdeg_ = steps.gap_cdeg[packet.num_steps - 1];
+}
+
+void ScanAssembler::End(const PacketCounts& counts) {
+  is_after_cut_ = false;
+  num_lost_before_turn_ = 0;
+  if (num_columns_ == 0) return;
+  // It may have come to its end all the same: the next column would have been in the next turn.
+  const int rest_half_cdeg = Clockwise(reach_half_cdeg_, cut_half_cdeg_);
+  turn_.is_partial_end = rest_half_cdeg == 0 || rest_half_cdeg > advance_half_cdeg_;
+  Finish(counts);
+}
+
+void ScanAssembler::Begin(const DataPacket& packet, const Arrival& arrival, int azimuth_half_cdeg, int advance_half_cdeg, nanoseconds time) {
+  const auto time_us = std::chrono::floor<std::chrono::microseconds>(time);
+  start_ = time_us;
+  turn_.number = num_turns_;
+  turn_.clock = arrival.clock;
+  clock_ = arrival.clock;
+  turn_.time = arrival.clock.ToUtime(time_us);
+  turn_.model = arrival.model;
+  beams_ = &BeamsOf(arrival.model);
+  turn_.mode = packet.mode;
+  Reserve(std::max(kUsualColumns, turn_.num_columns()));
+  // Without a turn before it, it begins at the cut when no column of its own could have been there.
+  turn_.is_partial_start = !is_after_cut_ && Clockwise(cut_half_cdeg_, azimuth_half_cdeg) >= std::max(1, advance_half_cdeg);
+  turn_.is_partial_end = false;
+  turn_.has_hole = num_lost_before_turn_ > 0;
+  turn_.num_lost_packets = num_lost_before_turn_;
+  num_lost_before_turn_ = 0;
+  is_after_cut_ = false;
+  sum_gap_cdeg_ = 0;
+  reach_half_cdeg_ = azimuth_half_cdeg;
+}
+
+void ScanAssembler::Finish(const PacketCounts& counts) {
+  const auto num_columns = static_cast<std::size_t>(num_columns_);
+  const auto num_cells = num_columns * kNumLasers * static_cast<std::size_t>(turn_.num_returns());
+  turn_.azimuth_rad.resize(num_columns);
+  turn_.time_ns.resize(num_columns);
+  turn_.range.resize(num_cells);
+  turn_.reflectivity.resize(num_cells);
+  turn_.end_time = turn_.time + std::chrono::floor<std::chrono::microseconds>(last_column_ - start_ + (kNumLasers - 1) * kLaserPeriod);
+  const double mean_gap_rad = DegToRad(static_cast<double>(sum_gap_cdeg_) / static_cast<double>(num_columns) / 100.0);
+  turn_.rate_radps = mean_gap_rad / ToSeconds(kBlockPeriod);
+  turn_.counts = counts;
+  ++num_turns_;
+  num_columns_ = 0;
+  on_turn_(turn_);
+}
+
+void ScanAssembler::AddColumn(const DataPacket& packet, int step, int sequence, int azimuth_half_cdeg, int gap_cdeg, nanoseconds time) {
+  if (num_columns_ == capacity_columns_) Reserve(2 * capacity_columns_);
+  const auto column = static_cast<std::size_t>(num_columns_);
+  turn_.azimuth_rad[column] = static_cast<float>(azimuth_half_cdeg * kRadPerHalfCdeg);
+  turn_.time_ns[column] = static_cast<std::int32_t>((time - start_).count());
+  const auto sequence_offset = kBlockReturnsOffset + static_cast<std::size_t>(sequence) * kNumLasers * kReturnSizeBytes;
+  const std::uint8_t* block = packet.payload.data() + static_cast<std::size_t>(step * turn_.num_returns()) * kBlockSizeBytes + sequence_offset;
+  const std::size_t cell = column * kNumLasers;
+  const auto& ring_of_laser = beams_->ring_of_laser;
+  if (turn_.num_returns() == 1) {
+    CopySequence<1>(block, ring_of_laser, turn_.range.data() + cell, turn_.reflectivity.data() + cell);
+  } else {
+    CopySequence<2>(block, ring_of_laser, turn_.range.data() + 2 * cell, turn_.reflectivity.data() + 2 * cell);
+    CopySequence<2>(block + kBlockSizeBytes, ring_of_laser, turn_.range.data() + 2 * cell + 1, turn_.reflectivity.data() + 2 * cell + 1);
+  }
+  if (Clockwise(reach_half_cdeg_, azimuth_half_cdeg) <= kHalfCdegPerTurn - kMaxBackHalfCdeg) reach_half_cdeg_ = azimuth_half_cdeg;
+  advance_half_cdeg_ = gap_cdeg;
+  sum_gap_cdeg_ += gap_cdeg;
+  last_column_ = time;
+  ++num_columns_;
+}
+
+// Where packets are missing, they were of the turn that goes on, or of two turns, one on each side of the cut; then a packet across the cut
+// counts for both. When a whole turn or more is missing, nothing on one side belongs to the other.
+void ScanAssembler::AddLoss(const Arrival& arrival, int azimuth_half_cdeg) {
+  if (num_columns_ == 0) return;
+  turn_.has_hole = true;
+  const int sweep_half_cdeg = Clockwise(reach_half_cdeg_, azimuth_half_cdeg);
+  const int to_cut_half_cdeg = Clockwise(reach_half_cdeg_, cut_half_cdeg_);
+  const double gap_per_second_half_cdeg = 2.0 * last_gap_cdeg_ / ToSeconds(kBlockPeriod);
+  const double expected_half_cdeg = gap_per_second_half_cdeg * ToSeconds(nanoseconds(arrival.time) - last_column_);
+  const bool is_whole_turn_missing = expected_half_cdeg - sweep_half_cdeg > 0.5 * kHalfCdegPerTurn;
+  if (!is_whole_turn_missing && !CrossesCut(azimuth_half_cdeg)) {
+    turn_.num_lost_packets += arrival.num_lost;
+    return;
+  }
+  const double total_half_cdeg = is_whole_turn_missing ? expected_half_cdeg : sweep_half_cdeg;
+  const double before_cut = std::min(1.0, (to_cut_half_cdeg > 0 ? to_cut_half_cdeg : kHalfCdegPerTurn) / total_half_cdeg) * arrival.num_lost;
+  turn_.num_lost_packets += static_cast<int>(std::ceil(before_cut));
+  if (is_whole_turn_missing) End(arrival.counts);
+  const double after_cut = Clockwise(cut_half_cdeg_, azimuth_half_cdeg) / total_half_cdeg * arrival.num_lost;
+  num_lost_before_turn_ = static_cast<int>(std::ceil(after_cut));
+}
+
+bool ScanAssembler::CrossesCut(int azimuth_half_cdeg) const {
+  const int sweep_half_cdeg = Clockwise(reach_half_cdeg_, azimuth_half_cdeg);
+  if (sweep_half_cdeg > kHalfCdegPerTurn - kMaxBackHalfCdeg) return false;
+  const int to_cut_half_cdeg = Clockwise(reach_half_cdeg_, cut_half_cdeg_);
+  return to_cut_half_cdeg > 0 && to_cut_half_cdeg <= sweep_half_cdeg;
+}
+
+// The arrays keep their memory from turn to turn; only what they grow by is filled with zeros.
+void ScanAssembler::Reserve(int num_columns) {
+  capacity_columns_ = num_columns;
+  const auto capacity = static_cast<std::size_t>(num_columns);
+  const auto num_cells = capacity * kNumLasers * static_cast<std::size_t>(turn_.num_returns());
+  turn_.azimuth_rad.resize(capacity);
+  turn_.time_ns.resize(capacity);
+  turn_.range.resize(num_cells);
+  turn_.reflectivity.resize(num_cells);
+}
+
+}  // namespace lookout::vlp16

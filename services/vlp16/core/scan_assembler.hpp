@@ -1,0 +1,71 @@
+// Makes turns of data packets: gives each column its azimuth and time and cuts at the configured azimuth, inside packets.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+
+#include "services/vlp16/core/data_packet.hpp"
+#include "services/vlp16/core/packet_order.hpp"
+#include "services/vlp16/core/turn.hpp"
+
+namespace lookout::vlp16 {
+
+class ScanAssembler {
+ public:
+  /// What is known of a packet besides its bytes.
+  struct Arrival {
+    Model model = Model::kVlp16;
+    SensorTime time{0};  // of its first shot, greater than that of the packet before
+    int num_lost = 0;    // packets missing before it
+    ClockReading clock;  // for the turn that begins in it
+    PacketCounts counts;
+  };
+
+  /// @param cut_azimuth_rad  a turn begins with the first column at or after it; resolution 0.005 deg, as of columns
+  /// @param on_turn          called with each turn that has a column; the turn is the assembler's and changes after the call
+  ScanAssembler(double cut_azimuth_rad, std::function<void(const Turn&)> on_turn);
+
+  /// Cost: proportional to the returns; no trigonometry.
+  void Add(const DataPacket& packet, const Steps& steps, const Arrival& arrival);
+
+  /// What follows does not belong to what was: ends the turn, if there is one.
+  void End(const PacketCounts& counts);
+
+  /// Clock of the turn that began last; nullopt before the first.
+  const std::optional<ClockReading>& clock() const { return clock_; }
+
+  /// Turns ended for being larger than any turn of this sensor (it stands still, or packets lie).
+  std::int64_t num_capped() const { return num_capped_; }
+  /// Turn of the head per step in the last packet, 0 before the first.
+  int last_gap_cdeg() const { return last_gap_cdeg_; }
+
+ private:
+  void Begin(const DataPacket& packet, const Arrival& arrival, int azimuth_half_cdeg, int advance_half_cdeg, std::chrono::nanoseconds time);
+  void Finish(const PacketCounts& counts);
+  void AddColumn(const DataPacket& packet, int step, int sequence, int azimuth_half_cdeg, int gap_cdeg, std::chrono::nanoseconds time);
+  void AddLoss(const Arrival& arrival, int azimuth_half_cdeg);
+  bool CrossesCut(int azimuth_half_cdeg) const;
+  void Reserve(int num_columns);
+
+  int cut_half_cdeg_;
+  std::function<void(const Turn&)> on_turn_;
+  std::int64_t num_turns_ = 0;
+  std::int64_t num_capped_ = 0;
+  int last_gap_cdeg_ = 0;
+
+  std::optional<ClockReading> clock_;
+  const Beams* beams_ = &BeamsOf(Model::kVlp16);  // of the turn that is being made
+  Turn turn_;                                     // its arrays are larger than num_columns_ while the turn is being made
+  int num_columns_ = 0;                           // 0 = no turn has begun
+  int capacity_columns_ = 0;
+  bool is_after_cut_ = false;          // the next turn begins at the cut
+  int num_lost_before_turn_ = 0;       // packets lost that had columns in the turn that is to begin
+  int reach_half_cdeg_ = 0;            // azimuth reached: noise of the encoder may go back behind it
+  int advance_half_cdeg_ = 0;          // of the last column to the next
+  std::int64_t sum_gap_cdeg_ = 0;      // of the columns of this turn
+  std::chrono::nanoseconds start_{0};  // sensor time of turn_.time
+  std::chrono::nanoseconds last_column_{0};
+};
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,105 @@
+// The lidar process: datagrams of a VLP-16, a capture of them, or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_NMEA, LIDAR_CLOCK, LIDAR_SCAN out.
+#include <chrono>
+#include <iostream>
+#include <optional>
+#include <spdlog/spdlog.h>
+#include <vector>
+
+#include "common/config/text_config.hpp"
+#include "common/io/udp_receiver.hpp"
+#include "common/runtime/options.hpp"
+#include "common/runtime/process.hpp"
+#include "services/vlp16/io/capture_reader.hpp"
+#include "services/vlp16/params.hpp"
+#include "services/vlp16/service.hpp"
+
+namespace {
+
+using lookout::Bytes;
+using lookout::HealthReport;
+using lookout::Utime;
+
+// A bundle waits for 100 ms at most: a tenth of that is how late its time-out may come.
+constexpr std::chrono::milliseconds kTick(10);
+// Datagrams taken from a socket before the bus and the timers get their turn again.
+constexpr int kMaxDatagramsPerRound = 64;
+
+void RunLog(lookout::runtime::Process& process, const lookout::vlp16::Params& params) {
+  lookout::vlp16::Service service(process.bus(), params);
+  process.Run([&service] { return service.Report(); });
+  service.Finish(lookout::runtime::HostNow());
+}
+
+void RunUdp(lookout::runtime::Process& process, const lookout::vlp16::Params& params) {
+  lookout::vlp16::Service service(process.bus(), params);
+  lookout::io::UdpReceiver data(params.bind_address, params.data_port, params.receive_buffer_bytes);
+  lookout::io::UdpReceiver position(params.bind_address, params.position_port, params.receive_buffer_bytes);
+  for (auto* receiver : {&data, &position}) {
+    if (receiver->receive_buffer_bytes() < params.receive_buffer_bytes) {
+      spdlog::warn("port {}: the kernel grants a receive buffer of {} bytes, {} were asked for (sysctl net.core.rmem_max)", receiver->port(),
+                   receiver->receive_buffer_bytes(), params.receive_buffer_bytes);
+    }
+    process.OnReadable(receiver->file_descriptor(), [receiver, &service] {
+      for (int i = 0; i < kMaxDatagramsPerRound; ++i) {
+        const auto datagram = receiver->Receive();
+        if (!datagram) return;
+        service.OnDatagram(datagram->host_time, datagram->port, datagram->payload);
+      }
+    });
+  }
+  process.Every(kTick, [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
+  process.Run([&] {
+    HealthReport report = service.Report();
+    report.counters.push_back({"data_kernel_drops", data.num_kernel_drops()});
+    report.counters.push_back({"position_kernel_drops", position.num_kernel_drops()});
+    return report;
+  });
+  service.Finish(lookout::runtime::HostNow());
+}
+
+// At the speed at which it was recorded: the capture's first stamp is now, and what is stamped later comes as much later.
+void RunCapture(lookout::runtime::Process& process, const lookout::vlp16::Params& params) {
+  lookout::vlp16::Service service(process.bus(), params);
+  lookout::vlp16::CaptureReader reader(*params.capture_file);
+  auto next = reader.Next();
+  const Utime begin = next ? next->host_time : Utime{};
+  Utime capture_time = begin;
+  const auto started = std::chrono::steady_clock::now();
+  process.Every(kTick, [&] {
+    capture_time = begin + std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - started);
+    for (; next && next->host_time <= capture_time; next = reader.Next()) {
+      service.OnDatagram(next->host_time, next->destination_port, next->payload);
+    }
+    service.AdvanceTo(capture_time);
+    if (!next) process.Stop();
+  });
+  process.Run([&] {
+    HealthReport report = service.Report();
+    for (const auto& counter : reader.counters()) report.counters.push_back(counter);
+    return report;
+  });
+  service.Finish(capture_time);
+  if (reader.num_damaged() > 0) spdlog::warn("{}: {}", params.capture_file->string(), reader.damage());
+  if (reader.num_datagrams() == 0) spdlog::warn("{}: no datagram in {} frames", params.capture_file->string(), reader.num_frames());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-vlp16", "VLP-16 datagrams in; LIDAR_PACKETS, LIDAR_SCAN out");
+  return lookout::runtime::RunMain("vlp16", [&options] {
+    const auto params = lookout::vlp16::LoadParams(options.config_folder);
+    if (options.check_only) {
+      for (const char* file : {"boat.txtpb", "vlp16.txtpb"}) std::cout << lookout::config::EffectiveTextOfFile(options.config_folder / file);
+      return;
+    }
+    lookout::runtime::Process process("vlp16", options.lcm_url);
+    if (params.input == lookout::vlp16::Input::kLog) {
+      RunLog(process, params);
+    } else if (params.capture_file) {
+      RunCapture(process, params);
+    } else {
+      RunUdp(process, params);
+    }
+  });
+}

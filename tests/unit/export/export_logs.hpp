@@ -1,0 +1,158 @@
+// Hand-filled messages and little logs for the tests of lookout-export.
+#pragma once
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
+#include "common/bus/log_file.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/segments_t.hpp"
+#include "tools/export/export.hpp"
+
+namespace lookout::exporter {
+
+inline constexpr std::int64_t kStartUs = 1'700'000'000'000'000;  // 2023-11-14 22:13:20 UTC
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Two rings (-15 and 0 degrees), `num_columns` columns 90 degrees apart from azimuth 0, single return; a turn of 0.1 s in one part.
+/// Every range is 5000 counts (10 m), every reflectivity 7.
+inline lidar_scan_t MakeScan(std::int64_t seq, int num_columns = 2, int first_column = 0) {
+  lidar_scan_t scan{};
+  scan.utime_us = kStartUs + 100'000 * seq;
+  scan.seq = seq;
+  scan.end_utime_us = scan.utime_us + 99'999;
+  scan.num_parts = 1;
+  scan.time_source = lidar_scan_t::TIME_SENSOR;
+  scan.model = "VLP-16";
+  scan.range_unit_m = 0.002;
+  scan.num_rings = 2;
+  scan.elevation_rad = {static_cast<float>(-15.0 * 3.14159265358979 / 180.0), 0.0F};
+  scan.azimuth_offset_rad = {0.0F, 0.0F};
+  scan.time_offset_ns = {0, 2304};
+  scan.origin_height_m = {0.0F, 0.0F};
+  scan.num_returns = 1;
+  scan.return_kind = {lidar_scan_t::RETURN_STRONGEST};
+  scan.num_turn_columns = num_columns;
+  scan.first_column = first_column;
+  scan.num_columns = num_columns;
+  for (int column = 0; column < num_columns; ++column) {
+    scan.azimuth_rad.push_back(static_cast<float>((first_column + column) % 4) * 1.57079633F);
+    scan.time_ns.push_back((first_column + column) * 55'296);
+  }
+  scan.num_cells = num_columns * 2;
+  scan.range.assign(static_cast<std::size_t>(scan.num_cells), 5000);
+  scan.reflectivity.assign(static_cast<std::size_t>(scan.num_cells), 7);
+  return scan;
+}
+
+/// SEGMENTS of a scan: every cell has `label`, no segment.
+inline segments_t MakeSegments(const lidar_scan_t& scan, std::int16_t label = 1) {
+  segments_t segments{};
+  segments.utime_us = scan.utime_us;
+  segments.seq = scan.seq;
+  segments.end_utime_us = scan.end_utime_us;
+  segments.part_index = scan.part_index;
+  segments.num_parts = scan.num_parts;
+  segments.num_rings = scan.num_rings;
+  segments.num_returns = scan.num_returns;
+  segments.first_column = scan.first_column;
+  segments.num_columns = scan.num_columns;
+  segments.num_cells = scan.num_cells;
+  segments.label.assign(static_cast<std::size_t>(scan.num_cells), label);
+  return segments;
+}
+
+/// A segment of four corners, one metre wide, with its nearest side `x_m` ahead of the lidar.
+inline segment_t MakeSegment(int id, float x_m) {
+  segment_t segment{};
+  segment.utime_us = kStartUs + 5;
+  segment.id = id;
+  segment.num_points = 12;
+  segment.centroid_m[0] = x_m + 0.5F;
+  segment.centroid_m[1] = -1.25F;
+  segment.centroid_m[2] = 0.125F;
+  segment.nearest_m[0] = x_m;
+  segment.length_m = 2.5F;
+  segment.width_m = 1.0F;
+  segment.min_z_m = -0.25F;
+  segment.max_z_m = 1.25F;
+  segment.num_hull = 4;
+  segment.hull_x_m = {x_m, x_m + 1.0F, x_m + 1.0F, x_m};
+  segment.hull_y_m = {0.0F, 0.0F, 1.0F, 1.0F};
+  segment.hull_time_us.assign(4, 0);
+  return segment;
+}
+
+/// A folder of one test, removed at its end.
+class ExportTest : public ::testing::Test {
+ protected:
+  ExportTest() { std::filesystem::create_directories(folder_); }
+  ~ExportTest() override {
+    std::error_code error;
+    std::filesystem::remove_all(folder_, error);
+  }
+
+  template <typename T>
+  void Add(const bus::Channel& channel, const T& message) {
+    AddBytes(channel.name, bus::Encode(message));
+  }
+  void AddBytes(std::string_view channel, const std::vector<std::uint8_t>& bytes) {
+    if (!writer_) writer_ = std::make_unique<bus::LogWriter>(log_);
+    writer_->Write(Utime(std::chrono::microseconds(kStartUs)), channel, bytes);
+  }
+
+  /// Exports what was added so far.
+  /// @return exit code; text_ is what was written, errors_ what was told
+  int Export(const std::string& table, const std::string& format = "csv", std::optional<std::int64_t> turn = std::nullopt) {
+    return Export(Request{.inputs = {log_}, .table = table, .format = format, .output = folder_ / "out", .turn = turn});
+  }
+  int Export(const Request& request) {
+    writer_.reset();
+    std::ostringstream errors;
+    const int code = exporter::Run(request, errors, std::atomic<bool>(false));
+    errors_ = errors.str();
+    text_ = ReadFile(request.output.value_or(""));
+    return code;
+  }
+
+  static std::string ReadFile(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+  }
+
+  /// Lines of text_ without the header.
+  std::vector<std::string> Rows() const {
+    std::vector<std::string> rows;
+    std::istringstream in(text_);
+    std::string line;
+    std::getline(in, line);
+    while (std::getline(in, line)) rows.push_back(line);
+    return rows;
+  }
+
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_export_" + std::to_string(::getpid()) + "_" +
+                                                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  std::filesystem::path log_ = folder_ / "log";
+  std::unique_ptr<bus::LogWriter> writer_;
+  std::string text_;
+  std::string errors_;
+};
+
+}  // namespace lookout::exporter

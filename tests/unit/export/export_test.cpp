@@ -1,0 +1,258 @@
+#include "tools/export/export.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "lookout/run_info_t.hpp"
+#include "tests/unit/export/export_logs.hpp"
+#include "tools/export/words.hpp"
+
+namespace lookout::exporter {
+namespace {
+
+TEST_F(ExportTest, FailsOnAMissingLogAndLeavesNoFile) {
+  EXPECT_EQ(Export("pose"), kExitFailed);
+  EXPECT_NE(errors_.find("no such file"), std::string::npos) << errors_;
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(ExportTest, FailsWhenTheLogHoldsNothingOfTheTableAndLeavesNoFile) {
+  Add(bus::kLidarScan, MakeScan(0));
+  EXPECT_EQ(Export("pose"), kExitFailed);
+  EXPECT_NE(errors_.find("holds no POSE"), std::string::npos) << errors_;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.partial"));
+}
+
+TEST_F(ExportTest, KeepsAnOlderFileWhenItFails) {
+  std::ofstream(folder_ / "out") << "yesterday";
+  Add(bus::kLidarScan, MakeScan(0));
+  EXPECT_EQ(Export("pose"), kExitFailed);
+  EXPECT_EQ(text_, "yesterday");
+}
+
+TEST_F(ExportTest, SaysWhatIsWrongWithTheRequest) {
+  Add(bus::kLidarScan, MakeScan(0));
+  EXPECT_EQ(Export("pose", "ply"), kExitUsage);
+  EXPECT_NE(errors_.find("for --table returns only"), std::string::npos) << errors_;
+  EXPECT_EQ(Export("segments", "svg"), kExitUsage);
+  EXPECT_EQ(Export("returns", "xlsx"), kExitUsage);
+  EXPECT_EQ(Export("retruns"), kExitUsage);
+  EXPECT_EQ(Export("returns", "csv", 3), kExitUsage);
+  EXPECT_EQ(Export(Request{.inputs = {log_}, .table = "returns", .output = log_}), kExitUsage);
+  EXPECT_NE(errors_.find("is one of the inputs"), std::string::npos) << errors_;
+}
+
+TEST_F(ExportTest, CountsMessagesThatItCannotTakeAndGoesOn) {
+  auto bytes = bus::Encode(MakeScan(0));
+  bytes.pop_back();
+  AddBytes("LIDAR_SCAN", bytes);
+  auto scan = MakeScan(1);
+  scan.num_parts = 0;
+  Add(bus::kLidarScan, scan);
+  Add(bus::kLidarScan, MakeScan(2, 1));
+  AddBytes("SEGMENTS", {1, 2, 3});
+  EXPECT_EQ(Export("returns"), kExitFine);
+  EXPECT_EQ(Rows().size(), 2U);
+  EXPECT_NE(errors_.find("1 messages of LIDAR_SCAN could not be decoded"), std::string::npos) << errors_;
+  EXPECT_NE(errors_.find("1 messages of LIDAR_SCAN contradict themselves"), std::string::npos) << errors_;
+  EXPECT_NE(errors_.find("1 messages of SEGMENTS could not be decoded"), std::string::npos) << errors_;
+}
+
+TEST_F(ExportTest, WritesTheHeaderOnceAlsoWhenTheFirstMessagesAreBad) {
+  AddBytes("POSE", {});
+  AddBytes("POSE", {0});
+  Add(bus::kPose, pose_t{});
+  EXPECT_EQ(Export("pose"), kExitFine);
+  EXPECT_EQ(Rows().size(), 1U);
+  EXPECT_TRUE(text_.starts_with("utime_us,latitude_deg"));
+}
+
+TEST_F(ExportTest, SkipsDamagedStretchesAndSaysSo) {
+  for (int seq = 0; seq < 3; ++seq) Add(bus::kPose, pose_t{});
+  writer_.reset();
+  std::filesystem::resize_file(log_, std::filesystem::file_size(log_) - 5);
+  EXPECT_EQ(Export("pose"), kExitFine);
+  EXPECT_EQ(Rows().size(), 2U);
+  EXPECT_NE(errors_.find("1 damaged stretches skipped"), std::string::npos) << errors_;
+}
+
+TEST_F(ExportTest, ReadsSeveralLogsAsOneAlsoAcrossTheLabelsOfATurn) {
+  Add(bus::kLidarScan, MakeScan(0, 1));
+  const auto first = log_;
+  writer_.reset();
+  log_ = folder_ / "log2";
+  Add(bus::kSegments, MakeSegments(MakeScan(0, 1), 5));
+  EXPECT_EQ(Export(Request{.inputs = {first, log_}, .table = "returns", .output = folder_ / "out"}), kExitFine);
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_TRUE(Rows()[0].ends_with(",5,"));
+}
+
+TEST_F(ExportTest, EndsWithoutAFileWhenItIsStopped) {
+  Add(bus::kPose, pose_t{});
+  writer_.reset();
+  std::ostringstream errors;
+  EXPECT_EQ(exporter::Run({.inputs = {log_}, .table = "pose", .output = folder_ / "out"}, errors, std::atomic<bool>(true)), kExitFailed);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out.partial"));
+}
+
+TEST_F(ExportTest, PlyHoldsOneVertexPerReturnOfTheTurn) {
+  Add(bus::kLidarScan, MakeScan(0));
+  Add(bus::kSegments, MakeSegments(MakeScan(0), 1));
+  Add(bus::kLidarScan, MakeScan(1, 1));
+  Add(bus::kSegments, MakeSegments(MakeScan(1, 1), 2));
+  ASSERT_EQ(Export("returns", "ply"), kExitFine) << errors_;
+  EXPECT_NE(text_.find("element vertex 2\n"), std::string::npos);
+  EXPECT_NE(text_.find("turn 1,"), std::string::npos);
+  const std::string end = "end_header\n";
+  const auto body = text_.substr(text_.find(end) + end.size());
+  constexpr std::size_t kVertexBytes = 3 * 4 + 3 + 4 + 4 + 2;
+  ASSERT_EQ(body.size(), 2 * kVertexBytes);
+  EXPECT_EQ(body.substr(kVertexBytes, 4), std::string("\0\0\x20\x41", 4));  // x = 10.0F of the upper ring
+  EXPECT_EQ(body[kVertexBytes + 19], 2);                                    // label
+  EXPECT_EQ(body[kVertexBytes + 23], 1);                                    // ring
+  ASSERT_EQ(Export("returns", "ply", 0), kExitFine);
+  EXPECT_NE(text_.find("element vertex 4\n"), std::string::npos);
+  EXPECT_EQ(Export("returns", "ply", 9), kExitFailed);
+  EXPECT_NE(errors_.find("no turn 9"), std::string::npos) << errors_;
+}
+
+TEST_F(ExportTest, PlyColoursTellSegmentsApart) {
+  auto scan = MakeScan(0, 1);
+  auto segments = MakeSegments(scan);
+  segments.label = {1, 2};
+  Add(bus::kLidarScan, scan);
+  Add(bus::kSegments, segments);
+  ASSERT_EQ(Export("returns", "ply"), kExitFine);
+  const auto body = text_.substr(text_.find("end_header\n") + 11);
+  EXPECT_NE(body.substr(12, 3), body.substr(25 + 12, 3));
+}
+
+class SvgTest : public ExportTest {
+ protected:
+  void AddTurn() {
+    const auto scan = MakeScan(0, 4);
+    auto segments = MakeSegments(scan);
+    segments.segments = {MakeSegment(1, 4.0F)};
+    segments.num_segments = 1;
+    segments.num_parts = 2;
+    Add(bus::kLidarScan, scan);
+    Add(bus::kSegments, segments);
+    auto further = MakeSegments(MakeScan(0, 0));
+    further.part_index = 1;
+    further.num_parts = 2;
+    further.first_column = 4;
+    further.segments = {MakeSegment(2, 8.0F)};
+    further.num_segments = 1;
+    Add(bus::kSegments, further);
+  }
+  void AddHeading(double heading_rad) {
+    pose_t pose{};
+    pose.utime_us = kStartUs;
+    pose.heading_rad = heading_rad;
+    Add(bus::kPose, pose);
+  }
+  void AddBoat() {
+    run_info_t info{};
+    info.num_files = 1;
+    info.file_name = {"boat.txtpb"};
+    info.file_text = {ReadFile(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config/demo/boat.txtpb")};
+    Add(bus::kRunInfo, info);
+  }
+};
+
+TEST_F(SvgTest, ShowsTheSegmentsOfAllPartsOfTheTurn) {
+  AddTurn();
+  ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
+  EXPECT_TRUE(text_.starts_with("<svg "));
+  EXPECT_NE(text_.find("Turn 0: 8 returns, 2 segments"), std::string::npos);
+  EXPECT_NE(text_.find("2023-11-14 22:13:20.000 UTC"), std::string::npos);
+  EXPECT_NE(text_.find(">lidar x<"), std::string::npos);
+}
+
+TEST_F(SvgTest, TurnsTheBowUpWithTheConfigOfTheBoatAndNorthUpWithAHeading) {
+  AddBoat();
+  AddTurn();
+  ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
+  EXPECT_NE(text_.find(">bow<"), std::string::npos);
+  std::filesystem::remove(log_);
+  AddBoat();
+  AddTurn();
+  AddHeading(1.0);
+  ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
+  EXPECT_NE(text_.find(">N<"), std::string::npos);
+  EXPECT_NE(text_.find("heading 57.3 deg"), std::string::npos);
+}
+
+TEST_F(SvgTest, IsTheSameTextForTheSameLog) {
+  AddTurn();
+  ASSERT_EQ(Export("returns", "svg"), kExitFine);
+  const auto first = text_;
+  ASSERT_EQ(Export("returns", "svg"), kExitFine);
+  EXPECT_EQ(text_, first);
+}
+
+TEST_F(SvgTest, DrawsObstaclesAndSurvivesNumbersThatAreNone) {
+  obstacles_t message{};
+  message.utime_us = kStartUs;
+  message.num_parts = 1;
+  message.num_obstacles = 2;
+  message.obstacles.resize(2);
+  for (auto& obstacle : message.obstacles) {
+    obstacle.id = 3;
+    obstacle.range_m = 5.0F;
+    obstacle.num_footprint = 1;
+    obstacle.footprint_vessel_x_m = {3.0F};
+    obstacle.footprint_vessel_y_m = {4.0F};
+  }
+  message.obstacles[1].range_m = std::numeric_limits<float>::quiet_NaN();
+  message.obstacles[1].footprint_vessel_x_m = {std::numeric_limits<float>::infinity()};
+  Add(bus::kObstacles, message);
+  ASSERT_EQ(Export("obstacles", "svg"), kExitFine) << errors_;
+  EXPECT_NE(text_.find("Turn 0: 2 obstacles"), std::string::npos);
+  EXPECT_NE(text_.find("status: 2 ok"), std::string::npos);
+  EXPECT_EQ(text_.find("inf"), std::string::npos);
+}
+
+TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
+  const std::string program = std::string(LOOKOUT_BIN_DIR) + "/lookout-export";
+  if (!std::filesystem::exists(program)) GTEST_SKIP() << program << " is not built";
+  const auto log = std::filesystem::temp_directory_path() / ("lookout_export_pipe_" + std::to_string(::getpid()));
+  {
+    bus::LogWriter writer(log, true);
+    for (int i = 0; i < 20'000; ++i) writer.Write(Utime(std::chrono::microseconds(kStartUs)), "POSE", bus::Encode(pose_t{}));
+  }
+  const std::string command = "bash -c 'set -o pipefail; " + program + " --in " + log.string() + " --table pose | head -n 1 > /dev/null'";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(std::system((program + " --in /nonexistent --table pose 2> /dev/null").c_str()) >> 8, kExitFailed);
+  EXPECT_EQ(std::system((program + " --table pose > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
+  EXPECT_EQ(std::system((program + " --in " + log.string() + " --table nothing > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
+  EXPECT_EQ(std::system((program + " --in " + log.string() + " --table returns --format ply --turn x > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
+  EXPECT_EQ(std::system((program + " --help > /dev/null").c_str()), 0);
+  EXPECT_EQ(std::system((program + " --version > /dev/null").c_str()), 0);
+  std::filesystem::remove(log);
+}
+
+TEST(Words, StandInTheReadmeOfTheWire) {
+  std::ifstream file(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "lcmtypes/README.md");
+  ASSERT_TRUE(file);
+  std::ostringstream readme;
+  readme << file.rdbuf();
+  const auto expect_listed = [&](const auto& list) {
+    for (const auto& word : list) {
+      EXPECT_NE(readme.str().find("`" + std::string(word.text) + "`"), std::string::npos) << word.text << " is not in lcmtypes/README.md";
+    }
+  };
+  expect_listed(words::kReason);
+  expect_listed(words::kObstacleStatus);
+  expect_listed(words::kPoseStatus);
+  expect_listed(words::kTimeSource);
+  expect_listed(words::kClockState);
+  expect_listed(words::kFixQuality);
+  expect_listed(words::kHealthState);
+}
+
+}  // namespace
+}  // namespace lookout::exporter

@@ -1,0 +1,271 @@
+#include "tools/export/tables.hpp"
+
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "common/core/angles.hpp"
+#include "lookout/attitude_t.hpp"
+#include "lookout/gnss_fix_t.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/lidar_clock_t.hpp"
+#include "tests/unit/export/export_logs.hpp"
+
+namespace lookout::exporter {
+namespace {
+
+using TablesTest = ExportTest;
+
+TEST(TableHeader, IsTheContractWithScriptsOutside) {
+  EXPECT_EQ(TableHeader("returns"), "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason");
+  EXPECT_EQ(TableHeader("segments"), "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m");
+  EXPECT_EQ(TableHeader("obstacles"),
+            "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,length_m,"
+            "width_m,num_points,status");
+  EXPECT_EQ(TableHeader("pose"), "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status");
+}
+
+TEST_F(TablesTest, ReturnsComeByColumnThenRingWithTheTimeOfTheirLaser) {
+  const auto scan = MakeScan(0);
+  auto segments = MakeSegments(scan, 3);
+  segments.label = {3, -segments_t::REASON_OWN_VESSEL, -segments_t::REASON_TOO_SMALL, 1};
+  Add(bus::kLidarScan, scan);
+  Add(bus::kSegments, segments);
+  ASSERT_EQ(Export("returns"), kExitFine) << errors_;
+  EXPECT_EQ(text_,
+            "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason\n"
+            "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,3,\n"
+            "1700000000000000,1700000000000002,1,0,0.0000,10.000,10.0000,0.0000,0.0000,7,0,own_vessel\n"
+            "1700000000000000,1700000000000055,0,0,90.0000,10.000,0.0000,-9.6593,-2.5882,7,0,too_small\n"
+            "1700000000000000,1700000000000058,1,0,90.0000,10.000,0.0000,-10.0000,0.0000,7,1,\n");
+  EXPECT_EQ(errors_, "");
+}
+
+TEST_F(TablesTest, ReturnsOfALogWithoutSegmentsHaveNeitherLabelNorReason) {
+  Add(bus::kLidarScan, MakeScan(0, 1));
+  ASSERT_EQ(Export("returns"), kExitFine);
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,,");
+}
+
+TEST_F(TablesTest, CellsWithoutReturnHaveNoRow) {
+  auto scan = MakeScan(0);
+  scan.range = {0, 1, 0, 0};
+  scan.reflectivity = {0, 0, 0, 0};
+  Add(bus::kLidarScan, scan);
+  ASSERT_EQ(Export("returns"), kExitFine);
+  ASSERT_EQ(Rows().size(), 1U);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000002,1,0,0.0000,0.002,0.0020,0.0000,0.0000,0,,");
+}
+
+TEST_F(TablesTest, RangeIsAnUnsignedCountPrintedToTheLastMillimetre) {
+  // The wire holds it as int16: 65535 x 2 mm is -1 there.
+  for (const int count : {1, 499, 32'767, 32'768, 65'535}) {
+    auto scan = MakeScan(count, 1);
+    scan.range = {static_cast<std::int16_t>(count), 0};
+    Add(bus::kLidarScan, scan);
+  }
+  ASSERT_EQ(Export("returns"), kExitFine);
+  std::string ranges;
+  for (const auto& row : Rows()) {
+    std::size_t cell = 0;
+    for (int i = 0; i < 5; ++i) cell = row.find(',', cell) + 1;
+    ranges += row.substr(cell, row.find(',', cell) - cell) + " ";
+  }
+  EXPECT_EQ(ranges, "0.002 0.998 65.534 65.536 131.070 ");
+}
+
+TEST_F(TablesTest, ReturnsKnowBothReturnsOfAFiringAzimuthOffsetsAndOrigins) {
+  auto scan = MakeScan(0, 1);
+  scan.num_returns = 2;
+  scan.return_kind = {lidar_scan_t::RETURN_LAST, lidar_scan_t::RETURN_STRONGEST};
+  scan.num_cells = 4;
+  scan.range = {0, 0, 1000, 500};
+  scan.reflectivity = {0, 0, 1, 255};
+  scan.azimuth_offset_rad[1] = static_cast<float>(-kPi / 2.0);  // wraps below north
+  scan.origin_height_m[1] = 0.5F;
+  scan.time_ns[0] = -3000;  // before the first firing: rounding goes to the nearest there too
+  scan.time_offset_ns[1] = 499;
+  Add(bus::kLidarScan, scan);
+  ASSERT_EQ(Export("returns"), kExitFine);
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1699999999999997,1,0,270.0000,2.000,0.0000,2.0000,0.5000,1,,");
+  EXPECT_EQ(Rows()[1], "1700000000000000,1699999999999997,1,1,270.0000,1.000,0.0000,1.0000,0.5000,255,,");
+}
+
+TEST_F(TablesTest, ReturnsOfAPartAreLabelledByThatPart) {
+  auto first = MakeScan(0, 1, 0);
+  auto second = MakeScan(0, 1, 1);
+  first.num_parts = second.num_parts = 2;
+  second.part_index = 1;
+  Add(bus::kLidarScan, first);
+  Add(bus::kLidarScan, second);
+  Add(bus::kSegments, MakeSegments(first, 1));
+  Add(bus::kSegments, MakeSegments(second, 2));
+  ASSERT_EQ(Export("returns"), kExitFine);
+  ASSERT_EQ(Rows().size(), 4U);
+  EXPECT_TRUE(Rows()[1].ends_with(",7,1,"));
+  EXPECT_TRUE(Rows()[2].ends_with(",7,2,"));
+}
+
+TEST_F(TablesTest, SegmentsHaveTheirNearestDistanceAndHeight) {
+  auto segments = MakeSegments(MakeScan(0));
+  segments.segments = {MakeSegment(1, 4.0F), MakeSegment(2, 6.0F)};
+  segments.num_segments = 2;
+  segments.segments[1].nearest_m[1] = 8.0F;
+  Add(bus::kSegments, segments);
+  ASSERT_EQ(Export("segments"), kExitFine);
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1,1700000000000005,12,4.5000,-1.2500,0.1250,4.0000,2.5000,1.0000,1.5000");
+  EXPECT_EQ(Rows()[1], "1700000000000000,2,1700000000000005,12,6.5000,-1.2500,0.1250,10.0000,2.5000,1.0000,1.5000");
+}
+
+TEST_F(TablesTest, ATurnWithoutSegmentsIsAHeaderWithoutRows) {
+  Add(bus::kSegments, MakeSegments(MakeScan(0)));
+  EXPECT_EQ(Export("segments"), kExitFine);
+  EXPECT_EQ(Rows().size(), 0U);
+  EXPECT_EQ(text_, std::string(TableHeader("segments")) + "\n");
+}
+
+TEST_F(TablesTest, ObstaclesLeaveEmptyWhatIsNotKnown) {
+  obstacles_t message{};
+  message.utime_us = kStartUs;
+  message.num_obstacles = 2;
+  obstacle_t placed{};
+  placed.utime_us = kStartUs + 40;
+  placed.id = 7;
+  placed.latitude_deg = 43.7022;
+  placed.longitude_deg = -72.2895;
+  placed.position_map_m[0] = -12.5;
+  placed.position_map_m[1] = 30.25;
+  placed.covariance_m2[0] = 0.04;
+  placed.covariance_m2[1] = -0.001;
+  placed.covariance_m2[2] = 1e-7;
+  placed.top_above_water_m = 2.125;
+  placed.length_m = 3.5F;
+  placed.width_m = 1.5F;
+  placed.num_points = 42;
+  obstacle_t unplaced = placed;
+  unplaced.status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
+  for (double* value : {&unplaced.latitude_deg, &unplaced.longitude_deg, &unplaced.top_above_water_m, &unplaced.position_map_m[0],
+                        &unplaced.position_map_m[1], &unplaced.covariance_m2[0], &unplaced.covariance_m2[1], &unplaced.covariance_m2[2]}) {
+    *value = kNaN;
+  }
+  message.obstacles = {placed, unplaced};
+  Add(bus::kObstacles, message);
+  ASSERT_EQ(Export("obstacles"), kExitFine);
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_EQ(Rows()[0],
+            "1700000000000000,1700000000000040,7,43.702200000,-72.289500000,2.1250,-12.5000,30.2500,0.04,-0.001,0.0000001,3.5000,1.5000,42,ok");
+  EXPECT_EQ(Rows()[1], "1700000000000000,1700000000000040,7,,,,,,,,,3.5000,1.5000,42,vessel_frame_only");
+}
+
+pose_t MakePose() {
+  pose_t pose{};
+  pose.utime_us = kStartUs;
+  pose.has_attitude = true;
+  pose.latitude_deg = 1.0;
+  pose.longitude_deg = 2.0;
+  pose.ellipsoid_height_m = 3.0;
+  pose.heading_rad = kPi / 2.0;
+  pose.roll_rad = DegToRad(-1.5);
+  pose.pitch_rad = DegToRad(2.25);
+  pose.velocity_map_mps[0] = -3.0;
+  pose.velocity_map_mps[1] = 4.0;
+  return pose;
+}
+
+TEST_F(TablesTest, PoseGivesSpeedAndCourseOverGround) {
+  Add(bus::kPose, MakePose());
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1.000000000,2.000000000,3.0000,90.0000,-1.5000,2.2500,5.0000,323.1301,ok");
+}
+
+TEST_F(TablesTest, PoseWithoutAttitudeHasNoRollAndPitchThoughTheWireHoldsZeros) {
+  auto pose = MakePose();
+  pose.has_attitude = false;
+  pose.roll_rad = pose.pitch_rad = 0.0;
+  pose.status = pose_t::STATUS_UNKNOWN;
+  pose.latitude_deg = pose.longitude_deg = pose.ellipsoid_height_m = pose.heading_rad = kNaN;
+  pose.velocity_map_mps[0] = pose.velocity_map_mps[1] = kNaN;
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,,,,,,,,,unknown");
+}
+
+TEST_F(TablesTest, ABoatAtRestHasASpeedButNoCourse) {
+  auto pose = MakePose();
+  pose.velocity_map_mps[0] = pose.velocity_map_mps[1] = 0.0;
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_TRUE(Rows()[0].ends_with(",0.0000,,ok")) << Rows()[0];
+}
+
+TEST_F(TablesTest, HealthQuotesReasonsAndSplitsIntoTrafficAndCounters) {
+  health_t health{};
+  health.utime_us = kStartUs;
+  health.process = "vlp16";
+  health.host = "boat";
+  health.pid = 12;
+  health.state = health_t::STATE_DEGRADED;
+  health.reason = "no PPS, 3 packets lost";
+  health.cpu_fraction = 0.125;
+  health.resident_bytes = 10'000'000;
+  health.uptime_s = 60.5;
+  health.interval_s = 1.0;
+  health.num_channels = 1;
+  health.channels.resize(1);
+  health.channels[0] = {"LIDAR_SCAN", 0, 600, 0, 0, 10.0, -1, 0, -1, -1};
+  health.num_counters = 1;
+  health.counters.resize(1);
+  health.counters[0].name = "bad_flag";
+  health.counters[0].count = 9;
+  Add(bus::kHealth, health);
+  ASSERT_EQ(Export("health"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,degraded,\"no PPS, 3 packets lost\",0.1250,10000000,60.500,1.000,boat,12");
+  ASSERT_EQ(Export("traffic"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,LIDAR_SCAN,out,600,0,0,10.000,,0,,");
+  ASSERT_EQ(Export("counters"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,bad_flag,9");
+}
+
+TEST_F(TablesTest, ClockFixesAndAttitudeLeaveUnknownNumbersEmpty) {
+  lidar_clock_t clock{};
+  clock.utime_us = kStartUs;
+  clock.time_source = lidar_clock_t::TIME_HOST;
+  clock.pps = -1;
+  clock.rmc_age_us = -1;
+  clock.offset_s = clock.drift_ppm = clock.rotation_rpm = kNaN;
+  Add(bus::kLidarClock, clock);
+  gnss_fix_t fix{};
+  fix.utime_us = fix.arrival_utime_us = kStartUs;
+  fix.source = "udp";
+  fix.sentence_type = "RMC";
+  fix.quality = gnss_fix_t::QUALITY_GNSS;
+  fix.num_satellites = -1;
+  fix.hdop = fix.horizontal_sd_m = fix.msl_height_m = fix.geoid_separation_m = kNaN;
+  fix.course_rad = kPi;
+  Add(bus::kGnssFix, fix);
+  attitude_t attitude{};
+  attitude.utime_us = attitude.arrival_utime_us = kStartUs;
+  attitude.sentence_type = "HDT";
+  attitude.heading_rad = -kPi / 2.0;
+  attitude.pitch_rad = attitude.roll_rad = attitude.heave_m = attitude.heading_sd_rad = attitude.pitch_sd_rad = attitude.roll_sd_rad = kNaN;
+  Add(bus::kAttitude, attitude);
+  ASSERT_EQ(Export("clock"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,0,host,unknown,,,,,,0,0,0,0");
+  ASSERT_EQ(Export("fixes"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,udp,RMC,gnss,,,,0.000000000,0.000000000,,,0.0000,180.0000");
+  ASSERT_EQ(Export("attitude"), kExitFine);
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,,HDT,270.0000,,,,,,");
+}
+
+TEST_F(TablesTest, ACodeOfALaterVersionIsCalledUndefined) {
+  auto pose = MakePose();
+  pose.status = 99;
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_TRUE(Rows()[0].ends_with(",undefined"));
+}
+
+}  // namespace
+}  // namespace lookout::exporter

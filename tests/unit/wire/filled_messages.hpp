@@ -1,0 +1,134 @@
+// One message of each channel's type with every array filled, for tests that cut and spoil the encoded bytes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lookout/attitude_t.hpp"
+#include "lookout/gnss_fix_t.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/lidar_clock_t.hpp"
+#include "lookout/lidar_nmea_t.hpp"
+#include "lookout/lidar_packets_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/nav_raw_t.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/run_info_t.hpp"
+#include "lookout/segments_t.hpp"
+
+namespace lookout {
+
+inline void Fill(lidar_packets_t& m) {
+  m.num_packets = 2;
+  m.host_utime_us = {1, 2};
+  m.udp_port = {2368, 8308};
+  m.size_bytes = {3, 2};
+  m.num_bytes = 5;
+  m.payload = {1, 2, 3, 4, 5};
+}
+
+inline void Fill(lidar_scan_t& m) {
+  m.model = "VLP-16";
+  m.num_rings = 2;
+  m.elevation_rad = {-0.1F, 0.1F};
+  m.azimuth_offset_rad = {0.0F, 0.0F};
+  m.time_offset_ns = {0, 2304};
+  m.origin_height_m = {0.0F, 0.0F};
+  m.num_returns = 1;
+  m.return_kind = {lidar_scan_t::RETURN_STRONGEST};
+  m.num_columns = 3;
+  m.azimuth_rad = {0.0F, 0.1F, 0.2F};
+  m.time_ns = {0, 55296, 110592};
+  m.num_cells = 6;
+  m.range = {1, 2, 3, 4, 5, 6};
+  m.reflectivity = {1, 2, 3, 4, 5, 6};
+}
+
+inline void Fill(lidar_clock_t& m) { m.num_packets = 75; }
+
+inline void Fill(lidar_nmea_t& m) { m.sentence = "$GPRMC,120000,A*00"; }
+
+inline void Fill(segments_t& m) {
+  m.num_cells = 4;
+  m.label = {1, 0, -1, 2};
+  m.num_segments = 2;
+  m.segments.resize(2);
+  for (auto& segment : m.segments) {
+    segment.num_hull = 3;
+    segment.hull_x_m = {0.0F, 1.0F, 0.0F};
+    segment.hull_y_m = {0.0F, 0.0F, 1.0F};
+    segment.hull_time_us = {1, 2, 3};
+  }
+}
+
+inline void Fill(nav_raw_t& m) {
+  m.kind = nav_raw_t::KIND_IMU;
+  m.source = "udp";
+  m.sentence = "$HEHDT,12.3,T*00";
+  m.num_imu = 1;
+  m.imu.resize(1);
+}
+
+inline void Fill(gnss_fix_t& m) {
+  m.source = "udp";
+  m.sentence_type = "RMC";
+}
+
+inline void Fill(attitude_t& m) {
+  m.source = "udp";
+  m.sentence_type = "HDT";
+}
+
+inline void Fill(pose_t& m) { m.covariance[8][8] = 1.0; }
+
+inline void Fill(obstacles_t& m) {
+  m.num_obstacles = 2;
+  m.obstacles.resize(2);
+  for (auto& obstacle : m.obstacles) {
+    obstacle.num_footprint = obstacle.num_map = 2;
+    obstacle.footprint_vessel_x_m = obstacle.footprint_vessel_y_m = obstacle.footprint_east_m = obstacle.footprint_north_m = {1.0F, 2.0F};
+  }
+}
+
+inline void Fill(health_t& m) {
+  m.process = "vlp16";
+  m.host = "boat";
+  m.reason = "no PPS";
+  m.num_channels = 1;
+  m.channels.resize(1);
+  m.channels[0].channel = "LIDAR_SCAN";
+  m.num_counters = 2;
+  m.counters.resize(2);
+  m.counters[0].name = "bad_flag";
+}
+
+inline void Fill(run_info_t& m) {
+  m.program = "recorder";
+  m.num_files = 2;
+  m.file_name = {"boat.txtpb", "vlp16.txtpb"};
+  m.file_text = {"name: \"x\"", ""};
+}
+
+/// Calls `use(message)` with a filled message of each channel's type.
+template <typename Use>
+void ForEachFilledMessage(Use use) {
+  const auto fill_and_use = [&use](auto message) {
+    Fill(message);
+    use(message);
+  };
+  fill_and_use(lidar_packets_t{});
+  fill_and_use(lidar_scan_t{});
+  fill_and_use(lidar_clock_t{});
+  fill_and_use(lidar_nmea_t{});
+  fill_and_use(segments_t{});
+  fill_and_use(nav_raw_t{});
+  fill_and_use(gnss_fix_t{});
+  fill_and_use(attitude_t{});
+  fill_and_use(pose_t{});
+  fill_and_use(obstacles_t{});
+  fill_and_use(health_t{});
+  fill_and_use(run_info_t{});
+}
+
+}  // namespace lookout

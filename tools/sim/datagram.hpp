@@ -1,0 +1,29 @@
+// What leaves the boat's network: a datagram and when.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::sim {
+
+struct Datagram {
+  Utime time;  // at which it reaches the host
+  int port;    // UDP destination
+  std::vector<std::uint8_t> payload;
+};
+
+class Sink {
+ public:
+  Sink() = default;
+  Sink(const Sink&) = delete;
+  Sink& operator=(const Sink&) = delete;
+  virtual ~Sink() = default;
+
+  /// @throws std::runtime_error
+  virtual void Send(const Datagram& datagram) = 0;
+};
+
+}  // namespace lookout::sim

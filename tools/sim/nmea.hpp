@@ -1,0 +1,42 @@
+// NMEA 0183 sentences as receivers and attitude sensors send them, each ended by CR LF.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/core/utime.hpp"
+
+namespace lookout::sim {
+
+/// What a GNSS receiver measured at its antenna.
+struct GnssMeasurement {
+  Utime time;
+  double latitude_deg;
+  double longitude_deg;
+  double msl_height_m;
+  double geoid_separation_m;
+  double speed_mps;
+  double course_deg;  // from true north, clockwise
+  int quality;        // as in GGA
+};
+
+/// What an attitude sensor measured. Signs as in POSE.
+struct AttitudeMeasurement {
+  Utime time;
+  double heading_deg;
+  double roll_deg;   // positive starboard down
+  double pitch_deg;  // positive bow up
+  double heave_m;    // positive up
+};
+
+/// @param body  between $ and *
+std::string Sentence(std::string_view body);
+
+std::string Rmc(const GnssMeasurement& measurement);
+std::string Gga(const GnssMeasurement& measurement);
+std::string Vtg(const GnssMeasurement& measurement);
+std::string Hdt(double heading_deg);
+/// $PASHR,time,heading,T,roll,pitch,heave,roll sd,pitch sd,heading sd,GNSS quality,INS status
+std::string Pashr(const AttitudeMeasurement& measurement, double tilt_sd_deg, double heading_sd_deg);
+
+}  // namespace lookout::sim

@@ -1,0 +1,111 @@
+#include "tools/sim/pcap_sink.hpp"
+
+#include <algorithm>
+#include <array>
+#include <pcap/pcap.h>
+#include <span>
+#include <stdexcept>
+
+namespace lookout::sim {
+namespace {
+
+constexpr std::size_t kEthernetBytes = 14;
+constexpr std::size_t kIpBytes = 20;
+constexpr std::size_t kUdpBytes = 8;
+constexpr std::size_t kHeaderBytes = kEthernetBytes + kIpBytes + kUdpBytes;
+constexpr std::uint8_t kUdpProtocol = 17;
+constexpr std::uint8_t kTimeToLive = 64;
+
+using Address = std::array<std::uint8_t, 4>;
+using Mac = std::array<std::uint8_t, 6>;
+// As delivered: VLP-16 User Manual 63-9243 Rev E, chapter 5. Its makers' prefix is 60-76-88.
+constexpr Address kLidarAddress{192, 168, 1, 201};
+constexpr Mac kLidarMac{0x60, 0x76, 0x88, 0x00, 0x00, 0x01};
+constexpr Address kNavigationAddress{192, 168, 1, 10};
+constexpr Mac kNavigationMac{0x02, 0x00, 0x00, 0x00, 0x00, 0x0A};  // locally administered
+constexpr Address kBroadcastAddress{255, 255, 255, 255};
+
+void WriteU16BigEndian(std::span<std::uint8_t> bytes, std::size_t offset, std::size_t value) {
+  bytes[offset] = static_cast<std::uint8_t>(value >> 8 & 0xFF);
+  bytes[offset + 1] = static_cast<std::uint8_t>(value & 0xFF);
+}
+
+// Ones' complement sum of RFC 1071, not yet complemented.
+std::uint32_t Sum(Bytes bytes, std::uint32_t sum) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) sum += i % 2 == 0 ? static_cast<std::uint32_t>(bytes[i]) << 8 : bytes[i];
+  while (sum > 0xFFFF) sum = (sum & 0xFFFF) + (sum >> 16);
+  return sum;
+}
+
+std::vector<std::uint8_t> Frame(const Datagram& datagram, bool is_lidar, std::uint16_t identification) {
+  std::vector<std::uint8_t> frame(kHeaderBytes + datagram.payload.size());
+  const std::span<std::uint8_t> bytes(frame);
+  const auto& mac = is_lidar ? kLidarMac : kNavigationMac;
+  const auto& address = is_lidar ? kLidarAddress : kNavigationAddress;
+  std::ranges::fill(bytes.first(6), std::uint8_t{0xFF});
+  std::ranges::copy(mac, bytes.begin() + 6);
+  WriteU16BigEndian(bytes, 12, 0x0800);  // IPv4
+
+  const auto ip = bytes.subspan(kEthernetBytes, kIpBytes);
+  ip[0] = 0x45;  // version 4, five words of header
+  WriteU16BigEndian(ip, 2, frame.size() - kEthernetBytes);
+  WriteU16BigEndian(ip, 4, identification);
+  WriteU16BigEndian(ip, 6, 0x4000);  // not to be fragmented
+  ip[8] = kTimeToLive;
+  ip[9] = kUdpProtocol;
+  std::ranges::copy(address, ip.begin() + 12);
+  std::ranges::copy(kBroadcastAddress, ip.begin() + 16);
+  WriteU16BigEndian(ip, 10, ~Sum(ip, 0) & 0xFFFF);
+
+  const auto udp = bytes.subspan(kEthernetBytes + kIpBytes);
+  const auto port = static_cast<std::size_t>(datagram.port);
+  WriteU16BigEndian(udp, 0, port);  // the sensor sends from the port that it sends to
+  WriteU16BigEndian(udp, 2, port);
+  WriteU16BigEndian(udp, 4, udp.size());
+  std::ranges::copy(datagram.payload, udp.begin() + kUdpBytes);
+  // RFC 768: over a pseudo header of addresses, protocol and length too; 0 means "none", so 0 is sent as 0xFFFF.
+  const std::uint32_t pseudo = Sum(ip.subspan(12, 8), 0) + kUdpProtocol + static_cast<std::uint32_t>(udp.size());
+  const std::uint32_t checksum = ~Sum(udp, pseudo) & 0xFFFF;
+  WriteU16BigEndian(udp, 6, checksum == 0 ? 0xFFFF : checksum);
+  return frame;
+}
+
+}  // namespace
+
+struct PcapSink::Implementation {
+  pcap_t* capture = nullptr;
+  pcap_dumper_t* dumper = nullptr;
+  ~Implementation() {
+    if (dumper != nullptr) pcap_dump_close(dumper);
+    if (capture != nullptr) pcap_close(capture);
+  }
+};
+
+PcapSink::PcapSink(const std::filesystem::path& file, std::vector<int> lidar_ports)
+    : implementation_(std::make_unique<Implementation>()), lidar_ports_(std::move(lidar_ports)) {
+  constexpr int kSnapshotBytes = 65535;
+  implementation_->capture = pcap_open_dead(DLT_EN10MB, kSnapshotBytes);
+  if (implementation_->capture == nullptr) throw std::runtime_error("libpcap gives no capture");
+  implementation_->dumper = pcap_dump_open(implementation_->capture, file.c_str());
+  if (implementation_->dumper == nullptr) throw std::runtime_error(pcap_geterr(implementation_->capture));
+}
+
+PcapSink::~PcapSink() = default;
+
+void PcapSink::Send(const Datagram& datagram) {
+  const auto frame = Frame(datagram, std::ranges::find(lidar_ports_, datagram.port) != lidar_ports_.end(), num_sent_++);
+  const auto second = std::chrono::floor<std::chrono::seconds>(datagram.time);
+  pcap_pkthdr header{};
+  header.ts.tv_sec = second.time_since_epoch().count();
+  header.ts.tv_usec = (datagram.time - second).count();
+  header.caplen = header.len = static_cast<bpf_u_int32>(frame.size());
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): libpcap takes the dumper as the user pointer of a callback.
+  pcap_dump(reinterpret_cast<u_char*>(implementation_->dumper), &header, frame.data());
+}
+
+void PcapSink::Close() {
+  if (pcap_dump_flush(implementation_->dumper) != 0) throw std::runtime_error("the capture cannot be written");
+  if (std::ferror(pcap_dump_file(implementation_->dumper)) != 0) throw std::runtime_error("the capture cannot be written");
+}
+
+}  // namespace lookout::sim

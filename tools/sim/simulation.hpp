@@ -1,0 +1,45 @@
+// Lidar, receiver and attitude sensor of the simulated boat, in one order of arrival.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "common/config/boat.hpp"
+#include "tools/sim/datagram.hpp"
+#include "tools/sim/lidar.hpp"
+#include "tools/sim/navigation.hpp"
+#include "tools/sim/truth_writer.hpp"
+
+namespace lookout::sim {
+
+struct SimulationParams {
+  LidarParams lidar;
+  NavigationParams navigation;
+  int data_port = vlp16::format::kDataPort;
+  Utime start;
+  std::chrono::microseconds duration{0};
+  std::uint64_t seed = 1;
+};
+
+class Simulation {
+ public:
+  /// @param scene  outlives this
+  /// @param truth  may be nullptr; outlives this
+  Simulation(const Scene& scene, const config::BoatFacts& boat, const SimulationParams& params, TruthWriter* truth);
+
+  /// @return the next datagram by time; nullopt at the end
+  std::optional<Datagram> Next();
+
+ private:
+  void Fill();
+
+  SimulationParams params_;
+  TruthWriter* truth_;
+  Lidar lidar_;
+  Navigation navigation_;
+  Random random_;
+  std::optional<Datagram> lidar_datagram_;      // made, not yet given
+  std::vector<Datagram> navigation_datagrams_;  // measured, not yet given; by time
+};
+
+}  // namespace lookout::sim

@@ -1,0 +1,121 @@
+#include "tools/sim/truth_writer.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "common/core/angles.hpp"
+#include "tools/sim/navigation.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using std::chrono::microseconds;
+using namespace std::chrono_literals;
+
+constexpr microseconds kPosePeriod = 20ms;  // the grid of POSE: whole multiples
+constexpr microseconds kOutlinePeriod = 100ms;
+
+template <typename... Values>
+void Print(std::ofstream& out, const char* form, Values... values) {
+  std::array<char, 256> text{};
+  std::snprintf(text.data(), text.size(), form, values...);
+  out << text.data();
+}
+
+void Open(std::ofstream& out, const std::filesystem::path& file, const char* header) {
+  out.open(file, std::ios::binary | std::ios::trunc);
+  if (!out) throw std::runtime_error(file.string() + ": cannot be made");
+  out << header << '\n';
+}
+
+}  // namespace
+
+TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start)
+    : scene_(scene),
+      reference_point_above_water_m_(boat.reference_point_above_water_m),
+      map_(MapFrame(boat)),
+      start_(start),
+      next_pose_(std::chrono::ceil<std::chrono::milliseconds>(start)),
+      next_outline_(start) {
+  while (next_pose_.time_since_epoch() % kPosePeriod != 0us) next_pose_ += 1ms;
+  std::filesystem::create_directories(folder);
+  Open(objects_, folder / "objects.csv", "object_id,name,kind,is_moving");
+  Open(outlines_, folder / "outlines.csv", "object_id,utime_us,vertex_index,latitude_deg,longitude_deg,east_m,north_m");
+  Open(returns_, folder / "returns.csv", "utime_us,ring,return_index,object_id");
+  Open(pose_, folder / "pose.csv", "utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,heave_m");
+  WriteObjects();
+}
+
+void TruthWriter::WriteObjects() {
+  objects_ << kOwnVessel << ",own_vessel,own_vessel,1\n" << kNoObject << ",stray,stray,0\n";
+  for (const auto& object : scene_.objects) {
+    objects_ << object.id << ',' << object.name << ',' << object.kind << ',' << (object.track.is_moving() ? 1 : 0) << '\n';
+    if (!object.track.is_moving()) WriteOutline(object, start_);
+  }
+}
+
+void TruthWriter::WriteOutline(const SceneObject& object, Utime time) {
+  const Placement placement = object.track.At(ToSeconds(time - start_));
+  int vertex_index = 0;
+  for (const auto& p_object_m : object.outline_m) {
+    const Eigen::Vector2d p_map_m = placement.ToMap(p_object_m);
+    double latitude_deg = 0.0;
+    double longitude_deg = 0.0;
+    double height_m = 0.0;
+    map_.Reverse(p_map_m.x(), p_map_m.y(), 0.0, latitude_deg, longitude_deg, height_m);
+    Print(outlines_, "%d,%lld,%d,%.9f,%.9f,%.4f,%.4f\n", object.id, static_cast<long long>(ToUtimeUs(time)), vertex_index++, latitude_deg,
+          longitude_deg, p_map_m.x(), p_map_m.y());
+  }
+}
+
+void TruthWriter::WritePose(Utime time) {
+  const auto state = StateAt(scene_.own_motion, reference_point_above_water_m_, ToSeconds(time - start_));
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double height_m = 0.0;
+  map_.Reverse(state.position_map_m.x(), state.position_map_m.y(), state.position_map_m.z(), latitude_deg, longitude_deg, height_m);
+  Print(pose_, "%lld,%.9f,%.9f,%.4f,%.4f,%.4f,%.4f,%.4f,%.4f\n", static_cast<long long>(ToUtimeUs(time)), latitude_deg, longitude_deg,
+        RadToDeg(state.heading_rad), RadToDeg(state.roll_rad), RadToDeg(state.pitch_rad), state.velocity_map_mps.norm(),
+        RadToDeg(WrapTo2Pi(std::atan2(state.velocity_map_mps.x(), state.velocity_map_mps.y()))), state.heave_m);
+}
+
+void TruthWriter::AddReturns(const std::vector<TrueReturn>& returns) {
+  std::string text;
+  text.reserve(returns.size() * 32);
+  std::array<char, 24> digits{};
+  const auto append = [&](std::int64_t value, char end) {
+    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    text.append(digits.data(), result.ptr);
+    text.push_back(end);
+  };
+  for (const auto& made : returns) {
+    append(ToUtimeUs(made.time), ',');
+    append(made.ring, ',');
+    append(made.return_index, ',');
+    append(made.object_id, '\n');
+  }
+  returns_ << text;
+}
+
+void TruthWriter::AdvanceTo(Utime time) {
+  for (; next_pose_ <= time; next_pose_ += kPosePeriod) WritePose(next_pose_);
+  // One outline beyond the end, so that each return lies between two.
+  for (; next_outline_ < time + kOutlinePeriod; next_outline_ += kOutlinePeriod) {
+    for (const auto& object : scene_.objects) {
+      if (object.track.is_moving()) WriteOutline(object, next_outline_);
+    }
+  }
+}
+
+void TruthWriter::Close() {
+  for (auto* out : {&objects_, &outlines_, &returns_, &pose_}) {
+    out->close();
+    if (!*out) throw std::runtime_error("the truth cannot be written: is the disk full?");
+  }
+}
+
+}  // namespace lookout::sim

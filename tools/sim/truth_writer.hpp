@@ -1,0 +1,49 @@
+// The truth about a simulation as CSV files: objects.csv, outlines.csv, returns.csv, pose.csv. Columns: README.md.
+#pragma once
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "common/config/boat.hpp"
+#include "common/core/utime.hpp"
+#include "tools/sim/lidar.hpp"
+#include "tools/sim/scene.hpp"
+
+namespace lookout::sim {
+
+class TruthWriter {
+ public:
+  /// Makes the folder and writes objects and the outlines of those that stand still.
+  ///
+  /// @param scene  outlives this
+  /// @throws std::runtime_error when a file cannot be made
+  TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start);
+
+  void AddReturns(const std::vector<TrueReturn>& returns);
+
+  /// Writes poses and moving outlines up to `time`.
+  void AdvanceTo(Utime time);
+
+  /// @throws std::runtime_error when the disk did not take all
+  void Close();
+
+ private:
+  void WriteObjects();
+  void WriteOutline(const SceneObject& object, Utime time);
+  void WritePose(Utime time);
+
+  const Scene& scene_;
+  double reference_point_above_water_m_;
+  GeographicLib::LocalCartesian map_;
+  Utime start_;
+  Utime next_pose_;
+  Utime next_outline_;
+  std::ofstream objects_;
+  std::ofstream outlines_;
+  std::ofstream returns_;
+  std::ofstream pose_;
+};
+
+}  // namespace lookout::sim
