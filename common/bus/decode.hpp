@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <exception>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,11 +12,14 @@
 
 namespace lookout::bus {
 
+/// No message is near this size, and LCM's decoders compute sizes of arrays in an int.
+inline constexpr std::size_t kMaxDecodedBytes = 64 * 1024 * 1024;
+
 /// @return the message; nullopt when the bytes are of another type, are cut short, hold a count that they cannot fill, or go on behind the
-///         message. Never throws, never allocates more than a small multiple of bytes.size(): lcmtypes/ guards every count.
+///         message. Never throws; lcmtypes/ guards every count, so that it allocates at most one element per byte.
 template <typename T>
 std::optional<T> Decode(Bytes bytes) {
-  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) return std::nullopt;
+  if (bytes.size() > kMaxDecodedBytes) return std::nullopt;
   const int num_bytes = static_cast<int>(bytes.size());
   try {
     T message{};

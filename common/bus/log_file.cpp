@@ -16,6 +16,8 @@ constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
 constexpr std::size_t kHeaderBytes = 28;
 // LCM channel names have at most 63 characters; its logs allow more.
 constexpr std::int64_t kMaxChannelBytes = 1000;
+// Far above any message that LCM carries; a greater length is damage.
+constexpr std::int64_t kMaxDataBytes = 16 * 1024 * 1024;
 
 std::uint64_t ReadBigEndian(Bytes bytes, std::size_t offset, std::size_t size) {
   std::uint64_t value = 0;
@@ -42,6 +44,14 @@ struct LogReader::Implementation {
     const std::size_t size_read = std::fread(target, 1, size, file.get());
     cursor = offset + static_cast<std::int64_t>(size_read);
     return size_read;
+  }
+
+  // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
+  // sync word stands at `end`, but some stand inside.
+  bool IsWhole(std::int64_t start, std::int64_t end) {
+    std::array<std::uint8_t, 4> word;
+    if (end == size_bytes || (ReadAt(end, word.data(), word.size()) == word.size() && ReadBigEndian(word, 0, 4) == kSyncWord)) return true;
+    return FindSync(start + 4) >= end;
   }
 
   // The first sync word at or after `offset`; size_bytes when there is none.
@@ -81,11 +91,13 @@ std::optional<LogEvent> LogReader::Next() {
       const std::int64_t channel_size = ReadI32(header, 20);
       const std::int64_t data_size = ReadI32(header, 24);
       const std::int64_t body = start + static_cast<std::int64_t>(kHeaderBytes);
-      if (time && channel_size > 0 && channel_size <= kMaxChannelBytes && data_size >= 0 && channel_size + data_size <= in.size_bytes - body) {
+      if (time && channel_size > 0 && channel_size <= kMaxChannelBytes && data_size >= 0 && data_size <= kMaxDataBytes &&
+          channel_size + data_size <= in.size_bytes - body) {
         LogEvent event{*time, std::string(static_cast<std::size_t>(channel_size), '\0'),
                        std::vector<std::uint8_t>(static_cast<std::size_t>(data_size))};
         if (in.ReadAt(body, event.channel.data(), event.channel.size()) == event.channel.size() &&
-            in.ReadAt(body + channel_size, event.bytes.data(), event.bytes.size()) == event.bytes.size()) {
+            in.ReadAt(body + channel_size, event.bytes.data(), event.bytes.size()) == event.bytes.size() &&
+            in.IsWhole(start, body + channel_size + data_size)) {
           in.position = body + channel_size + data_size;
           return event;
         }

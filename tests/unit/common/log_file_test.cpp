@@ -69,6 +69,18 @@ TEST_F(LogFile, FindsTheNextEventAfterADamagedLength) {
   EXPECT_EQ(reader.num_damaged(), 1);
 }
 
+TEST_F(LogFile, DoesNotBelieveADamagedLengthThatStillFits) {
+  WriteThree();
+  auto text = Content();
+  text[27] = static_cast<char>(100 + kEventBytes / 2);  // the first event now ends in the middle of the second
+  SetContent(text);
+  LogReader reader(file_);
+  EXPECT_EQ(ToUtimeUs(reader.Next()->time), 1001);
+  EXPECT_EQ(ToUtimeUs(reader.Next()->time), 1002);
+  EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 1);
+}
+
 TEST_F(LogFile, SkipsJunkInFrontAndBetween) {
   WriteThree();
   const auto text = Content();

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <iomanip>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -45,15 +44,20 @@ std::string CurrentTable() {
   return table.str();
 }
 
-// Members of a type as they stand in its file: "int32_t num_cells;int16_t range[num_cells];..." without comments, constants and spaces.
+// Members of a type as they stand in its file: "int32_t num_cells;int16_t range[num_cells];..." without comments, constants and line ends.
 std::string MembersOf(const std::string& type) {
-  std::string text = ReadFile(kRoot / "lcmtypes" / (type + ".lcm"));
-  text = std::regex_replace(text, std::regex("//[^\n]*"), "");
-  text = std::regex_replace(text, std::regex("const [^;]*;"), "");
-  text = text.substr(text.find('{') + 1);
-  text = text.substr(0, text.rfind('}'));
-  text = std::regex_replace(text, std::regex("\\s+"), " ");
-  return std::regex_replace(text, std::regex(" ?; ?"), ";");
+  std::istringstream file(ReadFile(kRoot / "lcmtypes" / (type + ".lcm")));
+  std::string members;
+  bool is_inside = false;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line.substr(0, line.find("//")));
+    std::string member;
+    for (std::string word; words >> word;) member += (member.empty() ? "" : " ") + word;
+    if (is_inside && member.find(';') != std::string::npos && !member.starts_with("const ")) members += member;
+    is_inside = (is_inside || member.find('{') != std::string::npos) && member.find('}') == std::string::npos;
+  }
+  EXPECT_FALSE(members.empty()) << type;
+  return members;
 }
 
 TEST(Fingerprints, AreThoseOfTheFirstRecording) {
@@ -99,7 +103,7 @@ TEST(WireTypes, AreOnAChannelOrAPartOfOneThatIs) {
   const auto readme = ReadFile(kRoot / "lcmtypes/README.md");
   for (const auto& type : files) {
     const bool is_part = std::ranges::any_of(
-        files, [&type](const std::string& other) { return std::regex_search(MembersOf(other), std::regex("(^|[; ])" + type + " ")); });
+        files, [&type](const std::string& other) { return (";" + MembersOf(other)).find(";" + type + " ") != std::string::npos; });
     const auto channel = std::ranges::find(bus::kChannels, type, &bus::Channel::type);
     EXPECT_EQ(channel != bus::kChannels.end(), !is_part) << type << ": on a channel, or a part of another type, not both and not neither";
     if (channel != bus::kChannels.end()) {
@@ -113,7 +117,7 @@ TEST(WireTypes, AreOnAChannelOrAPartOfOneThatIs) {
 TEST(WireTypes, BeginWithTheTimeOfMeasurementWhereTheyAreOnAChannel) {
   for (const auto& channel : bus::kChannels) {
     const auto members = MembersOf(std::string(channel.type));
-    EXPECT_TRUE(members.starts_with(" int64_t utime_us;int64_t seq;")) << channel.type << ": " << members.substr(0, 60);
+    EXPECT_TRUE(members.starts_with("int64_t utime_us;int64_t seq;")) << channel.type << ": " << members.substr(0, 60);
   }
 }
 
@@ -123,11 +127,12 @@ TEST(GeneratedDecoders, CheckEveryCountBeforeTheyResize) {
     std::istringstream header(ReadFile(std::filesystem::path(LOOKOUT_WIRE_DIR) / (type + ".hpp")));
     std::string before;
     for (std::string line; std::getline(header, line); before = line) {
-      std::smatch resize;
-      if (line.find(".resize(") == std::string::npos) continue;
+      const auto resize = line.find(".resize(");
+      if (resize == std::string::npos) continue;
       ++num_resizes;
-      ASSERT_TRUE(std::regex_search(line, resize, std::regex("\\.resize\\((this->[a-z0-9_]+)\\);"))) << type << ": " << line;
-      const std::string count = resize[1];
+      const auto begin = resize + std::string(".resize(").size();
+      const std::string count = line.substr(begin, line.find(')', begin) - begin);
+      ASSERT_TRUE(count.starts_with("this->")) << type << ".hpp: " << line;
       EXPECT_NE(before.find("if (" + count + " < 0 || " + count + " > maxlen - pos) return -1;"), std::string::npos)
           << type << ".hpp: " << line << "\nstands without the guard of lcmtypes/guard_counts.cmake";
     }
@@ -143,7 +148,11 @@ TEST(GeneratedDecoders, CheckTheLengthOfEveryStringBeforeTheyTakeIt) {
     for (std::string line; std::getline(header, line); before = line) {
       if (line.find(".assign(") == std::string::npos) continue;
       ++num_strings;
-      EXPECT_TRUE(std::regex_search(before, std::regex("if \\((__[a-z0-9_]+) < 1 \\|\\| \\1 > maxlen - pos\\) return -1;")))
+      const auto begin = before.find("if (__");
+      ASSERT_NE(begin, std::string::npos) << type << ".hpp: " << line;
+      const std::string length = before.substr(begin + 4, before.find(' ', begin + 4) - begin - 4);
+      EXPECT_NE(line.find(", " + length + " -"), std::string::npos) << type << ".hpp: " << line;
+      EXPECT_NE(before.find("if (" + length + " < 1 || " + length + " > maxlen - pos) return -1;"), std::string::npos)
           << type << ".hpp: " << line << "\nstands without the guard of lcmtypes/guard_counts.cmake";
     }
   }

@@ -1,0 +1,174 @@
+#include "services/navigator/core/field_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace lookout::navigator {
+
+namespace {
+
+using std::chrono::microseconds;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr int kFirstYearOf20thCentury = 80;
+
+bool IsDigit(char character) { return character >= '0' && character <= '9'; }
+
+bool AreDigits(std::string_view text) { return std::ranges::all_of(text, IsDigit); }
+
+// digits[.digits], at least one digit.
+bool IsUnsignedNumber(std::string_view text) {
+  const auto point = text.find('.');
+  const auto whole = text.substr(0, point);
+  const auto fraction = point == std::string_view::npos ? std::string_view{} : text.substr(point + 1);
+  return whole.size() + fraction.size() > 0 && AreDigits(whole) && AreDigits(fraction);
+}
+
+// Precondition: IsUnsignedNumber, with a sign - in front or none.
+double ToDouble(std::string_view text) {
+  double value = kNan;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+// Precondition: AreDigits, at most 9 of them.
+int ToInt(std::string_view digits) {
+  int value = 0;
+  std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  return value;
+}
+
+}  // namespace
+
+std::string_view FieldReader::Field(std::size_t index) {
+  if (index < fields_.size()) return fields_[index];
+  Fail(SentenceFault::kBadField);
+  return {};
+}
+
+void FieldReader::Fail(SentenceFault fault) {
+  if (fault_ == SentenceFault::kNone) fault_ = fault;
+}
+
+double FieldReader::Number(std::size_t index, double min, double max) {
+  auto text = Field(index);
+  if (text.empty()) return kNan;
+  const bool has_sign = text.front() == '+' || text.front() == '-';
+  if (!IsUnsignedNumber(text.substr(has_sign ? 1 : 0))) {
+    Fail(SentenceFault::kBadField);
+    return kNan;
+  }
+  if (text.front() == '+') text.remove_prefix(1);
+  const double value = ToDouble(text);
+  if (!(value >= min && value <= max)) {
+    Fail(SentenceFault::kImplausible);
+    return kNan;
+  }
+  return value;
+}
+
+int FieldReader::Count(std::size_t index, int max) {
+  const auto text = Field(index);
+  if (text.empty()) return -1;
+  if (!AreDigits(text) || text.size() > 9) {
+    Fail(SentenceFault::kBadField);
+    return -1;
+  }
+  const int value = ToInt(text);
+  if (value > max) {
+    Fail(SentenceFault::kImplausible);
+    return -1;
+  }
+  return value;
+}
+
+char FieldReader::Letter(std::size_t index, std::string_view allowed) {
+  const auto text = Field(index);
+  if (text.empty()) return '\0';
+  if (text.size() != 1 || allowed.find(text.front()) == std::string_view::npos) {
+    Fail(SentenceFault::kBadField);
+    return '\0';
+  }
+  return text.front();
+}
+
+double FieldReader::NumberWithUnit(std::size_t index, char unit, double min, double max) {
+  const double value = Number(index, min, max);
+  const char letter = Letter(index + 1, std::string_view(&unit, 1));
+  if (!std::isnan(value) && letter == '\0') Fail(SentenceFault::kBadField);
+  return value;
+}
+
+std::optional<microseconds> FieldReader::TimeOfDay(std::size_t index) {
+  using namespace std::chrono_literals;
+  const auto text = Field(index);
+  if (text.empty()) return std::nullopt;
+  const auto whole = text.substr(0, text.find('.'));
+  if (whole.size() != 6 || !IsUnsignedNumber(text)) {
+    Fail(SentenceFault::kBadField);
+    return std::nullopt;
+  }
+  const int hour = ToInt(whole.substr(0, 2));
+  const int minute = ToInt(whole.substr(2, 2));
+  const int second = ToInt(whole.substr(4, 2));
+  const bool is_leap_second = hour == 23 && minute == 59 && second == 60;
+  if (hour > 23 || minute > 59 || (second > 59 && !is_leap_second)) {
+    Fail(SentenceFault::kImplausible);
+    return std::nullopt;
+  }
+  // Parts of a microsecond are dropped.
+  microseconds time = std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second);
+  microseconds unit = 100ms;
+  for (std::size_t i = whole.size() + 1; i < text.size() && unit > 0us; ++i, unit /= 10) time += (text[i] - '0') * unit;
+  return time;
+}
+
+std::optional<std::chrono::sys_days> FieldReader::Date(std::size_t index) {
+  const auto text = Field(index);
+  if (text.empty()) return std::nullopt;
+  if (text.size() != 6 || !AreDigits(text)) {
+    Fail(SentenceFault::kBadField);
+    return std::nullopt;
+  }
+  const int short_year = ToInt(text.substr(4, 2));
+  const std::chrono::year_month_day date(std::chrono::year(short_year + (short_year >= kFirstYearOf20thCentury ? 1900 : 2000)),
+                                         std::chrono::month(static_cast<unsigned>(ToInt(text.substr(2, 2)))),
+                                         std::chrono::day(static_cast<unsigned>(ToInt(text.substr(0, 2)))));
+  if (!date.ok()) {
+    Fail(SentenceFault::kImplausible);
+    return std::nullopt;
+  }
+  return std::chrono::sys_days(date);
+}
+
+// Degrees in a fixed number of digits, then minutes.
+double FieldReader::Angle(std::size_t index, std::size_t num_degree_digits, double max_deg) {
+  const auto text = Field(index);
+  if (text.substr(0, text.find('.')).size() != num_degree_digits + 2 || !IsUnsignedNumber(text)) {
+    Fail(SentenceFault::kBadField);
+    return kNan;
+  }
+  const double minutes = ToDouble(text.substr(num_degree_digits));
+  const double angle_deg = ToInt(text.substr(0, num_degree_digits)) + minutes / 60.0;
+  if (minutes >= 60.0 || angle_deg > max_deg) {
+    Fail(SentenceFault::kImplausible);
+    return kNan;
+  }
+  return angle_deg;
+}
+
+std::optional<GeodeticPosition> FieldReader::Position(std::size_t index) {
+  if (IsEmpty(index) && IsEmpty(index + 1) && IsEmpty(index + 2) && IsEmpty(index + 3)) return std::nullopt;
+  GeodeticPosition position{Angle(index, 2, 90.0), Angle(index + 2, 3, 180.0)};
+  const char latitude_letter = Letter(index + 1, "NS");
+  const char longitude_letter = Letter(index + 3, "EW");
+  if (latitude_letter == '\0' || longitude_letter == '\0') Fail(SentenceFault::kBadField);
+  if (fault_ != SentenceFault::kNone) return std::nullopt;
+  if (latitude_letter == 'S') position.latitude_deg = -position.latitude_deg;
+  if (longitude_letter == 'W') position.longitude_deg = -position.longitude_deg;
+  return position;
+}
+
+}  // namespace lookout::navigator

@@ -1,0 +1,58 @@
+// Fields of a sentence as values, strictly: a field has its exact form and its range, or the sentence is refused as a whole.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "services/navigator/core/sentence.hpp"
+
+namespace lookout::navigator {
+
+struct GeodeticPosition {
+  double latitude_deg = 0.0;   // WGS84, positive north
+  double longitude_deg = 0.0;  // WGS84, positive east
+};
+
+/// Reads fields by index and remembers the first fault. An empty field is no fault: it says nothing (NaN or nullopt). A field behind the last
+/// is a fault.
+class FieldReader {
+ public:
+  explicit FieldReader(std::span<const std::string_view> fields) : fields_(fields) {}
+
+  SentenceFault fault() const { return fault_; }
+
+  bool IsEmpty(std::size_t index) { return Field(index).empty(); }
+
+  /// [+-]digits[.digits], between min and max. @return NaN when empty or at fault
+  double Number(std::size_t index, double min, double max);
+
+  /// digits, between 0 and max. @return -1 when empty or at fault
+  int Count(std::size_t index, int max);
+
+  /// One character out of `allowed`. @return '\0' when empty or at fault
+  char Letter(std::size_t index, std::string_view allowed);
+
+  /// A number, and behind it the letter of its unit, which must stand there when the number does.
+  double NumberWithUnit(std::size_t index, char unit, double min, double max);
+
+  /// hhmmss[.s...], UTC. @return since midnight; 24 h for the leap second 235960, which Utime does not count
+  std::optional<std::chrono::microseconds> TimeOfDay(std::size_t index);
+
+  /// ddmmyy. Years 80 to 99 are of the 20th century (GPS begins in 1980).
+  std::optional<std::chrono::sys_days> Date(std::size_t index);
+
+  /// ddmm[.m...],N|S,dddmm[.m...],E|W: four fields, all there or all empty.
+  std::optional<GeodeticPosition> Position(std::size_t index);
+
+ private:
+  std::string_view Field(std::size_t index);
+  void Fail(SentenceFault fault);
+  double Angle(std::size_t index, std::size_t num_degree_digits, double max_deg);
+
+  std::span<const std::string_view> fields_;
+  SentenceFault fault_ = SentenceFault::kNone;
+};
+
+}  // namespace lookout::navigator

@@ -1,0 +1,53 @@
+// NMEA 0183 lines: out of a datagram, and into address and fields.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+
+namespace lookout::navigator {
+
+/// NMEA 0183 allows 82 characters with $ and CR LF; receivers with long coordinates send up to some 130.
+inline constexpr std::size_t kMaxLineCharacters = 256;
+
+/// The lines of a datagram that may enter NAV_RAW, and how many may not.
+struct DatagramLines {
+  std::vector<std::string> lines;  // each from $ or ! to its end, without CR LF; whether it is a right sentence is not judged here
+  std::int64_t num_no_start = 0;      // no $ or ! in the line
+  std::int64_t num_too_long = 0;      // more than kMaxLineCharacters
+  std::int64_t num_not_printable = 0; // bytes outside of 0x20 to 0x7E
+};
+
+/// Cuts at CR and LF, and drops what stands before the first $ or ! of a line: tag blocks (\...\) and junk.
+DatagramLines SplitDatagram(Bytes payload);
+
+/// @return whether `line` may stand in NAV_RAW: begins with $ or !, printable ASCII, at most kMaxLineCharacters
+bool IsLine(std::string_view line);
+
+/// Why a line is not a sentence, or not one with values that can be.
+enum class SentenceFault {
+  kNone,
+  kNoChecksum,   // no * in the line
+  kBadChecksum,  // what stands behind the * is not the exclusive or of what stands before, in two hexadecimal digits
+  kBadField,     // a field is missing or does not have its form
+  kImplausible,  // a value is out of its range
+};
+
+/// A line whose checksum is right. Views into the line.
+struct FramedSentence {
+  std::string_view address;              // talker and type: "GPRMC", "PASHR", "04HDM"
+  std::vector<std::string_view> fields;  // behind the address; empty = not said
+};
+
+struct FrameResult {
+  SentenceFault fault = SentenceFault::kNone;
+  FramedSentence sentence;
+};
+
+/// @param line  as in DatagramLines; must outlive the result
+FrameResult Frame(std::string_view line);
+
+}  // namespace lookout::navigator

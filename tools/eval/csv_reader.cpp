@@ -1,0 +1,33 @@
+#include "tools/eval/csv_reader.hpp"
+
+#include <algorithm>
+
+namespace lookout::eval {
+
+CsvReader::CsvReader(const std::filesystem::path& file, std::string_view columns)
+    : file_(file), in_(file, std::ios::binary), num_columns_(static_cast<std::size_t>(std::ranges::count(columns, ',')) + 1) {
+  if (!in_) throw std::runtime_error(file.string() + ": cannot be opened");
+  ++line_number_;
+  if (!std::getline(in_, line_) || line_.rfind(columns, 0) != 0) Refuse("the columns are not " + std::string(columns));
+}
+
+bool CsvReader::Next() {
+  if (!std::getline(in_, line_)) return false;
+  ++line_number_;
+  cells_.clear();
+  std::string_view rest(line_);
+  for (;;) {
+    const auto comma = rest.find(',');
+    cells_.push_back(rest.substr(0, comma));
+    if (comma == std::string_view::npos) break;
+    rest.remove_prefix(comma + 1);
+  }
+  if (cells_.size() < num_columns_) Refuse("too few columns");
+  return true;
+}
+
+void CsvReader::Refuse(const std::string& reason) const {
+  throw std::runtime_error(file_.string() + ":" + std::to_string(line_number_) + ": " + reason);
+}
+
+}  // namespace lookout::eval

@@ -1,0 +1,180 @@
+#include "tools/eval/evaluation.hpp"
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::eval {
+namespace {
+
+// Of a segment in the parts of SEGMENTS, and the time that its hull counts from.
+const segment_t* FindSegment(const Turn& turn, int id) {
+  for (const auto& [part_index, message] : turn.segments) {
+    const auto found = std::ranges::find(message.segments, id, &segment_t::id);
+    if (found != message.segments.end()) return &*found;
+  }
+  return nullptr;
+}
+
+// As lookout-export has it: the nearest microsecond.
+std::int64_t FiringUtimeUs(const lidar_scan_t& scan, std::size_t column, std::size_t ring) {
+  const std::int64_t time_ns = std::int64_t{scan.time_ns[column]} + scan.time_offset_ns[ring];
+  return scan.utime_us + static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0));
+}
+
+}  // namespace
+
+void Errors::Add(const Errors& other) {
+  vertex_edge_m.Add(other.vertex_edge_m);
+  vertex_outside_m.Add(other.vertex_outside_m);
+  position_outside_m.Add(other.position_outside_m);
+}
+
+Evaluation::Evaluation(const Truth* truth, int min_num_returns) : truth_(truth), min_num_returns_(min_num_returns) {}
+
+void Evaluation::Add(const Turn& turn) {
+  ++num_turns;
+  const bool is_whole = turn.IsWhole();
+  if (is_whole) ++num_whole_turns;
+  std::vector<ObstacleRow> turn_rows;
+  for (const auto& [part_index, message] : turn.obstacles) {
+    for (const auto& obstacle : message.obstacles) {
+      ++num_obstacles;
+      ++num_by_status[obstacle.status];
+      turn_rows.push_back({obstacle, "?", {}, {}});
+    }
+  }
+  if (truth_ != nullptr) {
+    const Confusion confusion = Join(turn);
+    if (is_whole) Score(confusion);
+    Measure(turn, confusion, turn_rows);
+  }
+  if (is_whole || !is_table_whole_) {
+    is_table_whole_ = is_whole;
+    table_utime_us = turn.obstacles.begin()->second.utime_us;
+    rows = std::move(turn_rows);
+  }
+}
+
+Confusion Evaluation::Join(const Turn& turn) {
+  Confusion confusion;
+  for (const auto& [part_index, scan] : turn.scans) {
+    const auto found = turn.segments.find(part_index);
+    if (found == turn.segments.end() || found->second.num_cells != scan.num_cells) continue;
+    std::size_t cell = 0;
+    for (std::size_t column = 0; column < static_cast<std::size_t>(scan.num_columns); ++column) {
+      for (std::size_t ring = 0; ring < static_cast<std::size_t>(scan.num_rings); ++ring) {
+        for (int k = 0; k < scan.num_returns; ++k, ++cell) {
+          if (scan.range[cell] == 0) continue;
+          ++num_returns;
+          const auto object_id = truth_->ObjectOf(FiringUtimeUs(scan, column, ring), static_cast<int>(ring), k);
+          if (!object_id) continue;
+          ++num_joined;
+          confusion.Add(*object_id, found->second.label[cell]);
+        }
+      }
+    }
+  }
+  return confusion;
+}
+
+void Evaluation::Score(const Confusion& confusion) {
+  const auto scores = confusion.Scores();
+  Summary ious;
+  for (const auto& score : scores) {
+    ious.Add(score.iou);
+    const auto object = truth_->objects().find(score.object_id);
+    auto& kind = scores_by_kind[object != truth_->objects().end() ? object->second.kind : "?"];
+    kind.iou.Add(score.iou);
+    if (score.num_returns < min_num_returns_) continue;
+    ++kind.num_present;
+    if (score.has_own_segment) ++kind.num_found;
+  }
+  if (ious.count() > 0) turn_iou.Add(ious.Mean());
+  clutter_segments.Add(confusion.NumClutterSegments());
+  segments.Add(confusion.NumSegments());
+}
+
+const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
+  const std::array<double, 3> datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
+  if (!outlines_ || datum != datum_) {
+    datum_ = datum;
+    outlines_ = std::make_unique<Outlines>(truth_->OutlinesIn({datum[0], datum[1], datum[2]}));
+  }
+  return *outlines_;
+}
+
+void Evaluation::Measure(const Turn& turn, const Confusion& confusion, std::vector<ObstacleRow>& turn_rows) {
+  std::size_t row_index = 0;
+  for (const auto& [part_index, message] : turn.obstacles) {
+    const bool has_datum =
+        std::isfinite(message.datum_latitude_deg) && std::isfinite(message.datum_longitude_deg) && std::isfinite(message.datum_ellipsoid_height_m);
+    for (const auto& obstacle : message.obstacles) {
+      ObstacleRow& row = turn_rows[row_index++];
+      const int object_id = confusion.MajorityObject(obstacle.id);
+      const auto object = truth_->objects().find(object_id);
+      if (object != truth_->objects().end()) row.object_name = object->second.name;
+      if (obstacle.status == obstacle_t::STATUS_OK && has_datum) {
+        MeasureObstacle(message, FindSegment(turn, obstacle.id), message.utime_us, object_id, row);
+      }
+    }
+  }
+}
+
+void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* segment, std::int64_t segments_utime_us, int object_id,
+                                 ObstacleRow& row) {
+  const obstacle_t& obstacle = row.obstacle;
+  const Outlines& outlines = OutlinesFor(message);
+  const auto errors_of = [this](int id) -> Errors* {
+    const auto object = truth_->objects().find(id);
+    return id > 0 && object != truth_->objects().end() ? &errors_by_kind[{object->second.kind, object->second.is_moving}] : nullptr;
+  };
+
+  if (auto* errors = errors_of(object_id)) {
+    if (const auto outline_m = outlines.At(object_id, obstacle.utime_us)) {
+      row.position_outside_m = DistanceToOutline({obstacle.position_map_m[0], obstacle.position_map_m[1]}, *outline_m).outside_m;
+      errors->position_outside_m.Add(*row.position_outside_m);
+    }
+  }
+
+  // A vertex is one return: its time says which, and so which object it came from, also where a segment holds two objects.
+  const bool has_times = segment != nullptr && segment->num_hull == obstacle.num_map;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(obstacle.num_map); ++i) {
+    const std::int64_t utime_us = has_times ? segments_utime_us + segment->hull_time_us[i] : obstacle.utime_us;
+    const std::vector<int> candidates = has_times ? truth_->ObjectsAt(utime_us) : std::vector<int>{object_id};
+    const Eigen::Vector2d vertex_m(static_cast<double>(obstacle.footprint_east_m[i]), static_cast<double>(obstacle.footprint_north_m[i]));
+    std::optional<OutlineDistance> nearest;
+    Errors* errors = nullptr;
+    for (const int candidate : candidates) {
+      const auto outline_m = outlines.At(candidate, utime_us);
+      if (!outline_m) continue;
+      const auto distance = DistanceToOutline(vertex_m, *outline_m);
+      if (nearest && nearest->edge_m <= distance.edge_m) continue;
+      nearest = distance;
+      errors = errors_of(candidate);
+    }
+    if (errors == nullptr) continue;
+    errors->vertex_edge_m.Add(nearest->edge_m);
+    errors->vertex_outside_m.Add(nearest->outside_m);
+    row.vertex_outside_m = std::max(row.vertex_outside_m.value_or(0.0), nearest->outside_m);
+  }
+}
+
+void Evaluation::Add(const pose_t& pose) {
+  if (truth_ == nullptr || pose.status != pose_t::STATUS_OK) return;
+  const auto found = truth_->poses().find(pose.utime_us);
+  if (found == truth_->poses().end()) return;
+  const TruthPose& truth = found->second;
+  const GeographicLib::LocalCartesian here(truth.latitude_deg, truth.longitude_deg, 0.0);
+  Eigen::Vector3d offset_m;
+  here.Forward(pose.latitude_deg, pose.longitude_deg, 0.0, offset_m.x(), offset_m.y(), offset_m.z());
+  pose_errors[0].Add(offset_m.head<2>().norm());
+  pose_errors[1].Add(std::abs(RadToDeg(WrapToPi(pose.heading_rad - DegToRad(truth.heading_deg)))));
+  if (!pose.has_attitude) return;
+  pose_errors[2].Add(std::abs(RadToDeg(pose.roll_rad) - truth.roll_deg));
+  pose_errors[3].Add(std::abs(RadToDeg(pose.pitch_rad) - truth.pitch_deg));
+}
+
+}  // namespace lookout::eval

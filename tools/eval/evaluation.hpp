@@ -1,0 +1,83 @@
+// Holds a log against the truth, turn by turn.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lookout/pose_t.hpp"
+#include "tools/eval/metrics.hpp"
+#include "tools/eval/truth.hpp"
+#include "tools/eval/turn_collector.hpp"
+
+namespace lookout::eval {
+
+/// Distances to the true outline.
+struct Errors {
+  Summary vertex_edge_m;       // of footprint vertices, to the line
+  Summary vertex_outside_m;    // the same, 0 inside
+  Summary position_outside_m;  // of obstacles, 0 inside
+
+  void Add(const Errors& other);
+};
+
+/// An obstacle as a row of the first table.
+struct ObstacleRow {
+  obstacle_t obstacle;
+  std::string object_name;                   // "?" = not known
+  std::optional<double> position_outside_m;  // of its centre
+  std::optional<double> vertex_outside_m;    // greatest of its footprint
+};
+
+struct KindScore {
+  std::int64_t num_present = 0;  // object-turns with enough returns
+  std::int64_t num_found = 0;    // of these, with a segment of their own
+  Summary iou;                   // of all object-turns with a return
+};
+
+class Evaluation {
+ public:
+  /// @param truth           may be nullptr; outlives this
+  /// @param min_num_returns an object with fewer in a turn does not count for recall
+  Evaluation(const Truth* truth, int min_num_returns);
+
+  void Add(const Turn& turn);
+  void Add(const pose_t& pose);
+
+  std::int64_t num_turns = 0;
+  std::int64_t num_whole_turns = 0;
+  std::int64_t num_obstacles = 0;
+  std::map<int, std::int64_t> num_by_status;
+  std::optional<std::int64_t> table_utime_us;  // of the turn in `rows`: the last whole one, or the last
+  std::vector<ObstacleRow> rows;
+
+  // With truth:
+  std::map<std::pair<std::string, bool>, Errors> errors_by_kind;  // kind, is_moving
+  std::map<std::string, KindScore> scores_by_kind;
+  Summary turn_iou;                    // mean over the objects of a whole turn
+  Summary clutter_segments;            // per whole turn
+  Summary segments;                    // per whole turn
+  std::int64_t num_returns = 0;        // of turns whose scan and segments are in the log
+  std::int64_t num_joined = 0;         // of these, found in the truth
+  std::array<Summary, 4> pose_errors;  // horizontal m, heading deg, roll deg, pitch deg
+
+ private:
+  Confusion Join(const Turn& turn);
+  void Score(const Confusion& confusion);
+  void Measure(const Turn& turn, const Confusion& confusion, std::vector<ObstacleRow>& turn_rows);
+  void MeasureObstacle(const obstacles_t& message, const segment_t* segment, std::int64_t segments_utime_us, int object_id, ObstacleRow& row);
+  const Outlines& OutlinesFor(const obstacles_t& message);
+
+  const Truth* truth_;
+  int min_num_returns_;
+  std::array<double, 3> datum_{};  // of outlines_
+  std::unique_ptr<Outlines> outlines_;
+  bool is_table_whole_ = false;
+};
+
+}  // namespace lookout::eval

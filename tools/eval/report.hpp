@@ -1,0 +1,16 @@
+// The tables of lookout-eval.
+#pragma once
+
+#include <ostream>
+
+#include "tools/eval/evaluation.hpp"
+#include "tools/eval/machine.hpp"
+
+namespace lookout::eval {
+
+void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_truth);
+void PrintAccuracy(std::ostream& out, const Evaluation& evaluation);
+void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_num_returns);
+void PrintMachine(std::ostream& out, const Machine& machine);
+
+}  // namespace lookout::eval

@@ -1,0 +1,79 @@
+// The truth of a simulation, as lookout-sim writes it (columns: tools/sim/README.md).
+#pragma once
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/eval/geometry.hpp"
+
+namespace lookout::eval {
+
+struct TruthObject {
+  std::string name;
+  std::string kind;
+  bool is_moving = false;
+};
+
+struct TruthPose {
+  double latitude_deg;
+  double longitude_deg;
+  double heading_deg;
+  double roll_deg;
+  double pitch_deg;
+};
+
+struct Geodetic {
+  double latitude_deg;
+  double longitude_deg;
+};
+
+/// Outlines of the objects in one map frame.
+class Outlines {
+ public:
+  void Add(int object_id, std::int64_t utime_us, Polygon outline_m) { by_object_[object_id][utime_us] = std::move(outline_m); }
+
+  /// @return the outline at a time, between two of a moving object vertex by vertex; before the first and after the last that one itself;
+  ///         nullopt for an object without outline
+  std::optional<Polygon> At(int object_id, std::int64_t utime_us) const;
+
+ private:
+  std::map<int, std::map<std::int64_t, Polygon>> by_object_;
+};
+
+class Truth {
+ public:
+  /// @throws std::runtime_error "file:line: reason"
+  explicit Truth(const std::filesystem::path& folder);
+
+  const std::map<int, TruthObject>& objects() const { return objects_; }
+  const std::map<std::int64_t, TruthPose>& poses() const { return poses_; }
+
+  /// @return object of a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullopt = not in the truth
+  std::optional<int> ObjectOf(std::int64_t utime_us, int ring, int return_index) const;
+
+  /// @return objects of whatever returned at a time: lasers fire 2.3 us apart, so it names the laser; two entries in dual return
+  std::vector<int> ObjectsAt(std::int64_t utime_us) const;
+
+  Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
+
+ private:
+  struct Return {
+    std::int64_t utime_us;
+    int ring;
+    int return_index;
+    int object_id;
+  };
+  void LoadReturns(const std::filesystem::path& file);
+
+  std::map<int, TruthObject> objects_;
+  std::map<int, std::map<std::int64_t, std::vector<Geodetic>>> outlines_;
+  std::map<std::int64_t, TruthPose> poses_;
+  std::vector<Return> returns_;  // by time
+};
+
+}  // namespace lookout::eval
