@@ -22,18 +22,13 @@ constexpr int kMaxSatellites = 99;
 
 double AngleRad(FieldReader& fields, std::size_t index, double min_deg, double max_deg) { return DegToRad(fields.Number(index, min_deg, max_deg)); }
 
-// 0 to 360; 360 is 0. WrapTo2Pi would make 0 of what is not said.
-double CompassRad(FieldReader& fields, std::size_t index) {
-  const double angle_rad = AngleRad(fields, index, 0.0, 360.0);
-  return std::isnan(angle_rad) ? kUnknown : WrapTo2Pi(angle_rad);
-}
+// 360 is 0. What is not said stays so: WrapTo2Pi would make 0 of it.
+double WrapKnown(double angle_rad) { return std::isnan(angle_rad) ? kUnknown : WrapTo2Pi(angle_rad); }
+
+double CompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(AngleRad(fields, index, 0.0, 360.0)); }
 
 // Degrees, and behind them T, which must stand there when they do.
-double TrueCompassRad(FieldReader& fields, std::size_t index) {
-  const double angle_rad = CompassRad(fields, index);
-  if (fields.Letter(index + 1, "T") == '\0' && !std::isnan(angle_rad)) return CompassRad(fields, SIZE_MAX);  // a fault: the letter is missing
-  return angle_rad;
-}
+double TrueCompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(DegToRad(fields.NumberWithUnit(index, 'T', 0.0, 360.0))); }
 
 // Mode letters of NMEA 0183 2.3 and later, in the numbers of GGA. P (precise) is given when no deliberate degradation is used.
 FixQuality QualityOfMode(char mode) {

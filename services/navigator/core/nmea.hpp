@@ -27,6 +27,9 @@ enum class FixQuality {
   kSimulator = 8,
 };
 
+/// @return whether a receiver measured it; not "no fix", put in by hand, or simulated
+bool IsMeasured(FixQuality quality);
+
 /// RMC: time,status,latitude,N,longitude,E,knots,course,date,variation,E[,mode[,navigational status]]
 struct Rmc {
   std::optional<std::chrono::microseconds> time_of_day;

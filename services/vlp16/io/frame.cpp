@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <pcap/pcap.h>
+#include <utility>
 
 namespace lookout::vlp16 {
 
@@ -20,6 +21,8 @@ constexpr std::size_t kIpv6HeaderSizeBytes = 40;
 constexpr int kProtocolUdp = 17;
 constexpr int kProtocolIpv6Fragment = 44;
 constexpr std::array<int, 6> kProtocolsIpv6Extension{0, 43, 51, 60, 135, 139};
+// Raw IP as OpenBSD numbers it; libpcap hands the number on elsewhere.
+constexpr int kRawIpOfOpenBsd = 14;
 constexpr std::uint32_t kFamilyIpv4 = 2;
 constexpr std::array<std::uint32_t, 4> kFamiliesIpv6{10, 24, 28, 30};  // Linux, NetBSD and OpenBSD, FreeBSD, Darwin
 
@@ -112,7 +115,7 @@ Frame ParseLoopback(Bytes bytes, bool is_cut) {
 }  // namespace
 
 bool IsLinkTypeUnderstood(int link_type) {
-  constexpr std::array kUnderstood{DLT_EN10MB, DLT_LINUX_SLL, DLT_LINUX_SLL2, DLT_RAW, DLT_IPV4, DLT_IPV6, DLT_NULL, DLT_LOOP};
+  constexpr std::array kUnderstood{DLT_EN10MB, DLT_LINUX_SLL, DLT_LINUX_SLL2, DLT_RAW, kRawIpOfOpenBsd, DLT_IPV4, DLT_IPV6, DLT_NULL, DLT_LOOP};
   return std::ranges::find(kUnderstood, link_type) != kUnderstood.end();
 }
 

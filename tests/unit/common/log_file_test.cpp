@@ -99,6 +99,18 @@ TEST_F(LogFile, IsNotOverwrittenUnlessAskedFor) {
 
 TEST_F(LogFile, ThatDoesNotExistIsAnError) { EXPECT_THROW(LogReader("/nonexistent/file"), std::runtime_error); }
 
+TEST_F(LogFile, ThatTheDiskDoesNotTakeIsAnError) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this computer";
+  LogWriter writer("/dev/full", true);
+  const std::vector<std::uint8_t> bytes(100'000);
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 10; ++i) writer.Write(Utime(), "CHANNEL", bytes);
+        writer.Flush();
+      },
+      std::runtime_error);
+}
+
 TEST_F(LogFile, OfLcmsOwnToolsCanBeRead) {
   const fs::path recording = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data/lcm/lcmproj_example.lcmlog";
   if (!fs::exists(recording)) GTEST_SKIP() << "no recording at " << recording;

@@ -1,0 +1,116 @@
+#include "services/georeferencer/core/georeferencer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace lookout::georeferencer {
+
+Georeferencer::Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout)
+    : placement_(placement), pose_timeout_(pose_timeout) {}
+
+std::vector<ObstaclePart> Georeferencer::AddSegments(SegmentPart part) {
+  std::vector<ObstaclePart> released;
+  waiting_.push_back({std::move(part), host_time_});
+  ReleaseReady(released);
+  if (waiting_.size() > kMaxWaiting) {
+    ++counts_.parts_overflowed;
+    ReleaseFront(true, released);
+    ReleaseReady(released);
+  }
+  return released;
+}
+
+std::vector<ObstaclePart> Georeferencer::AddPose(const Pose& pose) {
+  std::vector<ObstaclePart> released;
+  if (const Pose* newest = poses_.newest()) {
+    if (pose.time == newest->time) {
+      ++counts_.poses_duplicate;
+      return released;
+    }
+    if (pose.time < newest->time) {
+      // A new run, in the past of the one before. What waits and lies so far ahead of it belongs to the old run.
+      ++counts_.pose_restarts;
+      while (!waiting_.empty() && waiting_.front().part.head.time - pose.time > PoseHistory::kLength) {
+        ++counts_.parts_flushed;
+        ReleaseFront(false, released);
+      }
+      poses_.Clear();
+    }
+  }
+  ++counts_.poses_taken;
+  poses_.Add(pose);
+  ReleaseReady(released);
+  return released;
+}
+
+std::vector<ObstaclePart> Georeferencer::AdvanceTo(Utime host_time) {
+  std::vector<ObstaclePart> released;
+  host_time_ = host_time;
+  for (auto& waiting : waiting_) {
+    // What came before host time was known, or before the host's clock was set back, begins to wait now.
+    waiting.arrival = std::min(waiting.arrival.value_or(host_time), host_time);
+  }
+  while (!waiting_.empty() && host_time - *waiting_.front().arrival > pose_timeout_) {
+    ++counts_.parts_timed_out;
+    last_timeout_ = host_time;
+    ReleaseFront(true, released);
+    ReleaseReady(released);
+  }
+  return released;
+}
+
+std::vector<ObstaclePart> Georeferencer::Finish() {
+  std::vector<ObstaclePart> released;
+  while (!waiting_.empty()) {
+    ++counts_.parts_flushed;
+    ReleaseFront(false, released);
+  }
+  return released;
+}
+
+bool Georeferencer::IsReady(const SegmentPart& part) const { return poses_.newest() != nullptr && poses_.newest()->time >= part.head.end_time; }
+
+void Georeferencer::ReleaseReady(std::vector<ObstaclePart>& released) {
+  while (!waiting_.empty() && IsReady(waiting_.front().part)) ReleaseFront(false, released);
+}
+
+void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released) {
+  const SegmentPart& part = waiting_.front().part;
+  ObstaclePart& placed = released.emplace_back();
+  placed.head = part.head;
+  placed.datum = poses_.DatumAt(part.head.end_time);
+  for (const auto& segment : part.segments) {
+    if (segment.hull.size() > kMaxFootprintVertices) ++counts_.footprints_thinned;
+    const auto& obstacle = placed.obstacles.emplace_back(PlaceSegment(segment, poses_, placed.datum, has_timed_out, placement_));
+    switch (obstacle.status) {
+      case ObstacleStatus::kOk:
+        ++counts_.obstacles_ok;
+        break;
+      case ObstacleStatus::kVesselFrameOnly:
+        ++counts_.obstacles_vessel_frame_only;
+        break;
+      case ObstacleStatus::kPoseTimeout:
+        ++counts_.obstacles_pose_timeout;
+        break;
+    }
+  }
+  ++counts_.parts_released;
+  waiting_.pop_front();
+}
+
+std::vector<Counter> Georeferencer::counters() const {
+  return {{"parts_released", counts_.parts_released},
+          {"parts_timed_out", counts_.parts_timed_out},
+          {"parts_overflowed", counts_.parts_overflowed},
+          {"parts_flushed", counts_.parts_flushed},
+          {"parts_waiting", static_cast<std::int64_t>(waiting_.size())},
+          {"poses_taken", counts_.poses_taken},
+          {"poses_duplicate", counts_.poses_duplicate},
+          {"pose_restarts", counts_.pose_restarts},
+          {"obstacles_ok", counts_.obstacles_ok},
+          {"obstacles_vessel_frame_only", counts_.obstacles_vessel_frame_only},
+          {"obstacles_pose_timeout", counts_.obstacles_pose_timeout},
+          {"footprints_thinned", counts_.footprints_thinned}};
+}
+
+}  // namespace lookout::georeferencer

@@ -1,0 +1,74 @@
+// Brings segments and poses together: a turn is placed once POSE has reached its last return.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/core/health.hpp"
+#include "services/georeferencer/core/obstacle.hpp"
+#include "services/georeferencer/core/placement.hpp"
+#include "services/georeferencer/core/pose.hpp"
+
+namespace lookout::georeferencer {
+
+/// What it gives depends on the order of the segments and on that of the poses, not on how the two interleave, as long as host time is kept out
+/// (AdvanceTo is not called), POSE runs ahead by less than PoseHistory::kLength and segments by less than kMaxWaiting.
+class Georeferencer {
+ public:
+  /// Messages that may wait for POSE: at 10 turns a second 100 s of them.
+  static constexpr std::size_t kMaxWaiting = 1000;
+
+  Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout);
+
+  /// Each of these returns what can be released now, in the order in which the segments came.
+  std::vector<ObstaclePart> AddSegments(SegmentPart part);
+  std::vector<ObstaclePart> AddPose(const Pose& pose);
+
+  /// Live only. What has waited for longer than the time-out by the host's clock is released; a part has arrived at the host time of the call
+  /// before it came.
+  std::vector<ObstaclePart> AdvanceTo(Utime host_time);
+
+  /// End of input: what waits is released, with the poses that are there.
+  std::vector<ObstaclePart> Finish();
+
+  const PoseHistory& poses() const { return poses_; }
+  std::vector<Counter> counters() const;
+  /// Host time of the last release by time-out.
+  std::optional<Utime> last_timeout() const { return last_timeout_; }
+
+ private:
+  struct Waiting {
+    SegmentPart part;
+    std::optional<Utime> arrival;  // host time, where there is one
+  };
+  struct Counts {
+    std::int64_t parts_released = 0;
+    std::int64_t parts_timed_out = 0;
+    std::int64_t parts_overflowed = 0;
+    std::int64_t parts_flushed = 0;
+    std::int64_t poses_taken = 0;
+    std::int64_t poses_duplicate = 0;
+    std::int64_t pose_restarts = 0;
+    std::int64_t obstacles_ok = 0;
+    std::int64_t obstacles_vessel_frame_only = 0;
+    std::int64_t obstacles_pose_timeout = 0;
+    std::int64_t footprints_thinned = 0;
+  };
+
+  bool IsReady(const SegmentPart& part) const;
+  void ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released);
+  void ReleaseReady(std::vector<ObstaclePart>& released);
+
+  PlacementParams placement_;
+  std::chrono::microseconds pose_timeout_;
+  PoseHistory poses_;
+  std::deque<Waiting> waiting_;
+  std::optional<Utime> host_time_;
+  std::optional<Utime> last_timeout_;
+  Counts counts_;
+};
+
+}  // namespace lookout::georeferencer

@@ -1,0 +1,84 @@
+// What georeferencer takes (segments of one SEGMENTS message) and gives (their obstacles).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "common/core/utime.hpp"
+#include "services/georeferencer/core/pose.hpp"
+
+namespace lookout::georeferencer {
+
+/// A corner of a segment's outline, lidar frame, with the time at which it was seen.
+struct HullVertex {
+  Eigen::Vector2d p_lidar_m;
+  Utime time;
+};
+
+/// One segment in the lidar frame. Numbers are finite, times within the turn, the hull is not empty.
+struct Segment {
+  Utime time;  // mean of the times of its returns
+  std::int32_t id = 0;
+  std::int32_t num_points = 0;
+  Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d nearest_m = Eigen::Vector3d::Zero();
+  float length_m = 0.0F;
+  float width_m = 0.0F;
+  double min_z_m = 0.0;
+  double max_z_m = 0.0;
+  float mean_reflectivity = 0.0F;
+  std::vector<HullVertex> hull;  // counter-clockwise seen from the lidar's z axis
+};
+
+/// What a SEGMENTS message and its OBSTACLES have in common.
+struct TurnHead {
+  Utime time;
+  Utime end_time;  // last laser shot
+  std::int64_t seq = 0;
+  std::int64_t raw_seq = 0;
+  std::int32_t scan_flags = 0;
+  std::int32_t part_index = 0;
+  std::int32_t num_parts = 1;
+  std::int32_t num_turn_segments = 0;
+};
+
+/// One SEGMENTS message: a turn, or a part of one.
+struct SegmentPart {
+  TurnHead head;
+  std::vector<Segment> segments;
+};
+
+enum class ObstacleStatus { kOk, kVesselFrameOnly, kPoseTimeout };
+
+/// One obstacle. Members for the map are NaN, footprint_map_m is empty, unless status is kOk.
+struct Obstacle {
+  Utime time;
+  std::int32_t id = 0;
+  ObstacleStatus status = ObstacleStatus::kVesselFrameOnly;
+  double latitude_deg = kUnknown;
+  double longitude_deg = kUnknown;
+  Eigen::Vector2d position_map_m = Eigen::Vector2d::Constant(kUnknown);
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Constant(kUnknown);  // east, north
+  double top_above_water_m = 0.0;
+  Eigen::Vector2d center_vessel_m = Eigen::Vector2d::Zero();
+  Eigen::Vector3d nearest_vessel_m = Eigen::Vector3d::Zero();
+  double range_m = 0.0;      // horizontal, from the vessel's origin to the nearest return
+  double bearing_rad = 0.0;  // of the nearest return, from the bow clockwise, 0 to 2 pi
+  float length_m = 0.0F;
+  float width_m = 0.0F;
+  double height_m = 0.0;
+  std::int32_t num_points = 0;
+  float mean_reflectivity = 0.0F;
+  std::vector<Eigen::Vector2d> footprint_vessel_m;  // counter-clockwise seen from above
+  std::vector<Eigen::Vector2d> footprint_map_m;
+};
+
+/// One SEGMENTS message, placed.
+struct ObstaclePart {
+  TurnHead head;
+  Datum datum;  // origin of the map frame of its obstacles
+  std::vector<Obstacle> obstacles;
+};
+
+}  // namespace lookout::georeferencer

@@ -1,0 +1,175 @@
+#include "services/georeferencer/core/placement.hpp"
+
+#include <GeographicLib/LocalCartesian.hpp>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "common/core/angles.hpp"
+#include "common/core/frames.hpp"
+
+namespace lookout::georeferencer {
+
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Matrix2d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Area over extent squared below which an outline counts as a line: there the centroid divides two numbers that are rounding errors.
+constexpr double kMinAreaRatio = 1e-4;
+
+Isometry3d TransformMapVessel(const Pose& pose) {
+  Isometry3d T_map_vessel = Isometry3d::Identity();
+  T_map_vessel.linear() = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad);
+  T_map_vessel.translation() = pose.position_map_m;
+  return T_map_vessel;
+}
+
+// The pose at `time` if it is placed in the map frame of `datum`.
+std::optional<Pose> PlacedPoseAt(const PoseHistory& poses, Utime time, const Datum& datum) {
+  auto pose = poses.At(time);
+  if (!pose || !pose->is_placed || !pose->datum.IsSameAs(datum)) return std::nullopt;
+  return pose;
+}
+
+// Height above calm water of a point of the vessel; level where no pose is known.
+double AboveWaterM(const Vector3d& p_vessel_m, const std::optional<Pose>& pose, double reference_point_above_water_m) {
+  if (!pose) return p_vessel_m.z() + reference_point_above_water_m;
+  const Vector3d p_level_m = RotationMapVessel(0.0, pose->pitch_rad, pose->roll_rad) * p_vessel_m;
+  return p_level_m.z() + reference_point_above_water_m + pose->heave_m;
+}
+
+// The outline in the map frame, each corner by the pose at its own time; nullopt when one of them has none.
+std::optional<std::vector<Vector3d>> PlaceOutline(const std::vector<HullVertex>& hull, const std::vector<Vector3d>& outline_vessel_m,
+                                                  const PoseHistory& poses, const Datum& datum) {
+  std::vector<Vector3d> outline_map_m;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const auto pose = PlacedPoseAt(poses, hull[i].time, datum);
+    if (!pose) return std::nullopt;
+    outline_map_m.push_back(TransformMapVessel(*pose) * outline_vessel_m[i]);
+  }
+  return outline_map_m;
+}
+
+std::vector<Vector2d> SeenFromAbove(const std::vector<Vector3d>& points) {
+  std::vector<Vector2d> flat;
+  for (const auto& point : points) flat.emplace_back(point.head<2>());
+  return flat;
+}
+
+void PlaceOnEarth(const std::vector<Vector3d>& outline_map_m, const Pose& pose, const PlacementParams& params, Obstacle& obstacle) {
+  const Vector3d center_map_m = FootprintCenter(outline_map_m);
+  const Vector3d center_vessel_m = TransformMapVessel(pose).inverse() * center_map_m;
+  const Datum& datum = pose.datum;
+  const GeographicLib::LocalCartesian map(datum.latitude_deg, datum.longitude_deg,
+                                          std::isfinite(datum.ellipsoid_height_m) ? datum.ellipsoid_height_m : 0.0);
+  double height_m = 0.0;
+  map.Reverse(center_map_m.x(), center_map_m.y(), center_map_m.z(), obstacle.latitude_deg, obstacle.longitude_deg, height_m);
+  obstacle.status = ObstacleStatus::kOk;
+  obstacle.position_map_m = center_map_m.head<2>();
+  obstacle.center_vessel_m = center_vessel_m.head<2>();
+  obstacle.covariance_m2 = PositionCovariance(center_vessel_m, pose, params);
+  obstacle.footprint_map_m = SeenFromAbove(outline_map_m);
+}
+
+}  // namespace
+
+std::vector<HullVertex> Thinned(const std::vector<HullVertex>& hull) {
+  if (hull.size() <= kMaxFootprintVertices) return hull;
+  std::vector<HullVertex> thinned;
+  for (std::size_t i = 0; i < kMaxFootprintVertices; ++i) thinned.push_back(hull[i * hull.size() / kMaxFootprintVertices]);
+  return thinned;
+}
+
+Vector3d FootprintCenter(const std::vector<Vector3d>& vertices) {
+  // Relative to the first vertex: far from the datum the products would lose their digits. A fan of triangles around it.
+  const Vector3d& origin = vertices.front();
+  double doubled_area_m2 = 0.0;
+  double extent_m2 = 0.0;
+  Vector3d weighted = Vector3d::Zero();
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    const Vector3d a = vertices[i - 1] - origin;
+    const Vector3d b = vertices[i] - origin;
+    const double doubled_triangle_m2 = a.x() * b.y() - a.y() * b.x();
+    doubled_area_m2 += doubled_triangle_m2;
+    weighted += doubled_triangle_m2 * (a + b);
+    extent_m2 = std::max(extent_m2, b.head<2>().squaredNorm());
+    sum += b;
+  }
+  if (std::abs(doubled_area_m2) <= 2.0 * kMinAreaRatio * extent_m2) return origin + sum / static_cast<double>(vertices.size());
+  return origin + weighted / (3.0 * doubled_area_m2);
+}
+
+Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params) {
+  const AngleAxisd by_heading(kPi / 2.0 - pose.heading_rad, Vector3d::UnitZ());
+  const AngleAxisd by_pitch(-pose.pitch_rad, Vector3d::UnitY());
+  const AngleAxisd by_roll(pose.roll_rad, Vector3d::UnitX());
+  const Vector3d rolled_m = by_roll * p_vessel_m;
+  const Vector3d levelled_m = by_pitch * rolled_m;
+  const Vector3d p_m = by_heading * levelled_m;  // map axes, from the vessel's origin
+
+  // A turn about an axis moves a point by axis x point. Heading and pitch are counted against the right-handed sense.
+  Eigen::Matrix<double, 2, 5> jacobian;
+  jacobian.leftCols<2>().setIdentity();
+  jacobian.col(2) = (by_heading * (by_pitch * Vector3d::UnitX().cross(rolled_m))).head<2>();
+  jacobian.col(3) = -(by_heading * Vector3d::UnitY().cross(levelled_m)).head<2>();
+  jacobian.col(4) = -Vector3d::UnitZ().cross(p_m).head<2>();
+
+  const Matrix3d R_map_vessel = (by_heading * by_pitch * by_roll).toRotationMatrix();
+  const Vector3d beam_m = p_m - R_map_vessel * params.T_vessel_lidar.translation();
+  const double beam_m2 = beam_m.squaredNorm();
+  const Matrix2d along_m2 = (beam_m * beam_m.transpose()).topLeftCorner<2, 2>();
+
+  Matrix2d covariance_m2 = jacobian * pose.covariance * jacobian.transpose();
+  covariance_m2 += params.mounting_sd_rad * params.mounting_sd_rad * (beam_m2 * Matrix2d::Identity() - along_m2);
+  if (beam_m2 > 0.0) covariance_m2 += params.range_sd_m * params.range_sd_m / beam_m2 * along_m2;
+  return covariance_m2;
+}
+
+Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params) {
+  const Isometry3d& T_vessel_lidar = params.T_vessel_lidar;
+  std::vector<HullVertex> hull = Thinned(segment.hull);
+  // A lidar that hangs upside down sees the outline run the other way.
+  if (T_vessel_lidar.linear()(2, 2) < 0.0) std::ranges::reverse(hull);
+  std::vector<Vector3d> outline_vessel_m;
+  for (const auto& vertex : hull) {
+    outline_vessel_m.push_back(T_vessel_lidar * Vector3d(vertex.p_lidar_m.x(), vertex.p_lidar_m.y(), segment.centroid_m.z()));
+  }
+  const auto pose = poses.At(segment.time);
+
+  Obstacle obstacle;
+  obstacle.time = segment.time;
+  obstacle.id = segment.id;
+  obstacle.center_vessel_m = FootprintCenter(outline_vessel_m).head<2>();
+  obstacle.nearest_vessel_m = T_vessel_lidar * segment.nearest_m;
+  obstacle.range_m = obstacle.nearest_vessel_m.head<2>().norm();
+  obstacle.bearing_rad = WrapTo2Pi(std::atan2(-obstacle.nearest_vessel_m.y(), obstacle.nearest_vessel_m.x()));
+  obstacle.length_m = segment.length_m;
+  obstacle.width_m = segment.width_m;
+  obstacle.height_m = segment.max_z_m - segment.min_z_m;
+  obstacle.num_points = segment.num_points;
+  obstacle.mean_reflectivity = segment.mean_reflectivity;
+  obstacle.footprint_vessel_m = SeenFromAbove(outline_vessel_m);
+
+  // Where the highest return stood is not known: above the mean of the returns.
+  const Vector3d top_lidar_m(segment.centroid_m.x(), segment.centroid_m.y(),
+                             T_vessel_lidar.linear()(2, 2) < 0.0 ? segment.min_z_m : segment.max_z_m);
+  obstacle.top_above_water_m = AboveWaterM(T_vessel_lidar * top_lidar_m, pose, params.reference_point_above_water_m);
+
+  const auto placed_pose = PlacedPoseAt(poses, segment.time, datum);
+  const auto outline_map_m = PlaceOutline(hull, outline_vessel_m, poses, datum);
+  if (placed_pose && outline_map_m) {
+    PlaceOnEarth(*outline_map_m, *placed_pose, params, obstacle);
+  } else if (has_timed_out) {
+    const Utime last_time = std::max(segment.time, std::ranges::max(hull, {}, &HullVertex::time).time);
+    if (poses.newest() == nullptr || poses.newest()->time < last_time) obstacle.status = ObstacleStatus::kPoseTimeout;
+  }
+  return obstacle;
+}
+
+}  // namespace lookout::georeferencer

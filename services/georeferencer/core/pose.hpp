@@ -1,0 +1,72 @@
+// The pose of the vessel at a time, and the poses of the last minutes.
+#pragma once
+
+#include <Eigen/Core>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <limits>
+#include <optional>
+
+#include "common/core/utime.hpp"
+
+namespace lookout::georeferencer {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Geodetic origin of the map frame, WGS84. NaN = not known.
+struct Datum {
+  double latitude_deg = kUnknown;
+  double longitude_deg = kUnknown;
+  double ellipsoid_height_m = kUnknown;
+
+  /// Latitude and longitude are known. A height that is not known moves no position by more than 1 mm per 60 m of it and kilometre of distance.
+  bool IsKnown() const;
+  /// The same map frame, bit for bit. A datum that is not known equals none.
+  bool IsSameAs(const Datum& other) const;
+};
+
+/// Where the vessel frame is in the map frame of `datum`.
+struct Pose {
+  Utime time;
+  bool is_placed = false;  // position and heading are known; else position_map_m, heading_rad and covariance are not to be used
+  Datum datum;
+  Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();
+  double heading_rad = 0.0;  // from true north, clockwise, 0 to 2 pi
+  double pitch_rad = 0.0;    // positive bow up; 0 where not known
+  double roll_rad = 0.0;     // positive starboard down; 0 where not known
+  double heave_m = 0.0;      // reference point above its place on calm water; 0 where not known
+  // Of east, north (m), roll, pitch, heading (rad), in this order. NaN = not known.
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
+};
+
+class PoseHistory {
+ public:
+  /// Poses older than this against the newest are forgotten: 6000 of them, 2 MB. A turn is asked for within seconds of its end.
+  static constexpr std::chrono::seconds kLength{120};
+  /// Between poses farther apart nothing is known. The grid is 20 ms; the bracket is 5 of it.
+  static constexpr std::chrono::milliseconds kMaxBracket{100};
+
+  /// Precondition: pose.time > newest()->time. Call Clear() before a pose that goes back in time.
+  void Add(const Pose& pose);
+  void Clear() { poses_.clear(); }
+
+  const Pose* newest() const { return poses_.empty() ? nullptr : &poses_.back(); }
+
+  /// The pose at `time`: that of the grid where there is one, else between its two neighbours, linear, heading the short way round.
+  ///
+  /// @return nullopt when `time` is not between two poses at most kMaxBracket apart. It is placed when both neighbours are, in one datum.
+  /// Cost: logarithmic in the length of the history.
+  std::optional<Pose> At(Utime time) const;
+
+  /// @return the datum in force at `time`: of the latest pose at or before it; unknown when there is none
+  Datum DatumAt(Utime time) const;
+
+ private:
+  // Index of the first pose at or after `time`; the number of poses when there is none.
+  std::size_t FirstNotBefore(Utime time) const;
+
+  std::deque<Pose> poses_;  // increasing in time
+};
+
+}  // namespace lookout::georeferencer

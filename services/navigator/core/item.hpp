@@ -1,0 +1,25 @@
+// One item of navigator's input: what NAV_RAW holds, and all that POSE is computed from.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/core/utime.hpp"
+
+namespace lookout::navigator {
+
+/// The numbers of nav_raw_t. IMU samples are not used yet; they move time forward as a tick does.
+enum class ItemKind { kStart = 0, kSentence = 1, kImu = 2, kTick = 3, kEnd = 4 };
+
+struct Item {
+  Utime time;  // arrival; never less than that of the item before, except at a start mark
+  std::int64_t seq = 0;
+  ItemKind kind = ItemKind::kTick;
+  std::string source;    // of a sentence: kUdpSource, kLidarSource
+  std::string sentence;  // of a sentence: IsLine
+};
+
+inline constexpr char kUdpSource[] = "udp";
+inline constexpr char kLidarSource[] = "lidar";
+
+}  // namespace lookout::navigator

@@ -1,0 +1,84 @@
+#include "services/navigator/core/item_sequencer.hpp"
+
+#include <algorithm>
+
+namespace lookout::navigator {
+
+namespace {
+
+using TickPeriods = std::chrono::duration<std::int64_t, std::deci>;
+
+// Greatest multiple of the tick period that is not after `time`.
+Utime FloorToTick(Utime time) { return std::chrono::floor<TickPeriods>(time); }
+
+}  // namespace
+
+static_assert(TickPeriods(1) == ItemSequencer::kTickPeriod);
+
+Item ItemSequencer::Make(Utime time, ItemKind kind) {
+  last_ = last_ ? std::max(*last_, time) : time;
+  return {*last_, next_seq_++, kind, {}, {}};
+}
+
+Item ItemSequencer::Start(Utime time) {
+  last_.reset();
+  next_seq_ = 0;
+  next_tick_ = FloorToTick(time) + kTickPeriod;
+  return Make(time, ItemKind::kStart);
+}
+
+Item ItemSequencer::MakeSentence(Utime arrival, const char* source, const std::string& sentence) {
+  Item item = Make(arrival, ItemKind::kSentence);
+  item.source = source;
+  item.sentence = sentence;
+  return item;
+}
+
+std::vector<Item> ItemSequencer::AdvanceTo(Utime host_time) {
+  if (!last_) return {Start(host_time)};
+  if (host_time < *last_ - kMaxStepBack) {
+    ++num_clock_set_back_;
+    return {Start(host_time)};
+  }
+  if (host_time - next_tick_ > kMaxTickGap) next_tick_ = FloorToTick(host_time);
+  std::vector<Item> items;
+  for (; next_tick_ <= host_time; next_tick_ += kTickPeriod) items.push_back(Make(next_tick_, ItemKind::kTick));
+  return items;
+}
+
+std::vector<Item> ItemSequencer::OnLines(Utime arrival, const std::vector<std::string>& lines) {
+  std::vector<Item> items;
+  if (!last_ || arrival > *last_) items = AdvanceTo(arrival);
+  if (arrival < *last_ - kMaxStepBack) {
+    num_stale_sentences_ += static_cast<std::int64_t>(lines.size());
+    return items;
+  }
+  for (const auto& line : lines) items.push_back(MakeSentence(arrival, kUdpSource, line));
+  return items;
+}
+
+std::vector<Item> ItemSequencer::OnLidarSentence(Utime arrival, const std::string& sentence) {
+  std::vector<Item> items;
+  if (!last_) items.push_back(Start(arrival));
+  if (arrival < *last_ - kMaxStepBack || arrival > *last_ + kMaxStepBack) {
+    ++num_stale_sentences_;
+    return items;
+  }
+  items.push_back(MakeSentence(arrival, kLidarSource, sentence));
+  return items;
+}
+
+std::vector<Item> ItemSequencer::Finish(Utime host_time) {
+  if (!last_) return {};
+  std::vector<Item> items;
+  if (host_time > *last_) items = AdvanceTo(host_time);
+  items.push_back(Make(host_time, ItemKind::kEnd));
+  last_.reset();
+  return items;
+}
+
+std::vector<Counter> ItemSequencer::counters() const {
+  return {{"clock_set_back", num_clock_set_back_}, {"stale_sentence", num_stale_sentences_}};
+}
+
+}  // namespace lookout::navigator

@@ -1,0 +1,51 @@
+// The edge towards the outside: puts sentences, ticks and marks into one sequence whose time never goes back.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/health.hpp"
+#include "services/navigator/core/item.hpp"
+
+namespace lookout::navigator {
+
+class ItemSequencer {
+ public:
+  static constexpr std::chrono::milliseconds kTickPeriod{100};
+  /// The host clock was set back when it is so much behind the last item: a new start. What came in by a queue and is so far off is refused.
+  static constexpr std::chrono::seconds kMaxStepBack{1};
+  /// Ticks of a longer silence are left out: the computer slept, or its clock was set forward.
+  static constexpr std::chrono::seconds kMaxTickGap{10};
+
+  /// Host time has come so far.
+  /// @return START when nothing came before or the clock was set back, else the ticks at whole multiples of kTickPeriod since the last
+  std::vector<Item> AdvanceTo(Utime host_time);
+
+  /// Lines of a datagram.
+  /// @param arrival  less than the last item by up to kMaxStepBack: it waited while time went on, and takes the time of the last item
+  std::vector<Item> OnLines(Utime arrival, const std::vector<std::string>& lines);
+
+  /// A sentence by way of the lidar. It comes late, in a bundle, so it does not move the ticks.
+  std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
+
+  /// @return END after the ticks until then; nothing when nothing came before. What comes after it begins a new sequence.
+  std::vector<Item> Finish(Utime host_time);
+
+  std::vector<Counter> counters() const;
+
+ private:
+  Item Make(Utime time, ItemKind kind);
+  Item Start(Utime time);
+  Item MakeSentence(Utime arrival, const char* source, const std::string& sentence);
+
+  std::optional<Utime> last_;  // time of the last item
+  Utime next_tick_{};
+  std::int64_t next_seq_ = 0;
+  std::int64_t num_clock_set_back_ = 0;
+  std::int64_t num_stale_sentences_ = 0;
+};
+
+}  // namespace lookout::navigator

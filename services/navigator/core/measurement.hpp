@@ -1,0 +1,71 @@
+// What sensors measured, with the time at which they did.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/core/utime.hpp"
+#include "services/navigator/core/nmea.hpp"
+
+namespace lookout::navigator {
+
+/// When something was measured.
+struct MeasurementTime {
+  Utime time;                  // UTC of the sentence where that is usable, else arrival
+  Utime arrival;               // at this computer, by its clock
+  bool is_from_sentence = false;
+};
+
+/// Chooses between the time in a sentence and its arrival.
+///
+/// @param time_of_day  as in the sentence; nullopt = it has none
+/// @param date         as in the sentence; nullopt = it has none: then that day counts which brings the time nearest to the arrival
+/// @param max_latency  the sentence's time is usable when it is not farther than this from the arrival, before or after (clocks differ)
+MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<std::chrono::microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
+                                  std::chrono::microseconds max_latency);
+
+/// A position fix at the antenna. NaN = not said, -1 for counts.
+struct GnssFix {
+  MeasurementTime when;
+  std::string source;              // as in Item
+  std::string_view sentence_type;  // "RMC", "GGA"
+  FixQuality quality = FixQuality::kNone;
+  int num_satellites = -1;
+  double hdop = kUnknown;
+  double horizontal_sd_m = kUnknown;  // one standard deviation per axis
+  std::optional<GeodeticPosition> position;
+  double msl_height_m = kUnknown;
+  double geoid_separation_m = kUnknown;
+  double speed_mps = kUnknown;
+  double course_rad = kUnknown;
+};
+
+/// Attitude of the vessel frame. NaN = not said. Heading from true north clockwise, pitch positive bow up, roll positive starboard down.
+struct Attitude {
+  MeasurementTime when;
+  std::string source;
+  std::string_view sentence_type;  // "HDT", "PASHR"
+  double heading_rad = kUnknown;   // 0 to 2 pi
+  double pitch_rad = kUnknown;     // -pi to pi
+  double roll_rad = kUnknown;      // -pi to pi
+  double heave_m = kUnknown;       // positive up
+  double heading_sd_rad = kUnknown;
+  double pitch_sd_rad = kUnknown;
+  double roll_sd_rad = kUnknown;
+};
+
+/// Velocity over ground, out of VTG, which has no time of its own.
+struct GroundVelocity {
+  Utime time;
+  double speed_mps = kUnknown;
+  double course_rad = kUnknown;
+};
+
+/// @param position_sd_m  of a fix without correction at HDOP 1, per axis
+/// @param hdop           NaN = not said: 1 counts
+/// @return standard deviation per axis; NaN when the fix was not measured
+double HorizontalSdM(FixQuality quality, double hdop, double position_sd_m);
+
+}  // namespace lookout::navigator

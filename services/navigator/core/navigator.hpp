@@ -1,0 +1,97 @@
+// The method of the navigator process: items in; fixes, attitude and poses out. What it gives depends on the items alone.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/health.hpp"
+#include "services/navigator/core/item.hpp"
+#include "services/navigator/core/measurement.hpp"
+#include "services/navigator/core/pose_estimator.hpp"
+
+namespace lookout::navigator {
+
+struct NavigatorParams {
+  std::chrono::microseconds max_sentence_latency{0};
+  double position_sd_m = 0.0;  // of a fix without correction at HDOP 1, per axis
+  // Added to the sensors' angles to give those of the vessel frame.
+  double heading_offset_rad = 0.0;
+  double pitch_offset_rad = 0.0;
+  double roll_offset_rad = 0.0;
+  PoseParams pose;
+};
+
+/// What one item gave.
+struct NavigatorOutput {
+  std::optional<GnssFix> fix;
+  std::optional<Attitude> attitude;
+  std::vector<Pose> poses;  // by time
+};
+
+class Navigator {
+ public:
+  static constexpr std::chrono::milliseconds kPosePeriod{20};
+  /// Poses of a longer stretch without an item are left out.
+  static constexpr std::chrono::seconds kMaxGap{10};
+
+  explicit Navigator(const NavigatorParams& params);
+
+  /// Takes the item, and then gives a pose for every whole 20 ms after the item before and until this one. A start mark voids what was before; an end
+  /// mark gives one more pose, at or after its time.
+  ///
+  /// @param item  not before the last one, unless it is a start mark
+  NavigatorOutput Consume(const Item& item);
+
+  /// End of input that has no end mark: the pose that an end mark would have given.
+  NavigatorOutput Flush();
+
+  /// Time of the last item.
+  const std::optional<Utime>& time() const { return time_; }
+  const std::optional<Pose>& last_pose() const { return last_pose_; }
+  /// Time of the item with the last usable fix since the start mark.
+  std::optional<Utime> last_fix_arrival() const { return estimator_.antenna().last_arrival(); }
+
+  std::vector<Counter> counters() const;
+
+ private:
+  void OnSentence(const Item& item, NavigatorOutput& output);
+  void OnSentence(const Item& item, const OtherSentence& sentence, NavigatorOutput& output);
+  void OnSentence(const Item& item, const Rmc& rmc, NavigatorOutput& output);
+  void OnSentence(const Item& item, const Gga& gga, NavigatorOutput& output);
+  void OnSentence(const Item& item, const Vtg& vtg, NavigatorOutput& output);
+  void OnSentence(const Item& item, const Hdt& hdt, NavigatorOutput& output);
+  void OnSentence(const Item& item, const Pashr& pashr, NavigatorOutput& output);
+  void TakeFix(const GnssFix& fix, NavigatorOutput& output);
+  void TakeAttitude(const Attitude& attitude, NavigatorOutput& output);
+  void GivePosesUntil(Utime time, NavigatorOutput& output);
+  void GivePose(NavigatorOutput& output);
+  void Reset();
+
+  NavigatorParams params_;
+  PoseEstimator estimator_;
+  std::optional<Utime> time_;
+  Utime next_pose_{};
+  std::optional<Pose> last_pose_;
+  std::string last_lidar_sentence_;
+
+  struct Counts {
+    std::int64_t no_checksum = 0;
+    std::int64_t bad_checksum = 0;
+    std::int64_t bad_field = 0;
+    std::int64_t implausible_value = 0;
+    std::int64_t other_sentence = 0;
+    std::int64_t repeated_sentence = 0;
+    std::int64_t understood_sentence = 0;
+    std::int64_t sentence_time_unusable = 0;
+    std::int64_t unusable_fix = 0;   // of states before the last start mark
+    std::int64_t late_fix = 0;       // likewise
+    std::int64_t late_attitude = 0;
+    std::int64_t time_jump = 0;
+  };
+  Counts counts_;
+};
+
+}  // namespace lookout::navigator

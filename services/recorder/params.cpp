@@ -1,0 +1,14 @@
+#include "services/recorder/params.hpp"
+
+#include "common/config/text_config.hpp"
+#include "config/schema/recorder.pb.h"
+
+namespace lookout::recorder {
+
+Params LoadParams(const std::filesystem::path& config_folder) {
+  const auto message = config::Load<config::Recorder>(config_folder, "recorder.txtpb");
+  if (message.log_folder().empty()) config::Refuse(config_folder / "recorder.txtpb", "log_folder", "must not be empty");
+  return {message.log_folder()};
+}
+
+}  // namespace lookout::recorder

@@ -1,0 +1,4 @@
+lookout_test(NAME unit_sim
+             SOURCES unit/sim/random_test.cpp unit/sim/solid_test.cpp unit/sim/motion_test.cpp unit/sim/ray_caster_test.cpp unit/sim/scene_test.cpp
+                     unit/sim/lidar_test.cpp unit/sim/nmea_test.cpp unit/sim/simulation_test.cpp unit/sim/pcap_sink_test.cpp
+             LINKS lookout_sim pcap)

@@ -1,0 +1,27 @@
+#include "tools/eval/table.hpp"
+
+#include <gtest/gtest.h>
+#include <limits>
+#include <sstream>
+
+namespace lookout::eval {
+namespace {
+
+TEST(Table, NumbersStandToTheRightAndWordsToTheLeft) {
+  Table table({"name", "range_m"});
+  table.Add({"a", "7.5"});
+  table.Add({"buoy", "-"});
+  table.Add({"boat", "112.0"});
+  std::ostringstream text;
+  table.Print(text);
+  EXPECT_EQ(text.str(), "name  range_m\na         7.5\nbuoy        -\nboat    112.0\n");
+}
+
+TEST(Table, WhatIsNotKnownIsADash) {
+  EXPECT_EQ(Number(std::numeric_limits<double>::quiet_NaN(), 2), "-");
+  EXPECT_EQ(Number(1.005, 1), "1.0");
+  EXPECT_EQ(Number(std::int64_t{-7}), "-7");
+}
+
+}  // namespace
+}  // namespace lookout::eval

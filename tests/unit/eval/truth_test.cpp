@@ -1,0 +1,59 @@
+#include "tools/eval/truth.hpp"
+
+#include <gtest/gtest.h>
+#include <stdexcept>
+
+#include "tests/unit/eval/truth_fixture.hpp"
+
+namespace lookout::eval {
+namespace {
+
+TEST(Truth, FindsReturnsWithinAMicrosecondByRingAndReturn) {
+  const auto folder = WriteTruth("returns");
+  const Truth truth(folder);
+  EXPECT_EQ(truth.ObjectOf(kStartUs, 0, 0), 1);
+  EXPECT_EQ(truth.ObjectOf(kStartUs + 1, 0, 0), 1);
+  EXPECT_EQ(truth.ObjectOf(kStartUs - 1, 0, 0), 1);
+  EXPECT_EQ(truth.ObjectOf(kStartUs - 2, 0, 0), std::nullopt);
+  EXPECT_EQ(truth.ObjectOf(kStartUs, 1, 0), std::nullopt);
+  EXPECT_EQ(truth.ObjectOf(kStartUs, 0, 1), std::nullopt);
+  EXPECT_EQ(truth.ObjectOf(kStartUs + 55, 0, 0), 2);
+  EXPECT_EQ(truth.ObjectsAt(kStartUs + 57), std::vector<int>{0});
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Truth, OutlineOfAMovingObjectLiesBetweenItsSamples) {
+  const auto folder = WriteTruth("outlines");
+  const Truth truth(folder);
+  const auto outlines = truth.OutlinesIn({kDatumLatitudeDeg, kDatumLongitudeDeg, kDatumHeightM});
+  const auto middle_m = outlines.At(1, kStartUs + 500'000);
+  ASSERT_TRUE(middle_m);
+  EXPECT_NEAR(middle_m->at(0).x(), 0.0, 1e-3);
+  EXPECT_NEAR(middle_m->at(0).y(), 0.5, 1e-3);
+  EXPECT_NEAR(outlines.At(1, kStartUs - 9)->at(2).y(), 2.0, 1e-3) << "before the first it is the first";
+  EXPECT_NEAR(outlines.At(1, kStartUs + 9'000'000)->at(2).y(), 3.0, 1e-3) << "behind the last it is the last";
+  EXPECT_NEAR(outlines.At(2, kStartUs + 9'000'000)->at(1).x(), 12.0, 1e-3);
+  EXPECT_FALSE(outlines.At(7, kStartUs));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Truth, BadFilesAreNamedWithTheirLine) {
+  const auto folder = WriteTruth("bad");
+  WriteFile(folder / "returns.csv", "utime_us,ring,return_index,object_id\n1,2,3,4\n1,2,x,4\n");
+  try {
+    const Truth truth(folder);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()), (folder / "returns.csv").string() + ":3: not a number: x");
+  }
+  WriteFile(folder / "returns.csv", "utime_us,ring\n");
+  EXPECT_THROW(Truth{folder}, std::runtime_error);
+  WriteFile(folder / "returns.csv", "utime_us,ring,return_index,object_id\n1,2\n");
+  EXPECT_THROW(Truth{folder}, std::runtime_error);
+  std::filesystem::remove(folder / "returns.csv");
+  EXPECT_THROW(Truth{folder}, std::runtime_error);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace lookout::eval

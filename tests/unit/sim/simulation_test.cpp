@@ -1,0 +1,160 @@
+#include "tools/sim/simulation.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "tests/unit/sim/sim_fixture.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+SimulationParams Params(std::uint64_t seed, std::chrono::microseconds duration) {
+  SimulationParams params;
+  params.start = Utime(1'781'532'600s);
+  params.duration = duration;
+  params.seed = seed;
+  return params;
+}
+
+std::vector<Datagram> RunAll(const std::string& scene_name, const SimulationParams& params) {
+  const auto scene = MakeScene(scene_name, params.seed);
+  Simulation simulation(*scene, SmallBoat(), params, nullptr);
+  std::vector<Datagram> datagrams;
+  while (auto datagram = simulation.Next()) datagrams.push_back(std::move(*datagram));
+  return datagrams;
+}
+
+bool AreEqual(const std::vector<Datagram>& a, const std::vector<Datagram>& b) {
+  return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](const Datagram& x, const Datagram& y) {
+           return x.time == y.time && x.port == y.port && x.payload == y.payload;
+         });
+}
+
+TEST(Simulation, GivesTheSameBytesForTheSameSeedOnly) {
+  for (const auto name : SceneNames()) {
+    const auto first = RunAll(std::string(name), Params(5, 300ms));
+    EXPECT_TRUE(AreEqual(first, RunAll(std::string(name), Params(5, 300ms)))) << name;
+    EXPECT_FALSE(AreEqual(first, RunAll(std::string(name), Params(6, 300ms)))) << name;
+  }
+}
+
+TEST(Simulation, SendsInOrderOfTimeAtTheRatesOfTheSensors) {
+  const auto datagrams = RunAll("open_water", Params(1, 2s));
+  std::map<std::string, int> counts;
+  Utime last{};
+  for (const auto& datagram : datagrams) {
+    EXPECT_GE(datagram.time, last);
+    last = datagram.time;
+    if (datagram.port == 10110) {
+      const std::string line(datagram.payload.begin(), datagram.payload.end());
+      ++counts[line.substr(1, line.find(',') - 1)];
+    } else {
+      ++counts[std::to_string(datagram.port) + "/" + std::to_string(datagram.payload.size())];
+    }
+  }
+  EXPECT_NEAR(counts["2368/1206"], 2.0 / 1327.104e-6, 1.0);
+  EXPECT_NEAR(counts["8308/512"], 2.0 / 7.1e-3, 1.0);
+  EXPECT_NEAR(counts["GPRMC"], 20, 1);
+  EXPECT_NEAR(counts["GPGGA"], 20, 1);
+  EXPECT_NEAR(counts["GPVTG"], 20, 1);
+  EXPECT_NEAR(counts["GPHDT"], 20, 1);
+  EXPECT_NEAR(counts["PASHR"], 40, 1);
+  EXPECT_EQ(counts.size(), 7U);
+}
+
+TEST(Simulation, EverySentenceHasARightChecksum) {
+  int num_checked = 0;
+  for (const auto& datagram : RunAll("open_water", Params(1, 1s))) {
+    std::string text;
+    if (datagram.port == 10110) text.assign(datagram.payload.begin(), datagram.payload.end());
+    if (datagram.port == 8308) text.assign(datagram.payload.begin() + 206, std::find(datagram.payload.begin() + 206, datagram.payload.end(), 0));
+    if (text.empty()) continue;
+    ASSERT_EQ(text.substr(text.size() - 2), "\r\n");
+    const auto star = text.find('*');
+    ASSERT_NE(star, std::string::npos);
+    unsigned checksum = 0;
+    for (const char character : text.substr(1, star - 1)) checksum ^= static_cast<unsigned char>(character);
+    EXPECT_EQ(std::stoul(text.substr(star + 1, 2), nullptr, 16), checksum) << text;
+    ++num_checked;
+  }
+  EXPECT_GT(num_checked, 150);
+}
+
+TEST(Simulation, PositionPacketsAreLockedAndHoldTheRmcOfAWholeSecondBefore) {
+  std::string last_time;
+  for (const auto& datagram : RunAll("open_water", Params(1, 2s))) {
+    if (datagram.port != 8308) continue;
+    EXPECT_EQ(datagram.payload[202], 2);
+    const auto past_hour = std::chrono::microseconds(ReadU32LittleEndian(datagram.payload, 198));
+    EXPECT_LT(datagram.time - (Utime(1'781'532'000s) + past_hour), 1ms);
+    const std::string text(datagram.payload.begin() + 206, datagram.payload.begin() + 206 + 17);
+    EXPECT_EQ(text.substr(0, 7), "$GPRMC,");
+    EXPECT_EQ(text.substr(13, 4), ".000");
+    last_time = text.substr(7, 6);
+  }
+  EXPECT_EQ(last_time, "141001");
+}
+
+TEST(Simulation, BoatWithoutHeadingSendsNeitherHdtNorPashr) {
+  auto params = Params(1, 1s);
+  params.navigation.has_heading = false;
+  params.navigation.gnss_rate_hz = 5;
+  std::map<std::string, int> counts;
+  for (const auto& datagram : RunAll("open_water", params)) {
+    if (datagram.port == 10110) ++counts[std::string(datagram.payload.begin() + 1, datagram.payload.begin() + 6)];
+  }
+  EXPECT_EQ(counts.size(), 3U);
+  EXPECT_EQ(counts["GPRMC"], 5);
+}
+
+std::vector<std::string> Lines(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(TruthWriter, WritesObjectsOutlinesPosesAndReturns) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "lookout_truth_writer_test";
+  std::filesystem::remove_all(folder);
+  const auto params = Params(1, 500ms);
+  const auto scene = MakeScene("lake", 1);
+  std::size_t num_returns = 0;
+  {
+    TruthWriter truth(folder, *scene, SmallBoat(), params.start);
+    Simulation simulation(*scene, SmallBoat(), params, &truth);
+    while (const auto datagram = simulation.Next()) {
+      if (datagram->port != 2368) continue;
+      for (std::size_t block = 0; block < 12; ++block) {
+        for (std::size_t k = 0; k < 32; ++k) num_returns += ReadU16LittleEndian(datagram->payload, block * 100 + 4 + k * 3) != 0 ? 1U : 0U;
+      }
+    }
+    truth.Close();
+  }
+  EXPECT_EQ(Lines(folder / "objects.csv").size(), scene->objects.size() + 3);
+  EXPECT_EQ(Lines(folder / "returns.csv").size(), num_returns + 1);
+  EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id");
+  const auto poses = Lines(folder / "pose.csv");
+  EXPECT_EQ(poses.size(), 1U + 25U);  // 0, 20, ... 480 ms; the last packet ends before 500 ms
+  EXPECT_EQ(poses[1].rfind("1781532600000000,43.62", 0), 0U);
+  // The motor boat moves (9 vertices each 100 ms, one beyond the end), a buoy does not (24 once).
+  int num_motor_boat = 0;
+  int num_buoy = 0;
+  for (const auto& line : Lines(folder / "outlines.csv")) {
+    num_motor_boat += line.rfind("3,", 0) == 0 ? 1 : 0;
+    num_buoy += line.rfind("7,", 0) == 0 ? 1 : 0;
+  }
+  EXPECT_EQ(num_motor_boat, 9 * 6);
+  EXPECT_EQ(num_buoy, 24);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace lookout::sim

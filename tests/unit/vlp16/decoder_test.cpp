@@ -1,0 +1,398 @@
+// Decoder and ScanAssembler together: packets in, turns out.
+#include "services/vlp16/core/decoder.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+#include "tests/unit/vlp16/packet_maker.hpp"
+
+namespace lookout::vlp16 {
+namespace {
+
+using test::Azimuths;
+using test::MakeDataPacket;
+using test::SpinningSensor;
+
+const Utime kTime = Utime(std::chrono::hours(24 * 20000));
+
+struct Bench {
+  explicit Bench(const DecoderParams& params = {})
+      : decoder(
+            params, [this](const Turn& turn) { turns.push_back(turn); }, [this](const SentenceOfLidar& sentence) { sentences.push_back(sentence); }) {
+  }
+
+  // The host takes a packet when its last shot has gone out.
+  void Send(SpinningSensor& sensor, int num_packets = 1) {
+    for (int i = 0; i < num_packets; ++i) {
+      const auto payload = sensor.Next();
+      decoder.OnDataPayload(kTime + std::chrono::floor<std::chrono::microseconds>(std::chrono::nanoseconds(sensor.time_ns)), payload);
+    }
+  }
+
+  std::int64_t CountOf(std::string_view name) const {
+    const auto counters = decoder.counters();
+    const auto found = std::ranges::find(counters, name, &Counter::name);
+    return found != counters.end() ? found->count : -1;
+  }
+
+  std::vector<Turn> turns;
+  std::vector<SentenceOfLidar> sentences;
+  Decoder decoder;
+};
+
+DecoderParams Cut(double cut_deg) {
+  DecoderParams params;
+  params.cut_azimuth_rad = DegToRad(cut_deg);
+  return params;
+}
+
+TEST(Decoder, GivesNoTurnWithoutPackets) {
+  Bench bench;
+  bench.decoder.Flush();
+  EXPECT_TRUE(bench.turns.empty());
+}
+
+TEST(Decoder, GivesOnePartialTurnForOnePacket) {
+  Bench bench;
+  auto payload = MakeDataPacket(Azimuths(1000, 40), 1'000'000, format::kModeStrongest, format::kProductVlp16, {});
+  test::SetReturn(payload, 0, 0, 0, {700, 11});  // lowest beam
+  test::SetReturn(payload, 0, 1, 1, {800, 12});  // laser 1 is ring 8
+  test::SetReturn(payload, 11, 1, 15, {65535, 255});
+  test::SetReturn(payload, 3, 0, 4, {0, 99});  // no return has no reflectivity
+  bench.decoder.OnDataPayload(kTime, payload);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  const auto& turn = bench.turns[0];
+  ASSERT_EQ(turn.num_columns(), 24);
+  EXPECT_TRUE(turn.is_partial_start);
+  EXPECT_TRUE(turn.is_partial_end);
+  EXPECT_FALSE(turn.has_hole);
+  EXPECT_EQ(turn.range.size(), 24U * 16U);
+  EXPECT_EQ(turn.range[0], 700);
+  EXPECT_EQ(turn.reflectivity[0], 11);
+  EXPECT_EQ(turn.range[16 + 8], 800);
+  EXPECT_EQ(turn.range[23 * 16 + 15], 65535);
+  EXPECT_EQ(turn.reflectivity[23 * 16 + 15], 255);
+  EXPECT_EQ(std::ranges::count_if(turn.range, [](std::uint16_t range) { return range != 0; }), 3);
+  EXPECT_EQ(std::ranges::count_if(turn.reflectivity, [](std::uint8_t value) { return value != 0; }), 3);
+  EXPECT_NEAR(turn.azimuth_rad[0], DegToRad(10.0), 1e-6);
+  EXPECT_NEAR(turn.azimuth_rad[1], DegToRad(10.2), 1e-6);
+  EXPECT_NEAR(turn.azimuth_rad[23], DegToRad(14.6), 1e-6);
+  EXPECT_EQ(turn.time_ns[0], 0);
+  EXPECT_EQ(turn.time_ns[1], 55296);
+  EXPECT_EQ(turn.time_ns[23], 23 * 55296);
+  EXPECT_EQ(turn.time, kTime - std::chrono::microseconds(1327));  // the host took it after its last shot
+  EXPECT_EQ(turn.end_time - turn.time, std::chrono::microseconds((23 * 55296 + 15 * 2304) / 1000));
+  EXPECT_NEAR(turn.rate_radps, kTwoPi * 10.0, kTwoPi * 0.05);
+}
+
+TEST(Decoder, CutsInsideAPacketAtTheFirstColumnAtTheCut) {
+  Bench bench;
+  auto sensor = SpinningSensor();
+  sensor.azimuth_deg = 355.0;
+  bench.Send(sensor, 4);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_TRUE(bench.turns[0].is_partial_start);
+  EXPECT_FALSE(bench.turns[0].is_partial_end);
+  EXPECT_FALSE(bench.turns[1].is_partial_start);
+  EXPECT_TRUE(bench.turns[1].is_partial_end);
+  EXPECT_EQ(bench.turns[0].num_columns() + bench.turns[1].num_columns(), 4 * 24);
+  EXPECT_GT(bench.turns[0].azimuth_rad.back(), DegToRad(359.7));
+  EXPECT_LT(bench.turns[1].azimuth_rad.front(), DegToRad(0.2));
+  EXPECT_EQ(bench.turns[1].number, 1);
+}
+
+TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewTurn) {
+  Bench bench(Cut(120.0));
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(11780, 40), 0));  // second firing of block 5: 119.80 + 0.20
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_EQ(bench.turns[0].num_columns(), 11);
+  EXPECT_FLOAT_EQ(bench.turns[1].azimuth_rad.front(), static_cast<float>(DegToRad(120.0)));
+}
+
+TEST(Decoder, InterpolatesAcrossTheSeam) {
+  Bench bench(Cut(180.0));
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(35990, 40), 0));
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  EXPECT_NEAR(bench.turns[0].azimuth_rad[0], DegToRad(359.9), 1e-6);
+  EXPECT_NEAR(bench.turns[0].azimuth_rad[1], DegToRad(0.1), 1e-6);
+  EXPECT_NEAR(bench.turns[0].azimuth_rad[2], DegToRad(0.3), 1e-6);
+}
+
+TEST(Decoder, CountsATurnFromCutToCutAsWhole) {
+  for (const double rpm : {300.0, 600.0, 1200.0}) {
+    Bench bench;
+    SpinningSensor sensor;
+    sensor.rpm = rpm;
+    const int packets_per_turn = static_cast<int>(60e9 / rpm / 1327104.0);
+    bench.Send(sensor, 3 * packets_per_turn + 5);  // begins at the cut: nothing of its first turn is missing
+    bench.decoder.Flush();
+    ASSERT_GE(bench.turns.size(), 3U) << rpm;
+    for (std::size_t i = 0; i + 1 < bench.turns.size(); ++i) {
+      EXPECT_FALSE(bench.turns[i].is_partial_start) << rpm;
+      EXPECT_FALSE(bench.turns[i].is_partial_end) << rpm;
+      EXPECT_NEAR(bench.turns[i].num_columns(), 60e9 / rpm / 55296, 1.0);
+      EXPECT_NEAR(bench.turns[i].rate_radps, rpm / 60.0 * kTwoPi, 0.002 * rpm / 60.0 * kTwoPi);
+    }
+    EXPECT_TRUE(bench.turns.back().is_partial_end);
+  }
+}
+
+TEST(Decoder, TakesTwoReturnsPerShotInDualMode) {
+  Bench bench;
+  auto payload = MakeDataPacket(Azimuths(1000, 40, true), 0, format::kModeDual, format::kProductVlp16, {});
+  test::SetReturn(payload, 2, 1, 15, {900, 1});  // last
+  test::SetReturn(payload, 3, 1, 15, {800, 2});  // strongest, of the same shot
+  bench.decoder.OnDataPayload(kTime, payload);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  const auto& turn = bench.turns[0];
+  EXPECT_EQ(turn.num_columns(), 12);
+  EXPECT_EQ(turn.num_returns(), 2);
+  ASSERT_EQ(turn.range.size(), 12U * 16U * 2U);
+  const std::size_t cell = (3 * 16 + 15) * 2;
+  EXPECT_EQ(turn.range[cell], 900);
+  EXPECT_EQ(turn.range[cell + 1], 800);
+  EXPECT_EQ(turn.reflectivity[cell + 1], 2);
+  EXPECT_NEAR(turn.azimuth_rad[3], DegToRad(10.6), 1e-6);
+  EXPECT_EQ(turn.time_ns[11], 11 * 55296);
+}
+
+TEST(Decoder, EndsTheTurnWhenTheReturnModeChanges) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 10.0;
+  bench.Send(sensor, 3);
+  sensor.mode = format::kModeDual;
+  bench.Send(sensor, 3);
+  sensor.mode = format::kModeLast;
+  bench.Send(sensor, 3);
+  sensor.product = format::kProductPuckHiRes;
+  bench.Send(sensor, 3);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 4U);
+  EXPECT_TRUE(bench.turns[0].is_partial_end);
+  EXPECT_TRUE(bench.turns[1].is_partial_start);
+  EXPECT_EQ(bench.turns[1].mode, ReturnMode::kDual);
+  EXPECT_EQ(bench.turns[1].num_columns(), 36);
+  EXPECT_EQ(bench.turns[2].mode, ReturnMode::kLast);
+  EXPECT_EQ(bench.turns[3].model, Model::kPuckHiRes);
+  EXPECT_EQ(bench.turns[3].counts.num_lost, 0);
+}
+
+TEST(Decoder, MarksAHoleInsideATurn) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 10.0;
+  bench.Send(sensor, 3);
+  sensor.Skip(5);
+  bench.Send(sensor, 3);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  EXPECT_TRUE(bench.turns[0].has_hole);
+  EXPECT_EQ(bench.turns[0].num_lost_packets, 5);
+  EXPECT_EQ(bench.turns[0].counts.num_lost, 5);
+  EXPECT_EQ(bench.turns[0].num_columns(), 6 * 24);
+  EXPECT_NEAR(bench.turns[0].time_ns[72], 8 * 1327104, 1000);
+}
+
+TEST(Decoder, SharesALossAcrossTheCutBetweenBothTurns) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 345.0;
+  bench.Send(sensor, 2);  // to 354.55
+  sensor.Skip(2);         // to 4.1
+  bench.Send(sensor, 2);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_TRUE(bench.turns[0].has_hole);
+  EXPECT_TRUE(bench.turns[1].has_hole);
+  EXPECT_FALSE(bench.turns[0].is_partial_end);
+  EXPECT_FALSE(bench.turns[1].is_partial_start);
+  EXPECT_EQ(bench.turns[0].num_lost_packets, 2);  // one before the cut, one across it
+  EXPECT_EQ(bench.turns[1].num_lost_packets, 1);  // the one across it
+  EXPECT_EQ(bench.turns[1].counts.num_lost, 2);
+}
+
+TEST(Decoder, DoesNotJoinWhatLiesMoreThanATurnApart) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 10.0;
+  bench.Send(sensor, 2);
+  sensor.Skip(76);
+  bench.Send(sensor, 2);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_TRUE(bench.turns[0].is_partial_end);
+  EXPECT_TRUE(bench.turns[0].has_hole);
+  EXPECT_TRUE(bench.turns[1].is_partial_start);
+  EXPECT_TRUE(bench.turns[1].has_hole);
+  EXPECT_EQ(bench.CountOf("data_lost"), 76);
+}
+
+TEST(Decoder, DropsDuplicateAndLatePackets) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 10.0;
+  const auto first = sensor.Next();
+  const auto second = sensor.Next();
+  const auto third = sensor.Next();
+  for (const auto* payload : {&first, &third, &third, &second}) bench.decoder.OnDataPayload(kTime, *payload);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  EXPECT_EQ(bench.turns[0].num_columns(), 48);
+  EXPECT_EQ(bench.turns[0].counts.num_packets, 4);
+  EXPECT_EQ(bench.turns[0].counts.num_duplicates, 1);
+  EXPECT_EQ(bench.turns[0].counts.num_reordered, 1);
+  EXPECT_EQ(bench.turns[0].counts.num_lost, 1);
+}
+
+TEST(Decoder, EndsTheTurnWhenTheSensorRestarts) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 10.0;
+  sensor.time_ns = 100'000'000'000;
+  bench.Send(sensor, 2);
+  sensor.time_ns = 0;
+  bench.Send(sensor, 2);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_TRUE(bench.turns[0].is_partial_end);
+  EXPECT_TRUE(bench.turns[1].is_partial_start);
+  EXPECT_FALSE(bench.turns[1].has_hole);
+  EXPECT_EQ(bench.CountOf("sensor_time_jumps"), 1);
+  EXPECT_EQ(bench.turns[1].time, kTime);  // its own offset, not that of the time before
+}
+
+TEST(Decoder, CapsATurnThatDoesNotEnd) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 10.0;
+  sensor.rpm = 0.0;
+  bench.Send(sensor, 1600);  // 2.1 s
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_EQ(bench.CountOf("turns_capped"), 1);
+  EXPECT_TRUE(bench.turns[0].is_partial_end);
+  EXPECT_LE(bench.turns[0].time_ns.back(), 2'000'000'000);
+  EXPECT_EQ(bench.turns[0].rate_radps, 0.0);
+}
+
+TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 350.0;
+  bench.Send(sensor, 1);
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket({35900, 35940, 35980, 20, 35999, 10, 35998, 30, 60, 100, 140, 180}, 1327));
+  bench.decoder.Flush();
+  EXPECT_EQ(bench.turns.size(), 2U);
+}
+
+TEST(Decoder, CutsWhereALimitedFieldOfViewJumpsOverTheCut) {
+  Bench bench;
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket({9000, 9040, 9080, 9120, 9160, 9200, 4500, 4540, 4580, 4620, 4660, 4700}, 0));
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_EQ(bench.turns[0].num_columns(), 12);
+  EXPECT_FALSE(bench.turns[0].is_partial_end);
+  EXPECT_NEAR(bench.turns[0].azimuth_rad[11], DegToRad(92.2), 1e-6);
+}
+
+TEST(Decoder, HoldsPacketsOfTheSharedProductByteUntilItKnowsTheModel) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.product = format::kProductHdl32e;
+  bench.Send(sensor, 10);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  EXPECT_EQ(bench.turns[0].num_columns(), 10 * 24);
+  EXPECT_EQ(bench.CountOf("data_model_undecided"), 0);
+}
+
+TEST(Decoder, RefusesAnHdl32eByName) {
+  Bench bench;
+  for (int i = 0; i < 10; ++i) {
+    bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(100 + i * 240, 20), static_cast<std::uint32_t>(i * 553), 0x37, 0x21));
+  }
+  bench.decoder.Flush();
+  EXPECT_TRUE(bench.turns.empty());
+  EXPECT_EQ(bench.CountOf("data_hdl32e"), 10);
+  EXPECT_NE(bench.decoder.last_refusal().find("HDL-32E"), std::string_view::npos);
+}
+
+TEST(Decoder, RefusesALonePacketOfTheSharedProductByte) {
+  Bench bench;
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(100, 40), 5, 0x37, 0x21));
+  bench.decoder.Flush();
+  EXPECT_TRUE(bench.turns.empty());
+  EXPECT_EQ(bench.CountOf("data_model_undecided"), 1);
+}
+
+TEST(Decoder, CountsEachKindOfBadPacketUnderItsOwnName) {
+  Bench bench;
+  auto bad_flag = MakeDataPacket(Azimuths(0, 40), 0);
+  bad_flag[0] = 0;
+  bench.decoder.OnDataPayload(kTime, bad_flag);
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x55));
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(0, 40), 0, 0x12));
+  bench.decoder.OnDataPayload(kTime, {});
+  bench.decoder.OnPositionPayload(kTime, {});
+  bench.decoder.OnPositionPayload(kTime, test::MakePositionPacket(0, 9, ""));
+  for (const auto* name :
+       {"data_bad_flag", "data_unknown_product", "data_bad_return_mode", "data_bad_size", "position_bad_size", "position_bad_pps"}) {
+    EXPECT_EQ(bench.CountOf(name), 1) << name;
+  }
+}
+
+TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.azimuth_deg = 350.0;
+  sensor.time_ns = 7'000'000;  // the host is 7 ms behind: both at kTime past the hour
+  const Utime behind = kTime;
+  const auto send = [&](int num_packets) {
+    for (int i = 0; i < num_packets; ++i) {
+      const auto payload = sensor.Next();
+      bench.decoder.OnDataPayload(behind + std::chrono::microseconds(sensor.time_ns / 1000 - 7000), payload);
+    }
+  };
+  send(1);
+  bench.decoder.OnPositionPayload(behind, test::MakePositionPacket(8'000, format::kPpsLocked, test::kValidRmc));
+  send(100);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 3U);
+  EXPECT_EQ(bench.turns[0].clock.source, TimeSource::kHost);
+  EXPECT_EQ(bench.turns[1].clock.source, TimeSource::kSensor);
+  EXPECT_EQ(bench.turns[1].clock.state, ClockState::kLocked);
+  EXPECT_NEAR(ToSeconds(*bench.turns[1].clock.host_minus_sensor), -0.007, 1e-5);
+  ASSERT_EQ(bench.sentences.size(), 1U);
+  EXPECT_EQ(bench.sentences[0].text, test::kValidRmc);
+  EXPECT_EQ(bench.sentences[0].stamp_us, 8'000U);
+  EXPECT_NEAR(ToSeconds(bench.sentences[0].time - (behind + std::chrono::microseconds(1'000))), 0.0, 2e-6);  // by the host, as its turn
+}
+
+TEST(Decoder, BeginsAnewAfterAStartMark) {
+  Bench bench;
+  SpinningSensor sensor;
+  bench.Send(sensor, 200);
+  const auto turns = bench.turns;
+  bench.decoder.Reset();
+  bench.turns.clear();
+  sensor = SpinningSensor();
+  bench.Send(sensor, 200);
+  ASSERT_EQ(bench.turns.size(), turns.size());
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    EXPECT_EQ(bench.turns[i].number, turns[i].number);
+    EXPECT_EQ(bench.turns[i].time, turns[i].time);
+    EXPECT_EQ(bench.turns[i].time_ns, turns[i].time_ns);
+    EXPECT_EQ(bench.turns[i].counts.num_packets, turns[i].counts.num_packets);
+  }
+}
+
+}  // namespace
+}  // namespace lookout::vlp16

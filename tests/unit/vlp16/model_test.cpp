@@ -1,0 +1,102 @@
+#include "services/vlp16/core/model.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+#include "tests/unit/vlp16/packet_maker.hpp"
+
+namespace lookout::vlp16 {
+namespace {
+
+DataPacket PacketOf(std::uint8_t product, std::uint32_t stamp_us = 0, ReturnMode mode = ReturnMode::kStrongest) {
+  DataPacket packet;
+  packet.product = product;
+  packet.stamp_us = stamp_us;
+  packet.mode = mode;
+  packet.num_steps = mode == ReturnMode::kDual ? 6 : 12;
+  return packet;
+}
+
+TEST(Beams, GoFromTheLowestUp) {
+  for (const auto model : {Model::kVlp16, Model::kPuckHiRes}) {
+    const auto& beams = BeamsOf(model);
+    EXPECT_TRUE(std::ranges::is_sorted(beams.elevation_rad));
+    for (int ring = 0; ring < format::kNumLasers; ++ring) {
+      EXPECT_EQ(beams.ring_of_laser[static_cast<std::size_t>(beams.laser_of_ring[static_cast<std::size_t>(ring)])], ring);
+    }
+  }
+}
+
+TEST(Beams, OfTheVlp16AreTwoDegreesApart) {
+  const auto& beams = BeamsOf(Model::kVlp16);
+  EXPECT_EQ(beams.name, "VLP-16");
+  EXPECT_EQ(beams.laser_of_ring, (std::array<int, 16>{0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15}));
+  EXPECT_DOUBLE_EQ(beams.elevation_rad[0], DegToRad(-15.0));
+  EXPECT_DOUBLE_EQ(beams.elevation_rad[15], DegToRad(15.0));
+  EXPECT_DOUBLE_EQ(beams.origin_height_m[0], 0.0112);
+  EXPECT_DOUBLE_EQ(beams.origin_height_m[15], -0.0112);
+}
+
+TEST(Beams, OfThePuckHiResAreOneAndAThirdDegreesApart) {
+  const auto& beams = BeamsOf(Model::kPuckHiRes);
+  EXPECT_EQ(beams.name, "Puck Hi-Res");
+  EXPECT_DOUBLE_EQ(beams.elevation_rad[0], DegToRad(-10.0));
+  EXPECT_DOUBLE_EQ(beams.elevation_rad[1], DegToRad(-8.67));
+  EXPECT_DOUBLE_EQ(beams.elevation_rad[15], DegToRad(10.0));
+  EXPECT_DOUBLE_EQ(beams.origin_height_m[0], 0.0074);
+  for (std::size_t ring = 1; ring < 16; ++ring)
+    EXPECT_NEAR(beams.elevation_rad[ring] - beams.elevation_rad[ring - 1], DegToRad(20.0 / 15), DegToRad(0.011));
+}
+
+TEST(ModelJudge, GoesByTheProductByte) {
+  ModelJudge judge(ModelChoice::kAuto);
+  EXPECT_EQ(judge.Judge(PacketOf(0x22)), ModelVerdict::kVlp16);
+  EXPECT_EQ(judge.Judge(PacketOf(0x24)), ModelVerdict::kPuckHiRes);
+  EXPECT_EQ(judge.Judge(PacketOf(0x28)), ModelVerdict::kUnknown);
+  EXPECT_EQ(judge.Judge(PacketOf(0x21)), ModelVerdict::kUndecided);
+}
+
+TEST(ModelJudge, ObeysConfigWhateverTheProductByteSays) {
+  for (const std::uint8_t product : {0x21, 0x22, 0x24, 0x99}) {
+    EXPECT_EQ(ModelJudge(ModelChoice::kVlp16).Judge(PacketOf(product)), ModelVerdict::kVlp16);
+    EXPECT_EQ(ModelJudge(ModelChoice::kPuckHiRes).Judge(PacketOf(product)), ModelVerdict::kPuckHiRes);
+  }
+}
+
+ModelVerdict JudgeStream(double interval_us, ReturnMode mode, int skip_every = 0) {
+  ModelJudge judge(ModelChoice::kAuto);
+  ModelVerdict verdict = ModelVerdict::kUndecided;
+  for (int i = 0, sent = 0; sent < 8; ++i) {
+    if (skip_every > 0 && i % skip_every == 1) continue;
+    // Over the hour on the way.
+    const auto stamp_us =
+        static_cast<std::uint32_t>((3'599'999'000.0 + i * interval_us) - (3'599'999'000.0 + i * interval_us >= 3.6e9 ? 3.6e9 : 0.0));
+    verdict = judge.Judge(PacketOf(0x21, stamp_us, mode));
+    ++sent;
+    EXPECT_EQ(verdict == ModelVerdict::kUndecided, sent <= 3);
+  }
+  return verdict;
+}
+
+TEST(ModelJudge, TellsTheSharedByteByTheIntervalBetweenPackets) {
+  EXPECT_EQ(JudgeStream(1327.104, ReturnMode::kStrongest), ModelVerdict::kVlp16);
+  EXPECT_EQ(JudgeStream(552.96, ReturnMode::kStrongest), ModelVerdict::kHdl32e);
+  EXPECT_EQ(JudgeStream(663.552, ReturnMode::kDual), ModelVerdict::kVlp16);
+  EXPECT_EQ(JudgeStream(276.48, ReturnMode::kDual), ModelVerdict::kHdl32e);
+}
+
+TEST(ModelJudge, IsNotMisledByALostPacket) { EXPECT_EQ(JudgeStream(552.96, ReturnMode::kStrongest, 4), ModelVerdict::kHdl32e); }
+
+TEST(ModelJudge, CanDecideEarlyOnlyWithAnInterval) {
+  ModelJudge judge(ModelChoice::kAuto);
+  EXPECT_EQ(judge.JudgeNow(), ModelVerdict::kUndecided);
+  judge.Judge(PacketOf(0x21, 1000));
+  judge.Judge(PacketOf(0x21, 1000));  // the same again is no interval
+  EXPECT_EQ(judge.JudgeNow(), ModelVerdict::kUndecided);
+  judge.Judge(PacketOf(0x21, 2327));
+  EXPECT_EQ(judge.JudgeNow(), ModelVerdict::kVlp16);
+}
+
+}  // namespace
+}  // namespace lookout::vlp16

@@ -1,0 +1,258 @@
+#include "services/vlp16/service.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <map>
+
+#include "common/bus/memory_bus.hpp"
+#include "lookout/lidar_clock_t.hpp"
+#include "lookout/lidar_nmea_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "services/vlp16/wire.hpp"
+#include "tests/unit/vlp16/packet_maker.hpp"
+
+namespace lookout::vlp16 {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using test::SpinningSensor;
+
+const Utime kTime = Utime(std::chrono::hours(24 * 20000));
+
+struct Message {
+  std::string channel;
+  std::vector<std::uint8_t> bytes;
+  bool operator==(const Message&) const = default;
+};
+
+// A bus that keeps what was published, in order.
+struct Recorded {
+  Recorded() {
+    bus.SubscribeAll([this](std::string_view channel, Bytes bytes) { messages.push_back({std::string(channel), {bytes.begin(), bytes.end()}}); });
+  }
+  void Handle() {
+    while (bus.HandleOnce()) continue;
+  }
+  template <typename T>
+  std::vector<T> All(const bus::Channel& channel) const {
+    std::vector<T> all;
+    for (const auto& message : messages) {
+      if (message.channel == channel.name) all.push_back(bus::Decode<T>(message.bytes).value());
+    }
+    return all;
+  }
+  bus::MemoryBus bus;
+  std::vector<Message> messages;
+};
+
+// A boat's morning: data with a loss, position packets, garbage.
+void Feed(Service& service, SpinningSensor sensor, int num_packets) {
+  for (int i = 0; i < num_packets; ++i) {
+    if (i == 30) sensor.Skip(2);
+    const auto payload = sensor.Next();
+    const Utime host_time = kTime + microseconds(sensor.time_ns / 1000 + i % 7 * 50);
+    service.OnDatagram(host_time, 2368, payload);
+    if (i % 10 == 0) service.OnDatagram(host_time, 8308, test::MakePositionPacket(sensor.stamp_us(), 2, test::kValidRmc));
+    if (i % 50 == 0) service.OnDatagram(host_time, 2368, test::Payload(format::kDataPacketSizeBytes, 7));
+  }
+}
+
+std::int64_t CountOf(const Service& service, std::string_view name) {
+  const auto counters = service.Report().counters;
+  const auto found = std::ranges::find(counters, name, &Counter::name);
+  return found != counters.end() ? found->count : -1;
+}
+
+TEST(Service, PublishesNothingWhenNothingCame) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  service.AdvanceTo(kTime);
+  service.Finish(kTime);
+  out.Handle();
+  EXPECT_TRUE(out.messages.empty());
+}
+
+TEST(Service, PublishesRawThenClockThenScan) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  Feed(service, SpinningSensor(), 100);
+  service.Finish(kTime + milliseconds(200));
+  out.Handle();
+  const auto first = std::ranges::find(out.messages, "LIDAR_SCAN", &Message::channel);
+  ASSERT_NE(first, out.messages.end());
+  EXPECT_EQ((first - 1)->channel, "LIDAR_CLOCK");
+  const auto scans = out.All<lidar_scan_t>(bus::kLidarScan);
+  const auto clocks = out.All<lidar_clock_t>(bus::kLidarClock);
+  const auto packets = out.All<lidar_packets_t>(bus::kLidarPackets);
+  const auto sentences = out.All<lidar_nmea_t>(bus::kLidarNmea);
+  ASSERT_EQ(scans.size(), 2U);
+  ASSERT_EQ(clocks.size(), 2U);
+  EXPECT_EQ(sentences.size(), 10U);
+  EXPECT_EQ(scans[0].utime_us, clocks[0].utime_us);
+  EXPECT_EQ(scans[0].num_columns, scans[0].num_turn_columns);
+  EXPECT_EQ(scans[0].flags, lidar_scan_t::FLAG_HOLE);
+  EXPECT_EQ(scans[0].num_lost_packets, 2);
+  EXPECT_EQ(scans[1].flags, lidar_scan_t::FLAG_PARTIAL_END);
+  EXPECT_EQ(scans[1].raw_seq, packets.back().seq);
+  EXPECT_EQ(packets.front().marks, lidar_packets_t::MARK_START);
+  EXPECT_EQ(packets.back().marks, lidar_packets_t::MARK_END);
+  // The bundle that completes a turn is the last before it on the bus.
+  const auto raw =
+      std::find_if(std::make_reverse_iterator(first), out.messages.rend(), [](const Message& m) { return m.channel == "LIDAR_PACKETS"; });
+  EXPECT_EQ(bus::Decode<lidar_packets_t>(raw->bytes)->seq, scans[0].raw_seq);
+  EXPECT_EQ(CountOf(service, "data_bad_flag"), 2);
+  EXPECT_EQ(CountOf(service, "data_lost"), 2);
+}
+
+TEST(Service, GivesTheSameBytesFromItsRawLog) {
+  for (const std::uint8_t mode : {format::kModeStrongest, format::kModeDual}) {
+    Recorded live;
+    Service service(live.bus, Params{});
+    SpinningSensor sensor;
+    sensor.mode = mode;
+    sensor.azimuth_deg = 77.0;
+    Feed(service, sensor, 400);
+    service.Finish(kTime + milliseconds(600));
+    live.Handle();
+
+    Recorded again;
+    Params params;
+    params.input = Input::kLog;
+    Service replayed(again.bus, params);
+    for (const auto& message : live.messages) {
+      if (message.channel == bus::kLidarPackets.name) again.bus.Publish(bus::kLidarPackets, message.bytes);
+    }
+    again.Handle();
+    replayed.Finish(kTime);
+    again.Handle();
+    const auto derived = [](const std::vector<Message>& messages) {
+      std::vector<Message> some;
+      std::ranges::copy_if(messages, std::back_inserter(some), [](const Message& m) { return m.channel != "LIDAR_PACKETS"; });
+      return some;
+    };
+    EXPECT_EQ(derived(live.messages), derived(again.messages));
+    EXPECT_EQ(again.messages.size(), live.messages.size());  // and no raw of its own
+  }
+}
+
+TEST(Service, FlushesALogThatHasNoEndMark) {
+  Recorded out;
+  Params params;
+  params.input = Input::kLog;
+  Service service(out.bus, params);
+  Bundler bundler(2368, 8308, 0.0);
+  bundler.Add(kTime, 2368, SpinningSensor().Next());
+  bus::Publish(out.bus, bus::kLidarPackets, ToMessage(bundler.AdvanceTo(kTime + milliseconds(100)).value()));
+  out.Handle();
+  EXPECT_TRUE(out.All<lidar_scan_t>(bus::kLidarScan).empty());
+  service.Finish(kTime);
+  out.Handle();
+  EXPECT_EQ(out.All<lidar_scan_t>(bus::kLidarScan).size(), 1U);
+}
+
+TEST(Service, RefusesABadRawMessageAsAWhole) {
+  Recorded out;
+  Params params;
+  params.input = Input::kLog;
+  Service service(out.bus, params);
+  auto message = ToMessage(*[] {
+    Bundler bundler(2368, 8308, 0.0);
+    bundler.Add(kTime, 2368, SpinningSensor().Next());
+    return bundler.Finish(kTime);
+  }());
+  message.size_bytes[0] = 1207;
+  bus::Publish(out.bus, bus::kLidarPackets, message);
+  out.Handle();
+  EXPECT_EQ(CountOf(service, "messages_refused"), 1);
+  EXPECT_EQ(out.messages.size(), 1U);
+}
+
+TEST(Service, SplitsATurnThatIsTooLargeByColumns) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  SpinningSensor sensor;
+  sensor.mode = format::kModeDual;
+  sensor.rpm = 300.0;
+  Feed(service, sensor, 302);
+  service.Finish(kTime + milliseconds(400));
+  out.Handle();
+  const auto parts = out.All<lidar_scan_t>(bus::kLidarScan);
+  ASSERT_GE(parts.size(), 4U);
+  EXPECT_EQ(out.All<lidar_clock_t>(bus::kLidarClock).size(), 2U);  // one per turn, not per part
+  int next_column = 0;
+  for (int i = 0; i < parts[0].num_parts; ++i) {
+    const auto& part = parts[static_cast<std::size_t>(i)];
+    EXPECT_EQ(part.part_index, i);
+    EXPECT_EQ(part.seq, 0);
+    EXPECT_EQ(part.first_column, next_column);
+    EXPECT_EQ(part.num_cells, part.num_columns * 32);
+    EXPECT_LE(part.getEncodedSize(), bus::kMaxMessageBytes);
+    EXPECT_EQ(part.return_kind, (std::vector<std::int32_t>{lidar_scan_t::RETURN_LAST, lidar_scan_t::RETURN_STRONGEST}));
+    next_column += part.num_columns;
+  }
+  EXPECT_EQ(next_column, parts[0].num_turn_columns);
+}
+
+TEST(Service, SaysWhenTheLidarIsSilentAndRecovers) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  service.AdvanceTo(kTime);
+  EXPECT_EQ(service.Report().state, HealthState::kOk);
+  service.AdvanceTo(kTime + milliseconds(3500));
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service.Report().reason, "no lidar packets for 3 s");
+  SpinningSensor sensor;
+  service.OnDatagram(kTime + milliseconds(3501), 2368, sensor.Next());
+  service.AdvanceTo(kTime + milliseconds(3700));
+  EXPECT_EQ(service.Report().state, HealthState::kOk);
+}
+
+TEST(Service, SaysWhyTheLidarIsOfNoUse) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  service.AdvanceTo(kTime);
+  service.OnDatagram(kTime, 2368, test::Payload(format::kDataPacketSizeBytes, 7));
+  service.AdvanceTo(kTime + milliseconds(1500));
+  EXPECT_EQ(service.Report().reason, "no usable lidar packets for 1 s; the last was refused: data_bad_flag");
+}
+
+TEST(Service, WorksWithTimesBefore1970) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  SpinningSensor sensor;
+  for (int i = 0; i < 4; ++i) {
+    const auto payload = sensor.Next();
+    service.OnDatagram(Utime(microseconds(sensor.time_ns / 1000 - 5000)), 2368, payload);
+  }
+  service.Finish(Utime{});
+  out.Handle();
+  const auto scans = out.All<lidar_scan_t>(bus::kLidarScan);
+  ASSERT_EQ(scans.size(), 1U);
+  EXPECT_NEAR(static_cast<double>(scans[0].utime_us), -5000.0, 1.0);
+  EXPECT_EQ(scans[0].num_columns, 96);
+}
+
+TEST(Service, SaysBeamsRingByRing) {
+  Recorded out;
+  Params params;
+  params.use_vertical_origin_offsets = true;
+  Service service(out.bus, params);
+  SpinningSensor sensor;
+  service.OnDatagram(kTime, 2368, sensor.Next());
+  service.Finish(kTime);
+  out.Handle();
+  const auto scan = out.All<lidar_scan_t>(bus::kLidarScan).at(0);
+  ASSERT_EQ(scan.num_rings, 16);
+  EXPECT_EQ(scan.model, "VLP-16");
+  EXPECT_EQ(scan.range_unit_m, 0.002);
+  EXPECT_EQ(scan.time_offset_ns[0], 0);
+  EXPECT_EQ(scan.time_offset_ns[8], 2304);  // laser 1
+  EXPECT_EQ(scan.time_offset_ns[15], 15 * 2304);
+  EXPECT_NEAR(scan.azimuth_offset_rad[15], 10.0 * 6.2831853 * 15 * 2304e-9, 2e-5);
+  EXPECT_FLOAT_EQ(scan.origin_height_m[0], 0.0112F);
+  EXPECT_EQ(scan.return_kind, (std::vector<std::int32_t>{lidar_scan_t::RETURN_STRONGEST}));
+}
+
+}  // namespace
+}  // namespace lookout::vlp16
