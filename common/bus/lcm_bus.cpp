@@ -36,7 +36,7 @@ MulticastAddress ParseMulticast(const std::string& url) {
   network = network.substr(0, network.find('?'));
   const auto colon = network.find(':');
   if (colon != 0 && !network.empty()) address.group = network.substr(0, colon);
-  if (colon != std::string::npos) address.port = std::atoi(network.c_str() + colon + 1);
+  if (colon != std::string::npos) address.port = static_cast<int>(std::strtol(network.c_str() + colon + 1, nullptr, 10));
   return address;
 }
 
@@ -83,7 +83,7 @@ std::string DefaultLcmUrl() {
 
 struct LcmBus::Implementation {
   struct Subscription {
-    Implementation* owner;
+    Implementation* owner = nullptr;
     std::string channel;  // empty = all
     RawHandler handler;
     lcm_subscription_t* handle = nullptr;

@@ -49,14 +49,14 @@ struct LogReader::Implementation {
   // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
   // sync word stands at `end`, but some stand inside.
   bool IsWhole(std::int64_t start, std::int64_t end) {
-    std::array<std::uint8_t, 4> word;
+    std::array<std::uint8_t, 4> word{};
     if (end == size_bytes || (ReadAt(end, word.data(), word.size()) == word.size() && ReadBigEndian(word, 0, 4) == kSyncWord)) return true;
     return FindSync(start + 4) >= end;
   }
 
   // The first sync word at or after `offset`; size_bytes when there is none.
   std::int64_t FindSync(std::int64_t offset) {
-    std::array<std::uint8_t, 65536> block;
+    std::array<std::uint8_t, 65536> block{};
     while (offset + 4 <= size_bytes) {
       const std::size_t size = ReadAt(offset, block.data(), block.size());
       if (size < 4) break;
@@ -83,7 +83,7 @@ std::optional<LogEvent> LogReader::Next() {
   auto& in = *implementation_;
   bool is_resynchronising = false;
   while (in.position < in.size_bytes) {
-    std::array<std::uint8_t, kHeaderBytes> header;
+    std::array<std::uint8_t, kHeaderBytes> header{};
     const std::int64_t start = in.position;
     const bool has_header = in.ReadAt(start, header.data(), header.size()) == header.size();
     if (has_header && ReadBigEndian(header, 0, 4) == kSyncWord) {

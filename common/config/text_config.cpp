@@ -31,7 +31,10 @@ using google::protobuf::TextFormat;
 
 std::string Joined(const std::vector<std::string>& lines) {
   std::string text;
-  for (const auto& line : lines) text += (text.empty() ? "" : "\n") + line;
+  for (const auto& line : lines) {
+    if (!text.empty()) text += '\n';
+    text += line;
+  }
   return text;
 }
 

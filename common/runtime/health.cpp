@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <utility>
 #include <vector>
@@ -32,7 +33,7 @@ std::int64_t ResidentBytes() {
 // The value that a share `quantile` of the times does not exceed; -1 without times.
 std::int64_t QuantileUs(const std::vector<std::chrono::microseconds>& sorted, double quantile) {
   if (sorted.empty()) return -1;
-  const auto index = static_cast<std::size_t>(quantile * static_cast<double>(sorted.size() - 1) + 0.5);
+  const auto index = static_cast<std::size_t>(std::lround(quantile * static_cast<double>(sorted.size() - 1)));
   return sorted[index].count();
 }
 
@@ -60,7 +61,7 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   const auto add_channel = [&](const std::string& name, const bus::ChannelTraffic& traffic, bool is_input) {
     health_channel_t channel{};
     channel.channel = name;
-    channel.is_input = is_input;
+    channel.is_input = is_input ? 1 : 0;
     channel.num_messages = traffic.num_messages;
     channel.num_undecodable = traffic.num_undecodable;
     channel.num_lost = traffic.num_lost;

@@ -1,6 +1,6 @@
-// The recorder: every channel into an lcm-log.
-#include <fmt/format.h>
-
+// The recorder process: every channel into an lcm-log.
+#include <chrono>
+#include <iostream>
 #include <spdlog/spdlog.h>
 
 #include "common/runtime/options.hpp"
@@ -9,19 +9,39 @@
 #include "services/recorder/params.hpp"
 #include "services/recorder/service.hpp"
 
+namespace {
+
+constexpr std::chrono::milliseconds kTick(500);
+// At the end messages that wait are still taken, but others may go on sending.
+constexpr int kMaxLastMessages = 10'000;
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-recorder", "every channel into an lcm-log, RUN_INFO first");
+  const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-recorder", "every channel into an lcm-log");
   return lookout::runtime::RunMain("recorder", [&options] {
     const auto params = lookout::recorder::LoadParams(options.config_folder);
+    const auto run_info = lookout::runtime::MakeRunInfo("recorder", options.config_folder);
     if (options.check_only) {
-      fmt::print("{}", lookout::runtime::EffectiveConfig(options.config_folder, {"recorder.txtpb"}));
+      std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "recorder.txtpb"});
       return;
     }
     lookout::runtime::Process process("recorder", options.lcm_url);
-    lookout::recorder::Service service(process.bus(), params, lookout::runtime::MakeRunInfo("recorder", options.config_folder),
-                                       lookout::runtime::HostNow);
+    lookout::recorder::Service service(process.bus(), params, run_info, lookout::runtime::HostNow);
     spdlog::info("writing {}", service.log_file().string());
-    process.Every(std::chrono::milliseconds(100), [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
+    auto log_file = service.log_file();
+    process.Every(kTick, [&] {
+      service.AdvanceTo(lookout::runtime::HostNow());
+      for (const auto& warning : service.TakeWarnings()) spdlog::warn("{}", warning);
+      if (service.log_file() != log_file && service.Report().state != lookout::HealthState::kError) {
+        log_file = service.log_file();
+        spdlog::info("writing {}", log_file.string());
+      }
+    });
     process.Run([&service] { return service.Report(); });
+    for (int i = 0; i < kMaxLastMessages && process.bus().HandleOnce(std::chrono::milliseconds(0)); ++i) {
+    }
+    service.AdvanceTo(lookout::runtime::HostNow());
+    for (const auto& warning : service.TakeWarnings()) spdlog::warn("{}", warning);
   });
 }

@@ -1,4 +1,4 @@
-// Config of the recorder (recorder.txtpb) as checked values.
+// Config of the recorder process (recorder.txtpb) as checked values.
 #pragma once
 
 #include <filesystem>

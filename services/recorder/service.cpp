@@ -1,8 +1,13 @@
 #include "services/recorder/service.hpp"
 
+#include <algorithm>
 #include <array>
-#include <ctime>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <exception>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace lookout::recorder {
@@ -10,89 +15,194 @@ namespace lookout::recorder {
 namespace {
 
 constexpr std::chrono::seconds kRunInfoPeriod(10);
-constexpr std::chrono::seconds kFlushPeriod(1);
-constexpr int kMaxLogsOfOneSecond = 1000;
+// Channels outside of the table that are named in warnings.
+constexpr std::size_t kMaxUnknownNames = 20;
+// Every message of package lookout: fingerprint, utime_us, seq, 8 bytes each, big-endian.
+constexpr std::size_t kSeqOffset = 16;
+constexpr std::size_t kSeqBytes = 8;
 
-// "20261121T123456Z"
+// "20261121T134501Z"
 std::string FileStem(Utime time) {
-  const std::time_t seconds = std::chrono::floor<std::chrono::seconds>(time).time_since_epoch().count();
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::seconds>(time - day));
   std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &parts);
+  std::snprintf(text.data(), text.size(), "%04d%02u%02uT%02d%02d%02dZ", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()));
   return text.data();
 }
 
-// A name that is free: a log is never overwritten.
-std::filesystem::path FreeName(const std::filesystem::path& folder, Utime time) {
+// Makes an empty file under a name that no file had: of two recorders that start in the same second each gets its own.
+std::filesystem::path MakeFile(const std::filesystem::path& folder, Utime time) {
   const std::string stem = FileStem(time);
-  for (int i = 0; i < kMaxLogsOfOneSecond; ++i) {
-    const auto file = folder / (stem + (i == 0 ? "" : "-" + std::to_string(i)) + ".lcmlog");
-    if (!std::filesystem::exists(file)) return file;
+  auto path = folder / (stem + ".lcmlog");
+  for (int i = 1;; ++i) {
+    if (std::FILE* file = std::fopen(path.c_str(), "wx")) {
+      std::fclose(file);
+      return path;
+    }
+    if (errno != EEXIST) throw std::runtime_error(path.string() + ": cannot be made: " + std::system_category().message(errno));
+    path = folder / (stem + "-" + std::to_string(i) + ".lcmlog");
   }
-  throw std::runtime_error(folder.string() + ": no free name for a log of " + stem);
+}
+
+// Channel names come from the network.
+std::string Printable(std::string_view text) {
+  std::string printable;
+  for (const char letter : text) printable += letter >= ' ' && letter <= '~' ? letter : '?';
+  return printable;
+}
+
+std::int64_t ReadSeq(Bytes bytes) {
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < kSeqBytes; ++i) value = value << 8 | bytes[kSeqOffset + i];
+  return static_cast<std::int64_t>(value);
 }
 
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params, run_info_t run_info, std::function<Utime()> clock)
-    : bus_(bus), clock_(std::move(clock)), run_info_(std::move(run_info)) {
-  const Utime now = clock_();
+    : bus_(bus), params_(params), run_info_(std::move(run_info)), clock_(std::move(clock)) {
   std::error_code error;
-  std::filesystem::create_directories(params.log_folder, error);
-  if (error) throw std::runtime_error(params.log_folder.string() + ": cannot be made: " + error.message());
-  log_file_ = FreeName(params.log_folder, now);
-  log_ = std::make_unique<bus::LogWriter>(log_file_);
-  SendRunInfo(now);
-  bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) { OnMessage(channel, bytes); });
-}
-
-// RUN_INFO is written when it is sent, not when it comes back.
-void Service::OnMessage(std::string_view channel, Bytes bytes) {
-  if (channel == bus::kRunInfo.name) return;
-  if (bus::FindChannel(channel) == nullptr) ++num_unknown_channel_;
-  Write(clock_(), channel, bytes);
+  std::filesystem::create_directories(params_.log_folder, error);
+  if (!std::filesystem::is_directory(params_.log_folder)) {
+    throw std::runtime_error(params_.log_folder.string() + ": the folder of the logs cannot be made: " + error.message());
+  }
+  BeginLog(clock_());
+  if (!writer_) throw std::runtime_error(fault_);
+  bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) { OnEvent(channel, bytes); });
 }
 
 void Service::AdvanceTo(Utime now) {
-  // Periods also end when the host's clock was set back.
-  if (now - last_run_info_ >= kRunInfoPeriod || now < last_run_info_) SendRunInfo(now);
-  if (now - last_flush_ < kFlushPeriod && now >= last_flush_) return;
-  last_flush_ = now;
-  try {
-    log_->Flush();
-    write_error_.clear();
-  } catch (const std::runtime_error& error) {
-    write_error_ = error.what();
+  if (!writer_) {
+    BeginLog(now);
+  } else if (now - *last_run_info_ >= kRunInfoPeriod || now < *last_run_info_) {  // the host's clock may be set back
+    Write(now, bus::kRunInfo.name, EncodeRunInfo(now));
+    PublishRunInfo(now);
   }
+  Flush();
 }
 
-void Service::SendRunInfo(Utime now) {
-  last_run_info_ = now;
+void Service::OnEvent(std::string_view channel, Bytes bytes) {
+  if (channel.empty()) {  // a log that holds one cannot be read on
+    ++num_nameless_;
+    return;
+  }
+  if (channel == bus::kRunInfo.name && std::ranges::equal(bytes, own_run_info_)) return;  // written when it was sent
+  const bus::Channel* known = bus::FindChannel(channel);
+  if (known == nullptr) {
+    WatchUnknown(channel);
+  } else if (known->is_raw) {
+    WatchGaps(channel, bytes);
+  }
+  Write(clock_(), channel, bytes);
+}
+
+void Service::BeginLog(Utime now) {
+  std::filesystem::path file;
+  try {
+    file = MakeFile(params_.log_folder, now);
+    auto writer = std::make_unique<bus::LogWriter>(file, /*overwrite=*/true);
+    const auto run_info = EncodeRunInfo(now);
+    writer->Write(now, bus::kRunInfo.name, run_info);
+    writer->Flush();
+    writer_ = std::move(writer);
+  } catch (const std::exception& error) {
+    // On a full disk there would be one more empty file with each attempt.
+    std::error_code ignored;
+    if (!file.empty()) std::filesystem::remove(file, ignored);
+    Fail(error.what());
+    return;
+  }
+  log_file_ = file;
+  is_failing_ = false;
+  ++num_events_;
+  PublishRunInfo(now);
+}
+
+std::vector<std::uint8_t> Service::EncodeRunInfo(Utime now) {
   run_info_.utime_us = ToUtimeUs(now);
-  const auto bytes = bus::Encode(run_info_);
+  return bus::Encode(run_info_);
+}
+
+void Service::PublishRunInfo(Utime now) {
+  last_run_info_ = now;
+  own_run_info_ = EncodeRunInfo(now);
   ++run_info_.seq;
-  Write(now, bus::kRunInfo.name, bytes);
-  bus_.Publish(bus::kRunInfo, bytes);
+  bus_.Publish(bus::kRunInfo, own_run_info_);
 }
 
 void Service::Write(Utime time, std::string_view channel, Bytes bytes) {
+  if (!writer_) {
+    ++num_lost_;
+    return;
+  }
+  ++num_unflushed_;
   try {
-    log_->Write(time, channel, bytes);
+    writer_->Write(time, channel, bytes);
     ++num_events_;
-  } catch (const std::runtime_error& error) {
-    ++num_not_written_;
-    write_error_ = error.what();
+    num_bytes_ += static_cast<std::int64_t>(bytes.size());
+  } catch (const std::exception& error) {
+    Fail(error.what());
   }
 }
 
+void Service::Flush() {
+  if (!writer_) return;
+  try {
+    writer_->Flush();
+    num_unflushed_ = 0;
+  } catch (const std::exception& error) {
+    Fail(error.what());
+  }
+}
+
+void Service::Fail(std::string_view reason) {
+  fault_ = Printable(reason);
+  if (!is_failing_) warnings_.push_back(fault_ + "; events are lost until it works again");
+  is_failing_ = true;
+  writer_.reset();
+  ++num_faults_;
+  num_lost_ += num_unflushed_;
+  num_unflushed_ = 0;
+}
+
+void Service::WatchGaps(std::string_view channel, Bytes bytes) {
+  if (bytes.size() < kSeqOffset + kSeqBytes) return;  // its readers refuse it
+  auto watch = raw_sequences_.find(channel);
+  if (watch == raw_sequences_.end()) watch = raw_sequences_.emplace(channel, bus::SequenceWatch{}).first;
+  num_raw_missing_ += watch->second.NumLostBefore(ReadSeq(bytes));
+}
+
+void Service::WatchUnknown(std::string_view channel) {
+  ++num_unknown_;
+  if (unknown_channels_.size() >= kMaxUnknownNames || unknown_channels_.contains(channel)) return;
+  unknown_channels_.emplace(channel);
+  warnings_.push_back("channel " + Printable(channel) + " is not in the channel table; it is recorded" +
+                      (unknown_channels_.size() == kMaxUnknownNames ? "; further ones are not named here" : ""));
+}
+
+std::vector<std::string> Service::TakeWarnings() { return std::exchange(warnings_, {}); }
+
 HealthReport Service::Report() const {
   HealthReport report;
-  report.counters = {
-      {"events", num_events_}, {"bytes", log_->num_bytes()}, {"unknown_channel", num_unknown_channel_}, {"not_written", num_not_written_}};
-  if (!write_error_.empty()) {
+  report.counters = {{"events", num_events_},
+                     {"bytes", num_bytes_},
+                     {"lost", num_lost_},
+                     {"write_faults", num_faults_},
+                     {"unknown_channel", num_unknown_},
+                     {"nameless_channel", num_nameless_},
+                     {"raw_missing", num_raw_missing_}};
+  if (!writer_) {
     report.state = HealthState::kError;
-    report.reason = write_error_;
+    report.reason = "not recording: " + fault_;
+  } else if (num_lost_ > 0) {
+    report.state = HealthState::kDegraded;
+    report.reason = "recording again; " + std::to_string(num_lost_) + " events lost: " + fault_;
+  } else if (num_raw_missing_ > 0) {
+    report.state = HealthState::kDegraded;
+    report.reason = std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full";
   }
   return report;
 }

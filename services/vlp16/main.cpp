@@ -1,9 +1,7 @@
 // The lidar process: datagrams of a VLP-16, a capture of them, or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_NMEA, LIDAR_CLOCK, LIDAR_SCAN out.
 #include <chrono>
 #include <iostream>
-#include <optional>
 #include <spdlog/spdlog.h>
-#include <vector>
 
 #include "common/config/text_config.hpp"
 #include "common/io/udp_receiver.hpp"
@@ -15,7 +13,6 @@
 
 namespace {
 
-using lookout::Bytes;
 using lookout::HealthReport;
 using lookout::Utime;
 
@@ -71,14 +68,16 @@ void RunCapture(lookout::runtime::Process& process, const lookout::vlp16::Params
       service.OnDatagram(next->host_time, next->destination_port, next->payload);
     }
     service.AdvanceTo(capture_time);
-    if (!next) process.Stop();
+    if (next) return;
+    service.Finish(capture_time);
+    process.Stop();
   });
   process.Run([&] {
     HealthReport report = service.Report();
     for (const auto& counter : reader.counters()) report.counters.push_back(counter);
     return report;
   });
-  service.Finish(capture_time);
+  service.Finish(capture_time);  // when a signal came first; else it has been done
   if (reader.num_damaged() > 0) spdlog::warn("{}: {}", params.capture_file->string(), reader.damage());
   if (reader.num_datagrams() == 0) spdlog::warn("{}: no datagram in {} frames", params.capture_file->string(), reader.num_frames());
 }

@@ -36,7 +36,7 @@ int Confusion::MajorityObject(int label) const {
   int best = 0;
   std::int64_t best_count = 0;
   for (const auto& [object_id, count] : found->second) {
-    if (count > best_count) {
+    if (count > best_count || (count == best_count && best <= 0)) {
       best = object_id;
       best_count = count;
     }

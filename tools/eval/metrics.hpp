@@ -24,7 +24,8 @@ class Confusion {
   /// METHOD.md: IoU_i = max over segments j of p_ij / (all of object i + all of segment j - p_ij). By object_id.
   std::vector<ObjectScore> Scores() const;
 
-  /// @return the object with most returns in the segment, the least id of equals; -1 for the own vessel, 0 when strays lead or the segment is unknown
+  /// @return the object with most returns in the segment, of equals an object before a stray and then the least id; -1 for the own vessel, 0 when
+  /// strays lead or the segment is unknown
   int MajorityObject(int label) const;
 
   /// Segments without a single return of an object or the own vessel.

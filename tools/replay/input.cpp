@@ -1,5 +1,7 @@
 #include "tools/replay/input.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <array>
 #include <fstream>
 #include <stdexcept>
@@ -28,8 +30,9 @@ void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& 
   vlp16::CaptureReader reader(file);
   while (const auto datagram = reader.Next()) {
     ++summary.num_events;
-    chain.OnDatagram(datagram->host_time, datagram->udp_port, datagram->payload);
+    chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
   }
+  if (reader.num_damaged() > 0) spdlog::warn("{}: {}", file.string(), reader.damage());
   for (const auto& counter : reader.counters()) Count(summary.refused, "capture." + std::string(counter.name), counter.count);
 }
 

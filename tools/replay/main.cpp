@@ -119,8 +119,8 @@ void Replay(const Options& options) {
   if (CountOf(chain, lookout::bus::kLidarPackets) == 0 && CountOf(chain, lookout::bus::kNavRaw) == 0) {
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
   }
-  if (chain.NumLidarRefused() > 0 && num_turns == 0) {
-    throw std::runtime_error(fmt::format("no turn out of {} lidar packets: all were refused, see the counts above", chain.NumLidarRefused()));
+  if (CountOf(chain, lookout::bus::kLidarPackets) > 0 && num_turns == 0) {
+    throw std::runtime_error("no turn came out of the lidar's packets: the counts above say why they were refused");
   }
 }
 

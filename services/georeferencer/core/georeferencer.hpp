@@ -15,7 +15,8 @@
 namespace lookout::georeferencer {
 
 /// What it gives depends on the order of the segments and on that of the poses, not on how the two interleave, as long as host time is kept out
-/// (AdvanceTo is not called), POSE runs ahead by less than PoseHistory::kLength and segments by less than kMaxWaiting.
+/// (AdvanceTo is not called), POSE does not go back in time (navigator starts again in the past), and runs ahead by less than
+/// PoseHistory::kLength, or segments by less than kMaxWaiting.
 class Georeferencer {
  public:
   /// Messages that may wait for POSE: at 10 turns a second 100 s of them.

@@ -12,7 +12,7 @@ namespace lookout::georeferencer {
 struct PlacementParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double reference_point_above_water_m = 0.0;
-  double range_sd_m = 0.0;      // of one range
+  double range_sd_m = 0.0;       // of one range
   double mounting_sd_rad = 0.0;  // of the mounting, about each of three axes
 };
 

@@ -1,14 +1,13 @@
 // Position and velocity of the GNSS antenna at a time, out of fixes, in the map frame.
 #pragma once
 
-#include <GeographicLib/LocalCartesian.hpp>
-
 #include <Eigen/Core>
+#include <GeographicLib/LocalCartesian.hpp>
 #include <chrono>
+#include <cstdint>
 #include <optional>
-#include <vector>
 
-#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
 #include "services/navigator/core/measurement.hpp"
 #include "services/navigator/core/pose.hpp"
 
@@ -50,6 +49,8 @@ class AntennaTracker {
   void Add(const GroundVelocity& velocity);
 
   const std::optional<Datum>& datum() const { return datum_; }
+  /// The map frame; there when a datum is.
+  const std::optional<GeographicLib::LocalCartesian>& map() const { return map_; }
 
   /// The last fix, carried on by the velocity; nullopt when it is older than max_age.
   std::optional<AntennaEstimate> PositionAt(Utime time) const;
@@ -75,7 +76,6 @@ class AntennaTracker {
     double ellipsoid_m = 0.0;
   };
   void SetDatum(const Datum& datum);
-  std::chrono::microseconds AgeAt(Utime time, Utime measured) const;
 
   AntennaParams params_;
   std::optional<Datum> datum_;

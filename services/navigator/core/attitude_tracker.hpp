@@ -4,7 +4,6 @@
 #include <chrono>
 #include <optional>
 
-#include "common/core/health.hpp"
 #include "services/navigator/core/measurement.hpp"
 #include "services/navigator/core/pose.hpp"
 #include "services/navigator/core/track.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 namespace lookout::navigator {
 
@@ -11,7 +10,6 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFirstYearOf20thCentury = 80;
 
 bool IsDigit(char character) { return character >= '0' && character <= '9'; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -9,6 +10,9 @@
 #include "services/navigator/core/sentence.hpp"
 
 namespace lookout::navigator {
+
+/// A number that was not said.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct GeodeticPosition {
   double latitude_deg = 0.0;   // WGS84, positive north

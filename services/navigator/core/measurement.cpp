@@ -49,7 +49,7 @@ double HorizontalSdM(FixQuality quality, double hdop, double position_sd_m) {
     case FixQuality::kDeadReckoning:
       return scale * position_sd_m * kDeadReckoningFactor;
     default:
-      return kUnknown;
+      return kNan;
   }
 }
 

@@ -13,8 +13,8 @@ namespace lookout::navigator {
 
 /// When something was measured.
 struct MeasurementTime {
-  Utime time;                  // UTC of the sentence where that is usable, else arrival
-  Utime arrival;               // at this computer, by its clock
+  Utime time;     // UTC of the sentence where that is usable, else arrival
+  Utime arrival;  // at this computer, by its clock
   bool is_from_sentence = false;
 };
 
@@ -33,13 +33,13 @@ struct GnssFix {
   std::string_view sentence_type;  // "RMC", "GGA"
   FixQuality quality = FixQuality::kNone;
   int num_satellites = -1;
-  double hdop = kUnknown;
-  double horizontal_sd_m = kUnknown;  // one standard deviation per axis
+  double hdop = kNan;
+  double horizontal_sd_m = kNan;  // one standard deviation per axis
   std::optional<GeodeticPosition> position;
-  double msl_height_m = kUnknown;
-  double geoid_separation_m = kUnknown;
-  double speed_mps = kUnknown;
-  double course_rad = kUnknown;
+  double msl_height_m = kNan;
+  double geoid_separation_m = kNan;
+  double speed_mps = kNan;
+  double course_rad = kNan;
 };
 
 /// Attitude of the vessel frame. NaN = not said. Heading from true north clockwise, pitch positive bow up, roll positive starboard down.
@@ -47,20 +47,20 @@ struct Attitude {
   MeasurementTime when;
   std::string source;
   std::string_view sentence_type;  // "HDT", "PASHR"
-  double heading_rad = kUnknown;   // 0 to 2 pi
-  double pitch_rad = kUnknown;     // -pi to pi
-  double roll_rad = kUnknown;      // -pi to pi
-  double heave_m = kUnknown;       // positive up
-  double heading_sd_rad = kUnknown;
-  double pitch_sd_rad = kUnknown;
-  double roll_sd_rad = kUnknown;
+  double heading_rad = kNan;       // 0 to 2 pi
+  double pitch_rad = kNan;         // -pi to pi
+  double roll_rad = kNan;          // -pi to pi
+  double heave_m = kNan;           // positive up
+  double heading_sd_rad = kNan;
+  double pitch_sd_rad = kNan;
+  double roll_sd_rad = kNan;
 };
 
 /// Velocity over ground, out of VTG, which has no time of its own.
 struct GroundVelocity {
   Utime time;
-  double speed_mps = kUnknown;
-  double course_rad = kUnknown;
+  double speed_mps = kNan;
+  double course_rad = kNan;
 };
 
 /// @param position_sd_m  of a fix without correction at HDOP 1, per axis

@@ -15,8 +15,8 @@ static_assert(PosePeriods(1) == Navigator::kPosePeriod);
 // Least multiple of the pose period that is not before `time`.
 Utime CeilToPose(Utime time) { return std::chrono::ceil<PosePeriods>(time); }
 
-double WrapHeading(double angle_rad) { return std::isnan(angle_rad) ? kUnknown : WrapTo2Pi(angle_rad); }
-double WrapTilt(double angle_rad) { return std::isnan(angle_rad) ? kUnknown : WrapToPi(angle_rad); }
+double WrapHeading(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo2Pi(angle_rad); }
+double WrapTilt(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapToPi(angle_rad); }
 
 }  // namespace
 
@@ -153,7 +153,7 @@ void Navigator::TakeFix(const GnssFix& fix, NavigatorOutput& output) {
   ++counts_.understood_sentence;
   if (fix.position && !fix.when.is_from_sentence) ++counts_.sentence_time_unusable;
   output.fix = fix;
-  output.fix->horizontal_sd_m = fix.position ? HorizontalSdM(fix.quality, fix.hdop, params_.position_sd_m) : kUnknown;
+  output.fix->horizontal_sd_m = fix.position ? HorizontalSdM(fix.quality, fix.hdop, params_.position_sd_m) : kNan;
   estimator_.antenna().Add(*output.fix);
 }
 

@@ -86,8 +86,8 @@ class Navigator {
     std::int64_t repeated_sentence = 0;
     std::int64_t understood_sentence = 0;
     std::int64_t sentence_time_unusable = 0;
-    std::int64_t unusable_fix = 0;   // of states before the last start mark
-    std::int64_t late_fix = 0;       // likewise
+    std::int64_t unusable_fix = 0;  // of states before the last start mark
+    std::int64_t late_fix = 0;      // likewise
     std::int64_t late_attitude = 0;
     std::int64_t time_jump = 0;
   };

@@ -13,8 +13,8 @@ constexpr double kMpsPerKmh = 1.0 / 3.6;
 
 // Bounds of what can be. Receivers on boats: 100 m/s is 194 knots.
 constexpr double kMaxSpeedMps = 100.0;
-constexpr double kMaxHdop = 100.0;           // receivers send 99.99 for "no fix"
-constexpr double kMinHeightM = -1000.0;      // the Dead Sea lies at -430 m
+constexpr double kMaxHdop = 100.0;       // receivers send 99.99 for "no fix"
+constexpr double kMinHeightM = -1000.0;  // the Dead Sea lies at -430 m
 constexpr double kMaxHeightM = 20000.0;
 constexpr double kMaxGeoidSeparationM = 150.0;  // EGM2008: -107 m to +86 m
 constexpr double kMaxHeaveM = 50.0;
@@ -23,7 +23,7 @@ constexpr int kMaxSatellites = 99;
 double AngleRad(FieldReader& fields, std::size_t index, double min_deg, double max_deg) { return DegToRad(fields.Number(index, min_deg, max_deg)); }
 
 // 360 is 0. What is not said stays so: WrapTo2Pi would make 0 of it.
-double WrapKnown(double angle_rad) { return std::isnan(angle_rad) ? kUnknown : WrapTo2Pi(angle_rad); }
+double WrapKnown(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo2Pi(angle_rad); }
 
 double CompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(AngleRad(fields, index, 0.0, 360.0)); }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <variant>
@@ -11,8 +10,6 @@
 #include "services/navigator/core/sentence.hpp"
 
 namespace lookout::navigator {
-
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Of a fix, as in GGA (the numbers of gnss_fix_t).
 enum class FixQuality {
@@ -36,8 +33,8 @@ struct Rmc {
   std::optional<std::chrono::sys_days> date;
   FixQuality quality = FixQuality::kNone;
   std::optional<GeodeticPosition> position;
-  double speed_mps = kUnknown;
-  double course_rad = kUnknown;
+  double speed_mps = kNan;
+  double course_rad = kNan;
 };
 
 /// GGA: time,latitude,N,longitude,E,quality,satellites,HDOP,height,M,geoid separation,M,age,station
@@ -46,20 +43,20 @@ struct Gga {
   FixQuality quality = FixQuality::kNone;
   std::optional<GeodeticPosition> position;
   int num_satellites = -1;
-  double hdop = kUnknown;
-  double msl_height_m = kUnknown;
-  double geoid_separation_m = kUnknown;
+  double hdop = kNan;
+  double msl_height_m = kNan;
+  double geoid_separation_m = kNan;
 };
 
 /// VTG: course,T,magnetic course,M,knots,N,km/h,K[,mode]
 struct Vtg {
-  double speed_mps = kUnknown;
-  double course_rad = kUnknown;
+  double speed_mps = kNan;
+  double course_rad = kNan;
 };
 
 /// HDT: heading,T
 struct Hdt {
-  double heading_rad = kUnknown;
+  double heading_rad = kNan;
 };
 
 /// PASHR: time,heading,T,roll,pitch,heave,roll sd,pitch sd,heading sd,GNSS quality[,INS status]
@@ -69,13 +66,13 @@ struct Hdt {
 /// "GPS only" with Trimble, "IMU out" with Applanix) and are checked but not used.
 struct Pashr {
   std::optional<std::chrono::microseconds> time_of_day;
-  double heading_rad = kUnknown;
-  double roll_rad = kUnknown;
-  double pitch_rad = kUnknown;
-  double heave_m = kUnknown;
-  double roll_sd_rad = kUnknown;
-  double pitch_sd_rad = kUnknown;
-  double heading_sd_rad = kUnknown;
+  double heading_rad = kNan;
+  double roll_rad = kNan;
+  double pitch_rad = kNan;
+  double heave_m = kNan;
+  double roll_sd_rad = kNan;
+  double pitch_sd_rad = kNan;
+  double heading_sd_rad = kNan;
 };
 
 /// A right sentence of a type that is not used.

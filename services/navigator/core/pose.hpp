@@ -14,9 +14,9 @@ enum class HeadingSource { kNone = 0, kHdt = 1, kPashr = 2, kCourse = 3 };
 
 /// Geodetic origin of the map frame.
 struct Datum {
-  double latitude_deg = kUnknown;
-  double longitude_deg = kUnknown;
-  double ellipsoid_height_m = kUnknown;
+  double latitude_deg = kNan;
+  double longitude_deg = kNan;
+  double ellipsoid_height_m = kNan;
 };
 
 /// Position, velocity (east, north, up), roll, pitch, heading.
@@ -28,16 +28,16 @@ struct Pose {
   HeadingSource heading_source = HeadingSource::kNone;
   bool has_attitude = false;
   Datum datum;
-  double latitude_deg = kUnknown;  // of the reference point
-  double longitude_deg = kUnknown;
-  double ellipsoid_height_m = kUnknown;
-  Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kUnknown);  // up is 0 while the height is not known
-  Eigen::Vector3d velocity_map_mps = Eigen::Vector3d::Constant(kUnknown);
-  double heading_rad = kUnknown;
+  double latitude_deg = kNan;  // of the reference point
+  double longitude_deg = kNan;
+  double ellipsoid_height_m = kNan;
+  Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kNan);  // up is 0 while the height is not known
+  Eigen::Vector3d velocity_map_mps = Eigen::Vector3d::Constant(kNan);
+  double heading_rad = kNan;
   double pitch_rad = 0.0;
   double roll_rad = 0.0;
-  double heave_m = kUnknown;
-  PoseCovariance covariance = PoseCovariance::Constant(kUnknown);
+  double heave_m = kNan;
+  PoseCovariance covariance = PoseCovariance::Constant(kNan);
 };
 
 }  // namespace lookout::navigator

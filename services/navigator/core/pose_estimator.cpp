@@ -1,7 +1,6 @@
 #include "services/navigator/core/pose_estimator.hpp"
 
-#include <GeographicLib/LocalCartesian.hpp>
-
+#include <algorithm>
 #include <cmath>
 
 #include "common/core/angles.hpp"
@@ -21,8 +20,8 @@ PoseCovariance Covariance(const StandardDeviations& sd) {
   PoseCovariance covariance = PoseCovariance::Zero();
   for (int state = 0; state < kNumStates; ++state) {
     if (std::isnan(sd[state])) {
-      covariance.row(state).setConstant(kUnknown);
-      covariance.col(state).setConstant(kUnknown);
+      covariance.row(state).setConstant(kNan);
+      covariance.col(state).setConstant(kNan);
     } else if (!std::isnan(covariance(state, state))) {
       covariance(state, state) = sd[state] * sd[state];
     }
@@ -45,7 +44,7 @@ std::optional<HeadingEstimate> PoseEstimator::HeadingAt(Utime time) const {
 Pose PoseEstimator::At(Utime time) const {
   Pose pose;
   pose.time = time;
-  StandardDeviations sd = StandardDeviations::Constant(kUnknown);
+  StandardDeviations sd = StandardDeviations::Constant(kNan);
 
   const auto tilt = attitude_.TiltAt(time);
   pose.has_attitude = tilt.has_value();
@@ -53,7 +52,7 @@ Pose PoseEstimator::At(Utime time) const {
   pose.pitch_rad = tilt ? tilt->pitch_rad : 0.0;
   sd[kRoll] = tilt ? tilt->roll_sd_rad : params_.unmeasured_tilt_sd_rad;
   sd[kPitch] = tilt ? tilt->pitch_sd_rad : params_.unmeasured_tilt_sd_rad;
-  pose.heave_m = attitude_.HeaveAt(time).value_or(kUnknown);
+  pose.heave_m = attitude_.HeaveAt(time).value_or(kNan);
 
   const auto heading = HeadingAt(time);
   if (heading) {
@@ -78,14 +77,14 @@ Pose PoseEstimator::At(Utime time) const {
   const auto antenna = antenna_.PositionAt(time);
   if (antenna) {
     pose.p_map_m = antenna->p_map_m - lever_map_m;
-    const GeographicLib::LocalCartesian map(pose.datum.latitude_deg, pose.datum.longitude_deg, pose.datum.ellipsoid_height_m);
-    map.Reverse(pose.p_map_m.x(), pose.p_map_m.y(), pose.p_map_m.z(), pose.latitude_deg, pose.longitude_deg, pose.ellipsoid_height_m);
+    antenna_.map()->Reverse(pose.p_map_m.x(), pose.p_map_m.y(), pose.p_map_m.z(), pose.latitude_deg, pose.longitude_deg, pose.ellipsoid_height_m);
     const double lever_m = lever_vessel_m.head<2>().norm();
-    sd[kEast] = sd[kNorth] = heading ? std::hypot(antenna->horizontal_sd_m, lever_m * std::min(heading->sd_rad, 1.0)) : antenna->horizontal_sd_m + lever_m;
+    sd[kEast] = sd[kNorth] =
+        heading ? std::hypot(antenna->horizontal_sd_m, lever_m * std::min(heading->sd_rad, 1.0)) : antenna->horizontal_sd_m + lever_m;
     if (antenna->has_height) {
       sd[kUp] = antenna->vertical_sd_m;
     } else {
-      pose.ellipsoid_height_m = kUnknown;
+      pose.ellipsoid_height_m = kNan;
       pose.p_map_m.z() = 0.0;
     }
   }

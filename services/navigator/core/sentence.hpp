@@ -15,10 +15,10 @@ inline constexpr std::size_t kMaxLineCharacters = 256;
 
 /// The lines of a datagram that may enter NAV_RAW, and how many may not.
 struct DatagramLines {
-  std::vector<std::string> lines;  // each from $ or ! to its end, without CR LF; whether it is a right sentence is not judged here
-  std::int64_t num_no_start = 0;      // no $ or ! in the line
-  std::int64_t num_too_long = 0;      // more than kMaxLineCharacters
-  std::int64_t num_not_printable = 0; // bytes outside of 0x20 to 0x7E
+  std::vector<std::string> lines;      // each from $ or ! to its end, without CR LF; whether it is a right sentence is not judged here
+  std::int64_t num_no_start = 0;       // no $ or ! in the line
+  std::int64_t num_too_long = 0;       // more than kMaxLineCharacters
+  std::int64_t num_not_printable = 0;  // bytes outside of 0x20 to 0x7E
 };
 
 /// Cuts at CR and LF, and drops what stands before the first $ or ! of a line: tag blocks (\...\) and junk.

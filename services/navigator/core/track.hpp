@@ -9,10 +9,10 @@
 namespace lookout::navigator {
 
 struct TrackParams {
-  bool is_angle = true;            // differences go the short way round, values are given as the last sample plus a difference, not wrapped
-  double max_rate = 0.0;           // per second: a greater rate is a jump of the sensor, not a motion
+  bool is_angle = true;                    // differences go the short way round, values are given as the last sample plus a difference, not wrapped
+  double max_rate = 0.0;                   // per second: a greater rate is a jump of the sensor, not a motion
   std::chrono::microseconds max_carry{0};  // so far beyond the last sample the rate counts; beyond that the value is held
-  double drift = 0.0;              // growth of the standard deviation per second away from a sample
+  double drift = 0.0;                      // growth of the standard deviation per second away from a sample
 };
 
 /// A value read from a track.

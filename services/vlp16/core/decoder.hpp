@@ -68,7 +68,7 @@ class Decoder {
  private:
   struct HeldPacket {
     Utime host_time;
-    std::array<std::uint8_t, format::kDataPacketSizeBytes> payload;
+    std::array<std::uint8_t, format::kDataPacketSizeBytes> payload{};
   };
 
   struct Totals {

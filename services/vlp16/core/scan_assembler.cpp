@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -30,9 +31,25 @@ int Clockwise(int from_half_cdeg, int to_half_cdeg) {
   return difference < 0 ? difference + kHalfCdegPerTurn : difference;
 }
 
+// Over open water most firings come back empty.
+bool IsEmpty(const std::uint8_t* sequence) {
+  std::array<std::uint64_t, kNumLasers * kReturnSizeBytes / sizeof(std::uint64_t)> words{};
+  std::memcpy(words.data(), sequence, sizeof words);
+  std::uint64_t any = 0;
+  for (const auto word : words) any |= word;
+  return any == 0;
+}
+
 // One firing of the 16 lasers, in order of laser id, to the rings of a column whose cells stand `kNumReturns` apart.
 template <std::size_t kNumReturns>
 void CopySequence(const std::uint8_t* bytes, const std::array<int, kNumLasers>& ring_of_laser, std::uint16_t* range, std::uint8_t* reflectivity) {
+  if constexpr (kNumReturns == 1) {
+    if (IsEmpty(bytes)) {
+      std::fill_n(range, kNumLasers, std::uint16_t{0});
+      std::fill_n(reflectivity, kNumLasers, std::uint8_t{0});
+      return;
+    }
+  }
   for (std::size_t laser = 0; laser < kNumLasers; ++laser, bytes += kReturnSizeBytes) {
     const std::size_t cell = static_cast<std::size_t>(ring_of_laser[laser]) * kNumReturns;
     const auto count = static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8);

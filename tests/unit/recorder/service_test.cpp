@@ -1,8 +1,12 @@
 #include "services/recorder/service.hpp"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <string>
@@ -10,6 +14,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_nmea_t.hpp"
+#include "lookout/nav_raw_t.hpp"
 
 namespace lookout::recorder {
 namespace {
@@ -33,7 +38,7 @@ class Recorder : public ::testing::Test {
     while (bus_.HandleOnce()) {
     }
   }
-  std::vector<bus::LogEvent> Events(const fs::path& file) {
+  static std::vector<bus::LogEvent> Events(const fs::path& file) {
     std::vector<bus::LogEvent> events;
     bus::LogReader reader(file);
     while (auto event = reader.Next()) events.push_back(*event);
@@ -87,6 +92,176 @@ TEST_F(Recorder, NeverOverwritesALog) {
 
 TEST_F(Recorder, SaysWhyALogCannotBeMade) {
   EXPECT_THROW(Service(bus_, Params{"/proc/nowhere"}, run_info_t{}, [this] { return now_; }), std::runtime_error);
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "file") << "in the way";
+  EXPECT_THROW(Service(bus_, Params{folder_ / "file"}, run_info_t{}, [this] { return now_; }), std::runtime_error);
+}
+
+TEST_F(Recorder, SendsRunInfoOnTheBusToo) {
+  std::vector<run_info_t> received;
+  bus::Subscribe<run_info_t>(bus_, bus::kRunInfo, [&](const run_info_t& message) { received.push_back(message); });
+  Service service = Make();
+  now_ += seconds(10);
+  service.AdvanceTo(now_);
+  HandleAll();
+  ASSERT_EQ(received.size(), 2U);
+  EXPECT_EQ(received[1].utime_us, ToUtimeUs(now_));
+  EXPECT_EQ(received[1].seq, 1);
+}
+
+TEST_F(Recorder, LogsTheRunInfoOfSomebodyElse) {
+  Service service = Make();
+  run_info_t other{};
+  other.program = "replay";
+  bus::Publish(bus_, bus::kRunInfo, other);
+  HandleAll();
+  service.AdvanceTo(now_);
+  const auto events = Events(service.log_file());
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(bus::Decode<run_info_t>(events[1].bytes)->program, "replay");
+}
+
+TEST_F(Recorder, SendsRunInfoAgainWhenTheHostsClockIsSetBack) {
+  Service service = Make();
+  now_ -= seconds(3600);
+  service.AdvanceTo(now_);
+  EXPECT_EQ(Events(service.log_file()).size(), 2U);
+}
+
+TEST_F(Recorder, HandsOverWhatItHoldsWhenTimeAdvances) {
+  Service service = Make();
+  bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
+  HandleAll();
+  EXPECT_EQ(Events(service.log_file()).size(), 1U) << "still held";
+  now_ += std::chrono::milliseconds(500);
+  service.AdvanceTo(now_);
+  EXPECT_EQ(Events(service.log_file()).size(), 2U);
+}
+
+std::int64_t Count(const Service& service, std::string_view name) {
+  for (const auto& counter : service.Report().counters) {
+    if (counter.name == name) return counter.count;
+  }
+  return -1;
+}
+
+// Sends bytes on a channel that is in no table.
+void SendUnknown(bus::MemoryBus& bus, std::string_view name) {
+  bus.Publish(bus::Channel{name, "", "", 1, 1, false, false}, std::vector<std::uint8_t>{1, 2, 3});
+}
+
+TEST_F(Recorder, WarnsOnceOfEachUnknownChannelAndKeepsItsNamePrintable) {
+  Service service = Make();
+  const std::string ugly = "UGLY\x1b[2J\xff";
+  for (int i = 0; i < 3; ++i) {
+    SendUnknown(bus_, "SOMEBODY_ELSES");
+    SendUnknown(bus_, ugly);
+  }
+  HandleAll();
+  const auto warnings = service.TakeWarnings();
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[0], "channel SOMEBODY_ELSES is not in the channel table; it is recorded");
+  EXPECT_EQ(warnings[1], "channel UGLY?[2J? is not in the channel table; it is recorded");
+  EXPECT_TRUE(service.TakeWarnings().empty());
+  EXPECT_EQ(Count(service, "unknown_channel"), 6);
+  EXPECT_EQ(service.Report().state, HealthState::kOk);
+  service.AdvanceTo(now_);
+  EXPECT_EQ(Events(service.log_file()).back().channel, ugly) << "as it came";
+}
+
+TEST_F(Recorder, NamesTwentyUnknownChannelsAndCountsTheRest) {
+  Service service = Make();
+  std::vector<std::string> names;
+  for (int i = 0; i < 30; ++i) names.push_back("CHANNEL_" + std::to_string(i));
+  for (const auto& name : names) SendUnknown(bus_, name);
+  HandleAll();
+  const auto warnings = service.TakeWarnings();
+  ASSERT_EQ(warnings.size(), 20U);
+  EXPECT_NE(warnings.back().find("further ones are not named"), std::string::npos);
+  EXPECT_EQ(Count(service, "unknown_channel"), 30);
+}
+
+TEST_F(Recorder, CountsRawMessagesThatDidNotArrive) {
+  Service service = Make();
+  nav_raw_t message{};
+  for (const std::int64_t seq : {0, 1, 2, 5, 0, 1}) {  // 3 and 4 are missing; then navigator starts again
+    message.seq = seq;
+    bus::Publish(bus_, bus::kNavRaw, message);
+  }
+  bus_.Publish(bus::kNavRaw, std::vector<std::uint8_t>{1, 2, 3});
+  HandleAll();
+  EXPECT_EQ(Count(service, "raw_missing"), 2);
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(Count(service, "events"), 8) << "all are recorded, also what cannot be read";
+}
+
+// For its lifetime no file can grow: writes fail as on a full disk.
+class FullDisk {
+ public:
+  FullDisk() {
+    signal_ = std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &limit_);
+    rlimit none = limit_;
+    none.rlim_cur = 0;
+    setrlimit(RLIMIT_FSIZE, &none);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    setrlimit(RLIMIT_FSIZE, &limit_);
+    std::signal(SIGXFSZ, signal_);
+  }
+
+ private:
+  rlimit limit_{};
+  void (*signal_)(int) = nullptr;
+};
+
+TEST_F(Recorder, GoesOnInANewLogWhenADiskThatWasFullIsNotAnyMore) {
+  Service service = Make();
+  const auto first = service.log_file();
+  bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
+  HandleAll();
+  service.AdvanceTo(now_);
+  HealthReport report_when_full;
+  {
+    const FullDisk full;
+    for (int i = 0; i < 3; ++i) {
+      bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
+      HandleAll();
+      now_ += seconds(1);
+      service.AdvanceTo(now_);
+    }
+    report_when_full = service.Report();
+  }
+  EXPECT_EQ(report_when_full.state, HealthState::kError);
+  EXPECT_EQ(report_when_full.reason.rfind("not recording: ", 0), 0U) << report_when_full.reason;
+  EXPECT_EQ(service.TakeWarnings().size(), 1U) << "once, not at each attempt";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "attempts leave no empty logs";
+  EXPECT_EQ(Count(service, "lost"), 3);
+
+  now_ += seconds(1);
+  service.AdvanceTo(now_);
+  bus::Publish(bus_, bus::kLidarNmea, lidar_nmea_t{});
+  HandleAll();
+  service.AdvanceTo(now_);
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service.Report().reason.rfind("recording again; 3 events lost", 0), 0U) << service.Report().reason;
+  ASSERT_NE(service.log_file(), first);
+  EXPECT_EQ(Events(first).size(), 2U);
+  const auto events = Events(service.log_file());
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].channel, "RUN_INFO");
+  EXPECT_EQ(events[1].channel, "LIDAR_NMEA");
+}
+
+TEST(RecorderParams, AreThoseOfTheFileAndTheFolderMustBeNamed) {
+  EXPECT_EQ(LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo").log_folder, "logs");
+  const auto folder = fs::temp_directory_path() / ("lookout_recorder_params_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  std::ofstream(folder / "recorder.txtpb") << "log_folder: \"\"\n";
+  EXPECT_THROW(LoadParams(folder), std::runtime_error);
+  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(OwnMotion, PositiveRollPutsStarboardDownAndPositivePitchTheBowUp) {
   OwnMotion motion;
   motion.roll_rad = {{0.1, 4.0, kPi / 2.0}};
   motion.pitch_rad = {{0.05, 4.0, kPi / 2.0}};
-  const auto R_map_vessel = StateAt(motion, 0.5, 0.0).T_map_vessel().linear();
+  const Eigen::Matrix3d R_map_vessel = StateAt(motion, 0.5, 0.0).T_map_vessel().linear();
   EXPECT_LT((R_map_vessel * Vector3d(0.0, -1.0, 0.0)).z(), -0.09);
   EXPECT_NEAR((R_map_vessel * Vector3d(1.0, 0.0, 0.0)).z(), std::sin(0.05), 1e-12);
 }

@@ -1,0 +1,22 @@
+#include "services/georeferencer/params.hpp"
+
+#include "common/config/boat.hpp"
+#include "common/config/text_config.hpp"
+#include "common/core/angles.hpp"
+#include "config/schema/georeferencer.pb.h"
+
+namespace lookout::georeferencer {
+
+Params LoadParams(const std::filesystem::path& config_folder) {
+  const auto boat = config::LoadBoat(config_folder);
+  const auto message = config::Load<config::Georeferencer>(config_folder, "georeferencer.txtpb");
+  Params params;
+  params.placement.T_vessel_lidar = boat.T_vessel_lidar;
+  params.placement.reference_point_above_water_m = boat.reference_point_above_water_m;
+  params.placement.range_sd_m = message.range_sd_m();
+  params.placement.mounting_sd_rad = DegToRad(message.mounting_sd_deg());
+  params.pose_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message.pose_timeout_s()));
+  return params;
+}
+
+}  // namespace lookout::georeferencer

@@ -1,0 +1,20 @@
+// Config of the georeferencer process (boat.txtpb, georeferencer.txtpb) as checked values.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+
+#include "services/georeferencer/core/placement.hpp"
+
+namespace lookout::georeferencer {
+
+struct Params {
+  PlacementParams placement;
+  std::chrono::microseconds pose_timeout{0};
+};
+
+/// @param config_folder  the boat's folder, holding boat.txtpb and georeferencer.txtpb
+/// @throws config::ConfigError
+Params LoadParams(const std::filesystem::path& config_folder);
+
+}  // namespace lookout::georeferencer

@@ -1,0 +1,82 @@
+#include "services/georeferencer/service.hpp"
+
+#include <algorithm>
+#include <variant>
+
+#include "services/georeferencer/wire.hpp"
+
+namespace lookout::georeferencer {
+
+namespace {
+
+// POSE comes ten times a second, SEGMENTS once a turn: so long without is worth a word. A time-out is told of for as long.
+constexpr std::chrono::seconds kSilence(2);
+
+}  // namespace
+
+Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), georeferencer_(params.placement, params.pose_timeout) {
+  for (const auto& refusal : kRefusals) refusals_.push_back({refusal, 0});
+  bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
+  bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
+}
+
+void Service::OnSegments(const segments_t& message) {
+  auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
+  if (const auto* refusal = std::get_if<Refusal>(&part)) return Refuse(*refusal);
+  segments_seen_ = now_;
+  Publish(georeferencer_.AddSegments(std::get<SegmentPart>(std::move(part))));
+}
+
+void Service::OnPose(const pose_t& message) {
+  const auto pose = ToPose(message);
+  if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
+  pose_seen_ = now_;
+  is_newest_pose_placed_ = std::get<Pose>(pose).is_placed;
+  Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
+}
+
+void Service::AdvanceTo(Utime host_time) {
+  now_ = host_time;
+  // Waiting begins with the first call, or again where the host's clock was set back.
+  for (auto* seen : {&pose_seen_, &segments_seen_}) *seen = std::min(seen->value_or(host_time), host_time);
+  Publish(georeferencer_.AdvanceTo(host_time));
+}
+
+void Service::Finish() { Publish(georeferencer_.Finish()); }
+
+void Service::Publish(const std::vector<ObstaclePart>& parts) {
+  for (const auto& part : parts) {
+    const auto messages = ToMessages(part, bus::kMaxMessageBytes);
+    if (messages.size() > 1) ++num_split_;
+    for (const auto& message : messages) bus::Publish(bus_, bus::kObstacles, message);
+  }
+}
+
+void Service::Refuse(std::string_view name) { ++std::ranges::find(refusals_, name, &Counter::name)->count; }
+
+HealthReport Service::Report() const {
+  HealthReport report;
+  report.counters = georeferencer_.counters();
+  report.counters.push_back({"parts_split", num_split_});
+  report.counters.insert(report.counters.end(), refusals_.begin(), refusals_.end());
+
+  const auto degrade = [&report](const std::string& reason) {
+    report.state = HealthState::kDegraded;
+    report.reason += (report.reason.empty() ? "" : "; ") + reason;
+  };
+  const auto silence = [this](std::optional<Utime> seen) { return now_ && seen ? *now_ - *seen : std::chrono::microseconds(0); };
+  const auto seconds = [](std::chrono::microseconds duration) {
+    return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
+  };
+  if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
+  if (silence(pose_seen_) >= kSilence) {
+    degrade("no POSE for " + seconds(silence(pose_seen_)));
+  } else if (is_newest_pose_placed_ == false) {
+    degrade("POSE does not know position and heading: obstacles in the vessel frame only");
+  } else if (georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence) {
+    degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
+  }
+  return report;
+}
+
+}  // namespace lookout::georeferencer

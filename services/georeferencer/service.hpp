@@ -1,0 +1,47 @@
+// The georeferencer process without its clock: SEGMENTS and POSE in, OBSTACLES out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/segments_t.hpp"
+#include "services/georeferencer/core/georeferencer.hpp"
+#include "services/georeferencer/params.hpp"
+
+namespace lookout::georeferencer {
+
+class Service {
+ public:
+  Service(bus::Bus& bus, const Params& params);
+
+  /// Live only: host time has come so far. What has waited too long for POSE is sent without it.
+  void AdvanceTo(Utime host_time);
+
+  /// End of input: what waits is sent with the poses that are there.
+  void Finish();
+
+  HealthReport Report() const;
+
+ private:
+  void OnSegments(const segments_t& message);
+  void OnPose(const pose_t& message);
+  void Publish(const std::vector<ObstaclePart>& parts);
+  void Refuse(std::string_view name);
+
+  bus::Bus& bus_;
+  Georeferencer georeferencer_;
+  std::vector<Counter> refusals_;
+  std::int64_t num_split_ = 0;
+  std::optional<bool> is_newest_pose_placed_;
+  // Host time, live only.
+  std::optional<Utime> now_;
+  std::optional<Utime> pose_seen_;  // when the last valid one came, or waiting began
+  std::optional<Utime> segments_seen_;
+};
+
+}  // namespace lookout::georeferencer

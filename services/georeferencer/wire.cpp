@@ -1,0 +1,267 @@
+#include "services/georeferencer/wire.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "common/core/angles.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::georeferencer {
+
+namespace {
+
+using std::chrono::microseconds;
+
+// Bounds of what can be, wide enough for any lidar and boat, so that arithmetic inside stays far from overflow.
+constexpr double kMaxLidarM = 1e5;
+constexpr double kMaxMapM = 1e6;  // a flat map is of no use farther from its datum
+constexpr double kMaxHeightM = 1e5;
+constexpr double kMaxHeaveM = 1e3;
+constexpr double kMaxVariance = 1e12;
+constexpr std::chrono::seconds kMaxTurn(60);
+constexpr std::int32_t kMaxParts = 1000;
+constexpr std::int64_t kPoseGridUs = 20'000;  // pose_t: a multiple of it
+// Rounding of a covariance that went through a filter.
+constexpr double kCovarianceTolerance = 1e-6;
+
+// A turn of so few obstacles fits into one message, however large their outlines are.
+constexpr std::size_t kFewSegments = 50;
+static_assert(kHeadBytes + kFewSegments * (kObstacleBytes + kMaxFootprintVertices * kVertexBytes) <= 120'000);
+
+bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }  // NaN is not
+
+bool IsPlace(const float (&point_m)[3]) {
+  return std::ranges::all_of(point_m, [](float value) { return IsWithin(value, kMaxLidarM); });
+}
+
+bool IsLength(double value) { return value >= 0.0 && value <= kMaxLidarM; }
+
+template <typename T>
+std::int32_t Count(const std::vector<T>& values) {
+  return static_cast<std::int32_t>(values.size());
+}
+
+Eigen::Vector3d ToVector(const float (&point_m)[3]) { return {point_m[0], point_m[1], point_m[2]}; }
+
+bool HasItsVertices(const segment_t& message) {
+  const auto num_vertices = static_cast<std::size_t>(message.num_hull);
+  return message.num_points > 0 && message.num_hull > 0 && message.hull_x_m.size() == num_vertices && message.hull_y_m.size() == num_vertices &&
+         message.hull_time_us.size() == num_vertices;
+}
+
+// Precondition: HasItsVertices.
+std::optional<Refusal> FaultOf(const segment_t& message, const TurnHead& head) {
+  const auto time = UtimeFromWire(message.utime_us);
+  const auto nearest_time = UtimeFromWire(message.nearest_utime_us);
+  for (const auto& moment : {time, nearest_time}) {
+    if (!moment || *moment < head.time || *moment > head.end_time) return kSegmentsTime;
+  }
+  if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsLength(message.length_m) || !IsLength(message.width_m) ||
+      !IsWithin(message.min_z_m, kMaxLidarM) || !IsWithin(message.max_z_m, kMaxLidarM) || message.min_z_m > message.max_z_m ||
+      !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity)) {
+    return kSegmentsNumber;
+  }
+  for (std::size_t i = 0; i < message.hull_x_m.size(); ++i) {
+    if (!IsWithin(message.hull_x_m[i], kMaxLidarM) || !IsWithin(message.hull_y_m[i], kMaxLidarM)) return kSegmentsNumber;
+    if (message.hull_time_us[i] < 0 || microseconds(message.hull_time_us[i]) > head.end_time - head.time) return kSegmentsTime;
+  }
+  return std::nullopt;
+}
+
+// Precondition: FaultOf the message is none.
+Segment ToSegment(const segment_t& message, const TurnHead& head) {
+  Segment segment;
+  segment.time = Utime(microseconds(message.utime_us));
+  segment.id = message.id;
+  segment.num_points = message.num_points;
+  segment.centroid_m = ToVector(message.centroid_m);
+  segment.nearest_m = ToVector(message.nearest_m);
+  segment.length_m = message.length_m;
+  segment.width_m = message.width_m;
+  segment.min_z_m = message.min_z_m;
+  segment.max_z_m = message.max_z_m;
+  segment.mean_reflectivity = message.mean_reflectivity;
+  for (std::size_t i = 0; i < message.hull_x_m.size(); ++i) {
+    segment.hull.push_back({{message.hull_x_m[i], message.hull_y_m[i]}, head.time + microseconds(message.hull_time_us[i])});
+  }
+  return segment;
+}
+
+// Rows of pose_t::covariance that are used: east, north, roll, pitch, heading.
+constexpr std::array<std::size_t, 5> kCovarianceRows{0, 1, 6, 7, 8};
+
+bool IsUnknownOrZero(double value) { return std::isnan(value) || value == 0.0; }
+
+// Symmetric, no variance below 0, no correlation above 1; what belongs to an unknown variance is unknown or 0.
+bool IsCovariance(const double (&covariance)[9][9]) {
+  for (std::size_t i = 0; i < 9; ++i) {
+    const double variance = covariance[i][i];
+    if (!std::isnan(variance) && !(variance >= 0.0 && variance <= kMaxVariance)) return false;
+    for (std::size_t k = 0; k < i; ++k) {
+      const double a = covariance[i][k];
+      const double b = covariance[k][i];
+      const double bound = std::sqrt(variance * covariance[k][k]) * (1.0 + kCovarianceTolerance);
+      if (std::isnan(bound)) {
+        if (!IsUnknownOrZero(a) || !IsUnknownOrZero(b)) return false;
+      } else if (!IsWithin(a, bound) || !IsWithin(b, bound) || !IsWithin(a - b, kCovarianceTolerance * bound)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
+
+std::int32_t ToWire(ObstacleStatus status) {
+  switch (status) {
+    case ObstacleStatus::kOk:
+      return obstacle_t::STATUS_OK;
+    case ObstacleStatus::kPoseTimeout:
+      return obstacle_t::STATUS_POSE_TIMEOUT;
+    default:
+      return obstacle_t::STATUS_VESSEL_FRAME_ONLY;
+  }
+}
+
+// All that is unknown goes out as one and the same NaN: same bytes whatever made it.
+double Canonical(double value) { return std::isnan(value) ? kUnknown : value; }
+
+obstacle_t ToMessage(const Obstacle& obstacle) {
+  obstacle_t message{};
+  message.utime_us = ToUtimeUs(obstacle.time);
+  message.id = obstacle.id;
+  message.status = ToWire(obstacle.status);
+  message.latitude_deg = obstacle.latitude_deg;
+  message.longitude_deg = obstacle.longitude_deg;
+  message.position_map_m[0] = obstacle.position_map_m.x();
+  message.position_map_m[1] = obstacle.position_map_m.y();
+  message.covariance_m2[0] = Canonical(obstacle.covariance_m2(0, 0));
+  message.covariance_m2[1] = Canonical(obstacle.covariance_m2(0, 1));
+  message.covariance_m2[2] = Canonical(obstacle.covariance_m2(1, 1));
+  message.top_above_water_m = obstacle.top_above_water_m;
+  for (int i = 0; i < 2; ++i) message.center_vessel_m[i] = static_cast<float>(obstacle.center_vessel_m[i]);
+  for (int i = 0; i < 3; ++i) message.nearest_vessel_m[i] = static_cast<float>(obstacle.nearest_vessel_m[i]);
+  message.range_m = static_cast<float>(obstacle.range_m);
+  // The float next to 2 pi is above it.
+  const auto bearing_rad = static_cast<float>(obstacle.bearing_rad);
+  message.bearing_rad = static_cast<double>(bearing_rad) < kTwoPi ? bearing_rad : 0.0F;
+  message.length_m = obstacle.length_m;
+  message.width_m = obstacle.width_m;
+  message.height_m = static_cast<float>(obstacle.height_m);
+  message.num_points = obstacle.num_points;
+  message.mean_reflectivity = obstacle.mean_reflectivity;
+  for (const auto& vertex : obstacle.footprint_vessel_m) {
+    message.footprint_vessel_x_m.push_back(static_cast<float>(vertex.x()));
+    message.footprint_vessel_y_m.push_back(static_cast<float>(vertex.y()));
+  }
+  message.num_footprint = Count(message.footprint_vessel_x_m);
+  for (const auto& vertex : obstacle.footprint_map_m) {
+    message.footprint_east_m.push_back(static_cast<float>(vertex.x()));
+    message.footprint_north_m.push_back(static_cast<float>(vertex.y()));
+  }
+  message.num_map = Count(message.footprint_east_m);
+  return message;
+}
+
+}  // namespace
+
+std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int max_message_bytes) {
+  const auto time = UtimeFromWire(message.utime_us);
+  const auto end_time = UtimeFromWire(message.end_utime_us);
+  if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxTurn) return kSegmentsTime;
+  if (message.seq < 0 || message.raw_seq < 0 || message.num_parts < 1 || message.num_parts > kMaxParts || message.part_index < 0 ||
+      message.part_index >= message.num_parts) {
+    return kSegmentsParts;
+  }
+  if (message.num_segments > message.num_turn_segments || message.segments.size() != static_cast<std::size_t>(message.num_segments)) {
+    return kSegmentsCount;
+  }
+  if (!std::ranges::all_of(message.segments, HasItsVertices)) return kSegmentsCount;
+  if (message.getEncodedSize() > max_message_bytes) return kSegmentsSize;
+  SegmentPart part;
+  part.head = {*time, *end_time, message.seq, message.raw_seq, message.scan_flags, message.part_index, message.num_parts, message.num_turn_segments};
+  std::int32_t last_id = 0;
+  for (const auto& segment : message.segments) {
+    if (segment.id <= last_id || segment.id > message.num_turn_segments) return kSegmentsId;
+    last_id = segment.id;
+    if (const auto fault = FaultOf(segment, part.head)) return *fault;
+    part.segments.push_back(ToSegment(segment, part.head));
+  }
+  return part;
+}
+
+std::variant<Pose, Refusal> ToPose(const pose_t& message) {
+  const auto time = UtimeFromWire(message.utime_us);
+  if (!time || message.utime_us % kPoseGridUs != 0) return kPoseTime;
+  if (message.status < pose_t::STATUS_OK || message.status > pose_t::STATUS_UNKNOWN) return kPoseStatus;
+  Pose pose;
+  pose.time = *time;
+  pose.is_placed = message.status == pose_t::STATUS_OK;
+  pose.datum = {message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
+  pose.position_map_m = {message.position_map_m[0], message.position_map_m[1], message.position_map_m[2]};
+  pose.heading_rad = message.heading_rad;
+  pose.pitch_rad = OrZero(message.pitch_rad);
+  pose.roll_rad = OrZero(message.roll_rad);
+  pose.heave_m = OrZero(message.heave_m);
+  if (!IsWithin(pose.pitch_rad, kPi) || !IsWithin(pose.roll_rad, kPi) || !IsWithin(pose.heave_m, kMaxHeaveM)) return kPoseNumber;
+  if (pose.is_placed) {
+    const auto& p_m = message.position_map_m;
+    if (!IsWithin(p_m[0], kMaxMapM) || !IsWithin(p_m[1], kMaxMapM) || !IsWithin(p_m[2], kMaxHeightM) || !IsWithin(pose.datum.latitude_deg, 90.0) ||
+        !IsWithin(pose.datum.longitude_deg, 180.0) || !IsWithin(OrZero(pose.datum.ellipsoid_height_m), kMaxHeightM) ||
+        !(pose.heading_rad >= 0.0 && pose.heading_rad <= kTwoPi)) {
+      return kPoseNumber;
+    }
+    if (!IsCovariance(message.covariance)) return kPoseCovariance;
+    for (std::size_t i = 0; i < kCovarianceRows.size(); ++i) {
+      for (std::size_t k = 0; k < kCovarianceRows.size(); ++k) {
+        pose.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = message.covariance[kCovarianceRows[i]][kCovarianceRows[k]];
+      }
+    }
+  }
+  return pose;
+}
+
+std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_bytes) {
+  obstacles_t head{};
+  head.utime_us = ToUtimeUs(part.head.time);
+  head.seq = part.head.seq;
+  head.raw_seq = part.head.raw_seq;
+  head.end_utime_us = ToUtimeUs(part.head.end_time);
+  head.scan_flags = part.head.scan_flags;
+  head.datum_latitude_deg = Canonical(part.datum.latitude_deg);
+  head.datum_longitude_deg = Canonical(part.datum.longitude_deg);
+  head.datum_ellipsoid_height_m = Canonical(part.datum.ellipsoid_height_m);
+  const int head_bytes = head.getEncodedSize();
+
+  // Filled in order; the second takes what the first does not hold.
+  std::vector<obstacles_t> messages{head};
+  int num_bytes = head_bytes;
+  for (const auto& obstacle : part.obstacles) {
+    auto message = ToMessage(obstacle);
+    const int size = message._getEncodedSizeNoHash();
+    if (num_bytes + size > max_message_bytes) {
+      messages.push_back(head);
+      num_bytes = head_bytes;
+    }
+    num_bytes += size;
+    messages.back().obstacles.push_back(std::move(message));
+  }
+  // Other parts of the turn may need two messages: then each part gets two, since num_parts must be known with the first.
+  const bool is_one_enough =
+      part.head.num_turn_segments <= static_cast<std::int32_t>(kFewSegments) || (part.head.num_parts == 1 && messages.size() == 1);
+  if (!is_one_enough && messages.size() == 1) messages.push_back(head);
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    const auto per_part = static_cast<std::int32_t>(messages.size());
+    messages[i].part_index = part.head.part_index * per_part + static_cast<std::int32_t>(i);
+    messages[i].num_parts = part.head.num_parts * per_part;
+    messages[i].num_obstacles = Count(messages[i].obstacles);
+  }
+  return messages;
+}
+
+}  // namespace lookout::georeferencer

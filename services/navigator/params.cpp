@@ -1,0 +1,52 @@
+#include "services/navigator/params.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "common/config/boat.hpp"
+#include "common/config/text_config.hpp"
+#include "common/core/angles.hpp"
+#include "config/schema/navigator.pb.h"
+
+namespace lookout::navigator {
+
+namespace {
+
+std::chrono::microseconds ToMicroseconds(double duration_s) { return std::chrono::microseconds(std::llround(duration_s * 1e6)); }
+
+}  // namespace
+
+Params LoadParams(const std::filesystem::path& config_folder) {
+  const auto boat = config::LoadBoat(config_folder);
+  const auto message = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
+
+  Params params;
+  params.input = message.source() == config::Navigator::LOG ? Input::kLog : Input::kOutside;
+  params.use_lidar_nmea = message.use_lidar_nmea();
+  params.bind_address = message.bind_address();
+  params.nmea_port = message.nmea_port();
+
+  auto& navigator = params.navigator;
+  navigator.max_sentence_latency = ToMicroseconds(message.max_sentence_latency_s());
+  navigator.position_sd_m = message.position_sd_m();
+  navigator.heading_offset_rad = DegToRad(message.heading_offset_deg());
+  navigator.pitch_offset_rad = DegToRad(message.pitch_offset_deg());
+  navigator.roll_offset_rad = DegToRad(message.roll_offset_deg());
+
+  auto& pose = navigator.pose;
+  if (boat.datum) pose.antenna.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
+  pose.antenna.max_age = ToMicroseconds(message.max_position_age_s());
+  pose.antenna.velocity_sd_mps = message.velocity_sd_mps();
+  pose.antenna.position_drift_mps = message.position_drift_mps();
+  pose.attitude.max_age = ToMicroseconds(message.max_attitude_age_s());
+  pose.attitude.heading_sd_rad = DegToRad(message.heading_sd_deg());
+  pose.attitude.tilt_sd_rad = DegToRad(message.tilt_sd_deg());
+  pose.p_vessel_antenna_m = boat.p_vessel_antenna_m;
+  pose.use_course_as_heading = message.use_course_as_heading();
+  pose.min_course_speed_mps = message.min_course_speed_mps();
+  pose.course_heading_sd_rad = DegToRad(message.course_heading_sd_deg());
+  pose.unmeasured_tilt_sd_rad = DegToRad(message.unmeasured_tilt_sd_deg());
+  return params;
+}
+
+}  // namespace lookout::navigator

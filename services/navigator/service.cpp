@@ -1,0 +1,140 @@
+#include "services/navigator/service.hpp"
+
+#include <chrono>
+#include <string>
+
+#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/wire.hpp"
+
+namespace lookout::navigator {
+
+namespace {
+
+// Host time comes from a clock or a capture, and may be anything.
+bool IsUsable(Utime host_time) { return UtimeFromWire(ToUtimeUs(host_time)).has_value(); }
+
+}  // namespace
+
+Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
+  if (params_.input == Input::kLog) {
+    bus::Subscribe<nav_raw_t>(bus_, bus::kNavRaw, [this](const nav_raw_t& message) { OnNavRaw(message); });
+  } else if (params_.use_lidar_nmea) {
+    bus::Subscribe<lidar_nmea_t>(bus_, bus::kLidarNmea, [this](const lidar_nmea_t& message) { OnLidarNmea(message); });
+  }
+}
+
+void Service::OnDatagram(Utime arrival, Bytes payload) {
+  if (params_.input != Input::kOutside) return;
+  if (!IsUsable(arrival)) {
+    ++counts_.bad_host_time;
+    return;
+  }
+  const auto lines = SplitDatagram(payload);
+  counts_.no_start += lines.num_no_start;
+  counts_.too_long += lines.num_too_long;
+  counts_.not_printable += lines.num_not_printable;
+  PublishAndConsume(sequencer_.OnLines(arrival, lines.lines));
+}
+
+void Service::AdvanceTo(Utime host_time) {
+  if (params_.input != Input::kOutside) return;
+  if (!IsUsable(host_time)) {
+    ++counts_.bad_host_time;
+    return;
+  }
+  PublishAndConsume(sequencer_.AdvanceTo(host_time));
+}
+
+void Service::Finish(Utime host_time) {
+  if (params_.input == Input::kLog) {
+    PublishOutput(navigator_.Flush());
+  } else if (IsUsable(host_time)) {
+    PublishAndConsume(sequencer_.Finish(host_time));
+  } else {
+    ++counts_.bad_host_time;
+  }
+}
+
+void Service::OnLidarNmea(const lidar_nmea_t& message) {
+  const auto sentence = ToLidarSentence(message);
+  if (!sentence) {
+    ++counts_.lidar_nmea_bad;
+    return;
+  }
+  PublishAndConsume(sequencer_.OnLidarSentence(sentence->arrival, sentence->sentence));
+}
+
+void Service::OnNavRaw(const nav_raw_t& message) {
+  const auto [fault, item] = ToItem(message);
+  switch (fault) {
+    case ItemFault::kNone:
+      break;
+    case ItemFault::kBadTime:
+      ++counts_.nav_raw_bad_time;
+      return;
+    case ItemFault::kBadKind:
+      ++counts_.nav_raw_bad_kind;
+      return;
+    case ItemFault::kBadText:
+      ++counts_.nav_raw_bad_text;
+      return;
+    case ItemFault::kBadImu:
+      ++counts_.nav_raw_bad_imu;
+      return;
+  }
+  if (item.kind != ItemKind::kStart && navigator_.time() && item.time < *navigator_.time()) {
+    ++counts_.nav_raw_backwards;
+    return;
+  }
+  Consume(item);
+}
+
+void Service::PublishAndConsume(const std::vector<Item>& items) {
+  for (const auto& item : items) {
+    bus::Publish(bus_, bus::kNavRaw, ToMessage(item));
+    Consume(item);
+  }
+}
+
+void Service::Consume(const Item& item) {
+  if (item.kind == ItemKind::kStart) fix_seq_ = attitude_seq_ = pose_seq_ = 0;
+  raw_seq_ = item.seq;
+  PublishOutput(navigator_.Consume(item));
+}
+
+void Service::PublishOutput(const NavigatorOutput& output) {
+  if (output.fix) bus::Publish(bus_, bus::kGnssFix, ToMessage(*output.fix, fix_seq_++, raw_seq_));
+  if (output.attitude) bus::Publish(bus_, bus::kAttitude, ToMessage(*output.attitude, attitude_seq_++, raw_seq_));
+  for (const auto& pose : output.poses) bus::Publish(bus_, bus::kPose, ToMessage(pose, pose_seq_++, raw_seq_));
+}
+
+HealthReport Service::Report() const {
+  HealthReport report;
+  report.counters = {{"no_start", counts_.no_start},
+                     {"too_long", counts_.too_long},
+                     {"not_printable", counts_.not_printable},
+                     {"bad_host_time", counts_.bad_host_time},
+                     {"lidar_nmea_bad", counts_.lidar_nmea_bad},
+                     {"nav_raw_bad_time", counts_.nav_raw_bad_time},
+                     {"nav_raw_bad_kind", counts_.nav_raw_bad_kind},
+                     {"nav_raw_bad_text", counts_.nav_raw_bad_text},
+                     {"nav_raw_bad_imu", counts_.nav_raw_bad_imu},
+                     {"nav_raw_backwards", counts_.nav_raw_backwards}};
+  for (const auto& counter : sequencer_.counters()) report.counters.push_back(counter);
+  for (const auto& counter : navigator_.counters()) report.counters.push_back(counter);
+
+  const auto& pose = navigator_.last_pose();
+  const bool has_position = pose && (pose->status == PoseStatus::kOk || pose->status == PoseStatus::kNoHeading);
+  const bool has_heading = pose && pose->heading_source != HeadingSource::kNone;
+  if (!has_position) {
+    const auto arrival = navigator_.last_fix_arrival();
+    report.reason =
+        arrival ? "no position fix for " + std::to_string(std::chrono::floor<std::chrono::seconds>(*navigator_.time() - *arrival).count()) + " s"
+                : "no position fix yet";
+  }
+  if (!has_heading) report.reason += report.reason.empty() ? "no heading" : ", no heading";
+  if (!report.reason.empty()) report.state = HealthState::kDegraded;
+  return report;
+}
+
+}  // namespace lookout::navigator

@@ -1,0 +1,65 @@
+// The navigator process without its sources: datagrams and LIDAR_NMEA, or NAV_RAW, in; NAV_RAW, GNSS_FIX, ATTITUDE and POSE out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/lidar_nmea_t.hpp"
+#include "lookout/nav_raw_t.hpp"
+#include "services/navigator/core/item_sequencer.hpp"
+#include "services/navigator/core/navigator.hpp"
+#include "services/navigator/params.hpp"
+
+namespace lookout::navigator {
+
+class Service {
+ public:
+  Service(bus::Bus& bus, const Params& params);
+
+  /// NMEA 0183 from outside, some lines. Each line is published as NAV_RAW, and then exactly that is consumed. Input::kOutside only.
+  void OnDatagram(Utime arrival, Bytes payload);
+
+  /// Host time has come so far: ticks, and a start mark when the host clock was set back. Input::kOutside only.
+  void AdvanceTo(Utime host_time);
+
+  /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: gives the last pose, unless an END mark did.
+  void Finish(Utime host_time);
+
+  HealthReport Report() const;
+
+ private:
+  void OnLidarNmea(const lidar_nmea_t& message);
+  void OnNavRaw(const nav_raw_t& message);
+  void PublishAndConsume(const std::vector<Item>& items);
+  void Consume(const Item& item);
+  void PublishOutput(const NavigatorOutput& output);
+
+  bus::Bus& bus_;
+  Params params_;
+  ItemSequencer sequencer_;
+  Navigator navigator_;
+  std::int64_t raw_seq_ = 0;  // of the item that is being consumed
+  std::int64_t fix_seq_ = 0;
+  std::int64_t attitude_seq_ = 0;
+  std::int64_t pose_seq_ = 0;
+
+  struct Counts {
+    std::int64_t no_start = 0;
+    std::int64_t too_long = 0;
+    std::int64_t not_printable = 0;
+    std::int64_t bad_host_time = 0;
+    std::int64_t lidar_nmea_bad = 0;
+    std::int64_t nav_raw_bad_time = 0;
+    std::int64_t nav_raw_bad_kind = 0;
+    std::int64_t nav_raw_bad_text = 0;
+    std::int64_t nav_raw_bad_imu = 0;
+    std::int64_t nav_raw_backwards = 0;
+  };
+  Counts counts_;
+};
+
+}  // namespace lookout::navigator

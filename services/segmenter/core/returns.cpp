@@ -1,0 +1,103 @@
+#include "services/segmenter/core/returns.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lookout::segmenter {
+
+namespace {
+
+// Of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition theorem.
+struct RingGeometry {
+  double cos_elevation_cos_offset;
+  double cos_elevation_sin_offset;
+  double sin_elevation;
+  double azimuth_offset_rad;
+  double origin_height_m;
+};
+
+std::vector<RingGeometry> GeometryOf(const std::vector<Ring>& rings) {
+  std::vector<RingGeometry> geometry;
+  geometry.reserve(rings.size());
+  for (const auto& ring : rings) {
+    const double cos_elevation = std::cos(double{ring.elevation_rad});
+    geometry.push_back({cos_elevation * std::cos(double{ring.azimuth_offset_rad}), cos_elevation * std::sin(double{ring.azimuth_offset_rad}),
+                        std::sin(double{ring.elevation_rad}), ring.azimuth_offset_rad, ring.origin_height_m});
+  }
+  return geometry;
+}
+
+// Whether a point is in the box of the own vessel; most points are too far away and take one comparison.
+class OwnVessel {
+ public:
+  explicit OwnVessel(const ReturnFilter& filter) : box_m_(filter.own_vessel_box_m), T_vessel_lidar_(filter.T_vessel_lidar) {
+    if (box_m_.isEmpty()) return;
+    const Eigen::Vector3d p_lidar_m = T_vessel_lidar_.translation();
+    const Eigen::Vector3d reach_m = (box_m_.min() - p_lidar_m).cwiseAbs().cwiseMax((box_m_.max() - p_lidar_m).cwiseAbs());
+    squared_reach_m2_ = reach_m.squaredNorm() * kMargin;
+  }
+
+  bool Contains(const Point& point) const {
+    const Eigen::Vector3d p_lidar_m(point.x_m, point.y_m, point.z_m);
+    return p_lidar_m.squaredNorm() <= squared_reach_m2_ && box_m_.contains(T_vessel_lidar_ * p_lidar_m);
+  }
+
+ private:
+  static constexpr double kMargin = 1.0 + 1e-9;  // for rounding
+
+  const Eigen::AlignedBox3d& box_m_;
+  const Eigen::Isometry3d& T_vessel_lidar_;
+  double squared_reach_m2_ = -1.0;
+};
+
+}  // namespace
+
+ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) {
+  const auto rings = GeometryOf(scan.head.rings);
+  const auto num_returns = static_cast<std::size_t>(scan.head.num_returns);
+  const std::size_t cells_per_column = rings.size() * num_returns;
+  const bool sees_all_round = filter.field_of_view.width_rad >= kTwoPi;
+  const OwnVessel own_vessel(filter);
+
+  ClassifiedReturns result;
+  result.label.assign(scan.num_cells(), 0);
+  const auto is_return = [](std::uint16_t range) { return range != 0; };
+  result.returns.reserve(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
+  for (std::size_t column = 0; column < scan.columns.azimuth_rad.size(); ++column) {
+    const std::size_t first_cell = column * cells_per_column;
+    const std::uint16_t* range = scan.columns.range.data() + first_cell;
+    if (std::none_of(range, range + cells_per_column, is_return)) continue;
+    const double azimuth_rad = scan.columns.azimuth_rad[column];
+    const double sin_azimuth = std::sin(azimuth_rad);
+    const double cos_azimuth = std::cos(azimuth_rad);
+    for (std::size_t ring = 0, offset = 0; ring < rings.size(); ++ring) {
+      for (std::size_t i = 0; i < num_returns; ++i, ++offset) {
+        if (range[offset] == 0) continue;
+        const RingGeometry& geometry = rings[ring];
+        const std::size_t cell = first_cell + offset;
+        const double range_m = range[offset] * scan.head.range_unit_m;
+        if (range_m < filter.min_range_m || range_m > filter.max_range_m) {
+          result.label[cell] = ToLabel(Reason::kRange);
+          continue;
+        }
+        if (!sees_all_round && !filter.field_of_view.Contains(azimuth_rad + geometry.azimuth_offset_rad)) {
+          result.label[cell] = ToLabel(Reason::kFieldOfView);
+          continue;
+        }
+        const double cos_elevation_cos = geometry.cos_elevation_cos_offset * cos_azimuth - geometry.cos_elevation_sin_offset * sin_azimuth;
+        const double cos_elevation_sin = geometry.cos_elevation_cos_offset * sin_azimuth + geometry.cos_elevation_sin_offset * cos_azimuth;
+        const Point point{static_cast<float>(range_m * cos_elevation_cos), static_cast<float>(-range_m * cos_elevation_sin),
+                          static_cast<float>(range_m * geometry.sin_elevation + geometry.origin_height_m)};
+        if (own_vessel.Contains(point)) {
+          result.label[cell] = ToLabel(Reason::kOwnVessel);
+          continue;
+        }
+        result.returns.push_back({point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
+                                  static_cast<std::int32_t>(ring)});
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace lookout::segmenter

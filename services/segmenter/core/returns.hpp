@@ -1,0 +1,61 @@
+// The first step: which returns are looked at, and where they are.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "common/core/angles.hpp"
+#include "services/segmenter/core/scan.hpp"
+
+namespace lookout::segmenter {
+
+/// Why a return is in no segment. Numbers as on the wire.
+enum class Reason : std::int16_t { kRange = 1, kOwnVessel = 2, kFieldOfView = 3, kShadowed = 4, kTooSmall = 5 };
+
+/// What a label says of a return in no segment.
+constexpr std::int16_t ToLabel(Reason reason) { return static_cast<std::int16_t>(-static_cast<std::int16_t>(reason)); }
+
+/// In the lidar frame. Single precision, as on the wire: what is computed from points holds for the points that are published.
+struct Point {
+  float x_m = 0.0F;
+  float y_m = 0.0F;
+  float z_m = 0.0F;
+};
+
+inline double SquaredDistance(const Point& a, const Point& b) {
+  const double x_m = static_cast<double>(a.x_m) - b.x_m;
+  const double y_m = static_cast<double>(a.y_m) - b.y_m;
+  const double z_m = static_cast<double>(a.z_m) - b.z_m;
+  return x_m * x_m + y_m * y_m + z_m * z_m;
+}
+
+/// A return that is looked at.
+struct Return {
+  Point point;
+  float range_m = 0.0F;  // from where the beam starts
+  std::int32_t cell = 0;
+  std::int32_t column = 0;
+  std::int32_t ring = 0;
+};
+
+struct ReturnFilter {
+  double min_range_m = 0.5;
+  double max_range_m = 120.0;
+  Sector field_of_view;                    // of azimuths
+  Eigen::AlignedBox3d own_vessel_box_m;    // vessel frame; empty = none
+  Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
+};
+
+struct ClassifiedReturns {
+  std::vector<Return> returns;      // those that are looked at, in the order of their cells
+  std::vector<std::int16_t> label;  // [cells] minus the reason where a return is not looked at, else 0
+};
+
+/// Sorts out the returns that are out of range, else out of the field of view, else of the own vessel, and places the others.
+///
+/// Point of a return at range r, azimuth a (of its column, plus the offset of its ring) and elevation e: (r cos e cos a, -r cos e sin a,
+/// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return.
+ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter);
+
+}  // namespace lookout::segmenter

@@ -1,0 +1,48 @@
+#include "services/segmenter/params.hpp"
+
+#include "common/config/boat.hpp"
+#include "common/config/text_config.hpp"
+#include "common/core/angles.hpp"
+#include "config/schema/segmenter.pb.h"
+
+namespace lookout::segmenter {
+
+namespace {
+
+constexpr int kMinImageColumns = 16;
+constexpr double kWholeCircleDeg = 360.0;
+
+}  // namespace
+
+Params LoadParams(const std::filesystem::path& config_folder) {
+  const auto file = config_folder / "segmenter.txtpb";
+  config::Segmenter message;
+  config::LoadText(file, message);
+  if (message.max_range_m() <= message.min_range_m()) config::Refuse(file, "max_range_m", "must be greater than min_range_m");
+  if (message.image_columns() != 0 && message.image_columns() < kMinImageColumns) {
+    config::Refuse(file, "image_columns", "must be 0 or at least 16, so that neighbouring pixels look much the same way");
+  }
+  const auto boat = config::LoadBoat(config_folder);
+
+  Params params;
+  params.filter.min_range_m = message.min_range_m();
+  params.filter.max_range_m = message.max_range_m();
+  params.filter.field_of_view.start_rad = DegToRad(message.field_of_view_start_deg());
+  params.filter.field_of_view.width_rad =
+      message.field_of_view_width_deg() >= kWholeCircleDeg ? kTwoPi : DegToRad(message.field_of_view_width_deg());
+  params.filter.own_vessel_box_m = boat.own_vessel_box_m;
+  params.filter.T_vessel_lidar = boat.T_vessel_lidar;
+  params.labelling.image_columns = message.image_columns();
+  params.labelling.label_shadowed_returns = message.label_shadowed_returns();
+  params.labelling.search.angle_rad = DegToRad(message.bfs_angle_deg());
+  params.labelling.search.distance_m = message.bfs_distance_m();
+  params.component_clustering = message.component_clustering();
+  params.clustering.e1_cosine = message.e1_cosine();
+  params.clustering.e2_angle_rad = DegToRad(message.e2_angle_deg());
+  params.clustering.e3_distance_m = message.e3_distance_m();
+  params.clustering.e2_max_distance_m = message.e2_max_distance_m();
+  params.min_segment_points = message.min_segment_points();
+  return params;
+}
+
+}  // namespace lookout::segmenter

@@ -1,0 +1,37 @@
+// The segmenter process without its shell: LIDAR_SCAN in, SEGMENTS out. It keeps nothing between turns.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "common/bus/bus.hpp"
+#include "common/core/health.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "services/segmenter/core/turn_gatherer.hpp"
+#include "services/segmenter/params.hpp"
+#include "services/segmenter/wire.hpp"
+
+namespace lookout::segmenter {
+
+class Service {
+ public:
+  Service(bus::Bus& bus, const Params& params);
+
+  HealthReport Report() const;
+
+ private:
+  void OnScan(const lidar_scan_t& message);
+
+  bus::Bus& bus_;
+  Params params_;
+  TurnGatherer gatherer_;
+  std::array<std::int64_t, kRefusalNames.size()> num_refused_{};
+  std::optional<Refusal> last_refusal_;  // of the latest message, if it was refused
+  std::int64_t num_turns_ = 0;
+  std::int64_t num_segments_ = 0;
+  std::int64_t num_too_small_ = 0;
+  std::int64_t num_over_limit_ = 0;
+};
+
+}  // namespace lookout::segmenter

@@ -1,0 +1,10 @@
+lookout_test(NAME unit_georeferencer
+             SOURCES unit/georeferencer/pose_test.cpp unit/georeferencer/placement_test.cpp unit/georeferencer/georeferencer_test.cpp
+                     unit/georeferencer/wire_test.cpp unit/georeferencer/service_test.cpp
+             LINKS lookout_georeferencer)
+lookout_test(NAME property_georeferencer
+             SOURCES property/georeferencer_interleaving_test.cpp property/georeferencer_round_trip_test.cpp
+                     property/georeferencer_covariance_test.cpp
+             LINKS lookout_georeferencer ${GeographicLib_LIBRARIES})
+lookout_bench(NAME bench_georeferencer SOURCES bench/georeferencer_bench.cpp LINKS lookout_georeferencer)
+lookout_fuzz(NAME fuzz_georeferencer SOURCES fuzz/georeferencer_fuzz.cpp LINKS lookout_georeferencer)

@@ -1,0 +1,146 @@
+// The replay rule: NAV_RAW of a run from outside, fed into a service that reads logs, gives the same bytes on every other channel.
+#include <gtest/gtest.h>
+#include <map>
+#include <random>
+#include <set>
+
+#include "common/bus/decode.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "lookout/lidar_nmea_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "services/navigator/service.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using Sent = std::map<std::string, std::vector<std::vector<std::uint8_t>>>;
+
+constexpr double kLatitudeDeg = 43.63;
+constexpr double kLongitudeDeg = -72.15;
+
+Params TestParams(Input input) {
+  auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  params.input = input;
+  return params;
+}
+
+void Collect(bus::MemoryBus& bus, Sent& sent) {
+  bus.SubscribeAll([&sent](std::string_view channel, Bytes bytes) { sent[std::string(channel)].emplace_back(bytes.begin(), bytes.end()); });
+}
+
+void Drain(bus::MemoryBus& bus) {
+  while (bus.HandleOnce()) {
+  }
+}
+
+// Half a minute of a boat whose sentences come late, twice, out of order and damaged, whose clock is set back, and which sleeps for a while.
+Sent RunFromOutside(unsigned seed) {
+  std::mt19937 random(seed);
+  const auto uniform = [&random](double min, double max) { return std::uniform_real_distribution<double>(min, max)(random); };
+  bus::MemoryBus bus;
+  Service service(bus, TestParams(Input::kOutside));
+  Sent sent;
+  Collect(bus, sent);
+  double time_s = 0.0;
+  std::string lidar_line = RmcLine(NoonPlus(0), kLatitudeDeg, kLongitudeDeg, 1.0, 0.0);
+  for (int i = 0; i < 3000; ++i) {
+    time_s += uniform(0.0, 0.02);
+    if (i == 1000) time_s -= 5.0;
+    if (i == 2000) time_s += 30.0;
+    service.AdvanceTo(NoonPlus(time_s));
+    const auto measured = NoonPlus(time_s - uniform(0.0, 0.2));
+    const double latitude_deg = kLatitudeDeg + 1e-5 * time_s;
+    const double heading_deg = std::fmod(720.0 + 10.0 * time_s, 360.0);
+    std::string text;
+    switch (random() % 8) {
+      case 0:
+        text = RmcLine(measured, latitude_deg, kLongitudeDeg, 2.0, heading_deg);
+        break;
+      case 1:
+        text = GgaLine(measured, latitude_deg, kLongitudeDeg, 1 + static_cast<int>(random() % 8), 0.9, 200.0, -28.0);
+        break;
+      case 2:
+        text = PashrLine(measured, heading_deg, 3.0, -2.0, 0.1) + "\r\n" + HdtLine(heading_deg);
+        break;
+      case 3:
+        text = "junk\r\n" + HdtLine(heading_deg) + "\r\n$GPHDT,1*00\r\n\\s:x*00\\" + Line("AIVDM,1", '!');
+        break;
+      case 4:
+        text = Line("GPVTG,10.0,T,,M,3.0,N,,K,A");
+        break;
+      case 5:
+        lidar_line = RmcLine(measured, latitude_deg, kLongitudeDeg, 1.0, 0.0);
+        break;
+      default:
+        break;
+    }
+    if (!text.empty()) {
+      if (random() % 4 == 0) text[random() % text.size()] = static_cast<char>(random());
+      service.OnDatagram(NoonPlus(time_s - uniform(-0.01, 0.1)), ToBytes(text));
+    }
+    lidar_nmea_t message{};
+    message.host_utime_us = ToUtimeUs(NoonPlus(time_s - uniform(0.0, 0.1)));
+    message.sentence = lidar_line;
+    bus::Publish(bus, bus::kLidarNmea, message);
+    Drain(bus);
+  }
+  service.Finish(NoonPlus(time_s + 0.013));
+  Drain(bus);
+  return sent;
+}
+
+Sent RunFromLog(const Sent& log) {
+  bus::MemoryBus bus;
+  Service service(bus, TestParams(Input::kLog));
+  Sent sent;
+  Collect(bus, sent);
+  for (const auto& bytes : log.at("NAV_RAW")) {
+    bus.Publish(bus::kNavRaw, bytes);
+    Drain(bus);
+  }
+  service.Finish(NoonPlus(1e6));
+  Drain(bus);
+  return sent;
+}
+
+class Replay : public ::testing::TestWithParam<unsigned> {};
+
+TEST_P(Replay, GivesTheSameBytes) {
+  const auto outside = RunFromOutside(GetParam());
+  const auto log = RunFromLog(outside);
+  for (const char* channel : {"GNSS_FIX", "ATTITUDE", "POSE"}) {
+    ASSERT_TRUE(outside.contains(channel) && log.contains(channel)) << channel;
+    EXPECT_GT(outside.at(channel).size(), 100U) << channel;
+    EXPECT_TRUE(outside.at(channel) == log.at(channel)) << channel << " differs, seed " << GetParam();
+  }
+}
+
+TEST_P(Replay, HasAllPosesOnTheGridInOrderAndOfAllKinds) {
+  const auto outside = RunFromOutside(GetParam());
+  std::set<int> statuses;
+  std::int64_t last_utime_us = 0;
+  std::int64_t last_seq = -1;
+  int num_starts = 0;
+  for (const auto& bytes : outside.at("POSE")) {
+    const auto pose = bus::Decode<pose_t>(bytes);
+    ASSERT_TRUE(pose);
+    EXPECT_EQ(pose->utime_us % 20000, 0);
+    if (pose->seq == 0) {
+      ++num_starts;
+    } else {
+      EXPECT_EQ(pose->seq, last_seq + 1);
+      EXPECT_TRUE(pose->utime_us == last_utime_us + 20000 || pose->utime_us > last_utime_us + 20'000'000) << "a step, or the sleep";
+    }
+    last_seq = pose->seq;
+    last_utime_us = pose->utime_us;
+    statuses.insert(pose->status);
+  }
+  EXPECT_EQ(num_starts, 2);
+  EXPECT_TRUE(statuses.contains(pose_t::STATUS_OK));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Replay, ::testing::Values(1U, 2U, 3U, 4U));
+
+}  // namespace
+}  // namespace lookout::navigator

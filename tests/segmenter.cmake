@@ -1,0 +1,1 @@
+lookout_bench(NAME bench_segmenter SOURCES bench/segmenter_bench.cpp LINKS lookout_segmenter_core)

@@ -1,0 +1,268 @@
+#include "services/georeferencer/core/placement.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+#include "common/core/frames.hpp"
+#include "tests/unit/georeferencer/messages.hpp"
+
+namespace lookout::georeferencer {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using test::At;
+using test::MakePoint;
+using test::MakePose;
+
+PlacementParams Bare() { return {}; }
+
+// One pose before and one after the point at 10 ms.
+PoseHistory Around(const Pose& pose) {
+  PoseHistory poses;
+  for (const std::int64_t offset_us : {0, 20'000}) {
+    Pose copy = pose;
+    copy.time = At(offset_us);
+    poses.Add(copy);
+  }
+  return poses;
+}
+
+Obstacle Place(const Segment& segment, const Pose& pose, const PlacementParams& params) {
+  return PlaceSegment(segment, Around(pose), test::kLake, false, params);
+}
+
+TEST(PlaceSegment, AheadOfABoatThatHeadsEastIsEast) {
+  Pose pose = MakePose(0);
+  pose.heading_rad = DegToRad(90.0);
+  pose.position_map_m = {100.0, 50.0, 1.0};
+  const auto obstacle = Place(MakePoint(10'000, 10.0, 0.0, 0.0), pose, Bare());
+  EXPECT_EQ(obstacle.status, ObstacleStatus::kOk);
+  EXPECT_NEAR(obstacle.position_map_m.x(), 110.0, 1e-9);
+  EXPECT_NEAR(obstacle.position_map_m.y(), 50.0, 1e-9);
+  EXPECT_NEAR(obstacle.center_vessel_m.x(), 10.0, 1e-9);
+  EXPECT_NEAR(obstacle.range_m, 10.0, 1e-12);
+  EXPECT_EQ(obstacle.bearing_rad, 0.0);
+  ASSERT_EQ(obstacle.footprint_map_m.size(), 1U);
+}
+
+TEST(PlaceSegment, PortOfABoatThatHeadsNorthIsWestAndBears270) {
+  const auto obstacle = Place(MakePoint(10'000, 0.0, 20.0, 0.0), MakePose(0), Bare());
+  EXPECT_NEAR(obstacle.position_map_m.x(), -20.0, 1e-9);
+  EXPECT_NEAR(obstacle.position_map_m.y(), 0.0, 1e-9);
+  EXPECT_NEAR(RadToDeg(obstacle.bearing_rad), 270.0, 1e-9);
+}
+
+TEST(PlaceSegment, LatitudeAndLongitudeAgreeWithOneMinuteOfArc) {
+  // A minute of latitude at 43.7 N is 1851.8 m on the ellipsoid (plus 29 mm at 100 m of height); 0.1 % of it is asked for.
+  Pose pose = MakePose(0);
+  pose.position_map_m = {0.0, 1851.8, 0.0};
+  const auto obstacle = Place(MakePoint(10'000, 0.0, 0.0, 0.0), pose, Bare());
+  EXPECT_NEAR(obstacle.latitude_deg, 43.7 + 1.0 / 60.0, 1e-3 / 60.0);
+  EXPECT_NEAR(obstacle.longitude_deg, -72.3, 1e-9);
+}
+
+TEST(PlaceSegment, UsesMountingAndTilt) {
+  PlacementParams params;
+  Mounting mounting;
+  mounting.p_vessel_m = {1.0, 2.0, 3.0};
+  mounting.yaw_rad = DegToRad(90.0);
+  params.T_vessel_lidar = TransformVesselSensor(mounting);
+  Pose pose = MakePose(0);
+  pose.roll_rad = DegToRad(30.0);  // starboard down
+  // Lidar x is port: vessel (1, 12, 3). Rolled: y' = y cos - z sin, z' = y sin + z cos; heading north: east is -y', north is x.
+  const auto obstacle = Place(MakePoint(10'000, 10.0, 0.0, 0.0), pose, params);
+  EXPECT_NEAR(obstacle.position_map_m.x(), -(12.0 * std::cos(DegToRad(30.0)) - 3.0 * 0.5), 1e-9);
+  EXPECT_NEAR(obstacle.position_map_m.y(), 1.0, 1e-9);
+  EXPECT_NEAR(obstacle.top_above_water_m, 12.0 * 0.5 + 3.0 * std::cos(DegToRad(30.0)), 1e-9);
+  EXPECT_NEAR(obstacle.center_vessel_m.y(), 12.0, 1e-9);
+}
+
+TEST(PlaceSegment, EachCornerIsPlacedByThePoseAtItsOwnTime) {
+  PoseHistory poses;
+  for (int i = 0; i <= 5; ++i) {
+    Pose pose = MakePose(20'000 * i);
+    pose.position_map_m.y() = 5.0 * 0.02 * i;  // 5 m/s to the north
+    poses.Add(pose);
+  }
+  Segment segment = MakePoint(50'000, 10.0, 0.0, 0.0);
+  segment.hull = {{{10.0, 0.0}, At(0)}, {{9.75, 0.0}, At(50'000)}, {{9.5, 0.0}, At(100'000)}};  // one and the same place
+  const auto obstacle = PlaceSegment(segment, poses, test::kLake, false, Bare());
+  ASSERT_EQ(obstacle.footprint_map_m.size(), 3U);
+  for (const auto& vertex : obstacle.footprint_map_m) EXPECT_NEAR(vertex.y(), 10.0, 1e-9);
+  EXPECT_NEAR(obstacle.position_map_m.y(), 10.0, 1e-9);
+  EXPECT_NEAR(obstacle.center_vessel_m.x(), 9.75, 1e-9) << "the same point, at the time of the segment";
+  EXPECT_NEAR(obstacle.footprint_vessel_m[0].x(), 10.0, 1e-9) << "as seen";
+}
+
+TEST(PlaceSegment, WithoutAPoseTellsWhatTheVesselSees) {
+  PlacementParams params;
+  params.T_vessel_lidar.translation() = Vector3d(0.0, 0.0, 1.1);
+  params.reference_point_above_water_m = 0.4;
+  const auto obstacle = PlaceSegment(MakePoint(10'000, 3.0, -4.0, 0.5), PoseHistory{}, Datum{}, false, params);
+  EXPECT_EQ(obstacle.status, ObstacleStatus::kVesselFrameOnly);
+  EXPECT_TRUE(std::isnan(obstacle.latitude_deg) && std::isnan(obstacle.longitude_deg));
+  EXPECT_TRUE(obstacle.position_map_m.hasNaN() && obstacle.covariance_m2.hasNaN());
+  EXPECT_TRUE(obstacle.footprint_map_m.empty());
+  EXPECT_NEAR(obstacle.range_m, 5.0, 1e-12);
+  EXPECT_NEAR(RadToDeg(obstacle.bearing_rad), RadToDeg(std::atan2(4.0, 3.0)), 1e-9);
+  EXPECT_NEAR(obstacle.top_above_water_m, 2.0, 1e-12) << "level";
+  EXPECT_NEAR(obstacle.center_vessel_m.y(), -4.0, 1e-12);
+}
+
+TEST(PlaceSegment, WithoutHeadingStillUsesTiltAndHeaveForTheTop) {
+  Pose pose = MakePose(0);
+  pose.is_placed = false;
+  pose.heading_rad = kUnknown;
+  pose.position_map_m.setConstant(kUnknown);
+  pose.pitch_rad = DegToRad(30.0);  // bow up
+  pose.heave_m = 0.25;
+  PlacementParams params;
+  params.reference_point_above_water_m = 1.0;
+  const auto obstacle = Place(MakePoint(10'000, 10.0, 0.0, 0.0), pose, params);
+  EXPECT_EQ(obstacle.status, ObstacleStatus::kVesselFrameOnly);
+  EXPECT_NEAR(obstacle.top_above_water_m, 5.0 + 1.0 + 0.25, 1e-9);
+}
+
+TEST(PlaceSegment, ACornerWithoutAPoseKeepsTheWholeObstacleOffTheMap) {
+  Segment segment = MakePoint(10'000, 10.0, 0.0, 0.0);
+  segment.hull.push_back({{11.0, 0.0}, At(20'001)});
+  const auto poses = Around(MakePose(0));
+  EXPECT_EQ(PlaceSegment(segment, poses, test::kLake, false, Bare()).status, ObstacleStatus::kVesselFrameOnly);
+  EXPECT_EQ(PlaceSegment(segment, poses, test::kLake, true, Bare()).status, ObstacleStatus::kPoseTimeout);
+}
+
+TEST(PlaceSegment, AfterATimeoutWhatPoseHasPassedIsNoTimeout) {
+  Pose unplaced = MakePose(0);
+  unplaced.is_placed = false;
+  const auto segment = MakePoint(10'000, 10.0, 0.0, 0.0);
+  EXPECT_EQ(PlaceSegment(segment, Around(unplaced), test::kLake, true, Bare()).status, ObstacleStatus::kVesselFrameOnly);
+  EXPECT_EQ(PlaceSegment(segment, Around(MakePose(0)), test::kLake, true, Bare()).status, ObstacleStatus::kOk);
+  EXPECT_EQ(PlaceSegment(segment, PoseHistory{}, Datum{}, true, Bare()).status, ObstacleStatus::kPoseTimeout);
+}
+
+TEST(PlaceSegment, APoseInAnotherMapFrameDoesNotCount) {
+  Datum other = test::kLake;
+  other.longitude_deg += 1e-9;
+  EXPECT_EQ(PlaceSegment(MakePoint(10'000, 1.0, 0.0, 0.0), Around(MakePose(0)), other, false, Bare()).status, ObstacleStatus::kVesselFrameOnly);
+}
+
+TEST(PlaceSegment, OfALidarUpsideDownKeepsTheOutlineCounterClockwiseAndFindsTheTop) {
+  PlacementParams params;
+  Mounting mounting;
+  mounting.roll_rad = kPi;
+  mounting.p_vessel_m = {0.0, 0.0, 2.0};
+  params.T_vessel_lidar = TransformVesselSensor(mounting);
+  Segment segment = MakePoint(10'000, 11.0, 1.0, 0.0);
+  segment.min_z_m = -1.5;
+  segment.max_z_m = 0.5;
+  segment.hull = {{{10.0, 0.0}, At(10'000)}, {{12.0, 0.0}, At(10'000)}, {{12.0, 2.0}, At(10'000)}, {{10.0, 2.0}, At(10'000)}};
+  const auto obstacle = Place(segment, MakePose(0), params);
+  double doubled_area_m2 = 0.0;
+  const auto& outline = obstacle.footprint_vessel_m;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto& next = outline[(i + 1) % outline.size()];
+    doubled_area_m2 += outline[i].x() * next.y() - outline[i].y() * next.x();
+  }
+  EXPECT_NEAR(doubled_area_m2, 8.0, 1e-9);
+  EXPECT_NEAR(obstacle.top_above_water_m, 3.5, 1e-9);
+  EXPECT_NEAR(obstacle.height_m, 2.0, 1e-12);
+}
+
+TEST(FootprintCenter, OfOnePointIsThePoint) { EXPECT_EQ(FootprintCenter({{1.0, 2.0, 3.0}}), Vector3d(1.0, 2.0, 3.0)); }
+
+TEST(FootprintCenter, OfTwoPointsIsBetweenThem) {
+  EXPECT_TRUE(FootprintCenter({{0.0, 0.0, 0.0}, {2.0, 4.0, 6.0}}).isApprox(Vector3d(1.0, 2.0, 3.0)));
+}
+
+TEST(FootprintCenter, OfAnAreaDoesNotFollowWhereTheVerticesAreMany) {
+  // A square of side 2, one side of it with many vertices.
+  std::vector<Vector3d> vertices{{0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}, {2.0, 2.0, 0.0}};
+  for (int i = 0; i <= 20; ++i) vertices.emplace_back(0.0, 2.0 - 0.1 * i, 0.0);
+  EXPECT_TRUE(FootprintCenter(vertices).isApprox(Vector3d(1.0, 1.0, 0.0), 1e-12));
+}
+
+TEST(FootprintCenter, LiesOnATiltedOutlineAndIsTheSameInEitherSense) {
+  const std::vector<Vector3d> triangle{{0.0, 0.0, 0.0}, {3.0, 0.0, 3.0}, {0.0, 3.0, 0.0}};
+  EXPECT_TRUE(FootprintCenter(triangle).isApprox(Vector3d(1.0, 1.0, 1.0)));
+  EXPECT_TRUE(FootprintCenter({triangle.rbegin(), triangle.rend()}).isApprox(Vector3d(1.0, 1.0, 1.0)));
+}
+
+TEST(FootprintCenter, OfALineWithRoundingErrorsStaysOnIt) {
+  const auto center = FootprintCenter({{0.0, 0.0, 0.0}, {5.0, 1e-6, 0.0}, {10.0, 0.0, 0.0}, {5.0, 1.1e-6, 0.0}});
+  EXPECT_NEAR(center.x(), 5.0, 1e-9);
+  EXPECT_NEAR(center.y(), 0.0, 1e-5);
+}
+
+TEST(FootprintCenter, FarFromTheDatumLosesNoDigits) {
+  const Vector3d far(1e6, -1e6, 0.0);
+  const auto center = FootprintCenter({far, far + Vector3d(0.2, 0.0, 0.0), far + Vector3d(0.2, 0.2, 0.0), far + Vector3d(0.0, 0.2, 0.0)});
+  EXPECT_NEAR(center.x() - far.x(), 0.1, 1e-9);
+  EXPECT_NEAR(center.y() - far.y(), 0.1, 1e-9);
+}
+
+TEST(FootprintCenter, OfCoincidentPointsIsThatPoint) {
+  EXPECT_EQ(FootprintCenter({{1.0, 1.0, 0.0}, {1.0, 1.0, 0.0}, {1.0, 1.0, 0.0}}), Vector3d(1.0, 1.0, 0.0));
+}
+
+TEST(Thinned, KeepsOutlinesUpToTheLimitAndSpreadsTheRest) {
+  for (const std::size_t size : {std::size_t{1}, kMaxFootprintVertices, kMaxFootprintVertices + 1, std::size_t{9999}}) {
+    std::vector<HullVertex> hull(size);
+    for (std::size_t i = 0; i < size; ++i) hull[i].p_lidar_m.x() = static_cast<double>(i);
+    const auto thinned = Thinned(hull);
+    ASSERT_EQ(thinned.size(), std::min(size, kMaxFootprintVertices));
+    EXPECT_EQ(thinned.front().p_lidar_m.x(), 0.0);
+    for (std::size_t i = 1; i < thinned.size(); ++i) EXPECT_GT(thinned[i].p_lidar_m.x(), thinned[i - 1].p_lidar_m.x());
+  }
+}
+
+TEST(Thinned, OfACircleOf100MetresLeavesNoPointFartherThan25Millimetres) {
+  // Sagitta of a chord over 1/140 of the circle.
+  EXPECT_LT(100.0 * (1.0 - std::cos(kPi / static_cast<double>(kMaxFootprintVertices))), 0.0255);
+}
+
+TEST(PositionCovariance, HeadingErrorWorksAcrossTheLeverOnly) {
+  Pose pose = MakePose(0);
+  pose.covariance(4, 4) = 0.01 * 0.01;
+  const auto covariance = PositionCovariance({100.0, 0.0, 0.0}, pose, Bare());  // 100 m to the north
+  EXPECT_NEAR(covariance(0, 0), 1.0, 1e-9);
+  EXPECT_NEAR(covariance(0, 1), 0.0, 1e-9);
+  EXPECT_NEAR(covariance(1, 1), 0.0, 1e-9);
+}
+
+TEST(PositionCovariance, RangeErrorWorksAlongTheBeamOnly) {
+  PlacementParams params;
+  params.range_sd_m = 0.03;
+  const auto covariance = PositionCovariance({100.0, 0.0, 0.0}, MakePose(0), params);
+  EXPECT_NEAR(covariance(0, 0), 0.0, 1e-12);
+  EXPECT_NEAR(covariance(1, 1), 9e-4, 1e-12);
+}
+
+TEST(PositionCovariance, MountingErrorStartsAtTheLidarNotAtTheReferencePoint) {
+  PlacementParams params;
+  params.mounting_sd_rad = 0.01;
+  params.T_vessel_lidar.translation() = Vector3d(40.0, 0.0, 0.0);
+  const auto covariance = PositionCovariance({100.0, 0.0, 0.0}, MakePose(0), params);
+  EXPECT_NEAR(covariance(0, 0), 0.36, 1e-9);
+  EXPECT_NEAR(covariance(1, 1), 0.0, 1e-9);
+}
+
+TEST(PositionCovariance, IsUnknownWhereThePoseDoesNotKnowItsOwn) {
+  Pose pose = MakePose(0);
+  pose.covariance(0, 0) = kUnknown;
+  EXPECT_TRUE(PositionCovariance({1.0, 0.0, 0.0}, pose, Bare()).hasNaN());
+}
+
+TEST(PositionCovariance, AtTheLidarItselfIsThatOfThePose) {
+  Pose pose = MakePose(0);
+  pose.covariance(0, 0) = 4.0;
+  PlacementParams params;
+  params.range_sd_m = params.mounting_sd_rad = 0.1;
+  const auto covariance = PositionCovariance(Vector3d::Zero(), pose, params);
+  EXPECT_EQ(covariance(0, 0), 4.0);
+  EXPECT_EQ(covariance(1, 1), 0.0);
+}
+
+}  // namespace
+}  // namespace lookout::georeferencer

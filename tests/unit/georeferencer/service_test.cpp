@@ -1,0 +1,139 @@
+#include "services/georeferencer/service.hpp"
+
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "common/bus/decode.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "tests/unit/georeferencer/messages.hpp"
+
+namespace lookout::georeferencer {
+namespace {
+
+using test::At;
+using test::MakePoseMessage;
+using test::MakeSegmentMessage;
+using test::MakeSegmentsMessage;
+
+class GeoreferencerService : public ::testing::Test {
+ protected:
+  bus::MemoryBus bus_;
+  Params params_{PlacementParams{}, std::chrono::milliseconds(500)};
+  Service service_{bus_, params_};
+  std::vector<obstacles_t> obstacles_;
+
+  void SetUp() override {
+    bus::Subscribe<obstacles_t>(bus_, bus::kObstacles, [this](const obstacles_t& message) { obstacles_.push_back(message); });
+  }
+  void HandleAll() {
+    while (bus_.HandleOnce()) {
+    }
+  }
+  void SendTurn(std::int64_t offset_us) {
+    bus::Publish(bus_, bus::kSegments, MakeSegmentsMessage(offset_us, 0, {MakeSegmentMessage(1, offset_us)}));
+    HandleAll();
+  }
+  void SendPoses(std::int64_t first_us, std::int64_t last_us, std::int32_t status = pose_t::STATUS_OK) {
+    for (auto offset_us = first_us; offset_us <= last_us; offset_us += 20'000) {
+      auto message = MakePoseMessage(offset_us, offset_us / 20'000);
+      message.status = status;
+      bus::Publish(bus_, bus::kPose, message);
+    }
+    HandleAll();
+  }
+  std::int64_t Count(std::string_view name) const {
+    for (const auto& counter : service_.Report().counters) {
+      if (counter.name == name) return counter.count;
+    }
+    return -1;
+  }
+};
+
+TEST_F(GeoreferencerService, PlacesATurn) {
+  SendTurn(0);
+  EXPECT_TRUE(obstacles_.empty());
+  SendPoses(0, 100'000);
+  ASSERT_EQ(obstacles_.size(), 1U);
+  EXPECT_EQ(obstacles_[0].obstacles.at(0).status, obstacle_t::STATUS_OK);
+  EXPECT_NEAR(obstacles_[0].obstacles[0].position_map_m[1], 10.0, 1e-6);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+}
+
+TEST_F(GeoreferencerService, FinishSendsWhatWaits) {
+  SendTurn(0);
+  service_.Finish();
+  HandleAll();
+  ASSERT_EQ(obstacles_.size(), 1U);
+  EXPECT_EQ(obstacles_[0].obstacles.at(0).status, obstacle_t::STATUS_VESSEL_FRAME_ONLY);
+  EXPECT_TRUE(std::isnan(obstacles_[0].datum_latitude_deg));
+}
+
+TEST_F(GeoreferencerService, CountsRefusedMessagesUnderTheirReason) {
+  auto segments = MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0)});
+  segments.segments[0].hull_x_m[0] = 1e38F;
+  bus::Publish(bus_, bus::kSegments, segments);
+  auto pose = MakePoseMessage(0);
+  pose.status = 99;
+  bus::Publish(bus_, bus::kPose, pose);
+  bus_.Publish(bus::kPose, std::vector<std::uint8_t>{1, 2, 3});
+  HandleAll();
+  EXPECT_EQ(Count("segments_refused_number"), 1);
+  EXPECT_EQ(Count("pose_refused_status"), 1);
+  EXPECT_EQ(Count("pose_refused_time"), 0);
+  EXPECT_EQ(bus_.input_traffic().at("POSE").num_undecodable, 1);
+}
+
+TEST_F(GeoreferencerService, TellsThatPoseDoesNotCome) {
+  service_.AdvanceTo(At(0));
+  for (int i = 1; i <= 30; ++i) {
+    SendTurn(100'000 * i);
+    service_.AdvanceTo(At(100'000 * i));
+    HandleAll();
+  }
+  const auto report = service_.Report();
+  EXPECT_EQ(report.state, HealthState::kDegraded);
+  EXPECT_EQ(report.reason, "no POSE for 3 s");
+  ASSERT_GE(obstacles_.size(), 20U);
+  EXPECT_EQ(obstacles_[0].obstacles.at(0).status, obstacle_t::STATUS_POSE_TIMEOUT);
+}
+
+TEST_F(GeoreferencerService, TellsThatSegmentsDoNotComeAndIsFineWhenTheyDo) {
+  service_.AdvanceTo(At(0));
+  SendPoses(0, 1'980'000);
+  service_.AdvanceTo(At(2'000'000));
+  EXPECT_EQ(service_.Report().reason, "no SEGMENTS for 2 s; no POSE for 2 s");
+  SendPoses(2'000'000, 2'100'000);
+  SendTurn(2'000'000);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk) << service_.Report().reason;
+}
+
+TEST_F(GeoreferencerService, TellsThatPoseIsNotPlaced) {
+  SendPoses(0, 100'000, pose_t::STATUS_NO_HEADING);
+  EXPECT_EQ(service_.Report().reason, "POSE does not know position and heading: obstacles in the vessel frame only");
+  SendPoses(120'000, 120'000);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+}
+
+TEST_F(GeoreferencerService, TellsThatTheClocksDiffer) {
+  for (int i = 0; i <= 10; ++i) {
+    service_.AdvanceTo(At(100'000 * i));
+    SendPoses(100'000 * i, 100'000 * i + 80'000);
+    SendTurn(3'600'000'000 + 100'000 * i);
+  }
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_NE(service_.Report().reason.find("clocks"), std::string::npos) << service_.Report().reason;
+}
+
+TEST(GeoreferencerParams, OfTheBoatsInConfigAreThoseOfTheirFiles) {
+  const auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  EXPECT_EQ(params.pose_timeout, std::chrono::milliseconds(500));
+  EXPECT_NEAR(params.placement.mounting_sd_rad, 0.5 * 3.14159265 / 180.0, 1e-9);
+  EXPECT_EQ(params.placement.range_sd_m, 0.03);
+  EXPECT_EQ(params.placement.reference_point_above_water_m, 0.4);
+  EXPECT_EQ(params.placement.T_vessel_lidar.translation().z(), 1.1);
+  EXPECT_NO_THROW(LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot"));
+}
+
+}  // namespace
+}  // namespace lookout::georeferencer

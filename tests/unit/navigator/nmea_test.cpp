@@ -1,0 +1,250 @@
+#include "services/navigator/core/nmea.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using namespace std::chrono_literals;
+
+template <typename T>
+T Parsed(const std::string& line) {
+  const auto result = ParseSentence(line);
+  EXPECT_EQ(result.fault, SentenceFault::kNone) << line;
+  EXPECT_TRUE(std::holds_alternative<T>(result.sentence)) << line;
+  return std::holds_alternative<T>(result.sentence) ? std::get<T>(result.sentence) : T{};
+}
+
+SentenceFault FaultOf(const std::string& body) { return ParseSentence(Line(body)).fault; }
+
+bool IsOther(const std::string& line) {
+  const auto result = ParseSentence(line);
+  return result.fault == SentenceFault::kNone && std::holds_alternative<OtherSentence>(result.sentence);
+}
+
+// The recording of a real VLP-16 with a receiver (MRPT's sample).
+TEST(Rmc, GivesAllItsValues) {
+  const auto rmc = Parsed<Rmc>("$GPRMC,081802.00,A,3649.7478558,N,00224.4542928,W,0.034,212.5,210116,0.0,E,A*2E");
+  EXPECT_EQ(rmc.time_of_day, 8h + 18min + 2s);
+  EXPECT_EQ(rmc.date, std::chrono::sys_days(std::chrono::year(2016) / 1 / 21));
+  EXPECT_EQ(rmc.quality, FixQuality::kGnss);
+  ASSERT_TRUE(rmc.position);
+  EXPECT_NEAR(rmc.position->latitude_deg, 36.82913093, 1e-8);
+  EXPECT_NEAR(rmc.position->longitude_deg, -2.40757155, 1e-8);
+  EXPECT_NEAR(rmc.speed_mps, 0.0175, 1e-4);
+  EXPECT_NEAR(rmc.course_rad, DegToRad(212.5), 1e-12);
+}
+
+TEST(Rmc, OfZedF9pHasItsFixAlthoughTheNavigationalStatusIsV) {
+  const auto rmc = Parsed<Rmc>("$GNRMC,003956.00,A,4552.65403,S,17030.00668,E,0.025,,120419,,,A,V*07");
+  EXPECT_EQ(rmc.quality, FixQuality::kGnss);
+  EXPECT_NEAR(rmc.position->latitude_deg, -45.877567167, 1e-9);
+  EXPECT_TRUE(std::isnan(rmc.course_rad)) << "an empty field is unknown, not 0";
+}
+
+TEST(Rmc, WithoutAFixSaysNothing) {
+  const auto rmc = Parsed<Rmc>("$GPRMC,,V,,,,,,,,,,N*53");
+  EXPECT_EQ(rmc.quality, FixQuality::kNone);
+  EXPECT_FALSE(rmc.time_of_day || rmc.date || rmc.position);
+  EXPECT_TRUE(std::isnan(rmc.speed_mps) && std::isnan(rmc.course_rad));
+}
+
+TEST(Rmc, OfOldReceiversHasNoMode) {
+  EXPECT_EQ(Parsed<Rmc>(Line("GPRMC,195719,A,5310.8115,N,00525.7025,E,0.0,0.0,160414,0.7,E")).quality, FixQuality::kGnss);
+}
+
+TEST(Rmc, TakesItsQualityFromTheMode) {
+  const auto quality = [](const std::string& status, const std::string& mode) {
+    return Parsed<Rmc>(Line("GPRMC,000000," + status + ",0000.0,N,00000.0,E,0.0,0.0,010126,,," + mode)).quality;
+  };
+  EXPECT_EQ(quality("A", "D"), FixQuality::kDifferential);
+  EXPECT_EQ(quality("A", "P"), FixQuality::kPps);
+  EXPECT_EQ(quality("A", "R"), FixQuality::kRtkFixed);
+  EXPECT_EQ(quality("A", "F"), FixQuality::kRtkFloat);
+  EXPECT_EQ(quality("A", "E"), FixQuality::kDeadReckoning);
+  EXPECT_EQ(quality("A", "M"), FixQuality::kManual);
+  EXPECT_EQ(quality("A", "S"), FixQuality::kSimulator);
+  EXPECT_EQ(quality("A", "N"), FixQuality::kNone);
+  EXPECT_EQ(quality("V", "A"), FixQuality::kNone);
+  EXPECT_EQ(quality("", "A"), FixQuality::kNone);
+}
+
+TEST(Gga, GivesAllItsValues) {
+  const auto gga = Parsed<Gga>("$GNGGA,132819.60,4134.49795459,N,09345.03431408,W,2,10,0.9,278.161,M,-31.442,M,6.6,0133*6A");
+  EXPECT_EQ(gga.time_of_day, 13h + 28min + 19600ms);
+  EXPECT_EQ(gga.quality, FixQuality::kDifferential);
+  EXPECT_NEAR(gga.position->latitude_deg, 41.574965910, 1e-9);
+  EXPECT_NEAR(gga.position->longitude_deg, -93.750571901, 1e-9);
+  EXPECT_EQ(gga.num_satellites, 10);
+  EXPECT_DOUBLE_EQ(gga.hdop, 0.9);
+  EXPECT_DOUBLE_EQ(gga.msl_height_m, 278.161);
+  EXPECT_DOUBLE_EQ(gga.geoid_separation_m, -31.442);
+}
+
+TEST(Gga, WithoutAFixSaysNothing) {
+  const auto gga = Parsed<Gga>("$GPGGA,,,,,,0,,,,M,,M,,*66");
+  EXPECT_EQ(gga.quality, FixQuality::kNone);
+  EXPECT_FALSE(gga.position);
+  EXPECT_EQ(gga.num_satellites, -1);
+  EXPECT_TRUE(std::isnan(gga.hdop) && std::isnan(gga.msl_height_m) && std::isnan(gga.geoid_separation_m));
+}
+
+TEST(Gga, OfNovatelNinesIsDifferential) {
+  EXPECT_EQ(Parsed<Gga>(Line("GPGGA,000000,0000.0,N,00000.0,E,9,08,1.0,1.0,M,1.0,M,,")).quality, FixQuality::kDifferential);
+}
+
+TEST(Vtg, GivesCourseAndSpeed) {
+  const auto vtg = Parsed<Vtg>("$GPVTG,251.34,T,,M,0.58,N,1.07,K,A*37");
+  EXPECT_NEAR(vtg.course_rad, DegToRad(251.34), 1e-12);
+  EXPECT_NEAR(vtg.speed_mps, 0.58 * 1852.0 / 3600.0, 1e-12);
+}
+
+TEST(Vtg, TakesKilometresPerHourWhereThereAreNoKnots) { EXPECT_NEAR(Parsed<Vtg>(Line("GPVTG,1.0,T,,M,,N,36.0,K")).speed_mps, 10.0, 1e-12); }
+
+TEST(Vtg, WithoutAFixSaysNothing) {
+  for (const char* line : {"$GPVTG,,T,,M,,N,,K,N*2C"}) {
+    const auto vtg = Parsed<Vtg>(line);
+    EXPECT_TRUE(std::isnan(vtg.speed_mps) && std::isnan(vtg.course_rad));
+  }
+  EXPECT_TRUE(std::isnan(Parsed<Vtg>(Line("GPVTG,1.0,T,,M,2.0,N,,K,N")).speed_mps));
+}
+
+TEST(Hdt, GivesTheHeading) {
+  EXPECT_NEAR(Parsed<Hdt>("$GPHDT,274.07,T*03").heading_rad, DegToRad(274.07), 1e-12);
+  EXPECT_TRUE(std::isnan(Parsed<Hdt>("$GPHDT,,T*1B").heading_rad));
+  EXPECT_EQ(Parsed<Hdt>(Line("HEHDT,360.0,T")).heading_rad, 0.0);
+}
+
+// NovAtel's example (OEM7 manual, PASHR).
+TEST(Pashr, GivesAllItsValues) {
+  const auto pashr = Parsed<Pashr>("$PASHR,163029.000,158.09,T,-0.30,+0.31,+0.01,0.029,0.029,0.059,1,1*3B");
+  EXPECT_EQ(pashr.time_of_day, 16h + 30min + 29s);
+  EXPECT_NEAR(pashr.heading_rad, DegToRad(158.09), 1e-12);
+  EXPECT_NEAR(pashr.roll_rad, DegToRad(-0.30), 1e-12);
+  EXPECT_NEAR(pashr.pitch_rad, DegToRad(0.31), 1e-12);
+  EXPECT_DOUBLE_EQ(pashr.heave_m, 0.01);
+  EXPECT_NEAR(pashr.roll_sd_rad, DegToRad(0.029), 1e-12);
+  EXPECT_NEAR(pashr.pitch_sd_rad, DegToRad(0.029), 1e-12);
+  EXPECT_NEAR(pashr.heading_sd_rad, DegToRad(0.059), 1e-12);
+}
+
+TEST(Pashr, MayLackTheLastFieldAndAnyValue) {
+  const auto pashr = Parsed<Pashr>(Line("PASHR,,,T,,,,,,,0"));
+  EXPECT_FALSE(pashr.time_of_day);
+  EXPECT_TRUE(std::isnan(pashr.heading_rad) && std::isnan(pashr.roll_rad) && std::isnan(pashr.heave_m) && std::isnan(pashr.heading_sd_rad));
+}
+
+TEST(ParseSentence, DoesNotAskWhoTalks) {
+  for (const char* talker : {"GP", "GN", "GL", "GA", "BD", "HE", "II", "04"}) Parsed<Hdt>(Line(std::string(talker) + "HDT,1.0,T"));
+}
+
+TEST(ParseSentence, LeavesOtherTypesAlone) {
+  EXPECT_TRUE(IsOther("$04HDM,186.5,M*2C"));
+  EXPECT_TRUE(IsOther("!AIVDM,1,1,1,,13aI8e?P00PGpU:NR6s00?vT2000,0,0*1C"));
+  EXPECT_TRUE(IsOther("$APXDR,A,0.135,D,PTCH*7C"));
+  for (const char* body : {"", ",", "P", "PUBX,00", "GPHDTX,1", "HDT,1.0,T", "XGPHDT,x", "PASHR,POS,0,05", "PHDT,1", "PGHDT,nonsense"}) {
+    EXPECT_TRUE(IsOther(Line(body))) << body;
+  }
+  EXPECT_TRUE(IsOther(Line("GPHDT,nonsense", '!'))) << "an encapsulated sentence";
+}
+
+struct Refused {
+  const char* body;
+  SentenceFault fault;
+};
+
+class RefusedSentence : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedSentence, IsRefusedForItsReason) { EXPECT_EQ(FaultOf(GetParam().body), GetParam().fault) << GetParam().body; }
+
+constexpr auto kBadField = SentenceFault::kBadField;
+constexpr auto kImplausible = SentenceFault::kImplausible;
+
+INSTANTIATE_TEST_SUITE_P(
+    Rmc, RefusedSentence,
+    ::testing::Values(Refused{"GPRMC,000231.099,A,4829.0005,N,00022.0015,E,0.15,212.28,2208-1,,,A", kBadField},  // a real one: gpsd april6_2019.log
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,", kBadField},                   // too few fields
+                      Refused{"GPRMC", kBadField},                                                               //
+                      Refused{"GPRMC,000000,B,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kBadField},                // status
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,Q", kBadField},                // mode
+                      Refused{"GPRMC,00000,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kBadField},                 // time
+                      Refused{"GPRMC,0000-1,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kBadField},                //
+                      Refused{"GPRMC,000000.0x,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kBadField},             //
+                      Refused{"GPRMC,240000,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kImplausible},             //
+                      Refused{"GPRMC,236000,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kImplausible},             //
+                      Refused{"GPRMC,120060,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A", kImplausible},             // 60 in the last minute only
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,300226,,,A", kImplausible},             // 30 February
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,000000,,,A", kImplausible},             //
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,-1.0,0.0,010126,,,A", kImplausible},            // speed
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,999.9,0.0,010126,,,A", kImplausible},           //
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,1e1,0.0,010126,,,A", kBadField},                //
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,nan,0.0,010126,,,A", kBadField},                //
+                      Refused{"GPRMC,000000,A,0000.0,N,00000.0,E,0.0,360.1,010126,,,A", kImplausible}));         // course
+
+INSTANTIATE_TEST_SUITE_P(Position, RefusedSentence,
+                         ::testing::Values(Refused{"GPGGA,000000,9000.1,N,00000.0,E,1,,,,,,,,", kImplausible},   //
+                                           Refused{"GPGGA,000000,0060.0,N,00000.0,E,1,,,,,,,,", kImplausible},   //
+                                           Refused{"GPGGA,000000,0000.0,N,18000.1,E,1,,,,,,,,", kImplausible},   //
+                                           Refused{"GPGGA,000000,0000.0,N,00060.0,E,1,,,,,,,,", kImplausible},   //
+                                           Refused{"GPGGA,000000,000.0,N,00000.0,E,1,,,,,,,,", kBadField},       //
+                                           Refused{"GPGGA,000000,0000.0,N,0000.0,E,1,,,,,,,,", kBadField},       //
+                                           Refused{"GPGGA,000000,-000.0,N,00000.0,E,1,,,,,,,,", kBadField},      //
+                                           Refused{"GPGGA,000000,0000.0,E,00000.0,N,1,,,,,,,,", kBadField},      //
+                                           Refused{"GPGGA,000000,0000.0,,00000.0,E,1,,,,,,,,", kBadField},       // half a position
+                                           Refused{"GPGGA,000000,0000.0,N,,,1,,,,,,,,", kBadField},              //
+                                           Refused{"GPGGA,000000,0000.0.0,N,00000.0,E,1,,,,,,,,", kBadField}));  //
+
+INSTANTIATE_TEST_SUITE_P(Gga, RefusedSentence,
+                         ::testing::Values(Refused{"GPGGA,000000,0000.0,N,00000.0,E,10,,,,,,,,", kImplausible},          //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,x,,,,,,,,", kBadField},              //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,9999999999,,,,,,,,", kBadField},     //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,100,,,,,,,", kImplausible},        //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,-1,,,,,,", kImplausible},         //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,10.0,,,,,", kBadField},          // no unit
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,10.0,F,,,,", kBadField},         // feet
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,99999,M,,,,", kImplausible},     //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,10.0,M,500,M,,", kImplausible},  //
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,,,,,", kBadField}));             // too few
+
+INSTANTIATE_TEST_SUITE_P(OtherTypes, RefusedSentence,
+                         ::testing::Values(Refused{"GPHDT,1.0", kBadField}, Refused{"GPHDT,1.0,M", kBadField}, Refused{"GPHDT,1.0,", kBadField},
+                                           Refused{"GPHDT,360.5,T", kImplausible}, Refused{"GPHDT,-1.0,T", kImplausible},
+                                           Refused{"GPHDT,.,T", kBadField}, Refused{"GPHDT,+-1,T", kBadField},
+                                           Refused{"GPVTG,1.0,M,,M,0.0,N,0.0,K", kBadField}, Refused{"GPVTG,1.0,2.0,0.5,1.0", kBadField},
+                                           Refused{"PASHR,000000,1.0,T,181.0,0.0,0.0,0.1,0.1,0.1,1,1", kImplausible},
+                                           Refused{"PASHR,000000,1.0,T,0.0,91.0,0.0,0.1,0.1,0.1,1,1", kImplausible},
+                                           Refused{"PASHR,000000,1.0,T,0.0,0.0,0.0,-0.1,0.1,0.1,1,1", kImplausible},
+                                           Refused{"PASHR,000000,1.0,T,0.0,0.0,0.0,0.1,0.1,0.1", kBadField},
+                                           Refused{"PASHR,000000,1.0,,0.0,0.0,0.0,0.1,0.1,0.1,1,1", kBadField}));
+
+TEST(TimeOfDay, MayBeTheLeapSecond) {
+  EXPECT_EQ(Parsed<Rmc>(Line("GPRMC,235960.50,A,0000.0,N,00000.0,E,0.0,0.0,311216,,,A")).time_of_day, 24h + 500ms);
+}
+
+TEST(TimeOfDay, DropsPartsOfAMicrosecond) {
+  EXPECT_EQ(Parsed<Rmc>(Line("GPRMC,000000.123456789,A,0000.0,N,00000.0,E,0.0,0.0,311216,,,A")).time_of_day, 123456us);
+}
+
+TEST(Date, TurnsTheCenturyAtEighty) {
+  const auto year = [](const std::string& short_year) {
+    const auto date = Parsed<Rmc>(Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,0101" + short_year + ",,,A")).date;
+    return static_cast<int>(std::chrono::year_month_day(*date).year());
+  };
+  EXPECT_EQ(year("79"), 2079);
+  EXPECT_EQ(year("80"), 1980);
+  EXPECT_EQ(year("99"), 1999);
+  EXPECT_EQ(year("00"), 2000);
+}
+
+TEST(Position, ReachesThePolesAndTheDateLine) {
+  const auto rmc = Parsed<Rmc>(Line("GPRMC,000000,A,9000.0000,S,18000.0000,W,0.0,0.0,010126,,,A"));
+  EXPECT_EQ(rmc.position->latitude_deg, -90.0);
+  EXPECT_EQ(rmc.position->longitude_deg, -180.0);
+}
+
+}  // namespace
+}  // namespace lookout::navigator

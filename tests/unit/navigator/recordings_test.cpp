@@ -1,0 +1,166 @@
+// Real receivers: what gpsd reads out of its own logs, and what boats' networks carry.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include "services/navigator/core/nmea.hpp"
+#include "services/navigator/core/sentence.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kData = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
+
+std::string Content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The value behind "key": in a line of JSON; empty when there is none.
+std::string JsonValue(const std::string& json, const std::string& key) {
+  const auto place = json.find("\"" + key + "\":");
+  if (place == std::string::npos) return {};
+  auto begin = place + key.size() + 3;
+  if (json[begin] == '"') ++begin;
+  return json.substr(begin, json.find_first_of(",\"}", begin) - begin);
+}
+
+// "2020-03-18T13:28:19.600Z"
+Utime FromIso(const std::string& text) {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  int hour = 0;
+  int minute = 0;
+  double second = 0.0;
+  EXPECT_EQ(std::sscanf(text.c_str(), "%d-%d-%dT%d:%d:%lfZ", &year, &month, &day, &hour, &minute, &second), 6) << text;
+  return std::chrono::sys_days(std::chrono::year(year) / month / day) + std::chrono::hours(hour) + std::chrono::minutes(minute) +
+         std::chrono::microseconds(std::llround(second * 1e6));
+}
+
+struct Expectation {
+  const char* name;
+  int min_positions;  // compared with gpsd's
+  bool compares_time;
+};
+
+class GpsdLog : public ::testing::TestWithParam<Expectation> {};
+
+TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
+  const fs::path file = kData / "gpsd" / (std::string(GetParam().name) + ".log.chk");
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  std::istringstream lines(Content(file));
+  std::optional<ParseResult> last;
+  int num_positions = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("$", 0) == 0) {
+      while (!line.empty() && line.back() == '\r') line.pop_back();
+      last = ParseSentence(line);
+      continue;
+    }
+    // The report that stands right behind a sentence is what gpsd made of it.
+    if (last && last->fault == SentenceFault::kNone && JsonValue(line, "class") == "TPV" && !JsonValue(line, "lat").empty()) {
+      const auto* rmc = std::get_if<Rmc>(&last->sentence);
+      const auto* gga = std::get_if<Gga>(&last->sentence);
+      const auto position = rmc ? rmc->position : gga ? gga->position : std::nullopt;
+      if (position) {
+        EXPECT_NEAR(position->latitude_deg, std::stod(JsonValue(line, "lat")), 1e-9) << line;
+        EXPECT_NEAR(position->longitude_deg, std::stod(JsonValue(line, "lon")), 1e-9) << line;
+        ++num_positions;
+      }
+      if (rmc && rmc->date && rmc->time_of_day && GetParam().compares_time) {
+        EXPECT_EQ(*rmc->date + *rmc->time_of_day, FromIso(JsonValue(line, "time"))) << line;
+      }
+      if (gga && !std::isnan(gga->msl_height_m) && !std::isnan(gga->geoid_separation_m)) {
+        EXPECT_NEAR(gga->msl_height_m, std::stod(JsonValue(line, "altMSL")), 1e-4);
+        EXPECT_NEAR(gga->msl_height_m + gga->geoid_separation_m, std::stod(JsonValue(line, "altHAE")), 2e-3);
+      }
+    }
+    last.reset();
+  }
+  EXPECT_GE(num_positions, GetParam().min_positions);
+}
+
+// gpsd mends rolled over weeks and, in tcp-torture, sets a year of its own; bu303 is not NMEA: gpsd wrote the sentences, and one digit short.
+INSTANTIATE_TEST_SUITE_P(Logs, GpsdLog,
+                         ::testing::Values(Expectation{"nmea-rtk", 80, true}, Expectation{"ublox-zed-f9p-nmea", 50, true},
+                                           Expectation{"april6_2019", 1, true}, Expectation{"tcp-torture", 2, false}, Expectation{"hemi", 0, false},
+                                           Expectation{"sounder", 0, false}, Expectation{"pypilot", 0, false}),
+                         [](const auto& log) {
+                           std::string name = log.param.name;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+// How many lines of a log are of each kind.
+std::map<std::string, int> Census(const fs::path& file) {
+  const auto lines = SplitDatagram(ToBytes(Content(file)));
+  std::map<std::string, int> census;
+  census["no start"] = static_cast<int>(lines.num_no_start);
+  census["not printable"] = static_cast<int>(lines.num_not_printable);
+  for (const auto& line : lines.lines) {
+    static const char* const kFaults[] = {"", "no checksum", "bad checksum", "bad field", "implausible"};
+    static const char* const kTypes[] = {"other", "RMC", "GGA", "VTG", "HDT", "PASHR"};
+    const auto result = ParseSentence(line);
+    ++census[result.fault == SentenceFault::kNone ? kTypes[result.sentence.index()] : kFaults[static_cast<int>(result.fault)]];
+  }
+  return census;
+}
+
+TEST(Recordings, OfABoatInAmsterdamAreUnderstood) {
+  const auto file = kData / "nmea/signalk_gps.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  auto census = Census(file);
+  EXPECT_GT(census["RMC"], 1000);
+  EXPECT_GT(census["GGA"], 1000);
+  EXPECT_GT(census["VTG"], 1000);
+  EXPECT_EQ(census["bad field"] + census["implausible"] + census["no checksum"], 0);
+}
+
+TEST(Recordings, OfABoatsNetworkAreUnderstood) {
+  const auto file = kData / "nmea/signalk_gofree-merrimac.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  auto census = Census(file);
+  EXPECT_GT(census["RMC"], 10);
+  EXPECT_GT(census["other"], 1000) << "AIS";
+  EXPECT_EQ(census["bad field"] + census["implausible"] + census["not printable"], 0);
+}
+
+TEST(Recordings, WithNumbersForTalkersAreOther) {
+  const auto file = kData / "nmea/signalk_n2kd-183-merrimac.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  auto census = Census(file);
+  EXPECT_GT(census["other"], 100);
+  EXPECT_EQ(census["bad field"] + census["implausible"] + census["bad checksum"], 0);
+}
+
+TEST(Recordings, OfAHeadingReceiverHoldEmptyAndFullHeadings) {
+  const auto file = kData / "gpsd/hemi.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  auto census = Census(file);
+  EXPECT_EQ(census["HDT"], 215);
+  EXPECT_EQ(census["GGA"], 215);
+  EXPECT_EQ(census["VTG"], 215);
+  EXPECT_EQ(census["other"], 108);
+}
+
+TEST(Recordings, OfABinaryProtocolHoldNoSentence) {
+  const auto file = kData / "gpsd/bu303-nofix.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  auto census = Census(file);
+  EXPECT_EQ(census["RMC"] + census["GGA"] + census["HDT"] + census["other"], 0);
+}
+
+}  // namespace
+}  // namespace lookout::navigator

@@ -1,0 +1,91 @@
+#include "services/navigator/core/sentence.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+std::vector<std::string> Lines(const std::string& text) { return SplitDatagram(ToBytes(text)).lines; }
+
+TEST(SplitDatagram, FindsNothingInAnEmptyDatagram) {
+  const auto result = SplitDatagram({});
+  EXPECT_TRUE(result.lines.empty());
+  EXPECT_EQ(result.num_no_start + result.num_too_long + result.num_not_printable, 0);
+}
+
+TEST(SplitDatagram, CutsAtCrAndLfInAnyOrder) {
+  EXPECT_EQ(Lines("$A*41\r\n!B*42\n$C*43\r$D*44"), (std::vector<std::string>{"$A*41", "!B*42", "$C*43", "$D*44"}));
+  EXPECT_EQ(Lines("\r\n\r\n"), std::vector<std::string>{});
+}
+
+TEST(SplitDatagram, KeepsLinesWhoseChecksumIsWrong) { EXPECT_EQ(Lines("$GPHDT,1.0,T*00\r\n").size(), 1U); }
+
+TEST(SplitDatagram, DropsWhatStandsBeforeTheStart) {
+  EXPECT_EQ(Lines("garbage\x01\xFF$A*41\r\n"), std::vector<std::string>{"$A*41"});
+  EXPECT_EQ(Lines("\\g:1-2-73874,n:157036,s:r003669945,c:1241544035*4A\\!AIVDM,1*00\r\n"), std::vector<std::string>{"!AIVDM,1*00"});
+  EXPECT_EQ(Lines("\\s:a$b*00\\$C*43\r\n"), std::vector<std::string>{"$C*43"}) << "a tag block may hold a $";
+  EXPECT_EQ(Lines("\\no end of the block $C*43\r\n"), std::vector<std::string>{"$C*43"});
+}
+
+TEST(SplitDatagram, CountsLinesWithoutAStart) {
+  EXPECT_EQ(SplitDatagram(ToBytes("hello\r\n\\s:a*00\\\r\n")).num_no_start, 2);
+  EXPECT_EQ(SplitDatagram(ToBytes(std::string(3, '\0'))).num_no_start, 1);
+}
+
+TEST(SplitDatagram, CountsLinesThatAreTooLong) {
+  const auto fits = SplitDatagram(ToBytes("$" + std::string(kMaxLineCharacters - 1, 'A')));
+  EXPECT_EQ(fits.lines.size(), 1U);
+  const auto too_long = SplitDatagram(ToBytes("$" + std::string(kMaxLineCharacters, 'A')));
+  EXPECT_TRUE(too_long.lines.empty());
+  EXPECT_EQ(too_long.num_too_long, 1);
+}
+
+TEST(SplitDatagram, CountsLinesThatAreNotPrintable) {
+  for (const std::string& text : {std::string("$A\0B", 4), std::string("$A\x7F"), std::string("$A\x80"), std::string("$A\tB")}) {
+    const auto result = SplitDatagram(ToBytes(text));
+    EXPECT_TRUE(result.lines.empty());
+    EXPECT_EQ(result.num_not_printable, 1);
+  }
+}
+
+TEST(IsLine, WantsAStartAndPrintableCharacters) {
+  EXPECT_TRUE(IsLine("$"));
+  EXPECT_TRUE(IsLine("!AIVDM ~"));
+  EXPECT_FALSE(IsLine(""));
+  EXPECT_FALSE(IsLine("GPRMC"));
+  EXPECT_FALSE(IsLine("$A\n"));
+  EXPECT_FALSE(IsLine("$" + std::string(kMaxLineCharacters, 'A')));
+}
+
+TEST(Frame, GivesAddressAndFields) {
+  const auto result = Frame("$GPHDT,274.07,T*03");
+  ASSERT_EQ(result.fault, SentenceFault::kNone);
+  EXPECT_EQ(result.sentence.address, "GPHDT");
+  EXPECT_EQ(result.sentence.fields, (std::vector<std::string_view>{"274.07", "T"}));
+}
+
+TEST(Frame, KeepsEmptyFields) {
+  EXPECT_EQ(Frame(Line("A,,")).sentence.fields, (std::vector<std::string_view>{"", ""}));
+  EXPECT_TRUE(Frame(Line("A")).sentence.fields.empty());
+  EXPECT_EQ(Frame(Line("")).fault, SentenceFault::kNone);
+}
+
+TEST(Frame, TakesSmallHexadecimalDigits) {
+  EXPECT_EQ(Frame("$GPRMC,193221.00,A,2037.7279,N,08704.0848,W,00.1,201.8,231207,01,W,A*2d").fault, SentenceFault::kNone);
+}
+
+TEST(Frame, RefusesASentenceWithoutChecksum) {
+  for (const char* line : {"$GPHDT,274.07,T", "$", "*", "$GPHDT,274.07,T 03"}) EXPECT_EQ(Frame(line).fault, SentenceFault::kNoChecksum) << line;
+}
+
+TEST(Frame, RefusesAWrongChecksum) {
+  for (const char* line : {"$GPHDT,274.07,T*04", "$GPHDT,274.07,T*3", "$GPHDT,274.07,T*", "$GPHDT,274.07,T*003", "$GPHDT,274.07,T*03 ",
+                           "$GPHDT,274.07,T*G3", "$GPHDT,274.08,T*03"}) {
+    EXPECT_EQ(Frame(line).fault, SentenceFault::kBadChecksum) << line;
+  }
+}
+
+}  // namespace
+}  // namespace lookout::navigator

@@ -1,0 +1,267 @@
+#include "services/navigator/service.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <map>
+
+#include "common/bus/decode.hpp"
+#include "common/bus/memory_bus.hpp"
+#include "lookout/attitude_t.hpp"
+#include "lookout/gnss_fix_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+Params TestParams(Input input) {
+  auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  params.input = input;
+  return params;
+}
+
+// A service on a bus of its own, and all that it sent.
+struct Rig {
+  bus::MemoryBus bus;
+  Service service;
+  std::map<std::string, std::vector<std::vector<std::uint8_t>>> sent;
+
+  explicit Rig(const Params& params) : service(bus, params) {
+    bus.SubscribeAll([this](std::string_view channel, Bytes bytes) { sent[std::string(channel)].emplace_back(bytes.begin(), bytes.end()); });
+  }
+  void Drain() {
+    while (bus.HandleOnce()) {
+    }
+  }
+  template <typename T>
+  void Send(const bus::Channel& channel, const T& message) {
+    bus::Publish(bus, channel, message);
+    Drain();
+  }
+  void Datagram(double time_s, const std::string& text) {
+    service.OnDatagram(NoonPlus(time_s), ToBytes(text));
+    Drain();
+  }
+  template <typename T>
+  std::vector<T> Messages(const bus::Channel& channel) {
+    std::vector<T> messages;
+    for (const auto& bytes : sent[std::string(channel.name)]) messages.push_back(bus::Decode<T>(bytes).value());
+    return messages;
+  }
+  std::int64_t Count(std::string_view name) const {
+    for (const auto& counter : service.Report().counters) {
+      if (counter.name == name) return counter.count;
+    }
+    ADD_FAILURE() << "no counter " << name;
+    return -1;
+  }
+};
+
+nav_raw_t RawMessage(double time_s, std::int32_t kind, const std::string& sentence = {}) {
+  nav_raw_t message{};
+  message.utime_us = ToUtimeUs(NoonPlus(time_s));
+  message.kind = kind;
+  message.source = sentence.empty() ? "" : "udp";
+  message.sentence = sentence;
+  return message;
+}
+
+lidar_nmea_t LidarMessage(double time_s, const std::string& sentence) {
+  lidar_nmea_t message{};
+  message.host_utime_us = ToUtimeUs(NoonPlus(time_s));
+  message.sentence = sentence;
+  return message;
+}
+
+TEST(Service, PublishesEachRawItemBeforeWhatComesOfIt) {
+  Rig rig(TestParams(Input::kOutside));
+  std::vector<std::string> order;
+  rig.bus.SubscribeAll([&order](std::string_view channel, Bytes) { order.emplace_back(channel); });
+  rig.Datagram(0.02, RmcLine(NoonPlus(0.0), 43.63, -72.15, 2.0, 10.0) + "\r\n" + HdtLine(10.0) + "\r\n");
+  EXPECT_EQ(order, (std::vector<std::string>{"NAV_RAW", "POSE", "NAV_RAW", "GNSS_FIX", "NAV_RAW", "ATTITUDE"}));
+  const auto raw = rig.Messages<nav_raw_t>(bus::kNavRaw);
+  EXPECT_EQ(raw[0].kind, nav_raw_t::KIND_START);
+  EXPECT_EQ(raw[1].kind, nav_raw_t::KIND_SENTENCE);
+  EXPECT_EQ(raw[1].source, "udp");
+  EXPECT_EQ(raw[2].sentence, HdtLine(10.0));
+  EXPECT_EQ(raw[2].seq, 2);
+  EXPECT_EQ(rig.Messages<gnss_fix_t>(bus::kGnssFix)[0].raw_seq, 1);
+  EXPECT_EQ(rig.Messages<attitude_t>(bus::kAttitude)[0].raw_seq, 2);
+}
+
+TEST(Service, PutsLinesWithWrongChecksumsIntoTheRawLogToo) {
+  Rig rig(TestParams(Input::kOutside));
+  rig.Datagram(0.0, "$GPHDT,1.0,T*00\r\n$GPHDT,1.0,T\r\n$\x80\r\nnothing\r\n");
+  EXPECT_EQ(rig.Messages<nav_raw_t>(bus::kNavRaw).size(), 3U) << "the start mark and two lines";
+  EXPECT_EQ(rig.Count("bad_checksum"), 1);
+  EXPECT_EQ(rig.Count("no_checksum"), 1);
+  EXPECT_EQ(rig.Count("not_printable"), 1);
+  EXPECT_EQ(rig.Count("no_start"), 1);
+}
+
+TEST(Service, SendsPosesOfTheDemoBoat) {
+  Rig rig(TestParams(Input::kOutside));
+  rig.service.AdvanceTo(NoonPlus(0));
+  rig.Datagram(0.05, GgaLine(NoonPlus(0.0), 43.63, -72.15, 4, 0.7, 201.0, -28.0) + "\r\n" + PashrLine(NoonPlus(0.0), 0.0, 0.0, 0.0, 0.0) + "\r\n");
+  rig.service.AdvanceTo(NoonPlus(0.1));
+  rig.Drain();
+  const auto poses = rig.Messages<pose_t>(bus::kPose);
+  ASSERT_EQ(poses.size(), 6U);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(poses[i].seq, static_cast<std::int64_t>(i));
+    EXPECT_EQ(poses[i].utime_us, ToUtimeUs(NoonPlus(0.02 * static_cast<double>(i))));
+  }
+  const auto& pose = poses.back();
+  EXPECT_EQ(pose.status, pose_t::STATUS_OK);
+  EXPECT_EQ(pose.heading_source, pose_t::HEADING_PASHR);
+  EXPECT_EQ(pose.has_attitude, 1);
+  // Antenna at (-0.8, 0.4, 0.9), bow north.
+  EXPECT_NEAR(pose.position_map_m[0], 0.4, 1e-6);
+  EXPECT_NEAR(pose.position_map_m[1], 0.8, 1e-6);
+  EXPECT_NEAR(pose.ellipsoid_height_m, 173.0 - 0.9, 1e-6);
+  EXPECT_GT(pose.covariance[8][8], 0.0);
+}
+
+TEST(Service, TakesLidarSentencesOnlyWhereConfigSaysSo) {
+  auto params = TestParams(Input::kOutside);
+  for (const bool use_lidar_nmea : {true, false}) {
+    params.use_lidar_nmea = use_lidar_nmea;
+    Rig rig(params);
+    rig.service.AdvanceTo(NoonPlus(0));
+    rig.Send(bus::kLidarNmea, LidarMessage(0.0, RmcLine(NoonPlus(0.0), 43.63, -72.15, 2.0, 10.0)));
+    EXPECT_EQ(rig.Messages<gnss_fix_t>(bus::kGnssFix).size(), use_lidar_nmea ? 1U : 0U);
+  }
+}
+
+TEST(Service, CountsTheSeqOfItsOutputsFromAStartMark) {
+  Rig rig(TestParams(Input::kLog));
+  rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));
+  rig.Send(bus::kNavRaw, RawMessage(0.1, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
+  rig.Send(bus::kNavRaw, RawMessage(-5.0, nav_raw_t::KIND_START));
+  rig.Send(bus::kNavRaw, RawMessage(-4.9, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
+  const auto attitudes = rig.Messages<attitude_t>(bus::kAttitude);
+  ASSERT_EQ(attitudes.size(), 2U);
+  EXPECT_EQ(attitudes[1].seq, 0);
+  const auto poses = rig.Messages<pose_t>(bus::kPose);
+  ASSERT_EQ(poses.size(), 12U);
+  EXPECT_EQ(poses[6].seq, 0);
+  EXPECT_EQ(poses[6].utime_us, ToUtimeUs(NoonPlus(-5.0)));
+}
+
+TEST(Service, FromALogTakesNothingElseAndSendsNoRaw) {
+  Rig rig(TestParams(Input::kLog));
+  rig.Datagram(0.0, HdtLine(1.0));
+  rig.service.AdvanceTo(NoonPlus(1.0));
+  rig.Send(bus::kLidarNmea, LidarMessage(0.0, HdtLine(1.0)));
+  EXPECT_EQ(rig.sent.size(), 1U) << "what the test sent itself";
+  rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
+  EXPECT_EQ(rig.sent["NAV_RAW"].size(), 1U);
+  EXPECT_EQ(rig.sent["ATTITUDE"].size(), 1U);
+}
+
+TEST(Service, RefusesRawMessagesThatCannotBe) {
+  Rig rig(TestParams(Input::kLog));
+  rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));
+  const auto sent_before = rig.sent["POSE"].size();
+  for (const std::int64_t utime_us : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(), kMaxUtimeUs + 1}) {
+    auto message = RawMessage(0.0, nav_raw_t::KIND_TICK);
+    message.utime_us = utime_us;
+    rig.Send(bus::kNavRaw, message);
+  }
+  EXPECT_EQ(rig.Count("nav_raw_bad_time"), 3);
+  for (const std::int32_t kind : {-1, 5, std::numeric_limits<std::int32_t>::min()}) rig.Send(bus::kNavRaw, RawMessage(0.1, kind));
+  EXPECT_EQ(rig.Count("nav_raw_bad_kind"), 3);
+  auto with_text = RawMessage(0.1, nav_raw_t::KIND_TICK);
+  with_text.source = "udp";
+  rig.Send(bus::kNavRaw, with_text);
+  auto without_source = RawMessage(0.1, nav_raw_t::KIND_SENTENCE, HdtLine(1.0));
+  without_source.source = "";
+  rig.Send(bus::kNavRaw, without_source);
+  auto odd_source = RawMessage(0.1, nav_raw_t::KIND_SENTENCE, HdtLine(1.0));
+  odd_source.source = "\x01";
+  rig.Send(bus::kNavRaw, odd_source);
+  for (const char* sentence : {"", "GPHDT", "$\t", "$\xFF"}) {
+    auto message = RawMessage(0.1, nav_raw_t::KIND_SENTENCE, sentence);
+    message.source = "udp";
+    rig.Send(bus::kNavRaw, message);
+  }
+  EXPECT_EQ(rig.Count("nav_raw_bad_text"), 7);
+  auto imu = RawMessage(0.1, nav_raw_t::KIND_IMU);
+  imu.source = "imu";
+  rig.Send(bus::kNavRaw, imu);
+  EXPECT_EQ(rig.Count("nav_raw_bad_imu"), 1);
+  rig.Send(bus::kNavRaw, RawMessage(-0.1, nav_raw_t::KIND_TICK));
+  EXPECT_EQ(rig.Count("nav_raw_backwards"), 1);
+  EXPECT_EQ(rig.sent["POSE"].size(), sent_before) << "none moved time";
+}
+
+TEST(Service, LivesOnAfterBytesThatAreNoMessage) {
+  Rig rig(TestParams(Input::kLog));
+  auto bytes = bus::Encode(RawMessage(0.0, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
+  const auto whole = bytes;
+  for (std::size_t size = 0; size < whole.size(); ++size) rig.bus.Publish(bus::kNavRaw, Bytes(whole).first(size));
+  for (std::size_t place = 0; place < whole.size(); ++place) {
+    bytes = whole;
+    bytes[place] ^= 0x80;
+    rig.bus.Publish(bus::kNavRaw, bytes);
+  }
+  rig.Drain();
+  rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));
+  rig.Send(bus::kNavRaw, RawMessage(0.1, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
+  EXPECT_GE(rig.Messages<pose_t>(bus::kPose).size(), 5U);
+}
+
+TEST(Service, RefusesLidarSentencesThatCannotBe) {
+  Rig rig(TestParams(Input::kOutside));
+  rig.service.AdvanceTo(NoonPlus(0));
+  auto bad_time = LidarMessage(0.0, HdtLine(1.0));
+  bad_time.host_utime_us = std::numeric_limits<std::int64_t>::max();
+  rig.Send(bus::kLidarNmea, bad_time);
+  rig.Send(bus::kLidarNmea, LidarMessage(0.0, ""));
+  rig.Send(bus::kLidarNmea, LidarMessage(0.0, "no start"));
+  EXPECT_EQ(rig.Count("lidar_nmea_bad"), 3);
+  rig.Send(bus::kLidarNmea, LidarMessage(-1000.0, HdtLine(1.0)));
+  EXPECT_EQ(rig.Count("stale_sentence"), 1);
+  EXPECT_EQ(rig.sent["ATTITUDE"].size(), 0U);
+}
+
+TEST(Service, RefusesHostTimesThatCannotBe) {
+  Rig rig(TestParams(Input::kOutside));
+  const Utime never{std::chrono::microseconds(std::numeric_limits<std::int64_t>::max())};
+  rig.service.AdvanceTo(never);
+  rig.service.OnDatagram(never, ToBytes(HdtLine(1.0)));
+  rig.service.Finish(never);
+  rig.Drain();
+  EXPECT_TRUE(rig.sent.empty());
+  EXPECT_EQ(rig.Count("bad_host_time"), 3);
+}
+
+TEST(Service, StandsTheBoundsOfTime) {
+  Rig rig(TestParams(Input::kOutside));
+  rig.service.AdvanceTo(Utime(std::chrono::microseconds(kMinUtimeUs)));
+  rig.Datagram(0.0, RmcLine(NoonPlus(0.0), 43.63, -72.15, 2.0, 10.0) + "\r\n" + HdtLine(1.0));
+  rig.service.AdvanceTo(Utime(std::chrono::microseconds(kMaxUtimeUs)));
+  rig.service.Finish(Utime(std::chrono::microseconds(kMaxUtimeUs)));
+  rig.Drain();
+  EXPECT_EQ(rig.Count("time_jump"), 2);
+  EXPECT_EQ(rig.Messages<pose_t>(bus::kPose).back().status, pose_t::STATUS_UNKNOWN);
+}
+
+TEST(Service, SaysWhyItIsDegraded) {
+  Rig rig(TestParams(Input::kOutside));
+  EXPECT_EQ(rig.service.Report().reason, "no position fix yet, no heading");
+  rig.service.AdvanceTo(NoonPlus(0));
+  rig.Datagram(0.1, RmcLine(NoonPlus(0.0), 43.63, -72.15, 0.0, 10.0));
+  EXPECT_EQ(rig.service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(rig.service.Report().reason, "no heading");
+  rig.Datagram(0.2, HdtLine(1.0));
+  EXPECT_EQ(rig.service.Report().state, HealthState::kOk);
+  EXPECT_EQ(rig.service.Report().reason, "");
+  rig.service.AdvanceTo(NoonPlus(5.0));
+  rig.Drain();
+  EXPECT_EQ(rig.service.Report().reason, "no position fix for 4 s, no heading");
+}
+
+}  // namespace
+}  // namespace lookout::navigator
