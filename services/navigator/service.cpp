@@ -123,7 +123,7 @@ HealthReport Service::Report() const {
   for (const auto& counter : sequencer_.counters()) report.counters.push_back(counter);
   for (const auto& counter : navigator_.counters()) report.counters.push_back(counter);
 
-  const auto& pose = navigator_.last_pose();
+  const auto pose = navigator_.StateNow();
   const bool has_position = pose && (pose->status == PoseStatus::kOk || pose->status == PoseStatus::kNoHeading);
   const bool has_heading = pose && pose->heading_source != HeadingSource::kNone;
   if (!has_position) {

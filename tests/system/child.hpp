@@ -88,7 +88,7 @@ struct RunResult {
   int exit_code;
   std::string output;
 };
-inline RunResult Run(const std::vector<std::string>& command, const std::string& output_file) {
+inline RunResult RunProgram(const std::vector<std::string>& command, const std::string& output_file) {
   Child child(command, output_file);
   const auto exit_code = child.Wait(std::chrono::seconds(120));
   return {exit_code.value_or(-1), child.Output()};

@@ -20,7 +20,6 @@ namespace lookout::system_test {
 namespace {
 
 namespace fs = std::filesystem;
-using bus::Bytes;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -75,9 +74,9 @@ class Live : public ::testing::Test {
   }
 
   void Simulate(int num_seconds) {
-    const auto result = Run({Bin("sim"), "--config", (folder_ / "config").string(), "--scene", "lake", "--seed", "3", "--seconds",
-                             std::to_string(num_seconds), "--udp", "127.0.0.1"},
-                            Output("sim"));
+    const auto result = RunProgram({Bin("sim"), "--config", (folder_ / "config").string(), "--scene", "lake", "--seed", "3", "--seconds",
+                                    std::to_string(num_seconds), "--udp", "127.0.0.1"},
+                                   Output("sim"));
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
 
@@ -115,8 +114,8 @@ TEST_F(Live, MessagesEqualTheReplayOfTheirRawLog) {
   std::this_thread::sleep_for(milliseconds(500));
   StopAll();
   const auto live = ReadLog(Log());
-  const auto result = Run({Bin("replay"), "--config", (folder_ / "config").string(), "--in", Log().string(), "--out", (folder_ / "again").string()},
-                          Output("replay"));
+  const auto result = RunProgram(
+      {Bin("replay"), "--config", (folder_ / "config").string(), "--in", Log().string(), "--out", (folder_ / "again").string()}, Output("replay"));
   ASSERT_EQ(result.exit_code, 0) << result.output;
   const auto again = ReadLog(folder_ / "again");
   for (const auto& channel : bus::kChannels) {
@@ -214,13 +213,14 @@ TEST_F(Live, CorruptMessagesOnEveryChannelAreCountedAndNothingDies) {
 
 TEST_F(Live, LogplayerOfLidarScanAloneGivesTheSameSegments) {
   const auto config = (folder_ / "config").string();
-  ASSERT_EQ(Run({Bin("sim"), "--config", config, "--scene", "lake", "--seed", "5", "--seconds", "3", "--pcap", "sim.pcap"}, Output("sim")).exit_code,
-            0);
-  ASSERT_EQ(Run({Bin("replay"), "--config", config, "--in", "sim.pcap", "--out", "replay.lcmlog"}, Output("replay")).exit_code, 0);
+  ASSERT_EQ(
+      RunProgram({Bin("sim"), "--config", config, "--scene", "lake", "--seed", "5", "--seconds", "3", "--pcap", "sim.pcap"}, Output("sim")).exit_code,
+      0);
+  ASSERT_EQ(RunProgram({Bin("replay"), "--config", config, "--in", "sim.pcap", "--out", "replay.lcmlog"}, Output("replay")).exit_code, 0);
   Start("recorder");
   Start("segmenter");
   std::this_thread::sleep_for(milliseconds(1000));
-  const auto player = Run({"lcm-logplayer", "-e", "(LIDAR_SCAN)", "replay.lcmlog"}, Output("logplayer"));
+  const auto player = RunProgram({"lcm-logplayer", "-e", "(LIDAR_SCAN)", "replay.lcmlog"}, Output("logplayer"));
   ASSERT_EQ(player.exit_code, 0) << player.output;
   std::this_thread::sleep_for(milliseconds(500));
   children_["segmenter"]->Terminate();

@@ -19,10 +19,7 @@ const segment_t* FindSegment(const Turn& turn, int id) {
 }
 
 // As lookout-export has it: the nearest microsecond.
-std::int64_t FiringUtimeUs(const lidar_scan_t& scan, std::size_t column, std::size_t ring) {
-  const std::int64_t time_ns = std::int64_t{scan.time_ns[column]} + scan.time_offset_ns[ring];
-  return scan.utime_us + static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0));
-}
+std::int64_t ToMicroseconds(std::int64_t time_ns) { return static_cast<std::int64_t>(std::floor((static_cast<double>(time_ns) + 500.0) / 1000.0)); }
 
 }  // namespace
 
@@ -47,9 +44,11 @@ void Evaluation::Add(const Turn& turn) {
     }
   }
   if (truth_ != nullptr) {
-    const Confusion confusion = Join(turn);
+    const auto returns = Join(turn);
+    Confusion confusion;
+    for (const auto& made : returns) confusion.Add(made.object_id, made.label);
     if (is_whole) Score(confusion);
-    Measure(turn, confusion, turn_rows);
+    Measure(turn, confusion, returns, turn_rows);
   }
   if (is_whole || !is_table_whole_) {
     is_table_whole_ = is_whole;
@@ -58,8 +57,9 @@ void Evaluation::Add(const Turn& turn) {
   }
 }
 
-Confusion Evaluation::Join(const Turn& turn) {
-  Confusion confusion;
+// By label, then time.
+std::vector<Evaluation::JoinedReturn> Evaluation::Join(const Turn& turn) {
+  std::vector<JoinedReturn> returns;
   for (const auto& [part_index, scan] : turn.scans) {
     const auto found = turn.segments.find(part_index);
     if (found == turn.segments.end() || found->second.num_cells != scan.num_cells) continue;
@@ -69,15 +69,17 @@ Confusion Evaluation::Join(const Turn& turn) {
         for (int k = 0; k < scan.num_returns; ++k, ++cell) {
           if (scan.range[cell] == 0) continue;
           ++num_returns;
-          const auto object_id = truth_->ObjectOf(FiringUtimeUs(scan, column, ring), static_cast<int>(ring), k);
+          const std::int64_t time_ns = std::int64_t{scan.time_ns[column]} + scan.time_offset_ns[ring];
+          const auto object_id = truth_->ObjectOf(scan.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
           if (!object_id) continue;
           ++num_joined;
-          confusion.Add(*object_id, found->second.label[cell]);
+          returns.push_back({found->second.label[cell], time_ns, *object_id});
         }
       }
     }
   }
-  return confusion;
+  std::ranges::stable_sort(returns, {}, [](const JoinedReturn& made) { return std::pair(made.label, made.time_ns); });
+  return returns;
 }
 
 void Evaluation::Score(const Confusion& confusion) {
@@ -106,7 +108,8 @@ const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
   return *outlines_;
 }
 
-void Evaluation::Measure(const Turn& turn, const Confusion& confusion, std::vector<ObstacleRow>& turn_rows) {
+void Evaluation::Measure(const Turn& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+                         std::vector<ObstacleRow>& turn_rows) {
   std::size_t row_index = 0;
   for (const auto& [part_index, message] : turn.obstacles) {
     const bool has_datum =
@@ -117,13 +120,13 @@ void Evaluation::Measure(const Turn& turn, const Confusion& confusion, std::vect
       const auto object = truth_->objects().find(object_id);
       if (object != truth_->objects().end()) row.object_name = object->second.name;
       if (obstacle.status == obstacle_t::STATUS_OK && has_datum) {
-        MeasureObstacle(message, FindSegment(turn, obstacle.id), message.utime_us, object_id, row);
+        MeasureObstacle(message, FindSegment(turn, obstacle.id), returns, object_id, row);
       }
     }
   }
 }
 
-void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* segment, std::int64_t segments_utime_us, int object_id,
+void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
                                  ObstacleRow& row) {
   const obstacle_t& obstacle = row.obstacle;
   const Outlines& outlines = OutlinesFor(message);
@@ -139,11 +142,22 @@ void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* se
     }
   }
 
-  // A vertex is one return: its time says which, and so which object it came from, also where a segment holds two objects.
+  // A vertex is one return of the segment: its time says which, and so which object it came from, also where the segment holds two objects.
   const bool has_times = segment != nullptr && segment->num_hull == obstacle.num_map;
   for (std::size_t i = 0; i < static_cast<std::size_t>(obstacle.num_map); ++i) {
-    const std::int64_t utime_us = has_times ? segments_utime_us + segment->hull_time_us[i] : obstacle.utime_us;
-    const std::vector<int> candidates = has_times ? truth_->ObjectsAt(utime_us) : std::vector<int>{object_id};
+    const std::int64_t utime_us = has_times ? message.utime_us + segment->hull_time_us[i] : obstacle.utime_us;
+    std::vector<int> candidates;
+    if (has_times) {
+      // Lasers fire 2304 ns apart, the time of a vertex is within a microsecond. In dual return two of a segment may share it.
+      const std::int64_t vertex_ns = std::int64_t{segment->hull_time_us[i]} * 1000;
+      const auto from = std::ranges::lower_bound(returns, std::pair(obstacle.id, vertex_ns - 1000), {},
+                                                 [](const JoinedReturn& made) { return std::pair(made.label, made.time_ns); });
+      for (auto made = from; made != returns.end() && made->label == obstacle.id && made->time_ns <= vertex_ns + 1000; ++made) {
+        candidates.push_back(made->object_id);
+      }
+    } else {
+      candidates.push_back(object_id);
+    }
     const Eigen::Vector2d vertex_m(static_cast<double>(obstacle.footprint_east_m[i]), static_cast<double>(obstacle.footprint_north_m[i]));
     std::optional<OutlineDistance> nearest;
     Errors* errors = nullptr;

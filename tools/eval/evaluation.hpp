@@ -67,10 +67,17 @@ class Evaluation {
   std::array<Summary, 4> pose_errors;  // horizontal m, heading deg, roll deg, pitch deg
 
  private:
-  Confusion Join(const Turn& turn);
+  struct JoinedReturn {
+    int label;
+    std::int64_t time_ns;  // since utime_us of the turn
+    int object_id;
+  };
+
+  std::vector<JoinedReturn> Join(const Turn& turn);
   void Score(const Confusion& confusion);
-  void Measure(const Turn& turn, const Confusion& confusion, std::vector<ObstacleRow>& turn_rows);
-  void MeasureObstacle(const obstacles_t& message, const segment_t* segment, std::int64_t segments_utime_us, int object_id, ObstacleRow& row);
+  void Measure(const Turn& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns, std::vector<ObstacleRow>& turn_rows);
+  void MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
+                       ObstacleRow& row);
   const Outlines& OutlinesFor(const obstacles_t& message);
 
   const Truth* truth_;

@@ -55,15 +55,6 @@ std::optional<int> Truth::ObjectOf(std::int64_t utime_us, int ring, int return_i
   return std::nullopt;
 }
 
-std::vector<int> Truth::ObjectsAt(std::int64_t utime_us) const {
-  std::vector<int> object_ids;
-  for (auto made = std::ranges::lower_bound(returns_, utime_us - 1, {}, &Return::utime_us); made != returns_.end() && made->utime_us <= utime_us + 1;
-       ++made) {
-    object_ids.push_back(made->object_id);
-  }
-  return object_ids;
-}
-
 Outlines Truth::OutlinesIn(const GeographicLib::LocalCartesian& map) const {
   Outlines result;
   for (const auto& [object_id, by_time] : outlines_) {

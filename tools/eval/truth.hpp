@@ -56,9 +56,6 @@ class Truth {
   /// @return object of a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullopt = not in the truth
   std::optional<int> ObjectOf(std::int64_t utime_us, int ring, int return_index) const;
 
-  /// @return objects of whatever returned at a time: lasers fire 2.3 us apart, so it names the laser; two entries in dual return
-  std::vector<int> ObjectsAt(std::int64_t utime_us) const;
-
   Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
 
  private:

@@ -67,6 +67,7 @@ void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
   if (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position) {
     Timed(vlp16_time_, [&] { vlp16_.OnDatagram(host_time, udp_port, payload); });
   } else if (udp_port == ports_.nmea) {
+    ++num_nmea_datagrams_;
     Timed(navigator_time_, [&] { navigator_.OnDatagram(host_time, payload); });
   } else {
     ++num_other_ports_;

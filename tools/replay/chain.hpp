@@ -63,6 +63,12 @@ class Chain {
   /// Counters of all services that are not 0, as "service.counter".
   std::vector<std::pair<std::string, std::int64_t>> Counters() const;
 
+  /// Why the lidar gives nothing, in words; empty when it gives.
+  std::string LidarComplaint() const { return vlp16_.Report().reason; }
+
+  /// Datagrams on the port of NMEA 0183.
+  std::int64_t num_nmea_datagrams() const { return num_nmea_datagrams_; }
+
  private:
   // Destination ports by which datagrams of a capture are told apart.
   struct Ports {
@@ -81,6 +87,7 @@ class Chain {
   Utime time_{};
   bool is_navigation_live_;  // else it comes as NAV_RAW
   Ports ports_;
+  std::int64_t num_nmea_datagrams_ = 0;
   std::int64_t num_other_ports_ = 0;
   std::chrono::nanoseconds vlp16_time_{0};
   std::chrono::nanoseconds navigator_time_{0};

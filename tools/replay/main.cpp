@@ -116,11 +116,12 @@ void Replay(const Options& options) {
   spdlog::info("{} events, {} turns in {:.3f} s", summary.num_events, num_turns, elapsed_s);
   PrintDigests(chain);
 
-  if (CountOf(chain, lookout::bus::kLidarPackets) == 0 && CountOf(chain, lookout::bus::kNavRaw) == 0) {
+  const bool is_capture = raw_input.lidar == lookout::vlp16::Input::kOutside;
+  if (is_capture && CountOf(chain, lookout::bus::kLidarPackets) == 0 && chain.num_nmea_datagrams() == 0) {
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
   }
   if (CountOf(chain, lookout::bus::kLidarPackets) > 0 && num_turns == 0) {
-    throw std::runtime_error("no turn came out of the lidar's packets: the counts above say why they were refused");
+    throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + chain.LidarComplaint());
   }
 }
 

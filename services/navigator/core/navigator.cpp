@@ -43,12 +43,16 @@ NavigatorOutput Navigator::Flush() {
   return output;
 }
 
+std::optional<Pose> Navigator::StateNow() const {
+  if (!time_) return std::nullopt;
+  return estimator_.At(*time_);
+}
+
 void Navigator::Reset() {
   counts_.unusable_fix += estimator_.antenna().num_unusable();
   counts_.late_fix += estimator_.antenna().num_late();
   estimator_ = PoseEstimator(params_.pose);
   time_.reset();
-  last_pose_.reset();
   last_lidar_sentence_.clear();
 }
 
@@ -57,8 +61,7 @@ void Navigator::GivePosesUntil(Utime time, NavigatorOutput& output) {
 }
 
 void Navigator::GivePose(NavigatorOutput& output) {
-  last_pose_ = estimator_.At(next_pose_);
-  output.poses.push_back(*last_pose_);
+  output.poses.push_back(estimator_.At(next_pose_));
   next_pose_ += kPosePeriod;
 }
 

@@ -50,7 +50,8 @@ class Navigator {
 
   /// Time of the last item.
   const std::optional<Utime>& time() const { return time_; }
-  const std::optional<Pose>& last_pose() const { return last_pose_; }
+  /// The state at the time of the last item, between the poses that are given.
+  std::optional<Pose> StateNow() const;
   /// Time of the item with the last usable fix since the start mark.
   std::optional<Utime> last_fix_arrival() const { return estimator_.antenna().last_arrival(); }
 
@@ -74,7 +75,6 @@ class Navigator {
   PoseEstimator estimator_;
   std::optional<Utime> time_;
   Utime next_pose_{};
-  std::optional<Pose> last_pose_;
   std::string last_lidar_sentence_;
 
   struct Counts {

@@ -18,17 +18,21 @@ double Seconds(microseconds duration) { return std::chrono::duration<double>(dur
 
 bool Track::Add(Utime time, double value, double sd) {
   if (last_ && time <= last_->time) return false;
-  // Of samples close together the newest stays, until there is a distance that gives a rate.
-  if (last_ && (!previous_ || last_->time - previous_->time >= kMinSpacing)) previous_ = last_;
+  if (last_ && (!newer_ || last_->time - newer_->time >= kMinSpacing)) {
+    older_ = newer_;
+    newer_ = last_;
+  }
   last_ = Sample{time, value, sd};
   return true;
 }
 
+const std::optional<Track::Sample>& Track::Previous() const { return newer_ && last_->time - newer_->time >= kMinSpacing ? newer_ : older_; }
+
 std::optional<double> Track::Rate() const {
-  if (!previous_) return std::nullopt;
-  const auto spacing = last_->time - previous_->time;
-  if (spacing < kMinSpacing || spacing >= kMaxSpacing) return std::nullopt;
-  const double difference = last_->value - previous_->value;
+  const auto& previous = Previous();
+  if (!previous || last_->time - previous->time >= kMaxSpacing) return std::nullopt;
+  const auto spacing = last_->time - previous->time;
+  const double difference = last_->value - previous->value;
   const double rate = (params_.is_angle ? WrapToPi(difference) : difference) / Seconds(spacing);
   if (std::abs(rate) > params_.max_rate) return std::nullopt;
   return rate;
@@ -38,7 +42,7 @@ std::optional<TrackValue> Track::At(Utime time, microseconds max_age) const {
   if (!last_) return std::nullopt;
   const auto rate = Rate();
   // Where there is a rate, the stretch between the two samples is known.
-  const Utime first = rate ? previous_->time : last_->time;
+  const Utime first = rate ? Previous()->time : last_->time;
   const auto age = std::max({microseconds(0), time - last_->time, first - time});
   if (age > max_age) return std::nullopt;
   const auto carried = std::clamp(time - last_->time, first - last_->time, params_.max_carry);

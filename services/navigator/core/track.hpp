@@ -1,4 +1,4 @@
-// One measured quantity along time: its two last samples, from which a value near them is read.
+// One measured quantity along time: its last samples, from which a value near them is read.
 #pragma once
 
 #include <chrono>
@@ -34,7 +34,7 @@ class Track {
   /// @return whether the sample was taken: its time is after that of the last
   bool Add(Utime time, double value, double sd);
 
-  /// @return between the last two samples: on the line through them; after them: carried on along it; nullopt when no sample is within `max_age`
+  /// @return between the last samples: on the line through them; after them: carried on along it; nullopt when no sample is within `max_age`
   std::optional<TrackValue> At(Utime time, std::chrono::microseconds max_age) const;
 
  private:
@@ -43,10 +43,15 @@ class Track {
     double value = 0.0;
     double sd = 0.0;
   };
-  std::optional<double> Rate() const;  // of the stretch between the two samples, where it gives one
+  // The newest sample that is far enough before the last to give a rate.
+  const std::optional<Sample>& Previous() const;
+  // Of the stretch between that and the last, where it gives one.
+  std::optional<double> Rate() const;
 
   TrackParams params_;
-  std::optional<Sample> previous_;
+  // older_ to newer_ to the sample after newer_: each at least kMinSpacing apart.
+  std::optional<Sample> older_;
+  std::optional<Sample> newer_;
   std::optional<Sample> last_;
 };
 

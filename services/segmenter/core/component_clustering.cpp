@@ -92,16 +92,19 @@ class PolarGrid {
   }
 
   /// Calls `visit(cell, other)` for each pair of cells that may hold compatible components, also for a cell with itself; both hold some.
+  ///
+  /// @param max_steps  only cells that are at most so many sectors and bands apart
   template <typename Visit>
-  void ForEachPair(Visit visit) const {
+  void ForEachPair(int max_steps, Visit visit) const {
     for (int cell = 0; cell < num_cells(); ++cell) {
       if (IsEmpty(cell)) continue;
       const int sector = cell / num_bands_;
       const int band = cell % num_bands_;
-      for (int step = 0; step <= sector_reach_; ++step) {
+      const int last_band = std::min(last_band_[Index(band)], band + max_steps);
+      for (int step = 0; step <= std::min(sector_reach_, max_steps); ++step) {
         const int first_other = (sector + step) % num_sectors_ * num_bands_;
-        const int first_band = step == 0 ? band : first_band_[Index(band)];
-        for (int other = first_other + first_band; other <= first_other + last_band_[Index(band)]; ++other) {
+        const int first_band = step == 0 ? band : std::max(first_band_[Index(band)], band - max_steps);
+        for (int other = first_other + first_band; other <= first_other + last_band; ++other) {
           if (!IsEmpty(other)) visit(cell, other);
         }
       }
@@ -200,7 +203,10 @@ std::vector<std::int32_t> ClusterComponents(std::span<const ComponentCentroid> c
   const CompatibilityRule rule(params);
   const PolarGrid grid(components, Reach(components, params));
   Uniter uniter(components, grid, rule);
-  grid.ForEachPair([&uniter](int cell, int other) { uniter.Unite(cell, other); });
+  // What is near first: most of the rest is then of one cluster already.
+  for (const int max_steps : {0, 1, std::max(kMaxBands, static_cast<int>(kMaxSectors))}) {
+    grid.ForEachPair(max_steps, [&uniter](int cell, int other) { uniter.Unite(cell, other); });
+  }
 
   std::vector<std::int32_t> cluster_of(components.size());
   std::int32_t num_clusters = 0;

@@ -97,6 +97,21 @@ TEST_F(EvaluationTest, MeasuresVerticesAgainstTheObjectThatReturnedThem) {
   EXPECT_NEAR(pile.position_outside_m.Max(), 1.0, 1e-3);
 }
 
+// A stray of its own segment, fired within a microsecond of the pile's return, used to be measured against the pile: 48 m off in a lake.
+TEST_F(EvaluationTest, VertexOfAStrayIsNotMeasuredAgainstAReturnOfAnotherSegment) {
+  Evaluation evaluation(&truth_, 1);
+  auto turn = SmallTurn();
+  turn.scans[0].time_offset_ns[8] = 900;
+  turn.segments[0].label[17] = 3;
+  turn.segments[0].segments[1].id = 3;
+  turn.segments[0].segments[1].hull_time_us = {56, 56};
+  turn.obstacles[0].obstacles[1].id = 3;
+  evaluation.Add(turn);
+  EXPECT_FALSE(evaluation.errors_by_kind.contains({"pile", false}));
+  EXPECT_EQ(evaluation.rows[1].object_name, "stray");
+  EXPECT_FALSE(evaluation.rows[1].vertex_outside_m);
+}
+
 TEST_F(EvaluationTest, ScoresSegmentsByReturns) {
   Evaluation evaluation(&truth_, 1);
   evaluation.Add(SmallTurn());

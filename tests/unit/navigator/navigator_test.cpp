@@ -84,7 +84,7 @@ TEST_F(NavigatorTest, IsVoidAfterAStartMark) {
   Mark(ItemKind::kStart, 0.0);
   Sentence(0.1, RmcLine(NoonPlus(0.05), 50.0, 8.0, 2.0, 30.0));
   Sentence(0.1, HdtLine(45.0));
-  ASSERT_EQ(navigator_.last_pose()->status, PoseStatus::kOk);
+  ASSERT_EQ(navigator_.StateNow()->status, PoseStatus::kOk);
   const auto output = Mark(ItemKind::kStart, -100.0);
   ASSERT_EQ(output.poses.size(), 1U);
   EXPECT_EQ(output.poses[0].status, PoseStatus::kUnknown);

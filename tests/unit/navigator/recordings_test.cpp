@@ -51,10 +51,12 @@ Utime FromIso(const std::string& text) {
 
 struct Expectation {
   const char* name;
-  int min_positions;  // compared with gpsd's
+  int min_positions;  // compared with the report behind the sentence
+  int min_times;      // compared with reports of the same time
   bool compares_time;
 };
 
+class GpsdTimes : public ::testing::TestWithParam<Expectation> {};
 class GpsdLog : public ::testing::TestWithParam<Expectation> {};
 
 TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
@@ -92,16 +94,49 @@ TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
   EXPECT_GE(num_positions, GetParam().min_positions);
 }
 
+// gpsd often reports later, when an epoch is whole: its reports of the time of an RMC hold the place of that RMC.
+TEST_P(GpsdTimes, GivesThePlacesThatGpsdReadsAtThem) {
+  const fs::path file = kData / "gpsd" / (std::string(GetParam().name) + ".log.chk");
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  std::istringstream lines(Content(file));
+  std::map<Utime, GeodeticPosition> expected;
+  std::map<Utime, GeodeticPosition> found;
+  for (std::string line; std::getline(lines, line);) {
+    while (!line.empty() && line.back() == '\r') line.pop_back();
+    if (JsonValue(line, "class") == "TPV" && !JsonValue(line, "time").empty() && !JsonValue(line, "lat").empty()) {
+      expected[FromIso(JsonValue(line, "time"))] = {std::stod(JsonValue(line, "lat")), std::stod(JsonValue(line, "lon"))};
+    }
+    const auto result = ParseSentence(line);
+    const auto* rmc = result.fault == SentenceFault::kNone ? std::get_if<Rmc>(&result.sentence) : nullptr;
+    if (rmc && rmc->date && rmc->time_of_day && rmc->position) found[*rmc->date + *rmc->time_of_day] = *rmc->position;
+  }
+  int num_compared = 0;
+  for (const auto& [time, position] : found) {
+    if (!expected.contains(time)) continue;
+    EXPECT_NEAR(position.latitude_deg, expected[time].latitude_deg, 1e-9);
+    EXPECT_NEAR(position.longitude_deg, expected[time].longitude_deg, 1e-9);
+    ++num_compared;
+  }
+  EXPECT_GE(num_compared, GetParam().min_times);
+}
+
+const auto kNameOfLog = [](const auto& log) {
+  std::string name = log.param.name;
+  std::ranges::replace(name, '-', '_');
+  return name;
+};
+
 // gpsd mends rolled over weeks and, in tcp-torture, sets a year of its own; bu303 is not NMEA: gpsd wrote the sentences, and one digit short.
 INSTANTIATE_TEST_SUITE_P(Logs, GpsdLog,
-                         ::testing::Values(Expectation{"nmea-rtk", 80, true}, Expectation{"ublox-zed-f9p-nmea", 50, true},
-                                           Expectation{"april6_2019", 1, true}, Expectation{"tcp-torture", 2, false}, Expectation{"hemi", 0, false},
-                                           Expectation{"sounder", 0, false}, Expectation{"pypilot", 0, false}),
-                         [](const auto& log) {
-                           std::string name = log.param.name;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+                         ::testing::Values(Expectation{"nmea-rtk", 80, 80, true}, Expectation{"ublox-zed-f9p-nmea", 2, 25, true},
+                                           Expectation{"april6_2019", 1, 1, true}, Expectation{"tcp-torture", 2, 0, false},
+                                           Expectation{"hemi", 0, 0, false}, Expectation{"sounder", 0, 0, false},
+                                           Expectation{"pypilot", 0, 0, false}),
+                         kNameOfLog);
+INSTANTIATE_TEST_SUITE_P(Logs, GpsdTimes,
+                         ::testing::Values(Expectation{"nmea-rtk", 80, 80, true}, Expectation{"ublox-zed-f9p-nmea", 2, 25, true},
+                                           Expectation{"april6_2019", 1, 1, true}),
+                         kNameOfLog);
 
 // How many lines of a log are of each kind.
 std::map<std::string, int> Census(const fs::path& file) {
