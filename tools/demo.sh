@@ -50,6 +50,8 @@ if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
   sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
   printf 'capture_file: "%s"\n' "$(realpath "$capture")" >>"$live_config/vlp16.txtpb"
+  # Its position belongs to another day than this computer's clock: live, obstacles stay in the vessel's frame. The replay has both.
+  sed -i 's/^use_lidar_nmea: true/use_lidar_nmea: false/' "$live_config/navigator.txtpb"
 fi
 
 pids=()
@@ -66,18 +68,20 @@ start() {  # NAME
 }
 for service in recorder georeferencer navigator segmenter; do start "$service"; done
 sleep 1  # subscriptions reach LCM's group before the first message does
-start vlp16
-lidar=${pids[-1]}
-sleep 0.5
 for pid in "${pids[@]}"; do
   kill -0 "$pid" 2>/dev/null || { echo "a process ended at its start:" >&2; cat "$work"/*.out >&2; exit 1; }
 done
+start vlp16
+lidar=${pids[-1]}
+sleep 0.5
 
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
   for _ in $(seq 600); do kill -0 "$lidar" 2>/dev/null || break; sleep 0.1; done
+  grep -q 'critical' "$work/vlp16.out" && { cat "$work/vlp16.out" >&2; exit 1; }
   sleep 1.5
 else
+  kill -0 "$lidar" 2>/dev/null || { cat "$work/vlp16.out" >&2; exit 1; }
   echo "the simulator sends datagrams to 127.0.0.1 for $seconds s"
   rm -rf "$work/truth-live"
   "$bin/lookout-sim" --config "$live_config" --scene "$scene" --seed "$seed" --seconds "$seconds" --udp 127.0.0.1 --truth "$work/truth-live"
