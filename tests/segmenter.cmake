@@ -1,1 +1,9 @@
+lookout_test(NAME unit_segmenter
+             SOURCES unit/segmenter/returns_test.cpp unit/segmenter/range_image_test.cpp unit/segmenter/breadth_first_search_test.cpp
+                     unit/segmenter/component_labelling_test.cpp unit/segmenter/component_clustering_test.cpp unit/segmenter/footprint_test.cpp
+                     unit/segmenter/measure_test.cpp unit/segmenter/segmenter_test.cpp unit/segmenter/turn_gatherer_test.cpp
+                     unit/segmenter/wire_test.cpp unit/segmenter/service_test.cpp
+             LINKS lookout_segmenter lookout_config)
+lookout_test(NAME property_segmenter SOURCES property/segmenter_reference_test.cpp property/segmenter_laws_test.cpp LINKS lookout_segmenter)
 lookout_bench(NAME bench_segmenter SOURCES bench/segmenter_bench.cpp LINKS lookout_segmenter_core)
+lookout_fuzz(NAME fuzz_segmenter SOURCES fuzz/segmenter_fuzz.cpp LINKS lookout_segmenter)

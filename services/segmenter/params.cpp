@@ -28,8 +28,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   params.filter.min_range_m = message.min_range_m();
   params.filter.max_range_m = message.max_range_m();
   params.filter.field_of_view.start_rad = DegToRad(message.field_of_view_start_deg());
-  params.filter.field_of_view.width_rad =
-      message.field_of_view_width_deg() >= kWholeCircleDeg ? kTwoPi : DegToRad(message.field_of_view_width_deg());
+  params.filter.field_of_view.width_rad = message.field_of_view_width_deg() >= kWholeCircleDeg ? kTwoPi : DegToRad(message.field_of_view_width_deg());
   params.filter.own_vessel_box_m = boat.own_vessel_box_m;
   params.filter.T_vessel_lidar = boat.T_vessel_lidar;
   params.labelling.image_columns = message.image_columns();

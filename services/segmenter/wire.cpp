@@ -83,7 +83,7 @@ segment_t ToMessage(const Segment& segment) {
   message.utime_us = ToUtimeUs(segment.time);
   message.id = segment.id;
   message.num_points = segment.num_points;
-  const auto copy = [](const Point& from, float (&to)[3]) {
+  const auto copy = [](const Point& from, float(&to)[3]) {
     to[0] = from.x_m;
     to[1] = from.y_m;
     to[2] = from.z_m;

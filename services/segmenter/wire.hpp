@@ -27,10 +27,10 @@ inline constexpr int kMaxTurnColumns = 65'536;
 inline constexpr std::int64_t kMaxTurnCells = std::int64_t{1} << 21;
 
 /// The part of a turn that a message holds, or why the whole message is refused:
-/// kTime: utime out of bounds, or the end before the begin. kCounts: counts do not agree with the arrays or with each other. kSize: more rings, returns,
-/// columns or cells than kMax..., or a message larger than `max_message_bytes`. kBeams: elevation, azimuth offset or height of a ring not finite, out of
-/// range, or rings not from the lowest up. kRangeUnit: not above 0, or not finite. kPart: no such part, or columns outside of the turn. kAzimuth: of a
-/// column, not in [0, 2 pi].
+/// kTime: utime out of bounds, or the end before the begin. kCounts: counts do not agree with the arrays or with each other. kSize: more rings,
+/// returns, columns or cells than kMax..., or a message larger than `max_message_bytes`. kBeams: elevation, azimuth offset or height of a ring not
+/// finite, out of range, or rings not from the lowest up. kRangeUnit: not above 0, or not finite. kPart: no such part, or columns outside of the
+/// turn. kAzimuth: of a column, not in [0, 2 pi].
 std::variant<ScanPart, Refusal> ToScanPart(const lidar_scan_t& message, int max_message_bytes);
 
 /// The segments of a turn in parts: labels as the scan was split, segments in order wherever they fit behind them, then in further parts.

@@ -10,8 +10,8 @@
 namespace lookout::sim {
 
 struct Datagram {
-  Utime time;  // at which it reaches the host
-  int port;    // UDP destination
+  Utime time;    // at which it reaches the host
+  int port = 0;  // UDP destination
   std::vector<std::uint8_t> payload;
 };
 

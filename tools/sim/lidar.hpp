@@ -27,10 +27,10 @@ struct LidarParams {
 
 /// What made a return that is not zero.
 struct TrueReturn {
-  Utime time;        // its laser's firing as the packet says it, nearest microsecond
-  int ring;          // from the lowest beam up
-  int return_index;  // place in its pair of blocks: dual 0 last, 1 strongest; else 0
-  int object_id;
+  Utime time;            // its laser's firing as the packet says it, nearest microsecond
+  int ring = 0;          // from the lowest beam up
+  int return_index = 0;  // place in its pair of blocks: dual 0 last, 1 strongest; else 0
+  int object_id = kNoObject;
 };
 
 struct LidarPacket {

@@ -39,7 +39,7 @@ struct OwnMotion {
   double period_s = 1.0;                                  // of one round, counter-clockwise
   double start_rad = 0.0;                                 // where on the round: 0 = east, pi / 2 = north
   double still_heading_rad = 0.0;                         // of a boat that lies still
-  std::vector<Wave> leeway_rad{};                           // heading minus course
+  std::vector<Wave> leeway_rad{};                         // heading minus course
   std::vector<Wave> roll_rad{};
   std::vector<Wave> pitch_rad{};
   std::vector<Wave> heave_m{};

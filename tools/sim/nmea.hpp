@@ -11,22 +11,22 @@ namespace lookout::sim {
 /// What a GNSS receiver measured at its antenna.
 struct GnssMeasurement {
   Utime time;
-  double latitude_deg;
-  double longitude_deg;
-  double msl_height_m;
-  double geoid_separation_m;
-  double speed_mps;
-  double course_deg;  // from true north, clockwise
-  int quality;        // as in GGA
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double msl_height_m = 0.0;
+  double geoid_separation_m = 0.0;
+  double speed_mps = 0.0;
+  double course_deg = 0.0;  // from true north, clockwise
+  int quality = 0;          // as in GGA
 };
 
 /// What an attitude sensor measured. Signs as in POSE.
 struct AttitudeMeasurement {
   Utime time;
-  double heading_deg;
-  double roll_deg;   // positive starboard down
-  double pitch_deg;  // positive bow up
-  double heave_m;    // positive up
+  double heading_deg = 0.0;
+  double roll_deg = 0.0;   // positive starboard down
+  double pitch_deg = 0.0;  // positive bow up
+  double heave_m = 0.0;    // positive up
 };
 
 /// @param body  between $ and *

@@ -17,9 +17,9 @@ class RayCaster {
  public:
   /// A set of parts with one frame.
   struct Body {
-    int object_id;
+    int object_id = kNoObject;
     Track track;
-    const std::vector<Part>* parts;  // outlives the caster
+    const std::vector<Part>* parts = nullptr;  // outlives the caster
   };
   explicit RayCaster(const std::vector<Body>& bodies);
 
@@ -42,14 +42,14 @@ class RayCaster {
  private:
   struct Place {  // of a body: p_object = R (p_map - origin)
     Eigen::Vector2d origin_m;
-    double sine;
-    double cosine;
+    double sine = 0.0;
+    double cosine = 1.0;
   };
   struct Item {
-    const Part* part;
+    const Part* part = nullptr;
     PlanBounds bounds;
-    std::size_t body;
-    double nearest_m;  // from the eye, less kMarginM
+    std::size_t body = 0;
+    double nearest_m = 0.0;  // from the eye, less kMarginM
   };
   // From the first bin, clockwise round to the last.
   struct Bins {

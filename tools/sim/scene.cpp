@@ -109,6 +109,7 @@ constexpr std::array<std::pair<std::string_view, Maker>, 3> kMakers{{{"lake", Ma
 
 std::vector<std::string_view> SceneNames() {
   std::vector<std::string_view> names;
+  names.reserve(kMakers.size());
   for (const auto& [name, maker] : kMakers) names.push_back(name);
   return names;
 }

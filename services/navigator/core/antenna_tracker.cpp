@@ -38,15 +38,16 @@ void AntennaTracker::Add(const GnssFix& fix) {
     ++num_unusable_;
     return;
   }
-  if (fix_ && fix.when.time < fix_->time) {
+  const bool is_comparable = fix_ && fix_->is_time_from_sentence == fix.when.is_from_sentence;
+  if (is_comparable && fix.when.time < fix_->time) {
     ++num_late_;
     return;
   }
   const double ellipsoid_height_m = fix.msl_height_m + fix.geoid_separation_m;
   const bool has_height = !std::isnan(ellipsoid_height_m);
   if (!datum_) SetDatum({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : 0.0});
-  const bool is_same_epoch = fix_ && fix.when.time == fix_->time;
-  if (!is_same_epoch || fix.sentence_type == "GGA") fix_ = Fix{fix.when.time, *fix.position, fix.horizontal_sd_m};
+  const bool is_same_epoch = is_comparable && fix.when.time == fix_->time;
+  if (!is_same_epoch || fix.sentence_type == "GGA") fix_ = Fix{fix.when.time, fix.when.is_from_sentence, *fix.position, fix.horizontal_sd_m};
   if (has_height) height_ = Height{fix.when.time, ellipsoid_height_m};
   if (!std::isnan(fix.speed_mps)) velocity_ = GroundVelocity{fix.when.time, fix.speed_mps, fix.course_rad};
   last_arrival_ = fix.when.arrival;

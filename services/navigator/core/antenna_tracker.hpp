@@ -43,7 +43,8 @@ class AntennaTracker {
  public:
   explicit AntennaTracker(const AntennaParams& params);
 
-  /// Takes a fix that was measured; others, and those older than the last, are counted only. Of two sentences of the same measurement time the
+  /// Takes a fix that was measured; others, and those older than the last, are counted only. Older is told by times of one kind: where one is of a
+  /// sentence and the other of an arrival, the order of arrival counts. Of two sentences of the same measurement time the
   /// position of a GGA counts, for it tells height and accuracy.
   void Add(const GnssFix& fix);
   void Add(const GroundVelocity& velocity);
@@ -68,6 +69,7 @@ class AntennaTracker {
  private:
   struct Fix {
     Utime time;
+    bool is_time_from_sentence = false;
     GeodeticPosition position;
     double sd_m = 0.0;
   };

@@ -123,7 +123,7 @@ class PolarGrid {
   int Cell(int sector, int band) const { return sector * num_bands_ + band; }
 
   int num_sectors_ = 1;
-  int sector_reach_ = 0;                   // sectors to either side
+  int sector_reach_ = 0;  // sectors to either side
   int num_bands_ = 1;
   std::array<int, kMaxBands> first_band_;  // nearest band that reaches this one
   std::array<int, kMaxBands> last_band_;   // farthest band within reach of this one

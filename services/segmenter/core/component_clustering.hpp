@@ -28,7 +28,9 @@ struct ClusteringParams {
 /// What Algorithm 1 sees of a component.
 struct ComponentCentroid {
   explicit ComponentCentroid(const Eigen::Vector3d& p_lidar_m)
-      : p_m(p_lidar_m), distance_m(p_lidar_m.norm()), direction(distance_m > 0.0 ? Eigen::Vector3d(p_lidar_m / distance_m) : Eigen::Vector3d::Zero()) {}
+      : p_m(p_lidar_m),
+        distance_m(p_lidar_m.norm()),
+        direction(distance_m > 0.0 ? Eigen::Vector3d(p_lidar_m / distance_m) : Eigen::Vector3d::Zero()) {}
 
   Eigen::Vector3d p_m;
   double distance_m;          // from the sensor

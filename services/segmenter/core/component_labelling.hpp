@@ -18,7 +18,7 @@ struct LabellingParams {
 
 /// Gives shadowed returns the component of the nearest return in their own pixel or its four neighbours, if it is close (SearchParams::distance_m).
 struct ShadowedReturns {
-  Groups components;                  // as before, with those that found one
+  Groups components;                    // as before, with those that found one
   std::vector<std::int32_t> remaining;  // the others, increasing
 };
 ShadowedReturns JoinShadowed(const RangeImage& image, std::span<const Return> returns, std::span<const std::int32_t> indices, Groups components,

@@ -132,7 +132,7 @@ Rectangle LeastAreaRectangle(std::span<const FootprintPoint> hull) {
       const double along_m = x * to_x_m + y * to_y_m;
       min_along_m = std::min(min_along_m, along_m);
       max_along_m = std::max(max_along_m, along_m);
-      max_across_m = std::max(max_across_m, x * to_y_m - y * to_x_m);
+      if (hull.size() > 2) max_across_m = std::max(max_across_m, x * to_y_m - y * to_x_m);  // a line has no width, also when rounded
     }
     const double along_m = max_along_m - min_along_m;
     if (along_m * max_across_m >= least_m2) continue;

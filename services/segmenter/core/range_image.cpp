@@ -16,8 +16,8 @@ BeamStep StepBetween(const Ring& lower, const Ring& higher, double azimuth_rad) 
   // Haversines: exact for small angles.
   const double sin_half_elevation = std::sin((double{higher.elevation_rad} - lower.elevation_rad) / 2.0);
   const double sin_half_azimuth = std::sin(azimuth_rad / 2.0);
-  const double haversine = sin_half_elevation * sin_half_elevation + std::cos(double{higher.elevation_rad}) * std::cos(double{lower.elevation_rad}) *
-                                                                         sin_half_azimuth * sin_half_azimuth;
+  const double haversine = sin_half_elevation * sin_half_elevation +
+                           std::cos(double{higher.elevation_rad}) * std::cos(double{lower.elevation_rad}) * sin_half_azimuth * sin_half_azimuth;
   return StepOf(2.0 * std::asin(std::sqrt(std::min(1.0, haversine))));
 }
 

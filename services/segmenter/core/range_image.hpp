@@ -29,10 +29,10 @@ struct RangeImage {
   int num_columns = 0;
   int num_rings = 0;
   int num_layers = 1;
-  std::vector<std::int32_t> return_at;    // [pixels] index of the return; kNone = empty
-  std::vector<Place> place_of;            // [returns]
-  std::vector<BeamStep> to_next_column;   // [columns] the last one leads to the first
-  std::vector<BeamStep> to_higher_ring;   // [rings] the last one leads nowhere
+  std::vector<std::int32_t> return_at;   // [pixels] index of the return; kNone = empty
+  std::vector<Place> place_of;           // [returns]
+  std::vector<BeamStep> to_next_column;  // [columns] the last one leads to the first
+  std::vector<BeamStep> to_higher_ring;  // [rings] the last one leads nowhere
 
   std::size_t Pixel(int column, int ring) const {
     return (static_cast<std::size_t>(column) * static_cast<std::size_t>(num_rings) + static_cast<std::size_t>(ring)) *

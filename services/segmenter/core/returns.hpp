@@ -32,7 +32,7 @@ inline double SquaredDistance(const Point& a, const Point& b) {
 
 /// A return that is looked at.
 struct Return {
-  Point point;
+  Point point{};
   float range_m = 0.0F;  // from where the beam starts
   std::int32_t cell = 0;
   std::int32_t column = 0;
@@ -42,8 +42,8 @@ struct Return {
 struct ReturnFilter {
   double min_range_m = 0.5;
   double max_range_m = 120.0;
-  Sector field_of_view;                    // of azimuths
-  Eigen::AlignedBox3d own_vessel_box_m;    // vessel frame; empty = none
+  Sector field_of_view{};                  // of azimuths
+  Eigen::AlignedBox3d own_vessel_box_m{};  // vessel frame; empty = none
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
 };
 

@@ -39,6 +39,7 @@ struct NumberedSegments {
   std::int32_t num_too_small = 0;
   std::int32_t num_over_limit = 0;
 };
-NumberedSegments NumberSegments(const Groups& components, std::span<const std::int32_t> cluster_of_component, int min_points, std::int32_t max_segments);
+NumberedSegments NumberSegments(const Groups& components, std::span<const std::int32_t> cluster_of_component, int min_points,
+                                std::int32_t max_segments);
 
 }  // namespace lookout::segmenter

@@ -170,6 +170,19 @@ TEST(PoseEstimator, LeavesALateFixAlone) {
   EXPECT_EQ(estimator.antenna().num_late(), 1);
 }
 
+// A receiver two seconds late stands on the edge of what max_sentence_latency_s allows: its fixes used to be lost one by one.
+TEST(PoseEstimator, TakesAFixWhoseTimeIsOfAnotherKindThanTheLasts) {
+  PoseEstimator estimator(TestParams());
+  auto by_arrival = Fix(1);
+  by_arrival.when.is_from_sentence = false;
+  estimator.antenna().Add(by_arrival);
+  auto by_sentence = Fix(0.1);
+  by_sentence.position->latitude_deg += 0.01;
+  estimator.antenna().Add(by_sentence);
+  EXPECT_NEAR(estimator.At(NoonPlus(1)).latitude_deg, kLatitudeDeg + 0.01, 1e-10);
+  EXPECT_EQ(estimator.antenna().num_late(), 0);
+}
+
 TEST(PoseEstimator, UsesOnlyMeasuredFixes) {
   for (const auto quality : {FixQuality::kNone, FixQuality::kManual, FixQuality::kSimulator}) {
     PoseEstimator estimator(TestParams());

@@ -63,7 +63,9 @@ inline void SetReturn(Scan& scan, int column, int ring, double range_m, int inde
 inline int ColumnAt(const Scan& scan, double azimuth_deg) {
   int best = 0;
   for (int column = 0; column < scan.columns.size(); ++column) {
-    const auto distance = [&](int one) { return std::abs(WrapToPi(scan.columns.azimuth_rad[static_cast<std::size_t>(one)] - DegToRad(azimuth_deg))); };
+    const auto distance = [&](int one) {
+      return std::abs(WrapToPi(scan.columns.azimuth_rad[static_cast<std::size_t>(one)] - DegToRad(azimuth_deg)));
+    };
     if (distance(column) < distance(best)) best = column;
   }
   return best;
@@ -75,7 +77,8 @@ struct Wall {
   double min_z_m, max_z_m;
 };
 
-inline void AddBoat(std::vector<Wall>& walls, double x_m, double y_m, double heading_rad, double length_m, double width_m, double min_z_m, double max_z_m) {
+inline void AddBoat(std::vector<Wall>& walls, double x_m, double y_m, double heading_rad, double length_m, double width_m, double min_z_m,
+                    double max_z_m) {
   const double cos_heading = std::cos(heading_rad);
   const double sin_heading = std::sin(heading_rad);
   const double corners[4][2]{{length_m / 2, width_m / 2}, {-length_m / 2, width_m / 2}, {-length_m / 2, -width_m / 2}, {length_m / 2, -width_m / 2}};
@@ -121,13 +124,13 @@ inline void Look(Scan& scan, std::span<const Wall> walls, double noise_m = 0.0, 
   }
 }
 
-/// A lake: a winding shore with trees over half of the circle, boats and buoys. About 5000 returns of 28 800.
+/// A lake: a winding shore with trees over a third of the circle, boats and buoys. About 5000 returns of 28 800.
 inline std::vector<Wall> Lake(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&random](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
   std::vector<Wall> walls;
   double distance_m = 45.0;
-  for (double azimuth_deg = 20.0; azimuth_deg < 215.0; azimuth_deg += 1.5) {
+  for (double azimuth_deg = 20.0; azimuth_deg < 150.0; azimuth_deg += 1.5) {
     const double next_m = std::clamp(distance_m + uniform(-2.0, 2.0), 30.0, 70.0);
     const auto x = [](double range_m, double at_deg) { return range_m * std::cos(DegToRad(at_deg)); };
     const auto y = [](double range_m, double at_deg) { return -range_m * std::sin(DegToRad(at_deg)); };

@@ -1,0 +1,20 @@
+// A LIDAR_SCAN message as it may come from anyone, through the whole service.
+#include <cstddef>
+#include <cstdint>
+
+#include "common/bus/memory_bus.hpp"
+#include "services/segmenter/service.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size > static_cast<std::size_t>(lookout::bus::kMaxMessageBytes)) return 0;
+  lookout::bus::MemoryBus bus;
+  lookout::segmenter::Params params;
+  // The first byte chooses the image, the rest is the message.
+  if (size > 0) params.labelling.image_columns = data[0] % 2 == 0 ? 0 : 64;
+  const lookout::segmenter::Service service(bus, params);
+  bus.Publish(lookout::bus::kLidarScan, lookout::Bytes(data, size).subspan(size > 0 ? 1 : 0));
+  while (bus.HandleOnce()) {
+  }
+  static_cast<void>(service.Report());
+  return 0;
+}

@@ -1,0 +1,174 @@
+#include "services/segmenter/service.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <map>
+
+#include "common/bus/memory_bus.hpp"
+#include "common/config/text_config.hpp"
+#include "lookout/segments_t.hpp"
+#include "tests/unit/segmenter/message_maker.hpp"
+#include "tests/unit/segmenter/scan_maker.hpp"
+
+namespace lookout::segmenter {
+namespace {
+
+class SegmenterService : public ::testing::Test {
+ protected:
+  SegmenterService() : service_(bus_, Params{}) {
+    bus_.SubscribeRaw(bus::kSegments, [this](std::string_view, Bytes bytes) { answers_.emplace_back(bytes.begin(), bytes.end()); });
+  }
+
+  void Send(const lidar_scan_t& message) {
+    bus::Publish(bus_, bus::kLidarScan, message);
+    while (bus_.HandleOnce()) {
+    }
+  }
+
+  std::int64_t Count(const std::string& name) const {
+    for (const auto& counter : service_.Report().counters) {
+      if (counter.name == name) return counter.count;
+    }
+    ADD_FAILURE() << "no counter " << name;
+    return -1;
+  }
+
+  bus::MemoryBus bus_;
+  Service service_;
+  std::vector<std::vector<std::uint8_t>> answers_;
+};
+
+Scan LakeInRain() {
+  auto scan = test::EmptyScan({});
+  test::Look(scan, test::Lake(1), 0.03);
+  test::AddRain(scan, 3000, 1);
+  return scan;
+}
+
+TEST_F(SegmenterService, AnswersATurnInOneMessage) {
+  auto scan = test::EmptyScan({});
+  test::Look(scan, test::Lake(1), 0.03);
+  Send(test::ScanMessages(scan, 7, 1)[0]);
+  ASSERT_EQ(answers_.size(), 1U);
+  const auto answer = bus::Decode<segments_t>(answers_[0]);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->seq, 7);
+  EXPECT_EQ(answer->num_cells, 28928);
+  EXPECT_GT(answer->num_segments, 3);
+  EXPECT_EQ(answer->num_turn_segments, answer->num_segments);
+  EXPECT_EQ(Count("turns"), 1);
+  EXPECT_EQ(Count("segments"), answer->num_segments);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+}
+
+TEST_F(SegmenterService, AnswersATurnInPartsWithTheSameLabels) {
+  const auto scan = LakeInRain();
+  Send(test::ScanMessages(scan, 7, 1)[0]);
+  const auto whole = bus::Decode<segments_t>(answers_.at(0));
+  answers_.clear();
+  for (const auto& message : test::ScanMessages(scan, 7, 3)) {
+    EXPECT_TRUE(answers_.empty());
+    Send(message);
+  }
+  ASSERT_GE(answers_.size(), 3U);
+  std::vector<std::int16_t> label;
+  for (const auto& bytes : answers_) {
+    const auto part = bus::Decode<segments_t>(bytes);
+    ASSERT_TRUE(part);
+    label.insert(label.end(), part->label.begin(), part->label.end());
+  }
+  EXPECT_EQ(label, whole->label);
+}
+
+TEST_F(SegmenterService, GivesTheSameBytesForTheSameTurnWhateverCameBefore) {
+  const auto messages = test::ScanMessages(LakeInRain(), 7, 2);
+  Send(messages[0]);
+  Send(messages[1]);
+  const auto first = std::exchange(answers_, {});
+  Send(test::ScanMessages(test::EmptyScan({}), 8, 1)[0]);
+  Send(test::ScanMessages(LakeInRain(), 9, 2)[0]);  // stays incomplete
+  answers_.clear();
+  Send(messages[0]);
+  Send(messages[1]);
+  EXPECT_EQ(answers_, first);
+  EXPECT_EQ(Count("turns_incomplete"), 1);
+}
+
+TEST_F(SegmenterService, RefusesAndCountsWrongMessagesAndGoesOn) {
+  auto message = test::ScanMessages(LakeInRain(), 7, 1)[0];
+  message.azimuth_rad[5] = 7.0F;
+  Send(message);
+  EXPECT_TRUE(answers_.empty());
+  EXPECT_EQ(Count("refused_azimuth"), 1);
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service_.Report().reason, "the latest LIDAR_SCAN was refused: refused_azimuth");
+  Send(test::ScanMessages(LakeInRain(), 8, 1)[0]);
+  EXPECT_FALSE(answers_.empty());
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+}
+
+TEST_F(SegmenterService, DropsATurnWithAMissingPart) {
+  const auto lost = test::ScanMessages(LakeInRain(), 7, 3);
+  Send(lost[0]);
+  Send(lost[2]);
+  Send(lost[2]);
+  EXPECT_EQ(Count("parts_duplicate"), 1);
+  Send(test::ScanMessages(test::EmptyScan({}), 8, 1)[0]);
+  EXPECT_EQ(Count("turns_incomplete"), 1);
+  ASSERT_EQ(answers_.size(), 1U);
+  EXPECT_EQ(bus::Decode<segments_t>(answers_[0])->seq, 8);
+}
+
+TEST_F(SegmenterService, SurvivesBytesThatAreNoMessage) {
+  const std::vector<std::uint8_t> bytes(100, 0xFF);
+  bus_.Publish(bus::kLidarScan, bytes);
+  EXPECT_TRUE(bus_.HandleOnce());
+  EXPECT_EQ(bus_.input_traffic()["LIDAR_SCAN"].num_undecodable, 1);
+}
+
+TEST(SegmenterParams, AreTheDefaultsOfTheSchemaWhereNothingIsSet) {
+  const auto folder = std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config" / "catabot";
+  const auto params = LoadParams(folder);
+  const Params defaults;
+  EXPECT_EQ(params.filter.min_range_m, defaults.filter.min_range_m);
+  EXPECT_EQ(params.filter.max_range_m, defaults.filter.max_range_m);
+  EXPECT_EQ(params.filter.field_of_view.start_rad, defaults.filter.field_of_view.start_rad);
+  EXPECT_EQ(params.filter.field_of_view.width_rad, defaults.filter.field_of_view.width_rad);
+  EXPECT_FALSE(params.filter.own_vessel_box_m.isEmpty());
+  EXPECT_NEAR(params.filter.T_vessel_lidar.translation().z(), 0.6, 1e-12);
+  EXPECT_EQ(params.labelling.image_columns, defaults.labelling.image_columns);
+  EXPECT_EQ(params.labelling.label_shadowed_returns, defaults.labelling.label_shadowed_returns);
+  EXPECT_EQ(params.labelling.search.angle_rad, defaults.labelling.search.angle_rad);
+  EXPECT_EQ(params.labelling.search.distance_m, defaults.labelling.search.distance_m);
+  EXPECT_EQ(params.component_clustering, defaults.component_clustering);
+  EXPECT_EQ(params.clustering.e1_cosine, defaults.clustering.e1_cosine);
+  EXPECT_EQ(params.clustering.e2_angle_rad, defaults.clustering.e2_angle_rad);
+  EXPECT_EQ(params.clustering.e3_distance_m, defaults.clustering.e3_distance_m);
+  EXPECT_EQ(params.clustering.e2_max_distance_m, defaults.clustering.e2_max_distance_m);
+  EXPECT_EQ(params.min_segment_points, defaults.min_segment_points);
+}
+
+TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "segmenter_params";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
+                             std::filesystem::copy_options::overwrite_existing);
+  const std::map<std::string, std::string> reasons{
+      {"min_range_m: 20 max_range_m: 20", "max_range_m: must be greater than min_range_m"},
+      {"image_columns: 15", "image_columns: must be 0 or at least 16, so that neighbouring pixels look much the same way"}};
+  for (const auto& [text, reason] : reasons) {
+    std::ofstream(folder / "segmenter.txtpb") << text << "\n";
+    try {
+      LoadParams(folder);
+      ADD_FAILURE() << text << " was taken";
+    } catch (const config::ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+  }
+  std::ofstream(folder / "segmenter.txtpb") << "image_columns: 16\n";
+  EXPECT_EQ(LoadParams(folder).labelling.image_columns, 16);
+}
+
+}  // namespace
+}  // namespace lookout::segmenter

@@ -1,0 +1,236 @@
+#include "services/segmenter/wire.hpp"
+
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
+#include "tests/unit/segmenter/message_maker.hpp"
+#include "tests/unit/segmenter/scan_maker.hpp"
+
+namespace lookout::segmenter {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+lidar_scan_t GoodMessage() {
+  auto scan = test::EmptyScan({.num_columns = 20, .num_rings = 4});
+  test::SetReturn(scan, 3, 2, 131.07);
+  return test::ScanMessages(scan, 7, 2)[1];
+}
+
+std::variant<ScanPart, Refusal> Convert(const lidar_scan_t& message) { return ToScanPart(message, bus::kMaxMessageBytes); }
+
+TEST(ToScanPart, CopiesAGoodMessage) {
+  auto scan = test::EmptyScan({.num_columns = 20, .num_rings = 4});
+  test::SetReturn(scan, 13, 2, 131.07, 0, 255);
+  const auto result = Convert(test::ScanMessages(scan, 7, 2)[1]);
+  ASSERT_TRUE(std::holds_alternative<ScanPart>(result));
+  const auto& part = std::get<ScanPart>(result);
+  EXPECT_EQ(part.head.seq, 7);
+  EXPECT_EQ(part.head.raw_seq, 12);
+  EXPECT_EQ(part.head.time, test::kScanTime);
+  EXPECT_EQ(part.head.flags, lidar_scan_t::FLAG_HOLE);
+  EXPECT_EQ(part.head.rings, scan.head.rings);
+  EXPECT_EQ(part.part_index, 1);
+  EXPECT_EQ(part.first_column, 10);
+  EXPECT_EQ(part.columns.size(), 10);
+  EXPECT_EQ(part.columns.range[test::CellOf(scan, 3, 2)], 65535);  // above what 16 bits with a sign hold
+  EXPECT_EQ(part.columns.reflectivity[test::CellOf(scan, 3, 2)], 255);
+}
+
+TEST(ToScanPart, RefusesWhateverIsWrongWithAMessageAndSaysWhat) {
+  struct Case {
+    Refusal refusal;
+    std::function<void(lidar_scan_t&)> spoil;
+  };
+  const std::vector<Case> cases{
+      {Refusal::kTime, [](lidar_scan_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
+      {Refusal::kTime, [](lidar_scan_t& m) { m.end_utime_us = std::numeric_limits<std::int64_t>::min(); }},
+      {Refusal::kTime, [](lidar_scan_t& m) { m.end_utime_us = m.utime_us - 1; }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.elevation_rad.pop_back(); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.azimuth_offset_rad.pop_back(); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.time_offset_ns.push_back(0); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.origin_height_m.clear(); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.return_kind.push_back(2); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.num_columns = 11; }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.num_columns = -1; }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.num_columns = std::numeric_limits<std::int32_t>::max(); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.time_ns.pop_back(); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.range.pop_back(); }},
+      {Refusal::kCounts, [](lidar_scan_t& m) { m.reflectivity.pop_back(); }},
+      {Refusal::kCounts,
+       [](lidar_scan_t& m) {
+         m.range.pop_back();
+         m.reflectivity.pop_back();
+         --m.num_cells;
+       }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.num_rings = 0; }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.num_rings = 129; }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.num_returns = 0; }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.num_returns = 3; }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.num_turn_columns = -1; }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.num_turn_columns = 65537; }},
+      {Refusal::kSize, [](lidar_scan_t& m) { m.model.assign(120'000, 'x'); }},
+      {Refusal::kBeams, [](lidar_scan_t& m) { m.elevation_rad[1] = kNan; }},
+      {Refusal::kBeams, [](lidar_scan_t& m) { m.elevation_rad[3] = 1.6F; }},
+      {Refusal::kBeams, [](lidar_scan_t& m) { std::swap(m.elevation_rad[0], m.elevation_rad[1]); }},
+      {Refusal::kBeams, [](lidar_scan_t& m) { m.azimuth_offset_rad[0] = kNan; }},
+      {Refusal::kBeams, [](lidar_scan_t& m) { m.azimuth_offset_rad[0] = 7.0F; }},
+      {Refusal::kBeams, [](lidar_scan_t& m) { m.origin_height_m[2] = std::numeric_limits<float>::infinity(); }},
+      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = 0.0; }},
+      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = -0.002; }},
+      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = std::numeric_limits<double>::quiet_NaN(); }},
+      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = std::numeric_limits<double>::infinity(); }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.seq = -1; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.part_index = -1; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.part_index = 2; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.num_parts = 0; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.num_parts = 21; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.first_column = 11; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.first_column = -1; }},
+      {Refusal::kPart, [](lidar_scan_t& m) { m.first_column = std::numeric_limits<std::int32_t>::max(); }},
+      {Refusal::kPart,
+       [](lidar_scan_t& m) {
+         m.num_columns = m.num_cells = 0;
+         m.azimuth_rad.clear();
+         m.time_ns.clear();
+         m.range.clear();
+         m.reflectivity.clear();
+       }},
+      {Refusal::kAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[0] = kNan; }},
+      {Refusal::kAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[9] = -0.001F; }},
+      {Refusal::kAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[5] = 6.2832F; }},
+  };
+  ASSERT_TRUE(std::holds_alternative<ScanPart>(Convert(GoodMessage())));
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    auto message = GoodMessage();
+    cases[i].spoil(message);
+    const auto result = Convert(message);
+    const auto* refusal = std::get_if<Refusal>(&result);
+    ASSERT_NE(refusal, nullptr) << "case " << i << " was taken";
+    EXPECT_EQ(*refusal, cases[i].refusal) << "case " << i << ": " << kRefusalNames[static_cast<std::size_t>(*refusal)];
+  }
+}
+
+TEST(ToScanPart, TakesTheBoundsThemselves) {
+  auto message = GoodMessage();
+  message.azimuth_rad[0] = 0.0F;
+  message.azimuth_rad[9] = static_cast<float>(kTwoPi);
+  message.end_utime_us = message.utime_us;
+  EXPECT_TRUE(std::holds_alternative<ScanPart>(Convert(message)));
+  EXPECT_TRUE(std::holds_alternative<ScanPart>(Convert(test::ScanMessages(test::EmptyScan({.num_columns = 0}), 0, 1)[0])));
+}
+
+// Segments with as many corners as there can be.
+Segments ManySegments(std::size_t num_cells, int num_segments, std::size_t num_corners) {
+  Segments segments;
+  segments.label.assign(num_cells, 1);
+  for (int id = 1; id <= num_segments; ++id) {
+    Segment segment;
+    segment.id = id;
+    segment.hull.resize(num_corners);
+    segments.segments.push_back(segment);
+  }
+  return segments;
+}
+
+void ExpectGoodParts(const std::vector<segments_t>& parts, int num_segments) {
+  int next_id = 1;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    EXPECT_LE(bus::Encode(parts[i]).size(), static_cast<std::size_t>(bus::kMaxMessageBytes));
+    EXPECT_EQ(parts[i].part_index, static_cast<int>(i));
+    EXPECT_EQ(parts[i].num_parts, static_cast<int>(parts.size()));
+    EXPECT_EQ(parts[i].num_turn_segments, num_segments);
+    EXPECT_EQ(parts[i].num_cells, parts[i].num_columns * parts[i].num_rings * parts[i].num_returns);
+    EXPECT_EQ(parts[i].label.size(), static_cast<std::size_t>(parts[i].num_cells));
+    for (const auto& segment : parts[i].segments) EXPECT_EQ(segment.id, next_id++);
+  }
+  EXPECT_EQ(next_id, num_segments + 1);
+}
+
+TEST(ToMessages, FollowsThePartsOfTheScan) {
+  auto scan = test::EmptyScan({});
+  scan.head.seq = 9;
+  scan.head.raw_seq = 11;
+  scan.head.flags = 5;
+  scan.parts = {{0, 1000}, {1000, 808}};
+  auto segments = ManySegments(scan.num_cells(), 3, 4);
+  segments.label[16000] = -4;
+  const auto parts = ToMessages(scan, segments, bus::kMaxMessageBytes);
+  ASSERT_EQ(parts.size(), 2U);
+  ExpectGoodParts(parts, 3);
+  EXPECT_EQ(parts[0].utime_us, ToUtimeUs(test::kScanTime));
+  EXPECT_EQ(parts[0].end_utime_us, ToUtimeUs(scan.head.end_time));
+  EXPECT_EQ(parts[0].seq, 9);
+  EXPECT_EQ(parts[1].raw_seq, 11);
+  EXPECT_EQ(parts[1].scan_flags, 5);
+  EXPECT_EQ(parts[1].first_column, 1000);
+  EXPECT_EQ(parts[1].num_columns, 808);
+  EXPECT_EQ(parts[1].label[0], -4);
+  EXPECT_EQ(parts[0].num_segments, 3);
+  EXPECT_EQ(parts[1].num_segments, 0);
+}
+
+TEST(ToMessages, PutsWhatDoesNotFitInFurtherPartsWithoutColumns) {
+  const auto scan = test::EmptyScan({});
+  for (const auto& [num_segments, num_corners] : {std::pair{5000, 1}, {100, 256}, {28928, 1}}) {
+    const auto segments = ManySegments(scan.num_cells(), num_segments, static_cast<std::size_t>(num_corners));
+    const auto parts = ToMessages(scan, segments, bus::kMaxMessageBytes);
+    ASSERT_GT(parts.size(), 1U);
+    ExpectGoodParts(parts, num_segments);
+    EXPECT_EQ(parts[0].num_columns, 1808);
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      EXPECT_EQ(parts[i].num_columns, 0);
+      EXPECT_GT(parts[i].num_segments, 0);
+    }
+  }
+}
+
+TEST(ToMessages, OfAnEmptyTurnIsOnePart) {
+  const auto parts = ToMessages(test::EmptyScan({.num_columns = 0}), {}, bus::kMaxMessageBytes);
+  ASSERT_EQ(parts.size(), 1U);
+  ExpectGoodParts(parts, 0);
+}
+
+TEST(ToMessages, CarriesEveryFieldOfASegment) {
+  const auto scan = test::EmptyScan({.num_columns = 1, .num_rings = 1});
+  Segments segments;
+  segments.label = {1};
+  segments.segments.push_back({.time = test::kScanTime + std::chrono::microseconds(3),
+                               .id = 1,
+                               .num_points = 2,
+                               .centroid = {1, 2, 3},
+                               .nearest = {4, 5, 6},
+                               .nearest_time = test::kScanTime + std::chrono::microseconds(4),
+                               .length_m = 7,
+                               .width_m = 8,
+                               .length_azimuth_rad = 0.5F,
+                               .min_z_m = -1,
+                               .max_z_m = 9,
+                               .mean_reflectivity = 10.5F,
+                               .max_reflectivity = 11,
+                               .hull = {{12, 13, 14}, {15, 16, 17}}});
+  const auto message = ToMessages(scan, segments, bus::kMaxMessageBytes).at(0).segments.at(0);
+  EXPECT_EQ(message.utime_us, ToUtimeUs(test::kScanTime) + 3);
+  EXPECT_EQ(message.id, 1);
+  EXPECT_EQ(message.num_points, 2);
+  EXPECT_EQ(std::vector<float>(message.centroid_m, message.centroid_m + 3), (std::vector<float>{1, 2, 3}));
+  EXPECT_EQ(std::vector<float>(message.nearest_m, message.nearest_m + 3), (std::vector<float>{4, 5, 6}));
+  EXPECT_EQ(message.nearest_utime_us, ToUtimeUs(test::kScanTime) + 4);
+  EXPECT_EQ(message.length_m, 7.0F);
+  EXPECT_EQ(message.width_m, 8.0F);
+  EXPECT_EQ(message.length_azimuth_rad, 0.5F);
+  EXPECT_EQ(message.min_z_m, -1.0F);
+  EXPECT_EQ(message.max_z_m, 9.0F);
+  EXPECT_EQ(message.mean_reflectivity, 10.5F);
+  EXPECT_EQ(message.max_reflectivity, 11);
+  EXPECT_EQ(message.num_hull, 2);
+  EXPECT_EQ(message.hull_x_m, (std::vector<float>{12, 15}));
+  EXPECT_EQ(message.hull_y_m, (std::vector<float>{13, 16}));
+  EXPECT_EQ(message.hull_time_us, (std::vector<std::int32_t>{14, 17}));
+}
+
+}  // namespace
+}  // namespace lookout::segmenter
