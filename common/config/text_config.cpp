@@ -159,7 +159,8 @@ void AppendEffective(const Message& message, const std::string& indent, std::str
       }
       std::string value;
       TextFormat::PrintFieldValueToString(message, &field, is_list ? k : -1, &value);
-      text += indent + field.name() + ": " + value;
+      text += indent;
+      text += field.name() + ": " + value;
       text += !is_list && !reflection.HasField(message, &field) ? "  # default\n" : "\n";
     }
   }

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <spdlog/spdlog.h>
 
-#include "common/config/text_config.hpp"
 #include "common/io/udp_receiver.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
+#include "common/runtime/run_info.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/params.hpp"
 #include "services/vlp16/service.hpp"
@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
   return lookout::runtime::RunMain("vlp16", [&options] {
     const auto params = lookout::vlp16::LoadParams(options.config_folder);
     if (options.check_only) {
-      for (const char* file : {"boat.txtpb", "vlp16.txtpb"}) std::cout << lookout::config::EffectiveTextOfFile(options.config_folder / file);
+      std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "vlp16.txtpb"});
       return;
     }
     lookout::runtime::Process process("vlp16", options.lcm_url);

@@ -173,7 +173,7 @@ void Spoil(lidar_scan_t& message, std::mt19937_64& random) {
       message.range_unit_m = value;
       break;
     case 11:
-      message.utime_us = number * std::int64_t{1'000'000'000'000'000};
+      message.utime_us = static_cast<std::int64_t>(random());
       break;
     case 12:
       message.seq = number;

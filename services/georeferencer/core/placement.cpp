@@ -57,6 +57,7 @@ std::optional<std::vector<Vector3d>> PlaceOutline(const std::vector<HullVertex>&
 
 std::vector<Vector2d> SeenFromAbove(const std::vector<Vector3d>& points) {
   std::vector<Vector2d> flat;
+  flat.reserve(points.size());
   for (const auto& point : points) flat.emplace_back(point.head<2>());
   return flat;
 }
@@ -137,6 +138,7 @@ Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Da
   // A lidar that hangs upside down sees the outline run the other way.
   if (T_vessel_lidar.linear()(2, 2) < 0.0) std::ranges::reverse(hull);
   std::vector<Vector3d> outline_vessel_m;
+  outline_vessel_m.reserve(hull.size());
   for (const auto& vertex : hull) {
     outline_vessel_m.push_back(T_vessel_lidar * Vector3d(vertex.p_lidar_m.x(), vertex.p_lidar_m.y(), segment.centroid_m.z()));
   }
