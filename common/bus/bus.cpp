@@ -19,8 +19,11 @@ void Bus::Publish(const Channel& channel, Bytes bytes) {
     throw std::runtime_error(std::string(channel.name) + ": a message of " + std::to_string(bytes.size()) + " bytes is larger than " +
                              std::to_string(kMaxMessageBytes));
   }
-  Send(channel, bytes);
-  ++outputs_[std::string(channel.name)].num_messages;
+  if (Send(channel, bytes)) {
+    ++outputs_[std::string(channel.name)].num_messages;
+  } else {
+    ++num_unsent_;
+  }
 }
 
 void Bus::SubscribeRaw(const Channel& channel, RawHandler handler) {

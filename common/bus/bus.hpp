@@ -39,8 +39,12 @@ class Bus {
   Bus& operator=(const Bus&) = delete;
   virtual ~Bus() = default;
 
-  /// Sends bytes. @throws std::runtime_error when the message is larger than the transport carries, or the transport fails
+  /// Sends bytes. A transport that fails (no route, no buffer) does not end a look-out: the message is lost and counted.
+  /// @throws std::runtime_error when the message is larger than the transport carries
   void Publish(const Channel& channel, Bytes bytes);
+
+  /// Messages that the transport did not take.
+  std::int64_t num_unsent() const { return num_unsent_; }
 
   /// Calls `handler` for each message on `channel`. Handlers run inside HandleOnce, one at a time.
   void SubscribeRaw(const Channel& channel, RawHandler handler);
@@ -62,13 +66,15 @@ class Bus {
   virtual int QueueDepth(std::string_view channel) const = 0;
 
  protected:
-  virtual void Send(const Channel& channel, Bytes bytes) = 0;
+  /// @return whether the transport took the message
+  virtual bool Send(const Channel& channel, Bytes bytes) = 0;
   /// `channel` is nullptr for all channels.
   virtual void Attach(const Channel* channel, RawHandler handler) = 0;
 
  private:
   std::map<std::string, ChannelTraffic, std::less<>> inputs_;
   std::map<std::string, ChannelTraffic, std::less<>> outputs_;
+  std::int64_t num_unsent_ = 0;
 };
 
 /// Sends a message, encoded.

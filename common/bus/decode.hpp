@@ -8,18 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/channels.hpp"
 #include "common/core/bytes.hpp"
 
 namespace lookout::bus {
 
-/// No message is near this size, and LCM's decoders compute sizes of arrays in an int.
-inline constexpr std::size_t kMaxDecodedBytes = 64 * 1024 * 1024;
-
-/// @return the message; nullopt when the bytes are of another type, are cut short, hold a count that they cannot fill, or go on behind the
-///         message. Never throws; lcmtypes/ guards every count, so that it allocates at most one element per byte.
+/// @return the message; nullopt when the bytes are of another type, are cut short, hold a count that they cannot fill, go on behind the
+///         message, or are more than kMaxMessageBytes. Never throws. lcmtypes/ guards every count, so that at most one element per
+///         byte is made: some 30 MB for the largest message of the largest element.
 template <typename T>
 std::optional<T> Decode(Bytes bytes) {
-  if (bytes.size() > kMaxDecodedBytes) return std::nullopt;
+  if (bytes.size() > kMaxMessageBytes) return std::nullopt;
   const int num_bytes = static_cast<int>(bytes.size());
   try {
     T message{};

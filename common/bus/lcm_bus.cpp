@@ -133,11 +133,9 @@ bool LcmBus::HandleOnce(std::chrono::milliseconds timeout) {
 // LCM 1.3.1 does not tell how many messages wait.
 int LcmBus::QueueDepth(std::string_view /*channel*/) const { return -1; }
 
-void LcmBus::Send(const Channel& channel, Bytes bytes) {
+bool LcmBus::Send(const Channel& channel, Bytes bytes) {
   const std::string name(channel.name);
-  if (lcm_publish(implementation_->lcm, name.c_str(), bytes.data(), static_cast<unsigned int>(bytes.size())) != 0) {
-    throw std::runtime_error(name + ": LCM could not send " + std::to_string(bytes.size()) + " bytes");
-  }
+  return lcm_publish(implementation_->lcm, name.c_str(), bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
 }
 
 void LcmBus::Attach(const Channel* channel, RawHandler handler) {

@@ -25,7 +25,7 @@ class LcmBus final : public Bus {
   int file_descriptor() const;
 
  protected:
-  void Send(const Channel& channel, Bytes bytes) override;
+  bool Send(const Channel& channel, Bytes bytes) override;
   void Attach(const Channel* channel, RawHandler handler) override;
 
  private:

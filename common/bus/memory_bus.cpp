@@ -17,7 +17,10 @@ bool MemoryBus::HandleOnce(std::chrono::milliseconds /*timeout*/) {
 
 int MemoryBus::QueueDepth(std::string_view channel) const { return static_cast<int>(std::ranges::count(messages_, channel, &Message::channel)); }
 
-void MemoryBus::Send(const Channel& channel, Bytes bytes) { messages_.push_back({channel.name, {bytes.begin(), bytes.end()}}); }
+bool MemoryBus::Send(const Channel& channel, Bytes bytes) {
+  messages_.push_back({channel.name, {bytes.begin(), bytes.end()}});
+  return true;
+}
 
 void MemoryBus::Attach(const Channel* channel, RawHandler handler) {
   subscriptions_.push_back({channel == nullptr ? std::string_view() : channel->name, std::move(handler)});

@@ -17,7 +17,7 @@ class MemoryBus final : public Bus {
   int QueueDepth(std::string_view channel) const override;
 
  protected:
-  void Send(const Channel& channel, Bytes bytes) override;
+  bool Send(const Channel& channel, Bytes bytes) override;
   void Attach(const Channel* channel, RawHandler handler) override;
 
  private:

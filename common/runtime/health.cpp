@@ -53,6 +53,11 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   message.pid = getpid();
   message.state = static_cast<std::int32_t>(report.state);
   message.reason = report.reason;
+  if (bus.num_unsent() > last_num_unsent_) {
+    message.state = std::max(message.state, static_cast<std::int32_t>(health_t::STATE_DEGRADED));
+    message.reason += (message.reason.empty() ? "" : "; ") + std::to_string(bus.num_unsent() - last_num_unsent_) + " messages could not be sent";
+  }
+  last_num_unsent_ = bus.num_unsent();
   message.uptime_s = ToSeconds(steady_now - start_);
   message.interval_s = ToSeconds(steady_now - last_);
   message.cpu_fraction = message.interval_s > 0.0 ? (cpu_s - last_cpu_s_) / message.interval_s : 0.0;
@@ -84,7 +89,9 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   for (const auto& [name, traffic] : bus.output_traffic()) add_channel(name, traffic, false);
   message.num_channels = static_cast<std::int32_t>(message.channels.size());
 
-  for (const auto& counter : report.counters) {
+  auto counters = report.counters;
+  counters.push_back({"messages_not_sent", bus.num_unsent()});
+  for (const auto& counter : counters) {
     health_counter_t entry{};
     entry.name = counter.name;
     entry.count = counter.count;

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
+#include <cstdio>
+#include <iostream>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
 #include <utility>
@@ -32,6 +34,7 @@ sigset_t StopSignals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGHUP);  // a closed terminal
   return signals;
 }
 
@@ -39,6 +42,7 @@ sigset_t StopSignals() {
 std::string Prepared(const std::string& name, const std::string& lcm_url) {
   const sigset_t signals = StopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);  // a log that nobody reads any more does not end a look-out
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ " + name + ": %v", spdlog::pattern_time_type::utc);
   return lcm_url;
 }
@@ -142,6 +146,8 @@ void Process::Run(const std::function<HealthReport()>& report) {
 
 int RunMain(const std::string& name, const std::function<void()>& body) try {
   body();
+  std::cout.flush();
+  if (!std::cout || std::fflush(stdout) != 0) throw std::runtime_error("standard output could not be written");
   return EXIT_SUCCESS;
 } catch (const config::ConfigError& error) {
   for (const auto& fault : error.faults()) spdlog::critical("{}", fault);

@@ -19,7 +19,7 @@ std::string HostName();
 
 class Process {
  public:
-  /// Blocks SIGINT and SIGTERM, sets spdlog's pattern, opens the bus.
+  /// Blocks SIGINT, SIGTERM and SIGHUP, sets spdlog's pattern, opens the bus.
   ///
   /// @param name  as in HEALTH: "segmenter"
   /// @throws std::runtime_error when the bus cannot be opened
@@ -36,7 +36,7 @@ class Process {
   /// Calls `handler` about every `period`, late rather than twice.
   void Every(std::chrono::milliseconds period, std::function<void()> handler);
 
-  /// Runs until SIGINT, SIGTERM or Stop(). Sends HEALTH once a second with what `report` says.
+  /// Runs until SIGINT, SIGTERM, SIGHUP or Stop(). Sends HEALTH once a second with what `report` says.
   /// @throws what a handler threw
   void Run(const std::function<HealthReport()>& report);
 

@@ -20,6 +20,10 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   const auto boat = config::LoadBoat(config_folder);
   const auto message = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
 
+  if (message.max_sentence_latency_s() > message.max_attitude_age_s()) {
+    config::Refuse(config_folder / "navigator.txtpb", "max_sentence_latency_s", "must not be greater than max_attitude_age_s");
+  }
+
   Params params;
   params.input = message.source() == config::Navigator::LOG ? Input::kLog : Input::kOutside;
   params.use_lidar_nmea = message.use_lidar_nmea();

@@ -20,6 +20,8 @@ using lookout::Utime;
 constexpr std::chrono::milliseconds kTick(10);
 // Datagrams taken from a socket before the bus and the timers get their turn again.
 constexpr int kMaxDatagramsPerRound = 64;
+// A capture whose stamps pause for longer, or go back, has a bad stamp or was put together: it is not waited for.
+constexpr std::chrono::seconds kMaxPause(5);
 
 void RunLog(lookout::runtime::Process& process, const lookout::vlp16::Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
@@ -59,14 +61,26 @@ void RunCapture(lookout::runtime::Process& process, const lookout::vlp16::Params
   lookout::vlp16::Service service(process.bus(), params);
   lookout::vlp16::CaptureReader reader(*params.capture_file);
   auto next = reader.Next();
-  const Utime begin = next ? next->host_time : Utime{};
-  Utime capture_time = begin;
+  Utime last_stamp = next ? next->host_time : Utime{};
+  std::chrono::microseconds last_due{0};  // since the start of playing
+  std::chrono::microseconds next_due{0};
+  Utime capture_time = last_stamp;
+  std::int64_t num_stamp_jumps = 0;
   const auto started = std::chrono::steady_clock::now();
   process.Every(kTick, [&] {
-    capture_time = begin + std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - started);
-    for (; next && next->host_time <= capture_time; next = reader.Next()) {
+    const auto elapsed = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - started);
+    while (next && next_due <= elapsed) {
       service.OnDatagram(next->host_time, next->destination_port, next->payload);
+      last_stamp = next->host_time;
+      last_due = next_due;
+      next = reader.Next();
+      if (!next) break;
+      const auto step = next->host_time - last_stamp;
+      const bool is_jump = step < std::chrono::microseconds(0) || step > kMaxPause;
+      num_stamp_jumps += is_jump ? 1 : 0;
+      if (!is_jump) next_due += step;
     }
+    capture_time = last_stamp + (elapsed - last_due);
     service.AdvanceTo(capture_time);
     if (next) return;
     service.Finish(capture_time);
@@ -75,6 +89,7 @@ void RunCapture(lookout::runtime::Process& process, const lookout::vlp16::Params
   process.Run([&] {
     HealthReport report = service.Report();
     for (const auto& counter : reader.counters()) report.counters.push_back(counter);
+    report.counters.push_back({"capture_stamp_jumps", num_stamp_jumps});
     return report;
   });
   service.Finish(capture_time);  // when a signal came first; else it has been done

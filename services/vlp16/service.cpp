@@ -76,6 +76,8 @@ void Service::Consume(const PacketBundle& bundle) {
 }
 
 void Service::PublishTurn(const Turn& turn) {
+  is_locked_sensor_unused_ = turn.clock.state == ClockState::kLocked && turn.clock.source == TimeSource::kHost;
+  last_host_minus_sensor_ = turn.clock.host_minus_sensor.value_or(std::chrono::microseconds(0));
   bus::Publish(bus_, bus::kLidarClock, ToClockMessage(turn, raw_seq_));
   for (const auto& part : ToScanMessages(turn, raw_seq_, params_.use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
     bus::Publish(bus_, bus::kLidarScan, part);
@@ -99,6 +101,11 @@ HealthReport Service::Report() const {
     report.reason = decoder_.last_refusal().empty() ? "no lidar packets for " + std::to_string(seconds) + " s"
                                                     : "no usable lidar packets for " + std::to_string(seconds) +
                                                           " s; the last was refused: " + std::string(decoder_.last_refusal());
+  }
+  if (report.state == HealthState::kOk && params_.decoder.time == TimeChoice::kAuto && is_locked_sensor_unused_) {
+    report.state = HealthState::kDegraded;
+    report.reason = "this computer's clock is " + std::to_string(ToSeconds(last_host_minus_sensor_)) +
+                    " s off the sensor's, which is locked to GNSS: turns carry the computer's time until it is set";
   }
   return report;
 }

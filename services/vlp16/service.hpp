@@ -47,6 +47,9 @@ class Service {
   std::int64_t num_other_port_ = 0;    // payloads in a log that were recorded on ports other than the config says
   std::optional<Utime> silent_since_;  // host time of the last usable data packet, or at which waiting began
   Utime now_{};                        // host time so far
+  // Of the last turn.
+  bool is_locked_sensor_unused_ = false;
+  std::chrono::microseconds last_host_minus_sensor_{0};
 };
 
 }  // namespace lookout::vlp16

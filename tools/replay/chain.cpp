@@ -65,6 +65,7 @@ void Chain::AdvanceTo(Utime time) {
 void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
   AdvanceTo(host_time);
   if (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position) {
+    num_data_datagrams_ += udp_port == ports_.lidar_data ? 1 : 0;
     Timed(vlp16_time_, [&] { vlp16_.OnDatagram(host_time, udp_port, payload); });
   } else if (udp_port == ports_.nmea) {
     ++num_nmea_datagrams_;

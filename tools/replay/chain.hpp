@@ -66,8 +66,9 @@ class Chain {
   /// Why the lidar gives nothing, in words; empty when it gives.
   std::string LidarComplaint() const { return vlp16_.Report().reason; }
 
-  /// Datagrams on the port of NMEA 0183.
+  /// Datagrams of a capture on the port of NMEA 0183, and on that of the lidar's data.
   std::int64_t num_nmea_datagrams() const { return num_nmea_datagrams_; }
+  std::int64_t num_data_datagrams() const { return num_data_datagrams_; }
 
  private:
   // Destination ports by which datagrams of a capture are told apart.
@@ -88,6 +89,7 @@ class Chain {
   bool is_navigation_live_;  // else it comes as NAV_RAW
   Ports ports_;
   std::int64_t num_nmea_datagrams_ = 0;
+  std::int64_t num_data_datagrams_ = 0;
   std::int64_t num_other_ports_ = 0;
   std::chrono::nanoseconds vlp16_time_{0};
   std::chrono::nanoseconds navigator_time_{0};

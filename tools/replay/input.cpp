@@ -1,5 +1,6 @@
 #include "tools/replay/input.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <spdlog/spdlog.h>
@@ -12,7 +13,12 @@ namespace lookout::replay {
 
 namespace {
 
-constexpr std::array<unsigned char, 4> kLogSyncWord{0xED, 0xA1, 0xDA, 0x01};
+using Magic = std::array<unsigned char, 4>;
+
+constexpr Magic kLogSyncWord{0xED, 0xA1, 0xDA, 0x01};
+// pcap with microseconds and with nanoseconds, in both byte orders, and pcapng.
+constexpr std::array<Magic, 5> kCaptureMagics{
+    {{0xA1, 0xB2, 0xC3, 0xD4}, {0xD4, 0xC3, 0xB2, 0xA1}, {0xA1, 0xB2, 0x3C, 0x4D}, {0x4D, 0x3C, 0xB2, 0xA1}, {0x0A, 0x0D, 0x0D, 0x0A}}};
 
 void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, const std::string& reason, std::int64_t count) {
   if (count == 0) return;
@@ -58,11 +64,14 @@ void FeedLog(const std::filesystem::path& file, Chain& chain, InputSummary& summ
 }  // namespace
 
 InputKind KindOf(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a file that can be read twice");
   std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file)) throw std::runtime_error(file.string() + ": cannot be read");
-  std::array<unsigned char, 4> start{};
+  if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+  Magic start{};
   in.read(reinterpret_cast<char*>(start.data()), start.size());
-  return start == kLogSyncWord ? InputKind::kLog : InputKind::kCapture;
+  if (std::ranges::find(kCaptureMagics, start) != kCaptureMagics.end()) return InputKind::kCapture;
+  // A log may be damaged at its start.
+  return start == kLogSyncWord || bus::LogReader(file).Next() ? InputKind::kLog : InputKind::kCapture;
 }
 
 RawInput Inspect(const std::vector<std::filesystem::path>& files) {

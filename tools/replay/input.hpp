@@ -10,7 +10,7 @@ namespace lookout::replay {
 
 enum class InputKind { kCapture, kLog };
 
-/// @return by content: an lcm-log begins with LCM's sync word, all else is left to libpcap
+/// @return by content: what begins as a capture is one, what holds an event of LCM is a log, all else is left to libpcap
 /// @throws std::runtime_error when the file cannot be read
 InputKind KindOf(const std::filesystem::path& file);
 

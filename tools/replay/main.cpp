@@ -120,7 +120,7 @@ void Replay(const Options& options) {
   if (is_capture && CountOf(chain, lookout::bus::kLidarPackets) == 0 && chain.num_nmea_datagrams() == 0) {
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
   }
-  if (CountOf(chain, lookout::bus::kLidarPackets) > 0 && num_turns == 0) {
+  if (chain.num_data_datagrams() > 0 && num_turns == 0) {
     throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + chain.LidarComplaint());
   }
 }

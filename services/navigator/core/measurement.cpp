@@ -23,15 +23,14 @@ MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<microseconds> tim
                                   microseconds max_latency) {
   if (!time_of_day) return {arrival, arrival, false};
   const auto arrival_day = std::chrono::floor<std::chrono::days>(arrival);
-  Utime best = date.value_or(arrival_day) + *time_of_day;
-  if (!date) {
-    for (const auto day : {arrival_day - std::chrono::days(1), arrival_day + std::chrono::days(1)}) {
-      const Utime candidate = day + *time_of_day;
-      if (Distance(candidate, arrival) < Distance(best, arrival)) best = candidate;
-    }
+  if (date && Distance(*date + *time_of_day, arrival) <= max_latency) return {*date + *time_of_day, arrival, true};
+  Utime best = arrival_day + *time_of_day;
+  for (const auto day : {arrival_day - std::chrono::days(1), arrival_day + std::chrono::days(1)}) {
+    const Utime candidate = day + *time_of_day;
+    if (Distance(candidate, arrival) < Distance(best, arrival)) best = candidate;
   }
   if (Distance(best, arrival) > max_latency) return {arrival, arrival, false};
-  return {best, arrival, true};
+  return {best, arrival, true, date.has_value()};
 }
 
 double HorizontalSdM(FixQuality quality, double hdop, double position_sd_m) {

@@ -16,12 +16,14 @@ struct MeasurementTime {
   Utime time;     // UTC of the sentence where that is usable, else arrival
   Utime arrival;  // at this computer, by its clock
   bool is_from_sentence = false;
+  bool is_date_refused = false;  // its date is wrong, its time of day is right
 };
 
 /// Chooses between the time in a sentence and its arrival.
 ///
 /// @param time_of_day  as in the sentence; nullopt = it has none
-/// @param date         as in the sentence; nullopt = it has none: then that day counts which brings the time nearest to the arrival
+/// @param date         as in the sentence; nullopt = it has none. Without one, or where it is wrong (receivers whose week counter has rolled over),
+///                     that day counts which brings the time nearest to the arrival
 /// @param max_latency  the sentence's time is usable when it is not farther than this from the arrival, before or after (clocks differ)
 MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<std::chrono::microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
                                   std::chrono::microseconds max_latency);

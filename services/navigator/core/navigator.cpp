@@ -9,6 +9,9 @@ namespace lookout::navigator {
 
 namespace {
 
+// The first sentence that a lidar repeats is of now when its time is so near: clocks of small computers are off by seconds, not by more.
+constexpr std::chrono::seconds kMaxFirstLidarAge(10);
+
 using PosePeriods = std::chrono::duration<std::int64_t, std::ratio<1, 50>>;
 static_assert(PosePeriods(1) == Navigator::kPosePeriod);
 
@@ -48,6 +51,16 @@ std::optional<Pose> Navigator::StateNow() const {
   return estimator_.At(*time_);
 }
 
+// A lidar goes on repeating the last sentence of a receiver that has gone. What is not of now says nothing until it changes.
+bool Navigator::IsStale(Utime arrival, const ParseResult& parsed) {
+  const auto is_stale = [arrival](const auto& time_of_day, const auto& date) {
+    return time_of_day && !TimeOfMeasurement(arrival, time_of_day, date, kMaxFirstLidarAge).is_from_sentence;
+  };
+  if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence)) return is_stale(rmc->time_of_day, rmc->date);
+  if (const auto* gga = std::get_if<Gga>(&parsed.sentence)) return is_stale(gga->time_of_day, std::optional<std::chrono::sys_days>());
+  return false;
+}
+
 void Navigator::Reset() {
   counts_.unusable_fix += estimator_.antenna().num_unusable();
   counts_.late_fix += estimator_.antenna().num_late();
@@ -66,6 +79,7 @@ void Navigator::GivePose(NavigatorOutput& output) {
 }
 
 void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
+  const bool is_first_of_lidar = item.source == kLidarSource && last_lidar_sentence_.empty();
   if (item.source == kLidarSource) {
     // The lidar repeats the last sentence that it has in every position packet, 140 times a second.
     if (item.sentence == last_lidar_sentence_) {
@@ -75,6 +89,10 @@ void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
     last_lidar_sentence_ = item.sentence;
   }
   const auto result = ParseSentence(item.sentence);
+  if (is_first_of_lidar && IsStale(item.time, result)) {
+    ++counts_.stale_lidar_sentence;
+    return;
+  }
   switch (result.fault) {
     case SentenceFault::kNone:
       std::visit([&](const auto& sentence) { OnSentence(item, sentence, output); }, result.sentence);
@@ -155,6 +173,7 @@ void Navigator::OnSentence(const Item& item, const Pashr& pashr, NavigatorOutput
 void Navigator::TakeFix(const GnssFix& fix, NavigatorOutput& output) {
   ++counts_.understood_sentence;
   if (fix.position && !fix.when.is_from_sentence) ++counts_.sentence_time_unusable;
+  if (fix.when.is_date_refused) ++counts_.date_unusable;
   output.fix = fix;
   output.fix->horizontal_sd_m = fix.position ? HorizontalSdM(fix.quality, fix.hdop, params_.position_sd_m) : kNan;
   estimator_.antenna().Add(*output.fix);
@@ -175,6 +194,8 @@ std::vector<Counter> Navigator::counters() const {
           {"bad_field", counts_.bad_field},
           {"implausible_value", counts_.implausible_value},
           {"sentence_time_unusable", counts_.sentence_time_unusable},
+          {"date_unusable", counts_.date_unusable},
+          {"stale_lidar_sentence", counts_.stale_lidar_sentence},
           {"unusable_fix", counts_.unusable_fix + estimator_.antenna().num_unusable()},
           {"late_fix", counts_.late_fix + estimator_.antenna().num_late()},
           {"late_attitude", counts_.late_attitude},

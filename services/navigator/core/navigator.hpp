@@ -70,6 +70,7 @@ class Navigator {
   void GivePosesUntil(Utime time, NavigatorOutput& output);
   void GivePose(NavigatorOutput& output);
   void Reset();
+  static bool IsStale(Utime arrival, const ParseResult& parsed);
 
   NavigatorParams params_;
   PoseEstimator estimator_;
@@ -86,6 +87,8 @@ class Navigator {
     std::int64_t repeated_sentence = 0;
     std::int64_t understood_sentence = 0;
     std::int64_t sentence_time_unusable = 0;
+    std::int64_t date_unusable = 0;
+    std::int64_t stale_lidar_sentence = 0;
     std::int64_t unusable_fix = 0;  // of states before the last start mark
     std::int64_t late_fix = 0;      // likewise
     std::int64_t late_attitude = 0;

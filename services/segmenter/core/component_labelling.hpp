@@ -30,7 +30,7 @@ ShadowedReturns JoinShadowed(const RangeImage& image, std::span<const Return> re
 /// at most kMaxLooks times; what is shadowed even then is a component by itself. So a near buoy neither hides nor swallows the shore behind it.
 Groups LabelComponents(const Scan& scan, std::span<const Return> returns, const LabellingParams& params);
 
-/// A pixel of a 512-column image holds four columns of two returns at 10 Hz: twice as many looks leave nothing there. A bound for heads that stand.
+/// A bound for heads that stand still. Twice what is needed: at 10 Hz a pixel of 512 columns holds four columns of two returns, eight returns.
 inline constexpr int kMaxLooks = 16;
 
 }  // namespace lookout::segmenter

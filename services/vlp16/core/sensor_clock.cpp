@@ -12,6 +12,12 @@ using std::chrono::microseconds;
 constexpr microseconds kOffsetWindow = std::chrono::seconds(2);
 // Position packets come about every 7 ms, and the sensor tells of a lost PPS within a second or two.
 constexpr microseconds kMaxPositionAge = std::chrono::seconds(3);
+// POSE is labelled by the host's clock (arrivals), turns by the sensor's. Farther apart than this they would place obstacles of a boat that turns
+// at 10 deg/s and goes 3 m/s more than 2.5 deg and 0.75 m wrong; up to this, the host's clock is taken to be kept by UTC with some delay.
+constexpr microseconds kMaxDisagreement = std::chrono::milliseconds(250);
+// Datagrams come late by milliseconds. What is off by more is a bad stamp, or, when it goes on, a step of the host's clock.
+constexpr microseconds kMaxLateness = std::chrono::seconds(1);
+constexpr int kSamplesOfAStep = 3;
 constexpr microseconds kHour(format::kMicrosecondsPerHour);
 
 // The whole number of hours nearest to `duration`; half an hour goes up.
@@ -27,6 +33,10 @@ microseconds NearestHours(microseconds duration) {
 void SensorClock::OnDataPacket(Utime host_time, SensorTime time, std::chrono::nanoseconds duration) {
   const auto end = time + std::chrono::duration_cast<microseconds>(duration);
   const Sample sample{time, host_time.time_since_epoch() - end};
+  const bool is_off = !minima_.empty() && std::chrono::abs(sample.host_minus_sensor - minima_.front().host_minus_sensor) > kMaxLateness;
+  num_off_ = is_off ? num_off_ + 1 : 0;
+  if (is_off && num_off_ < kSamplesOfAStep) return;
+  if (is_off) minima_.clear();
   while (!minima_.empty() && minima_.back().host_minus_sensor >= sample.host_minus_sensor) minima_.pop_back();
   minima_.push_back(sample);
   while (minima_.front().time < time - kOffsetWindow) minima_.pop_front();
@@ -58,14 +68,15 @@ ClockState SensorClock::State(Utime host_time) const {
   }
 }
 
-bool SensorClock::IsSensorInUse(ClockState state) const {
-  return choice_ == TimeChoice::kSensor || (choice_ == TimeChoice::kAuto && state == ClockState::kLocked);
+bool SensorClock::IsSensorInUse(ClockState state, microseconds host_minus_sensor) const {
+  if (choice_ != TimeChoice::kAuto) return choice_ == TimeChoice::kSensor;
+  return state == ClockState::kLocked && std::chrono::abs(host_minus_sensor) <= kMaxDisagreement;
 }
 
 Utime SensorClock::TimeOfStampAlone(Utime host_time, std::uint32_t stamp_us) const {
-  if (!IsSensorInUse(State(host_time))) return host_time;
-  const microseconds time(stamp_us);
-  return Utime(time + NearestHours(host_time.time_since_epoch() - time));
+  const microseconds offset = host_time.time_since_epoch() - microseconds(stamp_us);
+  const microseconds hours = NearestHours(offset);
+  return IsSensorInUse(State(host_time), offset - hours) ? Utime(microseconds(stamp_us) + hours) : host_time;
 }
 
 ClockReading SensorClock::Read(Utime host_time) const {
@@ -76,7 +87,7 @@ ClockReading SensorClock::Read(Utime host_time) const {
   const microseconds offset = minima_.front().host_minus_sensor;
   const microseconds hours = NearestHours(offset);
   reading.host_minus_sensor = offset - hours;
-  const bool is_sensor_time = IsSensorInUse(reading.state);
+  const bool is_sensor_time = IsSensorInUse(reading.state, offset - hours);
   reading.source = is_sensor_time ? TimeSource::kSensor : TimeSource::kHost;
   reading.offset = is_sensor_time ? hours : offset;
   return reading;

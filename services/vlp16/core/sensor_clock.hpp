@@ -57,10 +57,11 @@ class SensorClock {
     std::chrono::microseconds host_minus_sensor;
   };
   ClockState State(Utime host_time) const;
-  bool IsSensorInUse(ClockState state) const;
+  bool IsSensorInUse(ClockState state, std::chrono::microseconds host_minus_sensor) const;
 
   TimeChoice choice_;
   std::deque<Sample> minima_;  // of the window: increasing in time and in offset, so that the first is the least
+  int num_off_ = 0;            // samples in a row that are far off the window
   std::optional<Utime> position_host_time_;
   std::optional<Utime> rmc_host_time_;
   int pps_ = 0;

@@ -25,7 +25,7 @@ TEST(HealthReporter, TellsTrafficCountersAndTheMachine) {
   EXPECT_EQ(message.process, "test");
   EXPECT_EQ(message.state, health_t::STATE_DEGRADED);
   EXPECT_EQ(message.reason, "no lidar");
-  ASSERT_EQ(message.num_counters, 1);
+  ASSERT_EQ(message.num_counters, 2);  // and messages_not_sent
   EXPECT_EQ(message.counters[0].name, "bad_flag");
   EXPECT_EQ(message.counters[0].count, 7);
   ASSERT_EQ(message.num_channels, 2);  // in and out

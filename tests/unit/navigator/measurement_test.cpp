@@ -28,11 +28,19 @@ TEST(TimeOfMeasurement, IsTheSentencesNearTheArrivalOnBothSides) {
 }
 
 TEST(TimeOfMeasurement, IsTheArrivalWhenTheSentenceIsFarFromIt) {
-  for (const auto date : {kDay, kDay - std::chrono::days(7168), kDay + std::chrono::days(1)}) {  // 1024 weeks: the receiver's calendar rolled over
-    const auto arrival = date == kDay ? kDay + 12h + 2001ms : kDay + 12h;
-    const auto when = TimeOfMeasurement(arrival, 12h, date, kMaxLatency);
-    EXPECT_EQ(when.time, arrival);
+  for (const auto offset : {2001ms, -2001ms}) {
+    const auto when = TimeOfMeasurement(kDay + 12h + offset, 12h, kDay, kMaxLatency);
+    EXPECT_EQ(when.time, kDay + 12h + offset);
     EXPECT_FALSE(when.is_from_sentence);
+  }
+}
+
+TEST(TimeOfMeasurement, KeepsTheTimeOfDayWhereTheDateIsWrong) {
+  for (const auto date : {kDay - std::chrono::days(7168), kDay + std::chrono::days(1)}) {  // 1024 weeks: the receiver's calendar rolled over
+    const auto when = TimeOfMeasurement(kDay + 12h + 50ms, 12h, date, kMaxLatency);
+    EXPECT_EQ(when.time, kDay + 12h);
+    EXPECT_TRUE(when.is_from_sentence);
+    EXPECT_TRUE(when.is_date_refused);
   }
 }
 

@@ -194,7 +194,7 @@ TEST_F(NavigatorTest, TakesASentenceThatTheLidarRepeatsOnce) {
 }
 
 TEST_F(NavigatorTest, TakesTheArrivalWhereTheReceiversTimeIsOff) {
-  const auto fix = Sentence(0.1, RmcLine(NoonPlus(-7168 * 86400.0), 50.0, 8.0, 2.0, 30.0)).fix;  // 1024 weeks
+  const auto fix = Sentence(0.1, RmcLine(NoonPlus(-60.0), 50.0, 8.0, 2.0, 30.0)).fix;
   ASSERT_TRUE(fix);
   EXPECT_FALSE(fix->when.is_from_sentence);
   EXPECT_EQ(fix->when.time, NoonPlus(0.1));
@@ -218,6 +218,21 @@ TEST_F(NavigatorTest, StandsAtTheFixOfAReceiverAtRest) {
     EXPECT_NEAR(poses[i].latitude_deg, 36.82913093, 1e-6);
     EXPECT_NEAR(poses[i].longitude_deg, -2.40757155, 1e-6);
   }
+}
+
+TEST_F(NavigatorTest, DoesNotTakeAnOldSentenceThatTheLidarRepeatsForAFix) {
+  // The receiver went five minutes ago; the lidar still repeats its last sentence. Once it changes, it is alive.
+  EXPECT_FALSE(Sentence(0.1, RmcLine(NoonPlus(-300.0), 50.0, 8.0, 2.0, 30.0), kLidarSource).fix);
+  EXPECT_TRUE(Sentence(1.1, RmcLine(NoonPlus(-299.0), 50.0, 8.0, 2.0, 30.0), kLidarSource).fix);
+}
+
+TEST_F(NavigatorTest, KeepsTheTimeOfDayOfAReceiverWhoseDateIsWrong) {
+  // GPS weeks roll over after 1024: such a receiver is 7168 days behind.
+  const auto fix = Sentence(0.1, RmcLine(NoonPlus(0.05) - std::chrono::days(7168), 50.0, 8.0, 2.0, 30.0)).fix;
+  ASSERT_TRUE(fix);
+  EXPECT_TRUE(fix->when.is_from_sentence);
+  EXPECT_EQ(fix->when.time, NoonPlus(0.05));
+  EXPECT_EQ(Count("date_unusable"), 1);
 }
 
 }  // namespace

@@ -78,6 +78,33 @@ TEST(SensorClock, UsesTheSensorOnlyWhileItIsLockedAndKnowsTheTime) {
   EXPECT_EQ(source(format::kPpsError, true, seconds(0)), TimeSource::kHost);
 }
 
+TEST(SensorClock, DoesNotMixTheSensorsTimeWithAHostThatIsFarOff) {
+  const auto source = [](microseconds host_ahead) {
+    SensorClock clock(TimeChoice::kAuto);
+    clock.OnDataPacket(kNoon + host_ahead + kDuration, microseconds(0), kDuration);
+    clock.OnPositionPacket(kNoon, Position(format::kPpsLocked, true));
+    return clock.Read(kNoon).source;
+  };
+  EXPECT_EQ(source(std::chrono::milliseconds(250)), TimeSource::kSensor);
+  EXPECT_EQ(source(std::chrono::milliseconds(-250)), TimeSource::kSensor);
+  EXPECT_EQ(source(std::chrono::milliseconds(251)), TimeSource::kHost);
+  EXPECT_EQ(source(std::chrono::milliseconds(-251)), TimeSource::kHost);
+}
+
+TEST(SensorClock, IsNotMisledByOneBadStampAndFollowsAStep) {
+  SensorClock clock(TimeChoice::kHost);
+  const auto offset_after = [&clock](int packet, microseconds host_error) {
+    clock.OnDataPacket(kNoon + packet * kDuration + host_error, packet * std::chrono::duration_cast<microseconds>(kDuration), kDuration);
+    return clock.Read(kNoon).offset;
+  };
+  const auto offset = offset_after(1, seconds(0));
+  EXPECT_EQ(offset_after(2, -std::chrono::days(3650)), offset);
+  EXPECT_EQ(offset_after(3, seconds(0)), offset);
+  EXPECT_EQ(offset_after(4, seconds(100)), offset);
+  EXPECT_EQ(offset_after(5, seconds(100)), offset);
+  EXPECT_NEAR(static_cast<double>((offset_after(6, seconds(100)) - offset).count()), 100e6, 10.0);
+}
+
 TEST(SensorClock, NamesItsState) {
   SensorClock clock(TimeChoice::kAuto);
   clock.OnDataPacket(kNoon, microseconds(0), kDuration);
