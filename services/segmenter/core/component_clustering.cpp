@@ -125,10 +125,10 @@ class PolarGrid {
   int num_sectors_ = 1;
   int sector_reach_ = 0;  // sectors to either side
   int num_bands_ = 1;
-  std::array<int, kMaxBands> first_band_;  // nearest band that reaches this one
-  std::array<int, kMaxBands> last_band_;   // farthest band within reach of this one
-  std::vector<std::int32_t> begin_;        // [cells + 1] into members_
-  std::vector<std::int32_t> members_;      // components, by cell
+  std::array<int, kMaxBands> first_band_{};  // nearest band that reaches this one
+  std::array<int, kMaxBands> last_band_{};   // farthest band within reach of this one
+  std::vector<std::int32_t> begin_;          // [cells + 1] into members_
+  std::vector<std::int32_t> members_;        // components, by cell
 };
 
 // Unites compatible components cell by cell.

@@ -36,11 +36,13 @@ TEST(SensorClock, TakesTheLeastDelayedPacketOfTheLastTwoSeconds) {
   EXPECT_EQ(at(milliseconds(2002), microseconds(5000)), microseconds(5000));  // the best one has left the window
 }
 
-TEST(SensorClock, FollowsAHostClockThatIsSetBackAtOnceAndForwardAfterTheWindow) {
-  SensorClock clock(TimeChoice::kHost);
-  clock.OnDataPacket(kNoon + kDuration, microseconds(0), kDuration);
-  clock.OnDataPacket(kNoon - seconds(10) + kDuration, microseconds(1327), kDuration);
-  EXPECT_EQ(clock.Read(kNoon).offset, kNoon.time_since_epoch() - seconds(10) - microseconds(1327));
+TEST(SensorClock, FollowsAHostClockThatIsSetByTheThirdPacket) {
+  for (const auto step : {seconds(-10), seconds(10)}) {
+    SensorClock clock(TimeChoice::kHost);
+    clock.OnDataPacket(kNoon + kDuration, microseconds(0), kDuration);
+    for (int packet = 1; packet <= 3; ++packet) clock.OnDataPacket(kNoon + step + kDuration, packet * microseconds(1327), kDuration);
+    EXPECT_EQ(clock.Read(kNoon).offset, kNoon.time_since_epoch() + step - 3 * microseconds(1327));
+  }
 }
 
 TEST(SensorClock, PutsSensorTimeInTheHourNearestToTheHost) {
