@@ -14,6 +14,9 @@ namespace lookout::recorder {
 
 namespace {
 
+// What LCM sends to itself when it opens UDP multicast.
+constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
+
 constexpr std::chrono::seconds kRunInfoPeriod(10);
 // Channels outside of the table that are named in warnings.
 constexpr std::size_t kMaxUnknownNames = 20;
@@ -92,7 +95,7 @@ void Service::OnEvent(std::string_view channel, Bytes bytes) {
   if (channel == bus::kRunInfo.name && std::ranges::equal(bytes, own_run_info_)) return;  // written when it was sent
   const bus::Channel* known = bus::FindChannel(channel);
   if (known == nullptr) {
-    WatchUnknown(channel);
+    if (channel != kLcmSelfTest) WatchUnknown(channel);
   } else if (known->is_raw) {
     WatchGaps(channel, bytes);
   }
