@@ -169,6 +169,25 @@ TEST_F(Live, AnUnpluggedLidarDegradesHealthAndRecovers) {
   EXPECT_EQ(states[states.size() - 3], health_t::STATE_OK);
 }
 
+// A cable that is pulled takes the route with it: every send fails then. All processes used to end of that.
+TEST_F(Live, ALostRouteEndsNoProcess) {
+  StartAll();
+  ASSERT_EQ(RunProgram({"ip", "route", "del", "239.255.76.0/24", "dev", "lo"}, Output("ip")).exit_code, 0);
+  std::this_thread::sleep_for(milliseconds(2500));
+  for (const auto& service : kServices) EXPECT_TRUE(children_[service]->IsRunning()) << service << ": " << children_[service]->Output();
+  ASSERT_EQ(RunProgram({"ip", "route", "add", "239.255.76.0/24", "dev", "lo"}, Output("ip")).exit_code, 0);
+  Simulate(2);
+  std::this_thread::sleep_for(milliseconds(1200));
+  StopAll();
+  const auto live = ReadLog(Log());
+  EXPECT_GE(live.at("OBSTACLES").size(), 15U);
+  std::int64_t num_unsent = 0;
+  for (const auto& counter : LastHealth(live, "navigator").counters) {
+    if (counter.name == "messages_not_sent") num_unsent = counter.count;
+  }
+  EXPECT_GE(num_unsent, 20);  // ticks and HEALTH at least
+}
+
 TEST_F(Live, CorruptMessagesOnEveryChannelAreCountedAndNothingDies) {
   StartAll();
   bus::LcmBus lcm(bus::DefaultLcmUrl());
