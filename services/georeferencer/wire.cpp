@@ -60,7 +60,7 @@ std::optional<Refusal> FaultOf(const segment_t& message, const TurnHead& head) {
   for (const auto& moment : {time, nearest_time}) {
     if (!moment || *moment < head.time || *moment > head.end_time) return kSegmentsTime;
   }
-  if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsLength(message.length_m) || !IsLength(message.width_m) ||
+  if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsPlace(message.top_m) || !IsLength(message.length_m) || !IsLength(message.width_m) ||
       !IsWithin(message.min_z_m, kMaxLidarM) || !IsWithin(message.max_z_m, kMaxLidarM) || message.min_z_m > message.max_z_m ||
       !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity)) {
     return kSegmentsNumber;
@@ -80,6 +80,7 @@ Segment ToSegment(const segment_t& message, const TurnHead& head) {
   segment.num_points = message.num_points;
   segment.centroid_m = ToVector(message.centroid_m);
   segment.nearest_m = ToVector(message.nearest_m);
+  segment.top_m = ToVector(message.top_m);
   segment.length_m = message.length_m;
   segment.width_m = message.width_m;
   segment.min_z_m = message.min_z_m;

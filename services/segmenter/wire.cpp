@@ -91,6 +91,7 @@ segment_t ToMessage(const Segment& segment) {
   copy(segment.centroid, message.centroid_m);
   copy(segment.nearest, message.nearest_m);
   message.nearest_utime_us = ToUtimeUs(segment.nearest_time);
+  copy(segment.top, message.top_m);
   message.length_m = segment.length_m;
   message.width_m = segment.width_m;
   message.length_azimuth_rad = segment.length_azimuth_rad;

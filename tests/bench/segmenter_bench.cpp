@@ -91,7 +91,7 @@ void Measuring(benchmark::State& state) {
   const Bench bench(state);
   for (auto _ : state) {
     const auto numbered = NumberSegments(bench.components, bench.clusters, 1, 32767);
-    benchmark::DoNotOptimize(Measure(bench.scan, bench.classified.returns, numbered.groups));
+    benchmark::DoNotOptimize(Measure(bench.scan, bench.classified.returns, numbered.groups, Eigen::Vector3d::UnitZ()));
   }
 }
 

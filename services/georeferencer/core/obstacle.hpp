@@ -23,6 +23,7 @@ struct Segment {
   std::int32_t num_points = 0;
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nearest_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d top_m = Eigen::Vector3d::Zero();  // highest return along the vessel's z axis
   float length_m = 0.0F;
   float width_m = 0.0F;
   double min_z_m = 0.0;

@@ -158,9 +158,7 @@ Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Da
   obstacle.mean_reflectivity = segment.mean_reflectivity;
   obstacle.footprint_vessel_m = SeenFromAbove(outline_vessel_m);
 
-  // Where the highest return stood is not known: above the mean of the returns.
-  const Vector3d top_lidar_m(segment.centroid_m.x(), segment.centroid_m.y(), T_vessel_lidar.linear()(2, 2) < 0.0 ? segment.min_z_m : segment.max_z_m);
-  obstacle.top_above_water_m = AboveWaterM(T_vessel_lidar * top_lidar_m, pose, params.reference_point_above_water_m);
+  obstacle.top_above_water_m = AboveWaterM(T_vessel_lidar * segment.top_m, pose, params.reference_point_above_water_m);
 
   const auto placed_pose = PlacedPoseAt(poses, segment.time, datum);
   const auto outline_map_m = PlaceOutline(hull, outline_vessel_m, poses, datum);

@@ -29,7 +29,7 @@ microseconds RoundedMean(nanoseconds sum, std::int64_t count) {
 }
 
 // `indices` of the returns of one segment, in the order of their cells.
-Segment MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> indices) {
+Segment MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> indices, const Eigen::Vector3d& up) {
   Segment segment;
   double sum_x_m = 0.0;
   double sum_y_m = 0.0;
@@ -38,6 +38,7 @@ Segment MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<
   std::int64_t sum_reflectivity = 0;
   double least_m2 = std::numeric_limits<double>::infinity();
   std::int32_t nearest = indices.front();
+  double greatest_height_m = -std::numeric_limits<double>::infinity();
   segment.min_z_m = segment.max_z_m = returns[static_cast<std::size_t>(nearest)].point.z_m;
   std::vector<FootprintPoint> footprint;
   footprint.reserve(indices.size());
@@ -54,6 +55,11 @@ Segment MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<
     if (distance_m2 < least_m2) {
       least_m2 = distance_m2;
       nearest = index;
+    }
+    const double height_m = up.x() * point.x_m + up.y() * point.y_m + up.z() * point.z_m;
+    if (height_m > greatest_height_m) {
+      greatest_height_m = height_m;
+      segment.top = point;
     }
     const std::int32_t reflectivity = scan.columns.reflectivity[static_cast<std::size_t>(one.cell)];
     sum_reflectivity += reflectivity;
@@ -84,7 +90,7 @@ Segment MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<
 
 }  // namespace
 
-std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& segments) {
+std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& segments, const Eigen::Vector3d& up) {
   // Returns sorted by segment; within one they stay in order.
   std::vector<std::size_t> begin(static_cast<std::size_t>(segments.count) + 1, 0);
   for (const std::int32_t segment : segments.of_return) {
@@ -101,7 +107,7 @@ std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, 
   measured.reserve(static_cast<std::size_t>(segments.count));
   for (std::size_t segment = 0; segment + 1 < begin.size(); ++segment) {
     const std::span<const std::int32_t> indices(sorted.data() + begin[segment], begin[segment + 1] - begin[segment]);
-    measured.push_back(MeasureOne(scan, returns, indices));
+    measured.push_back(MeasureOne(scan, returns, indices, up));
     measured.back().id = static_cast<std::int32_t>(segment) + 1;
   }
   return measured;

@@ -1,6 +1,7 @@
 // The fifth step: what is said of each segment.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -26,6 +27,7 @@ struct Segment {
   Point centroid;
   Point nearest;  // return nearest to the sensor; of equals the first
   Utime nearest_time;
+  Point top;  // highest return along the vessel's up axis; of equals the first
   float length_m = 0.0F;
   float width_m = 0.0F;
   float length_azimuth_rad = 0.0F;
@@ -37,7 +39,8 @@ struct Segment {
 };
 
 /// @param segments  groups of the returns; group i gets the id i + 1
+/// @param up        the vessel's z axis in the lidar frame, a unit vector: a lidar that is mounted tilted sees its own z axis lean
 /// @return [segments.count] by id
-std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& segments);
+std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& segments, const Eigen::Vector3d& up);
 
 }  // namespace lookout::segmenter

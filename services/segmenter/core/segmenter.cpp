@@ -70,7 +70,8 @@ Segments SegmentScan(const Scan& scan, const Params& params) {
   const auto clusters = params.component_clustering ? ClusterComponents(Centroids(returns, components), params.clustering) : EachByItself(components);
   const auto numbered = NumberSegments(components, clusters, params.min_segment_points, kMaxSegments);
   Segments result;
-  result.segments = Measure(scan, returns, numbered.groups);
+  const Eigen::Vector3d vessel_up_in_lidar = params.filter.T_vessel_lidar.linear().row(2);
+  result.segments = Measure(scan, returns, numbered.groups, vessel_up_in_lidar);
   result.label = LabelReturns(std::move(classified.label), returns, components, numbered.groups);
   result.num_too_small = numbered.num_too_small;
   result.num_over_limit = numbered.num_over_limit;

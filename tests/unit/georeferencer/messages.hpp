@@ -33,7 +33,7 @@ inline Segment MakePoint(std::int64_t offset_us, double x_m, double y_m, double 
   segment.time = At(offset_us);
   segment.id = 1;
   segment.num_points = 1;
-  segment.centroid_m = segment.nearest_m = {x_m, y_m, z_m};
+  segment.centroid_m = segment.nearest_m = segment.top_m = {x_m, y_m, z_m};
   segment.min_z_m = segment.max_z_m = z_m;
   segment.hull = {{{x_m, y_m}, At(offset_us)}};
   return segment;

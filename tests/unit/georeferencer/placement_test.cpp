@@ -157,6 +157,7 @@ TEST(PlaceSegment, OfALidarUpsideDownKeepsTheOutlineCounterClockwiseAndFindsTheT
   Segment segment = MakePoint(10'000, 11.0, 1.0, 0.0);
   segment.min_z_m = -1.5;
   segment.max_z_m = 0.5;
+  segment.top_m = {11.0, 1.0, -1.5};  // the lowest in the lidar's own frame
   segment.hull = {{{10.0, 0.0}, At(10'000)}, {{12.0, 0.0}, At(10'000)}, {{12.0, 2.0}, At(10'000)}, {{10.0, 2.0}, At(10'000)}};
   const auto obstacle = Place(segment, MakePose(0), params);
   double doubled_area_m2 = 0.0;

@@ -9,12 +9,12 @@ namespace {
 
 using std::chrono::microseconds;
 
-std::vector<Segment> MeasureAll(const Scan& scan) {
+std::vector<Segment> MeasureAll(const Scan& scan, const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
   const auto returns = ClassifyReturns(scan, {}).returns;
-  return Measure(scan, returns, {std::vector<std::int32_t>(returns.size(), 0), 1});
+  return Measure(scan, returns, {std::vector<std::int32_t>(returns.size(), 0), 1}, up);
 }
 
-TEST(Measure, GivesNothingForNoSegment) { EXPECT_TRUE(Measure(test::EmptyScan({}), {}, {}).empty()); }
+TEST(Measure, GivesNothingForNoSegment) { EXPECT_TRUE(Measure(test::EmptyScan({}), {}, {}, Eigen::Vector3d::UnitZ()).empty()); }
 
 TEST(Measure, SaysOfOneReturnWhereAndWhenItWas) {
   auto scan = test::EmptyScan({});
@@ -75,6 +75,18 @@ TEST(Measure, GivesSizeHeightAndReflectivityOfABoat) {
   EXPECT_NEAR(segment.min_z_m, 14.0 * std::tan(DegToRad(-3.0)), 0.05);
   EXPECT_EQ(segment.mean_reflectivity, 40.0F);
   EXPECT_EQ(segment.max_reflectivity, 40);
+}
+
+TEST(Measure, FindsTheTopAlongTheUpAxisOfTheVessel) {
+  auto scan = test::EmptyScan({});
+  test::SetReturn(scan, 0, 8, 20.0, 0, 1);    // ahead, 1 deg up
+  test::SetReturn(scan, 904, 9, 10.0, 0, 1);  // astern, 3 deg up: the higher one in the lidar's own frame
+  const auto level = MeasureAll(scan)[0];
+  EXPECT_NEAR(level.top.x_m, -10.0, 0.1);
+  // A lidar whose x axis points 10 deg up: what is ahead stands higher.
+  const auto tilted = MeasureAll(scan, {std::sin(DegToRad(10.0)), 0.0, std::cos(DegToRad(10.0))})[0];
+  EXPECT_NEAR(tilted.top.x_m, 20.0, 0.1);
+  EXPECT_EQ(tilted.max_z_m, level.max_z_m);
 }
 
 TEST(Measure, KeepsTheHullOfATankSmall) {

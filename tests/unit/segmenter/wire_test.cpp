@@ -204,6 +204,7 @@ TEST(ToMessages, CarriesEveryFieldOfASegment) {
                                .centroid = {1, 2, 3},
                                .nearest = {4, 5, 6},
                                .nearest_time = test::kScanTime + std::chrono::microseconds(4),
+                               .top = {0.5F, 1.5F, 2.5F},
                                .length_m = 7,
                                .width_m = 8,
                                .length_azimuth_rad = 0.5F,
@@ -219,6 +220,7 @@ TEST(ToMessages, CarriesEveryFieldOfASegment) {
   EXPECT_EQ(std::vector<float>(message.centroid_m, message.centroid_m + 3), (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(std::vector<float>(message.nearest_m, message.nearest_m + 3), (std::vector<float>{4, 5, 6}));
   EXPECT_EQ(message.nearest_utime_us, ToUtimeUs(test::kScanTime) + 4);
+  EXPECT_EQ(std::vector<float>(message.top_m, message.top_m + 3), (std::vector<float>{0.5F, 1.5F, 2.5F}));
   EXPECT_EQ(message.length_m, 7.0F);
   EXPECT_EQ(message.width_m, 8.0F);
   EXPECT_EQ(message.length_azimuth_rad, 0.5F);
