@@ -16,13 +16,13 @@ constexpr std::array<double, 10> kPowerOf10{1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7
 constexpr double kLargestExactInteger = 9007199254740992.0;
 
 void AppendInteger(std::int64_t value, std::string& text) {
-  std::array<char, 24> digits;
+  std::array<char, 24> digits{};
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
   text.append(digits.data(), end);
 }
 
 void AppendShortest(double value, std::string& text) {
-  std::array<char, 400> digits;  // the longest double without exponent has 1 + 309 digits, or 2 + 324 + 17
+  std::array<char, 400> digits{};  // the longest double without exponent has 1 + 309 digits, or 2 + 324 + 17
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr;
   text.append(digits.data(), end);
 }
@@ -33,7 +33,7 @@ void AppendScaled(std::int64_t value, int decimals, std::string& text) {
     text += '-';
     value = -value;
   }
-  std::array<char, 24> digits;
+  std::array<char, 24> digits{};
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
   const auto num_digits = static_cast<int>(end - digits.data());
   const int num_before = num_digits - decimals;

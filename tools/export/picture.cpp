@@ -30,7 +30,7 @@ struct Pixel {
 
 // One decimal of a pixel is finer than any screen.
 std::string Number(double value, int decimals = 1) {
-  std::array<char, 32> digits;
+  std::array<char, 32> digits{};
   const double bounded = std::clamp(value, -1e6, 1e6);
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), bounded, std::chars_format::fixed, decimals).ptr;
   std::string text(digits.data(), end);

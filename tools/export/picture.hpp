@@ -16,12 +16,12 @@ struct Spot {
 };
 
 struct Dots {
-  Rgb colour;
+  Rgb colour{};
   std::vector<Spot> spots;
 };
 
 struct Outline {
-  Rgb colour;
+  Rgb colour{};
   std::string name;           // stands beside it
   std::string facts;          // stands in the legend
   std::vector<Spot> corners;  // one or two are drawn as a point or a line

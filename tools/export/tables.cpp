@@ -309,6 +309,7 @@ class ReturnsSink final : public Sink {
 
 std::vector<std::string_view> TableNames() {
   std::vector<std::string_view> names;
+  names.reserve(std::size(kTables));
   for (const auto& table : kTables) names.push_back(table.name);
   return names;
 }
