@@ -1,4 +1,5 @@
 // The boat's processes live on loopback LCM, in a network namespace of their own. Each test takes some seconds of real time.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -131,22 +132,32 @@ TEST_F(Live, MessagesEqualTheReplayOfTheirRawLog) {
   for (const auto& service : kServices) EXPECT_EQ(LastHealth(live, service).process, service);
 }
 
+// Counts messages of a channel until there are so many more, at most for 30 s.
+bool WaitFor(bus::LcmBus& bus, const bus::Channel& channel, std::int64_t num_more) {
+  const auto count = [&] { return bus.input_traffic()[std::string(channel.name)].num_messages; };
+  const auto goal = count() + num_more;
+  const auto deadline = std::chrono::steady_clock::now() + seconds(30);
+  while (count() < goal && std::chrono::steady_clock::now() < deadline) bus.HandleOnce(milliseconds(50));
+  return count() >= goal;
+}
+
 TEST_F(Live, AKilledSegmenterComesBackAndTheOthersGoOn) {
   StartAll();
-  std::thread killer([this] {
-    std::this_thread::sleep_for(milliseconds(1500));
-    children_["segmenter"]->Signal(SIGKILL);
-    std::this_thread::sleep_for(milliseconds(800));
-    Start("segmenter");
-  });
-  Simulate(5);
-  killer.join();
+  bus::LcmBus lcm(bus::DefaultLcmUrl());
+  lcm.SubscribeRaw(bus::kLidarScan, [](std::string_view, Bytes) {});
+  lcm.SubscribeRaw(bus::kSegments, [](std::string_view, Bytes) {});
+  std::thread simulator([this] { Simulate(8); });
+  EXPECT_TRUE(WaitFor(lcm, bus::kSegments, 10));
+  children_["segmenter"]->Signal(SIGKILL);
+  EXPECT_TRUE(WaitFor(lcm, bus::kLidarScan, 10));  // vlp16 does not mind
+  Start("segmenter");
+  EXPECT_TRUE(WaitFor(lcm, bus::kSegments, 10));
+  simulator.join();
   std::this_thread::sleep_for(milliseconds(300));
   StopAll();
   const auto live = ReadLog(Log());
-  EXPECT_GE(live.at("LIDAR_SCAN").size(), 48U);
-  EXPECT_LT(live.at("SEGMENTS").size(), live.at("LIDAR_SCAN").size() - 5);
-  EXPECT_GE(live.at("SEGMENTS").size(), 20U);
+  EXPECT_GE(live.at("LIDAR_SCAN").size(), 78U);
+  EXPECT_LT(live.at("SEGMENTS").size() + 5, live.at("LIDAR_SCAN").size());
   EXPECT_EQ(live.at("SEGMENTS").size(), live.at("OBSTACLES").size());
 }
 
@@ -162,11 +173,9 @@ TEST_F(Live, AnUnpluggedLidarDegradesHealthAndRecovers) {
     const auto message = bus::Decode<health_t>(bytes);
     if (message && message->process == "vlp16" && (states.empty() || states.back() != message->state)) states.push_back(message->state);
   }
-  // Degraded until the first packet, then fine, degraded while it is silent, fine again.
-  ASSERT_GE(states.size(), 3U);
-  EXPECT_EQ(states.back(), health_t::STATE_OK);
-  EXPECT_EQ(states[states.size() - 2], health_t::STATE_DEGRADED);
-  EXPECT_EQ(states[states.size() - 3], health_t::STATE_OK);
+  // Fine while packets come, degraded while none do, fine again; on a slow computer degraded before and after as well.
+  const std::vector<int> expected{health_t::STATE_OK, health_t::STATE_DEGRADED, health_t::STATE_OK};
+  EXPECT_NE(std::ranges::search(states, expected).begin(), states.end()) << ::testing::PrintToString(states);
 }
 
 // A cable that is pulled takes the route with it: every send fails then. All processes used to end of that.
