@@ -60,9 +60,9 @@ std::optional<Refusal> FaultOf(const segment_t& message, const TurnHead& head) {
   for (const auto& moment : {time, nearest_time}) {
     if (!moment || *moment < head.time || *moment > head.end_time) return kSegmentsTime;
   }
-  if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsPlace(message.top_m) || !IsLength(message.length_m) || !IsLength(message.width_m) ||
-      !IsWithin(message.min_z_m, kMaxLidarM) || !IsWithin(message.max_z_m, kMaxLidarM) || message.min_z_m > message.max_z_m ||
-      !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity)) {
+  if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsPlace(message.top_m) || !IsLength(message.length_m) ||
+      !IsLength(message.width_m) || !IsWithin(message.min_z_m, kMaxLidarM) || !IsWithin(message.max_z_m, kMaxLidarM) ||
+      message.min_z_m > message.max_z_m || !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity)) {
     return kSegmentsNumber;
   }
   for (std::size_t i = 0; i < message.hull_x_m.size(); ++i) {
