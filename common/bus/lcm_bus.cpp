@@ -121,7 +121,8 @@ LcmBus::~LcmBus() {
   if (implementation_->lcm != nullptr) lcm_destroy(implementation_->lcm);
 }
 
-int LcmBus::file_descriptor() const { return lcm_get_fileno(implementation_->lcm); }
+// LCM starts its receiver when it is asked for the descriptor: who only sends would read the traffic of the whole bus, to throw it away.
+int LcmBus::file_descriptor() const { return implementation_->subscriptions.empty() ? -1 : lcm_get_fileno(implementation_->lcm); }
 
 bool LcmBus::HandleOnce(std::chrono::milliseconds timeout) {
   const int handled = lcm_handle_timeout(implementation_->lcm, static_cast<int>(timeout.count()));

@@ -202,7 +202,7 @@ std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   return EffectiveText(*message);
 }
 
-void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason) {
+std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason) {
   // The line of the first place in which the field is set; 1 when it is not (a default is in force).
   int line_number = 1;
   std::istringstream text(ReadFile(file));
@@ -216,7 +216,11 @@ void Refuse(const std::filesystem::path& file, const std::string& field, const s
       break;
     }
   }
-  throw ConfigError({file.string() + ":" + std::to_string(line_number) + ": " + field + ": " + reason});
+  return file.string() + ":" + std::to_string(line_number) + ": " + field + ": " + reason;
+}
+
+void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason) {
+  throw ConfigError({FaultLine(file, field, reason)});
 }
 
 }  // namespace lookout::config

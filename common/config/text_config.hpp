@@ -41,7 +41,10 @@ std::string EffectiveText(const google::protobuf::Message& message);
 /// @return EffectiveText of a file; x.txtpb has the schema config/schema/x.proto. @throws ConfigError
 std::string EffectiveTextOfFile(const std::filesystem::path& file);
 
-/// A fault of a relation between fields, found by a service: throws ConfigError "file: field: reason".
+/// A fault of a relation between fields, found by a service, as a line of a ConfigError: "path:line: field: reason".
+std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason);
+
+/// The same as the only fault: throws ConfigError.
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason);
 
 }  // namespace lookout::config

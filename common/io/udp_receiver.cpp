@@ -1,15 +1,20 @@
 #include "common/io/udp_receiver.hpp"
 
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <net/if.h>
 #include <netdb.h>
-#include <sys/socket.h>
+#include <netinet/in.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 namespace lookout::io {
 
@@ -19,70 +24,179 @@ constexpr std::size_t kMaxDatagramBytes = 65536;  // of UDP, rounded up
 
 using AddressList = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
-AddressList Resolve(const std::string& bind_address, int port) {
+std::string Where(const UdpOptions& options) {
+  std::string text = "cannot listen on '" + options.bind_address + "' port " + std::to_string(options.port);
+  if (!options.interface.empty()) text += " of interface '" + options.interface + "'";
+  return text;
+}
+
+AddressList Resolve(const UdpOptions& options) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_DGRAM;
   hints.ai_flags = AI_PASSIVE | AI_NUMERICHOST | AI_NUMERICSERV;
   addrinfo* found = nullptr;
-  const int fault = getaddrinfo(bind_address.c_str(), std::to_string(port).c_str(), &hints, &found);
-  if (fault != 0) throw std::runtime_error("cannot listen on '" + bind_address + "' port " + std::to_string(port) + ": " + gai_strerror(fault));
+  const int fault = getaddrinfo(options.bind_address.c_str(), std::to_string(options.port).c_str(), &hints, &found);
+  if (fault != 0) throw std::runtime_error(Where(options) + ": " + gai_strerror(fault));
   return {found, &freeaddrinfo};
 }
 
-std::string Text(const sockaddr_storage& address, socklen_t size, char* host, std::size_t host_size, char* service, std::size_t service_size) {
-  if (getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host, static_cast<socklen_t>(host_size), service,
-                  static_cast<socklen_t>(service_size), NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
-    return "";
+std::string InterfaceNames() {
+  std::string names;
+  struct if_nameindex* const list = if_nameindex();
+  for (auto* item = list; item != nullptr && item->if_index != 0; ++item) {
+    names += names.empty() ? "" : ", ";
+    names += item->if_name;
   }
-  return host != nullptr ? host : service;
+  if (list != nullptr) if_freenameindex(list);
+  return names;
+}
+
+// What helps, where the reason alone does not say it.
+std::string Remedy(int reason, const UdpOptions& options) {
+  switch (reason) {
+    case EADDRINUSE:
+      return " (another program listens there: ss -ulpn 'sport = :" + std::to_string(options.port) + "' names it)";
+    case EADDRNOTAVAIL:
+      return " (no interface has that address now: ip address lists those that there are)";
+    case ENODEV:
+      return " (a multicast group needs a route or an interface: set interface)";
+    case EPERM:
+    case EACCES:
+      return " (ports below 1024, and on kernels before 5.7 an interface, need a right: AmbientCapabilities=CAP_NET_BIND_SERVICE CAP_NET_RAW)";
+    default:
+      return "";
+  }
+}
+
+// A socket that closes itself when the opening fails half way.
+class OpenedSocket {
+ public:
+  OpenedSocket(const UdpOptions& options, int family) : options_(options), descriptor_(socket(family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0)) {
+    Require(descriptor_ >= 0, "socket");
+  }
+  ~OpenedSocket() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  OpenedSocket(const OpenedSocket&) = delete;
+  OpenedSocket& operator=(const OpenedSocket&) = delete;
+
+  int descriptor() const { return descriptor_; }
+  int Release() { return std::exchange(descriptor_, -1); }
+
+  void Require(bool is_fine, const char* what) const {
+    if (is_fine) return;
+    const int reason = errno;
+    throw std::runtime_error(Where(options_) + ": " + what + ": " + std::strerror(reason) + Remedy(reason, options_));
+  }
+
+  template <typename T>
+  bool Set(int level, int name, const T& value) const {
+    return setsockopt(descriptor_, level, name, &value, sizeof value) == 0;
+  }
+
+ private:
+  const UdpOptions& options_;
+  int descriptor_;
+};
+
+void JoinGroup(const OpenedSocket& opened, const UdpOptions& options, int family, unsigned int interface_index) {
+  constexpr const char* kBadGroup = ": the multicast group is no numeric address of the same family";
+  if (family == AF_INET) {
+    ip_mreqn request{};
+    request.imr_ifindex = static_cast<int>(interface_index);
+    if (inet_pton(AF_INET, options.multicast_group.c_str(), &request.imr_multiaddr) != 1) throw std::runtime_error(Where(options) + kBadGroup);
+    // Else the kernel hands on every group that any program of this computer has joined.
+    opened.Require(opened.Set(IPPROTO_IP, IP_MULTICAST_ALL, 0), "multicast of this group alone");
+    opened.Require(opened.Set(IPPROTO_IP, IP_ADD_MEMBERSHIP, request), "joining the multicast group");
+  } else {
+    ipv6_mreq request{};
+    request.ipv6mr_interface = interface_index;
+    if (inet_pton(AF_INET6, options.multicast_group.c_str(), &request.ipv6mr_multiaddr) != 1) throw std::runtime_error(Where(options) + kBadGroup);
+    opened.Require(opened.Set(IPPROTO_IPV6, IPV6_MULTICAST_ALL, 0), "multicast of this group alone");
+    opened.Require(opened.Set(IPPROTO_IPV6, IPV6_JOIN_GROUP, request), "joining the multicast group");
+  }
+}
+
+int Open(const UdpOptions& options, unsigned int interface_index) {
+  const auto address = Resolve(options);
+  OpenedSocket opened(options, address->ai_family);
+  const int size = options.receive_buffer_bytes;
+  // FORCE goes over the system's limit and needs the right to; without it the kernel grants what it may.
+  opened.Require(opened.Set(SOL_SOCKET, SO_RCVBUFFORCE, size) || opened.Set(SOL_SOCKET, SO_RCVBUF, size), "receive buffer");
+  opened.Require(opened.Set(SOL_SOCKET, SO_TIMESTAMPNS, 1), "kernel time stamps");
+  opened.Require(opened.Set(SOL_SOCKET, SO_RXQ_OVFL, 1), "drop counter");
+  if (interface_index != 0) {
+    const auto& name = options.interface;
+    opened.Require(setsockopt(opened.descriptor(), SOL_SOCKET, SO_BINDTODEVICE, name.c_str(), static_cast<socklen_t>(name.size())) == 0,
+                   "binding to the interface");
+  }
+  opened.Require(bind(opened.descriptor(), address->ai_addr, address->ai_addrlen) == 0, "bind");
+  if (!options.multicast_group.empty()) JoinGroup(opened, options, address->ai_family, interface_index);
+  return opened.Release();
+}
+
+int PortOf(int descriptor) {
+  sockaddr_storage bound{};
+  socklen_t size = sizeof bound;
+  if (getsockname(descriptor, reinterpret_cast<sockaddr*>(&bound), &size) != 0) return 0;
+  // The port stands at the same place in both.
+  return ntohs(reinterpret_cast<const sockaddr_in*>(&bound)->sin_port);
+}
+
+// The kernel doubles what it grants, for its own bookkeeping (socket(7)).
+int GrantedBytes(int descriptor) {
+  int granted_bytes = 0;
+  socklen_t size = sizeof granted_bytes;
+  return getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &granted_bytes, &size) == 0 ? granted_bytes / 2 : 0;
+}
+
+IpAddress AddressOf(const sockaddr_storage& source) {
+  IpAddress address;
+  if (source.ss_family == AF_INET) {
+    constexpr std::size_t kPrefixSize = 12;
+    address.bytes[kPrefixSize - 2] = 0xFF;
+    address.bytes[kPrefixSize - 1] = 0xFF;
+    std::memcpy(address.bytes.data() + kPrefixSize, &reinterpret_cast<const sockaddr_in*>(&source)->sin_addr, sizeof(in_addr));
+  } else {
+    std::memcpy(address.bytes.data(), &reinterpret_cast<const sockaddr_in6*>(&source)->sin6_addr, sizeof(in6_addr));
+  }
+  return address;
 }
 
 Utime ToUtime(const timespec& time) { return Utime(std::chrono::seconds(time.tv_sec) + std::chrono::microseconds(time.tv_nsec / 1000)); }
 
 }  // namespace
 
-UdpReceiver::UdpReceiver(const std::string& bind_address, int port, int receive_buffer_bytes) : buffer_(kMaxDatagramBytes) {
-  const auto address = Resolve(bind_address, port);
-  const auto fail = [&](const char* what) {
-    const std::string reason = std::strerror(errno);
-    if (file_descriptor_ >= 0) close(file_descriptor_);
-    throw std::runtime_error("cannot listen on '" + bind_address + "' port " + std::to_string(port) + ": " + what + ": " + reason);
-  };
-  file_descriptor_ = socket(address->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-  if (file_descriptor_ < 0) fail("socket");
-  // FORCE goes over the system's limit and needs the right to; without it the kernel grants what it may.
-  if (setsockopt(file_descriptor_, SOL_SOCKET, SO_RCVBUFFORCE, &receive_buffer_bytes, sizeof receive_buffer_bytes) != 0 &&
-      setsockopt(file_descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof receive_buffer_bytes) != 0) {
-    fail("receive buffer");
+UdpReceiver::UdpReceiver(UdpOptions options) : options_(std::move(options)), buffer_(kMaxDatagramBytes) {
+  for (const auto& text : options_.allowed_source_addresses) {
+    const auto address = ParseIpAddress(text);
+    if (!address) throw std::runtime_error(Where(options_) + ": '" + text + "' is no numeric address of a source");
+    allowed_sources_.push_back(*address);
   }
-  const int on = 1;
-  if (setsockopt(file_descriptor_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on) != 0) fail("kernel time stamps");
-  if (setsockopt(file_descriptor_, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on) != 0) fail("drop counter");
-  if (bind(file_descriptor_, address->ai_addr, address->ai_addrlen) != 0) fail("bind");
-
-  int granted_bytes = 0;
-  socklen_t size = sizeof granted_bytes;
-  // The kernel doubles what it grants, for its own bookkeeping (socket(7)).
-  if (getsockopt(file_descriptor_, SOL_SOCKET, SO_RCVBUF, &granted_bytes, &size) == 0) receive_buffer_bytes_ = granted_bytes / 2;
-  sockaddr_storage bound{};
-  size = sizeof bound;
-  std::array<char, NI_MAXSERV> service{};
-  if (getsockname(file_descriptor_, reinterpret_cast<sockaddr*>(&bound), &size) != 0) fail("getsockname");
-  port_ = std::stoi("0" + Text(bound, size, nullptr, 0, service.data(), service.size()));
+  if (!options_.interface.empty()) {
+    interface_index_ = if_nametoindex(options_.interface.c_str());
+    if (interface_index_ == 0) {
+      throw std::runtime_error(Where(options_) + ": there is no such interface now (there are: " + InterfaceNames() +
+                               "). When it comes late at boot, start after it; systemd: After=sys-subsystem-net-devices-" + options_.interface +
+                               ".device");
+    }
+  }
+  file_descriptor_ = Open(options_, interface_index_);
+  port_ = PortOf(file_descriptor_);
+  receive_buffer_bytes_ = GrantedBytes(file_descriptor_);
 }
 
 UdpReceiver::~UdpReceiver() { close(file_descriptor_); }
 
-std::optional<ReceivedDatagram> UdpReceiver::Receive() {
-  sockaddr_storage source{};
+std::optional<ReceivedDatagram> UdpReceiver::ReceiveAny() {
   iovec part{buffer_.data(), buffer_.size()};
   alignas(cmsghdr) std::array<char, 256> control{};
   msghdr message{};
   ssize_t num_bytes = -1;
   do {
-    message.msg_name = &source;
-    message.msg_namelen = sizeof source;
+    message.msg_name = &source_;
+    message.msg_namelen = sizeof source_;
     message.msg_iov = &part;
     message.msg_iovlen = 1;
     message.msg_control = control.data();
@@ -93,9 +207,7 @@ std::optional<ReceivedDatagram> UdpReceiver::Receive() {
 
   ReceivedDatagram datagram;
   datagram.port = port_;
-  datagram.payload.assign(buffer_.begin(), buffer_.begin() + num_bytes);
-  std::array<char, NI_MAXHOST> host{};
-  datagram.source_address = Text(source, message.msg_namelen, host.data(), host.size(), nullptr, 0);
+  datagram.payload = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes));
   bool has_time = false;
   for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr; item = CMSG_NXTHDR(&message, item)) {
     if (item->cmsg_level != SOL_SOCKET) continue;
@@ -117,6 +229,52 @@ std::optional<ReceivedDatagram> UdpReceiver::Receive() {
     datagram.host_time = ToUtime(time);
   }
   return datagram;
+}
+
+bool UdpReceiver::IsAllowed() const {
+  return allowed_sources_.empty() || std::ranges::find(allowed_sources_, AddressOf(source_)) != allowed_sources_.end();
+}
+
+std::optional<ReceivedDatagram> UdpReceiver::Receive() {
+  for (int i = 0; i < kMaxRefusedPerCall; ++i) {
+    const auto datagram = ReceiveAny();
+    if (!datagram || IsAllowed()) return datagram;
+    ++num_source_refused_;
+  }
+  return std::nullopt;
+}
+
+std::string UdpReceiver::FollowInterface() {
+  if (options_.interface.empty()) return "";
+  const unsigned int index = if_nametoindex(options_.interface.c_str());
+  if (index == 0) {
+    return std::exchange(is_interface_missing_, true) ? "" : "interface '" + options_.interface + "' has gone; waiting for it";
+  }
+  is_interface_missing_ = false;
+  if (index == interface_index_) return "";
+  try {
+    UdpOptions same_port = options_;
+    same_port.port = port_;
+    const int opened = Open(same_port, index);
+    // Takes the old one's number, by which the caller knows it.
+    const bool is_taken = dup3(opened, file_descriptor_, O_CLOEXEC) >= 0;
+    close(opened);
+    if (!is_taken) return "";
+  } catch (const std::runtime_error&) {
+    return "";  // not ready yet: again in a second
+  }
+  interface_index_ = index;
+  last_drop_count_ = 0;
+  receive_buffer_bytes_ = GrantedBytes(file_descriptor_);
+  ++num_reopened_;
+  return "interface '" + options_.interface + "' is back";
+}
+
+std::string UdpReceiver::SourceAddress() const {
+  std::array<char, NI_MAXHOST> host{};
+  const socklen_t size = source_.ss_family == AF_INET ? sizeof(sockaddr_in) : sizeof(sockaddr_in6);
+  if (getnameinfo(reinterpret_cast<const sockaddr*>(&source_), size, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) return "";
+  return host.data();
 }
 
 }  // namespace lookout::io

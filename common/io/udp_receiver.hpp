@@ -1,40 +1,64 @@
 // UDP datagrams of one port, with the time at which the kernel took each.
 #pragma once
 
+#include <sys/socket.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/ip_address.hpp"
 
 namespace lookout::io {
 
+struct UdpOptions {
+  std::string bind_address;      // numeric IPv4 or IPv6 address of this computer; "0.0.0.0" = every interface
+  int port = 0;                  // 0 = one that is free
+  int receive_buffer_bytes = 0;  // asked of the kernel, which may grant less: see receive_buffer_bytes()
+  std::string interface = {};    // "eth0": datagrams of this interface alone, and it joins the group; empty = any
+  // Numeric; empty = none. Of the same family as bind_address, which must be "0.0.0.0", "::" or the group itself: a socket that is bound
+  // to another address gets no multicast.
+  std::string multicast_group = {};
+  std::vector<std::string> allowed_source_addresses = {};  // numeric; empty = all
+};
+
 struct ReceivedDatagram {
-  Utime host_time;             // kernel stamp of the arrival
-  int port = 0;                // the port it was sent to
-  std::string source_address;  // numeric
-  std::vector<std::uint8_t> payload;
+  Utime host_time;  // kernel stamp of the arrival
+  int port = 0;     // the port it was sent to
+  Bytes payload;    // until the next call of Receive()
 };
 
 class UdpReceiver {
  public:
   /// Binds for this process alone: a second program on the same port is an error at start, not a silent share of the datagrams.
   ///
-  /// @param bind_address  numeric IPv4 or IPv6 address of this computer; "0.0.0.0" = every interface
-  /// @param port          0 = one that is free
-  /// @param receive_buffer_bytes  asked of the kernel, which may grant less: see receive_buffer_bytes()
-  /// @throws std::runtime_error with address, port and reason
-  UdpReceiver(const std::string& bind_address, int port, int receive_buffer_bytes);
+  /// @throws std::runtime_error with address, port, interface, reason and, where it is known, what helps
+  explicit UdpReceiver(UdpOptions options);
   ~UdpReceiver();
   UdpReceiver(const UdpReceiver&) = delete;
   UdpReceiver& operator=(const UdpReceiver&) = delete;
 
-  /// Readable while a datagram waits.
+  /// Readable while a datagram waits. Stays the same number for the life of the receiver.
   int file_descriptor() const { return file_descriptor_; }
 
-  /// @return the oldest datagram that waits; nullopt when none does. Never waits, never throws.
+  /// @return the oldest datagram that waits and comes from an allowed source; nullopt when none does, or after kMaxRefusedPerCall that were
+  ///         refused. Never waits, never throws, takes no memory.
   std::optional<ReceivedDatagram> Receive();
+
+  /// So that a flood from elsewhere does not hold the caller.
+  static constexpr int kMaxRefusedPerCall = 64;
+
+  /// To be called about once a second. An interface that went away and came back (a USB adapter) is another one to the kernel: a socket that is
+  /// bound to it would stay deaf. Opens the socket again then.
+  ///
+  /// @return what changed, for the log; empty = nothing
+  std::string FollowInterface();
+
+  /// Numeric source of the datagram that Receive() gave last. For people: it makes a text.
+  std::string SourceAddress() const;
 
   /// The real port, also when 0 was asked for.
   int port() const { return port_; }
@@ -45,12 +69,28 @@ class UdpReceiver {
   /// Datagrams that the kernel dropped because the buffer was full, as far as it has told: it tells with the next datagram.
   std::int64_t num_kernel_drops() const { return num_kernel_drops_; }
 
+  /// Datagrams whose source is not allowed.
+  std::int64_t num_source_refused() const { return num_source_refused_; }
+
+  /// Times that the socket was opened again by FollowInterface().
+  std::int64_t num_reopened() const { return num_reopened_; }
+
  private:
+  std::optional<ReceivedDatagram> ReceiveAny();
+  bool IsAllowed() const;
+
+  UdpOptions options_;
+  std::vector<IpAddress> allowed_sources_;
   int file_descriptor_ = -1;
+  unsigned int interface_index_ = 0;  // 0 = of none
+  bool is_interface_missing_ = false;
   int port_ = 0;
   int receive_buffer_bytes_ = 0;
   std::int64_t num_kernel_drops_ = 0;
+  std::int64_t num_source_refused_ = 0;
+  std::int64_t num_reopened_ = 0;
   std::uint32_t last_drop_count_ = 0;  // the kernel's, which wraps
+  sockaddr_storage source_{};          // of the last datagram
   std::vector<std::uint8_t> buffer_;
 };
 

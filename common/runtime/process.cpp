@@ -73,6 +73,17 @@ struct Process::Implementation {
   bool is_stopping = false;
   std::vector<Timer> timers;
   std::vector<Readable> readables;
+  std::function<void()> on_hangup;
+
+  void OnSignal(const signalfd_siginfo& info) {
+    const bool is_request = info.ssi_signo == SIGHUP && info.ssi_code != SI_KERNEL;
+    if (is_request && on_hangup) {
+      on_hangup();
+      return;
+    }
+    spdlog::info("stops on signal {}", info.ssi_signo);
+    is_stopping = true;
+  }
 
   std::chrono::milliseconds UntilNextTimer() const {
     auto next = Clock::now() + std::chrono::seconds(1);
@@ -110,6 +121,8 @@ void Process::Every(std::chrono::milliseconds period, std::function<void()> hand
   implementation_->timers.push_back({period, Clock::now() + period, std::move(handler)});
 }
 
+void Process::OnHangup(std::function<void()> handler) { implementation_->on_hangup = std::move(handler); }
+
 void Process::Stop() { implementation_->is_stopping = true; }
 
 void Process::Run(const std::function<HealthReport()>& report) {
@@ -126,8 +139,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
     if (descriptors[0].revents != 0) {
       signalfd_siginfo info{};
       if (read(self.signals, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
-        spdlog::info("stops on signal {}", info.ssi_signo);
-        self.is_stopping = true;
+        self.OnSignal(info);
       }
     }
     for (std::size_t i = 0; i < self.readables.size() && !self.is_stopping; ++i) {

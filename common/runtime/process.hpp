@@ -36,6 +36,9 @@ class Process {
   /// Calls `handler` about every `period`, late rather than twice.
   void Every(std::chrono::milliseconds period, std::function<void()> handler);
 
+  /// Calls `handler` on SIGHUP instead of ending Run. A SIGHUP that the kernel itself sends, because the terminal is gone, still ends it.
+  void OnHangup(std::function<void()> handler);
+
   /// Runs until SIGINT, SIGTERM, SIGHUP or Stop(). Sends HEALTH once a second with what `report` says.
   /// @throws what a handler threw
   void Run(const std::function<HealthReport()>& report);

@@ -26,7 +26,7 @@ void RunLog(lookout::runtime::Process& process, const lookout::navigator::Params
 
 void RunUdp(lookout::runtime::Process& process, const lookout::navigator::Params& params) {
   lookout::navigator::Service service(process.bus(), params);
-  lookout::io::UdpReceiver receiver(params.bind_address, params.nmea_port, kReceiveBufferBytes);
+  lookout::io::UdpReceiver receiver({.bind_address = params.bind_address, .port = params.nmea_port, .receive_buffer_bytes = kReceiveBufferBytes});
   process.OnReadable(receiver.file_descriptor(), [&] {
     for (int i = 0; i < kMaxDatagramsPerRound; ++i) {
       const auto datagram = receiver.Receive();

@@ -30,15 +30,66 @@ TimeChoice ToChoice(config::Vlp16::TimeSource source) {
   }
 }
 
+Sources::Kind ToKind(config::Vlp16::Source source) {
+  switch (source) {
+    case config::Vlp16::CAPTURE:
+      return Sources::Kind::kCapture;
+    case config::Vlp16::LOG:
+      return Sources::Kind::kLog;
+    case config::Vlp16::INTERFACE:
+      return Sources::Kind::kInterface;
+    default:
+      return Sources::Kind::kUdp;
+  }
+}
+
+// What no field is wrong by itself in.
+void CheckRelations(const std::filesystem::path& file, const config::Vlp16& message) {
+  std::vector<std::string> faults;
+  const auto require = [&](bool is_fine, const char* field, const char* reason) {
+    if (!is_fine) faults.push_back(config::FaultLine(file, field, reason));
+  };
+  require(message.data_port() != message.position_port(), "position_port", "must differ from data_port");
+  switch (message.source()) {
+    case config::Vlp16::UDP:
+      require(!message.bind_address().empty(), "bind_address", "must be set when source is UDP");
+      require(message.bpf_filter().empty(), "bpf_filter", "is for source INTERFACE; UDP takes allowed_source_address");
+      break;
+    case config::Vlp16::CAPTURE:
+      require(message.capture_file_size() > 0, "capture_file", "must be set when source is CAPTURE");
+      break;
+    case config::Vlp16::INTERFACE:
+      require(!message.interface().empty(), "interface", "must be set when source is INTERFACE");
+      require(message.multicast_group().empty(), "multicast_group", "is for source UDP; INTERFACE joins no group");
+      break;
+    default:
+      break;
+  }
+  for (const auto& name : message.capture_file()) require(!name.empty(), "capture_file", "must not be empty");
+  if (!faults.empty()) throw config::ConfigError(faults);
+}
+
+Sources ToSources(const std::filesystem::path& config_folder, const config::Vlp16& message) {
+  Sources sources;
+  sources.kind = ToKind(message.source());
+  for (const auto& name : message.capture_file()) sources.capture_files.push_back(config_folder / name);
+  sources.capture_speed = message.capture_speed();
+  sources.bind_address = message.bind_address();
+  sources.interface = message.interface();
+  sources.multicast_group = message.multicast_group();
+  sources.allowed_source_addresses = {message.allowed_source_address().begin(), message.allowed_source_address().end()};
+  sources.bpf_filter = message.bpf_filter();
+  sources.receive_buffer_bytes = message.receive_buffer_bytes();
+  return sources;
+}
+
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
   const auto file = config_folder / "vlp16.txtpb";
   config::Vlp16 message;
   config::LoadText(file, message);
-  const bool is_capture = message.source() == config::Vlp16::CAPTURE;
-  if (is_capture && message.capture_file().empty()) config::Refuse(file, "capture_file", "must be set when source is CAPTURE");
-  if (message.data_port() == message.position_port()) config::Refuse(file, "position_port", "must differ from data_port");
+  CheckRelations(file, message);
 
   Params params;
   params.input = message.source() == config::Vlp16::LOG ? Input::kLog : Input::kOutside;
@@ -48,9 +99,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   params.decoder.time = ToChoice(message.time_source());
   params.decoder.cut_azimuth_rad = DegToRad(message.cut_azimuth_deg());
   params.use_vertical_origin_offsets = message.use_vertical_origin_offsets();
-  if (is_capture) params.capture_file = config_folder / message.capture_file();
-  params.bind_address = message.bind_address();
-  params.receive_buffer_bytes = message.receive_buffer_bytes();
+  params.sources = ToSources(config_folder, message);
   return params;
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "services/vlp16/core/decoder.hpp"
 #include "services/vlp16/core/packet_format.hpp"
@@ -12,21 +12,32 @@ namespace lookout::vlp16 {
 
 enum class Input { kOutside, kLog };  // kLog: subscribes LIDAR_PACKETS and publishes no raw
 
+/// Where datagrams come from: for main. The service does not look at it.
+struct Sources {
+  enum class Kind { kUdp, kCapture, kLog, kInterface };
+  Kind kind = Kind::kUdp;
+  std::vector<std::filesystem::path> capture_files;  // in the order in which they are read
+  double capture_speed = 1.0;                        // 0 = as fast as possible
+  std::string bind_address;
+  std::string interface;                              // empty = any
+  std::string multicast_group;                        // empty = none
+  std::vector<std::string> allowed_source_addresses;  // empty = all
+  std::string bpf_filter;                             // empty = made of the ports
+  int receive_buffer_bytes = 0;
+};
+
 struct Params {
   Input input = Input::kOutside;
   int data_port = format::kDataPort;
   int position_port = format::kPositionPort;
   DecoderParams decoder;
   bool use_vertical_origin_offsets = false;
-
-  // For main: where datagrams come from.
-  std::optional<std::filesystem::path> capture_file;  // set: they are read from it, at the speed at which it was recorded; else from UDP
-  std::string bind_address;
-  int receive_buffer_bytes = 0;
+  Sources sources;
 };
 
 /// @param config_folder  the boat's folder, holding vlp16.txtpb
-/// @throws config::ConfigError
+/// @throws config::ConfigError with every fault. Addresses and the filter are texts here: whoever opens the sources checks them (main does at its
+///         start and for --check).
 Params LoadParams(const std::filesystem::path& config_folder);
 
 }  // namespace lookout::vlp16

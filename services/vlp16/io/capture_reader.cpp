@@ -1,23 +1,11 @@
 #include "services/vlp16/io/capture_reader.hpp"
 
-#include <chrono>
 #include <pcap/pcap.h>
 #include <stdexcept>
 
 namespace lookout::vlp16 {
 
 namespace {
-
-// The reader asks for nanoseconds: libpcap then leaves them in tv_usec.
-std::optional<Utime> ToUtime(const timeval& stamp) {
-  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
-  constexpr std::int64_t kMicrosecondsPerSecond = 1'000'000;
-  const std::int64_t seconds = stamp.tv_sec;
-  const std::int64_t nanoseconds = stamp.tv_usec;
-  if (nanoseconds < 0 || nanoseconds >= kNanosecondsPerSecond) return std::nullopt;
-  if (seconds < kMinUtimeUs / kMicrosecondsPerSecond || seconds > kMaxUtimeUs / kMicrosecondsPerSecond) return std::nullopt;
-  return UtimeFromWire(seconds * kMicrosecondsPerSecond + nanoseconds / 1000);
-}
 
 std::string LinkTypeText(int link_type) {
   const char* name = pcap_datalink_val_to_name(link_type);
@@ -56,7 +44,8 @@ std::optional<Datagram> CaptureReader::Next() {
     }
     ++num_frames_;
     const auto frame = ParseFrame(link_type_, Bytes(data, header->caplen), header->caplen < header->len);
-    const auto host_time = ToUtime(header->ts);
+    // Nanoseconds were asked for: libpcap then leaves them in tv_usec.
+    const auto host_time = UtimeOfStamp(header->ts.tv_sec, header->ts.tv_usec);
     if (frame.fault == FrameFault::kNone && !host_time) {
       ++num_bad_times_;
       continue;

@@ -135,4 +135,12 @@ Frame ParseFrame(int link_type, Bytes bytes, bool is_cut) {
   }
 }
 
+std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds) {
+  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+  constexpr std::int64_t kMicrosecondsPerSecond = 1'000'000;
+  if (nanoseconds < 0 || nanoseconds >= kNanosecondsPerSecond) return std::nullopt;
+  if (seconds < kMinUtimeUs / kMicrosecondsPerSecond || seconds > kMaxUtimeUs / kMicrosecondsPerSecond) return std::nullopt;
+  return UtimeFromWire(seconds * kMicrosecondsPerSecond + nanoseconds / 1000);
+}
+
 }  // namespace lookout::vlp16

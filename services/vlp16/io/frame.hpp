@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
 
 namespace lookout::vlp16 {
 
@@ -42,5 +44,10 @@ bool IsLinkTypeUnderstood(int link_type);
 /// Checksums are not looked at: with checksum offload a capture holds wrong ones for good datagrams.
 /// Fragments are not put together: a data packet of the lidar fits into one frame.
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
+
+/// Time of a frame, as libpcap gives it when nanoseconds were asked for.
+///
+/// @return nullopt when it cannot be: nanoseconds outside of a second, or a year outside of 1900 to 2200
+std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds);
 
 }  // namespace lookout::vlp16

@@ -33,7 +33,7 @@ const std::string kGoodVlp = "source: UDP\nbind_address: \"0.0.0.0\"\ncut_azimut
 TEST(TextConfig, AcceptsWhatTheSchemaAsksFor) { EXPECT_EQ(VlpFaults(kGoodVlp), ""); }
 
 TEST(TextConfig, NamesEveryFactThatIsMissing) {
-  EXPECT_EQ(VlpFaults("source: UDP\n"), "f.txtpb:1: bind_address: must be set\nf.txtpb:1: cut_azimuth_deg: must be set");
+  EXPECT_EQ(VlpFaults("data_port: 2368\n"), "f.txtpb:1: source: must be set\nf.txtpb:1: cut_azimuth_deg: must be set");
 }
 
 TEST(TextConfig, RefusesUnknownFieldsWithTheirLine) { EXPECT_NE(VlpFaults(kGoodVlp + "\nno_such_field: 1\n").find("f.txtpb:5:"), std::string::npos); }

@@ -39,19 +39,55 @@ TEST_F(Vlp16Params, HaveTheDefaultsOfTheSchema) {
   EXPECT_EQ(params.decoder.time, TimeChoice::kAuto);
   EXPECT_DOUBLE_EQ(params.decoder.cut_azimuth_rad, kPi / 2);
   EXPECT_FALSE(params.use_vertical_origin_offsets);
-  EXPECT_FALSE(params.capture_file);
+  EXPECT_EQ(params.sources.kind, Sources::Kind::kUdp);
+  EXPECT_EQ(params.sources.receive_buffer_bytes, 4 << 20);
+  EXPECT_TRUE(params.sources.interface.empty());
+  EXPECT_TRUE(params.sources.multicast_group.empty());
+  EXPECT_TRUE(params.sources.allowed_source_addresses.empty());
+  EXPECT_DOUBLE_EQ(params.sources.capture_speed, 1.0);
 }
 
-TEST_F(Vlp16Params, FindTheCaptureBesideTheConfig) {
-  const auto params =
-      Load("source: CAPTURE capture_file: 'lake.pcap' bind_address: '' cut_azimuth_deg: 0 model: MODEL_PUCK_HI_RES time_source: TIME_HOST");
-  EXPECT_EQ(params.capture_file, folder_ / "lake.pcap");
+TEST_F(Vlp16Params, FindTheCapturesBesideTheConfigAndKeepTheirOrder) {
+  const auto params = Load(
+      "source: CAPTURE capture_file: 'lake.pcap' capture_file: '/day/a.pcap' capture_speed: 0 cut_azimuth_deg: 0 model: MODEL_PUCK_HI_RES "
+      "time_source: TIME_HOST");
+  EXPECT_EQ(params.input, Input::kOutside);
+  EXPECT_EQ(params.sources.kind, Sources::Kind::kCapture);
+  EXPECT_EQ(params.sources.capture_files, (std::vector<std::filesystem::path>{folder_ / "lake.pcap", "/day/a.pcap"}));
+  EXPECT_DOUBLE_EQ(params.sources.capture_speed, 0.0);
   EXPECT_EQ(params.decoder.model, ModelChoice::kPuckHiRes);
   EXPECT_EQ(params.decoder.time, TimeChoice::kHost);
   EXPECT_EQ(Load("source: LOG bind_address: '' cut_azimuth_deg: 0").input, Input::kLog);
 }
 
+TEST_F(Vlp16Params, HoldWhatTheSourcesNeed) {
+  const auto udp = Load(
+      "source: UDP bind_address: '0.0.0.0' cut_azimuth_deg: 0 interface: 'eth0' multicast_group: '239.1.2.3' "
+      "allowed_source_address: '192.168.1.201' allowed_source_address: '192.168.1.202'");
+  EXPECT_EQ(udp.sources.interface, "eth0");
+  EXPECT_EQ(udp.sources.multicast_group, "239.1.2.3");
+  EXPECT_EQ(udp.sources.allowed_source_addresses, (std::vector<std::string>{"192.168.1.201", "192.168.1.202"}));
+  const auto live = Load("source: INTERFACE interface: 'eth0' bpf_filter: 'udp' cut_azimuth_deg: 0");
+  EXPECT_EQ(live.sources.kind, Sources::Kind::kInterface);
+  EXPECT_EQ(live.input, Input::kOutside);
+  EXPECT_EQ(live.sources.bpf_filter, "udp");
+}
+
+TEST_F(Vlp16Params, NameEveryRelationThatIsWrongAtOnce) {
+  const auto fault = FaultOf("source: INTERFACE\ncut_azimuth_deg: 0\nmulticast_group: '239.1.2.3'\nposition_port: 2368");
+  EXPECT_NE(fault.find(":1: interface: must be set when source is INTERFACE"), std::string::npos) << fault;
+  EXPECT_NE(fault.find(":3: multicast_group:"), std::string::npos) << fault;
+  EXPECT_NE(fault.find(":4: position_port:"), std::string::npos) << fault;
+}
+
 TEST_F(Vlp16Params, StopTheStartWhenTheyAreWrong) {
+  EXPECT_NE(FaultOf("source: UDP cut_azimuth_deg: 0").find("bind_address"), std::string::npos);
+  EXPECT_NE(FaultOf("source: UDP bind_address: '0.0.0.0' bpf_filter: 'udp' cut_azimuth_deg: 0").find("bpf_filter"), std::string::npos);
+  EXPECT_NE(FaultOf("source: CAPTURE capture_file: '' cut_azimuth_deg: 0").find("capture_file"), std::string::npos);
+  for (const char* speed : {"-1", "1001", "nan"}) {
+    EXPECT_NE(FaultOf("source: CAPTURE capture_file: 'a' cut_azimuth_deg: 0 capture_speed: " + std::string(speed)).find("capture_speed"),
+              std::string::npos);
+  }
   EXPECT_NE(FaultOf("source: CAPTURE bind_address: '' cut_azimuth_deg: 0").find("capture_file"), std::string::npos);
   EXPECT_NE(FaultOf("source: UDP bind_address: '' cut_azimuth_deg: 0 data_port: 8308").find("position_port"), std::string::npos);
   EXPECT_NE(FaultOf("source: UDP bind_address: '' cut_azimuth_deg: 360").find("cut_azimuth_deg"), std::string::npos);

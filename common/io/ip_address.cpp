@@ -1,0 +1,39 @@
+#include "common/io/ip_address.hpp"
+
+#include <arpa/inet.h>
+
+#include <algorithm>
+
+namespace lookout::io {
+
+namespace {
+
+constexpr std::array<std::uint8_t, 12> kMappedPrefix{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};  // RFC 4291, 2.5.5.2
+
+}  // namespace
+
+bool IpAddress::is_ipv4() const { return std::equal(kMappedPrefix.begin(), kMappedPrefix.end(), bytes.begin()); }
+
+bool IpAddress::is_multicast() const {
+  constexpr int kHighNibble = 0xF0;
+  constexpr int kIpv4Multicast = 0xE0;  // RFC 5771: 224.0.0.0/4
+  constexpr int kIpv6Multicast = 0xFF;  // RFC 4291: ff00::/8
+  return is_ipv4() ? (bytes[kMappedPrefix.size()] & kHighNibble) == kIpv4Multicast : bytes[0] == kIpv6Multicast;
+}
+
+std::optional<IpAddress> ParseIpAddress(const std::string& text) {
+  IpAddress address;
+  if (inet_pton(AF_INET6, text.c_str(), address.bytes.data()) == 1) return address;
+  std::ranges::copy(kMappedPrefix, address.bytes.begin());
+  if (inet_pton(AF_INET, text.c_str(), address.bytes.data() + kMappedPrefix.size()) == 1) return address;
+  return std::nullopt;
+}
+
+std::string ToText(const IpAddress& address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  const bool is_ipv4 = address.is_ipv4();
+  const auto* bytes = address.bytes.data() + (is_ipv4 ? kMappedPrefix.size() : 0);
+  return inet_ntop(is_ipv4 ? AF_INET : AF_INET6, bytes, text.data(), text.size()) != nullptr ? text.data() : "";
+}
+
+}  // namespace lookout::io

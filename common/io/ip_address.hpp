@@ -1,0 +1,27 @@
+// Numeric addresses of IPv4 and IPv6, compared in binary: one address has many texts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace lookout::io {
+
+/// 16 bytes in network order; IPv4 is mapped into IPv6 (::ffff:a.b.c.d).
+struct IpAddress {
+  std::array<std::uint8_t, 16> bytes{};
+
+  bool is_ipv4() const;
+  bool is_multicast() const;
+  bool operator==(const IpAddress&) const = default;
+};
+
+/// @param text  "192.168.1.201", "fe80::1"; no name of a host, no zone ("%eth0")
+/// @return nullopt when it is no such address
+std::optional<IpAddress> ParseIpAddress(const std::string& text);
+
+/// The one text that the system writes for it: IPv4 where it is mapped.
+std::string ToText(const IpAddress& address);
+
+}  // namespace lookout::io

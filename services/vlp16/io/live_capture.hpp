@@ -1,0 +1,103 @@
+// UDP datagrams out of the frames that a network interface sees.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "services/vlp16/io/frame.hpp"
+
+namespace lookout::vlp16 {
+
+struct LiveOptions {
+  std::string interface;  // "eth0"
+  std::string filter;     // pcap-filter(7); empty = FilterOfPorts
+  int data_port = 0;
+  int position_port = 0;
+  int receive_buffer_bytes = 0;                       // of the ring that kernel and process share
+  std::vector<std::string> allowed_source_addresses;  // as inet_ntop writes them; empty = all
+};
+
+struct LiveDatagram {
+  Utime host_time;  // kernel stamp of the arrival
+  int destination_port = 0;
+  Bytes payload;  // until the next call of Next()
+};
+
+/// Datagrams to one of two ports, plain or in up to two VLAN tags.
+///
+/// @param has_vlan  whether the link type knows VLAN tags: Ethernet does
+std::string FilterOfPorts(int data_port, int position_port, bool has_vlan);
+
+/// @return why a filter cannot be compiled for Ethernet; empty = it can
+std::string FilterFault(const std::string& filter);
+
+class LiveCapture {
+ public:
+  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (naming what gives it). An interface that is
+  ///         down is waited for.
+  explicit LiveCapture(LiveOptions options);
+  ~LiveCapture();
+  LiveCapture(const LiveCapture&) = delete;
+  LiveCapture& operator=(const LiveCapture&) = delete;
+
+  /// @return the next datagram that waits and comes from an allowed source; nullopt when none does, or after kMaxSkippedPerCall frames that
+  ///         hold none. Never waits.
+  std::optional<LiveDatagram> Next();
+
+  /// So that a flood of other frames does not hold the caller.
+  static constexpr int kMaxSkippedPerCall = 64;
+
+  /// To be called about once a second: closes when the interface goes down or away, opens again when it is back.
+  ///
+  /// @return what changed, for the log; empty = nothing
+  std::string FollowInterface();
+
+  /// Why nothing can be captured now; empty = it can.
+  const std::string& fault() const { return fault_; }
+
+  /// What is let through, as given to the kernel; empty while nothing can be captured.
+  const std::string& filter() const { return filter_; }
+
+  /// capture_kernel_drops, capture_interface_drops (reads the kernel's), capture_source_refused, capture_outages, capture_read_errors,
+  /// frames_read, frames_datagram, then skipped frames by reason.
+  std::vector<Counter> counters() const;
+
+ private:
+  struct Closer {
+    void operator()(void* capture) const;
+  };
+  struct Drops {
+    std::int64_t num_kernel = 0;
+    std::int64_t num_interface = 0;
+  };
+
+  std::string Open();
+  void Close();
+  std::string CheckInterface();
+  Drops CurrentDrops() const;
+  std::optional<LiveDatagram> Judge(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction);
+
+  LiveOptions options_;
+  std::unique_ptr<void, Closer> capture_;  // pcap_t
+  int link_type_ = 0;
+  std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as far as the kernel gives it
+  unsigned int interface_index_ = 0;
+  std::string fault_;
+  std::string filter_;
+  Drops past_drops_;  // of what has been closed
+  std::int64_t num_frames_ = 0;
+  std::int64_t num_bad_times_ = 0;
+  std::int64_t num_source_refused_ = 0;
+  std::int64_t num_outages_ = 0;
+  std::int64_t num_read_errors_ = 0;
+  std::array<std::int64_t, kFrameFaultNames.size()> num_by_fault_{};
+};
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,30 @@
+#include "common/io/ip_address.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lookout::io {
+namespace {
+
+TEST(IpAddress, IsTheSameInEachOfItsTexts) {
+  EXPECT_EQ(ParseIpAddress("fe80::1"), ParseIpAddress("FE80:0:0:0:0:0:0:1"));
+  EXPECT_EQ(ParseIpAddress("192.168.1.201"), ParseIpAddress("::ffff:192.168.1.201"));
+  EXPECT_NE(ParseIpAddress("192.168.1.201"), ParseIpAddress("192.168.1.202"));
+  EXPECT_EQ(ToText(*ParseIpAddress("::ffff:10.0.0.7")), "10.0.0.7");
+  EXPECT_EQ(ToText(*ParseIpAddress("FE80:0:0:0:0:0:0:1")), "fe80::1");
+}
+
+TEST(IpAddress, IsNumeric) {
+  for (const char* text : {"", "localhost", "1.2.3", "1.2.3.256", "1.2.3.4 ", "1.2.3.4/24", "fe80::1%eth0", ":::"}) {
+    EXPECT_FALSE(ParseIpAddress(text)) << text;
+  }
+}
+
+TEST(IpAddress, KnowsMulticast) {
+  for (const char* text : {"224.0.0.1", "239.255.255.255", "ff02::1"}) EXPECT_TRUE(ParseIpAddress(text)->is_multicast()) << text;
+  for (const char* text : {"223.255.255.255", "240.0.0.1", "255.255.255.255", "fe80::1", "::"}) {
+    EXPECT_FALSE(ParseIpAddress(text)->is_multicast()) << text;
+  }
+}
+
+}  // namespace
+}  // namespace lookout::io
