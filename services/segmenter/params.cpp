@@ -27,6 +27,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   Params params;
   params.filter.min_range_m = message.min_range_m();
   params.filter.max_range_m = message.max_range_m();
+  params.filter.max_repeat_gap_m = message.max_repeat_gap_m();
   params.filter.field_of_view.start_rad = DegToRad(message.field_of_view_start_deg());
   params.filter.field_of_view.width_rad = message.field_of_view_width_deg() >= kWholeCircleDeg ? kTwoPi : DegToRad(message.field_of_view_width_deg());
   params.filter.own_vessel_box_m = boat.own_vessel_box_m;

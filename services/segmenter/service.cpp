@@ -26,6 +26,7 @@ void Service::OnScan(const lidar_scan_t& message) {
   num_segments_ += static_cast<std::int64_t>(segments.segments.size());
   num_too_small_ += segments.num_too_small;
   num_over_limit_ += segments.num_over_limit;
+  num_repeats_ += segments.num_repeats;
 }
 
 HealthReport Service::Report() const {
@@ -39,6 +40,7 @@ HealthReport Service::Report() const {
                      {"segments", num_segments_},
                      {"segments_too_small", num_too_small_},
                      {"segments_over_limit", num_over_limit_},
+                     {"returns_repeated", num_repeats_},
                      {"turns_incomplete", counts.incomplete_turns},
                      {"turns_inconsistent", counts.inconsistent_turns},
                      {"parts_duplicate", counts.duplicate_parts},

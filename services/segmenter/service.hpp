@@ -32,6 +32,7 @@ class Service {
   std::int64_t num_segments_ = 0;
   std::int64_t num_too_small_ = 0;
   std::int64_t num_over_limit_ = 0;
+  std::int64_t num_repeats_ = 0;
 };
 
 }  // namespace lookout::segmenter

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <random>
+#include <set>
 
 #include "common/bus/memory_bus.hpp"
 #include "services/segmenter/service.hpp"
@@ -86,9 +87,13 @@ TEST(SegmentScanLaw, EveryReturnHasALabelAndEverySegmentIsFiniteAndHoldsItsRetur
       const auto scan = Scene(seed, {.num_returns = 1 + static_cast<int>(seed % 2)});
       const auto segments = SegmentScan(scan, params);
       std::map<int, int> num_points;
+      std::set<std::size_t> repeats;
+      for (const auto& repeat : ClassifyReturns(scan, params.filter).repeats) repeats.insert(static_cast<std::size_t>(repeat.cell));
+      ASSERT_EQ(static_cast<std::size_t>(segments.num_repeats), repeats.size());
+      ASSERT_EQ(repeats.empty(), scan.head.num_returns == 1);
       for (std::size_t cell = 0; cell < scan.num_cells(); ++cell) {
         ASSERT_EQ(segments.label[cell] == 0, scan.columns.range[cell] == 0);
-        if (segments.label[cell] > 0) ++num_points[segments.label[cell]];
+        if (segments.label[cell] > 0 && !repeats.contains(cell)) ++num_points[segments.label[cell]];
         ASSERT_TRUE(!params.labelling.label_shadowed_returns || segments.label[cell] != ToLabel(Reason::kShadowed));
       }
       ASSERT_EQ(num_points.size(), segments.segments.size());
@@ -108,6 +113,51 @@ TEST(SegmentScanLaw, EveryReturnHasALabelAndEverySegmentIsFiniteAndHoldsItsRetur
                   std::sqrt(SquaredDistance(segment.centroid, {})) + segment.length_m + segment.width_m + segment.max_z_m - segment.min_z_m);
       }
     }
+  }
+}
+
+// In dual return a head that sees one echo per shot reports it twice: nothing but the labels of the second cells may differ from single return.
+TEST(SegmentScanLaw, AScanWhoseShotsAllRepeatThemselvesGivesTheSegmentsOfSingleReturn) {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (const auto& params : {Way(0), Way(512), Way(512, false), Way(1800)}) {
+      const auto single = Scene(seed, {.num_columns = 900});
+      auto dual = test::EmptyScan({.num_columns = 900, .num_returns = 2});
+      std::mt19937_64 random(seed);
+      for (std::size_t cell = 0; cell < single.num_cells(); ++cell) {
+        for (const std::size_t i : {0U, 1U}) dual.columns.reflectivity[2 * cell + i] = single.columns.reflectivity[cell];
+        dual.columns.range[2 * cell] = single.columns.range[cell];
+        if (single.columns.range[cell] == 0) continue;
+        dual.columns.range[2 * cell + 1] = static_cast<std::uint16_t>(single.columns.range[cell] + random() % 101 - 50);  // up to 0.1 m
+      }
+      const auto expected = SegmentScan(single, params);
+      const auto segments = SegmentScan(dual, params);
+      ASSERT_EQ(segments.segments.size(), expected.segments.size()) << "seed " << seed;
+      for (std::size_t i = 0; i < segments.segments.size(); ++i) {
+        ASSERT_EQ(segments.segments[i].num_points, expected.segments[i].num_points) << "seed " << seed;
+        ASSERT_EQ(segments.segments[i].centroid.x_m, expected.segments[i].centroid.x_m);
+        ASSERT_EQ(segments.segments[i].mean_reflectivity, expected.segments[i].mean_reflectivity);
+        ASSERT_EQ(segments.segments[i].length_m, expected.segments[i].length_m);
+      }
+      for (std::size_t cell = 0; cell < single.num_cells(); ++cell) {
+        ASSERT_EQ(segments.label[2 * cell], expected.label[cell]) << "seed " << seed;
+        ASSERT_EQ(segments.label[2 * cell + 1], expected.label[cell]) << "seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(SegmentScanLaw, SingleReturnDoesNotDependOnTheGapOfRepeats) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto scan = Scene(seed, {});
+    auto params = Way(0);
+    const auto segments = SegmentScan(scan, params);
+    params.filter.max_repeat_gap_m = 10.0;
+    const auto others = SegmentScan(scan, params);
+    const auto one = ToMessages(scan, segments, bus::kMaxMessageBytes);
+    const auto other = ToMessages(scan, others, bus::kMaxMessageBytes);
+    ASSERT_EQ(one.size(), other.size());
+    for (std::size_t part = 0; part < one.size(); ++part) EXPECT_EQ(bus::Encode(one[part]), bus::Encode(other[part])) << "seed " << seed;
+    EXPECT_EQ(segments.num_repeats, 0);
   }
 }
 

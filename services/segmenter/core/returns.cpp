@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
 
 namespace lookout::segmenter {
 
@@ -50,6 +53,32 @@ class OwnVessel {
   double squared_reach_m2_ = -1.0;
 };
 
+// In range units. 0.1 m is 50 units of 2 mm, whichever way the division rounds.
+int MaxRepeatGap(double max_repeat_gap_m, double range_unit_m) {
+  constexpr double kRounding = 1e-6;
+  constexpr double kMaxGap = std::numeric_limits<std::uint16_t>::max();
+  return static_cast<int>(std::min(kMaxGap, max_repeat_gap_m / range_unit_m + kRounding));
+}
+
+// Takes the repeats out of the returns that are looked at.
+ClassifiedReturns SetRepeatsApart(const Scan& scan, ClassifiedReturns classified, int max_gap) {
+  auto& returns = classified.returns;
+  const auto range_of = [&scan](const Return& one) { return int{scan.columns.range[static_cast<std::size_t>(one.cell)]}; };
+  const auto shot_of = [&scan](const Return& one) { return one.cell / scan.head.num_returns; };
+  std::size_t num_kept = 0;
+  for (const Return& one : returns) {
+    std::size_t twin = num_kept;  // behind it
+    while (twin > 0 && shot_of(returns[twin - 1]) == shot_of(one) && std::abs(range_of(returns[twin - 1]) - range_of(one)) > max_gap) --twin;
+    if (twin > 0 && shot_of(returns[twin - 1]) == shot_of(one)) {
+      classified.repeats.push_back({one.cell, static_cast<std::int32_t>(twin - 1)});
+    } else {
+      returns[num_kept++] = one;
+    }
+  }
+  returns.resize(num_kept);
+  return classified;
+}
+
 }  // namespace
 
 ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) {
@@ -97,7 +126,8 @@ ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) 
       }
     }
   }
-  return result;
+  if (num_returns < 2) return result;
+  return SetRepeatsApart(scan, std::move(result), MaxRepeatGap(filter.max_repeat_gap_m, scan.head.range_unit_m));
 }
 
 }  // namespace lookout::segmenter

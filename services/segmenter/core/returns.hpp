@@ -42,18 +42,29 @@ struct Return {
 struct ReturnFilter {
   double min_range_m = 0.5;
   double max_range_m = 120.0;
+  double max_repeat_gap_m = 0.1;           // two returns of a shot that are no farther apart are one
   Sector field_of_view{};                  // of azimuths
   Eigen::AlignedBox3d own_vessel_box_m{};  // vessel frame; empty = none
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
 };
 
+/// A return that says once more what another of its shot says: no point of its own.
+struct Repeat {
+  std::int32_t cell = 0;
+  std::int32_t of_return = 0;  // index into ClassifiedReturns::returns
+};
+
 struct ClassifiedReturns {
   std::vector<Return> returns;      // those that are looked at, in the order of their cells
+  std::vector<Repeat> repeats;      // in the order of their cells; none where a shot has one return
   std::vector<std::int16_t> label;  // [cells] minus the reason where a return is not looked at, else 0
 };
 
-/// Sorts out the returns that are out of range, else out of the field of view, else of the own vessel, and places the others.
+/// Sorts out the returns that are out of range, else out of the field of view, else of the own vessel, and places the others. Of these, sets apart
+/// those that repeat another of their shot.
 ///
+/// In dual return a shot with one echo is reported twice. Ranges are compared in whole range units, and only those of returns that are looked at:
+/// what lies beside one that is not is no repeat, so that no obstacle at a limit is lost.
 /// Point of a return at range r, azimuth a (of its column, plus the offset of its ring) and elevation e: (r cos e cos a, -r cos e sin a,
 /// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return.
 ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter);

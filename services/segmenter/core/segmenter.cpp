@@ -17,13 +17,17 @@ std::vector<std::int32_t> EachByItself(const Groups& components) {
   return cluster_of;
 }
 
-// `label` of the returns that are not looked at, completed.
-std::vector<std::int16_t> LabelReturns(std::vector<std::int16_t> label, std::span<const Return> returns, const Groups& components,
-                                       const Groups& segments) {
+// Labels of the returns that are not looked at, completed.
+std::vector<std::int16_t> LabelReturns(ClassifiedReturns classified, const Groups& components, const Groups& segments) {
+  auto label = std::move(classified.label);
+  const auto& returns = classified.returns;
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const std::int32_t segment = segments.of_return[i];
     const Reason reason = components.of_return[i] == Groups::kNone ? Reason::kShadowed : Reason::kTooSmall;
     label[static_cast<std::size_t>(returns[i].cell)] = segment == Groups::kNone ? ToLabel(reason) : static_cast<std::int16_t>(segment + 1);
+  }
+  for (const auto& repeat : classified.repeats) {
+    label[static_cast<std::size_t>(repeat.cell)] = label[static_cast<std::size_t>(returns[static_cast<std::size_t>(repeat.of_return)].cell)];
   }
   return label;
 }
@@ -72,7 +76,8 @@ Segments SegmentScan(const Scan& scan, const Params& params) {
   Segments result;
   const Eigen::Vector3d vessel_up_in_lidar = params.filter.T_vessel_lidar.linear().row(2);
   result.segments = Measure(scan, returns, numbered.groups, vessel_up_in_lidar);
-  result.label = LabelReturns(std::move(classified.label), returns, components, numbered.groups);
+  result.num_repeats = static_cast<std::int64_t>(classified.repeats.size());
+  result.label = LabelReturns(std::move(classified), components, numbered.groups);
   result.num_too_small = numbered.num_too_small;
   result.num_over_limit = numbered.num_over_limit;
   return result;

@@ -27,6 +27,7 @@ struct Segments {
   std::vector<Segment> segments;    // by id
   std::int32_t num_too_small = 0;   // left out for having too few returns
   std::int32_t num_over_limit = 0;  // left out, the smallest, because labels of 16 bits number no more
+  std::int64_t num_repeats = 0;     // returns that repeat another of their shot: labelled as that one, and in no segment's numbers
 };
 
 /// Pure: the same scan gives the same segments, to the bit.

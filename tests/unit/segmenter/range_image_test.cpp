@@ -22,7 +22,7 @@ TEST(RangeImage, OfOwnColumnsHasAPixelForEveryReturn) {
   auto scan = test::EmptyScan({.num_columns = 10, .num_rings = 4, .num_returns = 2});
   for (int column = 0; column < 10; ++column) {
     test::SetReturn(scan, column, 1, 10.0, 0);
-    test::SetReturn(scan, column, 1, 10.0, 1);
+    test::SetReturn(scan, column, 1, 11.0, 1);
   }
   const auto returns = ClassifyReturns(scan, {}).returns;
   const auto image = ProjectToOwnColumns(scan, returns);

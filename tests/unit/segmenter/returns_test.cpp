@@ -96,5 +96,55 @@ TEST(ClassifyReturns, KeepsBothReturnsOfAShot) {
   EXPECT_EQ(result.returns[1].ring, 0);
 }
 
+// A shot with one echo is reported twice in dual return; it used to be two points.
+TEST(ClassifyReturns, TakesTwoReturnsOfAShotForOneWhereTheyAreNoFartherApartThanAsked) {
+  struct Case {
+    double second_m;
+    double max_gap_m;
+    bool is_repeat;
+  };
+  for (const Case& one : {Case{10.0, 0.1, true}, Case{10.1, 0.1, true}, Case{9.9, 0.1, true}, Case{10.102, 0.1, false}, Case{9.898, 0.1, false},
+                          Case{10.0, 0.0, true}, Case{10.002, 0.0, false}, Case{10.3, 0.3, true}, Case{10.302, 0.3, false}, Case{19.0, 10.0, true}}) {
+    auto scan = test::EmptyScan({.num_columns = 2, .num_rings = 2, .num_returns = 2});
+    test::SetReturn(scan, 1, 0, 10.0, 0);
+    test::SetReturn(scan, 1, 0, one.second_m, 1);
+    test::SetReturn(scan, 1, 1, 10.0, 0);  // of another shot
+    ReturnFilter filter;
+    filter.max_repeat_gap_m = one.max_gap_m;
+    const auto result = ClassifyReturns(scan, filter);
+    EXPECT_EQ(result.returns.size(), one.is_repeat ? 2U : 3U) << one.second_m << " " << one.max_gap_m;
+    ASSERT_EQ(result.repeats.size(), one.is_repeat ? 1U : 0U) << one.second_m << " " << one.max_gap_m;
+    if (!one.is_repeat) continue;
+    EXPECT_EQ(result.repeats[0].cell, 5);
+    EXPECT_EQ(result.returns[static_cast<std::size_t>(result.repeats[0].of_return)].cell, 4);
+  }
+}
+
+TEST(ClassifyReturns, ComparesEachReturnWithAllOfItsShotThatAreLookedAt) {
+  auto scan = test::EmptyScan({.num_columns = 1, .num_rings = 1, .num_returns = 4});
+  const double range_m[]{10.0, 20.0, 10.04, 20.08};
+  for (int i = 0; i < 4; ++i) test::SetReturn(scan, 0, 0, range_m[i], i);
+  const auto result = ClassifyReturns(scan, {});
+  EXPECT_EQ(result.returns.size(), 2U);
+  ASSERT_EQ(result.repeats.size(), 2U);
+  EXPECT_EQ(result.repeats[0].of_return, 0);
+  EXPECT_EQ(result.repeats[1].of_return, 1);
+}
+
+// Nothing at a limit is lost with a twin that is beyond it.
+TEST(ClassifyReturns, TakesNoReturnForARepeatOfOneThatIsNotLookedAt) {
+  auto scan = test::EmptyScan({.num_columns = 2, .num_rings = 1, .num_returns = 2});
+  test::SetReturn(scan, 0, 0, 50.02, 0);
+  test::SetReturn(scan, 0, 0, 49.98, 1);
+  test::SetReturn(scan, 1, 0, 49.98, 0);
+  test::SetReturn(scan, 1, 0, 50.02, 1);
+  const auto result = ClassifyReturns(scan, {.min_range_m = 1.0, .max_range_m = 50.0});
+  ASSERT_EQ(result.returns.size(), 2U);
+  EXPECT_EQ(result.returns[0].cell, 1);
+  EXPECT_EQ(result.returns[1].cell, 2);
+  EXPECT_EQ(result.label, (std::vector<std::int16_t>{ToLabel(Reason::kRange), 0, 0, ToLabel(Reason::kRange)}));
+  EXPECT_TRUE(result.repeats.empty());
+}
+
 }  // namespace
 }  // namespace lookout::segmenter

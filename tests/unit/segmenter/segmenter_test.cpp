@@ -128,6 +128,26 @@ TEST(SegmentScan, LabelsBothReturnsOfAShot) {
   }
 }
 
+TEST(SegmentScan, GivesARepeatTheLabelOrReasonOfItsTwin) {
+  auto scan = test::EmptyScan({.num_returns = 2});
+  for (const int column : {100, 500, 501}) {
+    test::SetReturn(scan, column, 4, 10.0, 0);
+    test::SetReturn(scan, column, 4, 10.03, 1);
+  }
+  Params params;
+  params.min_segment_points = 2;
+  const auto segments = SegmentScan(scan, params);
+  ASSERT_EQ(segments.segments.size(), 1U);
+  EXPECT_EQ(segments.segments[0].num_points, 2);
+  EXPECT_EQ(segments.num_repeats, 3);
+  EXPECT_EQ(segments.num_too_small, 1);
+  for (const int index : {0, 1}) {
+    EXPECT_EQ(segments.label[test::CellOf(scan, 100, 4, index)], ToLabel(Reason::kTooSmall));
+    EXPECT_EQ(segments.label[test::CellOf(scan, 500, 4, index)], 1);
+    EXPECT_EQ(segments.label[test::CellOf(scan, 501, 4, index)], 1);
+  }
+}
+
 TEST(NumberSegments, KeepsTheLargestWhereThereAreMoreThanCanBeNumbered) {
   const Groups components{{0, 1, 1, 2, 3, 3, 3, 4}, 5};
   const std::vector<std::int32_t> each{0, 1, 2, 3, 4};

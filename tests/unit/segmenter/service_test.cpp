@@ -133,6 +133,7 @@ TEST(SegmenterParams, AreTheDefaultsOfTheSchemaWhereNothingIsSet) {
   const Params defaults;
   EXPECT_EQ(params.filter.min_range_m, defaults.filter.min_range_m);
   EXPECT_EQ(params.filter.max_range_m, defaults.filter.max_range_m);
+  EXPECT_EQ(params.filter.max_repeat_gap_m, defaults.filter.max_repeat_gap_m);
   EXPECT_EQ(params.filter.field_of_view.start_rad, defaults.filter.field_of_view.start_rad);
   EXPECT_EQ(params.filter.field_of_view.width_rad, defaults.filter.field_of_view.width_rad);
   EXPECT_FALSE(params.filter.own_vessel_box_m.isEmpty());
