@@ -41,8 +41,7 @@ std::vector<RayCaster::Body> BodiesOf(const Scene& scene) {
 // In its own frame a body has the heading that turns x, y into east, north.
 const Track kVesselFrame{{Eigen::Vector2d::Zero(), kPi / 2.0}};
 
-int RingOfLaser(std::size_t laser) {
-  const auto& elevations_deg = format::kElevationDegVlp16;
+int RingOfLaser(const std::array<double, format::kNumLasers>& elevations_deg, std::size_t laser) {
   return static_cast<int>(std::ranges::count_if(elevations_deg, [&](double elevation_deg) { return elevation_deg < elevations_deg[laser]; }));
 }
 
@@ -59,8 +58,15 @@ void WriteReturn(std::span<std::uint8_t> payload, int block, int sequence, std::
 
 }  // namespace
 
+const Lidar::Beams& Lidar::BeamsOf(LidarModel model) {
+  static constexpr Beams kVlp16{format::kElevationDegVlp16, format::kOriginHeightMmVlp16, format::kProductVlp16};
+  static constexpr Beams kPuckHiRes{format::kElevationDegPuckHiRes, format::kOriginHeightMmPuckHiRes, format::kProductPuckHiRes};
+  return model == LidarModel::kVlp16 ? kVlp16 : kPuckHiRes;
+}
+
 Lidar::Lidar(const Scene& scene, const config::BoatFacts& boat, const LidarParams& params, Utime start, std::uint64_t seed)
     : params_(params),
+      beams_(BeamsOf(params.model)),
       own_motion_(scene.own_motion),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       T_vessel_lidar_(boat.T_vessel_lidar),
@@ -110,9 +116,9 @@ Lidar::Measurement Lidar::Stray(double max_range_m) {
 }
 
 Lidar::Shot Lidar::Fire(std::size_t laser, double azimuth_rad, const Eigen::Isometry3d& T_map_vessel) {
-  const double origin_height_m = params_.use_vertical_origin_offsets ? format::kOriginHeightMmVlp16[laser] / 1000.0 : 0.0;
+  const double origin_height_m = params_.use_vertical_origin_offsets ? beams_.origin_height_mm[laser] / 1000.0 : 0.0;
   const Ray ray_vessel{T_vessel_lidar_ * Eigen::Vector3d(0.0, 0.0, origin_height_m),
-                       T_vessel_lidar_.linear() * BeamDirection(azimuth_rad, DegToRad(format::kElevationDegVlp16[laser]))};
+                       T_vessel_lidar_.linear() * BeamDirection(azimuth_rad, DegToRad(beams_.elevation_deg[laser]))};
   const Ray ray{T_map_vessel * ray_vessel.origin_m, T_map_vessel.linear() * ray_vessel.direction};
   // Calm water gives nothing back.
   const double to_water_m = ray.direction.z() < 0.0 ? -ray.origin_m.z() / ray.direction.z() : kMaxRangeM;
@@ -136,24 +142,36 @@ Lidar::Shot Lidar::Fire(std::size_t laser, double azimuth_rad, const Eigen::Isom
   return shot;
 }
 
+// Whether a block that begins with this sequence lies in the field of view as a whole, first shot to last.
+bool Lidar::FiresFrom(std::int64_t sequence) const {
+  const auto begin = sequence * format::kSequencePeriod;
+  return params_.field_of_view.Contains(AzimuthAt(ToSeconds(begin))) &&
+         params_.field_of_view.Contains(AzimuthAt(ToSeconds(begin + format::kBlockPeriod - format::kRechargeTime - format::kLaserPeriod)));
+}
+
 LidarPacket Lidar::Next() {
   using std::chrono::nanoseconds;
   const bool is_dual = params_.mode == ReturnMode::kDual;
   LidarPacket packet;
   const std::span<std::uint8_t> payload(packet.payload);
-  const nanoseconds first = num_sequences_ * format::kSequencePeriod;
+  const auto skip_to_field_of_view = [this] {
+    while (!FiresFrom(next_sequence_)) ++next_sequence_;
+  };
+  skip_to_field_of_view();
+  const nanoseconds first = next_sequence_ * format::kSequencePeriod;
   const Utime stamp = start_ + std::chrono::floor<std::chrono::microseconds>(first);
   const int num_sequences = is_dual ? format::kSequencesPerPacketDual : format::kSequencesPerPacketSingle;
 
-  for (int k = 0; k < num_sequences; ++k, ++num_sequences_) {
-    const nanoseconds sequence_time = num_sequences_ * format::kSequencePeriod;
+  for (int k = 0; k < num_sequences; ++k, ++next_sequence_) {
+    const int block = is_dual ? k / format::kSequencesPerBlock * 2 : k / format::kSequencesPerBlock;
+    const int sequence = k % format::kSequencesPerBlock;
+    if (sequence == 0) skip_to_field_of_view();
+    const nanoseconds sequence_time = next_sequence_ * format::kSequencePeriod;
     // One pose for the 37 us of a sequence: the boat moves by 0.1 mm in it.
     const double time_s = ToSeconds(sequence_time);
     const auto T_map_vessel = StateAt(own_motion_, reference_point_above_water_m_, time_s).T_map_vessel();
     caster_.MoveTo(time_s, (T_map_vessel * T_vessel_lidar_.translation()).head<2>());
 
-    const int block = is_dual ? k / format::kSequencesPerBlock * 2 : k / format::kSequencesPerBlock;
-    const int sequence = k % format::kSequencesPerBlock;
     if (sequence == 0) {
       const auto azimuth_cdeg = static_cast<std::uint16_t>(std::lround(RadToDeg(WrapTo2Pi(AzimuthAt(time_s))) * 100.0) % format::kAzimuthsPerTurn);
       for (int i = 0; i < (is_dual ? 2 : 1); ++i) {
@@ -171,7 +189,8 @@ LidarPacket Lidar::Next() {
       const Utime time = stamp + std::chrono::round<std::chrono::microseconds>(sequence_time - first + laser_time);
       const auto write = [&](int written_block, const Measurement& measurement, int return_index) {
         WriteReturn(payload, written_block, sequence, laser, measurement.range_2mm, measurement.reflectivity);
-        if (measurement.range_2mm != 0) packet.returns.push_back({time, RingOfLaser(laser), return_index, measurement.object_id});
+        if (measurement.range_2mm == 0) return;
+        packet.returns.push_back({time, RingOfLaser(beams_.elevation_deg, laser), return_index, measurement.object_id});
       };
       if (is_dual) {
         write(block, shot.last, 0);
@@ -184,7 +203,7 @@ LidarPacket Lidar::Next() {
   }
   WriteU32LittleEndian(payload, format::kStampOffset, MicrosecondsPastHour(stamp));
   payload[format::kReturnModeOffset] = is_dual ? format::kModeDual : params_.mode == ReturnMode::kLast ? format::kModeLast : format::kModeStrongest;
-  payload[format::kProductOffset] = format::kProductVlp16;
+  payload[format::kProductOffset] = beams_.product;
   return packet;
 }
 

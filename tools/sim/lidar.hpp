@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/config/boat.hpp"
+#include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tools/sim/random.hpp"
@@ -15,9 +16,15 @@
 namespace lookout::sim {
 
 enum class ReturnMode { kStrongest, kLast, kDual };
+enum class LidarModel { kVlp16, kPuckHiRes };
+
+/// A block of the fastest head sweeps 0.8 deg and is not torn: it needs a place in the field of view.
+inline constexpr double kMinFieldOfViewRad = DegToRad(2.0);
 
 struct LidarParams {
   ReturnMode mode = ReturnMode::kStrongest;
+  LidarModel model = LidarModel::kVlp16;
+  Sector field_of_view;  // azimuths of the sensor in which its lasers fire; kMinFieldOfViewRad wide at least
   double rotation_rpm = 600.0;
   bool use_vertical_origin_offsets = false;  // as in vlp16.txtpb
   double stray_probability = 1e-4;           // of a return out of nothing, per shot that meets nothing: 2 to 3 a turn over open water
@@ -63,12 +70,21 @@ class Lidar {
     Measurement strongest;
     Measurement last;
   };
+  // By laser id.
+  struct Beams {
+    std::array<double, vlp16::format::kNumLasers> elevation_deg;
+    std::array<double, vlp16::format::kNumLasers> origin_height_mm;
+    std::uint8_t product;
+  };
+  static const Beams& BeamsOf(LidarModel model);
 
   Shot Fire(std::size_t laser, double azimuth_rad, const Eigen::Isometry3d& T_map_vessel);
+  bool FiresFrom(std::int64_t sequence) const;
   Measurement Measure(const Echo& echo);
   Measurement Stray(double max_range_m);
 
   LidarParams params_;
+  const Beams& beams_;
   OwnMotion own_motion_;
   double reference_point_above_water_m_;
   Eigen::Isometry3d T_vessel_lidar_;
@@ -80,7 +96,7 @@ class Lidar {
   double rotor_phase_rad_ = 0.0;
   double rotor_rate_radps_ = 0.0;
   Utime start_;
-  std::int64_t num_sequences_ = 0;  // fired
+  std::int64_t next_sequence_ = 0;  // to be fired, in sequence periods since the start
 };
 
 }  // namespace lookout::sim

@@ -15,6 +15,7 @@
 #include "common/runtime/process.hpp"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/vlp16.pb.h"
+#include "tools/sim/faults.hpp"
 #include "tools/sim/pcap_sink.hpp"
 #include "tools/sim/simulation.hpp"
 #include "tools/sim/udp_sink.hpp"
@@ -39,6 +40,8 @@ struct Options {
   std::int64_t start_utime_us = kDefaultStartUtimeUs;
   sim::LidarParams lidar;
   sim::NavigationParams navigation;
+  sim::FaultParams faults;
+  double speed = 1.0;
 };
 
 std::string JoinedSceneNames() {
@@ -47,12 +50,24 @@ std::string JoinedSceneNames() {
   return names;
 }
 
+// @throws CLI::ValidationError
+Sector ToFieldOfView(const std::vector<double>& from_to_deg) {
+  Sector field_of_view;
+  if (from_to_deg.empty() || (from_to_deg[0] == 0.0 && from_to_deg[1] == 360.0)) return field_of_view;
+  field_of_view.start_rad = DegToRad(from_to_deg[0]);
+  field_of_view.width_rad = WrapTo2Pi(DegToRad(from_to_deg[1] - from_to_deg[0]));
+  if (field_of_view.width_rad < sim::kMinFieldOfViewRad) throw CLI::ValidationError("--field-of-view: must be 2 degrees wide at least");
+  return field_of_view;
+}
+
 // Exits here for --help, --version, --list-scenes and wrong lines.
 Options ParseOptions(int argc, char** argv) {
   Options options;
   std::string config_folder;
   bool has_no_heading = false;
   std::string mode = "strongest";
+  std::string model = "vlp16";
+  std::vector<double> field_of_view_deg;
   CLI::App app("Sends what the sensors of a simulated boat send: VLP-16 packets and NMEA 0183.", "lookout-sim");
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_option("--scene", options.scene, "one of: " + JoinedSceneNames())->required();
@@ -79,6 +94,19 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--gnss-sd", options.navigation.gnss_sd_m, "standard deviation of a position, metres per axis")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
+  app.add_option("--model", model, "vlp16 or hi-res (Puck Hi-Res)")->check(CLI::IsMember({"vlp16", "hi-res"}))->capture_default_str();
+  app.add_option("--field-of-view", field_of_view_deg, "lasers fire from this azimuth clockwise to that one, degrees")
+      ->expected(2)
+      ->type_name("FROM TO")
+      ->check(CLI::Range(0.0, 360.0));
+  const auto share = CLI::Range(0.0, 1.0);
+  app.add_option("--drop", options.faults.drop_share, "share of the data packets that never come")->check(share)->capture_default_str();
+  app.add_option("--double", options.faults.double_share, "share of them that come twice")->check(share)->capture_default_str();
+  app.add_option("--swap", options.faults.swap_share, "share of them that come after the next")->check(share)->capture_default_str();
+  app.add_option("--speed", options.speed, "with --udp: so many times real time; 0 = without waiting")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->needs(udp)
+      ->capture_default_str();
   app.add_flag("--no-heading", has_no_heading, "a boat with a GNSS receiver alone: no HDT, no PASHR");
   app.add_flag_callback(
       "--list-scenes",
@@ -91,12 +119,17 @@ Options ParseOptions(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (options.pcap_file.empty() == options.udp_host.empty()) throw CLI::RequiredError("either --pcap FILE or --udp HOST");
+    if (options.faults.drop_share + options.faults.double_share + options.faults.swap_share > 1.0) {
+      throw CLI::ValidationError("--drop, --double and --swap: together they must not be more than 1");
+    }
+    options.lidar.field_of_view = ToFieldOfView(field_of_view_deg);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
   options.config_folder = config_folder;
   options.navigation.has_heading = !has_no_heading;
   options.lidar.mode = mode == "dual" ? sim::ReturnMode::kDual : mode == "last" ? sim::ReturnMode::kLast : sim::ReturnMode::kStrongest;
+  options.lidar.model = model == "vlp16" ? sim::LidarModel::kVlp16 : sim::LidarModel::kPuckHiRes;
   return options;
 }
 
@@ -112,15 +145,16 @@ bool WaitUntil(std::chrono::steady_clock::time_point time, const sigset_t& stop_
 }
 
 // The start is set by the first datagram's deadline; each has a deadline of its own, so delays do not add up.
-void Pace(sim::Simulation& simulation, sim::UdpSink& sink, Utime start) {
+void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double speed) {
   sigset_t stop_signals;
   sigemptyset(&stop_signals);
   sigaddset(&stop_signals, SIGINT);
   sigaddset(&stop_signals, SIGTERM);
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
   const auto base = std::chrono::steady_clock::now() + (start - runtime::HostNow());
-  while (const auto datagram = simulation.Next()) {
-    if (WaitUntil(base + (datagram->time - start), stop_signals)) break;
+  while (const auto datagram = network.Next()) {
+    const std::chrono::duration<double, std::micro> wait(speed > 0.0 ? static_cast<double>((datagram->time - start).count()) / speed : 0.0);
+    if (WaitUntil(base + std::chrono::duration_cast<std::chrono::nanoseconds>(wait), stop_signals)) break;
     sink.Send(*datagram);
   }
   if (sink.num_refused() > 0) std::cerr << "lookout-sim: the network did not take " << sink.num_refused() << " datagrams\n";
@@ -151,15 +185,23 @@ void Run(const Options& options) {
   std::unique_ptr<sim::TruthWriter> truth;
   if (!options.truth_folder.empty()) truth = std::make_unique<sim::TruthWriter>(options.truth_folder, *scene, boat, params.start);
   sim::Simulation simulation(*scene, boat, params, truth.get());
+  sim::FaultyNetwork network([&] { return simulation.Next(); },
+                             [&](const sim::Fault& fault) {
+                               if (truth) truth->AddFault(fault);
+                             },
+                             options.faults, params.data_port, params.start, params.start + params.duration, params.seed);
   if (is_live) {
     sim::UdpSink sink(options.udp_host);
-    Pace(simulation, sink, params.start);
+    Pace(network, sink, params.start, options.speed);
   } else {
     sim::PcapSink sink(options.pcap_file, {params.data_port, params.navigation.position_port});
-    while (const auto datagram = simulation.Next()) sink.Send(*datagram);
+    while (const auto datagram = network.Next()) sink.Send(*datagram);
     sink.Close();
   }
   if (truth) truth->Close();
+  const auto& totals = network.totals();
+  std::cout << "data packets made " << totals.num_made << ", sent " << totals.num_sent << ", dropped " << totals.num_dropped << ", doubled "
+            << totals.num_doubled << ", swapped " << totals.num_swapped << '\n';
 }
 
 }  // namespace

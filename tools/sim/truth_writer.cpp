@@ -47,6 +47,7 @@ TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene
   Open(outlines_, folder / "outlines.csv", "object_id,utime_us,vertex_index,latitude_deg,longitude_deg,east_m,north_m");
   Open(returns_, folder / "returns.csv", "utime_us,ring,return_index,object_id");
   Open(pose_, folder / "pose.csv", "utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,heave_m");
+  Open(faults_, folder / "faults.csv", "utime_us,kind,packet_index");
   WriteObjects();
 }
 
@@ -101,6 +102,10 @@ void TruthWriter::AddReturns(const std::vector<TrueReturn>& returns) {
   returns_ << text;
 }
 
+void TruthWriter::AddFault(const Fault& fault) {
+  faults_ << ToUtimeUs(fault.time) << ',' << kFaultNames[static_cast<std::size_t>(fault.kind)] << ',' << fault.packet_index << '\n';
+}
+
 void TruthWriter::AdvanceTo(Utime time) {
   for (; next_pose_ <= time; next_pose_ += kPosePeriod) WritePose(next_pose_);
   // One outline beyond the end, so that each return lies between two.
@@ -112,7 +117,7 @@ void TruthWriter::AdvanceTo(Utime time) {
 }
 
 void TruthWriter::Close() {
-  for (auto* out : {&objects_, &outlines_, &returns_, &pose_}) {
+  for (auto* out : {&objects_, &outlines_, &returns_, &pose_, &faults_}) {
     out->close();
     if (!*out) throw std::runtime_error("the truth cannot be written: is the disk full?");
   }

@@ -1,4 +1,4 @@
-// The truth about a simulation as CSV files: objects.csv, outlines.csv, returns.csv, pose.csv. Columns: README.md.
+// The truth about a simulation as CSV files: objects.csv, outlines.csv, returns.csv, pose.csv, faults.csv. Columns: README.md.
 #pragma once
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -8,6 +8,7 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
+#include "tools/sim/faults.hpp"
 #include "tools/sim/lidar.hpp"
 #include "tools/sim/scene.hpp"
 
@@ -22,6 +23,8 @@ class TruthWriter {
   TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start);
 
   void AddReturns(const std::vector<TrueReturn>& returns);
+
+  void AddFault(const Fault& fault);
 
   /// Writes poses and moving outlines up to `time`.
   void AdvanceTo(Utime time);
@@ -44,6 +47,7 @@ class TruthWriter {
   std::ofstream outlines_;
   std::ofstream returns_;
   std::ofstream pose_;
+  std::ofstream faults_;
 };
 
 }  // namespace lookout::sim

@@ -238,5 +238,142 @@ TEST(Lidar, BlackThingsAreLostEarlierThanBrightOnes) {
   EXPECT_LT(count(0.03), 5);
 }
 
+TEST(Lidar, APuckHiResLooksAlongItsOwnBeams) {
+  const auto scene = StillScene(0.0, Wall(20.0));
+  auto params = QuietParams();
+  params.model = LidarModel::kPuckHiRes;
+  Lidar lidar(scene, SmallBoat(), params, kStart, 1);
+  int num_checked = 0;
+  for (int i = 0; i < 76; ++i) {
+    const auto packet = lidar.Next();
+    EXPECT_EQ(packet.payload[1205], 0x24);
+    for (const auto& made : packet.returns) EXPECT_LT(made.ring, 16);
+    for (const auto& made : Decode(packet)) {
+      const double azimuth_deg = made.azimuth_deg + 0.1990656 * made.sequence + 3.6e3 * 2.304e-6 * static_cast<double>(made.laser);
+      if (std::abs(WrapToPi(DegToRad(azimuth_deg))) > DegToRad(50.0)) continue;
+      const double cosine = std::cos(DegToRad(azimuth_deg)) * std::cos(DegToRad(format::kElevationDegPuckHiRes[made.laser]));
+      EXPECT_NEAR(made.range_m, 20.0 / cosine, 0.02) << azimuth_deg << " laser " << made.laser;
+      ++num_checked;
+    }
+  }
+  // The lasers above -5.7 deg see the wall before the water: 12 or more of 16.
+  EXPECT_GT(num_checked, 500 * 11);
+}
+
+TEST(Lidar, VerticalOriginsAreThoseOfTheModel) {
+  // A level wall of beams cannot be had; the lowest beam of each model meets flat ground 1.5 m below at a range that tells its origin.
+  const auto range_of_lowest_m = [](LidarModel model, bool use_vertical_origin_offsets) {
+    const auto scene = StillScene(0.0, {{Prism{Rectangle(-50.0, 50.0, -50.0, 50.0), 0.0, 0.5}, {0.9}}});
+    auto params = QuietParams();
+    params.model = model;
+    params.use_vertical_origin_offsets = use_vertical_origin_offsets;
+    Lidar lidar(scene, SmallBoat(), params, kStart, 1);
+    double sum_m = 0.0;
+    int count = 0;
+    for (int i = 0; i < 76; ++i) {
+      for (const auto& made : Decode(lidar.Next())) {
+        if (made.laser != 0 || made.range_m < 5.0) continue;
+        sum_m += made.range_m;
+        ++count;
+      }
+    }
+    EXPECT_GT(count, 500);
+    return sum_m / count;
+  };
+  EXPECT_NEAR(range_of_lowest_m(LidarModel::kVlp16, false), 1.5 / std::sin(DegToRad(15.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(LidarModel::kVlp16, true), 1.5112 / std::sin(DegToRad(15.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(LidarModel::kPuckHiRes, false), 1.5 / std::sin(DegToRad(10.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(LidarModel::kPuckHiRes, true), 1.5074 / std::sin(DegToRad(10.0)), 0.002);
+}
+
+struct Jumps {
+  int within_packets = 0;
+  int between_packets = 0;
+};
+
+// Azimuths and stamps against the rotor itself.
+Jumps ExpectFieldOfView(double from_deg, double to_deg, ReturnMode mode, double rpm) {
+  SCOPED_TRACE(testing::Message() << from_deg << " to " << to_deg << " at " << rpm << (mode == ReturnMode::kDual ? " dual" : ""));
+  const auto scene = StillScene(0.0, Wall(20.0));
+  auto params = QuietParams();
+  params.mode = mode;
+  params.rotation_rpm = rpm;
+  params.field_of_view = {DegToRad(from_deg), WrapTo2Pi(DegToRad(to_deg - from_deg))};
+  Lidar lidar(scene, SmallBoat(), params, kStart, 1);
+  const double width_deg = RadToDeg(params.field_of_view.width_rad);
+  const double block_deg = rpm * 6.0 * 110.592e-6;
+  const std::size_t blocks_per_step = mode == ReturnMode::kDual ? 2 : 1;
+  int num_jumps_within = 0;
+  int num_jumps_between = 0;
+  double last_azimuth_deg = -1.0;
+  Utime last_end = kStart - 1us;
+  for (int i = 0; i < 300; ++i) {
+    const auto packet = lidar.Next();
+    // The stamp is the time of the first block: there the rotor stands at that block's azimuth.
+    const std::int64_t past_hour_us = ReadU32LittleEndian(packet.payload, 1200);
+    const double stamp_s = static_cast<double>(past_hour_us - 600'000'000) * 1e-6;
+    EXPECT_NEAR(RadToDeg(WrapToPi(lidar.AzimuthAt(stamp_s) - DegToRad(ReadU16LittleEndian(packet.payload, 2) / 100.0))), 0.0, 0.02);
+    EXPECT_GT(Utime(1'781'532'000s) + std::chrono::microseconds(past_hour_us), last_end);
+    last_end = packet.end_time;
+    for (std::size_t block = 0; block < 12; block += blocks_per_step) {
+      const double azimuth_deg = ReadU16LittleEndian(packet.payload, block * 100 + 2) / 100.0;
+      const double inside_deg = RadToDeg(WrapTo2Pi(DegToRad(azimuth_deg - from_deg)));
+      EXPECT_LT(inside_deg, width_deg - block_deg * 0.75);  // the second sequence fires inside too
+      const double step_deg = last_azimuth_deg < 0.0 ? block_deg : RadToDeg(WrapTo2Pi(DegToRad(azimuth_deg - last_azimuth_deg)));
+      if (std::abs(step_deg - block_deg) > 0.1) {
+        EXPECT_NEAR(step_deg, 360.0 - width_deg + block_deg * 1.5, block_deg * 1.5);
+        ++(block == 0 ? num_jumps_between : num_jumps_within);
+      }
+      last_azimuth_deg = azimuth_deg;
+      // Each block is filled: the wall ahead is seen by the upper lasers in both sequences.
+      if (std::abs(WrapToPi(DegToRad(azimuth_deg))) > DegToRad(45.0)) continue;
+      EXPECT_NE(ReadU16LittleEndian(packet.payload, block * 100 + 4 + 15 * 3), 0) << azimuth_deg;
+      EXPECT_NE(ReadU16LittleEndian(packet.payload, block * 100 + 4 + 31 * 3), 0) << azimuth_deg;
+    }
+  }
+  return {num_jumps_within, num_jumps_between};
+}
+
+TEST(Lidar, FiresOnlyInItsFieldOfViewAndStampsWhatItFires) {
+  Jumps total;
+  const auto check = [&total](double from_deg, double to_deg, ReturnMode mode, double rpm) {
+    const auto jumps = ExpectFieldOfView(from_deg, to_deg, mode, rpm);
+    EXPECT_GE(jumps.within_packets + jumps.between_packets, 1) << from_deg << " to " << to_deg << " at " << rpm;
+    total.within_packets += jumps.within_packets;
+    total.between_packets += jumps.between_packets;
+  };
+  for (const auto mode : {ReturnMode::kStrongest, ReturnMode::kDual}) {
+    for (const double rpm : {300.0, 600.0, 1200.0}) {
+      check(300.0, 60.0, mode, rpm);
+      check(0.0, 90.0, mode, rpm);
+    }
+    check(10.0, 350.0, mode, 1200.0);
+  }
+  check(20.0, 22.0, ReturnMode::kStrongest, 1200.0);
+  EXPECT_GT(total.within_packets, 100);
+  EXPECT_GT(total.between_packets, 5);
+}
+
+TEST(Lidar, TruthOfAPacketAcrossTheGapHasTheTimesOfItsShots) {
+  const auto scene = StillScene(0.0, Wall(20.0));
+  auto params = QuietParams();
+  params.field_of_view = {DegToRad(330.0), DegToRad(60.0)};
+  Lidar lidar(scene, SmallBoat(), params, kStart, 1);
+  int num_across = 0;
+  for (int i = 0; i < 300; ++i) {
+    const auto packet = lidar.Next();
+    const auto decoded = Decode(packet);
+    ASSERT_EQ(packet.returns.size(), decoded.size());
+    ASSERT_FALSE(decoded.empty());
+    num_across += packet.returns.back().time - packet.returns.front().time > 50ms ? 1 : 0;
+    for (std::size_t k = 0; k < decoded.size(); ++k) {
+      const double time_s =
+          ToSeconds(packet.returns[k].time - kStart) - 55.296e-6 * decoded[k].sequence - 2.304e-6 * static_cast<double>(decoded[k].laser);
+      EXPECT_NEAR(RadToDeg(WrapToPi(lidar.AzimuthAt(time_s) - DegToRad(decoded[k].azimuth_deg))), 0.0, 0.02);
+    }
+  }
+  EXPECT_GT(num_across, 5);
+}
+
 }  // namespace
 }  // namespace lookout::sim

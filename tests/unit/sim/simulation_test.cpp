@@ -121,7 +121,7 @@ std::vector<std::string> Lines(const std::filesystem::path& file) {
   return lines;
 }
 
-TEST(TruthWriter, WritesObjectsOutlinesPosesAndReturns) {
+TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "lookout_truth_writer_test";
   std::filesystem::remove_all(folder);
   const auto params = Params(1, 500ms);
@@ -130,6 +130,7 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesAndReturns) {
   {
     TruthWriter truth(folder, *scene, SmallBoat(), params.start);
     Simulation simulation(*scene, SmallBoat(), params, &truth);
+    truth.AddFault({FaultKind::kDoubled, params.start + 40ms, 29});
     while (const auto datagram = simulation.Next()) {
       if (datagram->port != 2368) continue;
       for (std::size_t block = 0; block < 12; ++block) {
@@ -141,6 +142,7 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesAndReturns) {
   EXPECT_EQ(Lines(folder / "objects.csv").size(), scene->objects.size() + 3);
   EXPECT_EQ(Lines(folder / "returns.csv").size(), num_returns + 1);
   EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id");
+  EXPECT_EQ(Lines(folder / "faults.csv"), (std::vector<std::string>{"utime_us,kind,packet_index", "1781532600040000,doubled,29"}));
   const auto poses = Lines(folder / "pose.csv");
   EXPECT_EQ(poses.size(), 1U + 25U);  // 0, 20, ... 480 ms; the last packet ends before 500 ms
   EXPECT_EQ(poses[1].rfind("1781532600000000,43.62", 0), 0U);
