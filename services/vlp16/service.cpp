@@ -1,8 +1,11 @@
 #include "services/vlp16/service.hpp"
 
-#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <string>
 
+#include "common/core/angles.hpp"
 #include "services/vlp16/wire.hpp"
 
 namespace lookout::vlp16 {
@@ -11,6 +14,32 @@ namespace {
 
 // A sensor sends a packet every 1.3 ms.
 constexpr std::chrono::seconds kSilence(1);
+constexpr std::chrono::seconds kRatePeriod(1);
+
+std::string_view Text(ClockState state) {
+  switch (state) {
+    case ClockState::kUnknown:
+      return "unknown (no position packets)";
+    case ClockState::kNoPps:
+      return "no PPS";
+    case ClockState::kAcquiring:
+      return "acquiring";
+    case ClockState::kLockedWithoutTime:
+      return "locked without time";
+    case ClockState::kLocked:
+      return "locked";
+    case ClockState::kFreeRunning:
+      return "free-running";
+    default:
+      return "PPS error";
+  }
+}
+
+std::string Text(double value, int num_decimals) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", num_decimals, value);
+  return text.data();
+}
 
 }  // namespace
 
@@ -32,6 +61,12 @@ void Service::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
 void Service::AdvanceTo(Utime host_time) {
   if (!silent_since_ || *silent_since_ > host_time) silent_since_ = host_time;
   now_ = host_time;
+  if (!second_began_ || *second_began_ > host_time) second_began_ = host_time;
+  if (const auto elapsed = host_time - *second_began_; elapsed >= kRatePeriod) {
+    data_packets_per_s_ = std::llround(static_cast<double>(num_data_packets_) / ToSeconds(elapsed));
+    num_data_packets_ = 0;
+    second_began_ = host_time;
+  }
   if (const auto bundle = bundler_.AdvanceTo(host_time)) PublishAndConsume(*bundle);
 }
 
@@ -65,6 +100,7 @@ void Service::Consume(const PacketBundle& bundle) {
   }
   for (const auto& item : bundle.items) {
     if (item.udp_port == params_.data_port) {
+      ++num_data_packets_;
       if (decoder_.OnDataPayload(item.host_time, bundle.PayloadOf(item))) silent_since_ = item.host_time;
     } else if (item.udp_port == params_.position_port) {
       decoder_.OnPositionPayload(item.host_time, bundle.PayloadOf(item));
@@ -76,8 +112,7 @@ void Service::Consume(const PacketBundle& bundle) {
 }
 
 void Service::PublishTurn(const Turn& turn) {
-  is_locked_sensor_unused_ = turn.clock.state == ClockState::kLocked && turn.clock.source == TimeSource::kHost;
-  last_host_minus_sensor_ = turn.clock.host_minus_sensor.value_or(std::chrono::microseconds(0));
+  NoteClock(turn.clock);
   bus::Publish(bus_, bus::kLidarClock, ToClockMessage(turn, raw_seq_));
   for (const auto& part : ToScanMessages(turn, raw_seq_, params_.use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
     bus::Publish(bus_, bus::kLidarScan, part);
@@ -88,6 +123,44 @@ void Service::PublishSentence(const SentenceOfLidar& sentence) {
   bus::Publish(bus_, bus::kLidarNmea, ToMessage(sentence, sentence_seq_++, raw_seq_));
 }
 
+void Service::NoteClock(const ClockReading& clock) {
+  if (noted_state_ == clock.state && noted_source_ == clock.source) return;
+  std::string line = "sensor clock: ";
+  if (noted_state_ && noted_state_ != clock.state) line += std::string(Text(*noted_state_)) + " -> ";
+  line += Text(clock.state);
+  line += clock.source == TimeSource::kSensor ? "; turns carry the sensor's time" : "; turns carry this computer's time";
+  if (clock.host_minus_sensor) line += "; it is " + Text(ToSeconds(*clock.host_minus_sensor), 6) + " s ahead of the sensor's";
+  noted_state_ = clock.state;
+  noted_source_ = clock.source;
+  if (on_notice_) on_notice_(line);
+}
+
+// What is wrong, for people; empty when nothing is.
+std::string Service::Complaint() const {
+  if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
+    const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());
+    if (!decoder_.last_refusal().empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + decoder_.last_refusal();
+    if (!bundler_.foreign_sensor().empty())
+      return "no usable lidar packets for " + seconds +
+             " s; the last was refused: a packet of another sensor: " + std::string(bundler_.foreign_sensor());
+    return "no lidar packets for " + seconds + " s";
+  }
+  const auto& telemetry = decoder_.telemetry();
+  if (telemetry && telemetry->is_shut_down) {
+    return "the lidar has shut down for its temperature: " + std::to_string(telemetry->top_board_celsius) + " degrees C at the top board, " +
+           std::to_string(telemetry->bottom_board_celsius) + " at the bottom board";
+  }
+  const auto& clock = decoder_.last_clock();
+  if (params_.decoder.time == TimeChoice::kAuto && clock && clock->state == ClockState::kLocked && clock->source == TimeSource::kHost) {
+    return "this computer's clock is " + Text(ToSeconds(clock->host_minus_sensor.value_or(std::chrono::microseconds(0))), 3) +
+           " s ahead of the sensor's, which is locked to GNSS: turns carry the computer's time until it is set";
+  }
+  if (params_.decoder.time == TimeChoice::kSensor && clock && clock->state != ClockState::kLocked) {
+    return "turns carry the sensor's time as configured, but its clock is not locked to GNSS: " + std::string(Text(clock->state));
+  }
+  return {};
+}
+
 HealthReport Service::Report() const {
   HealthReport report;
   report.counters = bundler_.counters();
@@ -95,18 +168,19 @@ HealthReport Service::Report() const {
   report.counters.insert(report.counters.end(), decoder_counters.begin(), decoder_counters.end());
   report.counters.push_back({"messages_refused", num_refused_messages_});
   report.counters.push_back({"packets_other_port", num_other_port_});
-  if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
-    const auto seconds = std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count();
-    report.state = HealthState::kDegraded;
-    report.reason = decoder_.last_refusal().empty() ? "no lidar packets for " + std::to_string(seconds) + " s"
-                                                    : "no usable lidar packets for " + std::to_string(seconds) +
-                                                          " s; the last was refused: " + std::string(decoder_.last_refusal());
+  // Values now, not counts: their names end in a unit.
+  report.counters.push_back({"data_packets_per_s", data_packets_per_s_});
+  report.counters.push_back({"rotation_rpm", std::llround(decoder_.last_rate_radps() / kTwoPi * 60.0)});
+  if (const auto phase_cdeg = decoder_.phase_cdeg()) report.counters.push_back({"rotation_phase_cdeg", *phase_cdeg});
+  if (const auto& telemetry = decoder_.telemetry()) {
+    report.counters.push_back({"top_board_celsius", telemetry->top_board_celsius});
+    report.counters.push_back({"bottom_board_celsius", telemetry->bottom_board_celsius});
+    report.counters.push_back({"thermal_shutdown_celsius", telemetry->shutdown_celsius});
+    report.counters.push_back({"power_up_celsius", telemetry->power_up_celsius});
+    report.counters.push_back({"is_thermally_shut_down", telemetry->is_shut_down ? 1 : 0});
   }
-  if (report.state == HealthState::kOk && params_.decoder.time == TimeChoice::kAuto && is_locked_sensor_unused_) {
-    report.state = HealthState::kDegraded;
-    report.reason = "this computer's clock is " + std::to_string(ToSeconds(last_host_minus_sensor_)) +
-                    " s off the sensor's, which is locked to GNSS: turns carry the computer's time until it is set";
-  }
+  report.reason = Complaint();
+  if (!report.reason.empty()) report.state = HealthState::kDegraded;
   return report;
 }
 

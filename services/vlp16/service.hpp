@@ -1,7 +1,9 @@
 // The vlp16 process without its sources: datagrams or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_NMEA, LIDAR_CLOCK and LIDAR_SCAN out.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <string>
 
 #include "common/bus/bus.hpp"
 #include "common/core/bytes.hpp"
@@ -30,12 +32,17 @@ class Service {
 
   HealthReport Report() const;
 
+  /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the turns, changes.
+  void OnNotice(std::function<void(const std::string&)> handler) { on_notice_ = std::move(handler); }
+
  private:
   void OnMessage(const lidar_packets_t& message);
   void PublishAndConsume(const PacketBundle& bundle);
   void Consume(const PacketBundle& bundle);
   void PublishTurn(const Turn& turn);
   void PublishSentence(const SentenceOfLidar& sentence);
+  void NoteClock(const ClockReading& clock);
+  std::string Complaint() const;
 
   bus::Bus& bus_;
   Params params_;
@@ -47,9 +54,12 @@ class Service {
   std::int64_t num_other_port_ = 0;    // payloads in a log that were recorded on ports other than the config says
   std::optional<Utime> silent_since_;  // host time of the last usable data packet, or at which waiting began
   Utime now_{};                        // host time so far
-  // Of the last turn.
-  bool is_locked_sensor_unused_ = false;
-  std::chrono::microseconds last_host_minus_sensor_{0};
+  std::int64_t num_data_packets_ = 0;  // in the second that runs
+  std::int64_t data_packets_per_s_ = 0;
+  std::optional<Utime> second_began_;
+  std::function<void(const std::string&)> on_notice_;
+  std::optional<ClockState> noted_state_;
+  std::optional<TimeSource> noted_source_;
 };
 
 }  // namespace lookout::vlp16

@@ -34,6 +34,8 @@ std::int32_t ToWire(ClockState state) {
       return lidar_clock_t::STATE_LOCKED_WITHOUT_TIME;
     case ClockState::kLocked:
       return lidar_clock_t::STATE_LOCKED;
+    case ClockState::kFreeRunning:
+      return lidar_clock_t::STATE_FREE_RUNNING;
     default:
       return lidar_clock_t::STATE_ERROR;
   }
@@ -146,7 +148,7 @@ lidar_clock_t ToClockMessage(const Turn& turn, std::int64_t raw_seq) {
   message.pps = clock.pps.value_or(-1);
   message.rmc_age_us = clock.rmc_age.value_or(microseconds(-1)).count();
   message.offset_s = clock.host_minus_sensor ? ToSeconds(*clock.host_minus_sensor) : kUnknown;
-  message.drift_ppm = kUnknown;
+  message.drift_ppm = clock.drift_ppm.value_or(kUnknown);
   message.rotation_rpm = turn.rate_radps / kTwoPi * kSecondsPerMinute;
   message.num_packets = turn.counts.num_packets;
   message.num_lost_packets = turn.counts.num_lost;

@@ -5,6 +5,7 @@
 
 #include "common/core/angles.hpp"
 #include "services/vlp16/core/data_packet.hpp"
+#include "services/vlp16/core/foreign_sensor.hpp"
 
 namespace lookout::vlp16 {
 
@@ -21,6 +22,7 @@ std::optional<PacketBundle> Bundler::Add(Utime host_time, int udp_port, Bytes pa
   }
   if (is_data && payload.size() != format::kDataPacketSizeBytes) {
     ++num_data_wrong_size_;
+    foreign_sensor_ = NameOfForeignPayload(payload);
     return std::nullopt;
   }
   if (!is_data && payload.size() != format::kPositionPacketSizeBytes) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -55,6 +56,9 @@ class Bundler {
 
   std::vector<Counter> counters() const;
 
+  /// Sensor that the last payload of a wrong size on the data port seems to come from; empty when it is not known, or none came. For people.
+  std::string_view foreign_sensor() const { return foreign_sensor_; }
+
  private:
   PacketBundle Close();
   bool EndsTurn(Bytes payload);
@@ -65,6 +69,7 @@ class Bundler {
   PacketBundle bundle_;
   std::int64_t next_seq_ = 0;
   std::optional<int> last_azimuth_cdeg_;
+  std::string_view foreign_sensor_;  // a literal
   std::int64_t num_other_port_ = 0;
   std::int64_t num_data_wrong_size_ = 0;
   std::int64_t num_position_wrong_size_ = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "common/core/bytes.hpp"
@@ -18,23 +19,23 @@ enum class DataFault {
   kNone,
   kSize,
   kFlag,          // a block does not begin with the flag
-  kAzimuth,       // 36000 or more: an angle that is not one says that the block cannot be trusted
+  kAzimuth,       // beyond 360 deg by more than rounding: an angle that is not one says that the block cannot be trusted
   kReturnMode,    // not one of the three
-  kStamp,         // beyond the hour
   kAzimuthOrder,  // the blocks go round more than once, which no motor does in a millisecond
   kDualPair,      // dual return, but the two blocks of a pair differ in azimuth
 };
-inline constexpr std::array<std::string_view, 8> kDataFaultNames{"data_packets_whole",     "data_bad_size",        "data_bad_flag",
-                                                                 "data_bad_azimuth",       "data_bad_return_mode", "data_bad_stamp",
-                                                                 "data_bad_azimuth_order", "data_bad_dual_pair"};
+inline constexpr std::array<std::string_view, 7> kDataFaultNames{"data_packets_whole", "data_bad_size",        "data_bad_flag",
+                                                                 "data_bad_azimuth",   "data_bad_return_mode", "data_bad_azimuth_order",
+                                                                 "data_bad_dual_pair"};
 
 /// A step is a block, or in dual return a pair of blocks: two firing sequences in format::kBlockPeriod.
 struct DataPacket {
   Bytes payload;               // format::kDataPacketSizeBytes, checked; belongs to the caller
-  std::uint32_t stamp_us = 0;  // of the first shot, past the hour
+  std::uint32_t stamp_us = 0;  // of the first shot, past the hour; in a leap second, and of a clock that never was set, it may be an hour or more
   ReturnMode mode = ReturnMode::kStrongest;
   std::uint8_t product = 0;
   int num_steps = 0;
+  bool has_wrapped_azimuth = false;                    // a block said 36000 or a little more, and was taken as 0 or a little more
   std::array<int, format::kNumBlocks> azimuth_cdeg{};  // [num_steps] of the first shot of each, 0 to 35999
 
   int num_returns() const { return mode == ReturnMode::kDual ? 2 : 1; }
@@ -53,17 +54,29 @@ DataPacketResult ParseDataPacket(Bytes payload);
 inline constexpr int kMaxGapCdeg = 99;
 static_assert(kMaxGapCdeg <= 1.25 * format::kMaxRpm / 60.0 * format::kAzimuthsPerTurn * std::chrono::duration<double>(format::kBlockPeriod).count());
 
-/// How far the head turns in each step, and how long the packet took.
+/// A part of the circle that the head went through without firing, or without being heard.
+struct Gap {
+  int from_cdeg = 0;  // where the next shot was due
+  int to_cdeg = 0;    // where it came
+};
+
+/// How far the head turns in each step and when, and how long the packet took.
 struct Steps {
-  std::array<int, format::kNumBlocks> gap_cdeg{};  // [num_steps] per format::kBlockPeriod
-  std::chrono::nanoseconds duration{0};            // from the first shot of the packet to that of the next, jumps at the same rate included
+  std::array<int, format::kNumBlocks> gap_cdeg{};                   // [num_steps] per format::kBlockPeriod
+  std::array<std::chrono::nanoseconds, format::kNumBlocks> time{};  // [num_steps] since the first shot of the packet
+  std::chrono::nanoseconds duration{0};                             // from the first shot of the packet to that of the next
+  std::optional<Gap> jump;                                          // the widest, where the head did not fire for a while
+
+  /// Azimuth at which the next packet begins when the head fires on.
+  int end_cdeg = 0;
 };
 
 /// The manual, 9.5: the gap of a step is the azimuth of the next minus its own, across 0. The last step has the last gap before it that is
 /// a rate. Where a gap is a jump, or goes back, the median of the others stands in.
 ///
-/// @param fallback_cdeg  for a packet without one gap that is a rate
-Steps MeasureSteps(const DataPacket& packet, int fallback_cdeg);
+/// @param known_cdeg  per format::kBlockPeriod, from packets before; 0 = not known. A jump takes as long as the head needs at this rate, else at
+///                    that of this packet, which is known to some percent only; it also stands in for the gaps of a packet that has no rate.
+Steps MeasureSteps(const DataPacket& packet, double known_cdeg);
 
 /// @return azimuth in [0, 36000) after going from `from_cdeg` to `to_cdeg` clockwise
 constexpr int ClockwiseCdeg(int from_cdeg, int to_cdeg) {

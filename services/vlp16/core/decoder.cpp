@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "services/vlp16/core/foreign_sensor.hpp"
+
 namespace lookout::vlp16 {
 
 namespace {
@@ -10,19 +12,52 @@ namespace {
 // More than ModelJudge needs when nothing is lost: without an interval in so many packets they are no stream.
 constexpr std::size_t kMaxHeld = 16;
 
+void Add(SequenceCounts& sum, const SequenceCounts& counts) {
+  sum.num_lost += counts.num_lost;
+  sum.num_duplicates += counts.num_duplicates;
+  sum.num_reordered += counts.num_reordered;
+  sum.num_late += counts.num_late;
+  sum.num_overlapping += counts.num_overlapping;
+  sum.num_restarts += counts.num_restarts;
+  sum.num_clock_steps += counts.num_clock_steps;
+  sum.num_disagreements += counts.num_disagreements;
+}
+
+// Azimuth at the first whole second of the sensor's clock within the packet, if there is one.
+std::optional<int> PhaseCdeg(const PlacedPacket& placed) {
+  constexpr std::int64_t kMicrosecondsPerSecond = 1'000'000;
+  const std::int64_t into_second_us = placed.packet.stamp_us % kMicrosecondsPerSecond;
+  const std::chrono::nanoseconds until_second = std::chrono::microseconds(kMicrosecondsPerSecond - into_second_us) % std::chrono::seconds(1);
+  for (int step = placed.packet.num_steps - 1; step >= 0; --step) {
+    const auto since_step = until_second - placed.steps.time[static_cast<std::size_t>(step)];
+    if (since_step < std::chrono::nanoseconds(0)) continue;
+    if (since_step >= format::kBlockPeriod) return std::nullopt;
+    const auto turned_cdeg = placed.steps.gap_cdeg[static_cast<std::size_t>(step)] * since_step / format::kBlockPeriod;
+    return static_cast<int>((placed.packet.azimuth_cdeg[static_cast<std::size_t>(step)] + turned_cdeg) % format::kAzimuthsPerTurn);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Decoder::Decoder(const DecoderParams& params, TurnHandler on_turn, SentenceHandler on_sentence)
-    : params_(params),
-      on_turn_(std::move(on_turn)),
-      on_sentence_(std::move(on_sentence)),
-      state_(params, [this](const Turn& turn) { OnTurn(turn); }) {}
+    : params_(params), on_turn_(std::move(on_turn)), on_sentence_(std::move(on_sentence)), state_(MakeState()) {}
+
+Decoder::State Decoder::MakeState() {
+  return State(
+      params_, [this](const PlacedPacket& placed) { OnPacket(placed); }, [this](const Turn& turn) { OnTurn(turn); });
+}
 
 bool Decoder::OnDataPayload(Utime host_time, Bytes payload) {
   const auto result = ParseDataPacket(payload);
   const auto fault = static_cast<std::size_t>(result.fault);
-  if (result.fault != DataFault::kNone) return Refuse(totals_.data_faults[fault], kDataFaultNames[fault]);
   ++totals_.data_faults[fault];
+  if (result.fault != DataFault::kNone) {
+    const auto name = NameOfForeignPayload(payload);
+    return Refuse(name.empty() ? std::string(kDataFaultNames[fault]) : "a packet of another sensor: " + std::string(name));
+  }
+  if (result.packet.has_wrapped_azimuth) ++totals_.num_wrapped_azimuths;
+  if (result.packet.stamp_us >= format::kMicrosecondsPerHour) ++totals_.num_stamps_beyond_hour;
   const auto verdict = state_.judge.Judge(result.packet);
   if (verdict == ModelVerdict::kUndecided) {
     if (state_.held.size() == kMaxHeld) ReleaseHeld(ModelVerdict::kUndecided);
@@ -51,52 +86,54 @@ bool Decoder::OnVerdict(Utime host_time, const DataPacket& packet, ModelVerdict 
       return Refuse(totals_.num_hdl32e, "the sensor is an HDL-32E, not of the VLP-16 family");
     case ModelVerdict::kUndecided:
       return Refuse(totals_.num_undecided, "product 0x21 may be a VLP-16 or an HDL-32E, and its packets are too few or too far apart to tell");
-    default:
-      return Refuse(totals_.num_unknown_product, "unknown product byte");
+    default: {
+      ++totals_.num_unknown_product;
+      const auto name = NameOfForeignPayload(packet.payload);
+      return Refuse(name.empty() ? "unknown product byte " + std::to_string(packet.product) : "a packet of another sensor: " + std::string(name));
+    }
   }
 }
 
 bool Decoder::Take(Utime host_time, const DataPacket& packet, Model model) {
-  auto& counts = state_.counts;
-  ++counts.num_packets;
-  const Steps steps = MeasureSteps(packet, state_.assembler.last_gap_cdeg());
-  const PacketPlace place = state_.order.Place(packet, steps.duration);
-  switch (place.kind) {
-    case PacketKind::kDuplicate:
-      ++counts.num_duplicates;
-      return Refuse(totals_.num_duplicates, "came twice");
-    case PacketKind::kReordered:
-      ++counts.num_reordered;
-      return Refuse(totals_.num_reordered, "came late");
-    case PacketKind::kOverlapping:
-      return Refuse(totals_.num_overlapping, "packets follow each other faster than a VLP-16 sends them");
-    case PacketKind::kJump:
-      ++totals_.num_jumps;
-      state_.assembler.End(counts);
-      state_.clock.ForgetOffset();
-      break;
+  ++state_.num_packets;
+  switch (state_.sequencer.Add(host_time, packet, model)) {
+    case PacketVerdict::kDuplicate:
+      return Refuse("came twice");
+    case PacketVerdict::kLate:
+      return Refuse("came too late");
+    case PacketVerdict::kOverlapping:
+      return Refuse("packets follow each other faster than one VLP-16 sends them");
     default:
-      break;
+      last_refusal_.clear();
+      return true;
   }
-  counts.num_lost += place.num_lost;
-  totals_.num_lost += place.num_lost;
-  state_.clock.OnDataPacket(host_time, place.time, steps.duration);
+}
+
+void Decoder::OnPacket(const PlacedPacket& placed) {
+  const PacketCounts counts = Counts();
+  if (placed.is_restart) state_.assembler.End(counts);
+  state_.clock.OnDataPacket(placed);
+  if (const auto phase_cdeg = PhaseCdeg(placed)) state_.phase_cdeg = phase_cdeg;
   const auto num_capped = state_.assembler.num_capped();
-  state_.assembler.Add(packet, steps, {model, place.time, place.num_lost, state_.clock.Read(host_time), counts});
+  state_.assembler.Add(placed, state_.clock.Read(placed.host_time), counts);
   totals_.num_capped_turns += state_.assembler.num_capped() - num_capped;
-  last_refusal_ = {};
-  return true;
+}
+
+PacketCounts Decoder::Counts() const {
+  const auto& counts = state_.sequencer.counts();
+  return {state_.num_packets, counts.num_lost, counts.num_duplicates, counts.num_reordered};
 }
 
 void Decoder::OnPositionPayload(Utime host_time, Bytes payload) {
   auto result = ParsePositionPacket(payload);
   ++totals_.position_faults[static_cast<std::size_t>(result.fault)];
-  if (result.fault != PositionFault::kNone) return;
-  state_.clock.OnPositionPacket(host_time, result.packet);
+  if (result.fault != PositionFault::kNone && result.fault != PositionFault::kSentence) return;
+  const std::uint32_t stamp_us = result.packet.stamp_us;
+  const auto sensor_time = state_.sequencer.TimeOfStamp(stamp_us);
+  state_.telemetry = result.packet.telemetry;
+  state_.clock.OnPositionPacket(host_time, result.packet, sensor_time);
   if (result.packet.sentence.empty()) return;
   ++totals_.num_sentences;
-  const std::uint32_t stamp_us = result.packet.stamp_us;
-  const auto sensor_time = state_.order.TimeOfStamp(stamp_us);
   const auto& turn_clock = state_.assembler.clock();
   const Utime time = sensor_time && turn_clock ? turn_clock->ToUtime(*sensor_time) : state_.clock.TimeOfStampAlone(host_time, stamp_us);
   on_sentence_({time, host_time, stamp_us, result.packet.pps, std::move(result.packet.sentence)});
@@ -104,15 +141,21 @@ void Decoder::OnPositionPayload(Utime host_time, Bytes payload) {
 
 void Decoder::Flush() {
   if (!state_.held.empty()) ReleaseHeld(state_.judge.JudgeNow());
-  state_.assembler.End(state_.counts);
+  state_.sequencer.Flush();
+  state_.assembler.End(Counts());
 }
 
 void Decoder::Reset() {
-  state_ = State(params_, [this](const Turn& turn) { OnTurn(turn); });
+  Add(past_counts_, state_.sequencer.counts());
+  state_ = MakeState();
 }
 
 bool Decoder::Refuse(std::int64_t& counter, std::string_view reason) {
   ++counter;
+  return Refuse(reason);
+}
+
+bool Decoder::Refuse(std::string_view reason) {
   last_refusal_ = reason;
   return false;
 }
@@ -120,6 +163,9 @@ bool Decoder::Refuse(std::int64_t& counter, std::string_view reason) {
 void Decoder::OnTurn(const Turn& turn) {
   ++totals_.num_turns;
   if (turn.is_partial_start || turn.is_partial_end) ++totals_.num_partial_turns;
+  if (turn.has_hole) ++totals_.num_turns_with_hole;
+  last_clock_ = turn.clock;
+  last_rate_radps_ = turn.rate_radps;
   on_turn_(turn);
 }
 
@@ -127,16 +173,24 @@ std::vector<Counter> Decoder::counters() const {
   std::vector<Counter> counters;
   for (std::size_t i = 0; i < kDataFaultNames.size(); ++i) counters.push_back({kDataFaultNames[i], totals_.data_faults[i]});
   for (std::size_t i = 0; i < kPositionFaultNames.size(); ++i) counters.push_back({kPositionFaultNames[i], totals_.position_faults[i]});
+  SequenceCounts sequence = past_counts_;
+  Add(sequence, state_.sequencer.counts());
   counters.insert(counters.end(), {{"data_hdl32e", totals_.num_hdl32e},
                                    {"data_model_undecided", totals_.num_undecided},
                                    {"data_unknown_product", totals_.num_unknown_product},
-                                   {"data_lost", totals_.num_lost},
-                                   {"data_duplicate", totals_.num_duplicates},
-                                   {"data_reordered", totals_.num_reordered},
-                                   {"data_overlapping", totals_.num_overlapping},
-                                   {"sensor_time_jumps", totals_.num_jumps},
+                                   {"data_azimuth_wrapped", totals_.num_wrapped_azimuths},
+                                   {"data_stamp_beyond_hour", totals_.num_stamps_beyond_hour},
+                                   {"data_lost", sequence.num_lost},
+                                   {"data_duplicate", sequence.num_duplicates},
+                                   {"data_reordered", sequence.num_reordered},
+                                   {"data_late", sequence.num_late},
+                                   {"data_overlapping", sequence.num_overlapping},
+                                   {"data_azimuth_disagrees", sequence.num_disagreements},
+                                   {"sensor_restarts", sequence.num_restarts},
+                                   {"sensor_clock_steps", sequence.num_clock_steps},
                                    {"turns", totals_.num_turns},
                                    {"turns_partial", totals_.num_partial_turns},
+                                   {"turns_with_hole", totals_.num_turns_with_hole},
                                    {"turns_capped", totals_.num_capped_turns},
                                    {"sentences", totals_.num_sentences}});
   return counters;

@@ -14,7 +14,7 @@
 #include "common/core/utime.hpp"
 #include "services/vlp16/core/data_packet.hpp"
 #include "services/vlp16/core/model.hpp"
-#include "services/vlp16/core/packet_order.hpp"
+#include "services/vlp16/core/packet_sequencer.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 #include "services/vlp16/core/scan_assembler.hpp"
 #include "services/vlp16/core/sensor_clock.hpp"
@@ -62,8 +62,18 @@ class Decoder {
   /// Work done, losses, and each kind of refusal, since the start of the process.
   std::vector<Counter> counters() const;
 
-  /// Why the last data payload was not usable; empty when it was. For people.
-  std::string_view last_refusal() const { return last_refusal_; }
+  /// Why the last data payload was not usable, with the name of the sensor it seems to come from; empty when it was. For people.
+  const std::string& last_refusal() const { return last_refusal_; }
+
+  /// Of the last turn.
+  const std::optional<ClockReading>& last_clock() const { return last_clock_; }
+  double last_rate_radps() const { return last_rate_radps_; }
+
+  /// Where the head was at the last whole second of the sensor's clock, for one that is locked to a phase; nullopt before the first.
+  std::optional<int> phase_cdeg() const { return state_.phase_cdeg; }
+
+  /// Of the last position packet; nullopt when its firmware does not tell, or none has come.
+  const std::optional<Telemetry>& telemetry() const { return state_.telemetry; }
 
  private:
   struct HeldPacket {
@@ -77,41 +87,48 @@ class Decoder {
     std::int64_t num_unknown_product = 0;
     std::int64_t num_hdl32e = 0;
     std::int64_t num_undecided = 0;
-    std::int64_t num_lost = 0;
-    std::int64_t num_duplicates = 0;
-    std::int64_t num_reordered = 0;
-    std::int64_t num_overlapping = 0;
-    std::int64_t num_jumps = 0;
+    std::int64_t num_wrapped_azimuths = 0;
+    std::int64_t num_stamps_beyond_hour = 0;
     std::int64_t num_turns = 0;
     std::int64_t num_partial_turns = 0;
+    std::int64_t num_turns_with_hole = 0;
     std::int64_t num_capped_turns = 0;
     std::int64_t num_sentences = 0;
   };
 
   /// What a start mark makes void.
   struct State {
-    State(const DecoderParams& params, TurnHandler on_turn)
-        : judge(params.model), clock(params.time), assembler(params.cut_azimuth_rad, std::move(on_turn)) {}
+    State(const DecoderParams& params, PacketSequencer::Handler on_packet, TurnHandler on_turn)
+        : judge(params.model), sequencer(std::move(on_packet)), clock(params.time), assembler(params.cut_azimuth_rad, std::move(on_turn)) {}
     ModelJudge judge;
-    PacketOrder order;
+    PacketSequencer sequencer;
     SensorClock clock;
     ScanAssembler assembler;
-    PacketCounts counts;
+    std::int64_t num_packets = 0;  // whole ones of a known model
     std::vector<HeldPacket> held;  // until the model is known
+    std::optional<int> phase_cdeg;
+    std::optional<Telemetry> telemetry;
   };
 
+  State MakeState();
   bool OnVerdict(Utime host_time, const DataPacket& packet, ModelVerdict verdict);
   void ReleaseHeld(ModelVerdict verdict);
   bool Take(Utime host_time, const DataPacket& packet, Model model);
   bool Refuse(std::int64_t& counter, std::string_view reason);
+  bool Refuse(std::string_view reason);
+  void OnPacket(const PlacedPacket& placed);
   void OnTurn(const Turn& turn);
+  PacketCounts Counts() const;
 
   DecoderParams params_;
   TurnHandler on_turn_;
   SentenceHandler on_sentence_;
   Totals totals_;
+  SequenceCounts past_counts_;  // of the runs before the last start mark
   State state_;
-  std::string_view last_refusal_;
+  std::string last_refusal_;
+  std::optional<ClockReading> last_clock_;
+  double last_rate_radps_ = 0.0;
 };
 
 }  // namespace lookout::vlp16

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "common/core/angles.hpp"
+#include "services/vlp16/core/foreign_sensor.hpp"
 
 namespace lookout::vlp16 {
 
@@ -41,13 +42,20 @@ const Beams& BeamsOf(Model model) {
 }
 
 ModelVerdict ModelJudge::Judge(const DataPacket& packet) {
-  if (choice_ == ModelChoice::kVlp16) return ModelVerdict::kVlp16;
-  if (choice_ == ModelChoice::kPuckHiRes) return ModelVerdict::kPuckHiRes;
-  if (packet.product == kProductVlp16) return ModelVerdict::kVlp16;
-  if (packet.product == kProductPuckHiRes) return ModelVerdict::kPuckHiRes;
-  if (packet.product != kProductHdl32e) return ModelVerdict::kUnknown;
-  if (shared_byte_verdict_) return *shared_byte_verdict_;
+  const bool is_chosen = choice_ != ModelChoice::kAuto;
+  const auto chosen = choice_ == ModelChoice::kPuckHiRes ? ModelVerdict::kPuckHiRes : ModelVerdict::kVlp16;
+  if (packet.product != kProductHdl32e) {
+    const bool is_own = packet.product == kProductVlp16 || packet.product == kProductPuckHiRes;
+    if (is_chosen) return is_own || NameOfProduct(packet.product).empty() ? chosen : ModelVerdict::kUnknown;
+    if (!is_own) return ModelVerdict::kUnknown;
+    return packet.product == kProductVlp16 ? ModelVerdict::kVlp16 : ModelVerdict::kPuckHiRes;
+  }
+  const auto verdict = JudgeInterval(packet);
+  return is_chosen && verdict != ModelVerdict::kHdl32e ? chosen : verdict;
+}
 
+ModelVerdict ModelJudge::JudgeInterval(const DataPacket& packet) {
+  if (shared_byte_verdict_) return *shared_byte_verdict_;
   if (last_stamp_us_) {
     const std::int64_t interval_us = (packet.stamp_us + kMicrosecondsPerHour - *last_stamp_us_) % kMicrosecondsPerHour;
     const double interval = static_cast<double>(interval_us) * 1000.0 / static_cast<double>(packet.period().count());

@@ -61,11 +61,18 @@ inline constexpr double kMaxRpm = 1200.0;
 // Both packets stamp in microseconds past the hour of UTC (of its own start where it has no PPS).
 inline constexpr std::int64_t kMicrosecondsPerHour = 3'600'000'000;
 
-// Position packet ("telemetry packet"); bytes that are not named are unused or of no meaning here.
+// Position packet ("telemetry packet"); bytes that are not named are unused or of no meaning here. Those of temperatures and of the thermal
+// state are zero in older firmware (the manual, 9.4; the same places in lidar-utils and in velodyne_decoder).
 inline constexpr int kPositionPort = 8308;  // as delivered
 inline constexpr std::size_t kPositionPacketSizeBytes = 512;
-inline constexpr std::size_t kPositionStampOffset = 198;  // u32, microseconds past the hour
+inline constexpr std::size_t kTopBoardTemperatureOffset = 187;     // u8, degrees Celsius
+inline constexpr std::size_t kBottomBoardTemperatureOffset = 188;  // u8, degrees Celsius
+inline constexpr std::size_t kPositionStampOffset = 198;           // u32, microseconds past the hour
 inline constexpr std::size_t kPpsOffset = 202;
+inline constexpr std::size_t kThermalStateOffset = 203;         // kThermalShutdown while the lasers are off for their temperature
+inline constexpr std::size_t kShutdownTemperatureOffset = 204;  // u8, degrees Celsius, of the last shutdown
+inline constexpr std::size_t kPowerUpTemperatureOffset = 205;   // u8, degrees Celsius
+inline constexpr std::uint8_t kThermalShutdown = 1;
 inline constexpr std::size_t kSentenceOffset = 206;  // NMEA 0183, ended by CR LF NUL
 inline constexpr std::uint8_t kPpsAbsent = 0;
 inline constexpr std::uint8_t kPpsSynchronising = 1;

@@ -23,6 +23,9 @@ constexpr int kMaxBackHalfCdeg = 2 * kMaxGapCdeg;
 // The slowest turn takes 0.2 s. The caps leave a head that stands or starts some room, and hold times in 32 bits of nanoseconds.
 constexpr nanoseconds kMaxTurnDuration = std::chrono::seconds(2);
 constexpr int kMaxColumns = 65536;
+// The time behind a jump of a limited field of view is known to some tenths of a percent until the next packet comes. What lies farther back than
+// that can be was no such jump: the turn ends.
+constexpr nanoseconds kMaxOverlap = std::chrono::milliseconds(1);
 static_assert(kMaxTurnDuration < nanoseconds(std::numeric_limits<std::int32_t>::max()));
 constexpr int kUsualColumns = 2048;  // a turn at 600 rpm has 1808
 
@@ -63,27 +66,29 @@ void CopySequence(const std::uint8_t* bytes, const std::array<int, kNumLasers>& 
 ScanAssembler::ScanAssembler(double cut_azimuth_rad, std::function<void(const Turn&)> on_turn)
     : cut_half_cdeg_(static_cast<int>(std::llround(WrapTo2Pi(cut_azimuth_rad) / kRadPerHalfCdeg) % kHalfCdegPerTurn)), on_turn_(std::move(on_turn)) {}
 
-void ScanAssembler::Add(const DataPacket& packet, const Steps& steps, const Arrival& arrival) {
-  if (num_columns_ > 0 && (packet.mode != turn_.mode || arrival.model != turn_.model)) End(arrival.counts);
-  if (arrival.num_lost > 0) AddLoss(arrival, 2 * packet.azimuth_cdeg[0]);
-  nanoseconds time = arrival.time;
+void ScanAssembler::Add(const PlacedPacket& placed, const ClockReading& clock, const PacketCounts& counts) {
+  const DataPacket& packet = placed.packet;
+  if (num_columns_ > 0 && (packet.mode != turn_.mode || placed.model != turn_.model)) End(counts);
+  if (num_columns_ > 0 && placed.time < last_column_ - kMaxOverlap) End(counts);
+  if (placed.num_lost > 0) AddLoss(placed, 2 * packet.azimuth_cdeg[0], counts);
   for (int step = 0; step < packet.num_steps; ++step) {
-    const int gap_cdeg = steps.gap_cdeg[step];
-    for (int sequence = 0; sequence < kSequencesPerBlock; ++sequence) {
+    const int gap_cdeg = placed.steps.gap_cdeg[step];
+    nanoseconds time = placed.time + placed.steps.time[step];
+    if (num_columns_ > 0) time = std::max(time, last_column_);
+    for (int sequence = 0; sequence < kSequencesPerBlock; ++sequence, time += kSequencePeriod) {
       const int azimuth_half_cdeg = (2 * packet.azimuth_cdeg[step] + sequence * gap_cdeg) % kHalfCdegPerTurn;
       if (num_columns_ > 0 && CrossesCut(azimuth_half_cdeg)) {
         is_after_cut_ = true;
-        Finish(arrival.counts);
+        Finish(counts);
       } else if (num_columns_ == kMaxColumns || (num_columns_ > 0 && time - start_ > kMaxTurnDuration)) {
         ++num_capped_;
-        End(arrival.counts);
+        End(counts);
       }
-      if (num_columns_ == 0) Begin(packet, arrival, azimuth_half_cdeg, gap_cdeg, time);
+      if (num_columns_ == 0) Begin(placed, clock, azimuth_half_cdeg, gap_cdeg, time);
       AddColumn(packet, step, sequence, azimuth_half_cdeg, gap_cdeg, time);
-      time += kSequencePeriod;
     }
   }
-  last_gap_cdeg_ = steps.gap_cdeg[packet.num_steps - 1];
+  last_gap_cdeg_ = placed.steps.gap_cdeg[packet.num_steps - 1];
 }
 
 void ScanAssembler::End(const PacketCounts& counts) {
@@ -96,16 +101,16 @@ void ScanAssembler::End(const PacketCounts& counts) {
   Finish(counts);
 }
 
-void ScanAssembler::Begin(const DataPacket& packet, const Arrival& arrival, int azimuth_half_cdeg, int advance_half_cdeg, nanoseconds time) {
+void ScanAssembler::Begin(const PlacedPacket& placed, const ClockReading& clock, int azimuth_half_cdeg, int advance_half_cdeg, nanoseconds time) {
   const auto time_us = std::chrono::floor<std::chrono::microseconds>(time);
   start_ = time_us;
   turn_.number = num_turns_;
-  turn_.clock = arrival.clock;
-  clock_ = arrival.clock;
-  turn_.time = arrival.clock.ToUtime(time_us);
-  turn_.model = arrival.model;
-  beams_ = &BeamsOf(arrival.model);
-  turn_.mode = packet.mode;
+  turn_.clock = clock;
+  clock_ = clock;
+  turn_.time = clock.ToUtime(time_us);
+  turn_.model = placed.model;
+  beams_ = &BeamsOf(placed.model);
+  turn_.mode = placed.packet.mode;
   Reserve(std::max(kUsualColumns, turn_.num_columns()));
   // Without a turn before it, it begins at the cut when no column of its own could have been there.
   turn_.is_partial_start = !is_after_cut_ && Clockwise(cut_half_cdeg_, azimuth_half_cdeg) >= std::max(1, advance_half_cdeg);
@@ -158,23 +163,23 @@ void ScanAssembler::AddColumn(const DataPacket& packet, int step, int sequence, 
 
 // Where packets are missing, they were of the turn that goes on, or of two turns, one on each side of the cut; then a packet across the cut
 // counts for both. When a whole turn or more is missing, nothing on one side belongs to the other.
-void ScanAssembler::AddLoss(const Arrival& arrival, int azimuth_half_cdeg) {
+void ScanAssembler::AddLoss(const PlacedPacket& placed, int azimuth_half_cdeg, const PacketCounts& counts) {
   if (num_columns_ == 0) return;
   turn_.has_hole = true;
   const int sweep_half_cdeg = Clockwise(reach_half_cdeg_, azimuth_half_cdeg);
   const int to_cut_half_cdeg = Clockwise(reach_half_cdeg_, cut_half_cdeg_);
   const double gap_per_second_half_cdeg = 2.0 * last_gap_cdeg_ / ToSeconds(kBlockPeriod);
-  const double expected_half_cdeg = gap_per_second_half_cdeg * ToSeconds(nanoseconds(arrival.time) - last_column_);
+  const double expected_half_cdeg = gap_per_second_half_cdeg * ToSeconds(nanoseconds(placed.time) - last_column_);
   const bool is_whole_turn_missing = expected_half_cdeg - sweep_half_cdeg > 0.5 * kHalfCdegPerTurn;
   if (!is_whole_turn_missing && !CrossesCut(azimuth_half_cdeg)) {
-    turn_.num_lost_packets += arrival.num_lost;
+    turn_.num_lost_packets += placed.num_lost;
     return;
   }
   const double total_half_cdeg = is_whole_turn_missing ? expected_half_cdeg : sweep_half_cdeg;
-  const double before_cut = std::min(1.0, (to_cut_half_cdeg > 0 ? to_cut_half_cdeg : kHalfCdegPerTurn) / total_half_cdeg) * arrival.num_lost;
+  const double before_cut = std::min(1.0, (to_cut_half_cdeg > 0 ? to_cut_half_cdeg : kHalfCdegPerTurn) / total_half_cdeg) * placed.num_lost;
   turn_.num_lost_packets += static_cast<int>(std::ceil(before_cut));
-  if (is_whole_turn_missing) End(arrival.counts);
-  const double after_cut = Clockwise(cut_half_cdeg_, azimuth_half_cdeg) / total_half_cdeg * arrival.num_lost;
+  if (is_whole_turn_missing) End(counts);
+  const double after_cut = Clockwise(cut_half_cdeg_, azimuth_half_cdeg) / total_half_cdeg * placed.num_lost;
   num_lost_before_turn_ = static_cast<int>(std::ceil(after_cut));
 }
 

@@ -6,28 +6,22 @@
 #include <optional>
 
 #include "services/vlp16/core/data_packet.hpp"
-#include "services/vlp16/core/packet_order.hpp"
+#include "services/vlp16/core/packet_sequencer.hpp"
 #include "services/vlp16/core/turn.hpp"
 
 namespace lookout::vlp16 {
 
 class ScanAssembler {
  public:
-  /// What is known of a packet besides its bytes.
-  struct Arrival {
-    Model model = Model::kVlp16;
-    SensorTime time{0};  // of its first shot, greater than that of the packet before
-    int num_lost = 0;    // packets missing before it
-    ClockReading clock;  // for the turn that begins in it
-    PacketCounts counts;
-  };
-
   /// @param cut_azimuth_rad  a turn begins with the first column at or after it; resolution 0.005 deg, as of columns
   /// @param on_turn          called with each turn that has a column; the turn is the assembler's and changes after the call
   ScanAssembler(double cut_azimuth_rad, std::function<void(const Turn&)> on_turn);
 
   /// Cost: proportional to the returns; no trigonometry.
-  void Add(const DataPacket& packet, const Steps& steps, const Arrival& arrival);
+  ///
+  /// @param placed  its time is greater than that of the packet before
+  /// @param clock   for the turn that begins in it
+  void Add(const PlacedPacket& placed, const ClockReading& clock, const PacketCounts& counts);
 
   /// What follows does not belong to what was: ends the turn, if there is one.
   void End(const PacketCounts& counts);
@@ -41,10 +35,10 @@ class ScanAssembler {
   int last_gap_cdeg() const { return last_gap_cdeg_; }
 
  private:
-  void Begin(const DataPacket& packet, const Arrival& arrival, int azimuth_half_cdeg, int advance_half_cdeg, std::chrono::nanoseconds time);
+  void Begin(const PlacedPacket& placed, const ClockReading& clock, int azimuth_half_cdeg, int advance_half_cdeg, std::chrono::nanoseconds time);
   void Finish(const PacketCounts& counts);
   void AddColumn(const DataPacket& packet, int step, int sequence, int azimuth_half_cdeg, int gap_cdeg, std::chrono::nanoseconds time);
-  void AddLoss(const Arrival& arrival, int azimuth_half_cdeg);
+  void AddLoss(const PlacedPacket& placed, int azimuth_half_cdeg, const PacketCounts& counts);
   bool CrossesCut(int azimuth_half_cdeg) const;
   void Reserve(int num_columns);
 

@@ -1,5 +1,8 @@
 #include "services/vlp16/core/sensor_clock.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+
 #include "services/vlp16/core/packet_format.hpp"
 
 namespace lookout::vlp16 {
@@ -8,61 +11,91 @@ namespace {
 
 using std::chrono::microseconds;
 
-// Long enough that some datagram came without delay, short enough that two free clocks (50 ppm) drift by 0.1 ms only.
-constexpr microseconds kOffsetWindow = std::chrono::seconds(2);
-// Position packets come about every 7 ms, and the sensor tells of a lost PPS within a second or two.
-constexpr microseconds kMaxPositionAge = std::chrono::seconds(3);
+constexpr microseconds kHour(format::kMicrosecondsPerHour);
+// Position packets come about every 7 ms and repeat the RMC that comes every second; the sensor tells of a lost PPS within a second or two.
+constexpr microseconds kMaxAge = std::chrono::seconds(3);
+// An RMC belongs to the PPS before it and comes up to a second behind; one that is late by a second more is still told by its stamp.
+constexpr microseconds kMinStampBehindRmc = std::chrono::milliseconds(-500);
+constexpr microseconds kMaxStampBehindRmc = std::chrono::milliseconds(2500);
 // POSE is labelled by the host's clock (arrivals), turns by the sensor's. Farther apart than this they would place obstacles of a boat that turns
 // at 10 deg/s and goes 3 m/s more than 2.5 deg and 0.75 m wrong; up to this, the host's clock is taken to be kept by UTC with some delay.
 constexpr microseconds kMaxDisagreement = std::chrono::milliseconds(250);
-// Datagrams come late by milliseconds. What is off by more is a bad stamp, or, when it goes on, a step of the host's clock.
-constexpr microseconds kMaxLateness = std::chrono::seconds(1);
-constexpr int kSamplesOfAStep = 3;
-constexpr microseconds kHour(format::kMicrosecondsPerHour);
+constexpr microseconds kMaxDisagreementToStay = std::chrono::milliseconds(300);
+// An hour that was found is kept unless it is more than this off: half an hour would flip to and fro for a clock that is half an hour off.
+constexpr microseconds kMaxOffHour = std::chrono::minutes(45);
+// A receiver whose week counter of ten bits ran over says a date so much too early.
+constexpr std::chrono::days kGpsWeekRollover(1024 * 7);
 
-// The whole number of hours nearest to `duration`; half an hour goes up.
-microseconds NearestHours(microseconds duration) {
-  const microseconds shifted = duration + kHour / 2;
-  microseconds rest = shifted % kHour;
+// `value` plus or minus whole hours, nearest to `target`.
+microseconds InNearestHour(microseconds value, microseconds target) {
+  microseconds rest = (value - target + kHour / 2) % kHour;
   if (rest < microseconds(0)) rest += kHour;
-  return shifted - rest;
+  return target + rest - kHour / 2;
+}
+
+// UTC of a sentence, on the day that is nearest to the host's where it has no date, and where its date is off by whole rollovers.
+microseconds ToUtc(const SentenceTime& time, Utime host_time) {
+  using std::chrono::days;
+  const microseconds host = host_time.time_since_epoch();
+  if (!time.date) return time.time_of_day + std::chrono::round<days>(host - time.time_of_day);
+  const microseconds utc = time.date->time_since_epoch() + time.time_of_day;
+  const auto rollovers =
+      std::chrono::round<std::chrono::duration<int, std::ratio_multiply<days::period, std::ratio<kGpsWeekRollover.count()>>>>(host - utc);
+  return std::chrono::abs(host - utc - rollovers) <= days(1) ? utc + rollovers : utc;
 }
 
 }  // namespace
 
-void SensorClock::OnDataPacket(Utime host_time, SensorTime time, std::chrono::nanoseconds duration) {
-  const auto end = time + std::chrono::duration_cast<microseconds>(duration);
-  const Sample sample{time, host_time.time_since_epoch() - end};
-  const bool is_off = !minima_.empty() && std::chrono::abs(sample.host_minus_sensor - minima_.front().host_minus_sensor) > kMaxLateness;
-  num_off_ = is_off ? num_off_ + 1 : 0;
-  if (is_off && num_off_ < kSamplesOfAStep) return;
-  if (is_off) minima_.clear();
-  while (!minima_.empty() && minima_.back().host_minus_sensor >= sample.host_minus_sensor) minima_.pop_back();
-  minima_.push_back(sample);
-  while (minima_.front().time < time - kOffsetWindow) minima_.pop_front();
+void SensorClock::OnDataPacket(const PlacedPacket& packet) {
+  if (packet.is_restart) {
+    fit_ = {};
+    sensor_utc_.reset();
+    rmc_utc_.reset();
+    was_locked_ = false;
+    is_sensor_in_use_ = false;
+  }
+  const auto end = packet.time + std::chrono::duration_cast<microseconds>(packet.steps.duration);
+  fit_.Add(packet.time, packet.host_time.time_since_epoch() - end);
+  const bool is_rmc_fresh = rmc_ && std::chrono::abs(packet.host_time - rmc_->host_time) <= kMaxAge;
+  if (!rmc_utc_ && is_rmc_fresh) rmc_utc_ = rmc_->utc + (packet.host_time - rmc_->host_time) - packet.time;
+  FindHour(packet.packet.stamp_us, packet.time);
 }
 
-void SensorClock::OnPositionPacket(Utime host_time, const PositionPacket& packet) {
+void SensorClock::FindHour(std::uint32_t stamp_us, SensorTime time) {
+  const microseconds reference = rmc_utc_.value_or(fit_.offset());
+  const microseconds stamp_minus_time = microseconds(stamp_us) - time;
+  if (sensor_utc_) sensor_utc_ = InNearestHour(stamp_minus_time, *sensor_utc_);
+  if (!sensor_utc_ || std::chrono::abs(*sensor_utc_ - reference) > kMaxOffHour) sensor_utc_ = InNearestHour(stamp_minus_time, reference);
+}
+
+void SensorClock::OnPositionPacket(Utime host_time, const PositionPacket& packet, std::optional<SensorTime> time) {
   position_host_time_ = host_time;
   pps_ = packet.pps;
-  has_valid_rmc_ = packet.has_valid_rmc;
-  if (has_valid_rmc_) rmc_host_time_ = host_time;
+  has_valid_rmc_ = packet.time.has_value();
+  if (packet.time) {
+    const microseconds utc = ToUtc(*packet.time, host_time);
+    const bool is_new = !rmc_ || rmc_->utc != utc;
+    if (is_new) {
+      const microseconds behind = InNearestHour(microseconds(packet.stamp_us) - utc, microseconds(0));
+      rmc_ = Rmc{host_time, utc, behind >= kMinStampBehindRmc && behind <= kMaxStampBehindRmc};
+    }
+    if (time && is_new) rmc_utc_ = utc - *time;
+  }
+  if (State(host_time) == ClockState::kLocked) was_locked_ = true;
 }
 
-void SensorClock::ForgetOffset() { minima_.clear(); }
-
 ClockState SensorClock::State(Utime host_time) const {
-  if (!position_host_time_) return ClockState::kUnknown;
   // The host's clock may be set back: an age below zero says as little as a great one.
-  const microseconds age = host_time - *position_host_time_;
-  if (age > kMaxPositionAge || age < -kMaxPositionAge) return ClockState::kUnknown;
+  const auto is_old = [&](Utime time) { return std::chrono::abs(host_time - time) > kMaxAge; };
+  if (!position_host_time_ || is_old(*position_host_time_)) return ClockState::kUnknown;
   switch (pps_) {
     case format::kPpsAbsent:
-      return ClockState::kNoPps;
+      return was_locked_ ? ClockState::kFreeRunning : ClockState::kNoPps;
     case format::kPpsSynchronising:
       return ClockState::kAcquiring;
     case format::kPpsLocked:
-      return has_valid_rmc_ ? ClockState::kLocked : ClockState::kLockedWithoutTime;
+      if (!has_valid_rmc_ || is_old(rmc_->host_time)) return ClockState::kLockedWithoutTime;
+      return rmc_->is_agreeing ? ClockState::kLocked : ClockState::kFreeRunning;
     default:
       return ClockState::kError;
   }
@@ -70,26 +103,27 @@ ClockState SensorClock::State(Utime host_time) const {
 
 bool SensorClock::IsSensorInUse(ClockState state, microseconds host_minus_sensor) const {
   if (choice_ != TimeChoice::kAuto) return choice_ == TimeChoice::kSensor;
-  return state == ClockState::kLocked && std::chrono::abs(host_minus_sensor) <= kMaxDisagreement;
+  const auto limit = is_sensor_in_use_ ? kMaxDisagreementToStay : kMaxDisagreement;
+  return state == ClockState::kLocked && std::chrono::abs(host_minus_sensor) <= limit;
 }
 
 Utime SensorClock::TimeOfStampAlone(Utime host_time, std::uint32_t stamp_us) const {
-  const microseconds offset = host_time.time_since_epoch() - microseconds(stamp_us);
-  const microseconds hours = NearestHours(offset);
-  return IsSensorInUse(State(host_time), offset - hours) ? Utime(microseconds(stamp_us) + hours) : host_time;
+  const microseconds host = host_time.time_since_epoch();
+  const microseconds sensor = InNearestHour(microseconds(stamp_us), rmc_ ? rmc_->utc : host);
+  return IsSensorInUse(State(host_time), host - sensor) ? Utime(sensor) : host_time;
 }
 
-ClockReading SensorClock::Read(Utime host_time) const {
+ClockReading SensorClock::Read(Utime host_time) {
   ClockReading reading;
   reading.state = State(host_time);
   if (position_host_time_) reading.pps = pps_;
-  if (rmc_host_time_) reading.rmc_age = host_time - *rmc_host_time_;
-  const microseconds offset = minima_.front().host_minus_sensor;
-  const microseconds hours = NearestHours(offset);
-  reading.host_minus_sensor = offset - hours;
-  const bool is_sensor_time = IsSensorInUse(reading.state, offset - hours);
-  reading.source = is_sensor_time ? TimeSource::kSensor : TimeSource::kHost;
-  reading.offset = is_sensor_time ? hours : offset;
+  if (rmc_) reading.rmc_age = std::max(microseconds(0), host_time - rmc_->host_time);
+  const microseconds host_utc = fit_.offset();
+  reading.host_minus_sensor = host_utc - *sensor_utc_;
+  reading.drift_ppm = fit_.drift_ppm();
+  is_sensor_in_use_ = IsSensorInUse(reading.state, host_utc - *sensor_utc_);
+  reading.source = is_sensor_in_use_ ? TimeSource::kSensor : TimeSource::kHost;
+  reading.offset = is_sensor_in_use_ ? *sensor_utc_ : host_utc;
   return reading;
 }
 

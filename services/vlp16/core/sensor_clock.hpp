@@ -1,12 +1,12 @@
-// How the sensor's clock and the host's stand to each other, and which of them stamps a turn.
+// How the sensor's clock and the host's stand to each other, what the sensor knows of UTC, and which of the two clocks stamps a turn.
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <optional>
 
 #include "common/core/utime.hpp"
-#include "services/vlp16/core/packet_order.hpp"
+#include "services/vlp16/core/clock_fit.hpp"
+#include "services/vlp16/core/packet_sequencer.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 
 namespace lookout::vlp16 {
@@ -14,17 +14,26 @@ namespace lookout::vlp16 {
 enum class TimeChoice { kAuto, kSensor, kHost };
 enum class TimeSource { kHost, kSensor };
 
-/// kUnknown: no position packet, or none of late. kLockedWithoutTime: PPS is locked, but no valid RMC says of which second.
-enum class ClockState { kUnknown, kNoPps, kAcquiring, kLockedWithoutTime, kLocked, kError };
+/// What the sensor's clock is worth. "RMC" stands for any sentence that tells UTC: see TimeOfSentence.
+enum class ClockState {
+  kUnknown,            // no position packet, or none for 3 s
+  kNoPps,              // no PPS, and there was no lock since the sensor started: its hour began when it liked
+  kAcquiring,          // PPS is there, the clock is being set to it
+  kLockedWithoutTime,  // PPS is locked, but no valid RMC for 3 s says which second it is
+  kLocked,             // PPS is locked, and the stamps are those of the RMC
+  kFreeRunning,        // it was locked and the PPS is gone; or it says "locked", but its stamps are not those of its RMC
+  kError,              // the sensor says that its PPS is wrong
+};
 
 /// What the clock says at one instant; a turn keeps that of its first column, so that times inside a turn are regular.
 struct ClockReading {
   TimeSource source = TimeSource::kHost;
-  std::chrono::microseconds offset{0};  // UTC minus sensor time, by the clock that is in use: Utime(time + offset)
+  std::chrono::microseconds offset{0};  // UTC minus SensorTime, by the clock that is in use: Utime(time + offset)
   ClockState state = ClockState::kUnknown;
   std::optional<int> pps;                                      // of the last position packet
-  std::optional<std::chrono::microseconds> rmc_age;            // since the last position packet with a valid RMC, by the host's clock
-  std::optional<std::chrono::microseconds> host_minus_sensor;  // sensor time in the hour that brings it nearest to the host's
+  std::optional<std::chrono::microseconds> rmc_age;            // since a valid RMC told a new time, by the host's clock
+  std::optional<std::chrono::microseconds> host_minus_sensor;  // UTC by the host's clock minus UTC by the sensor's
+  std::optional<double> drift_ppm;                             // of the sensor's clock against the host's, positive when it is fast
 
   Utime ToUtime(SensorTime time) const { return Utime(time + offset); }
 };
@@ -33,39 +42,46 @@ class SensorClock {
  public:
   explicit SensorClock(TimeChoice choice) : choice_(choice) {}
 
-  /// @param host_time  when the packet had arrived: it is sent after its last shot
-  /// @param time       of its first shot
-  /// @param duration   from its first shot to its end
-  void OnDataPacket(Utime host_time, SensorTime time, std::chrono::nanoseconds duration);
-  void OnPositionPacket(Utime host_time, const PositionPacket& packet);
-
-  /// Sensor time went elsewhere: what was learnt of its relation to the host is void.
-  void ForgetOffset();
-
-  /// Precondition: OnDataPacket since the start and since ForgetOffset.
+  /// A data packet, in order of sensor time.
   ///
-  /// Source host: the offset is the least (host - sensor) of the last two seconds of sensor time, since a datagram may come late but not
-  /// early. Source sensor: the offset is the number of whole hours that brings sensor time nearest to the host's.
-  ClockReading Read(Utime host_time) const;
+  /// Host: UTC is the fit of (host - sensor): see ClockFit. Sensor: UTC is the stamp in the hour that is nearest to what the last valid RMC said,
+  /// else to the host's clock. Once found, the hour is kept over the end of each hour, day and year, and through steps of less than half an hour; it
+  /// is looked for again when it is more than 45 minutes off.
+  void OnDataPacket(const PlacedPacket& packet);
+
+  /// @param time  of the packet's stamp; nullopt before the first data packet
+  void OnPositionPacket(Utime host_time, const PositionPacket& packet, std::optional<SensorTime> time);
+
+  /// Precondition: OnDataPacket.
+  ///
+  /// TimeChoice::kAuto takes the sensor's clock while it is locked and the host's agrees with it, else the host's.
+  ClockReading Read(Utime host_time);
 
   /// Time of a stamp while no data packet has come: of the sensor where it is in use, else the host's.
   Utime TimeOfStampAlone(Utime host_time, std::uint32_t stamp_us) const;
 
  private:
-  struct Sample {
-    SensorTime time;
-    std::chrono::microseconds host_minus_sensor;
+  struct Rmc {
+    Utime host_time;  // when it told a new time
+    std::chrono::microseconds utc{0};
+    bool is_agreeing = true;  // with the stamp of the position packet in which it was new
   };
+
   ClockState State(Utime host_time) const;
   bool IsSensorInUse(ClockState state, std::chrono::microseconds host_minus_sensor) const;
+  void FindHour(std::uint32_t stamp_us, SensorTime time);
 
   TimeChoice choice_;
-  std::deque<Sample> minima_;  // of the window: increasing in time and in offset, so that the first is the least
-  int num_off_ = 0;            // samples in a row that are far off the window
+  ClockFit fit_;                                         // of host minus SensorTime
+  std::optional<std::chrono::microseconds> sensor_utc_;  // UTC by the sensor minus SensorTime
+  std::optional<std::chrono::microseconds> rmc_utc_;     // UTC by the last valid RMC minus SensorTime, good to some seconds
+  bool is_sensor_in_use_ = false;
+
   std::optional<Utime> position_host_time_;
-  std::optional<Utime> rmc_host_time_;
   int pps_ = 0;
-  bool has_valid_rmc_ = false;
+  bool has_valid_rmc_ = false;  // in the last position packet
+  std::optional<Rmc> rmc_;
+  bool was_locked_ = false;  // since the sensor started
 };
 
 }  // namespace lookout::vlp16

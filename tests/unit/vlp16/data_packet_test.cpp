@@ -54,10 +54,22 @@ TEST(DataPacket, IsRefusedWhenAnAzimuthIsNoAngle) {
   azimuth_cdeg[11] = 35999;
   azimuth_cdeg[10] = 35990;
   EXPECT_EQ(ParseDataPacket(MakeDataPacket(azimuth_cdeg, 0)).fault, DataFault::kNone);
-  for (const int azimuth : {36000, 36001, 65535}) {
+  for (const int azimuth : {36100, 36400, 65535}) {
     azimuth_cdeg[11] = azimuth;
     EXPECT_EQ(ParseDataPacket(MakeDataPacket(azimuth_cdeg, 0)).fault, DataFault::kAzimuth) << azimuth;
   }
+}
+
+TEST(DataPacket, WrapsAnAzimuthThatWasRoundedUpToAFullTurn) {
+  // As a real head sent it.
+  const auto result = ParseDataPacket(MakeDataPacket({35921, 35941, 35960, 35979, 36000, 18, 38, 57, 77, 95, 116, 135}, 0));
+  ASSERT_EQ(result.fault, DataFault::kNone);
+  EXPECT_TRUE(result.packet.has_wrapped_azimuth);
+  EXPECT_EQ(result.packet.azimuth_cdeg[4], 0);
+  EXPECT_EQ(result.packet.azimuth_cdeg[5], 18);
+  EXPECT_FALSE(ParseDataPacket(MakeDataPacket(Azimuths(0, 40), 0)).packet.has_wrapped_azimuth);
+  // Not where its neighbours are elsewhere: the blocks would go round more than once.
+  EXPECT_EQ(ParseDataPacket(MakeDataPacket({100, 140, 180, 220, 36000, 300, 340, 380, 420, 460, 500, 540}, 0)).fault, DataFault::kAzimuthOrder);
 }
 
 TEST(DataPacket, IsRefusedForAnUnknownReturnMode) {
@@ -66,10 +78,12 @@ TEST(DataPacket, IsRefusedForAnUnknownReturnMode) {
   }
 }
 
-TEST(DataPacket, IsRefusedWhenItsStampIsBeyondTheHour) {
-  EXPECT_EQ(ParseDataPacket(MakeDataPacket(Azimuths(0, 40), 3'600'999'999U)).fault, DataFault::kNone);
-  EXPECT_EQ(ParseDataPacket(MakeDataPacket(Azimuths(0, 40), 3'601'000'000U)).fault, DataFault::kStamp);
-  EXPECT_EQ(ParseDataPacket(MakeDataPacket(Azimuths(0, 40), 4'294'967'295U)).fault, DataFault::kStamp);
+TEST(DataPacket, MayHaveAnyStamp) {
+  for (const std::uint32_t stamp_us : {3'600'999'999U, 3'601'000'000U, 4'294'967'295U}) {
+    const auto result = ParseDataPacket(MakeDataPacket(Azimuths(0, 40), stamp_us));
+    EXPECT_EQ(result.fault, DataFault::kNone);
+    EXPECT_EQ(result.packet.stamp_us, stamp_us);
+  }
 }
 
 TEST(DataPacket, IsRefusedWhenItsBlocksGoRoundMoreThanOnce) {
@@ -107,7 +121,13 @@ TEST(Steps, TakeTheMedianWhereTheFieldOfViewJumps) {
   // 90 degrees are left out after the sixth block: the head took 9000/40 steps for them.
   const auto steps = StepsOf({0, 40, 80, 120, 160, 200, 9240, 9280, 9321, 9360, 9400, 9440}, 0);
   EXPECT_EQ(steps.gap_cdeg[5], 40);
+  EXPECT_EQ(steps.time[5], 5 * format::kBlockPeriod);
+  EXPECT_EQ(steps.time[6], (6 + 225) * format::kBlockPeriod);
   EXPECT_EQ(steps.duration, format::kPacketPeriodSingle + 225 * format::kBlockPeriod);
+  ASSERT_TRUE(steps.jump);
+  EXPECT_EQ(steps.jump->from_cdeg, 240);
+  EXPECT_EQ(steps.jump->to_cdeg, 9240);
+  EXPECT_EQ(steps.end_cdeg, 9480);
 }
 
 TEST(Steps, TakeTheLastUsableGapForTheLastBlock) {

@@ -235,7 +235,7 @@ TEST(Decoder, DoesNotJoinWhatLiesMoreThanATurnApart) {
   EXPECT_EQ(bench.CountOf("data_lost"), 76);
 }
 
-TEST(Decoder, DropsDuplicateAndLatePackets) {
+TEST(Decoder, DropsCopiesAndPutsLatePacketsRight) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
@@ -245,11 +245,62 @@ TEST(Decoder, DropsDuplicateAndLatePackets) {
   for (const auto* payload : {&first, &third, &third, &second}) bench.decoder.OnDataPayload(kTime, *payload);
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 1U);
-  EXPECT_EQ(bench.turns[0].num_columns(), 48);
-  EXPECT_EQ(bench.turns[0].counts.num_packets, 4);
-  EXPECT_EQ(bench.turns[0].counts.num_duplicates, 1);
-  EXPECT_EQ(bench.turns[0].counts.num_reordered, 1);
-  EXPECT_EQ(bench.turns[0].counts.num_lost, 1);
+  const auto& turn = bench.turns[0];
+  EXPECT_EQ(turn.num_columns(), 72);
+  EXPECT_TRUE(std::ranges::is_sorted(turn.time_ns));
+  EXPECT_FALSE(turn.has_hole);
+  EXPECT_EQ(turn.counts.num_packets, 4);
+  EXPECT_EQ(turn.counts.num_duplicates, 1);
+  EXPECT_EQ(turn.counts.num_reordered, 1);
+  EXPECT_EQ(turn.counts.num_lost, 0);
+}
+
+TEST(Decoder, KeepsATurnWholeWhenTheSensorsClockIsSet) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.time_ns = 100'000'000'000;
+  Utime host = kTime;
+  const auto send = [&](int num_packets) {
+    for (int i = 0; i < num_packets; ++i) bench.decoder.OnDataPayload(host += std::chrono::microseconds(1327), sensor.Next());
+  };
+  send(100);
+  sensor.time_ns += 700'000'000'000;
+  send(100);
+  ASSERT_EQ(bench.turns.size(), 2U);
+  EXPECT_FALSE(bench.turns[1].is_partial_start);
+  EXPECT_FALSE(bench.turns[1].is_partial_end);
+  EXPECT_FALSE(bench.turns[1].has_hole);
+  EXPECT_NEAR(bench.turns[1].time_ns.back(), 100'000'000, 100'000);
+  EXPECT_EQ(bench.CountOf("sensor_clock_steps"), 1);
+}
+
+TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
+  Bench bench;
+  bench.decoder.OnDataPayload(kTime, MakeDataPacket({1000, 1040, 1080, 1120, 1160, 1200, 10200, 10240, 10280, 10320, 10360, 10400}, 0));
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.turns.size(), 1U);
+  EXPECT_EQ(bench.turns[0].time_ns[11], 11 * 55296);
+  EXPECT_EQ(bench.turns[0].time_ns[12], (6 + 224) * 110592);
+  EXPECT_EQ(bench.turns[0].time_ns[23], (11 + 224) * 110592 + 55296);
+}
+
+TEST(Decoder, TellsThePhaseOfTheHead) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.time_ns = 999'000'000;
+  sensor.azimuth_deg = 100.0;
+  bench.Send(sensor, 1);
+  ASSERT_TRUE(bench.decoder.phase_cdeg());
+  EXPECT_NEAR(*bench.decoder.phase_cdeg(), 10360, 2);  // 1 ms at 3.6 deg per ms behind 100 deg
+  bench.Send(sensor, 100);
+  EXPECT_NEAR(*bench.decoder.phase_cdeg(), 10360, 2);
+}
+
+TEST(Decoder, NamesASensorThatIsNotOfTheFamily) {
+  Bench bench;
+  EXPECT_FALSE(bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x28)));
+  EXPECT_NE(bench.decoder.last_refusal().find("VLP-32C"), std::string::npos);
+  EXPECT_EQ(bench.CountOf("data_unknown_product"), 1);
 }
 
 TEST(Decoder, EndsTheTurnWhenTheSensorRestarts) {
@@ -265,7 +316,7 @@ TEST(Decoder, EndsTheTurnWhenTheSensorRestarts) {
   EXPECT_TRUE(bench.turns[0].is_partial_end);
   EXPECT_TRUE(bench.turns[1].is_partial_start);
   EXPECT_FALSE(bench.turns[1].has_hole);
-  EXPECT_EQ(bench.CountOf("sensor_time_jumps"), 1);
+  EXPECT_EQ(bench.CountOf("sensor_restarts"), 1);
   EXPECT_EQ(bench.turns[1].time, kTime);  // its own offset, not that of the time before
 }
 
@@ -350,6 +401,7 @@ TEST(Decoder, CountsEachKindOfBadPacketUnderItsOwnName) {
 }
 
 TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
+  constexpr std::string_view kRmc = "$GPRMC,000000.00,A,,,,,,,041024,,";  // kTime
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 350.0;
@@ -362,7 +414,7 @@ TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
     }
   };
   send(1);
-  bench.decoder.OnPositionPayload(behind, test::MakePositionPacket(8'000, format::kPpsLocked, test::kValidRmc));
+  bench.decoder.OnPositionPayload(behind, test::MakePositionPacket(8'000, format::kPpsLocked, kRmc));
   send(100);
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 3U);
@@ -371,7 +423,7 @@ TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
   EXPECT_EQ(bench.turns[1].clock.state, ClockState::kLocked);
   EXPECT_NEAR(ToSeconds(*bench.turns[1].clock.host_minus_sensor), -0.007, 1e-5);
   ASSERT_EQ(bench.sentences.size(), 1U);
-  EXPECT_EQ(bench.sentences[0].text, test::kValidRmc);
+  EXPECT_EQ(bench.sentences[0].text, kRmc);
   EXPECT_EQ(bench.sentences[0].stamp_us, 8'000U);
   EXPECT_NEAR(ToSeconds(bench.sentences[0].time - (behind + std::chrono::microseconds(1'000))), 0.0, 2e-6);  // by the host, as its turn
 }

@@ -57,11 +57,18 @@ TEST(ModelJudge, GoesByTheProductByte) {
   EXPECT_EQ(judge.Judge(PacketOf(0x21)), ModelVerdict::kUndecided);
 }
 
-TEST(ModelJudge, ObeysConfigWhateverTheProductByteSays) {
+TEST(ModelJudge, ObeysConfigForTheFamilyAndForUnknownBytes) {
   for (const std::uint8_t product : {0x21, 0x22, 0x24, 0x99}) {
     EXPECT_EQ(ModelJudge(ModelChoice::kVlp16).Judge(PacketOf(product)), ModelVerdict::kVlp16);
     EXPECT_EQ(ModelJudge(ModelChoice::kPuckHiRes).Judge(PacketOf(product)), ModelVerdict::kPuckHiRes);
   }
+}
+
+TEST(ModelJudge, TakesNoOtherSensorForAVlp16WhateverConfigSays) {
+  EXPECT_EQ(ModelJudge(ModelChoice::kVlp16).Judge(PacketOf(0x28)), ModelVerdict::kUnknown);  // VLP-32C
+  ModelJudge judge(ModelChoice::kVlp16);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(judge.Judge(PacketOf(0x21, static_cast<std::uint32_t>(i * 553))), ModelVerdict::kVlp16);
+  EXPECT_EQ(judge.Judge(PacketOf(0x21, 3 * 553)), ModelVerdict::kHdl32e);
 }
 
 ModelVerdict JudgeStream(double interval_us, ReturnMode mode, int skip_every = 0) {

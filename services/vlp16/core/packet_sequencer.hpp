@@ -1,0 +1,124 @@
+// The place of each data packet in sensor time: puts right what came out of order, drops what came twice or too late, counts what never came.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "common/core/utime.hpp"
+#include "services/vlp16/core/blind_sector.hpp"
+#include "services/vlp16/core/data_packet.hpp"
+#include "services/vlp16/core/model.hpp"
+
+namespace lookout::vlp16 {
+
+/// Time by the sensor's oscillator, that goes on evenly: where the sensor's clock is set (by PPS, in a leap second) it does not step. Between it
+/// and the stamps stands StampOf(time) - time, which changes at such a step only. It begins anew at a restart.
+using SensorTime = std::chrono::microseconds;
+
+struct PlacedPacket {
+  DataPacket packet;  // its payload is valid during the call that gives it
+  Steps steps;
+  Model model = Model::kVlp16;
+  Utime host_time;         // of its arrival
+  SensorTime time{0};      // of its first shot
+  int num_lost = 0;        // packets missing before it
+  bool is_restart = true;  // nothing before it belongs to it: the first, or the sensor started anew, or paused
+};
+
+enum class PacketVerdict {
+  kTaken,  // given, or held until it is known whether the one before it comes
+  kDuplicate,
+  kLate,         // its place has been passed
+  kOverlapping,  // less than half a period after the last and elsewhere in azimuth, which one sensor does not send
+};
+
+struct SequenceCounts {
+  std::int64_t num_lost = 0;
+  std::int64_t num_duplicates = 0;
+  std::int64_t num_reordered = 0;  // came after a later one; put right, or late
+  std::int64_t num_late = 0;
+  std::int64_t num_overlapping = 0;
+  std::int64_t num_restarts = 0;       // after the first packet
+  std::int64_t num_clock_steps = 0;    // the sensor's clock was set while the head went on
+  std::int64_t num_disagreements = 0;  // azimuth and sensor time tell of different losses; time was believed
+};
+
+/// A packet is next when it follows the last by what that took. Where packets are missing it is held until they come, or eight later ones have.
+/// Missing packets are known from sensor time (their period) and checked by the azimuth that was passed over. When azimuth says that nothing is
+/// missing, sensor time was set; the way in between is told from a restart by the host's clock.
+class PacketSequencer {
+ public:
+  using Handler = std::function<void(const PlacedPacket&)>;
+
+  static constexpr std::size_t kMaxHeld = 8;
+
+  explicit PacketSequencer(Handler on_packet) : on_packet_(std::move(on_packet)) {}
+
+  /// Gives packets, in their order, to the handler: this one, or those that waited for it, or none.
+  PacketVerdict Add(Utime host_time, const DataPacket& packet, Model model);
+
+  /// End of input: gives what is held.
+  void Flush();
+
+  /// Sensor time of another stamp (of a position packet) near the last data packet; nullopt before the first.
+  std::optional<SensorTime> TimeOfStamp(std::uint32_t stamp_us) const;
+
+  const SequenceCounts& counts() const { return counts_; }
+
+ private:
+  struct Last {
+    SensorTime time;
+    std::uint32_t stamp_us;
+    Utime host_time;
+    std::chrono::nanoseconds period;
+    Steps steps;
+    int first_cdeg;
+    int num_steps;
+
+    int step_cdeg() const { return steps.gap_cdeg[static_cast<std::size_t>(num_steps) - 1]; }
+  };
+  struct Held {
+    Utime host_time;
+    DataPacket packet;  // its payload is that below
+    Model model = Model::kVlp16;
+    std::array<std::uint8_t, format::kDataPacketSizeBytes> payload{};
+  };
+  struct Known {
+    std::uint32_t stamp_us = 0;
+    int azimuth_cdeg = -1;  // none
+  };
+  enum class Kind { kNext, kMissing, kLate, kOverlapping, kStep, kRestart };
+  struct Place {
+    Kind kind = Kind::kNext;
+    SensorTime time{0};
+    int num_lost = 0;
+    bool is_disagreeing = false;
+  };
+
+  Place PlaceOf(Utime host_time, const DataPacket& packet) const;
+  Place PlaceBehindGap(Utime host_time, const DataPacket& packet, Place place, double num_missing) const;
+  void MeasureRate(const DataPacket& packet, const PlacedPacket& placed);
+  double SweepCdeg() const;
+  bool IsAt(const DataPacket& packet, double azimuth_cdeg) const;
+  bool IsContinuing(const DataPacket& packet) const;
+  bool IsKnown(const DataPacket& packet) const;
+  void Hold(Utime host_time, const DataPacket& packet, Model model);
+  void ReleaseFirst();
+  void ReleaseWhatIsNext();
+  void Give(Utime host_time, const DataPacket& packet, Model model, const Place& place);
+
+  Handler on_packet_;
+  std::optional<Last> last_;
+  double rate_cdeg_ = 0.0;         // turn of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
+  std::vector<Held> held_;         // by time
+  std::array<Known, 16> known_{};  // the last ones given
+  std::size_t next_known_ = 0;
+  BlindSector blind_sector_;
+  SequenceCounts counts_;
+};
+
+}  // namespace lookout::vlp16

@@ -1,0 +1,358 @@
+#include "services/vlp16/core/packet_sequencer.hpp"
+
+#include <algorithm>
+#include <gtest/gtest.h>
+
+#include "tests/unit/vlp16/packet_maker.hpp"
+
+namespace lookout::vlp16 {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using test::Payload;
+using test::SpinningSensor;
+
+const Utime kStart = Utime(std::chrono::hours(24 * 20000));
+
+// Packets in, given packets out. The host's clock is the sensor's, unless told otherwise.
+struct Bench {
+  struct Given {
+    std::uint32_t stamp_us;
+    SensorTime time;
+    int num_lost;
+    bool is_restart;
+  };
+  std::vector<Given> given;
+  PacketSequencer sequencer{[this](const PlacedPacket& placed) {
+    given.push_back({placed.packet.stamp_us, placed.time, placed.num_lost, placed.is_restart});
+  }};
+
+  PacketVerdict Add(const Payload& payload, std::optional<Utime> host_time = std::nullopt) {
+    const auto packet = ParseDataPacket(payload).packet;
+    return sequencer.Add(host_time.value_or(kStart + microseconds(packet.stamp_us)), packet, Model::kVlp16);
+  }
+  void Add(SpinningSensor& sensor, int num_packets) {
+    for (int i = 0; i < num_packets; ++i) Add(sensor.Next());
+  }
+  std::vector<std::uint32_t> Stamps() const {
+    std::vector<std::uint32_t> stamps;
+    for (const auto& packet : given) stamps.push_back(packet.stamp_us);
+    return stamps;
+  }
+  const SequenceCounts& counts() const { return sequencer.counts(); }
+};
+
+std::vector<Payload> Make(SpinningSensor& sensor, int num_packets) {
+  std::vector<Payload> packets;
+  for (int i = 0; i < num_packets; ++i) packets.push_back(sensor.Next());
+  return packets;
+}
+
+std::uint32_t StampOf(const Payload& payload) { return ReadU32LittleEndian(payload, format::kStampOffset); }
+
+TEST(PacketSequencer, GivesWhatComesInOrderAtOnce) {
+  for (const auto mode : {format::kModeStrongest, format::kModeDual}) {
+    for (const double rpm : {300.0, 600.0, 1200.0}) {
+      Bench bench;
+      SpinningSensor sensor;
+      sensor.mode = mode;
+      sensor.rpm = rpm;
+      for (int i = 1; i <= 300; ++i) {
+        bench.Add(sensor, 1);
+        ASSERT_EQ(bench.given.size(), static_cast<std::size_t>(i));
+      }
+      EXPECT_EQ(bench.counts().num_lost, 0);
+      EXPECT_EQ(bench.counts().num_disagreements, 0);
+      EXPECT_EQ(std::ranges::count_if(bench.given, &Bench::Given::is_restart), 1);
+    }
+  }
+}
+
+TEST(PacketSequencer, GoesOnOverTheHour) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.time_ns = 3'599'999'000'000;
+  bench.Add(sensor, 3);
+  ASSERT_EQ(bench.given.size(), 3U);
+  EXPECT_EQ(bench.given[1].stamp_us, 327U);
+  EXPECT_EQ(bench.given[1].time, microseconds(3'600'000'327));
+  EXPECT_EQ(bench.given[2].time, microseconds(3'600'001'654));
+  EXPECT_EQ(bench.counts().num_clock_steps, 0);
+}
+
+TEST(PacketSequencer, PutsRightWhatIsUpToEightPacketsLate) {
+  for (std::size_t late = 1; late <= 8; ++late) {
+    Bench bench;
+    SpinningSensor sensor;
+    auto packets = Make(sensor, 14);
+    std::vector<std::uint32_t> expected;
+    for (const auto& packet : packets) expected.push_back(StampOf(packet));
+    std::rotate(packets.begin() + 2, packets.begin() + 3, packets.begin() + 3 + static_cast<std::ptrdiff_t>(late));
+    for (const auto& packet : packets) bench.Add(packet);
+    EXPECT_EQ(bench.Stamps(), expected) << late;
+    EXPECT_EQ(bench.counts().num_reordered, 1) << late;
+    EXPECT_EQ(bench.counts().num_lost, 0) << late;
+  }
+}
+
+TEST(PacketSequencer, DropsWhatIsLaterAndHasCountedItAsLost) {
+  Bench bench;
+  SpinningSensor sensor;
+  auto packets = Make(sensor, 14);
+  std::rotate(packets.begin() + 2, packets.begin() + 3, packets.begin() + 3 + 9);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    const bool is_late = i == 2 + 9;
+    EXPECT_EQ(bench.Add(packets[i]), is_late ? PacketVerdict::kLate : PacketVerdict::kTaken) << i;
+  }
+  EXPECT_EQ(bench.given.size(), 13U);
+  EXPECT_TRUE(std::ranges::is_sorted(bench.Stamps()));
+  EXPECT_EQ(bench.counts().num_reordered, 1);
+  EXPECT_EQ(bench.counts().num_late, 1);
+  EXPECT_EQ(bench.counts().num_lost, 1);
+}
+
+TEST(PacketSequencer, DropsCopiesAlsoOfWhatItHolds) {
+  Bench bench;
+  SpinningSensor sensor;
+  const auto packets = Make(sensor, 5);
+  EXPECT_EQ(bench.Add(packets[0]), PacketVerdict::kTaken);
+  EXPECT_EQ(bench.Add(packets[0]), PacketVerdict::kDuplicate);
+  EXPECT_EQ(bench.Add(packets[3]), PacketVerdict::kTaken);
+  EXPECT_EQ(bench.Add(packets[3]), PacketVerdict::kDuplicate);
+  EXPECT_EQ(bench.Add(packets[1]), PacketVerdict::kTaken);
+  EXPECT_EQ(bench.Add(packets[2]), PacketVerdict::kTaken);
+  EXPECT_EQ(bench.Add(packets[1]), PacketVerdict::kDuplicate);  // not late: it was here
+  EXPECT_EQ(bench.Add(packets[4]), PacketVerdict::kTaken);
+  EXPECT_EQ(bench.given.size(), 5U);
+  EXPECT_EQ(bench.counts().num_duplicates, 3);
+  EXPECT_EQ(bench.counts().num_reordered, 2);
+  EXPECT_EQ(bench.counts().num_lost, 0);
+}
+
+TEST(PacketSequencer, CountsLossesOnceTheyAreSure) {
+  Bench bench;
+  SpinningSensor sensor;
+  bench.Add(sensor, 3);
+  sensor.Skip(5);
+  bench.Add(sensor, 8);
+  EXPECT_EQ(bench.given.size(), 3U);  // may still come
+  bench.Add(sensor, 1);
+  EXPECT_EQ(bench.given.size(), 12U);
+  EXPECT_EQ(bench.given[3].num_lost, 5);
+  EXPECT_EQ(bench.counts().num_lost, 5);
+  sensor.Skip(1);
+  bench.Add(sensor, 2);
+  bench.sequencer.Flush();
+  EXPECT_EQ(bench.given.size(), 14U);
+  EXPECT_EQ(bench.counts().num_lost, 6);
+  EXPECT_EQ(bench.counts().num_disagreements, 0);
+}
+
+TEST(PacketSequencer, CountsLossesOfWholeTurnsToo) {
+  for (const int lost : {74, 75, 76, 77, 200, 700}) {
+    Bench bench;
+    SpinningSensor sensor;
+    bench.Add(sensor, 3);
+    sensor.Skip(lost);
+    bench.Add(sensor, 3);
+    bench.sequencer.Flush();
+    EXPECT_EQ(bench.counts().num_lost, lost);
+    EXPECT_EQ(bench.counts().num_clock_steps, 0) << lost;
+  }
+}
+
+TEST(PacketSequencer, TellsAClockThatIsSetFromALoss) {
+  // By PPS, forwards and backwards, by little and by much; the head turns on, and the host sees no gap.
+  for (const std::int64_t step_us :
+       {-1'800'000'000LL, -1'000'000LL, -20'000LL, -5'000LL, -900LL, 5'000LL, 100'000LL, 999'000LL, 2'000'000LL, 700'000'000LL}) {
+    Bench bench;
+    SpinningSensor sensor;
+    sensor.time_ns = 1'900'000'000'000;
+    Utime host = kStart;
+    const auto send = [&](int num_packets) {
+      for (int i = 0; i < num_packets; ++i) bench.Add(sensor.Next(), host += microseconds(1327));
+    };
+    send(5);
+    sensor.time_ns += step_us * 1000;
+    send(5);
+    bench.sequencer.Flush();
+    ASSERT_EQ(bench.given.size(), 10U) << step_us;
+    EXPECT_EQ(bench.counts().num_lost, 0) << step_us;
+    EXPECT_EQ(bench.counts().num_clock_steps, 1) << step_us;
+    EXPECT_EQ(bench.counts().num_restarts, 0) << step_us;
+    for (std::size_t i = 1; i < 10; ++i)
+      EXPECT_NEAR(static_cast<double>((bench.given[i].time - bench.given[i - 1].time).count()), 1327, 1) << step_us;
+  }
+}
+
+TEST(PacketSequencer, ToleratesTheSmallCorrectionsOfADisciplinedClock) {
+  for (const std::int64_t step_us : {-600, -50, 50, 600}) {
+    Bench bench;
+    SpinningSensor sensor;
+    sensor.time_ns = 1'000'000'000;
+    bench.Add(sensor, 3);
+    sensor.time_ns += step_us * 1000;
+    bench.Add(sensor, 3);
+    EXPECT_EQ(bench.given.size(), 6U);
+    EXPECT_EQ(bench.counts().num_lost, 0);
+    EXPECT_EQ(bench.counts().num_clock_steps, 0);
+  }
+}
+
+TEST(PacketSequencer, TakesAPauseOrAnotherAzimuthForARestart) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.time_ns = 100'000'000'000;
+  bench.Add(sensor, 3);
+  sensor.time_ns += 1'100'000'000;  // and the head went eleven turns, which nobody saw
+  bench.Add(sensor, 3);
+  EXPECT_EQ(bench.counts().num_restarts, 1);
+  sensor.time_ns = 0;
+  sensor.azimuth_deg += 100.0;
+  bench.Add(sensor, 3);
+  EXPECT_EQ(bench.counts().num_restarts, 2);
+  ASSERT_EQ(bench.given.size(), 9U);
+  EXPECT_TRUE(bench.given[6].is_restart);
+  EXPECT_EQ(bench.given[6].time, microseconds(0));
+  EXPECT_EQ(bench.counts().num_lost, 0);
+}
+
+TEST(PacketSequencer, SaysWhenAzimuthAndTimeTellOfDifferentLosses) {
+  Bench bench;
+  SpinningSensor sensor;
+  bench.Add(sensor, 3);
+  sensor.Skip(4);
+  sensor.azimuth_deg += 30.0;  // six packets more
+  bench.Add(sensor, 9);
+  EXPECT_EQ(bench.counts().num_lost, 4);
+  EXPECT_EQ(bench.counts().num_disagreements, 1);
+}
+
+TEST(PacketSequencer, RefusesASecondSensorOnTheSamePort) {
+  Bench bench;
+  SpinningSensor one;
+  SpinningSensor other;
+  other.azimuth_deg = 180.0;
+  other.time_ns = 400'000;
+  for (int i = 0; i < 100; ++i) {
+    bench.Add(one, 1);
+    bench.Add(other, 1);
+  }
+  EXPECT_EQ(bench.given.size(), 100U);
+  EXPECT_EQ(bench.counts().num_overlapping, 100);
+}
+
+TEST(PacketSequencer, KnowsTheTimeOfAnotherStampOnceAPacketCame) {
+  Bench bench;
+  EXPECT_FALSE(bench.sequencer.TimeOfStamp(5));
+  SpinningSensor sensor;
+  sensor.time_ns = 3'599'999'000'000;
+  bench.Add(sensor, 2);
+  EXPECT_EQ(bench.sequencer.TimeOfStamp(3'599'999'500), microseconds(3'599'999'500));
+  EXPECT_EQ(bench.sequencer.TimeOfStamp(400), microseconds(3'600'000'400));
+}
+
+TEST(PacketSequencer, GoesOnWithAClockThatStandsOrCountsBeyondTheHour) {
+  Bench standing;
+  SpinningSensor sensor;
+  for (int i = 0; i < 10; ++i) {
+    auto payload = sensor.Next();
+    WriteU32LittleEndian(payload, format::kStampOffset, 77);
+    EXPECT_EQ(standing.Add(payload, kStart + i * microseconds(1327)), PacketVerdict::kTaken);
+  }
+  EXPECT_EQ(standing.given.size(), 10U);
+  Bench beyond;
+  for (int i = 0; i < 10; ++i) {
+    auto payload = sensor.Next();
+    WriteU32LittleEndian(payload, format::kStampOffset, static_cast<std::uint32_t>(3'599'995'000 + i * 1327));
+    EXPECT_EQ(beyond.Add(payload, kStart + i * microseconds(1327)), PacketVerdict::kTaken);
+  }
+  EXPECT_EQ(beyond.counts().num_clock_steps, 0);
+  EXPECT_EQ(beyond.given.back().time, microseconds(3'599'995'000 + 9 * 1327));
+}
+
+// A head that fires only from `first_deg` to `last_deg`; packets hold shots of that sector alone.
+class LimitedSensor {
+ public:
+  LimitedSensor(double first_deg, double last_deg) : first_deg_(first_deg), last_deg_(last_deg), azimuth_deg_(first_deg) {}
+
+  double rpm = 600.0;
+
+  Payload Next() {
+    std::array<int, format::kNumBlocks> azimuth_cdeg{};
+    const double stamp_us = time_us_;
+    for (auto& azimuth : azimuth_cdeg) {
+      azimuth = static_cast<int>(azimuth_deg_ * 100.0) % format::kAzimuthsPerTurn;
+      Advance();
+    }
+    return test::MakeDataPacket(azimuth_cdeg, static_cast<std::uint32_t>(stamp_us));
+  }
+
+ private:
+  void Advance() {
+    const double rate_deg_per_us = rpm * 360.0 / 60e6;
+    const double period_us = 110.592;
+    azimuth_deg_ += period_us * rate_deg_per_us;
+    time_us_ += period_us;
+    if (azimuth_deg_ > last_deg_) {
+      const double dark_deg = first_deg_ + 360.0 - azimuth_deg_;
+      time_us_ += dark_deg / rate_deg_per_us;
+      azimuth_deg_ = first_deg_;
+    }
+  }
+  double first_deg_;
+  double last_deg_;
+  double azimuth_deg_;
+  double time_us_ = 0.0;
+};
+
+TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
+  // The second of each makes the jump fall between packets in every turn, the hardest case: a multiple of a packet's sweep at 600 rpm.
+  const double sweep_deg = 12 * 110.592e-6 * 3600.0;
+  for (const auto& [first_deg, last_deg] : {std::pair(0.0, 180.0), std::pair(30.0, 30.0 + 20.0 * sweep_deg - 0.2), std::pair(300.0, 420.0),
+                                            std::pair(10.0, 340.0), std::pair(90.0, 120.0)}) {
+    for (const double rpm : {600.0, 300.0, 1200.0}) {
+      Bench bench;
+      LimitedSensor sensor(first_deg, last_deg);
+      sensor.rpm = rpm;
+      for (int i = 0; i < 1500; ++i) bench.Add(sensor.Next());
+      bench.sequencer.Flush();
+      EXPECT_EQ(bench.given.size(), 1500U);
+      EXPECT_EQ(bench.counts().num_lost, 0) << first_deg << " to " << last_deg << " at " << rpm;
+      EXPECT_EQ(bench.counts().num_clock_steps, 0) << first_deg << " to " << last_deg << " at " << rpm;
+      EXPECT_EQ(bench.counts().num_restarts, 0);
+    }
+  }
+}
+
+TEST(PacketSequencer, CountsLossesBesideALimitedFieldOfView) {
+  Bench bench;
+  LimitedSensor sensor(20.0, 200.0);
+  int num_dropped = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto payload = sensor.Next();
+    const bool is_dropped = i > 400 && i < 2900 && i % 23 == 0;
+    num_dropped += is_dropped ? 1 : 0;
+    if (!is_dropped) bench.Add(payload);
+  }
+  bench.sequencer.Flush();
+  EXPECT_EQ(bench.counts().num_lost, num_dropped);
+}
+
+TEST(PacketSequencer, CountsEveryLossOfASectorThatWasSeenBefore) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a turn is 75 packets: the same place each time
+  bench.Add(sensor, 150);
+  for (int turn = 0; turn < 10; ++turn) {
+    sensor.Skip(10);
+    bench.Add(sensor, 65);
+  }
+  bench.sequencer.Flush();
+  EXPECT_EQ(bench.counts().num_lost, 100);
+}
+
+}  // namespace
+}  // namespace lookout::vlp16
