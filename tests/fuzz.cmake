@@ -1,0 +1,11 @@
+# Seeds for the fuzz targets: run by ./dev fuzz before them.
+if(LOOKOUT_FUZZ STREQUAL "ON")
+  add_executable(make_corpus fuzz/make_corpus.cpp)
+  add_dependencies(fuzzers make_corpus)
+elseif(LOOKOUT_FUZZ STREQUAL "SOURCES")
+  add_library(make_corpus OBJECT fuzz/make_corpus.cpp)
+endif()
+if(TARGET make_corpus)
+  target_link_libraries(make_corpus PRIVATE lookout_core lookout_bus lookout_wire lookout_segmenter_core)
+  target_include_directories(make_corpus PRIVATE ${CMAKE_SOURCE_DIR})
+endif()

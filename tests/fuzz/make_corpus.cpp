@@ -1,0 +1,370 @@
+// Writes seeds for the fuzz targets, a folder for each: what real inputs look like, so that no time goes into guessing that.
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/decode.hpp"
+#include "services/vlp16/core/packet_format.hpp"
+#include "tests/fuzz/packet_script.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+#include "tests/unit/segmenter/message_maker.hpp"
+#include "tests/unit/segmenter/scan_maker.hpp"
+#include "tests/unit/vlp16/packet_maker.hpp"
+#include "tests/unit/wire/filled_messages.hpp"
+
+namespace {
+
+using namespace lookout;
+using Payload = std::vector<std::uint8_t>;
+
+class Folder {
+ public:
+  explicit Folder(std::filesystem::path path) : path_(std::move(path)) { std::filesystem::create_directories(path_); }
+
+  void Write(const std::string& name, const Payload& bytes) const {
+    std::ofstream file(path_ / name, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    if (!file.flush()) throw std::runtime_error((path_ / name).string() + ": cannot be written");
+  }
+  void Write(const std::string& name, const std::string& text) const { Write(name, Payload(text.begin(), text.end())); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+Payload operator+(Payload a, const Payload& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+// --- Packets of the sensor ---
+
+namespace format = vlp16::format;
+namespace script = vlp16::script;
+using vlp16::test::Azimuths;
+using vlp16::test::MakeDataPacket;
+using vlp16::test::MakePositionPacket;
+using vlp16::test::SpinningSensor;
+
+constexpr std::uint32_t kLastMicroseconds = 3'599'995'000;  // of an hour; the script begins 5 ms before one
+
+std::string Rmc(std::string_view time_of_day, char status) {
+  return navigator::Line("GPRMC," + std::string(time_of_day) + "," + status + ",3649.7478,N,00224.4542,W,0.034,212.5,010626,0.0,E,A");
+}
+
+struct Run {
+  std::string name;
+  std::uint8_t mode = format::kModeStrongest;
+  std::uint8_t product = format::kProductVlp16;
+  double azimuth_deg = 0.0;
+  double rpm = 600.0;
+  std::int64_t time_ns = 60'000'000'000;
+  int model = 0;
+  int time = 0;
+  int cut = 0;
+};
+
+// A dozen packets as they come, with a position packet in between.
+Payload Script(const Run& run, int num_packets = 12) {
+  SpinningSensor sensor;
+  sensor.mode = run.mode;
+  sensor.product = run.product;
+  sensor.azimuth_deg = run.azimuth_deg;
+  sensor.rpm = run.rpm;
+  sensor.time_ns = run.time_ns;
+  sensor.scene = [](double azimuth_deg, int laser, int return_index) -> vlp16::test::ReturnValue {
+    if (laser % 3 == 0) return {};
+    return {static_cast<std::uint16_t>(1000 + static_cast<int>(azimuth_deg) + 100 * return_index), static_cast<std::uint8_t>(10 * laser)};
+  };
+  const std::size_t host_step = sensor.is_dual() ? 1 : 0;
+  script::Writer writer(run.model, run.time, run.cut);
+  writer.Add(script::Kind::kPosition, 0, MakePositionPacket(sensor.stamp_us(), format::kPpsLocked, Rmc("115959.00", 'A')));
+  for (int i = 0; i < num_packets; ++i) {
+    if (i == num_packets / 2)
+      writer.Add(script::Kind::kPosition, 2, MakePositionPacket(sensor.stamp_us(), format::kPpsLocked, Rmc("120000.00", 'A')));
+    writer.Add(script::Kind::kData, host_step, sensor.Next());
+  }
+  return writer.bytes();
+}
+
+void WriteDataPackets(const Folder& folder) {
+  const std::vector<Run> runs{{.name = "strongest"},
+                              {.name = "last", .mode = format::kModeLast},
+                              {.name = "dual", .mode = format::kModeDual},
+                              {.name = "hi_res", .product = format::kProductPuckHiRes},
+                              {.name = "shared_product_byte", .product = format::kProductHdl32e},
+                              {.name = "hdl32e_by_choice", .product = format::kProductHdl32e, .model = 1},
+                              {.name = "across_zero", .azimuth_deg = 358.5},
+                              {.name = "dual_across_cut", .mode = format::kModeDual, .azimuth_deg = 35.5, .cut = 1},
+                              {.name = "slow", .azimuth_deg = 359.5, .rpm = 300.0},
+                              {.name = "fast", .azimuth_deg = 355.0, .rpm = 1200.0},
+                              {.name = "standing", .rpm = 0.0},
+                              {.name = "over_the_hour", .time_ns = std::int64_t{kLastMicroseconds} * 1000},
+                              {.name = "over_the_hour_by_sensor", .time_ns = std::int64_t{kLastMicroseconds} * 1000, .time = 1},
+                              {.name = "by_host", .time_ns = std::int64_t{kLastMicroseconds} * 1000, .time = 2}};
+  for (const auto& run : runs) folder.Write(run.name, Script(run));
+
+  using script::Kind;
+  const auto one = [](const Payload& packet) { return script::Writer(0, 0, 0).Add(Kind::kData, 0, packet).bytes(); };
+  folder.Write("one_packet", one(MakeDataPacket(Azimuths(1000, 20), 5'000'000)));
+  folder.Write("azimuth_36000", one(MakeDataPacket({35960, 35980, 36000, 20, 40, 60, 80, 100, 120, 140, 160, 180}, 5'000'000)));
+  folder.Write("limited_view", one(MakeDataPacket({8980, 9000, 27000, 27020, 27040, 27060, 27080, 27100, 27120, 27140, 27160, 27180}, 5'000'000)));
+  folder.Write("trembling", one(MakeDataPacket({10, 35990, 15, 35995, 20, 0, 25, 5, 30, 10, 35, 15}, 5'000'000)));
+  folder.Write("leap_second_stamp", one(MakeDataPacket(Azimuths(0, 20), 3'600'500'000)));
+  folder.Write("beyond_the_hour", one(MakeDataPacket(Azimuths(0, 20), 3'700'000'000)));
+  folder.Write("dual_of_unequal_pairs", one(MakeDataPacket(Azimuths(0, 20), 5'000'000, format::kModeDual)));
+  folder.Write("wrong_mode", one(MakeDataPacket(Azimuths(0, 20), 5'000'000, 0x3A)));
+  folder.Write("wrong_product", one(MakeDataPacket(Azimuths(0, 20), 5'000'000, format::kModeStrongest, 0x28)));
+
+  // Lost, twice, late, a step of the sensor's clock, a change of mode, a pause, a flush and a start.
+  SpinningSensor sensor;
+  std::vector<Payload> packets;
+  for (int i = 0; i < 12; ++i) packets.push_back(sensor.Next());
+  script::Writer order(0, 0, 3);
+  for (const std::size_t i : {0U, 1U, 4U, 4U, 3U, 2U, 6U, 5U, 7U}) order.Add(Kind::kData, 0, packets[i]);
+  folder.Write("lost_twice_late", order.bytes());
+  script::Writer jumps(0, 0, 0);
+  jumps.Add(Kind::kData, 0, packets[0]).Add(Kind::kData, 0, packets[1]);
+  sensor.time_ns = 2'000'000'000'000;
+  jumps.Add(Kind::kData, 0, sensor.Next());
+  sensor.mode = format::kModeDual;
+  jumps.Add(Kind::kData, 5, sensor.Next())
+      .Add(Kind::kFlush, 0)
+      .Add(Kind::kData, 7, sensor.Next())
+      .Add(Kind::kReset, 4)
+      .Add(Kind::kData, 1, sensor.Next());
+  folder.Write("jumps", jumps.bytes());
+}
+
+std::vector<std::pair<std::string, Payload>> PositionPackets() {
+  std::vector<std::pair<std::string, Payload>> packets;
+  for (const int pps : {0, 1, 2, 3, 4}) {
+    packets.emplace_back("pps_" + std::to_string(pps), MakePositionPacket(1'000'000, static_cast<std::uint8_t>(pps), Rmc("120000.00", 'A')));
+  }
+  const std::string gga = navigator::GgaLine(navigator::NoonPlus(0.0), 44.3, -72.1, 4, 0.8, 30.0, -28.0);
+  packets.emplace_back("void_rmc", MakePositionPacket(1'000'000, format::kPpsLocked, Rmc("120000.00", 'V')));
+  packets.emplace_back("leap_second", MakePositionPacket(3'600'000'000, format::kPpsLocked, Rmc("235960.00", 'A')));
+  packets.emplace_back("gga", MakePositionPacket(1'000'000, format::kPpsLocked, gga));
+  packets.emplace_back("gnrmc", MakePositionPacket(1'000'000, format::kPpsLocked, navigator::Line("GNRMC,120000,A,4418.0,N,07206.0,W,0,0,010626,,")));
+  packets.emplace_back("no_sentence", MakePositionPacket(1'000'000, format::kPpsAbsent, "", ""));
+  packets.emplace_back("no_end", MakePositionPacket(1'000'000, format::kPpsLocked, Rmc("120000.00", 'A'), ""));
+  packets.emplace_back("wrong_checksum", MakePositionPacket(1'000'000, format::kPpsLocked, "$GPRMC,120000,A,4418.0,N,07206.0,W,0,0,010626,,*00"));
+  auto warm = MakePositionPacket(3'599'999'999, format::kPpsLocked, Rmc("115959.99", 'A'));
+  warm[187] = 58;  // top and bottom board, degrees Celsius
+  warm[188] = 61;
+  warm[203] = 1;   // off for its temperature
+  warm[204] = 90;  // at the last shutdown, and at power up
+  warm[205] = 24;
+  packets.emplace_back("telemetry", warm);
+  return packets;
+}
+
+void WritePositionPackets(const Folder& folder, const Folder& scripts) {
+  for (const auto& [name, packet] : PositionPackets()) {
+    folder.Write(name, packet);
+    script::Writer writer(0, 0, 0);
+    writer.Add(script::Kind::kPosition, 0, packet).Add(script::Kind::kData, 0, MakeDataPacket(Azimuths(0, 20), 1'000'500));
+    scripts.Write("position_" + name, writer.bytes());
+  }
+}
+
+// --- NMEA 0183 ---
+
+void WriteSentences(const Folder& folder) {
+  using namespace navigator;
+  const auto noon = NoonPlus(0.0);
+  const std::string rmc = RmcLine(noon, 44.123456, -72.5, 1.5, 271.25);
+  const std::string gga = GgaLine(noon, 44.123456, -72.5, 4, 0.8, 30.25, -28.5);
+  const std::string vtg = Line("GPVTG,271.3,T,286.1,M,2.9,N,5.4,K,A");
+  const std::string hdt = HdtLine(359.99);
+  const std::string pashr = PashrLine(noon, 90.0, -1.5, 2.25, 0.1);
+  const std::vector<std::pair<std::string, std::string>> lines{{"rmc", rmc},
+                                                               {"gga", gga},
+                                                               {"vtg", vtg},
+                                                               {"hdt", hdt},
+                                                               {"pashr", pashr},
+                                                               {"rmc_void", Line("GPRMC,120000,V,,,,,,,010626,,,N")},
+                                                               {"rmc_south_west", RmcLine(noon, -33.9, -18.4, 0.0, 0.0)},
+                                                               {"rmc_pole", RmcLine(noon, 90.0, 180.0, 20.0, 360.0)},
+                                                               {"rmc_old", Line("GPRMC,235959.999,A,4418.0,N,07206.0,W,0,0,311299,,")},
+                                                               {"gga_no_fix", Line("GPGGA,120000,,,,,0,00,99.9,,M,,M,,")},
+                                                               {"gns", Line("GNGNS,120000,4418.0,N,07206.0,W,RR,12,0.8,30.0,-28.0,,")},
+                                                               {"hdg", Line("HCHDG,101.1,1.0,E,7.1,W")},
+                                                               {"zda", Line("GPZDA,120000.00,01,06,2026,00,00")},
+                                                               {"ais", "!AIVDM,1,1,,B,177KQJ5000G?tO`K>RA1wUbN0TKH,0*5C"},
+                                                               {"no_checksum", "$GPHDT,12.5,T"},
+                                                               {"empty_fields", Line("GPRMC,,,,,,,,,,,,")}};
+  std::string all;
+  for (const auto& [name, line] : lines) {
+    folder.Write(name, line + "\r\n");
+    all += line + "\r\n";
+  }
+  folder.Write("all", all);
+  folder.Write("second_of_receiver", rmc + "\r\n" + gga + "\r\n" + vtg + "\r\n" + hdt + "\r\n");
+  folder.Write("without_carriage_returns", rmc + "\n" + gga + "\n");
+  folder.Write("without_end", rmc);
+}
+
+// --- Captures ---
+
+Payload BigEndian(std::uint64_t value, int num_bytes) {
+  Payload bytes;
+  for (int shift = 8 * (num_bytes - 1); shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+  return bytes;
+}
+
+Payload LittleEndian(std::uint64_t value, int num_bytes) {
+  Payload bytes = BigEndian(value, num_bytes);
+  return {bytes.rbegin(), bytes.rend()};
+}
+
+Payload Udp(int port, const Payload& payload) {
+  return BigEndian(2368, 2) + BigEndian(static_cast<std::uint64_t>(port), 2) + BigEndian(payload.size() + 8, 2) + BigEndian(0, 2) + payload;
+}
+
+Payload Ipv4(const Payload& udp) {
+  return Payload{0x45, 0} + BigEndian(udp.size() + 20, 2) + Payload{0, 1, 0, 0, 64, 17, 0, 0, 192, 168, 1, 201, 255, 255, 255, 255} + udp;
+}
+
+Payload Ipv6(const Payload& udp) { return Payload{0x60, 0, 0, 0} + BigEndian(udp.size(), 2) + Payload{17, 64} + Payload(32) + udp; }
+
+const Payload kMacs(12, 0xFF);
+
+// Classic pcap; its times are in microseconds unless the magic number says nanoseconds.
+Payload Pcap(std::uint32_t link_type, const std::vector<Payload>& frames, std::uint32_t magic = 0xA1B2C3D4) {
+  Payload file =
+      LittleEndian(magic, 4) + LittleEndian(2, 2) + LittleEndian(4, 2) + LittleEndian(0, 8) + LittleEndian(65535, 4) + LittleEndian(link_type, 4);
+  std::uint64_t fraction = 0;
+  for (const auto& frame : frames) {
+    file = file + LittleEndian(1'780'000'000, 4) + LittleEndian(fraction, 4) + LittleEndian(frame.size(), 4) + LittleEndian(frame.size(), 4) + frame;
+    fraction += 1327;
+  }
+  return file;
+}
+
+Payload PcapngBlock(std::uint32_t type, Payload body) {
+  body.resize((body.size() + 3) / 4 * 4);
+  const Payload size = LittleEndian(body.size() + 12, 4);
+  return LittleEndian(type, 4) + size + body + size;
+}
+
+Payload Pcapng(std::uint16_t link_type, const std::vector<Payload>& frames) {
+  Payload file = PcapngBlock(0x0A0D0D0A, LittleEndian(0x1A2B3C4D, 4) + LittleEndian(1, 2) + LittleEndian(0, 2) + Payload(8, 0xFF)) +
+                 PcapngBlock(1, LittleEndian(link_type, 2) + LittleEndian(0, 2) + LittleEndian(65535, 4));
+  for (const auto& frame : frames) {
+    file = file + PcapngBlock(6, LittleEndian(0, 4) + LittleEndian(0x65315, 4) + LittleEndian(1327, 4) + LittleEndian(frame.size(), 4) +
+                                     LittleEndian(frame.size(), 4) + frame);
+  }
+  return file;
+}
+
+void WriteCaptures(const Folder& folder) {
+  const Payload data = Udp(format::kDataPort, MakeDataPacket(Azimuths(0, 20), 1'000'000));
+  const Payload position = Udp(format::kPositionPort, MakePositionPacket(1'000'000, format::kPpsLocked, Rmc("120000.00", 'A')));
+  const Payload small = Udp(10110, {'$', 'G', 'P', 'H', 'D', 'T'});
+  const Payload ethernet = kMacs + BigEndian(0x0800, 2) + Ipv4(small);
+  const std::vector<std::pair<std::string, Payload>> frames{
+      {"ethernet", ethernet},
+      {"ethernet_ipv6", kMacs + BigEndian(0x86DD, 2) + Ipv6(small)},
+      {"vlan", kMacs + BigEndian(0x8100, 2) + BigEndian(5, 2) + BigEndian(0x0800, 2) + Ipv4(small)},
+      {"vlan_in_vlan", kMacs + BigEndian(0x88A8, 2) + BigEndian(5, 2) + BigEndian(0x8100, 2) + BigEndian(6, 2) + BigEndian(0x0800, 2) + Ipv4(small)},
+      {"cooked", Payload(14) + BigEndian(0x0800, 2) + Ipv4(small)},
+      {"cooked_2", BigEndian(0x0800, 2) + Payload(18) + Ipv4(small)},
+      {"null", LittleEndian(2, 4) + Ipv4(small)},
+      {"raw", Ipv4(small)},
+      {"raw_ipv6", Ipv6(small)}};
+  for (const auto& [name, frame] : frames) folder.Write("frame_" + name, frame);
+
+  const auto in_ethernet = [](const Payload& udp) { return kMacs + BigEndian(0x0800, 2) + Ipv4(udp); };
+  constexpr std::uint32_t kNanoseconds = 0xA1B23C4D;
+  folder.Write("microseconds.pcap", Pcap(1, {in_ethernet(data), in_ethernet(position), ethernet}));
+  folder.Write("nanoseconds.pcap", Pcap(1, {in_ethernet(data), ethernet}, kNanoseconds));
+  folder.Write("empty.pcap", Pcap(1, {}));
+  folder.Write("vlan.pcap", Pcap(1, {frames[2].second, frames[3].second}));
+  folder.Write("cooked.pcap", Pcap(113, {frames[4].second}));
+  folder.Write("cooked_2.pcap", Pcap(276, {frames[5].second}));
+  folder.Write("null.pcap", Pcap(0, {frames[6].second}));
+  folder.Write("raw.pcap", Pcap(101, {frames[7].second, frames[8].second}));
+  folder.Write("ethernet.pcapng", Pcapng(1, {in_ethernet(data), in_ethernet(position), ethernet}));
+  folder.Write("raw.pcapng", Pcapng(101, {Ipv4(small), Ipv6(small)}));
+}
+
+// --- Messages ---
+
+void WriteMessages(const Folder& folder) {
+  // As the target takes them: the number of the type, then the message without its fingerprint.
+  constexpr std::ptrdiff_t kFingerprintBytes = 8;
+  std::uint8_t type = 0;
+  ForEachFilledMessage([&](const auto& message) {
+    const auto encoded = bus::Encode(message);
+    folder.Write("message_" + std::to_string(type), Payload{type} + Payload(encoded.begin() + kFingerprintBytes, encoded.end()));
+    ++type;
+  });
+}
+
+void WriteScans(const Folder& folder) {
+  using namespace segmenter::test;
+  for (const int num_returns : {1, 2}) {
+    auto scan = EmptyScan({.num_columns = 90, .num_returns = num_returns});
+    const std::vector<Wall> walls{{10.0, -8.0, 10.0, 8.0, -1.0, 1.5}, {-5.0, -1.0, -5.0, 1.0, -1.0, 0.5}};
+    Look(scan, walls, 0.05);
+    const std::string name = num_returns == 1 ? "single" : "dual";
+    for (const int num_parts : {1, 2}) {
+      const auto messages = ScanMessages(scan, 3, num_parts);
+      for (const std::uint8_t image : {0, 1}) {
+        const auto encoded = bus::Encode(messages.front());
+        folder.Write(name + "_of_" + std::to_string(num_parts) + "_image_" + std::to_string(image),
+                     Payload{image} + Payload(encoded.begin(), encoded.end()));
+      }
+    }
+  }
+}
+
+// Places, values and messages that are changed: one byte each of SEGMENTS and of the poses.
+void WritePatches(const Folder& folder) {
+  folder.Write("none", Payload{});
+  for (const std::uint8_t message : {0, 1, 3, 5}) {
+    Payload patches;
+    for (std::uint16_t place = 0; place < 64; place = static_cast<std::uint16_t>(place + 8)) {
+      const std::uint8_t value = place % 16 == 0 ? 0x7F : 0xFF;
+      patches = patches + LittleEndian(place, 2) + Payload{value, message};
+    }
+    folder.Write("message_" + std::to_string(message), patches);
+  }
+}
+
+void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(boats)) {
+    if (entry.path().extension() != ".txtpb") continue;
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    folder.Write(entry.path().parent_path().filename().string() + "_" + entry.path().filename().string(), text);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 3) {
+    std::cerr << "make_corpus FOLDER CONFIG: seeds for each fuzz target into FOLDER/<target>; CONFIG holds the boats' files\n";
+    return 2;
+  }
+  const std::filesystem::path root(argv[1]);
+  const Folder data_packets(root / "fuzz_data_packet");
+  WriteDataPackets(data_packets);
+  WritePositionPackets(Folder(root / "fuzz_position_packet"), data_packets);
+  WriteSentences(Folder(root / "fuzz_nmea_sentence"));
+  WriteCaptures(Folder(root / "fuzz_capture"));
+  WriteMessages(Folder(root / "fuzz_message"));
+  WriteScans(Folder(root / "fuzz_segmenter"));
+  WritePatches(Folder(root / "fuzz_georeferencer"));
+  WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
+  return 0;
+} catch (const std::exception& error) {
+  std::cerr << "make_corpus: " << error.what() << '\n';
+  return 1;
+}
