@@ -73,8 +73,11 @@ Params LoadChecked(const std::filesystem::path& config_folder) {
   return params;
 }
 
+void LogNotice(const std::string& notice) { spdlog::info("{}", notice); }
+
 void RunLog(lookout::runtime::Process& process, const Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
+  service.OnNotice(LogNotice);
   process.Run([&service] { return service.Report(); });
   service.Finish(HostNow());
 }
@@ -90,6 +93,7 @@ lookout::io::UdpOptions ToUdpOptions(const Sources& sources, int port) {
 
 void RunUdp(lookout::runtime::Process& process, const Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
+  service.OnNotice(LogNotice);
   lookout::io::UdpReceiver data(ToUdpOptions(params.sources, params.data_port));
   lookout::io::UdpReceiver position(ToUdpOptions(params.sources, params.position_port));
   for (auto* receiver : {&data, &position}) {
@@ -140,6 +144,7 @@ lookout::vlp16::LiveOptions ToLiveOptions(const Params& params) {
 
 void RunInterface(lookout::runtime::Process& process, const Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
+  service.OnNotice(LogNotice);
   lookout::vlp16::LiveCapture capture(ToLiveOptions(params));
   if (capture.fault().empty()) {
     spdlog::info("captures on interface '{}', filter: {}", params.sources.interface, capture.filter());
@@ -171,6 +176,7 @@ void RunInterface(lookout::runtime::Process& process, const Params& params) {
 
 void RunCapture(lookout::runtime::Process& process, const Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
+  service.OnNotice(LogNotice);
   lookout::vlp16::CapturePlayer player(params.sources.capture_files, params.sources.capture_speed);
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [start] { return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start); };

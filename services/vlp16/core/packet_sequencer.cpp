@@ -17,6 +17,8 @@ constexpr microseconds kHour(format::kMicrosecondsPerHour);
 constexpr microseconds kMaxGap = std::chrono::seconds(1);
 // Rate of the head: it may change by so much of the way while packets are missing (real heads: 0.3 %).
 constexpr double kMaxRateError = 0.02;
+// The rate is known from one packet to some percent at first.
+constexpr double kMaxDarkError = 0.1;
 
 // The way from one stamp to another, within half an hour to either side.
 microseconds Difference(std::uint32_t from_us, std::uint32_t to_us) {
@@ -97,7 +99,10 @@ PacketSequencer::Place PacketSequencer::PlaceOf(Utime host_time, const DataPacke
     place.kind = is_continuing ? Kind::kStep : Kind::kOverlapping;
   } else {
     const double num_missing = Ratio(difference - last_->steps.duration, last_->period);
-    if (num_missing >= 0.5) return PlaceBehindGap(host_time, packet, place, num_missing);
+    // How long the head was dark within the last packet is an estimate; where it goes on, nothing is missing.
+    const double num_dark = Ratio(last_->steps.duration, last_->period) - 1.0;
+    const bool is_dark_longer = is_continuing && num_missing < kMaxDarkError * num_dark;
+    if (num_missing >= 0.5 && !is_dark_longer) return PlaceBehindGap(host_time, packet, place, num_missing);
     place.is_disagreeing = !is_continuing && SweepCdeg() > 0.0;
   }
   if (place.kind == Kind::kStep) place.time = last_->time + std::chrono::round<microseconds>(last_->steps.duration);

@@ -217,6 +217,81 @@ TEST(Service, SaysWhyTheLidarIsOfNoUse) {
   EXPECT_EQ(service.Report().reason, "no usable lidar packets for 1 s; the last was refused: data_bad_flag");
 }
 
+TEST(Service, NamesASensorWhosePacketsAreOfAnotherSize) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  service.AdvanceTo(kTime);
+  test::Payload robosense(1248);
+  const std::string_view header = "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0";
+  std::ranges::copy(header, robosense.begin());
+  service.OnDatagram(kTime, 2368, robosense);
+  service.AdvanceTo(kTime + milliseconds(1500));
+  EXPECT_EQ(service.Report().reason, "no usable lidar packets for 1 s; the last was refused: a packet of another sensor: RoboSense");
+}
+
+std::int64_t CountOf(const HealthReport& report, std::string_view name) {
+  const auto found = std::ranges::find(report.counters, name, &Counter::name);
+  return found != report.counters.end() ? found->count : -1;
+}
+
+TEST(Service, TellsRateRotationAndPhase) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  SpinningSensor sensor;
+  sensor.rpm = 1200.0;
+  Utime host = kTime;
+  for (int i = 0; i < 1600; ++i) {
+    service.OnDatagram(host += microseconds(1327), 2368, sensor.Next());
+    service.AdvanceTo(host);
+  }
+  const auto report = service.Report();
+  EXPECT_NEAR(static_cast<double>(CountOf(report, "data_packets_per_s")), 754.0, 20.0);  // bundles are counted when they are full
+  EXPECT_EQ(CountOf(report, "rotation_rpm"), 1200);
+  EXPECT_LE(std::min<std::int64_t>(CountOf(report, "rotation_phase_cdeg"), 36000 - CountOf(report, "rotation_phase_cdeg")), 2);
+}
+
+TEST(Service, TellsTemperaturesAndAThermalShutdown) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  auto position = test::MakePositionPacket(0, format::kPpsLocked, "");
+  EXPECT_EQ(CountOf(service.Report(), "top_board_celsius"), -1);
+  const auto send = [&] {
+    service.OnDatagram(kTime, 8308, position);
+    service.AdvanceTo(kTime + milliseconds(200));
+  };
+  position[format::kTopBoardTemperatureOffset] = 61;
+  position[format::kBottomBoardTemperatureOffset] = 58;
+  send();
+  EXPECT_EQ(CountOf(service.Report(), "top_board_celsius"), 61);
+  EXPECT_EQ(service.Report().state, HealthState::kOk);
+  position[format::kThermalStateOffset] = format::kThermalShutdown;
+  send();
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service.Report().reason, "the lidar has shut down for its temperature: 61 degrees C at the top board, 58 at the bottom board");
+}
+
+TEST(Service, NoticesEachChangeOfTheClockOnce) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  std::vector<std::string> notices;
+  service.OnNotice([&](const std::string& notice) { notices.push_back(notice); });
+  SpinningSensor sensor;
+  Utime host = kTime;
+  const auto send = [&](std::uint8_t pps) {
+    for (int i = 0; i < 300; ++i) {
+      if (i % 10 == 0) service.OnDatagram(host, 8308, test::MakePositionPacket(sensor.stamp_us(), pps, ""));
+      service.OnDatagram(host += microseconds(1327), 2368, sensor.Next());
+    }
+  };
+  send(format::kPpsAbsent);
+  send(format::kPpsSynchronising);
+  send(format::kPpsLocked);
+  ASSERT_EQ(notices.size(), 3U);
+  EXPECT_TRUE(notices[0].starts_with("sensor clock: no PPS; turns carry this computer's time")) << notices[0];
+  EXPECT_TRUE(notices[1].starts_with("sensor clock: no PPS -> acquiring; turns carry")) << notices[1];
+  EXPECT_TRUE(notices[2].starts_with("sensor clock: acquiring -> locked without time; turns carry")) << notices[2];
+}
+
 TEST(Service, WorksWithTimesBefore1970) {
   Recorded out;
   Service service(out.bus, Params{});
