@@ -140,9 +140,10 @@ std::string Service::Complaint() const {
   if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
     const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());
     if (!decoder_.last_refusal().empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + decoder_.last_refusal();
-    if (!bundler_.foreign_sensor().empty())
+    if (!bundler_.foreign_sensor().empty()) {
       return "no usable lidar packets for " + seconds +
              " s; the last was refused: a packet of another sensor: " + std::string(bundler_.foreign_sensor());
+    }
     return "no lidar packets for " + seconds + " s";
   }
   const auto& telemetry = decoder_.telemetry();
