@@ -15,6 +15,8 @@ namespace {
 // A sensor sends a packet every 1.3 ms.
 constexpr std::chrono::seconds kSilence(1);
 constexpr std::chrono::seconds kRatePeriod(1);
+// A restart and what comes with it break the stream a few times.
+constexpr std::int64_t kMaxOutOfStreamPerS = 10;
 
 std::string_view Text(ClockState state) {
   switch (state) {
@@ -65,6 +67,8 @@ void Service::AdvanceTo(Utime host_time) {
   if (const auto elapsed = host_time - *second_began_; elapsed >= kRatePeriod) {
     data_packets_per_s_ = std::llround(static_cast<double>(num_data_packets_) / ToSeconds(elapsed));
     num_data_packets_ = 0;
+    out_of_stream_per_s_ = decoder_.num_out_of_stream() - num_out_of_stream_;
+    num_out_of_stream_ = decoder_.num_out_of_stream();
     second_began_ = host_time;
   }
   if (const auto bundle = bundler_.AdvanceTo(host_time)) PublishAndConsume(*bundle);
@@ -145,6 +149,10 @@ std::string Service::Complaint() const {
              " s; the last was refused: a packet of another sensor: " + std::string(bundler_.foreign_sensor());
     }
     return "no lidar packets for " + seconds + " s";
+  }
+  if (out_of_stream_per_s_ > kMaxOutOfStreamPerS) {
+    return "the packets are of no even stream (" + std::to_string(out_of_stream_per_s_) +
+           " breaks in the last second): two lidars on one port, or one whose clock or encoder jumps";
   }
   const auto& telemetry = decoder_.telemetry();
   if (telemetry && telemetry->is_shut_down) {

@@ -56,6 +56,8 @@ class Service {
   Utime now_{};                        // host time so far
   std::int64_t num_data_packets_ = 0;  // in the second that runs
   std::int64_t data_packets_per_s_ = 0;
+  std::int64_t num_out_of_stream_ = 0;  // until the last second
+  std::int64_t out_of_stream_per_s_ = 0;
   std::optional<Utime> second_began_;
   std::function<void(const std::string&)> on_notice_;
   std::optional<ClockState> noted_state_;

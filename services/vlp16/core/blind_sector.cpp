@@ -17,8 +17,6 @@ bool IsSame(const Gap& a, const Gap& b, int step_cdeg) {
   return std::max(Apart(a.from_cdeg, b.from_cdeg), Apart(a.to_cdeg, b.to_cdeg)) <= kToleranceSteps * step_cdeg;
 }
 
-int WidthCdeg(const Gap& gap) { return ClockwiseCdeg(gap.from_cdeg, gap.to_cdeg); }
-
 }  // namespace
 
 int BlindSector::OnPacket(const DataPacket& packet, const Steps& steps) {
@@ -28,7 +26,7 @@ int BlindSector::OnPacket(const DataPacket& packet, const Steps& steps) {
     if (!sector_) continue;
     const int margin_cdeg = kToleranceSteps * steps.gap_cdeg[i];
     const int inside_cdeg = ClockwiseCdeg(sector_->from_cdeg, azimuth_cdeg);
-    if (inside_cdeg > margin_cdeg && inside_cdeg < WidthCdeg(*sector_) - margin_cdeg) sector_.reset();
+    if (inside_cdeg > margin_cdeg && inside_cdeg < sector_->width_cdeg() - margin_cdeg) sector_.reset();
   }
   if (!steps.jump) return 0;
   sector_ = steps.jump;
@@ -49,18 +47,18 @@ int BlindSector::OnLoss(const Gap& gap, int num_lost, int step_cdeg) {
 int BlindSector::HiddenCdeg(const Gap& gap, int step_cdeg) const {
   if (!sector_) return 0;
   const int margin_cdeg = kToleranceSteps * step_cdeg;
-  const int width_cdeg = WidthCdeg(*sector_);
+  const int width_cdeg = sector_->width_cdeg();
   // From a margin before the gap: both edges of the sector must come in their order before the gap ends.
   const int start_cdeg = ClockwiseCdeg(margin_cdeg, gap.from_cdeg);
   const int to_sector_cdeg = ClockwiseCdeg(start_cdeg, sector_->from_cdeg);
-  const bool is_inside = to_sector_cdeg + width_cdeg <= WidthCdeg(gap) + 2 * margin_cdeg;
-  return is_inside ? std::min(width_cdeg, WidthCdeg(gap)) : 0;
+  const bool is_inside = to_sector_cdeg + width_cdeg <= gap.width_cdeg() + 2 * margin_cdeg;
+  return is_inside ? std::min(width_cdeg, gap.width_cdeg()) : 0;
 }
 
 bool BlindSector::WasSeenInside(const Gap& gap, int step_cdeg) const {
   const int margin_cdeg = kToleranceSteps * step_cdeg + kBinCdeg;
   bool has_inside = false;
-  for (int inside_cdeg = margin_cdeg; inside_cdeg < WidthCdeg(gap) - margin_cdeg; inside_cdeg += kBinCdeg) {
+  for (int inside_cdeg = margin_cdeg; inside_cdeg < gap.width_cdeg() - margin_cdeg; inside_cdeg += kBinCdeg) {
     has_inside = true;
     if (seen_.test(static_cast<std::size_t>((gap.from_cdeg + inside_cdeg) % format::kAzimuthsPerTurn / kBinCdeg))) return true;
   }

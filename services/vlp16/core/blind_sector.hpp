@@ -20,6 +20,9 @@ class BlindSector {
   /// @return packets that were counted as lost, these included, and were not
   int OnLoss(const Gap& gap, int num_lost, int step_cdeg);
 
+  /// @return 0 while there is none
+  int WidthCdeg() const { return sector_ ? sector_->width_cdeg() : 0; }
+
   /// @return how much of the gap lies in the sector, 0 when it does not hold all of it
   int HiddenCdeg(const Gap& gap, int step_cdeg) const;
 

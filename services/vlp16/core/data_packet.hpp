@@ -54,10 +54,18 @@ DataPacketResult ParseDataPacket(Bytes payload);
 inline constexpr int kMaxGapCdeg = 99;
 static_assert(kMaxGapCdeg <= 1.25 * format::kMaxRpm / 60.0 * format::kAzimuthsPerTurn * std::chrono::duration<double>(format::kBlockPeriod).count());
 
+/// @return azimuth in [0, 36000) after going from `from_cdeg` to `to_cdeg` clockwise
+constexpr int ClockwiseCdeg(int from_cdeg, int to_cdeg) {
+  const int difference = to_cdeg - from_cdeg;
+  return difference < 0 ? difference + format::kAzimuthsPerTurn : difference;
+}
+
 /// A part of the circle that the head went through without firing, or without being heard.
 struct Gap {
   int from_cdeg = 0;  // where the next shot was due
   int to_cdeg = 0;    // where it came
+
+  int width_cdeg() const { return ClockwiseCdeg(from_cdeg, to_cdeg); }
 };
 
 /// How far the head turns in each step and when, and how long the packet took.
@@ -77,11 +85,5 @@ struct Steps {
 /// @param known_cdeg  per format::kBlockPeriod, from packets before; 0 = not known. A jump takes as long as the head needs at this rate, else at
 ///                    that of this packet, which is known to some percent only; it also stands in for the gaps of a packet that has no rate.
 Steps MeasureSteps(const DataPacket& packet, double known_cdeg);
-
-/// @return azimuth in [0, 36000) after going from `from_cdeg` to `to_cdeg` clockwise
-constexpr int ClockwiseCdeg(int from_cdeg, int to_cdeg) {
-  const int difference = to_cdeg - from_cdeg;
-  return difference < 0 ? difference + format::kAzimuthsPerTurn : difference;
-}
 
 }  // namespace lookout::vlp16

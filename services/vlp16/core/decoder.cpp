@@ -129,7 +129,7 @@ void Decoder::OnPositionPayload(Utime host_time, Bytes payload) {
   ++totals_.position_faults[static_cast<std::size_t>(result.fault)];
   if (result.fault != PositionFault::kNone && result.fault != PositionFault::kSentence) return;
   const std::uint32_t stamp_us = result.packet.stamp_us;
-  const auto sensor_time = state_.sequencer.TimeOfStamp(stamp_us);
+  const auto sensor_time = state_.sequencer.TimeOfStamp(host_time, stamp_us);
   state_.telemetry = result.packet.telemetry;
   state_.clock.OnPositionPacket(host_time, result.packet, sensor_time);
   if (result.packet.sentence.empty()) return;
@@ -167,6 +167,12 @@ void Decoder::OnTurn(const Turn& turn) {
   last_clock_ = turn.clock;
   last_rate_radps_ = turn.rate_radps;
   on_turn_(turn);
+}
+
+std::int64_t Decoder::num_out_of_stream() const {
+  SequenceCounts sequence = past_counts_;
+  Add(sequence, state_.sequencer.counts());
+  return sequence.num_restarts + sequence.num_overlapping + sequence.num_disagreements;
 }
 
 std::vector<Counter> Decoder::counters() const {

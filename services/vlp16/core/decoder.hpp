@@ -65,6 +65,9 @@ class Decoder {
   /// Why the last data payload was not usable, with the name of the sensor it seems to come from; empty when it was. For people.
   const std::string& last_refusal() const { return last_refusal_; }
 
+  /// Packets since the start of the process that are not of one even stream: restarts, overlaps, azimuths elsewhere.
+  std::int64_t num_out_of_stream() const;
+
   /// Of the last turn.
   const std::optional<ClockReading>& last_clock() const { return last_clock_; }
   double last_rate_radps() const { return last_rate_radps_; }

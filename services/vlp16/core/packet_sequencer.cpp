@@ -17,6 +17,10 @@ constexpr microseconds kHour(format::kMicrosecondsPerHour);
 constexpr microseconds kMaxGap = std::chrono::seconds(1);
 // Rate of the head: it may change by so much of the way while packets are missing (real heads: 0.3 %).
 constexpr double kMaxRateError = 0.02;
+// A head that turns slower, per format::kBlockPeriod, is about to stand or to start: its azimuth tells of no loss.
+constexpr double kMinRateCdeg = 1.0;
+// Datagrams may wait in a network for so long: the host's clock tells of no smaller step.
+constexpr microseconds kHostResolution = std::chrono::milliseconds(20);
 // The rate is known from one packet to some percent at first.
 constexpr double kMaxDarkError = 0.1;
 
@@ -47,10 +51,13 @@ PacketVerdict PacketSequencer::Add(Utime host_time, const DataPacket& packet, Mo
     return PacketVerdict::kDuplicate;
   }
   auto place = PlaceOf(host_time, packet);
+  num_late_in_a_row_ = place.kind == Kind::kLate ? num_late_in_a_row_ + 1 : 0;
+  if (num_late_in_a_row_ > kMaxHeld) place.kind = Kind::kRestart;  // not late: the stream is another one
   if ((place.kind == Kind::kStep || place.kind == Kind::kRestart) && !held_.empty()) {
-    while (!held_.empty()) ReleaseFirst();
-    place = PlaceOf(host_time, packet);
+    Flush();
+    if (num_late_in_a_row_ == 0) place = PlaceOf(host_time, packet);
   }
+  if (place.kind == Kind::kRestart) place.time = SensorTime(packet.stamp_us);
   switch (place.kind) {
     case Kind::kLate:
       ++counts_.num_reordered;
@@ -75,39 +82,48 @@ void PacketSequencer::Flush() {
   while (!held_.empty()) ReleaseFirst();
 }
 
-std::optional<SensorTime> PacketSequencer::TimeOfStamp(std::uint32_t stamp_us) const {
-  if (!last_) return std::nullopt;
+std::optional<SensorTime> PacketSequencer::TimeOfStamp(Utime host_time, std::uint32_t stamp_us) const {
+  if (!last_ || std::chrono::abs(host_time - last_->host_time) > kMaxGap) return std::nullopt;
   return last_->time + Difference(last_->stamp_us, stamp_us);
 }
 
 // Precondition: there is a last packet. Changes nothing.
 PacketSequencer::Place PacketSequencer::PlaceOf(Utime host_time, const DataPacket& packet) const {
   const microseconds difference = Difference(last_->stamp_us, packet.stamp_us);
-  const bool is_continuing = IsContinuing(packet);
+  const bool is_set = IsClockSet(host_time, packet, difference);
   Place place;
   place.time = last_->time + difference;
   // A packet that comes late was fired where the head was then.
   const double back_cdeg = rate_cdeg_ * Ratio(difference, format::kBlockPeriod);
   const bool is_late = difference >= -kMaxGap && IsAt(packet, last_->first_cdeg + back_cdeg);
   const bool is_far_back = difference < -static_cast<int>(kMaxHeld) * last_->period && !is_late;
-  if (difference > kMaxGap || is_far_back) {
-    const bool is_host_continuing = std::chrono::abs(host_time - last_->host_time) <= kMaxGap;
-    place.kind = is_continuing && is_host_continuing ? Kind::kStep : Kind::kRestart;
+  const bool is_long_ago = std::chrono::abs(host_time - last_->host_time) > kHour / 2 && !IsContinuing(packet);
+  if (is_long_ago || difference > kMaxGap || is_far_back) {
+    place.kind = is_set ? Kind::kStep : Kind::kRestart;
   } else if (difference <= microseconds(0)) {
-    place.kind = is_continuing ? Kind::kStep : Kind::kLate;
+    place.kind = is_set ? Kind::kStep : Kind::kLate;
   } else if (difference < last_->period / 2) {
-    place.kind = is_continuing ? Kind::kStep : Kind::kOverlapping;
+    place.kind = is_set ? Kind::kStep : Kind::kOverlapping;
   } else {
     const double num_missing = Ratio(difference - last_->steps.duration, last_->period);
     // How long the head was dark within the last packet is an estimate; where it goes on, nothing is missing.
     const double num_dark = Ratio(last_->steps.duration, last_->period) - 1.0;
-    const bool is_dark_longer = is_continuing && num_missing < kMaxDarkError * num_dark;
+    const bool is_dark_longer = IsContinuing(packet) && num_missing < kMaxDarkError * num_dark;
     if (num_missing >= 0.5 && !is_dark_longer) return PlaceBehindGap(host_time, packet, place, num_missing);
-    place.is_disagreeing = !is_continuing && SweepCdeg() > 0.0;
+    place.is_disagreeing = !IsContinuing(packet) && SweepCdeg() > 0.0;
   }
   if (place.kind == Kind::kStep) place.time = last_->time + std::chrono::round<microseconds>(last_->steps.duration);
-  if (place.kind == Kind::kRestart) place.time = SensorTime(packet.stamp_us);
   return place;
+}
+
+// Whether the sensor's clock was set by the difference of the stamps, less the packet that passed: the head goes on where it was, and the host's
+// clock is nearer to one packet than to the difference, where it can tell at all.
+bool PacketSequencer::IsClockSet(Utime host_time, const DataPacket& packet, microseconds difference) const {
+  if (!IsContinuing(packet)) return false;
+  const nanoseconds step = difference - last_->steps.duration;
+  if (std::chrono::abs(step) < kHostResolution) return true;
+  const nanoseconds elapsed = host_time - last_->host_time;
+  return std::chrono::abs(elapsed - last_->steps.duration) < std::chrono::abs(elapsed - difference);
 }
 
 // Sensor time says that packets are missing: what the azimuth says of it.
@@ -122,17 +138,17 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
   const double num_passed = gap_cdeg / sweep_cdeg;
   const double error = std::abs(std::remainder(num_passed - num_missing, packets_per_turn));
   place.is_disagreeing = error > 0.5 + kMaxRateError * num_missing;
-  // A gap of whole turns looks like none: the host's clock tells.
-  const bool is_host_against = host_time - last_->host_time < (place.time - last_->time) / 2;
-  const bool is_about_a_turn = num_missing > packets_per_turn - 2.0;
-  if (IsContinuing(packet) && (place.is_disagreeing || (is_about_a_turn && is_host_against))) {
-    place = {Kind::kStep, last_->time + std::chrono::round<microseconds>(last_->steps.duration), 0, false};
-    return place;
+  // A gap of about whole turns looks like none in azimuth.
+  const bool is_about_a_turn = num_missing > packets_per_turn - 1.0;
+  const bool is_set = IsClockSet(host_time, packet, place.time - last_->time);
+  if (is_set && (place.is_disagreeing || is_about_a_turn)) {
+    return {Kind::kStep, last_->time + std::chrono::round<microseconds>(last_->steps.duration), 0, false};
   }
+  const int sector_cdeg = blind_sector_.WidthCdeg();
+  if (sector_cdeg == 0 || place.is_disagreeing) return place;
+  const double num_turns = std::max(0.0, std::round((num_missing - num_passed) / packets_per_turn));
   const int hidden_cdeg = blind_sector_.HiddenCdeg(gap, last_->step_cdeg());
-  if (hidden_cdeg == 0 || place.is_disagreeing) return place;
-  const double num_turns = std::floor(num_missing / packets_per_turn);
-  const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_turns * (format::kAzimuthsPerTurn - hidden_cdeg);
+  const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_turns * (format::kAzimuthsPerTurn - sector_cdeg);
   place.num_lost = std::max(0, static_cast<int>(std::lround(visible_cdeg / sweep_cdeg)));
   if (place.num_lost == 0) place.kind = Kind::kNext;
   return place;
@@ -143,11 +159,12 @@ void PacketSequencer::MeasureRate(const DataPacket& packet, const PlacedPacket& 
   constexpr double kShare = 1.0 / 16.0;
   const int turned_cdeg = ClockwiseCdeg(last_->first_cdeg, packet.azimuth_cdeg[0]);
   const double rate_cdeg = turned_cdeg / Ratio(placed.time - last_->time, format::kBlockPeriod);
+  if (rate_cdeg > kMaxGapCdeg) return;  // an encoder that went back a little
   rate_cdeg_ += (rate_cdeg - rate_cdeg_) * (rate_cdeg_ > 0.0 ? kShare : 1.0);
 }
 
 // Of a packet; 0 when the head stands, or its rate is not known.
-double PacketSequencer::SweepCdeg() const { return rate_cdeg_ * last_->num_steps; }
+double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kMinRateCdeg ? 0.0 : rate_cdeg_ * last_->num_steps; }
 
 // To half of a packet; false when the rate is not known.
 bool PacketSequencer::IsAt(const DataPacket& packet, double azimuth_cdeg) const {
@@ -201,6 +218,7 @@ void PacketSequencer::Give(Utime host_time, const DataPacket& packet, Model mode
   placed.host_time = host_time;
   placed.time = place.time;
   placed.is_restart = place.kind == Kind::kRestart;
+  placed.is_elsewhere = place.kind == Kind::kNext && place.is_disagreeing;
   if (placed.is_restart) rate_cdeg_ = 0.0;
   const bool is_next = place.kind == Kind::kNext && !last_->steps.jump && (rate_cdeg_ == 0.0 || IsContinuing(packet));
   if (is_next) MeasureRate(packet, placed);

@@ -23,10 +23,11 @@ struct PlacedPacket {
   DataPacket packet;  // its payload is valid during the call that gives it
   Steps steps;
   Model model = Model::kVlp16;
-  Utime host_time;         // of its arrival
-  SensorTime time{0};      // of its first shot
-  int num_lost = 0;        // packets missing before it
-  bool is_restart = true;  // nothing before it belongs to it: the first, or the sensor started anew, or paused
+  Utime host_time;            // of its arrival
+  SensorTime time{0};         // of its first shot
+  int num_lost = 0;           // packets missing before it
+  bool is_restart = true;     // nothing before it belongs to it: the first, or the sensor started anew, or paused
+  bool is_elsewhere = false;  // time goes on, but the head is not where it should be: its azimuths do not go on from those before
 };
 
 enum class PacketVerdict {
@@ -49,7 +50,7 @@ struct SequenceCounts {
 
 /// A packet is next when it follows the last by what that took. Where packets are missing it is held until they come, or eight later ones have.
 /// Missing packets are known from sensor time (their period) and checked by the azimuth that was passed over. When azimuth says that nothing is
-/// missing, sensor time was set; the way in between is told from a restart by the host's clock.
+/// missing, and the host's clock, that no such time passed, sensor time was set.
 class PacketSequencer {
  public:
   using Handler = std::function<void(const PlacedPacket&)>;
@@ -64,8 +65,8 @@ class PacketSequencer {
   /// End of input: gives what is held.
   void Flush();
 
-  /// Sensor time of another stamp (of a position packet) near the last data packet; nullopt before the first.
-  std::optional<SensorTime> TimeOfStamp(std::uint32_t stamp_us) const;
+  /// Sensor time of the stamp of a position packet; nullopt when no data packet came within a second of it by the host's clock.
+  std::optional<SensorTime> TimeOfStamp(Utime host_time, std::uint32_t stamp_us) const;
 
   const SequenceCounts& counts() const { return counts_; }
 
@@ -101,6 +102,7 @@ class PacketSequencer {
 
   Place PlaceOf(Utime host_time, const DataPacket& packet) const;
   Place PlaceBehindGap(Utime host_time, const DataPacket& packet, Place place, double num_missing) const;
+  bool IsClockSet(Utime host_time, const DataPacket& packet, std::chrono::microseconds difference) const;
   void MeasureRate(const DataPacket& packet, const PlacedPacket& placed);
   double SweepCdeg() const;
   bool IsAt(const DataPacket& packet, double azimuth_cdeg) const;
@@ -113,10 +115,11 @@ class PacketSequencer {
 
   Handler on_packet_;
   std::optional<Last> last_;
-  double rate_cdeg_ = 0.0;         // turn of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
-  std::vector<Held> held_;         // by time
-  std::array<Known, 16> known_{};  // the last ones given
+  double rate_cdeg_ = 0.0;          // turn of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
+  std::vector<Held> held_;          // by time
+  std::array<Known, 512> known_{};  // the last ones given: of a turn and more
   std::size_t next_known_ = 0;
+  std::size_t num_late_in_a_row_ = 0;
   BlindSector blind_sector_;
   SequenceCounts counts_;
 };

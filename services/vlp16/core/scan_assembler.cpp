@@ -69,7 +69,7 @@ ScanAssembler::ScanAssembler(double cut_azimuth_rad, std::function<void(const Tu
 void ScanAssembler::Add(const PlacedPacket& placed, const ClockReading& clock, const PacketCounts& counts) {
   const DataPacket& packet = placed.packet;
   if (num_columns_ > 0 && (packet.mode != turn_.mode || placed.model != turn_.model)) End(counts);
-  if (num_columns_ > 0 && placed.time < last_column_ - kMaxOverlap) End(counts);
+  if (num_columns_ > 0 && (placed.is_elsewhere || placed.time < last_column_ - kMaxOverlap)) End(counts);
   if (placed.num_lost > 0) AddLoss(placed, 2 * packet.azimuth_cdeg[0], counts);
   for (int step = 0; step < packet.num_steps; ++step) {
     const int gap_cdeg = placed.steps.gap_cdeg[step];
@@ -77,7 +77,7 @@ void ScanAssembler::Add(const PlacedPacket& placed, const ClockReading& clock, c
     if (num_columns_ > 0) time = std::max(time, last_column_);
     for (int sequence = 0; sequence < kSequencesPerBlock; ++sequence, time += kSequencePeriod) {
       const int azimuth_half_cdeg = (2 * packet.azimuth_cdeg[step] + sequence * gap_cdeg) % kHalfCdegPerTurn;
-      if (num_columns_ > 0 && CrossesCut(azimuth_half_cdeg)) {
+      if (num_columns_ > 0 && CrossesCut(azimuth_half_cdeg, time)) {
         is_after_cut_ = true;
         Finish(counts);
       } else if (num_columns_ == kMaxColumns || (num_columns_ > 0 && time - start_ > kMaxTurnDuration)) {
@@ -170,8 +170,10 @@ void ScanAssembler::AddLoss(const PlacedPacket& placed, int azimuth_half_cdeg, c
   const int to_cut_half_cdeg = Clockwise(reach_half_cdeg_, cut_half_cdeg_);
   const double gap_per_second_half_cdeg = 2.0 * last_gap_cdeg_ / ToSeconds(kBlockPeriod);
   const double expected_half_cdeg = gap_per_second_half_cdeg * ToSeconds(nanoseconds(placed.time) - last_column_);
-  const bool is_whole_turn_missing = expected_half_cdeg - sweep_half_cdeg > 0.5 * kHalfCdegPerTurn;
-  if (!is_whole_turn_missing && !CrossesCut(azimuth_half_cdeg)) {
+  // A little less than a turn looks like a step back.
+  const bool is_just_behind = sweep_half_cdeg > kHalfCdegPerTurn - kMaxBackHalfCdeg && expected_half_cdeg > 0.5 * kHalfCdegPerTurn;
+  const bool is_whole_turn_missing = is_just_behind || expected_half_cdeg - sweep_half_cdeg > 0.5 * kHalfCdegPerTurn;
+  if (!is_whole_turn_missing && !CrossesCut(azimuth_half_cdeg, placed.time)) {
     turn_.num_lost_packets += placed.num_lost;
     return;
   }
@@ -183,9 +185,12 @@ void ScanAssembler::AddLoss(const PlacedPacket& placed, int azimuth_half_cdeg, c
   num_lost_before_turn_ = static_cast<int>(std::ceil(after_cut));
 }
 
-bool ScanAssembler::CrossesCut(int azimuth_half_cdeg) const {
+// A way that no head makes in the time was not made forwards: the head trembles, or goes back.
+bool ScanAssembler::CrossesCut(int azimuth_half_cdeg, nanoseconds time) const {
   const int sweep_half_cdeg = Clockwise(reach_half_cdeg_, azimuth_half_cdeg);
   if (sweep_half_cdeg > kHalfCdegPerTurn - kMaxBackHalfCdeg) return false;
+  const double num_periods = static_cast<double>((time - last_column_).count()) / static_cast<double>(kBlockPeriod.count());
+  if (sweep_half_cdeg > 2.0 * kMaxGapCdeg * (num_periods + 2.0)) return false;
   const int to_cut_half_cdeg = Clockwise(reach_half_cdeg_, cut_half_cdeg_);
   return to_cut_half_cdeg > 0 && to_cut_half_cdeg <= sweep_half_cdeg;
 }

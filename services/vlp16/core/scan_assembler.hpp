@@ -39,7 +39,7 @@ class ScanAssembler {
   void Finish(const PacketCounts& counts);
   void AddColumn(const DataPacket& packet, int step, int sequence, int azimuth_half_cdeg, int gap_cdeg, std::chrono::nanoseconds time);
   void AddLoss(const PlacedPacket& placed, int azimuth_half_cdeg, const PacketCounts& counts);
-  bool CrossesCut(int azimuth_half_cdeg) const;
+  bool CrossesCut(int azimuth_half_cdeg, std::chrono::nanoseconds time) const;
   void Reserve(int num_columns);
 
   int cut_half_cdeg_;

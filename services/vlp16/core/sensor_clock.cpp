@@ -33,11 +33,12 @@ microseconds InNearestHour(microseconds value, microseconds target) {
   return target + rest - kHour / 2;
 }
 
-// UTC of a sentence, on the day that is nearest to the host's where it has no date, and where its date is off by whole rollovers.
-microseconds ToUtc(const SentenceTime& time, Utime host_time) {
+// UTC of a sentence, on the day that is nearest to `about` where it has no date, and put right against the host where its date is off by whole
+// rollovers.
+microseconds ToUtc(const SentenceTime& time, Utime host_time, microseconds about) {
   using std::chrono::days;
   const microseconds host = host_time.time_since_epoch();
-  if (!time.date) return time.time_of_day + std::chrono::round<days>(host - time.time_of_day);
+  if (!time.date) return time.time_of_day + std::chrono::round<days>(about - time.time_of_day);
   const microseconds utc = time.date->time_since_epoch() + time.time_of_day;
   const auto rollovers =
       std::chrono::round<std::chrono::duration<int, std::ratio_multiply<days::period, std::ratio<kGpsWeekRollover.count()>>>>(host - utc);
@@ -73,7 +74,8 @@ void SensorClock::OnPositionPacket(Utime host_time, const PositionPacket& packet
   pps_ = packet.pps;
   has_valid_rmc_ = packet.time.has_value();
   if (packet.time) {
-    const microseconds utc = ToUtc(*packet.time, host_time);
+    const microseconds about = rmc_ ? rmc_->utc + (host_time - rmc_->host_time) : host_time.time_since_epoch();
+    const microseconds utc = ToUtc(*packet.time, host_time, about);
     const bool is_new = !rmc_ || rmc_->utc != utc;
     if (is_new) {
       const microseconds behind = InNearestHour(microseconds(packet.stamp_us) - utc, microseconds(0));

@@ -284,6 +284,67 @@ TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
   EXPECT_EQ(bench.turns[0].time_ns[23], (11 + 224) * 110592 + 55296);
 }
 
+TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatTurns) {
+  Bench bench;
+  int azimuth_cdeg = 18000;
+  for (int packet = 0; packet < 1600; ++packet) {
+    std::array<int, format::kNumBlocks> azimuths{};
+    for (auto& azimuth : azimuths) {
+      azimuth = azimuth_cdeg;
+      azimuth_cdeg = (azimuth_cdeg + format::kAzimuthsPerTurn - 2) % format::kAzimuthsPerTurn;
+    }
+    bench.decoder.OnDataPayload(kTime + packet * std::chrono::microseconds(1327),
+                                MakeDataPacket(azimuths, static_cast<std::uint32_t>(packet * 1327)));
+  }
+  bench.decoder.Flush();
+  for (const auto& turn : bench.turns) {
+    EXPECT_TRUE(turn.is_partial_start || turn.is_partial_end);
+    EXPECT_LT(turn.rate_radps, 1.0);
+  }
+  EXPECT_LE(bench.turns.size(), 3U);
+}
+
+TEST(Decoder, EndsTheTurnWhereTheHeadIsNotWhereItShouldBe) {
+  Bench bench;
+  SpinningSensor sensor;
+  bench.Send(sensor, 100);
+  sensor.azimuth_deg += 200.0;  // and no time has passed
+  bench.Send(sensor, 100);
+  bench.decoder.Flush();
+  EXPECT_EQ(bench.CountOf("data_azimuth_disagrees"), 1);
+  for (const auto& turn : bench.turns) {
+    if (!turn.is_partial_start && !turn.is_partial_end) {
+      EXPECT_NEAR(turn.num_columns(), 1808, 2);
+    }
+  }
+}
+
+TEST(Decoder, DoesNotJoinTurnsWhenALittleLessThanATurnIsMissing) {
+  for (const int lost : {74, 75, 76}) {
+    Bench bench;
+    SpinningSensor sensor;
+    sensor.rpm = 601.0;
+    bench.Send(sensor, 110);
+    sensor.Skip(lost);
+    bench.Send(sensor, 110);
+    bench.decoder.Flush();
+    EXPECT_EQ(bench.CountOf("data_lost"), lost);
+    for (const auto& turn : bench.turns) EXPECT_LT(turn.time_ns.back(), 101'000'000) << lost;
+  }
+}
+
+TEST(Decoder, StampsASentenceByTheHostWhenNoDataCome) {
+  DecoderParams params;
+  params.time = TimeChoice::kHost;
+  Bench bench(params);
+  SpinningSensor sensor;
+  bench.Send(sensor, 100);
+  const Utime later = kTime + std::chrono::minutes(40);
+  bench.decoder.OnPositionPayload(later, test::MakePositionPacket(2'400'000'000U, format::kPpsAbsent, "$GPRMC,004000,A"));
+  ASSERT_EQ(bench.sentences.size(), 1U);
+  EXPECT_EQ(bench.sentences[0].time, later);
+}
+
 TEST(Decoder, TellsThePhaseOfTheHead) {
   Bench bench;
   SpinningSensor sensor;
@@ -337,7 +398,7 @@ TEST(Decoder, CapsATurnThatDoesNotEnd) {
 TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
   Bench bench;
   SpinningSensor sensor;
-  sensor.azimuth_deg = 350.0;
+  sensor.azimuth_deg = 354.2;
   bench.Send(sensor, 1);
   bench.decoder.OnDataPayload(kTime, MakeDataPacket({35900, 35940, 35980, 20, 35999, 10, 35998, 30, 60, 100, 140, 180}, 1327));
   bench.decoder.Flush();

@@ -219,6 +219,72 @@ TEST(PacketSequencer, TakesAPauseOrAnotherAzimuthForARestart) {
   EXPECT_EQ(bench.counts().num_lost, 0);
 }
 
+TEST(PacketSequencer, AsksTheHostBeforeItTakesALossForAClockThatWasSet) {
+  Bench bench;
+  SpinningSensor sensor;
+  bench.Add(sensor, 100);
+  const double azimuth_deg = sensor.azimuth_deg;
+  sensor.Skip(340);
+  sensor.azimuth_deg = azimuth_deg;  // the head slowed down on the way, and is by chance where it was
+  bench.Add(sensor, 100);
+  EXPECT_EQ(bench.counts().num_lost, 340);
+  EXPECT_EQ(bench.counts().num_clock_steps, 0);
+}
+
+TEST(PacketSequencer, CountsLossesOfAHeadThatStandsOrTrembles) {
+  Bench bench;
+  SpinningSensor sensor;
+  bench.Add(sensor, 200);
+  sensor.rpm = 0.0;
+  bench.Add(sensor, 400);
+  int num_dropped = 0;
+  for (int i = 0; i < 600; ++i) {
+    auto payload = sensor.Next();
+    // A tremble of 0.01 deg, forwards and back.
+    WriteU16LittleEndian(payload, format::kBlockAzimuthOffset, static_cast<std::uint16_t>(sensor.azimuth_deg * 100.0) + i % 2);
+    if (i % 20 == 7) {
+      ++num_dropped;
+    } else {
+      bench.Add(payload);
+    }
+  }
+  sensor.Skip(300);
+  sensor.rpm = 600.0;
+  bench.Add(sensor, 200);
+  bench.sequencer.Flush();
+  EXPECT_EQ(bench.counts().num_lost, num_dropped + 300);
+  EXPECT_EQ(bench.counts().num_clock_steps, 0);
+}
+
+TEST(PacketSequencer, TakesWhatIsLateWithoutEndForAnotherStream) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a turn is 75 packets
+  sensor.time_ns = 100'000'000'000;
+  bench.Add(sensor, 100);
+  sensor.time_ns -= 10 * 75 * 1'327'104LL;  // set back by ten turns, and a packet was lost: it looks like packets of a second ago
+  sensor.Skip(1);
+  bench.Add(sensor, 100);
+  EXPECT_EQ(bench.counts().num_late, 8);
+  EXPECT_EQ(bench.counts().num_restarts, 1);
+  EXPECT_EQ(bench.given.size(), 192U);
+}
+
+TEST(PacketSequencer, DropsACopyThatIsATurnOld) {
+  Bench bench;
+  SpinningSensor sensor;
+  sensor.rpm = 60e9 / (75.0 * 1327104.0);
+  const auto packets = Make(sensor, 200);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    bench.Add(packets[i]);
+    if (i == 150) {
+      EXPECT_EQ(bench.Add(packets[i - 74]), PacketVerdict::kDuplicate);
+    }
+  }
+  EXPECT_EQ(bench.counts().num_clock_steps, 0);
+  EXPECT_EQ(bench.given.size(), packets.size());
+}
+
 TEST(PacketSequencer, SaysWhenAzimuthAndTimeTellOfDifferentLosses) {
   Bench bench;
   SpinningSensor sensor;
@@ -246,12 +312,14 @@ TEST(PacketSequencer, RefusesASecondSensorOnTheSamePort) {
 
 TEST(PacketSequencer, KnowsTheTimeOfAnotherStampOnceAPacketCame) {
   Bench bench;
-  EXPECT_FALSE(bench.sequencer.TimeOfStamp(5));
+  EXPECT_FALSE(bench.sequencer.TimeOfStamp(kStart, 5));
   SpinningSensor sensor;
   sensor.time_ns = 3'599'999'000'000;
   bench.Add(sensor, 2);
-  EXPECT_EQ(bench.sequencer.TimeOfStamp(3'599'999'500), microseconds(3'599'999'500));
-  EXPECT_EQ(bench.sequencer.TimeOfStamp(400), microseconds(3'600'000'400));
+  const Utime host = kStart + microseconds(327);  // of the last packet
+  EXPECT_EQ(bench.sequencer.TimeOfStamp(host, 3'599'999'500), microseconds(3'599'999'500));
+  EXPECT_EQ(bench.sequencer.TimeOfStamp(host, 400), microseconds(3'600'000'400));
+  EXPECT_FALSE(bench.sequencer.TimeOfStamp(host + std::chrono::minutes(31), 400));
 }
 
 TEST(PacketSequencer, GoesOnWithAClockThatStandsOrCountsBeyondTheHour) {
@@ -339,6 +407,19 @@ TEST(PacketSequencer, CountsLossesBesideALimitedFieldOfView) {
   }
   bench.sequencer.Flush();
   EXPECT_EQ(bench.counts().num_lost, num_dropped);
+}
+
+TEST(PacketSequencer, CountsLossesOfTurnsOfALimitedFieldOfView) {
+  for (const int lost : {30, 38, 75, 100, 200}) {
+    for (int phase = 0; phase < 38; phase += 3) {
+      Bench bench;
+      LimitedSensor sensor(20.0, 200.0);
+      for (int i = 0; i < 400 + phase; ++i) bench.Add(sensor.Next());
+      for (int i = 0; i < lost; ++i) sensor.Next();
+      for (int i = 0; i < 100; ++i) bench.Add(sensor.Next());
+      EXPECT_NEAR(static_cast<double>(bench.counts().num_lost), lost, 1.0) << phase;
+    }
+  }
 }
 
 TEST(PacketSequencer, CountsEveryLossOfASectorThatWasSeenBefore) {

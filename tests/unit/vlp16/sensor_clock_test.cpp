@@ -221,6 +221,15 @@ std::vector<Scenario> Scenarios() {
     };
     for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
   });
+  add("RMC and GGA in turn with a host days off", [&](Scenario& s) {
+    s.choice = TimeChoice::kSensor;
+    s.host_error = constant(hours(49));
+    s.sentence = [](Utime start, double time_s) {
+      const auto rmc = Rmc(std::chrono::floor<seconds>(start + microseconds(static_cast<std::int64_t>(time_s * 1e6))));
+      return static_cast<int>(time_s * 10.0) % 2 == 0 ? rmc : "$GPGGA," + rmc.substr(7, 6) + ",4338.00,N,07209.00,W,4,12,0.8,200.0,M,-30.0,M,,";
+    };
+    for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+  });
   add("RMC one second late across the hour", [&](Scenario& s) {
     s.start = sys_days(year(2026) / 6 / 15) + hours(15) - seconds(2);
     s.sentence = [](Utime start, double time_s) {

@@ -250,6 +250,26 @@ TEST(Service, TellsRateRotationAndPhase) {
   EXPECT_LE(std::min<std::int64_t>(CountOf(report, "rotation_phase_cdeg"), 36000 - CountOf(report, "rotation_phase_cdeg")), 2);
 }
 
+TEST(Service, SaysWhenTwoLidarsSendToOnePort) {
+  for (const std::int64_t apart_ns : {663'600LL, 500'000'000'000LL}) {
+    Recorded out;
+    Service service(out.bus, Params{});
+    SpinningSensor one;
+    SpinningSensor other;
+    other.time_ns = apart_ns;
+    other.azimuth_deg = 100.0;
+    Utime host = kTime;
+    service.AdvanceTo(host);
+    for (int i = 0; i < 1600; ++i) {
+      service.OnDatagram(host += microseconds(663), 2368, one.Next());
+      service.OnDatagram(host += microseconds(664), 2368, other.Next());
+      service.AdvanceTo(host);
+    }
+    EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+    EXPECT_NE(service.Report().reason.find("two lidars on one port"), std::string::npos) << service.Report().reason;
+  }
+}
+
 TEST(Service, TellsTemperaturesAndAThermalShutdown) {
   Recorded out;
   Service service(out.bus, Params{});
