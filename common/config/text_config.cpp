@@ -202,18 +202,19 @@ std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   return EffectiveText(*message);
 }
 
-std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason) {
-  // The line of the first place in which the field is set; 1 when it is not (a default is in force).
+std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason, std::size_t index) {
+  // The line of the place in which the value is set, or of the last one before it; 1 when there is none (a default is in force).
   int line_number = 1;
   std::istringstream text(ReadFile(file));
   int number = 0;
+  std::size_t num_places = 0;
   const std::string key = field.substr(field.rfind('.') + 1);
   for (std::string line; std::getline(text, line);) {
     ++number;
-    const auto place = line.substr(0, line.find('#')).find(key);
-    if (place != std::string::npos) {
+    const auto words = line.substr(0, line.find('#'));
+    for (auto place = words.find(key); place != std::string::npos && num_places <= index; place = words.find(key, place + 1)) {
       line_number = number;
-      break;
+      ++num_places;
     }
   }
   return file.string() + ":" + std::to_string(line_number) + ": " + field + ": " + reason;

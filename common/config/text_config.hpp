@@ -42,7 +42,9 @@ std::string EffectiveText(const google::protobuf::Message& message);
 std::string EffectiveTextOfFile(const std::filesystem::path& file);
 
 /// A fault of a relation between fields, found by a service, as a line of a ConfigError: "path:line: field: reason".
-std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason);
+///
+/// @param index  of a repeated field: which of its values
+std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason, std::size_t index = 0);
 
 /// The same as the only fault: throws ConfigError.
 [[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason);

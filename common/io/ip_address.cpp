@@ -21,6 +21,11 @@ bool IpAddress::is_multicast() const {
   return is_ipv4() ? (bytes[kMappedPrefix.size()] & kHighNibble) == kIpv4Multicast : bytes[0] == kIpv6Multicast;
 }
 
+bool IpAddress::is_any() const {
+  const auto begin = is_ipv4() ? bytes.begin() + kMappedPrefix.size() : bytes.begin();
+  return std::all_of(begin, bytes.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
 std::optional<IpAddress> ParseIpAddress(const std::string& text) {
   IpAddress address;
   if (inet_pton(AF_INET6, text.c_str(), address.bytes.data()) == 1) return address;

@@ -14,6 +14,7 @@ struct IpAddress {
 
   bool is_ipv4() const;
   bool is_multicast() const;
+  bool is_any() const;  // "0.0.0.0" or "::"
   bool operator==(const IpAddress&) const = default;
 };
 

@@ -2,9 +2,11 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
+#include <linux/sock_diag.h>
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -52,6 +54,23 @@ std::string InterfaceNames() {
   return names;
 }
 
+bool IsUp(const std::string& interface) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return false;
+  ifreq request{};
+  interface.copy(request.ifr_name, IFNAMSIZ - 1);
+  const bool is_up = ioctl(descriptor, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
+  close(descriptor);
+  return is_up;
+}
+
+// The interface in "fe80::1%eth0"; empty when there is none, or it is a number.
+std::string ZoneOf(const std::string& address) {
+  const auto place = address.find('%');
+  const std::string zone = place == std::string::npos ? "" : address.substr(place + 1);
+  return zone.find_first_not_of("0123456789") == std::string::npos ? "" : zone;
+}
+
 // What helps, where the reason alone does not say it.
 std::string Remedy(int reason, const UdpOptions& options) {
   switch (reason) {
@@ -59,6 +78,10 @@ std::string Remedy(int reason, const UdpOptions& options) {
       return " (another program listens there: ss -ulpn 'sport = :" + std::to_string(options.port) + "' names it)";
     case EADDRNOTAVAIL:
       return " (no interface has that address now: ip address lists those that there are)";
+    case EINVAL:
+      return options.interface.empty() && options.bind_address.find(':') != std::string::npos
+                 ? " (a link-local address needs its interface: " + options.bind_address + "%eth0, or set interface)"
+                 : "";
     case ENODEV:
       return " (a multicast group needs a route or an interface: set interface)";
     case EPERM:
@@ -125,7 +148,6 @@ int Open(const UdpOptions& options, unsigned int interface_index) {
   // FORCE goes over the system's limit and needs the right to; without it the kernel grants what it may.
   opened.Require(opened.Set(SOL_SOCKET, SO_RCVBUFFORCE, size) || opened.Set(SOL_SOCKET, SO_RCVBUF, size), "receive buffer");
   opened.Require(opened.Set(SOL_SOCKET, SO_TIMESTAMPNS, 1), "kernel time stamps");
-  opened.Require(opened.Set(SOL_SOCKET, SO_RXQ_OVFL, 1), "drop counter");
   if (interface_index != 0) {
     const auto& name = options.interface;
     opened.Require(setsockopt(opened.descriptor(), SOL_SOCKET, SO_BINDTODEVICE, name.c_str(), static_cast<socklen_t>(name.size())) == 0,
@@ -174,6 +196,7 @@ UdpReceiver::UdpReceiver(UdpOptions options) : options_(std::move(options)), buf
     if (!address) throw std::runtime_error(Where(options_) + ": '" + text + "' is no numeric address of a source");
     allowed_sources_.push_back(*address);
   }
+  if (options_.interface.empty()) options_.interface = ZoneOf(options_.bind_address);
   if (!options_.interface.empty()) {
     interface_index_ = if_nametoindex(options_.interface.c_str());
     if (interface_index_ == 0) {
@@ -210,18 +233,11 @@ std::optional<ReceivedDatagram> UdpReceiver::ReceiveAny() {
   datagram.payload = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes));
   bool has_time = false;
   for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr; item = CMSG_NXTHDR(&message, item)) {
-    if (item->cmsg_level != SOL_SOCKET) continue;
-    if (item->cmsg_type == SCM_TIMESTAMPNS) {
-      timespec time{};
-      std::memcpy(&time, CMSG_DATA(item), sizeof time);
-      datagram.host_time = ToUtime(time);
-      has_time = true;
-    } else if (item->cmsg_type == SO_RXQ_OVFL) {
-      std::uint32_t count = 0;
-      std::memcpy(&count, CMSG_DATA(item), sizeof count);
-      num_kernel_drops_ += static_cast<std::uint32_t>(count - last_drop_count_);
-      last_drop_count_ = count;
-    }
+    if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SCM_TIMESTAMPNS) continue;
+    timespec time{};
+    std::memcpy(&time, CMSG_DATA(item), sizeof time);
+    datagram.host_time = ToUtime(time);
+    has_time = true;
   }
   if (!has_time) {
     timespec time{};
@@ -238,36 +254,65 @@ bool UdpReceiver::IsAllowed() const {
 std::optional<ReceivedDatagram> UdpReceiver::Receive() {
   for (int i = 0; i < kMaxRefusedPerCall; ++i) {
     const auto datagram = ReceiveAny();
-    if (!datagram || IsAllowed()) return datagram;
+    is_empty_ = !datagram;
+    if (!datagram) return std::nullopt;
+    last_time_ = datagram->host_time;
+    if (IsAllowed()) return datagram;
     ++num_source_refused_;
   }
   return std::nullopt;
 }
 
-std::string UdpReceiver::FollowInterface() {
-  if (options_.interface.empty()) return "";
-  const unsigned int index = if_nametoindex(options_.interface.c_str());
-  if (index == 0) {
-    return std::exchange(is_interface_missing_, true) ? "" : "interface '" + options_.interface + "' has gone; waiting for it";
+std::int64_t UdpReceiver::num_kernel_drops() {
+  // Not by SO_RXQ_OVFL, which tells of drops only with the next datagram that is taken.
+  std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+  socklen_t size = sizeof memory;
+  if (getsockopt(file_descriptor_, SOL_SOCKET, SO_MEMINFO, memory.data(), &size) == 0 && size > SK_MEMINFO_DROPS * sizeof memory[0]) {
+    const std::uint32_t count = memory[SK_MEMINFO_DROPS];
+    num_kernel_drops_ += static_cast<std::uint32_t>(count - last_drop_count_);
+    last_drop_count_ = count;
   }
-  is_interface_missing_ = false;
-  if (index == interface_index_) return "";
+  return num_kernel_drops_;
+}
+
+std::string UdpReceiver::Reopen(unsigned int index) {
   try {
     UdpOptions same_port = options_;
     same_port.port = port_;
     const int opened = Open(same_port, index);
+    num_kernel_drops();  // the old one's go with it
     // Takes the old one's number, by which the caller knows it.
     const bool is_taken = dup3(opened, file_descriptor_, O_CLOEXEC) >= 0;
+    const int reason = errno;
     close(opened);
-    if (!is_taken) return "";
-  } catch (const std::runtime_error&) {
-    return "";  // not ready yet: again in a second
+    if (!is_taken) return Where(same_port) + ": " + std::strerror(reason);
+  } catch (const std::runtime_error& error) {
+    return error.what();
   }
   interface_index_ = index;
   last_drop_count_ = 0;
   receive_buffer_bytes_ = GrantedBytes(file_descriptor_);
   ++num_reopened_;
-  return "interface '" + options_.interface + "' is back";
+  return "";
+}
+
+std::string UdpReceiver::CheckInterface() {
+  const unsigned int index = if_nametoindex(options_.interface.c_str());
+  if (index == 0) return "interface '" + options_.interface + "' has gone; waiting for it";
+  if (index != interface_index_) {
+    const auto fault = Reopen(index);
+    if (!fault.empty()) return "interface '" + options_.interface + "' is back, but not ready: " + fault;
+  }
+  return IsUp(options_.interface) ? "" : "interface '" + options_.interface + "' is down";
+}
+
+std::string UdpReceiver::FollowInterface() {
+  if (options_.interface.empty()) return "";
+  const auto num_reopened_before = num_reopened_;
+  const auto fault = CheckInterface();
+  if (fault == fault_ && num_reopened_ == num_reopened_before) return "";
+  fault_ = fault;
+  return fault.empty() ? "interface '" + options_.interface + "' is back" : fault;
 }
 
 std::string UdpReceiver::SourceAddress() const {

@@ -18,7 +18,8 @@ struct UdpOptions {
   std::string bind_address;      // numeric IPv4 or IPv6 address of this computer; "0.0.0.0" = every interface
   int port = 0;                  // 0 = one that is free
   int receive_buffer_bytes = 0;  // asked of the kernel, which may grant less: see receive_buffer_bytes()
-  std::string interface = {};    // "eth0": datagrams of this interface alone, and it joins the group; empty = any
+  // "eth0": datagrams of this interface alone, and it joins the group; empty = any, or the one that bind_address names ("fe80::1%eth0").
+  std::string interface = {};
   // Numeric; empty = none. Of the same family as bind_address, which must be "0.0.0.0", "::" or the group itself: a socket that is bound
   // to another address gets no multicast.
   std::string multicast_group = {};
@@ -44,18 +45,27 @@ class UdpReceiver {
   /// Readable while a datagram waits. Stays the same number for the life of the receiver.
   int file_descriptor() const { return file_descriptor_; }
 
-  /// @return the oldest datagram that waits and comes from an allowed source; nullopt when none does, or after kMaxRefusedPerCall that were
-  ///         refused. Never waits, never throws, takes no memory.
+  /// @return the oldest datagram that waits and comes from an allowed source; nullopt when none waits, and after kMaxRefusedPerCall that were
+  ///         refused: is_empty() tells which. Never waits, never throws, takes no memory.
   std::optional<ReceivedDatagram> Receive();
+
+  /// The last Receive() left nothing behind. False after one that ended at kMaxRefusedPerCall.
+  bool is_empty() const { return is_empty_; }
+
+  /// Kernel stamp of the datagram that the last Receive() looked at, refused or not: what came before it has been taken. 1970 before the first.
+  Utime last_time() const { return last_time_; }
 
   /// So that a flood from elsewhere does not hold the caller.
   static constexpr int kMaxRefusedPerCall = 64;
 
   /// To be called about once a second. An interface that went away and came back (a USB adapter) is another one to the kernel: a socket that is
-  /// bound to it would stay deaf. Opens the socket again then.
+  /// bound to it would stay deaf. Opens the socket again then, as soon as it can.
   ///
   /// @return what changed, for the log; empty = nothing
   std::string FollowInterface();
+
+  /// Why nothing can be received now, as FollowInterface() found; empty = nothing is known to be wrong.
+  const std::string& fault() const { return fault_; }
 
   /// Numeric source of the datagram that Receive() gave last. For people: it makes a text.
   std::string SourceAddress() const;
@@ -66,8 +76,8 @@ class UdpReceiver {
   /// Bytes granted by the kernel for waiting datagrams.
   int receive_buffer_bytes() const { return receive_buffer_bytes_; }
 
-  /// Datagrams that the kernel dropped because the buffer was full, as far as it has told: it tells with the next datagram.
-  std::int64_t num_kernel_drops() const { return num_kernel_drops_; }
+  /// Datagrams that the kernel dropped because the buffer was full. Asks the kernel.
+  std::int64_t num_kernel_drops();
 
   /// Datagrams whose source is not allowed.
   std::int64_t num_source_refused() const { return num_source_refused_; }
@@ -78,12 +88,16 @@ class UdpReceiver {
  private:
   std::optional<ReceivedDatagram> ReceiveAny();
   bool IsAllowed() const;
+  std::string CheckInterface();
+  std::string Reopen(unsigned int index);
 
   UdpOptions options_;
   std::vector<IpAddress> allowed_sources_;
   int file_descriptor_ = -1;
   unsigned int interface_index_ = 0;  // 0 = of none
-  bool is_interface_missing_ = false;
+  std::string fault_;
+  bool is_empty_ = true;
+  Utime last_time_{};
   int port_ = 0;
   int receive_buffer_bytes_ = 0;
   std::int64_t num_kernel_drops_ = 0;

@@ -1,9 +1,11 @@
 #include "common/runtime/execute_again.hpp"
 
+#include <fcntl.h>
 #include <linux/close_range.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -12,6 +14,23 @@
 #include <string>
 
 namespace lookout::runtime {
+
+namespace {
+
+// What libraries opened without O_CLOEXEC must not pile up from start to start. Where this cannot be it is no reason to end a look-out.
+void CloseAllAtExecution() {
+  constexpr int kFirstAfterStandardError = 3;
+  constexpr unsigned int kLast = ~0U;
+  if (close_range(kFirstAfterStandardError, kLast, CLOSE_RANGE_CLOEXEC) == 0) return;
+  // Before Linux 5.11.
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error)) {
+    const int descriptor = std::atoi(entry.path().filename().c_str());
+    if (descriptor >= kFirstAfterStandardError) fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+  }
+}
+
+}  // namespace
 
 void ExecuteAgain(char** argv) {
   const std::string self = "/proc/self/exe";
@@ -22,12 +41,7 @@ void ExecuteAgain(char** argv) {
 
   std::cout.flush();
   spdlog::default_logger()->flush();
-  // What libraries opened without O_CLOEXEC must not pile up from start to start. Since Linux 5.11.
-  constexpr unsigned int kFirstAfterStandardError = 3;
-  constexpr unsigned int kLast = ~0U;
-  if (close_range(kFirstAfterStandardError, kLast, CLOSE_RANGE_CLOEXEC) != 0) {
-    throw std::runtime_error(std::string("cannot close descriptors for a new start: ") + std::strerror(errno));
-  }
+  CloseAllAtExecution();
   execv(program.c_str(), argv);
   throw std::runtime_error("cannot start " + program + " again: " + std::strerror(errno));
 }

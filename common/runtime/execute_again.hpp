@@ -3,8 +3,8 @@
 
 namespace lookout::runtime {
 
-/// Replaces the process by a fresh start of its own program. Every descriptor but 0, 1 and 2 is closed. Signals that wait stay waiting: they reach
-/// the new start, as they are blocked here and are blocked there.
+/// Replaces the process by a fresh start of its own program. Every descriptor but 0, 1 and 2 is closed, as far as the kernel can. Signals that wait
+/// stay waiting: they reach the new start, as they are blocked here and are blocked there.
 ///
 /// @param argv  of main
 /// @throws std::runtime_error when the program cannot be started; nothing has changed then

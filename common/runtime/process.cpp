@@ -1,5 +1,6 @@
 #include "common/runtime/process.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <sys/signalfd.h>
@@ -34,20 +35,35 @@ sigset_t StopSignals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGHUP);  // a closed terminal
+  sigaddset(&signals, SIGHUP);
   return signals;
 }
 
 // Goes before anything that starts a thread (LCM does): threads inherit the blocked signals.
-std::string Prepared(const std::string& name, const std::string& lcm_url) {
-  const sigset_t signals = StopSignals();
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+std::string Prepared(const std::string& lcm_url) {
+  BlockStopSignals();
   std::signal(SIGPIPE, SIG_IGN);  // a log that nobody reads any more does not end a look-out
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ " + name + ": %v", spdlog::pattern_time_type::utc);
   return lcm_url;
 }
 
+// A terminal that controls this process, and is still there.
+bool HasTerminal() {
+  const int descriptor = open("/dev/tty", O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor >= 0) close(descriptor);
+  return descriptor >= 0;
+}
+
+bool IsHangupIgnored() {
+  struct sigaction action {};
+  return sigaction(SIGHUP, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
 }  // namespace
+
+void BlockStopSignals() {
+  const sigset_t signals = StopSignals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+}
 
 Utime HostNow() { return std::chrono::time_point_cast<std::chrono::microseconds>(std::chrono::system_clock::now()); }
 
@@ -71,13 +87,18 @@ struct Process::Implementation {
   std::string name;
   int signals = -1;
   bool is_stopping = false;
+  bool had_terminal = HasTerminal();
+  bool is_hangup_ignored = IsHangupIgnored();
   std::vector<Timer> timers;
   std::vector<Readable> readables;
   std::function<void()> on_hangup;
 
   void OnSignal(const signalfd_siginfo& info) {
-    const bool is_request = info.ssi_signo == SIGHUP && info.ssi_code != SI_KERNEL;
-    if (is_request && on_hangup) {
+    const bool is_hangup = info.ssi_signo == SIGHUP;
+    if (is_hangup && is_hangup_ignored) return;  // blocked signals come even so
+    // A shell passes the hangup of its terminal on to its jobs: that is no request either.
+    const bool is_terminal_gone = info.ssi_code == SI_KERNEL || (had_terminal && !HasTerminal());
+    if (is_hangup && !is_terminal_gone && on_hangup) {
       on_hangup();
       return;
     }
@@ -101,8 +122,7 @@ struct Process::Implementation {
   }
 };
 
-Process::Process(const std::string& name, const std::string& lcm_url)
-    : bus_(Prepared(name, lcm_url)), implementation_(std::make_unique<Implementation>()) {
+Process::Process(const std::string& name, const std::string& lcm_url) : bus_(Prepared(lcm_url)), implementation_(std::make_unique<Implementation>()) {
   const sigset_t signals = StopSignals();
   implementation_->name = name;
   implementation_->signals = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);
@@ -157,6 +177,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
 }
 
 int RunMain(const std::string& name, const std::function<void()>& body) try {
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ " + name + ": %v", spdlog::pattern_time_type::utc);
   body();
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0) throw std::runtime_error("standard output could not be written");
@@ -165,7 +186,7 @@ int RunMain(const std::string& name, const std::function<void()>& body) try {
   for (const auto& fault : error.faults()) spdlog::critical("{}", fault);
   return 2;
 } catch (const std::exception& error) {
-  spdlog::critical("{}: {}", name, error.what());
+  spdlog::critical("{}", error.what());
   return EXIT_FAILURE;
 }
 

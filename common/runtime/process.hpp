@@ -17,9 +17,13 @@ Utime HostNow();
 /// Name of this computer.
 std::string HostName();
 
+/// Blocks SIGINT, SIGTERM and SIGHUP: what comes from here on waits for Process::Run. First thing in a main that takes SIGHUP, so that one that comes
+/// early does not end the start.
+void BlockStopSignals();
+
 class Process {
  public:
-  /// Blocks SIGINT, SIGTERM and SIGHUP, sets spdlog's pattern, opens the bus.
+  /// Blocks SIGINT, SIGTERM and SIGHUP, opens the bus.
   ///
   /// @param name  as in HEALTH: "segmenter"
   /// @throws std::runtime_error when the bus cannot be opened
@@ -36,10 +40,11 @@ class Process {
   /// Calls `handler` about every `period`, late rather than twice.
   void Every(std::chrono::milliseconds period, std::function<void()> handler);
 
-  /// Calls `handler` on SIGHUP instead of ending Run. A SIGHUP that the kernel itself sends, because the terminal is gone, still ends it.
+  /// Calls `handler` on SIGHUP instead of ending Run. One that comes because the terminal is gone still ends it, whoever sends it (the kernel, or a
+  /// shell to its jobs).
   void OnHangup(std::function<void()> handler);
 
-  /// Runs until SIGINT, SIGTERM, SIGHUP or Stop(). Sends HEALTH once a second with what `report` says.
+  /// Runs until SIGINT, SIGTERM, SIGHUP (unless it was ignored at the start: nohup) or Stop(). Sends HEALTH once a second with what `report` says.
   /// @throws what a handler threw
   void Run(const std::function<HealthReport()>& report);
 
@@ -52,7 +57,7 @@ class Process {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Runs `body`, and turns what it throws into a line of the log and an exit code: 0 fine, 1 failed, 2 wrong config.
+/// Runs `body`, and turns what it throws into a line of the log and an exit code: 0 fine, 1 failed, 2 wrong config. Lines of the log carry `name`.
 int RunMain(const std::string& name, const std::function<void()>& body);
 
 }  // namespace lookout::runtime

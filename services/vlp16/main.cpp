@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <optional>
 #include <spdlog/spdlog.h>
+#include <string>
+#include <vector>
 
 #include "common/config/text_config.hpp"
 #include "common/io/udp_receiver.hpp"
@@ -18,6 +21,7 @@
 namespace {
 
 using lookout::HealthReport;
+using lookout::Utime;
 using lookout::runtime::HostNow;
 using lookout::vlp16::Params;
 using lookout::vlp16::Sources;
@@ -30,47 +34,80 @@ constexpr std::chrono::milliseconds kCaptureTick(10);
 constexpr std::chrono::milliseconds kMaxRound(20);
 constexpr std::chrono::milliseconds kInterfacePeriod(1000);
 
-// Gives to `take` what `next` has, for kMaxRound at most. @return whether nothing waits any more
-template <typename Next, typename Take>
-bool Drain(const Next& next, const Take& take) {
+// Gives to `take` what `next` has, for kMaxRound at most. A call that ends at what was refused (not `is_empty`) does not end the round.
+template <typename Next, typename IsEmpty, typename Take>
+void Drain(const Next& next, const IsEmpty& is_empty, const Take& take) {
   const auto end = std::chrono::steady_clock::now() + kMaxRound;
   while (std::chrono::steady_clock::now() < end) {
-    const auto datagram = next();
-    if (!datagram) return true;
-    take(*datagram);
+    if (const auto datagram = next()) {
+      take(*datagram);
+    } else if (is_empty()) {
+      return;
+    }
   }
-  return false;
+}
+
+// Host time before which everything that came has been taken.
+template <typename Source>
+Utime TakenUntil(const Source& source, Utime now) {
+  return source.is_empty() ? now : std::min(now, source.last_time());
+}
+
+// Of bind_address, without a zone.
+std::optional<lookout::io::IpAddress> BoundAddress(const Sources& sources) {
+  return lookout::io::ParseIpAddress(sources.bind_address.substr(0, sources.bind_address.find('%')));
 }
 
 // What is text in the params and must be right before anything starts.
-void CheckSources(const std::filesystem::path& config_folder, const Sources& sources) {
+void CheckSources(const std::filesystem::path& config_folder, const Sources& sources, std::vector<std::string>& faults) {
   const auto file = config_folder / "vlp16.txtpb";
-  std::vector<std::string> faults;
-  const auto require = [&](bool is_fine, const char* field, const std::string& reason) {
-    if (!is_fine) faults.push_back(lookout::config::FaultLine(file, field, reason));
+  const auto require = [&](bool is_fine, const char* field, const std::string& reason, std::size_t index = 0) {
+    if (!is_fine) faults.push_back(lookout::config::FaultLine(file, field, reason, index));
   };
-  for (const auto& text : sources.allowed_source_addresses) {
+  for (std::size_t i = 0; i < sources.allowed_source_addresses.size(); ++i) {
+    const auto& text = sources.allowed_source_addresses[i];
     const auto address = lookout::io::ParseIpAddress(text);
-    require(address && !address->is_multicast(), "allowed_source_address", "'" + text + "' is no numeric address of a sensor");
+    require(address && !address->is_multicast(), "allowed_source_address", "'" + text + "' is no numeric address of a sensor", i);
   }
-  const auto bound = lookout::io::ParseIpAddress(sources.bind_address.substr(0, sources.bind_address.find('%')));
-  if (sources.kind == Sources::Kind::kUdp) require(bound.has_value(), "bind_address", "'" + sources.bind_address + "' is no numeric address");
+  const bool is_udp = sources.kind == Sources::Kind::kUdp;
+  const auto bound = BoundAddress(sources);
+  if (is_udp && !sources.bind_address.empty()) require(bound.has_value(), "bind_address", "'" + sources.bind_address + "' is no numeric address");
   if (!sources.multicast_group.empty()) {
     const auto group = lookout::io::ParseIpAddress(sources.multicast_group);
     require(group && group->is_multicast(), "multicast_group", "'" + sources.multicast_group + "' is no multicast address (224.0.0.0/4, ff00::/8)");
     require(!group || !bound || group->is_ipv4() == bound->is_ipv4(), "multicast_group", "must be of the same family as bind_address");
+    require(!is_udp || !group || !bound || bound->is_any() || bound == group, "bind_address",
+            "must be 0.0.0.0, :: or the group itself when multicast_group is set: a socket that is bound to another address hears no group");
   }
   if (!sources.bpf_filter.empty()) {
     const auto fault = lookout::vlp16::FilterFault(sources.bpf_filter);
     require(fault.empty(), "bpf_filter", fault);
   }
-  if (!faults.empty()) throw lookout::config::ConfigError(faults);
+  if (sources.kind != Sources::Kind::kCapture) return;
+  for (std::size_t i = 0; i < sources.capture_files.size(); ++i) {
+    if (!sources.capture_files[i].has_filename()) continue;  // an empty name, told by LoadParams
+    try {
+      const lookout::vlp16::CaptureReader reader(sources.capture_files[i]);
+    } catch (const std::exception& error) {
+      require(false, "capture_file", error.what(), i);
+    }
+  }
 }
 
+// @throws ConfigError with all faults, but those of the schema before others
 Params LoadChecked(const std::filesystem::path& config_folder) {
-  auto params = lookout::vlp16::LoadParams(config_folder);
-  CheckSources(config_folder, params.sources);
+  std::vector<std::string> faults;
+  auto params = lookout::vlp16::LoadParams(config_folder, faults);
+  CheckSources(config_folder, params.sources, faults);
+  if (!faults.empty()) throw lookout::config::ConfigError(faults);
   return params;
+}
+
+// What is wrong with a source stands before what comes of it.
+void AddFault(HealthReport& report, const std::string& fault) {
+  if (fault.empty()) return;
+  report.state = std::max(report.state, lookout::HealthState::kDegraded);
+  report.reason = fault + (report.reason.empty() ? "" : "; ") + report.reason;
 }
 
 void LogNotice(const std::string& notice) { spdlog::info("{}", notice); }
@@ -101,15 +138,17 @@ void RunUdp(lookout::runtime::Process& process, const Params& params) {
     spdlog::warn("port {}: the kernel grants a receive buffer of {} bytes, {} were asked for (sysctl net.core.rmem_max)", receiver->port(),
                  receiver->receive_buffer_bytes(), params.sources.receive_buffer_bytes);
   }
+  if (const auto bound = BoundAddress(params.sources); bound && !bound->is_any() && !bound->is_multicast()) {
+    spdlog::info("hears only what is sent to {}; the sensor as delivered sends to 255.255.255.255, which needs bind_address \"0.0.0.0\"",
+                 params.sources.bind_address);
+  }
   process.Every(kDrainPeriod, [&] {
     const auto now = HostNow();  // what was stamped before it is taken below
-    bool is_empty = true;
     for (auto* receiver : {&data, &position}) {
-      is_empty = Drain([receiver] { return receiver->Receive(); },
-                       [&](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.port, datagram.payload); }) &&
-                 is_empty;
+      Drain([receiver] { return receiver->Receive(); }, [receiver] { return receiver->is_empty(); },
+            [&](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.port, datagram.payload); });
     }
-    if (is_empty) service.AdvanceTo(now);
+    service.AdvanceTo(now, std::min(TakenUntil(data, now), TakenUntil(position, now)));
   });
   process.Every(kInterfacePeriod, [&] {
     for (auto* receiver : {&data, &position}) {
@@ -124,6 +163,7 @@ void RunUdp(lookout::runtime::Process& process, const Params& params) {
     report.counters.push_back({"data_source_refused", data.num_source_refused()});
     report.counters.push_back({"position_source_refused", position.num_source_refused()});
     report.counters.push_back({"sockets_reopened", data.num_reopened() + position.num_reopened()});
+    AddFault(report, data.fault().empty() ? position.fault() : data.fault());
     return report;
   });
   service.Finish(HostNow());
@@ -153,10 +193,9 @@ void RunInterface(lookout::runtime::Process& process, const Params& params) {
   }
   process.Every(kDrainPeriod, [&] {
     const auto now = HostNow();  // what was stamped before it is taken below
-    const bool is_empty =
-        Drain([&capture] { return capture.Next(); },
-              [&service](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload); });
-    if (is_empty) service.AdvanceTo(now);
+    Drain([&capture] { return capture.Next(); }, [&capture] { return capture.is_empty(); },
+          [&service](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload); });
+    service.AdvanceTo(now, TakenUntil(capture, now));
   });
   process.Every(kInterfacePeriod, [&] {
     const auto event = capture.FollowInterface();
@@ -165,10 +204,7 @@ void RunInterface(lookout::runtime::Process& process, const Params& params) {
   process.Run([&] {
     HealthReport report = service.Report();
     for (const auto& counter : capture.counters()) report.counters.push_back(counter);
-    if (!capture.fault().empty()) {
-      report.state = std::max(report.state, lookout::HealthState::kDegraded);
-      report.reason = capture.fault() + (report.reason.empty() ? "" : "; ") + report.reason;
-    }
+    AddFault(report, capture.fault());
     return report;
   });
   service.Finish(HostNow());
@@ -181,9 +217,9 @@ void RunCapture(lookout::runtime::Process& process, const Params& params) {
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [start] { return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start); };
   process.Every(kCaptureTick, [&] {
-    Drain([&] { return player.NextDue(elapsed()); },
+    Drain([&] { return player.NextDue(elapsed()); }, [&player] { return player.is_empty(); },
           [&service](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload); });
-    service.AdvanceTo(player.CaptureTime(elapsed()));
+    if (player.has_begun()) service.AdvanceTo(player.CaptureTime(elapsed()));
     if (player.is_finished()) process.Stop();
   });
   process.Run([&] {
@@ -208,11 +244,24 @@ void RunSource(lookout::runtime::Process& process, const Params& params) {
   }
 }
 
+// Opens the sources of a new config beside those that run, and closes them. @throws std::runtime_error when one cannot be opened
+void TrySources(const Params& params, const Params& running) {
+  const auto& sources = params.sources;
+  if (sources.kind == Sources::Kind::kUdp) {
+    for (const int port : {params.data_port, params.position_port}) {
+      // A port that this process holds is tried without it.
+      const bool is_held = running.sources.kind == Sources::Kind::kUdp && (port == running.data_port || port == running.position_port);
+      const lookout::io::UdpReceiver receiver(ToUdpOptions(sources, is_held ? 0 : port));
+    }
+  } else if (sources.kind == Sources::Kind::kInterface) {
+    const lookout::vlp16::LiveCapture capture(ToLiveOptions(params));
+  }
+}
+
 // SIGHUP: a wrong config is told and changes nothing; a right one ends the run, to begin again with it.
-bool IsConfigRight(const std::filesystem::path& config_folder) {
+bool IsConfigRight(const std::filesystem::path& config_folder, const Params& running) {
   try {
-    const auto params = LoadChecked(config_folder);
-    for (const auto& file : params.sources.capture_files) lookout::vlp16::CaptureReader{file};
+    TrySources(LoadChecked(config_folder), running);
     lookout::runtime::EffectiveConfig(config_folder, {"boat.txtpb"});
     return true;
   } catch (const lookout::config::ConfigError& error) {
@@ -227,6 +276,7 @@ bool IsConfigRight(const std::filesystem::path& config_folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  lookout::runtime::BlockStopSignals();
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-vlp16", "VLP-16 datagrams in; LIDAR_PACKETS, LIDAR_SCAN out");
   bool starts_again = false;
   const int code = lookout::runtime::RunMain("vlp16", [&] {
@@ -237,7 +287,7 @@ int main(int argc, char** argv) {
     }
     lookout::runtime::Process process("vlp16", options.lcm_url);
     process.OnHangup([&] {
-      if (!IsConfigRight(options.config_folder)) return;
+      if (!IsConfigRight(options.config_folder, params)) return;
       spdlog::info("SIGHUP: starts again with the new config");
       starts_again = true;
       process.Stop();

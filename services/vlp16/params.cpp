@@ -44,12 +44,18 @@ Sources::Kind ToKind(config::Vlp16::Source source) {
 }
 
 // What no field is wrong by itself in.
-void CheckRelations(const std::filesystem::path& file, const config::Vlp16& message) {
-  std::vector<std::string> faults;
-  const auto require = [&](bool is_fine, const char* field, const char* reason) {
-    if (!is_fine) faults.push_back(config::FaultLine(file, field, reason));
+void CheckRelations(const std::filesystem::path& file, const config::Vlp16& message, std::vector<std::string>& faults) {
+  const auto require = [&](bool is_fine, const char* field, const std::string& reason, int index = 0) {
+    if (!is_fine) faults.push_back(config::FaultLine(file, field, reason, static_cast<std::size_t>(index)));
   };
-  require(message.data_port() != message.position_port(), "position_port", "must differ from data_port");
+  const bool are_ports_apart = message.data_port() != message.position_port();
+  // The one that stands in the file is told.
+  if (message.has_position_port() || !message.has_data_port()) {
+    require(are_ports_apart, "position_port", "must differ from data_port, which is " + std::to_string(message.data_port()));
+  } else {
+    require(are_ports_apart, "data_port", "must differ from position_port, which is " + std::to_string(message.position_port()));
+  }
+  require(message.interface() != "any", "interface", "must be one interface: 'any' is none");
   switch (message.source()) {
     case config::Vlp16::UDP:
       require(!message.bind_address().empty(), "bind_address", "must be set when source is UDP");
@@ -65,8 +71,7 @@ void CheckRelations(const std::filesystem::path& file, const config::Vlp16& mess
     default:
       break;
   }
-  for (const auto& name : message.capture_file()) require(!name.empty(), "capture_file", "must not be empty");
-  if (!faults.empty()) throw config::ConfigError(faults);
+  for (int i = 0; i < message.capture_file_size(); ++i) require(!message.capture_file(i).empty(), "capture_file", "must not be empty", i);
 }
 
 Sources ToSources(const std::filesystem::path& config_folder, const config::Vlp16& message) {
@@ -86,10 +91,17 @@ Sources ToSources(const std::filesystem::path& config_folder, const config::Vlp1
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
+  std::vector<std::string> faults;
+  auto params = LoadParams(config_folder, faults);
+  if (!faults.empty()) throw config::ConfigError(faults);
+  return params;
+}
+
+Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::string>& faults) {
   const auto file = config_folder / "vlp16.txtpb";
   config::Vlp16 message;
   config::LoadText(file, message);
-  CheckRelations(file, message);
+  CheckRelations(file, message, faults);
 
   Params params;
   params.input = message.source() == config::Vlp16::LOG ? Input::kLog : Input::kOutside;

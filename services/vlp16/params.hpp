@@ -36,8 +36,13 @@ struct Params {
 };
 
 /// @param config_folder  the boat's folder, holding vlp16.txtpb
-/// @throws config::ConfigError with every fault. Addresses and the filter are texts here: whoever opens the sources checks them (main does at its
-///         start and for --check).
+/// @throws config::ConfigError with every fault. Addresses, captures and the filter are texts here: whoever opens the sources checks them (main
+///         does at its start and for --check).
 Params LoadParams(const std::filesystem::path& config_folder);
+
+/// The same, but fields that do not go together are added to `faults`, each as a line: for who has more to check and tells all at once.
+///
+/// @throws config::ConfigError when the file is not of the schema
+Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::string>& faults);
 
 }  // namespace lookout::vlp16

@@ -60,7 +60,9 @@ void Service::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
   if (const auto bundle = bundler_.Add(host_time, udp_port, payload)) PublishAndConsume(*bundle);
 }
 
-void Service::AdvanceTo(Utime host_time) {
+void Service::AdvanceTo(Utime host_time) { AdvanceTo(host_time, host_time); }
+
+void Service::AdvanceTo(Utime host_time, Utime taken_until) {
   if (!silent_since_ || *silent_since_ > host_time) silent_since_ = host_time;
   now_ = host_time;
   if (!second_began_ || *second_began_ > host_time) second_began_ = host_time;
@@ -71,7 +73,7 @@ void Service::AdvanceTo(Utime host_time) {
     num_out_of_stream_ = decoder_.num_out_of_stream();
     second_began_ = host_time;
   }
-  if (const auto bundle = bundler_.AdvanceTo(host_time)) PublishAndConsume(*bundle);
+  if (const auto bundle = bundler_.AdvanceTo(taken_until)) PublishAndConsume(*bundle);
 }
 
 void Service::Finish(Utime host_time) {

@@ -30,7 +30,16 @@ class Child {
     std::vector<char*> arguments;
     for (const auto& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
-    if (posix_spawnp(&pid_, arguments[0], &actions, nullptr, arguments.data(), environ) != 0) pid_ = -1;
+    // Whatever started the tests may ignore signals (nohup, a shell's background).
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM}) sigaddset(&signals, signal);
+    posix_spawnattr_setsigdefault(&attributes, &signals);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    if (posix_spawnp(&pid_, arguments[0], &actions, &attributes, arguments.data(), environ) != 0) pid_ = -1;
+    posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);
   }
   Child(const Child&) = delete;
@@ -45,6 +54,8 @@ class Child {
   void Signal(int signal) const {
     if (pid_ > 0 && !exit_code_) kill(pid_, signal);
   }
+
+  pid_t pid() const { return pid_; }
 
   bool IsRunning() { return pid_ > 0 && !Wait(std::chrono::milliseconds(0)); }
 

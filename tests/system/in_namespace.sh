@@ -1,14 +1,24 @@
 #!/usr/bin/env bash
 # Runs a test program in a network namespace of its own: loopback up, with (or with "no-route" without) the route that LCM needs.
+# Where it may, in a process namespace too: when the test is ended in any way, so is all that it started.
 # Exit code 77 tells ctest that the test is skipped, where namespaces are not permitted.
 set -euo pipefail
 mode=$1
 shift
-if ! unshare -rn true 2>/dev/null; then
-  echo "skipped: this computer does not permit network namespaces (unshare -rn)"
-  exit 77
+isolated=(unshare -rn --pid --fork --kill-child --mount-proc)
+if ! "${isolated[@]}" true 2>/dev/null; then
+  isolated=(unshare -rn)
+  if ! "${isolated[@]}" true 2>/dev/null; then
+    echo "skipped: this computer does not permit network namespaces (unshare -rn)"
+    exit 77
+  fi
 fi
-if [ "$mode" = no-route ]; then
-  exec unshare -rn bash -c 'ip link set lo up && exec "$@"' bash "$@"
+prepare='ip link set lo up'
+if [ "$mode" != no-route ]; then
+  prepare+=' && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo'
 fi
-exec unshare -rn bash -c 'ip link set lo up && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo && exec "$@"' bash "$@"
+# Process ids begin anew in each process namespace: tests that name their files by them must not meet.
+TMPDIR=$(mktemp -d -t lookout_test.XXXXXX)
+export TMPDIR
+# No exec: the first process of a namespace gets no SIGINT and no SIGABRT, which a test must.
+exec "${isolated[@]}" bash -c "$prepare"' && "$@"; code=$?; rmdir --ignore-fail-on-non-empty "$TMPDIR"; exit $code' bash "$@"

@@ -131,8 +131,8 @@ int main(int argc, char** argv) {
   const Options options = ParseOptions(argc, argv);
   // Tables go to stdout, all else to stderr.
   spdlog::set_default_logger(spdlog::stderr_color_st("replay"));
-  spdlog::set_pattern("%^%l%$ replay: %v");
   return lookout::runtime::RunMain("replay", [&options] {
+    spdlog::set_pattern("%^%l%$ replay: %v");
     if (options.check_only) {
       fmt::print("{}", lookout::runtime::EffectiveConfig(options.config_folder));
       return;

@@ -9,15 +9,21 @@ CapturePlayer::CapturePlayer(const std::vector<std::filesystem::path>& files, do
   readers_.reserve(files.size());
   for (const auto& file : files) readers_.emplace_back(file);
   ReadNext();
-  if (next_) last_stamp_ = next_->host_time;
 }
 
 void CapturePlayer::ReadNext() {
-  next_.reset();
   while (!next_ && reader_index_ < readers_.size()) {
-    next_ = readers_[reader_index_].Next();
+    auto& reader = readers_[reader_index_];
+    next_ = reader.Next(kMaxFramesPerCall);
+    if (!next_ && !reader.is_at_end()) return;
     if (!next_) ++reader_index_;
   }
+  if (!next_) return;
+  if (!std::exchange(has_begun_, true)) last_stamp_ = next_->host_time;
+  const auto step = next_->host_time - last_stamp_;
+  num_stamp_jumps_ += step < std::chrono::microseconds(0) || step > kMaxPause ? 1 : 0;
+  // Steps back count too: frames of one moment that changed places must not make the playing longer.
+  if (step >= -kMaxPause && step <= kMaxPause) next_due_ += step;
 }
 
 std::chrono::microseconds CapturePlayer::ToRecorded(std::chrono::microseconds elapsed) const {
@@ -25,21 +31,17 @@ std::chrono::microseconds CapturePlayer::ToRecorded(std::chrono::microseconds el
 }
 
 std::optional<Datagram> CapturePlayer::NextDue(std::chrono::microseconds elapsed) {
+  if (!next_) ReadNext();
   if (!next_ || (speed_ > 0.0 && next_due_ > ToRecorded(elapsed))) return std::nullopt;
   auto datagram = std::exchange(next_, std::nullopt);
   last_stamp_ = datagram->host_time;
   last_due_ = next_due_;
   ReadNext();
-  if (next_) {
-    const auto step = next_->host_time - last_stamp_;
-    const bool is_jump = step < std::chrono::microseconds(0) || step > kMaxPause;
-    num_stamp_jumps_ += is_jump ? 1 : 0;
-    if (!is_jump) next_due_ += step;
-  }
   return datagram;
 }
 
 Utime CapturePlayer::CaptureTime(std::chrono::microseconds elapsed) const {
+  if (!next_ && !is_finished()) return last_stamp_;
   auto recorded = ToRecorded(elapsed);
   if (next_) recorded = std::min(recorded, next_due_);
   return last_stamp_ + std::max(recorded - last_due_, std::chrono::microseconds(0));

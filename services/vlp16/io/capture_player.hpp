@@ -18,6 +18,8 @@ class CapturePlayer {
  public:
   /// Stamps that go back, or on by more, are a bad stamp or the seam of two captures: they are not waited for.
   static constexpr std::chrono::seconds kMaxPause{5};
+  /// So that a large capture of other things does not hold the caller.
+  static constexpr std::int64_t kMaxFramesPerCall = 1024;
 
   /// Opens all files, so that a wrong one stops the start and not the run.
   ///
@@ -27,13 +29,20 @@ class CapturePlayer {
   CapturePlayer(const std::vector<std::filesystem::path>& files, double speed);
 
   /// @param elapsed  since the start of playing, by a clock that does not jump
-  /// @return the next datagram, when it is due; nullopt when it is not yet, or at the end
+  /// @return the next datagram, when it is due; nullopt when it is not yet, at the end, and after kMaxFramesPerCall that hold none: is_empty()
+  ///         is false then
   std::optional<Datagram> NextDue(std::chrono::microseconds elapsed);
 
-  /// Every datagram has been given.
-  bool is_finished() const { return !next_; }
+  /// After NextDue() gave nothing: nothing is due, as the next datagram is known and comes later, or there is none.
+  bool is_empty() const { return next_.has_value() || is_finished(); }
 
-  /// The recording's time now: of the last datagram, and what has passed since; never past the one that is due.
+  /// Every datagram has been given.
+  bool is_finished() const { return !next_ && reader_index_ == readers_.size(); }
+
+  /// A datagram was found: from then on there is a CaptureTime().
+  bool has_begun() const { return has_begun_; }
+
+  /// The recording's time now: of the last datagram, and what has passed since; never past the one that comes next.
   Utime CaptureTime(std::chrono::microseconds elapsed) const;
 
   /// Sum over the files of CaptureReader::counters(); captures_read, capture_stamp_jumps.
@@ -51,6 +60,7 @@ class CapturePlayer {
   std::size_t reader_index_ = 0;
   double speed_;
   std::optional<Datagram> next_;
+  bool has_begun_ = false;
   Utime last_stamp_{};
   // Recorded time since the start, pauses that are not waited for left out.
   std::chrono::microseconds last_due_{0};

@@ -20,7 +20,9 @@ CaptureReader::CaptureReader(const std::filesystem::path& file) {
   std::array<char, PCAP_ERRBUF_SIZE> fault{};
   // libpcap takes "-" for standard input.
   const std::string name = file == "-" ? "./-" : file.string();
-  if (std::filesystem::is_directory(file)) throw std::runtime_error(name + ": is a folder, not a capture");
+  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
+    throw std::runtime_error(name + ": is a folder or a pipe, not the file of a capture");
+  }
   pcap_t* capture = pcap_open_offline_with_tstamp_precision(name.c_str(), PCAP_TSTAMP_PRECISION_NANO, fault.data());
   if (capture == nullptr) throw std::runtime_error(name + ": cannot be read as a capture: " + fault.data());
   capture_.reset(capture);
@@ -31,12 +33,13 @@ CaptureReader::CaptureReader(const std::filesystem::path& file) {
   }
 }
 
-std::optional<Datagram> CaptureReader::Next() {
+std::optional<Datagram> CaptureReader::Next(std::int64_t max_frames) {
   auto* capture = static_cast<pcap_t*>(capture_.get());
-  while (damage_.empty()) {
+  for (std::int64_t i = 0; i < max_frames && !is_at_end_; ++i) {
     pcap_pkthdr* header = nullptr;
     const u_char* data = nullptr;
     const int outcome = pcap_next_ex(capture, &header, &data);
+    is_at_end_ = outcome != 1;
     if (outcome == PCAP_ERROR_BREAK) return std::nullopt;  // the end
     if (outcome != 1) {
       damage_ = std::string(pcap_geterr(capture)) + ", after " + std::to_string(num_frames_) + " frames";

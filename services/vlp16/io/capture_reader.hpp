@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,13 +26,16 @@ struct Datagram {
 
 class CaptureReader {
  public:
-  /// @throws std::runtime_error naming the file when it cannot be opened, is no capture, or is of a link type that is not understood
-  ///         (named too). A capture without packets is valid.
+  /// @throws std::runtime_error naming the file when it cannot be opened, is no file (a pipe would hold the caller), is no capture, or is of a
+  ///         link type that is not understood (named too). A capture without packets is valid.
   explicit CaptureReader(const std::filesystem::path& file);
 
-  /// @return the next datagram, in the order of the file; nullopt at the end. Frames without a whole UDP datagram are skipped and counted.
-  ///         Where the file is damaged reading ends: see num_damaged().
-  std::optional<Datagram> Next();
+  /// @param max_frames  to look at in this call
+  /// @return the next datagram, in the order of the file; nullopt at the end, and after max_frames: is_at_end() tells which. Frames without a
+  ///         whole UDP datagram are skipped and counted. Where the file is damaged reading ends: see num_damaged().
+  std::optional<Datagram> Next(std::int64_t max_frames = std::numeric_limits<std::int64_t>::max());
+
+  bool is_at_end() const { return is_at_end_; }
 
   std::int64_t num_frames() const { return num_frames_; }        // read so far
   std::int64_t num_datagrams() const { return num_datagrams_; }  // given so far; 0 at the end with num_frames() above 0: all were refused
@@ -47,6 +51,7 @@ class CaptureReader {
   };
   std::unique_ptr<void, Closer> capture_;  // pcap_t
   int link_type_ = 0;
+  bool is_at_end_ = false;
   std::int64_t num_frames_ = 0;
   std::int64_t num_datagrams_ = 0;
   std::int64_t num_bad_times_ = 0;

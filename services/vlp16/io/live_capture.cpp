@@ -41,6 +41,17 @@ bool IsUp(const std::string& interface) {
   return is_up;
 }
 
+std::string InterfaceNames() {
+  std::string names;
+  struct if_nameindex* const list = if_nameindex();
+  for (auto* item = list; item != nullptr && item->if_index != 0; ++item) {
+    names += names.empty() ? "" : ", ";
+    names += item->if_name;
+  }
+  if (list != nullptr) if_freenameindex(list);
+  return names;
+}
+
 std::string ProgramFile() {
   std::error_code error;
   const auto file = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -73,8 +84,8 @@ void LiveCapture::Closer::operator()(void* capture) const { pcap_close(static_ca
 LiveCapture::LiveCapture(LiveOptions options) : options_(std::move(options)) {
   const auto& interface = options_.interface;
   if (if_nametoindex(interface.c_str()) == 0) {
-    throw std::runtime_error("cannot capture: there is no interface '" + interface +
-                             "' now. When it comes late at boot, start after it; systemd: After=sys-subsystem-net-devices-" + interface + ".device");
+    throw std::runtime_error("cannot capture: there is no interface '" + interface + "' now (there are: " + InterfaceNames() +
+                             "). When it comes late at boot, start after it; systemd: After=sys-subsystem-net-devices-" + interface + ".device");
   }
   if (!IsUp(interface)) {
     fault_ = CheckInterface();
@@ -113,6 +124,7 @@ std::string LiveCapture::Open() {
   interface_index_ = index;
   filter_ = filter;
   capture_.reset(opened.release());
+  ++num_opened_;
   return "";
 }
 
@@ -144,16 +156,21 @@ std::string LiveCapture::CheckInterface() {
 }
 
 std::string LiveCapture::FollowInterface() {
+  const auto num_opened_before = num_opened_;
   const auto fault = CheckInterface();
-  if (fault == fault_) return "";
+  const bool is_reopened = num_opened_ != num_opened_before;
+  if (fault == fault_ && !is_reopened) return "";
   num_outages_ += fault_.empty() ? 1 : 0;
   fault_ = fault;
-  return fault.empty() ? "captures again on interface '" + options_.interface + "'" : fault;
+  const auto read_fault = std::exchange(read_fault_, "");
+  return (fault.empty() ? "captures again on interface '" + options_.interface + "'" : fault) +
+         (read_fault.empty() ? "" : "; reading had ended: " + read_fault);
 }
 
 std::optional<LiveDatagram> LiveCapture::Judge(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction) {
   const auto frame = ParseFrame(link_type_, bytes, is_cut);
   const auto host_time = UtimeOfStamp(seconds, fraction * nanoseconds_per_fraction_);
+  if (host_time) last_time_ = *host_time;
   if (frame.fault == FrameFault::kNone && !host_time) {
     ++num_bad_times_;
     return std::nullopt;
@@ -169,20 +186,23 @@ std::optional<LiveDatagram> LiveCapture::Judge(Bytes bytes, bool is_cut, std::in
 }
 
 std::optional<LiveDatagram> LiveCapture::Next() {
-  for (int i = 0; i < kMaxSkippedPerCall && capture_; ++i) {
+  is_empty_ = false;
+  for (int i = 0; i < kMaxSkippedPerCall && !is_empty_; ++i) {
     pcap_pkthdr* header = nullptr;
     const u_char* data = nullptr;
-    const int outcome = pcap_next_ex(static_cast<pcap_t*>(capture_.get()), &header, &data);
-    if (outcome == 0) return std::nullopt;
-    if (outcome != 1) {
-      // FollowInterface opens it again.
-      ++num_read_errors_;
-      Close();
-      return std::nullopt;
+    const int outcome = capture_ ? pcap_next_ex(static_cast<pcap_t*>(capture_.get()), &header, &data) : 0;
+    if (outcome == 1) {
+      ++num_frames_;
+      const auto datagram = Judge(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
+      if (datagram) return datagram;
+      continue;
     }
-    ++num_frames_;
-    const auto datagram = Judge(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
-    if (datagram) return datagram;
+    is_empty_ = true;
+    if (outcome == 0) continue;
+    // FollowInterface opens it again.
+    ++num_read_errors_;
+    read_fault_ = pcap_geterr(static_cast<pcap_t*>(capture_.get()));
+    Close();
   }
   return std::nullopt;
 }

@@ -47,14 +47,21 @@ class LiveCapture {
   LiveCapture(const LiveCapture&) = delete;
   LiveCapture& operator=(const LiveCapture&) = delete;
 
-  /// @return the next datagram that waits and comes from an allowed source; nullopt when none does, or after kMaxSkippedPerCall frames that
-  ///         hold none. Never waits.
+  /// @return the next datagram that waits and comes from an allowed source; nullopt when none waits, and after kMaxSkippedPerCall frames that
+  ///         hold none: is_empty() tells which. Never waits.
   std::optional<LiveDatagram> Next();
+
+  /// The last Next() left nothing behind. False after one that ended at kMaxSkippedPerCall.
+  bool is_empty() const { return is_empty_; }
+
+  /// Kernel stamp of the last frame that has one: what came before it has been taken. 1970 before the first.
+  Utime last_time() const { return last_time_; }
 
   /// So that a flood of other frames does not hold the caller.
   static constexpr int kMaxSkippedPerCall = 64;
 
-  /// To be called about once a second: closes when the interface goes down or away, opens again when it is back.
+  /// To be called about once a second: closes when the interface goes down or away, opens again when it is back. Also tells (and counts as an
+  /// outage) what was over before it was called.
   ///
   /// @return what changed, for the log; empty = nothing
   std::string FollowInterface();
@@ -89,13 +96,17 @@ class LiveCapture {
   int link_type_ = 0;
   std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as far as the kernel gives it
   unsigned int interface_index_ = 0;
+  bool is_empty_ = true;
+  Utime last_time_{};
   std::string fault_;
+  std::string read_fault_;  // why reading ended; until it is told
   std::string filter_;
   Drops past_drops_;  // of what has been closed
   std::int64_t num_frames_ = 0;
   std::int64_t num_bad_times_ = 0;
   std::int64_t num_source_refused_ = 0;
   std::int64_t num_outages_ = 0;
+  std::int64_t num_opened_ = 0;
   std::int64_t num_read_errors_ = 0;
   std::array<std::int64_t, kFrameFaultNames.size()> num_by_fault_{};
 };

@@ -1,6 +1,9 @@
 #include "common/config/text_config.hpp"
 
+#include <unistd.h>
+
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 
@@ -59,6 +62,18 @@ TEST(TextConfig, NamesFieldsOfPartsByTheirPath) {
   EXPECT_NE(faults.find("f.txtpb:3: lidar.z_m: must be at most 200 (is 1000)"), std::string::npos) << faults;
   EXPECT_NE(faults.find("f.txtpb:1: gnss_antenna: must be set"), std::string::npos) << faults;
   EXPECT_EQ(faults.find("datum"), std::string::npos) << faults;
+}
+
+TEST(FaultLine, NamesTheLineOfTheValueThatIsWrong) {
+  const auto file = std::filesystem::temp_directory_path() / ("lookout_fault_line_" + std::to_string(getpid()));
+  std::ofstream(file) << "# capture_file: 'x'\nsource: CAPTURE\ncapture_file: 'a' capture_file: 'b'\n\ncapture_file: 'c'\n";
+  const auto line_of = [&](std::size_t index) { return FaultLine(file, "capture_file", "reason", index); };
+  EXPECT_EQ(line_of(0), file.string() + ":3: capture_file: reason");
+  EXPECT_EQ(line_of(1), line_of(0));
+  EXPECT_EQ(line_of(2), file.string() + ":5: capture_file: reason");
+  EXPECT_EQ(line_of(9), line_of(2));
+  EXPECT_EQ(FaultLine(file, "bind_address", "reason"), file.string() + ":1: bind_address: reason");
+  std::filesystem::remove(file);
 }
 
 TEST(TextConfig, OfAFileThatIsNotThereIsRefused) {

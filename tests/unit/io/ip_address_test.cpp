@@ -26,5 +26,10 @@ TEST(IpAddress, KnowsMulticast) {
   }
 }
 
+TEST(IpAddress, KnowsThatItIsNone) {
+  for (const char* text : {"0.0.0.0", "::", "0:0::0"}) EXPECT_TRUE(ParseIpAddress(text)->is_any()) << text;
+  for (const char* text : {"0.0.0.1", "::1", "127.0.0.1", "255.255.255.255"}) EXPECT_FALSE(ParseIpAddress(text)->is_any()) << text;
+}
+
 }  // namespace
 }  // namespace lookout::io

@@ -1,5 +1,6 @@
 #include "services/vlp16/io/capture_player.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -21,6 +22,7 @@ class Player : public ::testing::Test {
   struct Record {
     std::uint32_t stamp_us;
     std::uint8_t payload;
+    bool is_tcp = false;
   };
 
   static void Append(std::string& text, std::initializer_list<std::uint32_t> words) {
@@ -35,7 +37,8 @@ class Player : public ::testing::Test {
     Append(text, {0xA1B2C3D4, 0x00040002, 0, 0, 65535, 101});
     for (const auto& record : records) {
       Append(text, {record.stamp_us / 1'000'000, record.stamp_us % 1'000'000, kFrameSize, kFrameSize});
-      const std::string ip("\x45\0\0\x1D\0\0\0\0\x40\x11\0\0\x01\x02\x03\x04\x05\x06\x07\x08", 20);
+      std::string ip("\x45\0\0\x1D\0\0\0\0\x40\x11\0\0\x01\x02\x03\x04\x05\x06\x07\x08", 20);
+      if (record.is_tcp) ip[9] = 6;
       const std::string udp("\x09\x40\x09\x40\0\x09\0\0", 8);
       text += ip + udp + static_cast<char>(record.payload);
     }
@@ -112,6 +115,32 @@ TEST_F(Player, DoesNotWaitForAStampThatJumps) {
   EXPECT_EQ(Counts(player)["capture_stamp_jumps"], 2);
 }
 
+TEST_F(Player, KeepsThePaceWhenStampsGoBackALittle) {
+  // Pairs that changed places: each step on has its step back.
+  CapturePlayer player({Write("a", {{0, 1}, {20'000, 2}, {10'000, 3}, {30'000, 4}, {20'000, 5}, {40'000, 6}})}, 1.0);
+  EXPECT_EQ(Due(player, milliseconds(19)), (Payloads{1}));
+  EXPECT_EQ(Due(player, milliseconds(29)), (Payloads{2, 3}));
+  EXPECT_EQ(Due(player, milliseconds(30)), (Payloads{4, 5}));
+  EXPECT_EQ(Due(player, milliseconds(40)), (Payloads{6}));
+  EXPECT_EQ(Counts(player)["capture_stamp_jumps"], 2);
+}
+
+TEST_F(Player, LetsItsCallerGoInALargeCaptureOfOtherThings) {
+  std::vector<Record> records(static_cast<std::size_t>(2 * CapturePlayer::kMaxFramesPerCall + 1), Record{0, 0, true});
+  records.push_back({5'000, 7});
+  CapturePlayer player({Write("tcp", records)}, 1.0);
+  EXPECT_EQ(Counts(player)["frames_read"], CapturePlayer::kMaxFramesPerCall);
+  EXPECT_FALSE(player.has_begun());
+  EXPECT_FALSE(player.is_empty());
+  EXPECT_FALSE(player.NextDue(milliseconds(0)));
+  EXPECT_FALSE(player.is_empty());
+  EXPECT_FALSE(player.is_finished());
+  const auto datagram = player.NextDue(milliseconds(0));
+  ASSERT_TRUE(datagram);
+  EXPECT_EQ(datagram->payload.at(0), 7);
+  EXPECT_TRUE(player.is_finished());
+}
+
 // A stalled process used to tell the service of a time past the datagrams that it had yet to give.
 TEST_F(Player, DoesNotRunAheadOfTheDatagramThatIsDue) {
   CapturePlayer player({Write("a", {{0, 1}, {10'000, 2}, {20'000, 3}})}, 1.0);
@@ -129,6 +158,8 @@ TEST_F(Player, RefusesAnyWrongFileAtTheStart) {
     EXPECT_NE(std::string(error.what()).find("text"), std::string::npos);
   }
   EXPECT_THROW(CapturePlayer({good, folder_ / "missing"}, 1.0), std::runtime_error);
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_THROW(CapturePlayer({good, folder_ / "pipe"}, 1.0), std::runtime_error);  // nobody writes: opening it would never end
 }
 
 TEST_F(Player, GoesOnWithTheNextCaptureBehindADamagedOne) {

@@ -80,6 +80,23 @@ TEST_F(Vlp16Params, NameEveryRelationThatIsWrongAtOnce) {
   EXPECT_NE(fault.find(":4: position_port:"), std::string::npos) << fault;
 }
 
+TEST_F(Vlp16Params, NameTheFieldAndTheLineThatTheUserWrote) {
+  const auto ports = FaultOf("source: UDP\nbind_address: ''\ndata_port: 8308\ncut_azimuth_deg: 0");
+  EXPECT_NE(ports.find(":3: data_port: must differ from position_port, which is 8308"), std::string::npos) << ports;
+  EXPECT_NE(ports.find(":2: bind_address:"), std::string::npos) << ports;
+  const auto captures = FaultOf("source: CAPTURE\ncapture_file: 'a'\ncut_azimuth_deg: 0\ncapture_file: ''");
+  EXPECT_NE(captures.find(":4: capture_file:"), std::string::npos) << captures;
+  const auto any = FaultOf("source: INTERFACE\ninterface: 'any'\ncut_azimuth_deg: 0");
+  EXPECT_NE(any.find(":2: interface:"), std::string::npos) << any;
+}
+
+TEST_F(Vlp16Params, GiveTheirFaultsToWhoHasMoreToCheck) {
+  std::ofstream(folder_ / "vlp16.txtpb") << "source: UDP bind_address: '' cut_azimuth_deg: 0 data_port: 8308";
+  std::vector<std::string> faults{"before"};
+  LoadParams(folder_, faults);
+  EXPECT_EQ(faults.size(), 3U);
+}
+
 TEST_F(Vlp16Params, StopTheStartWhenTheyAreWrong) {
   EXPECT_NE(FaultOf("source: UDP cut_azimuth_deg: 0").find("bind_address"), std::string::npos);
   EXPECT_NE(FaultOf("source: UDP bind_address: '0.0.0.0' bpf_filter: 'udp' cut_azimuth_deg: 0").find("bpf_filter"), std::string::npos);

@@ -208,6 +208,22 @@ TEST(Service, SaysWhenTheLidarIsSilentAndRecovers) {
   EXPECT_EQ(service.Report().state, HealthState::kOk);
 }
 
+TEST(Service, SaysThatTheLidarIsSilentWhileOtherDatagramsNeverEnd) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  SpinningSensor sensor;
+  service.AdvanceTo(kTime);
+  service.OnDatagram(kTime, 2368, sensor.Next());
+  // What came later than 50 ms still waits: the bundle too.
+  service.AdvanceTo(kTime + milliseconds(3500), kTime + milliseconds(50));
+  out.Handle();
+  EXPECT_TRUE(out.messages.empty());
+  EXPECT_EQ(service.Report().reason, "no lidar packets for 3 s");
+  service.AdvanceTo(kTime + milliseconds(3500), kTime + milliseconds(100));
+  out.Handle();
+  EXPECT_EQ(out.All<lidar_packets_t>(bus::kLidarPackets).size(), 1U);
+}
+
 TEST(Service, SaysWhyTheLidarIsOfNoUse) {
   Recorded out;
   Service service(out.bus, Params{});
