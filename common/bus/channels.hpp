@@ -29,9 +29,11 @@ inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, t
 inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
 inline constexpr Channel kHealth{"HEALTH", "health_t", "all", 10, 40, false, false};
 inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, false, false};
+// Of a simulation: stands in its own log, never on a boat's bus.
+inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
-inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw,
-                                      kGnssFix,      kAttitude,  kPose,       kObstacles, kHealth,   kRunInfo};
+inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw,  kGnssFix,
+                                      kAttitude,     kPose,      kObstacles,  kHealth,    kRunInfo,  kSimTruth};
 
 /// Greatest size of an encoded message. Measured with LCM 1.3.1: about 120 kB pass with the kernel's default buffers, 212 kB vanish.
 inline constexpr int kMaxMessageBytes = 120'000;

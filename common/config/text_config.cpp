@@ -17,6 +17,7 @@
 #include "config/schema/navigator.pb.h"
 #include "config/schema/options.pb.h"
 #include "config/schema/recorder.pb.h"
+#include "config/schema/scene.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/vlp16.pb.h"
 
@@ -51,7 +52,7 @@ std::string NumberText(double value) {
 // The message of a schema file. Naming the descriptors here also makes the linker keep them.
 const Descriptor* FindSchema(const std::string& schema_file) {
   for (const auto* descriptor : {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(),
-                                 Georeferencer::descriptor(), Recorder::descriptor()}) {
+                                 Georeferencer::descriptor(), Recorder::descriptor(), Scene::descriptor()}) {
     if (descriptor->file()->name() == schema_file) return descriptor;
   }
   return nullptr;
@@ -110,7 +111,9 @@ class Checker {
       }
       for (int k = 0; k < count; ++k) {
         const int index = is_list ? k : -1;
-        const int line = positions == nullptr ? -1 : positions->GetLocation(&field, index).line;
+        int line = positions == nullptr ? -1 : positions->GetLocation(&field, index).line;
+        // The values of a list in brackets have no places of their own.
+        if (line < 0) line = line_of_message;
         if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
           const auto& part = is_list ? reflection.GetRepeatedMessage(message, &field, k) : reflection.GetMessage(message, &field);
           Check(part, positions == nullptr ? nullptr : positions->GetTreeForNested(&field, index), path + ".", line);
@@ -194,7 +197,9 @@ std::string EffectiveText(const Message& message) {
 
 std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   const std::string text = ReadFile(file);
-  const std::string schema_file = "config/schema/" + file.stem().string() + ".proto";
+  // All scenes have one schema, whatever their names.
+  const bool is_scene = file.parent_path().filename() == "scenes";
+  const std::string schema_file = "config/schema/" + (is_scene ? "scene" : file.stem().string()) + ".proto";
   const auto* descriptor = FindSchema(schema_file);
   if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});
   const std::unique_ptr<Message> message(google::protobuf::MessageFactory::generated_factory()->GetPrototype(descriptor)->New());

@@ -12,6 +12,7 @@
 #include "tests/unit/vlp16/packet_maker.hpp"
 #include "tools/sim/faults.hpp"
 #include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
 
 namespace lookout::vlp16 {

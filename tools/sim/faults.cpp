@@ -1,5 +1,6 @@
 #include "tools/sim/faults.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 namespace lookout::sim {
@@ -19,10 +20,31 @@ FaultyNetwork::FaultyNetwork(Source source, Observer observer, const FaultParams
     : source_(std::move(source)),
       observer_(std::move(observer)),
       params_(params),
+      plan_(params.timed, start),
       data_port_(data_port),
       first_fault_(start + kFaultFree),
       last_fault_(end - kFaultFree),
-      random_(seed, kFaultStream) {}
+      random_(seed, kFaultStream) {
+  // The shares grow only where a fault begins.
+  for (const auto& fault : plan_.faults()) {
+    const Utime time = plan_.Begin(fault);
+    if (Share(FaultKind::kDropped, time) + Share(FaultKind::kDoubled, time) + Share(FaultKind::kSwapped, time) > 1.0) {
+      throw std::invalid_argument("faults drop, double and swap: together with --drop, --double and --swap they must not be more than 1");
+    }
+  }
+}
+
+double FaultyNetwork::Share(FaultKind kind, Utime time) const {
+  switch (kind) {
+    case FaultKind::kDropped:
+      return params_.drop_share + plan_.ValueAt(TimedFaultKind::kDrop, time);
+    case FaultKind::kDoubled:
+      return params_.double_share + plan_.ValueAt(TimedFaultKind::kDouble, time);
+    case FaultKind::kSwapped:
+      return params_.swap_share + plan_.ValueAt(TimedFaultKind::kSwap, time);
+  }
+  return 0.0;
+}
 
 std::optional<Datagram> FaultyNetwork::Next() {
   for (;;) {
@@ -73,9 +95,11 @@ std::optional<Datagram> FaultyNetwork::Pass(Datagram datagram) {
 std::optional<FaultKind> FaultyNetwork::Draw(Utime time) {
   const double number = random_.Uniform();
   if (time < first_fault_ || time > last_fault_) return std::nullopt;
-  if (number < params_.drop_share) return FaultKind::kDropped;
-  if (number < params_.drop_share + params_.double_share) return FaultKind::kDoubled;
-  if (number < params_.drop_share + params_.double_share + params_.swap_share) return FaultKind::kSwapped;
+  double limit = 0.0;
+  for (const auto kind : {FaultKind::kDropped, FaultKind::kDoubled, FaultKind::kSwapped}) {
+    limit += Share(kind, time);
+    if (number < limit) return kind;
+  }
   return std::nullopt;
 }
 

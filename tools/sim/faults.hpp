@@ -8,8 +8,10 @@
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "tools/sim/datagram.hpp"
+#include "tools/sim/fault_plan.hpp"
 #include "tools/sim/random.hpp"
 
 namespace lookout::sim {
@@ -19,6 +21,7 @@ struct FaultParams {
   double drop_share = 0.0;
   double double_share = 0.0;
   double swap_share = 0.0;
+  std::vector<TimedFault> timed{};  // drop, double and swap add their shares while they last; all others have no meaning here
 };
 
 enum class FaultKind { kDropped, kDoubled, kSwapped };
@@ -49,6 +52,7 @@ class FaultyNetwork {
 
   /// @param source    datagrams by time; nullopt at the end
   /// @param observer  hears of each fault
+  /// @throws std::invalid_argument  as FaultPlan, and when shares are more than 1 together at any time
   FaultyNetwork(Source source, Observer observer, const FaultParams& params, int data_port, Utime start, Utime end, std::uint64_t seed);
 
   /// @return the next datagram by time; nullopt at the end
@@ -57,6 +61,7 @@ class FaultyNetwork {
   const FaultTotals& totals() const { return totals_; }
 
  private:
+  double Share(FaultKind kind, Utime time) const;
   std::optional<FaultKind> Draw(Utime time);
   std::optional<Datagram> Pass(Datagram datagram);
   void Tell(FaultKind kind, Utime time, std::int64_t packet_index);
@@ -64,6 +69,7 @@ class FaultyNetwork {
   Source source_;
   Observer observer_;
   FaultParams params_;
+  FaultPlan plan_;
   int data_port_;
   Utime first_fault_;
   Utime last_fault_;

@@ -1,5 +1,7 @@
 #include "tools/sim/fleet.hpp"
 
+#include <array>
+
 namespace lookout::sim {
 namespace {
 
@@ -7,7 +9,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 // Diffuse reflectance of surfaces near 905 nm, rounded from common tables (gelcoat and paint bright, wet skin and rubber dark).
-constexpr Material kGelcoat{0.6};
+constexpr double kGelcoat = 0.6;
+constexpr double kPaint = 0.5;
+constexpr double kConcrete = 0.4;
 constexpr Material kAluminium{0.5};
 constexpr Material kGlassFrame{0.2};
 constexpr Material kCloth{0.5};
@@ -24,59 +28,137 @@ std::vector<Vector2d> HullOutline(double length_m, double width_m) {
           {0.8 * x, 0.35 * y}, {0.4 * x, 0.8 * y}, {-0.2 * x, y},       {-x, 0.85 * y}};
 }
 
-}  // namespace
+// Decks, cabins and gear were measured on boats of the usual size: plans stretch with the hull, heights do not, for people do not either.
+struct Stretch {
+  double x;
+  double y;
 
-SceneObject MakeMotorBoat(const std::string& name, const Track& track) {
-  SceneObject boat{0, name, "motor_boat", track, {}, HullOutline(6.0, 2.2)};
-  boat.parts = {{Prism{boat.outline_m, -0.3, 0.8}, kGelcoat},
-                {Prism{Rectangle(-0.8, 0.6, -0.6, 0.6), 0.8, 1.5}, kGelcoat},         // console
-                {Prism{Rectangle(0.5, 0.6, -0.6, 0.6), 1.5, 1.9}, kGlassFrame},       // windscreen
-                {Cylinder{{-0.9, 0.0}, 0.2, 0.8, 1.8}, kCloth},                       // helmsman
-                {Prism{Rectangle(-3.0, -2.6, -0.25, 0.25), 0.8, 1.2}, kGlassFrame}};  // outboard
-  return boat;
+  Prism Box(double min_x_m, double max_x_m, double min_y_m, double max_y_m, double bottom_m, double top_m) const {
+    return {Rectangle(min_x_m * x, max_x_m * x, min_y_m * y, max_y_m * y), bottom_m, top_m};
+  }
+  Cylinder Post(double x_m, double y_m, double radius_m, double bottom_m, double top_m) const {
+    return {{x_m * x, y_m * y}, radius_m, bottom_m, top_m};
+  }
+};
+
+void MakeMotorBoat(const Size& size, SceneObject& boat) {
+  const Stretch stretch{size.length_m / 6.0, size.width_m / 2.2};
+  boat.outline_m = HullOutline(size.length_m, size.width_m);
+  boat.parts = {{Prism{boat.outline_m, -0.3, 0.8}, Material{size.reflectance}},
+                {stretch.Box(-0.8, 0.6, -0.6, 0.6, 0.8, 1.5), Material{kGelcoat}},  // console
+                {stretch.Box(0.5, 0.6, -0.6, 0.6, 1.5, 1.9), kGlassFrame},          // windscreen
+                {stretch.Post(-0.9, 0.0, 0.2, 0.8, 1.8), kCloth},                   // helmsman
+                {stretch.Box(-3.0, -2.6, -0.25, 0.25, 0.8, 1.2), kGlassFrame}};     // outboard
 }
 
-SceneObject MakeSailingBoat(const std::string& name, const Track& track) {
-  SceneObject boat{0, name, "sailing_boat", track, {}, HullOutline(7.0, 2.4)};
-  boat.parts = {{Prism{boat.outline_m, -0.3, 0.9}, kGelcoat},
-                {Prism{Rectangle(-0.6, 1.4, -0.7, 0.7), 0.9, 1.35}, kGelcoat},  // cabin
-                {Cylinder{{0.9, 0.0}, 0.08, 0.9, 10.0}, kAluminium},            // mast
-                {Prism{Rectangle(-2.4, 0.8, -0.15, 0.15), 1.7, 2.0}, kCloth},   // boom
-                {Cylinder{{-2.2, 0.5}, 0.2, 0.9, 1.8}, kCloth}};                // helmsman
-  return boat;
+void MakeCabinBoat(const Size& size, SceneObject& boat) {
+  const Stretch stretch{size.length_m / 9.0, size.width_m / 3.0};
+  boat.outline_m = HullOutline(size.length_m, size.width_m);
+  boat.parts = {{Prism{boat.outline_m, -0.5, 1.2}, Material{size.reflectance}},
+                {stretch.Box(-2.0, 2.0, -1.1, 1.1, 1.2, 2.1), Material{kGelcoat}},  // cabin
+                {stretch.Box(-0.8, 0.9, -0.9, 0.9, 2.1, 3.0), kGlassFrame},         // wheelhouse, windows all round
+                {stretch.Box(-0.9, 1.0, -1.0, 1.0, 3.0, 3.1), Material{kGelcoat}},  // its roof
+                {stretch.Post(-0.2, 0.0, 0.05, 3.1, 5.0), kAluminium}};             // mast of lights and radar
 }
 
-SceneObject MakeKayak(const std::string& name, const Track& track) {
-  SceneObject boat{0,     name, "kayak",
-                   track, {},   {{-2.25, 0.0}, {-1.2, -0.22}, {0.0, -0.3}, {1.2, -0.22}, {2.25, 0.0}, {1.2, 0.22}, {0.0, 0.3}, {-1.2, 0.22}}};
-  boat.parts = {{Prism{boat.outline_m, -0.1, 0.3}, kGelcoat}, {Ellipsoid{{-0.1, 0.0, 0.65}, {0.17, 0.25, 0.45}}, kCloth}};
-  return boat;
+void MakeSailingBoat(const Size& size, SceneObject& boat) {
+  const Stretch stretch{size.length_m / 7.0, size.width_m / 2.4};
+  boat.outline_m = HullOutline(size.length_m, size.width_m);
+  boat.parts = {{Prism{boat.outline_m, -0.3, 0.9}, Material{size.reflectance}},
+                {stretch.Box(-0.6, 1.4, -0.7, 0.7, 0.9, 1.35), Material{kGelcoat}},  // cabin
+                {stretch.Post(0.9, 0.0, 0.08, 0.9, 10.0), kAluminium},               // mast
+                {stretch.Box(-2.4, 0.8, -0.15, 0.15, 1.7, 2.0), kCloth},             // boom with its sail down
+                {stretch.Post(-2.2, 0.5, 0.2, 0.9, 1.8), kCloth}};                   // helmsman
 }
 
-SceneObject MakeSwimmer(const std::string& name, const Track& track) {
-  constexpr double kHeadRadiusM = 0.1;
-  SceneObject swimmer{0, name, "swimmer", track, {}, Circle(Vector2d::Zero(), kHeadRadiusM, kCircleVertices)};
-  swimmer.parts = {{Ellipsoid{{0.0, 0.0, 0.12}, Vector3d(kHeadRadiusM, kHeadRadiusM, 0.15)}, kWetHair}};
-  return swimmer;
+void MakeKayak(const Size& size, SceneObject& boat) {
+  const double x = size.length_m / 2.0;
+  const double y = size.width_m / 2.0;
+  const double shoulder_x = 1.2 * (size.length_m / 4.5);
+  const double shoulder_y = 0.22 * (size.width_m / 0.6);
+  boat.outline_m = {{-x, 0.0}, {-shoulder_x, -shoulder_y}, {0.0, -y}, {shoulder_x, -shoulder_y},
+                    {x, 0.0},  {shoulder_x, shoulder_y},   {0.0, y},  {-shoulder_x, shoulder_y}};
+  boat.parts = {{Prism{boat.outline_m, -0.1, 0.3}, Material{size.reflectance}}, {Ellipsoid{{-0.1, 0.0, 0.65}, {0.17, 0.25, 0.45}}, kCloth}};
 }
 
-SceneObject MakeBuoy(const std::string& name, const Vector2d& position_map_m, double radius_m, double height_m, double reflectance) {
-  SceneObject buoy{0, name, "buoy", Track{{position_map_m, 0.0}}, {}, Circle(Vector2d::Zero(), radius_m, kCircleVertices)};
-  buoy.parts = {{Cylinder{Vector2d::Zero(), radius_m, -0.2, height_m}, Material{reflectance}}};
-  return buoy;
+void MakeSwimmer(const Size& size, SceneObject& swimmer) {
+  const double radius_m = size.width_m / 2.0;
+  swimmer.outline_m = Circle(Vector2d::Zero(), radius_m, kCircleVertices);
+  swimmer.parts = {{Ellipsoid{{0.0, 0.0, 0.12}, Vector3d(radius_m, radius_m, 0.15)}, kWetHair}};
 }
 
-SceneObject MakeDock(const std::string& name, const Placement& placement, double length_m, double width_m) {
-  SceneObject dock{0, name, "dock", Track{placement}, {}, Rectangle(0.0, length_m, -width_m / 2.0, width_m / 2.0)};
-  dock.parts.push_back({Prism{dock.outline_m, 0.5, 0.75}, kWood});
+void MakeBuoy(const Size& size, SceneObject& buoy) {
+  buoy.outline_m = Circle(Vector2d::Zero(), size.width_m / 2.0, kCircleVertices);
+  buoy.parts = {{Cylinder{Vector2d::Zero(), size.width_m / 2.0, -0.2, size.height_m}, Material{size.reflectance}}};
+}
+
+// A pile; its board, as wide as the object, is the upper quarter of it.
+void MakeMarker(const Size& size, SceneObject& marker) {
+  constexpr double kPileRadiusM = 0.1;
+  constexpr double kHalfBoardThicknessM = 0.12;  // boards on two sides of the pile
+  const double half_m = size.width_m / 2.0;
+  marker.outline_m = Rectangle(-kHalfBoardThicknessM, kHalfBoardThicknessM, -half_m, half_m);
+  marker.parts = {{Cylinder{Vector2d::Zero(), kPileRadiusM, -0.5, 0.75 * size.height_m}, kWood},
+                  {Prism{marker.outline_m, 0.75 * size.height_m, size.height_m}, Material{size.reflectance}}};
+}
+
+// Planks on piles. The origin is the middle of its landward end, x runs out along it.
+void MakeDock(const Size& size, SceneObject& dock) {
   constexpr double kPileRadiusM = 0.12;
   constexpr double kPileDistanceM = 4.0;
-  for (double x_m = length_m - kPileRadiusM; x_m > 0.0; x_m -= kPileDistanceM) {
+  dock.outline_m = Rectangle(0.0, size.length_m, -size.width_m / 2.0, size.width_m / 2.0);
+  dock.parts.push_back({Prism{dock.outline_m, 0.5, 0.75}, kWood});
+  for (double x_m = size.length_m - kPileRadiusM; x_m > 0.0; x_m -= kPileDistanceM) {
     for (const double side : {-1.0, 1.0}) {
-      dock.parts.push_back({Cylinder{{x_m, side * (width_m / 2.0 - kPileRadiusM)}, kPileRadiusM, -0.5, 1.6}, kWood});
+      dock.parts.push_back({Cylinder{{x_m, side * (size.width_m / 2.0 - kPileRadiusM)}, kPileRadiusM, -0.5, 1.6}, kWood});
     }
   }
-  return dock;
+}
+
+// Massive, down to the ground, with bollards. The origin as of a dock.
+void MakePier(const Size& size, SceneObject& pier) {
+  constexpr double kBollardRadiusM = 0.15;
+  constexpr double kBollardDistanceM = 6.0;
+  pier.outline_m = Rectangle(0.0, size.length_m, -size.width_m / 2.0, size.width_m / 2.0);
+  pier.parts.push_back({Prism{pier.outline_m, -1.0, size.height_m}, Material{size.reflectance}});
+  for (double x_m = size.length_m - 1.0; x_m > 0.0; x_m -= kBollardDistanceM) {
+    for (const double side : {-1.0, 1.0}) {
+      pier.parts.push_back(
+          {Cylinder{{x_m, side * (size.width_m / 2.0 - 2.0 * kBollardRadiusM)}, kBollardRadiusM, size.height_m, size.height_m + 0.5}, kAluminium});
+    }
+  }
+}
+
+// The origin is its middle.
+void MakeWall(const Size& size, SceneObject& wall) {
+  wall.outline_m = Rectangle(-size.length_m / 2.0, size.length_m / 2.0, -size.width_m / 2.0, size.width_m / 2.0);
+  wall.parts = {{Prism{wall.outline_m, -1.0, size.height_m}, Material{size.reflectance}}};
+}
+
+constexpr std::array<KindOfObject, 10> kKinds{{
+    {"motor_boat", {6.0, 2.2, 0.0, kGelcoat}, true, true, MakeMotorBoat},
+    {"cabin_boat", {9.0, 3.0, 0.0, kGelcoat}, true, true, MakeCabinBoat},
+    {"sailing_boat", {7.0, 2.4, 0.0, kGelcoat}, true, true, MakeSailingBoat},
+    {"kayak", {4.5, 0.6, 0.0, kGelcoat}, true, true, MakeKayak},
+    {"swimmer", {0.0, 0.2, 0.0, 0.0}, true, true, MakeSwimmer},
+    {"buoy", {0.0, 0.6, 1.0, kPaint}, true, true, MakeBuoy},
+    {"marker", {0.0, 0.6, 2.4, kPaint}, true, false, MakeMarker},
+    {"dock", {9.0, 2.0, 0.0, 0.0}, false, false, MakeDock},
+    {"pier", {30.0, 3.0, 1.2, kConcrete}, false, false, MakePier},
+    {"wall", {50.0, 0.5, 1.5, kConcrete}, false, false, MakeWall},
+}};
+
+}  // namespace
+
+std::span<const KindOfObject> Kinds() { return kKinds; }
+
+SceneObject MakeObject(const KindOfObject& kind, const Size& size) {
+  SceneObject object{0, "", std::string(kind.name), Track{}, {}, {}};
+  kind.make(size, object);
+  object.is_in_water = kind.is_in_water;
+  // What has no length is round.
+  if (kind.is_afloat) object.waterline_m = {size.length_m > 0.0 ? size.length_m : size.width_m, size.width_m};
+  return object;
 }
 
 }  // namespace lookout::sim

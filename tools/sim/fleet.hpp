@@ -1,22 +1,35 @@
-// Boats, buoys, docks and swimmers to put in scenes. Sizes are those of common craft, rounded.
+// What floats and what is built: boats, swimmers, buoys, markers, docks, piers and walls. Sizes are those of common craft, rounded.
 #pragma once
 
-#include <string>
+#include <span>
+#include <string_view>
 
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
 
-/// Each makes an object without id; the caller gives the name and the way.
-SceneObject MakeMotorBoat(const std::string& name, const Track& track);    // 6.0 m x 2.2 m, console and windscreen
-SceneObject MakeSailingBoat(const std::string& name, const Track& track);  // 7.0 m x 2.4 m, mast of 9 m, boom with its sail down
-SceneObject MakeKayak(const std::string& name, const Track& track);        // 4.5 m x 0.6 m with paddler
-SceneObject MakeSwimmer(const std::string& name, const Track& track);      // head of 0.2 m
+/// Of an object. 0 where its kind has no such size.
+struct Size {
+  double length_m = 0.0;  // along x
+  double width_m = 0.0;   // along y; of round things the diameter
+  double height_m = 0.0;  // above the water
+  double reflectance = 0.0;
+};
 
-/// A can buoy. @param reflectance  0.03 for black rubber, 0.5 for paint
-SceneObject MakeBuoy(const std::string& name, const Eigen::Vector2d& position_map_m, double radius_m, double height_m, double reflectance);
+/// A kind of object and how to make one.
+struct KindOfObject {
+  std::string_view name;  // as in scene files, lower case
+  Size usual;             // 0 = the kind has no such size
+  bool is_in_water;       // a boat, swimmer, buoy or marker
+  bool is_afloat;         // rides the waves
+  /// Makes parts and outline.
+  void (*make)(const Size& size, SceneObject& object);
+};
 
-/// A pier on piles. The origin is the middle of its landward end, x runs out along it.
-SceneObject MakeDock(const std::string& name, const Placement& placement, double length_m, double width_m);
+/// All kinds but shores and islands (shore.hpp).
+std::span<const KindOfObject> Kinds();
+
+/// @return an object of this kind without id, name and way
+SceneObject MakeObject(const KindOfObject& kind, const Size& size);
 
 }  // namespace lookout::sim

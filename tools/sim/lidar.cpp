@@ -20,23 +20,35 @@ constexpr std::uint64_t kShotStream = 3;
 // VLP-16 data sheet 63-9229: range up to 100 m; nothing is given nearer than about 0.4 m.
 constexpr double kMinRangeM = 0.4;
 constexpr double kMaxRangeM = 110.0;
-// A diffuse surface of this reflectance, square to the beam, is seen half of the time at kHalfSeenRangeM (dark paint and rubber near 905 nm are
-// lost at 20 to 30 m, bright hulls at 100 m).
+// A diffuse surface of this reflectance, square to the beam, is seen half of the time at Effects::half_seen_range_m (dark paint and rubber near
+// 905 nm are lost at 20 to 30 m, bright hulls at 100 m).
 constexpr double kHalfSeenReflectance = 0.4;
-constexpr double kHalfSeenRangeM = 100.0;
 // Surfaces are rough within the beam: this share of the reflectance does not depend on the angle at which they are met.
 constexpr double kRoughShare = 0.3;
 constexpr double kDropoutWidth = 0.06;  // of the step from seen to not seen, as a share of the range
 
-// Strays: glints and spray, most of them near and all of them faint.
+// What comes through foliage has been shaded twice by its half.
+constexpr double kBehindFoliageShare = 0.25;
+
+// Strays: most of them near and all of them faint.
 constexpr double kStrayMinRangeM = 1.0;
 constexpr double kStrayMaxRangeM = 40.0;
 
 std::vector<RayCaster::Body> BodiesOf(const Scene& scene) {
   std::vector<RayCaster::Body> bodies;
-  for (const auto& object : scene.objects) bodies.push_back({object.id, object.track, &object.parts});
+  for (const auto& object : scene.objects) bodies.push_back({object.id, object.track, &object.parts, &object});
   return bodies;
 }
+
+Effects EffectsOf(const Scene& scene, const LidarParams& params) {
+  Effects effects = scene.effects;
+  effects.return_mode = params.mode.value_or(effects.return_mode);
+  effects.stray_probability = params.stray_probability.value_or(effects.stray_probability);
+  effects.range_sd_m = params.range_sd_m.value_or(effects.range_sd_m);
+  return effects;
+}
+
+BeamWidth BeamWidthOf(const Effects& effects) { return {effects.horizontal_divergence_mrad / 2000.0, effects.vertical_divergence_mrad / 2000.0}; }
 
 // In its own frame a body has the heading that turns x, y into east, north.
 const Track kVesselFrame{{Eigen::Vector2d::Zero(), kPi / 2.0}};
@@ -66,13 +78,17 @@ const Lidar::Beams& Lidar::BeamsOf(LidarModel model) {
 
 Lidar::Lidar(const Scene& scene, const config::BoatFacts& boat, const LidarParams& params, Utime start, std::uint64_t seed)
     : params_(params),
+      effects_(EffectsOf(scene, params)),
+      sea_(scene.sea),
       beams_(BeamsOf(params.model)),
       own_motion_(scene.own_motion),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       T_vessel_lidar_(boat.T_vessel_lidar),
       own_hull_(MakeOwnHull(boat.own_vessel_box_m, boat.lidar.p_vessel_m.z(), boat.p_vessel_antenna_m)),
-      own_caster_({{kOwnVessel, kVesselFrame, &own_hull_}}),
-      caster_(BodiesOf(scene)),
+      own_caster_({{kOwnVessel, kVesselFrame, &own_hull_}}, BeamWidth{}, nullptr),
+      beam_width_(BeamWidthOf(effects_)),
+      caster_(BodiesOf(scene), beam_width_, &scene.sea),
+      clutter_(scene, boat, seed),
       random_(seed, kShotStream),
       start_(start) {
   Random random(seed, kRotorStream);
@@ -94,16 +110,33 @@ double Lidar::AzimuthAt(double time_s) const {
 
 Lidar::Measurement Lidar::Measure(const Echo& echo) {
   const double range_m = echo.hit.range_m;
-  const double strength = echo.material.reflectance * (kRoughShare + (1.0 - kRoughShare) * echo.hit.incidence_cosine) / kHalfSeenReflectance;
-  const double half_seen_m = kHalfSeenRangeM * std::sqrt(std::min(strength, 1.0));
+  const double brightness = echo.share * echo.material.reflectance * (kRoughShare + (1.0 - kRoughShare) * echo.hit.incidence_cosine);
+  const double half_seen_m = effects_.half_seen_range_m * std::sqrt(std::min(brightness / kHalfSeenReflectance, 1.0));
   const double seen = 1.0 / (1.0 + std::exp((range_m - half_seen_m) / (kDropoutWidth * half_seen_m)));
   if (range_m < kMinRangeM || random_.Uniform() >= seen) return {};
-  const double measured_m = range_m + params_.range_sd_m * random_.Normal();
+  const double measured_m = range_m + effects_.range_sd_m * random_.Normal();
   const double range_2mm = std::round(measured_m / format::kRangeUnitM);
   if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
-  const double reflectivity =
-      100.0 * echo.material.reflectance * (kRoughShare + (1.0 - kRoughShare) * echo.hit.incidence_cosine) + 2.0 * random_.Normal();
-  return {static_cast<std::uint16_t>(range_2mm), static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)), echo.object_id};
+  const double reflectivity = 100.0 * brightness + 2.0 * random_.Normal();
+  return {static_cast<std::uint16_t>(range_2mm),
+          static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)),
+          echo.object_id,
+          echo.reason,
+          range_m,
+          brightness / (range_m * range_m)};
+}
+
+// A drop is either large and near enough or not: no range at which it is seen half of the time.
+Lidar::Measurement Lidar::MeasureDrop(const Clutter::Echo& echo) {
+  const double range_2mm = std::round((echo.range_m + effects_.range_sd_m * random_.Normal()) / format::kRangeUnitM);
+  const double reflectivity = 100.0 * echo.reflectance + 2.0 * random_.Normal();
+  if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
+  return {static_cast<std::uint16_t>(range_2mm),
+          static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)),
+          kNoObject,
+          echo.reason,
+          echo.range_m,
+          echo.reflectance / (echo.range_m * echo.range_m)};
 }
 
 Lidar::Measurement Lidar::Stray(double max_range_m) {
@@ -112,34 +145,100 @@ Lidar::Measurement Lidar::Stray(double max_range_m) {
   const double range_m = kStrayMinRangeM + (std::min(max_range_m, kStrayMaxRangeM) - kStrayMinRangeM) * share * share;
   const double reflectivity = random_.Uniform(1.0, 8.0);
   if (range_m < kStrayMinRangeM) return {};
-  return {static_cast<std::uint16_t>(range_m / format::kRangeUnitM), static_cast<std::uint8_t>(reflectivity), kNoObject};
+  return {static_cast<std::uint16_t>(range_m / format::kRangeUnitM),
+          static_cast<std::uint8_t>(reflectivity),
+          kNoObject,
+          ReturnReason::kStray,
+          range_m,
+          0.0};
 }
 
-Lidar::Shot Lidar::Fire(std::size_t laser, double azimuth_rad, const Eigen::Isometry3d& T_map_vessel) {
-  const double origin_height_m = params_.use_vertical_origin_offsets ? beams_.origin_height_mm[laser] / 1000.0 : 0.0;
-  const Ray ray_vessel{T_vessel_lidar_ * Eigen::Vector3d(0.0, 0.0, origin_height_m),
-                       T_vessel_lidar_.linear() * BeamDirection(azimuth_rad, DegToRad(beams_.elevation_deg[laser]))};
-  const Ray ray{T_map_vessel * ray_vessel.origin_m, T_map_vessel.linear() * ray_vessel.direction};
-  // Calm water gives nothing back.
-  const double to_water_m = ray.direction.z() < 0.0 ? -ray.origin_m.z() / ray.direction.z() : kMaxRangeM;
-  const double max_range_m = std::clamp(to_water_m, 0.0, kMaxRangeM);
-  auto echoes = own_caster_.Cast(ray_vessel, max_range_m, false);
-  if (echoes.count == 0) echoes = caster_.Cast(ray, max_range_m, params_.mode != ReturnMode::kStrongest);
+Lidar::RayPair Lidar::RayOf(double origin_height_m, double azimuth_rad, double elevation_rad, const Eigen::Isometry3d& T_map_vessel) const {
+  const Ray vessel{T_vessel_lidar_ * Eigen::Vector3d(0.0, 0.0, origin_height_m),
+                   T_vessel_lidar_.linear() * BeamDirection(azimuth_rad, elevation_rad)};
+  return {vessel, {T_map_vessel * vessel.origin_m, T_map_vessel.linear() * vessel.direction}};
+}
 
-  Shot shot;
-  if (echoes.count > 0) {
-    shot.strongest = Measure(echoes.echo[0]);
-    shot.last = shot.strongest;
-    // Half of the shots into foliage give a second return behind it; the first is the stronger one.
-    if (echoes.count > 1 && random_.Uniform() < 0.5) {
-      const Measurement second = Measure(echoes.echo[1]);
-      if (second.range_2mm != 0) shot.last = second;
-      if (shot.strongest.range_2mm == 0) shot.strongest = shot.last;
+// Surfaces of objects and of the own boat, as far as the sea does not hide them.
+Echoes Lidar::Meet(const RayPair& ray, double max_range_m, double time_s) {
+  auto echoes = own_caster_.Cast(ray.vessel, max_range_m, false);
+  if (echoes.count > 0) return echoes;
+  const bool wants_second = effects_.return_mode != ReturnMode::kStrongest;
+  echoes = beam_width_.is_ray() ? caster_.Cast(ray.map, max_range_m, wants_second) : caster_.CastBeam(ray.map, max_range_m, wants_second);
+  if (sea_.is_calm() || ray.map.direction.z() >= 0.0) return echoes;
+  const double crest_m = sea_.max_height_m();
+  const double from_m = std::max((crest_m - ray.map.origin_m.z()) / ray.map.direction.z(), 0.0);
+  while (echoes.count > 0) {
+    const double range_m = echoes.echo[static_cast<std::size_t>(echoes.count - 1)].hit.range_m;
+    if (range_m <= from_m || !RangeToSea(sea_, ray.map, time_s, from_m, range_m)) break;
+    --echoes.count;
+  }
+  return echoes;
+}
+
+// A shot that meets nothing on its way into the water.
+void Lidar::MeetWater(const Ray& ray, double max_range_m, Seen& seen) {
+  if (clutter_.has_water()) {
+    if (const auto echo = clutter_.FromWater(ray, max_range_m)) {
+      seen.Add(Measure({{echo->range_m, echo->incidence_cosine}, kNoObject, {echo->reflectance}, echo->reason}));
     }
   }
+  if (effects_.mirror_strength > 0.0 && sea_.is_calm() && ray.direction.z() < 0.0) {
+    // Mirrored at the water, the ray comes from the eye's image below it: its range is that of the whole way.
+    const Ray image{{ray.origin_m.x(), ray.origin_m.y(), -ray.origin_m.z()}, {ray.direction.x(), ray.direction.y(), -ray.direction.z()}};
+    auto echoes = caster_.Cast(image, kMaxRangeM, false);
+    if (echoes.count == 0 || echoes.echo[0].hit.range_m <= -ray.origin_m.z() / ray.direction.z()) return;
+    Echo& echo = echoes.echo[0];
+    const double mirrored = effects_.mirror_strength * FresnelReflectance(-ray.direction.z());
+    echo.share = mirrored * mirrored;  // there and back
+    echo.object_id = kNoObject;
+    echo.reason = ReturnReason::kMirror;
+    seen.Add(Measure(echo));
+  }
+}
+
+// The manual, "Return modes": where the strongest return is also the last, dual return gives the second strongest beside it.
+Lidar::Shot Lidar::Choose(const Seen& seen) const {
+  if (seen.count == 0) return {};
+  const Measurement* const begin = seen.measurement.data();
+  const Measurement* const end = begin + seen.count;
+  const Measurement* last = std::max_element(begin, end, [](const auto& a, const auto& b) { return a.true_range_m < b.true_range_m; });
+  const Measurement* strongest = std::max_element(begin, end, [](const auto& a, const auto& b) { return a.power < b.power; });
+  if (effects_.return_mode == ReturnMode::kDual && strongest == last && seen.count > 1) {
+    strongest = nullptr;
+    for (const Measurement* other = begin; other != end; ++other) {
+      if (other != last && (strongest == nullptr || other->power > strongest->power)) strongest = other;
+    }
+  }
+  return {*strongest, *last};
+}
+
+Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
+  // Beyond the deepest trough there is only water; calm water gives nothing back by itself.
+  const double down = ray.map.direction.z();
+  const double to_water_m = down < 0.0 ? -(ray.map.origin_m.z() + sea_.max_height_m()) / down : kMaxRangeM;
+  const double max_range_m = std::clamp(to_water_m, 0.0, kMaxRangeM);
+  const Echoes echoes = Meet(ray, max_range_m, time_s);
+  Seen seen;
+  for (int i = 0; i < echoes.count; ++i) {
+    const Echo& echo = echoes.echo[static_cast<std::size_t>(i)];
+    // Half of the shots into foliage give a second return behind it.
+    if (echo.is_behind_foliage && random_.Uniform() >= 0.5) continue;
+    Measurement measured = Measure(echo);
+    if (echo.is_behind_foliage)
+      measured.power = std::min(measured.power * kBehindFoliageShare, seen.count > 0 ? seen.measurement[0].power : 1.0) / 2.0;
+    seen.Add(measured);
+  }
+  if (echoes.count == 0) MeetWater(ray.map, max_range_m, seen);
+  if (clutter_.has_drops()) {
+    if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) seen.Add(MeasureDrop(*drop));
+  }
   // Only where nothing was met: a stray takes no return from an object.
-  if (echoes.count == 0 && random_.Uniform() < params_.stray_probability) shot.last = shot.strongest = Stray(max_range_m);
-  return shot;
+  if (echoes.count == 0 && seen.count == 0 && random_.Uniform() < effects_.stray_probability) {
+    const Measurement stray = Stray(max_range_m);
+    return {stray, stray};
+  }
+  return Choose(seen);
 }
 
 // Whether a block that begins with this sequence lies in the field of view as a whole, first shot to last.
@@ -151,7 +250,7 @@ bool Lidar::FiresFrom(std::int64_t sequence) const {
 
 LidarPacket Lidar::Next() {
   using std::chrono::nanoseconds;
-  const bool is_dual = params_.mode == ReturnMode::kDual;
+  const bool is_dual = effects_.return_mode == ReturnMode::kDual;
   LidarPacket packet;
   const std::span<std::uint8_t> payload(packet.payload);
   const auto skip_to_field_of_view = [this] {
@@ -160,6 +259,7 @@ LidarPacket Lidar::Next() {
   skip_to_field_of_view();
   const nanoseconds first = next_sequence_ * format::kSequencePeriod;
   const Utime stamp = start_ + std::chrono::floor<std::chrono::microseconds>(first);
+  packet.stamp = stamp;
   const int num_sequences = is_dual ? format::kSequencesPerPacketDual : format::kSequencesPerPacketSingle;
 
   for (int k = 0; k < num_sequences; ++k, ++next_sequence_) {
@@ -171,6 +271,7 @@ LidarPacket Lidar::Next() {
     const double time_s = ToSeconds(sequence_time);
     const auto T_map_vessel = StateAt(own_motion_, reference_point_above_water_m_, time_s).T_map_vessel();
     caster_.MoveTo(time_s, (T_map_vessel * T_vessel_lidar_.translation()).head<2>());
+    clutter_.MoveTo(time_s);
 
     if (sequence == 0) {
       const auto azimuth_cdeg = static_cast<std::uint16_t>(std::lround(RadToDeg(WrapTo2Pi(AzimuthAt(time_s))) * 100.0) % format::kAzimuthsPerTurn);
@@ -184,25 +285,33 @@ LidarPacket Lidar::Next() {
     const double rate_radps = (AzimuthAt(time_s + ToSeconds(format::kSequencePeriod)) - azimuth_rad) / ToSeconds(format::kSequencePeriod);
     for (std::size_t laser = 0; laser < format::kNumLasers; ++laser) {
       const nanoseconds laser_time = static_cast<std::int64_t>(laser) * format::kLaserPeriod;
-      const Shot shot = Fire(laser, azimuth_rad + rate_radps * ToSeconds(laser_time), T_map_vessel);
+      const double laser_azimuth_rad = azimuth_rad + rate_radps * ToSeconds(laser_time);
+      const double elevation_rad = DegToRad(beams_.elevation_deg[laser]);
+      const double origin_height_m = params_.use_vertical_origin_offsets ? beams_.origin_height_mm[laser] / 1000.0 : 0.0;
+      const Shot shot = Fire(RayOf(origin_height_m, laser_azimuth_rad, elevation_rad, T_map_vessel), time_s);
       // Time as a reader of the packet finds it: the stamp holds whole microseconds.
       const Utime time = stamp + std::chrono::round<std::chrono::microseconds>(sequence_time - first + laser_time);
       const auto write = [&](int written_block, const Measurement& measurement, int return_index) {
         WriteReturn(payload, written_block, sequence, laser, measurement.range_2mm, measurement.reflectivity);
         if (measurement.range_2mm == 0) return;
-        packet.returns.push_back({time, RingOfLaser(beams_.elevation_deg, laser), return_index, measurement.object_id});
+        const int slot = (written_block * format::kSequencesPerBlock + sequence) * format::kNumLasers + static_cast<int>(laser);
+        packet.returns.push_back(
+            {time, RingOfLaser(beams_.elevation_deg, laser), return_index, measurement.object_id, measurement.reason, slot,
+             Eigen::Vector3d(0.0, 0.0, origin_height_m) + measurement.true_range_m * BeamDirection(laser_azimuth_rad, elevation_rad)});
       };
       if (is_dual) {
         write(block, shot.last, 0);
         write(block + 1, shot.strongest, 1);
       } else {
-        write(block, params_.mode == ReturnMode::kLast ? shot.last : shot.strongest, 0);
+        write(block, effects_.return_mode == ReturnMode::kLast ? shot.last : shot.strongest, 0);
       }
       packet.end_time = start_ + std::chrono::ceil<std::chrono::microseconds>(sequence_time + laser_time);
     }
   }
   WriteU32LittleEndian(payload, format::kStampOffset, MicrosecondsPastHour(stamp));
-  payload[format::kReturnModeOffset] = is_dual ? format::kModeDual : params_.mode == ReturnMode::kLast ? format::kModeLast : format::kModeStrongest;
+  payload[format::kReturnModeOffset] = is_dual                                     ? format::kModeDual
+                                       : effects_.return_mode == ReturnMode::kLast ? format::kModeLast
+                                                                                   : format::kModeStrongest;
   payload[format::kProductOffset] = beams_.product;
   return packet;
 }

@@ -3,33 +3,35 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "services/vlp16/core/packet_format.hpp"
+#include "tools/sim/clutter.hpp"
+#include "tools/sim/effects.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/ray_caster.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
 
-enum class ReturnMode { kStrongest, kLast, kDual };
 enum class LidarModel { kVlp16, kPuckHiRes };
 
 /// A block of the fastest head sweeps 0.8 deg and is not torn: it needs a place in the field of view.
 inline constexpr double kMinFieldOfViewRad = DegToRad(2.0);
 
+/// Facts of the device, and what overrides the effects of the scene.
 struct LidarParams {
-  ReturnMode mode = ReturnMode::kStrongest;
+  std::optional<ReturnMode> mode;  // else as the scene says, and so below
   LidarModel model = LidarModel::kVlp16;
   Sector field_of_view;  // azimuths of the sensor in which its lasers fire; kMinFieldOfViewRad wide at least
   double rotation_rpm = 600.0;
   bool use_vertical_origin_offsets = false;  // as in vlp16.txtpb
-  double stray_probability = 1e-4;           // of a return out of nothing, per shot that meets nothing: 2 to 3 a turn over open water
-  // VLP-16 User Manual 63-9243 Rev E: accuracy +/- 3 cm.
-  double range_sd_m = 0.025;
+  std::optional<double> stray_probability;
+  std::optional<double> range_sd_m;
 };
 
 /// What made a return that is not zero.
@@ -38,9 +40,14 @@ struct TrueReturn {
   int ring = 0;          // from the lowest beam up
   int return_index = 0;  // place in its pair of blocks: dual 0 last, 1 strongest; else 0
   int object_id = kNoObject;
+  ReturnReason reason = ReturnReason::kObject;
+  int slot = 0;  // in its packet: block x 32 + sequence in the block x 16 + laser id
+  /// Lidar frame, where the beam met what gave the return, without noise. At a mixed edge between the surfaces, along the axis of the beam.
+  Eigen::Vector3d p_lidar_m = Eigen::Vector3d::Zero();
 };
 
 struct LidarPacket {
+  Utime stamp;     // as in the payload: first shot, whole microseconds
   Utime end_time;  // last shot
   std::array<std::uint8_t, vlp16::format::kDataPacketSizeBytes> payload{};
   std::vector<TrueReturn> returns;
@@ -65,10 +72,23 @@ class Lidar {
     std::uint16_t range_2mm = 0;  // 0 = no return
     std::uint8_t reflectivity = 0;
     int object_id = kNoObject;
+    ReturnReason reason = ReturnReason::kStray;
+    double true_range_m = 0.0;
+    double power = 0.0;  // relative to that of a white surface at 1 m
   };
   struct Shot {
     Measurement strongest;
     Measurement last;
+  };
+  // Echoes of one shot that were seen.
+  struct Seen {
+    static constexpr int kMaxCount = 8;
+    int count = 0;
+    std::array<Measurement, kMaxCount> measurement;
+
+    void Add(const Measurement& seen) {
+      if (seen.range_2mm != 0) measurement[static_cast<std::size_t>(count++)] = seen;
+    }
   };
   // By laser id.
   struct Beams {
@@ -78,19 +98,32 @@ class Lidar {
   };
   static const Beams& BeamsOf(LidarModel model);
 
-  Shot Fire(std::size_t laser, double azimuth_rad, const Eigen::Isometry3d& T_map_vessel);
+  struct RayPair {  // one ray in two frames
+    Ray vessel;
+    Ray map;
+  };
+  RayPair RayOf(double origin_height_m, double azimuth_rad, double elevation_rad, const Eigen::Isometry3d& T_map_vessel) const;
+  Shot Fire(const RayPair& ray, double time_s);
+  Echoes Meet(const RayPair& ray, double max_range_m, double time_s);
+  void MeetWater(const Ray& ray, double max_range_m, Seen& seen);
+  Shot Choose(const Seen& seen) const;
   bool FiresFrom(std::int64_t sequence) const;
   Measurement Measure(const Echo& echo);
+  Measurement MeasureDrop(const Clutter::Echo& echo);
   Measurement Stray(double max_range_m);
 
   LidarParams params_;
+  Effects effects_;
+  const Sea& sea_;
   const Beams& beams_;
   OwnMotion own_motion_;
   double reference_point_above_water_m_;
   Eigen::Isometry3d T_vessel_lidar_;
   std::vector<Part> own_hull_;
   RayCaster own_caster_;  // vessel frame
-  RayCaster caster_;      // map frame
+  BeamWidth beam_width_;
+  RayCaster caster_;  // map frame
+  Clutter clutter_;
   Random random_;
   std::vector<Wave> rotor_rad_;
   double rotor_phase_rad_ = 0.0;

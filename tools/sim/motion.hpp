@@ -3,7 +3,10 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
+
+#include "common/core/angles.hpp"
 
 namespace lookout::sim {
 
@@ -15,15 +18,35 @@ struct Placement {
   Eigen::Vector2d ToMap(const Eigen::Vector2d& p_object_m) const;
 };
 
-/// Of another object: a straight line or a circle, at constant speed, bow first.
+/// A part of a route: a straight line or an arc, begun at a time.
+struct Leg {
+  double from_s = 0.0;
+  Placement start;
+  double turn_rate_radps = 0.0;  // clockwise
+};
+
+/// Of another object, bow first at constant speed: a straight line, a circle, or a route of legs.
 struct Track {
   Placement start;
   double speed_mps = 0.0;
   double turn_rate_radps = 0.0;  // clockwise
+  std::vector<Leg> legs{};       // of a route, by time from 0 on; the turn rate above then has no meaning
+  double route_s = 0.0;          // what the legs take; then it begins anew when it is closed, else it stops there
+  bool is_closed = false;
 
   bool is_moving() const { return speed_mps != 0.0 || turn_rate_radps != 0.0; }
   Placement At(double time_s) const;
 };
+
+/// Sharper corners have no arc worth the name: the way would turn back on the spot.
+inline constexpr double kMaxRouteTurnRad = DegToRad(170.0);
+
+/// Way through waypoints with rounded corners. An open route begins at the first and stops at the last; a closed one goes on to the first and
+/// round again.
+///
+/// @param waypoints_map_m  two at least, no two neighbours at one place, no turn of more than kMaxRouteTurnRad
+/// @param turn_radius_m    of the corners; less where half of a leg is too short for it
+Track MakeRoute(const std::vector<Eigen::Vector2d>& waypoints_map_m, double speed_mps, double turn_radius_m, bool is_closed);
 
 /// A part of a motion: amplitude x sin(2 pi time / period + phase).
 struct Wave {
@@ -32,7 +55,7 @@ struct Wave {
   double phase_rad;
 };
 
-/// Of the own boat: round an ellipse, bow along the course but for the leeway, with the waves' motion on top.
+/// Of the own boat: round an ellipse or along a track, bow along the course but for the leeway, with the waves' motion on top.
 struct OwnMotion {
   Eigen::Vector2d center_map_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d semi_axes_m = Eigen::Vector2d::Zero();  // east, north; both 0 = the boat lies still
@@ -43,6 +66,7 @@ struct OwnMotion {
   std::vector<Wave> roll_rad{};
   std::vector<Wave> pitch_rad{};
   std::vector<Wave> heave_m{};
+  std::optional<Track> track{};  // in place of the ellipse: a straight line or a circle
 };
 
 /// State of the vessel frame. Signs as in POSE: heading clockwise from north, pitch positive bow up, roll positive starboard down.

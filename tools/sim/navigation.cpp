@@ -13,29 +13,37 @@ using std::chrono::microseconds;
 namespace format = vlp16::format;
 using namespace std::chrono_literals;
 
-constexpr std::uint64_t kNavigationStream = 4;
+constexpr std::uint64_t kGnssStream = 4;
+constexpr std::uint64_t kAttitudeStream = 7;
+constexpr std::uint64_t kLatencyStream = 8;
 
-constexpr microseconds kEpochPeriod = 50ms;  // PASHR at 20 Hz; all others at divisors of it
-constexpr microseconds kHeadingPeriod = 100ms;
+// All measurements are made at multiples of the first, that of the IMU.
+constexpr microseconds kEpochPeriod = Imu::kPeriod;
+constexpr microseconds kAttitudePeriod = 20ms;
+constexpr microseconds kHeadingPeriod = 50ms;
 // Captures of a real VLP-16: 57 position packets in 0.39 s.
 constexpr microseconds kPositionPacketPeriod = 7100us;
 
-// From measurement to arrival: a receiver computes for some 50 ms and sends by serial line; an attitude sensor is quicker.
-constexpr microseconds kRmcLatency = 60ms;
-constexpr microseconds kGgaLatency = 65ms;
-constexpr microseconds kVtgLatency = 68ms;
+// From measurement to arrival: a receiver computes and sends by serial line, one sentence after the other; a compass and an attitude sensor are
+// quicker; an IMU's 118 characters take 1.3 ms at 921 600 baud.
+constexpr microseconds kRmcLatency = 100ms;
+constexpr microseconds kGgaLatency = 102ms;
+constexpr microseconds kVtgLatency = 104ms;
+constexpr microseconds kGstLatency = 106ms;
+constexpr microseconds kZdaLatency = 108ms;
 constexpr microseconds kHdtLatency = 20ms;
+constexpr microseconds kRotLatency = 22ms;
 constexpr microseconds kPashrLatency = 15ms;
+constexpr microseconds kImuLatency = 2ms;
 constexpr microseconds kLatencyJitter = 2ms;
-// The lidar's line has 9600 baud: 80 characters take 83 ms.
-constexpr microseconds kLidarRmcLatency = 150ms;
 constexpr microseconds kPositionPacketLatency = 60us;
 
-constexpr double kHeadingSdDeg = 0.1;  // two antennas a metre apart
-constexpr double kTiltSdDeg = 0.05;
 constexpr double kHeaveSdM = 0.01;
-constexpr double kVelocitySdMps = 0.02;
+constexpr double kRateSdDegpmin = 6.0;       // 0.1 deg/s: the rate gyro of a compass
 constexpr double kGeoidSeparationM = -28.0;  // EGM96 in New Hampshire, rounded
+
+// For derivatives of the motion.
+constexpr double kStepS = 0.01;
 
 // A receiver with RTK, with a differential correction, alone.
 int QualityOf(double gnss_sd_m) { return gnss_sd_m <= 0.1 ? 4 : gnss_sd_m <= 1.0 ? 2 : 1; }
@@ -51,55 +59,75 @@ bool IsMultiple(Utime time, microseconds period) { return time.time_since_epoch(
 
 }  // namespace
 
-GeographicLib::LocalCartesian MapFrame(const config::BoatFacts& boat) {
-  const auto datum = boat.datum.value_or(kLakeDatum);
-  return {datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m};
+NavigationParams StandaloneNavigation() {
+  NavigationParams params;
+  params.gnss_sd_m = 1.5;
+  params.gnss_time_constant_s = 60.0;  // satellites, ionosphere and reflections change over minutes
+  params.velocity_sd_mps = 0.05;       // Doppler of a receiver without corrections
+  params.heading_sd_deg = 2.0;
+  params.heading_time_constant_s = 30.0;  // a compass is off by its deviation, which changes as the boat turns
+  return params;
 }
 
-Navigation::Navigation(const Scene& scene, const config::BoatFacts& boat, const NavigationParams& params, Utime start, std::uint64_t seed)
+Navigation::Navigation(const Scene& scene, const config::BoatFacts& boat, const NavigationParams& params, const FaultPlan& plan, Utime start,
+                       std::uint64_t seed)
     : own_motion_(scene.own_motion),
       boat_(boat),
       params_(params),
+      plan_(plan),
+      clock_(plan),
       map_(MapFrame(boat)),
       start_(start),
-      random_(seed, kNavigationStream),
+      gnss_random_(seed, kGnssStream),
+      attitude_random_(seed, kAttitudeStream),
+      latency_random_(seed, kLatencyStream),
+      heading_error_deg_(params.heading_sd_deg, params.heading_time_constant_s),
+      imu_(scene.own_motion, boat, params.imu, start, seed),
       next_epoch_(CeilTo(start, kEpochPeriod)),
       next_position_packet_(start + 500us) {
-  // The RMC that the lidar had when the simulation began.
-  const Utime second = std::chrono::floor<std::chrono::seconds>(start - kLidarRmcLatency);
-  next_rmc_ = second + kLidarRmcLatency;
+  gnss_error_m_.fill(MeasurementError(params.gnss_sd_m, params.gnss_time_constant_s));
+  // The RMC that the lidar had when the simulation began, and the one that was on its way.
+  for (Utime second = std::chrono::floor<std::chrono::seconds>(start - kLidarRmcLatency); second < next_epoch_; second += 1s) {
+    whole_seconds_.push_back(MeasureGnss(second, 1s));
+  }
 }
 
-double Navigation::SceneTimeS(Utime time) const { return ToSeconds(time - start_); }
+OwnState Navigation::StateAtTime(Utime time) const { return StateAt(own_motion_, boat_.reference_point_above_water_m, ToSeconds(time - start_)); }
 
 Utime Navigation::next_time() const { return std::min(next_epoch_, next_position_packet_); }
 
 std::vector<Datagram> Navigation::Next() {
   std::vector<Datagram> datagrams;
   if (next_position_packet_ < next_epoch_) {
-    datagrams.push_back(PositionPacket());
+    if (auto packet = PositionPacket()) datagrams.push_back(std::move(*packet));
     next_position_packet_ += kPositionPacketPeriod;
     return datagrams;
   }
-  AddAttitude(datagrams);
-  AddGnss(datagrams);
+  if (params_.has_heading) {
+    if (next_epoch_ >= start_ + Imu::kFirst) AddImu(datagrams);
+    if (IsMultiple(next_epoch_, kHeadingPeriod)) AddHeading(datagrams);
+    if (IsMultiple(next_epoch_, kAttitudePeriod)) AddAttitude(datagrams);
+  }
+  if (IsMultiple(next_epoch_, microseconds(1s) / params_.gnss_rate_hz)) AddGnss(datagrams);
   std::ranges::stable_sort(datagrams, {}, &Datagram::time);
   next_epoch_ += kEpochPeriod;
   return datagrams;
 }
 
-GnssMeasurement Navigation::MeasureGnss(Utime time) {
-  constexpr double kStepS = 0.01;  // for the antenna's velocity, with its swing in the waves
-  const auto antenna_m = [&](double time_s) -> Eigen::Vector3d {
-    return StateAt(own_motion_, boat_.reference_point_above_water_m, time_s).T_map_vessel() * boat_.p_vessel_antenna_m;
+GnssMeasurement Navigation::MeasureGnss(Utime time, microseconds since_last) {
+  // With the antenna's swing in the waves.
+  const auto antenna_m = [&](double offset_s) -> Eigen::Vector3d {
+    const auto state = StateAt(own_motion_, boat_.reference_point_above_water_m, ToSeconds(time - start_) + offset_s);
+    return state.T_map_vessel() * boat_.p_vessel_antenna_m;
   };
-  const double time_s = SceneTimeS(time);
-  Eigen::Vector3d position_m = antenna_m(time_s);
-  Eigen::Vector3d velocity_mps = (antenna_m(time_s + kStepS) - antenna_m(time_s - kStepS)) / (2.0 * kStepS);
-  for (int axis = 0; axis < 3; ++axis) {
-    position_m[axis] += params_.gnss_sd_m * random_.Normal();
-    velocity_mps[axis] += kVelocitySdMps * random_.Normal();
+  Eigen::Vector3d position_m = antenna_m(0.0);
+  Eigen::Vector3d velocity_mps = (antenna_m(kStepS) - antenna_m(-kStepS)) / (2.0 * kStepS);
+  for (std::size_t axis = 0; axis < gnss_error_m_.size(); ++axis) {
+    const auto index = static_cast<Eigen::Index>(axis);
+    position_m[index] += gnss_error_m_[axis].Next(ToSeconds(since_last), gnss_random_);
+    velocity_mps[index] += params_.velocity_sd_mps * gnss_random_.Normal();
   }
+  position_m.x() += plan_.ValueAt(TimedFaultKind::kGnssJump, time);
   GnssMeasurement result{};
   double ellipsoid_height_m = 0.0;
   map_.Reverse(position_m.x(), position_m.y(), position_m.z(), result.latitude_deg, result.longitude_deg, ellipsoid_height_m);
@@ -108,51 +136,88 @@ GnssMeasurement Navigation::MeasureGnss(Utime time) {
   result.geoid_separation_m = kGeoidSeparationM;
   result.speed_mps = std::hypot(velocity_mps.x(), velocity_mps.y());
   result.course_deg = RadToDeg(WrapTo2Pi(std::atan2(velocity_mps.x(), velocity_mps.y())));
-  result.quality = QualityOf(params_.gnss_sd_m);
+  result.quality = plan_.At(TimedFaultKind::kGnssGap, time) != nullptr ? 0 : QualityOf(params_.gnss_sd_m);
+  result.sd_m = params_.gnss_sd_m;
   return result;
+}
+
+Navigation::Heading Navigation::MeasureHeading(Utime time) {
+  const double error_deg = heading_error_deg_.Next(ToSeconds(kHeadingPeriod), attitude_random_);
+  const double rate_error_degpmin = kRateSdDegpmin * attitude_random_.Normal();
+  if (plan_.At(TimedFaultKind::kFrozenHeading, time) != nullptr && frozen_heading_) return *frozen_heading_;
+  const double time_s = ToSeconds(time - start_);
+  const auto heading_rad = [&](double at_s) { return StateAt(own_motion_, boat_.reference_point_above_water_m, at_s).heading_rad; };
+  const double rate_radps = WrapToPi(heading_rad(time_s + kStepS) - heading_rad(time_s - kStepS)) / (2.0 * kStepS);
+  Heading heading;
+  heading.heading_deg = RadToDeg(WrapTo2Pi(heading_rad(time_s) + DegToRad(error_deg - params_.heading_offset_deg)));
+  heading.rate_degpmin = 60.0 * RadToDeg(rate_radps) + rate_error_degpmin;
+  frozen_heading_ = heading;
+  return heading;
 }
 
 AttitudeMeasurement Navigation::MeasureAttitude(Utime time) {
-  const auto state = StateAt(own_motion_, boat_.reference_point_above_water_m, SceneTimeS(time));
+  const auto state = StateAtTime(time);
   AttitudeMeasurement result{};
   result.time = time;
-  result.heading_deg = RadToDeg(WrapTo2Pi(state.heading_rad + DegToRad(kHeadingSdDeg * random_.Normal() - params_.heading_offset_deg)));
-  result.roll_deg = RadToDeg(state.roll_rad) + kTiltSdDeg * random_.Normal() - params_.roll_offset_deg;
-  result.pitch_deg = RadToDeg(state.pitch_rad) + kTiltSdDeg * random_.Normal() - params_.pitch_offset_deg;
-  result.heave_m = state.heave_m + kHeaveSdM * random_.Normal();
+  // Between two headings of the compass the gyroscopes of the attitude sensor carry the heading, and with it the error of the compass.
+  const bool is_frozen = plan_.At(TimedFaultKind::kFrozenHeading, time) != nullptr && frozen_heading_;
+  result.heading_deg = is_frozen ? frozen_heading_->heading_deg
+                                 : RadToDeg(WrapTo2Pi(state.heading_rad + DegToRad(heading_error_deg_.value() - params_.heading_offset_deg)));
+  result.roll_deg = RadToDeg(state.roll_rad) + params_.tilt_sd_deg * attitude_random_.Normal() - params_.roll_offset_deg;
+  result.pitch_deg = RadToDeg(state.pitch_rad) + params_.tilt_sd_deg * attitude_random_.Normal() - params_.pitch_offset_deg;
+  result.heave_m = state.heave_m + kHeaveSdM * attitude_random_.Normal();
   return result;
 }
 
-Datagram Navigation::Line(Utime measured, microseconds latency, const std::string& sentence) {
-  const auto jitter = microseconds(static_cast<std::int64_t>(static_cast<double>(kLatencyJitter.count()) * random_.Uniform()));
-  return {measured + latency + jitter, params_.nmea_port, {sentence.begin(), sentence.end()}};
+Datagram Navigation::Line(microseconds latency, const std::string& sentence) {
+  const auto jitter = microseconds(static_cast<std::int64_t>(static_cast<double>(kLatencyJitter.count()) * latency_random_.Uniform()));
+  return {next_epoch_ + latency + jitter, params_.nmea_port, {sentence.begin(), sentence.end()}};
 }
 
 void Navigation::AddGnss(std::vector<Datagram>& datagrams) {
-  if (!IsMultiple(next_epoch_, microseconds(1s) / params_.gnss_rate_hz)) return;
-  const auto measurement = MeasureGnss(next_epoch_);
-  datagrams.push_back(Line(next_epoch_, kRmcLatency, Rmc(measurement)));
-  datagrams.push_back(Line(next_epoch_, kGgaLatency, Gga(measurement)));
-  datagrams.push_back(Line(next_epoch_, kVtgLatency, Vtg(measurement)));
+  const auto measurement = MeasureGnss(next_epoch_, microseconds(1s) / params_.gnss_rate_hz);
+  datagrams.push_back(Line(kRmcLatency, Rmc(measurement)));
+  datagrams.push_back(Line(kGgaLatency, Gga(measurement)));
+  datagrams.push_back(Line(kVtgLatency, Vtg(measurement)));
+  datagrams.push_back(Line(kGstLatency, Gst(measurement)));
+  if (!IsMultiple(next_epoch_, 1s)) return;
+  datagrams.push_back(Line(kZdaLatency, Zda(next_epoch_)));
+  whole_seconds_.push_back(measurement);
+  if (whole_seconds_.front().time < next_epoch_ - LidarClock::kOldestRmc - 1s) whole_seconds_.pop_front();
+}
+
+void Navigation::AddHeading(std::vector<Datagram>& datagrams) {
+  const auto heading = MeasureHeading(next_epoch_);
+  datagrams.push_back(Line(kHdtLatency, Hdt(heading.heading_deg)));
+  datagrams.push_back(Line(kRotLatency, Rot(heading.rate_degpmin)));
 }
 
 void Navigation::AddAttitude(std::vector<Datagram>& datagrams) {
-  if (!params_.has_heading) return;
-  const auto measurement = MeasureAttitude(next_epoch_);
-  datagrams.push_back(Line(next_epoch_, kPashrLatency, Pashr(measurement, kTiltSdDeg, kHeadingSdDeg)));
-  if (IsMultiple(next_epoch_, kHeadingPeriod)) datagrams.push_back(Line(next_epoch_, kHdtLatency, Hdt(measurement.heading_deg)));
+  datagrams.push_back(Line(kPashrLatency, Pashr(MeasureAttitude(next_epoch_), params_.tilt_sd_deg, params_.heading_sd_deg)));
 }
 
-Datagram Navigation::PositionPacket() {
-  while (next_rmc_ <= next_position_packet_) {
-    lidar_rmc_ = Rmc(MeasureGnss(next_rmc_ - kLidarRmcLatency));
-    next_rmc_ += 1s;
-  }
-  Datagram packet{next_position_packet_ + kPositionPacketLatency, params_.position_port, std::vector<std::uint8_t>(format::kPositionPacketSizeBytes)};
-  const auto past_hour = next_position_packet_ - std::chrono::floor<std::chrono::hours>(next_position_packet_);
-  WriteU32LittleEndian(packet.payload, format::kPositionStampOffset, static_cast<std::uint32_t>(past_hour / 1us));
-  packet.payload[format::kPpsOffset] = format::kPpsLocked;
-  std::ranges::copy(lidar_rmc_, packet.payload.begin() + static_cast<std::ptrdiff_t>(format::kSentenceOffset));
+void Navigation::AddImu(std::vector<Datagram>& datagrams) {
+  auto datagram = Line(kImuLatency, VnImu(imu_.Measure(next_epoch_)));
+  if (plan_.At(TimedFaultKind::kImuStop, next_epoch_) == nullptr) datagrams.push_back(std::move(datagram));
+}
+
+// What stands in a position packet: the last RMC that has come, empty before the first.
+std::string Navigation::LidarSentence(Utime time) const {
+  const auto second = clock_.SecondOfRmc(time);
+  const auto found = second ? std::ranges::find(whole_seconds_, *second, &GnssMeasurement::time) : whole_seconds_.end();
+  if (found == whole_seconds_.end()) return {};
+  auto told = *found;
+  told.time += clock_.RmcError(*second);
+  return Rmc(told);
+}
+
+std::optional<Datagram> Navigation::PositionPacket() {
+  const Utime time = next_position_packet_;
+  if (!clock_.IsOn(time)) return std::nullopt;
+  Datagram packet{time + kPositionPacketLatency, params_.position_port, std::vector<std::uint8_t>(format::kPositionPacketSizeBytes)};
+  WriteU32LittleEndian(packet.payload, format::kPositionStampOffset, clock_.StampUs(time));
+  packet.payload[format::kPpsOffset] = clock_.Pps(time);
+  std::ranges::copy(LidarSentence(time), packet.payload.begin() + static_cast<std::ptrdiff_t>(format::kSentenceOffset));
   return packet;
 }
 

@@ -1,23 +1,36 @@
-// The receiver, the attitude sensor and the lidar's position packets of the simulated boat.
+// The GNSS receiver, the compass, the attitude sensor, the IMU and the lidar's position packets of the simulated boat.
 #pragma once
 
-#include <GeographicLib/LocalCartesian.hpp>
+#include <deque>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "common/config/boat.hpp"
+#include "tools/sim/clock_faults.hpp"
 #include "tools/sim/datagram.hpp"
+#include "tools/sim/fault_plan.hpp"
+#include "tools/sim/imu.hpp"
+#include "tools/sim/map_frame.hpp"
+#include "tools/sim/measurement_error.hpp"
 #include "tools/sim/nmea.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
 
+/// The defaults are a receiver with RTK and a compass of two antennas; StandaloneNavigation has another set.
 struct NavigationParams {
-  int gnss_rate_hz = 10;    // of RMC, GGA and VTG: a divisor of 20
-  bool has_heading = true;  // else a receiver alone: no HDT, no PASHR
-  double gnss_sd_m = 0.02;  // per axis; a receiver with RTK
-  // As in navigator.txtpb: how the attitude sensor is turned in the boat.
+  int gnss_rate_hz = 5;               // of RMC, GGA, VTG and GST: a divisor of 20
+  bool has_heading = true;            // else a receiver alone: no HDT, ROT, PASHR, VNIMU
+  double gnss_sd_m = 0.02;            // per axis
+  double gnss_time_constant_s = 0.0;  // as in MeasurementError
+  double velocity_sd_mps = 0.02;      // per axis
+  double heading_sd_deg = 0.2;
+  double heading_time_constant_s = 0.0;
+  double tilt_sd_deg = 0.1;  // roll and pitch, each
+  ImuErrors imu;
+  // As in navigator.txtpb: how compass and attitude sensor are turned in the boat.
   double heading_offset_deg = 0.0;
   double pitch_offset_deg = 0.0;
   double roll_offset_deg = 0.0;
@@ -25,16 +38,15 @@ struct NavigationParams {
   int position_port = 8308;
 };
 
-/// Origin of the map where boat.txtpb holds no datum: a lake in New Hampshire; west of Greenwich, so that a wrong sign shows.
-inline constexpr config::BoatDatum kLakeDatum{43.6300, -72.1500, 201.0};
-
-/// @return the map frame of the simulation; up is 0 on the calm water
-GeographicLib::LocalCartesian MapFrame(const config::BoatFacts& boat);
+/// A receiver without corrections and a magnetic compass.
+NavigationParams StandaloneNavigation();
 
 class Navigation {
  public:
   /// @param start  the scene's time 0
-  Navigation(const Scene& scene, const config::BoatFacts& boat, const NavigationParams& params, Utime start, std::uint64_t seed);
+  /// @param plan   outlives this
+  Navigation(const Scene& scene, const config::BoatFacts& boat, const NavigationParams& params, const FaultPlan& plan, Utime start,
+             std::uint64_t seed);
 
   /// When the next measurements are made.
   Utime next_time() const;
@@ -43,24 +55,40 @@ class Navigation {
   std::vector<Datagram> Next();
 
  private:
-  GnssMeasurement MeasureGnss(Utime time);
+  struct Heading {
+    double heading_deg = 0.0;
+    double rate_degpmin = 0.0;  // positive to starboard
+  };
+
+  OwnState StateAtTime(Utime time) const;
+  GnssMeasurement MeasureGnss(Utime time, std::chrono::microseconds since_last);
+  Heading MeasureHeading(Utime time);
   AttitudeMeasurement MeasureAttitude(Utime time);
   void AddGnss(std::vector<Datagram>& datagrams);
+  void AddHeading(std::vector<Datagram>& datagrams);
   void AddAttitude(std::vector<Datagram>& datagrams);
-  Datagram PositionPacket();
-  Datagram Line(Utime measured, std::chrono::microseconds latency, const std::string& sentence);
-  double SceneTimeS(Utime time) const;
+  void AddImu(std::vector<Datagram>& datagrams);
+  std::optional<Datagram> PositionPacket();
+  std::string LidarSentence(Utime time) const;
+  Datagram Line(std::chrono::microseconds latency, const std::string& sentence);
 
   OwnMotion own_motion_;
   config::BoatFacts boat_;
   NavigationParams params_;
+  const FaultPlan& plan_;
+  LidarClock clock_;
   GeographicLib::LocalCartesian map_;
   Utime start_;
-  Random random_;
+  Random gnss_random_;
+  Random attitude_random_;
+  Random latency_random_;
+  std::array<MeasurementError, 3> gnss_error_m_;  // east, north, up
+  MeasurementError heading_error_deg_;
+  Imu imu_;
   Utime next_epoch_;
   Utime next_position_packet_;
-  Utime next_rmc_;  // when the lidar has the next RMC
-  std::string lidar_rmc_;
+  std::deque<GnssMeasurement> whole_seconds_;  // whose RMC the lidar gets
+  std::optional<Heading> frozen_heading_;
 };
 
 }  // namespace lookout::sim

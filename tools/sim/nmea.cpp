@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kKnotsPerMps = 3600.0 / 1852.0;
 constexpr double kKmhPerMps = 3.6;
+constexpr double kVerticalFactor = 2.0;  // heights of GNSS are about twice as uncertain as latitude and longitude
 
 __attribute__((format(printf, 1, 2))) std::string Print(const char* form, ...) {
-  std::array<char, 128> text{};
+  std::array<char, 160> text{};
   va_list arguments;
   va_start(arguments, form);
   std::vsnprintf(text.data(), text.size(), form, arguments);
@@ -73,26 +74,52 @@ std::string Sentence(std::string_view body) {
 }
 
 std::string Rmc(const GnssMeasurement& m) {
+  if (m.quality == 0) return Sentence("GPRMC," + TimeOfDay(m.time) + ",V,,,,,,," + Date(m.time) + ",,,N");
   return Sentence("GPRMC," + TimeOfDay(m.time) + ",A," + Position(m) + Print(",%.3f,", m.speed_mps * kKnotsPerMps) + Course(m.course_deg) + "," +
                   Date(m.time) + ",,," + Mode(m.quality));
 }
 
 std::string Gga(const GnssMeasurement& m) {
+  if (m.quality == 0) return Sentence("GPGGA," + TimeOfDay(m.time) + ",,,,,0,00,99.9,,M,,M,,");
   return Sentence("GPGGA," + TimeOfDay(m.time) + "," + Position(m) +
                   Print(",%d,14,0.7,%.3f,M,%.3f,M,,", m.quality, m.msl_height_m, m.geoid_separation_m));
 }
 
 std::string Vtg(const GnssMeasurement& m) {
+  if (m.quality == 0) return Sentence("GPVTG,,,,,,,,,N");
   return Sentence("GPVTG," + Course(m.course_deg) + ",T,,M," + Print("%.3f,N,%.3f,K,", m.speed_mps * kKnotsPerMps, m.speed_mps * kKmhPerMps) +
                   Mode(m.quality));
 }
 
+std::string Gst(const GnssMeasurement& m) {
+  if (m.quality == 0) return Sentence("GPGST," + TimeOfDay(m.time) + ",,,,,,,");
+  // The ellipse is a circle: its axes are the deviations, its direction is 0.
+  return Sentence("GPGST," + TimeOfDay(m.time) +
+                  Print(",%.3f,%.3f,%.3f,0.0,%.3f,%.3f,%.3f", m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m, kVerticalFactor * m.sd_m));
+}
+
+std::string Zda(Utime time) {
+  const std::chrono::year_month_day date(std::chrono::floor<std::chrono::days>(time));
+  return Sentence(
+      "GPZDA," + TimeOfDay(time) +
+      Print(",%02u,%02u,%04d,00,00", static_cast<unsigned>(date.day()), static_cast<unsigned>(date.month()), static_cast<int>(date.year())));
+}
+
 std::string Hdt(double heading_deg) { return Sentence("GPHDT," + Course(heading_deg) + ",T"); }
+
+std::string Rot(double rate_degpmin) { return Sentence("GPROT," + Print("%.1f", rate_degpmin) + ",A"); }
 
 std::string Pashr(const AttitudeMeasurement& m, double tilt_sd_deg, double heading_sd_deg) {
   // GNSS quality 2 and INS status 1: RTK and aligned, as Trimble and Applanix use them.
   return Sentence("PASHR," + TimeOfDay(m.time) + "," + Course(m.heading_deg) +
                   Print(",T,%+.2f,%+.2f,%+.2f,%.3f,%.3f,%.3f,2,1", m.roll_deg, m.pitch_deg, m.heave_m, tilt_sd_deg, tilt_sd_deg, heading_sd_deg));
+}
+
+std::string VnImu(const ImuMeasurement& m) {
+  return Sentence("VNIMU" + Print(",%+08.4f,%+08.4f,%+08.4f", m.magnetic_gauss.x(), m.magnetic_gauss.y(), m.magnetic_gauss.z()) +
+                  Print(",%+07.3f,%+07.3f,%+07.3f", m.specific_force_mps2.x(), m.specific_force_mps2.y(), m.specific_force_mps2.z()) +
+                  Print(",%+010.6f,%+010.6f,%+010.6f", m.angular_rate_radps.x(), m.angular_rate_radps.y(), m.angular_rate_radps.z()) +
+                  Print(",%+05.1f,%+08.3f", m.temperature_celsius, m.pressure_kpa));
 }
 
 }  // namespace lookout::sim

@@ -11,9 +11,40 @@ namespace lookout::sim {
 namespace {
 
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 constexpr int kNumBins = 720;
 constexpr double kBinsPerRad = kNumBins / kTwoPi;
+
+// What rides the waves gets a new height and list so often: at 1 m/s of heave it moves by half a millimetre in between.
+constexpr double kTiltPeriodS = 0.0005;
+
+// Of the tests that keep parts from being looked at closely: far more than rounding, far less than a part.
+constexpr double kRoundingM = 1e-6;
+constexpr double kRoundingCosine = 1e-12;
+
+// Steps in range within which neighbouring surfaces count as one: three standard deviations of the range.
+constexpr double kSameSurfaceM = 0.08;
+
+// Rays of a beam, of equal shares, as shares of its half angles. The first five tell whether there is an edge; only then come the others.
+struct Offset {
+  double horizontal;
+  double vertical;
+};
+constexpr std::array<Offset, 13> kBeamRays{{{0.0, 0.0},
+                                            {-0.8, 0.0},
+                                            {0.8, 0.0},
+                                            {0.0, -0.8},
+                                            {0.0, 0.8},
+                                            {-0.4, 0.0},
+                                            {0.4, 0.0},
+                                            {0.0, -0.4},
+                                            {0.0, 0.4},
+                                            {-0.55, -0.55},
+                                            {-0.55, 0.55},
+                                            {0.55, -0.55},
+                                            {0.55, 0.55}}};
+constexpr std::size_t kNumProbeRays = 5;
 
 double DistanceFromOrigin(const Vector2d& a_m, const Vector2d& b_m) {
   const Vector2d edge_m = b_m - a_m;
@@ -24,19 +55,55 @@ double DistanceFromOrigin(const Vector2d& a_m, const Vector2d& b_m) {
 
 int WrapBin(int bin) { return ((bin % kNumBins) + kNumBins) % kNumBins; }
 
+struct Heights {
+  double low_m;
+  double high_m;
+};
+Heights HeightsOf(const Cylinder& cylinder) { return {cylinder.bottom_m, cylinder.top_m}; }
+Heights HeightsOf(const Prism& prism) { return {prism.bottom_m, prism.top_m}; }
+Heights HeightsOf(const Ellipsoid& ellipsoid) {
+  return {ellipsoid.center_m.z() - ellipsoid.radii_m.z(), ellipsoid.center_m.z() + ellipsoid.radii_m.z()};
+}
+Heights HeightsOf(const Triangle& triangle) {
+  const auto [low_m, high_m] = std::minmax({triangle.a_m.z(), triangle.b_m.z(), triangle.c_m.z()});
+  return {low_m, high_m};
+}
+
 }  // namespace
 
-RayCaster::RayCaster(const std::vector<Body>& bodies) : bodies_(bodies), places_(bodies.size()), bins_(kNumBins) {
+RayCaster::RayCaster(const std::vector<Body>& bodies, const BeamWidth& width, const Sea* sea)
+    : bodies_(bodies), width_(width), sea_(sea), places_(bodies.size()), bins_(kNumBins) {
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    for (const auto& part : *bodies_[body].parts) items_.push_back({&part, BoundsOf(part.solid), body, 0.0});
+    const Placement placement = bodies_[body].track.At(0.0);
+    places_[body].origin_m = placement.position_map_m;
+    places_[body].sine = std::sin(placement.heading_rad);
+    places_[body].cosine = std::cos(placement.heading_rad);
+    places_[body].is_tilted = sea_ != nullptr && !sea_->is_calm() && bodies_[body].rider != nullptr && bodies_[body].rider->is_afloat();
+    for (const auto& part : *bodies_[body].parts) {
+      Item item;
+      item.part = &part;
+      item.bounds = BoundsOf(part.solid);
+      item.body = body;
+      const Heights heights = std::visit([](const auto& shape) { return HeightsOf(shape); }, part.solid);
+      item.low_m = heights.low_m;
+      item.high_m = heights.high_m;
+      items_.push_back(std::move(item));
+    }
   }
   order_.resize(items_.size());
 }
 
 void RayCaster::MoveTo(double time_s, const Vector2d& eye_m) {
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    if (!bodies_[body].track.is_moving()) continue;
     const Placement placement = bodies_[body].track.At(time_s);
-    places_[body] = {placement.position_map_m, std::sin(placement.heading_rad), std::cos(placement.heading_rad)};
+    places_[body].origin_m = placement.position_map_m;
+    places_[body].sine = std::sin(placement.heading_rad);
+    places_[body].cosine = std::cos(placement.heading_rad);
+  }
+  if (std::abs(time_s - tilted_at_s_) >= kTiltPeriodS) {
+    tilted_at_s_ = time_s;
+    Tilt(time_s);
   }
   if (std::abs(time_s - sorted_at_s_) >= kSortPeriodS) {
     sorted_at_s_ = time_s;
@@ -44,9 +111,35 @@ void RayCaster::MoveTo(double time_s, const Vector2d& eye_m) {
   }
 }
 
+void RayCaster::Tilt(double time_s) {
+  for (std::size_t body = 0; body < bodies_.size(); ++body) {
+    Place& place = places_[body];
+    if (!place.is_tilted) continue;
+    const Eigen::Isometry3d T_map_object = PoseAt(*bodies_[body].rider, *sea_, time_s);
+    Eigen::Matrix3d R_object_map;  // level: x forward is (sine, cosine) in east, north
+    R_object_map << place.sine, place.cosine, 0.0, -place.cosine, place.sine, 0.0, 0.0, 0.0, 1.0;
+    place.R_tilt = R_object_map * T_map_object.linear();
+    place.height_m = T_map_object.translation().z();
+  }
+}
+
 RayCaster::Bins RayCaster::BinsOf(Item& item, const Vector2d& eye_m) const {
   const Place& place = places_[item.body];
-  const double radius_m = item.bounds.radius_m + kMarginM;
+  double radius_m = item.bounds.radius_m + kMarginM;
+  item.low_map_m = item.low_m;
+  item.high_map_m = item.high_m;
+  if (place.is_tilted) {
+    // A lean moves what is high up or far out.
+    const double tilt_sine = std::sqrt(std::max(0.0, 1.0 - place.R_tilt(2, 2) * place.R_tilt(2, 2)));
+    double reach_m = 0.0;
+    for (const auto& p_m : item.bounds.points_m) reach_m = std::max(reach_m, p_m.norm() + item.bounds.radius_m);
+    const double height_m = std::max(std::abs(item.low_m), std::abs(item.high_m));
+    radius_m += tilt_sine * (height_m + tilt_sine * reach_m);
+    item.low_map_m += place.height_m - tilt_sine * (reach_m + height_m);
+    item.high_map_m += place.height_m + tilt_sine * (reach_m + height_m);
+  }
+  item.low_map_m -= kMarginM;
+  item.high_map_m += kMarginM;
   std::vector<Vector2d> points_m;  // from the eye
   for (const auto& p_m : item.bounds.points_m) {
     points_m.emplace_back(place.origin_m - eye_m +
@@ -56,20 +149,29 @@ RayCaster::Bins RayCaster::BinsOf(Item& item, const Vector2d& eye_m) const {
   double from_rad = 0.0;
   double to_rad = 0.0;
   double nearest_m = std::numeric_limits<double>::infinity();
+  double farthest_m = 0.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const double distance_m = points_m[i].norm();
     const double half_rad = distance_m > radius_m ? std::asin(radius_m / distance_m) : kPi;
     const double relative_rad = WrapToPi(std::atan2(points_m[i].y(), points_m[i].x()) - first_rad);
     from_rad = std::min(from_rad, relative_rad - half_rad);
     to_rad = std::max(to_rad, relative_rad + half_rad);
+    farthest_m = std::max(farthest_m, distance_m + radius_m);
     nearest_m = std::min(nearest_m, DistanceFromOrigin(points_m[i], points_m[i + 1 < points_m.size() ? i + 1 : 0]) - radius_m);
   }
+  item.farthest_m = farthest_m;
+  item.cosine_half = -1.0;
   // A hull that spans half a circle holds the eye.
   if (to_rad - from_rad >= kPi) {
     item.nearest_m = 0.0;
     return {0, kNumBins};
   }
   item.nearest_m = nearest_m;
+  from_rad -= width_.half_horizontal_rad;
+  to_rad += width_.half_horizontal_rad;
+  const double middle_rad = first_rad + (from_rad + to_rad) / 2.0;
+  item.middle = {std::cos(middle_rad), std::sin(middle_rad)};
+  item.cosine_half = std::cos(std::min((to_rad - from_rad) / 2.0, kPi));
   const int first = static_cast<int>(std::floor((first_rad + from_rad) * kBinsPerRad));
   const int last = static_cast<int>(std::floor((first_rad + to_rad) * kBinsPerRad));
   return {WrapBin(first), last - first + 1};
@@ -95,33 +197,137 @@ std::optional<Hit> RayCaster::IntersectItem(const Item& item, const Ray& ray) co
   Ray own;
   own.origin_m << turn(from_m), ray.origin_m.z();
   own.direction << turn(ray.direction.head<2>()), ray.direction.z();
+  if (place.is_tilted) {
+    own.origin_m.z() -= place.height_m;
+    own.origin_m = place.R_tilt.transpose() * own.origin_m;
+    own.direction = place.R_tilt.transpose() * own.direction;
+  }
   return Intersect(item.part->solid, own);
 }
 
-RayCaster::Echoes RayCaster::Cast(const Ray& ray, double max_range_m, bool wants_second) const {
-  const double angle_rad = std::atan2(ray.direction.y(), ray.direction.x());
+// Fills near_. A part is left out when it lies wholly to one side of the beam, above or below it.
+void RayCaster::Gather(const Ray& axis, double max_range_m, double slope_margin) {
+  near_.clear();
+  const Vector2d plan = axis.direction.head<2>();
+  const double angle_rad = std::atan2(plan.y(), plan.x());
   const auto& bin = bins_[static_cast<std::size_t>(WrapBin(static_cast<int>(std::floor(angle_rad * kBinsPerRad))))];
-  const auto nearest_but = [&](const Item* skipped) {
-    const Item* best = nullptr;
-    Hit best_hit{max_range_m};
-    for (const Item* item : bin) {
-      if (item->nearest_m > best_hit.range_m) break;
-      if (item == skipped) continue;
-      const auto hit = IntersectItem(*item, ray);
-      if (hit && hit->range_m < best_hit.range_m) {
-        best = item;
-        best_hit = *hit;
+  if (bin.empty()) return;
+  const double length = plan.norm();
+  const Vector2d towards = plan / length;
+  const double slope = axis.direction.z() / length;
+  const double max_plan_m = max_range_m * length + kMarginM;
+  for (const Item* item : bin) {
+    if (item->nearest_m > max_range_m) break;
+    if (item->cosine_half > 0.0 && towards.dot(item->middle) < item->cosine_half - kRoundingCosine) continue;
+    const double from_m = std::max(item->nearest_m, 0.0);
+    const double to_m = std::min(item->farthest_m, max_plan_m);
+    const double highest_slope = slope + slope_margin;
+    const double lowest_slope = slope - slope_margin;
+    const double highest_m = axis.origin_m.z() + highest_slope * (highest_slope > 0.0 ? to_m : from_m);
+    const double lowest_m = axis.origin_m.z() + lowest_slope * (lowest_slope > 0.0 ? from_m : to_m);
+    if (highest_m < item->low_map_m - kRoundingM || lowest_m > item->high_map_m + kRoundingM) continue;
+    near_.push_back(item);
+  }
+}
+
+RayCaster::Meeting RayCaster::NearestOf(const Ray& ray, double max_range_m, const Item* skipped) const {
+  Meeting best{nullptr, {max_range_m}};
+  for (const Item* item : near_) {
+    if (item->nearest_m > best.hit.range_m) break;
+    if (item == skipped) continue;
+    const auto hit = IntersectItem(*item, ray);
+    if (hit && hit->range_m < best.hit.range_m) best = {item, *hit};
+  }
+  return best;
+}
+
+Echo RayCaster::ToEcho(const Meeting& meeting) const {
+  Echo echo;
+  echo.hit = meeting.hit;
+  echo.object_id = bodies_[meeting.item->body].object_id;
+  echo.material = meeting.item->part->material;
+  echo.reason = echo.object_id == kOwnVessel ? ReturnReason::kOwnVessel : ReturnReason::kObject;
+  return echo;
+}
+
+Echoes RayCaster::Cast(const Ray& ray, double max_range_m, bool wants_second) {
+  Echoes echoes;
+  Gather(ray, max_range_m, 0.0);
+  const Meeting first = NearestOf(ray, max_range_m, nullptr);
+  if (first.item == nullptr) return echoes;
+  echoes.echo[0] = ToEcho(first);
+  echoes.count = 1;
+  if (wants_second && first.item->part->material.is_porous) {
+    const Meeting second = NearestOf(ray, max_range_m, first.item);
+    if (second.item != nullptr) {
+      echoes.echo[1] = ToEcho(second);
+      echoes.echo[1].is_behind_foliage = true;
+      echoes.count = 2;
+    }
+  }
+  return echoes;
+}
+
+// One echo of rays that meet surfaces close to each other, nearest first: between them, as the light is shared.
+Echo RayCaster::Merge(const Meeting* begin, const Meeting* end, int num_rays) const {
+  Echo echo = ToEcho(*begin);
+  double sum_light = 0.0;
+  double sum_range = 0.0;
+  double sum_cosine = 0.0;
+  double sum_reflectance = 0.0;
+  for (const Meeting* meeting = begin; meeting != end; ++meeting) {
+    const double light = std::max(meeting->item->part->material.reflectance, 1e-3);
+    sum_light += light;
+    sum_range += light * meeting->hit.range_m;
+    sum_cosine += light * meeting->hit.incidence_cosine;
+    sum_reflectance += meeting->item->part->material.reflectance;
+    if (meeting != begin && meeting->item != (meeting - 1)->item && meeting->hit.range_m - (meeting - 1)->hit.range_m > kSameSurfaceM) {
+      echo.reason = ReturnReason::kMixedEdge;
+    }
+  }
+  const auto count = static_cast<double>(end - begin);
+  echo.hit = {sum_range / sum_light, sum_cosine / sum_light};
+  echo.material.reflectance = sum_reflectance / count;
+  echo.share = count / num_rays;
+  return echo;
+}
+
+Echoes RayCaster::CastBeam(const Ray& axis, double max_range_m, bool wants_second) {
+  Gather(axis, max_range_m, 2.0 * width_.half_vertical_rad);
+  if (near_.empty()) return {};
+  const Vector3d right = Vector3d(axis.direction.y(), -axis.direction.x(), 0.0).normalized() * width_.half_horizontal_rad;
+  const Vector3d up = right.normalized().cross(axis.direction) * width_.half_vertical_rad;
+  std::array<Meeting, kBeamRays.size()> meetings;
+  const auto meet = [&](const Offset& offset) {
+    const Ray ray{axis.origin_m, (axis.direction + offset.horizontal * right + offset.vertical * up).normalized()};
+    return NearestOf(ray, max_range_m, nullptr);
+  };
+  for (std::size_t i = 0; i < kNumProbeRays; ++i) meetings[i] = meet(kBeamRays[i]);
+  const bool is_edge =
+      std::any_of(meetings.begin() + 1, meetings.begin() + kNumProbeRays, [&](const Meeting& meeting) { return meeting.item != meetings[0].item; });
+  if (!is_edge) {
+    // One surface: what its middle gives.
+    Echoes echoes;
+    if (meetings[0].item == nullptr) return echoes;
+    echoes.echo[echoes.count++] = ToEcho(meetings[0]);
+    if (wants_second && meetings[0].item->part->material.is_porous) {
+      const Meeting second = NearestOf(axis, max_range_m, meetings[0].item);
+      if (second.item != nullptr) {
+        echoes.echo[echoes.count] = ToEcho(second);
+        echoes.echo[echoes.count++].is_behind_foliage = true;
       }
     }
-    return std::pair(best, best_hit);
-  };
+    return echoes;
+  }
+  for (std::size_t i = kNumProbeRays; i < kBeamRays.size(); ++i) meetings[i] = meet(kBeamRays[i]);
+  const auto met = std::partition(meetings.begin(), meetings.end(), [](const Meeting& meeting) { return meeting.item != nullptr; });
+  std::sort(meetings.begin(), met, [](const Meeting& a, const Meeting& b) { return a.hit.range_m < b.hit.range_m; });
   Echoes echoes;
-  const auto [first, first_hit] = nearest_but(nullptr);
-  if (first == nullptr) return echoes;
-  echoes.echo[echoes.count++] = {first_hit, bodies_[first->body].object_id, first->part->material};
-  if (wants_second && first->part->material.is_porous) {
-    const auto [second, second_hit] = nearest_but(first);
-    if (second != nullptr) echoes.echo[echoes.count++] = {second_hit, bodies_[second->body].object_id, second->part->material};
+  for (auto begin = meetings.begin(); begin != met && echoes.count < Echoes::kMaxCount;) {
+    auto end = begin + 1;
+    while (end != met && end->hit.range_m - (end - 1)->hit.range_m < kMergeM) ++end;
+    echoes.echo[static_cast<std::size_t>(echoes.count++)] = Merge(&*begin, &*begin + (end - begin), static_cast<int>(kBeamRays.size()));
+    begin = end;
   }
   return echoes;
 }

@@ -1,13 +1,12 @@
 // What floats and stands around the own boat.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "tools/sim/effects.hpp"
 #include "tools/sim/motion.hpp"
+#include "tools/sim/sea.hpp"
 #include "tools/sim/solid.hpp"
 
 namespace lookout::sim {
@@ -33,19 +32,22 @@ struct SceneObject {
   Track track;
   std::vector<Part> parts;                 // object frame: x forward, y port, z up from the calm water
   std::vector<Eigen::Vector2d> outline_m;  // all parts seen from above: a simple polygon, object frame
+  // A boat, swimmer, buoy or marker; not land, nor what is built on it: docks, piers and walls.
+  bool is_in_water = false;
+  Eigen::Vector2d waterline_m = Eigen::Vector2d::Zero();  // length and width of what floats and rides the waves; zero = stands on the ground
+
+  bool is_afloat() const { return !waterline_m.isZero(); }
 };
+
+/// Where the frame of an object is. What floats goes up and down with the water under it and leans as the water between its ends does.
+Eigen::Isometry3d PoseAt(const SceneObject& object, const Sea& sea, double time_s);
 
 struct Scene {
   OwnMotion own_motion;
   std::vector<SceneObject> objects;
+  Sea sea{};
+  Effects effects{};
 };
-
-/// @return names that MakeScene knows, sorted
-std::vector<std::string_view> SceneNames();
-
-/// @param seed  decides on the line of the shore (with the dock on it), trees and waves; all else has the same place with every seed
-/// @return nullopt when no scene has that name
-std::optional<Scene> MakeScene(std::string_view name, std::uint64_t seed);
 
 /// The own boat in the vessel frame: deck, outboard motor and the antenna's post, 0.2 m inside of the box around the own vessel at its sides.
 ///

@@ -1,5 +1,6 @@
 #include "tools/sim/shore.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -19,6 +20,8 @@ constexpr double kStepM = 2.0;         // between vertices of the waterline
 constexpr double kBankWidthM = 2.5;    // from the waterline to the top of the bank
 constexpr double kSlopeWidthM = 30.0;  // of the ground behind it
 constexpr double kSlopeRise = 0.22;
+constexpr double kMaxCrownRadiusM = 2.6;
+constexpr int kMinIslandSteps = 12;
 
 // Frame of the object: heading 0, so x is north and y is west.
 Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vector2d(std::cos(bearing_rad), -std::sin(bearing_rad)); }
@@ -26,7 +29,7 @@ Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vect
 Vector3d WithHeight(const Vector2d& p_m, double z_m) { return {p_m.x(), p_m.y(), z_m}; }
 
 // Bays and headlands: waves around the circle with random phases.
-Waterline MakeWaterline(const ShoreShape& shape, Random& random) {
+Waterline MakeWaterline(const LandShape& shape, Random& random) {
   constexpr std::array<int, 4> kWavesPerTurn{2, 5, 11, 29};
   constexpr std::array<double, 4> kShare{0.45, 0.3, 0.17, 0.08};
   std::array<double, 4> phases_rad{};
@@ -42,7 +45,7 @@ Waterline MakeWaterline(const ShoreShape& shape, Random& random) {
 
 void AddTree(const Vector2d& foot_m, double ground_m, Random& random, std::vector<Part>& parts) {
   const double height_m = random.Uniform(5.0, 12.0);
-  const double crown_radius_m = random.Uniform(1.2, 2.6);
+  const double crown_radius_m = random.Uniform(1.2, kMaxCrownRadiusM);
   const double crown_bottom_m = ground_m + random.Uniform(1.0, 2.5);
   const double crown_half_height_m = (ground_m + height_m - crown_bottom_m) / 2.0;
   parts.push_back({Cylinder{foot_m, random.Uniform(0.1, 0.25), ground_m - 0.5, crown_bottom_m + crown_half_height_m}, kBark});
@@ -52,13 +55,13 @@ void AddTree(const Vector2d& foot_m, double ground_m, Random& random, std::vecto
 
 }  // namespace
 
-Shore MakeShore(const std::string& name, const ShoreShape& shape, Random& random) {
-  Shore shore{SceneObject{0, name, "shore", Track{}, {}, {}}, MakeWaterline(shape, random)};
+Shore MakeShore(const LandShape& shape, const Stretch& stretch, Random& random) {
+  Shore shore{SceneObject{0, "", "shore", Track{}, {}, {}}, MakeWaterline(shape, random)};
   auto& parts = shore.object.parts;
   auto& outline_m = shore.object.outline_m;
 
-  const int num_steps = static_cast<int>(std::ceil(shape.width_rad * shape.mean_radius_m / kStepM));
-  const auto bearing_rad = [&](int step) { return shape.from_rad + shape.width_rad * step / num_steps; };
+  const int num_steps = static_cast<int>(std::ceil(stretch.width_rad * shape.mean_radius_m / kStepM));
+  const auto bearing_rad = [&](int step) { return stretch.from_rad + stretch.width_rad * step / num_steps; };
   struct Profile {
     Vector3d water_m;
     Vector3d bank_m;
@@ -83,7 +86,7 @@ Shore MakeShore(const std::string& name, const ShoreShape& shape, Random& random
   for (int tree = 0; tree < shape.num_trees; ++tree) {
     // Crowns stay over the land and inside of the outline: at least their greatest radius from its ends.
     const double margin_rad = 3.0 / shape.mean_radius_m;
-    const double at_rad = shape.from_rad + random.Uniform(margin_rad, shape.width_rad - margin_rad);
+    const double at_rad = stretch.from_rad + random.Uniform(margin_rad, stretch.width_rad - margin_rad);
     const double inland_m = random.Uniform(3.5, 18.0);
     const double ground_m = 0.9 + kSlopeRise * (inland_m > kBankWidthM ? inland_m - kBankWidthM : 0.0);
     AddTree(AtBearing(at_rad, shore.waterline_m(at_rad) + inland_m), ground_m, random, parts);
@@ -92,6 +95,44 @@ Shore MakeShore(const std::string& name, const ShoreShape& shape, Random& random
   for (const auto& profile : profiles) outline_m.emplace_back(profile.water_m.head<2>());
   for (auto profile = profiles.rbegin(); profile != profiles.rend(); ++profile) outline_m.emplace_back(profile->slope_m.head<2>());
   return shore;
+}
+
+SceneObject MakeIsland(const LandShape& shape, Random& random) {
+  SceneObject island{0, "", "island", Track{}, {}, {}};
+  const Waterline waterline_m = MakeWaterline(shape, random);
+  // The bank is narrower on a small island, and the hill no steeper than elsewhere.
+  const double bank_width_m = std::min(kBankWidthM, 0.25 * shape.mean_radius_m);
+  const int num_steps = std::max(kMinIslandSteps, static_cast<int>(std::ceil(kTwoPi * shape.mean_radius_m / kStepM)));
+  struct Profile {
+    Vector3d water_m;
+    Vector3d bank_m;
+  };
+  std::vector<Profile> profiles;
+  for (int step = 0; step < num_steps; ++step) {
+    // Against the clock seen from above, as outlines run.
+    const double bearing_rad = -kTwoPi * step / num_steps;
+    const double radius_m = waterline_m(bearing_rad);
+    profiles.push_back(
+        {WithHeight(AtBearing(bearing_rad, radius_m), 0.0), WithHeight(AtBearing(bearing_rad, radius_m - bank_width_m), random.Uniform(0.5, 1.3))});
+    island.outline_m.emplace_back(profiles.back().water_m.head<2>());
+  }
+  const double plateau_m = shape.mean_radius_m - bank_width_m;
+  const Vector3d top_m(0.0, 0.0, 0.9 + kSlopeRise * plateau_m);
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    const auto& a = profiles[i];
+    const auto& b = profiles[(i + 1) % profiles.size()];
+    island.parts.push_back({Triangle{a.water_m, b.water_m, b.bank_m}, kSoil});
+    island.parts.push_back({Triangle{a.water_m, b.bank_m, a.bank_m}, kSoil});
+    island.parts.push_back({Triangle{a.bank_m, b.bank_m, top_m}, kSoil});
+  }
+  // Crowns stay inside of the outline, bays or not.
+  const double wooded_m = shape.mean_radius_m - shape.roughness_m - kMaxCrownRadiusM;
+  for (int tree = 0; tree < shape.num_trees && wooded_m > 0.0; ++tree) {
+    const double bearing_rad = random.Uniform(0.0, kTwoPi);
+    const double radius_m = wooded_m * std::sqrt(random.Uniform());
+    AddTree(AtBearing(bearing_rad, radius_m), 0.9 + kSlopeRise * std::max(0.0, plateau_m - radius_m), random, island.parts);
+  }
+  return island;
 }
 
 }  // namespace lookout::sim

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 
+#include "services/vlp16/core/packet_format.hpp"
+
 namespace lookout::sim {
 namespace {
 
 using namespace std::chrono_literals;
+namespace format = vlp16::format;
 
 constexpr std::uint64_t kNetworkStream = 5;
 
@@ -18,19 +21,32 @@ constexpr double kDataJitterUs = 60.0;
 Simulation::Simulation(const Scene& scene, const config::BoatFacts& boat, const SimulationParams& params, TruthWriter* truth)
     : params_(params),
       truth_(truth),
+      plan_(params.faults, params.start),
+      clock_(plan_),
       lidar_(scene, boat, params.lidar, params.start, params.seed),
-      navigation_(scene, boat, params.navigation, params.start, params.seed),
+      navigation_(scene, boat, params.navigation, plan_, params.start, params.seed),
       random_(params.seed, kNetworkStream) {}
 
+// Replaces the right stamp in the payload by what the lidar's clock says. @return whether the lidar had power for the whole packet
+bool Simulation::Stamp(LidarPacket& packet) const {
+  if (!clock_.IsOn(packet.stamp) || !clock_.IsOn(packet.end_time)) return false;
+  WriteU32LittleEndian(packet.payload, format::kStampOffset, clock_.StampUs(packet.stamp));
+  return true;
+}
+
 void Simulation::Fill() {
-  if (!lidar_datagram_) {
-    const LidarPacket packet = lidar_.Next();
+  while (!lidar_datagram_) {
+    LidarPacket packet = lidar_.Next();
     const auto jitter = std::chrono::microseconds(static_cast<std::int64_t>(kDataJitterUs * random_.Uniform()));
-    lidar_datagram_ = Datagram{packet.end_time + kDataLatency + jitter, params_.data_port, {packet.payload.begin(), packet.payload.end()}};
-    if (truth_ != nullptr && lidar_datagram_->time <= params_.start + params_.duration) {
-      truth_->AddReturns(packet.returns);
+    const Utime arrival = packet.end_time + kDataLatency + jitter;
+    const bool has_ended = arrival > params_.start + params_.duration;
+    const bool is_sent = Stamp(packet);
+    if (truth_ != nullptr && !has_ended) {
+      if (is_sent) truth_->AddPacket(packet);
       truth_->AdvanceTo(packet.end_time);
     }
+    // Past the end one that is not sent is as good as one that is: it is not given to anybody.
+    if (is_sent || has_ended) lidar_datagram_ = Datagram{arrival, params_.data_port, {packet.payload.begin(), packet.payload.end()}};
   }
   // Whatever is measured later also arrives later.
   while (navigation_.next_time() <= lidar_datagram_->time) {

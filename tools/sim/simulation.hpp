@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "common/config/boat.hpp"
+#include "tools/sim/clock_faults.hpp"
 #include "tools/sim/datagram.hpp"
+#include "tools/sim/fault_plan.hpp"
 #include "tools/sim/lidar.hpp"
 #include "tools/sim/navigation.hpp"
 #include "tools/sim/truth_writer.hpp"
@@ -19,22 +21,30 @@ struct SimulationParams {
   Utime start;
   std::chrono::microseconds duration{0};
   std::uint64_t seed = 1;
+  std::vector<TimedFault> faults;  // those of sensors; those of the network are FaultyNetwork's
 };
 
 class Simulation {
  public:
   /// @param scene  outlives this
-  /// @param truth  may be nullptr; outlives this
+  /// @param truth  may be nullptr; outlives this. What a lidar without power does not see is not written to it
+  /// @throws std::invalid_argument  as FaultPlan
   Simulation(const Scene& scene, const config::BoatFacts& boat, const SimulationParams& params, TruthWriter* truth);
+
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
   /// @return the next datagram by time; nullopt at the end
   std::optional<Datagram> Next();
 
  private:
   void Fill();
+  bool Stamp(LidarPacket& packet) const;
 
   SimulationParams params_;
   TruthWriter* truth_;
+  FaultPlan plan_;
+  LidarClock clock_;
   Lidar lidar_;
   Navigation navigation_;
   Random random_;

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/core/angles.hpp"
-#include "tools/sim/navigation.hpp"
+#include "tools/sim/map_frame.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -26,6 +26,11 @@ void Print(std::ofstream& out, const char* form, Values... values) {
   out << text.data();
 }
 
+const std::filesystem::path& Made(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  return folder;
+}
+
 void Open(std::ofstream& out, const std::filesystem::path& file, const char* header) {
   out.open(file, std::ios::binary | std::ios::trunc);
   if (!out) throw std::runtime_error(file.string() + ": cannot be made");
@@ -40,21 +45,22 @@ TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene
       map_(MapFrame(boat)),
       start_(start),
       next_pose_(std::chrono::ceil<std::chrono::milliseconds>(start)),
-      next_outline_(start) {
+      next_outline_(start),
+      log_(Made(folder) / "truth.lcmlog", scene, boat, start) {
   while (next_pose_.time_since_epoch() % kPosePeriod != 0us) next_pose_ += 1ms;
-  std::filesystem::create_directories(folder);
-  Open(objects_, folder / "objects.csv", "object_id,name,kind,is_moving");
+  Open(objects_, folder / "objects.csv", "object_id,name,kind,is_moving,is_in_water");
   Open(outlines_, folder / "outlines.csv", "object_id,utime_us,vertex_index,latitude_deg,longitude_deg,east_m,north_m");
-  Open(returns_, folder / "returns.csv", "utime_us,ring,return_index,object_id");
+  Open(returns_, folder / "returns.csv", "utime_us,ring,return_index,object_id,reason");
   Open(pose_, folder / "pose.csv", "utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,heave_m");
-  Open(faults_, folder / "faults.csv", "utime_us,kind,packet_index");
+  Open(faults_, folder / "faults.csv", "utime_us,kind,packet_index,end_utime_us,value");
   WriteObjects();
 }
 
 void TruthWriter::WriteObjects() {
-  objects_ << kOwnVessel << ",own_vessel,own_vessel,1\n" << kNoObject << ",stray,stray,0\n";
+  objects_ << kOwnVessel << ",own_vessel,own_vessel,1,1\n" << kNoObject << ",none,none,0,0\n";
   for (const auto& object : scene_.objects) {
-    objects_ << object.id << ',' << object.name << ',' << object.kind << ',' << (object.track.is_moving() ? 1 : 0) << '\n';
+    objects_ << object.id << ',' << object.name << ',' << object.kind << ',' << (object.track.is_moving() ? 1 : 0) << ','
+             << (object.is_in_water ? 1 : 0) << '\n';
     if (!object.track.is_moving()) WriteOutline(object, start_);
   }
 }
@@ -84,29 +90,40 @@ void TruthWriter::WritePose(Utime time) {
         RadToDeg(WrapTo2Pi(std::atan2(state.velocity_map_mps.x(), state.velocity_map_mps.y()))), state.heave_m);
 }
 
-void TruthWriter::AddReturns(const std::vector<TrueReturn>& returns) {
+void TruthWriter::AddPacket(const LidarPacket& packet) {
+  constexpr std::size_t kCharactersPerRow = 40;
   std::string text;
-  text.reserve(returns.size() * 32);
+  text.reserve(packet.returns.size() * kCharactersPerRow);
   std::array<char, 24> digits{};
-  const auto append = [&](std::int64_t value, char end) {
+  const auto append = [&](std::int64_t value) {
     const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
     text.append(digits.data(), result.ptr);
-    text.push_back(end);
+    text.push_back(',');
   };
-  for (const auto& made : returns) {
-    append(ToUtimeUs(made.time), ',');
-    append(made.ring, ',');
-    append(made.return_index, ',');
-    append(made.object_id, '\n');
+  for (const auto& made : packet.returns) {
+    append(ToUtimeUs(made.time));
+    append(made.ring);
+    append(made.return_index);
+    append(made.object_id);
+    text.append(NameOf(made.reason));
+    text.push_back('\n');
   }
   returns_ << text;
+  log_.AddPacket(packet);
 }
 
 void TruthWriter::AddFault(const Fault& fault) {
-  faults_ << ToUtimeUs(fault.time) << ',' << kFaultNames[static_cast<std::size_t>(fault.kind)] << ',' << fault.packet_index << '\n';
+  faults_ << ToUtimeUs(fault.time) << ',' << kFaultNames[static_cast<std::size_t>(fault.kind)] << ',' << fault.packet_index << ",,\n";
+}
+
+void TruthWriter::AddFault(const TimedFault& fault) {
+  faults_ << ToUtimeUs(start_ + fault.begin) << ',' << FormOf(fault.kind).name << ",," << ToUtimeUs(start_ + fault.end) << ',';
+  if (!FormOf(fault.kind).unit.empty()) faults_ << fault.value;
+  faults_ << '\n';
 }
 
 void TruthWriter::AdvanceTo(Utime time) {
+  log_.AdvanceTo(time);
   for (; next_pose_ <= time; next_pose_ += kPosePeriod) WritePose(next_pose_);
   // One outline beyond the end, so that each return lies between two.
   for (; next_outline_ < time + kOutlinePeriod; next_outline_ += kOutlinePeriod) {
@@ -117,6 +134,7 @@ void TruthWriter::AdvanceTo(Utime time) {
 }
 
 void TruthWriter::Close() {
+  log_.Close();
   for (auto* out : {&objects_, &outlines_, &returns_, &pose_, &faults_}) {
     out->close();
     if (!*out) throw std::runtime_error("the truth cannot be written: is the disk full?");

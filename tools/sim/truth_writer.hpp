@@ -1,4 +1,4 @@
-// The truth about a simulation as CSV files: objects.csv, outlines.csv, returns.csv, pose.csv, faults.csv. Columns: README.md.
+// The truth about a simulation as CSV files (objects.csv, outlines.csv, returns.csv, pose.csv, faults.csv; columns: README.md) and as truth.lcmlog.
 #pragma once
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -8,9 +8,11 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
+#include "tools/sim/fault_plan.hpp"
 #include "tools/sim/faults.hpp"
 #include "tools/sim/lidar.hpp"
 #include "tools/sim/scene.hpp"
+#include "tools/sim/truth_log.hpp"
 
 namespace lookout::sim {
 
@@ -22,9 +24,13 @@ class TruthWriter {
   /// @throws std::runtime_error when a file cannot be made
   TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start);
 
-  void AddReturns(const std::vector<TrueReturn>& returns);
+  void AddPacket(const LidarPacket& packet);
 
+  /// What happened to a packet.
   void AddFault(const Fault& fault);
+
+  /// What was ordered for a part of the run.
+  void AddFault(const TimedFault& fault);
 
   /// Writes poses and moving outlines up to `time`.
   void AdvanceTo(Utime time);
@@ -43,6 +49,7 @@ class TruthWriter {
   Utime start_;
   Utime next_pose_;
   Utime next_outline_;
+  TruthLog log_;
   std::ofstream objects_;
   std::ofstream outlines_;
   std::ofstream returns_;

@@ -192,6 +192,31 @@ TEST(FaultyNetwork, SameSeedSameFaultsAndAnotherSeedOthers) {
   EXPECT_NE(DataNumbers(RunAll(params, 2s, 7)), DataNumbers(RunAll(params, 2s, 8)));
 }
 
+TEST(FaultyNetwork, FaultsForAPartOfTheRunHitThatPartAlone) {
+  FaultParams params;
+  params.timed = {ParseTimedFault("drop:1:2:0.3"), ParseTimedFault("double:3:4:1"), ParseTimedFault("imu_stop:5:6")};
+  const auto run = RunAll(params, 8s);
+  for (const auto& fault : run.faults) {
+    const auto since_start = fault.time - kStart;
+    if (fault.kind == FaultKind::kDropped) {
+      EXPECT_TRUE(since_start >= 1s && since_start < 2s);
+    } else {
+      EXPECT_EQ(fault.kind, FaultKind::kDoubled);
+      EXPECT_TRUE(since_start >= 3s && since_start < 4s);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(run.totals.num_dropped), 753 * 0.3, 60.0);
+  EXPECT_NEAR(static_cast<double>(run.totals.num_doubled), 753, 1.0);
+}
+
+TEST(FaultyNetwork, RefusesSharesThatAreMoreThanOneAtAnyTime) {
+  FaultParams params{0.5, 0.0, 0.0};
+  params.timed = {ParseTimedFault("swap:1:2:0.6")};
+  EXPECT_THROW(RunAll(params, 3s), std::invalid_argument);
+  params.timed = {ParseTimedFault("swap:1:2:0.5")};
+  EXPECT_NO_THROW(RunAll(params, 3s));
+}
+
 TEST(FaultyNetwork, APacketThatNothingOvertakesComesAtTheEnd) {
   const auto run = RunAll({0.0, 0.0, 1.0}, {Make(kStart + 50ms, kDataPort, 0)}, 100ms);
   EXPECT_EQ(DataNumbers(run), std::vector<int>{0});

@@ -17,6 +17,7 @@ GnssMeasurement Somewhere() {
   measurement.speed_mps = 1852.0 / 3600.0;
   measurement.course_deg = 45.678;
   measurement.quality = 4;
+  measurement.sd_m = 0.02;
   return measurement;
 }
 
@@ -39,6 +40,30 @@ TEST(Nmea, VtgSaysSpeedTwice) { EXPECT_EQ(Vtg(Somewhere()).rfind("$GPVTG,45.68,T
 TEST(Nmea, PashrSaysSignedTiltAndDeviations) {
   const AttitudeMeasurement measurement{Utime(0s), 271.5, -3.25, 1.5, 0.04};
   EXPECT_EQ(Pashr(measurement, 0.05, 0.1).rfind("$PASHR,000000.000,271.50,T,-3.25,+1.50,+0.04,0.050,0.050,0.100,2,1*", 0), 0U);
+}
+
+TEST(Nmea, GstSaysDeviations) { EXPECT_EQ(Gst(Somewhere()).rfind("$GPGST,141000.100,0.020,0.020,0.020,0.0,0.020,0.020,0.040*", 0), 0U); }
+
+TEST(Nmea, ZdaSaysTimeAndDate) { EXPECT_EQ(Zda(Somewhere().time).rfind("$GPZDA,141000.100,15,06,2026,00,00*", 0), 0U); }
+
+TEST(Nmea, RotIsNegativeToPort) {
+  EXPECT_EQ(Rot(-123.44).rfind("$GPROT,-123.4,A*", 0), 0U);
+  EXPECT_EQ(Rot(7.0).rfind("$GPROT,7.0,A*", 0), 0U);
+}
+
+TEST(Nmea, VnImuHasTheWidthsAndTheChecksumOfTheDevice) {
+  // A line of a real VN-200, as published with a reader for it.
+  const ImuMeasurement measurement{{-0.0350, 0.4222, -0.6643}, {-0.015, 0.019, 9.948}, {0.002066, -0.008442, -0.044656}, 20.7, 84.322};
+  EXPECT_EQ(VnImu(measurement), "$VNIMU,-00.0350,+00.4222,-00.6643,-00.015,+00.019,+09.948,+00.002066,-00.008442,-00.044656,+20.7,+084.322*66\r\n");
+}
+
+TEST(Nmea, WithoutFixOnlyTheTimeIsSaid) {
+  auto measurement = Somewhere();
+  measurement.quality = 0;
+  EXPECT_EQ(Rmc(measurement).rfind("$GPRMC,141000.100,V,,,,,,,150626,,,N*", 0), 0U);
+  EXPECT_EQ(Gga(measurement).rfind("$GPGGA,141000.100,,,,,0,00,99.9,,M,,M,,*", 0), 0U);
+  EXPECT_EQ(Vtg(measurement).rfind("$GPVTG,,,,,,,,,N*", 0), 0U);
+  EXPECT_EQ(Gst(measurement).rfind("$GPGST,141000.100,,,,,,,*", 0), 0U);
 }
 
 TEST(Nmea, MinutesNeverReachSixty) {

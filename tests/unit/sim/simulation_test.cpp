@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/unit/sim/sim_fixture.hpp"
+#include "tools/sim/scene_file.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -38,7 +39,7 @@ bool AreEqual(const std::vector<Datagram>& a, const std::vector<Datagram>& b) {
 }
 
 TEST(Simulation, GivesTheSameBytesForTheSameSeedOnly) {
-  for (const auto name : SceneNames()) {
+  for (const auto& name : SceneNames()) {
     const auto first = RunAll(std::string(name), Params(5, 300ms));
     EXPECT_TRUE(AreEqual(first, RunAll(std::string(name), Params(5, 300ms)))) << name;
     EXPECT_FALSE(AreEqual(first, RunAll(std::string(name), Params(6, 300ms)))) << name;
@@ -61,12 +62,12 @@ TEST(Simulation, SendsInOrderOfTimeAtTheRatesOfTheSensors) {
   }
   EXPECT_NEAR(counts["2368/1206"], 2.0 / 1327.104e-6, 2.0);
   EXPECT_NEAR(counts["8308/512"], 2.0 / 7.1e-3, 1.0);
-  EXPECT_NEAR(counts["GPRMC"], 20, 1);
-  EXPECT_NEAR(counts["GPGGA"], 20, 1);
-  EXPECT_NEAR(counts["GPVTG"], 20, 1);
-  EXPECT_NEAR(counts["GPHDT"], 20, 1);
-  EXPECT_NEAR(counts["PASHR"], 40, 1);
-  EXPECT_EQ(counts.size(), 7U);
+  for (const auto* type : {"GPRMC", "GPGGA", "GPVTG", "GPGST"}) EXPECT_EQ(counts[type], 10) << type;
+  EXPECT_EQ(counts["GPZDA"], 2);
+  for (const auto* type : {"GPHDT", "GPROT"}) EXPECT_EQ(counts[type], 40) << type;
+  EXPECT_EQ(counts["PASHR"], 100);
+  EXPECT_EQ(counts["VNIMU"], 198) << "from 20 ms on";
+  EXPECT_EQ(counts.size(), 11U);
 }
 
 TEST(Simulation, EverySentenceHasARightChecksum) {
@@ -102,16 +103,66 @@ TEST(Simulation, PositionPacketsAreLockedAndHoldTheRmcOfAWholeSecondBefore) {
   EXPECT_EQ(last_time, "141001");
 }
 
-TEST(Simulation, BoatWithoutHeadingSendsNeitherHdtNorPashr) {
+TEST(Simulation, BoatWithoutHeadingSendsWhatAReceiverSendsAlone) {
   auto params = Params(1, 1s);
   params.navigation.has_heading = false;
-  params.navigation.gnss_rate_hz = 5;
   std::map<std::string, int> counts;
   for (const auto& datagram : RunAll("open_water", params)) {
     if (datagram.port == 10110) ++counts[std::string(datagram.payload.begin() + 1, datagram.payload.begin() + 6)];
   }
-  EXPECT_EQ(counts.size(), 3U);
-  EXPECT_EQ(counts["GPRMC"], 5);
+  EXPECT_EQ(counts, (std::map<std::string, int>{{"GPRMC", 5}, {"GPGGA", 5}, {"GPVTG", 5}, {"GPGST", 5}, {"GPZDA", 1}}));
+}
+
+TEST(Simulation, ALidarWithoutPowerSendsNothingAndItsTruthHoldsNothing) {
+  auto params = Params(1, 1s);
+  params.faults = {ParseTimedFault("sensor_restart:0.3:0.6:0.2")};
+  const auto folder = std::filesystem::path(testing::TempDir()) / "lookout_simulation_test";
+  std::filesystem::remove_all(folder);
+  const auto scene = MakeScene("lake", 1);
+  std::vector<std::pair<Utime, std::uint32_t>> stamps;
+  {
+    TruthWriter truth(folder, *scene, SmallBoat(), params.start);
+    Simulation simulation(*scene, SmallBoat(), params, &truth);
+    while (const auto datagram = simulation.Next()) {
+      if (datagram->port == 10110) continue;
+      stamps.emplace_back(datagram->time, ReadU32LittleEndian(datagram->payload, datagram->port == 2368 ? 1200 : 198));
+    }
+    truth.Close();
+  }
+  const std::uint32_t start_us = 600'000'000;  // ten minutes past the hour
+  for (const auto& [time, stamp_us] : stamps) {
+    const auto since_start = time - params.start;
+    EXPECT_TRUE(since_start < 301ms || since_start >= 600ms);
+    const bool is_own_clock = since_start >= 600ms && stamp_us < start_us;
+    const auto expected_us = since_start.count() - (is_own_clock ? 600'000 : -std::int64_t{start_us});
+    EXPECT_NEAR(static_cast<double>(stamp_us), static_cast<double>(expected_us), 2000.0) << "a packet takes 1.33 ms, and its way";
+    EXPECT_TRUE(is_own_clock || since_start < 602ms || since_start >= 800ms) << since_start.count();
+    EXPECT_TRUE(!is_own_clock || since_start < 802ms) << since_start.count();
+  }
+  std::ifstream returns(folder / "returns.csv");
+  std::string line;
+  std::getline(returns, line);
+  int num_returns = 0;
+  for (; std::getline(returns, line); ++num_returns) {
+    const auto since_start = Utime(std::chrono::microseconds(std::stoll(line))) - params.start;
+    EXPECT_TRUE(since_start < 300ms || since_start >= 600ms) << line;
+  }
+  EXPECT_GT(num_returns, 1000);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Simulation, FaultsOfAnotherSensorLeaveThePacketsOfTheLidarAlone) {
+  const auto data_packets = [](const std::vector<std::string>& faults) {
+    auto params = Params(3, 500ms);
+    for (const auto& fault : faults) params.faults.push_back(ParseTimedFault(fault));
+    std::vector<Datagram> found;
+    for (auto& datagram : RunAll("lake", params)) {
+      if (datagram.port == 2368) found.push_back(std::move(datagram));
+    }
+    return found;
+  };
+  EXPECT_TRUE(AreEqual(data_packets({}), data_packets({"gnss_gap:0.1:0.3", "imu_stop:0:1", "frozen_heading:0:1", "wrong_hour:0:1", "late_rmc:0:1"})));
+  EXPECT_FALSE(AreEqual(data_packets({}), data_packets({"wrong_stamp:0.1:0.3"})));
 }
 
 std::vector<std::string> Lines(const std::filesystem::path& file) {
@@ -130,7 +181,9 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   {
     TruthWriter truth(folder, *scene, SmallBoat(), params.start);
     Simulation simulation(*scene, SmallBoat(), params, &truth);
-    truth.AddFault({FaultKind::kDoubled, params.start + 40ms, 29});
+    truth.AddFault(ParseTimedFault("gnss_gap:0.1:0.3"));
+    truth.AddFault(ParseTimedFault("gnss_jump:0.25:60:2.5"));
+    truth.AddFault(Fault{FaultKind::kDoubled, params.start + 40ms, 29});
     while (const auto datagram = simulation.Next()) {
       if (datagram->port != 2368) continue;
       for (std::size_t block = 0; block < 12; ++block) {
@@ -141,8 +194,10 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   }
   EXPECT_EQ(Lines(folder / "objects.csv").size(), scene->objects.size() + 3);
   EXPECT_EQ(Lines(folder / "returns.csv").size(), num_returns + 1);
-  EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id");
-  EXPECT_EQ(Lines(folder / "faults.csv"), (std::vector<std::string>{"utime_us,kind,packet_index", "1781532600040000,doubled,29"}));
+  EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id,reason");
+  EXPECT_EQ(Lines(folder / "faults.csv"),
+            (std::vector<std::string>{"utime_us,kind,packet_index,end_utime_us,value", "1781532600100000,gnss_gap,,1781532600300000,",
+                                      "1781532600250000,gnss_jump,,1781532660000000,2.5", "1781532600040000,doubled,29,,"}));
   const auto poses = Lines(folder / "pose.csv");
   EXPECT_EQ(poses.size(), 1U + 25U);  // 0, 20, ... 480 ms; the last packet ends before 500 ms
   EXPECT_EQ(poses[1].rfind("1781532600000000,43.62", 0), 0U);

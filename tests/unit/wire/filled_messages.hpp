@@ -16,6 +16,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "lookout/sim_truth_t.hpp"
 
 namespace lookout {
 
@@ -110,6 +111,21 @@ inline void Fill(run_info_t& m) {
   m.file_text = {"name: \"x\"", ""};
 }
 
+inline void Fill(sim_truth_t& m) {
+  m.num_packets = 1;
+  m.packet_utime_us = {1};
+  m.num_slots = 3;
+  m.object_id = {-1, 0, 7};
+  m.reason = {1, 255, 0};
+  m.num_objects = 2;
+  m.objects.resize(2);
+  for (auto& object : m.objects) {
+    object.name = "kayak";
+    object.num_outline = 2;
+    object.outline_east_m = object.outline_north_m = {1.0, 2.0};
+  }
+}
+
 /// Calls `use(message)` with a filled message of each channel's type.
 template <typename Use>
 void ForEachFilledMessage(Use use) {
@@ -129,6 +145,7 @@ void ForEachFilledMessage(Use use) {
   fill_and_use(obstacles_t{});
   fill_and_use(health_t{});
   fill_and_use(run_info_t{});
+  fill_and_use(sim_truth_t{});
 }
 
 }  // namespace lookout

@@ -1,0 +1,169 @@
+#include "tools/sim/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <iomanip>
+#include <iostream>
+
+#include "common/runtime/options.hpp"
+#include "tools/sim/scene_file.hpp"
+
+namespace lookout::sim {
+namespace {
+
+constexpr int kExitUsage = 2;
+
+// 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
+constexpr std::int64_t kDefaultStartUtimeUs = 1'781'532'600'000'000;
+
+// What stands on the line, where it is not yet in the form of Options.
+struct Words {
+  std::string mode;
+  std::string model = "vlp16";
+  std::string navigation = "rtk";
+  std::vector<double> field_of_view_deg;
+  std::vector<std::string> faults;
+  bool has_no_heading = false;
+};
+
+void PrintScenes(const std::filesystem::path& config_folder) {
+  constexpr int kNameWidth = 16;
+  for (const auto& scene : ListScenes(config_folder))
+    std::cout << std::left << std::setw(kNameWidth) << scene.name << ' ' << scene.description << '\n';
+}
+
+std::string FaultHelp() {
+  std::string help = "KIND:BEGIN:END[:VALUE], seconds since the start; again for more. Kinds:";
+  for (const auto& form : kTimedFaultForms) {
+    help += "\n  " + std::string(form.name);
+    if (!form.unit.empty()) help += " (VALUE: " + std::string(form.unit) + ")";
+  }
+  return help;
+}
+
+// @throws CLI::ValidationError
+Sector ToFieldOfView(const std::vector<double>& from_to_deg) {
+  Sector field_of_view;
+  if (from_to_deg.empty() || (from_to_deg[0] == 0.0 && from_to_deg[1] == 360.0)) return field_of_view;
+  field_of_view.start_rad = DegToRad(from_to_deg[0]);
+  field_of_view.width_rad = WrapTo2Pi(DegToRad(from_to_deg[1] - from_to_deg[0]));
+  if (field_of_view.width_rad < kMinFieldOfViewRad) throw CLI::ValidationError("--field-of-view: must be 2 degrees wide at least");
+  return field_of_view;
+}
+
+void AddRun(CLI::App& app, Options& options) {
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--scene", options.scene, "name of a scene (--list-scenes), or path of a file that ends in .txtpb")->required();
+  app.add_option("--seed", options.seed, "of all that is random")->required();
+  app.add_option("--seconds", options.seconds, "length")->required()->check(CLI::Range(0.001, 86400.0));
+  auto* pcap = app.add_option("--pcap", options.pcap_file, "write a capture");
+  auto* udp = app.add_option("--udp", options.udp_host, "send to this host in real time; times are those of now");
+  pcap->excludes(udp);
+  app.add_option("--truth", options.truth_folder, "write the truth to this folder");
+  options.start_utime_us = kDefaultStartUtimeUs;
+  app.add_option("--start-utime-us", options.start_utime_us, "with --pcap: time of the first shot")
+      ->check(CLI::Range(std::int64_t{0}, kMaxUtimeUs))
+      ->excludes(udp)
+      ->capture_default_str();
+  app.add_option("--speed", options.speed, "with --udp: so many times real time; 0 = without waiting")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->needs(udp)
+      ->capture_default_str();
+  app.add_flag_callback(
+      "--list-scenes",
+      [&options] {
+        PrintScenes(options.config_folder);
+        throw CLI::Success();
+      },
+      "print the names of the scenes, and what they are for, and exit");
+}
+
+void AddLidar(CLI::App& app, Options& options, Words& words) {
+  app.add_option("--return-mode", words.mode, "strongest, last or dual; else as the scene says")->check(CLI::IsMember({"strongest", "last", "dual"}));
+  app.add_option("--rpm", options.lidar.rotation_rpm, "turns of the lidar per minute")
+      ->check(CLI::Range(vlp16::format::kMinRpm, vlp16::format::kMaxRpm))
+      ->capture_default_str();
+  app.add_option("--strays", options.lidar.stray_probability, "stray returns per shot that meets nothing; else as the scene says")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--model", words.model, "vlp16 or hi-res (Puck Hi-Res)")->check(CLI::IsMember({"vlp16", "hi-res"}))->capture_default_str();
+  app.add_option("--field-of-view", words.field_of_view_deg, "lasers fire from this azimuth clockwise to that one, degrees")
+      ->expected(2)
+      ->type_name("FROM TO")
+      ->check(CLI::Range(0.0, 360.0));
+}
+
+// @return --gnss-sd, which a set of sensors gives way to
+CLI::Option* AddNavigation(CLI::App& app, Options& options, Words& words) {
+  app.add_option("--navigation", words.navigation, "rtk (0.02 m, 0.2 deg) or standalone (1.5 m, 2 deg)")
+      ->check(CLI::IsMember({"rtk", "standalone"}))
+      ->capture_default_str();
+  app.add_option("--rate", options.navigation.gnss_rate_hz, "RMC, GGA, VTG and GST per second")
+      ->check(CLI::IsMember({1, 2, 4, 5, 10, 20}))
+      ->capture_default_str();
+  auto* sd = app.add_option("--gnss-sd", options.navigation.gnss_sd_m, "standard deviation of a position, metres per axis; else as --navigation says")
+                 ->check(CLI::Range(0.0, 100.0));
+  app.add_flag("--no-heading", words.has_no_heading, "a boat with a GNSS receiver alone: no HDT, ROT, PASHR, VNIMU");
+  return sd;
+}
+
+void AddFaults(CLI::App& app, Options& options, Words& words) {
+  const auto share = CLI::Range(0.0, 1.0);
+  app.add_option("--drop", options.network.drop_share, "share of the data packets that never come")->check(share)->capture_default_str();
+  app.add_option("--double", options.network.double_share, "share of them that come twice")->check(share)->capture_default_str();
+  app.add_option("--swap", options.network.swap_share, "share of them that come after the next")->check(share)->capture_default_str();
+  app.add_option("--fault", words.faults, FaultHelp());
+}
+
+// @throws CLI::ParseError
+void Check(const Options& options) {
+  if (options.pcap_file.empty() == options.udp_host.empty()) throw CLI::RequiredError("either --pcap FILE or --udp HOST");
+  if (options.network.drop_share + options.network.double_share + options.network.swap_share > 1.0) {
+    throw CLI::ValidationError("--drop, --double and --swap: together they must not be more than 1");
+  }
+}
+
+NavigationParams ToNavigation(const Options& options, const Words& words, bool has_sd) {
+  auto navigation = words.navigation == "rtk" ? NavigationParams{} : StandaloneNavigation();
+  navigation.gnss_rate_hz = options.navigation.gnss_rate_hz;
+  if (has_sd) navigation.gnss_sd_m = options.navigation.gnss_sd_m;
+  navigation.has_heading = !words.has_no_heading;
+  return navigation;
+}
+
+std::vector<TimedFault> ToFaults(const std::vector<std::string>& texts, double seconds) {
+  std::vector<TimedFault> faults;
+  for (const auto& text : texts) {
+    faults.push_back(ParseTimedFault(text));
+    if (ToSeconds(faults.back().begin) >= seconds) throw std::invalid_argument("fault '" + text + "': begins when the run has ended");
+  }
+  return faults;
+}
+
+}  // namespace
+
+Options ParseOptions(int argc, char** argv) {
+  Options options;
+  Words words;
+  CLI::App app("Sends what the sensors of a simulated boat send: VLP-16 packets, NMEA 0183 and IMU samples.", "lookout-sim");
+  AddRun(app, options);
+  AddLidar(app, options, words);
+  const auto* sd = AddNavigation(app, options, words);
+  AddFaults(app, options, words);
+  app.set_version_flag("--version", "lookout-sim " + runtime::Version());
+  try {
+    app.parse(argc, argv);
+    Check(options);
+    options.lidar.field_of_view = ToFieldOfView(words.field_of_view_deg);
+  } catch (const CLI::ParseError& error) {
+    std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
+  }
+  options.navigation = ToNavigation(options, words, sd->count() > 0);
+  if (!words.mode.empty()) {
+    options.lidar.mode = words.mode == "dual" ? ReturnMode::kDual : words.mode == "last" ? ReturnMode::kLast : ReturnMode::kStrongest;
+  }
+  options.lidar.model = words.model == "vlp16" ? LidarModel::kVlp16 : LidarModel::kPuckHiRes;
+  options.faults = ToFaults(words.faults, options.seconds);
+  return options;
+}
+
+}  // namespace lookout::sim

@@ -1,0 +1,45 @@
+// Scenes from files: NAME.txtpb in the schema config/schema/scene.proto.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/sim/scene.hpp"
+
+namespace lookout::sim {
+
+/// A scene by name: in the folder `scenes` beside the boat's config folder, else among those of the source tree (config/scenes).
+///
+/// @param name_or_path  a name, or the path of a file that ends in .txtpb
+/// @throws config::ConfigError when there is none; it names those that there are
+std::filesystem::path FindScene(const std::string& name_or_path, const std::filesystem::path& config_folder);
+
+struct SceneSummary {
+  std::string name;
+  std::string description;  // one line: what it is for
+};
+
+/// What FindScene finds by name, sorted.
+///
+/// @throws config::ConfigError for a file that is wrong
+std::vector<SceneSummary> ListScenes(const std::filesystem::path& config_folder);
+
+/// @param seed  draws waves, shores, trees and whatever the file gives as a range
+/// @throws config::ConfigError with file, line and reason; also when a drawn object finds no place, or when the own boat comes closer than 1.5 m to
+///         an object within 60 s
+Scene LoadScene(const std::filesystem::path& file, std::uint64_t seed);
+
+/// The same from text; `name` stands in for the path in faults.
+Scene ParseScene(const std::string& text, const std::string& name, std::uint64_t seed);
+
+/// Names of the scenes of the source tree, sorted.
+std::vector<std::string> SceneNames();
+
+/// A scene of the source tree. @return nullopt when none has that name. @throws config::ConfigError
+std::optional<Scene> MakeScene(std::string_view name, std::uint64_t seed);
+
+}  // namespace lookout::sim

@@ -1,0 +1,282 @@
+#include "tools/sim/scene_maker.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "common/core/angles.hpp"
+#include "tools/sim/fleet.hpp"
+#include "tools/sim/random.hpp"
+#include "tools/sim/scene_check.hpp"
+#include "tools/sim/shore.hpp"
+#include "tools/sim/traffic.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using Eigen::Vector2d;
+using Numbers = google::protobuf::RepeatedField<double>;
+using File = config::Scene;
+
+// Streams of random numbers: a change of one part of a file leaves the others as they were.
+constexpr std::uint64_t kSceneStream = 1;  // the own boat's waves and the land
+constexpr std::uint64_t kSeaStream = 101;
+constexpr std::uint64_t kOwnBoatStream = 102;
+constexpr std::uint64_t kFirstObjectStream = 1000;  // and one for each object of the file
+
+constexpr double kOwnBoatClearanceM = 1.5;
+constexpr int kMaxTries = 200;  // for an object to find a place
+
+Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vector2d(std::sin(bearing_rad), std::cos(bearing_rad)); }
+
+double Draw(const Numbers& numbers, double usual, Random& random) {
+  if (numbers.empty()) return usual;
+  return numbers.size() == 1 ? numbers[0] : random.Uniform(numbers[0], numbers[1]);
+}
+
+std::string MetresText(double value_m) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f m", value_m);
+  return text.data();
+}
+
+// Two waves each of roll, pitch and heave, as a light boat of some 2.5 m has them in a small chop: periods of 2 to 6 s.
+void AddWaves(const File::OwnBoat& boat, Random& random, OwnMotion& motion) {
+  const auto add = [&random](std::vector<Wave>& waves, double amplitude, double low_s, double high_s) {
+    const double period_s = random.Uniform(low_s, high_s);
+    const double phase_rad = random.Uniform(0.0, kTwoPi);
+    if (amplitude > 0.0) waves.push_back({amplitude, period_s, phase_rad});
+  };
+  // Shares of the long and the short wave.
+  add(motion.roll_rad, DegToRad(boat.roll_deg() * (2.0 / 2.8)), 2.5, 3.5);
+  add(motion.roll_rad, DegToRad(boat.roll_deg() * (0.8 / 2.8)), 1.8, 2.4);
+  add(motion.pitch_rad, DegToRad(boat.pitch_deg() * (1.2 / 1.7)), 2.8, 4.0);
+  add(motion.pitch_rad, DegToRad(boat.pitch_deg() * (0.5 / 1.7)), 2.0, 2.6);
+  add(motion.heave_m, boat.heave_m() * (0.04 / 0.06), 2.5, 4.0);
+  add(motion.heave_m, boat.heave_m() * (0.02 / 0.06), 1.8, 2.4);
+  add(motion.leeway_rad, DegToRad(boat.leeway_deg()), 7.0, 12.0);
+}
+
+OwnMotion DrawOwnMotion(const File::OwnBoat& boat, std::uint64_t seed, Random& waves_random) {
+  Random random(seed, kOwnBoatStream);
+  OwnMotion motion;
+  const double east_m = Draw(boat.east_m(), 0.0, random);
+  const double north_m = Draw(boat.north_m(), 0.0, random);
+  if (boat.has_ellipse()) {
+    const auto& ellipse = boat.ellipse();
+    motion.center_map_m = {east_m, north_m};
+    motion.semi_axes_m = {ellipse.semi_axis_east_m(), ellipse.semi_axis_north_m()};
+    motion.period_s = ellipse.period_s();
+    motion.start_rad = DegToRad(ellipse.start_deg());
+  } else {
+    const double heading_rad = DegToRad(Draw(boat.heading_deg(), 0.0, random));
+    const double speed_mps = Draw(boat.speed_mps(), 0.0, random);
+    motion.track = Track{{{east_m, north_m}, heading_rad}, speed_mps, DegToRad(Draw(boat.turn_rate_degps(), 0.0, random))};
+  }
+  AddWaves(boat, waves_random, motion);
+  return motion;
+}
+
+Effects ToEffects(const File::Effects& file) {
+  static_assert(static_cast<int>(ReturnMode::kLast) == File::LAST && static_cast<int>(ReturnMode::kDual) == File::DUAL);
+  Effects effects;
+  effects.return_mode = static_cast<ReturnMode>(file.return_mode());
+  effects.range_sd_m = file.range_sd_m();
+  effects.half_seen_range_m = file.half_seen_range_m();
+  effects.horizontal_divergence_mrad = file.horizontal_divergence_mrad();
+  effects.vertical_divergence_mrad = file.vertical_divergence_mrad();
+  effects.stray_probability = file.stray_probability();
+  effects.glint_probability = file.glint_probability();
+  effects.mirror_strength = file.mirror_strength();
+  effects.crest_probability = file.crest_probability();
+  effects.wake_probability = file.wake_probability();
+  effects.spray_probability = file.spray_probability();
+  effects.rain_probability_per_m = file.rain_probability_per_m();
+  return effects;
+}
+
+// A waypoint at which the way would stand still or turn back.
+bool IsBadCorner(const Vector2d& before_m, const Vector2d& at_m, const Vector2d& after_m) {
+  const Vector2d in_m = at_m - before_m;
+  const Vector2d out_m = after_m - at_m;
+  if (in_m.isZero() || out_m.isZero()) return true;
+  return std::abs(std::atan2(in_m.x() * out_m.y() - in_m.y() * out_m.x(), in_m.dot(out_m))) > kMaxRouteTurnRad;
+}
+
+class Drawing {
+ public:
+  Drawing(const File& file, std::uint64_t seed, SceneFaults& faults)
+      : file_(file), seed_(seed), faults_(faults), land_random_(seed, kSceneStream), scene_(DrawWithoutObjects()), traffic_(scene_.own_motion) {}
+
+  Scene Run() {
+    for (int i = 0; i < file_.object_size(); ++i) AddObjects(file_.object(i), i);
+    return std::move(scene_);
+  }
+
+ private:
+  struct ShoreOnMap {
+    Vector2d middle_m;
+    Waterline waterline_m;
+  };
+
+  Scene DrawWithoutObjects() {
+    Scene scene;
+    scene.own_motion = DrawOwnMotion(file_.own_boat(), seed_, land_random_);
+    scene.effects = ToEffects(file_.effects());
+    if (file_.has_sea()) {
+      const SeaState state{file_.sea().significant_height_m(), file_.sea().wavelength_m(), DegToRad(file_.sea().from_deg()),
+                           DegToRad(file_.sea().spread_deg())};
+      Random random(seed_, kSeaStream);
+      scene.sea = Sea::Draw(state, random);
+    }
+    return scene;
+  }
+
+  [[noreturn]] void Stop(const std::string& field, const std::string& reason) {
+    faults_.Add(field, reason);
+    faults_.ThrowIfAny();
+    throw std::logic_error("a fault was lost");
+  }
+
+  SceneObject DrawBody(const File::Object& file, Random& random) {
+    const KindOfObject* kind = FindKind(file.kind());
+    if (kind != nullptr) {
+      Size size;
+      size.length_m = Draw(file.length_m(), kind->usual.length_m, random);
+      size.width_m = Draw(file.width_m(), kind->usual.width_m, random);
+      size.height_m = Draw(file.height_m(), kind->usual.height_m, random);
+      size.reflectance = Draw(file.reflectance(), kind->usual.reflectance, random);
+      return MakeObject(*kind, size);
+    }
+    const LandShape shape{file.land().mean_radius_m(), file.land().roughness_m(), file.land().num_trees()};
+    if (file.kind() == File::ISLAND) return MakeIsland(shape, land_random_);
+    Shore shore = MakeShore(shape, {DegToRad(file.land().from_bearing_deg()), DegToRad(file.land().width_deg())}, land_random_);
+    shore_ = ShoreOnMap{Vector2d::Zero(), shore.waterline_m};
+    return std::move(shore.object);
+  }
+
+  Placement DrawPlace(const File::Object& file, Random& random) {
+    if (file.has_on_shore_bearing_deg()) {
+      // A metre into the land, so that no gap is seen between them.
+      const double bearing_rad = DegToRad(file.on_shore_bearing_deg());
+      return {shore_->middle_m + AtBearing(bearing_rad, shore_->waterline_m(bearing_rad) + 1.0), bearing_rad + kPi};
+    }
+    const double east_m = Draw(file.east_m(), 0.0, random);
+    const double north_m = Draw(file.north_m(), 0.0, random);
+    return {{east_m, north_m}, DegToRad(Draw(file.heading_deg(), 0.0, random))};
+  }
+
+  Track DrawTrack(const File::Object& file, const std::string& field, const Placement& place, Random& random) {
+    if (!file.has_path()) return Track{place};
+    const auto& path = file.path();
+    const double speed_mps = Draw(path.speed_mps(), 0.0, random);
+    if (path.has_circle()) {
+      const double bearing_rad = DegToRad(Draw(path.circle().from_bearing_deg(), 0.0, random));
+      const double side = path.circle().is_clockwise() ? 1.0 : -1.0;
+      const double radius_m = path.circle().radius_m();
+      return {{place.position_map_m + AtBearing(bearing_rad, radius_m), WrapTo2Pi(bearing_rad + side * kPi / 2.0)},
+              speed_mps,
+              side * speed_mps / radius_m};
+    }
+    if (path.waypoint().empty()) return Track{place, speed_mps};
+    std::vector<Vector2d> points_m{place.position_map_m};
+    for (const auto& waypoint : path.waypoint()) points_m.emplace_back(waypoint.east_m(), waypoint.north_m());
+    const std::size_t num_points = points_m.size();
+    if (num_points == 2 && (points_m[1] - points_m[0]).isZero()) Stop(field + ".path.waypoint[0]", "is where the object starts");
+    for (std::size_t i = path.is_closed() ? 0 : 1; num_points > 2 && i < (path.is_closed() ? num_points : num_points - 1); ++i) {
+      if (IsBadCorner(points_m[(i + num_points - 1) % num_points], points_m[i], points_m[(i + 1) % num_points])) {
+        std::string waypoint = field + ".path.waypoint";
+        if (i > 0) waypoint += "[" + std::to_string(i - 1) + "]";
+        Stop(waypoint, "the way stands still here, or turns back on the spot");
+      }
+    }
+    return MakeRoute(points_m, speed_mps, path.turn_radius_m(), path.is_closed());
+  }
+
+  // Moves an object along the row until the asked-for gap lies between it and the one before.
+  void PutInRow(const File::Object& file, const SceneObject& before, Random& random, SceneObject& object) {
+    const Vector2d along = AtBearing(DegToRad(file.row().bearing_deg()), 1.0);
+    const auto reach_m = [&along](const SceneObject& of, double sign) {
+      double greatest_m = -1e9;
+      for (const auto& p_m : of.outline_m) greatest_m = std::max(greatest_m, sign * along.dot(of.track.start.ToMap(p_m)));
+      return sign * greatest_m;
+    };
+    const double from_m = reach_m(before, 1.0) + Draw(file.row().gap_m(), 0.0, random);
+    object.track.start.position_map_m += (from_m - reach_m(object, -1.0)) * along;
+  }
+
+  // Whether another try may find another place.
+  static bool IsDrawn(const File::Object& file) {
+    if (file.has_on_shore_bearing_deg()) return false;
+    const auto is_range = [](const Numbers& numbers) { return numbers.size() == 2; };
+    return is_range(file.east_m()) || is_range(file.north_m()) || is_range(file.heading_deg()) || is_range(file.length_m()) ||
+           is_range(file.width_m()) || is_range(file.path().speed_mps()) || is_range(file.path().circle().from_bearing_deg()) ||
+           is_range(file.row().gap_m());
+  }
+
+  std::string NameOfObject(const File::Object& file, const std::string& field, int member) {
+    std::string name = file.name();
+    if (name.empty()) {
+      name = NameOf(file.kind()) + "_" + std::to_string(++num_unnamed_[file.kind()]);
+    } else if (file.count() > 1) {
+      name += "_" + std::to_string(member + 1);
+    }
+    if (!names_.insert(name).second) Stop(field + ".name", "there are two objects of the name " + name);
+    return name;
+  }
+
+  void AddObjects(const File::Object& file, int index) {
+    const std::string field = "object[" + std::to_string(index) + "]";
+    Random random(seed_, kFirstObjectStream + static_cast<std::uint64_t>(index));
+    const bool is_drawn = IsDrawn(file);
+    const std::size_t num_before = traffic_.num_objects();
+    for (int member = 0; member < file.count(); ++member) {
+      const std::string name = NameOfObject(file, field, member);
+      for (int num_tries = 1;; ++num_tries) {
+        SceneObject object = DrawBody(file, random);
+        object.name = name;
+        const Placement place = DrawPlace(file, random);
+        if (file.kind() == File::SHORE) shore_->middle_m = place.position_map_m;
+        object.track = DrawTrack(file, field, place, random);
+        if (file.has_row() && member > 0) PutInRow(file, scene_.objects.back(), random, object);
+        const auto own_boat = traffic_.ToOwnBoat(object, kOwnBoatClearanceM);
+        // Neighbours in a row are as near as its gaps say.
+        const auto other = is_drawn && !own_boat
+                               ? traffic_.ToOthers(object, file.min_distance_m(), file.has_row() ? num_before : traffic_.num_objects())
+                               : std::nullopt;
+        if (!own_boat && !other) {
+          object.id = static_cast<int>(scene_.objects.size()) + 1;
+          traffic_.Add(object);
+          scene_.objects.push_back(std::move(object));
+          break;
+        }
+        if (is_drawn && num_tries < kMaxTries) continue;
+        const Approach& nearest = own_boat ? *own_boat : *other;
+        const std::string reason = name + " comes to " + MetresText(nearest.distance_m) + " of " + nearest.name + " within 60 s, must stay " +
+                                   MetresText(own_boat ? kOwnBoatClearanceM : file.min_distance_m()) + " away";
+        Stop(field, is_drawn ? "no place in " + std::to_string(kMaxTries) + " tries: at the last " + reason : reason);
+      }
+    }
+  }
+
+  const File& file_;
+  std::uint64_t seed_;
+  SceneFaults& faults_;
+  Random land_random_;
+  Scene scene_;
+  Traffic traffic_;
+  std::optional<ShoreOnMap> shore_;
+  std::map<File::Kind, int> num_unnamed_;
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+Scene DrawScene(const File& scene, std::uint64_t seed, SceneFaults& faults) { return Drawing(scene, seed, faults).Run(); }
+
+}  // namespace lookout::sim

@@ -1,0 +1,104 @@
+#include "tools/sim/traffic.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr double kStepS = 0.2;
+constexpr int kNumSamples = static_cast<int>(Traffic::kCheckedS / kStepS) + 1;
+
+// M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
+constexpr double kOwnHalfLengthM = 1.2;
+constexpr double kOwnHalfWidthM = 0.7;
+
+double RadiusOf(const Outline& outline_m) {
+  double radius_m = 0.0;
+  for (const auto& p_m : outline_m) radius_m = std::max(radius_m, p_m.norm());
+  return radius_m;
+}
+
+Outline At(const Placement& placement, const Outline& outline_m) {
+  Outline moved_m;
+  moved_m.reserve(outline_m.size());
+  for (const auto& p_m : outline_m) moved_m.push_back(placement.ToMap(p_m));
+  return moved_m;
+}
+
+}  // namespace
+
+Traffic::Traffic(const OwnMotion& own_motion) : own_boat_{"own boat", {}, 0.0} {
+  const Outline hull_m = Rectangle(-kOwnHalfLengthM, kOwnHalfLengthM, -kOwnHalfWidthM, kOwnHalfWidthM);
+  const double radius_m = RadiusOf(hull_m);
+  double last_heading_rad = 0.0;
+  for (int i = 0; i < kNumSamples; ++i) {
+    const OwnState state = StateAt(own_motion, 0.0, i * kStepS);
+    const Placement placement{state.position_map_m.head<2>(), state.heading_rad};
+    if (i > 0) {
+      const double way_m = (placement.position_map_m - own_boat_.shapes.back().center_m).norm() +
+                           radius_m * std::abs(WrapToPi(placement.heading_rad - last_heading_rad));
+      own_boat_.speed_mps = std::max(own_boat_.speed_mps, way_m / kStepS);
+    }
+    last_heading_rad = placement.heading_rad;
+    own_boat_.shapes.push_back({At(placement, hull_m), placement.position_map_m, radius_m});
+  }
+}
+
+Traffic::Mover Traffic::ToMover(const SceneObject& object) {
+  Mover mover{object.name, {}, 0.0};
+  const double radius_m = RadiusOf(object.outline_m);
+  const int num_samples = object.track.is_moving() ? kNumSamples : 1;
+  double last_heading_rad = 0.0;
+  for (int i = 0; i < num_samples; ++i) {
+    const Placement placement = object.track.At(i * kStepS);
+    if (i > 0) {
+      const double turned_rad = std::abs(WrapToPi(placement.heading_rad - last_heading_rad));
+      mover.speed_mps = std::max(mover.speed_mps, object.track.speed_mps + radius_m * turned_rad / kStepS);
+    }
+    last_heading_rad = placement.heading_rad;
+    mover.shapes.push_back({At(placement, object.outline_m), placement.position_map_m, radius_m});
+  }
+  return mover;
+}
+
+double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) {
+  const std::size_t num_samples = std::max(a.shapes.size(), b.shapes.size());
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < num_samples;) {
+    const Shape& of_a = a.shapes[std::min(i, a.shapes.size() - 1)];
+    const Shape& of_b = b.shapes[std::min(i, b.shapes.size() - 1)];
+    double distance_m = (of_a.center_m - of_b.center_m).norm() - of_a.radius_m - of_b.radius_m;
+    if (distance_m < limit_m) distance_m = DistanceM(of_a.outline_m, of_b.outline_m);
+    nearest_m = std::min(nearest_m, distance_m);
+    if (nearest_m <= 0.0) return 0.0;
+    // They cannot come within the limit before they have gone the rest of the way.
+    const double rest_steps = (distance_m - limit_m) / (std::max(a.speed_mps + b.speed_mps, 1e-6) * kStepS);
+    i += static_cast<std::size_t>(std::clamp(rest_steps, 1.0, static_cast<double>(kNumSamples)));
+  }
+  return nearest_m;
+}
+
+void Traffic::Add(const SceneObject& object) { others_.push_back(ToMover(object)); }
+
+std::optional<Approach> Traffic::ToOwnBoat(const SceneObject& object, double limit_m) const {
+  const double distance_m = NearestM(ToMover(object), own_boat_, limit_m);
+  if (distance_m >= limit_m) return std::nullopt;
+  return Approach{distance_m, own_boat_.name};
+}
+
+std::optional<Approach> Traffic::ToOthers(const SceneObject& object, double limit_m, std::size_t num_first) const {
+  const Mover mover = ToMover(object);
+  for (std::size_t i = 0; i < std::min(num_first, others_.size()); ++i) {
+    const double distance_m = NearestM(mover, others_[i], limit_m);
+    if (distance_m < limit_m) return Approach{distance_m, others_[i].name};
+  }
+  return std::nullopt;
+}
+
+}  // namespace lookout::sim

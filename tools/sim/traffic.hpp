@@ -1,0 +1,55 @@
+// Who is where in the first minute of a scene, seen from above, and how near they come to each other.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/sim/outline.hpp"
+#include "tools/sim/scene.hpp"
+
+namespace lookout::sim {
+
+/// Between two in the first kCheckedS; found to the 0.2 s in which they are sampled.
+struct Approach {
+  double distance_m;
+  std::string name;  // of the other one
+};
+
+class Traffic {
+ public:
+  static constexpr double kCheckedS = 60.0;
+
+  /// The own boat is taken as the hull of 2.4 m x 1.4 m of the paper's boat.
+  explicit Traffic(const OwnMotion& own_motion);
+
+  /// From now on it is in the way of others.
+  void Add(const SceneObject& object);
+
+  /// @return how near it comes to the own boat when that is less than `limit_m`
+  std::optional<Approach> ToOwnBoat(const SceneObject& object, double limit_m) const;
+
+  /// @param num_first  only the first so many that were added
+  /// @return the first of them to which it comes nearer than `limit_m`
+  std::optional<Approach> ToOthers(const SceneObject& object, double limit_m, std::size_t num_first) const;
+
+  std::size_t num_objects() const { return others_.size(); }
+
+ private:
+  struct Shape {
+    Outline outline_m;  // map
+    Eigen::Vector2d center_m;
+    double radius_m;
+  };
+  struct Mover {
+    std::string name;
+    std::vector<Shape> shapes;  // by sample; one of what stands still
+    double speed_mps;           // no point of it is faster
+  };
+  static Mover ToMover(const SceneObject& object);
+  static double NearestM(const Mover& a, const Mover& b, double limit_m);
+
+  Mover own_boat_;
+  std::vector<Mover> others_;
+};
+
+}  // namespace lookout::sim
