@@ -18,11 +18,14 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   const auto file = config_folder / "segmenter.txtpb";
   config::Segmenter message;
   config::LoadText(file, message);
+  return ToParams(message, config::LoadBoat(config_folder), file);
+}
+
+Params ToParams(const config::Segmenter& message, const config::BoatFacts& boat, const std::filesystem::path& file) {
   if (message.max_range_m() <= message.min_range_m()) config::Refuse(file, "max_range_m", "must be greater than min_range_m");
   if (message.image_columns() != 0 && message.image_columns() < kMinImageColumns) {
     config::Refuse(file, "image_columns", "must be 0 or at least 16, so that neighbouring pixels look much the same way");
   }
-  const auto boat = config::LoadBoat(config_folder);
 
   Params params;
   params.filter.min_range_m = message.min_range_m();

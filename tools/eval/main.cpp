@@ -1,15 +1,13 @@
-// lookout-eval: how good the obstacles of a log are, against the truth of a simulation, and what the machine lost and took.
+// lookout-eval: how good the obstacles of a log are, against the truth of a simulation; and how good methods of segmentation are, on simulated
+// scenes or on recordings of others.
 #include <CLI/CLI.hpp>
-#include <concepts>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 
-#include "common/bus/channels.hpp"
-#include "common/bus/decode.hpp"
-#include "common/bus/log_file.hpp"
+#include "common/config/text_config.hpp"
 #include "common/runtime/options.hpp"
-#include "tools/eval/report.hpp"
+#include "tools/eval/judge_command.hpp"
+#include "tools/eval/log_command.hpp"
 
 namespace {
 
@@ -18,90 +16,81 @@ using namespace lookout;
 constexpr int kExitUsage = 2;
 
 struct Options {
-  std::string log_file;
-  std::string truth_folder;
-  int min_num_returns = 3;
+  eval::LogOptions log;
+  eval::JudgeOptions judge;
 };
+
+std::string CommandLine(int argc, char** argv) {
+  std::string line = "lookout-eval";
+  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  return line;
+}
 
 // Exits here for --help, --version and wrong lines.
 Options ParseOptions(int argc, char** argv) {
   Options options;
-  CLI::App app("Holds a log against the truth of lookout-sim; without --truth tells what the log holds.", "lookout-eval");
-  app.add_option("--in", options.log_file, "lcm-log with OBSTACLES")->required();
-  app.add_option("--truth", options.truth_folder, "folder that lookout-sim --truth wrote");
-  app.add_option("--min-returns", options.min_num_returns, "an object with fewer returns in a turn does not count for recall")
+  auto& log = options.log;
+  auto& judge = options.judge;
+  judge.command = CommandLine(argc, argv);
+  std::string config_folder;
+  std::string csv_folder;
+  std::string html_file;
+  CLI::App app(
+      "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, --sweep, "
+      "--test or --points).",
+      "lookout-eval");
+  auto* in = app.add_option("--in", log.log_file, "lcm-log with OBSTACLES");
+  app.add_option("--truth", log.truth_folder, "folder that lookout-sim --truth wrote")->needs(in);
+  app.add_option("--min-returns", log.min_num_returns, "an object with fewer returns in a turn does not count for recall")
       ->check(CLI::Range(1, 1'000'000))
+      ->needs(in)
       ->capture_default_str();
+
+  auto* config = app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
+  const auto of_judge = [config](CLI::Option* option) { return option->needs(config); };
+  of_judge(app.add_option("--scenes", judge.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
+  of_judge(app.add_option("--points", judge.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))->check(CLI::ExistingFile);
+  of_judge(app.add_option("--seeds", judge.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
+  of_judge(app.add_option("--first-seed", judge.first_seed, "the others follow it"))->capture_default_str();
+  of_judge(app.add_option("--seconds", judge.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  of_judge(app.add_option("--methods", judge.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
+      ->delimiter(',');
+  of_judge(app.add_option("--sweep", judge.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
+  of_judge(app.add_option("--test", judge.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
+  of_judge(app.add_option("--csv", csv_folder, "write each table as a CSV file to this folder"));
+  of_judge(app.add_option("--html", html_file, "write the report as one page"));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
+    if (log.log_file.empty() && config_folder.empty()) throw CLI::RequiredError("either --in LOG or --config DIR");
+    if (!config_folder.empty()) {
+      const bool has_turns = !judge.scenes.empty() || !judge.points.empty();
+      if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --points, --test");
+      if (judge.scenes.empty() && !judge.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
+      if (!has_turns && !judge.methods.empty()) throw CLI::RequiredError("--scenes or --points, for --methods");
+      if (judge.methods.empty() && ((judge.sweeps.empty() && judge.tests.empty()) || !judge.points.empty())) judge.methods = {"all"};
+    }
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
+  judge.config_folder = config_folder;
+  judge.csv_folder = csv_folder;
+  judge.html_file = html_file;
   return options;
-}
-
-// Decodes and hands on. @return whether the message could be used
-template <typename Message, typename Taker>
-bool Take(const bus::LogEvent& event, Taker& taker) {
-  auto message = bus::Decode<Message>(event.bytes);
-  if (!message) return false;
-  if constexpr (requires {
-                  { taker.Add(std::move(*message)) } -> std::same_as<bool>;
-                }) {
-    return taker.Add(std::move(*message));
-  } else {
-    taker.Add(*message);
-    return true;
-  }
-}
-
-int Run(const Options& options) {
-  std::unique_ptr<eval::Truth> truth;
-  if (!options.truth_folder.empty()) truth = std::make_unique<eval::Truth>(options.truth_folder);
-  eval::Evaluation evaluation(truth.get(), options.min_num_returns);
-  eval::Machine machine;
-  eval::TurnCollector collector([&evaluation](const eval::Turn& turn) { evaluation.Add(turn); });
-
-  bus::LogReader reader(options.log_file);
-  std::int64_t num_unusable = 0;
-  while (const auto event = reader.Next()) {
-    bool is_taken = true;
-    if (event->channel == bus::kObstacles.name) {
-      is_taken = Take<obstacles_t>(*event, collector);
-    } else if (event->channel == bus::kLidarClock.name) {
-      is_taken = Take<lidar_clock_t>(*event, machine);
-    } else if (event->channel == bus::kHealth.name) {
-      is_taken = Take<health_t>(*event, machine);
-    } else if (truth && event->channel == bus::kLidarScan.name) {
-      is_taken = Take<lidar_scan_t>(*event, collector);
-    } else if (truth && event->channel == bus::kSegments.name) {
-      is_taken = Take<segments_t>(*event, collector);
-    } else if (truth && event->channel == bus::kPose.name) {
-      is_taken = Take<pose_t>(*event, evaluation);
-    }
-    if (!is_taken) ++num_unusable;
-  }
-  if (evaluation.num_turns == 0) {
-    std::cerr << options.log_file << ": no turn of OBSTACLES\n";
-    return EXIT_FAILURE;
-  }
-
-  eval::PrintObstacles(std::cout, evaluation, truth != nullptr);
-  if (truth) {
-    eval::PrintAccuracy(std::cout, evaluation);
-    eval::PrintSegmentation(std::cout, evaluation, options.min_num_returns);
-  }
-  eval::PrintMachine(std::cout, machine);
-  if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
-  if (collector.num_incomplete() > 0) std::cout << collector.num_incomplete() << " turns lack a part of OBSTACLES\n";
-  if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
-  return EXIT_SUCCESS;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) try { return Run(ParseOptions(argc, argv)); } catch (const std::exception& error) {
+int main(int argc, char** argv) try {
+  const auto options = ParseOptions(argc, argv);
+  return options.log.log_file.empty() ? eval::JudgeScenes(options.judge) : eval::EvaluateLog(options.log);
+} catch (const std::invalid_argument& error) {
+  std::cerr << "lookout-eval: " << error.what() << '\n';
+  return kExitUsage;
+} catch (const config::ConfigError& error) {
+  std::cerr << error.what() << '\n';
+  return kExitUsage;
+} catch (const std::exception& error) {
   std::cerr << "lookout-eval: " << error.what() << '\n';
   return EXIT_FAILURE;
 }

@@ -11,6 +11,13 @@ namespace {
 
 bool IsNumber(const std::string& cell) { return cell.find_first_not_of("0123456789+-.%") == std::string::npos; }
 
+std::string CsvCell(const std::string& cell) {
+  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+  std::string quoted = "\"";
+  for (const char letter : cell) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
+  return quoted + '"';
+}
+
 }  // namespace
 
 void Table::Print(std::ostream& out) const {
@@ -30,6 +37,13 @@ void Table::Print(std::ostream& out) const {
     }
     text.erase(text.find_last_not_of(' ') + 1);
     out << text << '\n';
+  }
+}
+
+void Table::PrintCsv(std::ostream& out) const {
+  for (const auto& row : rows_) {
+    for (std::size_t column = 0; column < row.size(); ++column) out << (column > 0 ? "," : "") << CsvCell(row[column]);
+    out << '\n';
   }
 }
 

@@ -18,6 +18,9 @@ class Table {
 
   void Print(std::ostream& out) const;
 
+  /// As RFC 4180 has it, but for line ends of Unix.
+  void PrintCsv(std::ostream& out) const;
+
  private:
   std::vector<std::vector<std::string>> rows_;
 };

@@ -17,6 +17,14 @@ TEST(Table, NumbersStandToTheRightAndWordsToTheLeft) {
   EXPECT_EQ(text.str(), "name  range_m\na         7.5\nbuoy        -\nboat    112.0\n");
 }
 
+TEST(Table, CsvQuotesWhatWouldBreakItsCells) {
+  Table table({"name", "note"});
+  table.Add({"a, b", "say \"hi\""});
+  std::ostringstream text;
+  table.PrintCsv(text);
+  EXPECT_EQ(text.str(), "name,note\n\"a, b\",\"say \"\"hi\"\"\"\n");
+}
+
 TEST(Table, WhatIsNotKnownIsADash) {
   EXPECT_EQ(Number(std::numeric_limits<double>::quiet_NaN(), 2), "-");
   EXPECT_EQ(Number(1.005, 1), "1.0");

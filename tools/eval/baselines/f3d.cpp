@@ -1,0 +1,97 @@
+#include "tools/eval/baselines/f3d.hpp"
+
+#include <cstddef>
+
+#include "services/segmenter/core/union_find.hpp"
+#include "tools/eval/baselines/point_tree.hpp"
+
+namespace lookout::eval {
+
+namespace {
+
+using ScanLine = std::vector<std::int32_t>;  // indices of returns, in the order of columns
+
+bool AreNear(const segmenter::Return& one, const segmenter::Return& other, double distance_m) {
+  return segmenter::SquaredDistance(one.point, other.point) < distance_m * distance_m;
+}
+
+// [begin, end) of the returns of one shot, and so of one column, in a scan line.
+struct Shot {
+  std::size_t begin, end;
+};
+
+std::vector<Shot> ShotsOf(const ScanLine& line, std::span<const segmenter::Return> returns) {
+  std::vector<Shot> shots;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const auto column = returns[static_cast<std::size_t>(line[i])].column;
+    if (shots.empty() || returns[static_cast<std::size_t>(line[shots.back().begin])].column != column) shots.push_back({i, i});
+    shots.back().end = i + 1;
+  }
+  return shots;
+}
+
+void JoinRuns(const ScanLine& line, std::span<const segmenter::Return> returns, double distance_m, segmenter::UnionFind& sets) {
+  const auto join = [&](const Shot& shot, const Shot& other) {
+    for (std::size_t i = shot.begin; i < shot.end; ++i) {
+      for (std::size_t j = other.begin; j < other.end; ++j) {
+        if (AreNear(returns[static_cast<std::size_t>(line[i])], returns[static_cast<std::size_t>(line[j])], distance_m)) sets.Unite(line[i], line[j]);
+      }
+    }
+  };
+  const auto shots = ShotsOf(line, returns);
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    join(shots[i], shots[i]);
+    join(shots[i], shots[i + 1 < shots.size() ? i + 1 : 0]);  // the last one with the first: the circle is closed
+  }
+}
+
+void MergeWithRingAbove(const ScanLine& line, const ScanLine& above, std::span<const segmenter::Return> returns, double distance_m,
+                        segmenter::UnionFind& sets) {
+  if (line.empty() || above.empty()) return;
+  std::vector<segmenter::Point> points_m;
+  points_m.reserve(above.size());
+  for (const auto index : above) points_m.push_back(returns[static_cast<std::size_t>(index)].point);
+  const PointTree tree(std::move(points_m));
+  for (const auto index : line) {
+    const auto nearest = tree.FindNearest(returns[static_cast<std::size_t>(index)].point);
+    if (nearest && nearest->distance_m < distance_m) sets.Unite(index, above[static_cast<std::size_t>(nearest->index)]);
+  }
+}
+
+}  // namespace
+
+segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) const {
+  std::vector<bool> is_ground(returns.size(), false);
+  if (params_.ground) {
+    std::vector<Eigen::Vector3d> p_vessel_m;
+    p_vessel_m.reserve(returns.size());
+    for (const auto& one : returns) {
+      p_vessel_m.emplace_back(filter().T_vessel_lidar * Eigen::Vector3d(one.point.x_m, one.point.y_m, one.point.z_m));
+    }
+    is_ground = FitGround(p_vessel_m, *params_.ground);
+    clock.End("ground");
+  }
+  std::vector<ScanLine> lines(static_cast<std::size_t>(scan.head.num_rings()));
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    if (!is_ground[i]) lines[static_cast<std::size_t>(returns[i].ring)].push_back(static_cast<std::int32_t>(i));
+  }
+  segmenter::UnionFind sets(returns.size());
+  for (const auto& line : lines) JoinRuns(line, returns, params_.run_distance_m, sets);
+  clock.End("runs");
+  for (std::size_t ring = lines.size(); ring > 1; --ring) {
+    MergeWithRingAbove(lines[ring - 2], lines[ring - 1], returns, params_.merge_distance_m, sets);
+  }
+  clock.End("merging");
+
+  segmenter::Groups groups;
+  groups.of_return.assign(returns.size(), segmenter::Groups::kNone);
+  // The root of a set is its least member, so it has its group before the others ask for it.
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    if (is_ground[i]) continue;
+    const auto root = static_cast<std::size_t>(sets.Find(static_cast<std::int32_t>(i)));
+    groups.of_return[i] = root == i ? groups.count++ : groups.of_return[root];
+  }
+  return groups;
+}
+
+}  // namespace lookout::eval

@@ -1,0 +1,73 @@
+#include "tools/eval/judge.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "tools/eval/scoring.hpp"
+#include "tools/sim/scene_file.hpp"
+
+namespace lookout::eval {
+namespace {
+
+double ToMs(std::chrono::nanoseconds duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
+
+}  // namespace
+
+Judge::Judge(const Methods& methods) : methods_(methods) {
+  for (const auto& method : methods) results_.push_back({method->name(), {}, {}, {}});
+}
+
+void Judge::Add(const TurnPlace& place, const LabelledScan& truth) {
+  for (std::size_t i = 0; i < methods_.size(); ++i) {
+    MethodResult& result = results_[i];
+    const auto begin = std::chrono::steady_clock::now();
+    auto labelling = methods_[i]->Segment(truth.scan);
+    const auto time = std::chrono::steady_clock::now() - begin - labelling.untimed;
+    Score score = ScoreTurn(truth, labelling);
+    score.time_ms.push_back(ToMs(time));
+    result.by_scene[place.scene].Add(score);
+    for (const auto& [stage, stage_time] : labelling.stages) result.stage_ms[stage].push_back(ToMs(stage_time));
+    if (score.num_turns_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
+  }
+}
+
+void Judge::KeepIfBad(MethodResult& result, const TurnPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const {
+  auto& worst = result.worst;
+  const auto same_scene = std::ranges::find(worst, place.scene, &WorstTurn::scene);
+  if (same_scene != worst.end()) {
+    if (same_scene->iou <= iou) return;
+    worst.erase(same_scene);
+  } else if (worst.size() == kMaxWorstTurns) {
+    if (worst.back().iou <= iou) return;
+    worst.pop_back();
+  }
+  const auto at = std::ranges::upper_bound(worst, iou, {}, &WorstTurn::iou);
+  worst.insert(at, {place.scene, place.seed, place.turn, iou, truth, std::move(label)});
+}
+
+std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
+
+void ForEachTurn(const RunPlan& plan, const Boat& boat, Progress& progress,
+                 const std::function<void(const TurnPlace&, const LabelledScan&)>& on_turn) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& scene : plan.scenes) {
+    files.push_back(sim::FindScene(scene, boat.config_folder));
+    sim::LoadScene(files.back(), plan.first_seed);
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    TurnPlace place{SceneLabel(plan.scenes[i]), 0, 0};
+    for (int k = 0; k < plan.num_seeds; ++k) {
+      place.seed = plan.first_seed + static_cast<std::uint64_t>(k);
+      place.turn = 0;
+      const auto scene = sim::LoadScene(files[i], place.seed);
+      RenderTurns(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
+        on_turn(place, truth);
+        ++place.turn;
+      });
+      progress.Step(place.scene + ", seed " + std::to_string(place.seed));
+    }
+  }
+}
+
+}  // namespace lookout::eval

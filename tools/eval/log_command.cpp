@@ -1,0 +1,76 @@
+#include "tools/eval/log_command.hpp"
+
+#include <concepts>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
+#include "common/bus/log_file.hpp"
+#include "tools/eval/report.hpp"
+
+namespace lookout::eval {
+namespace {
+
+// Decodes and hands on. @return whether the message could be used
+template <typename Message, typename Taker>
+bool Take(const bus::LogEvent& event, Taker& taker) {
+  auto message = bus::Decode<Message>(event.bytes);
+  if (!message) return false;
+  if constexpr (requires {
+                  { taker.Add(std::move(*message)) } -> std::same_as<bool>;
+                }) {
+    return taker.Add(std::move(*message));
+  } else {
+    taker.Add(*message);
+    return true;
+  }
+}
+
+}  // namespace
+
+int EvaluateLog(const LogOptions& options) {
+  std::unique_ptr<Truth> truth;
+  if (!options.truth_folder.empty()) truth = std::make_unique<Truth>(options.truth_folder);
+  Evaluation evaluation(truth.get(), options.min_num_returns);
+  Machine machine;
+  TurnCollector collector([&evaluation](const Turn& turn) { evaluation.Add(turn); });
+
+  bus::LogReader reader(options.log_file);
+  std::int64_t num_unusable = 0;
+  while (const auto event = reader.Next()) {
+    bool is_taken = true;
+    if (event->channel == bus::kObstacles.name) {
+      is_taken = Take<obstacles_t>(*event, collector);
+    } else if (event->channel == bus::kLidarClock.name) {
+      is_taken = Take<lidar_clock_t>(*event, machine);
+    } else if (event->channel == bus::kHealth.name) {
+      is_taken = Take<health_t>(*event, machine);
+    } else if (truth && event->channel == bus::kLidarScan.name) {
+      is_taken = Take<lidar_scan_t>(*event, collector);
+    } else if (truth && event->channel == bus::kSegments.name) {
+      is_taken = Take<segments_t>(*event, collector);
+    } else if (truth && event->channel == bus::kPose.name) {
+      is_taken = Take<pose_t>(*event, evaluation);
+    }
+    if (!is_taken) ++num_unusable;
+  }
+  if (evaluation.num_turns == 0) {
+    std::cerr << options.log_file << ": no turn of OBSTACLES\n";
+    return EXIT_FAILURE;
+  }
+
+  PrintObstacles(std::cout, evaluation, truth != nullptr);
+  if (truth) {
+    PrintAccuracy(std::cout, evaluation);
+    PrintSegmentation(std::cout, evaluation, options.min_num_returns);
+  }
+  PrintMachine(std::cout, machine);
+  if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
+  if (collector.num_incomplete() > 0) std::cout << collector.num_incomplete() << " turns lack a part of OBSTACLES\n";
+  if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
+  return EXIT_SUCCESS;
+}
+
+}  // namespace lookout::eval

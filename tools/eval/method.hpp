@@ -1,0 +1,44 @@
+// What is judged: a way from a turn to a label for every return. Ours, the paper's and the peers' stand behind one interface.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/segmenter/core/scan.hpp"
+
+namespace lookout::eval {
+
+/// Label of a return that the method was told not to look at, outside of its field of view: it is not judged by it.
+inline constexpr std::int32_t kNotJudged = -1;
+
+/// What a method says of one turn.
+struct Labelling {
+  std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotJudged
+  std::vector<bool> is_sure;        // [segments] by id - 1; false = the method itself takes the segment for tentative
+  /// Stages in their order, as the method measured them; empty when it does not.
+  std::vector<std::pair<std::string, std::chrono::nanoseconds>> stages;
+  /// Spent on measuring the stages once more, not on the method: taken off its time.
+  std::chrono::nanoseconds untimed{0};
+};
+
+class Method {
+ public:
+  Method() = default;
+  Method(const Method&) = delete;
+  Method& operator=(const Method&) = delete;
+  virtual ~Method() = default;
+
+  /// As in tables: "paper W=512", "Euclidean 0.5 m (tuned)".
+  virtual std::string name() const = 0;
+
+  /// Pure but for its time: the same scan gives the same labels.
+  virtual Labelling Segment(const segmenter::Scan& scan) = 0;
+};
+
+using Methods = std::vector<std::unique_ptr<Method>>;
+
+}  // namespace lookout::eval

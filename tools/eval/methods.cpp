@@ -1,0 +1,130 @@
+#include "tools/eval/methods.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "common/core/angles.hpp"
+#include "tools/eval/baselines/peer.hpp"
+#include "tools/eval/baselines/peers.hpp"
+
+namespace lookout::eval {
+namespace {
+
+using segmenter::Reason;
+using segmenter::ToLabel;
+
+constexpr double kPaperFieldOfViewRad = DegToRad(90.0);
+
+// The steps of SegmentScan once more, for their times.
+std::vector<std::pair<std::string, std::chrono::nanoseconds>> MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params) {
+  StageClock clock;
+  const auto classified = segmenter::ClassifyReturns(scan, params.filter);
+  const auto& returns = classified.returns;
+  segmenter::Groups components;
+  const auto& labelling = params.labelling;
+  if (labelling.image_columns == 0 || !labelling.label_shadowed_returns) {
+    std::vector<std::int32_t> indices(returns.size());
+    std::iota(indices.begin(), indices.end(), 0);
+    const auto image = labelling.image_columns == 0 ? segmenter::ProjectToOwnColumns(scan, returns)
+                                                    : segmenter::ProjectToAzimuths(scan, returns, indices, labelling.image_columns);
+    clock.End("project");
+    components = segmenter::SearchComponents(image, returns, labelling.search);
+  } else {
+    // Projection and search take turns here.
+    clock.End("project");
+    components = segmenter::LabelComponents(scan, returns, labelling);
+  }
+  clock.End("search");
+  std::vector<std::int32_t> clusters(static_cast<std::size_t>(components.count));
+  std::iota(clusters.begin(), clusters.end(), 0);
+  if (params.component_clustering) clusters = segmenter::ClusterComponents(segmenter::Centroids(returns, components), params.clustering);
+  constexpr std::int32_t kMaxSegments = std::numeric_limits<std::int16_t>::max();
+  const auto numbered = segmenter::NumberSegments(components, clusters, params.min_segment_points, kMaxSegments);
+  clock.End("cluster");
+  segmenter::Measure(scan, returns, numbered.groups, params.filter.T_vessel_lidar.linear().row(2));
+  clock.End("measure");
+  return clock.stages();
+}
+
+Methods MakeAll(const segmenter::Params& boat) {
+  Methods methods;
+  const auto add = [&methods](std::string name, const segmenter::Params& params) {
+    methods.push_back(std::make_unique<SegmenterMethod>(std::move(name), params));
+  };
+  add("ours", boat);
+  auto without_clustering = boat;
+  without_clustering.component_clustering = false;
+  add("ours without clustering", without_clustering);
+  for (const int columns : kPaperColumns) add("paper W=" + std::to_string(columns), PaperParams(boat, columns));
+  for (const int columns : kPaperColumns) add("paper W=" + std::to_string(columns) + " without BFS", WithoutSearch(PaperParams(boat, columns)));
+  for (const int columns : kPaperColumns) {
+    auto params = PaperParams(boat, columns);
+    params.filter.field_of_view = {WrapTo2Pi(-kPaperFieldOfViewRad / 2.0), kPaperFieldOfViewRad};
+    add("paper W=" + std::to_string(columns) + " at 90 deg", params);
+  }
+  for (auto& peer : MakePeers(boat.filter)) methods.push_back(std::move(peer));
+  return methods;
+}
+
+std::string GroupOf(const std::string& name) { return name.starts_with("ours") ? "ours" : name.starts_with("paper") ? "paper" : "peers"; }
+
+}  // namespace
+
+Labelling SegmenterMethod::Segment(const segmenter::Scan& scan) {
+  const auto segments = segmenter::SegmentScan(scan, params_);
+  Labelling labelling;
+  labelling.label.resize(segments.label.size());
+  std::ranges::transform(segments.label, labelling.label.begin(), [](std::int16_t label) -> std::int32_t {
+    if (label == ToLabel(Reason::kFieldOfView)) return kNotJudged;
+    return std::max<std::int32_t>(label, 0);
+  });
+  // The segmenter knows no doubt.
+  labelling.is_sure.assign(segments.segments.size(), true);
+  const auto begin = std::chrono::steady_clock::now();
+  labelling.stages = MeasureStages(scan, params_);
+  labelling.untimed = std::chrono::steady_clock::now() - begin;
+  return labelling;
+}
+
+segmenter::Params PaperParams(const segmenter::Params& boat, int image_columns) {
+  segmenter::Params params;  // thresholds: the defaults are the paper's
+  params.filter = boat.filter;
+  params.labelling.image_columns = image_columns;
+  params.labelling.label_shadowed_returns = false;
+  return params;
+}
+
+segmenter::Params WithoutSearch(segmenter::Params params) {
+  params.labelling.search.angle_rad = kPi / 2.0;
+  params.labelling.search.distance_m = 0.0;
+  return params;
+}
+
+Methods MakeMethods(const segmenter::Params& boat, std::span<const std::string> selection) {
+  auto all = MakeAll(boat);
+  std::vector<bool> is_selected(all.size(), false);
+  for (const auto& wanted : selection) {
+    bool is_known = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto name = all[i]->name();
+      if (name != wanted && wanted != "all" && GroupOf(name) != wanted) continue;
+      is_selected[i] = true;
+      is_known = true;
+    }
+    if (!is_known) {
+      std::string reason = "--methods: no such method: " + wanted + " (there are: all, ours, paper, peers";
+      for (const auto& method : all) reason += ", " + method->name();
+      throw std::invalid_argument(reason + ")");
+    }
+  }
+  Methods methods;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_selected[i]) methods.push_back(std::move(all[i]));
+  }
+  return methods;
+}
+
+}  // namespace lookout::eval

@@ -1,0 +1,35 @@
+// Tests 1 to 3 of the paper on our scenes, with the paper's method at its full width.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "tools/eval/judge.hpp"
+#include "tools/eval/render.hpp"
+#include "tools/eval/results.hpp"
+
+namespace lookout::eval {
+
+/// Test 1 (scene kayak_shore): from how far off the shore is the kayak its own segment? In the paper from 8.58 m with e1 = 0.95 and from 24.67 m
+/// with e1 = 0.6. Test 2 (shore_20m): a shore should be one object: number of clusters against e2. Test 3 (motorboat_6m): the same of a
+/// motor boat of 6 m, against e3.
+///
+/// Clusters are segments with a return of an object. e2 is 50 degrees in Tests 1 and 3, e3 is 3.5 m in Tests 1 and 2, e1 is 0.95 in 2 and 3.
+/// @param number   1, 2 or 3
+/// @param plan     seeds and, for Tests 2 and 3, seconds; its scenes are not looked at
+/// @throws config::ConfigError as ForEachTurn; std::runtime_error when the scene of Test 1 holds no kayak or nothing that is land
+Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::ostream* progress);
+
+/// Of Test 1: a turn in which the kayak and the shore are seen.
+struct ShoreGap {
+  double distance_m = 0.0;  // from the kayak's returns to the nearest of any other object
+  double iou = 0.0;         // of the kayak
+};
+
+/// @return the least distance from which on the kayak is its own segment: in steps of a metre up to 30 m, those with turns, its mean IoU is kFoundIou
+/// or
+///         more; nullopt when it is not even at the farthest
+std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps);
+
+}  // namespace lookout::eval

@@ -1,0 +1,43 @@
+// Table II of the paper: what its image of a turn keeps, and how far it moves it.
+#pragma once
+
+#include "services/segmenter/core/segmenter.hpp"
+#include "tools/eval/labelled_scan.hpp"
+#include "tools/eval/results.hpp"
+
+namespace lookout::eval {
+
+/// Sums over turns, for each width of the paper's image.
+///
+/// Ground points are the returns that keep their pixel, out of those that the boat's filter lets through; in the paper's words, for its turns are
+/// mostly shore. The point of a pixel lies at the range and ring of its return, in the middle of its column; its distance to the nearest return
+/// of the turn is without sign. True positives: of the returns of objects that keep their pixel, those that the paper's method puts into
+/// a segment that belongs to their object (scoring.hpp).
+class ProjectionTable {
+ public:
+  /// @param boat  params of the boat's segmenter
+  explicit ProjectionTable(const segmenter::Params& boat);
+
+  void Add(const LabelledScan& truth);
+
+  /// By width; empty without turns.
+  std::vector<Results::Projection> Rows() const;
+
+ private:
+  struct Sums {
+    std::int64_t num_turns = 0;
+    std::int64_t num_points = 0;
+    std::int64_t num_kept = 0;
+    std::int64_t num_object_points = 0;  // of these that are kept
+    std::int64_t num_true_positives = 0;
+    double distance_m = 0.0;
+    double squared_distance_m2 = 0.0;
+  };
+
+  void AddTo(Sums& sums, int image_columns, const LabelledScan& truth) const;
+
+  segmenter::Params boat_;
+  std::vector<Sums> sums_;  // by width
+};
+
+}  // namespace lookout::eval

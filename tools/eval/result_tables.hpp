@@ -1,0 +1,28 @@
+// The results as tables, for the terminal and for CSV files.
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "tools/eval/results.hpp"
+#include "tools/eval/table.hpp"
+
+namespace lookout::eval {
+
+struct NamedTable {
+  std::string name;  // of its file, without ending
+  std::string title;
+  Table table;
+};
+
+/// All that the results hold; tables without rows are left out. Figures of the paper's kind are in per cent; "-" = there is none.
+std::vector<NamedTable> TablesOf(const Results& results);
+
+void PrintTables(const Results& results, std::ostream& out);
+
+/// Writes NAME.csv for each table, and makes the folder. @throws std::runtime_error when a file cannot be written
+void WriteCsv(const Results& results, const std::filesystem::path& folder);
+
+}  // namespace lookout::eval

@@ -1,0 +1,104 @@
+// What the judge found: the numbers behind every table and plot of the report.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tools/eval/labelled_scan.hpp"
+
+namespace lookout::eval {
+
+/// Sums over turns; figures are made of them by the functions below. All are additive: turns of one scene, scenes of one run.
+struct Score {
+  std::int64_t num_turns = 0;
+  std::int64_t num_turns_with_object = 0;  // with a return of an object; over open water there is none
+  double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
+  std::int64_t num_turns_with_water_object = 0;
+  double sum_water_iou = 0.0;                                          // the same over objects in the water alone
+  double sum_sure_iou = 0.0;                                           // with segments that are sure alone
+  std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-turns, sum of IoU
+  static constexpr double kRangeBinM = 10.0;
+  std::map<int, std::pair<std::int64_t, std::int64_t>> recall_by_range;  // bin of nearest return: object-turns, of these IoU >= 0.5
+  std::map<int, std::pair<std::int64_t, double>> iou_by_range;           // bin: object-turns, sum of IoU
+  std::int64_t num_segments = 0;
+  std::int64_t num_false_segments = 0;  // without a return of any object
+  std::int64_t num_sure_false_segments = 0;
+  std::int64_t num_object_turns = 0;
+  std::int64_t num_over_segmented = 0;    // objects of which two or more segments hold a tenth each
+  std::int64_t num_under_segmented = 0;   // segments that hold a tenth each of two or more objects
+  std::int64_t num_returns = 0;           // of objects
+  std::int64_t num_labelled_returns = 0;  // of these, in a segment that belongs (by majority) to their object: the paper's true positives
+  std::vector<double> time_ms;            // of each turn
+
+  void Add(const Score& other);
+};
+
+// 0 to 1; NaN without turns in which there was an object.
+double MeanIou(const Score& score);
+double MeanWaterIou(const Score& score);
+double MeanSureIou(const Score& score);
+
+double FalseSegmentsPerTurn(const Score& score);  // NaN without turns, and so below
+double SureFalseSegmentsPerTurn(const Score& score);
+double SegmentsPerTurn(const Score& score);
+double OverSegmentedShare(const Score& score);   // of object-turns
+double UnderSegmentedShare(const Score& score);  // of segments
+double TruePositiveRatio(const Score& score);    // of returns of objects
+
+/// One turn, kept because it went worst: drawn from above with truth and prediction side by side.
+struct WorstTurn {
+  std::string scene;
+  std::uint64_t seed = 0;
+  int turn = 0;
+  double iou = 0.0;
+  LabelledScan truth;
+  std::vector<std::int32_t> label;
+};
+
+struct MethodResult {
+  std::string method;
+  std::map<std::string, Score> by_scene;
+  std::map<std::string, std::vector<double>> stage_ms;  // by stage, of each turn
+  std::vector<WorstTurn> worst;                         // of the whole run, worst first; few
+};
+
+/// A curve of one of the paper's tests or of a sweep.
+struct Curve {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  struct Line {
+    std::string name;
+    std::vector<std::pair<double, double>> points;
+  };
+  std::vector<Line> lines;
+  std::string note;  // a finding in words: "own object from 6.3 m"
+};
+
+struct Results {
+  std::string command;  // that made it
+  std::string version;
+  std::string computer;
+  std::vector<std::string> scenes;  // in the order of the tables
+  std::uint64_t first_seed = 1;
+  int num_seeds = 0;
+  double seconds = 0.0;  // of each scene and seed
+  std::vector<MethodResult> methods;
+  std::vector<Curve> curves;
+  /// Table II: by image width, in the paper's words.
+  struct Projection {
+    int image_columns = 0;
+    double true_positive_ratio = 0.0;
+    double num_ground_points = 0.0;  // returns that the image keeps, per turn
+    double num_points = 0.0;         // returns of the turn
+    double nearest_mean_m = 0.0;     // from a pixel's point to the nearest raw return
+    double nearest_sd_m = 0.0;
+  };
+  std::vector<Projection> projections;
+};
+
+}  // namespace lookout::eval

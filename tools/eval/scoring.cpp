@@ -1,0 +1,160 @@
+#include "tools/eval/scoring.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace lookout::eval {
+namespace {
+
+struct ObjectTurn {
+  std::int32_t id = 0;
+  std::int64_t num_returns = 0;
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double iou = 0.0;
+  double sure_iou = 0.0;
+  int num_parts = 0;  // segments with a tenth of it or more
+};
+
+struct SegmentTurn {
+  std::int64_t num_returns = 0;
+  std::int64_t num_own_vessel = 0;
+  std::int64_t num_none = 0;
+  std::int64_t num_of_majority = 0;  // of the object with most returns
+  std::int64_t num_of_objects = 0;
+  int num_parts = 0;  // objects of which it holds a tenth or more
+};
+
+// A return of an object in a segment: index of the segment, index of the object. Sorted, equal pairs lie together.
+using Pair = std::pair<std::size_t, std::size_t>;
+
+struct Turn {
+  std::vector<ObjectTurn> objects;    // those with a return, by id
+  std::vector<SegmentTurn> segments;  // by id - 1; ids that do not occur have no returns
+  std::vector<Pair> pairs;            // sorted
+};
+
+Turn Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
+  const auto& range = truth.scan.columns.range;
+  if (label.size() != range.size() || truth.object.size() != range.size()) throw std::logic_error("ScoreTurn: labels and cells do not agree");
+  std::map<std::int32_t, ObjectTurn> by_id;
+  std::int32_t max_label = 0;
+  for (std::size_t cell = 0; cell < range.size(); ++cell) {
+    if (range[cell] == 0 || label[cell] == kNotJudged) continue;
+    max_label = std::max(max_label, label[cell]);
+    if (truth.object[cell] <= 0) continue;
+    auto& object = by_id[truth.object[cell]];
+    object.id = truth.object[cell];
+    ++object.num_returns;
+    object.nearest_m = std::min(object.nearest_m, range[cell] * truth.scan.head.range_unit_m);
+  }
+  Turn turn;
+  std::map<std::int32_t, std::size_t> index_of;
+  for (const auto& [id, object] : by_id) {
+    index_of[id] = turn.objects.size();
+    turn.objects.push_back(object);
+  }
+  turn.segments.resize(static_cast<std::size_t>(max_label));
+  for (std::size_t cell = 0; cell < range.size(); ++cell) {
+    if (range[cell] == 0 || label[cell] <= 0) continue;
+    auto& segment = turn.segments[static_cast<std::size_t>(label[cell] - 1)];
+    ++segment.num_returns;
+    if (truth.object[cell] > 0) {
+      turn.pairs.emplace_back(static_cast<std::size_t>(label[cell] - 1), index_of.at(truth.object[cell]));
+    } else {
+      ++(truth.object[cell] == kOwnVesselObject ? segment.num_own_vessel : segment.num_none);
+    }
+  }
+  std::ranges::sort(turn.pairs);
+  return turn;
+}
+
+// Calls for each pair of segment and object that share returns, segment by segment, with their number.
+template <typename Handler>
+void ForEachOverlap(Turn& turn, Handler handle) {
+  for (auto begin = turn.pairs.begin(); begin != turn.pairs.end();) {
+    const auto end = std::find_if(begin, turn.pairs.end(), [&](const Pair& pair) { return pair != *begin; });
+    const auto [segment, object] = *begin;
+    handle(turn.segments[segment], turn.objects[object], static_cast<std::int64_t>(end - begin), segment);
+    begin = end;
+  }
+}
+
+void Compare(Turn& turn, const std::vector<bool>& is_sure) {
+  ForEachOverlap(turn, [&](SegmentTurn& segment, ObjectTurn& object, std::int64_t num_both, std::size_t index) {
+    const double iou = static_cast<double>(num_both) / static_cast<double>(object.num_returns + segment.num_returns - num_both);
+    object.iou = std::max(object.iou, iou);
+    if (is_sure.empty() || is_sure.at(index)) object.sure_iou = std::max(object.sure_iou, iou);
+    if (kLeastPartsOfObject * num_both >= object.num_returns) {
+      ++object.num_parts;
+      ++segment.num_parts;
+    }
+    segment.num_of_objects += num_both;
+    segment.num_of_majority = std::max(segment.num_of_majority, num_both);
+  });
+}
+
+std::int64_t NumTruePositives(const Turn& turn) {
+  std::int64_t count = 0;
+  for (const auto& segment : turn.segments) {
+    // Of equals the object with the least id takes it; which one it is does not change the number.
+    if (segment.num_of_majority >= std::max(segment.num_own_vessel, segment.num_none)) count += segment.num_of_majority;
+  }
+  return count;
+}
+
+}  // namespace
+
+Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
+  Turn turn = Count(truth, labelling.label);
+  Compare(turn, labelling.is_sure);
+  Score score;
+  score.num_turns = 1;
+  std::int64_t num_water = 0;
+  for (const auto& object : turn.objects) {
+    const auto& about = truth.objects.at(object.id);
+    score.sum_iou += object.iou;
+    score.sum_sure_iou += object.sure_iou;
+    if (about.is_in_water) {
+      score.sum_water_iou += object.iou;
+      ++num_water;
+    }
+    auto& of_kind = score.iou_by_kind[about.kind];
+    ++of_kind.first;
+    of_kind.second += object.iou;
+    const int bin = static_cast<int>(object.nearest_m / Score::kRangeBinM);
+    auto& recall = score.recall_by_range[bin];
+    ++recall.first;
+    recall.second += object.iou >= kFoundIou ? 1 : 0;
+    auto& by_range = score.iou_by_range[bin];
+    ++by_range.first;
+    by_range.second += object.iou;
+    score.num_over_segmented += object.num_parts >= 2 ? 1 : 0;
+    score.num_returns += object.num_returns;
+  }
+  score.num_object_turns = static_cast<std::int64_t>(turn.objects.size());
+  if (!turn.objects.empty()) {
+    score.num_turns_with_object = 1;
+    score.sum_iou /= static_cast<double>(turn.objects.size());
+    score.sum_sure_iou /= static_cast<double>(turn.objects.size());
+  }
+  if (num_water > 0) {
+    score.num_turns_with_water_object = 1;
+    score.sum_water_iou /= static_cast<double>(num_water);
+  }
+  for (std::size_t i = 0; i < turn.segments.size(); ++i) {
+    const auto& segment = turn.segments[i];
+    if (segment.num_returns == 0) continue;
+    ++score.num_segments;
+    score.num_under_segmented += segment.num_parts >= 2 ? 1 : 0;
+    if (segment.num_of_objects > 0) continue;
+    ++score.num_false_segments;
+    score.num_sure_false_segments += labelling.is_sure.empty() || labelling.is_sure.at(i) ? 1 : 0;
+  }
+  score.num_labelled_returns = NumTruePositives(turn);
+  return score;
+}
+
+}  // namespace lookout::eval

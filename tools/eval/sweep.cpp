@@ -1,0 +1,139 @@
+#include "tools/eval/sweep.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <google/protobuf/descriptor.h>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "common/config/text_config.hpp"
+#include "config/schema/segmenter.pb.h"
+#include "services/segmenter/params.hpp"
+#include "tools/eval/methods.hpp"
+#include "tools/eval/table.hpp"
+
+namespace lookout::eval {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+
+const std::vector<std::pair<std::string, std::string>>& ShortNames() {
+  static const std::vector<std::pair<std::string, std::string>> kShortNames{{"e1", "e1_cosine"}, {"e2", "e2_angle_deg"}, {"e3", "e3_distance_m"}};
+  return kShortNames;
+}
+
+bool IsNumeric(const FieldDescriptor& field) {
+  return !field.is_repeated() && (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE || field.cpp_type() == FieldDescriptor::CPPTYPE_INT32);
+}
+
+const FieldDescriptor& FieldOf(const std::string& name) {
+  std::string full_name = name;
+  for (const auto& [short_name, meant] : ShortNames()) {
+    if (name == short_name) full_name = meant;
+  }
+  const auto& schema = *config::Segmenter::descriptor();
+  const auto* field = schema.FindFieldByName(full_name);
+  if (field != nullptr && IsNumeric(*field)) return *field;
+  std::string names = "e1, e2, e3";
+  for (int i = 0; i < schema.field_count(); ++i) {
+    if (IsNumeric(*schema.field(i))) names += ", " + schema.field(i)->name();
+  }
+  throw std::invalid_argument("--sweep: no such number in the segmenter's config: " + name + " (there are: " + names + ")");
+}
+
+double ToNumber(const std::string& sweep, const std::string& text) {
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    throw std::invalid_argument("--sweep " + sweep + ": not a number: " + text);
+  }
+  return value;
+}
+
+// Six digits are more than any step needs, and hide that 0.6 + 0.05 + 0.05 is not quite 0.7.
+std::string ValueText(double value) {
+  constexpr int kDecimals = 6;
+  std::string text = Number(value, kDecimals);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
+}  // namespace
+
+Sweep ParseSweep(const std::string& text) {
+  const auto equals = text.find('=');
+  const auto first_colon = text.find(':', equals);
+  const auto second_colon = first_colon == std::string::npos ? first_colon : text.find(':', first_colon + 1);
+  if (equals == std::string::npos || second_colon == std::string::npos) {
+    throw std::invalid_argument("--sweep " + text + ": must be FIELD=FROM:TO:STEP");
+  }
+  Sweep sweep;
+  const auto& field = FieldOf(text.substr(0, equals));
+  sweep.field = field.name();
+  const double from = ToNumber(text, text.substr(equals + 1, first_colon - equals - 1));
+  const double to = ToNumber(text, text.substr(first_colon + 1, second_colon - first_colon - 1));
+  const double step = ToNumber(text, text.substr(second_colon + 1));
+  if (!(step > 0.0) || to < from) throw std::invalid_argument("--sweep " + text + ": FROM must not be above TO, and STEP must be above 0");
+  constexpr double kRounding = 1e-9;  // of a step, so that 0.95 is reached from 0.6 in steps of 0.05
+  const double count = std::floor((to - from) / step + kRounding) + 1.0;
+  if (count > kMaxSweepValues) throw std::invalid_argument("--sweep " + text + ": more than " + std::to_string(kMaxSweepValues) + " values");
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    const double value = from + i * step;
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_INT32 && value != std::round(value)) {
+      throw std::invalid_argument("--sweep " + text + ": " + field.name() + " takes whole numbers only");
+    }
+    sweep.values.push_back(value);
+  }
+  return sweep;
+}
+
+segmenter::Params ParamsWith(const Boat& boat, const std::string& field, double value) {
+  const auto file = boat.config_folder / "segmenter.txtpb";
+  config::Segmenter message;
+  config::LoadText(file, message);
+  const auto* descriptor = config::Segmenter::descriptor()->FindFieldByName(field);
+  message.GetReflection()->ClearField(&message, descriptor);
+  // By way of the text, so that the loader checks the value as it would check a file.
+  config::Segmenter checked;
+  config::ParseText(message.ShortDebugString() + " " + field + ": " + ValueText(value), "--sweep " + field + "=" + ValueText(value), checked);
+  return segmenter::ToParams(checked, boat.facts, file);
+}
+
+Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::ostream* progress_out) {
+  Methods methods;
+  for (const double value : sweep.values) {
+    methods.push_back(std::make_unique<SegmenterMethod>(ValueText(value), ParamsWith(boat, sweep.field, value)));
+  }
+  Judge judge(methods);
+  Progress progress(progress_out, static_cast<std::int64_t>(plan.scenes.size()) * plan.num_seeds);
+  ForEachTurn(plan, boat, progress, [&judge](const TurnPlace& place, const LabelledScan& truth) { judge.Add(place, truth); });
+
+  Curve curve{"Sweep of " + sweep.field, sweep.field, "mIoU, %", {}, ""};
+  double best_percent = -1.0;
+  std::string best;
+  for (const auto& scene : plan.scenes) {
+    Curve::Line line{SceneLabel(scene), {}};
+    for (std::size_t i = 0; i < sweep.values.size(); ++i) {
+      const auto& by_scene = judge.results()[i].by_scene;
+      const auto found = by_scene.find(line.name);
+      if (found != by_scene.end() && found->second.num_turns_with_object > 0) {
+        line.points.emplace_back(sweep.values[i], 100.0 * MeanIou(found->second));
+      }
+    }
+    if (!line.points.empty()) curve.lines.push_back(std::move(line));
+  }
+  for (std::size_t i = 0; i < sweep.values.size() && !curve.lines.empty(); ++i) {
+    double sum_percent = 0.0;
+    for (const auto& line : curve.lines) sum_percent += line.points[i].second;
+    const double mean_percent = sum_percent / static_cast<double>(curve.lines.size());
+    if (mean_percent <= best_percent) continue;
+    best_percent = mean_percent;
+    best = ValueText(sweep.values[i]);
+  }
+  if (!best.empty()) curve.note = "Best on the mean of the scenes at " + best + ": " + Number(best_percent, 1) + " %.";
+  return curve;
+}
+
+}  // namespace lookout::eval
