@@ -10,6 +10,7 @@
 #include "common/bus/decode.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tests/fuzz/packet_script.hpp"
+#include "tests/unit/eval_readers/cloud_text.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
@@ -337,6 +338,29 @@ void WritePatches(const Folder& folder) {
   }
 }
 
+// One input is a PCD file, or points and then their labels.
+void WritePointFiles(const Folder& folder) {
+  using namespace eval::test;
+  const std::string text = "1 2 3 7\n-4.5 nan 6 0\n1e1 2 3 7\n";
+  folder.Write("text.pcd", PcdHeaderText(3, "x y z label", "4 4 4 4", "F F F U", "ascii") + text);
+  folder.Write("order.pcd", PcdHeaderText(3, "label z intensity x y", "2 8 4 4 4", "I F F F F", "ascii") + "1 2 3 4 5\n2 3 4 5 6\n3 4 5 6 7\n");
+  std::string binary = PcdHeaderText(40, "x y z _ label", "4 4 8 1 4", "F F F U U", "binary");
+  std::string points;
+  std::string labels;
+  for (int i = 0; i < 40; ++i) {
+    const auto value = static_cast<float>(i);
+    Append(binary, value);
+    Append(binary, 10.0F);
+    Append(binary, 0.25 * i);
+    Append<std::uint8_t>(binary, 0);
+    Append(binary, i % 3);
+    points += KittiPoint(10.0F, 0.1F * value, static_cast<float>(i % 4));
+    labels += KittiLabel(10, static_cast<std::uint16_t>(i % 3));
+  }
+  folder.Write("binary.pcd", binary);
+  folder.Write("kitti", points + labels);
+}
+
 void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(boats)) {
     if (entry.path().extension() != ".txtpb") continue;
@@ -362,6 +386,7 @@ int main(int argc, char** argv) try {
   WriteMessages(Folder(root / "fuzz_message"));
   WriteScans(Folder(root / "fuzz_segmenter"));
   WritePatches(Folder(root / "fuzz_georeferencer"));
+  WritePointFiles(Folder(root / "fuzz_point_file"));
   WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
   return 0;
 } catch (const std::exception& error) {
