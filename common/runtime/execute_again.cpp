@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
@@ -25,7 +25,9 @@ void CloseAllAtExecution() {
   // Before Linux 5.11.
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", error)) {
-    const int descriptor = std::atoi(entry.path().filename().c_str());
+    const std::string name = entry.path().filename().string();
+    int descriptor = -1;
+    std::from_chars(name.data(), name.data() + name.size(), descriptor);
     if (descriptor >= kFirstAfterStandardError) fcntl(descriptor, F_SETFD, FD_CLOEXEC);
   }
 }
