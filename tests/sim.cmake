@@ -3,10 +3,10 @@ lookout_test(NAME unit_sim
                      unit/sim/scene_file_test.cpp unit/sim/sea_test.cpp unit/sim/traffic_test.cpp
                      unit/sim/lidar_test.cpp unit/sim/effects_test.cpp unit/sim/clutter_test.cpp unit/sim/truth_log_test.cpp unit/sim/simulation_test.cpp unit/sim/pcap_sink_test.cpp
                      unit/sim/faults_test.cpp
-             LINKS lookout_sim lookout_wire pcap TIMEOUT 120)
+             LINKS lookout_sim lookout_wire pcap TIMEOUT 300)
 lookout_test(NAME property_vlp16_faults SOURCES property/vlp16_faults_test.cpp LINKS lookout_sim lookout_vlp16 lookout_vlp16_io TIMEOUT 180)
 lookout_bench(NAME bench_sim SOURCES bench/sim_bench.cpp LINKS lookout_sim lookout_config)
 lookout_test(NAME unit_sim_navigation
              SOURCES unit/sim/fault_plan_test.cpp unit/sim/clock_faults_test.cpp unit/sim/imu_test.cpp unit/sim/navigation_test.cpp unit/sim/nmea_test.cpp
-             LINKS lookout_sim lookout_navigator_core lookout_vlp16_core TIMEOUT 120)
+             LINKS lookout_sim lookout_navigator_core lookout_vlp16_core TIMEOUT 300)
 lookout_test(NAME property_vlp16_clock_faults SOURCES property/vlp16_clock_faults_test.cpp LINKS lookout_sim lookout_vlp16_core TIMEOUT 180)
