@@ -4,8 +4,8 @@
 #include <map>
 #include <random>
 
-#include "services/segmenter/core/component_clustering.hpp"
-#include "services/segmenter/core/component_labelling.hpp"
+#include "services/segmenter/core/paper/component_clustering.hpp"
+#include "services/segmenter/core/paper/component_labelling.hpp"
 #include "services/segmenter/core/footprint.hpp"
 #include "services/segmenter/core/union_find.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"

@@ -28,6 +28,7 @@ std::vector<FootprintPoint> SimplifyHull(std::vector<FootprintPoint> hull);
 
 /// 256 corners are 3 kB of a message of 120 kB.
 inline constexpr std::size_t kMaxHullCorners = 256;
+inline constexpr std::size_t kMaxWaterlineCorners = 256;
 
 struct Rectangle {
   float length_m = 0.0F;  // longer side

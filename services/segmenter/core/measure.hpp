@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/core/utime.hpp"
-#include "services/segmenter/core/breadth_first_search.hpp"
+#include "services/segmenter/core/paper/breadth_first_search.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
 
@@ -19,23 +19,48 @@ struct HullCorner {
   std::int32_t time_us = 0;  // of the return at this corner, since ScanHead::time, rounded down
 };
 
+/// How far one turn lets a segment be believed.
+enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
+
+/// Why a segment is tentative. Bits as on the wire.
+enum Ground : std::int32_t {
+  kFewReturns = 1,  // a buoy's one return and a drop of spray look the same
+  kScattered = 2,   // most beams between its ends went through it
+  kAtSurface = 4,   // near, and hardly higher than the water: foam, a glint, or a log awash
+};
+
+enum class SegmentKind : std::int32_t {
+  kObstacle = 0,
+  kLand = 1,  // shore, island, quay, pier
+};
+
 /// One obstacle in the lidar frame.
 struct Segment {
   Utime time;  // mean of the times of its returns, rounded down
   std::int32_t id = 0;
+  Confidence confidence = Confidence::kSure;
+  std::int32_t grounds = 0;  // bits of Ground; 0 where it is sure
+  SegmentKind kind = SegmentKind::kObstacle;
   std::int32_t num_points = 0;
   Point centroid;
   Point nearest;  // return nearest to the sensor; of equals the first
   Utime nearest_time;
   Point top;  // highest return along the vessel's up axis; of equals the first
+  // Box around its footprint.
+  float box_center_x_m = 0.0F;
+  float box_center_y_m = 0.0F;
   float length_m = 0.0F;
   float width_m = 0.0F;
   float length_azimuth_rad = 0.0F;
   float min_z_m = 0.0F;
   float max_z_m = 0.0F;
+  std::int32_t min_reflectivity = 0;
   float mean_reflectivity = 0.0F;
   std::int32_t max_reflectivity = 0;
-  std::vector<HullCorner> hull;  // counter-clockwise, 1 to kMaxHullCorners
+  float seen_share = 1.0F;             // of the columns from its first to its last; in the others something nearer hides it, or nothing came back
+  std::vector<HullCorner> hull;        // counter-clockwise, 1 to kMaxHullCorners
+  std::vector<HullCorner> waterline;   // of land: its nearest return in each direction, from left to right as the lidar sees it, at most
+                                       // kMaxWaterlineCorners; empty for others
 };
 
 /// @param segments  groups of the returns; group i gets the id i + 1

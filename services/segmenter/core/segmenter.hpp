@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "services/segmenter/core/component_clustering.hpp"
-#include "services/segmenter/core/component_labelling.hpp"
+#include "services/segmenter/core/paper/component_clustering.hpp"
+#include "services/segmenter/core/paper/component_labelling.hpp"
 #include "services/segmenter/core/measure.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"

@@ -1,4 +1,4 @@
-#include "services/segmenter/core/component_labelling.hpp"
+#include "services/segmenter/core/paper/component_labelling.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "services/segmenter/core/range_image.hpp"
+#include "services/segmenter/core/paper/range_image.hpp"
 
 namespace lookout::eval {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/segmenter/core/breadth_first_search.hpp"
+#include "services/segmenter/core/paper/breadth_first_search.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "tools/eval/method.hpp"
 

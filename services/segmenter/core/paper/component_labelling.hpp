@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "services/segmenter/core/breadth_first_search.hpp"
-#include "services/segmenter/core/range_image.hpp"
+#include "services/segmenter/core/paper/breadth_first_search.hpp"
+#include "services/segmenter/core/paper/range_image.hpp"
 
 namespace lookout::segmenter {
 

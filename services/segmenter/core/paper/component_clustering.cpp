@@ -1,4 +1,4 @@
-#include "services/segmenter/core/component_clustering.hpp"
+#include "services/segmenter/core/paper/component_clustering.hpp"
 
 #include <algorithm>
 #include <array>

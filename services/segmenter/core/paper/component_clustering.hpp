@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/core/angles.hpp"
-#include "services/segmenter/core/breadth_first_search.hpp"
+#include "services/segmenter/core/paper/breadth_first_search.hpp"
 #include "services/segmenter/core/returns.hpp"
 
 namespace lookout::segmenter {

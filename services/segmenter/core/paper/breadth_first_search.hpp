@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "common/core/angles.hpp"
-#include "services/segmenter/core/range_image.hpp"
+#include "services/segmenter/core/groups.hpp"
+#include "services/segmenter/core/paper/range_image.hpp"
 #include "services/segmenter/core/returns.hpp"
 
 namespace lookout::segmenter {
@@ -15,14 +16,6 @@ namespace lookout::segmenter {
 struct SearchParams {
   double angle_rad = DegToRad(10.0);
   double distance_m = 1.0;
-};
-
-/// Groups of returns, numbered from 0.
-struct Groups {
-  static constexpr std::int32_t kNone = -1;
-
-  std::vector<std::int32_t> of_return;  // [returns] kNone = in no group
-  std::int32_t count = 0;
 };
 
 /// Whether two returns of neighbouring beams are of one surface: beta > angle or distance < distance_m (METHOD.md, the paper's step 3).

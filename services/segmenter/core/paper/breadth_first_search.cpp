@@ -1,4 +1,4 @@
-#include "services/segmenter/core/breadth_first_search.hpp"
+#include "services/segmenter/core/paper/breadth_first_search.hpp"
 
 namespace lookout::segmenter {
 

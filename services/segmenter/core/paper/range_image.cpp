@@ -1,4 +1,4 @@
-#include "services/segmenter/core/range_image.hpp"
+#include "services/segmenter/core/paper/range_image.hpp"
 
 #include <algorithm>
 #include <cmath>

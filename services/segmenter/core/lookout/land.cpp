@@ -1,0 +1,325 @@
+#include "services/segmenter/core/lookout/land.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "services/segmenter/core/lookout/run_links.hpp"
+
+namespace lookout::segmenter {
+
+namespace {
+
+constexpr std::int32_t kNoLand = PieceTable::kNone;
+
+// Straight pieces.
+constexpr double kLeastStraightM = 1.5;
+constexpr double kLeastStraightSumM = 5.0;  // of the two that are to be in line
+constexpr double kStraightOffM = 0.2;
+constexpr double kInLineCosine = 0.990;  // 8 degrees
+constexpr Reach kInLineOff{0.25, 0.01};  // of the middle of one off the line through the other, by their distance
+constexpr double kHiddenM = 0.2;         // by which what hides a line is nearer than it
+constexpr int kFreeColumns = 2;          // between pieces in line that need not be hidden, and a tenth of them
+constexpr int kFreeShare = 10;
+
+// The water's edge.
+constexpr std::int32_t kLeastShoreReturns = 10;
+constexpr double kBeforeM = 0.3;              // by which what stands before a shore is nearer than it on both sides
+constexpr double kGreatestBeforeShare = 0.8;  // of the length of land: what is longer is itself a shore
+constexpr double kLeastShoreShare = 0.6;      // of the length of land that its fragments fill
+
+// What is of land.
+constexpr double kWallOffM = 0.5;   // off its line at most
+constexpr float kDeepM = 2.0F;      // from the nearest to the farthest return in a column
+constexpr int kDeepPercent = 30;    // of the columns of land
+constexpr int kBehindPercent = 70;  // of the columns of a piece
+constexpr int kNearColumns = 3;
+constexpr double kLeastTreeM = 0.8;  // wide: a mast is no tree
+constexpr int kMaxRounds = 6;
+
+double Distance(const LevelPoint& one, const LevelPoint& other) { return std::sqrt(double{SquaredPlanDistance(one, other)}); }
+
+double Distance3d(const LevelPoint& one, const LevelPoint& other) {
+  const double up_m = double{one.height_m} - other.height_m;
+  return std::sqrt(SquaredPlanDistance(one, other) + up_m * up_m);
+}
+
+}  // namespace
+
+void LandFinder::Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+  JoinInLine(grid, pieces);
+  pieces.Settle(grid, runs);
+  FindShores(grid, runs, pieces);
+  pieces.Settle(grid, runs);
+  for (const std::int32_t root : pieces.roots()) {
+    if (pieces.FactsOf(root).length_m >= params_.land_length_m) pieces.MarkLand(root);
+  }
+  pieces.Settle(grid, runs);
+  for (int round = 0; round < kMaxRounds && TakeIn(grid, pieces); ++round) pieces.Settle(grid, runs);
+  JoinLand(grid, pieces);
+  pieces.Settle(grid, runs);
+}
+
+void LandFinder::JoinInLine(const TurnGrid& grid, PieceTable& pieces) {
+  candidates_.clear();
+  for (const std::int32_t root : pieces.roots()) {
+    const PieceFacts& facts = pieces.FactsOf(root);
+    if (facts.length_m >= kLeastStraightM && facts.off_m <= kStraightOffM) candidates_.push_back(root);
+  }
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    const PieceFacts& one = pieces.FactsOf(candidates_[i]);
+    for (std::size_t j = i + 1; j < candidates_.size(); ++j) {
+      const PieceFacts& other = pieces.FactsOf(candidates_[j]);
+      if (std::abs(one.direction.dot(other.direction)) < kInLineCosine || one.length_m + other.length_m < kLeastStraightSumM) continue;
+      const bool is_one_longer = one.length_m >= other.length_m;
+      const PieceFacts& longer = is_one_longer ? one : other;
+      const PieceFacts& shorter = is_one_longer ? other : one;
+      const Eigen::Vector2d between_m = shorter.mean_m - longer.mean_m;
+      const double off_m = std::abs(longer.direction.x() * between_m.y() - longer.direction.y() * between_m.x());
+      if (off_m > kInLineOff.At(between_m.norm()) || SharedColumns(one.arc, other.arc, grid.num_columns()) > 0) continue;
+      if (IsHiddenBetween(grid, pieces, longer, shorter)) pieces.Join(candidates_[i], candidates_[j]);
+    }
+  }
+}
+
+bool LandFinder::IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const {
+  const int num_columns = grid.num_columns();
+  const auto free_between = [num_columns](const Arc& from, const Arc& to) {  // going up in columns
+    const int begin = (from.first + from.num) % num_columns;
+    return Arc{begin, (to.first - begin + num_columns) % num_columns};
+  };
+  const Arc after = free_between(line.arc, other.arc);
+  const Arc before = free_between(other.arc, line.arc);
+  const Arc between = after.num <= before.num ? after : before;
+  if (between.num > num_columns / 4) return false;
+  const Eigen::Vector2d normal(-line.direction.y(), line.direction.x());
+  const double line_m = line.mean_m.dot(normal);
+  int num_open = 0;
+  for (int i = 0; i < between.num; ++i) {
+    bool is_hidden = false;
+    for (const OutlineEntry& entry : pieces.InColumn(grid.Wrap(between.first + i))) {
+      const LevelPoint& point = grid.PointOf(entry.nearest);
+      // The beam from the lidar through this return meets the line at t times its distance.
+      const double t = line_m / (normal.x() * point.x_m + normal.y() * point.y_m);
+      is_hidden = is_hidden || (t > 0.0 && point.range_m <= t * point.range_m - kHiddenM);
+    }
+    num_open += is_hidden ? 0 : 1;
+  }
+  return num_open <= kFreeColumns + between.num / kFreeShare;
+}
+
+void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+  chains_.Reset(static_cast<std::size_t>(runs.size()));
+  for (int line = 0; line < grid.num_lines(); ++line) {
+    ForEachFollowing(grid, runs, line, [&](std::int32_t one, std::int32_t other) {
+      const LevelPoint& from = grid.PointOf(LastReturn(grid, runs[one]));
+      const LevelPoint& to = grid.PointOf(FirstReturn(grid, runs[other]));
+      if (Distance3d(from, to) <= params_.shore_gap.At(std::min(from.range_m, to.range_m))) chains_.Join(one, other);
+    });
+    // Runs by chain; within one they stay in order.
+    const std::int32_t first_run = runs.FirstOfLine(line);
+    order_.clear();
+    for (std::size_t i = 0; i < runs.OfLine(line).size(); ++i) order_.push_back(first_run + static_cast<std::int32_t>(i));
+    std::ranges::sort(order_, {}, [this](std::int32_t run) { return std::array{chains_.Find(run), run}; });
+    for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
+      std::int32_t num_returns = 0;
+      for (end = begin; end < order_.size() && chains_.Find(order_[end]) == chains_.Find(order_[begin]); ++end) num_returns += runs[order_[end]].length;
+      if (num_returns < kLeastShoreReturns) continue;
+      chain_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin), order_.begin() + static_cast<std::ptrdiff_t>(end));
+      TakeChain(grid, runs, pieces);
+    }
+  }
+}
+
+void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+  // From the widest gap on.
+  const auto gap_before = [&](std::size_t i) {
+    const Run& before = runs[chain_[i > 0 ? i - 1 : chain_.size() - 1]];
+    const int gap = runs[chain_[i]].first - (before.first + before.length);
+    return gap < 0 ? gap + grid.num_columns() : gap;
+  };
+  std::size_t start = 0;
+  for (std::size_t i = 1; i < chain_.size(); ++i) {
+    if (gap_before(i) > gap_before(start)) start = i;
+  }
+  std::ranges::rotate(chain_, chain_.begin() + static_cast<std::ptrdiff_t>(start));
+
+  fragments_.clear();
+  for (const std::int32_t run : chain_) {
+    const std::int32_t piece = pieces.RootOf(pieces.OfRun(run));
+    if (fragments_.empty() || fragments_.back().piece != piece) fragments_.push_back({piece, run, run, false});
+    fragments_.back().last_run = run;
+  }
+  const auto first_of = [&](const Fragment& fragment) -> const LevelPoint& { return grid.PointOf(FirstReturn(grid, runs[fragment.first_run])); };
+  const auto last_of = [&](const Fragment& fragment) -> const LevelPoint& { return grid.PointOf(LastReturn(grid, runs[fragment.last_run])); };
+  double filled_m = 0.0;
+  double sum_x_m = 0.0;
+  double sum_y_m = 0.0;
+  int num_ends = 0;
+  for (std::size_t i = 0; i < fragments_.size(); ++i) {
+    Fragment& fragment = fragments_[i];
+    if (pieces.FactsOf(fragment.piece).length_m <= kGreatestBeforeShare * params_.land_length_m) {
+      const bool is_before_last = i == 0 || first_of(fragment).range_m < last_of(fragments_[i - 1]).range_m - kBeforeM;
+      const bool is_before_next = i + 1 == fragments_.size() || last_of(fragment).range_m < first_of(fragments_[i + 1]).range_m - kBeforeM;
+      fragment.is_before = is_before_last && is_before_next;
+    }
+    if (fragment.is_before) continue;
+    filled_m += Distance(first_of(fragment), last_of(fragment));
+    for (const LevelPoint* end : {&first_of(fragment), &last_of(fragment)}) {
+      sum_x_m += end->x_m;
+      sum_y_m += end->y_m;
+      ++num_ends;
+    }
+  }
+  if (filled_m < kLeastShoreShare * params_.land_length_m) return;
+  double reach_m = 0.0;
+  for (const Fragment& fragment : fragments_) {
+    if (fragment.is_before) continue;
+    for (const LevelPoint* end : {&first_of(fragment), &last_of(fragment)}) {
+      reach_m = std::max(reach_m, std::hypot(end->x_m - sum_x_m / num_ends, end->y_m - sum_y_m / num_ends));
+    }
+  }
+  if (2.0 * reach_m < params_.land_length_m) return;
+  std::int32_t last = kNoLand;
+  for (const Fragment& fragment : fragments_) {
+    if (fragment.is_before) continue;
+    pieces.MarkLand(fragment.piece);
+    if (last != kNoLand) pieces.Join(last, fragment.piece);
+    last = fragment.piece;
+  }
+}
+
+bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
+  const auto num_pieces = static_cast<std::size_t>(pieces.size());
+  num_columns_of_.assign(num_pieces, 0);
+  num_deep_of_.assign(num_pieces, 0);
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    const auto seen = pieces.InColumn(column);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const std::int32_t root = pieces.RootOf(seen[i].piece);
+      if (!pieces.FactsOf(root).is_land) continue;
+      float nearest_m = std::numeric_limits<float>::infinity();
+      float farthest_m = 0.0F;
+      bool is_first = true;
+      for (std::size_t j = 0; j < seen.size(); ++j) {
+        if (pieces.RootOf(seen[j].piece) != root) continue;
+        is_first = is_first && j >= i;
+        nearest_m = std::min(nearest_m, grid.PointOf(seen[j].nearest).range_m);
+        farthest_m = std::max(farthest_m, grid.PointOf(seen[j].farthest).range_m);
+      }
+      if (!is_first) continue;
+      ++num_columns_of_[static_cast<std::size_t>(root)];
+      if (farthest_m - nearest_m > kDeepM) ++num_deep_of_[static_cast<std::size_t>(root)];
+    }
+  }
+  bool is_any_land = false;
+  takes_in_.assign(num_pieces, false);
+  for (const std::int32_t root : pieces.roots()) {
+    const PieceFacts& facts = pieces.FactsOf(root);
+    const auto at = static_cast<std::size_t>(root);
+    takes_in_[at] = facts.is_land && (facts.off_m >= kWallOffM || 100 * num_deep_of_[at] >= kDeepPercent * num_columns_of_[at]);
+    is_any_land = is_any_land || takes_in_[at];
+  }
+  if (!is_any_land) return false;
+  bool is_taken = false;
+  for (const std::int32_t root : pieces.roots()) {
+    if (pieces.FactsOf(root).is_land) continue;
+    std::int32_t land = LandBefore(grid, pieces, root);
+    if (land == kNoLand) land = LandBeside(grid, pieces, root);
+    if (land == kNoLand) continue;
+    pieces.Join(land, root);
+    is_taken = true;
+  }
+  return is_taken;
+}
+
+std::int32_t LandFinder::LandBefore(const TurnGrid& grid, PieceTable& pieces, std::int32_t root) {
+  double least_m = params_.behind_land.At(pieces.FactsOf(root).min_range_m);
+  std::int32_t land = kNoLand;
+  int num_seen = 0;
+  int num_behind = 0;
+  for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
+    for (const std::int32_t index : pieces.OutlineOf(piece)) {
+      const OutlineEntry& entry = pieces.Entry(index);
+      const float range_m = grid.PointOf(entry.nearest).range_m;
+      bool is_behind = false;
+      for (int step = -kNearColumns; step <= kNearColumns; ++step) {
+        for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(entry.column + step))) {
+          const std::int32_t other_root = pieces.RootOf(other.piece);
+          if (!TakesIn(other_root) || grid.PointOf(other.nearest).range_m >= range_m) continue;
+          is_behind = true;
+          const double gap_m = std::max(0.0, double{range_m} - grid.PointOf(other.farthest).range_m);
+          if (gap_m > least_m || (gap_m == least_m && land != kNoLand && other_root >= land)) continue;
+          least_m = gap_m;
+          land = other_root;
+        }
+      }
+      ++num_seen;
+      num_behind += is_behind ? 1 : 0;
+    }
+  }
+  return 100 * num_behind >= kBehindPercent * num_seen ? land : kNoLand;
+}
+
+std::int32_t LandFinder::LandBeside(const TurnGrid& grid, PieceTable& pieces, std::int32_t root) {
+  const PieceFacts& facts = pieces.FactsOf(root);
+  if (facts.max_height_m + params_.lidar_above_water_m <= params_.tall_m || facts.length_m < kLeastTreeM) return kNoLand;
+  double least_m = params_.beside_land.At(facts.min_range_m);
+  std::int32_t land = kNoLand;
+  const auto look_at = [&](const OutlineEntry& mine, int column) {
+    for (const OutlineEntry& other : pieces.InColumn(column)) {
+      const std::int32_t other_root = pieces.RootOf(other.piece);
+      if (!TakesIn(other_root)) continue;
+      for (const std::int32_t my_end : {mine.nearest, mine.farthest}) {
+        for (const std::int32_t other_end : {other.nearest, other.farthest}) {
+          const double distance_m = Distance(grid.PointOf(my_end), grid.PointOf(other_end));
+          if (distance_m > least_m || (distance_m == least_m && land != kNoLand && other_root >= land)) continue;
+          least_m = distance_m;
+          land = other_root;
+        }
+      }
+    }
+  };
+  const int window = grid.ColumnsOf(least_m, facts.min_range_m);
+  const int last_column = grid.Wrap(facts.arc.first + facts.arc.num - 1);
+  for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
+    for (const std::int32_t index : pieces.OutlineOf(piece)) {
+      const OutlineEntry& mine = pieces.Entry(index);
+      look_at(mine, mine.column);
+      // From its ends to both sides.
+      if (mine.column != facts.arc.first && mine.column != last_column) continue;
+      for (int step = 1; step <= window; ++step) {
+        look_at(mine, grid.Wrap(mine.column - step));
+        look_at(mine, grid.Wrap(mine.column + step));
+      }
+    }
+  }
+  return land;
+}
+
+void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
+  const auto is_land = [&](std::int32_t root) { return pieces.FactsOf(root).is_land; };
+  if (std::ranges::count_if(pieces.roots(), is_land) < 2) return;
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    for (const OutlineEntry& entry : pieces.InColumn(column)) {
+      const std::int32_t root = pieces.RootOf(entry.piece);
+      if (!is_land(root)) continue;
+      const LevelPoint& point = grid.PointOf(entry.nearest);
+      const double limit_m = params_.beside_land.At(point.range_m) / 2.0;
+      const int window = grid.ColumnsOf(limit_m, point.range_m);
+      bool goes_on = false;  // the same land: its next entry looks further
+      for (int step = 0; step <= window && !goes_on; ++step) {
+        for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(column + step))) {
+          const std::int32_t other_root = pieces.RootOf(other.piece);
+          goes_on = goes_on || (step > 0 && other_root == root);
+          if (other_root == root || !is_land(other_root)) continue;
+          const double least_m = std::min(Distance(point, grid.PointOf(other.nearest)), Distance(grid.PointOf(entry.farthest), grid.PointOf(other.nearest)));
+          if (std::min(least_m, Distance(point, grid.PointOf(other.farthest))) <= limit_m) pieces.Join(root, other_root);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace lookout::segmenter

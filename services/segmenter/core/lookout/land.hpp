@@ -1,0 +1,58 @@
+// The fourth step of the lookout method: land, walls and piers, and what is of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "services/segmenter/core/lookout/lookout_params.hpp"
+#include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/runs.hpp"
+#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/union_find.hpp"
+
+namespace lookout::segmenter {
+
+/// Finds land among the pieces, in this order:
+/// 1. Straight pieces in line with each other are one wall or pier, if whatever hides what lies between them is nearer than their line: a moored
+///    boat does not cut the wall behind it, and open water between two boats does not make them one.
+/// 2. A piece of `land_length_m` or more is land. So is the water's edge: runs of one ring that follow each other at most `shore_gap` apart over
+///    that length. What stands before both its neighbours there, as a kayak before a beach does, is no part of it.
+/// 3. Pieces that stand behind land in its own columns, at most `behind_land` from it, are of it: terraces and trees. So is what is tall and wide
+///    beside it, at most `beside_land` off. Straight walls and piers take nothing in this way: a boat may lie behind a pier.
+/// 4. Pieces of land at most half of `beside_land` apart along a ring are one.
+class LandFinder {
+ public:
+  explicit LandFinder(const LookoutParams& params) : params_(params) {}
+
+  void Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
+
+ private:
+  struct Fragment {
+    std::int32_t piece = 0;
+    std::int32_t first_run = 0;
+    std::int32_t last_run = 0;
+    bool is_before = false;  // nearer than both its neighbours
+  };
+
+  void JoinInLine(const TurnGrid& grid, PieceTable& pieces);
+  bool IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const;
+  void FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
+  void TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
+  bool TakeIn(const TurnGrid& grid, PieceTable& pieces);
+  std::int32_t LandBefore(const TurnGrid& grid, PieceTable& pieces, std::int32_t root);
+  std::int32_t LandBeside(const TurnGrid& grid, PieceTable& pieces, std::int32_t root);
+  bool TakesIn(std::int32_t root) const { return takes_in_[static_cast<std::size_t>(root)]; }
+  void JoinLand(const TurnGrid& grid, PieceTable& pieces);
+
+  LookoutParams params_;
+  UnionFind chains_;
+  std::vector<std::int32_t> order_;
+  std::vector<std::int32_t> chain_;
+  std::vector<Fragment> fragments_;
+  std::vector<std::int32_t> candidates_;
+  std::vector<bool> takes_in_;  // [pieces] land that is no straight wall
+  std::vector<std::int32_t> num_columns_of_;
+  std::vector<std::int32_t> num_deep_of_;
+};
+
+}  // namespace lookout::segmenter

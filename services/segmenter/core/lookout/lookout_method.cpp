@@ -1,0 +1,79 @@
+#include "services/segmenter/core/lookout/lookout_method.hpp"
+
+#include <algorithm>
+
+#include "services/segmenter/core/lookout/run_links.hpp"
+
+namespace lookout::segmenter {
+
+void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
+  grid_.Fill(scan, returns, R_vessel_lidar_);
+  runs_.Find(grid_, params_.link);
+  sets_of_runs_.Reset(static_cast<std::size_t>(runs_.size()));
+  LinkRuns(grid_, runs_, params_.link, sets_of_runs_);
+  pieces_.Build(grid_, runs_, sets_of_runs_);
+  land_.Find(grid_, runs_, pieces_);
+  objects_.JoinDocks(grid_, pieces_);
+  pieces_.Settle(grid_, runs_);
+  objects_.JoinObjects(grid_, runs_, pieces_);
+
+  piece_groups_.count = pieces_.size();
+  piece_groups_.of_return.resize(returns.size());
+  for (std::size_t i = 0; i < returns.size(); ++i) piece_groups_.of_return[i] = pieces_.OfRun(runs_.OfReturn(static_cast<std::int32_t>(i)));
+  root_of_piece_.resize(static_cast<std::size_t>(pieces_.size()));
+  for (std::int32_t piece = 0; piece < pieces_.size(); ++piece) root_of_piece_[static_cast<std::size_t>(piece)] = pieces_.RootOf(piece);
+  Judge();
+}
+
+void LookoutMethod::Judge() {
+  const auto num_pieces = static_cast<std::size_t>(pieces_.size());
+  facts_.assign(num_pieces, {});
+  spans_.assign(num_pieces, {});
+  const auto close = [](Span& span) {
+    if (span.line >= 0) span.num_beams += span.last - span.first + 1;
+  };
+  // Runs come line by line.
+  for (std::int32_t run = 0; run < runs_.size(); ++run) {
+    const std::int32_t root = root_of_piece_[static_cast<std::size_t>(pieces_.OfRun(run))];
+    Span& span = spans_[static_cast<std::size_t>(root)];
+    int first = runs_[run].first - pieces_.FactsOf(root).arc.first;
+    if (first < 0) first += grid_.num_columns();
+    const int last = first + runs_[run].length - 1;
+    if (span.line != runs_[run].line) {
+      close(span);
+      span.line = runs_[run].line;
+      span.first = first;
+      span.last = last;
+    } else {
+      span.first = std::min(span.first, first);
+      span.last = std::max(span.last, last);
+    }
+  }
+  // Columns of a group, each once however many of its pieces are in it.
+  num_seen_.assign(num_pieces, 0);
+  for (int column = 0; column < grid_.num_columns(); ++column) {
+    const auto seen = pieces_.InColumn(column);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const std::int32_t root = root_of_piece_[static_cast<std::size_t>(seen[i].piece)];
+      bool is_first = true;
+      for (std::size_t j = 0; j < i && is_first; ++j) is_first = root_of_piece_[static_cast<std::size_t>(seen[j].piece)] != root;
+      if (is_first) ++num_seen_[static_cast<std::size_t>(root)];
+    }
+  }
+  for (const std::int32_t root : pieces_.roots()) {
+    const auto at = static_cast<std::size_t>(root);
+    const PieceFacts& piece = pieces_.FactsOf(root);
+    close(spans_[at]);
+    GroupFacts& facts = facts_[at];
+    facts.is_land = piece.is_land;
+    facts.seen_share = static_cast<float>(num_seen_[at]) / static_cast<float>(std::max(1, piece.arc.num));
+    if (piece.is_land) continue;
+    if (piece.num_returns < params_.sure_returns) facts.grounds |= kFewReturns;
+    if (piece.num_returns < params_.sure_fill * spans_[at].num_beams) facts.grounds |= kScattered;
+    if (piece.min_range_m < params_.surface_range_m && piece.max_height_m + params_.lidar_above_water_m < params_.sure_height_m) {
+      facts.grounds |= kAtSurface;
+    }
+  }
+}
+
+}  // namespace lookout::segmenter

@@ -1,0 +1,71 @@
+// The lookout method: from the returns of a turn to its obstacles, on the lidar's own rings and columns.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "services/segmenter/core/groups.hpp"
+#include "services/segmenter/core/lookout/land.hpp"
+#include "services/segmenter/core/lookout/lookout_params.hpp"
+#include "services/segmenter/core/lookout/objects.hpp"
+#include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/runs.hpp"
+#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/union_find.hpp"
+#include "services/segmenter/core/measure.hpp"
+#include "services/segmenter/core/returns.hpp"
+#include "services/segmenter/core/scan.hpp"
+
+namespace lookout::segmenter {
+
+/// What is said of a group beside its returns.
+struct GroupFacts {
+  bool is_land = false;
+  std::int32_t grounds = 0;  // bits of Ground
+  float seen_share = 1.0F;   // of the columns from its first to its last: in the others something nearer hides it, or there is no return
+};
+
+/// Works on one turn after the other and keeps nothing of the last but its memory. Pure in what it gives: the same turn gives the same groups,
+/// whatever came before. Turning the scene by whole columns or mirroring it changes nothing but the numbers of the groups.
+class LookoutMethod {
+ public:
+  LookoutMethod(const LookoutParams& params, const Eigen::Matrix3d& R_vessel_lidar)
+      : params_(params), R_vessel_lidar_(R_vessel_lidar), land_(params), objects_(params) {}
+
+  /// Groups the returns; each is in one. Results hold until the next call.
+  /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a turn of that size.
+  void Group(const Scan& scan, std::span<const Return> returns);
+
+  /// Single pieces, and the piece that names the group of each.
+  const Groups& pieces() const { return piece_groups_; }
+  std::span<const std::int32_t> group_of_piece() const { return root_of_piece_; }
+  /// Of the group that this piece names.
+  const GroupFacts& FactsOf(std::int32_t root) const { return facts_[static_cast<std::size_t>(root)]; }
+
+ private:
+  void Judge();
+
+  LookoutParams params_;
+  Eigen::Matrix3d R_vessel_lidar_;
+  TurnGrid grid_;
+  RunTable runs_;
+  UnionFind sets_of_runs_;
+  PieceTable pieces_;
+  LandFinder land_;
+  ObjectJoiner objects_;
+  Groups piece_groups_;
+  std::vector<std::int32_t> root_of_piece_;
+  std::vector<GroupFacts> facts_;
+  struct Span {
+    std::int32_t line = -1;
+    std::int32_t first = 0;  // counted from the begin of the group's arc
+    std::int32_t last = 0;
+    std::int32_t num_beams = 0;  // of the lines before
+  };
+  std::vector<Span> spans_;
+  std::vector<std::int32_t> num_seen_;
+};
+
+}  // namespace lookout::segmenter

@@ -1,0 +1,54 @@
+// The fifth step of the lookout method: pieces that are of one object.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "services/segmenter/core/lookout/lookout_params.hpp"
+#include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/runs.hpp"
+#include "services/segmenter/core/lookout/turn_grid.hpp"
+
+namespace lookout::segmenter {
+
+/// Joins pieces that are not of land:
+/// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. Where more than a dozen thin things stand about, as
+///    in rain, nothing is taken for a post.
+/// 2. Two rounds: pieces side by side, at most `join` apart; and a piece that is seen over a nearer one, within its columns: the cabin over the hull,
+///    the mast behind the rail.
+/// Pieces of fewer than kSolidReturns returns join nothing together: a drop of spray beside a hull is of the hull only where it touches it.
+class ObjectJoiner {
+ public:
+  explicit ObjectJoiner(const LookoutParams& params) : params_(params) {}
+
+  void JoinDocks(const TurnGrid& grid, PieceTable& pieces);
+  void JoinObjects(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
+
+  static constexpr std::int32_t kSolidReturns = 4;
+
+ private:
+  struct Link {
+    std::int32_t one = 0;  // single pieces
+    std::int32_t other = 0;
+    double gap_m = 0.0;
+  };
+  struct Post {
+    std::int32_t root = 0;
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double range_m = 0.0;
+  };
+
+  void FindLinks(const TurnGrid& grid, PieceTable& pieces);
+  bool AreOfOneObject(const TurnGrid& grid, const PieceFacts& one, const PieceFacts& other, double gap_m) const;
+  void FindNeighbours(const Post& post);
+  void JoinRectangles(const Post& post, PieceTable& pieces) const;
+
+  LookoutParams params_;
+  std::vector<Link> links_;
+  std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
+  std::vector<Post> posts_;            // by x
+  std::vector<Post> neighbours_;
+};
+
+}  // namespace lookout::segmenter

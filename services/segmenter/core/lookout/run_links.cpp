@@ -1,0 +1,140 @@
+#include "services/segmenter/core/lookout/run_links.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lookout::segmenter {
+
+namespace {
+
+// A wall seen along at 5.7 degrees or more (sine 0.1): its returns are ten times as far apart as those of one that faces the lidar.
+constexpr double kLeastGrazingSine = 0.1;
+constexpr float kGreatestUnevenness = 2.5F;  // of two spacings that follow each other
+// Off the straight line: noise of the range, and some of the spacing.
+constexpr float kStraightM = 0.04F;
+constexpr float kStraightShare = 0.15F;
+constexpr int kGrazingColumns = 2;  // to the next return: one may have seen nothing
+
+class Linker {
+ public:
+  Linker(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) : grid_(grid), runs_(runs), link_(link), sets_(sets) {}
+
+  void LinkWithinLine(int line) {
+    ForEachFollowing(grid_, runs_, line, [this](std::int32_t one, std::int32_t other) { LinkEnds(one, other); });
+  }
+
+  // A run with those of another line: of its ring (another return of the shot) or of another ring.
+  void LinkAcross(std::int32_t index, int other_line) {
+    const Run& run = runs_[index];
+    const bool is_of_one_ring = grid_.RingOf(run.line) == grid_.RingOf(other_line);
+    const int window = is_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
+    const int num_places = std::min(run.length + 2 * window, grid_.num_columns());
+    std::int32_t joined = RunTable::kNone;
+    for (int step = 0; step < num_places; ++step) {
+      const int place = step - window;  // in the run, or beside it
+      const std::int32_t other_return = grid_.At(other_line, WrapFar(run.first + place));
+      if (other_return == TurnGrid::kNone) continue;
+      const std::int32_t other = runs_.OfReturn(other_return);
+      if (other == joined) continue;
+      if (sets_.Find(index) == sets_.Find(other)) {
+        joined = other;
+        continue;
+      }
+      const LevelPoint& point = grid_.PointOf(other_return);
+      const int end = std::min(run.length - 1, place + window);
+      for (int k = std::max(0, place - window); k <= end; ++k) {
+        if (!AreLinked(grid_.PointOf(ReturnOf(grid_, run, k)), point, is_of_one_ring)) continue;
+        sets_.Join(index, other);
+        joined = other;
+        break;
+      }
+    }
+  }
+
+  // Only the ends of runs: inside, neighbours are linked already.
+  void LinkGrazing(std::int32_t index) {
+    const Run& run = runs_[index];
+    LinkGrazingAt(run.line, run.first);
+    if (run.length > 1) LinkGrazingAt(run.line, grid_.Wrap(run.first + run.length - 1));
+  }
+
+ private:
+  bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool is_of_one_ring) const {
+    const double reach_m = link_.At(std::min(one.range_m, other.range_m));
+    double squared_m2 = SquaredPlanDistance(one, other);
+    if (is_of_one_ring) squared_m2 += double{one.height_m - other.height_m} * (one.height_m - other.height_m);
+    return squared_m2 <= reach_m * reach_m;
+  }
+
+  int WrapFar(int column) const { return grid_.Wrap(grid_.Wrap(column)); }
+
+  // The last columns of one with the first of the other that follows it.
+  void LinkEnds(std::int32_t one, std::int32_t other) {
+    if (sets_.Find(one) == sets_.Find(other)) return;
+    const Run& before = runs_[one];
+    const Run& after = runs_[other];
+    int gap = after.first - (before.first + before.length - 1);
+    while (gap <= 0) gap += grid_.num_columns();
+    for (int back = 0; back < before.length && gap + back <= kLinkColumns; ++back) {
+      const LevelPoint& from = grid_.PointOf(ReturnOf(grid_, before, before.length - 1 - back));
+      for (int on = 0; on < after.length && gap + back + on <= kLinkColumns; ++on) {
+        if (!AreLinked(from, grid_.PointOf(ReturnOf(grid_, after, on)), true)) continue;
+        sets_.Join(one, other);
+        return;
+      }
+    }
+  }
+
+  std::int32_t NextReturn(int line, int column, int direction) const {
+    for (int step = 1; step <= kGrazingColumns; ++step) {
+      const std::int32_t index = grid_.At(line, WrapFar(column + direction * step));
+      if (index != TurnGrid::kNone) return index;
+    }
+    return TurnGrid::kNone;
+  }
+
+  void LinkGrazingAt(int line, int column) {
+    const std::int32_t middle = grid_.At(line, column);
+    const std::int32_t before = NextReturn(line, column, -1);
+    const std::int32_t after = NextReturn(line, column, 1);
+    if (before == TurnGrid::kNone || after == TurnGrid::kNone || before == after) return;
+    const LevelPoint& at = grid_.PointOf(middle);
+    const LevelPoint& from = grid_.PointOf(before);
+    const LevelPoint& to = grid_.PointOf(after);
+    const float in_x_m = at.x_m - from.x_m;
+    const float in_y_m = at.y_m - from.y_m;
+    const float out_x_m = to.x_m - at.x_m;
+    const float out_y_m = to.y_m - at.y_m;
+    const float in_m = std::sqrt(in_x_m * in_x_m + in_y_m * in_y_m);
+    const float out_m = std::sqrt(out_x_m * out_x_m + out_y_m * out_y_m);
+    const float least_m = std::min(in_m, out_m);
+    const float greatest_m = std::max(in_m, out_m);
+    const double spacing_m = grid_.column_step_rad() / kLeastGrazingSine * at.range_m;
+    if (greatest_m > spacing_m || least_m <= 0.0F || greatest_m > kGreatestUnevenness * least_m) return;
+    if (in_x_m * out_x_m + in_y_m * out_y_m <= 0.0F) return;
+    const float off_m = std::abs(in_x_m * out_y_m - in_y_m * out_x_m) / greatest_m;
+    if (off_m > kStraightShare * least_m + kStraightM) return;
+    sets_.Join(runs_.OfReturn(before), runs_.OfReturn(middle));
+    sets_.Join(runs_.OfReturn(middle), runs_.OfReturn(after));
+  }
+
+  const TurnGrid& grid_;
+  const RunTable& runs_;
+  const Reach& link_;
+  UnionFind& sets_;
+};
+
+}  // namespace
+
+void LinkRuns(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
+  Linker linker(grid, runs, link, sets);
+  for (int line = 0; line < grid.num_lines(); ++line) linker.LinkWithinLine(line);
+  for (std::int32_t run = 0; run < runs.size(); ++run) {
+    const int ring = grid.RingOf(runs[run].line);
+    const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
+    for (int line = runs[run].line + 1; line < end; ++line) linker.LinkAcross(run, line);
+  }
+  for (std::int32_t run = 0; run < runs.size(); ++run) linker.LinkGrazing(run);
+}
+
+}  // namespace lookout::segmenter

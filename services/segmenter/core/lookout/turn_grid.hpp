@@ -1,0 +1,69 @@
+// A turn as the lookout method works on it: returns levelled, and found by line and column.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "services/segmenter/core/returns.hpp"
+#include "services/segmenter/core/scan.hpp"
+
+namespace lookout::segmenter {
+
+/// A return with the vessel's z axis up and the lidar at the origin: x and y are seen from above.
+struct LevelPoint {
+  float x_m = 0.0F;
+  float y_m = 0.0F;
+  float height_m = 0.0F;
+  float range_m = 0.0F;  // horizontal
+};
+
+inline float SquaredPlanDistance(const LevelPoint& one, const LevelPoint& other) {
+  const float x_m = one.x_m - other.x_m;
+  const float y_m = one.y_m - other.y_m;
+  return x_m * x_m + y_m * y_m;
+}
+
+/// Lines are the rings, from the lowest up, each once per return of a shot: line = ring x returns per shot + return. Columns close to a circle.
+class TurnGrid {
+ public:
+  static constexpr std::int32_t kNone = -1;
+
+  /// @param T_vessel_lidar  its rotation levels the returns
+  /// Cost: proportional to the cells. Allocates nothing once it has seen a turn of that size.
+  void Fill(const Scan& scan, std::span<const Return> returns, const Eigen::Matrix3d& R_vessel_lidar);
+
+  int num_lines() const { return num_lines_; }
+  int num_columns() const { return num_columns_; }
+  int num_layers() const { return num_layers_; }
+  int RingOf(int line) const { return line / num_layers_; }
+  /// The usual angle from a column to the next: the median round the circle, so that holes and the cut of the turn do not count.
+  double column_step_rad() const { return column_step_rad_; }
+
+  int Wrap(int column) const { return column < 0 ? column + num_columns_ : column < num_columns_ ? column : column - num_columns_; }
+  /// @param column  0 to num_columns() - 1
+  std::int32_t At(int line, int column) const {
+    return return_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column)];
+  }
+  const LevelPoint& PointOf(std::int32_t index) const { return points_[static_cast<std::size_t>(index)]; }
+  std::span<const LevelPoint> points() const { return points_; }
+  std::span<const Return> returns() const { return returns_; }
+
+  /// Columns that an arc of this length takes at this distance, rounded up; at most half of the circle.
+  int ColumnsOf(double length_m, double range_m) const;
+
+ private:
+  void MeasureColumnStep(std::span<const float> azimuth_rad);
+
+  int num_lines_ = 0;
+  int num_columns_ = 0;
+  int num_layers_ = 1;
+  double column_step_rad_ = 0.0;
+  std::vector<std::int32_t> return_at_;  // [lines x columns]
+  std::vector<LevelPoint> points_;       // [returns]
+  std::vector<float> steps_rad_;         // scratch
+  std::span<const Return> returns_;
+};
+
+}  // namespace lookout::segmenter
