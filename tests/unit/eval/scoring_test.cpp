@@ -153,6 +153,7 @@ TEST(Scoring, ReturnsThatAreNotJudgedDoNotCountAnywhere) {
   EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
   EXPECT_EQ(score.num_object_turns, 1);
   EXPECT_EQ(score.num_returns, 6);
+  EXPECT_EQ(score.num_not_judged, 18);
 }
 
 TEST(Scoring, CellsWithoutReturnDoNotCount) {
@@ -178,6 +179,41 @@ TEST(Scoring, RangeIsThatOfTheNearestReturn) {
   EXPECT_EQ(score.recall_by_range.size(), 2U);
   EXPECT_DOUBLE_EQ(score.iou_by_kind.at("kayak").second, 1.0);
   EXPECT_DOUBLE_EQ(score.iou_by_kind.at("dock").second, 0.0);
+}
+
+TEST(Scoring, WhatIsNearIsCountedByKindAtAnyConfidenceAndAtSure) {
+  // Kayaks 1 and 3 are near, 5 lies just beyond 25 m; dock 2 is near by its nearest return. Segment 3 is tentative.
+  auto one = MakeCase({{1, 1, 10.0}, {3, 3, 24.9}, {5, 5, 25.1}, {2, 2, 60.0}, {2, 0, 60.0}, {2, 0, 5.0}});
+  one.labelling.is_sure = {true, true, false, true, true};
+  const auto score = ScoreTurn(one.truth, one.labelling);
+  ASSERT_EQ(score.near_recall_by_kind.size(), 2U);
+  const auto& kayaks = score.near_recall_by_kind.at("kayak");
+  EXPECT_EQ(kayaks.num_object_turns, 2);
+  EXPECT_EQ(kayaks.num_found, 2);
+  EXPECT_EQ(kayaks.num_surely_found, 1);
+  const auto& docks = score.near_recall_by_kind.at("dock");
+  EXPECT_EQ(docks.num_object_turns, 1);
+  EXPECT_EQ(docks.num_found, 0) << "a third of it";
+  EXPECT_EQ(score.iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 3.0));
+  EXPECT_EQ(score.sure_iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 2.0));
+  EXPECT_EQ(score.recall_by_range.at(2), std::pair(std::int64_t{2}, std::int64_t{2}));
+  EXPECT_EQ(score.sure_recall_by_range.at(2), std::pair(std::int64_t{2}, std::int64_t{1}));
+  Score total = score;
+  total.Add(score);
+  EXPECT_EQ(total.near_recall_by_kind.at("kayak").num_surely_found, 2);
+  EXPECT_EQ(total.near_recall_by_kind.at("kayak").num_found, 4);
+  EXPECT_EQ(total.sure_recall_by_range.at(2).second, 2);
+  EXPECT_EQ(total.sure_iou_by_kind.at("kayak").second, 4.0);
+}
+
+TEST(Scoring, ComponentsAreAMeanOverTheTurnsThatHaveThem) {
+  auto one = MakeCase({{1, 1}});
+  EXPECT_TRUE(std::isnan(ComponentsPerTurn(ScoreTurn(one.truth, one.labelling))));
+  one.labelling.num_components = 3;
+  Score total = ScoreTurn(one.truth, one.labelling);
+  one.labelling.num_components = 4;
+  total.Add(ScoreTurn(one.truth, one.labelling));
+  EXPECT_DOUBLE_EQ(ComponentsPerTurn(total), 3.5);
 }
 
 TEST(Scoring, HalfIsFound) {
@@ -228,12 +264,24 @@ struct Obvious {
   double water_iou = 0.0;
   int num_objects = 0;
   int num_found = 0;
+  int num_near = 0;
+  int num_near_found = 0;
+  int num_near_surely_found = 0;
   int num_segments = 0;
   int num_false = 0;
   int num_over = 0;
   int num_under = 0;
   int num_true_positives = 0;
 };
+
+double NearestM(const Case& one, int object) {
+  double nearest_m = 1e9;
+  for (std::size_t cell = 0; cell < one.truth.object.size(); ++cell) {
+    if (one.truth.object[cell] != object || one.labelling.label[cell] == kNotJudged || one.truth.scan.columns.range[cell] == 0) continue;
+    nearest_m = std::min(nearest_m, one.truth.scan.columns.range[cell] * kRangeUnitM);
+  }
+  return nearest_m;
+}
 
 Obvious Compute(const Case& one) {
   const auto& label = one.labelling.label;
@@ -275,6 +323,11 @@ Obvious Compute(const Case& one) {
       ++num_water;
     }
     if (best >= 0.5) ++result.num_found;
+    if (NearestM(one, i) < 25.0) {
+      ++result.num_near;
+      if (best >= 0.5) ++result.num_near_found;
+      if (best_sure >= 0.5) ++result.num_near_surely_found;
+    }
     if (num_parts >= 2) ++result.num_over;
   }
   if (num_water > 0) result.water_iou /= num_water;
@@ -313,6 +366,15 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
     std::int64_t num_found = 0;
     for (const auto& [bin, recall] : score.recall_by_range) num_found += recall.second;
     EXPECT_EQ(num_found, expected.num_found);
+    Score::Recall near;
+    for (const auto& [kind, recall] : score.near_recall_by_kind) {
+      near.num_object_turns += recall.num_object_turns;
+      near.num_found += recall.num_found;
+      near.num_surely_found += recall.num_surely_found;
+    }
+    EXPECT_EQ(near.num_object_turns, expected.num_near);
+    EXPECT_EQ(near.num_found, expected.num_near_found);
+    EXPECT_EQ(near.num_surely_found, expected.num_near_surely_found);
     if (HasFailure()) break;
   }
 }
