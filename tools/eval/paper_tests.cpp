@@ -155,9 +155,10 @@ struct PartsAt {
   int num_turns_one_large = 0;
 };
 
-// "from 3.0 on", "up to 15.0", "at no value".
+// "from 3.0 on", "up to 15.0", "at no value", "at every value".
 std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_turns, bool is_joined_above) {
   const auto holds = [&](const PartsAt& at) { return at.*count == num_turns; };
+  if (std::ranges::all_of(parts, holds)) return "at every value";
   if (is_joined_above) {
     const auto last_cut = std::ranges::find_if_not(parts.rbegin(), parts.rend(), holds);
     return last_cut == parts.rbegin() ? "at no value" : "from " + Number(std::prev(last_cut)->value, 1) + " on";

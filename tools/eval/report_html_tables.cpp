@@ -31,9 +31,11 @@ double FigureOf(const MethodResult& method, const std::string& scene, const Figu
 // The darker, the better; for shares of 100 only.
 std::string ShadeOf(double percent) { return std::isfinite(percent) ? "h" + std::to_string(std::clamp(static_cast<int>(percent / 10.0), 0, 9)) : ""; }
 
+// Of the methods that look all round.
 double BestOf(const Results& results, const std::function<double(const MethodResult&)>& figure) {
   double best = kNone;
   for (const auto& method : results.methods) {
+    if (HasPartialView(method)) continue;
     const double value = figure(method);
     if (std::isfinite(value) && !(value <= best)) best = value;
   }
@@ -73,18 +75,19 @@ HtmlTable SceneTable(const Results& results, const std::string& caption, const F
   std::vector<HtmlTable::Heading> headings{{"method"}, {"mean", true}};
   for (const auto& scene : results.scenes) headings.push_back({scene, true});
   HtmlTable table(caption, std::move(headings));
-  const auto cell = [&](double value, double best) -> HtmlCell {
+  const auto cell = [&](double value, double best, bool takes_part) -> HtmlCell {
     if (!is_percent) return {Number(value, num_decimals)};
-    const bool is_best = std::isfinite(value) && Number(value, num_decimals) == Number(best, num_decimals);
+    const bool is_best = std::isfinite(value) && takes_part && Number(value, num_decimals) == Number(best, num_decimals);
     return {Number(value, num_decimals), ShadeOf(value) + (is_best ? " best" : "")};
   };
   for (const auto& method : results.methods) {
     std::vector<HtmlCell> row{{method.method, IsOurs(method) ? "ours" : ""}};
+    const bool takes_part = !HasPartialView(method);
     row.push_back(cell(MeanOverScenes(results, method, figure),
-                       BestOf(results, [&](const MethodResult& other) { return MeanOverScenes(results, other, figure); })));
+                       BestOf(results, [&](const MethodResult& other) { return MeanOverScenes(results, other, figure); }), takes_part));
     for (const auto& scene : results.scenes) {
-      row.push_back(
-          cell(FigureOf(method, scene, figure), BestOf(results, [&](const MethodResult& other) { return FigureOf(other, scene, figure); })));
+      row.push_back(cell(FigureOf(method, scene, figure), BestOf(results, [&](const MethodResult& other) { return FigureOf(other, scene, figure); }),
+                         takes_part));
     }
     table.Add(std::move(row));
   }
@@ -246,7 +249,8 @@ std::string NearRecall(const Results& results) {
 
 std::string TableOne(const Results& results) {
   if (results.methods.empty()) return "";
-  std::string markup = SceneTable(results, "Table I: mIoU, %. The best of each column in bold", IouPercent, 1, true).Markup();
+  std::string markup =
+      SceneTable(results, "Table I: mIoU, %. The best of each column in bold, of those that look all round", IouPercent, 1, true).Markup();
 
   std::vector<HtmlTable::Heading> headings{{"method"}, {"all scenes", true}};
   for (const auto& scene : results.scenes) headings.push_back({scene, true});

@@ -125,6 +125,9 @@ TEST(WriteHtml, MethodsThatLookAheadOnlyDoNotWin) {
   const auto section = SectionOf(PageOf(results), "summary");
   EXPECT_TRUE(Holds(section, "Highest mean mIoU over the scenes: paper W=512 with 55.5 %"));
   EXPECT_TRUE(Holds(section, "<th scope=\"row\">dense</th><td class=\"words\">paper W=512</td>"));
+  const auto table = SectionOf(PageOf(results), "table-1");
+  EXPECT_TRUE(Holds(table, "ours</th><td class=\"h8\">85.2</td><td class=\"h9\">90.2</td>"));
+  EXPECT_TRUE(Holds(table, "<td class=\"h5 best\">55.5</td><td class=\"h3 best\">30.7</td>"));
 }
 
 TEST(WriteHtml, SeldomBinsAreNotDrawnButListed) {
