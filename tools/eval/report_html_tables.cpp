@@ -272,9 +272,11 @@ std::string TableOne(const Results& results) {
 
 std::string WaterAndKinds(const Results& results) {
   if (results.methods.empty()) return "";
+  const Figure sure_water = [](const Score& score) { return 100.0 * MeanSureWaterIou(score); };
   const Figure sure = [](const Score& score) { return 100.0 * MeanSureIou(score); };
   std::string markup = SceneTable(results, "mIoU over objects in the water alone, %", WaterIouPercent, 1, true).Markup() +
-                       SceneTable(results, "mIoU with sure segments alone, %", sure, 1, true).Markup();
+                       SceneTable(results, "mIoU with sure segments alone, %", sure, 1, true).Markup() +
+                       SceneTable(results, "mIoU over objects in the water, with sure segments alone, %", sure_water, 1, true).Markup();
 
   std::set<std::string> kinds;
   for (const auto& method : results.methods) {

@@ -183,13 +183,14 @@ std::vector<NamedTable> TablesOf(const Results& results) {
   const auto add = [&tables](const std::string& name, const std::string& title, Table table) {
     if (!table.empty()) tables.push_back({name, title, std::move(table)});
   };
+  const auto kind_title = [](const std::string& kind) { return kind; };
+  const auto range_title = [](const int& bin) { return Number(bin * Score::kRangeBinM, 0) + "-" + Number((bin + 1) * Score::kRangeBinM, 0) + "_m"; };
   const auto add_to_files = [&](const std::string& name, Table table) {
     if (!table.empty()) tables.push_back({name, "", std::move(table), false});
   };
-  const auto kind_title = [](const std::string& kind) { return kind; };
-  const auto range_title = [](const int& bin) { return Number(bin * Score::kRangeBinM, 0) + "-" + Number((bin + 1) * Score::kRangeBinM, 0) + "_m"; };
   add("table_1", "Table I: mIoU, %", ByScene(results, MeanIou, Percent));
   add("water", "mIoU over objects in the water alone, %", ByScene(results, MeanWaterIou, Percent));
+  add_to_files("sure_water", ByScene(results, MeanSureWaterIou, Percent));
   add("sure", "mIoU with sure segments alone, %", ByScene(results, MeanSureIou, Percent));
   add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
   add("sure_false_segments", "false segments a turn that the method is sure of",

@@ -26,6 +26,7 @@ void Score::Add(const Score& other) {
   sum_iou += other.sum_iou;
   num_turns_with_water_object += other.num_turns_with_water_object;
   sum_water_iou += other.sum_water_iou;
+  sum_sure_water_iou += other.sum_sure_water_iou;
   sum_sure_iou += other.sum_sure_iou;
   AddTo(iou_by_kind, other.iou_by_kind);
   AddTo(sure_iou_by_kind, other.sure_iou_by_kind);
@@ -55,6 +56,8 @@ void Score::Add(const Score& other) {
 double MeanIou(const Score& score) { return Ratio(score.sum_iou, score.num_turns_with_object); }
 
 double MeanWaterIou(const Score& score) { return Ratio(score.sum_water_iou, score.num_turns_with_water_object); }
+
+double MeanSureWaterIou(const Score& score) { return Ratio(score.sum_sure_water_iou, score.num_turns_with_water_object); }
 
 double MeanSureIou(const Score& score) { return Ratio(score.sum_sure_iou, score.num_turns_with_object); }
 

@@ -20,6 +20,7 @@ struct Score {
   double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
   std::int64_t num_turns_with_water_object = 0;
   double sum_water_iou = 0.0;                                          // the same over objects in the water alone
+  double sum_sure_water_iou = 0.0;                                     // with segments that are sure alone, and so below
   double sum_sure_iou = 0.0;                                           // with segments that are sure alone
   std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-turns, sum of IoU
   std::map<std::string, std::pair<std::int64_t, double>> sure_iou_by_kind;
@@ -55,6 +56,7 @@ struct Score {
 // 0 to 1; NaN without turns in which there was an object.
 double MeanIou(const Score& score);
 double MeanWaterIou(const Score& score);
+double MeanSureWaterIou(const Score& score);
 double MeanSureIou(const Score& score);
 
 double FalseSegmentsPerTurn(const Score& score);  // NaN without turns, and so below

@@ -125,6 +125,7 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
     score.sum_sure_iou += object.sure_iou;
     if (about.is_in_water) {
       score.sum_water_iou += object.iou;
+      score.sum_sure_water_iou += object.sure_iou;
       ++num_water;
     }
     const bool is_found = object.iou >= kFoundIou;
@@ -153,6 +154,7 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
   if (num_water > 0) {
     score.num_turns_with_water_object = 1;
     score.sum_water_iou /= static_cast<double>(num_water);
+    score.sum_sure_water_iou /= static_cast<double>(num_water);
   }
   for (std::size_t i = 0; i < turn.segments.size(); ++i) {
     const auto& segment = turn.segments[i];

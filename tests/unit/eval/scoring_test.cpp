@@ -194,6 +194,8 @@ TEST(Scoring, WhatIsNearIsCountedByKindAtAnyConfidenceAndAtSure) {
   const auto& docks = score.near_recall_by_kind.at("dock");
   EXPECT_EQ(docks.num_object_turns, 1);
   EXPECT_EQ(docks.num_found, 0) << "a third of it";
+  EXPECT_DOUBLE_EQ(MeanWaterIou(score), 1.0);
+  EXPECT_DOUBLE_EQ(MeanSureWaterIou(score), 2.0 / 3.0);
   EXPECT_EQ(score.iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 3.0));
   EXPECT_EQ(score.sure_iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 2.0));
   EXPECT_EQ(score.recall_by_range.at(2), std::pair(std::int64_t{2}, std::int64_t{2}));

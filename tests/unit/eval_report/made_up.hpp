@@ -18,6 +18,7 @@ inline Score MadeUpScore(double iou, double time_ms) {
   score.num_turns = score.num_turns_with_object = score.num_turns_with_water_object = 4;
   score.sum_iou = 4 * iou;
   score.sum_water_iou = 4 * (iou - 0.05);
+  score.sum_sure_water_iou = 4 * (iou - 0.15);
   score.sum_sure_iou = 4 * (iou - 0.1);
   score.iou_by_kind = {{"buoy", {4, 4 * (iou - 0.05)}}, {"shore", {4, 4 * (iou + 0.05)}}};
   score.sure_iou_by_kind = {{"buoy", {4, 4 * (iou - 0.1)}}, {"shore", {4, 4 * (iou - 0.1)}}};

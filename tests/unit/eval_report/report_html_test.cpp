@@ -89,6 +89,7 @@ TEST(WriteHtml, OtherTablesHoldTheirNumbers) {
   const auto water = SectionOf(page, "water");
   EXPECT_TRUE(Holds(water, "<td class=\"h8 best\">80.2</td><td class=\"h8 best\">85.2</td>"));  // in the water alone
   EXPECT_TRUE(Holds(water, "<td class=\"h7 best\">75.2</td><td class=\"h8 best\">80.2</td>"));  // sure segments alone
+  EXPECT_TRUE(Holds(water, "<td class=\"h7 best\">70.2</td><td class=\"h7 best\">75.2</td>"));  // both
   EXPECT_TRUE(Holds(water, "<td class=\"h8\">80.2</td><td class=\"h9\">90.2</td>"));            // buoy, shore
   const auto segments = SectionOf(page, "segments");
   EXPECT_TRUE(Holds(segments, "<td>0.50</td><td>0.75</td><td>0.00</td><td>0.75</td>"));
