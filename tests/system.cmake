@@ -1,6 +1,8 @@
 # Programs as a user or a boat runs them. The live ones run in network namespaces that they make themselves.
 lookout_test(NAME system_replay SOURCES system/replay_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 300)
 add_dependencies(system_replay lookout-replay lookout-export lookout-sim)
+lookout_test(NAME system_points SOURCES system/points_test.cpp TIMEOUT 120)
+add_dependencies(system_points lookout-eval)
 
 foreach(name live ingestion sources no_route)
   add_executable(system_${name} system/${name}_test.cpp)

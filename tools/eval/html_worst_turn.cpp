@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <utility>
 #include <vector>
@@ -141,17 +142,59 @@ ScatterFromAbove::Label LabelOver(std::string text, const std::vector<Spot>& spo
   return {std::move(text), *std::ranges::max_element(spots, {}, [](const Spot& spot) { return std::pair(spot.second, -spot.first); })};
 }
 
+// All of one colour together.
+class Painter {
+ public:
+  void AddDots(const std::string& css_class, const std::vector<Spot>& spots) {
+    auto& all = dots_[css_class];
+    all.insert(all.end(), spots.begin(), spots.end());
+  }
+  void AddOutline(const std::string& css_class, bool is_dashed, std::vector<Spot> corners) {
+    outlines_[{css_class, is_dashed}].push_back(std::move(corners));
+  }
+
+  void PaintOn(ScatterFromAbove& plan) const {
+    // By name, loose dots come before those of the objects, but those of false segments too: these must lie above.
+    for (const bool is_false : {false, true}) {
+      for (const auto& [css_class, spots] : dots_) {
+        if ((css_class == kFalse) == is_false) plan.dots.push_back({css_class, spots});
+      }
+    }
+    for (const auto& [key, rings] : outlines_) plan.outlines.push_back({key.first, key.second, rings});
+  }
+
+  static constexpr std::string_view kFalse = "false";
+  static constexpr std::string_view kLoose = "loose";
+
+ private:
+  std::map<std::string, std::vector<Spot>> dots_;
+  std::map<std::pair<std::string, bool>, std::vector<std::vector<Spot>>> outlines_;
+};
+
 ScatterFromAbove PlanOfTruth(const Match& match) {
   std::map<std::int32_t, std::vector<Spot>> spots;
   for (const auto& one : match.returns) spots[std::max(0, one.object)].push_back(one.spot);
   ScatterFromAbove plan;
   plan.title = "Truth from above";
-  plan.dots.push_back({"loose", spots[0]});
+  Painter painter;
+  painter.AddDots(std::string(Painter::kLoose), spots[0]);
   for (const auto& object : match.objects) {
-    plan.dots.push_back({object.css_class(), spots[object.id]});
+    painter.AddDots(object.css_class(), spots[object.id]);
     plan.labels.push_back(LabelOver(std::to_string(object.number), spots[object.id]));
   }
+  painter.PaintOn(plan);
   return plan;
+}
+
+// Where an object is cut into hundreds of pieces, outlines of the large ones say enough.
+std::int64_t LeastReturnsOfOutline(const Match& match, const std::map<std::int32_t, std::string>& numbers) {
+  constexpr std::size_t kMaxOutlines = 100;
+  std::vector<std::int64_t> num_returns;
+  for (const auto& [label, segment] : match.segments) {
+    if (segment.object != 0 && !numbers.contains(label)) num_returns.push_back(segment.num_returns);
+  }
+  std::ranges::sort(num_returns, std::ranges::greater());
+  return num_returns.size() > kMaxOutlines ? num_returns[kMaxOutlines] + 1 : 1;
 }
 
 ScatterFromAbove PlanOfPrediction(const Match& match) {
@@ -165,18 +208,21 @@ ScatterFromAbove PlanOfPrediction(const Match& match) {
   }
   ScatterFromAbove plan;
   plan.title = "Prediction from above";
-  plan.dots.push_back({"loose", spots[0]});
+  Painter painter;
+  painter.AddDots(std::string(Painter::kLoose), spots[0]);
+  const std::int64_t least_returns = LeastReturnsOfOutline(match, numbers);
   for (const auto& [label, segment] : match.segments) {
     const auto* object = match.Find(segment.object);
-    const auto css_class = object == nullptr ? "false" : object->css_class();
-    plan.dots.push_back({css_class, spots[label]});
+    const auto css_class = object == nullptr ? std::string(Painter::kFalse) : object->css_class();
+    painter.AddDots(css_class, spots[label]);
     const auto number = numbers.find(label);
     if (number != numbers.end()) {
       plan.labels.push_back(LabelOver(number->second, spots[label]));
-    } else {
-      plan.outlines.push_back({css_class, ConvexHull(spots[label]), object != nullptr});
+    } else if (object == nullptr || segment.num_returns >= least_returns) {
+      painter.AddOutline(css_class, object != nullptr, ConvexHull(spots[label]));
     }
   }
+  painter.PaintOn(plan);
   return plan;
 }
 

@@ -6,8 +6,13 @@
 #include <iostream>
 #include <stdexcept>
 #include <thread>
+#include <utility>
+#include <variant>
 
+#include "common/bus/channels.hpp"
 #include "common/runtime/options.hpp"
+#include "services/segmenter/core/turn_gatherer.hpp"
+#include "services/segmenter/wire.hpp"
 #include "tools/eval/judge.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
@@ -15,6 +20,7 @@
 #include "tools/eval/readers/kitti.hpp"
 #include "tools/eval/readers/organise.hpp"
 #include "tools/eval/readers/pcd.hpp"
+#include "tools/eval/readers/scan_message.hpp"
 #include "tools/eval/report_html.hpp"
 #include "tools/eval/result_tables.hpp"
 #include "tools/eval/sweep.hpp"
@@ -58,16 +64,30 @@ PointCloud ReadPoints(const std::filesystem::path& file) {
   return std::filesystem::exists(label_file) ? ReadKitti(file, label_file) : ReadKitti(file, std::nullopt);
 }
 
+// As it would come over the bus, in LIDAR_SCAN: a turn that the segmenter would refuse is not judged.
+segmenter::Scan ThroughMessages(const segmenter::Scan& scan, const std::string& file) {
+  segmenter::TurnGatherer gatherer;
+  for (const auto& message : ToScanMessages(scan, "recording", bus::kMaxMessageBytes)) {
+    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
+    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::runtime_error(file + ": the segmenter refuses this turn");
+    auto whole = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)));
+    if (whole && whole->num_cells() == scan.num_cells()) return std::move(*whole);
+  }
+  throw std::runtime_error(file + ": the turn is not whole");
+}
+
 void AddPoints(const std::vector<std::string>& files, Progress& progress, Judge& judge) {
   int turn = 0;
   for (const auto& file : files) {
     const auto cloud = ReadPoints(file);
-    const auto organised = Organise(cloud, {});
+    auto organised = Organise(cloud, {});
+    organised.turn.scan = ThroughMessages(organised.turn.scan, file);
     judge.Add({kPointsLabel, 0, turn++}, organised.turn);
     std::cerr << file << ": " << cloud.points.size() << " points, " << organised.turn.scan.head.num_rings() << " rings"
               << (organised.are_rings_found ? "" : " (bands of equal height)") << ", " << organised.num_moved << " moved, " << organised.num_hidden
               << " hidden, " << organised.num_out_of_range << " out of range"
-              << (cloud.has_labels ? "" : "; no labels: every segment counts as false") << '\n';
+              << (!cloud.has_labels ? "; no labels: every segment counts as false" : "")
+              << (cloud.are_classes_objects ? "; no label has an instance: each class is an object" : "") << '\n';
     progress.Step(file);
   }
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +20,10 @@ inline constexpr std::int32_t kNotJudged = -1;
 struct Labelling {
   std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotJudged
   std::vector<bool> is_sure;        // [segments] by id - 1; false = the method itself takes the segment for tentative
+  /// Components before they were clustered into segments; nullopt = the method has no such step.
+  std::optional<std::int64_t> num_components = std::nullopt;
   /// Stages in their order, as the method measured them; empty when it does not.
-  std::vector<std::pair<std::string, std::chrono::nanoseconds>> stages;
+  std::vector<std::pair<std::string, std::chrono::nanoseconds>> stages{};
   /// Spent on measuring the stages once more, not on the method: taken off its time.
   std::chrono::nanoseconds untimed{0};
 };

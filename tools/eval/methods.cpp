@@ -18,8 +18,8 @@ using segmenter::ToLabel;
 
 constexpr double kPaperFieldOfViewRad = DegToRad(90.0);
 
-// The steps of SegmentScan once more, for their times.
-std::vector<std::pair<std::string, std::chrono::nanoseconds>> MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params) {
+// The steps of SegmentScan once more, for their times and the number of components between them.
+void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params, Labelling& labelling_of_turn) {
   StageClock clock;
   const auto classified = segmenter::ClassifyReturns(scan, params.filter);
   const auto& returns = classified.returns;
@@ -46,8 +46,12 @@ std::vector<std::pair<std::string, std::chrono::nanoseconds>> MeasureStages(cons
   clock.End("cluster");
   segmenter::Measure(scan, returns, numbered.groups, params.filter.T_vessel_lidar.linear().row(2));
   clock.End("measure");
-  return clock.stages();
+  labelling_of_turn.stages = clock.stages();
+  labelling_of_turn.num_components = components.count;
 }
+
+// The segmenter's own doubt comes in here. It knows none yet.
+bool IsSure(const segmenter::Segment& /*segment*/) { return true; }
 
 Methods MakeAll(const segmenter::Params& boat) {
   Methods methods;
@@ -81,10 +85,9 @@ Labelling SegmenterMethod::Segment(const segmenter::Scan& scan) {
     if (label == ToLabel(Reason::kFieldOfView)) return kNotJudged;
     return std::max<std::int32_t>(label, 0);
   });
-  // The segmenter knows no doubt.
-  labelling.is_sure.assign(segments.segments.size(), true);
+  for (const auto& segment : segments.segments) labelling.is_sure.push_back(IsSure(segment));
   const auto begin = std::chrono::steady_clock::now();
-  labelling.stages = MeasureStages(scan, params_);
+  MeasureStages(scan, params_, labelling);
   labelling.untimed = std::chrono::steady_clock::now() - begin;
   return labelling;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -40,6 +41,19 @@ Bins BinsOf(const std::vector<ShoreGap>& gaps) {
   return bins;
 }
 
+// Looked for by kind: what else a scene holds is none of the test's business.
+std::int32_t TheObject(const LabelledScan& truth, const std::string& kind) {
+  std::int32_t found = 0;
+  int count = 0;
+  for (const auto& [id, object] : truth.objects) {
+    if (object.kind != kind) continue;
+    found = id;
+    ++count;
+  }
+  if (count != 1) throw std::runtime_error("the scene of this test must hold one " + kind + ", not " + std::to_string(count));
+  return found;
+}
+
 // What Test 1 needs of one turn: the kayak's returns, and its distance from all else.
 struct KayakTurn {
   std::int32_t id = 0;
@@ -48,10 +62,7 @@ struct KayakTurn {
 
 std::optional<KayakTurn> FindKayak(const LabelledScan& truth, const segmenter::ReturnFilter& filter) {
   KayakTurn kayak;
-  for (const auto& [id, object] : truth.objects) {
-    if (object.kind == "kayak") kayak.id = id;
-  }
-  if (kayak.id == 0) throw std::runtime_error("the scene of Test 1 holds no kayak");
+  kayak.id = TheObject(truth, "kayak");
   std::vector<segmenter::Point> of_kayak;
   std::vector<segmenter::Point> of_others;
   for (const auto& one : segmenter::ClassifyReturns(truth.scan, filter).returns) {
@@ -78,7 +89,8 @@ double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling
 
 Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
   plan.scenes = {"kayak_shore"};
-  plan.seconds = std::max(plan.seconds, kTest1Seconds);
+  plan.seconds = kTest1Seconds;
+  if (progress_out != nullptr) *progress_out << "Test 1 takes " << Number(kTest1Seconds, 0) << " s of each seed, whatever --seconds says\n";
   struct Variant {
     std::unique_ptr<SegmenterMethod> method;
     std::map<std::uint64_t, std::vector<ShoreGap>> gaps_by_seed{};
@@ -127,25 +139,68 @@ Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
   return curve;
 }
 
-// Clusters a turn against a threshold. `set` puts it into the params.
-template <typename Set>
-Curve CountClusters(Curve curve, const RunPlan& plan, const Boat& boat, const std::vector<double>& values, Set set, std::ostream* progress_out) {
-  Methods methods;
-  for (const double value : values) {
-    auto params = PaperParams(boat.segmenter, kPaperFullColumns);
-    set(params.clustering, value);
-    methods.push_back(std::make_unique<SegmenterMethod>(Number(value, 2), params));
+struct ClusterTest {
+  std::string kind;              // of the one object that is looked at
+  std::vector<double> values;    // of the threshold, increasing
+  double value_in_print = 0.0;   // one of these
+  bool is_joined_above = false;  // the threshold joins the more the greater it is
+  void (*set)(segmenter::ClusteringParams&, double) = nullptr;
+};
+
+// Sums over turns at one value of the threshold.
+struct PartsAt {
+  double value = 0.0;
+  ObjectParts sum{};
+  int num_turns_in_one = 0;  // all of the object that is in a cluster is in one
+  int num_turns_one_large = 0;
+};
+
+// "from 3.0 on", "up to 15.0", "at no value", "at every value".
+std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_turns, bool is_joined_above) {
+  const auto holds = [&](const PartsAt& at) { return at.*count == num_turns; };
+  if (std::ranges::all_of(parts, holds)) return "at every value";
+  if (is_joined_above) {
+    const auto last_cut = std::ranges::find_if_not(parts.rbegin(), parts.rend(), holds);
+    return last_cut == parts.rbegin() ? "at no value" : "from " + Number(std::prev(last_cut)->value, 1) + " on";
   }
-  Judge judge(methods);
+  const auto first_cut = std::ranges::find_if_not(parts, holds);
+  return first_cut == parts.begin() ? "at no value" : "up to " + Number(std::prev(first_cut)->value, 1);
+}
+
+Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, const Boat& boat, std::ostream* progress_out) {
+  std::vector<PartsAt> parts;
+  for (const double value : test.values) parts.push_back({value});
+  int num_turns = 0;
   Progress progress(progress_out, plan.num_seeds);
-  ForEachTurn(plan, boat, progress, [&judge](const TurnPlace& place, const LabelledScan& truth) { judge.Add(place, truth); });
-  Curve::Line line{"paper, W = " + std::to_string(kPaperFullColumns), {}};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (const auto& [scene, score] : judge.results()[i].by_scene) {
-      line.points.emplace_back(values[i], SegmentsPerTurn(score) - FalseSegmentsPerTurn(score));
+  ForEachTurn(plan, boat, progress, [&](const TurnPlace&, const LabelledScan& truth) {
+    const auto object = TheObject(truth, test.kind);
+    if (std::ranges::find(truth.object, object) == truth.object.end()) return;
+    ++num_turns;
+    for (auto& at : parts) {
+      auto params = PaperParams(boat.segmenter, kPaperFullColumns);
+      test.set(params.clustering, at.value);
+      const auto of_turn = PartsOf(object, truth, SegmenterMethod("", params).Segment(truth.scan));
+      at.sum.Add(of_turn);
+      at.num_turns_in_one += of_turn.num_segments == 1 ? 1 : 0;
+      at.num_turns_one_large += of_turn.num_large == 1 ? 1 : 0;
     }
+  });
+  if (num_turns == 0) return curve;
+  Curve::Line all{"all with a return of it", {}};
+  Curve::Line large{"with a tenth of it or more", {}};
+  for (const auto& at : parts) {
+    all.points.emplace_back(at.value, static_cast<double>(at.sum.num_segments) / num_turns);
+    large.points.emplace_back(at.value, static_cast<double>(at.sum.num_large) / num_turns);
   }
-  curve.lines.push_back(std::move(line));
+  curve.lines = {std::move(all), std::move(large)};
+  const auto where = [&](int PartsAt::*count) { return WhereInAllTurns(parts, count, num_turns, test.is_joined_above); };
+  curve.note += " Here, in all of " + std::to_string(num_turns) + " turns: one cluster " + where(&PartsAt::num_turns_in_one) +
+                "; one with a tenth of it or more " + where(&PartsAt::num_turns_one_large) + ".";
+  const auto in_print = std::ranges::find(parts, test.value_in_print, &PartsAt::value);
+  if (in_print != parts.end() && in_print->sum.num_returns > 0) {
+    const double share = static_cast<double>(in_print->sum.num_in_largest) / static_cast<double>(in_print->sum.num_returns);
+    curve.note += " At " + Number(in_print->value, 1) + ", the value in print, the largest holds " + Number(100.0 * share, 1) + " % of its returns.";
+  }
   return curve;
 }
 
@@ -168,18 +223,45 @@ std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps) {
   return from_m;
 }
 
+void ObjectParts::Add(const ObjectParts& other) {
+  num_segments += other.num_segments;
+  num_large += other.num_large;
+  num_in_largest += other.num_in_largest;
+  num_returns += other.num_returns;
+}
+
+ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labelling& labelling) {
+  std::map<std::int32_t, std::int64_t> returns_of;  // by label
+  ObjectParts parts;
+  for (std::size_t cell = 0; cell < truth.object.size(); ++cell) {
+    if (truth.object[cell] != object || truth.scan.columns.range[cell] == 0 || labelling.label[cell] == kNotJudged) continue;
+    ++parts.num_returns;
+    if (labelling.label[cell] > 0) ++returns_of[labelling.label[cell]];
+  }
+  for (const auto& [label, count] : returns_of) {
+    ++parts.num_segments;
+    parts.num_in_largest = std::max(parts.num_in_largest, count);
+    if (kLeastPartsOfObject * count >= parts.num_returns) ++parts.num_large;
+  }
+  return parts;
+}
+
 Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::ostream* progress) {
   if (number == 1) return RunTest1(std::move(plan), boat, progress);
+  const segmenter::ClusteringParams in_print;  // the defaults are the paper's
   if (number == 2) {
     plan.scenes = {"shore_20m"};
-    return CountClusters(
-        {"Test 2: a shore at 20 m", "e2, degrees", "clusters a turn", {}, "One shore should be one object."}, plan, boat, Steps(5.0, 5.0, 17),
-        [](segmenter::ClusteringParams& params, double deg) { params.e2_angle_rad = DegToRad(deg); }, progress);
+    const ClusterTest test{"shore", Steps(5.0, 5.0, 17), std::round(RadToDeg(in_print.e2_angle_rad)), false,
+                           [](segmenter::ClusteringParams& params, double deg) { params.e2_angle_rad = DegToRad(deg); }};
+    return CountClusters({"Test 2: a shore at 20 m", "e2, degrees", "clusters of the shore a turn", {}, "One shore should be one object."}, test,
+                         plan, boat, progress);
   }
   plan.scenes = {"motorboat_6m"};
+  const ClusterTest test{"motor_boat", Steps(0.0, 0.5, 13), in_print.e3_distance_m, true,
+                         [](segmenter::ClusteringParams& params, double m) { params.e3_distance_m = m; }};
   return CountClusters(
-      {"Test 3: a motor boat of 6 m", "e3, m", "clusters a turn", {}, "One boat should be one object; in print it is from 3 m on."}, plan, boat,
-      Steps(0.0, 0.5, 13), [](segmenter::ClusteringParams& params, double m) { params.e3_distance_m = m; }, progress);
+      {"Test 3: a motor boat of 6 m", "e3, m", "clusters of the boat a turn", {}, "One boat should be one object; in print it is from 3 m on."}, test,
+      plan, boat, progress);
 }
 
 }  // namespace lookout::eval

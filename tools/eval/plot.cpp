@@ -194,7 +194,9 @@ std::string DrawBars(const BarChart& chart) {
 
   const double group_px = kBarPx * static_cast<double>(chart.series.size());
   const double bottom_px = kTopPx + (group_px + kGroupGapPx) * static_cast<double>(chart.groups.size());
-  const double left_px = 14.0 + kLetterPx * static_cast<double>(name_length);
+  // Wider than elsewhere: names are of mixed case and stand at the edge.
+  constexpr double kNameLetterPx = 7.4;
+  const double left_px = 14.0 + kNameLetterPx * static_cast<double>(name_length);
   const double right_px = kWidthPx - kValuePx;
   const Axis axis = MakeAxis(0.0, limits.max > 0.0 ? limits.max : 1.0);
   const auto to_x = [&](double value) { return left_px + value / axis.max() * (right_px - left_px); };

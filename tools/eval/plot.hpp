@@ -41,13 +41,13 @@ struct BarChart {
 struct ScatterFromAbove {
   using Spot = std::pair<double, double>;
   struct Dots {
-    std::string css_class;  // "s0" to "s6", "loose", "false"
+    std::string css_class;  // "s0" to "s6", "loose", "false"; once each keeps the page small
     std::vector<Spot> spots;
   };
-  struct Outline {
+  struct Outlines {
     std::string css_class;
-    std::vector<Spot> corners;  // one: a ring around it; two: a line
     bool is_dashed = false;
+    std::vector<std::vector<Spot>> rings;  // corners of each; one: a square around it; two: a line
   };
   struct Label {
     std::string text;
@@ -55,7 +55,7 @@ struct ScatterFromAbove {
   };
   std::string title;
   std::vector<Dots> dots;  // the first lies below
-  std::vector<Outline> outlines;
+  std::vector<Outlines> outlines;
   std::vector<Label> labels;
   Spot min_m{-10.0, -10.0};  // corners of what is seen
   Spot max_m{10.0, 10.0};

@@ -1,6 +1,7 @@
 // DrawFromAbove of plot.hpp.
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include "tools/eval/html.hpp"
@@ -10,9 +11,10 @@
 namespace lookout::eval {
 namespace {
 
-// Wide enough that a whole number places a dot, half a pixel on a usual screen: this keeps pages with many turns small.
-constexpr double kWidth = 920.0;
-constexpr double kRingOfOneDot = 9.0;
+// Whole numbers place a dot, a pixel and less on a usual screen: this keeps pages with many turns small.
+constexpr double kWidth = 460.0;
+// Dots are wider than this, so that those which touch still do.
+constexpr int kDotStep = 2;
 
 using Spot = ScatterFromAbove::Spot;
 using Place = std::pair<int, int>;
@@ -26,6 +28,13 @@ class Plan {
   double height() const { return height_; }
   bool Contains(const Spot& spot) const {
     return spot.first >= min_m_.first && spot.first <= max_m_.first && spot.second >= min_m_.second && spot.second <= max_m_.second;
+  }
+  // For a word.
+  bool HasRoomAt(const Spot& spot) const {
+    constexpr double kRoom = 16.0;
+    const double margin_m = kRoom / scale_;
+    return spot.first - min_m_.first >= margin_m && max_m_.first - spot.first >= margin_m && spot.second - min_m_.second >= margin_m &&
+           max_m_.second - spot.second >= margin_m;
   }
   Place At(const Spot& spot) const { return {Round((spot.first - min_m_.first) * scale_), Round((max_m_.second - spot.second) * scale_)}; }
 
@@ -58,7 +67,7 @@ std::string Rings(const Plan& plan, const Spot& min_m, const Spot& max_m) {
   for (double radius_m = step_m; radius_m < reach_m; radius_m += step_m) {
     svg += Circle("grid", plan.At({0.0, 0.0}), radius_m * plan.scale());
     for (const Spot& spot : {Spot{0.0, radius_m}, Spot{0.0, -radius_m}, Spot{radius_m, 0.0}, Spot{-radius_m, 0.0}}) {
-      if (!plan.Contains(spot)) continue;
+      if (!plan.HasRoomAt(spot)) continue;
       svg += Words("ring", plan.At(spot), Number(radius_m, 0) + " m");
       break;
     }
@@ -68,16 +77,80 @@ std::string Rings(const Plan& plan, const Spot& min_m, const Spot& max_m) {
 
 std::string Boat(const Plan& plan) {
   const auto [x, y] = plan.At({0.0, 0.0});
-  return "<path class=\"boat\" d=\"M" + Text({x, y - 14}) + "l9 24h-18z\"/>\n";
+  return "<path class=\"boat\" d=\"M" + Text({x, y - 7}) + "l5 12h-10z\"/>\n";
 }
 
-std::string DrawOutline(const Plan& plan, const ScatterFromAbove::Outline& outline) {
-  const std::string css_class = "outline " + outline.css_class + (outline.is_dashed ? " dashed" : "");
-  if (outline.corners.empty()) return "";
-  if (outline.corners.size() == 1) return Circle(css_class, plan.At(outline.corners.front()), kRingOfOneDot);
-  std::string path;
-  for (const auto& corner : outline.corners) path += (path.empty() ? "M" : "L") + Text(plan.At(corner));
-  return "<path class=\"" + css_class + "\" d=\"" + path + "z\"/>\n";
+// Numbers of a path, as short as SVG allows: a minus sign parts them as well as a blank.
+std::string Pair(int x, int y) { return std::to_string(x) + (y < 0 ? "" : " ") + std::to_string(y); }
+
+// The next subpath of a path. The first "m" of a path is absolute whatever its case, and the others go on from where the one before ended.
+class Pen {
+ public:
+  void MoveTo(const Place& place) {
+    path_ += (path_.empty() ? "M" : "m") + Pair(place.first - at_.first, place.second - at_.second);
+    at_ = place;
+  }
+  // Goes on from the last place, or from the first of the subpath where `is_closed`.
+  void Draw(std::string_view way, const Place& end) {
+    path_ += way;
+    at_ = end;
+  }
+  const Place& at() const { return at_; }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  Place at_{0, 0};
+};
+
+// Neighbours in a column or a row become one stroke: round ends make it look as the dots do.
+std::string PathOfDots(std::set<Place> places) {
+  Pen pen;
+  while (!places.empty()) {
+    const Place begin = *places.begin();
+    const auto reach = [&](const Place& step) {
+      int count = 0;
+      while (places.contains({begin.first + (count + 1) * step.first, begin.second + (count + 1) * step.second})) ++count;
+      return count;
+    };
+    const int down = reach({0, kDotStep});
+    const int aside = reach({kDotStep, 0});
+    const Place step = down >= aside ? Place{0, kDotStep} : Place{kDotStep, 0};
+    const int count = std::max(down, aside);
+    for (int i = 0; i <= count; ++i) places.erase({begin.first + i * step.first, begin.second + i * step.second});
+    pen.MoveTo(begin);
+    pen.Draw((down >= aside && down > 0 ? "v" : "h") + std::to_string(count * kDotStep),
+             {begin.first + count * step.first, begin.second + count * step.second});
+  }
+  return pen.path();
+}
+
+// One corner: a square around it.
+void AddOutline(const Plan& plan, const std::vector<Spot>& corners, Pen& pen) {
+  std::vector<Place> places;
+  for (const auto& corner : corners) {
+    const auto place = plan.At(corner);
+    if (places.empty() || places.back() != place) places.push_back(place);
+  }
+  if (places.size() > 1 && places.front() == places.back()) places.pop_back();
+  if (places.size() == 1) {
+    constexpr int kHalf = 4;
+    pen.MoveTo({places[0].first - kHalf, places[0].second - kHalf});
+    pen.Draw("h8v8h-8z", pen.at());
+    return;
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (i == 0) {
+      pen.MoveTo(places[0]);
+      continue;
+    }
+    pen.Draw((i == 1                                  ? "l"
+              : places[i].first < places[i - 1].first ? ""
+                                                      : " ") +
+                 Pair(places[i].first - places[i - 1].first, places[i].second - places[i - 1].second),
+             places[i]);
+  }
+  pen.Draw("z", places[0]);
 }
 
 }  // namespace
@@ -87,20 +160,24 @@ std::string DrawFromAbove(const ScatterFromAbove& plan) {
   std::string svg = "<svg class=\"plan\" viewBox=\"0 0 " + Number(kWidth, 0) + " " + Number(view.height(), 0) + "\" role=\"img\">\n<title>" +
                     Escape(plan.title) + "</title>\n" + Rings(view, plan.min_m, plan.max_m);
   for (const auto& dots : plan.dots) {
-    std::vector<Place> places;
+    std::set<Place> places;
     for (const auto& spot : dots.spots) {
-      if (view.Contains(spot)) places.push_back(view.At(spot));
+      if (!view.Contains(spot)) continue;
+      const auto [x, y] = view.At(spot);
+      places.emplace(x - x % kDotStep, y - y % kDotStep);
     }
-    std::ranges::sort(places);
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    if (places.empty()) continue;
-    svg += "<path class=\"dots " + dots.css_class + "\" d=\"";
-    for (const auto& place : places) svg += "M" + Text(place) + "h0";
-    svg += "\"/>\n";
+    if (!places.empty()) svg += "<path class=\"dots " + dots.css_class + "\" d=\"" + PathOfDots(std::move(places)) + "\"/>\n";
   }
-  for (const auto& outline : plan.outlines) svg += DrawOutline(view, outline);
+  for (const auto& group : plan.outlines) {
+    Pen pen;
+    for (const auto& corners : group.rings) {
+      if (!corners.empty()) AddOutline(view, corners, pen);
+    }
+    if (pen.path().empty()) continue;
+    svg += "<path class=\"outline " + group.css_class + (group.is_dashed ? " dashed" : "") + "\" d=\"" + pen.path() + "\"/>\n";
+  }
   svg += Boat(view);
-  constexpr int kAbove = 12;  // of the spot that it names
+  constexpr int kAbove = 6;  // of the spot that it names
   for (const auto& label : plan.labels) {
     if (!view.Contains(label.spot)) continue;
     const auto [x, y] = view.At(label.spot);

@@ -46,7 +46,7 @@ std::string WhatWasRun(const Results& results) {
 
 std::string Definitions() {
   // The words of tools/eval/README.md, in short.
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kDefinitions{{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kDefinitions{{
       {"IoU",
        "Of a true object and a segment: the returns that both have, through the returns that at least one of them has. The IoU of an object is that "
        "with "
@@ -63,6 +63,7 @@ std::string Definitions() {
       {"under-segmenting", "A segment that holds a tenth each of two or more objects."},
       {"true positives", "The share of the objects' returns that are in a segment of which their object has most returns."},
       {"recall at IoU 0.5", "The share of object-turns whose IoU is 0.5 or more, by the range of the object's nearest return, in bins of 10 m."},
+      {"component", "Of methods that search first and cluster then: what the search gave."},
       {"time", "Of labelling one turn, on one core, without rendering, decoding and judging. The 99th percentile is of the nearest rank."},
       {"points kept",
        "Of the first whole turn of each seed: returns that keep their pixel of the range image; the distance is from the point of a pixel to the "
@@ -78,11 +79,11 @@ std::string Definitions() {
 void WriteHtml(const Results& results, std::ostream& out) {
   const std::vector<Section> sections{
       {"run", "What was run", WhatWasRun(results)},
-      {"summary", "Summary", page::Summary(results) + page::Bars(results)},
+      {"summary", "Summary", page::Summary(results) + page::AgainstPeers(results) + page::Bars(results)},
       {"table-1", "Table I: methods and scenes", page::TableOne(results)},
       {"water", "Objects in the water, and kinds", page::WaterAndKinds(results)},
       {"segments", "False, cut and merged segments", page::SegmentCounts(results)},
-      {"range", "By range", page::ByRange(results)},
+      {"range", "By range", page::ByRange(results) + page::NearRecall(results)},
       {"table-2", "Table II: projections", page::TableTwo(results)},
       {"table-3", "Table III: time by stage", page::TableThree(results)},
       {"ablation", "Ablation", page::Ablation(results)},

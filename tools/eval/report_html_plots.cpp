@@ -38,9 +38,21 @@ std::string Numbers(const LineChart& chart) {
   return "<details><summary>Numbers</summary>\n" + table.Markup() + "</details>\n";
 }
 
-std::string FigureOfLines(const LineChart& chart, const std::string& note) {
+// @param numbers  of these, where more are known than the chart can show
+std::string FigureOfLines(const LineChart& chart, const std::string& note, const LineChart& numbers) {
   return "<figure><figcaption>" + Escape(chart.title) + "</figcaption>\n" + DrawLines(chart) + LegendOfLines(chart.lines) +
-         (note.empty() ? "" : "<p>" + Escape(note) + "</p>\n") + Numbers(chart) + "</figure>\n";
+         (note.empty() ? "" : "<p>" + Escape(note) + "</p>\n") + Numbers(numbers) + "</figure>\n";
+}
+
+// Those with the highest mean mIoU, best first; no more than `max_count`, and none that looks at a part of the turn alone.
+std::vector<const MethodResult*> BestMethods(const Results& results, std::size_t max_count) {
+  std::vector<const MethodResult*> best;
+  for (const auto& method : results.methods) {
+    if (!HasPartialView(method) && std::isfinite(MeanOverScenes(results, method, IouPercent))) best.push_back(&method);
+  }
+  std::ranges::stable_sort(best, std::ranges::greater(), [&](const MethodResult* method) { return MeanOverScenes(results, *method, IouPercent); });
+  best.resize(std::min(max_count, best.size()));
+  return best;
 }
 
 std::string FigureOfBars(const BarChart& chart) {
@@ -61,19 +73,38 @@ std::map<int, std::pair<std::int64_t, Value>> Total(const MethodResult& method, 
   return total;
 }
 
+// A figure by range: a chart that can be read, and the numbers of all.
 template <typename Value>
-LineChart ChartByRange(const Results& results, std::map<int, std::pair<std::int64_t, Value>> Score::*bins, const std::string& title,
-                       const std::string& y_label) {
-  LineChart chart{title, "range of the object's nearest return, m (middle of the bin)", y_label, {}, true};
+std::string FigureByRange(const Results& results, std::map<int, std::pair<std::int64_t, Value>> Score::*bins, const std::string& title,
+                          const std::string& y_label) {
+  LineChart all{title, "range of the object's nearest return, m (middle of the bin)", y_label, {}, true};
+  LineChart chart = all;
+  // One colour each.
+  const auto best = BestMethods(results, kNumSeriesColours - 1);
   for (const auto& method : results.methods) {
     LineChart::Line line{method.method, {}, IsOurs(method)};
-    for (const auto& [bin, entry] : Total(method, bins)) {
+    LineChart::Line often = line;
+    const auto total = Total(method, bins);
+    std::int64_t num_object_turns = 0;
+    for (const auto& [bin, entry] : total) num_object_turns += entry.first;
+    for (const auto& [bin, entry] : total) {
       if (entry.first == 0) continue;
-      line.points.emplace_back((bin + 0.5) * Score::kRangeBinM, 100.0 * static_cast<double>(entry.second) / static_cast<double>(entry.first));
+      const std::pair point((bin + 0.5) * Score::kRangeBinM, 100.0 * static_cast<double>(entry.second) / static_cast<double>(entry.first));
+      line.points.push_back(point);
+      // One object that happens to be far off would draw a peak.
+      constexpr std::int64_t kLeastPartsOfAll = 100;
+      if (kLeastPartsOfAll * entry.first >= num_object_turns) often.points.push_back(point);
     }
-    if (!line.points.empty()) chart.lines.push_back(std::move(line));
+    if (line.points.empty()) continue;
+    if (IsOurs(method) || std::ranges::find(best, &method) != best.end()) chart.lines.push_back(std::move(often));
+    all.lines.push_back(std::move(line));
   }
-  return chart;
+  if (all.lines.empty()) return "";
+  const bool is_less = chart.lines.size() < all.lines.size();
+  return FigureOfLines(chart,
+                       std::string(is_less ? "Drawn are ours and the methods of the highest mean mIoU; the numbers below are of all. " : "") +
+                           "Bins with less than a hundredth of the object-turns are not drawn.",
+                       all);
 }
 
 // Those of the segmenter in the order of its work, then others by name.
@@ -123,21 +154,25 @@ std::string Ablation(const Results& results) {
     if (const auto base = BaseOf(method.method); !base.empty()) bases.insert(base);
   }
   if (bases.empty()) return "";
-  HtmlTable table("With and without a step, over all scenes",
-                  {{"method"}, {"mIoU, %"}, {"segments a turn"}, {"false segments a turn"}, {"median, ms"}, {"99th percentile, ms"}});
+  HtmlTable table(
+      "With and without a step, over all scenes",
+      {{"method"}, {"mIoU, %"}, {"components a turn"}, {"segments a turn"}, {"false segments a turn"}, {"median, ms"}, {"99th percentile, ms"}});
   BarChart chart{"Time of a turn with and without a step", "median, ms", {"median"}, {}, 2};
+  BarChart components{"Components of a turn before they are clustered", "components a turn", {"components"}, {}, 0};
   for (const auto& method : results.methods) {
     if (!bases.contains(method.method) && BaseOf(method.method).empty()) continue;
     const auto times = TimesOf(method);
     table.Add({{method.method},
                {Number(MeanOverScenes(results, method, IouPercent), 1)},
+               {Number(MeanOverScenes(results, method, ComponentsPerTurn), 1)},
                {Number(MeanOverScenes(results, method, SegmentsPerTurn), 1)},
                {Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2)},
                {Number(times.median_ms, 2)},
                {Number(times.p99_ms, 2)}});
     chart.groups.push_back({method.method, {times.median_ms}});
+    components.groups.push_back({method.method, {MeanOverScenes(results, method, ComponentsPerTurn)}});
   }
-  return table.Markup() + FigureOfBars(chart) +
+  return table.Markup() + FigureOfBars(chart) + FigureOfBars(components) +
          "<p class=\"note\">In print: with breadth-first search 72 ms and 460 components, without 297 ms and 1604.</p>\n";
 }
 
@@ -146,18 +181,14 @@ std::string Curves(const Results& results) {
   for (const auto& curve : results.curves) {
     LineChart chart{curve.title, curve.x_label, curve.y_label, {}, false};
     for (const auto& line : curve.lines) chart.lines.push_back({line.name, line.points, false});
-    markup += FigureOfLines(chart, curve.note);
+    markup += FigureOfLines(chart, curve.note, chart);
   }
   return markup;
 }
 
 std::string ByRange(const Results& results) {
-  std::string markup;
-  const auto iou = ChartByRange(results, &Score::iou_by_range, "IoU by range, all scenes", "mean IoU, %");
-  if (!iou.lines.empty()) markup += FigureOfLines(iou, "");
-  const auto recall = ChartByRange(results, &Score::recall_by_range, "Recall at IoU 0.5 by range, all scenes", "recall, %");
-  if (!recall.lines.empty()) markup += FigureOfLines(recall, "");
-  return markup;
+  return FigureByRange(results, &Score::iou_by_range, "IoU by range, all scenes", "mean IoU, %") +
+         FigureByRange(results, &Score::recall_by_range, "Recall at IoU 0.5 by range, all scenes", "recall, %");
 }
 
 std::string Bars(const Results& results) {
@@ -169,12 +200,7 @@ std::string Bars(const Results& results) {
 
   // More bars a scene would not be read.
   constexpr std::size_t kMaxBestMethods = 4;
-  std::vector<const MethodResult*> best;
-  for (const auto& method : results.methods) {
-    if (std::isfinite(MeanOverScenes(results, method, IouPercent))) best.push_back(&method);
-  }
-  std::ranges::stable_sort(best, std::ranges::greater(), [&](const MethodResult* method) { return MeanOverScenes(results, *method, IouPercent); });
-  best.resize(std::min(kMaxBestMethods, best.size()));
+  const auto best = BestMethods(results, kMaxBestMethods);
   BarChart by_scene{"mIoU by scene, the methods of the highest mean", "mIoU, %", {}, {}, 1};
   for (const auto* method : best) by_scene.series.push_back(method->method);
   for (const auto& scene : results.scenes) {
@@ -198,7 +224,8 @@ std::string WorstTurns(const Results& results) {
          "stands at the "
          "segment that fits it best; 3+4 is one segment that fits two. A segment has the colour of the object that it shares most returns with. A "
          "dashed line "
-         "is drawn round a segment whose object has a better one: it is a piece. Segments that hold no object at all are outlined and dotted in the "
+         "is drawn round a segment whose object has a better one: it is a piece (of more than a hundred, round the larger ones). Segments that hold "
+         "no object at all are outlined and dotted in the "
          "colour "
          "of this text. Grey: returns of no object on the left, in no segment on the right, and on both sides what the method does not look "
          "at.</p>\n" +

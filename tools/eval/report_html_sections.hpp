@@ -1,7 +1,6 @@
 // The sections of the report page. Each gives markup, or nothing where the results hold nothing for it.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,15 +9,9 @@
 
 namespace lookout::eval::page {
 
-/// A figure of one score, in the unit of its table; NaN = not known.
-using Figure = std::function<double(const Score&)>;
-
 /// 0 to 100; NaN for a scene without such objects.
 double IouPercent(const Score& score);
 double WaterIouPercent(const Score& score);
-
-/// Of the scenes in which it is known, each scene counting the same; NaN when there is none.
-double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure);
 
 /// A method's time per turn over all scenes, milliseconds.
 struct Times {
@@ -38,6 +31,8 @@ bool IsOurs(const MethodResult& method);  // its name begins with "ours", and no
 
 std::string Summary(const Results& results);        // in words, and the winner of each scene
 std::string Bars(const Results& results);           // mIoU of all methods, and of the best by scene
+std::string AgainstPeers(const Results& results);   // our error as a share of the best peer's
+std::string NearRecall(const Results& results);     // by scene and kind
 std::string TableOne(const Results& results);       // mIoU and time, all methods and scenes
 std::string WaterAndKinds(const Results& results);  // objects in the water alone, each kind, sure segments
 std::string SegmentCounts(const Results& results);  // false segments, over- and under-segmentation

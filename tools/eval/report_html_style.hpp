@@ -59,12 +59,12 @@ svg text.small { font-size: 10px; fill: var(--faint); }
 .line { fill: none; stroke-width: 1.4; stroke-linejoin: round; } .line.bold { stroke-width: 3; }
 .marker { stroke-width: 1.4; } .bar { stroke: none; }
 svg.plan { border: 1px solid var(--rule); }
-svg.plan .grid { stroke-width: 2; }
-svg.plan text { font-size: 22px; text-anchor: middle; paint-order: stroke; stroke: var(--ground); stroke-width: 6px; stroke-linejoin: round; }
+svg.plan .grid { stroke-width: 1; }
+svg.plan text { font-size: 11px; text-anchor: middle; paint-order: stroke; stroke: var(--ground); stroke-width: 3px; stroke-linejoin: round; }
 svg.plan text.label { font-weight: 700; } svg.plan text.ring { fill: var(--faint); }
-.dots { fill: none; stroke-width: 6; stroke-linecap: round; } .dots.loose { stroke-width: 4; }
-.outline { fill: none; stroke-width: 2; stroke-linejoin: round; } .outline.dashed { stroke-dasharray: 7 5; }
-.boat { fill: var(--text); stroke: var(--ground); stroke-width: 2; }
+.dots { fill: none; stroke-width: 3; stroke-linecap: round; } .dots.loose { stroke-width: 2.2; }
+.outline { fill: none; stroke-width: 1; stroke-linejoin: round; } .outline.dashed { stroke-dasharray: 3.5 2.5; }
+.boat { fill: var(--text); stroke: var(--ground); stroke-width: 1; }
 .s0 { --c: var(--s0); } .s1 { --c: var(--s1); } .s2 { --c: var(--s2); } .s3 { --c: var(--s3); } .s4 { --c: var(--s4); } .s5 { --c: var(--s5); }
 .s6 { --c: var(--s6); } .loose { --c: var(--loose); } .false { --c: var(--text); }
 .line, .marker, .dots, .outline { stroke: var(--c); } .marker, .bar { fill: var(--c); }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "tools/eval/against_peers.hpp"
 #include "tools/eval/html.hpp"
 #include "tools/eval/metrics.hpp"
 #include "tools/eval/plot.hpp"
@@ -30,9 +31,11 @@ double FigureOf(const MethodResult& method, const std::string& scene, const Figu
 // The darker, the better; for shares of 100 only.
 std::string ShadeOf(double percent) { return std::isfinite(percent) ? "h" + std::to_string(std::clamp(static_cast<int>(percent / 10.0), 0, 9)) : ""; }
 
+// Of the methods that look all round.
 double BestOf(const Results& results, const std::function<double(const MethodResult&)>& figure) {
   double best = kNone;
   for (const auto& method : results.methods) {
+    if (HasPartialView(method)) continue;
     const double value = figure(method);
     if (std::isfinite(value) && !(value <= best)) best = value;
   }
@@ -72,18 +75,19 @@ HtmlTable SceneTable(const Results& results, const std::string& caption, const F
   std::vector<HtmlTable::Heading> headings{{"method"}, {"mean", true}};
   for (const auto& scene : results.scenes) headings.push_back({scene, true});
   HtmlTable table(caption, std::move(headings));
-  const auto cell = [&](double value, double best) -> HtmlCell {
+  const auto cell = [&](double value, double best, bool takes_part) -> HtmlCell {
     if (!is_percent) return {Number(value, num_decimals)};
-    const bool is_best = std::isfinite(value) && Number(value, num_decimals) == Number(best, num_decimals);
+    const bool is_best = std::isfinite(value) && takes_part && Number(value, num_decimals) == Number(best, num_decimals);
     return {Number(value, num_decimals), ShadeOf(value) + (is_best ? " best" : "")};
   };
   for (const auto& method : results.methods) {
     std::vector<HtmlCell> row{{method.method, IsOurs(method) ? "ours" : ""}};
+    const bool takes_part = !HasPartialView(method);
     row.push_back(cell(MeanOverScenes(results, method, figure),
-                       BestOf(results, [&](const MethodResult& other) { return MeanOverScenes(results, other, figure); })));
+                       BestOf(results, [&](const MethodResult& other) { return MeanOverScenes(results, other, figure); }), takes_part));
     for (const auto& scene : results.scenes) {
-      row.push_back(
-          cell(FigureOf(method, scene, figure), BestOf(results, [&](const MethodResult& other) { return FigureOf(other, scene, figure); })));
+      row.push_back(cell(FigureOf(method, scene, figure), BestOf(results, [&](const MethodResult& other) { return FigureOf(other, scene, figure); }),
+                         takes_part));
     }
     table.Add(std::move(row));
   }
@@ -100,18 +104,6 @@ HtmlCell MedianAndP99(const Times& times) {
 
 double IouPercent(const Score& score) { return 100.0 * MeanIou(score); }
 double WaterIouPercent(const Score& score) { return 100.0 * MeanWaterIou(score); }
-
-double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure) {
-  double sum = 0.0;
-  int count = 0;
-  for (const auto& scene : results.scenes) {
-    const double value = FigureOf(method, scene, figure);
-    if (!std::isfinite(value)) continue;
-    sum += value;
-    ++count;
-  }
-  return Ratio(sum, count);
-}
 
 Times TimesOf(const std::vector<double>& time_ms) {
   eval::Summary summary;
@@ -136,27 +128,34 @@ Times TimesOf(const MethodResult& method) {
 bool IsOurs(const MethodResult& method) { return method.method.rfind("ours", 0) == 0 && method.method.find(kWithout) == std::string::npos; }
 
 std::string Summary(const Results& results) {
-  const auto overall = Rank(
-      results, [&](const MethodResult& method) { return MeanOverScenes(results, method, IouPercent); }, 1);
+  // Methods that look ahead only have an easier task, and do not take part.
+  const auto mean_iou = [&](const MethodResult& method) { return HasPartialView(method) ? kNone : MeanOverScenes(results, method, IouPercent); };
+  const auto overall = Rank(results, mean_iou, 1);
   if (overall.empty()) return "<p>No method was judged on a scene with objects.</p>\n";
 
   std::string text = "Highest mean mIoU over the scenes: " + overall[0].Names() + " with " + Number(overall[0].value, 1) + " %";
   if (overall.size() > 1) text += ", before " + overall[1].Names() + " with " + Number(overall[1].value, 1) + " %";
   text += ".";
+  // Who finds nothing has no false segments and is fast.
+  const auto is_of_use = [&](const MethodResult& method) { return mean_iou(method) >= overall[0].value / 2.0; };
   const auto false_segments = Rank(
-      results, [&](const MethodResult& method) { return MeanOverScenes(results, method, FalseSegmentsPerTurn); }, 2);
-  if (!false_segments.empty()) {
-    text += " Fewest false segments: " + false_segments.back().Names() + ", " + Number(false_segments.back().value, 2) + " a turn.";
-  }
+      results, [&](const MethodResult& method) { return is_of_use(method) ? MeanOverScenes(results, method, FalseSegmentsPerTurn) : kNone; }, 2);
   const auto times = Rank(
-      results, [](const MethodResult& method) { return TimesOf(method).median_ms; }, 2);
-  if (!times.empty()) text += " Fastest: " + times.back().Names() + ", " + Number(times.back().value, 2) + " ms a turn (median).";
+      results, [&](const MethodResult& method) { return is_of_use(method) ? TimesOf(method).median_ms : kNone; }, 2);
+  if (!false_segments.empty() || !times.empty()) text += " Of the methods with half of that or more:";
+  if (!false_segments.empty()) {
+    text += " fewest false segments " + false_segments.back().Names() + ", " + Number(false_segments.back().value, 2) + " a turn;";
+  }
+  if (!times.empty()) text += " fastest " + times.back().Names() + ", " + Number(times.back().value, 2) + " ms a turn (median)";
+  if (text.back() == ';') text.pop_back();
+  if (text.back() != '.') text += ".";
 
-  HtmlTable table("The best method of each scene by mIoU, %", {{"scene"}, {"best"}, {"mIoU"}, {"next"}, {"mIoU"}, {"ahead by"}});
+  HtmlTable table("The best method of each scene by mIoU, %, of those that look all round",
+                  {{"scene"}, {"best"}, {"mIoU"}, {"next"}, {"mIoU"}, {"ahead by"}});
   std::vector<std::pair<std::string, int>> wins;
   for (const auto& scene : results.scenes) {
     const auto ranks = Rank(
-        results, [&](const MethodResult& method) { return FigureOf(method, scene, IouPercent); }, 1);
+        results, [&](const MethodResult& method) { return HasPartialView(method) ? kNone : FigureOf(method, scene, IouPercent); }, 1);
     std::vector<HtmlCell> row{{scene}, {"-"}, {"-"}, {"-"}, {"-"}, {"-"}};
     if (!ranks.empty()) {
       row[1] = {ranks[0].Names()};
@@ -183,9 +182,75 @@ std::string Summary(const Results& results) {
   return Element("p", text) + Element("p", won + ".") + table.Markup();
 }
 
+std::string AgainstPeers(const Results& results) {
+  const auto tuned = CompareWithPeers(results, true);
+  const auto all = CompareWithPeers(results, false);
+  if (all.empty()) return "";
+  HtmlTable table("Ours against the best peer of each scene: our error (100 - mIoU) as a share of its error, %; below 100 ours is better",
+                  {{"scene"},
+                   {"ours, mIoU %"},
+                   {"best tuned peer"},
+                   {"its mIoU %"},
+                   {"our error of its error, %"},
+                   {"best of all peers"},
+                   {"its mIoU %"},
+                   {"our error of its error, %"}});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string css_class = all[i].scene == "mean" ? "total" : "";
+    std::vector<HtmlCell> row{{all[i].scene, css_class}, {Number(100.0 * all[i].our_iou, 1), css_class}};
+    const auto add = [&](const AgainstPeer* peer) {
+      row.push_back({peer != nullptr ? peer->peer : "-", css_class});
+      row.push_back({peer != nullptr ? Number(100.0 * peer->peer_iou, 1) : "-", css_class});
+      row.push_back({peer != nullptr ? Number(100.0 * peer->error_share, 1) : "-", css_class});
+    };
+    add(i < tuned.size() ? &tuned[i] : nullptr);
+    add(&all[i]);
+    table.Add(std::move(row));
+  }
+  return table.Markup();
+}
+
+std::string NearRecall(const Results& results) {
+  std::set<std::pair<std::string, std::string>> seen;  // scene, kind
+  for (const auto& method : results.methods) {
+    for (const auto& [scene, score] : method.by_scene) {
+      for (const auto& [kind, recall] : score.near_recall_by_kind) seen.emplace(scene, kind);
+    }
+  }
+  if (seen.empty()) return "";
+  std::vector<HtmlTable::Heading> headings{{"scene: kind"}};
+  for (const auto& method : results.methods) headings.push_back({method.method, true});
+  HtmlTable table("Recall at IoU 0.5 of objects nearer than " + Number(Score::kNearM, 0) +
+                      " m, %: of segments at any confidence, and below it of sure ones where that is another number",
+                  std::move(headings));
+  for (const auto& scene : results.scenes) {
+    for (auto at = seen.lower_bound({scene, ""}); at != seen.end() && at->first == scene; ++at) {
+      std::vector<HtmlCell> row{{scene + ": " + at->second}};
+      for (const auto& method : results.methods) {
+        const auto* score = Find(method, scene);
+        const auto found = score == nullptr ? decltype(score->near_recall_by_kind.end()){} : score->near_recall_by_kind.find(at->second);
+        if (score == nullptr || found == score->near_recall_by_kind.end()) {
+          row.push_back({"-"});
+          continue;
+        }
+        const auto& recall = found->second;
+        const auto percent = [&recall](std::int64_t count) {
+          return 100.0 * Ratio(static_cast<double>(count), static_cast<double>(recall.num_object_turns));
+        };
+        const double any = percent(recall.num_found);
+        const std::string sure = recall.num_surely_found == recall.num_found ? "" : "\n" + Number(percent(recall.num_surely_found), 0);
+        row.push_back({Number(any, 0) + sure, ShadeOf(any) + (sure.empty() ? "" : " two")});
+      }
+      table.Add(std::move(row));
+    }
+  }
+  return table.Markup();
+}
+
 std::string TableOne(const Results& results) {
   if (results.methods.empty()) return "";
-  std::string markup = SceneTable(results, "Table I: mIoU, %. The best of each column in bold", IouPercent, 1, true).Markup();
+  std::string markup =
+      SceneTable(results, "Table I: mIoU, %. The best of each column in bold, of those that look all round", IouPercent, 1, true).Markup();
 
   std::vector<HtmlTable::Heading> headings{{"method"}, {"all scenes", true}};
   for (const auto& scene : results.scenes) headings.push_back({scene, true});
@@ -207,9 +272,11 @@ std::string TableOne(const Results& results) {
 
 std::string WaterAndKinds(const Results& results) {
   if (results.methods.empty()) return "";
+  const Figure sure_water = [](const Score& score) { return 100.0 * MeanSureWaterIou(score); };
   const Figure sure = [](const Score& score) { return 100.0 * MeanSureIou(score); };
   std::string markup = SceneTable(results, "mIoU over objects in the water alone, %", WaterIouPercent, 1, true).Markup() +
-                       SceneTable(results, "mIoU with sure segments alone, %", sure, 1, true).Markup();
+                       SceneTable(results, "mIoU with sure segments alone, %", sure, 1, true).Markup() +
+                       SceneTable(results, "mIoU over objects in the water, with sure segments alone, %", sure_water, 1, true).Markup();
 
   std::set<std::string> kinds;
   for (const auto& method : results.methods) {

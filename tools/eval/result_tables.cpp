@@ -7,12 +7,11 @@
 #include <set>
 #include <stdexcept>
 
+#include "tools/eval/against_peers.hpp"
 #include "tools/eval/metrics.hpp"
 
 namespace lookout::eval {
 namespace {
-
-using Figure = std::function<double(const Score&)>;
 
 std::string Percent(double share) { return Number(100.0 * share, 1); }
 
@@ -22,17 +21,6 @@ Score Total(const MethodResult& method) {
   Score total;
   for (const auto& [scene, score] : method.by_scene) total.Add(score);
   return total;
-}
-
-// Of the scenes in which it is known, each counting the same.
-double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure) {
-  Summary values;
-  for (const auto& scene : results.scenes) {
-    const auto found = method.by_scene.find(scene);
-    if (found == method.by_scene.end()) continue;
-    if (const double value = figure(found->second); std::isfinite(value)) values.Add(value);
-  }
-  return values.count() > 0 ? values.Mean() : std::numeric_limits<double>::quiet_NaN();
 }
 
 Table ByScene(const Results& results, const Figure& figure, const std::function<std::string(double)>& text) {
@@ -102,6 +90,50 @@ Table Overall(const Results& results) {
   return table;
 }
 
+// With and without a step of the segmenter: methods that have components before they cluster them.
+Table Ablation(const Results& results) {
+  Table table({"method", "mIoU_%", "components", "segments", "false", "median_ms", "p99_ms"});
+  for (const auto& method : results.methods) {
+    const Score total = Total(method);
+    if (total.num_turns_with_components == 0) continue;
+    const auto times = TimeCells(total.time_ms);
+    table.Add({method.method, Percent(MeanOverScenes(results, method, MeanIou)), Number(MeanOverScenes(results, method, ComponentsPerTurn), 1),
+               Number(MeanOverScenes(results, method, SegmentsPerTurn), 2), Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2),
+               times[0], times[1]});
+  }
+  return table;
+}
+
+Table AgainstPeers(const Results& results) {
+  Table table(
+      {"scene", "ours_%", "best_tuned_peer", "peer_%", "our_error_of_its_error_%", "best_peer_of_all", "best_%", "our_error_of_best_error_%"});
+  const auto tuned = CompareWithPeers(results, true);
+  const auto all = CompareWithPeers(results, false);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool has_tuned = i < tuned.size();
+    table.Add({all[i].scene, Percent(all[i].our_iou), has_tuned ? tuned[i].peer : "-", has_tuned ? Percent(tuned[i].peer_iou) : "-",
+               has_tuned ? Percent(tuned[i].error_share) : "-", all[i].peer, Percent(all[i].peer_iou), Percent(all[i].error_share)});
+  }
+  return table;
+}
+
+// A row for each method, scene and kind.
+Table NearRecall(const Results& results) {
+  Table table({"method", "scene", "kind", "object_turns", "recall_%", "sure_recall_%"});
+  for (const auto& method : results.methods) {
+    for (const auto& scene : results.scenes) {
+      const auto found = method.by_scene.find(scene);
+      if (found == method.by_scene.end()) continue;
+      for (const auto& [kind, recall] : found->second.near_recall_by_kind) {
+        table.Add({method.method, scene, kind, Number(recall.num_object_turns),
+                   Percent(Ratio(static_cast<double>(recall.num_found), recall.num_object_turns)),
+                   Percent(Ratio(static_cast<double>(recall.num_surely_found), recall.num_object_turns))});
+      }
+    }
+  }
+  return table;
+}
+
 Table Stages(const Results& results) {
   Table table({"method", "stage", "median_ms", "p99_ms"});
   for (const auto& method : results.methods) {
@@ -151,25 +183,38 @@ std::vector<NamedTable> TablesOf(const Results& results) {
   const auto add = [&tables](const std::string& name, const std::string& title, Table table) {
     if (!table.empty()) tables.push_back({name, title, std::move(table)});
   };
+  const auto kind_title = [](const std::string& kind) { return kind; };
   const auto range_title = [](const int& bin) { return Number(bin * Score::kRangeBinM, 0) + "-" + Number((bin + 1) * Score::kRangeBinM, 0) + "_m"; };
+  const auto add_to_files = [&](const std::string& name, Table table) {
+    if (!table.empty()) tables.push_back({name, "", std::move(table), false});
+  };
   add("table_1", "Table I: mIoU, %", ByScene(results, MeanIou, Percent));
   add("water", "mIoU over objects in the water alone, %", ByScene(results, MeanWaterIou, Percent));
+  add_to_files("sure_water", ByScene(results, MeanSureWaterIou, Percent));
   add("sure", "mIoU with sure segments alone, %", ByScene(results, MeanSureIou, Percent));
   add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
   add("sure_false_segments", "false segments a turn that the method is sure of",
       ByScene(results, SureFalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
   add("overall", "all scenes (mIoU, segments, false: mean over scenes; over, under, TPR, times: over all turns)", Overall(results));
+  add("against_peers", "ours against the best peer: 100 - mIoU of ours as a share of the peer's, %", AgainstPeers(results));
   add("kinds", "mean IoU by kind, all scenes, %",
       ByKey<std::string>(
-          results, [](const Score& score) -> const auto& { return score.iou_by_kind; }, [](const std::string& kind) { return kind; }));
+          results, [](const Score& score) -> const auto& { return score.iou_by_kind; }, kind_title));
+  add_to_files("sure_kinds", ByKey<std::string>(
+                                 results, [](const Score& score) -> const auto& { return score.sure_iou_by_kind; }, kind_title));
   add("recall_by_range", "recall at IoU 0.5 by range of the nearest return, all scenes, %",
       ByKey<int>(
           results, [](const Score& score) -> const auto& { return score.recall_by_range; }, range_title));
+  add_to_files("sure_recall_by_range", ByKey<int>(
+                                           results, [](const Score& score) -> const auto& { return score.sure_recall_by_range; }, range_title));
+  add_to_files("near_recall", NearRecall(results));
   add("iou_by_range", "mean IoU by range of the nearest return, all scenes, %",
       ByKey<int>(
           results, [](const Score& score) -> const auto& { return score.iou_by_range; }, range_title));
   add("table_2", "Table II: what the paper's image keeps, a turn", Projections(results));
   add("table_3", "Table III: time by stage", Stages(results));
+  add("ablation", "Ablation: components before they are clustered, segments, false segments (a turn, mean over scenes), time over all turns",
+      Ablation(results));
   int number = 0;
   for (const auto& curve : results.curves) {
     add("curve_" + std::to_string(++number), curve.title + ": " + curve.y_label + (curve.note.empty() ? "" : "\n" + curve.note), CurveTable(curve));
@@ -179,6 +224,7 @@ std::vector<NamedTable> TablesOf(const Results& results) {
 
 void PrintTables(const Results& results, std::ostream& out) {
   for (const auto& table : TablesOf(results)) {
+    if (!table.is_printed) continue;
     out << table.title << '\n';
     table.table.Print(out);
     out << '\n';

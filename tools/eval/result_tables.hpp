@@ -15,6 +15,7 @@ struct NamedTable {
   std::string name;  // of its file, without ending
   std::string title;
   Table table;
+  bool is_printed = true;  // else in a file alone: too long for a screen, or of interest to few
 };
 
 /// All that the results hold; tables without rows are left out. Figures of the paper's kind are in per cent; "-" = there is none.

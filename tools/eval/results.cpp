@@ -1,5 +1,7 @@
 #include "tools/eval/results.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lookout::eval {
@@ -24,9 +26,18 @@ void Score::Add(const Score& other) {
   sum_iou += other.sum_iou;
   num_turns_with_water_object += other.num_turns_with_water_object;
   sum_water_iou += other.sum_water_iou;
+  sum_sure_water_iou += other.sum_sure_water_iou;
   sum_sure_iou += other.sum_sure_iou;
   AddTo(iou_by_kind, other.iou_by_kind);
+  AddTo(sure_iou_by_kind, other.sure_iou_by_kind);
   AddTo(recall_by_range, other.recall_by_range);
+  AddTo(sure_recall_by_range, other.sure_recall_by_range);
+  for (const auto& [kind, more] : other.near_recall_by_kind) {
+    auto& recall = near_recall_by_kind[kind];
+    recall.num_object_turns += more.num_object_turns;
+    recall.num_found += more.num_found;
+    recall.num_surely_found += more.num_surely_found;
+  }
   AddTo(iou_by_range, other.iou_by_range);
   num_segments += other.num_segments;
   num_false_segments += other.num_false_segments;
@@ -36,12 +47,17 @@ void Score::Add(const Score& other) {
   num_under_segmented += other.num_under_segmented;
   num_returns += other.num_returns;
   num_labelled_returns += other.num_labelled_returns;
+  num_not_judged += other.num_not_judged;
+  num_turns_with_components += other.num_turns_with_components;
+  num_components += other.num_components;
   time_ms.insert(time_ms.end(), other.time_ms.begin(), other.time_ms.end());
 }
 
 double MeanIou(const Score& score) { return Ratio(score.sum_iou, score.num_turns_with_object); }
 
 double MeanWaterIou(const Score& score) { return Ratio(score.sum_water_iou, score.num_turns_with_water_object); }
+
+double MeanSureWaterIou(const Score& score) { return Ratio(score.sum_sure_water_iou, score.num_turns_with_water_object); }
 
 double MeanSureIou(const Score& score) { return Ratio(score.sum_sure_iou, score.num_turns_with_object); }
 
@@ -56,5 +72,29 @@ double OverSegmentedShare(const Score& score) { return Ratio(static_cast<double>
 double UnderSegmentedShare(const Score& score) { return Ratio(static_cast<double>(score.num_under_segmented), score.num_segments); }
 
 double TruePositiveRatio(const Score& score) { return Ratio(static_cast<double>(score.num_labelled_returns), score.num_returns); }
+
+double ComponentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_components), score.num_turns_with_components); }
+
+bool HasPartialView(const MethodResult& method) {
+  return std::ranges::any_of(method.by_scene, [](const auto& entry) { return entry.second.num_not_judged > 0; });
+}
+
+double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure) {
+  double sum = 0.0;
+  std::int64_t count = 0;
+  for (const auto& scene : results.scenes) {
+    const auto found = method.by_scene.find(scene);
+    if (found == method.by_scene.end()) continue;
+    const double value = figure(found->second);
+    if (!std::isfinite(value)) continue;
+    sum += value;
+    ++count;
+  }
+  return Ratio(sum, count);
+}
+
+bool IsPeer(const MethodResult& method) { return !method.method.starts_with("ours") && !method.method.starts_with("paper"); }
+
+bool IsTunedPeer(const MethodResult& method) { return IsPeer(method) && method.method.ends_with("(tuned)"); }
 
 }  // namespace lookout::eval

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -19,20 +20,35 @@ struct Score {
   double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
   std::int64_t num_turns_with_water_object = 0;
   double sum_water_iou = 0.0;                                          // the same over objects in the water alone
+  double sum_sure_water_iou = 0.0;                                     // with segments that are sure alone, and so below
   double sum_sure_iou = 0.0;                                           // with segments that are sure alone
   std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-turns, sum of IoU
+  std::map<std::string, std::pair<std::int64_t, double>> sure_iou_by_kind;
   static constexpr double kRangeBinM = 10.0;
   std::map<int, std::pair<std::int64_t, std::int64_t>> recall_by_range;  // bin of nearest return: object-turns, of these IoU >= 0.5
-  std::map<int, std::pair<std::int64_t, double>> iou_by_range;           // bin: object-turns, sum of IoU
+  std::map<int, std::pair<std::int64_t, std::int64_t>> sure_recall_by_range;
+  std::map<int, std::pair<std::int64_t, double>> iou_by_range;  // bin: object-turns, sum of IoU
+  /// Objects whose nearest return is nearer than this: where a small boat has to see a small thing. At 25 m the rings of a VLP-16 are 0.87 m apart
+  /// (2 degrees), so that a buoy of half a metre gives one to three returns.
+  static constexpr double kNearM = 25.0;
+  struct Recall {
+    std::int64_t num_object_turns = 0;
+    std::int64_t num_found = 0;  // IoU >= 0.5
+    std::int64_t num_surely_found = 0;
+  };
+  std::map<std::string, Recall> near_recall_by_kind;
   std::int64_t num_segments = 0;
   std::int64_t num_false_segments = 0;  // without a return of any object
   std::int64_t num_sure_false_segments = 0;
   std::int64_t num_object_turns = 0;
-  std::int64_t num_over_segmented = 0;    // objects of which two or more segments hold a tenth each
-  std::int64_t num_under_segmented = 0;   // segments that hold a tenth each of two or more objects
-  std::int64_t num_returns = 0;           // of objects
-  std::int64_t num_labelled_returns = 0;  // of these, in a segment that belongs (by majority) to their object: the paper's true positives
-  std::vector<double> time_ms;            // of each turn
+  std::int64_t num_over_segmented = 0;         // objects of which two or more segments hold a tenth each
+  std::int64_t num_under_segmented = 0;        // segments that hold a tenth each of two or more objects
+  std::int64_t num_returns = 0;                // of objects
+  std::int64_t num_labelled_returns = 0;       // of these, in a segment that belongs (by majority) to their object: the paper's true positives
+  std::int64_t num_not_judged = 0;             // returns that the method was told not to look at
+  std::int64_t num_turns_with_components = 0;  // of methods that say how many components they had before they clustered them
+  std::int64_t num_components = 0;             // of these turns
+  std::vector<double> time_ms;                 // of each turn
 
   void Add(const Score& other);
 };
@@ -40,6 +56,7 @@ struct Score {
 // 0 to 1; NaN without turns in which there was an object.
 double MeanIou(const Score& score);
 double MeanWaterIou(const Score& score);
+double MeanSureWaterIou(const Score& score);
 double MeanSureIou(const Score& score);
 
 double FalseSegmentsPerTurn(const Score& score);  // NaN without turns, and so below
@@ -48,6 +65,7 @@ double SegmentsPerTurn(const Score& score);
 double OverSegmentedShare(const Score& score);   // of object-turns
 double UnderSegmentedShare(const Score& score);  // of segments
 double TruePositiveRatio(const Score& score);    // of returns of objects
+double ComponentsPerTurn(const Score& score);    // before clustering; NaN for a method that has none
 
 /// One turn, kept because it went worst: drawn from above with truth and prediction side by side.
 struct WorstTurn {
@@ -59,12 +77,27 @@ struct WorstTurn {
   std::vector<std::int32_t> label;
 };
 
+struct Results;
+
 struct MethodResult {
   std::string method;
   std::map<std::string, Score> by_scene;
   std::map<std::string, std::vector<double>> stage_ms;  // by stage, of each turn
   std::vector<WorstTurn> worst;                         // of the whole run, worst first; few
 };
+
+/// A peer's name begins with neither "ours" nor "paper"; a tuned one's ends with "(tuned)".
+bool IsPeer(const MethodResult& method);
+bool IsTunedPeer(const MethodResult& method);
+
+/// It looks at a part of each turn alone: its figures are not those of the same task as others'.
+bool HasPartialView(const MethodResult& method);
+
+/// A figure of one score; NaN = not known.
+using Figure = std::function<double(const Score&)>;
+
+/// Of the scenes in which it is known, each counting the same; NaN when there is none.
+double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure);
 
 /// A curve of one of the paper's tests or of a sweep.
 struct Curve {

@@ -96,6 +96,12 @@ void Compare(Turn& turn, const std::vector<bool>& is_sure) {
   });
 }
 
+template <typename Value>
+void AddTo(std::pair<std::int64_t, Value>& count_and_sum, Value value) {
+  ++count_and_sum.first;
+  count_and_sum.second += value;
+}
+
 std::int64_t NumTruePositives(const Turn& turn) {
   std::int64_t count = 0;
   for (const auto& segment : turn.segments) {
@@ -119,18 +125,23 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
     score.sum_sure_iou += object.sure_iou;
     if (about.is_in_water) {
       score.sum_water_iou += object.iou;
+      score.sum_sure_water_iou += object.sure_iou;
       ++num_water;
     }
-    auto& of_kind = score.iou_by_kind[about.kind];
-    ++of_kind.first;
-    of_kind.second += object.iou;
+    const bool is_found = object.iou >= kFoundIou;
+    const bool is_surely_found = object.sure_iou >= kFoundIou;
+    AddTo(score.iou_by_kind[about.kind], object.iou);
+    AddTo(score.sure_iou_by_kind[about.kind], object.sure_iou);
     const int bin = static_cast<int>(object.nearest_m / Score::kRangeBinM);
-    auto& recall = score.recall_by_range[bin];
-    ++recall.first;
-    recall.second += object.iou >= kFoundIou ? 1 : 0;
-    auto& by_range = score.iou_by_range[bin];
-    ++by_range.first;
-    by_range.second += object.iou;
+    AddTo(score.recall_by_range[bin], std::int64_t{is_found});
+    AddTo(score.sure_recall_by_range[bin], std::int64_t{is_surely_found});
+    AddTo(score.iou_by_range[bin], object.iou);
+    if (object.nearest_m < Score::kNearM) {
+      auto& recall = score.near_recall_by_kind[about.kind];
+      ++recall.num_object_turns;
+      recall.num_found += is_found ? 1 : 0;
+      recall.num_surely_found += is_surely_found ? 1 : 0;
+    }
     score.num_over_segmented += object.num_parts >= 2 ? 1 : 0;
     score.num_returns += object.num_returns;
   }
@@ -143,6 +154,7 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
   if (num_water > 0) {
     score.num_turns_with_water_object = 1;
     score.sum_water_iou /= static_cast<double>(num_water);
+    score.sum_sure_water_iou /= static_cast<double>(num_water);
   }
   for (std::size_t i = 0; i < turn.segments.size(); ++i) {
     const auto& segment = turn.segments[i];
@@ -153,7 +165,14 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
     ++score.num_false_segments;
     score.num_sure_false_segments += labelling.is_sure.empty() || labelling.is_sure.at(i) ? 1 : 0;
   }
+  for (std::size_t cell = 0; cell < labelling.label.size(); ++cell) {
+    score.num_not_judged += truth.scan.columns.range[cell] != 0 && labelling.label[cell] == kNotJudged ? 1 : 0;
+  }
   score.num_labelled_returns = NumTruePositives(turn);
+  if (labelling.num_components) {
+    score.num_turns_with_components = 1;
+    score.num_components = *labelling.num_components;
+  }
   return score;
 }
 

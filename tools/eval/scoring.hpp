@@ -20,9 +20,11 @@ inline constexpr double kFoundIou = 0.5;
 /// - IoU of object i: the greatest p_ij / (n_i + m_j - p_ij) over the segments, 0 when none holds any of it. mIoU of the turn: the mean over the k
 ///   objects with a return (METHOD.md: the paper's equation). A turn without objects has none. The same over objects in the water alone, and with
 ///   segments that are sure alone.
-/// - By kind, and by range of the object's nearest return in bins of Score::kRangeBinM: object-turns and their IoU; found is an IoU of kFoundIou.
+/// - By kind, and by range of the object's nearest return in bins of Score::kRangeBinM: object-turns and their IoU; found is an IoU of kFoundIou. By
+///   kind, found among the objects nearer than Score::kNearM. All of these with segments that are sure alone, too.
 /// - False segment: none of its returns is of an object.
 /// - Over-segmented object: two segments or more with p_ij >= n_i / 10. Under-segmented: a segment with p_ij >= n_i / 10 for two objects or more.
+/// - Components: as the method says.
 /// - True positive (the paper's TPR): a return of an object in a segment that belongs to that object. A segment belongs to whatever has most
 ///   returns in it; of equals to an object before the own vessel and strays, then to the least id.
 ///

@@ -1,12 +1,16 @@
 // From scenes to figures: truth joined to its cells, methods, curves and tables.
 #include "tools/eval/judge.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
 
 #include "common/config/text_config.hpp"
+#include "tools/eval/against_peers.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
@@ -139,6 +143,69 @@ TEST(Methods, LabelsAreThoseOfTheSegmenter) {
   }
 }
 
+TEST(Methods, SayHowManyComponentsTheyCluster) {
+  const auto boat = Catabot();
+  const auto turn = Render("sparse").at(0);
+  const auto count = [&](const segmenter::Params& params) { return SegmenterMethod("", params).Segment(turn.scan).num_components.value_or(-1); };
+  auto params = PaperParams(boat.segmenter, 512);
+  const auto with_search = count(params);
+  const auto without_search = count(WithoutSearch(params));
+  params.component_clustering = false;
+  EXPECT_EQ(with_search, static_cast<std::int64_t>(segmenter::SegmentScan(turn.scan, params).segments.size()));
+  EXPECT_EQ(without_search, static_cast<std::int64_t>(segmenter::SegmentScan(turn.scan, WithoutSearch(params)).segments.size()));
+  EXPECT_LT(with_search, without_search);
+  const std::vector<std::string> peer{"Euclidean 2 m"};
+  EXPECT_FALSE(MakeMethods(boat.segmenter, peer).at(0)->Segment(turn.scan).num_components);
+}
+
+// The truth, of which it is sure where it must be; and a doubtful segment of the strays.
+class Doubter final : public Method {
+ public:
+  explicit Doubter(const LabelledScan& turn) : turn_(turn) {}
+  std::string name() const override { return "ours"; }
+  Labelling Segment(const segmenter::Scan& scan) override {
+    Labelling labelling;
+    const auto num_objects = turn_.objects.rbegin()->first;
+    for (std::size_t cell = 0; cell < turn_.object.size(); ++cell) {
+      const bool is_stray = scan.columns.range[cell] != 0 && turn_.object[cell] == kNoTrueObject;
+      labelling.label.push_back(is_stray ? num_objects + 1 : std::max(turn_.object[cell], 0));
+    }
+    for (std::int32_t id = 1; id <= num_objects; ++id)
+      labelling.is_sure.push_back(!turn_.objects.contains(id) || turn_.objects.at(id).kind != "dock");
+    labelling.is_sure.push_back(false);
+    return labelling;
+  }
+
+ private:
+  const LabelledScan& turn_;
+};
+
+TEST(Judge, DoubtOfAMethodReachesTheTables) {
+  const auto turn = Render("sparse").at(0);
+  Methods methods;
+  methods.push_back(std::make_unique<Doubter>(turn));
+  Judge judge(methods);
+  judge.Add({"sparse", 1, 0}, turn);
+  Results results;
+  results.scenes = {"sparse"};
+  results.methods = judge.results();
+  std::map<std::string, std::string> csv;
+  for (const auto& table : TablesOf(results)) {
+    std::ostringstream out;
+    table.table.PrintCsv(out);
+    csv[table.name] = out.str();
+  }
+  EXPECT_EQ(csv.at("table_1"), "method,mean,sparse\nours,100.0,100.0\n");
+  EXPECT_EQ(csv.at("false_segments"), "method,mean,sparse\nours,1.00,1.00\n");
+  EXPECT_EQ(csv.at("sure_false_segments"), "method,mean,sparse\nours,0.00,0.00\n");
+  EXPECT_EQ(csv.at("sure").substr(0, 24), "method,mean,sparse\nours,");
+  EXPECT_NE(csv.at("sure"), csv.at("table_1"));
+  EXPECT_NE(csv.at("kinds").find("100.0"), std::string::npos);
+  EXPECT_NE(csv.at("sure_kinds").find(",0.0"), std::string::npos) << "docks";
+  EXPECT_TRUE(csv.contains("near_recall"));
+  EXPECT_TRUE(csv.contains("sure_recall_by_range"));
+}
+
 TEST(Methods, WithoutSearchEveryReturnIsAComponent) {
   const auto boat = Catabot();
   auto params = WithoutSearch(PaperParams(boat.segmenter, 512));
@@ -210,13 +277,51 @@ TEST(PaperTests, OwnSegmentIsFromWhereItNeverFailsAgain) {
   EXPECT_EQ(OwnSegmentFromM({}), std::nullopt);
 }
 
+TEST(PaperTests, PartsAreThoseOfOneObjectAlone) {
+  LabelledScan truth;
+  Labelling labelling;
+  const auto add = [&](int count, std::int32_t object, std::int32_t label) {
+    for (int i = 0; i < count; ++i) {
+      truth.scan.columns.range.push_back(1000);
+      truth.object.push_back(object);
+      labelling.label.push_back(label);
+    }
+  };
+  add(16, 7, 1);
+  add(2, 7, 2);
+  add(1, 7, 3);
+  add(1, 7, 0);
+  add(9, 7, kNotJudged);
+  add(30, 8, 4);
+  add(30, kNoTrueObject, 5);
+  auto parts = PartsOf(7, truth, labelling);
+  EXPECT_EQ(parts.num_segments, 3);
+  EXPECT_EQ(parts.num_large, 2) << "2 of 20 are a tenth";
+  EXPECT_EQ(parts.num_in_largest, 16);
+  EXPECT_EQ(parts.num_returns, 20);
+  EXPECT_EQ(PartsOf(9, truth, labelling).num_segments, 0);
+}
+
 TEST(PaperTests, ABoatIsMoreClustersTheLessE3Joins) {
   const auto curve = RunPaperTest(3, SmallPlan(""), Catabot(), nullptr);
-  ASSERT_EQ(curve.lines.size(), 1U);
+  ASSERT_EQ(curve.lines.size(), 2U);
+  EXPECT_GE(curve.lines[0].points.back().second, curve.lines[1].points.back().second) << "all, and those with a tenth of it";
+  EXPECT_DOUBLE_EQ(curve.lines[1].points.back().second, 1.0);
   const auto& points = curve.lines[0].points;
   ASSERT_GE(points.size(), 2U);
   EXPECT_GE(points.front().second, points.back().second);
   EXPECT_GE(points.back().second, 1.0);
+}
+
+TEST(PaperTests, AShoreIsOneObjectAtTheThresholdInPrintButForCrumbs) {
+  const auto curve = RunPaperTest(2, SmallPlan(""), Catabot(), nullptr);
+  ASSERT_EQ(curve.lines.size(), 2U);
+  const auto at = std::ranges::find(curve.lines[1].points, 50.0, &std::pair<double, double>::first);
+  ASSERT_NE(at, curve.lines[1].points.end());
+  EXPECT_LT(at->second, 1.5);
+  // Of a scene with a dock, a boat and glints as well, the least threshold leaves one.
+  EXPECT_DOUBLE_EQ(curve.lines[0].points.front().second, 1.0);
+  EXPECT_GT(curve.lines[0].points.back().second, 5.0);
 }
 
 TEST(Projection, WiderImagesKeepMoreAndMoveLess) {
@@ -236,6 +341,41 @@ TEST(Projection, WiderImagesKeepMoreAndMoveLess) {
 }
 
 TEST(ResultTables, EmptyResultsGiveNoTable) { EXPECT_TRUE(TablesOf(Results{}).empty()); }
+
+TEST(ResultTables, OursIsHeldAgainstTheBestPeers) {
+  Results results;
+  results.scenes = {"a", "b", "c"};
+  const auto add = [&](const std::string& name, std::vector<double> iou) {
+    MethodResult method;
+    method.method = name;
+    for (std::size_t i = 0; i < iou.size(); ++i) {
+      Score score;
+      score.num_turns = score.num_turns_with_object = 1;
+      score.sum_iou = iou[i];
+      method.by_scene[results.scenes[i]] = score;
+    }
+    results.methods.push_back(method);
+  };
+  add("paper W=512", {0.99, 0.99, 0.99});
+  add("ours", {0.9, 0.6, 0.7});
+  EXPECT_TRUE(CompareWithPeers(results, false).empty()) << "no peers";
+  add("Euclidean 2 m", {0.95, 0.3, 1.0});
+  add("Euclidean 3 m (tuned)", {0.8, 0.5, 0.4});
+  add("F3D (tuned)", {0.8, 0.2, 0.9});
+  const auto tuned = CompareWithPeers(results, true);
+  ASSERT_EQ(tuned.size(), 4U);
+  EXPECT_EQ(tuned[0].peer, "Euclidean 3 m (tuned)") << "of equals the first";
+  EXPECT_NEAR(tuned[0].error_share, 0.1 / 0.2, 1e-12);
+  EXPECT_NEAR(tuned[1].error_share, 0.4 / 0.5, 1e-12);
+  EXPECT_EQ(tuned[2].peer, "F3D (tuned)");
+  EXPECT_NEAR(tuned[2].error_share, 0.3 / 0.1, 1e-12);
+  EXPECT_EQ(tuned[3].scene, "mean");
+  EXPECT_EQ(tuned[3].peer, "F3D (tuned)");
+  EXPECT_NEAR(tuned[3].error_share, (0.8 / 3.0) / (1.1 / 3.0), 1e-12);
+  const auto all = CompareWithPeers(results, false);
+  EXPECT_EQ(all[0].peer, "Euclidean 2 m");
+  EXPECT_TRUE(std::isnan(all[2].error_share)) << "that peer makes no error";
+}
 
 TEST(ResultTables, SceneWithoutObjectsHasADash) {
   Results results;

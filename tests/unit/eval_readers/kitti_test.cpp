@@ -51,6 +51,22 @@ TEST(Kitti, AnInstanceIsAnObjectAndAClassWithoutOneIsNone) {
   EXPECT_EQ(cloud.objects.at(3).kind, "class 10");
 }
 
+TEST(Kitti, ClassesAreObjectsWhereNoPointOfTheFileHasAnInstance) {
+  std::string points;
+  for (int i = 0; i < 5; ++i) points += KittiPoint(static_cast<float>(i + 1), 0.0F, 0.0F);
+  const auto labels = KittiLabel(0, 0) + KittiLabel(1, 0) + KittiLabel(50, 0) + KittiLabel(18, 0) + KittiLabel(50, 0);
+  const auto cloud = ParseKitti(points, "a.bin", labels, "a.label");
+  EXPECT_TRUE(cloud.are_classes_objects);
+  ASSERT_EQ(cloud.objects.size(), 2U);
+  EXPECT_EQ(cloud.objects.at(1).name, "class 18");
+  EXPECT_EQ(cloud.points[0].object, kNoTrueObject) << "unlabelled";
+  EXPECT_EQ(cloud.points[1].object, kNoTrueObject) << "outlier";
+  EXPECT_EQ(cloud.points[2].object, 2);
+  EXPECT_EQ(cloud.points[3].object, 1);
+  EXPECT_EQ(cloud.points[4].object, 2);
+  EXPECT_FALSE(ParseKitti(points.substr(0, 16), "a.bin", KittiLabel(0, 0), "a.label").are_classes_objects) << "nothing is labelled";
+}
+
 TEST(Kitti, LeavesOutWhatIsNotANumberAndCountsIt) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto cloud =

@@ -90,7 +90,7 @@ TEST(DrawBars, WithoutNumbersSaysSo) {
 TEST(DrawFromAbove, RightIsRightAndForwardIsUp) {
   const auto svg = DrawFromAbove({"t", {{"s0", {{5.0, 8.0}}}}, {}, {}, {-10.0, -10.0}, {10.0, 10.0}});
   EXPECT_EQ(FaultOf(svg), "");
-  EXPECT_TRUE(Holds(svg, "d=\"M690 92h0\""));  // of 920: three quarters to the right, a tenth from the top
+  EXPECT_TRUE(Holds(svg, "d=\"M344 46h0\""));  // of 460, in steps of two: three quarters to the right, a tenth from the top
 }
 
 TEST(DrawFromAbove, DotsOnOnePlaceAreDrawnOnceAndThoseOutsideNotAtAll) {
@@ -98,11 +98,26 @@ TEST(DrawFromAbove, DotsOnOnePlaceAreDrawnOnceAndThoseOutsideNotAtAll) {
   EXPECT_EQ(CountOf(svg, "h0"), 1);
 }
 
-TEST(DrawFromAbove, OutlineOfOneCornerIsARing) {
-  const auto svg = DrawFromAbove({"t", {}, {{"false", {{1.0, 1.0}}}, {"s1", {{1.0, 1.0}, {2.0, 2.0}}, true}, {"s2", {}}}, {{"<1>", {0.0, 0.0}}}});
+TEST(DrawFromAbove, NeighboursBecomeOneStroke) {
+  // A step of dots is 2 of 460 for 20 m. One stroke down, one aside, and a dot by itself, from the end of the stroke before.
+  constexpr double kStepM = 20.0 / 230.0;
+  std::vector<ScatterFromAbove::Spot> spots;
+  for (int i = 0; i < 4; ++i) spots.emplace_back(0.001, -0.001 - i * kStepM);
+  for (int i = 0; i < 3; ++i) spots.emplace_back(5.001 + i * kStepM, -0.001);
+  spots.emplace_back(8.001, -0.001);
+  const auto svg = DrawFromAbove({"t", {{"s0", spots}}, {}, {}, {-10.0, -10.0}, {10.0, 10.0}});
+  EXPECT_TRUE(Holds(svg, "d=\"M230 230v6m114-6h4m66 0h0\"")) << svg;
+}
+
+TEST(DrawFromAbove, OutlineOfOneCornerIsASquare) {
+  const auto svg = DrawFromAbove({"t",
+                                  {},
+                                  {{"false", false, {{{1.0, 1.0}}, {{2.0, 2.0}}}}, {"s1", true, {{{1.0, 1.0}, {2.0, 2.0}}}}, {"s2", false, {{}}}},
+                                  {{"<1>", {0.0, 0.0}}}});
   EXPECT_EQ(FaultOf(svg), "");
-  EXPECT_TRUE(Holds(svg, "<circle class=\"outline false\""));
-  EXPECT_TRUE(Holds(svg, "<path class=\"outline s1 dashed\""));
+  EXPECT_EQ(CountOf(svg, "<path class=\"outline false\""), 1) << "all of one colour are one path";
+  EXPECT_EQ(CountOf(svg, "h8v8h-8z"), 2);
+  EXPECT_TRUE(Holds(svg, "<path class=\"outline s1 dashed\" d=\"M253 207l23-23z\"/>")) << svg;
   EXPECT_FALSE(Holds(svg, "outline s2"));
   EXPECT_TRUE(HasLabel(svg, "&lt;1&gt;"));
 }

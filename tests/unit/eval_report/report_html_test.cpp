@@ -89,6 +89,7 @@ TEST(WriteHtml, OtherTablesHoldTheirNumbers) {
   const auto water = SectionOf(page, "water");
   EXPECT_TRUE(Holds(water, "<td class=\"h8 best\">80.2</td><td class=\"h8 best\">85.2</td>"));  // in the water alone
   EXPECT_TRUE(Holds(water, "<td class=\"h7 best\">75.2</td><td class=\"h8 best\">80.2</td>"));  // sure segments alone
+  EXPECT_TRUE(Holds(water, "<td class=\"h7 best\">70.2</td><td class=\"h7 best\">75.2</td>"));  // both
   EXPECT_TRUE(Holds(water, "<td class=\"h8\">80.2</td><td class=\"h9\">90.2</td>"));            // buoy, shore
   const auto segments = SectionOf(page, "segments");
   EXPECT_TRUE(Holds(segments, "<td>0.50</td><td>0.75</td><td>0.00</td><td>0.75</td>"));
@@ -96,11 +97,50 @@ TEST(WriteHtml, OtherTablesHoldTheirNumbers) {
   EXPECT_TRUE(Holds(segments, "<td>2.0</td><td>12.5</td><td>25.0</td><td>93.7</td>"));
   EXPECT_TRUE(Holds(SectionOf(page, "table-2"), "<th scope=\"row\">512</th><td>90.2</td><td>1563</td><td>5580</td><td>0.079</td><td>-</td>"));
   EXPECT_TRUE(Holds(SectionOf(page, "ablation"), "<th scope=\"row\">paper W=512 without BFS</th><td>15.0</td>"));
+  EXPECT_TRUE(Holds(SectionOf(page, "ablation"), "<th scope=\"row\">paper W=512</th><td>55.5</td><td>461.0</td>")) << "components, mean over scenes";
+  EXPECT_TRUE(Holds(SectionOf(page, "ablation"), "<th scope=\"row\">paper W=512 without BFS</th><td>15.0</td><td>-</td>"));
   EXPECT_FALSE(Holds(SectionOf(page, "ablation"), ">ours</th>"));
   const auto curves = SectionOf(page, "curves");
   for (const auto* text : {"Test &lt;1&gt;", "own &amp; sure from 6.3 m", "<td>3.25</td>"}) EXPECT_TRUE(Holds(curves, text)) << text;
   EXPECT_TRUE(Holds(SectionOf(page, "range"), "<th scope=\"row\">5.00</th><td>62.50</td>"));
   EXPECT_TRUE(Holds(SectionOf(page, "range"), "<th scope=\"row\">25.00</th><td>25.00</td>"));
+  EXPECT_TRUE(Holds(SectionOf(page, "range"), "<th scope=\"row\">dense: buoy</th><td class=\"h7 two\">75\n50</td>")) << "any confidence, sure";
+  EXPECT_TRUE(Holds(SectionOf(page, "range"), "<th scope=\"row\">dense: shore</th><td class=\"h9\">100</td>"));
+}
+
+TEST(WriteHtml, OursIsHeldAgainstTheBestPeerOfEachScene) {
+  auto results = MadeUpResults();
+  EXPECT_FALSE(Holds(PageOf(results), "best tuned peer")) << "there is none";
+  results.methods[1].method = "Euclidean (tuned)";
+  results.methods[2].method = "F3D";
+  const auto section = SectionOf(PageOf(results), "summary");
+  // 9.8 of 69.3, 19.8 of 19.7; the mean: 14.8 of 44.5.
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">dense</th><td>90.2</td><td class=\"words\">Euclidean (tuned)</td><td>30.7</td><td>14.1</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">rain</th><td>80.2</td><td class=\"words\">Euclidean (tuned)</td><td>80.3</td><td>100.5</td>"));
+  EXPECT_TRUE(Holds(section, "<td class=\"total\">33.3</td>"));
+}
+
+TEST(WriteHtml, MethodsThatLookAheadOnlyDoNotWin) {
+  auto results = MadeUpResults();
+  results.methods[0].by_scene["dense"].num_not_judged = 1;
+  const auto section = SectionOf(PageOf(results), "summary");
+  EXPECT_TRUE(Holds(section, "Highest mean mIoU over the scenes: paper W=512 with 55.5 %"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">dense</th><td class=\"words\">paper W=512</td>"));
+  const auto table = SectionOf(PageOf(results), "table-1");
+  EXPECT_TRUE(Holds(table, "ours</th><td class=\"h8\">85.2</td><td class=\"h9\">90.2</td>"));
+  EXPECT_TRUE(Holds(table, "<td class=\"h5 best\">55.5</td><td class=\"h3 best\">30.7</td>"));
+}
+
+TEST(WriteHtml, SeldomBinsAreNotDrawnButListed) {
+  auto results = MadeUpResults();
+  results.methods[0].by_scene["dense"].iou_by_range = {{0, {1000, 900.0}}};
+  results.methods[0].by_scene["rain"].iou_by_range.clear();
+  const auto without = SectionOf(PageOf(results), "range");
+  results.methods[0].by_scene["dense"].iou_by_range[9] = {1, 0.25};
+  const auto section = SectionOf(PageOf(results), "range");
+  EXPECT_EQ(section.substr(0, section.find("<details>")), without.substr(0, without.find("<details>")));
+  EXPECT_FALSE(Holds(without, "<th scope=\"row\">95.00</th>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">95.00</th><td>25.00</td>"));
 }
 
 TEST(WriteHtml, StagesStandInTheOrderOfTheWork) {

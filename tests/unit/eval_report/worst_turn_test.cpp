@@ -49,6 +49,41 @@ TEST(FigureOfWorstTurn, PieceOfAnObjectIsDashedAndFalseSegmentIsOutlined) {
   EXPECT_EQ(CountOf(figure, "class=\"outline false\""), 1);
 }
 
+TEST(FigureOfWorstTurn, OfHundredsOfPiecesTheLargestAreOutlined) {
+  // 5 pieces of 20 returns, then 260 of one.
+  std::vector<std::int32_t> label;
+  for (int i = 0; i < 100; ++i) label.push_back(1 + i / 20);
+  for (int i = 0; i < 260; ++i) label.push_back(6 + i);
+  const auto figure = PredictionOf(FigureOfWorstTurn(MadeUpTurn(std::vector<std::int32_t>(label.size(), 1), label), "m"));
+  const auto at = figure.find("class=\"outline s0 dashed\"");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_EQ(CountOf(figure.substr(at, figure.find("/>", at) - at), "z"), 4) << "the fifth of 20 is the object's best";
+}
+
+TEST(FigureOfWorstTurn, FullTurnTakesAFewKilobytes) {
+  // 16 rings and 1800 columns of a ragged shore all round, cut into 300 pieces.
+  constexpr int kNumColumns = 1800;
+  constexpr int kNumRings = 16;
+  auto turn = MadeUpTurn(std::vector<std::int32_t>(kNumColumns, 2), std::vector<std::int32_t>(kNumColumns, 1));
+  auto& scan = turn.truth.scan;
+  scan.head.rings.resize(kNumRings);
+  scan.columns.range.clear();
+  turn.truth.object.clear();
+  turn.label.clear();
+  for (int column = 0; column < kNumColumns; ++column) {
+    scan.columns.azimuth_rad[static_cast<std::size_t>(column)] = static_cast<float>(column * 2.0 * std::numbers::pi / kNumColumns);
+    for (int ring = 0; ring < kNumRings; ++ring) {
+      scan.columns.range.push_back(static_cast<std::uint16_t>(20'000 + 200 * ring + 97 * column % 400));
+      turn.truth.object.push_back(2);
+      turn.label.push_back(1 + column / 6);
+    }
+  }
+  scan.columns.reflectivity.assign(scan.columns.range.size(), 0);
+  const auto figure = FigureOfWorstTurn(turn, "m");
+  EXPECT_EQ(FaultOf(figure), "");
+  EXPECT_LT(figure.size(), 40'000U) << "28 800 returns, more than any turn of a lake";
+}
+
 TEST(FigureOfWorstTurn, OneSegmentOverTwoObjectsBearsBothNumbers) {
   const auto figure = PredictionOf(FigureOfWorstTurn(MadeUpTurn({1, 1, 1, 2, 2}, {1, 1, 1, 1, 1}), "m"));
   EXPECT_TRUE(Holds(figure, ">1+2</text>"));

@@ -16,6 +16,9 @@ constexpr std::size_t kPointBytes = 16;
 constexpr std::size_t kLabelBytes = 4;
 constexpr float kReflectivityOfWhite = 100.0F;  // per cent, as a VLP-16 says it
 
+// semantic-kitti.yaml: 0 "unlabeled", 1 "outlier".
+constexpr std::uint32_t kOutlierClass = 1;
+
 Bytes ToBytes(std::string_view text) { return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}; }
 
 std::uint16_t InstanceOf(std::uint32_t label) { return static_cast<std::uint16_t>(label >> 16); }
@@ -45,16 +48,16 @@ PointCloud ParseKitti(std::string_view points, const std::string& points_name, s
   std::map<std::uint32_t, std::int32_t> object_of_label;
   if (labels) {
     std::set<std::uint32_t> seen;
-    for (std::size_t i = 0; i < num_points; ++i) {
-      const auto label = ReadU32LittleEndian(ToBytes(*labels), i * kLabelBytes);
-      if (InstanceOf(label) != 0) seen.insert(label);
-    }
+    for (std::size_t i = 0; i < num_points; ++i) seen.insert(ReadU32LittleEndian(ToBytes(*labels), i * kLabelBytes));
+    const bool has_instances = std::ranges::any_of(seen, [](std::uint32_t label) { return InstanceOf(label) != 0; });
     for (const auto label : seen) {
+      if (has_instances ? InstanceOf(label) == 0 : label <= kOutlierClass) continue;
       const auto object = static_cast<std::int32_t>(object_of_label.size()) + 1;
       object_of_label.emplace(label, object);
       const std::string kind = "class " + std::to_string(label & 0xFFFFU);
-      cloud.objects[object] = {kind + " instance " + std::to_string(InstanceOf(label)), kind, false};
+      cloud.objects[object] = {has_instances ? kind + " instance " + std::to_string(InstanceOf(label)) : kind, kind, false};
     }
+    cloud.are_classes_objects = !has_instances && !cloud.objects.empty();
   }
   const auto number = [bytes = ToBytes(points)](std::size_t offset) { return std::bit_cast<float>(ReadU32LittleEndian(bytes, offset)); };
   cloud.points.reserve(num_points);

@@ -12,7 +12,8 @@ namespace lookout::eval {
 
 /// @param points_file  little-endian 32-bit floats: x, y, z in metres, intensity 0 to 1 (kept as 0 to 100)
 /// @param label_file   little-endian 32-bit numbers: class in the lower, instance in the upper 16 bits. nullopt = no labels
-/// @return points with an instance belong to an object, one for each class and instance; points without (road, water, plants) to none
+/// @return points with an instance belong to an object, one for each class and instance; points without (road, water, plants) to none. Where no point
+///         of the file has an instance each class is one object, but 0 (unlabelled) and 1 (outlier)
 /// @throws PointFileError
 /// Source: A. Geiger et al., "Vision meets Robotics: The KITTI Dataset", IJRR 2013; J. Behley et al., "SemanticKITTI", ICCV 2019.
 PointCloud ReadKitti(const std::filesystem::path& points_file, const std::optional<std::filesystem::path>& label_file);

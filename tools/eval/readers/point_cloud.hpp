@@ -22,7 +22,8 @@ struct PointCloud {
   std::vector<CloudPoint> points;              // in the order of the file; all finite
   std::map<std::int32_t, ScanObject> objects;  // numbered from 1 in the order of their labels; empty when the file has none
   bool has_labels = false;
-  std::int64_t num_not_finite = 0;  // points left out: a place that is not a number is how a file says "no return"
+  bool are_classes_objects = false;  // KITTI's labels without a single instance: ParseKitti
+  std::int64_t num_not_finite = 0;   // points left out: a place that is not a number is how a file says "no return"
 };
 
 /// As many cells as a turn of LIDAR_SCAN may have (segmenter/wire.hpp), so more points than that are no turn of a lidar.
