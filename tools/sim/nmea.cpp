@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kKnotsPerMps = 3600.0 / 1852.0;
 constexpr double kKmhPerMps = 3.6;
-constexpr double kVerticalFactor = 2.0;  // heights of GNSS are about twice as uncertain as latitude and longitude
 
 __attribute__((format(printf, 1, 2))) std::string Print(const char* form, ...) {
   std::array<char, 160> text{};
@@ -93,9 +92,8 @@ std::string Vtg(const GnssMeasurement& m) {
 
 std::string Gst(const GnssMeasurement& m) {
   if (m.quality == 0) return Sentence("GPGST," + TimeOfDay(m.time) + ",,,,,,,");
-  // The ellipse is a circle: its axes are the deviations, its direction is 0.
-  return Sentence("GPGST," + TimeOfDay(m.time) +
-                  Print(",%.3f,%.3f,%.3f,0.0,%.3f,%.3f,%.3f", m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m, kVerticalFactor * m.sd_m));
+  // The ellipse is a circle: its axes are the deviations, its direction is 0. The simulated height has the deviation of the other two axes.
+  return Sentence("GPGST," + TimeOfDay(m.time) + Print(",%.3f,%.3f,%.3f,0.0,%.3f,%.3f,%.3f", m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m));
 }
 
 std::string Zda(Utime time) {
