@@ -108,9 +108,10 @@ std::string Hdt(double heading_deg) { return Sentence("GPHDT," + Course(heading_
 std::string Rot(double rate_degpmin) { return Sentence("GPROT," + Print("%.1f", rate_degpmin) + ",A"); }
 
 std::string Pashr(const AttitudeMeasurement& m, double tilt_sd_deg, double heading_sd_deg) {
-  // GNSS quality 2 and INS status 1: RTK and aligned, as Trimble and Applanix use them.
+  // GNSS quality 2 is RTK, 1 any other position; INS status 1 is aligned: as Trimble and Applanix use them.
   return Sentence("PASHR," + TimeOfDay(m.time) + "," + Course(m.heading_deg) +
-                  Print(",T,%+.2f,%+.2f,%+.2f,%.3f,%.3f,%.3f,2,1", m.roll_deg, m.pitch_deg, m.heave_m, tilt_sd_deg, tilt_sd_deg, heading_sd_deg));
+                  Print(",T,%+.2f,%+.2f,%+.2f,%.3f,%.3f,%.3f,%d,1", m.roll_deg, m.pitch_deg, m.heave_m, tilt_sd_deg, tilt_sd_deg, heading_sd_deg,
+                        m.has_rtk ? 2 : 1));
 }
 
 std::string VnImu(const ImuMeasurement& m) {
