@@ -23,10 +23,21 @@ microseconds Gain(microseconds duration, double drift_ppm) {
 
 bool LidarClock::IsOn(Utime time) const { return plan_.At(TimedFaultKind::kSensorRestart, time) == nullptr; }
 
+// When a lidar that has been restarted has the time: its own while after the restart, or when the PPS has been back for a while, whichever is later.
+Utime LidarClock::LockAfter(const TimedFault& restart) const {
+  Utime lock = plan_.End(restart) + ToMicroseconds(restart.value);
+  // By begin, so a loss that this one puts off is found as well.
+  for (const auto& fault : plan_.faults()) {
+    if (fault.kind != TimedFaultKind::kPpsLoss || plan_.Begin(fault) >= lock || plan_.End(fault) <= plan_.End(restart)) continue;
+    lock = std::max(lock, plan_.End(fault) + kAcquiring);
+  }
+  return lock;
+}
+
 // The last restart that is over, while its clock is still its own.
 const TimedFault* LidarClock::RestartBefore(Utime time) const {
   const auto* restart = plan_.LastBegun(TimedFaultKind::kSensorRestart, time);
-  return restart != nullptr && time < plan_.End(*restart) + ToMicroseconds(restart->value) ? restart : nullptr;
+  return restart != nullptr && time < LockAfter(*restart) ? restart : nullptr;
 }
 
 std::uint32_t LidarClock::StampUs(Utime time) const {
@@ -45,8 +56,7 @@ std::uint32_t LidarClock::StampUs(Utime time) const {
 
 std::uint8_t LidarClock::Pps(Utime time) const {
   if (const auto* restart = RestartBefore(time)) {
-    const Utime lock = plan_.End(*restart) + ToMicroseconds(restart->value);
-    return time < lock - kAcquiring ? format::kPpsAbsent : format::kPpsSynchronising;
+    return time < LockAfter(*restart) - kAcquiring ? format::kPpsAbsent : format::kPpsSynchronising;
   }
   const auto* loss = plan_.LastBegun(TimedFaultKind::kPpsLoss, time);
   if (loss == nullptr || time < plan_.Begin(*loss) + kPpsNoticed || time >= plan_.End(*loss) + kAcquiring) return format::kPpsLocked;

@@ -43,6 +43,7 @@ class LidarClock {
 
  private:
   const TimedFault* RestartBefore(Utime time) const;
+  Utime LockAfter(const TimedFault& restart) const;
 
   const FaultPlan& plan_;
 };

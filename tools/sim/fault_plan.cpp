@@ -64,6 +64,7 @@ TimedFault ParseTimedFault(std::string_view text) {
   if (!end_s || *end_s <= *begin_s || *end_s > kMaxSeconds) throw refuse("END must be seconds since the start, after BEGIN, up to 86400");
   fault.begin = std::chrono::microseconds(std::llround(*begin_s * 1e6));
   fault.end = std::chrono::microseconds(std::llround(*end_s * 1e6));
+  if (fault.begin == fault.end) throw refuse("must last a microsecond at least");
 
   if (parts.size() == 3) {
     if (!form->unit.empty() && !form->default_value) throw refuse("wants a VALUE: " + std::string(form->unit));

@@ -46,7 +46,8 @@ constexpr double kGeoidSeparationM = -28.0;  // EGM96 in New Hampshire, rounded
 constexpr double kStepS = 0.01;
 
 // A receiver with RTK, with a differential correction, alone.
-int QualityOf(double gnss_sd_m) { return gnss_sd_m <= 0.1 ? 4 : gnss_sd_m <= 1.0 ? 2 : 1; }
+constexpr int kQualityRtk = 4;
+int QualityOf(double gnss_sd_m) { return gnss_sd_m <= 0.1 ? kQualityRtk : gnss_sd_m <= 1.0 ? 2 : 1; }
 
 // First multiple of `period` at or after `time`.
 Utime CeilTo(Utime time, microseconds period) {
@@ -166,6 +167,7 @@ AttitudeMeasurement Navigation::MeasureAttitude(Utime time) {
   result.roll_deg = RadToDeg(state.roll_rad) + params_.tilt_sd_deg * attitude_random_.Normal() - params_.roll_offset_deg;
   result.pitch_deg = RadToDeg(state.pitch_rad) + params_.tilt_sd_deg * attitude_random_.Normal() - params_.pitch_offset_deg;
   result.heave_m = state.heave_m + kHeaveSdM * attitude_random_.Normal();
+  result.has_rtk = QualityOf(params_.gnss_sd_m) == kQualityRtk;
   return result;
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kKnotsPerMps = 3600.0 / 1852.0;
 constexpr double kKmhPerMps = 3.6;
-constexpr double kVerticalFactor = 2.0;  // heights of GNSS are about twice as uncertain as latitude and longitude
 
 __attribute__((format(printf, 1, 2))) std::string Print(const char* form, ...) {
   std::array<char, 160> text{};
@@ -93,9 +92,8 @@ std::string Vtg(const GnssMeasurement& m) {
 
 std::string Gst(const GnssMeasurement& m) {
   if (m.quality == 0) return Sentence("GPGST," + TimeOfDay(m.time) + ",,,,,,,");
-  // The ellipse is a circle: its axes are the deviations, its direction is 0.
-  return Sentence("GPGST," + TimeOfDay(m.time) +
-                  Print(",%.3f,%.3f,%.3f,0.0,%.3f,%.3f,%.3f", m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m, kVerticalFactor * m.sd_m));
+  // The ellipse is a circle: its axes are the deviations, its direction is 0. The simulated height has the deviation of the other two axes.
+  return Sentence("GPGST," + TimeOfDay(m.time) + Print(",%.3f,%.3f,%.3f,0.0,%.3f,%.3f,%.3f", m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m, m.sd_m));
 }
 
 std::string Zda(Utime time) {
@@ -110,9 +108,10 @@ std::string Hdt(double heading_deg) { return Sentence("GPHDT," + Course(heading_
 std::string Rot(double rate_degpmin) { return Sentence("GPROT," + Print("%.1f", rate_degpmin) + ",A"); }
 
 std::string Pashr(const AttitudeMeasurement& m, double tilt_sd_deg, double heading_sd_deg) {
-  // GNSS quality 2 and INS status 1: RTK and aligned, as Trimble and Applanix use them.
+  // GNSS quality 2 is RTK, 1 any other position; INS status 1 is aligned: as Trimble and Applanix use them.
   return Sentence("PASHR," + TimeOfDay(m.time) + "," + Course(m.heading_deg) +
-                  Print(",T,%+.2f,%+.2f,%+.2f,%.3f,%.3f,%.3f,2,1", m.roll_deg, m.pitch_deg, m.heave_m, tilt_sd_deg, tilt_sd_deg, heading_sd_deg));
+                  Print(",T,%+.2f,%+.2f,%+.2f,%.3f,%.3f,%.3f,%d,1", m.roll_deg, m.pitch_deg, m.heave_m, tilt_sd_deg, tilt_sd_deg, heading_sd_deg,
+                        m.has_rtk ? 2 : 1));
 }
 
 std::string VnImu(const ImuMeasurement& m) {

@@ -29,6 +29,7 @@ struct AttitudeMeasurement {
   double roll_deg = 0.0;   // positive starboard down
   double pitch_deg = 0.0;  // positive bow up
   double heave_m = 0.0;    // positive up
+  bool has_rtk = false;    // the receiver that the sensor leans on
 };
 
 /// What an IMU measured. Axes as VectorNav has them: x forward, y starboard, z down.

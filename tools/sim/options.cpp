@@ -1,6 +1,7 @@
 #include "tools/sim/options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <iomanip>
 #include <iostream>
@@ -25,6 +26,17 @@ struct Words {
   std::vector<std::string> faults;
   bool has_no_heading = false;
 };
+
+// CLI::Range lets NaN pass, which is neither below nor above.
+CLI::Validator Within(double min, double max) {
+  const CLI::Range range(min, max);
+  const auto check = [range](std::string& text) -> std::string {
+    double value = 0.0;
+    if (CLI::detail::lexical_cast(text, value) && std::isnan(value)) return "must be a number (is " + text + ")";
+    return range(text);
+  };
+  return {check, range.get_description(), ""};
+}
 
 void PrintScenes(const std::filesystem::path& config_folder) {
   constexpr int kNameWidth = 16;
@@ -55,7 +67,7 @@ void AddRun(CLI::App& app, Options& options) {
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_option("--scene", options.scene, "name of a scene (--list-scenes), or path of a file that ends in .txtpb")->required();
   app.add_option("--seed", options.seed, "of all that is random")->required();
-  app.add_option("--seconds", options.seconds, "length")->required()->check(CLI::Range(0.001, 86400.0));
+  app.add_option("--seconds", options.seconds, "length")->required()->check(Within(0.001, 86400.0));
   auto* pcap = app.add_option("--pcap", options.pcap_file, "write a capture");
   auto* udp = app.add_option("--udp", options.udp_host, "send to this host in real time; times are those of now");
   pcap->excludes(udp);
@@ -66,7 +78,7 @@ void AddRun(CLI::App& app, Options& options) {
       ->excludes(udp)
       ->capture_default_str();
   app.add_option("--speed", options.speed, "with --udp: so many times real time; 0 = without waiting")
-      ->check(CLI::Range(0.0, 1000.0))
+      ->check(Within(0.0, 1000.0))
       ->needs(udp)
       ->capture_default_str();
   app.add_flag_callback(
@@ -81,15 +93,15 @@ void AddRun(CLI::App& app, Options& options) {
 void AddLidar(CLI::App& app, Options& options, Words& words) {
   app.add_option("--return-mode", words.mode, "strongest, last or dual; else as the scene says")->check(CLI::IsMember({"strongest", "last", "dual"}));
   app.add_option("--rpm", options.lidar.rotation_rpm, "turns of the lidar per minute")
-      ->check(CLI::Range(vlp16::format::kMinRpm, vlp16::format::kMaxRpm))
+      ->check(Within(vlp16::format::kMinRpm, vlp16::format::kMaxRpm))
       ->capture_default_str();
   app.add_option("--strays", options.lidar.stray_probability, "stray returns per shot that meets nothing; else as the scene says")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(Within(0.0, 1.0));
   app.add_option("--model", words.model, "vlp16 or hi-res (Puck Hi-Res)")->check(CLI::IsMember({"vlp16", "hi-res"}))->capture_default_str();
   app.add_option("--field-of-view", words.field_of_view_deg, "lasers fire from this azimuth clockwise to that one, degrees")
       ->expected(2)
       ->type_name("FROM TO")
-      ->check(CLI::Range(0.0, 360.0));
+      ->check(Within(0.0, 360.0));
 }
 
 // @return --gnss-sd, which a set of sensors gives way to
@@ -101,13 +113,13 @@ CLI::Option* AddNavigation(CLI::App& app, Options& options, Words& words) {
       ->check(CLI::IsMember({1, 2, 4, 5, 10, 20}))
       ->capture_default_str();
   auto* sd = app.add_option("--gnss-sd", options.navigation.gnss_sd_m, "standard deviation of a position, metres per axis; else as --navigation says")
-                 ->check(CLI::Range(0.0, 100.0));
+                 ->check(Within(0.0, 100.0));
   app.add_flag("--no-heading", words.has_no_heading, "a boat with a GNSS receiver alone: no HDT, ROT, PASHR, VNIMU");
   return sd;
 }
 
 void AddFaults(CLI::App& app, Options& options, Words& words) {
-  const auto share = CLI::Range(0.0, 1.0);
+  const auto share = Within(0.0, 1.0);
   app.add_option("--drop", options.network.drop_share, "share of the data packets that never come")->check(share)->capture_default_str();
   app.add_option("--double", options.network.double_share, "share of them that come twice")->check(share)->capture_default_str();
   app.add_option("--swap", options.network.swap_share, "share of them that come after the next")->check(share)->capture_default_str();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/angles.hpp"
 #include "common/core/frames.hpp"
 
 namespace lookout::sim {
@@ -28,6 +29,13 @@ Eigen::Isometry3d PoseAt(const SceneObject& object, const Sea& sea, double time_
   T_map_object.linear() = RotationMapVessel(placement.heading_rad, pitch_rad, roll_rad);
   T_map_object.translation() << placement.position_map_m, height_m;
   return T_map_object;
+}
+
+Attitude AttitudeOf(const Eigen::Matrix3d& R_map_object) {
+  const Eigen::Vector3d ahead = R_map_object.col(0);
+  // The y axis points to port: it rises as starboard goes down.
+  return {WrapTo2Pi(std::atan2(ahead.x(), ahead.y())), std::asin(std::clamp(ahead.z(), -1.0, 1.0)),
+          std::atan2(R_map_object(2, 1), R_map_object(2, 2))};
 }
 
 std::vector<Part> MakeOwnHull(const Eigen::AlignedBox3d& box_m, double lidar_height_m, const Eigen::Vector3d& p_vessel_antenna_m) {

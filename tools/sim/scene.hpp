@@ -42,6 +42,17 @@ struct SceneObject {
 /// Where the frame of an object is. What floats goes up and down with the water under it and leans as the water between its ends does.
 Eigen::Isometry3d PoseAt(const SceneObject& object, const Sea& sea, double time_s);
 
+/// How a frame (x forward, y port, z up) lies in the map. Signs as in POSE: heading clockwise from north, pitch positive bow up, roll positive
+/// starboard down.
+struct Attitude {
+  double heading_rad = 0.0;  // 0 to 2 pi
+  double pitch_rad = 0.0;
+  double roll_rad = 0.0;
+};
+
+/// Inverse of RotationMapVessel. @param R_map_object  no bow straight up or down
+Attitude AttitudeOf(const Eigen::Matrix3d& R_map_object);
+
 struct Scene {
   OwnMotion own_motion;
   std::vector<SceneObject> objects;

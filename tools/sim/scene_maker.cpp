@@ -32,6 +32,16 @@ constexpr std::uint64_t kFirstObjectStream = 1000;  // and one for each object o
 constexpr double kOwnBoatClearanceM = 1.5;
 constexpr int kMaxTries = 200;  // for an object to find a place
 
+// One message of the truth holds all objects and the own boat: below bus::kMaxMessageBytes (120 kB) with 400 bytes for its head and the own boat.
+constexpr std::size_t kMaxBytesOfObjects = 119'600;
+
+// As sim_object_t.lcm has it: numbers and flags, two texts with their lengths, and the outline.
+std::size_t BytesInTruth(const SceneObject& object) {
+  constexpr std::size_t kBytesOfNumbers = 58;
+  constexpr std::size_t kBytesAroundText = 5;  // its length before it, a zero behind it
+  return kBytesOfNumbers + 2 * kBytesAroundText + object.name.size() + object.kind.size() + 16 * object.outline_m.size();
+}
+
 Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vector2d(std::sin(bearing_rad), std::cos(bearing_rad)); }
 
 double Draw(const Numbers& numbers, double usual, Random& random) {
@@ -245,20 +255,27 @@ class Drawing {
         object.track = DrawTrack(file, field, place, random);
         if (file.has_row() && member > 0) PutInRow(file, scene_.objects.back(), random, object);
         const auto own_boat = traffic_.ToOwnBoat(object, kOwnBoatClearanceM);
-        // Neighbours in a row are as near as its gaps say.
-        const auto other = is_drawn && !own_boat
-                               ? traffic_.ToOthers(object, file.min_distance_m(), file.has_row() ? num_before : traffic_.num_objects())
-                               : std::nullopt;
-        if (!own_boat && !other) {
+        // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
+        std::optional<Approach> other;
+        if (is_drawn && !own_boat) other = traffic_.ToOthers(object, file.min_distance_m(), file.has_row() ? num_before : traffic_.num_objects());
+        const auto overlapping = own_boat || other ? std::nullopt : traffic_.Overlapping(object);
+        if (!own_boat && !other && !overlapping) {
           object.id = static_cast<int>(scene_.objects.size()) + 1;
+          bytes_in_truth_ += BytesInTruth(object);
+          if (bytes_in_truth_ > kMaxBytesOfObjects) Stop(field, "too many objects, or too long an outline: all must fit into one message of 120 kB");
           traffic_.Add(object);
           scene_.objects.push_back(std::move(object));
           break;
         }
         if (is_drawn && num_tries < kMaxTries) continue;
-        const Approach& nearest = own_boat ? *own_boat : *other;
-        const std::string reason = name + " comes to " + MetresText(nearest.distance_m) + " of " + nearest.name + " within 60 s, must stay " +
-                                   MetresText(own_boat ? kOwnBoatClearanceM : file.min_distance_m()) + " away";
+        std::string reason = name;
+        if (overlapping) {
+          reason += " and " + overlapping->name + " are in one place within 60 s";
+        } else {
+          const Approach& nearest = own_boat ? *own_boat : *other;
+          reason += " comes to " + MetresText(nearest.distance_m) + " of " + nearest.name + " within 60 s, must stay " +
+                    MetresText(own_boat ? kOwnBoatClearanceM : file.min_distance_m()) + " away";
+        }
         Stop(field, is_drawn ? "no place in " + std::to_string(kMaxTries) + " tries: at the last " + reason : reason);
       }
     }
@@ -271,6 +288,7 @@ class Drawing {
   Scene scene_;
   Traffic traffic_;
   std::optional<ShoreOnMap> shore_;
+  std::size_t bytes_in_truth_ = 0;
   std::map<File::Kind, int> num_unnamed_;
   std::set<std::string> names_;
 };

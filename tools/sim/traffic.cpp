@@ -51,7 +51,7 @@ Traffic::Traffic(const OwnMotion& own_motion) : own_boat_{"own boat", {}, 0.0} {
 }
 
 Traffic::Mover Traffic::ToMover(const SceneObject& object) {
-  Mover mover{object.name, {}, 0.0};
+  Mover mover{object.name, {}, 0.0, object.is_in_water};
   const double radius_m = RadiusOf(object.outline_m);
   const int num_samples = object.track.is_moving() ? kNumSamples : 1;
   double last_heading_rad = 0.0;
@@ -97,6 +97,15 @@ std::optional<Approach> Traffic::ToOthers(const SceneObject& object, double limi
   for (std::size_t i = 0; i < std::min(num_first, others_.size()); ++i) {
     const double distance_m = NearestM(mover, others_[i], limit_m);
     if (distance_m < limit_m) return Approach{distance_m, others_[i].name};
+  }
+  return std::nullopt;
+}
+
+std::optional<Approach> Traffic::Overlapping(const SceneObject& object) const {
+  if (!object.is_in_water) return std::nullopt;
+  const Mover mover = ToMover(object);
+  for (const auto& other : others_) {
+    if (other.is_in_water && NearestM(mover, other, 0.0) <= 0.0) return Approach{0.0, other.name};
   }
   return std::nullopt;
 }

@@ -32,6 +32,9 @@ class Traffic {
   /// @return the first of them to which it comes nearer than `limit_m`
   std::optional<Approach> ToOthers(const SceneObject& object, double limit_m, std::size_t num_first) const;
 
+  /// @return the first of the others whose outline it crosses, both in the water; what lies on land, at docks or walls may
+  std::optional<Approach> Overlapping(const SceneObject& object) const;
+
   std::size_t num_objects() const { return others_.size(); }
 
  private:
@@ -44,6 +47,7 @@ class Traffic {
     std::string name;
     std::vector<Shape> shapes;  // by sample; one of what stands still
     double speed_mps;           // no point of it is faster
+    bool is_in_water = true;
   };
   static Mover ToMover(const SceneObject& object);
   static double NearestM(const Mover& a, const Mover& b, double limit_m);

@@ -1,11 +1,7 @@
 #include "tools/sim/truth_log.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
-#include "common/core/angles.hpp"
 #include "lookout/sim_truth_t.hpp"
 #include "tools/sim/map_frame.hpp"
 
@@ -18,14 +14,13 @@ static_assert(static_cast<int>(ReturnReason::kMirror) == sim_truth_t::REASON_MIR
 static_assert(kReasonNames.size() == static_cast<std::size_t>(ReturnReason::kMirror) + 1);
 
 void SetPose(const Eigen::Isometry3d& T_map_object, sim_object_t& object) {
-  const Eigen::Vector3d ahead = T_map_object.linear().col(0);
+  const Attitude attitude = AttitudeOf(T_map_object.linear());
   object.east_m = T_map_object.translation().x();
   object.north_m = T_map_object.translation().y();
   object.up_m = T_map_object.translation().z();
-  object.heading_rad = WrapTo2Pi(std::atan2(ahead.x(), ahead.y()));
-  object.pitch_rad = std::asin(std::clamp(ahead.z(), -1.0, 1.0));
-  // The y axis points to port: it rises as starboard goes down.
-  object.roll_rad = std::atan2(T_map_object.linear()(2, 1), T_map_object.linear()(2, 2));
+  object.heading_rad = attitude.heading_rad;
+  object.pitch_rad = attitude.pitch_rad;
+  object.roll_rad = attitude.roll_rad;
 }
 
 void SetOutline(const Eigen::Isometry3d& T_map_object, const std::vector<Eigen::Vector2d>& outline_m, sim_object_t& object) {

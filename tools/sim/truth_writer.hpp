@@ -1,4 +1,5 @@
-// The truth about a simulation as CSV files (objects.csv, outlines.csv, returns.csv, pose.csv, faults.csv; columns: README.md) and as truth.lcmlog.
+// The truth about a simulation as CSV files (objects.csv, object_poses.csv, outlines.csv, returns.csv, pose.csv, faults.csv; columns:
+// README.md) and as truth.lcmlog.
 #pragma once
 
 #include <GeographicLib/LocalCartesian.hpp>
@@ -18,7 +19,7 @@ namespace lookout::sim {
 
 class TruthWriter {
  public:
-  /// Makes the folder and writes objects and the outlines of those that stand still.
+  /// Makes the folder and writes objects, and the outlines of those that stand still.
   ///
   /// @param scene  outlives this
   /// @throws std::runtime_error when a file cannot be made
@@ -41,16 +42,21 @@ class TruthWriter {
  private:
   void WriteObjects();
   void WriteOutline(const SceneObject& object, Utime time);
+  void WriteOutline(int object_id, const Placement& placement, const std::vector<Eigen::Vector2d>& outline_m, Utime time);
+  void WriteObjectPose(int object_id, const Eigen::Isometry3d& T_map_object, Utime time);
+  void WriteObjectsAt(Utime time);
   void WritePose(Utime time);
 
   const Scene& scene_;
   double reference_point_above_water_m_;
+  std::vector<Eigen::Vector2d> own_outline_m_;  // vessel frame
   GeographicLib::LocalCartesian map_;
   Utime start_;
   Utime next_pose_;
   Utime next_outline_;
   TruthLog log_;
   std::ofstream objects_;
+  std::ofstream object_poses_;
   std::ofstream outlines_;
   std::ofstream returns_;
   std::ofstream pose_;

@@ -117,5 +117,16 @@ TEST(LidarClock, ARestartIsSilentThenStampsFromZeroAndLocksInTheEnd) {
   EXPECT_EQ(lidar.RmcS(6'150ms), 6.0);
 }
 
+// It used to say that it was acquiring while there was no PPS, and had the time a second after the PPS was back.
+TEST(LidarClock, ARestartWithoutPpsLocksWhenThePpsHasBeenBackForAWhile) {
+  const Lidar lidar{"sensor_restart:0:2:3", "pps_loss:1:4:100"};
+  EXPECT_EQ(lidar.Pps(2s), format::kPpsAbsent);
+  EXPECT_EQ(lidar.Pps(4s - 1us), format::kPpsAbsent);
+  EXPECT_EQ(lidar.Pps(4s), format::kPpsSynchronising);
+  EXPECT_EQ(lidar.Pps(7s), format::kPpsLocked);
+  EXPECT_EQ(lidar.clock.StampUs(kStart + 7s - 1us), 4'999'999U);
+  EXPECT_EQ(lidar.ErrorUs(7s), 0);
+}
+
 }  // namespace
 }  // namespace lookout::sim

@@ -62,6 +62,7 @@ TEST(TimedFault, SaysWhatIsWrong) {
   expect("gnss_gap:nan:2", "BEGIN must be");
   expect("gnss_gap:2:2", "END must be");
   expect("gnss_gap:2:inf", "END must be");
+  expect("gnss_gap:2:2.0000001", "must last a microsecond at least");
   expect("gnss_gap:2:86401", "END must be");
   expect("gnss_gap:2:3 ", "END must be");
   expect("gnss_gap:1:2:3", "takes no VALUE");

@@ -38,11 +38,15 @@ TEST(Nmea, GgaSaysQualityAndHeights) {
 TEST(Nmea, VtgSaysSpeedTwice) { EXPECT_EQ(Vtg(Somewhere()).rfind("$GPVTG,45.68,T,,M,1.000,N,1.852,K,R*", 0), 0U); }
 
 TEST(Nmea, PashrSaysSignedTiltAndDeviations) {
-  const AttitudeMeasurement measurement{Utime(0s), 271.5, -3.25, 1.5, 0.04};
+  const AttitudeMeasurement measurement{Utime(0s), 271.5, -3.25, 1.5, 0.04, true};
   EXPECT_EQ(Pashr(measurement, 0.05, 0.1).rfind("$PASHR,000000.000,271.50,T,-3.25,+1.50,+0.04,0.050,0.050,0.100,2,1*", 0), 0U);
+  auto without_rtk = measurement;
+  without_rtk.has_rtk = false;  // it used to claim RTK in any case
+  EXPECT_NE(Pashr(without_rtk, 0.05, 0.1).find(",0.100,1,1*"), std::string::npos);
 }
 
-TEST(Nmea, GstSaysDeviations) { EXPECT_EQ(Gst(Somewhere()).rfind("$GPGST,141000.100,0.020,0.020,0.020,0.0,0.020,0.020,0.040*", 0), 0U); }
+// Heights used to be told as twice as bad as they are.
+TEST(Nmea, GstSaysDeviations) { EXPECT_EQ(Gst(Somewhere()).rfind("$GPGST,141000.100,0.020,0.020,0.020,0.0,0.020,0.020,0.020*", 0), 0U); }
 
 TEST(Nmea, ZdaSaysTimeAndDate) { EXPECT_EQ(Zda(Somewhere().time).rfind("$GPZDA,141000.100,15,06,2026,00,00*", 0), 0U); }
 

@@ -107,6 +107,22 @@ TEST(SceneFile, SaysWhichObjectLiesInTheWayOfTheOwnBoat) {
       << "both at (0, 20) after 20 s";
 }
 
+// Two boats that were written to one place used to be one boat with two ids.
+TEST(SceneFile, RefusesTwoHullsInOnePlaceAlsoWhereThePlacesAreExact) {
+  EXPECT_EQ(FaultsOf(kHead + "object { kind: MOTOR_BOAT east_m: 30 }\nobject { kind: KAYAK east_m: 31 north_m: 1 }\n"),
+            "s.txtpb:4: object[1]: kayak_1 and motor_boat_1 are in one place within 60 s");
+  EXPECT_EQ(FaultsOf(kHead + "object { kind: MOTOR_BOAT east_m: 30 }\nobject { kind: KAYAK east_m: 31.5 }\n"), "") << "alongside";
+  EXPECT_EQ(FaultsOf(kHead + "object { kind: PIER east_m: 30 heading_deg: 90 }\nobject { kind: BUOY east_m: 31 }\n"), "") << "a fender at a pier";
+}
+
+TEST(SceneFile, RefusesMoreObjectsThanFitIntoAMessageOfTheTruth) {
+  std::string text = kHead;
+  for (const auto* name : {"a", "b", "c"}) {
+    text += "object { kind: BUOY count: 100 name: \"" + std::string(name) + "\" east_m: [-900, 900] north_m: [20, 900] }\n";
+  }
+  EXPECT_EQ(FaultsOf(text), "s.txtpb:5: object[2]: too many objects, or too long an outline: all must fit into one message of 120 kB");
+}
+
 TEST(SceneFile, GivesUpWhenADrawnObjectFindsNoPlace) {
   const std::string faults = ObjectFaults("kind: BUOY count: 50 east_m: [10, 12] north_m: [10, 12]");
   EXPECT_EQ(faults.find("s.txtpb:3: object[0]: no place in 200 tries: at the last buoy_"), 0U) << faults;

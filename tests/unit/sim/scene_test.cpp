@@ -2,10 +2,13 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <map>
 #include <set>
 #include <sstream>
 
 #include "common/core/angles.hpp"
+#include "tests/unit/sim/sim_fixture.hpp"
+#include "tools/sim/lidar.hpp"
 #include "tools/sim/outline.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -151,6 +154,100 @@ TEST(Scenes, EightObjectsHasItsPairFourMetresApart) {
   const auto scene = MakeScene("eight_objects", 1);
   ASSERT_EQ(scene->objects.size(), 8U);
   EXPECT_NEAR(DistanceM(OutlineAt(scene->objects[0], 0.0), OutlineAt(scene->objects[1], 0.0)), 4.0, 1e-9);
+}
+
+// By the name before the number: in the order of their numbers.
+std::vector<const SceneObject*> RowOf(const Scene& scene, const std::string& name) {
+  std::vector<const SceneObject*> row;
+  for (const auto& object : scene.objects) {
+    if (object.name.rfind(name + "_", 0) == 0) row.push_back(&object);
+  }
+  return row;
+}
+
+TEST(Scenes, MarinaHasGapsOfThreeToEightMetres) {
+  for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
+    const auto scene = MakeScene("marina", seed).value();
+    for (const auto* name : {"north", "south", "east"}) {
+      const auto row = RowOf(scene, name);
+      ASSERT_GE(row.size(), 3U);
+      for (std::size_t i = 1; i < row.size(); ++i) {
+        const double gap_m = DistanceM(OutlineAt(*row[i - 1], 0.0), OutlineAt(*row[i], 0.0));
+        EXPECT_GE(gap_m, 3.0) << row[i]->name << " seed " << seed;
+        EXPECT_LE(gap_m, 8.1) << row[i]->name << " seed " << seed << ": 8 m along the row, and one lies before the other";
+      }
+    }
+  }
+}
+
+TEST(Scenes, CanalHasWallsAtEightToFifteenMetresAndBoatsWithinAMetreOfThem) {
+  for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
+    const auto scene = MakeScene("canal", seed).value();
+    for (const auto* name : {"north", "south"}) {
+      const auto wall_m = OutlineAt(*RowOf(scene, "wall")[std::string(name) == "north" ? 0 : 1], 0.0);
+      for (const auto* boat : RowOf(scene, name)) {
+        const double gap_m = DistanceM(OutlineAt(*boat, 0.0), wall_m);
+        EXPECT_GE(gap_m, 0.25) << boat->name << " seed " << seed;
+        EXPECT_LE(gap_m, 1.0) << boat->name << " seed " << seed;
+      }
+      for (const double time_s : {0.0, 30.0, 60.0}) {
+        const Eigen::Vector2d own_m = StateAt(scene.own_motion, 0.5, time_s).position_map_m.head<2>();
+        const double distance_m = DistanceM({own_m, own_m, own_m}, wall_m);
+        EXPECT_GE(distance_m, 8.0) << name << " seed " << seed;
+        EXPECT_LE(distance_m, 15.0) << name << " seed " << seed;
+      }
+    }
+  }
+}
+
+TEST(Scenes, OwnBoatMovesAsTheirNamesSay) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    const auto waves = MakeScene("waves", seed).value();
+    const auto crossing = MakeScene("crossing", seed).value();
+    const auto turning = MakeScene("turning", seed).value();
+    const auto kayak_shore = MakeScene("kayak_shore", seed).value();
+    double roll_rad = 0.0;
+    double pitch_rad = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+      const double time_s = i * 0.01;
+      roll_rad = std::max(roll_rad, std::abs(StateAt(waves.own_motion, 0.5, time_s).roll_rad));
+      pitch_rad = std::max(pitch_rad, std::abs(StateAt(waves.own_motion, 0.5, time_s).pitch_rad));
+      ASSERT_NEAR(StateAt(crossing.own_motion, 0.5, time_s).velocity_map_mps.norm(), 3.0, 1e-9);
+      ASSERT_EQ(StateAt(kayak_shore.own_motion, 0.5, time_s).velocity_map_mps.norm(), 0.0);
+      const double turned_rad =
+          WrapToPi(StateAt(turning.own_motion, 0.5, time_s + 0.1).heading_rad - StateAt(turning.own_motion, 0.5, time_s).heading_rad);
+      ASSERT_NEAR(RadToDeg(turned_rad), 2.0, 1e-6);
+    }
+    EXPECT_NEAR(RadToDeg(roll_rad), 8.0, 0.3) << "seed " << seed;
+    EXPECT_NEAR(RadToDeg(pitch_rad), 8.0, 0.3) << "seed " << seed;
+    EXPECT_LE(std::max(roll_rad, pitch_rad), DegToRad(8.0) + 1e-9);
+  }
+}
+
+// They used to be passed at 7 m, where they gave up to fifteen.
+TEST(Scenes, BlackBuoysGiveOneToThreeReturns) {
+  std::map<int, int> num_seen;  // by returns in a turn
+  int num_all = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const auto scene = MakeScene("black_buoys", seed).value();
+    config::BoatFacts boat = SmallBoat();
+    Lidar lidar(scene, boat, LidarParams{}, Utime(std::chrono::seconds(1'781'532'600)), seed);
+    for (int turn = 0; turn < 60; ++turn) {
+      std::map<int, int> returns;
+      for (int packet = 0; packet < 75; ++packet) {
+        for (const auto& made : lidar.Next().returns) {
+          if (made.object_id > 0 && scene.objects[static_cast<std::size_t>(made.object_id) - 1].kind == "buoy") ++returns[made.object_id];
+        }
+      }
+      for (const auto& [id, count] : returns) ++num_seen[count];
+      num_all += 18;
+    }
+  }
+  int sum = 0;
+  for (const auto& [count, num] : num_seen) sum += num;
+  EXPECT_GE(num_seen[1] + num_seen[2] + num_seen[3], 0.98 * sum);
+  EXPECT_LE(num_seen.rbegin()->first, 5);
+  EXPECT_GT(sum, num_all / 3) << "between two rings a spar is not seen";
 }
 
 TEST(PoseAt, FloatsUpWithTheWaterAndLeansWithIt) {

@@ -194,7 +194,7 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   }
   EXPECT_EQ(Lines(folder / "objects.csv").size(), scene->objects.size() + 3);
   EXPECT_EQ(Lines(folder / "returns.csv").size(), num_returns + 1);
-  EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id,reason");
+  EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id,reason,x_m,y_m,z_m");
   EXPECT_EQ(Lines(folder / "faults.csv"),
             (std::vector<std::string>{"utime_us,kind,packet_index,end_utime_us,value", "1781532600100000,gnss_gap,,1781532600300000,",
                                       "1781532600250000,gnss_jump,,1781532660000000,2.5", "1781532600040000,doubled,29,,"}));
@@ -210,6 +210,10 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   }
   EXPECT_EQ(num_motor_boat, 9 * 6);
   EXPECT_EQ(num_buoy, 24);
+  // All objects and the own boat each 100 ms.
+  const auto object_poses = Lines(folder / "object_poses.csv");
+  EXPECT_EQ(object_poses.size(), 1U + 6U * (scene->objects.size() + 1));
+  EXPECT_EQ(object_poses[0], "object_id,utime_us,latitude_deg,longitude_deg,east_m,north_m,up_m,heading_deg,roll_deg,pitch_deg");
   std::filesystem::remove_all(folder);
 }
 

@@ -1,0 +1,42 @@
+#include "tools/sim/options.hpp"
+
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+namespace lookout::sim {
+namespace {
+
+Options Parse(std::vector<std::string> more) {
+  std::vector<std::string> words{"lookout-sim", "--config", ".", "--scene", "lake", "--seed", "1", "--pcap", "a.pcap"};
+  words.insert(words.end(), more.begin(), more.end());
+  std::vector<char*> argv;
+  for (auto& word : words) argv.push_back(word.data());
+  return ParseOptions(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(Options, ReadsALine) {
+  const auto options = Parse({"--seconds", "2.5", "--rpm", "1200", "--drop", "0.1", "--navigation", "standalone", "--fault", "drop:1:2:0.5"});
+  EXPECT_EQ(options.seconds, 2.5);
+  EXPECT_EQ(options.lidar.rotation_rpm, 1200.0);
+  EXPECT_EQ(options.network.drop_share, 0.1);
+  EXPECT_EQ(options.navigation.gnss_sd_m, 1.5);
+  EXPECT_EQ(options.navigation.heading_sd_deg, 2.0);
+  EXPECT_EQ(options.faults.size(), 1U);
+}
+
+// NaN used to pass: a run of no length, a head that never turns, noise that is not a number.
+TEST(Options, RefusesWhatIsNoNumberOrOutOfRange) {
+  for (const auto* value : {"nan", "-nan", "NaN", "inf", "-1", "1e9", "x", ""}) {
+    EXPECT_EXIT(Parse({"--seconds", value}), testing::ExitedWithCode(2), "--seconds") << value;
+    for (const auto* option : {"--rpm", "--drop", "--double", "--swap", "--strays", "--gnss-sd"}) {
+      EXPECT_EXIT(Parse({"--seconds", "1", option, value}), testing::ExitedWithCode(2), option) << option << " " << value;
+    }
+    EXPECT_EXIT(Parse({"--seconds", "1", "--field-of-view", "10", value}), testing::ExitedWithCode(2), "--field-of-view") << value;
+  }
+}
+
+TEST(Options, RefusesAFaultThatBeginsAfterTheEnd) { EXPECT_THROW(Parse({"--seconds", "1", "--fault", "gnss_gap:1:2"}), std::invalid_argument); }
+
+}  // namespace
+}  // namespace lookout::sim
