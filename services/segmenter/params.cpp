@@ -12,6 +12,24 @@ namespace {
 constexpr int kMinImageColumns = 16;
 constexpr double kWholeCircleDeg = 360.0;
 
+LookoutParams LookoutOf(const config::Segmenter& message) {
+  LookoutParams params;
+  params.link = {message.link_m(), message.link_per_range()};
+  params.land_length_m = message.land_length_m();
+  params.shore_gap = {message.shore_gap_m(), message.shore_gap_per_range()};
+  params.behind_land = {message.behind_land_m(), message.behind_land_per_range()};
+  params.beside_land = {message.beside_land_m(), message.beside_land_per_range()};
+  params.tall_m = message.tall_m();
+  params.join = {message.join_m(), message.join_per_range()};
+  params.over_m = message.over_m();
+  params.post_spacing_m = message.post_spacing_m();
+  params.sure_returns = message.sure_returns();
+  params.sure_fill = message.sure_fill();
+  params.sure_height_m = message.sure_height_m();
+  params.surface_range_m = message.surface_range_m();
+  return params;
+}
+
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
@@ -45,6 +63,9 @@ Params ToParams(const config::Segmenter& message, const config::BoatFacts& boat,
   params.clustering.e3_distance_m = message.e3_distance_m();
   params.clustering.e2_max_distance_m = message.e2_max_distance_m();
   params.min_segment_points = message.min_segment_points();
+  params.method = message.method() == config::Segmenter::PAPER ? Method::kPaper : Method::kLookout;
+  params.lookout = LookoutOf(message);
+  params.lookout.lidar_above_water_m = boat.reference_point_above_water_m + boat.T_vessel_lidar.translation().z();
   return params;
 }
 

@@ -5,7 +5,7 @@
 
 namespace lookout::segmenter {
 
-Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params) {
+Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), segmenter_(params) {
   bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan, [this](const lidar_scan_t& message) { OnScan(message); });
 }
 
@@ -19,7 +19,7 @@ void Service::OnScan(const lidar_scan_t& message) {
   }
   const auto scan = gatherer_.Add(std::get<ScanPart>(std::move(part)));
   if (!scan) return;
-  const auto segments = SegmentScan(*scan, params_);
+  const auto& segments = segmenter_.Segment(*scan);
   for (const auto& answer : ToMessages(*scan, segments, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kSegments, answer);
 
   ++num_turns_;

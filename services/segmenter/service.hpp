@@ -24,7 +24,7 @@ class Service {
   void OnScan(const lidar_scan_t& message);
 
   bus::Bus& bus_;
-  Params params_;
+  Segmenter segmenter_;
   TurnGatherer gatherer_;
   std::array<std::int64_t, kRefusalNames.size()> num_refused_{};
   std::optional<Refusal> last_refusal_;  // of the latest message, if it was refused

@@ -9,8 +9,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size > static_cast<std::size_t>(lookout::bus::kMaxMessageBytes)) return 0;
   lookout::bus::MemoryBus bus;
   lookout::segmenter::Params params;
-  // The first byte chooses the image, the rest is the message.
-  if (size > 0) params.labelling.image_columns = data[0] % 2 == 0 ? 0 : 64;
+  // The first byte chooses method and image, the rest is the message.
+  if (size > 0 && data[0] % 3 != 0) {
+    params.method = lookout::segmenter::Method::kPaper;
+    params.labelling.image_columns = data[0] % 3 == 1 ? 0 : 64;
+  }
   const lookout::segmenter::Service service(bus, params);
   bus.Publish(lookout::bus::kLidarScan, lookout::Bytes(data, size).subspan(size > 0 ? 1 : 0));
   while (bus.HandleOnce()) {

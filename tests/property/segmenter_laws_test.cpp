@@ -49,6 +49,7 @@ bool AreEqualUpToNumbering(const std::vector<std::int16_t>& one, const std::vect
 
 Params Way(int image_columns, bool label_shadowed_returns = true) {
   Params params;
+  params.method = Method::kPaper;
   params.labelling.image_columns = image_columns;
   params.labelling.label_shadowed_returns = label_shadowed_returns;
   params.clustering.e2_max_distance_m = 10.0;
@@ -57,7 +58,7 @@ Params Way(int image_columns, bool label_shadowed_returns = true) {
 
 TEST(SegmentScanLaw, LabelsDoNotDependOnWhereTheTurnIsCut) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    for (const auto& params : {Way(0), Way(512), Way(512, false), Way(1800)}) {
+    for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1800)}) {
       const auto scan = Scene(seed, {.num_columns = 900, .num_returns = 1 + static_cast<int>(seed % 2)});
       auto label = SegmentScan(scan, params).label;
       for (const int num_columns : {1, 123, 450, 899}) {
@@ -83,7 +84,7 @@ TEST(SegmentScanLaw, AnImageWithAPixelPerColumnGivesWhatOwnColumnsGive) {
 
 TEST(SegmentScanLaw, EveryReturnHasALabelAndEverySegmentIsFiniteAndHoldsItsReturns) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    for (const auto& params : {Way(0), Way(512), Way(512, false), Way(1024), Way(8192)}) {
+    for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1024), Way(8192)}) {
       const auto scan = Scene(seed, {.num_returns = 1 + static_cast<int>(seed % 2)});
       const auto segments = SegmentScan(scan, params);
       std::map<int, int> num_points;
@@ -119,7 +120,7 @@ TEST(SegmentScanLaw, EveryReturnHasALabelAndEverySegmentIsFiniteAndHoldsItsRetur
 // In dual return a head that sees one echo per shot reports it twice: nothing but the labels of the second cells may differ from single return.
 TEST(SegmentScanLaw, AScanWhoseShotsAllRepeatThemselvesGivesTheSegmentsOfSingleReturn) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    for (const auto& params : {Way(0), Way(512), Way(512, false), Way(1800)}) {
+    for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1800)}) {
       const auto single = Scene(seed, {.num_columns = 900});
       auto dual = test::EmptyScan({.num_columns = 900, .num_returns = 2});
       std::mt19937_64 random(seed);

@@ -18,40 +18,49 @@ using segmenter::ToLabel;
 
 constexpr double kPaperFieldOfViewRad = DegToRad(90.0);
 
-// The steps of SegmentScan once more, for their times and the number of components between them.
+// The steps of the segmenter once more, for their times and the number of components between them.
 void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params, Labelling& labelling_of_turn) {
   StageClock clock;
   const auto classified = segmenter::ClassifyReturns(scan, params.filter);
   const auto& returns = classified.returns;
-  segmenter::Groups components;
-  const auto& labelling = params.labelling;
-  if (labelling.image_columns == 0 || !labelling.label_shadowed_returns) {
-    std::vector<std::int32_t> indices(returns.size());
-    std::iota(indices.begin(), indices.end(), 0);
-    const auto image = labelling.image_columns == 0 ? segmenter::ProjectToOwnColumns(scan, returns)
-                                                    : segmenter::ProjectToAzimuths(scan, returns, indices, labelling.image_columns);
-    clock.End("project");
-    components = segmenter::SearchComponents(image, returns, labelling.search);
-  } else {
-    // Projection and search take turns here.
-    clock.End("project");
-    components = segmenter::LabelComponents(scan, returns, labelling);
-  }
-  clock.End("search");
-  std::vector<std::int32_t> clusters(static_cast<std::size_t>(components.count));
-  std::iota(clusters.begin(), clusters.end(), 0);
-  if (params.component_clustering) clusters = segmenter::ClusterComponents(segmenter::Centroids(returns, components), params.clustering);
   constexpr std::int32_t kMaxSegments = std::numeric_limits<std::int16_t>::max();
-  const auto numbered = segmenter::NumberSegments(components, clusters, params.min_segment_points, kMaxSegments);
-  clock.End("cluster");
-  segmenter::Measure(scan, returns, numbered.groups, params.filter.T_vessel_lidar.linear().row(2));
+  segmenter::Numbering numbering;
+  if (params.method == segmenter::Method::kLookout) {
+    clock.End("project");
+    segmenter::LookoutMethod method(params.lookout, params.filter.T_vessel_lidar.linear());
+    method.Group(scan, returns);
+    numbering.Number(method.pieces(), method.group_of_piece(), params.min_segment_points, kMaxSegments);
+    clock.End("cluster");
+    labelling_of_turn.num_components = method.pieces().count;
+  } else {
+    segmenter::Groups components;
+    const auto& labelling = params.labelling;
+    if (labelling.image_columns == 0 || !labelling.label_shadowed_returns) {
+      std::vector<std::int32_t> indices(returns.size());
+      std::iota(indices.begin(), indices.end(), 0);
+      const auto image = labelling.image_columns == 0 ? segmenter::ProjectToOwnColumns(scan, returns)
+                                                      : segmenter::ProjectToAzimuths(scan, returns, indices, labelling.image_columns);
+      clock.End("project");
+      components = segmenter::SearchComponents(image, returns, labelling.search);
+    } else {
+      // Projection and search take turns here.
+      clock.End("project");
+      components = segmenter::LabelComponents(scan, returns, labelling);
+    }
+    clock.End("search");
+    std::vector<std::int32_t> clusters(static_cast<std::size_t>(components.count));
+    std::iota(clusters.begin(), clusters.end(), 0);
+    if (params.component_clustering) clusters = segmenter::ClusterComponents(segmenter::Centroids(returns, components), params.clustering);
+    numbering.Number(components, clusters, params.min_segment_points, kMaxSegments);
+    clock.End("cluster");
+    labelling_of_turn.num_components = components.count;
+  }
+  segmenter::Measure(scan, returns, numbering.groups(), params.filter.T_vessel_lidar.linear().row(2));
   clock.End("measure");
   labelling_of_turn.stages = clock.stages();
-  labelling_of_turn.num_components = components.count;
 }
 
-// The segmenter's own doubt comes in here. It knows none yet.
-bool IsSure(const segmenter::Segment& /*segment*/) { return true; }
+bool IsSure(const segmenter::Segment& segment) { return segment.confidence == segmenter::Confidence::kSure; }
 
 Methods MakeAll(const segmenter::Params& boat) {
   Methods methods;
@@ -59,9 +68,11 @@ Methods MakeAll(const segmenter::Params& boat) {
     methods.push_back(std::make_unique<SegmenterMethod>(std::move(name), params));
   };
   add("ours", boat);
-  auto without_clustering = boat;
-  without_clustering.component_clustering = false;
-  add("ours without clustering", without_clustering);
+  auto own_columns = PaperParams(boat, 0);
+  own_columns.labelling.label_shadowed_returns = true;
+  add("paper, own columns", own_columns);
+  own_columns.component_clustering = false;
+  add("paper, own columns without clustering", own_columns);
   for (const int columns : kPaperColumns) add("paper W=" + std::to_string(columns), PaperParams(boat, columns));
   for (const int columns : kPaperColumns) add("paper W=" + std::to_string(columns) + " without BFS", WithoutSearch(PaperParams(boat, columns)));
   for (const int columns : kPaperColumns) {
@@ -78,7 +89,7 @@ std::string GroupOf(const std::string& name) { return name.starts_with("ours") ?
 }  // namespace
 
 Labelling SegmenterMethod::Segment(const segmenter::Scan& scan) {
-  const auto segments = segmenter::SegmentScan(scan, params_);
+  const auto& segments = segmenter_.Segment(scan);
   Labelling labelling;
   labelling.label.resize(segments.label.size());
   std::ranges::transform(segments.label, labelling.label.begin(), [](std::int16_t label) -> std::int32_t {
@@ -95,6 +106,7 @@ Labelling SegmenterMethod::Segment(const segmenter::Scan& scan) {
 segmenter::Params PaperParams(const segmenter::Params& boat, int image_columns) {
   segmenter::Params params;  // thresholds: the defaults are the paper's
   params.filter = boat.filter;
+  params.method = segmenter::Method::kPaper;
   params.labelling.image_columns = image_columns;
   params.labelling.label_shadowed_returns = false;
   return params;

@@ -10,11 +10,11 @@
 
 namespace lookout::eval {
 
-/// The segmenter of the boat. Labels and time are those of SegmentScan; its stages are then measured in a second pass: project (sort out returns and
-/// place them in the image), search, cluster, measure.
+/// The segmenter of the boat. Labels and time are those of its undivided run; its stages are then measured in a second pass: project (sort out
+/// returns and place them in the image), search, cluster, measure.
 class SegmenterMethod final : public Method {
  public:
-  SegmenterMethod(std::string name, const segmenter::Params& params) : name_(std::move(name)), params_(params) {}
+  SegmenterMethod(std::string name, const segmenter::Params& params) : name_(std::move(name)), params_(params), segmenter_(params) {}
 
   std::string name() const override { return name_; }
   Labelling Segment(const segmenter::Scan& scan) override;
@@ -22,6 +22,7 @@ class SegmenterMethod final : public Method {
  private:
   std::string name_;
   segmenter::Params params_;
+  segmenter::Segmenter segmenter_;
 };
 
 /// METHOD.md: the paper's method at this width of its image, with the boat's own crop box and the paper's thresholds.

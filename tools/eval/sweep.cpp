@@ -4,6 +4,7 @@
 #include <cmath>
 #include <google/protobuf/descriptor.h>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -40,6 +41,13 @@ const FieldDescriptor& FieldOf(const std::string& name) {
     if (IsNumeric(*schema.field(i))) names += ", " + schema.field(i)->name();
   }
   throw std::invalid_argument("--sweep: no such number in the segmenter's config: " + name + " (there are: " + names + ")");
+}
+
+// Fields of the paper's method count for nothing in ours: they are swept with the paper's.
+bool IsOfThePaper(const std::string& field) {
+  static const std::set<std::string> kFields{"image_columns", "bfs_angle_deg", "bfs_distance_m",   "e1_cosine",
+                                             "e2_angle_deg",  "e3_distance_m", "e2_max_distance_m"};
+  return kFields.contains(field);
 }
 
 double ToNumber(const std::string& sweep, const std::string& text) {
@@ -93,6 +101,7 @@ segmenter::Params ParamsWith(const Boat& boat, const std::string& field, double 
   const auto file = boat.config_folder / "segmenter.txtpb";
   config::Segmenter message;
   config::LoadText(file, message);
+  if (IsOfThePaper(field)) message.set_method(config::Segmenter::PAPER);
   const auto* descriptor = config::Segmenter::descriptor()->FindFieldByName(field);
   message.GetReflection()->ClearField(&message, descriptor);
   // By way of the text, so that the loader checks the value as it would check a file.

@@ -31,12 +31,43 @@ inline constexpr std::size_t kMaxHullCorners = 256;
 inline constexpr std::size_t kMaxWaterlineCorners = 256;
 
 struct Rectangle {
+  float center_x_m = 0.0F;
+  float center_y_m = 0.0F;
   float length_m = 0.0F;  // longer side
   float width_m = 0.0F;
   float length_azimuth_rad = 0.0F;  // direction of the longer side in [0, pi), clockwise from x
 };
 
-/// The rectangle of least area around a hull; one of its sides is along an edge. Of equals, that of the first edge. Cost: corners squared.
+/// The rectangle of least area around a hull; one of its sides is along an edge. Of equals, that of the first edge. Cost: corners.
 Rectangle LeastAreaRectangle(std::span<const FootprintPoint> hull);
+
+/// The box of what stands within a hull, also where only two sides of it are seen: their corner and ends make a triangle, around which three
+/// rectangles have the same area. Of the rectangles with a side along an edge whose area is at most kBoxArea times the least, the one whose sides the
+/// points lie closest to in the mean (the closeness of X. Zhang et al., "Efficient L-Shape Fitting for Vehicle Detection Using Laser Scanners",
+/// IV 2017, here over the edges of the hull instead of all directions).
+///
+/// @param points  of the hull; of more than kBoxPoints every n-th is looked at
+Rectangle FitBox(std::span<const FootprintPoint> hull, std::span<const FootprintPoint> points);
+
+inline constexpr double kBoxArea = 1.3;
+inline constexpr std::size_t kBoxPoints = 64;
+
+/// The steps above with memory that is used again.
+class Footprint {
+ public:
+  /// @param points  at least one
+  void Measure(const std::vector<FootprintPoint>& points);
+
+  std::span<const FootprintPoint> hull() const { return hull_; }  // ConvexHull, simplified
+  const Rectangle& box() const { return box_; }
+
+ private:
+  std::vector<FootprintPoint> corners_;
+  std::vector<FootprintPoint> dealt_;
+  std::vector<std::size_t> ends_;
+  std::vector<bool> is_kept_;
+  std::vector<FootprintPoint> hull_;
+  Rectangle box_;
+};
 
 }  // namespace lookout::segmenter

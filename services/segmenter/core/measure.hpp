@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "common/core/utime.hpp"
-#include "services/segmenter/core/paper/breadth_first_search.hpp"
+#include "services/segmenter/core/footprint.hpp"
+#include "services/segmenter/core/groups.hpp"
+#include "services/segmenter/core/line_simplifier.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
 
@@ -57,15 +59,41 @@ struct Segment {
   std::int32_t min_reflectivity = 0;
   float mean_reflectivity = 0.0F;
   std::int32_t max_reflectivity = 0;
-  float seen_share = 1.0F;             // of the columns from its first to its last; in the others something nearer hides it, or nothing came back
-  std::vector<HullCorner> hull;        // counter-clockwise, 1 to kMaxHullCorners
-  std::vector<HullCorner> waterline;   // of land: its nearest return in each direction, from left to right as the lidar sees it, at most
-                                       // kMaxWaterlineCorners; empty for others
+  float seen_share = 1.0F;            // of the columns from its first to its last; in the others something nearer hides it, or nothing came back
+  std::vector<HullCorner> hull;       // counter-clockwise, 1 to kMaxHullCorners
+  std::vector<HullCorner> waterline;  // of land: its nearest return in each direction, from left to right as the lidar sees it, at most
+                                      // kMaxWaterlineCorners; empty for others
 };
 
-/// @param segments  groups of the returns; group i gets the id i + 1
-/// @param up        the vessel's z axis in the lidar frame, a unit vector: a lidar that is mounted tilted sees its own z axis lean
-/// @return [segments.count] by id
-std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& segments, const Eigen::Vector3d& up);
+/// Measures the segments of one turn after the other, and keeps memory between them.
+class Measurer {
+ public:
+  /// @param up  the vessel's z axis in the lidar frame, a unit vector: a lidar that is mounted tilted sees its own z axis lean
+  explicit Measurer(const Eigen::Vector3d& up) : up_(up) {}
+
+  /// @param groups    of the returns; group i becomes the segment of id i + 1
+  /// @param segments  [groups.count] by id; what it held before is memory to use again
+  void Measure(const Scan& scan, std::span<const Return> returns, const Groups& groups, std::vector<Segment>& segments);
+
+  /// @param line  returns from left to right as the lidar sees them
+  void MeasureWaterline(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> line, Segment& segment);
+
+ private:
+  void MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> indices, Segment& segment);
+  void Resize(std::size_t count, std::vector<Segment>& segments);
+
+  Eigen::Vector3d up_;
+  std::vector<std::size_t> begin_;
+  std::vector<std::size_t> next_;
+  std::vector<std::int32_t> sorted_;
+  std::vector<FootprintPoint> footprint_;
+  Footprint shape_;
+  std::vector<FootprintPoint> line_;
+  LineSimplifier simplifier_;
+  std::vector<Segment> spare_;
+};
+
+/// One turn by itself.
+std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& groups, const Eigen::Vector3d& up);
 
 }  // namespace lookout::segmenter

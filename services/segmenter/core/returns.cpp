@@ -4,31 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <utility>
 
 namespace lookout::segmenter {
 
 namespace {
-
-// Of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition theorem.
-struct RingGeometry {
-  double cos_elevation_cos_offset;
-  double cos_elevation_sin_offset;
-  double sin_elevation;
-  double azimuth_offset_rad;
-  double origin_height_m;
-};
-
-std::vector<RingGeometry> GeometryOf(const std::vector<Ring>& rings) {
-  std::vector<RingGeometry> geometry;
-  geometry.reserve(rings.size());
-  for (const auto& ring : rings) {
-    const double cos_elevation = std::cos(double{ring.elevation_rad});
-    geometry.push_back({cos_elevation * std::cos(double{ring.azimuth_offset_rad}), cos_elevation * std::sin(double{ring.azimuth_offset_rad}),
-                        std::sin(double{ring.elevation_rad}), ring.azimuth_offset_rad, ring.origin_height_m});
-  }
-  return geometry;
-}
 
 // Whether a point is in the box of the own vessel; most points are too far away and take one comparison.
 class OwnVessel {
@@ -60,38 +39,25 @@ int MaxRepeatGap(double max_repeat_gap_m, double range_unit_m) {
   return static_cast<int>(std::min(kMaxGap, max_repeat_gap_m / range_unit_m + kRounding));
 }
 
-// Takes the repeats out of the returns that are looked at.
-ClassifiedReturns SetRepeatsApart(const Scan& scan, ClassifiedReturns classified, int max_gap) {
-  auto& returns = classified.returns;
-  const auto range_of = [&scan](const Return& one) { return int{scan.columns.range[static_cast<std::size_t>(one.cell)]}; };
-  const auto shot_of = [&scan](const Return& one) { return one.cell / scan.head.num_returns; };
-  std::size_t num_kept = 0;
-  for (const Return& one : returns) {
-    std::size_t twin = num_kept;  // behind it
-    while (twin > 0 && shot_of(returns[twin - 1]) == shot_of(one) && std::abs(range_of(returns[twin - 1]) - range_of(one)) > max_gap) --twin;
-    if (twin > 0 && shot_of(returns[twin - 1]) == shot_of(one)) {
-      classified.repeats.push_back({one.cell, static_cast<std::int32_t>(twin - 1)});
-    } else {
-      returns[num_kept++] = one;
-    }
-  }
-  returns.resize(num_kept);
-  return classified;
-}
-
 }  // namespace
 
-ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) {
-  const auto rings = GeometryOf(scan.head.rings);
+const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
+  rings_.clear();
+  for (const auto& ring : scan.head.rings) {
+    const double cos_elevation = std::cos(double{ring.elevation_rad});
+    rings_.push_back({cos_elevation * std::cos(double{ring.azimuth_offset_rad}), cos_elevation * std::sin(double{ring.azimuth_offset_rad}),
+                      std::sin(double{ring.elevation_rad}), ring.azimuth_offset_rad, ring.origin_height_m});
+  }
   const auto num_returns = static_cast<std::size_t>(scan.head.num_returns);
-  const std::size_t cells_per_column = rings.size() * num_returns;
-  const bool sees_all_round = filter.field_of_view.width_rad >= kTwoPi;
-  const OwnVessel own_vessel(filter);
+  const std::size_t cells_per_column = rings_.size() * num_returns;
+  const bool sees_all_round = filter_.field_of_view.width_rad >= kTwoPi;
+  const OwnVessel own_vessel(filter_);
 
-  ClassifiedReturns result;
-  result.label.assign(scan.num_cells(), 0);
+  result_.label.assign(scan.num_cells(), 0);
+  result_.repeats.clear();
+  result_.returns.clear();
   const auto is_return = [](std::uint16_t range) { return range != 0; };
-  result.returns.reserve(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
+  result_.returns.reserve(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
   for (std::size_t column = 0; column < scan.columns.azimuth_rad.size(); ++column) {
     const std::size_t first_cell = column * cells_per_column;
     const std::uint16_t* range = scan.columns.range.data() + first_cell;
@@ -99,18 +65,18 @@ ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) 
     const double azimuth_rad = scan.columns.azimuth_rad[column];
     const double sin_azimuth = std::sin(azimuth_rad);
     const double cos_azimuth = std::cos(azimuth_rad);
-    for (std::size_t ring = 0, offset = 0; ring < rings.size(); ++ring) {
+    for (std::size_t ring = 0, offset = 0; ring < rings_.size(); ++ring) {
       for (std::size_t i = 0; i < num_returns; ++i, ++offset) {
         if (range[offset] == 0) continue;
-        const RingGeometry& geometry = rings[ring];
+        const RingGeometry& geometry = rings_[ring];
         const std::size_t cell = first_cell + offset;
         const double range_m = range[offset] * scan.head.range_unit_m;
-        if (range_m < filter.min_range_m || range_m > filter.max_range_m) {
-          result.label[cell] = ToLabel(Reason::kRange);
+        if (range_m < filter_.min_range_m || range_m > filter_.max_range_m) {
+          result_.label[cell] = ToLabel(Reason::kRange);
           continue;
         }
-        if (!sees_all_round && !filter.field_of_view.Contains(azimuth_rad + geometry.azimuth_offset_rad)) {
-          result.label[cell] = ToLabel(Reason::kFieldOfView);
+        if (!sees_all_round && !filter_.field_of_view.Contains(azimuth_rad + geometry.azimuth_offset_rad)) {
+          result_.label[cell] = ToLabel(Reason::kFieldOfView);
           continue;
         }
         const double cos_elevation_cos = geometry.cos_elevation_cos_offset * cos_azimuth - geometry.cos_elevation_sin_offset * sin_azimuth;
@@ -118,16 +84,36 @@ ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) 
         const Point point{static_cast<float>(range_m * cos_elevation_cos), static_cast<float>(-range_m * cos_elevation_sin),
                           static_cast<float>(range_m * geometry.sin_elevation + geometry.origin_height_m)};
         if (own_vessel.Contains(point)) {
-          result.label[cell] = ToLabel(Reason::kOwnVessel);
+          result_.label[cell] = ToLabel(Reason::kOwnVessel);
           continue;
         }
-        result.returns.push_back({point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
-                                  static_cast<std::int32_t>(ring)});
+        result_.returns.push_back({point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
+                                   static_cast<std::int32_t>(ring)});
       }
     }
   }
-  if (num_returns < 2) return result;
-  return SetRepeatsApart(scan, std::move(result), MaxRepeatGap(filter.max_repeat_gap_m, scan.head.range_unit_m));
+  if (num_returns >= 2) SetRepeatsApart(scan);
+  return result_;
 }
+
+void ReturnClassifier::SetRepeatsApart(const Scan& scan) {
+  const int max_gap = MaxRepeatGap(filter_.max_repeat_gap_m, scan.head.range_unit_m);
+  auto& returns = result_.returns;
+  const auto range_of = [&scan](const Return& one) { return int{scan.columns.range[static_cast<std::size_t>(one.cell)]}; };
+  const auto shot_of = [&scan](const Return& one) { return one.cell / scan.head.num_returns; };
+  std::size_t num_kept = 0;
+  for (const Return& one : returns) {
+    std::size_t twin = num_kept;  // behind it
+    while (twin > 0 && shot_of(returns[twin - 1]) == shot_of(one) && std::abs(range_of(returns[twin - 1]) - range_of(one)) > max_gap) --twin;
+    if (twin > 0 && shot_of(returns[twin - 1]) == shot_of(one)) {
+      result_.repeats.push_back({one.cell, static_cast<std::int32_t>(twin - 1)});
+    } else {
+      returns[num_kept++] = one;
+    }
+  }
+  returns.resize(num_kept);
+}
+
+ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter) { return ReturnClassifier(filter).Classify(scan); }
 
 }  // namespace lookout::segmenter

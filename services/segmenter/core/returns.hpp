@@ -66,7 +66,33 @@ struct ClassifiedReturns {
 /// In dual return a shot with one echo is reported twice. Ranges are compared in whole range units, and only those of returns that are looked at:
 /// what lies beside one that is not is no repeat, so that no obstacle at a limit is lost.
 /// Point of a return at range r, azimuth a (of its column, plus the offset of its ring) and elevation e: (r cos e cos a, -r cos e sin a,
-/// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return.
+/// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return. Allocates nothing once it has seen a turn of that size.
+class ReturnClassifier {
+ public:
+  explicit ReturnClassifier(const ReturnFilter& filter) : filter_(filter) {}
+
+  /// The result holds until the next call.
+  const ClassifiedReturns& Classify(const Scan& scan);
+  const ClassifiedReturns& result() const { return result_; }
+
+ private:
+  // Of one ring, so that the direction of a return takes no trigonometry: the azimuths of column and ring are added by the addition theorem.
+  struct RingGeometry {
+    double cos_elevation_cos_offset;
+    double cos_elevation_sin_offset;
+    double sin_elevation;
+    double azimuth_offset_rad;
+    double origin_height_m;
+  };
+
+  void SetRepeatsApart(const Scan& scan);
+
+  ReturnFilter filter_;
+  std::vector<RingGeometry> rings_;
+  ClassifiedReturns result_;
+};
+
+/// One turn by itself.
 ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter);
 
 }  // namespace lookout::segmenter

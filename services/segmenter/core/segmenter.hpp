@@ -1,21 +1,29 @@
-// From a turn to its obstacles: the method of Jeong and Quattrini Li (IROS 2021), with a label for every return.
+// From a turn to its obstacles, by the lookout method or by that of Jeong and Quattrini Li (IROS 2021), with a label for every return.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "services/segmenter/core/groups.hpp"
+#include "services/segmenter/core/lookout/lookout_method.hpp"
+#include "services/segmenter/core/measure.hpp"
+#include "services/segmenter/core/numbering.hpp"
 #include "services/segmenter/core/paper/component_clustering.hpp"
 #include "services/segmenter/core/paper/component_labelling.hpp"
-#include "services/segmenter/core/measure.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
 
 namespace lookout::segmenter {
 
+enum class Method { kLookout, kPaper };
+
 /// Defaults are those of config/schema/segmenter.proto, which says where they come from.
 struct Params {
   ReturnFilter filter;
+  Method method = Method::kLookout;
+  LookoutParams lookout;
+  // The paper's.
   LabellingParams labelling;
   bool component_clustering = true;
   ClusteringParams clustering;
@@ -30,18 +38,32 @@ struct Segments {
   std::int64_t num_repeats = 0;     // returns that repeat another of their shot: labelled as that one, and in no segment's numbers
 };
 
-/// Pure: the same scan gives the same segments, to the bit.
-///
-/// Cost: about proportional to the returns; figures in the README.
-Segments SegmentScan(const Scan& scan, const Params& params);
+/// Segments one turn after the other. What it gives depends on that turn alone; what it keeps is memory.
+class Segmenter {
+ public:
+  explicit Segmenter(const Params& params);
 
-/// Joins the components of a cluster, leaves out what is too small, and numbers the rest in the order of their first return.
-struct NumberedSegments {
-  Groups groups;
-  std::int32_t num_too_small = 0;
-  std::int32_t num_over_limit = 0;
+  /// The same scan gives the same segments, to the bit. The result holds until the next call.
+  ///
+  /// Cost: about proportional to the returns; figures in the README. The lookout method allocates nothing once it has seen a turn of that size.
+  const Segments& Segment(const Scan& scan);
+
+ private:
+  void GroupAsThePaper(const Scan& scan);
+  void LabelReturns();
+  void TellWhatIsKnown(const Scan& scan);
+
+  Params params_;
+  ReturnClassifier classifier_;
+  LookoutMethod method_;
+  Numbering numbering_;
+  Measurer measurer_;
+  Groups components_;  // the paper's
+  std::vector<std::int32_t> cluster_of_component_;
+  Segments result_;
 };
-NumberedSegments NumberSegments(const Groups& components, std::span<const std::int32_t> cluster_of_component, int min_points,
-                                std::int32_t max_segments);
+
+/// One turn by itself.
+Segments SegmentScan(const Scan& scan, const Params& params);
 
 }  // namespace lookout::segmenter

@@ -25,11 +25,17 @@ Scan See(const std::vector<test::Wall>& walls) {
   return scan;
 }
 
-// Every way of projecting.
+Params AsThePaper() {
+  Params params;
+  params.method = Method::kPaper;
+  return params;
+}
+
+// Ours, and every way of projecting of the paper's.
 std::vector<Params> AllWays() {
-  std::vector<Params> ways;
+  std::vector<Params> ways(1);
   for (const int columns : {0, 512, 1024, 1800}) {
-    ways.emplace_back();
+    ways.push_back(AsThePaper());
     ways.back().labelling.image_columns = columns;
   }
   return ways;
@@ -71,7 +77,7 @@ TEST(SegmentScan, OfAFullScanLabelsEveryReturn) {
 TEST(SegmentScan, NumbersSegmentsInTheOrderOfTheirFirstCell) {
   auto scan = test::EmptyScan({});
   for (const int column : {300, 100, 200, 101}) test::SetReturn(scan, column, 4, 10.0);
-  const auto segments = SegmentScan(scan, {});
+  const auto segments = SegmentScan(scan, AsThePaper());
   ASSERT_EQ(segments.segments.size(), 3U);
   EXPECT_EQ(segments.label[test::CellOf(scan, 100, 4)], 1);
   EXPECT_EQ(segments.label[test::CellOf(scan, 101, 4)], 1);
@@ -85,7 +91,7 @@ TEST(SegmentScan, DropsSmallSegmentsWithAReason) {
   test::SetReturn(scan, 100, 4, 10.0);
   test::SetReturn(scan, 500, 4, 10.0);
   test::SetReturn(scan, 501, 4, 10.0);
-  Params params;
+  Params params = AsThePaper();
   params.min_segment_points = 2;
   const auto segments = SegmentScan(scan, params);
   EXPECT_EQ(segments.segments.size(), 1U);
@@ -97,7 +103,7 @@ TEST(SegmentScan, DropsSmallSegmentsWithAReason) {
 TEST(SegmentScan, SaysWhichReturnsAreShadowedInTheMethodOfThePaper) {
   auto scan = test::EmptyScan({.num_columns = 2048});  // four to a pixel of 512
   for (int column = 0; column < 4; ++column) test::SetReturn(scan, column, 4, 10.0 + column);
-  Params params;
+  Params params = AsThePaper();
   params.labelling.image_columns = 512;
   params.labelling.label_shadowed_returns = false;
   const auto segments = SegmentScan(scan, params);
@@ -134,7 +140,7 @@ TEST(SegmentScan, GivesARepeatTheLabelOrReasonOfItsTwin) {
     test::SetReturn(scan, column, 4, 10.0, 0);
     test::SetReturn(scan, column, 4, 10.03, 1);
   }
-  Params params;
+  Params params = AsThePaper();
   params.min_segment_points = 2;
   const auto segments = SegmentScan(scan, params);
   ASSERT_EQ(segments.segments.size(), 1U);
@@ -148,14 +154,15 @@ TEST(SegmentScan, GivesARepeatTheLabelOrReasonOfItsTwin) {
   }
 }
 
-TEST(NumberSegments, KeepsTheLargestWhereThereAreMoreThanCanBeNumbered) {
+TEST(Numbering, KeepsTheLargestWhereThereAreMoreThanCanBeNumbered) {
   const Groups components{{0, 1, 1, 2, 3, 3, 3, 4}, 5};
   const std::vector<std::int32_t> each{0, 1, 2, 3, 4};
-  const auto numbered = NumberSegments(components, each, 1, 3);
-  EXPECT_EQ(numbered.num_over_limit, 2);
-  EXPECT_EQ(numbered.num_too_small, 0);
-  EXPECT_EQ(numbered.groups.count, 3);
-  EXPECT_EQ(numbered.groups.of_return, (std::vector<std::int32_t>{0, 1, 1, -1, 2, 2, 2, -1}));
+  Numbering numbering;
+  numbering.Number(components, each, 1, 3);
+  EXPECT_EQ(numbering.num_over_limit(), 2);
+  EXPECT_EQ(numbering.num_too_small(), 0);
+  EXPECT_EQ(numbering.groups().count, 3);
+  EXPECT_EQ(numbering.groups().of_return, (std::vector<std::int32_t>{0, 1, 1, -1, 2, 2, 2, -1}));
 }
 
 TEST(SegmentScan, HasLabelsForAtMost32767Segments) {
@@ -163,7 +170,7 @@ TEST(SegmentScan, HasLabelsForAtMost32767Segments) {
   for (int column = 0; column < 5000; ++column) {
     for (int ring = 0; ring < 16; ++ring) test::SetReturn(scan, column, ring, (column + ring) % 2 == 0 ? 40.0 : 80.0);
   }
-  Params params;
+  Params params = AsThePaper();
   params.component_clustering = false;
   params.labelling.search = {.angle_rad = DegToRad(90.0), .distance_m = 0.0};
   const auto segments = SegmentScan(scan, params);
@@ -208,7 +215,7 @@ TEST(PaperExamples, ASixMetreMotorBoatIsOneObject) {
   walls.push_back({18.0, -0.8, 18.0, 0.8, 0.8, 1.3});
   walls.push_back({21.0, -0.5, 21.0, 0.5, 2.2, 3.0});
   const auto scan = See(walls);
-  Params params;
+  Params params = AsThePaper();
   EXPECT_EQ(SegmentScan(scan, params).segments.size(), 1U);
   params.clustering.e3_distance_m = 2.5;
   EXPECT_EQ(SegmentScan(scan, params).segments.size(), 3U);
@@ -219,7 +226,7 @@ TEST(PaperExamples, AKayakThatLeavesTheShoreBecomesAnObjectOfItsOwn) {
   const auto count = [](double from_shore_m) {
     std::vector<test::Wall> walls{{30.0, -40.0, 30.0, 40.0, -1.0, 4.0}};
     test::AddBoat(walls, 30.0 - from_shore_m, 0.0, DegToRad(90.0), 4.0, 0.7, -1.0, 0.6);
-    return SegmentScan(See(walls), Params{}).segments.size();
+    return SegmentScan(See(walls), AsThePaper()).segments.size();
   };
   EXPECT_EQ(count(2.0), 1U);
   EXPECT_EQ(count(10.0), 2U);
@@ -228,7 +235,7 @@ TEST(PaperExamples, AKayakThatLeavesTheShoreBecomesAnObjectOfItsOwn) {
 TEST(SegmentScan, TellsBoatsSideBySideApartWhenTheAngleRuleIsLimited) {
   const std::vector<test::Wall> walls{{39.0, -7.2, 39.0, -4.2, -1.0, 1.5}, {39.0, 4.2, 39.0, 7.2, -1.0, 1.5}};
   const auto scan = See(walls);
-  Params params;
+  Params params = AsThePaper();
   EXPECT_EQ(SegmentScan(scan, params).segments.size(), 1U);
   params.clustering.e2_max_distance_m = 10.0;
   EXPECT_EQ(SegmentScan(scan, params).segments.size(), 2U);

@@ -99,7 +99,7 @@ bool LandFinder::IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces,
   for (int i = 0; i < between.num; ++i) {
     bool is_hidden = false;
     for (const OutlineEntry& entry : pieces.InColumn(grid.Wrap(between.first + i))) {
-      const LevelPoint& point = grid.PointOf(entry.nearest);
+      const LevelPoint& point = entry.near_point;
       // The beam from the lidar through this return meets the line at t times its distance.
       const double t = line_m / (normal.x() * point.x_m + normal.y() * point.y_m);
       is_hidden = is_hidden || (t > 0.0 && point.range_m <= t * point.range_m - kHiddenM);
@@ -124,7 +124,8 @@ void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTab
     std::ranges::sort(order_, {}, [this](std::int32_t run) { return std::array{chains_.Find(run), run}; });
     for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
       std::int32_t num_returns = 0;
-      for (end = begin; end < order_.size() && chains_.Find(order_[end]) == chains_.Find(order_[begin]); ++end) num_returns += runs[order_[end]].length;
+      for (end = begin; end < order_.size() && chains_.Find(order_[end]) == chains_.Find(order_[begin]); ++end)
+        num_returns += runs[order_[end]].length;
       if (num_returns < kLeastShoreReturns) continue;
       chain_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin), order_.begin() + static_cast<std::ptrdiff_t>(end));
       TakeChain(grid, runs, pieces);
@@ -190,7 +191,7 @@ void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTabl
   }
 }
 
-bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
+bool LandFinder::FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces) {
   const auto num_pieces = static_cast<std::size_t>(pieces.size());
   num_columns_of_.assign(num_pieces, 0);
   num_deep_of_.assign(num_pieces, 0);
@@ -205,8 +206,8 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
       for (std::size_t j = 0; j < seen.size(); ++j) {
         if (pieces.RootOf(seen[j].piece) != root) continue;
         is_first = is_first && j >= i;
-        nearest_m = std::min(nearest_m, grid.PointOf(seen[j].nearest).range_m);
-        farthest_m = std::max(farthest_m, grid.PointOf(seen[j].farthest).range_m);
+        nearest_m = std::min(nearest_m, seen[j].near_point.range_m);
+        farthest_m = std::max(farthest_m, seen[j].far_point.range_m);
       }
       if (!is_first) continue;
       ++num_columns_of_[static_cast<std::size_t>(root)];
@@ -214,14 +215,32 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
     }
   }
   bool is_any_land = false;
-  takes_in_.assign(num_pieces, false);
+  takes_in_.assign(num_pieces, 0);
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
+    if (!facts.is_land) continue;
     const auto at = static_cast<std::size_t>(root);
-    takes_in_[at] = facts.is_land && (facts.off_m >= kWallOffM || 100 * num_deep_of_[at] >= kDeepPercent * num_columns_of_[at]);
-    is_any_land = is_any_land || takes_in_[at];
+    takes_in_[at] = facts.off_m >= kWallOffM || 100 * num_deep_of_[at] >= kDeepPercent * num_columns_of_[at] ? 1 : 0;
+    is_any_land = is_any_land || takes_in_[at] != 0;
   }
   if (!is_any_land) return false;
+  land_m_.assign(static_cast<std::size_t>(grid.num_columns()), std::numeric_limits<float>::infinity());
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    float nearest_m = std::numeric_limits<float>::infinity();
+    for (const OutlineEntry& entry : pieces.InColumn(column)) {
+      if (TakesIn(pieces.RootOf(entry.piece))) nearest_m = std::min(nearest_m, entry.near_point.range_m);
+    }
+    if (!std::isfinite(nearest_m)) continue;
+    for (int step = -kNearColumns; step <= kNearColumns; ++step) {
+      float& land_m = land_m_[static_cast<std::size_t>(grid.Wrap(column + step))];
+      land_m = std::min(land_m, nearest_m);
+    }
+  }
+  return true;
+}
+
+bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
+  if (!FindWhatTakesIn(grid, pieces)) return false;
   bool is_taken = false;
   for (const std::int32_t root : pieces.roots()) {
     if (pieces.FactsOf(root).is_land) continue;
@@ -234,35 +253,39 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
   return is_taken;
 }
 
-std::int32_t LandFinder::LandBefore(const TurnGrid& grid, PieceTable& pieces, std::int32_t root) {
-  double least_m = params_.behind_land.At(pieces.FactsOf(root).min_range_m);
-  std::int32_t land = kNoLand;
+std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   int num_seen = 0;
   int num_behind = 0;
   for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
     for (const std::int32_t index : pieces.OutlineOf(piece)) {
       const OutlineEntry& entry = pieces.Entry(index);
-      const float range_m = grid.PointOf(entry.nearest).range_m;
-      bool is_behind = false;
+      ++num_seen;
+      num_behind += entry.near_point.range_m > land_m_[static_cast<std::size_t>(entry.column)] ? 1 : 0;
+    }
+  }
+  if (100 * num_behind < kBehindPercent * num_seen) return kNoLand;
+  double least_m = params_.behind_land.At(pieces.FactsOf(root).min_range_m);
+  std::int32_t land = kNoLand;
+  for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
+    for (const std::int32_t index : pieces.OutlineOf(piece)) {
+      const OutlineEntry& entry = pieces.Entry(index);
+      const float range_m = entry.near_point.range_m;
       for (int step = -kNearColumns; step <= kNearColumns; ++step) {
         for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(entry.column + step))) {
           const std::int32_t other_root = pieces.RootOf(other.piece);
-          if (!TakesIn(other_root) || grid.PointOf(other.nearest).range_m >= range_m) continue;
-          is_behind = true;
-          const double gap_m = std::max(0.0, double{range_m} - grid.PointOf(other.farthest).range_m);
+          if (!TakesIn(other_root) || other.near_point.range_m >= range_m) continue;
+          const double gap_m = std::max(0.0, double{range_m} - other.far_point.range_m);
           if (gap_m > least_m || (gap_m == least_m && land != kNoLand && other_root >= land)) continue;
           least_m = gap_m;
           land = other_root;
         }
       }
-      ++num_seen;
-      num_behind += is_behind ? 1 : 0;
     }
   }
-  return 100 * num_behind >= kBehindPercent * num_seen ? land : kNoLand;
+  return land;
 }
 
-std::int32_t LandFinder::LandBeside(const TurnGrid& grid, PieceTable& pieces, std::int32_t root) {
+std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   const PieceFacts& facts = pieces.FactsOf(root);
   if (facts.max_height_m + params_.lidar_above_water_m <= params_.tall_m || facts.length_m < kLeastTreeM) return kNoLand;
   double least_m = params_.beside_land.At(facts.min_range_m);
@@ -271,9 +294,9 @@ std::int32_t LandFinder::LandBeside(const TurnGrid& grid, PieceTable& pieces, st
     for (const OutlineEntry& other : pieces.InColumn(column)) {
       const std::int32_t other_root = pieces.RootOf(other.piece);
       if (!TakesIn(other_root)) continue;
-      for (const std::int32_t my_end : {mine.nearest, mine.farthest}) {
-        for (const std::int32_t other_end : {other.nearest, other.farthest}) {
-          const double distance_m = Distance(grid.PointOf(my_end), grid.PointOf(other_end));
+      for (const LevelPoint* my_end : {&mine.near_point, &mine.far_point}) {
+        for (const LevelPoint* other_end : {&other.near_point, &other.far_point}) {
+          const double distance_m = Distance(*my_end, *other_end);
           if (distance_m > least_m || (distance_m == least_m && land != kNoLand && other_root >= land)) continue;
           least_m = distance_m;
           land = other_root;
@@ -305,7 +328,7 @@ void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
       const std::int32_t root = pieces.RootOf(entry.piece);
       if (!is_land(root)) continue;
-      const LevelPoint& point = grid.PointOf(entry.nearest);
+      const LevelPoint& point = entry.near_point;
       const double limit_m = params_.beside_land.At(point.range_m) / 2.0;
       const int window = grid.ColumnsOf(limit_m, point.range_m);
       bool goes_on = false;  // the same land: its next entry looks further
@@ -314,8 +337,8 @@ void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
           const std::int32_t other_root = pieces.RootOf(other.piece);
           goes_on = goes_on || (step > 0 && other_root == root);
           if (other_root == root || !is_land(other_root)) continue;
-          const double least_m = std::min(Distance(point, grid.PointOf(other.nearest)), Distance(grid.PointOf(entry.farthest), grid.PointOf(other.nearest)));
-          if (std::min(least_m, Distance(point, grid.PointOf(other.farthest))) <= limit_m) pieces.Join(root, other_root);
+          const double least_m = std::min(Distance(point, other.near_point), Distance(entry.far_point, other.near_point));
+          if (std::min(least_m, Distance(point, other.far_point)) <= limit_m) pieces.Join(root, other_root);
         }
       }
     }

@@ -39,9 +39,10 @@ class LandFinder {
   void FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
   void TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
   bool TakeIn(const TurnGrid& grid, PieceTable& pieces);
-  std::int32_t LandBefore(const TurnGrid& grid, PieceTable& pieces, std::int32_t root);
-  std::int32_t LandBeside(const TurnGrid& grid, PieceTable& pieces, std::int32_t root);
-  bool TakesIn(std::int32_t root) const { return takes_in_[static_cast<std::size_t>(root)]; }
+  bool FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces);
+  std::int32_t LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
+  std::int32_t LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
+  bool TakesIn(std::int32_t root) const { return takes_in_[static_cast<std::size_t>(root)] != 0; }
   void JoinLand(const TurnGrid& grid, PieceTable& pieces);
 
   LookoutParams params_;
@@ -50,7 +51,8 @@ class LandFinder {
   std::vector<std::int32_t> chain_;
   std::vector<Fragment> fragments_;
   std::vector<std::int32_t> candidates_;
-  std::vector<bool> takes_in_;  // [pieces] land that is no straight wall
+  std::vector<std::uint8_t> takes_in_;  // [pieces] land that is no straight wall
+  std::vector<float> land_m_;           // [columns] range of the nearest return of such land in this column or beside it
   std::vector<std::int32_t> num_columns_of_;
   std::vector<std::int32_t> num_deep_of_;
 };

@@ -13,7 +13,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   LinkRuns(grid_, runs_, params_.link, sets_of_runs_);
   pieces_.Build(grid_, runs_, sets_of_runs_);
   land_.Find(grid_, runs_, pieces_);
-  objects_.JoinDocks(grid_, pieces_);
+  objects_.JoinDocks(pieces_);
   pieces_.Settle(grid_, runs_);
   objects_.JoinObjects(grid_, runs_, pieces_);
 
@@ -32,13 +32,16 @@ void LookoutMethod::Judge() {
   const auto close = [](Span& span) {
     if (span.line >= 0) span.num_beams += span.last - span.first + 1;
   };
-  // Runs come line by line.
+  // Beams between the ends of each group in each line; those of a dock stand apart, so its posts count by themselves. Runs come line by line.
   for (std::int32_t run = 0; run < runs_.size(); ++run) {
-    const std::int32_t root = root_of_piece_[static_cast<std::size_t>(pieces_.OfRun(run))];
-    Span& span = spans_[static_cast<std::size_t>(root)];
-    int first = runs_[run].first - pieces_.FactsOf(root).arc.first;
+    const std::int32_t piece = pieces_.OfRun(run);
+    const std::int32_t root = root_of_piece_[static_cast<std::size_t>(piece)];
+    const bool is_post = pieces_.FactsOf(root).is_dock;
+    Span& span = spans_[static_cast<std::size_t>(is_post ? piece : root)];
+    int first = runs_[run].first - (is_post ? pieces_.ArcOf(piece) : pieces_.FactsOf(root).arc).first;
     if (first < 0) first += grid_.num_columns();
     const int last = first + runs_[run].length - 1;
+    span.num_returns += runs_[run].length;
     if (span.line != runs_[run].line) {
       close(span);
       span.line = runs_[run].line;
@@ -63,17 +66,41 @@ void LookoutMethod::Judge() {
   for (const std::int32_t root : pieces_.roots()) {
     const auto at = static_cast<std::size_t>(root);
     const PieceFacts& piece = pieces_.FactsOf(root);
-    close(spans_[at]);
+    // Of a dock, posts that are seen twice at least: four drops may stand in a rectangle too.
+    const std::int32_t least = piece.is_dock ? 2 : 1;
+    std::int32_t num_returns = 0;
+    std::int32_t num_beams = 0;
+    for (std::int32_t member = root; member != PieceTable::kNone; member = pieces_.NextMember(member)) {
+      Span& span = spans_[static_cast<std::size_t>(member)];
+      close(span);
+      if (span.num_returns < least) continue;
+      num_returns += span.num_returns;
+      num_beams += span.num_beams;
+    }
     GroupFacts& facts = facts_[at];
     facts.is_land = piece.is_land;
     facts.seen_share = static_cast<float>(num_seen_[at]) / static_cast<float>(std::max(1, piece.arc.num));
     if (piece.is_land) continue;
-    if (piece.num_returns < params_.sure_returns) facts.grounds |= kFewReturns;
-    if (piece.num_returns < params_.sure_fill * spans_[at].num_beams) facts.grounds |= kScattered;
+    if (num_returns < params_.sure_returns) facts.grounds |= kFewReturns;
+    if (num_returns < params_.sure_fill * num_beams) facts.grounds |= kScattered;
     if (piece.min_range_m < params_.surface_range_m && piece.max_height_m + params_.lidar_above_water_m < params_.sure_height_m) {
       facts.grounds |= kAtSurface;
     }
   }
+}
+
+std::span<const std::int32_t> LookoutMethod::NearestOf(std::int32_t root) {
+  nearest_.clear();
+  const Arc arc = pieces_.FactsOf(root).arc;
+  for (int step = 0; step < arc.num; ++step) {
+    std::int32_t nearest = TurnGrid::kNone;
+    for (const OutlineEntry& entry : pieces_.InColumn(grid_.Wrap(arc.first + step))) {
+      if (root_of_piece_[static_cast<std::size_t>(entry.piece)] != root) continue;
+      if (nearest == TurnGrid::kNone || grid_.PointOf(entry.nearest).range_m < grid_.PointOf(nearest).range_m) nearest = entry.nearest;
+    }
+    if (nearest != TurnGrid::kNone) nearest_.push_back(nearest);
+  }
+  return nearest_;
 }
 
 }  // namespace lookout::segmenter

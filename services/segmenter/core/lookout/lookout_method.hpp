@@ -43,6 +43,8 @@ class LookoutMethod {
   std::span<const std::int32_t> group_of_piece() const { return root_of_piece_; }
   /// Of the group that this piece names.
   const GroupFacts& FactsOf(std::int32_t root) const { return facts_[static_cast<std::size_t>(root)]; }
+  /// The nearest return of that group in each of its columns, from left to right as the lidar sees them. Until the next call.
+  std::span<const std::int32_t> NearestOf(std::int32_t root);
 
  private:
   void Judge();
@@ -60,12 +62,14 @@ class LookoutMethod {
   std::vector<GroupFacts> facts_;
   struct Span {
     std::int32_t line = -1;
-    std::int32_t first = 0;  // counted from the begin of the group's arc
+    std::int32_t num_returns = 0;
+    std::int32_t first = 0;  // counted from the begin of the arc
     std::int32_t last = 0;
     std::int32_t num_beams = 0;  // of the lines before
   };
   std::vector<Span> spans_;
   std::vector<std::int32_t> num_seen_;
+  std::vector<std::int32_t> nearest_;
 };
 
 }  // namespace lookout::segmenter

@@ -19,7 +19,7 @@ struct LookoutParams {
   Reach link{0.3, 0.01};
   // Land.
   double land_length_m = 15.0;
-  Reach shore_gap{1.0, 0.03};   // along the water's edge
+  Reach shore_gap{1.0, 0.03};     // along the water's edge
   Reach behind_land{12.0, 0.15};  // from land to what stands behind it
   Reach beside_land{6.0, 0.06};   // from land to what is tall beside it, and, halved, from land to land
   double tall_m = 3.5;

@@ -21,6 +21,7 @@ constexpr double kSideOffM = 0.35;
 constexpr double kPastCornerM = 0.3;
 constexpr double kCrowdM = 8.0;  // within which more than kMostInCrowd thin things are no posts
 constexpr std::size_t kMostInCrowd = 8;
+constexpr std::size_t kCells = 32;  // across the grid of posts
 
 // One over the other.
 constexpr double kOverLength = 0.6;  // lengths of the nearer one: a cabin stands on its hull
@@ -32,36 +33,64 @@ constexpr int kRounds = 2;
 
 }  // namespace
 
-void ObjectJoiner::JoinDocks(const TurnGrid&, PieceTable& pieces) {
+void ObjectJoiner::JoinDocks(PieceTable& pieces) {
   posts_.clear();
+  if (params_.post_spacing_m <= 0.0) return;
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (facts.is_land || facts.length_m >= kThickestPostM || facts.min_range_m <= kLeastPostRangeM) continue;
     posts_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m});
   }
-  std::ranges::sort(posts_, {}, [](const Post& post) { return std::pair(post.x_m, post.root); });
+  SortPosts();
   for (const Post& post : posts_) {
     FindNeighbours(post);
     JoinRectangles(post, pieces);
   }
 }
 
+// Square cells as wide as a dock's longest diagonal can be, so that neighbours are in nine of them. What is farther off than the grid is in its rim.
+std::size_t ObjectJoiner::CellOf(double x_m, double y_m) const {
+  const double cell_m = std::hypot(params_.post_spacing_m, kWidestDockM);
+  const auto index = [cell_m](double place_m) {
+    return static_cast<std::size_t>(std::clamp(std::floor(place_m / cell_m) + kCells / 2, 0.0, static_cast<double>(kCells - 1)));
+  };
+  return index(y_m) * kCells + index(x_m);
+}
+
+void ObjectJoiner::SortPosts() {
+  begin_of_cell_.assign(kCells * kCells + 1, 0);
+  for (const Post& post : posts_) ++begin_of_cell_[CellOf(post.x_m, post.y_m) + 1];
+  for (std::size_t cell = 1; cell < begin_of_cell_.size(); ++cell) begin_of_cell_[cell] += begin_of_cell_[cell - 1];
+  sorted_.resize(posts_.size());
+  for (const Post& post : posts_) sorted_[begin_of_cell_[CellOf(post.x_m, post.y_m)]++] = post;
+  for (std::size_t cell = begin_of_cell_.size() - 1; cell > 0; --cell) begin_of_cell_[cell] = begin_of_cell_[cell - 1];
+  begin_of_cell_[0] = 0;
+  posts_.swap(sorted_);
+}
+
 // Within the longest diagonal; none where it stands in a crowd.
 void ObjectJoiner::FindNeighbours(const Post& post) {
   neighbours_.clear();
-  const double reach_m = std::hypot(params_.post_spacing_m, kWidestDockM);
+  const double reach_m2 = params_.post_spacing_m * params_.post_spacing_m + kWidestDockM * kWidestDockM;
+  const auto cell = CellOf(post.x_m, post.y_m);
+  const auto near = [](std::size_t index) { return std::pair(index > 0 ? index - 1 : 0, std::min(index + 1, kCells - 1)); };
+  const auto [first_row, last_row] = near(cell / kCells);
+  const auto [first, last] = near(cell % kCells);
   std::size_t num_in_crowd = 0;
-  const auto look_at = [&](const Post& other) {
-    const double distance_m = std::hypot(other.x_m - post.x_m, other.y_m - post.y_m);
-    if (distance_m <= kCrowdM && ++num_in_crowd > kMostInCrowd) return false;
-    if (distance_m <= reach_m) neighbours_.push_back(other);
-    return true;
-  };
-  const auto here = std::ranges::lower_bound(posts_, std::pair(post.x_m, post.root), {}, [](const Post& other) { return std::pair(other.x_m, other.root); });
-  bool is_crowded = false;
-  for (auto at = here; at != posts_.begin() && !is_crowded && post.x_m - std::prev(at)->x_m <= reach_m; --at) is_crowded = !look_at(*std::prev(at));
-  for (auto at = std::next(here); at != posts_.end() && !is_crowded && at->x_m - post.x_m <= reach_m; ++at) is_crowded = !look_at(*at);
-  if (is_crowded) neighbours_.clear();
+  for (std::size_t row = first_row; row <= last_row; ++row) {
+    for (std::size_t i = begin_of_cell_[row * kCells + first]; i < begin_of_cell_[row * kCells + last + 1]; ++i) {
+      const Post& other = posts_[i];
+      if (other.root == post.root) continue;
+      const double x_m = other.x_m - post.x_m;
+      const double y_m = other.y_m - post.y_m;
+      const double distance_m2 = x_m * x_m + y_m * y_m;
+      if (distance_m2 <= kCrowdM * kCrowdM && ++num_in_crowd > kMostInCrowd) {
+        neighbours_.clear();
+        return;
+      }
+      if (distance_m2 <= reach_m2) neighbours_.push_back(other);
+    }
+  }
 }
 
 // With `post` at one corner: u along the width, v along the length.
@@ -82,6 +111,7 @@ void ObjectJoiner::JoinRectangles(const Post& post, PieceTable& pieces) const {
         return std::hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m;
       });
       if (!has_fourth) continue;
+      pieces.MarkDock(post.root);
       const double width_m = (u_x_m * v_y_m - u_y_m * v_x_m) / v_m;  // with its sign
       for (const Post& other : neighbours_) {
         const double x_m = other.x_m - post.x_m;
@@ -116,28 +146,32 @@ void ObjectJoiner::FindLinks(const TurnGrid& grid, PieceTable& pieces) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (facts.is_land || facts.num_returns < kSolidReturns) continue;
     const double over_m = std::min(kFarthestOverM, std::max(params_.over_m, kOverLength * facts.length_m));
-    const double reach_m = std::max(over_m, params_.join.At(facts.max_range_m));
-    const auto outline = pieces.OutlineOf(piece);
-    const auto look_at = [&](int column) {
+    const auto look_at = [&](int column, bool is_own) {
       for (const OutlineEntry& entry : pieces.InColumn(column)) {
         auto& seen_by = seen_by_[static_cast<std::size_t>(entry.piece)];
         if (entry.piece == piece || seen_by == piece) continue;
-        seen_by = piece;
         const std::int32_t other_root = pieces.RootOf(entry.piece);
         const PieceFacts& other = pieces.FactsOf(other_root);
         if (other_root == root || other.is_land) continue;
+        const bool is_solid = other.num_returns >= kSolidReturns;
+        const Reach& beside = is_solid ? params_.join : params_.link;
+        double reach_m = beside.At(std::min(facts.min_range_m, other.min_range_m));
+        if (is_own) reach_m = std::max(reach_m, over_m);
         if (other.min_range_m > facts.max_range_m + reach_m || other.max_range_m < facts.min_range_m - reach_m) continue;
+        seen_by = piece;
         const double gap_m = PlanGap(grid, pieces, piece, entry.piece, reach_m);
         if (gap_m <= reach_m) links_.push_back({piece, entry.piece, gap_m});
       }
     };
-    // Its own columns, and those beside it within reach.
+    // Its own columns first, where one thing may stand over the other; then those beside them.
+    const auto outline = pieces.OutlineOf(piece);
+    for (const std::int32_t index : outline) look_at(pieces.Entry(index).column, true);
     const int window = grid.ColumnsOf(params_.join.At(facts.max_range_m), facts.min_range_m);
     int last = PieceTable::kNone;  // column that was looked at
     for (const std::int32_t index : outline) {
       const int column = pieces.Entry(index).column;
       const int from = last == PieceTable::kNone ? column - window : std::max(last + 1, column - window);
-      for (int at = from; at <= column + window; ++at) look_at(grid.Wrap(at));
+      for (int at = from; at <= column + window; ++at) look_at(grid.Wrap(at), false);
       last = column + window;
     }
   }

@@ -21,7 +21,7 @@ class ObjectJoiner {
  public:
   explicit ObjectJoiner(const LookoutParams& params) : params_(params) {}
 
-  void JoinDocks(const TurnGrid& grid, PieceTable& pieces);
+  void JoinDocks(PieceTable& pieces);
   void JoinObjects(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
 
   static constexpr std::int32_t kSolidReturns = 4;
@@ -41,13 +41,17 @@ class ObjectJoiner {
 
   void FindLinks(const TurnGrid& grid, PieceTable& pieces);
   bool AreOfOneObject(const TurnGrid& grid, const PieceFacts& one, const PieceFacts& other, double gap_m) const;
+  void SortPosts();
+  std::size_t CellOf(double x_m, double y_m) const;
   void FindNeighbours(const Post& post);
   void JoinRectangles(const Post& post, PieceTable& pieces) const;
 
   LookoutParams params_;
   std::vector<Link> links_;
   std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
-  std::vector<Post> posts_;            // by x
+  std::vector<Post> posts_;            // by cell
+  std::vector<Post> sorted_;
+  std::vector<std::size_t> begin_of_cell_;
   std::vector<Post> neighbours_;
 };
 

@@ -44,6 +44,7 @@ void Add(const PieceFacts& other, PieceFacts& facts) {
   facts.min_ring = std::min(facts.min_ring, other.min_ring);
   facts.max_ring = std::max(facts.max_ring, other.max_ring);
   facts.is_land = facts.is_land || other.is_land;
+  facts.is_dock = facts.is_dock || other.is_dock;
 }
 
 // Begins out of counts: counts stand one place on.
@@ -89,9 +90,10 @@ void PieceTable::Build(const TurnGrid& grid, const RunTable& runs, UnionFind& se
   last_member_.resize(facts_.size());
   arcs_.resize(facts_.size());
   roots_.resize(facts_.size());
+  root_of_piece_.resize(facts_.size());
   for (std::int32_t piece = 0; piece < size(); ++piece) {
     const auto at = static_cast<std::size_t>(piece);
-    roots_[at] = last_member_[at] = piece;
+    roots_[at] = last_member_[at] = root_of_piece_[at] = piece;
     to_cover_.clear();
     for (const std::int32_t run : Part(runs_of_piece_, begin_of_runs_, piece)) to_cover_.push_back({runs[run].first, runs[run].length});
     arcs_[at] = facts_[at].arc = CoveringArc(grid.num_columns());
@@ -118,14 +120,17 @@ void PieceTable::BuildOutlines(const TurnGrid& grid, const RunTable& runs) {
       auto& last = last_entry_[static_cast<std::size_t>(piece)];
       if (last < first_of_column) {
         last = static_cast<std::int32_t>(entries_.size());
-        entries_.push_back({piece, column, index, index});
+        entries_.push_back({piece, column, index, grid.PointOf(index), grid.PointOf(index)});
         ++begin_of_piece_[static_cast<std::size_t>(piece) + 1];
         continue;
       }
       OutlineEntry& entry = entries_[static_cast<std::size_t>(last)];
-      const float range_m = grid.PointOf(index).range_m;
-      if (range_m < grid.PointOf(entry.nearest).range_m) entry.nearest = index;
-      if (range_m > grid.PointOf(entry.farthest).range_m) entry.farthest = index;
+      const LevelPoint& point = grid.PointOf(index);
+      if (point.range_m < entry.near_point.range_m) {
+        entry.nearest = index;
+        entry.near_point = point;
+      }
+      if (point.range_m > entry.far_point.range_m) entry.far_point = point;
     }
     begin_of_column_.push_back(static_cast<std::int32_t>(entries_.size()));
   }
@@ -195,8 +200,8 @@ bool PieceTable::Settle(const TurnGrid& grid, const RunTable& runs) {
   has_changed_.assign(facts_.size(), false);
   bool is_joined = false;
   for (const auto& [one, other] : joins_) {
-    const std::int32_t a = RootOf(one);
-    const std::int32_t b = RootOf(other);
+    const std::int32_t a = sets_.Find(one);
+    const std::int32_t b = sets_.Find(other);
     if (!sets_.Join(a, b)) continue;
     const auto root = static_cast<std::size_t>(std::min(a, b));
     const auto joined = static_cast<std::size_t>(std::max(a, b));
@@ -207,6 +212,7 @@ bool PieceTable::Settle(const TurnGrid& grid, const RunTable& runs) {
   }
   joins_.clear();
   if (!is_joined) return is_changed;
+  for (std::int32_t piece = 0; piece < size(); ++piece) root_of_piece_[static_cast<std::size_t>(piece)] = sets_.Find(piece);
   std::erase_if(roots_, [this](std::int32_t root) { return RootOf(root) != root; });
   for (const std::int32_t root : roots_) {
     if (!has_changed_[static_cast<std::size_t>(root)]) continue;
@@ -229,25 +235,27 @@ int SharedColumns(const Arc& one, const Arc& other, int num_columns) {
 double PlanGap(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other, double limit_m) {
   if (pieces.OutlineOf(one).size() > pieces.OutlineOf(other).size()) std::swap(one, other);
   const auto inner = pieces.OutlineOf(other);
-  float least_m2 = static_cast<float>(limit_m * limit_m);
+  const auto first_column = pieces.Entry(inner.front()).column;
+  const auto last_column = pieces.Entry(inner.back()).column;
+  auto least_m2 = static_cast<float>(limit_m * limit_m);
   bool is_within = false;
   const auto look_at = [&](const OutlineEntry& entry, std::int32_t from, std::int32_t to) {  // columns
+    if (to < first_column || from > last_column) return;
     const auto begin = std::ranges::lower_bound(inner, from, {}, [&](std::int32_t index) { return pieces.Entry(index).column; });
-    for (auto at = begin; at != inner.end() && pieces.Entry(*at).column <= to; ++at) {
+    for (auto at = begin; at != inner.end(); ++at) {
       const OutlineEntry& facing = pieces.Entry(*at);
-      for (const std::int32_t mine : {entry.nearest, entry.farthest}) {
-        for (const std::int32_t theirs : {facing.nearest, facing.farthest}) {
-          const float distance_m2 = SquaredPlanDistance(grid.PointOf(mine), grid.PointOf(theirs));
-          if (distance_m2 > least_m2) continue;
-          least_m2 = distance_m2;
-          is_within = true;
-        }
-      }
+      if (facing.column > to) break;
+      const float distance_m2 =
+          std::min(std::min(SquaredPlanDistance(entry.near_point, facing.near_point), SquaredPlanDistance(entry.near_point, facing.far_point)),
+                   std::min(SquaredPlanDistance(entry.far_point, facing.near_point), SquaredPlanDistance(entry.far_point, facing.far_point)));
+      if (distance_m2 > least_m2) continue;
+      least_m2 = distance_m2;
+      is_within = true;
     }
   };
   for (const std::int32_t index : pieces.OutlineOf(one)) {
     const OutlineEntry& entry = pieces.Entry(index);
-    const int window = grid.ColumnsOf(limit_m, grid.PointOf(entry.nearest).range_m);
+    const int window = grid.ColumnsOf(limit_m, entry.near_point.range_m);
     const int from = entry.column - window;
     const int to = entry.column + window;
     look_at(entry, std::max(0, from), std::min(to, grid.num_columns() - 1));

@@ -22,8 +22,9 @@ struct Arc {
 struct OutlineEntry {
   std::int32_t piece = 0;
   std::int32_t column = 0;
-  std::int32_t nearest = 0;  // indices of returns
-  std::int32_t farthest = 0;
+  std::int32_t nearest = 0;  // index of the return
+  LevelPoint near_point{};
+  LevelPoint far_point{};
 };
 
 /// Of a piece, or of pieces that were joined.
@@ -40,6 +41,7 @@ struct PieceFacts {
   std::int32_t min_ring = 0;
   std::int32_t max_ring = 0;
   bool is_land = false;
+  bool is_dock = false;  // stands on posts
   Arc arc{};
   // Of the line through it.
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
@@ -55,10 +57,13 @@ class PieceTable {
 
   std::int32_t size() const { return static_cast<std::int32_t>(facts_.size()); }
   std::int32_t OfRun(std::int32_t run) const { return piece_of_run_[static_cast<std::size_t>(run)]; }
-  std::int32_t RootOf(std::int32_t piece) { return sets_.Find(piece); }
+  /// As settled.
+  std::int32_t RootOf(std::int32_t piece) const { return root_of_piece_[static_cast<std::size_t>(piece)]; }
   std::span<const std::int32_t> roots() const { return roots_; }
   const PieceFacts& FactsOf(std::int32_t root) const { return facts_[static_cast<std::size_t>(root)]; }
 
+  /// Of a single piece.
+  const Arc& ArcOf(std::int32_t piece) const { return arcs_[static_cast<std::size_t>(piece)]; }
   /// Outline of a single piece, by column from 0 on.
   std::span<const std::int32_t> OutlineOf(std::int32_t piece) const { return Part(entries_of_piece_, begin_of_piece_, piece); }
   const OutlineEntry& Entry(std::int32_t entry) const { return entries_[static_cast<std::size_t>(entry)]; }
@@ -71,6 +76,7 @@ class PieceTable {
   /// Wants two sets to be one. Nothing changes before Settle.
   void Join(std::int32_t one, std::int32_t other) { joins_.push_back({one, other}); }
   void MarkLand(std::int32_t piece) { new_land_.push_back(piece); }
+  void MarkDock(std::int32_t piece) { facts_[static_cast<std::size_t>(RootOf(piece))].is_dock = true; }
   /// Carries out what was wanted. What is of a set with land is land.
   /// @return whether anything changed
   bool Settle(const TurnGrid& grid, const RunTable& runs);
@@ -100,6 +106,7 @@ class PieceTable {
   std::vector<std::int32_t> last_member_;    // [pieces] of roots
   std::vector<std::int32_t> roots_;
   UnionFind sets_;
+  std::vector<std::int32_t> root_of_piece_;
   std::vector<OutlineEntry> entries_;  // by column
   std::vector<std::int32_t> begin_of_column_;
   std::vector<std::int32_t> entries_of_piece_;

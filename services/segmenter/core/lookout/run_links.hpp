@@ -9,7 +9,7 @@
 namespace lookout::segmenter {
 
 /// How far apart in columns and rings two returns may lie and be linked. Wider than a neighbour, so that a beam that saw nothing does not cut a hull.
-inline constexpr int kLinkColumns = 6;       // in a ring: 1.2 degrees at 0.2
+inline constexpr int kLinkColumns = 6;        // in a ring: 1.2 degrees at 0.2
 inline constexpr int kLinkAcrossColumns = 4;  // between rings
 inline constexpr int kLinkRings = 3;          // 6 degrees at 2
 

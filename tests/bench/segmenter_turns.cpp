@@ -1,0 +1,132 @@
+// Processor time of whole turns, median and 99th percentile, ours and peers in turns on the same scans; and how it grows with the returns.
+//
+//   bench/turns_segmenter [--turns N]
+//
+// Each peer gives labels alone; ours also measures each segment.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "services/segmenter/core/segmenter.hpp"
+#include "tests/unit/segmenter/scan_maker.hpp"
+#include "tools/eval/baselines/peers.hpp"
+
+namespace {
+
+using namespace lookout;
+using namespace lookout::segmenter;
+
+constexpr std::uint64_t kSeed = 20261121;
+
+double ProcessorMs() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+double Percentile(std::vector<double>& times_ms, double share) {
+  std::ranges::sort(times_ms);
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(times_ms.size())));
+  return times_ms[std::max<std::size_t>(rank, 1) - 1];
+}
+
+// Beams over 30 degrees, however many there are.
+Scan EmptyScanOf(int num_rings, int num_columns) {
+  auto scan = test::EmptyScan({.num_columns = num_columns, .num_rings = num_rings});
+  for (std::size_t ring = 0; ring < scan.head.rings.size(); ++ring) {
+    scan.head.rings[ring].elevation_rad = static_cast<float>(DegToRad(-15.0 + 30.0 * static_cast<double>(ring) / (num_rings - 1)));
+    scan.head.rings[ring].azimuth_offset_rad = static_cast<float>(DegToRad(0.0083 * static_cast<double>(ring % 16)));  // as at 600 rpm
+  }
+  return scan;
+}
+
+Scan LakeScan(int num_rings, int num_columns, int num_drops, bool is_basin) {
+  auto scan = EmptyScanOf(num_rings, num_columns);
+  auto walls = test::Lake(kSeed);
+  if (is_basin) test::AddBoat(walls, 0.0, 0.0, 0.1, 120.0, 60.0, -1000.0, 1000.0);  // walls of any height on all sides
+  test::Look(scan, walls, 0.03, kSeed);
+  if (num_drops > 0) test::AddRain(scan, num_drops, kSeed);
+  return scan;
+}
+
+std::size_t NumReturns(const Scan& scan) {
+  return static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, [](std::uint16_t range) { return range != 0; }));
+}
+
+struct Row {
+  std::string name;
+  Scan scan;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Processor time of whole turns");
+  int num_turns = 300;
+  app.add_option("--turns", num_turns, "of each scan and method")->check(CLI::Range(2, 100000));
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<Row> rows;
+  rows.push_back({"lake", LakeScan(16, 1808, 0, false)});
+  rows.push_back({"lake in rain", LakeScan(16, 1808, 2880, false)});
+  rows.push_back({"drops alone", EmptyScanOf(16, 1808)});
+  test::AddRain(rows.back().scan, 5000, kSeed);
+  rows.push_back({"every beam", LakeScan(16, 1808, 0, true)});
+  rows.push_back({"every beam, rain", LakeScan(16, 1808, 2880, true)});
+
+  auto peers = eval::MakePeers({});
+  const auto peer = [&peers](const std::string& name) -> eval::Method* {
+    const auto found = std::ranges::find_if(peers, [&](const auto& one) { return one->name() == name; });
+    return found != peers.end() ? found->get() : nullptr;
+  };
+  eval::Method* const others[] = {peer("Euclidean 0.5 m"), peer("depth clustering (tuned)")};
+  std::printf("%-18s %8s %9s | %-20s | %-29s | %-29s\n", "scan", "returns", "segments", "ours ms median p99", "Euclidean 0.5 m ms, x ours",
+              "depth clustering (tuned), x ours");
+  for (const Row& row : rows) {
+    Segmenter segmenter{Params{}};
+    std::vector<double> ours_ms;
+    std::vector<double> others_ms[2];
+    segmenter.Segment(row.scan);  // takes its memory
+    for (int turn = 0; turn < num_turns; ++turn) {
+      double begin_ms = ProcessorMs();
+      segmenter.Segment(row.scan);
+      ours_ms.push_back(ProcessorMs() - begin_ms);
+      for (std::size_t i = 0; i < 2; ++i) {
+        if (others[i] == nullptr || turn % 10 != 0) continue;  // a tenth of the turns is enough for their median
+        begin_ms = ProcessorMs();
+        others[i]->Segment(row.scan);
+        others_ms[i].push_back(ProcessorMs() - begin_ms);
+      }
+    }
+    const double median_ms = Percentile(ours_ms, 0.5);
+    std::printf("%-18s %8zu %9zu | %9.3f %9.3f  |", row.name.c_str(), NumReturns(row.scan), segmenter.Segment(row.scan).segments.size(), median_ms,
+                Percentile(ours_ms, 0.99));
+    for (auto& times_ms : others_ms) {
+      if (times_ms.empty()) continue;
+      const double other_ms = Percentile(times_ms, 0.5);
+      std::printf(" %15.3f %10.1f   |", other_ms, other_ms / median_ms);
+    }
+    std::printf("\n");
+  }
+
+  std::printf("\n%-14s %9s %12s %17s\n", "lake", "returns", "ms median", "us a 1000 returns");
+  for (const auto& [num_rings, num_columns] : {std::pair{16, 512}, {16, 1024}, {16, 1808}, {32, 1024}, {64, 1024}, {64, 2048}, {128, 2048}}) {
+    const auto scan = LakeScan(num_rings, num_columns, 0, false);
+    Segmenter segmenter{Params{}};
+    segmenter.Segment(scan);
+    std::vector<double> times_ms;
+    for (int turn = 0; turn < std::max(2, num_turns / 10); ++turn) {
+      const double begin_ms = ProcessorMs();
+      segmenter.Segment(scan);
+      times_ms.push_back(ProcessorMs() - begin_ms);
+    }
+    const double median_ms = Percentile(times_ms, 0.5);
+    const auto num_returns = NumReturns(scan);
+    std::printf("%3d x %-8d %9zu %12.3f %17.1f\n", num_rings, num_columns, num_returns, median_ms, 1e6 * median_ms / static_cast<double>(num_returns));
+  }
+  return 0;
+}
