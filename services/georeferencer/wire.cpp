@@ -28,9 +28,25 @@ constexpr std::int64_t kPoseGridUs = 20'000;  // pose_t: a multiple of it
 // Rounding of a covariance that went through a filter.
 constexpr double kCovarianceTolerance = 1e-6;
 
-// A turn of so few obstacles fits into one message, however large their outlines are.
-constexpr std::size_t kFewSegments = 50;
-static_assert(kHeadBytes + kFewSegments * (kObstacleBytes + kMaxFootprintVertices * kVertexBytes) <= 120'000);
+// A turn of so few obstacles fits into one message, however large their outlines and waterlines are.
+constexpr std::size_t kFewSegments = 18;
+constexpr std::size_t kMaxObstacleBytes = kObstacleBytes + (kMaxFootprintVertices + kMaxWaterlineVertices) * kVertexBytes;
+static_assert(kHeadBytes + kFewSegments * kMaxObstacleBytes <= 120'000);
+
+// One set of codes from segment to obstacle.
+static_assert(static_cast<int>(Confidence::kTentative) == segment_t::CONFIDENCE_TENTATIVE);
+static_assert(static_cast<int>(Confidence::kTentative) == obstacle_t::CONFIDENCE_TENTATIVE);
+static_assert(static_cast<int>(Confidence::kSure) == segment_t::CONFIDENCE_SURE);
+static_assert(static_cast<int>(Confidence::kSure) == obstacle_t::CONFIDENCE_SURE);
+static_assert(static_cast<int>(Kind::kObstacle) == segment_t::KIND_OBSTACLE);
+static_assert(static_cast<int>(Kind::kObstacle) == obstacle_t::KIND_OBSTACLE);
+static_assert(static_cast<int>(Kind::kLand) == segment_t::KIND_LAND);
+static_assert(static_cast<int>(Kind::kLand) == obstacle_t::KIND_LAND);
+static_assert(static_cast<int>(obstacle_t::GROUND_FEW_RETURNS) == segment_t::GROUND_FEW_RETURNS);
+static_assert(static_cast<int>(obstacle_t::GROUND_SCATTERED) == segment_t::GROUND_SCATTERED);
+static_assert(static_cast<int>(obstacle_t::GROUND_AT_SURFACE) == segment_t::GROUND_AT_SURFACE);
+constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND_FEW_RETURNS) |
+                                     static_cast<std::int32_t>(segment_t::GROUND_SCATTERED) | static_cast<std::int32_t>(segment_t::GROUND_AT_SURFACE);
 
 bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }  // NaN is not
 
@@ -48,9 +64,25 @@ std::int32_t Count(const std::vector<T>& values) {
 Eigen::Vector3d ToVector(const float (&point_m)[3]) { return {point_m[0], point_m[1], point_m[2]}; }
 
 bool HasItsVertices(const segment_t& message) {
-  const auto num_vertices = static_cast<std::size_t>(message.num_hull);
-  return message.num_points > 0 && message.num_hull > 0 && message.hull_x_m.size() == num_vertices && message.hull_y_m.size() == num_vertices &&
-         message.hull_time_us.size() == num_vertices;
+  return message.num_points > 0 && message.num_hull > 0 && message.num_hull == Count(message.hull_x_m) &&
+         message.num_hull == Count(message.hull_y_m) && message.num_hull == Count(message.hull_time_us) &&
+         message.num_waterline == Count(message.waterline_x_m) && message.num_waterline == Count(message.waterline_y_m) &&
+         message.num_waterline == Count(message.waterline_time_us);
+}
+
+bool AreCodesKnown(const segment_t& message) {
+  return (message.confidence == segment_t::CONFIDENCE_TENTATIVE || message.confidence == segment_t::CONFIDENCE_SURE) &&
+         (message.kind == segment_t::KIND_OBSTACLE || message.kind == segment_t::KIND_LAND) && message.grounds >= 0 && message.grounds <= kAllGrounds;
+}
+
+// Of the corners of an outline or a waterline; the arrays are equally long.
+std::optional<Refusal> FaultOf(const std::vector<float>& x_m, const std::vector<float>& y_m, const std::vector<std::int32_t>& time_us,
+                               const TurnHead& head) {
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    if (!IsWithin(x_m[i], kMaxLidarM) || !IsWithin(y_m[i], kMaxLidarM)) return kSegmentsNumber;
+    if (time_us[i] < 0 || microseconds(time_us[i]) > head.end_time - head.time) return kSegmentsTime;
+  }
+  return std::nullopt;
 }
 
 // Precondition: HasItsVertices.
@@ -62,14 +94,22 @@ std::optional<Refusal> FaultOf(const segment_t& message, const TurnHead& head) {
   }
   if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsPlace(message.top_m) || !IsLength(message.length_m) ||
       !IsLength(message.width_m) || !IsWithin(message.min_z_m, kMaxLidarM) || !IsWithin(message.max_z_m, kMaxLidarM) ||
-      message.min_z_m > message.max_z_m || !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity)) {
+      message.min_z_m > message.max_z_m || !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity) ||
+      !IsWithin(message.box_center_m[0], kMaxLidarM) || !IsWithin(message.box_center_m[1], kMaxLidarM) || message.min_reflectivity < 0 ||
+      message.min_reflectivity > message.max_reflectivity || !(message.seen_share >= 0.0F && message.seen_share <= 1.0F)) {
     return kSegmentsNumber;
   }
-  for (std::size_t i = 0; i < message.hull_x_m.size(); ++i) {
-    if (!IsWithin(message.hull_x_m[i], kMaxLidarM) || !IsWithin(message.hull_y_m[i], kMaxLidarM)) return kSegmentsNumber;
-    if (message.hull_time_us[i] < 0 || microseconds(message.hull_time_us[i]) > head.end_time - head.time) return kSegmentsTime;
-  }
-  return std::nullopt;
+  if (!AreCodesKnown(message)) return kSegmentsCode;
+  if (const auto fault = FaultOf(message.hull_x_m, message.hull_y_m, message.hull_time_us, head)) return fault;
+  return FaultOf(message.waterline_x_m, message.waterline_y_m, message.waterline_time_us, head);
+}
+
+std::vector<HullVertex> ToCorners(const std::vector<float>& x_m, const std::vector<float>& y_m, const std::vector<std::int32_t>& time_us,
+                                  const TurnHead& head) {
+  std::vector<HullVertex> corners;
+  corners.reserve(x_m.size());
+  for (std::size_t i = 0; i < x_m.size(); ++i) corners.push_back({{x_m[i], y_m[i]}, head.time + microseconds(time_us[i])});
+  return corners;
 }
 
 // Precondition: FaultOf the message is none.
@@ -77,6 +117,7 @@ Segment ToSegment(const segment_t& message, const TurnHead& head) {
   Segment segment;
   segment.time = Utime(microseconds(message.utime_us));
   segment.id = message.id;
+  segment.judgement = {static_cast<Confidence>(message.confidence), message.grounds, static_cast<Kind>(message.kind), message.seen_share};
   segment.num_points = message.num_points;
   segment.centroid_m = ToVector(message.centroid_m);
   segment.nearest_m = ToVector(message.nearest_m);
@@ -86,9 +127,8 @@ Segment ToSegment(const segment_t& message, const TurnHead& head) {
   segment.min_z_m = message.min_z_m;
   segment.max_z_m = message.max_z_m;
   segment.mean_reflectivity = message.mean_reflectivity;
-  for (std::size_t i = 0; i < message.hull_x_m.size(); ++i) {
-    segment.hull.push_back({{message.hull_x_m[i], message.hull_y_m[i]}, head.time + microseconds(message.hull_time_us[i])});
-  }
+  segment.hull = ToCorners(message.hull_x_m, message.hull_y_m, message.hull_time_us, head);
+  segment.waterline = ToCorners(message.waterline_x_m, message.waterline_y_m, message.waterline_time_us, head);
   return segment;
 }
 
@@ -132,11 +172,22 @@ std::int32_t ToWire(ObstacleStatus status) {
 // All that is unknown goes out as one and the same NaN: same bytes whatever made it.
 double Canonical(double value) { return std::isnan(value) ? kUnknown : value; }
 
+void Split(const std::vector<Eigen::Vector2d>& places_m, std::vector<float>& first_m, std::vector<float>& second_m) {
+  for (const auto& place_m : places_m) {
+    first_m.push_back(static_cast<float>(place_m.x()));
+    second_m.push_back(static_cast<float>(place_m.y()));
+  }
+}
+
 obstacle_t ToMessage(const Obstacle& obstacle) {
   obstacle_t message{};
   message.utime_us = ToUtimeUs(obstacle.time);
   message.id = obstacle.id;
   message.status = ToWire(obstacle.status);
+  message.confidence = static_cast<std::int32_t>(obstacle.judgement.confidence);
+  message.grounds = obstacle.judgement.grounds;
+  message.kind = static_cast<std::int32_t>(obstacle.judgement.kind);
+  message.seen_share = obstacle.judgement.seen_share;
   message.latitude_deg = obstacle.latitude_deg;
   message.longitude_deg = obstacle.longitude_deg;
   message.position_map_m[0] = obstacle.position_map_m.x();
@@ -156,16 +207,14 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
   message.height_m = static_cast<float>(obstacle.height_m);
   message.num_points = obstacle.num_points;
   message.mean_reflectivity = obstacle.mean_reflectivity;
-  for (const auto& vertex : obstacle.footprint_vessel_m) {
-    message.footprint_vessel_x_m.push_back(static_cast<float>(vertex.x()));
-    message.footprint_vessel_y_m.push_back(static_cast<float>(vertex.y()));
-  }
+  Split(obstacle.footprint_vessel_m, message.footprint_vessel_x_m, message.footprint_vessel_y_m);
   message.num_footprint = Count(message.footprint_vessel_x_m);
-  for (const auto& vertex : obstacle.footprint_map_m) {
-    message.footprint_east_m.push_back(static_cast<float>(vertex.x()));
-    message.footprint_north_m.push_back(static_cast<float>(vertex.y()));
-  }
+  Split(obstacle.footprint_map_m, message.footprint_east_m, message.footprint_north_m);
   message.num_map = Count(message.footprint_east_m);
+  Split(obstacle.waterline_vessel_m, message.waterline_vessel_x_m, message.waterline_vessel_y_m);
+  message.num_waterline = Count(message.waterline_vessel_x_m);
+  Split(obstacle.waterline_map_m, message.waterline_east_m, message.waterline_north_m);
+  message.num_waterline_map = Count(message.waterline_east_m);
   return message;
 }
 

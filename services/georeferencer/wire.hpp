@@ -23,18 +23,19 @@ inline constexpr Refusal kSegmentsParts = "segments_refused_parts";    // part_i
 inline constexpr Refusal kSegmentsCount = "segments_refused_count";    // counts that do not agree
 inline constexpr Refusal kSegmentsId = "segments_refused_id";          // ids that do not increase, or are not in the turn
 inline constexpr Refusal kSegmentsNumber = "segments_refused_number";  // not finite, or not a place that a lidar sees
+inline constexpr Refusal kSegmentsCode = "segments_refused_code";      // a confidence, ground or kind that does not exist
 inline constexpr Refusal kSegmentsSize = "segments_refused_size";      // larger than a message may be
 inline constexpr Refusal kPoseTime = "pose_refused_time";              // a time that does not exist, or is not on the grid
 inline constexpr Refusal kPoseStatus = "pose_refused_status";          // a status that does not exist
 inline constexpr Refusal kPoseNumber = "pose_refused_number";          // what the status says is known is not, or is not a place on earth
 inline constexpr Refusal kPoseCovariance = "pose_refused_covariance";  // not a covariance
 
-inline constexpr std::array kRefusals{kSegmentsTime, kSegmentsParts, kSegmentsCount, kSegmentsId, kSegmentsNumber,
+inline constexpr std::array kRefusals{kSegmentsTime, kSegmentsParts, kSegmentsCount, kSegmentsId, kSegmentsNumber, kSegmentsCode,
                                       kSegmentsSize, kPoseTime,      kPoseStatus,    kPoseNumber, kPoseCovariance};
 
-/// Encoded sizes: obstacles_t without obstacles, obstacle_t without outline, a corner of it in both frames.
+/// Encoded sizes: obstacles_t without obstacles, obstacle_t without outline and waterline, a corner of them in both frames.
 inline constexpr std::size_t kHeadBytes = 80;
-inline constexpr std::size_t kObstacleBytes = 136;
+inline constexpr std::size_t kObstacleBytes = 160;
 inline constexpr std::size_t kVertexBytes = 16;
 
 /// The whole message is valid, or it is refused.

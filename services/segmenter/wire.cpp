@@ -16,6 +16,13 @@ static_assert(static_cast<int>(Reason::kOwnVessel) == segments_t::REASON_OWN_VES
 static_assert(static_cast<int>(Reason::kFieldOfView) == segments_t::REASON_FIELD_OF_VIEW);
 static_assert(static_cast<int>(Reason::kShadowed) == segments_t::REASON_SHADOWED);
 static_assert(static_cast<int>(Reason::kTooSmall) == segments_t::REASON_TOO_SMALL);
+static_assert(static_cast<int>(Confidence::kTentative) == segment_t::CONFIDENCE_TENTATIVE);
+static_assert(static_cast<int>(Confidence::kSure) == segment_t::CONFIDENCE_SURE);
+static_assert(static_cast<int>(Ground::kFewReturns) == segment_t::GROUND_FEW_RETURNS);
+static_assert(static_cast<int>(Ground::kScattered) == segment_t::GROUND_SCATTERED);
+static_assert(static_cast<int>(Ground::kAtSurface) == segment_t::GROUND_AT_SURFACE);
+static_assert(static_cast<int>(SegmentKind::kObstacle) == segment_t::KIND_OBSTACLE);
+static_assert(static_cast<int>(SegmentKind::kLand) == segment_t::KIND_LAND);
 
 // A beam starts inside of the sensor.
 constexpr float kMaxOriginHeightM = 10.0F;
@@ -82,6 +89,9 @@ segment_t ToMessage(const Segment& segment) {
   segment_t message{};
   message.utime_us = ToUtimeUs(segment.time);
   message.id = segment.id;
+  message.confidence = static_cast<std::int32_t>(segment.confidence);
+  message.grounds = segment.grounds;
+  message.kind = static_cast<std::int32_t>(segment.kind);
   message.num_points = segment.num_points;
   const auto copy = [](const Point& from, float(&to)[3]) {
     to[0] = from.x_m;
@@ -92,19 +102,29 @@ segment_t ToMessage(const Segment& segment) {
   copy(segment.nearest, message.nearest_m);
   message.nearest_utime_us = ToUtimeUs(segment.nearest_time);
   copy(segment.top, message.top_m);
+  message.box_center_m[0] = segment.box_center_x_m;
+  message.box_center_m[1] = segment.box_center_y_m;
   message.length_m = segment.length_m;
   message.width_m = segment.width_m;
   message.length_azimuth_rad = segment.length_azimuth_rad;
   message.min_z_m = segment.min_z_m;
   message.max_z_m = segment.max_z_m;
+  message.min_reflectivity = segment.min_reflectivity;
   message.mean_reflectivity = segment.mean_reflectivity;
   message.max_reflectivity = segment.max_reflectivity;
+  message.seen_share = segment.seen_share;
   for (const auto& corner : segment.hull) {
     message.hull_x_m.push_back(corner.x_m);
     message.hull_y_m.push_back(corner.y_m);
     message.hull_time_us.push_back(corner.time_us);
   }
   message.num_hull = Count(message.hull_x_m);
+  for (const auto& corner : segment.waterline) {
+    message.waterline_x_m.push_back(corner.x_m);
+    message.waterline_y_m.push_back(corner.y_m);
+    message.waterline_time_us.push_back(corner.time_us);
+  }
+  message.num_waterline = Count(message.waterline_x_m);
   return message;
 }
 

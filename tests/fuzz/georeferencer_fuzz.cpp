@@ -19,6 +19,9 @@ constexpr std::size_t kPatchBytes = 4;  // place (2), value, and which message
 void Check(const obstacles_t& message) {
   for (const auto& obstacle : message.obstacles) {
     const bool is_ok = obstacle.status == obstacle_t::STATUS_OK;
+    if (obstacle.num_waterline_map != (is_ok ? obstacle.num_waterline : 0)) std::abort();
+    if (obstacle.confidence != obstacle_t::CONFIDENCE_TENTATIVE && obstacle.confidence != obstacle_t::CONFIDENCE_SURE) std::abort();
+    if (!(obstacle.seen_share >= 0.0F && obstacle.seen_share <= 1.0F)) std::abort();
     if (is_ok != (obstacle.num_map > 0) || is_ok != std::isfinite(obstacle.latitude_deg)) std::abort();
     if (!std::isfinite(obstacle.range_m) || !(obstacle.bearing_rad >= 0.0F) || !std::isfinite(obstacle.top_above_water_m)) std::abort();
   }
@@ -28,8 +31,7 @@ void Check(const obstacles_t& message) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace test = georeferencer::test;
-  static const auto kSegments =
-      bus::Encode(test::MakeSegmentsMessage(0, 0, {test::MakeSegmentMessage(1, 10'000, 4), test::MakeSegmentMessage(2, 50'000, 1)}));
+  static const auto kSegments = bus::Encode(test::MakeGoodSegments());
   bus::MemoryBus bus;
   georeferencer::Service service(bus, georeferencer::Params{georeferencer::PlacementParams{}, std::chrono::milliseconds(500)});
   bus::Subscribe<obstacles_t>(bus, bus::kObstacles, Check);

@@ -44,6 +44,7 @@ Inputs MakeInputs(std::mt19937& random) {
       for (int i = 0; i < 5; ++i) {
         auto segment = test::MakeSegmentMessage(5 * part + i + 1, offset_us + 19'000 * i, 4);
         segment.hull_time_us = {19'000 * i, 0, 99'000, 50'000};
+        if (i == 4) test::AddWaterline(segment, 10);
         segments.push_back(segment);
       }
       auto message = test::MakeSegmentsMessage(offset_us, turn, std::move(segments));

@@ -138,15 +138,20 @@ TEST(GeoreferencerRoundTrip, AnOutlineSeenDuringATurnOfABoatThatTurnsKeepsItsSha
     const std::vector<Vector3d> corners{corner_m, corner_m + Vector3d(10, 0, 0), corner_m + Vector3d(10, 40, 0), corner_m + Vector3d(0, 40, 0)};
     Segment segment = test::MakePoint(50'000, 0.0, 0.0, -2.0);
     segment.hull.clear();
-    for (const auto& corner : corners) {
+    const auto seen_at_some_time = [&](const Vector3d& place_map_m) {
       const auto offset_us = static_cast<std::int64_t>(Between(random, 0, 100'000));
       const double time_s = 1e-6 * static_cast<double>(offset_us);
-      const Vector3d p_lidar_m = params.T_vessel_lidar.inverse() * (voyage.AxesAt(time_s).transpose() * (corner - voyage.PositionAt(time_s)));
-      segment.hull.push_back({p_lidar_m.head<2>(), At(offset_us)});
-    }
+      const Vector3d p_lidar_m = params.T_vessel_lidar.inverse() * (voyage.AxesAt(time_s).transpose() * (place_map_m - voyage.PositionAt(time_s)));
+      return HullVertex{p_lidar_m.head<2>(), At(offset_us)};
+    };
+    for (const auto& corner : corners) segment.hull.push_back(seen_at_some_time(corner));
+    for (const auto& corner : corners) segment.waterline.push_back(seen_at_some_time(corner));
     const auto obstacle = PlaceSegment(segment, PosesOf(voyage, test::kLake), test::kLake, false, params);
     ASSERT_EQ(obstacle.status, ObstacleStatus::kOk);
-    for (std::size_t i = 0; i < corners.size(); ++i) EXPECT_LT((obstacle.footprint_map_m[i] - corners[i].head<2>()).norm(), 1e-6);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      EXPECT_LT((obstacle.footprint_map_m[i] - corners[i].head<2>()).norm(), 1e-6);
+      EXPECT_LT((obstacle.waterline_map_m[i] - corners[i].head<2>()).norm(), 1e-6);
+    }
     EXPECT_LT((obstacle.position_map_m - (corner_m + Vector3d(5, 20, 0)).head<2>()).norm(), 1e-6);
   }
 }

@@ -47,7 +47,7 @@ void Evaluation::Add(const Turn& turn) {
     const auto returns = Join(turn);
     Confusion confusion;
     for (const auto& made : returns) confusion.Add(made.object_id, made.label);
-    if (is_whole) Score(confusion);
+    if (is_whole) Score(turn, confusion);
     Measure(turn, confusion, returns, turn_rows);
   }
   if (is_whole || !is_table_whole_) {
@@ -82,7 +82,7 @@ std::vector<Evaluation::JoinedReturn> Evaluation::Join(const Turn& turn) {
   return returns;
 }
 
-void Evaluation::Score(const Confusion& confusion) {
+void Evaluation::Score(const Turn& turn, const Confusion& confusion) {
   const auto scores = confusion.Scores();
   Summary ious;
   for (const auto& score : scores) {
@@ -95,7 +95,13 @@ void Evaluation::Score(const Confusion& confusion) {
     if (score.has_own_segment) ++kind.num_found;
   }
   if (ious.count() > 0) turn_iou.Add(ious.Mean());
-  clutter_segments.Add(confusion.NumClutterSegments());
+  const auto clutter = confusion.ClutterSegments();
+  clutter_segments.Add(static_cast<double>(clutter.size()));
+  const auto is_sure = [&turn](int label) {
+    const auto* segment = FindSegment(turn, label);
+    return segment != nullptr && segment->confidence == segment_t::CONFIDENCE_SURE;
+  };
+  sure_clutter_segments.Add(static_cast<double>(std::ranges::count_if(clutter, is_sure)));
   segments.Add(confusion.NumSegments());
 }
 

@@ -61,6 +61,7 @@ class Evaluation {
   std::map<std::string, KindScore> scores_by_kind;
   Summary turn_iou;                    // mean over the objects of a whole turn
   Summary clutter_segments;            // per whole turn
+  Summary sure_clutter_segments;       // of these, those that are sure
   Summary segments;                    // per whole turn
   std::int64_t num_returns = 0;        // of turns whose scan and segments are in the log
   std::int64_t num_joined = 0;         // of these, found in the truth
@@ -74,7 +75,7 @@ class Evaluation {
   };
 
   std::vector<JoinedReturn> Join(const Turn& turn);
-  void Score(const Confusion& confusion);
+  void Score(const Turn& turn, const Confusion& confusion);
   void Measure(const Turn& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns, std::vector<ObstacleRow>& turn_rows);
   void MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
                        ObstacleRow& row);

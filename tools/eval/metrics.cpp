@@ -44,9 +44,12 @@ int Confusion::MajorityObject(int label) const {
   return best;
 }
 
-int Confusion::NumClutterSegments() const {
-  return static_cast<int>(
-      std::ranges::count_if(returns_by_segment_, [](const auto& entry) { return entry.second.size() == 1 && entry.second.begin()->first == 0; }));
+std::vector<int> Confusion::ClutterSegments() const {
+  std::vector<int> labels;
+  for (const auto& [label, by_object] : returns_by_segment_) {
+    if (by_object.size() == 1 && by_object.begin()->first == 0) labels.push_back(label);
+  }
+  return labels;
 }
 
 double Summary::Percentile(int percent) const {

@@ -28,8 +28,8 @@ class Confusion {
   /// strays lead or the segment is unknown
   int MajorityObject(int label) const;
 
-  /// Segments without a single return of an object or the own vessel.
-  int NumClutterSegments() const;
+  /// Labels of the segments without a single return of an object or the own vessel, in their order.
+  std::vector<int> ClutterSegments() const;
   int NumSegments() const { return static_cast<int>(segment_returns_.size()); }
 
  private:

@@ -1,39 +1,17 @@
 #include "tools/eval/report.hpp"
 
 #include <array>
+#include <span>
 #include <string>
 
 #include "common/core/angles.hpp"
 #include "tools/eval/table.hpp"
+#include "tools/export/words.hpp"
 
 namespace lookout::eval {
 namespace {
 
-std::string StatusWord(int status) {
-  switch (status) {
-    case obstacle_t::STATUS_OK:
-      return "ok";
-    case obstacle_t::STATUS_VESSEL_FRAME_ONLY:
-      return "vessel_frame_only";
-    case obstacle_t::STATUS_POSE_TIMEOUT:
-      return "pose_timeout";
-    default:
-      return "unknown";
-  }
-}
-
-std::string StateWord(int state) {
-  switch (state) {
-    case health_t::STATE_OK:
-      return "ok";
-    case health_t::STATE_DEGRADED:
-      return "degraded";
-    case health_t::STATE_ERROR:
-      return "error";
-    default:
-      return "unknown";
-  }
-}
+std::string ShownCode(std::span<const words::Word> list, int code) { return std::string(words::WordOf(list, code)); }
 
 std::string Percent(double share) { return Number(100.0 * share, 1); }
 
@@ -58,8 +36,8 @@ void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_tr
   out << "obstacles of the last whole turn";
   if (evaluation.table_utime_us) out << " (utime_us " << *evaluation.table_utime_us << ")";
   out << '\n';
-  std::vector<std::string> header{"id",       "range_m", "bearing_deg", "latitude_deg", "longitude_deg",
-                                  "length_m", "width_m", "top_m",       "points",       "status"};
+  std::vector<std::string> header{"id",      "range_m", "bearing_deg", "latitude_deg", "longitude_deg", "length_m",
+                                  "width_m", "top_m",   "points",      "status",       "confidence",    "kind"};
   if (has_truth) header.insert(header.end(), {"object", "position_outside_m", "vertex_outside_m"});
   Table table(header);
   for (const auto& row : evaluation.rows) {
@@ -73,7 +51,9 @@ void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_tr
                                    Number(static_cast<double>(obstacle.width_m), 1),
                                    Number(obstacle.top_above_water_m, 1),
                                    Number(std::int64_t{obstacle.num_points}),
-                                   StatusWord(obstacle.status)};
+                                   ShownCode(words::kObstacleStatus, obstacle.status),
+                                   ShownCode(words::kConfidence, obstacle.confidence),
+                                   ShownCode(words::kKind, obstacle.kind)};
     if (has_truth) {
       cells.push_back(row.object_name);
       cells.push_back(row.position_outside_m ? Number(*row.position_outside_m, 2) : "-");
@@ -83,7 +63,7 @@ void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_tr
   }
   table.Print(out);
   out << evaluation.num_turns << " turns, " << evaluation.num_whole_turns << " of them whole; " << evaluation.num_obstacles << " obstacles";
-  for (const auto& [status, count] : evaluation.num_by_status) out << ", " << count << ' ' << StatusWord(status);
+  for (const auto& [status, count] : evaluation.num_by_status) out << ", " << count << ' ' << ShownCode(words::kObstacleStatus, status);
   out << "\n\n";
 }
 
@@ -121,7 +101,7 @@ void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_
   out << '\n';
   if (evaluation.turn_iou.count() > 0) {
     out << "mIoU " << Percent(evaluation.turn_iou.Mean()) << " %, segments per turn " << Number(evaluation.segments.Mean(), 2) << ", of pure clutter "
-        << Number(evaluation.clutter_segments.Mean(), 2) << '\n';
+        << Number(evaluation.clutter_segments.Mean(), 2) << ", of these sure " << Number(evaluation.sure_clutter_segments.Mean(), 2) << '\n';
   }
   out << "recall: objects with " << min_num_returns << " returns or more that have a segment of their own\n";
   Table table({"kind", "object_turns", "found", "recall_%", "mean_IoU_%"});
@@ -149,7 +129,7 @@ void PrintMachine(std::ostream& out, const Machine& machine) {
   Table processes({"process", "state", "cpu_%", "memory_MB", "reason"});
   for (const auto& [name, process] : machine.processes) {
     constexpr double kBytesPerMegabyte = 1e6;
-    processes.Add({name, StateWord(process.state), Percent(process.cpu_fraction.Median()),
+    processes.Add({name, ShownCode(words::kHealthState, process.state), Percent(process.cpu_fraction.Median()),
                    Number(static_cast<double>(process.resident_bytes) / kBytesPerMegabyte, 1), process.reason.empty() ? "-" : process.reason});
   }
   processes.Print(out);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "common/core/angles.hpp"
 
@@ -208,12 +209,19 @@ class Drawing {
       const auto pixel = ToPixel(corner);
       path += (path.empty() ? "M" : "L") + Number(pixel.x) + " " + Number(pixel.y);
     }
-    path += outline.corners.size() == 1 ? "h0" : "Z";
+    if (outline.corners.size() == 1) {
+      path += "h0";
+    } else if (!outline.is_line) {
+      path += "Z";
+    }
     const std::string colour = Css(outline.colour);
+    const std::string round = "\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
+    const std::string fill = outline.is_line ? "none" : colour + "\" fill-opacity=\"" + (outline.is_tentative ? "0.05" : "0.14");
     // A wide stroke around the returns themselves, so that the line does not cover them.
-    svg_ += "<path d=\"" + path + "\" fill=\"" + colour + "\" fill-opacity=\"0.14\" stroke=\"" + colour +
-            "\" stroke-width=\"9\" stroke-opacity=\"0.18\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n<path d=\"" + path +
-            "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"1.2\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n";
+    svg_ += "<path d=\"" + path + "\" fill=\"" + fill + "\" stroke=\"" + colour + "\" stroke-width=\"9\" stroke-opacity=\"" +
+            (outline.is_tentative ? "0.08" : "0.18") + round;
+    const std::string line = outline.is_tentative ? "0.8\" stroke-dasharray=\"2 3\" stroke-opacity=\"0.6" : outline.is_line ? "2.4" : "1.2";
+    svg_ += "<path d=\"" + path + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" + line + round;
   }
 
   void DrawRingNames() {
@@ -232,13 +240,13 @@ class Drawing {
     Text({tip.x + 16.0, tip.y + 16.0}, picture_.up, "font-size=\"18\" font-weight=\"bold\" fill=\"#b3261e\"");
   }
 
-  // Names beside their outlines, nearest first; a name that would cover another is left to the legend.
+  // Names beside their outlines, by rank; a name that would cover another is left to the legend.
   void DrawNames() {
     struct Box {
       double left, top, right, bottom;
     };
     std::vector<Box> taken;
-    for (const auto index : ByDistance()) {
+    for (const auto index : ByRank()) {
       const auto& outline = picture_.outlines[index];
       if (outline.corners.empty() || !std::ranges::all_of(outline.corners, IsFinite)) continue;
       // Beside the corner that lies farthest to the right, left, top or bottom.
@@ -259,8 +267,8 @@ class Drawing {
         if (!is_in_view || !is_free) continue;
         taken.push_back(box);
         Text(place, outline.name,
-             "font-size=\"13\" font-weight=\"bold\" fill=\"" + Css(outline.colour) +
-                 "\" stroke=\"#ffffff\" stroke-width=\"3.5\" paint-order=\"stroke\"");
+             std::string("font-size=\"13\" ") + (outline.is_tentative ? "fill-opacity=\"0.7\"" : "font-weight=\"bold\"") + " fill=\"" +
+                 Css(outline.colour) + "\" stroke=\"#ffffff\" stroke-width=\"3.5\" paint-order=\"stroke\"");
         break;
       }
     }
@@ -268,8 +276,9 @@ class Drawing {
 
   void DrawLegend() {
     double y = kLegendTop;
-    const auto mark = [&](const Rgb& colour) {
-      svg_ += "<circle cx=\"" + Number(kLegendX + 6.0) + "\" cy=\"" + Number(y - 5.0) + "\" r=\"6\" fill=\"" + Css(colour) + "\"/>\n";
+    const auto mark = [&](const Rgb& colour, bool is_light = false) {
+      svg_ += "<circle cx=\"" + Number(kLegendX + 6.0) + "\" cy=\"" + Number(y - 5.0) + "\" r=\"6\" fill=\"" + Css(colour) +
+              (is_light ? "\" fill-opacity=\"0.4" : "") + "\"/>\n";
     };
     const std::string dark = "font-size=\"14\" fill=\"#1c2b3a\"";
     const std::string pale = "font-size=\"13\" fill=\"#5b6b7b\"";
@@ -282,29 +291,30 @@ class Drawing {
     if (!picture_.legend.empty()) y += 12.0;
     Text({kLegendX, y}, picture_.outlines_title, pale);
     y += kLegendLine + 2.0;
-    const auto order = ByDistance();
+    const auto order = ByRank();
     std::size_t num_drawn = 0;
     for (const auto index : order) {
       if (y + kLegendLine > kLegendBottom && num_drawn + 1 < order.size()) break;
       const auto& outline = picture_.outlines[index];
-      mark(outline.colour);
+      mark(outline.colour, outline.is_tentative);
       Text({kLegendX + 22.0, y}, outline.name, dark + " font-weight=\"bold\"");
       Text({kLegendX + 60.0, y}, outline.facts, dark);
       y += kLegendLine;
       ++num_drawn;
     }
-    if (num_drawn < order.size()) Text({kLegendX + 22.0, y}, "and " + std::to_string(order.size() - num_drawn) + " more, farther off", pale);
+    if (num_drawn < order.size()) Text({kLegendX + 22.0, y}, "and " + std::to_string(order.size() - num_drawn) + " more", pale);
   }
 
-  std::vector<std::size_t> ByDistance() const {
+  // Nearest first, what is tentative behind all that is sure: in rain it would else fill the legend.
+  std::vector<std::size_t> ByRank() const {
     std::vector<std::size_t> order(picture_.outlines.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     // What is not finite counts as farthest, so that the order stays one.
-    const auto distance = [this](std::size_t index) {
-      const double distance_m = picture_.outlines[index].distance_m;
-      return std::isfinite(distance_m) ? distance_m : 1e9;
+    const auto rank = [this](std::size_t index) {
+      const auto& outline = picture_.outlines[index];
+      return std::pair(outline.is_tentative, std::isfinite(outline.distance_m) ? outline.distance_m : 1e9);
     };
-    std::ranges::stable_sort(order, {}, distance);
+    std::ranges::stable_sort(order, {}, rank);
     return order;
   }
 

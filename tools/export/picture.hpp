@@ -26,6 +26,8 @@ struct Outline {
   std::string facts;          // stands in the legend
   std::vector<Spot> corners;  // one or two are drawn as a point or a line
   double distance_m = 0.0;    // of its nearest point; the legend begins with the nearest
+  bool is_tentative = false;  // drawn lightly, behind the others in the legend
+  bool is_line = false;       // open, not filled
 };
 
 struct LegendLine {

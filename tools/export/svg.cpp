@@ -1,20 +1,25 @@
 #include "tools/export/svg.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/bus/decode.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/segment_t.hpp"
 #include "tools/export/bearings.hpp"
 #include "tools/export/labelled_turn.hpp"
 #include "tools/export/picture.hpp"
 #include "tools/export/returns.hpp"
+#include "tools/export/words.hpp"
 
 namespace lookout::exporter {
 
@@ -62,6 +67,23 @@ BoatShape ShapeOf(const std::optional<BoatOfLog>& boat, double bow_rad) {
           .min_up_m = box.min().x(),
           .max_up_m = box.max().x(),
           .has_size = true};
+}
+
+// What an outline is called in the legend, in place of a size that says little of it; nullopt for a sure obstacle.
+std::optional<std::string_view> Remark(int confidence, int kind) {
+  if (confidence == segment_t::CONFIDENCE_TENTATIVE) return words::WordOf(words::kConfidence, confidence);
+  if (kind == segment_t::KIND_LAND) return words::WordOf(words::kKind, kind);
+  return std::nullopt;
+}
+
+// Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
+bool HasWaterline(int kind, const std::vector<float>& waterline_x_m) { return kind == segment_t::KIND_LAND && !waterline_x_m.empty(); }
+
+// "2 segments", "3 obstacles, 1 of them tentative"
+std::string CountText(const Picture& picture, const char* things) {
+  const auto num_tentative = std::ranges::count(picture.outlines, true, &Outline::is_tentative);
+  return Format("%zu %s", picture.outlines.size(), things) +
+         (num_tentative > 0 ? Format(", %d of them tentative", static_cast<int>(num_tentative)) : "");
 }
 
 // Both pictures need POSE and RUN_INFO beside their own channels.
@@ -149,19 +171,25 @@ Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
     outline.colour = ColourOfSegment(segment.id);
     outline.name = std::to_string(segment.id);
     outline.distance_m = std::hypot(static_cast<double>(segment.nearest_m[0]), static_cast<double>(segment.nearest_m[1]));
-    outline.facts = Format("%.1f m, %.1f x %.1f m, %d returns", outline.distance_m, static_cast<double>(segment.length_m),
-                           static_cast<double>(segment.width_m), segment.num_points);
+    outline.is_tentative = segment.confidence == segment_t::CONFIDENCE_TENTATIVE;
+    outline.is_line = HasWaterline(segment.kind, segment.waterline_x_m);
+    const auto remark = Remark(segment.confidence, segment.kind);
+    const std::string size =
+        remark ? std::string(*remark) : Format("%.1f x %.1f m", static_cast<double>(segment.length_m), static_cast<double>(segment.width_m));
+    outline.facts = Format("%.1f m, %s, %d returns", outline.distance_m, size.c_str(), segment.num_points);
     const double height_m = static_cast<double>(segment.centroid_m[2]);
-    for (std::size_t i = 0; i < segment.hull_x_m.size(); ++i) {
-      outline.corners.push_back(to_spot({static_cast<double>(segment.hull_x_m[i]), static_cast<double>(segment.hull_y_m[i]), height_m}));
+    const auto& x_m = outline.is_line ? segment.waterline_x_m : segment.hull_x_m;
+    const auto& y_m = outline.is_line ? segment.waterline_y_m : segment.hull_y_m;
+    for (std::size_t i = 0; i < x_m.size(); ++i) {
+      outline.corners.push_back(to_spot({static_cast<double>(x_m[i]), static_cast<double>(y_m[i]), height_m}));
     }
     picture.outlines.push_back(std::move(outline));
   }
-  picture.title = Format("Turn %lld: %d returns, %zu segments", static_cast<long long>(place.seq), num_returns, picture.outlines.size());
+  picture.title = Format("Turn %lld: %d returns, ", static_cast<long long>(place.seq), num_returns) + CountText(picture, "segments");
   picture.subtitles = {UtcText(place.utime_us), is_north_up ? Format("north up, heading %.1f deg", RadToDeg(up_rad))
                                                 : boat      ? "bow up: no heading in the log"
                                                             : "lidar frame: no config of the boat in the log"};
-  picture.outlines_title = "segments, nearest first";
+  picture.outlines_title = "segments, nearest first, tentative ones last";
   return picture;
 }
 
@@ -207,11 +235,16 @@ Picture ObstaclesSvgSink::MakePicture(const Bearings& bearings) const {
       outline.colour = ColourOfSegment(obstacle.id);
       outline.name = std::to_string(obstacle.id);
       outline.distance_m = static_cast<double>(obstacle.range_m);
-      outline.facts = Format("%.1f m at %.0f deg, %.1f x %.1f m", outline.distance_m, RadToDeg(static_cast<double>(obstacle.bearing_rad)),
-                             static_cast<double>(obstacle.length_m), static_cast<double>(obstacle.width_m));
-      for (std::size_t i = 0; i < obstacle.footprint_vessel_x_m.size(); ++i) {
-        outline.corners.push_back(
-            view.ToSpot(static_cast<double>(obstacle.footprint_vessel_x_m[i]), static_cast<double>(obstacle.footprint_vessel_y_m[i])));
+      outline.is_tentative = obstacle.confidence == obstacle_t::CONFIDENCE_TENTATIVE;
+      outline.is_line = HasWaterline(obstacle.kind, obstacle.waterline_vessel_x_m);
+      const auto remark = Remark(obstacle.confidence, obstacle.kind);
+      const std::string size =
+          remark ? std::string(*remark) : Format("%.1f x %.1f m", static_cast<double>(obstacle.length_m), static_cast<double>(obstacle.width_m));
+      outline.facts = Format("%.1f m at %.0f deg, %s", outline.distance_m, RadToDeg(static_cast<double>(obstacle.bearing_rad)), size.c_str());
+      const auto& x_m = outline.is_line ? obstacle.waterline_vessel_x_m : obstacle.footprint_vessel_x_m;
+      const auto& y_m = outline.is_line ? obstacle.waterline_vessel_y_m : obstacle.footprint_vessel_y_m;
+      for (std::size_t i = 0; i < x_m.size(); ++i) {
+        outline.corners.push_back(view.ToSpot(static_cast<double>(x_m[i]), static_cast<double>(y_m[i])));
       }
       picture.outlines.push_back(std::move(outline));
     }
@@ -220,10 +253,10 @@ Picture ObstaclesSvgSink::MakePicture(const Bearings& bearings) const {
   for (const auto& [status, count] : num_by_status) {
     statuses += (statuses.empty() ? "" : ", ") + std::to_string(count) + " " + std::string(words::WordOf(words::kObstacleStatus, status));
   }
-  picture.title = Format("Turn %lld: %zu obstacles", static_cast<long long>(place.seq), picture.outlines.size());
+  picture.title = Format("Turn %lld: ", static_cast<long long>(place.seq)) + CountText(picture, "obstacles");
   picture.subtitles = {UtcText(place.utime_us) + (statuses.empty() ? "" : ", status: " + statuses),
                        is_north_up ? Format("north up, heading %.1f deg", RadToDeg(up_rad)) : "bow up: no heading in the log"};
-  picture.outlines_title = "obstacles, nearest first; bearing from the bow";
+  picture.outlines_title = "obstacles, nearest first, tentative ones last; bearing from the bow";
   return picture;
 }
 

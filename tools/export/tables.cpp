@@ -28,6 +28,8 @@ namespace {
 // Decimals of a fixed number of metres (0.1 mm) and of geodetic degrees (0.1 mm on the earth).
 constexpr int kMetreDecimals = 4;
 constexpr int kDegreeDecimals = 9;
+// Shares of some thousand columns.
+constexpr int kShareDecimals = 4;
 
 constexpr std::string_view kReturnsHeader = "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason";
 
@@ -64,6 +66,10 @@ void WriteSegments(const segments_t& message, CsvWriter& csv) {
     csv.Fixed(static_cast<double>(segment.length_m), kMetreDecimals);
     csv.Fixed(static_cast<double>(segment.width_m), kMetreDecimals);
     csv.Fixed(static_cast<double>(segment.max_z_m) - static_cast<double>(segment.min_z_m), kMetreDecimals);
+    csv.Text(words::WordOf(words::kConfidence, segment.confidence));
+    csv.Text(words::WordsOf(words::kGround, segment.grounds));
+    csv.Text(words::WordOf(words::kKind, segment.kind));
+    csv.Fixed(static_cast<double>(segment.seen_share), kShareDecimals);
     csv.EndRow();
   }
 }
@@ -82,6 +88,8 @@ void WriteObstacles(const obstacles_t& message, CsvWriter& csv) {
     csv.Fixed(static_cast<double>(obstacle.width_m), kMetreDecimals);
     csv.Integer(obstacle.num_points);
     csv.Text(words::WordOf(words::kObstacleStatus, obstacle.status));
+    csv.Text(words::WordOf(words::kConfidence, obstacle.confidence));
+    csv.Text(words::WordOf(words::kKind, obstacle.kind));
     csv.EndRow();
   }
 }
@@ -222,11 +230,12 @@ struct Table {
 
 constexpr std::array kTables{
     Table{"returns", kReturnsHeader, bus::kLidarScan, nullptr},
-    Table{"segments", "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m", bus::kSegments,
-          WriteMessage<segments_t, WriteSegments>},
+    Table{"segments",
+          "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share",
+          bus::kSegments, WriteMessage<segments_t, WriteSegments>},
     Table{"obstacles",
           "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,"
-          "length_m,width_m,num_points,status",
+          "length_m,width_m,num_points,status,confidence,kind",
           bus::kObstacles, WriteMessage<obstacles_t, WriteObstacles>},
     Table{"pose", "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status", bus::kPose,
           WriteMessage<pose_t, WritePose>},

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "lookout/gnss_fix_t.hpp"
@@ -10,6 +11,7 @@
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/obstacle_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "lookout/segment_t.hpp"
 #include "lookout/segments_t.hpp"
 
 namespace lookout::words {
@@ -26,6 +28,15 @@ inline constexpr std::array kReason{Word{segments_t::REASON_RANGE, "range"}, Wor
 
 inline constexpr std::array kObstacleStatus{Word{obstacle_t::STATUS_OK, "ok"}, Word{obstacle_t::STATUS_VESSEL_FRAME_ONLY, "vessel_frame_only"},
                                             Word{obstacle_t::STATUS_POSE_TIMEOUT, "pose_timeout"}};
+
+// Of segments; georeferencer holds by static_assert that those of obstacles are the same.
+inline constexpr std::array kConfidence{Word{segment_t::CONFIDENCE_TENTATIVE, "tentative"}, Word{segment_t::CONFIDENCE_SURE, "sure"}};
+
+/// Bits: see WordsOf.
+inline constexpr std::array kGround{Word{segment_t::GROUND_FEW_RETURNS, "few_returns"}, Word{segment_t::GROUND_SCATTERED, "scattered"},
+                                    Word{segment_t::GROUND_AT_SURFACE, "at_surface"}};
+
+inline constexpr std::array kKind{Word{segment_t::KIND_OBSTACLE, "obstacle"}, Word{segment_t::KIND_LAND, "land"}};
 
 inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose_t::STATUS_NO_HEADING, "no_heading"},
                                         Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"}};
@@ -57,6 +68,19 @@ constexpr std::string_view WordOf(std::span<const Word> words, int code) {
     if (word.code == code) return word.text;
   }
   return "undefined";
+}
+
+/// @return the words of the bits that are set, in the order of `words`, joined with "+"; "" for none; "undefined" stands last for bits that are not
+///         of this version
+inline std::string WordsOf(std::span<const Word> words, int bits) {
+  std::string text;
+  const auto add = [&text](std::string_view word) { text.append(text.empty() ? "" : "+").append(word); };
+  for (const auto& word : words) {
+    if ((bits & word.code) != 0) add(word.text);
+    bits &= ~word.code;
+  }
+  if (bits != 0) add("undefined");
+  return text;
 }
 
 }  // namespace lookout::words

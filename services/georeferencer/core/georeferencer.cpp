@@ -81,6 +81,7 @@ void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& 
   placed.datum = poses_.DatumAt(part.head.end_time);
   for (const auto& segment : part.segments) {
     if (segment.hull.size() > kMaxFootprintVertices) ++counts_.footprints_thinned;
+    if (segment.waterline.size() > kMaxWaterlineVertices) ++counts_.waterlines_thinned;
     const auto& obstacle = placed.obstacles.emplace_back(PlaceSegment(segment, poses_, placed.datum, has_timed_out, placement_));
     switch (obstacle.status) {
       case ObstacleStatus::kOk:
@@ -110,7 +111,8 @@ std::vector<Counter> Georeferencer::counters() const {
           {"obstacles_ok", counts_.obstacles_ok},
           {"obstacles_vessel_frame_only", counts_.obstacles_vessel_frame_only},
           {"obstacles_pose_timeout", counts_.obstacles_pose_timeout},
-          {"footprints_thinned", counts_.footprints_thinned}};
+          {"footprints_thinned", counts_.footprints_thinned},
+          {"waterlines_thinned", counts_.waterlines_thinned}};
 }
 
 }  // namespace lookout::georeferencer

@@ -57,6 +57,7 @@ class Georeferencer {
     std::int64_t obstacles_vessel_frame_only = 0;
     std::int64_t obstacles_pose_timeout = 0;
     std::int64_t footprints_thinned = 0;
+    std::int64_t waterlines_thinned = 0;
   };
 
   bool IsReady(const SegmentPart& part) const;

@@ -10,16 +10,29 @@
 
 namespace lookout::georeferencer {
 
-/// A corner of a segment's outline, lidar frame, with the time at which it was seen.
+/// A corner of a segment's outline or waterline, lidar frame, with the time at which it was seen.
 struct HullVertex {
   Eigen::Vector2d p_lidar_m;
   Utime time;
+};
+
+// Numbers of both are those of the wire.
+enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
+enum class Kind : std::int32_t { kObstacle = 0, kLand = 1 };
+
+/// What the segmenter says of a segment; its obstacle repeats it.
+struct Judgement {
+  Confidence confidence = Confidence::kSure;
+  std::int32_t grounds = 0;  // bits of the wire: why it is tentative
+  Kind kind = Kind::kObstacle;
+  float seen_share = 1.0F;  // 0 to 1, of the columns from its first to its last
 };
 
 /// One segment in the lidar frame. Numbers are finite, times within the turn, the hull is not empty.
 struct Segment {
   Utime time;  // mean of the times of its returns
   std::int32_t id = 0;
+  Judgement judgement;
   std::int32_t num_points = 0;
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nearest_m = Eigen::Vector3d::Zero();
@@ -29,7 +42,8 @@ struct Segment {
   double min_z_m = 0.0;
   double max_z_m = 0.0;
   float mean_reflectivity = 0.0F;
-  std::vector<HullVertex> hull;  // counter-clockwise seen from the lidar's z axis
+  std::vector<HullVertex> hull;       // counter-clockwise seen from the lidar's z axis
+  std::vector<HullVertex> waterline;  // of land, an open line, clockwise seen from the lidar's z axis; empty for others
 };
 
 /// What a SEGMENTS message and its OBSTACLES have in common.
@@ -52,10 +66,11 @@ struct SegmentPart {
 
 enum class ObstacleStatus { kOk, kVesselFrameOnly, kPoseTimeout };
 
-/// One obstacle. Members for the map are NaN, footprint_map_m is empty, unless status is kOk.
+/// One obstacle. Members for the map are NaN, footprint_map_m and waterline_map_m are empty, unless status is kOk.
 struct Obstacle {
   Utime time;
   std::int32_t id = 0;
+  Judgement judgement;
   ObstacleStatus status = ObstacleStatus::kVesselFrameOnly;
   double latitude_deg = kUnknown;
   double longitude_deg = kUnknown;
@@ -73,6 +88,8 @@ struct Obstacle {
   float mean_reflectivity = 0.0F;
   std::vector<Eigen::Vector2d> footprint_vessel_m;  // counter-clockwise seen from above
   std::vector<Eigen::Vector2d> footprint_map_m;
+  std::vector<Eigen::Vector2d> waterline_vessel_m;  // clockwise seen from above
+  std::vector<Eigen::Vector2d> waterline_map_m;
 };
 
 /// One SEGMENTS message, placed.

@@ -43,16 +43,34 @@ double AboveWaterM(const Vector3d& p_vessel_m, const std::optional<Pose>& pose, 
   return p_level_m.z() + reference_point_above_water_m + pose->heave_m;
 }
 
-// The outline in the map frame, each corner by the pose at its own time; nullopt when one of them has none.
-std::optional<std::vector<Vector3d>> PlaceOutline(const std::vector<HullVertex>& hull, const std::vector<Vector3d>& outline_vessel_m,
-                                                  const PoseHistory& poses, const Datum& datum) {
-  std::vector<Vector3d> outline_map_m;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    const auto pose = PlacedPoseAt(poses, hull[i].time, datum);
-    if (!pose) return std::nullopt;
-    outline_map_m.push_back(TransformMapVessel(*pose) * outline_vessel_m[i]);
+// Corners of a segment in the vessel frame, as they were seen, at the mean height of its returns.
+std::vector<Vector3d> ToVessel(const std::vector<HullVertex>& corners, double height_lidar_m, const Isometry3d& T_vessel_lidar) {
+  std::vector<Vector3d> corners_vessel_m;
+  corners_vessel_m.reserve(corners.size());
+  for (const auto& corner : corners) {
+    corners_vessel_m.push_back(T_vessel_lidar * Vector3d(corner.p_lidar_m.x(), corner.p_lidar_m.y(), height_lidar_m));
   }
-  return outline_map_m;
+  return corners_vessel_m;
+}
+
+// The same corners in the map frame, each by the pose at its own time; nullopt when one of them has none.
+std::optional<std::vector<Vector3d>> PlaceCorners(const std::vector<HullVertex>& corners, const std::vector<Vector3d>& corners_vessel_m,
+                                                  const PoseHistory& poses, const Datum& datum) {
+  std::vector<Vector3d> corners_map_m;
+  corners_map_m.reserve(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto pose = PlacedPoseAt(poses, corners[i].time, datum);
+    if (!pose) return std::nullopt;
+    corners_map_m.push_back(TransformMapVessel(*pose) * corners_vessel_m[i]);
+  }
+  return corners_map_m;
+}
+
+// Of the segment and of all corners; `hull` is not empty, `waterline` may be.
+Utime LastTime(Utime segment_time, const std::vector<HullVertex>& hull, const std::vector<HullVertex>& waterline) {
+  Utime last_time = std::max(segment_time, std::ranges::max(hull, {}, &HullVertex::time).time);
+  for (const auto& corner : waterline) last_time = std::max(last_time, corner.time);
+  return last_time;
 }
 
 std::vector<Vector2d> SeenFromAbove(const std::vector<Vector3d>& points) {
@@ -83,6 +101,13 @@ std::vector<HullVertex> Thinned(const std::vector<HullVertex>& hull) {
   if (hull.size() <= kMaxFootprintVertices) return hull;
   std::vector<HullVertex> thinned;
   for (std::size_t i = 0; i < kMaxFootprintVertices; ++i) thinned.push_back(hull[i * hull.size() / kMaxFootprintVertices]);
+  return thinned;
+}
+
+std::vector<HullVertex> ThinnedLine(const std::vector<HullVertex>& line) {
+  if (line.size() <= kMaxWaterlineVertices) return line;
+  std::vector<HullVertex> thinned;
+  for (std::size_t i = 0; i < kMaxWaterlineVertices; ++i) thinned.push_back(line[i * (line.size() - 1) / (kMaxWaterlineVertices - 1)]);
   return thinned;
 }
 
@@ -135,18 +160,20 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params) {
   const Isometry3d& T_vessel_lidar = params.T_vessel_lidar;
   std::vector<HullVertex> hull = Thinned(segment.hull);
-  // A lidar that hangs upside down sees the outline run the other way.
-  if (T_vessel_lidar.linear()(2, 2) < 0.0) std::ranges::reverse(hull);
-  std::vector<Vector3d> outline_vessel_m;
-  outline_vessel_m.reserve(hull.size());
-  for (const auto& vertex : hull) {
-    outline_vessel_m.push_back(T_vessel_lidar * Vector3d(vertex.p_lidar_m.x(), vertex.p_lidar_m.y(), segment.centroid_m.z()));
+  std::vector<HullVertex> waterline = ThinnedLine(segment.waterline);
+  // A lidar that hangs upside down sees outline and waterline run the other way.
+  if (T_vessel_lidar.linear()(2, 2) < 0.0) {
+    std::ranges::reverse(hull);
+    std::ranges::reverse(waterline);
   }
+  const auto outline_vessel_m = ToVessel(hull, segment.centroid_m.z(), T_vessel_lidar);
+  const auto waterline_vessel_m = ToVessel(waterline, segment.centroid_m.z(), T_vessel_lidar);
   const auto pose = poses.At(segment.time);
 
   Obstacle obstacle;
   obstacle.time = segment.time;
   obstacle.id = segment.id;
+  obstacle.judgement = segment.judgement;
   obstacle.center_vessel_m = FootprintCenter(outline_vessel_m).head<2>();
   obstacle.nearest_vessel_m = T_vessel_lidar * segment.nearest_m;
   obstacle.range_m = obstacle.nearest_vessel_m.head<2>().norm();
@@ -157,15 +184,17 @@ Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Da
   obstacle.num_points = segment.num_points;
   obstacle.mean_reflectivity = segment.mean_reflectivity;
   obstacle.footprint_vessel_m = SeenFromAbove(outline_vessel_m);
-
+  obstacle.waterline_vessel_m = SeenFromAbove(waterline_vessel_m);
   obstacle.top_above_water_m = AboveWaterM(T_vessel_lidar * segment.top_m, pose, params.reference_point_above_water_m);
 
   const auto placed_pose = PlacedPoseAt(poses, segment.time, datum);
-  const auto outline_map_m = PlaceOutline(hull, outline_vessel_m, poses, datum);
-  if (placed_pose && outline_map_m) {
+  const auto outline_map_m = PlaceCorners(hull, outline_vessel_m, poses, datum);
+  const auto waterline_map_m = PlaceCorners(waterline, waterline_vessel_m, poses, datum);
+  if (placed_pose && outline_map_m && waterline_map_m) {
     PlaceOnEarth(*outline_map_m, *placed_pose, params, obstacle);
+    obstacle.waterline_map_m = SeenFromAbove(*waterline_map_m);
   } else if (has_timed_out) {
-    const Utime last_time = std::max(segment.time, std::ranges::max(hull, {}, &HullVertex::time).time);
+    const Utime last_time = LastTime(segment.time, hull, waterline);
     if (poses.newest() == nullptr || poses.newest()->time < last_time) obstacle.status = ObstacleStatus::kPoseTimeout;
   }
   return obstacle;

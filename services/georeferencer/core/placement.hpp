@@ -20,8 +20,14 @@ struct PlacementParams {
 /// farther than 25 mm from the outline; a range is off by 30 mm.
 inline constexpr std::size_t kMaxFootprintVertices = 140;
 
+/// As many as segmenter gives a waterline at most; a longer one, of another publisher, is thinned, evenly by number, both ends kept.
+inline constexpr std::size_t kMaxWaterlineVertices = 256;
+
 /// @return every vertex; of more than kMaxFootprintVertices so many, the first among them
 std::vector<HullVertex> Thinned(const std::vector<HullVertex>& hull);
+
+/// @return every vertex; of more than kMaxWaterlineVertices so many, the first and the last among them
+std::vector<HullVertex> ThinnedLine(const std::vector<HullVertex>& line);
 
 /// Centre of an outline, seen from above.
 ///
@@ -39,12 +45,13 @@ Eigen::Vector3d FootprintCenter(const std::vector<Eigen::Vector3d>& vertices);
 /// Error: within 5 % of a Monte Carlo run for standard deviations of up to 5 degrees (property test georeferencer_covariance).
 Eigen::Matrix2d PositionCovariance(const Eigen::Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params);
 
-/// Places a segment. p_map = T_map_vessel * T_vessel_lidar * p_lidar, each corner of the outline with T_map_vessel at its own time; the outline
-/// lies at the mean height of the returns. Position is the centre of the outline in the map; center_vessel_m the same point, seen from the vessel
+/// Places a segment. p_map = T_map_vessel * T_vessel_lidar * p_lidar, each corner of outline and waterline with T_map_vessel at its own time;
+/// both lie at the mean height of the returns. Position is the centre of the outline in the map; center_vessel_m the same point, seen from the vessel
 /// at the time of the segment.
 ///
 /// @param datum  origin of the map frame; poses in another do not count
-/// @return status kOk when the pose is placed at the segment's time and at that of each corner; else kPoseTimeout when one of these times lies
+/// @return status kOk when the pose is placed at the segment's time and at that of each corner of both; else kPoseTimeout when one of these times
+/// lies
 ///         after the newest pose and `has_timed_out`, else kVesselFrameOnly. Without a pose the vessel counts as level.
 /// Error: below 1 mm for points nearer than 200 m (property test georeferencer_round_trip).
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params);

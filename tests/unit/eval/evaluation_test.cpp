@@ -125,6 +125,52 @@ TEST_F(EvaluationTest, ScoresSegmentsByReturns) {
   EXPECT_DOUBLE_EQ(evaluation.clutter_segments.Mean(), 0.0);
 }
 
+// The stray has a segment of its own, beside those of ferry and pile.
+TEST_F(EvaluationTest, SegmentsOfStraysAreCountedAlsoAtSure) {
+  auto turn = SmallTurn();
+  turn.segments[0].label[17] = 3;
+  auto stray = turn.segments[0].segments[1];
+  stray.id = 3;
+  turn.segments[0].segments.push_back(stray);
+  turn.segments[0].num_segments = 3;
+  for (const auto& [confidence, num_sure] : {std::pair{1, 0.0}, {2, 1.0}}) {
+    Evaluation evaluation(&truth_, 1);
+    for (auto& segment : turn.segments[0].segments) segment.confidence = segment_t::CONFIDENCE_SURE;
+    turn.segments[0].segments[2].confidence = confidence;
+    evaluation.Add(turn);
+    EXPECT_DOUBLE_EQ(evaluation.clutter_segments.Mean(), 1.0);
+    EXPECT_DOUBLE_EQ(evaluation.sure_clutter_segments.Mean(), num_sure);
+    std::ostringstream text;
+    PrintSegmentation(text, evaluation, 1);
+    EXPECT_NE(text.str().find(num_sure > 0.0 ? "of pure clutter 1.00, of these sure 1.00" : "of pure clutter 1.00, of these sure 0.00"),
+              std::string::npos)
+        << text.str();
+  }
+}
+
+TEST_F(EvaluationTest, TheFirstTableShowsConfidenceAndKind) {
+  Evaluation evaluation(&truth_, 1);
+  auto turn = SmallTurn();
+  turn.obstacles[0].obstacles[0].confidence = obstacle_t::CONFIDENCE_TENTATIVE;
+  turn.obstacles[0].obstacles[1].confidence = obstacle_t::CONFIDENCE_SURE;
+  turn.obstacles[0].obstacles[1].kind = obstacle_t::KIND_LAND;
+  evaluation.Add(turn);
+  std::ostringstream text;
+  PrintObstacles(text, evaluation, true);
+  std::istringstream lines(text.str());
+  std::string line;
+  std::vector<std::string> found;
+  while (std::getline(lines, line)) {
+    if (line.find(" ok ") == std::string::npos) continue;
+    found.push_back(line);
+  }
+  ASSERT_EQ(found.size(), 2U) << text.str();
+  EXPECT_NE(found[0].find("tentative"), std::string::npos) << found[0];
+  EXPECT_NE(found[0].find("obstacle"), std::string::npos) << found[0];
+  EXPECT_NE(found[1].find("sure"), std::string::npos) << found[1];
+  EXPECT_NE(found[1].find("land"), std::string::npos) << found[1];
+}
+
 TEST_F(EvaluationTest, ObjectsWithFewReturnsDoNotCountForRecall) {
   Evaluation evaluation(&truth_, 2);
   evaluation.Add(SmallTurn());

@@ -68,7 +68,7 @@ TEST(Confusion, ClutterIsASegmentOfStraysOnly) {
   AddMany(confusion, -1, 3, 1);
   AddMany(confusion, 0, 0, 5);
   EXPECT_EQ(confusion.NumSegments(), 3);
-  EXPECT_EQ(confusion.NumClutterSegments(), 1);
+  EXPECT_EQ(confusion.ClutterSegments(), std::vector<int>{1});
   EXPECT_EQ(confusion.MajorityObject(3), -1);
   EXPECT_EQ(confusion.MajorityObject(9), 0);
 }

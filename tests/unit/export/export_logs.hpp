@@ -82,6 +82,8 @@ inline segment_t MakeSegment(int id, float x_m) {
   segment_t segment{};
   segment.utime_us = kStartUs + 5;
   segment.id = id;
+  segment.confidence = segment_t::CONFIDENCE_SURE;
+  segment.seen_share = 0.75F;
   segment.num_points = 12;
   segment.centroid_m[0] = x_m + 0.5F;
   segment.centroid_m[1] = -1.25F;

@@ -216,6 +216,65 @@ TEST_F(SvgTest, DrawsObstaclesAndSurvivesNumbersThatAreNone) {
   EXPECT_EQ(text_.find("inf"), std::string::npos);
 }
 
+int CountOf(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST_F(SvgTest, DrawsTentativeSegmentsLightlyAndLandAsItsWaterline) {
+  const auto scan = MakeScan(0, 4);
+  auto segments = MakeSegments(scan);
+  segments.segments = {MakeSegment(1, 4.0F), MakeSegment(2, 6.0F), MakeSegment(3, 8.0F)};
+  segments.num_segments = 3;
+  segments.segments[0].confidence = segment_t::CONFIDENCE_TENTATIVE;
+  segments.segments[2].kind = segment_t::KIND_LAND;
+  segments.segments[2].num_waterline = 3;
+  segments.segments[2].waterline_x_m = {8.0F, 8.5F, 8.0F};
+  segments.segments[2].waterline_y_m = {4.0F, 0.0F, -4.0F};
+  segments.segments[2].waterline_time_us = {0, 1, 2};
+  Add(bus::kLidarScan, scan);
+  Add(bus::kSegments, segments);
+  ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
+  EXPECT_NE(text_.find("Turn 0: 8 returns, 3 segments, 1 of them tentative"), std::string::npos);
+  EXPECT_EQ(CountOf(text_, "stroke-dasharray=\"2 3\""), 1) << "one outline is dashed";
+  EXPECT_EQ(CountOf(text_, "stroke-width=\"2.4\""), 1) << "one is a line";
+  EXPECT_EQ(CountOf(text_, "fill-opacity=\"0.14\""), 1) << "one area is filled in full";
+  // Five rings of 2 m make 43 pixels a metre; the lidar stands at 500, 535, and x is up.
+  EXPECT_NE(text_.find("d=\"M328 191L500 169.5L672 191\" fill=\"none\""), std::string::npos) << "open, from left to right";
+  EXPECT_NE(text_.find(">8.0 m, land, 12 returns<"), std::string::npos);
+  EXPECT_NE(text_.find(">4.0 m, tentative, 12 returns<"), std::string::npos);
+  const auto in_legend = [this](const std::string& facts) { return text_.find(">" + facts + "<"); };
+  EXPECT_GT(in_legend("4.0 m, tentative, 12 returns"), in_legend("8.0 m, land, 12 returns")) << "behind what is sure, though nearer";
+}
+
+TEST_F(SvgTest, DrawsTentativeObstaclesLightlyAndLandAsItsWaterline) {
+  obstacles_t message{};
+  message.utime_us = kStartUs;
+  message.num_parts = 1;
+  message.num_obstacles = 2;
+  message.obstacles.resize(2);
+  for (auto& obstacle : message.obstacles) {
+    obstacle.id = 1;
+    obstacle.range_m = 5.0F;
+    obstacle.num_footprint = 3;
+    obstacle.footprint_vessel_x_m = {3.0F, 4.0F, 4.0F};
+    obstacle.footprint_vessel_y_m = {4.0F, 4.0F, 5.0F};
+  }
+  message.obstacles[0].confidence = obstacle_t::CONFIDENCE_TENTATIVE;
+  message.obstacles[1].confidence = obstacle_t::CONFIDENCE_SURE;
+  message.obstacles[1].kind = obstacle_t::KIND_LAND;
+  message.obstacles[1].num_waterline = 2;
+  message.obstacles[1].waterline_vessel_x_m = {5.0F, 5.0F};
+  message.obstacles[1].waterline_vessel_y_m = {2.0F, -2.0F};
+  Add(bus::kObstacles, message);
+  ASSERT_EQ(Export("obstacles", "svg"), kExitFine) << errors_;
+  EXPECT_NE(text_.find("Turn 0: 2 obstacles, 1 of them tentative"), std::string::npos);
+  EXPECT_EQ(CountOf(text_, "stroke-dasharray=\"2 3\""), 1);
+  EXPECT_EQ(CountOf(text_, "stroke-width=\"2.4\""), 1);
+  EXPECT_NE(text_.find(">5.0 m at 0 deg, land<"), std::string::npos);
+}
+
 TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
   const std::string program = std::string(LOOKOUT_BIN_DIR) + "/lookout-export";
   ASSERT_TRUE(std::filesystem::exists(program)) << program << " is not built";
@@ -247,6 +306,9 @@ TEST(Words, StandInTheReadmeOfTheWire) {
   };
   expect_listed(words::kReason);
   expect_listed(words::kObstacleStatus);
+  expect_listed(words::kConfidence);
+  expect_listed(words::kGround);
+  expect_listed(words::kKind);
   expect_listed(words::kPoseStatus);
   expect_listed(words::kTimeSource);
   expect_listed(words::kClockState);

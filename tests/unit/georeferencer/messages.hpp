@@ -67,6 +67,8 @@ inline segment_t MakeSegmentMessage(std::int32_t id, std::int64_t offset_us, int
   message.utime_us = kStartUs + offset_us;
   message.nearest_utime_us = message.utime_us;
   message.id = id;
+  message.confidence = segment_t::CONFIDENCE_SURE;
+  message.seen_share = 1.0F;
   message.num_points = num_vertices;
   message.centroid_m[0] = message.nearest_m[0] = 10.0F;
   for (int i = 0; i < num_vertices; ++i) {
@@ -76,6 +78,17 @@ inline segment_t MakeSegmentMessage(std::int32_t id, std::int64_t offset_us, int
   }
   message.num_hull = num_vertices;
   return message;
+}
+
+/// Makes it land: so many vertices along a straight shore 20 m ahead, one after the other within 99 ms of the turn.
+inline void AddWaterline(segment_t& message, int num_vertices) {
+  message.kind = segment_t::KIND_LAND;
+  for (int i = 0; i < num_vertices; ++i) {
+    message.waterline_x_m.push_back(20.0F);
+    message.waterline_y_m.push_back(-static_cast<float>(i));
+    message.waterline_time_us.push_back(99'000 * i / num_vertices);
+  }
+  message.num_waterline = num_vertices;
 }
 
 /// A turn of 100 ms without labels.
@@ -88,6 +101,13 @@ inline segments_t MakeSegmentsMessage(std::int64_t offset_us, std::int64_t seq, 
   message.num_parts = 1;
   message.segments = std::move(segments);
   message.num_segments = message.num_turn_segments = static_cast<std::int32_t>(message.segments.size());
+  return message;
+}
+
+/// An obstacle, and land with a waterline of four vertices.
+inline segments_t MakeGoodSegments() {
+  auto message = MakeSegmentsMessage(0, 3, {MakeSegmentMessage(1, 10'000, 3), MakeSegmentMessage(2, 99'000)});
+  AddWaterline(message.segments[1], 4);
   return message;
 }
 

@@ -96,6 +96,55 @@ TEST(PlaceSegment, EachCornerIsPlacedByThePoseAtItsOwnTime) {
   EXPECT_NEAR(obstacle.footprint_vessel_m[0].x(), 10.0, 1e-9) << "as seen";
 }
 
+// A straight shore 30 m to the north of a boat that turns at 20 degrees a second and moves: seen during 100 ms, its bearing changes by 2 degrees.
+TEST(PlaceSegment, AWaterlineSeenFromATurningBoatIsStraightOnTheMap) {
+  const auto pose_at = [](std::int64_t offset_us) {
+    const double time_s = static_cast<double>(offset_us) * 1e-6;
+    Pose pose = MakePose(offset_us);
+    pose.heading_rad = WrapTo2Pi(DegToRad(359.0 + 20.0 * time_s));  // across north
+    pose.position_map_m = {3.0 * time_s, 4.0 * time_s, 0.0};
+    return pose;
+  };
+  PoseHistory poses;
+  for (int i = 0; i <= 5; ++i) poses.Add(pose_at(20'000 * i));
+  PlacementParams params;
+  Mounting mounting;
+  mounting.p_vessel_m = {0.5, -0.25, 1.5};
+  mounting.yaw_rad = DegToRad(30.0);
+  params.T_vessel_lidar = TransformVesselSensor(mounting);
+
+  Segment segment = MakePoint(50'000, 0.0, 0.0, -1.5);
+  segment.judgement.kind = Kind::kLand;
+  const auto add = [&](std::int64_t offset_us, double east_m, std::vector<HullVertex>& corners) {
+    const Pose pose = pose_at(offset_us);
+    const Eigen::Vector3d p_vessel_m =
+        RotationMapVessel(pose.heading_rad, 0.0, 0.0).transpose() * (Vector3d(east_m, 30.0, 0.0) - pose.position_map_m);
+    const Vector3d p_lidar_m = params.T_vessel_lidar.inverse() * p_vessel_m;
+    corners.push_back({p_lidar_m.head<2>(), At(offset_us)});
+    return p_vessel_m;
+  };
+  segment.hull.clear();
+  add(50'000, 0.0, segment.hull);
+  std::vector<Vector3d> seen_vessel_m;
+  for (int i = 0; i <= 10; ++i) seen_vessel_m.push_back(add(10'000 * i, -40.0 + 8.0 * i, segment.waterline));
+
+  const auto obstacle = PlaceSegment(segment, poses, test::kLake, false, params);
+  ASSERT_EQ(obstacle.status, ObstacleStatus::kOk);
+  EXPECT_EQ(obstacle.judgement.kind, Kind::kLand);
+  ASSERT_EQ(obstacle.waterline_map_m.size(), 11U);
+  for (std::size_t i = 0; i <= 10; ++i) {
+    EXPECT_NEAR(obstacle.waterline_map_m[i].x(), -40.0 + 8.0 * static_cast<double>(i), 1e-9) << i;
+    EXPECT_NEAR(obstacle.waterline_map_m[i].y(), 30.0, 1e-9) << i;
+    EXPECT_TRUE(obstacle.waterline_vessel_m[i].isApprox(seen_vessel_m[i].head<2>(), 1e-9)) << "as seen";
+  }
+  EXPECT_NEAR(obstacle.position_map_m.x(), 0.0, 1e-9) << "the centre of the footprint, whatever the waterline";
+  // By one pose for all, the ends would be off by 50 m x 1 degree.
+  EXPECT_GT((obstacle.waterline_vessel_m[0] - RotationMapVessel(pose_at(50'000).heading_rad, 0.0, 0.0).topLeftCorner<2, 2>().transpose() *
+                                                  (Vector2d(-40.0, 30.0) - Vector2d(0.15, 0.2)))
+                .norm(),
+            0.7);
+}
+
 TEST(PlaceSegment, WithoutAPoseTellsWhatTheVesselSees) {
   PlacementParams params;
   params.T_vessel_lidar.translation() = Vector3d(0.0, 0.0, 1.1);
@@ -133,6 +182,17 @@ TEST(PlaceSegment, ACornerWithoutAPoseKeepsTheWholeObstacleOffTheMap) {
   EXPECT_EQ(PlaceSegment(segment, poses, test::kLake, true, Bare()).status, ObstacleStatus::kPoseTimeout);
 }
 
+TEST(PlaceSegment, SoDoesACornerOfTheWaterline) {
+  Segment segment = MakePoint(10'000, 10.0, 0.0, 0.0);
+  segment.waterline = {{{11.0, 0.0}, At(0)}, {{11.0, -1.0}, At(20'001)}};
+  const auto poses = Around(MakePose(0));
+  const auto obstacle = PlaceSegment(segment, poses, test::kLake, false, Bare());
+  EXPECT_EQ(obstacle.status, ObstacleStatus::kVesselFrameOnly);
+  EXPECT_TRUE(obstacle.footprint_map_m.empty() && obstacle.waterline_map_m.empty());
+  EXPECT_EQ(obstacle.waterline_vessel_m.size(), 2U);
+  EXPECT_EQ(PlaceSegment(segment, poses, test::kLake, true, Bare()).status, ObstacleStatus::kPoseTimeout);
+}
+
 TEST(PlaceSegment, AfterATimeoutWhatPoseHasPassedIsNoTimeout) {
   Pose unplaced = MakePose(0);
   unplaced.is_placed = false;
@@ -159,7 +219,10 @@ TEST(PlaceSegment, OfALidarUpsideDownKeepsTheOutlineCounterClockwiseAndFindsTheT
   segment.max_z_m = 0.5;
   segment.top_m = {11.0, 1.0, -1.5};  // the lowest in the lidar's own frame
   segment.hull = {{{10.0, 0.0}, At(10'000)}, {{12.0, 0.0}, At(10'000)}, {{12.0, 2.0}, At(10'000)}, {{10.0, 2.0}, At(10'000)}};
+  segment.waterline = {{{10.0, 2.0}, At(10'000)}, {{10.0, 0.0}, At(10'000)}};
   const auto obstacle = Place(segment, MakePose(0), params);
+  ASSERT_EQ(obstacle.waterline_vessel_m.size(), 2U);
+  EXPECT_GT(obstacle.waterline_vessel_m[0].y(), obstacle.waterline_vessel_m[1].y()) << "ahead, and from left to right";
   double doubled_area_m2 = 0.0;
   const auto& outline = obstacle.footprint_vessel_m;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -214,6 +277,19 @@ TEST(Thinned, KeepsOutlinesUpToTheLimitAndSpreadsTheRest) {
     const auto thinned = Thinned(hull);
     ASSERT_EQ(thinned.size(), std::min(size, kMaxFootprintVertices));
     EXPECT_EQ(thinned.front().p_lidar_m.x(), 0.0);
+    for (std::size_t i = 1; i < thinned.size(); ++i) EXPECT_GT(thinned[i].p_lidar_m.x(), thinned[i - 1].p_lidar_m.x());
+  }
+}
+
+TEST(ThinnedLine, KeepsLinesUpToTheLimitAndBothEndsOfLongerOnes) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, kMaxWaterlineVertices, kMaxWaterlineVertices + 1, std::size_t{9999}}) {
+    std::vector<HullVertex> line(size);
+    for (std::size_t i = 0; i < size; ++i) line[i].p_lidar_m.x() = static_cast<double>(i);
+    const auto thinned = ThinnedLine(line);
+    ASSERT_EQ(thinned.size(), std::min(size, kMaxWaterlineVertices));
+    if (size == 0) continue;
+    EXPECT_EQ(thinned.front().p_lidar_m.x(), 0.0);
+    EXPECT_EQ(thinned.back().p_lidar_m.x(), static_cast<double>(size - 1));
     for (std::size_t i = 1; i < thinned.size(); ++i) EXPECT_GT(thinned[i].p_lidar_m.x(), thinned[i - 1].p_lidar_m.x());
   }
 }

@@ -1,6 +1,5 @@
 #include "services/georeferencer/wire.hpp"
 
-#include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
@@ -8,15 +7,13 @@
 #include <utility>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/decode.hpp"
-#include "common/core/angles.hpp"
-#include "services/georeferencer/core/georeferencer.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::georeferencer {
 namespace {
 
 using test::At;
+using test::MakeGoodSegments;
 using test::MakePoseMessage;
 using test::MakeSegmentMessage;
 using test::MakeSegmentsMessage;
@@ -24,8 +21,6 @@ using test::MakeSegmentsMessage;
 constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfF = std::numeric_limits<float>::infinity();
 constexpr double kInf = std::numeric_limits<double>::infinity();
-
-segments_t GoodSegments() { return MakeSegmentsMessage(0, 3, {MakeSegmentMessage(1, 10'000, 3), MakeSegmentMessage(2, 99'000)}); }
 
 std::string RefusalOf(const segments_t& message) {
   const auto result = ToSegmentPart(message, bus::kMaxMessageBytes);
@@ -40,9 +35,13 @@ std::string RefusalOf(const pose_t& message) {
 }
 
 TEST(ToSegmentPart, TakesAWholeMessageOver) {
-  auto message = GoodSegments();
+  auto message = MakeGoodSegments();
   message.scan_flags = 5;
   message.segments[0].hull_time_us[2] = 99'000;
+  message.segments[0].confidence = segment_t::CONFIDENCE_TENTATIVE;
+  message.segments[0].grounds = segment_t::GROUND_SCATTERED;
+  message.segments[0].seen_share = 0.25F;
+  message.segments[1].waterline_time_us[3] = 99'000;
   const auto result = ToSegmentPart(message, bus::kMaxMessageBytes);
   ASSERT_TRUE(std::holds_alternative<SegmentPart>(result));
   const auto& part = std::get<SegmentPart>(result);
@@ -54,7 +53,17 @@ TEST(ToSegmentPart, TakesAWholeMessageOver) {
   ASSERT_EQ(part.segments.size(), 2U);
   EXPECT_EQ(part.segments[0].hull[2].time, At(99'000));
   EXPECT_EQ(part.segments[0].hull[1].p_lidar_m, Eigen::Vector2d(11.0, 1.0));
+  EXPECT_EQ(part.segments[0].judgement.confidence, Confidence::kTentative);
+  EXPECT_EQ(part.segments[0].judgement.grounds, segment_t::GROUND_SCATTERED);
+  EXPECT_EQ(part.segments[0].judgement.kind, Kind::kObstacle);
+  EXPECT_EQ(part.segments[0].judgement.seen_share, 0.25F);
+  EXPECT_TRUE(part.segments[0].waterline.empty());
   EXPECT_EQ(part.segments[1].id, 2);
+  EXPECT_EQ(part.segments[1].judgement.confidence, Confidence::kSure);
+  EXPECT_EQ(part.segments[1].judgement.kind, Kind::kLand);
+  ASSERT_EQ(part.segments[1].waterline.size(), 4U);
+  EXPECT_EQ(part.segments[1].waterline[2].p_lidar_m, Eigen::Vector2d(20.0, -2.0));
+  EXPECT_EQ(part.segments[1].waterline[3].time, At(99'000));
 }
 
 TEST(ToSegmentPart, RefusesEachFaultUnderItsOwnName) {
@@ -68,6 +77,8 @@ TEST(ToSegmentPart, RefusesEachFaultUnderItsOwnName) {
       {kSegmentsTime, [](segments_t& m) { m.segments[0].nearest_utime_us = m.end_utime_us + 1; }},
       {kSegmentsTime, [](segments_t& m) { m.segments[0].hull_time_us[0] = -1; }},
       {kSegmentsTime, [](segments_t& m) { m.segments[0].hull_time_us[0] = 99'001; }},
+      {kSegmentsTime, [](segments_t& m) { m.segments[1].waterline_time_us[0] = -1; }},
+      {kSegmentsTime, [](segments_t& m) { m.segments[1].waterline_time_us[3] = 99'001; }},
       {kSegmentsParts, [](segments_t& m) { m.seq = -1; }},
       {kSegmentsParts, [](segments_t& m) { m.raw_seq = -1; }},
       {kSegmentsParts, [](segments_t& m) { m.num_parts = 0; }},
@@ -80,6 +91,11 @@ TEST(ToSegmentPart, RefusesEachFaultUnderItsOwnName) {
       {kSegmentsCount, [](segments_t& m) { m.segments[0].num_hull = 4; }},
       {kSegmentsCount, [](segments_t& m) { m.segments[0].num_points = 0; }},
       {kSegmentsCount, [](segments_t& m) { m.segments[0] = MakeSegmentMessage(1, 0, 0); }},
+      {kSegmentsCount, [](segments_t& m) { m.segments[1].num_waterline = 3; }},
+      {kSegmentsCount, [](segments_t& m) { m.segments[1].num_waterline = -1; }},
+      {kSegmentsCount, [](segments_t& m) { m.segments[1].waterline_x_m.clear(); }},
+      {kSegmentsCount, [](segments_t& m) { m.segments[1].waterline_y_m.pop_back(); }},
+      {kSegmentsCount, [](segments_t& m) { m.segments[1].waterline_time_us.push_back(0); }},
       {kSegmentsId, [](segments_t& m) { m.segments[0].id = 0; }},
       {kSegmentsId, [](segments_t& m) { m.segments[1].id = 1; }},
       {kSegmentsId, [](segments_t& m) { m.segments[1].id = 3; }},
@@ -91,10 +107,25 @@ TEST(ToSegmentPart, RefusesEachFaultUnderItsOwnName) {
       {kSegmentsNumber, [](segments_t& m) { m.segments[0].width_m = kNanF; }},
       {kSegmentsNumber, [](segments_t& m) { m.segments[0].min_z_m = 1.0F; }},
       {kSegmentsNumber, [](segments_t& m) { m.segments[0].mean_reflectivity = kInfF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].min_reflectivity = -1; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].min_reflectivity = 1; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].box_center_m[0] = kNanF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].box_center_m[1] = -kInfF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].seen_share = -0.01F; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].seen_share = 1.01F; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].seen_share = kNanF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[1].waterline_x_m[3] = kNanF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[1].waterline_y_m[0] = 1e38F; }},
+      {kSegmentsCode, [](segments_t& m) { m.segments[0].confidence = 0; }},
+      {kSegmentsCode, [](segments_t& m) { m.segments[0].confidence = 3; }},
+      {kSegmentsCode, [](segments_t& m) { m.segments[0].grounds = -1; }},
+      {kSegmentsCode, [](segments_t& m) { m.segments[0].grounds = 8; }},
+      {kSegmentsCode, [](segments_t& m) { m.segments[0].kind = -1; }},
+      {kSegmentsCode, [](segments_t& m) { m.segments[1].kind = 2; }},
   };
-  EXPECT_EQ(RefusalOf(GoodSegments()), "");
+  EXPECT_EQ(RefusalOf(MakeGoodSegments()), "");
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    auto message = GoodSegments();
+    auto message = MakeGoodSegments();
     changes[i].second(message);
     EXPECT_EQ(RefusalOf(message), changes[i].first) << "change " << i;
   }
@@ -180,137 +211,6 @@ TEST(ToPose, RefusesEachFaultUnderItsOwnName) {
     changes[i].second(message);
     EXPECT_EQ(RefusalOf(message), changes[i].first) << "change " << i;
   }
-}
-
-// ---- OBSTACLES
-
-// Places a message between poses that are all known.
-ObstaclePart Placed(const segments_t& message) {
-  const auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
-  EXPECT_TRUE(std::holds_alternative<SegmentPart>(part)) << std::get<Refusal>(part);
-  Georeferencer georeferencer(PlacementParams{}, std::chrono::seconds(1));
-  georeferencer.AddSegments(std::get<SegmentPart>(part));
-  std::vector<ObstaclePart> released;
-  for (int i = 0; i <= 5 && released.empty(); ++i) released = georeferencer.AddPose(test::MakePose(20'000 * i));
-  EXPECT_EQ(released.size(), 1U);
-  return released.at(0);
-}
-
-TEST(ToMessages, GivesOneMessageWithTheHeadOfTheTurn) {
-  const auto messages = ToMessages(Placed(GoodSegments()), bus::kMaxMessageBytes);
-  ASSERT_EQ(messages.size(), 1U);
-  const auto& message = messages[0];
-  EXPECT_EQ(message.utime_us, test::kStartUs);
-  EXPECT_EQ(message.end_utime_us, test::kStartUs + 99'000);
-  EXPECT_EQ(message.seq, 3);
-  EXPECT_EQ(message.raw_seq, 30);
-  EXPECT_EQ(message.part_index, 0);
-  EXPECT_EQ(message.num_parts, 1);
-  EXPECT_EQ(message.datum_latitude_deg, test::kLake.latitude_deg);
-  ASSERT_EQ(message.num_obstacles, 2);
-  const auto& obstacle = message.obstacles[0];
-  EXPECT_EQ(obstacle.status, obstacle_t::STATUS_OK);
-  EXPECT_EQ(obstacle.num_footprint, 3);
-  EXPECT_EQ(obstacle.num_map, 3);
-  EXPECT_TRUE(bus::Decode<obstacles_t>(bus::Encode(message)));
-}
-
-TEST(ToMessages, EncodedSizesAreThoseOfTheProof) {
-  EXPECT_EQ(static_cast<std::size_t>(obstacles_t{}.getEncodedSize()), kHeadBytes);
-  EXPECT_EQ(static_cast<std::size_t>(obstacle_t{}._getEncodedSizeNoHash()), kObstacleBytes);
-  const auto messages = ToMessages(Placed(MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0, 30)})), bus::kMaxMessageBytes);
-  EXPECT_EQ(static_cast<std::size_t>(messages[0].getEncodedSize()), kHeadBytes + kObstacleBytes + 30 * kVertexBytes);
-  // The bound on how much larger than its segment an obstacle is: with one vertex, 152 against 104 bytes.
-  EXPECT_EQ(MakeSegmentMessage(1, 0, 1)._getEncodedSizeNoHash(), 104);
-}
-
-// Ids over all messages, in their order.
-std::vector<std::int32_t> Ids(const std::vector<obstacles_t>& messages) {
-  std::vector<std::int32_t> ids;
-  for (const auto& message : messages) {
-    for (const auto& obstacle : message.obstacles) ids.push_back(obstacle.id);
-  }
-  return ids;
-}
-
-TEST(ToMessages, FullSegmentsOfAnyOutlineGoInAtMostTwoMessagesAndNoneIsLost) {
-  for (const int num_vertices : {1, 2, 3, 10, 50, 139, 140, 141, 1000, 9000}) {
-    std::vector<segment_t> segments;
-    const int segment_bytes = MakeSegmentMessage(1, 0, num_vertices)._getEncodedSizeNoHash();
-    const int num_segments = (bus::kMaxMessageBytes - segments_t{}.getEncodedSize()) / segment_bytes;
-    for (int id = 1; id <= num_segments; ++id) segments.push_back(MakeSegmentMessage(id, 0, num_vertices));
-    const auto messages = ToMessages(Placed(MakeSegmentsMessage(0, 0, std::move(segments))), bus::kMaxMessageBytes);
-    ASSERT_GE(messages.size(), 1U);
-    ASSERT_LE(messages.size(), 2U) << num_vertices;
-    for (std::size_t i = 0; i < messages.size(); ++i) {
-      EXPECT_LE(messages[i].getEncodedSize(), bus::kMaxMessageBytes) << num_vertices;
-      EXPECT_EQ(messages[i].part_index, static_cast<int>(i));
-      EXPECT_EQ(messages[i].num_parts, static_cast<int>(messages.size()));
-    }
-    const auto ids = Ids(messages);
-    ASSERT_EQ(ids.size(), static_cast<std::size_t>(num_segments));
-    for (int id = 1; id <= num_segments; ++id) EXPECT_EQ(ids[static_cast<std::size_t>(id - 1)], id);
-  }
-}
-
-TEST(ToMessages, EachPartOfALargeTurnGivesTwoWhetherItNeedsThemOrNot) {
-  for (const int part_index : {0, 1, 2}) {
-    auto message = MakeSegmentsMessage(0, 0, {MakeSegmentMessage(60, 0)});
-    message.num_turn_segments = 2000;
-    message.num_parts = 3;
-    message.part_index = part_index;
-    const auto messages = ToMessages(Placed(message), bus::kMaxMessageBytes);
-    ASSERT_EQ(messages.size(), 2U);
-    EXPECT_EQ(messages[0].part_index, 2 * part_index);
-    EXPECT_EQ(messages[1].part_index, 2 * part_index + 1);
-    EXPECT_EQ(messages[0].num_parts, 6);
-    EXPECT_EQ(messages[0].num_obstacles + messages[1].num_obstacles, 1);
-  }
-}
-
-TEST(ToMessages, PartsOfATurnWithFewObstaclesMirrorThoseOfSegments) {
-  auto message = MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0)});
-  message.num_turn_segments = 50;
-  message.num_parts = 2;
-  message.part_index = 1;
-  const auto messages = ToMessages(Placed(message), bus::kMaxMessageBytes);
-  ASSERT_EQ(messages.size(), 1U);
-  EXPECT_EQ(messages[0].part_index, 1);
-  EXPECT_EQ(messages[0].num_parts, 2);
-}
-
-TEST(ToMessages, BearingIsBelowTwoPiAlsoAsAFloat) {
-  auto message = MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0)});
-  message.segments[0].nearest_m[0] = 100.0F;
-  message.segments[0].nearest_m[1] = 1e-6F;  // a hair to port
-  const auto messages = ToMessages(Placed(message), bus::kMaxMessageBytes);
-  EXPECT_LT(static_cast<double>(messages[0].obstacles[0].bearing_rad), kTwoPi);
-}
-
-TEST(ToMessages, AtTheBoundsOfWhatIsTakenAllNumbersAreFinite) {
-  auto message = MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0, 3)});
-  auto& segment = message.segments[0];
-  for (auto& number : segment.centroid_m) number = -1e5F;
-  for (auto& number : segment.nearest_m) number = 1e5F;
-  segment.hull_x_m = {1e5F, -1e5F, -1e5F};
-  segment.hull_y_m = {1e5F, 1e5F, -1e5F};
-  auto pose_message = MakePoseMessage(0);
-  for (auto& number : pose_message.position_map_m) number = 1e5;
-  pose_message.datum_latitude_deg = 90.0;
-  pose_message.datum_longitude_deg = 180.0;
-  for (int i = 0; i < 9; ++i) pose_message.covariance[i][i] = 1e12;
-  const auto pose = std::get<Pose>(ToPose(pose_message));
-  PoseHistory poses;
-  poses.Add(pose);
-  const auto part = std::get<SegmentPart>(ToSegmentPart(message, bus::kMaxMessageBytes));
-  ObstaclePart placed{part.head, pose.datum, {PlaceSegment(part.segments[0], poses, pose.datum, false, PlacementParams{})}};
-  const auto obstacle = ToMessages(placed, bus::kMaxMessageBytes)[0].obstacles[0];
-  EXPECT_EQ(obstacle.status, obstacle_t::STATUS_OK);
-  for (const double number : {obstacle.latitude_deg, obstacle.longitude_deg, obstacle.position_map_m[0], obstacle.covariance_m2[0],
-                              obstacle.covariance_m2[1], obstacle.top_above_water_m}) {
-    EXPECT_TRUE(std::isfinite(number));
-  }
-  EXPECT_TRUE(std::isfinite(obstacle.footprint_north_m[2]));
 }
 
 }  // namespace

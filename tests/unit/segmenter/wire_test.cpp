@@ -6,6 +6,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "services/segmenter/core/footprint.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
 
@@ -124,13 +125,14 @@ TEST(ToScanPart, TakesTheBoundsThemselves) {
 }
 
 // Segments with as many corners as there can be.
-Segments ManySegments(std::size_t num_cells, int num_segments, std::size_t num_corners) {
+Segments ManySegments(std::size_t num_cells, int num_segments, std::size_t num_corners, std::size_t num_waterline_corners = 0) {
   Segments segments;
   segments.label.assign(num_cells, 1);
   for (int id = 1; id <= num_segments; ++id) {
     Segment segment;
     segment.id = id;
     segment.hull.resize(num_corners);
+    segment.waterline.resize(num_waterline_corners);
     segments.segments.push_back(segment);
   }
   return segments;
@@ -188,6 +190,21 @@ TEST(ToMessages, PutsWhatDoesNotFitInFurtherPartsWithoutColumns) {
   }
 }
 
+// 19 of these fill a message; counted without their waterline, 38 would be put into it.
+TEST(ToMessages, CountsTheBytesOfWaterlines) {
+  const auto scan = test::EmptyScan({.num_columns = 0});
+  const auto segments = ManySegments(0, 100, kMaxHullCorners, kMaxWaterlineCorners);
+  const auto parts = ToMessages(scan, segments, bus::kMaxMessageBytes);
+  ASSERT_EQ(parts.size(), 6U);
+  int next_id = 1;
+  for (const auto& part : parts) {
+    EXPECT_LE(bus::Encode(part).size(), static_cast<std::size_t>(bus::kMaxMessageBytes));
+    for (const auto& segment : part.segments) EXPECT_EQ(segment.id, next_id++);
+  }
+  EXPECT_EQ(next_id, 101);
+  EXPECT_EQ(parts[0].num_segments, 19);
+}
+
 TEST(ToMessages, OfAnEmptyTurnIsOnePart) {
   const auto parts = ToMessages(test::EmptyScan({.num_columns = 0}), {}, bus::kMaxMessageBytes);
   ASSERT_EQ(parts.size(), 1U);
@@ -200,38 +217,57 @@ TEST(ToMessages, CarriesEveryFieldOfASegment) {
   segments.label = {1};
   segments.segments.push_back({.time = test::kScanTime + std::chrono::microseconds(3),
                                .id = 1,
+                               .confidence = Confidence::kTentative,
+                               .grounds = Ground::kFewReturns | Ground::kAtSurface,
+                               .kind = SegmentKind::kLand,
                                .num_points = 2,
                                .centroid = {1, 2, 3},
                                .nearest = {4, 5, 6},
                                .nearest_time = test::kScanTime + std::chrono::microseconds(4),
                                .top = {0.5F, 1.5F, 2.5F},
+                               .box_center_x_m = 3.5F,
+                               .box_center_y_m = 4.5F,
                                .length_m = 7,
                                .width_m = 8,
                                .length_azimuth_rad = 0.5F,
                                .min_z_m = -1,
                                .max_z_m = 9,
+                               .min_reflectivity = 6,
                                .mean_reflectivity = 10.5F,
                                .max_reflectivity = 11,
-                               .hull = {{12, 13, 14}, {15, 16, 17}}});
+                               .seen_share = 0.75F,
+                               .hull = {{12, 13, 14}, {15, 16, 17}},
+                               .waterline = {{18, 19, 20}, {21, 22, 23}, {24, 25, 26}}});
   const auto message = ToMessages(scan, segments, bus::kMaxMessageBytes).at(0).segments.at(0);
   EXPECT_EQ(message.utime_us, ToUtimeUs(test::kScanTime) + 3);
   EXPECT_EQ(message.id, 1);
+  EXPECT_EQ(message.confidence, segment_t::CONFIDENCE_TENTATIVE);
+  EXPECT_EQ(message.grounds, 1 + 4);
+  EXPECT_EQ(message.kind, segment_t::KIND_LAND);
   EXPECT_EQ(message.num_points, 2);
   EXPECT_EQ(std::vector<float>(message.centroid_m, message.centroid_m + 3), (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(std::vector<float>(message.nearest_m, message.nearest_m + 3), (std::vector<float>{4, 5, 6}));
   EXPECT_EQ(message.nearest_utime_us, ToUtimeUs(test::kScanTime) + 4);
   EXPECT_EQ(std::vector<float>(message.top_m, message.top_m + 3), (std::vector<float>{0.5F, 1.5F, 2.5F}));
+  EXPECT_EQ(message.box_center_m[0], 3.5F);
+  EXPECT_EQ(message.box_center_m[1], 4.5F);
   EXPECT_EQ(message.length_m, 7.0F);
   EXPECT_EQ(message.width_m, 8.0F);
   EXPECT_EQ(message.length_azimuth_rad, 0.5F);
   EXPECT_EQ(message.min_z_m, -1.0F);
   EXPECT_EQ(message.max_z_m, 9.0F);
+  EXPECT_EQ(message.min_reflectivity, 6);
   EXPECT_EQ(message.mean_reflectivity, 10.5F);
   EXPECT_EQ(message.max_reflectivity, 11);
+  EXPECT_EQ(message.seen_share, 0.75F);
   EXPECT_EQ(message.num_hull, 2);
   EXPECT_EQ(message.hull_x_m, (std::vector<float>{12, 15}));
   EXPECT_EQ(message.hull_y_m, (std::vector<float>{13, 16}));
   EXPECT_EQ(message.hull_time_us, (std::vector<std::int32_t>{14, 17}));
+  EXPECT_EQ(message.num_waterline, 3);
+  EXPECT_EQ(message.waterline_x_m, (std::vector<float>{18, 21, 24}));
+  EXPECT_EQ(message.waterline_y_m, (std::vector<float>{19, 22, 25}));
+  EXPECT_EQ(message.waterline_time_us, (std::vector<std::int32_t>{20, 23, 26}));
 }
 
 }  // namespace

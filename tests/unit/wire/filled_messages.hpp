@@ -60,6 +60,9 @@ inline void Fill(segments_t& m) {
     segment.hull_x_m = {0.0F, 1.0F, 0.0F};
     segment.hull_y_m = {0.0F, 0.0F, 1.0F};
     segment.hull_time_us = {1, 2, 3};
+    segment.num_waterline = 2;
+    segment.waterline_x_m = segment.waterline_y_m = {0.0F, 1.0F};
+    segment.waterline_time_us = {1, 2};
   }
 }
 
@@ -89,6 +92,8 @@ inline void Fill(obstacles_t& m) {
   for (auto& obstacle : m.obstacles) {
     obstacle.num_footprint = obstacle.num_map = 2;
     obstacle.footprint_vessel_x_m = obstacle.footprint_vessel_y_m = obstacle.footprint_east_m = obstacle.footprint_north_m = {1.0F, 2.0F};
+    obstacle.num_waterline = obstacle.num_waterline_map = 1;
+    obstacle.waterline_vessel_x_m = obstacle.waterline_vessel_y_m = obstacle.waterline_east_m = obstacle.waterline_north_m = {3.0F};
   }
 }
 
