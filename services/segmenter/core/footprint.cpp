@@ -52,37 +52,33 @@ void SortPoints(std::vector<FootprintPoint>& points, std::vector<FootprintPoint>
   points.swap(dealt);
 }
 
-// Takes out what lies within the octagon of the farthest points in eight directions: no corner of the hull (Akl and Toussaint, 1978).
+// Takes out what lies within the four-sided figure of the farthest points along x and y: no corner of the hull (Akl and Toussaint, 1978).
 void DropInside(std::vector<FootprintPoint>& points) {
   if (points.size() < kManyPoints) return;
-  constexpr std::size_t kNumSides = 8;
   constexpr double kMarginM2 = 1e-6;  // for rounding
-  std::array<FootprintPoint, kNumSides> farthest;
-  farthest.fill(points.front());
-  const auto sum = [](const FootprintPoint& point) { return point.x_m + point.y_m; };
-  const auto difference = [](const FootprintPoint& point) { return point.x_m - point.y_m; };
-  for (const auto& point : points) {  // counter-clockwise from -x
-    if (point.x_m < farthest[0].x_m) farthest[0] = point;
-    if (sum(point) < sum(farthest[1])) farthest[1] = point;
-    if (point.y_m < farthest[2].y_m) farthest[2] = point;
-    if (difference(point) > difference(farthest[3])) farthest[3] = point;
-    if (point.x_m > farthest[4].x_m) farthest[4] = point;
-    if (sum(point) > sum(farthest[5])) farthest[5] = point;
-    if (point.y_m > farthest[6].y_m) farthest[6] = point;
-    if (difference(point) < difference(farthest[7])) farthest[7] = point;
+  FootprintPoint left = points.front();
+  FootprintPoint right = left;
+  FootprintPoint bottom = left;
+  FootprintPoint top = left;
+  for (const auto& point : points) {
+    if (point.x_m < left.x_m) left = point;
+    if (point.x_m > right.x_m) right = point;
+    if (point.y_m < bottom.y_m) bottom = point;
+    if (point.y_m > top.y_m) top = point;
   }
-  std::array<std::pair<FootprintPoint, FootprintPoint>, kNumSides> sides;
-  std::size_t num_sides = 0;
-  for (std::size_t i = 0; i < kNumSides; ++i) {
-    const auto& next = farthest[(i + 1) % kNumSides];
-    if (farthest[i].x_m != next.x_m || farthest[i].y_m != next.y_m) sides[num_sides++] = {farthest[i], next};
-  }
-  if (num_sides < 3) return;
+  struct Side {
+    double x, y, at_least;  // a point is inside of it where x p.x + y p.y is more
+  };
+  const auto side = [](const FootprintPoint& from, const FootprintPoint& to) {
+    const double x = static_cast<double>(from.y_m) - to.y_m;
+    const double y = static_cast<double>(to.x_m) - from.x_m;
+    return Side{x, y, x * from.x_m + y * from.y_m + kMarginM2};
+  };
+  const Side sides[] = {side(left, bottom), side(bottom, right), side(right, top), side(top, left)};
   std::erase_if(points, [&](const FootprintPoint& point) {
-    for (std::size_t i = 0; i < num_sides; ++i) {
-      if (Turn(sides[i].first, sides[i].second, point) <= kMarginM2) return false;
-    }
-    return true;
+    bool is_inside = true;
+    for (const Side& one : sides) is_inside = is_inside && one.x * point.x_m + one.y * point.y_m > one.at_least;
+    return is_inside;
   });
 }
 
@@ -217,7 +213,13 @@ Rectangle AtOnePlace(std::span<const FootprintPoint> hull) {
   return rectangle;
 }
 
-// Mean distance of points to the nearest side.
+double DiameterAlongAxes(std::span<const FootprintPoint> hull) {
+  const auto [left, right] = std::ranges::minmax_element(hull, {}, &FootprintPoint::x_m);
+  const auto [bottom, top] = std::ranges::minmax_element(hull, {}, &FootprintPoint::y_m);
+  return std::hypot(static_cast<double>(right->x_m) - left->x_m, static_cast<double>(top->y_m) - bottom->y_m);
+}
+
+// Sum of the distances of points to the nearest side.
 double Closeness(const Flush& flush, std::span<const FootprintPoint> points, std::size_t stride) {
   double sum_m = 0.0;
   for (std::size_t i = 0; i < points.size(); i += stride) {
@@ -260,7 +262,7 @@ Rectangle LeastAreaRectangle(std::span<const FootprintPoint> hull) {
 }
 
 Rectangle FitBox(std::span<const FootprintPoint> hull, std::span<const FootprintPoint> points) {
-  if (hull.size() < 3) return LeastAreaRectangle(hull);
+  if (hull.size() < 3 || DiameterAlongAxes(hull) > kLongestBoxM) return LeastAreaRectangle(hull);
   double least_m2 = std::numeric_limits<double>::infinity();
   ForEachFlush(hull, [&](const Flush& flush) { least_m2 = std::min(least_m2, flush.area_m2()); });
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kBoxPoints);

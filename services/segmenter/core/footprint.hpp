@@ -46,11 +46,14 @@ Rectangle LeastAreaRectangle(std::span<const FootprintPoint> hull);
 /// points lie closest to in the mean (the closeness of X. Zhang et al., "Efficient L-Shape Fitting for Vehicle Detection Using Laser Scanners",
 /// IV 2017, here over the edges of the hull instead of all directions).
 ///
+/// What is longer than kLongestBoxM is no boat: its rectangle is that of least area.
+///
 /// @param points  of the hull; of more than kBoxPoints every n-th is looked at
 Rectangle FitBox(std::span<const FootprintPoint> hull, std::span<const FootprintPoint> points);
 
 inline constexpr double kBoxArea = 1.3;
-inline constexpr std::size_t kBoxPoints = 64;
+inline constexpr double kLongestBoxM = 40.0;
+inline constexpr std::size_t kBoxPoints = 32;
 
 /// The steps above with memory that is used again.
 class Footprint {

@@ -61,6 +61,9 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
   segment.min_reflectivity = std::numeric_limits<std::int32_t>::max();
   segment.max_reflectivity = 0;
   footprint_.clear();
+  std::int32_t column = -1;
+  float near_m2 = 0.0F;
+  float far_m2 = 0.0F;
   for (const std::int32_t index : indices) {
     const Return& one = returns[static_cast<std::size_t>(index)];
     const Point& point = one.point;
@@ -84,7 +87,25 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
     sum_reflectivity += reflectivity;
     segment.min_reflectivity = std::min(segment.min_reflectivity, reflectivity);
     segment.max_reflectivity = std::max(segment.max_reflectivity, reflectivity);
-    footprint_.push_back({point.x_m, point.y_m, index});
+    // Of each column the nearest and the farthest, in this order.
+    const float plan_m2 = point.x_m * point.x_m + point.y_m * point.y_m;
+    if (one.column != column) {
+      column = one.column;
+      near_m2 = far_m2 = plan_m2;
+      footprint_.push_back({point.x_m, point.y_m, index});
+    } else if (plan_m2 < near_m2) {
+      // The first one there was the nearest; if it was the farthest as well, it is that now.
+      if (near_m2 == far_m2) footprint_.push_back(FootprintPoint(footprint_.back()));
+      footprint_[footprint_.size() - 2] = {point.x_m, point.y_m, index};
+      near_m2 = plan_m2;
+    } else if (plan_m2 > far_m2) {
+      if (near_m2 == far_m2) {
+        footprint_.push_back({point.x_m, point.y_m, index});
+      } else {
+        footprint_.back() = {point.x_m, point.y_m, index};
+      }
+      far_m2 = plan_m2;
+    }
   }
   const auto count = static_cast<double>(indices.size());
   const Return& nearest_return = returns[static_cast<std::size_t>(nearest)];
@@ -95,6 +116,12 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
   segment.nearest_time = scan.head.time + RoundDown(TimeOf(scan, nearest_return));
   segment.mean_reflectivity = static_cast<float>(static_cast<double>(sum_reflectivity) / count);
 
+  if (footprint_.size() == 1) {  // a drop, in most cases
+    segment.box_center_x_m = footprint_.front().x_m;
+    segment.box_center_y_m = footprint_.front().y_m;
+    segment.hull.push_back(CornerAt(scan, returns[static_cast<std::size_t>(footprint_.front().return_index)]));
+    return;
+  }
   shape_.Measure(footprint_);
   segment.box_center_x_m = shape_.box().center_x_m;
   segment.box_center_y_m = shape_.box().center_y_m;

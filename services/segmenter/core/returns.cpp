@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "common/core/sin_cos.hpp"
+
 namespace lookout::segmenter {
 
 namespace {
@@ -63,8 +65,7 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
     const std::uint16_t* range = scan.columns.range.data() + first_cell;
     if (std::none_of(range, range + cells_per_column, is_return)) continue;
     const double azimuth_rad = scan.columns.azimuth_rad[column];
-    const double sin_azimuth = std::sin(azimuth_rad);
-    const double cos_azimuth = std::cos(azimuth_rad);
+    const auto [sin_azimuth, cos_azimuth] = SinCosOf(azimuth_rad);
     for (std::size_t ring = 0, offset = 0; ring < rings_.size(); ++ring) {
       for (std::size_t i = 0; i < num_returns; ++i, ++offset) {
         if (range[offset] == 0) continue;

@@ -201,7 +201,7 @@ TEST(PaperExamples, AShoreAtTwentyMetresIsOneObject) {
     walls.push_back({x_m, y_m, x_m + 2.2, y_m + 0.2, -1.0, 3.0});
   }
   const auto scan = See(walls);
-  Params without;
+  Params without = AsThePaper();
   without.component_clustering = false;
   EXPECT_GT(SegmentScan(scan, without).segments.size(), 5U);
   for (const auto& params : AllWays()) EXPECT_EQ(SegmentScan(scan, params).segments.size(), 1U) << params.labelling.image_columns;

@@ -119,14 +119,17 @@ void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTab
     });
     // Runs by chain; within one they stay in order.
     const std::int32_t first_run = runs.FirstOfLine(line);
+    const auto num_runs = static_cast<std::int32_t>(runs.OfLine(line).size());
+    num_of_chain_.assign(static_cast<std::size_t>(num_runs), 0);
+    for (std::int32_t i = 0; i < num_runs; ++i)
+      num_of_chain_[static_cast<std::size_t>(chains_.Find(first_run + i) - first_run)] += runs[first_run + i].length;
     order_.clear();
-    for (std::size_t i = 0; i < runs.OfLine(line).size(); ++i) order_.push_back(first_run + static_cast<std::int32_t>(i));
+    for (std::int32_t i = 0; i < num_runs; ++i) {
+      if (num_of_chain_[static_cast<std::size_t>(chains_.Find(first_run + i) - first_run)] >= kLeastShoreReturns) order_.push_back(first_run + i);
+    }
     std::ranges::sort(order_, {}, [this](std::int32_t run) { return std::array{chains_.Find(run), run}; });
     for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
-      std::int32_t num_returns = 0;
-      for (end = begin; end < order_.size() && chains_.Find(order_[end]) == chains_.Find(order_[begin]); ++end)
-        num_returns += runs[order_[end]].length;
-      if (num_returns < kLeastShoreReturns) continue;
+      for (end = begin; end < order_.size() && chains_.Find(order_[end]) == chains_.Find(order_[begin]);) ++end;
       chain_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin), order_.begin() + static_cast<std::ptrdiff_t>(end));
       TakeChain(grid, runs, pieces);
     }

@@ -48,6 +48,7 @@ class LandFinder {
   LookoutParams params_;
   UnionFind chains_;
   std::vector<std::int32_t> order_;
+  std::vector<std::int32_t> num_of_chain_;  // [runs of a line] returns
   std::vector<std::int32_t> chain_;
   std::vector<Fragment> fragments_;
   std::vector<std::int32_t> candidates_;

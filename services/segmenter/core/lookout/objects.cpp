@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <utility>
 
 namespace lookout::segmenter {
@@ -21,7 +21,7 @@ constexpr double kSideOffM = 0.35;
 constexpr double kPastCornerM = 0.3;
 constexpr double kCrowdM = 8.0;  // within which more than kMostInCrowd thin things are no posts
 constexpr std::size_t kMostInCrowd = 8;
-constexpr std::size_t kCells = 32;  // across the grid of posts
+constexpr std::size_t kCells = 64;  // across the grid of posts
 
 // One over the other.
 constexpr double kOverLength = 0.6;  // lengths of the nearer one: a cabin stands on its hull
@@ -39,7 +39,7 @@ void ObjectJoiner::JoinDocks(PieceTable& pieces) {
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (facts.is_land || facts.length_m >= kThickestPostM || facts.min_range_m <= kLeastPostRangeM) continue;
-    posts_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m});
+    posts_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m, CellOf(facts.mean_m.x(), facts.mean_m.y())});
   }
   SortPosts();
   for (const Post& post : posts_) {
@@ -48,21 +48,24 @@ void ObjectJoiner::JoinDocks(PieceTable& pieces) {
   }
 }
 
-// Square cells as wide as a dock's longest diagonal can be, so that neighbours are in nine of them. What is farther off than the grid is in its rim.
+// Square cells half as wide as a dock's longest diagonal, so that neighbours are at most two cells away. What is farther off than the grid is in its
+// rim.
 std::size_t ObjectJoiner::CellOf(double x_m, double y_m) const {
-  const double cell_m = std::hypot(params_.post_spacing_m, kWidestDockM);
+  const double cell_m = ReachM() / 2.0;
   const auto index = [cell_m](double place_m) {
     return static_cast<std::size_t>(std::clamp(std::floor(place_m / cell_m) + kCells / 2, 0.0, static_cast<double>(kCells - 1)));
   };
   return index(y_m) * kCells + index(x_m);
 }
 
+double ObjectJoiner::ReachM() const { return std::sqrt(params_.post_spacing_m * params_.post_spacing_m + kWidestDockM * kWidestDockM); }
+
 void ObjectJoiner::SortPosts() {
   begin_of_cell_.assign(kCells * kCells + 1, 0);
-  for (const Post& post : posts_) ++begin_of_cell_[CellOf(post.x_m, post.y_m) + 1];
+  for (const Post& post : posts_) ++begin_of_cell_[post.cell + 1];
   for (std::size_t cell = 1; cell < begin_of_cell_.size(); ++cell) begin_of_cell_[cell] += begin_of_cell_[cell - 1];
   sorted_.resize(posts_.size());
-  for (const Post& post : posts_) sorted_[begin_of_cell_[CellOf(post.x_m, post.y_m)]++] = post;
+  for (const Post& post : posts_) sorted_[begin_of_cell_[post.cell]++] = post;
   for (std::size_t cell = begin_of_cell_.size() - 1; cell > 0; --cell) begin_of_cell_[cell] = begin_of_cell_[cell - 1];
   begin_of_cell_[0] = 0;
   posts_.swap(sorted_);
@@ -71,12 +74,19 @@ void ObjectJoiner::SortPosts() {
 // Within the longest diagonal; none where it stands in a crowd.
 void ObjectJoiner::FindNeighbours(const Post& post) {
   neighbours_.clear();
-  const double reach_m2 = params_.post_spacing_m * params_.post_spacing_m + kWidestDockM * kWidestDockM;
-  const auto cell = CellOf(post.x_m, post.y_m);
-  const auto near = [](std::size_t index) { return std::pair(index > 0 ? index - 1 : 0, std::min(index + 1, kCells - 1)); };
+  const double reach_m2 = ReachM() * ReachM();
+  const std::size_t cell = post.cell;
+  const auto near = [](std::size_t index) { return std::pair(index > 1 ? index - 2 : 0, std::min(index + 2, kCells - 1)); };
   const auto [first_row, last_row] = near(cell / kCells);
   const auto [first, last] = near(cell % kCells);
   std::size_t num_in_crowd = 0;
+  // Its own cell first: what is crowded there is crowded.
+  for (std::size_t i = begin_of_cell_[cell]; i < begin_of_cell_[cell + 1]; ++i) {
+    const double x_m = posts_[i].x_m - post.x_m;
+    const double y_m = posts_[i].y_m - post.y_m;
+    if (x_m * x_m + y_m * y_m <= kCrowdM * kCrowdM && ++num_in_crowd > kMostInCrowd + 1) return;  // itself is one of them
+  }
+  num_in_crowd = 0;
   for (std::size_t row = first_row; row <= last_row; ++row) {
     for (std::size_t i = begin_of_cell_[row * kCells + first]; i < begin_of_cell_[row * kCells + last + 1]; ++i) {
       const Post& other = posts_[i];
@@ -137,43 +147,73 @@ void ObjectJoiner::JoinObjects(const TurnGrid& grid, const RunTable& runs, Piece
   }
 }
 
-// Gaps of single pieces, those of solid things to all others.
-void ObjectJoiner::FindLinks(const TurnGrid& grid, PieceTable& pieces) {
+// Gaps of single pieces: between solid things, and from them to tiny ones in their columns.
+void ObjectJoiner::FindLinks(const TurnGrid& grid, const PieceTable& pieces) {
   links_.clear();
-  seen_by_.assign(static_cast<std::size_t>(pieces.size()), PieceTable::kNone);
+  solid_.clear();
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
-    const std::int32_t root = pieces.RootOf(piece);
-    const PieceFacts& facts = pieces.FactsOf(root);
-    if (facts.is_land || facts.num_returns < kSolidReturns) continue;
-    const double over_m = std::min(kFarthestOverM, std::max(params_.over_m, kOverLength * facts.length_m));
-    const auto look_at = [&](int column, bool is_own) {
-      for (const OutlineEntry& entry : pieces.InColumn(column)) {
-        auto& seen_by = seen_by_[static_cast<std::size_t>(entry.piece)];
-        if (entry.piece == piece || seen_by == piece) continue;
-        const std::int32_t other_root = pieces.RootOf(entry.piece);
-        const PieceFacts& other = pieces.FactsOf(other_root);
-        if (other_root == root || other.is_land) continue;
-        const bool is_solid = other.num_returns >= kSolidReturns;
-        const Reach& beside = is_solid ? params_.join : params_.link;
-        double reach_m = beside.At(std::min(facts.min_range_m, other.min_range_m));
-        if (is_own) reach_m = std::max(reach_m, over_m);
-        if (other.min_range_m > facts.max_range_m + reach_m || other.max_range_m < facts.min_range_m - reach_m) continue;
-        seen_by = piece;
-        const double gap_m = PlanGap(grid, pieces, piece, entry.piece, reach_m);
-        if (gap_m <= reach_m) links_.push_back({piece, entry.piece, gap_m});
-      }
-    };
-    // Its own columns first, where one thing may stand over the other; then those beside them.
-    const auto outline = pieces.OutlineOf(piece);
-    for (const std::int32_t index : outline) look_at(pieces.Entry(index).column, true);
-    const int window = grid.ColumnsOf(params_.join.At(facts.max_range_m), facts.min_range_m);
-    int last = PieceTable::kNone;  // column that was looked at
-    for (const std::int32_t index : outline) {
-      const int column = pieces.Entry(index).column;
-      const int from = last == PieceTable::kNone ? column - window : std::max(last + 1, column - window);
-      for (int at = from; at <= column + window; ++at) look_at(grid.Wrap(at), false);
-      last = column + window;
+    const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(piece));
+    if (!facts.is_land && facts.num_returns >= kSolidReturns) solid_.push_back(piece);
+  }
+  for (std::size_t i = 0; i < solid_.size(); ++i) {
+    for (std::size_t j = i + 1; j < solid_.size(); ++j) LinkSolid(grid, pieces, solid_[i], solid_[j]);
+  }
+  seen_by_.assign(static_cast<std::size_t>(pieces.size()), PieceTable::kNone);
+  for (const std::int32_t piece : solid_) LinkTiny(grid, pieces, piece);
+}
+
+double ObjectJoiner::OverReachM(const PieceFacts& facts) const {
+  return std::min(kFarthestOverM, std::max(params_.over_m, kOverLength * facts.length_m));
+}
+
+void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other) {
+  const std::int32_t one_root = pieces.RootOf(one);
+  const std::int32_t other_root = pieces.RootOf(other);
+  if (one_root == other_root) return;
+  const PieceFacts& one_facts = pieces.FactsOf(one_root);
+  const PieceFacts& other_facts = pieces.FactsOf(other_root);
+  // No return lies farther from the middle than the length, along and across.
+  const double between_m = (one_facts.mean_m - other_facts.mean_m).norm() - std::numbers::sqrt2 * (one_facts.length_m + other_facts.length_m);
+  double reach_m = params_.join.At(std::min(one_facts.min_range_m, other_facts.min_range_m));
+  const double over_m = std::max(OverReachM(one_facts), OverReachM(other_facts));
+  if (between_m > std::max(reach_m, over_m)) return;
+  if (over_m > reach_m && SharedColumns(one_facts.arc, other_facts.arc, grid.num_columns()) > 0) reach_m = over_m;
+  if (between_m > reach_m) return;
+  const double gap_m = PlanGap(grid, pieces, one, other, reach_m);
+  if (gap_m <= reach_m) links_.push_back({one, other, gap_m});
+}
+
+void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std::int32_t piece) {
+  const std::int32_t root = pieces.RootOf(piece);
+  const PieceFacts& facts = pieces.FactsOf(root);
+  const auto outline = pieces.OutlineOf(piece);
+  const double touch_m = params_.link.At(facts.max_range_m);
+  const auto look_at = [&](int column, double most_m) {
+    for (const OutlineEntry& entry : pieces.InColumn(column)) {
+      double reach_m = most_m;
+      auto& seen_by = seen_by_[static_cast<std::size_t>(entry.piece)];
+      if (entry.piece == piece || seen_by == piece) continue;
+      if (entry.near_point.range_m > facts.max_range_m + reach_m || entry.far_point.range_m < facts.min_range_m - reach_m) continue;
+      seen_by = piece;
+      const std::int32_t other_root = pieces.RootOf(entry.piece);
+      const PieceFacts& other = pieces.FactsOf(other_root);
+      if (other_root == root || other.is_land || other.num_returns >= kSolidReturns) continue;
+      // Over it only from behind and above; the rings of a set only grow.
+      if (other.min_range_m < facts.min_range_m || other.max_ring < facts.max_ring) reach_m = std::min(reach_m, touch_m);
+      const double gap_m = PlanGap(grid, pieces, piece, entry.piece, reach_m);
+      if (gap_m <= reach_m) links_.push_back({piece, entry.piece, gap_m});
     }
+  };
+  // In its own columns one may stand over the other; beside them they must touch.
+  const double over_m = std::max(touch_m, OverReachM(facts));
+  for (const std::int32_t index : outline) look_at(pieces.Entry(index).column, over_m);
+  const int window = grid.ColumnsOf(touch_m, facts.min_range_m);
+  int last = PieceTable::kNone;  // column that was looked at
+  for (const std::int32_t index : outline) {
+    const int column = pieces.Entry(index).column;
+    const int from = last == PieceTable::kNone ? column - window : std::max(last + 1, column - window);
+    for (int at = from; at <= column + window; ++at) look_at(grid.Wrap(at), touch_m);
+    last = column + window;
   }
 }
 

@@ -37,17 +37,23 @@ class ObjectJoiner {
     double x_m = 0.0;
     double y_m = 0.0;
     double range_m = 0.0;
+    std::size_t cell = 0;
   };
 
-  void FindLinks(const TurnGrid& grid, PieceTable& pieces);
+  void FindLinks(const TurnGrid& grid, const PieceTable& pieces);
+  void LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
+  void LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std::int32_t piece);
+  double OverReachM(const PieceFacts& facts) const;
   bool AreOfOneObject(const TurnGrid& grid, const PieceFacts& one, const PieceFacts& other, double gap_m) const;
   void SortPosts();
   std::size_t CellOf(double x_m, double y_m) const;
+  double ReachM() const;
   void FindNeighbours(const Post& post);
   void JoinRectangles(const Post& post, PieceTable& pieces) const;
 
   LookoutParams params_;
   std::vector<Link> links_;
+  std::vector<std::int32_t> solid_;
   std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
   std::vector<Post> posts_;            // by cell
   std::vector<Post> sorted_;

@@ -146,14 +146,16 @@ void PieceTable::FitLine(const TurnGrid& grid, const RunTable& runs, std::int32_
   PieceFacts& facts = facts_[static_cast<std::size_t>(root)];
   const double count = facts.num_returns;
   facts.mean_m = {facts.sum_x_m / count, facts.sum_y_m / count};
+  if (facts.num_returns == 1) return;  // a drop: no line, no length
   const double xx_m2 = facts.sum_xx_m2 / count - facts.mean_m.x() * facts.mean_m.x();
   const double xy_m2 = facts.sum_xy_m2 / count - facts.mean_m.x() * facts.mean_m.y();
   const double yy_m2 = facts.sum_yy_m2 / count - facts.mean_m.y() * facts.mean_m.y();
-  const double angle_rad = 0.5 * std::atan2(2.0 * xy_m2, xx_m2 - yy_m2);
-  facts.direction = {std::cos(angle_rad), std::sin(angle_rad)};
-  const double half_sum_m2 = (xx_m2 + yy_m2) / 2.0;
-  const double half_difference_m2 = std::hypot((xx_m2 - yy_m2) / 2.0, xy_m2);
-  facts.off_m = std::sqrt(std::max(0.0, half_sum_m2 - half_difference_m2));
+  const double half_difference_m2 = (xx_m2 - yy_m2) / 2.0;
+  const double radius_m2 = std::sqrt(half_difference_m2 * half_difference_m2 + xy_m2 * xy_m2);
+  // Half of the angle whose cosine is half_difference / radius.
+  const double cosine = radius_m2 > 0.0 ? half_difference_m2 / radius_m2 : 1.0;
+  facts.direction = {std::sqrt((1.0 + cosine) / 2.0), std::copysign(std::sqrt(std::max(0.0, 1.0 - cosine) / 2.0), xy_m2)};
+  facts.off_m = std::sqrt(std::max(0.0, (xx_m2 + yy_m2) / 2.0 - radius_m2));
   // Its ends are ends of runs.
   double least_m = std::numeric_limits<double>::infinity();
   double greatest_m = -least_m;
@@ -253,6 +255,11 @@ double PlanGap(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one,
       is_within = true;
     }
   };
+  constexpr std::size_t kFewPairs = 256;  // fewer than it takes to find out which entries lie within reach
+  if (pieces.OutlineOf(one).size() * inner.size() <= kFewPairs) {
+    for (const std::int32_t index : pieces.OutlineOf(one)) look_at(pieces.Entry(index), first_column, last_column);
+    return is_within ? std::sqrt(double{least_m2}) : std::numeric_limits<double>::infinity();
+  }
   for (const std::int32_t index : pieces.OutlineOf(one)) {
     const OutlineEntry& entry = pieces.Entry(index);
     const int window = grid.ColumnsOf(limit_m, entry.near_point.range_m);

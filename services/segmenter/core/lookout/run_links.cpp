@@ -29,25 +29,22 @@ class Linker {
     const bool is_of_one_ring = grid_.RingOf(run.line) == grid_.RingOf(other_line);
     const int window = is_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
     const int num_places = std::min(run.length + 2 * window, grid_.num_columns());
-    std::int32_t joined = RunTable::kNone;
+    if (run.length == 1) {
+      // A drop in most cases: what has nothing near it needs no more. The reach of a pair goes by the nearer one, so this is not too short.
+      const float range_m = grid_.RangeAt(run.line, run.first);
+      if (!grid_.IsAnyNear(other_line, run.first, window, range_m, static_cast<float>(link_.At(range_m)))) return;
+    }
     for (int step = 0; step < num_places; ++step) {
       const int place = step - window;  // in the run, or beside it
-      const std::int32_t other_return = grid_.At(other_line, WrapFar(run.first + place));
+      const int column = WrapFar(run.first + place);
+      const std::int32_t other_return = grid_.At(other_line, column);
       if (other_return == TurnGrid::kNone) continue;
       const std::int32_t other = runs_.OfReturn(other_return);
-      if (other == joined) continue;
-      if (sets_.Find(index) == sets_.Find(other)) {
-        joined = other;
-        continue;
-      }
-      const LevelPoint& point = grid_.PointOf(other_return);
-      const int end = std::min(run.length - 1, place + window);
-      for (int k = std::max(0, place - window); k <= end; ++k) {
-        if (!AreLinked(grid_.PointOf(ReturnOf(grid_, run, k)), point, is_of_one_ring)) continue;
-        sets_.Join(index, other);
-        joined = other;
-        break;
-      }
+      if (sets_.Find(index) != sets_.Find(other) && !IsLinkedTo(run, place, window, grid_.PointOf(other_return), is_of_one_ring)) continue;
+      sets_.Join(index, other);
+      // The rest of that run has nothing to add.
+      const int past = column - runs_[other].first;
+      step += runs_[other].length - 1 - (past < 0 ? past + grid_.num_columns() : past);
     }
   }
 
@@ -64,6 +61,15 @@ class Linker {
     double squared_m2 = SquaredPlanDistance(one, other);
     if (is_of_one_ring) squared_m2 += double{one.height_m - other.height_m} * (one.height_m - other.height_m);
     return squared_m2 <= reach_m * reach_m;
+  }
+
+  // A return beside the run, or at a place of it.
+  bool IsLinkedTo(const Run& run, int place, int window, const LevelPoint& point, bool is_of_one_ring) const {
+    const int end = std::min(run.length - 1, place + window);
+    for (int k = std::max(0, place - window); k <= end; ++k) {
+      if (AreLinked(grid_.PointOf(ReturnOf(grid_, run, k)), point, is_of_one_ring)) return true;
+    }
+    return false;
   }
 
   int WrapFar(int column) const { return grid_.Wrap(grid_.Wrap(column)); }

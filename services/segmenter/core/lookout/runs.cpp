@@ -8,8 +8,8 @@ namespace {
 
 bool AreLinked(const LevelPoint& one, const LevelPoint& other, const Reach& link) {
   const float up_m = one.height_m - other.height_m;
-  const double reach_m = link.At(std::min(one.range_m, other.range_m));
-  return double{SquaredPlanDistance(one, other) + up_m * up_m} <= reach_m * reach_m;
+  const auto reach_m = static_cast<float>(link.At(std::min(one.range_m, other.range_m)));
+  return SquaredPlanDistance(one, other) + up_m * up_m <= reach_m * reach_m;
 }
 
 }  // namespace
@@ -31,13 +31,16 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
     while (start < num_columns && goes_on(grid.Wrap(start - 1), start)) ++start;
     const bool is_closed = start == num_columns;
     if (is_closed) start = 0;
+    std::int32_t last = TurnGrid::kNone;
     for (int step = 0; step < num_columns; ++step) {
       const int column = grid.Wrap(start + step);
       const std::int32_t index = grid.At(line, column);
-      if (index == TurnGrid::kNone) continue;
-      if (step == 0 || !goes_on(grid.Wrap(column - 1), column)) runs_.push_back({line, column, 0});
-      ++runs_.back().length;
-      run_of_return_[static_cast<std::size_t>(index)] = size() - 1;
+      if (index != TurnGrid::kNone) {
+        if (last == TurnGrid::kNone || !AreLinked(grid.PointOf(last), grid.PointOf(index), link)) runs_.push_back({line, column, 0});
+        ++runs_.back().length;
+        run_of_return_[static_cast<std::size_t>(index)] = size() - 1;
+      }
+      last = index;
     }
   }
   begin_of_line_.push_back(runs_.size());

@@ -46,6 +46,12 @@ class TurnGrid {
   std::int32_t At(int line, int column) const {
     return return_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column)];
   }
+  /// Horizontal range; infinite where there is no return.
+  float RangeAt(int line, int column) const {
+    return range_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column)];
+  }
+  /// Whether a return of a line lies in columns [column - window, column + window] at a range at most reach_m off.
+  bool IsAnyNear(int line, int column, int window, float range_m, float reach_m) const;
   const LevelPoint& PointOf(std::int32_t index) const { return points_[static_cast<std::size_t>(index)]; }
   std::span<const LevelPoint> points() const { return points_; }
   std::span<const Return> returns() const { return returns_; }
@@ -61,6 +67,7 @@ class TurnGrid {
   int num_layers_ = 1;
   double column_step_rad_ = 0.0;
   std::vector<std::int32_t> return_at_;  // [lines x columns]
+  std::vector<float> range_at_;          // [lines x columns]
   std::vector<LevelPoint> points_;       // [returns]
   std::vector<float> steps_rad_;         // scratch
   std::span<const Return> returns_;
