@@ -189,7 +189,7 @@ Picture ReturnsSvgSink::MakePicture(const Bearings& bearings) const {
   picture.subtitles = {UtcText(place.utime_us), is_north_up ? Format("north up, heading %.1f deg", RadToDeg(up_rad))
                                                 : boat      ? "bow up: no heading in the log"
                                                             : "lidar frame: no config of the boat in the log"};
-  picture.outlines_title = "segments, nearest first, tentative ones last";
+  picture.outlines_title = "segments, nearest first, tentative last";
   return picture;
 }
 
@@ -256,7 +256,7 @@ Picture ObstaclesSvgSink::MakePicture(const Bearings& bearings) const {
   picture.title = Format("Turn %lld: ", static_cast<long long>(place.seq)) + CountText(picture, "obstacles");
   picture.subtitles = {UtcText(place.utime_us) + (statuses.empty() ? "" : ", status: " + statuses),
                        is_north_up ? Format("north up, heading %.1f deg", RadToDeg(up_rad)) : "bow up: no heading in the log"};
-  picture.outlines_title = "obstacles, nearest first, tentative ones last; bearing from the bow";
+  picture.outlines_title = "nearest first, tentative last; bearing from the bow";
   return picture;
 }
 
