@@ -66,6 +66,10 @@ std::string KindOf(const std::string& include) {
     if (include.rfind(prefix, 0) == 0) return kind;
   }
   if (include.rfind("common/", 0) == 0) return include.substr(0, include.find('/', 7));
+  // Folders within a core are parts of it.
+  static const std::regex kCore("services/[^/]+/core/");
+  if (std::smatch core; std::regex_search(include, core, kCore, std::regex_constants::match_continuous))
+    return include.substr(0, static_cast<std::size_t>(core.length()) - 1);
   if (include.rfind("services/", 0) == 0 || include.rfind("tools/", 0) == 0) return include.substr(0, include.rfind('/'));
   return "std";
 }

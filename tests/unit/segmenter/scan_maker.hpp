@@ -45,7 +45,7 @@ inline Scan EmptyScan(const Shape& shape) {
   scan.columns.range.assign(num_cells, 0);
   scan.columns.reflectivity.assign(num_cells, 0);
   scan.parts.push_back({0, shape.num_columns});
-  scan.head.end_time = kScanTime + std::chrono::microseconds(static_cast<std::int64_t>(shape.num_columns) * 55 + 35);
+  scan.head.end_time = kScanTime + std::chrono::microseconds(static_cast<std::int64_t>(shape.num_columns) * 55296 / 1000 + 35);
   return scan;
 }
 
