@@ -49,7 +49,7 @@ void SortPoints(std::vector<FootprintPoint>& points, std::vector<FootprintPoint>
   for (std::size_t bucket = 0, begin = 0; bucket < num_buckets; begin = ends[bucket++]) {
     std::sort(dealt.begin() + static_cast<std::ptrdiff_t>(begin), dealt.begin() + static_cast<std::ptrdiff_t>(ends[bucket]), IsBefore);
   }
-  points.swap(dealt);
+  std::ranges::copy(dealt, points.begin());
 }
 
 // Takes out what lies within the four-sided figure of the farthest points along x and y: no corner of the hull (Akl and Toussaint, 1978).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "services/segmenter/core/footprint.hpp"
@@ -41,6 +42,9 @@ void Forget(Segment& segment) {
   fresh.waterline.clear();
   segment = std::move(fresh);
 }
+
+// Beams of a column that look aside of each other by less: 0.2 degrees, a column's width.
+constexpr float kUprightRad = 0.0035F;
 
 // A line on the water as exact as the lidar: its range is good to 3 cm, its footprint at 30 m is 0.1 m wide.
 constexpr double kWaterlineOffM = 0.1;
@@ -89,7 +93,7 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
     segment.max_reflectivity = std::max(segment.max_reflectivity, reflectivity);
     // Of each column the nearest and the farthest, in this order.
     const float plan_m2 = point.x_m * point.x_m + point.y_m * point.y_m;
-    if (one.column != column) {
+    if (one.column != column || !is_upright_) {
       column = one.column;
       near_m2 = far_m2 = plan_m2;
       footprint_.push_back({point.x_m, point.y_m, index});
@@ -143,6 +147,7 @@ void Measurer::Measure(const Scan& scan, std::span<const Return> returns, const 
   for (std::size_t i = 0; i < returns.size(); ++i) {
     if (groups.of_return[i] != Groups::kNone) sorted_[next_[static_cast<std::size_t>(groups.of_return[i])]++] = static_cast<std::int32_t>(i);
   }
+  is_upright_ = std::ranges::all_of(scan.head.rings, [](const Ring& ring) { return std::abs(ring.azimuth_offset_rad) <= kUprightRad; });
   Resize(static_cast<std::size_t>(groups.count), segments);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Segment& segment = segments[i];

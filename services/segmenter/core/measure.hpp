@@ -68,7 +68,8 @@ struct Segment {
 /// Measures the segments of one turn after the other, and keeps memory between them.
 ///
 /// Hull and box are those of the nearest and the farthest return of each column. Lasers of a column look in directions up to 0.13 degrees apart, so a
-/// return may lie outside of its hull by that much at its sides: 7 cm at 30 m, less than the beam is wide there.
+/// return may lie outside of its hull by that much at its sides: 7 cm at 30 m, less than the beam is wide there. Where beams of a column look farther
+/// aside, all returns count.
 class Measurer {
  public:
   /// @param up  the vessel's z axis in the lidar frame, a unit vector: a lidar that is mounted tilted sees its own z axis lean
@@ -86,6 +87,7 @@ class Measurer {
   void Resize(std::size_t count, std::vector<Segment>& segments);
 
   Eigen::Vector3d up_;
+  bool is_upright_ = true;  // beams of a column look the same way
   std::vector<std::size_t> begin_;
   std::vector<std::size_t> next_;
   std::vector<std::int32_t> sorted_;

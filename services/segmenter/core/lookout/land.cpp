@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 #include "services/segmenter/core/lookout/run_links.hpp"
 
@@ -22,6 +24,7 @@ constexpr Reach kInLineOff{0.25, 0.01};  // of the middle of one off the line th
 constexpr double kHiddenM = 0.2;         // by which what hides a line is nearer than it
 constexpr int kFreeColumns = 2;          // between pieces in line that need not be hidden, and a tenth of them
 constexpr int kFreeShare = 10;
+constexpr std::ptrdiff_t kMostStraight = 256;
 
 // The water's edge.
 constexpr std::int32_t kLeastShoreReturns = 10;
@@ -35,6 +38,10 @@ constexpr float kDeepM = 2.0F;      // from the nearest to the farthest return i
 constexpr int kDeepPercent = 30;    // of the columns of land
 constexpr int kBehindPercent = 70;  // of the columns of a piece
 constexpr int kNearColumns = 3;
+// A pier with a bend is no straight line either, and a boat may lie behind it: land that shows no depth takes in trees alone, which give it depth.
+constexpr std::uint8_t kTakesNothing = 0;
+constexpr std::uint8_t kTakesTall = 1;
+constexpr std::uint8_t kTakesAll = 2;
 constexpr double kLeastTreeM = 0.8;  // wide: a mast is no tree
 constexpr int kMaxRounds = 6;
 
@@ -49,16 +56,16 @@ double Distance3d(const LevelPoint& one, const LevelPoint& other) {
 
 void LandFinder::Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
   JoinInLine(grid, pieces);
-  pieces.Settle(grid, runs);
+  pieces.Settle(grid);
   FindShores(grid, runs, pieces);
-  pieces.Settle(grid, runs);
+  pieces.Settle(grid);
   for (const std::int32_t root : pieces.roots()) {
     if (pieces.FactsOf(root).length_m >= params_.land_length_m) pieces.MarkLand(root);
   }
-  pieces.Settle(grid, runs);
-  for (int round = 0; round < kMaxRounds && TakeIn(grid, pieces); ++round) pieces.Settle(grid, runs);
+  pieces.Settle(grid);
+  for (int round = 0; round < kMaxRounds && TakeIn(grid, pieces); ++round) pieces.Settle(grid);
   JoinLand(grid, pieces);
-  pieces.Settle(grid, runs);
+  pieces.Settle(grid);
 }
 
 void LandFinder::JoinInLine(const TurnGrid& grid, PieceTable& pieces) {
@@ -66,6 +73,14 @@ void LandFinder::JoinInLine(const TurnGrid& grid, PieceTable& pieces) {
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (facts.length_m >= kLeastStraightM && facts.off_m <= kStraightOffM) candidates_.push_back(root);
+  }
+  if (std::ssize(candidates_) > kMostStraight) {
+    // Rubble. A wall is among the longest.
+    const auto longer = [&](std::int32_t one, std::int32_t other) {
+      return std::pair(-pieces.FactsOf(one).length_m, one) < std::pair(-pieces.FactsOf(other).length_m, other);
+    };
+    std::ranges::nth_element(candidates_, candidates_.begin() + kMostStraight, longer);
+    candidates_.resize(static_cast<std::size_t>(kMostStraight));
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const PieceFacts& one = pieces.FactsOf(candidates_[i]);
@@ -218,20 +233,21 @@ bool LandFinder::FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces)
     }
   }
   bool is_any_land = false;
-  takes_in_.assign(num_pieces, 0);
+  takes_in_.assign(num_pieces, kTakesNothing);
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (!facts.is_land) continue;
     const auto at = static_cast<std::size_t>(root);
-    takes_in_[at] = facts.off_m >= kWallOffM || 100 * num_deep_of_[at] >= kDeepPercent * num_columns_of_[at] ? 1 : 0;
-    is_any_land = is_any_land || takes_in_[at] != 0;
+    const bool is_deep = 100 * num_deep_of_[at] >= kDeepPercent * num_columns_of_[at];
+    takes_in_[at] = is_deep ? kTakesAll : facts.off_m >= kWallOffM ? kTakesTall : kTakesNothing;
+    is_any_land = is_any_land || takes_in_[at] != kTakesNothing;
   }
   if (!is_any_land) return false;
   land_m_.assign(static_cast<std::size_t>(grid.num_columns()), std::numeric_limits<float>::infinity());
   for (int column = 0; column < grid.num_columns(); ++column) {
     float nearest_m = std::numeric_limits<float>::infinity();
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
-      if (TakesIn(pieces.RootOf(entry.piece))) nearest_m = std::min(nearest_m, entry.near_point.range_m);
+      if (TakesIn(pieces.RootOf(entry.piece), kTakesTall)) nearest_m = std::min(nearest_m, entry.near_point.range_m);
     }
     if (!std::isfinite(nearest_m)) continue;
     for (int step = -kNearColumns; step <= kNearColumns; ++step) {
@@ -256,6 +272,11 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
   return is_taken;
 }
 
+// And wide: no mast.
+bool LandFinder::IsTall(const PieceFacts& facts) const {
+  return facts.max_height_m + params_.lidar_above_water_m > params_.tall_m && facts.length_m >= kLeastTreeM;
+}
+
 std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   int num_seen = 0;
   int num_behind = 0;
@@ -267,6 +288,7 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
     }
   }
   if (100 * num_behind < kBehindPercent * num_seen) return kNoLand;
+  const std::uint8_t least_taking = IsTall(pieces.FactsOf(root)) ? kTakesTall : kTakesAll;
   double least_m = params_.behind_land.At(pieces.FactsOf(root).min_range_m);
   std::int32_t land = kNoLand;
   for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
@@ -276,7 +298,7 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
       for (int step = -kNearColumns; step <= kNearColumns; ++step) {
         for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(entry.column + step))) {
           const std::int32_t other_root = pieces.RootOf(other.piece);
-          if (!TakesIn(other_root) || other.near_point.range_m >= range_m) continue;
+          if (!TakesIn(other_root, least_taking) || other.near_point.range_m >= range_m) continue;
           const double gap_m = std::max(0.0, double{range_m} - other.far_point.range_m);
           if (gap_m > least_m || (gap_m == least_m && land != kNoLand && other_root >= land)) continue;
           least_m = gap_m;
@@ -290,13 +312,13 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
 
 std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   const PieceFacts& facts = pieces.FactsOf(root);
-  if (facts.max_height_m + params_.lidar_above_water_m <= params_.tall_m || facts.length_m < kLeastTreeM) return kNoLand;
+  if (!IsTall(facts)) return kNoLand;
   double least_m = params_.beside_land.At(facts.min_range_m);
   std::int32_t land = kNoLand;
   const auto look_at = [&](const OutlineEntry& mine, int column) {
     for (const OutlineEntry& other : pieces.InColumn(column)) {
       const std::int32_t other_root = pieces.RootOf(other.piece);
-      if (!TakesIn(other_root)) continue;
+      if (!TakesIn(other_root, kTakesTall)) continue;
       for (const LevelPoint* my_end : {&mine.near_point, &mine.far_point}) {
         for (const LevelPoint* other_end : {&other.near_point, &other.far_point}) {
           const double distance_m = Distance(*my_end, *other_end);
@@ -331,17 +353,20 @@ void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
       const std::int32_t root = pieces.RootOf(entry.piece);
       if (!is_land(root)) continue;
-      const LevelPoint& point = entry.near_point;
-      const double limit_m = params_.beside_land.At(point.range_m) / 2.0;
-      const int window = grid.ColumnsOf(limit_m, point.range_m);
+      // Within reach by the nearer of two; the window by the farthest reach that can be.
+      const auto reach_at = [this](double range_m) { return params_.beside_land.At(range_m) / 2.0; };
+      const int window = grid.ColumnsOf(reach_at(entry.far_point.range_m), entry.near_point.range_m);
       bool goes_on = false;  // the same land: its next entry looks further
       for (int step = 0; step <= window && !goes_on; ++step) {
         for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(column + step))) {
           const std::int32_t other_root = pieces.RootOf(other.piece);
           goes_on = goes_on || (step > 0 && other_root == root);
           if (other_root == root || !is_land(other_root)) continue;
-          const double least_m = std::min(Distance(point, other.near_point), Distance(entry.far_point, other.near_point));
-          if (std::min(least_m, Distance(point, other.far_point)) <= limit_m) pieces.Join(root, other_root);
+          for (const LevelPoint* mine : {&entry.near_point, &entry.far_point}) {
+            for (const LevelPoint* theirs : {&other.near_point, &other.far_point}) {
+              if (Distance(*mine, *theirs) <= reach_at(std::min(mine->range_m, theirs->range_m))) pieces.Join(root, other_root);
+            }
+          }
         }
       }
     }

@@ -18,7 +18,8 @@ namespace lookout::segmenter {
 /// 2. A piece of `land_length_m` or more is land. So is the water's edge: runs of one ring that follow each other at most `shore_gap` apart over
 ///    that length. What stands before both its neighbours there, as a kayak before a beach does, is no part of it.
 /// 3. Pieces that stand behind land in its own columns, at most `behind_land` from it, are of it: terraces and trees. So is what is tall and wide
-///    beside it, at most `beside_land` off. Straight walls and piers take nothing in this way: a boat may lie behind a pier.
+///    beside it, at most `beside_land` off. Straight walls and piers take nothing in this way, and land that shows no depth takes in what is tall
+///    alone: a boat may lie behind a pier.
 /// 4. Pieces of land at most half of `beside_land` apart along a ring are one.
 class LandFinder {
  public:
@@ -42,7 +43,8 @@ class LandFinder {
   bool FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces);
   std::int32_t LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
   std::int32_t LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
-  bool TakesIn(std::int32_t root) const { return takes_in_[static_cast<std::size_t>(root)] != 0; }
+  bool TakesIn(std::int32_t root, std::uint8_t at_least) const { return takes_in_[static_cast<std::size_t>(root)] >= at_least; }
+  bool IsTall(const PieceFacts& facts) const;
   void JoinLand(const TurnGrid& grid, PieceTable& pieces);
 
   LookoutParams params_;
@@ -52,7 +54,7 @@ class LandFinder {
   std::vector<std::int32_t> chain_;
   std::vector<Fragment> fragments_;
   std::vector<std::int32_t> candidates_;
-  std::vector<std::uint8_t> takes_in_;  // [pieces] land that is no straight wall
+  std::vector<std::uint8_t> takes_in_;  // [pieces] what land takes in: nothing, what is tall, all
   std::vector<float> land_m_;           // [columns] range of the nearest return of such land in this column or beside it
   std::vector<std::int32_t> num_columns_of_;
   std::vector<std::int32_t> num_deep_of_;

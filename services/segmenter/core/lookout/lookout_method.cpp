@@ -14,7 +14,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   pieces_.Build(grid_, runs_, sets_of_runs_);
   land_.Find(grid_, runs_, pieces_);
   objects_.JoinDocks(pieces_);
-  pieces_.Settle(grid_, runs_);
+  pieces_.Settle(grid_);
   objects_.JoinObjects(grid_, runs_, pieces_);
 
   piece_groups_.count = pieces_.size();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 namespace lookout::segmenter {
@@ -28,6 +27,12 @@ constexpr double kOverLength = 0.6;  // lengths of the nearer one: a cabin stand
 constexpr double kOverShare = 0.7;   // of the columns of the farther one
 constexpr double kWiderM = 2.0;      // by which the farther one may be longer
 constexpr double kFarthestOverM = 10.0;
+
+// Small solid things within so many metres of each other that none of them is joined.
+constexpr double kThrongM = 2.0;
+constexpr int kMostInThrong = 24;
+constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
+constexpr double kLargeM = 4.0;
 
 constexpr int kRounds = 2;
 
@@ -68,7 +73,7 @@ void ObjectJoiner::SortPosts() {
   for (const Post& post : posts_) sorted_[begin_of_cell_[post.cell]++] = post;
   for (std::size_t cell = begin_of_cell_.size() - 1; cell > 0; --cell) begin_of_cell_[cell] = begin_of_cell_[cell - 1];
   begin_of_cell_[0] = 0;
-  posts_.swap(sorted_);
+  std::ranges::copy(sorted_, posts_.begin());
 }
 
 // Within the longest diagonal; none where it stands in a crowd.
@@ -143,7 +148,7 @@ void ObjectJoiner::JoinObjects(const TurnGrid& grid, const RunTable& runs, Piece
       const std::int32_t other = pieces.RootOf(link.other);
       if (one != other && AreOfOneObject(grid, pieces.FactsOf(one), pieces.FactsOf(other), link.gap_m)) pieces.Join(one, other);
     }
-    if (!pieces.Settle(grid, runs)) break;
+    if (!pieces.Settle(grid)) break;
   }
 }
 
@@ -155,11 +160,48 @@ void ObjectJoiner::FindLinks(const TurnGrid& grid, const PieceTable& pieces) {
     const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(piece));
     if (!facts.is_land && facts.num_returns >= kSolidReturns) solid_.push_back(piece);
   }
-  for (std::size_t i = 0; i < solid_.size(); ++i) {
-    for (std::size_t j = i + 1; j < solid_.size(); ++j) LinkSolid(grid, pieces, solid_[i], solid_[j]);
-  }
+  std::ranges::sort(solid_, {}, [&](std::int32_t piece) { return std::pair(MeanX(pieces, piece), piece); });
+  FindCrowds(pieces);
+  LinkPairs(grid, pieces);
   seen_by_.assign(static_cast<std::size_t>(pieces.size()), PieceTable::kNone);
-  for (const std::int32_t piece : solid_) LinkTiny(grid, pieces, piece);
+  for (std::size_t i = 0; i < solid_.size(); ++i) {
+    if (is_crowded_[i] == 0) LinkTiny(grid, pieces, solid_[i]);
+  }
+}
+
+double ObjectJoiner::MeanX(const PieceTable& pieces, std::int32_t piece) { return pieces.FactsOf(pieces.RootOf(piece)).mean_m.x(); }
+
+// In heavy spray near the lidar chance makes thousands of small clusters, each within reach of hundreds: they are not joined.
+void ObjectJoiner::FindCrowds(const PieceTable& pieces) {
+  is_crowded_.assign(solid_.size(), 0);
+  for (std::size_t i = 0; i < solid_.size(); ++i) {
+    const auto& facts = pieces.FactsOf(pieces.RootOf(solid_[i]));
+    int num_near = 0;
+    const auto look_at = [&](std::size_t j) {
+      const auto& other = pieces.FactsOf(pieces.RootOf(solid_[j]));
+      if (std::abs(other.mean_m.x() - facts.mean_m.x()) > kThrongM) return false;
+      num_near += (other.mean_m - facts.mean_m).squaredNorm() <= kThrongM * kThrongM ? 1 : 0;
+      return num_near <= kMostInThrong;
+    };
+    for (std::size_t j = i; j > 0 && look_at(j - 1);) --j;
+    for (std::size_t j = i + 1; j < solid_.size() && look_at(j);) ++j;
+    is_crowded_[i] = num_near > kMostInThrong ? 1 : 0;
+  }
+}
+
+void ObjectJoiner::LinkPairs(const TurnGrid& grid, const PieceTable& pieces) {
+  const auto radius_of = [&](std::size_t i) { return pieces.FactsOf(pieces.RootOf(solid_[i])).radius_m; };
+  // Small ones lie within a band of x; the few large ones are held against all.
+  for (std::size_t i = 0; i < solid_.size(); ++i) {
+    if (is_crowded_[i] != 0) continue;
+    const bool is_large = radius_of(i) > kLargeM;
+    const double x_m = MeanX(pieces, solid_[i]);
+    const double band_m = 2.0 * kLargeM + kFarthestOverM;
+    for (std::size_t j = i + 1; j < solid_.size(); ++j) {
+      if (!is_large && radius_of(j) <= kLargeM && MeanX(pieces, solid_[j]) - x_m > band_m) continue;
+      if (is_crowded_[j] == 0) LinkSolid(grid, pieces, solid_[i], solid_[j]);
+    }
+  }
 }
 
 double ObjectJoiner::OverReachM(const PieceFacts& facts) const {
@@ -172,8 +214,7 @@ void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std
   if (one_root == other_root) return;
   const PieceFacts& one_facts = pieces.FactsOf(one_root);
   const PieceFacts& other_facts = pieces.FactsOf(other_root);
-  // No return lies farther from the middle than the length, along and across.
-  const double between_m = (one_facts.mean_m - other_facts.mean_m).norm() - std::numbers::sqrt2 * (one_facts.length_m + other_facts.length_m);
+  const double between_m = (one_facts.mean_m - other_facts.mean_m).norm() - one_facts.radius_m - other_facts.radius_m;
   double reach_m = params_.join.At(std::min(one_facts.min_range_m, other_facts.min_range_m));
   const double over_m = std::max(OverReachM(one_facts), OverReachM(other_facts));
   if (between_m > std::max(reach_m, over_m)) return;
@@ -188,8 +229,11 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   const PieceFacts& facts = pieces.FactsOf(root);
   const auto outline = pieces.OutlineOf(piece);
   const double touch_m = params_.link.At(facts.max_range_m);
+  const std::size_t num_before = links_.size();
+  std::size_t num_drops = 0;
   const auto look_at = [&](int column, double most_m) {
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
+      if (num_drops > kMostDrops) return;
       double reach_m = most_m;
       auto& seen_by = seen_by_[static_cast<std::size_t>(entry.piece)];
       if (entry.piece == piece || seen_by == piece) continue;
@@ -199,9 +243,14 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
       const PieceFacts& other = pieces.FactsOf(other_root);
       if (other_root == root || other.is_land || other.num_returns >= kSolidReturns) continue;
       // Over it only from behind and above; the rings of a set only grow.
-      if (other.min_range_m < facts.min_range_m || other.max_ring < facts.max_ring) reach_m = std::min(reach_m, touch_m);
+      if (other.min_range_m < facts.min_range_m || other.max_ring < facts.max_ring) {
+        reach_m = std::min(reach_m, touch_m);
+        if (other.min_range_m > facts.max_range_m + reach_m || other.max_range_m < facts.min_range_m - reach_m) continue;
+      }
       const double gap_m = PlanGap(grid, pieces, piece, entry.piece, reach_m);
-      if (gap_m <= reach_m) links_.push_back({piece, entry.piece, gap_m});
+      if (gap_m > reach_m) continue;
+      links_.push_back({piece, entry.piece, gap_m});
+      ++num_drops;
     }
   };
   // In its own columns one may stand over the other; beside them they must touch.
@@ -212,9 +261,11 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   for (const std::int32_t index : outline) {
     const int column = pieces.Entry(index).column;
     const int from = last == PieceTable::kNone ? column - window : std::max(last + 1, column - window);
-    for (int at = from; at <= column + window; ++at) look_at(grid.Wrap(at), touch_m);
+    for (int at = from; at <= column + window && num_drops <= kMostDrops; ++at) look_at(grid.Wrap(at), touch_m);
     last = column + window;
   }
+  // So many are spray, whichever of them came first.
+  if (num_drops > kMostDrops) links_.resize(num_before);
 }
 
 bool ObjectJoiner::AreOfOneObject(const TurnGrid& grid, const PieceFacts& one, const PieceFacts& other, double gap_m) const {

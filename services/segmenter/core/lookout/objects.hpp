@@ -41,6 +41,9 @@ class ObjectJoiner {
   };
 
   void FindLinks(const TurnGrid& grid, const PieceTable& pieces);
+  void FindCrowds(const PieceTable& pieces);
+  void LinkPairs(const TurnGrid& grid, const PieceTable& pieces);
+  static double MeanX(const PieceTable& pieces, std::int32_t piece);
   void LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
   void LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std::int32_t piece);
   double OverReachM(const PieceFacts& facts) const;
@@ -53,7 +56,8 @@ class ObjectJoiner {
 
   LookoutParams params_;
   std::vector<Link> links_;
-  std::vector<std::int32_t> solid_;
+  std::vector<std::int32_t> solid_;      // by the x of their middle
+  std::vector<std::uint8_t> is_crowded_;  // [solid_]
   std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
   std::vector<Post> posts_;            // by cell
   std::vector<Post> sorted_;

@@ -97,11 +97,11 @@ void PieceTable::Build(const TurnGrid& grid, const RunTable& runs, UnionFind& se
     to_cover_.clear();
     for (const std::int32_t run : Part(runs_of_piece_, begin_of_runs_, piece)) to_cover_.push_back({runs[run].first, runs[run].length});
     arcs_[at] = facts_[at].arc = CoveringArc(grid.num_columns());
-    FitLine(grid, runs, piece);
   }
   joins_.clear();
   new_land_.clear();
   BuildOutlines(grid, runs);
+  for (std::int32_t piece = 0; piece < size(); ++piece) FitLine(piece);
 }
 
 void PieceTable::BuildOutlines(const TurnGrid& grid, const RunTable& runs) {
@@ -109,13 +109,12 @@ void PieceTable::BuildOutlines(const TurnGrid& grid, const RunTable& runs) {
   begin_of_column_.assign(1, 0);
   begin_of_piece_.assign(facts_.size() + 1, 0);
   last_entry_.assign(facts_.size(), kNone);
-  // Returns come column by column.
-  const auto returns = grid.returns();
+  const auto by_column = grid.by_column();
   std::size_t i = 0;
   for (int column = 0; column < grid.num_columns(); ++column) {
     const auto first_of_column = static_cast<std::int32_t>(entries_.size());
-    for (; i < returns.size() && returns[i].column == column; ++i) {
-      const auto index = static_cast<std::int32_t>(i);
+    for (; i < by_column.size() && grid.ColumnOf(by_column[i]) == column; ++i) {
+      const std::int32_t index = by_column[i];
       const std::int32_t piece = OfRun(runs.OfReturn(index));
       auto& last = last_entry_[static_cast<std::size_t>(piece)];
       if (last < first_of_column) {
@@ -142,7 +141,7 @@ void PieceTable::BuildOutlines(const TurnGrid& grid, const RunTable& runs) {
   }
 }
 
-void PieceTable::FitLine(const TurnGrid& grid, const RunTable& runs, std::int32_t root) {
+void PieceTable::FitLine(std::int32_t root) {
   PieceFacts& facts = facts_[static_cast<std::size_t>(root)];
   const double count = facts.num_returns;
   facts.mean_m = {facts.sum_x_m / count, facts.sum_y_m / count};
@@ -156,20 +155,23 @@ void PieceTable::FitLine(const TurnGrid& grid, const RunTable& runs, std::int32_
   const double cosine = radius_m2 > 0.0 ? half_difference_m2 / radius_m2 : 1.0;
   facts.direction = {std::sqrt((1.0 + cosine) / 2.0), std::copysign(std::sqrt(std::max(0.0, 1.0 - cosine) / 2.0), xy_m2)};
   facts.off_m = std::sqrt(std::max(0.0, (xx_m2 + yy_m2) / 2.0 - radius_m2));
-  // Its ends are ends of runs.
   double least_m = std::numeric_limits<double>::infinity();
   double greatest_m = -least_m;
+  double radius_of_m2 = 0.0;
   for (std::int32_t piece = root; piece != kNone; piece = NextMember(piece)) {
-    for (const std::int32_t run : Part(runs_of_piece_, begin_of_runs_, piece)) {
-      for (const std::int32_t end : {FirstReturn(grid, runs[run]), LastReturn(grid, runs[run])}) {
-        const LevelPoint& point = grid.PointOf(end);
-        const double along_m = (Eigen::Vector2d(point.x_m, point.y_m) - facts.mean_m).dot(facts.direction);
+    for (const std::int32_t index : OutlineOf(piece)) {
+      const OutlineEntry& entry = Entry(index);
+      for (const LevelPoint* point : {&entry.near_point, &entry.far_point}) {
+        const Eigen::Vector2d from_mean_m = Eigen::Vector2d(point->x_m, point->y_m) - facts.mean_m;
+        const double along_m = from_mean_m.dot(facts.direction);
         least_m = std::min(least_m, along_m);
         greatest_m = std::max(greatest_m, along_m);
+        radius_of_m2 = std::max(radius_of_m2, from_mean_m.squaredNorm());
       }
     }
   }
   facts.length_m = greatest_m - least_m;
+  facts.radius_m = std::sqrt(radius_of_m2);
 }
 
 // The least arc that holds all of to_cover_: the circle without the widest gap between them.
@@ -191,7 +193,7 @@ Arc PieceTable::CoveringArc(int num_columns) {
   return {after_widest, num_columns - widest};
 }
 
-bool PieceTable::Settle(const TurnGrid& grid, const RunTable& runs) {
+bool PieceTable::Settle(const TurnGrid& grid) {
   bool is_changed = false;
   for (const std::int32_t piece : new_land_) {
     bool& is_land = facts_[static_cast<std::size_t>(RootOf(piece))].is_land;
@@ -221,7 +223,7 @@ bool PieceTable::Settle(const TurnGrid& grid, const RunTable& runs) {
     to_cover_.clear();
     for (std::int32_t piece = root; piece != kNone; piece = NextMember(piece)) to_cover_.push_back(arcs_[static_cast<std::size_t>(piece)]);
     facts_[static_cast<std::size_t>(root)].arc = CoveringArc(grid.num_columns());
-    FitLine(grid, runs, root);
+    FitLine(root);
   }
   return true;
 }

@@ -48,6 +48,7 @@ struct PieceFacts {
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
   double length_m = 0.0;  // along it
   double off_m = 0.0;     // off it, root mean square
+  double radius_m = 0.0;  // from the mean to the farthest return
 };
 
 /// Pieces are numbered in the order of their first run. A set of joined pieces is named by its root; FactsOf holds for roots.
@@ -79,7 +80,7 @@ class PieceTable {
   void MarkDock(std::int32_t piece) { facts_[static_cast<std::size_t>(RootOf(piece))].is_dock = true; }
   /// Carries out what was wanted. What is of a set with land is land.
   /// @return whether anything changed
-  bool Settle(const TurnGrid& grid, const RunTable& runs);
+  bool Settle(const TurnGrid& grid);
 
  private:
   struct Pair {
@@ -94,7 +95,7 @@ class PieceTable {
   }
 
   void BuildOutlines(const TurnGrid& grid, const RunTable& runs);
-  void FitLine(const TurnGrid& grid, const RunTable& runs, std::int32_t root);
+  void FitLine(std::int32_t root);
   Arc CoveringArc(int num_columns);
 
   std::vector<std::int32_t> piece_of_run_;  // [runs]

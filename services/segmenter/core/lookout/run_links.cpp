@@ -65,6 +65,14 @@ class Linker {
 
   // A return beside the run, or at a place of it.
   bool IsLinkedTo(const Run& run, int place, int window, const LevelPoint& point, bool is_of_one_ring) const {
+    // Where its ends come near each other round the circle, both count.
+    if (run.length + 2 * window > grid_.num_columns()) {
+      for (int k = place - window; k <= place + window; ++k) {
+        const int on_run = (k + grid_.num_columns()) % grid_.num_columns();
+        if (on_run < run.length && AreLinked(grid_.PointOf(ReturnOf(grid_, run, on_run)), point, is_of_one_ring)) return true;
+      }
+      return false;
+    }
     const int end = std::min(run.length - 1, place + window);
     for (int k = std::max(0, place - window); k <= end; ++k) {
       if (AreLinked(grid_.PointOf(ReturnOf(grid_, run, k)), point, is_of_one_ring)) return true;

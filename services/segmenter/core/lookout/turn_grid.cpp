@@ -3,43 +3,87 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "common/core/angles.hpp"
 
 namespace lookout::segmenter {
 
+namespace {
+
+// From the last column to the first where a turn is whole: as that from column to column, but for the unevenness of a turning head.
+constexpr double kMaxSeamSteps = 1.5;
+// Empty columns at least where it is not.
+constexpr int kLeastMissing = 8;
+
+}  // namespace
+
 void TurnGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eigen::Matrix3d& R_vessel_lidar) {
-  num_columns_ = scan.columns.size();
   num_layers_ = scan.head.num_returns;
   num_lines_ = scan.head.num_rings() * num_layers_;
-  MeasureColumnStep(scan.columns.azimuth_rad);
-  returns_ = returns;
+  MeasureColumns(scan);
   return_at_.assign(static_cast<std::size_t>(num_lines_) * static_cast<std::size_t>(num_columns_), kNone);
   range_at_.assign(return_at_.size(), std::numeric_limits<float>::infinity());
   points_.resize(returns.size());
+  column_of_.resize(returns.size());
   const Eigen::Matrix3f R = R_vessel_lidar.cast<float>();
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const Return& one = returns[i];
     const Eigen::Vector3f p = R * Eigen::Vector3f(one.point.x_m, one.point.y_m, one.point.z_m);
     points_[i] = {p.x(), p.y(), p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y())};
+    column_of_[i] = is_shifted_ ? Wrap(one.column + shift_of_[static_cast<std::size_t>(one.ring)]) : one.column;
     const int line = one.ring * num_layers_ + one.cell % num_layers_;
-    const std::size_t cell = static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(one.column);
+    const std::size_t cell =
+        static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column_of_[i]);
     return_at_[cell] = static_cast<std::int32_t>(i);
     range_at_[cell] = points_[i].range_m;
   }
+  SortByColumn();
 }
 
-void TurnGrid::MeasureColumnStep(std::span<const float> azimuth_rad) {
+void TurnGrid::MeasureColumns(const Scan& scan) {
+  const auto& azimuth_rad = scan.columns.azimuth_rad;
+  const int num_scanned = scan.columns.size();
   steps_rad_.clear();
   for (std::size_t column = 0; column < azimuth_rad.size(); ++column) {
     const std::size_t next = column + 1 < azimuth_rad.size() ? column + 1 : 0;
     steps_rad_.push_back(std::abs(static_cast<float>(WrapToPi(double{azimuth_rad[next]} - azimuth_rad[column]))));
   }
+  const float seam_rad = steps_rad_.empty() ? 0.0F : steps_rad_.back();
   column_step_rad_ = 0.0;
-  if (steps_rad_.empty()) return;
-  const auto middle = steps_rad_.begin() + static_cast<std::ptrdiff_t>(steps_rad_.size() / 2);
-  std::nth_element(steps_rad_.begin(), middle, steps_rad_.end());
-  column_step_rad_ = *middle;
+  if (!steps_rad_.empty()) {
+    const auto middle = steps_rad_.begin() + static_cast<std::ptrdiff_t>(steps_rad_.size() / 2);
+    std::nth_element(steps_rad_.begin(), middle, steps_rad_.end());
+    column_step_rad_ = *middle;
+  }
+  constexpr double kMostStepRad = kTwoPi / kMinColumns;
+  constexpr double kLeastStepRad = kTwoPi / 65536.0;  // columns that a turn may have
+  const double step_rad = std::clamp(column_step_rad_, kLeastStepRad, kMostStepRad);
+  const bool is_whole = num_scanned >= kMinColumns && seam_rad <= kMaxSeamSteps * column_step_rad_;
+  // The missing part counts as columns too; between two of them there is at least one when the turn is not whole.
+  num_columns_ = is_whole ? num_scanned : std::max({kMinColumns, num_scanned + kLeastMissing, static_cast<int>(std::lround(kTwoPi / step_rad))});
+
+  is_shifted_ = false;
+  shift_of_.clear();
+  for (const auto& ring : scan.head.rings) {
+    const auto shift = static_cast<std::int32_t>(std::lround(WrapToPi(double{ring.azimuth_offset_rad}) / step_rad));
+    is_shifted_ = is_shifted_ || std::abs(double{ring.azimuth_offset_rad}) > step_rad;
+    shift_of_.push_back(std::clamp(shift, -num_columns_ + 1, num_columns_ - 1));
+  }
+}
+
+void TurnGrid::SortByColumn() {
+  by_column_.resize(column_of_.size());
+  if (!is_shifted_) {
+    std::iota(by_column_.begin(), by_column_.end(), 0);
+    return;
+  }
+  next_in_column_.assign(static_cast<std::size_t>(num_columns_) + 1, 0);
+  for (const std::int32_t column : column_of_) ++next_in_column_[static_cast<std::size_t>(column) + 1];
+  for (std::size_t column = 1; column < next_in_column_.size(); ++column) next_in_column_[column] += next_in_column_[column - 1];
+  for (std::size_t i = 0; i < column_of_.size(); ++i) {
+    by_column_[static_cast<std::size_t>(next_in_column_[static_cast<std::size_t>(column_of_[i])]++)] = static_cast<std::int32_t>(i);
+  }
 }
 
 bool TurnGrid::IsAnyNear(int line, int column, int window, float range_m, float reach_m) const {

@@ -25,10 +25,15 @@ inline float SquaredPlanDistance(const LevelPoint& one, const LevelPoint& other)
   return x_m * x_m + y_m * y_m;
 }
 
-/// Lines are the rings, from the lowest up, each once per return of a shot: line = ring x returns per shot + return. Columns close to a circle.
+/// Lines are the rings, from the lowest up, each once per return of a shot: line = ring x returns per shot + return.
+///
+/// Columns make a whole circle: where the turn is a part of one, empty columns stand for the rest. Where a lidar fires the beams of a column to more
+/// than a column's width aside (Ouster: up to 3 degrees), each return stands in the column that it looks along.
 class TurnGrid {
  public:
   static constexpr std::int32_t kNone = -1;
+  /// More than any window of columns is wide.
+  static constexpr int kMinColumns = 64;
 
   /// @param T_vessel_lidar  its rotation levels the returns
   /// Cost: proportional to the cells. Allocates nothing once it has seen a turn of that size.
@@ -54,13 +59,17 @@ class TurnGrid {
   bool IsAnyNear(int line, int column, int window, float range_m, float reach_m) const;
   const LevelPoint& PointOf(std::int32_t index) const { return points_[static_cast<std::size_t>(index)]; }
   std::span<const LevelPoint> points() const { return points_; }
-  std::span<const Return> returns() const { return returns_; }
+  /// Column of the grid in which a return stands.
+  std::int32_t ColumnOf(std::int32_t index) const { return column_of_[static_cast<std::size_t>(index)]; }
+  /// Returns column by column.
+  std::span<const std::int32_t> by_column() const { return by_column_; }
 
   /// Columns that an arc of this length takes at this distance, rounded up; at most half of the circle.
   int ColumnsOf(double length_m, double range_m) const;
 
  private:
-  void MeasureColumnStep(std::span<const float> azimuth_rad);
+  void MeasureColumns(const Scan& scan);
+  void SortByColumn();
 
   int num_lines_ = 0;
   int num_columns_ = 0;
@@ -69,8 +78,13 @@ class TurnGrid {
   std::vector<std::int32_t> return_at_;  // [lines x columns]
   std::vector<float> range_at_;          // [lines x columns]
   std::vector<LevelPoint> points_;       // [returns]
-  std::vector<float> steps_rad_;         // scratch
-  std::span<const Return> returns_;
+  std::vector<std::int32_t> column_of_;  // [returns]
+  std::vector<std::int32_t> by_column_;  // [returns]
+  bool is_shifted_ = false;
+  std::vector<std::int32_t> shift_of_;  // [rings] columns
+  // Scratch.
+  std::vector<float> steps_rad_;
+  std::vector<std::int32_t> next_in_column_;
 };
 
 }  // namespace lookout::segmenter
