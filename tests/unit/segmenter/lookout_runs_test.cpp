@@ -1,0 +1,180 @@
+// Runs, and the three rules by which they are linked.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "services/segmenter/core/lookout/runs.hpp"
+#include "tests/unit/segmenter/lookout_stages.hpp"
+
+namespace lookout::segmenter {
+namespace {
+
+using test::EmptyScan;
+using test::SetReturn;
+using test::Stages;
+
+// At 10 m two returns are linked when they are at most 0.4 m apart (0.3 m + 0.01 x 10 m); columns are 0.0348 m apart.
+constexpr double kRangeM = 10.0;
+constexpr double kInsideM = 0.39;
+constexpr double kOutsideM = 0.41;
+
+// Range along the beam of a ring at which it is `plan_m` away seen from above.
+double SlantM(const Scan& scan, int ring, double plan_m) { return plan_m / std::cos(scan.head.rings[static_cast<std::size_t>(ring)].elevation_rad); }
+
+int NumPieces(const Scan& scan) { return Stages(scan).pieces.size(); }
+
+// A return at column 100 of one ring, and another.
+int NumPiecesOfTwo(int ring, double plan_m, int other_ring, int columns_on, double other_plan_m, int num_columns = 1808) {
+  auto scan = EmptyScan({.num_columns = num_columns});
+  SetReturn(scan, 100, ring, SlantM(scan, ring, plan_m));
+  SetReturn(scan, 100 + columns_on, other_ring, SlantM(scan, other_ring, other_plan_m));
+  return NumPieces(scan);
+}
+
+TEST(Runs, OfAnEmptyTurnAreNone) {
+  const Stages stages(EmptyScan({}));
+  EXPECT_EQ(stages.runs.size(), 0);
+  EXPECT_EQ(stages.pieces.size(), 0);
+}
+
+TEST(Runs, BreakWhereNeighboursAreFartherApartThanTheLink) {
+  for (const auto& [step_m, num_runs] : {std::pair{kInsideM, 1}, {kOutsideM, 2}}) {
+    auto scan = EmptyScan({.num_rings = 1});
+    for (int column = 100; column < 110; ++column) SetReturn(scan, column, 0, column < 105 ? kRangeM : kRangeM + step_m);
+    EXPECT_EQ(Stages(scan).runs.size(), num_runs) << step_m;
+  }
+}
+
+TEST(Runs, BreakAtAnEmptyBeam) {
+  auto scan = EmptyScan({.num_rings = 1});
+  for (const int column : {100, 101, 103}) SetReturn(scan, column, 0, kRangeM);
+  const Stages stages(scan);
+  ASSERT_EQ(stages.runs.size(), 2);
+  EXPECT_EQ(stages.runs[0].first, 100);
+  EXPECT_EQ(stages.runs[0].length, 2);
+  EXPECT_EQ(stages.runs[1].first, 103);
+}
+
+TEST(Runs, GoOnOverTheSeam) {
+  auto scan = EmptyScan({.num_rings = 1});
+  for (const int column : {1806, 1807, 0, 1, 2}) SetReturn(scan, column, 0, kRangeM);
+  const Stages stages(scan);
+  ASSERT_EQ(stages.runs.size(), 1);
+  EXPECT_EQ(stages.runs[0].first, 1806);
+  EXPECT_EQ(stages.runs[0].length, 5);
+}
+
+TEST(Runs, AllRoundAreOne) {
+  auto scan = EmptyScan({.num_rings = 1});
+  for (int column = 0; column < 1808; ++column) SetReturn(scan, column, 0, kRangeM);
+  const Stages stages(scan);
+  ASSERT_EQ(stages.runs.size(), 1);
+  EXPECT_EQ(stages.runs[0].length, 1808);
+}
+
+TEST(Runs, OfBothReturnsOfAShotAreApart) {
+  auto scan = EmptyScan({.num_rings = 1, .num_returns = 2});
+  for (int column = 100; column < 105; ++column) {
+    SetReturn(scan, column, 0, kRangeM, 0);
+    SetReturn(scan, column, 0, 2.0 * kRangeM, 1);
+  }
+  const Stages stages(scan);
+  EXPECT_EQ(stages.runs.size(), 2);
+  EXPECT_EQ(stages.pieces.size(), 2);
+}
+
+TEST(LinksInARing, ReachOverEmptyBeamsAsFarAsTheLink) {
+  EXPECT_EQ(NumPiecesOfTwo(8, kRangeM, 8, kLinkColumns, kRangeM), 1);
+  EXPECT_EQ(NumPiecesOfTwo(8, kRangeM, 8, kLinkColumns + 1, kRangeM), 2);
+  EXPECT_EQ(NumPiecesOfTwo(8, kRangeM, 8, 2, kRangeM + kInsideM - 0.01), 1);
+  EXPECT_EQ(NumPiecesOfTwo(8, kRangeM, 8, 2, kRangeM + kOutsideM), 2);
+}
+
+TEST(LinksInARing, GoOnOverTheSeam) {
+  auto scan = EmptyScan({.num_rings = 1});
+  SetReturn(scan, 1805, 0, kRangeM);
+  SetReturn(scan, 3, 0, kRangeM);
+  EXPECT_EQ(NumPieces(scan), 1);
+}
+
+// The nearest two of a run and the next may be others than their ends: a stray end on a hull.
+TEST(LinksInARing, AreBetweenAnyTwoReturnsOfTheRunsNearEnough) {
+  auto scan = EmptyScan({.num_rings = 1});
+  for (int column = 100; column < 104; ++column) SetReturn(scan, column, 0, kRangeM);
+  SetReturn(scan, 104, 0, kRangeM + 0.6);  // a run by itself, 0.6 m behind
+  SetReturn(scan, 105, 0, kRangeM);
+  const Stages stages(scan);
+  EXPECT_EQ(stages.runs.size(), 3);
+  EXPECT_EQ(stages.pieces.size(), 2) << "what the stray one parts is one piece";
+}
+
+TEST(LinksInARing, TakeTheOtherReturnOfAShot) {
+  auto scan = EmptyScan({.num_returns = 2});
+  SetReturn(scan, 100, 8, kRangeM, 0);
+  SetReturn(scan, 102, 8, kRangeM + 0.3, 1);
+  EXPECT_EQ(NumPieces(scan), 1);
+  SetReturn(scan, 102, 8, kRangeM + 0.6, 1);
+  EXPECT_EQ(NumPieces(scan), 2);
+}
+
+TEST(LinksBetweenRings, ReachThreeRingsAndFourColumns) {
+  EXPECT_EQ(NumPiecesOfTwo(4, kRangeM, 4 + kLinkRings, 0, kRangeM), 1);
+  EXPECT_EQ(NumPiecesOfTwo(4, kRangeM, 4 + kLinkRings + 1, 0, kRangeM), 2);
+  EXPECT_EQ(NumPiecesOfTwo(4, kRangeM, 5, kLinkAcrossColumns, kRangeM), 1);
+  EXPECT_EQ(NumPiecesOfTwo(4, kRangeM, 5, kLinkAcrossColumns + 1, kRangeM), 2);
+  EXPECT_EQ(NumPiecesOfTwo(5, kRangeM, 4, kLinkAcrossColumns, kRangeM), 1) << "also from the upper to the lower";
+}
+
+TEST(LinksBetweenRings, GoByTheDistanceSeenFromAbove) {
+  // Three rings apart is 1 m up at 10 m: a mast over its hull.
+  EXPECT_EQ(NumPiecesOfTwo(4, kRangeM, 7, 0, kRangeM + kInsideM), 1);
+  EXPECT_EQ(NumPiecesOfTwo(4, kRangeM, 7, 0, kRangeM + kOutsideM), 2);
+}
+
+TEST(LinksBetweenRings, GoOnOverTheSeam) {
+  auto scan = EmptyScan({});
+  SetReturn(scan, 1806, 8, kRangeM);
+  SetReturn(scan, 1, 9, kRangeM);
+  EXPECT_EQ(NumPieces(scan), 1);
+}
+
+// A wall 5 m to the side, seen along. At r metres its sine is 5 / r and its returns are r / 5 x 0.035 r / 10 apart.
+Scan WallSeenAlong(double from_m, double to_m) {
+  auto scan = EmptyScan({.num_rings = 1});
+  const std::vector<test::Wall> walls{{from_m, 5.0, to_m, 5.0, -1.0, 1.0}};
+  test::Look(scan, walls);
+  return scan;
+}
+
+TEST(LinksAlongAWall, GoFartherThanTheLinkWhereThreeReturnsAreInLine) {
+  const auto scan = WallSeenAlong(36.0, 45.0);  // 0.9 to 1.4 m apart; the link is 0.66 to 0.75 m
+  ASSERT_GE(test::NumReturns(scan), 6);
+  const Stages stages(scan);
+  EXPECT_EQ(stages.runs.size(), test::NumReturns(scan));
+  EXPECT_EQ(stages.pieces.size(), 1);
+}
+
+TEST(LinksAlongAWall, DoNotReachWhereItIsSeenAtLessThanSixDegrees) {
+  const auto scan = WallSeenAlong(60.0, 110.0);
+  ASSERT_GE(test::NumReturns(scan), 6);
+  EXPECT_EQ(NumPieces(scan), test::NumReturns(scan));
+}
+
+TEST(LinksAlongAWall, WantThreeReturns) {
+  auto scan = WallSeenAlong(38.0, 40.0);
+  ASSERT_EQ(test::NumReturns(scan), 2);
+  EXPECT_EQ(NumPieces(scan), 2);
+}
+
+TEST(LinksAlongAWall, DoNotGoRoundACorner) {
+  auto scan = WallSeenAlong(38.0, 41.0);
+  ASSERT_EQ(test::NumReturns(scan), 3);
+  ASSERT_EQ(NumPieces(scan), 1);
+  int column = 0;
+  while (scan.columns.range[test::CellOf(scan, column, 0)] == 0) ++column;
+  const double middle_m = scan.columns.range[test::CellOf(scan, column + 1, 0)] * scan.head.range_unit_m;
+  SetReturn(scan, column + 1, 0, middle_m + 2.0);  // beyond the farther one: no way through
+  EXPECT_EQ(NumPieces(scan), 3);
+}
+
+}  // namespace
+}  // namespace lookout::segmenter
