@@ -3,4 +3,5 @@ lookout_test(NAME unit_eval
                      unit/eval/evaluation_test.cpp unit/eval/machine_test.cpp unit/eval/table_test.cpp unit/eval/scoring_test.cpp
                      unit/eval/scoring_laws_test.cpp
              LINKS lookout_eval)
+lookout_test(NAME unit_default_method SOURCES unit/eval/default_method_test.cpp LINKS lookout_judge lookout_config)
 lookout_test(NAME unit_judge SOURCES unit/eval/judge_test.cpp LINKS lookout_judge lookout_config TIMEOUT 180)
