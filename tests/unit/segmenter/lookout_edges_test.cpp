@@ -1,0 +1,243 @@
+// The lookout method where the circle closes, where a turn is a part of one, and where a lidar is another than the VLP-16.
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "tests/unit/segmenter/lookout_stages.hpp"
+#include "tests/unit/wire/counting_new.hpp"
+
+namespace lookout::segmenter {
+namespace {
+
+using test::EmptyScan;
+using test::SegmentOf;
+using test::SetReturn;
+using test::Stages;
+using test::Wall;
+
+// A step of the window may be more columns than there are.
+TEST(FewColumns, AreLinkedAsManyAre) {
+  for (const int num_columns : {3, 2, 1}) {
+    auto scan = EmptyScan({.num_columns = num_columns, .num_rings = 2, .width_rad = 0.0035 * num_columns});
+    for (int column = 0; column < num_columns; ++column) {
+      for (const int ring : {0, 1}) SetReturn(scan, column, ring, 10.0);
+    }
+    const auto segments = SegmentScan(scan, {});
+    EXPECT_EQ(segments.segments.size(), 1U) << num_columns;
+    EXPECT_EQ(std::ranges::count(segments.label, 0), 0) << num_columns;
+  }
+}
+
+// 512 columns of a wall all round at 20 m are 0.245 m apart and linked up to 0.5 m. What is right above one of them is of it in each column.
+TEST(WholeCircle, IsLinkedToTheNextRingInEachColumn) {
+  for (int column = 0; column < 512; ++column) {
+    auto scan = EmptyScan({.num_columns = 512, .num_rings = 2});
+    for (int other = 0; other < 512; ++other) SetReturn(scan, other, 0, 20.0);
+    SetReturn(scan, column, 1, 20.0);
+    EXPECT_EQ(Stages(scan).pieces.size(), 1) << column;
+  }
+}
+
+// A wall that winds inwards all the way round, but for 5 columns: its ends are 3 m apart. What is beside an end is linked to it.
+TEST(WholeCircle, AlmostClosedIsLinkedAtBothEnds) {
+  constexpr int kColumns = 512;
+  for (const bool is_mirrored : {false, true}) {
+    for (int beyond = 1; beyond <= 2; ++beyond) {
+      auto scan = EmptyScan({.num_columns = kColumns, .num_rings = 2});
+      const auto at = [is_mirrored](int column) { return is_mirrored ? kColumns - 1 - column : column; };
+      constexpr int kLength = kColumns - 5;
+      for (int column = 0; column < kLength; ++column) SetReturn(scan, at(column), 0, 15.0 + 3.0 * column / kLength);
+      SetReturn(scan, at(kLength - 1 + beyond), 1, 18.0);  // link 0.48 m; 0.22 m and 0.44 m off
+      EXPECT_EQ(Stages(scan).pieces.size(), 1) << beyond << (is_mirrored ? " mirrored" : "");
+    }
+  }
+}
+
+// Its runs close: their first and last returns are neighbours, and say nothing of its length.
+TEST(WholeCircle, OfAHarbourWallIsLand) {
+  auto scan = EmptyScan({});
+  for (int column = 0; column < 1808; ++column) {
+    for (int ring = 5; ring < 11; ++ring) SetReturn(scan, column, ring, 20.0);
+  }
+  const auto segments = SegmentScan(scan, {});
+  ASSERT_EQ(segments.segments.size(), 1U);
+  EXPECT_GT(segments.segments[0].length_m, 39.0F);
+  EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand);
+}
+
+// A quarter of a turn, its columns from left to right, with something near that hides the middle of a shore.
+TEST(PartOfATurn, HasItsWaterlineFromLeftToRight) {
+  auto scan = EmptyScan({.num_columns = 452, .width_rad = kPi / 2});
+  test::Look(scan, std::vector<Wall>{{40.0, 0.0, 0.0, -40.0, -3.0, 3.0}}, 0.02);
+  for (int column = 200; column < 232; ++column) {
+    for (int ring = 0; ring < 16; ++ring) SetReturn(scan, column, ring, 8.0);
+  }
+  const auto segments = SegmentScan(scan, {});
+  ASSERT_EQ(segments.segments.size(), 2U);
+  const auto land = std::ranges::find(segments.segments, SegmentKind::kLand, &Segment::kind);
+  ASSERT_NE(land, segments.segments.end());
+  ASSERT_GE(land->waterline.size(), 2U);
+  double last_deg = -1.0;
+  for (const auto& corner : land->waterline) {
+    const double azimuth_deg = RadToDeg(-std::atan2(double{corner.y_m}, double{corner.x_m}));
+    EXPECT_GT(azimuth_deg, last_deg);
+    last_deg = azimuth_deg;
+  }
+}
+
+// Lidars of other makers fire the beams of a column up to some 4 degrees apart: a column is no upright line.
+TEST(OtherLidars, WithBeamsOfAColumnAsideOfEachOtherSeeTheSameObjects) {
+  for (const int num_rings : {32, 64, 128}) {
+    for (const int num_columns : {1024, 2048}) {
+      for (const double offset_deg : {0.0, 3.0}) {
+        auto scan = EmptyScan({.num_columns = num_columns, .num_rings = num_rings});
+        for (int ring = 0; ring < num_rings; ++ring) {
+          auto& beam = scan.head.rings[static_cast<std::size_t>(ring)];
+          beam.elevation_rad = static_cast<float>(DegToRad(-20.0 + 40.0 * ring / (num_rings - 1)));
+          beam.azimuth_offset_rad = static_cast<float>(DegToRad(offset_deg * ((ring % 4) * 2 - 3) / 3.0));
+        }
+        std::vector<Wall> walls;
+        test::AddBoat(walls, 12.0, 4.0, 0.5, 7.0, 2.5, -1.0, 1.5);
+        test::AddBoat(walls, 25.0, -14.0, 0.5, 5.0, 2.0, -1.0, 1.5);
+        test::AddBoat(walls, -20.0, 3.0, 0.2, 0.5, 0.5, -1.0, 0.5);
+        test::Look(scan, walls, 0.02);
+        EXPECT_EQ(SegmentScan(scan, {}).segments.size(), 3U) << num_rings << " rings, " << num_columns << " columns, " << offset_deg << " degrees";
+      }
+    }
+  }
+}
+
+// The hull that is published holds every return, whichever way the beams of a column look.
+TEST(OtherLidars, WithBeamsOfAColumnAsideOfEachOtherHaveHullsAroundAllReturns) {
+  for (const double offset_deg : {0.0, 3.0}) {
+    auto scan = EmptyScan({.num_columns = 1024});
+    for (std::size_t ring = 0; ring < 16; ++ring) {
+      scan.head.rings[ring].azimuth_offset_rad = static_cast<float>(DegToRad(ring % 2 == 0 ? offset_deg : -offset_deg));
+    }
+    for (int column = 500; column < 510; ++column) {
+      for (int ring = 4; ring < 12; ++ring) SetReturn(scan, column, ring, 4.0 + 0.02 * ring);
+    }
+    const auto segments = SegmentScan(scan, {});
+    for (const auto& one : ClassifyReturns(scan, {}).returns) {
+      const auto& hull = SegmentOf(segments, segments.label[static_cast<std::size_t>(one.cell)]).hull;
+      for (std::size_t i = 0; hull.size() >= 3 && i < hull.size(); ++i) {
+        const auto& from = hull[i];
+        const auto& to = hull[(i + 1) % hull.size()];
+        const double edge_m = std::hypot(to.x_m - from.x_m, to.y_m - from.y_m);
+        const double inside_m = ((to.x_m - from.x_m) * (one.point.y_m - from.y_m) - (to.y_m - from.y_m) * (one.point.x_m - from.x_m)) / edge_m;
+        ASSERT_GE(inside_m, -1e-4) << offset_deg << " degrees: return of ring " << one.ring << ", column " << one.column;
+      }
+    }
+  }
+}
+
+// A boat of 8 m seen from ahead: both ends of its runs are at the stern, and its length is from there to the bow.
+Scan BowOn() {
+  auto scan = EmptyScan({});
+  for (int step = -70; step <= 70; ++step) {
+    for (int ring = 7; ring < 10; ++ring) SetReturn(scan, 900 + step, ring, 6.0 + 8.0 * std::abs(step) / 70.0);
+  }
+  return scan;
+}
+
+TEST(BowOn, TheLengthIsFromBowToStern) {
+  const Stages stages(BowOn());
+  ASSERT_EQ(stages.pieces.size(), 1);
+  EXPECT_GT(stages.pieces.FactsOf(0).length_m, 7.0);
+}
+
+// Side by side goes by the gap, which is 1.2 m; joined are up to 1.65 m at 5 m.
+TEST(BowOn, WhatIsBesideTheBowIsOfIt) {
+  auto scan = BowOn();
+  for (int step = -4; step <= 4; ++step) SetReturn(scan, 900 + step, 3, 4.8 / std::cos(DegToRad(9.0)));
+  ASSERT_EQ(Stages(scan).pieces.size(), 2);
+  EXPECT_EQ(SegmentScan(scan, {}).segments.size(), 1U);
+}
+
+// Two quays, the left one 3.55 m farther off: between half of what is beside land at 19.7 m (3.59 m) and at 16.15 m (3.48 m).
+TEST(Mirrored, TwoQuaysAreAsManyPiecesOfLand) {
+  std::size_t num_segments[2]{};
+  for (const int is_mirrored : {0, 1}) {
+    auto scan = EmptyScan({});
+    const auto at = [is_mirrored](int column) { return is_mirrored != 0 ? 1807 - column : column; };
+    for (int column = 300; column < 900; ++column) {
+      for (int ring = 6; ring < 10; ++ring) SetReturn(scan, at(column), ring, column < 600 ? 19.7 : 16.15);
+    }
+    num_segments[is_mirrored] = SegmentScan(scan, {}).segments.size();
+  }
+  EXPECT_EQ(num_segments[0], num_segments[1]);
+}
+
+TEST(Memory, NothingIsAllocatedForATurnThatHasBeenSeen) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    auto scan = EmptyScan({});
+    test::Look(scan, test::Lake(seed), 0.03, seed);
+    if (seed % 2 == 0) test::AddRain(scan, 600, seed);
+    Segmenter segmenter{Params{}};
+    segmenter.Segment(scan);
+    const auto before = num_allocated_bytes;
+    segmenter.Segment(scan);
+    EXPECT_EQ(num_allocated_bytes - before, 0U) << "seed " << seed;
+  }
+}
+
+// Processor time, so that other processes count little; the least of so many runs.
+double LeastSeconds(const Scan& scan, int num_runs) {
+  Segmenter segmenter{Params{}};
+  double least_s = 1e9;
+  for (int i = 0; i < num_runs; ++i) {
+    const auto begin = std::clock();
+    segmenter.Segment(scan);
+    least_s = std::min(least_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  return least_s;
+}
+
+// A turn of 16 rings, ranges from column, ring and chance; 0 = none.
+template <typename RangeM>
+Scan Filled(int num_columns, RangeM range_m) {
+  auto scan = EmptyScan({.num_columns = num_columns});
+  std::mt19937_64 random(9);
+  const auto uniform = [&random](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
+  for (int column = 0; column < num_columns; ++column) {
+    for (int ring = 0; ring < 16; ++ring) SetReturn(scan, column, ring, range_m(column, ring, uniform));
+  }
+  return scan;
+}
+
+// Four times the returns may cost six times as much; by all pairs it would be sixteen.
+template <typename RangeM>
+void ExpectAboutLinear(RangeM range_m) {
+  const double few_s = std::max(5e-4, LeastSeconds(Filled(512, range_m), 3));
+  const double many_s = LeastSeconds(Filled(2048, range_m), 2);
+  EXPECT_LT(many_s, 6.0 * few_s) << few_s << " s and " << many_s << " s";
+}
+
+// Within 2 m everything is near everything in azimuth. Spray about the bow: a return on every third beam.
+TEST(Cost, OfHeavySprayIsAboutLinear) {
+  ExpectAboutLinear([](int, int, const auto& uniform) { return uniform(0.0, 3.0) < 1.0 ? uniform(0.6, 6.0) : 0.0; });
+}
+
+// Pieces of six returns, all near.
+TEST(Cost, OfManySmallThingsNearByIsAboutLinear) {
+  ExpectAboutLinear([](int column, int ring, const auto&) { return 1.0 + (column / 6 % 2 != 0 ? 0.5 : 0.0) + 0.9 * (ring % 4); });
+}
+
+// A slope of 128 rings is 38 m long, so it is land, in a single column.
+TEST(LandInFewColumns, IsLand) {
+  for (const int num_columns : {3, 2, 1}) {
+    auto scan = EmptyScan({.num_columns = num_columns, .num_rings = 128, .width_rad = 0.0035 * num_columns});
+    for (int ring = 0; ring < 128; ++ring) {
+      scan.head.rings[static_cast<std::size_t>(ring)].elevation_rad = static_cast<float>(DegToRad(-20.0 + 40.0 * ring / 127.0));
+      for (int column = 0; column < num_columns; ++column) SetReturn(scan, column, ring, 5.0 + 0.3 * ring);
+    }
+    const auto segments = SegmentScan(scan, {});
+    ASSERT_EQ(segments.segments.size(), 1U) << num_columns;
+    EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand) << num_columns;
+  }
+}
+
+}  // namespace
+}  // namespace lookout::segmenter
