@@ -226,7 +226,7 @@ TEST(Cost, OfManySmallThingsNearByIsAboutLinear) {
 }
 
 // A slope of 128 rings is 38 m long, so it is land, in a single column.
-TEST(FewColumns, MayHoldLand) {
+TEST(LandInFewColumns, IsLand) {
   for (const int num_columns : {3, 2, 1}) {
     auto scan = EmptyScan({.num_columns = num_columns, .num_rings = 128, .width_rad = 0.0035 * num_columns});
     for (int ring = 0; ring < 128; ++ring) {

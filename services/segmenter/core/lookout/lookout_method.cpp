@@ -15,7 +15,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   land_.Find(grid_, runs_, pieces_);
   objects_.JoinDocks(pieces_);
   pieces_.Settle(grid_);
-  objects_.JoinObjects(grid_, runs_, pieces_);
+  objects_.JoinObjects(grid_, pieces_);
 
   piece_groups_.count = pieces_.size();
   piece_groups_.of_return.resize(returns.size());

@@ -140,7 +140,7 @@ void ObjectJoiner::JoinRectangles(const Post& post, PieceTable& pieces) const {
   }
 }
 
-void ObjectJoiner::JoinObjects(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+void ObjectJoiner::JoinObjects(const TurnGrid& grid, PieceTable& pieces) {
   FindLinks(grid, pieces);
   for (int round = 0; round < kRounds; ++round) {
     for (const Link& link : links_) {

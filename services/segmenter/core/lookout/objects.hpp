@@ -6,7 +6,6 @@
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
-#include "services/segmenter/core/lookout/runs.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
 
 namespace lookout::segmenter {
@@ -22,7 +21,7 @@ class ObjectJoiner {
   explicit ObjectJoiner(const LookoutParams& params) : params_(params) {}
 
   void JoinDocks(PieceTable& pieces);
-  void JoinObjects(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
+  void JoinObjects(const TurnGrid& grid, PieceTable& pieces);
 
   static constexpr std::int32_t kSolidReturns = 4;
 
@@ -56,10 +55,10 @@ class ObjectJoiner {
 
   LookoutParams params_;
   std::vector<Link> links_;
-  std::vector<std::int32_t> solid_;      // by the x of their middle
+  std::vector<std::int32_t> solid_;       // by the x of their middle
   std::vector<std::uint8_t> is_crowded_;  // [solid_]
-  std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
-  std::vector<Post> posts_;            // by cell
+  std::vector<std::int32_t> seen_by_;     // [pieces] the last piece that has looked at it
+  std::vector<Post> posts_;               // by cell
   std::vector<Post> sorted_;
   std::vector<std::size_t> begin_of_cell_;
   std::vector<Post> neighbours_;

@@ -33,8 +33,7 @@ void TurnGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eig
     points_[i] = {p.x(), p.y(), p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y())};
     column_of_[i] = is_shifted_ ? Wrap(one.column + shift_of_[static_cast<std::size_t>(one.ring)]) : one.column;
     const int line = one.ring * num_layers_ + one.cell % num_layers_;
-    const std::size_t cell =
-        static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column_of_[i]);
+    const std::size_t cell = static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column_of_[i]);
     return_at_[cell] = static_cast<std::int32_t>(i);
     range_at_[cell] = points_[i].range_m;
   }
