@@ -89,7 +89,7 @@ TEST(CoveringArc, LeavesOutTheWidestGapOfManySeededSets) {
     const auto scan = RingWith(stretches, kColumns);
     Stages stages(scan);
     for (std::int32_t piece = 1; piece < stages.pieces.size(); ++piece) stages.pieces.Join(0, piece);
-    stages.pieces.Settle(stages.grid, stages.runs);
+    stages.pieces.Settle(stages.grid);
     ASSERT_EQ(stages.pieces.roots().size(), 1U);
     int widest = 0;
     for (int begin = 0; begin < kColumns; ++begin) {
@@ -124,7 +124,7 @@ TEST(Settle, AddsUpWhatWasJoinedUnderTheLeastNumber) {
   ASSERT_EQ(stages.pieces.size(), 3);
   stages.pieces.Join(2, 1);
   EXPECT_EQ(stages.pieces.RootOf(2), 2) << "not before it is settled";
-  EXPECT_TRUE(stages.pieces.Settle(stages.grid, stages.runs));
+  EXPECT_TRUE(stages.pieces.Settle(stages.grid));
   EXPECT_EQ(stages.pieces.RootOf(2), 1);
   EXPECT_EQ(stages.pieces.roots().size(), 2U);
   EXPECT_EQ(stages.pieces.FactsOf(1).num_returns, 9);
@@ -132,15 +132,15 @@ TEST(Settle, AddsUpWhatWasJoinedUnderTheLeastNumber) {
   EXPECT_EQ(stages.pieces.NextMember(1), 2);
   EXPECT_EQ(stages.pieces.NextMember(2), PieceTable::kNone);
   EXPECT_EQ(stages.pieces.ArcOf(1).num, 5) << "single pieces stay as they are";
-  EXPECT_FALSE(stages.pieces.Settle(stages.grid, stages.runs)) << "nothing more";
+  EXPECT_FALSE(stages.pieces.Settle(stages.grid)) << "nothing more";
 }
 
 TEST(Settle, MakesLandOfWhatIsJoinedToLand) {
   Stages stages(RingWith({{10, 3}, {100, 5}, {110, 4}}));
   stages.pieces.MarkLand(2);
-  stages.pieces.Settle(stages.grid, stages.runs);
+  stages.pieces.Settle(stages.grid);
   stages.pieces.Join(0, 2);
-  stages.pieces.Settle(stages.grid, stages.runs);
+  stages.pieces.Settle(stages.grid);
   EXPECT_TRUE(stages.pieces.FactsOf(stages.pieces.RootOf(2)).is_land);
   EXPECT_FALSE(stages.pieces.FactsOf(1).is_land);
 }

@@ -6,16 +6,25 @@
 
 namespace lookout::segmenter {
 
+namespace {
+
+constexpr double kLinkedColumns = 2.8;  // LookoutParams::link grows by as many columns of 0.2 degrees
+
+}  // namespace
+
 void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   grid_.Fill(scan, returns, R_vessel_lidar_);
-  runs_.Find(grid_, params_.link);
+  // Columns that are wider apart than those of a VLP-16 need a longer reach to see one surface as one.
+  Reach link = params_.link;
+  link.per_range = std::max(link.per_range, kLinkedColumns * grid_.column_step_rad());
+  runs_.Find(grid_, link);
   sets_of_runs_.Reset(static_cast<std::size_t>(runs_.size()));
-  LinkRuns(grid_, runs_, params_.link, sets_of_runs_);
+  LinkRuns(grid_, runs_, link, sets_of_runs_);
   pieces_.Build(grid_, runs_, sets_of_runs_);
   land_.Find(grid_, runs_, pieces_);
   objects_.JoinDocks(pieces_);
   pieces_.Settle(grid_);
-  objects_.JoinObjects(grid_, pieces_);
+  objects_.JoinObjects(grid_, pieces_, link);
 
   piece_groups_.count = pieces_.size();
   piece_groups_.of_return.resize(returns.size());

@@ -140,13 +140,14 @@ void ObjectJoiner::JoinRectangles(const Post& post, PieceTable& pieces) const {
   }
 }
 
-void ObjectJoiner::JoinObjects(const TurnGrid& grid, PieceTable& pieces) {
+void ObjectJoiner::JoinObjects(const TurnGrid& grid, PieceTable& pieces, const Reach& link) {
+  link_ = link;
   FindLinks(grid, pieces);
   for (int round = 0; round < kRounds; ++round) {
-    for (const Link& link : links_) {
-      const std::int32_t one = pieces.RootOf(link.one);
-      const std::int32_t other = pieces.RootOf(link.other);
-      if (one != other && AreOfOneObject(grid, pieces.FactsOf(one), pieces.FactsOf(other), link.gap_m)) pieces.Join(one, other);
+    for (const Link& one_link : links_) {
+      const std::int32_t one = pieces.RootOf(one_link.one);
+      const std::int32_t other = pieces.RootOf(one_link.other);
+      if (one != other && AreOfOneObject(grid, pieces.FactsOf(one), pieces.FactsOf(other), one_link.gap_m)) pieces.Join(one, other);
     }
     if (!pieces.Settle(grid)) break;
   }
@@ -228,7 +229,7 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   const std::int32_t root = pieces.RootOf(piece);
   const PieceFacts& facts = pieces.FactsOf(root);
   const auto outline = pieces.OutlineOf(piece);
-  const double touch_m = params_.link.At(facts.max_range_m);
+  const double touch_m = link_.At(facts.max_range_m);
   const std::size_t num_before = links_.size();
   std::size_t num_drops = 0;
   const auto look_at = [&](int column, double most_m) {
@@ -272,7 +273,7 @@ bool ObjectJoiner::AreOfOneObject(const TurnGrid& grid, const PieceFacts& one, c
   const bool is_one_solid = one.num_returns >= kSolidReturns;
   const bool is_other_solid = other.num_returns >= kSolidReturns;
   if (!is_one_solid && !is_other_solid) return false;
-  const Reach& reach = is_one_solid && is_other_solid ? params_.join : params_.link;
+  const Reach& reach = is_one_solid && is_other_solid ? params_.join : link_;
   if (gap_m <= reach.At(std::min(one.min_range_m, other.min_range_m))) return true;
   const bool is_one_nearer = one.min_range_m <= other.min_range_m;
   const PieceFacts& nearer = is_one_nearer ? one : other;

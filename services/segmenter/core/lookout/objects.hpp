@@ -21,7 +21,7 @@ class ObjectJoiner {
   explicit ObjectJoiner(const LookoutParams& params) : params_(params) {}
 
   void JoinDocks(PieceTable& pieces);
-  void JoinObjects(const TurnGrid& grid, PieceTable& pieces);
+  void JoinObjects(const TurnGrid& grid, PieceTable& pieces, const Reach& link);
 
   static constexpr std::int32_t kSolidReturns = 4;
 
@@ -54,6 +54,7 @@ class ObjectJoiner {
   void JoinRectangles(const Post& post, PieceTable& pieces) const;
 
   LookoutParams params_;
+  Reach link_;
   std::vector<Link> links_;
   std::vector<std::int32_t> solid_;       // by the x of their middle
   std::vector<std::uint8_t> is_crowded_;  // [solid_]
