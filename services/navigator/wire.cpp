@@ -55,11 +55,11 @@ ItemResult ToItem(const nav_raw_t& message) {
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq) {
   gnss_fix_t message{};
-  message.utime_us = ToUtimeUs(fix.when.time);
+  message.utime_us = ToUtimeUs(fix.when.utc);
   message.seq = seq;
   message.raw_seq = raw_seq;
   message.arrival_utime_us = ToUtimeUs(fix.when.arrival);
-  message.is_time_from_sentence = fix.when.is_from_sentence ? 1 : 0;
+  message.is_time_from_sentence = fix.when.has_sentence_utc ? 1 : 0;
   message.source = fix.source;
   message.sentence_type = fix.sentence_type;
   message.quality = static_cast<std::int32_t>(fix.quality);
@@ -77,11 +77,11 @@ gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq)
 
 attitude_t ToMessage(const Attitude& attitude, std::int64_t seq, std::int64_t raw_seq) {
   attitude_t message{};
-  message.utime_us = ToUtimeUs(attitude.when.time);
+  message.utime_us = ToUtimeUs(attitude.when.utc);
   message.seq = seq;
   message.raw_seq = raw_seq;
   message.arrival_utime_us = ToUtimeUs(attitude.when.arrival);
-  message.is_time_from_sentence = attitude.when.is_from_sentence ? 1 : 0;
+  message.is_time_from_sentence = attitude.when.has_sentence_utc ? 1 : 0;
   message.source = attitude.source;
   message.sentence_type = attitude.sentence_type;
   message.heading_rad = Canonical(attitude.heading_rad);

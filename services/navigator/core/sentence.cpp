@@ -67,11 +67,12 @@ bool IsLine(std::string_view line) {
   return !line.empty() && line.size() <= kMaxLineCharacters && (line.front() == '$' || line.front() == '!') && std::ranges::all_of(line, IsPrintable);
 }
 
-FrameResult Frame(std::string_view line) {
+FrameResult Frame(std::string_view line, bool requires_checksum) {
   const auto star = line.rfind('*');
-  if (star == std::string_view::npos || star == 0) return {SentenceFault::kNoChecksum, {}};
-  auto body = line.substr(1, star - 1);
-  if (!IsChecksumOf(line.substr(star + 1), body)) return {SentenceFault::kBadChecksum, {}};
+  const bool has_star = star != std::string_view::npos && star != 0;
+  if (!has_star && (requires_checksum || line.empty())) return {SentenceFault::kNoChecksum, {}};
+  auto body = has_star ? line.substr(1, star - 1) : line.substr(1);
+  if (has_star && !IsChecksumOf(line.substr(star + 1), body)) return {SentenceFault::kBadChecksum, {}};
 
   FrameResult result;
   const auto address_end = std::min(body.find(','), body.size());

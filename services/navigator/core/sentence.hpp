@@ -47,7 +47,8 @@ struct FrameResult {
   FramedSentence sentence;
 };
 
-/// @param line  as in DatagramLines; must outlive the result
-FrameResult Frame(std::string_view line);
+/// @param line               as in DatagramLines; must outlive the result
+/// @param requires_checksum  false: a line without * is taken too
+FrameResult Frame(std::string_view line, bool requires_checksum = true);
 
 }  // namespace lookout::navigator

@@ -1,4 +1,4 @@
-#include "services/vlp16/core/clock_fit.hpp"
+#include "common/core/clock_fit.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
