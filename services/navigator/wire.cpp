@@ -9,14 +9,6 @@ namespace lookout::navigator {
 
 namespace {
 
-// A source is a short word.
-constexpr std::size_t kMaxSourceCharacters = 32;
-
-bool IsSource(const std::string& source) {
-  return !source.empty() && source.size() <= kMaxSourceCharacters &&
-         std::ranges::all_of(source, [](char character) { return (character >= 'a' && character <= 'z') || (character >= '0' && character <= '9'); });
-}
-
 // All that is unknown goes out as one and the same NaN: same bytes whatever made it.
 double Canonical(double value) { return std::isnan(value) ? kNan : value; }
 
@@ -49,7 +41,7 @@ ItemResult ToItem(const nav_raw_t& message) {
   const bool is_sentence = message.kind == nav_raw_t::KIND_SENTENCE;
   const bool has_source = is_sentence || message.kind == nav_raw_t::KIND_IMU;
   if (is_sentence ? !IsLine(message.sentence) : !message.sentence.empty()) return {ItemFault::kBadText, {}};
-  if (has_source ? !IsSource(message.source) : !message.source.empty()) return {ItemFault::kBadText, {}};
+  if (has_source ? !IsSourceName(message.source) : !message.source.empty()) return {ItemFault::kBadText, {}};
   return {ItemFault::kNone, {*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence}};
 }
 
