@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +9,6 @@
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
-#include "services/navigator/params.hpp"
 
 namespace lookout::navigator {
 
@@ -47,8 +45,5 @@ class Source {
 
   virtual std::vector<Counter> counters() { return {}; }
 };
-
-/// @throws std::runtime_error when a UDP port or a text log cannot be opened; a serial port and a server may come later
-std::unique_ptr<Source> OpenSource(const Connection& connection);
 
 }  // namespace lookout::navigator

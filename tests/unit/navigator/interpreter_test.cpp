@@ -156,8 +156,8 @@ TEST_F(InterpreterTest, TurnsAStrapdownSensorIntoTheVesselFrame) {
 
 TEST_F(InterpreterTest, TakesPositionAndAttitudeOutOfVnins) {
   // 2026-06-01, noon: Monday of GPS week 2421, 18 s ahead of UTC.
-  const auto line = [](const char* status) {
-    return Line(std::string("VNINS,129618.000000,2421,") + status + ",350.0,2.0,-3.0,50.0,8.0,147.0,3.0,-4.0,0.5,1.0,1.6,0.2");
+  const auto line = [](const char* status, const char* time_of_week = "129618.000000") {
+    return Line(std::string("VNINS,") + time_of_week + ",2421," + status + ",350.0,2.0,-3.0,50.0,8.0,147.0,3.0,-4.0,0.5,1.0,1.6,0.2");
   };
   const auto reading = Read(0.05, line("0006"));
   ASSERT_TRUE(reading.fix && reading.attitude);
@@ -171,7 +171,7 @@ TEST_F(InterpreterTest, TakesPositionAndAttitudeOutOfVnins) {
   EXPECT_EQ(reading.fix->climb_mps, -0.5);
   EXPECT_NEAR(reading.attitude->heading_rad, DegToRad(350.0), 1e-12);
   EXPECT_NEAR(reading.attitude->heading_sd_rad, DegToRad(1.0), 1e-12);
-  const auto not_tracking = Read(0.06, line("0004"));
+  const auto not_tracking = Read(0.06, line("0004", "129618.020000"));
   EXPECT_EQ(not_tracking.fix->quality, FixQuality::kNone);
   EXPECT_TRUE(std::isnan(not_tracking.attitude->heading_rad));
   EXPECT_NEAR(not_tracking.attitude->roll_rad, DegToRad(-3.0), 1e-12);

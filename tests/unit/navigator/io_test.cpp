@@ -17,7 +17,11 @@
 #include <gtest/gtest.h>
 #include <thread>
 
+#include "services/navigator/io/gpsd_client.hpp"
+#include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/source.hpp"
+#include "services/navigator/io/tcp_client.hpp"
+#include "services/navigator/io/text_log_player.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -96,7 +100,7 @@ class SerialTest : public SourceTest {
     std::filesystem::remove(link_);
     std::filesystem::create_symlink(pty.device, link_);
   }
-  Connection Serial(int baud) const { return {"gnss", Connection::Kind::kSerial, {}, 0, link_, baud, 1.0}; }
+  std::unique_ptr<Source> Serial(int baud) const { return std::make_unique<SerialPort>("gnss", link_, baud); }
 
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_serial_" + std::to_string(getpid()));
   std::filesystem::path link_ = folder_ / "gnss";
@@ -106,7 +110,7 @@ TEST_F(SerialTest, GivesTheBytesRawAndSetsThePort) {
   Pty pty;
   ASSERT_GE(pty.cable, 0);
   PlugIn(pty);
-  const auto source = OpenSource(Serial(38400));
+  const auto source = Serial(38400);
   ASSERT_TRUE(Wait(*source, false)) << source->fault();
   // A terminal that is not raw would echo, turn CR into LF, and eat 0x03 and 0x13.
   const std::string text = std::string("$GPHDT,1.0,T*00\r\n\x03\x13\x11\x00\xFF\r", 23);
@@ -124,7 +128,7 @@ TEST_F(SerialTest, GivesTheBytesRawAndSetsThePort) {
 TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
   auto first = std::make_unique<Pty>();
   PlugIn(*first);
-  const auto source = OpenSource(Serial(4800));
+  const auto source = Serial(4800);
   const int file_descriptor = source->file_descriptor();
   ASSERT_TRUE(Wait(*source, false)) << source->fault();
   first->Write("$A\r\n$B");
@@ -144,7 +148,7 @@ TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
 }
 
 TEST_F(SerialTest, SaysWhyItCannotBeOpened) {
-  const auto source = OpenSource(Serial(4800));
+  const auto source = Serial(4800);
   Step(*source);
   EXPECT_NE(source->fault().find("No such file"), std::string::npos) << source->fault();
   std::ofstream(link_) << "a file";
@@ -189,12 +193,12 @@ struct Server {
   void Write(const std::string& text) const { EXPECT_EQ(send(client, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size())); }
 };
 
-Connection Tcp(int port) { return {"plotter", Connection::Kind::kTcp, "127.0.0.1", port, {}, 0, 1.0}; }
+std::unique_ptr<Source> Tcp(int port) { return std::make_unique<TcpClient>("plotter", "127.0.0.1", port); }
 
 TEST_F(SourceTest, TcpConnectsAgainWhenTheServerWasAway) {
   auto server = std::make_unique<Server>();
   const int port = server->port;
-  const auto source = OpenSource(Tcp(port));
+  const auto source = Tcp(port);
   ASSERT_TRUE(Wait(*source, false)) << source->fault();
   server->Accept();
   server->Write("$A\r\n");
@@ -219,7 +223,7 @@ TEST_F(SourceTest, TcpWaitsLongerAfterEachFailure) {
     const Server gone;
     port = gone.port;
   }
-  const auto source = OpenSource(Tcp(port));
+  const auto source = Tcp(port);
   // The server that comes is found at the next attempt: within 8 s, not at once.
   for (int i = 0; i < 400; ++i) Step(*source);
   Server server(port);
@@ -236,7 +240,7 @@ TEST_F(SourceTest, TcpWaitsLongerAfterEachFailure) {
 // What gpsd 3.22 says and does: a banner, reports as JSON, and after ?WATCH with nmea the sentences.
 TEST_F(SourceTest, GpsdIsAskedForSentencesAndItsReportsAreLeftOut) {
   Server server;
-  const auto source = OpenSource({"gpsd", Connection::Kind::kGpsd, "127.0.0.1", server.port, {}, 0, 1.0});
+  const auto source = std::make_unique<GpsdClient>("gpsd", "127.0.0.1", server.port);
   std::string command;
   std::thread gpsd([&] {
     server.Accept();  // the connection that tells that gpsd is there
@@ -283,7 +287,7 @@ TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
     _exit(127);
   }
   const auto line = RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0) + "\r\n";
-  const auto source = OpenSource({"gpsd", Connection::Kind::kGpsd, "127.0.0.1", port, {}, 0, 1.0});
+  const auto source = std::make_unique<GpsdClient>("gpsd", "127.0.0.1", port);
   std::string text;
   for (int round = 0; round < 600 && text.find(line.substr(0, line.size() - 2)) == std::string::npos; ++round) {
     if (round % 10 == 0) pty.Write(line);
@@ -311,7 +315,7 @@ class TextLogTest : public SourceTest {
     while (source.Receive(now_)) ++num_lines;
     return num_lines;
   }
-  std::unique_ptr<Source> Open(double speed) const { return OpenSource({"log", Connection::Kind::kTextLog, {}, 0, file_, 0, speed}); }
+  std::unique_ptr<Source> Open(double speed) const { return std::make_unique<TextLogPlayer>("log", file_, speed); }
 
   std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("lookout_text_log_" + std::to_string(getpid()));
 };

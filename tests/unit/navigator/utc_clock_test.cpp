@@ -12,6 +12,8 @@ using std::chrono::days;
 using std::chrono::microseconds;
 
 constexpr auto kMaxLatency = 500ms;
+// A computer that begins in 1971, at another time of day.
+constexpr microseconds kNoBattery = -days(20000) - 5h;
 
 microseconds OfDay(Utime time) { return time - std::chrono::floor<days>(time); }
 
@@ -100,22 +102,22 @@ TEST_F(UtcClockTest, MendsAWeekThatRolledOver) {
 
 TEST_F(UtcClockTest, KeepsADateThatIsFarFromTheComputers) {
   // A computer without a battery begins in 1970; a log of another year is played.
-  const auto when = Sentence(NoonPlus(0), -days(20000));
+  const auto when = Sentence(NoonPlus(0), kNoBattery);
   EXPECT_EQ(when->utc, NoonPlus(0));
   EXPECT_FALSE(when->is_date_refused);
-  EXPECT_EQ(Sentence(NoonPlus(0.5), -days(20000), 50ms, {}, std::nullopt)->utc, NoonPlus(0.5)) << "the day of the sentence before it";
+  EXPECT_EQ(Sentence(NoonPlus(0.5), kNoBattery, 50ms, {}, std::nullopt)->utc, NoonPlus(0.5)) << "the day of the sentence before it";
 }
 
 TEST_F(UtcClockTest, CarriesTheDayOverMidnight) {
   const auto midnight = std::chrono::floor<days>(NoonPlus(0)) + days(1);
-  Sentence(midnight - 1s, -days(20000));
-  EXPECT_EQ(Sentence(midnight + 1s, -days(20000), 50ms, {}, std::nullopt)->utc, midnight + 1s);
+  Sentence(midnight - 1s, kNoBattery);
+  EXPECT_EQ(Sentence(midnight + 1s, kNoBattery, 50ms, {}, std::nullopt)->utc, midnight + 1s);
 }
 
 TEST_F(UtcClockTest, TakesTheDateOfAZdaThatRunsAhead) {
   // gpsd's tcp-torture: ZDA is two seconds ahead of the fixes.
-  clock_.OnDate(source_, NoonPlus(0) - days(20000), NoonPlus(2));
-  EXPECT_EQ(Sentence(NoonPlus(0), -days(20000), 50ms, {}, std::nullopt)->utc, NoonPlus(0));
+  clock_.OnDate(source_, NoonPlus(0) + kNoBattery, NoonPlus(2));
+  EXPECT_EQ(Sentence(NoonPlus(0), kNoBattery, 50ms, {}, std::nullopt)->utc, NoonPlus(0));
 }
 
 TEST_F(UtcClockTest, RefusesTimeThatRunsBackwardsUntilItRunsForward) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-namespace lookout::vlp16 {
+namespace lookout {
 namespace {
 
 using std::chrono::microseconds;
@@ -87,4 +87,4 @@ TEST(ClockFit, KeepsTheDriftAcrossASmallStepOfTheHost) {
 }
 
 }  // namespace
-}  // namespace lookout::vlp16
+}  // namespace lookout
