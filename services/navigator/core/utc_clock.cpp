@@ -38,9 +38,13 @@ Resolved MendRollover(Utime utc, Utime expected) {
 
 }  // namespace
 
-bool UtcClock::IsBackward(SourceClock& source, Utime utc) {
+bool UtcClock::IsBackward(SourceClock& source, Utime utc, bool has_date) {
+  // The first date corrects the guess of those before it.
+  if (has_date && !source.has_date) source.last_utc.reset();
+  source.has_date = source.has_date || has_date;
   if (!source.last_utc || utc >= *source.last_utc - kMaxBackward) {
-    source.num_backward = 0;
+    // Those without a date follow the day of the others: they do not speak against a date that was set back.
+    if (has_date || !source.has_date) source.num_backward = 0;
     return false;
   }
   const bool is_forward = source.num_backward > 0 && utc >= *source.last_backward;
@@ -70,7 +74,7 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
     const Utime near = source.dated_utc ? *source.dated_utc + (arrival - source.dated_arrival) : expected;
     resolved = date ? MendRollover(*date + time_of_day, expected) : Resolved{OnTheDayNearest(near, time_of_day), false};
   }
-  if (IsBackward(source, resolved.utc)) return std::nullopt;
+  if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
   source.last_utc = resolved.utc;
   source.dated_utc = resolved.utc;
   source.dated_arrival = arrival;
@@ -99,6 +103,9 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
 
 void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
   source.dated_utc = MendRollover(utc, arrival - off_).utc;
+  // The first date corrects the guess of those before it.
+  if (!source.has_date) source.last_utc.reset();
+  source.has_date = true;
   source.dated_arrival = arrival;
 }
 

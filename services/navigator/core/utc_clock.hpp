@@ -15,6 +15,7 @@ struct SourceClock {
   std::optional<Utime> last_utc;   // of its measurements
   std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: tells the day to those without a date
   Utime dated_arrival{};
+  bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
   std::optional<Utime> last_backward;  // refused because its time ran back
   int num_backward = 0;
   std::chrono::microseconds off{0};  // arrival less UTC of its last sentences whose time was not usable
@@ -51,7 +52,7 @@ class UtcClock {
   std::chrono::microseconds host_minus_utc() const { return off_; }
 
  private:
-  static bool IsBackward(SourceClock& source, Utime utc);
+  static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
   void LearnThatItIsOff(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc);
 
   std::chrono::microseconds max_latency_;

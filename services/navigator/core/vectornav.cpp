@@ -104,7 +104,7 @@ VnIns ReadVnIns(FieldReader& fields) {
 VnYmr ReadVnYmr(FieldReader& fields) { return {YawRad(fields, 0), AngleRad(fields, 1, 90.0), AngleRad(fields, 2, 180.0), Sample(fields, 3)}; }
 
 VnImu ReadVnImu(FieldReader& fields) {
-  const VnImu imu{Sample(fields, 0)};
+  VnImu imu{Sample(fields, 0)};
   fields.IsEmpty(10);  // temperature and pressure are not used, but must be there
   return imu;
 }

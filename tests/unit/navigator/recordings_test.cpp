@@ -254,6 +254,35 @@ std::map<std::string, int> Census(const fs::path& file) {
   return census;
 }
 
+// Every sentence that is understood goes through: nothing is refused, and time never runs backwards.
+TEST(Recordings, OfABoatInAmsterdamAreTakenWhole) {
+  const auto file = kData / "nmea/signalk_gps.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  InterpreterParams params;
+  params.max_sentence_latency = std::chrono::milliseconds(500);
+  params.position_sd_m = 2.5;
+  Interpreter interpreter(params);
+  std::int64_t seq = 0;
+  int num_fixes = 0;
+  Utime last{};
+  for (const auto& line : SplitDatagram(ToBytes(Content(file))).lines) {
+    const auto fix = interpreter.Read({NoonPlus(static_cast<double>(seq) * 0.25), seq, ItemKind::kSentence, "gnss", line}).fix;
+    ++seq;
+    if (!fix) continue;
+    ++num_fixes;
+    if (num_fixes > 1) {  // the first GGA cannot know its day
+      EXPECT_GE(fix->when.utc, last);
+      last = fix->when.utc;
+    }
+  }
+  EXPECT_EQ(num_fixes, 1202 + 1201);
+  for (const auto& counter : interpreter.counters()) {
+    const bool is_refusal = counter.name == "bad_field" || counter.name == "implausible_value" || counter.name == "bad_checksum" ||
+                            counter.name == "no_checksum" || counter.name == "time_backwards" || counter.name == "date_unusable";
+    EXPECT_EQ(is_refusal ? counter.count : 0, 0) << counter.name;
+  }
+}
+
 TEST(Recordings, OfABoatInAmsterdamAreUnderstood) {
   const auto file = kData / "nmea/signalk_gps.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";

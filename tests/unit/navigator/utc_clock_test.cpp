@@ -120,6 +120,36 @@ TEST_F(UtcClockTest, TakesTheDateOfAZdaThatRunsAhead) {
   EXPECT_EQ(Sentence(NoonPlus(0), kNoBattery, 50ms, {}, std::nullopt)->utc, NoonPlus(0));
 }
 
+TEST_F(UtcClockTest, LetsTheFirstDateCorrectTheGuessOfSentencesBeforeIt) {
+  // GGA, then RMC, of a log of years ago: the day of the first GGA can only be that of the computer.
+  const auto old = [](double time_s) { return NoonPlus(time_s) - days(4000); };
+  ASSERT_TRUE(Sentence(old(0), days(4000) - 5h, 50ms, {}, std::nullopt));
+  for (int i = 0; i < 20; ++i) {
+    const auto rmc = Sentence(old(i), days(4000) - 5h);
+    ASSERT_TRUE(rmc) << i;
+    EXPECT_EQ(rmc->utc, old(i));
+    const auto gga = Sentence(old(i + 1), days(4000) - 5h, 50ms, {}, std::nullopt);
+    ASSERT_TRUE(gga) << i;
+    EXPECT_EQ(gga->utc, old(i + 1));
+  }
+}
+
+TEST_F(UtcClockTest, TakesADateThatIsSetBackAlthoughSentencesWithoutADateGoOn) {
+  // All at once, so that the computer's clock cannot be told.
+  const Utime arrival = NoonPlus(0) - 5h;
+  const auto take = [&](int i, std::optional<std::chrono::sys_days> date) {
+    return clock_.OfSentence(source_, arrival, OfDay(NoonPlus(2 * i)), date, std::nullopt).has_value();
+  };
+  const auto day = std::chrono::floor<days>(NoonPlus(0));
+  ASSERT_TRUE(take(0, day));
+  int num_refused = 0;
+  for (int i = 1; i < 30; ++i) {
+    EXPECT_TRUE(num_refused >= UtcClock::kMinForward - 1 || take(i, std::nullopt)) << i;
+    num_refused += take(i, day - days(30)) ? 0 : 1;
+  }
+  EXPECT_EQ(num_refused, UtcClock::kMinForward - 1);
+}
+
 TEST_F(UtcClockTest, RefusesTimeThatRunsBackwardsUntilItRunsForward) {
   ASSERT_TRUE(Sentence(NoonPlus(100), 0s));
   EXPECT_TRUE(Sentence(NoonPlus(99.2), 0s, 850ms)) << "a datagram that was overtaken";
