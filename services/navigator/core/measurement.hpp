@@ -62,7 +62,7 @@ struct GnssFix {
 struct Attitude {
   MeasurementTime when;
   std::string source;
-  std::string_view sentence_type;  // "HDT", "HDG", "HDM", "PASHR", "PSAT", "VNINS", "VNYMR"; THS is "HDT"
+  std::string_view sentence_type;  // "HDT" (THS too), "HDG" (HDM too), "PASHR", "PSAT", "VNINS", "VNYMR"
   double heading_rad = kNan;       // 0 to 2 pi
   double pitch_rad = kNan;         // -pi to pi
   double roll_rad = kNan;          // -pi to pi
