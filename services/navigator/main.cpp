@@ -1,63 +1,190 @@
-// The navigation process: NMEA 0183 over UDP and LIDAR_NMEA, or NAV_RAW, in; NAV_RAW, GNSS_FIX, ATTITUDE and POSE out.
+// The navigation process: sentences of all inputs and LIDAR_NMEA, or NAV_RAW, in; NAV_RAW, GNSS_FIX, ATTITUDE and POSE out.
+#include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <memory>
+#include <spdlog/spdlog.h>
+#include <string>
+#include <vector>
 
+#include "common/config/text_config.hpp"
 #include "common/io/udp_receiver.hpp"
+#include "common/runtime/execute_again.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
+#include "services/navigator/io/gpsd_client.hpp"
+#include "services/navigator/io/serial_port.hpp"
+#include "services/navigator/io/source.hpp"
+#include "services/navigator/io/tcp_client.hpp"
+#include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/service.hpp"
 
 namespace {
 
+using lookout::navigator::Connection;
+using lookout::navigator::Params;
+using lookout::navigator::Service;
+using lookout::navigator::Source;
+using lookout::runtime::HostNow;
+
 // How late a tick may come: a tenth of its period.
 constexpr std::chrono::milliseconds kTick(10);
+// Pieces taken from a source before the bus and the timers get their turn again.
+constexpr int kMaxPiecesPerRound = 64;
+
 // Seconds of sentences at 115200 baud; more can only be a flood.
 constexpr int kReceiveBufferBytes = 256 * 1024;
-// Datagrams taken from the socket before the bus and the timers get their turn again.
-constexpr int kMaxDatagramsPerRound = 64;
 
-void RunLog(lookout::runtime::Process& process, const lookout::navigator::Params& params) {
-  lookout::navigator::Service service(process.bus(), params);
-  process.Run([&service] { return service.Report(); });
-  service.Finish(lookout::runtime::HostNow());
+class UdpSource final : public Source {
+ public:
+  explicit UdpSource(const Connection& connection)
+      : drops_name_(connection.name + "_kernel_drops"),
+        receiver_({.bind_address = connection.address, .port = connection.port, .receive_buffer_bytes = kReceiveBufferBytes}) {}
+
+  int file_descriptor() const override { return receiver_.file_descriptor(); }
+  void Poll(lookout::Utime) override {}
+  std::optional<Piece> Receive(lookout::Utime) override {
+    const auto datagram = receiver_.Receive();
+    if (!datagram) return std::nullopt;
+    return Piece{datagram->host_time, datagram->payload, true};
+  }
+  std::vector<lookout::Counter> counters() override { return {{drops_name_, receiver_.num_kernel_drops()}}; }
+
+ private:
+  std::string drops_name_;
+  lookout::io::UdpReceiver receiver_;
+};
+
+// @throws std::runtime_error when a UDP port or a text log cannot be opened; a serial port and a server may come later
+std::unique_ptr<Source> OpenSource(const Connection& connection) {
+  switch (connection.kind) {
+    case Connection::Kind::kSerial:
+      return std::make_unique<lookout::navigator::SerialPort>(connection.name, connection.file, connection.baud);
+    case Connection::Kind::kTcp:
+      return std::make_unique<lookout::navigator::TcpClient>(connection.name, connection.address, connection.port);
+    case Connection::Kind::kGpsd:
+      return std::make_unique<lookout::navigator::GpsdClient>(connection.name, connection.address, connection.port);
+    case Connection::Kind::kTextLog:
+      return std::make_unique<lookout::navigator::TextLogPlayer>(connection.name, connection.file, connection.speed);
+    case Connection::Kind::kUdp:
+      break;
+  }
+  return std::make_unique<UdpSource>(connection);
 }
 
-void RunUdp(lookout::runtime::Process& process, const lookout::navigator::Params& params) {
-  lookout::navigator::Service service(process.bus(), params);
-  lookout::io::UdpReceiver receiver({.bind_address = params.bind_address, .port = params.nmea_port, .receive_buffer_bytes = kReceiveBufferBytes});
-  process.OnReadable(receiver.file_descriptor(), [&] {
-    for (int i = 0; i < kMaxDatagramsPerRound; ++i) {
-      const auto datagram = receiver.Receive();
-      if (!datagram) return;
-      service.OnDatagram(datagram->host_time, datagram->payload);
+// One source, and what main remembers of it.
+struct Feed {
+  std::string name;
+  std::unique_ptr<Source> source;
+  std::int64_t num_lost = 0;
+  std::string last_fault = {};
+
+  void Drain(Service& service) {
+    for (int i = 0; i < kMaxPiecesPerRound; ++i) {
+      const auto piece = source->Receive(HostNow());
+      if (source->num_lost() != num_lost) service.OnStreamEnd(name);
+      num_lost = source->num_lost();
+      if (!piece) break;
+      if (piece->is_datagram) {
+        service.OnDatagram(piece->host_time, piece->bytes, name);
+      } else {
+        service.OnStream(piece->host_time, piece->bytes, name);
+      }
     }
+    TellFault();
+  }
+
+  // Once for each change.
+  void TellFault() {
+    const auto fault = source->fault();
+    if (fault == last_fault) return;
+    if (fault.empty()) {
+      spdlog::info("input '{}' is open", name);
+    } else {
+      spdlog::warn("input '{}': {}", name, fault);
+    }
+    last_fault = fault;
+  }
+};
+
+void RunLog(lookout::runtime::Process& process, const Params& params) {
+  Service service(process.bus(), params);
+  process.Run([&service] { return service.Report(); });
+  service.Finish(HostNow());
+}
+
+void RunLive(lookout::runtime::Process& process, const Params& params) {
+  Service service(process.bus(), params);
+  std::vector<Feed> feeds;
+  for (const auto& connection : params.connections) feeds.push_back({.name = connection.name, .source = OpenSource(connection)});
+  for (auto& feed : feeds) {
+    if (feed.source->file_descriptor() >= 0) process.OnReadable(feed.source->file_descriptor(), [&feed, &service] { feed.Drain(service); });
+  }
+  process.Every(kTick, [&] {
+    const auto now = HostNow();
+    for (auto& feed : feeds) {
+      feed.source->Poll(now);
+      // Also without an event: libgps may hold lines that it has read already, and a text log goes by time.
+      feed.Drain(service);
+    }
+    service.AdvanceTo(now);
+    const bool is_over =
+        !feeds.empty() && !params.use_lidar_nmea && std::ranges::all_of(feeds, [](const Feed& f) { return f.source->is_finished(); });
+    if (is_over) process.Stop();
   });
-  process.Every(kTick, [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
   process.Run([&] {
     auto report = service.Report();
-    report.counters.push_back({"kernel_drops", receiver.num_kernel_drops()});
+    for (auto& feed : feeds) {
+      for (const auto& counter : feed.source->counters()) report.counters.push_back(counter);
+      const auto fault = feed.source->fault();
+      if (fault.empty()) continue;
+      report.state = std::max(report.state, lookout::HealthState::kDegraded);
+      report.reason = "input '" + feed.name + "': " + fault + (report.reason.empty() ? "" : "; ") + report.reason;
+    }
     return report;
   });
-  service.Finish(lookout::runtime::HostNow());
+  service.Finish(HostNow());
+}
+
+// SIGHUP: a wrong config is told and changes nothing; a right one ends the run, to begin again with it.
+bool IsConfigRight(const std::filesystem::path& config_folder) {
+  try {
+    lookout::navigator::LoadParams(config_folder);
+    return true;
+  } catch (const lookout::config::ConfigError& error) {
+    for (const auto& fault : error.faults()) spdlog::error("{}", fault);
+  }
+  spdlog::error("SIGHUP: the new config is wrong; goes on with the old one");
+  return false;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  lookout::runtime::BlockStopSignals();
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-navigator", "NMEA 0183 in; NAV_RAW, GNSS_FIX, ATTITUDE, POSE out");
-  return lookout::runtime::RunMain("navigator", [&options] {
+  bool starts_again = false;
+  const int code = lookout::runtime::RunMain("navigator", [&] {
     const auto params = lookout::navigator::LoadParams(options.config_folder);
     if (options.check_only) {
-      std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "navigator.txtpb"});
+      std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "navigator.txtpb"}) << lookout::navigator::InWords(params);
       return;
     }
     lookout::runtime::Process process("navigator", options.lcm_url);
+    process.OnHangup([&] {
+      if (!IsConfigRight(options.config_folder)) return;
+      spdlog::info("SIGHUP: starts again with the new config");
+      starts_again = true;
+      process.Stop();
+    });
     if (params.input == lookout::navigator::Input::kLog) {
       RunLog(process, params);
     } else {
-      RunUdp(process, params);
+      RunLive(process, params);
     }
   });
+  if (code != EXIT_SUCCESS || !starts_again) return code;
+  return lookout::runtime::RunMain("navigator", [argv] { lookout::runtime::ExecuteAgain(argv); });
 }

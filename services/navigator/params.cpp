@@ -7,6 +7,7 @@
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "config/schema/navigator.pb.h"
+#include "services/navigator/inputs.hpp"
 
 namespace lookout::navigator {
 
@@ -27,8 +28,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   Params params;
   params.input = message.source() == config::Navigator::LOG ? Input::kLog : Input::kOutside;
   params.use_lidar_nmea = message.use_lidar_nmea();
-  params.bind_address = message.bind_address();
-  params.nmea_port = message.nmea_port();
+  TakeInputs(config_folder, message, params);
 
   auto& navigator = params.navigator;
   navigator.max_sentence_latency = ToMicroseconds(message.max_sentence_latency_s());

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "services/navigator/core/navigator.hpp"
 
@@ -10,18 +12,35 @@ namespace lookout::navigator {
 
 enum class Input { kOutside, kLog };  // kOutside: datagrams and LIDAR_NMEA; kLog: NAV_RAW only, and publishes none
 
+/// Where the sentences of one source come from, live.
+struct Connection {
+  enum class Kind { kUdp, kSerial, kTcp, kGpsd, kTextLog };
+
+  std::string name;  // of the source
+  Kind kind = Kind::kUdp;
+  std::string address;         // kUdp: to bind; kTcp, kGpsd: of the server; numeric
+  int port = 0;                // kUdp, kTcp, kGpsd
+  std::filesystem::path file;  // kSerial: the device; kTextLog: the log
+  int baud = 0;                // kSerial
+  double speed = 1.0;          // kTextLog: times as fast; 0 = as fast as can be
+};
+
 struct Params {
   Input input = Input::kOutside;
   bool use_lidar_nmea = true;
   NavigatorParams navigator;
 
-  // For main and replay: where datagrams come from.
-  std::string bind_address;
-  int nmea_port = 0;
+  // For main: what is opened.
+  std::vector<Connection> connections;
+  // For replay: the source of each UDP port of a capture.
+  std::map<int, std::string> source_of_port;
 };
 
 /// @param config_folder  the boat's folder, holding boat.txtpb and navigator.txtpb
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
+
+/// What --check says besides the values: each source, and what its signs mean, in words. Lines of a comment.
+std::string InWords(const Params& params);
 
 }  // namespace lookout::navigator

@@ -13,6 +13,12 @@ namespace {
 // Host time comes from a clock or a capture, and may be anything.
 bool IsUsable(Utime host_time) { return UtimeFromWire(ToUtimeUs(host_time)).has_value(); }
 
+// "-3.2 s"
+std::string InSeconds(std::chrono::microseconds duration) {
+  const auto tenths = std::chrono::abs(duration).count() / 100'000;
+  return (duration < std::chrono::microseconds(0) ? "-" : "") + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
+}
+
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
@@ -23,17 +29,22 @@ Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(param
   }
 }
 
-void Service::OnDatagram(Utime arrival, Bytes payload) {
+void Service::OnDatagram(Utime arrival, Bytes payload, const std::string& source) { OnLines(arrival, SplitDatagram(payload), source); }
+
+void Service::OnStream(Utime arrival, Bytes bytes, const std::string& source) { OnLines(arrival, assemblers_[source].Add(bytes), source); }
+
+void Service::OnStreamEnd(const std::string& source) { assemblers_[source].Clear(); }
+
+void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::string& source) {
   if (params_.input != Input::kOutside) return;
   if (!IsUsable(arrival)) {
     ++counts_.bad_host_time;
     return;
   }
-  const auto lines = SplitDatagram(payload);
   counts_.no_start += lines.num_no_start;
   counts_.too_long += lines.num_too_long;
   counts_.not_printable += lines.num_not_printable;
-  PublishAndConsume(sequencer_.OnLines(arrival, lines.lines));
+  PublishAndConsume(sequencer_.OnLines(arrival, lines.lines, source));
 }
 
 void Service::AdvanceTo(Utime host_time) {
@@ -133,6 +144,9 @@ HealthReport Service::Report() const {
                 : "no position fix yet";
   }
   if (!has_heading) report.reason += report.reason.empty() ? "no heading" : ", no heading";
+  if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
+    report.reason += (report.reason.empty() ? "" : ", ") + ("clock of this computer is off UTC by " + InSeconds(off));
+  }
   if (!report.reason.empty()) report.state = HealthState::kDegraded;
   return report;
 }

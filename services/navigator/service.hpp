@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -12,6 +14,7 @@
 #include "lookout/nav_raw_t.hpp"
 #include "services/navigator/core/item_sequencer.hpp"
 #include "services/navigator/core/navigator.hpp"
+#include "services/navigator/core/sentence.hpp"
 #include "services/navigator/params.hpp"
 
 namespace lookout::navigator {
@@ -20,8 +23,16 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// NMEA 0183 from outside, some lines. Each line is published as NAV_RAW, and then exactly that is consumed. Input::kOutside only.
-  void OnDatagram(Utime arrival, Bytes payload);
+  /// NMEA 0183 from outside, some whole lines. Each line is published as NAV_RAW, and then exactly that is consumed. Input::kOutside only.
+  ///
+  /// @param source  IsSourceName
+  void OnDatagram(Utime arrival, Bytes payload, const std::string& source = kUdpSource);
+
+  /// The same out of a stream, in pieces of any size.
+  void OnStream(Utime arrival, Bytes bytes, const std::string& source);
+
+  /// The stream broke off: what it left half said is void.
+  void OnStreamEnd(const std::string& source);
 
   /// Host time has come so far: ticks, and a start mark when the host clock was set back. Input::kOutside only.
   void AdvanceTo(Utime host_time);
@@ -32,6 +43,7 @@ class Service {
   HealthReport Report() const;
 
  private:
+  void OnLines(Utime arrival, const DatagramLines& lines, const std::string& source);
   void OnLidarNmea(const lidar_nmea_t& message);
   void OnNavRaw(const nav_raw_t& message);
   void PublishAndConsume(const std::vector<Item>& items);
@@ -40,6 +52,7 @@ class Service {
 
   bus::Bus& bus_;
   Params params_;
+  std::map<std::string, LineAssembler> assemblers_;  // by source
   ItemSequencer sequencer_;
   Navigator navigator_;
   std::int64_t raw_seq_ = 0;  // of the item that is being consumed

@@ -9,14 +9,6 @@ namespace lookout::navigator {
 
 namespace {
 
-// A source is a short word.
-constexpr std::size_t kMaxSourceCharacters = 32;
-
-bool IsSource(const std::string& source) {
-  return !source.empty() && source.size() <= kMaxSourceCharacters &&
-         std::ranges::all_of(source, [](char character) { return (character >= 'a' && character <= 'z') || (character >= '0' && character <= '9'); });
-}
-
 // All that is unknown goes out as one and the same NaN: same bytes whatever made it.
 double Canonical(double value) { return std::isnan(value) ? kNan : value; }
 
@@ -49,17 +41,17 @@ ItemResult ToItem(const nav_raw_t& message) {
   const bool is_sentence = message.kind == nav_raw_t::KIND_SENTENCE;
   const bool has_source = is_sentence || message.kind == nav_raw_t::KIND_IMU;
   if (is_sentence ? !IsLine(message.sentence) : !message.sentence.empty()) return {ItemFault::kBadText, {}};
-  if (has_source ? !IsSource(message.source) : !message.source.empty()) return {ItemFault::kBadText, {}};
+  if (has_source ? !IsSourceName(message.source) : !message.source.empty()) return {ItemFault::kBadText, {}};
   return {ItemFault::kNone, {*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence}};
 }
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq) {
   gnss_fix_t message{};
-  message.utime_us = ToUtimeUs(fix.when.time);
+  message.utime_us = ToUtimeUs(fix.when.utc);
   message.seq = seq;
   message.raw_seq = raw_seq;
   message.arrival_utime_us = ToUtimeUs(fix.when.arrival);
-  message.is_time_from_sentence = fix.when.is_from_sentence ? 1 : 0;
+  message.is_time_from_sentence = fix.when.has_sentence_utc ? 1 : 0;
   message.source = fix.source;
   message.sentence_type = fix.sentence_type;
   message.quality = static_cast<std::int32_t>(fix.quality);
@@ -77,11 +69,11 @@ gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq)
 
 attitude_t ToMessage(const Attitude& attitude, std::int64_t seq, std::int64_t raw_seq) {
   attitude_t message{};
-  message.utime_us = ToUtimeUs(attitude.when.time);
+  message.utime_us = ToUtimeUs(attitude.when.utc);
   message.seq = seq;
   message.raw_seq = raw_seq;
   message.arrival_utime_us = ToUtimeUs(attitude.when.arrival);
-  message.is_time_from_sentence = attitude.when.is_from_sentence ? 1 : 0;
+  message.is_time_from_sentence = attitude.when.has_sentence_utc ? 1 : 0;
   message.source = attitude.source;
   message.sentence_type = attitude.sentence_type;
   message.heading_rad = Canonical(attitude.heading_rad);

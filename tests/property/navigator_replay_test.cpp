@@ -1,4 +1,5 @@
 // The replay rule: NAV_RAW of a run from outside, fed into a service that reads logs, gives the same bytes on every other channel.
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
 #include <random>
@@ -22,6 +23,13 @@ constexpr double kLongitudeDeg = -72.15;
 Params TestParams(Input input) {
   auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
   params.input = input;
+  // A compass and a strapdown sensor on a serial line, with all that config can say of it.
+  SourceParams ahrs;
+  ahrs.name = "ahrs";
+  ahrs.latency = std::chrono::milliseconds(20);
+  ahrs.roll_sign = -1.0;
+  ahrs.deviation_rad = 0.01;
+  params.navigator.sources.push_back(ahrs);
   return params;
 }
 
@@ -44,6 +52,7 @@ Sent RunFromOutside(unsigned seed) {
   Collect(bus, sent);
   double time_s = 0.0;
   std::string lidar_line = RmcLine(NoonPlus(0), kLatitudeDeg, kLongitudeDeg, 1.0, 0.0);
+  std::string stream;
   for (int i = 0; i < 3000; ++i) {
     time_s += uniform(0.0, 0.02);
     if (i == 1000) time_s -= 5.0;
@@ -78,6 +87,16 @@ Sent RunFromOutside(unsigned seed) {
     if (!text.empty()) {
       if (random() % 4 == 0) text[random() % text.size()] = static_cast<char>(random());
       service.OnDatagram(NoonPlus(time_s - uniform(-0.01, 0.1)), ToBytes(text));
+    }
+    // A stream comes in pieces of any size, and breaks off.
+    stream += Line(Print("VNYMR,%.3f,2.0,3.0,0,0,0,0.5,0.2,-9.8,0.1,0.2,0.3", heading_deg)) + "\r\n" + Line("HCHDG,10.0,,,3.0,E") + "\r\n";
+    stream += Line("GPRMC," + TimeOfDay(measured) + ",A,4337.8,N,07209.0,W,2.0,10.0,010626,5.0,W,A") + "\r\n";
+    const auto size = std::min<std::size_t>(stream.size(), random() % 200);
+    service.OnStream(NoonPlus(time_s), ToBytes(stream.substr(0, size)), "ahrs");
+    stream.erase(0, size);
+    if (random() % 100 == 0) {
+      service.OnStreamEnd("ahrs");
+      stream.clear();
     }
     lidar_nmea_t message{};
     message.host_utime_us = ToUtimeUs(NoonPlus(time_s - uniform(0.0, 0.1)));

@@ -92,6 +92,8 @@ const std::vector<Rule>& Rules() {
       {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
       {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
+      // As params; it knows what an address is.
+      {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},

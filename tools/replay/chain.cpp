@@ -50,7 +50,7 @@ Chain::Chain(const std::filesystem::path& config_folder, const RawInput& input, 
 }
 
 Chain::Ports::Ports(const vlp16::Params& lidar, const navigator::Params& navigation)
-    : lidar_data(lidar.data_port), lidar_position(lidar.position_port), nmea(navigation.nmea_port) {}
+    : lidar_data(lidar.data_port), lidar_position(lidar.position_port), nmea(navigation.source_of_port) {}
 
 void Chain::AdvanceTo(Utime time) {
   time_ = time;
@@ -67,9 +67,9 @@ void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
   if (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position) {
     num_data_datagrams_ += udp_port == ports_.lidar_data ? 1 : 0;
     Timed(vlp16_time_, [&] { vlp16_.OnDatagram(host_time, udp_port, payload); });
-  } else if (udp_port == ports_.nmea) {
+  } else if (const auto source = ports_.nmea.find(udp_port); source != ports_.nmea.end()) {
     ++num_nmea_datagrams_;
-    Timed(navigator_time_, [&] { navigator_.OnDatagram(host_time, payload); });
+    Timed(navigator_time_, [&] { navigator_.OnDatagram(host_time, payload, source->second); });
   } else {
     ++num_other_ports_;
   }

@@ -76,7 +76,7 @@ class Chain {
     Ports(const vlp16::Params& lidar, const navigator::Params& navigation);
     int lidar_data;
     int lidar_position;
-    int nmea;
+    std::map<int, std::string> nmea;  // sources by port
   };
 
   void AdvanceTo(Utime time);

@@ -43,7 +43,7 @@ void AntennaTracker::Add(const GnssFix& fix) {
     ++num_late_;
     return;
   }
-  const double ellipsoid_height_m = fix.msl_height_m + fix.geoid_separation_m;
+  const double ellipsoid_height_m = fix.EllipsoidHeightM();
   const bool has_height = !std::isnan(ellipsoid_height_m);
   if (!datum_) SetDatum({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : 0.0});
   const bool is_same_epoch = is_comparable && fix.when.time == fix_->time;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <system_error>
 
 namespace lookout::navigator {
 
@@ -99,6 +100,28 @@ double FieldReader::NumberWithUnit(std::size_t index, char unit, double min, dou
   return value;
 }
 
+double FieldReader::NumberWithSide(std::size_t index, double max) {
+  const double value = Number(index, 0.0, max);
+  const char side = Letter(index + 1, "EW");
+  if (!std::isnan(value) && side == '\0') Fail(SentenceFault::kBadField);
+  return side == 'W' ? -value : value;
+}
+
+int FieldReader::Hex(std::size_t index) {
+  constexpr std::size_t kMaxDigits = 4;
+  constexpr int kBase = 16;
+  const auto text = Field(index);
+  if (text.empty()) return -1;
+  int value = -1;
+  const auto end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value, kBase);
+  if (text.size() > kMaxDigits || error != std::errc{} || stop != end || value < 0) {
+    Fail(SentenceFault::kBadField);
+    return -1;
+  }
+  return value;
+}
+
 std::optional<microseconds> FieldReader::TimeOfDay(std::size_t index) {
   using namespace std::chrono_literals;
   const auto text = Field(index);
@@ -135,6 +158,29 @@ std::optional<std::chrono::sys_days> FieldReader::Date(std::size_t index) {
                                          std::chrono::month(static_cast<unsigned>(ToInt(text.substr(2, 2)))),
                                          std::chrono::day(static_cast<unsigned>(ToInt(text.substr(0, 2)))));
   if (!date.ok()) {
+    Fail(SentenceFault::kImplausible);
+    return std::nullopt;
+  }
+  return std::chrono::sys_days(date);
+}
+
+std::optional<std::chrono::sys_days> FieldReader::Date(std::size_t day_index, std::size_t month_index, std::size_t year_index) {
+  // GPS begins in 1980; Utime ends before 2200.
+  constexpr int kFirstYear = 1980;
+  constexpr int kLastYear = 2199;
+  const int day = Count(day_index, 31);
+  const int month = Count(month_index, 12);
+  int year = Count(year_index, kLastYear);
+  if (day < 0 && month < 0 && year < 0) return std::nullopt;
+  if (day < 0 || month < 0 || year < 0) {
+    Fail(SentenceFault::kBadField);
+    return std::nullopt;
+  }
+  // Plotters that write ZDA themselves say two digits (B&G, in SignalK's recording of a boat's network).
+  if (year < 100) year += year >= kFirstYearOf20thCentury ? 1900 : 2000;
+  const std::chrono::year_month_day date(std::chrono::year{year}, std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day)));
+  if (!date.ok() || year < kFirstYear) {
     Fail(SentenceFault::kImplausible);
     return std::nullopt;
   }

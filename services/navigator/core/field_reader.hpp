@@ -41,11 +41,20 @@ class FieldReader {
   /// A number, and behind it the letter of its unit, which must stand there when the number does.
   double NumberWithUnit(std::size_t index, char unit, double min, double max);
 
+  /// A number of degrees, and behind it E or W, which must stand there when the number does. @return negative for W
+  double NumberWithSide(std::size_t index, double max);
+
+  /// Hexadecimal digits, at most four. @return -1 when empty or at fault
+  int Hex(std::size_t index);
+
   /// hhmmss[.s...], UTC. @return since midnight; 24 h for the leap second 235960, which Utime does not count
   std::optional<std::chrono::microseconds> TimeOfDay(std::size_t index);
 
   /// ddmmyy. Years 80 to 99 are of the 20th century (GPS begins in 1980).
   std::optional<std::chrono::sys_days> Date(std::size_t index);
+
+  /// Day, month and year (of four digits, or two as above), each a field: all there or all empty.
+  std::optional<std::chrono::sys_days> Date(std::size_t day_index, std::size_t month_index, std::size_t year_index);
 
   /// ddmm[.m...],N|S,dddmm[.m...],E|W: four fields, all there or all empty.
   std::optional<GeodeticPosition> Position(std::size_t index);

@@ -15,7 +15,7 @@ struct Item {
   Utime time;  // arrival; never less than that of the item before, except at a start mark
   std::int64_t seq = 0;
   ItemKind kind = ItemKind::kTick;
-  std::string source;    // of a sentence: kUdpSource, kLidarSource
+  std::string source;    // of a sentence: kUdpSource, kLidarSource, or the name of an input in config
   std::string sentence;  // of a sentence: IsLine
 };
 

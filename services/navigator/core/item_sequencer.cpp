@@ -27,7 +27,7 @@ Item ItemSequencer::Start(Utime time) {
   return Make(time, ItemKind::kStart);
 }
 
-Item ItemSequencer::MakeSentence(Utime arrival, const char* source, const std::string& sentence) {
+Item ItemSequencer::MakeSentence(Utime arrival, const std::string& source, const std::string& sentence) {
   Item item = Make(arrival, ItemKind::kSentence);
   item.source = source;
   item.sentence = sentence;
@@ -46,14 +46,14 @@ std::vector<Item> ItemSequencer::AdvanceTo(Utime host_time) {
   return items;
 }
 
-std::vector<Item> ItemSequencer::OnLines(Utime arrival, const std::vector<std::string>& lines) {
+std::vector<Item> ItemSequencer::OnLines(Utime arrival, const std::vector<std::string>& lines, const std::string& source) {
   std::vector<Item> items;
   if (!last_ || arrival > *last_) items = AdvanceTo(arrival);
   if (arrival < *last_ - kMaxStepBack) {
     num_stale_sentences_ += static_cast<std::int64_t>(lines.size());
     return items;
   }
-  for (const auto& line : lines) items.push_back(MakeSentence(arrival, kUdpSource, line));
+  for (const auto& line : lines) items.push_back(MakeSentence(arrival, source, line));
   return items;
 }
 

@@ -24,9 +24,9 @@ class ItemSequencer {
   /// @return START when nothing came before or the clock was set back, else the ticks at whole multiples of kTickPeriod since the last
   std::vector<Item> AdvanceTo(Utime host_time);
 
-  /// Lines of a datagram.
+  /// Lines of a datagram, or of another piece of input.
   /// @param arrival  less than the last item by up to kMaxStepBack: it waited while time went on, and takes the time of the last item
-  std::vector<Item> OnLines(Utime arrival, const std::vector<std::string>& lines);
+  std::vector<Item> OnLines(Utime arrival, const std::vector<std::string>& lines, const std::string& source = kUdpSource);
 
   /// A sentence by way of the lidar. It comes late, in a bundle, so it does not move the ticks.
   std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
@@ -39,7 +39,7 @@ class ItemSequencer {
  private:
   Item Make(Utime time, ItemKind kind);
   Item Start(Utime time);
-  Item MakeSentence(Utime arrival, const char* source, const std::string& sentence);
+  Item MakeSentence(Utime arrival, const std::string& source, const std::string& sentence);
 
   std::optional<Utime> last_;  // time of the last item
   Utime next_tick_{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,10 +14,13 @@ namespace lookout::navigator {
 
 /// When something was measured.
 struct MeasurementTime {
-  Utime time;     // UTC of the sentence where that is usable, else arrival
+  Utime time;     // on the time scale of POSE: UTC of the sentence where that is usable, else arrival less what is known of its delay
   Utime arrival;  // at this computer, by its clock
   bool is_from_sentence = false;
   bool is_date_refused = false;  // its date is wrong, its time of day is right
+  // In UTC: what the sentence says, also where the computer's clock is far from it; else from the arrival by the fit of the clocks.
+  Utime utc = time;
+  bool has_sentence_utc = false;  // utc is what the sentence says
 };
 
 /// Chooses between the time in a sentence and its arrival.
@@ -28,27 +32,37 @@ struct MeasurementTime {
 MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<std::chrono::microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
                                   std::chrono::microseconds max_latency);
 
-/// A position fix at the antenna. NaN = not said, -1 for counts.
+/// A position fix at the antenna: what a sentence says, and what those before it said of the same epoch. NaN = not said, -1 for counts.
 struct GnssFix {
   MeasurementTime when;
   std::string source;              // as in Item
-  std::string_view sentence_type;  // "RMC", "GGA"
+  std::string_view sentence_type;  // "RMC", "GGA", "GLL", "VNINS"
   FixQuality quality = FixQuality::kNone;
   int num_satellites = -1;
   double hdop = kNan;
   double horizontal_sd_m = kNan;  // one standard deviation per axis
+  double vertical_sd_m = kNan;    // only where the receiver says it
   std::optional<GeodeticPosition> position;
   double msl_height_m = kNan;
   double geoid_separation_m = kNan;
+  double direct_ellipsoid_height_m = kNan;  // of receivers that say it so
   double speed_mps = kNan;
   double course_rad = kNan;
+  double climb_mps = kNan;        // positive up
+  double velocity_sd_mps = kNan;  // per axis, only where the receiver says it
+  // A sentence before this one gave the position (the velocity) of this epoch: one measurement, not two.
+  bool repeats_position = false;
+  bool repeats_velocity = false;
+
+  /// Above the WGS84 ellipsoid, said so or as height above the geoid with its separation; NaN when neither is said.
+  double EllipsoidHeightM() const { return std::isnan(direct_ellipsoid_height_m) ? msl_height_m + geoid_separation_m : direct_ellipsoid_height_m; }
 };
 
 /// Attitude of the vessel frame. NaN = not said. Heading from true north clockwise, pitch positive bow up, roll positive starboard down.
 struct Attitude {
   MeasurementTime when;
   std::string source;
-  std::string_view sentence_type;  // "HDT", "PASHR"
+  std::string_view sentence_type;  // "HDT" (THS too), "HDG" (HDM too), "PASHR", "PSAT", "VNINS", "VNYMR"
   double heading_rad = kNan;       // 0 to 2 pi
   double pitch_rad = kNan;         // -pi to pi
   double roll_rad = kNan;          // -pi to pi
@@ -63,6 +77,19 @@ struct GroundVelocity {
   Utime time;
   double speed_mps = kNan;
   double course_rad = kNan;
+};
+
+/// How fast the bow turns, out of ROT.
+struct TurnRate {
+  Utime time;
+  double rate_radps = kNan;  // positive when the bow turns to starboard
+};
+
+/// One sample of a strapdown sensor whose axes are lined up with the boat, in the vessel frame (x forward, y port, z up). NaN = not said.
+struct ImuSample {
+  Utime time;
+  Eigen::Vector3d angular_velocity_radps = kUnknownVector;
+  Eigen::Vector3d specific_force_mps2 = kUnknownVector;  // at rest and level z is +9.81
 };
 
 /// @param position_sd_m  of a fix without correction at HDOP 1, per axis

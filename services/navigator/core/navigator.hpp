@@ -4,23 +4,17 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "common/core/health.hpp"
+#include "services/navigator/core/interpreter.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
 #include "services/navigator/core/pose_estimator.hpp"
 
 namespace lookout::navigator {
 
-struct NavigatorParams {
-  std::chrono::microseconds max_sentence_latency{0};
-  double position_sd_m = 0.0;  // of a fix without correction at HDOP 1, per axis
-  // Added to the sensors' angles to give those of the vessel frame.
-  double heading_offset_rad = 0.0;
-  double pitch_offset_rad = 0.0;
-  double roll_offset_rad = 0.0;
+struct NavigatorParams : InterpreterParams {
   PoseParams pose;
 };
 
@@ -55,40 +49,26 @@ class Navigator {
   /// Time of the item with the last usable fix since the start mark.
   std::optional<Utime> last_fix_arrival() const { return estimator_.antenna().last_arrival(); }
 
+  /// Computer's clock less UTC, as the sentences say; 0 while it is taken for UTC.
+  std::chrono::microseconds host_minus_utc() const { return interpreter_.host_minus_utc(); }
+
   std::vector<Counter> counters() const;
 
  private:
   void OnSentence(const Item& item, NavigatorOutput& output);
-  void OnSentence(const Item& item, const OtherSentence& sentence, NavigatorOutput& output);
-  void OnSentence(const Item& item, const Rmc& rmc, NavigatorOutput& output);
-  void OnSentence(const Item& item, const Gga& gga, NavigatorOutput& output);
-  void OnSentence(const Item& item, const Vtg& vtg, NavigatorOutput& output);
-  void OnSentence(const Item& item, const Hdt& hdt, NavigatorOutput& output);
-  void OnSentence(const Item& item, const Pashr& pashr, NavigatorOutput& output);
   void TakeFix(const GnssFix& fix, NavigatorOutput& output);
   void TakeAttitude(const Attitude& attitude, NavigatorOutput& output);
   void GivePosesUntil(Utime time, NavigatorOutput& output);
   void GivePose(NavigatorOutput& output);
   void Reset();
-  static bool IsStale(Utime arrival, const ParseResult& parsed);
 
   NavigatorParams params_;
+  Interpreter interpreter_;
   PoseEstimator estimator_;
   std::optional<Utime> time_;
   Utime next_pose_{};
-  std::string last_lidar_sentence_;
 
   struct Counts {
-    std::int64_t no_checksum = 0;
-    std::int64_t bad_checksum = 0;
-    std::int64_t bad_field = 0;
-    std::int64_t implausible_value = 0;
-    std::int64_t other_sentence = 0;
-    std::int64_t repeated_sentence = 0;
-    std::int64_t understood_sentence = 0;
-    std::int64_t sentence_time_unusable = 0;
-    std::int64_t date_unusable = 0;
-    std::int64_t stale_lidar_sentence = 0;
     std::int64_t unusable_fix = 0;  // of states before the last start mark
     std::int64_t late_fix = 0;      // likewise
     std::int64_t late_attitude = 0;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "services/navigator/core/vectornav.hpp"
 
 namespace lookout::navigator {
 
@@ -19,6 +20,8 @@ constexpr double kMaxHeightM = 20000.0;
 constexpr double kMaxGeoidSeparationM = 150.0;  // EGM2008: -107 m to +86 m
 constexpr double kMaxHeaveM = 50.0;
 constexpr int kMaxSatellites = 99;
+constexpr double kMaxSdM = 1e6;              // receivers without a fix send great deviations
+constexpr double kMaxTurnDegpmin = 36000.0;  // 100 turns a minute
 
 double AngleRad(FieldReader& fields, std::size_t index, double min_deg, double max_deg) { return DegToRad(fields.Number(index, min_deg, max_deg)); }
 
@@ -64,7 +67,11 @@ Rmc ReadRmc(FieldReader& fields, std::size_t num_fields) {
   rmc.speed_mps = fields.Number(6, 0.0, kMaxSpeedMps / kMpsPerKnot) * kMpsPerKnot;
   rmc.course_rad = CompassRad(fields, 7);
   rmc.date = fields.Date(8);
-  fields.IsEmpty(10);  // variation is not used, but must be there
+  fields.IsEmpty(10);
+  // The declination is a by-product: where it is not in order, the fix is not refused for it.
+  FieldReader declination = fields;
+  rmc.declination_rad = DegToRad(declination.NumberWithSide(9, 180.0));
+  if (declination.fault() != SentenceFault::kNone) rmc.declination_rad = kNan;
   const char mode = num_fields > 11 ? fields.Letter(11, kModeLetters) : '\0';
   // The navigational status of NMEA 4.1 behind the mode is V in receivers that give no such status, whatever the fix (u-blox ZED-F9P).
   if (status == 'A') rmc.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
@@ -100,6 +107,75 @@ Vtg ReadVtg(FieldReader& fields, std::size_t num_fields) {
 
 Hdt ReadHdt(FieldReader& fields) { return {TrueCompassRad(fields, 0)}; }
 
+// THS: heading,mode. Estimated, manual, simulated and invalid headings were not measured.
+Hdt ReadThs(FieldReader& fields) {
+  const double heading_rad = CompassRad(fields, 0);
+  return {fields.Letter(1, "AEMSV") == 'A' ? heading_rad : kNan};
+}
+
+Gst ReadGst(FieldReader& fields) {
+  Gst gst;
+  gst.time_of_day = fields.TimeOfDay(0);
+  for (const std::size_t index : {1U, 2U, 3U}) fields.Number(index, 0.0, kMaxSdM);
+  fields.Number(4, -360.0, 360.0);
+  gst.north_sd_m = fields.Number(5, 0.0, kMaxSdM);
+  gst.east_sd_m = fields.Number(6, 0.0, kMaxSdM);
+  gst.height_sd_m = fields.Number(7, 0.0, kMaxSdM);
+  return gst;
+}
+
+Gll ReadGll(FieldReader& fields, std::size_t num_fields) {
+  Gll gll;
+  gll.position = fields.Position(0);
+  // Before NMEA 0183 2.0 there was neither time nor status: such a position counts.
+  if (num_fields > 4) gll.time_of_day = fields.TimeOfDay(4);
+  const char status = num_fields > 4 ? fields.Letter(5, "AV") : 'A';
+  const char mode = num_fields > 6 ? fields.Letter(6, kModeLetters) : '\0';
+  if (status == 'A' && gll.position) gll.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
+  return gll;
+}
+
+Zda ReadZda(FieldReader& fields) {
+  Zda zda;
+  zda.time_of_day = fields.TimeOfDay(0);
+  zda.date = fields.Date(1, 2, 3);
+  fields.Number(4, -13.0, 13.0);  // the zone is not used: time and date are UTC
+  fields.Number(5, -59.0, 59.0);
+  return zda;
+}
+
+MagneticHeading ReadHdm(FieldReader& fields) {
+  MagneticHeading heading;
+  heading.compass_rad = WrapKnown(DegToRad(fields.NumberWithUnit(0, 'M', 0.0, 360.0)));
+  return heading;
+}
+
+MagneticHeading ReadHdg(FieldReader& fields) {
+  MagneticHeading heading;
+  heading.compass_rad = CompassRad(fields, 0);
+  heading.deviation_rad = DegToRad(fields.NumberWithSide(1, 180.0));
+  heading.declination_rad = DegToRad(fields.NumberWithSide(3, 180.0));
+  return heading;
+}
+
+Rot ReadRot(FieldReader& fields, std::size_t num_fields) {
+  constexpr double kSecondsPerMinute = 60.0;
+  const double rate_radps = AngleRad(fields, 0, -kMaxTurnDegpmin, kMaxTurnDegpmin) / kSecondsPerMinute;
+  const char status = num_fields > 1 ? fields.Letter(1, "AV") : 'A';
+  return {status == 'A' ? rate_radps : kNan};
+}
+
+// The first field is the word HPR.
+PsatHpr ReadPsatHpr(FieldReader& fields) {
+  PsatHpr hpr;
+  hpr.time_of_day = fields.TimeOfDay(1);
+  hpr.heading_rad = CompassRad(fields, 2);
+  hpr.pitch_rad = AngleRad(fields, 3, -90.0, 90.0);
+  hpr.roll_rad = AngleRad(fields, 4, -180.0, 180.0);
+  fields.Letter(5, "NG");
+  return hpr;
+}
+
 Pashr ReadPashr(FieldReader& fields) {
   Pashr pashr;
   pashr.time_of_day = fields.TimeOfDay(0);
@@ -120,6 +196,17 @@ Sentence Read(std::string_view type, FieldReader& fields, std::size_t num_fields
   if (type == "VTG") return ReadVtg(fields, num_fields);
   if (type == "HDT") return ReadHdt(fields);
   if (type == "PASHR") return ReadPashr(fields);
+  if (type == "GST") return ReadGst(fields);
+  if (type == "GLL") return ReadGll(fields, num_fields);
+  if (type == "ZDA") return ReadZda(fields);
+  if (type == "THS") return ReadThs(fields);
+  if (type == "HDG") return ReadHdg(fields);
+  if (type == "HDM") return ReadHdm(fields);
+  if (type == "ROT") return ReadRot(fields, num_fields);
+  if (type == "PSAT") return ReadPsatHpr(fields);
+  if (type == "VNINS") return ReadVnIns(fields);
+  if (type == "VNYMR") return ReadVnYmr(fields);
+  if (type == "VNIMU") return ReadVnImu(fields);
   return OtherSentence{};
 }
 
@@ -131,8 +218,13 @@ std::string_view TypeOf(const FramedSentence& sentence) {
   if (address.starts_with('P')) {
     // Ashtech's own sentences have a word in place of the time: $PASHR,POS,...
     const bool has_word = !sentence.fields.empty() && !sentence.fields.front().empty() && sentence.fields.front().front() >= 'A';
-    return address == "PASHR" && !has_word ? address : std::string_view{};
+    if (address == "PASHR" && !has_word) return address;
+    // Hemisphere's own sentences share an address; their first field tells them apart.
+    if (address == "PSAT" && !sentence.fields.empty() && sentence.fields.front() == "HPR") return address;
+    return {};
   }
+  // VN is VectorNav's mark, not a talker.
+  if (address == "VNINS" || address == "VNYMR" || address == "VNIMU") return address;
   return address.size() == kTalkerCharacters + kTypeCharacters ? address.substr(kTalkerCharacters) : std::string_view{};
 }
 
@@ -140,8 +232,8 @@ std::string_view TypeOf(const FramedSentence& sentence) {
 
 bool IsMeasured(FixQuality quality) { return quality >= FixQuality::kGnss && quality <= FixQuality::kDeadReckoning; }
 
-ParseResult ParseSentence(std::string_view line) {
-  const auto framed = Frame(line);
+ParseResult ParseSentence(std::string_view line, bool requires_checksum) {
+  const auto framed = Frame(line, requires_checksum);
   if (framed.fault != SentenceFault::kNone) return {framed.fault, {}};
   FieldReader fields(framed.sentence.fields);
   ParseResult result;

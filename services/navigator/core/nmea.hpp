@@ -1,6 +1,7 @@
 // The sentences that navigator understands. What a sentence does not say is NaN, nullopt, or -1 in counts; angles in radians.
 #pragma once
 
+#include <Eigen/Core>
 #include <chrono>
 #include <optional>
 #include <string_view>
@@ -27,6 +28,9 @@ enum class FixQuality {
 /// @return whether a receiver measured it; not "no fix", put in by hand, or simulated
 bool IsMeasured(FixQuality quality);
 
+/// Three numbers that were not said.
+inline const Eigen::Vector3d kUnknownVector = Eigen::Vector3d::Constant(kNan);
+
 /// RMC: time,status,latitude,N,longitude,E,knots,course,date,variation,E[,mode[,navigational status]]
 struct Rmc {
   std::optional<std::chrono::microseconds> time_of_day;
@@ -35,6 +39,7 @@ struct Rmc {
   std::optional<GeodeticPosition> position;
   double speed_mps = kNan;
   double course_rad = kNan;
+  double declination_rad = kNan;  // magnetic variation, positive east
 };
 
 /// GGA: time,latitude,N,longitude,E,quality,satellites,HDOP,height,M,geoid separation,M,age,station
@@ -75,19 +80,104 @@ struct Pashr {
   double heading_sd_rad = kNan;
 };
 
+/// GST: time,rms,sd of the major axis,of the minor axis,direction,sd of latitude,of longitude,of height
+struct Gst {
+  std::optional<std::chrono::microseconds> time_of_day;
+  double north_sd_m = kNan;
+  double east_sd_m = kNan;
+  double height_sd_m = kNan;
+};
+
+/// GLL: latitude,N,longitude,E[,time,status[,mode]]
+struct Gll {
+  std::optional<std::chrono::microseconds> time_of_day;
+  FixQuality quality = FixQuality::kNone;
+  std::optional<GeodeticPosition> position;
+};
+
+/// ZDA: time,day,month,year,zone hours,zone minutes
+struct Zda {
+  std::optional<std::chrono::microseconds> time_of_day;
+  std::optional<std::chrono::sys_days> date;
+};
+
+/// HDG: heading of the compass,deviation,E,declination,E. HDM: heading,M
+struct MagneticHeading {
+  double compass_rad = kNan;
+  double deviation_rad = kNan;    // positive east
+  double declination_rad = kNan;  // positive east
+};
+
+/// ROT: degrees per minute,A
+struct Rot {
+  double rate_radps = kNan;  // positive when the bow turns to starboard
+};
+
+/// PSAT,HPR,time,heading,pitch,roll,type: N = by GNSS, G = by gyro.
+/// Source: Hemisphere GNSS Technical Reference Guide, PSAT,HPR. Which way roll and pitch are positive is set in the receiver: see config.
+struct PsatHpr {
+  std::optional<std::chrono::microseconds> time_of_day;
+  double heading_rad = kNan;
+  double pitch_rad = kNan;
+  double roll_rad = kNan;
+};
+
+/// What a strapdown sensor measures, along its own axes: x forward, y to starboard, z down.
+struct StrapdownSample {
+  Eigen::Vector3d angular_velocity_radps = kUnknownVector;
+  Eigen::Vector3d specific_force_mps2 = kUnknownVector;  // at rest and level z is -9.81
+  Eigen::Vector3d magnetic_field_ut = kUnknownVector;    // microtesla
+};
+
+/// VNINS: GPS time of week,week,status,yaw,pitch,roll,latitude,longitude,height,velocity north,east,down,sd of attitude,position,velocity.
+/// Source: VectorNav VN-300 User Manual UM005, "INS Solution - LLA". Yaw from true north, pitch positive bow up, roll positive starboard down.
+struct VnIns {
+  /// Bits 0 and 1 of the status.
+  enum class Mode { kNotTracking = 0, kAligning = 1, kTracking = 2, kGnssLost = 3 };
+
+  std::optional<std::chrono::microseconds> time_of_day;  // UTC
+  std::optional<std::chrono::sys_days> date;             // UTC
+  Mode mode = Mode::kNotTracking;
+  bool has_fault = false;  // the filter's time, IMU, magnetometer or GNSS error: bits 3 to 6
+  double yaw_rad = kNan;
+  double pitch_rad = kNan;
+  double roll_rad = kNan;
+  std::optional<GeodeticPosition> position;
+  double ellipsoid_height_m = kNan;
+  Eigen::Vector3d velocity_ned_mps = kUnknownVector;
+  double attitude_sd_rad = kNan;
+  double position_sd_m = kNan;
+  double velocity_sd_mps = kNan;
+};
+
+/// VNYMR: yaw,pitch,roll,magnetometer x y z,accelerometer x y z,gyro x y z.
+/// Source: VectorNav VN-100 User Manual UM001, "Yaw, Pitch, Roll, Magnetic, Acceleration, and Angular Rates". Signs as VNINS.
+struct VnYmr {
+  double yaw_rad = kNan;
+  double pitch_rad = kNan;
+  double roll_rad = kNan;
+  StrapdownSample sample;
+};
+
+/// VNIMU: magnetometer x y z,accelerometer x y z,gyro x y z,temperature,pressure. Source: VectorNav VN-100 User Manual UM001, "IMU Measurements".
+struct VnImu {
+  StrapdownSample sample;
+};
+
 /// A right sentence of a type that is not used.
 struct OtherSentence {};
 
-using Sentence = std::variant<OtherSentence, Rmc, Gga, Vtg, Hdt, Pashr>;
+using Sentence = std::variant<OtherSentence, Rmc, Gga, Vtg, Hdt, Pashr, Gst, Gll, Zda, MagneticHeading, Rot, PsatHpr, VnIns, VnYmr, VnImu>;
 
 struct ParseResult {
   SentenceFault fault = SentenceFault::kNone;
   Sentence sentence;  // only when there is no fault
 };
 
-/// Whoever the talker is, numbers too; of proprietary sentences PASHR alone.
+/// Whoever the talker is, numbers too; of proprietary sentences PASHR, PSAT,HPR, VNINS, VNYMR and VNIMU. THS is given as HDT.
 ///
-/// @param line  from $ or ! to the checksum
-ParseResult ParseSentence(std::string_view line);
+/// @param line               from $ or ! to the checksum
+/// @param requires_checksum  false: a line without * is taken too; one whose checksum is wrong never is
+ParseResult ParseSentence(std::string_view line, bool requires_checksum = true);
 
 }  // namespace lookout::navigator

@@ -49,7 +49,13 @@ DatagramLines SplitDatagram(Bytes payload) {
     const auto whole_line = rest.substr(0, end);
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (whole_line.empty()) continue;
-    const auto line = FromStart(whole_line);
+    auto line = FromStart(whole_line);
+    // Behind bytes that are no text (another protocol on the same line) a whole sentence may stand.
+    const auto last_byte = std::ranges::find_if_not(whole_line.rbegin(), whole_line.rend(), IsPrintable);
+    if (last_byte != whole_line.rend()) {
+      const auto behind = FromStart(whole_line.substr(static_cast<std::size_t>(whole_line.rend() - last_byte)));
+      if (!behind.empty()) line = behind;
+    }
     if (line.empty()) {
       ++result.num_no_start;
     } else if (line.size() > kMaxLineCharacters) {
@@ -63,15 +69,37 @@ DatagramLines SplitDatagram(Bytes payload) {
   return result;
 }
 
+bool IsSourceName(std::string_view name) {
+  constexpr std::size_t kMaxCharacters = 32;
+  return !name.empty() && name.size() <= kMaxCharacters &&
+         std::ranges::all_of(name, [](char character) { return (character >= 'a' && character <= 'z') || (character >= '0' && character <= '9'); });
+}
+
+DatagramLines LineAssembler::Add(Bytes bytes) {
+  // A tag block and junk may stand before a line of full length.
+  constexpr std::size_t kMaxHeld = 4 * kMaxLineCharacters;
+  rest_.append(bytes.begin(), bytes.end());
+  const auto end = rest_.find_last_of("\r\n");
+  const std::size_t num_whole = end == std::string::npos ? 0 : end + 1;
+  auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(rest_.data()), num_whole});
+  rest_.erase(0, num_whole);
+  if (rest_.size() > kMaxHeld) {
+    ++lines.num_too_long;
+    rest_.clear();
+  }
+  return lines;
+}
+
 bool IsLine(std::string_view line) {
   return !line.empty() && line.size() <= kMaxLineCharacters && (line.front() == '$' || line.front() == '!') && std::ranges::all_of(line, IsPrintable);
 }
 
-FrameResult Frame(std::string_view line) {
+FrameResult Frame(std::string_view line, bool requires_checksum) {
   const auto star = line.rfind('*');
-  if (star == std::string_view::npos || star == 0) return {SentenceFault::kNoChecksum, {}};
-  auto body = line.substr(1, star - 1);
-  if (!IsChecksumOf(line.substr(star + 1), body)) return {SentenceFault::kBadChecksum, {}};
+  const bool has_star = star != std::string_view::npos && star != 0;
+  if (!has_star && (requires_checksum || line.empty())) return {SentenceFault::kNoChecksum, {}};
+  auto body = has_star ? line.substr(1, star - 1) : line.substr(1);
+  if (has_star && !IsChecksumOf(line.substr(star + 1), body)) return {SentenceFault::kBadChecksum, {}};
 
   FrameResult result;
   const auto address_end = std::min(body.find(','), body.size());

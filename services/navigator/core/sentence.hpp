@@ -27,6 +27,23 @@ DatagramLines SplitDatagram(Bytes payload);
 /// @return whether `line` may stand in NAV_RAW: begins with $ or !, printable ASCII, at most kMaxLineCharacters
 bool IsLine(std::string_view line);
 
+/// @return whether `name` may stand in NAV_RAW for a source: 1 to 32 of a to z and 0 to 9
+bool IsSourceName(std::string_view name);
+
+/// Cuts the bytes of a stream, which come in pieces of any size, into what SplitDatagram takes.
+class LineAssembler {
+ public:
+  /// @return the lines that are whole now; what is not stays for the next call. A line that does not end within kMaxLineCharacters several times
+  ///         over (another protocol, a wrong baud rate) is dropped and counted as too long.
+  DatagramLines Add(Bytes bytes);
+
+  /// The connection broke: what is held will not be completed.
+  void Clear() { rest_.clear(); }
+
+ private:
+  std::string rest_;
+};
+
 /// Why a line is not a sentence, or not one with values that can be.
 enum class SentenceFault {
   kNone,
@@ -47,7 +64,8 @@ struct FrameResult {
   FramedSentence sentence;
 };
 
-/// @param line  as in DatagramLines; must outlive the result
-FrameResult Frame(std::string_view line);
+/// @param line               as in DatagramLines; must outlive the result
+/// @param requires_checksum  false: a line without * is taken too
+FrameResult Frame(std::string_view line, bool requires_checksum = true);
 
 }  // namespace lookout::navigator

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "common/core/utime.hpp"
-#include "services/vlp16/core/clock_fit.hpp"
+#include "common/core/clock_fit.hpp"
 #include "services/vlp16/core/packet_sequencer.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 

@@ -172,7 +172,7 @@ TEST_F(NavigatorTest, CountsWhatItDoesNotTake) {
   Sentence(0.0, "$GPHDT,1.0,T*00");
   Sentence(0.0, Line("GPHDT,x,T"));
   Sentence(0.0, Line("GPHDT,361.0,T"));
-  Sentence(0.0, "$04HDM,186.5,M*2C");
+  Sentence(0.0, "$APXDR,A,0.135,D,PTCH*7C");
   EXPECT_EQ(Count("no_checksum"), 1);
   EXPECT_EQ(Count("bad_checksum"), 1);
   EXPECT_EQ(Count("bad_field"), 1);

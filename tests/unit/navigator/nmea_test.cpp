@@ -138,15 +138,129 @@ TEST(Pashr, MayLackTheLastFieldAndAnyValue) {
   EXPECT_TRUE(std::isnan(pashr.heading_rad) && std::isnan(pashr.roll_rad) && std::isnan(pashr.heave_m) && std::isnan(pashr.heading_sd_rad));
 }
 
+TEST(Rmc, GivesItsDeclinationAndIsNotRefusedForIt) {
+  EXPECT_NEAR(Parsed<Rmc>(Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,2.5,W,A")).declination_rad, DegToRad(-2.5), 1e-12);
+  EXPECT_TRUE(std::isnan(Parsed<Rmc>(Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,-2.5,E,A")).declination_rad));
+  EXPECT_TRUE(std::isnan(Parsed<Rmc>(Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A")).declination_rad));
+}
+
+TEST(Gst, GivesTheDeviations) {
+  const auto gst = Parsed<Gst>("$GPGST,172814.0,0.006,0.023,0.020,273.6,0.023,0.020,0.031*6A");
+  EXPECT_EQ(gst.time_of_day, 17h + 28min + 14s);
+  EXPECT_DOUBLE_EQ(gst.north_sd_m, 0.023);
+  EXPECT_DOUBLE_EQ(gst.east_sd_m, 0.020);
+  EXPECT_DOUBLE_EQ(gst.height_sd_m, 0.031);
+}
+
+TEST(Gll, GivesPositionTimeAndQuality) {
+  const auto gll = Parsed<Gll>("$ECGLL,5119.881,N,00125.169,E,164326,A,D*52");
+  EXPECT_EQ(gll.time_of_day, 16h + 43min + 26s);
+  EXPECT_EQ(gll.quality, FixQuality::kDifferential);
+  EXPECT_NEAR(gll.position->latitude_deg, 51.33135, 1e-9);
+  EXPECT_NEAR(gll.position->longitude_deg, 1.419483333, 1e-9);
+  EXPECT_EQ(Parsed<Gll>(Line("GPGLL,,,,,164326,V,N")).quality, FixQuality::kNone);
+  const auto old = Parsed<Gll>(Line("LCGLL,4728.31,N,12254.25,W"));
+  EXPECT_EQ(old.quality, FixQuality::kGnss) << "before NMEA 0183 2.0";
+  EXPECT_FALSE(old.time_of_day);
+}
+
+TEST(Zda, GivesDateAndTime) {
+  const auto zda = Parsed<Zda>("$GPZDA,193913.00,07,09,2018,00,00*63");
+  EXPECT_EQ(zda.time_of_day, 19h + 39min + 13s);
+  EXPECT_EQ(zda.date, std::chrono::sys_days(std::chrono::year(2018) / 9 / 7));
+  EXPECT_FALSE(Parsed<Zda>(Line("GPZDA,,,,,,")).date);
+}
+
+TEST(Ths, CountsWhereItWasMeasured) {
+  EXPECT_NEAR(Parsed<Hdt>(Line("GPTHS,77.52,A")).heading_rad, DegToRad(77.52), 1e-12);
+  for (const char* mode : {"E", "M", "S", "V", ""}) {
+    EXPECT_TRUE(std::isnan(Parsed<Hdt>(Line(std::string("GPTHS,77.52,") + mode)).heading_rad)) << mode;
+  }
+}
+
+TEST(MagneticHeading, HasSidesThatAreSigns) {
+  const auto hdg = Parsed<MagneticHeading>(Line("HCHDG,98.3,1.5,W,12.6,E"));
+  EXPECT_NEAR(hdg.compass_rad, DegToRad(98.3), 1e-12);
+  EXPECT_NEAR(hdg.deviation_rad, DegToRad(-1.5), 1e-12);
+  EXPECT_NEAR(hdg.declination_rad, DegToRad(12.6), 1e-12);
+  const auto bare = Parsed<MagneticHeading>(Line("HCHDG,98.3,,,,"));
+  EXPECT_TRUE(std::isnan(bare.deviation_rad) && std::isnan(bare.declination_rad));
+  const auto hdm = Parsed<MagneticHeading>("$04HDM,186.5,M*2C");
+  EXPECT_NEAR(hdm.compass_rad, DegToRad(186.5), 1e-12);
+  EXPECT_TRUE(std::isnan(hdm.deviation_rad));
+}
+
+TEST(Rot, IsPositiveToStarboardAndVoidWhereItSaysSo) {
+  EXPECT_NEAR(Parsed<Rot>(Line("TIROT,-60.0,A")).rate_radps, DegToRad(-1.0), 1e-12);
+  EXPECT_NEAR(Parsed<Rot>("$APROT,0.013,A*35").rate_radps, DegToRad(0.013 / 60.0), 1e-12);
+  EXPECT_TRUE(std::isnan(Parsed<Rot>(Line("TIROT,-60.0,V")).rate_radps));
+}
+
+TEST(PsatHpr, GivesItsAngles) {
+  const auto hpr = Parsed<PsatHpr>(Line("PSAT,HPR,201400.00,74.58,-2.33,1.10,N"));
+  EXPECT_EQ(hpr.time_of_day, 20h + 14min);
+  EXPECT_NEAR(hpr.heading_rad, DegToRad(74.58), 1e-12);
+  EXPECT_NEAR(hpr.pitch_rad, DegToRad(-2.33), 1e-12);
+  EXPECT_NEAR(hpr.roll_rad, DegToRad(1.10), 1e-12);
+  EXPECT_TRUE(std::isnan(Parsed<PsatHpr>(Line("PSAT,HPR,201400.00,,,,")).heading_rad));
+}
+
+// VectorNav's own examples (user manuals UM001 and UM005).
+TEST(VectorNav, GivesWhatItsSensorsMeasure) {
+  const auto ins = Parsed<VnIns>(
+      Line("VNINS,333733.000159,1694,0004,+009.500,-004.754,-000.225,+32.95602815,-096.71424297,+00171.195,-000.840,-000.396,-000.109,07.8,01.6,"
+           "0.23"));
+  // 333733 s into week 1694 (2012-06-24), 15 s ahead of UTC then: three days and 20 h 42 min 13 s, less 15 s.
+  EXPECT_EQ(*ins.date + *ins.time_of_day, std::chrono::sys_days(std::chrono::year(2012) / 6 / 27) + 20h + 41min + 58s + 159us);
+  EXPECT_EQ(ins.mode, VnIns::Mode::kNotTracking);
+  EXPECT_FALSE(ins.has_fault);
+  EXPECT_NEAR(ins.yaw_rad, DegToRad(9.5), 1e-12);
+  EXPECT_NEAR(ins.pitch_rad, DegToRad(-4.754), 1e-12);
+  EXPECT_NEAR(ins.position->longitude_deg, -96.71424297, 1e-12);
+  EXPECT_DOUBLE_EQ(ins.velocity_ned_mps.z(), -0.109);
+  EXPECT_NEAR(ins.attitude_sd_rad, DegToRad(7.8), 1e-12);
+  EXPECT_DOUBLE_EQ(ins.position_sd_m, 1.6);
+  EXPECT_DOUBLE_EQ(ins.velocity_sd_mps, 0.23);
+  const auto ymr =
+      Parsed<VnYmr>(Line("VNYMR,+006.380,+000.023,-001.953,+1.0640,-0.2531,+3.0614,+00.005,+00.344,-09.758,-0.001222,-0.000450,-0.001218"));
+  EXPECT_NEAR(ymr.roll_rad, DegToRad(-1.953), 1e-12);
+  EXPECT_NEAR(ymr.sample.specific_force_mps2.z(), -9.758, 1e-12);
+  EXPECT_NEAR(ymr.sample.angular_velocity_radps.x(), -0.001222, 1e-12);
+  EXPECT_NEAR(ymr.sample.magnetic_field_ut.x(), 106.40, 1e-9);
+  EXPECT_NEAR(Parsed<VnYmr>(Line("VNYMR,-090.000,0,0,0,0,0,0,0,0,0,0,0")).yaw_rad, DegToRad(270.0), 1e-12);
+  const auto imu = Parsed<VnImu>(Line("VNIMU,-00.7703,-01.0250,+03.0614,-00.129,+00.344,-09.757,+00.001320,-00.000450,-00.001218,+20.6,+098.921"));
+  EXPECT_NEAR(imu.sample.specific_force_mps2.y(), 0.344, 1e-12);
+}
+
+TEST(VectorNav, HasGpsTimeThatTurnsIntoUtcAcrossALeapSecond) {
+  const auto utc = [](const char* time_of_week, int week) {
+    const auto ins = Parsed<VnIns>(Line(Print("VNINS,%s,%d,0002,0,0,0,1,1,0,0,0,0,1,1,1", time_of_week, week)));
+    return *ins.date + *ins.time_of_day;
+  };
+  // Week 1930 began on 2017-01-01, 00:00 GPS time. The leap second came between 16.999 and 18 s of it.
+  const auto new_year = std::chrono::sys_days(std::chrono::year(2017) / 1 / 1);
+  EXPECT_EQ(utc("16.5", 1930), new_year - 500ms);
+  EXPECT_EQ(utc("18.0", 1930), new_year);
+  EXPECT_FALSE(Parsed<VnIns>(Line("VNINS,5.0,0,0000,0,0,0,0,0,0,0,0,0,0,0,0")).date) << "week 0: not known yet";
+  EXPECT_FALSE(Parsed<VnIns>(Line("VNINS,5.0,0,0000,0,0,0,0,0,0,0,0,0,0,0,0")).position);
+}
+
+TEST(ParseSentence, MayDoWithoutAChecksumWhereThatIsAllowed) {
+  EXPECT_EQ(ParseSentence("$GPHDT,1.0,T", false).fault, SentenceFault::kNone);
+  EXPECT_EQ(ParseSentence("$GPHDT,1.0,T*00", false).fault, SentenceFault::kBadChecksum) << "a wrong one is still wrong";
+  EXPECT_EQ(ParseSentence("", false).fault, SentenceFault::kNoChecksum);
+  EXPECT_EQ(ParseSentence("$", false).fault, SentenceFault::kNone);
+}
+
 TEST(ParseSentence, DoesNotAskWhoTalks) {
   for (const char* talker : {"GP", "GN", "GL", "GA", "BD", "HE", "II", "04"}) Parsed<Hdt>(Line(std::string(talker) + "HDT,1.0,T"));
 }
 
 TEST(ParseSentence, LeavesOtherTypesAlone) {
-  EXPECT_TRUE(IsOther("$04HDM,186.5,M*2C"));
   EXPECT_TRUE(IsOther("!AIVDM,1,1,1,,13aI8e?P00PGpU:NR6s00?vT2000,0,0*1C"));
   EXPECT_TRUE(IsOther("$APXDR,A,0.135,D,PTCH*7C"));
-  for (const char* body : {"", ",", "P", "PUBX,00", "GPHDTX,1", "HDT,1.0,T", "XGPHDT,x", "PASHR,POS,0,05", "PHDT,1", "PGHDT,nonsense"}) {
+  for (const char* body : {"", ",", "P", "PUBX,00", "GPHDTX,1", "HDT,1.0,T", "XGPHDT,x", "PASHR,POS,0,05", "PHDT,1", "PSAT", "PSAT,GBS,1", "VNXYZ,1",
+                           "PGHDT,nonsense"}) {
     EXPECT_TRUE(IsOther(Line(body))) << body;
   }
   EXPECT_TRUE(IsOther(Line("GPHDT,nonsense", '!'))) << "an encapsulated sentence";
@@ -220,6 +334,21 @@ INSTANTIATE_TEST_SUITE_P(OtherTypes, RefusedSentence,
                                            Refused{"PASHR,000000,1.0,T,0.0,0.0,0.0,-0.1,0.1,0.1,1,1", kImplausible},
                                            Refused{"PASHR,000000,1.0,T,0.0,0.0,0.0,0.1,0.1,0.1", kBadField},
                                            Refused{"PASHR,000000,1.0,,0.0,0.0,0.0,0.1,0.1,0.1,1,1", kBadField}));
+
+INSTANTIATE_TEST_SUITE_P(
+    LaterTypes, RefusedSentence,
+    ::testing::Values(Refused{"GPGST,000000,1,1,1,0,-1,1,1", kImplausible}, Refused{"GPGST,000000,1,1,1,0,1,1", kBadField},
+                      Refused{"GPGLL,0000.0,N,00000.0,E,000000,Q", kBadField}, Refused{"GPGLL,0000.0,N,00000.0", kBadField},
+                      Refused{"GPGLL,0000.0,N,00000.0,E,000000", kBadField}, Refused{"GPZDA,000000,31,02,2026,00,00", kImplausible},
+                      Refused{"GPZDA,000000,31,,2026,00,00", kBadField}, Refused{"GPZDA,000000,01,01,1979,00,00", kImplausible},
+                      Refused{"GPZDA,000000,01,01,2026", kBadField}, Refused{"GPTHS,361,A", kImplausible}, Refused{"GPTHS,1", kBadField},
+                      Refused{"HCHDG,1.0,1.0,,,", kBadField}, Refused{"HCHDG,1.0,-1.0,E,,", kImplausible}, Refused{"HCHDG,1.0,,", kBadField},
+                      Refused{"HCHDM,1.0,T", kBadField}, Refused{"TIROT,x,A", kBadField}, Refused{"TIROT,1,B", kBadField},
+                      Refused{"PSAT,HPR,000000,361,0,0,N", kImplausible}, Refused{"PSAT,HPR,000000,1,0,0", kBadField},
+                      Refused{"VNINS,604801,1694,0002,0,0,0,1,1,0,0,0,0,1,1,1", kImplausible},
+                      Refused{"VNINS,1,1694,00GZ,0,0,0,1,1,0,0,0,0,1,1,1", kBadField}, Refused{"VNINS,1,1694,0002,0,0,0,1,1", kBadField},
+                      Refused{"VNINS,1,1694,0002,0,0,0,91,1,0,0,0,0,1,1,1", kImplausible}, Refused{"VNYMR,0,0,0", kBadField},
+                      Refused{"VNYMR,0,0,0,0,0,0,0,0,2000,0,0,0", kImplausible}, Refused{"VNIMU,0,0,0,0,0,0,0,0,0", kBadField}));
 
 TEST(TimeOfDay, MayBeTheLeapSecond) {
   EXPECT_EQ(Parsed<Rmc>(Line("GPRMC,235960.50,A,0000.0,N,00000.0,E,0.0,0.0,311216,,,A")).time_of_day, 24h + 500ms);

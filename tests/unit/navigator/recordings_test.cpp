@@ -4,11 +4,14 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <iostream>
 #include <map>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "services/navigator/core/interpreter.hpp"
 #include "services/navigator/core/nmea.hpp"
 #include "services/navigator/core/sentence.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
@@ -138,6 +141,103 @@ INSTANTIATE_TEST_SUITE_P(Logs, GpsdTimes,
                                            Expectation{"april6_2019", 1, 1, true}),
                          kNameOfLog);
 
+struct GpsdComparison {
+  const char* name;
+  int num_with_time;     // epochs compared with reports of the same time of day
+  int num_without_time;  // fixes compared with reports that hold no time, in their order
+};
+
+class GpsdEpochs : public ::testing::TestWithParam<GpsdComparison> {};
+
+struct EpochFix {
+  GeodeticPosition position;
+  double speed_mps = kNan;
+};
+
+// The raw log, through all that a fix goes through, against gpsd's last report of each epoch.
+TEST_P(GpsdEpochs, HaveGpsdsPositionsTimesOfDayAndSpeeds) {
+  constexpr double kMaxPositionErrorDeg = 1e-7;
+  constexpr double kMaxSpeedErrorMps = 0.01;
+  const fs::path log = kData / "gpsd" / (std::string(GetParam().name) + ".log");
+  if (!fs::exists(log)) GTEST_SKIP() << log << " is not at hand";
+
+  InterpreterParams params;
+  params.max_sentence_latency = std::chrono::milliseconds(500);
+  params.position_sd_m = 2.5;
+  Interpreter interpreter(params);
+  std::map<std::int64_t, EpochFix> found;  // by milliseconds of the day
+  std::vector<EpochFix> found_without_time;
+  std::optional<std::int64_t> last;
+  std::int64_t seq = 0;
+  for (const auto& line : SplitDatagram(ToBytes(Content(log))).lines) {
+    // Far from the time in the sentences: the computer's clock says nothing.
+    const auto [fix, attitude, velocity, turn_rate, imu] =
+        interpreter.Read({NoonPlus(static_cast<double>(seq) * 0.01), seq, ItemKind::kSentence, "udp", line});
+    ++seq;
+    if (velocity && last) found[*last].speed_mps = velocity->speed_mps;  // VTG, behind the fix of its epoch
+    if (!fix || !fix->position || !IsMeasured(fix->quality)) continue;
+    if (!fix->when.has_sentence_utc) {
+      found_without_time.push_back({*fix->position, fix->speed_mps});
+      continue;
+    }
+    const auto time_of_day = fix->when.utc - std::chrono::floor<std::chrono::days>(fix->when.utc);
+    last = std::chrono::round<std::chrono::milliseconds>(time_of_day).count();
+    found[*last] = {*fix->position, fix->speed_mps};
+    found_without_time.push_back({*fix->position, fix->speed_mps});
+  }
+
+  std::istringstream lines(Content(log.string() + ".chk"));
+  std::map<std::int64_t, std::string> expected;
+  std::vector<std::string> expected_without_time;
+  for (std::string line; std::getline(lines, line);) {
+    if (JsonValue(line, "class") != "TPV" || JsonValue(line, "lat").empty()) continue;
+    const auto time = JsonValue(line, "time");
+    if (time.empty()) {
+      expected_without_time.push_back(line);
+    } else {
+      const auto utc = FromIso(time);
+      expected[std::chrono::round<std::chrono::milliseconds>(utc - std::chrono::floor<std::chrono::days>(utc)).count()] = line;
+    }
+  }
+  int num_speeds = 0;
+  const auto compare = [&](const EpochFix& fix, const std::string& json) {
+    EXPECT_NEAR(fix.position.latitude_deg, std::stod(JsonValue(json, "lat")), kMaxPositionErrorDeg) << json;
+    EXPECT_NEAR(fix.position.longitude_deg, std::stod(JsonValue(json, "lon")), kMaxPositionErrorDeg) << json;
+    const auto speed = JsonValue(json, "speed");
+    if (!speed.empty() && !std::isnan(fix.speed_mps)) {
+      EXPECT_NEAR(fix.speed_mps, std::stod(speed), kMaxSpeedErrorMps) << json;
+      ++num_speeds;
+    }
+  };
+  int num_with_time = 0;
+  for (const auto& [time_of_day_ms, fix] : found) {
+    const auto report = expected.find(time_of_day_ms);
+    if (report == expected.end()) continue;
+    compare(fix, report->second);
+    ++num_with_time;
+  }
+  std::cout << GetParam().name << ": " << found.size() << " epochs here, " << expected.size() << " there, " << num_with_time << " compared; "
+            << expected_without_time.size() << " reports without a time, " << num_speeds << " speeds compared\n";
+  EXPECT_EQ(num_with_time, GetParam().num_with_time);
+  // gpsd gives no time where no sentence has told a date: compared in order.
+  int num_without_time = 0;
+  if (expected.empty()) {
+    ASSERT_EQ(found_without_time.size(), expected_without_time.size());
+    for (std::size_t i = 0; i < found_without_time.size(); ++i) {
+      compare(found_without_time[i], expected_without_time[i]);
+      ++num_without_time;
+    }
+  }
+  EXPECT_EQ(num_without_time, GetParam().num_without_time);
+}
+
+INSTANTIATE_TEST_SUITE_P(Logs, GpsdEpochs,
+                         ::testing::Values(GpsdComparison{"nmea-rtk", 122, 0}, GpsdComparison{"ublox-zed-f9p-nmea", 29, 0},
+                                           GpsdComparison{"april6_2019", 1, 0}, GpsdComparison{"tcp-torture", 1, 0}, GpsdComparison{"hemi", 6, 0},
+                                           GpsdComparison{"sounder", 0, 122}, GpsdComparison{"pypilot", 0, 0}, GpsdComparison{"bu303-moving", 0, 0},
+                                           GpsdComparison{"bu303-nofix", 0, 0}),
+                         kNameOfLog);
+
 // How many lines of a log are of each kind.
 std::map<std::string, int> Census(const fs::path& file) {
   const auto lines = SplitDatagram(ToBytes(Content(file)));
@@ -146,11 +246,41 @@ std::map<std::string, int> Census(const fs::path& file) {
   census["not printable"] = static_cast<int>(lines.num_not_printable);
   for (const auto& line : lines.lines) {
     static const char* const kFaults[] = {"", "no checksum", "bad checksum", "bad field", "implausible"};
-    static const char* const kTypes[] = {"other", "RMC", "GGA", "VTG", "HDT", "PASHR"};
+    static const char* const kTypes[] = {"other", "RMC", "GGA", "VTG", "HDT",   "PASHR", "GST",  "GLL",
+                                         "ZDA",   "HDG", "ROT", "HPR", "VNINS", "VNYMR", "VNIMU"};
     const auto result = ParseSentence(line);
     ++census[result.fault == SentenceFault::kNone ? kTypes[result.sentence.index()] : kFaults[static_cast<int>(result.fault)]];
   }
   return census;
+}
+
+// Every sentence that is understood goes through: nothing is refused, and time never runs backwards.
+TEST(Recordings, OfABoatInAmsterdamAreTakenWhole) {
+  const auto file = kData / "nmea/signalk_gps.log";
+  if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
+  InterpreterParams params;
+  params.max_sentence_latency = std::chrono::milliseconds(500);
+  params.position_sd_m = 2.5;
+  Interpreter interpreter(params);
+  std::int64_t seq = 0;
+  int num_fixes = 0;
+  Utime last{};
+  for (const auto& line : SplitDatagram(ToBytes(Content(file))).lines) {
+    const auto fix = interpreter.Read({NoonPlus(static_cast<double>(seq) * 0.25), seq, ItemKind::kSentence, "gnss", line}).fix;
+    ++seq;
+    if (!fix) continue;
+    ++num_fixes;
+    if (num_fixes > 1) {  // the first GGA cannot know its day
+      EXPECT_GE(fix->when.utc, last);
+      last = fix->when.utc;
+    }
+  }
+  EXPECT_EQ(num_fixes, 1202 + 1201);
+  for (const auto& counter : interpreter.counters()) {
+    const bool is_refusal = counter.name == "bad_field" || counter.name == "implausible_value" || counter.name == "bad_checksum" ||
+                            counter.name == "no_checksum" || counter.name == "time_backwards" || counter.name == "date_unusable";
+    EXPECT_EQ(is_refusal ? counter.count : 0, 0) << counter.name;
+  }
 }
 
 TEST(Recordings, OfABoatInAmsterdamAreUnderstood) {
@@ -172,11 +302,12 @@ TEST(Recordings, OfABoatsNetworkAreUnderstood) {
   EXPECT_EQ(census["bad field"] + census["implausible"] + census["not printable"], 0);
 }
 
-TEST(Recordings, WithNumbersForTalkersAreOther) {
+TEST(Recordings, WithNumbersForTalkersAreUnderstood) {
   const auto file = kData / "nmea/signalk_n2kd-183-merrimac.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   auto census = Census(file);
   EXPECT_GT(census["other"], 100);
+  EXPECT_GT(census["HDG"], 10) << "HDM";
   EXPECT_EQ(census["bad field"] + census["implausible"] + census["bad checksum"], 0);
 }
 
@@ -187,7 +318,7 @@ TEST(Recordings, OfAHeadingReceiverHoldEmptyAndFullHeadings) {
   EXPECT_EQ(census["HDT"], 215);
   EXPECT_EQ(census["GGA"], 215);
   EXPECT_EQ(census["VTG"], 215);
-  EXPECT_EQ(census["other"], 108);
+  EXPECT_EQ(census["ZDA"], 108);
 }
 
 TEST(Recordings, OfABinaryProtocolHoldNoSentence) {

@@ -87,5 +87,42 @@ TEST(Frame, RefusesAWrongChecksum) {
   }
 }
 
+TEST(SplitDatagram, FindsASentenceBehindBinaryBytes) {
+  const auto lines =
+      SplitDatagram(ToBytes("$\xB5"
+                            "b\x01$GPHDT,1.0,T*00\r\n"));
+  EXPECT_EQ(lines.lines, std::vector<std::string>{"$GPHDT,1.0,T*00"});
+  EXPECT_EQ(lines.num_not_printable, 0);
+}
+
+TEST(LineAssembler, PutsPiecesTogether) {
+  const std::string text = "1,2*00\r\n$GPHDT,1.0,T*00\r\n$GPHDT,2.0,T*00\r\n";
+  for (std::size_t size = 1; size <= text.size(); ++size) {
+    LineAssembler assembler;
+    std::vector<std::string> lines;
+    for (std::size_t begin = 0; begin < text.size(); begin += size) {
+      const auto piece = assembler.Add(ToBytes(text.substr(begin, size)));
+      lines.insert(lines.end(), piece.lines.begin(), piece.lines.end());
+    }
+    EXPECT_EQ(lines, (std::vector<std::string>{"$GPHDT,1.0,T*00", "$GPHDT,2.0,T*00"})) << "pieces of " << size;
+  }
+}
+
+TEST(LineAssembler, DoesNotHoldALineThatDoesNotEnd) {
+  LineAssembler assembler;
+  std::int64_t num_too_long = 0;
+  for (int i = 0; i < 100; ++i) num_too_long += assembler.Add(ToBytes(std::string(100, 'x'))).num_too_long;
+  EXPECT_GE(num_too_long, 9);
+  assembler.Clear();
+  EXPECT_EQ(assembler.Add(ToBytes("$GPHDT,1.0,T*00\n")).lines.size(), 1U);
+}
+
+TEST(LineAssembler, ForgetsWhatWasHalfSaidWhenTheConnectionBreaks) {
+  LineAssembler assembler;
+  assembler.Add(ToBytes("$GPHDT,1"));
+  assembler.Clear();
+  EXPECT_EQ(assembler.Add(ToBytes("2.0,T*00\r\n")).num_no_start, 1);
+}
+
 }  // namespace
 }  // namespace lookout::navigator

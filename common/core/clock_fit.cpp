@@ -1,11 +1,11 @@
-#include "services/vlp16/core/clock_fit.hpp"
+#include "common/core/clock_fit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-namespace lookout::vlp16 {
+namespace lookout {
 
 namespace {
 
@@ -88,4 +88,4 @@ void ClockFit::Measure() {
   slope_ = *middle;
 }
 
-}  // namespace lookout::vlp16
+}  // namespace lookout

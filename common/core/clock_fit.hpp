@@ -6,7 +6,7 @@
 #include <deque>
 #include <optional>
 
-namespace lookout::vlp16 {
+namespace lookout {
 
 /// A datagram may come late, not early: of the (host - sensor) of one second the least is the truest. Their slope is the drift (the median of the
 /// slopes of all pairs, Theil and Sen: a third of the seconds may be bad); the offset is the least of the last two seconds, carried along that slope.
@@ -40,4 +40,4 @@ class ClockFit {
   int num_off_ = 0;              // samples in a row that are far off
 };
 
-}  // namespace lookout::vlp16
+}  // namespace lookout

@@ -1,10 +1,10 @@
-#include "services/vlp16/core/clock_fit.hpp"
+#include "common/core/clock_fit.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
 
-namespace lookout::vlp16 {
+namespace lookout {
 namespace {
 
 using std::chrono::microseconds;
@@ -87,4 +87,4 @@ TEST(ClockFit, KeepsTheDriftAcrossASmallStepOfTheHost) {
 }
 
 }  // namespace
-}  // namespace lookout::vlp16
+}  // namespace lookout

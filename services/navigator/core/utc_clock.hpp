@@ -1,0 +1,66 @@
+// The computer's clock against the UTC of the receivers, and with it the time of each measurement.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "common/core/clock_fit.hpp"
+#include "common/core/utime.hpp"
+#include "services/navigator/core/measurement.hpp"
+
+namespace lookout::navigator {
+
+/// What UtcClock remembers of one source.
+struct SourceClock {
+  std::optional<Utime> last_utc;   // of its measurements
+  std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: tells the day to those without a date
+  Utime dated_arrival{};
+  bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
+  std::optional<Utime> last_backward;  // refused because its time ran back
+  int num_backward = 0;
+  std::chrono::microseconds off{0};  // arrival less UTC of its last sentences whose time was not usable
+  int num_off = 0;
+};
+
+/// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the
+/// computer's clock is taken for UTC; sources whose delay is known (config) tell what it is off below that, which counts for measurements without
+/// a time. When all sources agree that it is farther off, it is another time scale: the one in which POSE goes on, and measurements are brought into
+/// it by the least of (arrival - UTC).
+class UtcClock {
+ public:
+  /// So many sentences in a row make it sure that the clock is off, or right again.
+  static constexpr int kMinSentences = 5;
+  /// Datagrams overtake each other. A source whose time runs back by more is refused ...
+  static constexpr std::chrono::seconds kMaxBackward{1};
+  /// ... until so many of its sentences in a row run forward from there: its clock was set.
+  static constexpr int kMinForward = 10;
+
+  explicit UtcClock(std::chrono::microseconds max_latency) : max_latency_(max_latency) {}
+
+  /// @param latency  of the source; nullopt = not known
+  /// @return nullopt when the source's time runs backwards
+  std::optional<MeasurementTime> OfSentence(SourceClock& source, Utime arrival, std::chrono::microseconds time_of_day,
+                                            std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency);
+
+  /// Date and time of a sentence that measures nothing (ZDA).
+  void OnDate(SourceClock& source, Utime arrival, Utime utc) const;
+
+  /// Of a sentence without a time.
+  MeasurementTime OfArrival(Utime arrival, std::optional<std::chrono::microseconds> latency) const;
+
+  /// Computer's clock less UTC; 0 while it is taken for UTC.
+  std::chrono::microseconds host_minus_utc() const { return off_; }
+
+ private:
+  static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
+  void LearnThatItIsOff(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc);
+
+  std::chrono::microseconds max_latency_;
+  std::chrono::microseconds off_{0};
+  bool is_off_ = false;
+  ClockFit off_fit_;                       // while is_off_
+  ClockFit fine_fit_;                      // while not, of sources whose delay is known
+  std::optional<Utime> last_agreement_{};  // arrival of a sentence whose time was usable
+};
+
+}  // namespace lookout::navigator

@@ -1,0 +1,128 @@
+// The inputs of navigator.txtpb, and what --check says of them.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "common/config/text_config.hpp"
+#include "services/navigator/params.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+namespace fs = std::filesystem;
+
+class InputsTest : public ::testing::Test {
+ protected:
+  InputsTest() {
+    fs::create_directories(folder_);
+    fs::copy_file(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo/boat.txtpb", folder_ / "boat.txtpb", fs::copy_options::overwrite_existing);
+    std::ofstream(folder_ / "day.nmea") << "$GPHDT,1.0,T*00\n";
+  }
+  ~InputsTest() override { fs::remove_all(folder_); }
+
+  Params Load(const std::string& text) const {
+    std::ofstream(folder_ / "navigator.txtpb") << text << "\nheading_offset_deg: 0 pitch_offset_deg: 0 roll_offset_deg: 0\n";
+    return LoadParams(folder_);
+  }
+  std::string FaultOf(const std::string& text) const {
+    try {
+      Load(text);
+    } catch (const config::ConfigError& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  // Whether the config is refused with this line and reason.
+  void ExpectFault(const std::string& text, const std::string& expected) const {
+    const auto fault = FaultOf(text);
+    EXPECT_NE(fault.find(expected), std::string::npos) << text << "\n" << fault;
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("lookout_inputs_" + std::to_string(getpid()));
+};
+
+const std::string kLive = "source: LIVE use_lidar_nmea: true\n";
+
+TEST_F(InputsTest, AreUdpAndLidarWhereNoneIsGiven) {
+  const auto params = Load(kLive + "bind_address: '0.0.0.0'");
+  ASSERT_EQ(params.connections.size(), 1U);
+  EXPECT_EQ(params.connections[0].name, "udp");
+  EXPECT_EQ(params.connections[0].port, 10110);
+  EXPECT_EQ(params.source_of_port.at(10110), "udp");
+}
+
+TEST_F(InputsTest, AreTakenManyAtOnce) {
+  const auto params = Load(kLive + R"(
+    input { name: 'gnss' role: GNSS serial { device: '/dev/ttyUSB0' baud: 38400 } latency_s: 0.08 }
+    input { name: 'ahrs' role: ATTITUDE tcp { address: '192.168.1.7' port: 10111 } roll_positive: PORT_DOWN pitch_positive: BOW_DOWN }
+    input { name: 'daemon' gpsd {} }
+    input { name: 'mux' udp { bind_address: '127.0.0.1' port: 2000 } checksum_required: false deviation_deg: 1 declination_deg: -2 }
+    input { name: 'day' text_log { file: 'day.nmea' speed: 10 } }
+    input { name: 'lidar' latency_s: 0.2 })");
+  ASSERT_EQ(params.connections.size(), 5U);
+  EXPECT_EQ(params.connections[0].baud, 38400);
+  EXPECT_EQ(params.connections[2].address, "127.0.0.1");
+  EXPECT_EQ(params.connections[2].port, 2947);
+  EXPECT_EQ(params.connections[4].file, folder_ / "day.nmea");
+  EXPECT_EQ(params.source_of_port.at(2000), "mux");
+  EXPECT_EQ(params.source_of_port.at(10110), "udp") << "in captures";
+  const auto& sources = params.navigator.sources;
+  ASSERT_EQ(sources.size(), 6U);
+  EXPECT_EQ(sources[0].role, Role::kGnss);
+  EXPECT_EQ(sources[0].latency, std::chrono::milliseconds(80));
+  EXPECT_EQ(sources[1].roll_sign, -1.0);
+  EXPECT_EQ(sources[1].pitch_sign, -1.0);
+  EXPECT_FALSE(sources[3].requires_checksum);
+  EXPECT_TRUE(sources[3].deviation_rad && sources[3].declination_rad);
+  EXPECT_FALSE(sources[2].latency);
+}
+
+TEST_F(InputsTest, AreRefusedWithLineAndReason) {
+  ExpectFault(kLive + "input { name: 'GNSS' gpsd {} }", "navigator.txtpb:2: input: 'GNSS': name must be");
+  ExpectFault(kLive + "input { gpsd {} }", ":2: input.name: must be set");
+  ExpectFault(kLive + "input { name: 'a' gpsd {} }\ninput { name: 'a' gpsd { port: 1 } }", ":3: input: 'a': the name stands twice");
+  ExpectFault(kLive + "input { name: 'a' }", ":2: input: 'a': must have one of serial, udp, tcp, gpsd and text_log, and has 0");
+  ExpectFault(kLive + "input { name: 'a' gpsd {} udp { bind_address: '::' port: 1 } }", "and has 2");
+  ExpectFault(kLive + "input { name: 'udp' gpsd {} }", "'udp': is given by bind_address");
+  ExpectFault(kLive + "input { name: 'a' serial { device: '/dev/ttyUSB0' baud: 4801 } }", "baud 4801 is none that serial ports have");
+  ExpectFault(kLive + "input { name: 'a' serial { device: 'ttyUSB0' baud: 4800 } }", "must be the whole path");
+  ExpectFault(kLive + "input { name: 'a' serial { device: '/dev/ttyUSB0' } }", "input.serial.baud: must be set");
+  ExpectFault(kLive + "input { name: 'a' tcp { address: 'plotter.local' port: 1 } }", "'plotter.local' is no numeric address");
+  ExpectFault(kLive + "input { name: 'a' text_log { file: 'no.nmea' } }", "cannot be read");
+  ExpectFault(kLive + "bind_address: 'eth0'", ":2: bind_address: 'eth0' is no numeric address");
+  ExpectFault(kLive + "input { name: 'a' gpsd {} latency_s: -1 }", "input.latency_s: must be at least 0");
+  ExpectFault("source: LIVE use_lidar_nmea: false", ":1: source: is LIVE, but there is nothing to take");
+}
+
+TEST_F(InputsTest, MustNotShareADeviceOrAPort) {
+  fs::create_symlink("/dev/null", folder_ / "by-id");
+  const auto serial = [](const std::string& name, const std::string& device) {
+    return "input { name: '" + name + "' serial { device: '" + device + "' baud: 4800 } }\n";
+  };
+  ExpectFault(kLive + serial("a", "/dev/null") + serial("b", (folder_ / "by-id").string()), ":3: input: 'b': serial port /dev/null is taken");
+  ExpectFault(kLive + "bind_address: '0.0.0.0'\ninput { name: 'b' udp { bind_address: '::' port: 10110 } }",
+              ":3: input: 'b': udp port 10110 belongs to input 'udp'");
+  ExpectFault(kLive + "input { name: 'a' gpsd {} }\ninput { name: 'b' gpsd {} }", "'b': gpsd 127.0.0.1 port 2947 is taken");
+}
+
+TEST_F(InputsTest, AreToldInWords) {
+  const auto words = InWords(Load(kLive + "input { name: 'ahrs' serial { device: '/dev/ttyUSB0' baud: 4800 } pitch_positive: BOW_DOWN }"));
+  EXPECT_NE(words.find("# input 'ahrs': serial port /dev/ttyUSB0, 4800 baud, 8N1; all that its sentences say is taken."), std::string::npos) << words;
+  EXPECT_NE(words.find("bow down is positive; where the sensor says +5 deg, an object 10 m ahead along the deck would be at 0.87 m below"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(words.find("starboard side down is positive; where the sensor says +5 deg, an object 10 m to starboard along the deck would be at "
+                       "0.87 m below"),
+            std::string::npos)
+      << words;
+  EXPECT_NE(words.find("# input 'lidar': the lidar's position packets"), std::string::npos) << words;
+  for (const char* config : {"demo", "catabot"}) {
+    EXPECT_NE(InWords(LoadParams(fs::path(LOOKOUT_SOURCE_DIR) / "config" / config)).find("# input 'udp': UDP on 0.0.0.0 port 10110"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace lookout::navigator

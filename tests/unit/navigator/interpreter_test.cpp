@@ -1,0 +1,196 @@
+#include "services/navigator/core/interpreter.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using namespace std::chrono_literals;
+
+InterpreterParams TestParams() {
+  InterpreterParams params;
+  params.max_sentence_latency = 500ms;
+  params.position_sd_m = 2.5;
+  return params;
+}
+
+class InterpreterTest : public ::testing::Test {
+ protected:
+  void Configure(const SourceParams& source) {
+    auto params = TestParams();
+    params.sources.push_back(source);
+    interpreter_ = Interpreter(params);
+  }
+  Reading Read(double time_s, const std::string& line, const char* source = "nav") {
+    return interpreter_.Read({NoonPlus(time_s), seq_++, ItemKind::kSentence, source, line});
+  }
+  std::int64_t Count(std::string_view name) const {
+    for (const auto& counter : interpreter_.counters()) {
+      if (counter.name == name) return counter.count;
+    }
+    ADD_FAILURE() << "no counter " << name;
+    return -1;
+  }
+
+  Interpreter interpreter_{TestParams()};
+  std::int64_t seq_ = 0;
+};
+
+TEST_F(InterpreterTest, MakesOneFixOfTheSentencesOfAnEpochInWhateverOrder) {
+  const auto rmc = RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0);
+  const auto gga = GgaLine(NoonPlus(0), 50.0, 8.0, 4, 0.8, 100.0, 47.0);
+  for (const bool is_rmc_first : {true, false}) {
+    interpreter_ = Interpreter(TestParams());
+    const auto first = Read(0.1, is_rmc_first ? rmc : gga).fix;
+    const auto second = Read(0.11, is_rmc_first ? gga : rmc).fix;
+    ASSERT_TRUE(first && second);
+    EXPECT_FALSE(first->repeats_position);
+    EXPECT_TRUE(second->repeats_position);
+    EXPECT_FALSE(second->repeats_velocity && !is_rmc_first);
+    EXPECT_EQ(second->quality, FixQuality::kRtkFixed) << "GGA tells more";
+    EXPECT_NEAR(second->speed_mps, 2.0, 1e-5);
+    EXPECT_NEAR(second->EllipsoidHeightM(), 147.0, 1e-9);
+    EXPECT_LT(second->horizontal_sd_m, 0.05);
+  }
+}
+
+TEST_F(InterpreterTest, DoesNotPairSourcesOrEpochs) {
+  Read(0.1, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0), "a");
+  EXPECT_FALSE(Read(0.1, GgaLine(NoonPlus(0), 50.0, 8.0, 4, 0.8, 100.0, 47.0), "b").fix->repeats_position);
+  const auto next = Read(0.3, GgaLine(NoonPlus(0.2), 50.0, 8.0, 4, 0.8, 100.0, 47.0), "a").fix;
+  EXPECT_FALSE(next->repeats_position);
+  EXPECT_TRUE(std::isnan(next->speed_mps));
+}
+
+TEST_F(InterpreterTest, TakesDeviationsOutOfGst) {
+  Read(0.1, Line("GPGST," + TimeOfDay(NoonPlus(0)) + ",1,1,1,0,3.0,4.0,5.0"));
+  const auto fix = Read(0.2, GgaLine(NoonPlus(0), 50.0, 8.0, 1, 0.8, 100.0, 47.0)).fix;
+  EXPECT_NEAR(fix->horizontal_sd_m, std::sqrt(12.5), 1e-12);
+  EXPECT_EQ(fix->vertical_sd_m, 5.0);
+  EXPECT_EQ(Read(6.0, GgaLine(NoonPlus(5.9), 50.0, 8.0, 1, 1.0, 100.0, 47.0)).fix->horizontal_sd_m, 2.5) << "of old";
+}
+
+TEST_F(InterpreterTest, GivesVtgTheInstantOfItsEpoch) {
+  Read(0.2, GgaLine(NoonPlus(0), 50.0, 8.0, 1, 0.8, 100.0, 47.0));
+  EXPECT_EQ(Read(0.21, Line("GPVTG,30.0,T,,M,4.0,N,,K")).velocity->time, NoonPlus(0));
+  EXPECT_EQ(Read(0.4, Line("GPVTG,30.0,T,,M,4.0,N,,K")).velocity->time, NoonPlus(0.4));
+  Read(1.2, RmcLine(NoonPlus(1.0), 50.0, 8.0, 2.0, 30.0));
+  EXPECT_FALSE(Read(1.21, Line("GPVTG,30.0,T,,M,4.0,N,,K")).velocity) << "RMC has said it";
+}
+
+TEST_F(InterpreterTest, TakesTheDelayOfItsSourceFromASentenceWithoutATime) {
+  SourceParams source;
+  source.name = "nav";
+  source.latency = 30ms;
+  Configure(source);
+  EXPECT_EQ(Read(1.0, HdtLine(10.0)).attitude->when.time, NoonPlus(0.97));
+  EXPECT_EQ(Read(1.0, Line("TIROT,60.0,A")).turn_rate->time, NoonPlus(0.97));
+  EXPECT_EQ(Read(1.0, HdtLine(10.0), "other").attitude->when.time, NoonPlus(1.0));
+}
+
+TEST_F(InterpreterTest, TurnsTheSignsOfASource) {
+  SourceParams source;
+  source.name = "nav";
+  source.roll_sign = -1.0;
+  source.pitch_sign = -1.0;
+  Configure(source);
+  const auto turned = Read(0.1, PashrLine(NoonPlus(0), 10.0, 2.0, 3.0, 0.0)).attitude;
+  EXPECT_NEAR(turned->roll_rad, DegToRad(-2.0), 1e-12);
+  EXPECT_NEAR(turned->pitch_rad, DegToRad(-3.0), 1e-12);
+  EXPECT_NEAR(Read(0.1, PashrLine(NoonPlus(0), 10.0, 2.0, 3.0, 0.0), "other").attitude->roll_rad, DegToRad(2.0), 1e-12);
+}
+
+TEST_F(InterpreterTest, RefusesMagneticHeadingsThatCannotBeTurnedToTrue) {
+  EXPECT_FALSE(Read(0, Line("HCHDM,100.0,M")).attitude);
+  EXPECT_EQ(Count("no_deviation"), 1);
+  EXPECT_FALSE(Read(0, Line("HCHDG,100.0,,,3.0,E")).attitude);
+  EXPECT_EQ(Count("no_deviation"), 2);
+  EXPECT_FALSE(Read(0, Line("HCHDG,100.0,1.0,W,,")).attitude);
+  EXPECT_EQ(Count("no_declination"), 1);
+  EXPECT_NEAR(Read(0, Line("HCHDG,100.0,1.0,W,3.0,E")).attitude->heading_rad, DegToRad(102.0), 1e-12);
+  // A declination out of RMC of the same source.
+  Read(0, Line("GPRMC," + TimeOfDay(NoonPlus(0)) + ",A,5000.0,N,00800.0,E,0.0,0.0,010626,5.0,W,A"));
+  EXPECT_NEAR(Read(0, Line("HCHDG,2.0,1.0,W,,")).attitude->heading_rad, DegToRad(356.0), 1e-12);
+  SourceParams source;
+  source.name = "nav";
+  source.deviation_rad = DegToRad(2.0);
+  source.declination_rad = DegToRad(-3.0);
+  Configure(source);
+  EXPECT_NEAR(Read(0, "$04HDM,186.5,M*2C").attitude->heading_rad, DegToRad(185.5), 1e-12);
+  EXPECT_NEAR(Read(0, Line("HCHDG,100.0,1.0,W,3.0,E")).attitude->heading_rad, DegToRad(102.0), 1e-12) << "what the sentence says counts";
+}
+
+TEST_F(InterpreterTest, TakesOfASourceWhatItsRoleIs) {
+  const std::string ymr = Line("VNYMR,10.0,2.0,3.0,0,0,0,0.5,0.2,-9.8,0.1,0.2,0.3");
+  const auto parts = [&](Role role) {
+    SourceParams source;
+    source.name = "nav";
+    source.role = role;
+    Configure(source);
+    std::string text;
+    if (Read(0.1, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0)).fix) text += "fix ";
+    const auto reading = Read(0.1, ymr);
+    if (reading.attitude) text += std::isnan(reading.attitude->roll_rad) ? "heading " : "attitude ";
+    if (reading.imu) text += "imu ";
+    return text + std::to_string(Count("outside_role"));
+  };
+  EXPECT_EQ(parts(Role::kAll), "fix attitude imu 0");
+  EXPECT_EQ(parts(Role::kGnss), "fix 1");
+  EXPECT_EQ(parts(Role::kHeading), "heading 1");
+  EXPECT_EQ(parts(Role::kAttitude), "attitude 1");
+  EXPECT_EQ(parts(Role::kImu), "imu 1");
+  EXPECT_EQ(parts(Role::kNothing), "2");
+}
+
+TEST_F(InterpreterTest, TurnsAStrapdownSensorIntoTheVesselFrame) {
+  const auto imu = Read(0.5, Line("VNIMU,0,0,0,0.5,0.2,-9.8,0.1,0.2,0.3,20.0,100.0")).imu;
+  ASSERT_TRUE(imu);
+  EXPECT_EQ(imu->time, NoonPlus(0.5));
+  EXPECT_EQ(imu->specific_force_mps2, Eigen::Vector3d(0.5, -0.2, 9.8));
+  EXPECT_EQ(imu->angular_velocity_radps, Eigen::Vector3d(0.1, -0.2, -0.3));
+}
+
+TEST_F(InterpreterTest, TakesPositionAndAttitudeOutOfVnins) {
+  // 2026-06-01, noon: Monday of GPS week 2421, 18 s ahead of UTC.
+  const auto line = [](const char* status, const char* time_of_week = "129618.000000") {
+    return Line(std::string("VNINS,") + time_of_week + ",2421," + status + ",350.0,2.0,-3.0,50.0,8.0,147.0,3.0,-4.0,0.5,1.0,1.6,0.2");
+  };
+  const auto reading = Read(0.05, line("0006"));
+  ASSERT_TRUE(reading.fix && reading.attitude);
+  EXPECT_EQ(reading.fix->when.time, NoonPlus(0));
+  EXPECT_TRUE(reading.fix->when.is_from_sentence);
+  EXPECT_EQ(reading.fix->quality, FixQuality::kGnss);
+  EXPECT_EQ(reading.fix->EllipsoidHeightM(), 147.0);
+  EXPECT_EQ(reading.fix->horizontal_sd_m, 1.6);
+  EXPECT_NEAR(reading.fix->speed_mps, 5.0, 1e-12);
+  EXPECT_NEAR(reading.fix->course_rad, WrapTo2Pi(std::atan2(-4.0, 3.0)), 1e-12);
+  EXPECT_EQ(reading.fix->climb_mps, -0.5);
+  EXPECT_NEAR(reading.attitude->heading_rad, DegToRad(350.0), 1e-12);
+  EXPECT_NEAR(reading.attitude->heading_sd_rad, DegToRad(1.0), 1e-12);
+  const auto not_tracking = Read(0.06, line("0004", "129618.020000"));
+  EXPECT_EQ(not_tracking.fix->quality, FixQuality::kNone);
+  EXPECT_TRUE(std::isnan(not_tracking.attitude->heading_rad));
+  EXPECT_NEAR(not_tracking.attitude->roll_rad, DegToRad(-3.0), 1e-12);
+}
+
+TEST_F(InterpreterTest, CountsTimeThatRunsBackwards) {
+  Read(100.0, RmcLine(NoonPlus(100), 50.0, 8.0, 2.0, 30.0));
+  EXPECT_FALSE(Read(100.1, RmcLine(NoonPlus(40), 50.0, 8.0, 2.0, 30.0)).fix);
+  EXPECT_EQ(Count("time_backwards"), 1);
+}
+
+TEST_F(InterpreterTest, CountsEachSource) {
+  Read(0, HdtLine(1.0), "a");
+  Read(0, "$GPHDT,1.0,T*00", "a");
+  Read(0, HdtLine(1.0), "b");
+  EXPECT_EQ(Count("a_understood"), 1);
+  EXPECT_EQ(Count("a_refused"), 1);
+  EXPECT_EQ(Count("b_understood"), 1);
+}
+
+}  // namespace
+}  // namespace lookout::navigator

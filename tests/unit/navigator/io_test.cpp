@@ -1,0 +1,337 @@
+// Sources as they are on a boat: a serial port that is unplugged, servers that go and come back, gpsd, a file of sentences.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <thread>
+
+#include "services/navigator/io/gpsd_client.hpp"
+#include "services/navigator/io/serial_port.hpp"
+#include "services/navigator/io/source.hpp"
+#include "services/navigator/io/tcp_client.hpp"
+#include "services/navigator/io/text_log_player.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Host time that goes a tenth of a second with each round: pauses between attempts take no real time.
+class SourceTest : public ::testing::Test {
+ protected:
+  // What the source gives until it has given `size` bytes, or two seconds have gone by.
+  std::string Take(Source& source, std::size_t size) {
+    std::string text;
+    for (int round = 0; round < 200 && text.size() < size; ++round) {
+      Step(source);
+      while (const auto piece = source.Receive(now_)) text.append(piece->bytes.begin(), piece->bytes.end());
+      if (text.size() < size) std::this_thread::sleep_for(10ms);
+    }
+    return text;
+  }
+  bool Wait(Source& source, bool has_fault) {
+    for (int round = 0; round < 200 && source.fault().empty() == has_fault; ++round) {
+      Step(source);
+      while (source.Receive(now_)) {
+      }
+      std::this_thread::sleep_for(10ms);
+    }
+    return source.fault().empty() != has_fault;
+  }
+  static std::int64_t Count(Source& source, std::string_view name) {
+    for (const auto& counter : source.counters()) {
+      if (counter.name == name) return counter.count;
+    }
+    ADD_FAILURE() << "no counter " << name;
+    return -1;
+  }
+  void Step(Source& source) {
+    now_ += 100ms;
+    source.Poll(now_);
+  }
+  static bool IsReadable(const Source& source) {
+    pollfd waiting{source.file_descriptor(), POLLIN, 0};
+    return poll(&waiting, 1, 2000) == 1;
+  }
+
+  Utime now_ = NoonPlus(0);
+};
+
+// Both ends of a pseudo terminal: the "cable" and the device that a serial source opens.
+struct Pty {
+  int cable = -1;
+  std::string device;
+
+  Pty() {
+    int end = -1;
+    char name[64] = {};
+    if (openpty(&cable, &end, name, nullptr, nullptr) == 0) close(end);
+    device = name;
+  }
+  ~Pty() { Unplug(); }
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+  void Unplug() {
+    if (cable >= 0) close(cable);
+    cable = -1;
+  }
+  void Write(const std::string& text) const { EXPECT_EQ(write(cable, text.data(), text.size()), static_cast<ssize_t>(text.size())); }
+};
+
+class SerialTest : public SourceTest {
+ protected:
+  SerialTest() { std::filesystem::create_directories(folder_); }
+  ~SerialTest() override { std::filesystem::remove_all(folder_); }
+  // What udev does when an adapter is plugged in: the same name, another device.
+  void PlugIn(const Pty& pty) const {
+    std::filesystem::remove(link_);
+    std::filesystem::create_symlink(pty.device, link_);
+  }
+  std::unique_ptr<Source> Serial(int baud) const { return std::make_unique<SerialPort>("gnss", link_, baud); }
+
+  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_serial_" + std::to_string(getpid()));
+  std::filesystem::path link_ = folder_ / "gnss";
+};
+
+TEST_F(SerialTest, GivesTheBytesRawAndSetsThePort) {
+  Pty pty;
+  ASSERT_GE(pty.cable, 0);
+  PlugIn(pty);
+  const auto source = Serial(38400);
+  ASSERT_TRUE(Wait(*source, false)) << source->fault();
+  // A terminal that is not raw would echo, turn CR into LF, and eat 0x03 and 0x13.
+  const std::string text = std::string("$GPHDT,1.0,T*00\r\n\x03\x13\x11\x00\xFF\r", 23);
+  pty.Write(text);
+  EXPECT_TRUE(IsReadable(*source));
+  EXPECT_EQ(Take(*source, text.size()), text);
+  termios settings{};
+  ASSERT_EQ(tcgetattr(pty.cable, &settings), 0);
+  EXPECT_EQ(cfgetispeed(&settings), B38400);
+  EXPECT_EQ(settings.c_cflag & (CSIZE | PARENB | CSTOPB), static_cast<tcflag_t>(CS8));
+  EXPECT_EQ(settings.c_lflag & (ICANON | ECHO | ISIG), 0U);
+  EXPECT_EQ(Count(*source, "gnss_bytes"), static_cast<std::int64_t>(text.size()));
+}
+
+TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
+  auto first = std::make_unique<Pty>();
+  PlugIn(*first);
+  const auto source = Serial(4800);
+  const int file_descriptor = source->file_descriptor();
+  ASSERT_TRUE(Wait(*source, false)) << source->fault();
+  first->Write("$A\r\n$B");
+  EXPECT_EQ(Take(*source, 6), "$A\r\n$B");
+  first->Unplug();
+  std::filesystem::remove(link_);
+  ASSERT_TRUE(Wait(*source, true));
+  EXPECT_EQ(source->num_lost(), 1);
+  EXPECT_NE(source->fault().find(link_.string()), std::string::npos) << source->fault();
+  const Pty second;
+  PlugIn(second);
+  ASSERT_TRUE(Wait(*source, false)) << source->fault();
+  second.Write("$C\r\n");
+  EXPECT_EQ(Take(*source, 4), "$C\r\n");
+  EXPECT_EQ(source->file_descriptor(), file_descriptor);
+  EXPECT_EQ(Count(*source, "gnss_opened"), 2);
+}
+
+TEST_F(SerialTest, SaysWhyItCannotBeOpened) {
+  const auto source = Serial(4800);
+  Step(*source);
+  EXPECT_NE(source->fault().find("No such file"), std::string::npos) << source->fault();
+  std::ofstream(link_) << "a file";
+  EXPECT_FALSE(Wait(*source, false));
+  EXPECT_NE(source->fault().find("is no serial port"), std::string::npos) << source->fault();
+}
+
+// A server on a free port of this computer.
+struct Server {
+  int listener = -1;
+  int client = -1;
+  int port = 0;
+
+  explicit Server(int asked_port = 0) {
+    listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const int yes = 1;
+    setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(asked_port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    EXPECT_EQ(bind(listener, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(listen(listener, 4), 0);
+    getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size);
+    port = ntohs(address.sin_port);
+  }
+  ~Server() {
+    Drop();
+    close(listener);
+  }
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+  void Accept() {
+    Drop();
+    client = accept(listener, nullptr, nullptr);
+  }
+  void Drop() {
+    if (client >= 0) close(client);
+    client = -1;
+  }
+  void Write(const std::string& text) const { EXPECT_EQ(send(client, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size())); }
+};
+
+std::unique_ptr<Source> Tcp(int port) { return std::make_unique<TcpClient>("plotter", "127.0.0.1", port); }
+
+TEST_F(SourceTest, TcpConnectsAgainWhenTheServerWasAway) {
+  auto server = std::make_unique<Server>();
+  const int port = server->port;
+  const auto source = Tcp(port);
+  ASSERT_TRUE(Wait(*source, false)) << source->fault();
+  server->Accept();
+  server->Write("$A\r\n");
+  EXPECT_TRUE(IsReadable(*source));
+  EXPECT_EQ(Take(*source, 4), "$A\r\n");
+  server.reset();
+  ASSERT_TRUE(Wait(*source, true));
+  for (int i = 0; i < 30; ++i) Step(*source);
+  EXPECT_NE(source->fault().find("Connection refused"), std::string::npos) << source->fault();
+  server = std::make_unique<Server>(port);
+  ASSERT_TRUE(Wait(*source, false)) << source->fault();
+  server->Accept();
+  server->Write("$B\r\n");
+  EXPECT_EQ(Take(*source, 4), "$B\r\n");
+  EXPECT_EQ(source->num_lost(), 1);
+  EXPECT_EQ(Count(*source, "plotter_opened"), 2);
+}
+
+TEST_F(SourceTest, TcpWaitsLongerAfterEachFailure) {
+  int port = 0;
+  {
+    const Server gone;
+    port = gone.port;
+  }
+  const auto source = Tcp(port);
+  // The server that comes is found at the next attempt: within 8 s, not at once.
+  for (int i = 0; i < 400; ++i) Step(*source);
+  Server server(port);
+  int num_steps = 0;
+  while (!source->fault().empty() && num_steps < 100) {
+    Step(*source);
+    ++num_steps;
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_TRUE(source->fault().empty()) << source->fault();
+  EXPECT_LE(num_steps, 83);
+}
+
+// What gpsd 3.22 says and does: a banner, reports as JSON, and after ?WATCH with nmea the sentences.
+TEST_F(SourceTest, GpsdIsAskedForSentencesAndItsReportsAreLeftOut) {
+  Server server;
+  const auto source = std::make_unique<GpsdClient>("gpsd", "127.0.0.1", server.port);
+  std::string command;
+  std::thread gpsd([&] {
+    server.Accept();  // the connection that tells that gpsd is there
+    server.Accept();  // that of the library
+    server.Write("{\"class\":\"VERSION\",\"release\":\"3.22\",\"rev\":\"3.22\",\"proto_major\":3,\"proto_minor\":14}\r\n");
+    char text[256] = {};
+    const auto size = recv(server.client, text, sizeof text - 1, 0);
+    command.assign(text, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+    server.Write(
+        "{\"class\":\"DEVICES\",\"devices\":[]}\r\n$GPHDT,1.0,T*00\r\n{\"class\":\"TPV\",\"mode\":1}\r\n$GPHDT,2.0,T*00\r\n!AIVDM,1\r\n$GPH");
+    std::this_thread::sleep_for(100ms);
+    server.Write("DT,3.0,T*00\r\n");
+  });
+  const std::string expected = "$GPHDT,1.0,T*00\n$GPHDT,2.0,T*00\n!AIVDM,1\n$GPHDT,3.0,T*00\n";
+  std::string text;
+  for (const char character : Take(*source, expected.size() + 4)) {
+    if (character != '\r') text += character;
+  }
+  gpsd.join();
+  EXPECT_EQ(text, expected);
+  EXPECT_NE(command.find("?WATCH="), std::string::npos) << command;
+  EXPECT_NE(command.find("\"nmea\":true"), std::string::npos) << command;
+  server.Drop();
+  EXPECT_TRUE(Wait(*source, true));
+}
+
+// The real gpsd, fed by a pseudo terminal.
+TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
+  const char* const program = "/usr/sbin/gpsd";
+  if (access(program, X_OK) != 0) GTEST_SKIP() << program << " is not at hand (package gpsd)";
+  const Pty pty;
+  int port = 0;
+  {
+    const Server free_port;
+    port = free_port.port;
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    const int null = open("/dev/null", O_RDWR);
+    dup2(null, STDOUT_FILENO);
+    dup2(null, STDERR_FILENO);
+    const auto port_text = std::to_string(port);
+    execl(program, "gpsd", "-N", "-n", "-b", "-S", port_text.c_str(), pty.device.c_str(), nullptr);
+    _exit(127);
+  }
+  const auto line = RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0) + "\r\n";
+  const auto source = std::make_unique<GpsdClient>("gpsd", "127.0.0.1", port);
+  std::string text;
+  for (int round = 0; round < 600 && text.find(line.substr(0, line.size() - 2)) == std::string::npos; ++round) {
+    if (round % 10 == 0) pty.Write(line);
+    Step(*source);
+    while (const auto piece = source->Receive(now_)) text.append(piece->bytes.begin(), piece->bytes.end());
+    std::this_thread::sleep_for(10ms);
+  }
+  kill(child, SIGTERM);
+  waitpid(child, nullptr, 0);
+  EXPECT_NE(text.find(line.substr(0, line.size() - 2)), std::string::npos) << source->fault() << "\n" << text;
+}
+
+class TextLogTest : public SourceTest {
+ protected:
+  TextLogTest() {
+    std::ofstream(file_) << "# a log\n"
+                         << RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0) << "\r\n"
+                         << HdtLine(1.0) << "\n"
+                         << RmcLine(NoonPlus(1.0), 50.0, 8.0, 2.0, 30.0) << "\n"
+                         << RmcLine(NoonPlus(500.0), 50.0, 8.0, 2.0, 30.0);
+  }
+  ~TextLogTest() override { std::filesystem::remove(file_); }
+  int NumDue(Source& source) const {
+    int num_lines = 0;
+    while (source.Receive(now_)) ++num_lines;
+    return num_lines;
+  }
+  std::unique_ptr<Source> Open(double speed) const { return std::make_unique<TextLogPlayer>("log", file_, speed); }
+
+  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("lookout_text_log_" + std::to_string(getpid()));
+};
+
+TEST_F(TextLogTest, IsPlayedByTheTimesInItsSentences) {
+  const auto source = Open(2.0);
+  EXPECT_EQ(NumDue(*source), 3);
+  now_ += 499ms;
+  EXPECT_EQ(NumDue(*source), 0);
+  now_ += 1ms;
+  EXPECT_EQ(NumDue(*source), 2) << "a long silence is not waited for";
+  EXPECT_TRUE(source->is_finished());
+  EXPECT_EQ(Count(*source, "log_lines"), 5);
+}
+
+TEST_F(TextLogTest, IsPlayedAtOnceAtSpeed0) { EXPECT_EQ(NumDue(*Open(0.0)), 5); }
+
+}  // namespace
+}  // namespace lookout::navigator

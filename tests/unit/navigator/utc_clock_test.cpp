@@ -1,0 +1,167 @@
+#include "services/navigator/core/utc_clock.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/navigator/nmea_text.hpp"
+
+namespace lookout::navigator {
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::days;
+using std::chrono::microseconds;
+
+constexpr auto kMaxLatency = 500ms;
+// A computer that begins in 1971, at another time of day.
+constexpr microseconds kNoBattery = -days(20000) - 5h;
+
+microseconds OfDay(Utime time) { return time - std::chrono::floor<days>(time); }
+
+class UtcClockTest : public ::testing::Test {
+ protected:
+  // A sentence measured at `utc`, on a computer whose clock is `off`, that took `delay`.
+  std::optional<MeasurementTime> Sentence(Utime utc, microseconds off, microseconds delay = 50ms, std::optional<microseconds> latency = {},
+                                          std::optional<days> date_error = days(0)) {
+    std::optional<std::chrono::sys_days> date;
+    if (date_error) date = std::chrono::floor<days>(utc) + *date_error;
+    return clock_.OfSentence(source_, utc + off + delay, OfDay(utc), date, latency);
+  }
+
+  UtcClock clock_{kMaxLatency};
+  SourceClock source_;
+};
+
+TEST_F(UtcClockTest, TakesTheComputersClockForUtcWhileADelayCanExplainTheDifference) {
+  for (int i = 0; i < 20; ++i) {
+    const auto when = Sentence(NoonPlus(i), -200ms);
+    ASSERT_TRUE(when);
+    EXPECT_EQ(when->time, NoonPlus(i));
+    EXPECT_EQ(when->utc, NoonPlus(i));
+    EXPECT_TRUE(when->is_from_sentence);
+  }
+  EXPECT_EQ(clock_.host_minus_utc(), 0us);
+  EXPECT_EQ(clock_.OfArrival(NoonPlus(20), std::nullopt).time, NoonPlus(20));
+  EXPECT_EQ(clock_.OfArrival(NoonPlus(20), 30ms).time, NoonPlus(19.97)) << "less the delay of its source";
+}
+
+TEST_F(UtcClockTest, KnowsASmallOffsetFromASourceWhoseDelayIsKnown) {
+  for (int i = 0; i < 20; ++i) Sentence(NoonPlus(i), -200ms, 80ms, 80ms);
+  // 0.2 s behind UTC; HDT takes 20 ms.
+  const auto when = clock_.OfArrival(NoonPlus(20) - 200ms + 20ms, 20ms);
+  EXPECT_EQ(when.time, NoonPlus(20));
+  EXPECT_EQ(when.utc, NoonPlus(20));
+}
+
+TEST_F(UtcClockTest, GoesOnByAClockThatIsOffAndStillSaysUtc) {
+  for (int i = 0; i < UtcClock::kMinSentences; ++i) {
+    const auto when = Sentence(NoonPlus(i), 1h);
+    EXPECT_EQ(when->time, NoonPlus(i) + 1h + 50ms) << "not sure yet: the arrival";
+    EXPECT_EQ(when->utc, NoonPlus(i));
+    EXPECT_FALSE(when->is_from_sentence);
+  }
+  // Now delays that change do no harm: the least counts.
+  Sentence(NoonPlus(10), 1h, 30ms);
+  const auto when = Sentence(NoonPlus(11), 1h, 300ms);
+  EXPECT_TRUE(when->is_from_sentence);
+  EXPECT_EQ(when->utc, NoonPlus(11));
+  EXPECT_EQ(when->time, NoonPlus(11) + 1h + 30ms);
+  const auto untimed = clock_.OfArrival(NoonPlus(12) + 1h, 20ms);
+  EXPECT_EQ(untimed.time, NoonPlus(12) + 1h - 20ms);
+  EXPECT_EQ(untimed.utc, NoonPlus(12) - 30ms - 20ms);
+}
+
+TEST_F(UtcClockTest, SeesThatTheClockWasSetRight) {
+  for (int i = 0; i < 10; ++i) Sentence(NoonPlus(i), -3s);
+  EXPECT_EQ(clock_.host_minus_utc(), -2950ms);
+  for (int i = 10; i < 30; ++i) Sentence(NoonPlus(i), 0s);
+  EXPECT_EQ(clock_.host_minus_utc(), 0us);
+  EXPECT_EQ(Sentence(NoonPlus(30), 0s)->time, NoonPlus(30));
+}
+
+TEST_F(UtcClockTest, DoesNotBelieveOneSourceAgainstAnother) {
+  SourceClock late;
+  for (int i = 0; i < 30; ++i) {
+    Sentence(NoonPlus(i), 0s);
+    const auto when = clock_.OfSentence(late, NoonPlus(i + 1.05), OfDay(NoonPlus(i)), std::nullopt, std::nullopt);
+    EXPECT_FALSE(when->is_from_sentence);
+  }
+  EXPECT_EQ(clock_.host_minus_utc(), 0us);
+}
+
+TEST_F(UtcClockTest, MendsAWeekThatRolledOver) {
+  for (const auto error : {days(-7168), days(-14336), days(7168)}) {
+    clock_ = UtcClock(kMaxLatency);
+    source_ = {};
+    // Near the computer's time, and far from it: a clock that is off besides.
+    EXPECT_EQ(Sentence(NoonPlus(0), 0s, 50ms, {}, error)->utc, NoonPlus(0));
+    EXPECT_TRUE(Sentence(NoonPlus(1), 0s, 50ms, {}, error)->is_date_refused);
+    EXPECT_EQ(Sentence(NoonPlus(2), 1h, 50ms, {}, error)->utc, NoonPlus(2));
+  }
+  EXPECT_EQ(Sentence(NoonPlus(3), 0s, 50ms, {}, days(0))->utc, NoonPlus(3));
+}
+
+TEST_F(UtcClockTest, KeepsADateThatIsFarFromTheComputers) {
+  // A computer without a battery begins in 1970; a log of another year is played.
+  const auto when = Sentence(NoonPlus(0), kNoBattery);
+  EXPECT_EQ(when->utc, NoonPlus(0));
+  EXPECT_FALSE(when->is_date_refused);
+  EXPECT_EQ(Sentence(NoonPlus(0.5), kNoBattery, 50ms, {}, std::nullopt)->utc, NoonPlus(0.5)) << "the day of the sentence before it";
+}
+
+TEST_F(UtcClockTest, CarriesTheDayOverMidnight) {
+  const auto midnight = std::chrono::floor<days>(NoonPlus(0)) + days(1);
+  Sentence(midnight - 1s, kNoBattery);
+  EXPECT_EQ(Sentence(midnight + 1s, kNoBattery, 50ms, {}, std::nullopt)->utc, midnight + 1s);
+}
+
+TEST_F(UtcClockTest, TakesTheDateOfAZdaThatRunsAhead) {
+  // gpsd's tcp-torture: ZDA is two seconds ahead of the fixes.
+  clock_.OnDate(source_, NoonPlus(0) + kNoBattery, NoonPlus(2));
+  EXPECT_EQ(Sentence(NoonPlus(0), kNoBattery, 50ms, {}, std::nullopt)->utc, NoonPlus(0));
+}
+
+TEST_F(UtcClockTest, LetsTheFirstDateCorrectTheGuessOfSentencesBeforeIt) {
+  // GGA, then RMC, of a log of years ago: the day of the first GGA can only be that of the computer.
+  const auto old = [](double time_s) { return NoonPlus(time_s) - days(4000); };
+  ASSERT_TRUE(Sentence(old(0), days(4000) - 5h, 50ms, {}, std::nullopt));
+  for (int i = 0; i < 20; ++i) {
+    const auto rmc = Sentence(old(i), days(4000) - 5h);
+    ASSERT_TRUE(rmc) << i;
+    EXPECT_EQ(rmc->utc, old(i));
+    const auto gga = Sentence(old(i + 1), days(4000) - 5h, 50ms, {}, std::nullopt);
+    ASSERT_TRUE(gga) << i;
+    EXPECT_EQ(gga->utc, old(i + 1));
+  }
+}
+
+TEST_F(UtcClockTest, TakesADateThatIsSetBackAlthoughSentencesWithoutADateGoOn) {
+  // All at once, so that the computer's clock cannot be told.
+  const Utime arrival = NoonPlus(0) - 5h;
+  const auto take = [&](int i, std::optional<std::chrono::sys_days> date) {
+    return clock_.OfSentence(source_, arrival, OfDay(NoonPlus(2 * i)), date, std::nullopt).has_value();
+  };
+  const auto day = std::chrono::floor<days>(NoonPlus(0));
+  ASSERT_TRUE(take(0, day));
+  int num_refused = 0;
+  for (int i = 1; i < 30; ++i) {
+    EXPECT_TRUE(num_refused >= UtcClock::kMinForward - 1 || take(i, std::nullopt)) << i;
+    num_refused += take(i, day - days(30)) ? 0 : 1;
+  }
+  EXPECT_EQ(num_refused, UtcClock::kMinForward - 1);
+}
+
+TEST_F(UtcClockTest, RefusesTimeThatRunsBackwardsUntilItRunsForward) {
+  ASSERT_TRUE(Sentence(NoonPlus(100), 0s));
+  EXPECT_TRUE(Sentence(NoonPlus(99.2), 0s, 850ms)) << "a datagram that was overtaken";
+  Sentence(NoonPlus(101), 0s);
+  EXPECT_FALSE(clock_.OfSentence(source_, NoonPlus(101.1), OfDay(NoonPlus(50)), std::nullopt, std::nullopt));
+  EXPECT_TRUE(Sentence(NoonPlus(102), 0s));
+  // A receiver that was set back by a minute.
+  for (int i = 0; i < UtcClock::kMinForward - 1; ++i) {
+    EXPECT_FALSE(clock_.OfSentence(source_, NoonPlus(103 + i), OfDay(NoonPlus(43 + i)), std::nullopt, std::nullopt)) << i;
+  }
+  EXPECT_TRUE(clock_.OfSentence(source_, NoonPlus(113), OfDay(NoonPlus(53)), std::nullopt, std::nullopt));
+}
+
+}  // namespace
+}  // namespace lookout::navigator
