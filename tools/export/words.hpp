@@ -28,7 +28,8 @@ inline constexpr std::array kObstacleStatus{Word{obstacle_t::STATUS_OK, "ok"}, W
                                             Word{obstacle_t::STATUS_POSE_TIMEOUT, "pose_timeout"}};
 
 inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose_t::STATUS_NO_HEADING, "no_heading"},
-                                        Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"}};
+                                        Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"},
+                                        Word{pose_t::STATUS_COASTING, "coasting"}};
 
 inline constexpr std::array kTimeSource{Word{lidar_clock_t::TIME_HOST, "host"}, Word{lidar_clock_t::TIME_SENSOR, "sensor"}};
 
