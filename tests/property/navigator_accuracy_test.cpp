@@ -75,7 +75,8 @@ class SimulatedScene : public ::testing::TestWithParam<const char*> {};
 TEST_P(SimulatedScene, IsKnownToFiveCentimetresAndATenthOfADegree) {
   Accuracy accuracy;
   for (int seed = 1; seed <= NumSeeds(); ++seed) accuracy.Add(Simulate(GetParam(), static_cast<std::uint64_t>(seed), 20.0));
-  std::printf("| scene | position m | velocity m/s | heading deg | roll deg | pitch deg | NEES position | heading | tilt | in 95 %% ellipse %% | NIS |\n");
+  std::printf(
+      "| scene | position m | velocity m/s | heading deg | roll deg | pitch deg | NEES position | heading | tilt | in 95 %% ellipse %% | NIS |\n");
   accuracy.Print(GetParam());
   EXPECT_LT(accuracy.position_m2.rms(), 0.05);
   EXPECT_LT(RadToDeg(accuracy.heading_rad2.rms()), 0.1);
@@ -135,8 +136,9 @@ TEST(GnssGap, IsCarriedOnByTheImu) {
   std::ranges::sort(drifts_m);
   std::ranges::sort(sds_m);
   const auto p95 = static_cast<std::size_t>(std::ceil(0.95 * static_cast<double>(drifts_m.size()))) - 1;
-  std::printf("| GNSS gap of 8 s | drift median %.2f m, p95 %.2f m | stated at its end, median %.2f m | in 95 %% ellipse %.1f %% | greatest jump %.2f sd |\n",
-              drifts_m[drifts_m.size() / 2], drifts_m[p95], sds_m[sds_m.size() / 2], 100.0 * is_covered.mean(), greatest_jump_in_sds);
+  std::printf(
+      "| GNSS gap of 8 s | drift median %.2f m, p95 %.2f m | stated at its end, median %.2f m | in 95 %% ellipse %.1f %% | greatest jump %.2f sd |\n",
+      drifts_m[drifts_m.size() / 2], drifts_m[p95], sds_m[sds_m.size() / 2], 100.0 * is_covered.mean(), greatest_jump_in_sds);
   EXPECT_LT(drifts_m[p95], 1.0);
   EXPECT_GT(is_covered.mean(), 0.85);
   EXPECT_LT(greatest_jump_in_sds, 3.0);

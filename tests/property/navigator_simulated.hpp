@@ -43,7 +43,7 @@ struct ComparedPose {
 
 struct SimulatedRun {
   std::vector<ComparedPose> poses;
-  HealthReport health;  // at the end
+  HealthReport health;                                  // at the end
   std::vector<std::pair<double, std::string>> reasons;  // of health, each second
   double nis_per_degree = 0.0;
 

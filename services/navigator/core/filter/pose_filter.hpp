@@ -26,7 +26,7 @@ struct FilterCounts {
   std::int64_t late_attitude = 0;
   std::int64_t late_imu = 0;
   std::int64_t unusable_imu = 0;  // lacks a number
-  std::int64_t gated_fix = 0;      // positions, heights and velocities that contradict the state
+  std::int64_t gated_fix = 0;     // positions, heights and velocities that contradict the state
   std::int64_t gated_attitude = 0;
   std::int64_t renewed_position = 0;  // given up for measurements that contradicted it for seconds
   std::int64_t renewed_attitude = 0;
@@ -102,7 +102,7 @@ class PoseFilter {
   filter::Earth earth_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;
-  std::optional<filter::State> base_;       // before events_
+  std::optional<filter::State> base_;                  // before events_
   std::optional<filter::InertialSample> base_sample_;  // the last one before events_
   Utime base_sample_time_{};
   std::optional<Utime> newest_;  // of all times given

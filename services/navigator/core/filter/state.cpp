@@ -42,9 +42,7 @@ State FreshState(Utime time, double tilt_sd_rad) {
   return state;
 }
 
-Eigen::Vector3d AntennaLever(const FilterParams& params) {
-  return params.p_vessel_antenna_m - params.p_vessel_imu_m;
-}
+Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
 
 void Inject(const ErrorVector& error, State& state) {
   state.p_map_m += error.segment<3>(kPosition);
@@ -104,6 +102,16 @@ void TurnClockwise(double angle_rad, State& state) {
   state.q_map_vessel = (turn * state.q_map_vessel).normalized();
   state.covariance.middleRows<3>(kRotation) = (R * state.covariance.middleRows<3>(kRotation)).eval();
   state.covariance.middleCols<3>(kRotation) = (state.covariance.middleCols<3>(kRotation) * R.transpose()).eval();
+}
+
+void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state) {
+  const double heading_rad = AnglesOf(state.R_map_vessel())[2];
+  const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
+  state.q_map_vessel = q_level_vessel.normalized();
+  state.q_map_vessel = (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.R_map_vessel())[2] - heading_rad)) * state.q_map_vessel).normalized();
+  Renew<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
+  state.covariance(kRotation + 2, kRotation + 2) = heading_variance;
+  state.has_tilt = true;
 }
 
 void ShiftPosition(const Eigen::Vector3d& lever_map_m, State& state) {

@@ -86,6 +86,7 @@ struct State {
   Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
 
   ErrorModel fix_error_model;
+  double fix_error_begun_sd_m = 0.0;  // its deviation when it began
   ErrorModel heading_error_model;
   HeadingSource heading_source = HeadingSource::kNone;
 
@@ -96,6 +97,7 @@ struct State {
   Input tilt;
   Input heave;
   Input imu;
+  Input velocity;
   Input timed_velocity;
   std::optional<Utime> last_water_aid;
   double position_sd_at_fix_m = 0.0;
@@ -147,6 +149,11 @@ Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad);
 
 /// Turns the vessel about the up axis, clockwise from above, and the errors of its attitude with it.
 void TurnClockwise(double angle_rad, State& state);
+
+/// Turns the vessel to this roll and pitch, keeping its heading and what is known of that. The tilt is measured from now on.
+///
+/// @param q_level_vessel  of any heading
+void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state);
 
 /// Moves the place that p_map_m tells of by `lever_map_m`, which turns with the vessel; east and north only.
 void ShiftPosition(const Eigen::Vector3d& lever_map_m, State& state);
