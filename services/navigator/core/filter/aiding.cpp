@@ -45,6 +45,8 @@ constexpr auto kMaxRefusal = 3s;
 constexpr auto kMaxStrapdownRefusal = 10s;
 constexpr double kEvenInSds = 5.0;
 
+// How fast the lever arm swings while nobody says where the bow points.
+constexpr double kUnknownTurnRadps = 0.2;
 // A velocity without a time of its own is late by some tenths of a second, in which a boat changes it by so much.
 constexpr double kLateVelocitySdMps = 0.15;
 constexpr auto kTimedVelocityAge = 2s;
@@ -308,6 +310,8 @@ void Apply(const VelocityMeasurement& velocity, const FilterParams& params, Stat
     innovation.residual -= swing_map_mps.head<2>();
     innovation.jacobian.middleCols<3>(kRotation) = -Cross(swing_map_mps).topRows<2>();
     innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (R_map_vessel * Cross(lever_m)).topRows<2>();
+  } else {
+    noise_mps = std::hypot(noise_mps, kUnknownTurnRadps * lever_m.norm());
   }
   innovation.noise.diagonal().setConstant(noise_mps * noise_mps);
   if (Judge(innovation, false, state, verdict)) {
