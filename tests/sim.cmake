@@ -10,6 +10,8 @@ lookout_test(NAME unit_sim_navigation
              SOURCES unit/sim/fault_plan_test.cpp unit/sim/clock_faults_test.cpp unit/sim/imu_test.cpp unit/sim/navigation_test.cpp unit/sim/nmea_test.cpp
              LINKS lookout_sim lookout_navigator_core lookout_vlp16_core TIMEOUT 300)
 lookout_test(NAME property_vlp16_clock_faults SOURCES property/vlp16_clock_faults_test.cpp LINKS lookout_sim lookout_vlp16_core TIMEOUT 180)
+lookout_bench(NAME bench_navigator SOURCES bench/navigator_bench.cpp LINKS lookout_sim lookout_navigator lookout_config)
+lookout_test(NAME property_navigator_accuracy SOURCES property/navigator_accuracy_test.cpp LINKS lookout_sim lookout_navigator lookout_config TIMEOUT 300)
 lookout_test(NAME property_sim_wire_truth SOURCES property/sim_wire_truth_test.cpp LINKS lookout_sim lookout_wire pcap TIMEOUT 180)
 lookout_test(NAME unit_sim_options SOURCES unit/sim/options_test.cpp ../tools/sim/options.cpp
              LINKS lookout_sim lookout_config lookout_config_schema lookout_runtime lookout_wire)

@@ -22,6 +22,7 @@ BoatFacts LoadBoat(const std::filesystem::path& folder) {
   facts.lidar.yaw_rad = DegToRad(boat.lidar().yaw_deg());
   facts.T_vessel_lidar = TransformVesselSensor(facts.lidar);
   facts.p_vessel_antenna_m = {boat.gnss_antenna().x_m(), boat.gnss_antenna().y_m(), boat.gnss_antenna().z_m()};
+  if (boat.has_imu()) facts.p_vessel_imu_m = {boat.imu().x_m(), boat.imu().y_m(), boat.imu().z_m()};
   facts.reference_point_above_water_m = boat.reference_point_above_water_m();
   facts.own_vessel_box_m = {Eigen::Vector3d(box.min_x_m(), box.min_y_m(), box.min_z_m()),
                             Eigen::Vector3d(box.max_x_m(), box.max_y_m(), box.max_z_m())};

@@ -21,6 +21,7 @@ struct BoatFacts {
   Mounting lidar;
   Eigen::Isometry3d T_vessel_lidar;
   Eigen::Vector3d p_vessel_antenna_m;
+  Eigen::Vector3d p_vessel_imu_m = Eigen::Vector3d::Zero();  // the reference point where the file does not say
   double reference_point_above_water_m = 0.0;
   Eigen::AlignedBox3d own_vessel_box_m;  // vessel frame
   std::optional<BoatDatum> datum;

@@ -248,10 +248,10 @@ std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int 
 std::variant<Pose, Refusal> ToPose(const pose_t& message) {
   const auto time = UtimeFromWire(message.utime_us);
   if (!time || message.utime_us % kPoseGridUs != 0) return kPoseTime;
-  if (message.status < pose_t::STATUS_OK || message.status > pose_t::STATUS_UNKNOWN) return kPoseStatus;
+  if (message.status < pose_t::STATUS_OK || message.status > pose_t::STATUS_COASTING) return kPoseStatus;
   Pose pose;
   pose.time = *time;
-  pose.is_placed = message.status == pose_t::STATUS_OK;
+  pose.is_placed = message.status == pose_t::STATUS_OK || message.status == pose_t::STATUS_COASTING;
   pose.datum = {message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
   pose.position_map_m = {message.position_map_m[0], message.position_map_m[1], message.position_map_m[2]};
   pose.heading_rad = message.heading_rad;

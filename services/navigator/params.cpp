@@ -37,19 +37,26 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   navigator.pitch_offset_rad = DegToRad(message.pitch_offset_deg());
   navigator.roll_offset_rad = DegToRad(message.roll_offset_deg());
 
-  auto& pose = navigator.pose;
-  if (boat.datum) pose.antenna.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
-  pose.antenna.max_age = ToMicroseconds(message.max_position_age_s());
-  pose.antenna.velocity_sd_mps = message.velocity_sd_mps();
-  pose.antenna.position_drift_mps = message.position_drift_mps();
-  pose.attitude.max_age = ToMicroseconds(message.max_attitude_age_s());
-  pose.attitude.heading_sd_rad = DegToRad(message.heading_sd_deg());
-  pose.attitude.tilt_sd_rad = DegToRad(message.tilt_sd_deg());
-  pose.p_vessel_antenna_m = boat.p_vessel_antenna_m;
-  pose.use_course_as_heading = message.use_course_as_heading();
-  pose.min_course_speed_mps = message.min_course_speed_mps();
-  pose.course_heading_sd_rad = DegToRad(message.course_heading_sd_deg());
-  pose.unmeasured_tilt_sd_rad = DegToRad(message.unmeasured_tilt_sd_deg());
+  auto& filter = navigator.filter;
+  if (boat.datum) filter.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
+  filter.p_vessel_antenna_m = boat.p_vessel_antenna_m;
+  filter.p_vessel_imu_m = boat.p_vessel_imu_m;
+  filter.gyro_noise_radps_rthz = DegToRad(message.gyro_noise_degps_rthz());
+  filter.gyro_bias_sd_radps = DegToRad(message.gyro_bias_sd_degps());
+  filter.accelerometer_noise_mps2_rthz = message.accelerometer_noise_mps2_rthz();
+  filter.accelerometer_bias_sd_mps2 = message.accelerometer_bias_sd_mps2();
+  filter.max_latency = navigator.max_sentence_latency;
+  filter.max_position_age = ToMicroseconds(message.max_position_age_s());
+  filter.max_coast_sd_m = message.max_coast_sd_m();
+  filter.max_attitude_age = ToMicroseconds(message.max_attitude_age_s());
+  filter.max_heading_coast_sd_rad = DegToRad(message.max_heading_coast_sd_deg());
+  filter.velocity_sd_mps = message.velocity_sd_mps();
+  filter.heading_sd_rad = DegToRad(message.heading_sd_deg());
+  filter.tilt_sd_rad = DegToRad(message.tilt_sd_deg());
+  filter.use_course_as_heading = message.use_course_as_heading();
+  filter.min_course_speed_mps = message.min_course_speed_mps();
+  filter.course_heading_sd_rad = DegToRad(message.course_heading_sd_deg());
+  filter.unmeasured_tilt_sd_rad = DegToRad(message.unmeasured_tilt_sd_deg());
   return params;
 }
 

@@ -134,18 +134,14 @@ HealthReport Service::Report() const {
   for (const auto& counter : sequencer_.counters()) report.counters.push_back(counter);
   for (const auto& counter : navigator_.counters()) report.counters.push_back(counter);
 
-  const auto pose = navigator_.StateNow();
-  const bool has_position = pose && (pose->status == PoseStatus::kOk || pose->status == PoseStatus::kNoHeading);
-  const bool has_heading = pose && pose->heading_source != HeadingSource::kNone;
-  if (!has_position) {
-    const auto arrival = navigator_.last_fix_arrival();
-    report.reason =
-        arrival ? "no position fix for " + std::to_string(std::chrono::floor<std::chrono::seconds>(*navigator_.time() - *arrival).count()) + " s"
-                : "no position fix yet";
-  }
-  if (!has_heading) report.reason += report.reason.empty() ? "no heading" : ", no heading";
+  // What never came, then what came and has stopped.
+  const auto& pose = navigator_.last_pose();
+  report.reason = navigator_.filter().stopped();
+  const auto add = [&report](const std::string& text) { report.reason += (report.reason.empty() ? "" : ", ") + text; };
+  if (!navigator_.filter().last_fix_arrival()) add("no position fix yet");
+  if (!pose || (pose->heading_source == HeadingSource::kNone && !navigator_.filter().has_had_heading())) add("no heading");
   if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
-    report.reason += (report.reason.empty() ? "" : ", ") + ("clock of this computer is off UTC by " + InSeconds(off));
+    add("clock of this computer is off UTC by " + InSeconds(off));
   }
   if (!report.reason.empty()) report.state = HealthState::kDegraded;
   return report;

@@ -42,6 +42,9 @@ class Service {
 
   HealthReport Report() const;
 
+  /// For tests and measurements.
+  const Navigator& navigator() const { return navigator_; }
+
  private:
   void OnLines(Utime arrival, const DatagramLines& lines, const std::string& source);
   void OnLidarNmea(const lidar_nmea_t& message);

@@ -20,6 +20,9 @@ static_assert(static_cast<int>(ItemKind::kStart) == nav_raw_t::KIND_START && sta
 static_assert(static_cast<int>(PoseStatus::kUnknown) == pose_t::STATUS_UNKNOWN && static_cast<int>(HeadingSource::kCourse) == pose_t::HEADING_COURSE);
 static_assert(static_cast<int>(FixQuality::kSimulator) == gnss_fix_t::QUALITY_SIMULATOR);
 
+// rad/s and m/s2: beyond what any strapdown sensor of a boat measures (100 g, 160 turns a second).
+constexpr double kMaxImuValue = 1000.0;
+
 }  // namespace
 
 nav_raw_t ToMessage(const Item& item) {
@@ -29,6 +32,12 @@ nav_raw_t ToMessage(const Item& item) {
   message.kind = static_cast<std::int32_t>(item.kind);
   message.source = item.source;
   message.sentence = item.sentence;
+  if (item.imu) {
+    auto& sample = message.imu.emplace_back();
+    std::ranges::copy(item.imu->angular_velocity_radps, sample.angular_velocity_radps);
+    std::ranges::copy(item.imu->specific_force_mps2, sample.specific_force_mps2);
+    std::ranges::fill(sample.magnetic_field_ut, kNan);
+  }
   message.num_imu = static_cast<std::int32_t>(message.imu.size());
   return message;
 }
@@ -42,7 +51,17 @@ ItemResult ToItem(const nav_raw_t& message) {
   const bool has_source = is_sentence || message.kind == nav_raw_t::KIND_IMU;
   if (is_sentence ? !IsLine(message.sentence) : !message.sentence.empty()) return {ItemFault::kBadText, {}};
   if (has_source ? !IsSourceName(message.source) : !message.source.empty()) return {ItemFault::kBadText, {}};
-  return {ItemFault::kNone, {*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence}};
+  ItemResult result{ItemFault::kNone, {*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence}};
+  for (const auto& sample : message.imu) {
+    const auto is_plausible = [](double value) { return std::abs(value) <= kMaxImuValue; };  // not for NaN
+    if (!std::ranges::all_of(sample.angular_velocity_radps, is_plausible) || !std::ranges::all_of(sample.specific_force_mps2, is_plausible)) {
+      return {ItemFault::kBadImu, {}};
+    }
+    auto& imu = result.item.imu.emplace();
+    std::ranges::copy(sample.angular_velocity_radps, imu.angular_velocity_radps.begin());
+    std::ranges::copy(sample.specific_force_mps2, imu.specific_force_mps2.begin());
+  }
+  return result;
 }
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq) {

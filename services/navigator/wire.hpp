@@ -21,7 +21,7 @@ enum class ItemFault {
   kBadTime,  // outside of the bounds of Utime
   kBadKind,
   kBadText,  // a sentence that is not IsLine, a source that is not a word, or either where there is none
-  kBadImu,   // not as many samples as the kind has
+  kBadImu,   // not as many samples as the kind has, or a number that cannot be
 };
 
 struct ItemResult {

@@ -9,6 +9,7 @@
 #include "services/navigator/core/item_sequencer.hpp"
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/core/sentence.hpp"
+#include "tests/unit/navigator/filter_params.hpp"
 
 namespace {
 
@@ -26,16 +27,14 @@ NavigatorParams FuzzParams() {
   NavigatorParams params;
   params.max_sentence_latency = 24h;  // so that times in sentences matter
   params.position_sd_m = 2.5;
-  params.pose.antenna.max_age = 2s;
-  params.pose.attitude.max_age = 1s;
-  params.pose.p_vessel_antenna_m = {-0.8, 0.4, 0.9};
-  params.pose.use_course_as_heading = true;
+  params.filter = TestFilterParams();
+  params.filter.p_vessel_antenna_m = {-0.8, 0.4, 0.9};
   return params;
 }
 
 void Check(const NavigatorOutput& output) {
   for (const auto& pose : output.poses) {
-    const bool has_position = pose.status == PoseStatus::kOk || pose.status == PoseStatus::kNoHeading;
+    const bool has_position = pose.status != PoseStatus::kNoPosition && pose.status != PoseStatus::kUnknown;
     if (std::isfinite(pose.latitude_deg) != has_position || std::isinf(pose.p_map_m.sum())) std::abort();
     if (std::isfinite(pose.heading_rad) != (pose.heading_source != HeadingSource::kNone)) std::abort();
   }

@@ -183,7 +183,7 @@ void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* se
 }
 
 void Evaluation::Add(const pose_t& pose) {
-  if (truth_ == nullptr || pose.status != pose_t::STATUS_OK) return;
+  if (truth_ == nullptr || (pose.status != pose_t::STATUS_OK && pose.status != pose_t::STATUS_COASTING)) return;
   const auto found = truth_->poses().find(pose.utime_us);
   if (found == truth_->poses().end()) return;
   const TruthPose& truth = found->second;

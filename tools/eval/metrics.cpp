@@ -1,6 +1,7 @@
 #include "tools/eval/metrics.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace lookout::eval {
@@ -60,5 +61,9 @@ double Summary::Percentile(int percent) const {
 }
 
 double Summary::Mean() const { return std::accumulate(values_.begin(), values_.end(), 0.0) / static_cast<double>(values_.size()); }
+
+double Summary::Rms() const {
+  return std::sqrt(std::inner_product(values_.begin(), values_.end(), values_.begin(), 0.0) / static_cast<double>(values_.size()));
+}
 
 }  // namespace lookout::eval

@@ -45,11 +45,12 @@ class Summary {
   void Add(const Summary& other) { values_.insert(values_.end(), other.values_.begin(), other.values_.end()); }
   std::size_t count() const { return values_.size(); }
 
-  /// Precondition for all three: count() > 0.
+  /// Precondition for all: count() > 0.
   double Median() const { return Percentile(50); }
   double Percentile(int percent) const;
   double Max() const { return Percentile(100); }
   double Mean() const;
+  double Rms() const;  // root mean square
 
  private:
   std::vector<double> values_;

@@ -80,12 +80,13 @@ void PrintAccuracy(std::ostream& out, const Evaluation& evaluation) {
   table.Print(out);
 
   out << "\npose against the truth\n";
-  Table poses({"error", "poses", "median", "95", "max"});
+  Table poses({"error", "poses", "median", "95", "max", "rms"});
   const std::array<std::string, 4> names{"position_m", "heading_deg", "roll_deg", "pitch_deg"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     std::vector<std::string> row{names[i]};
     const auto cells = SummaryCells(evaluation.pose_errors[i], 3);
     row.insert(row.end(), cells.begin(), cells.end());
+    row.push_back(evaluation.pose_errors[i].count() > 0 ? Number(evaluation.pose_errors[i].Rms(), 3) : "-");
     poses.Add(row);
   }
   poses.Print(out);

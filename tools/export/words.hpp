@@ -39,7 +39,8 @@ inline constexpr std::array kGround{Word{segment_t::GROUND_FEW_RETURNS, "few_ret
 inline constexpr std::array kKind{Word{segment_t::KIND_OBSTACLE, "obstacle"}, Word{segment_t::KIND_LAND, "land"}};
 
 inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose_t::STATUS_NO_HEADING, "no_heading"},
-                                        Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"}};
+                                        Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"},
+                                        Word{pose_t::STATUS_COASTING, "coasting"}};
 
 inline constexpr std::array kTimeSource{Word{lidar_clock_t::TIME_HOST, "host"}, Word{lidar_clock_t::TIME_SENSOR, "sensor"}};
 

@@ -12,7 +12,7 @@ Utime CeilToPose(Utime time) { return std::chrono::ceil<PosePeriods>(time); }
 
 }  // namespace
 
-Navigator::Navigator(const NavigatorParams& params) : params_(params), interpreter_(params), estimator_(params.pose) {}
+Navigator::Navigator(const NavigatorParams& params) : params_(params), interpreter_(params), filter_(params.filter) {}
 
 NavigatorOutput Navigator::Consume(const Item& item) {
   if (item.kind == ItemKind::kStart) Reset();
@@ -24,6 +24,11 @@ NavigatorOutput Navigator::Consume(const Item& item) {
   time_ = item.time;
   NavigatorOutput output;
   if (item.kind == ItemKind::kSentence) OnSentence(item, output);
+  if (item.imu) {
+    const auto to_vessel = [](const std::array<double, 3>& v) { return Eigen::Vector3d(v[0], -v[1], -v[2]); };
+    filter_.Add(ImuSample{item.time, to_vessel(item.imu->angular_velocity_radps), to_vessel(item.imu->specific_force_mps2)});
+  }
+  if (item.kind == ItemKind::kTick) filter_.AdvanceTo(item.time);
   GivePosesUntil(item.time, output);
   if (item.kind == ItemKind::kEnd && next_pose_ - item.time < kPosePeriod) GivePose(output);
   return output;
@@ -35,16 +40,11 @@ NavigatorOutput Navigator::Flush() {
   return output;
 }
 
-std::optional<Pose> Navigator::StateNow() const {
-  if (!time_) return std::nullopt;
-  return estimator_.At(*time_);
-}
-
 void Navigator::Reset() {
-  counts_.unusable_fix += estimator_.antenna().num_unusable();
-  counts_.late_fix += estimator_.antenna().num_late();
-  estimator_ = PoseEstimator(params_.pose);
+  counts_.before += filter_.counts();
+  filter_ = PoseFilter(params_.filter);
   interpreter_.Reset();
+  last_pose_.reset();
   time_.reset();
 }
 
@@ -53,32 +53,26 @@ void Navigator::GivePosesUntil(Utime time, NavigatorOutput& output) {
 }
 
 void Navigator::GivePose(NavigatorOutput& output) {
-  output.poses.push_back(estimator_.At(next_pose_));
+  last_pose_ = filter_.At(next_pose_);
+  output.poses.push_back(*last_pose_);
   next_pose_ += kPosePeriod;
 }
 
 void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
   const auto reading = interpreter_.Read(item);
-  if (reading.fix) TakeFix(*reading.fix, output);
-  if (reading.velocity) estimator_.antenna().Add(*reading.velocity);
-  if (reading.attitude) TakeAttitude(*reading.attitude, output);
-}
-
-void Navigator::TakeFix(const GnssFix& fix, NavigatorOutput& output) {
-  output.fix = fix;
-  estimator_.antenna().Add(fix);
-}
-
-void Navigator::TakeAttitude(const Attitude& attitude, NavigatorOutput& output) {
-  output.attitude = attitude;
-  if (!estimator_.attitude().Add(attitude)) ++counts_.late_attitude;
+  if (reading.fix) filter_.Add(*reading.fix);
+  if (reading.velocity) filter_.Add(*reading.velocity);
+  if (reading.attitude) filter_.Add(*reading.attitude);
+  if (reading.imu) filter_.Add(*reading.imu);
+  output.fix = reading.fix;
+  output.attitude = reading.attitude;
 }
 
 std::vector<Counter> Navigator::counters() const {
   auto counters = interpreter_.counters();
-  counters.push_back({"unusable_fix", counts_.unusable_fix + estimator_.antenna().num_unusable()});
-  counters.push_back({"late_fix", counts_.late_fix + estimator_.antenna().num_late()});
-  counters.push_back({"late_attitude", counts_.late_attitude});
+  auto filter = counts_.before;
+  filter += filter_.counts();
+  for (const auto& [name, count] : filter.Named()) counters.push_back({name, count});
   counters.push_back({"time_jump", counts_.time_jump});
   return counters;
 }

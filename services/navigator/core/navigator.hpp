@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "common/core/health.hpp"
+#include "services/navigator/core/filter/pose_filter.hpp"
 #include "services/navigator/core/interpreter.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
-#include "services/navigator/core/pose_estimator.hpp"
 
 namespace lookout::navigator {
 
 struct NavigatorParams : InterpreterParams {
-  PoseParams pose;
+  FilterParams filter;
 };
 
 /// What one item gave.
@@ -44,10 +44,9 @@ class Navigator {
 
   /// Time of the last item.
   const std::optional<Utime>& time() const { return time_; }
-  /// The state at the time of the last item, between the poses that are given.
-  std::optional<Pose> StateNow() const;
-  /// Time of the item with the last usable fix since the start mark.
-  std::optional<Utime> last_fix_arrival() const { return estimator_.antenna().last_arrival(); }
+  /// The last pose that was given since the start mark.
+  const std::optional<Pose>& last_pose() const { return last_pose_; }
+  const PoseFilter& filter() const { return filter_; }
 
   /// Computer's clock less UTC, as the sentences say; 0 while it is taken for UTC.
   std::chrono::microseconds host_minus_utc() const { return interpreter_.host_minus_utc(); }
@@ -56,22 +55,19 @@ class Navigator {
 
  private:
   void OnSentence(const Item& item, NavigatorOutput& output);
-  void TakeFix(const GnssFix& fix, NavigatorOutput& output);
-  void TakeAttitude(const Attitude& attitude, NavigatorOutput& output);
   void GivePosesUntil(Utime time, NavigatorOutput& output);
   void GivePose(NavigatorOutput& output);
   void Reset();
 
   NavigatorParams params_;
   Interpreter interpreter_;
-  PoseEstimator estimator_;
+  PoseFilter filter_;
+  std::optional<Pose> last_pose_;
   std::optional<Utime> time_;
   Utime next_pose_{};
 
   struct Counts {
-    std::int64_t unusable_fix = 0;  // of states before the last start mark
-    std::int64_t late_fix = 0;      // likewise
-    std::int64_t late_attitude = 0;
+    FilterCounts before;  // of filters before the last start mark
     std::int64_t time_jump = 0;
   };
   Counts counts_;

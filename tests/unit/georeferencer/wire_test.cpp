@@ -184,7 +184,7 @@ TEST(ToPose, RefusesEachFaultUnderItsOwnName) {
       {kPoseTime, [](pose_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
       {kPoseTime, [](pose_t& m) { m.utime_us += 1; }},
       {kPoseStatus, [](pose_t& m) { m.status = -1; }},
-      {kPoseStatus, [](pose_t& m) { m.status = 4; }},
+      {kPoseStatus, [](pose_t& m) { m.status = 5; }},
       {kPoseNumber, [](pose_t& m) { m.position_map_m[0] = kUnknown; }},
       {kPoseNumber, [](pose_t& m) { m.position_map_m[1] = 1e300; }},
       {kPoseNumber, [](pose_t& m) { m.position_map_m[2] = kInf; }},

@@ -260,7 +260,7 @@ TEST(Service, SaysWhyItIsDegraded) {
   EXPECT_EQ(rig.service.Report().reason, "");
   rig.service.AdvanceTo(NoonPlus(5.0));
   rig.Drain();
-  EXPECT_EQ(rig.service.Report().reason, "no position fix for 4 s, no heading");
+  EXPECT_EQ(rig.service.Report().reason, "no position fix for 5 s, no heading for 4 s");
 }
 
 }  // namespace

@@ -1,0 +1,330 @@
+#include "services/navigator/core/filter/aiding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+#include "services/navigator/core/filter/kalman.hpp"
+
+namespace lookout::navigator::filter {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// A prior that says nothing, against which any measurement counts alone: m, rad.
+constexpr double kAnywhereM = 1000.0;
+constexpr double kAnyHeadingRad = 10.0;
+constexpr double kAnyTiltRad = 10.0;
+
+// Errors of a receiver's positions change over minutes (satellites, ionosphere, reflections): Kaplan, Hegarty, "Understanding GPS", 3rd edition,
+// chapter 10. Phase solutions (RTK) say a decimetre or less, and half of their error is of that kind, of the others nearly all.
+constexpr double kRtkMaxSdM = 0.1;
+constexpr double kRtkSlowShare = 0.5;
+constexpr double kGnssSlowShare = 0.95;
+constexpr double kFixErrorTimeS = 60.0;
+constexpr double kSameErrorRatio = 0.6;
+// Two antennas say half a degree or less, and err by noise. A compass has a deviation that stays while the boat keeps its heading, and so has the
+// course against the heading (leeway, current).
+constexpr double kTwoAntennasMaxSdRad = DegToRad(0.5);
+constexpr double kTwoAntennasSlowShare = 0.25;
+constexpr double kCompassSlowShare = 0.95;
+constexpr double kHeadingErrorTimeS = 30.0;
+// Attitude sensors send the same error again and again: their output is filtered. So long two samples count as one.
+constexpr double kHeadingCorrelationS = 0.1;
+constexpr double kTiltCorrelationS = 0.5;
+// Velocities of receivers without phase solution are filtered, and at walking pace off by the same decimetre a second for many seconds: carried on as
+// white noise they led 20 m away from the fixes of a recording (signalk_gps.log).
+constexpr double kVelocityCorrelationS = 10.0;
+// Accuracy of heave: 5 cm or 5 % (Kongsberg MRU and Seapath data sheets).
+constexpr double kHeaveSdM = 0.05;
+
+// A contradiction that lasts so long without changing is one of the state.
+constexpr auto kMaxRefusal = 3s;
+// Of positions while accelerometers carry on, which are off by less than a metre by then: what jumps is rather the receiver.
+constexpr auto kMaxStrapdownRefusal = 10s;
+constexpr double kEvenInSds = 5.0;
+
+// How fast the lever arm swings while nobody says where the bow points.
+constexpr double kUnknownTurnRadps = 0.2;
+// A velocity without a time of its own is late by some tenths of a second, in which a boat changes it by so much.
+constexpr double kLateVelocitySdMps = 0.15;
+constexpr auto kTimedVelocityAge = 2s;
+
+template <int kSize>
+bool Judge(const Innovation<kSize>& innovation, bool is_forced, State& state, Verdict& verdict) {
+  const auto correction = Correct(innovation, is_forced, state);
+  if (!is_forced) {
+    verdict.nis_sum += correction.nis;
+    verdict.num_degrees += kSize;
+  }
+  ++(correction.is_taken ? verdict.num_taken : verdict.num_gated);
+  return correction.is_taken;
+}
+
+// Counts a refusal. Returns whether it is the state that is wrong: a sensor's fault changes, a wrong state differs by the same all the time.
+bool IsStateWrong(const Eigen::Vector3d& residual, double sd, Utime time, std::chrono::seconds max_refusal, Refusals& refusals) {
+  if (!refusals.since || (residual - refusals.first_residual).norm() > kEvenInSds * sd) refusals = {time, residual};
+  return time - *refusals.since >= max_refusal;
+}
+
+// The lever arm in the map. Without heading east and north are left to the position, which is then that of the antenna.
+Eigen::Vector3d LeverMap(const FilterParams& params, const State& state) {
+  Eigen::Vector3d lever_map_m = state.q_map_vessel * AntennaLever(params);
+  if (!state.has_heading) lever_map_m.head<2>().setZero();
+  return lever_map_m;
+}
+
+double White(double sd, double slow_sd) { return std::sqrt(std::max(sd * sd - slow_sd * slow_sd, 0.01 * sd * sd)); }
+
+// Satellites that come and go change what a receiver says of itself, and its error. A little of that is the same error; much is another one, but
+// not each little step on the way, or many of them would be many independent measurements.
+void Model(const ErrorModel& model, State& state) {
+  const double ratio = model.sd / state.fix_error_begun_sd_m;
+  if (model.kind != state.fix_error_model.kind || ratio < kSameErrorRatio || ratio * kSameErrorRatio > 1.0) {
+    state.fix_error_m.setZero();
+    state.fix_error_begun_sd_m = model.sd;
+    Renew<3>(kFixError, Eigen::Vector3d(model.sd, model.sd, model.up_factor * model.sd), state);
+  }
+  state.fix_error_model = model;
+}
+
+void ModelHeading(const ErrorModel& model, State& state) {
+  if (model.kind != state.heading_error_model.kind) {
+    state.heading_error_rad = 0.0;
+    Renew<1>(kHeadingError, Eigen::Matrix<double, 1, 1>(model.sd), state);
+  }
+  state.heading_error_model = model;
+}
+
+Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params, const State& state) {
+  const Eigen::Vector3d lever_map_m = LeverMap(params, state);
+  Innovation<2> innovation;
+  innovation.residual = (fix.antenna_map_m - state.p_map_m - lever_map_m - state.fix_error_m).head<2>();
+  innovation.jacobian.middleCols<2>(kPosition).setIdentity();
+  innovation.jacobian.middleCols<2>(kFixError).setIdentity();
+  if (state.has_heading) innovation.jacobian.middleCols<3>(kRotation) = -Cross(lever_map_m).topRows<2>();
+  const double white_m = White(fix.horizontal_sd_m, state.fix_error_model.sd);
+  innovation.noise.diagonal().setConstant(white_m * white_m);
+  return innovation;
+}
+
+void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
+  const bool is_taken = state.has_position && Judge(HorizontalOf(fix, params, state), false, state, verdict);
+  if (!is_taken && state.has_position) {
+    Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
+    residual_m.head<2>() = HorizontalOf(fix, params, state).residual;
+    const auto max_refusal = state.is_strapdown ? kMaxStrapdownRefusal : kMaxRefusal;
+    // The state drifts meanwhile.
+    const double sd_m = std::max(fix.horizontal_sd_m, std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1))));
+    if (!IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals)) return;
+    ++verdict.num_renewed;
+    state.has_position = state.has_height = false;
+  }
+  if (!is_taken) {
+    // It says where the boat is, whatever was known. So does its velocity.
+    const bool knew_velocity = state.timed_velocity.IsWithin(state.time, kTimedVelocityAge) && !state.fix_refusals.since;
+    state.p_map_m.head<2>() = (fix.antenna_map_m - LeverMap(params, state) - state.fix_error_m).head<2>();
+    Renew<2>(kPosition, Eigen::Vector2d::Constant(kAnywhereM), state);
+    Judge(HorizontalOf(fix, params, state), true, state, verdict);
+    state.has_position = true;
+    if (fix.velocity && !knew_velocity) {
+      state.velocity_map_mps.head<2>() = fix.velocity->east_north_mps;
+      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnywhereM), state);
+    }
+  }
+  state.fix_refusals = {};
+  state.fix.Use(state.time);
+  state.position_sd_at_fix_m = std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1)));
+}
+
+void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
+  if (std::isnan(fix.antenna_map_m.z())) return;
+  const double up_m = fix.antenna_map_m.z() - LeverMap(params, state).z() - state.fix_error_m.z();
+  const bool is_first = !state.has_height;
+  if (is_first) {
+    // The boat and the water under it are somewhere together.
+    state.water_level_m += up_m - state.p_map_m.z();
+    state.p_map_m.z() = up_m;
+    for (const int row : {static_cast<int>(kPosition) + 2, static_cast<int>(kWaterLevel)}) {
+      for (const int column : {static_cast<int>(kPosition) + 2, static_cast<int>(kWaterLevel)}) {
+        state.covariance(row, column) += kAnywhereM * kAnywhereM;
+      }
+    }
+    state.has_height = true;
+  }
+  Innovation<1> innovation;
+  innovation.residual[0] = up_m - state.p_map_m.z();
+  innovation.jacobian(0, kPosition + 2) = 1.0;
+  innovation.jacobian(0, kFixError + 2) = 1.0;
+  innovation.jacobian.middleCols<3>(kRotation) = -Cross(LeverMap(params, state)).row(2);
+  const double white_m = White(fix.vertical_sd_m, state.fix_error_model.up_factor * state.fix_error_model.sd);
+  innovation.noise(0, 0) = white_m * white_m;
+  Judge(innovation, is_first, state, verdict);
+}
+
+// Error of a heading, of which the attitude takes what the compass's slow error does not.
+bool JudgeHeading(double heading_rad, double noise_rad, bool is_forced, State& state, Verdict& verdict) {
+  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  Innovation<1> innovation;
+  innovation.residual[0] = WrapToPi(heading_rad - state.heading_error_rad - AnglesOf(R_map_vessel)[2]);
+  innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_map_vessel).row(2);
+  innovation.jacobian(0, kHeadingError) = 1.0;
+  innovation.noise(0, 0) = noise_rad * noise_rad;
+  return Judge(innovation, is_forced, state, verdict);
+}
+
+// The heading becomes known.
+void BeginHeading(double heading_rad, double noise_rad, HeadingSource source, const FilterParams& params, State& state, Verdict& verdict) {
+  // Meanwhile position is that of the antenna, as it was before there was a heading.
+  if (state.has_position && state.has_heading) ShiftPosition(LeverMap(params, state), state);
+  TurnClockwise(WrapToPi(heading_rad - state.heading_error_rad - AnglesOf(state.R_map_vessel())[2]), state);
+  Renew<1>(kRotation + 2, Eigen::Matrix<double, 1, 1>(kAnyHeadingRad), state);
+  JudgeHeading(heading_rad, noise_rad, true, state, verdict);
+  state.has_heading = true;
+  state.heading_source = source;
+  if (state.has_position) ShiftPosition(-LeverMap(params, state), state);
+}
+
+void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, double noise_rad, HeadingSource source, Input& input,
+                  const FilterParams& params, State& state, Verdict& verdict) {
+  ModelHeading(model, state);
+  const bool is_other_kind = (state.heading_source == HeadingSource::kCourse) != (source == HeadingSource::kCourse);
+  if (!state.has_heading || is_other_kind) {
+    BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
+  } else if (!JudgeHeading(heading_rad, noise_rad, false, state, verdict)) {
+    const double residual_rad = WrapToPi(heading_rad - AnglesOf(state.R_map_vessel())[2]);
+    if (!IsStateWrong(Eigen::Vector3d(residual_rad, 0.0, 0.0), sd_rad, state.time, kMaxRefusal, state.heading_refusals)) return;
+    ++verdict.num_renewed;
+    BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
+  }
+  state.heading_source = source;
+  state.heading_refusals = {};
+  input.Use(state.time);
+}
+
+// Noise of one of many samples whose errors have much in common.
+double Thinned(double sd, double correlation_s, const Input& input, Utime time) {
+  if (!input.last) return sd;
+  const double since_s = std::max(SecondsBetween(*input.last, time), correlation_s / 10.0);
+  return sd * std::sqrt(std::max(correlation_s / since_s, 1.0));
+}
+
+void ApplyCourse(const VelocityMeasurement& velocity, const FilterParams& params, State& state, Verdict& verdict) {
+  if (!params.use_course_as_heading || std::isnan(velocity.course_rad) || velocity.speed_mps < params.min_course_speed_mps) return;
+  // Not beside a heading that was measured.
+  if (state.has_heading && state.heading_source != HeadingSource::kCourse) return;
+  const double slow_rad = kCompassSlowShare * params.course_heading_sd_rad;
+  const ErrorModel model{ErrorKind::kCourse, slow_rad, 1.0, kHeadingErrorTimeS};
+  ApplyHeading(velocity.course_rad, params.course_heading_sd_rad, model, White(params.course_heading_sd_rad, slow_rad), HeadingSource::kCourse,
+               state.course, params, state, verdict);
+}
+
+void ApplyCompass(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+  if (std::isnan(attitude.heading_rad)) return;
+  // Sensors of attitude say when they measured; a compass alone is late by an unknown time.
+  if (!attitude.has_tilt() && state.attitude_heading.IsWithin(state.time, params.max_attitude_age)) return;
+  const bool is_precise = attitude.heading_sd_rad <= kTwoAntennasMaxSdRad;
+  const double slow_rad = (is_precise ? kTwoAntennasSlowShare : kCompassSlowShare) * attitude.heading_sd_rad;
+  const ErrorModel model{is_precise ? ErrorKind::kTwoAntennas : ErrorKind::kCompass, slow_rad, 1.0, kHeadingErrorTimeS};
+  const double noise_rad = Thinned(White(attitude.heading_sd_rad, slow_rad), kHeadingCorrelationS, state.sensor_heading, state.time);
+  if (attitude.has_tilt()) state.attitude_heading.Use(state.time);
+  ApplyHeading(attitude.heading_rad, attitude.heading_sd_rad, model, noise_rad, attitude.has_tilt() ? HeadingSource::kPashr : HeadingSource::kHdt,
+               state.sensor_heading, params, state, verdict);
+}
+
+Innovation<2> TiltOf(const AttitudeMeasurement& attitude, const State& state) {
+  const double roll_sd_rad = Thinned(attitude.roll_sd_rad, kTiltCorrelationS, state.tilt, state.time);
+  const double pitch_sd_rad = Thinned(attitude.pitch_sd_rad, kTiltCorrelationS, state.tilt, state.time);
+  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  const Eigen::Vector3d angles_rad = AnglesOf(R_map_vessel);
+  Innovation<2> innovation;
+  innovation.residual = {WrapToPi(attitude.roll_rad - angles_rad[0]), WrapToPi(attitude.pitch_rad - angles_rad[1])};
+  innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_map_vessel).topRows<2>();
+  innovation.noise.diagonal() = Eigen::Vector2d(roll_sd_rad * roll_sd_rad, pitch_sd_rad * pitch_sd_rad);
+  return innovation;
+}
+
+void ApplyTilt(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+  if (!attitude.has_tilt()) return;
+  const bool is_taken = state.has_tilt && Judge(TiltOf(attitude, state), false, state, verdict);
+  if (!is_taken && state.has_tilt) {
+    Eigen::Vector3d residual_rad = Eigen::Vector3d::Zero();
+    residual_rad.head<2>() = TiltOf(attitude, state).residual;
+    if (!IsStateWrong(residual_rad, attitude.roll_sd_rad + attitude.pitch_sd_rad, state.time, kMaxRefusal, state.tilt_refusals)) return;
+    ++verdict.num_renewed;
+  }
+  if (!is_taken) {
+    const Eigen::Vector3d lever_map_m = LeverMap(params, state);
+    const Eigen::Quaterniond q_level_vessel =
+        RotationBy(Eigen::Vector3d(0.0, -attitude.pitch_rad, 0.0)) * RotationBy(Eigen::Vector3d(attitude.roll_rad, 0.0, 0.0));
+    BeginTilt(q_level_vessel, kAnyTiltRad, state);
+    Judge(TiltOf(attitude, state), true, state, verdict);
+    if (state.has_position) state.p_map_m += lever_map_m - LeverMap(params, state);
+  }
+  state.tilt_refusals = {};
+  state.tilt.Use(state.time);
+}
+
+// How much higher the origin lies than if the boat were level.
+double SwingUp(const FilterParams& params, const State& state) {
+  return (state.q_map_vessel * params.p_vessel_imu_m).z() - params.p_vessel_imu_m.z();
+}
+
+void ApplyHeave(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+  if (std::isnan(attitude.heave_m)) return;
+  Innovation<1> innovation;
+  innovation.residual[0] = attitude.heave_m + SwingUp(params, state) - (state.p_map_m.z() - state.water_level_m);
+  innovation.jacobian(0, kPosition + 2) = 1.0;
+  innovation.jacobian(0, kWaterLevel) = -1.0;
+  const double noise_m = Thinned(kHeaveSdM, kTiltCorrelationS, state.heave, state.time);
+  innovation.noise(0, 0) = noise_m * noise_m;
+  const bool is_first = !state.heave.IsWithin(state.time, params.max_attitude_age);
+  if (Judge(innovation, is_first, state, verdict)) state.heave.Use(state.time);
+}
+
+}  // namespace
+
+void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
+  const bool is_rtk = fix.horizontal_sd_m <= kRtkMaxSdM;
+  const double slow_m = (is_rtk ? kRtkSlowShare : kGnssSlowShare) * fix.horizontal_sd_m;
+  Model({is_rtk ? ErrorKind::kRtk : ErrorKind::kGnss, slow_m, fix.vertical_sd_m / fix.horizontal_sd_m, kFixErrorTimeS}, state);
+  ApplyHorizontal(fix, params, state, verdict);
+  if (!state.has_position) return;
+  ApplyHeight(fix, params, state, verdict);
+  if (fix.velocity) Apply(*fix.velocity, params, state, verdict);
+}
+
+void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, Verdict& verdict) {
+  if (!velocity.has_own_time && state.timed_velocity.IsWithin(state.time, kTimedVelocityAge)) return;
+  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  const Eigen::Vector3d lever_m = AntennaLever(params);
+  Innovation<2> innovation;
+  innovation.residual = velocity.east_north_mps - state.velocity_map_mps.head<2>();
+  innovation.jacobian.middleCols<2>(kVelocity).setIdentity();
+  const bool is_rtk = state.fix_error_model.kind == ErrorKind::kRtk;
+  double noise_mps = is_rtk ? velocity.sd_mps : Thinned(velocity.sd_mps, kVelocityCorrelationS, state.velocity, state.time);
+  if (!velocity.has_own_time) noise_mps = std::hypot(noise_mps, kLateVelocitySdMps);
+  if (state.has_heading) {
+    const Eigen::Vector3d swing_map_mps = R_map_vessel * state.angular_velocity_radps.cross(lever_m);
+    innovation.residual -= swing_map_mps.head<2>();
+    innovation.jacobian.middleCols<3>(kRotation) = -Cross(swing_map_mps).topRows<2>();
+    innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (R_map_vessel * Cross(lever_m)).topRows<2>();
+  } else {
+    noise_mps = std::hypot(noise_mps, kUnknownTurnRadps * lever_m.norm());
+  }
+  innovation.noise.diagonal().setConstant(noise_mps * noise_mps);
+  if (Judge(innovation, false, state, verdict)) {
+    state.velocity.Use(state.time);
+    if (velocity.has_own_time) state.timed_velocity.Use(state.time);
+  }
+  ApplyCourse(velocity, params, state, verdict);
+}
+
+void Apply(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+  ApplyTilt(attitude, params, state, verdict);
+  ApplyCompass(attitude, params, state, verdict);
+  ApplyHeave(attitude, params, state, verdict);
+}
+
+}  // namespace lookout::navigator::filter

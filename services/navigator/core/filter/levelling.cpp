@@ -1,0 +1,79 @@
+// What gravity and the water tell.
+#include <cmath>
+
+#include "common/core/angles.hpp"
+#include "services/navigator/core/filter/aiding.hpp"
+#include "services/navigator/core/filter/kalman.hpp"
+
+namespace lookout::navigator::filter {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// Accelerations of a boat that are not told from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). What is left of them when the IMU is calm.
+constexpr double kForceSdMps2 = 0.5;
+constexpr double kForceTimeS = 2.0;
+constexpr double kCalmForceSdMps2 = 0.1;
+constexpr double kLevelPeriodS = 0.1;
+constexpr double kCalmMeanTimeS = 1.0;
+constexpr double kCalmMaxVariance = 0.05 * 0.05;
+constexpr double kCalmMaxRateRadps = DegToRad(2.0);
+
+// Heave of small boats, and how fast.
+constexpr double kFloatingSdM = 0.5;
+constexpr double kFloatingSdMps = 0.5;
+constexpr auto kWaterPeriod = 1s;
+
+}  // namespace
+
+void Apply(const InertialSample& sample, const Earth& earth, State& state) {
+  const double since_s = state.imu.last ? SecondsBetween(*state.imu.last, state.time) : 0.0;
+  const bool is_first = !state.imu.last || since_s > kCalmMeanTimeS;
+  state.imu.Use(state.time);
+  const Eigen::Vector3d& force_mps2 = sample.specific_force_mps2;
+  if (is_first) {
+    state.mean_force_mps2 = force_mps2;
+    state.force_variance_mps2_2 = 1.0;
+  }
+  const double share = 1.0 - std::exp(-since_s / kCalmMeanTimeS);
+  const Eigen::Vector3d deviation_mps2 = force_mps2 - state.mean_force_mps2;
+  state.mean_force_mps2 += share * deviation_mps2;
+  state.force_variance_mps2_2 += share * (deviation_mps2.squaredNorm() / 3.0 - state.force_variance_mps2_2);
+  // The way in which gravity pulls is up to half a g of motion known at the first look.
+  if (!state.has_tilt && std::abs(force_mps2.norm() - earth.gravity_mps2) < earth.gravity_mps2 / 2.0) {
+    BeginTilt(Eigen::Quaterniond::FromTwoVectors(force_mps2, Eigen::Vector3d::UnitZ()), kForceSdMps2 / earth.gravity_mps2, state);
+  }
+  if (state.is_strapdown || !state.has_tilt) {
+    state.num_forces = 0;
+    state.force_sum_mps2.setZero();
+    return;
+  }
+  state.force_sum_mps2 += force_mps2;
+  ++state.num_forces;
+  if (since_s * state.num_forces < kLevelPeriodS) return;
+  const Eigen::Vector3d up_vessel_mps2 = state.q_map_vessel.conjugate() * Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2);
+  Innovation<3> innovation;
+  innovation.residual = state.force_sum_mps2 / state.num_forces - up_vessel_mps2;
+  innovation.jacobian.middleCols<3>(kRotation) = state.R_map_vessel().transpose() * Cross(Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2));
+  const bool is_calm = state.force_variance_mps2_2 < kCalmMaxVariance && state.angular_velocity_radps.norm() < kCalmMaxRateRadps;
+  const double sd_mps2 = is_calm ? kCalmForceSdMps2 : kForceSdMps2;
+  innovation.noise.diagonal().setConstant(2.0 * sd_mps2 * sd_mps2 * kForceTimeS / kLevelPeriodS);
+  Correct(innovation, false, state);
+  state.num_forces = 0;
+  state.force_sum_mps2.setZero();
+}
+
+void ApplyWater(State& state) {
+  if (state.last_water_aid && state.time - *state.last_water_aid < kWaterPeriod) return;
+  state.last_water_aid = state.time;
+  Innovation<2> innovation;
+  innovation.residual = {state.water_level_m - state.p_map_m.z(), -state.velocity_map_mps.z()};
+  innovation.jacobian(0, kPosition + 2) = 1.0;
+  innovation.jacobian(0, kWaterLevel) = -1.0;
+  innovation.jacobian(1, kVelocity + 2) = 1.0;
+  innovation.noise.diagonal() = Eigen::Vector2d(kFloatingSdM * kFloatingSdM, kFloatingSdMps * kFloatingSdMps);
+  Correct(innovation, false, state);
+}
+
+}  // namespace lookout::navigator::filter

@@ -1,0 +1,242 @@
+#include "services/navigator/core/filter/pose_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "services/navigator/core/filter/pose_output.hpp"
+
+namespace lookout::navigator {
+
+namespace {
+
+using namespace std::chrono_literals;
+using filter::State;
+
+// Satellites are above only, so height is worse than position: VDOP is about one and a half to two times HDOP.
+constexpr double kVerticalFactor = 2.0;
+// What is kept beyond the greatest latency.
+constexpr std::chrono::microseconds kMoreHistory = 1s;
+// A sample of the IMU stands for no longer than this: five of a slow one (50 Hz).
+constexpr std::chrono::microseconds kMaxSampleAge = 100ms;
+// Of a receiver that says it is better: no deviation is less than a millimetre.
+constexpr double kMinSdM = 0.001;
+
+// Sentences of one fix differ by how many digits they have, at most: receivers have 4 to 8 of a minute.
+constexpr double kSamePlaceM = 0.2;
+
+double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
+
+}  // namespace
+
+FilterCounts& FilterCounts::operator+=(const FilterCounts& other) {
+  unusable_fix += other.unusable_fix;
+  late_fix += other.late_fix;
+  late_attitude += other.late_attitude;
+  late_imu += other.late_imu;
+  unusable_imu += other.unusable_imu;
+  gated_fix += other.gated_fix;
+  gated_attitude += other.gated_attitude;
+  renewed_position += other.renewed_position;
+  renewed_attitude += other.renewed_attitude;
+  return *this;
+}
+
+std::vector<Counter> FilterCounts::Named() const {
+  return {{"unusable_fix", unusable_fix},        {"late_fix", late_fix},   {"late_attitude", late_attitude},   {"late_imu", late_imu},
+          {"unusable_imu", unusable_imu},        {"gated_fix", gated_fix}, {"gated_attitude", gated_attitude}, {"renewed_position", renewed_position},
+          {"renewed_attitude", renewed_attitude}};
+}
+
+PoseFilter::PoseFilter(const FilterParams& params) : params_(params) {
+  if (params_.datum) SetDatum(*params_.datum);
+}
+
+void PoseFilter::SetDatum(const Datum& datum) {
+  datum_ = datum;
+  map_.emplace(datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m);
+  earth_ = filter::EarthAt(datum);
+}
+
+bool PoseFilter::Insert(Utime time, const Measurement& measurement) {
+  if (base_ && time < base_->time) return false;
+  // Behind all of its time, but attitude before position: a lever arm is turned by what is known.
+  const auto place = std::ranges::upper_bound(events_, std::pair(time, measurement.index()), {},
+                                              [](const Event& event) { return std::pair(event.time, event.measurement.index()); });
+  const auto index = static_cast<std::size_t>(place - events_.begin());
+  events_.insert(place, Event{time, measurement, false, {}});
+  Touch(index);
+  newest_ = std::max(newest_.value_or(time), time);
+  return true;
+}
+
+void PoseFilter::Touch(std::size_t index) { num_processed_ = std::min(num_processed_, index); }
+
+void PoseFilter::DropOld() {
+  if (!newest_) return;
+  const Utime oldest = *newest_ - params_.max_latency - kMoreHistory;
+  while (num_processed_ > 1 && (events_.front().time < oldest || events_.size() > kMaxEvents)) {
+    base_ = std::move(events_.front().after);
+    if (const auto* sample = std::get_if<filter::InertialSample>(&events_.front().measurement)) {
+      base_sample_ = *sample;
+      base_sample_time_ = events_.front().time;
+    }
+    events_.pop_front();
+    --num_processed_;
+  }
+}
+
+// A receiver whose sentences come by two ways, as beside and through the lidar, says the same place of the same time.
+filter::FixMeasurement* PoseFilter::SameEpoch(const filter::FixMeasurement& fix, Utime time, std::size_t& index) {
+  const auto begin = std::ranges::lower_bound(events_, time, {}, &Event::time);
+  for (auto event = begin; event != events_.end() && event->time == time; ++event) {
+    auto* other = std::get_if<filter::FixMeasurement>(&event->measurement);
+    if (other == nullptr) continue;
+    const bool is_same_place = (other->antenna_map_m - fix.antenna_map_m).head<2>().norm() < kSamePlaceM;
+    if (other->source != fix.source && !is_same_place) continue;
+    index = static_cast<std::size_t>(event - events_.begin());
+    return other;
+  }
+  return nullptr;
+}
+
+void PoseFilter::Add(const GnssFix& fix) {
+  if (!IsMeasured(fix.quality) || !fix.position || !(fix.horizontal_sd_m > 0.0)) {
+    ++counts_.unusable_fix;
+    return;
+  }
+  const double ellipsoid_height_m = fix.EllipsoidHeightM();
+  const bool has_height = !std::isnan(ellipsoid_height_m);
+  if (!datum_) SetDatum({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : 0.0});
+
+  filter::FixMeasurement measurement;
+  measurement.source = fix.source;
+  measurement.is_gga = fix.sentence_type == "GGA";
+  auto& p_map_m = measurement.antenna_map_m;
+  map_->Forward(fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m, p_map_m.x(),
+                p_map_m.y(), p_map_m.z());
+  if (!has_height) p_map_m.z() = kNan;
+  measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
+  measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
+  if (!std::isnan(fix.speed_mps)) {
+    filter::VelocityMeasurement velocity;
+    velocity.has_own_time = true;
+    velocity.speed_mps = fix.speed_mps;
+    velocity.course_rad = fix.course_rad;
+    velocity.sd_mps = SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps);
+    if (std::isnan(fix.course_rad)) {
+      // A speed without a direction: anywhere on a circle around 0.
+      velocity.sd_mps = std::hypot(velocity.sd_mps, fix.speed_mps);
+    } else {
+      velocity.east_north_mps = fix.speed_mps * Eigen::Vector2d(std::sin(fix.course_rad), std::cos(fix.course_rad));
+    }
+    measurement.velocity = velocity;
+  }
+
+  std::size_t index = 0;
+  if (auto* same_epoch = SameEpoch(measurement, fix.when.time, index)) {
+    const bool takes_position = measurement.is_gga && !same_epoch->is_gga;
+    const bool takes_velocity = measurement.velocity && !same_epoch->velocity;
+    if (!takes_position && !takes_velocity) return;
+    if (takes_velocity) same_epoch->velocity = measurement.velocity;
+    if (takes_position) {
+      measurement.velocity = same_epoch->velocity;
+      *same_epoch = measurement;
+    }
+    Touch(index);
+  } else if (!Insert(fix.when.time, measurement)) {
+    ++counts_.late_fix;
+    return;
+  }
+  last_fix_arrival_ = fix.when.arrival;
+}
+
+void PoseFilter::Add(const GroundVelocity& velocity) {
+  if (std::isnan(velocity.speed_mps)) return;
+  filter::VelocityMeasurement measurement;
+  measurement.speed_mps = velocity.speed_mps;
+  measurement.course_rad = velocity.course_rad;
+  measurement.sd_mps = params_.velocity_sd_mps;
+  if (std::isnan(velocity.course_rad)) {
+    measurement.sd_mps = std::hypot(measurement.sd_mps, velocity.speed_mps);
+  } else {
+    measurement.east_north_mps = velocity.speed_mps * Eigen::Vector2d(std::sin(velocity.course_rad), std::cos(velocity.course_rad));
+  }
+  if (!Insert(velocity.time, measurement)) ++counts_.late_fix;
+}
+
+void PoseFilter::Add(const Attitude& attitude) {
+  filter::AttitudeMeasurement measurement;
+  measurement.heading_rad = attitude.heading_rad;
+  measurement.heading_sd_rad = SdOr(attitude.heading_sd_rad, params_.heading_sd_rad);
+  measurement.roll_rad = attitude.roll_rad;
+  measurement.pitch_rad = attitude.pitch_rad;
+  measurement.roll_sd_rad = SdOr(attitude.roll_sd_rad, params_.tilt_sd_rad);
+  measurement.pitch_sd_rad = SdOr(attitude.pitch_sd_rad, params_.tilt_sd_rad);
+  measurement.heave_m = attitude.heave_m;
+  if (!Insert(attitude.when.time, measurement)) {
+    ++counts_.late_attitude;
+    return;
+  }
+  has_had_heading_ = has_had_heading_ || !std::isnan(attitude.heading_rad);
+}
+
+void PoseFilter::Add(const ImuSample& sample) {
+  if (!sample.angular_velocity_radps.allFinite() || !sample.specific_force_mps2.allFinite()) {
+    ++counts_.unusable_imu;
+    return;
+  }
+  if (!Insert(sample.time, filter::InertialSample{sample.angular_velocity_radps, sample.specific_force_mps2})) ++counts_.late_imu;
+}
+
+void PoseFilter::AdvanceTo(Utime time) { Insert(time, Tick{}); }
+
+const State& PoseFilter::StateBefore(std::size_t index) const { return index > 0 ? events_[index - 1].after : *base_; }
+
+const filter::InertialSample* PoseFilter::SampleFor(std::size_t next_index, Utime time) const {
+  for (std::size_t i = next_index; i < events_.size() && events_[i].time - time <= kMaxSampleAge; ++i) {
+    if (const auto* sample = std::get_if<filter::InertialSample>(&events_[i].measurement)) return sample;
+  }
+  for (std::size_t i = std::min(next_index, events_.size()); i-- > 0 && time - events_[i].time <= kMaxSampleAge;) {
+    if (const auto* sample = std::get_if<filter::InertialSample>(&events_[i].measurement)) return sample;
+  }
+  return base_sample_ && time - base_sample_time_ <= kMaxSampleAge ? &*base_sample_ : nullptr;
+}
+
+void PoseFilter::Process(Event& event, std::size_t index) {
+  State& state = event.after;
+  state = StateBefore(index);
+  CarryOn(SampleFor(index, event.time), event.time, earth_, params_, state);
+  filter::Verdict verdict;
+  if (const auto* sample = std::get_if<filter::InertialSample>(&event.measurement)) Apply(*sample, earth_, state);
+  if (const auto* fix = std::get_if<filter::FixMeasurement>(&event.measurement)) Apply(*fix, params_, state, verdict);
+  if (const auto* attitude = std::get_if<filter::AttitudeMeasurement>(&event.measurement)) Apply(*attitude, params_, state, verdict);
+  if (const auto* velocity = std::get_if<filter::VelocityMeasurement>(&event.measurement)) Apply(*velocity, params_, state, verdict);
+  if (std::holds_alternative<Tick>(event.measurement)) ApplyWater(state);
+  if (event.was_judged) return;
+  event.was_judged = true;
+  const bool is_attitude = std::holds_alternative<filter::AttitudeMeasurement>(event.measurement);
+  (is_attitude ? counts_.gated_attitude : counts_.gated_fix) += verdict.num_gated;
+  (is_attitude ? counts_.renewed_attitude : counts_.renewed_position) += verdict.num_renewed;
+  nis_sum_ += verdict.nis_sum;
+  num_nis_degrees_ += verdict.num_degrees;
+}
+
+void PoseFilter::ProcessUntil(Utime time) {
+  for (; num_processed_ < events_.size() && events_[num_processed_].time <= time; ++num_processed_) {
+    // What was measured before the first item may still come.
+    if (!base_) base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
+    Process(events_[num_processed_], num_processed_);
+  }
+}
+
+Pose PoseFilter::At(Utime time) {
+  ProcessUntil(time);
+  State state = num_processed_ > 0 || base_ ? StateBefore(num_processed_) : filter::FreshState(time, params_.unmeasured_tilt_sd_rad);
+  CarryOn(SampleFor(num_processed_, time), time, earth_, params_, state);
+  state.time = time;
+  DropOld();
+  stopped_ = filter::StoppedInputs(state);
+  return ToPose(state, datum_, map_ ? &*map_ : nullptr, params_);
+}
+
+}  // namespace lookout::navigator

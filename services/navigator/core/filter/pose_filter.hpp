@@ -1,0 +1,117 @@
+// Position, velocity and attitude of the vessel out of whatever is there: fixes, headings, attitude, samples of an IMU.
+#pragma once
+
+#include <Eigen/Core>
+#include <GeographicLib/LocalCartesian.hpp>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/core/health.hpp"
+#include "services/navigator/core/filter/aiding.hpp"
+#include "services/navigator/core/filter/motion.hpp"
+#include "services/navigator/core/filter/params.hpp"
+#include "services/navigator/core/filter/state.hpp"
+#include "services/navigator/core/measurement.hpp"
+
+namespace lookout::navigator {
+
+/// What was not used, or only against what was known.
+struct FilterCounts {
+  std::int64_t unusable_fix = 0;  // not measured, or without a position
+  std::int64_t late_fix = 0;      // older than what is kept
+  std::int64_t late_attitude = 0;
+  std::int64_t late_imu = 0;
+  std::int64_t unusable_imu = 0;  // lacks a number
+  std::int64_t gated_fix = 0;     // positions, heights and velocities that contradict the state
+  std::int64_t gated_attitude = 0;
+  std::int64_t renewed_position = 0;  // given up for measurements that contradicted it for seconds
+  std::int64_t renewed_attitude = 0;
+
+  FilterCounts& operator+=(const FilterCounts& other);
+  std::vector<Counter> Named() const;
+};
+
+/// An error-state Kalman filter that is run again from the instant of a late measurement: what it says of a time depends on what came, and in which
+/// order, not on when it was asked.
+///
+/// Inputs are kept, with the state behind each, for `max_latency` and a second, and at most kMaxEvents of them.
+class PoseFilter {
+ public:
+  /// 60 s of an IMU at 400 Hz and what comes beside it would be 100 MB; so many are 14 MB, 10 s of it.
+  static constexpr std::size_t kMaxEvents = 4000;
+
+  explicit PoseFilter(const FilterParams& params);
+
+  /// Sentences of one epoch (the same time) are one fix: RMC adds its velocity, GGA its position and height.
+  void Add(const GnssFix& fix);
+  /// A velocity without a time of its own counts while fixes bring none.
+  void Add(const GroundVelocity& velocity);
+  void Add(const Attitude& attitude);
+  void Add(const ImuSample& sample);
+  /// Time has come so far: nothing else need have.
+  void AdvanceTo(Utime time);
+
+  /// Of what is known when it is called.
+  ///
+  /// @param time  not before that of the last call
+  Pose At(Utime time);
+
+  const std::optional<Datum>& datum() const { return datum_; }
+  /// Arrival of the last usable fix.
+  std::optional<Utime> last_fix_arrival() const { return last_fix_arrival_; }
+  /// A sensor of heading has come.
+  bool has_had_heading() const { return has_had_heading_; }
+  const FilterCounts& counts() const { return counts_; }
+  /// Of all measurements that were judged: the sum of normalised innovations squared, and of their degrees of freedom.
+  double nis_sum() const { return nis_sum_; }
+  std::int64_t num_nis_degrees() const { return num_nis_degrees_; }
+
+  /// What has stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = nothing.
+  const std::string& stopped() const { return stopped_; }
+
+ private:
+  struct Tick {};
+  using Measurement = std::variant<Tick, filter::InertialSample, filter::AttitudeMeasurement, filter::VelocityMeasurement, filter::FixMeasurement>;
+  struct Event {
+    Utime time;
+    Measurement measurement;
+    bool was_judged = false;  // in the counts
+    filter::State after;      // once it is processed
+  };
+
+  void SetDatum(const Datum& datum);
+  // False: older than all that is kept.
+  bool Insert(Utime time, const Measurement& measurement);
+  void Touch(std::size_t index);
+  void DropOld();
+  // That of the same epoch; nullptr when there is none.
+  filter::FixMeasurement* SameEpoch(const filter::FixMeasurement& fix, Utime time, std::size_t& index);
+  // The sample for the way that ends at `time`, by the events around it.
+  const filter::InertialSample* SampleFor(std::size_t next_index, Utime time) const;
+  const filter::State& StateBefore(std::size_t index) const;
+  void Process(Event& event, std::size_t index);
+  void ProcessUntil(Utime time);
+
+  FilterParams params_;
+  std::optional<Datum> datum_;
+  std::optional<GeographicLib::LocalCartesian> map_;
+  filter::Earth earth_;
+  std::deque<Event> events_;  // by time; of one time attitude before position
+  std::size_t num_processed_ = 0;
+  std::optional<filter::State> base_;                  // before events_
+  std::optional<filter::InertialSample> base_sample_;  // the last one before events_
+  Utime base_sample_time_{};
+  std::optional<Utime> newest_;  // of all times given
+  std::optional<Utime> last_fix_arrival_;
+  FilterCounts counts_;
+  double nis_sum_ = 0.0;
+  std::int64_t num_nis_degrees_ = 0;
+  std::string stopped_;
+  bool has_had_heading_ = false;
+};
+
+}  // namespace lookout::navigator

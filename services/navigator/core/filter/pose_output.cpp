@@ -1,0 +1,99 @@
+#include "services/navigator/core/filter/pose_output.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::navigator::filter {
+
+namespace {
+
+// Order of PoseCovariance.
+enum Row { kRowPosition = 0, kRowVelocity = 3, kRowAngles = 6, kRowHeading = 8, kNumRows = 9 };
+
+void Unknown(int first, int size, PoseCovariance& covariance) {
+  covariance.middleRows(first, size).setConstant(kNan);
+  covariance.middleCols(first, size).setConstant(kNan);
+}
+
+}  // namespace
+
+Pose ToPose(const State& state, const std::optional<Datum>& datum, const GeographicLib::LocalCartesian* map, const FilterParams& params) {
+  Pose pose;
+  pose.time = state.time;
+  if (datum) pose.datum = *datum;
+  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  const Eigen::Vector3d& p_vessel_origin_m = params.p_vessel_imu_m;
+  Eigen::Vector3d reference_map_m = -(R_map_vessel * p_vessel_origin_m);  // from the origin
+  Eigen::Vector3d swing_map_mps = -(R_map_vessel * state.angular_velocity_radps.cross(p_vessel_origin_m));
+  if (!state.has_heading) {
+    reference_map_m.head<2>().setZero();
+    swing_map_mps.setZero();
+  }
+
+  Eigen::Matrix<double, kNumRows, kNumErrors> jacobian = Eigen::Matrix<double, kNumRows, kNumErrors>::Zero();
+  jacobian.block<6, 6>(kRowPosition, kPosition).setIdentity();
+  jacobian.block<3, 3>(kRowPosition, kRotation) = -Cross(reference_map_m);
+  jacobian.block<3, 3>(kRowAngles, kRotation) = AngleJacobian(R_map_vessel);
+  pose.covariance = jacobian * state.covariance * jacobian.transpose();
+  pose.covariance = (0.5 * (pose.covariance + pose.covariance.transpose())).eval();
+
+  const Eigen::Vector3d angles_rad = AnglesOf(R_map_vessel);
+  pose.has_attitude = state.has_tilt;
+  pose.roll_rad = state.has_tilt ? angles_rad[0] : 0.0;
+  pose.pitch_rad = state.has_tilt ? angles_rad[1] : 0.0;
+  if (state.heave.IsWithin(state.time, params.max_attitude_age)) {
+    pose.heave_m = state.p_map_m.z() - state.water_level_m - (R_map_vessel * p_vessel_origin_m - p_vessel_origin_m).z();
+  }
+  if (state.has_heading) {
+    pose.heading_rad = angles_rad[2];
+    pose.heading_source = state.heading_source;
+  } else {
+    Unknown(kRowHeading, 1, pose.covariance);
+    // Position is that of the antenna.
+    const double lever_m = params.p_vessel_antenna_m.head<2>().norm();
+    pose.covariance.diagonal().head<2>().array() += lever_m * lever_m;
+  }
+  if (state.has_position && map != nullptr) {
+    pose.p_map_m = state.p_map_m + reference_map_m;
+    pose.velocity_map_mps = state.velocity_map_mps + swing_map_mps;
+    if (!state.has_height) pose.p_map_m.z() = 0.0;
+    map->Reverse(pose.p_map_m.x(), pose.p_map_m.y(), pose.p_map_m.z(), pose.latitude_deg, pose.longitude_deg, pose.ellipsoid_height_m);
+    if (!state.has_height) {
+      pose.ellipsoid_height_m = kNan;
+      Unknown(kRowPosition + 2, 1, pose.covariance);
+    }
+  } else {
+    Unknown(kRowPosition, 3, pose.covariance);
+    Unknown(kRowVelocity, 3, pose.covariance);
+  }
+
+  const bool is_fix_carried = state.fix.IsStoppedAt(state.time);
+  const auto& heading = state.heading_source == HeadingSource::kCourse ? state.course : state.sensor_heading;
+  if (state.has_position && state.has_heading) {
+    pose.status = is_fix_carried || heading.IsStoppedAt(state.time) ? PoseStatus::kCoasting : PoseStatus::kOk;
+  } else if (state.has_position) {
+    pose.status = PoseStatus::kNoHeading;
+  } else if (state.has_heading) {
+    pose.status = PoseStatus::kNoPosition;
+  }
+  return pose;
+}
+
+std::string StoppedInputs(const State& state) {
+  std::string text;
+  const auto say = [&](const Input& input, const char* name) {
+    if (!input.IsStoppedAt(state.time)) return;
+    const auto since = std::chrono::floor<std::chrono::seconds>(state.time - *input.last).count();
+    if (!text.empty()) text += ", ";
+    text += "no " + std::string(name) + " for " + std::to_string(since) + " s";
+  };
+  say(state.fix, "position fix");
+  say(state.sensor_heading, "heading");
+  say(state.tilt, "attitude");
+  say(state.imu, "IMU");
+  return text;
+}
+
+}  // namespace lookout::navigator::filter

@@ -1,0 +1,124 @@
+#include "services/navigator/core/filter/state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::navigator::filter {
+
+namespace {
+
+constexpr double kMaxIntervalS = 2.0;
+constexpr double kStopS = 1.0;
+
+// Of what is not known yet. How fast a boat goes; how fast it turns; its accelerations.
+constexpr double kUnknownSpeedSdMps = 3.0;
+constexpr double kUnknownRateSdRadps = 0.2;
+constexpr double kUnknownAccelerationSdMps2 = 0.5;
+constexpr double kUnknownLevelSdM = 1.0;
+
+}  // namespace
+
+// Not through ToSeconds: its nanoseconds overflow after 292 years, and times from outside may be 300 years apart.
+double SecondsBetween(Utime from, Utime to) { return std::chrono::duration<double>(to - from).count(); }
+
+void Input::Use(Utime time) {
+  if (last && time > *last) interval_s = std::min(SecondsBetween(*last, time), kMaxIntervalS);
+  if (!last || time > *last) last = time;
+}
+
+bool Input::IsStoppedAt(Utime time) const { return last && SecondsBetween(*last, time) > std::max(kStopS, 1.5 * interval_s + 0.5); }
+
+State FreshState(Utime time, double tilt_sd_rad) {
+  State state;
+  state.time = time;
+  Renew3(kVelocity, kUnknownSpeedSdMps, state);
+  Renew3(kRotation, tilt_sd_rad, state);
+  Renew3(kRate, kUnknownRateSdRadps, state);
+  Renew3(kAcceleration, kUnknownAccelerationSdMps2, state);
+  state.covariance(kPosition + 2, kPosition + 2) = kUnknownLevelSdM * kUnknownLevelSdM;
+  state.covariance(kWaterLevel, kWaterLevel) = kUnknownLevelSdM * kUnknownLevelSdM;
+  return state;
+}
+
+Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
+
+void Inject(const ErrorVector& error, State& state) {
+  state.p_map_m += error.segment<3>(kPosition);
+  state.velocity_map_mps += error.segment<3>(kVelocity);
+  state.q_map_vessel = (RotationBy(error.segment<3>(kRotation)) * state.q_map_vessel).normalized();
+  state.rate += error.segment<3>(kRate);
+  state.acceleration += error.segment<3>(kAcceleration);
+  state.fix_error_m += error.segment<3>(kFixError);
+  state.heading_error_rad += error[kHeadingError];
+  state.water_level_m += error[kWaterLevel];
+  state.angular_velocity_radps += (state.has_gyro ? -1.0 : 1.0) * error.segment<3>(kRate);
+}
+
+void Renew3(int part, double sd, State& state) { Renew<3>(part, Eigen::Vector3d::Constant(sd), state); }
+
+Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R) {
+  return {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(R(2, 0), -1.0, 1.0)), WrapTo2Pi(std::atan2(R(0, 0), R(1, 0)))};
+}
+
+// A small rotation r changes the bow b = R e_x by r x b, and the up row u of R, of which roll and pitch are read, by (r_x R_north - r_y R_east).
+Eigen::Matrix3d AngleJacobian(const Eigen::Matrix3d& R) {
+  constexpr double kSmall = 1e-6;
+  const double side2 = std::max(R(2, 1) * R(2, 1) + R(2, 2) * R(2, 2), kSmall);
+  const double cosine = std::sqrt(side2);
+  const double level2 = std::max(R(0, 0) * R(0, 0) + R(1, 0) * R(1, 0), kSmall);
+  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+  jacobian(0, 0) = (R(2, 2) * R(1, 1) - R(2, 1) * R(1, 2)) / side2;
+  jacobian(0, 1) = -(R(2, 2) * R(0, 1) - R(2, 1) * R(0, 2)) / side2;
+  jacobian(1, 0) = R(1, 0) / cosine;
+  jacobian(1, 1) = -R(0, 0) / cosine;
+  jacobian(2, 0) = R(2, 0) * R(0, 0) / level2;
+  jacobian(2, 1) = R(2, 0) * R(1, 0) / level2;
+  jacobian(2, 2) = -1.0;
+  return jacobian;
+}
+
+Eigen::Matrix3d Cross(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return matrix;
+}
+
+Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad) {
+  const double angle_rad = rotation_rad.norm();
+  // Below it the sine of half the angle over the angle is one half to the last bit.
+  constexpr double kSmallRad = 1e-8;
+  const double factor = angle_rad > kSmallRad ? std::sin(angle_rad / 2.0) / angle_rad : 0.5;
+  Eigen::Quaterniond q;
+  q.w() = std::cos(angle_rad / 2.0);
+  q.vec() = factor * rotation_rad;
+  return q;
+}
+
+void TurnClockwise(double angle_rad, State& state) {
+  const Eigen::Quaterniond turn = RotationBy(Eigen::Vector3d(0.0, 0.0, -angle_rad));
+  const Eigen::Matrix3d R = turn.toRotationMatrix();
+  state.q_map_vessel = (turn * state.q_map_vessel).normalized();
+  state.covariance.middleRows<3>(kRotation) = (R * state.covariance.middleRows<3>(kRotation)).eval();
+  state.covariance.middleCols<3>(kRotation) = (state.covariance.middleCols<3>(kRotation) * R.transpose()).eval();
+}
+
+void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state) {
+  const double heading_rad = AnglesOf(state.R_map_vessel())[2];
+  const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
+  state.q_map_vessel = q_level_vessel.normalized();
+  state.q_map_vessel = (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.R_map_vessel())[2] - heading_rad)) * state.q_map_vessel).normalized();
+  Renew<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
+  state.covariance(kRotation + 2, kRotation + 2) = heading_variance;
+  state.has_tilt = true;
+}
+
+void ShiftPosition(const Eigen::Vector3d& lever_map_m, State& state) {
+  state.p_map_m.head<2>() += lever_map_m.head<2>();
+  const Eigen::Matrix<double, 2, 3> by_rotation = -Cross(lever_map_m).topRows<2>();
+  state.covariance.middleRows<2>(kPosition) += by_rotation * state.covariance.middleRows<3>(kRotation);
+  state.covariance.middleCols<2>(kPosition) += state.covariance.middleCols<3>(kRotation) * by_rotation.transpose();
+}
+
+}  // namespace lookout::navigator::filter

@@ -1,0 +1,163 @@
+// What the filter knows at one instant: a nominal state and the covariance of its error.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+
+#include "common/core/utime.hpp"
+#include "services/navigator/core/filter/params.hpp"
+#include "services/navigator/core/pose.hpp"
+
+namespace lookout::navigator::filter {
+
+/// Where each part begins in the error. All are true value minus estimate; the rotation is that about the map's axes which turns the estimated
+/// attitude into the true one, radians (Sola, "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508, section 7, global errors).
+enum Part : int {
+  kPosition = 0,       // east, north, up, m
+  kVelocity = 3,       // east, north, up, m/s
+  kRotation = 6,       // about east, north, up, rad
+  kRate = 9,           // rad/s, vessel frame: bias of the gyroscopes, or without them the rate itself
+  kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; where they do not carry the motion, acceleration in the map frame
+  kFixError = 15,      // what the receiver's positions have in common for a while: east, north, up, m
+  kHeadingError = 18,  // the same of the compass, rad, clockwise
+  kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
+  kNumErrors = 20,
+};
+
+using ErrorVector = Eigen::Matrix<double, kNumErrors, 1>;
+using ErrorCovariance = Eigen::Matrix<double, kNumErrors, kNumErrors>;
+
+/// Whose slow error it is: of another sensor, or of another kind of fix, it begins anew.
+enum class ErrorKind { kNone, kRtk, kGnss, kTwoAntennas, kCompass, kCourse };
+
+/// A slow error: a first-order Gauss-Markov process.
+struct ErrorModel {
+  ErrorKind kind = ErrorKind::kNone;
+  double sd = 0.0;
+  double up_factor = 1.0;  // of a fix: of its up against sd
+  double time_constant_s = 1.0;
+};
+
+/// How long a measurement has been refused without the difference changing as the error of a sensor would.
+struct Refusals {
+  std::optional<Utime> since;
+  Eigen::Vector3d first_residual = Eigen::Vector3d::Zero();
+};
+
+/// When an input was last used.
+struct Input {
+  std::optional<Utime> last;
+  double interval_s = 0.0;  // between the last two, at most 2 s
+
+  void Use(Utime time);
+  /// An input has stopped when it has not come for a second, or, of slow ones, for one and a half of its intervals and half a second.
+  bool IsStoppedAt(Utime time) const;
+  bool IsWithin(Utime time, std::chrono::microseconds age) const { return last && time - *last <= age; }
+};
+
+struct State {
+  Utime time;
+
+  // Of the origin: the place of the IMU in the vessel.
+  Eigen::Vector3d p_map_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_map_mps = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_map_vessel = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // see kRate
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // see kAcceleration
+  Eigen::Vector3d fix_error_m = Eigen::Vector3d::Zero();
+  double heading_error_rad = 0.0;
+  double water_level_m = 0.0;
+  ErrorCovariance covariance = ErrorCovariance::Zero();
+
+  // What of it means something. Without heading q_map_vessel holds roll and pitch only, and p_map_m is that of the antenna in east and north.
+  bool has_position = false;
+  bool has_height = false;
+  bool has_heading = false;
+  bool has_tilt = false;  // measured; else level
+
+  // What carries it on.
+  bool has_gyro = false;      // `rate` is a bias
+  bool is_strapdown = false;  // `acceleration` is a bias
+  // What the IMU was known to be off by when it stopped.
+  Eigen::Vector3d last_gyro_bias_radps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last_accelerometer_bias_mps2 = Eigen::Vector3d::Zero();
+  // Angular velocity of the vessel, vessel frame.
+  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
+
+  ErrorModel fix_error_model;
+  double fix_error_begun_sd_m = 0.0;  // its deviation when it began
+  ErrorModel heading_error_model;
+  HeadingSource heading_source = HeadingSource::kNone;
+
+  Input fix;
+  Input sensor_heading;  // of an attitude sensor or a compass
+  Input course;          // in its place
+  Input attitude_heading;
+  Input tilt;
+  Input heave;
+  Input imu;
+  Input velocity;
+  Input timed_velocity;
+  std::optional<Utime> last_water_aid;
+  double position_sd_at_fix_m = 0.0;
+
+  Refusals fix_refusals;
+  Refusals heading_refusals;
+  Refusals tilt_refusals;
+
+  // Specific force since the last levelling by it, and how much the IMU has moved lately.
+  Eigen::Vector3d force_sum_mps2 = Eigen::Vector3d::Zero();
+  int num_forces = 0;
+  Eigen::Vector3d mean_force_mps2 = Eigen::Vector3d::Zero();
+  double force_variance_mps2_2 = 1.0;
+
+  Eigen::Matrix3d R_map_vessel() const { return q_map_vessel.toRotationMatrix(); }
+};
+
+/// Place of the antenna as seen from the origin, vessel frame.
+Eigen::Vector3d AntennaLever(const FilterParams& params);
+
+/// Nothing is known. Position and height get a deviation only when they are first measured.
+///
+/// @param tilt_sd_rad  of a boat whose tilt nobody measured
+State FreshState(Utime time, double tilt_sd_rad);
+
+/// Adds an error to the state, and takes it out of it.
+void Inject(const ErrorVector& error, State& state);
+
+/// The part of the error is no longer what it was: another deviation, and nothing in common with the rest.
+template <int kSize>
+void Renew(int part, const Eigen::Matrix<double, kSize, 1>& sd, State& state) {
+  state.covariance.middleRows<kSize>(part).setZero();
+  state.covariance.middleCols<kSize>(part).setZero();
+  state.covariance.block<kSize, kSize>(part, part).diagonal() = sd.cwiseAbs2();
+}
+void Renew3(int part, double sd, State& state);
+
+/// Roll (starboard down), pitch (bow up) and heading (clockwise from north) of an attitude.
+Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R_map_vessel);
+
+/// d(roll, pitch, heading) / d(rotation about east, north, up). Not for a bow that points straight up or down.
+Eigen::Matrix3d AngleJacobian(const Eigen::Matrix3d& R_map_vessel);
+
+/// @return v x (as a matrix)
+Eigen::Matrix3d Cross(const Eigen::Vector3d& v);
+
+/// Rotation by a vector: axis times angle.
+Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad);
+
+/// Turns the vessel about the up axis, clockwise from above, and the errors of its attitude with it.
+void TurnClockwise(double angle_rad, State& state);
+
+/// Turns the vessel to this roll and pitch, keeping its heading and what is known of that. The tilt is measured from now on.
+///
+/// @param q_level_vessel  of any heading
+void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state);
+
+/// Moves the place that p_map_m tells of by `lever_map_m`, which turns with the vessel; east and north only.
+void ShiftPosition(const Eigen::Vector3d& lever_map_m, State& state);
+
+double SecondsBetween(Utime from, Utime to);
+
+}  // namespace lookout::navigator::filter
