@@ -12,11 +12,14 @@ constexpr double kLinkedColumns = 2.8;  // LookoutParams::link grows by as many 
 
 }  // namespace
 
+Reach LinkFor(Reach link, double column_step_rad) {
+  link.per_range = std::max(link.per_range, kLinkedColumns * column_step_rad);
+  return link;
+}
+
 void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   grid_.Fill(scan, returns, R_vessel_lidar_);
-  // Columns that are wider apart than those of a VLP-16 need a longer reach to see one surface as one.
-  Reach link = params_.link;
-  link.per_range = std::max(link.per_range, kLinkedColumns * grid_.column_step_rad());
+  const Reach link = LinkFor(params_.link, grid_.column_step_rad());
   runs_.Find(grid_, link);
   sets_of_runs_.Reset(static_cast<std::size_t>(runs_.size()));
   LinkRuns(grid_, runs_, link, sets_of_runs_);

@@ -27,6 +27,9 @@ struct GroupFacts {
   float seen_share = 1.0F;   // of the columns from its first to its last: in the others something nearer hides it, or there is no return
 };
 
+/// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.
+Reach LinkFor(Reach link, double column_step_rad);
+
 /// Works on one turn after the other and keeps nothing of the last but its memory. Pure in what it gives: the same turn gives the same groups,
 /// whatever came before. Turning the scene by whole columns or mirroring it changes nothing but the numbers of the groups.
 class LookoutMethod {

@@ -44,6 +44,7 @@ void ObjectJoiner::JoinDocks(PieceTable& pieces) {
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (facts.is_land || facts.length_m >= kThickestPostM || facts.min_range_m <= kLeastPostRangeM) continue;
+    if (facts.max_height_m + params_.lidar_above_water_m > params_.tall_m) continue;  // a mast
     posts_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m, CellOf(facts.mean_m.x(), facts.mean_m.y())});
   }
   SortPosts();

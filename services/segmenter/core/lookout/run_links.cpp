@@ -13,7 +13,7 @@ constexpr float kGreatestUnevenness = 2.5F;  // of two spacings that follow each
 // Off the straight line: noise of the range, and some of the spacing.
 constexpr float kStraightM = 0.04F;
 constexpr float kStraightShare = 0.15F;
-constexpr int kGrazingColumns = 2;  // to the next return: one may have seen nothing
+constexpr int kGrazingColumns = 1;  // to the next return: one may have seen nothing
 
 class Linker {
  public:
