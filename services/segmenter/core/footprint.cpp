@@ -141,7 +141,7 @@ void Simplify(std::vector<FootprintPoint>& hull, std::vector<bool>& is_kept) {
 
 // Around a hull, with a side along one of its edges.
 struct Flush {
-  Direction direction;  // of the edge
+  Direction direction{1.0, 0.0};  // of the edge
   double min_along_m = 0.0;
   double max_along_m = 0.0;
   double min_across_m = 0.0;  // across = to the left

@@ -79,7 +79,7 @@ void LandFinder::JoinInLine(const TurnGrid& grid, PieceTable& pieces) {
     const auto longer = [&](std::int32_t one, std::int32_t other) {
       return std::pair(-pieces.FactsOf(one).length_m, one) < std::pair(-pieces.FactsOf(other).length_m, other);
     };
-    std::ranges::nth_element(candidates_, candidates_.begin() + kMostStraight, longer);
+    std::nth_element(candidates_.begin(), candidates_.begin() + kMostStraight, candidates_.end(), longer);
     candidates_.resize(static_cast<std::size_t>(kMostStraight));
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
@@ -162,7 +162,7 @@ void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTabl
   for (std::size_t i = 1; i < chain_.size(); ++i) {
     if (gap_before(i) > gap_before(start)) start = i;
   }
-  std::ranges::rotate(chain_, chain_.begin() + static_cast<std::ptrdiff_t>(start));
+  std::rotate(chain_.begin(), chain_.begin() + static_cast<std::ptrdiff_t>(start), chain_.end());
 
   fragments_.clear();
   for (const std::int32_t run : chain_) {

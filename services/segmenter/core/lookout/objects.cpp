@@ -21,6 +21,7 @@ constexpr double kPastCornerM = 0.3;
 constexpr double kCrowdM = 8.0;  // within which more than kMostInCrowd thin things are no posts
 constexpr std::size_t kMostInCrowd = 8;
 constexpr std::size_t kCells = 64;  // across the grid of posts
+constexpr double kMiddleCell = 32.0;
 
 // One over the other.
 constexpr double kOverLength = 0.6;  // lengths of the nearer one: a cabin stands on its hull
@@ -59,7 +60,7 @@ void ObjectJoiner::JoinDocks(PieceTable& pieces) {
 std::size_t ObjectJoiner::CellOf(double x_m, double y_m) const {
   const double cell_m = ReachM() / 2.0;
   const auto index = [cell_m](double place_m) {
-    return static_cast<std::size_t>(std::clamp(std::floor(place_m / cell_m) + kCells / 2, 0.0, static_cast<double>(kCells - 1)));
+    return static_cast<std::size_t>(std::clamp(std::floor(place_m / cell_m) + kMiddleCell, 0.0, static_cast<double>(kCells - 1)));
   };
   return index(y_m) * kCells + index(x_m);
 }

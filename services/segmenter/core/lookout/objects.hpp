@@ -11,7 +11,8 @@
 namespace lookout::segmenter {
 
 /// Joins pieces that are not of land:
-/// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. What is higher than LookoutParams::tall_m is a mast,
+/// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. What is higher than LookoutParams::tall_m is a
+/// mast,
 ///    and where more than eight thin things stand about, as in rain, nothing is taken for a post.
 /// 2. Two rounds: pieces side by side, at most `join` apart; and a piece that is seen over a nearer one, within its columns: the cabin over the hull,
 ///    the mast behind the rail.
