@@ -115,6 +115,16 @@ TEST_F(GeoreferencerService, TellsThatPoseIsNotPlaced) {
   EXPECT_EQ(service_.Report().state, HealthState::kOk);
 }
 
+// Obstacles are placed then, and look as good as ever.
+TEST_F(GeoreferencerService, TellsThatPoseIsOnlyCarriedOn) {
+  SendPoses(0, 100'000, pose_t::STATUS_COASTING);
+  SendTurn(0);
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service_.Report().reason, "POSE is only carried on: obstacles drift as their covariance says");
+  SendPoses(120'000, 120'000);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+}
+
 TEST_F(GeoreferencerService, TellsThatTheClocksDiffer) {
   for (int i = 0; i <= 10; ++i) {
     service_.AdvanceTo(At(100'000 * i));
