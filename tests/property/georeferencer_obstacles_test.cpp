@@ -139,25 +139,37 @@ TEST(ObstaclesOfTheFirstTurns, AreNotSaidToBeBetterThanAnOldFix) {
 
 TEST(ObstaclesAfterAGnssGap, DoNotJumpByMoreThanWasStated) {
   constexpr double kGapEndS = 20.0;
+  // POSE takes the first fix 0.1 s after the gap; 2 s later recovery is over.
+  constexpr double kFirstFixS = 0.5;
+  constexpr double kRecoveryS = 2.0;
   eval::Summary jumps_m;
   eval::Summary jump_sds;
+  eval::Summary later_jump_sds;
   eval::Summary stated_m;
   for (int seed = 1; seed <= NumSeeds(); ++seed) {
     const auto seen = Simulate("crossing", seed, kGapEndS + 3.0, {"gnss_gap:12:20"});
-    const auto back = Summarise(seen, [](const auto& obstacle) {
-      const double time_s = SecondsSinceStart(obstacle.turn_utime_us);
-      return IsMeant(obstacle) && time_s > kGapEndS - 0.25 && time_s < kGapEndS + 2.0;
-    });
-    ASSERT_GT(back.jump_m.count(), 10U) << "seed " << seed;
+    const auto between = [&](double from_s, double to_s) {
+      return Summarise(seen, [from_s, to_s](const auto& obstacle) {
+        const double time_s = SecondsSinceStart(obstacle.turn_utime_us) - kGapEndS;
+        return IsMeant(obstacle) && time_s > from_s && time_s < to_s;
+      });
+    };
+    const auto back = between(-0.25, kFirstFixS);
+    const auto later = between(kFirstFixS - 0.1, kRecoveryS);
+    ASSERT_GE(back.jump_m.count(), 2U) << "seed " << seed;
     jumps_m.Add(back.jump_m.Max());
     jump_sds.Add(back.jump_sds.Max());
+    later_jump_sds.Add(later.jump_sds.Max());
     stated_m.Add(back.stated_sd_m.Max());
   }
   std::printf(
-      "| GNSS gap of 8 s | greatest jump of a run: median %.3f m, greatest %.3f m | over what was stated: median %.2f, greatest %.2f | stated %.3f m "
-      "|\n",
-      jumps_m.Median(), jumps_m.Max(), jump_sds.Median(), jump_sds.Max(), stated_m.Median());
+      "| GNSS gap of 8 s | greatest jump of a run at the first fix: median %.3f m, greatest %.3f m | over what was stated: median %.2f, greatest "
+      "%.2f, "
+      "later %.2f | stated %.3f m |\n",
+      jumps_m.Median(), jumps_m.Max(), jump_sds.Median(), jump_sds.Max(), later_jump_sds.Max(), stated_m.Median());
   EXPECT_LE(jump_sds.Max(), 1.0);
+  // What is stated is small again, and the noise of three obstacles or more is all that is left.
+  EXPECT_LE(later_jump_sds.Max(), 1.5);
 }
 
 }  // namespace
