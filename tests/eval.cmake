@@ -1,6 +1,6 @@
 lookout_test(NAME unit_eval
              SOURCES unit/eval/geometry_test.cpp unit/eval/metrics_test.cpp unit/eval/truth_test.cpp unit/eval/turn_collector_test.cpp
-                     unit/eval/evaluation_test.cpp unit/eval/machine_test.cpp unit/eval/table_test.cpp unit/eval/scoring_test.cpp
+                     unit/eval/evaluation_test.cpp unit/eval/seen_footprint_test.cpp unit/eval/machine_test.cpp unit/eval/table_test.cpp unit/eval/scoring_test.cpp
                      unit/eval/scoring_laws_test.cpp
              LINKS lookout_eval)
 lookout_test(NAME unit_default_method SOURCES unit/eval/default_method_test.cpp LINKS lookout_judge lookout_config)

@@ -14,6 +14,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   params.placement.T_vessel_lidar = boat.T_vessel_lidar;
   params.placement.reference_point_above_water_m = boat.reference_point_above_water_m;
   params.placement.range_sd_m = message.range_sd_m();
+  params.placement.azimuth_sd_rad = DegToRad(message.azimuth_sd_deg());
   params.placement.mounting_sd_rad = DegToRad(message.mounting_sd_deg());
   params.pose_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message.pose_timeout_s()));
   return params;

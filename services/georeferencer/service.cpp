@@ -32,6 +32,7 @@ void Service::OnPose(const pose_t& message) {
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
   pose_seen_ = now_;
   is_newest_pose_placed_ = std::get<Pose>(pose).is_placed;
+  is_newest_pose_carried_on_ = message.status == pose_t::STATUS_COASTING;
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
 }
 
@@ -69,6 +70,7 @@ HealthReport Service::Report() const {
     return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
   };
   if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
+  if (is_newest_pose_carried_on_ && silence(pose_seen_) < kSilence) degrade("POSE is only carried on: obstacles drift as their covariance says");
   if (silence(pose_seen_) >= kSilence) {
     degrade("no POSE for " + seconds(silence(pose_seen_)));
   } else if (is_newest_pose_placed_ == false) {

@@ -38,6 +38,7 @@ class Service {
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;
   std::optional<bool> is_newest_pose_placed_;
+  bool is_newest_pose_carried_on_ = false;
   // Host time, live only.
   std::optional<Utime> now_;
   std::optional<Utime> pose_seen_;  // when the last valid one came, or waiting began

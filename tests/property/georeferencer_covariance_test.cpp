@@ -31,9 +31,10 @@ Matrix2d Drawn(const Vector3d& p_vessel_m, const Pose& pose, const PlacementPara
     noise = root * noise;
     const Vector3d turn(normal(random), normal(random), normal(random));
     const Vector3d seen_m = (1.0 + params.range_sd_m * normal(random) / p_lidar_m.norm()) * p_lidar_m;
+    const Eigen::AngleAxisd by_azimuth(params.azimuth_sd_rad * normal(random), Vector3d::UnitZ());
     // The mounting's error turns the lidar about the vessel's axes.
     const double angle_rad = params.mounting_sd_rad * turn.norm();
-    const Vector3d turned_m = Eigen::AngleAxisd(angle_rad, turn.normalized()) * (params.T_vessel_lidar.linear() * seen_m);
+    const Vector3d turned_m = Eigen::AngleAxisd(angle_rad, turn.normalized()) * (params.T_vessel_lidar.linear() * (by_azimuth * seen_m));
     const Vector3d p_m = RotationMapVessel(pose.heading_rad + noise[4], pose.pitch_rad + noise[3], pose.roll_rad + noise[2]) *
                          (turned_m + params.T_vessel_lidar.translation());
     positions.push_back(p_m.head<2>() + noise.head<2>());
@@ -69,6 +70,7 @@ TEST(GeoreferencerCovariance, AgreesWithAMonteCarloRunWithin5Percent) {
     params.T_vessel_lidar = TransformVesselSensor(mounting);
     params.range_sd_m = between(0.01, 1);
     params.mounting_sd_rad = DegToRad(between(0, 2));
+    params.azimuth_sd_rad = DegToRad(between(0, 2));
     const Vector3d p_vessel_m(between(-100, 100), between(-100, 100), between(-3, 3));
 
     const Matrix2d expected = Drawn(p_vessel_m, pose, params, random);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -15,6 +16,9 @@ class CsvReader {
  public:
   /// @throws std::runtime_error when the file cannot be opened or begins with other columns; further columns may follow
   CsvReader(const std::filesystem::path& file, std::string_view columns);
+
+  /// @return where a column stands that need not be there; nullopt when it is not
+  std::optional<std::size_t> ColumnOf(std::string_view name) const;
 
   /// @return whether there is another row; its cells are then at hand
   bool Next();
@@ -38,7 +42,8 @@ class CsvReader {
   std::ifstream in_;
   std::string line_;
   std::vector<std::string_view> cells_;
-  std::size_t num_columns_ = 0;
+  std::string header_;
+  std::size_t num_columns_ = 0;  // of the header
   int line_number_ = 0;
 };
 

@@ -70,10 +70,10 @@ std::vector<Evaluation::JoinedReturn> Evaluation::Join(const Turn& turn) {
           if (scan.range[cell] == 0) continue;
           ++num_returns;
           const std::int64_t time_ns = std::int64_t{scan.time_ns[column]} + scan.time_offset_ns[ring];
-          const auto object_id = truth_->ObjectOf(scan.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
-          if (!object_id) continue;
+          const auto* truth = truth_->Find(scan.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
+          if (truth == nullptr) continue;
           ++num_joined;
-          returns.push_back({found->second.label[cell], time_ns, *object_id});
+          returns.push_back({found->second.label[cell], time_ns, truth->object_id, truth->p_lidar_m});
         }
       }
     }
@@ -109,7 +109,9 @@ const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
   const std::array<double, 3> datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
   if (!outlines_ || datum != datum_) {
     datum_ = datum;
-    outlines_ = std::make_unique<Outlines>(truth_->OutlinesIn({datum[0], datum[1], datum[2]}));
+    const GeographicLib::LocalCartesian map(datum[0], datum[1], datum[2]);
+    outlines_ = std::make_unique<Outlines>(truth_->OutlinesIn(map));
+    true_poses_ = std::make_unique<TruePoses>(*truth_, map);
   }
   return *outlines_;
 }
@@ -127,6 +129,7 @@ void Evaluation::Measure(const Turn& turn, const Confusion& confusion, const std
       if (object != truth_->objects().end()) row.object_name = object->second.name;
       if (obstacle.status == obstacle_t::STATUS_OK && has_datum) {
         MeasureObstacle(message, FindSegment(turn, obstacle.id), returns, object_id, row);
+        if (T_vessel_lidar_ && object_id > 0) MeasureSeen(message, returns, object_id, obstacle);
       }
     }
   }
@@ -180,6 +183,30 @@ void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* se
     errors->vertex_outside_m.Add(nearest->outside_m);
     row.vertex_outside_m = std::max(row.vertex_outside_m.value_or(0.0), nearest->outside_m);
   }
+}
+
+void Evaluation::MeasureSeen(const obstacles_t& message, const std::vector<JoinedReturn>& returns, int object_id, const obstacle_t& obstacle) {
+  const auto own = std::ranges::equal_range(returns, obstacle.id, {}, &JoinedReturn::label);
+  if (2 * std::ranges::count(own, object_id, &JoinedReturn::object_id) <= std::ssize(own)) return;
+  std::vector<SeenReturn> seen_returns;
+  for (const auto& made : own) {
+    if (!made.p_lidar_m.allFinite()) return;
+    seen_returns.push_back({message.utime_us + ToMicroseconds(made.time_ns), made.p_lidar_m.cast<double>()});
+  }
+  OutlinesFor(message);
+  const auto center_m = TrueCenter(seen_returns, *T_vessel_lidar_, *true_poses_);
+  if (!center_m) return;
+  const auto object = truth_->objects().find(object_id);
+  SeenObstacle& result = seen.emplace_back();
+  result.turn_utime_us = message.utime_us;
+  result.object_id = object_id;
+  result.is_moving = object != truth_->objects().end() && object->second.is_moving;
+  result.is_sure = obstacle.confidence == obstacle_t::CONFIDENCE_SURE;
+  result.is_land = obstacle.kind == obstacle_t::KIND_LAND;
+  result.range_m = static_cast<double>(obstacle.range_m);
+  result.num_points = obstacle.num_points;
+  result.error_m = Eigen::Vector2d(obstacle.position_map_m[0], obstacle.position_map_m[1]) - *center_m;
+  result.covariance_m2 << obstacle.covariance_m2[0], obstacle.covariance_m2[1], obstacle.covariance_m2[1], obstacle.covariance_m2[2];
 }
 
 void Evaluation::Add(const pose_t& pose) {

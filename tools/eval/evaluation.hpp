@@ -12,6 +12,7 @@
 
 #include "lookout/pose_t.hpp"
 #include "tools/eval/metrics.hpp"
+#include "tools/eval/seen_footprint.hpp"
 #include "tools/eval/truth.hpp"
 #include "tools/eval/turn_collector.hpp"
 
@@ -46,6 +47,9 @@ class Evaluation {
   /// @param min_num_returns an object with fewer in a turn does not count for recall
   Evaluation(const Truth* truth, int min_num_returns);
 
+  /// Where the lidar is on the boat. Without it, or without truth, `seen` stays empty.
+  void SetMounting(const Eigen::Isometry3d& T_vessel_lidar) { T_vessel_lidar_ = T_vessel_lidar; }
+
   void Add(const Turn& turn);
   void Add(const pose_t& pose);
 
@@ -65,6 +69,7 @@ class Evaluation {
   Summary segments;                    // per whole turn
   std::int64_t num_returns = 0;        // of turns whose scan and segments are in the log
   std::int64_t num_joined = 0;         // of these, found in the truth
+  std::vector<SeenObstacle> seen;      // of status ok; in the order of their turns
   std::array<Summary, 4> pose_errors;  // horizontal m, heading deg, roll deg, pitch deg
 
  private:
@@ -72,6 +77,7 @@ class Evaluation {
     int label;
     std::int64_t time_ns;  // since utime_us of the turn
     int object_id;
+    Eigen::Vector3f p_lidar_m;  // true
   };
 
   std::vector<JoinedReturn> Join(const Turn& turn);
@@ -79,12 +85,15 @@ class Evaluation {
   void Measure(const Turn& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns, std::vector<ObstacleRow>& turn_rows);
   void MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
                        ObstacleRow& row);
+  void MeasureSeen(const obstacles_t& message, const std::vector<JoinedReturn>& returns, int object_id, const obstacle_t& obstacle);
   const Outlines& OutlinesFor(const obstacles_t& message);
 
   const Truth* truth_;
   int min_num_returns_;
   std::array<double, 3> datum_{};  // of outlines_
   std::unique_ptr<Outlines> outlines_;
+  std::unique_ptr<TruePoses> true_poses_;  // in the same map
+  std::optional<Eigen::Isometry3d> T_vessel_lidar_;
   bool is_table_whole_ = false;
 };
 

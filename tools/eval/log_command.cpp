@@ -9,6 +9,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "tools/eval/report.hpp"
+#include "tools/export/bearings.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -38,6 +39,7 @@ int EvaluateLog(const LogOptions& options) {
   TurnCollector collector([&evaluation](const Turn& turn) { evaluation.Add(turn); });
 
   bus::LogReader reader(options.log_file);
+  exporter::Bearings bearings;
   std::int64_t num_unusable = 0;
   while (const auto event = reader.Next()) {
     bool is_taken = true;
@@ -47,6 +49,9 @@ int EvaluateLog(const LogOptions& options) {
       is_taken = Take<lidar_clock_t>(*event, machine);
     } else if (event->channel == bus::kHealth.name) {
       is_taken = Take<health_t>(*event, machine);
+    } else if (truth && event->channel == bus::kRunInfo.name) {
+      is_taken = bearings.TakeRunInfo(event->bytes) == exporter::Taken::kOk;
+      if (bearings.boat()) evaluation.SetMounting(bearings.boat()->T_vessel_lidar);
     } else if (truth && event->channel == bus::kLidarScan.name) {
       is_taken = Take<lidar_scan_t>(*event, collector);
     } else if (truth && event->channel == bus::kSegments.name) {
@@ -64,6 +69,7 @@ int EvaluateLog(const LogOptions& options) {
   PrintObstacles(std::cout, evaluation, truth != nullptr);
   if (truth) {
     PrintAccuracy(std::cout, evaluation);
+    PrintSeen(std::cout, evaluation);
     PrintSegmentation(std::cout, evaluation, options.min_num_returns);
   }
   PrintMachine(std::cout, machine);

@@ -13,6 +13,9 @@ namespace {
 
 std::string ShownCode(std::span<const words::Word> list, int code) { return std::string(words::WordOf(list, code)); }
 
+// To here the suite promises an obstacle's place within some decimetres.
+constexpr double kSeenRangeM = 40.0;
+
 std::string Percent(double share) { return Number(100.0 * share, 1); }
 
 std::vector<std::string> SummaryCells(const Summary& summary, int decimals) {
@@ -90,6 +93,39 @@ void PrintAccuracy(std::ostream& out, const Evaluation& evaluation) {
     poses.Add(row);
   }
   poses.Print(out);
+  out << '\n';
+}
+
+void PrintSeen(std::ostream& out, const Evaluation& evaluation) {
+  out << "distance to the centre of what was truly seen, metres; to " << Number(kSeenRangeM, 0) << " m unless said otherwise\n";
+  if (evaluation.seen.empty()) {
+    out << "none: it wants the places of returns in returns.csv, and boat.txtpb in RUN_INFO of the log\n\n";
+    return;
+  }
+  const auto is_asked = [](const SeenObstacle& obstacle) { return obstacle.is_sure && !obstacle.is_land && obstacle.range_m <= kSeenRangeM; };
+  Table table(
+      {"obstacles", "count", "median", "95", "max", "stated_sd", "in_95_ellipse_%", "nees", "jump_median", "jump_95", "jump_max", "jump_max_sds"});
+  const auto add = [&](const std::string& name, const std::function<bool(const SeenObstacle&)>& is_meant) {
+    const auto summary = Summarise(evaluation.seen, is_meant);
+    std::vector<std::string> row{name};
+    const auto distances = SummaryCells(summary.distance_m, 3);
+    row.insert(row.end(), distances.begin(), distances.end());
+    const bool has_any = summary.distance_m.count() > 0;
+    row.push_back(has_any ? Number(summary.stated_sd_m.Median(), 3) : "-");
+    row.push_back(has_any ? Percent(summary.in_ellipse) : "-");
+    row.push_back(has_any ? Number(summary.nees.Mean(), 2) : "-");
+    const auto jumps = SummaryCells(summary.jump_m, 3);
+    row.insert(row.end(), jumps.begin() + 1, jumps.end());
+    row.push_back(summary.jump_sds.count() > 0 ? Number(summary.jump_sds.Max(), 2) : "-");
+    table.Add(row);
+  };
+  add("sure", is_asked);
+  add("- fixed", [&](const SeenObstacle& obstacle) { return is_asked(obstacle) && !obstacle.is_moving; });
+  add("- moving", [&](const SeenObstacle& obstacle) { return is_asked(obstacle) && obstacle.is_moving; });
+  add("tentative", [](const SeenObstacle& obstacle) { return !obstacle.is_sure && !obstacle.is_land && obstacle.range_m <= kSeenRangeM; });
+  add("land", [](const SeenObstacle& obstacle) { return obstacle.is_land && obstacle.range_m <= kSeenRangeM; });
+  add("beyond", [](const SeenObstacle& obstacle) { return obstacle.range_m > kSeenRangeM; });
+  table.Print(out);
   out << '\n';
 }
 

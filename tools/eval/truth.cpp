@@ -1,6 +1,7 @@
 #include "tools/eval/truth.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <tuple>
 
@@ -43,16 +44,31 @@ Truth::Truth(const std::filesystem::path& folder) {
 
 void Truth::LoadReturns(const std::filesystem::path& file) {
   CsvReader rows(file, "utime_us,ring,return_index,object_id");
-  while (rows.Next()) returns_.push_back({rows.Value<std::int64_t>(0), rows.Value<int>(1), rows.Value<int>(2), rows.Value<int>(3)});
+  // Truths of older simulators end before these.
+  const auto x_column = rows.ColumnOf("x_m");
+  const auto z_column = rows.ColumnOf("z_m");
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  while (rows.Next()) {
+    Return made{rows.Value<std::int64_t>(0), rows.Value<int>(1), rows.Value<int>(2), rows.Value<int>(3), Eigen::Vector3f::Constant(kUnknown)};
+    if (x_column && z_column == *x_column + 2) {
+      made.p_lidar_m = {rows.Value<float>(*x_column), rows.Value<float>(*x_column + 1), rows.Value<float>(*x_column + 2)};
+    }
+    returns_.push_back(made);
+  }
   std::ranges::sort(returns_, {}, [](const Return& made) { return std::tuple(made.utime_us, made.ring, made.return_index); });
 }
 
-std::optional<int> Truth::ObjectOf(std::int64_t utime_us, int ring, int return_index) const {
+const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_index) const {
   for (auto made = std::ranges::lower_bound(returns_, utime_us - 1, {}, &Return::utime_us); made != returns_.end() && made->utime_us <= utime_us + 1;
        ++made) {
-    if (made->ring == ring && made->return_index == return_index) return made->object_id;
+    if (made->ring == ring && made->return_index == return_index) return &*made;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+std::optional<int> Truth::ObjectOf(std::int64_t utime_us, int ring, int return_index) const {
+  const Return* made = Find(utime_us, ring, return_index);
+  return made != nullptr ? std::optional(made->object_id) : std::nullopt;
 }
 
 Outlines Truth::OutlinesIn(const GeographicLib::LocalCartesian& map) const {

@@ -53,18 +53,24 @@ class Truth {
   const std::map<int, TruthObject>& objects() const { return objects_; }
   const std::map<std::int64_t, TruthPose>& poses() const { return poses_; }
 
-  /// @return object of a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullopt = not in the truth
-  std::optional<int> ObjectOf(std::int64_t utime_us, int ring, int return_index) const;
-
-  Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
-
- private:
   struct Return {
     std::int64_t utime_us;
     int ring;
     int return_index;
     int object_id;
+    /// Lidar frame, without noise; NaN where the files do not say it.
+    Eigen::Vector3f p_lidar_m;
   };
+
+  /// @return a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullptr = not in the truth
+  const Return* Find(std::int64_t utime_us, int ring, int return_index) const;
+
+  /// @return its object
+  std::optional<int> ObjectOf(std::int64_t utime_us, int ring, int return_index) const;
+
+  Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
+
+ private:
   void LoadReturns(const std::filesystem::path& file);
 
   std::map<int, TruthObject> objects_;

@@ -12,6 +12,7 @@
 #include "tools/export/sink.hpp"
 #include "tools/export/svg.hpp"
 #include "tools/export/tables.hpp"
+#include "tools/export/track.hpp"
 
 namespace lookout::exporter {
 
@@ -32,9 +33,10 @@ std::string Fault(const Request& request) {
   const auto names = TableNames();
   if (std::ranges::find(names, request.table) == names.end()) return "there is no table " + request.table;
   if (request.format == "ply" && request.table != "returns") return "--format ply is for --table returns only";
-  if (request.format == "svg" && request.table != "returns" && request.table != "obstacles") {
-    return "--format svg is for --table returns or obstacles only";
+  if (request.format == "svg" && request.table != "returns" && request.table != "obstacles" && request.table != "pose") {
+    return "--format svg is for --table returns, obstacles or pose only";
   }
+  if (request.table == "pose" && request.turn) return "--turn is not for --table pose";
   if (request.format != "csv" && request.format != "ply" && request.format != "svg") return "there is no format " + request.format;
   if (request.format == "csv" && request.turn) return "--turn is for --format ply or svg";
   for (const auto& input : request.inputs) {
@@ -46,6 +48,7 @@ std::string Fault(const Request& request) {
 
 std::unique_ptr<Sink> MakeSink(const Request& request) {
   if (request.format == "ply") return MakePlySink(request.turn);
+  if (request.format == "svg" && request.table == "pose") return MakeTrackSvgSink();
   if (request.format == "svg") return request.table == "returns" ? MakeReturnsSvgSink(request.turn) : MakeObstaclesSvgSink(request.turn);
   return MakeCsvSink(request.table);
 }
@@ -94,6 +97,7 @@ int Export(const Request& request, std::ostream& errors, const std::atomic<bool>
   if (tallies.front().num_taken == 0) throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name));
   sink->Finish(text);
   if (request.format != "csv" && text.empty()) {  // nothing is written before the end there
+    if (request.table == "pose") throw std::runtime_error("no pose knows its position");
     throw std::runtime_error(request.turn ? "the input holds no turn " + std::to_string(*request.turn) : "the input holds no turn");
   }
   output.Write(text);

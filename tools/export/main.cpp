@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   app.add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles)")
+  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles: a turn; pose: the track)")
       ->check(CLI::IsMember({"csv", "ply", "svg"}))
       ->capture_default_str();
   app.add_option("--out", output, "file to write; else standard output");

@@ -22,18 +22,13 @@ using Eigen::Vector3d;
 // Area over extent squared below which an outline counts as a line: there the centroid divides two numbers that are rounding errors.
 constexpr double kMinAreaRatio = 1e-4;
 
-Isometry3d TransformMapVessel(const Pose& pose) {
+// Of a pose or a place.
+template <typename Placed>
+Isometry3d TransformMapVessel(const Placed& pose) {
   Isometry3d T_map_vessel = Isometry3d::Identity();
   T_map_vessel.linear() = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad);
   T_map_vessel.translation() = pose.position_map_m;
   return T_map_vessel;
-}
-
-// The pose at `time` if it is placed in the map frame of `datum`.
-std::optional<Pose> PlacedPoseAt(const PoseHistory& poses, Utime time, const Datum& datum) {
-  auto pose = poses.At(time);
-  if (!pose || !pose->is_placed || !pose->datum.IsSameAs(datum)) return std::nullopt;
-  return pose;
 }
 
 // Height above calm water of a point of the vessel; level where no pose is known.
@@ -59,9 +54,9 @@ std::optional<std::vector<Vector3d>> PlaceCorners(const std::vector<HullVertex>&
   std::vector<Vector3d> corners_map_m;
   corners_map_m.reserve(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const auto pose = PlacedPoseAt(poses, corners[i].time, datum);
-    if (!pose) return std::nullopt;
-    corners_map_m.push_back(TransformMapVessel(*pose) * corners_vessel_m[i]);
+    const auto place = poses.PlaceAt(corners[i].time, datum);
+    if (!place || !place->is_placed) return std::nullopt;
+    corners_map_m.push_back(TransformMapVessel(*place) * corners_vessel_m[i]);
   }
   return corners_map_m;
 }
@@ -80,7 +75,16 @@ std::vector<Vector2d> SeenFromAbove(const std::vector<Vector3d>& points) {
   return flat;
 }
 
-void PlaceOnEarth(const std::vector<Vector3d>& outline_map_m, const Pose& pose, const PlacementParams& params, Obstacle& obstacle) {
+// Corners are placed at the mean height of their segment. On a boat that is level it does not matter; else their own height moves them by what the
+// lidar's axis leans. Heights are taken as evenly spread from the lowest to the highest return.
+Matrix2d HeightCovariance(const Segment& segment, const Pose& pose, const PlacementParams& params) {
+  const Vector3d axis_map = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad) * params.T_vessel_lidar.linear().col(2);
+  const Vector2d lean_m = (segment.max_z_m - segment.min_z_m) / std::sqrt(12.0) * axis_map.head<2>();
+  return lean_m * lean_m.transpose();
+}
+
+void PlaceOnEarth(const Segment& segment, const std::vector<Vector3d>& outline_map_m, const Pose& pose, const PlacementParams& params,
+                  Obstacle& obstacle) {
   const Vector3d center_map_m = FootprintCenter(outline_map_m);
   const Vector3d center_vessel_m = TransformMapVessel(pose).inverse() * center_map_m;
   const Datum& datum = pose.datum;
@@ -91,7 +95,7 @@ void PlaceOnEarth(const std::vector<Vector3d>& outline_map_m, const Pose& pose, 
   obstacle.status = ObstacleStatus::kOk;
   obstacle.position_map_m = center_map_m.head<2>();
   obstacle.center_vessel_m = center_vessel_m.head<2>();
-  obstacle.covariance_m2 = PositionCovariance(center_vessel_m, pose, params);
+  obstacle.covariance_m2 = PositionCovariance(center_vessel_m, pose, params) + HeightCovariance(segment, pose, params);
   obstacle.footprint_map_m = SeenFromAbove(outline_map_m);
 }
 
@@ -153,6 +157,9 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
 
   Matrix2d covariance_m2 = jacobian * pose.covariance * jacobian.transpose();
   covariance_m2 += params.mounting_sd_rad * params.mounting_sd_rad * (beam_m2 * Matrix2d::Identity() - along_m2);
+  // An azimuth turns the beam about the lidar's axis.
+  const Vector3d across_m = (R_map_vessel * params.T_vessel_lidar.linear().col(2)).cross(beam_m);
+  covariance_m2 += params.azimuth_sd_rad * params.azimuth_sd_rad * (across_m * across_m.transpose()).topLeftCorner<2, 2>();
   if (beam_m2 > 0.0) covariance_m2 += params.range_sd_m * params.range_sd_m / beam_m2 * along_m2;
   return covariance_m2;
 }
@@ -187,11 +194,11 @@ Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Da
   obstacle.waterline_vessel_m = SeenFromAbove(waterline_vessel_m);
   obstacle.top_above_water_m = AboveWaterM(T_vessel_lidar * segment.top_m, pose, params.reference_point_above_water_m);
 
-  const auto placed_pose = PlacedPoseAt(poses, segment.time, datum);
+  const bool is_placed = pose && pose->is_placed && pose->datum.IsSameAs(datum);
   const auto outline_map_m = PlaceCorners(hull, outline_vessel_m, poses, datum);
   const auto waterline_map_m = PlaceCorners(waterline, waterline_vessel_m, poses, datum);
-  if (placed_pose && outline_map_m && waterline_map_m) {
-    PlaceOnEarth(*outline_map_m, *placed_pose, params, obstacle);
+  if (is_placed && outline_map_m && waterline_map_m) {
+    PlaceOnEarth(segment, *outline_map_m, *pose, params, obstacle);
     obstacle.waterline_map_m = SeenFromAbove(*waterline_map_m);
   } else if (has_timed_out) {
     const Utime last_time = LastTime(segment.time, hull, waterline);

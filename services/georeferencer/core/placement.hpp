@@ -13,6 +13,7 @@ struct PlacementParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double reference_point_above_water_m = 0.0;
   double range_sd_m = 0.0;       // of one range
+  double azimuth_sd_rad = 0.0;   // of one return, about the lidar's axis
   double mounting_sd_rad = 0.0;  // of the mounting, about each of three axes
 };
 
@@ -38,7 +39,7 @@ Eigen::Vector3d FootprintCenter(const std::vector<Eigen::Vector3d>& vertices);
 
 /// 2 x 2 covariance (east, north) of a point that was seen from the vessel.
 ///
-/// Linear in the errors of position, roll, pitch, heading (with their covariances), of the mounting's three angles and of the range.
+/// Linear in the errors of position, roll, pitch, heading (with their covariances), of the mounting's three angles, of range and azimuth.
 /// @param p_vessel_m  the point
 /// @param pose        placed
 /// @return NaN where the pose does not know its own

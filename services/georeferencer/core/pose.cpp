@@ -11,21 +11,11 @@ namespace {
 
 bool IsSameNumber(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
 
-Pose Interpolate(const Pose& a, const Pose& b, Utime time) {
-  const double share = ToSeconds(time - a.time) / ToSeconds(b.time - a.time);
-  const auto between = [share](double from, double to) { return from + share * (to - from); };
-  Pose pose;
-  pose.time = time;
-  pose.is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(b.datum);
-  pose.datum = a.datum;
-  pose.position_map_m = a.position_map_m + share * (b.position_map_m - a.position_map_m);
-  pose.heading_rad = WrapTo2Pi(a.heading_rad + share * WrapToPi(b.heading_rad - a.heading_rad));
-  pose.pitch_rad = between(a.pitch_rad, b.pitch_rad);
-  pose.roll_rad = between(a.roll_rad, b.roll_rad);
-  pose.heave_m = between(a.heave_m, b.heave_m);
-  pose.covariance = a.covariance + share * (b.covariance - a.covariance);
-  return pose;
-}
+// POSE comes for every whole 20 ms.
+constexpr std::chrono::milliseconds kGrid(20);
+
+double Between(double from, double to, double share) { return from + share * (to - from); }
+double HeadingBetween(double from_rad, double to_rad, double share) { return WrapTo2Pi(from_rad + share * WrapToPi(to_rad - from_rad)); }
 
 }  // namespace
 
@@ -41,18 +31,51 @@ void PoseHistory::Add(const Pose& pose) {
 }
 
 std::size_t PoseHistory::FirstNotBefore(Utime time) const {
+  // On an even grid it stands where it is looked for first.
+  if (!poses_.empty() && time > poses_.front().time) {
+    const auto guess = static_cast<std::size_t>((time - poses_.front().time + kGrid - std::chrono::microseconds(1)) / kGrid);
+    if (guess < poses_.size() && poses_[guess].time >= time && poses_[guess - 1].time < time) return guess;
+  }
   return static_cast<std::size_t>(std::ranges::lower_bound(poses_, time, {}, &Pose::time) - poses_.begin());
 }
 
-std::optional<Pose> PoseHistory::At(Utime time) const {
+std::optional<PoseHistory::Bracket> PoseHistory::BracketAt(Utime time) const {
   const std::size_t index = FirstNotBefore(time);
   if (index == poses_.size()) return std::nullopt;
   const Pose& after = poses_[index];
-  if (after.time == time) return after;
+  if (after.time == time) return Bracket{after, after, 0.0};
   if (index == 0) return std::nullopt;
   const Pose& before = poses_[index - 1];
   if (after.time - before.time > kMaxBracket) return std::nullopt;
-  return Interpolate(before, after, time);
+  return Bracket{before, after, ToSeconds(time - before.time) / ToSeconds(after.time - before.time)};
+}
+
+std::optional<Pose> PoseHistory::At(Utime time) const {
+  const auto bracket = BracketAt(time);
+  if (!bracket) return std::nullopt;
+  const auto& [a, b, share] = *bracket;
+  if (&a == &b) return a;
+  Pose pose;
+  pose.time = time;
+  pose.is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(b.datum);
+  pose.datum = a.datum;
+  pose.position_map_m = a.position_map_m + share * (b.position_map_m - a.position_map_m);
+  pose.heading_rad = HeadingBetween(a.heading_rad, b.heading_rad, share);
+  pose.pitch_rad = Between(a.pitch_rad, b.pitch_rad, share);
+  pose.roll_rad = Between(a.roll_rad, b.roll_rad, share);
+  pose.heave_m = Between(a.heave_m, b.heave_m, share);
+  pose.covariance = a.covariance + share * (b.covariance - a.covariance);
+  return pose;
+}
+
+std::optional<Place> PoseHistory::PlaceAt(Utime time, const Datum& datum) const {
+  const auto bracket = BracketAt(time);
+  if (!bracket) return std::nullopt;
+  const auto& [a, b, share] = *bracket;
+  const bool is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(datum) && b.datum.IsSameAs(datum);
+  if (&a == &b) return Place{is_placed, a.position_map_m, a.heading_rad, a.pitch_rad, a.roll_rad};
+  return Place{is_placed, a.position_map_m + share * (b.position_map_m - a.position_map_m), HeadingBetween(a.heading_rad, b.heading_rad, share),
+               Between(a.pitch_rad, b.pitch_rad, share), Between(a.roll_rad, b.roll_rad, share)};
 }
 
 Datum PoseHistory::DatumAt(Utime time) const {

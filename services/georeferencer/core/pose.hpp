@@ -40,6 +40,15 @@ struct Pose {
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 };
 
+/// A pose without what is not needed to place a point.
+struct Place {
+  bool is_placed = false;  // as in Pose
+  Eigen::Vector3d position_map_m;
+  double heading_rad;
+  double pitch_rad;
+  double roll_rad;
+};
+
 class PoseHistory {
  public:
   /// Poses older than this against the newest are forgotten: 6000 of them, 2 MB. A turn is asked for within seconds of its end.
@@ -56,8 +65,11 @@ class PoseHistory {
   /// The pose at `time`: that of the grid where there is one, else between its two neighbours, linear, heading the short way round.
   ///
   /// @return nullopt when `time` is not between two poses at most kMaxBracket apart. It is placed when both neighbours are, in one datum.
-  /// Cost: logarithmic in the length of the history.
+  /// Cost: constant on an even grid; logarithmic in the length of the history where poses are missing.
   std::optional<Pose> At(Utime time) const;
+
+  /// The same, of a vessel in the map frame of `datum`: in another it is not placed. Costs a third of At.
+  std::optional<Place> PlaceAt(Utime time, const Datum& datum) const;
 
   /// @return the datum in force at `time`: of the latest pose at or before it; unknown when there is none
   Datum DatumAt(Utime time) const;
@@ -65,6 +77,13 @@ class PoseHistory {
  private:
   // Index of the first pose at or after `time`; the number of poses when there is none.
   std::size_t FirstNotBefore(Utime time) const;
+  // The neighbours of a time and its share of the way between them; both are one where it is that of the grid.
+  struct Bracket {
+    const Pose& before;
+    const Pose& after;
+    double share;
+  };
+  std::optional<Bracket> BracketAt(Utime time) const;
 
   std::deque<Pose> poses_;  // increasing in time
 };

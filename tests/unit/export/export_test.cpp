@@ -275,6 +275,44 @@ TEST_F(SvgTest, DrawsTentativeObstaclesLightlyAndLandAsItsWaterline) {
   EXPECT_NE(text_.find(">5.0 m at 0 deg, land<"), std::string::npos);
 }
 
+pose_t PoseAt(std::int64_t index, double latitude_deg, double longitude_deg, int status = pose_t::STATUS_OK) {
+  pose_t pose{};
+  pose.utime_us = kStartUs + 20'000 * index;
+  pose.seq = index;
+  pose.status = status;
+  pose.latitude_deg = latitude_deg;
+  pose.longitude_deg = longitude_deg;
+  return pose;
+}
+
+// Over the date line; 0.0009 degrees of latitude are 100 m.
+TEST_F(ExportTest, DrawsTheTrackWithALineForEachStretchOfOneStatus) {
+  Add(bus::kPose, PoseAt(0, kNaN, kNaN, pose_t::STATUS_UNKNOWN));
+  Add(bus::kPose, PoseAt(1, 0.0, 179.9999));
+  Add(bus::kPose, PoseAt(2, 0.0, 179.9999));  // no step
+  Add(bus::kPose, PoseAt(3, 0.0009, 179.9999));
+  Add(bus::kPose, PoseAt(4, 0.0009, -179.9992, pose_t::STATUS_COASTING));
+  Add(bus::kPose, PoseAt(5, kNaN, kNaN, pose_t::STATUS_NO_POSITION));
+  Add(bus::kPose, PoseAt(6, 0.0, -179.9992));
+  Add(bus::kPose, PoseAt(7, 91.0, 0.0));
+  ASSERT_EQ(Export("pose", "svg"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("1 messages of POSE contradict themselves"), std::string::npos) << errors_;
+  const std::string& text = text_;
+  // A square of 100 m fills the height: 880 pixels about the middle.
+  EXPECT_NE(text.find("stroke=\"#0072B2\" points=\"220.0,940.0 220.0,60.0\""), std::string::npos) << text;
+  EXPECT_NE(text.find("stroke=\"#D55E00\" points=\"220.0,60.0 1100.0,60.0\""), std::string::npos) << text;
+  EXPECT_NE(text.find("stroke=\"#0072B2\" points=\"1100.0,940.0 1100.0,940.0\""), std::string::npos) << text;
+  EXPECT_NE(text.find(">200 m; begins at 0.000000, 179.999900<"), std::string::npos) << text;
+  EXPECT_EQ(text.find("no heading"), std::string::npos);
+}
+
+TEST_F(ExportTest, OfPosesWithoutPositionDrawsNoTrack) {
+  Add(bus::kPose, PoseAt(0, kNaN, kNaN, pose_t::STATUS_UNKNOWN));
+  EXPECT_EQ(Export("pose", "svg"), kExitFailed);
+  EXPECT_NE(errors_.find("no pose knows its position"), std::string::npos) << errors_;
+  EXPECT_EQ(Export("pose", "svg", 3), kExitUsage);
+}
+
 TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
   const std::string program = std::string(LOOKOUT_BIN_DIR) + "/lookout-export";
   ASSERT_TRUE(std::filesystem::exists(program)) << program << " is not built";

@@ -316,6 +316,29 @@ TEST(PositionCovariance, RangeErrorWorksAlongTheBeamOnly) {
   EXPECT_NEAR(covariance(1, 1), 9e-4, 1e-12);
 }
 
+TEST(PositionCovariance, AzimuthErrorWorksAcrossTheBeamAndStartsAtTheLidar) {
+  PlacementParams params;
+  params.azimuth_sd_rad = 0.01;
+  params.T_vessel_lidar.translation() = Vector3d(50.0, 0.0, 1.0);
+  const auto covariance = PositionCovariance({100.0, 0.0, 0.0}, MakePose(0), params);
+  EXPECT_NEAR(covariance(0, 0), 0.25, 1e-9);  // 0.01 rad of 50 m
+  EXPECT_NEAR(covariance(1, 1), 0.0, 1e-9);
+}
+
+// Corners are placed at the mean height: a mast of 6 m in front of a boat that rolls by 0.1 rad is up to 0.3 m beside it.
+TEST(PlaceSegment, HeightsThatAreNotKnownOfEachCornerWidenTheEllipseOfABoatThatLeans) {
+  Pose pose = MakePose(0);
+  auto mast = MakePoint(10'000, 20.0, 0.0, 0.0);
+  const auto level = Place(mast, pose, Bare()).covariance_m2;
+  mast.min_z_m = -1.0;
+  mast.max_z_m = 5.0;
+  EXPECT_EQ(Place(mast, pose, Bare()).covariance_m2, level);
+  pose.roll_rad = 0.1;
+  const auto leaning = Place(mast, pose, Bare()).covariance_m2;
+  EXPECT_NEAR(leaning(0, 0) - level(0, 0), 36.0 / 12.0 * std::pow(std::sin(0.1), 2), 1e-9);  // the boat heads north: roll leans east and west
+  EXPECT_NEAR(leaning(1, 1), level(1, 1), 1e-9);
+}
+
 TEST(PositionCovariance, MountingErrorStartsAtTheLidarNotAtTheReferencePoint) {
   PlacementParams params;
   params.mounting_sd_rad = 0.01;

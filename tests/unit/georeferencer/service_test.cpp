@@ -115,6 +115,16 @@ TEST_F(GeoreferencerService, TellsThatPoseIsNotPlaced) {
   EXPECT_EQ(service_.Report().state, HealthState::kOk);
 }
 
+// Obstacles are placed then, and look as good as ever.
+TEST_F(GeoreferencerService, TellsThatPoseIsOnlyCarriedOn) {
+  SendPoses(0, 100'000, pose_t::STATUS_COASTING);
+  SendTurn(0);
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(service_.Report().reason, "POSE is only carried on: obstacles drift as their covariance says");
+  SendPoses(120'000, 120'000);
+  EXPECT_EQ(service_.Report().state, HealthState::kOk);
+}
+
 TEST_F(GeoreferencerService, TellsThatTheClocksDiffer) {
   for (int i = 0; i <= 10; ++i) {
     service_.AdvanceTo(At(100'000 * i));
@@ -128,11 +138,13 @@ TEST_F(GeoreferencerService, TellsThatTheClocksDiffer) {
 TEST(GeoreferencerParams, OfTheBoatsInConfigAreThoseOfTheirFiles) {
   const auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
   EXPECT_EQ(params.pose_timeout, std::chrono::milliseconds(500));
-  EXPECT_NEAR(params.placement.mounting_sd_rad, 0.5 * 3.14159265 / 180.0, 1e-9);
+  EXPECT_EQ(params.placement.mounting_sd_rad, 0.0) << "the simulated boat is as boat.txtpb says";
+  EXPECT_NEAR(params.placement.azimuth_sd_rad, 0.05 * 3.14159265 / 180.0, 1e-9);
   EXPECT_EQ(params.placement.range_sd_m, 0.03);
   EXPECT_EQ(params.placement.reference_point_above_water_m, 0.4);
   EXPECT_EQ(params.placement.T_vessel_lidar.translation().z(), 1.1);
-  EXPECT_NO_THROW(LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot"));
+  const auto catabot = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot");
+  EXPECT_NEAR(catabot.placement.mounting_sd_rad, 0.5 * 3.14159265 / 180.0, 1e-9);
 }
 
 }  // namespace

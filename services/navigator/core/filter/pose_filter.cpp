@@ -24,6 +24,19 @@ constexpr double kMinSdM = 0.001;
 // Sentences of one fix differ by how many digits they have, at most: receivers have 4 to 8 of a minute.
 constexpr double kSamePlaceM = 0.2;
 
+// A fix whose UTC lies so far before its arrival that it does not count as its time: the computer's clock is off, or the fix is old (a lidar goes on
+// with its last RMC for a second and more). Which of them is not known before some sentences more; so the boat may have gone on for all of that time.
+// Clocks of small computers are off by seconds; of more than that it is the clock.
+constexpr std::chrono::microseconds kMaxAge = 10s;
+constexpr double kUnknownSpeedMps = 3.0;
+constexpr double kUnknownAccelerationMps2 = 0.5;
+
+double PossibleAgeS(const MeasurementTime& when) {
+  if (!when.has_sentence_utc || when.is_from_sentence) return 0.0;
+  const auto age = when.arrival - when.utc;
+  return age > 0us && age <= kMaxAge ? std::chrono::duration<double>(age).count() : 0.0;
+}
+
 double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
 
 }  // namespace
@@ -117,12 +130,14 @@ void PoseFilter::Add(const GnssFix& fix) {
   if (!has_height) p_map_m.z() = kNan;
   measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
   measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
+  const double age_s = PossibleAgeS(fix.when);
+  measurement.horizontal_sd_m = std::hypot(measurement.horizontal_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
   if (!std::isnan(fix.speed_mps)) {
     filter::VelocityMeasurement velocity;
     velocity.has_own_time = true;
     velocity.speed_mps = fix.speed_mps;
     velocity.course_rad = fix.course_rad;
-    velocity.sd_mps = SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps);
+    velocity.sd_mps = std::hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
     if (std::isnan(fix.course_rad)) {
       // A speed without a direction: anywhere on a circle around 0.
       velocity.sd_mps = std::hypot(velocity.sd_mps, fix.speed_mps);

@@ -1,0 +1,179 @@
+#include "tools/export/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/bus/decode.hpp"
+#include "common/core/angles.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/pose_t.hpp"
+#include "tools/export/csv.hpp"
+
+namespace lookout::exporter {
+namespace {
+
+constexpr double kWidth = 1320.0;
+constexpr double kHeight = 1000.0;
+constexpr double kMargin = 60.0;
+constexpr double kLeastStepM = 0.2;
+// Of a track that does not move, so that noise does not fill the page.
+constexpr double kLeastSpanM = 20.0;
+// Mean radius of the earth (IUGG); a picture needs no ellipsoid.
+constexpr double kEarthRadiusM = 6'371'008.8;
+
+// Okabe and Ito: for readers who confuse red and green.
+struct Style {
+  std::string_view name;
+  std::string_view colour;
+};
+constexpr Style kOk{"ok", "#0072B2"};
+constexpr Style kCarriedOn{"coasting", "#D55E00"};
+constexpr Style kNoHeading{"no heading", "#56B4E9"};
+
+const Style* StyleOf(int status) {
+  switch (status) {
+    case pose_t::STATUS_OK:
+      return &kOk;
+    case pose_t::STATUS_COASTING:
+      return &kCarriedOn;
+    case pose_t::STATUS_NO_HEADING:
+      return &kNoHeading;
+    default:
+      return nullptr;
+  }
+}
+
+struct Place {
+  double east_m;  // from the first place
+  double north_m;
+};
+
+struct Stretch {
+  const Style* style;
+  std::vector<Place> places;
+};
+
+std::string Number(double value, int decimals) {
+  std::string text;
+  CsvWriter(text).Fixed(value, decimals);
+  return text;
+}
+
+// 1, 2 or 5 times a power of ten, at most `length_m`.
+double RoundLength(double length_m) {
+  const double power = std::pow(10.0, std::floor(std::log10(length_m)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= length_m) return factor * power;
+  }
+  return power;
+}
+
+class TrackSvgSink : public Sink {
+ public:
+  std::vector<bus::Channel> Channels() const override { return {bus::kPose}; }
+
+  Taken Take(std::string_view, Bytes bytes, std::string&) override {
+    const auto pose = bus::Decode<pose_t>(bytes);
+    if (!pose) return Taken::kUndecodable;
+    const auto* style = StyleOf(pose->status);
+    if (style == nullptr) {
+      is_broken_ = true;
+      return UtimeFromWire(pose->utime_us) ? Taken::kOk : Taken::kInconsistent;
+    }
+    if (!UtimeFromWire(pose->utime_us) || !(std::abs(pose->latitude_deg) <= 90.0) || !(std::abs(pose->longitude_deg) <= 180.0)) {
+      return Taken::kInconsistent;
+    }
+    Add(*style, pose->latitude_deg, pose->longitude_deg);
+    return Taken::kOk;
+  }
+
+  void Finish(std::string& text) override {
+    if (!stretches_.empty()) Draw(text);
+  }
+
+ private:
+  void Add(const Style& style, double latitude_deg, double longitude_deg) {
+    if (stretches_.empty()) {
+      latitude_deg_ = latitude_deg;
+      longitude_deg_ = longitude_deg;
+    }
+    const Place place{kEarthRadiusM * std::cos(DegToRad(latitude_deg_)) * WrapToPi(DegToRad(longitude_deg - longitude_deg_)),
+                      kEarthRadiusM * DegToRad(latitude_deg - latitude_deg_)};
+    if (is_broken_ || stretches_.empty()) {
+      stretches_.push_back({&style, {place}});
+    } else if (stretches_.back().style != &style) {
+      // The new stretch begins where the old one ends.
+      const Place last = stretches_.back().places.back();
+      stretches_.push_back({&style, {last, place}});
+    } else {
+      const Place& last = stretches_.back().places.back();
+      if (std::hypot(place.east_m - last.east_m, place.north_m - last.north_m) >= kLeastStepM) stretches_.back().places.push_back(place);
+    }
+    is_broken_ = false;
+  }
+
+  void Draw(std::string& text) const {
+    Place low = stretches_.front().places.front();
+    Place high = low;
+    double length_m = 0.0;
+    for (const auto& stretch : stretches_) {
+      for (std::size_t i = 0; i < stretch.places.size(); ++i) {
+        const Place& place = stretch.places[i];
+        low = {std::min(low.east_m, place.east_m), std::min(low.north_m, place.north_m)};
+        high = {std::max(high.east_m, place.east_m), std::max(high.north_m, place.north_m)};
+        if (i > 0) length_m += std::hypot(place.east_m - stretch.places[i - 1].east_m, place.north_m - stretch.places[i - 1].north_m);
+      }
+    }
+    const double pixels_per_m = std::min((kWidth - 2.0 * kMargin) / std::max(high.east_m - low.east_m, kLeastSpanM),
+                                         (kHeight - 2.0 * kMargin) / std::max(high.north_m - low.north_m, kLeastSpanM));
+    const auto pixels = [&](const Place& place) {
+      return Number(kWidth / 2.0 + pixels_per_m * (place.east_m - (low.east_m + high.east_m) / 2.0), 1) + "," +
+             Number(kHeight / 2.0 - pixels_per_m * (place.north_m - (low.north_m + high.north_m) / 2.0), 1);
+    };
+    text +=
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1320\" height=\"1000\" font-family=\"sans-serif\" font-size=\"14\">\n"
+        "<title>Track of the boat</title>\n<rect width=\"1320\" height=\"1000\" fill=\"#ffffff\"/>\n";
+    for (const auto& stretch : stretches_) {
+      text += "<polyline fill=\"none\" stroke-width=\"2\" stroke-linecap=\"round\" stroke=\"" + std::string(stretch.style->colour) + "\" points=\"";
+      for (const auto& place : stretch.places) text += pixels(place) + " ";
+      // A stretch of one place is seen as a dot.
+      if (stretch.places.size() == 1) text += pixels(stretch.places.front()) + " ";
+      text.back() = '"';
+      text += "/>\n";
+    }
+    const auto mark = [&](const Place& place, const char* word) {
+      const std::string at = pixels(place);
+      const auto comma = at.find(',');
+      const std::string x = at.substr(0, comma);
+      const std::string y = at.substr(comma + 1);
+      text += "<circle cx=\"" + x + "\" cy=\"" + y + "\" r=\"4\"/>\n<text x=\"" + x + "\" y=\"" + y + "\" dx=\"7\" dy=\"-7\">" + word + "</text>\n";
+    };
+    mark(stretches_.front().places.front(), "begin");
+    mark(stretches_.back().places.back(), "end");
+
+    text += "<text x=\"20\" y=\"28\" font-size=\"18\">Track of the boat, north up</text>\n<text x=\"20\" y=\"50\">" + Number(length_m, 0) +
+            " m; begins at " + Number(latitude_deg_, 6) + ", " + Number(longitude_deg_, 6) + "</text>\n";
+    double y = 72.0;
+    for (const auto* style : {&kOk, &kCarriedOn, &kNoHeading}) {
+      if (std::ranges::none_of(stretches_, [style](const Stretch& stretch) { return stretch.style == style; })) continue;
+      text += "<line x1=\"20\" x2=\"50\" y1=\"" + Number(y - 5.0, 0) + "\" y2=\"" + Number(y - 5.0, 0) + "\" stroke-width=\"3\" stroke=\"" +
+              std::string(style->colour) + "\"/>\n<text x=\"58\" y=\"" + Number(y, 0) + "\">" + std::string(style->name) + "</text>\n";
+      y += 20.0;
+    }
+    const double bar_m = RoundLength(kWidth / 4.0 / pixels_per_m);
+    text += "<line x1=\"20\" x2=\"" + Number(20.0 + bar_m * pixels_per_m, 1) + "\" y1=\"970\" y2=\"970\" stroke=\"#000000\" stroke-width=\"3\"/>\n" +
+            "<text x=\"20\" y=\"962\">" + Number(bar_m, bar_m < 1.0 ? 1 : 0) + " m</text>\n</svg>\n";
+  }
+
+  double latitude_deg_ = 0.0;  // of the first place
+  double longitude_deg_ = 0.0;
+  bool is_broken_ = false;
+  std::vector<Stretch> stretches_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sink> MakeTrackSvgSink() { return std::make_unique<TrackSvgSink>(); }
+
+}  // namespace lookout::exporter
