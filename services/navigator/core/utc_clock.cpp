@@ -66,7 +66,8 @@ void UtcClock::LearnThatItIsOff(SourceClock& source, Utime arrival, microseconds
 }
 
 std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime arrival, microseconds time_of_day,
-                                                    std::optional<std::chrono::sys_days> date, std::optional<microseconds> latency) {
+                                                    std::optional<std::chrono::sys_days> date, std::optional<microseconds> latency,
+                                                    bool is_measured) {
   const Utime expected = arrival - off_;
   MeasurementTime when = TimeOfMeasurement(expected, time_of_day, date, max_latency_);
   Resolved resolved{when.time, when.is_date_refused};
@@ -74,6 +75,9 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
     const Utime near = source.dated_utc ? *source.dated_utc + (arrival - source.dated_arrival) : expected;
     resolved = date ? MendRollover(*date + time_of_day, expected) : Resolved{OnTheDayNearest(near, time_of_day), false};
   }
+  // The first fix sets a receiver's clock right.
+  if (is_measured && !source.has_measured) source.last_utc.reset();
+  source.has_measured = is_measured;
   if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
   source.last_utc = resolved.utc;
   source.dated_utc = resolved.utc;
@@ -84,6 +88,10 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
   when.has_sentence_utc = true;
   when.is_date_refused = resolved.is_date_refused;
   const auto host_minus_utc = arrival - resolved.utc;
+  if (!is_measured) {
+    when.time = when.is_from_sentence ? resolved.utc + off_ : arrival - latency.value_or(microseconds(0));
+    return when;
+  }
   if (!when.is_from_sentence) {
     when.time = arrival - latency.value_or(microseconds(0));
     LearnThatItIsOff(source, arrival, host_minus_utc);

@@ -16,6 +16,7 @@ struct SourceClock {
   std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: tells the day to those without a date
   Utime dated_arrival{};
   bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
+  bool has_measured = false;           // the last one came of a measurement; till then the time is that of the receiver's own clock
   std::optional<Utime> last_backward;  // refused because its time ran back
   int num_backward = 0;
   std::chrono::microseconds off{0};  // arrival less UTC of its last sentences whose time was not usable
@@ -37,10 +38,12 @@ class UtcClock {
 
   explicit UtcClock(std::chrono::microseconds max_latency) : max_latency_(max_latency) {}
 
-  /// @param latency  of the source; nullopt = not known
+  /// @param latency      of the source; nullopt = not known
+  /// @param is_measured  false: of a receiver without a fix, whose clock may begin anywhere. It tells nothing of the computer's
   /// @return nullopt when the source's time runs backwards
   std::optional<MeasurementTime> OfSentence(SourceClock& source, Utime arrival, std::chrono::microseconds time_of_day,
-                                            std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency);
+                                            std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency,
+                                            bool is_measured = true);
 
   /// Date and time of a sentence that measures nothing (ZDA).
   void OnDate(SourceClock& source, Utime arrival, Utime utc) const;
