@@ -13,6 +13,7 @@ namespace lookout::navigator {
 /// What UtcClock remembers of one source.
 struct SourceClock {
   std::optional<Utime> last_utc;   // of its measurements
+  Utime last_time{};               // of the same, on the time scale of POSE
   std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: tells the day to those without a date
   Utime dated_arrival{};
   bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
@@ -29,7 +30,7 @@ struct SourceClock {
 /// it by the least of (arrival - UTC).
 class UtcClock {
  public:
-  /// So many sentences in a row make it sure that the clock is off, or right again.
+  /// Sentences of so many instants in a row make it sure that the clock is off, or right again.
   static constexpr int kMinSentences = 5;
   /// Datagrams overtake each other. A source whose time runs back by more is refused ...
   static constexpr std::chrono::seconds kMaxBackward{1};
@@ -55,6 +56,7 @@ class UtcClock {
   std::chrono::microseconds host_minus_utc() const { return off_; }
 
  private:
+  void LearnFrom(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc, std::optional<std::chrono::microseconds> latency);
   static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
   void LearnThatItIsOff(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc);
 

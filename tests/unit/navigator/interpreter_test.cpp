@@ -195,6 +195,18 @@ TEST_F(InterpreterTest, DoesNotTakeTheComputersClockForWrongBeforeAReceiverHasAF
   EXPECT_LT(interpreter_.host_minus_utc(), -3599s) << "with a fix it does";
 }
 
+// A multiplexer that repeats the last sentences of a receiver that has gone. Each was a new fix, and the time that stood still dragged the clock
+// along.
+TEST_F(InterpreterTest, TakesASentenceThatIsRepeatedForTheInstantThatItWas) {
+  for (int i = 0; i < 300; ++i) {
+    const auto fix = Read(0.1 + 0.1 * i, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0)).fix;
+    ASSERT_TRUE(fix);
+    EXPECT_EQ(fix->when.time, NoonPlus(0)) << i;
+    EXPECT_EQ(Read(0.1 + 0.1 * i, PashrLine(NoonPlus(0), 90.0, 0.0, 0.0, 0.0)).attitude->when.time, NoonPlus(0)) << i;
+  }
+  EXPECT_EQ(interpreter_.host_minus_utc(), 0us);
+}
+
 TEST_F(InterpreterTest, IsToldNothingOfTheClockByASourceThatIsOnlyRecorded) {
   SourceParams recorded;
   recorded.name = "nav";
