@@ -6,6 +6,6 @@ lookout_test(NAME unit_navigator
                      unit/navigator/recordings_test.cpp
              LINKS lookout_navigator lookout_config)
 lookout_test(NAME unit_navigator_io SOURCES unit/navigator/io_test.cpp LINKS lookout_navigator_io util)
-lookout_test(NAME property_navigator SOURCES property/navigator_round_trip_test.cpp property/navigator_replay_test.cpp
+lookout_test(NAME property_navigator SOURCES property/navigator_round_trip_test.cpp property/navigator_replay_test.cpp property/navigator_hostile_test.cpp
              LINKS lookout_navigator lookout_config)
 lookout_fuzz(NAME fuzz_nmea_sentence SOURCES fuzz/nmea_sentence_fuzz.cpp LINKS lookout_navigator_core)

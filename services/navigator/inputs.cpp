@@ -131,6 +131,9 @@ class Inputs {
       connection.kind = Connection::Kind::kTextLog;
       connection.file = folder_ / input.text_log().file();
       connection.speed = input.text_log().speed();
+      // Slower, a pause of the log may be more than a clock can tell.
+      constexpr double kMinSpeed = 0.001;
+      RequireOfInput(connection.speed == 0.0 || connection.speed >= kMinSpeed, "text_log.speed must be 0 or at least 0.001");
       RequireOfInput(std::filesystem::is_regular_file(connection.file) && std::ifstream(connection.file),
                      "text_log.file '" + connection.file.string() + "' cannot be read");
     }

@@ -114,12 +114,16 @@ Reading Interpreter::Read(const Item& item) {
     ++counts_.stale_lidar_sentence;
     return {};
   }
-  auto reading = ReadParsed(item, parsed);
-  if (parsed.fault != SentenceFault::kNone) {
-    ++source.num_refused;
-  } else if (!std::holds_alternative<OtherSentence>(parsed.sentence)) {
-    ++source.num_taken;
+  const bool is_understood = parsed.fault == SentenceFault::kNone && !std::holds_alternative<OtherSentence>(parsed.sentence);
+  source.num_refused += parsed.fault == SentenceFault::kNone ? 0 : 1;
+  source.num_taken += is_understood ? 1 : 0;
+  counts_.understood_sentence += is_understood ? 1 : 0;
+  // What is only recorded tells nothing of the clock either.
+  if (is_understood && source.params.role == Role::kNothing) {
+    ++counts_.outside_role;
+    return {};
   }
+  auto reading = ReadParsed(item, parsed);
   const bool had_something = !IsEmpty(reading);
   KeepRole(source.params.role, reading);
   if (had_something && IsEmpty(reading)) ++counts_.outside_role;
@@ -129,7 +133,6 @@ Reading Interpreter::Read(const Item& item) {
 Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
   switch (parsed.fault) {
     case SentenceFault::kNone:
-      if (!std::holds_alternative<OtherSentence>(parsed.sentence)) ++counts_.understood_sentence;
       return std::visit([&](const auto& sentence) { return On(item, SourceOf(item.source), sentence); }, parsed.sentence);
     case SentenceFault::kNoChecksum:
       ++counts_.no_checksum;
@@ -149,9 +152,9 @@ Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
 
 // nullopt: the source's time runs backwards.
 std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& source, std::optional<microseconds> time_of_day,
-                                                 std::optional<std::chrono::sys_days> date) {
+                                                 std::optional<std::chrono::sys_days> date, bool is_measured) {
   if (!time_of_day) return clock_.OfArrival(item.time, source.params.latency);
-  const auto when = clock_.OfSentence(source.clock, item.time, *time_of_day, date, source.params.latency);
+  const auto when = clock_.OfSentence(source.clock, item.time, *time_of_day, date, source.params.latency, is_measured);
   if (!when) {
     ++counts_.time_backwards;
   } else if (when->is_date_refused) {
@@ -205,7 +208,7 @@ Reading Interpreter::On(const Item&, Source&, const OtherSentence&) {
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const Rmc& rmc) {
-  const auto when = When(item, source, rmc.time_of_day, rmc.date);
+  const auto when = When(item, source, rmc.time_of_day, rmc.date, IsMeasured(rmc.quality));
   if (!when) return {};
   if (IsMeasured(rmc.quality)) source.declination_rad = Or(rmc.declination_rad, source.declination_rad);
   auto fix = MakeFix(item, *when, "RMC", rmc.quality);
@@ -216,7 +219,7 @@ Reading Interpreter::On(const Item& item, Source& source, const Rmc& rmc) {
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const Gga& gga) {
-  const auto when = When(item, source, gga.time_of_day, std::nullopt);
+  const auto when = When(item, source, gga.time_of_day, std::nullopt, IsMeasured(gga.quality));
   if (!when) return {};
   auto fix = MakeFix(item, *when, "GGA", gga.quality);
   fix.position = gga.position;
@@ -228,7 +231,7 @@ Reading Interpreter::On(const Item& item, Source& source, const Gga& gga) {
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const Gll& gll) {
-  const auto when = When(item, source, gll.time_of_day, std::nullopt);
+  const auto when = When(item, source, gll.time_of_day, std::nullopt, IsMeasured(gll.quality));
   if (!when) return {};
   auto fix = MakeFix(item, *when, "GLL", gll.quality);
   fix.position = gll.position;
@@ -325,9 +328,9 @@ Reading Interpreter::On(const Item& item, Source& source, const PsatHpr& hpr) {
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const VnIns& ins) {
-  const auto when = When(item, source, ins.time_of_day, ins.date);
-  if (!when) return {};
   const bool is_in_order = !ins.has_fault && ins.mode != VnIns::Mode::kNotTracking;
+  const auto when = When(item, source, ins.time_of_day, ins.date, is_in_order);
+  if (!when) return {};
   const auto quality = !is_in_order ? FixQuality::kNone : ins.mode == VnIns::Mode::kGnssLost ? FixQuality::kDeadReckoning : FixQuality::kGnss;
   auto fix = MakeFix(item, *when, "VNINS", quality);
   if (is_in_order) {

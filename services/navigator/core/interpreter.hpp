@@ -98,7 +98,7 @@ class Interpreter {
   Reading On(const Item& item, Source& source, const VnImu& imu);
 
   std::optional<MeasurementTime> When(const Item& item, Source& source, std::optional<std::chrono::microseconds> time_of_day,
-                                      std::optional<std::chrono::sys_days> date);
+                                      std::optional<std::chrono::sys_days> date, bool is_measured = true);
   Reading WholeFix(Source& source, GnssFix fix);
   Attitude MakeAttitude(const Item& item, const Source& source, const char* sentence_type, const MeasurementTime& when, double heading_rad,
                         double pitch_rad, double roll_rad) const;

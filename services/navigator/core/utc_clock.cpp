@@ -65,8 +65,20 @@ void UtcClock::LearnThatItIsOff(SourceClock& source, Utime arrival, microseconds
   fine_fit_ = ClockFit();
 }
 
+void UtcClock::LearnFrom(SourceClock& source, Utime arrival, microseconds host_minus_utc, std::optional<microseconds> latency) {
+  source.num_off = 0;
+  last_agreement_ = arrival;
+  if (is_off_) {
+    off_fit_.Add(arrival.time_since_epoch(), host_minus_utc - latency.value_or(microseconds(0)));
+    off_ = off_fit_.offset();
+  } else if (latency) {
+    fine_fit_.Add(arrival.time_since_epoch(), host_minus_utc - *latency);
+  }
+}
+
 std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime arrival, microseconds time_of_day,
-                                                    std::optional<std::chrono::sys_days> date, std::optional<microseconds> latency) {
+                                                    std::optional<std::chrono::sys_days> date, std::optional<microseconds> latency,
+                                                    bool is_measured) {
   const Utime expected = arrival - off_;
   MeasurementTime when = TimeOfMeasurement(expected, time_of_day, date, max_latency_);
   Resolved resolved{when.time, when.is_date_refused};
@@ -74,7 +86,11 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
     const Utime near = source.dated_utc ? *source.dated_utc + (arrival - source.dated_arrival) : expected;
     resolved = date ? MendRollover(*date + time_of_day, expected) : Resolved{OnTheDayNearest(near, time_of_day), false};
   }
+  // The first fix sets a receiver's clock right.
+  if (is_measured && !source.has_measured) source.last_utc.reset();
+  source.has_measured = is_measured;
   if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
+  const bool is_same_instant = source.last_utc == resolved.utc;
   source.last_utc = resolved.utc;
   source.dated_utc = resolved.utc;
   source.dated_arrival = arrival;
@@ -85,19 +101,14 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
   when.is_date_refused = resolved.is_date_refused;
   const auto host_minus_utc = arrival - resolved.utc;
   if (!when.is_from_sentence) {
-    when.time = arrival - latency.value_or(microseconds(0));
-    LearnThatItIsOff(source, arrival, host_minus_utc);
-    return when;
+    // Another sentence of an instant, or the same again, was not measured later. How late it is tells nothing new.
+    when.time = is_same_instant ? source.last_time : arrival - latency.value_or(microseconds(0));
+    if (is_measured && !is_same_instant) LearnThatItIsOff(source, arrival, host_minus_utc);
+  } else {
+    if (is_measured) LearnFrom(source, arrival, host_minus_utc, latency);
+    when.time = resolved.utc + off_;
   }
-  source.num_off = 0;
-  last_agreement_ = arrival;
-  if (is_off_) {
-    off_fit_.Add(arrival.time_since_epoch(), host_minus_utc - latency.value_or(microseconds(0)));
-    off_ = off_fit_.offset();
-  } else if (latency) {
-    fine_fit_.Add(arrival.time_since_epoch(), host_minus_utc - *latency);
-  }
-  when.time = resolved.utc + off_;
+  source.last_time = when.time;
   return when;
 }
 

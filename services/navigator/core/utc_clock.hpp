@@ -13,9 +13,11 @@ namespace lookout::navigator {
 /// What UtcClock remembers of one source.
 struct SourceClock {
   std::optional<Utime> last_utc;   // of its measurements
+  Utime last_time{};               // of the same, on the time scale of POSE
   std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: tells the day to those without a date
   Utime dated_arrival{};
   bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
+  bool has_measured = false;           // the last one came of a measurement; till then the time is that of the receiver's own clock
   std::optional<Utime> last_backward;  // refused because its time ran back
   int num_backward = 0;
   std::chrono::microseconds off{0};  // arrival less UTC of its last sentences whose time was not usable
@@ -28,7 +30,7 @@ struct SourceClock {
 /// it by the least of (arrival - UTC).
 class UtcClock {
  public:
-  /// So many sentences in a row make it sure that the clock is off, or right again.
+  /// Sentences of so many instants in a row make it sure that the clock is off, or right again.
   static constexpr int kMinSentences = 5;
   /// Datagrams overtake each other. A source whose time runs back by more is refused ...
   static constexpr std::chrono::seconds kMaxBackward{1};
@@ -37,10 +39,12 @@ class UtcClock {
 
   explicit UtcClock(std::chrono::microseconds max_latency) : max_latency_(max_latency) {}
 
-  /// @param latency  of the source; nullopt = not known
+  /// @param latency      of the source; nullopt = not known
+  /// @param is_measured  false: of a receiver without a fix, whose clock may begin anywhere. It tells nothing of the computer's
   /// @return nullopt when the source's time runs backwards
   std::optional<MeasurementTime> OfSentence(SourceClock& source, Utime arrival, std::chrono::microseconds time_of_day,
-                                            std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency);
+                                            std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency,
+                                            bool is_measured = true);
 
   /// Date and time of a sentence that measures nothing (ZDA).
   void OnDate(SourceClock& source, Utime arrival, Utime utc) const;
@@ -52,6 +56,7 @@ class UtcClock {
   std::chrono::microseconds host_minus_utc() const { return off_; }
 
  private:
+  void LearnFrom(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc, std::optional<std::chrono::microseconds> latency);
   static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
   void LearnThatItIsOff(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc);
 

@@ -143,6 +143,32 @@ TEST(PoseFilterAttitude, LevelsAnImuThatNothingElseHelps) {
   EXPECT_NEAR(pose.roll_rad, roll_rad, DegToRad(0.5));
 }
 
+// What a sensor says of itself hovers about the bound between two kinds. Each change of kind was a new error, and the mean of many much too good.
+TEST(PoseFilterAttitude, IsNotTheSurerForADeviationThatHovers) {
+  const auto sds = [](double first_share, double second_share) {
+    PoseFilter filter(TestFilterParams());
+    for (int i = 0; i < 3000; ++i) {
+      const double share = i % 10 < 5 ? first_share : second_share;
+      filter.Add(RestSample(0.02 * i));
+      if (i % 5 == 0) {
+        auto sample = AttitudeSample(0.02 * i, 90.0, 0.0, 0.0);
+        sample.heading_sd_rad = DegToRad(0.5 * share);
+        filter.Add(sample);
+        auto fix = Fix(0.02 * i);
+        fix.horizontal_sd_m = 0.1 * share;
+        filter.Add(fix);
+      }
+      filter.At(NoonPlus(0.02 * i));
+    }
+    const auto pose = filter.At(NoonPlus(59.98));
+    return std::pair(std::sqrt(pose.covariance(8, 8)), SdM(pose));
+  };
+  const auto even = sds(0.98, 0.98);
+  const auto hovering = sds(0.98, 1.02);
+  EXPECT_GT(hovering.first, 0.95 * even.first);
+  EXPECT_GT(hovering.second, 0.95 * even.second);
+}
+
 TEST(PoseFilterAttitude, RefusesSamplesThatLackANumber) {
   PoseFilter filter(TestFilterParams());
   auto sample = RestSample(0);

@@ -225,6 +225,19 @@ TEST(PoseFilter, NamesInputsThatStop) {
   EXPECT_EQ(filter.stopped(), "no position fix for 1 s, no heading for 1 s, no attitude for 1 s, no IMU for 1 s");
 }
 
+// The computer slept. HEALTH was ok then, though nothing came any more.
+TEST(PoseFilter, NamesInputsThatStoppedBeforeALongSilence) {
+  PoseFilter filter(TestFilterParams());
+  for (int i = 0; i < 50; ++i) {
+    filter.Add(Fix(0.1 * i));
+    filter.Add(AttitudeSample(0.1 * i, 0, 0, 0));
+    filter.At(NoonPlus(0.1 * i));
+  }
+  filter.AdvanceTo(NoonPlus(3600));
+  EXPECT_EQ(filter.At(NoonPlus(3600)).status, PoseStatus::kUnknown);
+  EXPECT_EQ(filter.stopped(), "no position fix for 3595 s, no heading for 3595 s, no attitude for 3595 s");
+}
+
 TEST(PoseFilter, GivesTheReceiverOfOneFixASecondMoreTime) {
   PoseFilter filter(TestFilterParams());
   for (int i = 0; i <= 3; ++i) {

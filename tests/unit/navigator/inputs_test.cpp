@@ -91,6 +91,7 @@ TEST_F(InputsTest, AreRefusedWithLineAndReason) {
   ExpectFault(kLive + "input { name: 'a' serial { device: '/dev/ttyUSB0' } }", "input.serial.baud: must be set");
   ExpectFault(kLive + "input { name: 'a' tcp { address: 'plotter.local' port: 1 } }", "'plotter.local' is no numeric address");
   ExpectFault(kLive + "input { name: 'a' text_log { file: 'no.nmea' } }", "cannot be read");
+  ExpectFault(kLive + "input { name: 'a' text_log { file: 'navigator.txtpb' speed: 1e-9 } }", "text_log.speed must be 0 or at least 0.001");
   ExpectFault(kLive + "bind_address: 'eth0'", ":2: bind_address: 'eth0' is no numeric address");
   ExpectFault(kLive + "input { name: 'a' gpsd {} latency_s: -1 }", "input.latency_s: must be at least 0");
   ExpectFault("source: LIVE use_lidar_nmea: false", ":1: source: is LIVE, but there is nothing to take");

@@ -183,6 +183,41 @@ TEST_F(InterpreterTest, CountsTimeThatRunsBackwards) {
   EXPECT_EQ(Count("time_backwards"), 1);
 }
 
+// A receiver without satellites says the time of its own clock, which may begin anywhere: it told a right computer that it is 46 years off.
+TEST_F(InterpreterTest, DoesNotTakeTheComputersClockForWrongBeforeAReceiverHasAFix) {
+  for (int i = 0; i < 20; ++i) {
+    Read(i, Line(Print("GPRMC,0000%02d.00,V,,,,,,,060180,,,N", i)));
+    Read(i, Line(Print("GPGGA,0000%02d.00,,,,,0,00,99.99,,,,,,", i)));
+  }
+  EXPECT_EQ(interpreter_.host_minus_utc(), 0us);
+  EXPECT_EQ(Read(20, Line("GPHDT,90.0,T")).attitude->when.utc, NoonPlus(20));
+  for (int i = 21; i < 40; ++i) Read(i + 0.1 - 3600, RmcLine(NoonPlus(i), 50.0, 8.0, 2.0, 30.0));
+  EXPECT_LT(interpreter_.host_minus_utc(), -3599s) << "with a fix it does";
+}
+
+// A multiplexer that repeats the last sentences of a receiver that has gone. Each was a new fix, and the time that stood still dragged the clock
+// along.
+TEST_F(InterpreterTest, TakesASentenceThatIsRepeatedForTheInstantThatItWas) {
+  for (int i = 0; i < 300; ++i) {
+    const auto fix = Read(0.1 + 0.1 * i, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0)).fix;
+    ASSERT_TRUE(fix);
+    EXPECT_EQ(fix->when.time, NoonPlus(0)) << i;
+    EXPECT_EQ(Read(0.1 + 0.1 * i, PashrLine(NoonPlus(0), 90.0, 0.0, 0.0, 0.0)).attitude->when.time, NoonPlus(0)) << i;
+  }
+  EXPECT_EQ(interpreter_.host_minus_utc(), 0us);
+}
+
+TEST_F(InterpreterTest, IsToldNothingOfTheClockByASourceThatIsOnlyRecorded) {
+  SourceParams recorded;
+  recorded.name = "nav";
+  recorded.role = Role::kNothing;
+  Configure(recorded);
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(Read(i, RmcLine(NoonPlus(i - 3600), 50.0, 8.0, 2.0, 30.0)).fix);
+  EXPECT_EQ(interpreter_.host_minus_utc(), 0us);
+  EXPECT_EQ(Count("outside_role"), 20);
+  EXPECT_EQ(Count("time_backwards"), 0);
+}
+
 TEST_F(InterpreterTest, CountsEachSource) {
   Read(0, HdtLine(1.0), "a");
   Read(0, "$GPHDT,1.0,T*00", "a");

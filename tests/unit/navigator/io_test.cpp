@@ -267,6 +267,30 @@ TEST_F(SourceTest, GpsdIsAskedForSentencesAndItsReportsAreLeftOut) {
   EXPECT_TRUE(Wait(*source, true));
 }
 
+// The library holds what is not a whole line: it must not wait for the rest for ever, with a descriptor that stays readable.
+TEST_F(SourceTest, GpsdThatEndsWithinALineOrNeverEndsOneIsLost) {
+  for (const auto& text : {std::string("$GPHDT,1.0,T*00\r\n$GPH"), std::string(100'000, '$')}) {
+    Server server;
+    const auto source = std::make_unique<GpsdClient>("gpsd", "127.0.0.1", server.port);
+    std::thread gpsd([&] {
+      server.Accept();
+      server.Accept();
+      char command[256] = {};
+      recv(server.client, command, sizeof command, 0);
+      server.Write(text);
+      if (text.size() < 100) server.Drop();
+    });
+    for (int round = 0; round < 200 && Count(*source, "gpsd_lost") == 0; ++round) {
+      Step(*source);
+      while (source->Receive(now_)) {
+      }
+      std::this_thread::sleep_for(10ms);
+    }
+    EXPECT_EQ(Count(*source, "gpsd_lost"), 1) << text.substr(0, 30);
+    gpsd.join();
+  }
+}
+
 // The real gpsd, fed by a pseudo terminal.
 TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
   const char* const program = "/usr/sbin/gpsd";

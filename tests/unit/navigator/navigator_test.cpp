@@ -232,6 +232,12 @@ TEST_F(NavigatorTest, DoesNotTakeAnOldSentenceThatTheLidarRepeatsForAFix) {
   EXPECT_TRUE(Sentence(1.1, RmcLine(NoonPlus(-299.0), 50.0, 8.0, 2.0, 30.0), kLidarSource).fix);
 }
 
+TEST_F(NavigatorTest, IsNotAtAPlaceForASentenceThatIsRepeatedForEver) {
+  for (int i = 0; i < 600; ++i) Sentence(0.1 + 0.1 * i, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0));
+  EXPECT_EQ(navigator_.last_pose()->status, PoseStatus::kUnknown);
+  EXPECT_EQ(navigator_.filter().stopped(), "no position fix for 60 s");
+}
+
 TEST_F(NavigatorTest, KeepsTheTimeOfDayOfAReceiverWhoseDateIsWrong) {
   // GPS weeks roll over after 1024: such a receiver is 7168 days behind.
   const auto fix = Sentence(0.1, RmcLine(NoonPlus(0.05) - std::chrono::days(7168), 50.0, 8.0, 2.0, 30.0)).fix;

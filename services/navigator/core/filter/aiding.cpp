@@ -97,6 +97,9 @@ void ModelHeading(const ErrorModel& model, State& state) {
   state.heading_error_model = model;
 }
 
+// The bound of a kind is wider for what is of that kind already: a deviation that hovers about it does not make a new error each time.
+double Bound(double max_sd, bool is_of_kind) { return is_of_kind ? max_sd / kSameErrorRatio : max_sd; }
+
 Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params, const State& state) {
   const Eigen::Vector3d lever_map_m = LeverMap(params, state);
   Innovation<2> innovation;
@@ -224,7 +227,7 @@ void ApplyCompass(const AttitudeMeasurement& attitude, const FilterParams& param
   if (std::isnan(attitude.heading_rad)) return;
   // Sensors of attitude say when they measured; a compass alone is late by an unknown time.
   if (!attitude.has_tilt() && state.attitude_heading.IsWithin(state.time, params.max_attitude_age)) return;
-  const bool is_precise = attitude.heading_sd_rad <= kTwoAntennasMaxSdRad;
+  const bool is_precise = attitude.heading_sd_rad <= Bound(kTwoAntennasMaxSdRad, state.heading_error_model.kind == ErrorKind::kTwoAntennas);
   const double slow_rad = (is_precise ? kTwoAntennasSlowShare : kCompassSlowShare) * attitude.heading_sd_rad;
   const ErrorModel model{is_precise ? ErrorKind::kTwoAntennas : ErrorKind::kCompass, slow_rad, 1.0, kHeadingErrorTimeS};
   const double noise_rad = Thinned(White(attitude.heading_sd_rad, slow_rad), kHeadingCorrelationS, state.sensor_heading, state.time);
@@ -286,7 +289,7 @@ void ApplyHeave(const AttitudeMeasurement& attitude, const FilterParams& params,
 }  // namespace
 
 void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
-  const bool is_rtk = fix.horizontal_sd_m <= kRtkMaxSdM;
+  const bool is_rtk = fix.horizontal_sd_m <= Bound(kRtkMaxSdM, state.fix_error_model.kind == ErrorKind::kRtk);
   const double slow_m = (is_rtk ? kRtkSlowShare : kGnssSlowShare) * fix.horizontal_sd_m;
   Model({is_rtk ? ErrorKind::kRtk : ErrorKind::kGnss, slow_m, fix.vertical_sd_m / fix.horizontal_sd_m, kFixErrorTimeS}, state);
   ApplyHorizontal(fix, params, state, verdict);

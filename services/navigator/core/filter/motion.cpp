@@ -239,7 +239,13 @@ Earth EarthAt(const Datum& datum) {
 void CarryOn(const InertialSample* sample, Utime time, const Earth& earth, const FilterParams& params, State& state) {
   double remaining_s = SecondsBetween(state.time, time);
   if (remaining_s > kMaxSilenceS) {
-    state = FreshState(time, params.unmeasured_tilt_sd_rad);
+    State fresh = FreshState(time, params.unmeasured_tilt_sd_rad);
+    // Which inputs there were: HEALTH names those that do not come back.
+    fresh.fix = state.fix;
+    fresh.sensor_heading = state.sensor_heading;
+    fresh.tilt = state.tilt;
+    fresh.imu = state.imu;
+    state = fresh;
     return;
   }
   if (remaining_s <= 0.0) return;
