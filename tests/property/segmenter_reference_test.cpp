@@ -4,9 +4,9 @@
 #include <map>
 #include <random>
 
+#include "services/segmenter/core/footprint.hpp"
 #include "services/segmenter/core/paper/component_clustering.hpp"
 #include "services/segmenter/core/paper/component_labelling.hpp"
-#include "services/segmenter/core/footprint.hpp"
 #include "services/segmenter/core/union_find.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
 

@@ -3,6 +3,7 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/core/angles.hpp"
 
@@ -186,7 +187,8 @@ void Evaluation::MeasureObstacle(const obstacles_t& message, const segment_t* se
 }
 
 void Evaluation::MeasureSeen(const obstacles_t& message, const std::vector<JoinedReturn>& returns, int object_id, const obstacle_t& obstacle) {
-  const auto own = std::ranges::equal_range(returns, obstacle.id, {}, &JoinedReturn::label);
+  const std::span<const JoinedReturn> own(std::ranges::lower_bound(returns, obstacle.id, {}, &JoinedReturn::label),
+                                          std::ranges::upper_bound(returns, obstacle.id, {}, &JoinedReturn::label));
   if (2 * std::ranges::count(own, object_id, &JoinedReturn::object_id) <= std::ssize(own)) return;
   std::vector<SeenReturn> seen_returns;
   for (const auto& made : own) {

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <optional>
 
-#include "common/core/utime.hpp"
 #include "common/core/clock_fit.hpp"
+#include "common/core/utime.hpp"
 #include "services/vlp16/core/packet_sequencer.hpp"
 #include "services/vlp16/core/position_packet.hpp"
 

@@ -65,7 +65,7 @@ TEST(Pieces, AtOnePlaceHaveNoLengthAndFiniteFacts) {
 
 TEST(CoveringArc, GoesOnOverTheSeam) {
   auto scan = RingWith({{355, 10}});
-  SetReturn(scan, 0, 0, 0.0);  // a hole at the seam: two runs of one piece
+  SetReturn(scan, 0, 0, 0.0);                                               // a hole at the seam: two runs of one piece
   const Stages stages(scan, LinkFor(LookoutParams{}.link, DegToRad(1.0)));  // columns are a degree apart
   ASSERT_EQ(stages.pieces.size(), 1);
   EXPECT_EQ(stages.pieces.FactsOf(0).arc.first, 355);
