@@ -43,7 +43,7 @@ std::vector<Vector2d> Hull(std::vector<Vector2d> points) {
 }
 
 Vector2d Center(const std::vector<Vector2d>& hull) {
-  const Vector2d origin = hull.front();
+  const Vector2d& origin = hull.front();
   double doubled_area_m2 = 0.0;
   double extent_m2 = 0.0;
   Vector2d weighted = Vector2d::Zero();
