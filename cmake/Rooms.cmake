@@ -57,6 +57,9 @@ function(lookout_test)
   if(NOT test_TIMEOUT)
     set(test_TIMEOUT 60)
   endif()
+  if(LOOKOUT_SANITIZE)
+    math(EXPR test_TIMEOUT "5 * ${test_TIMEOUT}")  # sanitizers slow filters and simulations ten times and more
+  endif()
   set_tests_properties(${test_NAME} PROPERTIES TIMEOUT ${test_TIMEOUT} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 endfunction()
 

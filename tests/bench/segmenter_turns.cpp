@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <ctime>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,29 @@ double Percentile(std::vector<double>& times_ms, double share) {
   std::ranges::sort(times_ms);
   const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(times_ms.size())));
   return times_ms[std::max<std::size_t>(rank, 1) - 1];
+}
+
+// Heavy spray about the bow: a return on every third beam, 0.6 to 6 m off.
+Scan SprayScan(int num_columns) {
+  auto scan = test::EmptyScan({.num_columns = num_columns});
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int column = 0; column < num_columns; ++column) {
+    for (int ring = 0; ring < scan.head.num_rings(); ++ring) {
+      if (uniform(random) < 1.0 / 3.0) test::SetReturn(scan, column, ring, 0.6 + 5.4 * uniform(random));
+    }
+  }
+  return scan;
+}
+
+// Many small solid things, all near.
+Scan BlocksScan(int num_columns) {
+  auto scan = test::EmptyScan({.num_columns = num_columns});
+  for (int column = 0; column < num_columns; ++column) {
+    for (int ring = 0; ring < scan.head.num_rings(); ++ring)
+      test::SetReturn(scan, column, ring, 1.0 + (column / 6 % 2 != 0 ? 0.5 : 0.0) + 0.9 * (ring % 4));
+  }
+  return scan;
 }
 
 // Beams over 30 degrees, however many there are.
@@ -78,6 +102,11 @@ int main(int argc, char** argv) {
   test::AddRain(rows.back().scan, 5000, kSeed);
   rows.push_back({"every beam", LakeScan(16, 1808, 0, true)});
   rows.push_back({"every beam, rain", LakeScan(16, 1808, 2880, true)});
+
+  for (const int num_columns : {512, 2048}) {
+    rows.push_back({"spray " + std::to_string(num_columns), SprayScan(num_columns)});
+    rows.push_back({"blocks " + std::to_string(num_columns), BlocksScan(num_columns)});
+  }
 
   auto peers = eval::MakePeers({});
   const auto peer = [&peers](const std::string& name) -> eval::Method* {

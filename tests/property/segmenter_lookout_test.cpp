@@ -1,7 +1,6 @@
 // Laws of the lookout method: what may change nothing but the numbers of segments, and what may change nothing at all.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <gtest/gtest.h>
 #include <map>
 #include <optional>
@@ -251,39 +250,6 @@ TEST(LookoutLaw, GarbageHasLabelsAndFiniteSegmentsToo) {
       }
     }
   }
-}
-
-// Processor time, so that other processes count little; the least of three.
-double LeastSeconds(const Scan& scan) {
-  Segmenter segmenter{Params{}};
-  double least_s = 1e9;
-  for (int i = 0; i < 3; ++i) {
-    const auto begin = std::clock();
-    segmenter.Segment(scan);
-    least_s = std::min(least_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-  }
-  return least_s;
-}
-
-// A turn with a return on each beam, its range from column, ring and chance.
-template <typename RangeM>
-Scan Full(RangeM range_m) {
-  auto scan = test::EmptyScan({});
-  std::mt19937_64 random(9);
-  const auto uniform = [&random](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
-  for (int column = 0; column < 1808; ++column) {
-    for (int ring = 0; ring < 16; ++ring) test::SetReturn(scan, column, ring, range_m(column, ring, uniform));
-  }
-  return scan;
-}
-
-// A turn of a smooth wall is the cheapest of its size. Bounds are some three times what was measured on 2026-11-21.
-TEST(LookoutLaw, StraysAndCheckerboardsCostWithinBoundsOfASmoothWall) {
-  const double wall_s = std::max(1e-3, LeastSeconds(Full([](int, int, const auto&) { return 20.0; })));
-  EXPECT_LT(LeastSeconds(Full([](int column, int ring, const auto&) { return (column + ring) % 2 == 0 ? 10.0 : 20.0; })), 60.0 * wall_s);
-  EXPECT_LT(LeastSeconds(Full([](int, int, const auto&) { return 0.5; })), 10.0 * wall_s);
-  EXPECT_LT(LeastSeconds(Full([](int, int, const auto& uniform) { return uniform(1.0, 120.0); })), 60.0 * wall_s);
-  EXPECT_LT(LeastSeconds(Full([](int, int, const auto& uniform) { return uniform(0.5, 3.0); })), 30.0 * wall_s);
 }
 
 }  // namespace

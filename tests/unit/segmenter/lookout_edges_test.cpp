@@ -1,9 +1,7 @@
 // The lookout method where the circle closes, where a turn is a part of one, and where a lidar is another than the VLP-16.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <gtest/gtest.h>
-#include <random>
 
 #include "tests/unit/segmenter/lookout_stages.hpp"
 #include "tests/unit/wire/counting_new.hpp"
@@ -181,48 +179,6 @@ TEST(Memory, NothingIsAllocatedForATurnThatHasBeenSeen) {
     segmenter.Segment(scan);
     EXPECT_EQ(num_allocated_bytes - before, 0U) << "seed " << seed;
   }
-}
-
-// Processor time, so that other processes count little; the least of so many runs.
-double LeastSeconds(const Scan& scan, int num_runs) {
-  Segmenter segmenter{Params{}};
-  double least_s = 1e9;
-  for (int i = 0; i < num_runs; ++i) {
-    const auto begin = std::clock();
-    segmenter.Segment(scan);
-    least_s = std::min(least_s, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
-  }
-  return least_s;
-}
-
-// A turn of 16 rings, ranges from column, ring and chance; 0 = none.
-template <typename RangeM>
-Scan Filled(int num_columns, RangeM range_m) {
-  auto scan = EmptyScan({.num_columns = num_columns});
-  std::mt19937_64 random(9);
-  const auto uniform = [&random](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
-  for (int column = 0; column < num_columns; ++column) {
-    for (int ring = 0; ring < 16; ++ring) SetReturn(scan, column, ring, range_m(column, ring, uniform));
-  }
-  return scan;
-}
-
-// Four times the returns may cost six times as much; by all pairs it would be sixteen.
-template <typename RangeM>
-void ExpectAboutLinear(RangeM range_m) {
-  const double few_s = std::max(5e-4, LeastSeconds(Filled(512, range_m), 3));
-  const double many_s = LeastSeconds(Filled(2048, range_m), 2);
-  EXPECT_LT(many_s, 6.0 * few_s) << few_s << " s and " << many_s << " s";
-}
-
-// Within 2 m everything is near everything in azimuth. Spray about the bow: a return on every third beam.
-TEST(Cost, OfHeavySprayIsAboutLinear) {
-  ExpectAboutLinear([](int, int, const auto& uniform) { return uniform(0.0, 3.0) < 1.0 ? uniform(0.6, 6.0) : 0.0; });
-}
-
-// Pieces of six returns, all near.
-TEST(Cost, OfManySmallThingsNearByIsAboutLinear) {
-  ExpectAboutLinear([](int column, int ring, const auto&) { return 1.0 + (column / 6 % 2 != 0 ? 0.5 : 0.0) + 0.9 * (ring % 4); });
 }
 
 // A slope of 128 rings is 38 m long, so it is land, in a single column.
