@@ -2,14 +2,24 @@
 
 #include <stdexcept>
 
+#include "common/bus/header.hpp"
+
 namespace lookout::bus {
 
 namespace {
 
 void AddHandlingTime(ChannelTraffic& traffic, std::chrono::steady_clock::duration duration) {
   traffic.total_handling_time += duration;
-  if (traffic.handling_times.size() == ChannelTraffic::kMaxHandlingTimes) traffic.handling_times.pop_front();
+  if (traffic.handling_times.size() == ChannelTraffic::kMaxTimes) traffic.handling_times.pop_front();
   traffic.handling_times.push_back(std::chrono::duration_cast<std::chrono::microseconds>(duration));
+}
+
+void AddSent(ChannelTraffic& traffic, Bytes bytes) {
+  ++traffic.num_messages;
+  const auto header = ReadHeader(bytes);
+  if (!header) return;
+  if (traffic.sent.size() == ChannelTraffic::kMaxTimes) traffic.sent.pop_front();
+  traffic.sent.push_back({header->utime_us, std::chrono::steady_clock::now()});  // for HEALTH only
 }
 
 }  // namespace
@@ -20,7 +30,7 @@ void Bus::Publish(const Channel& channel, Bytes bytes) {
                              std::to_string(kMaxMessageBytes));
   }
   if (Send(channel, bytes)) {
-    ++outputs_[std::string(channel.name)].num_messages;
+    AddSent(outputs_[std::string(channel.name)], bytes);
   } else {
     ++num_unsent_;
   }

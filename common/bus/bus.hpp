@@ -25,9 +25,16 @@ struct ChannelTraffic {
   std::int64_t num_undecodable = 0;
   std::int64_t num_lost = 0;
   std::chrono::nanoseconds total_handling_time{0};
-  std::deque<std::chrono::microseconds> handling_times;  // of the latest messages, at most kMaxHandlingTimes
+  std::deque<std::chrono::microseconds> handling_times;  // of the latest messages, at most kMaxTimes
 
-  static constexpr std::size_t kMaxHandlingTimes = 1000;
+  /// A message that was sent: the time of its measurement, and when it went out.
+  struct Sent {
+    std::int64_t utime_us = 0;
+    std::chrono::steady_clock::time_point time;
+  };
+  std::deque<Sent> sent;  // the latest, at most kMaxTimes
+
+  static constexpr std::size_t kMaxTimes = 1000;
 };
 
 class Bus {
@@ -61,6 +68,7 @@ class Bus {
   const std::map<std::string, ChannelTraffic, std::less<>>& input_traffic() const { return inputs_; }
   const std::map<std::string, ChannelTraffic, std::less<>>& output_traffic() const { return outputs_; }
   std::map<std::string, ChannelTraffic, std::less<>>& input_traffic() { return inputs_; }
+  std::map<std::string, ChannelTraffic, std::less<>>& output_traffic() { return outputs_; }
 
   /// Messages waiting on a subscribed channel; -1 = not known.
   virtual int QueueDepth(std::string_view channel) const = 0;

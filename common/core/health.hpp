@@ -14,7 +14,7 @@ struct Counter {
   std::int64_t count = 0;
 };
 
-enum class HealthState { kOk = 0, kDegraded = 1, kError = 2 };
+enum class HealthState { kOk = 0, kDegraded = 1, kFailed = 2 };
 
 struct HealthReport {
   HealthState state = HealthState::kOk;

@@ -30,6 +30,9 @@ std::int64_t ResidentBytes() {
   return resident_pages * sysconf(_SC_PAGESIZE);
 }
 
+// A process that waits for its first input is starting, not ill, for so long.
+constexpr std::chrono::seconds kStartTime(3);
+
 // The value that a share `quantile` of the times does not exceed; -1 without times.
 std::int64_t QuantileUs(const std::vector<std::chrono::microseconds>& sorted, double quantile) {
   if (sorted.empty()) return -1;
@@ -51,10 +54,12 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   message.process = process_;
   message.host = HostName();
   message.pid = getpid();
+  if (report.state == HealthState::kOk || steady_now - start_ > kStartTime) is_started_ = true;
   message.state = static_cast<std::int32_t>(report.state);
+  if (!is_started_ && report.state == HealthState::kDegraded) message.state = health_t::STATE_STARTING;
   message.reason = report.reason;
   if (bus.num_unsent() > last_num_unsent_) {
-    message.state = std::max(message.state, static_cast<std::int32_t>(health_t::STATE_DEGRADED));
+    if (message.state != health_t::STATE_FAILED) message.state = health_t::STATE_DEGRADED;
     message.reason += (message.reason.empty() ? "" : "; ") + std::to_string(bus.num_unsent() - last_num_unsent_) + " messages could not be sent";
   }
   last_num_unsent_ = bus.num_unsent();
@@ -80,13 +85,26 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
     std::ranges::sort(times);
     channel.handling_p50_us = QuantileUs(times, 0.50);
     channel.handling_p99_us = QuantileUs(times, 0.99);
+    std::vector<std::chrono::microseconds> latencies;
+    for (const auto& sent : traffic.sent) {
+      // Subtracted as unsigned: a time out of a corrupt message must not overflow.
+      const auto utime_us = static_cast<std::uint64_t>(ToUtimeUs(now)) - static_cast<std::uint64_t>(sent.utime_us);
+      latencies.push_back(std::chrono::microseconds(static_cast<std::int64_t>(utime_us)) -
+                          std::chrono::duration_cast<std::chrono::microseconds>(steady_now - sent.time));
+    }
+    std::ranges::sort(latencies);
+    channel.latency_p50_us = QuantileUs(latencies, 0.50);
+    channel.latency_p99_us = QuantileUs(latencies, 0.99);
     message.channels.push_back(channel);
   };
   for (auto& [name, traffic] : bus.input_traffic()) {
     add_channel(name, traffic, true);
     traffic.handling_times.clear();
   }
-  for (const auto& [name, traffic] : bus.output_traffic()) add_channel(name, traffic, false);
+  for (auto& [name, traffic] : bus.output_traffic()) {
+    add_channel(name, traffic, false);
+    traffic.sent.clear();
+  }
   message.num_channels = static_cast<std::int32_t>(message.channels.size());
 
   auto counters = report.counters;

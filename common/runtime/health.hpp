@@ -26,6 +26,7 @@ class HealthReporter {
   std::chrono::steady_clock::time_point last_;
   double last_cpu_s_ = 0.0;
   std::int64_t seq_ = 0;
+  bool is_started_ = false;  // was OK once, or had its time
   std::int64_t last_num_unsent_ = 0;
   std::map<std::string, std::int64_t> last_counts_;  // by channel, inputs and outputs apart
 };

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     process.Every(kTick, [&] {
       service.AdvanceTo(lookout::runtime::HostNow());
       for (const auto& warning : service.TakeWarnings()) spdlog::warn("{}", warning);
-      if (service.log_file() != log_file && service.Report().state != lookout::HealthState::kError) {
+      if (service.log_file() != log_file && service.Report().state != lookout::HealthState::kFailed) {
         log_file = service.log_file();
         spdlog::info("writing {}", log_file.string());
       }

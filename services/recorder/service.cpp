@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "common/bus/header.hpp"
+
 namespace lookout::recorder {
 
 namespace {
@@ -20,9 +22,6 @@ constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
 constexpr std::chrono::seconds kRunInfoPeriod(10);
 // Channels outside of the table that are named in warnings.
 constexpr std::size_t kMaxUnknownNames = 20;
-// Every message of package lookout: fingerprint, utime_us, seq, 8 bytes each, big-endian.
-constexpr std::size_t kSeqOffset = 16;
-constexpr std::size_t kSeqBytes = 8;
 
 // "20261121T134501Z"
 std::string FileStem(Utime time) {
@@ -55,12 +54,6 @@ std::string Printable(std::string_view text) {
   std::string printable;
   for (const char letter : text) printable += letter >= ' ' && letter <= '~' ? letter : '?';
   return printable;
-}
-
-std::int64_t ReadSeq(Bytes bytes) {
-  std::uint64_t value = 0;
-  for (std::size_t i = 0; i < kSeqBytes; ++i) value = value << 8 | bytes[kSeqOffset + i];
-  return static_cast<std::int64_t>(value);
 }
 
 }  // namespace
@@ -172,10 +165,11 @@ void Service::Fail(std::string_view reason) {
 }
 
 void Service::WatchGaps(std::string_view channel, Bytes bytes) {
-  if (bytes.size() < kSeqOffset + kSeqBytes) return;  // its readers refuse it
+  const auto header = bus::ReadHeader(bytes);
+  if (!header) return;  // its readers refuse it
   auto watch = raw_sequences_.find(channel);
   if (watch == raw_sequences_.end()) watch = raw_sequences_.emplace(channel, bus::SequenceWatch{}).first;
-  num_raw_missing_ += watch->second.NumLostBefore(ReadSeq(bytes));
+  num_raw_missing_ += watch->second.NumLostBefore(header->seq);
 }
 
 void Service::WatchUnknown(std::string_view channel) {
@@ -198,7 +192,7 @@ HealthReport Service::Report() const {
                      {"nameless_channel", num_nameless_},
                      {"raw_missing", num_raw_missing_}};
   if (!writer_) {
-    report.state = HealthState::kError;
+    report.state = HealthState::kFailed;
     report.reason = "not recording: " + fault_;
   } else if (num_lost_ > 0) {
     report.state = HealthState::kDegraded;

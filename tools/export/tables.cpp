@@ -197,6 +197,9 @@ void WriteTraffic(const health_t& health, CsvWriter& csv) {
     csv.Integer(channel.queue_limit);
     WriteCount(channel.handling_p50_us, csv);
     WriteCount(channel.handling_p99_us, csv);
+    // A latency may be negative, where the sensor's clock is ahead.
+    csv.Text(channel.latency_p50_us == -1 ? "" : std::to_string(channel.latency_p50_us));
+    csv.Text(channel.latency_p99_us == -1 ? "" : std::to_string(channel.latency_p99_us));
     csv.EndRow();
   }
 }
@@ -255,7 +258,7 @@ constexpr std::array kTables{
           WriteMessage<health_t, WriteHealth>},
     Table{"traffic",
           "utime_us,process,channel,direction,num_messages,num_undecodable,num_lost,rate_hz,queue_depth,queue_limit,handling_p50_us,"
-          "handling_p99_us",
+          "handling_p99_us,latency_p50_us,latency_p99_us",
           bus::kHealth, WriteMessage<health_t, WriteTraffic>},
     Table{"counters", "utime_us,process,name,count", bus::kHealth, WriteMessage<health_t, WriteCounters>}};
 

@@ -61,7 +61,7 @@ inline constexpr std::array kFixQuality{Word{gnss_fix_t::QUALITY_NONE, "none"},
                                         Word{gnss_fix_t::QUALITY_SIMULATOR, "simulator"}};
 
 inline constexpr std::array kHealthState{Word{health_t::STATE_OK, "ok"}, Word{health_t::STATE_DEGRADED, "degraded"},
-                                         Word{health_t::STATE_ERROR, "error"}};
+                                         Word{health_t::STATE_FAILED, "failed"}, Word{health_t::STATE_STARTING, "starting"}};
 
 /// @return the word of `code`; "undefined" for a code that is not of this version
 constexpr std::string_view WordOf(std::span<const Word> words, int code) {

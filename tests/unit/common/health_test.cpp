@@ -14,16 +14,17 @@ TEST(HealthReporter, TellsTrafficCountersAndTheMachine) {
   for (const int seq : {0, 3}) {
     lidar_nmea_t message{};
     message.seq = seq;
+    message.utime_us = 1'000'000;
     bus::Publish(bus, bus::kLidarNmea, message);
   }
   while (bus.HandleOnce()) {
   }
   HealthReporter reporter("test");
   const HealthReport report{HealthState::kDegraded, "no lidar", {{"bad_flag", 7}}};
-  const auto message = reporter.Make(Utime(std::chrono::microseconds(5)), report, bus);
-  EXPECT_EQ(message.utime_us, 5);
+  const auto message = reporter.Make(Utime(std::chrono::microseconds(1'300'000)), report, bus);
+  EXPECT_EQ(message.utime_us, 1'300'000);
   EXPECT_EQ(message.process, "test");
-  EXPECT_EQ(message.state, health_t::STATE_DEGRADED);
+  EXPECT_EQ(message.state, health_t::STATE_STARTING);
   EXPECT_EQ(message.reason, "no lidar");
   ASSERT_EQ(message.num_counters, 2);  // and messages_not_sent
   EXPECT_EQ(message.counters[0].name, "bad_flag");
@@ -33,8 +34,24 @@ TEST(HealthReporter, TellsTrafficCountersAndTheMachine) {
   EXPECT_EQ(message.channels[0].num_messages, 2);
   EXPECT_EQ(message.channels[0].num_lost, 2);
   EXPECT_GE(message.channels[0].handling_p99_us, message.channels[0].handling_p50_us);
+  EXPECT_EQ(message.channels[0].latency_p50_us, -1);
+  // Sent a moment before the report: up to a second for a machine that is busy.
+  EXPECT_LE(message.channels[1].latency_p99_us, 300'000);
+  EXPECT_GE(message.channels[1].latency_p50_us, -700'000);
   EXPECT_GT(message.resident_bytes, 1'000'000);
-  EXPECT_EQ(reporter.Make(Utime(), report, bus).seq, 1);
+  const auto next = reporter.Make(Utime(), report, bus);
+  EXPECT_EQ(next.seq, 1);
+  EXPECT_EQ(next.channels[1].latency_p50_us, -1);
+}
+
+TEST(HealthReporter, IsStartingUntilItIsOkOnce) {
+  bus::MemoryBus bus;
+  HealthReporter reporter("test");
+  const HealthReport waits{HealthState::kDegraded, "no lidar", {}};
+  EXPECT_EQ(reporter.Make(Utime(), waits, bus).state, health_t::STATE_STARTING);
+  EXPECT_EQ(reporter.Make(Utime(), {HealthState::kFailed, "disk full", {}}, bus).state, health_t::STATE_FAILED);
+  EXPECT_EQ(reporter.Make(Utime(), {}, bus).state, health_t::STATE_OK);
+  EXPECT_EQ(reporter.Make(Utime(), waits, bus).state, health_t::STATE_DEGRADED);
 }
 
 }  // namespace

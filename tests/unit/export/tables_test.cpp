@@ -244,7 +244,7 @@ TEST_F(TablesTest, HealthQuotesReasonsAndSplitsIntoTrafficAndCounters) {
   health.interval_s = 1.0;
   health.num_channels = 1;
   health.channels.resize(1);
-  health.channels[0] = {"LIDAR_SCAN", 0, 600, 0, 0, 10.0, -1, 0, -1, -1};
+  health.channels[0] = {"LIDAR_SCAN", 0, 600, 0, 0, 10.0, -1, 0, -1, -1, 101'200, -1};
   health.num_counters = 1;
   health.counters.resize(1);
   health.counters[0].name = "bad_flag";
@@ -253,7 +253,7 @@ TEST_F(TablesTest, HealthQuotesReasonsAndSplitsIntoTrafficAndCounters) {
   ASSERT_EQ(Export("health"), kExitFine);
   EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,degraded,\"no PPS, 3 packets lost\",0.1250,10000000,60.500,1.000,boat,12");
   ASSERT_EQ(Export("traffic"), kExitFine);
-  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,LIDAR_SCAN,out,600,0,0,10.000,,0,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,LIDAR_SCAN,out,600,0,0,10.000,,0,,,101200,");
   ASSERT_EQ(Export("counters"), kExitFine);
   EXPECT_EQ(Rows()[0], "1700000000000000,vlp16,bad_flag,9");
 }

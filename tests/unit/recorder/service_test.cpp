@@ -234,7 +234,7 @@ TEST_F(Recorder, GoesOnInANewLogWhenADiskThatWasFullIsNotAnyMore) {
     }
     report_when_full = service.Report();
   }
-  EXPECT_EQ(report_when_full.state, HealthState::kError);
+  EXPECT_EQ(report_when_full.state, HealthState::kFailed);
   EXPECT_EQ(report_when_full.reason.rfind("not recording: ", 0), 0U) << report_when_full.reason;
   EXPECT_EQ(service.TakeWarnings().size(), 1U) << "once, not at each attempt";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "attempts leave no empty logs";
