@@ -126,7 +126,7 @@ journalctl --no-pager -u lookout-segmenter | tail -n 8
 old=$(systemctl show -P MainPID lookout-vlp16)
 expect "reload of vlp16" systemctl reload lookout-vlp16
 sleep 2
-journalctl --no-pager -u lookout-vlp16 | tail -n 40
+journalctl --no-pager -u lookout-vlp16 | tail -n 4
 expect "vlp16 is active after its reload, the same process" [ "$(systemctl show -P MainPID lookout-vlp16)" = "$old" ]
 expect "a log" sh -c 'ls -l /var/lib/lookout/logs/*.lcmlog'
 systemctl stop lookout.target

@@ -6,3 +6,5 @@ set_target_properties(system_restart PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE
 add_dependencies(system_restart lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
 add_test(NAME system_restart COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_restart>)
 set_tests_properties(system_restart PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+add_test(NAME system_deploy COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/deploy_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
+set_tests_properties(system_deploy PROPERTIES TIMEOUT 60)

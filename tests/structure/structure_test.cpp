@@ -159,4 +159,20 @@ TEST(Structure, ReadmeNamesEveryProgram) {
   }
 }
 
+// What is not in the table is neither in systemd's units nor started by lookout-up.
+TEST(Structure, TheTableOfProcessesNamesEveryService) {
+  std::vector<std::string> in_table;
+  std::istringstream table(Read(kRoot / "deploy/processes"));
+  for (std::string line; std::getline(table, line);) {
+    if (!line.empty() && line[0] != '#') in_table.push_back(line.substr(0, line.find(' ')));
+  }
+  std::vector<std::string> in_folder;
+  for (const auto& entry : fs::directory_iterator(kRoot / "services")) {
+    if (entry.is_directory()) in_folder.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(in_table);
+  std::ranges::sort(in_folder);
+  EXPECT_EQ(in_table, in_folder);
+}
+
 }  // namespace
