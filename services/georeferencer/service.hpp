@@ -11,6 +11,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
+#include "services/georeferencer/core/guard_zone.hpp"
 #include "services/georeferencer/params.hpp"
 
 namespace lookout::georeferencer {
@@ -35,6 +36,8 @@ class Service {
 
   bus::Bus& bus_;
   Georeferencer georeferencer_;
+  GuardZone guard_zone_;
+  double guard_range_m_;
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;
   std::optional<bool> is_newest_pose_placed_;
