@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 #include <variant>
 
 #include "common/core/angles.hpp"
@@ -23,6 +24,22 @@ std::string AlarmText(const NearestPoint& nearest, double guard_range_m) {
   std::snprintf(text.data(), text.size(), "obstacle within %.1f m: %.1f m, %.0f deg to %s", guard_range_m, nearest.range_m, std::abs(bearing_deg),
                 bearing_deg < 0.0 ? "port" : "starboard");
   return text.data();
+}
+
+// What the state of POSE means for the whole; empty where it is as it should be.
+std::string_view PoseText(std::int32_t pose_status) {
+  switch (pose_status) {
+    case pose_t::STATUS_NO_HEADING:
+      return "no heading: obstacles in the vessel frame only";
+    case pose_t::STATUS_NO_POSITION:
+      return "no position: obstacles in the vessel frame only";
+    case pose_t::STATUS_UNKNOWN:
+      return "no position and no heading: obstacles in the vessel frame only";
+    case pose_t::STATUS_COASTING:
+      return "POSE is only carried on: obstacles drift as their covariance says";
+    default:
+      return {};
+  }
 }
 
 }  // namespace
@@ -45,8 +62,7 @@ void Service::OnPose(const pose_t& message) {
   const auto pose = ToPose(message);
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
   pose_seen_ = now_;
-  is_newest_pose_placed_ = std::get<Pose>(pose).is_placed;
-  is_newest_pose_carried_on_ = message.status == pose_t::STATUS_COASTING;
+  newest_pose_status_ = message.status;
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
 }
 
@@ -93,13 +109,14 @@ HealthReport Service::Report() const {
     if (nearest) report.counters.push_back({"nearest_cm", std::llround(100.0 * nearest->range_m)});
   }
   if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
-  if (is_newest_pose_carried_on_ && silence(pose_seen_) < kSilence) degrade("POSE is only carried on: obstacles drift as their covariance says");
   if (silence(pose_seen_) >= kSilence) {
     degrade("no POSE for " + seconds(silence(pose_seen_)));
-  } else if (is_newest_pose_placed_ == false) {
-    degrade("POSE does not know position and heading: obstacles in the vessel frame only");
-  } else if (georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence) {
-    degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
+  } else {
+    const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
+    if (const auto text = PoseText(status); !text.empty()) degrade(std::string(text));
+    const bool is_placed = status == pose_t::STATUS_OK || status == pose_t::STATUS_COASTING;
+    const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
+    if (is_placed && is_late) degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
   return report;
 }
