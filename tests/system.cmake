@@ -20,7 +20,7 @@ add_test(NAME system_live COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespac
 add_test(NAME system_ingestion COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_ingestion>)
 add_test(NAME system_sources COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_sources>)
 add_test(NAME system_no_route COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_no_route>)
-add_test(NAME system_two_computers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_two_computers>)
+add_test(NAME system_two_computers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_two_computers>)
 # RUN_SERIAL: they keep real time.
 set_tests_properties(system_live system_ingestion system_sources system_no_route system_two_computers PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 

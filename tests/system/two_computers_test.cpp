@@ -5,9 +5,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "common/bus/lcm_bus.hpp"
@@ -45,6 +47,7 @@ class TwoComputers : public ::testing::Test {
   }
   void TearDown() override {
     children_.clear();
+    Ip({"link", "del", "cable1"});
     second_.reset();
     fs::current_path(start_folder_);
     if (!HasFailure()) fs::remove_all(folder_);
@@ -79,7 +82,6 @@ class TwoComputers : public ::testing::Test {
     while (!IsSecondReady() && second_->IsRunning() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(5));
     ASSERT_TRUE(IsSecondReady()) << second_->Output();
     const auto second = std::to_string(second_->pid());
-    Ip({"route", "del", kRoute, "dev", "lo"});  // in_namespace.sh made it
     Ip({"link", "add", "cable1", "type", "veth", "peer", "name", "cable2", "netns", second});
     Ip({"addr", "add", "10.76.0.1/24", "dev", "cable1"});
     Ip({"link", "set", "cable1", "up"});
@@ -90,11 +92,28 @@ class TwoComputers : public ::testing::Test {
     Ip({"route", "add", kRoute, "dev", "cable2"}, true);
   }
 
-  // The second computer's interface goes down, and its routes with it; the first sees that the carrier is gone.
-  void PullCable() { Ip({"link", "set", "cable2", "down"}, true); }
-  // What systemd-networkd or ifupdown does when the carrier is back: the route is theirs, not ours.
-  void PutCableBack() {
+  // What is left of the network when the cable is out.
+  enum class Out {
+    kSecondsRoutes,  // the second computer loses its routes; the first, with routes of a plain `ip route`, only the carrier
+    kAllAddresses    // both lose routes and addresses, as systemd-networkd has it
+  };
+
+  void PullCable(Out out) {
+    Ip({"link", "set", "cable2", "down"}, true);
+    if (out == Out::kSecondsRoutes) return;
+    Ip({"addr", "flush", "dev", "cable2"}, true);
+    Ip({"link", "set", "cable1", "down"});
+    Ip({"addr", "flush", "dev", "cable1"});
+  }
+  // What ifupdown or systemd-networkd does when the carrier is back: routes and addresses are theirs, not ours.
+  void PutCableBack(Out out) {
     Ip({"link", "set", "cable2", "up"}, true);
+    if (out == Out::kAllAddresses) {
+      Ip({"link", "set", "cable1", "up"});
+      Ip({"addr", "add", "10.76.0.1/24", "dev", "cable1"});
+      Ip({"addr", "add", "10.76.0.2/24", "dev", "cable2"}, true);
+      Ip({"route", "add", kRoute, "dev", "cable1"});
+    }
     Ip({"route", "add", kRoute, "dev", "cable2"}, true);
   }
 
@@ -117,6 +136,8 @@ class TwoComputers : public ::testing::Test {
     return health;
   }
 
+  void LiveThroughAPulledCable(Out out);
+
   static std::int64_t LostOn(const health_t& health, const std::string& name) {
     for (const auto& channel : health.channels) {
       if (channel.is_input && channel.channel == name) return channel.num_lost;
@@ -131,7 +152,7 @@ class TwoComputers : public ::testing::Test {
   }
 };
 
-TEST_F(TwoComputers, APulledCableLosesWhatIsCountedAndAllGoesOnByItself) {
+void TwoComputers::LiveThroughAPulledCable(Out out) {
   const std::vector<std::string> on_first{"navigator", "vlp16"};
   const std::vector<std::string> on_second{"recorder", "georeferencer", "segmenter"};
   bus::LcmBus lcm(bus::DefaultLcmUrl());
@@ -153,18 +174,22 @@ TEST_F(TwoComputers, APulledCableLosesWhatIsCountedAndAllGoesOnByItself) {
   for (const auto& service : on_second) Start(service, true);
   EXPECT_TRUE(wait_until([&] { return num_health.size() == on_second.size(); })) << "not all of the second computer are heard on the first";
   for (const auto& service : on_first) Start(service, false);
-  EXPECT_TRUE(wait_until([&] { return num_health.size() == on_second.size() + on_first.size(); }));
   Child simulator({Bin("sim"), "--config", (folder_ / "config").string(), "--scene", "lake", "--seed", "3", "--seconds", "30", "--udp", "127.0.0.1"},
                   Output("sim"));
   ASSERT_TRUE(wait_until([&] { return num_placed >= 10; })) << "nothing came over the cable and back";
 
-  PullCable();
+  PullCable(out);
+  constexpr int kTurnsWithout = 12;
   const auto scans_before = num_scans;
-  const auto health_before = num_health;
-  EXPECT_TRUE(wait_until([&] { return num_scans >= scans_before + 20; })) << "the first computer does not mind";
+  const auto placed_at_pull = num_placed;
+  if (out == Out::kSecondsRoutes) {
+    EXPECT_TRUE(wait_until([&] { return num_scans >= scans_before + kTurnsWithout; })) << "the first computer's own processes do not hear each other";
+  } else {
+    std::this_thread::sleep_for(milliseconds(1200));  // no message goes anywhere that could be waited for
+  }
   for (const auto& [service, child] : children_) EXPECT_TRUE(child->IsRunning()) << service << ": " << child->Output();
-  for (const auto& service : on_second) EXPECT_LE(num_health[service], health_before.at(service) + 1) << "the cable is not pulled";
-  PutCableBack();
+  EXPECT_LE(num_placed, placed_at_pull + 3) << "the cable is not pulled";
+  PutCableBack(out);
   const auto placed_before = num_placed;
   EXPECT_TRUE(wait_until([&] { return num_placed >= placed_before + 10; })) << "OBSTACLES do not come again";
   const auto health_after = num_health;
@@ -174,7 +199,7 @@ TEST_F(TwoComputers, APulledCableLosesWhatIsCountedAndAllGoesOnByItself) {
            num_health["georeferencer"] >= health_after.at("georeferencer") + 1;
   }));
 
-  EXPECT_EQ(simulator.Terminate().value_or(-1) & 0x7F, simulator.Wait(milliseconds(0)).value_or(-1) & 0x7F);
+  simulator.Terminate();
   for (const auto& service : {"vlp16", "navigator", "segmenter", "georeferencer", "recorder"}) {
     EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
   }
@@ -184,15 +209,20 @@ TEST_F(TwoComputers, APulledCableLosesWhatIsCountedAndAllGoesOnByItself) {
   const auto& recorder = health["recorder"].back();
   const auto& segmenter = health["segmenter"].back();
   const auto& georeferencer = health["georeferencer"].back();
-  std::cout << "cable out for " << 20 << " turns: segmenter lost " << LostOn(segmenter, "LIDAR_SCAN") << " LIDAR_SCAN, georeferencer "
+  std::cout << "cable out for " << kTurnsWithout << " turns: segmenter lost " << LostOn(segmenter, "LIDAR_SCAN") << " LIDAR_SCAN, georeferencer "
             << LostOn(georeferencer, "POSE") << " POSE, recorder misses " << CounterOf(recorder, "raw_missing")
             << " raw messages; not sent by the georeferencer: " << CounterOf(georeferencer, "messages_not_sent") << "\n";
-  EXPECT_GE(LostOn(segmenter, "LIDAR_SCAN"), 15);
-  EXPECT_GE(LostOn(georeferencer, "POSE"), 75);
-  EXPECT_GE(CounterOf(recorder, "raw_missing"), 20);
-  // Its route was gone with the interface: HEALTH of two seconds.
+  // Ten turns, 50 POSE and some hundred raw messages go in a second; what was under way at either end of it may count or not.
+  EXPECT_GE(LostOn(segmenter, "LIDAR_SCAN"), kTurnsWithout - 5);
+  EXPECT_GE(LostOn(georeferencer, "POSE"), 5 * (kTurnsWithout - 5));
+  EXPECT_GE(CounterOf(recorder, "raw_missing"), kTurnsWithout);
+  // Its route was gone with the interface: HEALTH at least.
   EXPECT_GE(CounterOf(georeferencer, "messages_not_sent"), 1);
 }
+
+TEST_F(TwoComputers, APulledCableLosesWhatIsCountedAndAllGoesOnByItself) { LiveThroughAPulledCable(Out::kSecondsRoutes); }
+
+TEST_F(TwoComputers, TheSameWhereTheNetworkTakesAddressesAndRoutesAway) { LiveThroughAPulledCable(Out::kAllAddresses); }
 
 }  // namespace
 }  // namespace lookout::system_test
