@@ -4,7 +4,7 @@ add_dependencies(system_replay lookout-replay lookout-export lookout-sim)
 lookout_test(NAME system_points SOURCES system/points_test.cpp TIMEOUT 120)
 add_dependencies(system_points lookout-eval)
 
-foreach(name live ingestion sources no_route two_computers)
+foreach(name live ingestion sources no_route two_computers doctor)
   add_executable(system_${name} system/${name}_test.cpp)
   target_link_libraries(system_${name} PRIVATE lookout_bus lookout_wire GTest::gtest GTest::gtest_main)
   target_compile_definitions(system_${name} PRIVATE LOOKOUT_SOURCE_DIR="${CMAKE_SOURCE_DIR}" LOOKOUT_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
@@ -21,8 +21,11 @@ add_test(NAME system_ingestion COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_nam
 add_test(NAME system_sources COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_sources>)
 add_test(NAME system_no_route COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_no_route>)
 add_test(NAME system_two_computers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_two_computers>)
+add_dependencies(system_doctor lookout-doctor lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
+add_test(NAME system_doctor COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_doctor>)
+add_test(NAME system_doctor_no_route COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_doctor>)
 # RUN_SERIAL: they keep real time.
-set_tests_properties(system_live system_ingestion system_sources system_no_route system_two_computers PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+set_tests_properties(system_live system_ingestion system_sources system_no_route system_two_computers system_doctor system_doctor_no_route PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 
 # The load of ./dev bench, in a namespace as well. Not a Google Benchmark.
 add_executable(load_vlp16 bench/vlp16_load.cpp)

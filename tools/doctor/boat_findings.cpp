@@ -20,8 +20,8 @@ constexpr const char* kDiskSubject = "disk";
 // Half the height of the VLP-16's field of view: leaning more, one side sees only sky or only water.
 constexpr double kMaxLeanDeg = 15.0;
 constexpr double kExampleM = 10.0;
-// What recording takes, kB/s, where it was not heard: the simulated lake at 10 turns a second (README, "Figures").
-constexpr double kUsualRateBytesPerS = 1.55e6;
+// What recording takes where it was not heard: the simulated lake at 10 turns a second (README, "Figures").
+constexpr double kUsualRateBytesPerS = 2.9e6;
 constexpr double kLeastHours = 1.0;
 constexpr double kDayHours = 10.0;  // a day on the water
 
@@ -63,8 +63,6 @@ Finding JudgeLidarMounting(const config::BoatFacts& boat) {
       PlaceOnBoat(place_m) + "; its azimuth 0 points " + Text(std::abs(bow_up_deg), 1) + " deg " + (bow_up_deg < 0.0 ? "down" : "up") +
       ", its left side is " + Text(std::abs(left_up_deg), 1) + " deg " + (left_up_deg < 0.0 ? "down" : "up");
   if (is_upside_down) words += "; it hangs upside down";
-  words += ". At its height, an object 10 m ahead of the reference point is at " + SeenByLidar(boat, {kExampleM, 0.0, place_m.z()}) +
-           " in its frame; one 10 m to starboard at " + SeenByLidar(boat, {0.0, -kExampleM, place_m.z()}) + ".";
   if (above_water_m <= 0.0) {
     return {Grade::kFault, kMountingSubject, words,
             "boat.txtpb puts the lidar under water: look at the sign of lidar.z_m (up is positive) and at reference_point_above_water_m"};
@@ -88,6 +86,12 @@ Findings JudgeMounting(const ConfigSeen& config) {
   if (!config.boat) return {};  // the config's own lines say why
   const auto& boat = *config.boat;
   Findings findings{JudgeLidarMounting(boat)};
+  const double lidar_z_m = boat.T_vessel_lidar.translation().z();
+  findings.push_back({Grade::kOk,
+                      kMountingSubject,
+                      "an object at the lidar's height, 10 m ahead of the reference point, is at " + SeenByLidar(boat, {kExampleM, 0.0, lidar_z_m}) +
+                          " in the lidar's frame; one 10 m to starboard at " + SeenByLidar(boat, {0.0, -kExampleM, lidar_z_m}),
+                      {}});
   const double antenna_above_water_m = boat.p_vessel_antenna_m.z() + boat.reference_point_above_water_m;
   Finding antenna{Grade::kOk,
                   kMountingSubject,
@@ -100,7 +104,7 @@ Findings JudgeMounting(const ConfigSeen& config) {
   findings.push_back(antenna);
   const auto model = config.lidar && config.lidar->decoder.model == vlp16::ModelChoice::kPuckHiRes ? vlp16::Model::kPuckHiRes : vlp16::Model::kVlp16;
   const double lowest_rad = vlp16::BeamsOf(model).elevation_rad.front();
-  const double height_m = boat.T_vessel_lidar.translation().z() + boat.reference_point_above_water_m;
+  const double height_m = lidar_z_m + boat.reference_point_above_water_m;
   if (height_m > 0.0) {
     findings.push_back({Grade::kOk,
                         kMountingSubject,

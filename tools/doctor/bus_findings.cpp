@@ -27,8 +27,12 @@ Findings JudgeConfig(const ConfigSeen& config) {
   std::string right;
   for (const auto& file : config.files) {
     if (file.faults.empty()) right += (right.empty() ? "" : ", ") + file.name;
-    for (const auto& fault : file.faults)
-      findings.push_back({Grade::kFault, kConfigSubject, fault, "mend that line; config/schema says what it may hold"});
+    for (const auto& fault : file.faults) {
+      const bool is_of_file = fault.find(": file: ") != std::string::npos;
+      findings.push_back({Grade::kFault, kConfigSubject, fault,
+                          is_of_file ? "the folder holds one file for each schema of config/schema, as config/demo does, and no other"
+                                     : "mend that line; config/schema says what it may hold"});
+    }
   }
   if (!right.empty()) findings.insert(findings.begin(), {Grade::kOk, kConfigSubject, right, {}});
   return findings;

@@ -33,13 +33,18 @@ void AddFaults(const std::string& file_name, const std::vector<std::string>& fau
 ConfigSeen ReadConfig(const fs::path& config_folder) {
   ConfigSeen seen;
   std::map<std::string, std::vector<std::string>> faults;  // by file
-  const auto check = [&faults](const std::string& file_name, const auto& load) {
+  const auto collect = [&faults](const std::string& file_name, const auto& load) {
     faults[file_name];
     try {
       load();
     } catch (const config::ConfigError& error) {
       AddFaults(file_name, error.faults(), faults);
     }
+  };
+  const auto check = [&](const std::string& file_name, const auto& load) {
+    // By itself first: a process whose boat.txtpb is wrong looks no further.
+    collect(file_name, [&] { config::EffectiveTextOfFile(config_folder / file_name); });
+    collect(file_name, load);
   };
   check("boat.txtpb", [&] { seen.boat = config::LoadBoat(config_folder); });
   check("vlp16.txtpb", [&] { seen.lidar = vlp16::LoadChecked(config_folder); });
@@ -51,7 +56,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(config_folder, error)) {
     const auto name = entry.path().filename().string();
-    if (entry.path().extension() == ".txtpb" && !faults.contains(name)) check(name, [&] { config::EffectiveTextOfFile(entry.path()); });
+    if (entry.path().extension() == ".txtpb" && !faults.contains(name)) check(name, [] {});
   }
   for (auto& [name, lines] : faults) seen.files.push_back({name, lines});
   return seen;

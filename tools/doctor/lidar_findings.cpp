@@ -167,7 +167,7 @@ Finding JudgeSensorClock(const LidarSeen& lidar) {
 }  // namespace
 
 Findings JudgeLidar(const Observations& seen) {
-  if (!seen.config.lidar) return {{Grade::kFault, kLidarSubject, "not looked for: vlp16.txtpb is wrong", "mend it first"}};
+  if (!seen.config.lidar) return {{Grade::kWarning, kLidarSubject, "not looked for: vlp16.txtpb is wrong", "mend it first"}};
   const auto& lidar = seen.lidar;
   const auto kind = seen.config.lidar->sources.kind;
   const bool is_sensor = kind == vlp16::Sources::Kind::kUdp || kind == vlp16::Sources::Kind::kInterface;

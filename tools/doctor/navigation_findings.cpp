@@ -135,7 +135,7 @@ Finding JudgeAttitude(const pose_t& pose) {
 }  // namespace
 
 Findings JudgeNavigation(const Observations& seen) {
-  if (!seen.config.navigation) return {{Grade::kFault, kGnssSubject, "not looked for: navigator.txtpb or boat.txtpb is wrong", "mend it first"}};
+  if (!seen.config.navigation) return {{Grade::kWarning, kGnssSubject, "not looked for: navigator.txtpb or boat.txtpb is wrong", "mend it first"}};
   if (seen.navigation.via == Via::kNothing) {
     return {{Grade::kWarning, kGnssSubject, "navigator.txtpb takes NAV_RAW of a log: no receiver is looked for", "source: LIVE for a receiver"}};
   }
@@ -144,6 +144,7 @@ Findings JudgeNavigation(const Observations& seen) {
     findings.push_back({Grade::kFault, kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"});
   }
   findings.push_back(JudgeFix(seen));
+  if (seen.navigation.num_by_source.empty()) return findings;
   findings.push_back(JudgeHeading(seen));
   if (seen.navigation.pose) findings.push_back(JudgeAttitude(*seen.navigation.pose));
   if (seen.navigation.complaint.find("clock of this computer is off") != std::string::npos) {

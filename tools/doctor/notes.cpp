@@ -72,10 +72,10 @@ void Notes::OnPackets(const lidar_packets_t& message, Via via) {
   }
 }
 
-// A receiver tells one epoch in several sentences, and not each tells how many satellites there are.
+// A receiver tells one epoch in several sentences, maybe to several inputs, and not each tells how many satellites there are.
 void Notes::OnFix(const gnss_fix_t& message) {
   auto& fix = seen_.navigation.fix;
-  const bool says_less = fix && fix->source == message.source && fix->num_satellites >= 0 && message.num_satellites < 0;
+  const bool says_less = fix && fix->num_satellites >= 0 && message.num_satellites < 0;
   constexpr std::int64_t kEpochUs = 1'500'000;  // of the slowest receivers, a fix a second, and some delay
   if (says_less && fix->quality > 0 && message.quality > 0 && std::abs(message.arrival_utime_us - fix->arrival_utime_us) < kEpochUs) return;
   fix = message;

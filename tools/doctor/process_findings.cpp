@@ -23,10 +23,13 @@ constexpr double kHealthSilenceS = 3.5;
 
 bool IsAlive(const ProcessSeen& process, Utime end) { return ToSeconds(end - process.heard_last) <= kHealthSilenceS; }
 
+// Of any process; of the recorder.
+bool IsLoss(const health_counter_t& counter) { return counter.name == "messages_not_sent" || counter.name == "raw_missing"; }
+
 std::int64_t NumLost(const health_t& health) {
   std::int64_t num_lost = 0;
   for (const auto& channel : health.channels) num_lost += channel.is_input ? channel.num_lost : 0;
-  for (const auto& counter : health.counters) num_lost += counter.name == "messages_not_sent" ? counter.count : 0;
+  for (const auto& counter : health.counters) num_lost += IsLoss(counter) ? counter.count : 0;
   return num_lost;
 }
 
@@ -36,7 +39,7 @@ std::string LossesInWords(const ProcessSeen& process) {
     if (channel.is_input && channel.num_lost > 0) words.push_back(Count(channel.num_lost, "message") + " of " + channel.channel);
   }
   for (const auto& counter : process.last.counters) {
-    if (counter.name == "messages_not_sent" && counter.count > 0) words.push_back(std::to_string(counter.count) + " not sent");
+    if (IsLoss(counter) && counter.count > 0) words.push_back(std::to_string(counter.count) + " " + counter.name);
   }
   return Joined(words, [](const std::string& word) { return word; });
 }
@@ -51,7 +54,7 @@ Finding JudgeProcess(const std::string& name, const ProcessSeen& process) {
       return {Grade::kWarning, kProcessSubject, who + " is starting: " + health.reason, "ask again in a few seconds"};
     case health_t::STATE_DEGRADED:
       return {Grade::kWarning, kProcessSubject, who + " is degraded: " + health.reason,
-              "what that says; the lines above; services/" + name + "/README.md"};
+              "the lines above; services/" + name + "/README.md tells more"};
     default:
       return {Grade::kFault, kProcessSubject, who + " has failed: " + health.reason, "what that says; its journal: journalctl -u lookout-" + name};
   }
@@ -89,6 +92,9 @@ Findings JudgeObstacles(const Observations& seen) {
 }  // namespace
 
 Findings JudgeProcesses(const Observations& seen) {
+  if (seen.processes.empty() && !seen.bus.fault.empty()) {
+    return {{Grade::kFault, kProcessSubject, "none of Lookout's processes can be heard: the bus cannot be opened", "the route line above"}};
+  }
   if (seen.processes.empty()) {
     return {{Grade::kWarning, kProcessSubject,
              "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor looked at the sensors itself",
