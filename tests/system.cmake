@@ -3,6 +3,8 @@ lookout_test(NAME system_replay SOURCES system/replay_test.cpp LINKS lookout_bus
 add_dependencies(system_replay lookout-replay lookout-export lookout-sim)
 lookout_test(NAME system_points SOURCES system/points_test.cpp TIMEOUT 120)
 add_dependencies(system_points lookout-eval)
+lookout_test(NAME system_mounting_error SOURCES system/mounting_error_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 120)
+add_dependencies(system_mounting_error lookout-replay lookout-eval lookout-sim)
 
 foreach(name live ingestion sources no_route two_computers doctor)
   add_executable(system_${name} system/${name}_test.cpp)
