@@ -29,14 +29,17 @@ using Clock = std::chrono::steady_clock;
 struct Options {
   bool once = false;
   double once_s = 3.0;  // the last three of HEALTH, thirty turns
+  bool sure_only = false;
   std::string lcm_url;
 };
 
 Options ParseOptions(int argc, char** argv) {
   Options options;
-  CLI::App app("Shows channels, processes and the nearest obstacles in a terminal. Keys: q quits, c counts anew.", "lookout-top");
+  CLI::App app("Shows channels, processes and the nearest obstacles in a terminal. Keys: q quits, s shows sure obstacles only or all, c counts anew.",
+               "lookout-top");
   app.add_flag("--once", options.once, "listen for --seconds, print one screen as text, exit");
   app.add_option("--seconds", options.once_s, "how long --once listens (1 to 3600)")->check(CLI::Range(1.0, 3600.0))->capture_default_str();
+  app.add_flag("--sure", options.sure_only, "obstacles that one turn is sure of only");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
   app.set_version_flag("--version", "lookout-top " + lookout::runtime::Version());
   try {
@@ -116,7 +119,7 @@ void PrintOnce(const Options& options) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
     if (!listener.Wait(signals, false, std::max(left, std::chrono::milliseconds(0)))) return;
   }
-  const auto rows = lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(), {});
+  const auto rows = lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(), {.sure_only = options.sure_only});
   fmt::print("{}", lookout::top::PlainText(rows));
 }
 
@@ -125,16 +128,19 @@ void Watch(const Options& options) {
   const StopSignals signals;
   Listener listener(options.lcm_url);
   lookout::top::Terminal terminal;
+  bool sure_only = options.sure_only;
   auto next_frame = Clock::now();
   while (true) {
     bool is_changed = false;
     for (int key = terminal.Key(); key != 0; key = terminal.Key()) {
       if (key == 'q' || key == 'Q') return;
       if (key == 'c') listener.Reset();
+      if (key == 's') sure_only = !sure_only;
       is_changed = true;
     }
     if (is_changed || Clock::now() >= next_frame) {
-      terminal.Show(lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(), terminal.size()));
+      terminal.Show(
+          lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(), {terminal.width(), terminal.height(), sure_only}));
       next_frame = Clock::now() + kFramePeriod;
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_frame - Clock::now());

@@ -30,6 +30,11 @@ bool IsNearer(const ObstacleLine& a, const ObstacleLine& b) {
   return key(a) < key(b);
 }
 
+void Insert(std::vector<ObstacleLine>& lines, const ObstacleLine& line) {
+  lines.insert(std::ranges::lower_bound(lines, line, IsNearer), line);
+  if (lines.size() > Nearest::kMaxLines) lines.pop_back();
+}
+
 }  // namespace
 
 void Nearest::Take(const pose_t& pose) {
@@ -74,9 +79,11 @@ void Nearest::Take(const obstacles_t& part, TimePoint now) {
     line.height_m = obstacle.height_m;
     const double true_bearing_rad = HeadingAt(obstacle.utime_us) + line.bearing_rad;
     line.true_bearing_rad = std::isfinite(true_bearing_rad) ? WrapTo2Pi(true_bearing_rad) : kUnknown;
-    const auto place = std::ranges::lower_bound(obstacles.lines, line, IsNearer);
-    obstacles.lines.insert(place, line);
-    if (obstacles.lines.size() > kMaxLines) obstacles.lines.pop_back();
+    Insert(obstacles.lines, line);
+    if (line.confidence == obstacle_t::CONFIDENCE_SURE) {
+      ++obstacles.num_sure;
+      Insert(obstacles.sure_lines, line);
+    }
   }
   gathering_->num_parts_to_come = std::int64_t{part.num_parts} - part.part_index - 1;
   if (gathering_->num_parts_to_come <= 0) newest_ = obstacles;

@@ -31,8 +31,10 @@ struct ObstacleLine {
 
 /// The ten nearest of a turn.
 struct NearestObstacles {
-  std::vector<ObstacleLine> lines;  // nearest first; those without a range last
-  std::int64_t num_obstacles = 0;   // of the turn
+  std::vector<ObstacleLine> lines;       // nearest first; those without a range last
+  std::vector<ObstacleLine> sure_lines;  // of those that are sure
+  std::int64_t num_obstacles = 0;        // of the turn
+  std::int64_t num_sure = 0;             // of them
   std::int64_t num_parts_missing = 0;
   TimePoint time;  // when its last message came
 };

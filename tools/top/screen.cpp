@@ -72,10 +72,12 @@ std::vector<Span> ProcessRows(const Board& board, TimePoint now, int width) {
   return rows;
 }
 
-std::string ObstaclesHeader(const NearestObstacles* obstacles) {
-  const auto count = obstacles == nullptr ? std::string() : fmt::format("of {}", std::min<std::int64_t>(obstacles->num_obstacles, 999));
+std::string ObstaclesHeader(const NearestObstacles* obstacles, bool sure_only) {
+  const auto count = obstacles == nullptr
+                         ? std::string()
+                         : fmt::format("of {}", std::min<std::int64_t>(sure_only ? obstacles->num_sure : obstacles->num_obstacles, 999));
   return Left(count, 6) + Right("id", 3) + Right("range m", 8) + Right("rel", 5) + Right("true", 5) + Right("latitude", 12) + Right("longitude", 13) +
-         "  " + Left("size m", 14) + Left("confidence", 10);
+         "  " + Left("size m", 14) + Left(sure_only ? "sure only" : "confidence", 10);
 }
 
 Span ObstacleSpan(std::size_t index, const ObstacleLine& line) {
@@ -92,11 +94,12 @@ Span ObstacleSpan(std::size_t index, const ObstacleLine& line) {
           is_tentative ? Style::kFaint : Style::kPlain};
 }
 
-std::vector<Span> ObstacleRows(const NearestObstacles* obstacles) {
+std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, bool sure_only) {
   std::vector<Span> rows;
   if (obstacles == nullptr) return {{"no OBSTACLES", Style::kFault}};
-  for (std::size_t i = 0; i < obstacles->lines.size(); ++i) rows.push_back(ObstacleSpan(i, obstacles->lines[i]));
-  if (rows.empty()) rows.push_back({"nothing in sight", Style::kPlain});
+  const auto& lines = sure_only ? obstacles->sure_lines : obstacles->lines;
+  for (std::size_t i = 0; i < lines.size(); ++i) rows.push_back(ObstacleSpan(i, lines[i]));
+  if (rows.empty()) rows.push_back({sure_only ? "nothing sure in sight" : "nothing in sight", Style::kPlain});
   if (obstacles->num_parts_missing > 0) {
     rows.insert(rows.begin(), {fmt::format("{} parts of this turn were lost: what follows is not all", obstacles->num_parts_missing), Style::kFault});
   }
@@ -138,26 +141,26 @@ struct Plan {
 
 }  // namespace
 
-std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePoint now, Size size) {
-  const int processes_width = size.width - kChannelsWidth - 1;
+std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePoint now, View view) {
+  const int processes_width = view.width - kChannelsWidth - 1;
   const bool is_wide = processes_width >= kMinProcessesWidth;
   const auto channels = ChannelRows(board, now);
   const auto processes = is_wide ? ProcessRows(board, now, processes_width) : std::vector<Span>{};
   const auto* nearest = board.Obstacles(now);
-  const auto obstacles = ObstacleRows(nearest);
+  const auto obstacles = ObstacleRows(nearest, view.sure_only);
   const auto alarm = board.NearestAlarm(now);
   const bool has_alarm = alarm && alarm->is_active;
 
   Plan plan;
   plan.table_rows = static_cast<int>(std::max(channels.size(), processes.size()));
   plan.obstacle_rows = static_cast<int>(obstacles.size());
-  if (size.height > 0) plan.Fit(size.height, has_alarm ? 2 : 1);
+  if (view.height > 0) plan.Fit(view.height, has_alarm ? 2 : 1);
 
   std::vector<Row> rows;
-  if (has_alarm) rows.push_back({{Left(AlarmText(*alarm), size.width), Style::kAlarm}});
+  if (has_alarm) rows.push_back({{Left(AlarmText(*alarm), view.width), Style::kAlarm}});
   if (plan.has_title) rows.push_back({{title, Style::kPlain}});
   if (plan.has_header)
-    rows.push_back({{Left(Left(ChannelsHeader(), kChannelsWidth) + " " + (is_wide ? ProcessesHeader() : ""), size.width), Style::kHeader}});
+    rows.push_back({{Left(Left(ChannelsHeader(), kChannelsWidth) + " " + (is_wide ? ProcessesHeader() : ""), view.width), Style::kHeader}});
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.table_rows); ++i) {
     Row row;
     const Span left = i < channels.size() ? channels[i] : Span{};
@@ -168,11 +171,11 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
     }
     rows.push_back(std::move(row));
   }
-  rows.push_back({{Left(ObstaclesHeader(nearest), size.width), Style::kHeader}});
+  rows.push_back({{Left(ObstaclesHeader(nearest, view.sure_only), view.width), Style::kHeader}});
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.obstacle_rows); ++i) rows.push_back({obstacles[i]});
 
-  for (auto& row : rows) Cut(row, size.width);
-  if (size.height > 0 && rows.size() > static_cast<std::size_t>(size.height)) rows.resize(static_cast<std::size_t>(size.height));
+  for (auto& row : rows) Cut(row, view.width);
+  if (view.height > 0 && rows.size() > static_cast<std::size_t>(view.height)) rows.resize(static_cast<std::size_t>(view.height));
   return rows;
 }
 

@@ -16,17 +16,18 @@ struct Span {
 };
 using Row = std::vector<Span>;
 
-struct Size {
+struct View {
   int width = 80;
-  int height = 0;  // 0 = as many rows as it takes
+  int height = 0;          // 0 = as many rows as it takes
+  bool sure_only = false;  // obstacles that one turn is sure of; else all
 };
 
 /// The nearest-obstacle alarm stands on top while there is one. Below are channels (left) and processes (right), then the ten nearest
 /// obstacles. Where rows are scarce the title goes first, then the header of the tables, then the farthest obstacles, then the last channels.
 ///
 /// @param title  printable; time, bus, version
-/// @return at most size.height rows of at most size.width letters
-std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePoint now, Size size);
+/// @return at most view.height rows of at most view.width letters
+std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePoint now, View view);
 
 /// Without styles; no spaces at the end of a line.
 std::string PlainText(const std::vector<Row>& rows);

@@ -65,7 +65,9 @@ Terminal::Terminal() {
 
 Terminal::~Terminal() { endwin(); }
 
-Size Terminal::size() const { return {getmaxx(stdscr), getmaxy(stdscr)}; }
+int Terminal::width() const { return getmaxx(stdscr); }
+
+int Terminal::height() const { return getmaxy(stdscr); }
 
 void Terminal::Show(const std::vector<Row>& rows) {
   erase();

@@ -16,7 +16,8 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  Size size() const;
+  int width() const;
+  int height() const;
   void Show(const std::vector<Row>& rows);
 
   /// @return a key that was pressed; 0 = none waits. A change of the terminal's size is taken care of here.

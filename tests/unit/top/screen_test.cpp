@@ -68,6 +68,13 @@ TEST(Screen, ShowsTenObstaclesWithAllNumbersOnEightyByTwentyFour) {
   EXPECT_TRUE(Has(lines, "POSE             1.0"));
 }
 
+TEST(Screen, MayLeaveOutWhatIsNotSure) {
+  const auto lines = Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 24, true}));
+  EXPECT_EQ(lines[13], "of 11  id range m  rel true    latitude    longitude  size m        sure only");
+  EXPECT_FALSE(Has(lines, "tentative"));
+  EXPECT_TRUE(Has(lines, " 10    11    14.5"));
+}
+
 TEST(Screen, AlarmStandsOnTopInReverse) {
   for (const int height : {0, 24, 8, 1}) {
     const auto rows = DrawScreen(AlarmedBoard(), "title", At(2.0), {80, height});
