@@ -185,7 +185,7 @@ final class MapView {
           Rectangle box = new Rectangle((int) x + 7, (int) y - metrics.getAscent() / 2 - 2, metrics.stringWidth(text) + 4, metrics.getAscent() + 3);
           if (box.x + box.width > area.x + area.width) box.x = (int) x - 7 - box.width;
           if (taken.stream().anyMatch(box::intersects)) continue;
-          g.setColor(new Color(255, 255, 255, 215));
+          g.setColor(new Color(255, 255, 255, 150));
           g.fill(box);
           g.setColor(sure ? Palette.INK : Palette.FAINT_INK);
           g.drawString(text, box.x + 2, box.y + metrics.getAscent());

@@ -5,8 +5,8 @@ import lookout.obstacle_t;
 import lookout.segment_t;
 
 /**
- * Where the lidar sits in the vessel, seen from above. SEGMENTS hold the nearest return of each segment in the lidar frame, OBSTACLES the same return in
- * the vessel frame, under the same id: the turn and shift between them is the mounting, so that no config is needed here.
+ * Where the lidar sits in the vessel, seen from above. SEGMENTS hold the nearest return of each segment in the lidar frame, OBSTACLES the same
+ * return in the vessel frame, under the same id: the turn and shift between them is the mounting, so that no config is needed here.
  */
 final class Mounting {
   /** From the vessel's x axis (bow) to the lidar's, counter-clockwise. */

@@ -5,9 +5,10 @@ import java.awt.Font;
 import java.awt.Graphics2D;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
+import java.util.ArrayList;
+import java.util.List;
 import java.util.Locale;
 import lookout.obstacle_t;
-import lookout.segments_t;
 
 /** Everything in its place: two range images on top, the map below, beside it the legend and the list of obstacles. No state, no clock. */
 final class Painter {
@@ -71,7 +72,7 @@ final class Painter {
   }
 
   private static String mapCaption(Picture picture, double radius_m) {
-    String frame = picture.mounting != null ? "From above, bow up" : "From above, the lidar's x axis up (where the bow is, OBSTACLES and SEGMENTS would tell)";
+    String frame = picture.mounting != null ? "From above, bow up" : "From above, the lidar's x axis up (OBSTACLES would tell where the bow is)";
     return String.format(Locale.ROOT, "%s; %.0f m to the edge (wheel or + and - change it)", frame, radius_m);
   }
 
@@ -119,8 +120,8 @@ final class Painter {
     int num_sure = 0;
     for (obstacle_t obstacle : picture.obstacles) num_sure += obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? 1 : 0;
     g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 12));
-    g.drawString(picture.hasObstacles(now_ms) ? "OBSTACLES: " + picture.obstacles.size() + ", " + num_sure + " of them sure" : "OBSTACLES: none on the bus",
-        side.x, y);
+    String count = picture.obstacles.size() + ", " + num_sure + " of them sure";
+    g.drawString("OBSTACLES: " + (picture.hasObstacles(now_ms) ? count : "none on the bus"), side.x, y);
     y += line_height;
     g.setFont(new Font(Font.MONOSPACED, Font.PLAIN, 12));
     g.setColor(Palette.FAINT_INK);
@@ -128,7 +129,7 @@ final class Painter {
     y += line_height;
     int rows = Math.max(0, (side.y + side.height - y - line_height) / line_height);
     if (picture.hasObstacles(now_ms)) {
-      for (obstacle_t obstacle : picture.obstacles.subList(0, Math.min(rows, picture.obstacles.size()))) {
+      for (obstacle_t obstacle : sureFirst(picture.obstacles, rows)) {
         g.setColor(Palette.ofSegment(obstacle.id));
         g.fillRect(side.x, y - 9, 9, 9);
         g.setColor(obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? Palette.INK : Palette.FAINT_INK);
@@ -143,10 +144,21 @@ final class Painter {
     }
   }
 
+  // Drops of spray near the boat would fill the list.
+  private static List<obstacle_t> sureFirst(List<obstacle_t> obstacles, int max_rows) {
+    List<obstacle_t> ordered = new ArrayList<>();
+    for (boolean sure : new boolean[] {true, false}) {
+      for (obstacle_t obstacle : obstacles) {
+        if (obstacle.confidence == obstacle_t.CONFIDENCE_SURE == sure) ordered.add(obstacle);
+      }
+    }
+    return ordered.subList(0, Math.min(max_rows, ordered.size()));
+  }
+
   private static void banner(Graphics2D g, Rectangle map, Picture picture, long now_ms) {
     if (picture.hasScan(now_ms)) return;
-    String text = picture.turn == null ? "waiting for LIDAR_SCAN"
-                                       : String.format(Locale.ROOT, "no LIDAR_SCAN for %.0f s: an old picture", (now_ms - picture.scanTime_ms) / 1000.0);
+    double age_s = (now_ms - picture.scanTime_ms) / 1000.0;
+    String text = picture.turn == null ? "waiting for LIDAR_SCAN" : String.format(Locale.ROOT, "no LIDAR_SCAN for %.0f s: an old picture", age_s);
     g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 15));
     int width = g.getFontMetrics().stringWidth(text) + 20;
     g.setColor(Palette.ALERT);

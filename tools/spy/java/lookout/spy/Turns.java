@@ -103,8 +103,9 @@ final class Turns {
     obstacles.removeIf(obstacle -> !Float.isFinite(obstacle.range_m) || !Float.isFinite(obstacle.bearing_rad));
     obstacles.sort(Comparator.<obstacle_t>comparingDouble(obstacle -> obstacle.range_m).thenComparingInt(obstacle -> obstacle.id));
     // The mounting does not change: one that was good stays until the next good one.
-    Mounting mounting = gathering.hasSegments() ? Mounting.estimate(segmentsOf(gathering), obstacles) : null;
-    picture = new Picture(picture.turn, List.copyOf(obstacles), mounting == null ? picture.mounting : mounting, picture.heading_rad, picture.scanTime_ms, now_ms);
+    Mounting estimate = gathering.hasSegments() ? Mounting.estimate(segmentsOf(gathering), obstacles) : null;
+    Mounting mounting = estimate == null ? picture.mounting : estimate;
+    picture = new Picture(picture.turn, List.copyOf(obstacles), mounting, picture.heading_rad, picture.scanTime_ms, now_ms);
   }
 
   void add(pose_t pose) {
