@@ -38,7 +38,7 @@ class Talk {
     std::mt19937 random(1);
     health_t health{};
     health.process = "georeferencer";
-    health.reason = "obstacle within 10 m";
+    health.reason = "obstacle within 10.0 m: 4.5 m, 12 deg to port";
     health.num_counters = 2;
     health.counters.resize(2);
     health.counters[0].name = "alarm_active";
@@ -148,7 +148,7 @@ TEST(Top, OncePrintsTheBusAsText) {
   const Talk talk;
   const auto result = RunProgram({kProgram, "--once", "--seconds", "2"}, testing::TempDir() + "lookout_top_once.out");
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_EQ(result.output.rfind("ALARM: obstacle within 10 m, nearest 4.5 m\n", 0), 0U) << result.output;
+  EXPECT_EQ(result.output.rfind("ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port\n", 0), 0U) << result.output;
   EXPECT_NE(result.output.find("\nLIDAR_SCAN "), std::string::npos) << result.output;
   EXPECT_NE(result.output.find(" georeferencer ok "), std::string::npos) << result.output;
   EXPECT_NE(result.output.find("  1     7     4.5  000"), std::string::npos) << result.output;
@@ -170,11 +170,11 @@ TEST(Top, ATerminalThatIsNotKnownIsAnError) {
 TEST(Top, TakesANewSizeAndEndsOnQ) {
   const Talk talk;
   OnTerminal top("xterm");
-  EXPECT_TRUE(top.Shows("nearest 4.5 m"));
+  EXPECT_TRUE(top.Shows("12 deg to port"));
   EXPECT_TRUE(top.Shows("4.5  000"));
-  // Columns of obstacles do not fit any more, the header of channels alone does.
-  top.Resize(10, 45);
-  EXPECT_TRUE(top.Shows("nearest 4.5 m"));
+  // Narrower and lower: drawn anew, the alarm still on top.
+  top.Resize(10, 60);
+  EXPECT_TRUE(top.Shows("12 deg to port"));
   top.Press('s');
   EXPECT_TRUE(top.Shows("nothing sure in sight"));
   top.Press('q');

@@ -1,5 +1,7 @@
 #include "tools/top/board.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -66,12 +68,13 @@ const health_counter_t* FindCounter(const health_t& health, std::string_view nam
   return found == health.counters.end() ? nullptr : &*found;
 }
 
-// Reasons are joined by "; ": the piece about the alarm.
+// Reasons are joined by "; ": the piece about the alarm says how near and where. Without one, the counter has at least the distance.
 constexpr std::string_view kAlarmWords = "obstacle within ";
-std::string AlarmText(const std::string& reason) {
-  const auto start = reason.find(kAlarmWords);
-  if (start == std::string::npos) return "obstacle near";
-  return reason.substr(start, reason.find(';', start) - start);
+std::string AlarmText(const health_t& health) {
+  const auto start = health.reason.find(kAlarmWords);
+  if (start != std::string::npos) return health.reason.substr(start, health.reason.find(';', start) - start);
+  const auto* nearest = FindCounter(health, "nearest_cm");
+  return nearest == nullptr ? "obstacle near" : fmt::format("obstacle near: {:.1f} m", 0.01 * static_cast<double>(nearest->count));
 }
 
 std::int64_t GreatestLatencyUs(const health_t& health) {
@@ -192,10 +195,8 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
     if (active == nullptr) continue;
     Alarm alarm;
     alarm.is_active = active->count != 0;
-    alarm.text = AlarmText(process.health.reason);
+    alarm.text = AlarmText(process.health);
     alarm.age = now - process.last;
-    const auto* nearest = FindCounter(process.health, "nearest_cm");
-    if (nearest != nullptr && nearest->count >= 0) alarm.nearest_m = 0.01 * static_cast<double>(nearest->count);
     // Where several tell of it, an alarm counts before none, then the newer.
     if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
   }

@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -41,9 +40,8 @@ struct ProcessLine {
 /// The nearest-obstacle alarm, out of HEALTH.
 struct Alarm {
   bool is_active = false;
-  std::string text;                                             // why, in the words of HEALTH
-  double nearest_m = std::numeric_limits<double>::quiet_NaN();  // NaN = not known
-  std::chrono::nanoseconds age{0};                              // of the report
+  std::string text;                 // what is near, in the words of HEALTH
+  std::chrono::nanoseconds age{0};  // of the report
 };
 
 class Board {

@@ -108,7 +108,6 @@ std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, bool sure_only
 
 std::string AlarmText(const Alarm& alarm) {
   std::string text = "ALARM: " + Printable(alarm.text);
-  if (std::isfinite(alarm.nearest_m)) text += fmt::format(", nearest {:.1f} m", alarm.nearest_m);
   // HEALTH comes once a second.
   if (Seconds(alarm.age) > 3.0) text += fmt::format(" ({:.0f} s ago, silent since)", Seconds(alarm.age));
   return text;

@@ -164,20 +164,21 @@ TEST(Board, TakesTheAlarmOutOfHealth) {
   Board board(kStart);
   Say(board, bus::kHealth, HealthOf("georeferencer", 0), 0.1);
   EXPECT_FALSE(board.NearestAlarm(At(0.2)));
-  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "no POSE for 3 s; obstacle within 10 m in 60 deg of the bow; another");
+  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "no POSE for 3 s; obstacle within 10.0 m: 7.3 m, 12 deg to port; another");
   AddCounter(health, "alarm_active", 1);
   AddCounter(health, "nearest_cm", 731);
   Say(board, bus::kHealth, health, 1.1);
   const auto alarm = board.NearestAlarm(At(1.6));
   ASSERT_TRUE(alarm);
   EXPECT_TRUE(alarm->is_active);
-  EXPECT_EQ(alarm->text, "obstacle within 10 m in 60 deg of the bow");
-  EXPECT_DOUBLE_EQ(alarm->nearest_m, 7.31);
+  EXPECT_EQ(alarm->text, "obstacle within 10.0 m: 7.3 m, 12 deg to port");
   health.counters[0].count = 0;
-  health.counters[1].count = -1;
   Say(board, bus::kHealth, health, 2.1);
   EXPECT_FALSE(board.NearestAlarm(At(2.2))->is_active);
-  EXPECT_TRUE(std::isnan(board.NearestAlarm(At(2.2))->nearest_m));
+  health.counters[0].count = 1;
+  health.reason = "";
+  Say(board, bus::kHealth, health, 3.1);
+  EXPECT_EQ(board.NearestAlarm(At(3.2))->text, "obstacle near: 7.3 m");
 }
 
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {

@@ -35,7 +35,7 @@ Board BusyBoard() {
 
 Board AlarmedBoard() {
   Board board = BusyBoard();
-  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "obstacle within 10 m");
+  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "obstacle within 10.0 m: 4.5 m, 12 deg to port");
   AddCounter(health, "alarm_active", 1);
   AddCounter(health, "nearest_cm", 450);
   Say(board, bus::kHealth, health, 1.95);
@@ -80,7 +80,7 @@ TEST(Screen, AlarmStandsOnTopInReverse) {
     const auto rows = DrawScreen(AlarmedBoard(), "title", At(2.0), {80, height});
     ASSERT_FALSE(rows.empty());
     EXPECT_EQ(rows[0][0].style, Style::kAlarm);
-    EXPECT_EQ(Lines(rows)[0], "ALARM: obstacle within 10 m, nearest 4.5 m") << height;
+    EXPECT_EQ(Lines(rows)[0], "ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port") << height;
   }
   EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(2.0), {80, 24})), " 10    10    13.5"));  // the ten have room beside it
   const auto calm = DrawScreen(BusyBoard(), "title", At(2.0), {80, 24});
@@ -88,7 +88,7 @@ TEST(Screen, AlarmStandsOnTopInReverse) {
 }
 
 TEST(Screen, AnAlarmOfAProcessThatFellSilentStaysAndSaysSo) {
-  EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(10.0), {80, 24})), "nearest 4.5 m (8 s ago, silent since)"));
+  EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(10.0), {80, 24})), "4.5 m, 12 deg to port (8 s ago, silent since)"));
 }
 
 TEST(Screen, FitsAnySize) {
