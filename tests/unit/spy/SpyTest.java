@@ -3,6 +3,7 @@ package lookout.spy;
 import java.awt.Color;
 import java.awt.Graphics2D;
 import java.awt.image.BufferedImage;
+import java.io.IOException;
 import java.util.ArrayList;
 import java.util.List;
 import java.util.Random;
@@ -269,6 +270,24 @@ public final class SpyTest {
     for (int[] size : new int[][] {{1, 1}, {50, 900}, {900, 50}, {300, 200}}) painted(turns, size[0], size[1], NOW_MS);
   }
 
+  private static void aCountThatCannotBeIsRefusedBeforeItIsTaken() throws Exception {
+    byte[] good = encoded(scanOf(1));
+    // Fingerprint, four times, five counts and flags, the model with its length, the unit of range: then the number of rings.
+    int num_rings_at = 8 + 4 * 8 + 5 * 4 + 4 + "VLP-16".length() + 1 + 8;
+    expect(good[num_rings_at + 3] == 2, "the number of rings is where this test looks for it");
+    for (byte first : new byte[] {0x7F, 0x01, (byte) 0xFF}) {
+      byte[] bytes = good.clone();
+      bytes[num_rings_at] = first;
+      String reason = "nothing";
+      try {
+        new lidar_scan_t(new LCMDataInputStream(bytes));
+      } catch (IOException | RuntimeException | OutOfMemoryError error) {
+        reason = String.valueOf(error.getMessage());
+      }
+      expect(reason.endsWith("does not fit"), "a count that begins with " + first + " is refused: " + reason);
+    }
+  }
+
   private static void coloursAreThoseOfTheExport() {
     // As lookout-export draws them: ColourOfSegment of tools/export/colour.cpp.
     expect(Palette.ofSegment(1).equals(new Color(138, 163, 27)), "colour of segment 1");
@@ -286,6 +305,7 @@ public final class SpyTest {
     theMountingIsNotGuessed();
     turnsAreDrawnWhole();
     noMessageEndsIt();
+    aCountThatCannotBeIsRefusedBeforeItIsTaken();
     coloursAreThoseOfTheExport();
     System.out.println(num_failures == 0 ? "all passed" : num_failures + " failed");
     System.exit(num_failures == 0 ? 0 : 1);

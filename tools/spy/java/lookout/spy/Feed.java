@@ -46,8 +46,7 @@ final class Feed implements LCMSubscriber, AutoCloseable {
         case "POSE" -> turns.add(new pose_t(bytes));
         default -> { }
       }
-    } catch (IOException | RuntimeException | OutOfMemoryError corrupt) {
-      // lcm-gen's Java takes a count at its word: a corrupt one asks for gigabytes, or for less than nothing.
+    } catch (IOException | RuntimeException corrupt) {
       turns.refuse();
     }
   }
