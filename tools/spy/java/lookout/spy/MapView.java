@@ -6,6 +6,7 @@ import java.awt.Font;
 import java.awt.FontMetrics;
 import java.awt.Graphics2D;
 import java.awt.Rectangle;
+import java.awt.RenderingHints;
 import java.awt.Shape;
 import java.awt.geom.Ellipse2D;
 import java.awt.geom.Line2D;
@@ -18,6 +19,8 @@ import lookout.segment_t;
 /** The turn from above, bow up, the vessel in the middle, with rings of range. */
 final class MapView {
   private static final int MAX_LABELS = 24;
+  private static final int MAX_TENTATIVE_MARKS = 40;
+  private static final Color LABEL_BACKGROUND = new Color(255, 255, 255, 150);
   private static final double[] RING_STEPS_M = {1, 2, 5, 10, 20, 50, 100};
 
   private final Graphics2D g;
@@ -40,9 +43,9 @@ final class MapView {
     view.grid();
     view.returns();
     view.outlines();
+    if (picture.hasObstacles(now_ms)) view.obstacles();
     view.vessel();
     view.north();
-    if (picture.hasObstacles(now_ms)) view.obstacles();
     g.setClip(clip);
   }
 
@@ -100,6 +103,8 @@ final class MapView {
 
   private void returns() {
     if (picture.turn == null) return;
+    // Squares of three pixels have no edges to smooth, and smoothing takes most of the time.
+    g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_OFF);
     // Those in no segment lie below.
     for (boolean in_segment : new boolean[] {false, true}) {
       picture.turn.forEachReturn((ring, azimuth_rad, elevation_rad, range_m, label) -> {
@@ -111,6 +116,7 @@ final class MapView {
         g.fillRect((int) Math.round(toX(vesselY(x_m, y_m))) - 1, (int) Math.round(toY(vesselX(x_m, y_m))) - 1, 3, 3);
       });
     }
+    g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
   }
 
   private void outlines() {
@@ -164,35 +170,50 @@ final class MapView {
     g.drawString("N", (float) (x - 0.5 * metrics.stringWidth("N")), (float) (y + 0.37 * metrics.getAscent()));
   }
 
-  // Numbers beside the nearest ones, the sure ones first; a text that would lie on another gives way to its number alone, then to nothing.
+  // Tentative marks below sure ones, in rain the nearest only; then numbers beside the nearest, the sure ones first. A text that would lie on another
+  // gives way to its number alone, then to nothing.
   private void obstacles() {
+    List<obstacle_t> sure = new ArrayList<>();
+    List<obstacle_t> tentative = new ArrayList<>();
+    for (obstacle_t obstacle : picture.obstacles) {
+      List<obstacle_t> kin = obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? sure : tentative;
+      boolean is_in_sight = area.contains(toX(obstacle.nearest_vessel_m[1]), toY(obstacle.nearest_vessel_m[0]));
+      if (is_in_sight && (kin == sure || kin.size() < MAX_TENTATIVE_MARKS)) kin.add(obstacle);
+    }
+    marks(tentative, Palette.FAINT_INK, 1f);
+    marks(sure, Palette.INK, 1.6f);
     List<Rectangle> taken = new ArrayList<>();
     taken.add(new Rectangle((int) toX(0) - 8, (int) toY(0) - 12, 16, 22));
-    int num_labels = 0;
-    for (boolean sure : new boolean[] {true, false}) {
-      g.setFont(g.getFont().deriveFont(sure ? Font.BOLD : Font.PLAIN, sure ? 12f : 11f));
-      for (obstacle_t obstacle : picture.obstacles) {
-        if (obstacle.confidence == obstacle_t.CONFIDENCE_SURE != sure) continue;
-        double x = toX(obstacle.nearest_vessel_m[1]);
-        double y = toY(obstacle.nearest_vessel_m[0]);
-        if (!area.contains(x, y)) continue;
-        g.setColor(sure ? Palette.INK : Palette.FAINT_INK);
-        g.setStroke(new BasicStroke(sure ? 1.6f : 1f));
-        g.draw(new Ellipse2D.Double(x - 4, y - 4, 8, 8));
-        if (num_labels >= MAX_LABELS) continue;
-        for (String text : new String[] {Texts.obstacle(obstacle), Integer.toString(obstacle.id)}) {
-          FontMetrics metrics = g.getFontMetrics();
-          Rectangle box = new Rectangle((int) x + 7, (int) y - metrics.getAscent() / 2 - 2, metrics.stringWidth(text) + 4, metrics.getAscent() + 3);
-          if (box.x + box.width > area.x + area.width) box.x = (int) x - 7 - box.width;
-          if (taken.stream().anyMatch(box::intersects)) continue;
-          g.setColor(new Color(255, 255, 255, 150));
-          g.fill(box);
-          g.setColor(sure ? Palette.INK : Palette.FAINT_INK);
-          g.drawString(text, box.x + 2, box.y + metrics.getAscent());
-          taken.add(box);
-          ++num_labels;
-          break;
-        }
+    g.setFont(g.getFont().deriveFont(Font.BOLD, 12f));
+    labels(sure, Palette.INK, taken);
+    g.setFont(g.getFont().deriveFont(Font.PLAIN, 11f));
+    labels(tentative, Palette.FAINT_INK, taken);
+  }
+
+  private void marks(List<obstacle_t> obstacles, Color colour, float width) {
+    g.setColor(colour);
+    g.setStroke(new BasicStroke(width));
+    for (obstacle_t obstacle : obstacles) {
+      g.draw(new Ellipse2D.Double(toX(obstacle.nearest_vessel_m[1]) - 4, toY(obstacle.nearest_vessel_m[0]) - 4, 8, 8));
+    }
+  }
+
+  private void labels(List<obstacle_t> obstacles, Color colour, List<Rectangle> taken) {
+    FontMetrics metrics = g.getFontMetrics();
+    for (obstacle_t obstacle : obstacles) {
+      if (taken.size() > MAX_LABELS) return;
+      double x = toX(obstacle.nearest_vessel_m[1]);
+      double y = toY(obstacle.nearest_vessel_m[0]);
+      for (String text : new String[] {Texts.obstacle(obstacle), Integer.toString(obstacle.id)}) {
+        Rectangle box = new Rectangle((int) x + 7, (int) y - metrics.getAscent() / 2 - 2, metrics.stringWidth(text) + 4, metrics.getAscent() + 3);
+        if (box.x + box.width > area.x + area.width) box.x = (int) x - 7 - box.width;
+        if (taken.stream().anyMatch(box::intersects)) continue;
+        g.setColor(LABEL_BACKGROUND);
+        g.fill(box);
+        g.setColor(colour);
+        g.drawString(text, box.x + 2, box.y + metrics.getAscent());
+        taken.add(box);
+        break;
       }
     }
   }
