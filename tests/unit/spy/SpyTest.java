@@ -270,6 +270,36 @@ public final class SpyTest {
     for (int[] size : new int[][] {{1, 1}, {50, 900}, {900, 50}, {300, 200}}) painted(turns, size[0], size[1], NOW_MS);
   }
 
+  private static void refuses(String what, java.util.function.Consumer<lidar_scan_t> spoil) {
+    lidar_scan_t scan = scanOf(1);
+    spoil.accept(scan);
+    Turns turns = new Turns();
+    turns.add(scan, NOW_MS);
+    turns.add(segmentsOf(1), NOW_MS);
+    expect(turns.num_refused() == 1 && turns.picture().turn == null, "a scan is refused: " + what);
+  }
+
+  private static void whatContradictsItselfIsRefused() {
+    refuses("fewer cells than columns times rings", scan -> {
+      scan.num_cells = 6;
+      scan.range = new short[6];
+    });
+    refuses("no ring", scan -> scan.num_rings = 0);
+    refuses("an azimuth that is no number", scan -> scan.azimuth_rad[1] = Float.NaN);
+    refuses("an elevation that is no number", scan -> scan.elevation_rad[1] = Float.POSITIVE_INFINITY);
+    refuses("a unit of range of 0", scan -> scan.range_unit_m = 0.0);
+    refuses("a part beyond the last", scan -> scan.part_index = 1);
+    refuses("more parts than a turn can have", scan -> scan.num_parts = 1_000_000);
+    Turns turns = new Turns();
+    segments_t segments = segmentsOf(1);
+    segments.num_columns = 5;
+    turns.add(segments, NOW_MS);
+    obstacles_t obstacles = obstaclesOf(1);
+    obstacles.num_parts = 0;
+    turns.add(obstacles, NOW_MS);
+    expect(turns.num_refused() == 2, "segments and obstacles too");
+  }
+
   private static void aCountThatCannotBeIsRefusedBeforeItIsTaken() throws Exception {
     byte[] good = encoded(scanOf(1));
     // Fingerprint, four times, five counts and flags, the model with its length, the unit of range: then the number of rings.
@@ -305,6 +335,7 @@ public final class SpyTest {
     theMountingIsNotGuessed();
     turnsAreDrawnWhole();
     noMessageEndsIt();
+    whatContradictsItselfIsRefused();
     aCountThatCannotBeIsRefusedBeforeItIsTaken();
     coloursAreThoseOfTheExport();
     System.out.println(num_failures == 0 ? "all passed" : num_failures + " failed");
