@@ -38,11 +38,16 @@ function(lookout_room)
   endif()
 endfunction()
 
-# A program: build/<preset>/bin/<NAME>
+# Everything that the package holds: ./dev package builds this and no test.
+add_custom_target(programs)
+
+# A program: build/<preset>/bin/<NAME>, installed with all others
 function(lookout_program)
   cmake_parse_arguments(program "" "NAME" "SOURCES;LINKS" ${ARGN})
   add_executable(${program_NAME} ${program_SOURCES})
   target_link_libraries(${program_NAME} PRIVATE ${program_LINKS})
+  add_dependencies(programs ${program_NAME})
+  install(TARGETS ${program_NAME} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
 
 # A test program out of one file or more, run by ctest.

@@ -18,6 +18,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/health.hpp"
+#include "common/runtime/notify.hpp"
 #include "common/runtime/options.hpp"
 
 namespace lookout::runtime {
@@ -148,7 +149,12 @@ void Process::Stop() { implementation_->is_stopping = true; }
 void Process::Run(const std::function<HealthReport()>& report) {
   auto& self = *implementation_;
   HealthReporter reporter(self.name);
-  Every(kHealthPeriod, [&] { bus::Publish(bus_, bus::kHealth, reporter.Make(HostNow(), report(), bus_)); });
+  Every(kHealthPeriod, [&] {
+    const auto health = reporter.Make(HostNow(), report(), bus_);
+    bus::Publish(bus_, bus::kHealth, health);
+    NotifyAlive(health);
+  });
+  NotifyReady();
   spdlog::info("starts, version {}", Version());
   while (!self.is_stopping) {
     std::vector<pollfd> descriptors{{self.signals, POLLIN, 0}, {bus_.file_descriptor(), POLLIN, 0}};

@@ -44,7 +44,9 @@ class Process {
   /// shell to its jobs).
   void OnHangup(std::function<void()> handler);
 
-  /// Runs until SIGINT, SIGTERM, SIGHUP (unless it was ignored at the start: nohup) or Stop(). Sends HEALTH once a second with what `report` says.
+  /// Runs until SIGINT, SIGTERM, SIGHUP (unless it was ignored at the start: nohup) or Stop(). Sends HEALTH once a second with what `report` says,
+  /// and after each, under systemd, feeds its watchdog: a loop that turns and still makes its report is what there is to prove, as every input is
+  /// handled in it.
   /// @throws what a handler threw
   void Run(const std::function<HealthReport()>& report);
 

@@ -57,6 +57,7 @@ std::string KindOf(const std::string& include) {
                                                                           {"fmt/", "fmt"},
                                                                           {"CLI/", "cli"},
                                                                           {"openssl/", "openssl"},
+                                                                          {"systemd/", "systemd"},
                                                                           {"Eigen/", "eigen"},
                                                                           {"GeographicLib/", "geographiclib"},
                                                                           {"sys/socket", "socket"},
@@ -86,7 +87,7 @@ const std::vector<Rule>& Rules() {
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
-      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli"}},
+      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/(georeferencer|navigator)/core/.*", {"common/core", "OWN/core", "OWN/core/filter", "geographiclib"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
@@ -158,6 +159,22 @@ TEST(Structure, ReadmeNamesEveryProgram) {
       EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path() << " has no README.md";
     }
   }
+}
+
+// What is not in the table is neither in systemd's units nor started by lookout-up.
+TEST(Structure, TheTableOfProcessesNamesEveryService) {
+  std::vector<std::string> in_table;
+  std::istringstream table(Read(kRoot / "deploy/processes"));
+  for (std::string line; std::getline(table, line);) {
+    if (!line.empty() && line[0] != '#') in_table.push_back(line.substr(0, line.find(' ')));
+  }
+  std::vector<std::string> in_folder;
+  for (const auto& entry : fs::directory_iterator(kRoot / "services")) {
+    if (entry.is_directory()) in_folder.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(in_table);
+  std::ranges::sort(in_folder);
+  EXPECT_EQ(in_table, in_folder);
 }
 
 }  // namespace

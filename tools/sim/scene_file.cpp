@@ -19,13 +19,14 @@ namespace fs = std::filesystem;
 constexpr std::string_view kExtension = ".txtpb";
 
 fs::path SourceFolder() { return fs::path(LOOKOUT_SCENE_FOLDER); }
+fs::path InstalledFolder() { return fs::path(LOOKOUT_INSTALLED_SCENE_FOLDER); }
 
-// By name; what lies beside the boat hides a scene of the source tree.
+// By name; what lies beside the boat hides a scene of the source tree, and that one of the package.
 std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder) {
   std::map<std::string, fs::path> files;
   // "config/demo/" has an empty last part.
   const fs::path boat = (config_folder / "").lexically_normal().parent_path();
-  for (const auto& folder : {boat.parent_path() / "scenes", SourceFolder()}) {
+  for (const auto& folder : {boat.parent_path() / "scenes", SourceFolder(), InstalledFolder()}) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       if (entry.path().extension() == kExtension) files.emplace(entry.path().stem().string(), entry.path());

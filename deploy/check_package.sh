@@ -1,0 +1,176 @@
+#!/usr/bin/env bash
+# Tries the package in a bare Debian 12 of its own: installs, verifies, starts under systemd, upgrades, removes, purges. As root, some minutes.
+#   deploy/check_package.sh build/release/package/lookout_*.deb [ROOT]      ROOT: a debootstrap of before, used again
+# Needs debootstrap and systemd-container. Where the computer does not permit systemd-nspawn, every ExecStart line is run as its user instead.
+set -euo pipefail
+
+package=$(realpath "$1")
+root=${2:-}
+greatest_exposure=25  # of systemd-analyze security, in tenths
+say() { printf '== %s\n' "$*"; }
+fail() { echo "FAILED: $*" >&2; exit 1; }
+[ "$(id -u)" -eq 0 ] || fail "must be root"
+for program in debootstrap systemd-nspawn; do
+  command -v "$program" >/dev/null || fail "$program is missing: apt-get install debootstrap systemd-container"
+done
+
+work=$(mktemp -d -t lookout-package.XXXXXX)
+if [ -z "$root" ]; then
+  root=$work/debian
+  say "debootstrap"
+  debootstrap --variant=minbase --include=systemd,dbus bookworm "$root" >"$work/debootstrap.log" 2>&1 || fail "debootstrap: $work/debootstrap.log"
+fi
+machine=''
+clean_up() {
+  if [ -n "$machine" ]; then kill -TERM "$machine" 2>/dev/null || true; wait "$machine" 2>/dev/null || true; fi
+  rm -rf "$work"
+}
+trap clean_up EXIT
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive HOME=/root TERM=dumb "$@"; }
+units=(recorder georeferencer segmenter navigator vlp16)
+
+# A package like it with the next version, and one line of its config another: what an upgrade meets.
+say "an upgrade's package"
+dpkg-deb -R "$package" "$work/next"
+sed -i 's/^Version: .*/Version: 99.0/' "$work/next/DEBIAN/control"
+echo '# the next version of this file' | tee -a "$work/next/etc/lookout/boat/vlp16.txtpb" "$work/next/etc/lookout/boat/boat.txtpb" >/dev/null
+dpkg-deb --root-owner-group -b "$work/next" "$work/next.deb" >/dev/null
+cp "$package" "$root/root/lookout.deb"
+cp "$work/next.deb" "$root/root/next.deb"
+
+say "installs"
+inside apt-get update -qq
+inside apt-get purge -y -qq lookout >/dev/null 2>&1 || true
+find "$root" -xdev -name '*lookout*' ! -path "$root/root/*" ! -path "$root/proc/*" | sort >"$work/before"
+inside apt-get install -y -qq --no-install-recommends /root/lookout.deb >"$work/install.log" 2>&1 || { tail "$work/install.log" >&2; fail "install"; }
+inside id lookout || fail "no user"
+for program in "$root"/usr/bin/lookout-*; do
+  inside "/usr/bin/$(basename "$program")" --help >"$work/help.txt" 2>&1 || { cat "$work/help.txt" >&2; fail "$(basename "$program") --help"; }
+done
+inside lookout-up --config /etc/lookout/boat --check >/dev/null || fail "the config that is installed is wrong"
+
+say "systemd-analyze verify"
+names=("${units[@]/#/lookout-}")
+inside systemd-analyze verify lookout.target lookout-route.service "${names[@]/%/.service}" >"$work/verify.txt" 2>&1 || true
+cat "$work/verify.txt"
+[ ! -s "$work/verify.txt" ] || fail "verify is not clean"
+say "systemd-analyze security"
+for unit in "${units[@]}"; do
+  inside systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure "lookout-$unit.service" >"$work/security.txt" 2>&1 ||
+    { tail -n 1 "$work/security.txt"; fail "exposure of lookout-$unit"; }
+  tail -n 1 "$work/security.txt"
+done
+mkdir -p "$root/etc/systemd/system/lookout-vlp16.service.d"
+cp "$root/usr/share/doc/lookout/examples/live-capture.conf" "$root/etc/systemd/system/lookout-vlp16.service.d/"
+inside systemd-analyze verify lookout-vlp16.service || fail "verify with the drop-in"
+inside systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure lookout-vlp16.service >"$work/security.txt" || fail "exposure with the drop-in"
+echo "with live-capture.conf: $(tail -n 1 "$work/security.txt")"
+rm -r "$root/etc/systemd/system/lookout-vlp16.service.d"
+
+in_machine() { systemd-run --quiet --wait --pipe -M lookout-check "$@"; }
+nspawn=(systemd-nspawn -q -D "$root" --machine=lookout-check --private-network --register=no --keep-unit)
+start_by_hand() {
+  say "systemd-nspawn is not permitted here ($1): every ExecStart line by hand, as the user lookout"
+  local unit line code
+  for unit in "${units[@]}"; do
+    line=$(sed -n 's/^ExecStart=//p' "$root/lib/systemd/system/lookout-$unit.service" | sed 's#\${LOOKOUT_CONFIG}#/etc/lookout/boat#')
+    code=0
+    # In a network of its own; SIGTERM after 3 s must end it cleanly.
+    unshare -n bash -c "ip link set lo up && ip route add 239.255.76.0/24 dev lo &&
+      exec chroot --userspec=lookout:lookout '$root' /bin/sh -c 'mkdir -p /tmp/lookout && cd /tmp/lookout && exec timeout --preserve-status 3 $line'" \
+      >"$work/by_hand.txt" 2>&1 || code=$?
+    [ "$code" -eq 0 ] && grep -q 'starts, version' "$work/by_hand.txt" || { cat "$work/by_hand.txt" >&2; fail "$line: exit code $code"; }
+    echo "$line: started, ended cleanly"
+  done
+  rm -rf "$root/tmp/lookout"
+}
+say "starts under systemd"
+# A unit of the check's own starts all in the machine, kills each, and leaves what it saw.
+cat >"$root/root/look.sh" <<'LOOK'
+#!/bin/bash
+exec >/root/look.txt 2>&1
+set -u
+code=0
+expect() { echo "$1"; shift; "$@" || { echo "  FAILED: $*"; code=1; }; }
+ip link set lo up
+systemctl start lookout.target
+for unit in UNITS; do
+  expect "$unit is active" systemctl -q is-active "lookout-$unit"
+done
+expect "route" sh -c 'ip route | grep -q "239.255.76.0/24 dev lo"'
+sleep 3
+systemctl status --no-pager 'lookout-*' | grep -E 'Loaded|Active|Status|Main PID'
+for unit in UNITS; do
+  old=$(systemctl show -P MainPID "lookout-$unit")
+  from=$(date +%s%3N)
+  kill -9 "$old"
+  for _ in $(seq 400); do
+    new=$(systemctl show -P MainPID "lookout-$unit")
+    [ "$new" != 0 ] && [ "$new" != "$old" ] && systemctl -q is-active "lookout-$unit" && break
+    sleep 0.02
+  done
+  echo "$unit killed with SIGKILL: active again after $(($(date +%s%3N) - from)) ms"
+  expect "$unit is active again" systemctl -q is-active "lookout-$unit"
+done
+# A main loop that hangs: the watchdog.
+stopped=$(systemctl show -P MainPID lookout-segmenter)
+kill -STOP "$stopped"
+for _ in $(seq 300); do
+  new=$(systemctl show -P MainPID lookout-segmenter)
+  [ "$new" != 0 ] && [ "$new" != "$stopped" ] && break
+  sleep 0.1
+done
+expect "the watchdog restarts a process that hangs" [ "$new" != "$stopped" ]
+journalctl --no-pager -u lookout-segmenter | tail -n 8
+# Reload where the unit has it: same process.
+old=$(systemctl show -P MainPID lookout-vlp16)
+expect "reload of vlp16" systemctl reload lookout-vlp16
+sleep 2
+journalctl --no-pager -u lookout-vlp16 | tail -n 4
+expect "vlp16 is active after its reload, the same process" [ "$(systemctl show -P MainPID lookout-vlp16)" = "$old" ]
+expect "a log" sh -c 'ls -l /var/lib/lookout/logs/*.lcmlog'
+systemctl stop lookout.target
+systemctl stop 'lookout-*.service'  # the same once more, but waits
+for unit in UNITS; do
+  expect "$unit is stopped" [ "$(systemctl is-active "lookout-$unit")" = inactive ]
+done
+echo "code $code"
+LOOK
+sed -i "s/UNITS/${units[*]}/" "$root/root/look.sh"
+chmod +x "$root/root/look.sh"
+cat >"$root/etc/systemd/system/check-look.service" <<'UNIT'
+[Unit]
+SuccessAction=exit
+FailureAction=exit
+[Service]
+Type=oneshot
+ExecStart=/root/look.sh
+TimeoutStartSec=120s
+UNIT
+rm -f "$root/root/look.txt"
+: >"$root/etc/machine-id"
+if timeout 180 "${nspawn[@]}" -b systemd.unit=check-look.service >"$work/nspawn.txt" 2>&1 </dev/null; [ -s "$root/root/look.txt" ]; then
+  cat "$root/root/look.txt"
+  grep -q '^code 0$' "$root/root/look.txt" || fail "under systemd"
+else
+  start_by_hand "$(tail -n 1 "$work/nspawn.txt")"
+fi
+rm -f "$root/etc/systemd/system/check-look.service" "$root/root/look.sh" "$root/root/look.txt"
+
+say "upgrades, a changed config is kept"
+sed -i 's/^name: .*/name: "mine"/' "$root/etc/lookout/boat/boat.txtpb"
+inside apt-get install -y -qq --no-install-recommends -o Dpkg::Options::=--force-confdef -o Dpkg::Options::=--force-confold /root/next.deb \
+  >"$work/upgrade.log" 2>&1 || { tail "$work/upgrade.log" >&2; fail "upgrade"; }
+grep -q '^name: "mine"' "$root/etc/lookout/boat/boat.txtpb" || fail "the changed boat.txtpb was lost"
+grep -q 'the next version' "$root/etc/lookout/boat/vlp16.txtpb" || fail "an unchanged file did not get its new version"
+say "removes, config stays"
+inside apt-get remove -y -qq lookout >"$work/remove.log" 2>&1 || { tail "$work/remove.log" >&2; fail "remove"; }
+[ -e "$root/etc/lookout/boat/boat.txtpb" ] || fail "remove took the config"
+[ ! -e "$root/usr/bin/lookout-vlp16" ] || fail "remove left programs"
+say "purges: nothing is left but recordings"
+inside apt-get purge -y -qq lookout >"$work/purge.log" 2>&1 || { tail "$work/purge.log" >&2; fail "purge"; }
+rm -f "$root/root/lookout.deb" "$root/root/next.deb"
+find "$root" -xdev -name '*lookout*' ! -path "$root/root/*" ! -path "$root/proc/*" | sort >"$work/after"
+comm -13 "$work/before" "$work/after" | sed "s#^$root##" | tee "$work/left.txt"
+grep -Ev '^/var/lib/lookout$|^/var/lib/systemd/|^/var/log/|^/var/cache/' "$work/left.txt" && fail "purge left files"
+say "the package is fine"

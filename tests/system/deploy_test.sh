@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# The back-off that systemd and lookout-up share, lookout-up's command line, and how far the units are shut off.
+#   deploy_test.sh SOURCE_FOLDER BUILD_FOLDER
+set -euo pipefail
+source_folder=$1
+build_folder=$2
+greatest_exposure=25  # of systemd-analyze security, in tenths
+work=$(mktemp -d -t lookout_deploy.XXXXXX)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "FAILED: $*"; exit 1; }
+
+# Neither waits nor the time of day: both are told.
+mkdir "$work/bin" "$work/state"
+printf '#!/bin/sh\necho "slept $1"\n' >"$work/bin/sleep"
+printf '#!/bin/sh\necho "$NOW_MS"\n' >"$work/bin/date"
+chmod +x "$work/bin/sleep" "$work/bin/date"
+backoff() {  # NOW_MS [SERVICE_RESULT]
+  env -u SERVICE_RESULT PATH="$work/bin:$PATH" NOW_MS="$1" RUNTIME_DIRECTORY="$work/state" ${2:+SERVICE_RESULT="$2"} "$source_folder/deploy/backoff" |
+    sed -n 's/^slept //p'
+}
+expect() {  # WAIT_S NOW_MS WHAT [SERVICE_RESULT]
+  local got
+  got=$(backoff "$2" "${4:-}")
+  [ "$got" = "$1" ] || fail "$3: waits '$got' s, not '$1'"
+}
+expect 0 1000000 "the first end"
+expect 1 1000100 "an end at once after it"
+expect 2 1001200 "a third"
+expect 4 1003300 "a fourth"
+expect 8 1007400 "a fifth"
+expect 8 1015500 "a sixth"
+expect 0 1026000 "after two seconds of life"
+expect '' 1026100 "a stop that was asked for" success
+expect 1 1026200 "an end at once again" signal
+expect 2 26000 "the clock was set back"
+expect 0 1999999000 "the clock was set forward"
+
+up=$build_folder/bin/lookout-up
+config=$work/config
+cp -r "$source_folder/config/demo" "$config"
+"$up" --help >/dev/null || fail "--help"
+"$up" --version | grep -q '^lookout-up [0-9]' || fail "--version"
+"$up" --config "$config" --check >"$work/check.txt" || fail "--check of the demo"
+for name in recorder georeferencer segmenter navigator vlp16; do
+  grep -q "^# lookout-$name\$" "$work/check.txt" || fail "--check does not tell of $name"
+done
+code=0; "$up" 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "no --config: exit code $code"
+code=0; "$up" --config "$work/nowhere" 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "no such folder: exit code $code"
+code=0; "$up" --config 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "--config without a value: exit code $code"
+code=0; "$up" --nonsense 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "an unknown option: exit code $code"
+echo 'nonsense: 1' >>"$config/segmenter.txtpb"
+code=0; "$up" --config "$config" 2>"$work/wrong.txt" || code=$?
+[ "$code" -eq 2 ] || fail "a wrong config: exit code $code"
+grep -q 'segmenter.txtpb:.*"nonsense"' "$work/wrong.txt" || { cat "$work/wrong.txt"; fail "a wrong config is not named"; }
+
+if ! command -v systemd-analyze >/dev/null; then
+  echo "units are not looked at: there is no systemd-analyze here"
+  exit 0
+fi
+for unit in "$build_folder"/deploy/systemd/lookout-*.service; do
+  case $unit in */lookout-route.service) continue ;; esac
+  systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure "$unit" >"$work/security.txt" 2>&1 ||
+    { tail -n 1 "$work/security.txt"; fail "$unit is too open"; }
+done
