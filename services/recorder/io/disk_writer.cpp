@@ -19,8 +19,10 @@ constexpr std::chrono::milliseconds kWritePeriod(100);
 constexpr std::chrono::milliseconds kSyncPeriod(500);
 // Events are gathered in blocks of this size; one full block wakes the thread early.
 constexpr std::size_t kBlockBytes = 1024 * 1024;
-// A disk that was full must have so much more than its reserve before a new log is begun: else each byte that is freed makes one more small file.
+// A disk that was full must have a share of its reserve more than it, and room for some blocks, before a new log is begun: else each byte that is
+// freed makes one more small file.
 constexpr std::int64_t kResumeShareOfReserve = 10;
+constexpr std::int64_t kResumeBytes = 2 * kBlockBytes;
 
 std::string ErrnoText() { return std::system_category().message(errno); }
 
@@ -167,13 +169,13 @@ bool DiskWriter::HasRoomFor(const Block& block) {
     was_full = status_.is_full;
   }
   if (free_bytes < 0) return true;  // what is wrong there the write tells
-  const auto needed_bytes = limits_.reserve_bytes + (was_full ? limits_.reserve_bytes / kResumeShareOfReserve : 0);
+  const auto needed_bytes = limits_.reserve_bytes + (was_full ? limits_.reserve_bytes / kResumeShareOfReserve + kResumeBytes : 0);
   if (free_bytes - static_cast<std::int64_t>(block.bytes.size()) >= needed_bytes) return true;
   CloseFile();
   const std::lock_guard lock(mutex_);
   status_.is_full = true;
   status_.is_recording = false;
-  status_.fault = folder_.string() + ": " + Megabytes(free_bytes) + " are free, " + Megabytes(needed_bytes) +
+  status_.fault = folder_.string() + ": " + Megabytes(free_bytes) + " are free, " + Megabytes(limits_.reserve_bytes) +
                   " of the disk are kept in reserve; move or delete logs";
   return false;
 }

@@ -191,12 +191,12 @@ TEST_F(Rotation, StopsBeforeTheDiskIsFullDeletesNothingAndGoesOnWhenThereIsRoom)
     EXPECT_EQ(service.TakeWarnings().size(), 1U);
     EXPECT_EQ(Files().size(), 1U) << "no log is begun that could hold nothing";
 
-    free_bytes = 1'050'000;  // a little more is not yet room
+    free_bytes = 3'000'000;  // a little more is not yet room
     service.AdvanceTo(now_);
     service.Flush();
     EXPECT_EQ(service.Report().state, HealthState::kFailed);
 
-    free_bytes = 1'200'000;
+    free_bytes = 3'500'000;
     service.AdvanceTo(now_);
     service.Flush();
     EXPECT_EQ(service.Report().state, HealthState::kDegraded);
