@@ -123,7 +123,7 @@ class LcmTextParser {
         continue;
       }
       std::string type = Word();
-      if (!PrimitiveKind(type) && type.find('.') == std::string::npos && !package.empty()) type = package + "." + type;
+      if (!PrimitiveKind(type) && type.find('.') == std::string::npos && !package.empty()) type.insert(0, package + ".");
       do {
         WrittenMember member{type, Word(), {}};
         while (TakeIf("[")) {

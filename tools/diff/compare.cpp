@@ -50,7 +50,7 @@ class FieldReader {
   // Without its closing zero.
   Bytes String() {
     const auto size = Number(4);
-    if (size < 1 || size > bytes_.size()) throw NotDecodable();
+    if (size < 1 || size > bytes_.size() || bytes_[size - 1] != 0) throw NotDecodable();
     return Take(size).first(size - 1);
   }
 

@@ -186,8 +186,9 @@ void DiskWriter::OpenFile(const std::string& stem) {
   auto file = folder_ / (stem + ".lcmlog");
   // Of two recorders that start in the same second each gets its own. Digits, since they sort behind the dot of a name without them, in any locale.
   for (int i = 1; (descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
-    const auto number = std::to_string(i);
-    file = folder_ / (stem + std::string(number.size() < 3 ? 3 - number.size() : 0, '0') + number + ".lcmlog");
+    auto number = std::to_string(i);
+    number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+    file = folder_ / (stem + number.append(".lcmlog"));
   }
   const std::string reason = descriptor_ < 0 ? ErrnoText() : "";
   file_bytes_ = 0;

@@ -185,6 +185,14 @@ TEST_F(Compare, WhatIsNoMessageIsComparedByteByByte) {
   EXPECT_EQ(Differ(Bytes(whole), Bytes(longer))->field, "size");
 }
 
+// Nobody reads the closing zero of a string: it used to make messages equal whose bytes are not.
+TEST_F(Compare, AStringThatIsNotClosedIsADifference) {
+  const auto a = bus::Encode(nav_raw_t{});
+  auto b = a;
+  b[8 + 8 + 8 + 4 + 4] = 1;  // of `source`, behind utime_us, seq, kind and its length
+  EXPECT_EQ(Differ(Bytes(a), Bytes(b))->field, "byte 32");
+}
+
 // Counts of -1 and 2^31 - 1, strings without end, cuts anywhere: an answer, in no time, with no more memory than there are bytes.
 TEST_F(Compare, HostileMessagesGetAnAnswer) {
   std::mt19937 random(1);
