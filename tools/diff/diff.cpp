@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "common/bus/channels.hpp"
+#include "common/bus/header.hpp"
 #include "common/bus/log_event.hpp"
 #include "common/bus/log_file.hpp"
 #include "tools/log/recorded_run.hpp"
@@ -20,7 +21,7 @@ namespace lookout::diff {
 namespace {
 
 struct FirstDifference {
-  std::int64_t index = 0;  // of the message on its channel, from 0
+  std::int64_t index = 0;  // of the message on its channel in A, or in B where only that has it; from 0
   Utime time;              // of its event
   Difference difference;
 };
@@ -28,10 +29,12 @@ struct FirstDifference {
 struct ChannelResult {
   std::int64_t num_a = 0;
   std::int64_t num_b = 0;
-  std::int64_t num_different = 0;
+  std::int64_t num_different = 0;  // pairs
+  std::int64_t num_only_a = 0;
+  std::int64_t num_only_b = 0;
   std::optional<FirstDifference> first;
 
-  bool IsEqual() const { return num_a == num_b && num_different == 0; }
+  bool IsEqual() const { return !first; }
 };
 
 // One log: where the events of each channel stand, and the types that it describes.
@@ -73,37 +76,94 @@ class IndexedLog {
 // They tell of the machine, not of the water; LCM_SELF_TEST is what LCM sends to itself when it opens UDP multicast.
 bool IsLeftOut(std::string_view channel) { return channel == bus::kHealth.name || channel == bus::kRunInfo.name || channel == "LCM_SELF_TEST"; }
 
-ChannelResult CompareChannel(const std::string& channel, const Request& request, const std::vector<const bus::WireTypes*>& versions, IndexedLog& a,
-                             IndexedLog& b) {
-  static const std::vector<std::int64_t> kNone;
-  const auto places_of = [&channel](const IndexedLog& log) -> const std::vector<std::int64_t>& {
-    const auto found = log.places().find(channel);
-    return found == log.places().end() ? kNone : found->second;
-  };
-  const auto& places_a = places_of(a);
-  const auto& places_b = places_of(b);
-  const auto own = request.channel_tolerances.find(channel);
-  const auto& tolerances = own == request.channel_tolerances.end() ? request.tolerances : own->second;
+// How far a message that one log lacks is looked for in the other, and how often in vain: logs that have nothing in common are not searched through.
+constexpr std::size_t kMaxMissingInARow = 1000;
+constexpr int kMaxSearchesInVain = 4;
 
-  ChannelResult result;
-  result.num_a = static_cast<std::int64_t>(places_a.size());
-  result.num_b = static_cast<std::int64_t>(places_b.size());
-  const auto num_common = std::min(places_a.size(), places_b.size());
-  for (std::size_t i = 0; i < num_common; ++i) {
-    const auto event_a = a.Read(places_a[i]);
-    const auto event_b = b.Read(places_b[i]);
-    auto difference = CompareMessages(versions, tolerances, event_a.bytes, event_b.bytes);
-    if (!difference) continue;
-    ++result.num_different;
-    if (!result.first) result.first = FirstDifference{static_cast<std::int64_t>(i), event_a.time, *std::move(difference)};
+// The messages of one channel in both logs, in their order.
+class ChannelComparison {
+ public:
+  ChannelComparison(const std::string& channel, const Tolerances& tolerances, const std::vector<const bus::WireTypes*>& versions, IndexedLog& a,
+                    IndexedLog& b)
+      : tolerances_(tolerances), versions_(versions), a_(a, channel), b_(b, channel) {}
+
+  ChannelResult Compare() {
+    result_.num_a = a_.NumLeft();
+    result_.num_b = b_.NumLeft();
+    while (a_.NumLeft() > 0 && b_.NumLeft() > 0) {
+      const auto event_a = a_.Read(0);
+      const auto event_b = b_.Read(0);
+      auto difference = CompareMessages(versions_, tolerances_, event_a.bytes, event_b.bytes);
+      if (difference && StepOverMissing(event_a, event_b)) continue;
+      if (difference) {
+        ++result_.num_different;
+        SetFirst(a_, event_a.time, *std::move(difference));
+      }
+      ++a_.next;
+      ++b_.next;
+    }
+    StepOver(a_, a_.NumLeft(), result_.num_only_a, "only in A");
+    StepOver(b_, b_.NumLeft(), result_.num_only_b, "only in B");
+    return std::move(result_);
   }
-  if (!result.first && places_a.size() != places_b.size()) {
-    const bool is_in_a = places_a.size() > num_common;
-    const auto event = is_in_a ? a.Read(places_a[num_common]) : b.Read(places_b[num_common]);
-    result.first = FirstDifference{static_cast<std::int64_t>(num_common), event.time, {is_in_a ? "only in A" : "only in B", "", ""}};
+
+ private:
+  struct Side {
+    Side(IndexedLog& indexed_log, const std::string& channel) : log(indexed_log) {
+      const auto found = log.places().find(channel);
+      if (found != log.places().end()) places = &found->second;
+    }
+    std::int64_t NumLeft() const { return places == nullptr ? 0 : static_cast<std::int64_t>(places->size() - next); }
+    bus::LogEvent Read(std::size_t ahead) { return log.Read((*places)[next + ahead]); }
+
+    IndexedLog& log;
+    const std::vector<std::int64_t>* places = nullptr;
+    std::size_t next = 0;
+  };
+
+  static bool IsSameMessage(const bus::LogEvent& a, const bus::LogEvent& b) {
+    const auto header_a = bus::ReadHeader(a.bytes);
+    const auto header_b = bus::ReadHeader(b.bytes);
+    return header_a && header_b && header_a->fingerprint == header_b->fingerprint && header_a->utime_us == header_b->utime_us &&
+           header_a->seq == header_b->seq;
   }
-  return result;
-}
+
+  // Two messages with other times and numbers: where one log lacks some that the other has, steps over them. @return whether it did
+  bool StepOverMissing(const bus::LogEvent& event_a, const bus::LogEvent& event_b) {
+    if (IsSameMessage(event_a, event_b) || num_in_vain_ == kMaxSearchesInVain) return false;
+    const auto num_ahead = std::min<std::size_t>(kMaxMissingInARow, static_cast<std::size_t>(std::max(a_.NumLeft(), b_.NumLeft()) - 1));
+    for (std::size_t ahead = 1; ahead <= num_ahead; ++ahead) {
+      if (static_cast<std::int64_t>(ahead) < a_.NumLeft() && IsSameMessage(a_.Read(ahead), event_b)) {
+        StepOver(a_, static_cast<std::int64_t>(ahead), result_.num_only_a, "only in A");
+        return true;
+      }
+      if (static_cast<std::int64_t>(ahead) < b_.NumLeft() && IsSameMessage(b_.Read(ahead), event_a)) {
+        StepOver(b_, static_cast<std::int64_t>(ahead), result_.num_only_b, "only in B");
+        return true;
+      }
+    }
+    ++num_in_vain_;
+    return false;
+  }
+
+  void StepOver(Side& side, std::int64_t count, std::int64_t& counter, const char* what) {
+    if (count == 0) return;
+    if (!result_.first) SetFirst(side, side.Read(0).time, {what, "", ""});
+    side.next += static_cast<std::size_t>(count);
+    counter += count;
+  }
+
+  void SetFirst(const Side& side, Utime time, Difference difference) {
+    if (!result_.first) result_.first = FirstDifference{static_cast<std::int64_t>(side.next), time, std::move(difference)};
+  }
+
+  const Tolerances& tolerances_;
+  const std::vector<const bus::WireTypes*>& versions_;
+  Side a_;
+  Side b_;
+  ChannelResult result_;
+  int num_in_vain_ = 0;
+};
 
 std::string FirstText(const FirstDifference& first) {
   const auto& difference = first.difference;
@@ -141,13 +201,15 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
 
   std::int64_t num_different = 0;
   std::int64_t num_messages = 0;
-  out << fmt::format("{:<20} {:>9} {:>9} {:>9}  first difference\n", "channel", "A", "B", "differ");
+  out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}  first difference\n", "channel", "A", "B", "differ", "only_A", "only_B");
   for (const auto& channel : channels) {
-    const auto result = CompareChannel(channel, request, versions, a, b);
+    const auto own = request.channel_tolerances.find(channel);
+    const auto& tolerances = own == request.channel_tolerances.end() ? request.tolerances : own->second;
+    const auto result = ChannelComparison(channel, tolerances, versions, a, b).Compare();
     num_messages += std::max(result.num_a, result.num_b);
     if (!result.IsEqual()) ++num_different;
-    out << fmt::format("{:<20} {:>9} {:>9} {:>9}{}\n", log::Printable(channel), result.num_a, result.num_b, result.num_different,
-                       result.first ? "  " + FirstText(*result.first) : "");
+    out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", log::Printable(channel), result.num_a, result.num_b, result.num_different,
+                       result.num_only_a, result.num_only_b, result.first ? "  " + FirstText(*result.first) : "");
   }
   if (!left_out.empty()) out << fmt::format("left out: {}\n", fmt::join(left_out, ", "));
   if (num_different == 0) {

@@ -32,16 +32,43 @@ TEST_F(Diff, EqualLogsAreEqualWhateverTheirTimesOrderOfChannelsAndRunInfo) {
 
 TEST_F(Diff, TellsTheFirstDifferenceByChannelTimeAndField) {
   EXPECT_EQ(Compare({Pose(1, 0), Pose(2, 1, 0.5), Pose(3, 2, 0.5)}, {Pose(1, 0), Pose(2, 1, 0.75), Pose(3, 2, 0.75)}), kExitDifferent);
-  EXPECT_TRUE(Said("POSE                         3         3         2  message 1 at 2027-01-15T08:00:02.000000Z: heading_rad: 0.5 | 0.75\n"))
+  EXPECT_TRUE(Said(
+      "POSE                         3         3         2         0         0  message 1 at 2027-01-15T08:00:02.000000Z: heading_rad: 0.5 | 0.75\n"))
       << out_.str();
   EXPECT_TRUE(Said("different: 1 of 1 channels\n"));
 }
 
 TEST_F(Diff, AMessageMoreIsADifference) {
   EXPECT_EQ(Compare({Pose(1, 0)}, {Pose(1, 0), Pose(2, 1)}), kExitDifferent);
-  EXPECT_TRUE(Said("POSE                         1         2         0  message 1 at 2027-01-15T08:00:02.000000Z: only in B\n")) << out_.str();
+  EXPECT_TRUE(Said("POSE                         1         2         0         0         1  message 1 at 2027-01-15T08:00:02.000000Z: only in B\n"))
+      << out_.str();
   EXPECT_EQ(Compare({Pose(1, 0), Event(start_, "EXTRA", {1})}, {Pose(1, 0)}), kExitDifferent);
   EXPECT_TRUE(Said("different: 1 of 2 channels\n"));
+}
+
+TEST_F(Diff, MessagesThatOneLogLacksAreSteppedOver) {
+  std::vector<bus::LogEvent> a;
+  std::vector<bus::LogEvent> b;
+  for (int i = 0; i < 50; ++i) {
+    if (i != 10 && i != 11) a.push_back(Pose(i, i));
+    if (i != 20 && i < 48) b.push_back(Pose(i, i, i == 30 ? 0.0 : 1.0));
+  }
+  EXPECT_EQ(Compare(a, b), kExitDifferent);
+  EXPECT_TRUE(Said("POSE                        48        47         1         3         2  message 10 at 2027-01-15T08:00:10.000000Z: only in B\n"))
+      << out_.str();
+}
+
+TEST_F(Diff, LogsWithNothingInCommonAreComparedPairByPair) {
+  std::vector<bus::LogEvent> a;
+  std::vector<bus::LogEvent> b;
+  for (int i = 0; i < 50; ++i) {
+    a.push_back(Pose(i, i));
+    b.push_back(Pose(i, 1000 + i));
+  }
+  EXPECT_EQ(Compare(a, b), kExitDifferent);
+  EXPECT_TRUE(
+      Said("POSE                        50        50        50         0         0  message 0 at 2027-01-15T08:00:00.000000Z: seq: 0 | 1000\n"))
+      << out_.str();
 }
 
 TEST_F(Diff, ChannelsAreThoseAskedFor) {
