@@ -6,14 +6,14 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "common/bus/log_event.hpp"
+
 namespace lookout::bus {
 
 namespace {
 
-// An event of an lcm-log, all numbers big-endian: sync word u32, event number i64, time i64, channel length i32, data length i32,
-// channel, data (LCM: lcm/eventlog.c).
-constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-constexpr std::size_t kHeaderBytes = 28;
+constexpr std::uint32_t kSyncWord = kLogSyncWord;
+constexpr std::size_t kHeaderBytes = kLogEventHeaderBytes;
 // LCM channel names have at most 63 characters; its logs allow more.
 constexpr std::int64_t kMaxChannelBytes = 1000;
 // Far above any message that LCM carries; a greater length is damage.
@@ -78,6 +78,12 @@ LogReader::LogReader(const std::filesystem::path& file) : implementation_(std::m
 }
 
 LogReader::~LogReader() = default;
+
+std::int64_t LogReader::position_bytes() const { return implementation_->position; }
+
+std::int64_t LogReader::size_bytes() const { return implementation_->size_bytes; }
+
+void LogReader::Seek(std::int64_t position_bytes) { implementation_->position = position_bytes; }
 
 std::optional<LogEvent> LogReader::Next() {
   auto& in = *implementation_;

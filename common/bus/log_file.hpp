@@ -34,6 +34,13 @@ class LogReader {
   /// Damaged stretches, and a torn event at the end.
   std::int64_t num_damaged() const { return num_damaged_; }
 
+  /// Where in the file the next event is looked for: behind the last one. Between two events bytes that belong to none are damage.
+  std::int64_t position_bytes() const;
+  std::int64_t size_bytes() const;
+
+  /// Goes on at a place that position_bytes() gave in front of an event.
+  void Seek(std::int64_t position_bytes);
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
