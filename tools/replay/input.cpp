@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <map>
+#include <set>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
 
+#include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 
@@ -31,11 +34,43 @@ void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, const std
   refused.emplace_back(reason, count);
 }
 
-void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary) {
+// Events of one file, counted along the way of all files.
+class Way {
+ public:
+  Way(std::filesystem::path file, Chain& chain, Progress& progress, InputSummary& summary, std::int64_t num_bytes_before)
+      : file_(std::move(file)), chain_(chain), progress_(progress), summary_(summary), num_bytes_(num_bytes_before) {}
+
+  // Before an event is handed in.
+  void Begin(Utime time) {
+    ++summary_.num_events;
+    if (!has_begun_ && chain_.time() && time < *chain_.time()) {
+      spdlog::warn("{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(),
+                   ToSeconds(*chain_.time() - time));
+    }
+    has_begun_ = true;
+  }
+  void End(std::size_t num_bytes) {
+    num_bytes_ += static_cast<std::int64_t>(num_bytes);
+    progress_.Update(num_bytes_, chain_.span());
+  }
+
+ private:
+  std::filesystem::path file_;
+  Chain& chain_;
+  Progress& progress_;
+  InputSummary& summary_;
+  std::int64_t num_bytes_;
+  bool has_begun_ = false;
+};
+
+void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary, Way way) {
+  // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
+  constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
   vlp16::CaptureReader reader(file);
   while (const auto datagram = reader.Next()) {
-    ++summary.num_events;
+    way.Begin(datagram->host_time);
     chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
+    way.End(kFrameBytes + datagram->payload.size());
   }
   if (reader.num_damaged() > 0) spdlog::warn("{}: {}", file.string(), reader.damage());
   for (const auto& counter : reader.counters()) {
@@ -44,21 +79,38 @@ void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& 
   }
 }
 
-void FeedLog(const std::filesystem::path& file, Chain& chain, InputSummary& summary) {
+void FeedLog(const std::filesystem::path& file, const Plan& plan, Chain& chain, InputSummary& summary, Way way) {
+  // Of an event beside its channel and data. For the progress only.
+  constexpr std::size_t kEventBytes = 28;
   bus::LogReader reader(file);
   std::int64_t num_oversize = 0;
   while (const auto event = reader.Next()) {
     const auto* channel = bus::FindChannel(event->channel);
-    if (channel == nullptr || !channel->is_raw) continue;
-    if (event->bytes.size() > bus::kMaxMessageBytes) {
+    if (channel == nullptr || !plan.Reads(channel->name)) {
+      Count(summary.left, event->channel, 1);
+    } else if (event->bytes.size() > bus::kMaxMessageBytes) {
       ++num_oversize;
-      continue;
+    } else {
+      way.Begin(event->time);
+      chain.OnLogged(event->time, *channel, event->bytes);
     }
-    ++summary.num_events;
-    chain.OnRaw(event->time, *channel, event->bytes);
+    way.End(kEventBytes + event->channel.size() + event->bytes.size());
   }
   Count(summary.refused, "log.damaged", reader.num_damaged());
   Count(summary.refused, "log.oversize_message", num_oversize);
+}
+
+// Reads until all that is looked for was found. What is not printable in the name of a channel is no channel of ours.
+void Look(const std::filesystem::path& file, const std::set<std::string, std::less<>>& candidates, std::set<std::string, std::less<>>& present,
+          std::optional<run_info_t>& recorded) {
+  const auto is_found = [&] { return std::ranges::all_of(candidates, [&](const auto& channel) { return present.contains(channel); }); };
+  bus::LogReader reader(file);
+  while (!is_found()) {
+    const auto event = reader.Next();
+    if (!event) return;
+    if (!recorded && event->channel == bus::kRunInfo.name) recorded = bus::Decode<run_info_t>(event->bytes);
+    if (bus::FindChannel(event->channel) != nullptr) present.insert(event->channel);
+  }
 }
 
 }  // namespace
@@ -74,37 +126,62 @@ InputKind KindOf(const std::filesystem::path& file) {
   return start == kLogSyncWord || bus::LogReader(file).Next() ? InputKind::kLog : InputKind::kCapture;
 }
 
-RawInput Inspect(const std::vector<std::filesystem::path>& files) {
-  int num_logs = 0;
-  bool has_packets = false;
-  bool has_nav_raw = false;
+Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request) {
+  const auto candidates = Candidates(request);
+  Inspection inspection;
+  std::set<std::string, std::less<>> present;
+  std::size_t num_logs = 0;
   for (const auto& file : files) {
-    if (KindOf(file) == InputKind::kCapture) continue;
-    ++num_logs;
-    bus::LogReader reader(file);
-    while (const auto event = reader.Next()) {
-      has_packets = has_packets || event->channel == bus::kLidarPackets.name;
-      has_nav_raw = has_nav_raw || event->channel == bus::kNavRaw.name;
-    }
+    const bool is_log = KindOf(file) == InputKind::kLog;
+    inspection.num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
+    if (is_log) Look(file, candidates, present, inspection.recorded);
+    num_logs += is_log ? 1 : 0;
   }
-  if (num_logs == 0) return {};
-  if (num_logs != static_cast<int>(files.size())) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
-  if (!has_packets && !has_nav_raw)
-    throw std::runtime_error(files.front().string() + ": holds neither LIDAR_PACKETS nor NAV_RAW, nothing can be computed again");
-  // Without NAV_RAW the sentences of the lidar's position packets are all the navigation there is.
-  return {vlp16::Input::kLog, has_nav_raw ? navigator::Input::kLog : navigator::Input::kOutside};
+  if (num_logs != 0 && num_logs != files.size()) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
+  try {
+    inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(files.front().string() + ": " + error.what());
+  }
+  return inspection;
 }
 
-InputSummary Feed(const std::vector<std::filesystem::path>& files, Chain& chain) {
+InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& plan, Chain& chain, Progress& progress) {
   InputSummary summary;
+  std::int64_t num_bytes = 0;
   for (const auto& file : files) {
+    const Way way(file, chain, progress, summary, num_bytes);
     if (KindOf(file) == InputKind::kLog) {
-      FeedLog(file, chain, summary);
+      FeedLog(file, plan, chain, summary, way);
     } else {
-      FeedCapture(file, chain, summary);
+      FeedCapture(file, chain, summary, way);
     }
+    num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
   }
   return summary;
+}
+
+std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b) {
+  const auto texts = [](const run_info_t& info) {
+    std::map<std::string, std::string> text_of_file;
+    for (std::size_t i = 0; i < info.file_name.size(); ++i) {
+      if (std::filesystem::path(info.file_name[i]).extension() == ".txtpb") text_of_file[info.file_name[i]] = info.file_text[i];
+    }
+    return text_of_file;
+  };
+  const auto texts_a = texts(a);
+  const auto texts_b = texts(b);
+  std::set<std::string> names;
+  for (const auto* side : {&texts_a, &texts_b}) {
+    for (const auto& entry : *side) names.insert(entry.first);
+  }
+  std::vector<std::string> differing;
+  for (const auto& name : names) {
+    const auto in_a = texts_a.find(name);
+    const auto in_b = texts_b.find(name);
+    if (in_a == texts_a.end() || in_b == texts_b.end() || in_a->second != in_b->second) differing.push_back(name);
+  }
+  return differing;
 }
 
 }  // namespace lookout::replay
