@@ -22,9 +22,10 @@ constexpr std::size_t kHeaderBytes = 28;
 constexpr std::int64_t kMaxChannelBytes = 1000;
 // Far above any message that LCM carries; a greater length is damage.
 constexpr std::int64_t kMaxDataBytes = 16 * 1024 * 1024;
-// What is read or written at once: system calls cost more than the copy.
-constexpr std::size_t kBlockBytes = 256 * 1024;
-constexpr std::size_t kSearchBytes = 65536;
+// What is read or written at once: system calls cost more than the copy. A turn's messages are larger than what is read: those that nobody
+// wants are passed over.
+constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kWriteBytes = 256 * 1024;
 
 std::uint64_t ReadBigEndian(Bytes bytes, std::size_t offset, std::size_t size) {
   std::uint64_t value = 0;
@@ -47,11 +48,12 @@ struct LogReader::Implementation {
   // A stretch of the file: events follow each other, and what stands behind an event is looked at twice.
   std::vector<std::uint8_t> block;
   std::int64_t block_offset = 0;
+  std::string channel;  // of the event that was given last
 
   // @return the bytes from `offset` on, `size` of them where the file has so many. They stand until the next call.
   Bytes View(std::int64_t offset, std::size_t size) {
     const auto end = offset + static_cast<std::int64_t>(size);
-    if (offset < block_offset || end > block_offset + static_cast<std::int64_t>(block.size())) Load(offset, std::max(size, kBlockBytes));
+    if (offset < block_offset || end > block_offset + static_cast<std::int64_t>(block.size())) Load(offset, std::max(size, kReadBytes));
     if (offset >= block_offset + static_cast<std::int64_t>(block.size())) return {};
     const auto within = Bytes(block).subspan(static_cast<std::size_t>(offset - block_offset));
     return within.first(std::min(size, within.size()));
@@ -70,6 +72,31 @@ struct LogReader::Implementation {
     block.resize(size_read);
   }
 
+  // The event that begins at `start`, and `position` behind it; nullopt when there is no whole one.
+  std::optional<LogEventView> EventAt(std::int64_t start, const std::function<bool(std::string_view channel)>& is_wanted) {
+    const Bytes header = View(start, kHeaderBytes);
+    if (header.size() < kHeaderBytes || ReadBigEndian(header, 0, 4) != kSyncWord) return std::nullopt;
+    const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
+    const std::int64_t channel_size = ReadI32(header, 20);
+    const std::int64_t data_size = ReadI32(header, 24);
+    if (!time || channel_size <= 0 || channel_size > kMaxChannelBytes || data_size < 0 || data_size > kMaxDataBytes) return std::nullopt;
+    const std::int64_t end = start + static_cast<std::int64_t>(kHeaderBytes) + channel_size + data_size;
+    if (end > size_bytes) return std::nullopt;
+
+    const std::size_t head_size = kHeaderBytes + static_cast<std::size_t>(channel_size);
+    const std::size_t size = head_size + static_cast<std::size_t>(data_size);
+    const Bytes head = View(start, head_size);
+    if (head.size() < head_size) return std::nullopt;
+    channel.assign(head.begin() + kHeaderBytes, head.end());  // what stands behind the event may be another stretch
+    const bool has_data = is_wanted(channel);
+    if (has_data) View(start, size + sizeof(kSyncWord));  // one stretch for all
+    if (!IsWhole(start, end)) return std::nullopt;
+    const Bytes whole = has_data ? View(start, size) : Bytes();
+    if (has_data && whole.size() < size) return std::nullopt;
+    position = end;
+    return LogEventView{*time, channel, has_data ? whole.subspan(head_size) : Bytes()};
+  }
+
   // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
   // sync word stands at `end`, but some stand inside.
   bool IsWhole(std::int64_t start, std::int64_t end) {
@@ -82,7 +109,7 @@ struct LogReader::Implementation {
   // The first sync word at or after `offset`; size_bytes when there is none.
   std::int64_t FindSync(std::int64_t offset) {
     while (offset + 4 <= size_bytes) {
-      const Bytes bytes = View(offset, kSearchBytes);
+      const Bytes bytes = View(offset, kReadBytes);
       if (bytes.size() < 4) break;
       for (std::size_t i = 0; i + 4 <= bytes.size(); ++i) {
         if (ReadBigEndian(bytes, i, 4) == kSyncWord) return offset + static_cast<std::int64_t>(i);
@@ -103,35 +130,22 @@ LogReader::LogReader(const std::filesystem::path& file) : implementation_(std::m
 
 LogReader::~LogReader() = default;
 
+std::int64_t LogReader::position() const { return implementation_->position; }
+
 std::optional<LogEvent> LogReader::Next() {
+  const auto view = NextView([](std::string_view) { return true; });
+  if (!view) return std::nullopt;
+  return LogEvent{view->time, std::string(view->channel), {view->bytes.begin(), view->bytes.end()}};
+}
+
+std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::string_view channel)>& is_wanted) {
   auto& in = *implementation_;
   bool is_resynchronising = false;
   while (in.position < in.size_bytes) {
-    const std::int64_t start = in.position;
-    const Bytes header = in.View(start, kHeaderBytes);
-    if (header.size() == kHeaderBytes && ReadBigEndian(header, 0, 4) == kSyncWord) {
-      const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
-      const std::int64_t channel_size = ReadI32(header, 20);
-      const std::int64_t data_size = ReadI32(header, 24);
-      const std::int64_t body = start + static_cast<std::int64_t>(kHeaderBytes);
-      if (time && channel_size > 0 && channel_size <= kMaxChannelBytes && data_size >= 0 && data_size <= kMaxDataBytes &&
-          channel_size + data_size <= in.size_bytes - body) {
-        const auto size = static_cast<std::size_t>(channel_size + data_size);
-        const Bytes bytes = in.View(body, size);
-        if (bytes.size() == size) {
-          const Bytes channel = bytes.first(static_cast<std::size_t>(channel_size));
-          const Bytes data = bytes.subspan(channel.size());
-          LogEvent event{*time, {channel.begin(), channel.end()}, {data.begin(), data.end()}};
-          if (in.IsWhole(start, body + channel_size + data_size)) {
-            in.position = body + channel_size + data_size;
-            return event;
-          }
-        }
-      }
-    }
+    if (const auto event = in.EventAt(in.position, is_wanted)) return event;
     if (!is_resynchronising) ++num_damaged_;
     is_resynchronising = true;
-    in.position = in.FindSync(start + 1);
+    in.position = in.FindSync(in.position + 1);
   }
   return std::nullopt;
 }
@@ -147,7 +161,7 @@ LogWriter::LogWriter(const std::filesystem::path& file, bool overwrite) : implem
   implementation_->file = file;
   implementation_->log = lcm_eventlog_create(file.c_str(), "w");
   if (implementation_->log == nullptr) throw std::runtime_error(file.string() + ": cannot be written");
-  setvbuf(implementation_->log->f, nullptr, _IOFBF, kBlockBytes);
+  setvbuf(implementation_->log->f, nullptr, _IOFBF, kWriteBytes);
 }
 
 LogWriter::~LogWriter() { lcm_eventlog_destroy(implementation_->log); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <set>
 #include <spdlog/spdlog.h>
@@ -23,7 +24,7 @@ constexpr Magic kLogSyncWord{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::array<Magic, 5> kCaptureMagics{
     {{0xA1, 0xB2, 0xC3, 0xD4}, {0xD4, 0xC3, 0xB2, 0xA1}, {0xA1, 0xB2, 0x3C, 0x4D}, {0x4D, 0x3C, 0xB2, 0xA1}, {0x0A, 0x0D, 0x0D, 0x0A}}};
 
-void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, const std::string& reason, std::int64_t count) {
+void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, std::string_view reason, std::int64_t count) {
   if (count == 0) return;
   for (auto& [known_reason, known_count] : refused) {
     if (known_reason == reason) {
@@ -34,43 +35,36 @@ void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, const std
   refused.emplace_back(reason, count);
 }
 
-// Events of one file, counted along the way of all files.
-class Way {
+// Where the events of one file are, in time.
+class Order {
  public:
-  Way(std::filesystem::path file, Chain& chain, Progress& progress, InputSummary& summary, std::int64_t num_bytes_before)
-      : file_(std::move(file)), chain_(chain), progress_(progress), summary_(summary), num_bytes_(num_bytes_before) {}
+  Order(std::filesystem::path file, const Chain& chain) : file_(std::move(file)), before_(chain.time()) {}
 
-  // Before an event is handed in.
-  void Begin(Utime time) {
-    ++summary_.num_events;
-    if (!has_begun_ && chain_.time() && time < *chain_.time()) {
-      spdlog::warn("{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(),
-                   ToSeconds(*chain_.time() - time));
+  /// Before an event is handed in.
+  void Check(Utime time) {
+    if (before_ && time < *before_) {
+      spdlog::warn("{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(), ToSeconds(*before_ - time));
     }
-    has_begun_ = true;
-  }
-  void End(std::size_t num_bytes) {
-    num_bytes_ += static_cast<std::int64_t>(num_bytes);
-    progress_.Update(num_bytes_, chain_.span());
+    before_.reset();
   }
 
  private:
   std::filesystem::path file_;
-  Chain& chain_;
-  Progress& progress_;
-  InputSummary& summary_;
-  std::int64_t num_bytes_;
-  bool has_begun_ = false;
+  std::optional<Utime> before_;
 };
 
-void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary, Way way) {
+void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary, const std::function<void(std::int64_t)>& show) {
   // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
   constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
   vlp16::CaptureReader reader(file);
+  Order order(file, chain);
+  std::size_t num_bytes = 0;
   while (const auto datagram = reader.Next()) {
-    way.Begin(datagram->host_time);
+    order.Check(datagram->host_time);
+    ++summary.num_events;
     chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
-    way.End(kFrameBytes + datagram->payload.size());
+    num_bytes += kFrameBytes + datagram->payload.size();
+    show(static_cast<std::int64_t>(num_bytes));
   }
   if (reader.num_damaged() > 0) spdlog::warn("{}: {}", file.string(), reader.damage());
   for (const auto& counter : reader.counters()) {
@@ -79,37 +73,38 @@ void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& 
   }
 }
 
-void FeedLog(const std::filesystem::path& file, const Plan& plan, Chain& chain, InputSummary& summary, Way way) {
-  // Of an event beside its channel and data. For the progress only.
-  constexpr std::size_t kEventBytes = 28;
+void FeedLog(const std::filesystem::path& file, const Plan& plan, Chain& chain, InputSummary& summary,
+             const std::function<void(std::int64_t)>& show) {
   bus::LogReader reader(file);
+  Order order(file, chain);
   std::int64_t num_oversize = 0;
-  while (const auto event = reader.Next()) {
-    const auto* channel = bus::FindChannel(event->channel);
-    if (channel == nullptr || !plan.Reads(channel->name)) {
-      Count(summary.left, event->channel, 1);
+  while (const auto event = reader.NextView([&plan](std::string_view channel) { return plan.Reads(channel); })) {
+    show(reader.position());
+    if (!plan.Reads(event->channel)) {
+      const auto* known = bus::FindChannel(event->channel);
+      Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
     } else if (event->bytes.size() > bus::kMaxMessageBytes) {
       ++num_oversize;
     } else {
-      way.Begin(event->time);
-      chain.OnLogged(event->time, *channel, event->bytes);
+      order.Check(event->time);
+      ++summary.num_events;
+      chain.OnLogged(event->time, *bus::FindChannel(event->channel), event->bytes);
     }
-    way.End(kEventBytes + event->channel.size() + event->bytes.size());
   }
   Count(summary.refused, "log.damaged", reader.num_damaged());
   Count(summary.refused, "log.oversize_message", num_oversize);
 }
 
-// Reads until all that is looked for was found. What is not printable in the name of a channel is no channel of ours.
+// Reads until all that is looked for was found.
 void Look(const std::filesystem::path& file, const std::set<std::string, std::less<>>& candidates, std::set<std::string, std::less<>>& present,
           std::optional<run_info_t>& recorded) {
   const auto is_found = [&] { return std::ranges::all_of(candidates, [&](const auto& channel) { return present.contains(channel); }); };
   bus::LogReader reader(file);
   while (!is_found()) {
-    const auto event = reader.Next();
+    const auto event = reader.NextView([](std::string_view channel) { return channel == bus::kRunInfo.name; });
     if (!event) return;
     if (!recorded && event->channel == bus::kRunInfo.name) recorded = bus::Decode<run_info_t>(event->bytes);
-    if (bus::FindChannel(event->channel) != nullptr) present.insert(event->channel);
+    if (bus::FindChannel(event->channel) != nullptr) present.emplace(event->channel);
   }
 }
 
@@ -150,11 +145,11 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& p
   InputSummary summary;
   std::int64_t num_bytes = 0;
   for (const auto& file : files) {
-    const Way way(file, chain, progress, summary, num_bytes);
+    const auto show = [&](std::int64_t num_bytes_of_file) { progress.Update(num_bytes + num_bytes_of_file, chain.span()); };
     if (KindOf(file) == InputKind::kLog) {
-      FeedLog(file, plan, chain, summary, way);
+      FeedLog(file, plan, chain, summary, show);
     } else {
-      FeedCapture(file, chain, summary, way);
+      FeedCapture(file, chain, summary, show);
     }
     num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
   }

@@ -19,7 +19,7 @@ Progress::~Progress() {
 void Progress::Update(std::int64_t num_bytes_done, std::chrono::microseconds data_span) {
   if (out_ == nullptr || ++num_calls_ % kCallsPerLook != 0) return;
   const auto now = std::chrono::steady_clock::now();
-  if (now - last_ < kLinePeriod) return;
+  if (has_line_ && now - last_ < kLinePeriod) return;
   last_ = now;
   has_line_ = true;
   const double elapsed_s = ToSeconds(now - start_);
