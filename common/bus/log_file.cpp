@@ -25,7 +25,7 @@ constexpr std::int64_t kMaxDataBytes = 16 * 1024 * 1024;
 // What is read or written at once: system calls cost more than the copy. A turn's messages are larger than what is read: those that nobody
 // wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
-constexpr std::size_t kWriteBytes = 256 * 1024;
+constexpr std::size_t kWriteBytes = 16 * 1024;
 
 std::uint64_t ReadBigEndian(Bytes bytes, std::size_t offset, std::size_t size) {
   std::uint64_t value = 0;

@@ -15,8 +15,8 @@ namespace lookout::replay {
 
 /// What the command line asks for.
 struct Request {
-  std::vector<std::string> from;  // --from: channels that are read and not computed
-  std::vector<std::string> only;  // --only: services that run; empty = all
+  std::vector<std::string> from = {};  // --from: channels that are read and not computed
+  std::vector<std::string> only = {};  // --only: services that run; empty = all
 };
 
 /// A request that cannot be met whatever the input is: a fault of the command line.
