@@ -1,5 +1,5 @@
 // The proof: what ran live computes again to the same bytes. All processes over UDP LCM in a network namespace of their own, the simulator sends
-// real datagrams. LOOKOUT_PROOF_SECONDS sets the length of the data (default 6).
+// real datagrams. LOOKOUT_PROOF_SECONDS sets the length of the data (default 4).
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -32,7 +32,7 @@ std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) +
 
 int DataSeconds() {
   const char* text = std::getenv("LOOKOUT_PROOF_SECONDS");
-  return text != nullptr ? std::max(1, std::atoi(text)) : 6;
+  return text != nullptr ? std::max(1, std::atoi(text)) : 4;
 }
 
 // Payloads per channel, in their order.

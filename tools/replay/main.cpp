@@ -102,10 +102,10 @@ std::int64_t CountOf(Chain& chain, const lookout::bus::Channel& channel) {
   return entry == chain.digests().end() ? 0 : entry->second.count;
 }
 
-// RUN_INFO of the result: the config in force, and what was done.
+// RUN_INFO of the result: the config in force, and what makes it another result than the whole chain gave with the config of the input.
 lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Inspection& inspection) {
   auto run_info = lookout::runtime::MakeRunInfo("replay", options.config_folder);
-  std::string text = InWords(inspection.plan);
+  std::string text = IsWhole(inspection.plan) ? "" : InWords(inspection.plan);
   if (inspection.recorded) {
     const auto differing = lookout::replay::DifferingConfigFiles(*inspection.recorded, run_info);
     if (!differing.empty()) {
@@ -114,6 +114,7 @@ lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Ins
       text += "config differs from that of the input: " + names + "\n";
     }
   }
+  if (text.empty()) return run_info;
   run_info.file_name.emplace_back("lookout-replay");
   run_info.file_text.push_back(text);
   run_info.num_files = static_cast<std::int32_t>(run_info.file_name.size());

@@ -61,6 +61,9 @@ Plan MakeLogPlan(const Request& request, const std::set<std::string, std::less<>
 /// @throws RequestError also when --from is asked for, or a service that takes no datagrams and whose givers do not run
 Plan MakeCapturePlan(const Request& request);
 
+/// Whether all services run.
+inline bool IsWhole(const Plan& plan) { return plan.runs_vlp16 && plan.runs_segmenter && plan.runs_navigator && plan.runs_georeferencer; }
+
 /// What runs and what is read, for RUN_INFO: two lines.
 std::string InWords(const Plan& plan);
 
