@@ -12,5 +12,9 @@ foreach(header ${headers})
     "if\\((__[a-z0-9_]+) > maxlen - pos\\) return -1;"
     "if (\\1 < 1 || \\1 > maxlen - pos) return -1;"
     text "${text}")
+  # Numbers by whole words: arrays.hpp.
+  string(REGEX REPLACE "__(int16_t|int32_t|int64_t|float|double)_encode_array\\(" "::lookout::wire::EncodeArray(" text "${text}")
+  string(REGEX REPLACE "__(int16_t|int32_t|int64_t|float|double)_decode_array\\(" "::lookout::wire::DecodeArray(" text "${text}")
+  string(REPLACE "#include <lcm/lcm_coretypes.h>" "#include <lcm/lcm_coretypes.h>\n#include \"lcmtypes/arrays.hpp\"" text "${text}")
   file(WRITE ${header} "${text}")
 endforeach()

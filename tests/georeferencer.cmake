@@ -1,6 +1,7 @@
 lookout_test(NAME unit_georeferencer
              SOURCES unit/georeferencer/pose_test.cpp unit/georeferencer/placement_test.cpp unit/georeferencer/georeferencer_test.cpp
                      unit/georeferencer/wire_test.cpp unit/georeferencer/obstacle_messages_test.cpp unit/georeferencer/service_test.cpp
+                     unit/georeferencer/guard_zone_test.cpp
              LINKS lookout_georeferencer)
 lookout_test(NAME property_georeferencer
              SOURCES property/georeferencer_interleaving_test.cpp property/georeferencer_round_trip_test.cpp

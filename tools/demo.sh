@@ -115,8 +115,8 @@ log       $log
           play it:      lcm-logplayer $log
           again:        $bin/lookout-replay --config $config --in $log --out again.lcmlog
           tables:       $bin/lookout-export --in $log --table obstacles
-          watch it:     java -Djava.net.preferIPv4Stack=true -cp /usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar:build/release/lookout-types.jar lcm.spy.Spy
-                        (Debian packages liblcm-java, libjchart2d-java), then lcm-logplayer in another terminal
+          watch it:     $bin/lookout-top in a terminal, or $bin/lookout-spy --view on a display,
+                        then lcm-logplayer in another terminal
 picture   $picture
           open it in a browser, or: xdg-open $picture
 TEXT

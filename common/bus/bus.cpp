@@ -1,8 +1,7 @@
 #include "common/bus/bus.hpp"
 
 #include <stdexcept>
-
-#include "common/bus/header.hpp"
+#include <utility>
 
 namespace lookout::bus {
 
@@ -14,26 +13,38 @@ void AddHandlingTime(ChannelTraffic& traffic, std::chrono::steady_clock::duratio
   traffic.handling_times.push_back(std::chrono::duration_cast<std::chrono::microseconds>(duration));
 }
 
-void AddSent(ChannelTraffic& traffic, Bytes bytes) {
-  ++traffic.num_messages;
-  const auto header = ReadHeader(bytes);
-  if (!header) return;
-  if (traffic.sent.size() == ChannelTraffic::kMaxTimes) traffic.sent.pop_front();
-  traffic.sent.push_back({header->utime_us, std::chrono::steady_clock::now()});  // for HEALTH only
+void RequireSize(const Channel& channel, Bytes bytes) {
+  if (bytes.size() <= kMaxMessageBytes) return;
+  throw std::runtime_error(std::string(channel.name) + ": a message of " + std::to_string(bytes.size()) + " bytes is larger than " +
+                           std::to_string(kMaxMessageBytes));
 }
 
 }  // namespace
 
 void Bus::Publish(const Channel& channel, Bytes bytes) {
-  if (bytes.size() > kMaxMessageBytes) {
-    throw std::runtime_error(std::string(channel.name) + ": a message of " + std::to_string(bytes.size()) + " bytes is larger than " +
-                             std::to_string(kMaxMessageBytes));
-  }
-  if (Send(channel, bytes)) {
-    AddSent(outputs_[std::string(channel.name)], bytes);
-  } else {
+  RequireSize(channel, bytes);
+  const auto header = ReadHeader(bytes);
+  NoteSent(channel, header, Send(channel, bytes));
+}
+
+void Bus::Publish(const Channel& channel, std::vector<std::uint8_t>&& bytes) {
+  RequireSize(channel, bytes);
+  const auto header = ReadHeader(bytes);  // the bytes may be gone afterwards
+  NoteSent(channel, header, SendOwned(channel, std::move(bytes)));
+}
+
+void Bus::NoteSent(const Channel& channel, std::optional<MessageHeader> header, bool was_taken) {
+  if (!was_taken) {
     ++num_unsent_;
+    return;
   }
+  auto entry = outputs_.find(channel.name);
+  if (entry == outputs_.end()) entry = outputs_.try_emplace(std::string(channel.name)).first;
+  auto& traffic = entry->second;
+  ++traffic.num_messages;
+  if (!header) return;
+  if (traffic.sent.size() == ChannelTraffic::kMaxTimes) traffic.sent.pop_front();
+  traffic.sent.push_back({header->utime_us, std::chrono::steady_clock::now()});  // for HEALTH only
 }
 
 void Bus::SubscribeRaw(const Channel& channel, RawHandler handler) {

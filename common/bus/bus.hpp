@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -14,6 +15,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/bus/header.hpp"
 #include "common/bus/sequence.hpp"
 #include "common/core/bytes.hpp"
 
@@ -49,6 +51,8 @@ class Bus {
   /// Sends bytes. A transport that fails (no route, no buffer) does not end a look-out: the message is lost and counted.
   /// @throws std::runtime_error when the message is larger than the transport carries
   void Publish(const Channel& channel, Bytes bytes);
+  /// The same for bytes that the caller needs no more.
+  void Publish(const Channel& channel, std::vector<std::uint8_t>&& bytes);
 
   /// Messages that the transport did not take.
   std::int64_t num_unsent() const { return num_unsent_; }
@@ -76,10 +80,14 @@ class Bus {
  protected:
   /// @return whether the transport took the message
   virtual bool Send(const Channel& channel, Bytes bytes) = 0;
+  /// The same; a transport that holds messages may keep the bytes.
+  virtual bool SendOwned(const Channel& channel, std::vector<std::uint8_t>&& bytes) { return Send(channel, bytes); }
   /// `channel` is nullptr for all channels.
   virtual void Attach(const Channel* channel, RawHandler handler) = 0;
 
  private:
+  void NoteSent(const Channel& channel, std::optional<MessageHeader> header, bool was_taken);
+
   std::map<std::string, ChannelTraffic, std::less<>> inputs_;
   std::map<std::string, ChannelTraffic, std::less<>> outputs_;
   std::int64_t num_unsent_ = 0;

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
@@ -18,43 +19,13 @@ namespace {
 
 constexpr std::string_view kDefaultGroup = "239.255.76.67";
 constexpr int kDefaultPort = 7667;
-// Two seconds of every channel at its greatest rate fit; the kernel gives at most net.core.rmem_max.
-constexpr int kReceiveBufferBytes = 4 * 1024 * 1024;
 // Messages of channels that are not in the table, and of all channels together for a recorder.
 constexpr int kAllChannelsQueueDepth = 4000;
 
-struct MulticastAddress {
-  std::string group{kDefaultGroup};
-  int port = kDefaultPort;
-};
-
-// "udpm://239.255.76.67:7667?ttl=1" -> group and port; what is left out keeps LCM's default.
-MulticastAddress ParseMulticast(const std::string& url) {
-  MulticastAddress address;
-  const auto start = url.find("://");
-  std::string network = url.substr(start == std::string::npos ? 0 : start + 3);
-  network = network.substr(0, network.find('?'));
-  const auto colon = network.find(':');
-  if (colon != 0 && !network.empty()) address.group = network.substr(0, colon);
-  if (colon != std::string::npos) address.port = static_cast<int>(std::strtol(network.c_str() + colon + 1, nullptr, 10));
-  return address;
-}
-
-bool HasRoute(const MulticastAddress& address) {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return false;
-  sockaddr_in target{};
-  target.sin_family = AF_INET;
-  target.sin_port = htons(static_cast<std::uint16_t>(address.port));
-  bool has_route = inet_pton(AF_INET, address.group.c_str(), &target.sin_addr) == 1;
-  has_route = has_route && connect(descriptor, reinterpret_cast<const sockaddr*>(&target), sizeof target) == 0;
-  close(descriptor);
-  return has_route;
-}
-
 std::string RouteLine(const MulticastAddress& address) {
   const auto last_dot = address.group.rfind('.');
-  return "ip route add " + address.group.substr(0, last_dot) + ".0/24 dev lo";
+  const std::string device = address.time_to_live > 0 ? "<the interface to the other computers>" : "lo";
+  return "ip route add " + address.group.substr(0, last_dot) + ".0/24 dev " + device;
 }
 
 std::string WithReceiveBuffer(const std::string& url) {
@@ -74,6 +45,32 @@ std::string Escaped(std::string_view name) {
 }
 
 }  // namespace
+
+std::optional<MulticastAddress> ParseMulticast(const std::string& url) {
+  if (url.rfind("udpm://", 0) != 0) return std::nullopt;
+  MulticastAddress address{std::string(kDefaultGroup), kDefaultPort, 0};
+  std::string network = url.substr(url.find("://") + 3);
+  network = network.substr(0, network.find('?'));
+  const auto colon = network.find(':');
+  if (colon != 0 && !network.empty()) address.group = network.substr(0, colon);
+  if (colon != std::string::npos) address.port = static_cast<int>(std::strtol(network.c_str() + colon + 1, nullptr, 10));
+  constexpr std::string_view kTimeToLive = "ttl=";
+  const auto place = url.find(kTimeToLive, std::min(url.find('?'), url.size()));
+  if (place != std::string::npos) address.time_to_live = static_cast<int>(std::strtol(url.c_str() + place + kTimeToLive.size(), nullptr, 10));
+  return address;
+}
+
+bool HasRoute(const MulticastAddress& address) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return false;
+  sockaddr_in target{};
+  target.sin_family = AF_INET;
+  target.sin_port = htons(static_cast<std::uint16_t>(address.port));
+  bool has_route = inet_pton(AF_INET, address.group.c_str(), &target.sin_addr) == 1;
+  has_route = has_route && connect(descriptor, reinterpret_cast<const sockaddr*>(&target), sizeof target) == 0;
+  close(descriptor);
+  return has_route;
+}
 
 std::string DefaultLcmUrl() {
   const char* url = std::getenv("LCM_DEFAULT_URL");
@@ -107,11 +104,8 @@ struct LcmBus::Implementation {
 
 LcmBus::LcmBus(const std::string& url) : implementation_(std::make_unique<Implementation>()) {
   implementation_->url = WithReceiveBuffer(url);
-  if (url.rfind("udpm://", 0) == 0) {
-    const auto address = ParseMulticast(url);
-    if (!HasRoute(address)) {
-      throw std::runtime_error("LCM needs a multicast route to " + address.group + " and there is none. As root: " + RouteLine(address));
-    }
+  if (const auto address = ParseMulticast(url); address && !HasRoute(*address)) {
+    throw std::runtime_error("LCM needs a multicast route to " + address->group + " and there is none. As root: " + RouteLine(*address));
   }
   implementation_->lcm = lcm_create(implementation_->url.c_str());
   if (implementation_->lcm == nullptr) throw std::runtime_error("LCM cannot be opened at " + implementation_->url);

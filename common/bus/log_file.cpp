@@ -1,23 +1,31 @@
 #include "common/bus/log_file.hpp"
 
-#include <array>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <lcm/eventlog.h>
 #include <stdexcept>
 #include <system_error>
 
+#include "common/bus/log_event.hpp"
+
 namespace lookout::bus {
 
 namespace {
 
-// An event of an lcm-log, all numbers big-endian: sync word u32, event number i64, time i64, channel length i32, data length i32,
-// channel, data (LCM: lcm/eventlog.c).
-constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
-constexpr std::size_t kHeaderBytes = 28;
+constexpr std::uint32_t kSyncWord = kLogSyncWord;
+constexpr std::size_t kHeaderBytes = kLogEventHeaderBytes;
 // LCM channel names have at most 63 characters; its logs allow more.
 constexpr std::int64_t kMaxChannelBytes = 1000;
 // Far above any message that LCM carries; a greater length is damage.
 constexpr std::int64_t kMaxDataBytes = 16 * 1024 * 1024;
+// What is read or written at once: system calls cost more than the copy. A turn's messages are larger than what is read: those that nobody
+// wants are passed over.
+constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kWriteBytes = 16 * 1024;
 
 std::uint64_t ReadBigEndian(Bytes bytes, std::size_t offset, std::size_t size) {
   std::uint64_t value = 0;
@@ -30,40 +38,83 @@ std::int64_t ReadI32(Bytes bytes, std::size_t offset) { return static_cast<std::
 }  // namespace
 
 struct LogReader::Implementation {
-  struct Closer {
-    void operator()(std::FILE* open_file) const { std::fclose(open_file); }
-  };
-  std::unique_ptr<std::FILE, Closer> file;
+  ~Implementation() {
+    if (descriptor >= 0) close(descriptor);
+  }
+
+  int descriptor = -1;
   std::int64_t size_bytes = 0;
   std::int64_t position = 0;  // of the next event
-  std::int64_t cursor = 0;    // of the file: a seek throws the read-ahead away, so there is none while events follow each other
+  // A stretch of the file: events follow each other, and what stands behind an event is looked at twice.
+  std::vector<std::uint8_t> block;
+  std::int64_t block_offset = 0;
+  std::string channel;  // of the event that was given last
 
-  // @return how many bytes were read
-  std::size_t ReadAt(std::int64_t offset, void* target, std::size_t size) {
-    if (offset != cursor && fseeko(file.get(), offset, SEEK_SET) != 0) return 0;
-    const std::size_t size_read = std::fread(target, 1, size, file.get());
-    cursor = offset + static_cast<std::int64_t>(size_read);
-    return size_read;
+  // @return the bytes from `offset` on, `size` of them where the file has so many. They stand until the next call.
+  Bytes View(std::int64_t offset, std::size_t size) {
+    const auto end = offset + static_cast<std::int64_t>(size);
+    if (offset < block_offset || end > block_offset + static_cast<std::int64_t>(block.size())) Load(offset, std::max(size, kReadBytes));
+    if (offset >= block_offset + static_cast<std::int64_t>(block.size())) return {};
+    const auto within = Bytes(block).subspan(static_cast<std::size_t>(offset - block_offset));
+    return within.first(std::min(size, within.size()));
+  }
+
+  void Load(std::int64_t offset, std::size_t size) {
+    block_offset = offset;
+    block.resize(size);
+    std::size_t size_read = 0;
+    while (size_read < size) {
+      const auto result = pread(descriptor, block.data() + size_read, size - size_read, offset + static_cast<std::int64_t>(size_read));
+      if (result < 0 && errno == EINTR) continue;
+      if (result <= 0) break;
+      size_read += static_cast<std::size_t>(result);
+    }
+    block.resize(size_read);
+  }
+
+  // The event that begins at `start`, and `position` behind it; nullopt when there is no whole one.
+  std::optional<LogEventView> EventAt(std::int64_t start, const std::function<bool(std::string_view channel)>& is_wanted) {
+    const Bytes header = View(start, kHeaderBytes);
+    if (header.size() < kHeaderBytes || ReadBigEndian(header, 0, 4) != kSyncWord) return std::nullopt;
+    const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
+    const std::int64_t channel_size = ReadI32(header, 20);
+    const std::int64_t data_size = ReadI32(header, 24);
+    if (!time || channel_size <= 0 || channel_size > kMaxChannelBytes || data_size < 0 || data_size > kMaxDataBytes) return std::nullopt;
+    const std::int64_t end = start + static_cast<std::int64_t>(kHeaderBytes) + channel_size + data_size;
+    if (end > size_bytes) return std::nullopt;
+
+    const std::size_t head_size = kHeaderBytes + static_cast<std::size_t>(channel_size);
+    const std::size_t size = head_size + static_cast<std::size_t>(data_size);
+    const Bytes head = View(start, head_size);
+    if (head.size() < head_size) return std::nullopt;
+    channel.assign(head.begin() + kHeaderBytes, head.end());  // what stands behind the event may be another stretch
+    const bool has_data = is_wanted(channel);
+    if (has_data) View(start, size + sizeof(kSyncWord));  // one stretch for all
+    if (!IsWhole(start, end)) return std::nullopt;
+    const Bytes whole = has_data ? View(start, size) : Bytes();
+    if (has_data && whole.size() < size) return std::nullopt;
+    position = end;
+    return LogEventView{*time, channel, has_data ? whole.subspan(head_size) : Bytes()};
   }
 
   // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
   // sync word stands at `end`, but some stand inside.
   bool IsWhole(std::int64_t start, std::int64_t end) {
-    std::array<std::uint8_t, 4> word{};
-    if (end == size_bytes || (ReadAt(end, word.data(), word.size()) == word.size() && ReadBigEndian(word, 0, 4) == kSyncWord)) return true;
+    if (end == size_bytes) return true;
+    const Bytes word = View(end, 4);
+    if (word.size() == 4 && ReadBigEndian(word, 0, 4) == kSyncWord) return true;
     return FindSync(start + 4) >= end;
   }
 
   // The first sync word at or after `offset`; size_bytes when there is none.
   std::int64_t FindSync(std::int64_t offset) {
-    std::array<std::uint8_t, 65536> block{};
     while (offset + 4 <= size_bytes) {
-      const std::size_t size = ReadAt(offset, block.data(), block.size());
-      if (size < 4) break;
-      for (std::size_t i = 0; i + 4 <= size; ++i) {
-        if (ReadBigEndian(block, i, 4) == kSyncWord) return offset + static_cast<std::int64_t>(i);
+      const Bytes bytes = View(offset, kReadBytes);
+      if (bytes.size() < 4) break;
+      for (std::size_t i = 0; i + 4 <= bytes.size(); ++i) {
+        if (ReadBigEndian(bytes, i, 4) == kSyncWord) return offset + static_cast<std::int64_t>(i);
       }
-      offset += static_cast<std::int64_t>(size) - 3;
+      offset += static_cast<std::int64_t>(bytes.size()) - 3;
     }
     return size_bytes;
   }
@@ -73,39 +124,32 @@ LogReader::LogReader(const std::filesystem::path& file) : implementation_(std::m
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw std::runtime_error(file.string() + ": no such file");
   implementation_->size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
-  implementation_->file.reset(std::fopen(file.c_str(), "rbe"));
-  if (error || !implementation_->file) throw std::runtime_error(file.string() + ": cannot be opened");
+  implementation_->descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (error || implementation_->descriptor < 0) throw std::runtime_error(file.string() + ": cannot be opened");
 }
 
 LogReader::~LogReader() = default;
 
+std::int64_t LogReader::position_bytes() const { return implementation_->position; }
+
+std::int64_t LogReader::size_bytes() const { return implementation_->size_bytes; }
+
+void LogReader::Seek(std::int64_t position_bytes) { implementation_->position = position_bytes; }
+
 std::optional<LogEvent> LogReader::Next() {
+  const auto view = NextView([](std::string_view) { return true; });
+  if (!view) return std::nullopt;
+  return LogEvent{view->time, std::string(view->channel), {view->bytes.begin(), view->bytes.end()}};
+}
+
+std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::string_view channel)>& is_wanted) {
   auto& in = *implementation_;
   bool is_resynchronising = false;
   while (in.position < in.size_bytes) {
-    std::array<std::uint8_t, kHeaderBytes> header{};
-    const std::int64_t start = in.position;
-    const bool has_header = in.ReadAt(start, header.data(), header.size()) == header.size();
-    if (has_header && ReadBigEndian(header, 0, 4) == kSyncWord) {
-      const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
-      const std::int64_t channel_size = ReadI32(header, 20);
-      const std::int64_t data_size = ReadI32(header, 24);
-      const std::int64_t body = start + static_cast<std::int64_t>(kHeaderBytes);
-      if (time && channel_size > 0 && channel_size <= kMaxChannelBytes && data_size >= 0 && data_size <= kMaxDataBytes &&
-          channel_size + data_size <= in.size_bytes - body) {
-        LogEvent event{*time, std::string(static_cast<std::size_t>(channel_size), '\0'),
-                       std::vector<std::uint8_t>(static_cast<std::size_t>(data_size))};
-        if (in.ReadAt(body, event.channel.data(), event.channel.size()) == event.channel.size() &&
-            in.ReadAt(body + channel_size, event.bytes.data(), event.bytes.size()) == event.bytes.size() &&
-            in.IsWhole(start, body + channel_size + data_size)) {
-          in.position = body + channel_size + data_size;
-          return event;
-        }
-      }
-    }
+    if (const auto event = in.EventAt(in.position, is_wanted)) return event;
     if (!is_resynchronising) ++num_damaged_;
     is_resynchronising = true;
-    in.position = in.FindSync(start + 1);
+    in.position = in.FindSync(in.position + 1);
   }
   return std::nullopt;
 }
@@ -121,23 +165,23 @@ LogWriter::LogWriter(const std::filesystem::path& file, bool overwrite) : implem
   implementation_->file = file;
   implementation_->log = lcm_eventlog_create(file.c_str(), "w");
   if (implementation_->log == nullptr) throw std::runtime_error(file.string() + ": cannot be written");
+  setvbuf(implementation_->log->f, nullptr, _IOFBF, kWriteBytes);
 }
 
 LogWriter::~LogWriter() { lcm_eventlog_destroy(implementation_->log); }
 
 void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) {
   std::string name(channel);
-  std::vector<std::uint8_t> data(bytes.begin(), bytes.end());  // LCM's writer wants memory it may write to
   lcm_eventlog_event_t event{};
   event.timestamp = ToUtimeUs(time);
   event.channellen = static_cast<std::int32_t>(name.size());
-  event.datalen = static_cast<std::int32_t>(data.size());
+  event.datalen = static_cast<std::int32_t>(bytes.size());
   event.channel = name.data();
-  event.data = data.data();
+  event.data = const_cast<std::uint8_t*>(bytes.data());  // LCM's writer only reads it (lcm/eventlog.c)
   if (lcm_eventlog_write_event(implementation_->log, &event) != 0) {
     throw std::runtime_error(implementation_->file.string() + ": write failed: " + std::system_category().message(errno));
   }
-  num_bytes_ += static_cast<std::int64_t>(kHeaderBytes + name.size() + data.size());
+  num_bytes_ += static_cast<std::int64_t>(kHeaderBytes + name.size() + bytes.size());
 }
 
 void LogWriter::Flush() {

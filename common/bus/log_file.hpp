@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -20,6 +22,13 @@ struct LogEvent {
   std::vector<std::uint8_t> bytes;
 };
 
+/// The same in the memory of the reader: it stands until the next call.
+struct LogEventView {
+  Utime time;
+  std::string_view channel;
+  Bytes bytes;
+};
+
 class LogReader {
  public:
   /// @throws std::runtime_error when the file cannot be opened
@@ -31,8 +40,18 @@ class LogReader {
   /// @return the next whole event; nullopt at the end. Damaged stretches are skipped to the next event and counted.
   std::optional<LogEvent> Next();
 
+  /// The same without a copy. Of events on a channel that is not wanted the bytes are not read: they come without.
+  std::optional<LogEventView> NextView(const std::function<bool(std::string_view channel)>& is_wanted);
+
   /// Damaged stretches, and a torn event at the end.
   std::int64_t num_damaged() const { return num_damaged_; }
+
+  /// Where in the file the next event is looked for: behind the last one. Between two events bytes that belong to none are damage.
+  std::int64_t position_bytes() const;
+  std::int64_t size_bytes() const;
+
+  /// Goes on at a place that position_bytes() gave in front of an event.
+  void Seek(std::int64_t position_bytes);
 
  private:
   struct Implementation;

@@ -22,6 +22,11 @@ bool MemoryBus::Send(const Channel& channel, Bytes bytes) {
   return true;
 }
 
+bool MemoryBus::SendOwned(const Channel& channel, std::vector<std::uint8_t>&& bytes) {
+  messages_.push_back({channel.name, std::move(bytes)});
+  return true;
+}
+
 void MemoryBus::Attach(const Channel* channel, RawHandler handler) {
   subscriptions_.push_back({channel == nullptr ? std::string_view() : channel->name, std::move(handler)});
 }

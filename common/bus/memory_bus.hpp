@@ -18,6 +18,7 @@ class MemoryBus final : public Bus {
 
  protected:
   bool Send(const Channel& channel, Bytes bytes) override;
+  bool SendOwned(const Channel& channel, std::vector<std::uint8_t>&& bytes) override;
   void Attach(const Channel* channel, RawHandler handler) override;
 
  private:

@@ -15,6 +15,15 @@ struct TypeFingerprint {
 /// All types of package lookout, also those that are only parts of others, by name.
 const std::vector<TypeFingerprint>& TypeFingerprints();
 
+/// The description of a type, as it stood in lcmtypes/ when this was built.
+struct TypeText {
+  std::string file_name;  // "lcmtypes/pose_t.lcm"
+  std::string text;
+};
+
+/// Of all types of package lookout, by name: so that a log can be read when its version is long gone.
+const std::vector<TypeText>& TypeTexts();
+
 /// SHA-256, hexadecimal, over "type fingerprint" lines.
 std::string SchemaDigest();
 

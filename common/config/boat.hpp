@@ -18,7 +18,7 @@ struct BoatDatum {
 
 struct BoatFacts {
   std::string name;
-  Mounting lidar;
+  lookout::Mounting lidar;  // not the schema's message of that name
   Eigen::Isometry3d T_vessel_lidar;
   Eigen::Vector3d p_vessel_antenna_m;
   Eigen::Vector3d p_vessel_imu_m = Eigen::Vector3d::Zero();  // the reference point where the file does not say

@@ -32,6 +32,10 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
     message.file_name.push_back(name);
     message.file_text.push_back(config::EffectiveTextOfFile(config_folder / name));
   }
+  for (const auto& type : bus::TypeTexts()) {
+    message.file_name.push_back(type.file_name);
+    message.file_text.push_back(type.text);
+  }
   message.num_files = static_cast<std::int32_t>(message.file_name.size());
   return message;
 }

@@ -1,5 +1,7 @@
 #include "services/georeferencer/params.hpp"
 
+#include <cmath>
+
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
@@ -16,6 +18,15 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   params.placement.range_sd_m = message.range_sd_m();
   params.placement.azimuth_sd_rad = DegToRad(message.azimuth_sd_deg());
   params.placement.mounting_sd_rad = DegToRad(message.mounting_sd_deg());
+  if (message.has_guard_zone()) {
+    const auto& zone = message.guard_zone();
+    const double width_deg = zone.to_bearing_deg() - zone.from_bearing_deg();
+    if (width_deg == 0.0) config::Refuse(config_folder / "georeferencer.txtpb", "guard_zone.to_bearing_deg", "must differ from from_bearing_deg");
+    params.guard_zone.range_m = zone.range_m();
+    params.guard_zone.bearing = {WrapTo2Pi(DegToRad(zone.from_bearing_deg())),
+                                 std::abs(width_deg) >= 360.0 ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))};
+    params.guard_zone.takes_tentative = zone.takes_tentative();
+  }
   params.pose_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message.pose_timeout_s()));
   return params;
 }

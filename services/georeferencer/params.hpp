@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "services/georeferencer/core/guard_zone.hpp"
 #include "services/georeferencer/core/placement.hpp"
 
 namespace lookout::georeferencer {
@@ -11,6 +12,7 @@ namespace lookout::georeferencer {
 struct Params {
   PlacementParams placement;
   std::chrono::microseconds pose_timeout{0};
+  GuardZoneParams guard_zone{};
 };
 
 /// @param config_folder  the boat's folder, holding boat.txtpb and georeferencer.txtpb

@@ -1,8 +1,13 @@
 #include "services/georeferencer/service.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <string_view>
 #include <variant>
 
+#include "common/core/angles.hpp"
 #include "services/georeferencer/wire.hpp"
 
 namespace lookout::georeferencer {
@@ -12,9 +17,35 @@ namespace {
 // POSE comes ten times a second, SEGMENTS once a turn: so long without is worth a word. A time-out is told of for as long.
 constexpr std::chrono::seconds kSilence(2);
 
+// "obstacle within 10.0 m: 7.3 m, 12 deg to starboard"
+std::string AlarmText(const NearestPoint& nearest, double guard_range_m) {
+  const double bearing_deg = RadToDeg(WrapToPi(nearest.bearing_rad));
+  std::array<char, 128> text{};
+  std::snprintf(text.data(), text.size(), "obstacle within %.1f m: %.1f m, %.0f deg to %s", guard_range_m, nearest.range_m, std::abs(bearing_deg),
+                bearing_deg < 0.0 ? "port" : "starboard");
+  return text.data();
+}
+
+// What the state of POSE means for the whole; empty where it is as it should be.
+std::string_view PoseText(std::int32_t pose_status) {
+  switch (pose_status) {
+    case pose_t::STATUS_NO_HEADING:
+      return "no heading: obstacles in the vessel frame only";
+    case pose_t::STATUS_NO_POSITION:
+      return "no position: obstacles in the vessel frame only";
+    case pose_t::STATUS_UNKNOWN:
+      return "no position and no heading: obstacles in the vessel frame only";
+    case pose_t::STATUS_COASTING:
+      return "POSE is only carried on: obstacles drift as their covariance says";
+    default:
+      return {};
+  }
+}
+
 }  // namespace
 
-Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), georeferencer_(params.placement, params.pose_timeout) {
+Service::Service(bus::Bus& bus, const Params& params)
+    : bus_(bus), georeferencer_(params.placement, params.pose_timeout), guard_zone_(params.guard_zone), guard_range_m_(params.guard_zone.range_m) {
   for (const auto& refusal : kRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
@@ -31,8 +62,7 @@ void Service::OnPose(const pose_t& message) {
   const auto pose = ToPose(message);
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
   pose_seen_ = now_;
-  is_newest_pose_placed_ = std::get<Pose>(pose).is_placed;
-  is_newest_pose_carried_on_ = message.status == pose_t::STATUS_COASTING;
+  newest_pose_status_ = message.status;
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
 }
 
@@ -47,6 +77,7 @@ void Service::Finish() { Publish(georeferencer_.Finish()); }
 
 void Service::Publish(const std::vector<ObstaclePart>& parts) {
   for (const auto& part : parts) {
+    guard_zone_.Add(part);
     const auto messages = ToMessages(part, bus::kMaxMessageBytes);
     if (messages.size() > 1) ++num_split_;
     for (const auto& message : messages) bus::Publish(bus_, bus::kObstacles, message);
@@ -69,14 +100,23 @@ HealthReport Service::Report() const {
   const auto seconds = [](std::chrono::microseconds duration) {
     return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
   };
+  // What is near comes first: HEALTH is read from its beginning.
+  const auto nearest = silence(segments_seen_) < kSilence ? guard_zone_.nearest() : std::nullopt;
+  if (nearest) degrade(AlarmText(*nearest, guard_range_m_));
+  if (guard_range_m_ > 0.0) {
+    report.counters.push_back({"alarm_active", nearest ? 1 : 0});
+    report.counters.push_back({"alarms", guard_zone_.num_alarms()});
+    if (nearest) report.counters.push_back({"nearest_cm", std::llround(100.0 * nearest->range_m)});
+  }
   if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
-  if (is_newest_pose_carried_on_ && silence(pose_seen_) < kSilence) degrade("POSE is only carried on: obstacles drift as their covariance says");
   if (silence(pose_seen_) >= kSilence) {
     degrade("no POSE for " + seconds(silence(pose_seen_)));
-  } else if (is_newest_pose_placed_ == false) {
-    degrade("POSE does not know position and heading: obstacles in the vessel frame only");
-  } else if (georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence) {
-    degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
+  } else {
+    const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
+    if (const auto text = PoseText(status); !text.empty()) degrade(std::string(text));
+    const bool is_placed = status == pose_t::STATUS_OK || status == pose_t::STATUS_COASTING;
+    const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
+    if (is_placed && is_late) degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
   return report;
 }

@@ -11,6 +11,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
+#include "services/georeferencer/core/guard_zone.hpp"
 #include "services/georeferencer/params.hpp"
 
 namespace lookout::georeferencer {
@@ -35,10 +36,11 @@ class Service {
 
   bus::Bus& bus_;
   Georeferencer georeferencer_;
+  GuardZone guard_zone_;
+  double guard_range_m_;
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;
-  std::optional<bool> is_newest_pose_placed_;
-  bool is_newest_pose_carried_on_ = false;
+  std::optional<std::int32_t> newest_pose_status_;  // of pose_t
   // Host time, live only.
   std::optional<Utime> now_;
   std::optional<Utime> pose_seen_;  // when the last valid one came, or waiting began

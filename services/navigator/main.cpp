@@ -8,22 +8,17 @@
 #include <vector>
 
 #include "common/config/text_config.hpp"
-#include "common/io/udp_receiver.hpp"
 #include "common/runtime/execute_again.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
-#include "services/navigator/io/gpsd_client.hpp"
-#include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/source.hpp"
-#include "services/navigator/io/tcp_client.hpp"
-#include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/service.hpp"
+#include "services/navigator/sources.hpp"
 
 namespace {
 
-using lookout::navigator::Connection;
 using lookout::navigator::Params;
 using lookout::navigator::Service;
 using lookout::navigator::Source;
@@ -33,46 +28,6 @@ using lookout::runtime::HostNow;
 constexpr std::chrono::milliseconds kTick(10);
 // Pieces taken from a source before the bus and the timers get their turn again.
 constexpr int kMaxPiecesPerRound = 64;
-
-// Seconds of sentences at 115200 baud; more can only be a flood.
-constexpr int kReceiveBufferBytes = 256 * 1024;
-
-class UdpSource final : public Source {
- public:
-  explicit UdpSource(const Connection& connection)
-      : drops_name_(connection.name + "_kernel_drops"),
-        receiver_({.bind_address = connection.address, .port = connection.port, .receive_buffer_bytes = kReceiveBufferBytes}) {}
-
-  int file_descriptor() const override { return receiver_.file_descriptor(); }
-  void Poll(lookout::Utime) override {}
-  std::optional<Piece> Receive(lookout::Utime) override {
-    const auto datagram = receiver_.Receive();
-    if (!datagram) return std::nullopt;
-    return Piece{datagram->host_time, datagram->payload, true};
-  }
-  std::vector<lookout::Counter> counters() override { return {{drops_name_, receiver_.num_kernel_drops()}}; }
-
- private:
-  std::string drops_name_;
-  lookout::io::UdpReceiver receiver_;
-};
-
-// @throws std::runtime_error when a UDP port or a text log cannot be opened; a serial port and a server may come later
-std::unique_ptr<Source> OpenSource(const Connection& connection) {
-  switch (connection.kind) {
-    case Connection::Kind::kSerial:
-      return std::make_unique<lookout::navigator::SerialPort>(connection.name, connection.file, connection.baud);
-    case Connection::Kind::kTcp:
-      return std::make_unique<lookout::navigator::TcpClient>(connection.name, connection.address, connection.port);
-    case Connection::Kind::kGpsd:
-      return std::make_unique<lookout::navigator::GpsdClient>(connection.name, connection.address, connection.port);
-    case Connection::Kind::kTextLog:
-      return std::make_unique<lookout::navigator::TextLogPlayer>(connection.name, connection.file, connection.speed);
-    case Connection::Kind::kUdp:
-      break;
-  }
-  return std::make_unique<UdpSource>(connection);
-}
 
 // One source, and what main remembers of it.
 struct Feed {
@@ -118,7 +73,7 @@ void RunLog(lookout::runtime::Process& process, const Params& params) {
 void RunLive(lookout::runtime::Process& process, const Params& params) {
   Service service(process.bus(), params);
   std::vector<Feed> feeds;
-  for (const auto& connection : params.connections) feeds.push_back({.name = connection.name, .source = OpenSource(connection)});
+  for (const auto& connection : params.connections) feeds.push_back({.name = connection.name, .source = lookout::navigator::OpenSource(connection)});
   for (auto& feed : feeds) {
     if (feed.source->file_descriptor() >= 0) process.OnReadable(feed.source->file_descriptor(), [&feed, &service] { feed.Drain(service); });
   }

@@ -19,6 +19,7 @@ constexpr int kMaxLastMessages = 10'000;
 
 int main(int argc, char** argv) {
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-recorder", "every channel into an lcm-log");
+  lookout::runtime::BlockStopSignals();
   return lookout::runtime::RunMain("recorder", [&options] {
     const auto params = lookout::recorder::LoadParams(options.config_folder);
     const auto run_info = lookout::runtime::MakeRunInfo("recorder", options.config_folder);
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
     lookout::recorder::Service service(process.bus(), params, run_info, lookout::runtime::HostNow);
     spdlog::info("writing {}", service.log_file().string());
     auto log_file = service.log_file();
+    process.OnHangup([&service] { service.Rotate(lookout::runtime::HostNow()); });
     process.Every(kTick, [&] {
       service.AdvanceTo(lookout::runtime::HostNow());
       for (const auto& warning : service.TakeWarnings()) spdlog::warn("{}", warning);
@@ -41,7 +43,7 @@ int main(int argc, char** argv) {
     process.Run([&service] { return service.Report(); });
     for (int i = 0; i < kMaxLastMessages && process.bus().HandleOnce(std::chrono::milliseconds(0)); ++i) {
     }
-    service.AdvanceTo(lookout::runtime::HostNow());
+    service.Flush();
     for (const auto& warning : service.TakeWarnings()) spdlog::warn("{}", warning);
   });
 }

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <exception>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "common/bus/header.hpp"
+#include "common/bus/log_event.hpp"
 
 namespace lookout::recorder {
 
@@ -22,6 +21,8 @@ constexpr std::string_view kLcmSelfTest = "LCM_SELF_TEST";
 constexpr std::chrono::seconds kRunInfoPeriod(10);
 // Channels outside of the table that are named in warnings.
 constexpr std::size_t kMaxUnknownNames = 20;
+// Own RUN_INFO that may be on its way through the bus. One that was lost there is never asked for again.
+constexpr std::size_t kMaxOwnRunInfos = 8;
 
 // "20261121T134501Z"
 std::string FileStem(Utime time) {
@@ -35,20 +36,6 @@ std::string FileStem(Utime time) {
   return text.data();
 }
 
-// Makes an empty file under a name that no file had: of two recorders that start in the same second each gets its own.
-std::filesystem::path MakeFile(const std::filesystem::path& folder, Utime time) {
-  const std::string stem = FileStem(time);
-  auto path = folder / (stem + ".lcmlog");
-  for (int i = 1;; ++i) {
-    if (std::FILE* file = std::fopen(path.c_str(), "wx")) {
-      std::fclose(file);
-      return path;
-    }
-    if (errno != EEXIST) throw std::runtime_error(path.string() + ": cannot be made: " + std::system_category().message(errno));
-    path = folder / (stem + "-" + std::to_string(i) + ".lcmlog");
-  }
-}
-
 // Channel names come from the network.
 std::string Printable(std::string_view text) {
   std::string printable;
@@ -58,63 +45,66 @@ std::string Printable(std::string_view text) {
 
 }  // namespace
 
-Service::Service(bus::Bus& bus, const Params& params, run_info_t run_info, std::function<Utime()> clock)
-    : bus_(bus), params_(params), run_info_(std::move(run_info)), clock_(std::move(clock)) {
+Service::Service(bus::Bus& bus, const Params& params, run_info_t run_info, std::function<Utime()> clock, Disk disk)
+    : bus_(bus),
+      params_(params),
+      run_info_(std::move(run_info)),
+      clock_(std::move(clock)),
+      writer_(params_.log_folder, {params_.queue_bytes, params_.reserve_bytes}, std::move(disk)) {
   std::error_code error;
   std::filesystem::create_directories(params_.log_folder, error);
   if (!std::filesystem::is_directory(params_.log_folder)) {
     throw std::runtime_error(params_.log_folder.string() + ": the folder of the logs cannot be made: " + error.message());
   }
-  BeginLog(clock_());
-  if (!writer_) throw std::runtime_error(fault_);
+  BeginFile(clock_(), true);
+  writer_.Flush();
+  const auto status = writer_.Status();
+  if (!status.is_recording && !status.is_full) throw std::runtime_error(Printable(status.fault));
+  WatchDisk();
   bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) { OnEvent(channel, bytes); });
 }
 
 void Service::AdvanceTo(Utime now) {
-  if (!writer_) {
-    BeginLog(now);
-  } else if (now - *last_run_info_ >= kRunInfoPeriod || now < *last_run_info_) {  // the host's clock may be set back
-    Write(now, bus::kRunInfo.name, EncodeRunInfo(now));
-    PublishRunInfo(now);
+  WatchDisk();  // before a new log hides why the old one ended
+  const auto status = writer_.Status();
+  if (!status.is_recording) {
+    if (!status.is_waiting_for_file) BeginFile(now, false);
+  } else if (now - file_start_ >= params_.max_file_time) {
+    Rotate(now);
+  } else if (now - last_run_info_ >= kRunInfoPeriod || now < last_run_info_) {  // the host's clock may be set back
+    file_start_ = std::min(file_start_, now);
+    auto run_info = EncodeRunInfo(now);
+    Write(now, bus::kRunInfo.name, run_info);
+    PublishRunInfo(now, std::move(run_info));
   }
-  Flush();
 }
+
+void Service::Rotate(Utime now) { BeginFile(now, true); }
 
 void Service::OnEvent(std::string_view channel, Bytes bytes) {
   if (channel.empty()) {  // a log that holds one cannot be read on
     ++num_nameless_;
     return;
   }
-  if (channel == bus::kRunInfo.name && std::ranges::equal(bytes, own_run_info_)) return;  // written when it was sent
+  if (channel == bus::kRunInfo.name && IsOwnRunInfo(bytes)) return;  // written when it was sent
   const bus::Channel* known = bus::FindChannel(channel);
-  if (known == nullptr) {
-    if (channel != kLcmSelfTest) WatchUnknown(channel);
-  } else if (known->is_raw) {
-    WatchGaps(channel, bytes);
+  if (known != nullptr) {
+    WatchGaps(*known, bytes);
+  } else if (channel != kLcmSelfTest) {
+    WatchUnknown(channel);
   }
   Write(clock_(), channel, bytes);
 }
 
-void Service::BeginLog(Utime now) {
-  std::filesystem::path file;
-  try {
-    file = MakeFile(params_.log_folder, now);
-    auto writer = std::make_unique<bus::LogWriter>(file, /*overwrite=*/true);
-    const auto run_info = EncodeRunInfo(now);
-    writer->Write(now, bus::kRunInfo.name, run_info);
-    writer->Flush();
-    writer_ = std::move(writer);
-  } catch (const std::exception& error) {
-    // On a full disk there would be one more empty file with each attempt.
-    std::error_code ignored;
-    if (!file.empty()) std::filesystem::remove(file, ignored);
-    Fail(error.what());
-    return;
-  }
-  log_file_ = file;
-  is_failing_ = false;
-  ++num_events_;
-  PublishRunInfo(now);
+void Service::BeginFile(Utime now, bool must_publish) {
+  auto run_info = EncodeRunInfo(now);
+  std::vector<std::uint8_t> event;
+  bus::AppendLogEvent(event, 0, now, bus::kRunInfo.name, run_info);
+  file_start_ = now;
+  file_bytes_ = static_cast<std::int64_t>(event.size());
+  num_file_events_ = 1;
+  writer_.BeginFile(FileStem(now), std::move(event));
+  if (must_publish) PublishRunInfo(now, std::move(run_info));
 }
 
 std::vector<std::uint8_t> Service::EncodeRunInfo(Utime now) {
@@ -122,54 +112,54 @@ std::vector<std::uint8_t> Service::EncodeRunInfo(Utime now) {
   return bus::Encode(run_info_);
 }
 
-void Service::PublishRunInfo(Utime now) {
+void Service::PublishRunInfo(Utime now, std::vector<std::uint8_t> bytes) {
   last_run_info_ = now;
-  own_run_info_ = EncodeRunInfo(now);
   ++run_info_.seq;
-  bus_.Publish(bus::kRunInfo, own_run_info_);
+  if (own_run_infos_.size() == kMaxOwnRunInfos) own_run_infos_.pop_front();
+  own_run_infos_.push_back(std::move(bytes));
+  bus_.Publish(bus::kRunInfo, own_run_infos_.back());
+}
+
+bool Service::IsOwnRunInfo(Bytes bytes) {
+  const auto found = std::ranges::find_if(own_run_infos_, [&](const auto& own) { return std::ranges::equal(own, bytes); });
+  if (found == own_run_infos_.end()) return false;
+  own_run_infos_.erase(found);
+  return true;
 }
 
 void Service::Write(Utime time, std::string_view channel, Bytes bytes) {
-  if (!writer_) {
-    ++num_lost_;
-    return;
-  }
-  ++num_unflushed_;
-  try {
-    writer_->Write(time, channel, bytes);
-    ++num_events_;
-    num_bytes_ += static_cast<std::int64_t>(bytes.size());
-  } catch (const std::exception& error) {
-    Fail(error.what());
-  }
+  const auto size_bytes = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + channel.size() + bytes.size());
+  if (num_file_events_ > 1 && file_bytes_ + size_bytes > params_.max_file_bytes && writer_.Status().is_recording) Rotate(time);
+  event_.clear();
+  bus::AppendLogEvent(event_, num_file_events_, time, channel, bytes);
+  if (!writer_.Append(event_)) return;
+  file_bytes_ += size_bytes;
+  ++num_file_events_;
 }
 
-void Service::Flush() {
-  if (!writer_) return;
-  try {
-    writer_->Flush();
-    num_unflushed_ = 0;
-  } catch (const std::exception& error) {
-    Fail(error.what());
-  }
-}
-
-void Service::Fail(std::string_view reason) {
-  fault_ = Printable(reason);
-  if (!is_failing_) warnings_.push_back(fault_ + "; events are lost until it works again");
-  is_failing_ = true;
-  writer_.reset();
-  ++num_faults_;
-  num_lost_ += num_unflushed_;
-  num_unflushed_ = 0;
-}
-
-void Service::WatchGaps(std::string_view channel, Bytes bytes) {
+void Service::WatchGaps(const bus::Channel& channel, Bytes bytes) {
+  auto& traffic = bus_.input_traffic()[std::string(channel.name)];
+  ++traffic.num_messages;
+  if (channel.publisher == "all") return;  // each process counts for itself
   const auto header = bus::ReadHeader(bytes);
   if (!header) return;  // its readers refuse it
-  auto watch = raw_sequences_.find(channel);
-  if (watch == raw_sequences_.end()) watch = raw_sequences_.emplace(channel, bus::SequenceWatch{}).first;
-  num_raw_missing_ += watch->second.NumLostBefore(header->seq);
+  const auto num_missing = sequences_[std::string(channel.name)].NumLostBefore(header->seq);
+  traffic.num_lost += num_missing;
+  num_missing_ += num_missing;
+  if (channel.is_raw) num_raw_missing_ += num_missing;
+}
+
+// Says once when recording stops, and each time when the queue overflowed anew.
+void Service::WatchDisk() {
+  const auto status = writer_.Status();
+  if (status.is_waiting_for_file) return;
+  if (was_recording_ && !status.is_recording) {
+    warnings_.push_back(Printable(status.fault) + "; events are lost until it works again");
+  } else if (status.num_lost_queue_full > last_lost_queue_full_) {
+    warnings_.push_back(std::to_string(status.num_lost_queue_full - last_lost_queue_full_) + " events lost: " + Printable(status.fault));
+  }
+  was_recording_ = status.is_recording;
+  last_lost_queue_full_ = status.num_lost_queue_full;
 }
 
 void Service::WatchUnknown(std::string_view channel) {
@@ -180,23 +170,35 @@ void Service::WatchUnknown(std::string_view channel) {
                       (unknown_channels_.size() == kMaxUnknownNames ? "; further ones are not named here" : ""));
 }
 
-std::vector<std::string> Service::TakeWarnings() { return std::exchange(warnings_, {}); }
+std::vector<std::string> Service::TakeWarnings() {
+  WatchDisk();
+  return std::exchange(warnings_, {});
+}
 
 HealthReport Service::Report() const {
+  const auto status = writer_.Status();
+  const auto num_lost = status.num_lost_fault + status.num_lost_full + status.num_lost_queue_full;
   HealthReport report;
-  report.counters = {{"events", num_events_},
-                     {"bytes", num_bytes_},
-                     {"lost", num_lost_},
-                     {"write_faults", num_faults_},
+  report.counters = {{"events", status.num_events},
+                     {"bytes", status.num_bytes},
+                     {"files", status.num_files},
+                     {"lost", num_lost},
+                     {"lost_queue_full", status.num_lost_queue_full},
+                     {"lost_disk_full", status.num_lost_full},
+                     {"write_faults", status.num_faults},
                      {"unknown_channel", num_unknown_},
                      {"nameless_channel", num_nameless_},
-                     {"raw_missing", num_raw_missing_}};
-  if (!writer_) {
+                     {"missing", num_missing_},
+                     {"raw_missing", num_raw_missing_},
+                     {"queue_bytes", status.queue_bytes},
+                     {"queue_peak_bytes", status.queue_peak_bytes},
+                     {"disk_free_bytes", status.free_bytes}};
+  if (!status.is_recording && !(status.is_waiting_for_file && was_recording_)) {
     report.state = HealthState::kFailed;
-    report.reason = "not recording: " + fault_;
-  } else if (num_lost_ > 0) {
+    report.reason = "not recording: " + Printable(status.fault);
+  } else if (num_lost > 0) {
     report.state = HealthState::kDegraded;
-    report.reason = "recording again; " + std::to_string(num_lost_) + " events lost: " + fault_;
+    report.reason = "recording again; " + std::to_string(num_lost) + " events lost: " + Printable(status.fault);
   } else if (num_raw_missing_ > 0) {
     report.state = HealthState::kDegraded;
     report.reason = std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full";

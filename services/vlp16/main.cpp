@@ -17,6 +17,7 @@
 #include "services/vlp16/io/live_capture.hpp"
 #include "services/vlp16/params.hpp"
 #include "services/vlp16/service.hpp"
+#include "services/vlp16/sources.hpp"
 
 namespace {
 
@@ -53,56 +54,6 @@ Utime TakenUntil(const Source& source, Utime now) {
   return source.is_empty() ? now : std::min(now, source.last_time());
 }
 
-// Of bind_address, without a zone.
-std::optional<lookout::io::IpAddress> BoundAddress(const Sources& sources) {
-  return lookout::io::ParseIpAddress(sources.bind_address.substr(0, sources.bind_address.find('%')));
-}
-
-// What is text in the params and must be right before anything starts.
-void CheckSources(const std::filesystem::path& config_folder, const Sources& sources, std::vector<std::string>& faults) {
-  const auto file = config_folder / "vlp16.txtpb";
-  const auto require = [&](bool is_fine, const char* field, const std::string& reason, std::size_t index = 0) {
-    if (!is_fine) faults.push_back(lookout::config::FaultLine(file, field, reason, index));
-  };
-  for (std::size_t i = 0; i < sources.allowed_source_addresses.size(); ++i) {
-    const auto& text = sources.allowed_source_addresses[i];
-    const auto address = lookout::io::ParseIpAddress(text);
-    require(address && !address->is_multicast(), "allowed_source_address", "'" + text + "' is no numeric address of a sensor", i);
-  }
-  const bool is_udp = sources.kind == Sources::Kind::kUdp;
-  const auto bound = BoundAddress(sources);
-  if (is_udp && !sources.bind_address.empty()) require(bound.has_value(), "bind_address", "'" + sources.bind_address + "' is no numeric address");
-  if (!sources.multicast_group.empty()) {
-    const auto group = lookout::io::ParseIpAddress(sources.multicast_group);
-    require(group && group->is_multicast(), "multicast_group", "'" + sources.multicast_group + "' is no multicast address (224.0.0.0/4, ff00::/8)");
-    require(!group || !bound || group->is_ipv4() == bound->is_ipv4(), "multicast_group", "must be of the same family as bind_address");
-    require(!is_udp || !group || !bound || bound->is_any() || bound == group, "bind_address",
-            "must be 0.0.0.0, :: or the group itself when multicast_group is set: a socket that is bound to another address hears no group");
-  }
-  if (!sources.bpf_filter.empty()) {
-    const auto fault = lookout::vlp16::FilterFault(sources.bpf_filter);
-    require(fault.empty(), "bpf_filter", fault);
-  }
-  if (sources.kind != Sources::Kind::kCapture) return;
-  for (std::size_t i = 0; i < sources.capture_files.size(); ++i) {
-    if (!sources.capture_files[i].has_filename()) continue;  // an empty name, told by LoadParams
-    try {
-      const lookout::vlp16::CaptureReader reader(sources.capture_files[i]);
-    } catch (const std::exception& error) {
-      require(false, "capture_file", error.what(), i);
-    }
-  }
-}
-
-// @throws ConfigError with all faults, but those of the schema before others
-Params LoadChecked(const std::filesystem::path& config_folder) {
-  std::vector<std::string> faults;
-  auto params = lookout::vlp16::LoadParams(config_folder, faults);
-  CheckSources(config_folder, params.sources, faults);
-  if (!faults.empty()) throw lookout::config::ConfigError(faults);
-  return params;
-}
-
 // What is wrong with a source stands before what comes of it.
 void AddFault(HealthReport& report, const std::string& fault) {
   if (fault.empty()) return;
@@ -119,26 +70,17 @@ void RunLog(lookout::runtime::Process& process, const Params& params) {
   service.Finish(HostNow());
 }
 
-lookout::io::UdpOptions ToUdpOptions(const Sources& sources, int port) {
-  return {.bind_address = sources.bind_address,
-          .port = port,
-          .receive_buffer_bytes = sources.receive_buffer_bytes,
-          .interface = sources.interface,
-          .multicast_group = sources.multicast_group,
-          .allowed_source_addresses = sources.allowed_source_addresses};
-}
-
 void RunUdp(lookout::runtime::Process& process, const Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
   service.OnNotice(LogNotice);
-  lookout::io::UdpReceiver data(ToUdpOptions(params.sources, params.data_port));
-  lookout::io::UdpReceiver position(ToUdpOptions(params.sources, params.position_port));
+  lookout::io::UdpReceiver data(lookout::vlp16::ToUdpOptions(params.sources, params.data_port));
+  lookout::io::UdpReceiver position(lookout::vlp16::ToUdpOptions(params.sources, params.position_port));
   for (auto* receiver : {&data, &position}) {
     if (receiver->receive_buffer_bytes() >= params.sources.receive_buffer_bytes) continue;
     spdlog::warn("port {}: the kernel grants a receive buffer of {} bytes, {} were asked for (sysctl net.core.rmem_max)", receiver->port(),
                  receiver->receive_buffer_bytes(), params.sources.receive_buffer_bytes);
   }
-  if (const auto bound = BoundAddress(params.sources); bound && !bound->is_any() && !bound->is_multicast()) {
+  if (const auto bound = lookout::vlp16::BoundAddress(params.sources); bound && !bound->is_any() && !bound->is_multicast()) {
     spdlog::info("hears only what is sent to {}; the sensor as delivered sends to 255.255.255.255, which needs bind_address \"0.0.0.0\"",
                  params.sources.bind_address);
   }
@@ -169,23 +111,10 @@ void RunUdp(lookout::runtime::Process& process, const Params& params) {
   service.Finish(HostNow());
 }
 
-lookout::vlp16::LiveOptions ToLiveOptions(const Params& params) {
-  lookout::vlp16::LiveOptions options;
-  options.interface = params.sources.interface;
-  options.filter = params.sources.bpf_filter;
-  options.data_port = params.data_port;
-  options.position_port = params.position_port;
-  options.receive_buffer_bytes = params.sources.receive_buffer_bytes;
-  for (const auto& text : params.sources.allowed_source_addresses) {
-    options.allowed_source_addresses.push_back(lookout::io::ToText(*lookout::io::ParseIpAddress(text)));
-  }
-  return options;
-}
-
 void RunInterface(lookout::runtime::Process& process, const Params& params) {
   lookout::vlp16::Service service(process.bus(), params);
   service.OnNotice(LogNotice);
-  lookout::vlp16::LiveCapture capture(ToLiveOptions(params));
+  lookout::vlp16::LiveCapture capture(lookout::vlp16::ToLiveOptions(params));
   if (capture.fault().empty()) {
     spdlog::info("captures on interface '{}', filter: {}", params.sources.interface, capture.filter());
   } else {
@@ -251,17 +180,17 @@ void TrySources(const Params& params, const Params& running) {
     for (const int port : {params.data_port, params.position_port}) {
       // A port that this process holds is tried without it.
       const bool is_held = running.sources.kind == Sources::Kind::kUdp && (port == running.data_port || port == running.position_port);
-      const lookout::io::UdpReceiver receiver(ToUdpOptions(sources, is_held ? 0 : port));
+      const lookout::io::UdpReceiver receiver(lookout::vlp16::ToUdpOptions(sources, is_held ? 0 : port));
     }
   } else if (sources.kind == Sources::Kind::kInterface) {
-    const lookout::vlp16::LiveCapture capture(ToLiveOptions(params));
+    const lookout::vlp16::LiveCapture capture(lookout::vlp16::ToLiveOptions(params));
   }
 }
 
 // SIGHUP: a wrong config is told and changes nothing; a right one ends the run, to begin again with it.
 bool IsConfigRight(const std::filesystem::path& config_folder, const Params& running) {
   try {
-    TrySources(LoadChecked(config_folder), running);
+    TrySources(lookout::vlp16::LoadChecked(config_folder), running);
     lookout::runtime::EffectiveConfig(config_folder, {"boat.txtpb"});
     return true;
   } catch (const lookout::config::ConfigError& error) {
@@ -280,7 +209,7 @@ int main(int argc, char** argv) {
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-vlp16", "VLP-16 datagrams in; LIDAR_PACKETS, LIDAR_SCAN out");
   bool starts_again = false;
   const int code = lookout::runtime::RunMain("vlp16", [&] {
-    const auto params = LoadChecked(options.config_folder);
+    const auto params = lookout::vlp16::LoadChecked(options.config_folder);
     if (options.check_only) {
       std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "vlp16.txtpb"});
       return;

@@ -38,7 +38,7 @@ std::vector<std::int32_t> AllPairs(const std::vector<ComponentCentroid>& compone
   UnionFind sets(components.size());
   for (std::size_t i = 0; i < components.size(); ++i) {
     for (std::size_t j = i + 1; j < components.size(); ++j) {
-      if (rule.AreCompatible(components[i], components[j])) sets.Unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+      if (rule.AreCompatible(components[i], components[j])) sets.Join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
     }
   }
   return Numbered(sets, components.size());
@@ -150,7 +150,7 @@ TEST(SearchComponentsProperty, IsWhatUnionFindOverAllEdgesGives) {
           joins = joins || rule.Joins(one, other, image.to_higher_ring[static_cast<std::size_t>(std::min(one.ring, other.ring))]);
         }
         if (one.column == other.column && one.ring == other.ring) joins = joins || rule.Joins(one, other, BeamStep{});
-        if (joins) sets.Unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
+        if (joins) sets.Join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(j));
       }
     }
     ASSERT_EQ(SearchComponents(image, returns, params).of_return, Numbered(sets, returns.size())) << "seed " << kSeed << ", round " << round;

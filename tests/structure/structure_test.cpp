@@ -95,6 +95,10 @@ const std::vector<Rule>& Rules() {
       {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
       // As params; it knows what an address is.
       {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
+      // Opens what params name.
+      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "OWN", "OWN/core", "OWN/io"}},
+      // What the recorder's method gives is files: its service drives its own io.
+      {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},

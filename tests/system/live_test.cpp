@@ -109,29 +109,6 @@ class Live : public ::testing::Test {
   }
 };
 
-TEST_F(Live, MessagesEqualTheReplayOfTheirRawLog) {
-  StartAll();
-  Simulate(4);
-  std::this_thread::sleep_for(milliseconds(500));
-  StopAll();
-  const auto live = ReadLog(Log());
-  const auto result = RunProgram(
-      {Bin("replay"), "--config", (folder_ / "config").string(), "--in", Log().string(), "--out", (folder_ / "again").string()}, Output("replay"));
-  ASSERT_EQ(result.exit_code, 0) << result.output;
-  const auto again = ReadLog(folder_ / "again");
-  for (const auto& channel : bus::kChannels) {
-    if (!channel.is_replayed) continue;
-    const std::string name(channel.name);
-    ASSERT_TRUE(live.contains(name)) << name;
-    ASSERT_TRUE(again.contains(name)) << name;
-    EXPECT_EQ(live.at(name).size(), again.at(name).size()) << name;
-    EXPECT_TRUE(live.at(name) == again.at(name)) << name << " differs";
-  }
-  EXPECT_GE(live.at("LIDAR_SCAN").size(), 38U);
-  ASSERT_TRUE(live.contains("RUN_INFO"));
-  for (const auto& service : kServices) EXPECT_EQ(LastHealth(live, service).process, service);
-}
-
 // Counts messages of a channel until there are so many more, at most for 30 s.
 bool WaitFor(bus::LcmBus& bus, const bus::Channel& channel, std::int64_t num_more) {
   const auto count = [&] { return bus.input_traffic()[std::string(channel.name)].num_messages; };

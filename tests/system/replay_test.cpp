@@ -15,6 +15,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "lookout/run_info_t.hpp"
 #include "tests/system/child.hpp"
 
 namespace lookout::system_test {
@@ -46,8 +47,33 @@ class Replay : public ::testing::Test {
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
-  RunResult ReplayTo(const std::string& in, const std::string& out) {
-    return RunProgram({Bin("replay"), "--config", config_, "--in", in, "--out", Path(out)}, Path("replay.out"));
+  RunResult ReplayTo(const std::string& in, const std::string& out, const std::vector<std::string>& options = {}) {
+    return ReplayWith(config_, in, out, options);
+  }
+  RunResult ReplayWith(const std::string& config, const std::string& in, const std::string& out, const std::vector<std::string>& options = {}) {
+    std::vector<std::string> command{Bin("replay"), "--config", config, "--in", in, "--out", Path(out)};
+    command.insert(command.end(), options.begin(), options.end());
+    return RunProgram(command, Path("replay.out"));
+  }
+
+  // Three seconds of the simulated lake, replayed once, as the log "day".
+  void MakeDay() {
+    const auto sim = RunProgram({Bin("sim"), "--config", config_, "--scene", "lake", "--seed", "2", "--seconds", "3", "--pcap", Path("sim.pcap")},
+                                Path("sim.out"));
+    ASSERT_EQ(sim.exit_code, 0) << sim.output;
+    ASSERT_EQ(ReplayTo(Path("sim.pcap"), "day").exit_code, 0);
+  }
+
+  // The files of a recorder that began a new one after half of the events, RUN_INFO first in each.
+  void Rotate(const std::string& log, const std::string& first, const std::string& second) {
+    std::vector<bus::LogEvent> events;
+    bus::LogReader reader(Path(log));
+    while (const auto event = reader.Next()) events.push_back(*event);
+    ASSERT_EQ(events.front().channel, "RUN_INFO");
+    bus::LogWriter one(Path(first));
+    bus::LogWriter other(Path(second));
+    other.Write(events[events.size() / 2].time, "RUN_INFO", events.front().bytes);
+    for (std::size_t i = 0; i < events.size(); ++i) (i < events.size() / 2 ? one : other).Write(events[i].time, events[i].channel, events[i].bytes);
   }
 
   template <typename T>
@@ -146,6 +172,102 @@ TEST_F(Replay, OfTheSimulatorsCaptureGivesTheSameBytesEachTime) {
     for (const auto& obstacle : message.obstacles) num_placed += obstacle.status == obstacle_t::STATUS_OK ? 1 : 0;
   }
   EXPECT_GT(num_placed, 100);
+}
+
+TEST_F(Replay, FromAnyLevelGivesTheSameBytes) {
+  MakeDay();
+  const auto day = PayloadsByChannel("day");
+  const std::vector<std::pair<std::vector<std::string>, std::set<std::string>>> parts{
+      {{"--from", "LIDAR_SCAN"}, {"LIDAR_SCAN", "NAV_RAW", "SEGMENTS", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES"}},
+      {{"--from", "SEGMENTS", "--from", "POSE"}, {"SEGMENTS", "POSE", "OBSTACLES"}},
+      {{"--from", "POSE"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "POSE", "OBSTACLES"}},
+      {{"--only", "vlp16"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"}},
+      {{"--only", "segmenter"}, {"LIDAR_SCAN", "SEGMENTS"}},
+      {{"--only", "navigator"}, {"NAV_RAW", "GNSS_FIX", "ATTITUDE", "POSE"}},
+      {{"--only", "segmenter", "--only", "georeferencer"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES"}}};
+  for (const auto& [options, channels] : parts) {
+    SCOPED_TRACE(::testing::PrintToString(options));
+    const auto result = ReplayTo(Path("day"), "part", options);
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+    auto part = PayloadsByChannel("part");
+    part.erase("RUN_INFO");
+    std::set<std::string> names;
+    for (const auto& [channel, payloads] : part) {
+      names.insert(channel);
+      EXPECT_TRUE(day.contains(channel) && payloads == day.at(channel)) << channel << " differs";
+    }
+    EXPECT_EQ(names, channels);
+    EXPECT_NE(result.output.find("not read: "), std::string::npos) << result.output;
+    const auto infos = Messages<run_info_t>("part", "RUN_INFO");
+    ASSERT_EQ(infos.size(), 1U);
+    EXPECT_EQ(infos[0].file_name.back(), "lookout-replay");
+    EXPECT_EQ(infos[0].file_text.back().substr(0, 5), "ran: ");
+    // A part is a log as well.
+    EXPECT_EQ(ReplayTo(Path("part"), "again", options).exit_code, 0);
+    EXPECT_EQ(Content(folder_ / "part"), Content(folder_ / "again"));
+  }
+}
+
+TEST_F(Replay, RefusesAPartThatTheLogDoesNotAllow) {
+  MakeDay();
+  ASSERT_EQ(ReplayTo(Path("day"), "part", {"--only", "navigator"}).exit_code, 0);
+  const auto lacking = ReplayTo(Path("part"), "none", {"--from", "LIDAR_SCAN"});
+  EXPECT_EQ(lacking.exit_code, 1);
+  EXPECT_NE(lacking.output.find("part: --from LIDAR_SCAN: the input does not hold it"), std::string::npos) << lacking.output;
+  EXPECT_EQ(ReplayTo(Path("day"), "none", {"--from", "LIDAR_SCAN", "--only", "vlp16"}).exit_code, 2);
+  EXPECT_EQ(ReplayTo(Path("day"), "none", {"--from", "HEALTH"}).exit_code, 2);
+  EXPECT_EQ(ReplayTo(Path("sim.pcap"), "none", {"--from", "LIDAR_SCAN"}).exit_code, 2);
+}
+
+TEST_F(Replay, WithAnotherConfigSaysSoInRunInfo) {
+  MakeDay();
+  fs::copy(config_, folder_ / "config");
+  std::ofstream(folder_ / "config/segmenter.txtpb") << "method: PAPER\n";
+  const auto result = ReplayWith(Path("config"), Path("day"), "other");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("differs in segmenter.txtpb"), std::string::npos) << result.output;
+  const auto infos = Messages<run_info_t>("other", "RUN_INFO");
+  ASSERT_EQ(infos.size(), 1U);
+  std::map<std::string, std::string> text_of_file;
+  for (std::size_t i = 0; i < infos[0].file_name.size(); ++i) text_of_file[infos[0].file_name[i]] = infos[0].file_text[i];
+  EXPECT_NE(text_of_file["segmenter.txtpb"].find("method: PAPER"), std::string::npos) << text_of_file["segmenter.txtpb"];
+  EXPECT_EQ(text_of_file["lookout-replay"], "config differs from that of the input: segmenter.txtpb\n");
+  EXPECT_TRUE(PayloadsByChannel("day")["LIDAR_SCAN"] == PayloadsByChannel("other")["LIDAR_SCAN"]);
+  EXPECT_FALSE(PayloadsByChannel("day")["SEGMENTS"] == PayloadsByChannel("other")["SEGMENTS"]);
+}
+
+TEST_F(Replay, OfRotatedFilesEqualsThatOfTheWhole) {
+  MakeDay();
+  Rotate("day", "one", "other");
+  const auto right = ReplayTo(Path("one"), "joined", {"--in", Path("other")});
+  ASSERT_EQ(right.exit_code, 0) << right.output;
+  EXPECT_EQ(right.output.find("in their order"), std::string::npos) << right.output;
+  EXPECT_EQ(right.output.find("missing in the input"), std::string::npos) << right.output;
+  auto joined = PayloadsByChannel("joined");
+  auto day = PayloadsByChannel("day");
+  joined.erase("RUN_INFO");
+  day.erase("RUN_INFO");
+  EXPECT_TRUE(joined == day);
+  const auto wrong = ReplayTo(Path("other"), "wrong", {"--in", Path("one")});
+  EXPECT_NE(wrong.output.find("in their order"), std::string::npos) << wrong.output;
+}
+
+TEST_F(Replay, TellsOfGapsAndOfProgressWhenAskedFor) {
+  MakeDay();
+  {
+    bus::LogReader reader(Path("day"));
+    bus::LogWriter writer(Path("holes"));
+    int num_bundles = 0;
+    while (const auto event = reader.Next()) {
+      num_bundles += event->channel == "LIDAR_PACKETS" ? 1 : 0;
+      if (event->channel != "LIDAR_PACKETS" || num_bundles % 40 != 20) writer.Write(event->time, event->channel, event->bytes);
+    }
+  }
+  const auto result = ReplayTo(Path("holes"), "log", {"--progress"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("LIDAR_PACKETS: 3 messages are missing in the input"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(" s left"), std::string::npos) << result.output;
+  EXPECT_EQ(ReplayTo(Path("holes"), "log").output.find(" s left"), std::string::npos);
 }
 
 struct RealCapture {

@@ -8,6 +8,7 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/config/boat.hpp"
 #include "tools/eval/report.hpp"
 #include "tools/export/bearings.hpp"
 
@@ -35,6 +36,7 @@ int EvaluateLog(const LogOptions& options) {
   std::unique_ptr<Truth> truth;
   if (!options.truth_folder.empty()) truth = std::make_unique<Truth>(options.truth_folder);
   Evaluation evaluation(truth.get(), options.min_num_returns);
+  if (!options.true_boat_folder.empty()) evaluation.SetMounting(config::LoadBoat(options.true_boat_folder).T_vessel_lidar);
   Machine machine;
   TurnCollector collector([&evaluation](const Turn& turn) { evaluation.Add(turn); });
 
@@ -51,7 +53,7 @@ int EvaluateLog(const LogOptions& options) {
       is_taken = Take<health_t>(*event, machine);
     } else if (truth && event->channel == bus::kRunInfo.name) {
       is_taken = bearings.TakeRunInfo(event->bytes) == exporter::Taken::kOk;
-      if (bearings.boat()) evaluation.SetMounting(bearings.boat()->T_vessel_lidar);
+      if (bearings.boat() && options.true_boat_folder.empty()) evaluation.SetMounting(bearings.boat()->T_vessel_lidar);
     } else if (truth && event->channel == bus::kLidarScan.name) {
       is_taken = Take<lidar_scan_t>(*event, collector);
     } else if (truth && event->channel == bus::kSegments.name) {

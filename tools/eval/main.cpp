@@ -40,7 +40,11 @@ Options ParseOptions(int argc, char** argv) {
       "--test or --points).",
       "lookout-eval");
   auto* in = app.add_option("--in", log.log_file, "lcm-log with OBSTACLES");
-  app.add_option("--truth", log.truth_folder, "folder that lookout-sim --truth wrote")->needs(in);
+  auto* truth = app.add_option("--truth", log.truth_folder, "folder that lookout-sim --truth wrote")->needs(in);
+  app.add_option("--boat", log.true_boat_folder,
+                 "folder with the boat.txtpb of the simulation, where the log was computed with another mounting of the lidar")
+      ->check(CLI::ExistingDirectory)
+      ->needs(truth);
   app.add_option("--min-returns", log.min_num_returns, "an object with fewer returns in a turn does not count for recall")
       ->check(CLI::Range(1, 1'000'000))
       ->needs(in)

@@ -14,9 +14,9 @@
 namespace lookout::eval::page {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
-double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kNone; }
+double Ratio(double part, double whole) { return whole > 0.0 ? part / whole : kNoValue; }
 
 const Score* Find(const MethodResult& method, const std::string& scene) {
   const auto found = method.by_scene.find(scene);
@@ -25,7 +25,7 @@ const Score* Find(const MethodResult& method, const std::string& scene) {
 
 double FigureOf(const MethodResult& method, const std::string& scene, const Figure& figure) {
   const auto* score = Find(method, scene);
-  return score == nullptr ? kNone : figure(*score);
+  return score == nullptr ? kNoValue : figure(*score);
 }
 
 // The darker, the better; for shares of 100 only.
@@ -33,7 +33,7 @@ std::string ShadeOf(double percent) { return std::isfinite(percent) ? "h" + std:
 
 // Of the methods that look all round.
 double BestOf(const Results& results, const std::function<double(const MethodResult&)>& figure) {
-  double best = kNone;
+  double best = kNoValue;
   for (const auto& method : results.methods) {
     if (HasPartialView(method)) continue;
     const double value = figure(method);
@@ -111,7 +111,7 @@ Times TimesOf(const std::vector<double>& time_ms) {
   for (const double value : time_ms) {
     if (std::isfinite(value)) summary.Add(value);
   }
-  if (summary.count() == 0) return {0, kNone, kNone, kNone, kNone};
+  if (summary.count() == 0) return {0, kNoValue, kNoValue, kNoValue, kNoValue};
   const double mean_ms = summary.Mean();
   for (const double value : time_ms) {
     if (std::isfinite(value)) squares += (value - mean_ms) * (value - mean_ms);
@@ -129,7 +129,7 @@ bool IsOurs(const MethodResult& method) { return method.method.rfind("ours", 0) 
 
 std::string Summary(const Results& results) {
   // Methods that look ahead only have an easier task, and do not take part.
-  const auto mean_iou = [&](const MethodResult& method) { return HasPartialView(method) ? kNone : MeanOverScenes(results, method, IouPercent); };
+  const auto mean_iou = [&](const MethodResult& method) { return HasPartialView(method) ? kNoValue : MeanOverScenes(results, method, IouPercent); };
   const auto overall = Rank(results, mean_iou, 1);
   if (overall.empty()) return "<p>No method was judged on a scene with objects.</p>\n";
 
@@ -139,9 +139,9 @@ std::string Summary(const Results& results) {
   // Who finds nothing has no false segments and is fast.
   const auto is_of_use = [&](const MethodResult& method) { return mean_iou(method) >= overall[0].value / 2.0; };
   const auto false_segments = Rank(
-      results, [&](const MethodResult& method) { return is_of_use(method) ? MeanOverScenes(results, method, FalseSegmentsPerTurn) : kNone; }, 2);
+      results, [&](const MethodResult& method) { return is_of_use(method) ? MeanOverScenes(results, method, FalseSegmentsPerTurn) : kNoValue; }, 2);
   const auto times = Rank(
-      results, [&](const MethodResult& method) { return is_of_use(method) ? TimesOf(method).median_ms : kNone; }, 2);
+      results, [&](const MethodResult& method) { return is_of_use(method) ? TimesOf(method).median_ms : kNoValue; }, 2);
   if (!false_segments.empty() || !times.empty()) text += " Of the methods with half of that or more:";
   if (!false_segments.empty()) {
     text += " fewest false segments " + false_segments.back().Names() + ", " + Number(false_segments.back().value, 2) + " a turn;";
@@ -155,7 +155,7 @@ std::string Summary(const Results& results) {
   std::vector<std::pair<std::string, int>> wins;
   for (const auto& scene : results.scenes) {
     const auto ranks = Rank(
-        results, [&](const MethodResult& method) { return HasPartialView(method) ? kNone : FigureOf(method, scene, IouPercent); }, 1);
+        results, [&](const MethodResult& method) { return HasPartialView(method) ? kNoValue : FigureOf(method, scene, IouPercent); }, 1);
     std::vector<HtmlCell> row{{scene}, {"-"}, {"-"}, {"-"}, {"-"}, {"-"}};
     if (!ranks.empty()) {
       row[1] = {ranks[0].Names()};

@@ -30,13 +30,13 @@ struct SegmentTurn {
 // A return of an object in a segment: index of the segment, index of the object. Sorted, equal pairs lie together.
 using Pair = std::pair<std::size_t, std::size_t>;
 
-struct Turn {
+struct Matches {
   std::vector<ObjectTurn> objects;    // those with a return, by id
   std::vector<SegmentTurn> segments;  // by id - 1; ids that do not occur have no returns
   std::vector<Pair> pairs;            // sorted
 };
 
-Turn Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
+Matches Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
   const auto& range = truth.scan.columns.range;
   if (label.size() != range.size() || truth.object.size() != range.size()) throw std::logic_error("ScoreTurn: labels and cells do not agree");
   std::map<std::int32_t, ObjectTurn> by_id;
@@ -50,7 +50,7 @@ Turn Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
     ++object.num_returns;
     object.nearest_m = std::min(object.nearest_m, range[cell] * truth.scan.head.range_unit_m);
   }
-  Turn turn;
+  Matches turn;
   std::map<std::int32_t, std::size_t> index_of;
   for (const auto& [id, object] : by_id) {
     index_of[id] = turn.objects.size();
@@ -73,7 +73,7 @@ Turn Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
 
 // Calls for each pair of segment and object that share returns, segment by segment, with their number.
 template <typename Handler>
-void ForEachOverlap(Turn& turn, Handler handle) {
+void ForEachOverlap(Matches& turn, Handler handle) {
   for (auto begin = turn.pairs.begin(); begin != turn.pairs.end();) {
     const auto end = std::find_if(begin, turn.pairs.end(), [&](const Pair& pair) { return pair != *begin; });
     const auto [segment, object] = *begin;
@@ -82,7 +82,7 @@ void ForEachOverlap(Turn& turn, Handler handle) {
   }
 }
 
-void Compare(Turn& turn, const std::vector<bool>& is_sure) {
+void Compare(Matches& turn, const std::vector<bool>& is_sure) {
   ForEachOverlap(turn, [&](SegmentTurn& segment, ObjectTurn& object, std::int64_t num_both, std::size_t index) {
     const double iou = static_cast<double>(num_both) / static_cast<double>(object.num_returns + segment.num_returns - num_both);
     object.iou = std::max(object.iou, iou);
@@ -102,7 +102,7 @@ void AddTo(std::pair<std::int64_t, Value>& count_and_sum, Value value) {
   count_and_sum.second += value;
 }
 
-std::int64_t NumTruePositives(const Turn& turn) {
+std::int64_t NumTruePositives(const Matches& turn) {
   std::int64_t count = 0;
   for (const auto& segment : turn.segments) {
     // Of equals the object with the least id takes it; which one it is does not change the number.
@@ -114,7 +114,7 @@ std::int64_t NumTruePositives(const Turn& turn) {
 }  // namespace
 
 Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
-  Turn turn = Count(truth, labelling.label);
+  Matches turn = Count(truth, labelling.label);
   Compare(turn, labelling.is_sure);
   Score score;
   score.num_turns = 1;

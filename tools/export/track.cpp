@@ -13,8 +13,8 @@
 namespace lookout::exporter {
 namespace {
 
-constexpr double kWidth = 1320.0;
-constexpr double kHeight = 1000.0;
+constexpr double kTrackWidth = 1320.0;
+constexpr double kTrackHeight = 1000.0;
 constexpr double kMargin = 60.0;
 constexpr double kLeastStepM = 0.2;
 // Of a track that does not move, so that noise does not fill the page.
@@ -54,7 +54,7 @@ struct Stretch {
   std::vector<Place> places;
 };
 
-std::string Number(double value, int decimals) {
+std::string Decimal(double value, int decimals) {
   std::string text;
   CsvWriter(text).Fixed(value, decimals);
   return text;
@@ -125,11 +125,11 @@ class TrackSvgSink : public Sink {
         if (i > 0) length_m += std::hypot(place.east_m - stretch.places[i - 1].east_m, place.north_m - stretch.places[i - 1].north_m);
       }
     }
-    const double pixels_per_m = std::min((kWidth - 2.0 * kMargin) / std::max(high.east_m - low.east_m, kLeastSpanM),
-                                         (kHeight - 2.0 * kMargin) / std::max(high.north_m - low.north_m, kLeastSpanM));
+    const double pixels_per_m = std::min((kTrackWidth - 2.0 * kMargin) / std::max(high.east_m - low.east_m, kLeastSpanM),
+                                         (kTrackHeight - 2.0 * kMargin) / std::max(high.north_m - low.north_m, kLeastSpanM));
     const auto pixels = [&](const Place& place) {
-      return Number(kWidth / 2.0 + pixels_per_m * (place.east_m - (low.east_m + high.east_m) / 2.0), 1) + "," +
-             Number(kHeight / 2.0 - pixels_per_m * (place.north_m - (low.north_m + high.north_m) / 2.0), 1);
+      return Decimal(kTrackWidth / 2.0 + pixels_per_m * (place.east_m - (low.east_m + high.east_m) / 2.0), 1) + "," +
+             Decimal(kTrackHeight / 2.0 - pixels_per_m * (place.north_m - (low.north_m + high.north_m) / 2.0), 1);
     };
     text +=
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1320\" height=\"1000\" font-family=\"sans-serif\" font-size=\"14\">\n"
@@ -152,18 +152,18 @@ class TrackSvgSink : public Sink {
     mark(stretches_.front().places.front(), "begin");
     mark(stretches_.back().places.back(), "end");
 
-    text += "<text x=\"20\" y=\"28\" font-size=\"18\">Track of the boat, north up</text>\n<text x=\"20\" y=\"50\">" + Number(length_m, 0) +
-            " m; begins at " + Number(latitude_deg_, 6) + ", " + Number(longitude_deg_, 6) + "</text>\n";
+    text += "<text x=\"20\" y=\"28\" font-size=\"18\">Track of the boat, north up</text>\n<text x=\"20\" y=\"50\">" + Decimal(length_m, 0) +
+            " m; begins at " + Decimal(latitude_deg_, 6) + ", " + Decimal(longitude_deg_, 6) + "</text>\n";
     double y = 72.0;
     for (const auto* style : {&kOk, &kCarriedOn, &kNoHeading}) {
       if (std::ranges::none_of(stretches_, [style](const Stretch& stretch) { return stretch.style == style; })) continue;
-      text += "<line x1=\"20\" x2=\"50\" y1=\"" + Number(y - 5.0, 0) + "\" y2=\"" + Number(y - 5.0, 0) + "\" stroke-width=\"3\" stroke=\"" +
-              std::string(style->colour) + "\"/>\n<text x=\"58\" y=\"" + Number(y, 0) + "\">" + std::string(style->name) + "</text>\n";
+      text += "<line x1=\"20\" x2=\"50\" y1=\"" + Decimal(y - 5.0, 0) + "\" y2=\"" + Decimal(y - 5.0, 0) + "\" stroke-width=\"3\" stroke=\"" +
+              std::string(style->colour) + "\"/>\n<text x=\"58\" y=\"" + Decimal(y, 0) + "\">" + std::string(style->name) + "</text>\n";
       y += 20.0;
     }
-    const double bar_m = RoundLength(kWidth / 4.0 / pixels_per_m);
-    text += "<line x1=\"20\" x2=\"" + Number(20.0 + bar_m * pixels_per_m, 1) + "\" y1=\"970\" y2=\"970\" stroke=\"#000000\" stroke-width=\"3\"/>\n" +
-            "<text x=\"20\" y=\"962\">" + Number(bar_m, bar_m < 1.0 ? 1 : 0) + " m</text>\n</svg>\n";
+    const double bar_m = RoundLength(kTrackWidth / 4.0 / pixels_per_m);
+    text += "<line x1=\"20\" x2=\"" + Decimal(20.0 + bar_m * pixels_per_m, 1) + "\" y1=\"970\" y2=\"970\" stroke=\"#000000\" stroke-width=\"3\"/>\n" +
+            "<text x=\"20\" y=\"962\">" + Decimal(bar_m, bar_m < 1.0 ? 1 : 0) + " m</text>\n</svg>\n";
   }
 
   double latitude_deg_ = 0.0;  // of the first place

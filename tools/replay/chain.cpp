@@ -33,19 +33,21 @@ void Timed(std::chrono::nanoseconds& total, Call call) {
 
 }  // namespace
 
-Chain::Chain(const std::filesystem::path& config_folder, const RawInput& input, Sink sink)
+Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink)
     : sink_(std::move(sink)),
-      is_navigation_live_(input.navigation == navigator::Input::kOutside),
-      ports_(LidarParams(config_folder, input.lidar), NavigationParams(config_folder, input.navigation)),
-      vlp16_(bus_, LidarParams(config_folder, input.lidar)),
-      segmenter_(bus_, segmenter::LoadParams(config_folder)),
-      navigator_(bus_, NavigationParams(config_folder, input.navigation)),
-      georeferencer_(bus_, georeferencer::LoadParams(config_folder)) {
+      read_(plan.read),
+      is_navigation_live_(plan.navigation == navigator::Input::kOutside),
+      ports_(LidarParams(config_folder, plan.lidar), NavigationParams(config_folder, plan.navigation)) {
+  if (plan.runs_vlp16) vlp16_.emplace(bus_, LidarParams(config_folder, plan.lidar));
+  if (plan.runs_segmenter) segmenter_.emplace(bus_, segmenter::LoadParams(config_folder));
+  if (plan.runs_navigator) navigator_.emplace(bus_, NavigationParams(config_folder, plan.navigation));
+  if (plan.runs_georeferencer) georeferencer_.emplace(bus_, georeferencer::LoadParams(config_folder));
   bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
-    auto& digest = digests_[std::string(channel)];
-    ++digest.count;
-    digest.sha256.Add(bytes.data(), bytes.size());
-    sink_(time_, channel, bytes);
+    auto digest = digests_.find(channel);
+    if (digest == digests_.end()) digest = digests_.try_emplace(std::string(channel)).first;
+    ++digest->second.count;
+    Timed(digest_time_, [&] { digest->second.sha256.Add(bytes.data(), bytes.size()); });
+    sink_(*time_, channel, bytes);
   });
 }
 
@@ -53,41 +55,50 @@ Chain::Ports::Ports(const vlp16::Params& lidar, const navigator::Params& navigat
     : lidar_data(lidar.data_port), lidar_position(lidar.position_port), nmea(navigation.source_of_port) {}
 
 void Chain::AdvanceTo(Utime time) {
+  if (!first_time_) first_time_ = time;
   time_ = time;
-  Timed(vlp16_time_, [&] { vlp16_.AdvanceTo(time); });
-  Drain();
-  if (is_navigation_live_) {
-    Timed(navigator_time_, [&] { navigator_.AdvanceTo(time); });
+  if (vlp16_) {
+    Timed(vlp16_time_, [&] { vlp16_->AdvanceTo(time); });
+    Drain();
+  }
+  if (navigator_ && is_navigation_live_) {
+    Timed(navigator_time_, [&] { navigator_->AdvanceTo(time); });
     Drain();
   }
 }
 
 void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
   AdvanceTo(host_time);
-  if (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position) {
+  const auto source = ports_.nmea.find(udp_port);
+  if (vlp16_ && (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position)) {
     num_data_datagrams_ += udp_port == ports_.lidar_data ? 1 : 0;
-    Timed(vlp16_time_, [&] { vlp16_.OnDatagram(host_time, udp_port, payload); });
-  } else if (const auto source = ports_.nmea.find(udp_port); source != ports_.nmea.end()) {
+    Timed(vlp16_time_, [&] { vlp16_->OnDatagram(host_time, udp_port, payload); });
+  } else if (navigator_ && source != ports_.nmea.end()) {
     ++num_nmea_datagrams_;
-    Timed(navigator_time_, [&] { navigator_.OnDatagram(host_time, payload, source->second); });
+    Timed(navigator_time_, [&] { navigator_->OnDatagram(host_time, payload, source->second); });
   } else {
     ++num_other_ports_;
   }
   Drain();
 }
 
-void Chain::OnRaw(Utime log_time, const bus::Channel& channel, Bytes bytes) {
+void Chain::OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes) {
   AdvanceTo(log_time);
   bus_.Publish(channel, bytes);
   Drain();
 }
 
 void Chain::Finish() {
-  Timed(vlp16_time_, [&] { vlp16_.Finish(time_); });
-  Drain();
-  Timed(navigator_time_, [&] { navigator_.Finish(time_); });
-  Drain();
-  georeferencer_.Finish();
+  if (!time_) return;  // nothing came: nothing waits
+  if (vlp16_) {
+    Timed(vlp16_time_, [&] { vlp16_->Finish(*time_); });
+    Drain();
+  }
+  if (navigator_) {
+    Timed(navigator_time_, [&] { navigator_->Finish(*time_); });
+    Drain();
+  }
+  if (georeferencer_) georeferencer_->Finish();
   Drain();
 }
 
@@ -101,10 +112,12 @@ std::vector<Chain::StageTime> Chain::StageTimes() const {
     const auto traffic = bus_.input_traffic().find(channel.name);
     return traffic == bus_.input_traffic().end() ? std::chrono::nanoseconds(0) : traffic->second.total_handling_time;
   };
-  return {{"vlp16", ToSeconds(vlp16_time_ + handling(bus::kLidarPackets))},
-          {"segmenter", ToSeconds(handling(bus::kLidarScan))},
-          {"navigator", ToSeconds(navigator_time_ + handling(bus::kNavRaw) + handling(bus::kLidarNmea))},
-          {"georeferencer", ToSeconds(handling(bus::kSegments) + handling(bus::kPose))}};
+  std::vector<StageTime> times;
+  if (vlp16_) times.push_back({"vlp16", ToSeconds(vlp16_time_ + handling(bus::kLidarPackets))});
+  if (segmenter_) times.push_back({"segmenter", ToSeconds(handling(bus::kLidarScan))});
+  if (navigator_) times.push_back({"navigator", ToSeconds(navigator_time_ + handling(bus::kNavRaw) + handling(bus::kLidarNmea))});
+  if (georeferencer_) times.push_back({"georeferencer", ToSeconds(handling(bus::kSegments) + handling(bus::kPose))});
+  return times;
 }
 
 std::vector<std::pair<std::string, std::int64_t>> Chain::Counters() const {
@@ -114,16 +127,25 @@ std::vector<std::pair<std::string, std::int64_t>> Chain::Counters() const {
       if (counter.count != 0) counters.emplace_back(service + "." + std::string(counter.name), counter.count);
     }
   };
-  add("vlp16", vlp16_.Report());
-  add("segmenter", segmenter_.Report());
-  add("navigator", navigator_.Report());
-  add("georeferencer", georeferencer_.Report());
+  if (vlp16_) add("vlp16", vlp16_->Report());
+  if (segmenter_) add("segmenter", segmenter_->Report());
+  if (navigator_) add("navigator", navigator_->Report());
+  if (georeferencer_) add("georeferencer", georeferencer_->Report());
   for (const auto& [channel, traffic] : bus_.input_traffic()) {
     if (traffic.num_undecodable != 0) counters.emplace_back(channel + ".undecodable", traffic.num_undecodable);
     if (traffic.num_lost != 0) counters.emplace_back(channel + ".lost", traffic.num_lost);
   }
   if (num_other_ports_ != 0) counters.emplace_back("input.other_port", num_other_ports_);
   return counters;
+}
+
+std::vector<std::pair<std::string, std::int64_t>> Chain::Gaps() const {
+  std::vector<std::pair<std::string, std::int64_t>> gaps;
+  for (const auto channel : read_) {
+    const auto traffic = bus_.input_traffic().find(channel);
+    if (traffic != bus_.input_traffic().end() && traffic->second.num_lost > 0) gaps.emplace_back(channel, traffic->second.num_lost);
+  }
+  return gaps;
 }
 
 }  // namespace lookout::replay

@@ -1,9 +1,10 @@
-// All services of the way of the data in one process, over a memory bus, in lockstep.
+// The services of the way of the data, or some of them, in one process, over a memory bus, in lockstep.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,14 +17,9 @@
 #include "services/navigator/service.hpp"
 #include "services/segmenter/service.hpp"
 #include "services/vlp16/service.hpp"
+#include "tools/replay/plan.hpp"
 
 namespace lookout::replay {
-
-/// Where the chain begins.
-struct RawInput {
-  vlp16::Input lidar = vlp16::Input::kOutside;               // kLog: LIDAR_PACKETS
-  navigator::Input navigation = navigator::Input::kOutside;  // kLog: NAV_RAW
-};
 
 /// What went over one channel.
 struct ChannelDigest {
@@ -33,23 +29,29 @@ struct ChannelDigest {
 
 class Chain {
  public:
-  /// Each message, with the host time of the raw event that caused it.
+  /// Each message, with the time of the event that caused it.
   using Sink = std::function<void(Utime time, std::string_view channel, Bytes bytes)>;
 
   /// @throws config::ConfigError
-  Chain(const std::filesystem::path& config_folder, const RawInput& input, Sink sink);
+  Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink);
 
   /// A datagram out of a capture. What is on none of the ports of the config is left out and counted.
   void OnDatagram(Utime host_time, int udp_port, Bytes payload);
 
-  /// A raw message out of a log.
-  void OnRaw(Utime log_time, const bus::Channel& channel, Bytes bytes);
+  /// A message out of a log, on a channel that the plan reads.
+  void OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes);
 
   /// End of input: every service flushes what it holds.
   void Finish();
 
-  /// Host time of the latest event.
-  Utime time() const { return time_; }
+  /// Time of the latest event; nullopt before the first.
+  std::optional<Utime> time() const { return time_; }
+
+  /// From the first event to the latest.
+  std::chrono::microseconds span() const { return time_ ? *time_ - *first_time_ : std::chrono::microseconds(0); }
+
+  /// Time that the digests took.
+  std::chrono::nanoseconds digest_time() const { return digest_time_; }
 
   std::map<std::string, ChannelDigest, std::less<>>& digests() { return digests_; }
 
@@ -63,8 +65,11 @@ class Chain {
   /// Counters of all services that are not 0, as "service.counter".
   std::vector<std::pair<std::string, std::int64_t>> Counters() const;
 
+  /// Messages that are missing in the input, by channel that is read; counts above 0.
+  std::vector<std::pair<std::string, std::int64_t>> Gaps() const;
+
   /// Why the lidar gives nothing, in words; empty when it gives.
-  std::string LidarComplaint() const { return vlp16_.Report().reason; }
+  std::string LidarComplaint() const { return vlp16_ ? vlp16_->Report().reason : std::string(); }
 
   /// Datagrams of a capture on the port of NMEA 0183, and on that of the lidar's data.
   std::int64_t num_nmea_datagrams() const { return num_nmea_datagrams_; }
@@ -85,7 +90,9 @@ class Chain {
   bus::MemoryBus bus_;
   Sink sink_;
   std::map<std::string, ChannelDigest, std::less<>> digests_;
-  Utime time_{};
+  std::vector<std::string_view> read_;
+  std::optional<Utime> first_time_;
+  std::optional<Utime> time_;
   bool is_navigation_live_;  // else it comes as NAV_RAW
   Ports ports_;
   std::int64_t num_nmea_datagrams_ = 0;
@@ -93,11 +100,12 @@ class Chain {
   std::int64_t num_other_ports_ = 0;
   std::chrono::nanoseconds vlp16_time_{0};
   std::chrono::nanoseconds navigator_time_{0};
-  // They subscribe as they are made; the sink subscribes last, so that it sees a message after the services did.
-  vlp16::Service vlp16_;
-  segmenter::Service segmenter_;
-  navigator::Service navigator_;
-  georeferencer::Service georeferencer_;
+  std::chrono::nanoseconds digest_time_{0};
+  // Empty where it does not run. They subscribe as they are made; the sink subscribes last, so that it sees a message after the services did.
+  std::optional<vlp16::Service> vlp16_;
+  std::optional<segmenter::Service> segmenter_;
+  std::optional<navigator::Service> navigator_;
+  std::optional<georeferencer::Service> georeferencer_;
 };
 
 }  // namespace lookout::replay

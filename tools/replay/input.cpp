@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
+#include <map>
+#include <set>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
 
+#include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 
@@ -20,7 +24,7 @@ constexpr Magic kLogSyncWord{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::array<Magic, 5> kCaptureMagics{
     {{0xA1, 0xB2, 0xC3, 0xD4}, {0xD4, 0xC3, 0xB2, 0xA1}, {0xA1, 0xB2, 0x3C, 0x4D}, {0x4D, 0x3C, 0xB2, 0xA1}, {0x0A, 0x0D, 0x0D, 0x0A}}};
 
-void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, const std::string& reason, std::int64_t count) {
+void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, std::string_view reason, std::int64_t count) {
   if (count == 0) return;
   for (auto& [known_reason, known_count] : refused) {
     if (known_reason == reason) {
@@ -31,11 +35,36 @@ void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, const std
   refused.emplace_back(reason, count);
 }
 
-void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary) {
+// Where the events of one file are, in time.
+class Order {
+ public:
+  Order(std::filesystem::path file, const Chain& chain) : file_(std::move(file)), before_(chain.time()) {}
+
+  /// Before an event is handed in.
+  void Check(Utime time) {
+    if (before_ && time < *before_) {
+      spdlog::warn("{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(), ToSeconds(*before_ - time));
+    }
+    before_.reset();
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::optional<Utime> before_;
+};
+
+void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary, const std::function<void(std::int64_t)>& show) {
+  // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
+  constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
   vlp16::CaptureReader reader(file);
+  Order order(file, chain);
+  std::size_t num_bytes = 0;
   while (const auto datagram = reader.Next()) {
+    order.Check(datagram->host_time);
     ++summary.num_events;
     chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
+    num_bytes += kFrameBytes + datagram->payload.size();
+    show(static_cast<std::int64_t>(num_bytes));
   }
   if (reader.num_damaged() > 0) spdlog::warn("{}: {}", file.string(), reader.damage());
   for (const auto& counter : reader.counters()) {
@@ -44,21 +73,39 @@ void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& 
   }
 }
 
-void FeedLog(const std::filesystem::path& file, Chain& chain, InputSummary& summary) {
+void FeedLog(const std::filesystem::path& file, const Plan& plan, Chain& chain, InputSummary& summary,
+             const std::function<void(std::int64_t)>& show) {
   bus::LogReader reader(file);
+  Order order(file, chain);
   std::int64_t num_oversize = 0;
-  while (const auto event = reader.Next()) {
-    const auto* channel = bus::FindChannel(event->channel);
-    if (channel == nullptr || !channel->is_raw) continue;
-    if (event->bytes.size() > bus::kMaxMessageBytes) {
+  while (const auto event = reader.NextView([&plan](std::string_view channel) { return plan.Reads(channel); })) {
+    show(reader.position_bytes());
+    if (!plan.Reads(event->channel)) {
+      const auto* known = bus::FindChannel(event->channel);
+      Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
+    } else if (event->bytes.size() > bus::kMaxMessageBytes) {
       ++num_oversize;
-      continue;
+    } else {
+      order.Check(event->time);
+      ++summary.num_events;
+      chain.OnLogged(event->time, *bus::FindChannel(event->channel), event->bytes);
     }
-    ++summary.num_events;
-    chain.OnRaw(event->time, *channel, event->bytes);
   }
   Count(summary.refused, "log.damaged", reader.num_damaged());
   Count(summary.refused, "log.oversize_message", num_oversize);
+}
+
+// Reads until all that is looked for was found.
+void Look(const std::filesystem::path& file, const std::set<std::string, std::less<>>& candidates, std::set<std::string, std::less<>>& present,
+          std::optional<run_info_t>& recorded) {
+  const auto is_found = [&] { return std::ranges::all_of(candidates, [&](const auto& channel) { return present.contains(channel); }); };
+  bus::LogReader reader(file);
+  while (!is_found()) {
+    const auto event = reader.NextView([](std::string_view channel) { return channel == bus::kRunInfo.name; });
+    if (!event) return;
+    if (!recorded && event->channel == bus::kRunInfo.name) recorded = bus::Decode<run_info_t>(event->bytes);
+    if (bus::FindChannel(event->channel) != nullptr) present.emplace(event->channel);
+  }
 }
 
 }  // namespace
@@ -74,37 +121,62 @@ InputKind KindOf(const std::filesystem::path& file) {
   return start == kLogSyncWord || bus::LogReader(file).Next() ? InputKind::kLog : InputKind::kCapture;
 }
 
-RawInput Inspect(const std::vector<std::filesystem::path>& files) {
-  int num_logs = 0;
-  bool has_packets = false;
-  bool has_nav_raw = false;
+Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request) {
+  const auto candidates = Candidates(request);
+  Inspection inspection;
+  std::set<std::string, std::less<>> present;
+  std::size_t num_logs = 0;
   for (const auto& file : files) {
-    if (KindOf(file) == InputKind::kCapture) continue;
-    ++num_logs;
-    bus::LogReader reader(file);
-    while (const auto event = reader.Next()) {
-      has_packets = has_packets || event->channel == bus::kLidarPackets.name;
-      has_nav_raw = has_nav_raw || event->channel == bus::kNavRaw.name;
-    }
+    const bool is_log = KindOf(file) == InputKind::kLog;
+    inspection.num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
+    if (is_log) Look(file, candidates, present, inspection.recorded);
+    num_logs += is_log ? 1 : 0;
   }
-  if (num_logs == 0) return {};
-  if (num_logs != static_cast<int>(files.size())) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
-  if (!has_packets && !has_nav_raw)
-    throw std::runtime_error(files.front().string() + ": holds neither LIDAR_PACKETS nor NAV_RAW, nothing can be computed again");
-  // Without NAV_RAW the sentences of the lidar's position packets are all the navigation there is.
-  return {vlp16::Input::kLog, has_nav_raw ? navigator::Input::kLog : navigator::Input::kOutside};
+  if (num_logs != 0 && num_logs != files.size()) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
+  try {
+    inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(files.front().string() + ": " + error.what());
+  }
+  return inspection;
 }
 
-InputSummary Feed(const std::vector<std::filesystem::path>& files, Chain& chain) {
+InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& plan, Chain& chain, Progress& progress) {
   InputSummary summary;
+  std::int64_t num_bytes = 0;
   for (const auto& file : files) {
+    const auto show = [&](std::int64_t num_bytes_of_file) { progress.Update(num_bytes + num_bytes_of_file, chain.span()); };
     if (KindOf(file) == InputKind::kLog) {
-      FeedLog(file, chain, summary);
+      FeedLog(file, plan, chain, summary, show);
     } else {
-      FeedCapture(file, chain, summary);
+      FeedCapture(file, chain, summary, show);
     }
+    num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
   }
   return summary;
+}
+
+std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b) {
+  const auto texts = [](const run_info_t& info) {
+    std::map<std::string, std::string> text_of_file;
+    for (std::size_t i = 0; i < info.file_name.size(); ++i) {
+      if (std::filesystem::path(info.file_name[i]).extension() == ".txtpb") text_of_file[info.file_name[i]] = info.file_text[i];
+    }
+    return text_of_file;
+  };
+  const auto texts_a = texts(a);
+  const auto texts_b = texts(b);
+  std::set<std::string> names;
+  for (const auto* side : {&texts_a, &texts_b}) {
+    for (const auto& entry : *side) names.insert(entry.first);
+  }
+  std::vector<std::string> differing;
+  for (const auto& name : names) {
+    const auto in_a = texts_a.find(name);
+    const auto in_b = texts_b.find(name);
+    if (in_a == texts_a.end() || in_b == texts_b.end() || in_a->second != in_b->second) differing.push_back(name);
+  }
+  return differing;
 }
 
 }  // namespace lookout::replay

@@ -2,9 +2,15 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "lookout/run_info_t.hpp"
 #include "tools/replay/chain.hpp"
+#include "tools/replay/plan.hpp"
+#include "tools/replay/progress.hpp"
 
 namespace lookout::replay {
 
@@ -14,18 +20,28 @@ enum class InputKind { kCapture, kLog };
 /// @throws std::runtime_error when the file cannot be read
 InputKind KindOf(const std::filesystem::path& file);
 
-/// Where the chain has to begin for these files: what raw channels the logs hold.
-///
-/// @throws std::runtime_error when captures and logs are mixed, or logs hold no raw channel
-RawInput Inspect(const std::vector<std::filesystem::path>& files);
+/// What is to be done with these files.
+struct Inspection {
+  Plan plan;
+  std::optional<run_info_t> recorded;  // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
+  std::int64_t num_bytes = 0;          // size of all files
+};
+
+/// Reads as far as is needed to know what to run. @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the
+/// logs do not hold what is needed
+Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request);
 
 /// What was read and what was left out.
 struct InputSummary {
-  std::int64_t num_events = 0;                                // datagrams or raw messages
+  std::int64_t num_events = 0;                                // datagrams or messages that were handed in
+  std::vector<std::pair<std::string, std::int64_t>> left;     // messages of logs that were not read, by channel: computed again, or of no use here
   std::vector<std::pair<std::string, std::int64_t>> refused;  // reason, count; counts above 0
 };
 
 /// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read
-InputSummary Feed(const std::vector<std::filesystem::path>& files, Chain& chain);
+InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& plan, Chain& chain, Progress& progress);
+
+/// Config files (*.txtpb) whose text in force is not the same in both, by name.
+std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b);
 
 }  // namespace lookout::replay

@@ -1,8 +1,11 @@
 // lookout-replay: a capture or an lcm-log in, an lcm-log with everything computed again out.
 #include <fmt/format.h>
+#include <malloc.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -19,6 +22,8 @@
 #include "common/runtime/run_info.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
+#include "tools/replay/plan.hpp"
+#include "tools/replay/progress.hpp"
 
 namespace {
 
@@ -30,6 +35,8 @@ struct Options {
   bool check_only = false;
   std::vector<fs::path> inputs;
   fs::path output;
+  lookout::replay::Request request;
+  bool shows_progress = false;
 };
 
 Options ParseOptions(int argc, char** argv) {
@@ -37,11 +44,17 @@ Options ParseOptions(int argc, char** argv) {
   std::string config_folder;
   std::vector<std::string> inputs;
   std::string output;
-  CLI::App app("Runs a capture or an lcm-log through all services in one process and writes an lcm-log. Same input, same bytes.", "lookout-replay");
+  CLI::App app("Runs captures or lcm-logs through all services, or some, in one process and writes an lcm-log. Same input, same bytes.",
+               "lookout-replay");
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
   app.add_option("--in", inputs, "pcap, pcapng or lcm-log; several are read in their order")->check(CLI::ExistingFile);
   app.add_option("--out", output, "lcm-log to write; an older one is replaced");
+  app.add_option("--from", options.request.from, "channel of the log at which to begin; what gives it, and is before that, does not run (several)")
+      ->check(CLI::IsMember(lookout::replay::FromNames()));
+  app.add_option("--only", options.request.only, "service to run, and no other; what it takes is read from the log (several)")
+      ->check(CLI::IsMember(lookout::replay::ServiceNames()));
+  app.add_flag("--progress", options.shows_progress, "show progress also where standard error is no terminal");
   app.set_version_flag("--version", "lookout-replay " + lookout::runtime::Version());
   try {
     app.parse(argc, argv);
@@ -89,34 +102,69 @@ std::int64_t CountOf(Chain& chain, const lookout::bus::Channel& channel) {
   return entry == chain.digests().end() ? 0 : entry->second.count;
 }
 
+// RUN_INFO of the result: the config in force, and what makes it another result than the whole chain gave with the config of the input.
+lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Inspection& inspection) {
+  auto run_info = lookout::runtime::MakeRunInfo("replay", options.config_folder);
+  std::string text = IsWhole(inspection.plan) ? "" : InWords(inspection.plan);
+  if (inspection.recorded) {
+    const auto differing = lookout::replay::DifferingConfigFiles(*inspection.recorded, run_info);
+    if (!differing.empty()) {
+      const auto names = fmt::format("{}", fmt::join(differing, ", "));
+      spdlog::info("what if: the config is not that of the input, it differs in {}", names);
+      text += "config differs from that of the input: " + names + "\n";
+    }
+  }
+  if (text.empty()) return run_info;
+  run_info.file_name.emplace_back("lookout-replay");
+  run_info.file_text.push_back(text);
+  run_info.num_files = static_cast<std::int32_t>(run_info.file_name.size());
+  return run_info;
+}
+
+void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& chain, std::int64_t num_turns) {
+  for (const auto& [channel, count] : summary.left) spdlog::info("not read: {} {}", channel, count);
+  for (const auto& [reason, count] : summary.refused) spdlog::warn("{}: {}", reason, count);
+  for (const auto& [name, count] : chain.Counters()) spdlog::info("{}: {}", name, count);
+  for (const auto& [channel, count] : chain.Gaps()) {
+    spdlog::warn("{}: {} messages are missing in the input; what follows a gap need not equal the live run", channel, count);
+  }
+  for (const auto& stage : chain.StageTimes()) {
+    spdlog::info("{}: {:.3f} s{}", stage.service, stage.seconds,
+                 num_turns > 0 ? fmt::format(", {:.3f} ms a turn", 1e3 * stage.seconds / static_cast<double>(num_turns)) : "");
+  }
+}
+
 void Replay(const Options& options) {
   std::error_code error;
   for (const auto& input : options.inputs) {
     if (fs::equivalent(input, options.output, error)) throw std::runtime_error(options.output.string() + ": is an input");
   }
-  const auto raw_input = lookout::replay::Inspect(options.inputs);
-  std::optional<Output> output;
-  Chain chain(options.config_folder, raw_input,
-              [&output](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) { output->Write(time, channel, bytes); });
-  output.emplace(options, lookout::runtime::MakeRunInfo("replay", options.config_folder));
-
   const auto start = std::chrono::steady_clock::now();
-  const auto summary = lookout::replay::Feed(options.inputs, chain);
-  chain.Finish();
-  output->Flush();
-  const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start);
+  const auto inspection = lookout::replay::Inspect(options.inputs, options.request);
+  std::optional<Output> output;
+  Chain chain(options.config_folder, inspection.plan,
+              [&output](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) { output->Write(time, channel, bytes); });
+  output.emplace(options, RunInfoOf(options, inspection));
 
-  for (const auto& [reason, count] : summary.refused) spdlog::warn("{}: {}", reason, count);
-  for (const auto& [name, count] : chain.Counters()) spdlog::info("{}: {}", name, count);
-  const auto num_turns = CountOf(chain, lookout::bus::kLidarClock);
-  for (const auto& stage : chain.StageTimes()) {
-    spdlog::info("{}: {:.3f} s{}", stage.service, stage.seconds,
-                 num_turns > 0 ? fmt::format(", {:.3f} ms a turn", 1e3 * stage.seconds / static_cast<double>(num_turns)) : "");
+  lookout::replay::InputSummary summary;
+  {
+    const bool is_shown = options.shows_progress || isatty(STDERR_FILENO) != 0;
+    lookout::replay::Progress progress(is_shown ? stderr : nullptr, inspection.num_bytes);
+    summary = lookout::replay::Feed(options.inputs, inspection.plan, chain, progress);
+    chain.Finish();
+    output->Flush();
   }
-  spdlog::info("{} events, {} turns in {:.3f} s", summary.num_events, num_turns, elapsed_s);
+  const double digest_s = lookout::ToSeconds(chain.digest_time());
+  const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start) - digest_s;
+
+  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a turn; else turns are told by what they give
+  const auto num_turns = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
+  PrintSummary(summary, chain, num_turns);
+  spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
+               lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
   PrintDigests(chain);
 
-  const bool is_capture = raw_input.lidar == lookout::vlp16::Input::kOutside;
+  const bool is_capture = inspection.plan.lidar == lookout::vlp16::Input::kOutside;
   if (is_capture && CountOf(chain, lookout::bus::kLidarPackets) == 0 && chain.num_nmea_datagrams() == 0) {
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
   }
@@ -125,9 +173,20 @@ void Replay(const Options& options) {
   }
 }
 
+// Memory that is given back to the system is asked for again at the next turn: page faults took a tenth of the time.
+void KeepMemory() {
+  constexpr int kKeptBytes = 256 * 1024 * 1024;
+  constexpr int kHeapBytes = 32 * 1024 * 1024;  // the greatest that mallopt takes; no message is so large
+  constexpr int kStepBytes = 4 * 1024 * 1024;
+  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+  mallopt(M_MMAP_THRESHOLD, kHeapBytes);
+  mallopt(M_TOP_PAD, kStepBytes);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  KeepMemory();
   const Options options = ParseOptions(argc, argv);
   // Tables go to stdout, all else to stderr.
   spdlog::set_default_logger(spdlog::stderr_color_st("replay"));
@@ -137,6 +196,10 @@ int main(int argc, char** argv) {
       fmt::print("{}", lookout::runtime::EffectiveConfig(options.config_folder));
       return;
     }
-    Replay(options);
+    try {
+      Replay(options);
+    } catch (const lookout::replay::RequestError& error) {
+      throw lookout::config::ConfigError({error.what()});  // a wrong command line ends as a wrong config does
+    }
   });
 }

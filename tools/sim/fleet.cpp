@@ -29,7 +29,7 @@ std::vector<Vector2d> HullOutline(double length_m, double width_m) {
 }
 
 // Decks, cabins and gear were measured on boats of the usual size: plans stretch with the hull, heights do not, for people do not either.
-struct Stretch {
+struct HullScale {
   double x;
   double y;
 
@@ -42,7 +42,7 @@ struct Stretch {
 };
 
 void MakeMotorBoat(const Size& size, SceneObject& boat) {
-  const Stretch stretch{size.length_m / 6.0, size.width_m / 2.2};
+  const HullScale stretch{size.length_m / 6.0, size.width_m / 2.2};
   boat.outline_m = HullOutline(size.length_m, size.width_m);
   boat.parts = {{Prism{boat.outline_m, -0.3, 0.8}, Material{size.reflectance}},
                 {stretch.Box(-0.8, 0.6, -0.6, 0.6, 0.8, 1.5), Material{kGelcoat}},  // console
@@ -52,7 +52,7 @@ void MakeMotorBoat(const Size& size, SceneObject& boat) {
 }
 
 void MakeCabinBoat(const Size& size, SceneObject& boat) {
-  const Stretch stretch{size.length_m / 9.0, size.width_m / 3.0};
+  const HullScale stretch{size.length_m / 9.0, size.width_m / 3.0};
   boat.outline_m = HullOutline(size.length_m, size.width_m);
   boat.parts = {{Prism{boat.outline_m, -0.5, 1.2}, Material{size.reflectance}},
                 {stretch.Box(-2.0, 2.0, -1.1, 1.1, 1.2, 2.1), Material{kGelcoat}},  // cabin
@@ -62,7 +62,7 @@ void MakeCabinBoat(const Size& size, SceneObject& boat) {
 }
 
 void MakeSailingBoat(const Size& size, SceneObject& boat) {
-  const Stretch stretch{size.length_m / 7.0, size.width_m / 2.4};
+  const HullScale stretch{size.length_m / 7.0, size.width_m / 2.4};
   boat.outline_m = HullOutline(size.length_m, size.width_m);
   boat.parts = {{Prism{boat.outline_m, -0.3, 0.9}, Material{size.reflectance}},
                 {stretch.Box(-0.6, 1.4, -0.7, 0.7, 0.9, 1.35), Material{kGelcoat}},  // cabin

@@ -43,7 +43,7 @@ constexpr double kRateSdDegpmin = 6.0;       // 0.1 deg/s: the rate gyro of a co
 constexpr double kGeoidSeparationM = -28.0;  // EGM96 in New Hampshire, rounded
 
 // For derivatives of the motion.
-constexpr double kStepS = 0.01;
+constexpr double kDifferenceStepS = 0.01;
 
 // A receiver with RTK, with a differential correction, alone.
 constexpr int kQualityRtk = 4;
@@ -122,7 +122,7 @@ GnssMeasurement Navigation::MeasureGnss(Utime time, microseconds since_last) {
     return state.T_map_vessel() * boat_.p_vessel_antenna_m;
   };
   Eigen::Vector3d position_m = antenna_m(0.0);
-  Eigen::Vector3d velocity_mps = (antenna_m(kStepS) - antenna_m(-kStepS)) / (2.0 * kStepS);
+  Eigen::Vector3d velocity_mps = (antenna_m(kDifferenceStepS) - antenna_m(-kDifferenceStepS)) / (2.0 * kDifferenceStepS);
   for (std::size_t axis = 0; axis < gnss_error_m_.size(); ++axis) {
     const auto index = static_cast<Eigen::Index>(axis);
     position_m[index] += gnss_error_m_[axis].Next(ToSeconds(since_last), gnss_random_);
@@ -148,7 +148,7 @@ Navigation::Heading Navigation::MeasureHeading(Utime time) {
   if (plan_.At(TimedFaultKind::kFrozenHeading, time) != nullptr && frozen_heading_) return *frozen_heading_;
   const double time_s = ToSeconds(time - start_);
   const auto heading_rad = [&](double at_s) { return StateAt(own_motion_, boat_.reference_point_above_water_m, at_s).heading_rad; };
-  const double rate_radps = WrapToPi(heading_rad(time_s + kStepS) - heading_rad(time_s - kStepS)) / (2.0 * kStepS);
+  const double rate_radps = WrapToPi(heading_rad(time_s + kDifferenceStepS) - heading_rad(time_s - kDifferenceStepS)) / (2.0 * kDifferenceStepS);
   Heading heading;
   heading.heading_deg = RadToDeg(WrapTo2Pi(heading_rad(time_s) + DegToRad(error_deg - params_.heading_offset_deg)));
   heading.rate_degpmin = 60.0 * RadToDeg(rate_radps) + rate_error_degpmin;

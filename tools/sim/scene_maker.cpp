@@ -42,7 +42,7 @@ std::size_t BytesInTruth(const SceneObject& object) {
   return kBytesOfNumbers + 2 * kBytesAroundText + object.name.size() + object.kind.size() + 16 * object.outline_m.size();
 }
 
-Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vector2d(std::sin(bearing_rad), std::cos(bearing_rad)); }
+Vector2d PlaceAtBearing(double bearing_rad, double radius_m) { return radius_m * Vector2d(std::sin(bearing_rad), std::cos(bearing_rad)); }
 
 double Draw(const Numbers& numbers, double usual, Random& random) {
   if (numbers.empty()) return usual;
@@ -174,7 +174,7 @@ class Drawing {
     if (file.has_on_shore_bearing_deg()) {
       // A metre into the land, so that no gap is seen between them.
       const double bearing_rad = DegToRad(file.on_shore_bearing_deg());
-      return {shore_->middle_m + AtBearing(bearing_rad, shore_->waterline_m(bearing_rad) + 1.0), bearing_rad + kPi};
+      return {shore_->middle_m + PlaceAtBearing(bearing_rad, shore_->waterline_m(bearing_rad) + 1.0), bearing_rad + kPi};
     }
     const double east_m = Draw(file.east_m(), 0.0, random);
     const double north_m = Draw(file.north_m(), 0.0, random);
@@ -189,7 +189,7 @@ class Drawing {
       const double bearing_rad = DegToRad(Draw(path.circle().from_bearing_deg(), 0.0, random));
       const double side = path.circle().is_clockwise() ? 1.0 : -1.0;
       const double radius_m = path.circle().radius_m();
-      return {{place.position_map_m + AtBearing(bearing_rad, radius_m), WrapTo2Pi(bearing_rad + side * kPi / 2.0)},
+      return {{place.position_map_m + PlaceAtBearing(bearing_rad, radius_m), WrapTo2Pi(bearing_rad + side * kPi / 2.0)},
               speed_mps,
               side * speed_mps / radius_m};
     }
@@ -210,7 +210,7 @@ class Drawing {
 
   // Moves an object along the row until the asked-for gap lies between it and the one before.
   void PutInRow(const File::Object& file, const SceneObject& before, Random& random, SceneObject& object) {
-    const Vector2d along = AtBearing(DegToRad(file.row().bearing_deg()), 1.0);
+    const Vector2d along = PlaceAtBearing(DegToRad(file.row().bearing_deg()), 1.0);
     const auto reach_m = [&along](const SceneObject& of, double sign) {
       double greatest_m = -1e9;
       for (const auto& p_m : of.outline_m) greatest_m = std::max(greatest_m, sign * along.dot(of.track.start.ToMap(p_m)));

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "services/navigator/core/bounds.hpp"
 #include "services/navigator/core/vectornav.hpp"
 
 namespace lookout::navigator {
@@ -12,15 +13,11 @@ namespace {
 constexpr double kMpsPerKnot = 1852.0 / 3600.0;
 constexpr double kMpsPerKmh = 1.0 / 3.6;
 
-// Bounds of what can be. Receivers on boats: 100 m/s is 194 knots.
-constexpr double kMaxSpeedMps = 100.0;
-constexpr double kMaxHdop = 100.0;       // receivers send 99.99 for "no fix"
-constexpr double kMinHeightM = -1000.0;  // the Dead Sea lies at -430 m
-constexpr double kMaxHeightM = 20000.0;
+// Bounds of what can be.
+constexpr double kMaxHdop = 100.0;              // receivers send 99.99 for "no fix"
 constexpr double kMaxGeoidSeparationM = 150.0;  // EGM2008: -107 m to +86 m
 constexpr double kMaxHeaveM = 50.0;
 constexpr int kMaxSatellites = 99;
-constexpr double kMaxSdM = 1e6;              // receivers without a fix send great deviations
 constexpr double kMaxTurnDegpmin = 36000.0;  // 100 turns a minute
 
 double AngleRad(FieldReader& fields, std::size_t index, double min_deg, double max_deg) { return DegToRad(fields.Number(index, min_deg, max_deg)); }

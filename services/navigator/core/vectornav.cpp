@@ -6,6 +6,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
+#include "services/navigator/core/bounds.hpp"
 
 namespace lookout::navigator {
 
@@ -18,10 +19,6 @@ using std::chrono::microseconds;
 constexpr double kMaxRateRadps = 100.0;
 constexpr double kMaxForceMps2 = 1000.0;
 constexpr double kMaxFieldGauss = 100.0;
-constexpr double kMaxSpeedMps = 100.0;
-constexpr double kMinHeightM = -1000.0;
-constexpr double kMaxHeightM = 20000.0;
-constexpr double kMaxSdM = 1e6;
 constexpr double kMicroteslaPerGauss = 100.0;
 
 constexpr auto kGpsEpoch = std::chrono::sys_days(std::chrono::year(1980) / 1 / 6);

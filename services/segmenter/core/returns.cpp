@@ -55,6 +55,7 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   const bool sees_all_round = filter_.field_of_view.width_rad >= kTwoPi;
   const OwnVessel own_vessel(filter_);
 
+  occupied_.resize(cells_per_column + 1);
   result_.label.assign(scan.num_cells(), 0);
   result_.repeats.clear();
   result_.returns.clear();
@@ -63,34 +64,39 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   for (std::size_t column = 0; column < scan.columns.azimuth_rad.size(); ++column) {
     const std::size_t first_cell = column * cells_per_column;
     const std::uint16_t* range = scan.columns.range.data() + first_cell;
-    if (std::none_of(range, range + cells_per_column, is_return)) continue;
+    // Which cells hold a return is noise to a processor that guesses branches: first they are listed without one.
+    std::size_t num_occupied = 0;
+    for (std::size_t offset = 0; offset < cells_per_column; ++offset) {
+      occupied_[num_occupied] = static_cast<std::uint32_t>(offset);
+      num_occupied += is_return(range[offset]) ? 1 : 0;
+    }
+    if (num_occupied == 0) continue;
     const double azimuth_rad = scan.columns.azimuth_rad[column];
     const auto [sin_azimuth, cos_azimuth] = SinCosOf(azimuth_rad);
-    for (std::size_t ring = 0, offset = 0; ring < rings_.size(); ++ring) {
-      for (std::size_t i = 0; i < num_returns; ++i, ++offset) {
-        if (range[offset] == 0) continue;
-        const RingGeometry& geometry = rings_[ring];
-        const std::size_t cell = first_cell + offset;
-        const double range_m = range[offset] * scan.head.range_unit_m;
-        if (range_m < filter_.min_range_m || range_m > filter_.max_range_m) {
-          result_.label[cell] = ToLabel(Reason::kRange);
-          continue;
-        }
-        if (!sees_all_round && !filter_.field_of_view.Contains(azimuth_rad + geometry.azimuth_offset_rad)) {
-          result_.label[cell] = ToLabel(Reason::kFieldOfView);
-          continue;
-        }
-        const double cos_elevation_cos = geometry.cos_elevation_cos_offset * cos_azimuth - geometry.cos_elevation_sin_offset * sin_azimuth;
-        const double cos_elevation_sin = geometry.cos_elevation_cos_offset * sin_azimuth + geometry.cos_elevation_sin_offset * cos_azimuth;
-        const Point point{static_cast<float>(range_m * cos_elevation_cos), static_cast<float>(-range_m * cos_elevation_sin),
-                          static_cast<float>(range_m * geometry.sin_elevation + geometry.origin_height_m)};
-        if (own_vessel.Contains(point)) {
-          result_.label[cell] = ToLabel(Reason::kOwnVessel);
-          continue;
-        }
-        result_.returns.push_back({point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
-                                   static_cast<std::int32_t>(ring)});
+    for (std::size_t i = 0; i < num_occupied; ++i) {
+      const std::size_t offset = occupied_[i];
+      const std::size_t ring = num_returns == 1 ? offset : offset / num_returns;
+      const RingGeometry& geometry = rings_[ring];
+      const std::size_t cell = first_cell + offset;
+      const double range_m = range[offset] * scan.head.range_unit_m;
+      if (range_m < filter_.min_range_m || range_m > filter_.max_range_m) {
+        result_.label[cell] = ToLabel(Reason::kRange);
+        continue;
       }
+      if (!sees_all_round && !filter_.field_of_view.Contains(azimuth_rad + geometry.azimuth_offset_rad)) {
+        result_.label[cell] = ToLabel(Reason::kFieldOfView);
+        continue;
+      }
+      const double cos_elevation_cos = geometry.cos_elevation_cos_offset * cos_azimuth - geometry.cos_elevation_sin_offset * sin_azimuth;
+      const double cos_elevation_sin = geometry.cos_elevation_cos_offset * sin_azimuth + geometry.cos_elevation_sin_offset * cos_azimuth;
+      const Point point{static_cast<float>(range_m * cos_elevation_cos), static_cast<float>(-range_m * cos_elevation_sin),
+                        static_cast<float>(range_m * geometry.sin_elevation + geometry.origin_height_m)};
+      if (own_vessel.Contains(point)) {
+        result_.label[cell] = ToLabel(Reason::kOwnVessel);
+        continue;
+      }
+      result_.returns.push_back(
+          {point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column), static_cast<std::int32_t>(ring)});
     }
   }
   if (num_returns >= 2) SetRepeatsApart(scan);

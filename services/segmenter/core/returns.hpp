@@ -89,6 +89,7 @@ class ReturnClassifier {
 
   ReturnFilter filter_;
   std::vector<RingGeometry> rings_;
+  std::vector<std::uint32_t> occupied_;  // scratch: cells of a column that hold a return, as offsets from its first; [cells of a column + 1]
   ClassifiedReturns result_;
 };
 

@@ -1,35 +1,45 @@
-// Sets that only grow together.
+// Disjoint sets, for joining what belongs together in any order.
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
 namespace lookout::segmenter {
 
+/// The root of a set is its least member, so that it does not depend on the order of the joins.
 class UnionFind {
  public:
-  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  UnionFind() = default;
+  explicit UnionFind(std::size_t size) { Reset(size); }
 
-  /// The least member of the set of `item`.
-  std::int32_t Find(std::int32_t item) {
-    while (Parent(item) != item) {
-      Parent(item) = Parent(Parent(item));
-      item = Parent(item);
+  void Reset(std::size_t size) {
+    parent_.resize(size);
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+
+  std::int32_t Find(std::int32_t member) {
+    while (parent_[At(member)] != member) {
+      parent_[At(member)] = parent_[At(parent_[At(member)])];
+      member = parent_[At(member)];
     }
-    return item;
+    return member;
   }
 
-  void Unite(std::int32_t a, std::int32_t b) {
-    a = Find(a);
-    b = Find(b);
-    if (a < b) Parent(b) = a;
-    if (b < a) Parent(a) = b;
+  /// @return false when they were of one set already
+  bool Join(std::int32_t one, std::int32_t other) {
+    one = Find(one);
+    other = Find(other);
+    if (one == other) return false;
+    parent_[At(std::max(one, other))] = std::min(one, other);
+    return true;
   }
+
+  std::size_t size() const { return parent_.size(); }
 
  private:
-  std::int32_t& Parent(std::int32_t item) { return parent_[static_cast<std::size_t>(item)]; }
+  static std::size_t At(std::int32_t member) { return static_cast<std::size_t>(member); }
 
   std::vector<std::int32_t> parent_;
 };

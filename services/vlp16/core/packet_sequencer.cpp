@@ -18,7 +18,7 @@ constexpr microseconds kMaxGap = std::chrono::seconds(1);
 // Rate of the head: it may change by so much of the way while packets are missing (real heads: 0.3 %).
 constexpr double kMaxRateError = 0.02;
 // A head that turns slower, per format::kBlockPeriod, is about to stand or to start: its azimuth tells of no loss.
-constexpr double kMinRateCdeg = 1.0;
+constexpr double kStillRateCdeg = 1.0;
 // Datagrams may wait in a network for so long: the host's clock tells of no smaller step.
 constexpr microseconds kHostResolution = std::chrono::milliseconds(20);
 // The rate is known from one packet to some percent at first.
@@ -164,7 +164,7 @@ void PacketSequencer::MeasureRate(const DataPacket& packet, const PlacedPacket& 
 }
 
 // Of a packet; 0 when the head stands, or its rate is not known.
-double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kMinRateCdeg ? 0.0 : rate_cdeg_ * last_->num_steps; }
+double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kStillRateCdeg ? 0.0 : rate_cdeg_ * last_->num_steps; }
 
 // To half of a packet; false when the rate is not known.
 bool PacketSequencer::IsAt(const DataPacket& packet, double azimuth_cdeg) const {

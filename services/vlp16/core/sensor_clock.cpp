@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr microseconds kHour(format::kMicrosecondsPerHour);
+constexpr microseconds kClockHour(format::kMicrosecondsPerHour);
 // Position packets come about every 7 ms and repeat the RMC that comes every second; the sensor tells of a lost PPS within a second or two.
 constexpr microseconds kMaxAge = std::chrono::seconds(3);
 // An RMC belongs to the PPS before it and comes up to a second behind; one that is late by a second more is still told by its stamp.
@@ -28,9 +28,9 @@ constexpr std::chrono::days kGpsWeekRollover(1024 * 7);
 
 // `value` plus or minus whole hours, nearest to `target`.
 microseconds InNearestHour(microseconds value, microseconds target) {
-  microseconds rest = (value - target + kHour / 2) % kHour;
-  if (rest < microseconds(0)) rest += kHour;
-  return target + rest - kHour / 2;
+  microseconds rest = (value - target + kClockHour / 2) % kClockHour;
+  if (rest < microseconds(0)) rest += kClockHour;
+  return target + rest - kClockHour / 2;
 }
 
 // UTC of a sentence, on the day that is nearest to `about` where it has no date, and put right against the host where its date is off by whole

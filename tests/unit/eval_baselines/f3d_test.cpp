@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-F3dParams WithoutGround() {
+F3dParams F3dWithoutGround() {
   F3dParams params;
   params.ground.reset();
   return params;
@@ -20,7 +20,7 @@ Labelling Segment(const segmenter::Scan& scan, const F3dParams& params) { return
 
 TEST(F3d, OfAnEmptyTurnIsEmpty) {
   const auto scan = Turn();
-  for (const auto& params : {WithoutGround(), F3dParams{}}) {
+  for (const auto& params : {F3dWithoutGround(), F3dParams{}}) {
     EXPECT_EQ(Segment(scan, params).label, std::vector<std::int32_t>(scan.num_cells(), 0));
   }
 }
@@ -28,7 +28,7 @@ TEST(F3d, OfAnEmptyTurnIsEmpty) {
 TEST(F3d, ASingleReturnIsASegmentUnlessGroundIsSought) {
   auto scan = Turn();
   SetReturn(scan, 17, 2, 10.0);
-  EXPECT_EQ(LabelAt(scan, Segment(scan, WithoutGround()), 17, 2), 1);
+  EXPECT_EQ(LabelAt(scan, Segment(scan, F3dWithoutGround()), 17, 2), 1);
   // The lowest point is the ground's height, so it is ground: too few for a plane, but a seed.
   EXPECT_EQ(LabelAt(scan, Segment(scan, F3dParams{}), 17, 2), 0);
 }
@@ -39,7 +39,7 @@ TEST(F3d, RunsEndWhereSuccessiveReturnsAreFarApart) {
   SetPatch(scan, 10, 12, 1, 1, 10.0);
   SetPatch(scan, 14, 15, 1, 1, 10.0);
   SetPatch(scan, 18, 19, 1, 1, 10.0);
-  const auto labelling = Segment(scan, WithoutGround());
+  const auto labelling = Segment(scan, F3dWithoutGround());
   EXPECT_EQ(LabelAt(scan, labelling, 10, 1), 1);
   EXPECT_EQ(LabelAt(scan, labelling, 15, 1), 1);
   EXPECT_EQ(LabelAt(scan, labelling, 18, 1), 2);
@@ -55,7 +55,7 @@ TEST(F3d, MergesWithTheRingAboveAndWithNoneFurtherUp) {
   SetReturn(scan, 50, 2, 30.0);
   SetReturn(scan, 90, 1, 10.0);
   SetReturn(scan, 90, 3, 10.0);
-  const auto labelling = Segment(scan, WithoutGround());
+  const auto labelling = Segment(scan, F3dWithoutGround());
   EXPECT_EQ(LabelAt(scan, labelling, 10, 1), LabelAt(scan, labelling, 10, 2));
   EXPECT_NE(LabelAt(scan, labelling, 50, 1), LabelAt(scan, labelling, 50, 2));
   EXPECT_NE(LabelAt(scan, labelling, 90, 1), LabelAt(scan, labelling, 90, 3));
@@ -67,15 +67,15 @@ TEST(F3d, ARunThatTouchesTwoLabelsUnitesThem) {
   auto scan = Turn();
   SetPatch(scan, 10, 12, 2, 2, 10.0);
   SetPatch(scan, 17, 19, 2, 2, 10.0);
-  EXPECT_EQ(Segment(scan, WithoutGround()).is_sure.size(), 2U);
+  EXPECT_EQ(Segment(scan, F3dWithoutGround()).is_sure.size(), 2U);
   SetPatch(scan, 10, 19, 1, 1, 10.0);
-  EXPECT_EQ(Segment(scan, WithoutGround()).is_sure.size(), 1U);
+  EXPECT_EQ(Segment(scan, F3dWithoutGround()).is_sure.size(), 1U);
 }
 
 TEST(F3d, HasNoSeamAtZero) {
   auto scan = Turn();
   SetPatch(scan, -3, 3, 1, 1, 10.0);
-  EXPECT_EQ(Segment(scan, WithoutGround()).is_sure.size(), 1U);
+  EXPECT_EQ(Segment(scan, F3dWithoutGround()).is_sure.size(), 1U);
 }
 
 TEST(F3d, ARunGoesOnThroughEitherReturnOfADualShot) {
@@ -83,7 +83,7 @@ TEST(F3d, ARunGoesOnThroughEitherReturnOfADualShot) {
   SetPatch(scan, 10, 14, 1, 1, 10.0, 0);
   SetReturn(scan, 12, 1, 30.0, 0);
   SetReturn(scan, 12, 1, 10.0, 1);
-  const auto labelling = Segment(scan, WithoutGround());
+  const auto labelling = Segment(scan, F3dWithoutGround());
   EXPECT_EQ(labelling.is_sure.size(), 2U);
   EXPECT_EQ(LabelAt(scan, labelling, 10, 1, 0), LabelAt(scan, labelling, 14, 1, 0));
   EXPECT_EQ(LabelAt(scan, labelling, 12, 1, 1), LabelAt(scan, labelling, 10, 1, 0));

@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-std::string FaultOf(const std::string& bytes) {
+std::string PcdFaultOf(const std::string& bytes) {
   try {
     ParsePcd(bytes, "a.pcd");
   } catch (const PointFileError& error) {
@@ -96,41 +96,41 @@ TEST(Pcd, ReadsAFile) {
 }
 
 TEST(Pcd, SaysInWhichLineTheHeaderIsBroken) {
-  EXPECT_EQ(FaultOf(""), "a.pcd:1: the file ends before the line DATA");
-  EXPECT_EQ(FaultOf("FIELDS x\nBREADTH 7\n"), "a.pcd:2: no line of a PCD header: BREADTH");
-  EXPECT_EQ(FaultOf("FIELDS x\nFIELDS y\n"), "a.pcd:2: FIELDS stands in line 1 already");
-  EXPECT_EQ(FaultOf("DATA ascii\n"), "a.pcd:1: the header has no FIELDS");
-  EXPECT_EQ(FaultOf("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nDATA ascii\n"), "a.pcd:2: 2 values where 3 belong");
-  EXPECT_EQ(FaultOf("FIELDS x y z\nSIZE 4 4 2\nTYPE F F F\nDATA ascii\n"), "a.pcd:2: there is no number of type F with 2 bytes");
-  EXPECT_EQ(FaultOf("FIELDS x y z\nSIZE 4 4 4\nTYPE F F Q\nDATA ascii\n"), "a.pcd:3: a type is F, I or U, not Q");
-  EXPECT_EQ(FaultOf("FIELDS x\nSIZE 4\nTYPE F\nCOUNT 0\nDATA ascii\n"), "a.pcd:1: a point holds nothing");
-  EXPECT_EQ(FaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 3\nPOINTS 5\nDATA ascii\n"), "a.pcd:6: POINTS is not WIDTH times HEIGHT, 6");
-  EXPECT_EQ(FaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH -2\nHEIGHT 3\nDATA ascii\n"), "a.pcd:4: no whole number from 0 to 2097152: -2");
-  EXPECT_EQ(FaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2097152\nHEIGHT 2\nDATA ascii\n"), "a.pcd:4: 4194304 points are no turn");
-  EXPECT_EQ(FaultOf("FIELDS x\nSIZE 4\nTYPE F\nVIEWPOINT 1 0 0 1 0 0 0\nWIDTH 0\nHEIGHT 0\nDATA ascii\n"),
+  EXPECT_EQ(PcdFaultOf(""), "a.pcd:1: the file ends before the line DATA");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nBREADTH 7\n"), "a.pcd:2: no line of a PCD header: BREADTH");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nFIELDS y\n"), "a.pcd:2: FIELDS stands in line 1 already");
+  EXPECT_EQ(PcdFaultOf("DATA ascii\n"), "a.pcd:1: the header has no FIELDS");
+  EXPECT_EQ(PcdFaultOf("FIELDS x y z\nSIZE 4 4\nTYPE F F F\nDATA ascii\n"), "a.pcd:2: 2 values where 3 belong");
+  EXPECT_EQ(PcdFaultOf("FIELDS x y z\nSIZE 4 4 2\nTYPE F F F\nDATA ascii\n"), "a.pcd:2: there is no number of type F with 2 bytes");
+  EXPECT_EQ(PcdFaultOf("FIELDS x y z\nSIZE 4 4 4\nTYPE F F Q\nDATA ascii\n"), "a.pcd:3: a type is F, I or U, not Q");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nCOUNT 0\nDATA ascii\n"), "a.pcd:1: a point holds nothing");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 3\nPOINTS 5\nDATA ascii\n"), "a.pcd:6: POINTS is not WIDTH times HEIGHT, 6");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH -2\nHEIGHT 3\nDATA ascii\n"), "a.pcd:4: no whole number from 0 to 2097152: -2");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2097152\nHEIGHT 2\nDATA ascii\n"), "a.pcd:4: 4194304 points are no turn");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nVIEWPOINT 1 0 0 1 0 0 0\nWIDTH 0\nHEIGHT 0\nDATA ascii\n"),
             "a.pcd:4: the sensor must be at the origin and upright (0 0 0 1 0 0 0): bring the points into its frame");
-  EXPECT_NE(FaultOf(Xyz(0, "binary_compressed")).find("a.pcd:10: DATA is ascii or binary here"), std::string::npos);
-  EXPECT_EQ(FaultOf(PcdHeaderText(0, "x y y z", "4 4 4 4", "F F F F", "ascii")), "a.pcd: the field y must be one number, and stand once");
-  EXPECT_EQ(FaultOf(PcdHeaderText(0, "x z", "4 4", "F F", "ascii")), "a.pcd: there is no field y");
+  EXPECT_NE(PcdFaultOf(Xyz(0, "binary_compressed")).find("a.pcd:10: DATA is ascii or binary here"), std::string::npos);
+  EXPECT_EQ(PcdFaultOf(PcdHeaderText(0, "x y y z", "4 4 4 4", "F F F F", "ascii")), "a.pcd: the field y must be one number, and stand once");
+  EXPECT_EQ(PcdFaultOf(PcdHeaderText(0, "x z", "4 4", "F F", "ascii")), "a.pcd: there is no field y");
 }
 
 TEST(Pcd, AHeaderThatPromisesMoreThanTheFileHoldsIsRefusedBeforeMemoryIsTaken) {
-  EXPECT_EQ(FaultOf(Xyz(2000000, "ascii") + "1 2 3\n"), "a.pcd:10: 2000000 points take at least 12000000 bytes; 6 follow");
-  EXPECT_EQ(FaultOf(Xyz(2, "binary") + std::string(23, 'a')), "a.pcd:10: 2 points take 24 bytes; 23 follow");
-  EXPECT_EQ(FaultOf(Xyz(2, "binary") + std::string(25, 'a')), "a.pcd:10: 2 points take 24 bytes; 25 follow");
+  EXPECT_EQ(PcdFaultOf(Xyz(2000000, "ascii") + "1 2 3\n"), "a.pcd:10: 2000000 points take at least 12000000 bytes; 6 follow");
+  EXPECT_EQ(PcdFaultOf(Xyz(2, "binary") + std::string(23, 'a')), "a.pcd:10: 2 points take 24 bytes; 23 follow");
+  EXPECT_EQ(PcdFaultOf(Xyz(2, "binary") + std::string(25, 'a')), "a.pcd:10: 2 points take 24 bytes; 25 follow");
 }
 
 TEST(Pcd, SaysWhereAPointIsBroken) {
-  EXPECT_EQ(FaultOf(Xyz(2, "ascii") + "1 2 3\n4 5\n6 7 8 \n"), "a.pcd:12: 2 numbers where 3 belong");
-  EXPECT_EQ(FaultOf(Xyz(1, "ascii") + "1 2 3x\n"), "a.pcd:11: not a number: 3x");
-  EXPECT_EQ(FaultOf(Xyz(1, "ascii") + "1 2 3\n4 5 6\n"), "a.pcd:12: more points than the header says, 1");
-  EXPECT_EQ(FaultOf(Xyz(2, "ascii") + "100000 200000 3\n"), "a.pcd: 1 points, where the header says 2");
-  EXPECT_EQ(FaultOf(PcdHeaderText(1, "x y z label", "4 4 4 4", "F F F F", "ascii") + "1 2 3 1.5\n"),
+  EXPECT_EQ(PcdFaultOf(Xyz(2, "ascii") + "1 2 3\n4 5\n6 7 8 \n"), "a.pcd:12: 2 numbers where 3 belong");
+  EXPECT_EQ(PcdFaultOf(Xyz(1, "ascii") + "1 2 3x\n"), "a.pcd:11: not a number: 3x");
+  EXPECT_EQ(PcdFaultOf(Xyz(1, "ascii") + "1 2 3\n4 5 6\n"), "a.pcd:12: more points than the header says, 1");
+  EXPECT_EQ(PcdFaultOf(Xyz(2, "ascii") + "100000 200000 3\n"), "a.pcd: 1 points, where the header says 2");
+  EXPECT_EQ(PcdFaultOf(PcdHeaderText(1, "x y z label", "4 4 4 4", "F F F F", "ascii") + "1 2 3 1.5\n"),
             "a.pcd:11: a label is a whole number of at most 53 bits");
   std::string binary = PcdHeaderText(1, "x y z label", "4 4 4 4", "F F F F", "binary");
   const auto offset = binary.size();
   for (const float value : {1.0F, 2.0F, 3.0F, 0.5F}) Append(binary, value);
-  EXPECT_EQ(FaultOf(binary), "a.pcd: byte " + std::to_string(offset) + ": a label is a whole number of at most 53 bits");
+  EXPECT_EQ(PcdFaultOf(binary), "a.pcd: byte " + std::to_string(offset) + ": a label is a whole number of at most 53 bits");
 }
 
 }  // namespace

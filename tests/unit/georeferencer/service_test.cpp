@@ -110,7 +110,7 @@ TEST_F(GeoreferencerService, TellsThatSegmentsDoNotComeAndIsFineWhenTheyDo) {
 
 TEST_F(GeoreferencerService, TellsThatPoseIsNotPlaced) {
   SendPoses(0, 100'000, pose_t::STATUS_NO_HEADING);
-  EXPECT_EQ(service_.Report().reason, "POSE does not know position and heading: obstacles in the vessel frame only");
+  EXPECT_EQ(service_.Report().reason, "no heading: obstacles in the vessel frame only");
   SendPoses(120'000, 120'000);
   EXPECT_EQ(service_.Report().state, HealthState::kOk);
 }

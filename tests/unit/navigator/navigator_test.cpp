@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-NavigatorParams TestParams() {
+NavigatorParams NavigatorTestParams() {
   NavigatorParams params;
   params.max_sentence_latency = 2s;
   params.position_sd_m = 2.5;
@@ -39,7 +39,7 @@ class NavigatorTest : public ::testing::Test {
     return times_ms;
   }
 
-  Navigator navigator_{TestParams()};
+  Navigator navigator_{NavigatorTestParams()};
   std::int64_t seq_ = 0;
 };
 
@@ -148,7 +148,7 @@ TEST_F(NavigatorTest, GivesAFixWithoutPositionWhereThereIsNone) {
 }
 
 TEST_F(NavigatorTest, AddsTheOffsetsOfConfigToAttitude) {
-  auto params = TestParams();
+  auto params = NavigatorTestParams();
   params.heading_offset_rad = DegToRad(30.0);
   params.pitch_offset_rad = DegToRad(-2.0);
   params.roll_offset_rad = DegToRad(3.0);

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kData = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
+const fs::path kRecordings = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
 
 std::string Content(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
@@ -63,7 +63,7 @@ class GpsdTimes : public ::testing::TestWithParam<Expectation> {};
 class GpsdLog : public ::testing::TestWithParam<Expectation> {};
 
 TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
-  const fs::path file = kData / "gpsd" / (std::string(GetParam().name) + ".log.chk");
+  const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   std::istringstream lines(Content(file));
   std::optional<ParseResult> last;
@@ -99,7 +99,7 @@ TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
 
 // gpsd often reports later, when an epoch is whole: its reports of the time of an RMC hold the place of that RMC.
 TEST_P(GpsdTimes, GivesThePlacesThatGpsdReadsAtThem) {
-  const fs::path file = kData / "gpsd" / (std::string(GetParam().name) + ".log.chk");
+  const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   std::istringstream lines(Content(file));
   std::map<Utime, GeodeticPosition> expected;
@@ -158,7 +158,7 @@ struct EpochFix {
 TEST_P(GpsdEpochs, HaveGpsdsPositionsTimesOfDayAndSpeeds) {
   constexpr double kMaxPositionErrorDeg = 1e-7;
   constexpr double kMaxSpeedErrorMps = 0.01;
-  const fs::path log = kData / "gpsd" / (std::string(GetParam().name) + ".log");
+  const fs::path log = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log");
   if (!fs::exists(log)) GTEST_SKIP() << log << " is not at hand";
 
   InterpreterParams params;
@@ -256,7 +256,7 @@ std::map<std::string, int> Census(const fs::path& file) {
 
 // Every sentence that is understood goes through: nothing is refused, and time never runs backwards.
 TEST(Recordings, OfABoatInAmsterdamAreTakenWhole) {
-  const auto file = kData / "nmea/signalk_gps.log";
+  const auto file = kRecordings / "nmea/signalk_gps.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   InterpreterParams params;
   params.max_sentence_latency = std::chrono::milliseconds(500);
@@ -284,7 +284,7 @@ TEST(Recordings, OfABoatInAmsterdamAreTakenWhole) {
 }
 
 TEST(Recordings, OfABoatInAmsterdamAreUnderstood) {
-  const auto file = kData / "nmea/signalk_gps.log";
+  const auto file = kRecordings / "nmea/signalk_gps.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   auto census = Census(file);
   EXPECT_GT(census["RMC"], 1000);
@@ -294,7 +294,7 @@ TEST(Recordings, OfABoatInAmsterdamAreUnderstood) {
 }
 
 TEST(Recordings, OfABoatsNetworkAreUnderstood) {
-  const auto file = kData / "nmea/signalk_gofree-merrimac.log";
+  const auto file = kRecordings / "nmea/signalk_gofree-merrimac.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   auto census = Census(file);
   EXPECT_GT(census["RMC"], 10);
@@ -303,7 +303,7 @@ TEST(Recordings, OfABoatsNetworkAreUnderstood) {
 }
 
 TEST(Recordings, WithNumbersForTalkersAreUnderstood) {
-  const auto file = kData / "nmea/signalk_n2kd-183-merrimac.log";
+  const auto file = kRecordings / "nmea/signalk_n2kd-183-merrimac.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   auto census = Census(file);
   EXPECT_GT(census["other"], 100);
@@ -312,7 +312,7 @@ TEST(Recordings, WithNumbersForTalkersAreUnderstood) {
 }
 
 TEST(Recordings, OfAHeadingReceiverHoldEmptyAndFullHeadings) {
-  const auto file = kData / "gpsd/hemi.log";
+  const auto file = kRecordings / "gpsd/hemi.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   auto census = Census(file);
   EXPECT_EQ(census["HDT"], 215);
@@ -322,7 +322,7 @@ TEST(Recordings, OfAHeadingReceiverHoldEmptyAndFullHeadings) {
 }
 
 TEST(Recordings, OfABinaryProtocolHoldNoSentence) {
-  const auto file = kData / "gpsd/bu303-nofix.log";
+  const auto file = kRecordings / "gpsd/bu303-nofix.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   auto census = Census(file);
   EXPECT_EQ(census["RMC"] + census["GGA"] + census["HDT"] + census["other"], 0);

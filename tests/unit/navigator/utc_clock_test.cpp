@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using std::chrono::days;
 using std::chrono::microseconds;
 
-constexpr auto kMaxLatency = 500ms;
+constexpr auto kMaxClockLatency = 500ms;
 // A computer that begins in 1971, at another time of day.
 constexpr microseconds kNoBattery = -days(20000) - 5h;
 
@@ -27,7 +27,7 @@ class UtcClockTest : public ::testing::Test {
     return clock_.OfSentence(source_, utc + off + delay, OfDay(utc), date, latency);
   }
 
-  UtcClock clock_{kMaxLatency};
+  UtcClock clock_{kMaxClockLatency};
   SourceClock source_;
 };
 
@@ -90,7 +90,7 @@ TEST_F(UtcClockTest, DoesNotBelieveOneSourceAgainstAnother) {
 
 TEST_F(UtcClockTest, MendsAWeekThatRolledOver) {
   for (const auto error : {days(-7168), days(-14336), days(7168)}) {
-    clock_ = UtcClock(kMaxLatency);
+    clock_ = UtcClock(kMaxClockLatency);
     source_ = {};
     // Near the computer's time, and far from it: a clock that is off besides.
     EXPECT_EQ(Sentence(NoonPlus(0), 0s, 50ms, {}, error)->utc, NoonPlus(0));

@@ -6,7 +6,7 @@
 namespace lookout::segmenter {
 namespace {
 
-ComponentCentroid At(double range_m, double azimuth_deg, double z_m = 0.0) {
+ComponentCentroid ComponentAt(double range_m, double azimuth_deg, double z_m = 0.0) {
   return ComponentCentroid({range_m * std::cos(DegToRad(azimuth_deg)), -range_m * std::sin(DegToRad(azimuth_deg)), z_m});
 }
 
@@ -24,8 +24,8 @@ TEST(CompatibilityRule, IsThePapersFormula) {
                                   .e2_angle_rad = DegToRad(uniform(1.0, 89.0)),
                                   .e3_distance_m = uniform(0.0, 10.0),
                                   .e2_max_distance_m = i % 2 == 0 ? 0.0 : uniform(0.1, 20.0)};
-    const auto one = At(uniform(1.0, 40.0), uniform(0.0, 60.0), uniform(-3.0, 3.0));
-    const auto other = At(uniform(1.0, 40.0), uniform(0.0, 60.0), uniform(-3.0, 3.0));
+    const auto one = ComponentAt(uniform(1.0, 40.0), uniform(0.0, 60.0), uniform(-3.0, 3.0));
+    const auto other = ComponentAt(uniform(1.0, 40.0), uniform(0.0, 60.0), uniform(-3.0, 3.0));
     const double cosine = one.p_m.dot(other.p_m) / (one.p_m.norm() * other.p_m.norm());
     const double between_rad = std::acos(std::min(1.0, cosine));
     const double short_m = std::min(one.p_m.norm(), other.p_m.norm());
@@ -42,42 +42,43 @@ TEST(CompatibilityRule, IsThePapersFormula) {
 }
 
 TEST(CompatibilityRule, DoesNotJoinAheadWithAstern) {
-  EXPECT_FALSE(AreCompatible(At(10.0, 0.0), At(10.0, 180.0)));
-  EXPECT_FALSE(AreCompatible(At(1.0, 0.0), At(1.0, 180.0)));
+  EXPECT_FALSE(AreCompatible(ComponentAt(10.0, 0.0), ComponentAt(10.0, 180.0)));
+  EXPECT_FALSE(AreCompatible(ComponentAt(1.0, 0.0), ComponentAt(1.0, 180.0)));
 }
 
 TEST(CompatibilityRule, JoinsSideBySideAtAnyDistanceUnlessItIsLimited) {
   // Two boats 10 m apart at 40 m.
-  EXPECT_TRUE(AreCompatible(At(40.0, 0.0), At(40.0, 14.4)));
-  EXPECT_FALSE(AreCompatible(At(40.0, 0.0), At(40.0, 14.4), {.e2_max_distance_m = 8.0}));
+  EXPECT_TRUE(AreCompatible(ComponentAt(40.0, 0.0), ComponentAt(40.0, 14.4)));
+  EXPECT_FALSE(AreCompatible(ComponentAt(40.0, 0.0), ComponentAt(40.0, 14.4), {.e2_max_distance_m = 8.0}));
 }
 
 TEST(CompatibilityRule, HoldsNoDirectionInCommonWithTheSensorItself) {
-  EXPECT_FALSE(AreCompatible(ComponentCentroid(Eigen::Vector3d::Zero()), At(1.0, 0.0)));
+  EXPECT_FALSE(AreCompatible(ComponentCentroid(Eigen::Vector3d::Zero()), ComponentAt(1.0, 0.0)));
   EXPECT_FALSE(AreCompatible(ComponentCentroid(Eigen::Vector3d::Zero()), ComponentCentroid(Eigen::Vector3d::Zero())));
 }
 
 TEST(ClusterComponents, OfNothingAreNone) { EXPECT_TRUE(ClusterComponents({}, {}).empty()); }
 
 TEST(ClusterComponents, OfOneIsOne) {
-  EXPECT_EQ(ClusterComponents(std::vector{At(10.0, 0.0)}, {}), std::vector<std::int32_t>{0});
+  EXPECT_EQ(ClusterComponents(std::vector{ComponentAt(10.0, 0.0)}, {}), std::vector<std::int32_t>{0});
   EXPECT_EQ(ClusterComponents(std::vector{ComponentCentroid(Eigen::Vector3d::Zero())}, {}), std::vector<std::int32_t>{0});
 }
 
 TEST(ClusterComponents, AreNumberedInTheOrderOfTheirFirstComponent) {
-  const std::vector components{At(30.0, 0.0), At(10.0, 90.0), At(30.0, 2.0), At(10.0, 200.0), At(10.0, 92.0)};
+  const std::vector components{ComponentAt(30.0, 0.0), ComponentAt(10.0, 90.0), ComponentAt(30.0, 2.0), ComponentAt(10.0, 200.0),
+                               ComponentAt(10.0, 92.0)};
   EXPECT_EQ(ClusterComponents(components, {}), (std::vector<std::int32_t>{0, 1, 0, 2, 1}));
 }
 
 TEST(ClusterComponents, ChainAcrossAzimuthZero) {
-  const std::vector components{At(30.0, 354.0), At(30.0, 6.0)};
+  const std::vector components{ComponentAt(30.0, 354.0), ComponentAt(30.0, 6.0)};
   EXPECT_EQ(ClusterComponents(components, {}), (std::vector<std::int32_t>{0, 0}));
 }
 
 TEST(ClusterComponents, AreConnectedThroughOthers) {
   // A shore: its ends are 90 degrees apart and compatible with their neighbours only.
   std::vector<ComponentCentroid> components;
-  for (int i = 0; i < 10; ++i) components.push_back(At(20.0, 10.0 * i));
+  for (int i = 0; i < 10; ++i) components.push_back(ComponentAt(20.0, 10.0 * i));
   EXPECT_EQ(ClusterComponents(components, {}), std::vector<std::int32_t>(10, 0));
 }
 

@@ -15,20 +15,20 @@ using test::See;
 using test::SetReturn;
 using test::Wall;
 
-constexpr double kWaterM = -1.0;  // of the lidar 1 m over it
+constexpr double kObjectsWaterM = -1.0;  // of the lidar 1 m over it
 
 TEST(Objects, ACabinOverAHullIsOfIt) {
   // The cabin stands 2.4 m behind the side of the hull, more than what is joined side by side at 12 m (1.72 m).
   std::vector<Wall> walls;
-  AddBoat(walls, 12.0, 0.0, kPi / 2, 9.0, 3.0, kWaterM, -0.2);
+  AddBoat(walls, 12.0, 0.0, kPi / 2, 9.0, 3.0, kObjectsWaterM, -0.2);
   AddBoat(walls, 14.0, 0.0, kPi / 2, 3.0, 1.6, 0.0, 2.5);
   EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), 1U);
 }
 
 TEST(Objects, ABoatBehindABoatIsNotOfIt) {
   std::vector<Wall> walls;
-  AddBoat(walls, 12.0, 0.0, kPi / 2, 4.0, 1.5, kWaterM, -0.3);
-  AddBoat(walls, 24.0, 0.0, kPi / 2, 4.0, 1.5, kWaterM, 1.5);
+  AddBoat(walls, 12.0, 0.0, kPi / 2, 4.0, 1.5, kObjectsWaterM, -0.3);
+  AddBoat(walls, 24.0, 0.0, kPi / 2, 4.0, 1.5, kObjectsWaterM, 1.5);
   EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), 2U);
 }
 
@@ -44,7 +44,7 @@ TEST(Objects, TwoBoatsThreeMetresApartStayTwo) {
       for (const double side : {-1.0, 1.0}) {  // bow to stern, and both abeam
         const double y_m = side * (3.0 + 6.0) / 2;
         AddBoat(walls, range_m * std::cos(turned_rad) - y_m * std::sin(turned_rad), range_m * std::sin(turned_rad) + y_m * std::cos(turned_rad),
-                turned_rad + kPi / 2, 6.0, 2.0, kWaterM, 1.0);
+                turned_rad + kPi / 2, 6.0, 2.0, kObjectsWaterM, 1.0);
       }
       EXPECT_EQ(NumSure(SegmentScan(See(walls), {})), 2U) << range_m << " m, turned by " << turned_rad;
     }
@@ -86,7 +86,7 @@ void AddDock(std::vector<Wall>& walls, double x_m, double y_m, double heading_ra
   for (const double along_m : {-3.0, 0.0, 3.0}) {
     for (const double across_m : {-1.2, 1.2}) {
       AddBoat(walls, x_m + along_m * std::cos(heading_rad) - across_m * std::sin(heading_rad),
-              y_m + along_m * std::sin(heading_rad) + across_m * std::cos(heading_rad), heading_rad, 0.3, 0.3, kWaterM, 0.8);
+              y_m + along_m * std::sin(heading_rad) + across_m * std::cos(heading_rad), heading_rad, 0.3, 0.3, kObjectsWaterM, 0.8);
     }
   }
 }
@@ -104,7 +104,7 @@ TEST(Docks, PostsOnARectangleAreOfOne) {
 
 TEST(Docks, PostsInARowAreNotOfOne) {
   std::vector<Wall> walls;
-  for (int post = 0; post < 4; ++post) AddBoat(walls, 12.0, 3.0 * post - 4.5, 0.0, 0.3, 0.3, kWaterM, 0.8);
+  for (int post = 0; post < 4; ++post) AddBoat(walls, 12.0, 3.0 * post - 4.5, 0.0, 0.3, 0.3, kObjectsWaterM, 0.8);
   EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), 4U);
 }
 
@@ -181,8 +181,8 @@ TEST(Believing, LandIsSure) {
 
 TEST(Believing, TheSeenShareIsOfTheColumnsFromEndToEnd) {
   EXPECT_EQ(Row(10, 8, 20.0).seen_share, 1.0F);
-  std::vector<Wall> walls{{-9.0, 25.0, 9.0, 25.0, kWaterM, 1.0}};
-  AddBoat(walls, 0.0, 10.0, 0.0, 2.0, 1.0, kWaterM, 2.0);
+  std::vector<Wall> walls{{-9.0, 25.0, 9.0, 25.0, kObjectsWaterM, 1.0}};
+  AddBoat(walls, 0.0, 10.0, 0.0, 2.0, 1.0, kObjectsWaterM, 2.0);
   const auto segments = SegmentScan(See(walls), {});
   for (const auto& segment : segments.segments) {
     if (segment.kind != SegmentKind::kLand) continue;

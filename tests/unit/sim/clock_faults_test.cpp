@@ -11,11 +11,11 @@ using namespace std::chrono_literals;
 namespace format = vlp16::format;
 
 // Ten minutes past an hour.
-const Utime kStart = Utime(1'781'532'600s);
+const Utime kClockStart = Utime(1'781'532'600s);
 constexpr std::int64_t kStartPastHourUs = 600'000'000;
 
 struct Lidar {
-  explicit Lidar(std::initializer_list<std::string_view> texts) : plan(Parse(texts), kStart), clock(plan) {}
+  explicit Lidar(std::initializer_list<std::string_view> texts) : plan(Parse(texts), kClockStart), clock(plan) {}
 
   static std::vector<TimedFault> Parse(std::initializer_list<std::string_view> texts) {
     std::vector<TimedFault> faults;
@@ -25,13 +25,13 @@ struct Lidar {
 
   // How far the stamp is ahead of the time that has gone by, microseconds.
   std::int64_t ErrorUs(std::chrono::microseconds since_start) const {
-    return static_cast<std::int64_t>(clock.StampUs(kStart + since_start)) - kStartPastHourUs - since_start.count();
+    return static_cast<std::int64_t>(clock.StampUs(kClockStart + since_start)) - kStartPastHourUs - since_start.count();
   }
-  int Pps(std::chrono::microseconds since_start) const { return clock.Pps(kStart + since_start); }
+  int Pps(std::chrono::microseconds since_start) const { return clock.Pps(kClockStart + since_start); }
   // Second of the RMC since the start; -100 = none.
   double RmcS(std::chrono::microseconds since_start) const {
-    const auto second = clock.SecondOfRmc(kStart + since_start);
-    return second ? ToSeconds(*second - kStart) : -100.0;
+    const auto second = clock.SecondOfRmc(kClockStart + since_start);
+    return second ? ToSeconds(*second - kClockStart) : -100.0;
   }
 
   FaultPlan plan;
@@ -40,17 +40,17 @@ struct Lidar {
 
 TEST(LidarClock, IsRightWithoutFaults) {
   const Lidar lidar{};
-  EXPECT_TRUE(lidar.clock.IsOn(kStart));
+  EXPECT_TRUE(lidar.clock.IsOn(kClockStart));
   EXPECT_EQ(lidar.ErrorUs(0us), 0);
   EXPECT_EQ(lidar.ErrorUs(123'456'789us), 0);
-  EXPECT_EQ(lidar.clock.StampUs(kStart + 50min), 0U) << "the hour begins anew";
-  EXPECT_EQ(lidar.clock.StampUs(kStart + 50min - 1us), 3'599'999'999U);
+  EXPECT_EQ(lidar.clock.StampUs(kClockStart + 50min), 0U) << "the hour begins anew";
+  EXPECT_EQ(lidar.clock.StampUs(kClockStart + 50min - 1us), 3'599'999'999U);
   EXPECT_EQ(lidar.Pps(5s), format::kPpsLocked);
   EXPECT_EQ(lidar.RmcS(0s), -1.0);
   EXPECT_EQ(lidar.RmcS(149'999us), -1.0);
   EXPECT_EQ(lidar.RmcS(150ms), 0.0);
   EXPECT_EQ(lidar.RmcS(1149ms), 0.0);
-  EXPECT_EQ(lidar.clock.RmcError(kStart), 0h);
+  EXPECT_EQ(lidar.clock.RmcError(kClockStart), 0h);
 }
 
 TEST(LidarClock, WithoutPpsItRunsOnAndIsSetWhenThePpsHasBeenBackForAWhile) {
@@ -74,15 +74,15 @@ TEST(LidarClock, ThatRunsFreeSaysThatItIsLocked) {
 
 TEST(LidarClock, AWrongStampIsWrongWithinTheHour) {
   const Lidar lidar{"wrong_stamp:1:2:-700"};
-  EXPECT_EQ(lidar.clock.StampUs(kStart + 1s), 3'501'000'000U) << "10 min 1 s minus 700 s is 98.35 minutes past the hour before: wrapped";
+  EXPECT_EQ(lidar.clock.StampUs(kClockStart + 1s), 3'501'000'000U) << "10 min 1 s minus 700 s is 98.35 minutes past the hour before: wrapped";
   EXPECT_EQ(lidar.ErrorUs(2s), 0);
 }
 
 TEST(LidarClock, AWrongHourIsTheHourOfItsRmcAlone) {
   const Lidar lidar{"wrong_hour:5:10:-4"};
-  EXPECT_EQ(lidar.clock.RmcError(kStart + 4s), 0h);
-  EXPECT_EQ(lidar.clock.RmcError(kStart + 5s), -4h);
-  EXPECT_EQ(lidar.clock.RmcError(kStart + 10s), 0h);
+  EXPECT_EQ(lidar.clock.RmcError(kClockStart + 4s), 0h);
+  EXPECT_EQ(lidar.clock.RmcError(kClockStart + 5s), -4h);
+  EXPECT_EQ(lidar.clock.RmcError(kClockStart + 10s), 0h);
   EXPECT_EQ(lidar.ErrorUs(7s), 0);
 }
 
@@ -102,12 +102,12 @@ TEST(LidarClock, ALateRmcComesLateAndNeverGoesBack) {
 
 TEST(LidarClock, ARestartIsSilentThenStampsFromZeroAndLocksInTheEnd) {
   const Lidar lidar{"sensor_restart:4:6:5"};
-  EXPECT_TRUE(lidar.clock.IsOn(kStart + 4s - 1us));
-  EXPECT_FALSE(lidar.clock.IsOn(kStart + 4s));
-  EXPECT_FALSE(lidar.clock.IsOn(kStart + 6s - 1us));
-  EXPECT_TRUE(lidar.clock.IsOn(kStart + 6s));
-  EXPECT_EQ(lidar.clock.StampUs(kStart + 6s), 0U);
-  EXPECT_EQ(lidar.clock.StampUs(kStart + 10s), 4'000'000U);
+  EXPECT_TRUE(lidar.clock.IsOn(kClockStart + 4s - 1us));
+  EXPECT_FALSE(lidar.clock.IsOn(kClockStart + 4s));
+  EXPECT_FALSE(lidar.clock.IsOn(kClockStart + 6s - 1us));
+  EXPECT_TRUE(lidar.clock.IsOn(kClockStart + 6s));
+  EXPECT_EQ(lidar.clock.StampUs(kClockStart + 6s), 0U);
+  EXPECT_EQ(lidar.clock.StampUs(kClockStart + 10s), 4'000'000U);
   EXPECT_EQ(lidar.ErrorUs(11s), 0);
   EXPECT_EQ(lidar.Pps(6s), format::kPpsAbsent);
   EXPECT_EQ(lidar.Pps(8s), format::kPpsSynchronising);
@@ -124,7 +124,7 @@ TEST(LidarClock, ARestartWithoutPpsLocksWhenThePpsHasBeenBackForAWhile) {
   EXPECT_EQ(lidar.Pps(4s - 1us), format::kPpsAbsent);
   EXPECT_EQ(lidar.Pps(4s), format::kPpsSynchronising);
   EXPECT_EQ(lidar.Pps(7s), format::kPpsLocked);
-  EXPECT_EQ(lidar.clock.StampUs(kStart + 7s - 1us), 4'999'999U);
+  EXPECT_EQ(lidar.clock.StampUs(kClockStart + 7s - 1us), 4'999'999U);
   EXPECT_EQ(lidar.ErrorUs(7s), 0);
 }
 

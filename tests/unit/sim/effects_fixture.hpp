@@ -10,7 +10,7 @@
 
 namespace lookout::sim {
 
-inline const Utime kStart{std::chrono::seconds(1'781'532'600)};
+inline const Utime kEffectsStart{std::chrono::seconds(1'781'532'600)};
 inline constexpr int kPacketsPerTurn = 76;
 inline constexpr int kShotsPerPacket = 384;
 
@@ -31,7 +31,7 @@ inline Scene OpenWater(const Effects& effects) {
 inline Sea ChoppySea() { return Sea({{0.25, 9.0, 0.4, 0.3}, {0.12, 5.0, 0.9, 1.0}}); }
 
 inline std::vector<TrueReturn> Look(const Scene& scene, int num_packets, std::uint64_t seed = 1) {
-  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, seed);
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, seed);
   std::vector<TrueReturn> returns;
   for (int i = 0; i < num_packets; ++i) {
     const auto packet = lidar.Next();

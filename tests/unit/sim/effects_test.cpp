@@ -83,7 +83,7 @@ TEST(Effects, PacketsSayWhereTheRaysMetTheirObjectsToACentimetre) {
   for (const auto& sea : {Sea(), ChoppySea()}) {
     const auto scene = BusyScene(QuietEffects(), sea);
     const auto boat = SmallBoat();
-    Lidar lidar(scene, boat, LidarParams{}, kStart, 3);
+    Lidar lidar(scene, boat, LidarParams{}, kEffectsStart, 3);
     int num_checked = 0;
     for (int i = 0; i < 4 * kPacketsPerTurn; ++i) {
       const auto packet = lidar.Next();
@@ -92,7 +92,7 @@ TEST(Effects, PacketsSayWhereTheRaysMetTheirObjectsToACentimetre) {
       for (const auto& made : packet.returns) {
         if (made.reason != ReturnReason::kObject) continue;
         const double time_s =
-            ToSeconds(packet.stamp - kStart) + 110.592e-6 * (made.slot / 32) + 55.296e-6 * (made.slot / 16 % 2) + 2.304e-6 * (made.slot % 16);
+            ToSeconds(packet.stamp - kEffectsStart) + 110.592e-6 * (made.slot / 32) + 55.296e-6 * (made.slot / 16 % 2) + 2.304e-6 * (made.slot % 16);
         const double elevation_rad = DegToRad(format::kElevationDegVlp16[static_cast<std::size_t>(made.slot % 16)]);
         const Vector3d direction = BeamDirection(lidar.AzimuthAt(time_s), elevation_rad);
         const Eigen::Isometry3d T_map_lidar =
@@ -126,7 +126,7 @@ TEST(Effects, PacketsSayWhereEveryReturnOfEveryEffectIsToACentimetre) {
     for (const auto& sea : {Sea(), ChoppySea()}) {
       effects.return_mode = mode;
       const auto scene = BusyScene(effects, sea);
-      Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 3);
+      Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, 3);
       for (int i = 0; i < 8 * kPacketsPerTurn; ++i) {
         const auto packet = lidar.Next();
         const auto positions = Positions(packet, mode == ReturnMode::kDual);
@@ -176,7 +176,7 @@ TEST(Effects, RainComesAsOftenAsItSaysAndMostlyNear) {
     int count = 0;
     int num_near = 0;
     const auto scene = OpenWater(effects);
-    Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 9);
+    Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, 9);
     for (int i = 0; i < 4 * kPacketsPerTurn; ++i) {
       for (const auto& made : lidar.Next().returns) {
         if (made.reason != ReturnReason::kRain) continue;
@@ -227,7 +227,7 @@ TEST(Effects, CrestsNeedWavesAndLieOnTheirUpperHalf) {
     const Eigen::Vector2d p_map_m(-made.p_lidar_m.y(), made.p_lidar_m.x());
     const double height_m = made.p_lidar_m.z() + 2.0;
     EXPECT_GT(height_m, -0.01);
-    EXPECT_NEAR(height_m, scene.sea.HeightM(p_map_m, ToSeconds(made.time - kStart)), 0.02);
+    EXPECT_NEAR(height_m, scene.sea.HeightM(p_map_m, ToSeconds(made.time - kEffectsStart)), 0.02);
   }
   EXPECT_GT(count, 300);
 }
@@ -257,7 +257,7 @@ TEST(Effects, WakesLieBehindBoatsThatMove) {
   for (const auto& made : Look(scene, 20 * kPacketsPerTurn)) {
     if (made.reason != ReturnReason::kWake) continue;
     ++count;
-    const double stern_north_m = -10.0 + 3.0 * ToSeconds(made.time - kStart) - 3.0;
+    const double stern_north_m = -10.0 + 3.0 * ToSeconds(made.time - kEffectsStart) - 3.0;
     EXPECT_LT(made.p_lidar_m.x(), stern_north_m + 0.05);
     const double behind_m = stern_north_m - made.p_lidar_m.x();
     EXPECT_LT(std::abs(-made.p_lidar_m.y() - 15.0), 1.0 + 0.3536 * behind_m + 0.36);  // Kelvin's wedge
@@ -329,7 +329,7 @@ TEST(Effects, EdgesFarApartGiveTwoReturnsInDualMode) {
   scene.effects.return_mode = ReturnMode::kDual;
   scene.effects.horizontal_divergence_mrad = 3.0;
   scene.effects.vertical_divergence_mrad = 1.5;
-  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, 1);
   int num_pairs_apart = 0;
   for (int i = 0; i < 8 * kPacketsPerTurn; ++i) {
     const auto packet = lidar.Next();
@@ -353,7 +353,7 @@ TEST(Effects, GiveTheSameBytesForTheSameSeedOnly) {
   effects.wake_probability = 0.5;
   const auto scene = BusyScene(effects, ChoppySea());
   const auto bytes = [&scene](std::uint64_t seed) {
-    Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, seed);
+    Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, seed);
     std::vector<std::uint8_t> all;
     for (int i = 0; i < 100; ++i) {
       const auto packet = lidar.Next();

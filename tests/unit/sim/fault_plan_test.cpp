@@ -10,7 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 using Kind = TimedFaultKind;
 
-const Utime kStart = Utime(1'781'532'600s);
+const Utime kPlanStart = Utime(1'781'532'600s);
 
 std::string WhyNot(std::string_view text) {
   try {
@@ -74,29 +74,29 @@ TEST(TimedFault, SaysWhatIsWrong) {
 
 TEST(FaultPlan, IsEmptyWithoutFaults) {
   const FaultPlan plan;
-  EXPECT_EQ(plan.At(Kind::kGnssGap, kStart), nullptr);
-  EXPECT_EQ(plan.LastBegun(Kind::kGnssGap, kStart), nullptr);
-  EXPECT_EQ(plan.ValueAt(Kind::kGnssJump, kStart), 0.0);
+  EXPECT_EQ(plan.At(Kind::kGnssGap, kPlanStart), nullptr);
+  EXPECT_EQ(plan.LastBegun(Kind::kGnssGap, kPlanStart), nullptr);
+  EXPECT_EQ(plan.ValueAt(Kind::kGnssJump, kPlanStart), 0.0);
 }
 
 TEST(FaultPlan, AFaultBeginsWithItsBeginAndIsOverAtItsEnd) {
-  const FaultPlan plan({ParseTimedFault("gnss_jump:6:8:2"), ParseTimedFault("gnss_jump:1:2:7"), ParseTimedFault("gnss_gap:2:3")}, kStart);
-  const auto jump_m = [&](auto since_start) { return plan.ValueAt(Kind::kGnssJump, kStart + since_start); };
+  const FaultPlan plan({ParseTimedFault("gnss_jump:6:8:2"), ParseTimedFault("gnss_jump:1:2:7"), ParseTimedFault("gnss_gap:2:3")}, kPlanStart);
+  const auto jump_m = [&](auto since_start) { return plan.ValueAt(Kind::kGnssJump, kPlanStart + since_start); };
   EXPECT_EQ(jump_m(999'999us), 0.0);
   EXPECT_EQ(jump_m(1s), 7.0);
   EXPECT_EQ(jump_m(1'999'999us), 7.0);
   EXPECT_EQ(jump_m(2s), 0.0);
   EXPECT_EQ(jump_m(6s), 2.0);
   EXPECT_EQ(jump_m(8s), 0.0);
-  EXPECT_EQ(plan.LastBegun(Kind::kGnssJump, kStart), nullptr);
-  EXPECT_EQ(plan.LastBegun(Kind::kGnssJump, kStart + 5s)->value, 7.0);
-  EXPECT_EQ(plan.LastBegun(Kind::kGnssJump, kStart + 9s)->value, 2.0);
-  EXPECT_EQ(plan.Begin(plan.faults()[0]), kStart + 1s);
-  EXPECT_EQ(plan.End(plan.faults()[0]), kStart + 2s);
+  EXPECT_EQ(plan.LastBegun(Kind::kGnssJump, kPlanStart), nullptr);
+  EXPECT_EQ(plan.LastBegun(Kind::kGnssJump, kPlanStart + 5s)->value, 7.0);
+  EXPECT_EQ(plan.LastBegun(Kind::kGnssJump, kPlanStart + 9s)->value, 2.0);
+  EXPECT_EQ(plan.Begin(plan.faults()[0]), kPlanStart + 1s);
+  EXPECT_EQ(plan.End(plan.faults()[0]), kPlanStart + 2s);
 }
 
 TEST(FaultPlan, RefusesTwoOfAKindAtATimeAndSharesOfMoreThanOne) {
-  const auto make = [](std::vector<TimedFault> faults) { return FaultPlan(std::move(faults), kStart); };
+  const auto make = [](std::vector<TimedFault> faults) { return FaultPlan(std::move(faults), kPlanStart); };
   EXPECT_THROW(make({ParseTimedFault("gnss_gap:1:3"), ParseTimedFault("gnss_gap:2:4")}), std::invalid_argument);
   EXPECT_NO_THROW(make({ParseTimedFault("gnss_gap:1:3"), ParseTimedFault("gnss_gap:3:4"), ParseTimedFault("imu_stop:1:4")}));
   EXPECT_THROW(make({ParseTimedFault("drop:1:3:0.6"), ParseTimedFault("swap:2:4:0.5")}), std::invalid_argument);

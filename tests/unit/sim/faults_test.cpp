@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 
 constexpr int kDataPort = 2368;
 constexpr int kOtherPort = 10110;
-const Utime kStart = Utime(1'781'532'600s);
+const Utime kFaultsStart = Utime(1'781'532'600s);
 
 struct Run {
   std::vector<Datagram> datagrams;
@@ -33,9 +33,9 @@ std::vector<Datagram> Datagrams(std::chrono::microseconds duration) {
   int num_data = 0;
   int num_other = 0;
   for (auto time = 50us; time < duration; time += 50us) {
-    datagrams.push_back(Make(kStart + time, kOtherPort, num_other++));
+    datagrams.push_back(Make(kFaultsStart + time, kOtherPort, num_other++));
     const auto data_time = 1000us + num_data * 1327us;
-    if (data_time < time + 50us) datagrams.push_back(Make(kStart + data_time, kDataPort, num_data++));
+    if (data_time < time + 50us) datagrams.push_back(Make(kFaultsStart + data_time, kDataPort, num_data++));
   }
   return datagrams;
 }
@@ -44,7 +44,7 @@ Run RunAll(const FaultParams& params, const std::vector<Datagram>& datagrams, st
   Run run;
   auto next = datagrams.begin();
   FaultyNetwork network([&]() -> std::optional<Datagram> { return next == datagrams.end() ? std::nullopt : std::optional(*next++); },
-                        [&](const Fault& fault) { run.faults.push_back(fault); }, params, kDataPort, kStart, kStart + duration, seed);
+                        [&](const Fault& fault) { run.faults.push_back(fault); }, params, kDataPort, kFaultsStart, kFaultsStart + duration, seed);
   while (auto datagram = network.Next()) run.datagrams.push_back(std::move(*datagram));
   EXPECT_FALSE(network.Next());
   run.totals = network.totals();
@@ -96,7 +96,7 @@ TEST(FaultyNetwork, ADroppedPacketNeverComes) {
   EXPECT_EQ(run.totals.num_dropped, 75 - run.totals.num_sent);
   ASSERT_EQ(run.faults.size(), static_cast<std::size_t>(run.totals.num_dropped));
   EXPECT_EQ(run.faults[0].packet_index, 22);
-  EXPECT_EQ(run.faults[0].time, kStart + 1000us + 22 * 1327us);
+  EXPECT_EQ(run.faults[0].time, kFaultsStart + 1000us + 22 * 1327us);
 }
 
 TEST(FaultyNetwork, ADoubledPacketComesTwiceInARow) {
@@ -130,11 +130,11 @@ TEST(FaultyNetwork, ASwappedPacketComesRightAfterTheNextAndThatOneIsLeftAlone) {
   ASSERT_GE(run.faults.size(), 2U);
   EXPECT_EQ(run.faults[0].packet_index, 22);
   EXPECT_EQ(run.faults[1].packet_index, 24);
-  EXPECT_EQ(run.faults[0].time, kStart + 1000us + 22 * 1327us);
+  EXPECT_EQ(run.faults[0].time, kFaultsStart + 1000us + 22 * 1327us);
   // Never before it was measured.
   for (const auto& datagram : run.datagrams) {
     if (datagram.port != kDataPort) continue;
-    EXPECT_GE(datagram.time, kStart + 1000us + NumberOf(datagram) * 1327us);
+    EXPECT_GE(datagram.time, kFaultsStart + 1000us + NumberOf(datagram) * 1327us);
   }
 }
 
@@ -197,7 +197,7 @@ TEST(FaultyNetwork, FaultsForAPartOfTheRunHitThatPartAlone) {
   params.timed = {ParseTimedFault("drop:1:2:0.3"), ParseTimedFault("double:3:4:1"), ParseTimedFault("imu_stop:5:6")};
   const auto run = RunAll(params, 8s);
   for (const auto& fault : run.faults) {
-    const auto since_start = fault.time - kStart;
+    const auto since_start = fault.time - kFaultsStart;
     if (fault.kind == FaultKind::kDropped) {
       EXPECT_TRUE(since_start >= 1s && since_start < 2s);
     } else {
@@ -218,7 +218,7 @@ TEST(FaultyNetwork, RefusesSharesThatAreMoreThanOneAtAnyTime) {
 }
 
 TEST(FaultyNetwork, APacketThatNothingOvertakesComesAtTheEnd) {
-  const auto run = RunAll({0.0, 0.0, 1.0}, {Make(kStart + 50ms, kDataPort, 0)}, 100ms);
+  const auto run = RunAll({0.0, 0.0, 1.0}, {Make(kFaultsStart + 50ms, kDataPort, 0)}, 100ms);
   EXPECT_EQ(DataNumbers(run), std::vector<int>{0});
   EXPECT_EQ(run.totals.num_swapped, 0);
   EXPECT_EQ(run.totals.num_sent, 1);

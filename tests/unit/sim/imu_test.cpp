@@ -9,7 +9,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Utime kStart = Utime(1'781'532'600s);
+const Utime kImuStart = Utime(1'781'532'600s);
 constexpr double kPeriodS = 0.01;
 constexpr double kEarthRateRadps = 7.292115e-5;
 
@@ -46,7 +46,7 @@ template <typename MeasureFunction>
 double AttitudeErrorRad(const OwnMotion& motion, MeasureFunction&& measure) {
   Eigen::Matrix3d R_map_vessel = RotationAt(motion, 0.01);
   for (int i = 2; i <= 1001; ++i) {
-    const ImuMeasurement sample = measure(kStart + i * 10ms);
+    const ImuMeasurement sample = measure(kImuStart + i * 10ms);
     const Eigen::Vector3d rate_radps = FlipYz(sample.angular_rate_radps) - EarthRate(R_map_vessel);
     R_map_vessel = R_map_vessel * Turn(rate_radps * kPeriodS);
   }
@@ -55,8 +55,8 @@ double AttitudeErrorRad(const OwnMotion& motion, MeasureFunction&& measure) {
 
 TEST(Imu, AtRestSeesGravityAndTheTurnOfTheEarthAlone) {
   OwnMotion motion;  // bow to the north
-  const Imu imu(motion, SmallBoat(), {}, kStart, 1);
-  const auto truth = imu.Truth(kStart + 1s);
+  const Imu imu(motion, SmallBoat(), {}, kImuStart, 1);
+  const auto truth = imu.Truth(kImuStart + 1s);
   // WGS84 at 43.63 N, 201 m: 9.8042 m/s2 by Somigliana's formula and the free-air gradient.
   EXPECT_NEAR(truth.specific_force_mps2.x(), 0.0, 1e-6);
   EXPECT_NEAR(truth.specific_force_mps2.y(), 0.0, 1e-6);
@@ -72,14 +72,14 @@ TEST(Imu, SignsAreThoseOfForwardStarboardDown) {
   // At time 0 of a sine: roll to starboard, then bow up, at 0.1 rad/s; a turn to starboard at 0.2 rad/s.
   OwnMotion motion;
   motion.roll_rad = {{0.1 / kTwoPi, 1.0, 0.0}};
-  const Utime time = kStart + 1s + 5ms;  // the mean over -5 to +5 ms about a whole period
-  EXPECT_NEAR(Imu(motion, SmallBoat(), {}, kStart, 1).Truth(time).angular_rate_radps.x(), 0.1, 1e-3);
+  const Utime time = kImuStart + 1s + 5ms;  // the mean over -5 to +5 ms about a whole period
+  EXPECT_NEAR(Imu(motion, SmallBoat(), {}, kImuStart, 1).Truth(time).angular_rate_radps.x(), 0.1, 1e-3);
   motion.roll_rad.clear();
   motion.pitch_rad = {{0.1 / kTwoPi, 1.0, 0.0}};
-  EXPECT_NEAR(Imu(motion, SmallBoat(), {}, kStart, 1).Truth(time).angular_rate_radps.y(), 0.1, 1e-3);
+  EXPECT_NEAR(Imu(motion, SmallBoat(), {}, kImuStart, 1).Truth(time).angular_rate_radps.y(), 0.1, 1e-3);
   motion.pitch_rad.clear();
   motion.leeway_rad = {{0.2 / kTwoPi, 1.0, 0.0}};
-  EXPECT_NEAR(Imu(motion, SmallBoat(), {}, kStart, 1).Truth(time).angular_rate_radps.z(), 0.2, 1e-3);
+  EXPECT_NEAR(Imu(motion, SmallBoat(), {}, kImuStart, 1).Truth(time).angular_rate_radps.z(), 0.2, 1e-3);
 }
 
 TEST(Imu, ABoatInATurnFeelsItsCentre) {
@@ -87,7 +87,7 @@ TEST(Imu, ABoatInATurnFeelsItsCentre) {
   OwnMotion motion;
   motion.semi_axes_m = {10.0, 10.0};
   motion.period_s = 10.0;
-  const auto truth = Imu(motion, SmallBoat(), {}, kStart, 1).Truth(kStart + 3s);
+  const auto truth = Imu(motion, SmallBoat(), {}, kImuStart, 1).Truth(kImuStart + 3s);
   EXPECT_NEAR(truth.specific_force_mps2.y(), -kTwoPi * kTwoPi / 10.0, 1e-3);
   EXPECT_NEAR(truth.specific_force_mps2.x(), 0.0, 0.02);
   EXPECT_NEAR(truth.angular_rate_radps.z(), -kTwoPi / 10.0, 1e-3) << "to port is negative";
@@ -95,7 +95,7 @@ TEST(Imu, ABoatInATurnFeelsItsCentre) {
 
 TEST(Imu, TrueRatesIntegratedGiveBackTheTrueAttitude) {
   const auto motion = LivelyMotion();
-  const Imu imu(motion, SmallBoat(), {}, kStart, 1);
+  const Imu imu(motion, SmallBoat(), {}, kImuStart, 1);
   EXPECT_LT(AttitudeErrorRad(motion, [&](Utime time) { return imu.Truth(time); }), DegToRad(0.001));
 }
 
@@ -106,7 +106,7 @@ TEST(Imu, MeasuredRatesIntegratedGiveBackTheTrueAttitudeWithinTheNoise) {
   double sum_of_squares = 0.0;
   constexpr int kNumSeeds = 20;
   for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
-    Imu imu(motion, SmallBoat(), {}, kStart, seed);
+    Imu imu(motion, SmallBoat(), {}, kImuStart, seed);
     const double error_rad = AttitudeErrorRad(motion, [&](Utime time) { return imu.Measure(time); });
     EXPECT_LT(error_rad, 4.0 * std::sqrt(3.0) * sd_rad) << "seed " << seed;
     sum_of_squares += error_rad * error_rad;
@@ -118,15 +118,15 @@ TEST(Imu, MeasuredRatesIntegratedGiveBackTheTrueAttitudeWithinTheNoise) {
 
 TEST(Imu, SpecificForceIntegratedGivesBackTheTrueVelocity) {
   const auto motion = LivelyMotion();
-  const Imu imu(motion, SmallBoat(), {}, kStart, 1);
+  const Imu imu(motion, SmallBoat(), {}, kImuStart, 1);
   const auto velocity = [&](double time_s) -> Eigen::Vector3d {
     return (StateAt(motion, 0.5, time_s + 1e-3).position_map_m - StateAt(motion, 0.5, time_s - 1e-3).position_map_m) / 2e-3;
   };
   Eigen::Vector3d v_map_mps = velocity(0.01);
-  const auto rest = Imu(OwnMotion{}, SmallBoat(), {}, kStart, 1).Truth(kStart + 1s);
+  const auto rest = Imu(OwnMotion{}, SmallBoat(), {}, kImuStart, 1).Truth(kImuStart + 1s);
   const Eigen::Vector3d gravity_mps2(0.0, 0.0, rest.specific_force_mps2.z());
   for (int i = 2; i <= 1001; ++i) {
-    const auto sample = imu.Truth(kStart + i * 10ms);
+    const auto sample = imu.Truth(kImuStart + i * 10ms);
     v_map_mps += kPeriodS * (RotationAt(motion, (i - 0.5) * kPeriodS) * FlipYz(sample.specific_force_mps2) + gravity_mps2);
   }
   EXPECT_LT((v_map_mps - velocity(10.01)).norm(), 2e-3);
@@ -135,15 +135,15 @@ TEST(Imu, SpecificForceIntegratedGivesBackTheTrueVelocity) {
 TEST(Imu, NoiseHasTheDensityThatIsPromised) {
   OwnMotion motion;
   ImuErrors errors;
-  Imu imu(motion, SmallBoat(), errors, kStart, 3);
-  const auto truth = imu.Truth(kStart + 1s);
+  Imu imu(motion, SmallBoat(), errors, kImuStart, 3);
+  const auto truth = imu.Truth(kImuStart + 1s);
   double gyro_square = 0.0;
   double force_square = 0.0;
-  Eigen::Vector3d last_rate = imu.Measure(kStart + 20ms).angular_rate_radps;
+  Eigen::Vector3d last_rate = imu.Measure(kImuStart + 20ms).angular_rate_radps;
   Eigen::Vector3d last_force = truth.specific_force_mps2;
   constexpr int kCount = 6000;
   for (int i = 0; i < kCount; ++i) {
-    const auto sample = imu.Measure(kStart + 30ms + i * 10ms);
+    const auto sample = imu.Measure(kImuStart + 30ms + i * 10ms);
     gyro_square += (sample.angular_rate_radps - last_rate).squaredNorm() / 6.0;  // three axes, two samples: without the bias
     if (i > 0) force_square += (sample.specific_force_mps2 - last_force).squaredNorm() / 6.0;
     last_rate = sample.angular_rate_radps;

@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const Utime kStart = Utime(1'781'532'600s);
+const Utime kNavigationStart = Utime(1'781'532'600s);
 
 Scene MovingScene() {
   Scene scene;
@@ -46,10 +46,10 @@ struct Run {
 Run RunAll(const NavigationParams& params, std::chrono::microseconds duration, const std::vector<std::string>& faults = {}, std::uint64_t seed = 1) {
   std::vector<TimedFault> parsed;
   for (const auto& fault : faults) parsed.push_back(ParseTimedFault(fault));
-  const FaultPlan plan(parsed, kStart);
-  Navigation navigation(MovingScene(), SmallBoat(), params, plan, kStart, seed);
+  const FaultPlan plan(parsed, kNavigationStart);
+  Navigation navigation(MovingScene(), SmallBoat(), params, plan, kNavigationStart, seed);
   Run run;
-  while (navigation.next_time() < kStart + duration) {
+  while (navigation.next_time() < kNavigationStart + duration) {
     for (const auto& datagram : navigation.Next()) {
       if (datagram.port == params.position_port) {
         const auto result = vlp16::ParsePositionPacket(datagram.payload);
@@ -114,10 +114,10 @@ TEST(Navigation, DefaultsAreTwoCentimetresAHundredMillisecondsLateAndTheAnglesOf
   for (const auto& line : run.Of("GGA")) {
     const auto gga = Parsed<navigator::Gga>(line);
     EXPECT_EQ(gga.quality, navigator::FixQuality::kRtkFixed);
-    const Utime measured = std::chrono::floor<std::chrono::days>(kStart) + *gga.time_of_day;
+    const Utime measured = std::chrono::floor<std::chrono::days>(kNavigationStart) + *gga.time_of_day;
     EXPECT_GE(line.arrival - measured, 100ms);
     EXPECT_LE(line.arrival - measured, 110ms);
-    const auto error_m = FixErrorM(gga, ToSeconds(measured - kStart));
+    const auto error_m = FixErrorM(gga, ToSeconds(measured - kNavigationStart));
     position_m.insert(position_m.end(), {error_m.x(), error_m.y()});
   }
   EXPECT_NEAR(SdOf(position_m), 0.02, 0.002);
@@ -125,7 +125,7 @@ TEST(Navigation, DefaultsAreTwoCentimetresAHundredMillisecondsLateAndTheAnglesOf
   std::vector<double> heading_deg;
   const auto scene = MovingScene();
   for (const auto& line : run.Of("HDT")) {
-    const double time_s = std::floor(ToSeconds(line.arrival - kStart) * 20.0) / 20.0;  // measured up to 22 ms before, at multiples of 50 ms
+    const double time_s = std::floor(ToSeconds(line.arrival - kNavigationStart) * 20.0) / 20.0;  // measured up to 22 ms before, at multiples of 50 ms
     heading_deg.push_back(RadToDeg(WrapToPi(Parsed<navigator::Hdt>(line).heading_rad - StateAt(scene.own_motion, 0.5, time_s).heading_rad)));
   }
   EXPECT_NEAR(SdOf(heading_deg), 0.2, 0.02);
@@ -133,7 +133,7 @@ TEST(Navigation, DefaultsAreTwoCentimetresAHundredMillisecondsLateAndTheAnglesOf
   std::vector<double> tilt_deg;
   for (const auto& line : run.Of("PASHR")) {
     const auto pashr = Parsed<navigator::Pashr>(line);
-    const double time_s = ToSeconds(std::chrono::floor<std::chrono::days>(kStart) + *pashr.time_of_day - kStart);
+    const double time_s = ToSeconds(std::chrono::floor<std::chrono::days>(kNavigationStart) + *pashr.time_of_day - kNavigationStart);
     const auto state = StateAt(scene.own_motion, 0.5, time_s);
     tilt_deg.insert(tilt_deg.end(), {RadToDeg(pashr.roll_rad - state.roll_rad), RadToDeg(pashr.pitch_rad - state.pitch_rad)});
     EXPECT_NEAR(pashr.roll_sd_rad, DegToRad(0.1), 1e-9);
@@ -149,7 +149,7 @@ TEST(Navigation, StandaloneIsMetresOffAndWandersSlowly) {
   for (const auto& line : run.Of("GGA")) {
     const auto gga = Parsed<navigator::Gga>(line);
     EXPECT_EQ(gga.quality, navigator::FixQuality::kGnss);
-    const auto error_m = FixErrorM(gga, ToSeconds(std::chrono::floor<std::chrono::days>(kStart) + *gga.time_of_day - kStart));
+    const auto error_m = FixErrorM(gga, ToSeconds(std::chrono::floor<std::chrono::days>(kNavigationStart) + *gga.time_of_day - kNavigationStart));
     if (!east_m.empty()) step_m.push_back(error_m.x() - east_m.back());
     east_m.push_back(error_m.x());
   }
@@ -200,12 +200,12 @@ TEST(Navigation, InAGapOfTheReceiverItSaysThatItHasNoFix) {
   const auto run = RunAll({}, 6s, {"gnss_gap:2:4"});
   for (const auto& line : run.Of("RMC")) {
     const auto rmc = Parsed<navigator::Rmc>(line);
-    const auto since_start = std::chrono::floor<std::chrono::days>(kStart) + *rmc.time_of_day - kStart;
+    const auto since_start = std::chrono::floor<std::chrono::days>(kNavigationStart) + *rmc.time_of_day - kNavigationStart;
     EXPECT_EQ(rmc.position.has_value(), since_start < 2s || since_start >= 4s) << line.text;
   }
   // The lidar's RMC of second 2 is there from 2.15 s, that of second 4 from 4.15 s.
   for (const auto& [arrival, packet] : run.position_packets) {
-    const auto since_start = arrival - kStart - 60us;
+    const auto since_start = arrival - kNavigationStart - 60us;
     EXPECT_EQ(packet.time.has_value(), since_start < 2150ms || since_start >= 4150ms);
     EXPECT_EQ(packet.pps, 2) << "pulses go on";
   }
@@ -215,7 +215,7 @@ TEST(Navigation, AJumpIsToTheEast) {
   std::vector<double> north_m;
   for (const auto& line : RunAll({}, 6s, {"gnss_jump:2:4:10"}).Of("GGA")) {
     const auto gga = Parsed<navigator::Gga>(line);
-    const double time_s = ToSeconds(std::chrono::floor<std::chrono::days>(kStart) + *gga.time_of_day - kStart);
+    const double time_s = ToSeconds(std::chrono::floor<std::chrono::days>(kNavigationStart) + *gga.time_of_day - kNavigationStart);
     const auto error_m = FixErrorM(gga, time_s);
     EXPECT_NEAR(error_m.x(), time_s >= 2.0 && time_s < 4.0 ? 10.0 : 0.0, 0.1);
     EXPECT_NEAR(error_m.y(), 0.0, 0.1);
@@ -238,7 +238,7 @@ TEST(Navigation, AFrozenHeadingStaysAndItsBoatRollsOn) {
 TEST(Navigation, AStoppedImuIsSilent) {
   int num_inside = 0;
   for (const auto& line : RunAll({}, 6s, {"imu_stop:2:4"}).Of("VNIMU"))
-    num_inside += line.arrival > kStart + 2010ms && line.arrival < kStart + 4s ? 1 : 0;
+    num_inside += line.arrival > kNavigationStart + 2010ms && line.arrival < kNavigationStart + 4s ? 1 : 0;
   EXPECT_EQ(num_inside, 0);
 }
 

@@ -15,7 +15,7 @@ using test::Azimuths;
 using test::MakeDataPacket;
 using test::SpinningSensor;
 
-const Utime kTime = Utime(std::chrono::hours(24 * 20000));
+const Utime kDecoderTime = Utime(std::chrono::hours(24 * 20000));
 
 struct Bench {
   explicit Bench(const DecoderParams& params = {})
@@ -27,7 +27,7 @@ struct Bench {
   void Send(SpinningSensor& sensor, int num_packets = 1) {
     for (int i = 0; i < num_packets; ++i) {
       const auto payload = sensor.Next();
-      decoder.OnDataPayload(kTime + std::chrono::floor<std::chrono::microseconds>(std::chrono::nanoseconds(sensor.time_ns)), payload);
+      decoder.OnDataPayload(kDecoderTime + std::chrono::floor<std::chrono::microseconds>(std::chrono::nanoseconds(sensor.time_ns)), payload);
     }
   }
 
@@ -61,7 +61,7 @@ TEST(Decoder, GivesOnePartialTurnForOnePacket) {
   test::SetReturn(payload, 0, 1, 1, {800, 12});  // laser 1 is ring 8
   test::SetReturn(payload, 11, 1, 15, {65535, 255});
   test::SetReturn(payload, 3, 0, 4, {0, 99});  // no return has no reflectivity
-  bench.decoder.OnDataPayload(kTime, payload);
+  bench.decoder.OnDataPayload(kDecoderTime, payload);
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 1U);
   const auto& turn = bench.turns[0];
@@ -83,7 +83,7 @@ TEST(Decoder, GivesOnePartialTurnForOnePacket) {
   EXPECT_EQ(turn.time_ns[0], 0);
   EXPECT_EQ(turn.time_ns[1], 55296);
   EXPECT_EQ(turn.time_ns[23], 23 * 55296);
-  EXPECT_EQ(turn.time, kTime - std::chrono::microseconds(1327));  // the host took it after its last shot
+  EXPECT_EQ(turn.time, kDecoderTime - std::chrono::microseconds(1327));  // the host took it after its last shot
   EXPECT_EQ(turn.end_time - turn.time, std::chrono::microseconds((23 * 55296 + 15 * 2304) / 1000));
   EXPECT_NEAR(turn.rate_radps, kTwoPi * 10.0, kTwoPi * 0.05);
 }
@@ -107,7 +107,7 @@ TEST(Decoder, CutsInsideAPacketAtTheFirstColumnAtTheCut) {
 
 TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewTurn) {
   Bench bench(Cut(120.0));
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(11780, 40), 0));  // second firing of block 5: 119.80 + 0.20
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(11780, 40), 0));  // second firing of block 5: 119.80 + 0.20
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 2U);
   EXPECT_EQ(bench.turns[0].num_columns(), 11);
@@ -116,7 +116,7 @@ TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewTurn) {
 
 TEST(Decoder, InterpolatesAcrossTheSeam) {
   Bench bench(Cut(180.0));
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(35990, 40), 0));
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(35990, 40), 0));
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 1U);
   EXPECT_NEAR(bench.turns[0].azimuth_rad[0], DegToRad(359.9), 1e-6);
@@ -148,7 +148,7 @@ TEST(Decoder, TakesTwoReturnsPerShotInDualMode) {
   auto payload = MakeDataPacket(Azimuths(1000, 40, true), 0, format::kModeDual, format::kProductVlp16, {});
   test::SetReturn(payload, 2, 1, 15, {900, 1});  // last
   test::SetReturn(payload, 3, 1, 15, {800, 2});  // strongest, of the same shot
-  bench.decoder.OnDataPayload(kTime, payload);
+  bench.decoder.OnDataPayload(kDecoderTime, payload);
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 1U);
   const auto& turn = bench.turns[0];
@@ -242,7 +242,7 @@ TEST(Decoder, DropsCopiesAndPutsLatePacketsRight) {
   const auto first = sensor.Next();
   const auto second = sensor.Next();
   const auto third = sensor.Next();
-  for (const auto* payload : {&first, &third, &third, &second}) bench.decoder.OnDataPayload(kTime, *payload);
+  for (const auto* payload : {&first, &third, &third, &second}) bench.decoder.OnDataPayload(kDecoderTime, *payload);
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 1U);
   const auto& turn = bench.turns[0];
@@ -259,7 +259,7 @@ TEST(Decoder, KeepsATurnWholeWhenTheSensorsClockIsSet) {
   Bench bench;
   SpinningSensor sensor;
   sensor.time_ns = 100'000'000'000;
-  Utime host = kTime;
+  Utime host = kDecoderTime;
   const auto send = [&](int num_packets) {
     for (int i = 0; i < num_packets; ++i) bench.decoder.OnDataPayload(host += std::chrono::microseconds(1327), sensor.Next());
   };
@@ -276,7 +276,7 @@ TEST(Decoder, KeepsATurnWholeWhenTheSensorsClockIsSet) {
 
 TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
   Bench bench;
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket({1000, 1040, 1080, 1120, 1160, 1200, 10200, 10240, 10280, 10320, 10360, 10400}, 0));
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({1000, 1040, 1080, 1120, 1160, 1200, 10200, 10240, 10280, 10320, 10360, 10400}, 0));
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 1U);
   EXPECT_EQ(bench.turns[0].time_ns[11], 11 * 55296);
@@ -293,7 +293,7 @@ TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatTurns) {
       azimuth = azimuth_cdeg;
       azimuth_cdeg = (azimuth_cdeg + format::kAzimuthsPerTurn - 2) % format::kAzimuthsPerTurn;
     }
-    bench.decoder.OnDataPayload(kTime + packet * std::chrono::microseconds(1327),
+    bench.decoder.OnDataPayload(kDecoderTime + packet * std::chrono::microseconds(1327),
                                 MakeDataPacket(azimuths, static_cast<std::uint32_t>(packet * 1327)));
   }
   bench.decoder.Flush();
@@ -339,7 +339,7 @@ TEST(Decoder, StampsASentenceByTheHostWhenNoDataCome) {
   Bench bench(params);
   SpinningSensor sensor;
   bench.Send(sensor, 100);
-  const Utime later = kTime + std::chrono::minutes(40);
+  const Utime later = kDecoderTime + std::chrono::minutes(40);
   bench.decoder.OnPositionPayload(later, test::MakePositionPacket(2'400'000'000U, format::kPpsAbsent, "$GPRMC,004000,A"));
   ASSERT_EQ(bench.sentences.size(), 1U);
   EXPECT_EQ(bench.sentences[0].time, later);
@@ -359,7 +359,7 @@ TEST(Decoder, TellsThePhaseOfTheHead) {
 
 TEST(Decoder, NamesASensorThatIsNotOfTheFamily) {
   Bench bench;
-  EXPECT_FALSE(bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x28)));
+  EXPECT_FALSE(bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x28)));
   EXPECT_NE(bench.decoder.last_refusal().find("VLP-32C"), std::string::npos);
   EXPECT_EQ(bench.CountOf("data_unknown_product"), 1);
 }
@@ -378,7 +378,7 @@ TEST(Decoder, EndsTheTurnWhenTheSensorRestarts) {
   EXPECT_TRUE(bench.turns[1].is_partial_start);
   EXPECT_FALSE(bench.turns[1].has_hole);
   EXPECT_EQ(bench.CountOf("sensor_restarts"), 1);
-  EXPECT_EQ(bench.turns[1].time, kTime);  // its own offset, not that of the time before
+  EXPECT_EQ(bench.turns[1].time, kDecoderTime);  // its own offset, not that of the time before
 }
 
 TEST(Decoder, CapsATurnThatDoesNotEnd) {
@@ -400,14 +400,14 @@ TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
   SpinningSensor sensor;
   sensor.azimuth_deg = 354.2;
   bench.Send(sensor, 1);
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket({35900, 35940, 35980, 20, 35999, 10, 35998, 30, 60, 100, 140, 180}, 1327));
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({35900, 35940, 35980, 20, 35999, 10, 35998, 30, 60, 100, 140, 180}, 1327));
   bench.decoder.Flush();
   EXPECT_EQ(bench.turns.size(), 2U);
 }
 
 TEST(Decoder, CutsWhereALimitedFieldOfViewJumpsOverTheCut) {
   Bench bench;
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket({9000, 9040, 9080, 9120, 9160, 9200, 4500, 4540, 4580, 4620, 4660, 4700}, 0));
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({9000, 9040, 9080, 9120, 9160, 9200, 4500, 4540, 4580, 4620, 4660, 4700}, 0));
   bench.decoder.Flush();
   ASSERT_EQ(bench.turns.size(), 2U);
   EXPECT_EQ(bench.turns[0].num_columns(), 12);
@@ -429,7 +429,7 @@ TEST(Decoder, HoldsPacketsOfTheSharedProductByteUntilItKnowsTheModel) {
 TEST(Decoder, RefusesAnHdl32eByName) {
   Bench bench;
   for (int i = 0; i < 10; ++i) {
-    bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(100 + i * 240, 20), static_cast<std::uint32_t>(i * 553), 0x37, 0x21));
+    bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(100 + i * 240, 20), static_cast<std::uint32_t>(i * 553), 0x37, 0x21));
   }
   bench.decoder.Flush();
   EXPECT_TRUE(bench.turns.empty());
@@ -439,7 +439,7 @@ TEST(Decoder, RefusesAnHdl32eByName) {
 
 TEST(Decoder, RefusesALonePacketOfTheSharedProductByte) {
   Bench bench;
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(100, 40), 5, 0x37, 0x21));
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(100, 40), 5, 0x37, 0x21));
   bench.decoder.Flush();
   EXPECT_TRUE(bench.turns.empty());
   EXPECT_EQ(bench.CountOf("data_model_undecided"), 1);
@@ -449,12 +449,12 @@ TEST(Decoder, CountsEachKindOfBadPacketUnderItsOwnName) {
   Bench bench;
   auto bad_flag = MakeDataPacket(Azimuths(0, 40), 0);
   bad_flag[0] = 0;
-  bench.decoder.OnDataPayload(kTime, bad_flag);
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x55));
-  bench.decoder.OnDataPayload(kTime, MakeDataPacket(Azimuths(0, 40), 0, 0x12));
-  bench.decoder.OnDataPayload(kTime, {});
-  bench.decoder.OnPositionPayload(kTime, {});
-  bench.decoder.OnPositionPayload(kTime, test::MakePositionPacket(0, 9, ""));
+  bench.decoder.OnDataPayload(kDecoderTime, bad_flag);
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x55));
+  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(0, 40), 0, 0x12));
+  bench.decoder.OnDataPayload(kDecoderTime, {});
+  bench.decoder.OnPositionPayload(kDecoderTime, {});
+  bench.decoder.OnPositionPayload(kDecoderTime, test::MakePositionPacket(0, 9, ""));
   for (const auto* name :
        {"data_bad_flag", "data_unknown_product", "data_bad_return_mode", "data_bad_size", "position_bad_size", "position_bad_pps"}) {
     EXPECT_EQ(bench.CountOf(name), 1) << name;
@@ -462,12 +462,12 @@ TEST(Decoder, CountsEachKindOfBadPacketUnderItsOwnName) {
 }
 
 TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
-  constexpr std::string_view kRmc = "$GPRMC,000000.00,A,,,,,,,041024,,";  // kTime
+  constexpr std::string_view kRmc = "$GPRMC,000000.00,A,,,,,,,041024,,";  // kDecoderTime
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 350.0;
-  sensor.time_ns = 7'000'000;  // the host is 7 ms behind: both at kTime past the hour
-  const Utime behind = kTime;
+  sensor.time_ns = 7'000'000;  // the host is 7 ms behind: both at kDecoderTime past the hour
+  const Utime behind = kDecoderTime;
   const auto send = [&](int num_packets) {
     for (int i = 0; i < num_packets; ++i) {
       const auto payload = sensor.Next();

@@ -17,7 +17,7 @@ using test::SpinningSensor;
 const Utime kStart = Utime(std::chrono::hours(24 * 20000));
 
 // Packets in, given packets out. The host's clock is the sensor's, unless told otherwise.
-struct Bench {
+struct SequencerBench {
   struct Given {
     std::uint32_t stamp_us;
     SensorTime time;
@@ -55,7 +55,7 @@ std::uint32_t StampOf(const Payload& payload) { return ReadU32LittleEndian(paylo
 TEST(PacketSequencer, GivesWhatComesInOrderAtOnce) {
   for (const auto mode : {format::kModeStrongest, format::kModeDual}) {
     for (const double rpm : {300.0, 600.0, 1200.0}) {
-      Bench bench;
+      SequencerBench bench;
       SpinningSensor sensor;
       sensor.mode = mode;
       sensor.rpm = rpm;
@@ -65,13 +65,13 @@ TEST(PacketSequencer, GivesWhatComesInOrderAtOnce) {
       }
       EXPECT_EQ(bench.counts().num_lost, 0);
       EXPECT_EQ(bench.counts().num_disagreements, 0);
-      EXPECT_EQ(std::ranges::count_if(bench.given, &Bench::Given::is_restart), 1);
+      EXPECT_EQ(std::ranges::count_if(bench.given, &SequencerBench::Given::is_restart), 1);
     }
   }
 }
 
 TEST(PacketSequencer, GoesOnOverTheHour) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   sensor.time_ns = 3'599'999'000'000;
   bench.Add(sensor, 3);
@@ -84,7 +84,7 @@ TEST(PacketSequencer, GoesOnOverTheHour) {
 
 TEST(PacketSequencer, PutsRightWhatIsUpToEightPacketsLate) {
   for (std::size_t late = 1; late <= 8; ++late) {
-    Bench bench;
+    SequencerBench bench;
     SpinningSensor sensor;
     auto packets = Make(sensor, 14);
     std::vector<std::uint32_t> expected;
@@ -98,7 +98,7 @@ TEST(PacketSequencer, PutsRightWhatIsUpToEightPacketsLate) {
 }
 
 TEST(PacketSequencer, DropsWhatIsLaterAndHasCountedItAsLost) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   auto packets = Make(sensor, 14);
   std::rotate(packets.begin() + 2, packets.begin() + 3, packets.begin() + 3 + 9);
@@ -114,7 +114,7 @@ TEST(PacketSequencer, DropsWhatIsLaterAndHasCountedItAsLost) {
 }
 
 TEST(PacketSequencer, DropsCopiesAlsoOfWhatItHolds) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   const auto packets = Make(sensor, 5);
   EXPECT_EQ(bench.Add(packets[0]), PacketVerdict::kTaken);
@@ -132,7 +132,7 @@ TEST(PacketSequencer, DropsCopiesAlsoOfWhatItHolds) {
 }
 
 TEST(PacketSequencer, CountsLossesOnceTheyAreSure) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   bench.Add(sensor, 3);
   sensor.Skip(5);
@@ -152,7 +152,7 @@ TEST(PacketSequencer, CountsLossesOnceTheyAreSure) {
 
 TEST(PacketSequencer, CountsLossesOfWholeTurnsToo) {
   for (const int lost : {74, 75, 76, 77, 200, 700}) {
-    Bench bench;
+    SequencerBench bench;
     SpinningSensor sensor;
     bench.Add(sensor, 3);
     sensor.Skip(lost);
@@ -167,7 +167,7 @@ TEST(PacketSequencer, TellsAClockThatIsSetFromALoss) {
   // By PPS, forwards and backwards, by little and by much; the head turns on, and the host sees no gap.
   for (const std::int64_t step_us :
        {-1'800'000'000LL, -1'000'000LL, -20'000LL, -5'000LL, -900LL, 5'000LL, 100'000LL, 999'000LL, 2'000'000LL, 700'000'000LL}) {
-    Bench bench;
+    SequencerBench bench;
     SpinningSensor sensor;
     sensor.time_ns = 1'900'000'000'000;
     Utime host = kStart;
@@ -189,7 +189,7 @@ TEST(PacketSequencer, TellsAClockThatIsSetFromALoss) {
 
 TEST(PacketSequencer, ToleratesTheSmallCorrectionsOfADisciplinedClock) {
   for (const std::int64_t step_us : {-600, -50, 50, 600}) {
-    Bench bench;
+    SequencerBench bench;
     SpinningSensor sensor;
     sensor.time_ns = 1'000'000'000;
     bench.Add(sensor, 3);
@@ -202,7 +202,7 @@ TEST(PacketSequencer, ToleratesTheSmallCorrectionsOfADisciplinedClock) {
 }
 
 TEST(PacketSequencer, TakesAPauseOrAnotherAzimuthForARestart) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   sensor.time_ns = 100'000'000'000;
   bench.Add(sensor, 3);
@@ -220,7 +220,7 @@ TEST(PacketSequencer, TakesAPauseOrAnotherAzimuthForARestart) {
 }
 
 TEST(PacketSequencer, AsksTheHostBeforeItTakesALossForAClockThatWasSet) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   bench.Add(sensor, 100);
   const double azimuth_deg = sensor.azimuth_deg;
@@ -232,7 +232,7 @@ TEST(PacketSequencer, AsksTheHostBeforeItTakesALossForAClockThatWasSet) {
 }
 
 TEST(PacketSequencer, CountsLossesOfAHeadThatStandsOrTrembles) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   bench.Add(sensor, 200);
   sensor.rpm = 0.0;
@@ -257,7 +257,7 @@ TEST(PacketSequencer, CountsLossesOfAHeadThatStandsOrTrembles) {
 }
 
 TEST(PacketSequencer, TakesWhatIsLateWithoutEndForAnotherStream) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a turn is 75 packets
   sensor.time_ns = 100'000'000'000;
@@ -271,7 +271,7 @@ TEST(PacketSequencer, TakesWhatIsLateWithoutEndForAnotherStream) {
 }
 
 TEST(PacketSequencer, DropsACopyThatIsATurnOld) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   sensor.rpm = 60e9 / (75.0 * 1327104.0);
   const auto packets = Make(sensor, 200);
@@ -286,7 +286,7 @@ TEST(PacketSequencer, DropsACopyThatIsATurnOld) {
 }
 
 TEST(PacketSequencer, SaysWhenAzimuthAndTimeTellOfDifferentLosses) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   bench.Add(sensor, 3);
   sensor.Skip(4);
@@ -297,7 +297,7 @@ TEST(PacketSequencer, SaysWhenAzimuthAndTimeTellOfDifferentLosses) {
 }
 
 TEST(PacketSequencer, RefusesASecondSensorOnTheSamePort) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor one;
   SpinningSensor other;
   other.azimuth_deg = 180.0;
@@ -311,7 +311,7 @@ TEST(PacketSequencer, RefusesASecondSensorOnTheSamePort) {
 }
 
 TEST(PacketSequencer, KnowsTheTimeOfAnotherStampOnceAPacketCame) {
-  Bench bench;
+  SequencerBench bench;
   EXPECT_FALSE(bench.sequencer.TimeOfStamp(kStart, 5));
   SpinningSensor sensor;
   sensor.time_ns = 3'599'999'000'000;
@@ -323,7 +323,7 @@ TEST(PacketSequencer, KnowsTheTimeOfAnotherStampOnceAPacketCame) {
 }
 
 TEST(PacketSequencer, GoesOnWithAClockThatStandsOrCountsBeyondTheHour) {
-  Bench standing;
+  SequencerBench standing;
   SpinningSensor sensor;
   for (int i = 0; i < 10; ++i) {
     auto payload = sensor.Next();
@@ -331,7 +331,7 @@ TEST(PacketSequencer, GoesOnWithAClockThatStandsOrCountsBeyondTheHour) {
     EXPECT_EQ(standing.Add(payload, kStart + i * microseconds(1327)), PacketVerdict::kTaken);
   }
   EXPECT_EQ(standing.given.size(), 10U);
-  Bench beyond;
+  SequencerBench beyond;
   for (int i = 0; i < 10; ++i) {
     auto payload = sensor.Next();
     WriteU32LittleEndian(payload, format::kStampOffset, static_cast<std::uint32_t>(3'599'995'000 + i * 1327));
@@ -382,7 +382,7 @@ TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
   for (const auto& [first_deg, last_deg] : {std::pair(0.0, 180.0), std::pair(30.0, 30.0 + 20.0 * sweep_deg - 0.2), std::pair(300.0, 420.0),
                                             std::pair(10.0, 340.0), std::pair(90.0, 120.0)}) {
     for (const double rpm : {600.0, 300.0, 1200.0}) {
-      Bench bench;
+      SequencerBench bench;
       LimitedSensor sensor(first_deg, last_deg);
       sensor.rpm = rpm;
       for (int i = 0; i < 1500; ++i) bench.Add(sensor.Next());
@@ -396,7 +396,7 @@ TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
 }
 
 TEST(PacketSequencer, CountsLossesBesideALimitedFieldOfView) {
-  Bench bench;
+  SequencerBench bench;
   LimitedSensor sensor(20.0, 200.0);
   int num_dropped = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -412,7 +412,7 @@ TEST(PacketSequencer, CountsLossesBesideALimitedFieldOfView) {
 TEST(PacketSequencer, CountsLossesOfTurnsOfALimitedFieldOfView) {
   for (const int lost : {30, 38, 75, 100, 200}) {
     for (int phase = 0; phase < 38; phase += 3) {
-      Bench bench;
+      SequencerBench bench;
       LimitedSensor sensor(20.0, 200.0);
       for (int i = 0; i < 400 + phase; ++i) bench.Add(sensor.Next());
       for (int i = 0; i < lost; ++i) sensor.Next();
@@ -423,7 +423,7 @@ TEST(PacketSequencer, CountsLossesOfTurnsOfALimitedFieldOfView) {
 }
 
 TEST(PacketSequencer, CountsEveryLossOfASectorThatWasSeenBefore) {
-  Bench bench;
+  SequencerBench bench;
   SpinningSensor sensor;
   sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a turn is 75 packets: the same place each time
   bench.Add(sensor, 150);

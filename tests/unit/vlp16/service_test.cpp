@@ -18,7 +18,7 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using test::SpinningSensor;
 
-const Utime kTime = Utime(std::chrono::hours(24 * 20000));
+const Utime kServiceTime = Utime(std::chrono::hours(24 * 20000));
 
 struct Message {
   std::string channel;
@@ -51,7 +51,7 @@ void Feed(Service& service, SpinningSensor sensor, int num_packets) {
   for (int i = 0; i < num_packets; ++i) {
     if (i == 30) sensor.Skip(2);
     const auto payload = sensor.Next();
-    const Utime host_time = kTime + microseconds(sensor.time_ns / 1000 + i % 7 * 50);
+    const Utime host_time = kServiceTime + microseconds(sensor.time_ns / 1000 + i % 7 * 50);
     service.OnDatagram(host_time, 2368, payload);
     if (i % 10 == 0) service.OnDatagram(host_time, 8308, test::MakePositionPacket(sensor.stamp_us(), 2, test::kValidRmc));
     if (i % 50 == 0) service.OnDatagram(host_time, 2368, test::Payload(format::kDataPacketSizeBytes, 7));
@@ -67,8 +67,8 @@ std::int64_t CountOf(const Service& service, std::string_view name) {
 TEST(Service, PublishesNothingWhenNothingCame) {
   Recorded out;
   Service service(out.bus, Params{});
-  service.AdvanceTo(kTime);
-  service.Finish(kTime);
+  service.AdvanceTo(kServiceTime);
+  service.Finish(kServiceTime);
   out.Handle();
   EXPECT_TRUE(out.messages.empty());
 }
@@ -77,7 +77,7 @@ TEST(Service, PublishesRawThenClockThenScan) {
   Recorded out;
   Service service(out.bus, Params{});
   Feed(service, SpinningSensor(), 100);
-  service.Finish(kTime + milliseconds(200));
+  service.Finish(kServiceTime + milliseconds(200));
   out.Handle();
   const auto first = std::ranges::find(out.messages, "LIDAR_SCAN", &Message::channel);
   ASSERT_NE(first, out.messages.end());
@@ -113,7 +113,7 @@ TEST(Service, GivesTheSameBytesFromItsRawLog) {
     sensor.mode = mode;
     sensor.azimuth_deg = 77.0;
     Feed(service, sensor, 400);
-    service.Finish(kTime + milliseconds(600));
+    service.Finish(kServiceTime + milliseconds(600));
     live.Handle();
 
     Recorded again;
@@ -124,7 +124,7 @@ TEST(Service, GivesTheSameBytesFromItsRawLog) {
       if (message.channel == bus::kLidarPackets.name) again.bus.Publish(bus::kLidarPackets, message.bytes);
     }
     again.Handle();
-    replayed.Finish(kTime);
+    replayed.Finish(kServiceTime);
     again.Handle();
     const auto derived = [](const std::vector<Message>& messages) {
       std::vector<Message> some;
@@ -142,11 +142,11 @@ TEST(Service, FlushesALogThatHasNoEndMark) {
   params.input = Input::kLog;
   Service service(out.bus, params);
   Bundler bundler(2368, 8308, 0.0);
-  bundler.Add(kTime, 2368, SpinningSensor().Next());
-  bus::Publish(out.bus, bus::kLidarPackets, ToMessage(bundler.AdvanceTo(kTime + milliseconds(100)).value()));
+  bundler.Add(kServiceTime, 2368, SpinningSensor().Next());
+  bus::Publish(out.bus, bus::kLidarPackets, ToMessage(bundler.AdvanceTo(kServiceTime + milliseconds(100)).value()));
   out.Handle();
   EXPECT_TRUE(out.All<lidar_scan_t>(bus::kLidarScan).empty());
-  service.Finish(kTime);
+  service.Finish(kServiceTime);
   out.Handle();
   EXPECT_EQ(out.All<lidar_scan_t>(bus::kLidarScan).size(), 1U);
 }
@@ -158,8 +158,8 @@ TEST(Service, RefusesABadRawMessageAsAWhole) {
   Service service(out.bus, params);
   auto message = ToMessage(*[] {
     Bundler bundler(2368, 8308, 0.0);
-    bundler.Add(kTime, 2368, SpinningSensor().Next());
-    return bundler.Finish(kTime);
+    bundler.Add(kServiceTime, 2368, SpinningSensor().Next());
+    return bundler.Finish(kServiceTime);
   }());
   message.size_bytes[0] = 1207;
   bus::Publish(out.bus, bus::kLidarPackets, message);
@@ -175,7 +175,7 @@ TEST(Service, SplitsATurnThatIsTooLargeByColumns) {
   sensor.mode = format::kModeDual;
   sensor.rpm = 300.0;
   Feed(service, sensor, 302);
-  service.Finish(kTime + milliseconds(400));
+  service.Finish(kServiceTime + milliseconds(400));
   out.Handle();
   const auto parts = out.All<lidar_scan_t>(bus::kLidarScan);
   ASSERT_GE(parts.size(), 4U);
@@ -197,14 +197,14 @@ TEST(Service, SplitsATurnThatIsTooLargeByColumns) {
 TEST(Service, SaysWhenTheLidarIsSilentAndRecovers) {
   Recorded out;
   Service service(out.bus, Params{});
-  service.AdvanceTo(kTime);
+  service.AdvanceTo(kServiceTime);
   EXPECT_EQ(service.Report().state, HealthState::kOk);
-  service.AdvanceTo(kTime + milliseconds(3500));
+  service.AdvanceTo(kServiceTime + milliseconds(3500));
   EXPECT_EQ(service.Report().state, HealthState::kDegraded);
   EXPECT_EQ(service.Report().reason, "no lidar packets for 3 s");
   SpinningSensor sensor;
-  service.OnDatagram(kTime + milliseconds(3501), 2368, sensor.Next());
-  service.AdvanceTo(kTime + milliseconds(3700));
+  service.OnDatagram(kServiceTime + milliseconds(3501), 2368, sensor.Next());
+  service.AdvanceTo(kServiceTime + milliseconds(3700));
   EXPECT_EQ(service.Report().state, HealthState::kOk);
 }
 
@@ -212,14 +212,14 @@ TEST(Service, SaysThatTheLidarIsSilentWhileOtherDatagramsNeverEnd) {
   Recorded out;
   Service service(out.bus, Params{});
   SpinningSensor sensor;
-  service.AdvanceTo(kTime);
-  service.OnDatagram(kTime, 2368, sensor.Next());
+  service.AdvanceTo(kServiceTime);
+  service.OnDatagram(kServiceTime, 2368, sensor.Next());
   // What came later than 50 ms still waits: the bundle too.
-  service.AdvanceTo(kTime + milliseconds(3500), kTime + milliseconds(50));
+  service.AdvanceTo(kServiceTime + milliseconds(3500), kServiceTime + milliseconds(50));
   out.Handle();
   EXPECT_TRUE(out.messages.empty());
   EXPECT_EQ(service.Report().reason, "no lidar packets for 3 s");
-  service.AdvanceTo(kTime + milliseconds(3500), kTime + milliseconds(100));
+  service.AdvanceTo(kServiceTime + milliseconds(3500), kServiceTime + milliseconds(100));
   out.Handle();
   EXPECT_EQ(out.All<lidar_packets_t>(bus::kLidarPackets).size(), 1U);
 }
@@ -227,21 +227,21 @@ TEST(Service, SaysThatTheLidarIsSilentWhileOtherDatagramsNeverEnd) {
 TEST(Service, SaysWhyTheLidarIsOfNoUse) {
   Recorded out;
   Service service(out.bus, Params{});
-  service.AdvanceTo(kTime);
-  service.OnDatagram(kTime, 2368, test::Payload(format::kDataPacketSizeBytes, 7));
-  service.AdvanceTo(kTime + milliseconds(1500));
+  service.AdvanceTo(kServiceTime);
+  service.OnDatagram(kServiceTime, 2368, test::Payload(format::kDataPacketSizeBytes, 7));
+  service.AdvanceTo(kServiceTime + milliseconds(1500));
   EXPECT_EQ(service.Report().reason, "no usable lidar packets for 1 s; the last was refused: data_bad_flag");
 }
 
 TEST(Service, NamesASensorWhosePacketsAreOfAnotherSize) {
   Recorded out;
   Service service(out.bus, Params{});
-  service.AdvanceTo(kTime);
+  service.AdvanceTo(kServiceTime);
   test::Payload robosense(1248);
   const std::string_view header = "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0";
   std::ranges::copy(header, robosense.begin());
-  service.OnDatagram(kTime, 2368, robosense);
-  service.AdvanceTo(kTime + milliseconds(1500));
+  service.OnDatagram(kServiceTime, 2368, robosense);
+  service.AdvanceTo(kServiceTime + milliseconds(1500));
   EXPECT_EQ(service.Report().reason, "no usable lidar packets for 1 s; the last was refused: a packet of another sensor: RoboSense");
 }
 
@@ -255,7 +255,7 @@ TEST(Service, TellsRateRotationAndPhase) {
   Service service(out.bus, Params{});
   SpinningSensor sensor;
   sensor.rpm = 1200.0;
-  Utime host = kTime;
+  Utime host = kServiceTime;
   for (int i = 0; i < 1600; ++i) {
     service.OnDatagram(host += microseconds(1327), 2368, sensor.Next());
     service.AdvanceTo(host);
@@ -274,7 +274,7 @@ TEST(Service, SaysWhenTwoLidarsSendToOnePort) {
     SpinningSensor other;
     other.time_ns = apart_ns;
     other.azimuth_deg = 100.0;
-    Utime host = kTime;
+    Utime host = kServiceTime;
     service.AdvanceTo(host);
     for (int i = 0; i < 1600; ++i) {
       service.OnDatagram(host += microseconds(663), 2368, one.Next());
@@ -292,8 +292,8 @@ TEST(Service, TellsTemperaturesAndAThermalShutdown) {
   auto position = test::MakePositionPacket(0, format::kPpsLocked, "");
   EXPECT_EQ(CountOf(service.Report(), "top_board_celsius"), -1);
   const auto send = [&] {
-    service.OnDatagram(kTime, 8308, position);
-    service.AdvanceTo(kTime + milliseconds(200));
+    service.OnDatagram(kServiceTime, 8308, position);
+    service.AdvanceTo(kServiceTime + milliseconds(200));
   };
   position[format::kTopBoardTemperatureOffset] = 61;
   position[format::kBottomBoardTemperatureOffset] = 58;
@@ -312,7 +312,7 @@ TEST(Service, NoticesEachChangeOfTheClockOnce) {
   std::vector<std::string> notices;
   service.OnNotice([&](const std::string& notice) { notices.push_back(notice); });
   SpinningSensor sensor;
-  Utime host = kTime;
+  Utime host = kServiceTime;
   const auto send = [&](std::uint8_t pps) {
     for (int i = 0; i < 300; ++i) {
       if (i % 10 == 0) service.OnDatagram(host, 8308, test::MakePositionPacket(sensor.stamp_us(), pps, ""));
@@ -350,8 +350,8 @@ TEST(Service, SaysBeamsRingByRing) {
   params.use_vertical_origin_offsets = true;
   Service service(out.bus, params);
   SpinningSensor sensor;
-  service.OnDatagram(kTime, 2368, sensor.Next());
-  service.Finish(kTime);
+  service.OnDatagram(kServiceTime, 2368, sensor.Next());
+  service.Finish(kServiceTime);
   out.Handle();
   const auto scan = out.All<lidar_scan_t>(bus::kLidarScan).at(0);
   ASSERT_EQ(scan.num_rings, 16);

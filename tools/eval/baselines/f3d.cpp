@@ -34,7 +34,7 @@ void JoinRuns(const ScanLine& line, std::span<const segmenter::Return> returns, 
   const auto join = [&](const Shot& shot, const Shot& other) {
     for (std::size_t i = shot.begin; i < shot.end; ++i) {
       for (std::size_t j = other.begin; j < other.end; ++j) {
-        if (AreNear(returns[static_cast<std::size_t>(line[i])], returns[static_cast<std::size_t>(line[j])], distance_m)) sets.Unite(line[i], line[j]);
+        if (AreNear(returns[static_cast<std::size_t>(line[i])], returns[static_cast<std::size_t>(line[j])], distance_m)) sets.Join(line[i], line[j]);
       }
     }
   };
@@ -54,7 +54,7 @@ void MergeWithRingAbove(const ScanLine& line, const ScanLine& above, std::span<c
   const PointTree tree(std::move(points_m));
   for (const auto index : line) {
     const auto nearest = tree.FindNearest(returns[static_cast<std::size_t>(index)].point);
-    if (nearest && nearest->distance_m < distance_m) sets.Unite(index, above[static_cast<std::size_t>(nearest->index)]);
+    if (nearest && nearest->distance_m < distance_m) sets.Join(index, above[static_cast<std::size_t>(nearest->index)]);
   }
 }
 

@@ -6,29 +6,25 @@
 
 namespace lookout::eval {
 
-namespace {
-
-// Names that nanoflann asks for.
-struct Cloud {
-  std::vector<segmenter::Point> points_m;
-
-  std::size_t kdtree_get_point_count() const { return points_m.size(); }
-  float kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    const auto& point = points_m[index];
-    return axis == 0 ? point.x_m : axis == 1 ? point.y_m : point.z_m;
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;  // nanoflann works it out
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::uint32_t>;
-
-}  // namespace
-
 struct PointTree::Index {
+  // Names that nanoflann asks for.
+  struct Cloud {
+    std::vector<segmenter::Point> points_m;
+
+    std::size_t kdtree_get_point_count() const { return points_m.size(); }
+    float kdtree_get_pt(std::size_t index, std::size_t axis) const {
+      const auto& point = points_m[index];
+      return axis == 0 ? point.x_m : axis == 1 ? point.y_m : point.z_m;
+    }
+    template <typename Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;  // nanoflann works it out
+    }
+  };
+
   explicit Index(std::vector<segmenter::Point> points_m) : cloud{std::move(points_m)}, tree(3, cloud) {}
+
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Cloud>, Cloud, 3, std::uint32_t>;
 
   Cloud cloud;
   Tree tree;

@@ -34,9 +34,6 @@ constexpr double kBiasTimeS = 300.0;
 // same; ADIS16470: 0.2 %), and a turn keeps its sense for about a second.
 constexpr double kGyroScaleErrorRootS = 0.002;
 
-// How fast a boat goes of which nothing is known ("a boat at 3 m/s").
-constexpr double kUnknownSpeedSdMps = 3.0;
-
 // Tide, trim and load: a decimetre in a minute.
 constexpr double kWaterLevelMPerRootS = 0.013;
 

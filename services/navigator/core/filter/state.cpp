@@ -12,8 +12,7 @@ namespace {
 constexpr double kMaxIntervalS = 2.0;
 constexpr double kStopS = 1.0;
 
-// Of what is not known yet. How fast a boat goes; how fast it turns; its accelerations.
-constexpr double kUnknownSpeedSdMps = 3.0;
+// Of what is not known yet. How fast a boat turns; its accelerations.
 constexpr double kUnknownRateSdRadps = 0.2;
 constexpr double kUnknownAccelerationSdMps2 = 0.5;
 constexpr double kUnknownLevelSdM = 1.0;

@@ -31,6 +31,9 @@ using ErrorCovariance = Eigen::Matrix<double, kNumErrors, kNumErrors>;
 /// Whose slow error it is: of another sensor, or of another kind of fix, it begins anew.
 enum class ErrorKind { kNone, kRtk, kGnss, kTwoAntennas, kCompass, kCourse };
 
+/// How fast a boat goes of which nothing is known: standard deviation of each component ("a boat at 3 m/s").
+inline constexpr double kUnknownSpeedSdMps = 3.0;
+
 /// A slow error: a first-order Gauss-Markov process.
 struct ErrorModel {
   ErrorKind kind = ErrorKind::kNone;

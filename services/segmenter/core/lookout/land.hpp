@@ -8,7 +8,7 @@
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
-#include "services/segmenter/core/lookout/union_find.hpp"
+#include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
 

@@ -13,10 +13,10 @@
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
-#include "services/segmenter/core/lookout/union_find.hpp"
 #include "services/segmenter/core/measure.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
+#include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
 

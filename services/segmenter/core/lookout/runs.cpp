@@ -19,6 +19,7 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
   begin_of_line_.clear();
   run_of_return_.assign(grid.points().size(), kNone);
   const int num_columns = grid.num_columns();
+  occupied_.resize(static_cast<std::size_t>(num_columns) + 1);
   for (int line = 0; line < grid.num_lines(); ++line) {
     begin_of_line_.push_back(runs_.size());
     const auto goes_on = [&](int from, int to) {
@@ -31,17 +32,25 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
     while (start < num_columns && goes_on(grid.Wrap(start - 1), start)) ++start;
     const bool is_closed = start == num_columns;
     if (is_closed) start = 0;
-    std::int32_t last = TurnGrid::kNone;
-    for (int step = 0; step < num_columns; ++step) {
-      const int column = grid.Wrap(start + step);
-      const std::int32_t index = grid.At(line, column);
-      if (index != TurnGrid::kNone) {
-        if (last == TurnGrid::kNone || !AreLinked(grid.PointOf(last), grid.PointOf(index), link)) runs_.push_back({line, column, 0});
-        ++runs_.back().length;
-        run_of_return_[static_cast<std::size_t>(index)] = size() - 1;
-      }
-      last = index;
+    // The columns with a return, without a branch for each cell; then on from `start` over the seam.
+    std::int32_t num_occupied = 0;
+    for (int column = 0; column < num_columns; ++column) {
+      occupied_[static_cast<std::size_t>(num_occupied)] = column;
+      num_occupied += grid.At(line, column) != TurnGrid::kNone ? 1 : 0;
     }
+    const auto end = occupied_.begin() + num_occupied;
+    const auto first = std::lower_bound(occupied_.begin(), end, start);
+    int last_column = kNone;
+    const auto take = [&](int column) {
+      const std::int32_t index = grid.At(line, column);
+      const bool follows = last_column != kNone && column == grid.Wrap(last_column + 1);
+      if (!follows || !AreLinked(grid.PointOf(grid.At(line, last_column)), grid.PointOf(index), link)) runs_.push_back({line, column, 0});
+      ++runs_.back().length;
+      run_of_return_[static_cast<std::size_t>(index)] = size() - 1;
+      last_column = column;
+    };
+    std::for_each(first, end, take);
+    std::for_each(occupied_.begin(), first, take);
   }
   begin_of_line_.push_back(runs_.size());
 }

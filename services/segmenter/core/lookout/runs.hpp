@@ -39,6 +39,7 @@ class RunTable {
   std::vector<Run> runs_;
   std::vector<std::size_t> begin_of_line_;   // [lines + 1]
   std::vector<std::int32_t> run_of_return_;  // [returns]
+  std::vector<std::int32_t> occupied_;       // scratch: [columns + 1]
 };
 
 /// Of a run, by its place in it.

@@ -19,9 +19,9 @@ constexpr int kMaxBands = 64;
 constexpr double kMargin = 1e-9;
 
 // How far apart compatible components can be at most, in azimuth and in distance from the sensor.
-class Reach {
+class PairReach {
  public:
-  Reach(std::span<const ComponentCentroid> components, const ClusteringParams& params) : params_(params) {
+  PairReach(std::span<const ComponentCentroid> components, const ClusteringParams& params) : params_(params) {
     azimuth_rad_ = AzimuthReach(components);
     // (b) is d_short / d_long >= sin e2 / sin(t + e2), by the law of sines; t is at most acos e1.
     const double max_between_rad = std::acos(std::clamp(params.e1_cosine, -1.0, 1.0));
@@ -60,7 +60,7 @@ class Reach {
 // Components sorted into sectors of azimuth x bands of distance.
 class PolarGrid {
  public:
-  PolarGrid(std::span<const ComponentCentroid> components, const Reach& reach) {
+  PolarGrid(std::span<const ComponentCentroid> components, const PairReach& reach) {
     num_sectors_ = static_cast<int>(std::clamp(std::floor(kTwoPi * kSectorsPerReach / reach.azimuth_rad()), 1.0, kMaxSectors));
     const double sector_width_rad = kTwoPi / num_sectors_;
     sector_reach_ = std::min(num_sectors_ / 2, static_cast<int>(reach.azimuth_rad() / sector_width_rad) + 1);
@@ -137,7 +137,7 @@ class Uniter {
   Uniter(std::span<const ComponentCentroid> components, const PolarGrid& grid, const CompatibilityRule& rule)
       : components_(components), grid_(grid), rule_(rule), sets_(components.size()), is_one_(static_cast<std::size_t>(grid.num_cells()), 0) {}
 
-  void Unite(int cell, int other_cell) {
+  void Join(int cell, int other_cell) {
     const auto members = grid_.Members(cell);
     const auto others = grid_.Members(other_cell);
     const bool are_sets = IsOneSet(cell) && IsOneSet(other_cell);
@@ -146,7 +146,7 @@ class Uniter {
       for (const std::int32_t other : others) {
         if (sets_.Find(one) == sets_.Find(other)) continue;
         if (!rule_.AreCompatible(components_[static_cast<std::size_t>(one)], components_[static_cast<std::size_t>(other)])) continue;
-        sets_.Unite(one, other);
+        sets_.Join(one, other);
         if (are_sets) return;
       }
     }
@@ -201,11 +201,11 @@ std::vector<ComponentCentroid> Centroids(std::span<const Return> returns, const 
 
 std::vector<std::int32_t> ClusterComponents(std::span<const ComponentCentroid> components, const ClusteringParams& params) {
   const CompatibilityRule rule(params);
-  const PolarGrid grid(components, Reach(components, params));
+  const PolarGrid grid(components, PairReach(components, params));
   Uniter uniter(components, grid, rule);
   // What is near first: most of the rest is then of one cluster already.
   for (const int max_steps : {0, 1, std::max(kMaxBands, static_cast<int>(kMaxSectors))}) {
-    grid.ForEachPair(max_steps, [&uniter](int cell, int other) { uniter.Unite(cell, other); });
+    grid.ForEachPair(max_steps, [&uniter](int cell, int other) { uniter.Join(cell, other); });
   }
 
   std::vector<std::int32_t> cluster_of(components.size());

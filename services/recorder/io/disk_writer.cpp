@@ -1,0 +1,262 @@
+#include "services/recorder/io/disk_writer.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+namespace lookout::recorder {
+
+namespace {
+
+// What waits goes to the kernel so often: with the time of a sync below the second that is promised.
+constexpr std::chrono::milliseconds kWritePeriod(100);
+constexpr std::chrono::milliseconds kSyncPeriod(500);
+// Events are gathered in blocks of this size; one full block wakes the thread early.
+constexpr std::size_t kBlockBytes = 1024 * 1024;
+// A disk that was full must have a share of its reserve more than it, and room for some blocks, before a new log is begun: else each byte that is
+// freed makes one more small file.
+constexpr std::int64_t kResumeShareOfReserve = 10;
+constexpr std::int64_t kResumeBytes = 2 * kBlockBytes;
+
+std::string ErrnoText() { return std::system_category().message(errno); }
+
+std::string Megabytes(std::int64_t size_bytes) { return std::to_string(size_bytes / 1'000'000) + " MB"; }
+
+}  // namespace
+
+Disk RealDisk() {
+  Disk disk;
+  disk.write = [](int descriptor, const void* data, std::size_t size) { return ::write(descriptor, data, size); };
+  disk.sync = [](int descriptor) { return ::fdatasync(descriptor); };
+  disk.free_bytes = [](const std::filesystem::path& folder) -> std::int64_t {
+    struct statvfs state {};
+    if (::statvfs(folder.c_str(), &state) != 0) return -1;
+    return static_cast<std::int64_t>(state.f_bavail) * static_cast<std::int64_t>(state.f_frsize);
+  };
+  return disk;
+}
+
+DiskWriter::DiskWriter(std::filesystem::path folder, const DiskLimits& limits, Disk disk)
+    : folder_(std::move(folder)), limits_(limits), disk_(std::move(disk)), thread_([this] { Run(); }) {}
+
+DiskWriter::~DiskWriter() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_stopping_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void DiskWriter::BeginFile(std::string stem, std::vector<std::uint8_t> first_event) {
+  const std::lock_guard lock(mutex_);
+  status_.is_waiting_for_file = true;
+  status_.queue_bytes += static_cast<std::int64_t>(first_event.size());
+  queue_.push_back({std::move(stem), std::move(first_event), 1});
+}
+
+bool DiskWriter::Append(Bytes event) {
+  bool is_block_full = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!status_.is_recording && !status_.is_waiting_for_file) {
+      ++(status_.is_full ? status_.num_lost_full : status_.num_lost_fault);
+      return false;
+    }
+    const auto size_bytes = static_cast<std::int64_t>(event.size());
+    if (status_.queue_bytes + size_bytes > limits_.queue_bytes) {
+      ++status_.num_lost_queue_full;
+      status_.fault = "the disk stood still for so long that the queue of " + Megabytes(limits_.queue_bytes) + " was full";
+      return false;
+    }
+    if (queue_.empty() || !queue_.back().stem.empty() || queue_.back().bytes.size() + event.size() > kBlockBytes) {
+      queue_.emplace_back();
+      is_block_full = queue_.size() > 1;
+    }
+    auto& block = queue_.back();
+    block.bytes.insert(block.bytes.end(), event.begin(), event.end());
+    ++block.num_events;
+    status_.queue_bytes += size_bytes;
+    status_.queue_peak_bytes = std::max(status_.queue_peak_bytes, status_.queue_bytes);
+  }
+  if (is_block_full) wake_.notify_one();
+  return true;
+}
+
+void DiskWriter::Flush() {
+  std::unique_lock lock(mutex_);
+  const auto number = ++num_flushes_wanted_;
+  wake_.notify_one();
+  done_.wait(lock, [&] { return num_flushes_done_ >= number; });
+}
+
+DiskStatus DiskWriter::Status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+void DiskWriter::Run() {
+  for (bool is_last = false; !is_last;) {
+    std::deque<Block> blocks;
+    std::int64_t num_flushes = 0;
+    bool must_sync = false;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, kWritePeriod, [this] { return is_stopping_ || num_flushes_wanted_ > num_flushes_done_ || queue_.size() > 1; });
+      blocks.swap(queue_);
+      num_flushes = num_flushes_wanted_;
+      is_last = is_stopping_;
+      must_sync = is_last || num_flushes > num_flushes_done_;
+    }
+    // Taken from the front, so that memory goes with the queue.
+    for (; !blocks.empty(); blocks.pop_front()) {
+      WriteBlock(blocks.front());
+      const std::lock_guard lock(mutex_);
+      status_.queue_bytes -= static_cast<std::int64_t>(blocks.front().bytes.size());
+    }
+    if (must_sync || std::chrono::steady_clock::now() - last_sync_ >= kSyncPeriod) SyncFile();
+    if (is_last) CloseFile();
+    const std::lock_guard lock(mutex_);
+    num_flushes_done_ = num_flushes;
+    done_.notify_all();
+  }
+}
+
+void DiskWriter::WriteBlock(const Block& block) {
+  const bool begins = !block.stem.empty();
+  if (begins) CloseFile();
+  if (HasRoomFor(block)) {
+    if (begins) OpenFile(block.stem);
+    std::size_t num_written = 0;
+    while (descriptor_ >= 0 && num_written < block.bytes.size()) {
+      const auto result = disk_.write(descriptor_, block.bytes.data() + num_written, block.bytes.size() - num_written);
+      if (result > 0) {
+        num_written += static_cast<std::size_t>(result);
+      } else if (result == 0 || errno != EINTR) {
+        std::string reason = "write failed: " + (result == 0 ? "nothing is taken" : ErrnoText());
+        // What is torn is cut off: the log ends with a whole event.
+        if (file_bytes_ > 0 && ftruncate(descriptor_, file_bytes_) != 0) reason += "; its last event is torn";
+        SyncFile();
+        if (descriptor_ >= 0) Fail(reason);
+      }
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  if (begins) status_.is_waiting_for_file = false;
+  if (descriptor_ < 0) {
+    if (!begins) (status_.is_full ? status_.num_lost_full : status_.num_lost_fault) += block.num_events;
+    return;
+  }
+  file_bytes_ += static_cast<std::int64_t>(block.bytes.size());
+  num_unsynced_ += block.num_events;
+  status_.num_events += block.num_events;
+  status_.num_bytes += static_cast<std::int64_t>(block.bytes.size());
+}
+
+bool DiskWriter::HasRoomFor(const Block& block) {
+  if (block.stem.empty() && descriptor_ < 0) return false;
+  const auto free_bytes = disk_.free_bytes(folder_);
+  bool was_full = false;
+  {
+    const std::lock_guard lock(mutex_);
+    status_.free_bytes = free_bytes;
+    was_full = status_.is_full;
+  }
+  if (free_bytes < 0) return true;  // what is wrong there the write tells
+  const auto needed_bytes = limits_.reserve_bytes + (was_full ? limits_.reserve_bytes / kResumeShareOfReserve + kResumeBytes : 0);
+  if (free_bytes - static_cast<std::int64_t>(block.bytes.size()) >= needed_bytes) return true;
+  CloseFile();
+  const std::lock_guard lock(mutex_);
+  status_.is_full = true;
+  status_.is_recording = false;
+  status_.fault = folder_.string() + ": " + Megabytes(free_bytes) + " are free, " + Megabytes(limits_.reserve_bytes) +
+                  " of the disk are kept in reserve; move or delete logs";
+  return false;
+}
+
+void DiskWriter::OpenFile(const std::string& stem) {
+  std::error_code ignored;
+  std::filesystem::create_directories(folder_, ignored);  // what is wrong there open() tells
+  auto file = folder_ / (stem + ".lcmlog");
+  // Of two recorders that start in the same second each gets its own. Digits, since they sort behind the dot of a name without them, in any locale.
+  for (int i = 1; (descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
+    auto number = std::to_string(i);
+    number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
+    file = folder_ / (stem + number.append(".lcmlog"));
+  }
+  const std::string reason = descriptor_ < 0 ? ErrnoText() : "";
+  file_bytes_ = 0;
+  num_unsynced_ = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    status_.file = file;
+    if (descriptor_ >= 0) {
+      status_.is_recording = true;
+      status_.is_full = false;
+      ++status_.num_files;
+    }
+  }
+  if (descriptor_ < 0) {
+    Fail("cannot be made: " + reason);
+    return;
+  }
+  // The name of the file is on the disk as well. Where folders cannot be synced the file system does it by itself.
+  const int folder = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder >= 0) {
+    fsync(folder);
+    close(folder);
+  }
+}
+
+void DiskWriter::SyncFile() {
+  last_sync_ = std::chrono::steady_clock::now();
+  if (descriptor_ < 0) return;
+  if (num_unsynced_ > 0 && disk_.sync(descriptor_) != 0) {
+    const std::string reason = ErrnoText();
+    {
+      const std::lock_guard lock(mutex_);
+      status_.num_lost_fault += num_unsynced_;  // some may be there; nobody knows which
+      status_.num_events -= num_unsynced_;
+    }
+    num_unsynced_ = 0;
+    Fail("not on the disk: " + reason);
+    return;
+  }
+  num_unsynced_ = 0;
+  struct stat state {};
+  if (fstat(descriptor_, &state) == 0 && state.st_nlink == 0) Fail("was deleted");
+}
+
+void DiskWriter::CloseFile() {
+  if (descriptor_ < 0) return;
+  SyncFile();
+  if (descriptor_ < 0) return;
+  close(descriptor_);
+  descriptor_ = -1;
+}
+
+void DiskWriter::Fail(const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  if (descriptor_ >= 0) {
+    // On a full disk there would be one more empty file with each attempt.
+    if (file_bytes_ == 0) {
+      std::error_code ignored;
+      std::filesystem::remove(status_.file, ignored);
+      --status_.num_files;
+    }
+    close(descriptor_);
+    descriptor_ = -1;
+  }
+  status_.is_recording = false;
+  status_.is_full = false;
+  status_.fault = status_.file.string() + ": " + reason;
+  ++status_.num_faults;
+}
+
+}  // namespace lookout::recorder

@@ -1,0 +1,122 @@
+// Bytes of events to files, in a thread of its own: a disk that stands still for seconds does not hold up who receives.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+
+namespace lookout::recorder {
+
+/// What the writer asks of the operating system; a test puts faults in its place.
+struct Disk {
+  std::function<ssize_t(int descriptor, const void* data, std::size_t size)> write;  // as write(2)
+  std::function<int(int descriptor)> sync;                                           // as fdatasync(2)
+  std::function<std::int64_t(const std::filesystem::path& folder)> free_bytes;       // -1 = not known
+};
+
+/// The kernel's.
+Disk RealDisk();
+
+struct DiskLimits {
+  std::int64_t queue_bytes = 0;    // what may wait for the disk; an event beyond it is lost
+  std::int64_t reserve_bytes = 0;  // of the disk, is not written into
+};
+
+/// What became of the events, since the start.
+struct DiskStatus {
+  std::filesystem::path file;  // that is written, or was last
+  bool is_recording = false;
+  bool is_waiting_for_file = false;  // one was asked for and is not yet begun
+  bool is_full = false;              // not recording, for lack of room
+  std::string fault;                 // why something was lost last, or why it does not record
+  std::int64_t num_events = 0;       // handed to the kernel
+  std::int64_t num_bytes = 0;        // of them, as in the files
+  std::int64_t num_files = 0;
+  std::int64_t num_faults = 0;           // of the disk
+  std::int64_t num_lost_fault = 0;       // events, to a disk that did not take them
+  std::int64_t num_lost_full = 0;        // events, while there was no room
+  std::int64_t num_lost_queue_full = 0;  // events, while the disk stood still
+  std::int64_t queue_bytes = 0;
+  std::int64_t queue_peak_bytes = 0;
+  std::int64_t free_bytes = -1;  // as seen last; -1 = not known
+};
+
+/// Files are written in blocks of whole events. A block that the disk does not take whole is cut off again, so that a log ends with a whole event,
+/// and its file is closed; what comes until the next BeginFile is lost. Everything is on the disk (fdatasync) at most 0.7 s after Append, as long as
+/// the disk itself takes no longer.
+class DiskWriter {
+ public:
+  /// Starts the thread.
+  /// @param folder  of the files; made anew when it is gone
+  DiskWriter(std::filesystem::path folder, const DiskLimits& limits, Disk disk);
+
+  /// Writes what waits, as far as the disk takes it.
+  ~DiskWriter();
+  DiskWriter(const DiskWriter&) = delete;
+  DiskWriter& operator=(const DiskWriter&) = delete;
+
+  /// What follows goes into a new file. Where none can be made, or there is no room, it is lost until the next call that succeeds; no empty file
+  /// stays.
+  ///
+  /// @param stem         of its name; where that is taken "001", "002", ... is put behind it. No file is overwritten
+  /// @param first_event  its bytes; not counted as lost with a file that cannot be begun
+  void BeginFile(std::string stem, std::vector<std::uint8_t> first_event);
+
+  /// @param event  the bytes of one event
+  /// @return whether it waits for the disk; else it is lost and counted
+  bool Append(Bytes event);
+
+  /// Waits until all that was given is on the disk, or lost.
+  void Flush();
+
+  DiskStatus Status() const;
+
+ private:
+  struct Block {
+    std::string stem;  // not empty: begins a file
+    std::vector<std::uint8_t> bytes;
+    std::int64_t num_events = 0;
+  };
+
+  void Run();
+  void WriteBlock(const Block& block);
+  bool HasRoomFor(const Block& block);
+  void OpenFile(const std::string& stem);
+  void SyncFile();
+  void CloseFile();
+  void Fail(const std::string& reason);
+
+  const std::filesystem::path folder_;
+  const DiskLimits limits_;
+  const Disk disk_;
+
+  mutable std::mutex mutex_;  // of what stands here
+  std::condition_variable wake_;
+  std::condition_variable done_;
+  std::deque<Block> queue_;
+  DiskStatus status_;
+  bool is_stopping_ = false;
+  std::int64_t num_flushes_wanted_ = 0;
+  std::int64_t num_flushes_done_ = 0;
+
+  // Of the thread alone.
+  int descriptor_ = -1;
+  std::int64_t file_bytes_ = 0;
+  std::int64_t num_unsynced_ = 0;  // events that the kernel has and the disk may not
+  std::chrono::steady_clock::time_point last_sync_;
+
+  std::thread thread_;  // last: it begins when all else is there
+};
+
+}  // namespace lookout::recorder

@@ -1,0 +1,29 @@
+// What vlp16.txtpb says about sources, checked as far as it can be before any is opened. For whoever opens them: main, and lookout-doctor.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "common/io/ip_address.hpp"
+#include "common/io/udp_receiver.hpp"
+#include "services/vlp16/io/live_capture.hpp"
+#include "services/vlp16/params.hpp"
+
+namespace lookout::vlp16 {
+
+/// LoadParams, and besides that addresses are addresses, the filter compiles and captures can be read.
+///
+/// @param config_folder  the boat's folder, holding vlp16.txtpb
+/// @throws config::ConfigError with all faults, but those of the schema before others
+Params LoadChecked(const std::filesystem::path& config_folder);
+
+/// @return bind_address without a zone ("%eth0"); nullopt when it is no numeric address
+std::optional<io::IpAddress> BoundAddress(const Sources& sources);
+
+/// Of source UDP. Precondition: LoadChecked.
+io::UdpOptions ToUdpOptions(const Sources& sources, int port);
+
+/// Of source INTERFACE. Precondition: LoadChecked.
+LiveOptions ToLiveOptions(const Params& params);
+
+}  // namespace lookout::vlp16

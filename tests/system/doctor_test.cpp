@@ -1,0 +1,120 @@
+// lookout-doctor in a network namespace of its own, with the simulator and the processes live; and where nothing is.
+#include <chrono>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <map>
+#include <memory>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/bus/lcm_bus.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "tests/system/child.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
+
+class Doctor : public ::testing::Test {
+ protected:
+  fs::path folder_;
+  fs::path start_folder_ = fs::current_path();
+  std::map<std::string, std::unique_ptr<Child>> children_;
+
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("lookout_doctor_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
+    fs::current_path(folder_);  // the recorder's logs/ is made here
+  }
+  void TearDown() override {
+    children_.clear();
+    fs::current_path(start_folder_);
+    if (!HasFailure()) fs::remove_all(folder_);
+  }
+
+  std::string Config() const { return (folder_ / "config").string(); }
+  std::string Output(const std::string& name) const { return (folder_ / (name + ".out")).string(); }
+  void Start(const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {Bin(name), "--config", Config()});
+    children_[name] = std::make_unique<Child>(more, Output(name));
+  }
+  RunResult Ask() const { return RunProgram({Bin("doctor"), "--config", Config(), "--seconds", "2"}, Output("doctor")); }
+
+  // All but the disk's: how much room this computer has is no matter of the test.
+  static void ExpectNoFault(const RunResult& result) {
+    std::istringstream lines(result.output);
+    for (std::string line; std::getline(lines, line);) EXPECT_TRUE(line.rfind("fault ", 0) != 0 || line.find(" disk ") != std::string::npos) << line;
+    EXPECT_LE(result.exit_code, 1) << result.output;
+    EXPECT_EQ(result.exit_code, Has(result, "\n0 faults") ? 0 : 1) << result.output;
+  }
+  // Wrapped lines count as one.
+  static bool Has(const RunResult& result, const std::string& text) {
+    static const std::regex kWrap("\n {20}");
+    return std::regex_replace(result.output, kWrap, " ").find(text) != std::string::npos;
+  }
+};
+
+bool IsRouteThere() { return bus::HasRoute(*bus::ParseMulticast(bus::DefaultLcmUrl())); }
+
+TEST_F(Doctor, SeesASimulatedBoatByItselfAndThroughItsProcesses) {
+  if (!IsRouteThere()) GTEST_SKIP() << "for the namespace with a route";
+  Start("sim", {"--scene", "lake", "--seed", "3", "--seconds", "60", "--udp", "127.0.0.1"});
+  const auto by_itself = Ask();
+  ExpectNoFault(by_itself);
+  for (const auto& text :
+       {"ok       lidar      VLP-16, strongest return", "600 rpm", "datagrams from 127.0.0.1 to port 2368; this computer is 127.0.0.1 on lo",
+        "ok       clock      the lidar is locked to PPS", "ok       gnss       RTK, fixed", "ok       heading", "ok       attitude",
+        "ok       mounting   the lidar looks forward", "warning  process    none of Lookout's processes is heard"}) {
+    EXPECT_TRUE(Has(by_itself, text)) << text << " is missing in\n" << by_itself.output;
+  }
+
+  bus::LcmBus lcm(bus::DefaultLcmUrl());
+  int num_placed = 0;
+  bus::Subscribe<obstacles_t>(lcm, bus::kObstacles, [&](const obstacles_t& message) {
+    if (message.num_obstacles > 0 && message.obstacles[0].status == obstacle_t::STATUS_OK) ++num_placed;
+  });
+  lcm.HandleOnce(milliseconds(0));  // joins LCM's group
+  for (const auto& service : {"recorder", "georeferencer", "segmenter", "navigator", "vlp16"}) Start(service);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(20);
+  while (num_placed < 3 && std::chrono::steady_clock::now() < deadline) lcm.HandleOnce(milliseconds(50));
+  ASSERT_GE(num_placed, 3);
+  const auto through_processes = Ask();
+  ExpectNoFault(through_processes);
+  for (const auto& text : {" lidar      VLP-16, strongest return", "clock      the lidar is locked to PPS", "ok       gnss       RTK, fixed",
+                           "ok       heading", "(heard on the bus)", "process    vlp16 (pid ", "process    segmenter (pid ",
+                           "process    navigator (pid ", "process    georeferencer (pid ", "process    recorder (pid ", " obstacles  "}) {
+    EXPECT_TRUE(Has(through_processes, text)) << text << " is missing in\n" << through_processes.output;
+  }
+
+  children_["segmenter"]->Signal(SIGKILL);
+  children_["segmenter"]->Wait(seconds(5));
+  const auto without = Ask();
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_TRUE(Has(without, "fault    process    segmenter is not heard, others are")) << without.output;
+  EXPECT_TRUE(Has(without, "fault    obstacles  the lidar runs, but no OBSTACLES come")) << without.output;
+}
+
+TEST_F(Doctor, SaysWhatIsMissingWhereNothingIs) {
+  if (IsRouteThere()) GTEST_SKIP() << "for the namespace without a route";
+  fs::remove(folder_ / "config/recorder.txtpb");
+  const auto result = Ask();
+  EXPECT_EQ(result.exit_code, 1);
+  for (const auto& text :
+       {"config/recorder.txtpb:1: file: cannot be read", "fault    route", "ip route add 239.255.76.0/24 dev lo",
+        "fault    lidar      no lidar packets", "no interface but loopback", "fault    gnss       no sentence came", "fault    process"}) {
+    EXPECT_TRUE(Has(result, text)) << text << " is missing in\n" << result.output;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "logs")) << "it looks, and makes nothing";
+}
+
+}  // namespace
+}  // namespace lookout::system_test

@@ -1,0 +1,225 @@
+// The proof: what ran live computes again to the same bytes. All processes over UDP LCM in a network namespace of their own, the simulator sends
+// real datagrams. LOOKOUT_PROOF_SECONDS sets the length of the data (default 4).
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <gtest/gtest.h>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/bus/log_file.hpp"
+#include "lookout/health_t.hpp"
+#include "tests/system/child.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+// Sources end first, so that what they send at their end still finds its takers.
+const std::vector<std::string> kFromSourceToLog{"vlp16", "navigator", "segmenter", "georeferencer", "recorder"};
+
+std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
+
+int DataSeconds() {
+  const char* text = std::getenv("LOOKOUT_PROOF_SECONDS");
+  return text != nullptr ? std::max(1, std::atoi(text)) : 4;
+}
+
+// Payloads per channel, in their order.
+using Payloads = std::map<std::string, std::vector<std::vector<std::uint8_t>>>;
+
+Payloads ReadLog(const fs::path& file) {
+  Payloads payloads;
+  bus::LogReader reader(file);
+  while (auto event = reader.Next()) payloads[event->channel].push_back(std::move(event->bytes));
+  EXPECT_EQ(reader.num_damaged(), 0);
+  return payloads;
+}
+
+std::int64_t Count(const Payloads& log, const std::string& channel) {
+  const auto found = log.find(channel);
+  return found == log.end() ? 0 : static_cast<std::int64_t>(found->second.size());
+}
+
+// Every message that every process says it lost, did not understand or could not send; and each process that says nothing.
+std::vector<std::string> LossesIn(const Payloads& log) {
+  std::map<std::string, health_t> last;
+  if (const auto found = log.find("HEALTH"); found != log.end()) {
+    for (const auto& bytes : found->second) {
+      if (const auto message = bus::Decode<health_t>(bytes)) last[message->process] = *message;
+    }
+  }
+  std::vector<std::string> losses;
+  for (const auto& process : kFromSourceToLog) {
+    if (!last.contains(process)) losses.push_back(process + " sent no HEALTH");
+  }
+  const std::set<std::string> counters{"messages_not_sent", "data_lost", "data_kernel_drops", "position_kernel_drops", "udp_kernel_drops"};
+  for (const auto& [process, health] : last) {
+    for (const auto& channel : health.channels) {
+      if (channel.num_lost + channel.num_undecodable > 0) losses.push_back(process + " lost " + channel.channel);
+    }
+    for (const auto& counter : health.counters) {
+      if (counters.contains(counter.name) && counter.count > 0) losses.push_back(process + " " + counter.name);
+    }
+  }
+  return losses;
+}
+
+// Every data message, byte for byte.
+void ExpectSameMessages(const Payloads& one, const Payloads& other) {
+  for (const auto& channel : bus::kChannels) {
+    if (!channel.is_replayed) continue;
+    const std::string name(channel.name);
+    ASSERT_GT(Count(one, name), 0) << name;
+    EXPECT_EQ(Count(one, name), Count(other, name)) << name;
+    EXPECT_TRUE(other.contains(name) && one.at(name) == other.at(name)) << name << " differs";
+  }
+}
+
+class Proof : public ::testing::Test {
+ protected:
+  fs::path folder_;
+  fs::path start_folder_ = fs::current_path();
+  std::map<std::string, std::unique_ptr<Child>> children_;
+  std::set<std::string> heard_;  // processes of which HEALTH came
+  std::map<std::string, std::int64_t> counts_;
+  std::unique_ptr<bus::LcmBus> lcm_;
+
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("lookout_proof_" + std::to_string(getpid()));
+    for (const std::string name : {"live", "x1", "x10"}) {
+      fs::create_directories(folder_ / name);
+      fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / name / "config");
+    }
+    for (const std::string name : {"x1", "x10"}) {
+      SetSource(folder_ / name / "config/vlp16.txtpb", "source: UDP", "source: LOG");
+      SetSource(folder_ / name / "config/navigator.txtpb", "source: LIVE", "source: LOG");
+    }
+  }
+  void TearDown() override {
+    children_.clear();
+    fs::current_path(start_folder_);
+    if (!HasFailure()) fs::remove_all(folder_);
+  }
+
+  static void SetSource(const fs::path& file, const std::string& from, const std::string& to) {
+    std::ifstream in(file);
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    const auto place = text.find(from);
+    ASSERT_NE(place, std::string::npos) << file;
+    std::ofstream(file) << text.replace(place, from.size(), to);
+  }
+
+  // The recorder's logs/ is made in the folder of the run.
+  void EnterRun(const std::string& run) {
+    fs::current_path(folder_ / run);
+    heard_.clear();
+    counts_.clear();
+    lcm_ = std::make_unique<bus::LcmBus>(bus::DefaultLcmUrl());
+    bus::Subscribe<health_t>(*lcm_, bus::kHealth, [this](const health_t& message) { heard_.insert(message.process); });
+    for (const auto* channel : {&bus::kObstacles, &bus::kPose}) {
+      lcm_->SubscribeRaw(*channel, [this](std::string_view name, Bytes) { ++counts_[std::string(name)]; });
+    }
+  }
+
+  // Ends when each has said how it is: then it also hears.
+  void Start(const std::vector<std::string>& services) {
+    for (const auto& service : services) {
+      children_[service] = std::make_unique<Child>(std::vector<std::string>{Bin(service), "--config", "config"}, service + ".out");
+    }
+    const auto is_there = [this](const std::string& service) { return heard_.contains(service); };
+    ASSERT_TRUE(HandleUntil([&] { return std::ranges::all_of(services, is_there); })) << "a process does not report";
+  }
+
+  bool HandleUntil(const std::function<bool()>& is_done, seconds timeout = seconds(30)) {
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    while (!is_done() && std::chrono::steady_clock::now() < deadline) lcm_->HandleOnce(milliseconds(50));
+    return is_done();
+  }
+
+  // Ends each process once the bus has been silent (but for HEALTH) for a while: what it waits for is then with it.
+  Payloads StopAndRead() {
+    for (const auto& service : kFromSourceToLog) {
+      for (int num_silent = 0; num_silent < 4;) {
+        const auto before = counts_;
+        const auto until = std::chrono::steady_clock::now() + milliseconds(50);
+        while (std::chrono::steady_clock::now() < until) lcm_->HandleOnce(milliseconds(10));
+        // The live navigator never ends: it ticks.
+        num_silent = service == "vlp16" || service == "navigator" || before == counts_ ? num_silent + 1 : 0;
+      }
+      EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
+    }
+    children_.clear();
+    for (const auto& entry : fs::directory_iterator("logs")) {
+      if (entry.path().extension() != ".lcmlog") continue;
+      log_ = fs::absolute(entry.path());
+      return ReadLog(log_);
+    }
+    ADD_FAILURE() << "no log";
+    return {};
+  }
+
+  fs::path log_;  // of the latest run
+
+  Payloads RunLive() {
+    EnterRun("live");
+    Start({"recorder", "georeferencer", "segmenter"});
+    Start({"navigator", "vlp16"});  // nobody misses their start marks
+    const auto sim = RunProgram(
+        {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds()), "--udp", "127.0.0.1"},
+        "sim.out");
+    EXPECT_EQ(sim.exit_code, 0) << sim.output;
+    return StopAndRead();
+  }
+
+  // Plays the raw channels of a log, and nothing else, into live processes.
+  Payloads RunPlayed(const std::string& run, const std::string& speed, const fs::path& log, const Payloads& expected) {
+    EnterRun(run);
+    Start(kFromSourceToLog);
+    Child player({"lcm-logplayer", "-s", speed, "-e", "(LIDAR_PACKETS|NAV_RAW)", log.string()}, "logplayer.out");
+    EXPECT_TRUE(HandleUntil([&player] { return !player.IsRunning(); }, seconds(2 * DataSeconds() + 30)));
+    EXPECT_EQ(player.Wait(milliseconds(0)).value_or(-1), 0) << player.Output();
+    HandleUntil([&] { return counts_["OBSTACLES"] >= Count(expected, "OBSTACLES") && counts_["POSE"] >= Count(expected, "POSE"); });
+    return StopAndRead();
+  }
+};
+
+TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
+  const auto live = RunLive();
+  const auto log = log_;
+  ASSERT_EQ(LossesIn(live), std::vector<std::string>());  // the promise ends at a loss
+  EXPECT_GE(Count(live, "LIDAR_SCAN"), 10 * DataSeconds() - 2);
+  EXPECT_GE(Count(live, "RUN_INFO"), 1);
+
+  const auto replay = RunProgram({Bin("replay"), "--config", "config", "--in", log.string(), "--out", "again"}, "replay.out");
+  ASSERT_EQ(replay.exit_code, 0) << replay.output;
+  {
+    SCOPED_TRACE("lookout-replay");
+    ExpectSameMessages(live, ReadLog("again"));
+  }
+  // From the middle of the chain: the same obstacles.
+  const auto part =
+      RunProgram({Bin("replay"), "--config", "config", "--in", log.string(), "--out", "part", "--from", "SEGMENTS", "--from", "POSE"}, "part.out");
+  ASSERT_EQ(part.exit_code, 0) << part.output;
+  EXPECT_TRUE(ReadLog("part").at("OBSTACLES") == live.at("OBSTACLES"));
+
+  for (const std::string speed : {"1", "10"}) {
+    SCOPED_TRACE("lcm-logplayer at x" + speed);
+    const auto played = RunPlayed("x" + speed, speed, log, live);
+    EXPECT_EQ(LossesIn(played), std::vector<std::string>());
+    ExpectSameMessages(live, played);
+  }
+}
+
+}  // namespace
+}  // namespace lookout::system_test

@@ -1,0 +1,210 @@
+#include "tools/log/commands.hpp"
+
+#include <gtest/gtest.h>
+#include <lcm/eventlog.h>
+#include <sstream>
+
+#include "tests/unit/log/small_log.hpp"
+
+namespace lookout::log {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LogCommands : public log_test::SmallLog {
+ protected:
+  std::ostringstream out_;
+  std::ostringstream errors_;
+
+  // Two minutes: RUN_INFO at 0 and 60 s, POSE each 10 s, NOISE each 20 s.
+  std::vector<bus::LogEvent> TwoMinutes() const {
+    std::vector<bus::LogEvent> events;
+    for (int second = 0; second <= 120; second += 10) {
+      if (second % 60 == 0) events.push_back(RunInfo(second));
+      events.push_back(Pose(second, second / 10));
+      if (second % 20 == 0) events.push_back(Event(start_ + std::chrono::seconds(second), "NOISE", {1, 2, 3}));
+    }
+    return events;
+  }
+  bool Said(const std::string& text) const { return out_.str().find(text) != std::string::npos; }
+  SliceRequest Request(const fs::path& in) const {
+    SliceRequest request;
+    request.inputs = {in};
+    request.output = folder_ / "out";
+    return request;
+  }
+  // "POSE 10" and so on: channel and second.
+  std::vector<std::string> Sliced(const SliceRequest& request) {
+    Slice(request, out_, errors_);
+    std::vector<std::string> lines;
+    for (const auto& event : Read(request.output)) {
+      lines.push_back(event.channel + " " + std::to_string((event.time - start_) / std::chrono::seconds(1)));
+    }
+    return lines;
+  }
+};
+
+TEST_F(LogCommands, InfoTellsChannelsTypesRatesGapsAndWhoMadeIt) {
+  const auto file =
+      Write("log", {RunInfo(0), Pose(1, 0), Pose(2, 1), Pose(3, 5), Pose(7, 6), Event(start_ + std::chrono::seconds(10), "UGLY\n", {1})});
+  Info({file}, out_);
+  EXPECT_TRUE(Said("damage    none\n"));
+  EXPECT_TRUE(Said("events    6\n"));
+  EXPECT_TRUE(Said("start     2027-01-15T08:00:00.000000Z\n"));
+  EXPECT_TRUE(Said("span      10.000000 s\n"));
+  EXPECT_TRUE(Said("made by   recorder 0.1.0 on boat, wire types " + bus::SchemaDigest().substr(0, 12) + "\n"));
+  EXPECT_TRUE(Said("POSE                 pose_t                     4         3268     0.500        3       4.000  3.000000 s\n")) << out_.str();
+  EXPECT_TRUE(Said("UGLY?                ?                          1            1")) << out_.str();
+}
+
+TEST_F(LogCommands, InfoReadsRotatedLogsAsOne) {
+  const auto first = Write("1", {RunInfo(0), Pose(0, 0), Pose(1, 1)});
+  const auto second = Write("2", {RunInfo(2), Pose(3, 3)});
+  Info({first, second}, out_);
+  EXPECT_TRUE(Said("span      3.000000 s\n"));
+  EXPECT_TRUE(Said("POSE                 pose_t                     3         2451     0.667        1       2.000  1.000000 s\n")) << out_.str();
+}
+
+TEST_F(LogCommands, InfoNamesTypesByTheDescriptionThatTheLogHolds) {
+  run_info_t info{};
+  info.schema = "another version";
+  info.file_name = {"lcmtypes/gone_t.lcm"};
+  info.file_text = {log_test::kGoneType};
+  info.num_files = 1;
+  std::vector<std::uint8_t> message = log_test::kGoneFingerprint;
+  message.resize(24);
+  Info({Write("log", {Event(start_, "RUN_INFO", bus::Encode(info)), Event(start_, "OLD", message)})}, out_);
+  EXPECT_TRUE(Said("OLD                  gone_t ")) << out_.str();
+}
+
+TEST_F(LogCommands, InfoTellsWhereALogIsDamaged) {
+  const auto file = Write("log", TwoMinutes());
+  const auto text = Content(file);
+  SetContent(file, text.substr(0, 10'000) + std::string(500, 'x') + text.substr(10'000, text.size() - 10'100));
+  Info({file}, out_);
+  EXPECT_TRUE(Said("damage    2 stretches, ")) << out_.str();
+}
+
+TEST_F(LogCommands, RefuseWhatIsNoLog) {
+  SetContent(folder_ / "text", "this is no log");
+  EXPECT_THROW(Info({folder_ / "text"}, out_), std::runtime_error);
+  EXPECT_THROW(Info({folder_ / "nowhere"}, out_), std::runtime_error);
+  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", out_), std::runtime_error);
+  EXPECT_THROW(Slice(Request(folder_ / "text"), out_, errors_), std::runtime_error);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "nothing half done is left";
+}
+
+TEST_F(LogCommands, SliceTakesFromToAndBeginsWithTheRunInfoBefore) {
+  auto request = Request(Write("log", TwoMinutes()));
+  request.from = "15";
+  request.to = "40";
+  EXPECT_EQ(Sliced(request), (std::vector<std::string>{"RUN_INFO 20", "POSE 20", "NOISE 20", "POSE 30"}));
+  request.from = "2027-01-15T08:01:35Z";
+  request.to = "2027-01-15T08:01:40.000001Z";
+  EXPECT_EQ(Sliced(request), (std::vector<std::string>{"RUN_INFO 100", "POSE 100", "NOISE 100"}));
+  // LCM's reader takes it, and the numbers of the events are continuous.
+  lcm_eventlog_t* log = lcm_eventlog_create(request.output.c_str(), "r");
+  std::int64_t number = 0;
+  while (lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(log)) {
+    EXPECT_EQ(event->eventnum, number++);
+    lcm_eventlog_free_event(event);
+  }
+  lcm_eventlog_destroy(log);
+  EXPECT_EQ(number, 3);
+}
+
+TEST_F(LogCommands, SliceTakesChannelsAndTheFirstRunInfoAllTheSame) {
+  auto request = Request(Write("log", TwoMinutes()));
+  request.channels = {"NOISE"};
+  request.from = "70";
+  EXPECT_EQ(Sliced(request), (std::vector<std::string>{"RUN_INFO 80", "NOISE 80", "NOISE 100", "NOISE 120"}));
+}
+
+TEST_F(LogCommands, SliceOfEverythingIsTheSameFile) {
+  const auto request = Request(Write("log", TwoMinutes()));
+  Slice(request, out_, errors_);
+  EXPECT_EQ(Content(request.output), Content(request.inputs[0]));
+}
+
+TEST_F(LogCommands, SliceGoesAcrossRotatedLogs) {
+  auto request = Request(Write("1", {RunInfo(0), Pose(0, 0), Pose(1, 1)}));
+  request.inputs.push_back(Write("2", {RunInfo(2), Pose(2, 2)}));
+  request.from = "1";
+  EXPECT_EQ(Sliced(request), (std::vector<std::string>{"RUN_INFO 1", "POSE 1", "RUN_INFO 2", "POSE 2"}));
+}
+
+TEST_F(LogCommands, SliceSaysWhatIsWrongWithItsRequest) {
+  const auto file = Write("log", TwoMinutes());
+  for (const char* wrong : {"-5", "1e3", "soon", "1.", ".5", "1.1234567", "2027-01-15", "2027-13-15T08:00:00Z", "2027-02-30T08:00:00Z",
+                            "2027-01-15T24:00:00Z", "2027-01-15T08:00:60Z", "99999999999999999999", "2027-01-15T08:00:00"}) {
+    auto request = Request(file);
+    request.from = wrong;
+    EXPECT_THROW(Slice(request, out_, errors_), UsageError) << wrong;
+  }
+  auto backwards = Request(file);
+  backwards.from = "20";
+  backwards.to = "10";
+  EXPECT_THROW(Slice(backwards, out_, errors_), UsageError);
+  auto empty = Request(file);
+  empty.channels = {"NOSUCH"};
+  EXPECT_THROW(Slice(empty, out_, errors_), std::runtime_error);
+  auto onto_itself = Request(file);
+  onto_itself.output = file;
+  const auto before = Content(file);
+  EXPECT_THROW(Slice(onto_itself, out_, errors_), std::runtime_error);
+  EXPECT_EQ(Content(file), before);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
+  const auto events = TwoMinutes();
+  const auto file = Write("log", events);
+  const auto text = Content(file);
+  // The third event loses its sync word, the last is torn.
+  std::size_t third = 0;
+  for (int i = 0; i < 2; ++i) third += 28 + events[static_cast<std::size_t>(i)].channel.size() + events[static_cast<std::size_t>(i)].bytes.size();
+  auto damaged = text.substr(0, text.size() - 1);
+  damaged[third] = 'x';
+  SetContent(file, damaged);
+  Repair(file, folder_ / "out", out_);
+  const auto kept = Read(folder_ / "out");
+  ASSERT_EQ(kept.size(), events.size() - 2);
+  EXPECT_EQ(kept[2].bytes, events[3].bytes);
+  EXPECT_TRUE(Said("lost: 36 bytes at byte " + std::to_string(third) + ", between 2027-01-15T08:00:00.000000Z and 2027-01-15T08:00:10.000000Z\n"))
+      << out_.str();
+  EXPECT_TRUE(Said("lost: 35 bytes at byte " + std::to_string(text.size() - 36) + ", between 2027-01-15T08:02:00.000000Z and the end\n"))
+      << out_.str();
+  EXPECT_TRUE(Said("71 bytes lost in 2 stretches\n")) << out_.str();
+}
+
+TEST_F(LogCommands, RepairOfAWholeLogIsTheSameFile) {
+  const auto file = Write("log", TwoMinutes());
+  Repair(file, folder_ / "out", out_);
+  EXPECT_EQ(Content(folder_ / "out"), Content(file));
+  EXPECT_TRUE(Said("0 bytes lost in 0 stretches"));
+}
+
+// Any stretch of noise at any place: never more is lost than the events that it touched.
+TEST_F(LogCommands, RepairLosesNoEventThatNoDamageTouched) {
+  const auto events = TwoMinutes();
+  const auto file = Write("log", events);
+  const auto text = Content(file);
+  for (std::size_t place = 0; place + 40 < text.size(); place += 211) {
+    auto damaged = text;
+    for (std::size_t i = 0; i < 40; ++i) damaged[place + i] = static_cast<char>(place * 31 + i * 7);
+    SetContent(file, damaged);
+    Repair(file, folder_ / "out", out_);
+    const auto kept = Read(folder_ / "out");
+    std::size_t end = 0;
+    std::size_t num_untouched = 0;
+    for (const auto& event : events) {
+      const auto start = end;
+      end += 28 + event.channel.size() + event.bytes.size();
+      if (end <= place || start >= place + 40) ++num_untouched;
+    }
+    EXPECT_GE(kept.size(), num_untouched) << "noise at " << place;
+  }
+}
+
+}  // namespace
+}  // namespace lookout::log

@@ -1,0 +1,87 @@
+#include "tools/replay/plan.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lookout::replay {
+namespace {
+
+using Channels = std::set<std::string, std::less<>>;
+
+// A recorded day: everything.
+const Channels kDay{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES"};
+
+std::string PlanOf(const Request& request, const Channels& present = kDay) { return InWords(MakeLogPlan(request, present)); }
+
+TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
+  EXPECT_EQ(PlanOf({}), "ran: vlp16, segmenter, navigator, georeferencer\nread: LIDAR_PACKETS, NAV_RAW\n");
+  const auto plan = MakeLogPlan({}, kDay);
+  EXPECT_EQ(plan.lidar, vlp16::Input::kLog);
+  EXPECT_EQ(plan.navigation, navigator::Input::kLog);
+  EXPECT_TRUE(plan.Reads("NAV_RAW"));
+  EXPECT_FALSE(plan.Reads("POSE"));
+}
+
+TEST(ReplayPlan, WithoutNavRawTakesTheSentencesOfTheLidar) {
+  const auto plan = MakeLogPlan({}, {"LIDAR_PACKETS"});
+  EXPECT_EQ(InWords(plan), "ran: vlp16, segmenter, navigator, georeferencer\nread: LIDAR_PACKETS\n");
+  EXPECT_EQ(plan.navigation, navigator::Input::kOutside);
+}
+
+TEST(ReplayPlan, FromAChannelStopsWhatGivesItAndWhatIsBefore) {
+  EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}}), "ran: segmenter, navigator, georeferencer\nread: LIDAR_SCAN, NAV_RAW\n");
+  EXPECT_EQ(PlanOf({.from = {"SEGMENTS"}}), "ran: navigator, georeferencer\nread: SEGMENTS, NAV_RAW\n");
+  EXPECT_EQ(PlanOf({.from = {"POSE"}}), "ran: vlp16, segmenter, georeferencer\nread: LIDAR_PACKETS, POSE\n");
+  EXPECT_EQ(PlanOf({.from = {"SEGMENTS", "POSE"}}), "ran: georeferencer\nread: SEGMENTS, POSE\n");
+  EXPECT_EQ(PlanOf({.from = {"LIDAR_PACKETS", "NAV_RAW"}}), PlanOf({}));
+}
+
+TEST(ReplayPlan, FromLidarNmeaLeavesNavRawAside) {
+  const auto plan = MakeLogPlan({.from = {"LIDAR_NMEA"}}, kDay);
+  EXPECT_EQ(InWords(plan), "ran: segmenter, navigator, georeferencer\nread: LIDAR_SCAN, LIDAR_NMEA\n");
+  EXPECT_EQ(plan.navigation, navigator::Input::kOutside);
+}
+
+TEST(ReplayPlan, OnlySomeServicesReadWhatTheOthersGave) {
+  EXPECT_EQ(PlanOf({.only = {"segmenter"}}), "ran: segmenter\nread: LIDAR_SCAN\n");
+  EXPECT_EQ(PlanOf({.only = {"vlp16"}}), "ran: vlp16\nread: LIDAR_PACKETS\n");
+  EXPECT_EQ(PlanOf({.only = {"navigator"}}), "ran: navigator\nread: NAV_RAW\n");
+  EXPECT_EQ(PlanOf({.only = {"georeferencer"}}), "ran: georeferencer\nread: SEGMENTS, POSE\n");
+  EXPECT_EQ(PlanOf({.only = {"georeferencer", "segmenter"}}), "ran: segmenter, georeferencer\nread: LIDAR_SCAN, POSE\n");
+  EXPECT_EQ(PlanOf({.only = {"vlp16", "georeferencer"}}), "ran: vlp16, georeferencer\nread: LIDAR_PACKETS, SEGMENTS, POSE\n");
+  EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}, .only = {"segmenter"}}), "ran: segmenter\nread: LIDAR_SCAN\n");
+}
+
+TEST(ReplayPlan, RefusesWhatContradictsItself) {
+  EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_SCAN"}, .only = {"vlp16"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"POSE"}, .only = {"segmenter"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_PACKETS", "LIDAR_SCAN"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"NAV_RAW", "LIDAR_NMEA"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"OBSTACLES"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.only = {"recorder"}}, kDay), RequestError);
+  EXPECT_THROW(Candidates({.from = {"POSE"}, .only = {"segmenter"}}), RequestError);
+}
+
+TEST(ReplayPlan, RefusesALogThatLacksWhatIsAskedFor) {
+  EXPECT_THROW(MakeLogPlan({}, {"POSE", "SEGMENTS"}), std::runtime_error);
+  EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_SCAN"}}, {"LIDAR_PACKETS", "NAV_RAW"}), std::runtime_error);
+  EXPECT_THROW(MakeLogPlan({.only = {"segmenter"}}, {"LIDAR_PACKETS", "NAV_RAW"}), std::runtime_error);
+  EXPECT_THROW(MakeLogPlan({.only = {"navigator", "segmenter"}}, {"NAV_RAW"}), std::runtime_error);
+  EXPECT_NO_THROW(MakeLogPlan({.only = {"georeferencer"}}, {"SEGMENTS"}));  // obstacles in the vessel frame
+}
+
+TEST(ReplayPlan, NeedsNoMoreThanItsCandidates) {
+  EXPECT_EQ(Candidates({}), (Channels{"LIDAR_PACKETS", "NAV_RAW"}));
+  EXPECT_EQ(Candidates({.only = {"segmenter"}}), (Channels{"LIDAR_SCAN"}));
+  EXPECT_EQ(Candidates({.from = {"LIDAR_NMEA"}}), (Channels{"LIDAR_NMEA", "LIDAR_SCAN"}));
+}
+
+TEST(ReplayPlan, OfACaptureHasNoMessagesToRead) {
+  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: vlp16, segmenter, navigator, georeferencer\nread: datagrams\n");
+  EXPECT_EQ(InWords(MakeCapturePlan({.only = {"navigator"}})), "ran: navigator\nread: datagrams\n");
+  EXPECT_THROW(MakeCapturePlan({.from = {"LIDAR_PACKETS"}}), RequestError);
+  EXPECT_THROW(MakeCapturePlan({.only = {"segmenter"}}), RequestError);
+  EXPECT_THROW(MakeCapturePlan({.only = {"georeferencer"}}), RequestError);
+}
+
+}  // namespace
+}  // namespace lookout::replay

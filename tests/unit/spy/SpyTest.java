@@ -1,0 +1,344 @@
+package lookout.spy;
+
+import java.awt.Color;
+import java.awt.Graphics2D;
+import java.awt.image.BufferedImage;
+import java.io.IOException;
+import java.util.ArrayList;
+import java.util.List;
+import java.util.Random;
+import lcm.lcm.LCMDataInputStream;
+import lcm.lcm.LCMDataOutputStream;
+import lcm.lcm.LCMEncodable;
+import lcm.spy.SpyPlugin;
+import lookout.lidar_scan_t;
+import lookout.obstacle_t;
+import lookout.obstacles_t;
+import lookout.pose_t;
+import lookout.segment_t;
+import lookout.segments_t;
+
+/** The plugin without a display: what it handles, what it draws where, and that no message ends it. Exit code 1 and a line for each failure. */
+public final class SpyTest {
+  private static final int WIDTH = 1240;
+  private static final int HEIGHT = 940;
+  private static final double RADIUS_M = 50.0;
+  private static final long NOW_MS = 1_000_000;
+  private static int num_failures = 0;
+
+  private SpyTest() {}
+
+  private static void expect(boolean is_true, String sentence) {
+    if (is_true) return;
+    ++num_failures;
+    System.out.println("FAILED: " + sentence);
+  }
+
+  private static void expectColour(BufferedImage image, double x, double y, Color expected, String what) {
+    Color actual = new Color(image.getRGB((int) x, (int) y));
+    expect(actual.equals(expected), what + ": " + actual + " instead of " + expected);
+  }
+
+  // Two rings, four columns (ahead, starboard, astern, port); one return: starboard, lower ring, 20 m.
+  private static lidar_scan_t scanOf(long seq) {
+    lidar_scan_t scan = new lidar_scan_t();
+    scan.utime_us = 1000 + seq;
+    scan.seq = seq;
+    scan.num_parts = 1;
+    scan.model = "VLP-16";
+    scan.range_unit_m = 0.002;
+    scan.num_rings = 2;
+    scan.elevation_rad = new float[] {0f, 0.03f};
+    scan.azimuth_offset_rad = new float[2];
+    scan.time_offset_ns = new int[2];
+    scan.origin_height_m = new float[2];
+    scan.num_returns = 1;
+    scan.return_kind = new int[] {1};
+    scan.num_turn_columns = 4;
+    scan.num_columns = 4;
+    scan.azimuth_rad = new float[] {0f, (float) (0.5 * Math.PI), (float) Math.PI, (float) (1.5 * Math.PI)};
+    scan.time_ns = new int[4];
+    scan.num_cells = 8;
+    scan.range = new short[8];
+    scan.range[2] = 10_000;
+    scan.reflectivity = new byte[8];
+    return scan;
+  }
+
+  private static segments_t segmentsOf(long seq) {
+    segments_t segments = new segments_t();
+    segments.utime_us = 1000 + seq;
+    segments.seq = seq;
+    segments.num_parts = 1;
+    segments.num_rings = 2;
+    segments.num_returns = 1;
+    segments.num_columns = 4;
+    segments.num_cells = 8;
+    segments.label = new short[8];
+    segments.label[2] = 3;
+    segments.num_segments = 1;
+    segments.segments = new segment_t[] {segmentOf(3, 0f, -20f)};
+    return segments;
+  }
+
+  private static segment_t segmentOf(int id, float x_m, float y_m) {
+    segment_t segment = new segment_t();
+    segment.id = id;
+    segment.confidence = segment_t.CONFIDENCE_SURE;
+    segment.nearest_m[0] = x_m;
+    segment.nearest_m[1] = y_m;
+    segment.hull_x_m = new float[0];
+    segment.hull_y_m = new float[0];
+    segment.hull_time_us = new int[0];
+    segment.waterline_x_m = new float[0];
+    segment.waterline_y_m = new float[0];
+    segment.waterline_time_us = new int[0];
+    return segment;
+  }
+
+  private static obstacle_t obstacleOf(int id, float x_m, float y_m) {
+    obstacle_t obstacle = new obstacle_t();
+    obstacle.id = id;
+    obstacle.confidence = obstacle_t.CONFIDENCE_SURE;
+    obstacle.nearest_vessel_m[0] = x_m;
+    obstacle.nearest_vessel_m[1] = y_m;
+    obstacle.range_m = (float) Math.hypot(x_m, y_m);
+    obstacle.bearing_rad = (float) Math.atan2(-y_m, x_m);
+    obstacle.footprint_vessel_x_m = new float[0];
+    obstacle.footprint_vessel_y_m = new float[0];
+    obstacle.footprint_east_m = new float[0];
+    obstacle.footprint_north_m = new float[0];
+    obstacle.waterline_vessel_x_m = new float[0];
+    obstacle.waterline_vessel_y_m = new float[0];
+    obstacle.waterline_east_m = new float[0];
+    obstacle.waterline_north_m = new float[0];
+    return obstacle;
+  }
+
+  private static obstacles_t obstaclesOf(long seq, obstacle_t... obstacles) {
+    obstacles_t message = new obstacles_t();
+    message.utime_us = 1000 + seq;
+    message.seq = seq;
+    message.num_parts = 1;
+    message.num_obstacles = obstacles.length;
+    message.obstacles = obstacles;
+    return message;
+  }
+
+  private static byte[] encoded(LCMEncodable message) throws Exception {
+    LCMDataOutputStream bytes = new LCMDataOutputStream();
+    message.encode(bytes);
+    return bytes.toByteArray();
+  }
+
+  private static BufferedImage painted(Turns turns, int width, int height, long now_ms) {
+    BufferedImage image = new BufferedImage(width, height, BufferedImage.TYPE_INT_RGB);
+    Graphics2D g = image.createGraphics();
+    Painter.paint(g, width, height, turns.picture(), RADIUS_M, now_ms, turns.num_refused());
+    g.dispose();
+    return image;
+  }
+
+  private static void theSpyFindsThePluginWhichHandlesThreeTypes() {
+    List<String> found = new ArrayList<>();
+    lcm.util.ClassDiscoverer.findClasses((jar, type) -> {
+      if (List.of(type.getInterfaces()).contains(SpyPlugin.class)) found.add(type.getName());
+    });
+    expect(found.equals(List.of("lookout.spy.SpyView")), "scanning the class path finds the plugin: " + found);
+    SpyPlugin plugin = new SpyView();
+    expect(plugin.canHandle(lidar_scan_t.LCM_FINGERPRINT), "handles lidar_scan_t");
+    expect(plugin.canHandle(segments_t.LCM_FINGERPRINT), "handles segments_t");
+    expect(plugin.canHandle(obstacles_t.LCM_FINGERPRINT), "handles obstacles_t");
+    expect(!plugin.canHandle(pose_t.LCM_FINGERPRINT), "leaves pose_t to the spy");
+    // So the spy asks for the name first.
+    expect("Range image and map".equals(plugin.getAction(null, null).getValue(javax.swing.Action.NAME)), "the action has a name");
+  }
+
+  private static void aReturnIsDrawnWhereItIs() {
+    Turns turns = new Turns();
+    turns.add(scanOf(1), NOW_MS);
+    turns.add(segmentsOf(1), NOW_MS);
+    BufferedImage image = painted(turns, WIDTH, HEIGHT, NOW_MS);
+    Painter.Layout layout = new Painter.Layout(WIDTH, HEIGHT);
+    int x = layout.ranges.x + RangeImage.xOf(0.5 * Math.PI, layout.ranges.width) + 5;
+    int low = layout.ranges.y + 3 * layout.ranges.height / 4;
+    int high = layout.ranges.y + layout.ranges.height / 4;
+    expectColour(image, x, low, Palette.ofRange(20.0), "range to starboard in the lower ring");
+    expectColour(image, x, high, Palette.NOTHING, "nothing in the upper ring");
+    expectColour(image, layout.ranges.x + layout.ranges.width / 2 + 5, low, Palette.NOTHING, "nothing ahead");
+    expectColour(image, x, low + layout.segments.y - layout.ranges.y, Palette.ofSegment(3), "segment 3 to starboard in the lower ring");
+    double map_x = MapView.screenX(layout.map, RADIUS_M, -20.0);
+    double map_y = MapView.screenY(layout.map, RADIUS_M, 0.0);
+    expectColour(image, Math.round(map_x), Math.round(map_y), Palette.ofSegment(3), "segment 3 on the map, 20 m to starboard");
+    // Between the rings of 20 and 30 m, off the line at 270 degrees.
+    expectColour(image, Math.round(MapView.screenX(layout.map, RADIUS_M, 25.0)), Math.round(map_y) + 30, Palette.BACKGROUND, "nothing to port");
+  }
+
+  private static void obstaclesGiveTheBowAndTheirMarks() {
+    // The lidar is turned by 90 degrees: its x axis looks to port.
+    Turns turns = new Turns();
+    turns.add(scanOf(1), NOW_MS);
+    segments_t segments = segmentsOf(1);
+    segments.num_segments = 2;
+    segments.segments = new segment_t[] {segmentOf(3, 0f, -20f), segmentOf(4, 10f, 0f)};
+    turns.add(segments, NOW_MS);
+    turns.add(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f)), NOW_MS);
+    Mounting mounting = turns.picture().mounting;
+    expect(mounting != null && Math.abs(mounting.yaw_rad - 0.5 * Math.PI) < 1e-6, "the mounting is found");
+    expect(turns.picture().obstacles.get(0).id == 4, "the nearest obstacle stands first");
+    Painter.Layout layout = new Painter.Layout(WIDTH, HEIGHT);
+    BufferedImage image = painted(turns, WIDTH, HEIGHT, NOW_MS);
+    double x = MapView.screenX(layout.map, RADIUS_M, 0.0);
+    double y = MapView.screenY(layout.map, RADIUS_M, 20.0);
+    expectColour(image, Math.round(x), Math.round(y), Palette.ofSegment(3), "segment 3 is now ahead");
+    expect(new Color(image.getRGB((int) Math.floor(x), (int) Math.floor(y - 4))).getRed() < 128, "a dark ring around the obstacle");
+    BufferedImage later = painted(turns, WIDTH, HEIGHT, NOW_MS + 2001);
+    expect(new Color(later.getRGB((int) Math.floor(x), (int) Math.floor(y - 4))).getRed() > 128, "after 2 s the ring is gone");
+    expectColour(later, layout.map.getCenterX() - 80, layout.map.y + 12, Palette.ALERT, "and the picture says that it is old");
+  }
+
+  private static void theMountingIsNotGuessed() {
+    List<segment_t> segments = new ArrayList<>();
+    List<obstacle_t> obstacles = new ArrayList<>();
+    List<obstacle_t> mirrored = new ArrayList<>();
+    Mounting truth = new Mounting(Math.toRadians(5.0), 0.5, -0.1);
+    float[][] places = {{10f, 3f}, {-7f, 12f}, {4f, -20f}};
+    for (int i = 0; i < places.length; ++i) {
+      float[] p = places[i];
+      segments.add(segmentOf(i + 1, p[0], p[1]));
+      obstacles.add(0, obstacleOf(i + 1, (float) truth.vesselX(p[0], p[1]), (float) truth.vesselY(p[0], p[1])));
+      mirrored.add(obstacleOf(i + 1, p[0], -p[1]));
+    }
+    Mounting found = Mounting.estimate(segments, obstacles);
+    expect(found != null && Math.abs(found.yaw_rad - truth.yaw_rad) < 1e-5 && Math.abs(found.x_m - 0.5) < 1e-4 && Math.abs(found.y_m + 0.1) < 1e-4,
+        "three obstacles give the mounting");
+    expect(Mounting.estimate(segments, mirrored) == null, "a lidar upside down fits no turn in the plane");
+    expect(Mounting.estimate(segments.subList(0, 1), obstacles) == null, "one obstacle is too few");
+    expect(Mounting.estimate(List.of(segmentOf(1, 10f, 3f), segmentOf(2, 11f, 3f)), List.of(obstacleOf(1, 10f, 3f), obstacleOf(2, 11f, 3f))) == null,
+        "two obstacles side by side are too few");
+  }
+
+  private static void turnsAreDrawnWhole() {
+    Turns turns = new Turns();
+    lidar_scan_t second = scanOf(1);
+    second.num_parts = 2;
+    second.part_index = 1;
+    second.first_column = 4;
+    lidar_scan_t first = scanOf(1);
+    first.num_parts = 2;
+    segments_t labels = segmentsOf(1);
+    labels.num_parts = 2;
+    segments_t more_labels = segmentsOf(1);
+    more_labels.num_parts = 2;
+    more_labels.part_index = 1;
+    turns.add(second, NOW_MS);
+    turns.add(more_labels, NOW_MS);
+    turns.add(labels, NOW_MS);
+    expect(turns.picture().turn == null, "half a scan is not drawn");
+    turns.add(first, NOW_MS);
+    expect(turns.picture().turn != null && turns.picture().turn.scanParts.get(0) == first, "both parts are, in their order, however they came");
+
+    Turns unlabelled = new Turns();
+    for (long seq = 1; seq <= 3; ++seq) unlabelled.add(scanOf(seq), NOW_MS);
+    expect(unlabelled.picture().turn != null && !unlabelled.picture().turn.isLabelled(), "without a segmenter scans are drawn nevertheless");
+  }
+
+  private static void noMessageEndsIt() throws Exception {
+    Random random = new Random(1);
+    String[] channels = {"LIDAR_SCAN", "SEGMENTS", "OBSTACLES"};
+    byte[][] good = {encoded(scanOf(1)), encoded(segmentsOf(1)), encoded(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f)))};
+    Turns turns = new Turns();
+    for (int i = 0; i < channels.length; ++i) Feed.decode(turns, channels[i], new LCMDataInputStream(good[i]), NOW_MS);
+    expect(turns.num_refused() == 0 && turns.picture().turn != null && turns.picture().obstacles.size() == 2, "the good ones are taken");
+    long num_cut = 0;
+    for (int i = 0; i < channels.length; ++i) {
+      for (int size = 0; size < good[i].length; ++size, ++num_cut) {
+        Feed.decode(turns, channels[i], new LCMDataInputStream(good[i], 0, size), NOW_MS);
+      }
+    }
+    expect(turns.num_refused() == num_cut, "each message that is cut short is counted");
+    for (int round = 0; round < 3000; ++round) {
+      int i = round % channels.length;
+      byte[] bytes = good[i].clone();
+      int extreme = round % 4 == 1 ? 0xFF : 0x7F;
+      for (int k = 0; k < 3; ++k) bytes[8 + random.nextInt(bytes.length - 8)] = (byte) (round % 2 == 0 ? random.nextInt() : extreme);
+      Feed.decode(turns, channels[i], new LCMDataInputStream(bytes), NOW_MS);
+      if (round % 100 == 0) painted(turns, 400 + round / 10, 500, NOW_MS);
+    }
+    expect(turns.num_refused() > num_cut + 100, "spoiled ones are counted");
+    Feed.decode(turns, "LIDAR_SCAN", new LCMDataInputStream(good[0]), NOW_MS);
+    for (int[] size : new int[][] {{1, 1}, {50, 900}, {900, 50}, {300, 200}}) painted(turns, size[0], size[1], NOW_MS);
+  }
+
+  private static void refuses(String what, java.util.function.Consumer<lidar_scan_t> spoil) {
+    lidar_scan_t scan = scanOf(1);
+    spoil.accept(scan);
+    Turns turns = new Turns();
+    turns.add(scan, NOW_MS);
+    turns.add(segmentsOf(1), NOW_MS);
+    expect(turns.num_refused() == 1 && turns.picture().turn == null, "a scan is refused: " + what);
+  }
+
+  private static void whatContradictsItselfIsRefused() {
+    refuses("fewer cells than columns times rings", scan -> {
+      scan.num_cells = 6;
+      scan.range = new short[6];
+    });
+    refuses("no ring", scan -> scan.num_rings = 0);
+    refuses("an azimuth that is no number", scan -> scan.azimuth_rad[1] = Float.NaN);
+    refuses("an elevation that is no number", scan -> scan.elevation_rad[1] = Float.POSITIVE_INFINITY);
+    refuses("a unit of range of 0", scan -> scan.range_unit_m = 0.0);
+    refuses("a part beyond the last", scan -> scan.part_index = 1);
+    refuses("more parts than a turn can have", scan -> scan.num_parts = 1_000_000);
+    Turns turns = new Turns();
+    segments_t segments = segmentsOf(1);
+    segments.num_columns = 5;
+    turns.add(segments, NOW_MS);
+    obstacles_t obstacles = obstaclesOf(1);
+    obstacles.num_parts = 0;
+    turns.add(obstacles, NOW_MS);
+    expect(turns.num_refused() == 2, "segments and obstacles too");
+  }
+
+  private static void aCountThatCannotBeIsRefusedBeforeItIsTaken() throws Exception {
+    byte[] good = encoded(scanOf(1));
+    // Fingerprint, four times, five counts and flags, the model with its length, the unit of range: then the number of rings.
+    int num_rings_at = 8 + 4 * 8 + 5 * 4 + 4 + "VLP-16".length() + 1 + 8;
+    expect(good[num_rings_at + 3] == 2, "the number of rings is where this test looks for it");
+    for (byte first : new byte[] {0x7F, 0x01, (byte) 0xFF}) {
+      byte[] bytes = good.clone();
+      bytes[num_rings_at] = first;
+      String reason = "nothing";
+      try {
+        new lidar_scan_t(new LCMDataInputStream(bytes));
+      } catch (IOException | RuntimeException | OutOfMemoryError error) {
+        reason = String.valueOf(error.getMessage());
+      }
+      expect(reason.endsWith("does not fit"), "a count that begins with " + first + " is refused: " + reason);
+    }
+  }
+
+  private static void coloursAreThoseOfTheExport() {
+    // As lookout-export draws them: ColourOfSegment of tools/export/colour.cpp.
+    expect(Palette.ofSegment(1).equals(new Color(138, 163, 27)), "colour of segment 1");
+    expect(Palette.ofSegment(2).equals(new Color(140, 19, 154)), "colour of segment 2");
+    expect(Palette.ofSegment(3).equals(new Color(24, 191, 125)), "colour of segment 3");
+    expect(Palette.ofSegment(7).equals(new Color(228, 37, 145)), "colour of segment 7");
+    expect(Palette.ofSegment(60).equals(new Color(24, 28, 191)), "colour of segment 60");
+    expect(Palette.ofSegment(1000).equals(new Color(37, 97, 228)), "colour of segment 1000");
+  }
+
+  public static void main(String[] arguments) throws Exception {
+    theSpyFindsThePluginWhichHandlesThreeTypes();
+    aReturnIsDrawnWhereItIs();
+    obstaclesGiveTheBowAndTheirMarks();
+    theMountingIsNotGuessed();
+    turnsAreDrawnWhole();
+    noMessageEndsIt();
+    whatContradictsItselfIsRefused();
+    aCountThatCannotBeIsRefusedBeforeItIsTaken();
+    coloursAreThoseOfTheExport();
+    System.out.println(num_failures == 0 ? "all passed" : num_failures + " failed");
+    System.exit(num_failures == 0 ? 0 : 1);
+  }
+}

@@ -1,0 +1,218 @@
+#include "tools/top/board.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include "common/core/angles.hpp"
+#include "lookout/segments_t.hpp"
+#include "tests/unit/top/bus_talk.hpp"
+
+namespace lookout::top {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(RateMeter, CountsTheLastFiveSeconds) {
+  RateMeter meter(kStart);
+  EXPECT_FALSE(meter.At(At(0.9)));
+  for (int i = 0; i < 100; ++i) meter.Add(At(0.1 * i), 1000);
+  const auto busy = meter.At(At(10.0));
+  ASSERT_TRUE(busy);
+  EXPECT_NEAR(busy->messages_hz, 10.0, 0.3);
+  EXPECT_NEAR(busy->bytes_per_s, 10'000.0, 300.0);
+  EXPECT_EQ(meter.At(At(20.0))->messages_hz, 0.0);
+}
+
+TEST(RateMeter, IsRightBeforeFiveSecondsAreOver) {
+  RateMeter meter(kStart);
+  for (int i = 0; i < 20; ++i) meter.Add(At(0.1 * i), 10);
+  EXPECT_NEAR(meter.At(At(2.0))->messages_hz, 10.0, 0.1);
+}
+
+TEST(Board, CountsLossByGapsAlsoInParts) {
+  Board board(kStart);
+  segments_t part{};
+  part.seq = 1;
+  part.num_parts = 2;
+  Say(board, bus::kSegments, part, 0.1);
+  part.seq = 3;  // part 1 of turn 1 and both of turn 2 (counted once) are missing
+  Say(board, bus::kSegments, part, 0.2);
+  const auto channels = board.Channels(At(0.7));
+  ASSERT_EQ(channels.size(), 1U);
+  EXPECT_EQ(channels[0].name, "SEGMENTS");
+  EXPECT_EQ(channels[0].num_lost, 2);
+  EXPECT_EQ(channels[0].num_bad, 0);
+  EXPECT_NEAR(std::chrono::duration<double>(channels[0].age).count(), 0.5, 1e-6);
+}
+
+TEST(Board, CountsLossOfHealthPerProcess) {
+  Board board(kStart);
+  // Each counts for itself: 7 beside 100 is no gap.
+  Say(board, bus::kHealth, HealthOf("vlp16", 100), 0.1);
+  Say(board, bus::kHealth, HealthOf("segmenter", 7), 0.2);
+  Say(board, bus::kHealth, HealthOf("vlp16", 101), 1.1);
+  EXPECT_EQ(board.Channels(At(1.2))[0].num_lost, 0);
+  Say(board, bus::kHealth, HealthOf("segmenter", 9), 1.2);
+  EXPECT_EQ(board.Channels(At(1.2))[0].num_lost, 1);
+}
+
+TEST(Board, KeepsTheOrderOfTheChannelTable) {
+  Board board(kStart);
+  board.Take("ZEBRA", {}, At(0.1));
+  board.Take("APPLE", {}, At(0.1));
+  Say(board, bus::kHealth, HealthOf("vlp16", 0), 0.1);
+  Say(board, bus::kPose, PoseAt(0, 0.0), 0.1);
+  const auto channels = board.Channels(At(0.2));
+  ASSERT_EQ(channels.size(), 4U);
+  EXPECT_EQ(channels[0].name, "POSE");
+  EXPECT_EQ(channels[1].name, "HEALTH");
+  EXPECT_EQ(channels[2].name, "APPLE");
+  EXPECT_FALSE(channels[2].num_lost);
+  EXPECT_EQ(channels[3].name, "ZEBRA");
+}
+
+TEST(Board, NeverDiesOfBytesAndCountsThem) {
+  Board board(kStart);
+  std::mt19937 random(1);
+  auto turn = bus::Encode(TurnOf(1, {ObstacleAt(1, 5.0F, 0.0F)}));
+  auto health = bus::Encode(HealthOf("vlp16", 1));
+  for (int i = 0; i < 2000; ++i) {
+    for (const auto& channel : bus::kChannels) {
+      std::vector<std::uint8_t> bytes(random() % 64);
+      for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random());
+      board.Take(channel.name, bytes, At(0.001 * i));
+    }
+    auto spoiled = i % 2 == 0 ? turn : health;
+    for (int k = 0; k < 4; ++k) spoiled[8 + random() % (spoiled.size() - 8)] = static_cast<std::uint8_t>(random());
+    board.Take(i % 2 == 0 ? "OBSTACLES" : "HEALTH", spoiled, At(0.001 * i));
+    board.Obstacles(At(0.001 * i));
+    board.NearestAlarm(At(0.001 * i));
+  }
+  const auto channels = board.Channels(At(2.0));
+  ASSERT_EQ(channels.size(), bus::kChannels.size());
+  for (const auto& channel : channels) EXPECT_GE(channel.num_bad, 2000) << channel.name;
+  EXPECT_LE(board.Processes(At(2.0)).size(), Board::kMaxProcesses);
+}
+
+TEST(Board, ForgetsNothingAboutManyChannelsButTheirNames) {
+  Board board(kStart);
+  for (int i = 0; i < 1000; ++i) board.Take("JUNK" + std::to_string(i), {}, At(0.1));
+  Say(board, bus::kPose, PoseAt(0, 0.0), 0.1);  // still finds its place
+  const auto channels = board.Channels(At(0.2));
+  EXPECT_EQ(channels.size(), Board::kMaxChannels + 1);
+  EXPECT_EQ(channels[0].name, "POSE");
+  EXPECT_EQ(board.num_unlisted(), 1000 - static_cast<std::int64_t>(Board::kMaxChannels));
+}
+
+TEST(Board, SortsObstaclesOfAllPartsAndKeepsTheTenNearest) {
+  Board board(kStart);
+  std::vector<obstacle_t> far;
+  for (int i = 0; i < 9; ++i) far.push_back(ObstacleAt(10 + i, 50.0F + static_cast<float>(i), 1.0F));
+  Say(board, bus::kObstacles, TurnOf(1, far, 0, 2), 0.1);
+  EXPECT_EQ(board.Obstacles(At(0.1)), nullptr);  // half a turn
+  auto lost_range = ObstacleAt(20, static_cast<float>(kNan), 0.0F);
+  Say(board, bus::kObstacles, TurnOf(1, {lost_range, ObstacleAt(21, 7.5F, 2.0F), ObstacleAt(22, 3.25F, 3.0F)}, 1, 2), 0.2);
+  const auto* obstacles = board.Obstacles(At(0.3));
+  ASSERT_NE(obstacles, nullptr);
+  EXPECT_EQ(obstacles->num_obstacles, 12);
+  EXPECT_EQ(obstacles->num_parts_missing, 0);
+  ASSERT_EQ(obstacles->lines.size(), 10U);
+  EXPECT_EQ(obstacles->lines[0].id, 22);
+  EXPECT_EQ(obstacles->lines[1].id, 21);
+  EXPECT_EQ(obstacles->lines[9].id, 17);  // 57 m; the farthest and the one without range do not fit
+}
+
+TEST(Board, ShowsATurnWithoutItsLastPartWhenTheNextBegins) {
+  Board board(kStart);
+  Say(board, bus::kObstacles, TurnOf(1, {ObstacleAt(1, 5.0F, 0.0F)}, 1, 3), 0.1);
+  Say(board, bus::kObstacles, TurnOf(2, {}, 0, 3), 0.2);
+  const auto* obstacles = board.Obstacles(At(0.3));
+  ASSERT_NE(obstacles, nullptr);
+  EXPECT_EQ(obstacles->lines.size(), 1U);
+  EXPECT_EQ(obstacles->num_parts_missing, 2);
+}
+
+TEST(Board, ObstaclesAgeOutAfterTwoSeconds) {
+  Board board(kStart);
+  Say(board, bus::kObstacles, TurnOf(1, {ObstacleAt(1, 5.0F, 0.0F)}), 1.0);
+  EXPECT_NE(board.Obstacles(At(2.9)), nullptr);
+  EXPECT_EQ(board.Obstacles(At(3.1)), nullptr);
+}
+
+TEST(Board, TrueBearingTakesTheHeadingOfThatTimeAcrossNorth) {
+  Board board(kStart);
+  Say(board, bus::kPose, PoseAt(900'000, DegToRad(10.0)), 0.1);
+  Say(board, bus::kPose, PoseAt(1'000'000, DegToRad(350.0)), 0.1);
+  Say(board, bus::kPose, PoseAt(1'080'000, DegToRad(200.0)), 0.1);
+  Say(board, bus::kObstacles, TurnOf(1, {ObstacleAt(1, 5.0F, static_cast<float>(DegToRad(30.0)))}), 0.2);
+  EXPECT_NEAR(RadToDeg(board.Obstacles(At(0.3))->lines[0].true_bearing_rad), 20.0, 1e-4);
+}
+
+TEST(Board, WithoutAHeadingOfThatTimeTheTrueBearingIsNotKnown) {
+  Board board(kStart);
+  Say(board, bus::kPose, PoseAt(1'200'000, 1.0), 0.1);  // 0.2 s from it
+  Say(board, bus::kObstacles, TurnOf(1, {ObstacleAt(1, 5.0F, 0.5F)}), 0.2);
+  EXPECT_TRUE(std::isnan(board.Obstacles(At(0.3))->lines[0].true_bearing_rad));
+  Say(board, bus::kPose, PoseAt(1'000'000, kNan), 0.3);
+  Say(board, bus::kObstacles, TurnOf(2, {ObstacleAt(1, 5.0F, 0.5F)}), 0.4);
+  EXPECT_TRUE(std::isnan(board.Obstacles(At(0.5))->lines[0].true_bearing_rad));
+}
+
+TEST(Board, TakesTheAlarmOutOfHealth) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOf("georeferencer", 0), 0.1);
+  EXPECT_FALSE(board.NearestAlarm(At(0.2)));
+  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "no POSE for 3 s; obstacle within 10.0 m: 7.3 m, 12 deg to port; another");
+  AddCounter(health, "alarm_active", 1);
+  AddCounter(health, "nearest_cm", 731);
+  Say(board, bus::kHealth, health, 1.1);
+  const auto alarm = board.NearestAlarm(At(1.6));
+  ASSERT_TRUE(alarm);
+  EXPECT_TRUE(alarm->is_active);
+  EXPECT_EQ(alarm->text, "obstacle within 10.0 m: 7.3 m, 12 deg to port");
+  health.counters[0].count = 0;
+  Say(board, bus::kHealth, health, 2.1);
+  EXPECT_FALSE(board.NearestAlarm(At(2.2))->is_active);
+  health.counters[0].count = 1;
+  health.reason = "";
+  Say(board, bus::kHealth, health, 3.1);
+  EXPECT_EQ(board.NearestAlarm(At(3.2))->text, "obstacle near: 7.3 m");
+}
+
+TEST(Board, TellsTheGreatestLatencyOfDataOnly) {
+  Board board(kStart);
+  auto health = HealthOf("vlp16", 0);
+  const auto add = [&health](const std::string& name, bool is_input, std::int64_t latency_p99_us) {
+    health_channel_t channel{};
+    channel.channel = name;
+    channel.is_input = is_input ? 1 : 0;
+    channel.latency_p99_us = latency_p99_us;
+    health.channels.push_back(channel);
+    health.num_channels = static_cast<std::int32_t>(health.channels.size());
+  };
+  add("LIDAR_SCAN", false, 107'000);
+  add("LIDAR_CLOCK", false, 90'000);
+  add("POSE", true, 999'000);
+  add("HEALTH", false, 888'000);
+  Say(board, bus::kHealth, health, 0.1);
+  EXPECT_EQ(board.Processes(At(0.2))[0].latency_p99_us, 107'000);
+}
+
+TEST(Board, AProcessThatFallsSilentStays) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOf("vlp16", 0), 0.1);
+  auto other = HealthOf("vlp16", 0);
+  other.host = "shore";
+  Say(board, bus::kHealth, other, 5.0);
+  const auto processes = board.Processes(At(5.0));
+  ASSERT_EQ(processes.size(), 2U);
+  EXPECT_EQ(processes[0].name, "vlp16");
+  EXPECT_TRUE(processes[0].is_silent);
+  EXPECT_EQ(processes[1].name, "vlp16@shore");
+  EXPECT_FALSE(processes[1].is_silent);
+}
+
+}  // namespace
+}  // namespace lookout::top

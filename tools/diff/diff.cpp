@@ -1,0 +1,251 @@
+#include "tools/diff/diff.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ostream>
+#include <set>
+#include <stdexcept>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/header.hpp"
+#include "common/bus/log_event.hpp"
+#include "common/bus/log_file.hpp"
+#include "tools/log/recorded_run.hpp"
+#include "tools/log/time_text.hpp"
+
+namespace lookout::diff {
+
+namespace {
+
+struct FirstDifference {
+  std::int64_t index = 0;  // of the message on its channel in A, or in B where only that has it; from 0
+  Utime time;              // of its event
+  Difference difference;
+};
+
+struct ChannelResult {
+  std::int64_t num_a = 0;
+  std::int64_t num_b = 0;
+  std::int64_t num_different = 0;  // pairs
+  std::int64_t num_only_a = 0;
+  std::int64_t num_only_b = 0;
+  std::optional<FirstDifference> first;
+
+  bool IsEqual() const { return !first; }
+};
+
+// One log: where the events of each channel stand, and the types that it describes.
+class IndexedLog {
+ public:
+  explicit IndexedLog(const std::filesystem::path& file) : reader_(file) {
+    bool has_types = false;
+    while (const auto event = reader_.Next()) {
+      const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
+      places_[event->channel].push_back(reader_.position_bytes() - size);
+      if (has_types) continue;
+      if (const auto run_info = log::RunInfoOf(*event)) {
+        types_ = log::TypesOf(*run_info);
+        has_types = true;
+      }
+    }
+    num_damaged_ = reader_.num_damaged();
+    if (places_.empty() && reader_.size_bytes() > 0) throw std::runtime_error(file.string() + ": is no lcm-log: it holds no event");
+  }
+
+  const std::map<std::string, std::vector<std::int64_t>, std::less<>>& places() const { return places_; }
+  const bus::WireTypes& types() const { return types_; }
+  std::int64_t num_damaged() const { return num_damaged_; }
+
+  bus::LogEvent Read(std::int64_t place) {
+    reader_.Seek(place);
+    auto event = reader_.Next();
+    if (!event) throw std::runtime_error("a log has changed while it was read");
+    return *std::move(event);
+  }
+
+ private:
+  bus::LogReader reader_;
+  std::map<std::string, std::vector<std::int64_t>, std::less<>> places_;
+  bus::WireTypes types_;
+  std::int64_t num_damaged_ = 0;
+};
+
+// They tell of the machine, not of the water; LCM_SELF_TEST is what LCM sends to itself when it opens UDP multicast.
+bool IsLeftOut(std::string_view channel) { return channel == bus::kHealth.name || channel == bus::kRunInfo.name || channel == "LCM_SELF_TEST"; }
+
+// How far a message that one log lacks is looked for in the other, and how often in vain: logs that have nothing in common are not searched through.
+constexpr std::size_t kMaxMissingInARow = 1000;
+constexpr int kMaxSearchesInVain = 4;
+
+// The messages of one channel in both logs, in their order.
+class ChannelComparison {
+ public:
+  ChannelComparison(const std::string& channel, const Tolerances& tolerances, const std::vector<const bus::WireTypes*>& versions, IndexedLog& a,
+                    IndexedLog& b)
+      : tolerances_(tolerances), versions_(versions), a_(a, channel), b_(b, channel) {}
+
+  ChannelResult Compare() {
+    result_.num_a = a_.NumLeft();
+    result_.num_b = b_.NumLeft();
+    while (a_.NumLeft() > 0 && b_.NumLeft() > 0) {
+      const auto event_a = a_.Read(0);
+      const auto event_b = b_.Read(0);
+      auto difference = CompareMessages(versions_, tolerances_, event_a.bytes, event_b.bytes);
+      if (difference && StepOverMissing(event_a, event_b)) continue;
+      if (difference) {
+        ++result_.num_different;
+        SetFirst(a_, event_a.time, *std::move(difference));
+      }
+      ++a_.next;
+      ++b_.next;
+    }
+    StepOver(a_, a_.NumLeft(), result_.num_only_a, "only in A");
+    StepOver(b_, b_.NumLeft(), result_.num_only_b, "only in B");
+    return std::move(result_);
+  }
+
+ private:
+  struct Side {
+    Side(IndexedLog& indexed_log, const std::string& channel) : log(indexed_log) {
+      const auto found = log.places().find(channel);
+      if (found != log.places().end()) places = &found->second;
+    }
+    std::int64_t NumLeft() const { return places == nullptr ? 0 : static_cast<std::int64_t>(places->size() - next); }
+    bus::LogEvent Read(std::size_t ahead) { return log.Read((*places)[next + ahead]); }
+
+    IndexedLog& log;
+    const std::vector<std::int64_t>* places = nullptr;
+    std::size_t next = 0;
+  };
+
+  static bool IsSameMessage(const bus::LogEvent& a, const bus::LogEvent& b) {
+    const auto header_a = bus::ReadHeader(a.bytes);
+    const auto header_b = bus::ReadHeader(b.bytes);
+    return header_a && header_b && header_a->fingerprint == header_b->fingerprint && header_a->utime_us == header_b->utime_us &&
+           header_a->seq == header_b->seq;
+  }
+
+  // Two messages with other times and numbers: where one log lacks some that the other has, steps over them. @return whether it did
+  bool StepOverMissing(const bus::LogEvent& event_a, const bus::LogEvent& event_b) {
+    if (IsSameMessage(event_a, event_b) || num_in_vain_ == kMaxSearchesInVain) return false;
+    const auto num_ahead = std::min<std::size_t>(kMaxMissingInARow, static_cast<std::size_t>(std::max(a_.NumLeft(), b_.NumLeft()) - 1));
+    for (std::size_t ahead = 1; ahead <= num_ahead; ++ahead) {
+      if (static_cast<std::int64_t>(ahead) < a_.NumLeft() && IsSameMessage(a_.Read(ahead), event_b)) {
+        StepOver(a_, static_cast<std::int64_t>(ahead), result_.num_only_a, "only in A");
+        return true;
+      }
+      if (static_cast<std::int64_t>(ahead) < b_.NumLeft() && IsSameMessage(b_.Read(ahead), event_a)) {
+        StepOver(b_, static_cast<std::int64_t>(ahead), result_.num_only_b, "only in B");
+        return true;
+      }
+    }
+    ++num_in_vain_;
+    return false;
+  }
+
+  void StepOver(Side& side, std::int64_t count, std::int64_t& counter, const char* what) {
+    if (count == 0) return;
+    if (!result_.first) SetFirst(side, side.Read(0).time, {what, "", ""});
+    side.next += static_cast<std::size_t>(count);
+    counter += count;
+  }
+
+  void SetFirst(const Side& side, Utime time, Difference difference) {
+    if (!result_.first) result_.first = FirstDifference{static_cast<std::int64_t>(side.next), time, std::move(difference)};
+  }
+
+  const Tolerances& tolerances_;
+  const std::vector<const bus::WireTypes*>& versions_;
+  Side a_;
+  Side b_;
+  ChannelResult result_;
+  int num_in_vain_ = 0;
+};
+
+std::string FirstText(const FirstDifference& first) {
+  const auto& difference = first.difference;
+  return fmt::format("message {} at {}: {}{}", first.index, log::TimeText(first.time), difference.field,
+                     difference.a.empty() && difference.b.empty() ? "" : ": " + difference.a + " | " + difference.b);
+}
+
+int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
+  IndexedLog a(request.a);
+  IndexedLog b(request.b);
+  for (const auto& [log, file] : {std::pair(&a, &request.a), std::pair(&b, &request.b)}) {
+    if (log->num_damaged() > 0) errors << fmt::format("{}: {} damaged stretches were skipped\n", file->string(), log->num_damaged());
+  }
+  const auto own_types = log::OwnTypes();
+  const std::vector<const bus::WireTypes*> versions{&own_types, &a.types(), &b.types()};
+
+  std::set<std::string> channels;
+  std::set<std::string> left_out;
+  for (const auto* log : {&a, &b}) {
+    for (const auto& entry : log->places()) (IsLeftOut(entry.first) ? left_out : channels).insert(entry.first);
+  }
+  if (!request.channels.empty()) {
+    for (const auto& channel : request.channels) {
+      if (!channels.contains(channel) && !left_out.contains(channel)) throw std::runtime_error(channel + ": no such channel in either log");
+    }
+    channels = {request.channels.begin(), request.channels.end()};
+    left_out.clear();
+  }
+  auto unknown = request.tolerances.Unknown(versions);
+  for (const auto& [channel, tolerances] : request.channel_tolerances) {
+    if (!channels.contains(channel)) throw std::runtime_error("--tolerance: channel " + channel + " is not compared");
+    std::ranges::copy(tolerances.Unknown(versions), std::back_inserter(unknown));
+  }
+  if (!unknown.empty()) throw std::runtime_error("--tolerance: no number of any type is called " + unknown.front());
+
+  std::int64_t num_different = 0;
+  std::int64_t num_messages = 0;
+  out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}  first difference\n", "channel", "A", "B", "differ", "only_A", "only_B");
+  for (const auto& channel : channels) {
+    const auto own = request.channel_tolerances.find(channel);
+    const auto& tolerances = own == request.channel_tolerances.end() ? request.tolerances : own->second;
+    const auto result = ChannelComparison(channel, tolerances, versions, a, b).Compare();
+    num_messages += std::max(result.num_a, result.num_b);
+    if (!result.IsEqual()) ++num_different;
+    out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", log::Printable(channel), result.num_a, result.num_b, result.num_different,
+                       result.num_only_a, result.num_only_b, result.first ? "  " + FirstText(*result.first) : "");
+  }
+  if (!left_out.empty()) out << fmt::format("left out: {}\n", fmt::join(left_out, ", "));
+  if (num_different == 0) {
+    out << fmt::format("equal: {} channels, {} messages\n", channels.size(), num_messages);
+    return kExitEqual;
+  }
+  out << fmt::format("different: {} of {} channels\n", num_different, channels.size());
+  return kExitDifferent;
+}
+
+}  // namespace
+
+void AddTolerance(const std::string& text, Request& request) {
+  const auto equals = text.rfind('=');
+  const auto colon = text.find(':');
+  const bool has_channel = colon != std::string::npos && colon < equals;
+  const auto start = has_channel ? colon + 1 : 0;
+  const std::string fault = "--tolerance " + text + ": FIELD=VALUE or CHANNEL:FIELD=VALUE is needed, with a VALUE of 0 or more";
+  if (equals == std::string::npos || equals == start || (has_channel && colon == 0)) throw std::runtime_error(fault);
+  double value = -1.0;
+  const char* const end = text.data() + text.size();
+  const auto result = std::from_chars(text.data() + equals + 1, end, value);
+  if (result.ec != std::errc() || result.ptr != end || !std::isfinite(value) || value < 0.0) throw std::runtime_error(fault);
+  const std::string field = text.substr(start, equals - start);
+  if (has_channel) {
+    request.channel_tolerances.try_emplace(text.substr(0, colon), request.tolerances).first->second.Set(field, value);
+  } else {
+    request.tolerances.Set(field, value);
+  }
+}
+
+int Run(const Request& request, std::ostream& out, std::ostream& errors) try {
+  return Compare(request, out, errors);
+} catch (const std::exception& error) {
+  errors << "lookout-diff: " << error.what() << "\n";
+  return kExitUnreadable;
+}
+
+}  // namespace lookout::diff

@@ -1,0 +1,87 @@
+// lookout-doctor: is this boat ready to cast off? Looks, tells, changes nothing.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/runtime/options.hpp"
+#include "common/runtime/process.hpp"
+#include "common/runtime/run_info.hpp"
+#include "tools/doctor/findings.hpp"
+#include "tools/doctor/machine.hpp"
+#include "tools/doctor/report.hpp"
+#include "tools/doctor/watch.hpp"
+
+namespace {
+
+// Less shows no rate, and a receiver that gives a fix a second may be missed.
+constexpr int kMinSeconds = 2;
+constexpr int kMaxSeconds = 3600;
+constexpr int kUsualSeconds = 5;
+
+struct Options {
+  std::filesystem::path config_folder;
+  bool check_only = false;
+  std::string lcm_url;
+  int seconds = kUsualSeconds;
+};
+
+Options ParseOptions(int argc, char** argv) {
+  Options options;
+  std::string config_folder;
+  CLI::App app("Looks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
+  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
+  app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
+  app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
+  app.set_version_flag("--version", "lookout-doctor " + lookout::runtime::Version());
+  app.footer("Exit code: 0 no fault; 1 a fault; 2 wrong command line, or with --check a wrong config.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // --help and --version come here too, with code 0.
+    std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : 2);
+  }
+  options.config_folder = config_folder;
+  if (options.lcm_url.empty()) options.lcm_url = lookout::bus::DefaultLcmUrl();
+  return options;
+}
+
+lookout::doctor::Observations Observe(const Options& options) {
+  namespace doctor = lookout::doctor;
+  doctor::Observations seen;
+  seen.config = doctor::ReadConfig(options.config_folder);
+  seen.bus = doctor::ReadBus(options.lcm_url);
+  seen.buffers = doctor::ReadBuffers(seen.config);
+  doctor::Watch(seen, std::chrono::seconds(options.seconds));
+  seen.interfaces = doctor::ReadInterfaces();
+  seen.is_host_clock_set = doctor::IsHostClockSet();
+  const auto rate_bytes_per_s = seen.disk.rate_bytes_per_s;
+  seen.disk = doctor::ReadDisk(seen);
+  seen.disk.rate_bytes_per_s = rate_bytes_per_s;
+  return seen;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto options = ParseOptions(argc, argv);
+  bool has_fault = false;
+  const int code = lookout::runtime::RunMain("doctor", [&] {
+    if (options.check_only) {
+      std::cout << lookout::runtime::EffectiveConfig(options.config_folder);
+      return;
+    }
+    const auto findings = lookout::doctor::Judge(Observe(options));
+    // no-color.org
+    const bool has_colours = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
+    std::cout << lookout::doctor::ToReport(findings, has_colours);
+    has_fault = lookout::doctor::HasFault(findings);
+  });
+  return code == EXIT_SUCCESS && has_fault ? EXIT_FAILURE : code;
+}

@@ -1,0 +1,156 @@
+// Position, heading, roll and pitch.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "common/core/angles.hpp"
+#include "common/core/utime.hpp"
+#include "tools/doctor/findings.hpp"
+#include "tools/doctor/words.hpp"
+
+namespace lookout::doctor {
+
+namespace {
+
+constexpr const char* kGnssSubject = "gnss";
+constexpr const char* kHeadingSubject = "heading";
+constexpr const char* kAttitudeSubject = "attitude";
+constexpr const char* kInputSubject = "input";
+
+constexpr double kFixSilenceS = 2.0;     // two periods of a receiver that gives one fix a second
+constexpr double kPoorFixM = 5.0;        // twice GNSS without correction: position_sd_m of navigator.proto
+constexpr int kFewSatellites = 5;        // four give a place in space; one to spare
+constexpr double kPoorHeadingDeg = 5.0;  // max_heading_coast_sd_deg of navigator.proto: 0.9 m at 10 m
+constexpr int kHeadingIndex = 8;         // of POSE.covariance
+
+std::string QualityInWords(int quality) {
+  switch (quality) {
+    case gnss_fix_t::QUALITY_GNSS:
+      return "GNSS";
+    case gnss_fix_t::QUALITY_DIFFERENTIAL:
+      return "differential GNSS";
+    case gnss_fix_t::QUALITY_PPS:
+      return "precise GNSS";
+    case gnss_fix_t::QUALITY_RTK_FIXED:
+      return "RTK, fixed";
+    case gnss_fix_t::QUALITY_RTK_FLOAT:
+      return "RTK, float";
+    case gnss_fix_t::QUALITY_DEAD_RECKONING:
+      return "dead reckoning";
+    case gnss_fix_t::QUALITY_MANUAL:
+      return "entered by hand";
+    case gnss_fix_t::QUALITY_SIMULATOR:
+      return "a receiver's simulator";
+    default:
+      return "no fix";
+  }
+}
+
+std::string FixInWords(const gnss_fix_t& fix, double age_s) {
+  std::string words = QualityInWords(fix.quality) + " from input '" + fix.source + "' (" + fix.sentence_type + ")";
+  if (fix.num_satellites >= 0) words += ", " + Count(fix.num_satellites, "satellite");
+  if (std::isfinite(fix.horizontal_sd_m)) words += ", sd " + Text(fix.horizontal_sd_m, 2) + " m per axis";
+  if (std::isfinite(fix.hdop)) words += ", HDOP " + Text(fix.hdop, 1);
+  words += ", " + Text(age_s, 1) + " s old";
+  if (std::isfinite(fix.latitude_deg) && std::isfinite(fix.longitude_deg)) {
+    words += ", at " + Text(std::abs(fix.latitude_deg), 5) + (fix.latitude_deg < 0.0 ? " S " : " N ") + Text(std::abs(fix.longitude_deg), 5) +
+             (fix.longitude_deg < 0.0 ? " W" : " E");
+  }
+  return words;
+}
+
+Finding JudgeFix(const Observations& seen) {
+  const auto& navigation = seen.navigation;
+  if (navigation.num_by_source.empty()) {
+    return {Grade::kFault, kGnssSubject, "no sentence came from any input of navigator.txtpb",
+            "is the receiver on; lookout-navigator --check lists the inputs in words; serial: right device and baud; UDP: its destination and port"};
+  }
+  if (!navigation.fix) {
+    const auto sources = Joined(navigation.num_by_source, [](const auto& entry) { return "'" + entry.first + "'"; });
+    return {Grade::kFault, kGnssSubject, "sentences come from " + sources + ", but none with a position (RMC, GGA, GLL, VNINS)",
+            "turn RMC and GGA on in the receiver; role and checksum_required of the input in navigator.txtpb"};
+  }
+  const auto& fix = *navigation.fix;
+  const double age_s = ToSeconds(std::chrono::microseconds(ToUtimeUs(seen.end) - fix.arrival_utime_us));
+  const auto words = FixInWords(fix, age_s);
+  if (fix.quality == gnss_fix_t::QUALITY_NONE) {
+    return {Grade::kFault, kGnssSubject, words, "the antenna needs a free view of the sky, and after a cold start some minutes; its cable"};
+  }
+  if (age_s > kFixSilenceS) return {Grade::kFault, kGnssSubject, words + ": it has stopped", "the receiver's power and cable"};
+  if (fix.quality >= gnss_fix_t::QUALITY_DEAD_RECKONING) {
+    return {Grade::kWarning, kGnssSubject, words + ": not measured by satellites", "the antenna's view of the sky; the receiver's mode"};
+  }
+  if (fix.num_satellites >= 0 && fix.num_satellites < kFewSatellites) {
+    return {Grade::kWarning, kGnssSubject, words + ": few satellites", "a freer view of the sky for the antenna"};
+  }
+  if (fix.horizontal_sd_m > kPoorFixM) return {Grade::kWarning, kGnssSubject, words + ": poor", "a freer view of the sky for the antenna; wait"};
+  return {Grade::kOk, kGnssSubject, words, {}};
+}
+
+std::string CourseInWords(double min_speed_mps) { return "the course over ground stands in for it above " + Text(min_speed_mps, 1) + " m/s"; }
+
+Finding JudgeHeading(const Observations& seen) {
+  const auto& pose = seen.navigation.pose;
+  const auto& filter = seen.config.navigation->navigator.filter;
+  const std::string cure =
+      "a GNSS compass, or an AHRS with heading (HDT, THS, PASHR, HDG with deviation and declination); its input and role in navigator.txtpb";
+  if (!pose || pose->heading_source == pose_t::HEADING_NONE || !std::isfinite(pose->heading_rad)) {
+    if (filter.use_course_as_heading) {
+      return {Grade::kWarning, kHeadingSubject, "none: obstacles are placed in the vessel frame only; " + CourseInWords(filter.min_course_speed_mps),
+              cure};
+    }
+    return {Grade::kFault, kHeadingSubject, "none, and the course shall not stand in: obstacles are placed in the vessel frame only", cure};
+  }
+  const double sd_deg = RadToDeg(std::sqrt(std::max(0.0, pose->covariance[kHeadingIndex][kHeadingIndex])));
+  const std::string value = Text(RadToDeg(pose->heading_rad), 1) + " deg from true north, sd " + Text(sd_deg, 1) + " deg";
+  if (pose->heading_source == pose_t::HEADING_COURSE) {
+    return {Grade::kWarning, kHeadingSubject, value + ", out of the course over ground: leeway and current are in it, and at rest there is none",
+            cure};
+  }
+  std::string words = value;
+  if (const auto& heading = seen.navigation.heading) words += ", from input '" + heading->source + "' (" + heading->sentence_type + ")";
+  if (sd_deg > kPoorHeadingDeg) {
+    return {Grade::kWarning, kHeadingSubject, words + ": poor, at 10 m an obstacle is " + Text(10.0 * DegToRad(sd_deg), 1) + " m aside",
+            "the heading sensor's own state; wait for its alignment"};
+  }
+  return {Grade::kOk, kHeadingSubject, words, {}};
+}
+
+Finding JudgeAttitude(const pose_t& pose) {
+  if (!pose.has_attitude) {
+    return {Grade::kWarning, kAttitudeSubject,
+            "roll and pitch are not measured: in waves, heights over the water and far obstacles are off, as their covariance says",
+            "an AHRS or IMU (PASHR, PSAT,HPR, VNINS, VNYMR, VNIMU) as an input of navigator.txtpb"};
+  }
+  const auto side = [](double angle_rad, const char* positive, const char* negative) {
+    return Text(std::abs(RadToDeg(angle_rad)), 1) + " deg " + (angle_rad < 0.0 ? negative : positive);
+  };
+  return {Grade::kOk,
+          kAttitudeSubject,
+          "now " + side(pose.pitch_rad, "bow up", "bow down") + " and " + side(pose.roll_rad, "starboard down", "port down") +
+              ": if the boat does not lie so, a sign in navigator.txtpb is wrong",
+          {}};
+}
+
+}  // namespace
+
+Findings JudgeNavigation(const Observations& seen) {
+  if (!seen.config.navigation) return {{Grade::kWarning, kGnssSubject, "not looked for: navigator.txtpb or boat.txtpb is wrong", "mend it first"}};
+  if (seen.navigation.via == Via::kNothing) {
+    return {{Grade::kWarning, kGnssSubject, "navigator.txtpb takes NAV_RAW of a log: no receiver is looked for", "source: LIVE for a receiver"}};
+  }
+  Findings findings;
+  for (const auto& [name, fault] : seen.navigation.input_faults) {
+    findings.push_back({Grade::kFault, kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"});
+  }
+  findings.push_back(JudgeFix(seen));
+  if (seen.navigation.num_by_source.empty()) return findings;
+  findings.push_back(JudgeHeading(seen));
+  if (seen.navigation.pose) findings.push_back(JudgeAttitude(*seen.navigation.pose));
+  if (seen.navigation.complaint.find("clock of this computer is off") != std::string::npos) {
+    findings.push_back({Grade::kWarning, "clock", seen.navigation.complaint, "set this computer's clock: chrony with the GNSS receiver or NTP"});
+  }
+  return findings;
+}
+
+}  // namespace lookout::doctor

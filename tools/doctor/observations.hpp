@@ -1,0 +1,136 @@
+// What was observed, before anybody judges it: plain values, so that each judgement can be tested without a boat.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/config/boat.hpp"
+#include "common/core/utime.hpp"
+#include "common/io/ip_address.hpp"
+#include "lookout/attitude_t.hpp"
+#include "lookout/gnss_fix_t.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/lidar_clock_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "services/navigator/params.hpp"
+#include "services/vlp16/params.hpp"
+
+namespace lookout::doctor {
+
+struct FileSeen {
+  std::string name;                 // of the file, without its folder
+  std::vector<std::string> faults;  // lines "path:line: field: reason"; none = it is right
+};
+
+/// The boat's config, as far as it is right.
+struct ConfigSeen {
+  std::vector<FileSeen> files;
+  std::optional<config::BoatFacts> boat;
+  std::optional<vlp16::Params> lidar;
+  std::optional<navigator::Params> navigation;
+  std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
+};
+
+/// The bus, before anything is heard on it.
+struct BusSeen {
+  std::string url;
+  std::string group;  // empty: no multicast
+  int time_to_live = 0;
+  std::string route_device;  // by which the group goes; empty = not known
+  std::string fault;         // why it could not be opened
+};
+
+/// Receive buffers of UDP sockets, bytes.
+struct BuffersSeen {
+  std::int64_t granted = 0;     // to who asks for `asked`
+  std::int64_t asked = 0;       // by Lookout's processes
+  std::int64_t by_default = 0;  // to who asks for none
+};
+
+/// One address of an interface of this computer; an interface without any has `address` empty.
+struct InterfaceSeen {
+  std::string name;
+  std::optional<io::IpAddress> address;
+  int prefix_bits = 0;       // of `address` in its own family
+  bool has_carrier = false;  // it is up, and something answers at the other end of the cable
+  bool is_loopback = false;
+};
+
+/// How something was observed.
+enum class Via {
+  kNothing,  // not looked for: reason in `fault`, or the config says that there is none
+  kBus,      // its process runs and was heard
+  kItself    // its process was not heard: the doctor opened the sources of the config itself
+};
+
+struct LidarSeen {
+  Via via = Via::kNothing;
+  std::string fault;      // why the ports could not be opened
+  std::string complaint;  // of the process, or of the same code inside the doctor; empty = none
+  // Datagrams to the data port by numeric source; kItself with source UDP alone.
+  std::map<std::string, std::int64_t> num_by_sender;
+  std::int64_t num_packets = 0;  // data packets, and host time of the first and the last
+  Utime first{};
+  Utime last{};
+  std::string model;    // of the last turn; empty = no turn
+  int num_returns = 0;  // per shot
+  int return_kind = 0;  // lidar_scan_t::RETURN_..., of the first
+  std::optional<lidar_clock_t> first_clock;
+  std::optional<lidar_clock_t> last_clock;
+};
+
+struct NavigationSeen {
+  Via via = Via::kNothing;
+  std::vector<std::pair<std::string, std::string>> input_faults;  // name, reason
+  std::string complaint;                                          // as in LidarSeen
+  std::map<std::string, std::int64_t> num_by_source;              // sentences and IMU samples
+  std::optional<gnss_fix_t> fix;                                  // the last; of one epoch the one that says most
+  std::optional<attitude_t> heading;                              // the last that holds one
+  std::optional<pose_t> pose;                                     // the last
+};
+
+/// One process, told apart by computer and process id.
+struct ProcessSeen {
+  health_t first;
+  health_t last;
+  Utime heard_last{};
+};
+
+/// What comes out at the end.
+struct ObstaclesSeen {
+  std::int64_t num_turns = 0;
+  std::int64_t num_obstacles = 0;
+  std::int64_t num_placed = 0;  // on the earth
+  std::int64_t num_timeouts = 0;
+};
+
+struct DiskSeen {
+  std::string other_host;        // where the recorder runs, when that is not here: its disk cannot be seen from here
+  std::filesystem::path folder;  // absolute; empty = not known
+  bool is_guessed = false;       // relative in the config, and the recorder does not run: taken from where the doctor was started
+  bool is_writable = true;
+  std::int64_t free_bytes = -1;            // -1 = not known
+  std::optional<double> rate_bytes_per_s;  // heard on the bus with the lidar running
+};
+
+struct Observations {
+  ConfigSeen config;
+  BusSeen bus;
+  BuffersSeen buffers;
+  std::vector<InterfaceSeen> interfaces;
+  bool is_host_clock_set = false;  // the kernel says that something (NTP, PPS) steers it
+  LidarSeen lidar;
+  NavigationSeen navigation;
+  std::map<std::string, std::vector<ProcessSeen>> processes;  // by name
+  ObstaclesSeen obstacles;
+  DiskSeen disk;
+  Utime end{};  // host time at which watching ended
+  double watched_s = 0.0;
+};
+
+}  // namespace lookout::doctor

@@ -1,0 +1,140 @@
+// HEALTH of the processes, and what comes out at the end of the chain.
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/core/utime.hpp"
+#include "tools/doctor/findings.hpp"
+#include "tools/doctor/words.hpp"
+
+namespace lookout::doctor {
+
+namespace {
+
+constexpr const char* kProcessSubject = "process";
+constexpr const char* kObstaclesSubject = "obstacles";
+
+constexpr std::array<const char*, 5> kSuite{"vlp16", "segmenter", "navigator", "georeferencer", "recorder"};
+// HEALTH comes once a second: two may be lost.
+constexpr double kHealthSilenceS = 3.5;
+
+bool IsAlive(const ProcessSeen& process, Utime end) { return ToSeconds(end - process.heard_last) <= kHealthSilenceS; }
+
+// Of any process; of the recorder.
+bool IsLoss(const health_counter_t& counter) { return counter.name == "messages_not_sent" || counter.name == "raw_missing"; }
+
+std::int64_t NumLost(const health_t& health) {
+  std::int64_t num_lost = 0;
+  for (const auto& channel : health.channels) num_lost += channel.is_input ? channel.num_lost : 0;
+  for (const auto& counter : health.counters) num_lost += IsLoss(counter) ? counter.count : 0;
+  return num_lost;
+}
+
+std::string LossesInWords(const ProcessSeen& process) {
+  std::vector<std::string> words;
+  for (const auto& channel : process.last.channels) {
+    if (channel.is_input && channel.num_lost > 0) words.push_back(Count(channel.num_lost, "message") + " of " + channel.channel);
+  }
+  for (const auto& counter : process.last.counters) {
+    if (IsLoss(counter) && counter.count > 0) words.push_back(std::to_string(counter.count) + " " + counter.name);
+  }
+  return Joined(words, [](const std::string& word) { return word; });
+}
+
+Finding JudgeProcess(const std::string& name, const ProcessSeen& process) {
+  const auto& health = process.last;
+  const std::string who = name + " (pid " + std::to_string(health.pid) + " on " + health.host + ")";
+  switch (health.state) {
+    case health_t::STATE_OK:
+      break;
+    case health_t::STATE_STARTING:
+      return {Grade::kWarning, kProcessSubject, who + " is starting: " + health.reason, "ask again in a few seconds"};
+    case health_t::STATE_DEGRADED:
+      return {Grade::kWarning, kProcessSubject, who + " is degraded: " + health.reason,
+              "the lines above; services/" + name + "/README.md tells more"};
+    default:
+      return {Grade::kFault, kProcessSubject, who + " has failed: " + health.reason, "what that says; its journal: journalctl -u lookout-" + name};
+  }
+  const std::string words = who + " is ok: " + Text(100.0 * health.cpu_fraction, 1) + " % of a core, " +
+                            Text(static_cast<double>(health.resident_bytes) / 1e6, 0) + " MB, up " + Text(health.uptime_s, 0) + " s";
+  const auto losses = LossesInWords(process);
+  if (NumLost(health) > NumLost(process.first)) {
+    return {Grade::kWarning, kProcessSubject, words + "; it loses messages now: " + losses,
+            "load of this computer; receive buffers above; the network between two computers"};
+  }
+  return {Grade::kOk, kProcessSubject, words + (losses.empty() ? "" : "; lost since its start: " + losses), {}};
+}
+
+Findings JudgeObstacles(const Observations& seen) {
+  const auto& obstacles = seen.obstacles;
+  if (obstacles.num_turns == 0) {
+    if (seen.lidar.via != Via::kBus || seen.lidar.num_packets == 0) return {};  // nothing to make them of
+    return {{Grade::kFault, kObstaclesSubject, "the lidar runs, but no OBSTACLES come", "the processes' lines above"}};
+  }
+  const std::string words = Text(static_cast<double>(obstacles.num_turns) / seen.watched_s, 1) + " turns/s, " +
+                            Text(static_cast<double>(obstacles.num_obstacles) / static_cast<double>(obstacles.num_turns), 1) + " obstacles in each";
+  if (obstacles.num_timeouts > 0) {
+    return {{Grade::kWarning, kObstaclesSubject, words + "; for " + std::to_string(obstacles.num_timeouts) + " the wait for POSE was given up",
+             "clocks of lidar and navigation differ, or navigator is late: the clock lines above"}};
+  }
+  if (obstacles.num_placed < obstacles.num_obstacles) {
+    return {{Grade::kWarning, kObstaclesSubject,
+             words + "; " + std::to_string(obstacles.num_obstacles - obstacles.num_placed) + " of " + std::to_string(obstacles.num_obstacles) +
+                 " in the vessel frame only",
+             "the gnss and heading lines above"}};
+  }
+  return {{Grade::kOk, kObstaclesSubject, words + (obstacles.num_obstacles > 0 ? ", all placed on the earth" : ""), {}}};
+}
+
+}  // namespace
+
+Findings JudgeProcesses(const Observations& seen) {
+  if (seen.processes.empty() && !seen.bus.fault.empty()) {
+    return {{Grade::kFault, kProcessSubject, "none of Lookout's processes can be heard: the bus cannot be opened", "the route line above"}};
+  }
+  if (seen.processes.empty()) {
+    return {{Grade::kWarning, kProcessSubject,
+             "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor looked at the sensors itself",
+             "start them, then ask again: what goes over the bus and into the log is seen only then"}};
+  }
+  std::set<std::string> names(kSuite.begin(), kSuite.end());
+  for (const auto& [name, instances] : seen.processes) names.insert(name);
+  Findings findings;
+  for (const auto& name : names) {
+    std::vector<const ProcessSeen*> alive;
+    const auto found = seen.processes.find(name);
+    if (found != seen.processes.end()) {
+      for (const auto& process : found->second) {
+        if (IsAlive(process, seen.end)) alive.push_back(&process);
+      }
+    }
+    if (alive.empty()) {
+      const bool was_heard = found != seen.processes.end();
+      findings.push_back({Grade::kFault, kProcessSubject, name + (was_heard ? " was heard, and has stopped" : " is not heard, others are"),
+                          "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended"});
+      continue;
+    }
+    for (const auto* process : alive) findings.push_back(JudgeProcess(name, *process));
+    if (alive.size() > 1) {
+      findings.push_back({Grade::kFault, kProcessSubject,
+                          name + " runs " + std::to_string(alive.size()) + " times on one bus: a channel has one publisher",
+                          "end all but one, or give the other boat another LCM address"});
+    }
+  }
+  for (auto& finding : JudgeObstacles(seen)) findings.push_back(std::move(finding));
+  return findings;
+}
+
+Findings Judge(const Observations& seen) {
+  Findings all;
+  for (const auto& part : {JudgeConfig(seen.config), JudgeBus(seen.bus), JudgeBuffers(seen.buffers), JudgeLidar(seen), JudgeClocks(seen),
+                           JudgeNavigation(seen), JudgeMounting(seen.config), JudgeDisk(seen.disk), JudgeProcesses(seen)}) {
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+}  // namespace lookout::doctor

@@ -1,0 +1,38 @@
+// What lookout-log does. Several logs are read in their order, as one (rotated files).
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lookout::log {
+
+/// A wrong command line: exit code 2. All else that is thrown is 1.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Prints what the logs hold: files and their damage, what wrote them, and a line per channel.
+/// @throws std::runtime_error when a file cannot be opened, or none holds an event
+void Info(const std::vector<std::filesystem::path>& files, std::ostream& out);
+
+struct SliceRequest {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  std::string from;                   // as ParseTime; empty = the start
+  std::string to;                     // the first time that is not in it; empty = the end
+  std::vector<std::string> channels;  // empty = all
+};
+
+/// Writes the events of a time and of some channels, RUN_INFO first: the last one before `from`, with the time of the first event of the slice, so
+/// that a player does not wait from the one to the other.
+/// @throws UsageError; std::runtime_error also when there is no such event
+void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors);
+
+/// Writes every whole event of `input`, and prints what was lost: how many bytes, in which stretches, where.
+/// @throws std::runtime_error when `input` cannot be opened or holds no event, `output` cannot be written
+void Repair(const std::filesystem::path& input, const std::filesystem::path& output, std::ostream& out);
+
+}  // namespace lookout::log

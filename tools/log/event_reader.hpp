@@ -1,0 +1,53 @@
+// The events of a log, and the stretches between them that belong to none.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "common/bus/log_event.hpp"
+#include "common/bus/log_file.hpp"
+
+namespace lookout::log {
+
+/// Bytes of a log that are no event.
+struct DamagedStretch {
+  std::int64_t offset_bytes = 0;
+  std::int64_t size_bytes = 0;
+  std::int64_t num_events_before = 0;
+};
+
+class EventReader {
+ public:
+  /// @throws std::runtime_error when the file cannot be opened
+  explicit EventReader(const std::filesystem::path& file) : reader_(file) {}
+
+  /// @return the next whole event; nullopt at the end
+  std::optional<bus::LogEvent> Next() {
+    const auto expected_bytes = reader_.position_bytes();
+    auto event = reader_.Next();
+    auto start_bytes = reader_.position_bytes();  // at the end: of the file
+    if (event) start_bytes -= static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
+    if (start_bytes > expected_bytes) damage_.push_back({expected_bytes, start_bytes - expected_bytes, num_events_});
+    if (event) ++num_events_;
+    return event;
+  }
+
+  std::int64_t size_bytes() const { return reader_.size_bytes(); }
+  std::int64_t num_events() const { return num_events_; }
+  const std::vector<DamagedStretch>& damage() const { return damage_; }
+
+  std::int64_t num_damaged_bytes() const {
+    std::int64_t sum = 0;
+    for (const auto& stretch : damage_) sum += stretch.size_bytes;
+    return sum;
+  }
+
+ private:
+  bus::LogReader reader_;
+  std::int64_t num_events_ = 0;
+  std::vector<DamagedStretch> damage_;
+};
+
+}  // namespace lookout::log

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <ostream>
+#include <set>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/header.hpp"
+#include "common/bus/sequence.hpp"
+#include "tools/log/commands.hpp"
+#include "tools/log/event_reader.hpp"
+#include "tools/log/recorded_run.hpp"
+#include "tools/log/time_text.hpp"
+
+namespace lookout::log {
+
+namespace {
+
+// Of a channel or file more are counted, not named.
+constexpr std::size_t kMaxTypesNamed = 3;
+constexpr std::size_t kMaxStretchesNamed = 10;
+
+struct ChannelSummary {
+  std::int64_t num_events = 0;
+  std::int64_t num_bytes = 0;
+  Utime first;
+  Utime last;
+  std::chrono::microseconds silence{0};  // the longest between two events, or to an end of the log
+  Utime silence_start;
+  std::set<std::uint64_t> fingerprints;
+  bus::SequenceWatch sequence;
+  bool has_sequence = false;
+  std::int64_t num_missing = 0;
+
+  void AddSilence(Utime from, Utime to) {
+    if (to - from <= silence) return;
+    silence = to - from;
+    silence_start = from;
+  }
+};
+
+// Both known types and those of the log: it may be older, or newer.
+class TypeNames {
+ public:
+  TypeNames() { versions_.push_back(OwnTypes()); }
+
+  void Add(const run_info_t& run_info) {
+    if (schemas_.insert(run_info.schema).second && schemas_.size() <= kMaxVersions) versions_.push_back(TypesOf(run_info));
+  }
+  const bus::WireType* Find(std::uint64_t fingerprint) const {
+    for (const auto& version : versions_) {
+      if (const auto* type = version.Find(fingerprint)) return type;
+    }
+    return nullptr;
+  }
+  std::string Text(const std::set<std::uint64_t>& fingerprints) const {
+    std::string text;
+    for (const auto fingerprint : fingerprints) {
+      const auto* type = Find(fingerprint);
+      if (type != nullptr) text += (text.empty() ? "" : ",") + type->name;
+    }
+    return text.empty() ? "?" : text;
+  }
+
+ private:
+  static constexpr std::size_t kMaxVersions = 20;
+  std::vector<bus::WireTypes> versions_;
+  std::set<std::string> schemas_;
+};
+
+class LogSummary {
+ public:
+  void Add(const bus::LogEvent& event) {
+    if (!first_) first_ = event.time;
+    if (last_ && event.time < *last_) ++num_steps_back_;
+    last_ = event.time;
+    latest_ = latest_ ? std::max(*latest_, event.time) : event.time;
+    ++num_events_;
+    if (const auto run_info = RunInfoOf(event)) AddRun(*run_info);
+    AddToChannel(event);
+  }
+
+  bool is_empty() const { return num_events_ == 0; }
+
+  void Print(std::ostream& out) {
+    out << fmt::format("{:<9} {}\n", "events", num_events_);
+    out << fmt::format("{:<9} {}\n{:<9} {}\n{:<9} {}\n", "start", TimeText(*first_), "end", TimeText(*last_), "span", SecondsText(*last_ - *first_));
+    if (num_steps_back_ > 0) out << fmt::format("{:<9} {} times the clock of the recording went back\n", "clock", num_steps_back_);
+    for (const auto& run : runs_) out << fmt::format("{:<9} {}\n", "made by", run);
+    if (runs_.empty()) out << fmt::format("{:<9} not said: no RUN_INFO\n", "made by");
+    out << fmt::format("\n{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11}  at\n", "channel", "type", "events", "bytes", "Hz", "missing", "silence_s");
+    for (auto& [name, channel] : channels_) {
+      channel.AddSilence(*first_, channel.first);
+      channel.AddSilence(channel.last, *latest_);
+      const double span_s = ToSeconds(channel.last - channel.first);
+      out << fmt::format("{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11.3f}  {}\n", Printable(name), names_.Text(channel.fingerprints),
+                         channel.num_events, channel.num_bytes,
+                         span_s > 0.0 ? fmt::format("{:.3f}", static_cast<double>(channel.num_events - 1) / span_s) : "",
+                         channel.has_sequence ? std::to_string(channel.num_missing) : "", ToSeconds(channel.silence),
+                         channel.silence > std::chrono::microseconds(0) ? SecondsText(channel.silence_start - *first_) : "");
+    }
+  }
+
+ private:
+  void AddRun(const run_info_t& run_info) {
+    names_.Add(run_info);
+    const auto text = Printable(run_info.program + " " + run_info.version + " on " + run_info.host + ", wire types " + run_info.schema.substr(0, 12));
+    if (std::ranges::find(runs_, text) == runs_.end() && runs_.size() < kMaxStretchesNamed) runs_.push_back(text);
+  }
+
+  void AddToChannel(const bus::LogEvent& event) {
+    auto& channel = channels_[event.channel];
+    if (channel.num_events == 0) {
+      channel.first = event.time;
+    } else {
+      channel.AddSilence(channel.last, event.time);
+    }
+    channel.last = event.time;
+    ++channel.num_events;
+    channel.num_bytes += static_cast<std::int64_t>(event.bytes.size());
+    if (event.bytes.size() < 8) return;
+    const auto fingerprint = bus::ReadU64BigEndian(event.bytes, 0);
+    const auto* type = names_.Find(fingerprint);
+    if (type == nullptr) return;
+    if (channel.fingerprints.size() < kMaxTypesNamed) channel.fingerprints.insert(fingerprint);
+    // HEALTH has a seq per process.
+    const bool has_sequence = type->members.size() > 1 && type->members[0].name == "utime_us" && type->members[1].name == "seq";
+    const auto header = bus::ReadHeader(event.bytes);
+    if (!has_sequence || !header || event.channel == bus::kHealth.name) return;
+    channel.has_sequence = true;
+    channel.num_missing += channel.sequence.NumLostBefore(header->seq);
+  }
+
+  TypeNames names_;
+  std::vector<std::string> runs_;
+  std::optional<Utime> first_;
+  std::optional<Utime> last_;
+  std::optional<Utime> latest_;
+  std::int64_t num_events_ = 0;
+  std::int64_t num_steps_back_ = 0;
+  std::map<std::string, ChannelSummary> channels_;
+};
+
+void PrintDamage(const EventReader& reader, std::ostream& out) {
+  if (reader.damage().empty()) {
+    out << fmt::format("{:<9} none\n", "damage");
+    return;
+  }
+  out << fmt::format("{:<9} {} stretches, {} bytes\n", "damage", reader.damage().size(), reader.num_damaged_bytes());
+  for (std::size_t i = 0; i < std::min(reader.damage().size(), kMaxStretchesNamed); ++i) {
+    const auto& stretch = reader.damage()[i];
+    out << fmt::format("{:<9} {} bytes at byte {}, behind {} events\n", "", stretch.size_bytes, stretch.offset_bytes, stretch.num_events_before);
+  }
+}
+
+}  // namespace
+
+void Info(const std::vector<std::filesystem::path>& files, std::ostream& out) {
+  LogSummary summary;
+  for (const auto& file : files) {
+    EventReader reader(file);
+    while (const auto event = reader.Next()) summary.Add(*event);
+    out << fmt::format("{:<9} {}\n{:<9} {} bytes\n", "file", file.string(), "size", reader.size_bytes());
+    PrintDamage(reader, out);
+  }
+  if (summary.is_empty()) throw std::runtime_error(files.front().string() + ": is no lcm-log: it holds no event");
+  summary.Print(out);
+}
+
+}  // namespace lookout::log

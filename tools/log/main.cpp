@@ -1,0 +1,71 @@
+// lookout-log: what is in a log, a part of it, and a damaged one made readable.
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "common/runtime/options.hpp"
+#include "tools/log/commands.hpp"
+
+namespace {
+
+constexpr int kExitFailed = 1;
+constexpr int kExitUsage = 2;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  namespace log = lookout::log;
+  CLI::App app("Shows, cuts and mends lcm-logs.", "lookout-log");
+  app.set_version_flag("--version", "lookout-log " + lookout::runtime::Version());
+  app.require_subcommand(1);
+  app.footer("Exit code: 0 fine; 1 a log cannot be read, holds nothing of it, or cannot be written; 2 wrong command line.");
+
+  std::vector<std::string> logs;
+  auto* info = app.add_subcommand("info", "channels, types, rates, gaps, size, span, version, damage");
+  info->add_option("LOG", logs, "lcm-log; several are read in this order, as one")->required();
+
+  log::SliceRequest request;
+  std::vector<std::string> inputs;
+  std::string output;
+  auto* slice = app.add_subcommand("slice", "the events of a time and of some channels");
+  slice->add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
+  slice->add_option("--out", output, "lcm-log to write; an older one is replaced")->required();
+  slice->add_option("--from", request.from, "seconds from the start of the log, or UTC as 2026-11-21T13:45:01Z");
+  slice->add_option("--to", request.to, "the same; the first time that is not in it");
+  slice->add_option("--channel", request.channels, "this channel only; may be given several times")->allow_extra_args(false);
+
+  std::string damaged;
+  std::string mended;
+  auto* repair = app.add_subcommand("repair", "every whole event of a damaged log, and what was lost");
+  repair->add_option("IN", damaged, "lcm-log")->required();
+  repair->add_option("OUT", mended, "lcm-log to write; an older one is replaced")->required();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // --help and --version come here too, with code 0.
+    return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
+  }
+  try {
+    if (info->parsed()) {
+      log::Info({logs.begin(), logs.end()}, std::cout);
+    } else if (slice->parsed()) {
+      request.inputs.assign(inputs.begin(), inputs.end());
+      request.output = output;
+      log::Slice(request, std::cout, std::cerr);
+    } else {
+      log::Repair(damaged, mended, std::cout);
+    }
+    std::cout.flush();
+    if (!std::cout) throw std::runtime_error("standard output could not be written");
+    return EXIT_SUCCESS;
+  } catch (const log::UsageError& error) {
+    std::cerr << "lookout-log: " << error.what() << "\n";
+    return kExitUsage;
+  } catch (const std::exception& error) {
+    std::cerr << "lookout-log: " << error.what() << "\n";
+    return kExitFailed;
+  }
+}

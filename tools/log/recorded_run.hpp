@@ -1,0 +1,26 @@
+// What RUN_INFO of a log says of it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/bus/log_file.hpp"
+#include "common/bus/wire_description.hpp"
+#include "lookout/run_info_t.hpp"
+
+namespace lookout::log {
+
+/// RUN_INFO of an event, where it is one that this version can read.
+std::optional<run_info_t> RunInfoOf(const bus::LogEvent& event);
+
+/// The wire types as a log describes them: files "lcmtypes/*.lcm" of its RUN_INFO. None when it has none.
+bus::WireTypes TypesOf(const run_info_t& run_info);
+
+/// The wire types of this version.
+bus::WireTypes OwnTypes();
+
+/// Texts of a log come from outside: what is no letter of ASCII becomes '?'.
+std::string Printable(std::string_view text);
+
+}  // namespace lookout::log

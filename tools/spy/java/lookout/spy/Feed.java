@@ -1,0 +1,58 @@
+package lookout.spy;
+
+import java.io.IOException;
+import lcm.lcm.LCM;
+import lcm.lcm.LCMDataInputStream;
+import lcm.lcm.LCMSubscriber;
+import lookout.lidar_scan_t;
+import lookout.obstacles_t;
+import lookout.pose_t;
+import lookout.segments_t;
+
+/** Listens on a bus of its own (LCM_DEFAULT_URL, as the spy), since the spy keeps only the last message of a channel, and turns come in parts. */
+final class Feed implements LCMSubscriber, AutoCloseable {
+  /** As common/bus/channels.hpp; LCM takes them as one regular expression. */
+  private static final String CHANNELS = "LIDAR_SCAN|SEGMENTS|OBSTACLES|POSE";
+
+  private final Turns turns = new Turns();
+  private final LCM lcm;
+
+  /** @throws IOException when LCM cannot be opened */
+  Feed() throws IOException {
+    lcm = new LCM();
+    lcm.subscribe(CHANNELS, this);
+  }
+
+  synchronized Picture picture() {
+    return turns.picture();
+  }
+
+  synchronized long num_refused() {
+    return turns.num_refused();
+  }
+
+  @Override
+  public synchronized void messageReceived(LCM unused, String channel, LCMDataInputStream bytes) {
+    decode(turns, channel, bytes, System.currentTimeMillis());
+  }
+
+  /** Decodes a message and hands it on; what does not decode is counted. Never throws. */
+  static void decode(Turns turns, String channel, LCMDataInputStream bytes, long now_ms) {
+    try {
+      switch (channel) {
+        case "LIDAR_SCAN" -> turns.add(new lidar_scan_t(bytes), now_ms);
+        case "SEGMENTS" -> turns.add(new segments_t(bytes), now_ms);
+        case "OBSTACLES" -> turns.add(new obstacles_t(bytes), now_ms);
+        case "POSE" -> turns.add(new pose_t(bytes));
+        default -> { }
+      }
+    } catch (IOException | RuntimeException corrupt) {
+      turns.refuse();
+    }
+  }
+
+  @Override
+  public void close() {
+    lcm.close();
+  }
+}

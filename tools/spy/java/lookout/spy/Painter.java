@@ -1,0 +1,169 @@
+package lookout.spy;
+
+import java.awt.Color;
+import java.awt.Font;
+import java.awt.Graphics2D;
+import java.awt.Rectangle;
+import java.awt.RenderingHints;
+import java.util.ArrayList;
+import java.util.List;
+import java.util.Locale;
+import lookout.obstacle_t;
+
+/** Everything in its place: two range images on top, the map below, beside it the legend and the list of obstacles. No state, no clock. */
+final class Painter {
+  private static final int MARGIN = 12;
+  private static final int CAPTION = 18;
+  private static final int STRIP = 96;  // six pixels for each ring of a VLP-16
+  private static final int SIDE = 330;
+
+  private Painter() {}
+
+  static final class Layout {
+    final Rectangle ranges;
+    final Rectangle segments;
+    final Rectangle map;
+    final Rectangle side;
+
+    Layout(int width, int height) {
+      int inner = Math.max(1, width - 2 * MARGIN);
+      ranges = new Rectangle(MARGIN, CAPTION + 4, inner, STRIP);
+      segments = new Rectangle(MARGIN, ranges.y + STRIP + CAPTION + 4, inner, STRIP);
+      int top = segments.y + STRIP + 2 * CAPTION + 4;
+      int below = Math.max(1, height - top - MARGIN);
+      // A narrow window has no room for the list.
+      int side_width = width >= 2 * SIDE ? SIDE : 0;
+      map = new Rectangle(MARGIN, top, Math.max(1, inner - side_width - (side_width > 0 ? MARGIN : 0)), below);
+      side = new Rectangle(map.x + map.width + MARGIN, top, side_width, below);
+    }
+  }
+
+  /** @param num_refused messages that did not decode, to be told */
+  static void paint(Graphics2D g, int width, int height, Picture picture, double radius_m, long now_ms, long num_refused) {
+    Layout layout = new Layout(width, height);
+    g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
+    g.setRenderingHint(RenderingHints.KEY_TEXT_ANTIALIASING, RenderingHints.VALUE_TEXT_ANTIALIAS_ON);
+    g.setFont(new Font(Font.SANS_SERIF, Font.PLAIN, 12));
+    g.setColor(Palette.BACKGROUND);
+    g.fillRect(0, 0, width, height);
+
+    caption(g, layout.ranges, "LIDAR_SCAN: range, highest ring on top");
+    caption(g, layout.segments, segmentsCaption(picture));
+    rangeLegend(g, layout.ranges);
+    RangeImage.paint(g, picture, layout.ranges, layout.segments);
+    bearings(g, layout.segments);
+    caption(g, layout.map, mapCaption(picture, radius_m));
+    MapView.paint(g, layout.map, picture, radius_m, now_ms);
+    g.setFont(new Font(Font.SANS_SERIF, Font.PLAIN, 12));
+    g.setColor(Palette.GRID);
+    g.draw(layout.map);
+    if (layout.side.width > 0) side(g, layout.side, picture, now_ms, num_refused);
+    banner(g, layout.map, picture, now_ms);
+  }
+
+  private static void caption(Graphics2D g, Rectangle area, String text) {
+    g.setColor(Palette.INK);
+    g.drawString(text, area.x, area.y - 6);
+  }
+
+  private static String segmentsCaption(Picture picture) {
+    if (picture.turn == null || picture.turn.isLabelled()) return "SEGMENTS: a colour each; grey in none, brown own vessel";
+    return "SEGMENTS: none for this turn";
+  }
+
+  private static String mapCaption(Picture picture, double radius_m) {
+    String frame = picture.mounting != null ? "From above, bow up" : "From above, the lidar's x axis up (OBSTACLES would tell where the bow is)";
+    return String.format(Locale.ROOT, "%s; %.0f m to the edge (wheel or + and - change it)", frame, radius_m);
+  }
+
+  private static void rangeLegend(Graphics2D g, Rectangle ranges) {
+    int width = 200;
+    int x = ranges.x + ranges.width - width - 44;
+    int y = ranges.y - 15;
+    if (x < ranges.x + 300) return;
+    for (int i = 0; i < width; ++i) {
+      g.setColor(Palette.ofRange(Palette.NEAR_M * Math.pow(Palette.FAR_M / Palette.NEAR_M, (double) i / width)));
+      g.fillRect(x + i, y, 1, 10);
+    }
+    g.setColor(Palette.INK);
+    g.drawString("1 m", x - 26, y + 10);
+    g.drawString("10", x + width / 2 - 7, y + 10);
+    g.drawString("100 m", x + width + 4, y + 10);
+  }
+
+  // Below the strips: astern, port, ahead, starboard.
+  private static void bearings(Graphics2D g, Rectangle strip) {
+    for (int degrees = -180; degrees <= 150; degrees += 30) {
+      int x = strip.x + RangeImage.xOf(Math.toRadians(degrees), strip.width);
+      g.setColor(Palette.FAINT_INK);
+      g.drawLine(x, strip.y + strip.height, x, strip.y + strip.height + 4);
+      String text = degrees == 0 ? "ahead" : Texts.degrees(Math.toRadians(degrees));
+      g.drawString(text, degrees == -180 ? x : x - g.getFontMetrics().stringWidth(text) / 2, strip.y + strip.height + 16);
+    }
+  }
+
+  private static void side(Graphics2D g, Rectangle side, Picture picture, long now_ms, long num_refused) {
+    int line_height = 17;
+    int y = side.y + 12;
+    Object[][] legend = {{Palette.ofSegment(1), "a segment; its outline dashed: tentative"}, {Palette.IN_NO_SEGMENT, "a return in no segment"},
+        {Palette.OWN_VESSEL, "own vessel"}};
+    for (Object[] entry : legend) {
+      g.setColor((Color) entry[0]);
+      g.fillRect(side.x, y - 9, 10, 10);
+      g.setColor(Palette.INK);
+      g.drawString((String) entry[1], side.x + 18, y);
+      y += line_height;
+    }
+    g.drawString("\u25cb obstacle: id, range, bearing; \"?\" tentative", side.x, y);
+    y += line_height + 8;
+
+    int num_sure = 0;
+    for (obstacle_t obstacle : picture.obstacles) num_sure += obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? 1 : 0;
+    g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 12));
+    String count = picture.obstacles.size() + ", " + num_sure + " of them sure";
+    g.drawString("OBSTACLES: " + (picture.hasObstacles(now_ms) ? count : "none on the bus"), side.x, y);
+    y += line_height;
+    g.setFont(new Font(Font.MONOSPACED, Font.PLAIN, 12));
+    g.setColor(Palette.FAINT_INK);
+    g.drawString(String.format(Locale.ROOT, "%4s %8s %7s  %-9s %s", "id", "range", "bearing", "", "size m"), side.x + 12, y);
+    y += line_height;
+    int rows = Math.max(0, (side.y + side.height - y - line_height) / line_height);
+    if (picture.hasObstacles(now_ms)) {
+      for (obstacle_t obstacle : sureFirst(picture.obstacles, rows)) {
+        g.setColor(Palette.ofSegment(obstacle.id));
+        g.fillRect(side.x, y - 9, 9, 9);
+        g.setColor(obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? Palette.INK : Palette.FAINT_INK);
+        g.drawString(String.format(Locale.ROOT, "%4d %6.1f m %7s  %-9s %.1fx%.1f", obstacle.id, obstacle.range_m, Texts.degrees(obstacle.bearing_rad),
+            Texts.confidence(obstacle), obstacle.length_m, obstacle.width_m), side.x + 12, y);
+        y += line_height;
+      }
+    }
+    if (num_refused > 0) {
+      g.setColor(Palette.ALERT);
+      g.drawString(num_refused + " messages refused", side.x, side.y + side.height);
+    }
+  }
+
+  // Drops of spray near the boat would fill the list.
+  private static List<obstacle_t> sureFirst(List<obstacle_t> obstacles, int max_rows) {
+    List<obstacle_t> ordered = new ArrayList<>();
+    for (boolean sure : new boolean[] {true, false}) {
+      for (obstacle_t obstacle : obstacles) {
+        if (obstacle.confidence == obstacle_t.CONFIDENCE_SURE == sure) ordered.add(obstacle);
+      }
+    }
+    return ordered.subList(0, Math.min(max_rows, ordered.size()));
+  }
+
+  private static void banner(Graphics2D g, Rectangle map, Picture picture, long now_ms) {
+    if (picture.hasScan(now_ms)) return;
+    double age_s = (now_ms - picture.scanTime_ms) / 1000.0;
+    String text = picture.turn == null ? "waiting for LIDAR_SCAN" : String.format(Locale.ROOT, "no LIDAR_SCAN for %.0f s: an old picture", age_s);
+    g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 15));
+    int width = g.getFontMetrics().stringWidth(text) + 20;
+    g.setColor(Palette.ALERT);
+    g.fillRect(map.x + (map.width - width) / 2, map.y + 8, width, 26);
+    g.setColor(Color.WHITE);
+    g.drawString(text, map.x + (map.width - width) / 2 + 10, map.y + 27);
+  }
+}

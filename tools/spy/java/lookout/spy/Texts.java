@@ -1,0 +1,26 @@
+package lookout.spy;
+
+import java.util.Locale;
+import lookout.obstacle_t;
+
+/** Numbers in words for people. The locale of the computer has no say. */
+final class Texts {
+  private Texts() {}
+
+  /** "7: 17.3 m 045°", tentative "7? 17.3 m 045°". */
+  static String obstacle(obstacle_t obstacle) {
+    return String.format(Locale.ROOT, "%d%s %.1f m %s", obstacle.id, obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? ":" : "?", obstacle.range_m,
+        degrees(obstacle.bearing_rad));
+  }
+
+  /** Whole degrees of the circle, three digits. */
+  static String degrees(double angle_rad) {
+    return String.format(Locale.ROOT, "%03d°", Math.floorMod(Math.round(Math.toDegrees(angle_rad)), 360L));
+  }
+
+  /** As tools/export/words.hpp. */
+  static String confidence(obstacle_t obstacle) {
+    String word = obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? "sure" : "tentative";
+    return obstacle.kind == obstacle_t.KIND_LAND ? "land" + (word.equals("sure") ? "" : " ?") : word;
+  }
+}

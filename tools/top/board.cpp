@@ -1,0 +1,211 @@
+#include "tools/top/board.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
+#include "lookout/attitude_t.hpp"
+#include "lookout/gnss_fix_t.hpp"
+#include "lookout/lidar_clock_t.hpp"
+#include "lookout/lidar_nmea_t.hpp"
+#include "lookout/lidar_packets_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/nav_raw_t.hpp"
+#include "lookout/run_info_t.hpp"
+#include "lookout/segments_t.hpp"
+#include "lookout/sim_truth_t.hpp"
+
+namespace lookout::top {
+
+namespace {
+
+using std::chrono::seconds;
+
+// HEALTH and the slowest data come once a second, RUN_INFO every ten.
+constexpr seconds kSilence(3);
+constexpr seconds kRunInfoSilence(25);
+// OBSTACLES come with every turn: what is older says nothing about the water of now.
+constexpr seconds kObstaclesAge(2);
+
+// Where a message stands in its channel's sequence.
+struct Place {
+  std::int64_t seq;
+  std::int64_t part_index;
+  std::int64_t num_parts;
+};
+
+template <typename T>
+Place PlaceOf(const T& message) {
+  if constexpr (requires { message.part_index; }) {
+    return {message.seq, message.part_index, message.num_parts};
+  } else {
+    return {message.seq, 0, 1};
+  }
+}
+
+template <typename T>
+std::optional<Place> DecodedPlace(Bytes bytes) {
+  const auto message = bus::Decode<T>(bytes);
+  return message ? std::optional(PlaceOf(*message)) : std::nullopt;
+}
+
+// Types of which only the place counts here.
+struct Decoder {
+  std::string_view type;
+  std::optional<Place> (*decode)(Bytes);
+};
+constexpr std::array kDecoders{Decoder{"lidar_packets_t", &DecodedPlace<lidar_packets_t>}, Decoder{"lidar_scan_t", &DecodedPlace<lidar_scan_t>},
+                               Decoder{"lidar_clock_t", &DecodedPlace<lidar_clock_t>},     Decoder{"lidar_nmea_t", &DecodedPlace<lidar_nmea_t>},
+                               Decoder{"segments_t", &DecodedPlace<segments_t>},           Decoder{"nav_raw_t", &DecodedPlace<nav_raw_t>},
+                               Decoder{"gnss_fix_t", &DecodedPlace<gnss_fix_t>},           Decoder{"attitude_t", &DecodedPlace<attitude_t>},
+                               Decoder{"run_info_t", &DecodedPlace<run_info_t>},           Decoder{"sim_truth_t", &DecodedPlace<sim_truth_t>}};
+
+const health_counter_t* FindCounter(const health_t& health, std::string_view name) {
+  const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
+  return found == health.counters.end() ? nullptr : &*found;
+}
+
+// Reasons are joined by "; ": the piece about the alarm says how near and where. Without one, the counter has at least the distance.
+constexpr std::string_view kAlarmWords = "obstacle within ";
+std::string AlarmText(const health_t& health) {
+  const auto start = health.reason.find(kAlarmWords);
+  if (start != std::string::npos) return health.reason.substr(start, health.reason.find(';', start) - start);
+  const auto* nearest = FindCounter(health, "nearest_cm");
+  return nearest == nullptr ? "obstacle near" : fmt::format("obstacle near: {:.1f} m", 0.01 * static_cast<double>(nearest->count));
+}
+
+std::int64_t GreatestLatencyUs(const health_t& health) {
+  std::int64_t greatest_us = -1;
+  for (const auto& channel : health.channels) {
+    const auto* entry = bus::FindChannel(channel.channel);
+    if (channel.is_input == 0 && entry != nullptr && entry->is_replayed) greatest_us = std::max(greatest_us, channel.latency_p99_us);
+  }
+  return greatest_us;
+}
+
+}  // namespace
+
+void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
+  auto found = channels_.find(channel);
+  if (found == channels_.end()) {
+    // A channel of the table has its place whatever else is sent.
+    if (channels_.size() >= kMaxChannels && bus::FindChannel(channel) == nullptr) {
+      ++num_unlisted_;
+      return;
+    }
+    found = channels_.emplace(std::string(channel), Traffic{RateMeter(start_), now, 0, 0, {}}).first;
+  }
+  auto& traffic = found->second;
+  traffic.rate.Add(now, static_cast<std::int64_t>(bytes.size()));
+  traffic.last = now;
+
+  const auto* entry = bus::FindChannel(channel);
+  if (entry == nullptr) return;
+  if (entry->name == bus::kHealth.name) {
+    TakeHealth(traffic, bytes, now);
+    return;
+  }
+  std::optional<Place> place;
+  if (entry->name == bus::kObstacles.name) {
+    if (const auto message = bus::Decode<obstacles_t>(bytes)) {
+      place = PlaceOf(*message);
+      nearest_.Take(*message, now);
+    }
+  } else if (entry->name == bus::kPose.name) {
+    if (const auto message = bus::Decode<pose_t>(bytes)) {
+      place = PlaceOf(*message);
+      nearest_.Take(*message);
+    }
+  } else {
+    const auto decoder = std::ranges::find(kDecoders, entry->type, &Decoder::type);
+    if (decoder != kDecoders.end()) place = decoder->decode(bytes);
+  }
+  if (place) {
+    traffic.num_lost += traffic.sequence.NumLostBefore(place->seq, place->part_index, place->num_parts);
+  } else {
+    ++traffic.num_bad;
+  }
+}
+
+void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
+  auto message = bus::Decode<health_t>(bytes);
+  if (!message) {
+    ++traffic.num_bad;
+    return;
+  }
+  const std::pair key(message->process, message->host);
+  if (!processes_.contains(key) && processes_.size() >= kMaxProcesses) {
+    ++num_unlisted_;
+    return;
+  }
+  if (processes_.empty()) first_host_ = message->host;
+  auto& process = processes_[key];
+  traffic.num_lost += process.sequence.NumLostBefore(message->seq);  // seq is per process
+  process.health = std::move(*message);
+  process.last = now;
+}
+
+std::vector<ChannelLine> Board::Channels(TimePoint now) const {
+  std::vector<ChannelLine> lines;
+  const auto add = [&](const std::string& name, const Traffic& traffic, const bus::Channel* entry) {
+    ChannelLine line;
+    line.name = name;
+    line.rate = traffic.rate.At(now);
+    if (entry != nullptr) line.num_lost = traffic.num_lost;
+    line.num_bad = traffic.num_bad;
+    line.age = now - traffic.last;
+    line.is_silent = line.age > (name == bus::kRunInfo.name ? kRunInfoSilence : kSilence);
+    lines.push_back(std::move(line));
+  };
+  for (const auto& entry : bus::kChannels) {
+    const auto found = channels_.find(entry.name);
+    if (found != channels_.end()) add(found->first, found->second, &entry);
+  }
+  for (const auto& [name, traffic] : channels_) {
+    if (bus::FindChannel(name) == nullptr) add(name, traffic, nullptr);
+  }
+  return lines;
+}
+
+std::vector<ProcessLine> Board::Processes(TimePoint now) const {
+  std::vector<ProcessLine> lines;
+  for (const auto& [key, process] : processes_) {
+    const auto& health = process.health;
+    ProcessLine line;
+    line.name = health.process + (health.host == first_host_ ? "" : "@" + health.host);
+    line.age = now - process.last;
+    line.is_silent = line.age > kSilence;
+    line.state = health.state;
+    line.reason = health.reason;
+    line.cpu_fraction = health.cpu_fraction;
+    line.resident_bytes = health.resident_bytes;
+    line.latency_p99_us = GreatestLatencyUs(health);
+    lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
+  std::optional<Alarm> newest;
+  for (const auto& [key, process] : processes_) {
+    const auto* active = FindCounter(process.health, "alarm_active");
+    if (active == nullptr) continue;
+    Alarm alarm;
+    alarm.is_active = active->count != 0;
+    alarm.text = AlarmText(process.health);
+    alarm.age = now - process.last;
+    // Where several tell of it, an alarm counts before none, then the newer.
+    if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
+  }
+  return newest;
+}
+
+const NearestObstacles* Board::Obstacles(TimePoint now) const {
+  const auto& newest = nearest_.newest();
+  return newest && now - newest->time <= kObstaclesAge ? &*newest : nullptr;
+}
+
+}  // namespace lookout::top

@@ -1,0 +1,97 @@
+// What was heard on the bus: traffic of each channel, state of each process, the nearest obstacles. Knows no clock, terminal or transport.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/sequence.hpp"
+#include "common/core/bytes.hpp"
+#include "lookout/health_t.hpp"
+#include "tools/top/nearest.hpp"
+#include "tools/top/rate_meter.hpp"
+
+namespace lookout::top {
+
+struct ChannelLine {
+  std::string name;
+  std::optional<Rate> rate;              // nullopt: too early to tell
+  std::optional<std::int64_t> num_lost;  // by gaps in seq, since the start; nullopt for a channel that is not of this project
+  std::int64_t num_bad = 0;              // did not decode
+  std::chrono::nanoseconds age{0};       // of its last message
+  bool is_silent = false;                // for longer than it should be
+};
+
+struct ProcessLine {
+  std::string name;                 // with its host where that is another than that of the first process heard of
+  std::chrono::nanoseconds age{0};  // of its last report
+  bool is_silent = false;           // for longer than it should be
+  std::int32_t state = 0;           // as in health_t
+  std::string reason;
+  double cpu_fraction = 0.0;
+  std::int64_t resident_bytes = 0;
+  std::int64_t latency_p99_us = -1;  // greatest of its data channels, from measurement to publication; -1 = none
+};
+
+/// The nearest-obstacle alarm, out of HEALTH.
+struct Alarm {
+  bool is_active = false;
+  std::string text;                 // what is near, in the words of HEALTH
+  std::chrono::nanoseconds age{0};  // of the report
+};
+
+class Board {
+ public:
+  /// @param start  since when it listens
+  explicit Board(TimePoint start) : start_(start) {}
+
+  /// Takes whatever came on a channel. What does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
+  void Take(std::string_view channel, Bytes bytes, TimePoint now);
+
+  /// Those of the channel table in its order, then the others by name.
+  std::vector<ChannelLine> Channels(TimePoint now) const;
+
+  /// By name. One that fell silent stays.
+  std::vector<ProcessLine> Processes(TimePoint now) const;
+
+  /// @return nullopt when no process tells of an alarm
+  std::optional<Alarm> NearestAlarm(TimePoint now) const;
+
+  /// @return nullptr when OBSTACLES never came, or for more than 2 s
+  const NearestObstacles* Obstacles(TimePoint now) const;
+
+  /// Messages on channels beyond kMaxChannels.
+  std::int64_t num_unlisted() const { return num_unlisted_; }
+
+  static constexpr std::size_t kMaxChannels = 64;
+  static constexpr std::size_t kMaxProcesses = 64;
+
+ private:
+  struct Traffic {
+    RateMeter rate;
+    TimePoint last;
+    std::int64_t num_lost = 0;
+    std::int64_t num_bad = 0;
+    bus::SequenceWatch sequence;
+  };
+  struct ProcessState {
+    health_t health;
+    TimePoint last;
+    bus::SequenceWatch sequence;
+  };
+
+  void TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now);
+
+  TimePoint start_;
+  std::map<std::string, Traffic, std::less<>> channels_;
+  std::map<std::pair<std::string, std::string>, ProcessState> processes_;  // by name and host
+  std::string first_host_;
+  Nearest nearest_;
+  std::int64_t num_unlisted_ = 0;
+};
+
+}  // namespace lookout::top

@@ -1,0 +1,72 @@
+// The obstacles of the newest turn, nearest first.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "tools/top/rate_meter.hpp"
+
+namespace lookout::top {
+
+/// What a line about an obstacle needs. NaN = not known.
+struct ObstacleLine {
+  std::int32_t id = 0;
+  std::int32_t status = 0;                                             // as in obstacle_t
+  std::int32_t confidence = 0;                                         // as in obstacle_t
+  std::int32_t kind = 0;                                               // as in obstacle_t
+  double range_m = 0.0;                                                // horizontal, vessel origin to the nearest return
+  double bearing_rad = 0.0;                                            // of the nearest return, from the bow clockwise
+  double true_bearing_rad = std::numeric_limits<double>::quiet_NaN();  // from true north clockwise
+  double latitude_deg = 0.0;                                           // centre of the seen footprint
+  double longitude_deg = 0.0;
+  double length_m = 0.0;
+  double width_m = 0.0;
+  double height_m = 0.0;
+};
+
+/// The ten nearest of a turn.
+struct NearestObstacles {
+  std::vector<ObstacleLine> lines;       // nearest first; those without a range last
+  std::vector<ObstacleLine> sure_lines;  // of those that are sure
+  std::int64_t num_obstacles = 0;        // of the turn
+  std::int64_t num_sure = 0;             // of them
+  std::int64_t num_parts_missing = 0;
+  TimePoint time;  // when its last message came
+};
+
+class Nearest {
+ public:
+  static constexpr std::size_t kMaxLines = 10;
+
+  void Take(const pose_t& pose);
+  void Take(const obstacles_t& part, TimePoint now);
+
+  /// @return the newest turn that came whole, or as much of it as came; nullopt before the first
+  const std::optional<NearestObstacles>& newest() const { return newest_; }
+
+ private:
+  // The heading at a time; NaN when no pose is near enough in time or it has none.
+  double HeadingAt(std::int64_t utime_us) const;
+
+  struct Heading {
+    std::int64_t utime_us;
+    double heading_rad;
+  };
+  struct Gathering {
+    std::int64_t utime_us;
+    std::int64_t seq;
+    std::int32_t last_part_index;
+    std::int64_t num_parts_to_come;
+    NearestObstacles obstacles;
+  };
+  std::deque<Heading> headings_;
+  std::optional<Gathering> gathering_;
+  std::optional<NearestObstacles> newest_;
+};
+
+}  // namespace lookout::top

@@ -1,0 +1,35 @@
+// The screen as rows of text: a pure function of the board, the time and the size of the terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/top/board.hpp"
+
+namespace lookout::top {
+
+enum class Style { kPlain, kHeader, kFaint, kWarning, kFault, kAlarm };
+
+struct Span {
+  std::string text;  // printable ASCII
+  Style style = Style::kPlain;
+};
+using Row = std::vector<Span>;
+
+struct View {
+  int width = 80;
+  int height = 0;          // 0 = as many rows as it takes
+  bool sure_only = false;  // obstacles that one turn is sure of; else all
+};
+
+/// The nearest-obstacle alarm stands on top while there is one. Below are channels (left) and processes (right), then the ten nearest
+/// obstacles. Where rows are scarce the title goes first, then the header of the tables, then the farthest obstacles, then the last channels.
+///
+/// @param title  printable; time, bus, version
+/// @return at most view.height rows of at most view.width letters
+std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePoint now, View view);
+
+/// Without styles; no spaces at the end of a line.
+std::string PlainText(const std::vector<Row>& rows);
+
+}  // namespace lookout::top
