@@ -134,6 +134,9 @@ expect "reload of vlp16" systemctl reload lookout-vlp16
 sleep 2
 journalctl --no-pager -u lookout-vlp16 | tail -n 4
 expect "vlp16 is active after its reload, the same process" [ "$(systemctl show -P MainPID lookout-vlp16)" = "$old" ]
+expect "reload of the recorder" systemctl reload lookout-recorder
+sleep 1
+expect "a new log for it" [ "$(ls -t /var/lib/lookout/logs/*.lcmlog | head -n 1)" != "$log" ]
 # Capture on an interface: refused as delivered, fine with the drop-in.
 cp /etc/lookout/boat/vlp16.txtpb /root/vlp16.txtpb
 sed -i 's/^source: UDP/source: INTERFACE\ninterface: "lo"/; /^bind_address/d' /etc/lookout/boat/vlp16.txtpb
