@@ -40,6 +40,10 @@ inside apt-get install -y -qq --no-install-recommends /root/lookout.deb >"$work/
 mapfile -t units < <(basename -a "$root"/lib/systemd/system/lookout-*.service | sed -n 's/^lookout-\(.*\)\.service$/\1/p' | grep -v '^route$')
 echo "units: ${units[*]}"
 inside id lookout || fail "no user"
+# Scripts and archives are found by their names: were they not, nobody would miss them here.
+for file in bin/lookout-up bin/lookout-spy share/lookout/lookout-spy.jar share/lookout/lookout-types.jar; do
+  [ -s "$root/usr/$file" ] || fail "/usr/$file is not in the package"
+done
 for program in "$root"/usr/bin/lookout-*; do
   inside "/usr/bin/$(basename "$program")" --help >"$work/help.txt" 2>&1 || { cat "$work/help.txt" >&2; fail "$(basename "$program") --help"; }
 done
