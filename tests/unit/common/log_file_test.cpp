@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "common/bus/log_event.hpp"
+
 namespace lookout::bus {
 namespace {
 
@@ -44,6 +46,28 @@ TEST_F(LogFile, GivesBackWhatWasWritten) {
     EXPECT_EQ(event->bytes, std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
   }
   EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 0);
+}
+
+TEST_F(LogFile, EventsAsBytesAreThoseOfLcmsWriter) {
+  WriteThree();
+  std::vector<std::uint8_t> log;
+  for (int i = 0; i < 3; ++i) {
+    AppendLogEvent(log, i, Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
+  }
+  EXPECT_EQ(std::string(log.begin(), log.end()), Content());
+}
+
+TEST_F(LogFile, IsReadOnFromAPlaceThatWasNoted) {
+  WriteThree();
+  LogReader reader(file_);
+  EXPECT_EQ(reader.position_bytes(), 0);
+  EXPECT_TRUE(reader.Next());
+  EXPECT_TRUE(reader.Next());
+  EXPECT_EQ(reader.position_bytes(), static_cast<std::int64_t>(2 * kEventBytes));
+  EXPECT_EQ(reader.size_bytes(), static_cast<std::int64_t>(3 * kEventBytes));
+  reader.Seek(static_cast<std::int64_t>(kEventBytes));
+  EXPECT_EQ(ToUtimeUs(reader.Next()->time), 1001);
   EXPECT_EQ(reader.num_damaged(), 0);
 }
 
