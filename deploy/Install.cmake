@@ -12,7 +12,7 @@ install(CODE "
     endif()
   endforeach()
   file(GLOB archives \"${CMAKE_BINARY_DIR}/lookout-*.jar\")
-  file(INSTALL \${archives} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/java\")
+  file(INSTALL \${archives} DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${data_folder}\")
 ")
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/lcmtypes DESTINATION ${data_folder} FILES_MATCHING PATTERN "*.lcm")
 # Boats to copy, and scenes for lookout-sim; what is in /etc is the boat's own.

@@ -20,14 +20,8 @@ if [ -z "$root" ]; then
   say "debootstrap"
   debootstrap --variant=minbase --include=systemd,dbus bookworm "$root" >"$work/debootstrap.log" 2>&1 || fail "debootstrap: $work/debootstrap.log"
 fi
-machine=''
-clean_up() {
-  if [ -n "$machine" ]; then kill -TERM "$machine" 2>/dev/null || true; wait "$machine" 2>/dev/null || true; fi
-  rm -rf "$work"
-}
-trap clean_up EXIT
+trap 'rm -rf "$work"' EXIT
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive HOME=/root TERM=dumb "$@"; }
-units=(recorder georeferencer segmenter navigator vlp16)
 
 # A package like it with the next version, and one line of its config another: what an upgrade meets.
 say "an upgrade's package"
@@ -43,6 +37,8 @@ inside apt-get update -qq
 inside apt-get purge -y -qq lookout >/dev/null 2>&1 || true
 find "$root" -xdev -name '*lookout*' ! -path "$root/root/*" ! -path "$root/proc/*" | sort >"$work/before"
 inside apt-get install -y -qq --no-install-recommends /root/lookout.deb >"$work/install.log" 2>&1 || { tail "$work/install.log" >&2; fail "install"; }
+mapfile -t units < <(basename -a "$root"/lib/systemd/system/lookout-*.service | sed -n 's/^lookout-\(.*\)\.service$/\1/p' | grep -v '^route$')
+echo "units: ${units[*]}"
 inside id lookout || fail "no user"
 for program in "$root"/usr/bin/lookout-*; do
   inside "/usr/bin/$(basename "$program")" --help >"$work/help.txt" 2>&1 || { cat "$work/help.txt" >&2; fail "$(basename "$program") --help"; }
@@ -67,7 +63,6 @@ inside systemd-analyze security --no-pager --offline=true --threshold=$greatest_
 echo "with live-capture.conf: $(tail -n 1 "$work/security.txt")"
 rm -r "$root/etc/systemd/system/lookout-vlp16.service.d"
 
-in_machine() { systemd-run --quiet --wait --pipe -M lookout-check "$@"; }
 nspawn=(systemd-nspawn -q -D "$root" --machine=lookout-check --private-network --register=no --keep-unit)
 start_by_hand() {
   say "systemd-nspawn is not permitted here ($1): every ExecStart line by hand, as the user lookout"
@@ -79,7 +74,10 @@ start_by_hand() {
     unshare -n bash -c "ip link set lo up && ip route add 239.255.76.0/24 dev lo &&
       exec chroot --userspec=lookout:lookout '$root' /bin/sh -c 'mkdir -p /tmp/lookout && cd /tmp/lookout && exec timeout --preserve-status 3 $line'" \
       >"$work/by_hand.txt" 2>&1 || code=$?
-    [ "$code" -eq 0 ] && grep -q 'starts, version' "$work/by_hand.txt" || { cat "$work/by_hand.txt" >&2; fail "$line: exit code $code"; }
+    if [ "$code" -ne 0 ] || ! grep -q 'starts, version' "$work/by_hand.txt"; then
+      cat "$work/by_hand.txt" >&2
+      fail "$line: exit code $code"
+    fi
     echo "$line: started, ended cleanly"
   done
   rm -rf "$root/tmp/lookout"
@@ -100,6 +98,10 @@ done
 expect "route" sh -c 'ip route | grep -q "239.255.76.0/24 dev lo"'
 sleep 3
 systemctl status --no-pager 'lookout-*' | grep -E 'Loaded|Active|Status|Main PID'
+# A lake round the boat while all that follows happens.
+lookout-sim --config /usr/share/lookout/config/demo --scene lake --seed 1 --seconds 25 --udp 127.0.0.1 >/root/sim.txt 2>&1 &
+sim=$!
+sleep 2
 for unit in UNITS; do
   old=$(systemctl show -P MainPID "lookout-$unit")
   from=$(date +%s%3N)
@@ -122,13 +124,34 @@ for _ in $(seq 300); do
 done
 expect "the watchdog restarts a process that hangs" [ "$new" != "$stopped" ]
 journalctl --no-pager -u lookout-segmenter | tail -n 8
+expect "the simulator" wait "$sim"
+log=$(ls -t /var/lib/lookout/logs/*.lcmlog | head -n 1)
+rows=$(lookout-export --in "$log" --table obstacles | wc -l)
+expect "$rows obstacles recorded after the last end of the recorder" [ "$rows" -gt 1000 ]
 # Reload where the unit has it: same process.
 old=$(systemctl show -P MainPID lookout-vlp16)
 expect "reload of vlp16" systemctl reload lookout-vlp16
 sleep 2
 journalctl --no-pager -u lookout-vlp16 | tail -n 4
 expect "vlp16 is active after its reload, the same process" [ "$(systemctl show -P MainPID lookout-vlp16)" = "$old" ]
-expect "a log" sh -c 'ls -l /var/lib/lookout/logs/*.lcmlog'
+expect "reload of the recorder" systemctl reload lookout-recorder
+sleep 1
+expect "a new log for it" [ "$(ls -t /var/lib/lookout/logs/*.lcmlog | head -n 1)" != "$log" ]
+# Capture on an interface: refused as delivered, fine with the drop-in.
+cp /etc/lookout/boat/vlp16.txtpb /root/vlp16.txtpb
+sed -i 's/^source: UDP/source: INTERFACE\ninterface: "lo"/; /^bind_address/d' /etc/lookout/boat/vlp16.txtpb
+systemctl restart lookout-vlp16 2>/dev/null
+expect "no capture without the capability" sh -c '! systemctl -q is-active lookout-vlp16'
+mkdir -p /etc/systemd/system/lookout-vlp16.service.d
+cp /usr/share/doc/lookout/examples/live-capture.conf /etc/systemd/system/lookout-vlp16.service.d/
+systemctl daemon-reload
+systemctl restart lookout-vlp16
+expect "capture with the drop-in" systemctl -q is-active lookout-vlp16
+journalctl --no-pager -u lookout-vlp16 | grep -E 'captures on|critical' | tail -n 3
+rm -r /etc/systemd/system/lookout-vlp16.service.d
+systemctl daemon-reload
+cp /root/vlp16.txtpb /etc/lookout/boat/vlp16.txtpb
+rm /root/vlp16.txtpb
 systemctl stop lookout.target
 systemctl stop 'lookout-*.service'  # the same once more, but waits
 for unit in UNITS; do
@@ -155,7 +178,7 @@ if timeout 180 "${nspawn[@]}" -b systemd.unit=check-look.service >"$work/nspawn.
 else
   start_by_hand "$(tail -n 1 "$work/nspawn.txt")"
 fi
-rm -f "$root/etc/systemd/system/check-look.service" "$root/root/look.sh" "$root/root/look.txt"
+rm -f "$root/etc/systemd/system/check-look.service" "$root"/root/{look.sh,look.txt,sim.txt}
 
 say "upgrades, a changed config is kept"
 sed -i 's/^name: .*/name: "mine"/' "$root/etc/lookout/boat/boat.txtpb"
