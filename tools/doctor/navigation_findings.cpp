@@ -75,7 +75,7 @@ Finding JudgeFix(const Observations& seen) {
             "turn RMC and GGA on in the receiver; role and checksum_required of the input in navigator.txtpb"};
   }
   const auto& fix = *navigation.fix;
-  const double age_s = ToSeconds(std::chrono::microseconds(ToUtimeUs(seen.end) - fix.arrival_utime_us));
+  const double age_s = ToSeconds(seen.end - navigation.fix_heard);
   const auto words = FixInWords(fix, age_s);
   if (fix.quality == gnss_fix_t::QUALITY_NONE) {
     return {Grade::kFault, kGnssSubject, words, "the antenna needs a free view of the sky, and after a cold start some minutes; its cable"};
