@@ -137,7 +137,7 @@ TEST_F(LogFile, PassesOverWhatIsNotWanted) {
       EXPECT_TRUE(std::ranges::all_of(event->bytes, [](std::uint8_t byte) { return byte == 7; }));
     }
     EXPECT_FALSE(reader.NextView([](std::string_view) { return false; }));
-    EXPECT_EQ(reader.position(), static_cast<std::int64_t>(fs::file_size(file_)));
+    EXPECT_EQ(reader.position_bytes(), static_cast<std::int64_t>(fs::file_size(file_)));
     EXPECT_EQ(reader.num_damaged(), 0);
   }
 }
