@@ -371,7 +371,7 @@ TEST_F(Replay, ChecksTheConfigAndPrintsWhatIsInForce) {
   EXPECT_NE(result.output.find("e1_cosine: 0.95  # default"), std::string::npos) << result.output;
 }
 
-// A boat on the IJ in Amsterdam, 20 minutes (Signal K project).
+// A boat in Amsterdam, 20 minutes (Signal K project).
 TEST_F(Replay, ATextLogOfSentencesGivesATrack) {
   const auto log = data_ / "nmea/signalk_gps.log";
   if (!fs::exists(log)) GTEST_SKIP() << log << " is not there";
