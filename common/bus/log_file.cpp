@@ -25,6 +25,7 @@ constexpr std::int64_t kMaxDataBytes = 16 * 1024 * 1024;
 // What is read or written at once: system calls cost more than the copy. A turn's messages are larger than what is read: those that nobody
 // wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
+constexpr std::size_t kJumpBytes = 4 * 1024;
 constexpr std::size_t kWriteBytes = 16 * 1024;
 
 std::uint64_t ReadBigEndian(Bytes bytes, std::size_t offset, std::size_t size) {
@@ -50,10 +51,11 @@ struct LogReader::Implementation {
   std::int64_t block_offset = 0;
   std::string channel;  // of the event that was given last
 
+  // @param least_bytes  to be read if any are
   // @return the bytes from `offset` on, `size` of them where the file has so many. They stand until the next call.
-  Bytes View(std::int64_t offset, std::size_t size) {
+  Bytes View(std::int64_t offset, std::size_t size, std::size_t least_bytes = kReadBytes) {
     const auto end = offset + static_cast<std::int64_t>(size);
-    if (offset < block_offset || end > block_offset + static_cast<std::int64_t>(block.size())) Load(offset, std::max(size, kReadBytes));
+    if (offset < block_offset || end > block_offset + static_cast<std::int64_t>(block.size())) Load(offset, std::max(size, least_bytes));
     if (offset >= block_offset + static_cast<std::int64_t>(block.size())) return {};
     const auto within = Bytes(block).subspan(static_cast<std::size_t>(offset - block_offset));
     return within.first(std::min(size, within.size()));
@@ -90,7 +92,7 @@ struct LogReader::Implementation {
     channel.assign(head.begin() + kHeaderBytes, head.end());  // what stands behind the event may be another stretch
     const bool has_data = is_wanted(channel);
     if (has_data) View(start, size + sizeof(kSyncWord));  // one stretch for all
-    if (!IsWhole(start, end)) return std::nullopt;
+    if (!IsWhole(start, end, has_data ? kReadBytes : kJumpBytes)) return std::nullopt;
     const Bytes whole = has_data ? View(start, size) : Bytes();
     if (has_data && whole.size() < size) return std::nullopt;
     position = end;
@@ -99,9 +101,9 @@ struct LogReader::Implementation {
 
   // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
   // sync word stands at `end`, but some stand inside.
-  bool IsWhole(std::int64_t start, std::int64_t end) {
+  bool IsWhole(std::int64_t start, std::int64_t end, std::size_t least_bytes) {
     if (end == size_bytes) return true;
-    const Bytes word = View(end, 4);
+    const Bytes word = View(end, 4, least_bytes);
     if (word.size() == 4 && ReadBigEndian(word, 0, 4) == kSyncWord) return true;
     return FindSync(start + 4) >= end;
   }

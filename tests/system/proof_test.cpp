@@ -2,6 +2,7 @@
 // real datagrams. LOOKOUT_PROOF_SECONDS sets the length of the data (default 4).
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -97,14 +98,7 @@ class Proof : public ::testing::Test {
 
   void SetUp() override {
     folder_ = fs::temp_directory_path() / ("lookout_proof_" + std::to_string(getpid()));
-    for (const std::string name : {"live", "x1", "x10"}) {
-      fs::create_directories(folder_ / name);
-      fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / name / "config");
-    }
-    for (const std::string name : {"x1", "x10"}) {
-      SetSource(folder_ / name / "config/vlp16.txtpb", "source: UDP", "source: LOG");
-      SetSource(folder_ / name / "config/navigator.txtpb", "source: LIVE", "source: LOG");
-    }
+    fs::create_directories(folder_);
   }
   void TearDown() override {
     children_.clear();
@@ -120,9 +114,15 @@ class Proof : public ::testing::Test {
     std::ofstream(file) << text.replace(place, from.size(), to);
   }
 
-  // The recorder's logs/ is made in the folder of the run.
-  void EnterRun(const std::string& run) {
+  // A folder for the run, with a config; the recorder's logs/ is made in it.
+  void EnterRun(const std::string& run, bool is_played) {
+    fs::create_directories(folder_ / run);
+    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / run / "config");
     fs::current_path(folder_ / run);
+    if (is_played) {
+      SetSource("config/vlp16.txtpb", "source: UDP", "source: LOG");
+      SetSource("config/navigator.txtpb", "source: LIVE", "source: LOG");
+    }
     heard_.clear();
     counts_.clear();
     lcm_ = std::make_unique<bus::LcmBus>(bus::DefaultLcmUrl());
@@ -171,8 +171,8 @@ class Proof : public ::testing::Test {
 
   fs::path log_;  // of the latest run
 
-  Payloads RunLive() {
-    EnterRun("live");
+  Payloads RunLive(const std::string& run) {
+    EnterRun(run, false);
     Start({"recorder", "georeferencer", "segmenter"});
     Start({"navigator", "vlp16"});  // nobody misses their start marks
     const auto sim = RunProgram(
@@ -184,7 +184,7 @@ class Proof : public ::testing::Test {
 
   // Plays the raw channels of a log, and nothing else, into live processes.
   Payloads RunPlayed(const std::string& run, const std::string& speed, const fs::path& log, const Payloads& expected) {
-    EnterRun(run);
+    EnterRun(run, true);
     Start(kFromSourceToLog);
     Child player({"lcm-logplayer", "-s", speed, "-e", "(LIDAR_PACKETS|NAV_RAW)", log.string()}, "logplayer.out");
     EXPECT_TRUE(HandleUntil([&player] { return !player.IsRunning(); }, seconds(2 * DataSeconds() + 30)));
@@ -194,10 +194,27 @@ class Proof : public ::testing::Test {
   }
 };
 
+// The promise ends at a loss that is counted, and on a computer with more to do than it can, messages are lost. Some attempts, then, to have a run
+// without.
+constexpr int kMaxAttempts = 3;
+
+template <typename Run>
+Payloads WithoutLoss(const Run& run) {
+  for (int attempt = 1;; ++attempt) {
+    auto log = run(std::to_string(attempt));
+    const auto losses = LossesIn(log);
+    if (losses.empty() || attempt == kMaxAttempts || ::testing::Test::HasFailure()) {
+      EXPECT_EQ(losses, std::vector<std::string>());
+      return log;
+    }
+    std::printf("attempt %d: %s\n", attempt, ::testing::PrintToString(losses).c_str());
+  }
+}
+
 TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
-  const auto live = RunLive();
+  const auto live = WithoutLoss([this](const std::string& attempt) { return RunLive("live-" + attempt); });
   const auto log = log_;
-  ASSERT_EQ(LossesIn(live), std::vector<std::string>());  // the promise ends at a loss
+  ASSERT_FALSE(HasFailure());
   EXPECT_GE(Count(live, "LIDAR_SCAN"), 10 * DataSeconds() - 2);
   EXPECT_GE(Count(live, "RUN_INFO"), 1);
 
@@ -215,8 +232,7 @@ TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
 
   for (const std::string speed : {"1", "10"}) {
     SCOPED_TRACE("lcm-logplayer at x" + speed);
-    const auto played = RunPlayed("x" + speed, speed, log, live);
-    EXPECT_EQ(LossesIn(played), std::vector<std::string>());
+    const auto played = WithoutLoss([&](const std::string& attempt) { return RunPlayed("x" + speed + "-" + attempt, speed, log, live); });
     ExpectSameMessages(live, played);
   }
 }

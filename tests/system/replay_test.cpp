@@ -1,4 +1,5 @@
 // lookout-replay and lookout-export as a user runs them, on the simulator's capture and on real recordings where they are at hand.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +12,7 @@
 
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "lookout/gnss_fix_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
@@ -367,6 +369,44 @@ TEST_F(Replay, ChecksTheConfigAndPrintsWhatIsInForce) {
   const auto result = RunProgram({Bin("replay"), "--config", config_, "--check"}, Path("check.out"));
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_NE(result.output.find("e1_cosine: 0.95  # default"), std::string::npos) << result.output;
+}
+
+// A boat in Amsterdam, 20 minutes (Signal K project).
+TEST_F(Replay, ATextLogOfSentencesGivesATrack) {
+  const auto log = data_ / "nmea/signalk_gps.log";
+  if (!fs::exists(log)) GTEST_SKIP() << log << " is not there";
+  const auto result = ReplayTo(log.string(), "track");
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const auto poses = Messages<pose_t>("track", "POSE");
+  // 08:54:11 to 09:14, every 20 ms.
+  EXPECT_GT(poses.size(), 50'000U);
+  const auto is_placed = [](const pose_t& pose) { return std::isfinite(pose.latitude_deg); };
+  const auto num_placed = std::count_if(poses.begin(), poses.end(), is_placed);
+  EXPECT_GT(num_placed, static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(poses.size())));
+  for (const auto& pose : poses) {
+    if (!is_placed(pose)) continue;
+    ASSERT_NEAR(pose.latitude_deg, 52.37, 0.1);
+    ASSERT_NEAR(pose.longitude_deg, 4.91, 0.2);
+  }
+  const auto track =
+      RunProgram({Bin("export"), "--in", Path("track"), "--table", "pose", "--format", "svg", "--out", Path("track.svg")}, Path("export.out"));
+  EXPECT_EQ(track.exit_code, 0) << track.output;
+  EXPECT_NE(Content(Path("track.svg")).find("polyline"), std::string::npos);
+}
+
+TEST_F(Replay, ATextLogGivesTheSameBytesEachTime) {
+  std::ofstream log(Path("day.nmea"));
+  for (int second = 0; second < 10; ++second) {
+    const std::string body =
+        "GPRMC,08541" + std::to_string(second) + ".00,A,5222.32" + std::to_string(second) + "0,N,00454.5778,E,3.60,0.0,030414,,,A";
+    int sum = 0;
+    for (const char letter : body) sum ^= letter;
+    log << '$' << body << '*' << "0123456789ABCDEF"[sum / 16] << "0123456789ABCDEF"[sum % 16] << "\r\n";
+  }
+  log.close();
+  ExpectSameBytes(Path("day.nmea"));
+  EXPECT_GT(Messages<pose_t>("first", "POSE").size(), 400U);
+  EXPECT_EQ(Messages<gnss_fix_t>("first", "GNSS_FIX").size(), 10U);
 }
 
 }  // namespace

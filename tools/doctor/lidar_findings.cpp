@@ -102,7 +102,7 @@ std::string ReturnMode(const LidarSeen& lidar) {
 
 Finding JudgePackets(const Observations& seen) {
   const auto& lidar = seen.lidar;
-  const bool is_silent = lidar.num_packets == 0 || ToSeconds(seen.end - lidar.last) > kLidarSilenceS;
+  const bool is_silent = lidar.num_packets == 0 || ToSeconds(seen.end - lidar.heard_last) > kLidarSilenceS;
   if (is_silent) {
     return {Grade::kFault, kLidarSubject, lidar.complaint.empty() ? "no lidar packets" : lidar.complaint, kLidarCure};
   }

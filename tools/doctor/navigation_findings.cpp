@@ -59,6 +59,10 @@ std::string FixInWords(const gnss_fix_t& fix, double age_s) {
   return words;
 }
 
+Finding ShutInput(const std::string& name, const std::string& fault) {
+  return {Grade::kFault, kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"};
+}
+
 Finding JudgeFix(const Observations& seen) {
   const auto& navigation = seen.navigation;
   if (navigation.num_by_source.empty()) {
@@ -71,7 +75,7 @@ Finding JudgeFix(const Observations& seen) {
             "turn RMC and GGA on in the receiver; role and checksum_required of the input in navigator.txtpb"};
   }
   const auto& fix = *navigation.fix;
-  const double age_s = ToSeconds(std::chrono::microseconds(ToUtimeUs(seen.end) - fix.arrival_utime_us));
+  const double age_s = ToSeconds(seen.end - navigation.fix_heard);
   const auto words = FixInWords(fix, age_s);
   if (fix.quality == gnss_fix_t::QUALITY_NONE) {
     return {Grade::kFault, kGnssSubject, words, "the antenna needs a free view of the sky, and after a cold start some minutes; its cable"};
@@ -141,7 +145,7 @@ Findings JudgeNavigation(const Observations& seen) {
   }
   Findings findings;
   for (const auto& [name, fault] : seen.navigation.input_faults) {
-    findings.push_back({Grade::kFault, kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"});
+    findings.push_back(ShutInput(name, fault));
   }
   findings.push_back(JudgeFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;

@@ -69,6 +69,7 @@ void Notes::OnPackets(const lidar_packets_t& message, Via via) {
     if (lidar.num_packets == 0) lidar.first = *time;
     lidar.last = *time;
     ++lidar.num_packets;
+    lidar.heard_last = clock_();
   }
 }
 
@@ -79,6 +80,7 @@ void Notes::OnFix(const gnss_fix_t& message) {
   constexpr std::int64_t kEpochUs = 1'500'000;  // of the slowest receivers, a fix a second, and some delay
   if (says_less && fix->quality > 0 && message.quality > 0 && std::abs(message.arrival_utime_us - fix->arrival_utime_us) < kEpochUs) return;
   fix = message;
+  seen_.navigation.fix_heard = clock_();
 }
 
 void Notes::OnHealth(const health_t& message) {

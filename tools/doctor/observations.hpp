@@ -74,9 +74,10 @@ struct LidarSeen {
   std::string complaint;  // of the process, or of the same code inside the doctor; empty = none
   // Datagrams to the data port by numeric source; kItself with source UDP alone.
   std::map<std::string, std::int64_t> num_by_sender;
-  std::int64_t num_packets = 0;  // data packets, and host time of the first and the last
+  std::int64_t num_packets = 0;  // data packets, and the times that who received them put on the first and the last
   Utime first{};
   Utime last{};
+  Utime heard_last{};   // by this computer's clock, which may not be the one of `last`
   std::string model;    // of the last turn; empty = no turn
   int num_returns = 0;  // per shot
   int return_kind = 0;  // lidar_scan_t::RETURN_..., of the first
@@ -90,6 +91,7 @@ struct NavigationSeen {
   std::string complaint;                                          // as in LidarSeen
   std::map<std::string, std::int64_t> num_by_source;              // sentences and IMU samples
   std::optional<gnss_fix_t> fix;                                  // the last; of one epoch the one that says most
+  Utime fix_heard{};                                              // by this computer's clock
   std::optional<attitude_t> heading;                              // the last that holds one
   std::optional<pose_t> pose;                                     // the last
 };

@@ -68,6 +68,11 @@ Finding JudgeProcess(const std::string& name, const ProcessSeen& process) {
   return {Grade::kOk, kProcessSubject, words + (losses.empty() ? "" : "; lost since its start: " + losses), {}};
 }
 
+Finding Missing(const std::string& name, bool was_heard) {
+  return {Grade::kFault, kProcessSubject, name + (was_heard ? " was heard, and has stopped" : " is not heard, others are"),
+          "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended"};
+}
+
 Findings JudgeObstacles(const Observations& seen) {
   const auto& obstacles = seen.obstacles;
   if (obstacles.num_turns == 0) {
@@ -112,9 +117,7 @@ Findings JudgeProcesses(const Observations& seen) {
       }
     }
     if (alive.empty()) {
-      const bool was_heard = found != seen.processes.end();
-      findings.push_back({Grade::kFault, kProcessSubject, name + (was_heard ? " was heard, and has stopped" : " is not heard, others are"),
-                          "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended"});
+      findings.push_back(Missing(name, found != seen.processes.end()));
       continue;
     }
     for (const auto* process : alive) findings.push_back(JudgeProcess(name, *process));

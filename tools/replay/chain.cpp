@@ -82,6 +82,15 @@ void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
   Drain();
 }
 
+void Chain::OnTextLine(Utime time, Bytes line) {
+  AdvanceTo(time);
+  if (navigator_) {
+    ++num_nmea_datagrams_;
+    Timed(navigator_time_, [&] { navigator_->OnDatagram(time, line); });
+  }
+  Drain();
+}
+
 void Chain::OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes) {
   AdvanceTo(log_time);
   bus_.Publish(channel, bytes);

@@ -38,6 +38,9 @@ class Chain {
   /// A datagram out of a capture. What is on none of the ports of the config is left out and counted.
   void OnDatagram(Utime host_time, int udp_port, Bytes payload);
 
+  /// A line of a text log: for the navigator's input "udp", as if it had come by that. Left out where the navigator does not run.
+  void OnTextLine(Utime time, Bytes line);
+
   /// A message out of a log, on a channel that the plan reads.
   void OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes);
 

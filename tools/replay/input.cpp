@@ -12,6 +12,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
+#include "tools/replay/text_log.hpp"
 
 namespace lookout::replay {
 
@@ -52,6 +53,18 @@ class Order {
   std::filesystem::path file_;
   std::optional<Utime> before_;
 };
+
+void FeedTextLog(const std::filesystem::path& file, Chain& chain, InputSummary& summary, const std::function<void(std::int64_t)>& show) {
+  TextLogReader reader(file);
+  Order order(file, chain);
+  if (!reader.has_date()) spdlog::warn("{}: no sentence tells a date; its times are taken as those of 1970-01-01", file.string());
+  while (const auto line = reader.Next()) {
+    order.Check(line->time);
+    ++summary.num_events;
+    chain.OnTextLine(line->time, line->bytes);
+    show(reader.position());
+  }
+}
 
 void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary, const std::function<void(std::int64_t)>& show) {
   // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
@@ -148,6 +161,8 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& p
     const auto show = [&](std::int64_t num_bytes_of_file) { progress.Update(num_bytes + num_bytes_of_file, chain.span()); };
     if (KindOf(file) == InputKind::kLog) {
       FeedLog(file, plan, chain, summary, show);
+    } else if (IsTextLog(file)) {
+      FeedTextLog(file, chain, summary, show);
     } else {
       FeedCapture(file, chain, summary, show);
     }

@@ -1,4 +1,4 @@
-// What replay reads: captures and lcm-logs, told apart by their first bytes.
+// What replay reads: captures, text logs of NMEA 0183 and lcm-logs, told apart by their first bytes.
 #pragma once
 
 #include <filesystem>
@@ -14,9 +14,9 @@
 
 namespace lookout::replay {
 
-enum class InputKind { kCapture, kLog };
+enum class InputKind { kCapture, kLog };  // a text log counts as a capture: both come from outside
 
-/// @return by content: what begins as a capture is one, what holds an event of LCM is a log, all else is left to libpcap
+/// @return by content: what begins as a capture is one, what holds an event of LCM is a log, all else is a text log (IsTextLog) or left to libpcap
 /// @throws std::runtime_error when the file cannot be read
 InputKind KindOf(const std::filesystem::path& file);
 

@@ -48,7 +48,7 @@ Options ParseOptions(int argc, char** argv) {
                "lookout-replay");
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
-  app.add_option("--in", inputs, "pcap, pcapng or lcm-log; several are read in their order")->check(CLI::ExistingFile);
+  app.add_option("--in", inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
   app.add_option("--out", output, "lcm-log to write; an older one is replaced");
   app.add_option("--from", options.request.from, "channel of the log at which to begin; what gives it, and is before that, does not run (several)")
       ->check(CLI::IsMember(lookout::replay::FromNames()));

@@ -144,7 +144,7 @@ Plan MakeLogPlan(const Request& request, const ChannelSet& present) {
 }
 
 Plan MakeCapturePlan(const Request& request) {
-  const Plan plan = Running(request);
+  Plan plan = Running(request);
   if (!request.from.empty()) throw RequestError("--from " + request.from.front() + ": a capture holds datagrams, not messages");
   if (plan.runs_segmenter && !plan.runs_vlp16) throw RequestError("--only segmenter: a capture needs vlp16 too");
   if (plan.runs_georeferencer && !plan.runs_segmenter && !plan.runs_navigator) {

@@ -70,7 +70,7 @@ const health_counter_t* FindCounter(const health_t& health, std::string_view nam
 
 // Reasons are joined by "; ": the piece about the alarm says how near and where. Without one, the counter has at least the distance.
 constexpr std::string_view kAlarmWords = "obstacle within ";
-std::string AlarmText(const health_t& health) {
+std::string AlarmReason(const health_t& health) {
   const auto start = health.reason.find(kAlarmWords);
   if (start != std::string::npos) return health.reason.substr(start, health.reason.find(';', start) - start);
   const auto* nearest = FindCounter(health, "nearest_cm");
@@ -195,7 +195,7 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
     if (active == nullptr) continue;
     Alarm alarm;
     alarm.is_active = active->count != 0;
-    alarm.text = AlarmText(process.health);
+    alarm.text = AlarmReason(process.health);
     alarm.age = now - process.last;
     // Where several tell of it, an alarm counts before none, then the newer.
     if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;

@@ -106,7 +106,7 @@ std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, bool sure_only
   return rows;
 }
 
-std::string AlarmText(const Alarm& alarm) {
+std::string AlarmLine(const Alarm& alarm) {
   std::string text = "ALARM: " + Printable(alarm.text);
   // HEALTH comes once a second.
   if (Seconds(alarm.age) > 3.0) text += fmt::format(" ({:.0f} s ago, silent since)", Seconds(alarm.age));
@@ -156,7 +156,7 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
   if (view.height > 0) plan.Fit(view.height, has_alarm ? 2 : 1);
 
   std::vector<Row> rows;
-  if (has_alarm) rows.push_back({{Left(AlarmText(*alarm), view.width), Style::kAlarm}});
+  if (has_alarm) rows.push_back({{Left(AlarmLine(*alarm), view.width), Style::kAlarm}});
   if (plan.has_title) rows.push_back({{title, Style::kPlain}});
   if (plan.has_header)
     rows.push_back({{Left(Left(ChannelsHeader(), kChannelsWidth) + " " + (is_wide ? ProcessesHeader() : ""), view.width), Style::kHeader}});

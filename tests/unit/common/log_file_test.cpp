@@ -1,10 +1,13 @@
 #include "common/bus/log_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
 #include <stdexcept>
+
+#include "common/bus/log_event.hpp"
 
 namespace lookout::bus {
 namespace {
@@ -44,6 +47,28 @@ TEST_F(LogFile, GivesBackWhatWasWritten) {
     EXPECT_EQ(event->bytes, std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
   }
   EXPECT_FALSE(reader.Next());
+  EXPECT_EQ(reader.num_damaged(), 0);
+}
+
+TEST_F(LogFile, EventsAsBytesAreThoseOfLcmsWriter) {
+  WriteThree();
+  std::vector<std::uint8_t> log;
+  for (int i = 0; i < 3; ++i) {
+    AppendLogEvent(log, i, Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
+  }
+  EXPECT_EQ(std::string(log.begin(), log.end()), Content());
+}
+
+TEST_F(LogFile, IsReadOnFromAPlaceThatWasNoted) {
+  WriteThree();
+  LogReader reader(file_);
+  EXPECT_EQ(reader.position_bytes(), 0);
+  EXPECT_TRUE(reader.Next());
+  EXPECT_TRUE(reader.Next());
+  EXPECT_EQ(reader.position_bytes(), static_cast<std::int64_t>(2 * kEventBytes));
+  EXPECT_EQ(reader.size_bytes(), static_cast<std::int64_t>(3 * kEventBytes));
+  reader.Seek(static_cast<std::int64_t>(kEventBytes));
+  EXPECT_EQ(ToUtimeUs(reader.Next()->time), 1001);
   EXPECT_EQ(reader.num_damaged(), 0);
 }
 
@@ -90,6 +115,31 @@ TEST_F(LogFile, SkipsJunkInFrontAndBetween) {
   while (reader.Next()) ++num_events;
   EXPECT_EQ(num_events, 3);
   EXPECT_EQ(reader.num_damaged(), 2);
+}
+
+TEST_F(LogFile, PassesOverWhatIsNotWanted) {
+  const std::vector<std::uint8_t> large(200'000, 7);  // more than is read at once
+  {
+    LogWriter writer(file_, true);
+    for (int i = 0; i < 20; ++i) {
+      writer.Write(Utime(std::chrono::microseconds(i)), i % 2 == 0 ? "LARGE" : "SMALL", i % 2 == 0 ? Bytes(large) : Bytes(large).first(10));
+    }
+  }
+  for (const std::string wanted : {"LARGE", "SMALL"}) {
+    LogReader reader(file_);
+    for (int i = 0; i < 20; ++i) {
+      const auto event = reader.NextView([&wanted](std::string_view channel) { return channel == wanted; });
+      ASSERT_TRUE(event);
+      EXPECT_EQ(ToUtimeUs(event->time), i);
+      EXPECT_EQ(event->channel, i % 2 == 0 ? "LARGE" : "SMALL");
+      const std::size_t size = event->channel == "LARGE" ? large.size() : 10;
+      EXPECT_EQ(event->bytes.size(), event->channel == wanted ? size : 0);
+      EXPECT_TRUE(std::ranges::all_of(event->bytes, [](std::uint8_t byte) { return byte == 7; }));
+    }
+    EXPECT_FALSE(reader.NextView([](std::string_view) { return false; }));
+    EXPECT_EQ(reader.position_bytes(), static_cast<std::int64_t>(fs::file_size(file_)));
+    EXPECT_EQ(reader.num_damaged(), 0);
+  }
 }
 
 TEST_F(LogFile, IsNotOverwrittenUnlessAskedFor) {

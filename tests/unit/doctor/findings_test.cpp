@@ -83,7 +83,7 @@ TEST(DoctorLidar, MissesIt) {
 
 TEST(DoctorLidar, SeesThatItHasStopped) {
   auto seen = Healthy();
-  seen.lidar.last = kEnd - std::chrono::seconds(2);
+  seen.lidar.heard_last = kEnd - std::chrono::seconds(2);
   EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "is the lidar powered");
 }
 
@@ -149,7 +149,7 @@ TEST(DoctorNavigation, TellsTheFix) {
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "poor");
   fix.quality = gnss_fix_t::QUALITY_DEAD_RECKONING;
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "not measured by satellites");
-  fix.arrival_utime_us = Ago(2.5);
+  seen.navigation.fix_heard = kEnd - std::chrono::milliseconds(2500);
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kFault, "it has stopped");
   fix.quality = gnss_fix_t::QUALITY_NONE;
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kFault, "free view of the sky");

@@ -53,6 +53,7 @@ inline Observations Healthy() {
   lidar.num_packets = 3770;
   lidar.last = kEnd - std::chrono::milliseconds(2);
   lidar.first = lidar.last - std::chrono::microseconds(1327 * 3769);
+  lidar.heard_last = lidar.last;
   lidar.model = "VLP-16";
   lidar.num_returns = 1;
   lidar.return_kind = lidar_scan_t::RETURN_STRONGEST;
@@ -79,6 +80,7 @@ inline Observations Healthy() {
   fix.latitude_deg = 43.63;
   fix.longitude_deg = -72.15;
   navigation.fix = fix;
+  navigation.fix_heard = kEnd - std::chrono::milliseconds(100);
   attitude_t attitude{};
   attitude.source = "udp";
   attitude.sentence_type = "PASHR";

@@ -38,9 +38,9 @@ void ExpectAsLcm(LcmEncode lcm_encode, LcmDecode lcm_decode) {
     std::vector<T> back_of_lcm(size);
     EXPECT_EQ(DecodeArray(ours.data(), 3, num_bytes, back.data(), count), num_bytes);
     EXPECT_EQ(lcm_decode(ours.data(), 3, num_bytes, back_of_lcm.data(), count), num_bytes);
+    if (size == 0) continue;
     EXPECT_EQ(std::memcmp(back.data(), back_of_lcm.data(), size * sizeof(T)), 0) << size;
     EXPECT_EQ(std::memcmp(back.data(), values.data(), size * sizeof(T)), 0) << size;
-    if (size == 0) continue;
     EXPECT_EQ(EncodeArray(ours.data(), 3, num_bytes - 1, values.data(), count), -1);
     EXPECT_EQ(DecodeArray(ours.data(), 3, num_bytes - 1, back.data(), count), -1);
   }

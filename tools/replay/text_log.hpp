@@ -1,0 +1,54 @@
+// Text logs of NMEA 0183 sentences: a line each, as receivers and plotters write them. The times are those that the sentences say.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::replay {
+
+/// @return whether the start of a file is text with a line that begins with $ or !, maybe behind a tag block or a stamp
+/// @throws std::runtime_error when it cannot be read
+bool IsTextLog(const std::filesystem::path& file);
+
+class TextLogReader {
+ public:
+  /// A sentence that is older than the one before it by no more than this came late, as several talkers on one line have it: it takes the time
+  /// of the one before. What runs back further begins anew.
+  static constexpr std::chrono::seconds kMaxLate{10};
+
+  /// Reads the file once as far as its first date.
+  /// @throws std::runtime_error when it cannot be read, or no sentence in it tells a time
+  explicit TextLogReader(const std::filesystem::path& file);
+
+  struct Line {
+    Utime time;   // UTC of the sentence; where it says none, of the one before it; of the first ones, the first that is said
+    Bytes bytes;  // without its end; until the next call
+  };
+
+  /// @return the next line, whatever it holds; nullopt at the end
+  std::optional<Line> Next();
+
+  /// No sentence of the file tells a date: the times are those of 1970-01-01.
+  bool has_date() const { return has_date_; }
+
+  /// Bytes read so far.
+  std::int64_t position() const { return position_; }
+
+ private:
+  std::ifstream in_;
+  std::string line_;
+  std::int64_t position_ = 0;
+  bool has_date_ = false;
+  std::chrono::sys_days day_{};                      // of the last time
+  std::optional<std::chrono::microseconds> of_day_;  // the last time of day
+  Utime last_{};
+};
+
+}  // namespace lookout::replay
