@@ -263,14 +263,14 @@ TEST(Recordings, OfABoatGiveASmoothTrack) {
       greatest_from_fix_m = std::max(greatest_from_fix_m, distance_m);
     }
   };
-  constexpr auto kDay = std::chrono::sys_days(std::chrono::year(2014) / 4 / 3);  // of the recording
+  constexpr auto kRecordedDay = std::chrono::sys_days(std::chrono::year(2014) / 4 / 3);  // of the recording
   for (std::string line; std::getline(in, line);) {
     while (!line.empty() && line.back() == '\r') line.pop_back();
     const auto parsed = ParseSentence(line);
     if (parsed.fault != SentenceFault::kNone) continue;
     // A second's sentences come a fifth of a second after it.
     const auto take_time = [&](const auto& time_of_day) {
-      if (time_of_day) now = std::max(now.value_or(kDay), kDay + *time_of_day + std::chrono::milliseconds(200));
+      if (time_of_day) now = std::max(now.value_or(kRecordedDay), kRecordedDay + *time_of_day + std::chrono::milliseconds(200));
     };
     if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence)) take_time(rmc->time_of_day);
     if (const auto* gga = std::get_if<Gga>(&parsed.sentence)) take_time(gga->time_of_day);

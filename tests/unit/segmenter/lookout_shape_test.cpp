@@ -141,9 +141,9 @@ TEST(Box, HoldsEveryPointAndIsAtMostAThirdLargerThanTheLeast) {
 Points TwoSides(double heading_rad, double bearing_rad, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise_m(0.0, 0.03);
-  constexpr double kRangeM = 14.0;
-  const double middle_x_m = kRangeM * std::cos(bearing_rad);
-  const double middle_y_m = kRangeM * std::sin(bearing_rad);
+  constexpr double kBoatRangeM = 14.0;
+  const double middle_x_m = kBoatRangeM * std::cos(bearing_rad);
+  const double middle_y_m = kBoatRangeM * std::sin(bearing_rad);
   Points points;
   for (double azimuth_rad = bearing_rad - 0.4; azimuth_rad < bearing_rad + 0.4; azimuth_rad += 0.0035) {
     // In the boat's own frame: where the beam enters its box.
