@@ -126,8 +126,9 @@ Findings JudgeDisk(const DiskSeen& disk) {
   }
   const double rate_bytes_per_s = disk.rate_bytes_per_s.value_or(kUsualRateBytesPerS);
   const double hours = static_cast<double>(disk.free_bytes) / rate_bytes_per_s / 3600.0;
-  const std::string words = folder + ": " + Text(static_cast<double>(disk.free_bytes) / 1e9, 1) + " GB free, " + Text(hours, 1) + " hours at " +
-                            Text(rate_bytes_per_s / 1e6, 2) + " MB/s (" + (disk.rate_bytes_per_s ? "heard on the bus" : "the usual rate") + ")" +
+  const std::string words = folder + ": " + Text(static_cast<double>(disk.free_bytes) / 1e9, 1) + " GB free beyond the reserve, " + Text(hours, 1) +
+                            " hours at " + Text(rate_bytes_per_s / 1e6, 2) + " MB/s (" +
+                            (disk.rate_bytes_per_s ? "heard on the bus" : "the usual rate") + ")" +
                             (disk.is_guessed ? "; log_folder is relative, and taken from here: start the recorder in this folder too" : "");
   if (!disk.is_writable) {
     return {{Grade::kFault, kDiskSubject, words + "; it cannot be written", "give its owner or its rights to who runs lookout-recorder"}};

@@ -51,7 +51,11 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   check("segmenter.txtpb", [&] { segmenter::LoadParams(config_folder); });
   check("navigator.txtpb", [&] { seen.navigation = navigator::LoadParams(config_folder); });
   check("georeferencer.txtpb", [&] { georeferencer::LoadParams(config_folder); });
-  check("recorder.txtpb", [&] { seen.log_folder = recorder::LoadParams(config_folder).log_folder; });
+  check("recorder.txtpb", [&] {
+    const auto params = recorder::LoadParams(config_folder);
+    seen.log_folder = params.log_folder;
+    seen.log_reserve_bytes = params.reserve_bytes;
+  });
   // RUN_INFO holds every file of the folder, so the recorder does not start where any is wrong.
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(config_folder, error)) {

@@ -2,6 +2,8 @@
 #include <sys/timex.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "common/runtime/process.hpp"
 #include "tools/doctor/machine.hpp"
 
@@ -49,7 +51,7 @@ DiskSeen ReadDisk(const Observations& seen) {
   disk.folder = folder;
   const auto existing = Existing(folder);
   const auto space = fs::space(existing, error);
-  if (!error) disk.free_bytes = static_cast<std::int64_t>(space.available);
+  if (!error) disk.free_bytes = std::max<std::int64_t>(0, static_cast<std::int64_t>(space.available) - seen.config.log_reserve_bytes);
   // A recorder that writes may be another user.
   const bool is_recording = recorder != nullptr && recorder->state != health_t::STATE_FAILED;
   disk.is_writable = is_recording || access(existing.c_str(), W_OK) == 0;

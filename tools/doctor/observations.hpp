@@ -34,6 +34,7 @@ struct ConfigSeen {
   std::optional<vlp16::Params> lidar;
   std::optional<navigator::Params> navigation;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
+  std::int64_t log_reserve_bytes = 0;               // which the recorder leaves free
 };
 
 /// The bus, before anything is heard on it.
@@ -116,7 +117,7 @@ struct DiskSeen {
   std::filesystem::path folder;  // absolute; empty = not known
   bool is_guessed = false;       // relative in the config, and the recorder does not run: taken from where the doctor was started
   bool is_writable = true;
-  std::int64_t free_bytes = -1;            // -1 = not known
+  std::int64_t free_bytes = -1;            // beyond the recorder's reserve            // -1 = not known
   std::optional<double> rate_bytes_per_s;  // heard on the bus with the lidar running
 };
 

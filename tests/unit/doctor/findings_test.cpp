@@ -238,7 +238,7 @@ TEST(DoctorDisk, CountsTheHours) {
   DiskSeen disk = Healthy().disk;
   disk.rate_bytes_per_s = 1e6;
   disk.free_bytes = 100'000'000'000;
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kOk, "/logs: 100.0 GB free, 27.8 hours at 1.00 MB/s (heard on the bus)");
+  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kOk, "/logs: 100.0 GB free beyond the reserve, 27.8 hours at 1.00 MB/s (heard on the bus)");
   disk.free_bytes = 30'000'000'000;
   EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kWarning, "8.3 hours");
   disk.free_bytes = 3'000'000'000;
