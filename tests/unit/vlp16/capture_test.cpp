@@ -174,9 +174,9 @@ Text Header(std::uint32_t link_type, std::uint32_t magic = 0xA1B2C3D4) {
   return U32(magic) + Text{2, 0, 4, 0} + U32(0) + U32(0) + U32(65535) + U32(link_type);
 }
 
-Text Record(const Text& frame, std::uint32_t seconds, std::uint32_t fraction) {
+Text Record(const Text& frame, std::uint32_t second, std::uint32_t fraction) {
   const auto size = static_cast<std::uint32_t>(frame.size());
-  return U32(seconds) + U32(fraction) + U32(size) + U32(size) + frame;
+  return U32(second) + U32(fraction) + U32(size) + U32(size) + frame;
 }
 
 const Text kFrame = kMacs + Text{0x08, 0x00} + Ipv4(Udp(2368, kPayload));
