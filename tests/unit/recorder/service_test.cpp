@@ -268,7 +268,7 @@ TEST_F(Recorder, GoesOnInANewLogWhenADiskThatWasFullIsNotAnyMore) {
 }
 
 TEST(RecorderParams, AreThoseOfTheFileAndTheFolderMustBeNamed) {
-  const auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  const auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot");
   EXPECT_EQ(params.log_folder, "logs");
   EXPECT_EQ(params.max_file_bytes, 2'000'000'000);
   EXPECT_EQ(params.max_file_time, std::chrono::hours(1));
