@@ -48,6 +48,9 @@ function(lookout_program)
   cmake_parse_arguments(program "" "NAME" "SOURCES;LINKS" ${ARGN})
   add_executable(${program_NAME} ${program_SOURCES})
   target_link_libraries(${program_NAME} PRIVATE ${program_LINKS})
+  if(LOOKOUT_SANITIZE)
+    target_compile_options(${program_NAME} PRIVATE -O0)  # a main reads its command line: made better, that takes longer than all else
+  endif()
   add_dependencies(programs ${program_NAME})
   install(TARGETS ${program_NAME} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endfunction()
@@ -71,13 +74,21 @@ function(lookout_test)
   set_tests_properties(${test_NAME} PROPERTIES TIMEOUT ${test_TIMEOUT} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 endfunction()
 
+# Speed under sanitizers tells nothing: benchmarks are not built there.
+function(lookout_bench_options name)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
+  if(LOOKOUT_SANITIZE)
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+endfunction()
+
 # A Google Benchmark program, run by ./dev bench.
 function(lookout_bench)
   cmake_parse_arguments(bench "" "NAME" "SOURCES;LINKS" ${ARGN})
   add_executable(${bench_NAME} ${bench_SOURCES})
   target_link_libraries(${bench_NAME} PRIVATE ${bench_LINKS} benchmark::benchmark benchmark::benchmark_main)
   target_compile_definitions(${bench_NAME} PRIVATE LOOKOUT_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  set_target_properties(${bench_NAME} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
+  lookout_bench_options(${bench_NAME})
 endfunction()
 
 # A libFuzzer target, run by ./dev fuzz. Its body is also compiled for lint where fuzzing itself is off.

@@ -16,5 +16,5 @@ lookout_bench(NAME bench_segmenter SOURCES bench/segmenter_bench.cpp LINKS looko
 # Whole turns beside those of the peers. Not a Google Benchmark.
 add_executable(turns_segmenter bench/segmenter_turns.cpp)
 target_link_libraries(turns_segmenter PRIVATE lookout_segmenter_core lookout_eval_baselines)
-set_target_properties(turns_segmenter PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bench)
+lookout_bench_options(turns_segmenter)
 lookout_fuzz(NAME fuzz_segmenter SOURCES fuzz/segmenter_fuzz.cpp LINKS lookout_segmenter)

@@ -108,7 +108,7 @@ Clutter::Clutter(const Scene& scene, const config::BoatFacts& boat, std::uint64_
 }
 
 Clutter::Wake Clutter::WakeOf(const Source& source, double time_s) const {
-  constexpr double kStepS = 0.1;
+  constexpr double kWakeStepS = 0.1;
   if (source.is_own) {
     const OwnState state = StateAt(scene_.own_motion, reference_point_above_water_m_, time_s);
     const double speed_mps = state.velocity_map_mps.norm();
@@ -117,9 +117,9 @@ Clutter::Wake Clutter::WakeOf(const Source& source, double time_s) const {
   }
   // By its places: a track may turn, and end.
   const Placement placement = source.track.At(time_s);
-  const Vector2d way_m = placement.position_map_m - source.track.At(time_s - kStepS).position_map_m;
+  const Vector2d way_m = placement.position_map_m - source.track.At(time_s - kWakeStepS).position_map_m;
   const Vector2d ahead(std::sin(placement.heading_rad), std::cos(placement.heading_rad));
-  return {placement.position_map_m + source.stern_m * ahead, ahead, way_m.norm() / kStepS, source.half_width_m};
+  return {placement.position_map_m + source.stern_m * ahead, ahead, way_m.norm() / kWakeStepS, source.half_width_m};
 }
 
 void Clutter::MoveTo(double time_s) {
