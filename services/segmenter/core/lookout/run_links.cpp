@@ -23,28 +23,32 @@ class Linker {
     ForEachFollowing(grid_, runs_, line, [this](std::int32_t one, std::int32_t other) { LinkEnds(one, other); });
   }
 
-  // A run with those of another line: of its ring (another return of the shot) or of another ring.
-  void LinkAcross(std::int32_t index, int other_line) {
+  // A run with those of another line: of its ring (another return of the shot) or of another ring. kWindow columns aside.
+  template <int kWindow>
+  void LinkAcross(std::int32_t index, int other_line, bool is_of_one_ring) {
     const Run& run = runs_[index];
-    const bool is_of_one_ring = grid_.RingOf(run.line) == grid_.RingOf(other_line);
-    const int window = is_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
-    const int num_places = std::min(run.length + 2 * window, grid_.num_columns());
+    const int num_columns = grid_.num_columns();
+    const int num_places = std::min(run.length + 2 * kWindow, num_columns);
     if (run.length == 1) {
       // A drop in most cases: what has nothing near it needs no more. The reach of a pair goes by the nearer one, so this is not too short.
       const float range_m = grid_.RangeAt(run.line, run.first);
-      if (!grid_.IsAnyNear(other_line, run.first, window, range_m, static_cast<float>(link_.At(range_m)))) return;
+      if (!grid_.IsAnyNear<kWindow>(other_line, run.first, range_m, static_cast<float>(link_.At(range_m)))) return;
     }
-    for (int step = 0; step < num_places; ++step) {
-      const int place = step - window;  // in the run, or beside it
-      const int column = WrapFar(run.first + place);
-      const std::int32_t other_return = grid_.At(other_line, column);
-      if (other_return == TurnGrid::kNone) continue;
-      const std::int32_t other = runs_.OfReturn(other_return);
-      if (sets_.Find(index) != sets_.Find(other) && !IsLinkedTo(run, place, window, grid_.PointOf(other_return), is_of_one_ring)) continue;
-      sets_.Join(index, other);
-      // The rest of that run has nothing to add.
+    const int begin = WrapFar(run.first - kWindow);
+    for (int step = 0; step < num_places;) {
+      const int from = grid_.Wrap(begin + step);
+      const int column = grid_.NextOccupied(other_line, from);
+      step += column - from;
+      if (step >= num_places) return;
+      if (column == num_columns) continue;  // on at the other side of the seam
+      // As much of one run as there is before this one.
+      const std::int32_t other = runs_.OfReturn(grid_.At(other_line, column));
       const int past = column - runs_[other].first;
-      step += runs_[other].length - 1 - (past < 0 ? past + grid_.num_columns() : past);
+      const int end = std::min(num_places, step + runs_[other].length - (past < 0 ? past + num_columns : past));
+      if (sets_.Find(index) != sets_.Find(other) && IsLinkedToAny<kWindow>(run, other_line, begin, step, end, is_of_one_ring)) {
+        sets_.Join(index, other);
+      }
+      step = end;
     }
   }
 
@@ -61,6 +65,27 @@ class Linker {
     double squared_m2 = SquaredPlanDistance(one, other);
     if (is_of_one_ring) squared_m2 += double{one.height_m - other.height_m} * (one.height_m - other.height_m);
     return squared_m2 <= reach_m * reach_m;
+  }
+
+  // More than two returns that are linked are apart in range, however their places are rounded.
+  float WidestRange(float range_m) const {
+    constexpr double kRoundedM = 1e-3;
+    constexpr double kRoundedShare = 4e-6;
+    return static_cast<float>(link_.At(range_m) + kRoundedM + kRoundedShare * range_m);
+  }
+
+  // The returns of another line at these steps from column `begin`, which is that many columns before the run.
+  template <int kWindow>
+  bool IsLinkedToAny(const Run& run, int other_line, int begin, int from, int end, bool is_of_one_ring) const {
+    for (int step = from; step < end; ++step) {
+      const int column = grid_.Wrap(begin + step);
+      const float range_m = grid_.RangeAt(other_line, column);
+      const float widest_m = WidestRange(range_m);
+      const bool may_be_linked = run.length == 1 ? std::abs(grid_.RangeAt(run.line, run.first) - range_m) <= widest_m
+                                                 : grid_.IsAnyNear<kWindow>(run.line, column, range_m, widest_m);
+      if (may_be_linked && IsLinkedTo(run, step - kWindow, kWindow, grid_.PointOf(grid_.At(other_line, column)), is_of_one_ring)) return true;
+    }
+    return false;
   }
 
   // A return beside the run, or at a place of it.
@@ -90,9 +115,13 @@ class Linker {
     int gap = after.first - (before.first + before.length - 1);
     while (gap <= 0) gap += grid_.num_columns();
     for (int back = 0; back < before.length && gap + back <= kLinkColumns; ++back) {
-      const LevelPoint& from = grid_.PointOf(ReturnOf(grid_, before, before.length - 1 - back));
+      const int from_column = grid_.Wrap(before.first + before.length - 1 - back);
+      const float range_m = grid_.RangeAt(before.line, from_column);
+      const float widest_m = WidestRange(range_m);
       for (int on = 0; on < after.length && gap + back + on <= kLinkColumns; ++on) {
-        if (!AreLinked(from, grid_.PointOf(ReturnOf(grid_, after, on)), true)) continue;
+        const int column = grid_.Wrap(after.first + on);
+        if (!(std::abs(grid_.RangeAt(after.line, column) - range_m) <= widest_m)) continue;
+        if (!AreLinked(grid_.PointOf(grid_.At(before.line, from_column)), grid_.PointOf(grid_.At(after.line, column)), true)) continue;
         sets_.Join(one, other);
         return;
       }
@@ -112,6 +141,9 @@ class Linker {
     const std::int32_t before = NextReturn(line, column, -1);
     const std::int32_t after = NextReturn(line, column, 1);
     if (before == TurnGrid::kNone || after == TurnGrid::kNone || before == after) return;
+    if (sets_.Find(runs_.OfReturn(before)) == sets_.Find(runs_.OfReturn(middle)) &&
+        sets_.Find(runs_.OfReturn(middle)) == sets_.Find(runs_.OfReturn(after)))
+      return;
     const LevelPoint& at = grid_.PointOf(middle);
     const LevelPoint& from = grid_.PointOf(before);
     const LevelPoint& to = grid_.PointOf(after);
@@ -143,10 +175,19 @@ class Linker {
 void LinkRuns(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
   Linker linker(grid, runs, link, sets);
   for (int line = 0; line < grid.num_lines(); ++line) linker.LinkWithinLine(line);
-  for (std::int32_t run = 0; run < runs.size(); ++run) {
-    const int ring = grid.RingOf(runs[run].line);
+  for (int line = 0; line < grid.num_lines(); ++line) {
+    const int ring = grid.RingOf(line);
     const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
-    for (int line = runs[run].line + 1; line < end; ++line) linker.LinkAcross(run, line);
+    const std::int32_t end_run = runs.FirstOfLine(line + 1);
+    for (std::int32_t run = runs.FirstOfLine(line); run < end_run; ++run) {
+      for (int other_line = line + 1; other_line < end; ++other_line) {
+        if (grid.RingOf(other_line) == ring) {
+          linker.LinkAcross<kLinkColumns>(run, other_line, true);
+        } else {
+          linker.LinkAcross<kLinkAcrossColumns>(run, other_line, false);
+        }
+      }
+    }
   }
   for (std::int32_t run = 0; run < runs.size(); ++run) linker.LinkGrazing(run);
 }

@@ -28,10 +28,11 @@ void ForEachFollowing(const TurnGrid& grid, const RunTable& runs, int line, Hand
   const std::int32_t first_run = runs.FirstOfLine(line);
   for (std::int32_t i = 0; i < count; ++i) {
     const Run& run = of_line[static_cast<std::size_t>(i)];
+    const int last_column = run.first + run.length - 1;
+    std::int32_t j = i;
     for (std::int32_t step = 1; step < count; ++step) {
-      const std::int32_t j = (i + step) % count;
-      const Run& other = of_line[static_cast<std::size_t>(j)];
-      int gap = other.first - (run.first + run.length - 1);
+      if (++j == count) j = 0;
+      int gap = of_line[static_cast<std::size_t>(j)].first - last_column;
       if (gap <= 0) gap += grid.num_columns();
       if (gap > kLinkColumns) break;
       handle(first_run + i, first_run + j);

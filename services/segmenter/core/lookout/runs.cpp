@@ -14,45 +14,57 @@ bool AreLinked(const LevelPoint& one, const LevelPoint& other, const Reach& link
 
 }  // namespace
 
+// Returns are taken column by column, as they lie in memory, twice: to find where runs begin, and to number them.
 void RunTable::Find(const TurnGrid& grid, const Reach& link) {
+  const auto num_lines = static_cast<std::size_t>(grid.num_lines());
+  const auto points = grid.points();
+  const auto by_column = grid.by_column();
+  ends_.assign(num_lines, {});
+  is_start_.resize(points.size());
+  for (const std::int32_t index : by_column) {
+    const LevelPoint& point = grid.PointOf(index);
+    const std::int32_t column = grid.ColumnOf(index);
+    LineEnd& end = ends_[static_cast<std::size_t>(grid.LineOf(index))];
+    const bool is_start = end.first_return == kNone || end.column + 1 != column || !AreLinked(end.point, point, link);
+    if (end.first_return == kNone) end.first_return = index;
+    end.point = point;
+    end.column = column;
+    end.num_starts += is_start ? 1 : 0;
+    is_start_[static_cast<std::size_t>(index)] = is_start ? 1 : 0;
+  }
+
   runs_.clear();
   begin_of_line_.clear();
-  run_of_return_.assign(grid.points().size(), kNone);
-  const int num_columns = grid.num_columns();
-  occupied_.resize(static_cast<std::size_t>(num_columns) + 1);
-  for (int line = 0; line < grid.num_lines(); ++line) {
+  for (std::size_t line = 0; line < num_lines; ++line) {
+    LineEnd& end = ends_[line];
+    const auto begin = static_cast<std::int32_t>(runs_.size());
     begin_of_line_.push_back(runs_.size());
-    const auto goes_on = [&](int from, int to) {
-      const std::int32_t one = grid.At(line, from);
-      const std::int32_t other = grid.At(line, to);
-      return one != TurnGrid::kNone && other != TurnGrid::kNone && AreLinked(grid.PointOf(one), grid.PointOf(other), link);
-    };
-    // From the first column at which nothing goes on from the one before.
-    int start = 0;
-    while (start < num_columns && goes_on(grid.Wrap(start - 1), start)) ++start;
-    const bool is_closed = start == num_columns;
-    if (is_closed) start = 0;
-    // The columns with a return, without a branch for each cell; then on from `start` over the seam.
-    std::int32_t num_occupied = 0;
-    for (int column = 0; column < num_columns; ++column) {
-      occupied_[static_cast<std::size_t>(num_occupied)] = column;
-      num_occupied += grid.At(line, column) != TurnGrid::kNone ? 1 : 0;
+    if (end.first_return == kNone) continue;
+    // Over the seam.
+    const LevelPoint& first = grid.PointOf(end.first_return);
+    const bool is_seam_closed = grid.ColumnOf(end.first_return) == 0 && end.column + 1 == grid.num_columns() && AreLinked(end.point, first, link);
+    if (is_seam_closed && end.num_starts > 1) {
+      is_start_[static_cast<std::size_t>(end.first_return)] = 0;
+      --end.num_starts;
     }
-    const auto end = occupied_.begin() + num_occupied;
-    const auto first = std::lower_bound(occupied_.begin(), end, start);
-    int last_column = kNone;
-    const auto take = [&](int column) {
-      const std::int32_t index = grid.At(line, column);
-      const bool follows = last_column != kNone && column == grid.Wrap(last_column + 1);
-      if (!follows || !AreLinked(grid.PointOf(grid.At(line, last_column)), grid.PointOf(index), link)) runs_.push_back({line, column, 0});
-      ++runs_.back().length;
-      run_of_return_[static_cast<std::size_t>(index)] = size() - 1;
-      last_column = column;
-    };
-    std::for_each(first, end, take);
-    std::for_each(occupied_.begin(), first, take);
+    // What goes on over the seam is of the last run, which begins at the last start.
+    runs_.resize(runs_.size() + static_cast<std::size_t>(end.num_starts), {static_cast<std::int32_t>(line), 0, 0});
+    end.run = begin + end.num_starts - 1;
+    end.next_run = begin;
   }
   begin_of_line_.push_back(runs_.size());
+
+  run_of_return_.resize(points.size());
+  for (const std::int32_t index : by_column) {
+    const auto at = static_cast<std::size_t>(index);
+    LineEnd& end = ends_[static_cast<std::size_t>(grid.LineOf(index))];
+    if (is_start_[at] != 0) {
+      end.run = end.next_run++;
+      runs_[static_cast<std::size_t>(end.run)].first = grid.ColumnOf(index);
+    }
+    ++runs_[static_cast<std::size_t>(end.run)].length;
+    run_of_return_[at] = end.run;
+  }
 }
 
 }  // namespace lookout::segmenter

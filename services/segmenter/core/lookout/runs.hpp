@@ -39,7 +39,17 @@ class RunTable {
   std::vector<Run> runs_;
   std::vector<std::size_t> begin_of_line_;   // [lines + 1]
   std::vector<std::int32_t> run_of_return_;  // [returns]
-  std::vector<std::int32_t> occupied_;       // scratch: [columns + 1]
+  // Scratch: where a line is when returns are taken column by column.
+  struct LineEnd {
+    LevelPoint point{};  // of its last return
+    std::int32_t column = 0;
+    std::int32_t first_return = kNone;
+    std::int32_t num_starts = 0;
+    std::int32_t run = 0;  // of its last return
+    std::int32_t next_run = 0;
+  };
+  std::vector<LineEnd> ends_;           // [lines]
+  std::vector<std::uint8_t> is_start_;  // [returns] whether a run begins with it
 };
 
 /// Of a run, by its place in it.

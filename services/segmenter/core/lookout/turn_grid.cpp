@@ -24,18 +24,25 @@ void TurnGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eig
   MeasureColumns(scan);
   return_at_.assign(static_cast<std::size_t>(num_lines_) * static_cast<std::size_t>(num_columns_), kNone);
   range_at_.assign(return_at_.size(), std::numeric_limits<float>::infinity());
+  words_per_line_ = static_cast<std::size_t>((num_columns_ + kWordBits - 1) / kWordBits);
+  occupied_.assign(static_cast<std::size_t>(num_lines_) * words_per_line_, 0);
   points_.resize(returns.size());
   column_of_.resize(returns.size());
+  line_of_.resize(returns.size());
   const Eigen::Matrix3f R = R_vessel_lidar.cast<float>();
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const Return& one = returns[i];
     const Eigen::Vector3f p = R * Eigen::Vector3f(one.point.x_m, one.point.y_m, one.point.z_m);
     points_[i] = {p.x(), p.y(), p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y())};
-    column_of_[i] = is_shifted_ ? Wrap(one.column + shift_of_[static_cast<std::size_t>(one.ring)]) : one.column;
-    const int line = one.ring * num_layers_ + one.cell % num_layers_;
-    const std::size_t cell = static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column_of_[i]);
+    const int column = is_shifted_ ? Wrap(one.column + shift_of_[static_cast<std::size_t>(one.ring)]) : one.column;
+    const int line = num_layers_ == 1 ? one.ring : one.ring * num_layers_ + one.cell % num_layers_;
+    column_of_[i] = column;
+    line_of_[i] = line;
+    const std::size_t cell = static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column);
     return_at_[cell] = static_cast<std::int32_t>(i);
     range_at_[cell] = points_[i].range_m;
+    occupied_[static_cast<std::size_t>(line) * words_per_line_ + static_cast<std::size_t>(column / kWordBits)] |= std::uint64_t{1}
+                                                                                                                  << (column % kWordBits);
   }
   SortByColumn();
 }
@@ -83,20 +90,6 @@ void TurnGrid::SortByColumn() {
   for (std::size_t i = 0; i < column_of_.size(); ++i) {
     by_column_[static_cast<std::size_t>(next_in_column_[static_cast<std::size_t>(column_of_[i])]++)] = static_cast<std::int32_t>(i);
   }
-}
-
-bool TurnGrid::IsAnyNear(int line, int column, int window, float range_m, float reach_m) const {
-  bool is_any_near = false;
-  if (column < window || column + window >= num_columns_) {
-    const int count = std::min(2 * window + 1, num_columns_);
-    for (int step = 0; step < count; ++step)
-      is_any_near = is_any_near || std::abs(RangeAt(line, Wrap(Wrap(column - window + step))) - range_m) <= reach_m;
-    return is_any_near;
-  }
-  const float* range =
-      range_at_.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column - window);
-  for (int step = 0; step <= 2 * window; ++step) is_any_near |= std::abs(range[step] - range_m) <= reach_m;
-  return is_any_near;
 }
 
 int TurnGrid::ColumnsOf(double length_m, double range_m) const {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -55,12 +57,16 @@ class TurnGrid {
   float RangeAt(int line, int column) const {
     return range_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column)];
   }
-  /// Whether a return of a line lies in columns [column - window, column + window] at a range at most reach_m off.
-  bool IsAnyNear(int line, int column, int window, float range_m, float reach_m) const;
+  /// The first column from this one on, up to the last, in which a line has a return; num_columns() where there is none.
+  int NextOccupied(int line, int column) const;
+  /// Whether a return of a line lies in columns [column - kWindow, column + kWindow] at a range at most reach_m off.
+  template <int kWindow>
+  bool IsAnyNear(int line, int column, float range_m, float reach_m) const;
   const LevelPoint& PointOf(std::int32_t index) const { return points_[static_cast<std::size_t>(index)]; }
   std::span<const LevelPoint> points() const { return points_; }
-  /// Column of the grid in which a return stands.
+  /// Column and line of the grid in which a return stands.
   std::int32_t ColumnOf(std::int32_t index) const { return column_of_[static_cast<std::size_t>(index)]; }
+  std::int32_t LineOf(std::int32_t index) const { return line_of_[static_cast<std::size_t>(index)]; }
   /// Returns column by column.
   std::span<const std::int32_t> by_column() const { return by_column_; }
 
@@ -68,6 +74,8 @@ class TurnGrid {
   int ColumnsOf(double length_m, double range_m) const;
 
  private:
+  static constexpr int kWordBits = 64;
+
   void MeasureColumns(const Scan& scan);
   void SortByColumn();
 
@@ -77,8 +85,11 @@ class TurnGrid {
   double column_step_rad_ = 0.0;
   std::vector<std::int32_t> return_at_;  // [lines x columns]
   std::vector<float> range_at_;          // [lines x columns]
+  std::size_t words_per_line_ = 0;
+  std::vector<std::uint64_t> occupied_;  // [lines x words] a bit for each column: whether there is a return
   std::vector<LevelPoint> points_;       // [returns]
   std::vector<std::int32_t> column_of_;  // [returns]
+  std::vector<std::int32_t> line_of_;    // [returns]
   std::vector<std::int32_t> by_column_;  // [returns]
   bool is_shifted_ = false;
   std::vector<std::int32_t> shift_of_;  // [rings] columns
@@ -86,5 +97,30 @@ class TurnGrid {
   std::vector<float> steps_rad_;
   std::vector<std::int32_t> next_in_column_;
 };
+
+inline int TurnGrid::NextOccupied(int line, int column) const {
+  const std::uint64_t* words = occupied_.data() + static_cast<std::size_t>(line) * words_per_line_;
+  auto word = static_cast<std::size_t>(column / kWordBits);
+  std::uint64_t bits = words[word] & (~std::uint64_t{0} << (column % kWordBits));
+  while (bits == 0) {
+    if (++word == words_per_line_) return num_columns_;
+    bits = words[word];
+  }
+  return static_cast<int>(word) * kWordBits + std::countr_zero(bits);
+}
+
+template <int kWindow>
+bool TurnGrid::IsAnyNear(int line, int column, float range_m, float reach_m) const {
+  static_assert(2 * kWindow < kMinColumns);
+  int is_any_near = 0;
+  if (column < kWindow || column + kWindow >= num_columns_) {
+    for (int step = -kWindow; step <= kWindow; ++step) is_any_near |= std::abs(RangeAt(line, Wrap(column + step)) - range_m) <= reach_m ? 1 : 0;
+    return is_any_near != 0;
+  }
+  const float* range =
+      range_at_.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column - kWindow);
+  for (int step = 0; step <= 2 * kWindow; ++step) is_any_near |= std::abs(range[step] - range_m) <= reach_m ? 1 : 0;
+  return is_any_near != 0;
+}
 
 }  // namespace lookout::segmenter
