@@ -18,7 +18,7 @@ struct Stages {
     grid.Fill(scan, returns, Eigen::Matrix3d::Identity());
     runs.Find(grid, link);
     sets.Reset(static_cast<std::size_t>(runs.size()));
-    LinkRuns(grid, runs, link, sets);
+    RunLinker().Link(grid, runs, link, sets);
     pieces.Build(grid, runs, sets);
   }
   Stages(const Stages&) = delete;

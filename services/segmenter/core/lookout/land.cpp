@@ -28,6 +28,7 @@ constexpr std::ptrdiff_t kMostStraight = 256;
 
 // The water's edge.
 constexpr std::int32_t kLeastShoreReturns = 10;
+constexpr double kRounded = 1.001;            // longer than any length is rounded
 constexpr double kBeforeM = 0.3;              // by which what stands before a shore is nearer than it on both sides
 constexpr double kGreatestBeforeShare = 0.8;  // of the length of land: what is longer is itself a shore
 constexpr double kLeastShoreShare = 0.6;      // of the length of land that its fragments fill
@@ -127,25 +128,38 @@ bool LandFinder::IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces,
 void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
   chains_.Reset(static_cast<std::size_t>(runs.size()));
   for (int line = 0; line < grid.num_lines(); ++line) {
-    ForEachFollowing(grid, runs, line, [&](std::int32_t one, std::int32_t other) {
+    // A drop with nothing near it is no shore.
+    const std::int32_t first_run = runs.FirstOfLine(line);
+    const std::int32_t end_run = runs.FirstOfLine(line + 1);
+    order_.clear();
+    for (std::int32_t run = first_run; run < end_run; ++run) {
+      const float range_m = grid.RangeAt(line, runs[run].first);
+      const auto reach_m = static_cast<float>(kRounded * params_.shore_gap.At(range_m));
+      if (runs[run].length > 1 || grid.NumNear<kLinkColumns>(line, runs[run].first, range_m, reach_m) > 1) order_.push_back(run);
+    }
+    ForEachFollowing(grid, runs, order_, [&](std::int32_t one, std::int32_t other) {
       const LevelPoint& from = grid.PointOf(LastReturn(grid, runs[one]));
       const LevelPoint& to = grid.PointOf(FirstReturn(grid, runs[other]));
       if (Distance3d(from, to) <= params_.shore_gap.At(std::min(from.range_m, to.range_m))) chains_.Join(one, other);
     });
-    // Runs by chain; within one they stay in order.
-    const std::int32_t first_run = runs.FirstOfLine(line);
-    const auto num_runs = static_cast<std::int32_t>(runs.OfLine(line).size());
-    num_of_chain_.assign(static_cast<std::size_t>(num_runs), 0);
-    for (std::int32_t i = 0; i < num_runs; ++i)
-      num_of_chain_[static_cast<std::size_t>(chains_.Find(first_run + i) - first_run)] += runs[first_run + i].length;
-    order_.clear();
-    for (std::int32_t i = 0; i < num_runs; ++i) {
-      if (num_of_chain_[static_cast<std::size_t>(chains_.Find(first_run + i) - first_run)] >= kLeastShoreReturns) order_.push_back(first_run + i);
+    // Runs by chain; within one they stay in order. A chain is named by its first run.
+    num_of_chain_.assign(static_cast<std::size_t>(end_run - first_run), 0);
+    next_of_chain_.resize(num_of_chain_.size());
+    last_of_chain_.resize(num_of_chain_.size());
+    for (const std::int32_t run : order_) {
+      const auto chain = static_cast<std::size_t>(chains_.Find(run) - first_run);
+      if (num_of_chain_[chain] > 0) next_of_chain_[static_cast<std::size_t>(last_of_chain_[chain] - first_run)] = run;
+      num_of_chain_[chain] += runs[run].length;
+      last_of_chain_[chain] = run;
     }
-    std::ranges::sort(order_, {}, [this](std::int32_t run) { return std::array{chains_.Find(run), run}; });
-    for (std::size_t begin = 0, end = 0; begin < order_.size(); begin = end) {
-      for (end = begin; end < order_.size() && chains_.Find(order_[end]) == chains_.Find(order_[begin]);) ++end;
-      chain_.assign(order_.begin() + static_cast<std::ptrdiff_t>(begin), order_.begin() + static_cast<std::ptrdiff_t>(end));
+    for (const std::int32_t first : order_) {
+      const auto chain = static_cast<std::size_t>(first - first_run);
+      if (num_of_chain_[chain] < kLeastShoreReturns) continue;
+      chain_.assign(1, first);
+      for (std::int32_t run = first; run != last_of_chain_[chain];) {
+        run = next_of_chain_[static_cast<std::size_t>(run - first_run)];
+        chain_.push_back(run);
+      }
       TakeChain(grid, runs, pieces);
     }
   }

@@ -50,7 +50,9 @@ class LandFinder {
   LookoutParams params_;
   UnionFind chains_;
   std::vector<std::int32_t> order_;
-  std::vector<std::int32_t> num_of_chain_;  // [runs of a line] returns
+  std::vector<std::int32_t> num_of_chain_;   // [runs of a line] returns; 0 unless a chain begins with it
+  std::vector<std::int32_t> next_of_chain_;  // [runs of a line]
+  std::vector<std::int32_t> last_of_chain_;  // [runs of a line]
   std::vector<std::int32_t> chain_;
   std::vector<Fragment> fragments_;
   std::vector<std::int32_t> candidates_;

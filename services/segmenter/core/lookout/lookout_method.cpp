@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "services/segmenter/core/lookout/run_links.hpp"
-
 namespace lookout::segmenter {
 
 namespace {
@@ -22,7 +20,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   const Reach link = LinkFor(params_.link, grid_.column_step_rad());
   runs_.Find(grid_, link);
   sets_of_runs_.Reset(static_cast<std::size_t>(runs_.size()));
-  LinkRuns(grid_, runs_, link, sets_of_runs_);
+  linker_.Link(grid_, runs_, link, sets_of_runs_);
   pieces_.Build(grid_, runs_, sets_of_runs_);
   land_.Find(grid_, runs_, pieces_);
   objects_.JoinDocks(pieces_);

@@ -11,6 +11,7 @@
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/objects.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/run_links.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
 #include "services/segmenter/core/measure.hpp"
@@ -56,6 +57,7 @@ class LookoutMethod {
   Eigen::Matrix3d R_vessel_lidar_;
   TurnGrid grid_;
   RunTable runs_;
+  RunLinker linker_;
   UnionFind sets_of_runs_;
   PieceTable pieces_;
   LandFinder land_;

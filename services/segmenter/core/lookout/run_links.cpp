@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 namespace lookout::segmenter {
 
@@ -13,43 +15,21 @@ constexpr float kGreatestUnevenness = 2.5F;  // of two spacings that follow each
 // Off the straight line: noise of the range, and some of the spacing.
 constexpr float kStraightM = 0.04F;
 constexpr float kStraightShare = 0.15F;
-constexpr int kGrazingColumns = 1;  // to the next return: one may have seen nothing
+
+using Strand = RunLinker::Strand;
 
 class Linker {
  public:
   Linker(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) : grid_(grid), runs_(runs), link_(link), sets_(sets) {}
 
-  void LinkWithinLine(int line) {
-    ForEachFollowing(grid_, runs_, line, [this](std::int32_t one, std::int32_t other) { LinkEnds(one, other); });
-  }
-
-  // A run with those of another line: of its ring (another return of the shot) or of another ring. kWindow columns aside.
-  template <int kWindow>
-  void LinkAcross(std::int32_t index, int other_line, bool is_of_one_ring) {
-    const Run& run = runs_[index];
-    const int num_columns = grid_.num_columns();
-    const int num_places = std::min(run.length + 2 * kWindow, num_columns);
-    if (run.length == 1) {
-      // A drop in most cases: what has nothing near it needs no more. The reach of a pair goes by the nearer one, so this is not too short.
-      const float range_m = grid_.RangeAt(run.line, run.first);
-      if (!grid_.IsAnyNear<kWindow>(other_line, run.first, range_m, static_cast<float>(link_.At(range_m)))) return;
+  // @param in_line  scratch
+  void LinkWithinLine(int line, std::vector<std::int32_t>& in_line) {
+    in_line.clear();
+    const std::int32_t end_run = runs_.FirstOfLine(line + 1);
+    for (std::int32_t run = runs_.FirstOfLine(line); run < end_run; ++run) {
+      if (runs_[run].length > 1 || !IsAloneInLine(runs_[run])) in_line.push_back(run);
     }
-    const int begin = WrapFar(run.first - kWindow);
-    for (int step = 0; step < num_places;) {
-      const int from = grid_.Wrap(begin + step);
-      const int column = grid_.NextOccupied(other_line, from);
-      step += column - from;
-      if (step >= num_places) return;
-      if (column == num_columns) continue;  // on at the other side of the seam
-      // As much of one run as there is before this one.
-      const std::int32_t other = runs_.OfReturn(grid_.At(other_line, column));
-      const int past = column - runs_[other].first;
-      const int end = std::min(num_places, step + runs_[other].length - (past < 0 ? past + num_columns : past));
-      if (sets_.Find(index) != sets_.Find(other) && IsLinkedToAny<kWindow>(run, other_line, begin, step, end, is_of_one_ring)) {
-        sets_.Join(index, other);
-      }
-      step = end;
-    }
+    ForEachFollowing(grid_, runs_, in_line, [this](std::int32_t one, std::int32_t other) { LinkEnds(one, other); });
   }
 
   // Only the ends of runs: inside, neighbours are linked already.
@@ -59,50 +39,132 @@ class Linker {
     if (run.length > 1) LinkGrazingAt(run.line, grid_.Wrap(run.first + run.length - 1));
   }
 
+  bool IsAloneInLine(const Run& run) const {
+    const float range_m = grid_.RangeAt(run.line, run.first);
+    return grid_.NumNear<kLinkColumns>(run.line, run.first, range_m, WidestRange(range_m)) == 1;
+  }
+
+  // Whether a run of one return has none near it in the rings about: nothing there is linked to it.
+  bool IsAlone(const Run& run, int ring) const {
+    const float range_m = grid_.RangeAt(run.line, run.first);
+    const float widest_m = WidestRange(range_m);
+    const int first_of_ring = ring * grid_.num_layers();
+    const int end_of_ring = first_of_ring + grid_.num_layers();
+    for (int line = std::max(0, first_of_ring - kLinkRings * grid_.num_layers()); line < first_of_ring; ++line) {
+      if (grid_.NumNear<kLinkAcrossColumns>(line, run.first, range_m, widest_m) > 0) return false;
+    }
+    for (int line = first_of_ring; line < end_of_ring; ++line) {
+      if (line != run.line && grid_.NumNear<kLinkColumns>(line, run.first, range_m, widest_m) > 0) return false;
+    }
+    const int end = std::min(grid_.num_lines(), end_of_ring + kLinkRings * grid_.num_layers());
+    for (int line = end_of_ring; line < end; ++line) {
+      if (grid_.NumNear<kLinkAcrossColumns>(line, run.first, range_m, widest_m) > 0) return false;
+    }
+    return true;
+  }
+
+  // All of a line with all of another line of its ring (another return of the shot) or of another ring. kWindow columns aside.
+  template <int kWindow>
+  void LinkAcross(std::span<const Strand> strands, int line, std::span<const Strand> others, int other_line) {
+    const int num_columns = grid_.num_columns();
+    const Lines lines{line, other_line, kWindow == kLinkColumns};
+    std::size_t next = 0;
+    for (const Strand& strand : strands) {
+      const int from = strand.first - kWindow;
+      const int to = strand.end + kWindow;
+      while (next < others.size() && others[next].end <= from) ++next;
+      for (std::size_t i = next; i < others.size() && others[i].first < to; ++i) LinkStrands<kWindow>(strand, others[i], 0, lines);
+      // Over the seam.
+      for (std::size_t i = others.size(); i > 0 && others[i - 1].end - num_columns > from; --i) {
+        LinkStrands<kWindow>(strand, others[i - 1], -num_columns, lines);
+      }
+      for (std::size_t i = 0; i < others.size() && others[i].first + num_columns < to; ++i) {
+        LinkStrands<kWindow>(strand, others[i], num_columns, lines);
+      }
+    }
+  }
+
+  // What is more than this apart in range is farther apart than `reach_m`, however places are rounded.
+  static float Widened(double reach_m, float range_m) {
+    constexpr double kRoundedM = 1e-3;
+    constexpr double kRoundedShare = 4e-6;
+    return static_cast<float>(reach_m + kRoundedM + kRoundedShare * range_m);
+  }
+  float WidestRange(float range_m) const { return Widened(link_.At(range_m), range_m); }
+
+  std::pair<float, float> RangesOf(const Run& run) const {
+    float min_m = grid_.RangeAt(run.line, run.first);
+    float max_m = min_m;
+    const auto look_at = [&](int from, int to) {
+      for (int column = from; column < to; ++column) {
+        min_m = std::min(min_m, grid_.RangeAt(run.line, column));
+        max_m = std::max(max_m, grid_.RangeAt(run.line, column));
+      }
+    };
+    const int end = run.first + run.length;
+    look_at(run.first, std::min(end, grid_.num_columns()));
+    look_at(0, end - grid_.num_columns());
+    return {min_m, max_m};
+  }
+
  private:
+  struct Lines {
+    int one = 0;
+    int other = 0;
+    bool are_of_one_ring = false;
+  };
+
+  // The columns of the other one are counted from `shift` on.
+  template <int kWindow>
+  void LinkStrands(const Strand& one, const Strand& other, int shift, const Lines& lines) {
+    if (one.min_range_m > other.most_range_m || other.min_range_m > one.most_range_m) return;
+    const auto are_joined = [&] { return sets_.Find(one.run) == sets_.Find(other.run); };
+    if (are_joined()) return;
+    const int end = std::min(one.end + kWindow, other.end + shift);
+    for (int at = std::max(one.first - kWindow, other.first + shift); at < end; ++at) {
+      const int column = WrapFar(at);
+      const int next = grid_.NextOccupied(lines.other, column);
+      at += next - column;
+      if (at >= end) return;
+      if (next == grid_.num_columns()) {
+        --at;  // on at the other side of the seam
+        continue;
+      }
+      const int from = std::max(at - kWindow, one.first);
+      if (LinkReturn<kWindow>(lines, next, from, std::min(at + kWindow, one.end - 1)) && are_joined()) return;
+    }
+  }
+
+  // The return of the other line in this column with those of the first line in columns [from, to]. @return whether there is any to join
+  template <int kWindow>
+  bool LinkReturn(const Lines& lines, int other_column, int from, int to) {
+    const float other_range_m = grid_.RangeAt(lines.other, other_column);
+    const float widest_m = WidestRange(other_range_m);
+    const bool may_be_linked = from == to ? std::abs(grid_.RangeAt(lines.one, WrapFar(from)) - other_range_m) <= widest_m
+                                          : grid_.NumNear<kWindow>(lines.one, other_column, other_range_m, widest_m) > 0;
+    if (!may_be_linked) return false;
+    const std::int32_t other = grid_.At(lines.other, other_column);
+    for (int at = from; at <= to; ++at) {
+      const int column = WrapFar(at);
+      const std::int32_t one = grid_.At(lines.one, column);
+      if (one == TurnGrid::kNone || !AreLinked(grid_.PointOf(one), grid_.PointOf(other), lines.are_of_one_ring)) continue;
+      const std::int32_t run = runs_.OfReturn(one);
+      if (runs_[run].length == 1) {
+        // By ranges too, as rounded: so it has always been.
+        const float range_m = grid_.RangeAt(lines.one, column);
+        if (grid_.NumNear<kWindow>(lines.other, column, range_m, static_cast<float>(link_.At(range_m))) == 0) continue;
+      }
+      sets_.Join(run, runs_.OfReturn(other));
+      return true;
+    }
+    return false;
+  }
+
   bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool is_of_one_ring) const {
     const double reach_m = link_.At(std::min(one.range_m, other.range_m));
     double squared_m2 = SquaredPlanDistance(one, other);
     if (is_of_one_ring) squared_m2 += double{one.height_m - other.height_m} * (one.height_m - other.height_m);
     return squared_m2 <= reach_m * reach_m;
-  }
-
-  // More than two returns that are linked are apart in range, however their places are rounded.
-  float WidestRange(float range_m) const {
-    constexpr double kRoundedM = 1e-3;
-    constexpr double kRoundedShare = 4e-6;
-    return static_cast<float>(link_.At(range_m) + kRoundedM + kRoundedShare * range_m);
-  }
-
-  // The returns of another line at these steps from column `begin`, which is that many columns before the run.
-  template <int kWindow>
-  bool IsLinkedToAny(const Run& run, int other_line, int begin, int from, int end, bool is_of_one_ring) const {
-    for (int step = from; step < end; ++step) {
-      const int column = grid_.Wrap(begin + step);
-      const float range_m = grid_.RangeAt(other_line, column);
-      const float widest_m = WidestRange(range_m);
-      const bool may_be_linked = run.length == 1 ? std::abs(grid_.RangeAt(run.line, run.first) - range_m) <= widest_m
-                                                 : grid_.IsAnyNear<kWindow>(run.line, column, range_m, widest_m);
-      if (may_be_linked && IsLinkedTo(run, step - kWindow, kWindow, grid_.PointOf(grid_.At(other_line, column)), is_of_one_ring)) return true;
-    }
-    return false;
-  }
-
-  // A return beside the run, or at a place of it.
-  bool IsLinkedTo(const Run& run, int place, int window, const LevelPoint& point, bool is_of_one_ring) const {
-    // Where its ends come near each other round the circle, both count.
-    if (run.length + 2 * window > grid_.num_columns()) {
-      for (int k = place - window; k <= place + window; ++k) {
-        const int on_run = (k + grid_.num_columns()) % grid_.num_columns();
-        if (on_run < run.length && AreLinked(grid_.PointOf(ReturnOf(grid_, run, on_run)), point, is_of_one_ring)) return true;
-      }
-      return false;
-    }
-    const int end = std::min(run.length - 1, place + window);
-    for (int k = std::max(0, place - window); k <= end; ++k) {
-      if (AreLinked(grid_.PointOf(ReturnOf(grid_, run, k)), point, is_of_one_ring)) return true;
-    }
-    return false;
   }
 
   int WrapFar(int column) const { return grid_.Wrap(grid_.Wrap(column)); }
@@ -128,22 +190,17 @@ class Linker {
     }
   }
 
-  std::int32_t NextReturn(int line, int column, int direction) const {
-    for (int step = 1; step <= kGrazingColumns; ++step) {
-      const std::int32_t index = grid_.At(line, WrapFar(column + direction * step));
-      if (index != TurnGrid::kNone) return index;
-    }
-    return TurnGrid::kNone;
-  }
-
   void LinkGrazingAt(int line, int column) {
-    const std::int32_t middle = grid_.At(line, column);
-    const std::int32_t before = NextReturn(line, column, -1);
-    const std::int32_t after = NextReturn(line, column, 1);
-    if (before == TurnGrid::kNone || after == TurnGrid::kNone || before == after) return;
-    if (sets_.Find(runs_.OfReturn(before)) == sets_.Find(runs_.OfReturn(middle)) &&
-        sets_.Find(runs_.OfReturn(middle)) == sets_.Find(runs_.OfReturn(after)))
+    const int last_column = grid_.Wrap(column - 1);
+    const int next_column = grid_.Wrap(column + 1);
+    const float range_m = grid_.RangeAt(line, column);
+    const double spacing_m = grid_.column_step_rad() / kLeastGrazingSine * range_m;
+    const float widest_m = Widened(spacing_m, range_m);
+    if (!(std::abs(grid_.RangeAt(line, last_column) - range_m) <= widest_m && std::abs(grid_.RangeAt(line, next_column) - range_m) <= widest_m))
       return;
+    const std::int32_t middle = grid_.At(line, column);
+    const std::int32_t before = grid_.At(line, last_column);
+    const std::int32_t after = grid_.At(line, next_column);
     const LevelPoint& at = grid_.PointOf(middle);
     const LevelPoint& from = grid_.PointOf(before);
     const LevelPoint& to = grid_.PointOf(after);
@@ -155,7 +212,6 @@ class Linker {
     const float out_m = std::sqrt(out_x_m * out_x_m + out_y_m * out_y_m);
     const float least_m = std::min(in_m, out_m);
     const float greatest_m = std::max(in_m, out_m);
-    const double spacing_m = grid_.column_step_rad() / kLeastGrazingSine * at.range_m;
     if (greatest_m > spacing_m || least_m <= 0.0F || greatest_m > kGreatestUnevenness * least_m) return;
     if (in_x_m * out_x_m + in_y_m * out_y_m <= 0.0F) return;
     const float off_m = std::abs(in_x_m * out_y_m - in_y_m * out_x_m) / greatest_m;
@@ -172,24 +228,52 @@ class Linker {
 
 }  // namespace
 
-void LinkRuns(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
-  Linker linker(grid, runs, link, sets);
-  for (int line = 0; line < grid.num_lines(); ++line) linker.LinkWithinLine(line);
+void RunLinker::FindStrands(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
+  const Linker linker(grid, runs, link, sets);
+  strands_.clear();
+  begin_of_line_.clear();
   for (int line = 0; line < grid.num_lines(); ++line) {
+    begin_of_line_.push_back(strands_.size());
     const int ring = grid.RingOf(line);
-    const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
     const std::int32_t end_run = runs.FirstOfLine(line + 1);
     for (std::int32_t run = runs.FirstOfLine(line); run < end_run; ++run) {
-      for (int other_line = line + 1; other_line < end; ++other_line) {
-        if (grid.RingOf(other_line) == ring) {
-          linker.LinkAcross<kLinkColumns>(run, other_line, true);
-        } else {
-          linker.LinkAcross<kLinkAcrossColumns>(run, other_line, false);
-        }
+      const Run& one = runs[run];
+      if (one.length == 1 && linker.IsAlone(one, ring)) continue;
+      const auto [min_m, max_m] = linker.RangesOf(one);
+      const float most_m = max_m + linker.WidestRange(max_m);
+      if (strands_.size() > begin_of_line_.back() && sets.Find(strands_.back().run) == sets.Find(run)) {
+        Strand& strand = strands_.back();
+        strand.end = one.first + one.length;
+        strand.min_range_m = std::min(strand.min_range_m, min_m);
+        strand.most_range_m = std::max(strand.most_range_m, most_m);
+      } else {
+        strands_.push_back({one.first, one.first + one.length, run, min_m, most_m});
       }
     }
   }
+  begin_of_line_.push_back(strands_.size());
+}
+
+void RunLinker::Link(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
+  Linker linker(grid, runs, link, sets);
+  for (int line = 0; line < grid.num_lines(); ++line) linker.LinkWithinLine(line, in_line_);
   for (std::int32_t run = 0; run < runs.size(); ++run) linker.LinkGrazing(run);
+  FindStrands(grid, runs, link, sets);
+  const auto of_line = [this](int line) {
+    const auto at = static_cast<std::size_t>(line);
+    return std::span<const Strand>(strands_).subspan(begin_of_line_[at], begin_of_line_[at + 1] - begin_of_line_[at]);
+  };
+  for (int line = 0; line < grid.num_lines(); ++line) {
+    const int ring = grid.RingOf(line);
+    const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
+    for (int other = line + 1; other < end; ++other) {
+      if (grid.RingOf(other) == ring) {
+        linker.LinkAcross<kLinkColumns>(of_line(line), line, of_line(other), other);
+      } else {
+        linker.LinkAcross<kLinkAcrossColumns>(of_line(line), line, of_line(other), other);
+      }
+    }
+  }
 }
 
 }  // namespace lookout::segmenter

@@ -59,9 +59,9 @@ class TurnGrid {
   }
   /// The first column from this one on, up to the last, in which a line has a return; num_columns() where there is none.
   int NextOccupied(int line, int column) const;
-  /// Whether a return of a line lies in columns [column - kWindow, column + kWindow] at a range at most reach_m off.
+  /// How many returns of a line lie in columns [column - kWindow, column + kWindow] at a range at most reach_m off.
   template <int kWindow>
-  bool IsAnyNear(int line, int column, float range_m, float reach_m) const;
+  int NumNear(int line, int column, float range_m, float reach_m) const;
   const LevelPoint& PointOf(std::int32_t index) const { return points_[static_cast<std::size_t>(index)]; }
   std::span<const LevelPoint> points() const { return points_; }
   /// Column and line of the grid in which a return stands.
@@ -110,17 +110,17 @@ inline int TurnGrid::NextOccupied(int line, int column) const {
 }
 
 template <int kWindow>
-bool TurnGrid::IsAnyNear(int line, int column, float range_m, float reach_m) const {
+int TurnGrid::NumNear(int line, int column, float range_m, float reach_m) const {
   static_assert(2 * kWindow < kMinColumns);
-  int is_any_near = 0;
+  int num_near = 0;
   if (column < kWindow || column + kWindow >= num_columns_) {
-    for (int step = -kWindow; step <= kWindow; ++step) is_any_near |= std::abs(RangeAt(line, Wrap(column + step)) - range_m) <= reach_m ? 1 : 0;
-    return is_any_near != 0;
+    for (int step = -kWindow; step <= kWindow; ++step) num_near += std::abs(RangeAt(line, Wrap(column + step)) - range_m) <= reach_m ? 1 : 0;
+    return num_near;
   }
   const float* range =
       range_at_.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column - kWindow);
-  for (int step = 0; step <= 2 * kWindow; ++step) is_any_near |= std::abs(range[step] - range_m) <= reach_m ? 1 : 0;
-  return is_any_near != 0;
+  for (int step = 0; step <= 2 * kWindow; ++step) num_near += std::abs(range[step] - range_m) <= reach_m ? 1 : 0;
+  return num_near;
 }
 
 }  // namespace lookout::segmenter
