@@ -28,8 +28,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   objects_.JoinObjects(grid_, pieces_, link);
 
   piece_groups_.count = pieces_.size();
-  piece_groups_.of_return.resize(returns.size());
-  for (std::size_t i = 0; i < returns.size(); ++i) piece_groups_.of_return[i] = pieces_.OfRun(runs_.OfReturn(static_cast<std::int32_t>(i)));
+  piece_groups_.of_return.assign(pieces_.of_returns().begin(), pieces_.of_returns().end());
   root_of_piece_.resize(static_cast<std::size_t>(pieces_.size()));
   for (std::int32_t piece = 0; piece < pieces_.size(); ++piece) root_of_piece_[static_cast<std::size_t>(piece)] = pieces_.RootOf(piece);
   Judge();

@@ -19,25 +19,8 @@ PieceFacts NoFacts() {
   return facts;
 }
 
-void Add(const LevelPoint& point, PieceFacts& facts) {
-  ++facts.num_returns;
-  facts.sum_x_m += point.x_m;
-  facts.sum_y_m += point.y_m;
-  facts.sum_xx_m2 += double{point.x_m} * point.x_m;
-  facts.sum_xy_m2 += double{point.x_m} * point.y_m;
-  facts.sum_yy_m2 += double{point.y_m} * point.y_m;
-  facts.min_range_m = std::min(facts.min_range_m, point.range_m);
-  facts.max_range_m = std::max(facts.max_range_m, point.range_m);
-  facts.max_height_m = std::max(facts.max_height_m, point.height_m);
-}
-
 void Add(const PieceFacts& other, PieceFacts& facts) {
   facts.num_returns += other.num_returns;
-  facts.sum_x_m += other.sum_x_m;
-  facts.sum_y_m += other.sum_y_m;
-  facts.sum_xx_m2 += other.sum_xx_m2;
-  facts.sum_xy_m2 += other.sum_xy_m2;
-  facts.sum_yy_m2 += other.sum_yy_m2;
   facts.min_range_m = std::min(facts.min_range_m, other.min_range_m);
   facts.max_range_m = std::max(facts.max_range_m, other.max_range_m);
   facts.max_height_m = std::max(facts.max_height_m, other.max_height_m);
@@ -55,81 +38,107 @@ void SumUp(std::vector<std::int32_t>& counts) {
 }  // namespace
 
 void PieceTable::Build(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs) {
-  const auto num_runs = static_cast<std::size_t>(runs.size());
-  piece_of_run_.resize(num_runs);
-  number_of_root_.assign(num_runs, kNone);
-  facts_.clear();
-  for (std::int32_t run = 0; run < runs.size(); ++run) {
-    auto& number = number_of_root_[static_cast<std::size_t>(sets_of_runs.Find(run))];
-    if (number == kNone) {
-      number = size();
-      facts_.push_back(NoFacts());
-    }
-    piece_of_run_[static_cast<std::size_t>(run)] = number;
-    PieceFacts& facts = facts_[static_cast<std::size_t>(number)];
-    const int ring = grid.RingOf(runs[run].line);
-    facts.min_ring = std::min(facts.min_ring, ring);
-    facts.max_ring = std::max(facts.max_ring, ring);
-  }
-  for (std::size_t i = 0; i < grid.points().size(); ++i) {
-    const std::int32_t run = runs.OfReturn(static_cast<std::int32_t>(i));
-    Add(grid.points()[i], facts_[static_cast<std::size_t>(OfRun(run))]);
-  }
-
-  begin_of_runs_.assign(facts_.size() + 1, 0);
-  for (const std::int32_t piece : piece_of_run_) ++begin_of_runs_[static_cast<std::size_t>(piece) + 1];
-  SumUp(begin_of_runs_);
-  runs_of_piece_.resize(num_runs);
-  cursor_.assign(begin_of_runs_.begin(), begin_of_runs_.end() - 1);
-  for (std::int32_t run = 0; run < runs.size(); ++run) {
-    runs_of_piece_[static_cast<std::size_t>(cursor_[static_cast<std::size_t>(OfRun(run))]++)] = run;
-  }
+  NumberPieces(grid, runs, sets_of_runs);
+  SumReturns(grid, runs);
+  BuildOutlines(grid);
+  FindArcs(runs, grid.num_columns());
 
   sets_.Reset(facts_.size());
   next_member_.assign(facts_.size(), kNone);
   last_member_.resize(facts_.size());
-  arcs_.resize(facts_.size());
   roots_.resize(facts_.size());
   root_of_piece_.resize(facts_.size());
   for (std::int32_t piece = 0; piece < size(); ++piece) {
     const auto at = static_cast<std::size_t>(piece);
     roots_[at] = last_member_[at] = root_of_piece_[at] = piece;
-    to_cover_.clear();
-    for (const std::int32_t run : Part(runs_of_piece_, begin_of_runs_, piece)) to_cover_.push_back({runs[run].first, runs[run].length});
-    arcs_[at] = facts_[at].arc = CoveringArc(grid.num_columns());
+    FitLine(piece);
   }
   joins_.clear();
   new_land_.clear();
-  BuildOutlines(grid, runs);
-  for (std::int32_t piece = 0; piece < size(); ++piece) FitLine(piece);
 }
 
-void PieceTable::BuildOutlines(const TurnGrid& grid, const RunTable& runs) {
+void PieceTable::NumberPieces(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs) {
+  const auto num_runs = static_cast<std::size_t>(runs.size());
+  piece_of_run_.resize(num_runs);
+  number_of_root_.assign(num_runs, kNone);
+  facts_.clear();
+  for (int line = 0; line < grid.num_lines(); ++line) {
+    const int ring = grid.RingOf(line);
+    const std::int32_t end = runs.FirstOfLine(line + 1);
+    for (std::int32_t run = runs.FirstOfLine(line); run < end; ++run) {
+      auto& number = number_of_root_[static_cast<std::size_t>(sets_of_runs.Find(run))];
+      if (number == kNone) {
+        number = size();
+        facts_.push_back(NoFacts());
+      }
+      piece_of_run_[static_cast<std::size_t>(run)] = number;
+      PieceFacts& facts = facts_[static_cast<std::size_t>(number)];
+      facts.min_ring = std::min(facts.min_ring, ring);
+      facts.max_ring = std::max(facts.max_ring, ring);
+    }
+  }
+}
+
+void PieceTable::SumReturns(const TurnGrid& grid, const RunTable& runs) {
+  const auto points = grid.points();
+  piece_of_return_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) piece_of_return_[i] = OfRun(runs.OfReturn(static_cast<std::int32_t>(i)));
+  sums_.assign(facts_.size(), {});
+  for (std::size_t i = 0; i < points.size();) {
+    // Returns that follow each other are of one piece in most cases.
+    const std::int32_t piece = piece_of_return_[i];
+    PieceFacts& facts = facts_[static_cast<std::size_t>(piece)];
+    Sums sums = sums_[static_cast<std::size_t>(piece)];
+    float min_range_m = facts.min_range_m;
+    float max_range_m = facts.max_range_m;
+    float max_height_m = facts.max_height_m;
+    const std::size_t first = i;
+    for (; i < points.size() && piece_of_return_[i] == piece; ++i) {
+      const LevelPoint& point = points[i];
+      sums.x_m += point.x_m;
+      sums.y_m += point.y_m;
+      sums.xx_m2 += double{point.x_m} * point.x_m;
+      sums.xy_m2 += double{point.x_m} * point.y_m;
+      sums.yy_m2 += double{point.y_m} * point.y_m;
+      min_range_m = std::min(min_range_m, point.range_m);
+      max_range_m = std::max(max_range_m, point.range_m);
+      max_height_m = std::max(max_height_m, point.height_m);
+    }
+    facts.num_returns += static_cast<std::int32_t>(i - first);
+    facts.min_range_m = min_range_m;
+    facts.max_range_m = max_range_m;
+    facts.max_height_m = max_height_m;
+    sums_[static_cast<std::size_t>(piece)] = sums;
+  }
+}
+
+void PieceTable::BuildOutlines(const TurnGrid& grid) {
   entries_.clear();
   begin_of_column_.assign(1, 0);
   begin_of_piece_.assign(facts_.size() + 1, 0);
   last_entry_.assign(facts_.size(), kNone);
+  gaps_.assign(facts_.size(), {});
   const auto by_column = grid.by_column();
   std::size_t i = 0;
   for (int column = 0; column < grid.num_columns(); ++column) {
     const auto first_of_column = static_cast<std::int32_t>(entries_.size());
-    for (; i < by_column.size() && grid.ColumnOf(by_column[i]) == column; ++i) {
-      const std::int32_t index = by_column[i];
-      const std::int32_t piece = OfRun(runs.OfReturn(index));
-      auto& last = last_entry_[static_cast<std::size_t>(piece)];
-      if (last < first_of_column) {
-        last = static_cast<std::int32_t>(entries_.size());
-        entries_.push_back({piece, column, index, grid.PointOf(index), grid.PointOf(index)});
-        ++begin_of_piece_[static_cast<std::size_t>(piece) + 1];
-        continue;
+    while (i < by_column.size() && grid.ColumnOf(by_column[i]) == column) {
+      // Returns that follow each other are of one piece in most cases. Of equal ones the first.
+      const std::int32_t piece = piece_of_return_[static_cast<std::size_t>(by_column[i])];
+      std::int32_t nearest = by_column[i];
+      std::int32_t farthest = nearest;
+      float near_m = grid.PointOf(nearest).range_m;
+      float far_m = near_m;
+      for (++i; i < by_column.size() && grid.ColumnOf(by_column[i]) == column; ++i) {
+        const std::int32_t index = by_column[i];
+        if (piece_of_return_[static_cast<std::size_t>(index)] != piece) break;
+        const float range_m = grid.PointOf(index).range_m;
+        nearest = range_m < near_m ? index : nearest;
+        near_m = range_m < near_m ? range_m : near_m;
+        farthest = range_m > far_m ? index : farthest;
+        far_m = range_m > far_m ? range_m : far_m;
       }
-      OutlineEntry& entry = entries_[static_cast<std::size_t>(last)];
-      const LevelPoint& point = grid.PointOf(index);
-      if (point.range_m < entry.near_point.range_m) {
-        entry.nearest = index;
-        entry.near_point = point;
-      }
-      if (point.range_m > entry.far_point.range_m) entry.far_point = point;
+      AddToOutline(piece, column, first_of_column, nearest, farthest, grid);
     }
     begin_of_column_.push_back(static_cast<std::int32_t>(entries_.size()));
   }
@@ -141,14 +150,70 @@ void PieceTable::BuildOutlines(const TurnGrid& grid, const RunTable& runs) {
   }
 }
 
+void PieceTable::AddToOutline(std::int32_t piece, std::int32_t column, std::int32_t first_of_column, std::int32_t nearest, std::int32_t farthest,
+                              const TurnGrid& grid) {
+  const auto at = static_cast<std::size_t>(piece);
+  const LevelPoint& near_point = grid.PointOf(nearest);
+  const LevelPoint& far_point = grid.PointOf(farthest);
+  const std::int32_t last = last_entry_[at];
+  if (last >= first_of_column) {
+    OutlineEntry& entry = entries_[static_cast<std::size_t>(last)];
+    if (near_point.range_m < entry.near_point.range_m) {
+      entry.nearest = nearest;
+      entry.near_point = near_point;
+    }
+    if (far_point.range_m > entry.far_point.range_m) entry.far_point = far_point;
+    return;
+  }
+  Gap& gap = gaps_[at];
+  if (last == kNone) {
+    gap.first_column = column;
+  } else if (const std::int32_t free = column - entries_[static_cast<std::size_t>(last)].column - 1; free > gap.widest) {
+    gap.widest = free;
+    gap.after_widest = column;
+  }
+  last_entry_[at] = static_cast<std::int32_t>(entries_.size());
+  entries_.push_back({piece, column, nearest, near_point, far_point});
+  ++begin_of_piece_[at + 1];
+}
+
+// The circle without the widest gap between the columns of a piece; of equal gaps that over the seam, else the first.
+void PieceTable::FindArcs(const RunTable& runs, int num_columns) {
+  arcs_.resize(facts_.size());
+  bool is_any_closed = false;
+  for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
+    const Gap& gap = gaps_[piece];
+    const std::int32_t last_column = entries_[static_cast<std::size_t>(last_entry_[piece])].column;
+    const std::int32_t over_seam = gap.first_column + num_columns - last_column - 1;
+    const bool is_seam_widest = over_seam >= gap.widest;
+    arcs_[piece] = {is_seam_widest ? gap.first_column : gap.after_widest, num_columns - std::max(over_seam, gap.widest)};
+    is_any_closed = is_any_closed || arcs_[piece].num == num_columns;
+  }
+  if (is_any_closed) {
+    // What goes all the way round begins with the first of its runs.
+    for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
+      if (arcs_[piece].num == num_columns) arcs_[piece].first = num_columns;
+    }
+    for (std::int32_t run = 0; run < runs.size(); ++run) {
+      Arc& arc = arcs_[static_cast<std::size_t>(OfRun(run))];
+      if (arc.num == num_columns) arc.first = std::min(arc.first, runs[run].first);
+    }
+  }
+  for (std::size_t piece = 0; piece < facts_.size(); ++piece) facts_[piece].arc = arcs_[piece];
+}
+
 void PieceTable::FitLine(std::int32_t root) {
   PieceFacts& facts = facts_[static_cast<std::size_t>(root)];
+  const Sums& sums = sums_[static_cast<std::size_t>(root)];
+  if (facts.num_returns == 1) {  // a drop: no line, no length
+    facts.mean_m = {sums.x_m, sums.y_m};
+    return;
+  }
   const double count = facts.num_returns;
-  facts.mean_m = {facts.sum_x_m / count, facts.sum_y_m / count};
-  if (facts.num_returns == 1) return;  // a drop: no line, no length
-  const double xx_m2 = facts.sum_xx_m2 / count - facts.mean_m.x() * facts.mean_m.x();
-  const double xy_m2 = facts.sum_xy_m2 / count - facts.mean_m.x() * facts.mean_m.y();
-  const double yy_m2 = facts.sum_yy_m2 / count - facts.mean_m.y() * facts.mean_m.y();
+  facts.mean_m = {sums.x_m / count, sums.y_m / count};
+  const double xx_m2 = sums.xx_m2 / count - facts.mean_m.x() * facts.mean_m.x();
+  const double xy_m2 = sums.xy_m2 / count - facts.mean_m.x() * facts.mean_m.y();
+  const double yy_m2 = sums.yy_m2 / count - facts.mean_m.y() * facts.mean_m.y();
   const double half_difference_m2 = (xx_m2 - yy_m2) / 2.0;
   const double radius_m2 = std::sqrt(half_difference_m2 * half_difference_m2 + xy_m2 * xy_m2);
   // Half of the angle whose cosine is half_difference / radius.
@@ -201,8 +266,7 @@ bool PieceTable::Settle(const TurnGrid& grid) {
     is_land = true;
   }
   new_land_.clear();
-  has_changed_.assign(facts_.size(), false);
-  bool is_joined = false;
+  changed_.clear();
   for (const auto& [one, other] : joins_) {
     const std::int32_t a = sets_.Find(one);
     const std::int32_t b = sets_.Find(other);
@@ -210,21 +274,30 @@ bool PieceTable::Settle(const TurnGrid& grid) {
     const auto root = static_cast<std::size_t>(std::min(a, b));
     const auto joined = static_cast<std::size_t>(std::max(a, b));
     Add(facts_[joined], facts_[root]);
+    sums_[root].x_m += sums_[joined].x_m;
+    sums_[root].y_m += sums_[joined].y_m;
+    sums_[root].xx_m2 += sums_[joined].xx_m2;
+    sums_[root].xy_m2 += sums_[joined].xy_m2;
+    sums_[root].yy_m2 += sums_[joined].yy_m2;
     next_member_[static_cast<std::size_t>(last_member_[root])] = static_cast<std::int32_t>(joined);
     last_member_[root] = last_member_[joined];
-    has_changed_[root] = is_joined = true;
+    changed_.push_back(static_cast<std::int32_t>(root));
   }
   joins_.clear();
-  if (!is_joined) return is_changed;
-  for (std::int32_t piece = 0; piece < size(); ++piece) root_of_piece_[static_cast<std::size_t>(piece)] = sets_.Find(piece);
-  std::erase_if(roots_, [this](std::int32_t root) { return RootOf(root) != root; });
-  for (const std::int32_t root : roots_) {
-    if (!has_changed_[static_cast<std::size_t>(root)]) continue;
+  if (changed_.empty()) return is_changed;
+  std::ranges::sort(changed_);
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+  for (const std::int32_t root : changed_) {
+    if (sets_.Find(root) != root) continue;
     to_cover_.clear();
-    for (std::int32_t piece = root; piece != kNone; piece = NextMember(piece)) to_cover_.push_back(arcs_[static_cast<std::size_t>(piece)]);
+    for (std::int32_t piece = root; piece != kNone; piece = NextMember(piece)) {
+      root_of_piece_[static_cast<std::size_t>(piece)] = root;
+      to_cover_.push_back(arcs_[static_cast<std::size_t>(piece)]);
+    }
     facts_[static_cast<std::size_t>(root)].arc = CoveringArc(grid.num_columns());
     FitLine(root);
   }
+  std::erase_if(roots_, [this](std::int32_t root) { return RootOf(root) != root; });
   return true;
 }
 

@@ -30,11 +30,6 @@ struct OutlineEntry {
 /// Of a piece, or of pieces that were joined.
 struct PieceFacts {
   std::int32_t num_returns = 0;
-  double sum_x_m = 0.0;
-  double sum_y_m = 0.0;
-  double sum_xx_m2 = 0.0;
-  double sum_xy_m2 = 0.0;
-  double sum_yy_m2 = 0.0;
   float min_range_m = 0.0F;
   float max_range_m = 0.0F;
   float max_height_m = 0.0F;  // over the lidar
@@ -58,6 +53,7 @@ class PieceTable {
 
   std::int32_t size() const { return static_cast<std::int32_t>(facts_.size()); }
   std::int32_t OfRun(std::int32_t run) const { return piece_of_run_[static_cast<std::size_t>(run)]; }
+  std::span<const std::int32_t> of_returns() const { return piece_of_return_; }
   /// As settled.
   std::int32_t RootOf(std::int32_t piece) const { return root_of_piece_[static_cast<std::size_t>(piece)]; }
   std::span<const std::int32_t> roots() const { return roots_; }
@@ -94,17 +90,37 @@ class PieceTable {
     return std::span<const T>(values).subspan(static_cast<std::size_t>(begin[at]), static_cast<std::size_t>(begin[at + 1] - begin[at]));
   }
 
-  void BuildOutlines(const TurnGrid& grid, const RunTable& runs);
+  // Sums over the returns of a piece, or of pieces that were joined.
+  struct Sums {
+    double x_m = 0.0;
+    double y_m = 0.0;
+    double xx_m2 = 0.0;
+    double xy_m2 = 0.0;
+    double yy_m2 = 0.0;
+  };
+  // The widest gap between the columns of a piece, as far as they have been looked at.
+  struct Gap {
+    std::int32_t first_column = 0;  // of the piece
+    std::int32_t widest = 0;
+    std::int32_t after_widest = 0;
+  };
+
+  void NumberPieces(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs);
+  void SumReturns(const TurnGrid& grid, const RunTable& runs);
+  void BuildOutlines(const TurnGrid& grid);
+  void AddToOutline(std::int32_t piece, std::int32_t column, std::int32_t first_of_column, std::int32_t nearest, std::int32_t farthest,
+                    const TurnGrid& grid);
+  void FindArcs(const RunTable& runs, int num_columns);
   void FitLine(std::int32_t root);
   Arc CoveringArc(int num_columns);
 
-  std::vector<std::int32_t> piece_of_run_;  // [runs]
-  std::vector<std::int32_t> runs_of_piece_;
-  std::vector<std::int32_t> begin_of_runs_;  // [pieces + 1]
-  std::vector<PieceFacts> facts_;            // [pieces]
-  std::vector<Arc> arcs_;                    // [pieces] of each by itself
-  std::vector<std::int32_t> next_member_;    // [pieces]
-  std::vector<std::int32_t> last_member_;    // [pieces] of roots
+  std::vector<std::int32_t> piece_of_run_;     // [runs]
+  std::vector<std::int32_t> piece_of_return_;  // [returns]
+  std::vector<PieceFacts> facts_;              // [pieces]
+  std::vector<Sums> sums_;                     // [pieces]
+  std::vector<Arc> arcs_;                      // [pieces] of each by itself
+  std::vector<std::int32_t> next_member_;      // [pieces]
+  std::vector<std::int32_t> last_member_;      // [pieces] of roots
   std::vector<std::int32_t> roots_;
   UnionFind sets_;
   std::vector<std::int32_t> root_of_piece_;
@@ -119,7 +135,8 @@ class PieceTable {
   std::vector<std::int32_t> number_of_root_;
   std::vector<std::int32_t> last_entry_;
   std::vector<std::int32_t> cursor_;  // where the next one of a part goes
-  std::vector<bool> has_changed_;
+  std::vector<Gap> gaps_;             // [pieces]
+  std::vector<std::int32_t> changed_;
 };
 
 /// Columns that two arcs share.
