@@ -51,50 +51,76 @@ constexpr double kWaterlineOffM = 0.1;
 
 }  // namespace
 
+// A drop, in most cases: there is nothing to add up.
+void Measurer::MeasureSingle(const Scan& scan, const Return& one, Segment& segment) {
+  const HullCorner corner = CornerAt(scan, one);
+  segment.time = segment.nearest_time = scan.head.time + RoundDown(TimeOf(scan, one));
+  segment.num_points = 1;
+  segment.nearest = segment.top = one.point;
+  segment.centroid = {0.0F + one.point.x_m, 0.0F + one.point.y_m, 0.0F + one.point.z_m};  // a sum is never minus nought
+  segment.min_z_m = segment.max_z_m = one.point.z_m;
+  segment.min_reflectivity = segment.max_reflectivity = scan.columns.reflectivity[static_cast<std::size_t>(one.cell)];
+  segment.mean_reflectivity = static_cast<float>(segment.min_reflectivity);
+  segment.box_center_x_m = one.point.x_m;
+  segment.box_center_y_m = one.point.y_m;
+  segment.hull.push_back(corner);
+}
+
 // `indices` of the returns of one segment, in the order of their cells.
 void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> indices, Segment& segment) {
   double sum_x_m = 0.0;
   double sum_y_m = 0.0;
   double sum_z_m = 0.0;
-  nanoseconds sum_time{0};
+  std::int64_t sum_ns = 0;
   std::int64_t sum_reflectivity = 0;
   double least_m2 = std::numeric_limits<double>::infinity();
   std::int32_t nearest = indices.front();
   double greatest_height_m = -std::numeric_limits<double>::infinity();
-  segment.min_z_m = segment.max_z_m = returns[static_cast<std::size_t>(nearest)].point.z_m;
-  segment.min_reflectivity = std::numeric_limits<std::int32_t>::max();
-  segment.max_reflectivity = 0;
+  std::int32_t highest = nearest;
+  float min_z_m = returns[static_cast<std::size_t>(nearest)].point.z_m;
+  float max_z_m = min_z_m;
+  std::int32_t min_reflectivity = std::numeric_limits<std::int32_t>::max();
+  std::int32_t max_reflectivity = 0;
   footprint_.clear();
   std::int32_t column = -1;
+  std::int32_t column_ns = 0;
   float near_m2 = 0.0F;
   float far_m2 = 0.0F;
+  const Ring* rings = scan.head.rings.data();
   for (const std::int32_t index : indices) {
     const Return& one = returns[static_cast<std::size_t>(index)];
-    const Point& point = one.point;
-    sum_x_m += point.x_m;
-    sum_y_m += point.y_m;
-    sum_z_m += point.z_m;
-    sum_time += TimeOf(scan, one);
-    segment.min_z_m = std::min(segment.min_z_m, point.z_m);
-    segment.max_z_m = std::max(segment.max_z_m, point.z_m);
-    const double distance_m2 = SquaredDistance(point, Point{});
+    const Point point = one.point;
+    const bool is_new_column = one.column != column;
+    if (is_new_column) {
+      column = one.column;
+      column_ns = scan.columns.time_ns[static_cast<std::size_t>(column)];
+    }
+    sum_ns += std::int64_t{column_ns} + rings[one.ring].time_offset_ns;
+    const double x_m = point.x_m;
+    const double y_m = point.y_m;
+    const double z_m = point.z_m;
+    sum_x_m += x_m;
+    sum_y_m += y_m;
+    sum_z_m += z_m;
+    min_z_m = std::min(min_z_m, point.z_m);
+    max_z_m = std::max(max_z_m, point.z_m);
+    const double distance_m2 = x_m * x_m + y_m * y_m + z_m * z_m;
     if (distance_m2 < least_m2) {
       least_m2 = distance_m2;
       nearest = index;
     }
-    const double height_m = up_.x() * point.x_m + up_.y() * point.y_m + up_.z() * point.z_m;
+    const double height_m = up_.x() * x_m + up_.y() * y_m + up_.z() * z_m;
     if (height_m > greatest_height_m) {
       greatest_height_m = height_m;
-      segment.top = point;
+      highest = index;
     }
     const std::int32_t reflectivity = scan.columns.reflectivity[static_cast<std::size_t>(one.cell)];
     sum_reflectivity += reflectivity;
-    segment.min_reflectivity = std::min(segment.min_reflectivity, reflectivity);
-    segment.max_reflectivity = std::max(segment.max_reflectivity, reflectivity);
+    min_reflectivity = std::min(min_reflectivity, reflectivity);
+    max_reflectivity = std::max(max_reflectivity, reflectivity);
     // Of each column the nearest and the farthest, in this order.
     const float plan_m2 = point.x_m * point.x_m + point.y_m * point.y_m;
-    if (one.column != column || !is_upright_) {
-      column = one.column;
+    if (is_new_column || !is_upright_) {
       near_m2 = far_m2 = plan_m2;
       footprint_.push_back({point.x_m, point.y_m, index});
     } else if (plan_m2 < near_m2) {
@@ -111,16 +137,21 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
       far_m2 = plan_m2;
     }
   }
+  segment.min_z_m = min_z_m;
+  segment.max_z_m = max_z_m;
+  segment.min_reflectivity = min_reflectivity;
+  segment.max_reflectivity = max_reflectivity;
+  segment.top = returns[static_cast<std::size_t>(highest)].point;
   const auto count = static_cast<double>(indices.size());
   const Return& nearest_return = returns[static_cast<std::size_t>(nearest)];
-  segment.time = scan.head.time + RoundedMean(sum_time, static_cast<std::int64_t>(indices.size()));
+  segment.time = scan.head.time + RoundedMean(nanoseconds(sum_ns), static_cast<std::int64_t>(indices.size()));
   segment.num_points = static_cast<std::int32_t>(indices.size());
   segment.centroid = {static_cast<float>(sum_x_m / count), static_cast<float>(sum_y_m / count), static_cast<float>(sum_z_m / count)};
   segment.nearest = nearest_return.point;
   segment.nearest_time = scan.head.time + RoundDown(TimeOf(scan, nearest_return));
   segment.mean_reflectivity = static_cast<float>(static_cast<double>(sum_reflectivity) / count);
 
-  if (footprint_.size() == 1) {  // a drop, in most cases
+  if (footprint_.size() == 1) {
     segment.box_center_x_m = footprint_.front().x_m;
     segment.box_center_y_m = footprint_.front().y_m;
     segment.hull.push_back(CornerAt(scan, returns[static_cast<std::size_t>(footprint_.front().return_index)]));
@@ -136,23 +167,35 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
 }
 
 void Measurer::Measure(const Scan& scan, std::span<const Return> returns, const Groups& groups, std::vector<Segment>& segments) {
-  // Returns sorted by segment; within one they stay in order.
+  // Returns sorted by segment; within one they stay in order. Those that follow each other are of one segment in most cases.
+  const auto for_each_stretch = [&](auto handle) {
+    for (std::size_t i = 0, end = 0; i < returns.size(); i = end) {
+      const std::int32_t segment = groups.of_return[i];
+      for (end = i + 1; end < returns.size() && groups.of_return[end] == segment;) ++end;
+      if (segment != Groups::kNone) handle(static_cast<std::size_t>(segment), i, end);
+    }
+  };
   begin_.assign(static_cast<std::size_t>(groups.count) + 1, 0);
-  for (const std::int32_t segment : groups.of_return) {
-    if (segment != Groups::kNone) ++begin_[static_cast<std::size_t>(segment) + 1];
-  }
+  for_each_stretch([this](std::size_t segment, std::size_t first, std::size_t end) { begin_[segment + 1] += end - first; });
   for (std::size_t segment = 1; segment < begin_.size(); ++segment) begin_[segment] += begin_[segment - 1];
   sorted_.resize(begin_.back());
   next_ = begin_;
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    if (groups.of_return[i] != Groups::kNone) sorted_[next_[static_cast<std::size_t>(groups.of_return[i])]++] = static_cast<std::int32_t>(i);
-  }
+  for_each_stretch([this](std::size_t segment, std::size_t first, std::size_t end) {
+    std::int32_t* to = sorted_.data() + next_[segment];
+    for (std::size_t i = first; i < end; ++i) *to++ = static_cast<std::int32_t>(i);
+    next_[segment] += end - first;
+  });
   is_upright_ = std::ranges::all_of(scan.head.rings, [](const Ring& ring) { return std::abs(ring.azimuth_offset_rad) <= kUprightRad; });
   Resize(static_cast<std::size_t>(groups.count), segments);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Segment& segment = segments[i];
     Forget(segment);
-    MeasureOne(scan, returns, std::span<const std::int32_t>(sorted_).subspan(begin_[i], begin_[i + 1] - begin_[i]), segment);
+    const auto indices = std::span<const std::int32_t>(sorted_).subspan(begin_[i], begin_[i + 1] - begin_[i]);
+    if (indices.size() == 1) {
+      MeasureSingle(scan, returns[static_cast<std::size_t>(indices.front())], segment);
+    } else {
+      MeasureOne(scan, returns, indices, segment);
+    }
     segment.id = static_cast<std::int32_t>(i) + 1;
   }
 }

@@ -83,6 +83,7 @@ class Measurer {
   void MeasureWaterline(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> line, Segment& segment);
 
  private:
+  static void MeasureSingle(const Scan& scan, const Return& one, Segment& segment);
   void MeasureOne(const Scan& scan, std::span<const Return> returns, std::span<const std::int32_t> indices, Segment& segment);
   void Resize(std::size_t count, std::vector<Segment>& segments);
 

@@ -7,11 +7,16 @@ namespace lookout::segmenter {
 void Numbering::Number(const Groups& components, std::span<const std::int32_t> cluster_of_component, int min_points, std::int32_t max_segments) {
   clusters_.assign(cluster_of_component.size(), {});
   in_order_.clear();
-  const auto cluster_of = [&](std::size_t i) { return cluster_of_component[static_cast<std::size_t>(components.of_return[i])]; };
-  for (std::size_t i = 0; i < components.of_return.size(); ++i) {
-    if (components.of_return[i] == Groups::kNone) continue;
-    Cluster& cluster = clusters_[static_cast<std::size_t>(cluster_of(i))];
-    if (cluster.num_points++ == 0) in_order_.push_back(cluster_of(i));
+  // Returns that follow each other are of one component in most cases.
+  const auto& of_return = components.of_return;
+  for (std::size_t i = 0, end = 0; i < of_return.size(); i = end) {
+    const std::int32_t component = of_return[i];
+    for (end = i + 1; end < of_return.size() && of_return[end] == component;) ++end;
+    if (component == Groups::kNone) continue;
+    const std::int32_t cluster = cluster_of_component[static_cast<std::size_t>(component)];
+    auto& num_points = clusters_[static_cast<std::size_t>(cluster)].num_points;
+    if (num_points == 0) in_order_.push_back(cluster);
+    num_points += static_cast<std::int32_t>(end - i);
   }
   const auto size_of = [&](std::int32_t cluster) { return clusters_[static_cast<std::size_t>(cluster)].num_points; };
   num_too_small_ = static_cast<std::int32_t>(std::erase_if(in_order_, [&](std::int32_t cluster) { return size_of(cluster) < min_points; }));
@@ -25,9 +30,14 @@ void Numbering::Number(const Groups& components, std::span<const std::int32_t> c
   }
   groups_.count = 0;
   for (const std::int32_t cluster : in_order_) clusters_[static_cast<std::size_t>(cluster)].number = groups_.count++;
-  groups_.of_return.assign(components.of_return.size(), Groups::kNone);
-  for (std::size_t i = 0; i < components.of_return.size(); ++i) {
-    if (components.of_return[i] != Groups::kNone) groups_.of_return[i] = clusters_[static_cast<std::size_t>(cluster_of(i))].number;
+  number_of_component_.resize(cluster_of_component.size());
+  for (std::size_t component = 0; component < cluster_of_component.size(); ++component) {
+    number_of_component_[component] = clusters_[static_cast<std::size_t>(cluster_of_component[component])].number;
+  }
+  groups_.of_return.resize(of_return.size());
+  for (std::size_t i = 0; i < of_return.size(); ++i) {
+    const std::int32_t component = of_return[i];
+    groups_.of_return[i] = component == Groups::kNone ? Groups::kNone : number_of_component_[static_cast<std::size_t>(component)];
   }
 }
 

@@ -31,7 +31,8 @@ class Numbering {
 
   Groups groups_;
   std::vector<Cluster> clusters_;
-  std::vector<std::int32_t> in_order_;  // clusters that are kept
+  std::vector<std::int32_t> in_order_;             // clusters that are kept
+  std::vector<std::int32_t> number_of_component_;  // scratch
   std::int32_t num_too_small_ = 0;
   std::int32_t num_over_limit_ = 0;
 };

@@ -58,9 +58,10 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   occupied_.resize(cells_per_column + 1);
   result_.label.assign(scan.num_cells(), 0);
   result_.repeats.clear();
-  result_.returns.clear();
   const auto is_return = [](std::uint16_t range) { return range != 0; };
-  result_.returns.reserve(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
+  // As many as there may be; in the end those that are looked at. Only what the turns before had not is made new.
+  result_.returns.resize(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
+  std::size_t num_looked_at = 0;
   for (std::size_t column = 0; column < scan.columns.azimuth_rad.size(); ++column) {
     const std::size_t first_cell = column * cells_per_column;
     const std::uint16_t* range = scan.columns.range.data() + first_cell;
@@ -95,10 +96,11 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
         result_.label[cell] = ToLabel(Reason::kOwnVessel);
         continue;
       }
-      result_.returns.push_back(
-          {point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column), static_cast<std::int32_t>(ring)});
+      result_.returns[num_looked_at++] = {point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
+                                          static_cast<std::int32_t>(ring)};
     }
   }
+  result_.returns.resize(num_looked_at);
   if (num_returns >= 2) SetRepeatsApart(scan);
   return result_;
 }
