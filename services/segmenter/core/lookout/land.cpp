@@ -28,7 +28,6 @@ constexpr std::ptrdiff_t kMostStraight = 256;
 
 // The water's edge.
 constexpr std::int32_t kLeastShoreReturns = 10;
-constexpr double kRounded = 1.001;            // longer than any length is rounded
 constexpr double kBeforeM = 0.3;              // by which what stands before a shore is nearer than it on both sides
 constexpr double kGreatestBeforeShare = 0.8;  // of the length of land: what is longer is itself a shore
 constexpr double kLeastShoreShare = 0.6;      // of the length of land that its fragments fill
@@ -134,7 +133,7 @@ void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTab
     order_.clear();
     for (std::int32_t run = first_run; run < end_run; ++run) {
       const float range_m = grid.RangeAt(line, runs[run].first);
-      const auto reach_m = static_cast<float>(kRounded * params_.shore_gap.At(range_m));
+      const float reach_m = WidestRange(params_.shore_gap.At(range_m), range_m);
       if (runs[run].length > 1 || grid.NumNear<kLinkColumns>(line, runs[run].first, range_m, reach_m) > 1) order_.push_back(run);
     }
     ForEachFollowing(grid, runs, order_, [&](std::int32_t one, std::int32_t other) {
@@ -223,45 +222,59 @@ void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTabl
   }
 }
 
-bool LandFinder::FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces) {
-  const auto num_pieces = static_cast<std::size_t>(pieces.size());
-  num_columns_of_.assign(num_pieces, 0);
-  num_deep_of_.assign(num_pieces, 0);
+void LandFinder::ListLand(const TurnGrid& grid, const PieceTable& pieces) {
+  is_land_.assign(static_cast<std::size_t>(pieces.size()), 0);
+  for (const std::int32_t root : pieces.roots()) is_land_[static_cast<std::size_t>(root)] = pieces.FactsOf(root).is_land ? 1 : 0;
+  land_entries_.clear();
+  begin_of_land_.clear();
   for (int column = 0; column < grid.num_columns(); ++column) {
-    const auto seen = pieces.InColumn(column);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const std::int32_t root = pieces.RootOf(seen[i].piece);
-      if (!pieces.FactsOf(root).is_land) continue;
-      float nearest_m = std::numeric_limits<float>::infinity();
-      float farthest_m = 0.0F;
-      bool is_first = true;
-      for (std::size_t j = 0; j < seen.size(); ++j) {
-        if (pieces.RootOf(seen[j].piece) != root) continue;
-        is_first = is_first && j >= i;
-        nearest_m = std::min(nearest_m, seen[j].near_point.range_m);
-        farthest_m = std::max(farthest_m, seen[j].far_point.range_m);
+    begin_of_land_.push_back(land_entries_.size());
+    for (const OutlineEntry& entry : pieces.InColumn(column)) {
+      const std::int32_t root = pieces.RootOf(entry.piece);
+      if (is_land_[static_cast<std::size_t>(root)] != 0) land_entries_.push_back({root, entry.near_point, entry.far_point});
+    }
+  }
+  begin_of_land_.push_back(land_entries_.size());
+}
+
+bool LandFinder::FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces) {
+  ListLand(grid, pieces);
+  const auto num_pieces = static_cast<std::size_t>(pieces.size());
+  takes_in_.assign(num_pieces, kTakesNothing);
+  if (land_entries_.empty()) return false;
+  depth_of_.assign(num_pieces, {});
+  const auto end_column = [](LandDepth& depth) {
+    if (depth.farthest_m - depth.nearest_m > kDeepM) ++depth.num_deep;
+  };
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    for (const LandEntry& entry : LandInColumn(column)) {
+      LandDepth& depth = depth_of_[static_cast<std::size_t>(entry.root)];
+      if (depth.column != column) {
+        end_column(depth);
+        depth.column = column;
+        ++depth.num_columns;
+        depth.nearest_m = std::numeric_limits<float>::infinity();
+        depth.farthest_m = 0.0F;
       }
-      if (!is_first) continue;
-      ++num_columns_of_[static_cast<std::size_t>(root)];
-      if (farthest_m - nearest_m > kDeepM) ++num_deep_of_[static_cast<std::size_t>(root)];
+      depth.nearest_m = std::min(depth.nearest_m, entry.near_point.range_m);
+      depth.farthest_m = std::max(depth.farthest_m, entry.far_point.range_m);
     }
   }
   bool is_any_land = false;
-  takes_in_.assign(num_pieces, kTakesNothing);
   for (const std::int32_t root : pieces.roots()) {
-    const PieceFacts& facts = pieces.FactsOf(root);
-    if (!facts.is_land) continue;
     const auto at = static_cast<std::size_t>(root);
-    const bool is_deep = 100 * num_deep_of_[at] >= kDeepPercent * num_columns_of_[at];
-    takes_in_[at] = is_deep ? kTakesAll : facts.off_m >= kWallOffM ? kTakesTall : kTakesNothing;
+    if (is_land_[at] == 0) continue;
+    end_column(depth_of_[at]);
+    const bool is_deep = 100 * depth_of_[at].num_deep >= kDeepPercent * depth_of_[at].num_columns;
+    takes_in_[at] = is_deep ? kTakesAll : pieces.FactsOf(root).off_m >= kWallOffM ? kTakesTall : kTakesNothing;
     is_any_land = is_any_land || takes_in_[at] != kTakesNothing;
   }
   if (!is_any_land) return false;
   land_m_.assign(static_cast<std::size_t>(grid.num_columns()), std::numeric_limits<float>::infinity());
   for (int column = 0; column < grid.num_columns(); ++column) {
     float nearest_m = std::numeric_limits<float>::infinity();
-    for (const OutlineEntry& entry : pieces.InColumn(column)) {
-      if (TakesIn(pieces.RootOf(entry.piece), kTakesTall)) nearest_m = std::min(nearest_m, entry.near_point.range_m);
+    for (const LandEntry& entry : LandInColumn(column)) {
+      if (TakesIn(entry.root, kTakesTall)) nearest_m = std::min(nearest_m, entry.near_point.range_m);
     }
     if (!std::isfinite(nearest_m)) continue;
     for (int step = -kNearColumns; step <= kNearColumns; ++step) {
@@ -276,7 +289,10 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
   if (!FindWhatTakesIn(grid, pieces)) return false;
   bool is_taken = false;
   for (const std::int32_t root : pieces.roots()) {
-    if (pieces.FactsOf(root).is_land) continue;
+    const PieceFacts& facts = pieces.FactsOf(root);
+    if (facts.is_land) continue;
+    // A drop before all land, in most cases.
+    if (facts.num_returns == 1 && facts.min_range_m <= land_m_[static_cast<std::size_t>(facts.arc.first)]) continue;
     std::int32_t land = LandBefore(grid, pieces, root);
     if (land == kNoLand) land = LandBeside(grid, pieces, root);
     if (land == kNoLand) continue;
@@ -310,13 +326,12 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
       const OutlineEntry& entry = pieces.Entry(index);
       const float range_m = entry.near_point.range_m;
       for (int step = -kNearColumns; step <= kNearColumns; ++step) {
-        for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(entry.column + step))) {
-          const std::int32_t other_root = pieces.RootOf(other.piece);
-          if (!TakesIn(other_root, least_taking) || other.near_point.range_m >= range_m) continue;
+        for (const LandEntry& other : LandInColumn(grid.Wrap(entry.column + step))) {
+          if (!TakesIn(other.root, least_taking) || other.near_point.range_m >= range_m) continue;
           const double gap_m = std::max(0.0, double{range_m} - other.far_point.range_m);
-          if (gap_m > least_m || (gap_m == least_m && land != kNoLand && other_root >= land)) continue;
+          if (gap_m > least_m || (gap_m == least_m && land != kNoLand && other.root >= land)) continue;
           least_m = gap_m;
-          land = other_root;
+          land = other.root;
         }
       }
     }
@@ -330,15 +345,18 @@ std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& piec
   double least_m = params_.beside_land.At(facts.min_range_m);
   std::int32_t land = kNoLand;
   const auto look_at = [&](const OutlineEntry& mine, int column) {
-    for (const OutlineEntry& other : pieces.InColumn(column)) {
-      const std::int32_t other_root = pieces.RootOf(other.piece);
-      if (!TakesIn(other_root, kTakesTall)) continue;
+    for (const LandEntry& other : LandInColumn(column)) {
+      if (!TakesIn(other.root, kTakesTall)) continue;
+      // What is farther apart in range is farther apart.
+      const double apart_m =
+          std::max(double{other.near_point.range_m} - mine.far_point.range_m, double{mine.near_point.range_m} - other.far_point.range_m);
+      if (apart_m > WidestRange(least_m, mine.far_point.range_m)) continue;
       for (const LevelPoint* my_end : {&mine.near_point, &mine.far_point}) {
         for (const LevelPoint* other_end : {&other.near_point, &other.far_point}) {
           const double distance_m = Distance(*my_end, *other_end);
-          if (distance_m > least_m || (distance_m == least_m && land != kNoLand && other_root >= land)) continue;
+          if (distance_m > least_m || (distance_m == least_m && land != kNoLand && other.root >= land)) continue;
           least_m = distance_m;
-          land = other_root;
+          land = other.root;
         }
       }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
@@ -35,12 +36,32 @@ class LandFinder {
     bool is_before = false;  // nearer than both its neighbours
   };
 
+  // What a piece of land shows in one column.
+  struct LandEntry {
+    std::int32_t root = 0;
+    LevelPoint near_point{};
+    LevelPoint far_point{};
+  };
+  // What land shows in the column that is being looked at.
+  struct LandDepth {
+    std::int32_t column = -1;
+    float nearest_m = 0.0F;
+    float farthest_m = 0.0F;
+    std::int32_t num_columns = 0;
+    std::int32_t num_deep = 0;
+  };
+
   void JoinInLine(const TurnGrid& grid, PieceTable& pieces);
   bool IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const;
   void FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
   void TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
   bool TakeIn(const TurnGrid& grid, PieceTable& pieces);
   bool FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces);
+  void ListLand(const TurnGrid& grid, const PieceTable& pieces);
+  std::span<const LandEntry> LandInColumn(std::int32_t column) const {
+    const auto at = static_cast<std::size_t>(column);
+    return std::span(land_entries_).subspan(begin_of_land_[at], begin_of_land_[at + 1] - begin_of_land_[at]);
+  }
   std::int32_t LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
   std::int32_t LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
   bool TakesIn(std::int32_t root, std::uint8_t at_least) const { return takes_in_[static_cast<std::size_t>(root)] >= at_least; }
@@ -56,10 +77,12 @@ class LandFinder {
   std::vector<std::int32_t> chain_;
   std::vector<Fragment> fragments_;
   std::vector<std::int32_t> candidates_;
-  std::vector<std::uint8_t> takes_in_;  // [pieces] what land takes in: nothing, what is tall, all
-  std::vector<float> land_m_;           // [columns] range of the nearest return of such land in this column or beside it
-  std::vector<std::int32_t> num_columns_of_;
-  std::vector<std::int32_t> num_deep_of_;
+  std::vector<std::uint8_t> takes_in_;      // [pieces] what land takes in: nothing, what is tall, all
+  std::vector<float> land_m_;               // [columns] range of the nearest return of such land in this column or beside it
+  std::vector<LandEntry> land_entries_;     // by column
+  std::vector<std::size_t> begin_of_land_;  // [columns + 1]
+  std::vector<std::uint8_t> is_land_;       // [pieces] of roots
+  std::vector<LandDepth> depth_of_;         // [pieces] of roots
 };
 
 }  // namespace lookout::segmenter

@@ -41,13 +41,13 @@ class Linker {
 
   bool IsAloneInLine(const Run& run) const {
     const float range_m = grid_.RangeAt(run.line, run.first);
-    return grid_.NumNear<kLinkColumns>(run.line, run.first, range_m, WidestRange(range_m)) == 1;
+    return grid_.NumNear<kLinkColumns>(run.line, run.first, range_m, WidestAt(range_m)) == 1;
   }
 
   // Whether a run of one return has none near it in the rings about: nothing there is linked to it.
   bool IsAlone(const Run& run, int ring) const {
     const float range_m = grid_.RangeAt(run.line, run.first);
-    const float widest_m = WidestRange(range_m);
+    const float widest_m = WidestAt(range_m);
     const int first_of_ring = ring * grid_.num_layers();
     const int end_of_ring = first_of_ring + grid_.num_layers();
     for (int line = std::max(0, first_of_ring - kLinkRings * grid_.num_layers()); line < first_of_ring; ++line) {
@@ -84,13 +84,7 @@ class Linker {
     }
   }
 
-  // What is more than this apart in range is farther apart than `reach_m`, however places are rounded.
-  static float Widened(double reach_m, float range_m) {
-    constexpr double kRoundedM = 1e-3;
-    constexpr double kRoundedShare = 4e-6;
-    return static_cast<float>(reach_m + kRoundedM + kRoundedShare * range_m);
-  }
-  float WidestRange(float range_m) const { return Widened(link_.At(range_m), range_m); }
+  float WidestAt(float range_m) const { return WidestRange(link_.At(range_m), range_m); }
 
   std::pair<float, float> RangesOf(const Run& run) const {
     float min_m = grid_.RangeAt(run.line, run.first);
@@ -139,7 +133,7 @@ class Linker {
   template <int kWindow>
   bool LinkReturn(const Lines& lines, int other_column, int from, int to) {
     const float other_range_m = grid_.RangeAt(lines.other, other_column);
-    const float widest_m = WidestRange(other_range_m);
+    const float widest_m = WidestAt(other_range_m);
     const bool may_be_linked = from == to ? std::abs(grid_.RangeAt(lines.one, WrapFar(from)) - other_range_m) <= widest_m
                                           : grid_.NumNear<kWindow>(lines.one, other_column, other_range_m, widest_m) > 0;
     if (!may_be_linked) return false;
@@ -179,7 +173,7 @@ class Linker {
     for (int back = 0; back < before.length && gap + back <= kLinkColumns; ++back) {
       const int from_column = grid_.Wrap(before.first + before.length - 1 - back);
       const float range_m = grid_.RangeAt(before.line, from_column);
-      const float widest_m = WidestRange(range_m);
+      const float widest_m = WidestAt(range_m);
       for (int on = 0; on < after.length && gap + back + on <= kLinkColumns; ++on) {
         const int column = grid_.Wrap(after.first + on);
         if (!(std::abs(grid_.RangeAt(after.line, column) - range_m) <= widest_m)) continue;
@@ -195,7 +189,7 @@ class Linker {
     const int next_column = grid_.Wrap(column + 1);
     const float range_m = grid_.RangeAt(line, column);
     const double spacing_m = grid_.column_step_rad() / kLeastGrazingSine * range_m;
-    const float widest_m = Widened(spacing_m, range_m);
+    const float widest_m = WidestRange(spacing_m, range_m);
     if (!(std::abs(grid_.RangeAt(line, last_column) - range_m) <= widest_m && std::abs(grid_.RangeAt(line, next_column) - range_m) <= widest_m))
       return;
     const std::int32_t middle = grid_.At(line, column);
@@ -240,7 +234,7 @@ void RunLinker::FindStrands(const TurnGrid& grid, const RunTable& runs, const Re
       const Run& one = runs[run];
       if (one.length == 1 && linker.IsAlone(one, ring)) continue;
       const auto [min_m, max_m] = linker.RangesOf(one);
-      const float most_m = max_m + linker.WidestRange(max_m);
+      const float most_m = max_m + linker.WidestAt(max_m);
       if (strands_.size() > begin_of_line_.back() && sets.Find(strands_.back().run) == sets.Find(run)) {
         Strand& strand = strands_.back();
         strand.end = one.first + one.length;

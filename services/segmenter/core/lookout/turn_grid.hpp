@@ -27,6 +27,13 @@ inline float SquaredPlanDistance(const LevelPoint& one, const LevelPoint& other)
   return x_m * x_m + y_m * y_m;
 }
 
+/// Two returns, one of them at this range, that are farther apart in range than this are farther apart than `reach_m`, however they are rounded.
+inline float WidestRange(double reach_m, float range_m) {
+  constexpr double kRoundedM = 1e-3;
+  constexpr double kRoundedShare = 4e-6;
+  return static_cast<float>(reach_m + kRoundedM + kRoundedShare * range_m);
+}
+
 /// Lines are the rings, from the lowest up, each once per return of a shot: line = ring x returns per shot + return.
 ///
 /// Columns make a whole circle: where the turn is a part of one, empty columns stand for the rest. Where a lidar fires the beams of a column to more
