@@ -34,6 +34,7 @@ constexpr double kThrongM = 2.0;
 constexpr int kMostInThrong = 24;
 constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
 constexpr double kLargeM = 4.0;
+constexpr double kRoundedUp = 1.000001;
 
 constexpr int kRounds = 2;
 
@@ -161,49 +162,57 @@ void ObjectJoiner::FindLinks(const TurnGrid& grid, const PieceTable& pieces) {
   solid_.clear();
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(piece));
-    if (!facts.is_land && facts.num_returns >= kSolidReturns) solid_.push_back(piece);
+    if (facts.is_land || facts.num_returns < kSolidReturns) continue;
+    const double reach_m = std::max(OverReachM(facts), params_.join.At(facts.min_range_m));
+    solid_.push_back({facts.mean_m.x(), facts.mean_m.y(), facts.radius_m, reach_m, piece, false});
   }
-  std::ranges::sort(solid_, {}, [&](std::int32_t piece) { return std::pair(MeanX(pieces, piece), piece); });
-  FindCrowds(pieces);
+  std::ranges::sort(solid_, {}, [](const Solid& solid) { return std::pair(solid.x_m, solid.piece); });
+  FindCrowds();
   LinkPairs(grid, pieces);
   seen_by_.assign(static_cast<std::size_t>(pieces.size()), PieceTable::kNone);
-  for (std::size_t i = 0; i < solid_.size(); ++i) {
-    if (is_crowded_[i] == 0) LinkTiny(grid, pieces, solid_[i]);
+  for (const Solid& solid : solid_) {
+    if (!solid.is_crowded) LinkTiny(grid, pieces, solid.piece);
   }
 }
 
-double ObjectJoiner::MeanX(const PieceTable& pieces, std::int32_t piece) { return pieces.FactsOf(pieces.RootOf(piece)).mean_m.x(); }
-
 // In heavy spray near the lidar chance makes thousands of small clusters, each within reach of hundreds: they are not joined.
-void ObjectJoiner::FindCrowds(const PieceTable& pieces) {
-  is_crowded_.assign(solid_.size(), 0);
+void ObjectJoiner::FindCrowds() {
   for (std::size_t i = 0; i < solid_.size(); ++i) {
-    const auto& facts = pieces.FactsOf(pieces.RootOf(solid_[i]));
+    Solid& solid = solid_[i];
     int num_near = 0;
-    const auto look_at = [&](std::size_t j) {
-      const auto& other = pieces.FactsOf(pieces.RootOf(solid_[j]));
-      if (std::abs(other.mean_m.x() - facts.mean_m.x()) > kThrongM) return false;
-      num_near += (other.mean_m - facts.mean_m).squaredNorm() <= kThrongM * kThrongM ? 1 : 0;
+    const auto look_at = [&](const Solid& other) {
+      const double x_m = other.x_m - solid.x_m;
+      const double y_m = other.y_m - solid.y_m;
+      if (std::abs(x_m) > kThrongM) return false;
+      num_near += x_m * x_m + y_m * y_m <= kThrongM * kThrongM ? 1 : 0;
       return num_near <= kMostInThrong;
     };
-    for (std::size_t j = i; j > 0 && look_at(j - 1);) --j;
-    for (std::size_t j = i + 1; j < solid_.size() && look_at(j);) ++j;
-    is_crowded_[i] = num_near > kMostInThrong ? 1 : 0;
+    for (std::size_t j = i; j > 0 && look_at(solid_[j - 1]);) --j;
+    for (std::size_t j = i + 1; j < solid_.size() && look_at(solid_[j]);) ++j;
+    solid.is_crowded = num_near > kMostInThrong;
   }
 }
 
 void ObjectJoiner::LinkPairs(const TurnGrid& grid, const PieceTable& pieces) {
-  const auto radius_of = [&](std::size_t i) { return pieces.FactsOf(pieces.RootOf(solid_[i])).radius_m; };
-  // Small ones lie within a band of x; the few large ones are held against all.
+  large_.clear();
   for (std::size_t i = 0; i < solid_.size(); ++i) {
-    if (is_crowded_[i] != 0) continue;
-    const bool is_large = radius_of(i) > kLargeM;
-    const double x_m = MeanX(pieces, solid_[i]);
-    const double band_m = 2.0 * kLargeM + kFarthestOverM;
-    for (std::size_t j = i + 1; j < solid_.size(); ++j) {
-      if (!is_large && radius_of(j) <= kLargeM && MeanX(pieces, solid_[j]) - x_m > band_m) continue;
-      if (is_crowded_[j] == 0) LinkSolid(grid, pieces, solid_[i], solid_[j]);
-    }
+    if (solid_[i].radius_m > kLargeM && !solid_[i].is_crowded) large_.push_back(i);
+  }
+  constexpr double kBandM = 2.0 * kLargeM + kFarthestOverM;
+  for (std::size_t i = 0; i < solid_.size(); ++i) {
+    const Solid& one = solid_[i];
+    if (one.is_crowded) continue;
+    const auto look_at = [&](const Solid& other) {
+      if (other.is_crowded) return;
+      const double x_m = other.x_m - one.x_m;
+      const double y_m = other.y_m - one.y_m;
+      const double most_m = kRoundedUp * (one.radius_m + other.radius_m + std::max(one.reach_m, other.reach_m));
+      if (x_m * x_m + y_m * y_m <= most_m * most_m) LinkSolid(grid, pieces, one.piece, other.piece);
+    };
+    // Small ones lie within a band of x; the few large ones are held against all.
+    std::size_t j = i + 1;
+    for (; j < solid_.size() && (one.radius_m > kLargeM || solid_[j].x_m - one.x_m <= kBandM); ++j) look_at(solid_[j]);
+    for (auto large = std::ranges::lower_bound(large_, j); large != large_.end(); ++large) look_at(solid_[*large]);
   }
 }
 
@@ -235,12 +244,14 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   const std::size_t num_before = links_.size();
   std::size_t num_drops = 0;
   const auto look_at = [&](int column, double most_m) {
+    const double nearest_m = facts.min_range_m - most_m;
+    const double farthest_m = facts.max_range_m + most_m;
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
       if (num_drops > kMostDrops) return;
+      if (entry.near_point.range_m > farthest_m || entry.far_point.range_m < nearest_m) continue;
       double reach_m = most_m;
       auto& seen_by = seen_by_[static_cast<std::size_t>(entry.piece)];
       if (entry.piece == piece || seen_by == piece) continue;
-      if (entry.near_point.range_m > facts.max_range_m + reach_m || entry.far_point.range_m < facts.min_range_m - reach_m) continue;
       seen_by = piece;
       const std::int32_t other_root = pieces.RootOf(entry.piece);
       const PieceFacts& other = pieces.FactsOf(other_root);

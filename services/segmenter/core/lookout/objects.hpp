@@ -40,10 +40,19 @@ class ObjectJoiner {
     std::size_t cell = 0;
   };
 
+  // A piece of kSolidReturns or more, as far as it takes to pass over pairs that are far apart.
+  struct Solid {
+    double x_m = 0.0;  // its middle
+    double y_m = 0.0;
+    double radius_m = 0.0;
+    double reach_m = 0.0;  // the farthest it may be joined over
+    std::int32_t piece = 0;
+    bool is_crowded = false;
+  };
+
   void FindLinks(const TurnGrid& grid, const PieceTable& pieces);
-  void FindCrowds(const PieceTable& pieces);
+  void FindCrowds();
   void LinkPairs(const TurnGrid& grid, const PieceTable& pieces);
-  static double MeanX(const PieceTable& pieces, std::int32_t piece);
   void LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
   void LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std::int32_t piece);
   double OverReachM(const PieceFacts& facts) const;
@@ -57,10 +66,10 @@ class ObjectJoiner {
   LookoutParams params_;
   Reach link_;
   std::vector<Link> links_;
-  std::vector<std::int32_t> solid_;       // by the x of their middle
-  std::vector<std::uint8_t> is_crowded_;  // [solid_]
-  std::vector<std::int32_t> seen_by_;     // [pieces] the last piece that has looked at it
-  std::vector<Post> posts_;               // by cell
+  std::vector<Solid> solid_;           // by the x of their middle
+  std::vector<std::size_t> large_;     // of solid_
+  std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
+  std::vector<Post> posts_;            // by cell
   std::vector<Post> sorted_;
   std::vector<std::size_t> begin_of_cell_;
   std::vector<Post> neighbours_;
