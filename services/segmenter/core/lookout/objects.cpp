@@ -160,19 +160,39 @@ void ObjectJoiner::JoinObjects(const TurnGrid& grid, PieceTable& pieces, const R
 void ObjectJoiner::FindLinks(const TurnGrid& grid, const PieceTable& pieces) {
   links_.clear();
   solid_.clear();
+  is_tiny_.assign(static_cast<std::size_t>(pieces.size()), 0);
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(piece));
-    if (facts.is_land || facts.num_returns < kSolidReturns) continue;
+    if (facts.is_land) continue;
+    if (facts.num_returns < kSolidReturns) {
+      is_tiny_[static_cast<std::size_t>(piece)] = 1;
+      continue;
+    }
     const double reach_m = std::max(OverReachM(facts), params_.join.At(facts.min_range_m));
     solid_.push_back({facts.mean_m.x(), facts.mean_m.y(), facts.radius_m, reach_m, piece, false});
   }
   std::ranges::sort(solid_, {}, [](const Solid& solid) { return std::pair(solid.x_m, solid.piece); });
   FindCrowds();
   LinkPairs(grid, pieces);
+  if (solid_.empty()) return;
+  ListTiny(grid, pieces);
+  if (tiny_.empty()) return;
   seen_by_.assign(static_cast<std::size_t>(pieces.size()), PieceTable::kNone);
   for (const Solid& solid : solid_) {
     if (!solid.is_crowded) LinkTiny(grid, pieces, solid.piece);
   }
+}
+
+void ObjectJoiner::ListTiny(const TurnGrid& grid, const PieceTable& pieces) {
+  tiny_.clear();
+  begin_of_tiny_.clear();
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    begin_of_tiny_.push_back(tiny_.size());
+    for (const OutlineEntry& entry : pieces.InColumn(column)) {
+      if (is_tiny_[static_cast<std::size_t>(entry.piece)] != 0) tiny_.push_back({entry.near_point.range_m, entry.far_point.range_m, entry.piece});
+    }
+  }
+  begin_of_tiny_.push_back(tiny_.size());
 }
 
 // In heavy spray near the lidar chance makes thousands of small clusters, each within reach of hundreds: they are not joined.
@@ -237,8 +257,7 @@ void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std
 }
 
 void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std::int32_t piece) {
-  const std::int32_t root = pieces.RootOf(piece);
-  const PieceFacts& facts = pieces.FactsOf(root);
+  const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(piece));
   const auto outline = pieces.OutlineOf(piece);
   const double touch_m = link_.At(facts.max_range_m);
   const std::size_t num_before = links_.size();
@@ -246,24 +265,24 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   const auto look_at = [&](int column, double most_m) {
     const double nearest_m = facts.min_range_m - most_m;
     const double farthest_m = facts.max_range_m + most_m;
-    for (const OutlineEntry& entry : pieces.InColumn(column)) {
+    const std::size_t end = begin_of_tiny_[static_cast<std::size_t>(column) + 1];
+    for (std::size_t i = begin_of_tiny_[static_cast<std::size_t>(column)]; i < end; ++i) {
       if (num_drops > kMostDrops) return;
-      if (entry.near_point.range_m > farthest_m || entry.far_point.range_m < nearest_m) continue;
+      const Tiny& tiny = tiny_[i];
+      if (tiny.nearest_m > farthest_m || tiny.farthest_m < nearest_m) continue;
       double reach_m = most_m;
-      auto& seen_by = seen_by_[static_cast<std::size_t>(entry.piece)];
-      if (entry.piece == piece || seen_by == piece) continue;
+      auto& seen_by = seen_by_[static_cast<std::size_t>(tiny.piece)];
+      if (seen_by == piece) continue;
       seen_by = piece;
-      const std::int32_t other_root = pieces.RootOf(entry.piece);
-      const PieceFacts& other = pieces.FactsOf(other_root);
-      if (other_root == root || other.is_land || other.num_returns >= kSolidReturns) continue;
+      const PieceFacts& other = pieces.FactsOf(pieces.RootOf(tiny.piece));
       // Over it only from behind and above; the rings of a set only grow.
       if (other.min_range_m < facts.min_range_m || other.max_ring < facts.max_ring) {
         reach_m = std::min(reach_m, touch_m);
         if (other.min_range_m > facts.max_range_m + reach_m || other.max_range_m < facts.min_range_m - reach_m) continue;
       }
-      const double gap_m = PlanGap(grid, pieces, piece, entry.piece, reach_m);
+      const double gap_m = PlanGap(grid, pieces, piece, tiny.piece, reach_m);
       if (gap_m > reach_m) continue;
-      links_.push_back({piece, entry.piece, gap_m});
+      links_.push_back({piece, tiny.piece, gap_m});
       ++num_drops;
     }
   };

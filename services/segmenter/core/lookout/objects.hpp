@@ -50,7 +50,15 @@ class ObjectJoiner {
     bool is_crowded = false;
   };
 
+  // What a piece of fewer returns shows in one column.
+  struct Tiny {
+    float nearest_m = 0.0F;
+    float farthest_m = 0.0F;
+    std::int32_t piece = 0;
+  };
+
   void FindLinks(const TurnGrid& grid, const PieceTable& pieces);
+  void ListTiny(const TurnGrid& grid, const PieceTable& pieces);
   void FindCrowds();
   void LinkPairs(const TurnGrid& grid, const PieceTable& pieces);
   void LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
@@ -66,10 +74,13 @@ class ObjectJoiner {
   LookoutParams params_;
   Reach link_;
   std::vector<Link> links_;
-  std::vector<Solid> solid_;           // by the x of their middle
-  std::vector<std::size_t> large_;     // of solid_
-  std::vector<std::int32_t> seen_by_;  // [pieces] the last piece that has looked at it
-  std::vector<Post> posts_;            // by cell
+  std::vector<Solid> solid_;                // by the x of their middle
+  std::vector<std::size_t> large_;          // of solid_
+  std::vector<Tiny> tiny_;                  // by column
+  std::vector<std::size_t> begin_of_tiny_;  // [columns + 1]
+  std::vector<std::uint8_t> is_tiny_;       // [pieces]
+  std::vector<std::int32_t> seen_by_;       // [pieces] the last piece that has looked at it
+  std::vector<Post> posts_;                 // by cell
   std::vector<Post> sorted_;
   std::vector<std::size_t> begin_of_cell_;
   std::vector<Post> neighbours_;
