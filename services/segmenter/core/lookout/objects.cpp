@@ -34,7 +34,9 @@ constexpr double kThrongM = 2.0;
 constexpr int kMostInThrong = 24;
 constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
 constexpr double kLargeM = 4.0;
+// Longer than any length is rounded.
 constexpr double kRoundedUp = 1.000001;
+constexpr double kRoundedUpM = 1e-3;
 
 constexpr int kRounds = 2;
 
@@ -262,13 +264,16 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   const double touch_m = link_.At(facts.max_range_m);
   const std::size_t num_before = links_.size();
   std::size_t num_drops = 0;
-  const auto look_at = [&](int column, double most_m) {
+  const auto look_at_columns = [&](int from, int to, double most_m) {  // from 0 to the last at most
     const double nearest_m = facts.min_range_m - most_m;
     const double farthest_m = facts.max_range_m + most_m;
-    const std::size_t end = begin_of_tiny_[static_cast<std::size_t>(column) + 1];
-    for (std::size_t i = begin_of_tiny_[static_cast<std::size_t>(column)]; i < end; ++i) {
-      if (num_drops > kMostDrops) return;
+    const auto least_m = static_cast<float>(nearest_m / kRoundedUp - kRoundedUpM);
+    const auto greatest_m = static_cast<float>(farthest_m * kRoundedUp + kRoundedUpM);
+    const std::size_t end = begin_of_tiny_[static_cast<std::size_t>(to) + 1];
+    for (std::size_t i = begin_of_tiny_[static_cast<std::size_t>(from)]; i < end; ++i) {
       const Tiny& tiny = tiny_[i];
+      if (tiny.nearest_m > greatest_m || tiny.farthest_m < least_m) continue;  // most of them
+      if (num_drops > kMostDrops) return;
       if (tiny.nearest_m > farthest_m || tiny.farthest_m < nearest_m) continue;
       double reach_m = most_m;
       auto& seen_by = seen_by_[static_cast<std::size_t>(tiny.piece)];
@@ -288,13 +293,24 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std:
   };
   // In its own columns one may stand over the other; beside them they must touch.
   const double over_m = std::max(touch_m, OverReachM(facts));
-  for (const std::int32_t index : outline) look_at(pieces.Entry(index).column, over_m);
+  const auto look_at = [&](int from, int to, double most_m) {
+    const int num_columns = grid.num_columns();
+    if (from < 0) look_at_columns(from + num_columns, std::min(to, -1) + num_columns, most_m);
+    if (from < num_columns && to >= 0) look_at_columns(std::max(from, 0), std::min(to, num_columns - 1), most_m);
+    if (to >= num_columns) look_at_columns(std::max(from, num_columns) - num_columns, to - num_columns, most_m);
+  };
+  for (std::size_t i = 0; i < outline.size();) {
+    const int from = pieces.Entry(outline[i]).column;
+    int to = from;
+    for (++i; i < outline.size() && pieces.Entry(outline[i]).column == to + 1; ++i) ++to;
+    look_at(from, to, over_m);
+  }
   const int window = grid.ColumnsOf(touch_m, facts.min_range_m);
   int last = PieceTable::kNone;  // column that was looked at
   for (const std::int32_t index : outline) {
     const int column = pieces.Entry(index).column;
     const int from = last == PieceTable::kNone ? column - window : std::max(last + 1, column - window);
-    for (int at = from; at <= column + window && num_drops <= kMostDrops; ++at) look_at(grid.Wrap(at), touch_m);
+    look_at(from, column + window, touch_m);
     last = column + window;
   }
   // So many are spray, whichever of them came first.
