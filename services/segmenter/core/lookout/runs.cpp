@@ -6,7 +6,7 @@ namespace lookout::segmenter {
 
 namespace {
 
-bool AreLinked(const LevelPoint& one, const LevelPoint& other, const Reach& link) {
+inline bool AreLinked(const LevelPoint& one, const LevelPoint& other, const Reach& link) {
   const float up_m = one.height_m - other.height_m;
   const auto reach_m = static_cast<float>(link.At(std::min(one.range_m, other.range_m)));
   return SquaredPlanDistance(one, other) + up_m * up_m <= reach_m * reach_m;
@@ -25,12 +25,13 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
     const LevelPoint& point = grid.PointOf(index);
     const std::int32_t column = grid.ColumnOf(index);
     LineEnd& end = ends_[static_cast<std::size_t>(grid.LineOf(index))];
-    const bool is_start = end.first_return == kNone || end.column + 1 != column || !AreLinked(end.point, point, link);
+    // Without a branch: in rain nobody can guess where runs begin.
+    const int is_start = static_cast<int>(end.column + 1 != column) | static_cast<int>(!AreLinked(end.point, point, link));
     if (end.first_return == kNone) end.first_return = index;
     end.point = point;
     end.column = column;
-    end.num_starts += is_start ? 1 : 0;
-    is_start_[static_cast<std::size_t>(index)] = is_start ? 1 : 0;
+    end.num_starts += is_start;
+    is_start_[static_cast<std::size_t>(index)] = static_cast<std::uint8_t>(is_start);
   }
 
   runs_.clear();
@@ -58,11 +59,12 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
   for (const std::int32_t index : by_column) {
     const auto at = static_cast<std::size_t>(index);
     LineEnd& end = ends_[static_cast<std::size_t>(grid.LineOf(index))];
-    if (is_start_[at] != 0) {
-      end.run = end.next_run++;
-      runs_[static_cast<std::size_t>(end.run)].first = grid.ColumnOf(index);
-    }
-    ++runs_[static_cast<std::size_t>(end.run)].length;
+    const bool is_start = is_start_[at] != 0;
+    end.run = is_start ? end.next_run : end.run;
+    end.next_run += is_start_[at];
+    Run& run = runs_[static_cast<std::size_t>(end.run)];
+    run.first = is_start ? grid.ColumnOf(index) : run.first;
+    ++run.length;
     run_of_return_[at] = end.run;
   }
 }

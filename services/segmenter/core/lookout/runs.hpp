@@ -40,9 +40,10 @@ class RunTable {
   std::vector<std::size_t> begin_of_line_;   // [lines + 1]
   std::vector<std::int32_t> run_of_return_;  // [returns]
   // Scratch: where a line is when returns are taken column by column.
+  static constexpr std::int32_t kNoColumn = -2;  // before none
   struct LineEnd {
     LevelPoint point{};  // of its last return
-    std::int32_t column = 0;
+    std::int32_t column = kNoColumn;
     std::int32_t first_return = kNone;
     std::int32_t num_starts = 0;
     std::int32_t run = 0;  // of its last return
