@@ -22,6 +22,7 @@ class OwnVessel {
   }
 
   bool Contains(const Point& point) const {
+    if (squared_reach_m2_ < 0.0) return false;  // no box
     const Eigen::Vector3d p_lidar_m(point.x_m, point.y_m, point.z_m);
     return p_lidar_m.squaredNorm() <= squared_reach_m2_ && box_m_.contains(T_vessel_lidar_ * p_lidar_m);
   }
@@ -61,7 +62,8 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   const auto is_return = [](std::uint16_t range) { return range != 0; };
   // As many as there may be; in the end those that are looked at. Only what the turns before had not is made new.
   result_.returns.resize(static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, is_return)));
-  std::size_t num_looked_at = 0;
+  Return* next_return = result_.returns.data();
+  const double range_unit_m = scan.head.range_unit_m;
   for (std::size_t column = 0; column < scan.columns.azimuth_rad.size(); ++column) {
     const std::size_t first_cell = column * cells_per_column;
     const std::uint16_t* range = scan.columns.range.data() + first_cell;
@@ -79,7 +81,7 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
       const std::size_t ring = num_returns == 1 ? offset : offset / num_returns;
       const RingGeometry& geometry = rings_[ring];
       const std::size_t cell = first_cell + offset;
-      const double range_m = range[offset] * scan.head.range_unit_m;
+      const double range_m = range[offset] * range_unit_m;
       if (range_m < filter_.min_range_m || range_m > filter_.max_range_m) {
         result_.label[cell] = ToLabel(Reason::kRange);
         continue;
@@ -96,11 +98,11 @@ const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
         result_.label[cell] = ToLabel(Reason::kOwnVessel);
         continue;
       }
-      result_.returns[num_looked_at++] = {point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
-                                          static_cast<std::int32_t>(ring)};
+      *next_return++ = {point, static_cast<float>(range_m), static_cast<std::int32_t>(cell), static_cast<std::int32_t>(column),
+                        static_cast<std::int32_t>(ring)};
     }
   }
-  result_.returns.resize(num_looked_at);
+  result_.returns.resize(static_cast<std::size_t>(next_return - result_.returns.data()));
   if (num_returns >= 2) SetRepeatsApart(scan);
   return result_;
 }

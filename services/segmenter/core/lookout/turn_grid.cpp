@@ -30,19 +30,29 @@ void TurnGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eig
   column_of_.resize(returns.size());
   line_of_.resize(returns.size());
   const Eigen::Matrix3f R = R_vessel_lidar.cast<float>();
+  // Known to be no part of what is written.
+  const auto num_columns = static_cast<std::size_t>(num_columns_);
+  const std::size_t words_per_line = words_per_line_;
+  const int num_layers = num_layers_;
+  const bool is_shifted = is_shifted_;
+  std::int32_t* const return_at = return_at_.data();
+  float* const range_at = range_at_.data();
+  std::uint64_t* const occupied = occupied_.data();
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const Return& one = returns[i];
     const Eigen::Vector3f p = R * Eigen::Vector3f(one.point.x_m, one.point.y_m, one.point.z_m);
-    points_[i] = {p.x(), p.y(), p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y())};
-    const int column = is_shifted_ ? Wrap(one.column + shift_of_[static_cast<std::size_t>(one.ring)]) : one.column;
-    const int line = num_layers_ == 1 ? one.ring : one.ring * num_layers_ + one.cell % num_layers_;
+    const float range_m = std::sqrt(p.x() * p.x() + p.y() * p.y());
+    const int column = is_shifted ? Wrap(one.column + shift_of_[static_cast<std::size_t>(one.ring)]) : one.column;
+    const int line = num_layers == 1 ? one.ring : one.ring * num_layers + one.cell % num_layers;
+    points_[i] = {p.x(), p.y(), p.z(), range_m};
     column_of_[i] = column;
     line_of_[i] = line;
-    const std::size_t cell = static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column);
-    return_at_[cell] = static_cast<std::int32_t>(i);
-    range_at_[cell] = points_[i].range_m;
-    occupied_[static_cast<std::size_t>(line) * words_per_line_ + static_cast<std::size_t>(column / kWordBits)] |= std::uint64_t{1}
-                                                                                                                  << (column % kWordBits);
+    const auto at_line = static_cast<std::size_t>(line);
+    const auto at_column = static_cast<std::size_t>(column);
+    const std::size_t cell = at_line * num_columns + at_column;
+    return_at[cell] = static_cast<std::int32_t>(i);
+    range_at[cell] = range_m;
+    occupied[at_line * words_per_line + at_column / kWordBits] |= std::uint64_t{1} << (at_column % kWordBits);
   }
   SortByColumn();
 }
