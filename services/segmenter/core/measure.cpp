@@ -82,60 +82,54 @@ void Measurer::MeasureOne(const Scan& scan, std::span<const Return> returns, std
   std::int32_t min_reflectivity = std::numeric_limits<std::int32_t>::max();
   std::int32_t max_reflectivity = 0;
   footprint_.clear();
-  std::int32_t column = -1;
-  std::int32_t column_ns = 0;
-  float near_m2 = 0.0F;
-  float far_m2 = 0.0F;
   const Ring* rings = scan.head.rings.data();
-  for (const std::int32_t index : indices) {
-    const Return& one = returns[static_cast<std::size_t>(index)];
-    const Point point = one.point;
-    const bool is_new_column = one.column != column;
-    if (is_new_column) {
-      column = one.column;
-      column_ns = scan.columns.time_ns[static_cast<std::size_t>(column)];
-    }
-    sum_ns += std::int64_t{column_ns} + rings[one.ring].time_offset_ns;
-    const double x_m = point.x_m;
-    const double y_m = point.y_m;
-    const double z_m = point.z_m;
-    sum_x_m += x_m;
-    sum_y_m += y_m;
-    sum_z_m += z_m;
-    min_z_m = std::min(min_z_m, point.z_m);
-    max_z_m = std::max(max_z_m, point.z_m);
-    const double distance_m2 = x_m * x_m + y_m * y_m + z_m * z_m;
-    if (distance_m2 < least_m2) {
-      least_m2 = distance_m2;
-      nearest = index;
-    }
-    const double height_m = up_.x() * x_m + up_.y() * y_m + up_.z() * z_m;
-    if (height_m > greatest_height_m) {
-      greatest_height_m = height_m;
-      highest = index;
-    }
-    const std::int32_t reflectivity = scan.columns.reflectivity[static_cast<std::size_t>(one.cell)];
-    sum_reflectivity += reflectivity;
-    min_reflectivity = std::min(min_reflectivity, reflectivity);
-    max_reflectivity = std::max(max_reflectivity, reflectivity);
-    // Of each column the nearest and the farthest, in this order.
-    const float plan_m2 = point.x_m * point.x_m + point.y_m * point.y_m;
-    if (is_new_column || !is_upright_) {
-      near_m2 = far_m2 = plan_m2;
-      footprint_.push_back({point.x_m, point.y_m, index});
-    } else if (plan_m2 < near_m2) {
-      // The first one there was the nearest; if it was the farthest as well, it is that now.
-      if (near_m2 == far_m2) footprint_.push_back(FootprintPoint(footprint_.back()));
-      footprint_[footprint_.size() - 2] = {point.x_m, point.y_m, index};
-      near_m2 = plan_m2;
-    } else if (plan_m2 > far_m2) {
-      if (near_m2 == far_m2) {
-        footprint_.push_back({point.x_m, point.y_m, index});
-      } else {
-        footprint_.back() = {point.x_m, point.y_m, index};
+  for (std::size_t i = 0; i < indices.size();) {
+    // Of each column the nearest and the farthest, in this order; of equals the first. Without a branch for each: nobody can guess them.
+    const std::int32_t column = returns[static_cast<std::size_t>(indices[i])].column;
+    const std::int64_t column_ns = scan.columns.time_ns[static_cast<std::size_t>(column)];
+    std::int32_t near_index = indices[i];
+    std::int32_t far_index = near_index;
+    float near_m2 = std::numeric_limits<float>::infinity();
+    float far_m2 = -near_m2;
+    do {
+      const std::int32_t index = indices[i++];
+      const Return& one = returns[static_cast<std::size_t>(index)];
+      const Point point = one.point;
+      sum_ns += column_ns + rings[one.ring].time_offset_ns;
+      const double x_m = point.x_m;
+      const double y_m = point.y_m;
+      const double z_m = point.z_m;
+      sum_x_m += x_m;
+      sum_y_m += y_m;
+      sum_z_m += z_m;
+      min_z_m = std::min(min_z_m, point.z_m);
+      max_z_m = std::max(max_z_m, point.z_m);
+      const double distance_m2 = x_m * x_m + y_m * y_m + z_m * z_m;
+      if (distance_m2 < least_m2) {
+        least_m2 = distance_m2;
+        nearest = index;
       }
-      far_m2 = plan_m2;
-    }
+      const double height_m = up_.x() * x_m + up_.y() * y_m + up_.z() * z_m;
+      if (height_m > greatest_height_m) {
+        greatest_height_m = height_m;
+        highest = index;
+      }
+      const std::int32_t reflectivity = scan.columns.reflectivity[static_cast<std::size_t>(one.cell)];
+      sum_reflectivity += reflectivity;
+      min_reflectivity = std::min(min_reflectivity, reflectivity);
+      max_reflectivity = std::max(max_reflectivity, reflectivity);
+      const float plan_m2 = point.x_m * point.x_m + point.y_m * point.y_m;
+      near_index = plan_m2 < near_m2 ? index : near_index;
+      near_m2 = plan_m2 < near_m2 ? plan_m2 : near_m2;
+      far_index = plan_m2 > far_m2 ? index : far_index;
+      far_m2 = plan_m2 > far_m2 ? plan_m2 : far_m2;
+    } while (is_upright_ && i < indices.size() && returns[static_cast<std::size_t>(indices[i])].column == column);
+    const auto take = [&](std::int32_t index) {
+      const Point& point = returns[static_cast<std::size_t>(index)].point;
+      footprint_.push_back({point.x_m, point.y_m, index});
+    };
+    take(near_index);
+    if (near_m2 < far_m2) take(far_index);
   }
   segment.min_z_m = min_z_m;
   segment.max_z_m = max_z_m;
