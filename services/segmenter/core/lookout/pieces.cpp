@@ -318,10 +318,16 @@ double PlanGap(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one,
   bool is_within = false;
   const auto look_at = [&](const OutlineEntry& entry, std::int32_t from, std::int32_t to) {  // columns
     if (to < first_column || from > last_column) return;
-    const auto begin = std::ranges::lower_bound(inner, from, {}, [&](std::int32_t index) { return pieces.Entry(index).column; });
+    const auto begin = from <= first_column
+                           ? inner.begin()
+                           : std::ranges::lower_bound(inner, from, {}, [&](std::int32_t index) { return pieces.Entry(index).column; });
+    // What is farther apart in range is farther apart.
+    const float least_m = entry.near_point.range_m - WidestRange(limit_m, entry.near_point.range_m);
+    const float greatest_m = entry.far_point.range_m + WidestRange(limit_m, entry.far_point.range_m);
     for (auto at = begin; at != inner.end(); ++at) {
       const OutlineEntry& facing = pieces.Entry(*at);
       if (facing.column > to) break;
+      if (facing.near_point.range_m > greatest_m || facing.far_point.range_m < least_m) continue;
       const float distance_m2 =
           std::min(std::min(SquaredPlanDistance(entry.near_point, facing.near_point), SquaredPlanDistance(entry.near_point, facing.far_point)),
                    std::min(SquaredPlanDistance(entry.far_point, facing.near_point), SquaredPlanDistance(entry.far_point, facing.far_point)));
