@@ -21,6 +21,8 @@ LookoutParams LookoutOf(const config::Segmenter& message) {
   params.beside_land = {message.beside_land_m(), message.beside_land_per_range()};
   params.tall_m = message.tall_m();
   params.join = {message.join_m(), message.join_per_range()};
+  params.attach = {message.attach_m(), message.attach_per_range()};
+  params.attach_length_m = message.attach_length_m();
   params.over_m = message.over_m();
   params.post_spacing_m = message.post_spacing_m();
   params.sure_returns = message.sure_returns();

@@ -42,8 +42,14 @@ constexpr int kNearColumns = 3;
 constexpr std::uint8_t kTakesNothing = 0;
 constexpr std::uint8_t kTakesTall = 1;
 constexpr std::uint8_t kTakesAll = 2;
-constexpr double kLeastTreeM = 0.8;  // wide: a mast is no tree
+// Of the returns above tall_m, so many, and so far from their middle (root mean square): a mast is no tree.
+constexpr std::int32_t kLeastTallReturns = 4;
+constexpr double kLeastTreeM = 0.5;
 constexpr int kMaxRounds = 6;
+
+// Groves.
+constexpr int kLeastTrees = 3;
+constexpr double kLeastGroveShare = 0.6;  // of the length of land that its trees fill
 
 double Distance(const LevelPoint& one, const LevelPoint& other) { return std::sqrt(double{SquaredPlanDistance(one, other)}); }
 
@@ -55,6 +61,7 @@ double Distance3d(const LevelPoint& one, const LevelPoint& other) {
 }  // namespace
 
 void LandFinder::Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+  MeasureTall(grid, pieces);
   JoinInLine(grid, pieces);
   pieces.Settle(grid);
   FindShores(grid, runs, pieces);
@@ -63,6 +70,15 @@ void LandFinder::Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pi
     if (pieces.FactsOf(root).length_m >= params_.land_length_m) pieces.MarkLand(root);
   }
   pieces.Settle(grid);
+  Complete(grid, pieces);
+}
+
+void LandFinder::FindGroves(const TurnGrid& grid, PieceTable& pieces) {
+  JoinTrees(grid, pieces);
+  if (pieces.Settle(grid)) Complete(grid, pieces);
+}
+
+void LandFinder::Complete(const TurnGrid& grid, PieceTable& pieces) {
   for (int round = 0; round < kMaxRounds && TakeIn(grid, pieces); ++round) pieces.Settle(grid);
   JoinLand(grid, pieces);
   pieces.Settle(grid);
@@ -302,9 +318,71 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
   return is_taken;
 }
 
-// And wide: no mast.
-bool LandFinder::IsTall(const PieceFacts& facts) const {
-  return facts.max_height_m + params_.lidar_above_water_m > params_.tall_m && facts.length_m >= kLeastTreeM;
+void LandFinder::MeasureTall(const TurnGrid& grid, const PieceTable& pieces) {
+  tall_.assign(static_cast<std::size_t>(pieces.size()), {});
+  const auto tall_m = static_cast<float>(params_.tall_m - params_.lidar_above_water_m);
+  const auto points = grid.points();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const LevelPoint& point = points[i];
+    if (point.height_m <= tall_m) continue;
+    Tall& tall = tall_[static_cast<std::size_t>(pieces.of_returns()[i])];
+    ++tall.num_returns;
+    tall.x_m += point.x_m;
+    tall.y_m += point.y_m;
+    tall.squared_m2 += double{point.x_m} * point.x_m + double{point.y_m} * point.y_m;
+  }
+}
+
+// And wide up there: no mast.
+bool LandFinder::IsTall(const PieceTable& pieces, std::int32_t root) const {
+  if (pieces.FactsOf(root).max_height_m + params_.lidar_above_water_m <= params_.tall_m) return false;
+  Tall tall;
+  for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
+    const Tall& part = tall_[static_cast<std::size_t>(piece)];
+    tall.num_returns += part.num_returns;
+    tall.x_m += part.x_m;
+    tall.y_m += part.y_m;
+    tall.squared_m2 += part.squared_m2;
+  }
+  if (tall.num_returns < kLeastTallReturns) return false;
+  const double x_m = tall.x_m / tall.num_returns;
+  const double y_m = tall.y_m / tall.num_returns;
+  return tall.squared_m2 / tall.num_returns - x_m * x_m - y_m * y_m > kLeastTreeM * kLeastTreeM;
+}
+
+// Trees of one grove are marked and joined.
+void LandFinder::JoinTrees(const TurnGrid& grid, PieceTable& pieces) {
+  is_of_.assign(static_cast<std::size_t>(pieces.size()), 0);
+  candidates_.clear();
+  for (const std::int32_t root : pieces.roots()) {
+    if (pieces.FactsOf(root).is_land || !IsTall(pieces, root)) continue;
+    is_of_[static_cast<std::size_t>(root)] = 1;
+    candidates_.push_back(root);
+  }
+  if (std::ssize(candidates_) < kLeastTrees) return;
+  chains_.Reset(static_cast<std::size_t>(pieces.size()));
+  ForEachNear(grid, pieces, params_.beside_land, [this](std::int32_t one, std::int32_t other) { chains_.Join(one, other); });
+  groves_.assign(static_cast<std::size_t>(pieces.size()), {});
+  const auto grove_of = [this](std::int32_t root) -> Grove& { return groves_[static_cast<std::size_t>(chains_.Find(root))]; };
+  for (const std::int32_t root : candidates_) {
+    const PieceFacts& facts = pieces.FactsOf(root);
+    Grove& grove = grove_of(root);
+    ++grove.num_trees;
+    grove.length_m += facts.length_m;
+    grove.sum_m += facts.mean_m;
+  }
+  for (const std::int32_t root : candidates_) {
+    const PieceFacts& facts = pieces.FactsOf(root);
+    Grove& grove = grove_of(root);
+    grove.radius_m = std::max(grove.radius_m, (facts.mean_m - grove.sum_m / grove.num_trees).norm() + facts.radius_m);
+  }
+  for (const std::int32_t root : candidates_) {
+    const Grove& grove = grove_of(root);
+    if (grove.num_trees < kLeastTrees || grove.length_m < kLeastGroveShare * params_.land_length_m) continue;
+    if (2.0 * grove.radius_m < params_.land_length_m) continue;
+    pieces.MarkLand(root);
+    pieces.Join(chains_.Find(root), root);
+  }
 }
 
 std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
@@ -318,7 +396,7 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
     }
   }
   if (100 * num_behind < kBehindPercent * num_seen) return kNoLand;
-  const std::uint8_t least_taking = IsTall(pieces.FactsOf(root)) ? kTakesTall : kTakesAll;
+  const std::uint8_t least_taking = IsTall(pieces, root) ? kTakesTall : kTakesAll;
   double least_m = params_.behind_land.At(pieces.FactsOf(root).min_range_m);
   std::int32_t land = kNoLand;
   for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
@@ -341,7 +419,7 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
 
 std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   const PieceFacts& facts = pieces.FactsOf(root);
-  if (!IsTall(facts)) return kNoLand;
+  if (!IsTall(pieces, root)) return kNoLand;
   double least_m = params_.beside_land.At(facts.min_range_m);
   std::int32_t land = kNoLand;
   const auto look_at = [&](const OutlineEntry& mine, int column) {
@@ -378,31 +456,44 @@ std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& piec
   return land;
 }
 
-void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
-  const auto is_land = [&](std::int32_t root) { return pieces.FactsOf(root).is_land; };
-  if (std::ranges::count_if(pieces.roots(), is_land) < 2) return;
+// Calls handle(root, root) for sets of is_of_ of which two entries of the outlines are within reach of each other, by the nearer of them.
+template <typename Handler>
+void LandFinder::ForEachNear(const TurnGrid& grid, const PieceTable& pieces, const Reach& reach, Handler handle) const {
+  const auto is_of = [this](std::int32_t root) { return is_of_[static_cast<std::size_t>(root)] != 0; };
   for (int column = 0; column < grid.num_columns(); ++column) {
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
       const std::int32_t root = pieces.RootOf(entry.piece);
-      if (!is_land(root)) continue;
-      // Within reach by the nearer of two; the window by the farthest reach that can be.
-      const auto reach_at = [this](double range_m) { return params_.beside_land.At(range_m) / 2.0; };
-      const int window = grid.ColumnsOf(reach_at(entry.far_point.range_m), entry.near_point.range_m);
-      bool goes_on = false;  // the same land: its next entry looks further
+      if (!is_of(root)) continue;
+      // The window by the farthest reach that can be.
+      const int window = grid.ColumnsOf(reach.At(entry.far_point.range_m), entry.near_point.range_m);
+      bool goes_on = false;  // the same set: its next entry looks further
       for (int step = 0; step <= window && !goes_on; ++step) {
         for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(column + step))) {
           const std::int32_t other_root = pieces.RootOf(other.piece);
           goes_on = goes_on || (step > 0 && other_root == root);
-          if (other_root == root || !is_land(other_root)) continue;
+          if (other_root == root || !is_of(other_root)) continue;
           for (const LevelPoint* mine : {&entry.near_point, &entry.far_point}) {
             for (const LevelPoint* theirs : {&other.near_point, &other.far_point}) {
-              if (Distance(*mine, *theirs) <= reach_at(std::min(mine->range_m, theirs->range_m))) pieces.Join(root, other_root);
+              if (Distance(*mine, *theirs) <= reach.At(std::min(mine->range_m, theirs->range_m))) handle(root, other_root);
             }
           }
         }
       }
     }
   }
+}
+
+void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
+  is_of_.assign(static_cast<std::size_t>(pieces.size()), 0);
+  int num_lands = 0;
+  for (const std::int32_t root : pieces.roots()) {
+    const bool is_land = pieces.FactsOf(root).is_land;
+    is_of_[static_cast<std::size_t>(root)] = is_land ? 1 : 0;
+    num_lands += is_land ? 1 : 0;
+  }
+  if (num_lands < 2) return;
+  const Reach reach{params_.beside_land.at_lidar_m / 2.0, params_.beside_land.per_range};
+  ForEachNear(grid, pieces, reach, [&pieces](std::int32_t one, std::int32_t other) { pieces.Join(one, other); });
 }
 
 }  // namespace lookout::segmenter

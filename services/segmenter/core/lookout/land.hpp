@@ -1,6 +1,7 @@
 // The fourth step of the lookout method: land, walls and piers, and what is of them.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,12 +22,16 @@ namespace lookout::segmenter {
 /// 3. Pieces that stand behind land in its own columns, at most `behind_land` from it, are of it: terraces and trees. So is what is tall and wide
 ///    beside it, at most `beside_land` off. Straight walls and piers take nothing in this way, and land that shows no depth takes in what is tall
 ///    alone: a boat may lie behind a pier.
-/// 4. Pieces of land at most half of `beside_land` apart along a ring are one.
+/// 4. Pieces of land are one that are near each other: at most `beside_land` apart, of which only half is taken at the lidar.
+/// What is joined to objects afterwards may be trees whose shore is not seen. FindGroves: three or more that are tall and wide, each at most
+/// `beside_land` from the next, over `land_length_m`, are land, and take in as above.
 class LandFinder {
  public:
   explicit LandFinder(const LookoutParams& params) : params_(params) {}
 
   void Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
+  /// After Find in the same turn.
+  void FindGroves(const TurnGrid& grid, PieceTable& pieces);
 
  private:
   struct Fragment {
@@ -51,6 +56,21 @@ class LandFinder {
     std::int32_t num_deep = 0;
   };
 
+  // Returns of a piece above tall_m.
+  struct Tall {
+    std::int32_t num_returns = 0;
+    double x_m = 0.0;  // sums
+    double y_m = 0.0;
+    double squared_m2 = 0.0;  // of the distance from the lidar
+  };
+  struct Grove {
+    int num_trees = 0;
+    double length_m = 0.0;
+    Eigen::Vector2d sum_m = Eigen::Vector2d::Zero();
+    double radius_m = 0.0;
+  };
+
+  void Complete(const TurnGrid& grid, PieceTable& pieces);
   void JoinInLine(const TurnGrid& grid, PieceTable& pieces);
   bool IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const;
   void FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
@@ -65,7 +85,11 @@ class LandFinder {
   std::int32_t LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
   std::int32_t LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
   bool TakesIn(std::int32_t root, std::uint8_t at_least) const { return takes_in_[static_cast<std::size_t>(root)] >= at_least; }
-  bool IsTall(const PieceFacts& facts) const;
+  void MeasureTall(const TurnGrid& grid, const PieceTable& pieces);
+  bool IsTall(const PieceTable& pieces, std::int32_t root) const;
+  void JoinTrees(const TurnGrid& grid, PieceTable& pieces);
+  template <typename Handler>
+  void ForEachNear(const TurnGrid& grid, const PieceTable& pieces, const Reach& reach, Handler handle) const;
   void JoinLand(const TurnGrid& grid, PieceTable& pieces);
 
   LookoutParams params_;
@@ -83,6 +107,9 @@ class LandFinder {
   std::vector<std::size_t> begin_of_land_;  // [columns + 1]
   std::vector<std::uint8_t> is_land_;       // [pieces] of roots
   std::vector<LandDepth> depth_of_;         // [pieces] of roots
+  std::vector<Tall> tall_;                  // [pieces] of each by itself
+  std::vector<Grove> groves_;               // [pieces]
+  std::vector<std::uint8_t> is_of_;         // [pieces] roots that are held against each other
 };
 
 }  // namespace lookout::segmenter

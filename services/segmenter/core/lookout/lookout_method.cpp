@@ -23,9 +23,10 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   linker_.Link(grid_, runs_, link, sets_of_runs_);
   pieces_.Build(grid_, runs_, sets_of_runs_);
   land_.Find(grid_, runs_, pieces_);
-  objects_.JoinDocks(pieces_);
+  thin_.Join(pieces_);
   pieces_.Settle(grid_);
-  objects_.JoinObjects(grid_, pieces_, link);
+  objects_.Join(grid_, thin_, link, pieces_);
+  land_.FindGroves(grid_, pieces_);
 
   piece_groups_.count = pieces_.size();
   piece_groups_.of_return.assign(pieces_.of_returns().begin(), pieces_.of_returns().end());

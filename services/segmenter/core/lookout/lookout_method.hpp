@@ -13,6 +13,7 @@
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/run_links.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
+#include "services/segmenter/core/lookout/thin_pieces.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
 #include "services/segmenter/core/measure.hpp"
 #include "services/segmenter/core/returns.hpp"
@@ -36,7 +37,7 @@ Reach LinkFor(Reach link, double column_step_rad);
 class LookoutMethod {
  public:
   LookoutMethod(const LookoutParams& params, const Eigen::Matrix3d& R_vessel_lidar)
-      : params_(params), R_vessel_lidar_(R_vessel_lidar), land_(params), objects_(params) {}
+      : params_(params), R_vessel_lidar_(R_vessel_lidar), land_(params), thin_(params), objects_(params) {}
 
   /// Groups the returns; each is in one. Results hold until the next call.
   /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a turn of that size.
@@ -61,6 +62,7 @@ class LookoutMethod {
   UnionFind sets_of_runs_;
   PieceTable pieces_;
   LandFinder land_;
+  ThinPieces thin_;
   ObjectJoiner objects_;
   Groups piece_groups_;
   std::vector<std::int32_t> root_of_piece_;

@@ -19,14 +19,16 @@ struct LookoutParams {
   Reach link{0.3, 0.01};
   // Land.
   double land_length_m = 15.0;
-  Reach shore_gap{1.0, 0.03};     // along the water's edge
+  Reach shore_gap{1.5, 0.03};     // along the water's edge
   Reach behind_land{12.0, 0.15};  // from land to what stands behind it
-  Reach beside_land{6.0, 0.06};   // from land to what is tall beside it, and, halved, from land to land
+  Reach beside_land{6.0, 0.08};   // from land to what is tall beside it, and, half of it at the lidar, from land to land
   double tall_m = 3.5;
   // Objects.
-  Reach join{1.6, 0.01};  // side by side
-  double over_m = 4.0;    // one seen over the other
-  double post_spacing_m = 9.0;
+  Reach join{0.3, 0.03};         // side by side
+  Reach attach{1.2, 0.03};       // from a small part to the thing that it is of
+  double attach_length_m = 1.4;  // of a small part
+  double over_m = 3.0;           // one seen over the other
+  double post_spacing_m = 6.0;
   // Sure or tentative.
   int sure_returns = 4;
   double sure_fill = 0.6;

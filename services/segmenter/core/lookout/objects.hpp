@@ -1,43 +1,36 @@
-// The fifth step of the lookout method: pieces that are of one object.
+// The sixth step of the lookout method: pieces that are of one object.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/thin_pieces.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
 
 namespace lookout::segmenter {
 
-/// Joins pieces that are not of land:
-/// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. What is higher than LookoutParams::tall_m is a
-/// mast,
-///    and where more than eight thin things stand about, as in rain, nothing is taken for a post.
-/// 2. Two rounds: pieces side by side, at most `join` apart; and a piece that is seen over a nearer one, within its columns: the cabin over the hull,
-///    the mast behind the rail.
-/// Pieces of fewer than kSolidReturns returns join nothing together: a drop of spray beside a hull is of the hull only where it touches it.
+/// Joins pieces that are not of land, in two rounds:
+/// 1. Pieces side by side, at most `join` apart: nothing passes between them.
+/// 2. Parts, each attached to the nearest thing that it may be a part of, and to nothing else, so that no part becomes a bridge between two boats:
+///    what is at most `attach_length_m` long, at most `attach` off: a paddler, a transom; and what is seen over a nearer thing, within its columns,
+///    at most `over_m` behind: the cabin over the hull, the mast behind the rail.
+/// Pieces of fewer than kSolidReturns returns join nothing together, and are attached far away alone (FarReachM) where no others stand about: a drop
+/// of spray beside a hull is of the hull only where it touches it.
 class ObjectJoiner {
  public:
   explicit ObjectJoiner(const LookoutParams& params) : params_(params) {}
 
-  void JoinDocks(PieceTable& pieces);
-  void JoinObjects(const TurnGrid& grid, PieceTable& pieces, const Reach& link);
-
-  static constexpr std::int32_t kSolidReturns = 4;
+  /// @param thin  as found in the same pieces
+  void Join(const TurnGrid& grid, const ThinPieces& thin, const Reach& link, PieceTable& pieces);
 
  private:
   struct Link {
     std::int32_t one = 0;  // single pieces
     std::int32_t other = 0;
     double gap_m = 0.0;
-  };
-  struct Post {
-    std::int32_t root = 0;
-    double x_m = 0.0;
-    double y_m = 0.0;
-    double range_m = 0.0;
-    std::size_t cell = 0;
   };
 
   // A piece of kSolidReturns or more, as far as it takes to pass over pairs that are far apart.
@@ -57,19 +50,16 @@ class ObjectJoiner {
     std::int32_t piece = 0;
   };
 
-  void FindLinks(const TurnGrid& grid, const PieceTable& pieces);
+  void FindLinks(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces);
   void ListTiny(const TurnGrid& grid, const PieceTable& pieces);
   void FindCrowds();
   void LinkPairs(const TurnGrid& grid, const PieceTable& pieces);
   void LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
-  void LinkTiny(const TurnGrid& grid, const PieceTable& pieces, std::int32_t piece);
-  double OverReachM(const PieceFacts& facts) const;
-  bool AreOfOneObject(const TurnGrid& grid, const PieceFacts& one, const PieceFacts& other, double gap_m) const;
-  void SortPosts();
-  std::size_t CellOf(double x_m, double y_m) const;
-  double ReachM() const;
-  void FindNeighbours(const Post& post);
-  void JoinRectangles(const Post& post, PieceTable& pieces) const;
+  void LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece);
+  double ReachM(const PieceFacts& facts) const;
+  void JoinSideBySide(PieceTable& pieces) const;
+  void Attach(const TurnGrid& grid, const ThinPieces& thin, PieceTable& pieces);
+  bool IsAttached(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const;
 
   LookoutParams params_;
   Reach link_;
@@ -80,10 +70,7 @@ class ObjectJoiner {
   std::vector<std::size_t> begin_of_tiny_;  // [columns + 1]
   std::vector<std::uint8_t> is_tiny_;       // [pieces]
   std::vector<std::int32_t> seen_by_;       // [pieces] the last piece that has looked at it
-  std::vector<Post> posts_;                 // by cell
-  std::vector<Post> sorted_;
-  std::vector<std::size_t> begin_of_cell_;
-  std::vector<Post> neighbours_;
+  std::vector<double> nearest_m_;           // [pieces] of roots: gap to the nearest that it may be attached to
 };
 
 }  // namespace lookout::segmenter
