@@ -181,7 +181,7 @@ TEST(LinksAlongAWall, DoNotGoRoundACorner) {
 Scan PatchyScan(std::mt19937_64& random, const test::Shape& shape) {
   auto scan = EmptyScan(shape);
   const auto uniform = [&random](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
-  const double share = uniform(0.3, 1.0);
+  const double share = uniform(0.03, 1.0);
   for (int ring = 0; ring < shape.num_rings; ++ring) {
     double range_m = 4.0;
     for (int column = 0; column < shape.num_columns; ++column) {
@@ -224,7 +224,7 @@ TEST(Links, AreThoseOfAllPairs) {
   constexpr std::uint64_t kSeed = 20261122;
   std::mt19937_64 random(kSeed);
   const test::Shape shapes[] = {{.num_columns = 64, .num_rings = 9}, {.num_columns = 80, .num_rings = 4, .num_returns = 2}, {.num_columns = 40}};
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < 90; ++round) {
     Stages stages(PatchyScan(random, shapes[round % 3]));
     UnionFind least = ByAllPairs(stages, 0.999, false);
     UnionFind most = ByAllPairs(stages, 1.001, true);
