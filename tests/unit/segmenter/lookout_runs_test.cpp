@@ -1,6 +1,7 @@
 // Runs, and the three rules by which they are linked.
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
 
 #include "services/segmenter/core/lookout/runs.hpp"
 #include "tests/unit/segmenter/lookout_stages.hpp"
@@ -174,6 +175,68 @@ TEST(LinksAlongAWall, DoNotGoRoundACorner) {
   const double middle_m = scan.columns.range[test::CellOf(scan, column + 1, 0)] * scan.head.range_unit_m;
   SetReturn(scan, column + 1, 0, middle_m + 2.0);  // beyond the farther one: no way through
   EXPECT_EQ(NumPieces(scan), 3);
+}
+
+// Walls in steps, holes, drops and both returns of a shot.
+Scan PatchyScan(std::mt19937_64& random, const test::Shape& shape) {
+  auto scan = EmptyScan(shape);
+  const auto uniform = [&random](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
+  const double share = uniform(0.03, 1.0);
+  for (int ring = 0; ring < shape.num_rings; ++ring) {
+    double range_m = 4.0;
+    for (int column = 0; column < shape.num_columns; ++column) {
+      if (random() % 12 == 0) range_m = uniform(2.0, 2.0 + 0.5 * ring);
+      for (int index = 0; index < shape.num_returns; ++index) {
+        if (uniform(0.0, 1.0) < share) SetReturn(scan, column, ring, random() % 6 == 0 ? uniform(1.0, 6.0) : range_m + uniform(0.0, 0.05), index);
+      }
+    }
+  }
+  return scan;
+}
+
+// Sets of returns after all pairs were looked at; `share` of the link, and of the steps along a wall, is reach enough.
+UnionFind ByAllPairs(const Stages& stages, double share, bool goes_along_walls) {
+  const TurnGrid& grid = stages.grid;
+  const Reach link = LookoutParams{}.link;
+  const auto count = static_cast<std::int32_t>(grid.points().size());
+  UnionFind sets(static_cast<std::size_t>(count));
+  for (std::int32_t i = 0; i < count; ++i) {
+    const LevelPoint& one = grid.PointOf(i);
+    for (std::int32_t j = i + 1; j < count; ++j) {
+      const LevelPoint& other = grid.PointOf(j);
+      const int rings = std::abs(grid.RingOf(grid.LineOf(i)) - grid.RingOf(grid.LineOf(j)));
+      const int columns = std::abs(grid.ColumnOf(i) - grid.ColumnOf(j));
+      const int apart = std::min(columns, grid.num_columns() - columns);
+      if (rings > kLinkRings || apart > (rings == 0 ? kLinkColumns : kLinkAcrossColumns)) continue;
+      const double plan_m = std::sqrt(double{SquaredPlanDistance(one, other)});
+      const double distance_m = rings == 0 ? std::hypot(plan_m, one.height_m - other.height_m) : plan_m;
+      const float nearer_m = std::min(one.range_m, other.range_m);
+      const bool is_along = goes_along_walls && grid.LineOf(i) == grid.LineOf(j) && apart == 1 &&
+                            plan_m <= 10.0 * share * grid.column_step_rad() * std::max(one.range_m, other.range_m);
+      if (distance_m <= share * link.At(nearer_m) || is_along) sets.Join(i, j);
+    }
+  }
+  return sets;
+}
+
+// No fewer returns are joined than those a little nearer than the link, and no more than those a little farther.
+TEST(Links, AreThoseOfAllPairs) {
+  constexpr std::uint64_t kSeed = 20261122;
+  std::mt19937_64 random(kSeed);
+  const test::Shape shapes[] = {{.num_columns = 64, .num_rings = 9}, {.num_columns = 80, .num_rings = 4, .num_returns = 2}, {.num_columns = 40}};
+  for (int round = 0; round < 90; ++round) {
+    Stages stages(PatchyScan(random, shapes[round % 3]));
+    UnionFind least = ByAllPairs(stages, 0.999, false);
+    UnionFind most = ByAllPairs(stages, 1.001, true);
+    const auto count = static_cast<std::int32_t>(stages.returns.size());
+    for (std::int32_t i = 0; i < count; ++i) {
+      const auto set_of = [&](std::int32_t index) { return stages.sets.Find(stages.runs.OfReturn(index)); };
+      ASSERT_EQ(set_of(i), set_of(least.Find(i))) << "round " << round;
+      // The root of the first return of its piece.
+      const std::int32_t first = FirstReturn(stages.grid, stages.runs[set_of(i)]);
+      ASSERT_EQ(most.Find(i), most.Find(first)) << "round " << round;
+    }
+  }
 }
 
 }  // namespace

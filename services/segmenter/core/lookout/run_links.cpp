@@ -144,7 +144,7 @@ class Linker {
       if (one == TurnGrid::kNone || !AreLinked(grid_.PointOf(one), grid_.PointOf(other), lines.are_of_one_ring)) continue;
       const std::int32_t run = runs_.OfReturn(one);
       if (runs_[run].length == 1) {
-        // By ranges too, as rounded: so it has always been.
+        // A single return must have one of the other line near it in range, too, as ranges are rounded.
         const float range_m = grid_.RangeAt(lines.one, column);
         if (grid_.NumNear<kWindow>(lines.other, column, range_m, static_cast<float>(link_.At(range_m))) == 0) continue;
       }
