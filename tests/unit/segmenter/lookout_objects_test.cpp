@@ -125,7 +125,7 @@ TEST(Docks, PostsInACrowdAreNotOfOne) {
   const auto segments = SegmentScan(scan, {});
   EXPECT_EQ(num_alone, 1U);
   int num_of_posts = 0;
-  for (const auto& segment : segments.segments) num_of_posts += segment.num_points >= ObjectJoiner::kSolidReturns ? 1 : 0;
+  for (const auto& segment : segments.segments) num_of_posts += segment.num_points >= ThinPieces::kSolidReturns ? 1 : 0;
   EXPECT_GE(num_of_posts, 4) << "each by itself";
 }
 

@@ -35,7 +35,7 @@ constexpr double kLeastShoreShare = 0.6;      // of the length of land that its 
 // What is of land.
 constexpr double kWallOffM = 0.5;   // off its line at most
 constexpr float kDeepM = 2.0F;      // from the nearest to the farthest return in a column
-constexpr int kDeepPercent = 30;    // of the columns of land
+constexpr int kDeepPercent = 20;    // of the columns of land
 constexpr int kBehindPercent = 70;  // of the columns of a piece
 constexpr int kNearColumns = 3;
 // A pier with a bend is no straight line either, and a boat may lie behind it: land that shows no depth takes in trees alone, which give it depth.
