@@ -148,6 +148,7 @@ void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTab
     const std::int32_t end_run = runs.FirstOfLine(line + 1);
     order_.clear();
     for (std::int32_t run = first_run; run < end_run; ++run) {
+      if (runs[run].is_jetty) continue;
       const float range_m = grid.RangeAt(line, runs[run].first);
       const float reach_m = WidestRange(params_.shore_gap.At(range_m), range_m);
       if (runs[run].length > 1 || grid.NumNear<kLinkColumns>(line, runs[run].first, range_m, reach_m) > 1) order_.push_back(run);

@@ -19,6 +19,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   grid_.Fill(scan, returns, R_vessel_lidar_);
   const Reach link = LinkFor(params_.link, grid_.column_step_rad());
   runs_.Find(grid_, link);
+  runs_.CutJetties(grid_);
   sets_of_runs_.Reset(static_cast<std::size_t>(runs_.size()));
   linker_.Link(grid_, runs_, link, sets_of_runs_);
   pieces_.Build(grid_, runs_, sets_of_runs_);

@@ -143,6 +143,7 @@ class Linker {
       const std::int32_t one = grid_.At(lines.one, column);
       if (one == TurnGrid::kNone || !AreLinked(grid_.PointOf(one), grid_.PointOf(other), lines.are_of_one_ring)) continue;
       const std::int32_t run = runs_.OfReturn(one);
+      if (!MayBeLinked(run, runs_.OfReturn(other))) continue;
       if (runs_[run].length == 1) {
         // A single return must have one of the other line near it in range, too, as ranges are rounded.
         const float range_m = grid_.RangeAt(lines.one, column);
@@ -153,6 +154,8 @@ class Linker {
     }
     return false;
   }
+
+  bool MayBeLinked(std::int32_t run, std::int32_t other) const { return runs_[run].is_jetty == runs_[other].is_jetty; }
 
   bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool is_of_one_ring) const {
     const double reach_m = link_.At(std::min(one.range_m, other.range_m));
@@ -165,7 +168,7 @@ class Linker {
 
   // The last columns of one with the first of the other that follows it.
   void LinkEnds(std::int32_t one, std::int32_t other) {
-    if (sets_.Find(one) == sets_.Find(other)) return;
+    if (sets_.Find(one) == sets_.Find(other) || !MayBeLinked(one, other)) return;
     const Run& before = runs_[one];
     const Run& after = runs_[other];
     int gap = after.first - (before.first + before.length - 1);
@@ -210,8 +213,9 @@ class Linker {
     if (in_x_m * out_x_m + in_y_m * out_y_m <= 0.0F) return;
     const float off_m = std::abs(in_x_m * out_y_m - in_y_m * out_x_m) / greatest_m;
     if (off_m > kStraightShare * least_m + kStraightM) return;
-    sets_.Join(runs_.OfReturn(before), runs_.OfReturn(middle));
-    sets_.Join(runs_.OfReturn(middle), runs_.OfReturn(after));
+    for (const std::int32_t beside : {before, after}) {
+      if (MayBeLinked(runs_.OfReturn(beside), runs_.OfReturn(middle))) sets_.Join(runs_.OfReturn(beside), runs_.OfReturn(middle));
+    }
   }
 
   const TurnGrid& grid_;

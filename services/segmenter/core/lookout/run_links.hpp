@@ -21,6 +21,7 @@ inline constexpr int kLinkRings = 3;          // 6 degrees at 2
 /// - of one ring, at most kLinkColumns apart, and at most `link` apart;
 /// - of rings at most kLinkRings apart, at most kLinkAcrossColumns columns apart, and at most `link` apart as seen from above: a mast over a hull;
 /// - the ends of a line of three returns in neighbouring columns, evenly spaced and straight: a wall that is seen along.
+/// A jetty is linked to jetties alone.
 /// All relations are between pairs (or threes) of returns and do not depend on the order. Cost: about proportional to the returns.
 class RunLinker {
  public:

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "services/segmenter/core/lookout/jetties.hpp"
+
 namespace lookout::segmenter {
 
 namespace {
@@ -67,6 +69,42 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
     ++run.length;
     run_of_return_[at] = end.run;
   }
+}
+
+void RunTable::CutJetties(const TurnGrid& grid) {
+  uncut_.swap(runs_);
+  begin_of_uncut_.swap(begin_of_line_);
+  runs_.clear();
+  begin_of_line_.clear();
+  const auto add = [&](const Run& run) {
+    if (run.length == 0) return;
+    for (int place = 0; place < run.length; ++place) run_of_return_[static_cast<std::size_t>(ReturnOf(grid, run, place))] = size();
+    runs_.push_back(run);
+  };
+  bool is_any_cut = false;
+  for (std::size_t line = 0; line + 1 < begin_of_uncut_.size(); ++line) {
+    begin_of_line_.push_back(runs_.size());
+    for (std::size_t i = begin_of_uncut_[line]; i < begin_of_uncut_[line + 1]; ++i) {
+      Run run = uncut_[i];
+      const int num_first = JettyReturns(grid, run, false);
+      const int num_last = JettyReturns(grid, run, true);
+      if (num_first + num_last >= run.length) {
+        run.is_jetty = true;
+      } else if (num_first + num_last > 0) {
+        add({run.line, run.first, num_first, true});
+        add({run.line, grid.Wrap(run.first + num_first), run.length - num_first - num_last, false});
+        add({run.line, grid.Wrap(run.first + run.length - num_last), num_last, true});
+        is_any_cut = true;
+        continue;
+      }
+      if (is_any_cut) {
+        add(run);
+      } else {
+        runs_.push_back(run);  // the same number as before
+      }
+    }
+  }
+  begin_of_line_.push_back(runs_.size());
 }
 
 }  // namespace lookout::segmenter

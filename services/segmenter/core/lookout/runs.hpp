@@ -15,6 +15,7 @@ struct Run {
   std::int32_t line = 0;
   std::int32_t first = 0;
   std::int32_t length = 0;
+  bool is_jetty = false;  // linked to no run that is none
 };
 
 /// All runs of a turn: line by line, in the order of their columns from the first break on. Where they begin and end does not depend on where the
@@ -25,6 +26,9 @@ class RunTable {
 
   /// Two returns in neighbouring columns of a line are of one run when they are at most `link` apart, at the nearer one's distance.
   void Find(const TurnGrid& grid, const Reach& link);
+
+  /// Cuts jetties off the runs that hold a shore, too (JettyReturns), and marks them.
+  void CutJetties(const TurnGrid& grid);
 
   std::int32_t size() const { return static_cast<std::int32_t>(runs_.size()); }
   const Run& operator[](std::int32_t run) const { return runs_[static_cast<std::size_t>(run)]; }
@@ -49,6 +53,8 @@ class RunTable {
     std::int32_t run = 0;  // of its last return
     std::int32_t next_run = 0;
   };
+  std::vector<Run> uncut_;
+  std::vector<std::size_t> begin_of_uncut_;
   std::vector<LineEnd> ends_;           // [lines]
   std::vector<std::uint8_t> is_start_;  // [returns] whether a run begins with it
 };
