@@ -43,7 +43,7 @@ constexpr std::uint8_t kTakesNothing = 0;
 constexpr std::uint8_t kTakesTall = 1;
 constexpr std::uint8_t kTakesAll = 2;
 // Of the returns above tall_m, so many, and so far from their middle (root mean square): a mast is no tree.
-constexpr std::int32_t kLeastTallReturns = 4;
+constexpr std::int32_t kLeastTallReturns = 5;
 constexpr double kLeastTreeM = 0.5;
 constexpr int kMaxRounds = 6;
 
@@ -353,18 +353,18 @@ bool LandFinder::IsTall(const PieceTable& pieces, std::int32_t root) const {
 
 // Trees of one grove are marked and joined.
 void LandFinder::JoinTrees(const TurnGrid& grid, PieceTable& pieces) {
-  is_of_.assign(static_cast<std::size_t>(pieces.size()), 0);
+  const auto num_pieces = static_cast<std::size_t>(pieces.size());
+  near_sets_.Reset(num_pieces);
   candidates_.clear();
   for (const std::int32_t root : pieces.roots()) {
     if (pieces.FactsOf(root).is_land || !IsTall(pieces, root)) continue;
-    is_of_[static_cast<std::size_t>(root)] = 1;
+    near_sets_.Add(root);
     candidates_.push_back(root);
   }
   if (std::ssize(candidates_) < kLeastTrees) return;
-  chains_.Reset(static_cast<std::size_t>(pieces.size()));
-  ForEachNear(grid, pieces, params_.beside_land, [this](std::int32_t one, std::int32_t other) { chains_.Join(one, other); });
-  groves_.assign(static_cast<std::size_t>(pieces.size()), {});
-  const auto grove_of = [this](std::int32_t root) -> Grove& { return groves_[static_cast<std::size_t>(chains_.Find(root))]; };
+  near_sets_.Group(grid, pieces, params_.beside_land);
+  groves_.assign(num_pieces, {});
+  const auto grove_of = [this](std::int32_t root) -> Grove& { return groves_[static_cast<std::size_t>(near_sets_.GroupOf(root))]; };
   for (const std::int32_t root : candidates_) {
     const PieceFacts& facts = pieces.FactsOf(root);
     Grove& grove = grove_of(root);
@@ -382,7 +382,7 @@ void LandFinder::JoinTrees(const TurnGrid& grid, PieceTable& pieces) {
     if (grove.num_trees < kLeastTrees || grove.length_m < kLeastGroveShare * params_.land_length_m) continue;
     if (2.0 * grove.radius_m < params_.land_length_m) continue;
     pieces.MarkLand(root);
-    pieces.Join(chains_.Find(root), root);
+    pieces.Join(near_sets_.GroupOf(root), root);
   }
 }
 
@@ -457,44 +457,17 @@ std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& piec
   return land;
 }
 
-// Calls handle(root, root) for sets of is_of_ of which two entries of the outlines are within reach of each other, by the nearer of them.
-template <typename Handler>
-void LandFinder::ForEachNear(const TurnGrid& grid, const PieceTable& pieces, const Reach& reach, Handler handle) const {
-  const auto is_of = [this](std::int32_t root) { return is_of_[static_cast<std::size_t>(root)] != 0; };
-  for (int column = 0; column < grid.num_columns(); ++column) {
-    for (const OutlineEntry& entry : pieces.InColumn(column)) {
-      const std::int32_t root = pieces.RootOf(entry.piece);
-      if (!is_of(root)) continue;
-      // The window by the farthest reach that can be.
-      const int window = grid.ColumnsOf(reach.At(entry.far_point.range_m), entry.near_point.range_m);
-      bool goes_on = false;  // the same set: its next entry looks further
-      for (int step = 0; step <= window && !goes_on; ++step) {
-        for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(column + step))) {
-          const std::int32_t other_root = pieces.RootOf(other.piece);
-          goes_on = goes_on || (step > 0 && other_root == root);
-          if (other_root == root || !is_of(other_root)) continue;
-          for (const LevelPoint* mine : {&entry.near_point, &entry.far_point}) {
-            for (const LevelPoint* theirs : {&other.near_point, &other.far_point}) {
-              if (Distance(*mine, *theirs) <= reach.At(std::min(mine->range_m, theirs->range_m))) handle(root, other_root);
-            }
-          }
-        }
-      }
-    }
-  }
-}
-
 void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
-  is_of_.assign(static_cast<std::size_t>(pieces.size()), 0);
-  int num_lands = 0;
+  near_sets_.Reset(static_cast<std::size_t>(pieces.size()));
+  candidates_.clear();
   for (const std::int32_t root : pieces.roots()) {
-    const bool is_land = pieces.FactsOf(root).is_land;
-    is_of_[static_cast<std::size_t>(root)] = is_land ? 1 : 0;
-    num_lands += is_land ? 1 : 0;
+    if (!pieces.FactsOf(root).is_land) continue;
+    near_sets_.Add(root);
+    candidates_.push_back(root);
   }
-  if (num_lands < 2) return;
-  const Reach reach{params_.beside_land.at_lidar_m / 2.0, params_.beside_land.per_range};
-  ForEachNear(grid, pieces, reach, [&pieces](std::int32_t one, std::int32_t other) { pieces.Join(one, other); });
+  if (candidates_.size() < 2) return;
+  near_sets_.Group(grid, pieces, {params_.beside_land.at_lidar_m / 2.0, params_.beside_land.per_range});
+  for (const std::int32_t root : candidates_) pieces.Join(near_sets_.GroupOf(root), root);
 }
 
 }  // namespace lookout::segmenter

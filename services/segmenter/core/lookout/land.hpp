@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
+#include "services/segmenter/core/lookout/near_sets.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
 #include "services/segmenter/core/lookout/turn_grid.hpp"
@@ -88,8 +89,6 @@ class LandFinder {
   void MeasureTall(const TurnGrid& grid, const PieceTable& pieces);
   bool IsTall(const PieceTable& pieces, std::int32_t root) const;
   void JoinTrees(const TurnGrid& grid, PieceTable& pieces);
-  template <typename Handler>
-  void ForEachNear(const TurnGrid& grid, const PieceTable& pieces, const Reach& reach, Handler handle) const;
   void JoinLand(const TurnGrid& grid, PieceTable& pieces);
 
   LookoutParams params_;
@@ -109,7 +108,7 @@ class LandFinder {
   std::vector<LandDepth> depth_of_;         // [pieces] of roots
   std::vector<Tall> tall_;                  // [pieces] of each by itself
   std::vector<Grove> groves_;               // [pieces]
-  std::vector<std::uint8_t> is_of_;         // [pieces] roots that are held against each other
+  NearSets near_sets_;
 };
 
 }  // namespace lookout::segmenter

@@ -24,7 +24,7 @@ void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   linker_.Link(grid_, runs_, link, sets_of_runs_);
   pieces_.Build(grid_, runs_, sets_of_runs_);
   land_.Find(grid_, runs_, pieces_);
-  thin_.Join(pieces_);
+  thin_.Join(grid_, pieces_);
   pieces_.Settle(grid_);
   objects_.Join(grid_, thin_, link, pieces_);
   land_.FindGroves(grid_, pieces_);

@@ -14,7 +14,7 @@ constexpr std::int32_t kSolidReturns = ThinPieces::kSolidReturns;
 constexpr double kOverShare = 0.7;  // of the columns of the farther one
 constexpr double kWiderM = 2.0;     // by which the farther one may be longer
 
-// Small solid things within so many metres of each other that none of them is joined.
+// Solid things within so many metres of each other that none of them is joined.
 constexpr double kThrongM = 2.0;
 constexpr int kMostInThrong = 24;
 constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
@@ -23,6 +23,7 @@ constexpr double kLargeM = 4.0;
 constexpr double kRoundedUp = 1.000001;
 constexpr double kRoundedUpM = 1e-3;
 
+constexpr double kEquallyNearM = 0.001;
 constexpr int kRounds = 2;
 
 }  // namespace
@@ -32,8 +33,11 @@ void ObjectJoiner::Join(const TurnGrid& grid, const ThinPieces& thin, const Reac
   FindLinks(grid, thin, pieces);
   for (int round = 0; round < kRounds; ++round) {
     JoinSideBySide(pieces);
+    Attach(pieces, [this](const PieceFacts& part, std::int32_t, const PieceFacts& whole, double gap_m) { return Touches(part, whole, gap_m); });
     const bool is_any_joined = pieces.Settle(grid);
-    Attach(grid, thin, pieces);
+    Attach(pieces, [&](const PieceFacts& part, std::int32_t piece, const PieceFacts& whole, double gap_m) {
+      return IsPart(grid, part, thin.IsClear(piece), whole, gap_m);
+    });
     if (!pieces.Settle(grid) && !is_any_joined) break;
   }
 }
@@ -45,24 +49,23 @@ void ObjectJoiner::JoinSideBySide(PieceTable& pieces) const {
     if (one == other) continue;
     const PieceFacts& one_facts = pieces.FactsOf(one);
     const PieceFacts& other_facts = pieces.FactsOf(other);
-    const bool is_one_solid = one_facts.num_returns >= kSolidReturns;
-    const bool is_other_solid = other_facts.num_returns >= kSolidReturns;
-    if (!is_one_solid && !is_other_solid) continue;
-    const Reach& reach = is_one_solid && is_other_solid ? params_.join : link_;
-    if (link.gap_m <= reach.At(std::min(one_facts.min_range_m, other_facts.min_range_m))) pieces.Join(one, other);
+    if (std::min(one_facts.num_returns, other_facts.num_returns) < kSolidReturns) continue;
+    if (link.gap_m <= params_.join.At(std::min(one_facts.min_range_m, other_facts.min_range_m))) pieces.Join(one, other);
   }
 }
 
-// Each to the nearest that it may be attached to, so that nothing becomes a bridge between two boats.
-void ObjectJoiner::Attach(const TurnGrid& grid, const ThinPieces& thin, PieceTable& pieces) {
+// Each to the nearest that it may be attached to, so that nothing becomes a bridge between two boats. Two that are equally near, to a millimetre, are
+// both the nearest: a scene in a mirror has them the other way round.
+template <typename IsAttached>
+void ObjectJoiner::Attach(PieceTable& pieces, IsAttached is_attached) {
   nearest_m_.assign(static_cast<std::size_t>(pieces.size()), std::numeric_limits<double>::infinity());
   const auto for_each_way = [&](auto handle) {
     for (const Link& link : links_) {
       const std::int32_t one = pieces.RootOf(link.one);
       const std::int32_t other = pieces.RootOf(link.other);
       if (one == other) continue;
-      if (IsAttached(grid, pieces.FactsOf(one), thin.IsClear(link.one), pieces.FactsOf(other), link.gap_m)) handle(one, other, link.gap_m);
-      if (IsAttached(grid, pieces.FactsOf(other), thin.IsClear(link.other), pieces.FactsOf(one), link.gap_m)) handle(other, one, link.gap_m);
+      if (is_attached(pieces.FactsOf(one), link.one, pieces.FactsOf(other), link.gap_m)) handle(one, other, link.gap_m);
+      if (is_attached(pieces.FactsOf(other), link.other, pieces.FactsOf(one), link.gap_m)) handle(other, one, link.gap_m);
     }
   };
   for_each_way([&](std::int32_t part, std::int32_t, double gap_m) {
@@ -70,11 +73,16 @@ void ObjectJoiner::Attach(const TurnGrid& grid, const ThinPieces& thin, PieceTab
     nearest_m = std::min(nearest_m, gap_m);
   });
   for_each_way([&](std::int32_t part, std::int32_t whole, double gap_m) {
-    if (gap_m == nearest_m_[static_cast<std::size_t>(part)]) pieces.Join(part, whole);
+    if (gap_m <= nearest_m_[static_cast<std::size_t>(part)] + kEquallyNearM) pieces.Join(part, whole);
   });
 }
 
-bool ObjectJoiner::IsAttached(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const {
+bool ObjectJoiner::Touches(const PieceFacts& part, const PieceFacts& whole, double gap_m) const {
+  if (part.num_returns >= kSolidReturns || whole.num_returns < kSolidReturns) return false;
+  return gap_m <= link_.At(std::min(part.min_range_m, whole.min_range_m));
+}
+
+bool ObjectJoiner::IsPart(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const {
   if (whole.num_returns < kSolidReturns) return false;
   const double range_m = std::min(part.min_range_m, whole.min_range_m);
   const bool is_part_solid = part.num_returns >= kSolidReturns;
@@ -99,7 +107,7 @@ void ObjectJoiner::FindLinks(const TurnGrid& grid, const ThinPieces& thin, const
       continue;
     }
     const double reach_m = ReachM(facts);
-    solid_.push_back({facts.mean_m.x(), facts.mean_m.y(), facts.radius_m, reach_m, piece, false});
+    solid_.push_back({facts.mean_m.x(), facts.mean_m.y(), facts.radius_m, reach_m, piece, pieces.RootOf(piece), false});
   }
   std::ranges::sort(solid_, {}, [](const Solid& solid) { return std::pair(solid.x_m, solid.piece); });
   FindCrowds();
@@ -134,7 +142,7 @@ void ObjectJoiner::FindCrowds() {
       const double x_m = other.x_m - solid.x_m;
       const double y_m = other.y_m - solid.y_m;
       if (std::abs(x_m) > kThrongM) return false;
-      num_near += x_m * x_m + y_m * y_m <= kThrongM * kThrongM ? 1 : 0;
+      num_near += other.root != solid.root && x_m * x_m + y_m * y_m <= kThrongM * kThrongM ? 1 : 0;
       return num_near <= kMostInThrong;
     };
     for (std::size_t j = i; j > 0 && look_at(solid_[j - 1]);) --j;
@@ -182,7 +190,7 @@ void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std
   const double between_m = (one_facts.mean_m - other_facts.mean_m).norm() - one_facts.radius_m - other_facts.radius_m;
   const double range_m = std::min(one_facts.min_range_m, other_facts.min_range_m);
   double reach_m = params_.join.At(range_m);
-  // Sets of pieces only grow longer.
+  // As the pieces are now: what is long is no small part of anything.
   if (std::min(one_facts.length_m, other_facts.length_m) <= params_.attach_length_m) reach_m = std::max(reach_m, params_.attach.At(range_m));
   if (between_m > std::max(reach_m, params_.over_m)) return;
   if (params_.over_m > reach_m && SharedColumns(one_facts.arc, other_facts.arc, grid.num_columns()) > 0) reach_m = params_.over_m;
@@ -216,7 +224,7 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const 
       if (seen_by == piece) continue;
       seen_by = piece;
       const PieceFacts& other = pieces.FactsOf(pieces.RootOf(tiny.piece));
-      // Over it only from behind and above; the rings of a set only grow.
+      // Over it only from behind and above.
       const bool may_be_over = is_over && other.min_range_m >= facts.min_range_m && other.max_ring >= facts.max_ring;
       double reach_m = may_be_over ? over_m : touch_m;
       if (thin.IsClear(tiny.piece)) reach_m = std::max(reach_m, FarReachM(std::min(facts.min_range_m, other.min_range_m)));

@@ -40,6 +40,7 @@ class ObjectJoiner {
     double radius_m = 0.0;
     double reach_m = 0.0;  // the farthest it may be joined over
     std::int32_t piece = 0;
+    std::int32_t root = 0;
     bool is_crowded = false;
   };
 
@@ -58,8 +59,10 @@ class ObjectJoiner {
   void LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece);
   double ReachM(const PieceFacts& facts) const;
   void JoinSideBySide(PieceTable& pieces) const;
-  void Attach(const TurnGrid& grid, const ThinPieces& thin, PieceTable& pieces);
-  bool IsAttached(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const;
+  template <typename IsAttached>
+  void Attach(PieceTable& pieces, IsAttached is_attached);
+  bool Touches(const PieceFacts& part, const PieceFacts& whole, double gap_m) const;
+  bool IsPart(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const;
 
   LookoutParams params_;
   Reach link_;

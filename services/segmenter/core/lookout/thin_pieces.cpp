@@ -36,20 +36,24 @@ constexpr double kMostFarM = 2.0;
 
 double FarReachM(double range_m) { return std::clamp(kFarPerRange * (range_m - kFarFromM), 0.0, kMostFarM); }
 
-void ThinPieces::Join(PieceTable& pieces) {
+void ThinPieces::Join(const TurnGrid& grid, PieceTable& pieces) {
   thin_.clear();
   is_clear_.assign(static_cast<std::size_t>(pieces.size()), 0);
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
     if (facts.is_land || facts.length_m >= kThinM || facts.min_range_m <= kLeastThinRangeM) continue;
     if (facts.max_height_m + params_.lidar_above_water_m > params_.tall_m + kTilt * facts.min_range_m) continue;  // a mast
-    thin_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m, CellOf(facts.mean_m.x(), facts.mean_m.y())});
+    const std::size_t cell = CellOf(facts.mean_m.x(), facts.mean_m.y());
+    thin_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m, cell, false});
   }
   SortByCell();
+  if (params_.post_spacing_m > 0.0) {
+    for (Thin& thin : thin_) thin.is_post = !StandsAtAThing(grid, pieces, thin);
+  }
   for (const Thin& thin : thin_) {
     if (!FindNeighbours(thin)) continue;
     is_clear_[static_cast<std::size_t>(thin.root)] = 1;
-    if (params_.post_spacing_m > 0.0) JoinRectangles(thin, pieces);
+    if (thin.is_post) JoinRectangles(thin, pieces);
     JoinFar(thin, pieces);
   }
 }
@@ -75,6 +79,29 @@ void ThinPieces::SortByCell() {
   for (std::size_t cell = begin_of_cell_.size() - 1; cell > 0; --cell) begin_of_cell_[cell] = begin_of_cell_[cell - 1];
   begin_of_cell_[0] = 0;
   thin_.swap(sorted_);
+}
+
+// Whether something that is not thin, and no land, is within the reach of what is joined side by side: the side of a hull that is seen along shows in
+// single columns, as posts do.
+bool ThinPieces::StandsAtAThing(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) const {
+  const double reach_m = params_.join.At(thin.range_m);
+  const auto reach_m2 = static_cast<float>(reach_m * reach_m);
+  const int window = grid.ColumnsOf(reach_m, thin.range_m);
+  for (std::int32_t piece = thin.root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
+    for (const std::int32_t index : pieces.OutlineOf(piece)) {
+      const OutlineEntry& entry = pieces.Entry(index);
+      for (int step = -window; step <= window; ++step) {
+        for (const OutlineEntry& other : pieces.InColumn(grid.Wrap(entry.column + step))) {
+          const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(other.piece));
+          if (facts.length_m < kThinM || facts.is_land) continue;
+          if (std::min(SquaredPlanDistance(entry.near_point, other.near_point), SquaredPlanDistance(entry.near_point, other.far_point)) <= reach_m2) {
+            return true;
+          }
+        }
+      }
+    }
+  }
+  return false;
 }
 
 // Those within reach. @return false where it stands in a crowd
@@ -113,20 +140,21 @@ void ThinPieces::JoinRectangles(const Thin& post, PieceTable& pieces) const {
     const double u_x_m = across.x_m - post.x_m;
     const double u_y_m = across.y_m - post.y_m;
     const double u_m = std::hypot(u_x_m, u_y_m);
-    if (u_m < kNarrowestDockM || u_m > kWidestDockM) continue;
+    if (!across.is_post || u_m < kNarrowestDockM || u_m > kWidestDockM) continue;
     for (const Thin& along : neighbours_) {
       const double v_x_m = along.x_m - post.x_m;
       const double v_y_m = along.y_m - post.y_m;
       const double v_m = std::hypot(v_x_m, v_y_m);
-      if (v_m < kLeastSpacingM || v_m < u_m || v_m > params_.post_spacing_m) continue;
+      if (!along.is_post || v_m < kLeastSpacingM || v_m < u_m || v_m > params_.post_spacing_m) continue;
       if (std::abs(u_x_m * v_x_m + u_y_m * v_y_m) > kSquareCosine * u_m * v_m) continue;
       const bool has_fourth = std::ranges::any_of(neighbours_, [&](const Thin& fourth) {
-        return std::hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m;
+        return fourth.is_post && std::hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m;
       });
       if (!has_fourth) continue;
       pieces.MarkDock(post.root);
       const double width_m = (u_x_m * v_y_m - u_y_m * v_x_m) / v_m;  // with its sign
       for (const Thin& other : neighbours_) {
+        if (!other.is_post) continue;
         const double x_m = other.x_m - post.x_m;
         const double y_m = other.y_m - post.y_m;
         const double along_m = (x_m * v_x_m + y_m * v_y_m) / v_m;

@@ -7,6 +7,7 @@
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/turn_grid.hpp"
 
 namespace lookout::segmenter {
 
@@ -15,9 +16,9 @@ namespace lookout::segmenter {
 double FarReachM(double range_m);
 
 /// Joins thin pieces that are not of land:
-/// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. What is higher than LookoutParams::tall_m is a
-///    mast.
-/// 2. Pieces at most FarReachM apart, of which one has fewer than kSolidReturns.
+/// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. What is higher than LookoutParams::tall_m, and
+///    a boat's heel of 3 degrees more, is a mast; what has something larger beside it, within `join`, is of that.
+/// 2. Pieces at most FarReachM apart, from middle to middle, of which one has fewer than kSolidReturns.
 /// Where more than eight thin things stand about, as in rain, nothing is joined.
 class ThinPieces {
  public:
@@ -25,7 +26,7 @@ class ThinPieces {
 
   explicit ThinPieces(const LookoutParams& params) : params_(params) {}
 
-  void Join(PieceTable& pieces);
+  void Join(const TurnGrid& grid, PieceTable& pieces);
 
   /// Whether a piece is thin and no crowd of others stands about it. As found by Join.
   bool IsClear(std::int32_t piece) const { return is_clear_[static_cast<std::size_t>(piece)] != 0; }
@@ -37,11 +38,13 @@ class ThinPieces {
     double y_m = 0.0;
     double range_m = 0.0;
     std::size_t cell = 0;
+    bool is_post = false;
   };
 
   double ReachM() const;
   std::size_t CellOf(double x_m, double y_m) const;
   void SortByCell();
+  bool StandsAtAThing(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) const;
   bool FindNeighbours(const Thin& thin);
   void JoinRectangles(const Thin& post, PieceTable& pieces) const;
   void JoinFar(const Thin& thin, PieceTable& pieces) const;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kMaxSeamSteps = 1.5;
 // Empty columns at least where it is not.
 constexpr int kLeastMissing = 8;
+// With those that stand for the rest of the circle: as many as a turn can have. A narrow part with fine columns would be millions of empty ones.
+constexpr int kMostCells = 1 << 21;
 
 }  // namespace
 
@@ -77,7 +79,8 @@ void TurnGrid::MeasureColumns(const Scan& scan) {
   const double step_rad = std::clamp(column_step_rad_, kLeastStepRad, kMostStepRad);
   const bool is_whole = num_scanned >= kMinColumns && seam_rad <= kMaxSeamSteps * column_step_rad_;
   // The missing part counts as columns too; between two of them there is at least one when the turn is not whole.
-  num_columns_ = is_whole ? num_scanned : std::max({kMinColumns, num_scanned + kLeastMissing, static_cast<int>(std::lround(kTwoPi / step_rad))});
+  const int round_the_circle = std::min(static_cast<int>(std::lround(kTwoPi / step_rad)), kMostCells / std::max(1, num_lines_));
+  num_columns_ = is_whole ? num_scanned : std::max({kMinColumns, num_scanned + kLeastMissing, round_the_circle});
 
   is_shifted_ = false;
   shift_of_.clear();
