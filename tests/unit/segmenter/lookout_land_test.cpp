@@ -173,7 +173,7 @@ TEST(Groves, TwoTreesAreNoLand) {
 }
 
 TEST(Groves, AreAsLongAsLandAndFilled) {
-  EXPECT_EQ(NumLand(SeeTrees({{-4.2, 40.0, 3.0}, {0.0, 40.0, 3.0}, {4.2, 40.0, 3.0}})), 0U) << "12 m from end to end";
+  EXPECT_EQ(NumLand(SeeTrees({{-5.0, 40.0, 2.5}, {0.0, 40.0, 2.5}, {5.0, 40.0, 2.5}})), 0U) << "13 m from end to end";
   EXPECT_EQ(NumLand(SeeTrees({{-6.5, 40.0, 3.0}, {0.0, 40.0, 3.0}, {6.5, 40.0, 3.0}})), 1U) << "17 m";
   // Three of 2 m fill 8 m at most of as much, and 0.6 x 15 = 9 m is the least.
   EXPECT_EQ(NumLand(SeeTrees({{-7.0, 40.0, 2.0}, {0.0, 40.0, 2.0}, {7.0, 40.0, 2.0}})), 0U);

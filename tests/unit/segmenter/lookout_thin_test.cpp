@@ -21,7 +21,7 @@ void SetRow(Scan& scan, double range_m, double aside_m, int num, int ring = 8) {
 
 // Single things round about, each more than 2 m from all others and less than 8 m from what is at 40 m, 0 to 1.5 m aside of column 400.
 void AddAround(Scan& scan, int num) {
-  const double places[][2]{{43.5, -4.0}, {43.5, -1.3}, {43.5, 1.4}, {43.5, 4.1}, {40.0, -4.0}, {40.0, 5.5}, {36.5, -2.5}, {36.5, 0.2}, {36.5, 2.9}};
+  const double places[][2]{{43.5, -4.0}, {43.5, -1.3}, {43.5, 1.4}, {43.5, 4.1}, {40.0, -4.0}, {40.0, 5.5}, {36.0, -2.5}, {36.0, 0.2}, {36.0, 2.9}};
   for (int i = 0; i < num; ++i) SetRow(scan, places[i][0], places[i][1], 1);
 }
 
