@@ -146,26 +146,29 @@ TEST(BowOn, TheLengthIsFromBowToStern) {
   EXPECT_GT(stages.pieces.FactsOf(0).length_m, 7.0);
 }
 
-// Side by side goes by the gap, which is 1.2 m; joined are up to 1.65 m at 5 m.
+// What is small is attached by the gap to the bow, up to 1.2 + 0.03 x 4.8 = 1.34 m; the middle of the boat is farther off.
 TEST(BowOn, WhatIsBesideTheBowIsOfIt) {
-  auto scan = BowOn();
-  for (int step = -4; step <= 4; ++step) SetReturn(scan, 900 + step, 3, 4.8 / std::cos(DegToRad(9.0)));
-  ASSERT_EQ(Stages(scan).pieces.size(), 2);
-  EXPECT_EQ(SegmentScan(scan, {}).segments.size(), 1U);
+  for (const auto& [range_m, num_segments] : {std::pair{4.75, 1U}, {4.55, 2U}}) {  // 1.25 m and 1.45 m before the bow
+    auto scan = BowOn();
+    for (int step = -4; step <= 4; ++step) SetReturn(scan, 900 + step, 3, range_m / std::cos(DegToRad(9.0)));
+    ASSERT_EQ(Stages(scan).pieces.size(), 2);
+    EXPECT_EQ(SegmentScan(scan, {}).segments.size(), num_segments) << range_m;
+  }
 }
 
-// Two quays, the left one 3.55 m farther off: between half of what is beside land at 19.7 m (3.59 m) and at 16.15 m (3.48 m).
+// Two quays of 16 m and more, the left one farther off. What is joined goes by the nearer, at 16 m: 3 + 0.08 x 16 = 4.28 m; by the farther, at 20.5
+// m, it would be 4.64 m.
 TEST(Mirrored, TwoQuaysAreAsManyPiecesOfLand) {
-  std::size_t num_segments[2]{};
-  for (const int is_mirrored : {0, 1}) {
-    auto scan = EmptyScan({});
-    const auto at = [is_mirrored](int column) { return is_mirrored != 0 ? 1807 - column : column; };
-    for (int column = 300; column < 900; ++column) {
-      for (int ring = 6; ring < 10; ++ring) SetReturn(scan, at(column), ring, column < 600 ? 19.7 : 16.15);
+  for (const auto& [farther_m, num_segments] : {std::pair{4.2, 1U}, {4.5, 2U}}) {
+    for (const int is_mirrored : {0, 1}) {
+      auto scan = EmptyScan({});
+      const auto at = [is_mirrored](int column) { return is_mirrored != 0 ? 1807 - column : column; };
+      for (int column = 300; column < 900; ++column) {
+        for (int ring = 6; ring < 10; ++ring) SetReturn(scan, at(column), ring, column < 600 ? 16.0 + farther_m : 16.0);
+      }
+      EXPECT_EQ(SegmentScan(scan, {}).segments.size(), num_segments) << farther_m << (is_mirrored != 0 ? " mirrored" : "");
     }
-    num_segments[is_mirrored] = SegmentScan(scan, {}).segments.size();
   }
-  EXPECT_EQ(num_segments[0], num_segments[1]);
 }
 
 TEST(Memory, NothingIsAllocatedForATurnThatHasBeenSeen) {

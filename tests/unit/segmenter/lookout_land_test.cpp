@@ -131,6 +131,98 @@ TEST(Land, DoesNotTakeABoatBeforeIt) {
   EXPECT_EQ(SegmentOf(segments, OnlyAt(scan, segments, 2.0, 19.0, 1.5)).kind, SegmentKind::kObstacle);
 }
 
+struct Tree {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double width_m = 0.0;
+};
+
+// Things 6 m high, as seen over what hides their foot.
+Segments SeeTrees(const std::vector<Tree>& trees) {
+  std::vector<Wall> walls;
+  for (const Tree& tree : trees) AddBoat(walls, tree.x_m, tree.y_m, 0.4, tree.width_m, tree.width_m, 0.0, 5.0);
+  return SegmentScan(See(walls), {});
+}
+
+// 35 to 40 m off, their middles 5 m apart.
+std::vector<Tree> RowOfTrees(int num_trees, double width_m) {
+  std::vector<Tree> trees;
+  for (int i = 0; i < num_trees; ++i) trees.push_back({5.0 * i - 10.0, i % 2 == 0 ? 37.0 : 39.5, width_m});
+  return trees;
+}
+
+std::size_t NumLand(const Segments& segments) {
+  return static_cast<std::size_t>(std::ranges::count(segments.segments, SegmentKind::kLand, &Segment::kind));
+}
+
+TEST(Groves, TreesOverTwentyMetresAreOneLand) {
+  for (const double width_m : {2.0, 2.5, 3.0}) {
+    const auto segments = SeeTrees(RowOfTrees(5, width_m));
+    EXPECT_EQ(segments.segments.size(), 1U) << width_m;
+    EXPECT_EQ(NumLand(segments), 1U) << width_m;
+  }
+}
+
+TEST(Groves, TwoTreesAreNoLand) {
+  const auto two = SeeTrees(RowOfTrees(2, 2.5));
+  EXPECT_EQ(two.segments.size(), 2U);
+  EXPECT_EQ(NumLand(two), 0U);
+  // However wide: 18 m from end to end, of which they fill 12 m.
+  EXPECT_EQ(NumLand(SeeTrees({{-6.0, 40.0, 5.0}, {6.0, 40.0, 5.0}})), 0U);
+  EXPECT_EQ(NumLand(SeeTrees({{-12.0, 40.0, 5.0}, {0.0, 40.0, 5.0}, {12.0, 40.0, 5.0}})), 1U) << "but a third one makes a grove of them";
+}
+
+TEST(Groves, AreAsLongAsLandAndFilled) {
+  EXPECT_EQ(NumLand(SeeTrees({{-5.0, 40.0, 2.5}, {0.0, 40.0, 2.5}, {5.0, 40.0, 2.5}})), 0U) << "13 m from end to end";
+  EXPECT_EQ(NumLand(SeeTrees({{-6.5, 40.0, 3.0}, {0.0, 40.0, 3.0}, {6.5, 40.0, 3.0}})), 1U) << "17 m";
+  // Three of 2 m fill 8 m at most of as much, and 0.6 x 15 = 9 m is the least.
+  EXPECT_EQ(NumLand(SeeTrees({{-7.0, 40.0, 2.0}, {0.0, 40.0, 2.0}, {7.0, 40.0, 2.0}})), 0U);
+  // Nearest returns 11 m apart: more than 6 + 0.08 x 40 = 9.2 m.
+  EXPECT_EQ(NumLand(SeeTrees({{-15.0, 40.0, 4.0}, {0.0, 40.0, 4.0}, {15.0, 40.0, 4.0}})), 0U);
+}
+
+TEST(Groves, MastsAreNone) {
+  const auto segments = SeeTrees(RowOfTrees(5, 0.3));
+  EXPECT_EQ(segments.segments.size(), 5U);
+  EXPECT_EQ(NumLand(segments), 0U);
+}
+
+// A row of boats' masts past the end of a shore with trees, the first one 3 m off it.
+TEST(Land, DoesNotTakeMastsBesideIt) {
+  for (const bool is_mirrored : {false, true}) {
+    auto walls = ShoreWithTrees();
+    for (int mast = 0; mast < 4; ++mast) AddBoat(walls, 28.0 + 3.0 * mast, 30.0, 0.4, 0.3, 0.3, kWaterM, 8.0);
+    if (is_mirrored) {
+      for (Wall& wall : walls) wall.x0_m = -wall.x0_m, wall.x1_m = -wall.x1_m;
+    }
+    const auto segments = SegmentScan(See(walls), {});
+    EXPECT_EQ(NumLand(segments), 1U);
+    EXPECT_EQ(segments.segments.size(), 5U);
+  }
+}
+
+// What is as high and as near, but wide, is a tree.
+TEST(Land, TakesATreeBesideIt) {
+  auto walls = ShoreWithTrees();
+  AddBoat(walls, 31.0, 30.0, 0.4, 2.5, 2.5, kWaterM, 5.0);
+  const auto segments = SegmentScan(See(walls), {});
+  EXPECT_EQ(segments.segments.size(), 1U);
+  EXPECT_EQ(NumLand(segments), 1U);
+}
+
+// A hull of 7 m with a mast of 0.25 m, 9 m high, its far side 4 m before the nearest of the shore.
+TEST(Land, DoesNotTakeASailingBoatBeforeIt) {
+  for (const double x_m : {-12.0, -2.0, 5.0, 15.0}) {
+    auto walls = ShoreWithTrees();
+    AddBoat(walls, x_m, 23.3, 0.1, 7.0, 2.4, kWaterM, 0.2);
+    AddBoat(walls, x_m, 23.3, 0.1, 0.25, 0.25, 0.2, 8.0);
+    const auto scan = See(walls);
+    const auto segments = SegmentScan(scan, {});
+    EXPECT_EQ(SegmentOf(segments, OnlyAt(scan, segments, x_m, 23.0, 1.5)).kind, SegmentKind::kObstacle) << x_m;  // hull and mast are one
+    EXPECT_EQ(NumLand(segments), 1U) << x_m;
+  }
+}
+
 // The waterline: from left to right, on returns of the land, at most 256 corners, and nothing nearer than it.
 void CheckWaterline(const Scan& scan, const Segments& segments, const Segment& land) {
   ASSERT_GE(land.waterline.size(), 2U);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "services/segmenter/core/lookout/objects.hpp"
 #include "tests/unit/segmenter/lookout_stages.hpp"
@@ -17,12 +19,22 @@ using test::Wall;
 
 constexpr double kObjectsWaterM = -1.0;  // of the lidar 1 m over it
 
-TEST(Objects, ACabinOverAHullIsOfIt) {
-  // The cabin stands 2.4 m behind the side of the hull, more than what is joined side by side at 12 m (1.72 m).
-  std::vector<Wall> walls;
-  AddBoat(walls, 12.0, 0.0, kPi / 2, 9.0, 3.0, kObjectsWaterM, -0.2);
-  AddBoat(walls, 14.0, 0.0, kPi / 2, 3.0, 1.6, 0.0, 2.5);
-  EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), 1U);
+// Beyond what is joined side by side (0.3 + 0.03 x 10.5 = 0.62 m), and longer than the small parts that are attached (1.4 m).
+TEST(Objects, ACabinOverAHullIsOfItUpToThreeMetresBehindItsSide) {
+  for (const auto& [behind_m, num_segments] : {std::pair{2.7, 1U}, {3.3, 2U}}) {
+    std::vector<Wall> walls{{10.5, -4.5, 10.5, 4.5, kObjectsWaterM, -0.2}};
+    AddBoat(walls, 10.5 + behind_m + 0.8, 0.0, kPi / 2, 3.0, 1.6, 0.0, 2.5);
+    EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), num_segments) << behind_m;
+  }
+}
+
+// 2 m behind and over a hull of 5 m, whose ends hide less than a third of it.
+TEST(Objects, WhatIsSeenOverANearerThingIsAtMostTwoMetresWider) {
+  for (const auto& [wider_m, num_segments] : {std::pair{1.7, 1U}, {2.3, 2U}}) {
+    const double half_m = (5.0 + wider_m) / 2;
+    const std::vector<Wall> walls{{8.0, -2.5, 8.0, 2.5, kObjectsWaterM, -0.2}, {10.0, -half_m, 10.0, half_m, 0.0, 1.2}};
+    EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), num_segments) << wider_m;
+  }
 }
 
 TEST(Objects, ABoatBehindABoatIsNotOfIt) {
@@ -51,23 +63,85 @@ TEST(Objects, TwoBoatsThreeMetresApartStayTwo) {
   }
 }
 
-TEST(Objects, WhatIsJoinedSideBySideIsWithinTheReach) {
-  // Two blocks of 8 columns at 20 m: joined up to 1.6 + 0.01 x 20 = 1.8 m.
-  const double column_m = 20.0 * kTwoPi / 1808;
-  for (const auto& [columns_apart, num_segments] : {std::pair{static_cast<int>(1.75 / column_m), 1U}, {static_cast<int>(1.95 / column_m), 2U}}) {
-    auto scan = test::EmptyScan({});
-    for (int i = 0; i < 8; ++i) {
-      SetReturn(scan, 400 + i, 7, 20.0);
-      SetReturn(scan, 407 + columns_apart + i, 7, 20.0);
+// At berths, seen from their bows: side by side 0.54 m is joined at 8 m, 0.66 m at 12 m, and 0.9 m at 20 m.
+TEST(Objects, TwoBoatsAtBerthsStayTwo) {
+  for (const auto& [range_m, gap_m] : {std::pair{8.0, 0.7}, {8.0, 1.0}, {12.0, 0.8}, {12.0, 0.9}, {20.0, 1.0}}) {
+    for (const double turned_rad : {0.0, 0.7, 3.1}) {
+      std::vector<Wall> walls;
+      for (const double side : {-1.0, 1.0}) {
+        const double x_m = range_m + 3.0;
+        const double y_m = side * (gap_m + 2.2) / 2;
+        AddBoat(walls, x_m * std::cos(turned_rad) - y_m * std::sin(turned_rad), x_m * std::sin(turned_rad) + y_m * std::cos(turned_rad), turned_rad,
+                6.0, 2.2, kObjectsWaterM, 0.5);
+      }
+      EXPECT_EQ(NumSure(SegmentScan(See(walls), {})), 2U) << gap_m << " m apart at " << range_m << " m, turned by " << turned_rad;
     }
-    EXPECT_EQ(SegmentScan(scan, {}).segments.size(), num_segments) << columns_apart;
   }
 }
 
-// Three returns are tiny: farther apart than the link they join nothing, however near to each other and to a hull.
+// Blocks of so many columns at 20 m, 0.07 m each, in two rings; the next one begins so many columns after the last of the one before.
+Scan Blocks(const std::vector<std::pair<int, int>>& after_and_num, int first_column, bool is_mirrored = false, double range_m = 20.0) {
+  auto scan = test::EmptyScan({});
+  int last = first_column;
+  for (const auto& [after, num] : after_and_num) {
+    for (int column = last + after; column < last + after + num; ++column) {
+      for (const int ring : {7, 8}) SetReturn(scan, is_mirrored ? 1807 - column : column, ring, range_m);
+    }
+    last += after + num - 1;
+  }
+  return scan;
+}
+
+TEST(Objects, WhatIsJoinedSideBySideIsWithinTheReach) {
+  const double column_m = 20.0 * kTwoPi / 1808;
+  // Blocks of 1.6 m are joined up to 0.3 + 0.03 x 20 = 0.9 m; small ones, of 0.5 m, are attached up to 1.2 + 0.03 x 20 = 1.8 m.
+  for (const auto& [num_columns, reach_m] : {std::pair{24, 0.9}, {8, 1.8}}) {
+    const int columns_apart = static_cast<int>(reach_m / column_m);
+    EXPECT_EQ(SegmentScan(Blocks({{0, num_columns}, {columns_apart, num_columns}}, 400), {}).segments.size(), 1U) << num_columns;
+    EXPECT_EQ(SegmentScan(Blocks({{0, num_columns}, {columns_apart + 1, num_columns}}, 400), {}).segments.size(), 2U) << num_columns;
+  }
+}
+
+TEST(Objects, ASmallPartIsAtMostOnePointFourMetresLong) {
+  // 1 m beside a hull of 2.2 m: 1.32 m and 1.46 m long.
+  EXPECT_EQ(SegmentScan(Blocks({{0, 32}, {15, 20}}, 400), {}).segments.size(), 1U);
+  EXPECT_EQ(SegmentScan(Blocks({{0, 32}, {15, 22}}, 400), {}).segments.size(), 2U);
+}
+
+// Of a kayak at 12 m its two paddlers: attached up to 1.2 + 0.03 x 12 = 1.56 m.
+TEST(Objects, TwoPaddlersAreOfOneKayak) {
+  for (const double turned_rad : {0.0, 0.5, -0.5}) {
+    for (const auto& [gap_m, num_segments] : {std::pair{1.0, 1U}, {1.3, 1U}, {1.8, 2U}}) {
+      std::vector<Wall> walls;
+      for (const double side : {-1.0, 1.0}) {
+        const double along_m = side * (gap_m + 0.5) / 2;
+        AddBoat(walls, 12.0 + along_m * std::sin(turned_rad), along_m * std::cos(turned_rad), -turned_rad, 0.5, 0.5, -0.6, 0.3);
+      }
+      EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), num_segments) << gap_m << " m apart, turned by " << turned_rad;
+    }
+  }
+}
+
+// At 12 m, columns of 0.042 m: boats of 2.2 m that are 2.5 m apart, and a pole of 0.25 m between them.
+TEST(Objects, APoleBetweenTwoBoatsIsOfTheNearerAndJoinsThemNot) {
+  for (const bool is_mirrored : {false, true}) {
+    for (const int first_column : {40, 400, 1500}) {
+      const auto scan = Blocks({{0, 53}, {24, 7}, {29, 53}}, first_column, is_mirrored, 12.0);  // 1 m from one, 1.21 m from the other
+      const auto segments = SegmentScan(scan, {});
+      const auto label = [&](int column) {
+        return segments.label[test::CellOf(scan, is_mirrored ? 1807 - first_column - column : first_column + column, 7)];
+      };
+      EXPECT_EQ(segments.segments.size(), 2U);
+      EXPECT_EQ(label(0), label(76)) << "the pole is of the nearer";
+      EXPECT_NE(label(0), label(52 + 24 + 6 + 29)) << "the farther is by itself";
+    }
+  }
+}
+
+// Three returns are tiny: at 20 m they join nothing over more than 0.5 m, which is the link and what few returns far away may lie apart.
 TEST(Objects, TinyPiecesJoinNothing) {
   const double column_m = 20.0 * kTwoPi / 1808;
-  const int metre = static_cast<int>(1.0 / column_m);  // beyond the link of 0.5 m, within the reach of 1.8 m
+  const int metre = static_cast<int>(1.0 / column_m);  // four are a small part, attached up to 1.8 m
   for (const auto& [num_returns, num_segments] : {std::pair{3, 4U}, {4, 1U}}) {
     auto scan = test::EmptyScan({});
     for (int i = 0; i < 20; ++i) SetReturn(scan, 400 + i, 7, 20.0);
