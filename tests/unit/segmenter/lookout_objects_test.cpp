@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -79,6 +80,35 @@ TEST(Objects, TwoBoatsAtBerthsStayTwo) {
   }
 }
 
+// Where the gap between them is as wide as a walkway, the hulls' inner sides are seen along, column by column, and are no posts of a dock.
+TEST(Objects, TheInnerSidesOfTwoBoatsAreNoDock) {
+  for (const auto& [range_m, gap_m] : {std::pair{12.0, 1.0}, {8.0, 2.0}, {10.0, 2.5}, {12.0, 3.0}, {20.0, 1.5}}) {
+    int num_joined = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      for (int turn = 0; turn < 21; ++turn) {
+        const double turned_rad = 0.31 * turn;
+        const auto at = [turned_rad](double x_m, double y_m) {
+          return std::pair(x_m * std::cos(turned_rad) - y_m * std::sin(turned_rad), x_m * std::sin(turned_rad) + y_m * std::cos(turned_rad));
+        };
+        std::vector<Wall> walls;
+        for (const double side : {-1.0, 1.0}) {
+          const auto [x_m, y_m] = at(range_m + 3.0, side * (gap_m + 2.2) / 2);
+          AddBoat(walls, x_m, y_m, turned_rad, 6.0, 2.2, kObjectsWaterM, 0.5);
+        }
+        const auto scan = See(walls, {}, seed);
+        const auto segments = SegmentScan(scan, {});
+        std::set<int> bows;
+        for (const double side : {-1.0, 1.0}) {
+          const auto [x_m, y_m] = at(range_m, side * (gap_m + 2.2) / 2);
+          bows.merge(test::SegmentsNear(scan, segments, x_m, y_m, 0.5));
+        }
+        num_joined += bows.size() < 2 ? 1 : 0;
+      }
+    }
+    EXPECT_EQ(num_joined, 0) << "of 210, " << gap_m << " m apart at " << range_m << " m";
+  }
+}
+
 // Blocks of so many columns at 20 m, 0.07 m each, in two rings; the next one begins so many columns after the last of the one before.
 Scan Blocks(const std::vector<std::pair<int, int>>& after_and_num, int first_column, bool is_mirrored = false, double range_m = 20.0) {
   auto scan = test::EmptyScan({});
@@ -136,6 +166,27 @@ TEST(Objects, APoleBetweenTwoBoatsIsOfTheNearerAndJoinsThemNot) {
       EXPECT_NE(label(0), label(52 + 24 + 6 + 29)) << "the farther is by itself";
     }
   }
+}
+
+// Its gaps are equal but for rounding, wherever it stands: so what is said of the pole is said in the mirror too.
+TEST(Objects, APoleInTheMiddleOfTwoBoatsIsInAMirrorAsItIs) {
+  int num_of_both = 0;
+  int num_not_mirrored = 0;
+  for (int first_column = 10; first_column < 1600; first_column += 7) {
+    bool is_of[2][2]{};
+    for (const bool is_mirrored : {false, true}) {
+      const auto scan = Blocks({{0, 53}, {26, 7}, {26, 53}}, first_column, is_mirrored, 12.0);
+      const auto segments = SegmentScan(scan, {});
+      const auto label = [&](int column) {
+        return segments.label[test::CellOf(scan, is_mirrored ? 1807 - first_column - column : first_column + column, 7)];
+      };
+      is_of[is_mirrored ? 1 : 0][0] = label(0) == label(80);
+      is_of[is_mirrored ? 1 : 0][1] = label(136) == label(80);
+    }
+    num_of_both += is_of[0][0] && is_of[0][1] ? 1 : 0;
+    num_not_mirrored += is_of[0][0] != is_of[1][0] || is_of[0][1] != is_of[1][1] ? 1 : 0;
+  }
+  EXPECT_EQ(num_not_mirrored, 0) << "of 228 places; at " << num_of_both << " it is of both";
 }
 
 // Three returns are tiny: at 20 m they join nothing over more than 0.5 m, which is the link and what few returns far away may lie apart.

@@ -106,7 +106,7 @@ Scan Dock(double range_m, int last_ring) {
 bool IsDock(const Scan& scan) {
   Stages stages(scan);
   EXPECT_EQ(stages.pieces.size(), 4);
-  ThinPieces(LookoutParams{}).Join(stages.pieces);
+  ThinPieces(LookoutParams{}).Join(stages.grid, stages.pieces);
   stages.pieces.Settle(stages.grid);
   return stages.pieces.roots().size() == 1 && stages.pieces.FactsOf(stages.pieces.roots()[0]).is_dock;
 }

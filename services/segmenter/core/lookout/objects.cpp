@@ -54,11 +54,11 @@ void ObjectJoiner::JoinSideBySide(PieceTable& pieces) const {
   }
 }
 
-// Each to the nearest that it may be attached to, so that nothing becomes a bridge between two boats. Two that are equally near, to a millimetre, are
-// both the nearest: a scene in a mirror has them the other way round.
+// Each to the nearest that it may be attached to, so that nothing becomes a bridge between two boats. What has two that are equally near, to a
+// millimetre, is attached to neither: chance would decide, and otherwise in a mirror.
 template <typename IsAttached>
 void ObjectJoiner::Attach(PieceTable& pieces, IsAttached is_attached) {
-  nearest_m_.assign(static_cast<std::size_t>(pieces.size()), std::numeric_limits<double>::infinity());
+  nearest_.assign(static_cast<std::size_t>(pieces.size()), {});
   const auto for_each_way = [&](auto handle) {
     for (const Link& link : links_) {
       const std::int32_t one = pieces.RootOf(link.one);
@@ -68,13 +68,18 @@ void ObjectJoiner::Attach(PieceTable& pieces, IsAttached is_attached) {
       if (is_attached(pieces.FactsOf(other), link.other, pieces.FactsOf(one), link.gap_m)) handle(other, one, link.gap_m);
     }
   };
-  for_each_way([&](std::int32_t part, std::int32_t, double gap_m) {
-    auto& nearest_m = nearest_m_[static_cast<std::size_t>(part)];
-    nearest_m = std::min(nearest_m, gap_m);
+  for_each_way([this](std::int32_t part, std::int32_t whole, double gap_m) {
+    Nearest& nearest = nearest_[static_cast<std::size_t>(part)];
+    if (gap_m < nearest.gap_m) nearest = {gap_m, whole, false};
   });
-  for_each_way([&](std::int32_t part, std::int32_t whole, double gap_m) {
-    if (gap_m <= nearest_m_[static_cast<std::size_t>(part)] + kEquallyNearM) pieces.Join(part, whole);
+  for_each_way([this](std::int32_t part, std::int32_t whole, double gap_m) {
+    Nearest& nearest = nearest_[static_cast<std::size_t>(part)];
+    if (whole != nearest.whole && gap_m <= nearest.gap_m + kEquallyNearM) nearest.is_tied = true;
   });
+  for (const std::int32_t root : pieces.roots()) {
+    const Nearest& nearest = nearest_[static_cast<std::size_t>(root)];
+    if (nearest.whole != PieceTable::kNone && !nearest.is_tied) pieces.Join(root, nearest.whole);
+  }
 }
 
 bool ObjectJoiner::Touches(const PieceFacts& part, const PieceFacts& whole, double gap_m) const {

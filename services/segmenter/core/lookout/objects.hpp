@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
@@ -44,6 +45,13 @@ class ObjectJoiner {
     bool is_crowded = false;
   };
 
+  // To what a part may be attached.
+  struct Nearest {
+    double gap_m = std::numeric_limits<double>::infinity();
+    std::int32_t whole = PieceTable::kNone;
+    bool is_tied = false;
+  };
+
   // What a piece of fewer returns shows in one column.
   struct Tiny {
     float nearest_m = 0.0F;
@@ -73,7 +81,7 @@ class ObjectJoiner {
   std::vector<std::size_t> begin_of_tiny_;  // [columns + 1]
   std::vector<std::uint8_t> is_tiny_;       // [pieces]
   std::vector<std::int32_t> seen_by_;       // [pieces] the last piece that has looked at it
-  std::vector<double> nearest_m_;           // [pieces] of roots: gap to the nearest that it may be attached to
+  std::vector<Nearest> nearest_;            // [pieces] of roots
 };
 
 }  // namespace lookout::segmenter

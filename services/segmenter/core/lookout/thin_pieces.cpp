@@ -81,10 +81,10 @@ void ThinPieces::SortByCell() {
   thin_.swap(sorted_);
 }
 
-// Whether something that is not thin, and no land, is within the reach of what is joined side by side: the side of a hull that is seen along shows in
+// Whether something that is not thin, and no land, is within the reach of its parts: the side of a hull that is seen along shows in
 // single columns, as posts do.
 bool ThinPieces::StandsAtAThing(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) const {
-  const double reach_m = params_.join.At(thin.range_m);
+  const double reach_m = params_.attach.At(thin.range_m);
   const auto reach_m2 = static_cast<float>(reach_m * reach_m);
   const int window = grid.ColumnsOf(reach_m, thin.range_m);
   for (std::int32_t piece = thin.root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {

@@ -17,7 +17,7 @@ double FarReachM(double range_m);
 
 /// Joins thin pieces that are not of land:
 /// 1. Posts that stand at the corners of a rectangle are of one dock, with those along its sides. What is higher than LookoutParams::tall_m, and
-///    a boat's heel of 3 degrees more, is a mast; what has something larger beside it, within `join`, is of that.
+///    a boat's heel of 3 degrees more, is a mast; what has something larger beside it, within `attach`, is of that.
 /// 2. Pieces at most FarReachM apart, from middle to middle, of which one has fewer than kSolidReturns.
 /// Where more than eight thin things stand about, as in rain, nothing is joined.
 class ThinPieces {
