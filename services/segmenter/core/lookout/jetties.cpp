@@ -21,6 +21,7 @@ constexpr float kGreatestFaceM = 3.5F;
 constexpr float kLeastStandingOutM = 2.0F;
 constexpr float kShoreM = 2.0F;  // of the shore after the foot that is looked at
 constexpr float kLeastShoreM = 1.5F;
+constexpr float kLeastLandM = 6.0F;  // after the foot, where open water follows
 // Angles by their cosine.
 constexpr float kFootCosine = 0.825F;        // 34 degrees
 constexpr float kFaceCosine = 0.765F;        // 40 degrees
@@ -95,11 +96,13 @@ class RunEnd {
     return last;
   }
 
-  // A side from `corner` to `foot`, at which the run turns into the shore.
-  bool HasFoot(int corner, int foot) const {
+  // A side from `corner` to `foot`, at which the run turns into the shore: not into the other side of a boat, which is short and has open water
+  // beyond.
+  bool HasFoot(int corner, int foot, bool is_afloat) const {
     if (foot - corner < kLeastSideReturns || Between(corner, foot).Length() < kLeastJettyM || Between(0, foot).Length() > kGreatestJettyM) {
       return false;
     }
+    if (is_afloat && Between(foot, size() - 1).Length() < kLeastLandM) return false;
     int along = foot;
     while (along + 1 < size() && Between(foot, along).Length() < kShoreM) ++along;
     const PlanVector shore = Between(foot, along);
@@ -120,8 +123,9 @@ int JettyReturns(const TurnGrid& grid, const Run& run, bool from_end) {
   if (run.length < kLeastJettyReturns || run.length > grid.num_columns() / 2) return 0;
   const RunEnd end(grid, run, from_end);
   if (!end.MayBeLong() || !end.IsFree()) return 0;
+  const bool is_afloat = RunEnd(grid, run, !from_end).IsFree();
   const int corner = end.EndOfStraight(0);
-  if (end.HasFoot(0, corner)) return corner;
+  if (end.HasFoot(0, corner, is_afloat)) return corner;
   if (corner == 0) return 0;
   const PlanVector face = end.Between(0, corner);
   const float face_m = face.Length();
@@ -131,8 +135,8 @@ int JettyReturns(const TurnGrid& grid, const Run& run, bool from_end) {
   const PlanVector side = end.Between(corner, foot);
   const float cosine = std::abs(Cosine(face, side));
   if (foot - corner < kLeastSideReturns || cosine > kFaceCosine) return 0;
-  if (end.HasFoot(corner, foot)) return foot;
-  const bool is_whole_run = foot >= run.length - 2;
+  if (end.HasFoot(corner, foot, is_afloat)) return foot;
+  const bool is_whole_run = foot >= run.length - 2 && !is_afloat;
   const bool is_square = corner > 2 && face_m >= kLeastSeenFaceM && cosine <= kSquareFaceCosine;
   const bool is_long = side.Length() >= kLeastJettyM && end.Between(0, foot).Length() <= kGreatestJettyM;
   return is_whole_run && is_square && is_long ? run.length : 0;

@@ -1,6 +1,7 @@
 #include "services/segmenter/core/lookout/runs.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "services/segmenter/core/lookout/jetties.hpp"
 
@@ -12,6 +13,29 @@ inline bool AreLinked(const LevelPoint& one, const LevelPoint& other, const Reac
   const float up_m = one.height_m - other.height_m;
   const auto reach_m = static_cast<float>(link.At(std::min(one.range_m, other.range_m)));
   return SquaredPlanDistance(one, other) + up_m * up_m <= reach_m * reach_m;
+}
+
+// A run as it is, or in up to three parts: jetty, shore, jetty. Columns are counted on over the seam.
+struct Parts {
+  std::array<Run, 3> runs{};
+  int num = 0;
+};
+
+Parts PartsOf(const TurnGrid& grid, const Run& run) {
+  const int num_first = JettyReturns(grid, run, false);
+  const int num_last = JettyReturns(grid, run, true);
+  Parts parts;
+  const auto add = [&parts, &run](int first, int length, bool is_jetty) {
+    if (length > 0) parts.runs[static_cast<std::size_t>(parts.num++)] = {run.line, run.first + first, length, is_jetty};
+  };
+  if (num_first + num_last >= run.length) {
+    add(0, run.length, true);
+  } else {
+    add(0, num_first, true);
+    add(num_first, run.length - num_first - num_last, false);
+    add(run.length - num_last, num_last, true);
+  }
+  return parts;
 }
 
 }  // namespace
@@ -76,32 +100,34 @@ void RunTable::CutJetties(const TurnGrid& grid) {
   begin_of_uncut_.swap(begin_of_line_);
   runs_.clear();
   begin_of_line_.clear();
+  bool is_any_cut = false;
   const auto add = [&](const Run& run) {
-    if (run.length == 0) return;
-    for (int place = 0; place < run.length; ++place) run_of_return_[static_cast<std::size_t>(ReturnOf(grid, run, place))] = size();
+    // Before the first cut, runs have the numbers that they had.
+    for (int place = 0; is_any_cut && place < run.length; ++place) run_of_return_[static_cast<std::size_t>(ReturnOf(grid, run, place))] = size();
     runs_.push_back(run);
   };
-  bool is_any_cut = false;
   for (std::size_t line = 0; line + 1 < begin_of_uncut_.size(); ++line) {
     begin_of_line_.push_back(runs_.size());
-    for (std::size_t i = begin_of_uncut_[line]; i < begin_of_uncut_[line + 1]; ++i) {
-      Run run = uncut_[i];
-      const int num_first = JettyReturns(grid, run, false);
-      const int num_last = JettyReturns(grid, run, true);
-      if (num_first + num_last >= run.length) {
-        run.is_jetty = true;
-      } else if (num_first + num_last > 0) {
-        add({run.line, run.first, num_first, true});
-        add({run.line, grid.Wrap(run.first + num_first), run.length - num_first - num_last, false});
-        add({run.line, grid.Wrap(run.first + run.length - num_last), num_last, true});
-        is_any_cut = true;
-        continue;
-      }
-      if (is_any_cut) {
-        add(run);
-      } else {
-        runs_.push_back(run);  // the same number as before
-      }
+    const std::size_t begin = begin_of_uncut_[line];
+    const std::size_t end = begin_of_uncut_[line + 1];
+    if (begin == end) continue;
+    // Parts of the last run that begin beyond the seam come first.
+    Parts last = PartsOf(grid, uncut_[end - 1]);
+    is_any_cut = is_any_cut || last.num > 1;
+    for (int i = 0; i < last.num; ++i) {
+      Run& part = last.runs[static_cast<std::size_t>(i)];
+      if (part.first < grid.num_columns()) continue;
+      part.first -= grid.num_columns();
+      add(part);
+      part.length = 0;
+    }
+    for (std::size_t i = begin; i + 1 < end; ++i) {
+      const Parts parts = PartsOf(grid, uncut_[i]);
+      is_any_cut = is_any_cut || parts.num > 1;
+      for (int k = 0; k < parts.num; ++k) add(parts.runs[static_cast<std::size_t>(k)]);
+    }
+    for (int i = 0; i < last.num; ++i) {
+      if (last.runs[static_cast<std::size_t>(i)].length > 0) add(last.runs[static_cast<std::size_t>(i)]);
     }
   }
   begin_of_line_.push_back(runs_.size());

@@ -44,16 +44,14 @@ void ThinPieces::Join(const TurnGrid& grid, PieceTable& pieces) {
     if (facts.is_land || facts.length_m >= kThinM || facts.min_range_m <= kLeastThinRangeM) continue;
     if (facts.max_height_m + params_.lidar_above_water_m > params_.tall_m + kTilt * facts.min_range_m) continue;  // a mast
     const std::size_t cell = CellOf(facts.mean_m.x(), facts.mean_m.y());
-    thin_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m, cell, false});
+    thin_.push_back({root, facts.mean_m.x(), facts.mean_m.y(), facts.min_range_m, cell});
   }
   SortByCell();
-  if (params_.post_spacing_m > 0.0) {
-    for (Thin& thin : thin_) thin.is_post = !StandsAtAThing(grid, pieces, thin);
-  }
+  stands_.assign(static_cast<std::size_t>(pieces.size()), Stands::kUnknown);
   for (const Thin& thin : thin_) {
     if (!FindNeighbours(thin)) continue;
     is_clear_[static_cast<std::size_t>(thin.root)] = 1;
-    if (thin.is_post) JoinRectangles(thin, pieces);
+    if (params_.post_spacing_m > 0.0) JoinRectangles(grid, thin, pieces);
     JoinFar(thin, pieces);
   }
 }
@@ -79,6 +77,12 @@ void ThinPieces::SortByCell() {
   for (std::size_t cell = begin_of_cell_.size() - 1; cell > 0; --cell) begin_of_cell_[cell] = begin_of_cell_[cell - 1];
   begin_of_cell_[0] = 0;
   thin_.swap(sorted_);
+}
+
+bool ThinPieces::StandsFree(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) {
+  Stands& stands = stands_[static_cast<std::size_t>(thin.root)];
+  if (stands == Stands::kUnknown) stands = StandsAtAThing(grid, pieces, thin) ? Stands::kAtAThing : Stands::kFree;
+  return stands == Stands::kFree;
 }
 
 // Whether something that is not thin, and no land, is within the reach of its parts: the side of a hull that is seen along shows in
@@ -134,33 +138,33 @@ bool ThinPieces::FindNeighbours(const Thin& thin) {
 }
 
 // With `post` at one corner: u along the width, v along the length.
-void ThinPieces::JoinRectangles(const Thin& post, PieceTable& pieces) const {
+void ThinPieces::JoinRectangles(const TurnGrid& grid, const Thin& post, PieceTable& pieces) {
+  const auto is_post = [&](const Thin& thin) { return StandsFree(grid, pieces, thin); };
   const double off_m = kCornerOff.At(post.range_m);
   for (const Thin& across : neighbours_) {
     const double u_x_m = across.x_m - post.x_m;
     const double u_y_m = across.y_m - post.y_m;
     const double u_m = std::hypot(u_x_m, u_y_m);
-    if (!across.is_post || u_m < kNarrowestDockM || u_m > kWidestDockM) continue;
+    if (u_m < kNarrowestDockM || u_m > kWidestDockM) continue;
     for (const Thin& along : neighbours_) {
       const double v_x_m = along.x_m - post.x_m;
       const double v_y_m = along.y_m - post.y_m;
       const double v_m = std::hypot(v_x_m, v_y_m);
-      if (!along.is_post || v_m < kLeastSpacingM || v_m < u_m || v_m > params_.post_spacing_m) continue;
+      if (v_m < kLeastSpacingM || v_m < u_m || v_m > params_.post_spacing_m) continue;
       if (std::abs(u_x_m * v_x_m + u_y_m * v_y_m) > kSquareCosine * u_m * v_m) continue;
       const bool has_fourth = std::ranges::any_of(neighbours_, [&](const Thin& fourth) {
-        return fourth.is_post && std::hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m;
+        return std::hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m && is_post(fourth);
       });
-      if (!has_fourth) continue;
+      if (!has_fourth || !is_post(post) || !is_post(across) || !is_post(along)) continue;
       pieces.MarkDock(post.root);
       const double width_m = (u_x_m * v_y_m - u_y_m * v_x_m) / v_m;  // with its sign
       for (const Thin& other : neighbours_) {
-        if (!other.is_post) continue;
         const double x_m = other.x_m - post.x_m;
         const double y_m = other.y_m - post.y_m;
         const double along_m = (x_m * v_x_m + y_m * v_y_m) / v_m;
         const double across_m = (x_m * v_y_m - y_m * v_x_m) / v_m;
         const bool is_at_side = std::abs(across_m) < kSideOffM || std::abs(across_m - width_m) < kSideOffM;
-        if (is_at_side && along_m > -kPastCornerM && along_m < v_m + kPastCornerM) pieces.Join(post.root, other.root);
+        if (is_at_side && along_m > -kPastCornerM && along_m < v_m + kPastCornerM && is_post(other)) pieces.Join(post.root, other.root);
       }
     }
   }

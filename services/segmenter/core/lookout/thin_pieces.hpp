@@ -38,15 +38,17 @@ class ThinPieces {
     double y_m = 0.0;
     double range_m = 0.0;
     std::size_t cell = 0;
-    bool is_post = false;
   };
+
+  enum class Stands : std::uint8_t { kUnknown, kFree, kAtAThing };
 
   double ReachM() const;
   std::size_t CellOf(double x_m, double y_m) const;
   void SortByCell();
+  bool StandsFree(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin);
   bool StandsAtAThing(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) const;
   bool FindNeighbours(const Thin& thin);
-  void JoinRectangles(const Thin& post, PieceTable& pieces) const;
+  void JoinRectangles(const TurnGrid& grid, const Thin& post, PieceTable& pieces);
   void JoinFar(const Thin& thin, PieceTable& pieces) const;
 
   LookoutParams params_;
@@ -55,6 +57,7 @@ class ThinPieces {
   std::vector<std::size_t> begin_of_cell_;
   std::vector<Thin> neighbours_;
   std::vector<std::uint8_t> is_clear_;  // [pieces]
+  std::vector<Stands> stands_;          // [pieces] as far as it has been asked for
 };
 
 }  // namespace lookout::segmenter
