@@ -7,7 +7,8 @@ lookout_test(NAME unit_segmenter
 lookout_test(NAME unit_segmenter_lookout
              SOURCES unit/segmenter/lookout_runs_test.cpp unit/segmenter/lookout_pieces_test.cpp
                      unit/segmenter/lookout_land_test.cpp unit/segmenter/lookout_objects_test.cpp
-                     unit/segmenter/lookout_shape_test.cpp unit/segmenter/lookout_thin_test.cpp
+                     unit/segmenter/lookout_jetties_test.cpp unit/segmenter/lookout_shape_test.cpp
+                     unit/segmenter/lookout_thin_test.cpp
              LINKS lookout_segmenter_core)
 lookout_test(NAME unit_segmenter_lookout_edges SOURCES unit/segmenter/lookout_edges_test.cpp unit/wire/counting_new.cpp LINKS lookout_segmenter_core)
 lookout_test(NAME property_segmenter SOURCES property/segmenter_reference_test.cpp property/segmenter_laws_test.cpp LINKS lookout_segmenter)

@@ -21,7 +21,7 @@ constexpr float kGreatestFaceM = 3.5F;
 constexpr float kLeastStandingOutM = 2.0F;
 constexpr float kShoreM = 2.0F;  // of the shore after the foot that is looked at
 constexpr float kLeastShoreM = 1.5F;
-constexpr float kLeastLandM = 6.0F;  // after the foot, where open water follows
+constexpr float kLeastLandM = 15.0F;  // after the foot, where open water follows
 // Angles by their cosine.
 constexpr float kFootCosine = 0.825F;        // 34 degrees
 constexpr float kFaceCosine = 0.765F;        // 40 degrees
