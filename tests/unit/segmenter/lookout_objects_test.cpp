@@ -80,6 +80,18 @@ TEST(Objects, TwoBoatsAtBerthsStayTwo) {
   }
 }
 
+// Boats 0.6 m apart at 8 m, more than is joined side by side (0.54 m), and a drop half way between them, nearer the one.
+TEST(Objects, ADropBetweenTwoBoatsDoesNotJoinThem) {
+  for (const double nearer_m : {-0.02, 0.0, 0.02}) {
+    auto scan = See({{8.0, 0.3, 8.0, 2.5, kObjectsWaterM, 0.6}, {8.0, -0.3, 8.0, -2.5, kObjectsWaterM, 0.6}});
+    SetReturn(scan, test::ColumnAt(scan, RadToDeg(WrapTo2Pi(nearer_m / 8.0))), 7, 8.0);
+    const auto segments = SegmentScan(scan, {});
+    auto boats = test::SegmentsNear(scan, segments, 8.0, 1.5, 0.8);
+    boats.merge(test::SegmentsNear(scan, segments, 8.0, -1.5, 0.8));
+    EXPECT_EQ(boats.size(), 2U) << nearer_m;
+  }
+}
+
 // Where the gap between them is as wide as a walkway, the hulls' inner sides are seen along, column by column, and are no posts of a dock.
 TEST(Objects, TheInnerSidesOfTwoBoatsAreNoDock) {
   for (const auto& [range_m, gap_m] : {std::pair{12.0, 1.0}, {8.0, 2.0}, {10.0, 2.5}, {12.0, 3.0}, {20.0, 1.5}}) {

@@ -239,5 +239,13 @@ TEST(Links, AreThoseOfAllPairs) {
   }
 }
 
+// Two columns as fine as they can be, of 128 rings and two returns: the rest of the circle is not 65 534 columns of nothing.
+TEST(Grid, OfANarrowPartHasNoMoreCellsThanATurn) {
+  const auto scan = test::EmptyScan({.num_columns = 2, .num_rings = 128, .num_returns = 2, .width_rad = kTwoPi / 65536 * 2});
+  TurnGrid grid;
+  grid.Fill(scan, {}, Eigen::Matrix3d::Identity());
+  EXPECT_EQ(grid.num_columns(), (1 << 21) / 256);
+}
+
 }  // namespace
 }  // namespace lookout::segmenter

@@ -16,7 +16,7 @@ constexpr double kWiderM = 2.0;     // by which the farther one may be longer
 
 // Solid things within so many metres of each other that none of them is joined.
 constexpr double kThrongM = 2.0;
-constexpr int kMostInThrong = 24;
+constexpr int kMostInThrong = 6;
 constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
 constexpr double kLargeM = 4.0;
 // Longer than any length is rounded.
@@ -46,7 +46,7 @@ void ObjectJoiner::JoinSideBySide(PieceTable& pieces) const {
   for (const Link& link : links_) {
     const std::int32_t one = pieces.RootOf(link.one);
     const std::int32_t other = pieces.RootOf(link.other);
-    if (one == other) continue;
+    if (one == other || link.has_tiny) continue;
     const PieceFacts& one_facts = pieces.FactsOf(one);
     const PieceFacts& other_facts = pieces.FactsOf(other);
     if (std::min(one_facts.num_returns, other_facts.num_returns) < kSolidReturns) continue;
@@ -64,6 +64,7 @@ void ObjectJoiner::Attach(PieceTable& pieces, IsAttached is_attached) {
       const std::int32_t one = pieces.RootOf(link.one);
       const std::int32_t other = pieces.RootOf(link.other);
       if (one == other) continue;
+      if (link.has_tiny && std::min(pieces.FactsOf(one).num_returns, pieces.FactsOf(other).num_returns) >= kSolidReturns) continue;
       if (is_attached(pieces.FactsOf(one), link.one, pieces.FactsOf(other), link.gap_m)) handle(one, other, link.gap_m);
       if (is_attached(pieces.FactsOf(other), link.other, pieces.FactsOf(one), link.gap_m)) handle(other, one, link.gap_m);
     }
@@ -201,7 +202,7 @@ void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std
   if (params_.over_m > reach_m && SharedColumns(one_facts.arc, other_facts.arc, grid.num_columns()) > 0) reach_m = params_.over_m;
   if (between_m > reach_m) return;
   const double gap_m = PlanGap(grid, pieces, one, other, reach_m);
-  if (gap_m <= reach_m) links_.push_back({one, other, gap_m});
+  if (gap_m <= reach_m) links_.push_back({one, other, gap_m, false});
 }
 
 void ObjectJoiner::LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece) {
@@ -236,7 +237,7 @@ void ObjectJoiner::LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const 
       if (other.min_range_m > facts.max_range_m + reach_m || other.max_range_m < facts.min_range_m - reach_m) continue;
       const double gap_m = PlanGap(grid, pieces, piece, tiny.piece, reach_m);
       if (gap_m > reach_m) continue;
-      links_.push_back({piece, tiny.piece, gap_m});
+      links_.push_back({piece, tiny.piece, gap_m, true});
       ++num_drops;
     }
   };

@@ -32,6 +32,7 @@ class ObjectJoiner {
     std::int32_t one = 0;  // single pieces
     std::int32_t other = 0;
     double gap_m = 0.0;
+    bool has_tiny = false;  // one of them has fewer than kSolidReturns: joined to something, it joins no more
   };
 
   // A piece of kSolidReturns or more, as far as it takes to pass over pairs that are far apart.
