@@ -16,7 +16,7 @@ constexpr double kWiderM = 2.0;     // by which the farther one may be longer
 
 // Solid things within so many metres of each other that none of them is joined.
 constexpr double kThrongM = 2.0;
-constexpr int kMostInThrong = 6;
+constexpr int kMostInThrong = 24;
 constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
 constexpr double kLargeM = 4.0;
 // Longer than any length is rounded.
