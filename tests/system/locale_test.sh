@@ -77,7 +77,7 @@ for locale in C "${locales[-1]}"; do
     kill -0 "$up_pid" 2>/dev/null || break
     sleep 0.1
   done
-  grep -q 'all processes are up' "$work/up.txt" || { cat "$work/up.txt"; fail "lookout-up does not start from such a folder, LC_ALL=$locale"; }
+  grep -q 'all processes are up' "$work/up.txt" || { code=0; kill -0 "$up_pid" 2>/dev/null || wait "$up_pid" || code=$?; cat "$work/up.txt"; fail "lookout-up does not start from such a folder, LC_ALL=$locale, code $code"; }
   "$bin/lookout-sim" --config "$odd/config" --scene lake --seed 1 --seconds 4 --udp 127.0.0.1 >/dev/null &
   sim_pid=$!
   "$bin/lookout-top" --once --seconds 2 >"$work/top.txt"
