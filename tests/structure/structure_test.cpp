@@ -163,6 +163,30 @@ TEST(Structure, ReadmeNamesEveryProgram) {
   }
 }
 
+// A README says what a folder is and how to use it; why it became so stands beside it, with dates.
+TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
+  const std::regex dated(R"(^(\*\*)?20[0-9]{2}-[0-9]{2}-[0-9]{2}[.,: *])");
+  int num_files = 0;
+  for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "services", "tests", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      const std::string path = fs::relative(entry.path(), kRoot).string();
+      if (entry.path().filename() == "README.md") {
+        EXPECT_EQ(Read(entry.path()).find("\n## Decisions"), std::string::npos) << path << ": decisions stand in DECISIONS.md";
+      }
+      if (entry.path().filename() != "DECISIONS.md") continue;
+      ++num_files;
+      const std::string text = Read(entry.path());
+      EXPECT_EQ(text.rfind("# Decisions", 0), 0U) << path << " has no heading";
+      const auto first = text.find_first_not_of('\n', std::min(text.find('\n'), text.size()));
+      ASSERT_NE(first, std::string::npos) << path << " is empty";
+      EXPECT_TRUE(std::regex_search(text.substr(first, 20), dated)) << path << " does not begin with a date";
+      const fs::path readme = entry.path().parent_path() / "README.md";
+      if (fs::exists(readme)) EXPECT_NE(Read(readme).find("(DECISIONS.md)"), std::string::npos) << path << " is not named in the README beside it";
+    }
+  }
+  EXPECT_GT(num_files, 15);
+}
+
 // What is not in the table is neither in systemd's units nor started by lookout-up.
 TEST(Structure, TheTableOfProcessesNamesEveryService) {
   std::vector<std::string> in_table;
