@@ -74,7 +74,7 @@ class FaultCollector final : public google::protobuf::io::ErrorCollector {
   explicit FaultCollector(std::vector<Fault>& faults) : faults_(faults) {}
   void AddError(int line, int column, const std::string& message) override {
     // Lines and columns count from 0; -1 stands for the whole text.
-    faults_.push_back({line + 1, "column " + std::to_string(column + 1) + ": " + message});
+    faults_.push_back({line + 1, "text: column " + std::to_string(column + 1) + ": " + message});
   }
 
  private:

@@ -141,13 +141,13 @@ TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
   }
 }
 
-TEST(Structure, ReadmeHoldsTheChannelTable) {
-  const std::string readme = Read(kRoot / "README.md");
+TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
+  const std::string readme = Read(kRoot / "lcmtypes/README.md");
   for (const auto& channel : lookout::bus::kChannels) {
     std::ostringstream row;
     row << "| " << channel.name << " | " << channel.type << " | " << channel.publisher << " | " << channel.max_rate_hz << " | " << channel.queue_depth
         << " |";
-    EXPECT_NE(readme.find(row.str()), std::string::npos) << "README.md lacks or differs from: " << row.str();
+    EXPECT_NE(readme.find(row.str()), std::string::npos) << "lcmtypes/README.md lacks or differs from: " << row.str();
   }
 }
 

@@ -56,7 +56,7 @@ grep -q 'segmenter.txtpb:.*"nonsense"' "$work/wrong.txt" || { cat "$work/wrong.t
 # Every fault of every process at once, each once, in an order of its own; lookout-doctor finds the same.
 rm -r "$config"
 cp -r "$source_folder/config/demo" "$config"
-sed -i -e 's/^name:/nam:/' -e 's/min_x_m: .*/min_x_m: "aft"/' "$config/boat.txtpb"
+sed -i -e 's/^name:/nam:/' -e 's/min_x_m: [-0-9.]*/min_x_m: "aft"/' "$config/boat.txtpb"
 printf 'max_range_m: -1\nbfs_angel_deg: 3\n' >>"$config/segmenter.txtpb"
 printf 'max_sentence_latency_s: 0.9\nmax_attitude_age_s: 0.5\n' >>"$config/navigator.txtpb"
 printf 'position_port: 2368\nallowed_source_address: "lidar"\n' >>"$config/vlp16.txtpb"

@@ -111,7 +111,7 @@ TEST(TextConfig, SaysWhatIsLeftOpenAndWhatStandsBeforeIt) {
   const auto faults = FaultsOf("nam: 'x'\nlidar {\n  xx: 1\n", boat);
   EXPECT_NE(faults.find("f.txtpb:1: nam: "), std::string::npos) << faults;
   EXPECT_NE(faults.find("f.txtpb:3: lidar.xx: "), std::string::npos) << faults;
-  EXPECT_NE(faults.find("f.txtpb:4: column 1: "), std::string::npos) << faults;
+  EXPECT_NE(faults.find("f.txtpb:4: text: column 1: "), std::string::npos) << faults;
   EXPECT_EQ(faults.find("must be set"), std::string::npos) << faults;
 }
 
