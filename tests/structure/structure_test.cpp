@@ -188,6 +188,38 @@ TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
   EXPECT_GT(num_files, 15);
 }
 
+// Messages that a user looks up are those that the programs print. "..." stands for what differs.
+TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
+  std::string code;
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) code += Read(file);
+  }
+  code += Read(kRoot / "deploy/lookout-up.in");
+  const std::regex joints("\"\\s*\"");  // a literal that goes on in the next line
+  code = std::regex_replace(code, joints, "");
+  code += "has no field named";  // Protobuf's
+  std::istringstream page(Read(kRoot / "TROUBLESHOOTING.md"));
+  const std::regex quoted("`([^`]*)`");
+  int num_pieces = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("| ", 0) != 0) continue;
+    const std::string cell = line.substr(2, line.find(" | ", 2) - 2);
+    for (std::sregex_iterator match(cell.begin(), cell.end(), quoted), end; match != end; ++match) {
+      std::string message = (*match)[1];
+      for (std::size_t from = 0; from < message.size();) {
+        const auto to = std::min(message.find("...", from), message.size());
+        const std::string piece = message.substr(from, to - from);
+        if (piece.size() > 2) {
+          EXPECT_NE(code.find(piece), std::string::npos) << "no program says: " << piece;
+          ++num_pieces;
+        }
+        from = to + 3;
+      }
+    }
+  }
+  EXPECT_GT(num_pieces, 50);
+}
+
 // What is not in the table is neither in systemd's units nor started by lookout-up.
 TEST(Structure, TheTableOfProcessesNamesEveryService) {
   std::vector<std::string> in_table;
