@@ -197,7 +197,7 @@ TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
   code += Read(kRoot / "deploy/lookout-up.in");
   const std::regex joints("\"\\s*\"");  // a literal that goes on in the next line
   code = std::regex_replace(code, joints, "");
-  code += "has no field named";  // Protobuf's
+  code += " has no field named ";  // Protobuf's
   std::istringstream page(Read(kRoot / "TROUBLESHOOTING.md"));
   const std::regex quoted("`([^`]*)`");
   int num_pieces = 0;
