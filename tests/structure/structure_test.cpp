@@ -1,5 +1,6 @@
 // The house rules that a compiler does not check: who may include whom, and pages that must agree with the code.
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -186,6 +187,86 @@ TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
     }
   }
   EXPECT_GT(num_files, 15);
+}
+
+// As the usual viewers make it of a heading: lower case, blanks as "-", no punctuation.
+std::string AnchorOf(const std::string& heading) {
+  std::string anchor;
+  for (const char letter : heading) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (std::isalnum(byte) != 0 || letter == '-' || letter == '_') anchor += static_cast<char>(std::tolower(byte));
+    if (letter == ' ') anchor += '-';
+  }
+  return anchor;
+}
+
+std::vector<fs::path> Pages() {
+  std::vector<fs::path> pages;
+  for (const auto& entry : fs::directory_iterator(kRoot)) {
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  }
+  for (const auto& folder : {"config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(pages);
+  return pages;
+}
+
+TEST(Structure, LinksBetweenPagesLeadSomewhere) {
+  const std::regex link(R"(\]\(([^)#]*)(#([^)]*))?\))");
+  const std::regex heading(R"((^|\n)#+ ([^\n]*))");
+  int num_links = 0;
+  for (const auto& page : Pages()) {
+    const std::string text = Read(page);
+    for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match) {
+      const std::string target = (*match)[1];
+      if (target.rfind("http", 0) == 0) continue;
+      const fs::path file = target.empty() ? page : page.parent_path() / target;
+      ASSERT_TRUE(fs::exists(file)) << page << " leads to " << target << ", which is not there";
+      ++num_links;
+      const std::string anchor = (*match)[3];
+      if (anchor.empty()) continue;
+      const std::string other = Read(file);
+      bool is_there = false;
+      for (std::sregex_iterator found(other.begin(), other.end(), heading); found != end; ++found) is_there |= AnchorOf((*found)[2]) == anchor;
+      EXPECT_TRUE(is_there) << page << " leads to " << target << "#" << anchor << ", and there is no such heading";
+    }
+  }
+  EXPECT_GT(num_links, 30);
+}
+
+// Messages that a user looks up are those that the programs print. "..." stands for what differs.
+TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
+  std::string code;
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) code += Read(file);
+  }
+  code += Read(kRoot / "deploy/lookout-up.in");
+  const std::regex joints("\"\\s*\"");  // a literal that goes on in the next line
+  code = std::regex_replace(code, joints, "");
+  code += " has no field named ";  // Protobuf's
+  std::istringstream page(Read(kRoot / "TROUBLESHOOTING.md"));
+  const std::regex quoted("`([^`]*)`");
+  int num_pieces = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("| ", 0) != 0) continue;
+    const std::string cell = line.substr(2, line.find(" | ", 2) - 2);
+    for (std::sregex_iterator match(cell.begin(), cell.end(), quoted), end; match != end; ++match) {
+      std::string message = (*match)[1];
+      for (std::size_t from = 0; from < message.size();) {
+        const auto to = std::min(message.find("...", from), message.size());
+        const std::string piece = message.substr(from, to - from);
+        if (piece.size() > 2) {
+          EXPECT_NE(code.find(piece), std::string::npos) << "no program says: " << piece;
+          ++num_pieces;
+        }
+        from = to + 3;
+      }
+    }
+  }
+  EXPECT_GT(num_pieces, 50);
 }
 
 // What is not in the table is neither in systemd's units nor started by lookout-up.

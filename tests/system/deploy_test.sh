@@ -75,6 +75,10 @@ cmp -s "$work/again.txt" "$work/wrong.txt" || fail "--check tells the same fault
 code=0; "$build_folder/bin/lookout-doctor" --config "$config" --check >"$work/doctor.txt" 2>&1 || code=$?
 [ "$code" -eq 2 ] || fail "lookout-doctor --check: exit code $code"
 sed -E 's/^[-0-9T:.]+Z [a-z]+ doctor: //' "$work/doctor.txt" | sort | diff - <(sort "$work/wrong.txt") || fail "lookout-doctor finds other faults"
+# A tool that runs all services tells them too, but for what is the recorder's and a source's alone.
+code=0; "$build_folder/bin/lookout-replay" --config "$config" --check >"$work/replay.txt" 2>&1 || code=$?
+[ "$code" -eq 2 ] || fail "lookout-replay --check: exit code $code"
+sed -E 's/^[a-z]+ replay: //' "$work/replay.txt" | sort | diff - <(grep -v allowed_source_address "$work/wrong.txt" | sort) || fail "lookout-replay finds other faults"
 
 if ! command -v systemd-analyze >/dev/null; then
   echo "units are not looked at: there is no systemd-analyze here"

@@ -25,7 +25,7 @@ class SegmenterMethod final : public Method {
   segmenter::Segmenter segmenter_;
 };
 
-/// METHOD.md: the paper's method at this width of its image, with the boat's own crop box and the paper's thresholds.
+/// The paper's method at this width of its image, with the boat's own crop box and the paper's thresholds.
 segmenter::Params PaperParams(const segmenter::Params& boat, int image_columns);
 
 /// Every return a component by itself, so that clustering has all the work: no pair of neighbours has beta above 90 degrees, or a distance below 0.

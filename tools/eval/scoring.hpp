@@ -18,7 +18,7 @@ inline constexpr double kFoundIou = 0.5;
 /// Judged are the cells with a return whose label is not kNotJudged. Let p_ij be the returns of true object i in segment j, n_i all of the object,
 /// m_j all of the segment. Returns of the own vessel and of no object are no object; in a segment they count in m_j.
 /// - IoU of object i: the greatest p_ij / (n_i + m_j - p_ij) over the segments, 0 when none holds any of it. mIoU of the turn: the mean over the k
-///   objects with a return (METHOD.md: the paper's equation). A turn without objects has none. The same over objects in the water alone, and with
+///   objects with a return (the paper's equation). A turn without objects has none. The same over objects in the water alone, and with
 ///   segments that are sure alone.
 /// - By kind, and by range of the object's nearest return in bins of Score::kRangeBinM: object-turns and their IoU; found is an IoU of kFoundIou. By
 ///   kind, found among the objects nearer than Score::kNearM. All of these with segments that are sure alone, too.
