@@ -4,5 +4,8 @@ lookout_test(NAME unit_common
                      unit/common/sequence_test.cpp unit/common/log_file_test.cpp unit/common/wire_description_test.cpp
                      unit/common/text_config_test.cpp unit/common/health_test.cpp unit/common/notify_test.cpp
              LINKS lookout_runtime lookout_bus lookout_config lookout_wire)
+# Their bounds of error against the C library's long double and against GeographicLib.
+lookout_test(NAME unit_elementary SOURCES unit/common/elementary_test.cpp LINKS lookout_core)
+lookout_test(NAME unit_geodesy SOURCES unit/common/geodesy_test.cpp LINKS lookout_core ${GeographicLib_LIBRARIES})
 lookout_fuzz(NAME fuzz_message SOURCES fuzz/message_fuzz.cpp LINKS lookout_bus lookout_wire)
 lookout_fuzz(NAME fuzz_config SOURCES fuzz/config_fuzz.cpp LINKS lookout_config)

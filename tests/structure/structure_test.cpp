@@ -88,7 +88,7 @@ const std::vector<Rule>& Rules() {
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
-      {"services/(georeferencer|navigator)/core/.*", {"common/core", "OWN/core", "OWN/core/filter", "geographiclib"}},
+      {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
