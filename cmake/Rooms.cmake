@@ -4,8 +4,8 @@ set(LOOKOUT_FUZZ "" CACHE STRING "Fuzz targets: empty, SOURCES (compiled as plai
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # A second checkout of the same sources takes what the first has compiled.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
+  # A second checkout of the same sources takes what the first has compiled, whatever the locale.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=locale ${CCACHE})
 endif()
 
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Werror)
@@ -74,6 +74,24 @@ function(lookout_test)
     math(EXPR test_TIMEOUT "5 * ${test_TIMEOUT}")  # sanitizers slow filters and simulations ten times and more
   endif()
   set_tests_properties(${test_NAME} PROPERTIES TIMEOUT ${test_TIMEOUT} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+endfunction()
+
+# A test made longer by its environment: too long for every change, ./dev test slow runs it as slow_<NAME>.
+#   lookout_slow_test(NAME system_proof ENVIRONMENT LOOKOUT_PROOF_SECONDS=60 [COMMAND a b] [TIMEOUT 600])
+function(lookout_slow_test)
+  cmake_parse_arguments(test "" "NAME;TIMEOUT" "ENVIRONMENT;COMMAND" ${ARGN})
+  if(LOOKOUT_SANITIZE)
+    return()
+  endif()
+  if(NOT test_COMMAND)
+    set(test_COMMAND $<TARGET_FILE:${test_NAME}>)
+  endif()
+  if(NOT test_TIMEOUT)
+    set(test_TIMEOUT 1800)
+  endif()
+  add_test(NAME slow_${test_NAME} COMMAND ${test_COMMAND})
+  set_tests_properties(slow_${test_NAME} PROPERTIES LABELS slow ENVIRONMENT "${test_ENVIRONMENT}" TIMEOUT ${test_TIMEOUT} SKIP_RETURN_CODE 77 RUN_SERIAL TRUE
+                                                    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 endfunction()
 
 # Speed under sanitizers tells nothing: benchmarks are not built there.

@@ -54,7 +54,7 @@ code=0; "$up" --config "$config" 2>"$work/wrong.txt" || code=$?
 grep -q 'segmenter.txtpb:.*"nonsense"' "$work/wrong.txt" || { cat "$work/wrong.txt"; fail "a wrong config is not named"; }
 
 if ! command -v systemd-analyze >/dev/null; then
-  echo "units are not looked at: there is no systemd-analyze here"
+  echo "skipped: the units are not looked at: there is no systemd-analyze (package systemd)"
   exit 0
 fi
 for unit in "$build_folder"/deploy/systemd/lookout-*.service; do
