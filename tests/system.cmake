@@ -1,6 +1,8 @@
 # Programs as a user or a boat runs them. The live ones run in network namespaces that they make themselves.
 lookout_test(NAME system_replay SOURCES system/replay_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 300)
 add_dependencies(system_replay lookout-replay lookout-export lookout-sim)
+lookout_test(NAME system_same_bytes SOURCES system/same_bytes_test.cpp TIMEOUT 300)
+add_dependencies(system_same_bytes lookout-replay lookout-sim)
 lookout_test(NAME system_points SOURCES system/points_test.cpp TIMEOUT 120)
 add_dependencies(system_points lookout-eval)
 lookout_test(NAME system_mounting_error SOURCES system/mounting_error_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 120)
