@@ -36,8 +36,8 @@ Options ParseOptions(int argc, char** argv) {
   std::string csv_folder;
   std::string html_file;
   CLI::App app(
-      "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, --sweep, "
-      "--test or --points).",
+      "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, "
+      "--captures, --sweep, --test or --points).",
       "lookout-eval");
   auto* in = app.add_option("--in", log.log_file, "lcm-log with OBSTACLES");
   auto* truth = app.add_option("--truth", log.truth_folder, "folder that lookout-sim --truth wrote")->needs(in);
@@ -54,8 +54,12 @@ Options ParseOptions(int argc, char** argv) {
   const auto of_judge = [config](CLI::Option* option) { return option->needs(config); };
   of_judge(app.add_option("--scenes", judge.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
   of_judge(app.add_option("--points", judge.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))->check(CLI::ExistingFile);
+  of_judge(
+      app.add_option("--captures", judge.captures, "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
   of_judge(app.add_option("--seeds", judge.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
-  of_judge(app.add_option("--first-seed", judge.first_seed, "the others follow it"))->capture_default_str();
+  of_judge(app.add_option("--first-seed", judge.first_seed,
+                          "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
+  of_judge(app.add_flag("--tuning", judge.is_tuning, "methods on seeds of tuning; no file is written"));
   of_judge(app.add_option("--seconds", judge.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
   of_judge(app.add_option("--methods", judge.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
@@ -68,11 +72,12 @@ Options ParseOptions(int argc, char** argv) {
     app.parse(argc, argv);
     if (log.log_file.empty() && config_folder.empty()) throw CLI::RequiredError("either --in LOG or --config DIR");
     if (!config_folder.empty()) {
-      const bool has_turns = !judge.scenes.empty() || !judge.points.empty();
-      if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --points, --test");
+      const bool has_turns = !judge.scenes.empty() || !judge.points.empty() || !judge.captures.empty();
+      if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
       if (judge.scenes.empty() && !judge.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
-      if (!has_turns && !judge.methods.empty()) throw CLI::RequiredError("--scenes or --points, for --methods");
-      if (judge.methods.empty() && ((judge.sweeps.empty() && judge.tests.empty()) || !judge.points.empty())) judge.methods = {"all"};
+      if (!has_turns && !judge.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (judge.methods.empty() && ((judge.sweeps.empty() && judge.tests.empty()) || !judge.points.empty() || !judge.captures.empty()))
+        judge.methods = {"all"};
     }
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);

@@ -18,7 +18,8 @@ struct NamedTable {
   bool is_printed = true;  // else in a file alone: too long for a screen, or of interest to few
 };
 
-/// All that the results hold; tables without rows are left out. Figures of the paper's kind are in per cent; "-" = there is none.
+/// All that the results hold, other worlds in columns beside ours (where the rows are of scenes: in rows below); tables without rows are left out.
+/// Figures of the paper's kind are in per cent; "-" = there is none.
 std::vector<NamedTable> TablesOf(const Results& results);
 
 void PrintTables(const Results& results, std::ostream& out);
