@@ -87,6 +87,6 @@ double MeanOverScenes(const Results& results, const MethodResult& method, const 
 
 bool IsPeer(const MethodResult& method) { return !method.method.starts_with("ours") && !method.method.starts_with("paper"); }
 
-bool IsTunedPeer(const MethodResult& method) { return IsPeer(method) && method.method.find("(tuned)") != std::string::npos; }
+bool IsTunedPeer(const MethodResult& method) { return IsPeer(method) && method.method.find("(tuned") != std::string::npos; }
 
 }  // namespace lookout::eval

@@ -78,8 +78,8 @@ struct WorstTurn {
 struct Results;
 
 /// Rows of a method that knows doubt, after its name.
-inline constexpr std::string_view kAllSegments = ", all segments";
-inline constexpr std::string_view kSureOnly = ", sure only";
+inline constexpr std::string_view kAllSegments = " (all segments)";
+inline constexpr std::string_view kSureOnly = " (sure only)";
 
 /// A row of the tables: a method at one operating point.
 struct MethodResult {
@@ -89,7 +89,7 @@ struct MethodResult {
   std::vector<WorstTurn> worst;                         // of the whole run, worst first; few
 };
 
-/// A peer's name begins with neither "ours" nor "paper"; a tuned one's holds "(tuned)".
+/// A peer's name begins with neither "ours" nor "paper"; a tuned one's holds "(tuned".
 bool IsPeer(const MethodResult& method);
 bool IsTunedPeer(const MethodResult& method);
 

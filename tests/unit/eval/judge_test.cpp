@@ -198,9 +198,9 @@ TEST(Judge, AMethodThatKnowsDoubtHasARowForEachOperatingPoint) {
     csv[table.name] = out.str();
   }
   // The docks are doubtful: with the sure ones alone they are lost, and with all the strays are a false segment.
-  const std::string all = R"("ours, all segments")";
-  const std::string sure = R"("ours, sure only")";
-  EXPECT_EQ(csv.at("table_1").substr(0, 52), "method,mean,sparse\n" + all + ",100.0,100.0\n");
+  const std::string all = "ours (all segments)";
+  const std::string sure = "ours (sure only)";
+  EXPECT_EQ(csv.at("table_1").substr(0, 51), "method,mean,sparse\n" + all + ",100.0,100.0\n");
   EXPECT_EQ(csv.at("table_1").find(sure + ",100.0"), std::string::npos);
   EXPECT_EQ(csv.at("false_segments"), "method,mean,sparse\n" + all + ",1.00,1.00\n" + sure + ",0.00,0.00\n");
   EXPECT_EQ(csv.at("kinds").find(",0.0"), csv.at("kinds").find(",0.0", csv.at("kinds").find(sure))) << "docks, among the sure ones alone";
@@ -352,7 +352,7 @@ TEST(ResultTables, AnotherWorldStandsBesideOurs) {
     score.num_turns = score.num_turns_with_object = 1;
     score.sum_iou = iou;
     score.near_recall_by_kind["buoy"] = {1, 1};
-    results.methods = {{"ours, all segments", {{scene, score}}, {}, {}}, {"F3D (tuned)", {{scene, score}}, {}, {}}};
+    results.methods = {{"ours (all segments)", {{scene, score}}, {}, {}}, {"F3D (tuned)", {{scene, score}}, {}, {}}};
     return results;
   };
   auto results = results_of("dense", 0.5);
@@ -366,13 +366,13 @@ TEST(ResultTables, AnotherWorldStandsBesideOurs) {
   };
   EXPECT_EQ(csv("table_1"),
             "method,mean,dense,second world: mean,second world: islands\n"
-            "\"ours, all segments\",50.0,50.0,25.0,25.0\nF3D (tuned),50.0,50.0,25.0,25.0\n");
+            "ours (all segments),50.0,50.0,25.0,25.0\nF3D (tuned),50.0,50.0,25.0,25.0\n");
   EXPECT_NE(csv("near_recall").find("F3D (tuned),second world: islands,buoy,1,100.0\n"), std::string::npos) << csv("near_recall");
   EXPECT_NE(csv("against_peers").find("second world: mean,25.0"), std::string::npos);
   results.other_worlds[0] = {};
   results.other_worlds[0].world = "second world";
   results.other_worlds[0].is_here = false;
-  EXPECT_EQ(csv("table_1"), "method,mean,dense,second world\n\"ours, all segments\",50.0,50.0,not here\nF3D (tuned),50.0,50.0,not here\n");
+  EXPECT_EQ(csv("table_1"), "method,mean,dense,second world\nours (all segments),50.0,50.0,not here\nF3D (tuned),50.0,50.0,not here\n");
 }
 
 TEST(Seeds, OfTuningAndOfTablesAreKeptApart) {

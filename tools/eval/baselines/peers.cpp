@@ -1,7 +1,6 @@
 #include "tools/eval/baselines/peers.hpp"
 
 #include <memory>
-#include <string>
 
 #include "tools/eval/baselines/depth_clustering.hpp"
 #include "tools/eval/baselines/euclidean.hpp"
@@ -13,7 +12,6 @@ namespace {
 
 // The choice that peers give between what they find and what they find for nothing: a least size. 1 and 3 were in the grid of tuning.
 constexpr SizeLimits kThreeOrMore{3};
-constexpr const char* kThreeOrMoreName = ", 3 returns or more";
 
 // Of any size unless said: on the water a single return may be a buoy.
 EuclideanParams Within(double distance_m, SizeLimits limits = {}) { return {distance_m, limits}; }
@@ -46,15 +44,14 @@ Methods MakePeers(const segmenter::ReturnFilter& filter) {
   methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 0.5 m", filter, Within(0.5)));
   methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 2 m", filter, Within(2.0)));
   methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 4 m", filter, Within(4.0)));
-  const auto of_three = [](const char* name) { return std::string(name) + kThreeOrMoreName; };
   methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 2.5 m (tuned)", filter, Within(2.5)));
-  methods.push_back(std::make_unique<EuclideanClustering>(of_three("Euclidean 2.5 m (tuned)"), filter, Within(2.5, kThreeOrMore)));
+  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 2.5 m (tuned, 3 returns or more)", filter, Within(2.5, kThreeOrMore)));
   methods.push_back(std::make_unique<DepthClustering>("depth clustering (defaults)", filter, DepthClusteringParams{}));
   methods.push_back(std::make_unique<DepthClustering>("depth clustering (tuned)", filter, TunedDepthClustering()));
-  methods.push_back(std::make_unique<DepthClustering>(of_three("depth clustering (tuned)"), filter, TunedDepthClustering(kThreeOrMore)));
+  methods.push_back(std::make_unique<DepthClustering>("depth clustering (tuned, 3 returns or more)", filter, TunedDepthClustering(kThreeOrMore)));
   methods.push_back(std::make_unique<F3d>("F3D (defaults)", filter, F3dParams{}));
   methods.push_back(std::make_unique<F3d>("F3D (tuned)", filter, TunedF3d()));
-  methods.push_back(std::make_unique<F3d>(of_three("F3D (tuned)"), filter, TunedF3d(kThreeOrMore)));
+  methods.push_back(std::make_unique<F3d>("F3D (tuned, 3 returns or more)", filter, TunedF3d(kThreeOrMore)));
   return methods;
 }
 
