@@ -8,3 +8,4 @@ lookout_test(NAME unit_judge SOURCES unit/eval/judge_test.cpp LINKS lookout_judg
 lookout_test(NAME unit_captures SOURCES unit/eval/captures_test.cpp LINKS lookout_judge lookout_config lzma TIMEOUT 120)
 lookout_test(NAME system_eval_line SOURCES system/eval_line_test.cpp TIMEOUT 120)
 add_dependencies(system_eval_line lookout-eval)
+lookout_test(NAME unit_figures SOURCES unit/eval/figures_test.cpp LINKS lookout_judge)

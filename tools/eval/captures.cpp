@@ -17,6 +17,7 @@
 #include <tuple>
 
 #include "common/config/text_config.hpp"
+#include "common/io/stop_signal.hpp"
 #include "config/schema/segmenter.pb.h"
 #include "services/segmenter/params.hpp"
 #include "services/vlp16/core/decoder.hpp"
@@ -258,6 +259,7 @@ CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const
   vlp16::Decoder decoder(
       params,
       [&](const vlp16::Turn& turn) {
+        io::ThrowIfStopAsked();
         if (turn.is_partial_start || turn.is_partial_end) return;
         labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
         Join(files, truth, labelled, report);

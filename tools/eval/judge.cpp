@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "common/io/stop_signal.hpp"
 #include "tools/eval/scoring.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -77,6 +78,7 @@ void ForEachTurn(const RunPlan& plan, const Boat& boat, Progress& progress,
       place.turn = 0;
       const auto scene = sim::LoadScene(files[i], place.seed);
       RenderTurns(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
+        io::ThrowIfStopAsked();
         on_turn(place, truth);
         ++place.turn;
       });

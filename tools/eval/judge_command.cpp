@@ -1,19 +1,27 @@
 #include "tools/eval/judge_command.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
+#include <iterator>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 #include <variant>
 
 #include "common/bus/channels.hpp"
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "services/segmenter/core/turn_gatherer.hpp"
 #include "services/segmenter/wire.hpp"
 #include "tools/eval/captures.hpp"
+#include "tools/eval/figures.hpp"
 #include "tools/eval/judge.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
@@ -155,6 +163,23 @@ Results RunCaptures(const JudgeOptions& options) {
   return results;
 }
 
+// Of UTC.
+std::string Today() {
+  const std::chrono::year_month_day today(std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
+  std::ostringstream text;
+  text << static_cast<int>(today.year()) << '-' << std::setfill('0') << std::setw(2) << static_cast<unsigned>(today.month()) << '-' << std::setw(2)
+       << static_cast<unsigned>(today.day());
+  return text.str();
+}
+
+// Said before a run of minutes, not after it.
+void RefuseIfThere(const std::filesystem::path& folder, bool is_forced) {
+  if (is_forced || folder.empty() || !std::filesystem::exists(folder)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".csv") throw std::runtime_error(entry.path().string() + ": is there already; --force replaces it");
+  }
+}
+
 }  // namespace
 
 int JudgeScenes(const JudgeOptions& options) {
@@ -175,6 +200,12 @@ int JudgeScenes(const JudgeOptions& options) {
     for (const double value : sweeps.back().values) ParamsWith(boat, sweeps.back().field, value);
   }
   const auto methods = MakeMethods(boat.segmenter, options.methods);
+
+  io::CatchStopSignals();
+  RefuseIfThere(options.csv_folder, options.is_forced);
+  RefuseIfThere(options.figures_folder, options.is_forced);
+  std::optional<io::OutputFile> page;
+  if (!options.html_file.empty()) page.emplace(options.html_file, io::OutputOptions{.force = options.is_forced});
 
   Results results;
   Describe(options, results);
@@ -198,12 +229,26 @@ int JudgeScenes(const JudgeOptions& options) {
   for (const auto& sweep : sweeps) results.curves.push_back(RunSweep(sweep, sweep_plan, boat, &std::cerr));
 
   PrintTables(results, std::cout);
-  if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder);
-  if (!options.html_file.empty()) {
-    std::ofstream out(options.html_file, std::ios::binary | std::ios::trunc);
-    WriteHtml(results, out);
-    out.close();
-    if (!out) throw std::runtime_error(options.html_file.string() + ": cannot be written");
+  if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder, options.is_forced);
+  if (page) {
+    WriteHtml(results, page->stream());
+    page->Commit();
+  }
+  if (!options.figures_folder.empty()) WriteFigures(FiguresOf(results, Today()), options.figures_folder, options.is_forced);
+  return FillBlocksOfFiles(options);
+}
+
+int FillBlocksOfFiles(const JudgeOptions& options) {
+  for (const auto& file : options.block_files) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+    const auto filled = FillBlocks(text, options.figures_folder, file.string());
+    if (filled == text) continue;
+    io::OutputFile out(file, {.force = true});
+    out.Write(filled);
+    out.Commit();
+    std::cerr << file.string() << ": figures filled in\n";
   }
   return EXIT_SUCCESS;
 }

@@ -36,4 +36,8 @@ struct JudgeOptions {
 /// @throws config::ConfigError, std::invalid_argument for a wrong line; std::runtime_error when a file cannot be read or written
 int JudgeScenes(const JudgeOptions& options);
 
+/// Fills the marked blocks of options.block_files from options.figures_folder (FillBlocks): nothing else is looked at. @return exit code
+/// @throws std::runtime_error
+int FillBlocksOfFiles(const JudgeOptions& options);
+
 }  // namespace lookout::eval

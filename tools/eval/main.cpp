@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/options.hpp"
@@ -35,6 +37,8 @@ Options ParseOptions(int argc, char** argv) {
   std::string config_folder;
   std::string csv_folder;
   std::string html_file;
+  std::string figures_folder;
+  std::vector<std::string> block_files;
   CLI::App app(
       "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, "
       "--captures, --sweep, --test or --points).",
@@ -67,10 +71,14 @@ Options ParseOptions(int argc, char** argv) {
   of_judge(app.add_option("--test", judge.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
   of_judge(app.add_option("--csv", csv_folder, "write each table as a CSV file to this folder"));
   of_judge(app.add_option("--html", html_file, "write the report as one page"));
+  auto* figures = app.add_option("--figures", figures_folder, "folder of the figures of README files: written with --config, read for --blocks");
+  app.add_option("--blocks", block_files, "README files whose marked blocks are filled from --figures")->check(CLI::ExistingFile)->needs(figures);
+  of_judge(app.add_flag("--force", judge.is_forced, "replace files that are there"));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
-    if (log.log_file.empty() && config_folder.empty()) throw CLI::RequiredError("either --in LOG or --config DIR");
+    if (log.log_file.empty() && config_folder.empty() && block_files.empty())
+      throw CLI::RequiredError("one of --in LOG, --config DIR, --blocks FILE");
     if (!config_folder.empty()) {
       const bool has_turns = !judge.scenes.empty() || !judge.points.empty() || !judge.captures.empty();
       if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
@@ -85,6 +93,8 @@ Options ParseOptions(int argc, char** argv) {
   judge.config_folder = config_folder;
   judge.csv_folder = csv_folder;
   judge.html_file = html_file;
+  judge.figures_folder = figures_folder;
+  judge.block_files.assign(block_files.begin(), block_files.end());
   return options;
 }
 
@@ -92,7 +102,8 @@ Options ParseOptions(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
-  return options.log.log_file.empty() ? eval::JudgeScenes(options.judge) : eval::EvaluateLog(options.log);
+  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  return options.judge.config_folder.empty() ? eval::FillBlocksOfFiles(options.judge) : eval::JudgeScenes(options.judge);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << error.what() << '\n';
   return kExitUsage;

@@ -1,13 +1,13 @@
 #include "tools/eval/result_tables.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
 #include <set>
 #include <stdexcept>
 
+#include "common/io/output_file.hpp"
 #include "tools/eval/against_peers.hpp"
 #include "tools/eval/metrics.hpp"
 
@@ -304,14 +304,12 @@ void PrintTables(const Results& results, std::ostream& out) {
   }
 }
 
-void WriteCsv(const Results& results, const std::filesystem::path& folder) {
+void WriteCsv(const Results& results, const std::filesystem::path& folder, bool force) {
   std::filesystem::create_directories(folder);
   for (const auto& table : TablesOf(results)) {
-    const auto file = folder / (table.name + ".csv");
-    std::ofstream out(file, std::ios::binary | std::ios::trunc);
-    table.table.PrintCsv(out);
-    out.close();
-    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+    io::OutputFile file(folder / (table.name + ".csv"), {.force = force});
+    table.table.PrintCsv(file.stream());
+    file.Commit();
   }
 }
 

@@ -24,7 +24,10 @@ std::vector<NamedTable> TablesOf(const Results& results);
 
 void PrintTables(const Results& results, std::ostream& out);
 
-/// Writes NAME.csv for each table, and makes the folder. @throws std::runtime_error when a file cannot be written
-void WriteCsv(const Results& results, const std::filesystem::path& folder);
+/// Writes NAME.csv for each table, and makes the folder.
+///
+/// @param force  replace what is there
+/// @throws std::runtime_error when a file is there, or cannot be written
+void WriteCsv(const Results& results, const std::filesystem::path& folder, bool force);
 
 }  // namespace lookout::eval
