@@ -17,6 +17,7 @@ class SegmenterMethod final : public Method {
   SegmenterMethod(std::string name, const segmenter::Params& params) : name_(std::move(name)), params_(params), segmenter_(params) {}
 
   std::string name() const override { return name_; }
+  bool knows_doubt() const override { return params_.method == segmenter::Method::kLookout; }
   Labelling Segment(const segmenter::Scan& scan) override;
 
  private:
