@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/runtime/progress.hpp"
 #include "lookout/run_info_t.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/plan.hpp"
-#include "tools/replay/progress.hpp"
 
 namespace lookout::replay {
 
@@ -38,8 +38,8 @@ struct InputSummary {
   std::vector<std::pair<std::string, std::int64_t>> refused;  // reason, count; counts above 0
 };
 
-/// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read
-InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& plan, Chain& chain, Progress& progress);
+/// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read; io::Stopped
+InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress);
 
 /// Config files (*.txtpb) whose text in force is not the same in both, by name.
 std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b);

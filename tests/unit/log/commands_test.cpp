@@ -31,6 +31,7 @@ class LogCommands : public log_test::SmallLog {
     SliceRequest request;
     request.inputs = {in};
     request.output = folder_ / "out";
+    request.force = true;
     return request;
   }
   // "POSE 10" and so on: channel and second.
@@ -89,7 +90,7 @@ TEST_F(LogCommands, RefuseWhatIsNoLog) {
   SetContent(folder_ / "text", "this is no log");
   EXPECT_THROW(Info({folder_ / "text"}, out_), std::runtime_error);
   EXPECT_THROW(Info({folder_ / "nowhere"}, out_), std::runtime_error);
-  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", out_), std::runtime_error);
+  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", false, out_), std::runtime_error);
   EXPECT_THROW(Slice(Request(folder_ / "text"), out_, errors_), std::runtime_error);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "nothing half done is left";
 }
@@ -124,6 +125,18 @@ TEST_F(LogCommands, SliceOfEverythingIsTheSameFile) {
   const auto request = Request(Write("log", TwoMinutes()));
   Slice(request, out_, errors_);
   EXPECT_EQ(Content(request.output), Content(request.inputs[0]));
+}
+
+TEST_F(LogCommands, NoCommandReplacesAFileUnlessItIsForced) {
+  const auto file = Write("log", TwoMinutes());
+  SetContent(folder_ / "out", "another recording");
+  auto request = Request(file);
+  request.force = false;
+  EXPECT_THROW(Slice(request, out_, errors_), std::runtime_error);
+  EXPECT_THROW(Repair(file, folder_ / "out", false, out_), std::runtime_error);
+  EXPECT_EQ(Content(folder_ / "out"), "another recording");
+  Repair(file, folder_ / "out", true, out_);
+  EXPECT_EQ(Content(folder_ / "out"), Content(file));
 }
 
 TEST_F(LogCommands, SliceGoesAcrossRotatedLogs) {
@@ -166,7 +179,7 @@ TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
   auto damaged = text.substr(0, text.size() - 1);
   damaged[third] = 'x';
   SetContent(file, damaged);
-  Repair(file, folder_ / "out", out_);
+  Repair(file, folder_ / "out", false, out_);
   const auto kept = Read(folder_ / "out");
   ASSERT_EQ(kept.size(), events.size() - 2);
   EXPECT_EQ(kept[2].bytes, events[3].bytes);
@@ -179,7 +192,7 @@ TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
 
 TEST_F(LogCommands, RepairOfAWholeLogIsTheSameFile) {
   const auto file = Write("log", TwoMinutes());
-  Repair(file, folder_ / "out", out_);
+  Repair(file, folder_ / "out", false, out_);
   EXPECT_EQ(Content(folder_ / "out"), Content(file));
   EXPECT_TRUE(Said("0 bytes lost in 0 stretches"));
 }
@@ -193,7 +206,7 @@ TEST_F(LogCommands, RepairLosesNoEventThatNoDamageTouched) {
     auto damaged = text;
     for (std::size_t i = 0; i < 40; ++i) damaged[place + i] = static_cast<char>(place * 31 + i * 7);
     SetContent(file, damaged);
-    Repair(file, folder_ / "out", out_);
+    Repair(file, folder_ / "out", true, out_);
     const auto kept = Read(folder_ / "out");
     std::size_t end = 0;
     std::size_t num_untouched = 0;
