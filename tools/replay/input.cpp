@@ -116,8 +116,10 @@ void FeedLog(const Feeding& feeding, const Plan& plan) {
   bus::LogReader reader(file);
   Order order(file, chain, progress);
   std::int64_t num_oversize = 0;
-  while (const auto event = reader.NextView([&plan](std::string_view channel) { return plan.Reads(channel); })) {
+  const auto is_wanted = [&plan](std::string_view channel) { return plan.Reads(channel) || log::RunMarks::IsMarked(channel); };
+  while (const auto event = reader.NextView(is_wanted)) {
     show(reader.position_bytes());
+    summary.marks.Add(event->time, event->channel, event->bytes);
     if (!plan.Reads(event->channel)) {
       const auto* known = bus::FindChannel(event->channel);
       Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
@@ -172,6 +174,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
     num_logs += is_log ? 1 : 0;
   }
   if (num_logs != 0 && num_logs != files.size()) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
+  inspection.is_logs = num_logs != 0;
   try {
     inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
   } catch (const std::runtime_error& error) {
@@ -204,6 +207,19 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
     num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
   }
   return summary;
+}
+
+std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, Chain& chain) {
+  // A navigator that ended long before the lidar: live the wait for it was given up, turn by turn.
+  constexpr std::chrono::seconds kGivenUp(2);
+  if (!inspection.is_logs) {
+    chain.Finish();
+    return 0;
+  }
+  const auto lidar = summary.marks.LastTime(bus::kLidarPackets.name);
+  const auto navigation = summary.marks.LastTime(bus::kNavRaw.name);
+  const bool is_navigation_gone = lidar && navigation && *lidar - *navigation > kGivenUp;
+  return chain.FinishLogs(summary.marks.WithoutEnd().empty() || is_navigation_gone);
 }
 
 std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b) {

@@ -22,6 +22,7 @@
 #include "common/runtime/process.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
+#include "tools/log/run_marks.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
 #include "tools/replay/plan.hpp"
@@ -143,6 +144,22 @@ void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& cha
   }
 }
 
+// Whether the logs hold a run from its start to its end, and what it means where they do not.
+void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) {
+  if (const auto channels = marks.WithoutStart(); !channels.empty()) {
+    spdlog::warn("{}: the input begins without a start mark, in the middle of a run; what is computed first need not equal the live run",
+                 lookout::log::Joined(channels));
+  }
+  if (const auto channels = marks.WithoutEnd(); !channels.empty()) {
+    spdlog::warn("{}: the input ends without an end mark: it was cut there, and nothing is computed for the scan and the poses that were under way",
+                 lookout::log::Joined(channels));
+  }
+  if (num_left_out > 0) {
+    spdlog::warn("{} messages of SEGMENTS at the end waited for a POSE that the input does not hold: no OBSTACLES are computed of them",
+                 num_left_out);
+  }
+}
+
 void Replay(const Options& options) {
   Output output(options);  // before all work
   const auto start = std::chrono::steady_clock::now();
@@ -152,11 +169,12 @@ void Replay(const Options& options) {
   output.SetRunInfo(RunInfoOf(options, inspection));
 
   lookout::replay::InputSummary summary;
+  std::int64_t num_left_out = 0;
   {
     const bool is_terminal = options.shows_progress || isatty(STDERR_FILENO) != 0;
     lookout::runtime::Progress progress("replay", stderr, is_terminal);
     summary = lookout::replay::Feed(options.inputs, inspection, chain, progress);
-    chain.Finish();
+    num_left_out = lookout::replay::Finish(summary, inspection, chain);
     output.Flush();
   }
   const double digest_s = lookout::ToSeconds(chain.digest_time());
@@ -165,6 +183,7 @@ void Replay(const Options& options) {
   const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a turn; else turns are told by what they give
   const auto num_turns = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
   PrintSummary(summary, chain, num_turns);
+  PrintMarks(summary.marks, num_left_out);
   spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
   PrintDigests(chain);
