@@ -114,6 +114,27 @@ TEST_F(LogCommands, SliceTakesFromToAndBeginsWithTheRunInfoBefore) {
   EXPECT_EQ(number, 3);
 }
 
+TEST_F(LogCommands, InfoSaysWhetherTheLogHoldsARunFromItsStartToItsEnd) {
+  const auto start = Packets(0, 0, lidar_packets_t::MARK_START);
+  const auto end = Packets(9, 9, lidar_packets_t::MARK_END);
+  Info({Write("whole", {start, NavRaw(0, 0, nav_raw_t::KIND_START), Packets(5, 1), NavRaw(5, 1), end, NavRaw(9, 2, nav_raw_t::KIND_END)})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS, NAV_RAW\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      with an end mark: LIDAR_PACKETS, NAV_RAW\n")) << out_.str();
+  out_.str("");
+  Info({Write("cut", {start, NavRaw(3, 7), Packets(5, 1)})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS\n")) << out_.str();
+  EXPECT_TRUE(Said("begins    without a start mark: NAV_RAW; what a replay gives first need not equal the live run\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      without an end mark: LIDAR_PACKETS, NAV_RAW; cut there")) << out_.str();
+  // Rotated files are one run.
+  out_.str("");
+  Info({Write("1", {start, Packets(1, 1)}), Write("2", {Packets(2, 2), end})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      with an end mark: LIDAR_PACKETS\n")) << out_.str();
+  out_.str("");
+  Info({Write("none", {Pose(0, 0), Event(start_, "LIDAR_PACKETS", {1, 2, 3})})}, out_);
+  EXPECT_TRUE(Said("marks     no raw channel")) << out_.str();
+}
+
 TEST_F(LogCommands, SliceTakesChannelsAndTheFirstRunInfoAllTheSame) {
   auto request = Request(Write("log", TwoMinutes()));
   request.channels = {"NOISE"};
