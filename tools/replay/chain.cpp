@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/config/text_config.hpp"
+#include "common/runtime/run_info.hpp"
 #include "services/georeferencer/params.hpp"
 #include "services/navigator/params.hpp"
 #include "services/segmenter/params.hpp"
@@ -32,6 +34,16 @@ void Timed(std::chrono::nanoseconds& total, Call call) {
 }
 
 }  // namespace
+
+void CheckConfig(const std::filesystem::path& config_folder) {
+  config::FaultList faults;
+  faults.Try([&] { runtime::EffectiveConfig(config_folder); });
+  faults.Try([&] { vlp16::LoadParams(config_folder); });
+  faults.Try([&] { segmenter::LoadParams(config_folder); });
+  faults.Try([&] { navigator::LoadParams(config_folder); });
+  faults.Try([&] { georeferencer::LoadParams(config_folder); });
+  faults.ThrowIfAny();
+}
 
 Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink)
     : sink_(std::move(sink)),

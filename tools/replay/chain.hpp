@@ -27,6 +27,11 @@ struct ChannelDigest {
   bus::Sha256 sha256;  // over the payloads, one after the other
 };
 
+/// What the processes would find wrong at their start, of all files at once.
+///
+/// @throws config::ConfigError
+void CheckConfig(const std::filesystem::path& config_folder);
+
 class Chain {
  public:
   /// Each message, with the time of the event that caused it.

@@ -218,6 +218,7 @@ int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_st("replay"));
   return lookout::runtime::RunMain("replay", [&options] {
     spdlog::set_pattern("%^%l%$ replay: %v");
+    lookout::replay::CheckConfig(options.config_folder);
     if (options.check_only) {
       fmt::print("{}", lookout::runtime::EffectiveConfig(options.config_folder));
       return;

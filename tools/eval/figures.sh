@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# The figures of the README files, measured anew: ./dev figures. Some minutes on one core; the tables are the same each time, but for times and date.
+#   tools/eval/figures.sh [SEEDS]   seeds of each scene (default 20)
+# The captures of the second world lie beside the project, or where LOOKOUT_CAPTURES says; where they do not, the figures say so.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+figures=tools/eval/figures
+eval=build/release/bin/lookout-eval
+
+"$eval" --config config/catabot --scenes all --captures "${LOOKOUT_CAPTURES:-../shared/data/second_world}" --methods all --seeds "${1:-20}" --seconds 1 --test 1,2,3 \
+  --figures "$figures" --force
+mapfile -t readmes < <(git ls-files '*.md' | xargs grep -l '^<!-- figures: ')
+[ ${#readmes[@]} -eq 0 ] || "$eval" --figures "$figures" --blocks "${readmes[@]}"
