@@ -279,7 +279,7 @@ void ForEachLine(std::string_view text, Handler handle) {
 std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& date) {
   std::vector<ReadmeFigure> figures;
   const auto tables = TablesOf(results);
-  std::vector<std::string> scope{"Measured " + date + " by `./dev figures` (" + results.version + ")."};
+  std::vector<std::string> scope{"Measured " + date + " by `./dev figures`, version " + results.version + "."};
   for (const auto* world : WorldsOf(results)) scope.push_back(Scope(*world));
   const auto add = [&](const std::string& name, const std::string& caption, Table table) {
     if (table.empty()) return;
@@ -326,7 +326,13 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
                         scope.front()},
                        sweeps});
   }
-  add("tests", "Tests 1 to 3 of the paper, on their own scenes.", TestTable(results));
+  if (const auto tests = TestTable(results); !tests.empty()) {
+    figures.push_back({"tests",
+                       {"Tests 1 to 3 of the paper, on scenes of their own; " + std::to_string(results.num_seeds) + " seeds from " +
+                            std::to_string(results.first_seed) + " on.",
+                        scope.front()},
+                       tests});
+  }
   return figures;
 }
 
