@@ -4,13 +4,15 @@ set(LOOKOUT_FUZZ "" CACHE STRING "Fuzz targets: empty, SOURCES (compiled as plai
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # A second checkout of the same sources takes what the first has compiled.
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
+  # A second checkout of the same sources takes what the first has compiled, whatever the locale.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=locale ${CCACHE})
 endif()
 
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Werror)
-# Same bytes on every computer of one kind: no fused multiply-add unless written.
+# Same bytes on every computer: no fused multiply-add, and no Eigen kernels, whose order of sums (SSE, NEON) and fused multiply-adds (NEON) depend on the
+# vector unit. For the whole project, since it changes how Eigen's types are aligned. The compiler's own vectors change no result.
 add_compile_options(-ffp-contract=off)
+add_compile_definitions(EIGEN_DONT_VECTORIZE)
 # Loops over the cells of a turn as vectors also where their length is not known before: GCC 12 does so from -O3 on, Clang at -O2. No other result.
 add_compile_options($<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-fvect-cost-model=dynamic>)
 if(LOOKOUT_SANITIZE)
@@ -72,6 +74,24 @@ function(lookout_test)
     math(EXPR test_TIMEOUT "5 * ${test_TIMEOUT}")  # sanitizers slow filters and simulations ten times and more
   endif()
   set_tests_properties(${test_NAME} PROPERTIES TIMEOUT ${test_TIMEOUT} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+endfunction()
+
+# A test made longer by its environment: too long for every change, ./dev test slow runs it as slow_<NAME>.
+#   lookout_slow_test(NAME system_proof ENVIRONMENT LOOKOUT_PROOF_SECONDS=60 [COMMAND a b] [TIMEOUT 600])
+function(lookout_slow_test)
+  cmake_parse_arguments(test "" "NAME;TIMEOUT" "ENVIRONMENT;COMMAND" ${ARGN})
+  if(LOOKOUT_SANITIZE)
+    return()
+  endif()
+  if(NOT test_COMMAND)
+    set(test_COMMAND $<TARGET_FILE:${test_NAME}>)
+  endif()
+  if(NOT test_TIMEOUT)
+    set(test_TIMEOUT 1800)
+  endif()
+  add_test(NAME slow_${test_NAME} COMMAND ${test_COMMAND})
+  set_tests_properties(slow_${test_NAME} PROPERTIES LABELS slow ENVIRONMENT "${test_ENVIRONMENT}" TIMEOUT ${test_TIMEOUT} SKIP_RETURN_CODE 77 RUN_SERIAL TRUE
+                                                    WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
 endfunction()
 
 # Speed under sanitizers tells nothing: benchmarks are not built there.

@@ -8,3 +8,6 @@ add_test(NAME system_restart COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_names
 set_tests_properties(system_restart PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 add_test(NAME system_deploy COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/deploy_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
 set_tests_properties(system_deploy PROPERTIES TIMEOUT 60)
+lookout_slow_test(NAME system_restart ENVIRONMENT LOOKOUT_KILL_ROUNDS=5
+                  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_restart>)
+lookout_slow_test(NAME check_package COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/package_test.sh)

@@ -11,3 +11,4 @@ lookout_bench(NAME bench_georeferencer SOURCES bench/georeferencer_bench.cpp LIN
 lookout_fuzz(NAME fuzz_georeferencer SOURCES fuzz/georeferencer_fuzz.cpp LINKS lookout_georeferencer)
 lookout_test(NAME property_georeferencer_obstacles SOURCES property/georeferencer_obstacles_test.cpp
              LINKS lookout_eval lookout_replay lookout_sim lookout_config lookout_bus TIMEOUT 300)
+lookout_slow_test(NAME property_georeferencer_obstacles ENVIRONMENT LOOKOUT_OBSTACLE_SEEDS=20)

@@ -15,3 +15,4 @@ lookout_test(NAME property_navigator_accuracy SOURCES property/navigator_accurac
 lookout_test(NAME property_sim_wire_truth SOURCES property/sim_wire_truth_test.cpp LINKS lookout_sim lookout_wire pcap TIMEOUT 180)
 lookout_test(NAME unit_sim_options SOURCES unit/sim/options_test.cpp ../tools/sim/options.cpp
              LINKS lookout_sim lookout_config lookout_config_schema lookout_runtime lookout_wire)
+lookout_slow_test(NAME property_navigator_accuracy ENVIRONMENT LOOKOUT_NAVIGATOR_SEEDS=20)

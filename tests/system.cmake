@@ -1,10 +1,19 @@
 # Programs as a user or a boat runs them. The live ones run in network namespaces that they make themselves.
 lookout_test(NAME system_replay SOURCES system/replay_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 300)
 add_dependencies(system_replay lookout-replay lookout-export lookout-sim)
+lookout_test(NAME system_same_bytes SOURCES system/same_bytes_test.cpp TIMEOUT 300)
+add_dependencies(system_same_bytes lookout-replay lookout-sim)
 lookout_test(NAME system_points SOURCES system/points_test.cpp TIMEOUT 120)
 add_dependencies(system_points lookout-eval)
 lookout_test(NAME system_mounting_error SOURCES system/mounting_error_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 120)
 add_dependencies(system_mounting_error lookout-replay lookout-eval lookout-sim)
+
+# The same bytes whatever the locale, and lookout-up from a folder whose name no shell likes.
+add_custom_target(system_locale)
+add_dependencies(system_locale programs)
+add_test(NAME system_locale COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route
+                                    ${CMAKE_CURRENT_SOURCE_DIR}/system/locale_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
+set_tests_properties(system_locale PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77)
 
 foreach(name live proof ingestion sources no_route two_computers doctor)
   add_executable(system_${name} system/${name}_test.cpp)
@@ -26,11 +35,15 @@ add_test(NAME system_sources COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_names
 add_test(NAME system_no_route COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_no_route>)
 add_test(NAME system_two_computers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_two_computers>)
 add_dependencies(system_doctor lookout-doctor lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
-add_test(NAME system_doctor COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_doctor>)
-add_test(NAME system_doctor_no_route COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_doctor>)
+add_test(NAME system_doctor
+         COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_doctor> --gtest_filter=-*WhereNothingIs)
+add_test(NAME system_doctor_no_route
+         COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_doctor> --gtest_filter=*WhereNothingIs)
 # RUN_SERIAL: they keep real time.
 set_tests_properties(system_live system_proof system_ingestion system_sources system_no_route system_two_computers system_doctor system_doctor_no_route
                      PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+lookout_slow_test(NAME system_proof ENVIRONMENT LOOKOUT_PROOF_SECONDS=60
+                  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_proof>)
 
 # The loads of ./dev bench, in a namespace as well. Not Google Benchmarks.
 foreach(name vlp16 live)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The demo: simulate (or take a capture), replay, run all processes live, show the obstacles. Called by ./dev demo [CAPTURE].
+# The demo: simulate (or take a capture), replay, run all processes live and record them, replay the recording and compare. Called by
+# ./dev demo [CAPTURE].
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,16 +17,30 @@ capture=${1:-}
 
 say() { printf '\n== %s\n' "$*"; }
 
-# Live processes need a multicast route. Where there is none, the whole demo goes into a network namespace of its own.
+# Live processes need a multicast route. Where there is none, the whole demo goes into a network namespace of its own; root needs no user namespace
+# for that, which a chroot would not permit.
 if [ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] && ! ip route get 239.255.76.67 >/dev/null 2>&1; then
-  if unshare -rn true 2>/dev/null; then
+  isolated=(unshare -rn)
+  [ "$(id -u)" -ne 0 ] || isolated=(unshare -n)
+  if "${isolated[@]}" true 2>/dev/null; then
     export LOOKOUT_DEMO_NAMESPACE=1
-    exec unshare -rn bash -c 'ip link set lo up && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo && exec "$0" "$@"' \
+    exec "${isolated[@]}" bash -c 'ip link set lo up && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo && exec "$0" "$@"' \
       "$PWD/tools/demo.sh" "$@"
   fi
   echo "LCM needs a multicast route and there is none. As root: ip route add 239.255.76.0/24 dev lo" >&2
   exit 1
 fi
+
+# How many obstacles a log holds, as lookout-export gives them.
+count_obstacles() {  # LOG
+  "$bin/lookout-export" --in "$1" --table obstacles | LC_ALL=C awk -F, '
+    NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
+    { ++num; turns[$column["scan_utime_us"]] = 1; if ($column["status"] == "ok") ++num_placed; if ($column["confidence"] == "sure") ++num_sure }
+    END {
+      for (turn in turns) ++num_turns
+      printf "%d obstacles in %d turns, %d of them sure, %d placed on the earth\n", num, num_turns, num_sure, num_placed
+    }'
+}
 
 rm -rf "$work"
 mkdir -p "$work" logs
@@ -33,18 +48,15 @@ mkdir -p "$work" logs
 if [ -n "$capture" ]; then
   [ -f "$capture" ] || { echo "$capture: no such file" >&2; exit 2; }
   input=$capture
-  truth=()
 else
   say "simulating $seconds s of the scene '$scene' to $work/sim.pcap"
   "$bin/lookout-sim" --config "$config" --scene "$scene" --seed "$seed" --seconds "$seconds" --pcap "$work/sim.pcap" --truth "$work/truth"
   input=$work/sim.pcap
-  truth=(--truth "$work/truth")
 fi
 
 say "replaying $input: one process, as fast as it goes (channel, messages, SHA-256 of the payloads)"
 "$bin/lookout-replay" --config "$config" --in "$input" --out "$work/replay.lcmlog"
-say "obstacles of the replay"
-"$bin/lookout-eval" --in "$work/replay.lcmlog" "${truth[@]}"
+count_obstacles "$work/replay.lcmlog"
 
 say "all processes live on LCM"
 live_config=$work/config
@@ -61,6 +73,9 @@ trap stop_all EXIT
 # Those that take before those that give: nobody misses a first message.
 for service in recorder georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
 lidar=${live_pids[vlp16]}
+# What the bus carries, seen in the middle of the run.
+(sleep 2 && exec "$bin/lookout-top" --once --seconds 3) >"$work/top.out" 2>&1 &
+watcher=$!
 
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
@@ -73,8 +88,8 @@ else
   rm -rf "$work/truth-live"
   "$bin/lookout-sim" --config "$live_config" --scene "$scene" --seed "$seed" --seconds "$seconds" --udp 127.0.0.1 --truth "$work/truth-live"
   sleep 1.5  # the last HEALTH
-  truth=(--truth "$work/truth-live")
 fi
+wait "$watcher" || { cat "$work/top.out" >&2; exit 1; }
 stop_all
 trap - EXIT
 
@@ -84,8 +99,16 @@ if [ -z "$log" ] || [ ! -s "$log" ]; then
   cat "$work"/*.out >&2
   exit 1
 fi
-say "obstacles, losses and times of the live run"
-"$bin/lookout-eval" --in "$log" "${truth[@]}"
+say "the live run as lookout-top saw it, in the middle"
+cat "$work/top.out"
+say "what was recorded (missing: messages lost on their way)"
+"$bin/lookout-log" info "$log"
+count_obstacles "$log"
+
+say "the recording computed again from its raw channels, and compared, byte by byte"
+"$bin/lookout-replay" --config "$live_config" --in "$log" --out "$work/again.lcmlog" >/dev/null 2>"$work/again.out" || { cat "$work/again.out" >&2; exit 1; }
+is_equal=1
+"$bin/lookout-diff" "$log" "$work/again.lcmlog" || is_equal=''
 
 picture=${log%.lcmlog}.svg
 "$bin/lookout-export" --in "$log" --table returns --format svg --out "$picture"
@@ -96,8 +119,12 @@ log       $log
           play it:      lcm-logplayer $log
           again:        $bin/lookout-replay --config $config --in $log --out again.lcmlog
           tables:       $bin/lookout-export --in $log --table obstacles
-          watch it:     $bin/lookout-top in a terminal, or $bin/lookout-spy --view on a display,
-                        then lcm-logplayer in another terminal
+          watch it:     $bin/lookout-top in a terminal, then lcm-logplayer in another
 picture   $picture
           open it in a browser, or: xdg-open $picture
+more      ./dev build makes the rest: lookout-eval (obstacles against the simulator's truth), lookout-spy (the bus on a display), lookout-doctor
 TEXT
+if [ -z "$is_equal" ]; then
+  echo "the recording and its replay differ: see above" >&2
+  exit 1
+fi

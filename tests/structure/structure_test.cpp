@@ -89,7 +89,7 @@ const std::vector<Rule>& Rules() {
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
-      {"services/(georeferencer|navigator)/core/.*", {"common/core", "OWN/core", "OWN/core/filter", "geographiclib"}},
+      {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
@@ -142,6 +142,27 @@ TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
   }
 }
 
+// Functions whose results IEEE 754 does not fix differ between processors and C libraries. common/core/elementary.hpp has them. Eigen's angles call
+// them too.
+TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor) {
+  const std::regex call(
+      R"re(\b(std::)?(a?(sin|cos|tan)h?|atan2|exp2?|expm1|log(2|10|1p)?|pow|hypot|cbrt|erfc?|lgamma|tgamma|fma|lerp|polar)f?\(|AngleAxis|\.slerp\(|angularDistance|eulerAngles|Rotation2D|std::complex|_distribution)re");
+  int num_checked = 0;
+  for (const auto& folder : {"common", "services", "tools/replay"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) {
+      std::istringstream text(Read(file));
+      int number = 0;
+      for (std::string line; std::getline(text, line);) {
+        ++number;
+        const std::string code = line.substr(0, line.find("//"));
+        EXPECT_FALSE(std::regex_search(code, call)) << fs::relative(file, kRoot).string() << ":" << number << ": " << line;
+        ++num_checked;
+      }
+    }
+  }
+  EXPECT_GT(num_checked, 10'000);
+}
+
 TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
   const std::string readme = Read(kRoot / "lcmtypes/README.md");
   for (const auto& channel : lookout::bus::kChannels) {
@@ -162,6 +183,24 @@ TEST(Structure, ReadmeNamesEveryProgram) {
       EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path() << " has no README.md";
     }
   }
+}
+
+// deploy/README.md and systemd's reload go by this column.
+TEST(Structure, TheTableOfProcessesSaysWhoTakesSighup) {
+  std::istringstream table(Read(kRoot / "deploy/processes"));
+  int num_processes = 0;
+  for (std::string line; std::getline(table, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream row(line);
+    std::string name;
+    std::string watchdog_s;
+    std::string reload;
+    row >> name >> watchdog_s >> reload;
+    const bool takes_it = Read(kRoot / "services" / name / "main.cpp").find("process.OnHangup(") != std::string::npos;
+    EXPECT_EQ(reload == "yes", takes_it) << name;
+    ++num_processes;
+  }
+  EXPECT_GE(num_processes, 5);
 }
 
 // A README says what a folder is and how to use it; why it became so stands beside it, with dates.

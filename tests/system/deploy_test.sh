@@ -81,7 +81,7 @@ code=0; "$build_folder/bin/lookout-replay" --config "$config" --check >"$work/re
 sed -E 's/^[a-z]+ replay: //' "$work/replay.txt" | sort | diff - <(grep -v allowed_source_address "$work/wrong.txt" | sort) || fail "lookout-replay finds other faults"
 
 if ! command -v systemd-analyze >/dev/null; then
-  echo "units are not looked at: there is no systemd-analyze here"
+  echo "skipped: the units are not looked at: there is no systemd-analyze (package systemd)"
   exit 0
 fi
 for unit in "$build_folder"/deploy/systemd/lookout-*.service; do

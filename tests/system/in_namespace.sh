@@ -5,12 +5,18 @@
 set -euo pipefail
 mode=$1
 shift
-isolated=(unshare -rn --pid --fork --kill-child --mount-proc)
+# Root needs no user namespace, which a chroot would not permit. Where a chroot's root is no mount point, its mounts stay as they are.
+if [ "$(id -u)" -eq 0 ]; then user=(-n); else user=(-rn); fi
+processes=(--pid --fork --kill-child --mount-proc)
+isolated=(unshare "${user[@]}" "${processes[@]}")
 if ! "${isolated[@]}" true 2>/dev/null; then
-  isolated=(unshare -rn)
+  isolated=(unshare "${user[@]}" --propagation unchanged "${processes[@]}")
   if ! "${isolated[@]}" true 2>/dev/null; then
-    echo "skipped: this computer does not permit network namespaces (unshare -rn)"
-    exit 77
+    isolated=(unshare "${user[@]}")
+    if ! "${isolated[@]}" true 2>/dev/null; then
+      echo "skipped: this computer does not permit network namespaces (${isolated[*]})"
+      exit 77
+    fi
   fi
 fi
 prepare='ip link set lo up'
