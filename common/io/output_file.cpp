@@ -67,6 +67,15 @@ std::optional<int> OpenDescriptorOf(const fs::path& file) {
   return std::nullopt;
 }
 
+// Whether a program says that it writes the file now: a recorder does.
+bool IsLocked(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+  if (descriptor < 0) return false;
+  const bool is_locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(descriptor);
+  return is_locked;
+}
+
 // The names of a folder are on the disk as well. Where folders cannot be synced the file system does it by itself.
 void SyncFolder(const fs::path& file) {
   const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -161,7 +170,10 @@ struct OutputFile::Implementation final : public std::streambuf {
     const auto followed = StateOf(file);
     if (S_ISDIR(state->st_mode) || (followed && S_ISDIR(followed->st_mode))) throw Fault(file, "is a folder");
     if (followed && IsAmong(options.inputs, *followed)) throw Fault(file, "is an input");
-    if (options.force) return;
+    if (options.force) {
+      if (IsLocked(file)) throw Fault(file, "is being written by another program");
+      return;
+    }
     if (S_ISLNK(state->st_mode)) throw Fault(file, "exists already, as a symbolic link; --force replaces the link, not what it points to");
     throw Fault(file, "exists already; --force replaces it");
   }
@@ -291,6 +303,10 @@ struct OutputFile::Implementation final : public std::streambuf {
     const auto state = StateOfName(partial);
     if (!state || fstat(descriptor, &own) != 0 || !IsSame(own, *state)) {
       throw Fault(file, partial.string() + " was moved or removed while it was written");
+    }
+    if (options.force && IsLocked(file)) {
+      is_done = true;
+      throw Fault(file, "is being written by another program; the whole result is in " + partial.string());
     }
     const int fault = options.force ? (rename(partial.c_str(), file.c_str()) == 0 ? 0 : errno) : RenameWithoutReplacing(partial, file);
     if (fault == 0) return;

@@ -123,6 +123,20 @@ void Chain::Finish() {
   Drain();
 }
 
+std::int64_t Chain::FinishLogs(bool is_whole) {
+  if (!time_) return 0;
+  if (navigator_ && is_navigation_live_ && is_whole) {  // out of LIDAR_NMEA: it sets its own end mark
+    Timed(navigator_time_, [&] { navigator_->Finish(*time_); });
+    Drain();
+  }
+  if (!georeferencer_) return 0;
+  const bool has_pose = bus_.input_traffic().contains(bus::kPose.name);
+  if (!is_whole && has_pose) return georeferencer_->num_waiting();
+  georeferencer_->Finish();
+  Drain();
+  return 0;
+}
+
 void Chain::Drain() {
   while (bus_.HandleOnce()) {
   }

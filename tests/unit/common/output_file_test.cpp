@@ -226,6 +226,24 @@ TEST_F(Output, IsWrittenByOneProgramAtATime) {
   EXPECT_EQ(Content(file_), "first");
 }
 
+// A log that is being recorded.
+TEST_F(Output, DoesNotReplaceAFileThatAnotherProgramHasLockedAlsoByForce) {
+  SetContent(file_, "a recording");
+  const int recorder = open(file_.c_str(), O_WRONLY | O_APPEND);
+  ASSERT_EQ(flock(recorder, LOCK_EX), 0);
+  ExpectHas(FaultOf(file_, true), "is being written by another program");
+  close(recorder);
+  EXPECT_EQ(FaultOf(file_, true), "");
+  OutputFile output(file_, Options(true));
+  output.Write("new");
+  const int late = open(file_.c_str(), O_WRONLY | O_APPEND);
+  ASSERT_EQ(flock(late, LOCK_EX), 0);
+  EXPECT_THROW(output.Commit(), std::runtime_error);
+  close(late);
+  EXPECT_EQ(Content(file_), "a recording");
+  EXPECT_EQ(Content(partial_), "new");
+}
+
 // Many at once: one wins, the others say why not, and nobody's bytes are mixed.
 TEST_F(Output, OfManyAtOnceIsWhole) {
   constexpr int kNumThreads = 8;
