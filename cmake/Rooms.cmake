@@ -9,8 +9,10 @@ if(CCACHE)
 endif()
 
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Werror)
-# Same bytes on every computer of one kind: no fused multiply-add unless written.
+# Same bytes on every computer: no fused multiply-add, and no Eigen kernels, whose order of sums (SSE, NEON) and fused multiply-adds (NEON) depend on the
+# vector unit. For the whole project, since it changes how Eigen's types are aligned. The compiler's own vectors change no result.
 add_compile_options(-ffp-contract=off)
+add_compile_definitions(EIGEN_DONT_VECTORIZE)
 # Loops over the cells of a turn as vectors also where their length is not known before: GCC 12 does so from -O3 on, Clang at -O2. No other result.
 add_compile_options($<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:RelWithDebInfo>>:-fvect-cost-model=dynamic>)
 if(LOOKOUT_SANITIZE)

@@ -1,8 +1,18 @@
 lookout_test(NAME structure SOURCES structure/structure_test.cpp LINKS lookout_bus)
+# What is linked into a service, down to what Eigen calls.
+set(reaches_messages lookout_core lookout_bus lookout_replay)
+foreach(service vlp16 segmenter navigator georeferencer)
+  list(APPEND reaches_messages lookout_${service}_core lookout_${service})
+endforeach()
+list(TRANSFORM reaches_messages REPLACE ".+" "$<TARGET_FILE:\\0>" OUTPUT_VARIABLE reaches_messages_files)
+add_test(NAME structure_libm COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/structure/libm_test.sh ${CMAKE_NM} ${reaches_messages_files})
 lookout_test(NAME unit_common
              SOURCES unit/common/angles_test.cpp unit/common/clock_fit_test.cpp unit/common/frames_test.cpp unit/common/bytes_test.cpp unit/common/bus_test.cpp
                      unit/common/sequence_test.cpp unit/common/log_file_test.cpp unit/common/wire_description_test.cpp
-                     unit/common/text_config_test.cpp unit/common/health_test.cpp unit/common/notify_test.cpp
-             LINKS lookout_runtime lookout_bus lookout_config lookout_wire)
+                     unit/common/text_config_test.cpp unit/common/health_test.cpp unit/common/machine_test.cpp unit/common/notify_test.cpp unit/common/output_file_test.cpp
+             LINKS lookout_runtime lookout_bus lookout_config lookout_io lookout_wire lcm)
+# Their bounds of error against the C library's long double and against GeographicLib.
+lookout_test(NAME unit_elementary SOURCES unit/common/elementary_test.cpp LINKS lookout_core)
+lookout_test(NAME unit_geodesy SOURCES unit/common/geodesy_test.cpp LINKS lookout_core ${GeographicLib_LIBRARIES})
 lookout_fuzz(NAME fuzz_message SOURCES fuzz/message_fuzz.cpp LINKS lookout_bus lookout_wire)
 lookout_fuzz(NAME fuzz_config SOURCES fuzz/config_fuzz.cpp LINKS lookout_config)

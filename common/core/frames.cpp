@@ -1,30 +1,46 @@
 #include "common/core/frames.hpp"
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout {
 
-using Eigen::AngleAxisd;
-using Eigen::Vector3d;
-
 Eigen::Vector3d BeamDirection(double azimuth_rad, double elevation_rad) {
-  const double horizontal = std::cos(elevation_rad);
-  return {horizontal * std::cos(azimuth_rad), -horizontal * std::sin(azimuth_rad), std::sin(elevation_rad)};
+  const auto [sin_elevation, cos_elevation] = SinCosOf(elevation_rad);
+  const auto [sin_azimuth, cos_azimuth] = SinCosOf(azimuth_rad);
+  return {cos_elevation * cos_azimuth, -cos_elevation * sin_azimuth, sin_elevation};
+}
+
+Eigen::Matrix3d RotationAboutX(double angle_rad) {
+  const auto [sine, cosine] = SinCosOf(angle_rad);
+  Eigen::Matrix3d rotation;
+  rotation << 1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine;
+  return rotation;
+}
+
+Eigen::Matrix3d RotationAboutY(double angle_rad) {
+  const auto [sine, cosine] = SinCosOf(angle_rad);
+  Eigen::Matrix3d rotation;
+  rotation << cosine, 0.0, sine, 0.0, 1.0, 0.0, -sine, 0.0, cosine;
+  return rotation;
+}
+
+Eigen::Matrix3d RotationAboutZ(double angle_rad) {
+  const auto [sine, cosine] = SinCosOf(angle_rad);
+  Eigen::Matrix3d rotation;
+  rotation << cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0;
+  return rotation;
 }
 
 Eigen::Isometry3d TransformVesselSensor(const Mounting& mounting) {
   Eigen::Isometry3d T_vessel_sensor = Eigen::Isometry3d::Identity();
-  T_vessel_sensor.linear() = (AngleAxisd(mounting.yaw_rad, Vector3d::UnitZ()) * AngleAxisd(mounting.pitch_rad, Vector3d::UnitY()) *
-                              AngleAxisd(mounting.roll_rad, Vector3d::UnitX()))
-                                 .toRotationMatrix();
+  T_vessel_sensor.linear() = RotationAboutZ(mounting.yaw_rad) * RotationAboutY(mounting.pitch_rad) * RotationAboutX(mounting.roll_rad);
   T_vessel_sensor.translation() = mounting.p_vessel_m;
   return T_vessel_sensor;
 }
 
 Eigen::Matrix3d RotationMapVessel(double heading_rad, double pitch_rad, double roll_rad) {
-  return (AngleAxisd(kPi / 2.0 - heading_rad, Vector3d::UnitZ()) * AngleAxisd(-pitch_rad, Vector3d::UnitY()) *
-          AngleAxisd(roll_rad, Vector3d::UnitX()))
-      .toRotationMatrix();
+  return RotationAboutZ(kPi / 2.0 - heading_rad) * RotationAboutY(-pitch_rad) * RotationAboutX(roll_rad);
 }
 
 }  // namespace lookout

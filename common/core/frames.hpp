@@ -12,6 +12,11 @@ namespace lookout {
 /// @return unit vector
 Eigen::Vector3d BeamDirection(double azimuth_rad, double elevation_rad);
 
+/// Rotations about one axis, right-handed.
+Eigen::Matrix3d RotationAboutX(double angle_rad);
+Eigen::Matrix3d RotationAboutY(double angle_rad);
+Eigen::Matrix3d RotationAboutZ(double angle_rad);
+
 /// Place and attitude of a sensor in the vessel frame, as config gives it.
 struct Mounting {
   Eigen::Vector3d p_vessel_m = Eigen::Vector3d::Zero();

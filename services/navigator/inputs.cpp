@@ -12,6 +12,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "common/io/ip_address.hpp"
 #include "services/navigator/core/sentence.hpp"
 
@@ -218,8 +219,8 @@ std::string SourceInWords(const Params& params, const SourceParams& source) {
   const auto& navigator = params.navigator;
   const double pitch_rad = source.pitch_sign * DegToRad(kExampleDeg) + navigator.pitch_offset_rad;
   const double roll_rad = source.roll_sign * DegToRad(kExampleDeg) + navigator.roll_offset_rad;
-  const double ahead_up_m = kExampleM * std::sin(pitch_rad);
-  const double starboard_up_m = -kExampleM * std::sin(roll_rad);
+  const double ahead_up_m = kExampleM * Sin(pitch_rad);
+  const double starboard_up_m = -kExampleM * Sin(roll_rad);
   std::string words = "# input '" + source.name + "': " + PlaceInWords(params, source.name) + "; " + RoleInWords(source.role) + ".\n";
   if (source.role == Role::kAll || source.role == Role::kAttitude) {
     words += "#   pitch: bow " + std::string(source.pitch_sign > 0 ? "up" : "down") +

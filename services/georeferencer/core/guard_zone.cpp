@@ -5,13 +5,18 @@
 #include <cstddef>
 #include <vector>
 
+#include "common/core/elementary.hpp"
+
 namespace lookout::georeferencer {
 
 namespace {
 
 // Vessel frame: x forward, y port; bearings go clockwise.
-double BearingOf(const Eigen::Vector2d& p_vessel_m) { return WrapTo2Pi(std::atan2(-p_vessel_m.y(), p_vessel_m.x())); }
-Eigen::Vector2d DirectionOf(double bearing_rad) { return {std::cos(bearing_rad), -std::sin(bearing_rad)}; }
+double BearingOf(const Eigen::Vector2d& p_vessel_m) { return WrapTo2Pi(Atan2(-p_vessel_m.y(), p_vessel_m.x())); }
+Eigen::Vector2d DirectionOf(double bearing_rad) {
+  const auto [sine, cosine] = SinCosOf(bearing_rad);
+  return {cosine, -sine};
+}
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 

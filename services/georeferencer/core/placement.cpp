@@ -1,18 +1,18 @@
 #include "services/georeferencer/core/placement.hpp"
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "common/core/frames.hpp"
+#include "common/core/geodesy.hpp"
 
 namespace lookout::georeferencer {
 
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Matrix2d;
 using Eigen::Matrix3d;
@@ -88,10 +88,10 @@ void PlaceOnEarth(const Segment& segment, const std::vector<Vector3d>& outline_m
   const Vector3d center_map_m = FootprintCenter(outline_map_m);
   const Vector3d center_vessel_m = TransformMapVessel(pose).inverse() * center_map_m;
   const Datum& datum = pose.datum;
-  const GeographicLib::LocalCartesian map(datum.latitude_deg, datum.longitude_deg,
-                                          std::isfinite(datum.ellipsoid_height_m) ? datum.ellipsoid_height_m : 0.0);
-  double height_m = 0.0;
-  map.Reverse(center_map_m.x(), center_map_m.y(), center_map_m.z(), obstacle.latitude_deg, obstacle.longitude_deg, height_m);
+  const LocalFrame map({datum.latitude_deg, datum.longitude_deg, std::isfinite(datum.ellipsoid_height_m) ? datum.ellipsoid_height_m : 0.0});
+  const GeodeticPlace place = map.Reverse(center_map_m);
+  obstacle.latitude_deg = place.latitude_deg;
+  obstacle.longitude_deg = place.longitude_deg;
   obstacle.status = ObstacleStatus::kOk;
   obstacle.position_map_m = center_map_m.head<2>();
   obstacle.center_vessel_m = center_vessel_m.head<2>();
@@ -136,9 +136,9 @@ Vector3d FootprintCenter(const std::vector<Vector3d>& vertices) {
 }
 
 Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params) {
-  const AngleAxisd by_heading(kPi / 2.0 - pose.heading_rad, Vector3d::UnitZ());
-  const AngleAxisd by_pitch(-pose.pitch_rad, Vector3d::UnitY());
-  const AngleAxisd by_roll(pose.roll_rad, Vector3d::UnitX());
+  const Matrix3d by_heading = RotationAboutZ(kPi / 2.0 - pose.heading_rad);
+  const Matrix3d by_pitch = RotationAboutY(-pose.pitch_rad);
+  const Matrix3d by_roll = RotationAboutX(pose.roll_rad);
   const Vector3d rolled_m = by_roll * p_vessel_m;
   const Vector3d levelled_m = by_pitch * rolled_m;
   const Vector3d p_m = by_heading * levelled_m;  // map axes, from the vessel's origin
@@ -150,7 +150,7 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
   jacobian.col(3) = -(by_heading * Vector3d::UnitY().cross(levelled_m)).head<2>();
   jacobian.col(4) = -Vector3d::UnitZ().cross(p_m).head<2>();
 
-  const Matrix3d R_map_vessel = (by_heading * by_pitch * by_roll).toRotationMatrix();
+  const Matrix3d R_map_vessel = by_heading * by_pitch * by_roll;
   const Vector3d beam_m = p_m - R_map_vessel * params.T_vessel_lidar.translation();
   const double beam_m2 = beam_m.squaredNorm();
   const Matrix2d along_m2 = (beam_m * beam_m.transpose()).topLeftCorner<2, 2>();
@@ -184,7 +184,7 @@ Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Da
   obstacle.center_vessel_m = FootprintCenter(outline_vessel_m).head<2>();
   obstacle.nearest_vessel_m = T_vessel_lidar * segment.nearest_m;
   obstacle.range_m = obstacle.nearest_vessel_m.head<2>().norm();
-  obstacle.bearing_rad = WrapTo2Pi(std::atan2(-obstacle.nearest_vessel_m.y(), obstacle.nearest_vessel_m.x()));
+  obstacle.bearing_rad = WrapTo2Pi(Atan2(-obstacle.nearest_vessel_m.y(), obstacle.nearest_vessel_m.x()));
   obstacle.length_m = segment.length_m;
   obstacle.width_m = segment.width_m;
   obstacle.height_m = segment.max_z_m - segment.min_z_m;

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout::navigator {
 
@@ -338,8 +339,8 @@ Reading Interpreter::On(const Item& item, Source& source, const VnIns& ins) {
     fix.direct_ellipsoid_height_m = ins.ellipsoid_height_m;
     // Zeros stand for what is not known.
     fix.horizontal_sd_m = fix.vertical_sd_m = ins.position_sd_m > 0.0 ? ins.position_sd_m : kNan;
-    fix.speed_mps = std::hypot(ins.velocity_ned_mps.x(), ins.velocity_ned_mps.y());
-    fix.course_rad = fix.speed_mps > 0.0 ? WrapTo2Pi(std::atan2(ins.velocity_ned_mps.y(), ins.velocity_ned_mps.x())) : kNan;
+    fix.speed_mps = Hypot(ins.velocity_ned_mps.x(), ins.velocity_ned_mps.y());
+    fix.course_rad = fix.speed_mps > 0.0 ? WrapTo2Pi(Atan2(ins.velocity_ned_mps.y(), ins.velocity_ned_mps.x())) : kNan;
     fix.climb_mps = -ins.velocity_ned_mps.z();
     fix.velocity_sd_mps = ins.velocity_sd_mps > 0.0 ? ins.velocity_sd_mps : kNan;
   }

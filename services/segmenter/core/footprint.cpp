@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout::segmenter {
 
@@ -95,7 +96,8 @@ const std::array<Direction, kMaxHullCorners>& Directions() {
     std::array<Direction, kMaxHullCorners> directions{};
     for (std::size_t i = 0; i < directions.size(); ++i) {
       const double angle_rad = kTwoPi * static_cast<double>(i) / static_cast<double>(directions.size());
-      directions[i] = {std::cos(angle_rad), std::sin(angle_rad)};
+      const auto [sine, cosine] = SinCosOf(angle_rad);
+      directions[i] = {cosine, sine};
     }
     return directions;
   }();
@@ -191,7 +193,7 @@ Rectangle ToRectangle(const Flush& flush) {
   const double across_m = flush.max_across_m - flush.min_across_m;
   const bool is_along = along_m >= across_m;
   const Direction direction = is_along ? flush.direction : Direction{-flush.direction.y, flush.direction.x};
-  double azimuth_rad = WrapTo2Pi(-std::atan2(direction.y, direction.x));
+  double azimuth_rad = WrapTo2Pi(-Atan2(direction.y, direction.x));
   if (azimuth_rad >= kPi) azimuth_rad -= kPi;
   const auto rounded_rad = static_cast<float>(azimuth_rad);
   const double middle_along_m = (flush.min_along_m + flush.max_along_m) / 2.0;
@@ -216,7 +218,7 @@ Rectangle AtOnePlace(std::span<const FootprintPoint> hull) {
 double DiameterAlongAxes(std::span<const FootprintPoint> hull) {
   const auto [left, right] = std::ranges::minmax_element(hull, {}, &FootprintPoint::x_m);
   const auto [bottom, top] = std::ranges::minmax_element(hull, {}, &FootprintPoint::y_m);
-  return std::hypot(static_cast<double>(right->x_m) - left->x_m, static_cast<double>(top->y_m) - bottom->y_m);
+  return Hypot(static_cast<double>(right->x_m) - left->x_m, static_cast<double>(top->y_m) - bottom->y_m);
 }
 
 // Sum of the distances of points to the nearest side.

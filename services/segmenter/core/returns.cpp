@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "common/core/sin_cos.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout::segmenter {
 
@@ -47,9 +47,9 @@ int MaxRepeatGap(double max_repeat_gap_m, double range_unit_m) {
 const ClassifiedReturns& ReturnClassifier::Classify(const Scan& scan) {
   rings_.clear();
   for (const auto& ring : scan.head.rings) {
-    const double cos_elevation = std::cos(double{ring.elevation_rad});
-    rings_.push_back({cos_elevation * std::cos(double{ring.azimuth_offset_rad}), cos_elevation * std::sin(double{ring.azimuth_offset_rad}),
-                      std::sin(double{ring.elevation_rad}), ring.azimuth_offset_rad, ring.origin_height_m});
+    const auto [sin_elevation, cos_elevation] = SinCosOf(double{ring.elevation_rad});
+    const auto [sin_offset, cos_offset] = SinCosOf(double{ring.azimuth_offset_rad});
+    rings_.push_back({cos_elevation * cos_offset, cos_elevation * sin_offset, sin_elevation, ring.azimuth_offset_rad, ring.origin_height_m});
   }
   const auto num_returns = static_cast<std::size_t>(scan.head.num_returns);
   const std::size_t cells_per_column = rings_.size() * num_returns;

@@ -1,5 +1,6 @@
 // Is the filter as good as it says? Motion and errors are drawn from the very models that it has, many times; the normalised errors must then have
 // their chi-square distributions. And recordings of real sensors.
+#include <GeographicLib/LocalCartesian.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>

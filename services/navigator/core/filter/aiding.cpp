@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "services/navigator/core/filter/kalman.hpp"
 
 namespace lookout::navigator::filter {
@@ -12,8 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A prior that says nothing, against which any measurement counts alone: m, rad.
+// A prior that says nothing, against which any measurement counts alone: m, m/s, rad. No boat has gone faster than 142 m/s (the world water speed
+// record).
 constexpr double kAnywhereM = 1000.0;
+constexpr double kAnySpeedMps = 150.0;
 constexpr double kAnyHeadingRad = 10.0;
 constexpr double kAnyTiltRad = 10.0;
 
@@ -133,7 +136,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     state.has_position = true;
     if (fix.velocity && !knew_velocity) {
       state.velocity_map_mps.head<2>() = fix.velocity->east_north_mps;
-      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnywhereM), state);
+      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }
   state.fix_refusals = {};
@@ -307,14 +310,14 @@ void Apply(const VelocityMeasurement& velocity, const FilterParams& params, Stat
   innovation.jacobian.middleCols<2>(kVelocity).setIdentity();
   const bool is_rtk = state.fix_error_model.kind == ErrorKind::kRtk;
   double noise_mps = is_rtk ? velocity.sd_mps : Thinned(velocity.sd_mps, kVelocityCorrelationS, state.velocity, state.time);
-  if (!velocity.has_own_time) noise_mps = std::hypot(noise_mps, kLateVelocitySdMps);
+  if (!velocity.has_own_time) noise_mps = Hypot(noise_mps, kLateVelocitySdMps);
   if (state.has_heading) {
     const Eigen::Vector3d swing_map_mps = R_map_vessel * state.angular_velocity_radps.cross(lever_m);
     innovation.residual -= swing_map_mps.head<2>();
     innovation.jacobian.middleCols<3>(kRotation) = -Cross(swing_map_mps).topRows<2>();
     innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (R_map_vessel * Cross(lever_m)).topRows<2>();
   } else {
-    noise_mps = std::hypot(noise_mps, kUnknownTurnRadps * lever_m.norm());
+    noise_mps = Hypot(noise_mps, kUnknownTurnRadps * lever_m.norm());
   }
   innovation.noise.diagonal().setConstant(noise_mps * noise_mps);
   if (Judge(innovation, false, state, verdict)) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "services/navigator/core/filter/aiding.hpp"
 #include "services/navigator/core/filter/kalman.hpp"
 
@@ -36,7 +37,7 @@ void Apply(const InertialSample& sample, const Earth& earth, State& state) {
     state.mean_force_mps2 = force_mps2;
     state.force_variance_mps2_2 = 1.0;
   }
-  const double share = 1.0 - std::exp(-since_s / kCalmMeanTimeS);
+  const double share = 1.0 - Exp(-since_s / kCalmMeanTimeS);
   const Eigen::Vector3d deviation_mps2 = force_mps2 - state.mean_force_mps2;
   state.mean_force_mps2 += share * deviation_mps2;
   state.force_variance_mps2_2 += share * (deviation_mps2.squaredNorm() / 3.0 - state.force_variance_mps2_2);

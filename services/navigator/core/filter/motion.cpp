@@ -1,10 +1,11 @@
 #include "services/navigator/core/filter/motion.hpp"
 
-#include <GeographicLib/NormalGravity.hpp>
 #include <algorithm>
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
+#include "common/core/geodesy.hpp"
 
 namespace lookout::navigator::filter {
 
@@ -60,8 +61,7 @@ void AddVariance(int part, const Eigen::Vector3d& variance, ErrorCovariance& cov
 
 // Variance that a Gauss-Markov process of this deviation takes up in a step, and what it keeps.
 struct Fading {
-  Fading(double sd, double time_constant_s, double step_s)
-      : kept(std::exp(-step_s / time_constant_s)), added_variance(sd * sd * (1.0 - kept * kept)) {}
+  Fading(double sd, double time_constant_s, double step_s) : kept(Exp(-step_s / time_constant_s)), added_variance(sd * sd * (1.0 - kept * kept)) {}
   double kept;
   double added_variance;
 };
@@ -144,7 +144,7 @@ void Step(const InertialSample* sample, double step_s, const Earth& earth, const
   const auto wander = [&](double sd) { return added(sd * std::sqrt(2.0 / kBiasTimeS), step_s); };
   if (sample != nullptr) {
     const double scale_noise_radps_rthz = kGyroScaleErrorRootS * state.angular_velocity_radps.norm();
-    AddVariance(kRotation, added(std::hypot(params.gyro_noise_radps_rthz, scale_noise_radps_rthz), step_s), covariance);
+    AddVariance(kRotation, added(Hypot(params.gyro_noise_radps_rthz, scale_noise_radps_rthz), step_s), covariance);
     AddVariance(kRate, wander(kGyroBiasWanderRadps), covariance);
   } else {
     const Fading swing(kSwingSdRadps, kSwingTimeS, step_s);
@@ -225,12 +225,8 @@ void Forget(const FilterParams& params, State& state) {
 }  // namespace
 
 Earth EarthAt(const Datum& datum) {
-  const auto& normal = GeographicLib::NormalGravity::WGS84();
-  double north_mps2 = 0.0;
-  double up_mps2 = 0.0;
-  normal.Gravity(datum.latitude_deg, datum.ellipsoid_height_m, north_mps2, up_mps2);
-  const double latitude_rad = DegToRad(datum.latitude_deg);
-  return {-up_mps2, normal.AngularVelocity() * Eigen::Vector3d(0.0, std::cos(latitude_rad), std::sin(latitude_rad))};
+  const auto [sin_latitude, cos_latitude] = SinCosOfDegrees(datum.latitude_deg);
+  return {NormalGravityMps2(datum.latitude_deg, datum.ellipsoid_height_m), kEarthRateRadps * Eigen::Vector3d(0.0, cos_latitude, sin_latitude)};
 }
 
 void CarryOn(const InertialSample* sample, Utime time, const Earth& earth, const FilterParams& params, State& state) {

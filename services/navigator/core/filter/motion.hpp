@@ -18,7 +18,7 @@ struct Earth {
   Eigen::Vector3d rate_map_radps = Eigen::Vector3d::Zero();
 };
 
-/// WGS84's normal gravity (GeographicLib) and the rate of the earth at the datum.
+/// WGS84's normal gravity and the rate of the earth at the datum.
 Earth EarthAt(const Datum& datum);
 
 /// Carries the state on to `time`.

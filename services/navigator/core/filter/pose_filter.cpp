@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/elementary.hpp"
 #include "services/navigator/core/filter/pose_output.hpp"
 
 namespace lookout::navigator {
@@ -37,6 +38,11 @@ double PossibleAgeS(const MeasurementTime& when) {
   return age > 0us && age <= kMaxAge ? std::chrono::duration<double>(age).count() : 0.0;
 }
 
+Eigen::Vector2d VelocityOf(double speed_mps, double course_rad) {
+  const auto [east, north] = SinCosOf(course_rad);
+  return speed_mps * Eigen::Vector2d(east, north);
+}
+
 double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
 
 }  // namespace
@@ -66,7 +72,7 @@ PoseFilter::PoseFilter(const FilterParams& params) : params_(params) {
 
 void PoseFilter::SetDatum(const Datum& datum) {
   datum_ = datum;
-  map_.emplace(datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m);
+  map_.emplace(GeodeticPlace{datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m});
   earth_ = filter::EarthAt(datum);
 }
 
@@ -125,24 +131,23 @@ void PoseFilter::Add(const GnssFix& fix) {
   measurement.source = fix.source;
   measurement.is_gga = fix.sentence_type == "GGA";
   auto& p_map_m = measurement.antenna_map_m;
-  map_->Forward(fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m, p_map_m.x(),
-                p_map_m.y(), p_map_m.z());
+  p_map_m = map_->Forward({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m});
   if (!has_height) p_map_m.z() = kNan;
   measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
   measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
   const double age_s = PossibleAgeS(fix.when);
-  measurement.horizontal_sd_m = std::hypot(measurement.horizontal_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
+  measurement.horizontal_sd_m = Hypot(measurement.horizontal_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
   if (!std::isnan(fix.speed_mps)) {
     filter::VelocityMeasurement velocity;
     velocity.has_own_time = true;
     velocity.speed_mps = fix.speed_mps;
     velocity.course_rad = fix.course_rad;
-    velocity.sd_mps = std::hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
+    velocity.sd_mps = Hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
     if (std::isnan(fix.course_rad)) {
       // A speed without a direction: anywhere on a circle around 0.
-      velocity.sd_mps = std::hypot(velocity.sd_mps, fix.speed_mps);
+      velocity.sd_mps = Hypot(velocity.sd_mps, fix.speed_mps);
     } else {
-      velocity.east_north_mps = fix.speed_mps * Eigen::Vector2d(std::sin(fix.course_rad), std::cos(fix.course_rad));
+      velocity.east_north_mps = VelocityOf(fix.speed_mps, fix.course_rad);
     }
     measurement.velocity = velocity;
   }
@@ -172,9 +177,9 @@ void PoseFilter::Add(const GroundVelocity& velocity) {
   measurement.course_rad = velocity.course_rad;
   measurement.sd_mps = params_.velocity_sd_mps;
   if (std::isnan(velocity.course_rad)) {
-    measurement.sd_mps = std::hypot(measurement.sd_mps, velocity.speed_mps);
+    measurement.sd_mps = Hypot(measurement.sd_mps, velocity.speed_mps);
   } else {
-    measurement.east_north_mps = velocity.speed_mps * Eigen::Vector2d(std::sin(velocity.course_rad), std::cos(velocity.course_rad));
+    measurement.east_north_mps = VelocityOf(velocity.speed_mps, velocity.course_rad);
   }
   if (!Insert(velocity.time, measurement)) ++counts_.late_fix;
 }

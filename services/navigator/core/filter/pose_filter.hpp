@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <GeographicLib/LocalCartesian.hpp>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "common/core/geodesy.hpp"
 #include "common/core/health.hpp"
 #include "services/navigator/core/filter/aiding.hpp"
 #include "services/navigator/core/filter/motion.hpp"
@@ -98,7 +98,7 @@ class PoseFilter {
 
   FilterParams params_;
   std::optional<Datum> datum_;
-  std::optional<GeographicLib::LocalCartesian> map_;
+  std::optional<LocalFrame> map_;
   filter::Earth earth_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;

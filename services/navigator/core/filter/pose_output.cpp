@@ -19,7 +19,7 @@ void Unknown(int first, int size, PoseCovariance& covariance) {
 
 }  // namespace
 
-Pose ToPose(const State& state, const std::optional<Datum>& datum, const GeographicLib::LocalCartesian* map, const FilterParams& params) {
+Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFrame* map, const FilterParams& params) {
   Pose pose;
   pose.time = state.time;
   if (datum) pose.datum = *datum;
@@ -59,7 +59,10 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const Geograp
     pose.p_map_m = state.p_map_m + reference_map_m;
     pose.velocity_map_mps = state.velocity_map_mps + swing_map_mps;
     if (!state.has_height) pose.p_map_m.z() = 0.0;
-    map->Reverse(pose.p_map_m.x(), pose.p_map_m.y(), pose.p_map_m.z(), pose.latitude_deg, pose.longitude_deg, pose.ellipsoid_height_m);
+    const GeodeticPlace place = map->Reverse(pose.p_map_m);
+    pose.latitude_deg = place.latitude_deg;
+    pose.longitude_deg = place.longitude_deg;
+    pose.ellipsoid_height_m = place.ellipsoid_height_m;
     if (!state.has_height) {
       pose.ellipsoid_height_m = kNan;
       Unknown(kRowPosition + 2, 1, pose.covariance);

@@ -1,10 +1,10 @@
 // From the filter's state to POSE.
 #pragma once
 
-#include <GeographicLib/LocalCartesian.hpp>
 #include <optional>
 #include <string>
 
+#include "common/core/geodesy.hpp"
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/filter/state.hpp"
 #include "services/navigator/core/pose.hpp"
@@ -12,7 +12,7 @@
 namespace lookout::navigator::filter {
 
 /// @param map  of the datum; nullptr: no datum is known yet
-Pose ToPose(const State& state, const std::optional<Datum>& datum, const GeographicLib::LocalCartesian* map, const FilterParams& params);
+Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFrame* map, const FilterParams& params);
 
 /// The inputs that came and do not come any more: "no position fix for 3 s, no heading for 2 s"; empty = none.
 std::string StoppedInputs(const State& state);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout::navigator::filter {
 
@@ -58,7 +59,7 @@ void Inject(const ErrorVector& error, State& state) {
 void Renew3(int part, double sd, State& state) { Renew<3>(part, Eigen::Vector3d::Constant(sd), state); }
 
 Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R) {
-  return {std::atan2(R(2, 1), R(2, 2)), std::asin(std::clamp(R(2, 0), -1.0, 1.0)), WrapTo2Pi(std::atan2(R(0, 0), R(1, 0)))};
+  return {Atan2(R(2, 1), R(2, 2)), Asin(std::clamp(R(2, 0), -1.0, 1.0)), WrapTo2Pi(Atan2(R(0, 0), R(1, 0)))};
 }
 
 // A small rotation r changes the bow b = R e_x by r x b, and the up row u of R, of which roll and pitch are read, by (r_x R_north - r_y R_east).
@@ -88,9 +89,10 @@ Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad) {
   const double angle_rad = rotation_rad.norm();
   // Below it the sine of half the angle over the angle is one half to the last bit.
   constexpr double kSmallRad = 1e-8;
-  const double factor = angle_rad > kSmallRad ? std::sin(angle_rad / 2.0) / angle_rad : 0.5;
+  const auto [sin_half, cos_half] = SinCosOf(angle_rad / 2.0);
+  const double factor = angle_rad > kSmallRad ? sin_half / angle_rad : 0.5;
   Eigen::Quaterniond q;
-  q.w() = std::cos(angle_rad / 2.0);
+  q.w() = cos_half;
   q.vec() = factor * rotation_rad;
   return q;
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/core/elementary.hpp"
 #include "services/segmenter/core/lookout/run_links.hpp"
 
 namespace lookout::segmenter {
@@ -226,7 +227,7 @@ void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTabl
   for (const Fragment& fragment : fragments_) {
     if (fragment.is_before) continue;
     for (const LevelPoint* end : {&first_of(fragment), &last_of(fragment)}) {
-      reach_m = std::max(reach_m, std::hypot(end->x_m - sum_x_m / num_ends, end->y_m - sum_y_m / num_ends));
+      reach_m = std::max(reach_m, Hypot(end->x_m - sum_x_m / num_ends, end->y_m - sum_y_m / num_ends));
     }
   }
   if (2.0 * reach_m < params_.land_length_m) return;

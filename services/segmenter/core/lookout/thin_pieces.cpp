@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "common/core/elementary.hpp"
+
 namespace lookout::segmenter {
 
 namespace {
@@ -57,7 +59,7 @@ void ThinPieces::Join(const TurnGrid& grid, PieceTable& pieces) {
 }
 
 // Of all that is joined: the longest diagonal of a dock's rectangle.
-double ThinPieces::ReachM() const { return std::max(kMostFarM, std::hypot(params_.post_spacing_m, kWidestDockM)); }
+double ThinPieces::ReachM() const { return std::max(kMostFarM, Hypot(params_.post_spacing_m, kWidestDockM)); }
 
 // Square cells half as wide as the reach, so that neighbours are at most two cells away. What is farther off than the grid is in its rim.
 std::size_t ThinPieces::CellOf(double x_m, double y_m) const {
@@ -144,16 +146,16 @@ void ThinPieces::JoinRectangles(const TurnGrid& grid, const Thin& post, PieceTab
   for (const Thin& across : neighbours_) {
     const double u_x_m = across.x_m - post.x_m;
     const double u_y_m = across.y_m - post.y_m;
-    const double u_m = std::hypot(u_x_m, u_y_m);
+    const double u_m = Hypot(u_x_m, u_y_m);
     if (u_m < kNarrowestDockM || u_m > kWidestDockM) continue;
     for (const Thin& along : neighbours_) {
       const double v_x_m = along.x_m - post.x_m;
       const double v_y_m = along.y_m - post.y_m;
-      const double v_m = std::hypot(v_x_m, v_y_m);
+      const double v_m = Hypot(v_x_m, v_y_m);
       if (v_m < kLeastSpacingM || v_m < u_m || v_m > params_.post_spacing_m) continue;
       if (std::abs(u_x_m * v_x_m + u_y_m * v_y_m) > kSquareCosine * u_m * v_m) continue;
       const bool has_fourth = std::ranges::any_of(neighbours_, [&](const Thin& fourth) {
-        return std::hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m && is_post(fourth);
+        return Hypot(fourth.x_m - post.x_m - u_x_m - v_x_m, fourth.y_m - post.y_m - u_y_m - v_y_m) <= off_m && is_post(fourth);
       });
       if (!has_fourth || !is_post(post) || !is_post(across) || !is_post(along)) continue;
       pieces.MarkDock(post.root);
@@ -175,7 +177,7 @@ void ThinPieces::JoinFar(const Thin& thin, PieceTable& pieces) const {
   for (const Thin& other : neighbours_) {
     if (is_solid && pieces.FactsOf(other.root).num_returns >= kSolidReturns) continue;
     const double reach_m = FarReachM(std::min(thin.range_m, other.range_m));
-    if (std::hypot(other.x_m - thin.x_m, other.y_m - thin.y_m) <= reach_m) pieces.Join(thin.root, other.root);
+    if (Hypot(other.x_m - thin.x_m, other.y_m - thin.y_m) <= reach_m) pieces.Join(thin.root, other.root);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "services/segmenter/core/groups.hpp"
 #include "services/segmenter/core/paper/range_image.hpp"
 #include "services/segmenter/core/returns.hpp"
@@ -18,11 +19,11 @@ struct SearchParams {
   double distance_m = 1.0;
 };
 
-/// Whether two returns of neighbouring beams are of one surface: beta > angle or distance < distance_m (METHOD.md, the paper's step 3).
+/// Whether two returns of neighbouring beams are of one surface: beta > angle or distance < distance_m (the paper, section on breadth-first search).
 class JoinRule {
  public:
   explicit JoinRule(const SearchParams& params)
-      : sin_angle_(std::sin(params.angle_rad)), cos_angle_(std::cos(params.angle_rad)), squared_distance_m2_(params.distance_m * params.distance_m) {}
+      : sin_angle_(Sin(params.angle_rad)), cos_angle_(Cos(params.angle_rad)), squared_distance_m2_(params.distance_m * params.distance_m) {}
 
   /// beta = atan2(d2 sin a, d1 - d2 cos a), d1 >= d2, a the angle between the beams. beta > angle is sin(beta - angle) > 0, since beta is in
   /// [0, pi) and the angle in [0, pi/2].

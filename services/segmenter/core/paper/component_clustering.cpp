@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "common/core/elementary.hpp"
 #include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
@@ -24,10 +25,10 @@ class PairReach {
   PairReach(std::span<const ComponentCentroid> components, const ClusteringParams& params) : params_(params) {
     azimuth_rad_ = AzimuthReach(components);
     // (b) is d_short / d_long >= sin e2 / sin(t + e2), by the law of sines; t is at most acos e1.
-    const double max_between_rad = std::acos(std::clamp(params.e1_cosine, -1.0, 1.0));
-    const double sin_e2 = std::sin(params.e2_angle_rad);
+    const double max_between_rad = Acos(std::clamp(params.e1_cosine, -1.0, 1.0));
+    const double sin_e2 = Sin(params.e2_angle_rad);
     const double widest_rad = params.e2_angle_rad + max_between_rad;
-    least_ratio_ = widest_rad >= kPi / 2.0 ? sin_e2 : sin_e2 / std::sin(widest_rad);
+    least_ratio_ = widest_rad >= kPi / 2.0 ? sin_e2 : sin_e2 / Sin(widest_rad);
   }
 
   double azimuth_rad() const { return azimuth_rad_; }
@@ -49,7 +50,7 @@ class PairReach {
     }
     const double sin_half_between = std::sqrt(std::max(0.0, (1.0 - params_.e1_cosine) / 2.0)) + kMargin;
     if (sin_half_between >= least_cos_elevation) return kPi;
-    return 2.0 * std::asin(sin_half_between / least_cos_elevation) + kMargin;
+    return 2.0 * Asin(sin_half_between / least_cos_elevation) + kMargin;
   }
 
   ClusteringParams params_;
@@ -79,7 +80,7 @@ class PolarGrid {
     begin_.assign(Index(num_cells()) + 1, 0);
     for (std::size_t i = 0; i < components.size(); ++i) {
       const auto& component = components[i];
-      const double azimuth_rad = WrapTo2Pi(-std::atan2(component.p_m.y(), component.p_m.x()));
+      const double azimuth_rad = WrapTo2Pi(-Atan2(component.p_m.y(), component.p_m.x()));
       const int sector = std::min(num_sectors_ - 1, static_cast<int>(azimuth_rad / sector_width_rad));
       const int band = std::min(num_bands_ - 1, static_cast<int>(component.distance_m / band_width_m));
       cell_of[i] = Cell(sector, band);
@@ -175,8 +176,8 @@ class Uniter {
 
 CompatibilityRule::CompatibilityRule(const ClusteringParams& params)
     : e1_cosine_(params.e1_cosine),
-      sin_e2_(std::sin(params.e2_angle_rad)),
-      cos_e2_(std::cos(params.e2_angle_rad)),
+      sin_e2_(Sin(params.e2_angle_rad)),
+      cos_e2_(Cos(params.e2_angle_rad)),
       squared_e3_m2_(params.e3_distance_m * params.e3_distance_m),
       squared_e2_max_m2_(params.e2_max_distance_m > 0.0 ? params.e2_max_distance_m * params.e2_max_distance_m
                                                         : std::numeric_limits<double>::infinity()) {}

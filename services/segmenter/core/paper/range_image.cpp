@@ -4,21 +4,25 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 
 namespace lookout::segmenter {
 
 namespace {
 
-BeamStep StepOf(double angle_rad) { return {std::sin(angle_rad), std::cos(angle_rad), true}; }
+BeamStep StepOf(double angle_rad) {
+  const auto [sine, cosine] = SinCosOf(angle_rad);
+  return {sine, cosine, true};
+}
 
 // Angles between rings that look at the same column, where their azimuths differ by `azimuth_rad`.
 BeamStep StepBetween(const Ring& lower, const Ring& higher, double azimuth_rad) {
   // Haversines: exact for small angles.
-  const double sin_half_elevation = std::sin((double{higher.elevation_rad} - lower.elevation_rad) / 2.0);
-  const double sin_half_azimuth = std::sin(azimuth_rad / 2.0);
+  const double sin_half_elevation = Sin((double{higher.elevation_rad} - lower.elevation_rad) / 2.0);
+  const double sin_half_azimuth = Sin(azimuth_rad / 2.0);
   const double haversine = sin_half_elevation * sin_half_elevation +
-                           std::cos(double{higher.elevation_rad}) * std::cos(double{lower.elevation_rad}) * sin_half_azimuth * sin_half_azimuth;
-  return StepOf(2.0 * std::asin(std::sqrt(std::min(1.0, haversine))));
+                           Cos(double{higher.elevation_rad}) * Cos(double{lower.elevation_rad}) * sin_half_azimuth * sin_half_azimuth;
+  return StepOf(2.0 * Asin(std::sqrt(std::min(1.0, haversine))));
 }
 
 std::vector<BeamStep> RingSteps(const std::vector<Ring>& rings, bool offsets_count) {
