@@ -142,6 +142,19 @@ TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
   }
 }
 
+// A program that takes the user's locale writes a decimal comma where that locale has one, and reads none.
+TEST(Structure, NoProgramTakesTheUsersLocale) {
+  const std::regex locale(R"(\b(set|new|use)locale\s*\(|std::locale\b(?!::classic))");
+  int num_checked = 0;
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) {
+      EXPECT_FALSE(std::regex_search(Read(file), locale)) << fs::relative(file, kRoot).string() << " takes a locale";
+      ++num_checked;
+    }
+  }
+  EXPECT_GT(num_checked, 100);
+}
+
 // Functions whose results IEEE 754 does not fix differ between processors and C libraries. common/core/elementary.hpp has them. Eigen's angles call
 // them too.
 TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor) {
