@@ -4,6 +4,7 @@
 
 #include "common/bus/schema.hpp"
 #include "common/config/text_config.hpp"
+#include "common/runtime/machine.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 
@@ -34,6 +35,8 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
     message.file_name.push_back(name);
   }
   faults.ThrowIfAny();
+  message.file_name.emplace_back(kMachineFile);
+  message.file_text.push_back(MachineText());
   for (const auto& type : bus::TypeTexts()) {
     message.file_name.push_back(type.file_name);
     message.file_text.push_back(type.text);

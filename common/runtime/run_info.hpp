@@ -9,8 +9,8 @@
 
 namespace lookout::runtime {
 
-/// @return RUN_INFO without time and number: version, host, schema, the effective text of every *.txtpb in the folder, by name, and the texts of
-///         the wire types ("lcmtypes/x_t.lcm")
+/// @return RUN_INFO without time and number: version, host, schema, the effective text of every *.txtpb in the folder, by name, "machine.txt"
+///         (MachineText), and the texts of the wire types ("lcmtypes/x_t.lcm")
 /// @throws config::ConfigError
 run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& config_folder);
 

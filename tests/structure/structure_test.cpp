@@ -185,6 +185,24 @@ TEST(Structure, ReadmeNamesEveryProgram) {
   }
 }
 
+// deploy/README.md and systemd's reload go by this column.
+TEST(Structure, TheTableOfProcessesSaysWhoTakesSighup) {
+  std::istringstream table(Read(kRoot / "deploy/processes"));
+  int num_processes = 0;
+  for (std::string line; std::getline(table, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream row(line);
+    std::string name;
+    std::string watchdog_s;
+    std::string reload;
+    row >> name >> watchdog_s >> reload;
+    const bool takes_it = Read(kRoot / "services" / name / "main.cpp").find("process.OnHangup(") != std::string::npos;
+    EXPECT_EQ(reload == "yes", takes_it) << name;
+    ++num_processes;
+  }
+  EXPECT_GE(num_processes, 5);
+}
+
 // A README says what a folder is and how to use it; why it became so stands beside it, with dates.
 TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
   const std::regex dated(R"(^(\*\*)?20[0-9]{2}-[0-9]{2}-[0-9]{2}[.,: *])");

@@ -67,6 +67,53 @@ TEST_F(EvalLine, SeedsOfTuningCanBeLookedAtWithoutMakingATable) {
   EXPECT_FALSE(fs::exists(Path("csv")));
 }
 
+TEST_F(EvalLine, OutputsThatAreThereAreRefusedBeforeTheRunUnlessForced) {
+  const std::vector<std::string> run{"--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3"};
+  const auto with = [&run](const std::vector<std::string>& more) {
+    auto line = run;
+    line.insert(line.end(), more.begin(), more.end());
+    return line;
+  };
+  const auto read = [this](const std::string& name) {
+    std::ifstream in(Path(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::ofstream(Path("page.html")) << "mine";
+  fs::create_directories(Path("csv"));
+  std::ofstream(Path("csv/table_1.csv")) << "mine";
+  for (const auto& output :
+       std::vector<std::vector<std::string>>{{"--html", Path("page.html")}, {"--csv", Path("csv")}, {"--figures", Path("csv")}}) {
+    const auto result = Run(with(output));
+    EXPECT_EQ(result.exit_code, 1) << output[0] << result.output;
+    EXPECT_NE(result.output.find("--force"), std::string::npos) << result.output;
+    EXPECT_EQ(result.output.find("mIoU"), std::string::npos) << "said before the run";
+  }
+  EXPECT_EQ(read("page.html"), "mine");
+  EXPECT_EQ(read("csv/table_1.csv"), "mine");
+  EXPECT_EQ(Run(with({"--html", Path("page.html"), "--csv", Path("csv"), "--figures", Path("figures"), "--force"})).exit_code, 0);
+  EXPECT_NE(read("page.html"), "mine");
+  EXPECT_NE(read("csv/table_1.csv"), "mine");
+  EXPECT_TRUE(fs::exists(Path("figures/main.csv")));
+  EXPECT_FALSE(fs::exists(Path("page.html.partial")));
+}
+
+TEST_F(EvalLine, BlocksAreFilledFromTheFiguresAlone) {
+  fs::create_directories(Path("figures"));
+  std::ofstream(Path("figures/one.csv")) << "# Text.\na,b\n1,2\n";
+  std::ofstream(Path("README.md")) << "# Title\n<!-- figures: one -->\n<!-- end -->\n";
+  const auto fill = [this] {
+    return RunProgram({LOOKOUT_BIN_DIR "/lookout-eval", "--figures", Path("figures"), "--blocks", Path("README.md")}, Path("out"));
+  };
+  EXPECT_EQ(fill().exit_code, 0);
+  std::ifstream in(Path("README.md"));
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  EXPECT_EQ(text, "# Title\n<!-- figures: one -->\n| a | b |\n|---|---|\n| 1 | 2 |\n\nText.\n<!-- end -->\n");
+  std::ofstream(Path("README.md")) << "# Title\n<!-- figures: two -->\n<!-- end -->\n";
+  const auto unknown = fill();
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.output.find("README.md:2: there are no figures of this name: two"), std::string::npos) << unknown.output;
+}
+
 TEST_F(EvalLine, CapturesThatAreNotHereAreSaidInTheTables) {
   const auto result = Run({"--scenes", "sparse", "--captures", Path("nothing"), "--methods", "ours", "--seeds", "1", "--seconds", "0.3"});
   EXPECT_EQ(result.exit_code, 0) << result.output;
@@ -77,7 +124,8 @@ TEST_F(EvalLine, CapturesThatAreNotHereAreSaidInTheTables) {
 }
 
 TEST_F(EvalLine, ADamagedCaptureEndsTheRunWithItsName) {
-  for (const auto* ending : {".pcap.xz", ".truth.csv.xz", ".objects.csv.xz"}) std::ofstream(Path("dense-1" + std::string(ending))) << "this was never packed by xz";
+  for (const auto* ending : {".pcap.xz", ".truth.csv.xz", ".objects.csv.xz"})
+    std::ofstream(Path("dense-1" + std::string(ending))) << "this was never packed by xz";
   const auto result = Run({"--captures", folder_.string(), "--methods", "ours", "--csv", Path("csv")});
   EXPECT_EQ(result.exit_code, 1) << result.output;
   EXPECT_NE(result.output.find("dense-1.objects.csv.xz:1: not compressed by xz"), std::string::npos) << result.output;

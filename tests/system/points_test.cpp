@@ -77,6 +77,7 @@ class Points : public ::testing::Test {
                                      Path("csv"),
                                      "--html",
                                      Path("page.html"),
+                                     "--force",
                                      "--points"};
     command.insert(command.end(), files.begin(), files.end());
     return RunProgram(command, Path("out"));
@@ -175,7 +176,8 @@ TEST_F(Points, CloudWhoseRingsFlowTogetherIsOrganisedByElevation) {
   const auto result = Judge({Write("a.pcd", Pcd(turn, true))});
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_NE(result.output.find("bands of equal height"), std::string::npos) << result.output;
-  EXPECT_TRUE(Miou() == "ours (all segments),99.9,99.9" || Miou() == "ours (all segments),100.0,100.0") << Miou() << ": of two points in a cell the farther may be hidden";
+  EXPECT_TRUE(Miou() == "ours (all segments),99.9,99.9" || Miou() == "ours (all segments),100.0,100.0")
+      << Miou() << ": of two points in a cell the farther may be hidden";
 }
 
 TEST_F(Points, WithoutLabelsThereIsNoIou) {

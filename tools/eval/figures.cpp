@@ -1,12 +1,8 @@
 #include "tools/eval/figures.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
-#include <optional>
-#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -202,6 +198,29 @@ Table TestTable(const Results& results) {
   return table;
 }
 
+// A field in a row: its values, and the mean over the scenes of the mIoU at each.
+Table SweepTable(const Results& results) {
+  Table table({"field", "its value", "tried", "mIoU, %"});
+  for (const auto& curve : results.curves) {
+    if (curve.value_of_boat.empty()) continue;
+    std::map<double, std::pair<double, int>> sums;
+    for (const auto& line : curve.lines) {
+      for (const auto& [value, percent] : line.points) {
+        sums[value].first += percent;
+        ++sums[value].second;
+      }
+    }
+    std::string values;
+    std::string means;
+    for (const auto& [value, sum] : sums) {
+      values += (values.empty() ? "" : " / ") + Number(value, 1);
+      means += (means.empty() ? "" : " / ") + Number(sum.first / sum.second, 1);
+    }
+    table.Add({"`" + curve.x_label + "`", curve.value_of_boat, values, means});
+  }
+  return table;
+}
+
 // A row of our CSV: cells with commas or quotes are quoted.
 Row SplitCsv(std::string_view line, const std::string& where) {
   Row row(1);
@@ -260,7 +279,7 @@ void ForEachLine(std::string_view text, Handler handle) {
 std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& date) {
   std::vector<ReadmeFigure> figures;
   const auto tables = TablesOf(results);
-  std::vector<std::string> scope{"Measured " + date + " by `./dev figures` (" + results.version + ")."};
+  std::vector<std::string> scope{"Measured " + date + " by `./dev figures`, version " + results.version + "."};
   for (const auto* world : WorldsOf(results)) scope.push_back(Scope(*world));
   const auto add = [&](const std::string& name, const std::string& caption, Table table) {
     if (table.empty()) return;
@@ -299,7 +318,21 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
             all);
   add_table("ablation", "ablation", "In print: 460 components and 72 ms with the search, 1604 and 297 ms without.",
             [](const std::string& method) { return method.starts_with("paper W=") && method.find("90 deg") == std::string::npos; });
-  add("tests", "Tests 1 to 3 of the paper, on their own scenes.", TestTable(results));
+  if (const auto sweeps = SweepTable(results); !sweeps.empty()) {
+    const auto& sweep = *std::ranges::find_if_not(results.curves, [](const Curve& curve) { return curve.value_of_boat.empty(); });
+    figures.push_back({"sweeps",
+                       {"One field at a time, all else as it is. mIoU of all segments, mean over the " + std::to_string(sweep.lines.size()) +
+                            " scenes with objects, on seeds of tuning (" + sweep.turns_from + ").",
+                        scope.front()},
+                       sweeps});
+  }
+  if (const auto tests = TestTable(results); !tests.empty()) {
+    figures.push_back({"tests",
+                       {"Tests 1 to 3 of the paper, on scenes of their own; " + std::to_string(results.num_seeds) + " seeds from " +
+                            std::to_string(results.first_seed) + " on.",
+                        scope.front()},
+                       tests});
+  }
   return figures;
 }
 

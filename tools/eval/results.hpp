@@ -112,7 +112,9 @@ struct Curve {
     std::vector<std::pair<double, double>> points;
   };
   std::vector<Line> lines;
-  std::string note;  // a finding in words: "own object from 6.3 m"
+  std::string note;                // a finding in words: "own object from 6.3 m"
+  std::string value_of_boat = {};  // of a sweep: what the boat's config has of its field
+  std::string turns_from = {};     // of a sweep: seeds and seconds
 };
 
 struct Results {

@@ -68,6 +68,15 @@ std::string ValueText(double value) {
   return text;
 }
 
+double ValueOfBoat(const Boat& boat, const std::string& field) {
+  config::Segmenter message;
+  config::LoadText(boat.config_folder / "segmenter.txtpb", message);
+  const auto& descriptor = *config::Segmenter::descriptor()->FindFieldByName(field);
+  const auto& reflection = *message.GetReflection();
+  if (descriptor.cpp_type() == FieldDescriptor::CPPTYPE_INT32) return reflection.GetInt32(message, &descriptor);
+  return reflection.GetDouble(message, &descriptor);
+}
+
 }  // namespace
 
 Sweep ParseSweep(const std::string& text) {
@@ -126,6 +135,9 @@ Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::o
   }
 
   Curve curve{"Sweep of " + sweep.field, sweep.field, "mIoU of all segments, %", {}, ""};
+  curve.value_of_boat = ValueText(ValueOfBoat(boat, sweep.field));
+  curve.turns_from = "seeds " + std::to_string(plan.first_seed) + " to " +
+                     std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.num_seeds) - 1) + ", " + ValueText(plan.seconds) + " s each";
   double best_percent = -1.0;
   std::string best;
   for (const auto& scene : plan.scenes) {

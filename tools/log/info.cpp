@@ -91,6 +91,7 @@ class LogSummary {
     out << fmt::format("{:<9} {}\n{:<9} {}\n{:<9} {}\n", "start", TimeText(*first_), "end", TimeText(*last_), "span", SecondsText(*last_ - *first_));
     if (num_steps_back_ > 0) out << fmt::format("{:<9} {} times the clock of the recording went back\n", "clock", num_steps_back_);
     for (const auto& run : runs_) out << fmt::format("{:<9} {}\n", "made by", run);
+    for (const auto& machine : machines_) out << fmt::format("{:<9} {}\n", "machine", machine);
     if (runs_.empty()) out << fmt::format("{:<9} not said: no RUN_INFO\n", "made by");
     PrintMarks(out);
     out << fmt::format("\n{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11}  at\n", "channel", "type", "events", "bytes", "Hz", "missing", "silence_s");
@@ -111,6 +112,9 @@ class LogSummary {
     names_.Add(run_info);
     const auto text = Printable(run_info.program + " " + run_info.version + " on " + run_info.host + ", wire types " + run_info.schema.substr(0, 12));
     if (std::ranges::find(runs_, text) == runs_.end() && runs_.size() < kMaxStretchesNamed) runs_.push_back(text);
+    const auto machine = Printable(MachineOf(run_info));
+    const bool is_new = !machine.empty() && std::ranges::find(machines_, machine) == machines_.end();
+    if (is_new && machines_.size() < kMaxStretchesNamed) machines_.push_back(machine);
   }
 
   // What the marks mean for a replay: whether it gives what the live run gave.
@@ -157,6 +161,7 @@ class LogSummary {
   TypeNames names_;
   RunMarks marks_;
   std::vector<std::string> runs_;
+  std::vector<std::string> machines_;
   std::optional<Utime> first_;
   std::optional<Utime> last_;
   std::optional<Utime> latest_;

@@ -1,5 +1,6 @@
 #include "tools/log/recorded_run.hpp"
 
+#include <sstream>
 #include <vector>
 
 #include "common/bus/channels.hpp"
@@ -19,6 +20,21 @@ bus::WireTypes TypesOf(const run_info_t& run_info) {
     if (run_info.file_name[i].starts_with("lcmtypes/")) texts.push_back(run_info.file_text[i]);
   }
   return bus::WireTypes(texts);
+}
+
+std::string MachineOf(const run_info_t& run_info) {
+  std::string machine;
+  for (std::size_t i = 0; i < run_info.file_name.size(); ++i) {
+    if (run_info.file_name[i] != "machine.txt") continue;
+    std::istringstream lines(run_info.file_text[i]);
+    for (std::string line; std::getline(lines, line);) {
+      const auto colon = line.find(": ");
+      if (colon == std::string::npos) continue;
+      const bool needs_name = line.starts_with("glibc_tunables") || line.starts_with("compiler") || line.starts_with("kernel");
+      machine += (machine.empty() ? "" : ", ") + (needs_name ? line : line.substr(colon + 2));
+    }
+  }
+  return machine;
 }
 
 bus::WireTypes OwnTypes() {

@@ -17,6 +17,9 @@ std::optional<run_info_t> RunInfoOf(const bus::LogEvent& event);
 /// The wire types as a log describes them: files "lcmtypes/*.lcm" of its RUN_INFO. None when it has none.
 bus::WireTypes TypesOf(const run_info_t& run_info);
 
+/// The computer in one line: the values of "machine.txt" of its RUN_INFO, comma by comma. Empty when it has none.
+std::string MachineOf(const run_info_t& run_info);
+
 /// The wire types of this version.
 bus::WireTypes OwnTypes();
 

@@ -118,12 +118,26 @@ TEST_F(Figures, AWorldThatIsNotHereIsSaid) {
   results.other_worlds[0].world = "second world";
   results.other_worlds[0].is_here = false;
   for (const auto& figure : FiguresOf(results, "2026-11-22")) {
+    if (figure.name == "tests") continue;  // on scenes of their own
     EXPECT_TRUE(std::ranges::find(figure.captions, "The second world: not here.") != figure.captions.end()) << figure.name;
     if (figure.name == "main" || figure.name == "miou") {
       EXPECT_EQ(figure.table.rows().at(0).back(), "second world");
       EXPECT_EQ(figure.table.rows().at(1).back(), "not here");
     }
   }
+}
+
+TEST_F(Figures, ASweepIsARowOfMeansOverItsScenes) {
+  Results results;
+  Curve curve{"Sweep of link_m", "link_m", "mIoU of all segments, %", {{"a", {{0.2, 90.0}, {0.3, 80.0}}}, {"b", {{0.2, 70.0}, {0.3, 90.0}}}}, ""};
+  curve.value_of_boat = "0.3";
+  curve.turns_from = "seeds 1 to 4, 0.6 s each";
+  results.curves = {curve};
+  const auto figures = FiguresOf(results, "2026-11-22");
+  ASSERT_EQ(figures.size(), 1U);
+  EXPECT_EQ(figures[0].name, "sweeps");
+  EXPECT_EQ(figures[0].table.rows().at(1), (std::vector<std::string>{"`link_m`", "0.3", "0.2 / 0.3", "80.0 / 85.0"}));
+  EXPECT_NE(figures[0].captions.at(0).find("mean over the 2 scenes with objects, on seeds of tuning (seeds 1 to 4, 0.6 s each)"), std::string::npos);
 }
 
 // `./dev figures` writes both; whoever edits one by hand is told here.

@@ -58,6 +58,19 @@ TEST_F(LogCommands, InfoTellsChannelsTypesRatesGapsAndWhoMadeIt) {
   EXPECT_TRUE(Said("UGLY?                ?                          1            1")) << out_.str();
 }
 
+TEST_F(LogCommands, InfoTellsTheMachineInALineForEach) {
+  run_info_t info{};
+  info.file_name = {"boat.txtpb", "machine.txt"};
+  info.file_text = {
+      "name: 1\n", "architecture: aarch64\nprocessor: implementer 0x41\nprocessor_features: fp asimd\nc_library: glibc 2.36\nglibc_tunables: none\n"};
+  info.num_files = 2;
+  const auto first = Event(start_, "RUN_INFO", bus::Encode(info));
+  info.file_text[1] = "architecture: \x1b[2J\n";
+  const auto other = Event(start_, "RUN_INFO", bus::Encode(info));
+  Info({Write("log", {first, first, other, RunInfo(1)})}, out_);
+  EXPECT_TRUE(Said("machine   aarch64, implementer 0x41, fp asimd, glibc 2.36, glibc_tunables: none\nmachine   ?[2J\n")) << out_.str();
+}
+
 TEST_F(LogCommands, InfoReadsRotatedLogsAsOne) {
   const auto first = Write("1", {RunInfo(0), Pose(0, 0), Pose(1, 1)});
   const auto second = Write("2", {RunInfo(2), Pose(3, 3)});

@@ -212,6 +212,21 @@ TEST(PoseFilter, TakesASpeedWithoutCourseForUncertainty) {
   EXPECT_EQ(pose.heading_source, HeadingSource::kNone);
 }
 
+// The prior of a position found anew is so many metres, that of its velocity so many metres per second: once it was the metres, 1000 m/s.
+TEST(PoseFilter, KnowsOfAVelocityThatSaysNothingThatItIsABoats) {
+  GnssFix fix = MovingFix(0.0, 5.0, 90.0);
+  fix.velocity_sd_mps = 500.0;
+  PoseFilter filter(TestFilterParams());
+  filter.Add(fix);
+  const Pose pose = filter.At(NoonPlus(0.0));
+  EXPECT_LT(std::sqrt(pose.covariance(3, 3)), 150.0);
+  // What is known of it counts alone.
+  fix.velocity_sd_mps = 0.1;
+  PoseFilter other(TestFilterParams());
+  other.Add(fix);
+  EXPECT_NEAR(std::sqrt(other.At(NoonPlus(0.0)).covariance(3, 3)), 0.1, 0.05);
+}
+
 TEST(PoseFilter, NamesInputsThatStop) {
   PoseFilter filter(TestFilterParams());
   for (int i = 0; i <= 200; ++i) filter.Add(RestSample(0.01 * i));

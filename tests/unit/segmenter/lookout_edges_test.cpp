@@ -28,6 +28,18 @@ TEST(FewColumns, AreLinkedAsManyAre) {
   }
 }
 
+// Their number on an arc was made an int however great it was: the least int on x86, the greatest on arm64.
+TEST(FewColumns, AsFineAsNumbersGoTakeAtMostHalfTheCircle) {
+  auto scan = EmptyScan({.num_columns = 100, .num_rings = 2, .width_rad = 0.1});
+  for (int column = 0; column < 100; ++column) {
+    scan.columns.azimuth_rad[static_cast<std::size_t>(column)] = 1e-30F * static_cast<float>(column);
+    SetReturn(scan, column, 0, 10.0);
+  }
+  const Stages stages(scan);
+  EXPECT_EQ(stages.grid.ColumnsOf(1.0, 10.0), stages.grid.num_columns() / 2);
+  EXPECT_EQ(SegmentScan(scan, {}).segments.size(), 1U);
+}
+
 // 512 columns of a wall all round at 20 m are 0.245 m apart and linked up to 0.5 m. What is right above one of them is of it in each column.
 TEST(WholeCircle, IsLinkedToTheNextRingInEachColumn) {
   for (int column = 0; column < 512; ++column) {

@@ -13,8 +13,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A prior that says nothing, against which any measurement counts alone: m, rad.
+// A prior that says nothing, against which any measurement counts alone: m, m/s, rad. No boat has gone faster than 142 m/s (the world water speed
+// record).
 constexpr double kAnywhereM = 1000.0;
+constexpr double kAnySpeedMps = 150.0;
 constexpr double kAnyHeadingRad = 10.0;
 constexpr double kAnyTiltRad = 10.0;
 
@@ -134,7 +136,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     state.has_position = true;
     if (fix.velocity && !knew_velocity) {
       state.velocity_map_mps.head<2>() = fix.velocity->east_north_mps;
-      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnywhereM), state);
+      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }
   state.fix_refusals = {};

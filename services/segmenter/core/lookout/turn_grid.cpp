@@ -109,7 +109,8 @@ void TurnGrid::SortByColumn() {
 int TurnGrid::ColumnsOf(double length_m, double range_m) const {
   const int half = num_columns_ / 2;
   if (range_m <= length_m || column_step_rad_ <= 0.0) return half;
-  return std::min(half, static_cast<int>(std::ceil(Asin(length_m / range_m) / column_step_rad_)));
+  // Columns of a strange lidar may be so fine that their number is none of an int.
+  return static_cast<int>(std::min(static_cast<double>(half), std::ceil(Asin(length_m / range_m) / column_step_rad_)));
 }
 
 }  // namespace lookout::segmenter

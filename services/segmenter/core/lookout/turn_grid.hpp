@@ -44,7 +44,7 @@ class TurnGrid {
   /// More than any window of columns is wide.
   static constexpr int kMinColumns = 64;
 
-  /// @param T_vessel_lidar  its rotation levels the returns
+  /// @param R_vessel_lidar  rotation from the lidar to the vessel frame: it levels the returns
   /// Cost: proportional to the cells. Allocates nothing once it has seen a turn of that size.
   void Fill(const Scan& scan, std::span<const Return> returns, const Eigen::Matrix3d& R_vessel_lidar);
 
