@@ -24,7 +24,7 @@ install(FILES default DESTINATION ${CMAKE_INSTALL_FULL_SYSCONFDIR}/default RENAM
 install(DIRECTORY ${units_folder}/ DESTINATION lib/systemd/system)
 install(FILES systemd/sysusers.conf DESTINATION lib/sysusers.d RENAME lookout.conf)
 install(FILES systemd/sysctl.conf DESTINATION lib/sysctl.d RENAME 60-lookout.conf)
-install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md ${CMAKE_SOURCE_DIR}/TROUBLESHOOTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES systemd/live-capture.conf DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 

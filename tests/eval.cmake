@@ -5,3 +5,7 @@ lookout_test(NAME unit_eval
              LINKS lookout_eval)
 lookout_test(NAME unit_default_method SOURCES unit/eval/default_method_test.cpp LINKS lookout_judge lookout_config)
 lookout_test(NAME unit_judge SOURCES unit/eval/judge_test.cpp LINKS lookout_judge lookout_config TIMEOUT 180)
+lookout_test(NAME unit_captures SOURCES unit/eval/captures_test.cpp LINKS lookout_judge lookout_config lzma TIMEOUT 120)
+lookout_test(NAME system_eval_line SOURCES system/eval_line_test.cpp TIMEOUT 120)
+add_dependencies(system_eval_line lookout-eval)
+lookout_test(NAME unit_figures SOURCES unit/eval/figures_test.cpp LINKS lookout_judge)

@@ -55,3 +55,12 @@ foreach(name vlp16 live)
 endforeach()
 target_link_libraries(load_live PRIVATE lcm)
 add_dependencies(load_live lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
+
+# Each program that writes a file, against files, links, folders, signals and full disks.
+add_test(NAME system_outputs COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/outputs_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/bin)
+set_tests_properties(system_outputs PROPERTIES TIMEOUT 180)
+
+# The demo's order of starting and ending.
+add_test(NAME system_live_processes COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route
+         ${CMAKE_CURRENT_SOURCE_DIR}/system/live_processes_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/bin)
+set_tests_properties(system_live_processes PROPERTIES TIMEOUT 120 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)

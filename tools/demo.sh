@@ -12,6 +12,9 @@ seed=1
 seconds=10
 capture=${1:-}
 
+# shellcheck source=tools/live_processes.sh
+. tools/live_processes.sh
+
 say() { printf '\n== %s\n' "$*"; }
 
 # Live processes need a multicast route. Where there is none, the whole demo goes into a network namespace of its own; root needs no user namespace
@@ -66,26 +69,10 @@ if [ -n "$capture" ]; then
   sed -i 's/^use_lidar_nmea: true/use_lidar_nmea: false/' "$live_config/navigator.txtpb"
 fi
 
-pids=()
-stop_all() {
-  local pid
-  for pid in "${pids[@]}"; do kill -TERM "$pid" 2>/dev/null || true; done
-  for pid in "${pids[@]}"; do wait "$pid" 2>/dev/null || true; done
-  pids=()
-}
 trap stop_all EXIT
-start() {  # NAME
-  "$bin/lookout-$1" --config "$live_config" >"$work/$1.out" 2>&1 &
-  pids+=($!)
-}
-for service in recorder georeferencer navigator segmenter; do start "$service"; done
-sleep 1  # subscriptions reach LCM's group before the first message does
-for pid in "${pids[@]}"; do
-  kill -0 "$pid" 2>/dev/null || { echo "a process ended at its start:" >&2; cat "$work"/*.out >&2; exit 1; }
-done
-start vlp16
-lidar=${pids[-1]}
-sleep 0.5
+# Those that take before those that give: nobody misses a first message.
+for service in recorder georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+lidar=${live_pids[vlp16]}
 # What the bus carries, seen in the middle of the run.
 (sleep 2 && exec "$bin/lookout-top" --once --seconds 3) >"$work/top.out" 2>&1 &
 watcher=$!
@@ -103,12 +90,6 @@ else
   sleep 1.5  # the last HEALTH
 fi
 wait "$watcher" || { cat "$work/top.out" >&2; exit 1; }
-# The recorder ends last, so that it has what the others send at their end.
-recorder=${pids[0]}
-pids=("${pids[@]:1}")
-stop_all
-pids=("$recorder")
-sleep 0.3
 stop_all
 trap - EXIT
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <lcm/eventlog.h>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "common/bus/log_event.hpp"
 
@@ -157,39 +157,58 @@ std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::st
 }
 
 struct LogWriter::Implementation {
-  lcm_eventlog_t* log = nullptr;
-  std::filesystem::path file;
+  explicit Implementation(Take some_take) : take(std::move(some_take)) {}
+  ~Implementation() {
+    if (file != nullptr) std::fclose(file);
+  }
+
+  Take take;
+  std::FILE* file = nullptr;  // where it writes one of its own
+  std::vector<std::uint8_t> block;
+  std::int64_t num_events = 0;
 };
 
-LogWriter::LogWriter(const std::filesystem::path& file, bool overwrite) : implementation_(std::make_unique<Implementation>()) {
-  std::error_code error;
-  if (!overwrite && std::filesystem::exists(file, error)) throw std::runtime_error(file.string() + ": exists already");
-  implementation_->file = file;
-  implementation_->log = lcm_eventlog_create(file.c_str(), "w");
-  if (implementation_->log == nullptr) throw std::runtime_error(file.string() + ": cannot be written");
-  setvbuf(implementation_->log->f, nullptr, _IOFBF, kWriteBytes);
+LogWriter::LogWriter(Take take) : implementation_(std::make_unique<Implementation>(std::move(take))) {
+  implementation_->block.reserve(2 * kWriteBytes);
 }
 
-LogWriter::~LogWriter() { lcm_eventlog_destroy(implementation_->log); }
+LogWriter::LogWriter(const std::filesystem::path& file, bool overwrite) : LogWriter(Take()) {
+  std::error_code error;
+  if (!overwrite && std::filesystem::exists(file, error)) throw std::runtime_error(file.string() + ": exists already");
+  auto* const out = std::fopen(file.c_str(), "wb");
+  if (out == nullptr) throw std::runtime_error(file.string() + ": cannot be written");
+  std::setvbuf(out, nullptr, _IONBF, 0);
+  implementation_->file = out;
+  implementation_->take = [out, name = file.string()](Bytes bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size()) return;
+    throw std::runtime_error(name + ": write failed: " + std::system_category().message(errno));
+  };
+}
+
+LogWriter::~LogWriter() {
+  if (implementation_->file == nullptr) return;
+  try {
+    Flush();
+  } catch (const std::runtime_error&) {
+    // Who must know calls Flush.
+  }
+}
 
 void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) {
-  std::string name(channel);
-  lcm_eventlog_event_t event{};
-  event.timestamp = ToUtimeUs(time);
-  event.channellen = static_cast<std::int32_t>(name.size());
-  event.datalen = static_cast<std::int32_t>(bytes.size());
-  event.channel = name.data();
-  event.data = const_cast<std::uint8_t*>(bytes.data());  // LCM's writer only reads it (lcm/eventlog.c)
-  if (lcm_eventlog_write_event(implementation_->log, &event) != 0) {
-    throw std::runtime_error(implementation_->file.string() + ": write failed: " + std::system_category().message(errno));
-  }
-  num_bytes_ += static_cast<std::int64_t>(kHeaderBytes + name.size() + bytes.size());
+  auto& self = *implementation_;
+  AppendLogEvent(self.block, self.num_events++, time, channel, bytes);
+  num_bytes_ += static_cast<std::int64_t>(kHeaderBytes + channel.size() + bytes.size());
+  if (self.block.size() >= kWriteBytes) Flush();
 }
 
 void LogWriter::Flush() {
-  if (std::fflush(implementation_->log->f) != 0) {
-    throw std::runtime_error(implementation_->file.string() + ": write failed: " + std::system_category().message(errno));
-  }
+  // What was not taken is not given again: the log is torn there.
+  if (implementation_->block.empty()) return;
+  auto block = std::move(implementation_->block);
+  implementation_->block.clear();
+  implementation_->take(block);
+  block.clear();
+  implementation_->block = std::move(block);  // its memory is used again
 }
 
 }  // namespace lookout::bus

@@ -1,5 +1,5 @@
-// lcm-log files. Written by LCM's own writer; read by a reader of our own, since LCM's takes a damaged length at its word and then reads
-// over the rest of the file.
+// lcm-log files. Written and read by code of our own: LCM's writer does not tell errors of the disk, its reader takes a damaged length at its word
+// and then reads over the rest of the file.
 #pragma once
 
 #include <cstdint>
@@ -61,7 +61,14 @@ class LogReader {
 
 class LogWriter {
  public:
-  /// Makes a new file. @throws std::runtime_error when it cannot be made or exists already and `overwrite` is not set
+  /// Takes a piece of the log; what it throws comes through.
+  using Take = std::function<void(Bytes)>;
+
+  /// Gives the log in pieces to `take`: to an io::OutputFile, say. What Flush was not called for stays behind.
+  explicit LogWriter(Take take);
+
+  /// Writes a new file by itself, in place: for logs that nobody needs whole. @throws std::runtime_error when it cannot be made or exists already and
+  /// `overwrite` is not set
   explicit LogWriter(const std::filesystem::path& file, bool overwrite = false);
   ~LogWriter();
   LogWriter(const LogWriter&) = delete;

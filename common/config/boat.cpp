@@ -10,9 +10,11 @@ BoatFacts LoadBoat(const std::filesystem::path& folder) {
   const auto file = folder / "boat.txtpb";
   const auto boat = Load<Boat>(folder, "boat.txtpb");
   const auto& box = boat.own_vessel();
-  if (box.min_x_m() >= box.max_x_m()) Refuse(file, "own_vessel.min_x_m", "must be less than max_x_m");
-  if (box.min_y_m() >= box.max_y_m()) Refuse(file, "own_vessel.min_y_m", "must be less than max_y_m");
-  if (box.min_z_m() >= box.max_z_m()) Refuse(file, "own_vessel.min_z_m", "must be less than max_z_m");
+  FaultList faults;
+  if (box.min_x_m() >= box.max_x_m()) faults.Add(FaultLine(file, "own_vessel.min_x_m", "must be less than max_x_m"));
+  if (box.min_y_m() >= box.max_y_m()) faults.Add(FaultLine(file, "own_vessel.min_y_m", "must be less than max_y_m"));
+  if (box.min_z_m() >= box.max_z_m()) faults.Add(FaultLine(file, "own_vessel.min_z_m", "must be less than max_z_m"));
+  faults.ThrowIfAny();
 
   BoatFacts facts;
   facts.name = boat.name();

@@ -1,5 +1,6 @@
 #include "common/config/text_config.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -9,9 +10,11 @@
 #include <google/protobuf/text_format.h>
 #include <memory>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
+#include "common/config/text_salvage.hpp"
 #include "config/schema/boat.pb.h"
 #include "config/schema/georeferencer.pb.h"
 #include "config/schema/navigator.pb.h"
@@ -58,17 +61,24 @@ const Descriptor* FindSchema(const std::string& schema_file) {
   return nullptr;
 }
 
+// More than these help nobody, and a text of nonsense has thousands.
+constexpr std::size_t kMaxFaults = 100;
+
+struct Fault {
+  int line = 0;  // from 1
+  std::string text;
+};
+
 class FaultCollector final : public google::protobuf::io::ErrorCollector {
  public:
-  FaultCollector(std::string name, std::vector<std::string>& faults) : name_(std::move(name)), faults_(faults) {}
+  explicit FaultCollector(std::vector<Fault>& faults) : faults_(faults) {}
   void AddError(int line, int column, const std::string& message) override {
     // Lines and columns count from 0; -1 stands for the whole text.
-    faults_.push_back(name_ + ":" + std::to_string(line + 1) + ": column " + std::to_string(column + 1) + ": " + message);
+    faults_.push_back({line + 1, "text: column " + std::to_string(column + 1) + ": " + message});
   }
 
  private:
-  std::string name_;
-  std::vector<std::string>& faults_;
+  std::vector<Fault>& faults_;
 };
 
 std::optional<double> NumberOf(const Message& message, const FieldDescriptor& field, int index) {
@@ -81,6 +91,10 @@ std::optional<double> NumberOf(const Message& message, const FieldDescriptor& fi
       return is_list ? reflection.GetRepeatedFloat(message, &field, index) : reflection.GetFloat(message, &field);
     case FieldDescriptor::CPPTYPE_INT32:
       return is_list ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
+    case FieldDescriptor::CPPTYPE_INT64: {
+      const auto value = is_list ? reflection.GetRepeatedInt64(message, &field, index) : reflection.GetInt64(message, &field);
+      return static_cast<double>(value);  // limits are round numbers: what rounds onto one is as good as it
+    }
     default:
       return std::nullopt;
   }
@@ -96,7 +110,8 @@ std::string RangeFault(const google::protobuf::FieldOptions& options, double val
 // Walks a parsed message and its positions in the text, and collects what the schema's options forbid.
 class Checker {
  public:
-  Checker(std::string name, std::vector<std::string>& faults) : name_(std::move(name)), faults_(faults) {}
+  /// @param refused  fields whose values were wrong by themselves, by path and line of their message: they are set, but not here
+  Checker(const std::set<std::pair<std::string, int>>& refused, std::vector<Fault>& faults) : refused_(refused), faults_(faults) {}
 
   void Check(const Message& message, const TextFormat::ParseInfoTree* positions, const std::string& prefix, int line_of_message) {
     const auto& reflection = *message.GetReflection();
@@ -106,7 +121,8 @@ class Checker {
       const std::string path = prefix + field.name();
       const bool is_list = field.is_repeated();
       const int count = is_list ? reflection.FieldSize(message, &field) : (reflection.HasField(message, &field) ? 1 : 0);
-      if (count == 0 && !is_list && !field.has_default_value() && !field.options().GetExtension(may_be_absent)) {
+      const bool may_miss = is_list || field.has_default_value() || field.options().GetExtension(may_be_absent);
+      if (count == 0 && !may_miss && !refused_.contains({path, line_of_message})) {
         Add(line_of_message, path, "must be set");
       }
       for (int k = 0; k < count; ++k) {
@@ -126,12 +142,10 @@ class Checker {
   }
 
  private:
-  void Add(int line, const std::string& field, const std::string& reason) {
-    faults_.push_back(name_ + ":" + std::to_string(line < 0 ? 1 : line + 1) + ": " + field + ": " + reason);
-  }
+  void Add(int line, const std::string& field, const std::string& reason) { faults_.push_back({line < 0 ? 1 : line + 1, field + ": " + reason}); }
 
-  std::string name_;
-  std::vector<std::string>& faults_;
+  const std::set<std::pair<std::string, int>>& refused_;
+  std::vector<Fault>& faults_;
 };
 
 std::string ReadFile(const std::filesystem::path& file) {
@@ -171,20 +185,61 @@ void AppendEffective(const Message& message, const std::string& indent, std::str
 
 }  // namespace
 
+void FaultList::Try(const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const ConfigError& error) {
+    for (const auto& fault : error.faults()) Add(fault);
+  }
+}
+
+void FaultList::Add(const std::string& fault) {
+  if (std::ranges::find(faults_, fault) == faults_.end()) faults_.push_back(fault);
+}
+
+void FaultList::ThrowIfAny() const {
+  if (!faults_.empty()) throw ConfigError(faults_);
+}
+
 ConfigError::ConfigError(std::vector<std::string> faults) : std::runtime_error(Joined(faults)), faults_(std::move(faults)) {}
 
 void ParseText(const std::string& text, const std::string& name, Message& message) {
-  std::vector<std::string> faults;
-  FaultCollector collector(name, faults);
-  TextFormat::ParseInfoTree positions;
-  TextFormat::Parser parser;
-  parser.RecordErrorsTo(&collector);
-  parser.WriteLocationsTo(&positions);
-  google::protobuf::io::ArrayInputStream input(text.data(), static_cast<int>(text.size()));
-  const bool is_parsed = parser.Parse(&input, &message);
-  if (!is_parsed && faults.empty()) faults.push_back(name + ":1: text: cannot be parsed");
-  if (is_parsed) Checker(name, faults).Check(message, &positions, "", -1);
-  if (!faults.empty()) throw ConfigError(faults);
+  std::vector<Fault> faults;
+  FaultCollector collector(faults);
+  const auto parse = [&](const std::string& part, TextFormat::ParseInfoTree& positions) {
+    TextFormat::Parser parser;
+    parser.RecordErrorsTo(&collector);
+    parser.WriteLocationsTo(&positions);
+    google::protobuf::io::ArrayInputStream input(part.data(), static_cast<int>(part.size()));
+    const bool is_parsed = parser.Parse(&input, &message);
+    if (!is_parsed && faults.empty()) faults.push_back({1, "text: cannot be parsed"});
+    return is_parsed;
+  };
+  SalvagedText salvaged;
+  auto positions = std::make_unique<TextFormat::ParseInfoTree>();
+  bool is_parsed = parse(text, *positions);
+  if (!is_parsed) {
+    // The parser stops at the first fault. What else is wrong is found without the statements that are wrong by themselves.
+    salvaged = SalvageText(text, *message.GetDescriptor());
+    if (!salvaged.faults.empty()) {
+      faults.clear();
+      positions = std::make_unique<TextFormat::ParseInfoTree>();
+      is_parsed = parse(salvaged.text, *positions);
+      for (const auto& fault : salvaged.faults) faults.push_back({fault.line + 1, fault.field + ": " + fault.reason});
+    }
+  }
+  if (is_parsed) Checker(salvaged.blanked, faults).Check(message, positions.get(), "", -1);
+  if (faults.empty()) return;
+  std::ranges::stable_sort(faults, {}, &Fault::line);
+  std::vector<std::string> lines;
+  for (const auto& fault : faults) {
+    if (lines.size() == kMaxFaults) {
+      lines.push_back(name + ":" + std::to_string(fault.line) + ": text: and " + std::to_string(faults.size() - kMaxFaults) + " faults more");
+      break;
+    }
+    lines.push_back(name + ":" + std::to_string(fault.line) + ": " + fault.text);
+  }
+  throw ConfigError(lines);
 }
 
 void LoadText(const std::filesystem::path& file, Message& message) { ParseText(ReadFile(file), file.string(), message); }

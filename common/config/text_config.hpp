@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <google/protobuf/message.h>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -19,9 +21,33 @@ class ConfigError : public std::runtime_error {
   std::vector<std::string> faults_;
 };
 
+/// Faults of several files and checks, to be told all at once, in the order in which they were found, each once.
+class FaultList {
+ public:
+  /// Runs `check`, and keeps the faults of a ConfigError that it throws.
+  void Try(const std::function<void()>& check);
+
+  /// @return what `load` gives; nullopt when it throws a ConfigError, whose faults are kept
+  template <typename LoadFunction>
+  auto Take(const LoadFunction& load) {
+    std::optional<decltype(load())> loaded;
+    Try([&] { loaded = load(); });
+    return loaded;
+  }
+
+  void Add(const std::string& fault);
+
+  /// @throws ConfigError with all faults, if there are any
+  void ThrowIfAny() const;
+
+ private:
+  std::vector<std::string> faults_;
+};
+
 /// Fills `message` from a text file and checks it against the options of its schema (config/schema/options.proto).
 ///
-/// @throws ConfigError with every fault found; `message` is then not to be used
+/// @throws ConfigError with every fault of the text, by line: unknown fields, wrong types, second values, facts that are missing, numbers out of
+///         range; `message` is then not to be used. Relations between fields are for who uses them.
 void LoadText(const std::filesystem::path& file, google::protobuf::Message& message);
 
 /// The same from text; `name` stands in for the path in faults.

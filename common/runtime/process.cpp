@@ -40,6 +40,11 @@ sigset_t StopSignals() {
   return signals;
 }
 
+// At the end what has arrived is still handled, until nothing comes for a moment: those that feed this process may have ended just before it, and
+// what they sent last is on its way through a thread of LCM. Others may go on sending, so it is bounded.
+constexpr std::chrono::milliseconds kLastSilence(20);
+constexpr std::chrono::milliseconds kLastTime(300);
+
 // Goes before anything that starts a thread (LCM does): threads inherit the blocked signals.
 std::string Prepared(const std::string& lcm_url) {
   BlockStopSignals();
@@ -175,6 +180,9 @@ void Process::Run(const std::function<HealthReport()>& report) {
       if (!bus_.HandleOnce(std::chrono::milliseconds(0))) break;
     }
     if (!self.is_stopping) self.RunTimers();
+  }
+  const auto end = Clock::now() + kLastTime;
+  while (Clock::now() < end && bus_.HandleOnce(kLastSilence)) {
   }
   const auto last_report = report();
   for (const auto& counter : last_report.counters) {

@@ -29,10 +29,12 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
   message.version = Version();
   message.host = HostName();
   message.schema = bus::SchemaDigest();
+  config::FaultList faults;
   for (const auto& name : ConfigFiles(config_folder)) {
+    faults.Try([&] { message.file_text.push_back(config::EffectiveTextOfFile(config_folder / name)); });
     message.file_name.push_back(name);
-    message.file_text.push_back(config::EffectiveTextOfFile(config_folder / name));
   }
+  faults.ThrowIfAny();
   message.file_name.emplace_back(kMachineFile);
   message.file_text.push_back(MachineText());
   for (const auto& type : bus::TypeTexts()) {
@@ -45,7 +47,9 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
 
 std::string EffectiveConfig(const std::filesystem::path& config_folder, const std::vector<std::string>& file_names) {
   std::string text;
-  for (const auto& name : file_names) text += "# " + name + "\n" + config::EffectiveTextOfFile(config_folder / name);
+  config::FaultList faults;
+  for (const auto& name : file_names) faults.Try([&] { text += "# " + name + "\n" + config::EffectiveTextOfFile(config_folder / name); });
+  faults.ThrowIfAny();
   return text;
 }
 

@@ -10,8 +10,15 @@
 namespace lookout::georeferencer {
 
 Params LoadParams(const std::filesystem::path& config_folder) {
-  const auto boat = config::LoadBoat(config_folder);
-  const auto message = config::Load<config::Georeferencer>(config_folder, "georeferencer.txtpb");
+  config::FaultList faults;
+  const auto loaded_boat = faults.Take([&] { return config::LoadBoat(config_folder); });
+  const auto loaded = faults.Take([&] { return config::Load<config::Georeferencer>(config_folder, "georeferencer.txtpb"); });
+  if (loaded && loaded->has_guard_zone() && loaded->guard_zone().to_bearing_deg() == loaded->guard_zone().from_bearing_deg()) {
+    faults.Add(config::FaultLine(config_folder / "georeferencer.txtpb", "guard_zone.to_bearing_deg", "must differ from from_bearing_deg"));
+  }
+  faults.ThrowIfAny();
+  const auto& boat = *loaded_boat;
+  const auto& message = *loaded;
   Params params;
   params.placement.T_vessel_lidar = boat.T_vessel_lidar;
   params.placement.reference_point_above_water_m = boat.reference_point_above_water_m;
@@ -21,7 +28,6 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   if (message.has_guard_zone()) {
     const auto& zone = message.guard_zone();
     const double width_deg = zone.to_bearing_deg() - zone.from_bearing_deg();
-    if (width_deg == 0.0) config::Refuse(config_folder / "georeferencer.txtpb", "guard_zone.to_bearing_deg", "must differ from from_bearing_deg");
     params.guard_zone.range_m = zone.range_m();
     params.guard_zone.bearing = {WrapTo2Pi(DegToRad(zone.from_bearing_deg())),
                                  std::abs(width_deg) >= 360.0 ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))};

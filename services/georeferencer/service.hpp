@@ -26,6 +26,9 @@ class Service {
   /// End of input: what waits is sent with the poses that are there.
   void Finish();
 
+  /// Messages of SEGMENTS that wait for POSE.
+  std::int64_t num_waiting() const { return georeferencer_.num_waiting(); }
+
   HealthReport Report() const;
 
  private:

@@ -18,17 +18,19 @@ std::chrono::microseconds ToMicroseconds(double duration_s) { return std::chrono
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
-  const auto boat = config::LoadBoat(config_folder);
-  const auto message = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
-
-  if (message.max_sentence_latency_s() > message.max_attitude_age_s()) {
-    config::Refuse(config_folder / "navigator.txtpb", "max_sentence_latency_s", "must not be greater than max_attitude_age_s");
-  }
-
   Params params;
+  config::FaultList faults;
+  const auto loaded_boat = faults.Take([&] { return config::LoadBoat(config_folder); });
+  const auto loaded = faults.Take([&] { return config::Load<config::Navigator>(config_folder, "navigator.txtpb"); });
+  if (loaded && loaded->max_sentence_latency_s() > loaded->max_attitude_age_s()) {
+    faults.Add(config::FaultLine(config_folder / "navigator.txtpb", "max_sentence_latency_s", "must not be greater than max_attitude_age_s"));
+  }
+  if (loaded) faults.Try([&] { TakeInputs(config_folder, *loaded, params); });
+  faults.ThrowIfAny();
+  const auto& boat = *loaded_boat;
+  const auto& message = *loaded;
   params.input = message.source() == config::Navigator::LOG ? Input::kLog : Input::kOutside;
   params.use_lidar_nmea = message.use_lidar_nmea();
-  TakeInputs(config_folder, message, params);
 
   auto& navigator = params.navigator;
   navigator.max_sentence_latency = ToMicroseconds(message.max_sentence_latency_s());

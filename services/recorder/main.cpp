@@ -3,6 +3,7 @@
 #include <iostream>
 #include <spdlog/spdlog.h>
 
+#include "common/config/text_config.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
@@ -21,8 +22,12 @@ int main(int argc, char** argv) {
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-recorder", "every channel into an lcm-log");
   lookout::runtime::BlockStopSignals();
   return lookout::runtime::RunMain("recorder", [&options] {
-    const auto params = lookout::recorder::LoadParams(options.config_folder);
-    const auto run_info = lookout::runtime::MakeRunInfo("recorder", options.config_folder);
+    lookout::config::FaultList faults;
+    const auto loaded_run_info = faults.Take([&options] { return lookout::runtime::MakeRunInfo("recorder", options.config_folder); });
+    const auto loaded = faults.Take([&options] { return lookout::recorder::LoadParams(options.config_folder); });
+    faults.ThrowIfAny();
+    const auto& run_info = *loaded_run_info;
+    const auto& params = *loaded;
     if (options.check_only) {
       std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "recorder.txtpb"});
       return;

@@ -69,7 +69,7 @@ void Service::AdvanceTo(Utime now) {
   const auto status = writer_.Status();
   if (!status.is_recording) {
     if (!status.is_waiting_for_file) BeginFile(now, false);
-  } else if (now - file_start_ >= params_.max_file_time) {
+  } else if (now - file_start_ >= params_.max_file_time || (status.wants_new_file && !status.is_waiting_for_file)) {
     Rotate(now);
   } else if (now - last_run_info_ >= kRunInfoPeriod || now < last_run_info_) {  // the host's clock may be set back
     file_start_ = std::min(file_start_, now);
@@ -158,6 +158,8 @@ void Service::WatchDisk() {
   } else if (status.num_lost_queue_full > last_lost_queue_full_) {
     warnings_.push_back(std::to_string(status.num_lost_queue_full - last_lost_queue_full_) + " events lost: " + Printable(status.fault));
   }
+  if (status.num_disturbed > last_disturbed_ && status.is_recording) warnings_.push_back(Printable(status.fault));
+  last_disturbed_ = status.num_disturbed;
   was_recording_ = status.is_recording;
   last_lost_queue_full_ = status.num_lost_queue_full;
 }
@@ -185,6 +187,8 @@ HealthReport Service::Report() const {
                      {"lost", num_lost},
                      {"lost_queue_full", status.num_lost_queue_full},
                      {"lost_disk_full", status.num_lost_full},
+                     {"lost_bytes", status.num_lost_bytes},
+                     {"files_disturbed", status.num_disturbed},
                      {"write_faults", status.num_faults},
                      {"unknown_channel", num_unknown_},
                      {"nameless_channel", num_nameless_},
@@ -199,6 +203,9 @@ HealthReport Service::Report() const {
   } else if (num_lost > 0) {
     report.state = HealthState::kDegraded;
     report.reason = "recording again; " + std::to_string(num_lost) + " events lost: " + Printable(status.fault);
+  } else if (status.num_disturbed > 0) {
+    report.state = HealthState::kDegraded;
+    report.reason = "recording, nothing lost, but " + Printable(status.fault);
   } else if (num_raw_missing_ > 0) {
     report.state = HealthState::kDegraded;
     report.reason = std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full";

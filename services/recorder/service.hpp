@@ -75,6 +75,7 @@ class Service {
   std::vector<std::string> warnings_;
   bool was_recording_ = true;
   std::int64_t last_lost_queue_full_ = 0;
+  std::int64_t last_disturbed_ = 0;
   std::int64_t num_unknown_ = 0;
   std::int64_t num_nameless_ = 0;
   std::int64_t num_missing_ = 0;      // gaps in seq, of any channel

@@ -32,20 +32,30 @@ LookoutParams LookoutOf(const config::Segmenter& message) {
   return params;
 }
 
+// What no field is wrong by itself in.
+void CheckRelations(const config::Segmenter& message, const std::filesystem::path& file) {
+  config::FaultList faults;
+  if (message.max_range_m() <= message.min_range_m()) faults.Add(config::FaultLine(file, "max_range_m", "must be greater than min_range_m"));
+  if (message.image_columns() != 0 && message.image_columns() < kMinImageColumns) {
+    faults.Add(config::FaultLine(file, "image_columns", "must be 0 or at least 16, so that neighbouring pixels look much the same way"));
+  }
+  faults.ThrowIfAny();
+}
+
 }  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
   const auto file = config_folder / "segmenter.txtpb";
-  config::Segmenter message;
-  config::LoadText(file, message);
-  return ToParams(message, config::LoadBoat(config_folder), file);
+  config::FaultList faults;
+  const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
+  const auto message = faults.Take([&] { return config::Load<config::Segmenter>(config_folder, "segmenter.txtpb"); });
+  if (message) faults.Try([&] { CheckRelations(*message, file); });
+  faults.ThrowIfAny();
+  return ToParams(*message, *boat, file);
 }
 
 Params ToParams(const config::Segmenter& message, const config::BoatFacts& boat, const std::filesystem::path& file) {
-  if (message.max_range_m() <= message.min_range_m()) config::Refuse(file, "max_range_m", "must be greater than min_range_m");
-  if (message.image_columns() != 0 && message.image_columns() < kMinImageColumns) {
-    config::Refuse(file, "image_columns", "must be 0 or at least 16, so that neighbouring pixels look much the same way");
-  }
+  CheckRelations(message, file);
 
   Params params;
   params.filter.min_range_m = message.min_range_m();

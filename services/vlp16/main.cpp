@@ -190,8 +190,11 @@ void TrySources(const Params& params, const Params& running) {
 // SIGHUP: a wrong config is told and changes nothing; a right one ends the run, to begin again with it.
 bool IsConfigRight(const std::filesystem::path& config_folder, const Params& running) {
   try {
-    TrySources(lookout::vlp16::LoadChecked(config_folder), running);
-    lookout::runtime::EffectiveConfig(config_folder, {"boat.txtpb"});
+    lookout::config::FaultList faults;
+    faults.Try([&] { lookout::runtime::EffectiveConfig(config_folder, {"boat.txtpb"}); });
+    const auto params = faults.Take([&] { return lookout::vlp16::LoadChecked(config_folder); });
+    faults.ThrowIfAny();
+    TrySources(*params, running);
     return true;
   } catch (const lookout::config::ConfigError& error) {
     for (const auto& fault : error.faults()) spdlog::error("{}", fault);
@@ -209,11 +212,15 @@ int main(int argc, char** argv) {
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-vlp16", "VLP-16 datagrams in; LIDAR_PACKETS, LIDAR_SCAN out");
   bool starts_again = false;
   const int code = lookout::runtime::RunMain("vlp16", [&] {
-    const auto params = lookout::vlp16::LoadChecked(options.config_folder);
     if (options.check_only) {
-      std::cout << lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "vlp16.txtpb"});
+      lookout::config::FaultList faults;
+      const auto text = faults.Take([&] { return lookout::runtime::EffectiveConfig(options.config_folder, {"boat.txtpb", "vlp16.txtpb"}); });
+      faults.Try([&] { lookout::vlp16::LoadChecked(options.config_folder); });
+      faults.ThrowIfAny();
+      std::cout << *text;
       return;
     }
+    const auto params = lookout::vlp16::LoadChecked(options.config_folder);
     lookout::runtime::Process process("vlp16", options.lcm_url);
     process.OnHangup([&] {
       if (!IsConfigRight(options.config_folder, params)) return;

@@ -88,7 +88,7 @@ TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
     const auto scene = sim::MakeScene("open_water", seed);
     sim::Simulation simulation(*scene, sim::SmallBoat(), params, nullptr);
     sim::FaultyNetwork network([&] { return simulation.Next(); }, {}, {0.05, 0.02, 0.02}, params.data_port, kStart, kStart + params.duration, seed);
-    sim::PcapSink sink(file, {params.data_port, params.navigation.position_port});
+    sim::PcapSink sink(file, {params.data_port, params.navigation.position_port}, {.force = true});
     while (const auto datagram = network.Next()) sink.Send(*datagram);
     sink.Close();
 

@@ -1,5 +1,6 @@
 // The house rules that a compiler does not check: who may include whom, and pages that must agree with the code.
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -162,13 +163,13 @@ TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor
   EXPECT_GT(num_checked, 10'000);
 }
 
-TEST(Structure, ReadmeHoldsTheChannelTable) {
-  const std::string readme = Read(kRoot / "README.md");
+TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
+  const std::string readme = Read(kRoot / "lcmtypes/README.md");
   for (const auto& channel : lookout::bus::kChannels) {
     std::ostringstream row;
     row << "| " << channel.name << " | " << channel.type << " | " << channel.publisher << " | " << channel.max_rate_hz << " | " << channel.queue_depth
         << " |";
-    EXPECT_NE(readme.find(row.str()), std::string::npos) << "README.md lacks or differs from: " << row.str();
+    EXPECT_NE(readme.find(row.str()), std::string::npos) << "lcmtypes/README.md lacks or differs from: " << row.str();
   }
 }
 
@@ -182,6 +183,129 @@ TEST(Structure, ReadmeNamesEveryProgram) {
       EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path() << " has no README.md";
     }
   }
+}
+
+// deploy/README.md and systemd's reload go by this column.
+TEST(Structure, TheTableOfProcessesSaysWhoTakesSighup) {
+  std::istringstream table(Read(kRoot / "deploy/processes"));
+  int num_processes = 0;
+  for (std::string line; std::getline(table, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream row(line);
+    std::string name;
+    std::string watchdog_s;
+    std::string reload;
+    row >> name >> watchdog_s >> reload;
+    const bool takes_it = Read(kRoot / "services" / name / "main.cpp").find("process.OnHangup(") != std::string::npos;
+    EXPECT_EQ(reload == "yes", takes_it) << name;
+    ++num_processes;
+  }
+  EXPECT_GE(num_processes, 5);
+}
+
+// A README says what a folder is and how to use it; why it became so stands beside it, with dates.
+TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
+  const std::regex dated(R"(^(\*\*)?20[0-9]{2}-[0-9]{2}-[0-9]{2}[.,: *])");
+  int num_files = 0;
+  for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "services", "tests", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      const std::string path = fs::relative(entry.path(), kRoot).string();
+      if (entry.path().filename() == "README.md") {
+        EXPECT_EQ(Read(entry.path()).find("\n## Decisions"), std::string::npos) << path << ": decisions stand in DECISIONS.md";
+      }
+      if (entry.path().filename() != "DECISIONS.md") continue;
+      ++num_files;
+      const std::string text = Read(entry.path());
+      EXPECT_EQ(text.rfind("# Decisions", 0), 0U) << path << " has no heading";
+      const auto first = text.find_first_not_of('\n', std::min(text.find('\n'), text.size()));
+      ASSERT_NE(first, std::string::npos) << path << " is empty";
+      EXPECT_TRUE(std::regex_search(text.substr(first, 20), dated)) << path << " does not begin with a date";
+      const fs::path readme = entry.path().parent_path() / "README.md";
+      if (!fs::exists(readme)) continue;
+      EXPECT_NE(Read(readme).find("(DECISIONS.md)"), std::string::npos) << path << " is not named in the README beside it";
+    }
+  }
+  EXPECT_GT(num_files, 15);
+}
+
+// As the usual viewers make it of a heading: lower case, blanks as "-", no punctuation.
+std::string AnchorOf(const std::string& heading) {
+  std::string anchor;
+  for (const char letter : heading) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (std::isalnum(byte) != 0 || letter == '-' || letter == '_') anchor += static_cast<char>(std::tolower(byte));
+    if (letter == ' ') anchor += '-';
+  }
+  return anchor;
+}
+
+std::vector<fs::path> Pages() {
+  std::vector<fs::path> pages;
+  for (const auto& entry : fs::directory_iterator(kRoot)) {
+    if (entry.path().extension() == ".md") pages.push_back(entry.path());
+  }
+  for (const auto& folder : {"config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+      if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(pages);
+  return pages;
+}
+
+TEST(Structure, LinksBetweenPagesLeadSomewhere) {
+  const std::regex link(R"(\]\(([^)#]*)(#([^)]*))?\))");
+  const std::regex heading(R"((^|\n)#+ ([^\n]*))");
+  int num_links = 0;
+  for (const auto& page : Pages()) {
+    const std::string text = Read(page);
+    for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match) {
+      const std::string target = (*match)[1];
+      if (target.rfind("http", 0) == 0) continue;
+      const fs::path file = target.empty() ? page : page.parent_path() / target;
+      ASSERT_TRUE(fs::exists(file)) << page << " leads to " << target << ", which is not there";
+      ++num_links;
+      const std::string anchor = (*match)[3];
+      if (anchor.empty()) continue;
+      const std::string other = Read(file);
+      bool is_there = false;
+      for (std::sregex_iterator found(other.begin(), other.end(), heading); found != end; ++found) is_there |= AnchorOf((*found)[2]) == anchor;
+      EXPECT_TRUE(is_there) << page << " leads to " << target << "#" << anchor << ", and there is no such heading";
+    }
+  }
+  EXPECT_GT(num_links, 30);
+}
+
+// Messages that a user looks up are those that the programs print. "..." stands for what differs.
+TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
+  std::string code;
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) code += Read(file);
+  }
+  code += Read(kRoot / "deploy/lookout-up.in");
+  const std::regex joints("\"\\s*\"");  // a literal that goes on in the next line
+  code = std::regex_replace(code, joints, "");
+  code += " has no field named ";  // Protobuf's
+  std::istringstream page(Read(kRoot / "TROUBLESHOOTING.md"));
+  const std::regex quoted("`([^`]*)`");
+  int num_pieces = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.rfind("| ", 0) != 0) continue;
+    const std::string cell = line.substr(2, line.find(" | ", 2) - 2);
+    for (std::sregex_iterator match(cell.begin(), cell.end(), quoted), end; match != end; ++match) {
+      std::string message = (*match)[1];
+      for (std::size_t from = 0; from < message.size();) {
+        const auto to = std::min(message.find("...", from), message.size());
+        const std::string piece = message.substr(from, to - from);
+        if (piece.size() > 2) {
+          EXPECT_NE(code.find(piece), std::string::npos) << "no program says: " << piece;
+          ++num_pieces;
+        }
+        from = to + 3;
+      }
+    }
+  }
+  EXPECT_GT(num_pieces, 50);
 }
 
 // What is not in the table is neither in systemd's units nor started by lookout-up.

@@ -53,6 +53,33 @@ code=0; "$up" --config "$config" 2>"$work/wrong.txt" || code=$?
 [ "$code" -eq 2 ] || fail "a wrong config: exit code $code"
 grep -q 'segmenter.txtpb:.*"nonsense"' "$work/wrong.txt" || { cat "$work/wrong.txt"; fail "a wrong config is not named"; }
 
+# Every fault of every process at once, each once, in an order of its own; lookout-doctor finds the same.
+rm -r "$config"
+cp -r "$source_folder/config/demo" "$config"
+sed -i -e 's/^name:/nam:/' -e 's/min_x_m: [-0-9.]*/min_x_m: "aft"/' "$config/boat.txtpb"
+printf 'max_range_m: -1\nbfs_angel_deg: 3\n' >>"$config/segmenter.txtpb"
+printf 'max_sentence_latency_s: 0.9\nmax_attitude_age_s: 0.5\n' >>"$config/navigator.txtpb"
+printf 'position_port: 2368\nallowed_source_address: "lidar"\n' >>"$config/vlp16.txtpb"
+rm "$config/georeferencer.txtpb"
+code=0; "$up" --config "$config" --check >"$work/out.txt" 2>"$work/wrong.txt" || code=$?
+[ "$code" -eq 2 ] || fail "--check with many faults: exit code $code"
+sed -E "s|^$config/||; s/:[0-9]+: /: /" "$work/wrong.txt" >"$work/got.txt"
+for fault in 'boat.txtpb: nam:' 'boat.txtpb: name: must be set' 'boat.txtpb: own_vessel.min_x_m: Expected double' 'segmenter.txtpb: max_range_m: ' \
+  'segmenter.txtpb: bfs_angel_deg: ' 'navigator.txtpb: max_sentence_latency_s: must not be greater' 'vlp16.txtpb: position_port: must differ' \
+  'vlp16.txtpb: allowed_source_address: ' 'georeferencer.txtpb: file: cannot be read'; do
+  [ "$(grep -c -F "$fault" "$work/got.txt")" -eq 1 ] || { cat "$work/got.txt"; fail "--check does not tell once: $fault"; }
+done
+[ "$(wc -l <"$work/got.txt")" -eq 9 ] || { cat "$work/got.txt"; fail "--check tells other faults than those nine"; }
+"$up" --config "$config" --check >/dev/null 2>"$work/again.txt" || true
+cmp -s "$work/again.txt" "$work/wrong.txt" || fail "--check tells the same faults in another order"
+code=0; "$build_folder/bin/lookout-doctor" --config "$config" --check >"$work/doctor.txt" 2>&1 || code=$?
+[ "$code" -eq 2 ] || fail "lookout-doctor --check: exit code $code"
+sed -E 's/^[-0-9T:.]+Z [a-z]+ doctor: //' "$work/doctor.txt" | sort | diff - <(sort "$work/wrong.txt") || fail "lookout-doctor finds other faults"
+# A tool that runs all services tells them too, but for what is the recorder's and a source's alone.
+code=0; "$build_folder/bin/lookout-replay" --config "$config" --check >"$work/replay.txt" 2>&1 || code=$?
+[ "$code" -eq 2 ] || fail "lookout-replay --check: exit code $code"
+sed -E 's/^[a-z]+ replay: //' "$work/replay.txt" | sort | diff - <(grep -v allowed_source_address "$work/wrong.txt" | sort) || fail "lookout-replay finds other faults"
+
 if ! command -v systemd-analyze >/dev/null; then
   echo "skipped: the units are not looked at: there is no systemd-analyze (package systemd)"
   exit 0

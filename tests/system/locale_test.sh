@@ -40,7 +40,7 @@ outputs() {  # FOLDER
   cd "$out"
   "$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds 1 --pcap sim.pcap --truth truth >sim.txt
   "$bin/lookout-replay" --config "$config" --in sim.pcap --out replay.lcmlog >replay.txt 2>/dev/null
-  for table in returns segments obstacles pose clock fixes attitude counters; do
+  for table in returns segments obstacles pose clock fixes attitude; do
     "$bin/lookout-export" --in replay.lcmlog --table "$table" --out "$table.csv"
   done
   "$bin/lookout-export" --in replay.lcmlog --table returns --format svg --out returns.svg
@@ -81,7 +81,7 @@ for locale in C "${locales[-1]}"; do
   "$bin/lookout-sim" --config "$odd/config" --scene lake --seed 1 --seconds 4 --udp 127.0.0.1 >/dev/null &
   sim_pid=$!
   "$bin/lookout-top" --once --seconds 2 >"$work/top.txt"
-  "$bin/lookout-doctor" --config "$odd/config" --seconds 1 >"$work/doctor.txt" || [ $? -eq 1 ]
+  "$bin/lookout-doctor" --config "$odd/config" --seconds 2 >"$work/doctor.txt" || [ $? -eq 1 ]
   wait "$sim_pid"
   grep -q '^LIDAR_PACKETS *[0-9]*\.[0-9] ' "$work/top.txt" || { cat "$work/top.txt"; fail "lookout-top, LC_ALL=$locale"; }
   grep -q 'VLP-16' "$work/doctor.txt" || { cat "$work/doctor.txt"; fail "lookout-doctor, LC_ALL=$locale"; }

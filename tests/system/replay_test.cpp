@@ -53,7 +53,7 @@ class Replay : public ::testing::Test {
     return ReplayWith(config_, in, out, options);
   }
   RunResult ReplayWith(const std::string& config, const std::string& in, const std::string& out, const std::vector<std::string>& options = {}) {
-    std::vector<std::string> command{Bin("replay"), "--config", config, "--in", in, "--out", Path(out)};
+    std::vector<std::string> command{Bin("replay"), "--config", config, "--in", in, "--out", Path(out), "--force"};
     command.insert(command.end(), options.begin(), options.end());
     return RunProgram(command, Path("replay.out"));
   }
@@ -64,6 +64,17 @@ class Replay : public ::testing::Test {
                                 Path("sim.out"));
     ASSERT_EQ(sim.exit_code, 0) << sim.output;
     ASSERT_EQ(ReplayTo(Path("sim.pcap"), "day").exit_code, 0);
+  }
+
+  // The first events of a log, as a recorder leaves them that is killed there.
+  void Cut(const std::string& log, const std::string& cut, std::size_t num_events) {
+    bus::LogReader reader(Path(log));
+    bus::LogWriter writer(Path(cut), true);
+    for (std::size_t i = 0; i < num_events; ++i) {
+      const auto event = reader.Next();
+      ASSERT_TRUE(event);
+      writer.Write(event->time, event->channel, event->bytes);
+    }
   }
 
   // The files of a recorder that began a new one after half of the events, RUN_INFO first in each.
@@ -252,6 +263,81 @@ TEST_F(Replay, OfRotatedFilesEqualsThatOfTheWhole) {
   EXPECT_TRUE(joined == day);
   const auto wrong = ReplayTo(Path("other"), "wrong", {"--in", Path("one")});
   EXPECT_NE(wrong.output.find("in their order"), std::string::npos) << wrong.output;
+}
+
+// In the log of a replay each event is followed by what came of it: cut in front of a raw one, it is what live gave until then. End of input used to
+// flush a scan and poses that live never had.
+TEST_F(Replay, OfALogThatWasCutAddsNothingToIt) {
+  MakeDay();
+  std::vector<std::size_t> raw;
+  {
+    bus::LogReader reader(Path("day"));
+    for (std::size_t i = 0; const auto event = reader.Next(); ++i) {
+      if (event->channel == "LIDAR_PACKETS" || (event->channel == "NAV_RAW" && i > 0)) raw.push_back(i);
+    }
+  }
+  ASSERT_GT(raw.size(), 500U);
+  for (const std::size_t place : {raw[20], raw[raw.size() / 3], raw[raw.size() / 2], raw[raw.size() * 3 / 4]}) {
+    Cut("day", "cut", place);
+    const auto result = ReplayTo(Path("cut"), "again");
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    EXPECT_NE(result.output.find("ends without an end mark"), std::string::npos) << result.output;
+    EXPECT_EQ(result.output.find("without a start mark"), std::string::npos) << result.output;
+    auto cut = PayloadsByChannel("cut");
+    auto again = PayloadsByChannel("again");
+    cut.erase("RUN_INFO");
+    again.erase("RUN_INFO");
+    EXPECT_TRUE(cut == again) << "cut after " << place << " events";
+  }
+  const auto whole = ReplayTo(Path("day"), "again");
+  EXPECT_EQ(whole.output.find("mark"), std::string::npos) << whole.output;
+}
+
+TEST_F(Replay, OfTheRestOfARunSaysThatItBeginsInTheMiddle) {
+  MakeDay();
+  Rotate("day", "one", "two");
+  const auto result = ReplayTo(Path("two"), "again");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("LIDAR_PACKETS, NAV_RAW: the input begins without a start mark"), std::string::npos) << result.output;
+  EXPECT_EQ(result.output.find("end mark"), std::string::npos) << result.output;
+}
+
+// A boat without a navigator: its scans wait for no POSE that could come.
+TEST_F(Replay, OfALogThatWasCutAndHoldsNoNavigationGivesItsObstaclesAllTheSame) {
+  MakeDay();
+  {
+    bus::LogReader reader(Path("day"));
+    bus::LogWriter writer(Path("lidar"));
+    int num_bundles = 0;
+    while (const auto event = reader.Next()) {
+      num_bundles += event->channel == "LIDAR_PACKETS" ? 1 : 0;
+      if (event->channel == "LIDAR_PACKETS" && num_bundles < 60) writer.Write(event->time, event->channel, event->bytes);
+    }
+  }
+  const auto result = ReplayTo(Path("lidar"), "again", {"--only", "vlp16", "--only", "segmenter", "--only", "georeferencer"});
+  if (result.exit_code == 0) {
+    EXPECT_EQ(PayloadsByChannel("again")["OBSTACLES"].size(), PayloadsByChannel("again")["SEGMENTS"].size()) << result.output;
+  } else {
+    EXPECT_NE(result.output.find("POSE"), std::string::npos) << result.output;
+  }
+}
+
+TEST_F(Replay, RefusesAnOutputThatExistsUnlessItIsForced) {
+  MakeDay();
+  std::ofstream(Path("old")) << "another recording";
+  const auto result = RunProgram({Bin("replay"), "--config", config_, "--in", Path("sim.pcap"), "--out", Path("old")}, Path("replay.out"));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.output.find("exists already; --force replaces it"), std::string::npos) << result.output;
+  EXPECT_EQ(Content(folder_ / "old"), "another recording");
+  EXPECT_EQ(ReplayTo(Path("sim.pcap"), "old").exit_code, 0);
+  EXPECT_EQ(Content(folder_ / "old"), Content(folder_ / "day"));
+}
+
+TEST_F(Replay, LeavesNothingOfWhatItCouldNotCompute) {
+  std::ofstream(Path("in")) << "neither a log nor a capture";
+  EXPECT_EQ(ReplayTo(Path("in"), "out").exit_code, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_FALSE(fs::exists(folder_ / "out.partial"));
 }
 
 TEST_F(Replay, TellsOfGapsAndOfProgressWhenAskedFor) {

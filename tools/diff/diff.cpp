@@ -14,6 +14,7 @@
 #include "common/bus/log_event.hpp"
 #include "common/bus/log_file.hpp"
 #include "tools/log/recorded_run.hpp"
+#include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
 
 namespace lookout::diff {
@@ -32,6 +33,8 @@ struct ChannelResult {
   std::int64_t num_different = 0;  // pairs
   std::int64_t num_only_a = 0;
   std::int64_t num_only_b = 0;
+  std::int64_t num_behind_a = 0;  // of these, behind the last message of the other log
+  std::int64_t num_behind_b = 0;
   std::optional<FirstDifference> first;
 
   bool IsEqual() const { return !first; }
@@ -45,6 +48,8 @@ class IndexedLog {
     while (const auto event = reader_.Next()) {
       const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
       places_[event->channel].push_back(reader_.position_bytes() - size);
+      marks_.Add(event->time, event->channel, event->bytes);
+      if (!first_time_) first_time_ = event->time;
       if (has_types) continue;
       if (const auto run_info = log::RunInfoOf(*event)) {
         types_ = log::TypesOf(*run_info);
@@ -58,6 +63,8 @@ class IndexedLog {
   const std::map<std::string, std::vector<std::int64_t>, std::less<>>& places() const { return places_; }
   const bus::WireTypes& types() const { return types_; }
   std::int64_t num_damaged() const { return num_damaged_; }
+  const log::RunMarks& marks() const { return marks_; }
+  std::optional<Utime> first_time() const { return first_time_; }
 
   bus::LogEvent Read(std::int64_t place) {
     reader_.Seek(place);
@@ -70,6 +77,8 @@ class IndexedLog {
   bus::LogReader reader_;
   std::map<std::string, std::vector<std::int64_t>, std::less<>> places_;
   bus::WireTypes types_;
+  log::RunMarks marks_;
+  std::optional<Utime> first_time_;
   std::int64_t num_damaged_ = 0;
 };
 
@@ -102,6 +111,8 @@ class ChannelComparison {
       ++a_.next;
       ++b_.next;
     }
+    result_.num_behind_a = a_.NumLeft();
+    result_.num_behind_b = b_.NumLeft();
     StepOver(a_, a_.NumLeft(), result_.num_only_a, "only in A");
     StepOver(b_, b_.NumLeft(), result_.num_only_b, "only in B");
     return std::move(result_);
@@ -171,6 +182,56 @@ std::string FirstText(const FirstDifference& first) {
                      difference.a.empty() && difference.b.empty() ? "" : ": " + difference.a + " | " + difference.b);
 }
 
+// Differences that come of where the logs were begun or cut.
+class Cuts {
+ public:
+  Cuts(const IndexedLog& a, const IndexedLog& b) : a_(a), b_(b) {}
+
+  void Add(const std::string& channel, const ChannelResult& result) {
+    if (result.num_behind_a > 0) behind_a_.push_back(fmt::format("{} {}", channel, result.num_behind_a));
+    if (result.num_behind_b > 0) behind_b_.push_back(fmt::format("{} {}", channel, result.num_behind_b));
+    if (!result.first) return;
+    const auto start = std::max(a_.first_time(), b_.first_time());
+    is_early_ = is_early_ || (start && result.first->time - *start < kSettling);
+  }
+
+  void Print(std::ostream& out) const {
+    const auto end_a = a_.marks().WithoutEnd();
+    const auto end_b = b_.marks().WithoutEnd();
+    if ((!end_a.empty() && !behind_b_.empty()) || (!end_b.empty() && !behind_a_.empty())) {
+      PrintCut(out, "A", end_a);
+      PrintCut(out, "B", end_b);
+      PrintBehind(out, "A", behind_a_);
+      PrintBehind(out, "B", behind_b_);
+    }
+    if (!is_early_) return;
+    for (const auto& [name, log] : {std::pair("A", &a_), std::pair("B", &b_)}) {
+      const auto channels = log->marks().WithoutStart();
+      if (channels.empty()) continue;
+      out << fmt::format("reason, perhaps: {} begins without a start mark of {}: what is computed first depends on what came before\n", name,
+                         log::Joined(channels));
+    }
+  }
+
+ private:
+  // Filters have settled by then.
+  static constexpr std::chrono::seconds kSettling{30};
+
+  static void PrintCut(std::ostream& out, const char* name, const std::vector<std::string>& channels) {
+    if (channels.empty()) return;
+    out << fmt::format("reason: {} ends without an end mark of {}: it was cut there, and lacks what was under way\n", name, log::Joined(channels));
+  }
+  static void PrintBehind(std::ostream& out, const char* name, const std::vector<std::string>& channels) {
+    if (!channels.empty()) out << fmt::format("behind the last message of the other log {} has: {}\n", name, fmt::join(channels, ", "));
+  }
+
+  const IndexedLog& a_;
+  const IndexedLog& b_;
+  std::vector<std::string> behind_a_;
+  std::vector<std::string> behind_b_;
+  bool is_early_ = false;
+};
+
 int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
   IndexedLog a(request.a);
   IndexedLog b(request.b);
@@ -201,12 +262,14 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
 
   std::int64_t num_different = 0;
   std::int64_t num_messages = 0;
+  Cuts cuts(a, b);
   out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}  first difference\n", "channel", "A", "B", "differ", "only_A", "only_B");
   for (const auto& channel : channels) {
     const auto own = request.channel_tolerances.find(channel);
     const auto& tolerances = own == request.channel_tolerances.end() ? request.tolerances : own->second;
     const auto result = ChannelComparison(channel, tolerances, versions, a, b).Compare();
     num_messages += std::max(result.num_a, result.num_b);
+    cuts.Add(log::Printable(channel), result);
     if (!result.IsEqual()) ++num_different;
     out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", log::Printable(channel), result.num_a, result.num_b, result.num_different,
                        result.num_only_a, result.num_only_b, result.first ? "  " + FirstText(*result.first) : "");
@@ -217,6 +280,7 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
     return kExitEqual;
   }
   out << fmt::format("different: {} of {} channels\n", num_different, channels.size());
+  cuts.Print(out);
   return kExitDifferent;
 }
 

@@ -30,7 +30,7 @@ Findings JudgeConfig(const ConfigSeen& config) {
     for (const auto& fault : file.faults) {
       const bool is_of_file = fault.find(": file: ") != std::string::npos;
       findings.push_back({Grade::kFault, kConfigSubject, fault,
-                          is_of_file ? "the folder holds one file for each schema of config/schema, as config/demo does, and no other"
+                          is_of_file ? "the folder holds one file for each schema of config/schema, as config/catabot does, and no other"
                                      : "mend that line; config/schema says what it may hold"});
     }
   }

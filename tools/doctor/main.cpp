@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/config/text_config.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
@@ -37,7 +38,7 @@ Options ParseOptions(int argc, char** argv) {
   CLI::App app("Looks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
-  app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
+  app.add_flag("--check", options.check_only, "check the config of every process, print the values in force or every fault, exit");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
   app.set_version_flag("--version", "lookout-doctor " + lookout::runtime::Version());
   app.footer("Exit code: 0 no fault; 1 a fault; 2 wrong command line, or with --check a wrong config.");
@@ -74,6 +75,12 @@ int main(int argc, char** argv) {
   bool has_fault = false;
   const int code = lookout::runtime::RunMain("doctor", [&] {
     if (options.check_only) {
+      // What each process would find at its start, of all files at once.
+      lookout::config::FaultList faults;
+      for (const auto& file : lookout::doctor::ReadConfig(options.config_folder).files) {
+        for (const auto& fault : file.faults) faults.Add(fault);
+      }
+      faults.ThrowIfAny();
       std::cout << lookout::runtime::EffectiveConfig(options.config_folder);
       return;
     }

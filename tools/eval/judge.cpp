@@ -4,6 +4,7 @@
 #include <functional>
 #include <utility>
 
+#include "common/io/stop_signal.hpp"
 #include "tools/eval/scoring.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -15,21 +16,36 @@ double ToMs(std::chrono::nanoseconds duration) { return std::chrono::duration<do
 }  // namespace
 
 Judge::Judge(const Methods& methods) : methods_(methods) {
-  for (const auto& method : methods) results_.push_back({method->name(), {}, {}, {}});
+  for (const auto& method : methods) {
+    if (!method->knows_doubt()) {
+      results_.push_back({method->name(), {}, {}, {}});
+      continue;
+    }
+    results_.push_back({method->name() + std::string(kAllSegments), {}, {}, {}});
+    results_.push_back({method->name() + std::string(kSureOnly), {}, {}, {}});
+  }
 }
 
 void Judge::Add(const TurnPlace& place, const LabelledScan& truth) {
-  for (std::size_t i = 0; i < methods_.size(); ++i) {
-    MethodResult& result = results_[i];
+  auto result = results_.begin();
+  for (const auto& method : methods_) {
     const auto begin = std::chrono::steady_clock::now();
-    auto labelling = methods_[i]->Segment(truth.scan);
-    const auto time = std::chrono::steady_clock::now() - begin - labelling.untimed;
-    Score score = ScoreTurn(truth, labelling);
-    score.time_ms.push_back(ToMs(time));
-    result.by_scene[place.scene].Add(score);
-    for (const auto& [stage, stage_time] : labelling.stages) result.stage_ms[stage].push_back(ToMs(stage_time));
-    if (score.num_turns_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
+    auto labelling = method->Segment(truth.scan);
+    const double time_ms = ToMs(std::chrono::steady_clock::now() - begin - labelling.untimed);
+    for (const auto& [stage, stage_time] : labelling.stages) result->stage_ms[stage].push_back(ToMs(stage_time));
+    if (method->knows_doubt()) {
+      AddPoint(*result++, place, truth, labelling, time_ms);
+      labelling = SureOnly(std::move(labelling));
+    }
+    AddPoint(*result++, place, truth, std::move(labelling), time_ms);
   }
+}
+
+void Judge::AddPoint(MethodResult& result, const TurnPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms) {
+  Score score = ScoreTurn(truth, labelling);
+  score.time_ms.push_back(time_ms);
+  result.by_scene[place.scene].Add(score);
+  if (score.num_turns_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
 }
 
 void Judge::KeepIfBad(MethodResult& result, const TurnPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const {
@@ -62,6 +78,7 @@ void ForEachTurn(const RunPlan& plan, const Boat& boat, Progress& progress,
       place.turn = 0;
       const auto scene = sim::LoadScene(files[i], place.seed);
       RenderTurns(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
+        io::ThrowIfStopAsked();
         on_turn(place, truth);
         ++place.turn;
       });

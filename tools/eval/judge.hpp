@@ -21,7 +21,9 @@ struct TurnPlace {
   int turn = 0;  // of the scene and seed, from 0
 };
 
-/// Lets each method label each turn, and keeps the scores. Everything but the times depends on the turns alone.
+/// Lets each method label each turn, and keeps the scores: one result for each operating point of a method, so that no row of a table holds figures
+/// of two. A method that knows doubt has two, in this order: all segments, and the sure ones alone.
+/// Everything but the times depends on the turns alone.
 class Judge {
  public:
   /// @param methods  outlive this
@@ -29,10 +31,11 @@ class Judge {
 
   void Add(const TurnPlace& place, const LabelledScan& truth);
 
-  /// In the order of the methods.
+  /// In the order of the methods, and of their operating points.
   const std::vector<MethodResult>& results() const { return results_; }
 
  private:
+  void AddPoint(MethodResult& result, const TurnPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms);
   void KeepIfBad(MethodResult& result, const TurnPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const;
 
   const Methods& methods_;

@@ -1,18 +1,27 @@
 #include "tools/eval/judge_command.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
+#include <iterator>
+#include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 #include <variant>
 
 #include "common/bus/channels.hpp"
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "services/segmenter/core/turn_gatherer.hpp"
 #include "services/segmenter/wire.hpp"
+#include "tools/eval/captures.hpp"
+#include "tools/eval/figures.hpp"
 #include "tools/eval/judge.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
@@ -23,6 +32,7 @@
 #include "tools/eval/readers/scan_message.hpp"
 #include "tools/eval/report_html.hpp"
 #include "tools/eval/result_tables.hpp"
+#include "tools/eval/seeds.hpp"
 #include "tools/eval/sweep.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -41,8 +51,8 @@ std::string Computer() {
   return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, one used";
 }
 
-RunPlan PlanOf(const JudgeOptions& options) {
-  RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds};
+RunPlan PlanOf(const JudgeOptions& options, SeedUse use) {
+  RunPlan plan{{}, options.first_seed.value_or(DefaultFirstSeed(use)), options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
     if (scene != "all") {
       plan.scenes.push_back(scene);
@@ -52,6 +62,9 @@ RunPlan PlanOf(const JudgeOptions& options) {
   }
   return plan;
 }
+
+// As tables call the captures.
+constexpr const char* kSecondWorld = "second world";
 
 // The column of the tables in which recordings stand.
 const std::string kPointsLabel = "points";
@@ -106,11 +119,80 @@ void RunMethods(const RunPlan& plan, const std::vector<std::string>& points, con
   results.projections = projections.Rows();
 }
 
+void Describe(const JudgeOptions& options, Results& results) {
+  results.command = options.command;
+  results.version = runtime::Version();
+  results.computer = Computer();
+}
+
+std::string NoteOn(const CaptureWithTruth& files, const CaptureReport& report) {
+  return files.scene + ", seed " + std::to_string(files.seed) + ": " + std::to_string(report.num_scans) + " scans, " +
+         std::to_string(report.num_returns) + " returns, of these " + std::to_string(report.num_own_vessel) + " of the own vessel (left out), " +
+         std::to_string(report.num_clutter) + " clutter, " + std::to_string(report.num_unmatched) + " without truth (taken for clutter)";
+}
+
+Results RunCaptures(const JudgeOptions& options) {
+  Results results;
+  results.world = kSecondWorld;
+  Describe(options, results);
+  if (!std::filesystem::exists(options.captures)) {
+    results.is_here = false;
+    std::cerr << kSecondWorld << ": " << options.captures.string() << " is not here\n";
+    return results;
+  }
+  const auto captures = ListCaptures(options.captures);
+  if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
+  const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
+  const auto methods = MakeMethods(boat.segmenter, options.methods);
+  Judge judge(methods);
+  ProjectionTable projections(boat.segmenter);
+  Progress progress(&std::cerr, static_cast<std::int64_t>(captures.size()));
+  for (const auto& files : captures) {
+    if (results.scenes.empty() || results.scenes.back() != files.scene) results.scenes.push_back(files.scene);
+    TurnPlace place{files.scene, files.seed, 0};
+    const auto report = ReadCapture(files, boat, [&](const LabelledScan& truth) {
+      judge.Add(place, truth);
+      if (place.turn == 0) projections.Add(truth);
+      ++place.turn;
+    });
+    results.notes.push_back(NoteOn(files, report));
+    progress.Step(std::string(kSecondWorld) + ": " + files.scene + ", seed " + std::to_string(files.seed));
+  }
+  results.methods = judge.results();
+  results.projections = projections.Rows();
+  return results;
+}
+
+// Of UTC.
+std::string Today() {
+  const std::chrono::year_month_day today(std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
+  std::ostringstream text;
+  text << static_cast<int>(today.year()) << '-' << std::setfill('0') << std::setw(2) << static_cast<unsigned>(today.month()) << '-' << std::setw(2)
+       << static_cast<unsigned>(today.day());
+  return text.str();
+}
+
+// Said before a run of minutes, not after it.
+void RefuseIfThere(const std::filesystem::path& folder, bool is_forced) {
+  if (is_forced || folder.empty() || !std::filesystem::exists(folder)) return;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".csv") throw std::runtime_error(entry.path().string() + ": is there already; --force replaces it");
+  }
+}
+
 }  // namespace
 
 int JudgeScenes(const JudgeOptions& options) {
   const auto boat = LoadBoat(options.config_folder);
-  const auto plan = PlanOf(options);
+  const auto use = options.is_tuning ? SeedUse::kTuning : SeedUse::kTables;
+  const auto plan = PlanOf(options, use);
+  const auto sweep_plan = PlanOf(options, SeedUse::kTuning);
+  const bool has_scenes = !options.methods.empty() && !options.scenes.empty();
+  if (has_scenes || !options.tests.empty()) CheckSeeds(use, plan.first_seed, plan.num_seeds);
+  if (!options.sweeps.empty()) CheckSeeds(SeedUse::kTuning, sweep_plan.first_seed, sweep_plan.num_seeds);
+  if (options.is_tuning && !(options.csv_folder.empty() && options.html_file.empty() && options.figures_folder.empty())) {
+    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv, --html and --figures");
+  }
   std::vector<Sweep> sweeps;
   for (const auto& text : options.sweeps) {
     sweeps.push_back(ParseSweep(text));
@@ -119,26 +201,54 @@ int JudgeScenes(const JudgeOptions& options) {
   }
   const auto methods = MakeMethods(boat.segmenter, options.methods);
 
+  io::CatchStopSignals();
+  RefuseIfThere(options.csv_folder, options.is_forced);
+  RefuseIfThere(options.figures_folder, options.is_forced);
+  std::optional<io::OutputFile> page;
+  if (!options.html_file.empty()) page.emplace(options.html_file, io::OutputOptions{.force = options.is_forced});
+
   Results results;
-  results.command = options.command;
-  results.version = runtime::Version();
-  results.computer = Computer();
+  Describe(options, results);
   results.first_seed = plan.first_seed;
   results.num_seeds = plan.num_seeds;
   results.seconds = plan.seconds;
   for (const auto& scene : plan.scenes) results.scenes.push_back(SceneLabel(scene));
   if (!options.points.empty()) results.scenes.push_back(kPointsLabel);
   if (!methods.empty()) RunMethods(plan, options.points, boat, methods, results);
+  if (!options.captures.empty()) {
+    auto captures = RunCaptures(options);
+    if (results.scenes.empty() && !captures.is_here) throw std::runtime_error(options.captures.string() + ": is not here");
+    // Alone, they are the tables.
+    if (results.scenes.empty() && options.tests.empty()) {
+      results = std::move(captures);
+    } else {
+      results.other_worlds.push_back(std::move(captures));
+    }
+  }
   for (const int test : options.tests) results.curves.push_back(RunPaperTest(test, plan, boat, &std::cerr));
-  for (const auto& sweep : sweeps) results.curves.push_back(RunSweep(sweep, plan, boat, &std::cerr));
+  for (const auto& sweep : sweeps) results.curves.push_back(RunSweep(sweep, sweep_plan, boat, &std::cerr));
 
   PrintTables(results, std::cout);
-  if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder);
-  if (!options.html_file.empty()) {
-    std::ofstream out(options.html_file, std::ios::binary | std::ios::trunc);
-    WriteHtml(results, out);
-    out.close();
-    if (!out) throw std::runtime_error(options.html_file.string() + ": cannot be written");
+  if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder, options.is_forced);
+  if (page) {
+    WriteHtml(results, page->stream());
+    page->Commit();
+  }
+  if (!options.figures_folder.empty()) WriteFigures(FiguresOf(results, Today()), options.figures_folder, options.is_forced);
+  return FillBlocksOfFiles(options);
+}
+
+int FillBlocksOfFiles(const JudgeOptions& options) {
+  for (const auto& file : options.block_files) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+    const auto filled = FillBlocks(text, options.figures_folder, file.string());
+    if (filled == text) continue;
+    io::OutputFile out(file, {.force = true});
+    out.Write(filled);
+    out.Commit();
+    std::cerr << file.string() << ": figures filled in\n";
   }
   return EXIT_SUCCESS;
 }

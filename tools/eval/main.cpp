@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
+#include <string>
+#include <vector>
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/options.hpp"
@@ -35,9 +37,11 @@ Options ParseOptions(int argc, char** argv) {
   std::string config_folder;
   std::string csv_folder;
   std::string html_file;
+  std::string figures_folder;
+  std::vector<std::string> block_files;
   CLI::App app(
-      "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, --sweep, "
-      "--test or --points).",
+      "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, "
+      "--captures, --sweep, --test or --points).",
       "lookout-eval");
   auto* in = app.add_option("--in", log.log_file, "lcm-log with OBSTACLES");
   auto* truth = app.add_option("--truth", log.truth_folder, "folder that lookout-sim --truth wrote")->needs(in);
@@ -54,8 +58,12 @@ Options ParseOptions(int argc, char** argv) {
   const auto of_judge = [config](CLI::Option* option) { return option->needs(config); };
   of_judge(app.add_option("--scenes", judge.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
   of_judge(app.add_option("--points", judge.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))->check(CLI::ExistingFile);
+  of_judge(
+      app.add_option("--captures", judge.captures, "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
   of_judge(app.add_option("--seeds", judge.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
-  of_judge(app.add_option("--first-seed", judge.first_seed, "the others follow it"))->capture_default_str();
+  of_judge(app.add_option("--first-seed", judge.first_seed,
+                          "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
+  of_judge(app.add_flag("--tuning", judge.is_tuning, "methods on seeds of tuning; no file is written"));
   of_judge(app.add_option("--seconds", judge.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
   of_judge(app.add_option("--methods", judge.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
@@ -63,16 +71,21 @@ Options ParseOptions(int argc, char** argv) {
   of_judge(app.add_option("--test", judge.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
   of_judge(app.add_option("--csv", csv_folder, "write each table as a CSV file to this folder"));
   of_judge(app.add_option("--html", html_file, "write the report as one page"));
+  auto* figures = app.add_option("--figures", figures_folder, "folder of the figures of README files: written with --config, read for --blocks");
+  app.add_option("--blocks", block_files, "README files whose marked blocks are filled from --figures")->check(CLI::ExistingFile)->needs(figures);
+  of_judge(app.add_flag("--force", judge.is_forced, "replace files that are there"));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
-    if (log.log_file.empty() && config_folder.empty()) throw CLI::RequiredError("either --in LOG or --config DIR");
+    if (log.log_file.empty() && config_folder.empty() && block_files.empty())
+      throw CLI::RequiredError("one of --in LOG, --config DIR, --blocks FILE");
     if (!config_folder.empty()) {
-      const bool has_turns = !judge.scenes.empty() || !judge.points.empty();
-      if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --points, --test");
+      const bool has_turns = !judge.scenes.empty() || !judge.points.empty() || !judge.captures.empty();
+      if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
       if (judge.scenes.empty() && !judge.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
-      if (!has_turns && !judge.methods.empty()) throw CLI::RequiredError("--scenes or --points, for --methods");
-      if (judge.methods.empty() && ((judge.sweeps.empty() && judge.tests.empty()) || !judge.points.empty())) judge.methods = {"all"};
+      if (!has_turns && !judge.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (judge.methods.empty() && ((judge.sweeps.empty() && judge.tests.empty()) || !judge.points.empty() || !judge.captures.empty()))
+        judge.methods = {"all"};
     }
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
@@ -80,6 +93,8 @@ Options ParseOptions(int argc, char** argv) {
   judge.config_folder = config_folder;
   judge.csv_folder = csv_folder;
   judge.html_file = html_file;
+  judge.figures_folder = figures_folder;
+  judge.block_files.assign(block_files.begin(), block_files.end());
   return options;
 }
 
@@ -87,7 +102,8 @@ Options ParseOptions(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
-  return options.log.log_file.empty() ? eval::JudgeScenes(options.judge) : eval::EvaluateLog(options.log);
+  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  return options.judge.config_folder.empty() ? eval::FillBlocksOfFiles(options.judge) : eval::JudgeScenes(options.judge);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << error.what() << '\n';
   return kExitUsage;

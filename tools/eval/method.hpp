@@ -35,8 +35,11 @@ class Method {
   Method& operator=(const Method&) = delete;
   virtual ~Method() = default;
 
-  /// As in tables: "paper W=512", "Euclidean 0.5 m (tuned)".
+  /// "paper W=512", "Euclidean 0.5 m (tuned)". In tables that of a method that knows doubt is followed by its operating point.
   virtual std::string name() const = 0;
+
+  /// It takes some of its segments for tentative: it is judged at two operating points, all segments and the sure ones alone.
+  virtual bool knows_doubt() const { return false; }
 
   /// Pure but for its time: the same scan gives the same labels.
   virtual Labelling Segment(const segmenter::Scan& scan) = 0;

@@ -17,6 +17,7 @@ class SegmenterMethod final : public Method {
   SegmenterMethod(std::string name, const segmenter::Params& params) : name_(std::move(name)), params_(params), segmenter_(params) {}
 
   std::string name() const override { return name_; }
+  bool knows_doubt() const override { return params_.method == segmenter::Method::kLookout; }
   Labelling Segment(const segmenter::Scan& scan) override;
 
  private:
@@ -25,7 +26,7 @@ class SegmenterMethod final : public Method {
   segmenter::Segmenter segmenter_;
 };
 
-/// METHOD.md: the paper's method at this width of its image, with the boat's own crop box and the paper's thresholds.
+/// The paper's method at this width of its image, with the boat's own crop box and the paper's thresholds.
 segmenter::Params PaperParams(const segmenter::Params& boat, int image_columns);
 
 /// Every return a component by itself, so that clustering has all the work: no pair of neighbours has beta above 90 degrees, or a distance below 0.

@@ -21,7 +21,7 @@ class Confusion {
     bool has_own_segment;  // a segment of which it holds more than half
   };
 
-  /// METHOD.md: IoU_i = max over segments j of p_ij / (all of object i + all of segment j - p_ij). By object_id.
+  /// The paper's measure: IoU_i = max over segments j of p_ij / (all of object i + all of segment j - p_ij). By object_id.
   std::vector<ObjectScore> Scores() const;
 
   /// @return the object with most returns in the segment, of equals an object before a stray and then the least id; -1 for the own vessel, 0 when

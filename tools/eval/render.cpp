@@ -32,17 +32,6 @@ struct Truth {
 
 static_assert(sim::kNoObject == kNoTrueObject && sim::kOwnVessel == kOwnVesselObject);
 
-// The way of the messages, without a bus: what the segmenter gets of this turn.
-segmenter::Scan ToScan(const vlp16::Turn& turn, bool use_vertical_origin_offsets) {
-  segmenter::TurnGatherer gatherer;
-  for (const auto& message : vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
-    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
-    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::logic_error("the segmenter refuses a simulated turn");
-    if (auto scan = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)))) return std::move(*scan);
-  }
-  throw std::logic_error("a simulated turn is not complete");
-}
-
 // Takes the truth of each cell with a return, column by column. Within a column the order is that of lasers there and of rings here.
 std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Truth>& truths) {
   const auto num_rings = static_cast<std::size_t>(scan.head.num_rings());
@@ -74,6 +63,16 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
   return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
+segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets) {
+  segmenter::TurnGatherer gatherer;
+  for (const auto& message : vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
+    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
+    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::logic_error("the segmenter refuses a scan of the decoder");
+    if (auto scan = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)))) return std::move(*scan);
+  }
+  throw std::logic_error("a scan of the decoder is not complete");
+}
+
 void RenderTurns(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
   LabelledScan labelled;
   for (const auto& object : scene.objects) labelled.objects[object.id] = {object.name, object.kind, object.is_in_water};
@@ -82,7 +81,7 @@ void RenderTurns(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
   vlp16::Decoder decoder(
       boat.lidar.decoder,
       [&](const vlp16::Turn& turn) {
-        labelled.scan = ToScan(turn, boat.lidar.use_vertical_origin_offsets);
+        labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
         labelled.object = TakeObjects(labelled.scan, truths);
         if (!turn.is_partial_start && !turn.is_partial_end) on_scan(labelled);
       },

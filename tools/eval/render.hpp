@@ -7,6 +7,7 @@
 
 #include "common/config/boat.hpp"
 #include "services/segmenter/core/segmenter.hpp"
+#include "services/vlp16/core/turn.hpp"
 #include "services/vlp16/params.hpp"
 #include "tools/eval/labelled_scan.hpp"
 #include "tools/sim/scene.hpp"
@@ -23,6 +24,9 @@ struct Boat {
 
 /// @throws config::ConfigError
 Boat LoadBoat(const std::filesystem::path& config_folder);
+
+/// The way of the messages, without a bus: what the segmenter gets of this turn. @throws std::logic_error when it would refuse it
+segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets);
 
 using ScanHandler = std::function<void(const LabelledScan&)>;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,6 +23,16 @@ struct Section {
 
 std::string Entry(std::string_view name, const std::string& markup) { return "<dt>" + Escape(name) + "</dt><dd>" + markup + "</dd>\n"; }
 
+std::string SecondWorld(const Results& results) {
+  std::string markup;
+  for (const auto& world : results.other_worlds) {
+    std::string text = world.is_here ? "" : "not here";
+    for (const auto& note : world.notes) text += (text.empty() ? "" : "; ") + note;
+    markup += Entry(world.world, Escape(text));
+  }
+  return markup;
+}
+
 std::string WhatWasRun(const Results& results) {
   const auto or_dash = [](const std::string& text) { return text.empty() ? std::string("-") : Escape(text); };
   std::string scenes;
@@ -41,12 +52,12 @@ std::string WhatWasRun(const Results& results) {
   return "<dl>\n" + Entry("command", results.command.empty() ? "-" : "<code>" + Escape(results.command) + "</code>") +
          Entry("version", or_dash(results.version)) + Entry("computer", or_dash(results.computer)) + Entry("scenes", or_dash(scenes)) +
          Entry("seeds", Escape(seeds)) + Entry("methods", Number(static_cast<std::int64_t>(results.methods.size()))) +
-         Entry("turns a method", Number(num_turns)) + "</dl>\n";
+         Entry("turns a method", Number(num_turns)) + SecondWorld(results) + "</dl>\n";
 }
 
 std::string Definitions() {
   // The words of tools/eval/README.md, in short.
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kDefinitions{{
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 15> kDefinitions{{
       {"IoU",
        "Of a true object and a segment: the returns that both have, through the returns that at least one of them has. The IoU of an object is that "
        "with "
@@ -58,7 +69,11 @@ std::string Definitions() {
       {"object in the water", "Boats, kayaks, swimmers, buoys, markers. Land, docks, piers and walls are not."},
       {"return of no object", "Strays, rain, spray, glints, crests, wakes and the own boat. They are no objects; in a segment they lower its IoU."},
       {"false segment", "A segment without a return of any object; one of the own boat is false too."},
-      {"sure", "The method itself does not take the segment for tentative. For methods that do not say so, every segment is sure."},
+      {"all segments, sure only",
+       "Two operating points of one method, each in a row of its own: every segment counts, or those alone that the method does "
+       "not take for tentative. The others have one: every segment counts."},
+      {"second world", "Captures with truth, made by others than our simulator's authors."},
+      {"thing with a segment", "An object with 5 returns or more in a turn, whose returns are more than half of some segment."},
       {"over-segmented", "An object of which two or more segments hold a tenth each."},
       {"under-segmenting", "A segment that holds a tenth each of two or more objects."},
       {"true positives", "The share of the objects' returns that are in a segment of which their object has most returns."},
@@ -74,21 +89,32 @@ std::string Definitions() {
   return markup + "</dl>\n";
 }
 
+// A section for each world, ours first.
+std::string InEachWorld(const Results& results, const std::function<std::string(const Results&)>& section) {
+  std::string markup = section(results);
+  for (const auto& world : results.other_worlds) {
+    const auto more = world.is_here ? section(world) : Element("p", "Not here.");
+    if (!more.empty()) markup += Element("h3", world.world) + more;
+  }
+  return markup;
+}
+
 }  // namespace
 
 void WriteHtml(const Results& results, std::ostream& out) {
+  const auto in_each = [&results](const std::function<std::string(const Results&)>& section) { return InEachWorld(results, section); };
   const std::vector<Section> sections{
       {"run", "What was run", WhatWasRun(results)},
-      {"summary", "Summary", page::Summary(results) + page::AgainstPeers(results) + page::Bars(results)},
+      {"summary", "Summary", in_each([](const Results& world) { return page::Summary(world) + page::AgainstPeers(world) + page::Bars(world); })},
       {"table-1", "Table I: methods and scenes", page::TableOne(results)},
       {"water", "Objects in the water, and kinds", page::WaterAndKinds(results)},
       {"segments", "False, cut and merged segments", page::SegmentCounts(results)},
-      {"range", "By range", page::ByRange(results) + page::NearRecall(results)},
-      {"table-2", "Table II: projections", page::TableTwo(results)},
-      {"table-3", "Table III: time by stage", page::TableThree(results)},
-      {"ablation", "Ablation", page::Ablation(results)},
+      {"range", "By range", in_each([](const Results& world) { return page::ByRange(world) + page::NearRecall(world); })},
+      {"table-2", "Table II: projections", in_each(page::TableTwo)},
+      {"table-3", "Table III: time by stage", in_each(page::TableThree)},
+      {"ablation", "Ablation", in_each(page::Ablation)},
       {"curves", "Tests of the paper, and sweeps", page::Curves(results)},
-      {"worst", "Worst turns", page::WorstTurns(results)},
+      {"worst", "Worst turns", in_each(page::WorstTurns)},
       {"definitions", "Definitions", Definitions()},
   };
   out << "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"

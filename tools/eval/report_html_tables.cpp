@@ -70,28 +70,95 @@ std::vector<Ranked> Rank(const Results& results, const std::function<double(cons
   return ranks;
 }
 
-// Methods in rows; the mean over scenes and each scene in columns; the greatest of a column in bold.
+// Ours, and those beside it.
+std::vector<const Results*> WorldsOf(const Results& results) {
+  std::vector<const Results*> worlds{&results};
+  for (const auto& world : results.other_worlds) worlds.push_back(&world);
+  return worlds;
+}
+
+// Methods in rows; the mean over scenes and each scene in columns, one world beside the other; the greatest of a column in bold.
 HtmlTable SceneTable(const Results& results, const std::string& caption, const Figure& figure, int num_decimals, bool is_percent) {
-  std::vector<HtmlTable::Heading> headings{{"method"}, {"mean", true}};
-  for (const auto& scene : results.scenes) headings.push_back({scene, true});
+  std::vector<HtmlTable::Heading> headings{{"method"}};
+  const auto worlds = WorldsOf(results);
+  for (const auto* world : worlds) {
+    const auto title = [world](const std::string& scene) { return world->world.empty() ? scene : world->world + ": " + scene; };
+    headings.push_back({world->is_here ? title("mean") : title("not here"), true});
+    for (const auto& scene : world->scenes) headings.push_back({title(scene), true});
+  }
   HtmlTable table(caption, std::move(headings));
   const auto cell = [&](double value, double best, bool takes_part) -> HtmlCell {
     if (!is_percent) return {Number(value, num_decimals)};
     const bool is_best = std::isfinite(value) && takes_part && Number(value, num_decimals) == Number(best, num_decimals);
     return {Number(value, num_decimals), ShadeOf(value) + (is_best ? " best" : "")};
   };
-  for (const auto& method : results.methods) {
-    std::vector<HtmlCell> row{{method.method, IsOurs(method) ? "ours" : ""}};
-    const bool takes_part = !HasPartialView(method);
-    row.push_back(cell(MeanOverScenes(results, method, figure),
-                       BestOf(results, [&](const MethodResult& other) { return MeanOverScenes(results, other, figure); }), takes_part));
-    for (const auto& scene : results.scenes) {
-      row.push_back(cell(FigureOf(method, scene, figure), BestOf(results, [&](const MethodResult& other) { return FigureOf(other, scene, figure); }),
-                         takes_part));
+  for (std::size_t i = 0; i < results.methods.size(); ++i) {
+    std::vector<HtmlCell> row{{results.methods[i].method, IsOurs(results.methods[i]) ? "ours" : ""}};
+    for (const auto* world : worlds) {
+      if (!world->is_here) {
+        row.push_back({"-"});
+        continue;
+      }
+      const auto& method = world->methods.at(i);
+      const bool takes_part = !HasPartialView(method);
+      row.push_back(cell(MeanOverScenes(*world, method, figure),
+                         BestOf(*world, [&](const MethodResult& other) { return MeanOverScenes(*world, other, figure); }), takes_part));
+      for (const auto& scene : world->scenes) {
+        row.push_back(cell(FigureOf(method, scene, figure), BestOf(*world, [&](const MethodResult& other) { return FigureOf(other, scene, figure); }),
+                           takes_part));
+      }
     }
     table.Add(std::move(row));
   }
   return table;
+}
+
+std::string OfWorld(const Results& results) { return results.world.empty() ? "" : results.world + ": "; }
+
+std::string KindTable(const Results& results) {
+  std::set<std::string> kinds;
+  for (const auto& method : results.methods) {
+    for (const auto& [scene, score] : method.by_scene) {
+      for (const auto& [kind, sum] : score.iou_by_kind) kinds.insert(kind);
+    }
+  }
+  if (kinds.empty()) return "";
+  std::vector<HtmlTable::Heading> headings{{"method"}};
+  for (const auto& kind : kinds) headings.push_back({kind, true});
+  HtmlTable table(OfWorld(results) + "Mean IoU by kind of object, over all scenes, %", std::move(headings));
+  for (const auto& method : results.methods) {
+    std::vector<HtmlCell> row{{method.method, IsOurs(method) ? "ours" : ""}};
+    for (const auto& kind : kinds) {
+      double sum = 0.0;
+      std::int64_t count = 0;
+      for (const auto& [scene, score] : method.by_scene) {
+        const auto found = score.iou_by_kind.find(kind);
+        if (found == score.iou_by_kind.end()) continue;
+        count += found->second.first;
+        sum += found->second.second;
+      }
+      const double percent = 100.0 * Ratio(sum, static_cast<double>(count));
+      row.push_back({Number(percent, 1), ShadeOf(percent)});
+    }
+    table.Add(std::move(row));
+  }
+  return table.Markup();
+}
+
+std::string CutTable(const Results& results) {
+  if (results.methods.empty()) return "";
+  HtmlTable table(OfWorld(results) + "Cut and merged objects, over all scenes",
+                  {{"method"}, {"segments a turn"}, {"over-segmented objects, %"}, {"under-segmenting segments, %"}, {"true positives, %"}});
+  for (const auto& method : results.methods) {
+    Score total;
+    for (const auto& [scene, score] : method.by_scene) total.Add(score);
+    table.Add({{method.method, IsOurs(method) ? "ours" : ""},
+               {Number(SegmentsPerTurn(total), 1)},
+               {Number(100.0 * OverSegmentedShare(total), 1)},
+               {Number(100.0 * UnderSegmentedShare(total), 1)},
+               {Number(100.0 * TruePositiveRatio(total), 1)}});
+  }
+  return table.Markup();
 }
 
 // In two lines, so that all scenes fit beside each other.
@@ -189,18 +256,22 @@ std::string AgainstPeers(const Results& results) {
   HtmlTable table("Ours against the best peer of each scene: our error (100 - mIoU) as a share of its error, %; below 100 ours is better",
                   {{"scene"},
                    {"ours, mIoU %"},
+                   {"false a turn"},
                    {"best tuned peer"},
                    {"its mIoU %"},
+                   {"its false a turn"},
                    {"our error of its error, %"},
                    {"best of all peers"},
                    {"its mIoU %"},
+                   {"its false a turn"},
                    {"our error of its error, %"}});
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string css_class = all[i].scene == "mean" ? "total" : "";
-    std::vector<HtmlCell> row{{all[i].scene, css_class}, {Number(100.0 * all[i].our_iou, 1), css_class}};
+    std::vector<HtmlCell> row{{all[i].scene, css_class}, {Number(100.0 * all[i].our_iou, 1), css_class}, {Number(all[i].our_false, 2), css_class}};
     const auto add = [&](const AgainstPeer* peer) {
       row.push_back({peer != nullptr ? peer->peer : "-", css_class});
       row.push_back({peer != nullptr ? Number(100.0 * peer->peer_iou, 1) : "-", css_class});
+      row.push_back({peer != nullptr ? Number(peer->peer_false, 2) : "-", css_class});
       row.push_back({peer != nullptr ? Number(100.0 * peer->error_share, 1) : "-", css_class});
     };
     add(i < tuned.size() ? &tuned[i] : nullptr);
@@ -220,9 +291,7 @@ std::string NearRecall(const Results& results) {
   if (seen.empty()) return "";
   std::vector<HtmlTable::Heading> headings{{"scene: kind"}};
   for (const auto& method : results.methods) headings.push_back({method.method, true});
-  HtmlTable table("Recall at IoU 0.5 of objects nearer than " + Number(Score::kNearM, 0) +
-                      " m, %: of segments at any confidence, and below it of sure ones where that is another number",
-                  std::move(headings));
+  HtmlTable table("Recall at IoU 0.5 of objects nearer than " + Number(Score::kNearM, 0) + " m, %", std::move(headings));
   for (const auto& scene : results.scenes) {
     for (auto at = seen.lower_bound({scene, ""}); at != seen.end() && at->first == scene; ++at) {
       std::vector<HtmlCell> row{{scene + ": " + at->second}};
@@ -234,12 +303,8 @@ std::string NearRecall(const Results& results) {
           continue;
         }
         const auto& recall = found->second;
-        const auto percent = [&recall](std::int64_t count) {
-          return 100.0 * Ratio(static_cast<double>(count), static_cast<double>(recall.num_object_turns));
-        };
-        const double any = percent(recall.num_found);
-        const std::string sure = recall.num_surely_found == recall.num_found ? "" : "\n" + Number(percent(recall.num_surely_found), 0);
-        row.push_back({Number(any, 0) + sure, ShadeOf(any) + (sure.empty() ? "" : " two")});
+        const double percent = 100.0 * Ratio(static_cast<double>(recall.num_found), static_cast<double>(recall.num_object_turns));
+        row.push_back({Number(percent, 0), ShadeOf(percent)});
       }
       table.Add(std::move(row));
     }
@@ -272,57 +337,18 @@ std::string TableOne(const Results& results) {
 
 std::string WaterAndKinds(const Results& results) {
   if (results.methods.empty()) return "";
-  const Figure sure_water = [](const Score& score) { return 100.0 * MeanSureWaterIou(score); };
-  const Figure sure = [](const Score& score) { return 100.0 * MeanSureIou(score); };
+  const Figure with_segment = [](const Score& score) { return 100.0 * ThingsWithSegment(score); };
   std::string markup = SceneTable(results, "mIoU over objects in the water alone, %", WaterIouPercent, 1, true).Markup() +
-                       SceneTable(results, "mIoU with sure segments alone, %", sure, 1, true).Markup() +
-                       SceneTable(results, "mIoU over objects in the water, with sure segments alone, %", sure_water, 1, true).Markup();
-
-  std::set<std::string> kinds;
-  for (const auto& method : results.methods) {
-    for (const auto& [scene, score] : method.by_scene) {
-      for (const auto& [kind, sum] : score.iou_by_kind) kinds.insert(kind);
-    }
-  }
-  if (kinds.empty()) return markup;
-  std::vector<HtmlTable::Heading> headings{{"method"}};
-  for (const auto& kind : kinds) headings.push_back({kind, true});
-  HtmlTable table("Mean IoU by kind of object, over all scenes, %", std::move(headings));
-  for (const auto& method : results.methods) {
-    std::vector<HtmlCell> row{{method.method, IsOurs(method) ? "ours" : ""}};
-    for (const auto& kind : kinds) {
-      double sum = 0.0;
-      std::int64_t count = 0;
-      for (const auto& [scene, score] : method.by_scene) {
-        const auto found = score.iou_by_kind.find(kind);
-        if (found == score.iou_by_kind.end()) continue;
-        count += found->second.first;
-        sum += found->second.second;
-      }
-      const double percent = 100.0 * Ratio(sum, static_cast<double>(count));
-      row.push_back({Number(percent, 1), ShadeOf(percent)});
-    }
-    table.Add(std::move(row));
-  }
-  return markup + table.Markup();
+                       SceneTable(results, "Things of 5 returns or more that have a segment, %", with_segment, 1, true).Markup();
+  for (const auto* world : WorldsOf(results)) markup += KindTable(*world);
+  return markup;
 }
 
 std::string SegmentCounts(const Results& results) {
   if (results.methods.empty()) return "";
-  std::string markup = SceneTable(results, "False segments a turn", FalseSegmentsPerTurn, 2, false).Markup() +
-                       SceneTable(results, "False segments a turn that the method is sure of", SureFalseSegmentsPerTurn, 2, false).Markup();
-  HtmlTable table("Cut and merged objects, over all scenes",
-                  {{"method"}, {"segments a turn"}, {"over-segmented objects, %"}, {"under-segmenting segments, %"}, {"true positives, %"}});
-  for (const auto& method : results.methods) {
-    Score total;
-    for (const auto& [scene, score] : method.by_scene) total.Add(score);
-    table.Add({{method.method, IsOurs(method) ? "ours" : ""},
-               {Number(SegmentsPerTurn(total), 1)},
-               {Number(100.0 * OverSegmentedShare(total), 1)},
-               {Number(100.0 * UnderSegmentedShare(total), 1)},
-               {Number(100.0 * TruePositiveRatio(total), 1)}});
-  }
-  return markup + table.Markup();
+  std::string markup = SceneTable(results, "False segments a turn", FalseSegmentsPerTurn, 2, false).Markup();
+  for (const auto* world : WorldsOf(results)) markup += CutTable(*world);
+  return markup;
 }
 
 std::string TableTwo(const Results& results) {

@@ -1,12 +1,13 @@
 #include "tools/eval/result_tables.hpp"
 
-#include <cmath>
-#include <fstream>
+#include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 
+#include "common/io/output_file.hpp"
 #include "tools/eval/against_peers.hpp"
 #include "tools/eval/metrics.hpp"
 
@@ -70,16 +71,15 @@ std::vector<std::string> TimeCells(const std::vector<double>& time_ms) {
 }
 
 Table Overall(const Results& results) {
-  Table table({"method", "mIoU_%", "water_%", "sure_%", "segments", "false", "sure_false", "over_%", "under_%", "TPR_%", "median_ms", "p99_ms"});
+  Table table({"method", "mIoU_%", "water_%", "false", "with_segment_%", "segments", "over_%", "under_%", "TPR_%", "median_ms", "p99_ms"});
   for (const auto& method : results.methods) {
     const Score total = Total(method);
     std::vector<std::string> row{method.method,
                                  Percent(MeanOverScenes(results, method, MeanIou)),
                                  Percent(MeanOverScenes(results, method, MeanWaterIou)),
-                                 Percent(MeanOverScenes(results, method, MeanSureIou)),
-                                 Number(MeanOverScenes(results, method, SegmentsPerTurn), 2),
                                  Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2),
-                                 Number(MeanOverScenes(results, method, SureFalseSegmentsPerTurn), 2),
+                                 Percent(ThingsWithSegment(total)),
+                                 Number(MeanOverScenes(results, method, SegmentsPerTurn), 2),
                                  Percent(OverSegmentedShare(total)),
                                  Percent(UnderSegmentedShare(total)),
                                  Percent(TruePositiveRatio(total))};
@@ -105,29 +105,30 @@ Table Ablation(const Results& results) {
 }
 
 Table AgainstPeers(const Results& results) {
-  Table table(
-      {"scene", "ours_%", "best_tuned_peer", "peer_%", "our_error_of_its_error_%", "best_peer_of_all", "best_%", "our_error_of_best_error_%"});
+  Table table({"scene", "ours_%", "ours_false", "best_tuned_peer", "peer_%", "peer_false", "our_error_of_its_error_%", "best_peer_of_all", "best_%",
+               "best_false", "our_error_of_best_error_%"});
   const auto tuned = CompareWithPeers(results, true);
   const auto all = CompareWithPeers(results, false);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const bool has_tuned = i < tuned.size();
-    table.Add({all[i].scene, Percent(all[i].our_iou), has_tuned ? tuned[i].peer : "-", has_tuned ? Percent(tuned[i].peer_iou) : "-",
-               has_tuned ? Percent(tuned[i].error_share) : "-", all[i].peer, Percent(all[i].peer_iou), Percent(all[i].error_share)});
+    table.Add({all[i].scene, Percent(all[i].our_iou), Number(all[i].our_false, 2), has_tuned ? tuned[i].peer : "-",
+               has_tuned ? Percent(tuned[i].peer_iou) : "-", has_tuned ? Number(tuned[i].peer_false, 2) : "-",
+               has_tuned ? Percent(tuned[i].error_share) : "-", all[i].peer, Percent(all[i].peer_iou), Number(all[i].peer_false, 2),
+               Percent(all[i].error_share)});
   }
   return table;
 }
 
 // A row for each method, scene and kind.
 Table NearRecall(const Results& results) {
-  Table table({"method", "scene", "kind", "object_turns", "recall_%", "sure_recall_%"});
+  Table table({"method", "scene", "kind", "object_turns", "recall_%"});
   for (const auto& method : results.methods) {
     for (const auto& scene : results.scenes) {
       const auto found = method.by_scene.find(scene);
       if (found == method.by_scene.end()) continue;
       for (const auto& [kind, recall] : found->second.near_recall_by_kind) {
         table.Add({method.method, scene, kind, Number(recall.num_object_turns),
-                   Percent(Ratio(static_cast<double>(recall.num_found), recall.num_object_turns)),
-                   Percent(Ratio(static_cast<double>(recall.num_surely_found), recall.num_object_turns))});
+                   Percent(Ratio(static_cast<double>(recall.num_found), recall.num_object_turns))});
       }
     }
   }
@@ -176,9 +177,7 @@ Table CurveTable(const Curve& curve) {
   return table;
 }
 
-}  // namespace
-
-std::vector<NamedTable> TablesOf(const Results& results) {
+std::vector<NamedTable> TablesOfWorld(const Results& results) {
   std::vector<NamedTable> tables;
   const auto add = [&tables](const std::string& name, const std::string& title, Table table) {
     if (!table.empty()) tables.push_back({name, title, std::move(table)});
@@ -190,23 +189,18 @@ std::vector<NamedTable> TablesOf(const Results& results) {
   };
   add("table_1", "Table I: mIoU, %", ByScene(results, MeanIou, Percent));
   add("water", "mIoU over objects in the water alone, %", ByScene(results, MeanWaterIou, Percent));
-  add_to_files("sure_water", ByScene(results, MeanSureWaterIou, Percent));
-  add("sure", "mIoU with sure segments alone, %", ByScene(results, MeanSureIou, Percent));
   add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
-  add("sure_false_segments", "false segments a turn that the method is sure of",
-      ByScene(results, SureFalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
-  add("overall", "all scenes (mIoU, segments, false: mean over scenes; over, under, TPR, times: over all turns)", Overall(results));
+  add("with_segment", "things of 5 returns or more that have a segment: more than half of some segment is theirs, %",
+      ByScene(results, ThingsWithSegment, Percent));
+  add("overall", "all scenes (mIoU, water, false, segments: mean over scenes; things with a segment, over, under, TPR, times: over all turns)",
+      Overall(results));
   add("against_peers", "ours against the best peer: 100 - mIoU of ours as a share of the peer's, %", AgainstPeers(results));
   add("kinds", "mean IoU by kind, all scenes, %",
       ByKey<std::string>(
           results, [](const Score& score) -> const auto& { return score.iou_by_kind; }, kind_title));
-  add_to_files("sure_kinds", ByKey<std::string>(
-                                 results, [](const Score& score) -> const auto& { return score.sure_iou_by_kind; }, kind_title));
   add("recall_by_range", "recall at IoU 0.5 by range of the nearest return, all scenes, %",
       ByKey<int>(
           results, [](const Score& score) -> const auto& { return score.recall_by_range; }, range_title));
-  add_to_files("sure_recall_by_range", ByKey<int>(
-                                           results, [](const Score& score) -> const auto& { return score.sure_recall_by_range; }, range_title));
   add_to_files("near_recall", NearRecall(results));
   add("iou_by_range", "mean IoU by range of the nearest return, all scenes, %",
       ByKey<int>(
@@ -222,7 +216,86 @@ std::vector<NamedTable> TablesOf(const Results& results) {
   return tables;
 }
 
+// Columns that name a row; a table that is not here has rows that name scenes, and other worlds go below it.
+const std::map<std::string, std::size_t>& NumKeyColumns() {
+  static const std::map<std::string, std::size_t> kNumKeyColumns{{"near_recall", 0}, {"against_peers", 0}, {"table_3", 2}};
+  return kNumKeyColumns;
+}
+
+// The table of another world beside ours, row by row.
+Table Beside(const Table& own, const Table& other, std::size_t num_keys, const std::string& world) {
+  auto header = own.rows().front();
+  for (std::size_t i = num_keys; i < other.rows().front().size(); ++i) header.push_back(world + ": " + other.rows().front()[i]);
+  const std::size_t num_columns = header.size();
+  Table table(std::move(header));
+  const auto is_same = [num_keys](const std::vector<std::string>& one, const std::vector<std::string>& two) {
+    return std::equal(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(num_keys), two.begin());
+  };
+  for (std::size_t i = 1; i < own.rows().size(); ++i) {
+    auto row = own.rows()[i];
+    for (std::size_t k = 1; k < other.rows().size(); ++k) {
+      const auto& beside = other.rows()[k];
+      if (is_same(row, beside)) row.insert(row.end(), beside.begin() + static_cast<std::ptrdiff_t>(num_keys), beside.end());
+    }
+    row.resize(num_columns, "-");
+    table.Add(std::move(row));
+  }
+  return table;
+}
+
+// Its rows below ours, the world before the name of the scene.
+Table Below(const Table& own, const Table& other, const std::string& world) {
+  const auto& header = own.rows().front();
+  const auto scene = static_cast<std::size_t>(std::ranges::find(header, "scene") - header.begin());
+  Table table = own;
+  for (std::size_t i = 1; i < other.rows().size(); ++i) {
+    auto row = other.rows()[i];
+    row.at(scene) = world + ": " + row.at(scene);
+    table.Add(std::move(row));
+  }
+  return table;
+}
+
+Table WithColumn(const Table& own, const std::string& title, const std::string& cell) {
+  auto header = own.rows().front();
+  header.push_back(title);
+  Table table(std::move(header));
+  for (std::size_t i = 1; i < own.rows().size(); ++i) {
+    auto row = own.rows()[i];
+    row.push_back(cell);
+    table.Add(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<NamedTable> TablesOf(const Results& results) {
+  auto tables = TablesOfWorld(results);
+  for (const auto& world : results.other_worlds) {
+    const auto others = TablesOfWorld(world);
+    for (auto& table : tables) {
+      if (table.name.starts_with("curve_")) continue;  // of scenes of their own
+      const auto known = NumKeyColumns().find(table.name);
+      const std::size_t num_keys = known == NumKeyColumns().end() ? 1 : known->second;
+      const auto other = std::ranges::find(others, table.name, &NamedTable::name);
+      if (!world.is_here) {
+        table.table = WithColumn(table.table, world.world, "not here");
+      } else if (other != others.end()) {
+        table.table = num_keys == 0 ? Below(table.table, other->table, world.world) : Beside(table.table, other->table, num_keys, world.world);
+      }
+    }
+  }
+  return tables;
+}
+
 void PrintTables(const Results& results, std::ostream& out) {
+  if (!results.world.empty()) out << results.world << "\n\n";
+  for (const auto& note : results.notes) out << note << '\n';
+  for (const auto& world : results.other_worlds) {
+    for (const auto& note : world.notes) out << note << '\n';
+    if (!world.is_here) out << world.world << ": not here\n";
+  }
   for (const auto& table : TablesOf(results)) {
     if (!table.is_printed) continue;
     out << table.title << '\n';
@@ -231,14 +304,12 @@ void PrintTables(const Results& results, std::ostream& out) {
   }
 }
 
-void WriteCsv(const Results& results, const std::filesystem::path& folder) {
+void WriteCsv(const Results& results, const std::filesystem::path& folder, bool force) {
   std::filesystem::create_directories(folder);
   for (const auto& table : TablesOf(results)) {
-    const auto file = folder / (table.name + ".csv");
-    std::ofstream out(file, std::ios::binary | std::ios::trunc);
-    table.table.PrintCsv(out);
-    out.close();
-    if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+    io::OutputFile file(folder / (table.name + ".csv"), {.force = force});
+    table.table.PrintCsv(file.stream());
+    file.Commit();
   }
 }
 

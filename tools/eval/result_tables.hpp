@@ -18,12 +18,16 @@ struct NamedTable {
   bool is_printed = true;  // else in a file alone: too long for a screen, or of interest to few
 };
 
-/// All that the results hold; tables without rows are left out. Figures of the paper's kind are in per cent; "-" = there is none.
+/// All that the results hold, other worlds in columns beside ours (where the rows are of scenes: in rows below); tables without rows are left out.
+/// Figures of the paper's kind are in per cent; "-" = there is none.
 std::vector<NamedTable> TablesOf(const Results& results);
 
 void PrintTables(const Results& results, std::ostream& out);
 
-/// Writes NAME.csv for each table, and makes the folder. @throws std::runtime_error when a file cannot be written
-void WriteCsv(const Results& results, const std::filesystem::path& folder);
+/// Writes NAME.csv for each table, and makes the folder.
+///
+/// @param force  replace what is there
+/// @throws std::runtime_error when a file is there, or cannot be written
+void WriteCsv(const Results& results, const std::filesystem::path& folder, bool force);
 
 }  // namespace lookout::eval

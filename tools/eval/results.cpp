@@ -26,23 +26,19 @@ void Score::Add(const Score& other) {
   sum_iou += other.sum_iou;
   num_turns_with_water_object += other.num_turns_with_water_object;
   sum_water_iou += other.sum_water_iou;
-  sum_sure_water_iou += other.sum_sure_water_iou;
-  sum_sure_iou += other.sum_sure_iou;
   AddTo(iou_by_kind, other.iou_by_kind);
-  AddTo(sure_iou_by_kind, other.sure_iou_by_kind);
   AddTo(recall_by_range, other.recall_by_range);
-  AddTo(sure_recall_by_range, other.sure_recall_by_range);
   for (const auto& [kind, more] : other.near_recall_by_kind) {
     auto& recall = near_recall_by_kind[kind];
     recall.num_object_turns += more.num_object_turns;
     recall.num_found += more.num_found;
-    recall.num_surely_found += more.num_surely_found;
   }
   AddTo(iou_by_range, other.iou_by_range);
   num_segments += other.num_segments;
   num_false_segments += other.num_false_segments;
-  num_sure_false_segments += other.num_sure_false_segments;
   num_object_turns += other.num_object_turns;
+  num_things += other.num_things;
+  num_things_with_segment += other.num_things_with_segment;
   num_over_segmented += other.num_over_segmented;
   num_under_segmented += other.num_under_segmented;
   num_returns += other.num_returns;
@@ -57,13 +53,9 @@ double MeanIou(const Score& score) { return Ratio(score.sum_iou, score.num_turns
 
 double MeanWaterIou(const Score& score) { return Ratio(score.sum_water_iou, score.num_turns_with_water_object); }
 
-double MeanSureWaterIou(const Score& score) { return Ratio(score.sum_sure_water_iou, score.num_turns_with_water_object); }
-
-double MeanSureIou(const Score& score) { return Ratio(score.sum_sure_iou, score.num_turns_with_object); }
-
 double FalseSegmentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_false_segments), score.num_turns); }
 
-double SureFalseSegmentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_sure_false_segments), score.num_turns); }
+double ThingsWithSegment(const Score& score) { return Ratio(static_cast<double>(score.num_things_with_segment), score.num_things); }
 
 double SegmentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_segments), score.num_turns); }
 
@@ -95,6 +87,6 @@ double MeanOverScenes(const Results& results, const MethodResult& method, const 
 
 bool IsPeer(const MethodResult& method) { return !method.method.starts_with("ours") && !method.method.starts_with("paper"); }
 
-bool IsTunedPeer(const MethodResult& method) { return IsPeer(method) && method.method.ends_with("(tuned)"); }
+bool IsTunedPeer(const MethodResult& method) { return IsPeer(method) && method.method.find("(tuned") != std::string::npos; }
 
 }  // namespace lookout::eval

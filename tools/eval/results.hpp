@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,34 +14,33 @@
 
 namespace lookout::eval {
 
-/// Sums over turns; figures are made of them by the functions below. All are additive: turns of one scene, scenes of one run.
+/// Sums over turns of one method at one operating point: which of its segments count. Nothing in here is of another. Figures are made of them by the
+/// functions below. All are additive: turns of one scene, scenes of one run.
 struct Score {
   std::int64_t num_turns = 0;
   std::int64_t num_turns_with_object = 0;  // with a return of an object; over open water there is none
   double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
   std::int64_t num_turns_with_water_object = 0;
   double sum_water_iou = 0.0;                                          // the same over objects in the water alone
-  double sum_sure_water_iou = 0.0;                                     // with segments that are sure alone, and so below
-  double sum_sure_iou = 0.0;                                           // with segments that are sure alone
   std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-turns, sum of IoU
-  std::map<std::string, std::pair<std::int64_t, double>> sure_iou_by_kind;
   static constexpr double kRangeBinM = 10.0;
   std::map<int, std::pair<std::int64_t, std::int64_t>> recall_by_range;  // bin of nearest return: object-turns, of these IoU >= 0.5
-  std::map<int, std::pair<std::int64_t, std::int64_t>> sure_recall_by_range;
-  std::map<int, std::pair<std::int64_t, double>> iou_by_range;  // bin: object-turns, sum of IoU
+  std::map<int, std::pair<std::int64_t, double>> iou_by_range;           // bin: object-turns, sum of IoU
   /// Objects whose nearest return is nearer than this: where a small boat has to see a small thing. At 25 m the rings of a VLP-16 are 0.87 m apart
   /// (2 degrees), so that a buoy of half a metre gives one to three returns.
   static constexpr double kNearM = 25.0;
   struct Recall {
     std::int64_t num_object_turns = 0;
     std::int64_t num_found = 0;  // IoU >= 0.5
-    std::int64_t num_surely_found = 0;
   };
   std::map<std::string, Recall> near_recall_by_kind;
   std::int64_t num_segments = 0;
   std::int64_t num_false_segments = 0;  // without a return of any object
-  std::int64_t num_sure_false_segments = 0;
   std::int64_t num_object_turns = 0;
+  /// Objects with at least so many returns in a scan: fewer may be an accident.
+  static constexpr std::int64_t kMinReturnsOfThing = 5;
+  std::int64_t num_things = 0;                 // object-turns with kMinReturnsOfThing or more
+  std::int64_t num_things_with_segment = 0;    // of these: more than half of the returns of some segment are its
   std::int64_t num_over_segmented = 0;         // objects of which two or more segments hold a tenth each
   std::int64_t num_under_segmented = 0;        // segments that hold a tenth each of two or more objects
   std::int64_t num_returns = 0;                // of objects
@@ -56,11 +56,9 @@ struct Score {
 // 0 to 1; NaN without turns in which there was an object.
 double MeanIou(const Score& score);
 double MeanWaterIou(const Score& score);
-double MeanSureWaterIou(const Score& score);
-double MeanSureIou(const Score& score);
 
 double FalseSegmentsPerTurn(const Score& score);  // NaN without turns, and so below
-double SureFalseSegmentsPerTurn(const Score& score);
+double ThingsWithSegment(const Score& score);     // share of the object-turns with kMinReturnsOfThing or more
 double SegmentsPerTurn(const Score& score);
 double OverSegmentedShare(const Score& score);   // of object-turns
 double UnderSegmentedShare(const Score& score);  // of segments
@@ -79,6 +77,11 @@ struct WorstTurn {
 
 struct Results;
 
+/// Rows of a method that knows doubt, after its name.
+inline constexpr std::string_view kAllSegments = " (all segments)";
+inline constexpr std::string_view kSureOnly = " (sure only)";
+
+/// A row of the tables: a method at one operating point.
 struct MethodResult {
   std::string method;
   std::map<std::string, Score> by_scene;
@@ -86,7 +89,7 @@ struct MethodResult {
   std::vector<WorstTurn> worst;                         // of the whole run, worst first; few
 };
 
-/// A peer's name begins with neither "ours" nor "paper"; a tuned one's ends with "(tuned)".
+/// A peer's name begins with neither "ours" nor "paper"; a tuned one's holds "(tuned".
 bool IsPeer(const MethodResult& method);
 bool IsTunedPeer(const MethodResult& method);
 
@@ -109,10 +112,14 @@ struct Curve {
     std::vector<std::pair<double, double>> points;
   };
   std::vector<Line> lines;
-  std::string note;  // a finding in words: "own object from 6.3 m"
+  std::string note;                // a finding in words: "own object from 6.3 m"
+  std::string value_of_boat = {};  // of a sweep: what the boat's config has of its field
+  std::string turns_from = {};     // of a sweep: seeds and seconds
 };
 
 struct Results {
+  std::string world;    // whose scenes these are: empty = our own simulator's
+  bool is_here = true;  // false: the captures of this world are not on this computer, and nothing below is known
   std::string command;  // that made it
   std::string version;
   std::string computer;
@@ -132,6 +139,9 @@ struct Results {
     double nearest_sd_m = 0.0;
   };
   std::vector<Projection> projections;
+  std::vector<std::string> notes;  // on the input, for people
+  /// The same methods, in the same order, on scenes of others.
+  std::vector<Results> other_worlds;
 };
 
 }  // namespace lookout::eval

@@ -14,8 +14,8 @@ struct ObjectTurn {
   std::int64_t num_returns = 0;
   double nearest_m = std::numeric_limits<double>::infinity();
   double iou = 0.0;
-  double sure_iou = 0.0;
-  int num_parts = 0;  // segments with a tenth of it or more
+  bool has_segment = false;  // more than half of the returns of some segment are its
+  int num_parts = 0;         // segments with a tenth of it or more
 };
 
 struct SegmentTurn {
@@ -77,16 +77,16 @@ void ForEachOverlap(Matches& turn, Handler handle) {
   for (auto begin = turn.pairs.begin(); begin != turn.pairs.end();) {
     const auto end = std::find_if(begin, turn.pairs.end(), [&](const Pair& pair) { return pair != *begin; });
     const auto [segment, object] = *begin;
-    handle(turn.segments[segment], turn.objects[object], static_cast<std::int64_t>(end - begin), segment);
+    handle(turn.segments[segment], turn.objects[object], static_cast<std::int64_t>(end - begin));
     begin = end;
   }
 }
 
-void Compare(Matches& turn, const std::vector<bool>& is_sure) {
-  ForEachOverlap(turn, [&](SegmentTurn& segment, ObjectTurn& object, std::int64_t num_both, std::size_t index) {
+void Compare(Matches& turn) {
+  ForEachOverlap(turn, [&](SegmentTurn& segment, ObjectTurn& object, std::int64_t num_both) {
     const double iou = static_cast<double>(num_both) / static_cast<double>(object.num_returns + segment.num_returns - num_both);
     object.iou = std::max(object.iou, iou);
-    if (is_sure.empty() || is_sure.at(index)) object.sure_iou = std::max(object.sure_iou, iou);
+    if (2 * num_both > segment.num_returns) object.has_segment = true;
     if (kLeastPartsOfObject * num_both >= object.num_returns) {
       ++object.num_parts;
       ++segment.num_parts;
@@ -113,34 +113,40 @@ std::int64_t NumTruePositives(const Matches& turn) {
 
 }  // namespace
 
+Labelling SureOnly(Labelling labelling) {
+  for (auto& label : labelling.label) {
+    if (label > 0 && !labelling.is_sure.empty() && !labelling.is_sure.at(static_cast<std::size_t>(label - 1))) label = 0;
+  }
+  labelling.is_sure.clear();
+  return labelling;
+}
+
 Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
   Matches turn = Count(truth, labelling.label);
-  Compare(turn, labelling.is_sure);
+  Compare(turn);
   Score score;
   score.num_turns = 1;
   std::int64_t num_water = 0;
   for (const auto& object : turn.objects) {
     const auto& about = truth.objects.at(object.id);
     score.sum_iou += object.iou;
-    score.sum_sure_iou += object.sure_iou;
     if (about.is_in_water) {
       score.sum_water_iou += object.iou;
-      score.sum_sure_water_iou += object.sure_iou;
       ++num_water;
     }
     const bool is_found = object.iou >= kFoundIou;
-    const bool is_surely_found = object.sure_iou >= kFoundIou;
     AddTo(score.iou_by_kind[about.kind], object.iou);
-    AddTo(score.sure_iou_by_kind[about.kind], object.sure_iou);
     const int bin = static_cast<int>(object.nearest_m / Score::kRangeBinM);
     AddTo(score.recall_by_range[bin], std::int64_t{is_found});
-    AddTo(score.sure_recall_by_range[bin], std::int64_t{is_surely_found});
     AddTo(score.iou_by_range[bin], object.iou);
     if (object.nearest_m < Score::kNearM) {
       auto& recall = score.near_recall_by_kind[about.kind];
       ++recall.num_object_turns;
       recall.num_found += is_found ? 1 : 0;
-      recall.num_surely_found += is_surely_found ? 1 : 0;
+    }
+    if (object.num_returns >= Score::kMinReturnsOfThing) {
+      ++score.num_things;
+      score.num_things_with_segment += object.has_segment ? 1 : 0;
     }
     score.num_over_segmented += object.num_parts >= 2 ? 1 : 0;
     score.num_returns += object.num_returns;
@@ -149,21 +155,16 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
   if (!turn.objects.empty()) {
     score.num_turns_with_object = 1;
     score.sum_iou /= static_cast<double>(turn.objects.size());
-    score.sum_sure_iou /= static_cast<double>(turn.objects.size());
   }
   if (num_water > 0) {
     score.num_turns_with_water_object = 1;
     score.sum_water_iou /= static_cast<double>(num_water);
-    score.sum_sure_water_iou /= static_cast<double>(num_water);
   }
-  for (std::size_t i = 0; i < turn.segments.size(); ++i) {
-    const auto& segment = turn.segments[i];
+  for (const auto& segment : turn.segments) {
     if (segment.num_returns == 0) continue;
     ++score.num_segments;
     score.num_under_segmented += segment.num_parts >= 2 ? 1 : 0;
-    if (segment.num_of_objects > 0) continue;
-    ++score.num_false_segments;
-    score.num_sure_false_segments += labelling.is_sure.empty() || labelling.is_sure.at(i) ? 1 : 0;
+    score.num_false_segments += segment.num_of_objects == 0 ? 1 : 0;
   }
   for (std::size_t cell = 0; cell < labelling.label.size(); ++cell) {
     score.num_not_judged += truth.scan.columns.range[cell] != 0 && labelling.label[cell] == kNotJudged ? 1 : 0;

@@ -68,6 +68,15 @@ std::string ValueText(double value) {
   return text;
 }
 
+double ValueOfBoat(const Boat& boat, const std::string& field) {
+  config::Segmenter message;
+  config::LoadText(boat.config_folder / "segmenter.txtpb", message);
+  const auto& descriptor = *config::Segmenter::descriptor()->FindFieldByName(field);
+  const auto& reflection = *message.GetReflection();
+  if (descriptor.cpp_type() == FieldDescriptor::CPPTYPE_INT32) return reflection.GetInt32(message, &descriptor);
+  return reflection.GetDouble(message, &descriptor);
+}
+
 }  // namespace
 
 Sweep ParseSweep(const std::string& text) {
@@ -119,13 +128,22 @@ Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::o
   Progress progress(progress_out, static_cast<std::int64_t>(plan.scenes.size()) * plan.num_seeds);
   ForEachTurn(plan, boat, progress, [&judge](const TurnPlace& place, const LabelledScan& truth) { judge.Add(place, truth); });
 
-  Curve curve{"Sweep of " + sweep.field, sweep.field, "mIoU, %", {}, ""};
+  // The curve is of all segments; results are in the order of the values, with the sure ones of a method that knows doubt between them.
+  std::vector<const MethodResult*> all_segments;
+  for (const auto& result : judge.results()) {
+    if (!result.method.ends_with(kSureOnly)) all_segments.push_back(&result);
+  }
+
+  Curve curve{"Sweep of " + sweep.field, sweep.field, "mIoU of all segments, %", {}, ""};
+  curve.value_of_boat = ValueText(ValueOfBoat(boat, sweep.field));
+  curve.turns_from = "seeds " + std::to_string(plan.first_seed) + " to " +
+                     std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.num_seeds) - 1) + ", " + ValueText(plan.seconds) + " s each";
   double best_percent = -1.0;
   std::string best;
   for (const auto& scene : plan.scenes) {
     Curve::Line line{SceneLabel(scene), {}};
     for (std::size_t i = 0; i < sweep.values.size(); ++i) {
-      const auto& by_scene = judge.results()[i].by_scene;
+      const auto& by_scene = all_segments[i]->by_scene;
       const auto found = by_scene.find(line.name);
       if (found != by_scene.end() && found->second.num_turns_with_object > 0) {
         line.points.emplace_back(sweep.values[i], 100.0 * MeanIou(found->second));

@@ -15,6 +15,7 @@ class Table {
   /// Precondition: as many cells as the header has.
   void Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   bool empty() const { return rows_.size() == 1; }
+  const std::vector<std::vector<std::string>>& rows() const { return rows_; }  // the first is the header
 
   void Print(std::ostream& out) const;
 

@@ -7,7 +7,8 @@
 #include <system_error>
 
 #include "common/bus/log_file.hpp"
-#include "tools/export/output.hpp"
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
 #include "tools/export/ply.hpp"
 #include "tools/export/sink.hpp"
 #include "tools/export/svg.hpp"
@@ -62,7 +63,7 @@ void Tell(std::ostream& errors, const Sink& sink, const std::vector<Tally>& tall
   for (const auto& remark : sink.Remarks()) errors << kProgram << remark << '\n';
 }
 
-int Export(const Request& request, std::ostream& errors, const std::atomic<bool>& stopped) {
+int Export(const Request& request, std::ostream& errors) {
   constexpr std::size_t kBlockBytes = 1 << 18;
   const auto sink = MakeSink(request);
   std::vector<Tally> tallies;
@@ -71,11 +72,13 @@ int Export(const Request& request, std::ostream& errors, const std::atomic<bool>
   std::vector<std::unique_ptr<bus::LogReader>> readers;
   for (const auto& input : request.inputs) readers.push_back(std::make_unique<bus::LogReader>(input));
 
-  Output output(request.output);
+  io::OutputFile output(
+      request.output.value_or("/dev/stdout"),
+      {.force = request.force, .inputs = request.inputs, .tell = [&errors](const std::string& line) { errors << kProgram << line << '\n'; }});
   std::string text;
   for (std::size_t i = 0; i < readers.size(); ++i) {
     while (const auto event = sink->IsDone() ? std::nullopt : readers[i]->Next()) {
-      if (stopped) throw std::runtime_error("stopped");
+      io::ThrowIfStopAsked();
       const auto tally = std::ranges::find(tallies, event->channel, [](const Tally& one) { return one.channel.name; });
       if (tally == tallies.end()) continue;
       const auto taken = sink->Take(event->channel, event->bytes, text);
@@ -107,15 +110,15 @@ int Export(const Request& request, std::ostream& errors, const std::atomic<bool>
 
 }  // namespace
 
-int Run(const Request& request, std::ostream& errors, const std::atomic<bool>& stopped) {
+int Run(const Request& request, std::ostream& errors) {
   const auto fault = Fault(request);
   if (!fault.empty()) {
     errors << kProgram << fault << '\n';
     return kExitUsage;
   }
   try {
-    return Export(request, errors, stopped);
-  } catch (const BrokenPipe&) {
+    return Export(request, errors);
+  } catch (const io::BrokenPipe&) {  // no fault: `| head` ends quietly
     return kExitFine;
   } catch (const std::exception& error) {
     errors << kProgram << error.what() << '\n';

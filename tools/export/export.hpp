@@ -1,7 +1,6 @@
 // From logs to a table, a cloud or a picture.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
@@ -16,6 +15,7 @@ struct Request {
   std::string table;
   std::string format = "csv";                                  // "csv", "ply" (returns), "svg" (returns, obstacles)
   std::optional<std::filesystem::path> output = std::nullopt;  // nullopt = standard output
+  bool force = false;                                          // an existing output is replaced
   std::optional<std::int64_t> turn = std::nullopt;             // ply, svg: seq of the turn; nullopt = the last whole one
 };
 
@@ -23,9 +23,10 @@ inline constexpr int kExitFine = 0;
 inline constexpr int kExitFailed = 1;  // an input cannot be read, the output not written, or the log holds nothing of the table's channel
 inline constexpr int kExitUsage = 2;
 
-/// @param errors   gets what went wrong and what was skipped, a line each
-/// @param stopped  when it becomes true, the export ends as failed, without output file
+/// Ends as failed, without output file, when the program is asked to stop (io::CatchStopSignals).
+///
+/// @param errors  gets what went wrong and what was skipped, a line each
 /// @return exit code
-int Run(const Request& request, std::ostream& errors, const std::atomic<bool>& stopped);
+int Run(const Request& request, std::ostream& errors);
 
 }  // namespace lookout::exporter

@@ -1,24 +1,14 @@
 // Logs in, a table, a cloud or a picture out.
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <string>
 #include <vector>
 
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "tools/export/export.hpp"
 #include "tools/export/tables.hpp"
-
-namespace {
-
-std::atomic<bool> stopped = false;
-static_assert(std::atomic<bool>::is_always_lock_free, "it is set by a signal handler");
-
-extern "C" void OnSignal(int) { stopped = true; }
-
-}  // namespace
 
 int main(int argc, char** argv) {
   namespace exporter = lookout::exporter;
@@ -34,7 +24,8 @@ int main(int argc, char** argv) {
   app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles: a turn; pose: the track)")
       ->check(CLI::IsMember({"csv", "ply", "svg"}))
       ->capture_default_str();
-  app.add_option("--out", output, "file to write; else standard output");
+  app.add_option("--out", output, "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
+  app.add_flag("--force", request.force, "replace an existing --out");
   app.add_option("--turn", turn, "ply and svg: seq of the turn, or \"last\": the last whole one")->capture_default_str();
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line.");
@@ -51,7 +42,6 @@ int main(int argc, char** argv) {
   }
   request.inputs.assign(inputs.begin(), inputs.end());
   if (!output.empty()) request.output = output;
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  return exporter::Run(request, std::cerr, stopped);
+  lookout::io::CatchStopSignals();
+  return exporter::Run(request, std::cerr);
 }

@@ -21,6 +21,7 @@ void Info(const std::vector<std::filesystem::path>& files, std::ostream& out);
 struct SliceRequest {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  bool force = false;                 // an existing output is replaced
   std::string from;                   // as ParseTime; empty = the start
   std::string to;                     // the first time that is not in it; empty = the end
   std::vector<std::string> channels;  // empty = all
@@ -32,7 +33,8 @@ struct SliceRequest {
 void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors);
 
 /// Writes every whole event of `input`, and prints what was lost: how many bytes, in which stretches, where.
-/// @throws std::runtime_error when `input` cannot be opened or holds no event, `output` cannot be written
-void Repair(const std::filesystem::path& input, const std::filesystem::path& output, std::ostream& out);
+/// @param force  an existing output is replaced
+/// @throws std::runtime_error when `input` cannot be opened or holds no event, `output` exists or cannot be written
+void Repair(const std::filesystem::path& input, const std::filesystem::path& output, bool force, std::ostream& out);
 
 }  // namespace lookout::log

@@ -8,6 +8,7 @@
 
 #include "common/bus/log_event.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/io/stop_signal.hpp"
 
 namespace lookout::log {
 
@@ -24,7 +25,9 @@ class EventReader {
   explicit EventReader(const std::filesystem::path& file) : reader_(file) {}
 
   /// @return the next whole event; nullopt at the end
+  /// @throws io::Stopped
   std::optional<bus::LogEvent> Next() {
+    io::ThrowIfStopAsked();
     const auto expected_bytes = reader_.position_bytes();
     auto event = reader_.Next();
     auto start_bytes = reader_.position_bytes();  // at the end: of the file

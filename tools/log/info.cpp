@@ -12,6 +12,7 @@
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
 #include "tools/log/recorded_run.hpp"
+#include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
 
 namespace lookout::log {
@@ -79,6 +80,7 @@ class LogSummary {
     latest_ = latest_ ? std::max(*latest_, event.time) : event.time;
     ++num_events_;
     if (const auto run_info = RunInfoOf(event)) AddRun(*run_info);
+    marks_.Add(event.time, event.channel, event.bytes);
     AddToChannel(event);
   }
 
@@ -91,6 +93,7 @@ class LogSummary {
     for (const auto& run : runs_) out << fmt::format("{:<9} {}\n", "made by", run);
     for (const auto& machine : machines_) out << fmt::format("{:<9} {}\n", "machine", machine);
     if (runs_.empty()) out << fmt::format("{:<9} not said: no RUN_INFO\n", "made by");
+    PrintMarks(out);
     out << fmt::format("\n{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11}  at\n", "channel", "type", "events", "bytes", "Hz", "missing", "silence_s");
     for (auto& [name, channel] : channels_) {
       channel.AddSilence(*first_, channel.first);
@@ -112,6 +115,24 @@ class LogSummary {
     const auto machine = Printable(MachineOf(run_info));
     const bool is_new = !machine.empty() && std::ranges::find(machines_, machine) == machines_.end();
     if (is_new && machines_.size() < kMaxStretchesNamed) machines_.push_back(machine);
+  }
+
+  // What the marks mean for a replay: whether it gives what the live run gave.
+  void PrintMarks(std::ostream& out) const {
+    if (marks_.Channels().empty()) {
+      out << fmt::format("{:<9} no raw channel: cannot be computed again from its beginning\n", "marks");
+      return;
+    }
+    const auto print = [&](const char* word, const char* mark, const std::vector<std::string>& without, const char* meaning) {
+      std::vector<std::string> with;
+      for (const auto& channel : marks_.Channels()) {
+        if (std::ranges::find(without, channel) == without.end()) with.push_back(channel);
+      }
+      if (!with.empty()) out << fmt::format("{:<9} with {} mark: {}\n", word, mark, Joined(with));
+      if (!without.empty()) out << fmt::format("{:<9} without {} mark: {}; {}\n", word, mark, Joined(without), meaning);
+    };
+    print("begins", "a start", marks_.WithoutStart(), "what a replay gives first need not equal the live run");
+    print("ends", "an end", marks_.WithoutEnd(), "cut there: a replay gives nothing for the scan and the poses that were under way");
   }
 
   void AddToChannel(const bus::LogEvent& event) {
@@ -138,6 +159,7 @@ class LogSummary {
   }
 
   TypeNames names_;
+  RunMarks marks_;
   std::vector<std::string> runs_;
   std::vector<std::string> machines_;
   std::optional<Utime> first_;

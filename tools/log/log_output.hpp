@@ -2,39 +2,37 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <vector>
+#include <utility>
 
 #include "common/bus/log_file.hpp"
+#include "common/io/output_file.hpp"
 
 namespace lookout::log {
 
 class LogOutput {
  public:
-  /// The log is written beside its place, as FILE.partial, and moved there by Commit; an older one is replaced.
-  ///
-  /// @param inputs  none of them may be the output
-  /// @throws std::runtime_error when it is an input, or cannot be made
-  LogOutput(std::filesystem::path file, const std::vector<std::filesystem::path>& inputs);
-
-  /// Takes away what was not committed.
-  ~LogOutput();
-  LogOutput(const LogOutput&) = delete;
-  LogOutput& operator=(const LogOutput&) = delete;
+  /// @throws std::runtime_error as io::OutputFile
+  LogOutput(const std::filesystem::path& file, io::OutputOptions options)
+      : file_(file, std::move(options)), writer_([this](Bytes bytes) { file_.Write(bytes); }) {}
 
   /// Events are numbered from 0, without a gap. @throws std::runtime_error when the disk does not take it
   void Write(const bus::LogEvent& event) { Write(event.time, event); }
-  void Write(Utime time, const bus::LogEvent& event);
+  void Write(Utime time, const bus::LogEvent& event) {
+    writer_.Write(time, event.channel, event.bytes);
+    ++num_events_;
+  }
 
   /// @throws std::runtime_error when it cannot be put in its place
-  void Commit();
+  void Commit() {
+    writer_.Flush();
+    file_.Commit();
+  }
 
   std::int64_t num_events() const { return num_events_; }
 
  private:
-  std::filesystem::path file_;
-  std::filesystem::path partial_;
-  std::optional<bus::LogWriter> writer_;
+  io::OutputFile file_;
+  bus::LogWriter writer_;
   std::int64_t num_events_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "tools/log/commands.hpp"
 
@@ -17,6 +18,7 @@ constexpr int kExitUsage = 2;
 
 int main(int argc, char** argv) {
   namespace log = lookout::log;
+  lookout::io::CatchStopSignals();
   CLI::App app("Shows, cuts and mends lcm-logs.", "lookout-log");
   app.set_version_flag("--version", "lookout-log " + lookout::runtime::Version());
   app.require_subcommand(1);
@@ -31,7 +33,8 @@ int main(int argc, char** argv) {
   std::string output;
   auto* slice = app.add_subcommand("slice", "the events of a time and of some channels");
   slice->add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
-  slice->add_option("--out", output, "lcm-log to write; an older one is replaced")->required();
+  slice->add_option("--out", output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
+  slice->add_flag("--force", request.force, "replace an existing --out");
   slice->add_option("--from", request.from, "seconds from the start of the log, or UTC as 2026-11-21T13:45:01Z");
   slice->add_option("--to", request.to, "the same; the first time that is not in it");
   slice->add_option("--channel", request.channels, "this channel only; may be given several times")->allow_extra_args(false);
@@ -40,7 +43,9 @@ int main(int argc, char** argv) {
   std::string mended;
   auto* repair = app.add_subcommand("repair", "every whole event of a damaged log, and what was lost");
   repair->add_option("IN", damaged, "lcm-log")->required();
-  repair->add_option("OUT", mended, "lcm-log to write; an older one is replaced")->required();
+  repair->add_option("OUT", mended, "lcm-log to write: as OUT.partial until it is whole; one that exists is refused")->required();
+  bool force = false;
+  repair->add_flag("--force", force, "replace an existing OUT");
 
   try {
     app.parse(argc, argv);
@@ -56,7 +61,7 @@ int main(int argc, char** argv) {
       request.output = output;
       log::Slice(request, std::cout, std::cerr);
     } else {
-      log::Repair(damaged, mended, std::cout);
+      log::Repair(damaged, mended, force, std::cout);
     }
     std::cout.flush();
     if (!std::cout) throw std::runtime_error("standard output could not be written");

@@ -9,9 +9,9 @@
 
 namespace lookout::log {
 
-void Repair(const std::filesystem::path& input, const std::filesystem::path& output_file, std::ostream& out) {
+void Repair(const std::filesystem::path& input, const std::filesystem::path& output_file, bool force, std::ostream& out) {
   EventReader reader(input);
-  LogOutput output(output_file, {input});
+  LogOutput output(output_file, {.force = force, .inputs = {input}});
   std::optional<Utime> last;
   std::size_t num_named = 0;
   const auto name_damage = [&](const std::string& next) {

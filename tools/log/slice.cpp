@@ -37,7 +37,7 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
   const auto to = LimitOf("--to", request.to, start);
   if (from && to && *from >= *to) throw UsageError("--from must be before --to");
 
-  LogOutput output(request.output, request.inputs);
+  LogOutput output(request.output, {.force = request.force, .inputs = request.inputs});
   std::optional<bus::LogEvent> run_info;  // the last in front of the slice
   std::int64_t num_events = 0;            // of the slice
   for (const auto& file : request.inputs) {

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/config/text_config.hpp"
+#include "common/runtime/run_info.hpp"
 #include "services/georeferencer/params.hpp"
 #include "services/navigator/params.hpp"
 #include "services/segmenter/params.hpp"
@@ -32,6 +34,16 @@ void Timed(std::chrono::nanoseconds& total, Call call) {
 }
 
 }  // namespace
+
+void CheckConfig(const std::filesystem::path& config_folder) {
+  config::FaultList faults;
+  faults.Try([&] { runtime::EffectiveConfig(config_folder); });
+  faults.Try([&] { vlp16::LoadParams(config_folder); });
+  faults.Try([&] { segmenter::LoadParams(config_folder); });
+  faults.Try([&] { navigator::LoadParams(config_folder); });
+  faults.Try([&] { georeferencer::LoadParams(config_folder); });
+  faults.ThrowIfAny();
+}
 
 Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink)
     : sink_(std::move(sink)),
@@ -109,6 +121,20 @@ void Chain::Finish() {
   }
   if (georeferencer_) georeferencer_->Finish();
   Drain();
+}
+
+std::int64_t Chain::FinishLogs(bool is_whole) {
+  if (!time_) return 0;
+  if (navigator_ && is_navigation_live_ && is_whole) {  // out of LIDAR_NMEA: it sets its own end mark
+    Timed(navigator_time_, [&] { navigator_->Finish(*time_); });
+    Drain();
+  }
+  if (!georeferencer_) return 0;
+  const bool has_pose = bus_.input_traffic().contains(bus::kPose.name);
+  if (!is_whole && has_pose) return georeferencer_->num_waiting();
+  georeferencer_->Finish();
+  Drain();
+  return 0;
 }
 
 void Chain::Drain() {

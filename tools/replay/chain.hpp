@@ -27,6 +27,11 @@ struct ChannelDigest {
   bus::Sha256 sha256;  // over the payloads, one after the other
 };
 
+/// What the processes would find wrong at their start, of all files at once.
+///
+/// @throws config::ConfigError
+void CheckConfig(const std::filesystem::path& config_folder);
+
 class Chain {
  public:
   /// Each message, with the time of the event that caused it.
@@ -44,8 +49,16 @@ class Chain {
   /// A message out of a log, on a channel that the plan reads.
   void OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes);
 
-  /// End of input: every service flushes what it holds.
+  /// End of a capture: every service flushes what it holds, as it does live at its own end.
   void Finish();
+
+  /// End of logs: a service that reads marks has flushed at its end mark, or was cut off and flushed nothing.
+  ///
+  /// @param is_whole  the run came to its end in the logs: what waits for POSE is given with the poses that are there, as live. Else it is left out,
+  /// unless
+  ///                  there is no POSE at all
+  /// @return messages of SEGMENTS that were left out
+  std::int64_t FinishLogs(bool is_whole);
 
   /// Time of the latest event; nullopt before the first.
   std::optional<Utime> time() const { return time_; }

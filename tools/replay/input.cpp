@@ -1,7 +1,10 @@
 #include "tools/replay/input.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -11,6 +14,7 @@
 
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/io/stop_signal.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "tools/replay/text_log.hpp"
 
@@ -36,15 +40,24 @@ void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, std::stri
   refused.emplace_back(reason, count);
 }
 
+// A line of the log, beside which no progress stands.
+template <typename... Values>
+void Warn(runtime::Progress& progress, fmt::format_string<Values...> form, Values&&... values) {
+  progress.Clear();
+  spdlog::warn(form, std::forward<Values>(values)...);
+}
+
 // Where the events of one file are, in time.
 class Order {
  public:
-  Order(std::filesystem::path file, const Chain& chain) : file_(std::move(file)), before_(chain.time()) {}
+  Order(std::filesystem::path file, const Chain& chain, runtime::Progress& progress)
+      : file_(std::move(file)), before_(chain.time()), progress_(progress) {}
 
   /// Before an event is handed in.
   void Check(Utime time) {
     if (before_ && time < *before_) {
-      spdlog::warn("{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(), ToSeconds(*before_ - time));
+      Warn(progress_, "{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(),
+           ToSeconds(*before_ - time));
     }
     before_.reset();
   }
@@ -52,12 +65,23 @@ class Order {
  private:
   std::filesystem::path file_;
   std::optional<Utime> before_;
+  runtime::Progress& progress_;
 };
 
-void FeedTextLog(const std::filesystem::path& file, Chain& chain, InputSummary& summary, const std::function<void(std::int64_t)>& show) {
+// One file on its way into the chain.
+struct Feeding {
+  const std::filesystem::path& file;
+  Chain& chain;
+  InputSummary& summary;
+  runtime::Progress& progress;
+  const std::function<void(std::int64_t num_bytes_of_file)>& show;
+};
+
+void FeedTextLog(const Feeding& feeding) {
+  const auto& [file, chain, summary, progress, show] = feeding;
   TextLogReader reader(file);
-  Order order(file, chain);
-  if (!reader.has_date()) spdlog::warn("{}: no sentence tells a date; its times are taken as those of 1970-01-01", file.string());
+  Order order(file, chain, progress);
+  if (!reader.has_date()) Warn(progress, "{}: no sentence tells a date; its times are taken as those of 1970-01-01", file.string());
   while (const auto line = reader.Next()) {
     order.Check(line->time);
     ++summary.num_events;
@@ -66,11 +90,12 @@ void FeedTextLog(const std::filesystem::path& file, Chain& chain, InputSummary& 
   }
 }
 
-void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& summary, const std::function<void(std::int64_t)>& show) {
+void FeedCapture(const Feeding& feeding) {
+  const auto& [file, chain, summary, progress, show] = feeding;
   // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
   constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
   vlp16::CaptureReader reader(file);
-  Order order(file, chain);
+  Order order(file, chain, progress);
   std::size_t num_bytes = 0;
   while (const auto datagram = reader.Next()) {
     order.Check(datagram->host_time);
@@ -79,20 +104,22 @@ void FeedCapture(const std::filesystem::path& file, Chain& chain, InputSummary& 
     num_bytes += kFrameBytes + datagram->payload.size();
     show(static_cast<std::int64_t>(num_bytes));
   }
-  if (reader.num_damaged() > 0) spdlog::warn("{}: {}", file.string(), reader.damage());
+  if (reader.num_damaged() > 0) Warn(progress, "{}: {}", file.string(), reader.damage());
   for (const auto& counter : reader.counters()) {
     if (counter.name == "frames_read" || counter.name == "frames_datagram") continue;  // work done, no refusal
     Count(summary.refused, "capture." + std::string(counter.name), counter.count);
   }
 }
 
-void FeedLog(const std::filesystem::path& file, const Plan& plan, Chain& chain, InputSummary& summary,
-             const std::function<void(std::int64_t)>& show) {
+void FeedLog(const Feeding& feeding, const Plan& plan) {
+  const auto& [file, chain, summary, progress, show] = feeding;
   bus::LogReader reader(file);
-  Order order(file, chain);
+  Order order(file, chain, progress);
   std::int64_t num_oversize = 0;
-  while (const auto event = reader.NextView([&plan](std::string_view channel) { return plan.Reads(channel); })) {
+  const auto is_wanted = [&plan](std::string_view channel) { return plan.Reads(channel) || log::RunMarks::IsMarked(channel); };
+  while (const auto event = reader.NextView(is_wanted)) {
     show(reader.position_bytes());
+    summary.marks.Add(event->time, event->channel, event->bytes);
     if (!plan.Reads(event->channel)) {
       const auto* known = bus::FindChannel(event->channel);
       Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
@@ -114,6 +141,7 @@ void Look(const std::filesystem::path& file, const std::set<std::string, std::le
   const auto is_found = [&] { return std::ranges::all_of(candidates, [&](const auto& channel) { return present.contains(channel); }); };
   bus::LogReader reader(file);
   while (!is_found()) {
+    io::ThrowIfStopAsked();
     const auto event = reader.NextView([](std::string_view channel) { return channel == bus::kRunInfo.name; });
     if (!event) return;
     if (!recorded && event->channel == bus::kRunInfo.name) recorded = bus::Decode<run_info_t>(event->bytes);
@@ -146,6 +174,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
     num_logs += is_log ? 1 : 0;
   }
   if (num_logs != 0 && num_logs != files.size()) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
+  inspection.is_logs = num_logs != 0;
   try {
     inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
   } catch (const std::runtime_error& error) {
@@ -154,21 +183,43 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
   return inspection;
 }
 
-InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& plan, Chain& chain, Progress& progress) {
+InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress) {
   InputSummary summary;
+  const auto start = std::chrono::steady_clock::now();
+  const auto total_bytes = static_cast<double>(std::max<std::int64_t>(1, inspection.num_bytes));
   std::int64_t num_bytes = 0;
+  const auto speed = [&] {
+    return fmt::format("{:.0f} times real time", ToSeconds(chain.span()) / ToSeconds(std::chrono::steady_clock::now() - start));
+  };
   for (const auto& file : files) {
-    const auto show = [&](std::int64_t num_bytes_of_file) { progress.Update(num_bytes + num_bytes_of_file, chain.span()); };
+    const auto show = [&](std::int64_t num_bytes_of_file) {
+      io::ThrowIfStopAsked();
+      progress.Update(static_cast<double>(num_bytes + num_bytes_of_file) / total_bytes, speed);
+    };
+    const Feeding feeding{file, chain, summary, progress, show};
     if (KindOf(file) == InputKind::kLog) {
-      FeedLog(file, plan, chain, summary, show);
+      FeedLog(feeding, inspection.plan);
     } else if (IsTextLog(file)) {
-      FeedTextLog(file, chain, summary, show);
+      FeedTextLog(feeding);
     } else {
-      FeedCapture(file, chain, summary, show);
+      FeedCapture(feeding);
     }
     num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
   }
   return summary;
+}
+
+std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, Chain& chain) {
+  // A navigator that ended long before the lidar: live the wait for it was given up, turn by turn.
+  constexpr std::chrono::seconds kGivenUp(2);
+  if (!inspection.is_logs) {
+    chain.Finish();
+    return 0;
+  }
+  const auto lidar = summary.marks.LastTime(bus::kLidarPackets.name);
+  const auto navigation = summary.marks.LastTime(bus::kNavRaw.name);
+  const bool is_navigation_gone = lidar && navigation && *lidar - *navigation > kGivenUp;
+  return chain.FinishLogs(summary.marks.WithoutEnd().empty() || is_navigation_gone);
 }
 
 std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b) {

@@ -7,10 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/runtime/progress.hpp"
 #include "lookout/run_info_t.hpp"
+#include "tools/log/run_marks.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/plan.hpp"
-#include "tools/replay/progress.hpp"
 
 namespace lookout::replay {
 
@@ -23,6 +24,7 @@ InputKind KindOf(const std::filesystem::path& file);
 /// What is to be done with these files.
 struct Inspection {
   Plan plan;
+  bool is_logs = false;                // else captures
   std::optional<run_info_t> recorded;  // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
   std::int64_t num_bytes = 0;          // size of all files
 };
@@ -36,10 +38,15 @@ struct InputSummary {
   std::int64_t num_events = 0;                                // datagrams or messages that were handed in
   std::vector<std::pair<std::string, std::int64_t>> left;     // messages of logs that were not read, by channel: computed again, or of no use here
   std::vector<std::pair<std::string, std::int64_t>> refused;  // reason, count; counts above 0
+  log::RunMarks marks;                                        // of the logs
 };
 
-/// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read
-InputSummary Feed(const std::vector<std::filesystem::path>& files, const Plan& plan, Chain& chain, Progress& progress);
+/// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read; io::Stopped
+InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress);
+
+/// Feeds no more: ends the chain as the input ends. What was computed then ends where the live run did, or where the log was cut.
+/// @return messages of SEGMENTS that were left out, as nobody knows what the live run made of them
+std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, Chain& chain);
 
 /// Config files (*.txtpb) whose text in force is not the same in both, by name.
 std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b);

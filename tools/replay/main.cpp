@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <optional>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <string>
@@ -17,13 +16,16 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/config/text_config.hpp"
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
+#include "tools/log/run_marks.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
 #include "tools/replay/plan.hpp"
-#include "tools/replay/progress.hpp"
 
 namespace {
 
@@ -35,6 +37,7 @@ struct Options {
   bool check_only = false;
   std::vector<fs::path> inputs;
   fs::path output;
+  bool force = false;
   lookout::replay::Request request;
   bool shows_progress = false;
 };
@@ -49,12 +52,14 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
   app.add_option("--in", inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
-  app.add_option("--out", output, "lcm-log to write; an older one is replaced");
+  app.add_option("--out", output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
+  app.add_flag("--force", options.force, "replace an existing --out");
   app.add_option("--from", options.request.from, "channel of the log at which to begin; what gives it, and is before that, does not run (several)")
       ->check(CLI::IsMember(lookout::replay::FromNames()));
   app.add_option("--only", options.request.only, "service to run, and no other; what it takes is read from the log (several)")
       ->check(CLI::IsMember(lookout::replay::ServiceNames()));
-  app.add_flag("--progress", options.shows_progress, "show progress also where standard error is no terminal");
+  app.add_flag("--progress", options.shows_progress,
+               "show progress as on a terminal; without it, where standard error is none, a line comes each minute");
   app.set_version_flag("--version", "lookout-replay " + lookout::runtime::Version());
   try {
     app.parse(argc, argv);
@@ -71,8 +76,11 @@ Options ParseOptions(int argc, char** argv) {
 // The log, begun when the time of the first event is known, so that RUN_INFO stands first.
 class Output {
  public:
-  Output(const Options& options, lookout::run_info_t run_info) : writer_(options.output, true), run_info_(std::move(run_info)) {}
+  explicit Output(const Options& options)
+      : file_(options.output, {.force = options.force, .inputs = options.inputs, .tell = [](const std::string& line) { spdlog::warn("{}", line); }}),
+        writer_([this](lookout::Bytes bytes) { file_.Write(bytes); }) {}
 
+  void SetRunInfo(lookout::run_info_t run_info) { run_info_ = std::move(run_info); }
   void Write(lookout::Utime time, std::string_view channel, lookout::Bytes bytes) {
     if (!has_begun_) {
       has_begun_ = true;
@@ -82,10 +90,12 @@ class Output {
     writer_.Write(time, channel, bytes);
   }
   void Flush() { writer_.Flush(); }
+  void Commit() { file_.Commit(); }
 
  private:
+  lookout::io::OutputFile file_;
   lookout::bus::LogWriter writer_;
-  lookout::run_info_t run_info_;
+  lookout::run_info_t run_info_{};
   bool has_begun_ = false;
 };
 
@@ -134,25 +144,38 @@ void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& cha
   }
 }
 
-void Replay(const Options& options) {
-  std::error_code error;
-  for (const auto& input : options.inputs) {
-    if (fs::equivalent(input, options.output, error)) throw std::runtime_error(options.output.string() + ": is an input");
+// Whether the logs hold a run from its start to its end, and what it means where they do not.
+void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) {
+  if (const auto channels = marks.WithoutStart(); !channels.empty()) {
+    spdlog::warn("{}: the input begins without a start mark, in the middle of a run; what is computed first need not equal the live run",
+                 lookout::log::Joined(channels));
   }
+  if (const auto channels = marks.WithoutEnd(); !channels.empty()) {
+    spdlog::warn("{}: the input ends without an end mark: it was cut there, and nothing is computed for the scan and the poses that were under way",
+                 lookout::log::Joined(channels));
+  }
+  if (num_left_out > 0) {
+    spdlog::warn("{} messages of SEGMENTS at the end waited for a POSE that the input does not hold: no OBSTACLES are computed of them",
+                 num_left_out);
+  }
+}
+
+void Replay(const Options& options) {
+  Output output(options);  // before all work
   const auto start = std::chrono::steady_clock::now();
   const auto inspection = lookout::replay::Inspect(options.inputs, options.request);
-  std::optional<Output> output;
   Chain chain(options.config_folder, inspection.plan,
-              [&output](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) { output->Write(time, channel, bytes); });
-  output.emplace(options, RunInfoOf(options, inspection));
+              [&output](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) { output.Write(time, channel, bytes); });
+  output.SetRunInfo(RunInfoOf(options, inspection));
 
   lookout::replay::InputSummary summary;
+  std::int64_t num_left_out = 0;
   {
-    const bool is_shown = options.shows_progress || isatty(STDERR_FILENO) != 0;
-    lookout::replay::Progress progress(is_shown ? stderr : nullptr, inspection.num_bytes);
-    summary = lookout::replay::Feed(options.inputs, inspection.plan, chain, progress);
-    chain.Finish();
-    output->Flush();
+    const bool is_terminal = options.shows_progress || isatty(STDERR_FILENO) != 0;
+    lookout::runtime::Progress progress("replay", stderr, is_terminal);
+    summary = lookout::replay::Feed(options.inputs, inspection, chain, progress);
+    num_left_out = lookout::replay::Finish(summary, inspection, chain);
+    output.Flush();
   }
   const double digest_s = lookout::ToSeconds(chain.digest_time());
   const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start) - digest_s;
@@ -160,6 +183,7 @@ void Replay(const Options& options) {
   const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a turn; else turns are told by what they give
   const auto num_turns = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
   PrintSummary(summary, chain, num_turns);
+  PrintMarks(summary.marks, num_left_out);
   spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
   PrintDigests(chain);
@@ -171,6 +195,7 @@ void Replay(const Options& options) {
   if (chain.num_data_datagrams() > 0 && num_turns == 0) {
     throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + chain.LidarComplaint());
   }
+  output.Commit();
 }
 
 // Memory that is given back to the system is asked for again at the next turn: page faults took a tenth of the time.
@@ -187,11 +212,13 @@ void KeepMemory() {
 
 int main(int argc, char** argv) {
   KeepMemory();
+  lookout::io::CatchStopSignals();
   const Options options = ParseOptions(argc, argv);
   // Tables go to stdout, all else to stderr.
   spdlog::set_default_logger(spdlog::stderr_color_st("replay"));
   return lookout::runtime::RunMain("replay", [&options] {
     spdlog::set_pattern("%^%l%$ replay: %v");
+    lookout::replay::CheckConfig(options.config_folder);
     if (options.check_only) {
       fmt::print("{}", lookout::runtime::EffectiveConfig(options.config_folder));
       return;

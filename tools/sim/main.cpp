@@ -5,12 +5,18 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "common/config/text_config.hpp"
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/process.hpp"
+#include "common/runtime/progress.hpp"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/vlp16.pb.h"
 #include "tools/sim/faults.hpp"
@@ -81,8 +87,16 @@ void Run(const sim::Options& options) {
   auto network_params = options.network;
   network_params.timed = options.faults;
 
+  // Outputs before all work.
+  io::OutputOptions outputs;
+  outputs.force = options.force;
+  outputs.tell = [](const std::string& line) { std::cerr << "lookout-sim: " << line << '\n'; };
+  std::unique_ptr<sim::PcapSink> capture;
+  if (options.udp_host.empty()) {
+    capture = std::make_unique<sim::PcapSink>(options.pcap_file, std::vector<int>{params.data_port, params.navigation.position_port}, outputs);
+  }
   std::unique_ptr<sim::TruthWriter> truth;
-  if (!options.truth_folder.empty()) truth = std::make_unique<sim::TruthWriter>(options.truth_folder, scene, boat, params.start);
+  if (!options.truth_folder.empty()) truth = std::make_unique<sim::TruthWriter>(options.truth_folder, scene, boat, params.start, outputs);
   sim::Simulation simulation(scene, boat, params, truth.get());
   sim::FaultyNetwork network([&] { return simulation.Next(); },
                              [&](const sim::Fault& fault) {
@@ -92,15 +106,19 @@ void Run(const sim::Options& options) {
   if (truth) {
     for (const auto& fault : options.faults) truth->AddFault(fault);
   }
-  if (options.udp_host.empty()) {
-    sim::PcapSink sink(options.pcap_file, {params.data_port, params.navigation.position_port});
-    while (const auto datagram = network.Next()) sink.Send(*datagram);
-    sink.Close();
+  if (capture) {
+    runtime::Progress progress("lookout-sim", stderr);
+    while (const auto datagram = network.Next()) {
+      io::ThrowIfStopAsked();
+      capture->Send(*datagram);
+      progress.Update(ToSeconds(datagram->time - params.start) / ToSeconds(params.duration));
+    }
   } else {
     sim::UdpSink sink(options.udp_host);
     Pace(network, sink, params.start, options.speed);
   }
   if (truth) truth->Close();
+  if (capture) capture->Close();
   const auto& totals = network.totals();
   std::cout << "data packets made " << totals.num_made << ", sent " << totals.num_sent << ", dropped " << totals.num_dropped << ", doubled "
             << totals.num_doubled << ", swapped " << totals.num_swapped << '\n';
@@ -109,6 +127,7 @@ void Run(const sim::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  io::CatchStopSignals();
   Run(sim::ParseOptions(argc, argv));
   return EXIT_SUCCESS;
 } catch (const std::invalid_argument& error) {

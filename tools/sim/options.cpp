@@ -68,10 +68,11 @@ void AddRun(CLI::App& app, Options& options) {
   app.add_option("--scene", options.scene, "name of a scene (--list-scenes), or path of a file that ends in .txtpb")->required();
   app.add_option("--seed", options.seed, "of all that is random")->required();
   app.add_option("--seconds", options.seconds, "length")->required()->check(Within(0.001, 86400.0));
-  auto* pcap = app.add_option("--pcap", options.pcap_file, "write a capture");
+  auto* pcap = app.add_option("--pcap", options.pcap_file, "write a capture: as FILE.partial until it is whole; one that exists is refused");
   auto* udp = app.add_option("--udp", options.udp_host, "send to this host in real time; times are those of now");
   pcap->excludes(udp);
-  app.add_option("--truth", options.truth_folder, "write the truth to this folder");
+  app.add_option("--truth", options.truth_folder, "write the truth to this folder; files in it that exist are refused");
+  app.add_flag("--force", options.force, "replace existing files of --pcap and --truth");
   options.start_utime_us = kDefaultStartUtimeUs;
   app.add_option("--start-utime-us", options.start_utime_us, "with --pcap: time of the first shot")
       ->check(CLI::Range(std::int64_t{0}, kMaxUtimeUs))

@@ -20,6 +20,7 @@ struct Options {
   std::filesystem::path pcap_file;     // empty: to udp_host
   std::string udp_host;                // empty: to pcap_file
   std::filesystem::path truth_folder;  // empty: none
+  bool force = false;                  // existing files are replaced
   std::int64_t start_utime_us = 0;     // of a capture
   double speed = 1.0;                  // to udp_host, times real time; 0 = without waiting
   LidarParams lidar;

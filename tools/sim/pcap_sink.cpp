@@ -1,10 +1,18 @@
 #include "tools/sim/pcap_sink.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <cstdio>
 #include <pcap/pcap.h>
 #include <span>
 #include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "common/io/stop_signal.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -73,21 +81,36 @@ std::vector<std::uint8_t> Frame(const Datagram& datagram, bool is_lidar, std::ui
 }  // namespace
 
 struct PcapSink::Implementation {
+  Implementation(const std::filesystem::path& name, io::OutputOptions options) : file(name, std::move(options)) {}
+  io::OutputFile file;
   pcap_t* capture = nullptr;
   pcap_dumper_t* dumper = nullptr;
   ~Implementation() {
     if (dumper != nullptr) pcap_dump_close(dumper);
     if (capture != nullptr) pcap_close(capture);
   }
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  [[noreturn]] void Fail() const {
+    const auto reason = std::system_category().message(errno);
+    io::ThrowIfStopAsked();
+    throw std::runtime_error(file.file().string() + ": write failed: " + reason);
+  }
 };
 
-PcapSink::PcapSink(const std::filesystem::path& file, std::vector<int> lidar_ports)
-    : implementation_(std::make_unique<Implementation>()), lidar_ports_(std::move(lidar_ports)) {
+PcapSink::PcapSink(const std::filesystem::path& file, std::vector<int> lidar_ports, io::OutputOptions options)
+    : implementation_(std::make_unique<Implementation>(file, std::move(options))), lidar_ports_(std::move(lidar_ports)) {
   constexpr int kSnapshotBytes = 65535;
-  implementation_->capture = pcap_open_dead(DLT_EN10MB, kSnapshotBytes);
-  if (implementation_->capture == nullptr) throw std::runtime_error("libpcap gives no capture");
-  implementation_->dumper = pcap_dump_open(implementation_->capture, file.c_str());
-  if (implementation_->dumper == nullptr) throw std::runtime_error(pcap_geterr(implementation_->capture));
+  auto& self = *implementation_;
+  self.capture = pcap_open_dead(DLT_EN10MB, kSnapshotBytes);
+  if (self.capture == nullptr) throw std::runtime_error("libpcap gives no capture");
+  // libpcap closes what it writes to; the name of the file hangs on the descriptor that stays.
+  const int descriptor = fcntl(self.file.descriptor(), F_DUPFD_CLOEXEC, 0);
+  std::FILE* out = descriptor < 0 ? nullptr : fdopen(descriptor, "wb");
+  if (out == nullptr) self.Fail();
+  self.dumper = pcap_dump_fopen(self.capture, out);
+  if (self.dumper == nullptr) throw std::runtime_error(file.string() + ": " + pcap_geterr(self.capture));
 }
 
 PcapSink::~PcapSink() = default;
@@ -101,11 +124,12 @@ void PcapSink::Send(const Datagram& datagram) {
   header.caplen = header.len = static_cast<bpf_u_int32>(frame.size());
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): libpcap takes the dumper as the user pointer of a callback.
   pcap_dump(reinterpret_cast<u_char*>(implementation_->dumper), &header, frame.data());
+  if (std::ferror(pcap_dump_file(implementation_->dumper)) != 0) implementation_->Fail();
 }
 
 void PcapSink::Close() {
-  if (pcap_dump_flush(implementation_->dumper) != 0) throw std::runtime_error("the capture cannot be written");
-  if (std::ferror(pcap_dump_file(implementation_->dumper)) != 0) throw std::runtime_error("the capture cannot be written");
+  if (pcap_dump_flush(implementation_->dumper) != 0) implementation_->Fail();
+  implementation_->file.Commit();
 }
 
 }  // namespace lookout::sim

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
+#include "common/io/output_file.hpp"
 #include "tools/sim/datagram.hpp"
 
 namespace lookout::sim {
@@ -11,13 +13,14 @@ namespace lookout::sim {
 class PcapSink final : public Sink {
  public:
   /// @param lidar_ports  datagrams to other ports come from the navigation computer
-  /// @throws std::runtime_error when the file cannot be made
-  PcapSink(const std::filesystem::path& file, std::vector<int> lidar_ports);
+  /// @throws std::runtime_error as io::OutputFile
+  PcapSink(const std::filesystem::path& file, std::vector<int> lidar_ports, io::OutputOptions options = {});
   ~PcapSink() override;
 
+  /// @throws std::runtime_error when the disk does not take it
   void Send(const Datagram& datagram) override;
 
-  /// Writes out what is buffered. @throws std::runtime_error when the disk does not take it
+  /// All was sent: the file gets its name. @throws std::runtime_error as io::OutputFile::Commit
   void Close();
 
  private:

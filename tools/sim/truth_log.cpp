@@ -1,5 +1,7 @@
 #include "tools/sim/truth_log.hpp"
 
+#include <utility>
+
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "lookout/sim_truth_t.hpp"
@@ -34,8 +36,10 @@ void SetOutline(const Eigen::Isometry3d& T_map_object, const std::vector<Eigen::
 
 }  // namespace
 
-TruthLog::TruthLog(const std::filesystem::path& file, const Scene& scene, const config::BoatFacts& boat, Utime start)
-    : scene_(scene), boat_(boat), start_(start), next_objects_(start), log_(file, true) {}
+TruthLog::TruthLog(const std::filesystem::path& file, const Scene& scene, const config::BoatFacts& boat, Utime start, io::OutputOptions options)
+    : scene_(scene), boat_(boat), start_(start), next_objects_(start), file_(file, std::move(options)), log_([this](Bytes bytes) {
+        file_.Write(bytes);
+      }) {}
 
 void TruthLog::Write(sim_truth_t& message) {
   const auto datum = boat_.datum.value_or(kLakeDatum);
@@ -110,6 +114,7 @@ void TruthLog::AdvanceTo(Utime time) {
 void TruthLog::Close() {
   WritePackets();
   log_.Flush();
+  file_.Commit();
 }
 
 }  // namespace lookout::sim

@@ -7,6 +7,7 @@
 #include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/output_file.hpp"
 #include "tools/sim/lidar.hpp"
 #include "tools/sim/scene.hpp"
 
@@ -19,8 +20,8 @@ namespace lookout::sim {
 class TruthLog {
  public:
   /// @param scene  outlives this
-  /// @throws std::runtime_error when the file cannot be made
-  TruthLog(const std::filesystem::path& file, const Scene& scene, const config::BoatFacts& boat, Utime start);
+  /// @throws std::runtime_error as io::OutputFile
+  TruthLog(const std::filesystem::path& file, const Scene& scene, const config::BoatFacts& boat, Utime start, io::OutputOptions options = {});
 
   /// Packets in the order in which they were made, each before AdvanceTo goes beyond it. They are held until there are kPacketsPerMessage.
   ///
@@ -30,7 +31,7 @@ class TruthLog {
   /// Writes where everything is, every kObjectPeriod up to `time`.
   void AdvanceTo(Utime time);
 
-  /// Writes out what is held.
+  /// Writes out what is held; the file gets its name.
   void Close();
 
   static constexpr std::size_t kPacketsPerMessage = 24;  // as in LIDAR_PACKETS: 28 kB
@@ -49,6 +50,7 @@ class TruthLog {
   config::BoatFacts boat_;
   Utime start_;
   Utime next_objects_;
+  io::OutputFile file_;
   bus::LogWriter log_;
   std::vector<Packet> packets_;
   std::int64_t num_packets_ = 0;  // written

@@ -4,8 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 #include "common/core/angles.hpp"
 #include "tools/sim/map_frame.hpp"
@@ -20,10 +21,10 @@ constexpr microseconds kPosePeriod = 20ms;  // the grid of POSE: whole multiples
 constexpr microseconds kOutlinePeriod = 100ms;
 
 template <typename... Values>
-void Print(std::ofstream& out, const char* form, Values... values) {
+void Print(io::OutputFile& out, const char* form, Values... values) {
   std::array<char, 256> text{};
   std::snprintf(text.data(), text.size(), form, values...);
-  out << text.data();
+  out.Write(std::string_view(text.data()));
 }
 
 // ",-12.3456". Much quicker than printf, of which a turn of the lidar would need 15 000.
@@ -35,21 +36,21 @@ void AppendMetres(double value_m, std::string& text) {
   text += std::to_string(std::abs(units) / kUnitsPerMetre) + "." + digits.substr(1);
 }
 
-const std::filesystem::path& Made(const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  return folder;
-}
-
-void Open(std::ofstream& out, const std::filesystem::path& file, const char* header) {
-  out.open(file, std::ios::binary | std::ios::trunc);
-  if (!out) throw std::runtime_error(file.string() + ": cannot be made");
-  out << header << '\n';
-}
-
 }  // namespace
 
-TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start)
-    : scene_(scene),
+TruthWriter::Folder::Folder(const std::filesystem::path& path) {
+  if (std::filesystem::create_directories(path)) made = path;
+}
+
+TruthWriter::Folder::~Folder() {
+  std::error_code ignored;
+  if (!made.empty()) std::filesystem::remove(made, ignored);  // a folder with files in it stays
+}
+
+TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start,
+                         const io::OutputOptions& options)
+    : folder_(folder),
+      scene_(scene),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       own_outline_m_(Rectangle(boat.own_vessel_box_m.min().x(), boat.own_vessel_box_m.max().x(), boat.own_vessel_box_m.min().y(),
                                boat.own_vessel_box_m.max().y())),
@@ -57,23 +58,28 @@ TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene
       start_(start),
       next_pose_(std::chrono::ceil<std::chrono::milliseconds>(start)),
       next_outline_(start),
-      log_(Made(folder) / "truth.lcmlog", scene, boat, start) {
+      log_(folder / "truth.lcmlog", scene, boat, start, options),
+      objects_(folder / "objects.csv", options),
+      object_poses_(folder / "object_poses.csv", options),
+      outlines_(folder / "outlines.csv", options),
+      returns_(folder / "returns.csv", options),
+      pose_(folder / "pose.csv", options),
+      faults_(folder / "faults.csv", options) {
   while (next_pose_.time_since_epoch() % kPosePeriod != 0us) next_pose_ += 1ms;
-  Open(objects_, folder / "objects.csv", "object_id,name,kind,is_moving,is_in_water");
-  Open(object_poses_, folder / "object_poses.csv",
-       "object_id,utime_us,latitude_deg,longitude_deg,east_m,north_m,up_m,heading_deg,roll_deg,pitch_deg");
-  Open(outlines_, folder / "outlines.csv", "object_id,utime_us,vertex_index,latitude_deg,longitude_deg,east_m,north_m");
-  Open(returns_, folder / "returns.csv", "utime_us,ring,return_index,object_id,reason,x_m,y_m,z_m");
-  Open(pose_, folder / "pose.csv", "utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,heave_m");
-  Open(faults_, folder / "faults.csv", "utime_us,kind,packet_index,end_utime_us,value");
+  objects_.Write("object_id,name,kind,is_moving,is_in_water\n");
+  object_poses_.Write("object_id,utime_us,latitude_deg,longitude_deg,east_m,north_m,up_m,heading_deg,roll_deg,pitch_deg\n");
+  outlines_.Write("object_id,utime_us,vertex_index,latitude_deg,longitude_deg,east_m,north_m\n");
+  returns_.Write("utime_us,ring,return_index,object_id,reason,x_m,y_m,z_m\n");
+  pose_.Write("utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,heave_m\n");
+  faults_.Write("utime_us,kind,packet_index,end_utime_us,value\n");
   WriteObjects();
 }
 
 void TruthWriter::WriteObjects() {
-  objects_ << kOwnVessel << ",own_vessel,own_vessel,1,1\n" << kNoObject << ",none,none,0,0\n";
+  objects_.stream() << kOwnVessel << ",own_vessel,own_vessel,1,1\n" << kNoObject << ",none,none,0,0\n";
   for (const auto& object : scene_.objects) {
-    objects_ << object.id << ',' << object.name << ',' << object.kind << ',' << (object.track.is_moving() ? 1 : 0) << ','
-             << (object.is_in_water ? 1 : 0) << '\n';
+    objects_.stream() << object.id << ',' << object.name << ',' << object.kind << ',' << (object.track.is_moving() ? 1 : 0) << ','
+                      << (object.is_in_water ? 1 : 0) << '\n';
     if (!object.track.is_moving()) WriteOutline(object, start_);
   }
 }
@@ -148,18 +154,18 @@ void TruthWriter::AddPacket(const LidarPacket& packet) {
     for (const double coordinate_m : made.p_lidar_m) AppendMetres(coordinate_m, text);
     text.push_back('\n');
   }
-  returns_ << text;
+  returns_.Write(text);
   log_.AddPacket(packet);
 }
 
 void TruthWriter::AddFault(const Fault& fault) {
-  faults_ << ToUtimeUs(fault.time) << ',' << kFaultNames[static_cast<std::size_t>(fault.kind)] << ',' << fault.packet_index << ",,\n";
+  faults_.stream() << ToUtimeUs(fault.time) << ',' << kFaultNames[static_cast<std::size_t>(fault.kind)] << ',' << fault.packet_index << ",,\n";
 }
 
 void TruthWriter::AddFault(const TimedFault& fault) {
-  faults_ << ToUtimeUs(start_ + fault.begin) << ',' << FormOf(fault.kind).name << ",," << ToUtimeUs(start_ + fault.end) << ',';
-  if (!FormOf(fault.kind).unit.empty()) faults_ << fault.value;
-  faults_ << '\n';
+  faults_.stream() << ToUtimeUs(start_ + fault.begin) << ',' << FormOf(fault.kind).name << ",," << ToUtimeUs(start_ + fault.end) << ',';
+  if (!FormOf(fault.kind).unit.empty()) faults_.stream() << fault.value;
+  faults_.Write("\n");
 }
 
 void TruthWriter::AdvanceTo(Utime time) {
@@ -171,10 +177,7 @@ void TruthWriter::AdvanceTo(Utime time) {
 
 void TruthWriter::Close() {
   log_.Close();
-  for (auto* out : {&objects_, &object_poses_, &outlines_, &returns_, &pose_, &faults_}) {
-    out->close();
-    if (!*out) throw std::runtime_error("the truth cannot be written: is the disk full?");
-  }
+  for (auto* out : {&objects_, &object_poses_, &outlines_, &returns_, &pose_, &faults_}) out->Commit();
 }
 
 }  // namespace lookout::sim

@@ -4,11 +4,11 @@
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/output_file.hpp"
 #include "tools/sim/fault_plan.hpp"
 #include "tools/sim/faults.hpp"
 #include "tools/sim/lidar.hpp"
@@ -22,8 +22,9 @@ class TruthWriter {
   /// Makes the folder and writes objects, and the outlines of those that stand still.
   ///
   /// @param scene  outlives this
-  /// @throws std::runtime_error when a file cannot be made
-  TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start);
+  /// @throws std::runtime_error as io::OutputFile, of any of the files
+  TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start,
+              const io::OutputOptions& options = {});
 
   void AddPacket(const LidarPacket& packet);
 
@@ -36,7 +37,7 @@ class TruthWriter {
   /// Writes poses and moving outlines up to `time`.
   void AdvanceTo(Utime time);
 
-  /// @throws std::runtime_error when the disk did not take all
+  /// All is told: the files get their names. @throws std::runtime_error as io::OutputFile::Commit
   void Close();
 
  private:
@@ -47,6 +48,16 @@ class TruthWriter {
   void WriteObjectsAt(Utime time);
   void WritePose(Utime time);
 
+  // The folder, taken away again where nothing came into it.
+  struct Folder {
+    explicit Folder(const std::filesystem::path& path);
+    ~Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    std::filesystem::path made;  // empty: it was there before
+  };
+
+  Folder folder_;
   const Scene& scene_;
   double reference_point_above_water_m_;
   std::vector<Eigen::Vector2d> own_outline_m_;  // vessel frame
@@ -55,12 +66,12 @@ class TruthWriter {
   Utime next_pose_;
   Utime next_outline_;
   TruthLog log_;
-  std::ofstream objects_;
-  std::ofstream object_poses_;
-  std::ofstream outlines_;
-  std::ofstream returns_;
-  std::ofstream pose_;
-  std::ofstream faults_;
+  io::OutputFile objects_;
+  io::OutputFile object_poses_;
+  io::OutputFile outlines_;
+  io::OutputFile returns_;
+  io::OutputFile pose_;
+  io::OutputFile faults_;
 };
 
 }  // namespace lookout::sim

@@ -35,6 +35,7 @@ class Georeferencer {
   /// End of input: what waits is released, with the poses that are there.
   std::vector<ObstaclePart> Finish();
 
+  std::int64_t num_waiting() const { return static_cast<std::int64_t>(waiting_.size()); }
   const PoseHistory& poses() const { return poses_; }
   std::vector<Counter> counters() const;
   /// Host time of the last release by time-out.

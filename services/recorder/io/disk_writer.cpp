@@ -1,12 +1,14 @@
 #include "services/recorder/io/disk_writer.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <system_error>
 #include <utility>
 
@@ -27,6 +29,14 @@ constexpr std::int64_t kResumeBytes = 2 * kBlockBytes;
 std::string ErrnoText() { return std::system_category().message(errno); }
 
 std::string Megabytes(std::int64_t size_bytes) { return std::to_string(size_bytes / 1'000'000) + " MB"; }
+
+// "1234 events, 17.2 MB"
+std::string AmountText(std::int64_t num_events, std::int64_t num_bytes) {
+  const auto tenths = (num_bytes + 50'000) / 100'000;
+  return std::to_string(num_events) + " events, " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MB";
+}
+
+constexpr const char* kAdvice = "begin a new log (SIGHUP) before the old one is moved, deleted or changed";
 
 }  // namespace
 
@@ -63,15 +73,17 @@ void DiskWriter::BeginFile(std::string stem, std::vector<std::uint8_t> first_eve
 
 bool DiskWriter::Append(Bytes event) {
   bool is_block_full = false;
+  const auto size_bytes = static_cast<std::int64_t>(event.size());
   {
     const std::lock_guard lock(mutex_);
     if (!status_.is_recording && !status_.is_waiting_for_file) {
       ++(status_.is_full ? status_.num_lost_full : status_.num_lost_fault);
+      status_.num_lost_bytes += size_bytes;
       return false;
     }
-    const auto size_bytes = static_cast<std::int64_t>(event.size());
     if (status_.queue_bytes + size_bytes > limits_.queue_bytes) {
       ++status_.num_lost_queue_full;
+      status_.num_lost_bytes += size_bytes;
       status_.fault = "the disk stood still for so long that the queue of " + Megabytes(limits_.queue_bytes) + " was full";
       return false;
     }
@@ -130,7 +142,11 @@ void DiskWriter::Run() {
 
 void DiskWriter::WriteBlock(const Block& block) {
   const bool begins = !block.stem.empty();
-  if (begins) CloseFile();
+  if (begins) {
+    CloseFile();
+    std::error_code ignored;
+    std::filesystem::create_directories(folder_, ignored);  // what is wrong there open() tells; room is looked for on the right disk
+  }
   if (HasRoomFor(block)) {
     if (begins) OpenFile(block.stem);
     std::size_t num_written = 0;
@@ -147,16 +163,24 @@ void DiskWriter::WriteBlock(const Block& block) {
       }
     }
   }
-  const std::lock_guard lock(mutex_);
-  if (begins) status_.is_waiting_for_file = false;
-  if (descriptor_ < 0) {
-    if (!begins) (status_.is_full ? status_.num_lost_full : status_.num_lost_fault) += block.num_events;
-    return;
+  const auto size_bytes = static_cast<std::int64_t>(block.bytes.size());
+  const bool is_written = descriptor_ >= 0;
+  {
+    const std::lock_guard lock(mutex_);
+    if (begins) status_.is_waiting_for_file = false;
+    if (is_written) {
+      status_.num_events += block.num_events;
+      status_.num_bytes += size_bytes;
+    } else if (!begins) {
+      (status_.is_full ? status_.num_lost_full : status_.num_lost_fault) += block.num_events;
+      status_.num_lost_bytes += size_bytes;
+    }
   }
-  file_bytes_ += static_cast<std::int64_t>(block.bytes.size());
+  if (!is_written) return;
+  file_bytes_ += size_bytes;
   num_unsynced_ += block.num_events;
-  status_.num_events += block.num_events;
-  status_.num_bytes += static_cast<std::int64_t>(block.bytes.size());
+  marks_.push_back({file_bytes_, (marks_.empty() ? 0 : marks_.back().num_events) + block.num_events});
+  CheckFile(&block);
 }
 
 bool DiskWriter::HasRoomFor(const Block& block) {
@@ -181,17 +205,20 @@ bool DiskWriter::HasRoomFor(const Block& block) {
 }
 
 void DiskWriter::OpenFile(const std::string& stem) {
-  std::error_code ignored;
-  std::filesystem::create_directories(folder_, ignored);  // what is wrong there open() tells
   auto file = folder_ / (stem + ".lcmlog");
-  // Of two recorders that start in the same second each gets its own. Digits, since they sort behind the dot of a name without them, in any locale.
-  for (int i = 1; (descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
+  // Appended to, so that a file that somebody cuts goes on at its end, without a hole. Of two recorders that start in the same second each gets its
+  // own. Digits, since they sort behind the dot of a name without them, in any locale.
+  for (int i = 1; (descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
     auto number = std::to_string(i);
     number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
     file = folder_ / (stem + number.append(".lcmlog"));
   }
   const std::string reason = descriptor_ < 0 ? ErrnoText() : "";
+  if (descriptor_ >= 0) flock(descriptor_, LOCK_EX | LOCK_NB);  // nobody else can hold it: the file is new
+  file_ = file;
   file_bytes_ = 0;
+  marks_.clear();
+  is_disturbed_ = false;
   num_unsynced_ = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -199,6 +226,7 @@ void DiskWriter::OpenFile(const std::string& stem) {
     if (descriptor_ >= 0) {
       status_.is_recording = true;
       status_.is_full = false;
+      status_.wants_new_file = false;
       ++status_.num_files;
     }
   }
@@ -229,8 +257,63 @@ void DiskWriter::SyncFile() {
     return;
   }
   num_unsynced_ = 0;
-  struct stat state {};
-  if (fstat(descriptor_, &state) == 0 && state.st_nlink == 0) Fail("was deleted");
+  CheckFile(nullptr);
+}
+
+// @param last_block  written since the last look; nullptr: none
+void DiskWriter::CheckFile(const Block* last_block) {
+  struct stat own {};
+  if (descriptor_ < 0 || fstat(descriptor_, &own) != 0) return;
+  struct stat named {};
+  const bool is_name_there = lstat(file_.c_str(), &named) == 0;
+  const bool is_own_name = is_name_there && named.st_dev == own.st_dev && named.st_ino == own.st_ino;
+  const std::int64_t size_bytes = own.st_nlink == 0 ? 0 : own.st_size;
+  if (size_bytes < file_bytes_) {
+    // Cut to `kept_bytes`, behind which what was written since stands.
+    const auto last_bytes = last_block == nullptr ? 0 : static_cast<std::int64_t>(last_block->bytes.size());
+    const bool has_last = last_block != nullptr && size_bytes >= last_bytes;
+    const auto kept_bytes = size_bytes - (has_last ? last_bytes : 0);
+    const auto total = marks_.back().num_events;
+    const auto cut = std::ranges::upper_bound(marks_, kept_bytes, {}, &Mark::end_bytes);
+    const auto num_kept = (cut == marks_.begin() ? 0 : std::prev(cut)->num_events) + (has_last ? last_block->num_events : 0);
+    marks_.erase(cut, marks_.end());
+    marks_.push_back({size_bytes, num_kept});
+    const auto num_lost = total - num_kept;
+    const auto num_lost_bytes = file_bytes_ - size_bytes;
+    const auto old_bytes = std::exchange(file_bytes_, size_bytes);
+    {
+      const std::lock_guard lock(mutex_);
+      status_.num_lost_fault += num_lost;
+      status_.num_events -= num_lost;
+      status_.num_bytes -= num_lost_bytes;
+      status_.num_lost_bytes += num_lost_bytes;
+    }
+    const std::string lost = AmountText(num_lost, num_lost_bytes) + " are lost; " + kAdvice;
+    if (own.st_nlink > 0)
+      return Disturb("was cut from " + std::to_string(old_bytes) + " to " + std::to_string(kept_bytes) + " bytes while it was recorded: " + lost);
+    num_unsynced_ = 0;
+    file_bytes_ = old_bytes;  // the name may be that of another file by now: nothing is removed
+    const std::lock_guard lock(mutex_);
+    ++status_.num_disturbed;
+    FailLocked((is_name_there ? "was replaced by another file while it was recorded: " : "was deleted while it was recorded: ") + lost);
+    return;
+  }
+  if (size_bytes > file_bytes_) {
+    const auto num_foreign_bytes = size_bytes - std::exchange(file_bytes_, size_bytes);
+    return Disturb("another program has written " + std::to_string(num_foreign_bytes) + " bytes to it; " + kAdvice);
+  }
+  if (!is_own_name) {
+    Disturb(std::string("was moved or renamed") + (is_name_there ? ", and another file stands in its place" : "") +
+            ": what was recorded is in it, wherever it is; " + kAdvice);
+  }
+}
+
+// Nothing more is lost: the file is written on until the next one is begun.
+void DiskWriter::Disturb(const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  status_.fault = file_.string() + ": " + reason;
+  if (!std::exchange(is_disturbed_, true)) ++status_.num_disturbed;
+  status_.wants_new_file = true;
 }
 
 void DiskWriter::CloseFile() {
@@ -243,6 +326,10 @@ void DiskWriter::CloseFile() {
 
 void DiskWriter::Fail(const std::string& reason) {
   const std::lock_guard lock(mutex_);
+  FailLocked(reason);
+}
+
+void DiskWriter::FailLocked(const std::string& reason) {
   if (descriptor_ >= 0) {
     // On a full disk there would be one more empty file with each attempt.
     if (file_bytes_ == 0) {
@@ -255,6 +342,7 @@ void DiskWriter::Fail(const std::string& reason) {
   }
   status_.is_recording = false;
   status_.is_full = false;
+  status_.wants_new_file = false;
   status_.fault = status_.file.string() + ": " + reason;
   ++status_.num_faults;
 }

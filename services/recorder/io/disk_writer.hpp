@@ -39,22 +39,26 @@ struct DiskStatus {
   bool is_recording = false;
   bool is_waiting_for_file = false;  // one was asked for and is not yet begun
   bool is_full = false;              // not recording, for lack of room
+  bool wants_new_file = false;       // recording, into a file that somebody moved, cut or wrote to
   std::string fault;                 // why something was lost last, or why it does not record
   std::int64_t num_events = 0;       // handed to the kernel
   std::int64_t num_bytes = 0;        // of them, as in the files
   std::int64_t num_files = 0;
   std::int64_t num_faults = 0;           // of the disk
-  std::int64_t num_lost_fault = 0;       // events, to a disk that did not take them
+  std::int64_t num_disturbed = 0;        // files that somebody deleted, moved, cut or wrote to while they were recorded
+  std::int64_t num_lost_fault = 0;       // events, to a disk that did not take them, or with a file that was deleted or cut
   std::int64_t num_lost_full = 0;        // events, while there was no room
   std::int64_t num_lost_queue_full = 0;  // events, while the disk stood still
+  std::int64_t num_lost_bytes = 0;       // of all lost events
   std::int64_t queue_bytes = 0;
   std::int64_t queue_peak_bytes = 0;
   std::int64_t free_bytes = -1;  // as seen last; -1 = not known
 };
 
 /// Files are written in blocks of whole events. A block that the disk does not take whole is cut off again, so that a log ends with a whole event,
-/// and its file is closed; what comes until the next BeginFile is lost. Everything is on the disk (fdatasync) at most 0.7 s after Append, as long as
-/// the disk itself takes no longer.
+/// and its file is closed; what comes until the next BeginFile is lost. The file is locked (flock). After each block and each sync it is looked at:
+/// one that was deleted, or cut, has lost what was in it; one that is not any more under its name, or to which somebody else writes, is written on
+/// until the next BeginFile. Everything is on the disk (fdatasync) at most 0.7 s after Append, as long as the disk itself takes no longer.
 class DiskWriter {
  public:
   /// Starts the thread.
@@ -94,8 +98,11 @@ class DiskWriter {
   bool HasRoomFor(const Block& block);
   void OpenFile(const std::string& stem);
   void SyncFile();
+  void CheckFile(const Block* last_block);
+  void Disturb(const std::string& reason);
   void CloseFile();
   void Fail(const std::string& reason);
+  void FailLocked(const std::string& reason);  // mutex_ is held
 
   const std::filesystem::path folder_;
   const DiskLimits limits_;
@@ -112,7 +119,15 @@ class DiskWriter {
 
   // Of the thread alone.
   int descriptor_ = -1;
+  // The end of a block in the file, and the events up to there.
+  struct Mark {
+    std::int64_t end_bytes = 0;
+    std::int64_t num_events = 0;
+  };
+  std::filesystem::path file_;
   std::int64_t file_bytes_ = 0;
+  std::vector<Mark> marks_;  // of the file: 16 bytes for each 0.1 s of it
+  bool is_disturbed_ = false;
   std::int64_t num_unsynced_ = 0;  // events that the kernel has and the disk may not
   std::chrono::steady_clock::time_point last_sync_;
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <lcm/eventlog.h>
 #include <sstream>
 #include <stdexcept>
 
@@ -51,7 +52,20 @@ TEST_F(LogFile, GivesBackWhatWasWritten) {
 }
 
 TEST_F(LogFile, EventsAsBytesAreThoseOfLcmsWriter) {
-  WriteThree();
+  lcm_eventlog_t* writer = lcm_eventlog_create(file_.c_str(), "w");
+  ASSERT_NE(writer, nullptr);
+  for (int i = 0; i < 3; ++i) {
+    std::string channel = "CHANNEL";
+    std::vector<std::uint8_t> bytes(100, static_cast<std::uint8_t>(i));
+    lcm_eventlog_event_t event{};
+    event.timestamp = 1000 + i;
+    event.channellen = static_cast<std::int32_t>(channel.size());
+    event.datalen = static_cast<std::int32_t>(bytes.size());
+    event.channel = channel.data();
+    event.data = bytes.data();
+    ASSERT_EQ(lcm_eventlog_write_event(writer, &event), 0);
+  }
+  lcm_eventlog_destroy(writer);
   std::vector<std::uint8_t> log;
   for (int i = 0; i < 3; ++i) {
     AppendLogEvent(log, i, Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
@@ -140,6 +154,26 @@ TEST_F(LogFile, PassesOverWhatIsNotWanted) {
     EXPECT_EQ(reader.position_bytes(), static_cast<std::int64_t>(fs::file_size(file_)));
     EXPECT_EQ(reader.num_damaged(), 0);
   }
+}
+
+TEST_F(LogFile, IsGivenInPiecesToWhoTakesThem) {
+  WriteThree();
+  std::string taken;
+  LogWriter writer([&taken](Bytes bytes) { taken.append(bytes.begin(), bytes.end()); });
+  for (int i = 0; i < 3; ++i) {
+    writer.Write(Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", std::vector<std::uint8_t>(100, static_cast<std::uint8_t>(i)));
+  }
+  writer.Flush();
+  EXPECT_EQ(taken, Content());
+  EXPECT_EQ(writer.num_bytes(), static_cast<std::int64_t>(taken.size()));
+  writer.Flush();
+  EXPECT_EQ(taken.size(), Content().size());
+}
+
+TEST_F(LogFile, TellsWhatTheTakerThrows) {
+  LogWriter writer([](Bytes) { throw std::runtime_error("the disk is full"); });
+  writer.Write(Utime(), "CHANNEL", {});
+  EXPECT_THROW(writer.Flush(), std::runtime_error);
 }
 
 TEST_F(LogFile, IsNotOverwrittenUnlessAskedFor) {

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 
 #include "common/config/boat.hpp"
 #include "config/schema/boat.pb.h"
+#include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/vlp16.pb.h"
 
@@ -62,6 +64,89 @@ TEST(TextConfig, NamesFieldsOfPartsByTheirPath) {
   EXPECT_NE(faults.find("f.txtpb:3: lidar.z_m: must be at most 200 (is 1000)"), std::string::npos) << faults;
   EXPECT_NE(faults.find("f.txtpb:1: gnss_antenna: must be set"), std::string::npos) << faults;
   EXPECT_EQ(faults.find("datum"), std::string::npos) << faults;
+}
+
+// One misspelled field used to hide all that stood behind it.
+TEST(TextConfig, TellsEveryFaultOfATextAtOnceInTheOrderOfItsLines) {
+  Boat boat;
+  const std::string text =
+      "nam: \"x\"  # misspelled\n"
+      "lidar {\n"
+      "  x_m: \"half\" y_m: 0\n"
+      "\tz_m: 1000  z_m: 1\n"
+      "  roll_deg: 0 pitch_deg: 0 yaw_deg 5\n"
+      "}\n"
+      "antenna { x_m: 0 nonsense: [1, { a: 2 }] }\n"
+      "lidar { x_m: 0 }\n"
+      "reference_point_above_water_m: nan\n";
+  EXPECT_EQ(FaultsOf(text, boat),
+            "f.txtpb:1: nam: Message type \"lookout.config.Boat\" has no field named \"nam\".\n"
+            "f.txtpb:1: name: must be set\n"
+            "f.txtpb:1: gnss_antenna: must be set\n"
+            "f.txtpb:1: own_vessel: must be set\n"
+            "f.txtpb:3: lidar.x_m: Expected double, got: \"half\"\n"
+            "f.txtpb:4: lidar.z_m: stands twice; the first is in line 4\n"
+            "f.txtpb:4: lidar.z_m: must be at most 200 (is 1000)\n"
+            "f.txtpb:5: lidar.yaw_deg: Expected \":\", found \"5\".\n"
+            "f.txtpb:7: antenna: Message type \"lookout.config.Boat\" has no field named \"antenna\".\n"
+            "f.txtpb:8: lidar: stands twice; the first is in line 2\n"
+            "f.txtpb:9: reference_point_above_water_m: must be a finite number (is nan)");
+}
+
+TEST(TextConfig, ChecksWholeNumbersOf64BitsToo) {
+  Recorder recorder;
+  EXPECT_EQ(FaultsOf("log_folder: \"logs\"\nreserve_bytes: -1\nqueue_bytes: 5000000000\nmax_file_s: 604801\n", recorder),
+            "f.txtpb:2: reserve_bytes: must be at least 0 (is -1)\n"
+            "f.txtpb:3: queue_bytes: must be at most 4e+09 (is 5e+09)\n"
+            "f.txtpb:4: max_file_s: must be at most 604800 (is 604801)");
+}
+
+TEST(TextConfig, SaysOnceWhatIsWrongWithAnUnknownWordOfAnEnumeration) {
+  EXPECT_EQ(VlpFaults("source: UPD\nbind_address: \"0.0.0.0\"\ncut_azimuth_deg: 0\n"),
+            "f.txtpb:1: source: Unknown enumeration value of \"UPD\" for field \"source\".");
+}
+
+TEST(TextConfig, SaysWhatIsLeftOpenAndWhatStandsBeforeIt) {
+  Boat boat;
+  const auto faults = FaultsOf("nam: 'x'\nlidar {\n  xx: 1\n", boat);
+  EXPECT_NE(faults.find("f.txtpb:1: nam: "), std::string::npos) << faults;
+  EXPECT_NE(faults.find("f.txtpb:3: lidar.xx: "), std::string::npos) << faults;
+  EXPECT_NE(faults.find("f.txtpb:4: text: column 1: "), std::string::npos) << faults;
+  EXPECT_EQ(faults.find("must be set"), std::string::npos) << faults;
+}
+
+TEST(TextConfig, OfNonsenseTellsAHundredFaultsAndHowManyMore) {
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += "{ a: [ < '\n";
+  const auto faults = VlpFaults(text);
+  EXPECT_EQ(std::ranges::count(faults, '\n'), 100) << faults.substr(0, 500);
+  EXPECT_NE(faults.find("faults more"), std::string::npos);
+  for (int i = 0; i < 5000; ++i) text += "}]>";
+  EXPECT_NE(VlpFaults(text), "");
+}
+
+TEST(FaultList, TellsTheFaultsOfTwoFilesEachOnce) {
+  FaultList faults;
+  const auto load = [](const std::string& name, const std::string& text) {
+    Vlp16 message;
+    ParseText(text, name, message);
+    return message;
+  };
+  EXPECT_FALSE(faults.Take([&] { return load("a", "source: UDP\nbind_addres: ''\n"); }));
+  EXPECT_FALSE(faults.Take([&] { return load("b", kGoodVlp + "data_port: 0\n"); }));
+  EXPECT_FALSE(faults.Take([&] { return load("b", kGoodVlp + "data_port: 0\n"); }));
+  EXPECT_TRUE(faults.Take([&] { return load("c", kGoodVlp); }));
+  faults.Add("c:1: data_port: must differ");
+  try {
+    faults.ThrowIfAny();
+    FAIL() << "nothing was thrown";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "a:1: cut_azimuth_deg: must be set\n"
+              "a:2: bind_addres: Message type \"lookout.config.Vlp16\" has no field named \"bind_addres\".\n"
+              "b:4: data_port: must be at least 1 (is 0)\n"
+              "c:1: data_port: must differ");
+  }
 }
 
 TEST(FaultLine, NamesTheLineOfTheValueThatIsWrong) {

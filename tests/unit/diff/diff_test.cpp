@@ -46,6 +46,29 @@ TEST_F(Diff, AMessageMoreIsADifference) {
   EXPECT_TRUE(Said("different: 1 of 2 channels\n"));
 }
 
+TEST_F(Diff, NamesACutLogAsTheReasonOfWhatItLacksAtItsEnd) {
+  const auto start = Packets(0, 0, lidar_packets_t::MARK_START);
+  const auto end = Packets(3, 2, lidar_packets_t::MARK_END);
+  EXPECT_EQ(Compare({start, Packets(1, 1), Pose(1, 0)}, {start, Packets(1, 1), Pose(1, 0), Pose(2, 1), end}), kExitDifferent);
+  EXPECT_TRUE(Said("reason: A ends without an end mark of LIDAR_PACKETS: it was cut there, and lacks what was under way\n")) << out_.str();
+  EXPECT_TRUE(Said("behind the last message of the other log B has: LIDAR_PACKETS 1, POSE 1\n")) << out_.str();
+  EXPECT_FALSE(Said("reason: B")) << out_.str();
+  // A cut log that holds more than a whole one has another reason.
+  EXPECT_EQ(Compare({start, Packets(1, 1), Pose(1, 0), Pose(2, 1)}, {start, Packets(1, 1, lidar_packets_t::MARK_END), Pose(1, 0)}), kExitDifferent);
+  EXPECT_FALSE(Said("reason")) << out_.str();
+  EXPECT_EQ(Compare({start, Pose(1, 0)}, {start, Pose(1, 0)}), kExitEqual);
+  EXPECT_FALSE(Said("reason")) << out_.str();
+}
+
+TEST_F(Diff, NamesALogThatBeginsInTheMiddleOfARunAsTheReasonOfEarlyDifferences) {
+  const auto start = NavRaw(0, 0, nav_raw_t::KIND_START);
+  EXPECT_EQ(Compare({start, Pose(1, 0, 0.5), Pose(60, 1)}, {NavRaw(0, 7), Pose(1, 0, 0.75), Pose(60, 1)}), kExitDifferent);
+  EXPECT_TRUE(Said("reason, perhaps: B begins without a start mark of NAV_RAW")) << out_.str();
+  EXPECT_FALSE(Said("A begins")) << out_.str();
+  EXPECT_EQ(Compare({NavRaw(0, 7), Pose(1, 0), Pose(60, 1, 0.5)}, {NavRaw(0, 7), Pose(1, 0), Pose(60, 1, 0.75)}), kExitDifferent);
+  EXPECT_FALSE(Said("reason")) << "it has settled by then: " << out_.str();
+}
+
 TEST_F(Diff, MessagesThatOneLogLacksAreSteppedOver) {
   std::vector<bus::LogEvent> a;
   std::vector<bus::LogEvent> b;

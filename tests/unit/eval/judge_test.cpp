@@ -15,6 +15,7 @@
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
 #include "tools/eval/result_tables.hpp"
+#include "tools/eval/seeds.hpp"
 #include "tools/eval/sweep.hpp"
 
 namespace lookout::eval {
@@ -163,6 +164,7 @@ class Doubter final : public Method {
  public:
   explicit Doubter(const LabelledScan& turn) : turn_(turn) {}
   std::string name() const override { return "ours"; }
+  bool knows_doubt() const override { return true; }
   Labelling Segment(const segmenter::Scan& scan) override {
     Labelling labelling;
     const auto num_objects = turn_.objects.rbegin()->first;
@@ -180,7 +182,7 @@ class Doubter final : public Method {
   const LabelledScan& turn_;
 };
 
-TEST(Judge, DoubtOfAMethodReachesTheTables) {
+TEST(Judge, AMethodThatKnowsDoubtHasARowForEachOperatingPoint) {
   const auto turn = Render("sparse").at(0);
   Methods methods;
   methods.push_back(std::make_unique<Doubter>(turn));
@@ -195,15 +197,17 @@ TEST(Judge, DoubtOfAMethodReachesTheTables) {
     table.table.PrintCsv(out);
     csv[table.name] = out.str();
   }
-  EXPECT_EQ(csv.at("table_1"), "method,mean,sparse\nours,100.0,100.0\n");
-  EXPECT_EQ(csv.at("false_segments"), "method,mean,sparse\nours,1.00,1.00\n");
-  EXPECT_EQ(csv.at("sure_false_segments"), "method,mean,sparse\nours,0.00,0.00\n");
-  EXPECT_EQ(csv.at("sure").substr(0, 24), "method,mean,sparse\nours,");
-  EXPECT_NE(csv.at("sure"), csv.at("table_1"));
-  EXPECT_NE(csv.at("kinds").find("100.0"), std::string::npos);
-  EXPECT_NE(csv.at("sure_kinds").find(",0.0"), std::string::npos) << "docks";
-  EXPECT_TRUE(csv.contains("near_recall"));
-  EXPECT_TRUE(csv.contains("sure_recall_by_range"));
+  // The docks are doubtful: with the sure ones alone they are lost, and with all the strays are a false segment.
+  const std::string all = "ours (all segments)";
+  const std::string sure = "ours (sure only)";
+  EXPECT_EQ(csv.at("table_1").substr(0, 51), "method,mean,sparse\n" + all + ",100.0,100.0\n");
+  EXPECT_EQ(csv.at("table_1").find(sure + ",100.0"), std::string::npos);
+  EXPECT_EQ(csv.at("false_segments"), "method,mean,sparse\n" + all + ",1.00,1.00\n" + sure + ",0.00,0.00\n");
+  EXPECT_EQ(csv.at("kinds").find(",0.0"), csv.at("kinds").find(",0.0", csv.at("kinds").find(sure))) << "docks, among the sure ones alone";
+  EXPECT_NE(csv.at("kinds").find(",0.0"), std::string::npos);
+  EXPECT_NE(csv.at("near_recall").find(sure), std::string::npos);
+  for (const auto& [name, text] : csv)
+    EXPECT_EQ(text.substr(0, text.find('\n')).find("sure"), std::string::npos) << name << ": a column of another row's kind";
 }
 
 TEST(Methods, WithoutSearchEveryReturnIsAComponent) {
@@ -338,6 +342,47 @@ TEST(Projection, WiderImagesKeepMoreAndMoveLess) {
       EXPECT_LT(rows[i].nearest_mean_m, rows[i - 1].nearest_mean_m);
     }
   }
+}
+
+TEST(ResultTables, AnotherWorldStandsBesideOurs) {
+  const auto results_of = [](const std::string& scene, double iou) {
+    Results results;
+    results.scenes = {scene};
+    Score score;
+    score.num_turns = score.num_turns_with_object = 1;
+    score.sum_iou = iou;
+    score.near_recall_by_kind["buoy"] = {1, 1};
+    results.methods = {{"ours (all segments)", {{scene, score}}, {}, {}}, {"F3D (tuned)", {{scene, score}}, {}, {}}};
+    return results;
+  };
+  auto results = results_of("dense", 0.5);
+  results.other_worlds = {results_of("islands", 0.25)};
+  results.other_worlds[0].world = "second world";
+  const auto csv = [&results](const std::string& name) {
+    const auto tables = TablesOf(results);
+    std::ostringstream out;
+    std::ranges::find(tables, name, &NamedTable::name)->table.PrintCsv(out);
+    return out.str();
+  };
+  EXPECT_EQ(csv("table_1"),
+            "method,mean,dense,second world: mean,second world: islands\n"
+            "ours (all segments),50.0,50.0,25.0,25.0\nF3D (tuned),50.0,50.0,25.0,25.0\n");
+  EXPECT_NE(csv("near_recall").find("F3D (tuned),second world: islands,buoy,1,100.0\n"), std::string::npos) << csv("near_recall");
+  EXPECT_NE(csv("against_peers").find("second world: mean,25.0"), std::string::npos);
+  results.other_worlds[0] = {};
+  results.other_worlds[0].world = "second world";
+  results.other_worlds[0].is_here = false;
+  EXPECT_EQ(csv("table_1"), "method,mean,dense,second world\nours (all segments),50.0,50.0,not here\nF3D (tuned),50.0,50.0,not here\n");
+}
+
+TEST(Seeds, OfTuningAndOfTablesAreKeptApart) {
+  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTables, DefaultFirstSeed(SeedUse::kTables), 1000));
+  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTuning, DefaultFirstSeed(SeedUse::kTuning), 100));
+  EXPECT_THROW(CheckSeeds(SeedUse::kTables, 1, 20), std::invalid_argument);
+  EXPECT_THROW(CheckSeeds(SeedUse::kTables, 100, 2), std::invalid_argument) << "a mixture";
+  EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 101, 1), std::invalid_argument);
+  EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 100, 2), std::invalid_argument) << "a mixture";
+  EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 0, 1), std::invalid_argument);
 }
 
 TEST(ResultTables, EmptyResultsGiveNoTable) { EXPECT_TRUE(TablesOf(Results{}).empty()); }

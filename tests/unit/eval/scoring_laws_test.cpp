@@ -33,6 +33,8 @@ struct Obvious {
   double water_iou = 0.0;
   int num_objects = 0;
   int num_found = 0;
+  int num_things = 0;
+  int num_things_with_segment = 0;
   int num_near = 0;
   int num_near_found = 0;
   int num_near_surely_found = 0;
@@ -79,7 +81,9 @@ Obvious Compute(const Case& one) {
     double best = 0.0;
     double best_sure = 0.0;
     int num_parts = 0;
+    bool has_segment = false;
     for (const int j : segments) {
+      has_segment = has_segment || 2 * both(i, j) > of_segment(j);
       const double iou = static_cast<double>(both(i, j)) / (of_object(i) + of_segment(j) - both(i, j));
       best = std::max(best, iou);
       if (one.labelling.is_sure[static_cast<std::size_t>(j - 1)]) best_sure = std::max(best_sure, iou);
@@ -90,6 +94,10 @@ Obvious Compute(const Case& one) {
     if (i % 2 == 1) {
       result.water_iou += best;
       ++num_water;
+    }
+    if (of_object(i) >= 5) {
+      ++result.num_things;
+      result.num_things_with_segment += has_segment ? 1 : 0;
     }
     if (best >= 0.5) ++result.num_found;
     if (NearestM(one, i) < 25.0) {
@@ -125,7 +133,10 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
     const auto expected = Compute(one);
     EXPECT_EQ(score.num_object_turns, expected.num_objects);
     EXPECT_NEAR(score.sum_iou, expected.iou, 1e-12);
-    EXPECT_NEAR(score.sum_sure_iou, expected.sure_iou, 1e-12);
+    const auto sure = ScoreTurn(one.truth, SureOnly(one.labelling));
+    EXPECT_NEAR(sure.sum_iou, expected.sure_iou, 1e-12);
+    EXPECT_EQ(score.num_things, expected.num_things);
+    EXPECT_EQ(score.num_things_with_segment, expected.num_things_with_segment);
     EXPECT_NEAR(score.sum_water_iou, expected.water_iou, 1e-12);
     EXPECT_EQ(score.num_segments, expected.num_segments);
     EXPECT_EQ(score.num_false_segments, expected.num_false);
@@ -139,11 +150,12 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
     for (const auto& [kind, recall] : score.near_recall_by_kind) {
       near.num_object_turns += recall.num_object_turns;
       near.num_found += recall.num_found;
-      near.num_surely_found += recall.num_surely_found;
     }
+    std::int64_t num_near_surely_found = 0;
+    for (const auto& [kind, recall] : sure.near_recall_by_kind) num_near_surely_found += recall.num_found;
     EXPECT_EQ(near.num_object_turns, expected.num_near);
     EXPECT_EQ(near.num_found, expected.num_near_found);
-    EXPECT_EQ(near.num_surely_found, expected.num_near_surely_found);
+    EXPECT_EQ(num_near_surely_found, expected.num_near_surely_found);
     if (HasFailure()) break;
   }
 }
@@ -153,6 +165,7 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     auto one = RandomCase(seed);
     const auto before = ScoreTurn(one.truth, one.labelling);
+    const auto before_sure = ScoreTurn(one.truth, SureOnly(one.labelling));
     // Ids are dealt anew, with gaps between them.
     const std::size_t num_labels = one.labelling.is_sure.size();
     std::vector<std::int32_t> new_id(num_labels);
@@ -169,11 +182,12 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
     one.labelling.is_sure = is_sure;
     const auto after = ScoreTurn(one.truth, one.labelling);
     EXPECT_DOUBLE_EQ(after.sum_iou, before.sum_iou);
-    EXPECT_DOUBLE_EQ(after.sum_sure_iou, before.sum_sure_iou);
+    EXPECT_DOUBLE_EQ(ScoreTurn(one.truth, SureOnly(one.labelling)).sum_iou, before_sure.sum_iou);
     EXPECT_DOUBLE_EQ(after.sum_water_iou, before.sum_water_iou);
     EXPECT_EQ(after.num_segments, before.num_segments);
     EXPECT_EQ(after.num_false_segments, before.num_false_segments);
-    EXPECT_EQ(after.num_sure_false_segments, before.num_sure_false_segments);
+    EXPECT_EQ(ScoreTurn(one.truth, SureOnly(one.labelling)).num_false_segments, before_sure.num_false_segments);
+    EXPECT_EQ(after.num_things_with_segment, before.num_things_with_segment);
     EXPECT_EQ(after.num_over_segmented, before.num_over_segmented);
     EXPECT_EQ(after.num_under_segmented, before.num_under_segmented);
     EXPECT_EQ(after.num_labelled_returns, before.num_labelled_returns);

@@ -18,7 +18,6 @@ TEST(Scoring, PerfectLabelsGiveOneHundred) {
   const auto score = ScoreOf(cells);
   EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
   EXPECT_DOUBLE_EQ(MeanWaterIou(score), 1.0);
-  EXPECT_DOUBLE_EQ(MeanSureIou(score), 1.0);
   EXPECT_DOUBLE_EQ(TruePositiveRatio(score), 1.0);
   EXPECT_EQ(score.num_segments, 3);
   EXPECT_EQ(score.num_false_segments, 0);
@@ -96,14 +95,45 @@ TEST(Scoring, SegmentThatStraysLeadGivesNoTruePositives) {
   EXPECT_DOUBLE_EQ(TruePositiveRatio(ScoreOf(cells)), 0.5) << "of equals the object leads";
 }
 
-TEST(Scoring, TentativeSegmentsCountApart) {
+TEST(Scoring, TentativeSegmentsAreAnOperatingPointOfTheirOwn) {
   auto one = MakeCase({{1, 1}, {1, 1}, {3, 2}, {kNoTrueObject, 3}, {kNoTrueObject, 4}});
   one.labelling.is_sure = {true, false, true, false};
-  const auto score = ScoreTurn(one.truth, one.labelling);
-  EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
-  EXPECT_DOUBLE_EQ(MeanSureIou(score), 0.5);
-  EXPECT_EQ(score.num_false_segments, 2);
-  EXPECT_EQ(score.num_sure_false_segments, 1);
+  const auto all = ScoreTurn(one.truth, one.labelling);
+  EXPECT_DOUBLE_EQ(MeanIou(all), 1.0);
+  EXPECT_EQ(all.num_false_segments, 2);
+  const auto sure = ScoreTurn(one.truth, SureOnly(one.labelling));
+  EXPECT_DOUBLE_EQ(MeanIou(sure), 0.5);
+  EXPECT_EQ(sure.num_false_segments, 1);
+  EXPECT_EQ(sure.num_segments, 2);
+  EXPECT_DOUBLE_EQ(TruePositiveRatio(sure), 2.0 / 3.0);
+}
+
+TEST(Scoring, WhereNothingIsTentativeTheSureOnesAreAll) {
+  auto one = MakeCase({{1, 1}, {3, 2}, {5, 0}, {5, kNotJudged}});
+  EXPECT_EQ(SureOnly(one.labelling).label, one.labelling.label) << "no word on it: all are sure";
+  one.labelling.is_sure = {true, true};
+  EXPECT_EQ(SureOnly(one.labelling).label, one.labelling.label);
+}
+
+TEST(Scoring, AThingHasASegmentWhenMoreThanHalfOfOneIsIts) {
+  const auto things = [](int count, int of_others) {
+    std::vector<Cell> cells;
+    AddCells(cells, count, {1, 1});
+    AddCells(cells, of_others, {kNoTrueObject, 1});
+    return ScoreOf(cells);
+  };
+  EXPECT_EQ(things(4, 0).num_things, 0) << "four returns are no thing";
+  EXPECT_TRUE(std::isnan(ThingsWithSegment(things(4, 0))));
+  EXPECT_DOUBLE_EQ(ThingsWithSegment(things(5, 4)), 1.0);
+  EXPECT_DOUBLE_EQ(ThingsWithSegment(things(5, 5)), 0.0) << "half is not more than half";
+  // A piece of it is a segment that is its, however small.
+  std::vector<Cell> cells;
+  AddCells(cells, 9, {1, 0});
+  AddCells(cells, 1, {1, 1});
+  EXPECT_DOUBLE_EQ(ThingsWithSegment(ScoreOf(cells)), 1.0);
+  auto total = things(5, 4);
+  total.Add(things(5, 5));
+  EXPECT_DOUBLE_EQ(ThingsWithSegment(total), 0.5);
 }
 
 TEST(Scoring, ReturnsThatAreNotJudgedDoNotCountAnywhere) {
@@ -143,31 +173,32 @@ TEST(Scoring, RangeIsThatOfTheNearestReturn) {
   EXPECT_DOUBLE_EQ(score.iou_by_kind.at("dock").second, 0.0);
 }
 
-TEST(Scoring, WhatIsNearIsCountedByKindAtAnyConfidenceAndAtSure) {
+TEST(Scoring, WhatIsNearIsCountedByKindAtEitherOperatingPoint) {
   // Kayaks 1 and 3 are near, 5 lies just beyond 25 m; dock 2 is near by its nearest return. Segment 3 is tentative.
   auto one = MakeCase({{1, 1, 10.0}, {3, 3, 24.9}, {5, 5, 25.1}, {2, 2, 60.0}, {2, 0, 60.0}, {2, 0, 5.0}});
   one.labelling.is_sure = {true, true, false, true, true};
   const auto score = ScoreTurn(one.truth, one.labelling);
+  const auto sure = ScoreTurn(one.truth, SureOnly(one.labelling));
   ASSERT_EQ(score.near_recall_by_kind.size(), 2U);
   const auto& kayaks = score.near_recall_by_kind.at("kayak");
   EXPECT_EQ(kayaks.num_object_turns, 2);
   EXPECT_EQ(kayaks.num_found, 2);
-  EXPECT_EQ(kayaks.num_surely_found, 1);
+  EXPECT_EQ(sure.near_recall_by_kind.at("kayak").num_object_turns, 2);
+  EXPECT_EQ(sure.near_recall_by_kind.at("kayak").num_found, 1);
   const auto& docks = score.near_recall_by_kind.at("dock");
   EXPECT_EQ(docks.num_object_turns, 1);
   EXPECT_EQ(docks.num_found, 0) << "a third of it";
   EXPECT_DOUBLE_EQ(MeanWaterIou(score), 1.0);
-  EXPECT_DOUBLE_EQ(MeanSureWaterIou(score), 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(MeanWaterIou(sure), 2.0 / 3.0);
   EXPECT_EQ(score.iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 3.0));
-  EXPECT_EQ(score.sure_iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 2.0));
+  EXPECT_EQ(sure.iou_by_kind.at("kayak"), std::pair(std::int64_t{3}, 2.0));
   EXPECT_EQ(score.recall_by_range.at(2), std::pair(std::int64_t{2}, std::int64_t{2}));
-  EXPECT_EQ(score.sure_recall_by_range.at(2), std::pair(std::int64_t{2}, std::int64_t{1}));
+  EXPECT_EQ(sure.recall_by_range.at(2), std::pair(std::int64_t{2}, std::int64_t{1}));
   Score total = score;
   total.Add(score);
-  EXPECT_EQ(total.near_recall_by_kind.at("kayak").num_surely_found, 2);
   EXPECT_EQ(total.near_recall_by_kind.at("kayak").num_found, 4);
-  EXPECT_EQ(total.sure_recall_by_range.at(2).second, 2);
-  EXPECT_EQ(total.sure_iou_by_kind.at("kayak").second, 4.0);
+  EXPECT_EQ(total.recall_by_range.at(2).second, 4);
+  EXPECT_EQ(total.iou_by_kind.at("kayak").second, 6.0);
 }
 
 TEST(Scoring, ComponentsAreAMeanOverTheTurnsThatHaveThem) {

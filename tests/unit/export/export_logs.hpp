@@ -3,7 +3,6 @@
 
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -121,12 +120,12 @@ class ExportTest : public ::testing::Test {
   /// Exports what was added so far.
   /// @return exit code; text_ is what was written, errors_ what was told
   int Export(const std::string& table, const std::string& format = "csv", std::optional<std::int64_t> turn = std::nullopt) {
-    return Export(Request{.inputs = {log_}, .table = table, .format = format, .output = folder_ / "out", .turn = turn});
+    return Export(Request{.inputs = {log_}, .table = table, .format = format, .output = folder_ / "out", .force = true, .turn = turn});
   }
   int Export(const Request& request) {
     writer_.reset();
     std::ostringstream errors;
-    const int code = exporter::Run(request, errors, std::atomic<bool>(false));
+    const int code = exporter::Run(request, errors);
     errors_ = errors.str();
     text_ = ReadFile(request.output.value_or(""));
     return code;

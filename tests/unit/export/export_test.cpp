@@ -1,9 +1,14 @@
 #include "tools/export/export.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "common/io/stop_signal.hpp"
 #include "lookout/run_info_t.hpp"
 #include "tests/unit/export/export_logs.hpp"
 #include "tools/export/words.hpp"
@@ -30,6 +35,18 @@ TEST_F(ExportTest, KeepsAnOlderFileWhenItFails) {
   Add(bus::kLidarScan, MakeScan(0));
   EXPECT_EQ(Export("pose"), kExitFailed);
   EXPECT_EQ(text_, "yesterday");
+}
+
+TEST_F(ExportTest, RefusesAFileThatExistsUnlessItIsForced) {
+  std::ofstream(folder_ / "out") << "yesterday";
+  Add(bus::kPose, pose_t{});
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out"};
+  EXPECT_EQ(Export(request), kExitFailed);
+  EXPECT_EQ(text_, "yesterday");
+  EXPECT_NE(errors_.find("exists already; --force replaces it"), std::string::npos) << errors_;
+  request.force = true;
+  EXPECT_EQ(Export(request), kExitFine);
+  EXPECT_EQ(Rows().size(), 1U);
 }
 
 TEST_F(ExportTest, SaysWhatIsWrongWithTheRequest) {
@@ -92,8 +109,17 @@ TEST_F(ExportTest, ReadsSeveralLogsAsOneAlsoAcrossTheLabelsOfATurn) {
 TEST_F(ExportTest, EndsWithoutAFileWhenItIsStopped) {
   Add(bus::kPose, pose_t{});
   writer_.reset();
-  std::ostringstream errors;
-  EXPECT_EQ(exporter::Run({.inputs = {log_}, .table = "pose", .output = folder_ / "out"}, errors, std::atomic<bool>(true)), kExitFailed);
+  const pid_t child = fork();  // what is asked stays asked in a process
+  if (child == 0) {
+    io::CatchStopSignals();
+    raise(SIGINT);
+    std::ostringstream errors;
+    const int code = exporter::Run({.inputs = {log_}, .table = "pose", .output = folder_ / "out"}, errors);
+    _exit(errors.str().find("stopped by SIGINT") != std::string::npos ? code : -1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WEXITSTATUS(status), kExitFailed);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.partial"));
 }

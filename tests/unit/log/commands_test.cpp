@@ -31,6 +31,7 @@ class LogCommands : public log_test::SmallLog {
     SliceRequest request;
     request.inputs = {in};
     request.output = folder_ / "out";
+    request.force = true;
     return request;
   }
   // "POSE 10" and so on: channel and second.
@@ -102,7 +103,7 @@ TEST_F(LogCommands, RefuseWhatIsNoLog) {
   SetContent(folder_ / "text", "this is no log");
   EXPECT_THROW(Info({folder_ / "text"}, out_), std::runtime_error);
   EXPECT_THROW(Info({folder_ / "nowhere"}, out_), std::runtime_error);
-  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", out_), std::runtime_error);
+  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", false, out_), std::runtime_error);
   EXPECT_THROW(Slice(Request(folder_ / "text"), out_, errors_), std::runtime_error);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "nothing half done is left";
 }
@@ -126,6 +127,27 @@ TEST_F(LogCommands, SliceTakesFromToAndBeginsWithTheRunInfoBefore) {
   EXPECT_EQ(number, 3);
 }
 
+TEST_F(LogCommands, InfoSaysWhetherTheLogHoldsARunFromItsStartToItsEnd) {
+  const auto start = Packets(0, 0, lidar_packets_t::MARK_START);
+  const auto end = Packets(9, 9, lidar_packets_t::MARK_END);
+  Info({Write("whole", {start, NavRaw(0, 0, nav_raw_t::KIND_START), Packets(5, 1), NavRaw(5, 1), end, NavRaw(9, 2, nav_raw_t::KIND_END)})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS, NAV_RAW\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      with an end mark: LIDAR_PACKETS, NAV_RAW\n")) << out_.str();
+  out_.str("");
+  Info({Write("cut", {start, NavRaw(3, 7), Packets(5, 1)})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS\n")) << out_.str();
+  EXPECT_TRUE(Said("begins    without a start mark: NAV_RAW; what a replay gives first need not equal the live run\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      without an end mark: LIDAR_PACKETS, NAV_RAW; cut there")) << out_.str();
+  // Rotated files are one run.
+  out_.str("");
+  Info({Write("1", {start, Packets(1, 1)}), Write("2", {Packets(2, 2), end})}, out_);
+  EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS\n")) << out_.str();
+  EXPECT_TRUE(Said("ends      with an end mark: LIDAR_PACKETS\n")) << out_.str();
+  out_.str("");
+  Info({Write("none", {Pose(0, 0), Event(start_, "LIDAR_PACKETS", {1, 2, 3})})}, out_);
+  EXPECT_TRUE(Said("marks     no raw channel")) << out_.str();
+}
+
 TEST_F(LogCommands, SliceTakesChannelsAndTheFirstRunInfoAllTheSame) {
   auto request = Request(Write("log", TwoMinutes()));
   request.channels = {"NOISE"};
@@ -137,6 +159,18 @@ TEST_F(LogCommands, SliceOfEverythingIsTheSameFile) {
   const auto request = Request(Write("log", TwoMinutes()));
   Slice(request, out_, errors_);
   EXPECT_EQ(Content(request.output), Content(request.inputs[0]));
+}
+
+TEST_F(LogCommands, NoCommandReplacesAFileUnlessItIsForced) {
+  const auto file = Write("log", TwoMinutes());
+  SetContent(folder_ / "out", "another recording");
+  auto request = Request(file);
+  request.force = false;
+  EXPECT_THROW(Slice(request, out_, errors_), std::runtime_error);
+  EXPECT_THROW(Repair(file, folder_ / "out", false, out_), std::runtime_error);
+  EXPECT_EQ(Content(folder_ / "out"), "another recording");
+  Repair(file, folder_ / "out", true, out_);
+  EXPECT_EQ(Content(folder_ / "out"), Content(file));
 }
 
 TEST_F(LogCommands, SliceGoesAcrossRotatedLogs) {
@@ -179,7 +213,7 @@ TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
   auto damaged = text.substr(0, text.size() - 1);
   damaged[third] = 'x';
   SetContent(file, damaged);
-  Repair(file, folder_ / "out", out_);
+  Repair(file, folder_ / "out", false, out_);
   const auto kept = Read(folder_ / "out");
   ASSERT_EQ(kept.size(), events.size() - 2);
   EXPECT_EQ(kept[2].bytes, events[3].bytes);
@@ -192,7 +226,7 @@ TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
 
 TEST_F(LogCommands, RepairOfAWholeLogIsTheSameFile) {
   const auto file = Write("log", TwoMinutes());
-  Repair(file, folder_ / "out", out_);
+  Repair(file, folder_ / "out", false, out_);
   EXPECT_EQ(Content(folder_ / "out"), Content(file));
   EXPECT_TRUE(Said("0 bytes lost in 0 stretches"));
 }
@@ -206,7 +240,7 @@ TEST_F(LogCommands, RepairLosesNoEventThatNoDamageTouched) {
     auto damaged = text;
     for (std::size_t i = 0; i < 40; ++i) damaged[place + i] = static_cast<char>(place * 31 + i * 7);
     SetContent(file, damaged);
-    Repair(file, folder_ / "out", out_);
+    Repair(file, folder_ / "out", true, out_);
     const auto kept = Read(folder_ / "out");
     std::size_t end = 0;
     std::size_t num_untouched = 0;

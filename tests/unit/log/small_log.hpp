@@ -14,6 +14,8 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/bus/schema.hpp"
+#include "lookout/lidar_packets_t.hpp"
+#include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
 
@@ -50,6 +52,19 @@ class SmallLog : public ::testing::Test {
     message.seq = seq;
     message.heading_rad = heading_rad;
     return Event(start_ + std::chrono::seconds(second), "POSE", bus::Encode(message));
+  }
+
+  bus::LogEvent Packets(int second, std::int64_t seq, std::int32_t marks = 0) const {
+    lidar_packets_t message{};
+    message.seq = seq;
+    message.marks = marks;
+    return Event(start_ + std::chrono::seconds(second), "LIDAR_PACKETS", bus::Encode(message));
+  }
+  bus::LogEvent NavRaw(int second, std::int64_t seq, std::int32_t kind = nav_raw_t::KIND_TICK) const {
+    nav_raw_t message{};
+    message.seq = seq;
+    message.kind = kind;
+    return Event(start_ + std::chrono::seconds(second), "NAV_RAW", bus::Encode(message));
   }
 
   fs::path Write(const std::string& name, const std::vector<bus::LogEvent>& events) const {

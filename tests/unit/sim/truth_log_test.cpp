@@ -38,7 +38,7 @@ class TruthLogTest : public testing::Test {
     params.duration = 1s;
     params.seed = 3;
     params.lidar.mode = mode;
-    TruthWriter truth(folder_, scene, SmallBoat(), params.start);
+    TruthWriter truth(folder_, scene, SmallBoat(), params.start, {.force = true});
     Simulation simulation(scene, SmallBoat(), params, &truth);
     while (simulation.Next()) {
     }
@@ -182,7 +182,7 @@ TEST_F(TruthLogTest, LargestScenesStayBelowTheLimitOfAMessage) {
   for (const auto& name : SceneNames()) {
     const auto scene = MakeScene(name, 1).value();
     std::filesystem::create_directories(folder_);
-    TruthLog log(folder_ / "truth.lcmlog", scene, SmallBoat(), Utime(1'781'532'600s));
+    TruthLog log(folder_ / "truth.lcmlog", scene, SmallBoat(), Utime(1'781'532'600s), {.force = true});
     log.AdvanceTo(Utime(1'781'532'600s));
     log.Close();
     EXPECT_FALSE(Messages().empty()) << name;

@@ -43,7 +43,7 @@ class StageClock {
 ///
 /// Returns out of range, out of the field of view and of the own vessel are sorted out by the filter of the segmenter, so that all methods look at
 /// the same ones; in dual return, what repeats another return of its shot has the label of that one. Segments are numbered in the order of their
-/// first return. All are sure: none of the papers knows a doubt.
+/// first return. None of the papers knows a doubt: a size is the choice that they give (SizeLimits).
 class Peer : public Method {
  public:
   Peer(std::string name, const segmenter::ReturnFilter& filter, SizeLimits limits) : name_(std::move(name)), filter_(filter), limits_(limits) {}

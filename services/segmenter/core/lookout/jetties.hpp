@@ -10,9 +10,9 @@ namespace lookout::segmenter {
 ///
 /// A jetty is at most 14 m long and straight for 3 m or more (within 5 cm and 0.003 of the range), from its tip or from the corner of its end face,
 /// which is 0.5 to 3.5 m wide. Beyond its tip there is open water: what is seen next to it is 1.5 m farther, if anything. At its foot the run turns
-/// by 34 degrees or more into a shore off whose line the tip stands 2 m or more. Where that shore ends in open water, too, it is 6 m or longer: a
+/// by 34 degrees or more into a shore off whose line the tip stands 2 m or more. Where that shore ends in open water, too, it is 15 m or longer: a
 /// boat shows two sides as well. Or the run ends at its foot with something near beyond; then only what has an end face of 0.8 m or more, square to
-/// within 28 degrees, counts. The bends of a natural shore are no such corners.
+/// within 27 degrees, counts. The bends of a natural shore are no such corners.
 ///
 /// @param from_end  looks at the last returns of the run, else at the first
 /// Cost: proportional to the returns looked at.

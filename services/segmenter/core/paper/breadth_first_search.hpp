@@ -19,7 +19,7 @@ struct SearchParams {
   double distance_m = 1.0;
 };
 
-/// Whether two returns of neighbouring beams are of one surface: beta > angle or distance < distance_m (METHOD.md, the paper's step 3).
+/// Whether two returns of neighbouring beams are of one surface: beta > angle or distance < distance_m (the paper, section on breadth-first search).
 class JoinRule {
  public:
   explicit JoinRule(const SearchParams& params)

@@ -1,0 +1,63 @@
+// A file that a program writes: it appears under its name whole or not at all, and never in the place of another one unasked.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/core/bytes.hpp"
+
+namespace lookout::io {
+
+/// Nobody reads the pipe any more that is written to.
+class BrokenPipe : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct OutputOptions {
+  bool force = false;                                      // --force: a file of that name is replaced, once the new one is whole
+  std::vector<std::filesystem::path> inputs = {};          // of the program: none may be written over, also not with `force`
+  std::function<void(const std::string& line)> tell = {};  // lines for people; empty: to standard error
+};
+
+/// The bytes go to FILE.partial beside the place of the file, locked against a second program that writes the same. Commit brings them to the disk
+/// and moves them to their place. What is no regular file (a device, a FIFO, /dev/stdout) is written directly.
+class OutputFile {
+ public:
+  /// @throws std::runtime_error, with path and reason: the file exists and `force` is not set; it is a folder, or one of the inputs; its folder is
+  ///         missing or cannot be written to; another program writes it now
+  explicit OutputFile(const std::filesystem::path& file, OutputOptions options = {});
+
+  /// What was not committed is removed, and a line says so.
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  /// @throws std::runtime_error when it cannot be written; BrokenPipe; Stopped when the program was asked to stop
+  void Write(Bytes bytes);
+  void Write(std::string_view text);
+
+  /// The same as a stream, which throws what Write throws. The stream formats as the "C" locale does.
+  std::ostream& stream();
+
+  /// For a library that writes by itself. Nothing may be written by the above then.
+  int descriptor() const;
+
+  /// All is written: brings it to the disk and moves it to its place.
+  /// @throws std::runtime_error as Write; or when a file has taken the place meanwhile: then FILE.partial is left, whole
+  void Commit();
+
+  const std::filesystem::path& file() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace lookout::io

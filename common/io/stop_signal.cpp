@@ -1,0 +1,72 @@
+#include "common/io/stop_signal.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <string>
+
+namespace lookout::io {
+
+namespace {
+
+std::atomic<int> stop_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "it is set by a signal handler");
+
+constexpr unsigned kKickPeriodS = 1;
+
+// A signal that comes between the look at the flag and a call that blocks interrupts nothing: an alarm does, again and again until the program ends.
+extern "C" void OnStopSignal(int signal) {
+  int none = 0;
+  stop_signal.compare_exchange_strong(none, signal);
+  alarm(kKickPeriodS);
+}
+
+extern "C" void OnAlarm(int /*signal*/) { alarm(kKickPeriodS); }
+
+// Without SA_RESTART: calls that block end with EINTR. A program may be started with signals blocked.
+void Catch(int signal, void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, signal);
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
+bool IsIgnored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+std::string NameOf(int signal) {
+  switch (signal) {
+    case SIGINT:
+      return "SIGINT";
+    case SIGTERM:
+      return "SIGTERM";
+    default:
+      return "SIGHUP";
+  }
+}
+
+}  // namespace
+
+void CatchStopSignals() {
+  Catch(SIGALRM, OnAlarm);
+  Catch(SIGINT, OnStopSignal);
+  Catch(SIGTERM, OnStopSignal);
+  if (!IsIgnored(SIGHUP)) Catch(SIGHUP, OnStopSignal);
+  Catch(SIGPIPE, SIG_IGN);
+  Catch(SIGXFSZ, SIG_IGN);
+}
+
+bool IsStopAsked() { return stop_signal != 0; }
+
+void ThrowIfStopAsked() {
+  if (const int signal = stop_signal; signal != 0) throw Stopped("stopped by " + NameOf(signal));
+}
+
+}  // namespace lookout::io

@@ -1,0 +1,51 @@
+// How far a long run is, for people: on a terminal one line that is written over, elsewhere a line a minute.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+namespace lookout::runtime {
+
+class Progress {
+ public:
+  /// @param program  stands in front of each line: "replay"
+  /// @param out      stays open and outlives this; nullptr: silent
+  Progress(std::string program, std::FILE* out);
+
+  /// The same, and as on a terminal where `out` is none.
+  Progress(std::string program, std::FILE* out, bool as_on_terminal);
+
+  /// Leaves no trace on a terminal.
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// To be called at each step, however short: looks at the clock now and then, and says no more often than is useful what part is done and how long
+  /// the rest will take at the speed so far.
+  ///
+  /// @param share   done so far, 0 to 1
+  /// @param remark  asked for when a line is made; stands between the part and the time left: "80 times real time"
+  void Update(double share, const std::function<std::string()>& remark = nullptr);
+
+  /// Takes the line away: before something else is written to the terminal. It comes again with the next Update that says something.
+  void Clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::size_t Columns() const;
+  void Show(std::string line);
+
+  std::string program_;
+  std::FILE* out_;
+  bool is_terminal_;
+  std::int64_t num_calls_ = 0;
+  std::size_t num_shown_ = 0;  // characters of the line on the terminal
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_;
+};
+
+}  // namespace lookout::runtime

@@ -1,0 +1,136 @@
+// The command line of the judge: what it refuses, with which exit code, and that it leaves no table then.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "tests/system/child.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EvalLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("lookout_eval_line_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  RunResult Run(const std::vector<std::string>& options) const {
+    std::vector<std::string> command{LOOKOUT_BIN_DIR "/lookout-eval", "--config", LOOKOUT_SOURCE_DIR "/config/catabot"};
+    command.insert(command.end(), options.begin(), options.end());
+    return RunProgram(command, Path("out"));
+  }
+  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+TEST_F(EvalLine, TablesAreNotMadeOfSeedsOfTuning) {
+  const auto result = Run({"--scenes", "sparse", "--methods", "ours", "--first-seed", "1", "--seeds", "1", "--seconds", "0.3", "--csv", Path("csv")});
+  EXPECT_EQ(result.exit_code, 2) << result.output;
+  EXPECT_NE(result.output.find("seeds of tuning are 1 to 100, those of tables 101 and above"), std::string::npos) << result.output;
+  EXPECT_FALSE(fs::exists(Path("csv")));
+  EXPECT_EQ(Run({"--scenes", "sparse", "--methods", "ours", "--first-seed", "100", "--seeds", "2"}).exit_code, 2);
+  EXPECT_EQ(Run({"--test", "3", "--first-seed", "1", "--seeds", "1"}).exit_code, 2);
+}
+
+TEST_F(EvalLine, NothingIsTunedOnSeedsOfTables) {
+  const auto result = Run({"--scenes", "sparse", "--sweep", "e1=0.9:0.9:0.1", "--first-seed", "101", "--seeds", "1"});
+  EXPECT_EQ(result.exit_code, 2) << result.output;
+  EXPECT_NE(result.output.find("nothing is tuned on seeds of tables"), std::string::npos) << result.output;
+  EXPECT_EQ(Run({"--scenes", "sparse", "--sweep", "e1=0.9:0.9:0.1", "--seeds", "101"}).exit_code, 2) << "more than there are";
+}
+
+TEST_F(EvalLine, EachTakesItsOwnSeedsWhereNoneAreNamed) {
+  const auto result =
+      Run({"--scenes", "sparse", "--methods", "ours", "--sweep", "e1=0.9:0.9:0.1", "--seeds", "1", "--seconds", "0.3", "--html", Path("page.html")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  std::ifstream in(Path("page.html"));
+  const std::string page(std::istreambuf_iterator<char>(in), {});
+  EXPECT_NE(page.find("1 a scene (101 to 101)"), std::string::npos);
+}
+
+TEST_F(EvalLine, SeedsOfTuningCanBeLookedAtWithoutMakingATable) {
+  const std::vector<std::string> line{"--tuning", "--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3"};
+  EXPECT_EQ(Run(line).exit_code, 0);
+  auto with_file = line;
+  with_file.insert(with_file.end(), {"--csv", Path("csv")});
+  EXPECT_EQ(Run(with_file).exit_code, 2);
+  EXPECT_FALSE(fs::exists(Path("csv")));
+}
+
+TEST_F(EvalLine, OutputsThatAreThereAreRefusedBeforeTheRunUnlessForced) {
+  const std::vector<std::string> run{"--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3"};
+  const auto with = [&run](const std::vector<std::string>& more) {
+    auto line = run;
+    line.insert(line.end(), more.begin(), more.end());
+    return line;
+  };
+  const auto read = [this](const std::string& name) {
+    std::ifstream in(Path(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  std::ofstream(Path("page.html")) << "mine";
+  fs::create_directories(Path("csv"));
+  std::ofstream(Path("csv/table_1.csv")) << "mine";
+  for (const auto& output :
+       std::vector<std::vector<std::string>>{{"--html", Path("page.html")}, {"--csv", Path("csv")}, {"--figures", Path("csv")}}) {
+    const auto result = Run(with(output));
+    EXPECT_EQ(result.exit_code, 1) << output[0] << result.output;
+    EXPECT_NE(result.output.find("--force"), std::string::npos) << result.output;
+    EXPECT_EQ(result.output.find("mIoU"), std::string::npos) << "said before the run";
+  }
+  EXPECT_EQ(read("page.html"), "mine");
+  EXPECT_EQ(read("csv/table_1.csv"), "mine");
+  EXPECT_EQ(Run(with({"--html", Path("page.html"), "--csv", Path("csv"), "--figures", Path("figures"), "--force"})).exit_code, 0);
+  EXPECT_NE(read("page.html"), "mine");
+  EXPECT_NE(read("csv/table_1.csv"), "mine");
+  EXPECT_TRUE(fs::exists(Path("figures/main.csv")));
+  EXPECT_FALSE(fs::exists(Path("page.html.partial")));
+}
+
+TEST_F(EvalLine, BlocksAreFilledFromTheFiguresAlone) {
+  fs::create_directories(Path("figures"));
+  std::ofstream(Path("figures/one.csv")) << "# Text.\na,b\n1,2\n";
+  std::ofstream(Path("README.md")) << "# Title\n<!-- figures: one -->\n<!-- end -->\n";
+  const auto fill = [this] {
+    return RunProgram({LOOKOUT_BIN_DIR "/lookout-eval", "--figures", Path("figures"), "--blocks", Path("README.md")}, Path("out"));
+  };
+  EXPECT_EQ(fill().exit_code, 0);
+  std::ifstream in(Path("README.md"));
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  EXPECT_EQ(text, "# Title\n<!-- figures: one -->\n| a | b |\n|---|---|\n| 1 | 2 |\n\nText.\n<!-- end -->\n");
+  std::ofstream(Path("README.md")) << "# Title\n<!-- figures: two -->\n<!-- end -->\n";
+  const auto unknown = fill();
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_NE(unknown.output.find("README.md:2: there are no figures of this name: two"), std::string::npos) << unknown.output;
+}
+
+TEST_F(EvalLine, CapturesThatAreNotHereAreSaidInTheTables) {
+  const auto result = Run({"--scenes", "sparse", "--captures", Path("nothing"), "--methods", "ours", "--seeds", "1", "--seconds", "0.3"});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("not here"), std::string::npos) << result.output;
+  EXPECT_EQ(Run({"--captures", Path("nothing")}).exit_code, 1) << "and there is nothing else";
+  fs::create_directories(Path("empty"));
+  EXPECT_EQ(Run({"--captures", Path("empty")}).exit_code, 1);
+}
+
+TEST_F(EvalLine, ADamagedCaptureEndsTheRunWithItsName) {
+  for (const auto* ending : {".pcap.xz", ".truth.csv.xz", ".objects.csv.xz"})
+    std::ofstream(Path("dense-1" + std::string(ending))) << "this was never packed by xz";
+  const auto result = Run({"--captures", folder_.string(), "--methods", "ours", "--csv", Path("csv")});
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_NE(result.output.find("dense-1.objects.csv.xz:1: not compressed by xz"), std::string::npos) << result.output;
+  EXPECT_FALSE(fs::exists(Path("csv")));
+}
+
+}  // namespace
+}  // namespace lookout::system_test

@@ -1,0 +1,205 @@
+#!/usr/bin/env bash
+# Each program that writes a file: its output exists, is a link, a folder, an input, in no folder; it is ended half way; the disk is full. Nothing is
+# overwritten unasked, nothing half written stands under the name of the output.
+#   outputs_test.sh SOURCE_FOLDER PROGRAM_FOLDER
+set -uo pipefail
+source_folder=$1
+bin=$2
+config=$source_folder/config/demo
+
+# A small disk of its own needs a mount namespace. Where that is forbidden, a limit on the size of files stands in for the full disk.
+if [ -z "${LOOKOUT_SMALL_DISK:-}" ]; then
+  own=(unshare -m)
+  [ "$(id -u)" -eq 0 ] || own=(unshare -rm)
+  if "${own[@]}" sh -c 'mount -t tmpfs -o size=64k none /mnt' 2>/dev/null; then
+    export LOOKOUT_SMALL_DISK=yes
+    exec "${own[@]}" "$0" "$@"
+  fi
+  export LOOKOUT_SMALL_DISK=no
+fi
+
+work=$(mktemp -d -t outputs.XXXXXX)
+cd "$work" || exit 1
+mkdir disk
+pid=''
+cleanup() {
+  [ -z "$pid" ] || kill -KILL "$pid" 2>/dev/null
+  cd / && umount "$work/disk" 2>/dev/null
+  rm -rf "$work"
+}
+trap cleanup EXIT
+[ "$LOOKOUT_SMALL_DISK" = no ] || mount -t tmpfs -o size=64k none disk || exit 1
+
+num_failed=0
+fail() { echo "FAILED: $name: $*" >&2; sed 's/^/  | /' said >&2; num_failed=$((num_failed + 1)); }
+
+"$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds 2 --pcap in.pcap >said 2>&1 || { cat said; exit 1; }
+"$bin/lookout-replay" --config "$config" --in in.pcap --out in.lcmlog >said 2>&1 || { cat said; exit 1; }
+sync_time=$(date +%s)
+
+# Programs by name, with their output and more options. exec=exec: in the place of this shell, for a subshell whose number is then that of the program.
+run() {
+  local out=$1
+  shift
+  case $name in
+    replay) ${exec:-} "$bin/lookout-replay" --config "$config" --in "$input" --out "$out" "$@" ;;
+    sim) ${exec:-} "$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds "$seconds" --pcap "$out" "$@" ;;
+    csv) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --out "$out" "$@" ;;
+    svg) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --format svg --out "$out" "$@" ;;
+    ply) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --format ply --out "$out" "$@" ;;
+    slice) ${exec:-} "$bin/lookout-log" slice --in "$input" --out "$out" "$@" ;;
+    repair) ${exec:-} "$bin/lookout-log" repair "$input" "$out" "$@" ;;
+  esac
+}
+expect_code() {  # CODE OUT ...
+  local wanted=$1 code
+  shift
+  run "$@" >said 2>&1
+  code=$?
+  [ "$code" -eq "$wanted" ] || fail "exit code $code instead of $wanted: $*"
+}
+expect_said() { grep -q -- "$1" said || fail "does not say: $1"; }
+expect_old() { [ "$(cat "$1")" = "an old file" ] || fail "$1 was changed"; }
+expect_nothing() {
+  local file
+  for file in "$@"; do [ ! -e "$file" ] && [ ! -L "$file" ] || fail "$file is there"; done
+}
+
+for name in replay sim csv svg ply slice repair; do
+  input=in.lcmlog
+  seconds=2
+  rm -rf out out.partial target
+
+  echo "an old file" >out
+  expect_code 1 out
+  expect_said "out: exists already; --force replaces it"
+  expect_old out
+  expect_nothing out.partial
+  expect_code 0 out --force
+  [ "$(wc -c <out)" -gt 100 ] || fail "--force wrote nothing"
+  expect_nothing out.partial
+
+  rm -f out
+  echo "an old file" >target
+  ln -s target out
+  expect_code 1 out
+  expect_said "symbolic link"
+  expect_old target
+  rm -f out
+  ln -s target out.partial
+  expect_code 1 out
+  expect_said "out.partial: is a symbolic link"
+  expect_old target
+  expect_nothing out
+  rm -f out.partial
+  expect_code 0 out
+  rm -f out
+
+  mkdir out
+  expect_code 1 out --force
+  expect_said "is a folder"
+  rmdir out
+  expect_code 1 missing/out
+  expect_said "folder does not exist"
+
+  # Its input: by its name and by another.
+  if [ "$name" != sim ]; then
+    before=$(sha256sum <in.lcmlog)
+    ln -sf in.lcmlog out
+    for output in in.lcmlog out; do
+      run "$output" --force >said 2>&1 && fail "wrote over its input by the name $output"
+    done
+    [ "$(sha256sum <in.lcmlog)" = "$before" ] || fail "its input was changed"
+    rm -f out
+  fi
+
+  # Devices and pipes are written directly.
+  expect_code 0 /dev/null
+  expect_nothing /dev/null.partial
+  run /dev/stdout 2>said | wc -c >size
+  [ "$(cat size)" -gt 100 ] || fail "nothing came out of /dev/stdout"
+  if [ -e /dev/full ]; then
+    expect_code 1 /dev/full
+    expect_said "No space left on device"
+  fi
+
+  # A full disk.
+  if [ "$LOOKOUT_SMALL_DISK" = yes ]; then
+    expect_code 1 disk/out
+    expect_said "disk/out: .*No space left on device"
+    expect_said "disk/out: not written, nothing of it is left"
+    expect_nothing disk/out disk/out.partial
+  fi
+  (
+    ulimit -f 16  # KiB
+    run out
+  ) 2>&1 | cat >said
+  [ "${PIPESTATUS[0]}" -eq 1 ] || fail "exit code ${PIPESTATUS[0]} instead of 1 with a limit on the size of files"
+  expect_said "out: .*File too large"
+  expect_nothing out out.partial
+
+  # A second one that writes the same.
+  exec 9>out.partial
+  flock 9
+  expect_code 1 out --force
+  expect_said "is being written by another program"
+  exec 9>&-
+  # The rest of a run that was killed.
+  echo "half" >out.partial
+  expect_code 0 out
+  expect_said "left by a run that did not come to its end"
+  expect_nothing out.partial
+  rm -f out
+done
+
+# SIGINT half way: an input so large that the work lasts.
+cat in.lcmlog in.lcmlog in.lcmlog in.lcmlog >four
+cat four four four four four four four four >large.lcmlog
+for name in replay sim csv svg slice repair; do
+  input=large.lcmlog
+  seconds=3000
+  for signal in INT TERM; do
+    rm -f out out.partial
+    exec=exec run out >said 2>&1 &
+    pid=$!
+    for ((i = 0; i < 500; ++i)); do
+      [ -s out.partial ] && break
+      # A picture is written at once, at the end.
+      [ "$name" = svg ] && [ -e out.partial ] && break
+      [ -e out ] && break
+      sleep 0.01
+    done
+    kill -"$signal" "$pid"
+    wait "$pid"
+    code=$?
+    pid=''
+    if [ -e out ]; then
+      echo "note: $name was quicker than SIG$signal"
+      [ "$code" -eq 0 ] || fail "exit code $code and an output"
+    else
+      [ "$code" -eq 1 ] || fail "exit code $code instead of 1 after SIG$signal"
+      expect_said "stopped by SIG$signal"
+      expect_said "out: not written, nothing of it is left"
+    fi
+    expect_nothing out.partial
+  done
+done
+
+# The truth: a folder of files.
+name=truth
+sim_truth() { "$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds 1 --pcap b.pcap --truth truth "$@" >said 2>&1; }
+rm -rf truth b.pcap
+sim_truth || fail "exit code $?"
+echo "an old file" >truth/returns.csv
+rm b.pcap
+sim_truth && fail "replaced its files unasked"
+expect_old truth/returns.csv
+expect_nothing b.pcap b.pcap.partial truth/returns.csv.partial
+sim_truth --force || fail "exit code $? with --force"
+[ "$(wc -l <truth/returns.csv)" -gt 100 ] || fail "--force wrote nothing"
+rm -rf truth
+sim_truth && fail "replaced the capture unasked"
+expect_nothing truth
+
+[ "$num_failed" -eq 0 ] || { echo "$num_failed expectations failed" >&2; exit 1; }
+echo "all outputs: whole or none, in $(($(date +%s) - sync_time)) s; full disk: ${LOOKOUT_SMALL_DISK}"

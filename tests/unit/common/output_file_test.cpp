@@ -1,0 +1,439 @@
+#include "common/io/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/io/stop_signal.hpp"
+
+namespace lookout::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Output : public ::testing::Test {
+ protected:
+  fs::path folder_ = fs::temp_directory_path() / ("lookout_output_test_" + std::to_string(::getpid()));
+  fs::path file_ = folder_ / "out";
+  fs::path partial_ = folder_ / "out.partial";
+  std::vector<std::string> told_;
+
+  void SetUp() override {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  OutputOptions Options(bool force = false, std::vector<fs::path> inputs = {}) {
+    return {force, std::move(inputs), [this](const std::string& line) { told_.push_back(line); }};
+  }
+  static std::string Content(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static void SetContent(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+  // What the constructor throws; empty: nothing
+  std::string FaultOf(const fs::path& file, bool force = false, std::vector<fs::path> inputs = {}) {
+    try {
+      const OutputFile output(file, Options(force, std::move(inputs)));
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  static void ExpectHas(const std::string& text, const std::string& part) { EXPECT_NE(text.find(part), std::string::npos) << text; }
+};
+
+TEST_F(Output, AppearsOnlyWhenItIsCommitted) {
+  OutputFile output(file_, Options());
+  output.Write("one ");
+  output.stream() << 2 << ' ' << 3.5;
+  EXPECT_FALSE(fs::exists(file_));
+  EXPECT_TRUE(fs::exists(partial_));
+  output.Commit();
+  EXPECT_EQ(Content(file_), "one 2 3.5");
+  EXPECT_FALSE(fs::exists(partial_));
+  EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(Output, OfManyPiecesOfAllSizesIsWhole) {
+  std::string text;
+  {
+    OutputFile output(file_, Options());
+    for (const std::size_t size : {0, 1, 65'535, 65'536, 65'537, 200'000, 3}) {
+      const std::string piece(size, static_cast<char>('a' + size % 26));
+      output.Write(piece);
+      text += piece;
+    }
+    output.Commit();
+  }
+  EXPECT_EQ(Content(file_), text);
+}
+
+TEST_F(Output, ThatIsNotCommittedLeavesNothingAndSaysSo) {
+  {
+    OutputFile output(file_, Options());
+    output.Write(std::string(1'000'000, 'x'));
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+  ASSERT_EQ(told_.size(), 1u);
+  ExpectHas(told_[0], "out: not written, nothing of it is left");
+}
+
+TEST_F(Output, DoesNotReplaceAFileUnasked) {
+  SetContent(file_, "a recording");
+  ExpectHas(FaultOf(file_), "out: exists already; --force replaces it");
+  EXPECT_EQ(Content(file_), "a recording");
+  EXPECT_FALSE(fs::exists(partial_));
+}
+
+TEST_F(Output, ReplacesAFileWhenAskedAndOnlyAtTheEnd) {
+  SetContent(file_, "a recording");
+  OutputFile output(file_, Options(true));
+  output.Write("new");
+  EXPECT_EQ(Content(file_), "a recording");
+  output.Commit();
+  EXPECT_EQ(Content(file_), "new");
+}
+
+TEST_F(Output, KeepsTheOldFileWhenItFails) {
+  SetContent(file_, "a recording");
+  {
+    OutputFile output(file_, Options(true));
+    output.Write("new");
+  }
+  EXPECT_EQ(Content(file_), "a recording");
+}
+
+TEST_F(Output, DoesNotReplaceAFileThatAppearedMeanwhileAndKeepsTheResult) {
+  OutputFile output(file_, Options());
+  output.Write("computed");
+  SetContent(file_, "somebody else's");
+  try {
+    output.Commit();
+    FAIL() << "it was replaced";
+  } catch (const std::runtime_error& error) {
+    ExpectHas(error.what(), "has appeared while it was computed; the whole result is in " + partial_.string());
+  }
+  EXPECT_EQ(Content(file_), "somebody else's");
+  EXPECT_EQ(Content(partial_), "computed");
+}
+
+TEST_F(Output, FollowsNoSymbolicLinkAtItsName) {
+  SetContent(folder_ / "target", "a recording");
+  fs::create_symlink("target", file_);
+  ExpectHas(FaultOf(file_), "as a symbolic link; --force replaces the link");
+  OutputFile output(file_, Options(true));
+  output.Write("new");
+  output.Commit();
+  EXPECT_EQ(Content(folder_ / "target"), "a recording");
+  EXPECT_FALSE(fs::is_symlink(file_));
+  EXPECT_EQ(Content(file_), "new");
+}
+
+TEST_F(Output, FollowsNoSymbolicLinkAtItsNameThatPointsNowhere) {
+  fs::create_symlink("nowhere", file_);
+  ExpectHas(FaultOf(file_), "as a symbolic link");
+  EXPECT_FALSE(fs::exists(folder_ / "nowhere"));
+}
+
+TEST_F(Output, FollowsNoSymbolicLinkAtThePartial) {
+  SetContent(folder_ / "target", "a recording");
+  fs::create_symlink("target", partial_);
+  for (const bool force : {false, true}) ExpectHas(FaultOf(file_, force), "out.partial: is a symbolic link");
+  EXPECT_EQ(Content(folder_ / "target"), "a recording");
+  EXPECT_TRUE(fs::is_symlink(partial_));
+}
+
+TEST_F(Output, DoesNotTouchAHardLinkAtThePartial) {
+  SetContent(folder_ / "target", "a recording");
+  fs::create_hard_link(folder_ / "target", partial_);
+  OutputFile output(file_, Options());
+  output.Write("new");
+  output.Commit();
+  EXPECT_EQ(Content(folder_ / "target"), "a recording");
+  EXPECT_EQ(Content(file_), "new");
+}
+
+TEST_F(Output, RefusesAFolderAndAMissingFolderAndAnEmptyName) {
+  ExpectHas(FaultOf(folder_, true), "is a folder");
+  ExpectHas(FaultOf(folder_ / "missing/out", true), "its folder does not exist");
+  ExpectHas(FaultOf(folder_ / "missing/", true), "is the name of a folder");
+  ExpectHas(FaultOf("", true), "is empty");
+  fs::create_directory(partial_);
+  ExpectHas(FaultOf(file_, true), "out.partial: ");
+  SetContent(folder_ / "file", "");
+  ExpectHas(FaultOf(folder_ / "file/out", true), "Not a directory");
+}
+
+TEST_F(Output, RefusesAFolderThatCannotBeWrittenTo) {
+  if (geteuid() == 0) GTEST_SKIP() << "nothing is forbidden to root";
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  const auto fault = FaultOf(file_, true);
+  fs::permissions(folder_, fs::perms::owner_all);
+  ExpectHas(fault, "out: cannot be made: Permission denied");
+}
+
+TEST_F(Output, IsNeverAnInputByWhateverName) {
+  SetContent(file_, "a recording");
+  fs::create_hard_link(file_, folder_ / "same");
+  fs::create_symlink("out", folder_ / "link");
+  for (const bool force : {false, true}) {
+    ExpectHas(FaultOf(file_, force, {folder_ / "same"}), "is an input");
+    ExpectHas(FaultOf(file_, force, {folder_ / "link"}), "is an input");
+    ExpectHas(FaultOf(folder_ / "link", force, {file_}), "is an input");
+  }
+  EXPECT_EQ(Content(file_), "a recording");
+}
+
+TEST_F(Output, DoesNotRemoveAPartialThatIsAnInput) {
+  SetContent(partial_, "of a run that was killed");
+  ExpectHas(FaultOf(file_, true, {partial_}), "out.partial: is an input");
+  EXPECT_EQ(Content(partial_), "of a run that was killed");
+}
+
+TEST_F(Output, RemovesThePartialOfARunThatWasKilledAndSaysSo) {
+  SetContent(partial_, "half");
+  OutputFile output(file_, Options());
+  output.Write("whole");
+  output.Commit();
+  EXPECT_EQ(Content(file_), "whole");
+  ASSERT_EQ(told_.size(), 1u);
+  ExpectHas(told_[0], "out.partial: left by a run that did not come to its end");
+}
+
+TEST_F(Output, IsWrittenByOneProgramAtATime) {
+  OutputFile output(file_, Options());
+  output.Write("first");
+  for (const bool force : {false, true}) ExpectHas(FaultOf(file_, force), "is being written by another program");
+  output.Commit();
+  EXPECT_EQ(Content(file_), "first");
+}
+
+// A log that is being recorded.
+TEST_F(Output, DoesNotReplaceAFileThatAnotherProgramHasLockedAlsoByForce) {
+  SetContent(file_, "a recording");
+  const int recorder = open(file_.c_str(), O_WRONLY | O_APPEND);
+  ASSERT_EQ(flock(recorder, LOCK_EX), 0);
+  ExpectHas(FaultOf(file_, true), "is being written by another program");
+  close(recorder);
+  EXPECT_EQ(FaultOf(file_, true), "");
+  OutputFile output(file_, Options(true));
+  output.Write("new");
+  const int late = open(file_.c_str(), O_WRONLY | O_APPEND);
+  ASSERT_EQ(flock(late, LOCK_EX), 0);
+  EXPECT_THROW(output.Commit(), std::runtime_error);
+  close(late);
+  EXPECT_EQ(Content(file_), "a recording");
+  EXPECT_EQ(Content(partial_), "new");
+}
+
+// Many at once: one wins, the others say why not, and nobody's bytes are mixed.
+TEST_F(Output, OfManyAtOnceIsWhole) {
+  constexpr int kNumThreads = 8;
+  for (int round = 0; round < 20; ++round) {
+    fs::remove(file_);
+    SetContent(partial_, "left over");
+    std::vector<std::thread> threads;
+    std::atomic<int> num_written = 0;
+    for (int i = 0; i < kNumThreads; ++i) {
+      threads.emplace_back([&, i] {
+        try {
+          OutputFile output(file_, {false, {}, [](const std::string&) {}});
+          output.Write(std::string(100'000, static_cast<char>('a' + i)));
+          output.Commit();
+          ++num_written;
+        } catch (const std::runtime_error&) {
+          // Another one was quicker.
+        }
+      });
+    }
+    for (auto& thread : threads) thread.join();
+    EXPECT_EQ(num_written, 1);
+    const auto content = Content(file_);
+    ASSERT_EQ(content.size(), 100'000u);
+    EXPECT_EQ(std::ranges::count(content, content[0]), 100'000);
+    EXPECT_FALSE(fs::exists(partial_));
+  }
+}
+
+TEST_F(Output, SaysWhenSomebodyTookThePartialAway) {
+  OutputFile output(file_, Options());
+  output.Write("text");
+  fs::remove(partial_);
+  EXPECT_THROW(output.Commit(), std::runtime_error);
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(Output, ADeviceIsWrittenDirectly) {
+  OutputFile output("/dev/null", Options());
+  output.Write("text");
+  output.Commit();
+  EXPECT_FALSE(fs::exists("/dev/null.partial"));
+}
+
+TEST_F(Output, ALinkToADeviceIsWrittenDirectly) {
+  fs::create_symlink("/dev/null", file_);
+  OutputFile output(file_, Options());
+  output.Write("text");
+  output.Commit();
+  EXPECT_TRUE(fs::is_symlink(file_));
+}
+
+TEST_F(Output, ThatTheDeviceDoesNotTakeIsAnErrorWithPathAndReason) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this computer";
+  OutputFile output("/dev/full", Options());
+  output.Write("text");
+  try {
+    output.Commit();
+    FAIL() << "it was taken";
+  } catch (const std::runtime_error& error) {
+    ExpectHas(error.what(), "/dev/full: write failed: No space left on device");
+  }
+}
+
+TEST_F(Output, AnOpenFileIsWrittenWhereItStands) {
+  const int descriptor = open(file_.c_str(), O_WRONLY | O_CREAT, 0600);
+  ASSERT_EQ(write(descriptor, "before ", 7), 7);
+  {
+    OutputFile output("/dev/fd/" + std::to_string(descriptor), Options());
+    output.Write("after");
+    output.Commit();
+  }
+  close(descriptor);
+  EXPECT_EQ(Content(file_), "before after");
+}
+
+TEST_F(Output, AnOpenFileThatIsAnInputIsRefused) {
+  const int descriptor = open(file_.c_str(), O_WRONLY | O_CREAT, 0600);
+  ExpectHas(FaultOf("/dev/fd/" + std::to_string(descriptor), true, {file_}), "is an input");
+  close(descriptor);
+}
+
+// @return its exit code; -1 when it was ended by a signal, also by this function after 10 s
+int ExitCodeOf(pid_t child) {
+  int status = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (waitpid(child, &status, WNOHANG) == child) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  return -1;
+}
+
+// In a process of its own, as signals and limits are of the whole process. @return as ExitCodeOf
+template <typename Body>
+int RunInChild(const Body& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    CatchStopSignals();
+    _exit(body());
+  }
+  return ExitCodeOf(child);
+}
+
+TEST_F(Output, ThatGrowsBeyondALimitOfTheSystemIsAnErrorAndLeavesNothing) {
+  const int code = RunInChild([&] {
+    const rlimit limit{1'000'000, 1'000'000};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      OutputFile output(file_, Options());
+      for (int i = 0; i < 100; ++i) output.Write(std::string(100'000, 'x'));
+      output.Commit();
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what()).find("out: write failed: File too large") != std::string::npos ? 1 : 2;
+    }
+    return 0;
+  });
+  EXPECT_EQ(code, 1);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Output, EndsWhenTheProgramIsAskedToStop) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const int code = RunInChild([&] {
+      OutputFile output(file_, Options());
+      output.Write(std::string(100'000, 'x'));
+      raise(signal);
+      try {
+        output.Write(std::string(100'000, 'x'));
+      } catch (const Stopped&) {
+        return IsStopAsked() ? 1 : 2;
+      }
+      return 0;
+    });
+    EXPECT_EQ(code, 1);
+  }
+}
+
+// Both calls block for good: the one because nobody opens the FIFO, the other because nobody reads.
+TEST_F(Output, AFifoThatNobodyReadsDoesNotHoldUpTheEnd) {
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  for (const bool has_reader : {false, true}) {
+    const int reader = has_reader ? open(file_.c_str(), O_RDONLY | O_NONBLOCK) : -1;
+    const pid_t child = fork();
+    if (child == 0) {
+      CatchStopSignals();
+      try {
+        OutputFile output(file_, Options());
+        for (int i = 0; i < 100; ++i) output.Write(std::string(100'000, 'x'));
+      } catch (const Stopped&) {
+        _exit(1);
+      }
+      _exit(2);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    kill(child, SIGINT);
+    EXPECT_EQ(ExitCodeOf(child), 1);
+    if (reader >= 0) close(reader);
+  }
+}
+
+TEST_F(Output, APipeThatNobodyReadsAnyMoreIsToldApart) {
+  const int code = RunInChild([&] {
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return 3;
+    close(ends[0]);
+    try {
+      OutputFile output("/dev/fd/" + std::to_string(ends[1]), Options());
+      output.Write("text");
+      output.Commit();
+    } catch (const BrokenPipe&) {
+      return 1;
+    }
+    return 0;
+  });
+  EXPECT_EQ(code, 1);
+}
+
+// The signal comes in the moment between the look at the flag and the call that blocks: the alarm ends the call.
+TEST_F(Output, ASignalJustBeforeACallThatBlocksEndsItToo) {
+  const int code = RunInChild([] {
+    raise(SIGINT);
+    std::array<int, 2> ends{};
+    if (pipe(ends.data()) != 0) return 3;
+    char byte = 0;
+    return read(ends[0], &byte, 1) < 0 && errno == EINTR ? 1 : 2;
+  });
+  EXPECT_EQ(code, 1);
+}
+
+}  // namespace
+}  // namespace lookout::io

@@ -1,0 +1,35 @@
+# Sourced: starts and ends the live processes of Lookout in the order that leaves a log equal to its replay.
+#   start NAME CONFIG OUTPUT  starts build/.../lookout-NAME, waits until its inputs and its bus are open; what it prints goes to OUTPUT
+#   stop_all                  ends what was started
+# Expects $bin, the folder of the programs.
+
+declare -A live_pids=()
+
+# @return 1 when it ended at its start, or is not up within 20 s
+start() {
+  local name=$1 config=$2 output=$3 i
+  "$bin/lookout-$name" --config "$config" >"$output" 2>&1 &
+  live_pids[$name]=$!
+  for ((i = 0; i < 400; ++i)); do
+    grep -q ': starts, version ' "$output" && return 0
+    kill -0 "${live_pids[$name]}" 2>/dev/null || break
+    sleep 0.05
+  done
+  # A source that has already come to its end (a short capture) was up as well.
+  grep -q ': starts, version ' "$output" && return 0
+  echo "lookout-$name did not start:" >&2
+  cat "$output" >&2
+  return 1
+}
+
+# Sources first, each waited for: what one sends at its end (the end mark, the last scan, the last poses) is still taken by those behind it, and the
+# recorder, which ends last, has it all.
+stop_all() {
+  local name
+  for name in vlp16 navigator segmenter georeferencer recorder; do
+    [ -n "${live_pids[$name]:-}" ] || continue
+    kill -TERM "${live_pids[$name]}" 2>/dev/null || true
+    wait "${live_pids[$name]}" 2>/dev/null || true
+    unset "live_pids[$name]"
+  done
+}
