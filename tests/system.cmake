@@ -58,7 +58,11 @@ add_dependencies(load_live lookout-segmenter lookout-navigator lookout-georefere
 
 # Each program that writes a file, against files, links, folders, signals and full disks.
 add_test(NAME system_outputs COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/outputs_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/bin)
-set_tests_properties(system_outputs PROPERTIES TIMEOUT 180)
+set(outputs_timeout 180)
+if(LOOKOUT_SANITIZE)
+  set(outputs_timeout 900)
+endif()
+set_tests_properties(system_outputs PROPERTIES TIMEOUT ${outputs_timeout})
 
 # The order in which the demo and lookout-up start and end the processes.
 foreach(by demo lookout-up)
