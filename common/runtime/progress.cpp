@@ -13,7 +13,6 @@ namespace lookout::runtime {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod(500);
-constexpr std::chrono::seconds kLinePeriod(60);
 // A step is a matter of microseconds to a few milliseconds: the clock need not be read for each.
 constexpr std::int64_t kCallsPerLook = 64;
 constexpr std::size_t kUnknownColumns = 80;
@@ -30,9 +29,9 @@ std::string DurationText(double duration_s) {
 
 Progress::Progress(std::string program, std::FILE* out) : Progress(std::move(program), out, out != nullptr && isatty(fileno(out)) != 0) {}
 
-Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal)
-    : program_(std::move(program)), out_(out), is_terminal_(as_on_terminal), next_(start_) {
-  if (!is_terminal_) next_ += kLinePeriod;
+Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period)
+    : program_(std::move(program)), out_(out), is_terminal_(as_on_terminal), period_(as_on_terminal ? kTerminalPeriod : line_period), next_(start_) {
+  if (!is_terminal_) next_ += period_;
 }
 
 Progress::~Progress() { Clear(); }
@@ -41,7 +40,7 @@ void Progress::Update(double share, const std::function<std::string()>& remark) 
   if (out_ == nullptr || ++num_calls_ % kCallsPerLook != 0) return;
   const auto now = Clock::now();
   if (now < next_) return;
-  next_ = now + (is_terminal_ ? std::chrono::milliseconds(kTerminalPeriod) : std::chrono::milliseconds(kLinePeriod));
+  next_ = now + period_;
   const double done = std::clamp(share, 1e-6, 1.0);
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   Show(fmt::format("{}: {:.0f} %, {}{} left", program_, 100.0 * done, remark ? remark() + ", " : "", DurationText(elapsed_s * (1.0 - done) / done)));

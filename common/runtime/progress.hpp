@@ -15,8 +15,9 @@ class Progress {
   /// @param out      stays open and outlives this; nullptr: silent
   Progress(std::string program, std::FILE* out);
 
-  /// The same, and as on a terminal where `out` is none.
-  Progress(std::string program, std::FILE* out, bool as_on_terminal);
+  /// @param as_on_terminal  also where `out` is none
+  /// @param line_period     from line to line where it is not as on a terminal
+  Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period = std::chrono::minutes(1));
 
   /// Leaves no trace on a terminal.
   ~Progress();
@@ -42,6 +43,7 @@ class Progress {
   std::string program_;
   std::FILE* out_;
   bool is_terminal_;
+  Clock::duration period_;
   std::int64_t num_calls_ = 0;
   std::size_t num_shown_ = 0;  // characters of the line on the terminal
   Clock::time_point start_ = Clock::now();

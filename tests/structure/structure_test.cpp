@@ -129,6 +129,21 @@ TEST(Structure, RoomsIncludeOnlyWhatTheyMay) {
   EXPECT_GT(num_checked, 100);
 }
 
+// A file that is written in another way can overwrite a recording, or stand half written under its name.
+TEST(Structure, OutputsAreWrittenByOneClass) {
+  const std::regex exempt("common/io/output_file\\.cpp|common/bus/log_file\\.cpp|services/recorder/io/disk_writer\\.cpp");
+  const std::regex writes(R"(ofstream|\bfopen\(|freopen|pcap_dump_open\(|lcm_eventlog_create|O_CREAT|std::fstream)");
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) {
+      const std::string path = fs::relative(file, kRoot).string();
+      if (std::regex_match(path, exempt)) continue;
+      std::smatch match;
+      const std::string text = Read(file);
+      EXPECT_FALSE(std::regex_search(text, match, writes)) << path << " writes a file by " << match.str() << ", not through io::OutputFile";
+    }
+  }
+}
+
 TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
   // The bus takes times of its handlers for HEALTH; they decide nothing.
   const std::regex exempt("common/runtime/.*|common/bus/bus\\.cpp|common/io/.*|services/[^/]+/(main\\.cpp|io/.*)");

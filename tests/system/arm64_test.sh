@@ -38,22 +38,33 @@ is_tree_there() {  # FOLDER
 }
 
 compare() {  # NATIVE_BIN ARM64_BIN TREE
-  local native=$1 arm64=$2 tree=$3 work different=0 capture name
+  local native=$1 arm64=$2 tree=$3 work different=0 capture config name i
   work=$(mktemp -d -t lookout-arm64.XXXXXX)
   # shellcheck disable=SC2064
   trap "rm -rf '$work'" EXIT
-  "$native/lookout-sim" --config "$source_folder/config/demo" --scene lake --seed 1 --seconds 10 --pcap "$work/lake.pcap" >/dev/null
-  local captures=("$work/lake.pcap")
+  # The lake, waves (roll, pitch, foam) and two returns a shot, by both methods; recordings by the default one.
+  local demo=$source_folder/config/demo paper=$work/paper scene captures=() configs=()
+  cp -r "$demo" "$paper"
+  printf '%s\n' '# proto-file: config/schema/segmenter.proto' '# proto-message: lookout.config.Segmenter' 'method: PAPER' >"$paper/segmenter.txtpb"
+  for scene in lake waves dual; do
+    "$native/lookout-sim" --config "$demo" --scene "$scene" --seed 1 --seconds 5 --pcap "$work/$scene.pcap" >/dev/null
+    captures+=("$work/$scene.pcap" "$work/$scene.pcap")
+    configs+=("$demo" "$paper")
+  done
   if [ -d "$recordings" ]; then
-    captures+=("$recordings"/*.pcap)
+    for capture in "$recordings"/*.pcap; do
+      captures+=("$capture")
+      configs+=("$demo")
+    done
   else
     echo "skipped: recordings of a VLP-16, as there are none at $recordings"
   fi
-  for capture in "${captures[@]}"; do
-    name=$(basename "$capture" .pcap)
+  for i in "${!captures[@]}"; do
+    capture=${captures[i]} config=${configs[i]}
+    name=$(basename "$capture" .pcap)-$(basename "$config")
     echo "== $name: natively, then as arm64 under qemu"
-    replay "$work/$name.native" "$native/lookout-replay" --config "$source_folder/config/demo" --in "$capture" --out "$work/native.lcmlog"
-    replay "$work/$name.arm64" qemu-aarch64-static -L "$tree" "$arm64/lookout-replay" --config "$source_folder/config/demo" --in "$capture" \
+    replay "$work/$name.native" "$native/lookout-replay" --config "$config" --in "$capture" --out "$work/native.lcmlog"
+    replay "$work/$name.arm64" qemu-aarch64-static -L "$tree" "$arm64/lookout-replay" --config "$config" --in "$capture" \
       --out "$work/arm64.lcmlog"
     rm -f "$work/native.lcmlog" "$work/arm64.lcmlog"
     # Channel, messages, SHA-256 of the payloads.

@@ -201,5 +201,37 @@ rm -rf truth
 sim_truth && fail "replaced the capture unasked"
 expect_nothing truth
 
+# Pages and tables of lookout-eval.
+name=eval
+judge() { "$bin/lookout-eval" --config "$config" --scenes sparse --methods ours --seeds 1 --first-seed 101 --seconds 0.3 "$@" >said 2>&1; }
+echo "an old file" >page.html
+judge --html page.html && fail "replaced its page unasked"
+expect_said "page.html: exists already"
+expect_old page.html
+judge --html page.html --csv tables --force || fail "exit code $? with --force"
+[ "$(wc -c <page.html)" -gt 1000 ] || fail "--force wrote nothing"
+expect_nothing page.html.partial
+judge --csv tables && fail "replaced its tables unasked"
+rm page.html
+(
+  ulimit -f 4
+  judge --html page.html
+)
+[ $? -eq 1 ] || fail "exit code is not 1 with a limit on the size of files"
+expect_nothing page.html page.html.partial
+"$bin/lookout-eval" --config "$config" --scenes all --methods ours --seeds 1000 --first-seed 101 --seconds 1 --html page.html >said 2>&1 &
+pid=$!
+for ((i = 0; i < 500; ++i)); do
+  [ -e page.html.partial ] && break
+  sleep 0.01
+done
+kill -INT "$pid"
+wait "$pid"
+code=$?
+pid=''
+[ "$code" -eq 1 ] || fail "exit code $code instead of 1 after SIGINT"
+expect_said "page.html: not written, nothing of it is left"
+expect_nothing page.html page.html.partial
+
 [ "$num_failed" -eq 0 ] || { echo "$num_failed expectations failed" >&2; exit 1; }
 echo "all outputs: whole or none, in $(($(date +%s) - sync_time)) s; full disk: ${LOOKOUT_SMALL_DISK}"

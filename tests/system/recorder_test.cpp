@@ -19,6 +19,7 @@
 #include "common/bus/header.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
+#include "lookout/health_counter_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "tests/system/child.hpp"
@@ -276,6 +277,60 @@ TEST_F(RecorderSystem, StopsBeforeTheDiskIsFullSaysSoAndGoesOnWhenThereIsRoom) {
     EXPECT_EQ(reader.num_damaged(), 0) << log;
   }
   EXPECT_EQ(umount2(logs_.c_str(), MNT_DETACH), 0);
+}
+
+// What was in a log that is cut or deleted used to count as recorded, with state ok.
+TEST_F(RecorderSystem, SaysWhatBecameOfALogThatIsTouchedAndGoesOnInAnother) {
+  health_t health{};
+  bus::Subscribe<health_t>(*bus_, bus::kHealth, [&](const health_t& message) { health = message; });
+  const auto wait_for = [&](const std::string& reason) {
+    const auto deadline = Clock::now() + seconds(20);
+    while (health.reason.find(reason) == std::string::npos && Clock::now() < deadline) bus_->HandleOnce(milliseconds(20));
+    return health.reason.find(reason) != std::string::npos;
+  };
+  const auto count = [&](const std::string& name) {
+    const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
+    return found == health.counters.end() ? -1 : found->count;
+  };
+  const auto is_followed = [&](std::size_t num_logs) { return WaitUntil([&] { return Logs().size() == num_logs; }); };
+  Start();
+  for (int i = 0; i < 100; ++i) Send();
+  ASSERT_TRUE(WaitUntil([&] { return Recorded().size() == 100; }));
+  const auto first = Logs().front();
+  health.state = health_t::STATE_STARTING;
+  for (const auto deadline = Clock::now() + seconds(20); health.state != health_t::STATE_OK && Clock::now() < deadline;) {
+    bus_->HandleOnce(milliseconds(20));
+  }
+  ASSERT_EQ(health.state, health_t::STATE_OK) << health.reason;
+
+  fs::rename(first, folder_ / "moved");
+  EXPECT_TRUE(is_followed(1));
+  EXPECT_TRUE(wait_for("recording, nothing lost, but " + first.string() + ": was moved or renamed")) << health.reason;
+  EXPECT_EQ(health.state, health_t::STATE_DEGRADED);
+  EXPECT_EQ(count("lost"), 0);
+  EXPECT_EQ(bus::LogReader(folder_ / "moved").size_bytes(), static_cast<std::int64_t>(fs::file_size(folder_ / "moved")));
+
+  const auto second = Logs().front();
+  for (int i = 0; i < 50; ++i) Send();
+  ASSERT_TRUE(WaitUntil([&] { return Recorded().size() >= 50; }));
+  fs::resize_file(second, 0);
+  EXPECT_TRUE(is_followed(2));
+  EXPECT_TRUE(wait_for("recording again; ")) << health.reason;
+  EXPECT_NE(health.reason.find("was cut from "), std::string::npos) << health.reason;
+  EXPECT_EQ(health.state, health_t::STATE_DEGRADED);
+  EXPECT_GE(count("lost"), 50);
+  EXPECT_GT(count("lost_bytes"), 0);
+  EXPECT_EQ(count("files_disturbed"), 2);
+  const auto num_lost = count("lost");
+
+  fs::remove_all(logs_);
+  EXPECT_TRUE(WaitUntil([&] { return fs::exists(logs_) && Logs().size() == 1; }));
+  EXPECT_TRUE(wait_for("was deleted while it was recorded")) << health.reason;
+  EXPECT_GT(count("lost"), num_lost);
+  EXPECT_EQ(recorder_->Terminate().value_or(-1), 0) << recorder_->Output();
+  for (const char* words : {"was moved or renamed", "was cut from ", "was deleted while it was recorded"}) {
+    EXPECT_NE(recorder_->Output().find(words), std::string::npos) << recorder_->Output();
+  }
 }
 
 }  // namespace

@@ -315,11 +315,10 @@ TEST_F(Replay, OfALogThatWasCutAndHoldsNoNavigationGivesItsObstaclesAllTheSame) 
     }
   }
   const auto result = ReplayTo(Path("lidar"), "again", {"--only", "vlp16", "--only", "segmenter", "--only", "georeferencer"});
-  if (result.exit_code == 0) {
-    EXPECT_EQ(PayloadsByChannel("again")["OBSTACLES"].size(), PayloadsByChannel("again")["SEGMENTS"].size()) << result.output;
-  } else {
-    EXPECT_NE(result.output.find("POSE"), std::string::npos) << result.output;
-  }
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  auto again = PayloadsByChannel("again");
+  EXPECT_GT(again["OBSTACLES"].size(), 5U) << result.output;
+  EXPECT_EQ(again["OBSTACLES"].size(), again["SEGMENTS"].size()) << result.output;
 }
 
 TEST_F(Replay, RefusesAnOutputThatExistsUnlessItIsForced) {
@@ -445,10 +444,12 @@ TEST_F(Replay, DoesNotOverwriteItsInput) {
 
 TEST_F(Replay, SaysWhichLineOfAConfigIsWrong) {
   fs::copy(config_, folder_ / "config");
+  const auto text = Content(folder_ / "config/vlp16.txtpb");
+  const auto line = std::to_string(std::ranges::count(text, '\n') + 1);
   std::ofstream(folder_ / "config/vlp16.txtpb", std::ios::app) << "no_such_field: 1\n";
   const auto result = RunProgram({Bin("replay"), "--config", Path("config"), "--check"}, Path("check.out"));
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.output.find("vlp16.txtpb:6: "), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find("vlp16.txtpb:" + line + ": "), std::string::npos) << result.output;
 }
 
 TEST_F(Replay, ChecksTheConfigAndPrintsWhatIsInForce) {

@@ -94,7 +94,7 @@ class TruthFile {
   // Reads up to a time and forgets what lies before another.
   void MoveTo(std::int64_t begin_us, std::int64_t end_us) {
     for (auto& ring : by_ring_) {
-      while (!ring.empty() && ring.front().utime_us < begin_us) ring.pop_front();
+      for (; !ring.empty() && ring.front().utime_us < begin_us; --num_kept_) ring.pop_front();
     }
     while (last_us_ < end_us && csv_.Next()) TakeRow(begin_us);
   }
@@ -121,6 +121,7 @@ class TruthFile {
  private:
   static constexpr std::array<std::string_view, 5> kColumns{"utime_us", "ring", "return_index", "range_m", "object_id"};
   static constexpr int kMaxRings = 128;
+  static constexpr std::int64_t kMaxKept = std::int64_t{1} << 22;  // twice the cells that a scan may have
 
   void TakeRow(std::int64_t begin_us) {
     TrueReturn row;
@@ -131,7 +132,9 @@ class TruthFile {
     row.object = static_cast<std::int32_t>(csv_.WholeNumber(4, kOwnVesselObject, std::numeric_limits<std::int32_t>::max()));
     if (row.utime_us < last_us_) csv_.Refuse("utime_us goes back");
     last_us_ = row.utime_us;
-    if (row.utime_us >= begin_us) by_ring_[ring].push_back(row);
+    if (row.utime_us < begin_us) return;
+    if (++num_kept_ > kMaxKept) csv_.Refuse("more than " + std::to_string(kMaxKept) + " returns within a scan");
+    by_ring_[ring].push_back(row);
   }
 
   std::uint16_t RangeOf(double range_m) const {
@@ -145,6 +148,7 @@ class TruthFile {
   }
 
   XzCsv csv_;
+  std::int64_t num_kept_ = 0;
   std::int64_t last_us_ = std::numeric_limits<std::int64_t>::min();
   std::array<std::deque<TrueReturn>, kMaxRings> by_ring_;
 };
@@ -158,6 +162,7 @@ bool IsInWater(const std::string& type) {
 
 std::map<std::int32_t, ScanObject> ReadObjects(const fs::path& file) {
   static constexpr std::array<std::string_view, 2> kColumns{"object_id", "type"};
+  constexpr std::size_t kMaxObjects = 100'000;
   XzCsv csv(file, kColumns);
   std::map<std::int32_t, ScanObject> objects;
   while (csv.Next()) {
@@ -165,6 +170,7 @@ std::map<std::int32_t, ScanObject> ReadObjects(const fs::path& file) {
     const std::string type(csv.Text(1));
     if (type.empty()) csv.Refuse("type: empty");
     const auto [known, is_new] = objects.try_emplace(id, ScanObject{type + "_" + std::to_string(id), type, IsInWater(type)});
+    if (objects.size() > kMaxObjects) csv.Refuse("more than " + std::to_string(kMaxObjects) + " objects");
     if (!is_new && known->second.kind != type) csv.Refuse("object " + std::to_string(id) + " was of type " + known->second.kind + " before");
   }
   return objects;

@@ -354,7 +354,7 @@ std::string ToMarkdown(std::string_view csv, const std::string& file) {
     const auto where = file + ":" + std::to_string(number);
     if (line.starts_with("# ")) {
       if (num_columns > 0) throw std::runtime_error(where + ": a caption below the table");
-      captions += std::string(captions.empty() ? "" : " ") + std::string(line.substr(2));
+      captions += std::string(line.substr(2)) + "\n";
       return;
     }
     const auto row = SplitCsv(line, where);
@@ -368,7 +368,7 @@ std::string ToMarkdown(std::string_view csv, const std::string& file) {
     table += '\n';
   });
   if (num_columns == 0) throw std::runtime_error(file + ": holds no table");
-  return table + "\n" + captions + "\n";
+  return table + "\n" + captions;
 }
 
 std::string FillBlocks(std::string_view text, const fs::path& figures_folder, const std::string& file) {

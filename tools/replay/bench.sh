@@ -9,8 +9,8 @@ seconds=60
 mkdir -p "$work"
 for scene in lake dense; do
   echo "== replay of $seconds simulated seconds of the scene '$scene', five runs"
-  "$bin/lookout-sim" --config config/demo --scene "$scene" --seed 1 --seconds "$seconds" --pcap "$work/sim.pcap" >/dev/null
-  "$bin/lookout-replay" --config config/demo --in "$work/sim.pcap" --out "$work/day.lcmlog" >/dev/null 2>&1
+  "$bin/lookout-sim" --config config/demo --scene "$scene" --seed 1 --seconds "$seconds" --pcap "$work/sim.pcap" --force >/dev/null
+  "$bin/lookout-replay" --config config/demo --in "$work/sim.pcap" --out "$work/day.lcmlog" --force >/dev/null 2>&1
   for _ in 1 2 3 4 5; do
     rm -f "$work/replay.lcmlog"
     taskset -c 0 "$bin/lookout-replay" --config config/demo --in "$work/day.lcmlog" --out "$work/replay.lcmlog" >/dev/null 2>"$work/replay.err"

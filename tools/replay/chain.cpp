@@ -130,7 +130,8 @@ std::int64_t Chain::FinishLogs(bool is_whole) {
     Drain();
   }
   if (!georeferencer_) return 0;
-  const bool has_pose = bus_.input_traffic().contains(bus::kPose.name);
+  const auto pose = bus_.input_traffic().find(bus::kPose.name);
+  const bool has_pose = pose != bus_.input_traffic().end() && pose->second.num_messages > 0;
   if (!is_whole && has_pose) return georeferencer_->num_waiting();
   georeferencer_->Finish();
   Drain();

@@ -33,13 +33,13 @@ using namespace lookout;
 
 constexpr int kExitUsage = 2;
 
-// Waits until `time` by an undisturbed clock. @return whether SIGINT or SIGTERM came
+// Waits until `time` by an undisturbed clock. @return whether SIGINT, SIGTERM or SIGHUP came
 bool WaitUntil(std::chrono::steady_clock::time_point time, const sigset_t& stop_signals) {
   for (;;) {
     const auto rest = std::chrono::duration_cast<std::chrono::nanoseconds>(time - std::chrono::steady_clock::now());
     const auto wait = std::max(rest, std::chrono::nanoseconds(0));
     const timespec timeout{wait.count() / 1'000'000'000, wait.count() % 1'000'000'000};
-    if (sigtimedwait(&stop_signals, nullptr, &timeout) > 0) return true;
+    if (sigtimedwait(&stop_signals, nullptr, &timeout) > 0 || io::IsStopAsked()) return true;
     if (rest <= std::chrono::nanoseconds(0)) return false;
   }
 }

@@ -36,6 +36,13 @@ std::string AmountText(std::int64_t num_events, std::int64_t num_bytes) {
   return std::to_string(num_events) + " events, " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MB";
 }
 
+// Whether a name is still that of an open file.
+bool IsNameOf(const std::filesystem::path& file, int descriptor) {
+  struct stat named {};
+  struct stat own {};
+  return lstat(file.c_str(), &named) == 0 && fstat(descriptor, &own) == 0 && named.st_dev == own.st_dev && named.st_ino == own.st_ino;
+}
+
 constexpr const char* kAdvice = "begin a new log (SIGHUP) before the old one is moved, deleted or changed";
 
 }  // namespace
@@ -219,6 +226,8 @@ void DiskWriter::OpenFile(const std::string& stem) {
   file_bytes_ = 0;
   marks_.clear();
   is_disturbed_ = false;
+  // A file system that gives an open file another number than its name has (some on networks) cannot tell a file that was moved.
+  can_tell_name_ = descriptor_ >= 0 && IsNameOf(file_, descriptor_);
   num_unsynced_ = 0;
   {
     const std::lock_guard lock(mutex_);
@@ -266,7 +275,6 @@ void DiskWriter::CheckFile(const Block* last_block) {
   if (descriptor_ < 0 || fstat(descriptor_, &own) != 0) return;
   struct stat named {};
   const bool is_name_there = lstat(file_.c_str(), &named) == 0;
-  const bool is_own_name = is_name_there && named.st_dev == own.st_dev && named.st_ino == own.st_ino;
   const std::int64_t size_bytes = own.st_nlink == 0 ? 0 : own.st_size;
   if (size_bytes < file_bytes_) {
     // Cut to `kept_bytes`, behind which what was written since stands.
@@ -279,6 +287,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
     marks_.erase(cut, marks_.end());
     marks_.push_back({size_bytes, num_kept});
     const auto num_lost = total - num_kept;
+    num_unsynced_ = std::min(num_unsynced_, num_kept);
     const auto num_lost_bytes = file_bytes_ - size_bytes;
     const auto old_bytes = std::exchange(file_bytes_, size_bytes);
     {
@@ -302,7 +311,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
     const auto num_foreign_bytes = size_bytes - std::exchange(file_bytes_, size_bytes);
     return Disturb("another program has written " + std::to_string(num_foreign_bytes) + " bytes to it; " + kAdvice);
   }
-  if (!is_own_name) {
+  if (can_tell_name_ && !IsNameOf(file_, descriptor_)) {
     Disturb(std::string("was moved or renamed") + (is_name_there ? ", and another file stands in its place" : "") +
             ": what was recorded is in it, wherever it is; " + kAdvice);
   }

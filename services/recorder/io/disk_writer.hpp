@@ -128,6 +128,7 @@ class DiskWriter {
   std::int64_t file_bytes_ = 0;
   std::vector<Mark> marks_;  // of the file: 16 bytes for each 0.1 s of it
   bool is_disturbed_ = false;
+  bool can_tell_name_ = false;     // the file system tells whether a name is that of the open file
   std::int64_t num_unsynced_ = 0;  // events that the kernel has and the disk may not
   std::chrono::steady_clock::time_point last_sync_;
 

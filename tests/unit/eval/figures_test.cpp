@@ -43,7 +43,7 @@ class Figures : public ::testing::Test {
   }
 
   static constexpr const char* kFilled =
-      "<!-- figures: one -->\n| method | % |\n|---|---|\n| ours | 1.5 |\n| a, \"b\"\\|c | 2 |\n\nCaption. More.\n<!-- end -->\n";
+      "<!-- figures: one -->\n| method | % |\n|---|---|\n| ours | 1.5 |\n| a, \"b\"\\|c | 2 |\n\nCaption.\nMore.\n<!-- end -->\n";
   fs::path folder_;
 };
 

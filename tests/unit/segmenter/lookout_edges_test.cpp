@@ -32,7 +32,7 @@ TEST(FewColumns, AreLinkedAsManyAre) {
 TEST(FewColumns, AsFineAsNumbersGoTakeAtMostHalfTheCircle) {
   auto scan = EmptyScan({.num_columns = 100, .num_rings = 2, .width_rad = 0.1});
   for (int column = 0; column < 100; ++column) {
-    scan.columns.azimuth_rad[static_cast<std::size_t>(column)] = 1e-30F * static_cast<float>(column);
+    scan.columns.azimuth_rad[static_cast<std::size_t>(column)] = 1e-15F * static_cast<float>(column);
     SetReturn(scan, column, 0, 10.0);
   }
   const Stages stages(scan);

@@ -1,0 +1,131 @@
+#include "common/runtime/progress.hpp"
+
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <string>
+#include <thread>
+
+namespace lookout::runtime {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A terminal of so many columns, and what stands on its line.
+class Terminal {
+ public:
+  explicit Terminal(unsigned short columns) {
+    master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+    if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0) return;
+    SetColumns(columns);
+    out_ = std::fopen(ptsname(master_), "w");
+  }
+  ~Terminal() {
+    if (out_ != nullptr) std::fclose(out_);
+    if (master_ >= 0) close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  std::FILE* out() const { return out_; }
+  void SetColumns(unsigned short columns) const {
+    winsize size{};
+    size.ws_row = 24;
+    size.ws_col = columns;
+    ioctl(master_, TIOCSWINSZ, &size);
+  }
+  // What is to be seen on the line, without blanks at its end.
+  std::string Line() {
+    std::array<char, 4096> bytes{};
+    const auto size = read(master_, bytes.data(), bytes.size());
+    for (ssize_t i = 0; i < size; ++i) {
+      const char letter = bytes[static_cast<std::size_t>(i)];
+      if (letter == '\r') {
+        column_ = 0;
+      } else {
+        if (line_.size() <= column_) line_.resize(column_ + 1, ' ');
+        line_[column_++] = letter;
+        widest_ = std::max(widest_, column_);
+      }
+    }
+    const auto end = line_.find_last_not_of(' ');
+    return end == std::string::npos ? "" : line_.substr(0, end + 1);
+  }
+  std::size_t widest() const { return widest_; }
+
+ private:
+  int master_ = -1;
+  std::FILE* out_ = nullptr;
+  std::string line_;
+  std::size_t column_ = 0;
+  std::size_t widest_ = 0;
+};
+
+// Until it has said something.
+void Update(Progress& progress, double share, const std::string& remark, milliseconds time = milliseconds(600)) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (std::chrono::steady_clock::now() < end) {
+    progress.Update(share, [&remark] { return remark; });
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+}
+
+TEST(Progress, LeavesNothingOfALongerLineOnATerminal) {
+  Terminal terminal(80);
+  if (terminal.out() == nullptr) GTEST_SKIP() << "this computer gives no pseudo terminal";
+  {
+    Progress progress("replay", terminal.out());
+    Update(progress, 0.001, "123456 times real time", milliseconds(200));
+    EXPECT_EQ(terminal.Line().find("replay: 0 %, 123456 times real time, "), 0U) << terminal.Line();
+    Update(progress, 0.999, "1 times real time", milliseconds(700));
+    EXPECT_EQ(terminal.Line(), "replay: 100 %, 1 times real time, 0 s left");
+    progress.Clear();
+    EXPECT_EQ(terminal.Line(), "");
+    Update(progress, 0.5, "2 times real time");
+    EXPECT_EQ(terminal.Line().find("replay: 50 %, 2 times real time, "), 0U) << terminal.Line();
+  }
+  EXPECT_EQ(terminal.Line(), "");
+}
+
+// A line that wraps cannot be written over: each would stay.
+TEST(Progress, IsNoWiderThanTheTerminalAlsoWhenThatBecomesNarrower) {
+  Terminal terminal(30);
+  if (terminal.out() == nullptr) GTEST_SKIP() << "this computer gives no pseudo terminal";
+  Progress progress("replay", terminal.out());
+  Update(progress, 0.5, "123456 times real time", milliseconds(200));
+  EXPECT_EQ(terminal.Line(), "replay: 50 %, 123456 times re");
+  EXPECT_EQ(terminal.widest(), 29U);
+  terminal.SetColumns(10);
+  Update(progress, 0.5, "1 times real time", milliseconds(700));
+  EXPECT_EQ(terminal.Line().substr(0, 9), "replay: 5");
+}
+
+TEST(Progress, ElsewhereIsALineNowAndThenAndNotAtOnce) {
+  std::array<char, 4096> text{};
+  std::FILE* out = fmemopen(text.data(), text.size(), "w");
+  ASSERT_NE(out, nullptr);
+  {
+    Progress progress("sim", out, false, milliseconds(300));
+    Update(progress, 0.25, "", milliseconds(200));
+    EXPECT_STREQ(text.data(), "");
+    Update(progress, 0.5, "fast", milliseconds(200));
+    EXPECT_EQ(std::string(text.data()), "sim: 50 %, fast, 0 s left\n");
+  }
+  EXPECT_EQ(std::string(text.data()), "sim: 50 %, fast, 0 s left\n") << "no blanks are written to a file";
+  std::fclose(out);
+}
+
+TEST(Progress, OfNothingIsSilent) {
+  Progress progress("sim", nullptr);
+  for (int i = 0; i < 1000; ++i) progress.Update(0.5);
+  progress.Clear();
+}
+
+}  // namespace
+}  // namespace lookout::runtime
