@@ -1,5 +1,7 @@
 // The bytes of a capture against the files of the truth. Nothing here is shared with decoder or simulator but the class that writes the files: the
 // capture is read by the layout of libpcap, the packets by the VLP-16's manual, frames by the words of the design.
+#include <unistd.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -160,6 +162,8 @@ class SimWireTruth : public testing::Test {
     params.seed = 4;
     params.lidar = lidar;
     params.lidar.range_sd_m = 0.0;
+    std::filesystem::remove_all(folder_);  // of the run before
+    std::filesystem::create_directories(folder_);
     TruthWriter truth(folder_ / "truth", scene, TurnedBoat(), params.start);
     Simulation simulation(scene, TurnedBoat(), params, &truth);
     PcapSink sink(folder_ / "a.pcap", {2368, 8308});
@@ -245,7 +249,8 @@ class SimWireTruth : public testing::Test {
   }
 
   std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("lookout_wire_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+      std::filesystem::path(testing::TempDir()) /
+      ("lookout_wire_" + std::to_string(::getpid()) + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
   std::vector<Point> points_;
   std::vector<std::vector<std::string>> rows_;
 };

@@ -1,4 +1,6 @@
 // Whatever a network does to the packets of a lidar, the counters of vlp16 tell it exactly: the simulator's faults into the service.
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -76,7 +78,7 @@ TEST(Vlp16Faults, AreCountedExactlyOverAMinute) {
 
 // By way of a capture, with position packets and the latencies of the simulator.
 TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "lookout_vlp16_faults_test.pcap";
+  const auto file = std::filesystem::path(testing::TempDir()) / ("lookout_vlp16_faults_test" + std::to_string(::getpid()) + ".pcap");
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     sim::SimulationParams params;

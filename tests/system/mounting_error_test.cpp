@@ -55,7 +55,7 @@ class MountingError : public ::testing::Test {
   void MakeConfig(const std::string& name, double yaw_error_deg, double stated_sd_deg) const {
     fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / name);
     Replace(folder_ / name / "boat.txtpb", "yaw_deg: 5.0", "yaw_deg: " + std::to_string(5.0 + yaw_error_deg));
-    Replace(folder_ / name / "georeferencer.txtpb", "mounting_sd_deg: 0 ", "mounting_sd_deg: " + std::to_string(stated_sd_deg) + " ");
+    Replace(folder_ / name / "georeferencer.txtpb", "mounting_sd_deg: 0\n", "mounting_sd_deg: " + std::to_string(stated_sd_deg) + "\n");
   }
   static void Replace(const fs::path& file, const std::string& from, const std::string& to) {
     std::ostringstream text;

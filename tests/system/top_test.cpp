@@ -2,6 +2,7 @@
 #include <poll.h>
 #include <pty.h>
 #include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <gtest/gtest.h>
@@ -146,7 +147,8 @@ const std::string kScreenOfBefore = "\x1b[?1049l";
 
 TEST(Top, OncePrintsTheBusAsText) {
   const Talk talk;
-  const auto result = RunProgram({kProgram, "--once", "--seconds", "2"}, testing::TempDir() + "lookout_top_once.out");
+  const auto result =
+      RunProgram({kProgram, "--once", "--seconds", "2"}, testing::TempDir() + "lookout_top_once" + std::to_string(::getpid()) + ".out");
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(result.output.rfind("ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port\n", 0), 0U) << result.output;
   EXPECT_NE(result.output.find("\nLIDAR_SCAN "), std::string::npos) << result.output;
@@ -156,7 +158,7 @@ TEST(Top, OncePrintsTheBusAsText) {
 }
 
 TEST(Top, WithoutATerminalItSaysHowToDoWithout) {
-  const auto result = RunProgram({kProgram}, testing::TempDir() + "lookout_top_dumb.out");
+  const auto result = RunProgram({kProgram}, testing::TempDir() + "lookout_top_dumb" + std::to_string(::getpid()) + ".out");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("--once"), std::string::npos) << result.output;
 }

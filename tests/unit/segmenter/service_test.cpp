@@ -1,5 +1,7 @@
 #include "services/segmenter/service.hpp"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -151,7 +153,7 @@ TEST(SegmenterParams, AreTheDefaultsOfTheSchemaWhereNothingIsSet) {
 }
 
 TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
-  const auto folder = std::filesystem::path(::testing::TempDir()) / "segmenter_params";
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("segmenter_params" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);
   std::filesystem::copy_file(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
                              std::filesystem::copy_options::overwrite_existing);
@@ -169,6 +171,7 @@ TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
   }
   std::ofstream(folder / "segmenter.txtpb") << "image_columns: 16\n";
   EXPECT_EQ(LoadParams(folder).labelling.image_columns, 16);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

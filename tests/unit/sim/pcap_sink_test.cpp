@@ -1,5 +1,7 @@
 #include "tools/sim/pcap_sink.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <filesystem>
 #include <gtest/gtest.h>
@@ -22,7 +24,7 @@ unsigned Folded(const std::uint8_t* bytes, std::size_t size, unsigned sum) {
 }
 
 TEST(PcapSink, IsReadBackByLibpcapWithRightHeaders) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "lookout_pcap_sink_test.pcap";
+  const auto file = std::filesystem::path(testing::TempDir()) / ("lookout_pcap_sink_test" + std::to_string(::getpid()) + ".pcap");
   const Utime time = Utime(1'781'532'600s) + 123'456us;
   {
     PcapSink sink(file, {2368, 8308});

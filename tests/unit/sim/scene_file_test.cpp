@@ -1,5 +1,7 @@
 #include "tools/sim/scene_file.hpp"
 
+#include <unistd.h>
+
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -243,7 +245,7 @@ class SceneFolders : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
   void Write(const std::string& name, const std::string& text) { std::ofstream(folder_ / "scenes" / name) << text; }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / "lookout_scene_folders";
+  fs::path folder_ = fs::path(testing::TempDir()) / ("lookout_scene_folders" + std::to_string(::getpid()));
 };
 
 TEST_F(SceneFolders, BesideTheBoatComeFirst) {

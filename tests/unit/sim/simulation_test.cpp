@@ -1,5 +1,7 @@
 #include "tools/sim/simulation.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -116,7 +118,7 @@ TEST(Simulation, BoatWithoutHeadingSendsWhatAReceiverSendsAlone) {
 TEST(Simulation, ALidarWithoutPowerSendsNothingAndItsTruthHoldsNothing) {
   auto params = Params(1, 1s);
   params.faults = {ParseTimedFault("sensor_restart:0.3:0.6:0.2")};
-  const auto folder = std::filesystem::path(testing::TempDir()) / "lookout_simulation_test";
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("lookout_simulation_test" + std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
   const auto scene = MakeScene("lake", 1);
   std::vector<std::pair<Utime, std::uint32_t>> stamps;
@@ -173,7 +175,7 @@ std::vector<std::string> Lines(const std::filesystem::path& file) {
 }
 
 TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "lookout_truth_writer_test";
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("lookout_truth_writer_test" + std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
   const auto params = Params(1, 500ms);
   const auto scene = MakeScene("lake", 1);
