@@ -50,6 +50,7 @@ struct LogReader::Implementation {
   std::vector<std::uint8_t> block;
   std::int64_t block_offset = 0;
   std::string channel;  // of the event that was given last
+  std::function<void()> on_search;
 
   // @param least_bytes  to be read if any are
   // @return the bytes from `offset` on, `size` of them where the file has so many. They stand until the next call.
@@ -111,6 +112,7 @@ struct LogReader::Implementation {
   // The first sync word at or after `offset`; size_bytes when there is none.
   std::int64_t FindSync(std::int64_t offset) {
     while (offset + 4 <= size_bytes) {
+      if (on_search) on_search();
       const Bytes bytes = View(offset, kReadBytes);
       if (bytes.size() < 4) break;
       for (std::size_t i = 0; i + 4 <= bytes.size(); ++i) {
@@ -122,7 +124,8 @@ struct LogReader::Implementation {
   }
 };
 
-LogReader::LogReader(const std::filesystem::path& file) : implementation_(std::make_unique<Implementation>()) {
+LogReader::LogReader(const std::filesystem::path& file, std::function<void()> on_search) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->on_search = std::move(on_search);
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw std::runtime_error(file.string() + ": no such file");
   implementation_->size_bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));

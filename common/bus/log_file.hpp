@@ -31,8 +31,9 @@ struct LogEventView {
 
 class LogReader {
  public:
+  /// @param on_search  called for each block while an event is looked for in damage, which may be gigabytes; what it throws comes through
   /// @throws std::runtime_error when the file cannot be opened
-  explicit LogReader(const std::filesystem::path& file);
+  explicit LogReader(const std::filesystem::path& file, std::function<void()> on_search = {});
   ~LogReader();
   LogReader(const LogReader&) = delete;
   LogReader& operator=(const LogReader&) = delete;

@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <exception>
 #include <iostream>
 #include <locale>
 #include <optional>
@@ -26,6 +27,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t kBlockBytes = 64 * 1024;
 // Others may make and remove FILE.partial between the steps here; each round means that one did.
 constexpr int kMaxRounds = 100;
+// Results that could not be put in their place, kept beside each other.
+constexpr int kMaxKept = 100;
+// A program that has just made FILE.partial locks it in this time.
+constexpr unsigned kLockTimeUs = 20'000;
 
 std::runtime_error Fault(const fs::path& file, const std::string& reason) { return std::runtime_error(file.string() + ": " + reason); }
 
@@ -143,11 +148,11 @@ struct OutputFile::Implementation final : public std::streambuf {
     }
     if (descriptor < 0) throw Fault(file, "cannot be written: " + ErrnoText());
     struct stat state {};
-    if (fstat(descriptor, &state) == 0 && S_ISREG(state.st_mode) && IsAmong(options.inputs, state)) {
-      close(std::exchange(descriptor, -1));
-      throw Fault(file, "is an input");
-    }
-    return true;
+    if (fstat(descriptor, &state) != 0 || !S_ISREG(state.st_mode)) return true;
+    const bool is_input = IsAmong(options.inputs, state);
+    if (!is_input && OpenDescriptorOf(file)) return true;
+    close(std::exchange(descriptor, -1));
+    throw Fault(file, is_input ? "is an input" : "has become a regular file while it was opened");
   }
 
   void OpenPartial() {
@@ -197,33 +202,47 @@ struct OutputFile::Implementation final : public std::streambuf {
       const bool is_folder_missing = errno == ENOENT;
       throw Fault(file, is_folder_missing ? "its folder does not exist" : "cannot be made: " + ErrnoText());
     }
-    // Another program may have found it between the two calls, and now holds it or has removed it.
+    // Another program may have found it between the two calls, and now looks at it (for a moment only) or has removed it.
+    while (flock(made, LOCK_EX) != 0 && errno == EINTR && !IsStopAsked()) {
+    }
     struct stat own {};
     const auto state = StateOfName(partial);
-    if (flock(made, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-      close(made);
-      throw Fault(file, "is being written by another program");
-    }
     if (fstat(made, &own) != 0 || !state || !IsSame(own, *state)) {
       close(made);
       return false;
     }
+    try {
+      CheckPlace();  // again: from here on nobody else who asks for the lock puts a file there
+    } catch (const std::runtime_error&) {
+      unlink(partial.c_str());
+      close(made);
+      throw;
+    }
+    // What replaces a file is open to the same people. Some file systems know no modes.
+    const auto replaced = StateOfName(file);
+    if (replaced && S_ISREG(replaced->st_mode)) static_cast<void>(fchmod(made, replaced->st_mode & 0777));
     descriptor = made;
     return true;
   }
 
-  // FILE.partial is there: of a run that still goes on, or of one that was killed.
+  // FILE.partial is there: of a run that still goes on, or of one that was killed, or it is somebody's file.
   // @return why it stays; empty: it was removed, or is gone
   std::string RemoveLeftover(int found) const {
     struct stat own {};
     if (fstat(found, &own) != 0 || !S_ISREG(own.st_mode)) return "is no regular file; remove it";
     if (IsAmong(options.inputs, own)) return "is an input; give it another name";
     if (flock(found, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return "is being written by another program";
+    if (!options.force) {  // made this moment, perhaps
+      flock(found, LOCK_UN);
+      usleep(kLockTimeUs);
+      if (flock(found, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return "is being written by another program";
+    }
     // Between open and lock the other program may have come to its end and have moved the file to its place.
     const auto state = StateOfName(partial);
     if (!state || !IsSame(own, *state)) return "";
+    if (!options.force) return "is there: left by a run that did not come to its end, or somebody's file; remove it, or --force does";
     if (unlink(partial.c_str()) != 0 && errno != ENOENT) return "cannot be replaced: " + ErrnoText();
-    Tell(partial.string() + ": left by a run that did not come to its end; removed");
+    Tell(partial.string() + ": was there, and nobody was writing it; removed");
     return "";
   }
 
@@ -282,7 +301,8 @@ struct OutputFile::Implementation final : public std::streambuf {
     return size;
   }
 
-  void Commit() {
+  void Prepare() {
+    if (is_prepared) return;
     WriteOut();
     ThrowIfStopAsked();
     if (!partial.empty()) {
@@ -291,6 +311,13 @@ struct OutputFile::Implementation final : public std::streambuf {
       // And some (NFS) at close; a copy is closed, since the lock must last beyond the rename.
       const int copy = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
       if (copy >= 0 && close(copy) != 0) throw Fault(file, "not on the disk: " + ErrnoText());
+    }
+    is_prepared = true;
+  }
+
+  void Commit() {
+    Prepare();
+    if (!partial.empty()) {
       MoveToPlace();
       SyncFolder(file);
     }
@@ -304,23 +331,40 @@ struct OutputFile::Implementation final : public std::streambuf {
     if (!state || fstat(descriptor, &own) != 0 || !IsSame(own, *state)) {
       throw Fault(file, partial.string() + " was moved or removed while it was written");
     }
-    if (options.force && IsLocked(file)) {
-      is_done = true;
-      throw Fault(file, "is being written by another program; the whole result is in " + partial.string());
-    }
+    if (options.force && IsLocked(file)) throw Fault(file, "is being written by another program; the whole result is in " + KeepWhole().string());
     const int fault = options.force ? (rename(partial.c_str(), file.c_str()) == 0 ? 0 : errno) : RenameWithoutReplacing(partial, file);
     if (fault == 0) return;
-    is_done = true;  // a whole result is not thrown away
     const std::string reason =
         fault == EEXIST ? "has appeared while it was computed" : "cannot be put in its place: " + std::system_category().message(fault);
-    throw Fault(file, reason + "; the whole result is in " + partial.string());
+    throw Fault(file, reason + "; the whole result is in " + KeepWhole().string());
+  }
+
+  // A whole result is not thrown away: it gets a name that no run removes. @return the name
+  fs::path KeepWhole() {
+    is_done = true;
+    for (int i = 0; i < kMaxKept; ++i) {
+      auto name = file;
+      name += i == 0 ? ".whole" : ".whole." + std::to_string(i);
+      const int fault = RenameWithoutReplacing(partial, name);
+      if (fault == 0) SyncFolder(file);
+      if (fault == 0) return name;
+      if (fault != EEXIST) break;
+    }
+    return partial;
+  }
+
+  bool IsStandardOutput() const {
+    struct stat own {};
+    struct stat standard {};
+    return partial.empty() && fstat(descriptor, &own) == 0 && fstat(STDOUT_FILENO, &standard) == 0 && IsSame(own, standard);
   }
 
   const fs::path file;
   const OutputOptions options;
   fs::path partial;  // empty: written in place
   int descriptor = -1;
-  bool is_done = false;  // nothing is to be taken away
+  bool is_prepared = false;  // all is on the disk
+  bool is_done = false;      // nothing is to be taken away
   std::string buffer;
   std::ostream stream;
 };
@@ -340,8 +384,34 @@ std::ostream& OutputFile::stream() { return implementation_->stream; }
 
 int OutputFile::descriptor() const { return implementation_->descriptor; }
 
+void OutputFile::Prepare() { implementation_->Prepare(); }
+
 void OutputFile::Commit() { implementation_->Commit(); }
 
+bool OutputFile::IsStandardOutput() const { return implementation_->IsStandardOutput(); }
+
 const fs::path& OutputFile::file() const { return implementation_->file; }
+
+void CommitAll(const std::vector<OutputFile*>& files) {
+  for (auto* file : files) file->Prepare();
+  std::exception_ptr first_fault;
+  for (auto* file : files) {
+    try {
+      file->Commit();
+    } catch (const std::runtime_error&) {
+      if (!first_fault) first_fault = std::current_exception();
+    }
+  }
+  if (first_fault) std::rethrow_exception(first_fault);
+}
+
+std::vector<fs::path> FilesIn(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error); !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    if (entry->is_regular_file(error)) files.push_back(entry->path());
+  }
+  return files;
+}
 
 }  // namespace lookout::io

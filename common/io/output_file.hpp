@@ -27,11 +27,12 @@ struct OutputOptions {
 };
 
 /// The bytes go to FILE.partial beside the place of the file, locked against a second program that writes the same. Commit brings them to the disk
-/// and moves them to their place. What is no regular file (a device, a FIFO, /dev/stdout) is written directly.
+/// and moves them to their place. What is no regular file (a device, a FIFO, /dev/stdout) is written directly. A FILE.partial that is there already
+/// is removed with `force` only.
 class OutputFile {
  public:
   /// @throws std::runtime_error, with path and reason: the file exists and `force` is not set; it is a folder, or one of the inputs; its folder is
-  ///         missing or cannot be written to; another program writes it now
+  ///         missing or cannot be written to; another program writes it now; a FILE.partial is there and `force` is not set
   explicit OutputFile(const std::filesystem::path& file, OutputOptions options = {});
 
   /// What was not committed is removed, and a line says so.
@@ -49,9 +50,17 @@ class OutputFile {
   /// For a library that writes by itself. Nothing may be written by the above then.
   int descriptor() const;
 
-  /// All is written: brings it to the disk and moves it to its place.
-  /// @throws std::runtime_error as Write; or when a file has taken the place meanwhile: then FILE.partial is left, whole
+  /// All is written: brings it to the disk, as FILE.partial still. After it Commit fails only where the file cannot be moved to its place.
+  /// @throws as Write
+  void Prepare();
+
+  /// All is written: brings it to the disk, unless Prepare has, and moves it to its place.
+  /// @throws std::runtime_error as Write; or when a file has taken the place meanwhile: then the result is kept, whole, as FILE.whole (FILE.whole.1,
+  ///         ... where that is taken), and the message says so
   void Commit();
+
+  /// Whether the bytes go where standard output goes: lines for people do not belong there then.
+  bool IsStandardOutput() const;
 
   const std::filesystem::path& file() const;
 
@@ -59,5 +68,12 @@ class OutputFile {
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Outputs that belong together: all are brought to the disk before the first gets its name. What cannot be moved to its place then is kept as by
+/// Commit, and the others get their names all the same. @throws as Commit
+void CommitAll(const std::vector<OutputFile*>& files);
+
+/// The regular files of a folder, for OutputOptions::inputs.
+std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& folder);
 
 }  // namespace lookout::io

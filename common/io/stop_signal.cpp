@@ -1,8 +1,11 @@
 #include "common/io/stop_signal.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <string>
 
@@ -22,7 +25,18 @@ extern "C" void OnStopSignal(int signal) {
   alarm(kKickPeriodS);
 }
 
-extern "C" void OnAlarm(int /*signal*/) { alarm(kKickPeriodS); }
+// The next signal ends a program that does not look. Not the second at once: some senders (timeout) send each signal twice.
+extern "C" void OnAlarm(int /*signal*/) {
+  const int error_number = errno;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction action {};
+    if (sigaction(signal, nullptr, &action) != 0 || action.sa_handler != OnStopSignal) continue;
+    action.sa_handler = SIG_DFL;
+    sigaction(signal, &action, nullptr);
+  }
+  errno = error_number;
+  alarm(kKickPeriodS);
+}
 
 // Without SA_RESTART: calls that block end with EINTR. A program may be started with signals blocked.
 void Catch(int signal, void (*handler)(int)) {
@@ -41,6 +55,15 @@ bool IsIgnored(int signal) {
   return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
 }
 
+// An output would get the number of a standard stream that is closed, and the program's own lines would be written into it. What is opened instead
+// lets input and output fail, as the closed one did; lines for people go nowhere.
+void OpenStandardStreams() {
+  constexpr std::array<int, 3> kModes{O_WRONLY, O_RDONLY, O_WRONLY};
+  for (int i = 0; i < static_cast<int>(kModes.size()); ++i) {
+    if (fcntl(i, F_GETFD) < 0 && errno == EBADF) open("/dev/null", kModes.at(static_cast<std::size_t>(i)));  // the lowest number that is free: this
+  }
+}
+
 std::string NameOf(int signal) {
   switch (signal) {
     case SIGINT:
@@ -55,6 +78,7 @@ std::string NameOf(int signal) {
 }  // namespace
 
 void CatchStopSignals() {
+  OpenStandardStreams();
   Catch(SIGALRM, OnAlarm);
   Catch(SIGINT, OnStopSignal);
   Catch(SIGTERM, OnStopSignal);

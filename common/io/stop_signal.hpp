@@ -12,7 +12,9 @@ class Stopped : public std::runtime_error {
 };
 
 /// From here on SIGINT, SIGTERM and SIGHUP (unless it was ignored: nohup) are noted, not deadly; SIGPIPE and SIGXFSZ become errors of write(2).
-/// A system call that blocks (a pipe that nobody reads) ends with EINTR, at the latest a second after the signal. To be called once, in main.
+/// A system call that blocks (a pipe that nobody reads) ends with EINTR, at the latest a second after the signal; from then on the next signal is
+/// deadly, for work that does not look. Where standard input, output or error is closed a file in its place is opened, so that no output gets its
+/// number. To be called once, first in main.
 void CatchStopSignals();
 
 /// Whether one has come. Any thread.

@@ -158,8 +158,10 @@ void Service::WatchDisk() {
   } else if (status.num_lost_queue_full > last_lost_queue_full_) {
     warnings_.push_back(std::to_string(status.num_lost_queue_full - last_lost_queue_full_) + " events lost: " + Printable(status.fault));
   }
-  if (status.num_disturbed > last_disturbed_ && status.is_recording) warnings_.push_back(Printable(status.fault));
+  const bool wants_anew = status.wants_new_file && !wanted_new_file_;
+  if (status.is_recording && (status.num_disturbed > last_disturbed_ || wants_anew)) warnings_.push_back(Printable(status.fault));
   last_disturbed_ = status.num_disturbed;
+  wanted_new_file_ = status.wants_new_file;
   was_recording_ = status.is_recording;
   last_lost_queue_full_ = status.num_lost_queue_full;
 }
@@ -203,7 +205,7 @@ HealthReport Service::Report() const {
   } else if (num_lost > 0) {
     report.state = HealthState::kDegraded;
     report.reason = "recording again; " + std::to_string(num_lost) + " events lost: " + Printable(status.fault);
-  } else if (status.num_disturbed > 0) {
+  } else if (status.num_disturbed > 0 || status.wants_new_file) {
     report.state = HealthState::kDegraded;
     report.reason = "recording, nothing lost, but " + Printable(status.fault);
   } else if (num_raw_missing_ > 0) {

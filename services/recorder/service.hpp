@@ -76,6 +76,7 @@ class Service {
   bool was_recording_ = true;
   std::int64_t last_lost_queue_full_ = 0;
   std::int64_t last_disturbed_ = 0;
+  bool wanted_new_file_ = false;
   std::int64_t num_unknown_ = 0;
   std::int64_t num_nameless_ = 0;
   std::int64_t num_missing_ = 0;      // gaps in seq, of any channel

@@ -116,8 +116,15 @@ for name in replay sim csv svg ply slice repair; do
   # Devices and pipes are written directly.
   expect_code 0 /dev/null
   expect_nothing /dev/null.partial
-  run /dev/stdout 2>said | wc -c >size
-  [ "$(cat size)" -gt 100 ] || fail "nothing came out of /dev/stdout"
+  expect_code 0 named
+  run /dev/stdout 2>said | cat >piped
+  cmp named piped >>said 2>&1 || fail "what came out of /dev/stdout is not the same as the file"
+  rm -f named piped
+  # A standard stream that is closed is no output.
+  run out >said 2>&-
+  run named 2>said >/dev/null
+  cmp out named >>said 2>&1 || fail "the output is another one with standard error closed"
+  rm -f out named
   if [ -e /dev/full ]; then
     expect_code 1 /dev/full
     expect_said "No space left on device"
@@ -146,8 +153,11 @@ for name in replay sim csv svg ply slice repair; do
   exec 9>&-
   # The rest of a run that was killed.
   echo "half" >out.partial
-  expect_code 0 out
+  expect_code 1 out
   expect_said "left by a run that did not come to its end"
+  [ "$(cat out.partial)" = half ] || fail "out.partial was removed unasked"
+  expect_code 0 out --force
+  expect_said "out.partial: was there"
   expect_nothing out.partial
   rm -f out
 done
@@ -155,7 +165,7 @@ done
 # SIGINT half way: an input so large that the work lasts.
 cat in.lcmlog in.lcmlog in.lcmlog in.lcmlog >four
 cat four four four four four four four four >large.lcmlog
-for name in replay sim csv svg slice repair; do
+for name in replay sim csv svg ply slice repair; do
   input=large.lcmlog
   seconds=3000
   for signal in INT TERM; do
@@ -165,7 +175,7 @@ for name in replay sim csv svg slice repair; do
     for ((i = 0; i < 500; ++i)); do
       [ -s out.partial ] && break
       # A picture is written at once, at the end.
-      [ "$name" = svg ] && [ -e out.partial ] && break
+        case $name in svg | ply) [ -e out.partial ] && break ;; esac
       [ -e out ] && break
       sleep 0.01
     done
@@ -200,6 +210,35 @@ sim_truth --force || fail "exit code $? with --force"
 rm -rf truth
 sim_truth && fail "replaced the capture unasked"
 expect_nothing truth
+
+# A whole set or nothing of it.
+if [ "$LOOKOUT_SMALL_DISK" = yes ]; then
+  rm -rf b.pcap
+  "$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds 1 --pcap b.pcap --truth disk/truth >said 2>&1 && fail "wrote to a full disk"
+  expect_said "No space left on device"
+  expect_nothing b.pcap b.pcap.partial disk/truth
+fi
+
+# In damage without end the signal is noticed too.
+in_damage=(slice repair csv replay)
+truncate -s 30G zeros 2>said || in_damage=()  # a file system without sparse files
+for name in "${in_damage[@]}"; do
+  input=zeros
+  exec=exec run out >said 2>&1 &
+  pid=$!
+  sleep 0.3
+  kill -INT "$pid"
+  for ((i = 0; i < 300; ++i)); do
+    kill -0 "$pid" 2>/dev/null || break
+    sleep 0.01
+  done
+  kill -KILL "$pid" 2>/dev/null && fail "goes on 3 s after SIGINT"
+  wait "$pid"
+  pid=''
+  expect_said "stopped by SIGINT"
+  expect_nothing out out.partial
+done
+rm -f zeros
 
 # Pages and tables of lookout-eval.
 name=eval

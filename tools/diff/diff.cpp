@@ -111,8 +111,8 @@ class ChannelComparison {
       ++a_.next;
       ++b_.next;
     }
-    result_.num_behind_a = a_.NumLeft();
-    result_.num_behind_b = b_.NumLeft();
+    result_.num_behind_a = NumBehind(a_, b_);
+    result_.num_behind_b = NumBehind(b_, a_);
     StepOver(a_, a_.NumLeft(), result_.num_only_a, "only in A");
     StepOver(b_, b_.NumLeft(), result_.num_only_b, "only in B");
     return std::move(result_);
@@ -137,6 +137,15 @@ class ChannelComparison {
     const auto header_b = bus::ReadHeader(b.bytes);
     return header_a && header_b && header_a->fingerprint == header_b->fingerprint && header_a->utime_us == header_b->utime_us &&
            header_a->seq == header_b->seq;
+  }
+
+  // Of what is left in one log when the other has come to its end: messages not before the other's last one (parts of a turn have one time). Where
+  // the pairs were not found, or the other log has none at all, nobody knows.
+  std::int64_t NumBehind(Side& side, const Side& other) const {
+    if (side.NumLeft() == 0 || num_in_vain_ > 0 || other.places == nullptr) return 0;
+    const auto first = bus::ReadHeader(side.Read(0).bytes);
+    const auto last = bus::ReadHeader(other.log.Read(other.places->back()).bytes);
+    return first && last && first->utime_us >= last->utime_us ? side.NumLeft() : 0;
   }
 
   // Two messages with other times and numbers: where one log lacks some that the other has, steps over them. @return whether it did
@@ -190,6 +199,7 @@ class Cuts {
   void Add(const std::string& channel, const ChannelResult& result) {
     if (result.num_behind_a > 0) behind_a_.push_back(fmt::format("{} {}", channel, result.num_behind_a));
     if (result.num_behind_b > 0) behind_b_.push_back(fmt::format("{} {}", channel, result.num_behind_b));
+    has_others_ = has_others_ || result.num_different > 0 || result.num_only_a > result.num_behind_a || result.num_only_b > result.num_behind_b;
     if (!result.first) return;
     const auto start = std::max(a_.first_time(), b_.first_time());
     is_early_ = is_early_ || (start && result.first->time - *start < kSettling);
@@ -198,12 +208,8 @@ class Cuts {
   void Print(std::ostream& out) const {
     const auto end_a = a_.marks().WithoutEnd();
     const auto end_b = b_.marks().WithoutEnd();
-    if ((!end_a.empty() && !behind_b_.empty()) || (!end_b.empty() && !behind_a_.empty())) {
-      PrintCut(out, "A", end_a);
-      PrintCut(out, "B", end_b);
-      PrintBehind(out, "A", behind_a_);
-      PrintBehind(out, "B", behind_b_);
-    }
+    if (!end_a.empty() && !behind_b_.empty()) PrintCut(out, "A", end_a, "B", behind_b_);
+    if (!end_b.empty() && !behind_a_.empty()) PrintCut(out, "B", end_b, "A", behind_a_);
     if (!is_early_) return;
     for (const auto& [name, log] : {std::pair("A", &a_), std::pair("B", &b_)}) {
       const auto channels = log->marks().WithoutStart();
@@ -217,12 +223,11 @@ class Cuts {
   // Filters have settled by then.
   static constexpr std::chrono::seconds kSettling{30};
 
-  static void PrintCut(std::ostream& out, const char* name, const std::vector<std::string>& channels) {
-    if (channels.empty()) return;
-    out << fmt::format("reason: {} ends without an end mark of {}: it was cut there, and lacks what was under way\n", name, log::Joined(channels));
-  }
-  static void PrintBehind(std::ostream& out, const char* name, const std::vector<std::string>& channels) {
-    if (!channels.empty()) out << fmt::format("behind the last message of the other log {} has: {}\n", name, fmt::join(channels, ", "));
+  void PrintCut(std::ostream& out, const char* cut, const std::vector<std::string>& channels, const char* other,
+                const std::vector<std::string>& behind) const {
+    out << fmt::format("reason{}: {} ends without an end mark of {}: it was cut there, and lacks what was under way\n",
+                       has_others_ ? ", perhaps" : "", cut, log::Joined(channels));
+    out << fmt::format("behind the last message of the other log {} has: {}\n", other, fmt::join(behind, ", "));
   }
 
   const IndexedLog& a_;
@@ -230,6 +235,7 @@ class Cuts {
   std::vector<std::string> behind_a_;
   std::vector<std::string> behind_b_;
   bool is_early_ = false;
+  bool has_others_ = false;  // differences that no cut explains
 };
 
 int Compare(const Request& request, std::ostream& out, std::ostream& errors) {

@@ -70,7 +70,7 @@ int Export(const Request& request, std::ostream& errors) {
   for (const auto& channel : sink->Channels()) tallies.push_back({.channel = channel});
   // All inputs are opened first: a mistyped name must not cost an hour of reading.
   std::vector<std::unique_ptr<bus::LogReader>> readers;
-  for (const auto& input : request.inputs) readers.push_back(std::make_unique<bus::LogReader>(input));
+  for (const auto& input : request.inputs) readers.push_back(std::make_unique<bus::LogReader>(input, io::ThrowIfStopAsked));
 
   io::OutputFile output(
       request.output.value_or("/dev/stdout"),

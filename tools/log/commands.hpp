@@ -35,6 +35,6 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
 /// Writes every whole event of `input`, and prints what was lost: how many bytes, in which stretches, where.
 /// @param force  an existing output is replaced
 /// @throws std::runtime_error when `input` cannot be opened or holds no event, `output` exists or cannot be written
-void Repair(const std::filesystem::path& input, const std::filesystem::path& output, bool force, std::ostream& out);
+void Repair(const std::filesystem::path& input, const std::filesystem::path& output, bool force, std::ostream& out, std::ostream& errors);
 
 }  // namespace lookout::log

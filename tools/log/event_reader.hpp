@@ -22,7 +22,7 @@ struct DamagedStretch {
 class EventReader {
  public:
   /// @throws std::runtime_error when the file cannot be opened
-  explicit EventReader(const std::filesystem::path& file) : reader_(file) {}
+  explicit EventReader(const std::filesystem::path& file) : reader_(file, io::ThrowIfStopAsked) {}
 
   /// @return the next whole event; nullopt at the end
   /// @throws io::Stopped

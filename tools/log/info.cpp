@@ -133,6 +133,10 @@ class LogSummary {
     };
     print("begins", "a start", marks_.WithoutStart(), "what a replay gives first need not equal the live run");
     print("ends", "an end", marks_.WithoutEnd(), "cut there: a replay gives nothing for the scan and the poses that were under way");
+    if (const auto channels = marks_.CutInside(); !channels.empty()) {
+      out << fmt::format("{:<9} a run without an end mark is followed by another: {}; what a replay gives there need not equal the live run\n",
+                         "within", Joined(channels));
+    }
   }
 
   void AddToChannel(const bus::LogEvent& event) {

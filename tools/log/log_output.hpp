@@ -28,6 +28,9 @@ class LogOutput {
     file_.Commit();
   }
 
+  /// As of io::OutputFile; to be asked before Commit.
+  bool IsStandardOutput() const { return file_.IsStandardOutput(); }
+
   std::int64_t num_events() const { return num_events_; }
 
  private:

@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
       request.output = output;
       log::Slice(request, std::cout, std::cerr);
     } else {
-      log::Repair(damaged, mended, force, std::cout);
+      log::Repair(damaged, mended, force, std::cout, std::cerr);
     }
     std::cout.flush();
     if (!std::cout) throw std::runtime_error("standard output could not be written");

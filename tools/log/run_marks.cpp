@@ -47,7 +47,9 @@ void RunMarks::Add(Utime time, std::string_view channel, Bytes bytes) {
   const auto mark = index ? MarkOf(*index, bytes) : std::nullopt;
   if (!mark) return;  // what is no such message nobody consumed
   auto& stream = streams_.at(*index);
-  if (!stream.has_messages) stream.begins_with_start = IsStart(*index, *mark);
+  const bool is_start = IsStart(*index, *mark);
+  if (!stream.has_messages) stream.begins_with_start = is_start;
+  if (stream.has_messages && is_start && !stream.ends_with_end) stream.is_cut_inside = true;
   stream.has_messages = true;
   stream.ends_with_end = IsEnd(*index, *mark);
   stream.last = time;
@@ -73,6 +75,14 @@ std::vector<std::string> RunMarks::WithoutEnd() const {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < kChannels.size(); ++i) {
     if (streams_.at(i).has_messages && !streams_.at(i).ends_with_end) names.emplace_back(kChannels.at(i));
+  }
+  return names;
+}
+
+std::vector<std::string> RunMarks::CutInside() const {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kChannels.size(); ++i) {
+    if (streams_.at(i).is_cut_inside) names.emplace_back(kChannels.at(i));
   }
   return names;
 }

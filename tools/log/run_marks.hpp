@@ -31,6 +31,9 @@ class RunMarks {
   std::vector<std::string> WithoutStart() const;
   std::vector<std::string> WithoutEnd() const;
 
+  /// Of these, those where a run without an end mark is followed by another one.
+  std::vector<std::string> CutInside() const;
+
   bool HasEnd(std::string_view channel) const;
 
   /// Time of the event that came last; nullopt: none.
@@ -41,6 +44,7 @@ class RunMarks {
     bool has_messages = false;
     bool begins_with_start = false;
     bool ends_with_end = false;
+    bool is_cut_inside = false;
     Utime last;
   };
   std::array<Stream, 2> streams_;  // LIDAR_PACKETS, NAV_RAW

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <ostream>
 
@@ -37,11 +38,15 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
   const auto to = LimitOf("--to", request.to, start);
   if (from && to && *from >= *to) throw UsageError("--from must be before --to");
 
+  // All inputs are opened first: a mistyped name must not cost an hour of reading.
+  std::deque<EventReader> readers;
+  for (const auto& file : request.inputs) readers.emplace_back(file);
   LogOutput output(request.output, {.force = request.force, .inputs = request.inputs});
   std::optional<bus::LogEvent> run_info;  // the last in front of the slice
   std::int64_t num_events = 0;            // of the slice
-  for (const auto& file : request.inputs) {
-    EventReader reader(file);
+  for (std::size_t i = 0; i < readers.size(); ++i) {
+    auto& reader = readers[i];
+    const auto& file = request.inputs[i];
     while (auto event = reader.Next()) {
       const bool is_run_info = event->channel == bus::kRunInfo.name;
       const bool is_wanted = request.channels.empty() || std::ranges::find(request.channels, event->channel) != request.channels.end();
@@ -56,8 +61,9 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
     if (!reader.damage().empty()) errors << fmt::format("{}: {} damaged stretches were skipped\n", file.string(), reader.damage().size());
   }
   if (num_events == 0) throw std::runtime_error("no event of that time and channel");
+  auto& lines = output.IsStandardOutput() ? errors : out;  // a log that goes there is not mixed with lines
   output.Commit();
-  out << fmt::format("{}: {} events\n", request.output.string(), output.num_events());
+  lines << fmt::format("{}: {} events\n", request.output.string(), output.num_events());
 }
 
 }  // namespace lookout::log

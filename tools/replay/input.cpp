@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <set>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
@@ -113,7 +114,7 @@ void FeedCapture(const Feeding& feeding) {
 
 void FeedLog(const Feeding& feeding, const Plan& plan) {
   const auto& [file, chain, summary, progress, show] = feeding;
-  bus::LogReader reader(file);
+  bus::LogReader reader(file, io::ThrowIfStopAsked);
   Order order(file, chain, progress);
   std::int64_t num_oversize = 0;
   const auto is_wanted = [&plan](std::string_view channel) { return plan.Reads(channel) || log::RunMarks::IsMarked(channel); };
@@ -139,7 +140,7 @@ void FeedLog(const Feeding& feeding, const Plan& plan) {
 void Look(const std::filesystem::path& file, const std::set<std::string, std::less<>>& candidates, std::set<std::string, std::less<>>& present,
           std::optional<run_info_t>& recorded) {
   const auto is_found = [&] { return std::ranges::all_of(candidates, [&](const auto& channel) { return present.contains(channel); }); };
-  bus::LogReader reader(file);
+  bus::LogReader reader(file, io::ThrowIfStopAsked);
   while (!is_found()) {
     io::ThrowIfStopAsked();
     const auto event = reader.NextView([](std::string_view channel) { return channel == bus::kRunInfo.name; });
@@ -159,7 +160,7 @@ InputKind KindOf(const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   if (std::ranges::find(kCaptureMagics, start) != kCaptureMagics.end()) return InputKind::kCapture;
   // A log may be damaged at its start.
-  return start == kLogSyncWord || bus::LogReader(file).Next() ? InputKind::kLog : InputKind::kCapture;
+  return start == kLogSyncWord || bus::LogReader(file, io::ThrowIfStopAsked).Next() ? InputKind::kLog : InputKind::kCapture;
 }
 
 Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request) {
@@ -169,7 +170,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
   std::size_t num_logs = 0;
   for (const auto& file : files) {
     const bool is_log = KindOf(file) == InputKind::kLog;
-    inspection.num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
+    inspection.sizes_bytes.push_back(static_cast<std::int64_t>(std::filesystem::file_size(file)));
     if (is_log) Look(file, candidates, present, inspection.recorded);
     num_logs += is_log ? 1 : 0;
   }
@@ -186,12 +187,14 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
 InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress) {
   InputSummary summary;
   const auto start = std::chrono::steady_clock::now();
-  const auto total_bytes = static_cast<double>(std::max<std::int64_t>(1, inspection.num_bytes));
+  const auto& sizes_bytes = inspection.sizes_bytes;
+  const auto total_bytes = static_cast<double>(std::max<std::int64_t>(1, std::accumulate(sizes_bytes.begin(), sizes_bytes.end(), std::int64_t{0})));
   std::int64_t num_bytes = 0;
   const auto speed = [&] {
     return fmt::format("{:.0f} times real time", ToSeconds(chain.span()) / ToSeconds(std::chrono::steady_clock::now() - start));
   };
-  for (const auto& file : files) {
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto& file = files[i];
     const auto show = [&](std::int64_t num_bytes_of_file) {
       io::ThrowIfStopAsked();
       progress.Update(static_cast<double>(num_bytes + num_bytes_of_file) / total_bytes, speed);
@@ -204,7 +207,7 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
     } else {
       FeedCapture(feeding);
     }
-    num_bytes += static_cast<std::int64_t>(std::filesystem::file_size(file));
+    num_bytes += sizes_bytes[i];  // not asked for again: a file that is open may be moved or deleted
   }
   return summary;
 }

@@ -24,9 +24,9 @@ InputKind KindOf(const std::filesystem::path& file);
 /// What is to be done with these files.
 struct Inspection {
   Plan plan;
-  bool is_logs = false;                // else captures
-  std::optional<run_info_t> recorded;  // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
-  std::int64_t num_bytes = 0;          // size of all files
+  bool is_logs = false;                   // else captures
+  std::optional<run_info_t> recorded;     // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
+  std::vector<std::int64_t> sizes_bytes;  // of the files
 };
 
 /// Reads as far as is needed to know what to run. @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the

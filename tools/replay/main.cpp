@@ -77,7 +77,8 @@ Options ParseOptions(int argc, char** argv) {
 class Output {
  public:
   explicit Output(const Options& options)
-      : file_(options.output, {.force = options.force, .inputs = options.inputs, .tell = [](const std::string& line) { spdlog::warn("{}", line); }}),
+      : file_(options.output,
+              {.force = options.force, .inputs = InputsOf(options), .tell = [](const std::string& line) { spdlog::warn("{}", line); }}),
         writer_([this](lookout::Bytes bytes) { file_.Write(bytes); }) {}
 
   void SetRunInfo(lookout::run_info_t run_info) { run_info_ = std::move(run_info); }
@@ -91,19 +92,26 @@ class Output {
   }
   void Flush() { writer_.Flush(); }
   void Commit() { file_.Commit(); }
+  bool IsStandardOutput() const { return file_.IsStandardOutput(); }
 
  private:
+  static std::vector<fs::path> InputsOf(const Options& options) {
+    auto inputs = lookout::io::FilesIn(options.config_folder);
+    inputs.insert(inputs.end(), options.inputs.begin(), options.inputs.end());
+    return inputs;
+  }
+
   lookout::io::OutputFile file_;
   lookout::bus::LogWriter writer_;
   lookout::run_info_t run_info_{};
   bool has_begun_ = false;
 };
 
-void PrintDigests(Chain& chain) {
+void PrintDigests(Chain& chain, std::FILE* out) {
   for (const auto& channel : lookout::bus::kChannels) {
     const auto entry = chain.digests().find(channel.name);
     if (entry == chain.digests().end()) continue;
-    fmt::print("{:<14} {:>8} {}\n", entry->first, entry->second.count, entry->second.sha256.Finish());
+    fmt::print(out, "{:<14} {:>8} {}\n", entry->first, entry->second.count, entry->second.sha256.Finish());
   }
 }
 
@@ -154,6 +162,10 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
     spdlog::warn("{}: the input ends without an end mark: it was cut there, and nothing is computed for the scan and the poses that were under way",
                  lookout::log::Joined(channels));
   }
+  if (const auto channels = marks.CutInside(); !channels.empty()) {
+    spdlog::warn("{}: the input holds a run without an end mark and another behind it; what is computed where it was cut need not equal the live run",
+                 lookout::log::Joined(channels));
+  }
   if (num_left_out > 0) {
     spdlog::warn("{} messages of SEGMENTS at the end waited for a POSE that the input does not hold: no OBSTACLES are computed of them",
                  num_left_out);
@@ -186,7 +198,6 @@ void Replay(const Options& options) {
   PrintMarks(summary.marks, num_left_out);
   spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
-  PrintDigests(chain);
 
   const bool is_capture = inspection.plan.lidar == lookout::vlp16::Input::kOutside;
   if (is_capture && CountOf(chain, lookout::bus::kLidarPackets) == 0 && chain.num_nmea_datagrams() == 0) {
@@ -195,7 +206,9 @@ void Replay(const Options& options) {
   if (chain.num_data_datagrams() > 0 && num_turns == 0) {
     throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + chain.LidarComplaint());
   }
+  std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
+  PrintDigests(chain, out);  // last: the log is there, whoever reads these
 }
 
 // Memory that is given back to the system is asked for again at the next turn: page faults took a tenth of the time.

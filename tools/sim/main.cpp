@@ -50,6 +50,8 @@ void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double s
   sigemptyset(&stop_signals);
   sigaddset(&stop_signals, SIGINT);
   sigaddset(&stop_signals, SIGTERM);
+  struct sigaction hangup {};
+  if (sigaction(SIGHUP, nullptr, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&stop_signals, SIGHUP);  // nohup: it goes on
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
   const auto base = std::chrono::steady_clock::now() + (start - runtime::HostNow());
   while (const auto datagram = network.Next()) {
@@ -82,7 +84,8 @@ sim::SimulationParams ToParams(const sim::Options& options) {
 
 void Run(const sim::Options& options) {
   const auto boat = config::LoadBoat(options.config_folder);
-  const auto scene = sim::LoadScene(sim::FindScene(options.scene, options.config_folder), options.seed);
+  const auto scene_file = sim::FindScene(options.scene, options.config_folder);
+  const auto scene = sim::LoadScene(scene_file, options.seed);
   const auto params = ToParams(options);
   auto network_params = options.network;
   network_params.timed = options.faults;
@@ -90,6 +93,8 @@ void Run(const sim::Options& options) {
   // Outputs before all work.
   io::OutputOptions outputs;
   outputs.force = options.force;
+  outputs.inputs = io::FilesIn(options.config_folder);
+  outputs.inputs.emplace_back(scene_file);
   outputs.tell = [](const std::string& line) { std::cerr << "lookout-sim: " << line << '\n'; };
   std::unique_ptr<sim::PcapSink> capture;
   if (options.udp_host.empty()) {
@@ -117,11 +122,15 @@ void Run(const sim::Options& options) {
     sim::UdpSink sink(options.udp_host);
     Pace(network, sink, params.start, options.speed);
   }
-  if (truth) truth->Close();
-  if (capture) capture->Close();
+  std::vector<io::OutputFile*> files;
+  if (truth) files = truth->Finish();
+  if (capture) files.push_back(&capture->Finish());
+  const bool is_capture_on_stdout = capture && files.back()->IsStandardOutput();
+  io::CommitAll(files);
   const auto& totals = network.totals();
-  std::cout << "data packets made " << totals.num_made << ", sent " << totals.num_sent << ", dropped " << totals.num_dropped << ", doubled "
-            << totals.num_doubled << ", swapped " << totals.num_swapped << '\n';
+  auto& out = is_capture_on_stdout ? std::cerr : std::cout;
+  out << "data packets made " << totals.num_made << ", sent " << totals.num_sent << ", dropped " << totals.num_dropped << ", doubled "
+      << totals.num_doubled << ", swapped " << totals.num_swapped << '\n';
 }
 
 }  // namespace

@@ -127,9 +127,9 @@ void PcapSink::Send(const Datagram& datagram) {
   if (std::ferror(pcap_dump_file(implementation_->dumper)) != 0) implementation_->Fail();
 }
 
-void PcapSink::Close() {
+io::OutputFile& PcapSink::Finish() {
   if (pcap_dump_flush(implementation_->dumper) != 0) implementation_->Fail();
-  implementation_->file.Commit();
+  return implementation_->file;
 }
 
 }  // namespace lookout::sim

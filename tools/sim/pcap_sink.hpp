@@ -21,7 +21,10 @@ class PcapSink final : public Sink {
   void Send(const Datagram& datagram) override;
 
   /// All was sent: the file gets its name. @throws std::runtime_error as io::OutputFile::Commit
-  void Close();
+  void Close() { Finish().Commit(); }
+
+  /// All was sent, and is in the file that is given: for io::CommitAll. @throws std::runtime_error when the disk does not take it
+  io::OutputFile& Finish();
 
  private:
   struct Implementation;

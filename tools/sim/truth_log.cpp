@@ -111,10 +111,10 @@ void TruthLog::AdvanceTo(Utime time) {
   for (; next_objects_ < time + kObjectPeriod; next_objects_ += kObjectPeriod) WriteObjects(next_objects_);
 }
 
-void TruthLog::Close() {
+io::OutputFile& TruthLog::Finish() {
   WritePackets();
   log_.Flush();
-  file_.Commit();
+  return file_;
 }
 
 }  // namespace lookout::sim

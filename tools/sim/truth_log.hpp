@@ -32,7 +32,10 @@ class TruthLog {
   void AdvanceTo(Utime time);
 
   /// Writes out what is held; the file gets its name.
-  void Close();
+  void Close() { Finish().Commit(); }
+
+  /// Writes out what is held, into the file that is given: for io::CommitAll.
+  io::OutputFile& Finish();
 
   static constexpr std::size_t kPacketsPerMessage = 24;  // as in LIDAR_PACKETS: 28 kB
   static constexpr std::chrono::milliseconds kObjectPeriod{100};

@@ -175,9 +175,6 @@ void TruthWriter::AdvanceTo(Utime time) {
   for (; next_outline_ < time + kOutlinePeriod; next_outline_ += kOutlinePeriod) WriteObjectsAt(next_outline_);
 }
 
-void TruthWriter::Close() {
-  log_.Close();
-  for (auto* out : {&objects_, &object_poses_, &outlines_, &returns_, &pose_, &faults_}) out->Commit();
-}
+std::vector<io::OutputFile*> TruthWriter::Finish() { return {&log_.Finish(), &objects_, &object_poses_, &outlines_, &returns_, &pose_, &faults_}; }
 
 }  // namespace lookout::sim

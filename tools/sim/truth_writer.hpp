@@ -37,8 +37,11 @@ class TruthWriter {
   /// Writes poses and moving outlines up to `time`.
   void AdvanceTo(Utime time);
 
-  /// All is told: the files get their names. @throws std::runtime_error as io::OutputFile::Commit
-  void Close();
+  /// All is told: the files get their names. @throws std::runtime_error as io::CommitAll
+  void Close() { io::CommitAll(Finish()); }
+
+  /// All is told, and is in the files that are given: for io::CommitAll.
+  std::vector<io::OutputFile*> Finish();
 
  private:
   void WriteObjects();

@@ -150,12 +150,12 @@ void DiskWriter::Run() {
 void DiskWriter::WriteBlock(const Block& block) {
   const bool begins = !block.stem.empty();
   if (begins) {
-    CloseFile();
+    SyncFile();  // and looked at, before the new one takes a name that may be its
     std::error_code ignored;
     std::filesystem::create_directories(folder_, ignored);  // what is wrong there open() tells; room is looked for on the right disk
   }
   if (HasRoomFor(block)) {
-    if (begins) OpenFile(block.stem);
+    if (begins && !OpenFile(block.stem)) return;
     std::size_t num_written = 0;
     while (descriptor_ >= 0 && num_written < block.bytes.size()) {
       const auto result = disk_.write(descriptor_, block.bytes.data() + num_written, block.bytes.size() - num_written);
@@ -163,10 +163,8 @@ void DiskWriter::WriteBlock(const Block& block) {
         num_written += static_cast<std::size_t>(result);
       } else if (result == 0 || errno != EINTR) {
         std::string reason = "write failed: " + (result == 0 ? "nothing is taken" : ErrnoText());
-        // What is torn is cut off: the log ends with a whole event.
-        if (file_bytes_ > 0 && ftruncate(descriptor_, file_bytes_) != 0) reason += "; its last event is torn";
-        SyncFile();
-        if (descriptor_ >= 0) Fail(reason);
+        CutTorn(static_cast<std::int64_t>(num_written), reason);
+        if (SyncToDisk()) Fail(reason);
       }
     }
   }
@@ -186,6 +184,7 @@ void DiskWriter::WriteBlock(const Block& block) {
   if (!is_written) return;
   file_bytes_ += size_bytes;
   num_unsynced_ += block.num_events;
+  unsynced_bytes_ += size_bytes;
   marks_.push_back({file_bytes_, (marks_.empty() ? 0 : marks_.back().num_events) + block.num_events});
   CheckFile(&block);
 }
@@ -211,16 +210,28 @@ bool DiskWriter::HasRoomFor(const Block& block) {
   return false;
 }
 
-void DiskWriter::OpenFile(const std::string& stem) {
+// The file before is closed when the new one is there. @return false: there is none, and the one before is written on
+bool DiskWriter::OpenFile(const std::string& stem) {
   auto file = folder_ / (stem + ".lcmlog");
+  int made = -1;
   // Appended to, so that a file that somebody cuts goes on at its end, without a hole. Of two recorders that start in the same second each gets its
   // own. Digits, since they sort behind the dot of a name without them, in any locale.
-  for (int i = 1; (descriptor_ = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
+  for (int i = 1; (made = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644)) < 0 && errno == EEXIST; ++i) {
     auto number = std::to_string(i);
     number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
     file = folder_ / (stem + number.append(".lcmlog"));
   }
-  const std::string reason = descriptor_ < 0 ? ErrnoText() : "";
+  const std::string reason = made < 0 ? "cannot be made: " + ErrnoText() : "";
+  if (made < 0 && descriptor_ >= 0) {
+    const std::lock_guard lock(mutex_);
+    status_.fault = file.string() + ": " + reason + "; " + file_.string() + " is written on";
+    status_.wants_new_file = true;
+    status_.is_waiting_for_file = false;
+    ++status_.num_faults;
+    return false;
+  }
+  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = made;
   if (descriptor_ >= 0) flock(descriptor_, LOCK_EX | LOCK_NB);  // nobody else can hold it: the file is new
   file_ = file;
   file_bytes_ = 0;
@@ -229,6 +240,7 @@ void DiskWriter::OpenFile(const std::string& stem) {
   // A file system that gives an open file another number than its name has (some on networks) cannot tell a file that was moved.
   can_tell_name_ = descriptor_ >= 0 && IsNameOf(file_, descriptor_);
   num_unsynced_ = 0;
+  unsynced_bytes_ = 0;
   {
     const std::lock_guard lock(mutex_);
     status_.file = file;
@@ -240,8 +252,8 @@ void DiskWriter::OpenFile(const std::string& stem) {
     }
   }
   if (descriptor_ < 0) {
-    Fail("cannot be made: " + reason);
-    return;
+    Fail(reason);
+    return true;
   }
   // The name of the file is on the disk as well. Where folders cannot be synced the file system does it by itself.
   const int folder = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -249,24 +261,48 @@ void DiskWriter::OpenFile(const std::string& stem) {
     fsync(folder);
     close(folder);
   }
+  return true;
 }
 
-void DiskWriter::SyncFile() {
+// What is torn is cut off: the log ends with a whole event. Somebody may have cut it as well: then it is not made longer, and what was lost is
+// counted.
+// @param torn_bytes  of the last block, that were taken
+void DiskWriter::CutTorn(std::int64_t torn_bytes, std::string& reason) {
+  struct stat own {};
+  const bool is_known = fstat(descriptor_, &own) == 0;
+  const auto end_bytes = is_known ? std::clamp<std::int64_t>(own.st_size - torn_bytes, 0, file_bytes_) : file_bytes_;
+  if (ftruncate(descriptor_, end_bytes) != 0) {
+    reason += "; its last event is torn";
+    return;
+  }
+  CheckFile(nullptr);
+}
+
+// @return whether the file is still open
+bool DiskWriter::SyncToDisk() {
   last_sync_ = std::chrono::steady_clock::now();
-  if (descriptor_ < 0) return;
+  if (descriptor_ < 0) return false;
   if (num_unsynced_ > 0 && disk_.sync(descriptor_) != 0) {
     const std::string reason = ErrnoText();
     {
       const std::lock_guard lock(mutex_);
       status_.num_lost_fault += num_unsynced_;  // some may be there; nobody knows which
       status_.num_events -= num_unsynced_;
+      status_.num_lost_bytes += unsynced_bytes_;
+      status_.num_bytes -= unsynced_bytes_;
     }
     num_unsynced_ = 0;
+    unsynced_bytes_ = 0;
     Fail("not on the disk: " + reason);
-    return;
+    return false;
   }
   num_unsynced_ = 0;
-  CheckFile(nullptr);
+  unsynced_bytes_ = 0;
+  return true;
+}
+
+void DiskWriter::SyncFile() {
+  if (SyncToDisk()) CheckFile(nullptr);
 }
 
 // @param last_block  written since the last look; nullptr: none
@@ -288,10 +324,12 @@ void DiskWriter::CheckFile(const Block* last_block) {
     marks_.push_back({size_bytes, num_kept});
     const auto num_lost = total - num_kept;
     num_unsynced_ = std::min(num_unsynced_, num_kept);
-    const auto num_lost_bytes = file_bytes_ - size_bytes;
+    unsynced_bytes_ = std::min(unsynced_bytes_, size_bytes);
+    auto num_lost_bytes = file_bytes_ - size_bytes;
     const auto old_bytes = std::exchange(file_bytes_, size_bytes);
     {
       const std::lock_guard lock(mutex_);
+      num_lost_bytes = std::min(num_lost_bytes, status_.num_bytes);  // what another program wrote was never counted
       status_.num_lost_fault += num_lost;
       status_.num_events -= num_lost;
       status_.num_bytes -= num_lost_bytes;
@@ -301,6 +339,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
     if (own.st_nlink > 0)
       return Disturb("was cut from " + std::to_string(old_bytes) + " to " + std::to_string(kept_bytes) + " bytes while it was recorded: " + lost);
     num_unsynced_ = 0;
+    unsynced_bytes_ = 0;
     file_bytes_ = old_bytes;  // the name may be that of another file by now: nothing is removed
     const std::lock_guard lock(mutex_);
     ++status_.num_disturbed;
@@ -311,7 +350,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
     const auto num_foreign_bytes = size_bytes - std::exchange(file_bytes_, size_bytes);
     return Disturb("another program has written " + std::to_string(num_foreign_bytes) + " bytes to it; " + kAdvice);
   }
-  if (can_tell_name_ && !IsNameOf(file_, descriptor_)) {
+  if (can_tell_name_ && !is_disturbed_ && !IsNameOf(file_, descriptor_)) {
     Disturb(std::string("was moved or renamed") + (is_name_there ? ", and another file stands in its place" : "") +
             ": what was recorded is in it, wherever it is; " + kAdvice);
   }
@@ -341,7 +380,7 @@ void DiskWriter::Fail(const std::string& reason) {
 void DiskWriter::FailLocked(const std::string& reason) {
   if (descriptor_ >= 0) {
     // On a full disk there would be one more empty file with each attempt.
-    if (file_bytes_ == 0) {
+    if (file_bytes_ == 0 && (!can_tell_name_ || IsNameOf(status_.file, descriptor_))) {
       std::error_code ignored;
       std::filesystem::remove(status_.file, ignored);
       --status_.num_files;

@@ -39,7 +39,7 @@ struct DiskStatus {
   bool is_recording = false;
   bool is_waiting_for_file = false;  // one was asked for and is not yet begun
   bool is_full = false;              // not recording, for lack of room
-  bool wants_new_file = false;       // recording, into a file that somebody moved, cut or wrote to
+  bool wants_new_file = false;       // recording, into a file that somebody moved, cut or wrote to, or that should have ended
   std::string fault;                 // why something was lost last, or why it does not record
   std::int64_t num_events = 0;       // handed to the kernel
   std::int64_t num_bytes = 0;        // of them, as in the files
@@ -70,8 +70,8 @@ class DiskWriter {
   DiskWriter(const DiskWriter&) = delete;
   DiskWriter& operator=(const DiskWriter&) = delete;
 
-  /// What follows goes into a new file. Where none can be made, or there is no room, it is lost until the next call that succeeds; no empty file
-  /// stays.
+  /// What follows goes into a new file. Where none can be made, the file before is written on and wants_new_file is set; where there is none either,
+  /// or no room, what follows is lost until the next call that succeeds; no empty file stays.
   ///
   /// @param stem         of its name; where that is taken "001", "002", ... is put behind it. No file is overwritten
   /// @param first_event  its bytes; not counted as lost with a file that cannot be begun
@@ -96,7 +96,9 @@ class DiskWriter {
   void Run();
   void WriteBlock(const Block& block);
   bool HasRoomFor(const Block& block);
-  void OpenFile(const std::string& stem);
+  bool OpenFile(const std::string& stem);
+  void CutTorn(std::int64_t torn_bytes, std::string& reason);
+  bool SyncToDisk();
   void SyncFile();
   void CheckFile(const Block* last_block);
   void Disturb(const std::string& reason);
@@ -130,6 +132,7 @@ class DiskWriter {
   bool is_disturbed_ = false;
   bool can_tell_name_ = false;     // the file system tells whether a name is that of the open file
   std::int64_t num_unsynced_ = 0;  // events that the kernel has and the disk may not
+  std::int64_t unsynced_bytes_ = 0;
   std::chrono::steady_clock::time_point last_sync_;
 
   std::thread thread_;  // last: it begins when all else is there

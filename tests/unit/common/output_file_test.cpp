@@ -32,6 +32,7 @@ class Output : public ::testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("lookout_output_test_" + std::to_string(::getpid()));
   fs::path file_ = folder_ / "out";
   fs::path partial_ = folder_ / "out.partial";
+  fs::path whole_ = folder_ / "out.whole";
   std::vector<std::string> told_;
 
   void SetUp() override {
@@ -129,10 +130,61 @@ TEST_F(Output, DoesNotReplaceAFileThatAppearedMeanwhileAndKeepsTheResult) {
     output.Commit();
     FAIL() << "it was replaced";
   } catch (const std::runtime_error& error) {
-    ExpectHas(error.what(), "has appeared while it was computed; the whole result is in " + partial_.string());
+    ExpectHas(error.what(), "has appeared while it was computed; the whole result is in " + whole_.string());
   }
   EXPECT_EQ(Content(file_), "somebody else's");
-  EXPECT_EQ(Content(partial_), "computed");
+  EXPECT_EQ(Content(whole_), "computed");
+  EXPECT_FALSE(fs::exists(partial_));
+}
+
+TEST_F(Output, ThatWasKeptWholeIsRemovedByNoLaterRun) {
+  for (const std::string text : {"first", "second"}) {
+    OutputFile output(file_, Options());
+    output.Write(text);
+    SetContent(file_, "somebody else's");
+    EXPECT_THROW(output.Commit(), std::runtime_error);
+    fs::remove(file_);
+  }
+  OutputFile output(file_, Options(true));
+  output.Write("third");
+  output.Commit();
+  EXPECT_EQ(Content(whole_), "first");
+  EXPECT_EQ(Content(folder_ / "out.whole.1"), "second");
+  EXPECT_EQ(Content(file_), "third");
+}
+
+// One has taken the place of the second; the third gets its name all the same.
+TEST_F(Output, OfASetIsOnTheDiskBeforeTheFirstGetsItsName) {
+  OutputFile one(folder_ / "one", Options());
+  OutputFile two(folder_ / "two", Options());
+  OutputFile three(folder_ / "three", Options());
+  for (auto* output : {&one, &two, &three}) output->Write("new");
+  SetContent(folder_ / "two", "somebody else's");
+  EXPECT_THROW(CommitAll({&one, &two, &three}), std::runtime_error);
+  EXPECT_EQ(Content(folder_ / "one"), "new");
+  EXPECT_EQ(Content(folder_ / "two"), "somebody else's");
+  EXPECT_EQ(Content(folder_ / "two.whole"), "new");
+  EXPECT_EQ(Content(folder_ / "three"), "new");
+}
+
+TEST_F(Output, OfASetOfWhichOneCannotBeWrittenLeavesNothing) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this computer";
+  {
+    OutputFile one(file_, Options());
+    OutputFile two("/dev/full", Options());
+    for (auto* output : {&one, &two}) output->Write("new");
+    EXPECT_THROW(CommitAll({&one, &two}), std::runtime_error);
+  }
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Output, ThatReplacesAFileIsOpenToTheSamePeople) {
+  SetContent(file_, "a secret");
+  fs::permissions(file_, fs::perms(0600));
+  OutputFile output(file_, Options(true));
+  EXPECT_EQ(fs::status(partial_).permissions(), fs::perms(0600));
+  output.Commit();
+  EXPECT_EQ(fs::status(file_).permissions(), fs::perms(0600));
 }
 
 TEST_F(Output, FollowsNoSymbolicLinkAtItsName) {
@@ -164,7 +216,7 @@ TEST_F(Output, FollowsNoSymbolicLinkAtThePartial) {
 TEST_F(Output, DoesNotTouchAHardLinkAtThePartial) {
   SetContent(folder_ / "target", "a recording");
   fs::create_hard_link(folder_ / "target", partial_);
-  OutputFile output(file_, Options());
+  OutputFile output(file_, Options(true));
   output.Write("new");
   output.Commit();
   EXPECT_EQ(Content(folder_ / "target"), "a recording");
@@ -215,14 +267,21 @@ TEST_F(Output, DoesNotRemoveAPartialThatIsAnInput) {
   EXPECT_EQ(Content(partial_), "of a run that was killed");
 }
 
-TEST_F(Output, RemovesThePartialOfARunThatWasKilledAndSaysSo) {
+TEST_F(Output, DoesNotRemoveAPartialUnasked) {
+  SetContent(partial_, "half, or somebody's");
+  ExpectHas(FaultOf(file_), "out.partial: is there: left by a run that did not come to its end, or somebody's file");
+  EXPECT_EQ(Content(partial_), "half, or somebody's");
+  EXPECT_FALSE(fs::exists(file_));
+}
+
+TEST_F(Output, RemovesThePartialOfARunThatWasKilledWhenAskedAndSaysSo) {
   SetContent(partial_, "half");
-  OutputFile output(file_, Options());
+  OutputFile output(file_, Options(true));
   output.Write("whole");
   output.Commit();
   EXPECT_EQ(Content(file_), "whole");
   ASSERT_EQ(told_.size(), 1u);
-  ExpectHas(told_[0], "out.partial: left by a run that did not come to its end");
+  ExpectHas(told_[0], "out.partial: was there, and nobody was writing it; removed");
 }
 
 TEST_F(Output, IsWrittenByOneProgramAtATime) {
@@ -248,7 +307,7 @@ TEST_F(Output, DoesNotReplaceAFileThatAnotherProgramHasLockedAlsoByForce) {
   EXPECT_THROW(output.Commit(), std::runtime_error);
   close(late);
   EXPECT_EQ(Content(file_), "a recording");
-  EXPECT_EQ(Content(partial_), "new");
+  EXPECT_EQ(Content(whole_), "new");
 }
 
 // Many at once: one wins, the others say why not, and nobody's bytes are mixed.
@@ -256,7 +315,6 @@ TEST_F(Output, OfManyAtOnceIsWhole) {
   constexpr int kNumThreads = 8;
   for (int round = 0; round < 20; ++round) {
     fs::remove(file_);
-    SetContent(partial_, "left over");
     std::vector<std::thread> threads;
     std::atomic<int> num_written = 0;
     for (int i = 0; i < kNumThreads; ++i) {
@@ -428,6 +486,41 @@ TEST_F(Output, APipeThatNobodyReadsAnyMoreIsToldApart) {
     return 0;
   });
   EXPECT_EQ(code, 1);
+}
+
+// An output would get the number of standard output, and the program's own lines with it.
+TEST_F(Output, IsNoStandardStreamThatWasClosed) {
+  const pid_t child = fork();
+  if (child == 0) {
+    for (const int i : {0, 1, 2}) close(i);
+    CatchStopSignals();
+    OutputFile output(file_, Options());
+    output.Write("text");
+    const bool is_mixed = write(STDOUT_FILENO, "words", 5) > 0 || output.descriptor() <= STDERR_FILENO;
+    output.Commit();
+    _exit(is_mixed ? 1 : 0);
+  }
+  EXPECT_EQ(ExitCodeOf(child), 0);
+  EXPECT_EQ(Content(file_), "text");
+}
+
+// Work that does not look at the flag: a second signal ends it, if it does not follow at once (timeout(1) sends each twice).
+TEST_F(Output, ASecondSignalASecondLaterIsDeadly) {
+  const pid_t child = fork();
+  if (child == 0) {
+    CatchStopSignals();
+    for (;;) pause();
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  kill(child, SIGINT);
+  kill(child, SIGINT);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  kill(child, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
 }
 
 // The signal comes in the moment between the look at the flag and the call that blocks: the alarm ends the call.

@@ -60,6 +60,31 @@ TEST_F(Diff, NamesACutLogAsTheReasonOfWhatItLacksAtItsEnd) {
   EXPECT_FALSE(Said("reason")) << out_.str();
 }
 
+// A reason that is no reason sends people the wrong way.
+TEST_F(Diff, NamesACutLogOnlyForWhatIsBehindItsEnd) {
+  const auto start = Packets(0, 0, lidar_packets_t::MARK_START);
+  // A channel that the cut log lacks altogether.
+  EXPECT_EQ(Compare({start, Packets(1, 1)}, {start, Packets(1, 1), Pose(1, 0)}), kExitDifferent);
+  EXPECT_FALSE(Said("reason")) << out_.str();
+  EXPECT_FALSE(Said("behind")) << out_.str();
+  // Logs that do not fit together: what is left over by number is not behind by time.
+  std::vector<bus::LogEvent> a{start};
+  std::vector<bus::LogEvent> b{start};
+  for (int i = 0; i < 6; ++i) a.push_back(Pose(100 + i, 100 + i));
+  for (int i = 0; i < 20; ++i) b.push_back(Pose(i, i));
+  EXPECT_EQ(Compare(a, b), kExitDifferent);
+  EXPECT_FALSE(Said("reason")) << out_.str();
+  EXPECT_FALSE(Said("behind")) << out_.str();
+  // Both were cut, one of them earlier.
+  EXPECT_EQ(Compare({start, Packets(1, 1), Pose(1, 0)}, {start, Packets(1, 1), Pose(1, 0), Pose(2, 1)}), kExitDifferent);
+  EXPECT_TRUE(Said("reason: A ends without an end mark")) << out_.str();
+  EXPECT_FALSE(Said("reason: B")) << out_.str();
+  // A difference that no cut explains.
+  EXPECT_EQ(Compare({start, Packets(1, 1), Pose(1, 0, 0.5)}, {start, Packets(1, 1), Pose(1, 0, 0.75), Pose(2, 1)}), kExitDifferent);
+  EXPECT_TRUE(Said("reason, perhaps: A ends without an end mark")) << out_.str();
+  EXPECT_FALSE(Said("reason: ")) << out_.str();
+}
+
 TEST_F(Diff, NamesALogThatBeginsInTheMiddleOfARunAsTheReasonOfEarlyDifferences) {
   const auto start = NavRaw(0, 0, nav_raw_t::KIND_START);
   EXPECT_EQ(Compare({start, Pose(1, 0, 0.5), Pose(60, 1)}, {NavRaw(0, 7), Pose(1, 0, 0.75), Pose(60, 1)}), kExitDifferent);

@@ -103,7 +103,7 @@ TEST_F(LogCommands, RefuseWhatIsNoLog) {
   SetContent(folder_ / "text", "this is no log");
   EXPECT_THROW(Info({folder_ / "text"}, out_), std::runtime_error);
   EXPECT_THROW(Info({folder_ / "nowhere"}, out_), std::runtime_error);
-  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", false, out_), std::runtime_error);
+  EXPECT_THROW(Repair(folder_ / "text", folder_ / "out", false, out_, errors_), std::runtime_error);
   EXPECT_THROW(Slice(Request(folder_ / "text"), out_, errors_), std::runtime_error);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "nothing half done is left";
 }
@@ -167,9 +167,9 @@ TEST_F(LogCommands, NoCommandReplacesAFileUnlessItIsForced) {
   auto request = Request(file);
   request.force = false;
   EXPECT_THROW(Slice(request, out_, errors_), std::runtime_error);
-  EXPECT_THROW(Repair(file, folder_ / "out", false, out_), std::runtime_error);
+  EXPECT_THROW(Repair(file, folder_ / "out", false, out_, errors_), std::runtime_error);
   EXPECT_EQ(Content(folder_ / "out"), "another recording");
-  Repair(file, folder_ / "out", true, out_);
+  Repair(file, folder_ / "out", true, out_, errors_);
   EXPECT_EQ(Content(folder_ / "out"), Content(file));
 }
 
@@ -213,7 +213,7 @@ TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
   auto damaged = text.substr(0, text.size() - 1);
   damaged[third] = 'x';
   SetContent(file, damaged);
-  Repair(file, folder_ / "out", false, out_);
+  Repair(file, folder_ / "out", false, out_, errors_);
   const auto kept = Read(folder_ / "out");
   ASSERT_EQ(kept.size(), events.size() - 2);
   EXPECT_EQ(kept[2].bytes, events[3].bytes);
@@ -226,7 +226,7 @@ TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {
 
 TEST_F(LogCommands, RepairOfAWholeLogIsTheSameFile) {
   const auto file = Write("log", TwoMinutes());
-  Repair(file, folder_ / "out", false, out_);
+  Repair(file, folder_ / "out", false, out_, errors_);
   EXPECT_EQ(Content(folder_ / "out"), Content(file));
   EXPECT_TRUE(Said("0 bytes lost in 0 stretches"));
 }
@@ -240,7 +240,7 @@ TEST_F(LogCommands, RepairLosesNoEventThatNoDamageTouched) {
     auto damaged = text;
     for (std::size_t i = 0; i < 40; ++i) damaged[place + i] = static_cast<char>(place * 31 + i * 7);
     SetContent(file, damaged);
-    Repair(file, folder_ / "out", true, out_);
+    Repair(file, folder_ / "out", true, out_, errors_);
     const auto kept = Read(folder_ / "out");
     std::size_t end = 0;
     std::size_t num_untouched = 0;

@@ -257,6 +257,107 @@ TEST_F(Rotation, ATornWriteIsCutOffAndWhatItHeldIsCounted) {
   EXPECT_EQ(Recorded(), expected);
 }
 
+// The disk takes half of the first block, again and again.
+TEST_F(Rotation, AttemptsThatFailInTheirFirstBlockLeaveNoFile) {
+  std::atomic<bool> is_broken = false;
+  auto disk = RealDisk();
+  disk.write = [&](int descriptor, const void* data, std::size_t size) -> ssize_t {
+    if (!is_broken) return ::write(descriptor, data, size);
+    if (size > 20) return ::write(descriptor, data, 20);
+    errno = ENOSPC;
+    return -1;
+  };
+  Service service = Make(disk);
+  Send(10);
+  service.Flush();
+  is_broken = true;
+  Send(1);
+  service.Flush();
+  for (int i = 0; i < 5; ++i) {
+    service.AdvanceTo(now_);
+    service.Flush();
+  }
+  EXPECT_EQ(Files().size(), 1U);
+  EXPECT_EQ(Count(service, "files"), 1);
+  EXPECT_EQ(Count(service, "files_disturbed"), 0) << service.Report().reason;
+  EXPECT_EQ(Count(service, "write_faults"), 6);
+  is_broken = false;
+  service.AdvanceTo(now_);
+  Send(1);
+  service.Flush();
+  EXPECT_EQ(Recorded(), (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11}));
+}
+
+// Cut by somebody, and the disk fails before the next look: zeros in the place of what was cut would count as recorded.
+TEST_F(Rotation, AWriteFaultAfterACutMakesTheLogNoLongerAndCountsBoth) {
+  std::atomic<bool> is_broken = false;
+  std::int64_t kept_bytes = 0;
+  bool is_cut = false;
+  fs::path log;
+  auto disk = RealDisk();
+  disk.write = [&](int descriptor, const void* data, std::size_t size) -> ssize_t {
+    if (!is_broken) return ::write(descriptor, data, size);
+    if (!std::exchange(is_cut, true)) {
+      fs::resize_file(log, static_cast<std::uintmax_t>(kept_bytes));
+      return ::write(descriptor, data, 300);
+    }
+    errno = ENOSPC;
+    return -1;
+  };
+  Service service = Make(disk);
+  Send(10);
+  service.Flush();
+  kept_bytes = Count(service, "bytes");
+  log = service.log_file();
+  Send(20);
+  service.Flush();
+  is_broken = true;
+  Send(1);
+  service.Flush();
+  EXPECT_EQ(static_cast<std::int64_t>(fs::file_size(log)), kept_bytes);
+  EXPECT_EQ(Count(service, "events"), 11);
+  EXPECT_EQ(Count(service, "bytes"), kept_bytes);
+  EXPECT_EQ(Count(service, "lost"), 21);
+  EXPECT_EQ(Count(service, "files_disturbed"), 1);
+  EXPECT_EQ(Recorded(), UpTo(10));
+}
+
+TEST_F(Rotation, ALogIsWrittenOnWhereTheNextCannotBeMade) {
+  Service service = Make();
+  Send(10);
+  service.Flush();
+  const auto moved = folder_.string() + "_moved";
+  fs::remove_all(moved);
+  fs::rename(folder_, moved);
+  std::ofstream(folder_.string()) << "no folder";  // to root nothing is forbidden
+  Send(5);
+  service.Rotate(now_);
+  Send(5);
+  service.Flush();
+  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(Count(service, "write_faults"), 1);
+  const auto warnings = service.TakeWarnings();
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_NE(warnings.back().find("is written on"), std::string::npos) << warnings.back();
+  fs::remove(folder_);
+  service.AdvanceTo(now_);
+  Send(5);
+  service.Flush();
+  EXPECT_EQ(Count(service, "lost"), 0);
+  EXPECT_EQ(Recorded(), (std::vector<std::int64_t>{20, 21, 22, 23, 24}));
+  std::vector<std::int64_t> seqs;
+  for (const auto& entry : fs::directory_iterator(moved)) {
+    bus::LogReader reader(entry.path());
+    while (const auto event = reader.Next()) {
+      if (event->channel == bus::kPose.name) seqs.push_back(bus::ReadHeader(event->bytes)->seq);
+    }
+    EXPECT_EQ(reader.num_damaged(), 0);
+  }
+  EXPECT_EQ(seqs, UpTo(20));
+  fs::remove_all(moved);
+}
+
 TEST_F(Rotation, WhatTheDiskCouldNotKeepIsLost) {
   std::atomic<bool> is_broken = false;
   auto disk = RealDisk();
@@ -267,10 +368,13 @@ TEST_F(Rotation, WhatTheDiskCouldNotKeepIsLost) {
   Service service = Make(disk);
   Send(10);
   service.Flush();
+  const auto kept_bytes = Count(service, "bytes");
   is_broken = true;
   Send(4);
   service.Flush();
   EXPECT_EQ(Count(service, "lost"), 4);
+  EXPECT_EQ(Count(service, "bytes"), kept_bytes);
+  EXPECT_GT(Count(service, "lost_bytes"), 0);
   EXPECT_EQ(service.Report().state, HealthState::kFailed);
   is_broken = false;
   service.AdvanceTo(now_);
