@@ -81,13 +81,7 @@ class Salvager {
  public:
   Salvager(const std::string& text, const Descriptor& schema) : text_(text), schema_(schema), pieces_(PiecesOf(text)) {
     result_.text = text;
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      if (IsOpening(pieces_[i]) || pieces_[i].text == "[") open.push_back(i);
-      if (open.empty() || (!IsClosing(pieces_[i]) && pieces_[i].text != "]")) continue;
-      closing_of_[open.back()] = i;
-      open.pop_back();
-    }
+    MatchBrackets();
   }
 
   SalvagedText Result() && {
@@ -96,18 +90,52 @@ class Salvager {
   }
 
  private:
+  struct Opening {
+    std::size_t piece = 0;
+    char kind = '{';
+    bool is_in_other_kind = false;  // of [ and <: within the same braces the other of both is open, too
+  };
+
+  // Each bracket with the next one of its kind. One that is never closed takes no other's: braces close whatever is open within, and only what is
+  // open within the same braces is closed by ] and >.
+  void MatchBrackets() {
+    std::vector<Opening> open;
+    int num_braces = 0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      if (pieces_[i].type != Tokenizer::TYPE_SYMBOL) continue;
+      const char symbol = pieces_[i].text.front();
+      if (symbol == '{' || symbol == '[' || symbol == '<') {
+        const bool is_within = symbol != '{' && !open.empty() && open.back().kind != '{';
+        open.push_back({i, symbol, is_within && (open.back().kind != symbol || open.back().is_in_other_kind)});
+        num_braces += symbol == '{' ? 1 : 0;
+      }
+      if (symbol != '}' && symbol != ']' && symbol != '>') continue;
+      const char kind = symbol == '}' ? '{' : symbol == ']' ? '[' : '<';
+      const bool has_opening =
+          kind == '{' ? num_braces > 0 : !open.empty() && open.back().kind != '{' && (open.back().kind == kind || open.back().is_in_other_kind);
+      if (!has_opening) continue;
+      while (open.back().kind != kind) open.pop_back();
+      closing_of_[open.back().piece] = i;
+      open.pop_back();
+      num_braces -= kind == '{' ? 1 : 0;
+    }
+  }
+
   const Piece& Now() const { return pieces_[next_]; }
   const Piece& At(std::size_t index) const { return pieces_[std::min(index, pieces_.size() - 1)]; }
   bool IsEnd() const { return Now().type == Tokenizer::TYPE_END; }
   static bool IsClosing(const Piece& piece) { return piece.text == "}" || piece.text == ">"; }
   static bool IsOpening(const Piece& piece) { return piece.text == "{" || piece.text == "<"; }
+  static bool IsSeparator(const Piece& piece) { return piece.text == "," || piece.text == ";"; }
 
-  // The statements of a message, up to what closes it.
+  // The statements of a message, up to what closes it. Each takes the separator behind it.
   void Message(const Descriptor* descriptor, const std::string& prefix, int line_of_message, int depth) {
+    const bool is_in_braces = depth > 0 && pieces_[next_ - 1].text == "{";
     std::map<const FieldDescriptor*, int> line_of_first;
-    while (!IsEnd() && (depth == 0 || !IsClosing(Now()))) {
-      if (Now().text == ";" || Now().text == ",") {
+    while (!IsEnd() && (depth == 0 || !IsClosing(Now()) || (is_in_braces && Now().text == ">"))) {
+      if (IsSeparator(Now())) {
         ++next_;
+        Refuse(next_ - 1, {At(next_ - 1).line, prefix + "text", "Expected identifier, got: " + At(next_ - 1).text}, line_of_message);
         continue;
       }
       Statement(descriptor, prefix, line_of_message, depth, line_of_first);
@@ -127,10 +155,12 @@ class Salvager {
       Message(field->message_type(), prefix + name + ".", line, depth + 1);
       if (IsEnd()) return;  // it is never closed: the parser says so
       ++next_;
+      if (IsSeparator(Now())) ++next_;
       if (IsSecond(*field, line, line_of_first)) Refuse(first, {line, prefix + name, SecondReason(*field, line_of_first)}, line_of_message);
       return;
     }
     next_ = EndOf(first, value);
+    if (IsSeparator(Now())) ++next_;
     if (const auto error = ErrorOf(*descriptor, first)) {
       Refuse(first, {line + std::min(std::max(error->first, 0), At(next_ - 1).line - line), prefix + name, error->second}, line_of_message);
     } else if (field != nullptr && IsSecond(*field, line, line_of_first)) {
@@ -158,7 +188,7 @@ class Salvager {
       }
       if (type == Tokenizer::TYPE_IDENTIFIER || type == Tokenizer::TYPE_INTEGER || type == Tokenizer::TYPE_FLOAT) {
         // `name:` without a value takes no name of the next line for one.
-        if (At(last).line == pieces_[first].line || At(last + 1).text != ":") return last + 1;
+        if (At(last).line == pieces_[first].line || (At(last + 1).text != ":" && !IsOpening(At(last + 1)))) return last + 1;
       }
     }
     std::size_t end = first + 1;

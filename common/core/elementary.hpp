@@ -6,7 +6,7 @@
 // to fused multiply-adds. Error bounds are held by the unit test elementary_test.cpp against long double; an ulp is the distance of neighbouring
 // doubles at the true value.
 //
-// What is not a number gives std::numeric_limits<double>::quiet_NaN(), always with the same bits.
+// What is not a number gives std::numeric_limits<double>::quiet_NaN(), always with the same bits; of Hypot a NaN of any bits, as sums have it.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct SinCos {
 /// k_cos.c).
 SinCos SinCosOf(double angle_rad);
 
-/// The same of an angle in degrees: exact at whole quarters of a turn. Error: below 2 ulp.
+/// The same of an angle in degrees: exact at whole quarters of a turn, where zeros have either sign. Error: below 2 ulp.
 SinCos SinCosOfDegrees(double angle_deg);
 
 inline double Sin(double angle_rad) { return SinCosOf(angle_rad).sin; }

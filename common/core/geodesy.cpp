@@ -50,7 +50,7 @@ GeodeticPlace FromEarth(const Eigen::Vector3d& p_earth_m) {
   const double cos_latitude = latitude_cosine / length;
   const double ellipsoid_height_m =
       from_axis_m * cos_latitude + z_m * sin_latitude - kEquatorRadiusM * std::sqrt(1.0 - kEccentricity2 * sin_latitude * sin_latitude);
-  const double longitude_rad = from_axis_m > 0.0 ? Atan2(p_earth_m.y(), p_earth_m.x()) : 0.0;
+  const double longitude_rad = from_axis_m == 0.0 ? 0.0 : Atan2(p_earth_m.y(), p_earth_m.x());
   return {RadToDeg(latitude_rad), RadToDeg(longitude_rad), ellipsoid_height_m};
 }
 

@@ -24,9 +24,10 @@ class LocalFrame {
   /// Error: below 1e-8 m against GeographicLib's LocalCartesian for places anywhere on the earth, from 1 km below to 10 km above the ellipsoid.
   Eigen::Vector3d Forward(const GeodeticPlace& place) const;
 
-  /// Error: below 1e-8 m for such places. Farther away it worsens: 1 mm at 1000 km height. On the earth's axis the longitude is that of the meridian
-  /// on which rounding puts it; at the very pole of a datum at longitude 0 it is 0. At the centre of the earth the answer is the north pole. Source:
-  /// B. Bowring, "The accuracy of geodetic latitude and height equations", Survey Review 28 (1985), its step taken three times.
+  /// Error: below 1e-8 m for such places, and up to 1000 km height; below 1e-7 m up to 100 000 km. On the earth's axis the longitude is that of the
+  /// meridian on which rounding puts it; at the very pole of a datum at longitude 0 it is 0. At the centre of the earth the answer is the north pole.
+  /// Of what is not a number every part is NaN. Source: B. Bowring, "The accuracy of geodetic latitude and height equations", Survey Review 28
+  /// (1985), its step taken three times.
   GeodeticPlace Reverse(const Eigen::Vector3d& p_map_m) const;
 
  private:

@@ -191,6 +191,18 @@ TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor
   EXPECT_GT(num_checked, 10'000);
 }
 
+// Without these options sums are fused or taken in another order on another computer, and no test that runs on one computer notices.
+TEST(Structure, AllThatReachesAMessageIsCompiledForTheSameBytes) {
+  EXPECT_STREQ(LOOKOUT_WITHOUT_SAME_BYTES, "")
+      << "these libraries are compiled without -ffp-contract=off or EIGEN_DONT_VECTORIZE (cmake/Rooms.cmake)";
+#if !defined(EIGEN_DONT_VECTORIZE)
+  ADD_FAILURE() << "Eigen's kernels are on";
+#endif
+#if defined(__FAST_MATH__)
+  ADD_FAILURE() << "the compiler may change the order of sums";
+#endif
+}
+
 TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
   const std::string readme = Read(kRoot / "lcmtypes/README.md");
   for (const auto& channel : lookout::bus::kChannels) {

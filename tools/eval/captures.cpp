@@ -224,7 +224,9 @@ std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder) {
     const auto stem = name.substr(0, name.size() - kCaptureEnding.size());
     const auto dash = stem.rfind('-');
     const char* const end = stem.data() + stem.size();
-    if (dash == std::string::npos || dash == 0 || std::from_chars(stem.data() + dash + 1, end, files.seed).ptr != end || dash + 1 == stem.size()) {
+    const bool has_both = dash != std::string::npos && dash != 0 && dash + 1 != stem.size();
+    const auto read = has_both ? std::from_chars(stem.data() + dash + 1, end, files.seed) : std::from_chars_result{end, std::errc::invalid_argument};
+    if (read.ec != std::errc() || read.ptr != end) {
       throw std::runtime_error(entry.path().string() + ": the name is not NAME-SEED" + std::string(kCaptureEnding));
     }
     files.scene = stem.substr(0, dash);

@@ -51,7 +51,7 @@ inline constexpr std::chrono::microseconds kMatchTolerance{3};
 ///
 /// Returns of the own vessel (object -1) are taken out of the scan; clutter (object 0) stays. Each row of the truth is met once; of several that
 /// would do, the one of the same return index, then the nearest in time. The truth is read as it is needed, so it must be in the order of time.
-/// Deterministic. Memory: a scan and its truth.
+/// Deterministic. Memory: a scan, its truth, and the whole capture unpacked, 1 GiB at most.
 /// @throws std::runtime_error "file:line: reason" or "file: reason" for what cannot be read; when more than kMaxUnmatchedShare have no truth; when
 ///         there is no whole scan
 CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const ScanHandler& on_scan);

@@ -209,7 +209,8 @@ int JudgeScenes(const JudgeOptions& options) {
 
   Results results;
   Describe(options, results);
-  results.first_seed = plan.first_seed;
+  const bool is_sweep_alone = !has_scenes && options.tests.empty() && !options.sweeps.empty();
+  results.first_seed = is_sweep_alone ? sweep_plan.first_seed : plan.first_seed;
   results.num_seeds = plan.num_seeds;
   results.seconds = plan.seconds;
   for (const auto& scene : plan.scenes) results.scenes.push_back(SceneLabel(scene));

@@ -87,6 +87,15 @@ double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling
   return MeanIou(ScoreTurn(truth, labelling));
 }
 
+// "4.00 m on (median over 18 seeds; in 2 more from no distance on)".
+std::string FoundFrom(const Summary& own_from_m, int num_never) {
+  const auto num_found = static_cast<int>(own_from_m.count());
+  if (num_found == 0) return "no distance on (" + std::to_string(num_never) + " seeds)";
+  std::string text = Number(own_from_m.Median(), 2) + " m on (median over " + std::to_string(num_found) + " seeds";
+  if (num_never > 0) text += "; in " + std::to_string(num_never) + " more from no distance on";
+  return text + ")";
+}
+
 Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
   plan.scenes = {"kayak_shore"};
   plan.seconds = kTest1Seconds;
@@ -131,16 +140,16 @@ Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
     for (const auto& [bin, sum] : bins) line.points.emplace_back((bin + 0.5) * kTest1BinM, 100.0 * sum.second / sum.first);
     curve.lines.push_back(std::move(line));
     if (!curve.note.empty()) curve.note += " ";
-    curve.note += variant.method->name() + ": own segment from " +
-                  (own_from_m.count() > 0 ? Number(own_from_m.Median(), 2) + " m (median of " : "- m (") +
-                  std::to_string(own_from_m.count() + static_cast<std::size_t>(num_never)) + " seeds, never in " + std::to_string(num_never) + ").";
+    curve.note += variant.method->name() + ": own segment from " + FoundFrom(own_from_m, num_never) + ".";
   }
   curve.note += " In print: 8.58 m with e1 = 0.95, 24.67 m with e1 = 0.6.";
   return curve;
 }
 
 struct ClusterTest {
-  std::string kind;              // of the one object that is looked at
+  std::string kind;  // of the one object that is looked at
+  std::string name;  // of the threshold
+  std::string unit;
   std::vector<double> values;    // of the threshold, increasing
   double value_in_print = 0.0;   // one of these
   bool is_joined_above = false;  // the threshold joins the more the greater it is
@@ -155,16 +164,19 @@ struct PartsAt {
   int num_turns_one_large = 0;
 };
 
-// "from 3.0 on", "up to 15.0", "at no value", "at every value".
-std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_turns, bool is_joined_above) {
+// "e3 = 3.0 m".
+std::string ThresholdText(const ClusterTest& test, double value) { return test.name + " = " + Number(value, 1) + " " + test.unit; }
+
+// "from e3 = 3.0 m on", "up to e2 = 15.0 deg", "at no value", "at every value".
+std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_turns, const ClusterTest& test) {
   const auto holds = [&](const PartsAt& at) { return at.*count == num_turns; };
   if (std::ranges::all_of(parts, holds)) return "at every value";
-  if (is_joined_above) {
+  if (test.is_joined_above) {
     const auto last_cut = std::ranges::find_if_not(parts.rbegin(), parts.rend(), holds);
-    return last_cut == parts.rbegin() ? "at no value" : "from " + Number(std::prev(last_cut)->value, 1) + " on";
+    return last_cut == parts.rbegin() ? "at no value" : "from " + ThresholdText(test, std::prev(last_cut)->value) + " on";
   }
   const auto first_cut = std::ranges::find_if_not(parts, holds);
-  return first_cut == parts.begin() ? "at no value" : "up to " + Number(std::prev(first_cut)->value, 1);
+  return first_cut == parts.begin() ? "at no value" : "up to " + ThresholdText(test, std::prev(first_cut)->value);
 }
 
 Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, const Boat& boat, std::ostream* progress_out) {
@@ -193,13 +205,14 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
     large.points.emplace_back(at.value, static_cast<double>(at.sum.num_large) / num_turns);
   }
   curve.lines = {std::move(all), std::move(large)};
-  const auto where = [&](int PartsAt::*count) { return WhereInAllTurns(parts, count, num_turns, test.is_joined_above); };
+  const auto where = [&](int PartsAt::*count) { return WhereInAllTurns(parts, count, num_turns, test); };
   curve.note += " Here, in all of " + std::to_string(num_turns) + " turns: one cluster " + where(&PartsAt::num_turns_in_one) +
                 "; one with a tenth of it or more " + where(&PartsAt::num_turns_one_large) + ".";
   const auto in_print = std::ranges::find(parts, test.value_in_print, &PartsAt::value);
   if (in_print != parts.end() && in_print->sum.num_returns > 0) {
     const double share = static_cast<double>(in_print->sum.num_in_largest) / static_cast<double>(in_print->sum.num_returns);
-    curve.note += " At " + Number(in_print->value, 1) + ", the value in print, the largest holds " + Number(100.0 * share, 1) + " % of its returns.";
+    curve.note +=
+        " At " + ThresholdText(test, in_print->value) + ", the value in print, the largest holds " + Number(100.0 * share, 1) + " % of its returns.";
   }
   return curve;
 }
@@ -251,14 +264,21 @@ Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::ostream* pro
   const segmenter::ClusteringParams in_print;  // the defaults are the paper's
   if (number == 2) {
     plan.scenes = {"shore_20m"};
-    const ClusterTest test{"shore", Steps(5.0, 5.0, 17), std::round(RadToDeg(in_print.e2_angle_rad)), false,
+    const ClusterTest test{"shore",
+                           "e2",
+                           "deg",
+                           Steps(5.0, 5.0, 17),
+                           std::round(RadToDeg(in_print.e2_angle_rad)),
+                           false,
                            [](segmenter::ClusteringParams& params, double deg) { params.e2_angle_rad = DegToRad(deg); }};
     return CountClusters({"Test 2: a shore at 20 m", "e2, degrees", "clusters of the shore a turn", {}, "One shore should be one object."}, test,
                          plan, boat, progress);
   }
   plan.scenes = {"motorboat_6m"};
-  const ClusterTest test{"motor_boat", Steps(0.0, 0.5, 13), in_print.e3_distance_m, true,
-                         [](segmenter::ClusteringParams& params, double m) { params.e3_distance_m = m; }};
+  const ClusterTest test{
+      "motor_boat", "e3", "m", Steps(0.0, 0.5, 13), in_print.e3_distance_m, true, [](segmenter::ClusteringParams& params, double m) {
+        params.e3_distance_m = m;
+      }};
   return CountClusters(
       {"Test 3: a motor boat of 6 m", "e3, m", "clusters of the boat a turn", {}, "One boat should be one object; in print it is from 3 m on."}, test,
       plan, boat, progress);

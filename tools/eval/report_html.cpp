@@ -68,7 +68,10 @@ std::string Definitions() {
        "counts each scene with objects the same."},
       {"object in the water", "Boats, kayaks, swimmers, buoys, markers. Land, docks, piers and walls are not."},
       {"return of no object", "Strays, rain, spray, glints, crests, wakes and the own boat. They are no objects; in a segment they lower its IoU."},
-      {"false segment", "A segment without a return of any object; one of the own boat is false too."},
+      {"false segment",
+       "A segment without a return of any object; one of the own boat is false too. In captures of the second world the own boat's returns are taken "
+       "out "
+       "by their truth before a method sees them."},
       {"all segments, sure only",
        "Two operating points of one method, each in a row of its own: every segment counts, or those alone that the method does "
        "not take for tentative. The others have one: every segment counts."},

@@ -181,7 +181,7 @@ std::string Curves(const Results& results) {
   for (const auto& curve : results.curves) {
     LineChart chart{curve.title, curve.x_label, curve.y_label, {}, false};
     for (const auto& line : curve.lines) chart.lines.push_back({line.name, line.points, false});
-    markup += FigureOfLines(chart, curve.note, chart);
+    markup += FigureOfLines(chart, curve.turns_from.empty() ? curve.note : "On " + curve.turns_from + ". " + curve.note, chart);
   }
   return markup;
 }

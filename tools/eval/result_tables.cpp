@@ -78,7 +78,7 @@ Table Overall(const Results& results) {
                                  Percent(MeanOverScenes(results, method, MeanIou)),
                                  Percent(MeanOverScenes(results, method, MeanWaterIou)),
                                  Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2),
-                                 Percent(ThingsWithSegment(total)),
+                                 Percent(MeanOverScenes(results, method, ThingsWithSegment)),
                                  Number(MeanOverScenes(results, method, SegmentsPerTurn), 2),
                                  Percent(OverSegmentedShare(total)),
                                  Percent(UnderSegmentedShare(total)),
@@ -192,7 +192,7 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
   add("with_segment", "things of 5 returns or more that have a segment: more than half of some segment is theirs, %",
       ByScene(results, ThingsWithSegment, Percent));
-  add("overall", "all scenes (mIoU, water, false, segments: mean over scenes; things with a segment, over, under, TPR, times: over all turns)",
+  add("overall", "all scenes (mIoU, water, false, things with a segment, segments: mean over scenes; over, under, TPR, times: over all turns)",
       Overall(results));
   add("against_peers", "ours against the best peer: 100 - mIoU of ours as a share of the peer's, %", AgainstPeers(results));
   add("kinds", "mean IoU by kind, all scenes, %",

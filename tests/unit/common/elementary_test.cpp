@@ -169,6 +169,12 @@ TEST(Atan2, IsWithinTwoUlpAllRound) {
     const double y = random.Any();
     check(y, random.Any());
   }
+  // Where the result is just above 1/8 an ulp is small beside the rounding error of the quotient.
+  for (int i = 0; i < 300'000; ++i) {
+    const double x = random.Between(0.5, 1.0);
+    check(x * random.Between(0.1247, 0.1255), x);
+  }
+  check(0.12506119868572022, 1.0);
   for (const double bound : {7.0 / 16.0, 0.5, 11.0 / 16.0, 1.0, 19.0 / 16.0, 1.5, 2.0, 39.0 / 16.0}) {
     for (const double y : {bound, std::nextafter(bound, 0.0), std::nextafter(bound, 9.0)}) {
       for (const double scale : {1.0, -1.0, 0x1p+1020, 0x1p-1060, -0x1p-1000}) {
@@ -211,6 +217,10 @@ TEST(AsinAndAcos, AreWithinThreeUlp) {
     cosine.Take(Acos(number), std::acos(static_cast<long double>(number)), number);
   };
   for (int i = 0; i < 500'000; ++i) check(random.Between(-1.0, 1.0));
+  // Where the result is just above 1/8 an ulp is small beside the rounding errors of square root and quotient.
+  for (int i = 0; i < 300'000; ++i) check(random.Between(0.124, 0.1245));
+  for (int i = 0; i < 300'000; ++i) check(random.Between(0.9922, 0.9924));
+  for (const double number : {0.12423544569808977, 0.12418264671347694, 0.99227136608626776}) check(number);
   for (int i = 0; i < 100'000; ++i) check(1.0 - random.Between(0.0, 1e-6));
   for (int i = 0; i < 100'000; ++i) check(random.Between(0.0, 1e-6) - 1.0);
   for (const double number : {0.0, 0.5, 1.0, std::nextafter(1.0, 0.0), kLeastNumber, kLeastNormal}) {
@@ -257,6 +267,10 @@ TEST(Hypot, IsWithinOneAndAHalfUlp) {
   EXPECT_LT(worst.error_ulp, 1.5) << "at " << worst.at;
   EXPECT_EQ(Hypot(3.0, -4.0), 5.0);
   EXPECT_EQ(Hypot(0.0, -0.0), 0.0);
+  for (const double none : {kNan, -kNan}) {
+    EXPECT_TRUE(std::isnan(Hypot(none, 1.0)));
+    EXPECT_TRUE(std::isnan(Hypot(1.0, none)));
+  }
 }
 
 // Bit by bit what all computers give, whatever their bounds of error: another processor, compiler or option that does not is seen here. The digest is

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -95,7 +96,13 @@ TEST(LocalFrame, IsAsGoodFarAboveTheEarth) {
     worst_m = std::max(worst_m, DistanceM(found, place));
   }
   EXPECT_LT(worst_m, 1e-8) << "seed " << kSeed;
-  std::printf("worst %.3g m\n", worst_m);
+  double worst_far_m = 0.0;
+  for (const auto& place : Places(kSeed, 20'000, 1'000'000.0, 100'000'000.0)) {
+    const GeodeticPlace found = map.Reverse(map.Forward(place));
+    worst_far_m = std::max(worst_far_m, DistanceM(found, place));
+  }
+  EXPECT_LT(worst_far_m, 1e-7) << "seed " << kSeed;
+  std::printf("worst %.3g m, far off %.3g m\n", worst_m, worst_far_m);
 }
 
 TEST(LocalFrame, IsDefinedAtThePolesOnTheAxisAndAtTheCentreOfTheEarth) {
@@ -118,6 +125,19 @@ TEST(LocalFrame, IsDefinedAtThePolesOnTheAxisAndAtTheCentreOfTheEarth) {
       const GeodeticPlace place = LocalFrame({0.0, 0.0, 0.0}).Reverse({x_m, 1.0, z_m});
       EXPECT_TRUE(std::isfinite(place.latitude_deg + place.longitude_deg + place.ellipsoid_height_m)) << x_m << ", " << z_m;
     }
+  }
+}
+
+TEST(LocalFrame, GivesNoPlaceForWhatIsNone) {
+  const LocalFrame map({43.63, -72.15, 201.0});
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Vector3d p_map_m(1.0, 2.0, 3.0);
+    p_map_m[axis] = kNan;
+    const GeodeticPlace place = map.Reverse(p_map_m);
+    EXPECT_TRUE(std::isnan(place.latitude_deg)) << axis;
+    EXPECT_TRUE(std::isnan(place.longitude_deg)) << axis;
+    EXPECT_TRUE(std::isnan(place.ellipsoid_height_m)) << axis;
   }
 }
 

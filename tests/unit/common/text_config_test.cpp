@@ -33,6 +33,9 @@ std::string VlpFaults(const std::string& text) {
   return FaultsOf(text, message);
 }
 
+const std::string kRestOfBoat =
+    "gnss_antenna { x_m: 0 y_m: 0 z_m: 0 }\nreference_point_above_water_m: 0\n"
+    "own_vessel { min_x_m: -1 max_x_m: 1 min_y_m: -1 max_y_m: 1 min_z_m: -1 max_z_m: 1 }\n";
 const std::string kGoodVlp = "source: UDP\nbind_address: \"0.0.0.0\"\ncut_azimuth_deg: 0\n";
 
 TEST(TextConfig, AcceptsWhatTheSchemaAsksFor) { EXPECT_EQ(VlpFaults(kGoodVlp), ""); }
@@ -91,6 +94,46 @@ TEST(TextConfig, TellsEveryFaultOfATextAtOnceInTheOrderOfItsLines) {
             "f.txtpb:7: antenna: Message type \"lookout.config.Boat\" has no field named \"antenna\".\n"
             "f.txtpb:8: lidar: stands twice; the first is in line 2\n"
             "f.txtpb:9: reference_point_above_water_m: must be a finite number (is nan)");
+}
+
+// The separator behind a refused statement goes with it: alone it is a fault of its own, and what stands behind it is not looked at.
+TEST(TextConfig, TellsEveryFaultOfATextWithSeparators) {
+  const std::string unknown = "Message type \"lookout.config.Vlp16\" has no field named ";
+  EXPECT_EQ(VlpFaults("source: UDP, bind_addres: \"0.0.0.0\", cut_azimuth_deg: 0, data_port: 70000\n"),
+            "f.txtpb:1: bind_addres: " + unknown + "\"bind_addres\".\nf.txtpb:1: data_port: must be at most 65535 (is 70000)");
+  EXPECT_EQ(VlpFaults("source: UDP;\nx: 1;\ny { z: 1 };\ncut_azimuth_deg: 0;\ncut_azimuth_deg: 1;\ndata_port: 70000;\n"),
+            "f.txtpb:2: x: " + unknown + "\"x\".\nf.txtpb:3: y: " + unknown +
+                "\"y\".\nf.txtpb:5: cut_azimuth_deg: stands twice; the first is in line 4\nf.txtpb:6: data_port: must be at most 65535 (is 70000)");
+  EXPECT_EQ(
+      VlpFaults("source: UDP,, x: 1, cut_azimuth_deg: 0\n; data_port: 70000\n"),
+      "f.txtpb:1: text: Expected identifier, got: ,\nf.txtpb:1: x: " + unknown + "\"x\".\nf.txtpb:2: data_port: must be at most 65535 (is 70000)");
+  EXPECT_EQ(VlpFaults("source: UDP; cut_azimuth_deg: 0, data_port: 2368;\n"), "");
+}
+
+TEST(TextConfig, TellsEveryFaultOfAPartWithSeparators) {
+  Boat boat;
+  EXPECT_EQ(FaultsOf("name: 'x', lidar { x_m: \"half\", y_m: 0, z_m: 1000; roll_deg: 0 pitch_deg: 0, yaw_deg: 0 };\n" + kRestOfBoat, boat),
+            "f.txtpb:1: lidar.x_m: Expected double, got: \"half\"\nf.txtpb:1: lidar.z_m: must be at most 200 (is 1000)");
+}
+
+// A bracket that is never closed does not take the closing one of the message around it.
+TEST(TextConfig, ABracketThatIsNotClosedIsOneFault) {
+  for (const std::string value : {"[1", "<5", "[<1", "<[1", "5>", "5 ]"}) {
+    Boat boat;
+    const auto faults =
+        FaultsOf("name: 'x'\nlidar {\n  x_m: " + value + "\n  y_m: 0 z_m: 0 roll_deg: 0 pitch_deg: 0 yaw_deg: 400\n}\n" + kRestOfBoat, boat);
+    EXPECT_EQ(std::ranges::count(faults, '\n'), 1) << value << ":\n" << faults;
+    EXPECT_EQ(faults.rfind("f.txtpb:3: lidar.", 0), 0U) << value << ":\n" << faults;
+    EXPECT_NE(faults.find("\nf.txtpb:4: lidar.yaw_deg: must be at most 360 (is 400)"), std::string::npos) << value << ":\n" << faults;
+  }
+}
+
+TEST(TextConfig, AFieldWithoutAValueDoesNotTakeTheNextPartForIt) {
+  Boat boat;
+  const auto faults = FaultsOf("name:\nlidar { x_m: 0 y_m: 0 z_m: 1000 roll_deg: 0 pitch_deg: 0 yaw_deg: 0 }\n" + kRestOfBoat, boat);
+  EXPECT_EQ(std::ranges::count(faults, '\n'), 1) << faults;
+  EXPECT_EQ(faults.rfind("f.txtpb:1: name: ", 0), 0U) << faults;
+  EXPECT_NE(faults.find("\nf.txtpb:2: lidar.z_m: must be at most 200 (is 1000)"), std::string::npos) << faults;
 }
 
 TEST(TextConfig, ChecksWholeNumbersOf64BitsToo) {

@@ -199,7 +199,7 @@ TEST_F(Captures, AreFoundByTheirNames) {
   fs::remove(folder_ / "b-2.truth.csv.xz");
   EXPECT_EQ(Fault(), "b-2.truth.csv.xz: is missing beside b-2.pcap.xz");
   fs::remove(folder_ / "b-2.pcap.xz");
-  for (const auto* name : {"noseed.pcap.xz", "-3.pcap.xz", "x-.pcap.xz", "x-3a.pcap.xz"}) {
+  for (const auto* name : {"noseed.pcap.xz", "-3.pcap.xz", "x-.pcap.xz", "x-3a.pcap.xz", "x-99999999999999999999.pcap.xz"}) {
     Write(name, "");
     EXPECT_THROW(ListCaptures(folder_), std::runtime_error) << name;
     fs::remove(folder_ / name);

@@ -111,6 +111,41 @@ TEST_F(Figures, AreMadeOfTheResultsAndReplacedOnlyWhenForced) {
   EXPECT_NE(FillBlocks("<!-- figures: main -->\n<!-- end -->\n", folder_ / "new", "").find("| ours (all segments) | 85.2 |"), std::string::npos);
 }
 
+// A mean over scenes, whatever table shows it: scenes differ in how many things they hold.
+TEST_F(Figures, OneNameIsOneFigureInAllBlocks) {
+  auto results = MadeUpResults();
+  results.methods[0].method = "F3D (tuned)";
+  auto& rain = results.methods[0].by_scene["rain"];
+  rain.num_things = 80;
+  rain.num_things_with_segment = 20;
+  const auto cell = [figures = FiguresOf(results, "2026-11-22")](const std::string& name, const std::string& column) -> std::string {
+    const auto figure = std::ranges::find(figures, name, &ReadmeFigure::name);
+    if (figure == figures.end()) return "no " + name;
+    const auto& header = figure->table.rows().at(0);
+    const auto found = std::ranges::find(header, column);
+    if (found == header.end()) return "no " + column;
+    return figure->table.rows().at(1).at(static_cast<std::size_t>(found - header.begin()));
+  };
+  EXPECT_EQ(cell("main", "method"), "F3D (tuned)");
+  EXPECT_EQ(cell("with-segment", "mean"), "56.2") << "of 7/8 and 20/80";
+  EXPECT_EQ(cell("main", "things with a segment, %"), "56.2");
+  EXPECT_EQ(cell("peers", "with_segment_%"), "56.2");
+  EXPECT_EQ(cell("main", "mIoU, %"), cell("miou", "mean"));
+  EXPECT_EQ(cell("main", "false a scan"), cell("false", "mean"));
+}
+
+// On a computer that does other work the slowest scan in a hundred says nothing about the method.
+TEST_F(Figures, OfTimesMediansAloneAreShown) {
+  for (const auto& figure : FiguresOf(MadeUpResults(), "2026-11-22")) {
+    for (const auto& column : figure.table.rows().at(0)) {
+      EXPECT_EQ(column.find("p99"), std::string::npos) << figure.name;
+      EXPECT_EQ(column.find("percentile"), std::string::npos) << figure.name;
+    }
+    if (figure.name != "times") continue;
+    EXPECT_EQ(figure.table.rows().at(1), (std::vector<std::string>{"ours", "1.250"}));
+  }
+}
+
 TEST_F(Figures, AWorldThatIsNotHereIsSaid) {
   auto results = MadeUpResults();
   results.methods[0].method = "ours (all segments)";

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -383,6 +384,13 @@ TEST(Seeds, OfTuningAndOfTablesAreKeptApart) {
   EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 101, 1), std::invalid_argument);
   EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 100, 2), std::invalid_argument) << "a mixture";
   EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 0, 1), std::invalid_argument);
+}
+
+TEST(Seeds, BeyondTheGreatestNumberAreRefused) {
+  constexpr auto kGreatest = std::numeric_limits<std::uint64_t>::max();
+  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTables, kGreatest, 1));
+  EXPECT_THROW(CheckSeeds(SeedUse::kTables, kGreatest, 3), std::invalid_argument) << "they would go on with 0 and 1";
+  EXPECT_THROW(CheckSeeds(SeedUse::kTuning, kGreatest, 3), std::invalid_argument);
 }
 
 TEST(ResultTables, EmptyResultsGiveNoTable) { EXPECT_TRUE(TablesOf(Results{}).empty()); }

@@ -54,6 +54,14 @@ TEST(WriteHtml, SaysWhatWasRun) {
   EXPECT_TRUE(Holds(section, "<dt>turns a method</dt><dd>12</dd>"));
 }
 
+// Sweeps run on other seeds than tables.
+TEST(WriteHtml, ASweepSaysWhichSeedsItRanOn) {
+  auto results = MadeUpResults();
+  results.curves[0].turns_from = "seeds 1 to 4, 0.6 s each";
+  EXPECT_TRUE(Holds(SectionOf(PageOf(results), "curves"), "seeds 1 to 4, 0.6 s each"));
+  EXPECT_FALSE(Holds(SectionOf(PageOf(MadeUpResults()), "curves"), "seeds"));
+}
+
 TEST(WriteHtml, SummaryNamesTheWinnerOfEachScene) {
   const auto section = SectionOf(PageOf(MadeUpResults()), "summary");
   EXPECT_TRUE(Holds(section, "Highest mean mIoU over the scenes: ours with 85.2 %, before paper W=512 with 55.5 %."));
