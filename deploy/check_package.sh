@@ -15,12 +15,12 @@ for program in debootstrap systemd-nspawn; do
 done
 
 work=$(mktemp -d -t lookout-package.XXXXXX)
+trap 'rm -rf "$work"' EXIT
 if [ -z "$root" ]; then
   root=$work/debian
   say "debootstrap"
-  debootstrap --variant=minbase --include=systemd,dbus bookworm "$root" >"$work/debootstrap.log" 2>&1 || fail "debootstrap: $work/debootstrap.log"
+  debootstrap --variant=minbase --include=systemd,dbus bookworm "$root" >"$work/debootstrap.log" 2>&1 || { tail "$work/debootstrap.log" >&2; fail "debootstrap"; }
 fi
-trap 'rm -rf "$work"' EXIT
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive HOME=/root TERM=dumb "$@"; }
 
 # A package like it with the next version, and one line of its config another: what an upgrade meets.
