@@ -44,6 +44,10 @@ inside id lookout || fail "no user"
 for file in bin/lookout-up bin/lookout-spy share/lookout/lookout-spy.jar share/lookout/lookout-types.jar; do
   [ -s "$root/usr/$file" ] || fail "/usr/$file is not in the package"
 done
+# Pages link to each other and to config.
+for link in $(sed -n 's/^.*Documentation=file:\(.*\)$/\1/p' "$root/lib/systemd/system/lookout.target") /usr/share/doc/lookout/{README.md,TROUBLESHOOTING.md,services/segmenter/README.md,config/catabot/boat.txtpb}; do
+  inside test -s "$link" || fail "$link is not there"
+done
 for program in "$root"/usr/bin/lookout-*; do
   inside "/usr/bin/$(basename "$program")" --help >"$work/help.txt" 2>&1 || { cat "$work/help.txt" >&2; fail "$(basename "$program") --help"; }
 done
