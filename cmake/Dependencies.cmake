@@ -81,7 +81,7 @@ if(lookout_missing)
   endif()
   message(FATAL_ERROR "Missing on this computer: ${lookout_missing_words}\n"
                       "Install them by: ${lookout_setup}\n"
-                      "or by hand: apt-get install ${lookout_missing_words}")
+                      "or by hand: apt-get install --no-install-recommends ${lookout_missing_words}")
 endif()
 
 add_library(lcm INTERFACE)

@@ -15,12 +15,12 @@ for program in debootstrap systemd-nspawn; do
 done
 
 work=$(mktemp -d -t lookout-package.XXXXXX)
+trap 'rm -rf "$work"' EXIT
 if [ -z "$root" ]; then
   root=$work/debian
   say "debootstrap"
-  debootstrap --variant=minbase --include=systemd,dbus bookworm "$root" >"$work/debootstrap.log" 2>&1 || fail "debootstrap: $work/debootstrap.log"
+  debootstrap --variant=minbase --include=systemd,dbus bookworm "$root" >"$work/debootstrap.log" 2>&1 || { tail "$work/debootstrap.log" >&2; fail "debootstrap"; }
 fi
-trap 'rm -rf "$work"' EXIT
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive HOME=/root TERM=dumb "$@"; }
 
 # A package like it with the next version, and one line of its config another: what an upgrade meets.
@@ -43,6 +43,10 @@ inside id lookout || fail "no user"
 # Scripts and archives are found by their names: were they not, nobody would miss them here.
 for file in bin/lookout-up bin/lookout-spy share/lookout/lookout-spy.jar share/lookout/lookout-types.jar; do
   [ -s "$root/usr/$file" ] || fail "/usr/$file is not in the package"
+done
+# Pages link to each other and to config.
+for link in $(sed -n 's/^.*Documentation=file:\(.*\)$/\1/p' "$root/lib/systemd/system/lookout.target") /usr/share/doc/lookout/{README.md,TROUBLESHOOTING.md,services/segmenter/README.md,config/catabot/boat.txtpb}; do
+  inside test -s "$link" || fail "$link is not there"
 done
 for program in "$root"/usr/bin/lookout-*; do
   inside "/usr/bin/$(basename "$program")" --help >"$work/help.txt" 2>&1 || { cat "$work/help.txt" >&2; fail "$(basename "$program") --help"; }

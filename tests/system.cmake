@@ -64,6 +64,11 @@ if(LOOKOUT_SANITIZE)
 endif()
 set_tests_properties(system_outputs PROPERTIES TIMEOUT ${outputs_timeout})
 
+# Ctrl-C ends the demo and all that it runs.
+add_test(NAME system_demo_stop COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route ${CMAKE_CURRENT_SOURCE_DIR}/system/demo_stop_test.sh
+                                       ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/bin)
+set_tests_properties(system_demo_stop PROPERTIES TIMEOUT 120 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
+
 # The order in which the demo and lookout-up start and end the processes.
 foreach(by demo lookout-up)
   add_test(NAME system_order_${by} COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route

@@ -2,6 +2,7 @@
 # The demo: simulate (or take a capture), replay, run all processes live and record them, replay the recording and compare. Called by
 # ./dev demo [CAPTURE].
 set -euo pipefail
+capture=${1:+$(realpath -m -- "$1")}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bin=build/release/bin
@@ -10,12 +11,17 @@ work=build/demo
 scene=lake
 seed=1
 seconds=10
-capture=${1:-}
 
 # shellcheck source=tools/live_processes.sh
 . tools/live_processes.sh
 
 say() { printf '\n== %s\n' "$*"; }
+
+if [ -n "$capture" ]; then
+  [ -f "$capture" ] || { echo "$capture: no such file" >&2; exit 2; }
+  # What a demo of before left is removed.
+  [[ $capture != "$(realpath -m "$work")"/* ]] || { echo "$capture lies in $work, which each demo makes anew: copy it elsewhere first" >&2; exit 2; }
+fi
 
 # Live processes need a multicast route. Where there is none, the whole demo goes into a network namespace of its own; root needs no user namespace
 # for that, which a chroot would not permit.
@@ -25,7 +31,7 @@ if [ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] && ! ip route get 239.255.76.67 >/dev/nu
   if "${isolated[@]}" true 2>/dev/null; then
     export LOOKOUT_DEMO_NAMESPACE=1
     exec "${isolated[@]}" bash -c 'ip link set lo up && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo && exec "$0" "$@"' \
-      "$PWD/tools/demo.sh" "$@"
+      "$PWD/tools/demo.sh" ${capture:+"$capture"}
   fi
   echo "LCM needs a multicast route and there is none. As root: ip route add 239.255.76.0/24 dev lo" >&2
   exit 1
@@ -46,7 +52,6 @@ rm -rf "$work"
 mkdir -p "$work" logs
 
 if [ -n "$capture" ]; then
-  [ -f "$capture" ] || { echo "$capture: no such file" >&2; exit 2; }
   input=$capture
 else
   say "simulating $seconds s of the scene '$scene' to $work/sim.pcap"
@@ -64,34 +69,51 @@ cp -r "$config" "$live_config"
 if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
   sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
-  printf 'capture_file: "%s"\n' "$(realpath "$capture")" >>"$live_config/vlp16.txtpb"
+  escaped=${capture//\\/\\\\}
+  printf 'capture_file: "%s"\n' "${escaped//\"/\\\"}" >>"$live_config/vlp16.txtpb"
   # Its position belongs to another day than this computer's clock: live, obstacles stay in the vessel's frame. The replay has both.
   sed -i 's/^use_lidar_nmea: true/use_lidar_nmea: false/' "$live_config/navigator.txtpb"
 fi
 
-trap stop_all EXIT
+# Ctrl-C reaches the simulator too, which ends with 0: the demo must not go on as if it had sent all.
+simulator='' watcher=''
+cleanup() {
+  trap '' INT TERM
+  [ -z "$simulator" ] || kill -TERM "$simulator" 2>/dev/null || true
+  [ -z "$watcher" ] || kill -TERM "$watcher" 2>/dev/null || true
+  stop_all
+  wait
+}
+trap cleanup EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 # Those that take before those that give: nobody misses a first message.
 for service in recorder georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
 lidar=${live_pids[vlp16]}
-# What the bus carries, seen in the middle of the run.
-(sleep 2 && exec "$bin/lookout-top" --once --seconds 3) >"$work/top.out" 2>&1 &
-watcher=$!
-
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
-  for _ in $(seq 600); do kill -0 "$lidar" 2>/dev/null || break; sleep 0.1; done
-  grep -q 'critical' "$work/vlp16.out" && { cat "$work/vlp16.out" >&2; exit 1; }
-  sleep 1.5
 else
   kill -0 "$lidar" 2>/dev/null || { cat "$work/vlp16.out" >&2; exit 1; }
   echo "the simulator sends datagrams to 127.0.0.1 for $seconds s"
   rm -rf "$work/truth-live"
-  "$bin/lookout-sim" --config "$live_config" --scene "$scene" --seed "$seed" --seconds "$seconds" --udp 127.0.0.1 --truth "$work/truth-live"
-  sleep 1.5  # the last HEALTH
+  # In the background: bash heeds a signal while it waits, but not while it runs a program.
+  "$bin/lookout-sim" --config "$live_config" --scene "$scene" --seed "$seed" --seconds "$seconds" --udp 127.0.0.1 --truth "$work/truth-live" &
+  simulator=$!
 fi
+# What the bus carries, seen in the middle of the run.
+sleep 2
+"$bin/lookout-top" --once --seconds 3 >"$work/top.out" 2>&1 &
+watcher=$!
+if [ -n "$capture" ]; then
+  for _ in $(seq 600); do kill -0 "$lidar" 2>/dev/null || break; sleep 0.1; done
+  grep -q 'critical' "$work/vlp16.out" && { cat "$work/vlp16.out" >&2; exit 1; }
+else
+  wait "$simulator"
+fi
+sleep 1.5  # the last HEALTH
 wait "$watcher" || { cat "$work/top.out" >&2; exit 1; }
 stop_all
-trap - EXIT
+trap - EXIT INT TERM
 
 log=$(sed -n 's/.*writing \(.*\.lcmlog\).*/\1/p' "$work/recorder.out" | head -n 1)
 if [ -z "$log" ] || [ ! -s "$log" ]; then
@@ -113,13 +135,15 @@ is_equal=1
 picture=${log%.lcmlog}.svg
 "$bin/lookout-export" --in "$log" --table returns --format svg --out "$picture"
 
+route_hint=''
+[ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] || route_hint=$'\n          first, as root, for what plays or watches: ip route add 239.255.76.0/24 dev lo'
 say "what is left"
 cat <<TEXT
 log       $log
           play it:      lcm-logplayer $log
           again:        $bin/lookout-replay --config $config --in $log --out again.lcmlog
           tables:       $bin/lookout-export --in $log --table obstacles
-          watch it:     $bin/lookout-top in a terminal, then lcm-logplayer in another
+          watch it:     $bin/lookout-top in a terminal, then lcm-logplayer in another$route_hint
 picture   $picture
           open it in a browser, or: xdg-open $picture
 more      ./dev build makes the rest: lookout-eval (obstacles against the simulator's truth), lookout-spy (the bus on a display), lookout-doctor

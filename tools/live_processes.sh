@@ -1,6 +1,6 @@
 # Sourced: starts and ends the live processes of Lookout in the order that leaves a log equal to its replay.
 #   start NAME CONFIG OUTPUT  starts build/.../lookout-NAME, waits until its inputs and its bus are open; what it prints goes to OUTPUT
-#   stop_all                  ends what was started
+#   stop_all                  ends what was started; kills, and says so, what goes on for 12 s
 # Expects $bin, the folder of the programs.
 
 declare -A live_pids=()
@@ -25,10 +25,15 @@ start() {
 # Sources first, each waited for: what one sends at its end (the end mark, the last scan, the last poses) is still taken by those behind it, and the
 # recorder, which ends last, has it all.
 stop_all() {
-  local name
+  local name i
   for name in vlp16 navigator segmenter georeferencer recorder; do
     [ -n "${live_pids[$name]:-}" ] || continue
     kill -TERM "${live_pids[$name]}" 2>/dev/null || true
+    for ((i = 0; i < 240; ++i)); do
+      kill -0 "${live_pids[$name]}" 2>/dev/null || break
+      sleep 0.05
+    done
+    if kill -KILL "${live_pids[$name]}" 2>/dev/null; then echo "lookout-$name did not end within 12 s of SIGTERM: killed" >&2; fi
     wait "${live_pids[$name]}" 2>/dev/null || true
     unset "live_pids[$name]"
   done

@@ -209,7 +209,8 @@ bool IsConfigRight(const std::filesystem::path& config_folder, const Params& run
 
 int main(int argc, char** argv) {
   lookout::runtime::BlockStopSignals();
-  const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-vlp16", "VLP-16 datagrams in; LIDAR_PACKETS, LIDAR_SCAN out");
+  const auto options =
+      lookout::runtime::ParseOptions(argc, argv, "lookout-vlp16", "VLP-16 datagrams in; LIDAR_PACKETS, LIDAR_SCAN, LIDAR_CLOCK, LIDAR_NMEA out");
   bool starts_again = false;
   const int code = lookout::runtime::RunMain("vlp16", [&] {
     if (options.check_only) {

@@ -2,6 +2,7 @@
 # The back-off that systemd and lookout-up share, lookout-up's command line, and how far the units are shut off.
 #   deploy_test.sh SOURCE_FOLDER BUILD_FOLDER
 set -euo pipefail
+export LC_ALL=C  # a range of letters is that of the locale: in Turkish, [a-z] has no w
 source_folder=$1
 build_folder=$2
 greatest_exposure=25  # of systemd-analyze security, in tenths

@@ -84,7 +84,7 @@ for locale in C "${locales[-1]}"; do
   "$bin/lookout-doctor" --config "$odd/config" --seconds 2 >"$work/doctor.txt" || [ $? -eq 1 ]
   wait "$sim_pid"
   grep -q '^LIDAR_PACKETS *[0-9]*\.[0-9] ' "$work/top.txt" || { cat "$work/top.txt"; fail "lookout-top, LC_ALL=$locale"; }
-  grep -q '^[a-z]* *lidar  ' "$work/doctor.txt" || { cat "$work/doctor.txt"; fail "lookout-doctor, LC_ALL=$locale"; }
+  LC_ALL=C grep -Eq '^(ok|warning|fault) +lidar ' "$work/doctor.txt" || { cat "$work/doctor.txt"; fail "lookout-doctor, LC_ALL=$locale"; }
   ! grep -E '[0-9],[0-9]' "$work/top.txt" "$work/doctor.txt" || fail "a decimal comma, LC_ALL=$locale"
   kill -TERM "$up_pid"
   code=0

@@ -3,6 +3,7 @@
 # of that program, and every option of a program stands in its page.
 #   options_test.sh SOURCE_FOLDER BUILD_FOLDER
 set -euo pipefail
+export LC_ALL=C  # a range of letters is that of the locale: in Turkish, [a-z] has no w
 source_folder=$1
 bin=$2/bin
 num_faults=0

@@ -36,6 +36,7 @@ class Watcher {
     // Time to see a rate, whenever it began.
     TurnUntil(std::max(start + duration, SteadyClock::now() + duration / 2));
     if (navigator_) navigator_->Finish(seen_.navigation);
+    ForgivePortsOfProcesses(seen_);
     seen_.end = runtime::HostNow();
     seen_.watched_s = ToSeconds(SteadyClock::now() - start);
     if (seen_.lidar.via == Via::kBus && seen_.lidar.num_packets > 0) {
@@ -117,5 +118,16 @@ class Watcher {
 }  // namespace
 
 void Watch(Observations& seen, std::chrono::milliseconds duration) { Watcher(seen).Run(duration); }
+
+void ForgivePortsOfProcesses(Observations& seen) {
+  if (!seen.lidar.fault.empty() && seen.processes.contains("vlp16")) {
+    seen.lidar.fault.clear();
+    seen.lidar.via = Via::kBus;
+  }
+  if (!seen.navigation.input_faults.empty() && seen.processes.contains("navigator")) {
+    seen.navigation.input_faults.clear();
+    seen.navigation.via = Via::kBus;
+  }
+}
 
 }  // namespace lookout::doctor

@@ -12,4 +12,8 @@ namespace lookout::doctor {
 /// @param seen  config and bus are read already
 void Watch(Observations& seen, std::chrono::milliseconds duration);
 
+/// A port that could not be opened is no fault where the process that reads it has been heard after all, its first HEALTH late on a busy computer:
+/// takes the faults of its ports from `seen`, which then speaks of the process.
+void ForgivePortsOfProcesses(Observations& seen);
+
 }  // namespace lookout::doctor

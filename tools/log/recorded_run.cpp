@@ -30,8 +30,9 @@ std::string MachineOf(const run_info_t& run_info) {
     for (std::string line; std::getline(lines, line);) {
       const auto colon = line.find(": ");
       if (colon == std::string::npos) continue;
-      const bool needs_name = line.starts_with("glibc_tunables") || line.starts_with("compiler") || line.starts_with("kernel");
-      machine += (machine.empty() ? "" : ", ") + (needs_name ? line : line.substr(colon + 2));
+      const auto value = line.substr(colon + 2);
+      const bool needs_name = line.starts_with("glibc_tunables") || line.starts_with("compiler") || line.starts_with("kernel") || value == "unknown";
+      machine += (machine.empty() ? "" : ", ") + (needs_name ? line : value);
     }
   }
   return machine;

@@ -63,7 +63,8 @@ Options ParseOptions(int argc, char** argv) {
   app.set_version_flag("--version", "lookout-replay " + lookout::runtime::Version());
   try {
     app.parse(argc, argv);
-    if (!options.check_only && (inputs.empty() || output.empty())) throw CLI::RequiredError("--in and --out");
+    if (!options.check_only && (inputs.empty() || output.empty()))
+      throw CLI::RequiredError("--in and --out are required", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : 2);
   }

@@ -1,5 +1,6 @@
 // Each judgement of lookout-doctor: ok, warning and fault.
 #include "tests/unit/doctor/healthy.hpp"
+#include "tools/doctor/watch.hpp"
 
 namespace lookout::doctor::test {
 namespace {
@@ -104,6 +105,29 @@ TEST(DoctorLidar, SeesAPortThatIsTakenAndASensorThatIsNotWanted) {
   EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kWarning, "takes no sensor");
   seen.config.lidar.reset();
   EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kWarning, "vlp16.txtpb is wrong");
+}
+
+// On a busy computer the first HEALTH came later than the doctor waits for it, and it told of a taken port whose process sent on the same bus.
+TEST(DoctorLidar, APortThatAProcessHoldsIsNoFaultThoughItsHealthCameLate) {
+  auto seen = Healthy();
+  seen.processes.clear();
+  seen.lidar.via = seen.navigation.via = Via::kItself;
+  seen.lidar.fault = "cannot listen on '0.0.0.0' port 2368: bind: Address already in use";
+  seen.navigation.input_faults.emplace_back("udp", "cannot listen on '0.0.0.0' port 10110: bind: Address already in use");
+  ForgivePortsOfProcesses(seen);
+  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "port 2368");
+  EXPECT_SAYS(About(JudgeNavigation(seen), "input"), kFault, "port 10110");
+
+  seen.processes["vlp16"].push_back(Running("vlp16", 8));
+  ForgivePortsOfProcesses(seen);
+  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kOk, "VLP-16");
+  EXPECT_EQ(seen.lidar.via, Via::kBus);
+  EXPECT_SAYS(About(JudgeNavigation(seen), "input"), kFault, "port 10110");
+
+  seen.processes["navigator"].push_back(Running("navigator", 9));
+  ForgivePortsOfProcesses(seen);
+  EXPECT_TRUE(seen.navigation.input_faults.empty());
+  EXPECT_EQ(seen.navigation.via, Via::kBus);
 }
 
 TEST(DoctorLidar, SeesAWrongNetworkAndAWrongSender) {

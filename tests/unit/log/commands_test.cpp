@@ -71,6 +71,16 @@ TEST_F(LogCommands, InfoTellsTheMachineInALineForEach) {
   EXPECT_TRUE(Said("machine   aarch64, implementer 0x41, fp asimd, glibc 2.36, glibc_tunables: none\nmachine   ?[2J\n")) << out_.str();
 }
 
+// In a chroot without /proc: "unknown, unknown" said nothing.
+TEST_F(LogCommands, InfoNamesWhatIsNotKnownOfTheMachine) {
+  run_info_t info{};
+  info.file_name = {"machine.txt"};
+  info.file_text = {"architecture: x86_64\nprocessor: unknown\nprocessor_features: unknown\nc_library: glibc 2.36\n"};
+  info.num_files = 1;
+  Info({Write("log", {Event(start_, "RUN_INFO", bus::Encode(info))})}, out_);
+  EXPECT_TRUE(Said("machine   x86_64, processor: unknown, processor_features: unknown, glibc 2.36\n")) << out_.str();
+}
+
 TEST_F(LogCommands, InfoReadsRotatedLogsAsOne) {
   const auto first = Write("1", {RunInfo(0), Pose(0, 0), Pose(1, 1)});
   const auto second = Write("2", {RunInfo(2), Pose(3, 3)});
