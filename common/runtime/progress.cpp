@@ -29,8 +29,15 @@ std::string DurationText(double duration_s) {
 
 Progress::Progress(std::string program, std::FILE* out) : Progress(std::move(program), out, out != nullptr && isatty(fileno(out)) != 0) {}
 
-Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period)
-    : program_(std::move(program)), out_(out), is_terminal_(as_on_terminal), period_(as_on_terminal ? kTerminalPeriod : line_period), next_(start_) {
+Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period,
+                   std::function<Clock::time_point()> now)
+    : program_(std::move(program)),
+      out_(out),
+      is_terminal_(as_on_terminal),
+      period_(as_on_terminal ? kTerminalPeriod : line_period),
+      now_(std::move(now)),
+      start_(now_()),
+      next_(start_) {
   if (!is_terminal_) next_ += period_;
 }
 
@@ -38,7 +45,7 @@ Progress::~Progress() { Clear(); }
 
 void Progress::Update(double share, const std::function<std::string()>& remark) {
   if (out_ == nullptr || ++num_calls_ % kCallsPerLook != 0) return;
-  const auto now = Clock::now();
+  const auto now = now_();
   if (now < next_) return;
   next_ = now + period_;
   const double done = std::clamp(share, 1e-6, 1.0);

@@ -11,13 +11,17 @@ namespace lookout::runtime {
 
 class Progress {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// @param program  stands in front of each line: "replay"
   /// @param out      stays open and outlives this; nullptr: silent
   Progress(std::string program, std::FILE* out);
 
   /// @param as_on_terminal  also where `out` is none
   /// @param line_period     from line to line where it is not as on a terminal
-  Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period = std::chrono::minutes(1));
+  /// @param now             the time: tests bring their own
+  Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period = std::chrono::minutes(1),
+           std::function<Clock::time_point()> now = Clock::now);
 
   /// Leaves no trace on a terminal.
   ~Progress();
@@ -35,8 +39,6 @@ class Progress {
   void Clear();
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   std::size_t Columns() const;
   void Show(std::string line);
 
@@ -44,9 +46,10 @@ class Progress {
   std::FILE* out_;
   bool is_terminal_;
   Clock::duration period_;
+  std::function<Clock::time_point()> now_;
   std::int64_t num_calls_ = 0;
   std::size_t num_shown_ = 0;  // characters of the line on the terminal
-  Clock::time_point start_ = Clock::now();
+  Clock::time_point start_;
   Clock::time_point next_;
 };
 

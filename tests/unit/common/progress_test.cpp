@@ -8,9 +8,9 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <gtest/gtest.h>
 #include <string>
-#include <thread>
 
 namespace lookout::runtime {
 namespace {
@@ -67,27 +67,37 @@ class Terminal {
   std::size_t widest_ = 0;
 };
 
-// Until it has said something.
-void Update(Progress& progress, double share, const std::string& remark, milliseconds time = milliseconds(600)) {
-  const auto end = std::chrono::steady_clock::now() + time;
-  while (std::chrono::steady_clock::now() < end) {
-    progress.Update(share, [&remark] { return remark; });
-    std::this_thread::sleep_for(milliseconds(1));
+// A clock that stands still but for what a test lets pass.
+class Watch {
+ public:
+  std::function<Progress::Clock::time_point()> Clock() const {
+    return [this] { return now_; };
   }
-}
+  // As a program calls it: many times in each millisecond.
+  void Update(Progress& progress, double share, const std::string& remark, milliseconds time) {
+    const auto end = now_ + time;
+    for (; now_ < end; now_ += milliseconds(1)) {
+      for (int i = 0; i < 100; ++i) progress.Update(share, [&remark] { return remark; });
+    }
+  }
+
+ private:
+  Progress::Clock::time_point now_;
+};
 
 TEST(Progress, LeavesNothingOfALongerLineOnATerminal) {
   Terminal terminal(80);
   if (terminal.out() == nullptr) GTEST_SKIP() << "this computer gives no pseudo terminal";
   {
-    Progress progress("replay", terminal.out());
-    Update(progress, 0.001, "123456 times real time", milliseconds(200));
+    Watch watch;
+    Progress progress("replay", terminal.out(), true, milliseconds(1), watch.Clock());
+    watch.Update(progress, 0.001, "123456 times real time", milliseconds(200));
     EXPECT_EQ(terminal.Line().find("replay: 0 %, 123456 times real time, "), 0U) << terminal.Line();
-    Update(progress, 0.999, "1 times real time", milliseconds(700));
+    watch.Update(progress, 0.999, "1 times real time", milliseconds(700));
     EXPECT_EQ(terminal.Line(), "replay: 100 %, 1 times real time, 0 s left");
     progress.Clear();
     EXPECT_EQ(terminal.Line(), "");
-    Update(progress, 0.5, "2 times real time");
+    watch.Update(progress, 0.5, "2 times real time", milliseconds(600));
     EXPECT_EQ(terminal.Line().find("replay: 50 %, 2 times real time, "), 0U) << terminal.Line();
   }
   EXPECT_EQ(terminal.Line(), "");
@@ -97,24 +107,26 @@ TEST(Progress, LeavesNothingOfALongerLineOnATerminal) {
 TEST(Progress, IsNoWiderThanTheTerminalAlsoWhenThatBecomesNarrower) {
   Terminal terminal(30);
   if (terminal.out() == nullptr) GTEST_SKIP() << "this computer gives no pseudo terminal";
-  Progress progress("replay", terminal.out());
-  Update(progress, 0.5, "123456 times real time", milliseconds(200));
+  Watch watch;
+  Progress progress("replay", terminal.out(), true, milliseconds(1), watch.Clock());
+  watch.Update(progress, 0.5, "123456 times real time", milliseconds(200));
   EXPECT_EQ(terminal.Line(), "replay: 50 %, 123456 times re");
   EXPECT_EQ(terminal.widest(), 29U);
   terminal.SetColumns(10);
-  Update(progress, 0.5, "1 times real time", milliseconds(700));
+  watch.Update(progress, 0.5, "1 times real time", milliseconds(700));
   EXPECT_EQ(terminal.Line().substr(0, 9), "replay: 5");
 }
 
 TEST(Progress, ElsewhereIsALineNowAndThenAndNotAtOnce) {
   std::array<char, 4096> text{};
   std::FILE* out = fmemopen(text.data(), text.size(), "w");
+  Watch watch;
   ASSERT_NE(out, nullptr);
   {
-    Progress progress("sim", out, false, milliseconds(300));
-    Update(progress, 0.25, "", milliseconds(200));
+    Progress progress("sim", out, false, milliseconds(300), watch.Clock());
+    watch.Update(progress, 0.25, "", milliseconds(200));
     EXPECT_STREQ(text.data(), "");
-    Update(progress, 0.5, "fast", milliseconds(200));
+    watch.Update(progress, 0.5, "fast", milliseconds(200));
     EXPECT_EQ(std::string(text.data()), "sim: 50 %, fast, 0 s left\n");
   }
   EXPECT_EQ(std::string(text.data()), "sim: 50 %, fast, 0 s left\n") << "no blanks are written to a file";
