@@ -66,6 +66,8 @@ count_obstacles "$work/replay.lcmlog"
 say "all processes live on LCM"
 live_config=$work/config
 cp -r "$config" "$live_config"
+# A busy computer may hold POSE up. What is sent without waiting for it is outside what a replay gives again, and here that is looked at.
+sed -i 's/^pose_timeout_s: .*/pose_timeout_s: 10/' "$live_config/georeferencer.txtpb"
 if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
   sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"

@@ -7,11 +7,11 @@ source_folder=$1
 bin=$2
 config=$source_folder/config/demo
 
-# A small disk of its own needs a mount namespace. Where that is forbidden, a limit on the size of files stands in for the full disk.
+# A small disk of its own needs a mount namespace, datagrams a network of their own. Where that is forbidden, a limit on the size of files stands in for the full disk.
 if [ -z "${LOOKOUT_SMALL_DISK:-}" ]; then
-  own=(unshare -m)
-  [ "$(id -u)" -eq 0 ] || own=(unshare -rm)
-  if "${own[@]}" sh -c 'mount -t tmpfs -o size=64k none /mnt' 2>/dev/null; then
+  own=(unshare -mn)
+  [ "$(id -u)" -eq 0 ] || own=(unshare -rmn)
+  if "${own[@]}" sh -c 'ip link set lo up && mount -t tmpfs -o size=64k none /mnt' 2>/dev/null; then
     export LOOKOUT_SMALL_DISK=yes
     exec "${own[@]}" "$0" "$@"
   fi
@@ -28,7 +28,7 @@ cleanup() {
   rm -rf "$work"
 }
 trap cleanup EXIT
-[ "$LOOKOUT_SMALL_DISK" = no ] || mount -t tmpfs -o size=64k none disk || exit 1
+[ "$LOOKOUT_SMALL_DISK" = no ] || { ip link set lo up && mount -t tmpfs -o size=64k none disk; } || exit 1
 
 num_failed=0
 fail() { echo "FAILED: $name: $*" >&2; sed 's/^/  | /' said >&2; num_failed=$((num_failed + 1)); }
@@ -218,6 +218,38 @@ if [ "$LOOKOUT_SMALL_DISK" = yes ]; then
   expect_said "No space left on device"
   expect_nothing b.pcap b.pcap.partial disk/truth
 fi
+
+# The output is there although nobody takes the lines.
+name=replay
+if [ -e /dev/full ]; then
+  rm -f out
+  "$bin/lookout-replay" --config "$config" --in in.pcap --out out >/dev/full 2>said && fail "does not tell that standard output is full"
+  cmp out in.lcmlog >>said 2>&1 || fail "the output is gone since standard output is full"
+  rm -f out
+fi
+# A file of the config that is read is an input as well.
+cp -r "$config" own_config
+for name in replay sim; do
+  before=$(sha256sum <own_config/boat.txtpb)
+  config=own_config input=in.lcmlog run own_config/boat.txtpb --force >said 2>&1 && fail "wrote over its config"
+  expect_said "is an input"
+  [ "$(sha256sum <own_config/boat.txtpb)" = "$before" ] || fail "its config was changed"
+done
+
+# A simulation on the network that is ended early keeps the truth, by whichever signal.
+name=truth
+signals=(INT TERM HUP)
+[ "$LOOKOUT_SMALL_DISK" = yes ] || signals=()
+for signal in "${signals[@]}"; do
+  rm -rf truth
+  (trap - HUP; exec "$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds 60 --udp 127.0.0.1 --truth truth >said 2>&1) &
+  pid=$!
+  sleep 0.7
+  kill -"$signal" "$pid"
+  wait "$pid" || fail "exit code is not 0 after SIG$signal"
+  pid=''
+  [ -s truth/pose.csv ] || fail "the truth is gone after SIG$signal"
+done
 
 # In damage without end the signal is noticed too.
 in_damage=(slice repair csv replay)

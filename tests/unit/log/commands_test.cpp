@@ -148,6 +148,13 @@ TEST_F(LogCommands, InfoSaysWhetherTheLogHoldsARunFromItsStartToItsEnd) {
   EXPECT_TRUE(Said("begins    with a start mark: LIDAR_PACKETS\n")) << out_.str();
   EXPECT_TRUE(Said("begins    without a start mark: NAV_RAW; what a replay gives first need not equal the live run\n")) << out_.str();
   EXPECT_TRUE(Said("ends      without an end mark: LIDAR_PACKETS, NAV_RAW; cut there")) << out_.str();
+  EXPECT_FALSE(Said("within")) << out_.str();
+  // A run that was cut, and a whole one behind it.
+  const auto cut = Write("log", {Packets(0, 0, lidar_packets_t::MARK_START), Packets(1, 1), Packets(5, 0, lidar_packets_t::MARK_START),
+                                 Packets(6, 1, lidar_packets_t::MARK_END)});
+  out_.str("");
+  Info({cut}, out_);
+  EXPECT_TRUE(Said("within    a run without an end mark is followed by another: LIDAR_PACKETS; ")) << out_.str();
   // Rotated files are one run.
   out_.str("");
   Info({Write("1", {start, Packets(1, 1)}), Write("2", {Packets(2, 2), end})}, out_);
