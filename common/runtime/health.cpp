@@ -33,6 +33,16 @@ std::int64_t ResidentBytes() {
 // A process that waits for its first input is starting, not ill, for so long.
 constexpr std::chrono::seconds kStartTime(3);
 
+// What happened is told for so long; its counter stays.
+constexpr std::chrono::minutes kTellFor(1);
+
+std::string SecondPublisherText(const std::string& channel, std::int64_t num_refused) {
+  const auto* entry = bus::FindChannel(channel);
+  return channel + " has two publishers: " + std::to_string(num_refused) +
+         " messages of the second were refused; end one of them (lookout-top and lookout-doctor show every " +
+         (entry != nullptr ? std::string(entry->publisher) : "process") + " by host and pid), or give the other boat another LCM address";
+}
+
 // The value that a share `quantile` of the times does not exceed; -1 without times.
 std::int64_t QuantileUs(const std::vector<std::chrono::microseconds>& sorted, double quantile) {
   if (sorted.empty()) return -1;
@@ -63,6 +73,13 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
     message.reason += (message.reason.empty() ? "" : "; ") + std::to_string(bus.num_unsent() - last_num_unsent_) + " messages could not be sent";
   }
   last_num_unsent_ = bus.num_unsent();
+  std::int64_t num_refused = 0;
+  for (const auto& [name, traffic] : bus.input_traffic()) {
+    num_refused += traffic.num_refused;
+    if (!traffic.second_heard || bus.GuardNow() - *traffic.second_heard >= kTellFor) continue;
+    if (message.state != health_t::STATE_FAILED) message.state = health_t::STATE_DEGRADED;
+    message.reason += (message.reason.empty() ? "" : "; ") + SecondPublisherText(name, traffic.num_refused);
+  }
   message.uptime_s = ToSeconds(steady_now - start_);
   message.interval_s = ToSeconds(steady_now - last_);
   message.cpu_fraction = message.interval_s > 0.0 ? (cpu_s - last_cpu_s_) / message.interval_s : 0.0;
@@ -109,6 +126,7 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
 
   auto counters = report.counters;
   counters.push_back({"messages_not_sent", bus.num_unsent()});
+  counters.push_back({"second_publisher", num_refused});
   for (const auto& counter : counters) {
     health_counter_t entry{};
     entry.name = counter.name;
