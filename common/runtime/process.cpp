@@ -95,6 +95,7 @@ struct Process::Implementation {
   std::string name;
   int signals = -1;
   bool is_stopping = false;
+  bool is_report_due = false;
   bool had_terminal = HasTerminal();
   bool is_hangup_ignored = IsHangupIgnored();
   std::vector<Timer> timers;
@@ -151,6 +152,8 @@ void Process::Every(std::chrono::milliseconds period, std::function<void()> hand
 
 void Process::OnHangup(std::function<void()> handler) { implementation_->on_hangup = std::move(handler); }
 
+void Process::ReportNow() { implementation_->is_report_due = true; }
+
 void Process::Stop() { implementation_->is_stopping = true; }
 
 void Process::Run(const std::function<HealthReport()>& report) {
@@ -183,6 +186,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
       if (!bus_.HandleOnce(std::chrono::milliseconds(0))) break;
     }
     if (!self.is_stopping) self.RunTimers();
+    if (std::exchange(self.is_report_due, false)) bus::Publish(bus_, bus::kHealth, reporter.MakeBetween(HostNow(), report()));
   }
   const auto end = Clock::now() + kLastTime;
   while (Clock::now() < end && bus_.HandleOnce(kLastSilence)) {

@@ -97,5 +97,33 @@ TEST(HealthReporter, TellsOfASecondPublisherForAMinuteAndKeepsTheCount) {
   EXPECT_EQ(message.counters.back().count, 10);
 }
 
+// A report between two keeps what was measured over the last second: over some milliseconds a rate says nothing.
+TEST(HealthReporter, TellsBetweenTwoReportsWhatIsNewAndKeepsTheRates) {
+  bus::MemoryBus bus;
+  bus::Subscribe<lidar_nmea_t>(bus, bus::kLidarNmea, [](const lidar_nmea_t&) {});
+  HealthReporter reporter("test");
+  EXPECT_EQ(reporter.MakeBetween(Utime(), {}).num_channels, 0);
+  bus::Publish(bus, bus::kLidarNmea, lidar_nmea_t{});
+  while (bus.HandleOnce()) {
+  }
+  const auto whole = reporter.Make(Utime(std::chrono::microseconds(1'000'000)), {}, bus);
+  const HealthReport alarmed{HealthState::kDegraded, "obstacle", {{"alarms", 1}}};
+  const auto between = reporter.MakeBetween(Utime(std::chrono::microseconds(1'200'000)), alarmed);
+  EXPECT_EQ(between.seq, 2);
+  EXPECT_EQ(between.utime_us, 1'200'000);
+  EXPECT_EQ(between.state, health_t::STATE_DEGRADED);
+  EXPECT_EQ(between.reason, "obstacle");
+  ASSERT_EQ(between.num_counters, 3);
+  EXPECT_EQ(between.counters[0].name, "alarms");
+  EXPECT_EQ(between.interval_s, whole.interval_s);
+  EXPECT_EQ(between.cpu_fraction, whole.cpu_fraction);
+  ASSERT_EQ(between.num_channels, whole.num_channels);
+  EXPECT_EQ(between.channels[0].rate_hz, whole.channels[0].rate_hz);
+  const auto next = reporter.Make(Utime(std::chrono::microseconds(2'000'000)), {}, bus);
+  EXPECT_EQ(next.seq, 3);
+  EXPECT_EQ(next.reason, "");
+  EXPECT_GT(next.interval_s, 0.0);
+}
+
 }  // namespace
 }  // namespace lookout::runtime
