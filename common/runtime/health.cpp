@@ -63,6 +63,10 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
     message.reason += (message.reason.empty() ? "" : "; ") + std::to_string(bus.num_unsent() - last_num_unsent_) + " messages could not be sent";
   }
   last_num_unsent_ = bus.num_unsent();
+  if (const auto fault = bus.GuardFault(); !fault.empty()) {
+    if (message.state != health_t::STATE_FAILED) message.state = health_t::STATE_DEGRADED;
+    message.reason += (message.reason.empty() ? "" : "; ") + ("one datagram to the bus can end this process: " + fault);
+  }
   message.uptime_s = ToSeconds(steady_now - start_);
   message.interval_s = ToSeconds(steady_now - last_);
   message.cpu_fraction = message.interval_s > 0.0 ? (cpu_s - last_cpu_s_) / message.interval_s : 0.0;
@@ -109,6 +113,7 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
 
   auto counters = report.counters;
   counters.push_back({"messages_not_sent", bus.num_unsent()});
+  if (const auto num_dropped = bus.NumDatagramsDropped()) counters.push_back({"datagrams_dropped", *num_dropped});
   for (const auto& counter : counters) {
     health_counter_t entry{};
     entry.name = counter.name;

@@ -1,0 +1,262 @@
+// What anybody can send to the port of the bus: no datagram ends a process, and with a time-to-live of 0 none of another computer is taken.
+// Runs in a network namespace of its own. The test listens on a socket of its own: LCM's receiver is what is tried here.
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/bus/decode.hpp"
+#include "lookout/health_t.hpp"
+#include "tests/system/child.hpp"
+#include "tests/system/lcm_datagrams.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr const char* kGroup = "239.255.76.67";
+constexpr std::uint16_t kPort = 7667;
+const std::vector<std::string> kServices{"vlp16", "navigator", "segmenter", "georeferencer", "recorder"};
+
+std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
+
+sockaddr_in Address(const std::string& address) {
+  sockaddr_in result{};
+  result.sin_family = AF_INET;
+  result.sin_port = htons(kPort);
+  inet_pton(AF_INET, address.c_str(), &result.sin_addr);
+  return result;
+}
+
+class Sender {
+ public:
+  Sender() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    const int yes = 1;
+    setsockopt(descriptor_, SOL_SOCKET, SO_BROADCAST, &yes, sizeof yes);
+  }
+  ~Sender() { close(descriptor_); }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+
+  bool Send(const Datagram& datagram, const std::string& to = kGroup) const {
+    const auto address = Address(to);
+    return sendto(descriptor_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address) ==
+           static_cast<ssize_t>(datagram.size());
+  }
+
+ private:
+  int descriptor_;
+};
+
+// HEALTH of all processes, without LCM.
+class HealthListener {
+ public:
+  HealthListener() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
+    const int yes = 1;
+    setsockopt(descriptor_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    const auto address = Address(kGroup);
+    if (bind(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) std::abort();
+    ip_mreq request{};
+    request.imr_multiaddr = address.sin_addr;
+    setsockopt(descriptor_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request);
+  }
+  ~HealthListener() { close(descriptor_); }
+  HealthListener(const HealthListener&) = delete;
+  HealthListener& operator=(const HealthListener&) = delete;
+
+  // Takes what has come.
+  void Listen() {
+    std::array<std::uint8_t, 65536> buffer;
+    for (;;) {
+      const auto size = recv(descriptor_, buffer.data(), buffer.size(), 0);
+      if (size < 0) return;
+      constexpr std::string_view kName("HEALTH\0", 7);
+      const std::string_view text(reinterpret_cast<const char*>(buffer.data()), static_cast<std::size_t>(size));
+      if (text.substr(0, 4) != "LC02" || text.size() < kShortHeaderBytes || text.substr(kShortHeaderBytes, kName.size()) != kName) continue;
+      const auto message = bus::Decode<health_t>(Bytes(buffer).first(text.size()).subspan(kShortHeaderBytes + kName.size()));
+      if (message) latest[message->process] = *message;
+    }
+  }
+
+  std::map<std::string, health_t> latest;
+
+ private:
+  int descriptor_;
+};
+
+std::int64_t CounterOf(const health_t& health, const std::string& name) {
+  for (const auto& counter : health.counters) {
+    if (counter.name == name) return counter.count;
+  }
+  return -1;
+}
+
+class BusGuard : public ::testing::Test {
+ protected:
+  fs::path folder_;
+  fs::path start_folder_ = fs::current_path();
+  std::map<std::string, std::unique_ptr<Child>> children_;
+
+  void SetUp() override {
+    unsetenv("LCM_DEFAULT_URL");
+    folder_ = fs::temp_directory_path() / ("lookout_bus_guard_" + std::to_string(getpid()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
+    fs::current_path(folder_);
+  }
+  void TearDown() override {
+    children_.clear();
+    fs::current_path(start_folder_);
+    if (!HasFailure()) fs::remove_all(folder_);
+  }
+
+  void Start(const std::string& program, const std::vector<std::string>& options = {}) {
+    std::vector<std::string> command{Bin(program)};
+    if (std::ranges::find(kServices, program) != kServices.end()) command.insert(command.end(), {"--config", (folder_ / "config").string()});
+    command.insert(command.end(), options.begin(), options.end());
+    children_[program] = std::make_unique<Child>(command, (folder_ / (program + ".out")).string());
+  }
+
+  template <typename Condition>
+  static bool WaitUntil(const Condition& is_true, seconds timeout = seconds(30)) {
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    while (!is_true() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(20));
+    return is_true();
+  }
+
+  // All processes, lookout-top and lookout-doctor, up.
+  void StartAll(HealthListener& listener) {
+    for (const auto& service : kServices) Start(service);
+    Start("top", {"--once", "--seconds", "600"});
+    Start("doctor", {"--config", (folder_ / "config").string(), "--seconds", "600"});
+    EXPECT_TRUE(WaitUntil([&] {
+      listener.Listen();
+      return listener.latest.size() == kServices.size();
+    })) << "not all processes are heard";
+    std::this_thread::sleep_for(milliseconds(500));  // lookout-top and lookout-doctor do not say when they listen
+  }
+
+  void ExpectAllRunning(const std::string& after) {
+    for (const auto& [name, child] : children_) {
+      EXPECT_TRUE(child->IsRunning()) << name << " ended with " << child->Wait(milliseconds(0)).value_or(-1) << " after " << after << ": "
+                                      << child->Output();
+    }
+  }
+
+  // Each says HEALTH anew.
+  void ExpectAllHeard(HealthListener& listener) {
+    listener.Listen();
+    auto before = listener.latest;
+    EXPECT_TRUE(WaitUntil([&] {
+      listener.Listen();
+      return std::ranges::all_of(kServices, [&](const auto& service) { return listener.latest[service].seq > before[service].seq + 1; });
+    })) << "not all processes say HEALTH any more";
+  }
+
+  void EndAll() {
+    for (const auto& service : kServices) {
+      if (!children_.contains(service)) continue;
+      EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
+    }
+  }
+};
+
+TEST_F(BusGuard, NoDatagramEndsAProcess) {
+  HealthListener listener;
+  const Sender sender;
+  StartAll(listener);
+  for (const auto& hostile : HostileDatagrams()) {
+    for (const char* to : {kGroup, "127.0.0.1", "127.255.255.255"}) sender.Send(hostile.datagram, to);
+    std::this_thread::sleep_for(milliseconds(20));
+    ExpectAllRunning(hostile.what);
+    if (HasFailure()) return;
+  }
+  ExpectAllHeard(listener);
+  for (const auto& service : kServices) {
+    if (service == "vlp16") continue;  // reads nothing from the bus
+    EXPECT_GE(CounterOf(listener.latest[service], "datagrams_dropped"), static_cast<std::int64_t>(HostileDatagrams().size()) - 1) << service;
+  }
+  ExpectAllRunning("all of them");
+  EndAll();
+}
+
+TEST_F(BusGuard, ADatagramBeforeTheFirstMessageEndsNoProcessEither) {
+  std::atomic<bool> is_over = false;
+  std::thread flood([&] {
+    const Sender sender;
+    const auto hostile = HostileDatagrams();
+    while (!is_over) {
+      for (const auto& one : hostile) {
+        for (const char* to : {kGroup, "127.0.0.1"}) sender.Send(one.datagram, to);
+      }
+    }
+  });
+  int num_dead = 0;
+  constexpr int kRounds = 5;
+  for (int round = 0; round < kRounds; ++round) {
+    for (const std::string service : {"segmenter", "georeferencer", "recorder"}) {
+      Start(service);
+      const auto& child = children_[service];
+      WaitUntil([&] { return !child->IsRunning() || child->Output().find("starts, version") != std::string::npos; });
+      std::this_thread::sleep_for(milliseconds(150));
+      if (!child->IsRunning()) {
+        ++num_dead;
+        ADD_FAILURE() << service << " ended with " << child->Wait(milliseconds(0)).value_or(-1) << " at its start: " << child->Output();
+      }
+      children_.erase(service);
+    }
+  }
+  is_over = true;
+  flood.join();
+  std::cout << num_dead << " of " << 3 * kRounds << " starts ended\n";
+}
+
+TEST_F(BusGuard, MutatedDatagramsEndNoProcess) {
+  const char* wanted = std::getenv("LOOKOUT_BUS_DATAGRAMS");
+  const long num_datagrams = wanted != nullptr ? std::strtol(wanted, nullptr, 10) : 30'000;
+  HealthListener listener;
+  const Sender sender;
+  StartAll(listener);
+  const auto sound = SoundDatagrams();
+  std::mt19937 random(14);
+  for (long i = 0; i < num_datagrams; ++i) {
+    sender.Send(Mutated(sound, random));
+    if (i % 200 == 199) std::this_thread::sleep_for(milliseconds(1));  // so that most are looked at, not lost
+    if (i % 5000 == 4999) {
+      listener.Listen();
+      ExpectAllRunning(std::to_string(i + 1) + " mutated datagrams");
+      if (HasFailure()) return;
+    }
+  }
+  ExpectAllHeard(listener);
+  ExpectAllRunning("all mutated datagrams");
+  for (const auto& service : kServices) {
+    std::cout << service << ": " << CounterOf(listener.latest[service], "datagrams_dropped") << " dropped, resident "
+              << listener.latest[service].resident_bytes / 1'000'000 << " MB\n";
+  }
+  EndAll();
+}
+
+}  // namespace
+}  // namespace lookout::system_test
