@@ -1,6 +1,8 @@
 #include "common/bus/datagram_filter.hpp"
 
+#include <arpa/inet.h>
 #include <linux/if_packet.h>
+#include <net/if.h>
 
 #include <cstddef>
 #include <utility>
@@ -166,6 +168,17 @@ std::vector<sock_filter> DatagramFilter(const DatagramPolicy& policy) {
   program.DropIfGreaterThanIndex();
   program.Take();
   return program.Finish();
+}
+
+std::vector<sock_filter> DatagramFilter(const MulticastAddress& address) {
+  DatagramPolicy policy;
+  in_addr group{};
+  inet_pton(AF_INET, address.group.c_str(), &group);
+  policy.group = ntohl(group.s_addr);
+  policy.port = static_cast<std::uint16_t>(address.port);
+  policy.is_this_computer_only = address.time_to_live == 0;
+  if (const auto index = if_nametoindex("lo"); index != 0) policy.loopback_index = index;
+  return DatagramFilter(policy);
 }
 
 }  // namespace lookout::bus

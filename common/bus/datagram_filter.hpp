@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/bus/lcm_url.hpp"
+
 namespace lookout::bus {
 
 /// LCM's header of a short message (LC02) and of a fragment (LC03), its longest channel name, and the most that one UDP datagram carries of a
@@ -35,5 +37,8 @@ struct DatagramPolicy {
 ///   the fragment ends within it.
 /// So LCM's receiver cannot be made to read or write outside of its buffers: its sums stay below 32 bits, its strings end.
 std::vector<sock_filter> DatagramFilter(const DatagramPolicy& policy);
+
+/// The same for the bus at this address: of this computer only with a time-to-live of 0.
+std::vector<sock_filter> DatagramFilter(const MulticastAddress& address);
 
 }  // namespace lookout::bus

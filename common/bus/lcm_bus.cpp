@@ -1,7 +1,6 @@
 #include "common/bus/lcm_bus.hpp"
 
 #include <arpa/inet.h>
-#include <net/if.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -46,17 +45,6 @@ std::string Escaped(std::string_view name) {
   return escaped;
 }
 
-std::vector<sock_filter> FilterOf(const MulticastAddress& address) {
-  DatagramPolicy policy;
-  in_addr group{};
-  inet_pton(AF_INET, address.group.c_str(), &group);
-  policy.group = ntohl(group.s_addr);
-  policy.port = static_cast<std::uint16_t>(address.port);
-  policy.is_this_computer_only = address.time_to_live == 0;
-  if (const auto index = if_nametoindex("lo"); index != 0) policy.loopback_index = index;
-  return DatagramFilter(policy);
-}
-
 }  // namespace
 
 bool HasRoute(const MulticastAddress& address) {
@@ -95,7 +83,7 @@ struct LcmBus::Implementation {
       is_receiving = true;
       return;
     }
-    BindGuard guard(FilterOf(*multicast));
+    BindGuard guard(DatagramFilter(*multicast));
     if (lcm_get_fileno(lcm) < 0) throw std::runtime_error("LCM cannot receive at " + url);
     is_receiving = true;
     sockets = guard.sockets();

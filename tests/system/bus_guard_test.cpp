@@ -1,7 +1,9 @@
 // What anybody can send to the port of the bus: no datagram ends a process, and with a time-to-live of 0 none of another computer is taken.
 // Runs in a network namespace of its own. The test listens on a socket of its own: LCM's receiver is what is tried here.
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -255,6 +257,119 @@ TEST_F(BusGuard, MutatedDatagramsEndNoProcess) {
     std::cout << service << ": " << CounterOf(listener.latest[service], "datagrams_dropped") << " dropped, resident "
               << listener.latest[service].resident_bytes / 1'000'000 << " MB\n";
   }
+  EndAll();
+}
+
+// Another computer at the other end of a cable: a network namespace of its own.
+class BusOnACable : public BusGuard {
+ protected:
+  std::unique_ptr<Child> second_;
+  std::unique_ptr<Sender> outside_;
+
+  void SetUp() override {
+    BusGuard::SetUp();
+    second_ = std::make_unique<Child>(std::vector<std::string>{"unshare", "--net", "sleep", "300"}, (folder_ / "second.out").string());
+    const auto theirs = "/proc/" + std::to_string(second_->pid()) + "/ns/net";
+    ASSERT_TRUE(WaitUntil([&] {
+      std::error_code error;
+      const auto link = fs::read_symlink(theirs, error);
+      return !error && link != fs::read_symlink("/proc/self/ns/net", error);
+    }));
+    Run("ip link add cable1 type veth peer name cable2 netns " + std::to_string(second_->pid()));
+    Run("ip addr add 10.76.0.1/24 dev cable1 && ip link set cable1 up && ip route replace 239.255.76.0/24 dev cable1");
+    OnSecond("ip addr add 10.76.0.2/24 dev cable2 && ip link set cable2 up && ip route add 239.255.76.0/24 dev cable2");
+    // A socket stays in the namespace in which it was made.
+    std::thread([&] {
+      const int there = open(theirs.c_str(), O_RDONLY | O_CLOEXEC);
+      if (setns(there, CLONE_NEWNET) == 0) outside_ = std::make_unique<Sender>();
+      close(there);
+    }).join();
+    ASSERT_TRUE(outside_);
+  }
+  void TearDown() override {
+    Run("ip link del cable1; ip route replace 239.255.76.0/24 dev lo");
+    second_.reset();
+    unsetenv("LCM_DEFAULT_URL");
+    BusGuard::TearDown();
+  }
+
+  void Run(const std::string& line) const {
+    const auto result = RunProgram({"sh", "-c", line}, (folder_ / "ip.out").string());
+    ASSERT_EQ(result.exit_code, 0) << line << ": " << result.output;
+  }
+  void OnSecond(const std::string& line) const { Run("nsenter --net --target " + std::to_string(second_->pid()) + " sh -c '" + line + "'"); }
+
+  // Recorder and segmenter: the first hears the second.
+  void StartTwo(HealthListener& listener) {
+    Start("recorder");
+    Start("segmenter");
+    ASSERT_TRUE(WaitUntil([&] {
+      listener.Listen();
+      return listener.latest.size() == 2;
+    }));
+  }
+
+  // The next HEALTH but one of the recorder: what came before is in it.
+  static health_t Heard(HealthListener& listener) {
+    listener.Listen();
+    const auto seq = listener.latest["recorder"].seq;
+    EXPECT_TRUE(WaitUntil([&] {
+      listener.Listen();
+      return listener.latest["recorder"].seq >= seq + 2;
+    }));
+    return listener.latest["recorder"];
+  }
+  static std::int64_t NumHealth(const health_t& health) {
+    for (const auto& channel : health.channels) {
+      if (channel.channel == "HEALTH" && channel.is_input != 0) return channel.num_messages;
+    }
+    return 0;
+  }
+
+  void SendFromOutside(const std::string& to, int count = 20) const {
+    for (int i = 0; i < count; ++i) EXPECT_TRUE(outside_->Send(ShortDatagram(static_cast<std::uint32_t>(i), Named("FOREIGN"), 10), to)) << to;
+  }
+};
+
+TEST_F(BusOnACable, WithATimeToLiveOf0OnlyThisComputerIsHeardWhateverItsAddress) {
+  HealthListener listener;
+  StartTwo(listener);
+  const auto before = Heard(listener);
+  for (const char* to : {kGroup, "10.76.0.1", "10.76.0.255"}) SendFromOutside(to);
+  const auto after = Heard(listener);
+  EXPECT_EQ(CounterOf(after, "unknown_channel"), 0) << "datagrams of another computer were taken";
+  EXPECT_GE(CounterOf(after, "datagrams_dropped"), CounterOf(before, "datagrams_dropped") + 40) << "the test's datagrams did not arrive";
+  EXPECT_GT(NumHealth(after), NumHealth(before)) << "own messages are no longer taken";
+
+  // A new lease: this computer has another address, and the other one takes the old.
+  // The kernel takes nothing from where it has no way to.
+  Run("ip addr add 10.99.0.7/24 dev cable1 && ip addr del 10.76.0.1/24 dev cable1 && ip route replace 239.255.76.0/24 dev cable1 && "
+      "ip route add 10.76.0.0/24 dev cable1");
+  OnSecond("ip addr del 10.76.0.2/24 dev cable2 && ip addr add 10.76.0.1/24 dev cable2 && ip route replace 239.255.76.0/24 dev cable2");
+  SendFromOutside(kGroup);
+  const auto moved = Heard(listener);
+  EXPECT_EQ(CounterOf(moved, "unknown_channel"), 0);
+  EXPECT_GE(CounterOf(moved, "datagrams_dropped"), CounterOf(after, "datagrams_dropped") + 20);
+  EXPECT_GE(NumHealth(moved), NumHealth(after) + 2) << "own messages are no longer taken";
+  const Sender own;
+  for (int i = 0; i < 10; ++i) own.Send(ShortDatagram(1, Named("OWN"), 1));
+  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 10);
+  EndAll();
+}
+
+TEST_F(BusOnACable, WithATimeToLiveOf1TheOtherComputerIsHeardOnTheGroupAlone) {
+  setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:7667?ttl=1", 1);
+  HealthListener listener;
+  StartTwo(listener);
+  for (const char* to : {"10.76.0.1", "10.76.0.255"}) SendFromOutside(to);
+  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 0) << "datagrams were taken that were not sent to the group";
+  SendFromOutside(kGroup);
+  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 20);
+  for (const auto& hostile : HostileDatagrams()) {
+    for (const char* to : {kGroup, "10.76.0.1", "10.76.0.255"}) outside_->Send(hostile.datagram, to);
+  }
+  EXPECT_EQ(CounterOf(Heard(listener), "unknown_channel"), 20);
+  ExpectAllRunning("hostile datagrams of another computer");
   EndAll();
 }
 
