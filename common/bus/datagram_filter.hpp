@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/bus/lcm_url.hpp"
+#include "common/bus/log_event.hpp"
 
 namespace lookout::bus {
 
@@ -14,11 +15,11 @@ namespace lookout::bus {
 /// message.
 inline constexpr std::uint32_t kShortHeaderBytes = 8;
 inline constexpr std::uint32_t kFragmentHeaderBytes = 20;
-inline constexpr std::uint32_t kMaxChannelCharacters = 63;
+inline constexpr std::uint32_t kMaxChannelCharacters = kMaxLogChannelBytes;
 inline constexpr std::uint32_t kMaxFragmentBytes = 65'487;
 
-/// Greatest message that is taken, and recorded: far above any of ours (kMaxMessageBytes), for those of others.
-inline constexpr std::uint32_t kMaxForeignMessageBytes = 16U * 1024 * 1024;
+/// Greatest message that is taken: what a log can hold, far above any of ours (kMaxMessageBytes).
+inline constexpr std::uint32_t kMaxForeignMessageBytes = kMaxLogDataBytes;
 
 struct DatagramPolicy {
   std::uint32_t group = 0;  // IPv4, as a number of this machine: 239.255.76.67 is 0xEFFF4C43
