@@ -22,6 +22,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "common/bus/decode.hpp"
@@ -258,6 +259,32 @@ TEST_F(BusGuard, MutatedDatagramsEndNoProcess) {
               << listener.latest[service].resident_bytes / 1'000'000 << " MB\n";
   }
   EndAll();
+}
+
+TEST_F(BusGuard, AnAddressThatIsNoBusIsRefusedWithItsReason) {
+  const std::vector<std::pair<std::string, std::string>> wrong{{"memq://", "stays inside one process"},
+                                                               {"file:///dev/null", "is a log and no bus"},
+                                                               {"udpm://239.255.76.67:7667?ttl=256", "ttl=256: 0 (this computer only) to 255"},
+                                                               {"udpm://192.168.1.5:7667", "is no IPv4 multicast group"}};
+  std::vector<std::string> programs = kServices;
+  programs.insert(programs.end(), {"top", "doctor"});
+  for (const auto& [url, reason] : wrong) {
+    for (const auto& program : programs) {
+      std::vector<std::string> options{"--lcm-url", url};
+      if (program == "top") options.emplace_back("--once");
+      if (program == "doctor") options.insert(options.end(), {"--seconds", "2", "--config", (folder_ / "config").string()});
+      Start(program, options);
+      const auto& child = children_[program];
+      // The doctor looks at all the rest too, and calls it a fault.
+      EXPECT_EQ(child->Wait(seconds(20)).value_or(-1), program == "doctor" ? 1 : 2) << program << " " << url;
+      auto output = child->Output();
+      for (auto place = output.find('\n'); place != std::string::npos; place = output.find('\n')) {
+        output.replace(place, output.find_first_not_of(" \n", place) - place, " ");  // the doctor wraps its lines
+      }
+      EXPECT_NE(output.find(reason), std::string::npos) << program << ": " << output;
+      children_.erase(program);
+    }
+  }
 }
 
 // Another computer at the other end of a cable: a network namespace of its own.
