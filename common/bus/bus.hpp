@@ -104,6 +104,12 @@ class Bus {
   /// Messages waiting on a subscribed channel; -1 = not known.
   virtual int QueueDepth(std::string_view channel) const = 0;
 
+  /// Datagrams that the kernel did not hand over: refused at the socket, or without room in its buffer (it counts both as one). nullopt = not known.
+  virtual std::optional<std::int64_t> NumDatagramsDropped() const { return std::nullopt; }
+
+  /// Why anybody's datagram could end this process; empty where none can.
+  virtual std::string GuardFault() const { return {}; }
+
  protected:
   /// @return whether the transport took the message
   virtual bool Send(const Channel& channel, Bytes bytes) = 0;

@@ -74,6 +74,7 @@ void HealthReporter::Fill(Utime now, const HealthReport& report, health_t& messa
   auto counters = report.counters;
   counters.push_back({"messages_not_sent", last_num_unsent_});
   counters.push_back({"second_publisher", last_num_refused_});
+  if (last_num_dropped_) counters.push_back({"datagrams_dropped", *last_num_dropped_});
   message.counters.clear();
   for (const auto& counter : counters) {
     health_counter_t entry{};
@@ -101,6 +102,10 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
     last_num_refused_ += traffic.num_refused;
     if (!traffic.second_heard || bus.GuardNow() - *traffic.second_heard >= kTellFor) continue;
     bus_text_ += (bus_text_.empty() ? "" : "; ") + SecondPublisherText(name, traffic.num_refused);
+  }
+  last_num_dropped_ = bus.NumDatagramsDropped();
+  if (const auto fault = bus.GuardFault(); !fault.empty()) {
+    bus_text_ += (bus_text_.empty() ? "" : "; ") + ("one datagram to the bus can end this process: " + fault);
   }
   Fill(now, report, message);
   message.interval_s = ToSeconds(steady_now - last_);
