@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <map>
+#include <string_view>
+
+#include "common/bus/schema.hpp"
 
 namespace lookout::bus {
 
@@ -30,6 +33,19 @@ std::uint64_t Distance(std::int64_t from, std::int64_t to) { return static_cast<
 // Microseconds from one time of measurement to another; may be negative.
 double GapUs(const StreamPlace& from, const StreamPlace& to) { return static_cast<double>(to.utime_us) - static_cast<double>(from.utime_us); }
 
+bool IsOfType(const Channel& channel, std::uint64_t fingerprint) {
+  static const auto kFingerprints = [] {
+    std::map<std::string_view, std::uint64_t> fingerprints;
+    for (const auto& entry : kChannels) {
+      const auto found = std::ranges::find(TypeFingerprints(), entry.type, &TypeFingerprint::type);
+      if (found != TypeFingerprints().end()) fingerprints[entry.name] = found->fingerprint;
+    }
+    return fingerprints;
+  }();
+  const auto found = kFingerprints.find(channel.name);
+  return found != kFingerprints.end() && found->second == fingerprint;
+}
+
 double InUs(std::chrono::nanoseconds time) { return 1e-3 * static_cast<double>(time.count()); }
 
 }  // namespace
@@ -48,13 +64,14 @@ std::uint64_t DigestOf(Bytes bytes) {
 
 std::optional<StreamPlace> PlaceOf(const Channel& channel, Bytes bytes) {
   const auto header = ReadHeader(bytes);
-  if (!header) return std::nullopt;
+  if (!header || !IsOfType(channel, header->fingerprint)) return std::nullopt;
   const bool has_parts = channel.type == kLidarScan.type || channel.type == kSegments.type || channel.type == kObstacles.type;
   return StreamPlace{.seq = header->seq, .part_index = has_parts ? -1 : 0, .num_parts = 1, .utime_us = header->utime_us, .digest = DigestOf(bytes)};
 }
 
 StreamGuard::Decision StreamGuard::Next(const StreamPlace& place, Time now, std::int64_t mark) {
   Decision before;
+  if (kept_ && now < kept_->received && kept_->received - now < kSilence) now = kept_->received;  // a clock that is adjusted
   if (kept_ && now < kept_->received) {  // an earlier log behind a later one: another stream, and nothing to weigh it against
     if (const auto num_lost = ReleaseAtEnd()) before = {Held::kTake, Act::kTake, *num_lost};
     kept_.reset();

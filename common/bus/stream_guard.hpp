@@ -26,7 +26,7 @@ std::uint64_t DigestOf(Bytes bytes);
 
 /// Of a message of package lookout that is not decoded.
 ///
-/// @return nullopt when the bytes are too few
+/// @return nullopt when the bytes are not of the channel's type
 std::optional<StreamPlace> PlaceOf(const Channel& channel, Bytes bytes);
 
 /// Of a decoded one.

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/recently.hpp"
 #include "common/runtime/process.hpp"
 
 namespace lookout::runtime {
@@ -32,9 +33,6 @@ std::int64_t ResidentBytes() {
 
 // A process that waits for its first input is starting, not ill, for so long.
 constexpr std::chrono::seconds kStartTime(3);
-
-// What happened is told for so long; its counter stays.
-constexpr std::chrono::minutes kTellFor(1);
 
 std::string SecondPublisherText(const std::string& channel, std::int64_t num_refused) {
   const auto* entry = bus::FindChannel(channel);
@@ -100,7 +98,7 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   last_num_refused_ = 0;
   for (const auto& [name, traffic] : bus.input_traffic()) {
     last_num_refused_ += traffic.num_refused;
-    if (!traffic.second_heard || bus.GuardNow() - *traffic.second_heard >= kTellFor) continue;
+    if (!traffic.second_heard || bus.GuardNow() - *traffic.second_heard >= Recently::kToldFor) continue;
     bus_text_ += (bus_text_.empty() ? "" : "; ") + SecondPublisherText(name, traffic.num_refused);
   }
   last_num_dropped_ = bus.NumDatagramsDropped();

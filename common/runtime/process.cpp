@@ -132,6 +132,7 @@ struct Process::Implementation {
 };
 
 Process::Process(const std::string& name, const std::string& lcm_url) : bus_(Prepared(lcm_url)), implementation_(std::make_unique<Implementation>()) {
+  bus_.GuardStreams([] { return Clock::now().time_since_epoch(); });
   const sigset_t signals = StopSignals();
   implementation_->name = name;
   implementation_->signals = signalfd(-1, &signals, SFD_NONBLOCK | SFD_CLOEXEC);

@@ -24,6 +24,9 @@ constexpr std::size_t kMaxUnknownNames = 20;
 // Own RUN_INFO that may be on its way through the bus. One that was lost there is never asked for again.
 constexpr std::size_t kMaxOwnRunInfos = 8;
 
+// AdvanceTo is called twice a second; a stop of the process is no minute that passed, and no silence of a publisher.
+constexpr std::chrono::milliseconds kMostPassed(600);
+
 // "20261121T134501Z"
 std::string FileStem(Utime time) {
   const auto day = std::chrono::floor<std::chrono::days>(time);
@@ -50,7 +53,8 @@ Service::Service(bus::Bus& bus, const Params& params, run_info_t run_info, std::
       params_(params),
       run_info_(std::move(run_info)),
       clock_(std::move(clock)),
-      writer_(params_.log_folder, {params_.queue_bytes, params_.reserve_bytes}, std::move(disk)) {
+      writer_(params_.log_folder, {params_.queue_bytes, params_.reserve_bytes}, std::move(disk)),
+      time_(kMostPassed) {
   std::error_code error;
   std::filesystem::create_directories(params_.log_folder, error);
   if (!std::filesystem::is_directory(params_.log_folder)) {
@@ -65,6 +69,10 @@ Service::Service(bus::Bus& bus, const Params& params, run_info_t run_info, std::
 }
 
 void Service::AdvanceTo(Utime now) {
+  time_.Advance(now);
+  for (auto& [name, guard] : guards_) {
+    if (const auto num_missing = guard.Release(time_.passed())) NoteMissing(*bus::FindChannel(name), *num_missing);
+  }
   WatchDisk();  // before a new log hides why the old one ended
   const auto status = writer_.Status();
   if (!status.is_recording) {
@@ -157,17 +165,26 @@ void Service::WatchGaps(const bus::Channel& channel, Bytes bytes) {
   auto& traffic = bus_.input_traffic()[std::string(channel.name)];
   ++traffic.num_messages;
   if (channel.publisher == "all") return;  // each process counts for itself
-  const auto header = bus::ReadHeader(bytes);
-  if (!header) return;  // its readers refuse it
-  const auto num_missing = sequences_[std::string(channel.name)].NumLostBefore(header->seq);
-  traffic.num_lost += num_missing;
-  num_missing_ += num_missing;
-  if (channel.is_raw) num_raw_missing_ += num_missing;
+  const auto place = bus::IsGuarded(channel) ? bus::PlaceOf(channel, bytes) : std::nullopt;
+  if (!place) return;  // its readers refuse it, or it does not count
+  auto found = guards_.find(channel.name);
+  if (found == guards_.end()) found = guards_.emplace(std::string(channel.name), bus::StreamGuard(channel.max_rate_hz)).first;
+  NoteMissing(channel, found->second.Next(*place, time_.Advance(clock_())).num_lost);
+}
+
+void Service::NoteMissing(const bus::Channel& channel, std::int64_t number) {
+  if (number == 0) return;
+  bus_.input_traffic()[std::string(channel.name)].num_lost += number;
+  num_missing_ += number;
+  if (channel.is_raw) num_raw_missing_ += number;
+  raw_missing_.Note(num_raw_missing_, time_.passed());
 }
 
 // Says once when recording stops, and each time when the queue overflowed anew.
 void Service::WatchDisk() {
   const auto status = writer_.Status();
+  lost_.Note(status.num_lost_fault + status.num_lost_full + status.num_lost_queue_full, time_.passed());
+  disturbed_.Note(status.num_disturbed, time_.passed());
   if (status.is_waiting_for_file) return;
   if (was_recording_ && !status.is_recording) {
     warnings_.push_back(Printable(status.fault) + "; events are lost until it works again");
@@ -195,10 +212,29 @@ std::vector<std::string> Service::TakeWarnings() {
   return std::exchange(warnings_, {});
 }
 
+// "POSE, NAV_RAW: two publishers; ..."; empty while each channel has one.
+std::string Service::SecondPublisherText() const {
+  std::string channels;
+  for (const auto& [name, guard] : guards_) {
+    if (guard.HasSecond(time_.passed(), Recently::kToldFor)) channels += (channels.empty() ? "" : ", ") + name;
+  }
+  if (channels.empty()) return {};
+  return channels +
+         ": two publishers; all is recorded, but from there on the log cannot be computed again to what ran live; end one of them (lookout-top and "
+         "lookout-doctor show all processes by host and pid), or give the other boat another LCM address";
+}
+
 HealthReport Service::Report() const {
   const auto status = writer_.Status();
   const auto num_lost = status.num_lost_fault + status.num_lost_full + status.num_lost_queue_full;
+  const auto now = time_.passed();
+  std::int64_t num_second = 0;
+  for (const auto& entry : guards_) num_second += entry.second.num_refused();
   HealthReport report;
+  const auto degrade = [&report](const std::string& reason) {
+    report.state = std::max(report.state, HealthState::kDegraded);
+    report.reason += (report.reason.empty() ? "" : "; ") + reason;
+  };
   report.counters = {{"events", status.num_events},
                      {"bytes", status.num_bytes},
                      {"files", status.num_files},
@@ -214,22 +250,21 @@ HealthReport Service::Report() const {
                      {"event_too_large", num_too_large_},
                      {"missing", num_missing_},
                      {"raw_missing", num_raw_missing_},
+                     {"second_publishers_messages", num_second},
                      {"queue_bytes", status.queue_bytes},
                      {"queue_peak_bytes", status.queue_peak_bytes},
                      {"disk_free_bytes", status.free_bytes}};
   if (!status.is_recording && !(status.is_waiting_for_file && was_recording_)) {
     report.state = HealthState::kFailed;
     report.reason = "not recording: " + Printable(status.fault);
-  } else if (num_lost > 0) {
-    report.state = HealthState::kDegraded;
-    report.reason = "recording again; " + std::to_string(num_lost) + " events lost: " + Printable(status.fault);
-  } else if (status.num_disturbed > 0 || status.wants_new_file) {
-    report.state = HealthState::kDegraded;
-    report.reason = "recording, nothing lost, but " + Printable(status.fault);
-  } else if (num_raw_missing_ > 0) {
-    report.state = HealthState::kDegraded;
-    report.reason = std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full";
+  } else if (lost_.HasGrown(now)) {
+    degrade("recording again; " + std::to_string(num_lost) + " events lost: " + Printable(status.fault));
+  } else if (disturbed_.HasGrown(now) || status.wants_new_file) {
+    degrade("recording, nothing lost, but " + Printable(status.fault));
+  } else if (raw_missing_.HasGrown(now)) {
+    degrade(std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full");
   }
+  if (const auto text = SecondPublisherText(); !text.empty()) degrade(text);
   return report;
 }
 

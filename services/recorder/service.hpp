@@ -12,9 +12,10 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/sequence.hpp"
+#include "common/bus/stream_guard.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
+#include "common/core/recently.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/run_info_t.hpp"
 #include "services/recorder/io/disk_writer.hpp"
@@ -46,6 +47,7 @@ class Service {
   /// Lines for the log of the process that came up since the last call: channels that are not in the table, losses. Printable.
   std::vector<std::string> TakeWarnings();
 
+  /// What happened within the last minute, by the time of AdvanceTo, or is still so.
   HealthReport Report() const;
 
  private:
@@ -59,6 +61,8 @@ class Service {
   void WatchGaps(const bus::Channel& channel, Bytes bytes);
   void WatchUnknown(std::string_view channel);
   void WatchDisk();
+  void NoteMissing(const bus::Channel& channel, std::int64_t number);
+  std::string SecondPublisherText() const;
 
   bus::Bus& bus_;
   Params params_;
@@ -69,9 +73,9 @@ class Service {
   Utime last_run_info_;
   std::int64_t file_bytes_ = 0;  // of the file when all that was given to the writer is in it
   std::int64_t num_file_events_ = 0;
-  std::vector<std::uint8_t> event_;                      // scratch
-  std::deque<std::vector<std::uint8_t>> own_run_infos_;  // sent, and not yet come back from the bus
-  std::map<std::string, bus::SequenceWatch, std::less<>> sequences_;
+  std::vector<std::uint8_t> event_;                              // scratch
+  std::deque<std::vector<std::uint8_t>> own_run_infos_;          // sent, and not yet come back from the bus
+  std::map<std::string, bus::StreamGuard, std::less<>> guards_;  // watch only: everything is recorded
   std::set<std::string, std::less<>> unknown_channels_;
   std::vector<std::string> warnings_;
   bool was_recording_ = true;
@@ -82,6 +86,10 @@ class Service {
   std::int64_t num_nameless_ = 0;
   std::int64_t num_name_too_long_ = 0;
   std::int64_t num_too_large_ = 0;
+  PassedTime time_;
+  Recently lost_;
+  Recently disturbed_;
+  Recently raw_missing_;
   std::int64_t num_missing_ = 0;      // gaps in seq, of any channel
   std::int64_t num_raw_missing_ = 0;  // of these, of raw ones
 };

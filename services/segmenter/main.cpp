@@ -1,4 +1,5 @@
 // The segmenter process: LIDAR_SCAN in, SEGMENTS out.
+#include <chrono>
 #include <iostream>
 
 #include "common/runtime/options.hpp"
@@ -6,6 +7,12 @@
 #include "common/runtime/run_info.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/service.hpp"
+
+namespace {
+
+constexpr std::chrono::milliseconds kTick(1000);
+
+}  // namespace
 
 int main(int argc, char** argv) {
   const auto options = lookout::runtime::ParseOptions(argc, argv, "lookout-segmenter", "LIDAR_SCAN in, SEGMENTS out");
@@ -16,7 +23,8 @@ int main(int argc, char** argv) {
       return;
     }
     lookout::runtime::Process process("segmenter", options.lcm_url);
-    const lookout::segmenter::Service service(process.bus(), params);
+    lookout::segmenter::Service service(process.bus(), params);
+    process.Every(kTick, [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
     process.Run([&service] { return service.Report(); });
   });
 }

@@ -15,6 +15,7 @@ void Service::OnScan(const lidar_scan_t& message) {
   if (const auto* refusal = std::get_if<Refusal>(&part)) {
     ++num_refused_[static_cast<std::size_t>(*refusal)];
     last_refusal_ = *refusal;
+    refused_at_ = time_.passed();
     return;
   }
   const auto scan = gatherer_.Add(std::get<ScanPart>(std::move(part)));
@@ -31,7 +32,7 @@ void Service::OnScan(const lidar_scan_t& message) {
 
 HealthReport Service::Report() const {
   HealthReport report;
-  if (last_refusal_) {
+  if (last_refusal_ && time_.passed() - refused_at_ < Recently::kToldFor) {
     report.state = HealthState::kDegraded;
     report.reason = "the latest LIDAR_SCAN was refused: " + std::string(kRefusalNames[static_cast<std::size_t>(*last_refusal_)]);
   }

@@ -13,6 +13,7 @@
 #include "common/bus/header.hpp"
 #include "common/bus/log_event.hpp"
 #include "common/bus/log_file.hpp"
+#include "tools/log/publishers.hpp"
 #include "tools/log/recorded_run.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
@@ -49,6 +50,7 @@ class IndexedLog {
       const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
       places_[event->channel].push_back(reader_.position_bytes() - size);
       marks_.Add(event->time, event->channel, event->bytes);
+      publishers_.Add(event->time, event->channel, event->bytes);
       if (!first_time_) first_time_ = event->time;
       if (has_types) continue;
       if (const auto run_info = log::RunInfoOf(*event)) {
@@ -64,6 +66,7 @@ class IndexedLog {
   const bus::WireTypes& types() const { return types_; }
   std::int64_t num_damaged() const { return num_damaged_; }
   const log::RunMarks& marks() const { return marks_; }
+  const log::Publishers& publishers() const { return publishers_; }
   std::optional<Utime> first_time() const { return first_time_; }
 
   bus::LogEvent Read(std::int64_t place) {
@@ -78,6 +81,7 @@ class IndexedLog {
   std::map<std::string, std::vector<std::int64_t>, std::less<>> places_;
   bus::WireTypes types_;
   log::RunMarks marks_;
+  log::Publishers publishers_;
   std::optional<Utime> first_time_;
   std::int64_t num_damaged_ = 0;
 };
@@ -279,6 +283,11 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
     if (!result.IsEqual()) ++num_different;
     out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", log::Printable(channel), result.num_a, result.num_b, result.num_different,
                        result.num_only_a, result.num_only_b, result.first ? "  " + FirstText(*result.first) : "");
+  }
+  for (const auto& [name, log] : {std::pair("A", &a), std::pair("B", &b)}) {
+    const auto interleavings = log->publishers().Interleavings();
+    for (const auto& interleaving : interleavings) out << fmt::format("{} holds {}\n", name, InWords(interleaving));
+    if (!interleavings.empty()) out << log::kOutsideProof << "\n";
   }
   if (!left_out.empty()) out << fmt::format("left out: {}\n", fmt::join(left_out, ", "));
   if (num_different == 0) {

@@ -11,6 +11,7 @@
 #include "common/bus/sequence.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
+#include "tools/log/publishers.hpp"
 #include "tools/log/recorded_run.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
@@ -81,7 +82,7 @@ class LogSummary {
     ++num_events_;
     if (const auto run_info = RunInfoOf(event)) AddRun(*run_info);
     marks_.Add(event.time, event.channel, event.bytes);
-    AddToChannel(event);
+    AddToChannel(event, publishers_.Add(event.time, event.channel, event.bytes));
   }
 
   bool is_empty() const { return num_events_ == 0; }
@@ -94,6 +95,9 @@ class LogSummary {
     for (const auto& machine : machines_) out << fmt::format("{:<9} {}\n", "machine", machine);
     if (runs_.empty()) out << fmt::format("{:<9} not said: no RUN_INFO\n", "made by");
     PrintMarks(out);
+    const auto interleavings = publishers_.Interleavings();
+    for (const auto& interleaving : interleavings) out << fmt::format("{:<9} {}\n", "mixed", InWords(interleaving));
+    if (!interleavings.empty()) out << fmt::format("{:<9} {}\n", "", kOutsideProof);
     out << fmt::format("\n{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11}  at\n", "channel", "type", "events", "bytes", "Hz", "missing", "silence_s");
     for (auto& [name, channel] : channels_) {
       channel.AddSilence(*first_, channel.first);
@@ -139,7 +143,8 @@ class LogSummary {
     }
   }
 
-  void AddToChannel(const bus::LogEvent& event) {
+  // `num_missing` before it, where Publishers knows.
+  void AddToChannel(const bus::LogEvent& event, std::optional<std::int64_t> num_missing) {
     auto& channel = channels_[event.channel];
     if (channel.num_events == 0) {
       channel.first = event.time;
@@ -159,11 +164,12 @@ class LogSummary {
     const auto header = bus::ReadHeader(event.bytes);
     if (!has_sequence || !header || event.channel == bus::kHealth.name) return;
     channel.has_sequence = true;
-    channel.num_missing += channel.sequence.NumLostBefore(header->seq);
+    channel.num_missing += num_missing ? *num_missing : channel.sequence.NumLostBefore(header->seq);
   }
 
   TypeNames names_;
   RunMarks marks_;
+  Publishers publishers_;
   std::vector<std::string> runs_;
   std::vector<std::string> machines_;
   std::optional<Utime> first_;

@@ -51,8 +51,9 @@ void Warn(runtime::Progress& progress, fmt::format_string<Values...> form, Value
 // Where the events of one file are, in time.
 class Order {
  public:
-  Order(std::filesystem::path file, const Chain& chain, runtime::Progress& progress)
-      : file_(std::move(file)), before_(chain.time()), progress_(progress) {}
+  /// @param before  time of the last event of the files before it
+  Order(std::filesystem::path file, std::optional<Utime> before, runtime::Progress& progress)
+      : file_(std::move(file)), before_(before), progress_(progress) {}
 
   /// Before an event is handed in.
   void Check(Utime time) {
@@ -81,7 +82,7 @@ struct Feeding {
 void FeedTextLog(const Feeding& feeding, std::optional<std::chrono::sys_days> day) {
   const auto& [file, chain, summary, progress, show] = feeding;
   navigator::TextLogReader reader(file, day);
-  Order order(file, chain, progress);
+  Order order(file, chain.time(), progress);
   if (!reader.has_date() && !day) {
     Warn(progress, "{}: no sentence tells a date; its times are taken as those of 1970-01-01, give --date", file.string());
   }
@@ -99,7 +100,7 @@ void FeedCapture(const Feeding& feeding) {
   // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
   constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
   vlp16::CaptureReader reader(file);
-  Order order(file, chain, progress);
+  Order order(file, chain.time(), progress);
   std::size_t num_bytes = 0;
   while (const auto datagram = reader.Next()) {
     order.Check(datagram->host_time);
@@ -115,29 +116,54 @@ void FeedCapture(const Feeding& feeding) {
   }
 }
 
-void FeedLog(const Feeding& feeding, const Plan& plan) {
-  const auto& [file, chain, summary, progress, show] = feeding;
-  bus::LogReader reader(file, io::ThrowIfStopAsked);
-  Order order(file, chain, progress);
-  std::int64_t num_oversize = 0;
-  const auto is_wanted = [&plan](std::string_view channel) { return plan.Reads(channel) || log::RunMarks::IsMarked(channel); };
-  while (const auto event = reader.NextView(is_wanted)) {
-    show(reader.position_bytes());
-    summary.marks.Add(event->time, event->channel, event->bytes);
-    if (!plan.Reads(event->channel)) {
-      const auto* known = bus::FindChannel(event->channel);
-      Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
-    } else if (event->bytes.size() > bus::kMaxMessageBytes) {
-      ++num_oversize;
-    } else {
-      order.Check(event->time);
-      ++summary.num_events;
-      chain.OnLogged(event->time, *bus::FindChannel(event->channel), event->bytes);
+// One log after the other: a publisher goes on from one to the next.
+class LogFeeder {
+ public:
+  LogFeeder(const Plan& plan, Chain& chain, InputSummary& summary)
+      : plan_(plan), chain_(chain), summary_(summary), one_publisher_([this](Utime time, const bus::Channel& channel, Bytes bytes) {
+          summary_.marks.Add(time, channel.name, bytes);
+          ++summary_.num_events;
+          chain_.OnLogged(time, channel, bytes);
+        }) {}
+
+  void Feed(const Feeding& feeding) {
+    const auto& [file, chain, summary, progress, show] = feeding;
+    bus::LogReader reader(file, io::ThrowIfStopAsked);
+    Order order(file, last_time_, progress);
+    std::int64_t num_oversize = 0;
+    const auto is_wanted = [this](std::string_view channel) { return plan_.Reads(channel) || log::RunMarks::IsMarked(channel); };
+    for (; const auto event = reader.NextView(is_wanted); ++num_events_) {
+      show(reader.position_bytes());
+      if (!plan_.Reads(event->channel)) {
+        summary.marks.Add(event->time, event->channel, event->bytes);
+        const auto* known = bus::FindChannel(event->channel);
+        Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
+      } else if (event->bytes.size() > bus::kMaxMessageBytes) {
+        ++num_oversize;
+      } else {
+        order.Check(event->time);
+        last_time_ = event->time;
+        one_publisher_.Add(num_events_, event->time, *bus::FindChannel(event->channel), event->bytes);
+      }
     }
+    Count(summary.refused, "log.damaged", reader.num_damaged());
+    Count(summary.refused, "log.oversize_message", num_oversize);
   }
-  Count(summary.refused, "log.damaged", reader.num_damaged());
-  Count(summary.refused, "log.oversize_message", num_oversize);
-}
+
+  void Finish() {
+    one_publisher_.Finish();
+    summary_.interleavings = one_publisher_.Interleavings();
+    Count(summary_.refused, "log.second_publisher", one_publisher_.num_left_out());
+  }
+
+ private:
+  const Plan& plan_;
+  Chain& chain_;
+  InputSummary& summary_;
+  OnePublisher one_publisher_;
+  std::optional<Utime> last_time_;
+  std::int64_t num_events_ = 0;
+};
 
 // Reads until all that is looked for was found.
 void Look(const std::filesystem::path& file, const std::set<std::string, std::less<>>& candidates, std::set<std::string, std::less<>>& present,
@@ -197,6 +223,7 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
   const auto speed = [&] {
     return fmt::format("{:.0f} times real time", ToSeconds(chain.span()) / ToSeconds(std::chrono::steady_clock::now() - start));
   };
+  LogFeeder logs(inspection.plan, chain, summary);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const auto& file = files[i];
     const auto show = [&](std::int64_t num_bytes_of_file) {
@@ -205,7 +232,7 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
     };
     const Feeding feeding{file, chain, summary, progress, show};
     if (KindOf(file) == InputKind::kLog) {
-      FeedLog(feeding, inspection.plan);
+      logs.Feed(feeding);
     } else if (navigator::IsTextLog(file)) {
       FeedTextLog(feeding, inspection.day);
     } else {
@@ -213,6 +240,7 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
     }
     num_bytes += sizes_bytes[i];  // not asked for again: a file that is open may be moved or deleted
   }
+  logs.Finish();
   return summary;
 }
 

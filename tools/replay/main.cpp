@@ -26,6 +26,7 @@
 #include "common/runtime/run_info.hpp"
 #include "services/navigator/core/day.hpp"
 #include "tools/log/run_marks.hpp"
+#include "tools/log/time_text.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
 #include "tools/replay/plan.hpp"
@@ -162,6 +163,16 @@ void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& cha
   }
 }
 
+// Two publishers of one channel.
+void PrintInterleavings(const std::vector<lookout::replay::OnePublisher::Interleaving>& interleavings) {
+  for (const auto& interleaving : interleavings) {
+    spdlog::warn(
+        "{} has two publishers from event {} of the input on, {}: {} messages of the second are left out; what is computed from there on "
+        "stands outside the proof and need not equal the live run",
+        interleaving.channel, interleaving.event, lookout::log::TimeText(interleaving.time), interleaving.num_left_out);
+  }
+}
+
 // Whether the logs hold a run from its start to its end, and what it means where they do not.
 void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) {
   if (const auto channels = marks.WithoutStart(); !channels.empty()) {
@@ -206,6 +217,7 @@ void Replay(const Options& options) {
   const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a turn; else turns are told by what they give
   const auto num_turns = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
   PrintSummary(summary, chain, num_turns);
+  PrintInterleavings(summary.interleavings);
   PrintMarks(summary.marks, num_left_out);
   spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);

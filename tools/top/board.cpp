@@ -136,16 +136,28 @@ void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
     ++traffic.num_bad;
     return;
   }
-  const std::pair key(message->process, message->host);
+  const ProcessKey key{message->process, message->host, message->pid};
+  if (!processes_.contains(key)) ForgetReplaced(now);
   if (!processes_.contains(key) && processes_.size() >= kMaxProcesses) {
     ++num_unlisted_;
     return;
   }
   if (processes_.empty()) first_host_ = message->host;
-  auto& process = processes_[key];
+  auto& process = processes_.try_emplace(key, ProcessState{{}, now, now, {}}).first->second;
   traffic.num_lost += process.sequence.NumLostBefore(message->seq);  // seq is per process
   process.health = std::move(*message);
   process.last = now;
+}
+
+// A new start has another process id: what it replaces said nothing since. Of two that run both do.
+bool Board::IsReplaced(const ProcessKey& key, const ProcessState& process) const {
+  return std::ranges::any_of(processes_, [&](const auto& other) {
+    return other.first.name == key.name && other.first.host == key.host && other.first.pid != key.pid && other.second.first > process.last;
+  });
+}
+
+void Board::ForgetReplaced(TimePoint now) {
+  std::erase_if(processes_, [&](const auto& entry) { return now - entry.second.last > kSilence && IsReplaced(entry.first, entry.second); });
 }
 
 std::vector<ChannelLine> Board::Channels(TimePoint now) const {
@@ -172,7 +184,13 @@ std::vector<ChannelLine> Board::Channels(TimePoint now) const {
 
 std::vector<ProcessLine> Board::Processes(TimePoint now) const {
   std::vector<ProcessLine> lines;
+  const auto num_of = [this, now](const std::string& name) {
+    return std::ranges::count_if(processes_, [&](const auto& entry) {
+      return entry.first.name == name && now - entry.second.last <= kSilence && !IsReplaced(entry.first, entry.second);
+    });
+  };
   for (const auto& [key, process] : processes_) {
+    if (IsReplaced(key, process)) continue;
     const auto& health = process.health;
     ProcessLine line;
     line.name = health.process + (health.host == first_host_ ? "" : "@" + health.host);
@@ -180,6 +198,10 @@ std::vector<ProcessLine> Board::Processes(TimePoint now) const {
     line.is_silent = line.age > kSilence;
     line.state = health.state;
     line.reason = health.reason;
+    if (const auto number = num_of(key.name); number > 1 && !line.is_silent) {
+      line.reason = fmt::format("one of {} {}s on this bus: pid {} on {}{}{}", number, key.name, key.pid, key.host, health.reason.empty() ? "" : "; ",
+                                health.reason);
+    }
     line.cpu_fraction = health.cpu_fraction;
     line.resident_bytes = health.resident_bytes;
     line.latency_p99_us = GreatestLatencyUs(health);
@@ -191,6 +213,7 @@ std::vector<ProcessLine> Board::Processes(TimePoint now) const {
 std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
   std::optional<Alarm> newest;
   for (const auto& [key, process] : processes_) {
+    if (IsReplaced(key, process)) continue;
     const auto* active = FindCounter(process.health, "alarm_active");
     if (active == nullptr) continue;
     Alarm alarm;

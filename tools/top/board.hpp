@@ -55,7 +55,8 @@ class Board {
   /// Those of the channel table in its order, then the others by name.
   std::vector<ChannelLine> Channels(TimePoint now) const;
 
-  /// By name. One that fell silent stays.
+  /// By name. One that fell silent stays, until another of its name on its host has taken its place. Of several that speak under one name each has
+  /// its line, that tells host and process id.
   std::vector<ProcessLine> Processes(TimePoint now) const;
 
   /// @return nullopt when no process tells of an alarm
@@ -80,15 +81,24 @@ class Board {
   };
   struct ProcessState {
     health_t health;
+    TimePoint first;
     TimePoint last;
     bus::SequenceWatch sequence;
   };
+  struct ProcessKey {
+    std::string name;
+    std::string host;
+    std::int32_t pid = 0;
+    auto operator<=>(const ProcessKey&) const = default;
+  };
 
   void TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now);
+  bool IsReplaced(const ProcessKey& key, const ProcessState& process) const;
+  void ForgetReplaced(TimePoint now);
 
   TimePoint start_;
   std::map<std::string, Traffic, std::less<>> channels_;
-  std::map<std::pair<std::string, std::string>, ProcessState> processes_;  // by name and host
+  std::map<ProcessKey, ProcessState> processes_;
   std::string first_host_;
   Nearest nearest_;
   std::int64_t num_unlisted_ = 0;

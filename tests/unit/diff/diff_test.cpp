@@ -94,6 +94,26 @@ TEST_F(Diff, NamesALogThatBeginsInTheMiddleOfARunAsTheReasonOfEarlyDifferences) 
   EXPECT_FALSE(Said("reason")) << "it has settled by then: " << out_.str();
 }
 
+TEST_F(Diff, SaysWhichLogHoldsTwoPublishersAndFromWhere) {
+  std::vector<bus::LogEvent> one;
+  std::vector<bus::LogEvent> two;
+  const auto at = [&](int num_tenths, bus::LogEvent event) {
+    event.time = start_ + std::chrono::milliseconds(100 * num_tenths);
+    return event;
+  };
+  for (int i = 0; i < 10; ++i) {
+    one.push_back(at(i, NavRaw(0, 100 + i)));
+    two.push_back(at(i, NavRaw(0, 100 + i)));
+    if (i > 4) two.push_back(at(i, NavRaw(0, i)));
+  }
+  EXPECT_EQ(Compare(one, two), kExitDifferent);
+  EXPECT_TRUE(Said("B holds two publishers of NAV_RAW from event 6 on, 2027-01-15T08:00:00.500000Z: 4 messages are of the second\n")) << out_.str();
+  EXPECT_TRUE(Said("from there on the log stands outside the proof"));
+  EXPECT_FALSE(Said("A holds"));
+  Compare(one, one);
+  EXPECT_FALSE(Said("outside the proof"));
+}
+
 TEST_F(Diff, MessagesThatOneLogLacksAreSteppedOver) {
   std::vector<bus::LogEvent> a;
   std::vector<bus::LogEvent> b;

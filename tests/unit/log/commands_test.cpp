@@ -27,6 +27,11 @@ class LogCommands : public log_test::SmallLog {
     return events;
   }
   bool Said(const std::string& text) const { return out_.str().find(text) != std::string::npos; }
+  std::string InfoOf(const fs::path& file) {
+    out_.str("");
+    Info({file}, out_);
+    return out_.str();
+  }
   SliceRequest Request(const fs::path& in) const {
     SliceRequest request;
     request.inputs = {in};
@@ -163,6 +168,35 @@ TEST_F(LogCommands, InfoSaysWhetherTheLogHoldsARunFromItsStartToItsEnd) {
   out_.str("");
   Info({Write("none", {Pose(0, 0), Event(start_, "LIDAR_PACKETS", {1, 2, 3})})}, out_);
   EXPECT_TRUE(Said("marks     no raw channel")) << out_.str();
+}
+
+TEST_F(LogCommands, InfoSaysFromWhichEventOnAChannelHasTwoPublishers) {
+  std::vector<bus::LogEvent> events{RunInfo(0)};
+  const auto pose = [&](int milliseconds, std::int64_t seq) {
+    pose_t message{};
+    message.seq = seq;
+    message.utime_us = 1000 * milliseconds;
+    events.push_back(Event(start_ + std::chrono::milliseconds(milliseconds), "POSE", bus::Encode(message)));
+  };
+  for (int i = 0; i < 10; ++i) pose(20 * i, 700 + i);
+  EXPECT_EQ(InfoOf(Write("one", events)).find("two publishers"), std::string::npos);
+  for (int i = 10; i < 20; ++i) {
+    pose(20 * i, i);
+    pose(20 * i + 5, 700 + i);
+  }
+  const auto text = InfoOf(Write("two", events));
+  EXPECT_NE(text.find("mixed     two publishers of POSE from event 11 on, 2027-01-15T08:00:00.200000Z: 10 messages are of the second\n"
+                      "          from there on the log stands outside the proof"),
+            std::string::npos)
+      << text;
+}
+
+TEST_F(LogCommands, InfoTakesARestartForOne) {
+  std::vector<bus::LogEvent> events{RunInfo(0)};
+  for (int i = 0; i < 10; ++i) events.push_back(NavRaw(i, 700 + i));
+  for (int i = 0; i < 10; ++i) events.push_back(NavRaw(10 + i, i, i == 0 ? std::int32_t{nav_raw_t::KIND_START} : std::int32_t{nav_raw_t::KIND_TICK}));
+  const auto text = InfoOf(Write("log", events));
+  EXPECT_EQ(text.find("two publishers"), std::string::npos) << text;
 }
 
 TEST_F(LogCommands, SliceTakesChannelsAndTheFirstRunInfoAllTheSame) {

@@ -250,6 +250,82 @@ TEST_F(Recorder, CountsRawMessagesThatDidNotArrive) {
   EXPECT_EQ(Count(service, "events"), 8) << "all are recorded, also what cannot be read";
 }
 
+// Messages of navigators that go on by turns, and the recorder's clock with them.
+class RecorderOfNumbers : public Recorder {
+ protected:
+  void Send(std::int64_t seq, int milliseconds_later = 20) {
+    now_ += std::chrono::milliseconds(milliseconds_later);
+    nav_raw_t message{};
+    message.seq = seq;
+    message.utime_us = ToUtimeUs(now_);
+    bus::Publish(bus_, bus::kNavRaw, message);
+    HandleAll();
+  }
+  void Pass(Service& service, int num_seconds) {
+    for (int i = 0; i < 2 * num_seconds; ++i) {
+      now_ += std::chrono::milliseconds(500);
+      service.AdvanceTo(now_);
+    }
+  }
+};
+
+TEST_F(RecorderOfNumbers, ALossIsToldForAMinuteAndItsCountStays) {
+  Service service = Make();
+  for (const std::int64_t seq : {0, 1, 2, 5, 6}) Send(seq);
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  Pass(service, 59);
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  Pass(service, 1);
+  EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
+  EXPECT_EQ(Count(service, "raw_missing"), 2);
+  Send(9);
+  EXPECT_EQ(service.Report().state, HealthState::kDegraded) << "and the next one is told again";
+}
+
+TEST_F(RecorderOfNumbers, AStepOfTheClockIsNoMinute) {
+  Service service = Make();
+  for (const std::int64_t seq : {0, 1, 2, 5}) Send(seq);
+  for (const int hours : {-24, 48, -24}) {
+    now_ += std::chrono::hours(hours);
+    service.AdvanceTo(now_);
+    EXPECT_EQ(service.Report().state, HealthState::kDegraded);
+  }
+  Pass(service, 60);
+  EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
+}
+
+TEST_F(RecorderOfNumbers, OneJumpOfTheNumbersIsNoLoss) {
+  Service service = Make();
+  for (std::int64_t seq = 0; seq < 20; ++seq) Send(seq);
+  Send(900'000'000);
+  for (std::int64_t seq = 20; seq < 40; ++seq) Send(seq);
+  EXPECT_EQ(Count(service, "raw_missing"), 0);
+  EXPECT_EQ(Count(service, "second_publishers_messages"), 1);
+  EXPECT_EQ(service.Report().state, HealthState::kOk) << service.Report().reason;
+  service.Flush();
+  EXPECT_EQ(Count(service, "events"), 42) << "it is recorded all the same";
+}
+
+TEST_F(RecorderOfNumbers, TwoPublishersAreRecordedAndToldUntilAMinuteAfter) {
+  Service service = Make();
+  for (std::int64_t i = 0; i < 20; ++i) {
+    Send(5000 + i);
+    Send(3 + i);
+  }
+  Send(5020);
+  auto report = service.Report();
+  EXPECT_EQ(report.state, HealthState::kDegraded);
+  EXPECT_EQ(report.reason.rfind("NAV_RAW: two publishers; all is recorded", 0), 0U) << report.reason;
+  EXPECT_EQ(Count(service, "second_publishers_messages"), 20);
+  EXPECT_EQ(Count(service, "raw_missing"), 0);
+  service.Flush();
+  EXPECT_EQ(Count(service, "events"), 42);
+  Pass(service, 60);
+  report = service.Report();
+  EXPECT_EQ(report.state, HealthState::kOk) << report.reason;
+  EXPECT_EQ(Count(service, "second_publishers_messages"), 20);
+}
+
 // For its lifetime no file can grow: writes fail as on a full disk.
 class FullDisk {
  public:

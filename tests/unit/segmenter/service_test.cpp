@@ -97,6 +97,19 @@ TEST_F(SegmenterService, GivesTheSameBytesForTheSameTurnWhateverCameBefore) {
   EXPECT_EQ(Count("turns_incomplete"), 1);
 }
 
+TEST_F(SegmenterService, TellsOfARefusalForAMinuteWhereNothingFollows) {
+  auto message = test::ScanMessages(LakeInRain(), 7, 1)[0];
+  message.azimuth_rad[5] = 7.0F;
+  Utime now{std::chrono::seconds(1'800'000'000)};
+  service_.AdvanceTo(now);
+  Send(message);
+  for (int second = 0; second < 59; ++second) service_.AdvanceTo(now += std::chrono::seconds(1));
+  EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
+  service_.AdvanceTo(now += std::chrono::seconds(1));
+  EXPECT_EQ(service_.Report().state, HealthState::kOk) << service_.Report().reason;
+  EXPECT_EQ(Count("refused_azimuth"), 1);
+}
+
 TEST_F(SegmenterService, RefusesAndCountsWrongMessagesAndGoesOn) {
   auto message = test::ScanMessages(LakeInRain(), 7, 1)[0];
   message.azimuth_rad[5] = 7.0F;

@@ -58,6 +58,41 @@ TEST(Board, CountsLossOfHealthPerProcess) {
   EXPECT_EQ(board.Channels(At(1.2))[0].num_lost, 1);
 }
 
+health_t HealthOfPid(const std::string& process, std::int32_t pid, std::int64_t seq, const std::string& host = "boat") {
+  auto health = HealthOf(process, seq);
+  health.pid = pid;
+  health.host = host;
+  return health;
+}
+
+TEST(Board, ShowsTwoProcessesOfOneNameByHostAndProcessId) {
+  Board board(kStart);
+  for (int second = 0; second < 4; ++second) {
+    Say(board, bus::kHealth, HealthOfPid("navigator", 11, second), second + 0.1);
+    Say(board, bus::kHealth, HealthOfPid("navigator", 22, second), second + 0.2);
+    Say(board, bus::kHealth, HealthOfPid("vlp16", 33, second), second + 0.3);
+    Say(board, bus::kHealth, HealthOfPid("vlp16", 33, second, "shore"), second + 0.4);
+  }
+  const auto processes = board.Processes(At(4.0));
+  ASSERT_EQ(processes.size(), 4U);
+  EXPECT_EQ(processes[0].reason, "one of 2 navigators on this bus: pid 11 on boat");
+  EXPECT_EQ(processes[1].reason, "one of 2 navigators on this bus: pid 22 on boat");
+  EXPECT_EQ(processes[3].name, "vlp16@shore");
+  EXPECT_EQ(processes[3].reason, "one of 2 vlp16s on this bus: pid 33 on shore");
+  EXPECT_EQ(board.Channels(At(4.0))[0].num_lost, 0);  // each counts for itself
+}
+
+TEST(Board, ARestartTakesThePlaceOfTheProcessBefore) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOfPid("navigator", 11, 500), 1.0);
+  for (std::int32_t pid = 12; pid < 500; ++pid) Say(board, bus::kHealth, HealthOfPid("navigator", pid, 0), pid);
+  const auto processes = board.Processes(At(499.5));
+  ASSERT_EQ(processes.size(), 1U);
+  EXPECT_EQ(processes[0].reason, "");
+  EXPECT_FALSE(processes[0].is_silent);
+  EXPECT_EQ(board.num_unlisted(), 0);
+}
+
 TEST(Board, KeepsTheOrderOfTheChannelTable) {
   Board board(kStart);
   board.Take("ZEBRA", {}, At(0.1));

@@ -1,0 +1,62 @@
+// Keeps the events of a log to one publisher a channel, in their order.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+#include "common/bus/stream_guard.hpp"
+#include "common/core/bytes.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::replay {
+
+/// Where a channel has two publishers at a time the messages of the second are left out, as the live processes did; those of one that starts anew are
+/// handed on. Which of both it is, shows up to a second later: events wait for it, and none overtakes another.
+class OnePublisher {
+ public:
+  using Take = std::function<void(Utime time, const bus::Channel& channel, Bytes bytes)>;
+
+  explicit OnePublisher(Take take) : take_(std::move(take)) {}
+
+  /// @param event  its number, for Interleavings
+  void Add(std::int64_t event, Utime time, const bus::Channel& channel, Bytes bytes);
+
+  /// End of the input: what waits is handed on.
+  void Finish();
+
+  struct Interleaving {
+    std::string_view channel;
+    std::int64_t event = 0;  // first message of the second publisher
+    Utime time;
+    std::int64_t num_left_out = 0;
+  };
+  /// Channels with two publishers, by name.
+  std::vector<Interleaving> Interleavings() const;
+
+  /// Lone messages whose number does not fit were left out, too.
+  std::int64_t num_left_out() const;
+
+ private:
+  enum class State { kTaken, kHeld, kRefused };
+  struct Waiting {
+    Utime time;
+    const bus::Channel* channel;
+    std::vector<std::uint8_t> bytes;
+    State state;
+  };
+
+  void Resolve(const bus::Channel& channel, State state);
+  void HandOn();
+
+  Take take_;
+  std::map<std::string_view, bus::StreamGuard> guards_;
+  std::deque<Waiting> waiting_;
+  std::size_t num_bytes_ = 0;
+};
+
+}  // namespace lookout::replay
