@@ -5,6 +5,7 @@ lookout_test(NAME unit_vlp16
                      unit/vlp16/sender_lock_test.cpp unit/vlp16/sensor_clock_test.cpp unit/vlp16/service_test.cpp
              LINKS lookout_vlp16 lookout_vlp16_io lookout_config pcap)
 lookout_test(NAME property_vlp16 SOURCES property/vlp16_turns_test.cpp LINKS lookout_vlp16)
+lookout_test(NAME property_vlp16_clock SOURCES property/vlp16_clock_disturbances_test.cpp LINKS lookout_vlp16 TIMEOUT 180)
 lookout_bench(NAME bench_vlp16 SOURCES bench/vlp16_bench.cpp LINKS lookout_vlp16)
 lookout_fuzz(NAME fuzz_data_packet SOURCES fuzz/data_packet_fuzz.cpp LINKS lookout_vlp16)
 lookout_fuzz(NAME fuzz_position_packet SOURCES fuzz/position_packet_fuzz.cpp LINKS lookout_vlp16_core)
