@@ -59,7 +59,7 @@ lookout_slow_test(NAME system_proof ENVIRONMENT LOOKOUT_PROOF_SECONDS=60
                   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_proof>)
 
 # The loads of ./dev bench, in a namespace as well. Not Google Benchmarks.
-foreach(name vlp16 live)
+foreach(name vlp16 live disturbed)
   add_executable(load_${name} bench/${name}_load.cpp)
   target_link_libraries(load_${name} PRIVATE lookout_bus lookout_wire)
   target_compile_definitions(load_${name} PRIVATE LOOKOUT_SOURCE_DIR="${CMAKE_SOURCE_DIR}" LOOKOUT_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
@@ -67,7 +67,10 @@ foreach(name vlp16 live)
   add_dependencies(load_${name} lookout-vlp16)
 endforeach()
 target_link_libraries(load_live PRIVATE lcm)
-add_dependencies(load_live lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
+target_link_libraries(load_disturbed PRIVATE lookout_sim)
+foreach(name live disturbed)
+  add_dependencies(load_${name} lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
+endforeach()
 
 # Each program that writes a file, against files, links, folders, signals and full disks.
 add_test(NAME system_outputs COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/outputs_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/bin)

@@ -120,6 +120,7 @@ void Run(const sim::Options& options) {
     }
   } else {
     sim::UdpSink sink(options.udp_host);
+    std::cerr << "lookout-sim: live, begins at utime_us " << ToUtimeUs(params.start) << '\n';
     Pace(network, sink, params.start, options.speed);
   }
   std::vector<io::OutputFile*> files;
