@@ -111,6 +111,7 @@ LcmBus::LcmBus(const std::string& url) : implementation_(std::make_unique<Implem
   }
   implementation_->lcm = lcm_create(implementation_->url.c_str());
   if (implementation_->lcm == nullptr) throw std::runtime_error("LCM cannot be opened at " + implementation_->url);
+  GuardStreams([] { return std::chrono::steady_clock::now().time_since_epoch(); });
 }
 
 LcmBus::~LcmBus() {
