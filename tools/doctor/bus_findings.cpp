@@ -1,5 +1,7 @@
 // Config files, the bus and its buffers.
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/words.hpp"
@@ -10,6 +12,7 @@ namespace {
 
 constexpr const char* kConfigSubject = "config";
 constexpr const char* kRouteSubject = "route";
+constexpr const char* kPortSubject = "port";
 constexpr const char* kBuffersSubject = "buffers";
 
 // LCM's own programs ask for no buffer; its setup page for multicast asks for net.core.rmem_default of 2 MiB for them.
@@ -63,6 +66,33 @@ Findings JudgeBus(const BusSeen& bus) {
            kRouteSubject,
            place + (bus.time_to_live == 0 ? "; nothing leaves this computer" : "; time-to-live " + std::to_string(bus.time_to_live)),
            {}}};
+}
+
+Findings JudgePort(const Observations& seen) {
+  if (seen.bus.group.empty()) return {};
+  const auto port = "port " + std::to_string(seen.port.port);
+  if (seen.port.is_closed)
+    return {{Grade::kOk, kPortSubject, port + " of the bus is closed to other interfaces than that of the bus (lookout-firewall)", {}}};
+  std::vector<std::string> outside;
+  for (const auto& interface : seen.interfaces) {
+    if (!interface.is_loopback && interface.has_carrier && std::ranges::find(outside, interface.name) == outside.end())
+      outside.push_back(interface.name);
+  }
+  if (outside.empty()) return {{Grade::kOk, kPortSubject, port + " of the bus: no interface leads to another computer", {}}};
+  const auto as_it_is = [](const std::string& word) { return word; };
+  const auto open = port + " of the bus is open on " + Joined(outside, as_it_is);
+  if (seen.port.without_filter.empty()) {
+    return {{Grade::kOk,
+             kPortSubject,
+             open + "; Lookout's programs take only sound datagrams" + (seen.bus.time_to_live == 0 ? " of this computer" : " to the group") +
+                 ", and no other listens",
+             {}}};
+  }
+  return {{Grade::kWarning, kPortSubject,
+           open + ", and who listens there without a filter, as LCM's own tools do, can be ended by one datagram: " +
+               Joined(seen.port.without_filter, as_it_is),
+           "end it before casting off; or close the port: LOOKOUT_BUS_FIREWALL=on in /etc/default/lookout, then as root: systemctl restart "
+           "lookout-firewall"}};
 }
 
 Findings JudgeBuffers(const BuffersSeen& buffers) {

@@ -11,6 +11,8 @@ Findings JudgeConfig(const ConfigSeen& config);
 
 /// Route of the bus; receive buffers.
 Findings JudgeBus(const BusSeen& bus);
+/// Whether other computers reach programs that have no filter. With ttl=0 none needs to.
+Findings JudgePort(const Observations& seen);
 Findings JudgeBuffers(const BuffersSeen& buffers);
 
 /// Packets, rate, model, return mode; the sender's address and this computer's own.

@@ -1,6 +1,7 @@
 // What this computer says of itself: network, buffers, clock, disk, the boat's config files. Nothing here changes anything.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,18 @@ ConfigSeen ReadConfig(const std::filesystem::path& config_folder);
 /// @param url  LCM address, as LcmBus takes it
 /// @return address, time-to-live and route; `fault` is set where a multicast address has no route
 BusSeen ReadBus(const std::string& url);
+
+/// A UDP socket of this computer.
+struct SocketSeen {
+  unsigned int user = 0;
+  std::uint64_t inode = 0;
+};
+
+/// @param table  text of /proc/net/udp
+std::vector<SocketSeen> SocketsOfPort(const std::string& table, int port);
+
+/// Who listens to the port of the bus. What other users run is known by its user only.
+PortSeen ReadPort(const BusSeen& bus);
 
 /// The device by which an address goes: the longest match, of equal ones the least metric.
 ///

@@ -60,6 +60,7 @@ lookout::doctor::Observations Observe(const Options& options) {
   seen.bus = doctor::ReadBus(options.lcm_url);
   seen.buffers = doctor::ReadBuffers(seen.config);
   doctor::Watch(seen, std::chrono::seconds(options.seconds));
+  seen.port = doctor::ReadPort(seen.bus);
   seen.interfaces = doctor::ReadInterfaces();
   seen.is_host_clock_set = doctor::IsHostClockSet();
   const auto rate_bytes_per_s = seen.disk.rate_bytes_per_s;

@@ -89,6 +89,7 @@ BusSeen ReadBus(const std::string& url) {
   if (!multicast) return bus;
   bus.group = multicast->group;
   bus.time_to_live = multicast->time_to_live;
+  bus.port = multicast->port;
   if (!bus::HasRoute(*multicast)) {
     bus.fault = "there is no route for multicast to " + bus.group + ": no process can start";
     return bus;

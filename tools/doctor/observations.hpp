@@ -44,6 +44,15 @@ struct BusSeen {
   int time_to_live = 0;
   std::string route_device;  // by which the group goes; empty = not known
   std::string fault;         // why it could not be opened
+  int port = 7667;
+};
+
+/// The port of the bus, which LCM opens on every address of the computer.
+struct PortSeen {
+  int port = 7667;
+  bool is_closed = false;  // by lookout-firewall: to other computers, but for the interface of the bus
+  // Who listens to it and is not of Lookout: "lcm-logger (pid 17)", "a program of user pi". No filter stands in front of it.
+  std::vector<std::string> without_filter;
 };
 
 /// Receive buffers of UDP sockets, bytes.
@@ -125,6 +134,7 @@ struct Observations {
   ConfigSeen config;
   BusSeen bus;
   BuffersSeen buffers;
+  PortSeen port;
   std::vector<InterfaceSeen> interfaces;
   bool is_host_clock_set = false;  // the kernel says that something (NTP, PPS) steers it
   LidarSeen lidar;

@@ -162,8 +162,8 @@ Findings JudgeProcesses(const Observations& seen) {
 
 Findings Judge(const Observations& seen) {
   Findings all;
-  for (const auto& part : {JudgeConfig(seen.config), JudgeBus(seen.bus), JudgeBuffers(seen.buffers), JudgeLidar(seen), JudgeClocks(seen),
-                           JudgeNavigation(seen), JudgeMounting(seen.config), JudgeDisk(seen.disk), JudgeProcesses(seen)}) {
+  for (const auto& part : {JudgeConfig(seen.config), JudgeBus(seen.bus), JudgePort(seen), JudgeBuffers(seen.buffers), JudgeLidar(seen),
+                           JudgeClocks(seen), JudgeNavigation(seen), JudgeMounting(seen.config), JudgeDisk(seen.disk), JudgeProcesses(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

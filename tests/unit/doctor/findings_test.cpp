@@ -54,6 +54,39 @@ TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
   EXPECT_SAYS(About(JudgeBus(bus), "route"), kFault, "LCM_DEFAULT_URL");
 }
 
+TEST(DoctorPort, WarnsOfWhoListensToOtherComputersWithoutAFilter) {
+  Observations seen = Healthy();
+  EXPECT_SAYS(About(JudgePort(seen), "port"), kOk,
+              "port 7667 of the bus is open on eth0; Lookout's programs take only sound datagrams of this computer");
+  seen.port.without_filter = {"a program of user pi", "lcm-logger (pid 17)"};
+  EXPECT_SAYS(About(JudgePort(seen), "port"), kWarning, "can be ended by one datagram: a program of user pi");
+  EXPECT_SAYS(About(JudgePort(seen), "port"), kWarning, "LOOKOUT_BUS_FIREWALL=on");
+  seen.bus.time_to_live = 1;
+  EXPECT_SAYS(About(JudgePort(seen), "port"), kWarning, "lcm-logger (pid 17)");
+  seen.port.is_closed = true;
+  EXPECT_SAYS(About(JudgePort(seen), "port"), kOk, "is closed");
+  seen.port.is_closed = false;
+  for (auto& interface : seen.interfaces) interface.has_carrier = interface.is_loopback;
+  EXPECT_SAYS(About(JudgePort(seen), "port"), kOk, "no interface leads to another computer");
+  seen.bus.group.clear();
+  EXPECT_TRUE(JudgePort(seen).empty());
+}
+
+TEST(DoctorPort, FindsTheSocketsOfThePort) {
+  const std::string table =
+      "   sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode ref pointer drops\n"
+      "  101: 00000000:1DF3 00000000:0000 07 00000000:00000000 00:00000000 00000000  1000        0 4711 2 0000000000000000 0\n"
+      "  102: 434CFFEF:1DF3 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 4712 2 0000000000000000 7\n"
+      "  103: 00000000:0035 00000000:0000 07 00000000:00000000 00:00000000 00000000     0        0 4713 2 0000000000000000 0\n"
+      "cut short\n";
+  const auto sockets = SocketsOfPort(table, 7667);
+  ASSERT_EQ(sockets.size(), 2U);
+  EXPECT_EQ(sockets[0].user, 1000U);
+  EXPECT_EQ(sockets[0].inode, 4711U);
+  EXPECT_EQ(sockets[1].inode, 4712U);
+  EXPECT_TRUE(SocketsOfPort("", 7667).empty());
+}
+
 TEST(DoctorBus, WantsBuffers) {
   BuffersSeen buffers{212'992, 4 << 20, 2 << 20};
   EXPECT_SAYS(About(JudgeBuffers(buffers), "buffers"), kWarning, "net.core.rmem_max=4194304");
