@@ -18,7 +18,7 @@ add_test(NAME system_locale COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namesp
                                     ${CMAKE_CURRENT_SOURCE_DIR}/system/locale_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
 set_tests_properties(system_locale PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77)
 
-foreach(name live proof ingestion sources no_route two_computers doctor)
+foreach(name live proof ingestion sources no_route two_computers doctor alarm bus_guard)
   add_executable(system_${name} system/${name}_test.cpp)
   target_link_libraries(system_${name} PRIVATE lookout_bus lookout_wire GTest::gtest GTest::gtest_main)
   target_compile_definitions(system_${name} PRIVATE LOOKOUT_SOURCE_DIR="${CMAKE_SOURCE_DIR}" LOOKOUT_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
@@ -31,11 +31,14 @@ target_sources(system_live PRIVATE system/text_log_test.cpp)
 target_sources(system_sources PRIVATE system/hangup_test.cpp)
 add_dependencies(system_sources lookout-vlp16)
 add_dependencies(system_no_route lookout-segmenter)
+add_dependencies(system_alarm lookout-georeferencer)
 add_dependencies(system_two_computers lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
 add_test(NAME system_live COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_live>)
 add_test(NAME system_proof COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_proof>)
 add_test(NAME system_ingestion COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_ingestion>)
 add_test(NAME system_sources COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_sources>)
+target_link_libraries(system_alarm PRIVATE lookout_georeferencer)
+add_test(NAME system_alarm COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_alarm>)
 add_test(NAME system_no_route COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_no_route>)
 add_test(NAME system_two_computers COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_two_computers>)
 add_dependencies(system_doctor lookout-doctor lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim)
@@ -43,8 +46,14 @@ add_test(NAME system_doctor
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_doctor> --gtest_filter=-*WhereNothingIs)
 add_test(NAME system_doctor_no_route
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_doctor> --gtest_filter=*WhereNothingIs)
+# Datagrams that LCM's receiver dies of, against every process; ./dev test slow sends a million of them.
+add_dependencies(system_bus_guard lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-top lookout-doctor)
+add_test(NAME system_bus_guard COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_bus_guard>)
+lookout_slow_test(NAME system_bus_guard ENVIRONMENT LOOKOUT_BUS_DATAGRAMS=1000000
+                  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_bus_guard>)
 # RUN_SERIAL: they keep real time.
 set_tests_properties(system_live system_proof system_ingestion system_sources system_no_route system_two_computers system_doctor system_doctor_no_route
+                     system_alarm system_bus_guard
                      PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 lookout_slow_test(NAME system_proof ENVIRONMENT LOOKOUT_PROOF_SECONDS=60
                   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_proof>)

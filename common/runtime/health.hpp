@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/bus/bus.hpp"
@@ -20,7 +21,13 @@ class HealthReporter {
   /// @return the state of the process since the call before; takes the handling times out of `bus`
   health_t Make(Utime now, const HealthReport& report, bus::Bus& bus);
 
+  /// @return the same with state, reason and counters of now; what is measured over an interval is that of the call of Make before
+  health_t MakeBetween(Utime now, const HealthReport& report);
+
  private:
+  // State, reason and counters; sets what tells of this process and this moment.
+  void Fill(Utime now, const HealthReport& report, health_t& message);
+
   std::string process_;
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
@@ -28,6 +35,10 @@ class HealthReporter {
   std::int64_t seq_ = 0;
   bool is_started_ = false;  // was OK once, or had its time
   std::int64_t last_num_unsent_ = 0;
+  std::int64_t last_num_refused_ = 0;             // of second publishers
+  std::optional<std::int64_t> last_num_dropped_;  // datagrams, by the filter of the bus
+  std::string bus_text_;  // of the last call of Make: messages that could not be sent, channels with two publishers, a bus without its filter
+  health_t last_message_{};
   std::map<std::string, std::int64_t> last_counts_;  // by channel, inputs and outputs apart
 };
 

@@ -29,6 +29,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kHealthPeriod(1000);
+// How late messages that are held for a second publisher's sake may be handed out.
+constexpr std::chrono::milliseconds kReleasePeriod(100);
 // Messages handled before sockets and timers get their turn again.
 constexpr int kMaxMessagesPerRound = 64;
 
@@ -94,6 +96,7 @@ struct Process::Implementation {
   std::string name;
   int signals = -1;
   bool is_stopping = false;
+  bool is_report_due = false;
   bool had_terminal = HasTerminal();
   bool is_hangup_ignored = IsHangupIgnored();
   std::vector<Timer> timers;
@@ -150,6 +153,8 @@ void Process::Every(std::chrono::milliseconds period, std::function<void()> hand
 
 void Process::OnHangup(std::function<void()> handler) { implementation_->on_hangup = std::move(handler); }
 
+void Process::ReportNow() { implementation_->is_report_due = true; }
+
 void Process::Stop() { implementation_->is_stopping = true; }
 
 void Process::Run(const std::function<HealthReport()>& report) {
@@ -160,6 +165,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
     bus::Publish(bus_, bus::kHealth, health);
     NotifyAlive(health);
   });
+  Every(kReleasePeriod, [this] { bus_.ReleaseHeld(); });
   NotifyReady();
   spdlog::info("starts, version {}", Version());
   while (!self.is_stopping) {
@@ -181,10 +187,12 @@ void Process::Run(const std::function<HealthReport()>& report) {
       if (!bus_.HandleOnce(std::chrono::milliseconds(0))) break;
     }
     if (!self.is_stopping) self.RunTimers();
+    if (std::exchange(self.is_report_due, false)) bus::Publish(bus_, bus::kHealth, reporter.MakeBetween(HostNow(), report()));
   }
   const auto end = Clock::now() + kLastTime;
   while (Clock::now() < end && bus_.HandleOnce(kLastSilence)) {
   }
+  bus_.ReleaseHeld(true);
   const auto last_report = report();
   for (const auto& counter : last_report.counters) {
     if (counter.count > 0) spdlog::info("{}: {}", counter.name, counter.count);

@@ -50,6 +50,10 @@ class Process {
   /// @throws what a handler threw
   void Run(const std::function<HealthReport()>& report);
 
+  /// Sends HEALTH after the timers of this round too, not only with the second: for what may be over before the next report. Rates, cpu and memory in
+  /// it are those of the last second.
+  void ReportNow();
+
   /// Ends Run after the handler that calls it (end of a capture).
   void Stop();
 

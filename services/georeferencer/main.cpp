@@ -25,7 +25,10 @@ int main(int argc, char** argv) {
     }
     lookout::runtime::Process process("georeferencer", options.lcm_url);
     lookout::georeferencer::Service service(process.bus(), params);
-    process.Every(kTick, [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
+    process.Every(kTick, [&] {
+      service.AdvanceTo(lookout::runtime::HostNow());
+      if (service.TakeAlarmChange()) process.ReportNow();
+    });
     process.Run([&service] { return service.Report(); });
     service.Finish();
   });

@@ -1,6 +1,9 @@
 #include "services/georeferencer/params.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
@@ -8,6 +11,20 @@
 #include "config/schema/georeferencer.pb.h"
 
 namespace lookout::georeferencer {
+
+namespace {
+
+std::string InsideHullText(const GuardZoneParams& zone, const Eigen::AlignedBox3d& own_vessel_box_m) {
+  std::array<char, 256> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "the zone of %.1f m lies wholly inside own_vessel of boat.txtpb, which reaches %.1f m forward, %.1f m aft, %.1f m to port and %.1f m to "
+      "starboard: returns in there are own boat, so nothing can ring the alarm",
+      zone.range_m, own_vessel_box_m.max().x(), -own_vessel_box_m.min().x(), own_vessel_box_m.max().y(), -own_vessel_box_m.min().y());
+  return text.data();
+}
+
+}  // namespace
 
 Params LoadParams(const std::filesystem::path& config_folder) {
   config::FaultList faults;
@@ -33,6 +50,11 @@ Params LoadParams(const std::filesystem::path& config_folder) {
                                  std::abs(width_deg) >= 360.0 ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))};
     params.guard_zone.takes_tentative = zone.takes_tentative();
   }
+  if (message.has_guard_zone() && IsInsideBox(params.guard_zone, boat.own_vessel_box_m)) {
+    faults.Add(
+        config::FaultLine(config_folder / "georeferencer.txtpb", "guard_zone.range_m", InsideHullText(params.guard_zone, boat.own_vessel_box_m)));
+  }
+  faults.ThrowIfAny();
   params.pose_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message.pose_timeout_s()));
   return params;
 }

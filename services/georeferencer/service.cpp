@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "common/core/angles.hpp"
@@ -45,7 +46,11 @@ std::string_view PoseText(std::int32_t pose_status) {
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params)
-    : bus_(bus), georeferencer_(params.placement, params.pose_timeout), guard_zone_(params.guard_zone), guard_range_m_(params.guard_zone.range_m) {
+    : bus_(bus),
+      georeferencer_(params.placement, params.pose_timeout),
+      guard_zone_(params.guard_zone),
+      T_vessel_lidar_(params.placement.T_vessel_lidar) {
+  if (guard_zone_.range_m > 0.0) alarm_.emplace();
   for (const auto& refusal : kRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
@@ -55,7 +60,9 @@ void Service::OnSegments(const segments_t& message) {
   auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
   if (const auto* refusal = std::get_if<Refusal>(&part)) return Refuse(*refusal);
   segments_seen_ = now_;
-  Publish(georeferencer_.AddSegments(std::get<SegmentPart>(std::move(part))));
+  auto& segments = std::get<SegmentPart>(part);
+  if (alarm_) alarm_->Add(segments.head, NearestInZone(guard_zone_, segments, T_vessel_lidar_));
+  Publish(georeferencer_.AddSegments(std::move(segments)));
 }
 
 void Service::OnPose(const pose_t& message) {
@@ -70,14 +77,19 @@ void Service::AdvanceTo(Utime host_time) {
   now_ = host_time;
   // Waiting begins with the first call, or again where the host's clock was set back.
   for (auto* seen : {&pose_seen_, &segments_seen_}) *seen = std::min(seen->value_or(host_time), host_time);
+  if (alarm_) alarm_->AdvanceTo(host_time);
   Publish(georeferencer_.AdvanceTo(host_time));
+}
+
+bool Service::TakeAlarmChange() {
+  if (!alarm_) return false;
+  return std::exchange(reported_alarm_, alarm_->state()) != alarm_->state();
 }
 
 void Service::Finish() { Publish(georeferencer_.Finish()); }
 
 void Service::Publish(const std::vector<ObstaclePart>& parts) {
   for (const auto& part : parts) {
-    guard_zone_.Add(part);
     const auto messages = ToMessages(part, bus::kMaxMessageBytes);
     if (messages.size() > 1) ++num_split_;
     for (const auto& message : messages) bus::Publish(bus_, bus::kObstacles, message);
@@ -100,13 +112,11 @@ HealthReport Service::Report() const {
   const auto seconds = [](std::chrono::microseconds duration) {
     return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
   };
-  // What is near comes first: HEALTH is read from its beginning.
-  const auto nearest = silence(segments_seen_) < kSilence ? guard_zone_.nearest() : std::nullopt;
-  if (nearest) degrade(AlarmText(*nearest, guard_range_m_));
-  if (guard_range_m_ > 0.0) {
-    report.counters.push_back({"alarm_active", nearest ? 1 : 0});
-    report.counters.push_back({"alarms", guard_zone_.num_alarms()});
-    if (nearest) report.counters.push_back({"nearest_cm", std::llround(100.0 * nearest->range_m)});
+  // The alarm comes first: HEALTH is read from its beginning.
+  if (alarm_) {
+    if (const auto nearest = alarm_->nearest()) degrade(AlarmText(*nearest, guard_zone_.range_m));
+    if (alarm_->is_unwatched()) degrade(alarm_->UnwatchedText());
+    for (const auto& counter : alarm_->counters()) report.counters.push_back(counter);
   }
   if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
   if (silence(pose_seen_) >= kSilence) {

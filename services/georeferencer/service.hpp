@@ -12,6 +12,7 @@
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
 #include "services/georeferencer/core/guard_zone.hpp"
+#include "services/georeferencer/guard_alarm.hpp"
 #include "services/georeferencer/params.hpp"
 
 namespace lookout::georeferencer {
@@ -29,6 +30,10 @@ class Service {
   /// Messages of SEGMENTS that wait for POSE.
   std::int64_t num_waiting() const { return georeferencer_.num_waiting(); }
 
+  /// Live only: whether the alarm came up, was cleared, or the guard zone came to be watched or unwatched, since the call before. Such a change is
+  /// worth a HEALTH message at once: it may be over before the next.
+  bool TakeAlarmChange();
+
   HealthReport Report() const;
 
  private:
@@ -39,8 +44,10 @@ class Service {
 
   bus::Bus& bus_;
   Georeferencer georeferencer_;
-  GuardZone guard_zone_;
-  double guard_range_m_;
+  GuardZoneParams guard_zone_;
+  Eigen::Isometry3d T_vessel_lidar_;
+  std::optional<GuardAlarm> alarm_;  // where a guard zone is configured
+  GuardAlarm::State reported_alarm_;
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;
   std::optional<std::int32_t> newest_pose_status_;  // of pose_t

@@ -1,8 +1,10 @@
 // HEALTH of the processes, and what comes out at the end of the chain.
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,9 +17,12 @@ namespace lookout::doctor {
 namespace {
 
 constexpr const char* kProcessSubject = "process";
+constexpr const char* kGuardZoneSubject = "guard zone";
 constexpr const char* kObstaclesSubject = "obstacles";
 
 constexpr std::array<const char*, 5> kSuite{"vlp16", "segmenter", "navigator", "georeferencer", "recorder"};
+// Whose HEALTH tells of the alarm.
+constexpr std::string_view kAlarmProcess = "georeferencer";
 // HEALTH comes once a second: two may be lost.
 constexpr double kHealthSilenceS = 3.5;
 
@@ -73,6 +78,27 @@ Finding Missing(const std::string& name, bool was_heard) {
           "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended"};
 }
 
+// Of georeferencer, where it has a guard zone.
+Findings JudgeGuardZone(const health_t& health) {
+  const auto count = [&health](const char* name) {
+    const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
+    return found == health.counters.end() ? -1 : found->count;
+  };
+  if (count("alarm_active") < 0) return {};
+  if (count("zone_unwatched") > 0) {
+    return {{Grade::kFault, kGuardZoneSubject, "the guard zone is not watched: no alarm can be raised now",
+             "whole scans must come: the lidar and process lines above; keep a look-out by eye meanwhile"}};
+  }
+  const std::string words = "the guard zone is watched, " + std::to_string(count("alarms")) + " alarms and " +
+                            std::to_string(count("zone_times_unwatched")) + " times unwatched since the start";
+  if (count("alarm_active") > 0) {
+    return {{Grade::kWarning, kGuardZoneSubject,
+             words + "; something is in it now, " + Text(0.01 * static_cast<double>(count("nearest_cm")), 1) + " m off",
+             "nothing, if it is there; if it is the own boat or spray: own_vessel in boat.txtpb, guard_zone in georeferencer.txtpb"}};
+  }
+  return {{Grade::kOk, kGuardZoneSubject, words, {}}};
+}
+
 Findings JudgeObstacles(const Observations& seen) {
   const auto& obstacles = seen.obstacles;
   if (obstacles.num_turns == 0) {
@@ -120,7 +146,10 @@ Findings JudgeProcesses(const Observations& seen) {
       findings.push_back(Missing(name, found != seen.processes.end()));
       continue;
     }
-    for (const auto* process : alive) findings.push_back(JudgeProcess(name, *process));
+    for (const auto* process : alive) {
+      findings.push_back(JudgeProcess(name, *process));
+      if (name == kAlarmProcess) std::ranges::copy(JudgeGuardZone(process->last), std::back_inserter(findings));
+    }
     if (alive.size() > 1) {
       findings.push_back({Grade::kFault, kProcessSubject,
                           name + " runs " + std::to_string(alive.size()) + " times on one bus: a channel has one publisher",

@@ -1,6 +1,7 @@
 #include "services/georeferencer/core/guard_zone.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -57,37 +58,38 @@ class NearestSoFar {
 
 }  // namespace
 
-std::optional<NearestPoint> NearestWithin(const Sector& bearing, const Obstacle& obstacle) {
+bool IsInsideBox(const GuardZoneParams& params, const Eigen::AlignedBox3d& box_m) {
+  const Eigen::AlignedBox2d flat_m(Eigen::Vector2d(box_m.min().head<2>()), Eigen::Vector2d(box_m.max().head<2>()));
+  const auto is_inside = [&](double bearing_rad) {
+    constexpr double kRoundingM = 1e-9;
+    return flat_m.exteriorDistance(Eigen::Vector2d(params.range_m * DirectionOf(bearing_rad))) <= kRoundingM;
+  };
+  // How far a sector reaches to each side of a box is told by its apex, the ends of its arc, and the four directions that lie within.
+  if (!flat_m.contains(Eigen::Vector2d(0.0, 0.0))) return false;
+  if (!is_inside(params.bearing.start_rad) || !is_inside(params.bearing.start_rad + params.bearing.width_rad)) return false;
+  return std::ranges::all_of(std::array{0.0, 0.5 * kPi, kPi, 1.5 * kPi},
+                             [&](double bearing_rad) { return !params.bearing.Contains(bearing_rad) || is_inside(bearing_rad); });
+}
+
+std::optional<NearestPoint> NearestWithin(const Sector& bearing, const VesselOutline& outline) {
   NearestSoFar nearest(bearing);
-  const bool has_waterline = !obstacle.waterline_vessel_m.empty();
-  const auto& outline = has_waterline ? obstacle.waterline_vessel_m : obstacle.footprint_vessel_m;
-  nearest.Show(obstacle.nearest_vessel_m.head<2>());
-  for (const auto& corner : outline) nearest.Show(corner);
-  for (std::size_t i = 0; i + 1 < outline.size(); ++i) nearest.ShowEdge(outline[i], outline[i + 1]);
-  if (!has_waterline && outline.size() > 2) nearest.ShowEdge(outline.back(), outline.front());
+  const bool has_waterline = !outline.waterline_m.empty();
+  const auto& corners_m = has_waterline ? outline.waterline_m : outline.footprint_m;
+  nearest.Show(outline.nearest_m.head<2>());
+  for (const auto& corner_m : corners_m) nearest.Show(corner_m.head<2>());
+  for (std::size_t i = 0; i + 1 < corners_m.size(); ++i) nearest.ShowEdge(corners_m[i].head<2>(), corners_m[i + 1].head<2>());
+  if (!has_waterline && corners_m.size() > 2) nearest.ShowEdge(corners_m.back().head<2>(), corners_m.front().head<2>());
   return nearest.nearest();
 }
 
-void GuardZone::Add(const ObstaclePart& part) {
-  if (params_.range_m <= 0.0) return;
-  if (turn_ != part.head.time) {
-    before_ = latest_;
-    latest_.reset();
-    turn_ = part.head.time;
+std::optional<NearestPoint> NearestInZone(const GuardZoneParams& params, const SegmentPart& part, const Eigen::Isometry3d& T_vessel_lidar) {
+  std::optional<NearestPoint> nearest;
+  for (const auto& segment : part.segments) {
+    if (segment.judgement.confidence == Confidence::kTentative && !params.takes_tentative) continue;
+    const auto point = NearestWithin(params.bearing, OutlineOf(segment, T_vessel_lidar));
+    if (point && point->range_m <= params.range_m && (!nearest || point->range_m < nearest->range_m)) nearest = point;
   }
-  const bool was_clear = !before_ && !latest_;
-  for (const auto& obstacle : part.obstacles) {
-    if (obstacle.judgement.confidence == Confidence::kTentative && !params_.takes_tentative) continue;
-    const auto nearest = NearestWithin(params_.bearing, obstacle);
-    if (!nearest || nearest->range_m > params_.range_m) continue;
-    if (!latest_ || nearest->range_m < latest_->range_m) latest_ = nearest;
-  }
-  if (was_clear && latest_) ++num_alarms_;
-}
-
-std::optional<NearestPoint> GuardZone::nearest() const {
-  if (latest_ && before_) return latest_->range_m <= before_->range_m ? latest_ : before_;
-  return latest_ ? latest_ : before_;
+  return nearest;
 }
 
 }  // namespace lookout::georeferencer

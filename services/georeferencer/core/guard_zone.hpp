@@ -1,12 +1,12 @@
 // The alarm for what comes too near: watches a sector around the boat, like the guard zone of a radar.
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 
 #include "common/core/angles.hpp"
-#include "common/core/utime.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
+#include "services/georeferencer/core/placement.hpp"
 
 namespace lookout::georeferencer {
 
@@ -15,6 +15,9 @@ struct GuardZoneParams {
   Sector bearing;                // of the sector, from the bow clockwise
   bool takes_tentative = false;  // whether a tentative obstacle, which may be spray, gives alarm too
 };
+
+/// Whether the whole zone lies within a box, seen from above. In the box around the own hull nothing can be seen that is not own boat.
+bool IsInsideBox(const GuardZoneParams& params, const Eigen::AlignedBox3d& box_m);
 
 /// The point of an obstacle's seen outline that is nearest to the boat within a sector.
 struct NearestPoint {
@@ -25,27 +28,11 @@ struct NearestPoint {
 /// Along the outline: the footprint, or of land its waterline where there is one. Not only its corners: a long wall is nearest between two.
 ///
 /// @return nullopt when nothing of the outline lies within the sector
-std::optional<NearestPoint> NearestWithin(const Sector& bearing, const Obstacle& obstacle);
+std::optional<NearestPoint> NearestWithin(const Sector& bearing, const VesselOutline& outline);
 
-class GuardZone {
- public:
-  explicit GuardZone(const GuardZoneParams& params) : params_(params) {}
-
-  /// Takes the obstacles of a turn, or of a part of one. Parts of a turn come one after the other.
-  void Add(const ObstaclePart& part);
-
-  /// What is nearest within range and sector, in the latest turn or the one before: of the latest, parts may still be on their way.
-  std::optional<NearestPoint> nearest() const;
-
-  /// Turns in which the alarm came up: the turn before was clear.
-  std::int64_t num_alarms() const { return num_alarms_; }
-
- private:
-  GuardZoneParams params_;
-  std::optional<Utime> turn_;
-  std::optional<NearestPoint> latest_;
-  std::optional<NearestPoint> before_;
-  std::int64_t num_alarms_ = 0;
-};
+/// What a SEGMENTS message shows of the zone. In the vessel frame: it needs no POSE and waits for none.
+///
+/// @return nullopt when nothing that counts lies within range and sector
+std::optional<NearestPoint> NearestInZone(const GuardZoneParams& params, const SegmentPart& part, const Eigen::Isometry3d& T_vessel_lidar);
 
 }  // namespace lookout::georeferencer

@@ -38,6 +38,22 @@ double AboveWaterM(const Vector3d& p_vessel_m, const std::optional<Pose>& pose, 
   return p_level_m.z() + reference_point_above_water_m + pose->heave_m;
 }
 
+// Outline and waterline of a segment, thinned.
+struct Corners {
+  std::vector<HullVertex> hull;
+  std::vector<HullVertex> waterline;
+};
+
+Corners UprightCorners(const Segment& segment, const Isometry3d& T_vessel_lidar) {
+  Corners corners{Thinned(segment.hull), ThinnedLine(segment.waterline)};
+  // A lidar that hangs upside down sees outline and waterline run the other way.
+  if (T_vessel_lidar.linear()(2, 2) < 0.0) {
+    std::ranges::reverse(corners.hull);
+    std::ranges::reverse(corners.waterline);
+  }
+  return corners;
+}
+
 // Corners of a segment in the vessel frame, as they were seen, at the mean height of its returns.
 std::vector<Vector3d> ToVessel(const std::vector<HullVertex>& corners, double height_lidar_m, const Isometry3d& T_vessel_lidar) {
   std::vector<Vector3d> corners_vessel_m;
@@ -115,6 +131,12 @@ std::vector<HullVertex> ThinnedLine(const std::vector<HullVertex>& line) {
   return thinned;
 }
 
+VesselOutline OutlineOf(const Segment& segment, const Isometry3d& T_vessel_lidar) {
+  const auto corners = UprightCorners(segment, T_vessel_lidar);
+  return {ToVessel(corners.hull, segment.centroid_m.z(), T_vessel_lidar), ToVessel(corners.waterline, segment.centroid_m.z(), T_vessel_lidar),
+          T_vessel_lidar * segment.nearest_m};
+}
+
 Vector3d FootprintCenter(const std::vector<Vector3d>& vertices) {
   // Relative to the first vertex: far from the datum the products would lose their digits. A fan of triangles around it.
   const Vector3d& origin = vertices.front();
@@ -166,13 +188,7 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
 
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params) {
   const Isometry3d& T_vessel_lidar = params.T_vessel_lidar;
-  std::vector<HullVertex> hull = Thinned(segment.hull);
-  std::vector<HullVertex> waterline = ThinnedLine(segment.waterline);
-  // A lidar that hangs upside down sees outline and waterline run the other way.
-  if (T_vessel_lidar.linear()(2, 2) < 0.0) {
-    std::ranges::reverse(hull);
-    std::ranges::reverse(waterline);
-  }
+  const auto [hull, waterline] = UprightCorners(segment, T_vessel_lidar);
   const auto outline_vessel_m = ToVessel(hull, segment.centroid_m.z(), T_vessel_lidar);
   const auto waterline_vessel_m = ToVessel(waterline, segment.centroid_m.z(), T_vessel_lidar);
   const auto pose = poses.At(segment.time);

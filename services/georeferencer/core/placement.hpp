@@ -30,6 +30,15 @@ std::vector<HullVertex> Thinned(const std::vector<HullVertex>& hull);
 /// @return every vertex; of more than kMaxWaterlineVertices so many, the first and the last among them
 std::vector<HullVertex> ThinnedLine(const std::vector<HullVertex>& line);
 
+/// A segment's outline and waterline (thinned) and its nearest return in the vessel frame, as they were seen, at the mean height of its returns.
+/// Seen from above the outline is counter-clockwise, the waterline clockwise, also where the lidar hangs upside down.
+struct VesselOutline {
+  std::vector<Eigen::Vector3d> footprint_m;
+  std::vector<Eigen::Vector3d> waterline_m;
+  Eigen::Vector3d nearest_m = Eigen::Vector3d::Zero();
+};
+VesselOutline OutlineOf(const Segment& segment, const Eigen::Isometry3d& T_vessel_lidar);
+
 /// Centre of an outline, seen from above.
 ///
 /// @param vertices  at least one; around the outline in either sense

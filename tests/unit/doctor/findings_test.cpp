@@ -16,6 +16,26 @@ TEST(Doctor, FindsNothingOnAHealthyBoat) {
   }
 }
 
+TEST(DoctorGuardZone, SaysThatNobodyLooks) {
+  auto seen = Healthy();
+  EXPECT_EQ(About(JudgeProcesses(seen), "guard zone").text, "") << "none is configured";
+  auto& counters = seen.processes["georeferencer"][0].last.counters;
+  const auto set = [&counters](const std::vector<std::pair<std::string, std::int64_t>>& values) {
+    counters.clear();
+    for (const auto& [name, count] : values) {
+      counters.emplace_back();
+      counters.back().name = name;
+      counters.back().count = count;
+    }
+  };
+  set({{"alarm_active", 0}, {"alarms", 3}, {"zone_unwatched", 0}, {"zone_times_unwatched", 2}});
+  EXPECT_SAYS(About(JudgeProcesses(seen), "guard zone"), kOk, "is watched, 3 alarms and 2 times unwatched");
+  set({{"alarm_active", 1}, {"alarms", 3}, {"zone_unwatched", 1}, {"zone_times_unwatched", 2}});
+  EXPECT_SAYS(About(JudgeProcesses(seen), "guard zone"), kFault, "not watched: no alarm can be raised now");
+  set({{"alarm_active", 1}, {"alarms", 3}, {"nearest_cm", 730}, {"zone_unwatched", 0}, {"zone_times_unwatched", 2}});
+  EXPECT_SAYS(About(JudgeProcesses(seen), "guard zone"), kWarning, "something is in it now, 7.3 m off");
+}
+
 TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
   BusSeen bus = Healthy().bus;
   EXPECT_SAYS(About(JudgeBus(bus), "route"), kOk, "nothing leaves this computer");

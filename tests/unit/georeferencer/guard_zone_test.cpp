@@ -1,12 +1,9 @@
 #include "services/georeferencer/core/guard_zone.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "common/bus/memory_bus.hpp"
-#include "services/georeferencer/service.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::georeferencer {
@@ -14,18 +11,11 @@ namespace {
 
 constexpr Sector kAhead{DegToRad(300.0), DegToRad(120.0)};
 
-Obstacle MakeOutline(std::vector<Eigen::Vector2d> footprint_m) {
-  Obstacle obstacle;
-  obstacle.nearest_vessel_m << footprint_m.front(), 0.0;
-  obstacle.footprint_vessel_m = std::move(footprint_m);
-  return obstacle;
-}
-
-ObstaclePart MakeTurn(std::int64_t offset_us, std::vector<Obstacle> obstacles) {
-  ObstaclePart part;
-  part.head.time = test::At(offset_us);
-  part.obstacles = std::move(obstacles);
-  return part;
+VesselOutline MakeOutline(const std::vector<Eigen::Vector2d>& footprint_m) {
+  VesselOutline outline;
+  for (const auto& corner_m : footprint_m) outline.footprint_m.emplace_back(corner_m.x(), corner_m.y(), 0.0);
+  outline.nearest_m = outline.footprint_m.front();
+  return outline;
 }
 
 TEST(NearestWithin, TellsStarboardFromPort) {
@@ -56,62 +46,64 @@ TEST(NearestWithin, IsCutAtTheSidesOfTheSector) {
 // The footprint of a bay is closed behind the boat; its water's edge is not.
 TEST(NearestWithin, OfLandTakesTheWaterlineAlone) {
   auto bay = MakeOutline({{30.0, 0.0}, {-1.0, 20.0}, {-1.0, -20.0}});
-  bay.waterline_vessel_m = {{-1.0, 20.0}, {30.0, 0.0}, {-1.0, -20.0}};
+  bay.waterline_m = {{-1.0, 20.0, 0.0}, {30.0, 0.0, 0.0}, {-1.0, -20.0, 0.0}};
   const auto nearest = NearestWithin(Sector{}, bay);
   ASSERT_TRUE(nearest);
   EXPECT_GT(nearest->range_m, 15.0);
 }
 
-TEST(GuardZone, CountsAnAlarmWhenItComesUp) {
-  GuardZone zone({.range_m = 10.0, .bearing = kAhead});
-  zone.Add(MakeTurn(0, {MakeOutline({{11.0, 0.0}})}));
-  EXPECT_FALSE(zone.nearest());
-  zone.Add(MakeTurn(100'000, {MakeOutline({{9.0, 0.0}}), MakeOutline({{0.0, 2.0}})}));
-  ASSERT_TRUE(zone.nearest());
-  EXPECT_NEAR(zone.nearest()->range_m, 9.0, 1e-12);
-  zone.Add(MakeTurn(200'000, {MakeOutline({{8.0, 0.0}})}));
-  EXPECT_EQ(zone.num_alarms(), 1);
-  zone.Add(MakeTurn(300'000, {}));
-  EXPECT_TRUE(zone.nearest()) << "parts of this turn may be on their way";
-  zone.Add(MakeTurn(400'000, {}));
-  EXPECT_FALSE(zone.nearest());
-  zone.Add(MakeTurn(500'000, {MakeOutline({{8.0, 0.0}})}));
-  EXPECT_EQ(zone.num_alarms(), 2);
+SegmentPart MakePart(double x_m, double y_m, Confidence confidence = Confidence::kSure) {
+  auto part = test::MakePart(0, 0, {test::MakePoint(0, x_m, y_m, 0.0)});
+  part.segments[0].judgement.confidence = confidence;
+  return part;
 }
 
-TEST(GuardZone, TakesTheTentativeWhereItIsAskedTo) {
-  auto drop = MakeOutline({{5.0, 0.0}});
-  drop.judgement.confidence = Confidence::kTentative;
-  GuardZone sure({.range_m = 10.0, .bearing = kAhead});
-  sure.Add(MakeTurn(0, {drop}));
-  EXPECT_FALSE(sure.nearest());
-  GuardZone all({.range_m = 10.0, .bearing = kAhead, .takes_tentative = true});
-  all.Add(MakeTurn(0, {drop}));
-  EXPECT_TRUE(all.nearest());
-  GuardZone off({});
-  off.Add(MakeTurn(0, {MakeOutline({{0.5, 0.0}})}));
-  EXPECT_FALSE(off.nearest());
+TEST(NearestInZone, LeavesOutWhatIsTooFarOrAside) {
+  const GuardZoneParams zone{.range_m = 10.0, .bearing = kAhead};
+  const auto level = Eigen::Isometry3d::Identity();
+  EXPECT_FALSE(NearestInZone(zone, MakePart(11.0, 0.0), level));
+  EXPECT_FALSE(NearestInZone(zone, MakePart(0.0, 2.0), level));
+  ASSERT_TRUE(NearestInZone(zone, MakePart(9.0, 0.0), level));
+  EXPECT_NEAR(NearestInZone(zone, MakePart(9.0, 0.0), level)->range_m, 9.0, 1e-12);
 }
 
-TEST(GuardZone, IsToldOfInHealth) {
-  bus::MemoryBus bus;
-  Params params;
-  params.pose_timeout = std::chrono::milliseconds(500);
-  params.guard_zone.range_m = 20.0;
-  Service service(bus, params);
-  EXPECT_EQ(service.Report().state, HealthState::kOk);
-  bus::Publish(bus, bus::kSegments, test::MakeSegmentsMessage(0, 0, {test::MakeSegmentMessage(1, 0)}));  // 10 m ahead
-  for (std::int64_t offset_us = 0; offset_us <= 120'000; offset_us += 20'000) {
-    bus::Publish(bus, bus::kPose, test::MakePoseMessage(offset_us, offset_us / 20'000));
-  }
-  while (bus.HandleOnce()) {
-  }
-  const auto report = service.Report();
-  EXPECT_EQ(report.state, HealthState::kDegraded);
-  EXPECT_EQ(report.reason, "obstacle within 20.0 m: 10.0 m, 0 deg to starboard");
-  const auto alarm = std::ranges::find(report.counters, "alarm_active", &Counter::name);
-  ASSERT_NE(alarm, report.counters.end());
-  EXPECT_EQ(alarm->count, 1);
+TEST(NearestInZone, TakesTheTentativeWhereItIsAskedTo) {
+  const auto drop = MakePart(5.0, 0.0, Confidence::kTentative);
+  EXPECT_FALSE(NearestInZone({.range_m = 10.0, .bearing = kAhead}, drop, Eigen::Isometry3d::Identity()));
+  EXPECT_TRUE(NearestInZone({.range_m = 10.0, .bearing = kAhead, .takes_tentative = true}, drop, Eigen::Isometry3d::Identity()));
+}
+
+// The lidar sits 2 m forward and looks to port: what is 3 m ahead of it is to port of the boat.
+TEST(NearestInZone, IsMeasuredFromTheReferencePointOfTheBoat) {
+  Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
+  T_vessel_lidar.translation() << 2.0, 0.0, 1.0;
+  T_vessel_lidar.linear() << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  const auto nearest = NearestInZone({.range_m = 10.0, .bearing = {}}, MakePart(3.0, 0.0), T_vessel_lidar);
+  ASSERT_TRUE(nearest);
+  EXPECT_NEAR(nearest->range_m, std::hypot(2.0, 3.0), 1e-12);
+}
+
+bool IsInside(double from_deg, double width_deg, double range_m) {
+  const Eigen::AlignedBox3d box_m{Eigen::Vector3d(-1.0, -2.0, -1.0), Eigen::Vector3d(14.0, 3.0, 2.0)};
+  return IsInsideBox({.range_m = range_m, .bearing = {WrapTo2Pi(DegToRad(from_deg)), DegToRad(width_deg)}}, box_m);
+}
+
+TEST(GuardZoneInsideTheHull, IsFoundByTheSidesOfTheBoxThatTheSectorReaches) {
+  EXPECT_TRUE(IsInside(355.0, 10.0, 14.0));
+  EXPECT_FALSE(IsInside(355.0, 10.0, 14.01));
+  EXPECT_TRUE(IsInside(300.0, 120.0, 2.3)) << "2.0 m to starboard at 60 degrees";
+  EXPECT_FALSE(IsInside(300.0, 120.0, 2.4));
+  EXPECT_TRUE(IsInside(0.0, 360.0, 1.0));
+  EXPECT_FALSE(IsInside(0.0, 360.0, 1.1)) << "1.0 m aft";
+  EXPECT_TRUE(IsInside(80.0, 20.0, 2.0));
+  EXPECT_FALSE(IsInside(80.0, 20.0, 2.1)) << "2.0 m to starboard";
+  EXPECT_TRUE(IsInside(260.0, 20.0, 3.0));
+  EXPECT_FALSE(IsInside(260.0, 20.0, 3.1)) << "3.0 m to port";
+}
+
+TEST(GuardZoneInsideTheHull, IsNotFoundWhereTheReferencePointIsOutside) {
+  const Eigen::AlignedBox3d box_m{Eigen::Vector3d(1.0, -2.0, -1.0), Eigen::Vector3d(14.0, 3.0, 2.0)};
+  EXPECT_FALSE(IsInsideBox({.range_m = 5.0, .bearing = {0.0, 0.1}}, box_m));
 }
 
 }  // namespace

@@ -1,11 +1,16 @@
 #include "services/georeferencer/service.hpp"
 
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
 #include "common/bus/decode.hpp"
 #include "common/bus/memory_bus.hpp"
+#include "common/config/text_config.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::georeferencer {
@@ -145,6 +150,31 @@ TEST(GeoreferencerParams, OfTheBoatsInConfigAreThoseOfTheirFiles) {
   EXPECT_EQ(params.placement.T_vessel_lidar.translation().z(), 1.1);
   const auto catabot = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot");
   EXPECT_NEAR(catabot.placement.mounting_sd_rad, 0.5 * 3.14159265 / 180.0, 1e-9);
+}
+
+// Returns in the box around the hull are own boat: such a zone was taken, and could never ring.
+TEST(GeoreferencerParams, RefuseAGuardZoneInsideTheOwnHull) {
+  const auto folder = std::filesystem::temp_directory_path() / ("lookout_guard_zone_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo/boat.txtpb", folder / "boat.txtpb",
+                             std::filesystem::copy_options::overwrite_existing);
+  const auto load = [&folder](const std::string& zone) {
+    std::ofstream(folder / "georeferencer.txtpb") << "guard_zone { " + zone + " }\n";
+    try {
+      LoadParams(folder);
+    } catch (const config::ConfigError& error) {
+      return error.faults().at(0);
+    }
+    return std::string();
+  };
+  const auto fault = load("range_m: 1.3 from_bearing_deg: 330 to_bearing_deg: 30");
+  EXPECT_NE(fault.find("guard_zone.range_m: the zone of 1.3 m lies wholly inside own_vessel of boat.txtpb, which reaches 1.4 m forward, 1.4 m aft, "
+                       "0.9 m to port and 0.9 m to starboard"),
+            std::string::npos)
+      << fault;
+  EXPECT_EQ(load("range_m: 1.3"), "") << "all round it reaches out to the sides";
+  EXPECT_EQ(load("range_m: 1.5 from_bearing_deg: 330 to_bearing_deg: 30"), "");
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,0 +1,129 @@
+#include "services/georeferencer/guard_alarm.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace lookout::georeferencer {
+
+namespace {
+
+using std::chrono::microseconds;
+
+// Above the longest scan (0.2 s at 300 rpm), and with it below the time to unwatched: one step of the clock alone says nothing.
+constexpr std::chrono::milliseconds kGreatestStep(250);
+
+void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<NearestPoint>& other) {
+  if (other && (!nearest || other->range_m < nearest->range_m)) nearest = other;
+}
+
+}  // namespace
+
+void GuardAlarm::Add(const TurnHead& head, const std::optional<NearestPoint>& nearest) {
+  if (!gathering_ || gathering_->time != head.time || gathering_->seq != head.seq) {
+    Close(false);  // what is missing of the scan before does not come any more
+    gathering_.emplace();
+    gathering_->time = head.time;
+    gathering_->seq = head.seq;
+    gathering_->num_parts = head.num_parts;
+  }
+  auto& scan = *gathering_;
+  if (scan.is_closed || head.part_index < scan.next_part) return;  // came twice
+  if (head.part_index != scan.next_part || head.num_parts != scan.num_parts || head.scan_flags != 0) scan.is_whole = false;
+  scan.next_part = head.part_index + 1;
+  KeepNearer(scan.nearest, nearest);
+  if (scan.next_part == scan.num_parts) Close(true);
+}
+
+void GuardAlarm::Close(bool has_all_parts) {
+  if (!gathering_ || gathering_->is_closed) return;
+  gathering_->is_closed = true;
+  Judge({gathering_->time, gathering_->is_whole && has_all_parts, gathering_->nearest});
+}
+
+void GuardAlarm::Judge(const Seen& scan) {
+  ++(scan.is_whole ? num_whole_ : num_partial_);
+  if (newest_ && std::chrono::abs(scan.time - *newest_) > kTimeToClear) {
+    // Another run, or a gap: nobody looked meanwhile, so an alarm that stands is not cleared by it.
+    window_.clear();
+    last_seen_ = scan.time;
+    num_clear_ = 0;
+  }
+  newest_ = scan.time;
+  std::erase_if(window_, [&scan](const Seen& seen) { return std::chrono::abs(scan.time - seen.time) > kTimeToClear; });
+  if (scan.is_whole || scan.nearest) window_.push_back(scan);
+  if (window_.size() > kWindowScans) window_.pop_front();
+
+  if (scan.nearest) {
+    last_nearest_ = *scan.nearest;
+    last_seen_ = scan.time;
+    num_clear_ = 0;
+  } else if (scan.is_whole) {
+    ++num_clear_;
+  }
+  if (!is_raised_ && std::ranges::count_if(window_, [](const Seen& seen) { return seen.nearest.has_value(); }) >= kScansToRaise) {
+    is_raised_ = true;
+    ++num_alarms_;
+  } else if (is_raised_ && num_clear_ >= static_cast<std::int64_t>(kWindowScans) && scan.time - last_seen_ >= kTimeToClear) {
+    is_raised_ = false;
+  }
+
+  if (!scan.is_whole) {
+    ++num_partial_since_;
+    return;
+  }
+  unseen_ = microseconds(0);
+  num_partial_since_ = 0;
+  if (std::ranges::count_if(window_, &Seen::is_whole) >= kScansToRaise) {
+    is_watched_ = true;
+    unwatched_ = microseconds(0);
+  }
+}
+
+void GuardAlarm::AdvanceTo(Utime host_time) {
+  const auto step = host_time_ ? std::clamp(host_time - *host_time_, microseconds(0), microseconds(kGreatestStep)) : microseconds(0);
+  host_time_ = host_time;
+  unseen_ += step;
+  unwatched_ += step;
+  if (is_watched_ && unwatched_ >= kTimeToUnwatched) {
+    is_watched_ = false;
+    ++num_times_unwatched_;
+  }
+}
+
+std::optional<NearestPoint> GuardAlarm::nearest() const {
+  if (!is_raised_) return std::nullopt;
+  std::optional<NearestPoint> nearest;
+  for (const auto& seen : window_) KeepNearer(nearest, seen.nearest);
+  return nearest ? nearest : last_nearest_;
+}
+
+std::string GuardAlarm::UnwatchedText() const {
+  if (!is_unwatched()) return {};
+  std::array<char, 160> text{};
+  if (num_whole_ == 0) {
+    std::snprintf(text.data(), text.size(), "guard zone not watched: no whole scan yet");
+  } else if (unseen_ >= kTimeToUnwatched) {
+    std::snprintf(text.data(), text.size(), "guard zone not watched: no whole scan for %.1f s", ToSeconds(unseen_));
+  } else {
+    std::snprintf(text.data(), text.size(), "guard zone not watched: less than %d whole scans within %.1f s", kScansToRaise, ToSeconds(kTimeToClear));
+  }
+  std::string words = text.data();
+  if (num_partial_since_ > 0) {
+    words += ", " + std::to_string(num_partial_since_) + " that were not whole: lost packets or a second sender, see HEALTH of vlp16 and segmenter";
+  }
+  return words;
+}
+
+std::vector<Counter> GuardAlarm::counters() const {
+  std::vector<Counter> counters{{"alarm_active", is_active() ? 1 : 0}, {"alarms", num_alarms_}};
+  if (const auto point = nearest()) counters.push_back({"nearest_cm", std::llround(100.0 * point->range_m)});
+  counters.push_back({"zone_unwatched", is_unwatched() ? 1 : 0});
+  counters.push_back({"zone_times_unwatched", num_times_unwatched_});
+  counters.push_back({"scans_whole", num_whole_});
+  counters.push_back({"scans_partial", num_partial_});
+  return counters;
+}
+
+}  // namespace lookout::georeferencer
