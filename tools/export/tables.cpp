@@ -198,8 +198,13 @@ void WriteTraffic(const health_t& health, CsvWriter& csv) {
     WriteCount(channel.handling_p50_us, csv);
     WriteCount(channel.handling_p99_us, csv);
     // A latency may be negative, where the sensor's clock is ahead.
-    csv.Text(channel.latency_p50_us == -1 ? "" : std::to_string(channel.latency_p50_us));
-    csv.Text(channel.latency_p99_us == -1 ? "" : std::to_string(channel.latency_p99_us));
+    for (const auto latency_us : {channel.latency_p50_us, channel.latency_p99_us}) {
+      if (latency_us == -1) {
+        csv.Empty();
+      } else {
+        csv.Integer(latency_us);
+      }
+    }
     csv.EndRow();
   }
 }

@@ -42,14 +42,6 @@ std::string Count(std::int64_t count, int width) {
   return text.size() <= SizeOf(width) ? Right(text, width) : std::string(SizeOf(width), '#');
 }
 
-std::string Printable(std::string_view text) {
-  std::string printable(text);
-  for (char& letter : printable) {
-    if (letter < ' ' || letter > '~') letter = '?';
-  }
-  return printable;
-}
-
 std::vector<std::string> Wrapped(std::string_view text, int width, int max_lines) {
   const std::size_t line_size = SizeOf(width);
   std::vector<std::string> lines;

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/printable.hpp"
+
 namespace lookout::top {
 
 /// Right-aligned. Where the number is too wide, decimals go first, then "###" stands for it; "-" for what is not finite.
@@ -21,7 +23,7 @@ std::string Left(std::string_view text, int width);
 std::string Right(std::string_view text, int width);
 
 /// Text from outside, for a terminal: what is not printable ASCII becomes "?", so that no message can send a control sequence.
-std::string Printable(std::string_view text);
+using lookout::Printable;
 
 /// Words of printable `text` in lines of at most `width`; a longer word is broken. What is more than `max_lines` ends in "..".
 /// Precondition: width >= 3, max_lines >= 1.
