@@ -1,7 +1,7 @@
 # Where everything lies on a computer, and the Debian package. Programs install themselves (lookout_program in cmake/Rooms.cmake).
 set(data_folder ${CMAKE_INSTALL_DATADIR}/lookout)
 install(PROGRAMS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/lookout-up DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(PROGRAMS backoff DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/lookout)
+install(PROGRAMS backoff firewall DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/lookout)
 # Programs that are scripts, and Java archives, by their names alone: whoever makes one need not come here.
 install(CODE "
   file(GLOB scripts \"${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/lookout-*\")
@@ -70,8 +70,8 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # ip for the route, sysctl for the buffers, kill for reloads, sysusers for the user: of systemd, or alone where there is none.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "iproute2, procps, systemd | systemd-standalone-sysusers | systemd-sysusers")
-# lookout-spy, and LCM's own tools; a boat does without.
-set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-bin")
+# LCM's own tools, and the rule that closes the port of the bus; a boat does without.
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "liblcm-bin, nftables")
 # lookout-up, where there is no systemd. Not recommended: runit's own recommendation would start a second supervisor on the boat.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "runit, default-jre, liblcm-java, libjchart2d-java")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

@@ -37,7 +37,7 @@ inside apt-get update -qq
 inside apt-get purge -y -qq lookout >/dev/null 2>&1 || true
 find "$root" -xdev -name '*lookout*' ! -path "$root/root/*" ! -path "$root/proc/*" | sort >"$work/before"
 inside apt-get install -y -qq --no-install-recommends /root/lookout.deb >"$work/install.log" 2>&1 || { tail "$work/install.log" >&2; fail "install"; }
-mapfile -t units < <(basename -a "$root"/lib/systemd/system/lookout-*.service | sed -n 's/^lookout-\(.*\)\.service$/\1/p' | grep -v '^route$')
+mapfile -t units < <(basename -a "$root"/lib/systemd/system/lookout-*.service | sed -n 's/^lookout-\(.*\)\.service$/\1/p' | grep -Ev '^(route|firewall)$')
 echo "units: ${units[*]}"
 inside id lookout || fail "no user"
 # Scripts and archives are found by their names: were they not, nobody would miss them here.
@@ -53,9 +53,17 @@ for program in "$root"/usr/bin/lookout-*; do
 done
 inside lookout-up --config /etc/lookout/boat --check >/dev/null || fail "the config that is installed is wrong"
 
+say "the rule of the firewall"
+for settings in 'LOOKOUT_LCM_INTERFACE=lo' 'LOOKOUT_LCM_INTERFACE=eth1 LOOKOUT_BUS_FIREWALL=on'; do
+  inside env $settings /usr/libexec/lookout/firewall rules >"$work/rules.nft" || fail "the rule with $settings"
+  grep -q 'udp dport 7667 counter drop' "$work/rules.nft" || { cat "$work/rules.nft" >&2; fail "the rule with $settings"; }
+  if command -v nft >/dev/null; then nft -c -f "$work/rules.nft" || fail "nft does not read the rule with $settings"; fi
+done
+command -v nft >/dev/null || echo "skipped: its syntax is not checked, there is no nft (package nftables)"
+
 say "systemd-analyze verify"
 names=("${units[@]/#/lookout-}")
-inside systemd-analyze verify lookout.target lookout-route.service "${names[@]/%/.service}" >"$work/verify.txt" 2>&1 || true
+inside systemd-analyze verify lookout.target lookout-route.service lookout-firewall.service "${names[@]/%/.service}" >"$work/verify.txt" 2>&1 || true
 cat "$work/verify.txt"
 [ ! -s "$work/verify.txt" ] || fail "verify is not clean"
 say "systemd-analyze security"
@@ -103,6 +111,7 @@ systemctl start lookout.target
 for unit in UNITS; do
   expect "$unit is active" systemctl -q is-active "lookout-$unit"
 done
+expect "firewall" systemctl -q is-active lookout-firewall
 expect "route" sh -c 'ip route | grep -q "239.255.76.0/24 dev lo"'
 sleep 3
 systemctl status --no-pager 'lookout-*' | grep -E 'Loaded|Active|Status|Main PID'

@@ -15,7 +15,7 @@ add_test(NAME system_locale COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namesp
                                     ${CMAKE_CURRENT_SOURCE_DIR}/system/locale_test.sh ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR})
 set_tests_properties(system_locale PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77)
 
-foreach(name live proof ingestion sources no_route two_computers doctor alarm)
+foreach(name live proof ingestion sources no_route two_computers doctor alarm bus_guard)
   add_executable(system_${name} system/${name}_test.cpp)
   target_link_libraries(system_${name} PRIVATE lookout_bus lookout_wire GTest::gtest GTest::gtest_main)
   target_compile_definitions(system_${name} PRIVATE LOOKOUT_SOURCE_DIR="${CMAKE_SOURCE_DIR}" LOOKOUT_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
@@ -24,6 +24,7 @@ endforeach()
 add_dependencies(system_live lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim lookout-replay)
 add_dependencies(system_proof lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-sim lookout-replay)
 add_dependencies(system_ingestion lookout-vlp16 lookout-sim)
+target_sources(system_live PRIVATE system/text_log_test.cpp)
 target_sources(system_sources PRIVATE system/hangup_test.cpp)
 add_dependencies(system_sources lookout-vlp16)
 add_dependencies(system_no_route lookout-segmenter)
@@ -42,9 +43,14 @@ add_test(NAME system_doctor
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_doctor> --gtest_filter=-*WhereNothingIs)
 add_test(NAME system_doctor_no_route
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh no-route $<TARGET_FILE:system_doctor> --gtest_filter=*WhereNothingIs)
+# Datagrams that LCM's receiver dies of, against every process; ./dev test slow sends a million of them.
+add_dependencies(system_bus_guard lookout-vlp16 lookout-segmenter lookout-navigator lookout-georeferencer lookout-recorder lookout-top lookout-doctor)
+add_test(NAME system_bus_guard COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_bus_guard>)
+lookout_slow_test(NAME system_bus_guard ENVIRONMENT LOOKOUT_BUS_DATAGRAMS=1000000
+                  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_bus_guard>)
 # RUN_SERIAL: they keep real time.
 set_tests_properties(system_live system_proof system_ingestion system_sources system_no_route system_two_computers system_doctor system_doctor_no_route
-                     system_alarm
+                     system_alarm system_bus_guard
                      PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77 RUN_SERIAL TRUE)
 lookout_slow_test(NAME system_proof ENVIRONMENT LOOKOUT_PROOF_SECONDS=60
                   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_proof>)

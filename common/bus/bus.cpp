@@ -1,5 +1,6 @@
 #include "common/bus/bus.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -55,6 +56,19 @@ void Bus::SubscribeRaw(const Channel& channel, RawHandler handler) {
     handler(name, bytes);
     AddHandlingTime(traffic, std::chrono::steady_clock::now() - start);
   });
+}
+
+StreamGuard::Time Bus::GuardNow() {
+  const auto now = clock_();
+  if (last_clock_) guard_now_ += std::clamp<std::chrono::nanoseconds>(now - *last_clock_, std::chrono::nanoseconds(0), kMostUnattended);
+  last_clock_ = now;
+  return guard_now_;
+}
+
+void Bus::ReleaseHeld(bool is_end) {
+  if (!is_guarded()) return;
+  GuardNow();
+  for (const auto& handler : on_release_) handler(is_end);
 }
 
 void Bus::SubscribeAll(RawHandler handler) { Attach(nullptr, std::move(handler)); }

@@ -13,12 +13,13 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/bus/datagram_filter.hpp"
+#include "common/bus/guarded_bind.hpp"
+
 namespace lookout::bus {
 
 namespace {
 
-constexpr std::string_view kDefaultGroup = "239.255.76.67";
-constexpr int kDefaultPort = 7667;
 // Messages of channels that are not in the table, and of all channels together for a recorder.
 constexpr int kAllChannelsQueueDepth = 4000;
 
@@ -46,20 +47,6 @@ std::string Escaped(std::string_view name) {
 
 }  // namespace
 
-std::optional<MulticastAddress> ParseMulticast(const std::string& url) {
-  if (url.rfind("udpm://", 0) != 0) return std::nullopt;
-  MulticastAddress address{std::string(kDefaultGroup), kDefaultPort, 0};
-  std::string network = url.substr(url.find("://") + 3);
-  network = network.substr(0, network.find('?'));
-  const auto colon = network.find(':');
-  if (colon != 0 && !network.empty()) address.group = network.substr(0, colon);
-  if (colon != std::string::npos) address.port = static_cast<int>(std::strtol(network.c_str() + colon + 1, nullptr, 10));
-  constexpr std::string_view kTimeToLive = "ttl=";
-  const auto place = url.find(kTimeToLive, std::min(url.find('?'), url.size()));
-  if (place != std::string::npos) address.time_to_live = static_cast<int>(std::strtol(url.c_str() + place + kTimeToLive.size(), nullptr, 10));
-  return address;
-}
-
 bool HasRoute(const MulticastAddress& address) {
   const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return false;
@@ -72,12 +59,6 @@ bool HasRoute(const MulticastAddress& address) {
   return has_route;
 }
 
-std::string DefaultLcmUrl() {
-  const char* url = std::getenv("LCM_DEFAULT_URL");
-  if (url != nullptr && *url != '\0') return url;
-  return "udpm://" + std::string(kDefaultGroup) + ":" + std::to_string(kDefaultPort) + "?ttl=0";
-}
-
 struct LcmBus::Implementation {
   struct Subscription {
     Implementation* owner = nullptr;
@@ -88,8 +69,27 @@ struct LcmBus::Implementation {
 
   lcm_t* lcm = nullptr;
   std::string url;
+  std::optional<MulticastAddress> multicast;
+  std::vector<int> sockets;  // LCM's, with our filter
+  std::string guard_fault;
+  bool is_receiving = false;
   std::vector<std::unique_ptr<Subscription>> subscriptions;
   std::exception_ptr thrown;  // by a handler: LCM is C and cannot carry an exception
+
+  // LCM makes its socket and the thread that reads it when it is first asked for something to read.
+  void StartReceiver() {
+    if (is_receiving) return;
+    if (!multicast) {
+      is_receiving = true;
+      return;
+    }
+    BindGuard guard(DatagramFilter(*multicast));
+    if (lcm_get_fileno(lcm) < 0) throw std::runtime_error("LCM cannot receive at " + url);
+    is_receiving = true;
+    sockets = guard.sockets();
+    guard_fault = guard.fault();
+    if (sockets.empty() && guard_fault.empty()) guard_fault = "LCM's socket was not seen when it was made";
+  }
 
   static void OnMessage(const lcm_recv_buf_t* buffer, const char* channel, void* user) {
     auto& subscription = *static_cast<Subscription*>(user);
@@ -103,22 +103,36 @@ struct LcmBus::Implementation {
 };
 
 LcmBus::LcmBus(const std::string& url) : implementation_(std::make_unique<Implementation>()) {
+  if (const auto fault = LcmUrlFault(url); !fault.empty() && url.rfind("memq:", 0) != 0) throw std::runtime_error(fault);
   implementation_->url = WithReceiveBuffer(url);
-  if (const auto address = ParseMulticast(url); address && !HasRoute(*address)) {
+  implementation_->multicast = ParseMulticast(url);
+  if (const auto& address = implementation_->multicast; address && !HasRoute(*address)) {
     throw std::runtime_error("LCM needs a multicast route to " + address->group + " and there is none. As root: " + RouteLine(*address));
   }
   implementation_->lcm = lcm_create(implementation_->url.c_str());
   if (implementation_->lcm == nullptr) throw std::runtime_error("LCM cannot be opened at " + implementation_->url);
+  GuardStreams([] { return std::chrono::steady_clock::now().time_since_epoch(); });
 }
 
 LcmBus::~LcmBus() {
   if (implementation_->lcm != nullptr) lcm_destroy(implementation_->lcm);
 }
 
+std::optional<std::int64_t> LcmBus::NumDatagramsDropped() const {
+  std::optional<std::int64_t> sum;
+  for (const int descriptor : implementation_->sockets) {
+    if (const auto num_dropped = NumDropped(descriptor); num_dropped >= 0) sum = sum.value_or(0) + num_dropped;
+  }
+  return sum;
+}
+
+std::string LcmBus::GuardFault() const { return implementation_->guard_fault; }
+
 // LCM starts its receiver when it is asked for the descriptor: who only sends would read the traffic of the whole bus, to throw it away.
 int LcmBus::file_descriptor() const { return implementation_->subscriptions.empty() ? -1 : lcm_get_fileno(implementation_->lcm); }
 
 bool LcmBus::HandleOnce(std::chrono::milliseconds timeout) {
+  implementation_->StartReceiver();
   const int handled = lcm_handle_timeout(implementation_->lcm, static_cast<int>(timeout.count()));
   if (implementation_->thrown) std::rethrow_exception(std::exchange(implementation_->thrown, nullptr));
   if (handled < 0) throw std::runtime_error("LCM failed at " + implementation_->url);
@@ -138,6 +152,7 @@ void LcmBus::Attach(const Channel* channel, RawHandler handler) {
   subscription->owner = implementation_.get();
   subscription->channel = channel == nullptr ? std::string() : std::string(channel->name);
   subscription->handler = std::move(handler);
+  implementation_->StartReceiver();
   const std::string pattern = channel == nullptr ? ".*" : Escaped(channel->name);
   subscription->handle = lcm_subscribe(implementation_->lcm, pattern.c_str(), &Implementation::OnMessage, subscription.get());
   if (subscription->handle == nullptr) throw std::runtime_error("LCM cannot subscribe to " + pattern);

@@ -17,6 +17,11 @@ namespace lookout::bus {
 inline constexpr std::size_t kLogEventHeaderBytes = 28;
 inline constexpr std::uint32_t kLogSyncWord = 0xEDA1DA01;
 
+/// What an event may hold to be read again. LCM's own channels have at most 63 characters and never none, its reader stops at an event without name;
+/// a length of the data beyond is taken for damage.
+inline constexpr std::size_t kMaxLogChannelBytes = 63;
+inline constexpr std::size_t kMaxLogDataBytes = 16U * 1024 * 1024;
+
 /// Appends an event to `log`.
 ///
 /// @param number   of the event in its file, from 0

@@ -21,7 +21,7 @@ constexpr std::size_t kHeaderBytes = kLogEventHeaderBytes;
 // LCM channel names have at most 63 characters; its logs allow more.
 constexpr std::int64_t kMaxChannelBytes = 1000;
 // Far above any message that LCM carries; a greater length is damage.
-constexpr std::int64_t kMaxDataBytes = 16 * 1024 * 1024;
+constexpr auto kMaxDataBytes = static_cast<std::int64_t>(kMaxLogDataBytes);
 // What is read or written at once: system calls cost more than the copy. A turn's messages are larger than what is read: those that nobody
 // wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;

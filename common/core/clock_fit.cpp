@@ -15,77 +15,141 @@ constexpr microseconds kBin = std::chrono::seconds(1);
 // A minute of minima, each good to some 20 us, tells a drift to below 1 ppm.
 constexpr std::size_t kMaxBins = 60;
 constexpr std::size_t kMinBinsOfSlope = 10;
-// Long enough that some datagram came without delay, short enough to follow a host's clock that is being slewed (500 ppm) within 1 ms.
+// Long enough that some message came without delay, short enough to follow a host's clock that is being slewed (500 ppm) within 1 ms.
 constexpr microseconds kOffsetWindow = std::chrono::seconds(2);
-// Datagrams come late by milliseconds. What is off by more is a bad stamp, or, when it goes on, a step of the host's clock.
-constexpr microseconds kMaxLateness = std::chrono::seconds(1);
+// What comes so much too early may be a bad stamp; not when it goes on.
+constexpr microseconds kMaxEarly = std::chrono::seconds(1);
 constexpr int kSamplesOfAStep = 3;
-// Minima of a second hardly differ. Two seconds in a row that are off by so much are a smaller step of the host's clock.
-constexpr microseconds kMaxStep = std::chrono::milliseconds(5);
+// Minima of a second hardly differ. What is off by more is late, or a step of the host's clock.
+constexpr microseconds kMaxJitter = std::chrono::milliseconds(5);
+// The host's clock was set forward when so long nothing comes in time. A source that sends once a second is believed within five.
+constexpr microseconds kStepWindow = std::chrono::seconds(3);
+constexpr microseconds kLateBin = std::chrono::milliseconds(100);
+constexpr int kMinLateInHalf = 2;
+constexpr int kMinTimely = 4;
+// A queue that drains more slowly than by 3 % of time passes for a step.
+constexpr microseconds kMaxShrinking = std::chrono::milliseconds(50);
+// Messages overtake each other by less, and leap seconds are shorter.
+constexpr microseconds kMaxBackward = std::chrono::seconds(2);
 
 double ToDouble(microseconds duration) { return static_cast<double>(duration.count()); }
 
+microseconds DriftIn(microseconds duration) { return microseconds(std::llround(ClockFit::kMaxDriftPpm * 1e-6 * std::abs(ToDouble(duration)))); }
+
 }  // namespace
 
-void ClockFit::Add(microseconds time, microseconds host_minus_sensor) {
-  if (!bins_.empty()) {
-    now_ = time;
-    const bool is_off = std::chrono::abs(host_minus_sensor - offset()) > kMaxLateness;
-    num_off_ = is_off ? num_off_ + 1 : 0;
-    if (is_off && num_off_ < kSamplesOfAStep) return;
-    if (is_off) {
-      bins_.clear();
-      num_off_ = 0;
-    }
+microseconds ClockFit::Carried(const Sample& sample, microseconds time) const {
+  return sample.host_minus_time + microseconds(std::llround(slope_.value_or(0.0) * ToDouble(time - sample.time)));
+}
+
+void ClockFit::Add(microseconds time, microseconds host_minus_time) {
+  const Sample sample{time, host_minus_time};
+  if (bins_.empty() || time < now_ - kMaxBackward) {
+    Begin(sample);
+    return;
   }
+  if (time <= now_) return;
   now_ = time;
-  if (bins_.empty() || time >= bins_.back().end) {
-    Measure();
-    bins_.push_back({time + kBin, time, host_minus_sensor});
-    if (bins_.size() > kMaxBins) bins_.pop_front();
-  } else if (host_minus_sensor < bins_.back().least) {
-    bins_.back().time = time;
-    bins_.back().least = host_minus_sensor;
+  const microseconds late = host_minus_time - offset();
+  const microseconds jitter = kMaxJitter + DriftIn(time - last_.time);
+  if (late < -kMaxEarly && ++num_early_ < kSamplesOfAStep) return;
+  if (late < -jitter) {
+    Begin(sample);
+  } else if (late > jitter) {
+    num_early_ = 0;
+    OnLate(sample);
+  } else {
+    OnTimely(sample);
   }
 }
 
+// All that was known of the offset is void. The drift is of the crystals: it stays.
+void ClockFit::Begin(const Sample& sample) {
+  bins_.clear();
+  num_timely_ = 0;
+  is_settled_ = false;
+  first_ = sample;
+  now_ = sample.time;
+  OnTimely(sample);
+}
+
+void ClockFit::OnTimely(const Sample& sample) {
+  num_early_ = 0;
+  late_.clear();
+  last_ = sample;
+  if (num_timely_ < kMinTimely) ++num_timely_;
+  const bool is_long = sample.time - first_.time >= kStepWindow && sample.host() - first_.host() >= kStepWindow;
+  is_settled_ = is_settled_ || (num_timely_ >= kMinTimely && is_long);
+  if (bins_.empty() || sample.time >= bins_.back().end) {
+    Measure();
+    bins_.push_back({sample.time + kBin, sample});
+    if (bins_.size() > kMaxBins) bins_.pop_front();
+  } else if (sample.host_minus_time < bins_.back().least.host_minus_time) {
+    bins_.back().least = sample;
+  }
+}
+
+void ClockFit::OnLate(const Sample& sample) {
+  if (late_.empty() || sample.host() - late_.back().host() >= kLateBin) {
+    late_.push_back(sample);
+  } else if (sample.host_minus_time < late_.back().host_minus_time) {
+    late_.back().host_minus_time = sample.host_minus_time;  // its time is that of the first
+  }
+  const auto is_long = [&](const Sample& first) { return sample.time - first.time >= kStepWindow && sample.host() - first.host() >= kStepWindow; };
+  if (!is_long(late_.front())) return;
+  while (is_long(late_[1])) late_.pop_front();
+  const microseconds middle = late_.front().host() + (sample.host() - late_.front().host()) / 2;
+  const auto second_half = std::ranges::find_if(late_, [&](const Sample& late) { return late.host() >= middle; });
+  if (second_half - late_.begin() < kMinLateInHalf || late_.end() - second_half < kMinLateInHalf) return;
+  const auto least = [](auto begin, auto end) {
+    return *std::min_element(begin, end, [](const Sample& a, const Sample& b) { return a.host_minus_time < b.host_minus_time; });
+  };
+  const Sample now = least(second_half, late_.end());
+  if (now.host_minus_time < Carried(least(late_.begin(), second_half), now.time) - kMaxShrinking) return;
+  const microseconds latest = sample.time;
+  const Sample first = late_.front();
+  Begin(now);
+  now_ = latest;
+  first_ = first;
+  is_settled_ = true;
+}
+
 microseconds ClockFit::offset() const {
-  const auto at_now = [this](const Bin& bin) { return bin.least + microseconds(std::llround(slope_.value_or(0.0) * ToDouble(now_ - bin.time))); };
-  microseconds least = at_now(bins_.back());
-  for (auto bin = bins_.rbegin(); bin != bins_.rend() && bin->end > now_ - kOffsetWindow; ++bin) least = std::min(least, at_now(*bin));
+  microseconds least = Carried(bins_.back().least, now_);
+  // The first that are timely after a stall may be the last of its queue.
+  if (bins_.size() > 1) least = std::min(least, Carried(bins_[bins_.size() - 2].least, now_));
+  for (auto bin = bins_.rbegin(); bin != bins_.rend() && bin->end > now_ - kOffsetWindow; ++bin) least = std::min(least, Carried(bin->least, now_));
   return least;
 }
 
 std::optional<double> ClockFit::drift_ppm() const {
   if (!slope_) return std::nullopt;
-  return -1e6 * *slope_;
+  return std::clamp(-1e6 * *slope_, -kMaxDriftPpm, kMaxDriftPpm);
 }
 
 // The last bin is full.
 void ClockFit::Measure() {
-  const auto num_bins = bins_.size();
-  if (num_bins >= 3) {
-    const auto expected = [&](const Bin& bin) {
-      const Bin& old = bins_[num_bins - 3];
-      return old.least + microseconds(std::llround(slope_.value_or(0.0) * ToDouble(bin.time - old.time)));
-    };
-    const auto first_step = bins_[num_bins - 2].least - expected(bins_[num_bins - 2]);
-    const auto second_step = bins_[num_bins - 1].least - expected(bins_[num_bins - 1]);
-    const bool is_step =
-        std::chrono::abs(first_step) > kMaxStep && std::chrono::abs(second_step) > kMaxStep && std::chrono::abs(second_step - first_step) <= kMaxStep;
-    if (is_step) bins_.erase(bins_.begin(), bins_.end() - 2);  // the drift is of the crystals: it stays
+  // The seconds before it were late ones, each by too little to tell.
+  for (auto i = bins_.size(); i-- > 1;) {
+    const Sample& old = bins_[i - 1].least;
+    const Sample& last = bins_.back().least;
+    if (last.host_minus_time >= old.host_minus_time - kMaxJitter - DriftIn(last.time - old.time)) continue;
+    bins_.erase(bins_.begin(), bins_.begin() + static_cast<std::ptrdiff_t>(i));
+    break;
   }
   if (bins_.size() < kMinBinsOfSlope) return;
   std::vector<double> slopes;
   slopes.reserve(bins_.size() * (bins_.size() - 1) / 2);
   for (std::size_t i = 0; i < bins_.size(); ++i) {
     for (std::size_t j = i + 1; j < bins_.size(); ++j) {
-      slopes.push_back(ToDouble(bins_[j].least - bins_[i].least) / ToDouble(bins_[j].time - bins_[i].time));
+      const Sample& from = bins_[i].least;
+      const Sample& to = bins_[j].least;
+      slopes.push_back(ToDouble(to.host_minus_time - from.host_minus_time) / ToDouble(to.time - from.time));
     }
   }
   const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
   std::nth_element(slopes.begin(), middle, slopes.end());
-  slope_ = *middle;
+  slope_ = std::clamp(*middle, -1e-6 * kMaxDriftPpm, 1e-6 * kMaxDriftPpm);
 }
 
 }  // namespace lookout

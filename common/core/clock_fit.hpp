@@ -1,4 +1,4 @@
-// The relation of the host's clock to the sensor's, from the arrival of packets: offset and drift.
+// The relation of the host's clock to a source's, from the arrival of its messages: offset and drift.
 #pragma once
 
 #include <chrono>
@@ -8,36 +8,65 @@
 
 namespace lookout {
 
-/// A datagram may come late, not early: of the (host - sensor) of one second the least is the truest. Their slope is the drift (the median of the
-/// slopes of all pairs, Theil and Sen: a third of the seconds may be bad); the offset is the least of the last two seconds, carried along that slope.
+/// A message may come late, not early: of the (host - source) of one second the least is the truest. Their slope is the drift (the median of the
+/// slopes of all pairs, Theil and Sen); the offset is the least of the last two seconds, carried along that slope.
+///
+/// - What comes earlier than the offset allows is proof that the host's clock was set back, or that the offset was of late messages: it counts at
+/// once.
+/// - What comes later is late, or the host's clock was set forward. A stall whose queue is then drained looks like such a step, but it goes back to
+/// the
+///   old offset. So it counts as a step when for three seconds, of both clocks, nothing comes in time and the lateness does not shrink. Till then,
+///   and while it shrinks, the offset stays.
 class ClockFit {
  public:
-  /// @param time               by the sensor's oscillator, increasing
-  /// @param host_minus_sensor  of a packet sent at `time`, at its arrival
-  void Add(std::chrono::microseconds time, std::chrono::microseconds host_minus_sensor);
+  /// Crystals are good to 100 ppm at worst, and there are two of them.
+  static constexpr double kMaxDriftPpm = 200.0;
 
-  /// Precondition: Add. @return host minus sensor now, without what datagrams take at the least
+  /// @param time             by the source's clock, increasing. One that comes out of order, or once more, tells nothing; one that is set back by
+  /// more
+  ///                         than two seconds begins anew
+  /// @param host_minus_time  of a message sent at `time`, at its arrival
+  void Add(std::chrono::microseconds time, std::chrono::microseconds host_minus_time);
+
+  /// Precondition: Add. @return host minus source now, without what messages take at the least
   std::chrono::microseconds offset() const;
 
-  /// @return the last that was measured of the sensor's clock against the host's in 1e-6, positive when it is fast; nullopt before the
-  ///         first ten seconds
+  /// @return the last that was measured of the source's clock against the host's in 1e-6, positive when it is fast, within kMaxDriftPpm; nullopt
+  ///         before the first ten seconds
   std::optional<double> drift_ppm() const;
 
   bool is_empty() const { return bins_.empty(); }
 
+  /// Messages came in time, by one offset, for three seconds of both clocks: it is that of the clocks and not of a queue that is being drained.
+  bool is_settled() const { return is_settled_; }
+
  private:
+  struct Sample {
+    std::chrono::microseconds time{0};
+    std::chrono::microseconds host_minus_time{0};
+
+    std::chrono::microseconds host() const { return time + host_minus_time; }
+  };
   struct Bin {
     std::chrono::microseconds end{0};
-    std::chrono::microseconds time{0};  // of the least
-    std::chrono::microseconds least{0};
+    Sample least;
   };
 
+  std::chrono::microseconds Carried(const Sample& sample, std::chrono::microseconds time) const;
+  void Begin(const Sample& sample);
+  void OnLate(const Sample& sample);
+  void OnTimely(const Sample& sample);
   void Measure();
 
-  std::deque<Bin> bins_;  // by time; the last one is being filled
+  std::deque<Bin> bins_;     // of timely messages, by time; the last one is being filled
+  Sample first_;             // of the timely ones since the offset was found
+  Sample last_;              // of the timely ones
+  std::deque<Sample> late_;  // since the last timely one: the least of each part of a second of the host's
   std::chrono::microseconds now_{0};
-  std::optional<double> slope_;  // of host minus sensor over sensor time
-  int num_off_ = 0;              // samples in a row that are far off
+  std::optional<double> slope_;  // of host minus source over the source's time
+  int num_timely_ = 0;           // since the offset was found, at most what it takes to settle
+  int num_early_ = 0;            // in a row that are impossibly early by far
+  bool is_settled_ = false;
 };
 
 }  // namespace lookout

@@ -72,6 +72,14 @@ Eigen::Vector3d LocalFrame::Forward(const GeodeticPlace& place) const {
 
 GeodeticPlace LocalFrame::Reverse(const Eigen::Vector3d& p_map_m) const { return FromEarth(p_earth_datum_m_ + R_earth_map_ * p_map_m); }
 
+Eigen::Isometry3d LocalFrame::TransformFrom(const LocalFrame& other) const {
+  Eigen::Isometry3d T_this_other = Eigen::Isometry3d::Identity();
+  if (p_earth_datum_m_ == other.p_earth_datum_m_ && R_earth_map_ == other.R_earth_map_) return T_this_other;
+  T_this_other.linear() = R_earth_map_.transpose() * other.R_earth_map_;
+  T_this_other.translation() = R_earth_map_.transpose() * (other.p_earth_datum_m_ - p_earth_datum_m_);
+  return T_this_other;
+}
+
 double NormalGravityMps2(double latitude_deg, double ellipsoid_height_m) {
   const double sine = SinCosOfDegrees(latitude_deg).sin;
   const double sine2 = sine * sine;

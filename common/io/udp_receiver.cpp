@@ -230,6 +230,9 @@ std::optional<ReceivedDatagram> UdpReceiver::ReceiveAny() {
 
   ReceivedDatagram datagram;
   datagram.port = port_;
+  datagram.source = AddressOf(source_);
+  // The port stands at the same place in both families.
+  datagram.source_port = ntohs(reinterpret_cast<const sockaddr_in*>(&source_)->sin_port);
   datagram.payload = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes));
   bool has_time = false;
   for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr; item = CMSG_NXTHDR(&message, item)) {

@@ -29,7 +29,9 @@ struct UdpOptions {
 struct ReceivedDatagram {
   Utime host_time;  // kernel stamp of the arrival
   int port = 0;     // the port it was sent to
-  Bytes payload;    // until the next call of Receive()
+  IpAddress source;
+  int source_port = 0;
+  Bytes payload;  // until the next call of Receive()
 };
 
 class UdpReceiver {

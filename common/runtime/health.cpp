@@ -33,6 +33,16 @@ std::int64_t ResidentBytes() {
 // A process that waits for its first input is starting, not ill, for so long.
 constexpr std::chrono::seconds kStartTime(3);
 
+// What happened is told for so long; its counter stays.
+constexpr std::chrono::minutes kTellFor(1);
+
+std::string SecondPublisherText(const std::string& channel, std::int64_t num_refused) {
+  const auto* entry = bus::FindChannel(channel);
+  return channel + " has two publishers: " + std::to_string(num_refused) +
+         " messages of the second were refused; end one of them (lookout-top and lookout-doctor show every " +
+         (entry != nullptr ? std::string(entry->publisher) : "process") + " by host and pid), or give the other boat another LCM address";
+}
+
 // The value that a share `quantile` of the times does not exceed; -1 without times.
 std::int64_t QuantileUs(const std::vector<std::chrono::microseconds>& sorted, double quantile) {
   if (sorted.empty()) return -1;
@@ -57,12 +67,14 @@ void HealthReporter::Fill(Utime now, const HealthReport& report, health_t& messa
   message.state = static_cast<std::int32_t>(report.state);
   if (!is_started_ && report.state == HealthState::kDegraded) message.state = health_t::STATE_STARTING;
   message.reason = report.reason;
-  if (!unsent_text_.empty()) {
+  if (!bus_text_.empty()) {
     if (message.state != health_t::STATE_FAILED) message.state = health_t::STATE_DEGRADED;
-    message.reason += (message.reason.empty() ? "" : "; ") + unsent_text_;
+    message.reason += (message.reason.empty() ? "" : "; ") + bus_text_;
   }
   auto counters = report.counters;
   counters.push_back({"messages_not_sent", last_num_unsent_});
+  counters.push_back({"second_publisher", last_num_refused_});
+  if (last_num_dropped_) counters.push_back({"datagrams_dropped", *last_num_dropped_});
   message.counters.clear();
   for (const auto& counter : counters) {
     health_counter_t entry{};
@@ -84,7 +96,17 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   const double cpu_s = CpuSeconds();
   health_t message{};
   const auto num_unsent = bus.num_unsent() - std::exchange(last_num_unsent_, bus.num_unsent());
-  unsent_text_ = num_unsent > 0 ? std::to_string(num_unsent) + " messages could not be sent" : std::string();
+  bus_text_ = num_unsent > 0 ? std::to_string(num_unsent) + " messages could not be sent" : std::string();
+  last_num_refused_ = 0;
+  for (const auto& [name, traffic] : bus.input_traffic()) {
+    last_num_refused_ += traffic.num_refused;
+    if (!traffic.second_heard || bus.GuardNow() - *traffic.second_heard >= kTellFor) continue;
+    bus_text_ += (bus_text_.empty() ? "" : "; ") + SecondPublisherText(name, traffic.num_refused);
+  }
+  last_num_dropped_ = bus.NumDatagramsDropped();
+  if (const auto fault = bus.GuardFault(); !fault.empty()) {
+    bus_text_ += (bus_text_.empty() ? "" : "; ") + ("one datagram to the bus can end this process: " + fault);
+  }
   Fill(now, report, message);
   message.interval_s = ToSeconds(steady_now - last_);
   message.cpu_fraction = message.interval_s > 0.0 ? (cpu_s - last_cpu_s_) / message.interval_s : 0.0;

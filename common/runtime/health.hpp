@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/bus/bus.hpp"
@@ -34,7 +35,9 @@ class HealthReporter {
   std::int64_t seq_ = 0;
   bool is_started_ = false;  // was OK once, or had its time
   std::int64_t last_num_unsent_ = 0;
-  std::string unsent_text_;  // of the last report: how many messages could not be sent
+  std::int64_t last_num_refused_ = 0;             // of second publishers
+  std::optional<std::int64_t> last_num_dropped_;  // datagrams, by the filter of the bus
+  std::string bus_text_;  // of the last call of Make: messages that could not be sent, channels with two publishers, a bus without its filter
   health_t last_message_{};
   std::map<std::string, std::int64_t> last_counts_;  // by channel, inputs and outputs apart
 };

@@ -2,8 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <iostream>
 
-#include "common/bus/lcm_bus.hpp"
+#include "common/bus/lcm_url.hpp"
 
 namespace lookout::runtime {
 
@@ -26,6 +27,10 @@ Options ParseOptions(int argc, char** argv, const std::string& program, const st
   }
   options.config_folder = config_folder;
   if (options.lcm_url.empty()) options.lcm_url = bus::DefaultLcmUrl();
+  if (const auto fault = bus::LcmUrlFault(options.lcm_url); !fault.empty()) {
+    std::cerr << program << ": " << fault << "\n";
+    std::exit(2);
+  }
   return options;
 }
 

@@ -28,6 +28,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kHealthPeriod(1000);
+// How late messages that are held for a second publisher's sake may be handed out.
+constexpr std::chrono::milliseconds kReleasePeriod(100);
 // Messages handled before sockets and timers get their turn again.
 constexpr int kMaxMessagesPerRound = 64;
 
@@ -162,6 +164,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
     bus::Publish(bus_, bus::kHealth, health);
     NotifyAlive(health);
   });
+  Every(kReleasePeriod, [this] { bus_.ReleaseHeld(); });
   NotifyReady();
   spdlog::info("starts, version {}", Version());
   while (!self.is_stopping) {
@@ -188,6 +191,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
   const auto end = Clock::now() + kLastTime;
   while (Clock::now() < end && bus_.HandleOnce(kLastSilence)) {
   }
+  bus_.ReleaseHeld(true);
   const auto last_report = report();
   for (const auto& counter : last_report.counters) {
     if (counter.count > 0) spdlog::info("{}: {}", counter.name, counter.count);

@@ -14,6 +14,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
 #include "common/io/ip_address.hpp"
+#include "services/navigator/core/day.hpp"
 #include "services/navigator/core/sentence.hpp"
 
 namespace lookout::navigator {
@@ -53,6 +54,11 @@ SourceParams ToSource(const config::NavigationInput& input) {
   return source;
 }
 
+bool IsReadableFile(const std::filesystem::path& file) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(file, error) && std::ifstream(file);
+}
+
 // Collects what is wrong with the inputs, each fault at the line where its input begins.
 class Inputs {
  public:
@@ -62,13 +68,15 @@ class Inputs {
     const bool has_udp = !message_.bind_address().empty();
     if (has_udp) {
       Require(io::ParseIpAddress(message_.bind_address()).has_value(), "bind_address", "'" + message_.bind_address() + "' is no numeric address");
-      params.connections.push_back({kUdpSource, Connection::Kind::kUdp, message_.bind_address(), message_.nmea_port(), {}, 0, 1.0});
+      params.connections.push_back(
+          {.name = kUdpSource, .kind = Connection::Kind::kUdp, .address = message_.bind_address(), .port = message_.nmea_port(), .file = {}});
       params.source_of_port[message_.nmea_port()] = kUdpSource;
     }
     for (index_ = 0; index_ < message_.input_size(); ++index_) Take(message_.input(index_), params);
     // In captures there is always one, unless another input has its port.
     params.source_of_port.try_emplace(message_.nmea_port(), kUdpSource);
     if (message_.source() == config::Navigator::LIVE) {
+      CheckTextLogs(params);
       Require(!params.connections.empty() || message_.use_lidar_nmea(), "source",
               "is LIVE, but there is nothing to take: neither bind_address, nor use_lidar_nmea, nor an input");
     }
@@ -81,6 +89,30 @@ class Inputs {
   }
   void RequireOfInput(bool is_fine, const std::string& reason) {
     Require(is_fine, "input", "'" + message_.input(index_).name() + "': " + reason, index_);
+  }
+
+  // A text log has times of its own, and what comes live those of now: they make no one sequence.
+  void CheckTextLogs(const Params& params) {
+    const auto is_text_log = [](const Connection& connection) { return connection.kind == Connection::Kind::kTextLog; };
+    const auto first = std::ranges::find_if(params.connections, is_text_log);
+    if (first == params.connections.end()) return;
+    const auto line_of = [this](const std::string& name) {
+      int index = 0;
+      while (index < message_.input_size() && message_.input(index).name() != name) ++index;
+      return index;
+    };
+    for (const auto& connection : params.connections) {
+      if (!is_text_log(connection)) {
+        Require(false, "input",
+                "'" + first->name + "': a text log is played at its own times, and input '" + connection.name +
+                    "' comes at those of now: take one of them away",
+                line_of(first->name));
+      } else if (connection.speed != first->speed) {
+        Require(false, "input", "'" + connection.name + "': text_log.speed must be that of input '" + first->name + "'", line_of(connection.name));
+      }
+    }
+    Require(!message_.use_lidar_nmea(), "use_lidar_nmea",
+            "must be false beside the text log of input '" + first->name + "', which is played at its own times: those of the lidar are of now");
   }
 
   void Take(const config::NavigationInput& input, Params& params) {
@@ -135,8 +167,12 @@ class Inputs {
       // Slower, a pause of the log may be more than a clock can tell.
       constexpr double kMinSpeed = 0.001;
       RequireOfInput(connection.speed == 0.0 || connection.speed >= kMinSpeed, "text_log.speed must be 0 or at least 0.001");
-      RequireOfInput(std::filesystem::is_regular_file(connection.file) && std::ifstream(connection.file),
-                     "text_log.file '" + connection.file.string() + "' cannot be read");
+      RequireOfInput(IsReadableFile(connection.file), "text_log.file '" + connection.file.string() + "' cannot be read");
+      std::error_code error;
+      RequireOfInput(!std::filesystem::is_regular_file(connection.file, error) || std::filesystem::file_size(connection.file, error) > 0,
+                     "text_log.file '" + connection.file.string() + "' is empty");
+      connection.day = ParseDay(input.text_log().date());
+      RequireOfInput(connection.day || !input.text_log().has_date(), "text_log.date '" + input.text_log().date() + "' is no day as 2026-07-01");
     }
     const bool has_address =
         connection.kind == Connection::Kind::kUdp || connection.kind == Connection::Kind::kTcp || connection.kind == Connection::Kind::kGpsd;
@@ -181,7 +217,7 @@ std::string PlaceInWords(const Params& params, const std::string& name) {
     case Connection::Kind::kGpsd:
       return "gpsd at " + connection->address + port;
     case Connection::Kind::kTextLog:
-      return "text log " + connection->file.string();
+      return "text log " + connection->file.string() + ", played at its own times: POSE is not of now";
   }
   return {};
 }

@@ -1,4 +1,6 @@
 // The navigation process: sentences of all inputs and LIDAR_NMEA, or NAV_RAW, in; NAV_RAW, GNSS_FIX, ATTITUDE and POSE out.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <iostream>
@@ -13,6 +15,7 @@
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
 #include "services/navigator/io/source.hpp"
+#include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/service.hpp"
 #include "services/navigator/sources.hpp"
@@ -22,6 +25,7 @@ namespace {
 using lookout::navigator::Params;
 using lookout::navigator::Service;
 using lookout::navigator::Source;
+using lookout::navigator::TextLogPlayer;
 using lookout::runtime::HostNow;
 
 // How late a tick may come: a tenth of its period.
@@ -70,6 +74,51 @@ void RunLog(lookout::runtime::Process& process, const Params& params) {
   service.Finish(HostNow());
 }
 
+// 2014-04-03 08:54:11
+std::string DayAndTime(lookout::Utime time) {
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::seconds>(time - day));
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()), clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+}
+
+// Text logs have times of their own: the clock of this computer tells no more than when a line is due.
+void RunTextLogs(lookout::runtime::Process& process, const Params& params) {
+  Service service(process.bus(), params);
+  std::vector<TextLogPlayer::Log> logs;
+  for (const auto& connection : params.connections) {
+    if (!lookout::navigator::IsTextLog(connection.file)) {
+      throw std::runtime_error("text log " + connection.file.string() + ": holds no sentence of NMEA 0183");
+    }
+    logs.push_back({connection.name, connection.file, connection.day});
+  }
+  TextLogPlayer player(logs, params.connections.front().speed);
+  std::string reason = "plays a text log of " + DayAndTime(player.start()) + " UTC, so POSE is not of now: what is measured now finds none";
+  for (const auto& name : player.dateless()) reason += "; no sentence of input '" + name + "' tells a date, set text_log.date";
+  spdlog::warn("{}", reason);
+  const TextLogPlayer::Taker taker{
+      [&service](lookout::Utime time) { service.AdvanceTo(time); },
+      [&service](lookout::Utime time, lookout::Bytes line, const std::string& name) { service.OnDatagram(time, line, name); }};
+  process.Every(kTick, [&] {
+    player.Play(std::chrono::steady_clock::now(), taker);
+    if (player.is_finished()) process.Stop();
+  });
+  process.Run([&] {
+    auto report = service.Report();
+    for (const auto& counter : player.counters()) report.counters.push_back(counter);
+    report.state = std::max(report.state, lookout::HealthState::kDegraded);
+    report.reason = reason + (report.reason.empty() ? "" : "; ") + report.reason;
+    return report;
+  });
+  service.Finish(player.time());
+}
+
+bool IsTextLogs(const Params& params) {
+  const auto is_text_log = [](const auto& connection) { return connection.kind == lookout::navigator::Connection::Kind::kTextLog; };
+  return !params.connections.empty() && std::ranges::all_of(params.connections, is_text_log);
+}
+
 void RunLive(lookout::runtime::Process& process, const Params& params) {
   Service service(process.bus(), params);
   std::vector<Feed> feeds;
@@ -81,13 +130,10 @@ void RunLive(lookout::runtime::Process& process, const Params& params) {
     const auto now = HostNow();
     for (auto& feed : feeds) {
       feed.source->Poll(now);
-      // Also without an event: libgps may hold lines that it has read already, and a text log goes by time.
+      // Also without an event: libgps may hold lines that it has read already.
       feed.Drain(service);
     }
     service.AdvanceTo(now);
-    const bool is_over =
-        !feeds.empty() && !params.use_lidar_nmea && std::ranges::all_of(feeds, [](const Feed& f) { return f.source->is_finished(); });
-    if (is_over) process.Stop();
   });
   process.Run([&] {
     auto report = service.Report();
@@ -136,6 +182,8 @@ int main(int argc, char** argv) {
     });
     if (params.input == lookout::navigator::Input::kLog) {
       RunLog(process, params);
+    } else if (IsTextLogs(params)) {
+      RunTextLogs(process, params);
     } else {
       RunLive(process, params);
     }

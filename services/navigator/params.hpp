@@ -1,8 +1,10 @@
 // Config of the navigator process (navigator.txtpb, boat.txtpb) as checked values.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,11 +20,12 @@ struct Connection {
 
   std::string name;  // of the source
   Kind kind = Kind::kUdp;
-  std::string address;         // kUdp: to bind; kTcp, kGpsd: of the server; numeric
-  int port = 0;                // kUdp, kTcp, kGpsd
-  std::filesystem::path file;  // kSerial: the device; kTextLog: the log
-  int baud = 0;                // kSerial
-  double speed = 1.0;          // kTextLog: times as fast; 0 = as fast as can be
+  std::string address;                            // kUdp: to bind; kTcp, kGpsd: of the server; numeric
+  int port = 0;                                   // kUdp, kTcp, kGpsd
+  std::filesystem::path file;                     // kSerial: the device; kTextLog: the log
+  int baud = 0;                                   // kSerial
+  double speed = 1.0;                             // kTextLog: times as fast; 0 = as fast as can be; of all text logs the same
+  std::optional<std::chrono::sys_days> day = {};  // kTextLog: of its first time, where no sentence tells a date
 };
 
 struct Params {
@@ -30,7 +33,7 @@ struct Params {
   bool use_lidar_nmea = true;
   NavigatorParams navigator;
 
-  // For main: what is opened.
+  // For main: what is opened. Text logs alone, or others and no text log.
   std::vector<Connection> connections;
   // For replay: the source of each UDP port of a capture.
   std::map<int, std::string> source_of_port;

@@ -1,6 +1,7 @@
 #include "services/navigator/sources.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,6 @@
 #include "services/navigator/io/gpsd_client.hpp"
 #include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/tcp_client.hpp"
-#include "services/navigator/io/text_log_player.hpp"
 
 namespace lookout::navigator {
 
@@ -48,7 +48,7 @@ std::unique_ptr<Source> OpenSource(const Connection& connection) {
     case Connection::Kind::kGpsd:
       return std::make_unique<GpsdClient>(connection.name, connection.address, connection.port);
     case Connection::Kind::kTextLog:
-      return std::make_unique<TextLogPlayer>(connection.name, connection.file, connection.speed);
+      throw std::logic_error("a text log is no source of now");
     case Connection::Kind::kUdp:
       break;
   }

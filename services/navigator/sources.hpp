@@ -8,7 +8,8 @@
 
 namespace lookout::navigator {
 
-/// @throws std::runtime_error when a UDP port or a text log cannot be opened; a serial port and a server may come later
+/// @param connection  no text log: those are played by TextLogPlayer
+/// @throws std::runtime_error when a UDP port cannot be opened; a serial port and a server may come later
 std::unique_ptr<Source> OpenSource(const Connection& connection);
 
 }  // namespace lookout::navigator

@@ -82,10 +82,7 @@ void Service::AdvanceTo(Utime now) {
 void Service::Rotate(Utime now) { BeginFile(now, true); }
 
 void Service::OnEvent(std::string_view channel, Bytes bytes) {
-  if (channel.empty()) {  // a log that holds one cannot be read on
-    ++num_nameless_;
-    return;
-  }
+  if (!IsRecordable(channel, bytes)) return;
   if (channel == bus::kRunInfo.name && IsOwnRunInfo(bytes)) return;  // written when it was sent
   const bus::Channel* known = bus::FindChannel(channel);
   if (known != nullptr) {
@@ -94,6 +91,25 @@ void Service::OnEvent(std::string_view channel, Bytes bytes) {
     WatchUnknown(channel);
   }
   Write(clock_(), channel, bytes);
+}
+
+// A log that holds one that is not cannot be read on. Each reason is told once, and then counted.
+bool Service::IsRecordable(std::string_view channel, Bytes bytes) {
+  const auto refuse = [&](std::int64_t& count, const std::string& what) {
+    if (count++ == 0) warnings_.push_back(what + " cannot be recorded; further ones are counted in HEALTH");
+  };
+  if (channel.empty()) {
+    refuse(num_nameless_, "an event on a channel without name");
+  } else if (channel.size() > bus::kMaxLogChannelBytes) {
+    refuse(num_name_too_long_, "an event on channel " + Printable(channel.substr(0, bus::kMaxLogChannelBytes)) + "..., a name of " +
+                                   std::to_string(channel.size()) + " bytes (" + std::to_string(bus::kMaxLogChannelBytes) + " are allowed),");
+  } else if (bytes.size() > bus::kMaxLogDataBytes) {
+    refuse(num_too_large_, "an event of " + std::to_string(bytes.size()) + " bytes on channel " + Printable(channel) + " (" +
+                               std::to_string(bus::kMaxLogDataBytes) + " are allowed)");
+  } else {
+    return true;
+  }
+  return false;
 }
 
 void Service::BeginFile(Utime now, bool must_publish) {
@@ -194,6 +210,8 @@ HealthReport Service::Report() const {
                      {"write_faults", status.num_faults},
                      {"unknown_channel", num_unknown_},
                      {"nameless_channel", num_nameless_},
+                     {"channel_name_too_long", num_name_too_long_},
+                     {"event_too_large", num_too_large_},
                      {"missing", num_missing_},
                      {"raw_missing", num_raw_missing_},
                      {"queue_bytes", status.queue_bytes},

@@ -50,6 +50,7 @@ class Service {
 
  private:
   void OnEvent(std::string_view channel, Bytes bytes);
+  bool IsRecordable(std::string_view channel, Bytes bytes);
   void BeginFile(Utime now, bool must_publish);
   std::vector<std::uint8_t> EncodeRunInfo(Utime now);
   void PublishRunInfo(Utime now, std::vector<std::uint8_t> bytes);
@@ -79,6 +80,8 @@ class Service {
   bool wanted_new_file_ = false;
   std::int64_t num_unknown_ = 0;
   std::int64_t num_nameless_ = 0;
+  std::int64_t num_name_too_long_ = 0;
+  std::int64_t num_too_large_ = 0;
   std::int64_t num_missing_ = 0;      // gaps in seq, of any channel
   std::int64_t num_raw_missing_ = 0;  // of these, of raw ones
 };

@@ -61,6 +61,15 @@ void AddFault(HealthReport& report, const std::string& fault) {
   report.reason = fault + (report.reason.empty() ? "" : "; ") + report.reason;
 }
 
+lookout::vlp16::Sender SenderOf(const lookout::io::ReceivedDatagram& datagram) {
+  return {lookout::io::ToText(datagram.source), datagram.source_port};
+}
+
+template <typename Captured>
+lookout::vlp16::Sender SenderOf(const Captured& datagram) {
+  return {datagram.source_address, datagram.source_port};
+}
+
 void LogNotice(const std::string& notice) { spdlog::info("{}", notice); }
 
 void RunLog(lookout::runtime::Process& process, const Params& params) {
@@ -88,7 +97,7 @@ void RunUdp(lookout::runtime::Process& process, const Params& params) {
     const auto now = HostNow();  // what was stamped before it is taken below
     for (auto* receiver : {&data, &position}) {
       Drain([receiver] { return receiver->Receive(); }, [receiver] { return receiver->is_empty(); },
-            [&](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.port, datagram.payload); });
+            [&](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.port, datagram.payload, SenderOf(datagram)); });
     }
     service.AdvanceTo(now, std::min(TakenUntil(data, now), TakenUntil(position, now)));
   });
@@ -123,7 +132,9 @@ void RunInterface(lookout::runtime::Process& process, const Params& params) {
   process.Every(kDrainPeriod, [&] {
     const auto now = HostNow();  // what was stamped before it is taken below
     Drain([&capture] { return capture.Next(); }, [&capture] { return capture.is_empty(); },
-          [&service](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload); });
+          [&service](const auto& datagram) {
+            service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload, SenderOf(datagram));
+          });
     service.AdvanceTo(now, TakenUntil(capture, now));
   });
   process.Every(kInterfacePeriod, [&] {
@@ -147,7 +158,9 @@ void RunCapture(lookout::runtime::Process& process, const Params& params) {
   const auto elapsed = [start] { return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start); };
   process.Every(kCaptureTick, [&] {
     Drain([&] { return player.NextDue(elapsed()); }, [&player] { return player.is_empty(); },
-          [&service](const auto& datagram) { service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload); });
+          [&service](const auto& datagram) {
+            service.OnDatagram(datagram.host_time, datagram.destination_port, datagram.payload, SenderOf(datagram));
+          });
     if (player.has_begun()) service.AdvanceTo(player.CaptureTime(elapsed()));
     if (player.is_finished()) process.Stop();
   });

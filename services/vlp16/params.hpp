@@ -21,7 +21,7 @@ struct Sources {
   std::string bind_address;
   std::string interface;                              // empty = any
   std::string multicast_group;                        // empty = none
-  std::vector<std::string> allowed_source_addresses;  // empty = all
+  std::vector<std::string> allowed_source_addresses;  // empty = all; as inet_ntop writes them once WriteAllowedAlike was called
   std::string bpf_filter;                             // empty = made of the ports
   int receive_buffer_bytes = 0;
 };

@@ -17,6 +17,11 @@ constexpr std::chrono::seconds kSilence(1);
 constexpr std::chrono::seconds kRatePeriod(1);
 // A restart and what comes with it break the stream a few times.
 constexpr std::int64_t kMaxOutOfStreamPerS = 10;
+// HEALTH tells of packets of others for so long after the last of them.
+constexpr std::chrono::seconds kForeignTold(3);
+// The journal: another sender, or the same one again.
+constexpr std::chrono::seconds kLinePeriod(1);
+constexpr std::chrono::seconds kSameLinePeriod(60);
 
 std::string_view Text(ClockState state) {
   switch (state) {
@@ -49,6 +54,7 @@ Service::Service(bus::Bus& bus, const Params& params)
     : bus_(bus),
       params_(params),
       bundler_(params.data_port, params.position_port, params.decoder.cut_azimuth_rad),
+      lock_(params.decoder.model, params.sources.allowed_source_addresses),
       decoder_(
           params.decoder, [this](const Turn& turn) { PublishTurn(turn); }, [this](const SentenceOfLidar& sentence) { PublishSentence(sentence); }) {
   if (params_.input == Input::kLog) {
@@ -56,8 +62,60 @@ Service::Service(bus::Bus& bus, const Params& params)
   }
 }
 
-void Service::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
+void Service::OnDatagram(Utime host_time, int udp_port, Bytes payload, const Sender& sender) {
+  if (!IsTaken(host_time, udp_port, sender, payload)) return;
   if (const auto bundle = bundler_.Add(host_time, udp_port, payload)) PublishAndConsume(*bundle);
+}
+
+// What the bundler refuses by itself has no part in the lock.
+bool Service::IsTaken(Utime host_time, int udp_port, const Sender& sender, Bytes payload) {
+  const bool is_data = udp_port == params_.data_port && payload.size() == format::kDataPacketSizeBytes;
+  const bool is_position = udp_port == params_.position_port && payload.size() == format::kPositionPacketSizeBytes;
+  if ((!is_data && !is_position) || !UtimeFromWire(ToUtimeUs(host_time))) return true;
+  const auto stream = is_data ? Stream::kData : Stream::kPosition;
+  const auto before = lock_.holder(stream);
+  const auto outcome = lock_.Judge(host_time, stream, sender, payload);
+  if (outcome.is_new_holder) NoteHolder(host_time, stream, before);
+  if (!outcome.is_taken) NoteRefused(host_time, stream, sender, outcome.is_valid);
+  return outcome.is_taken;
+}
+
+void Service::NoteHolder(Utime host_time, Stream stream, const std::optional<Sender>& before) {
+  const auto& holder = *lock_.holder(stream);
+  if (before && stream == Stream::kData) ++num_lidar_changes_;
+  // Whoever was refused until now is the lidar.
+  if (refusal_ && refusal_->sender == holder) refusal_.reset();
+  if (holder.address.empty() || stream != Stream::kData || !on_notice_) return;
+  std::string line = "takes the lidar at " + ToText(holder);
+  if (before) line += "; the one at " + ToText(*before) + " is silent";
+  told_refusal_ = Refusal{.sender = holder, .time = host_time};
+  on_notice_(line);
+}
+
+void Service::NoteRefused(Utime host_time, Stream stream, const Sender& sender, bool is_valid) {
+  ++num_sender_refused_[static_cast<std::size_t>(stream)];
+  refusal_ = Refusal{sender, stream, is_valid, host_time};
+  const auto since_told = told_refusal_ && host_time >= told_refusal_->time ? std::optional(host_time - told_refusal_->time) : std::nullopt;
+  const bool is_same = told_refusal_ && told_refusal_->sender.address == sender.address;
+  if (since_told && *since_told < (is_same ? kSameLinePeriod : kLinePeriod)) return;
+  told_refusal_ = refusal_;
+  if (on_notice_) on_notice_(ForeignComplaint());
+}
+
+// Who sends besides the lidar, for people; empty when nobody does.
+std::string Service::ForeignComplaint() const {
+  if (!refusal_) return {};
+  const auto& [sender, stream, is_valid, time] = *refusal_;
+  const int port = stream == Stream::kData ? params_.data_port : params_.position_port;
+  const auto& holder = lock_.holder(Stream::kData) ? lock_.holder(Stream::kData) : lock_.holder(stream);
+  const std::string refused = std::to_string(num_sender_refused_[0] + num_sender_refused_[1]) + " packets of others refused so far";
+  if (!lock_.IsAllowed(sender)) {
+    return "packets from " + ToText(sender) + " to port " + std::to_string(port) + " are refused: allowed_source_address does not name it (" +
+           refused + ")";
+  }
+  return (is_valid ? "two lidars on one port: " : "packets that are not the lidar's: ") + ToText(sender) + " sends to port " + std::to_string(port) +
+         " besides the lidar at " + (holder ? ToText(*holder) : "another address") + " (" + refused +
+         "); allowed_source_address in vlp16.txtpb takes one lidar alone";
 }
 
 void Service::AdvanceTo(Utime host_time) { AdvanceTo(host_time, host_time); }
@@ -82,6 +140,7 @@ void Service::Finish(Utime host_time) {
   } else if (const auto bundle = bundler_.Finish(host_time)) {
     PublishAndConsume(*bundle);
   }
+  lock_.Reset();
 }
 
 void Service::OnMessage(const lidar_packets_t& message) {
@@ -143,6 +202,15 @@ void Service::NoteClock(const ClockReading& clock) {
 
 // What is wrong, for people; empty when nothing is.
 std::string Service::Complaint() const {
+  const auto own = OwnComplaint();
+  // A clock that was set back must not keep an old refusal alive.
+  const bool is_foreign_now = refusal_ && now_ - refusal_->time < kForeignTold && refusal_->time - now_ < kForeignTold;
+  if (!is_foreign_now) return own;
+  return own.empty() ? ForeignComplaint() : own + "; " + ForeignComplaint();
+}
+
+// What is wrong with the lidar that is taken.
+std::string Service::OwnComplaint() const {
   if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
     const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());
     if (!decoder_.last_refusal().empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + decoder_.last_refusal();
@@ -177,6 +245,9 @@ HealthReport Service::Report() const {
   report.counters = bundler_.counters();
   const auto decoder_counters = decoder_.counters();
   report.counters.insert(report.counters.end(), decoder_counters.begin(), decoder_counters.end());
+  report.counters.push_back({"data_sender_refused", num_sender_refused_[static_cast<std::size_t>(Stream::kData)]});
+  report.counters.push_back({"position_sender_refused", num_sender_refused_[static_cast<std::size_t>(Stream::kPosition)]});
+  report.counters.push_back({"lidar_changes", num_lidar_changes_});
   report.counters.push_back({"messages_refused", num_refused_messages_});
   report.counters.push_back({"packets_other_port", num_other_port_});
   // Values now, not counts: their names end in a unit.

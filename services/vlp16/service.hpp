@@ -1,6 +1,7 @@
 // The vlp16 process without its sources: datagrams or LIDAR_PACKETS in; LIDAR_PACKETS, LIDAR_NMEA, LIDAR_CLOCK and LIDAR_SCAN out.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "lookout/lidar_packets_t.hpp"
 #include "services/vlp16/core/bundler.hpp"
 #include "services/vlp16/core/decoder.hpp"
+#include "services/vlp16/core/sender_lock.hpp"
 #include "services/vlp16/params.hpp"
 
 namespace lookout::vlp16 {
@@ -20,9 +22,9 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// A datagram from outside. Those of the right port and size are collected; when a bundle is full or a turn ends, it is published as
-  /// LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
-  void OnDatagram(Utime host_time, int udp_port, Bytes payload);
+  /// A datagram from outside. Those of the right port and size from the lidar that holds the lock (SenderLock) are collected; when a bundle is full
+  /// or a turn ends, it is published as LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
+  void OnDatagram(Utime host_time, int udp_port, Bytes payload, const Sender& sender = {});
 
   /// Host time has come so far: a bundle does not wait for more than 100 ms, and silence of the lidar shows in Report().
   void AdvanceTo(Utime host_time);
@@ -36,7 +38,8 @@ class Service {
 
   HealthReport Report() const;
 
-  /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the turns, changes.
+  /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the turns, changes, and when another
+  /// lidar is taken or packets of others are refused: of these a line a second at most.
   void OnNotice(std::function<void(const std::string&)> handler) { on_notice_ = std::move(handler); }
 
  private:
@@ -46,11 +49,17 @@ class Service {
   void PublishTurn(const Turn& turn);
   void PublishSentence(const SentenceOfLidar& sentence);
   void NoteClock(const ClockReading& clock);
+  bool IsTaken(Utime host_time, int udp_port, const Sender& sender, Bytes payload);
+  void NoteHolder(Utime host_time, Stream stream, const std::optional<Sender>& before);
+  void NoteRefused(Utime host_time, Stream stream, const Sender& sender, bool is_valid);
+  std::string ForeignComplaint() const;
   std::string Complaint() const;
+  std::string OwnComplaint() const;
 
   bus::Bus& bus_;
   Params params_;
   Bundler bundler_;
+  SenderLock lock_;
   Decoder decoder_;
   std::int64_t raw_seq_ = 0;  // of the bundle that is being consumed
   std::int64_t sentence_seq_ = 0;
@@ -64,6 +73,17 @@ class Service {
   std::int64_t out_of_stream_per_s_ = 0;
   std::optional<Utime> second_began_;
   std::function<void(const std::string&)> on_notice_;
+  // Who was refused last, by what, and what the journal was told of it.
+  struct Refusal {
+    Sender sender;
+    Stream stream = Stream::kData;
+    bool is_valid = false;
+    Utime time{};
+  };
+  std::optional<Refusal> refusal_;
+  std::array<std::int64_t, 2> num_sender_refused_{};  // by stream
+  std::int64_t num_lidar_changes_ = 0;
+  std::optional<Refusal> told_refusal_;
   std::optional<ClockState> noted_state_;
   std::optional<TimeSource> noted_source_;
 };

@@ -58,7 +58,14 @@ Params LoadChecked(const std::filesystem::path& config_folder) {
   auto params = LoadParams(config_folder, faults);
   CheckSources(config_folder, params.sources, faults);
   if (!faults.empty()) throw config::ConfigError(faults);
+  WriteAllowedAlike(params.sources);
   return params;
+}
+
+void WriteAllowedAlike(Sources& sources) {
+  for (auto& text : sources.allowed_source_addresses) {
+    if (const auto address = io::ParseIpAddress(text)) text = io::ToText(*address);
+  }
 }
 
 io::UdpOptions ToUdpOptions(const Sources& sources, int port) {

@@ -17,6 +17,9 @@ namespace lookout::vlp16 {
 /// @throws config::ConfigError with all faults, but those of the schema before others
 Params LoadChecked(const std::filesystem::path& config_folder);
 
+/// So that allowed addresses can be compared as texts: each as inet_ntop writes it. What is no address stays, and is nobody's.
+void WriteAllowedAlike(Sources& sources);
+
 /// @return bind_address without a zone ("%eth0"); nullopt when it is no numeric address
 std::optional<io::IpAddress> BoundAddress(const Sources& sources);
 

@@ -14,7 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/datagram_filter.hpp"
 #include "common/bus/decode.hpp"
+#include "common/bus/guarded_bind.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/sequence.hpp"
 #include "lookout/health_t.hpp"
@@ -73,6 +75,10 @@ ProcessCost CostOf(int pid) {
 class Listener {
  public:
   Listener() : lcm_(Url()) {
+    // LCM opens its socket with the first subscription: as the processes do, with a filter.
+    const auto multicast = bus::ParseMulticast(Url());
+    std::optional<bus::BindGuard> guard;
+    if (multicast) guard.emplace(bus::DatagramFilter(*multicast));
     Subscribe(bus::kLidarPackets, &Listener::OnPackets);
     Subscribe(bus::kPose, &Listener::OnPose);
     Subscribe(bus::kObstacles, &Listener::OnObstacles);

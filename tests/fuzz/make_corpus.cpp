@@ -205,6 +205,10 @@ void WriteSentences(const Folder& folder) {
     all += line + "\r\n";
   }
   folder.Write("all", all);
+  folder.Write("ubx_between", rmc + "\r\n\xB5\x62\x01\x07\x5C!#$%&[" + gga + "\r\n");
+  folder.Write("tsip_between", "\x10\x8F\x20" + std::string(40, '\x11') + "\x10\x03" + rmc + "\r\n" + gga + "\r");
+  folder.Write("byte_order_mark", "\xEF\xBB\xBF" + rmc + "\r\n");
+  folder.Write("broken_off", "$GPGGA,12" + rmc + "\r\n");
   folder.Write("second_of_receiver", rmc + "\r\n" + gga + "\r\n" + vtg + "\r\n" + hdt + "\r\n");
   folder.Write("without_carriage_returns", rmc + "\n" + gga + "\n");
   folder.Write("without_end", rmc);

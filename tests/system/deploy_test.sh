@@ -36,6 +36,41 @@ expect 1 1026200 "an end at once again" signal
 expect 2 26000 "the clock was set back"
 expect 0 1999999000 "the clock was set forward"
 
+# The rule that closes the port of the bus: on by itself where the bus is this computer's alone.
+rules() { env -u LOOKOUT_BUS_FIREWALL -u LOOKOUT_LCM_INTERFACE -u LCM_DEFAULT_URL "$@" "$source_folder/deploy/firewall" rules; }
+expect_rule() {  # WHAT_STANDS_THERE SETTING ...
+  local wanted=$1 got
+  shift
+  got=$(rules "$@")
+  if [ -z "$wanted" ]; then
+    [ -z "$got" ] || fail "firewall with $*: not off"
+    return
+  fi
+  grep -qF -- "$wanted" <<<"$got" || { echo "$got"; fail "firewall with $*: no '$wanted'"; }
+  num_rules=$((num_rules + 1))
+  echo "$got" >"$work/rules$num_rules.nft"
+}
+num_rules=0
+expect_rule 'iifname != "lo" udp dport 7667 counter drop'
+expect_rule 'iifname != "lo" udp dport 7667 counter drop' LOOKOUT_BUS_FIREWALL=on LOOKOUT_LCM_INTERFACE=lo
+expect_rule 'iifname != { "lo", "eth1" } udp dport 7000 counter drop' LOOKOUT_BUS_FIREWALL=on LOOKOUT_LCM_INTERFACE=eth1 'LCM_DEFAULT_URL=udpm://239.1.2.3:7000?ttl=1'
+expect_rule '' LOOKOUT_LCM_INTERFACE=eth1
+expect_rule '' LOOKOUT_BUS_FIREWALL=off
+expect_rule '' LCM_DEFAULT_URL=tcpq://localhost:7700
+for wrong in LOOKOUT_BUS_FIREWALL=yes 'LOOKOUT_LCM_INTERFACE=lo" }; flush ruleset' LCM_DEFAULT_URL=udpm://239.1.2.3:x; do
+  code=0; rules "$wrong" >/dev/null 2>&1 || code=$?; [ "$code" -eq 2 ] || fail "firewall with $wrong: exit code $code"
+done
+cp "$work/rules1.nft" "$work/installed.nft"
+env -i sh -c '. "$1"; export LOOKOUT_BUS_FIREWALL LOOKOUT_LCM_INTERFACE LCM_DEFAULT_URL; exec "$2" rules' sh "$source_folder/deploy/default" "$source_folder/deploy/firewall" |
+  cmp -s - "$work/installed.nft" || fail "as delivered the port is not closed"
+if command -v nft >/dev/null && unshare -rn true 2>/dev/null; then
+  for file in "$work"/rules?.nft; do
+    unshare -rn nft -c -f "$file" || { cat "$file"; fail "nft does not read the rule"; }
+  done
+else
+  echo "skipped: the syntax of the firewall's rule is not checked: there is no nft (package nftables), or it may not be run"
+fi
+
 up=$build_folder/bin/lookout-up
 config=$work/config
 cp -r "$source_folder/config/demo" "$config"
@@ -86,7 +121,7 @@ if ! command -v systemd-analyze >/dev/null; then
   exit 0
 fi
 for unit in "$build_folder"/deploy/systemd/lookout-*.service; do
-  case $unit in */lookout-route.service) continue ;; esac
+  case $unit in */lookout-route.service | */lookout-firewall.service) continue ;; esac
   systemd-analyze security --no-pager --offline=true --threshold=$greatest_exposure "$unit" >"$work/security.txt" 2>&1 ||
     { tail -n 1 "$work/security.txt"; fail "$unit is too open"; }
 done

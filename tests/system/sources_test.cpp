@@ -47,6 +47,45 @@ TEST_F(SourcesTest, CaptureLosesNothingInAFloodThatIsRefused) {
   EXPECT_EQ(Counter("data_lost"), 0);
 }
 
+// A second lidar at the full rate beside the one that is taken, on either kind of source.
+TEST_F(SourcesTest, TakeOneOfTwoLidarsWholeAndNameTheOther) {
+  for (const char* source : {"source: UDP bind_address: '127.0.0.1' cut_azimuth_deg: 0", "source: INTERFACE interface: 'lo' cut_azimuth_deg: 0"}) {
+    health_ = {};
+    Start(source);
+    ASSERT_TRUE(WaitForOutput("starts"));
+    const Lidar lidar("127.0.0.1", "127.0.0.1");
+    ASSERT_TRUE(WaitForScans(3)) << child_->Output();
+    {
+      const Lidar other("127.0.0.2", "127.0.0.1");
+      WaitUntil([] { return false; }, seconds(3));
+      ASSERT_TRUE(WaitForHealth(health_t::STATE_DEGRADED)) << source;
+      EXPECT_NE(health_.reason.find("two lidars on one port: 127.0.0.2:" + std::to_string(other.port())), std::string::npos) << health_.reason;
+      EXPECT_NE(health_.reason.find("127.0.0.1:" + std::to_string(lidar.port())), std::string::npos) << health_.reason;
+    }
+    ASSERT_TRUE(WaitForHealth(health_t::STATE_OK)) << health_.reason;
+    EXPECT_GT(Counter("data_sender_refused"), 1000) << source;
+    for (const char* counter : {"data_lost", "data_late", "data_overlapping", "data_azimuth_disagrees", "sensor_restarts", "sensor_clock_steps"}) {
+      EXPECT_EQ(Counter(counter), 0) << source << ' ' << counter;
+    }
+    child_->Terminate();
+  }
+}
+
+// A simulator or a forwarder sends from another port when it starts again.
+TEST_F(SourcesTest, TakeTheSameAddressWithAnotherPortAfterASecond) {
+  Start("source: UDP bind_address: '127.0.0.1' cut_azimuth_deg: 0");
+  ASSERT_TRUE(WaitForOutput("starts"));
+  {
+    const Lidar lidar("127.0.0.1", "127.0.0.1");
+    ASSERT_TRUE(WaitForScans(3)) << child_->Output();
+  }
+  const auto since = std::chrono::steady_clock::now();
+  const Lidar again("127.0.0.1", "127.0.0.1");
+  EXPECT_TRUE(WaitForScans(3)) << child_->Output();
+  EXPECT_LT(std::chrono::steady_clock::now() - since, seconds(8));  // a second and the scans; another address would take ten
+  EXPECT_TRUE(WaitUntil([&] { return Counter("lidar_changes") == 1; }));
+}
+
 TEST_F(SourcesTest, SayThatTheLidarIsSilentInAFloodThatNeverEnds) {
   Start("source: UDP bind_address: '127.0.0.1' cut_azimuth_deg: 0");
   ASSERT_TRUE(WaitForOutput("starts"));

@@ -83,6 +83,8 @@ int PrefixBits(const sockaddr* netmask) {
 BusSeen ReadBus(const std::string& url) {
   BusSeen bus;
   bus.url = url;
+  bus.fault = bus::LcmUrlFault(url);
+  if (!bus.fault.empty()) return bus;
   const auto multicast = bus::ParseMulticast(url);
   if (!multicast) return bus;
   bus.group = multicast->group;

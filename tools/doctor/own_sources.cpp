@@ -52,7 +52,7 @@ void OwnLidar::Poll(Utime now, LidarSeen& seen) {
     for (int i = 0; i < kMaxDatagramsPerPoll; ++i) {
       const auto datagram = inputs_->capture->Next();
       if (!datagram) break;
-      service_.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
+      service_.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port});
     }
     if (!inputs_->capture->fault().empty()) seen.fault = inputs_->capture->fault();
   }
@@ -62,7 +62,9 @@ void OwnLidar::Poll(Utime now, LidarSeen& seen) {
       if (!datagram) break;
       const auto sender = (*receiver)->SourceAddress();
       if (receiver == &inputs_->data) ++seen.num_by_sender[sender];
-      if (inputs_->IsAllowed(sender)) service_.OnDatagram(datagram->host_time, datagram->port, datagram->payload);
+      if (inputs_->IsAllowed(sender)) {
+        service_.OnDatagram(datagram->host_time, datagram->port, datagram->payload, {io::ToText(datagram->source), datagram->source_port});
+      }
     }
   }
   service_.AdvanceTo(now);

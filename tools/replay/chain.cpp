@@ -8,6 +8,7 @@
 #include "services/navigator/params.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/vlp16/params.hpp"
+#include "services/vlp16/sources.hpp"
 
 namespace lookout::replay {
 
@@ -15,6 +16,7 @@ namespace {
 
 vlp16::Params LidarParams(const std::filesystem::path& config_folder, vlp16::Input input) {
   auto params = vlp16::LoadParams(config_folder);
+  vlp16::WriteAllowedAlike(params.sources);
   params.input = input;
   return params;
 }
@@ -79,12 +81,12 @@ void Chain::AdvanceTo(Utime time) {
   }
 }
 
-void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload) {
+void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload, const vlp16::Sender& sender) {
   AdvanceTo(host_time);
   const auto source = ports_.nmea.find(udp_port);
   if (vlp16_ && (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position)) {
     num_data_datagrams_ += udp_port == ports_.lidar_data ? 1 : 0;
-    Timed(vlp16_time_, [&] { vlp16_->OnDatagram(host_time, udp_port, payload); });
+    Timed(vlp16_time_, [&] { vlp16_->OnDatagram(host_time, udp_port, payload, sender); });
   } else if (navigator_ && source != ports_.nmea.end()) {
     ++num_nmea_datagrams_;
     Timed(navigator_time_, [&] { navigator_->OnDatagram(host_time, payload, source->second); });

@@ -41,7 +41,7 @@ class Chain {
   Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink);
 
   /// A datagram out of a capture. What is on none of the ports of the config is left out and counted.
-  void OnDatagram(Utime host_time, int udp_port, Bytes payload);
+  void OnDatagram(Utime host_time, int udp_port, Bytes payload, const vlp16::Sender& sender);
 
   /// A line of a text log: for the navigator's input "udp", as if it had come by that. Left out where the navigator does not run.
   void OnTextLine(Utime time, Bytes line);

@@ -16,8 +16,8 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "services/navigator/io/text_log_reader.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
-#include "tools/replay/text_log.hpp"
 
 namespace lookout::replay {
 
@@ -78,11 +78,14 @@ struct Feeding {
   const std::function<void(std::int64_t num_bytes_of_file)>& show;
 };
 
-void FeedTextLog(const Feeding& feeding) {
+void FeedTextLog(const Feeding& feeding, std::optional<std::chrono::sys_days> day) {
   const auto& [file, chain, summary, progress, show] = feeding;
-  TextLogReader reader(file);
+  navigator::TextLogReader reader(file, day);
   Order order(file, chain, progress);
-  if (!reader.has_date()) Warn(progress, "{}: no sentence tells a date; its times are taken as those of 1970-01-01", file.string());
+  if (!reader.has_date() && !day) {
+    Warn(progress, "{}: no sentence tells a date; its times are taken as those of 1970-01-01, give --date", file.string());
+  }
+  if (reader.has_date() && day) Warn(progress, "{}: its sentences tell a date; --date is not used", file.string());
   while (const auto line = reader.Next()) {
     order.Check(line->time);
     ++summary.num_events;
@@ -101,7 +104,7 @@ void FeedCapture(const Feeding& feeding) {
   while (const auto datagram = reader.Next()) {
     order.Check(datagram->host_time);
     ++summary.num_events;
-    chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload);
+    chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port});
     num_bytes += kFrameBytes + datagram->payload.size();
     show(static_cast<std::int64_t>(num_bytes));
   }
@@ -156,6 +159,7 @@ InputKind KindOf(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a file that can be read twice");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+  if (in.peek() == std::ifstream::traits_type::eof()) throw std::runtime_error(file.string() + ": is empty");
   Magic start{};
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   if (std::ranges::find(kCaptureMagics, start) != kCaptureMagics.end()) return InputKind::kCapture;
@@ -202,8 +206,8 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
     const Feeding feeding{file, chain, summary, progress, show};
     if (KindOf(file) == InputKind::kLog) {
       FeedLog(feeding, inspection.plan);
-    } else if (IsTextLog(file)) {
-      FeedTextLog(feeding);
+    } else if (navigator::IsTextLog(file)) {
+      FeedTextLog(feeding, inspection.day);
     } else {
       FeedCapture(feeding);
     }

@@ -1,6 +1,7 @@
 // What replay reads: captures, text logs of NMEA 0183 and lcm-logs, told apart by their first bytes.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,15 +19,16 @@ namespace lookout::replay {
 enum class InputKind { kCapture, kLog };  // a text log counts as a capture: both come from outside
 
 /// @return by content: what begins as a capture is one, what holds an event of LCM is a log, all else is a text log (IsTextLog) or left to libpcap
-/// @throws std::runtime_error when the file cannot be read
+/// @throws std::runtime_error when the file cannot be read, is empty or holds nothing but zero bytes
 InputKind KindOf(const std::filesystem::path& file);
 
 /// What is to be done with these files.
 struct Inspection {
   Plan plan;
-  bool is_logs = false;                   // else captures
-  std::optional<run_info_t> recorded;     // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
-  std::vector<std::int64_t> sizes_bytes;  // of the files
+  bool is_logs = false;                           // else captures
+  std::optional<run_info_t> recorded;             // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
+  std::vector<std::int64_t> sizes_bytes;          // of the files
+  std::optional<std::chrono::sys_days> day = {};  // of the first time in each text log in which no sentence tells a date
 };
 
 /// Reads as far as is needed to know what to run. @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the

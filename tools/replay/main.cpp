@@ -5,9 +5,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 #include <string>
@@ -22,6 +24,7 @@
 #include "common/runtime/process.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
+#include "services/navigator/core/day.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
@@ -40,6 +43,7 @@ struct Options {
   bool force = false;
   lookout::replay::Request request;
   bool shows_progress = false;
+  std::optional<std::chrono::sys_days> day = {};
 };
 
 Options ParseOptions(int argc, char** argv) {
@@ -47,6 +51,7 @@ Options ParseOptions(int argc, char** argv) {
   std::string config_folder;
   std::vector<std::string> inputs;
   std::string output;
+  std::string day;
   CLI::App app("Runs captures or lcm-logs through all services, or some, in one process and writes an lcm-log. Same input, same bytes.",
                "lookout-replay");
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
@@ -60,6 +65,9 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::IsMember(lookout::replay::ServiceNames()));
   app.add_flag("--progress", options.shows_progress,
                "show progress as on a terminal; without it, where standard error is none, a line comes each minute");
+  app.add_option("--date", day,
+                 "day of the first time in a text log in which no sentence tells a date (GGA and GLL alone), as 2026-07-01; without it 1970-01-01")
+      ->check([](const std::string& text) { return lookout::navigator::ParseDay(text) ? std::string() : "'" + text + "' is no day as 2026-07-01"; });
   app.set_version_flag("--version", "lookout-replay " + lookout::runtime::Version());
   try {
     app.parse(argc, argv);
@@ -71,6 +79,7 @@ Options ParseOptions(int argc, char** argv) {
   options.config_folder = config_folder;
   options.inputs.assign(inputs.begin(), inputs.end());
   options.output = output;
+  options.day = lookout::navigator::ParseDay(day);
   return options;
 }
 
@@ -176,7 +185,8 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
 void Replay(const Options& options) {
   Output output(options);  // before all work
   const auto start = std::chrono::steady_clock::now();
-  const auto inspection = lookout::replay::Inspect(options.inputs, options.request);
+  auto inspection = lookout::replay::Inspect(options.inputs, options.request);
+  inspection.day = options.day;
   Chain chain(options.config_folder, inspection.plan,
               [&output](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) { output.Write(time, channel, bytes); });
   output.SetRunInfo(RunInfoOf(options, inspection));

@@ -48,6 +48,10 @@ Options ParseOptions(int argc, char** argv) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : 2);
   }
   if (options.lcm_url.empty()) options.lcm_url = lookout::bus::DefaultLcmUrl();
+  if (const auto fault = lookout::bus::LcmUrlFault(options.lcm_url); !fault.empty()) {
+    std::cerr << "lookout-top: " << fault << "\n";
+    std::exit(2);
+  }
   return options;
 }
 

@@ -32,9 +32,9 @@ struct Pose {
   double latitude_deg = kNan;  // of the reference point
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
-  Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kNan);  // up is 0 while the height is not known
+  Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kNan);  // while the height is not known, at that of the datum
   Eigen::Vector3d velocity_map_mps = Eigen::Vector3d::Constant(kNan);
-  double heading_rad = kNan;
+  double heading_rad = kNan;  // as roll and pitch against north and up where the boat is
   double pitch_rad = 0.0;
   double roll_rad = 0.0;
   double heave_m = kNan;

@@ -38,6 +38,17 @@ bool IsChecksumOf(std::string_view digits, std::string_view body) {
   return high && low && (*high << 4 | *low) == checksum;
 }
 
+// The whole sentence at the end of a line that does not begin as one: behind binary whose last bytes look like text, or behind a sentence that was
+// broken off. Empty when there is none.
+std::string_view SentenceBehind(std::string_view line) {
+  line.remove_prefix(line.size() - std::min(line.size(), kMaxLineCharacters));
+  for (auto start = line.find_first_of("$!"); start != std::string_view::npos; start = line.find_first_of("$!", start + 1)) {
+    const auto sentence = line.substr(start);
+    if (std::ranges::all_of(sentence, IsPrintable) && Frame(sentence).fault == SentenceFault::kNone) return sentence;
+  }
+  return {};
+}
+
 }  // namespace
 
 DatagramLines SplitDatagram(Bytes payload) {
@@ -54,6 +65,10 @@ DatagramLines SplitDatagram(Bytes payload) {
     const auto last_byte = std::ranges::find_if_not(whole_line.rbegin(), whole_line.rend(), IsPrintable);
     if (last_byte != whole_line.rend()) {
       const auto behind = FromStart(whole_line.substr(static_cast<std::size_t>(whole_line.rend() - last_byte)));
+      if (!behind.empty()) line = behind;
+    }
+    if (line.size() > kMaxLineCharacters || Frame(line).fault != SentenceFault::kNone) {
+      const auto behind = SentenceBehind(whole_line);
       if (!behind.empty()) line = behind;
     }
     if (line.empty()) {

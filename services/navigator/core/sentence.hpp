@@ -21,7 +21,8 @@ struct DatagramLines {
   std::int64_t num_not_printable = 0;  // bytes outside of 0x20 to 0x7E
 };
 
-/// Cuts at CR and LF, and drops what stands before the first $ or ! of a line: tag blocks (\...\) and junk.
+/// Cuts at CR and LF, and drops what stands before the first $ or ! of a line: tag blocks (\...\) and junk. Where what is left has no right checksum,
+/// but a sentence that has one stands at the end of the line, that is taken.
 DatagramLines SplitDatagram(Bytes payload);
 
 /// @return whether `line` may stand in NAV_RAW: begins with $ or !, printable ASCII, at most kMaxLineCharacters

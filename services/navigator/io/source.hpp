@@ -37,9 +37,6 @@ class Source {
   /// How often it broke off: what came before and what comes after do not belong together.
   virtual std::int64_t num_lost() const { return 0; }
 
-  /// It will give nothing more.
-  virtual bool is_finished() const { return false; }
-
   /// Why it gives nothing; empty = nothing is known to be wrong.
   virtual std::string fault() const { return {}; }
 

@@ -1,65 +1,79 @@
 #include "services/navigator/io/text_log_player.hpp"
 
-#include <stdexcept>
-#include <variant>
+#include <algorithm>
 
-#include "services/navigator/core/nmea.hpp"
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/item_sequencer.hpp"
 
 namespace lookout::navigator {
 
 namespace {
 
-using std::chrono::microseconds;
+using std::chrono::steady_clock;
 
-// The time of day in a line; nullopt when it says none.
-std::optional<microseconds> TimeOfDayIn(const std::string& line) {
-  const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
-  if (lines.lines.empty()) return std::nullopt;
-  const auto parsed = ParseSentence(lines.lines.front(), false);
-  if (parsed.fault != SentenceFault::kNone) return std::nullopt;
-  return std::visit(
-      [](const auto& sentence) -> std::optional<microseconds> {
-        if constexpr (requires { sentence.time_of_day; }) return sentence.time_of_day;
-        return std::nullopt;
-      },
-      parsed.sentence);
+constexpr std::chrono::microseconds kNoPause{0};
+
+std::chrono::microseconds PauseBetween(Utime from, Utime to) {
+  const auto pause = to - from;
+  return pause < kNoPause || pause > TextLogPlayer::kMaxPause ? kNoPause : pause;
 }
 
 }  // namespace
 
-TextLogPlayer::TextLogPlayer(const std::string& name, const std::filesystem::path& file, double speed)
-    : lines_name_(name + "_lines"), file_(file.string()), speed_(speed), in_(file, std::ios::binary) {
-  if (!in_) throw std::runtime_error("text log " + file_ + " cannot be read");
-}
-
-// Sets line_ and when it is due.
-bool TextLogPlayer::ReadLine() {
-  if (!std::getline(in_, line_)) return false;
-  line_ += '\n';
-  ++num_lines_;
-  const auto time = TimeOfDayIn(line_);
-  if (!time) return true;
-  if (last_time_ && speed_ > 0.0) {
-    constexpr microseconds kDay = std::chrono::days(1);
-    const auto pause = (*time - *last_time_ + kDay) % kDay;  // over midnight
-    if (pause <= kMaxPause) *due_ += std::chrono::duration_cast<microseconds>(std::chrono::duration<double>(pause) / speed_);
+TextLogPlayer::TextLogPlayer(const std::vector<Log>& logs, double speed) : speed_(speed) {
+  readings_.reserve(logs.size());
+  for (const auto& log : logs) {
+    readings_.push_back({.log = log, .reader = TextLogReader(log.file, log.day), .line = {}, .counter = log.name + "_lines"});
+    readings_.back().line = readings_.back().reader.Next();
   }
-  last_time_ = time;
-  return true;
+  FindNext();
+  if (next_) start_ = time_ = readings_[*next_].line->time;
 }
 
-std::optional<Source::Piece> TextLogPlayer::Receive(Utime now) {
-  if (is_finished_) return std::nullopt;
+// The earliest; of equal ones that of the first log.
+void TextLogPlayer::FindNext() {
+  next_.reset();
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    const auto& line = readings_[i].line;
+    if (line && (!next_ || line->time < readings_[*next_].line->time)) next_ = i;
+  }
+}
+
+void TextLogPlayer::Play(steady_clock::time_point now, const Taker& taker) {
   if (!due_) due_ = now;
-  if (!has_line_) has_line_ = ReadLine();
-  if (!has_line_) {
-    is_finished_ = true;
-    return std::nullopt;
+  const Utime round_start = time_;
+  while (next_ && now >= *due_ && time_ - round_start <= kMaxRound) {
+    auto& reading = readings_[*next_];
+    time_ = reading.line->time;
+    ++reading.num_lines;
+    taker.advance_to(time_);
+    taker.take_line(time_, reading.line->bytes, reading.log.name);
+    reading.line = reading.reader.Next();
+    FindNext();
+    if (!next_ || speed_ <= 0.0) continue;
+    const std::chrono::duration<double> pause = PauseBetween(time_, readings_[*next_].line->time);
+    *due_ += std::chrono::duration_cast<steady_clock::duration>(pause / speed_);
   }
-  if (now < *due_) return std::nullopt;
-  has_line_ = false;
-  return Piece{now, {reinterpret_cast<const std::uint8_t*>(line_.data()), line_.size()}, true};
+  if (!next_ || speed_ <= 0.0 || now >= *due_) return;
+  // On the way to the next line. In a longer silence there are no ticks, however it is gone through.
+  const Utime next_time = readings_[*next_].line->time;
+  if (next_time - time_ > ItemSequencer::kMaxTickGap || next_time <= time_) return;
+  const auto rest = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::duration<double>(*due_ - now) * speed_);
+  const Utime on_the_way = next_time - rest;
+  if (on_the_way > time_) taker.advance_to(std::min(on_the_way, next_time));
+}
+
+std::vector<std::string> TextLogPlayer::dateless() const {
+  std::vector<std::string> names;
+  for (const auto& reading : readings_) {
+    if (!reading.reader.has_date() && !reading.log.day) names.push_back(reading.log.name);
+  }
+  return names;
+}
+
+std::vector<Counter> TextLogPlayer::counters() const {
+  std::vector<Counter> counters;
+  for (const auto& reading : readings_) counters.push_back({reading.counter, reading.num_lines});
+  return counters;
 }
 
 }  // namespace lookout::navigator

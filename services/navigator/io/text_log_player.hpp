@@ -1,44 +1,74 @@
-// A file of sentences as a source, played by the times in them.
+// Files of sentences, played at the pace and by the times of their sentences.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
+#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "services/navigator/io/source.hpp"
+#include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "services/navigator/io/text_log_reader.hpp"
 
 namespace lookout::navigator {
 
-class TextLogPlayer final : public Source {
+/// Gives the lines of one text log, or of several in the order of their times, each at the time that the log says. The clock of the computer decides
+/// when a line is given, and nothing else: at whatever speed the same calls are made, but for calls of advance_to between two lines.
+class TextLogPlayer {
  public:
   /// A longer silence in the log, and a time that runs back, are not waited for.
   static constexpr std::chrono::seconds kMaxPause{60};
+  /// Of the log, that one call of Play gives at most: POSE of more than that at once would not pass the bus.
+  static constexpr std::chrono::seconds kMaxRound{1};
 
-  /// @param speed  times as fast as the sentences say; 0 = as fast as it is asked
-  /// @throws std::runtime_error when the file cannot be read
-  TextLogPlayer(const std::string& name, const std::filesystem::path& file, double speed);
+  struct Log {
+    std::string name;  // of the input
+    std::filesystem::path file;
+    std::optional<std::chrono::sys_days> day;  // as in TextLogReader
+  };
 
-  int file_descriptor() const override { return -1; }
-  void Poll(Utime) override {}
-  std::optional<Piece> Receive(Utime now) override;
-  bool is_finished() const override { return is_finished_; }
-  std::string fault() const override { return is_finished_ ? "text log " + file_ + " is at its end" : ""; }
-  std::vector<Counter> counters() override { return {{lines_name_, num_lines_}}; }
+  struct Taker {
+    std::function<void(Utime log_time)> advance_to;  // before each line, and where the lines are not closer, between them
+    std::function<void(Utime log_time, Bytes line, const std::string& name)> take_line;
+  };
+
+  /// @param speed  times as fast as the sentences say; 0 = a call of Play after the other
+  /// @throws std::runtime_error as TextLogReader
+  TextLogPlayer(const std::vector<Log>& logs, double speed);
+
+  /// Gives what is due.
+  void Play(std::chrono::steady_clock::time_point now, const Taker& taker);
+
+  bool is_finished() const { return !next_; }
+
+  /// Of the first line of all, and of what was given last: UTC as the logs say.
+  Utime start() const { return start_; }
+  Utime time() const { return time_; }
+
+  /// Logs in which no sentence tells a date, and for which none was given.
+  std::vector<std::string> dateless() const;
+
+  std::vector<Counter> counters() const;
 
  private:
-  bool ReadLine();
+  struct Reading {
+    Log log;
+    TextLogReader reader;
+    std::optional<TextLogReader::Line> line;  // read, and not given yet
+    std::string counter;
+    std::int64_t num_lines = 0;
+  };
+  void FindNext();
 
-  std::string lines_name_;
-  std::string file_;
   double speed_;
-  std::ifstream in_;
-  std::string line_;  // read, and not given yet
-  bool has_line_ = false;
-  bool is_finished_ = false;
-  std::optional<Utime> due_;                            // of line_
-  std::optional<std::chrono::microseconds> last_time_;  // of the day, in the sentences
-  std::int64_t num_lines_ = 0;
+  std::vector<Reading> readings_;
+  std::optional<std::size_t> next_;  // whose line is next
+  Utime start_{};
+  Utime time_{};
+  std::optional<std::chrono::steady_clock::time_point> due_;  // of the next line
 };
 
 }  // namespace lookout::navigator

@@ -54,11 +54,14 @@ void SensorClock::OnDataPacket(const PlacedPacket& packet) {
     rmc_utc_.reset();
     was_locked_ = false;
     is_sensor_in_use_ = false;
+    if (position_came_) position_came_->time.reset();
+    if (rmc_) rmc_->came.time.reset();
   }
+  time_ = packet.time;
   const auto end = packet.time + std::chrono::duration_cast<microseconds>(packet.steps.duration);
   fit_.Add(packet.time, packet.host_time.time_since_epoch() - end);
-  const bool is_rmc_fresh = rmc_ && std::chrono::abs(packet.host_time - rmc_->host_time) <= kMaxAge;
-  if (!rmc_utc_ && is_rmc_fresh) rmc_utc_ = rmc_->utc + (packet.host_time - rmc_->host_time) - packet.time;
+  const bool is_rmc_fresh = rmc_ && std::chrono::abs(packet.host_time - rmc_->came.host_time) <= kMaxAge;
+  if (!rmc_utc_ && is_rmc_fresh) rmc_utc_ = rmc_->utc + (packet.host_time - rmc_->came.host_time) - packet.time;
   FindHour(packet.packet.stamp_us, packet.time);
 }
 
@@ -70,33 +73,38 @@ void SensorClock::FindHour(std::uint32_t stamp_us, SensorTime time) {
 }
 
 void SensorClock::OnPositionPacket(Utime host_time, const PositionPacket& packet, std::optional<SensorTime> time) {
-  position_host_time_ = host_time;
+  const Instant now{host_time, time};
+  position_came_ = now;
   pps_ = packet.pps;
   has_valid_rmc_ = packet.time.has_value();
   if (packet.time) {
-    const microseconds about = rmc_ ? rmc_->utc + (host_time - rmc_->host_time) : host_time.time_since_epoch();
+    const microseconds about = rmc_ ? rmc_->utc + Age(rmc_->came, now) : host_time.time_since_epoch();
     const microseconds utc = ToUtc(*packet.time, host_time, about);
     const bool is_new = !rmc_ || rmc_->utc != utc;
     if (is_new) {
       const microseconds behind = InNearestHour(microseconds(packet.stamp_us) - utc, microseconds(0));
-      rmc_ = Rmc{host_time, utc, behind >= kMinStampBehindRmc && behind <= kMaxStampBehindRmc};
+      rmc_ = Rmc{now, utc, behind >= kMinStampBehindRmc && behind <= kMaxStampBehindRmc};
     }
     if (time && is_new) rmc_utc_ = utc - *time;
   }
-  if (State(host_time) == ClockState::kLocked) was_locked_ = true;
+  if (State(now) == ClockState::kLocked) was_locked_ = true;
 }
 
-ClockState SensorClock::State(Utime host_time) const {
+microseconds SensorClock::Age(const Instant& came, const Instant& now) {
+  return came.time && now.time ? *now.time - *came.time : now.host_time - came.host_time;
+}
+
+ClockState SensorClock::State(const Instant& now) const {
   // The host's clock may be set back: an age below zero says as little as a great one.
-  const auto is_old = [&](Utime time) { return std::chrono::abs(host_time - time) > kMaxAge; };
-  if (!position_host_time_ || is_old(*position_host_time_)) return ClockState::kUnknown;
+  const auto is_old = [&](const Instant& came) { return std::chrono::abs(Age(came, now)) > kMaxAge; };
+  if (!position_came_ || is_old(*position_came_)) return ClockState::kUnknown;
   switch (pps_) {
     case format::kPpsAbsent:
       return was_locked_ ? ClockState::kFreeRunning : ClockState::kNoPps;
     case format::kPpsSynchronising:
       return ClockState::kAcquiring;
     case format::kPpsLocked:
-      if (!has_valid_rmc_ || is_old(rmc_->host_time)) return ClockState::kLockedWithoutTime;
+      if (!has_valid_rmc_ || is_old(rmc_->came)) return ClockState::kLockedWithoutTime;
       return rmc_->is_agreeing ? ClockState::kLocked : ClockState::kFreeRunning;
     default:
       return ClockState::kError;
@@ -112,14 +120,15 @@ bool SensorClock::IsSensorInUse(ClockState state, microseconds host_minus_sensor
 Utime SensorClock::TimeOfStampAlone(Utime host_time, std::uint32_t stamp_us) const {
   const microseconds host = host_time.time_since_epoch();
   const microseconds sensor = InNearestHour(microseconds(stamp_us), rmc_ ? rmc_->utc : host);
-  return IsSensorInUse(State(host_time), host - sensor) ? Utime(sensor) : host_time;
+  return IsSensorInUse(State({host_time, std::nullopt}), host - sensor) ? Utime(sensor) : host_time;
 }
 
 ClockReading SensorClock::Read(Utime host_time) {
   ClockReading reading;
-  reading.state = State(host_time);
-  if (position_host_time_) reading.pps = pps_;
-  if (rmc_) reading.rmc_age = std::max(microseconds(0), host_time - rmc_->host_time);
+  const Instant now{host_time, time_};
+  reading.state = State(now);
+  if (position_came_) reading.pps = pps_;
+  if (rmc_) reading.rmc_age = std::max(microseconds(0), Age(rmc_->came, now));
   const microseconds host_utc = fit_.offset();
   reading.host_minus_sensor = host_utc - *sensor_utc_;
   reading.drift_ppm = fit_.drift_ppm();

@@ -16,7 +16,7 @@ enum class TimeSource { kHost, kSensor };
 
 /// What the sensor's clock is worth. "RMC" stands for any sentence that tells UTC: see TimeOfSentence.
 enum class ClockState {
-  kUnknown,            // no position packet, or none for 3 s
+  kUnknown,            // no position packet, or none for 3 s (of the sensor's clock, which no stall and no step of the host's stretches)
   kNoPps,              // no PPS, and there was no lock since the sensor started: its hour began when it liked
   kAcquiring,          // PPS is there, the clock is being set to it
   kLockedWithoutTime,  // PPS is locked, but no valid RMC for 3 s says which second it is
@@ -31,7 +31,7 @@ struct ClockReading {
   std::chrono::microseconds offset{0};  // UTC minus SensorTime, by the clock that is in use: Utime(time + offset)
   ClockState state = ClockState::kUnknown;
   std::optional<int> pps;                                      // of the last position packet
-  std::optional<std::chrono::microseconds> rmc_age;            // since a valid RMC told a new time, by the host's clock
+  std::optional<std::chrono::microseconds> rmc_age;            // since a valid RMC told a new time, by the sensor's oscillator
   std::optional<std::chrono::microseconds> host_minus_sensor;  // UTC by the host's clock minus UTC by the sensor's
   std::optional<double> drift_ppm;                             // of the sensor's clock against the host's, positive when it is fast
 
@@ -61,13 +61,19 @@ class SensorClock {
   Utime TimeOfStampAlone(Utime host_time, std::uint32_t stamp_us) const;
 
  private:
+  /// When something came. What is late, and a host's clock that is set, change its host time only.
+  struct Instant {
+    Utime host_time;
+    std::optional<SensorTime> time;  // nullopt before the first data packet, and of what came before a restart
+  };
   struct Rmc {
-    Utime host_time;  // when it told a new time
+    Instant came;  // when it told a new time
     std::chrono::microseconds utc{0};
     bool is_agreeing = true;  // with the stamp of the position packet in which it was new
   };
 
-  ClockState State(Utime host_time) const;
+  static std::chrono::microseconds Age(const Instant& came, const Instant& now);
+  ClockState State(const Instant& now) const;
   bool IsSensorInUse(ClockState state, std::chrono::microseconds host_minus_sensor) const;
   void FindHour(std::uint32_t stamp_us, SensorTime time);
 
@@ -77,7 +83,8 @@ class SensorClock {
   std::optional<std::chrono::microseconds> rmc_utc_;     // UTC by the last valid RMC minus SensorTime, good to some seconds
   bool is_sensor_in_use_ = false;
 
-  std::optional<Utime> position_host_time_;
+  std::optional<SensorTime> time_;  // of the last data packet
+  std::optional<Instant> position_came_;
   int pps_ = 0;
   bool has_valid_rmc_ = false;  // in the last position packet
   std::optional<Rmc> rmc_;

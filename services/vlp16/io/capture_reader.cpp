@@ -56,7 +56,7 @@ std::optional<Datagram> CaptureReader::Next(std::int64_t max_frames) {
     ++num_by_fault_[static_cast<std::size_t>(frame.fault)];
     if (frame.fault != FrameFault::kNone) continue;
     ++num_datagrams_;
-    return Datagram{*host_time, frame.source_address, frame.destination_port, {frame.payload.begin(), frame.payload.end()}};
+    return Datagram{*host_time, frame.source_address, frame.source_port, frame.destination_port, {frame.payload.begin(), frame.payload.end()}};
   }
   return std::nullopt;
 }

@@ -20,6 +20,7 @@ namespace lookout::vlp16 {
 struct Datagram {
   Utime host_time;             // stamp in the capture; some captures count from 0
   std::string source_address;  // numeric
+  int source_port = 0;
   int destination_port = 0;
   std::vector<std::uint8_t> payload;
 };

@@ -46,7 +46,8 @@ Frame ParseUdp(Bytes bytes, std::string source_address) {
   if (bytes.size() < kUdpHeaderSizeBytes) return Refused(FrameFault::kBadLength);
   const auto size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 4));
   if (size < kUdpHeaderSizeBytes || size > bytes.size()) return Refused(FrameFault::kBadLength);
-  return {FrameFault::kNone, std::move(source_address), ReadU16BigEndian(bytes, 2), bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes)};
+  return {FrameFault::kNone, std::move(source_address), ReadU16BigEndian(bytes, 0), ReadU16BigEndian(bytes, 2),
+          bytes.subspan(kUdpHeaderSizeBytes, size - kUdpHeaderSizeBytes)};
 }
 
 Frame ParseIpv4(Bytes bytes, bool is_cut) {

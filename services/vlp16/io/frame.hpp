@@ -29,6 +29,7 @@ inline constexpr std::array<std::string_view, 8> kFrameFaultNames{"frames_datagr
 struct Frame {
   FrameFault fault = FrameFault::kNone;  // the rest is set when it is kNone
   std::string source_address;            // numeric
+  int source_port = 0;
   int destination_port = 0;
   Bytes payload;  // within the bytes of the frame
 };

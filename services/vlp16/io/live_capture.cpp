@@ -182,7 +182,7 @@ std::optional<LiveDatagram> LiveCapture::Judge(Bytes bytes, bool is_cut, std::in
     ++num_source_refused_;
     return std::nullopt;
   }
-  return LiveDatagram{*host_time, frame.destination_port, frame.payload};
+  return LiveDatagram{*host_time, frame.source_address, frame.source_port, frame.destination_port, frame.payload};
 }
 
 std::optional<LiveDatagram> LiveCapture::Next() {

@@ -25,7 +25,9 @@ struct LiveOptions {
 };
 
 struct LiveDatagram {
-  Utime host_time;  // kernel stamp of the arrival
+  Utime host_time;             // kernel stamp of the arrival
+  std::string source_address;  // numeric
+  int source_port = 0;
   int destination_port = 0;
   Bytes payload;  // until the next call of Next()
 };

@@ -46,6 +46,89 @@ TEST(Subscribe, CountsGapsInSeq) {
   EXPECT_EQ(bus.input_traffic().at("LIDAR_NMEA").num_messages, 3);
 }
 
+// Two publishers by turns, a restart, and a stop of this process.
+class GuardedSubscribe : public ::testing::Test {
+ protected:
+  MemoryBus bus_;
+  std::chrono::nanoseconds now_{0};
+  std::vector<std::string> taken_;
+
+  void SetUp() override {
+    bus_.GuardStreams([this] { return now_; });
+    Subscribe<lidar_nmea_t>(bus_, kLidarNmea,
+                            [this](const lidar_nmea_t& message) { taken_.push_back(message.sentence + std::to_string(message.seq)); });
+  }
+  void Send(const std::string& maker, std::int64_t seq, std::int64_t utime_us) {
+    lidar_nmea_t message{};
+    message.seq = seq;
+    message.utime_us = utime_us;
+    message.sentence = maker;
+    Publish(bus_, kLidarNmea, message);
+    HandleAll(bus_);
+  }
+  void Pass(std::chrono::milliseconds time) {
+    for (; time.count() > 0; time -= std::chrono::milliseconds(100)) {
+      now_ += std::chrono::milliseconds(100);
+      bus_.ReleaseHeld();
+    }
+  }
+  const ChannelTraffic& Traffic() { return bus_.input_traffic().at("LIDAR_NMEA"); }
+};
+
+TEST_F(GuardedSubscribe, KeepsThePublisherThatItHeardFirst) {
+  for (int i = 0; i < 5; ++i) {
+    Send("a", 70 + i, 200'000 * i);
+    Pass(std::chrono::milliseconds(100));
+    Send("b", i, 200'000 * i + 50'000);
+    Pass(std::chrono::milliseconds(100));
+  }
+  EXPECT_EQ(taken_, (std::vector<std::string>{"a70", "a71", "a72", "a73", "a74"}));
+  EXPECT_EQ(Traffic().num_refused, 4);  // the last is held: a may have ended
+  EXPECT_TRUE(Traffic().second_heard);
+}
+
+TEST_F(GuardedSubscribe, HandsOutARestartInItsOrderAlsoWhenNothingFurtherComes) {
+  for (int i = 0; i < 3; ++i) Send("a", 70 + i, 100'000 * i);
+  for (int i = 0; i < 3; ++i) Send("b", i, 1'000'000 + 100'000 * i);
+  EXPECT_EQ(taken_.size(), 3U);
+  Pass(std::chrono::milliseconds(1000));
+  EXPECT_EQ(taken_, (std::vector<std::string>{"a70", "a71", "a72", "b0", "b1", "b2"}));
+  EXPECT_EQ(Traffic().num_refused, 0);
+  EXPECT_EQ(Traffic().num_lost, 0);
+}
+
+TEST_F(GuardedSubscribe, HandsOutWhatIsHeldAtTheEnd) {
+  Send("a", 70, 0);
+  Send("b", 0, 1'000'000);
+  bus_.ReleaseHeld(true);
+  EXPECT_EQ(taken_, (std::vector<std::string>{"a70", "b0"}));
+}
+
+TEST_F(GuardedSubscribe, AStopOfThisProcessIsNoSilenceOfAPublisher) {
+  for (int i = 0; i < 5; ++i) {
+    Send("a", 70 + i, 200'000 * i);
+    Send("b", i, 200'000 * i + 50'000);
+    Pass(std::chrono::milliseconds(200));
+  }
+  now_ += std::chrono::seconds(10);  // both wait in the queue
+  for (int i = 5; i < 55; ++i) {
+    Send("b", i, 200'000 * i + 50'000);
+    Send("a", 70 + i, 200'000 * i + 100'000);
+  }
+  EXPECT_EQ(taken_.size(), 55U);
+  EXPECT_EQ(taken_.back(), "a124");
+}
+
+TEST_F(GuardedSubscribe, HoldsNoMoreThanThereIsRoomFor) {
+  Send("a", 70'000, 0);
+  for (int i = 0; i < 20'000; ++i) Send("b", i, 1'000'000 + i);
+  EXPECT_EQ(Traffic().num_refused, 15'000);
+  Pass(std::chrono::milliseconds(1200));
+  ASSERT_EQ(taken_.size(), 5001U);
+  EXPECT_EQ(taken_[1], "b15000");
+  EXPECT_EQ(taken_.back(), "b19999");
+}
+
 TEST(Subscribe, CountsWhatDoesNotDecodeAndGoesOn) {
   MemoryBus bus;
   int num_handled = 0;

@@ -63,9 +63,29 @@ TEST(ClockFit, IsNotMisledByOneBadStampAndFollowsAStep) {
   const auto offset = offset_after(1, seconds(0));
   EXPECT_EQ(offset_after(2, -std::chrono::days(3650)), offset);
   EXPECT_EQ(offset_after(3, seconds(0)), offset);
-  EXPECT_EQ(offset_after(4, seconds(100)), offset);
-  EXPECT_EQ(offset_after(5, seconds(100)), offset);
-  EXPECT_EQ(offset_after(6, seconds(100)), offset + seconds(100));
+  EXPECT_EQ(offset_after(4, -seconds(100)), offset);
+  EXPECT_EQ(offset_after(5, -seconds(100)), offset);
+  EXPECT_EQ(offset_after(6, -seconds(100)), offset - seconds(100)) << "too early to be late";
+  // Forward it may be late: not till three seconds are over.
+  const int num_packets = static_cast<int>(seconds(3) / kPeriod);
+  for (int packet = 7; packet < 7 + num_packets; ++packet) ASSERT_EQ(offset_after(packet, seconds(0)), offset - seconds(100)) << packet;
+  offset_after(7 + num_packets, seconds(0));
+  EXPECT_EQ(offset_after(8 + num_packets, seconds(0)), offset);
+}
+
+TEST(ClockFit, SettlesOnWhatIsTheSameForThreeSeconds) {
+  ClockFit fit;
+  // A queue that is drained at the start.
+  for (int i = 0; i < 100; ++i) {
+    fit.Add(milliseconds(100 * i), seconds(10) - milliseconds(99 * i));
+    EXPECT_FALSE(fit.is_settled()) << i;
+  }
+  for (int i = 100; i < 130; ++i) {
+    fit.Add(milliseconds(100 * i), milliseconds(90));
+    EXPECT_FALSE(fit.is_settled()) << i;
+  }
+  fit.Add(seconds(13), milliseconds(90));
+  EXPECT_TRUE(fit.is_settled());
 }
 
 TEST(ClockFit, KeepsTheDriftAcrossASmallStepOfTheHost) {

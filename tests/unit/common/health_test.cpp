@@ -26,7 +26,7 @@ TEST(HealthReporter, TellsTrafficCountersAndTheMachine) {
   EXPECT_EQ(message.process, "test");
   EXPECT_EQ(message.state, health_t::STATE_STARTING);
   EXPECT_EQ(message.reason, "no lidar");
-  ASSERT_EQ(message.num_counters, 2);  // and messages_not_sent
+  ASSERT_EQ(message.num_counters, 3);  // and messages_not_sent, second_publisher
   EXPECT_EQ(message.counters[0].name, "bad_flag");
   EXPECT_EQ(message.counters[0].count, 7);
   ASSERT_EQ(message.num_channels, 2);  // in and out
@@ -54,6 +54,49 @@ TEST(HealthReporter, IsStartingUntilItIsOkOnce) {
   EXPECT_EQ(reporter.Make(Utime(), waits, bus).state, health_t::STATE_DEGRADED);
 }
 
+TEST(HealthReporter, TellsOfASecondPublisherForAMinuteAndKeepsTheCount) {
+  bus::MemoryBus bus;
+  std::chrono::nanoseconds now{0};
+  bus.GuardStreams([&now] { return now; });
+  std::int64_t num_taken = 0;
+  bus::Subscribe<lidar_nmea_t>(bus, bus::kLidarNmea, [&num_taken](const lidar_nmea_t&) { ++num_taken; });
+  const auto publish = [&](std::int64_t seq, std::int64_t utime_us) {
+    lidar_nmea_t message{};
+    message.seq = seq;
+    message.utime_us = utime_us;
+    bus::Publish(bus, bus::kLidarNmea, message);
+    while (bus.HandleOnce()) {
+    }
+  };
+  const auto pass = [&](int num_tenths) {
+    for (int i = 0; i < num_tenths; ++i) {
+      now += std::chrono::milliseconds(100);
+      bus.ReleaseHeld();
+    }
+  };
+  HealthReporter reporter("test");
+  EXPECT_EQ(reporter.Make(Utime(), {}, bus).state, health_t::STATE_OK);
+  for (int i = 0; i < 10; ++i) {
+    publish(500 + i, 500'000 * i);
+    pass(2);
+    publish(3 + i, 500'000 * i + 200'000);
+    pass(3);
+  }
+  publish(510, 5'000'000);
+  EXPECT_EQ(num_taken, 11);
+  auto message = reporter.Make(Utime(), {}, bus);
+  EXPECT_EQ(message.state, health_t::STATE_DEGRADED);
+  EXPECT_NE(message.reason.find("LIDAR_NMEA has two publishers: 10 messages of the second were refused"), std::string::npos) << message.reason;
+  EXPECT_EQ(reporter.Make(Utime(), {HealthState::kFailed, "disk full", {}}, bus).state, health_t::STATE_FAILED);
+  pass(599);
+  EXPECT_EQ(reporter.Make(Utime(), {}, bus).state, health_t::STATE_DEGRADED);
+  pass(1);
+  message = reporter.Make(Utime(), {}, bus);
+  EXPECT_EQ(message.state, health_t::STATE_OK) << message.reason;
+  ASSERT_EQ(message.counters.back().name, "second_publisher");
+  EXPECT_EQ(message.counters.back().count, 10);
+}
+
 // A report between two keeps what was measured over the last second: over some milliseconds a rate says nothing.
 TEST(HealthReporter, TellsBetweenTwoReportsWhatIsNewAndKeepsTheRates) {
   bus::MemoryBus bus;
@@ -70,7 +113,7 @@ TEST(HealthReporter, TellsBetweenTwoReportsWhatIsNewAndKeepsTheRates) {
   EXPECT_EQ(between.utime_us, 1'200'000);
   EXPECT_EQ(between.state, health_t::STATE_DEGRADED);
   EXPECT_EQ(between.reason, "obstacle");
-  ASSERT_EQ(between.num_counters, 2);
+  ASSERT_EQ(between.num_counters, 3);
   EXPECT_EQ(between.counters[0].name, "alarms");
   EXPECT_EQ(between.interval_s, whole.interval_s);
   EXPECT_EQ(between.cpu_fraction, whole.cpu_fraction);

@@ -57,10 +57,10 @@ class DrawnBoat {
     const Eigen::AngleAxisd turn(begin.R_map_vessel.transpose() * end.R_map_vessel);
     const auto earth = filter::EarthAt({kLatitudeDeg, kLongitudeDeg, 0.0});
     const Eigen::Vector3d acceleration_mps2 =
-        (end.velocity_map_mps - begin.velocity_map_mps) / step_s + 2.0 * earth.rate_map_radps.cross(middle.velocity_map_mps);
+        (end.velocity_map_mps - begin.velocity_map_mps) / step_s + 2.0 * earth.rate_level_radps.cross(middle.velocity_map_mps);
     ImuSample sample;
     sample.time = NoonPlus(t);
-    sample.angular_velocity_radps = turn.angle() / step_s * turn.axis() + middle.R_map_vessel.transpose() * earth.rate_map_radps + gyro_bias_radps_;
+    sample.angular_velocity_radps = turn.angle() / step_s * turn.axis() + middle.R_map_vessel.transpose() * earth.rate_level_radps + gyro_bias_radps_;
     sample.specific_force_mps2 =
         middle.R_map_vessel.transpose() * (acceleration_mps2 + Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2)) + accelerometer_bias_mps2_;
     for (int axis = 0; axis < 3; ++axis) {

@@ -59,17 +59,15 @@ TEST_F(InputsTest, AreTakenManyAtOnce) {
     input { name: 'ahrs' role: ATTITUDE tcp { address: '192.168.1.7' port: 10111 } roll_positive: PORT_DOWN pitch_positive: BOW_DOWN }
     input { name: 'daemon' gpsd {} }
     input { name: 'mux' udp { bind_address: '127.0.0.1' port: 2000 } checksum_required: false deviation_deg: 1 declination_deg: -2 }
-    input { name: 'day' text_log { file: 'day.nmea' speed: 10 } }
     input { name: 'lidar' latency_s: 0.2 })");
-  ASSERT_EQ(params.connections.size(), 5U);
+  ASSERT_EQ(params.connections.size(), 4U);
   EXPECT_EQ(params.connections[0].baud, 38400);
   EXPECT_EQ(params.connections[2].address, "127.0.0.1");
   EXPECT_EQ(params.connections[2].port, 2947);
-  EXPECT_EQ(params.connections[4].file, folder_ / "day.nmea");
   EXPECT_EQ(params.source_of_port.at(2000), "mux");
   EXPECT_EQ(params.source_of_port.at(10110), "udp") << "in captures";
   const auto& sources = params.navigator.sources;
-  ASSERT_EQ(sources.size(), 6U);
+  ASSERT_EQ(sources.size(), 5U);
   EXPECT_EQ(sources[0].role, Role::kGnss);
   EXPECT_EQ(sources[0].latency, std::chrono::milliseconds(80));
   EXPECT_EQ(sources[1].roll_sign, -1.0);
@@ -95,6 +93,37 @@ TEST_F(InputsTest, AreRefusedWithLineAndReason) {
   ExpectFault(kLive + "bind_address: 'eth0'", ":2: bind_address: 'eth0' is no numeric address");
   ExpectFault(kLive + "input { name: 'a' gpsd {} latency_s: -1 }", "input.latency_s: must be at least 0");
   ExpectFault("source: LIVE use_lidar_nmea: false", ":1: source: is LIVE, but there is nothing to take");
+}
+
+const std::string kPlayed = "source: LIVE use_lidar_nmea: false\n";
+
+TEST_F(InputsTest, MayBeTextLogsAlone) {
+  std::ofstream(folder_ / "second.nmea") << "$GPHDT,1.0,T*00\n";
+  const std::string day = "input { name: 'day' text_log { file: 'day.nmea' speed: 10 date: '2026-07-01' } }\n";
+  const auto params = Load(kPlayed + day + "input { name: 'second' text_log { file: 'second.nmea' speed: 10 } }");
+  ASSERT_EQ(params.connections.size(), 2U);
+  EXPECT_EQ(params.connections[0].file, folder_ / "day.nmea");
+  EXPECT_EQ(params.connections[0].day, std::chrono::sys_days(std::chrono::year(2026) / 7 / 1));
+  EXPECT_FALSE(params.connections[1].day);
+  EXPECT_NE(InWords(params).find("played at its own times: POSE is not of now"), std::string::npos);
+}
+
+// The live ones have times of now: at any speed but 1 both together gave poses that were wrong by the way of the boat.
+TEST_F(InputsTest, MustNotMixTextLogsWithWhatComesLive) {
+  const std::string day = "input { name: 'day' text_log { file: 'day.nmea' } }\n";
+  ExpectFault(kLive + day, ":1: use_lidar_nmea: must be false beside the text log of input 'day'");
+  ExpectFault(kPlayed + "bind_address: '0.0.0.0'\n" + day,
+              ":3: input: 'day': a text log is played at its own times, and input 'udp' comes at those of now");
+  ExpectFault(kPlayed + day + "input { name: 'daemon' gpsd {} }", "and input 'daemon' comes at those of now");
+  std::ofstream(folder_ / "second.nmea") << "$GPHDT,1.0,T*00\n";
+  ExpectFault(kPlayed + day + "input { name: 'second' text_log { file: 'second.nmea' speed: 2 } }",
+              ":3: input: 'second': text_log.speed must be that of input 'day'");
+}
+
+TEST_F(InputsTest, RefuseATextLogThatIsEmptyOrADateThatIsNone) {
+  std::ofstream(folder_ / "empty.nmea").flush();
+  ExpectFault(kPlayed + "input { name: 'a' text_log { file: 'empty.nmea' } }", "empty.nmea' is empty");
+  ExpectFault(kPlayed + "input { name: 'a' text_log { file: 'day.nmea' date: '1.7.2026' } }", "text_log.date '1.7.2026' is no day as 2026-07-01");
 }
 
 TEST_F(InputsTest, MustNotShareADeviceOrAPort) {

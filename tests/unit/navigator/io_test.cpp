@@ -21,7 +21,6 @@
 #include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/source.hpp"
 #include "services/navigator/io/tcp_client.hpp"
-#include "services/navigator/io/text_log_player.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -325,39 +324,6 @@ TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
   waitpid(child, nullptr, 0);
   EXPECT_NE(text.find(line.substr(0, line.size() - 2)), std::string::npos) << source->fault() << "\n" << text;
 }
-
-class TextLogTest : public SourceTest {
- protected:
-  TextLogTest() {
-    std::ofstream(file_) << "# a log\n"
-                         << RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0) << "\r\n"
-                         << HdtLine(1.0) << "\n"
-                         << RmcLine(NoonPlus(1.0), 50.0, 8.0, 2.0, 30.0) << "\n"
-                         << RmcLine(NoonPlus(500.0), 50.0, 8.0, 2.0, 30.0);
-  }
-  ~TextLogTest() override { std::filesystem::remove(file_); }
-  int NumDue(Source& source) const {
-    int num_lines = 0;
-    while (source.Receive(now_)) ++num_lines;
-    return num_lines;
-  }
-  std::unique_ptr<Source> Open(double speed) const { return std::make_unique<TextLogPlayer>("log", file_, speed); }
-
-  std::filesystem::path file_ = std::filesystem::temp_directory_path() / ("lookout_text_log_" + std::to_string(getpid()));
-};
-
-TEST_F(TextLogTest, IsPlayedByTheTimesInItsSentences) {
-  const auto source = Open(2.0);
-  EXPECT_EQ(NumDue(*source), 3);
-  now_ += 499ms;
-  EXPECT_EQ(NumDue(*source), 0);
-  now_ += 1ms;
-  EXPECT_EQ(NumDue(*source), 2) << "a long silence is not waited for";
-  EXPECT_TRUE(source->is_finished());
-  EXPECT_EQ(Count(*source, "log_lines"), 5);
-}
-
-TEST_F(TextLogTest, IsPlayedAtOnceAtSpeed0) { EXPECT_EQ(NumDue(*Open(0.0)), 5); }
 
 }  // namespace
 }  // namespace lookout::navigator

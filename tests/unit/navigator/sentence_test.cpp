@@ -95,6 +95,14 @@ TEST(SplitDatagram, FindsASentenceBehindBinaryBytes) {
   EXPECT_EQ(lines.num_not_printable, 0);
 }
 
+// The last bytes of a binary message may look like text, also like a start; and a line may have been broken off by the next.
+TEST(SplitDatagram, FindsASentenceBehindWhatOnlyBeginsAsOne) {
+  EXPECT_EQ(Lines("\x01!#$%&[$C*43\r\n"), std::vector<std::string>{"$C*43"});
+  EXPECT_EQ(Lines("$GPGGA,12$C*43\r\n"), std::vector<std::string>{"$C*43"});
+  EXPECT_EQ(Lines(std::string(10'000, '$') + "$C*43\r\n"), std::vector<std::string>{"$C*43"});
+  EXPECT_EQ(Lines("$GPGGA,12$C*44\r\n"), std::vector<std::string>{"$GPGGA,12$C*44"}) << "its checksum is wrong too: it is counted as it stands";
+}
+
 TEST(LineAssembler, PutsPiecesTogether) {
   const std::string text = "1,2*00\r\n$GPHDT,1.0,T*00\r\n$GPHDT,2.0,T*00\r\n";
   for (std::size_t size = 1; size <= text.size(); ++size) {

@@ -190,6 +190,51 @@ TEST_F(Recorder, NamesTwentyUnknownChannelsAndCountsTheRest) {
   EXPECT_EQ(Count(service, "unknown_channel"), 30);
 }
 
+// A bus that hands over whatever a transport other than UDP may bring.
+class AnythingBus final : public bus::Bus {
+ public:
+  bool HandleOnce(std::chrono::milliseconds /*timeout*/) override { return false; }
+  int QueueDepth(std::string_view /*channel*/) const override { return -1; }
+  void Bring(std::string_view channel, Bytes bytes) { handler_(channel, bytes); }
+
+ protected:
+  bool Send(const bus::Channel& /*channel*/, Bytes /*bytes*/) override { return true; }
+  void Attach(const bus::Channel* /*channel*/, RawHandler handler) override { handler_ = std::move(handler); }
+
+ private:
+  RawHandler handler_;
+};
+
+TEST_F(Recorder, CountsAndTellsOnceWhatALogCannotHold) {
+  AnythingBus anything;
+  Service service(anything, params_, run_info_t{}, [this] { return now_; });
+  const std::vector<std::uint8_t> most(16U * 1024 * 1024);
+  auto more = most;
+  more.push_back(0);
+  const std::string longest(63, 'N');
+  for (int i = 0; i < 2; ++i) {
+    anything.Bring("HUGE\x1b", more);
+    anything.Bring(longest + "N", Bytes(most).first(3));
+    anything.Bring(std::string(2000, 'N'), Bytes(most).first(3));
+    anything.Bring("", Bytes(most).first(3));
+  }
+  anything.Bring("LARGE", most);
+  anything.Bring(longest, Bytes(most).first(3));
+  EXPECT_EQ(Count(service, "event_too_large"), 2);
+  EXPECT_EQ(Count(service, "channel_name_too_long"), 4);
+  EXPECT_EQ(Count(service, "nameless_channel"), 2);
+  const auto warnings = service.TakeWarnings();
+  ASSERT_EQ(warnings.size(), 5U);
+  EXPECT_EQ(warnings[0], "an event of 16777217 bytes on channel HUGE? (16777216 are allowed) cannot be recorded; further ones are counted in HEALTH");
+  EXPECT_NE(warnings[1].find("a name of 64 bytes (63 are allowed)"), std::string::npos) << warnings[1];
+  EXPECT_NE(warnings[2].find("without name"), std::string::npos) << warnings[2];
+  service.Flush();
+  const auto events = Events(service.log_file());
+  ASSERT_EQ(events.size(), 3U) << "RUN_INFO and what can be recorded";
+  EXPECT_EQ(events[1].bytes, most);
+  EXPECT_EQ(events[2].channel, longest);
+}
+
 TEST_F(Recorder, CountsRawMessagesThatDidNotArrive) {
   Service service = Make();
   nav_raw_t message{};

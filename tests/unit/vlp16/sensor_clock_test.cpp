@@ -366,10 +366,18 @@ TEST(SensorClock, IsUnknownWithoutPositionPacketsAndWhenTheyStop) {
   position.pps = format::kPpsLocked;
   position.time = SentenceTime{hours(12), sys_days(year(2026) / 6 / 15)};
   clock.OnPositionPacket(noon, position, microseconds(0));
-  EXPECT_EQ(clock.Read(noon + seconds(3)).state, ClockState::kLocked);
-  EXPECT_EQ(clock.Read(noon + seconds(2)).rmc_age, seconds(2));
-  EXPECT_EQ(clock.Read(noon + microseconds(3'000'001)).state, ClockState::kUnknown);
-  EXPECT_EQ(clock.Read(noon - seconds(4)).state, ClockState::kUnknown);  // the host's clock was set back
+  const auto read_after = [&](microseconds time, microseconds host_error) {
+    packet.is_restart = false;
+    packet.time = time;
+    packet.host_time = noon + time + host_error;
+    clock.OnDataPacket(packet);
+    return clock.Read(packet.host_time);
+  };
+  EXPECT_EQ(read_after(seconds(2), seconds(0)).rmc_age, seconds(2));
+  EXPECT_EQ(read_after(seconds(3), seconds(0)).state, ClockState::kLocked);
+  EXPECT_EQ(read_after(seconds(3), seconds(-4)).state, ClockState::kLocked) << "the host's clock was set back: that says nothing of the sensor's";
+  EXPECT_EQ(read_after(seconds(3), seconds(12)).state, ClockState::kLocked) << "late";
+  EXPECT_EQ(read_after(microseconds(3'000'001), seconds(0)).state, ClockState::kUnknown);
 }
 
 TEST(SensorClock, MeasuresTheAgeOfAnRmcFromWhenItWasNew) {
@@ -381,7 +389,11 @@ TEST(SensorClock, MeasuresTheAgeOfAnRmcFromWhenItWasNew) {
   PositionPacket position;
   position.pps = format::kPpsLocked;
   position.time = SentenceTime{hours(12), sys_days(year(2026) / 6 / 15)};
-  for (int i = 0; i < 20; ++i) clock.OnPositionPacket(noon + i * milliseconds(100), position, microseconds(0));
+  for (int i = 0; i < 20; ++i) clock.OnPositionPacket(noon + i * milliseconds(100), position, i * milliseconds(100));
+  packet.is_restart = false;
+  packet.time = seconds(2);
+  packet.host_time = noon + seconds(2);
+  clock.OnDataPacket(packet);
   EXPECT_EQ(clock.Read(noon + seconds(2)).rmc_age, seconds(2));
 }
 

@@ -71,11 +71,11 @@ bool IsStateWrong(const Eigen::Vector3d& residual, double sd, Utime time, std::c
   return time - *refusals.since >= max_refusal;
 }
 
-// The lever arm in the map. Without heading east and north are left to the position, which is then that of the antenna.
-Eigen::Vector3d LeverMap(const FilterParams& params, const State& state) {
-  Eigen::Vector3d lever_map_m = state.q_map_vessel * AntennaLever(params);
-  if (!state.has_heading) lever_map_m.head<2>().setZero();
-  return lever_map_m;
+// The lever arm in the level frame. Without heading east and north are left to the position, which is then that of the antenna.
+Eigen::Vector3d LeverLevel(const FilterParams& params, const State& state) {
+  Eigen::Vector3d lever_level_m = state.q_level_vessel * AntennaLever(params);
+  if (!state.has_heading) lever_level_m.head<2>().setZero();
+  return lever_level_m;
 }
 
 double White(double sd, double slow_sd) { return std::sqrt(std::max(sd * sd - slow_sd * slow_sd, 0.01 * sd * sd)); }
@@ -103,13 +103,16 @@ void ModelHeading(const ErrorModel& model, State& state) {
 // The bound of a kind is wider for what is of that kind already: a deviation that hovers about it does not make a new error each time.
 double Bound(double max_sd, bool is_of_kind) { return is_of_kind ? max_sd / kSameErrorRatio : max_sd; }
 
+Eigen::Vector3d AntennaOf(const FixMeasurement& fix, const State& state) { return state.level->frame.Forward(fix.antenna); }
+
+// Precondition, as of all that follows about places: there is a level frame.
 Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params, const State& state) {
-  const Eigen::Vector3d lever_map_m = LeverMap(params, state);
+  const Eigen::Vector3d lever_level_m = LeverLevel(params, state);
   Innovation<2> innovation;
-  innovation.residual = (fix.antenna_map_m - state.p_map_m - lever_map_m - state.fix_error_m).head<2>();
+  innovation.residual = (AntennaOf(fix, state) - state.p_level_m - lever_level_m - state.fix_error_m).head<2>();
   innovation.jacobian.middleCols<2>(kPosition).setIdentity();
   innovation.jacobian.middleCols<2>(kFixError).setIdentity();
-  if (state.has_heading) innovation.jacobian.middleCols<3>(kRotation) = -Cross(lever_map_m).topRows<2>();
+  if (state.has_heading) innovation.jacobian.middleCols<3>(kRotation) = -Cross(lever_level_m).topRows<2>();
   const double white_m = White(fix.horizontal_sd_m, state.fix_error_model.sd);
   innovation.noise.diagonal().setConstant(white_m * white_m);
   return innovation;
@@ -125,17 +128,18 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     const double sd_m = std::max(fix.horizontal_sd_m, std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1))));
     if (!IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals)) return;
     ++verdict.num_renewed;
-    state.has_position = state.has_height = false;
+    ForgetPlace(state);
   }
   if (!is_taken) {
     // It says where the boat is, whatever was known. So does its velocity.
     const bool knew_velocity = state.timed_velocity.IsWithin(state.time, kTimedVelocityAge) && !state.fix_refusals.since;
-    state.p_map_m.head<2>() = (fix.antenna_map_m - LeverMap(params, state) - state.fix_error_m).head<2>();
+    BeginLevel(fix.antenna, -(LeverLevel(params, state) + state.fix_error_m).head<2>(), state);
     Renew<2>(kPosition, Eigen::Vector2d::Constant(kAnywhereM), state);
     Judge(HorizontalOf(fix, params, state), true, state, verdict);
     state.has_position = true;
     if (fix.velocity && !knew_velocity) {
-      state.velocity_map_mps.head<2>() = fix.velocity->east_north_mps;
+      const Eigen::Vector3d velocity_here_mps(fix.velocity->east_north_mps.x(), fix.velocity->east_north_mps.y(), 0.0);
+      state.velocity_level_mps.head<2>() = (HereOf(state).R_here_level.transpose() * velocity_here_mps).head<2>();
       Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }
@@ -145,13 +149,13 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
 }
 
 void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
-  if (std::isnan(fix.antenna_map_m.z())) return;
-  const double up_m = fix.antenna_map_m.z() - LeverMap(params, state).z() - state.fix_error_m.z();
+  if (!fix.has_height) return;
+  const double up_m = AntennaOf(fix, state).z() - LeverLevel(params, state).z() - state.fix_error_m.z();
   const bool is_first = !state.has_height;
   if (is_first) {
     // The boat and the water under it are somewhere together.
-    state.water_level_m += up_m - state.p_map_m.z();
-    state.p_map_m.z() = up_m;
+    state.water_level_m += up_m - state.p_level_m.z();
+    state.p_level_m.z() = up_m;
     for (const int row : {static_cast<int>(kPosition) + 2, static_cast<int>(kWaterLevel)}) {
       for (const int column : {static_cast<int>(kPosition) + 2, static_cast<int>(kWaterLevel)}) {
         state.covariance(row, column) += kAnywhereM * kAnywhereM;
@@ -160,10 +164,10 @@ void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& s
     state.has_height = true;
   }
   Innovation<1> innovation;
-  innovation.residual[0] = up_m - state.p_map_m.z();
+  innovation.residual[0] = up_m - state.p_level_m.z();
   innovation.jacobian(0, kPosition + 2) = 1.0;
   innovation.jacobian(0, kFixError + 2) = 1.0;
-  innovation.jacobian.middleCols<3>(kRotation) = -Cross(LeverMap(params, state)).row(2);
+  innovation.jacobian.middleCols<3>(kRotation) = -Cross(LeverLevel(params, state)).row(2);
   const double white_m = White(fix.vertical_sd_m, state.fix_error_model.up_factor * state.fix_error_model.sd);
   innovation.noise(0, 0) = white_m * white_m;
   Judge(innovation, is_first, state, verdict);
@@ -171,25 +175,29 @@ void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& s
 
 // Error of a heading, of which the attitude takes what the compass's slow error does not.
 bool JudgeHeading(double heading_rad, double noise_rad, bool is_forced, State& state, Verdict& verdict) {
-  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  const Here here = HereOf(state);
+  const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.R_level_vessel();
   Innovation<1> innovation;
-  innovation.residual[0] = WrapToPi(heading_rad - state.heading_error_rad - AnglesOf(R_map_vessel)[2]);
-  innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_map_vessel).row(2);
+  innovation.residual[0] = WrapToPi(heading_rad - state.heading_error_rad - AnglesOf(R_here_vessel)[2]);
+  innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_here_vessel).row(2) * here.R_here_level;
+  innovation.jacobian.middleCols<3>(kPosition) = here.heading_per_east_radpm * here.R_here_level.row(0);
   innovation.jacobian(0, kHeadingError) = 1.0;
   innovation.noise(0, 0) = noise_rad * noise_rad;
   return Judge(innovation, is_forced, state, verdict);
 }
 
+double HeadingOf(const State& state) { return AnglesOf(HereOf(state).R_here_level * state.R_level_vessel())[2]; }
+
 // The heading becomes known.
 void BeginHeading(double heading_rad, double noise_rad, HeadingSource source, const FilterParams& params, State& state, Verdict& verdict) {
   // Meanwhile position is that of the antenna, as it was before there was a heading.
-  if (state.has_position && state.has_heading) ShiftPosition(LeverMap(params, state), state);
-  TurnClockwise(WrapToPi(heading_rad - state.heading_error_rad - AnglesOf(state.R_map_vessel())[2]), state);
+  if (state.has_position && state.has_heading) ShiftPosition(LeverLevel(params, state), state);
+  TurnClockwise(WrapToPi(heading_rad - state.heading_error_rad - HeadingOf(state)), state);
   Renew<1>(kRotation + 2, Eigen::Matrix<double, 1, 1>(kAnyHeadingRad), state);
   JudgeHeading(heading_rad, noise_rad, true, state, verdict);
   state.has_heading = true;
   state.heading_source = source;
-  if (state.has_position) ShiftPosition(-LeverMap(params, state), state);
+  if (state.has_position) ShiftPosition(-LeverLevel(params, state), state);
 }
 
 void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, double noise_rad, HeadingSource source, Input& input,
@@ -199,7 +207,7 @@ void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, do
   if (!state.has_heading || is_other_kind) {
     BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
   } else if (!JudgeHeading(heading_rad, noise_rad, false, state, verdict)) {
-    const double residual_rad = WrapToPi(heading_rad - AnglesOf(state.R_map_vessel())[2]);
+    const double residual_rad = WrapToPi(heading_rad - HeadingOf(state));
     if (!IsStateWrong(Eigen::Vector3d(residual_rad, 0.0, 0.0), sd_rad, state.time, kMaxRefusal, state.heading_refusals)) return;
     ++verdict.num_renewed;
     BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
@@ -242,11 +250,12 @@ void ApplyCompass(const AttitudeMeasurement& attitude, const FilterParams& param
 Innovation<2> TiltOf(const AttitudeMeasurement& attitude, const State& state) {
   const double roll_sd_rad = Thinned(attitude.roll_sd_rad, kTiltCorrelationS, state.tilt, state.time);
   const double pitch_sd_rad = Thinned(attitude.pitch_sd_rad, kTiltCorrelationS, state.tilt, state.time);
-  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
-  const Eigen::Vector3d angles_rad = AnglesOf(R_map_vessel);
+  const Here here = HereOf(state);
+  const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.R_level_vessel();
+  const Eigen::Vector3d angles_rad = AnglesOf(R_here_vessel);
   Innovation<2> innovation;
   innovation.residual = {WrapToPi(attitude.roll_rad - angles_rad[0]), WrapToPi(attitude.pitch_rad - angles_rad[1])};
-  innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_map_vessel).topRows<2>();
+  innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_here_vessel).topRows<2>() * here.R_here_level;
   innovation.noise.diagonal() = Eigen::Vector2d(roll_sd_rad * roll_sd_rad, pitch_sd_rad * pitch_sd_rad);
   return innovation;
 }
@@ -261,12 +270,12 @@ void ApplyTilt(const AttitudeMeasurement& attitude, const FilterParams& params, 
     ++verdict.num_renewed;
   }
   if (!is_taken) {
-    const Eigen::Vector3d lever_map_m = LeverMap(params, state);
+    const Eigen::Vector3d lever_level_m = LeverLevel(params, state);
     const Eigen::Quaterniond q_level_vessel =
         RotationBy(Eigen::Vector3d(0.0, -attitude.pitch_rad, 0.0)) * RotationBy(Eigen::Vector3d(attitude.roll_rad, 0.0, 0.0));
     BeginTilt(q_level_vessel, kAnyTiltRad, state);
     Judge(TiltOf(attitude, state), true, state, verdict);
-    if (state.has_position) state.p_map_m += lever_map_m - LeverMap(params, state);
+    if (state.has_position) state.p_level_m += lever_level_m - LeverLevel(params, state);
   }
   state.tilt_refusals = {};
   state.tilt.Use(state.time);
@@ -274,13 +283,13 @@ void ApplyTilt(const AttitudeMeasurement& attitude, const FilterParams& params, 
 
 // How much higher the origin lies than if the boat were level.
 double SwingUp(const FilterParams& params, const State& state) {
-  return (state.q_map_vessel * params.p_vessel_imu_m).z() - params.p_vessel_imu_m.z();
+  return (state.q_level_vessel * params.p_vessel_imu_m).z() - params.p_vessel_imu_m.z();
 }
 
 void ApplyHeave(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
   if (std::isnan(attitude.heave_m)) return;
   Innovation<1> innovation;
-  innovation.residual[0] = attitude.heave_m + SwingUp(params, state) - (state.p_map_m.z() - state.water_level_m);
+  innovation.residual[0] = attitude.heave_m + SwingUp(params, state) - (state.p_level_m.z() - state.water_level_m);
   innovation.jacobian(0, kPosition + 2) = 1.0;
   innovation.jacobian(0, kWaterLevel) = -1.0;
   const double noise_m = Thinned(kHeaveSdM, kTiltCorrelationS, state.heave, state.time);
@@ -303,19 +312,23 @@ void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, 
 
 void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, Verdict& verdict) {
   if (!velocity.has_own_time && state.timed_velocity.IsWithin(state.time, kTimedVelocityAge)) return;
-  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  const Eigen::Matrix3d R_level_vessel = state.R_level_vessel();
   const Eigen::Vector3d lever_m = AntennaLever(params);
   Innovation<2> innovation;
-  innovation.residual = velocity.east_north_mps - state.velocity_map_mps.head<2>();
-  innovation.jacobian.middleCols<2>(kVelocity).setIdentity();
+  const Here here = HereOf(state);
+  const Eigen::Vector3d velocity_here_mps = here.R_here_level * state.velocity_level_mps;
+  innovation.residual = velocity.east_north_mps - velocity_here_mps.head<2>();
+  innovation.jacobian.middleCols<3>(kVelocity) = here.R_here_level.topRows<2>();
+  innovation.jacobian.middleCols<3>(kPosition) =
+      here.heading_per_east_radpm * Eigen::Vector2d(velocity_here_mps.y(), -velocity_here_mps.x()) * here.R_here_level.row(0);
   const bool is_rtk = state.fix_error_model.kind == ErrorKind::kRtk;
   double noise_mps = is_rtk ? velocity.sd_mps : Thinned(velocity.sd_mps, kVelocityCorrelationS, state.velocity, state.time);
   if (!velocity.has_own_time) noise_mps = Hypot(noise_mps, kLateVelocitySdMps);
   if (state.has_heading) {
-    const Eigen::Vector3d swing_map_mps = R_map_vessel * state.angular_velocity_radps.cross(lever_m);
-    innovation.residual -= swing_map_mps.head<2>();
-    innovation.jacobian.middleCols<3>(kRotation) = -Cross(swing_map_mps).topRows<2>();
-    innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (R_map_vessel * Cross(lever_m)).topRows<2>();
+    const Eigen::Vector3d swing_level_mps = R_level_vessel * state.angular_velocity_radps.cross(lever_m);
+    innovation.residual -= (here.R_here_level * swing_level_mps).head<2>();
+    innovation.jacobian.middleCols<3>(kRotation) = -(here.R_here_level * Cross(swing_level_mps)).topRows<2>();
+    innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (here.R_here_level * R_level_vessel * Cross(lever_m)).topRows<2>();
   } else {
     noise_mps = Hypot(noise_mps, kUnknownTurnRadps * lever_m.norm());
   }

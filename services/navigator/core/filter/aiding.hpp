@@ -12,7 +12,7 @@
 
 namespace lookout::navigator::filter {
 
-/// Velocity of the antenna over ground.
+/// Velocity of the antenna over ground, against east and north where the boat is.
 struct VelocityMeasurement {
   Eigen::Vector2d east_north_mps = Eigen::Vector2d::Zero();
   double sd_mps = 0.0;  // per axis
@@ -25,13 +25,14 @@ struct VelocityMeasurement {
 struct FixMeasurement {
   std::string source;
   bool is_gga = false;
-  Eigen::Vector3d antenna_map_m = Eigen::Vector3d::Constant(kNan);  // up is NaN where the height is not said
-  double horizontal_sd_m = 0.0;                                     // per axis
+  GeodeticPlace antenna;  // where the height is not said, that of the datum
+  bool has_height = false;
+  double horizontal_sd_m = 0.0;  // per axis
   double vertical_sd_m = 0.0;
   std::optional<VelocityMeasurement> velocity;
 };
 
-/// Of the vessel frame; NaN = not said.
+/// Of the vessel frame, against north and up where the boat is; NaN = not said.
 struct AttitudeMeasurement {
   double heading_rad = kNan;
   double heading_sd_rad = 0.0;
@@ -60,7 +61,7 @@ void Apply(const VelocityMeasurement& velocity, const FilterParams& params, Stat
 void Apply(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict);
 
 /// Gravity as the IMU feels it: levels the attitude while accelerometers do not carry the motion.
-void Apply(const InertialSample& sample, const Earth& earth, State& state);
+void Apply(const InertialSample& sample, State& state);
 
 /// The vessel floats: its up is that of the water, in the mean. At most once a second.
 void ApplyWater(State& state);

@@ -28,7 +28,8 @@ constexpr auto kWaterPeriod = 1s;
 
 }  // namespace
 
-void Apply(const InertialSample& sample, const Earth& earth, State& state) {
+void Apply(const InertialSample& sample, State& state) {
+  const Earth earth = EarthOf(state);
   const double since_s = state.imu.last ? SecondsBetween(*state.imu.last, state.time) : 0.0;
   const bool is_first = !state.imu.last || since_s > kCalmMeanTimeS;
   state.imu.Use(state.time);
@@ -53,10 +54,10 @@ void Apply(const InertialSample& sample, const Earth& earth, State& state) {
   state.force_sum_mps2 += force_mps2;
   ++state.num_forces;
   if (since_s * state.num_forces < kLevelPeriodS) return;
-  const Eigen::Vector3d up_vessel_mps2 = state.q_map_vessel.conjugate() * Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2);
+  const Eigen::Vector3d up_vessel_mps2 = state.q_level_vessel.conjugate() * Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2);
   Innovation<3> innovation;
   innovation.residual = state.force_sum_mps2 / state.num_forces - up_vessel_mps2;
-  innovation.jacobian.middleCols<3>(kRotation) = state.R_map_vessel().transpose() * Cross(Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2));
+  innovation.jacobian.middleCols<3>(kRotation) = state.R_level_vessel().transpose() * Cross(Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2));
   const bool is_calm = state.force_variance_mps2_2 < kCalmMaxVariance && state.angular_velocity_radps.norm() < kCalmMaxRateRadps;
   const double sd_mps2 = is_calm ? kCalmForceSdMps2 : kForceSdMps2;
   innovation.noise.diagonal().setConstant(2.0 * sd_mps2 * sd_mps2 * kForceTimeS / kLevelPeriodS);
@@ -69,7 +70,7 @@ void ApplyWater(State& state) {
   if (state.last_water_aid && state.time - *state.last_water_aid < kWaterPeriod) return;
   state.last_water_aid = state.time;
   Innovation<2> innovation;
-  innovation.residual = {state.water_level_m - state.p_map_m.z(), -state.velocity_map_mps.z()};
+  innovation.residual = {state.water_level_m - state.p_level_m.z(), -state.velocity_level_mps.z()};
   innovation.jacobian(0, kPosition + 2) = 1.0;
   innovation.jacobian(0, kWaterLevel) = -1.0;
   innovation.jacobian(1, kVelocity + 2) = 1.0;

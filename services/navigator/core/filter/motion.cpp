@@ -5,7 +5,6 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
-#include "common/core/geodesy.hpp"
 
 namespace lookout::navigator::filter {
 
@@ -97,33 +96,34 @@ void SwitchStrapdown(bool is_strapdown, const FilterParams& params, State& state
 // Attitude: gyroscopes, or the rate that fades. A tilt that nobody measures stays.
 void Turn(const InertialSample* sample, double step_s, const Earth& earth, State& state) {
   if (sample != nullptr) {
-    const Eigen::Vector3d earth_rate_radps = state.q_map_vessel.conjugate() * earth.rate_map_radps;
+    const Eigen::Vector3d earth_rate_radps = state.q_level_vessel.conjugate() * earth.rate_level_radps;
     state.angular_velocity_radps = sample->angular_velocity_radps - state.rate - earth_rate_radps;
   } else {
     if (!state.has_tilt) state.rate.head<2>().setZero();
     state.angular_velocity_radps = state.rate;
   }
-  state.q_map_vessel = (state.q_map_vessel * RotationBy(state.angular_velocity_radps * step_s)).normalized();
+  state.q_level_vessel = (state.q_level_vessel * RotationBy(state.angular_velocity_radps * step_s)).normalized();
 }
 
 void Step(const InertialSample* sample, double step_s, const Earth& earth, const FilterParams& params, State& state) {
   auto& covariance = state.covariance;
-  const Eigen::Matrix3d R_begin = state.R_map_vessel();
+  const Eigen::Matrix3d R_begin = state.R_level_vessel();
   Turn(sample, step_s, earth, state);
   const Eigen::Matrix3d R_middle = (R_begin * RotationBy(state.angular_velocity_radps * (step_s / 2.0)).toRotationMatrix()).eval();
   const double half_step2_s2 = step_s * step_s / 2.0;
 
-  Eigen::Vector3d acceleration_map_mps2 = state.acceleration;
+  Eigen::Vector3d acceleration_level_mps2 = state.acceleration;
   Eigen::Matrix3d velocity_by_rotation = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d velocity_by_acceleration = Eigen::Matrix3d::Identity() * step_s;
   if (state.is_strapdown) {
-    const Eigen::Vector3d force_map_mps2 = R_middle * (sample->specific_force_mps2 - state.acceleration);
-    acceleration_map_mps2 = force_map_mps2 - Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2) - 2.0 * earth.rate_map_radps.cross(state.velocity_map_mps);
-    velocity_by_rotation = -step_s * Cross(force_map_mps2);
+    const Eigen::Vector3d force_level_mps2 = R_middle * (sample->specific_force_mps2 - state.acceleration);
+    acceleration_level_mps2 =
+        force_level_mps2 - Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2) - 2.0 * earth.rate_level_radps.cross(state.velocity_level_mps);
+    velocity_by_rotation = -step_s * Cross(force_level_mps2);
     velocity_by_acceleration = -step_s * R_middle;
   }
-  state.p_map_m += step_s * state.velocity_map_mps + half_step2_s2 * acceleration_map_mps2;
-  state.velocity_map_mps += step_s * acceleration_map_mps2;
+  state.p_level_m += step_s * state.velocity_level_mps + half_step2_s2 * acceleration_level_mps2;
+  state.velocity_level_mps += step_s * acceleration_level_mps2;
   const Eigen::Matrix3d rotation_by_rate = (sample != nullptr ? -step_s : step_s) * R_middle;
 
   // Position takes up velocity, velocity attitude and acceleration, attitude rate, each as it was.
@@ -189,7 +189,7 @@ void Forget(const FilterParams& params, State& state) {
         state.has_gyro ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
       // Position is that of the antenna again.
-      if (state.has_position) ShiftPosition(state.R_map_vessel() * AntennaLever(params), state);
+      if (state.has_position) ShiftPosition(state.R_level_vessel() * AntennaLever(params), state);
       state.has_heading = false;
       state.heading_source = HeadingSource::kNone;
       state.heading_refusals = {};
@@ -198,8 +198,8 @@ void Forget(const FilterParams& params, State& state) {
   if (state.has_tilt && !state.has_gyro && !state.tilt.IsWithin(state.time, params.max_attitude_age)) {
     // Level, as boats lie in the mean.
     state.has_tilt = false;
-    const double heading_rad = AnglesOf(state.R_map_vessel())[2];
-    state.q_map_vessel = RotationBy(Eigen::Vector3d(0.0, 0.0, kPi / 2.0 - heading_rad));
+    const double heading_rad = AnglesOf(state.R_level_vessel())[2];
+    state.q_level_vessel = RotationBy(Eigen::Vector3d(0.0, 0.0, kPi / 2.0 - heading_rad));
     const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
     Renew<3>(kRotation, Eigen::Vector3d(params.unmeasured_tilt_sd_rad, params.unmeasured_tilt_sd_rad, std::sqrt(heading_variance)), state);
   }
@@ -208,15 +208,15 @@ void Forget(const FilterParams& params, State& state) {
     const double max_variance = state.position_sd_at_fix_m * state.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
     const bool is_carried = state.fix.IsWithin(state.time, params.max_position_age) && variance <= max_variance;
     if (!is_carried && state.fix.IsStoppedAt(state.time)) {
-      state.has_position = state.has_height = false;
+      ForgetPlace(state);
       state.fix_refusals = {};
     }
   }
   if (!state.has_position) {
-    state.p_map_m.head<2>().setZero();
+    state.p_level_m.head<2>().setZero();
     Renew<2>(kPosition, Eigen::Vector2d::Zero(), state);
     if (state.covariance(kVelocity, kVelocity) > kUnknownSpeedSdMps * kUnknownSpeedSdMps) {
-      state.velocity_map_mps.head<2>().setZero();
+      state.velocity_level_mps.head<2>().setZero();
       Renew<2>(kVelocity, Eigen::Vector2d::Constant(kUnknownSpeedSdMps), state);
     }
   }
@@ -224,15 +224,12 @@ void Forget(const FilterParams& params, State& state) {
 
 }  // namespace
 
-Earth EarthAt(const Datum& datum) {
-  const auto [sin_latitude, cos_latitude] = SinCosOfDegrees(datum.latitude_deg);
-  return {NormalGravityMps2(datum.latitude_deg, datum.ellipsoid_height_m), kEarthRateRadps * Eigen::Vector3d(0.0, cos_latitude, sin_latitude)};
-}
-
-void CarryOn(const InertialSample* sample, Utime time, const Earth& earth, const FilterParams& params, State& state) {
+void CarryOn(const InertialSample* sample, Utime time, const FilterParams& params, State& state) {
+  FollowBoat(state);
   double remaining_s = SecondsBetween(state.time, time);
   if (remaining_s > kMaxSilenceS) {
     State fresh = FreshState(time, params.unmeasured_tilt_sd_rad);
+    fresh.level = state.level;
     // Which inputs there were: HEALTH names those that do not come back.
     fresh.fix = state.fix;
     fresh.sensor_heading = state.sensor_heading;
@@ -248,7 +245,8 @@ void CarryOn(const InertialSample* sample, Utime time, const Earth& earth, const
     const double step_s = std::min(remaining_s, kMaxStepS);
     remaining_s -= step_s;
     state.time = remaining_s > 0.0 ? time - std::chrono::microseconds(std::llround(remaining_s * 1e6)) : time;
-    Step(sample, step_s, earth, params, state);
+    Step(sample, step_s, EarthOf(state), params, state);
+    FollowBoat(state);
     Forget(params, state);
   }
 }

@@ -12,24 +12,16 @@ struct InertialSample {
   Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
 };
 
-/// Gravity and turn of the earth at a place, in the map frame.
-struct Earth {
-  double gravity_mps2 = 9.80665;
-  Eigen::Vector3d rate_map_radps = Eigen::Vector3d::Zero();
-};
-
-/// WGS84's normal gravity and the rate of the earth at the datum.
-Earth EarthAt(const Datum& datum);
-
 /// Carries the state on to `time`.
 ///
 /// With an IMU attitude follows its gyroscopes, and, once position, heading and tilt are known, velocity its accelerometers (strapdown navigation;
 /// Groves, "Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems", 2nd edition, section 5.4). Without it the vessel keeps
 /// its rate of turn and its acceleration, both of which fade (Singer, "Estimating Optimal Tracking Filter Performance for Manned Maneuvering
 /// Targets", IEEE AES 1970): a first-order Gauss-Markov process each.
+/// The level frame follows the boat.
 /// @param sample  of the IMU, for the whole way; nullptr: there is none
 /// @param time    not before that of the state
 /// Cost: some 2 microseconds.
-void CarryOn(const InertialSample* sample, Utime time, const Earth& earth, const FilterParams& params, State& state);
+void CarryOn(const InertialSample* sample, Utime time, const FilterParams& params, State& state);
 
 }  // namespace lookout::navigator::filter

@@ -43,6 +43,9 @@ Eigen::Vector2d VelocityOf(double speed_mps, double course_rad) {
   return speed_mps * Eigen::Vector2d(east, north);
 }
 
+// Without its height.
+GeodeticPlace Flat(const GeodeticPlace& place) { return {place.latitude_deg, place.longitude_deg, 0.0}; }
+
 double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
 
 }  // namespace
@@ -73,7 +76,6 @@ PoseFilter::PoseFilter(const FilterParams& params) : params_(params) {
 void PoseFilter::SetDatum(const Datum& datum) {
   datum_ = datum;
   map_.emplace(GeodeticPlace{datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m});
-  earth_ = filter::EarthAt(datum);
 }
 
 bool PoseFilter::Insert(Utime time, const Measurement& measurement) {
@@ -110,7 +112,7 @@ filter::FixMeasurement* PoseFilter::SameEpoch(const filter::FixMeasurement& fix,
   for (auto event = begin; event != events_.end() && event->time == time; ++event) {
     auto* other = std::get_if<filter::FixMeasurement>(&event->measurement);
     if (other == nullptr) continue;
-    const bool is_same_place = (other->antenna_map_m - fix.antenna_map_m).head<2>().norm() < kSamePlaceM;
+    const bool is_same_place = LocalFrame(Flat(fix.antenna)).Forward(Flat(other->antenna)).head<2>().norm() < kSamePlaceM;
     if (other->source != fix.source && !is_same_place) continue;
     index = static_cast<std::size_t>(event - events_.begin());
     return other;
@@ -130,9 +132,8 @@ void PoseFilter::Add(const GnssFix& fix) {
   filter::FixMeasurement measurement;
   measurement.source = fix.source;
   measurement.is_gga = fix.sentence_type == "GGA";
-  auto& p_map_m = measurement.antenna_map_m;
-  p_map_m = map_->Forward({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m});
-  if (!has_height) p_map_m.z() = kNan;
+  measurement.antenna = {fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m};
+  measurement.has_height = has_height;
   measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
   measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
   const double age_s = PossibleAgeS(fix.when);
@@ -225,9 +226,9 @@ const filter::InertialSample* PoseFilter::SampleFor(std::size_t next_index, Utim
 void PoseFilter::Process(Event& event, std::size_t index) {
   State& state = event.after;
   state = StateBefore(index);
-  CarryOn(SampleFor(index, event.time), event.time, earth_, params_, state);
+  CarryOn(SampleFor(index, event.time), event.time, params_, state);
   filter::Verdict verdict;
-  if (const auto* sample = std::get_if<filter::InertialSample>(&event.measurement)) Apply(*sample, earth_, state);
+  if (const auto* sample = std::get_if<filter::InertialSample>(&event.measurement)) Apply(*sample, state);
   if (const auto* fix = std::get_if<filter::FixMeasurement>(&event.measurement)) Apply(*fix, params_, state, verdict);
   if (const auto* attitude = std::get_if<filter::AttitudeMeasurement>(&event.measurement)) Apply(*attitude, params_, state, verdict);
   if (const auto* velocity = std::get_if<filter::VelocityMeasurement>(&event.measurement)) Apply(*velocity, params_, state, verdict);
@@ -244,7 +245,12 @@ void PoseFilter::Process(Event& event, std::size_t index) {
 void PoseFilter::ProcessUntil(Utime time) {
   for (; num_processed_ < events_.size() && events_[num_processed_].time <= time; ++num_processed_) {
     // What was measured before the first item may still come.
-    if (!base_) base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
+    if (!base_) {
+      base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
+      // Until the first fix says better.
+      if (params_.datum)
+        filter::BeginLevel({datum_->latitude_deg, datum_->longitude_deg, datum_->ellipsoid_height_m}, Eigen::Vector2d::Zero(), *base_);
+    }
     Process(events_[num_processed_], num_processed_);
   }
 }
@@ -252,7 +258,7 @@ void PoseFilter::ProcessUntil(Utime time) {
 Pose PoseFilter::At(Utime time) {
   ProcessUntil(time);
   State state = num_processed_ > 0 || base_ ? StateBefore(num_processed_) : filter::FreshState(time, params_.unmeasured_tilt_sd_rad);
-  CarryOn(SampleFor(num_processed_, time), time, earth_, params_, state);
+  CarryOn(SampleFor(num_processed_, time), time, params_, state);
   state.time = time;
   DropOld();
   stopped_ = filter::StoppedInputs(state);

@@ -99,7 +99,6 @@ class PoseFilter {
   FilterParams params_;
   std::optional<Datum> datum_;
   std::optional<LocalFrame> map_;
-  filter::Earth earth_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;
   std::optional<filter::State> base_;                  // before events_

@@ -23,28 +23,35 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
   Pose pose;
   pose.time = state.time;
   if (datum) pose.datum = *datum;
-  const Eigen::Matrix3d R_map_vessel = state.R_map_vessel();
+  const Eigen::Matrix3d R_level_vessel = state.R_level_vessel();
   const Eigen::Vector3d& p_vessel_origin_m = params.p_vessel_imu_m;
-  Eigen::Vector3d reference_map_m = -(R_map_vessel * p_vessel_origin_m);  // from the origin
-  Eigen::Vector3d swing_map_mps = -(R_map_vessel * state.angular_velocity_radps.cross(p_vessel_origin_m));
+  Eigen::Vector3d reference_level_m = -(R_level_vessel * p_vessel_origin_m);  // from the origin
+  Eigen::Vector3d swing_level_mps = -(R_level_vessel * state.angular_velocity_radps.cross(p_vessel_origin_m));
   if (!state.has_heading) {
-    reference_map_m.head<2>().setZero();
-    swing_map_mps.setZero();
+    reference_level_m.head<2>().setZero();
+    swing_level_mps.setZero();
   }
 
+  const Here here = HereOf(state);
+  const Eigen::Matrix3d R_here_vessel = here.R_here_level * R_level_vessel;
+  const bool is_placed = state.has_position && state.level && map != nullptr;
+  const Eigen::Isometry3d T_map_level = is_placed ? map->TransformFrom(state.level->frame) : Eigen::Isometry3d::Identity();
+
   Eigen::Matrix<double, kNumRows, kNumErrors> jacobian = Eigen::Matrix<double, kNumRows, kNumErrors>::Zero();
-  jacobian.block<6, 6>(kRowPosition, kPosition).setIdentity();
-  jacobian.block<3, 3>(kRowPosition, kRotation) = -Cross(reference_map_m);
-  jacobian.block<3, 3>(kRowAngles, kRotation) = AngleJacobian(R_map_vessel);
+  jacobian.block<3, 3>(kRowPosition, kPosition) = T_map_level.linear();
+  jacobian.block<3, 3>(kRowVelocity, kVelocity) = T_map_level.linear();
+  jacobian.block<3, 3>(kRowPosition, kRotation) = -(T_map_level.linear() * Cross(reference_level_m));
+  jacobian.block<3, 3>(kRowAngles, kRotation) = AngleJacobian(R_here_vessel) * here.R_here_level;
+  jacobian.block<1, 3>(kRowHeading, kPosition) = here.heading_per_east_radpm * here.R_here_level.row(0);
   pose.covariance = jacobian * state.covariance * jacobian.transpose();
   pose.covariance = (0.5 * (pose.covariance + pose.covariance.transpose())).eval();
 
-  const Eigen::Vector3d angles_rad = AnglesOf(R_map_vessel);
+  const Eigen::Vector3d angles_rad = AnglesOf(R_here_vessel);
   pose.has_attitude = state.has_tilt;
   pose.roll_rad = state.has_tilt ? angles_rad[0] : 0.0;
   pose.pitch_rad = state.has_tilt ? angles_rad[1] : 0.0;
   if (state.heave.IsWithin(state.time, params.max_attitude_age)) {
-    pose.heave_m = state.p_map_m.z() - state.water_level_m - (R_map_vessel * p_vessel_origin_m - p_vessel_origin_m).z();
+    pose.heave_m = state.p_level_m.z() - state.water_level_m - (R_level_vessel * p_vessel_origin_m - p_vessel_origin_m).z();
   }
   if (state.has_heading) {
     pose.heading_rad = angles_rad[2];
@@ -55,11 +62,12 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
     const double lever_m = params.p_vessel_antenna_m.head<2>().norm();
     pose.covariance.diagonal().head<2>().array() += lever_m * lever_m;
   }
-  if (state.has_position && map != nullptr) {
-    pose.p_map_m = state.p_map_m + reference_map_m;
-    pose.velocity_map_mps = state.velocity_map_mps + swing_map_mps;
-    if (!state.has_height) pose.p_map_m.z() = 0.0;
-    const GeodeticPlace place = map->Reverse(pose.p_map_m);
+  if (is_placed) {
+    Eigen::Vector3d p_level_m = state.p_level_m + reference_level_m;
+    if (!state.has_height) p_level_m.z() = 0.0;  // the height of the datum
+    pose.p_map_m = T_map_level * p_level_m;
+    pose.velocity_map_mps = T_map_level.linear() * (state.velocity_level_mps + swing_level_mps);
+    const GeodeticPlace place = state.level->frame.Reverse(p_level_m);
     pose.latitude_deg = place.latitude_deg;
     pose.longitude_deg = place.longitude_deg;
     pose.ellipsoid_height_m = place.ellipsoid_height_m;

@@ -45,9 +45,9 @@ State FreshState(Utime time, double tilt_sd_rad) {
 Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
 
 void Inject(const ErrorVector& error, State& state) {
-  state.p_map_m += error.segment<3>(kPosition);
-  state.velocity_map_mps += error.segment<3>(kVelocity);
-  state.q_map_vessel = (RotationBy(error.segment<3>(kRotation)) * state.q_map_vessel).normalized();
+  state.p_level_m += error.segment<3>(kPosition);
+  state.velocity_level_mps += error.segment<3>(kVelocity);
+  state.q_level_vessel = (RotationBy(error.segment<3>(kRotation)) * state.q_level_vessel).normalized();
   state.rate += error.segment<3>(kRate);
   state.acceleration += error.segment<3>(kAcceleration);
   state.fix_error_m += error.segment<3>(kFixError);
@@ -100,24 +100,25 @@ Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad) {
 void TurnClockwise(double angle_rad, State& state) {
   const Eigen::Quaterniond turn = RotationBy(Eigen::Vector3d(0.0, 0.0, -angle_rad));
   const Eigen::Matrix3d R = turn.toRotationMatrix();
-  state.q_map_vessel = (turn * state.q_map_vessel).normalized();
+  state.q_level_vessel = (turn * state.q_level_vessel).normalized();
   state.covariance.middleRows<3>(kRotation) = (R * state.covariance.middleRows<3>(kRotation)).eval();
   state.covariance.middleCols<3>(kRotation) = (state.covariance.middleCols<3>(kRotation) * R.transpose()).eval();
 }
 
 void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state) {
-  const double heading_rad = AnglesOf(state.R_map_vessel())[2];
+  const double heading_rad = AnglesOf(state.R_level_vessel())[2];
   const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
-  state.q_map_vessel = q_level_vessel.normalized();
-  state.q_map_vessel = (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.R_map_vessel())[2] - heading_rad)) * state.q_map_vessel).normalized();
+  state.q_level_vessel = q_level_vessel.normalized();
+  state.q_level_vessel =
+      (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.R_level_vessel())[2] - heading_rad)) * state.q_level_vessel).normalized();
   Renew<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
   state.covariance(kRotation + 2, kRotation + 2) = heading_variance;
   state.has_tilt = true;
 }
 
-void ShiftPosition(const Eigen::Vector3d& lever_map_m, State& state) {
-  state.p_map_m.head<2>() += lever_map_m.head<2>();
-  const Eigen::Matrix<double, 2, 3> by_rotation = -Cross(lever_map_m).topRows<2>();
+void ShiftPosition(const Eigen::Vector3d& lever_level_m, State& state) {
+  state.p_level_m.head<2>() += lever_level_m.head<2>();
+  const Eigen::Matrix<double, 2, 3> by_rotation = -Cross(lever_level_m).topRows<2>();
   state.covariance.middleRows<2>(kPosition) += by_rotation * state.covariance.middleRows<3>(kRotation);
   state.covariance.middleCols<2>(kPosition) += state.covariance.middleCols<3>(kRotation) * by_rotation.transpose();
 }

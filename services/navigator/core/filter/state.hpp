@@ -6,19 +6,21 @@
 #include <optional>
 
 #include "common/core/utime.hpp"
+#include "services/navigator/core/filter/level.hpp"
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/pose.hpp"
 
 namespace lookout::navigator::filter {
 
-/// Where each part begins in the error. All are true value minus estimate; the rotation is that about the map's axes which turns the estimated
-/// attitude into the true one, radians (Sola, "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508, section 7, global errors).
+/// Where each part begins in the error. All are true value minus estimate; the rotation is that about the level frame's axes which turns the
+/// estimated attitude into the true one, radians (Sola, "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508, section 7,
+/// global errors).
 enum Part : int {
   kPosition = 0,       // east, north, up, m
   kVelocity = 3,       // east, north, up, m/s
   kRotation = 6,       // about east, north, up, rad
   kRate = 9,           // rad/s, vessel frame: bias of the gyroscopes, or without them the rate itself
-  kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; where they do not carry the motion, acceleration in the map frame
+  kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; where they do not carry the motion, acceleration in the level frame
   kFixError = 15,      // what the receiver's positions have in common for a while: east, north, up, m
   kHeadingError = 18,  // the same of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
@@ -62,10 +64,14 @@ struct Input {
 struct State {
   Utime time;
 
-  // Of the origin: the place of the IMU in the vessel.
-  Eigen::Vector3d p_map_m = Eigen::Vector3d::Zero();
-  Eigen::Vector3d velocity_map_mps = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond q_map_vessel = Eigen::Quaterniond::Identity();
+  // East, north and up near the boat: the frame of all that follows. nullopt: no place is known yet, and attitude is against east, north and up
+  // there.
+  std::optional<Level> level;
+
+  // Of the vessel's origin: the place of the IMU in it.
+  Eigen::Vector3d p_level_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_level_mps = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond q_level_vessel = Eigen::Quaterniond::Identity();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();          // see kRate
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // see kAcceleration
   Eigen::Vector3d fix_error_m = Eigen::Vector3d::Zero();
@@ -73,7 +79,7 @@ struct State {
   double water_level_m = 0.0;
   ErrorCovariance covariance = ErrorCovariance::Zero();
 
-  // What of it means something. Without heading q_map_vessel holds roll and pitch only, and p_map_m is that of the antenna in east and north.
+  // What of it means something. Without heading q_level_vessel holds roll and pitch only, and p_level_m is that of the antenna in east and north.
   bool has_position = false;
   bool has_height = false;
   bool has_heading = false;
@@ -115,7 +121,7 @@ struct State {
   Eigen::Vector3d mean_force_mps2 = Eigen::Vector3d::Zero();
   double force_variance_mps2_2 = 1.0;
 
-  Eigen::Matrix3d R_map_vessel() const { return q_map_vessel.toRotationMatrix(); }
+  Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }
 };
 
 /// Place of the antenna as seen from the origin, vessel frame.
@@ -139,10 +145,10 @@ void Renew(int part, const Eigen::Matrix<double, kSize, 1>& sd, State& state) {
 void Renew3(int part, double sd, State& state);
 
 /// Roll (starboard down), pitch (bow up) and heading (clockwise from north) of an attitude.
-Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R_map_vessel);
+Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R_level_vessel);
 
 /// d(roll, pitch, heading) / d(rotation about east, north, up). Not for a bow that points straight up or down.
-Eigen::Matrix3d AngleJacobian(const Eigen::Matrix3d& R_map_vessel);
+Eigen::Matrix3d AngleJacobian(const Eigen::Matrix3d& R_level_vessel);
 
 /// @return v x (as a matrix)
 Eigen::Matrix3d Cross(const Eigen::Vector3d& v);
@@ -158,8 +164,8 @@ void TurnClockwise(double angle_rad, State& state);
 /// @param q_level_vessel  of any heading
 void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state);
 
-/// Moves the place that p_map_m tells of by `lever_map_m`, which turns with the vessel; east and north only.
-void ShiftPosition(const Eigen::Vector3d& lever_map_m, State& state);
+/// Moves the place that p_level_m tells of by `lever_level_m`, which turns with the vessel; east and north only.
+void ShiftPosition(const Eigen::Vector3d& lever_level_m, State& state);
 
 double SecondsBetween(Utime from, Utime to);
 

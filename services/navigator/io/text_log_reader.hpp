@@ -7,13 +7,17 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
 
-namespace lookout::replay {
+namespace lookout::navigator {
 
-/// @return whether the start of a file is text with a line that begins with $ or !, maybe behind a tag block or a stamp
+/// Whether a file is a text log: in its first MB, behind zero bytes at its start, stands a sentence whose checksum is right; or it is text, but for
+/// one byte in ten at most, with something that begins as a sentence does.
+///
+/// What stands between the sentences does not matter: a byte order mark, notes in any coding, tag blocks, binary messages of the receiver.
 /// @throws std::runtime_error when it cannot be read
 bool IsTextLog(const std::filesystem::path& file);
 
@@ -24,25 +28,33 @@ class TextLogReader {
   static constexpr std::chrono::seconds kMaxLate{10};
 
   /// Reads the file once as far as its first date.
+  ///
+  /// @param day  of the first time in the file, for a file in which no sentence tells a date
   /// @throws std::runtime_error when it cannot be read, or no sentence in it tells a time
-  explicit TextLogReader(const std::filesystem::path& file);
+  explicit TextLogReader(const std::filesystem::path& file, std::optional<std::chrono::sys_days> day = {});
 
   struct Line {
     Utime time;   // UTC of the sentence; where it says none, of the one before it; of the first ones, the first that is said
     Bytes bytes;  // without its end; until the next call
   };
 
-  /// @return the next line, whatever it holds; nullopt at the end
+  /// @return the next line that is not empty, whatever it holds; nullopt at the end. CR, LF or both end a line; of one that is longer than
+  ///         kMaxLineBytes only the last part is given.
   std::optional<Line> Next();
+  static constexpr std::size_t kMaxLineBytes = 4096;
 
-  /// No sentence of the file tells a date: the times are those of 1970-01-01.
+  /// No sentence of the file tells a date: the times are those of the given day, or of 1970-01-01.
   bool has_date() const { return has_date_; }
 
   /// Bytes read so far.
   std::int64_t position() const { return position_; }
 
  private:
+  bool ReadLine();
+
   std::ifstream in_;
+  std::vector<char> block_;
+  std::size_t block_used_ = 0;
   std::string line_;
   std::int64_t position_ = 0;
   bool has_date_ = false;
@@ -51,4 +63,4 @@ class TextLogReader {
   Utime last_{};
 };
 
-}  // namespace lookout::replay
+}  // namespace lookout::navigator

@@ -1,0 +1,95 @@
+#include "services/vlp16/core/sender_lock.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "services/vlp16/core/position_packet.hpp"
+
+namespace lookout::vlp16 {
+
+namespace {
+
+bool IsOfFamily(ModelVerdict verdict) { return verdict == ModelVerdict::kVlp16 || verdict == ModelVerdict::kPuckHiRes; }
+
+}  // namespace
+
+std::string ToText(const Sender& sender) {
+  const bool is_ipv6 = sender.address.find(':') != std::string::npos;
+  return (is_ipv6 ? "[" + sender.address + "]" : sender.address) + ":" + std::to_string(sender.port);
+}
+
+SenderLock::SenderLock(ModelChoice model, std::vector<std::string> allowed) : model_(model), allowed_(std::move(allowed)) {}
+
+bool SenderLock::IsAllowed(const Sender& sender) const { return allowed_.empty() || std::ranges::find(allowed_, sender.address) != allowed_.end(); }
+
+void SenderLock::Reset() { streams_ = {}; }
+
+// kUnknown for what is not valid as a whole.
+ModelVerdict SenderLock::VerdictOf(ModelJudge& judge, Stream stream, Bytes payload) {
+  if (stream == Stream::kPosition) {
+    const auto fault = ParsePositionPacket(payload).fault;
+    return fault == PositionFault::kNone || fault == PositionFault::kSentence ? ModelVerdict::kVlp16 : ModelVerdict::kUnknown;
+  }
+  const auto result = ParseDataPacket(payload);
+  return result.fault == DataFault::kNone ? judge.Judge(result.packet) : ModelVerdict::kUnknown;
+}
+
+// The one on trial, this sender's; nullptr while another is.
+SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, const Sender& sender) const {
+  auto& candidate = state.candidate;
+  const bool is_over = !candidate || time < candidate->last || time - candidate->last > kTrialPause;
+  if (candidate && candidate->sender == sender) {
+    if (is_over) candidate->heard_for = std::chrono::microseconds(0);
+    return &*candidate;
+  }
+  // Without a holder nothing is decided by who was there first, but by who is valid first.
+  if (!is_over && state.holder) return nullptr;
+  candidate = Candidate{sender, ModelJudge(model_), time, std::chrono::microseconds(0)};
+  return &*candidate;
+}
+
+SenderLock::Outcome SenderLock::Judge(Utime time, Stream stream, const Sender& sender, Bytes payload) {
+  if (!IsAllowed(sender)) return {};
+  auto& data = streams_[static_cast<std::size_t>(Stream::kData)];
+  auto& state = streams_[static_cast<std::size_t>(stream)];
+  if (time < state.heard) state.heard = time;
+  if (state.holder == sender) {
+    const bool is_valid = IsOfFamily(VerdictOf(*state.judge, stream, payload));
+    if (is_valid) {
+      state.heard = time;
+      state.candidate.reset();
+    }
+    return {.is_taken = true, .is_valid = is_valid};
+  }
+  Outcome outcome{.is_taken = !state.holder};
+  if (stream == Stream::kPosition && data.holder) {
+    outcome.is_taken = outcome.is_taken && data.holder->address == sender.address;
+    if (data.holder->address != sender.address) return outcome;
+  }
+  auto* candidate = CandidateFor(state, time, sender);
+  if (candidate == nullptr) {
+    ModelJudge judge(model_);
+    outcome.is_valid = IsOfFamily(VerdictOf(judge, stream, payload));
+    return outcome;
+  }
+  outcome.is_valid = IsOfFamily(VerdictOf(candidate->judge, stream, payload));
+  if (!outcome.is_valid) return outcome;
+  if (time > candidate->last) candidate->heard_for += std::min<std::chrono::microseconds>(time - candidate->last, kTrialStep);
+  candidate->last = time;
+  if (state.holder) {
+    const std::chrono::microseconds needed = state.holder->address == sender.address ? kPortSilence : kSilence;
+    if (time - state.heard < needed || candidate->heard_for < kTrial) return outcome;
+  }
+  const bool is_other_address = !state.holder || state.holder->address != sender.address;
+  state.holder = sender;
+  state.judge = candidate->judge;
+  state.heard = time;
+  state.candidate.reset();
+  if (stream == Stream::kData && is_other_address) {
+    auto& position = streams_[static_cast<std::size_t>(Stream::kPosition)];
+    if (position.holder && position.holder->address != sender.address) position = {};
+  }
+  return {.is_taken = true, .is_new_holder = true, .is_valid = true};
+}
+
+}  // namespace lookout::vlp16
