@@ -42,6 +42,20 @@ std::string Count(std::int64_t count, int width) {
   return text.size() <= SizeOf(width) ? Right(text, width) : std::string(SizeOf(width), '#');
 }
 
+std::string Fitting(const std::vector<std::string>& cells, int width) {
+  std::string line;
+  for (const auto& cell : cells) {
+    if (line.empty()) {
+      line = cell.substr(0, SizeOf(width));
+    } else if (line.size() + cell.size() <= SizeOf(width)) {
+      line += cell;
+    } else {
+      break;
+    }
+  }
+  return line;
+}
+
 std::vector<std::string> Wrapped(std::string_view text, int width, int max_lines) {
   const std::size_t line_size = SizeOf(width);
   std::vector<std::string> lines;

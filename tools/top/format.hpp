@@ -22,6 +22,9 @@ std::string Left(std::string_view text, int width);
 /// Right-aligned, cut to the width.
 std::string Right(std::string_view text, int width);
 
+/// As many of the cells, one beside the other, as are whole within the width; the first is cut to it.
+std::string Fitting(const std::vector<std::string>& cells, int width);
+
 /// Text from outside, for a terminal: what is not printable ASCII becomes "?", so that no message can send a control sequence.
 using lookout::Printable;
 
