@@ -33,6 +33,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
                                  std::abs(width_deg) >= 360.0 ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))};
     params.guard_zone.takes_tentative = zone.takes_tentative();
   }
+  if (boat.datum) params.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
   params.pose_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message.pose_timeout_s()));
   return params;
 }

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "common/core/angles.hpp"
+#include "common/core/datum_check.hpp"
 #include "services/georeferencer/wire.hpp"
 
 namespace lookout::georeferencer {
@@ -45,7 +46,11 @@ std::string_view PoseText(std::int32_t pose_status) {
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params)
-    : bus_(bus), georeferencer_(params.placement, params.pose_timeout), guard_zone_(params.guard_zone), guard_range_m_(params.guard_zone.range_m) {
+    : bus_(bus),
+      georeferencer_(params.placement, params.pose_timeout),
+      guard_zone_(params.guard_zone),
+      guard_range_m_(params.guard_zone.range_m),
+      datum_(params.datum) {
   for (const auto& refusal : kRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
@@ -63,7 +68,18 @@ void Service::OnPose(const pose_t& message) {
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
   pose_seen_ = now_;
   newest_pose_status_ = message.status;
+  JudgeDatum(std::get<Pose>(pose));
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
+}
+
+// A voyage may end far from its datum: the first place in it counts.
+void Service::JudgeDatum(const Pose& pose) {
+  if (!pose.is_placed || (judged_datum_ && judged_datum_->IsSameAs(pose.datum))) return;
+  judged_datum_ = pose.datum;
+  datum_complaint_.clear();
+  if (!datum_ || datum_->latitude_deg != pose.datum.latitude_deg || datum_->longitude_deg != pose.datum.longitude_deg) return;
+  datum_complaint_ =
+      DatumComplaint({datum_->latitude_deg, datum_->longitude_deg, 0.0}, pose.datum.Map().Reverse(pose.position_map_m), "the first POSE");
 }
 
 void Service::AdvanceTo(Utime host_time) {
@@ -118,6 +134,7 @@ HealthReport Service::Report() const {
     const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
     if (is_placed && is_late) degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
+  if (!datum_complaint_.empty()) degrade(datum_complaint_);
   return report;
 }
 

@@ -35,12 +35,16 @@ class Service {
   void OnSegments(const segments_t& message);
   void OnPose(const pose_t& message);
   void Publish(const std::vector<ObstaclePart>& parts);
+  void JudgeDatum(const Pose& pose);
   void Refuse(std::string_view name);
 
   bus::Bus& bus_;
   Georeferencer georeferencer_;
   GuardZone guard_zone_;
   double guard_range_m_;
+  std::optional<Datum> datum_;  // of boat.txtpb
+  std::optional<Datum> judged_datum_;
+  std::string datum_complaint_;
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;
   std::optional<std::int32_t> newest_pose_status_;  // of pose_t
