@@ -5,7 +5,7 @@ lookout_test(NAME unit_georeferencer
              LINKS lookout_georeferencer)
 lookout_test(NAME property_georeferencer
              SOURCES property/georeferencer_interleaving_test.cpp property/georeferencer_round_trip_test.cpp
-                     property/georeferencer_covariance_test.cpp property/georeferencer_geodesy_test.cpp
+                     property/georeferencer_covariance_test.cpp property/georeferencer_geodesy_test.cpp property/georeferencer_far_test.cpp
              LINKS lookout_georeferencer ${GeographicLib_LIBRARIES})
 lookout_bench(NAME bench_georeferencer SOURCES bench/georeferencer_bench.cpp LINKS lookout_georeferencer)
 lookout_fuzz(NAME fuzz_georeferencer SOURCES fuzz/georeferencer_fuzz.cpp LINKS lookout_georeferencer)

@@ -2,7 +2,7 @@ lookout_test(NAME unit_sim
              SOURCES unit/sim/random_test.cpp unit/sim/solid_test.cpp unit/sim/motion_test.cpp unit/sim/ray_caster_test.cpp unit/sim/scene_test.cpp
                      unit/sim/scene_file_test.cpp unit/sim/sea_test.cpp unit/sim/traffic_test.cpp
                      unit/sim/lidar_test.cpp unit/sim/effects_test.cpp unit/sim/clutter_test.cpp unit/sim/truth_log_test.cpp unit/sim/simulation_test.cpp unit/sim/pcap_sink_test.cpp
-                     unit/sim/faults_test.cpp
+                     unit/sim/faults_test.cpp unit/sim/schedule_test.cpp
              LINKS lookout_sim lookout_wire pcap TIMEOUT 300)
 lookout_test(NAME property_vlp16_faults SOURCES property/vlp16_faults_test.cpp LINKS lookout_sim lookout_vlp16 lookout_vlp16_io TIMEOUT 180)
 lookout_bench(NAME bench_sim SOURCES bench/sim_bench.cpp LINKS lookout_sim lookout_config)

@@ -1,6 +1,9 @@
 # Programs as a user or a boat runs them. The live ones run in network namespaces that they make themselves.
 lookout_test(NAME system_replay SOURCES system/replay_test.cpp LINKS lookout_bus lookout_wire TIMEOUT 300)
 add_dependencies(system_replay lookout-replay lookout-export lookout-sim)
+lookout_test(NAME system_hostile_text SOURCES system/hostile_text_test.cpp LINKS lookout_bus lookout_wire)
+add_dependencies(system_hostile_text lookout-replay lookout-export lookout-log lookout-diff lookout-eval lookout-doctor lookout-sim lookout-vlp16 lookout-segmenter
+                 lookout-navigator lookout-georeferencer lookout-recorder)
 lookout_test(NAME system_same_bytes SOURCES system/same_bytes_test.cpp TIMEOUT 300)
 add_dependencies(system_same_bytes lookout-replay lookout-sim)
 lookout_test(NAME system_points SOURCES system/points_test.cpp TIMEOUT 120)

@@ -148,13 +148,12 @@ class Checker {
   std::vector<Fault>& faults_;
 };
 
-std::string ReadFile(const std::filesystem::path& file) {
-  std::error_code error;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || !std::filesystem::is_regular_file(file, error)) throw ConfigError({file.string() + ":1: file: cannot be read"});
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+// What begins the files of editors that mark their coding; empty = none.
+std::string ByteOrderMark(const std::string& text) {
+  if (text.starts_with("\xEF\xBB\xBF"))
+    return "begins with a byte order mark (EF BB BF): save it as UTF-8 without one (\"UTF-8\", not \"UTF-8 with BOM\")";
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return "is UTF-16 (it begins with its byte order mark): save it as UTF-8";
+  return {};
 }
 
 void AppendEffective(const Message& message, const std::string& indent, std::string& text) {
@@ -203,7 +202,25 @@ void FaultList::ThrowIfAny() const {
 
 ConfigError::ConfigError(std::vector<std::string> faults) : std::runtime_error(Joined(faults)), faults_(std::move(faults)) {}
 
+std::string ReadConfigFile(const std::filesystem::path& file) {
+  const auto refuse = [&file](const std::string& reason) { throw ConfigError({file.string() + ":1: file: " + reason}); };
+  // Looked at before it is opened: to open a FIFO waits for a writer.
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (std::filesystem::is_directory(status)) refuse("is a folder");
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) refuse("is no regular file (a FIFO, a socket or a device)");
+  std::ifstream in;
+  if (std::filesystem::is_regular_file(status)) in.open(file, std::ios::binary);
+  if (!in.is_open()) refuse("cannot be read");
+  std::string text(kMaxConfigBytes + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kMaxConfigBytes) refuse("is greater than " + std::to_string(kMaxConfigBytes) + " bytes: no config");
+  return text;
+}
+
 void ParseText(const std::string& text, const std::string& name, Message& message) {
+  if (const auto mark = ByteOrderMark(text); !mark.empty()) throw ConfigError({name + ":1: text: " + mark});
   std::vector<Fault> faults;
   FaultCollector collector(faults);
   const auto parse = [&](const std::string& part, TextFormat::ParseInfoTree& positions) {
@@ -242,7 +259,7 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
   throw ConfigError(lines);
 }
 
-void LoadText(const std::filesystem::path& file, Message& message) { ParseText(ReadFile(file), file.string(), message); }
+void LoadText(const std::filesystem::path& file, Message& message) { ParseText(ReadConfigFile(file), file.string(), message); }
 
 std::string EffectiveText(const Message& message) {
   std::string text;
@@ -251,7 +268,7 @@ std::string EffectiveText(const Message& message) {
 }
 
 std::string EffectiveTextOfFile(const std::filesystem::path& file) {
-  const std::string text = ReadFile(file);
+  const std::string text = ReadConfigFile(file);
   // All scenes have one schema, whatever their names.
   const bool is_scene = file.parent_path().filename() == "scenes";
   const std::string schema_file = "config/schema/" + (is_scene ? "scene" : file.stem().string()) + ".proto";
@@ -265,7 +282,7 @@ std::string EffectiveTextOfFile(const std::filesystem::path& file) {
 std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason, std::size_t index) {
   // The line of the place in which the value is set, or of the last one before it; 1 when there is none (a default is in force).
   int line_number = 1;
-  std::istringstream text(ReadFile(file));
+  std::istringstream text(ReadConfigFile(file));
   int number = 0;
   std::size_t num_places = 0;
   const std::string key = field.substr(field.rfind('.') + 1);

@@ -44,6 +44,12 @@ class FaultList {
   std::vector<std::string> faults_;
 };
 
+/// The text of a config.
+///
+/// @throws ConfigError when it is no regular file (a FIFO or a device would hold the process), is greater than kMaxConfigBytes, or cannot be read
+std::string ReadConfigFile(const std::filesystem::path& file);
+inline constexpr std::size_t kMaxConfigBytes = 4UL * 1024 * 1024;  // the largest of ours has 20 kB
+
 /// Fills `message` from a text file and checks it against the options of its schema (config/schema/options.proto).
 ///
 /// @throws ConfigError with every fault of the text, by line: unknown fields, wrong types, second values, facts that are missing, numbers out of

@@ -25,8 +25,11 @@ constexpr microseconds kMaxJitter = std::chrono::milliseconds(5);
 // The host's clock was set forward when so long nothing comes in time. A source that sends once a second is believed within five.
 constexpr microseconds kStepWindow = std::chrono::seconds(3);
 constexpr microseconds kLateBin = std::chrono::milliseconds(100);
+constexpr std::size_t kMaxLateBins = 100;
 constexpr int kMinLateInHalf = 2;
-constexpr int kMinTimely = 4;
+// Of what comes at random times of a busy computer, from one to the next.
+constexpr microseconds kMaxGrowth = std::chrono::milliseconds(500);
+constexpr int kMinTimely = 5;
 // A queue that drains more slowly than by 3 % of time passes for a step.
 constexpr microseconds kMaxShrinking = std::chrono::milliseconds(50);
 // Messages overtake each other by less, and leap seconds are shorter.
@@ -90,27 +93,28 @@ void ClockFit::OnTimely(const Sample& sample) {
 }
 
 void ClockFit::OnLate(const Sample& sample) {
-  if (late_.empty() || sample.host() - late_.back().host() >= kLateBin) {
-    late_.push_back(sample);
-  } else if (sample.host_minus_time < late_.back().host_minus_time) {
-    late_.back().host_minus_time = sample.host_minus_time;  // its time is that of the first
+  // Later than what came before it: it waited in a stall of its own.
+  if (!late_.empty() && sample.host_minus_time > last_late_ + kMaxGrowth) late_.clear();
+  last_late_ = sample.host_minus_time;
+  if (late_.empty() || sample.host() - late_.back().host >= kLateBin) {
+    if (late_.size() == kMaxLateBins) late_.pop_front();
+    late_.push_back({sample.host(), sample});
+  } else if (sample.host_minus_time < late_.back().least.host_minus_time) {
+    late_.back().least = sample;
   }
-  const auto is_long = [&](const Sample& first) { return sample.time - first.time >= kStepWindow && sample.host() - first.host() >= kStepWindow; };
+  const auto is_long = [&](const Late& late) { return sample.time - late.least.time >= kStepWindow && sample.host() - late.host >= kStepWindow; };
   if (!is_long(late_.front())) return;
   while (is_long(late_[1])) late_.pop_front();
-  const microseconds middle = late_.front().host() + (sample.host() - late_.front().host()) / 2;
-  const auto second_half = std::ranges::find_if(late_, [&](const Sample& late) { return late.host() >= middle; });
+  const microseconds middle = late_.front().host + (sample.host() - late_.front().host) / 2;
+  const auto second_half = std::ranges::find_if(late_, [&](const Late& late) { return late.host >= middle; });
   if (second_half - late_.begin() < kMinLateInHalf || late_.end() - second_half < kMinLateInHalf) return;
   const auto least = [](auto begin, auto end) {
-    return *std::min_element(begin, end, [](const Sample& a, const Sample& b) { return a.host_minus_time < b.host_minus_time; });
+    return std::min_element(begin, end, [](const Late& a, const Late& b) { return a.least.host_minus_time < b.least.host_minus_time; })->least;
   };
   const Sample now = least(second_half, late_.end());
   if (now.host_minus_time < Carried(least(late_.begin(), second_half), now.time) - kMaxShrinking) return;
-  const microseconds latest = sample.time;
-  const Sample first = late_.front();
   Begin(now);
-  now_ = latest;
-  first_ = first;
+  now_ = sample.time;
   is_settled_ = true;
 }
 

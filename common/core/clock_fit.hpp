@@ -52,16 +52,22 @@ class ClockFit {
     Sample least;
   };
 
+  struct Late {
+    std::chrono::microseconds host{0};  // of the first
+    Sample least;
+  };
+
   std::chrono::microseconds Carried(const Sample& sample, std::chrono::microseconds time) const;
   void Begin(const Sample& sample);
   void OnLate(const Sample& sample);
   void OnTimely(const Sample& sample);
   void Measure();
 
-  std::deque<Bin> bins_;     // of timely messages, by time; the last one is being filled
-  Sample first_;             // of the timely ones since the offset was found
-  Sample last_;              // of the timely ones
-  std::deque<Sample> late_;  // since the last timely one: the least of each part of a second of the host's
+  std::deque<Bin> bins_;   // of timely messages, by time; the last one is being filled
+  Sample first_;           // of the timely ones since the offset was found
+  Sample last_;            // of the timely ones
+  std::deque<Late> late_;  // since the last timely one: the least of each part of a second of the host's
+  std::chrono::microseconds last_late_{0};
   std::chrono::microseconds now_{0};
   std::optional<double> slope_;  // of host minus source over the source's time
   int num_timely_ = 0;           // since the offset was found, at most what it takes to settle

@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "common/core/printable.hpp"
 #include "common/io/stop_signal.hpp"
 
 namespace lookout::io {
@@ -129,7 +130,7 @@ struct OutputFile::Implementation final : public std::streambuf {
     if (options.tell) {
       options.tell(line);
     } else {
-      std::cerr << line << '\n';
+      std::cerr << PrintableLines(line) << '\n';
     }
   }
 

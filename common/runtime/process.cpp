@@ -18,6 +18,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/health.hpp"
+#include "common/runtime/log_pattern.hpp"
 #include "common/runtime/notify.hpp"
 #include "common/runtime/options.hpp"
 
@@ -200,7 +201,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
 }
 
 int RunMain(const std::string& name, const std::function<void()>& body) try {
-  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ " + name + ": %v", spdlog::pattern_time_type::utc);
+  SetLogPattern("%Y-%m-%dT%H:%M:%S.%eZ %^%l%$ " + name + ": %v", true);
   body();
   std::cout.flush();
   if (!std::cout || std::fflush(stdout) != 0) throw std::runtime_error("standard output could not be written");

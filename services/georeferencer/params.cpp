@@ -50,6 +50,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
                                  std::abs(width_deg) >= 360.0 ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))};
     params.guard_zone.takes_tentative = zone.takes_tentative();
   }
+  if (boat.datum) params.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
   if (message.has_guard_zone() && IsInsideBox(params.guard_zone, boat.own_vessel_box_m)) {
     faults.Add(
         config::FaultLine(config_folder / "georeferencer.txtpb", "guard_zone.range_m", InsideHullText(params.guard_zone, boat.own_vessel_box_m)));

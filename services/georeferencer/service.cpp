@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "common/core/angles.hpp"
+#include "common/core/datum_check.hpp"
 #include "services/georeferencer/wire.hpp"
 
 namespace lookout::georeferencer {
@@ -49,7 +50,8 @@ Service::Service(bus::Bus& bus, const Params& params)
     : bus_(bus),
       georeferencer_(params.placement, params.pose_timeout),
       guard_zone_(params.guard_zone),
-      T_vessel_lidar_(params.placement.T_vessel_lidar) {
+      T_vessel_lidar_(params.placement.T_vessel_lidar),
+      datum_(params.datum) {
   if (guard_zone_.range_m > 0.0) alarm_.emplace();
   for (const auto& refusal : kRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
@@ -70,7 +72,18 @@ void Service::OnPose(const pose_t& message) {
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
   pose_seen_ = now_;
   newest_pose_status_ = message.status;
+  JudgeDatum(std::get<Pose>(pose));
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
+}
+
+// A voyage may end far from its datum: the first place in it counts.
+void Service::JudgeDatum(const Pose& pose) {
+  if (!pose.is_placed || (judged_datum_ && judged_datum_->IsSameAs(pose.datum))) return;
+  judged_datum_ = pose.datum;
+  datum_complaint_.clear();
+  if (!datum_ || datum_->latitude_deg != pose.datum.latitude_deg || datum_->longitude_deg != pose.datum.longitude_deg) return;
+  datum_complaint_ =
+      DatumComplaint({datum_->latitude_deg, datum_->longitude_deg, 0.0}, pose.datum.Map().Reverse(pose.position_map_m), "the first POSE");
 }
 
 void Service::AdvanceTo(Utime host_time) {
@@ -128,6 +141,7 @@ HealthReport Service::Report() const {
     const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
     if (is_placed && is_late) degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
+  if (!datum_complaint_.empty()) degrade(datum_complaint_);
   return report;
 }
 

@@ -40,6 +40,7 @@ class Service {
   void OnSegments(const segments_t& message);
   void OnPose(const pose_t& message);
   void Publish(const std::vector<ObstaclePart>& parts);
+  void JudgeDatum(const Pose& pose);
   void Refuse(std::string_view name);
 
   bus::Bus& bus_;
@@ -48,6 +49,9 @@ class Service {
   Eigen::Isometry3d T_vessel_lidar_;
   std::optional<GuardAlarm> alarm_;  // where a guard zone is configured
   GuardAlarm::State reported_alarm_;
+  std::optional<Datum> datum_;  // of boat.txtpb
+  std::optional<Datum> judged_datum_;
+  std::string datum_complaint_;
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;
   std::optional<std::int32_t> newest_pose_status_;  // of pose_t

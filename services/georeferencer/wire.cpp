@@ -18,7 +18,7 @@ using std::chrono::microseconds;
 
 // Bounds of what can be, wide enough for any lidar and boat, so that arithmetic inside stays far from overflow.
 constexpr double kMaxLidarM = 1e5;
-constexpr double kMaxMapM = 1e6;  // a flat map is of no use farther from its datum
+constexpr double kMaxMapM = 1.4e7;  // the earth's diameter, and more: a datum may be wrong
 constexpr double kMaxHeightM = 1e5;
 constexpr double kMaxHeaveM = 1e3;
 constexpr double kMaxVariance = 1e12;
@@ -261,7 +261,7 @@ std::variant<Pose, Refusal> ToPose(const pose_t& message) {
   if (!IsWithin(pose.pitch_rad, kPi) || !IsWithin(pose.roll_rad, kPi) || !IsWithin(pose.heave_m, kMaxHeaveM)) return kPoseNumber;
   if (pose.is_placed) {
     const auto& p_m = message.position_map_m;
-    if (!IsWithin(p_m[0], kMaxMapM) || !IsWithin(p_m[1], kMaxMapM) || !IsWithin(p_m[2], kMaxHeightM) || !IsWithin(pose.datum.latitude_deg, 90.0) ||
+    if (!IsWithin(p_m[0], kMaxMapM) || !IsWithin(p_m[1], kMaxMapM) || !IsWithin(p_m[2], kMaxMapM) || !IsWithin(pose.datum.latitude_deg, 90.0) ||
         !IsWithin(pose.datum.longitude_deg, 180.0) || !IsWithin(OrZero(pose.datum.ellipsoid_height_m), kMaxHeightM) ||
         !(pose.heading_rad >= 0.0 && pose.heading_rad <= kTwoPi)) {
       return kPoseNumber;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,9 +13,11 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/datum_check.hpp"
 #include "common/core/elementary.hpp"
 #include "common/io/ip_address.hpp"
 #include "services/navigator/core/day.hpp"
+#include "services/navigator/core/nmea.hpp"
 #include "services/navigator/core/sentence.hpp"
 
 namespace lookout::navigator {
@@ -240,6 +243,47 @@ std::string RoleInWords(Role role) {
   return {};
 }
 
+// The first position in what a text log begins with; a live input has none before it is opened.
+std::optional<GeodeticPosition> FirstPosition(const std::filesystem::path& file) {
+  constexpr std::size_t kMaxBytes = 1'000'000;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
+  std::ifstream in(file, std::ios::binary);
+  std::string text(kMaxBytes, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  for (const auto& line : lines.lines) {
+    const auto parsed = ParseSentence(line);
+    if (parsed.fault != SentenceFault::kNone) continue;
+    if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence); rmc != nullptr && rmc->position && IsMeasured(rmc->quality)) return rmc->position;
+    if (const auto* gga = std::get_if<Gga>(&parsed.sentence); gga != nullptr && gga->position && IsMeasured(gga->quality)) return gga->position;
+  }
+  return std::nullopt;
+}
+
+// Before the first fix nothing can be said of a datum, but against the positions of text logs.
+std::string DatumInWords(const Params& params) {
+  const auto& datum = params.navigator.filter.datum;
+  if (!datum) return "# datum: the first fix of the run.\n";
+  const GeodeticPlace place{datum->latitude_deg, datum->longitude_deg, 0.0};
+  std::string words = "# datum: " + PlaceInWords(place) + ", of boat.txtpb.";
+  bool is_compared = false;
+  for (const auto& connection : params.connections) {
+    if (connection.kind != Connection::Kind::kTextLog) continue;
+    const auto position = FirstPosition(connection.file);
+    if (!position) continue;
+    is_compared = true;
+    const auto complaint =
+        DatumComplaint(place, {position->latitude_deg, position->longitude_deg, 0.0}, "the first position of text log " + connection.file.string());
+    words += complaint.empty() ? " The first position of text log " + connection.file.string() + " is within 50 km." : "\n# WARNING: " + complaint;
+  }
+  return words +
+         (is_compared
+              ? "\n"
+              : " Not compared with a position: there is none before the run; HEALTH and lookout-doctor name a datum that is far from the fix.\n");
+}
+
 // "0.87 m"
 std::string Metres(double length_m) {
   constexpr double kCentimetresPerMetre = 100.0;
@@ -299,7 +343,7 @@ std::string InWords(const Params& params) {
   if (params.use_lidar_nmea) add(kLidarSource);
   std::string words;
   for (const auto& source : sources) words += SourceInWords(params, source);
-  return words;
+  return words + DatumInWords(params);
 }
 
 }  // namespace lookout::navigator

@@ -140,6 +140,7 @@ HealthReport Service::Report() const {
   const auto add = [&report](const std::string& text) { report.reason += (report.reason.empty() ? "" : ", ") + text; };
   if (!navigator_.filter().last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !navigator_.filter().has_had_heading())) add("no heading");
+  if (const auto& complaint = navigator_.filter().datum_complaint(); !complaint.empty()) add(complaint);
   if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
     add("clock of this computer is off UTC by " + InSeconds(off));
   }

@@ -10,6 +10,7 @@
 
 #include "common/bus/header.hpp"
 #include "common/bus/log_event.hpp"
+#include "common/core/printable.hpp"
 
 namespace lookout::recorder {
 
@@ -37,13 +38,6 @@ std::string FileStem(Utime time) {
                 static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
                 static_cast<int>(clock.seconds().count()));
   return text.data();
-}
-
-// Channel names come from the network.
-std::string Printable(std::string_view text) {
-  std::string printable;
-  for (const char letter : text) printable += letter >= ' ' && letter <= '~' ? letter : '?';
-  return printable;
 }
 
 }  // namespace

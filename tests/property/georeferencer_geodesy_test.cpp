@@ -38,20 +38,20 @@ constexpr double kMetresPerDegree = 111'000.0;
 TEST(GeoreferencerGeodesy, PlacesOfOtherSourcesAreMetWithinAMillimetre) {
   for (const auto& one : kCases) {
     SCOPED_TRACE(one.name);
-    // Half of the way lies between datum and boat, which heads south-west, the other half between boat and obstacle.
-    const Eigen::Vector3d half_m = 0.5 * one.east_north_up_m;
+    // The boat lies at the datum and heads south-west: its north is that of the map.
+    const Eigen::Vector3d& way_m = one.east_north_up_m;
     PoseHistory poses;
     for (const std::int64_t offset_us : {0, 20'000}) {
       Pose pose = test::MakePose(offset_us);
       pose.datum = one.datum;
-      pose.position_map_m = half_m;
+      pose.position_map_m = Eigen::Vector3d::Zero();
       pose.heading_rad = DegToRad(225.0);
       poses.Add(pose);
     }
     // Ahead is south-west, port is south-east.
-    const double ahead_m = -(half_m.x() + half_m.y()) / std::sqrt(2.0);
-    const double port_m = (half_m.x() - half_m.y()) / std::sqrt(2.0);
-    const auto obstacle = PlaceSegment(test::MakePoint(10'000, ahead_m, port_m, half_m.z()), poses, one.datum, false, {});
+    const double ahead_m = -(way_m.x() + way_m.y()) / std::sqrt(2.0);
+    const double port_m = (way_m.x() - way_m.y()) / std::sqrt(2.0);
+    const auto obstacle = PlaceSegment(test::MakePoint(10'000, ahead_m, port_m, way_m.z()), poses, one.datum, false, {});
     ASSERT_EQ(obstacle.status, ObstacleStatus::kOk);
     EXPECT_LT(std::abs(obstacle.latitude_deg - one.latitude_deg) * kMetresPerDegree, 1e-3) << obstacle.latitude_deg;
     const double longitude_error_rad = WrapToPi(DegToRad(obstacle.longitude_deg - one.longitude_deg));

@@ -31,6 +31,18 @@ Matrix3d VesselAxes(double heading_rad, double pitch_rad, double roll_rad) {
   return axes;
 }
 
+// East, north and up at a place of the map, along the axes of the map.
+Matrix3d AxesOfPlace(const Vector3d& p_map_m, const LocalCartesian& map) {
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double height_m = 0.0;
+  std::vector<double> rotation(9);
+  map.Reverse(p_map_m.x(), p_map_m.y(), p_map_m.z(), latitude_deg, longitude_deg, height_m, rotation);
+  // Reverse gives the rotation from east, north, up at the place to the axes of the map.
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+  return Eigen::Map<const RowMajor>(rotation.data());
+}
+
 // A boat that moves and turns evenly, so that the poses between those of the grid are on the line.
 struct Voyage {
   Vector3d start_m;
@@ -42,8 +54,10 @@ struct Voyage {
   double roll_rate_radps;
 
   Vector3d PositionAt(double time_s) const { return start_m + time_s * velocity_mps; }
-  Matrix3d AxesAt(double time_s) const {
-    return VesselAxes(heading_rad + time_s * heading_rate_radps, pitch_rad, roll_rad + time_s * roll_rate_radps);
+  // Heading, roll and pitch are against north and up where the boat is.
+  Matrix3d AxesAt(double time_s, const LocalCartesian& map) const {
+    return AxesOfPlace(PositionAt(time_s), map) *
+           VesselAxes(heading_rad + time_s * heading_rate_radps, pitch_rad, roll_rad + time_s * roll_rate_radps);
   }
 };
 
@@ -106,7 +120,7 @@ TEST(GeoreferencerRoundTrip, APlaceWithin200MetresComesBackWithinAMillimetre) {
     map.Reverse(near_m.x(), near_m.y(), near_m.z(), latitude_deg, longitude_deg, height_m);
     Vector3d place_map_m;
     map.Forward(latitude_deg, longitude_deg, height_m, place_map_m.x(), place_map_m.y(), place_map_m.z());
-    const Vector3d p_vessel_m = voyage.AxesAt(time_s).transpose() * (place_map_m - voyage.PositionAt(time_s));
+    const Vector3d p_vessel_m = voyage.AxesAt(time_s, map).transpose() * (place_map_m - voyage.PositionAt(time_s));
     const Vector3d p_lidar_m = params.T_vessel_lidar.inverse() * p_vessel_m;
 
     const auto segment = test::MakePoint(offset_us, p_lidar_m.x(), p_lidar_m.y(), p_lidar_m.z());
@@ -114,9 +128,9 @@ TEST(GeoreferencerRoundTrip, APlaceWithin200MetresComesBackWithinAMillimetre) {
     ASSERT_EQ(obstacle.status, ObstacleStatus::kOk);
     Vector3d found_m;
     map.Forward(obstacle.latitude_deg, obstacle.longitude_deg, height_m, found_m.x(), found_m.y(), found_m.z());
+    const double above_boat_m = AxesOfPlace(voyage.PositionAt(time_s), map).col(2).dot(place_map_m - voyage.PositionAt(time_s));
     worst_m = std::max({worst_m, (found_m - place_map_m).norm(), (obstacle.position_map_m - place_map_m.head<2>()).norm(),
-                        (obstacle.footprint_map_m[0] - place_map_m.head<2>()).norm(),
-                        std::abs(obstacle.top_above_water_m - (place_map_m.z() - voyage.PositionAt(time_s).z()))});
+                        (obstacle.footprint_map_m[0] - place_map_m.head<2>()).norm(), std::abs(obstacle.top_above_water_m - above_boat_m)});
     EXPECT_NEAR((obstacle.center_vessel_m - p_vessel_m.head<2>()).norm(), 0.0, 1e-6);
   }
   RecordProperty("worst_m", std::to_string(worst_m));
@@ -128,6 +142,7 @@ TEST(GeoreferencerRoundTrip, AnOutlineSeenDuringATurnOfABoatThatTurnsKeepsItsSha
   for (std::uint32_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
+    const LocalCartesian map(test::kLake.latitude_deg, test::kLake.longitude_deg, test::kLake.ellipsoid_height_m);
     Voyage voyage = RandomVoyage(random);
     voyage.pitch_rad = voyage.roll_rad = voyage.roll_rate_radps = 0.0;  // level: the height of a corner does not matter
     voyage.velocity_mps.z() = 0.0;
@@ -141,18 +156,20 @@ TEST(GeoreferencerRoundTrip, AnOutlineSeenDuringATurnOfABoatThatTurnsKeepsItsSha
     const auto seen_at_some_time = [&](const Vector3d& place_map_m) {
       const auto offset_us = static_cast<std::int64_t>(Between(random, 0, 100'000));
       const double time_s = 1e-6 * static_cast<double>(offset_us);
-      const Vector3d p_lidar_m = params.T_vessel_lidar.inverse() * (voyage.AxesAt(time_s).transpose() * (place_map_m - voyage.PositionAt(time_s)));
+      const Vector3d p_lidar_m =
+          params.T_vessel_lidar.inverse() * (voyage.AxesAt(time_s, map).transpose() * (place_map_m - voyage.PositionAt(time_s)));
       return HullVertex{p_lidar_m.head<2>(), At(offset_us)};
     };
     for (const auto& corner : corners) segment.hull.push_back(seen_at_some_time(corner));
     for (const auto& corner : corners) segment.waterline.push_back(seen_at_some_time(corner));
     const auto obstacle = PlaceSegment(segment, PosesOf(voyage, test::kLake), test::kLake, false, params);
     ASSERT_EQ(obstacle.status, ObstacleStatus::kOk);
+    // 2 km from the datum the map leans by 0.3 mrad: corners 50 m away that are level with the boat on the map are 15 mm above or below it.
     for (std::size_t i = 0; i < corners.size(); ++i) {
-      EXPECT_LT((obstacle.footprint_map_m[i] - corners[i].head<2>()).norm(), 1e-6);
-      EXPECT_LT((obstacle.waterline_map_m[i] - corners[i].head<2>()).norm(), 1e-6);
+      EXPECT_LT((obstacle.footprint_map_m[i] - corners[i].head<2>()).norm(), 2e-5);
+      EXPECT_LT((obstacle.waterline_map_m[i] - corners[i].head<2>()).norm(), 2e-5);
     }
-    EXPECT_LT((obstacle.position_map_m - (corner_m + Vector3d(5, 20, 0)).head<2>()).norm(), 1e-6);
+    EXPECT_LT((obstacle.position_map_m - (corner_m + Vector3d(5, 20, 0)).head<2>()).norm(), 2e-5);
   }
 }
 

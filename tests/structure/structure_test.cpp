@@ -146,6 +146,19 @@ TEST(Structure, OutputsAreWrittenByOneClass) {
   }
 }
 
+// Names in logs, texts of messages and of configs reach the log of a process: no control character may pass to a terminal.
+TEST(Structure, LinesOfTheLogAreMadePrintable) {
+  for (const auto& folder : {"common", "services", "tools"}) {
+    for (const auto& file : SourcesBelow(kRoot / folder)) {
+      const std::string path = fs::relative(file, kRoot).string();
+      if (path == "common/runtime/log_pattern.cpp") continue;
+      const std::string text = Read(file);
+      EXPECT_EQ(text.find("spdlog::set_pattern"), std::string::npos) << path << ": use runtime::SetLogPattern";
+      EXPECT_FALSE(std::regex_search(text, std::regex(R"(cerr[^;]*<< *error\.what\(\))"))) << path << " prints what() as it is: use PrintableLines";
+    }
+  }
+}
+
 TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
   // The bus takes times of its handlers for HEALTH; they decide nothing.
   const std::regex exempt("common/runtime/.*|common/bus/bus\\.cpp|common/io/.*|services/[^/]+/(main\\.cpp|io/.*)");
@@ -348,6 +361,43 @@ TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
     }
   }
   EXPECT_GT(num_pieces, 50);
+}
+
+// A promise that no test holds is none.
+TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
+  std::string tests;
+  std::string lists;
+  for (const auto& file : SourcesBelow(kRoot / "tests")) tests += Read(file);
+  for (const auto& entry : fs::directory_iterator(kRoot / "tests")) {
+    if (entry.path().extension() == ".cmake") lists += Read(entry.path());
+  }
+  std::istringstream page(Read(kRoot / "SECURITY.md"));
+  const std::regex quoted("`([^`]*)`");
+  bool is_in_table = false;
+  int num_named = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("| promise ")) is_in_table = true;
+    if (!line.starts_with("|")) is_in_table = false;
+    if (!is_in_table || line.starts_with("| promise ") || line.starts_with("|-")) continue;
+    const auto cell = line.substr(line.find(" | ") + 1);
+    int num_of_promise = 0;
+    for (std::sregex_iterator match(cell.begin(), cell.end(), quoted), end; match != end; ++match, ++num_of_promise) {
+      const std::string name = (*match)[1];
+      const auto dot = name.find('.');
+      const auto is_in = [](const std::string& text, const std::vector<std::string>& pieces) {
+        return std::ranges::any_of(pieces, [&text](const std::string& piece) { return text.find(piece) != std::string::npos; });
+      };
+      if (dot == std::string::npos) {
+        EXPECT_TRUE(is_in(lists, {"NAME " + name + " ", "NAME " + name + "\n"})) << "no test program: " << name;
+      } else {
+        const auto arguments = "(" + name.substr(0, dot) + ", " + name.substr(dot + 1) + ")";
+        EXPECT_TRUE(is_in(tests, {"TEST" + arguments, "TEST_F" + arguments, "TEST_P" + arguments})) << "no test: " << name;
+      }
+    }
+    EXPECT_GT(num_of_promise, 0) << "held by no test: " << line;
+    num_named += num_of_promise;
+  }
+  EXPECT_GT(num_named, 30);
 }
 
 // What is not in the table is neither in systemd's units nor started by lookout-up.

@@ -13,6 +13,7 @@
 #include "common/bus/header.hpp"
 #include "common/bus/log_event.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/core/printable.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/recorded_run.hpp"
 #include "tools/log/run_marks.hpp"
@@ -323,7 +324,7 @@ void AddTolerance(const std::string& text, Request& request) {
 int Run(const Request& request, std::ostream& out, std::ostream& errors) try {
   return Compare(request, out, errors);
 } catch (const std::exception& error) {
-  errors << "lookout-diff: " << error.what() << "\n";
+  errors << "lookout-diff: " << PrintableLines(error.what()) << "\n";
   return kExitUnreadable;
 }
 

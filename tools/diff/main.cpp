@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/printable.hpp"
 #include "common/runtime/options.hpp"
 #include "tools/diff/diff.hpp"
 
@@ -39,7 +40,7 @@ int main(int argc, char** argv) {
     // --help and --version come here too, with code 0.
     return app.exit(error) == 0 ? EXIT_SUCCESS : diff::kExitUnreadable;
   } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
+    std::cerr << lookout::PrintableLines(error.what()) << "\n";
     return diff::kExitUnreadable;
   }
   request.a = a;

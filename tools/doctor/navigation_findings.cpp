@@ -1,9 +1,12 @@
 // Position, heading, roll and pitch.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/datum_check.hpp"
 #include "common/core/utime.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/words.hpp"
@@ -136,6 +139,16 @@ Finding JudgeAttitude(const pose_t& pose) {
           {}};
 }
 
+std::optional<Finding> JudgeDatum(const Observations& seen) {
+  const auto& datum = seen.config.navigation->navigator.filter.datum;
+  const auto& fix = seen.navigation.fix;
+  if (!datum || !fix || fix->quality == gnss_fix_t::QUALITY_NONE || !std::isfinite(fix->latitude_deg) || !std::isfinite(fix->longitude_deg))
+    return {};
+  const auto complaint = DatumComplaint({datum->latitude_deg, datum->longitude_deg, 0.0}, {fix->latitude_deg, fix->longitude_deg, 0.0}, "the fix");
+  if (complaint.empty()) return {};
+  return Finding{Grade::kWarning, kGnssSubject, complaint, "datum in boat.txtpb: mend it, or leave it out, and the first fix is taken"};
+}
+
 }  // namespace
 
 Findings JudgeNavigation(const Observations& seen) {
@@ -149,6 +162,7 @@ Findings JudgeNavigation(const Observations& seen) {
   }
   findings.push_back(JudgeFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;
+  if (auto datum = JudgeDatum(seen)) findings.push_back(std::move(*datum));
   findings.push_back(JudgeHeading(seen));
   if (seen.navigation.pose) findings.push_back(JudgeAttitude(*seen.navigation.pose));
   if (seen.navigation.complaint.find("clock of this computer is off") != std::string::npos) {

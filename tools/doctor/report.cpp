@@ -4,6 +4,7 @@
 #include <array>
 #include <sstream>
 
+#include "common/core/printable.hpp"
 #include "tools/doctor/words.hpp"
 
 namespace lookout::doctor {
@@ -27,10 +28,10 @@ std::string Padded(const std::string& text, std::size_t width) { return text + s
 // Lines of at most kWordsWidth, each but the first behind `indent`. What comes from outside (a reason in HEALTH) may hold anything: only what can
 // be printed is.
 std::string Wrapped(const std::string& text, const std::string& indent) {
-  std::string printable = text;
+  std::string spaced = text;
   std::ranges::replace_if(
-      printable, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || static_cast<unsigned char>(letter) == 127; }, ' ');
-  std::istringstream words(printable);
+      spaced, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || static_cast<unsigned char>(letter) == 127; }, ' ');
+  std::istringstream words(PrintableLines(spaced));
   std::string wrapped;
   std::size_t width = 0;
   for (std::string word; words >> word;) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/config/text_config.hpp"
+#include "common/core/printable.hpp"
 #include "common/runtime/options.hpp"
 #include "tools/eval/judge_command.hpp"
 #include "tools/eval/log_command.hpp"
@@ -105,12 +106,12 @@ int main(int argc, char** argv) try {
   if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
   return options.judge.config_folder.empty() ? eval::FillBlocksOfFiles(options.judge) : eval::JudgeScenes(options.judge);
 } catch (const std::invalid_argument& error) {
-  std::cerr << "lookout-eval: " << error.what() << '\n';
+  std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;
 } catch (const config::ConfigError& error) {
-  std::cerr << error.what() << '\n';
+  std::cerr << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;
 } catch (const std::exception& error) {
-  std::cerr << "lookout-eval: " << error.what() << '\n';
+  std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return EXIT_FAILURE;
 }

@@ -6,17 +6,14 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "common/core/printable.hpp"
+
 namespace lookout::eval {
 namespace {
 
 bool IsNumber(const std::string& cell) { return cell.find_first_not_of("0123456789+-.%") == std::string::npos; }
 
-std::string CsvCell(const std::string& cell) {
-  if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
-  std::string quoted = "\"";
-  for (const char letter : cell) quoted += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return quoted + '"';
-}
+std::string CsvCell(const std::string& cell) { return IsNumber(cell) ? cell : CsvText(cell); }
 
 }  // namespace
 
@@ -30,7 +27,7 @@ void Table::Print(std::ostream& out) const {
         width = std::max(width, rows_[other][column].size());
         if (other > 0 && !IsNumber(rows_[other][column])) is_number = false;
       }
-      const std::string& cell = rows_[line][column];
+      const std::string cell = PrintableLines(rows_[line][column]);
       const std::string padding(width - cell.size(), ' ');
       if (column > 0) text += "  ";
       text += is_number ? padding + cell : cell + padding;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "common/core/printable.hpp"
 
 namespace lookout::exporter {
 
@@ -82,16 +83,7 @@ void CsvWriter::Direction(double angle_rad) {
 
 void CsvWriter::Text(std::string_view value) {
   Separate();
-  if (value.find_first_of(",\"\r\n") == std::string_view::npos) {
-    text_ += value;
-    return;
-  }
-  text_ += '"';
-  for (const char c : value) {
-    if (c == '"') text_ += '"';
-    text_ += c;
-  }
-  text_ += '"';
+  text_ += CsvText(value);
 }
 
 }  // namespace lookout::exporter

@@ -23,7 +23,7 @@ class CsvWriter {
   /// An angle in degrees with 4 decimals in [0, 360); empty when it is not finite.
   void Direction(double angle_rad);
 
-  /// Quoted where it has to be.
+  /// As CsvText: quoted where it has to be, without control characters, and no formula of a spreadsheet.
   void Text(std::string_view value);
 
   void Empty() { Separate(); }

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "common/bus/log_file.hpp"
+#include "common/core/printable.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "tools/export/ply.hpp"
@@ -113,7 +114,7 @@ int Export(const Request& request, std::ostream& errors) {
 int Run(const Request& request, std::ostream& errors) {
   const auto fault = Fault(request);
   if (!fault.empty()) {
-    errors << kProgram << fault << '\n';
+    errors << kProgram << PrintableLines(fault) << '\n';
     return kExitUsage;
   }
   try {
@@ -121,7 +122,7 @@ int Run(const Request& request, std::ostream& errors) {
   } catch (const io::BrokenPipe&) {  // no fault: `| head` ends quietly
     return kExitFine;
   } catch (const std::exception& error) {
-    errors << kProgram << error.what() << '\n';
+    errors << kProgram << PrintableLines(error.what()) << '\n';
     return kExitFailed;
   }
 }

@@ -1,5 +1,6 @@
 #include "tools/export/tables.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "common/core/geodesy.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
@@ -94,11 +96,32 @@ void WriteObstacles(const obstacles_t& message, CsvWriter& csv) {
   }
 }
 
+// Of pose_t::covariance: velocity east, then north.
+constexpr int kVelocityRow = 3;
+// Chi-square of two degrees of freedom that chance exceeds in one of 20 cases (Abramowitz and Stegun, table 26.8).
+constexpr double kChiSquare95 = 5.99;
+
+// East and north where the boat is: POSE has it along the axes of the map, which are those at the datum.
+Eigen::Vector2d VelocityHere(const pose_t& pose) {
+  const Eigen::Vector3d velocity_map_mps(pose.velocity_map_mps[0], pose.velocity_map_mps[1], pose.velocity_map_mps[2]);
+  const auto or_zero = [](double value) { return std::isfinite(value) ? value : 0.0; };
+  if (!std::isfinite(pose.latitude_deg) || !std::isfinite(pose.longitude_deg) || !std::isfinite(pose.datum_latitude_deg) ||
+      !std::isfinite(pose.datum_longitude_deg)) {
+    return velocity_map_mps.head<2>();
+  }
+  const LocalFrame map({pose.datum_latitude_deg, pose.datum_longitude_deg, or_zero(pose.datum_ellipsoid_height_m)});
+  const LocalFrame here({pose.latitude_deg, pose.longitude_deg, or_zero(pose.ellipsoid_height_m)});
+  return (here.TransformFrom(map).linear() * velocity_map_mps).head<2>();
+}
+
 void WritePose(const pose_t& pose, CsvWriter& csv) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-  const double speed_mps = std::hypot(pose.velocity_map_mps[0], pose.velocity_map_mps[1]);
-  // A boat at rest has no course.
-  const double course_rad = speed_mps > 0.0 ? std::atan2(pose.velocity_map_mps[0], pose.velocity_map_mps[1]) : kUnknown;
+  const Eigen::Vector2d velocity_mps = VelocityHere(pose);
+  const double speed_mps = velocity_mps.norm();
+  // A boat at rest has no course: of a speed that is not told from 0 the direction is noise.
+  const double variance_mps2 = std::max(pose.covariance[kVelocityRow][kVelocityRow], pose.covariance[kVelocityRow + 1][kVelocityRow + 1]);
+  const bool is_at_rest = speed_mps == 0.0 || speed_mps * speed_mps < kChiSquare95 * variance_mps2;
+  const double course_rad = is_at_rest ? kUnknown : std::atan2(velocity_mps.x(), velocity_mps.y());
   csv.Integer(pose.utime_us);
   csv.Fixed(pose.latitude_deg, kDegreeDecimals);
   csv.Fixed(pose.longitude_deg, kDegreeDecimals);
@@ -198,8 +221,13 @@ void WriteTraffic(const health_t& health, CsvWriter& csv) {
     WriteCount(channel.handling_p50_us, csv);
     WriteCount(channel.handling_p99_us, csv);
     // A latency may be negative, where the sensor's clock is ahead.
-    csv.Text(channel.latency_p50_us == -1 ? "" : std::to_string(channel.latency_p50_us));
-    csv.Text(channel.latency_p99_us == -1 ? "" : std::to_string(channel.latency_p99_us));
+    for (const auto latency_us : {channel.latency_p50_us, channel.latency_p99_us}) {
+      if (latency_us == -1) {
+        csv.Empty();
+      } else {
+        csv.Integer(latency_us);
+      }
+    }
     csv.EndRow();
   }
 }

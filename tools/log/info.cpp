@@ -103,7 +103,7 @@ class LogSummary {
       channel.AddSilence(*first_, channel.first);
       channel.AddSilence(channel.last, *latest_);
       const double span_s = ToSeconds(channel.last - channel.first);
-      out << fmt::format("{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11.3f}  {}\n", Printable(name), names_.Text(channel.fingerprints),
+      out << fmt::format("{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11.3f}  {}\n", Printable(name), Printable(names_.Text(channel.fingerprints)),
                          channel.num_events, channel.num_bytes,
                          span_s > 0.0 ? fmt::format("{:.3f}", static_cast<double>(channel.num_events - 1) / span_s) : "",
                          channel.has_sequence ? std::to_string(channel.num_missing) : "", ToSeconds(channel.silence),
@@ -199,7 +199,7 @@ void Info(const std::vector<std::filesystem::path>& files, std::ostream& out) {
   for (const auto& file : files) {
     EventReader reader(file);
     while (const auto event = reader.Next()) summary.Add(*event);
-    out << fmt::format("{:<9} {}\n{:<9} {} bytes\n", "file", file.string(), "size", reader.size_bytes());
+    out << fmt::format("{:<9} {}\n{:<9} {} bytes\n", "file", PrintableLines(file.string()), "size", reader.size_bytes());
     PrintDamage(reader, out);
   }
   if (summary.is_empty()) throw std::runtime_error(files.front().string() + ": is no lcm-log: it holds no event");

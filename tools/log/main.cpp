@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/core/printable.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "tools/log/commands.hpp"
@@ -67,10 +68,10 @@ int main(int argc, char** argv) {
     if (!std::cout) throw std::runtime_error("standard output could not be written");
     return EXIT_SUCCESS;
   } catch (const log::UsageError& error) {
-    std::cerr << "lookout-log: " << error.what() << "\n";
+    std::cerr << "lookout-log: " << lookout::PrintableLines(error.what()) << "\n";
     return kExitUsage;
   } catch (const std::exception& error) {
-    std::cerr << "lookout-log: " << error.what() << "\n";
+    std::cerr << "lookout-log: " << lookout::PrintableLines(error.what()) << "\n";
     return kExitFailed;
   }
 }

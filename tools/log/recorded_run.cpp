@@ -44,10 +44,4 @@ bus::WireTypes OwnTypes() {
   return bus::WireTypes(texts);
 }
 
-std::string Printable(std::string_view text) {
-  std::string printable;
-  for (const char letter : text) printable += letter >= ' ' && letter <= '~' ? letter : '?';
-  return printable;
-}
-
 }  // namespace lookout::log

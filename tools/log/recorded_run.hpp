@@ -7,6 +7,7 @@
 
 #include "common/bus/log_file.hpp"
 #include "common/bus/wire_description.hpp"
+#include "common/core/printable.hpp"
 #include "lookout/run_info_t.hpp"
 
 namespace lookout::log {
@@ -23,7 +24,7 @@ std::string MachineOf(const run_info_t& run_info);
 /// The wire types of this version.
 bus::WireTypes OwnTypes();
 
-/// Texts of a log come from outside: what is no letter of ASCII becomes '?'.
-std::string Printable(std::string_view text);
+/// Texts of a log come from outside.
+using lookout::Printable;
 
 }  // namespace lookout::log

@@ -20,6 +20,7 @@
 #include "common/config/text_config.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/log_pattern.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/progress.hpp"
@@ -253,7 +254,7 @@ int main(int argc, char** argv) {
   // Tables go to stdout, all else to stderr.
   spdlog::set_default_logger(spdlog::stderr_color_st("replay"));
   return lookout::runtime::RunMain("replay", [&options] {
-    spdlog::set_pattern("%^%l%$ replay: %v");
+    lookout::runtime::SetLogPattern("%^%l%$ replay: %v");
     lookout::replay::CheckConfig(options.config_folder);
     if (options.check_only) {
       fmt::print("{}", lookout::runtime::EffectiveConfig(options.config_folder));

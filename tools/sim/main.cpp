@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/config/text_config.hpp"
+#include "common/core/printable.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/process.hpp"
@@ -23,6 +24,7 @@
 #include "tools/sim/options.hpp"
 #include "tools/sim/pcap_sink.hpp"
 #include "tools/sim/scene_file.hpp"
+#include "tools/sim/schedule.hpp"
 #include "tools/sim/simulation.hpp"
 #include "tools/sim/truth_writer.hpp"
 #include "tools/sim/udp_sink.hpp"
@@ -44,7 +46,6 @@ bool WaitUntil(std::chrono::steady_clock::time_point time, const sigset_t& stop_
   }
 }
 
-// The start is set by the first datagram's deadline; each has a deadline of its own, so delays do not add up.
 void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double speed) {
   sigset_t stop_signals;
   sigemptyset(&stop_signals);
@@ -53,12 +54,13 @@ void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double s
   struct sigaction hangup {};
   if (sigaction(SIGHUP, nullptr, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&stop_signals, SIGHUP);  // nohup: it goes on
   pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);
-  const auto base = std::chrono::steady_clock::now() + (start - runtime::HostNow());
+  sim::Schedule schedule(start, std::chrono::steady_clock::now() + (start - runtime::HostNow()), speed);
   while (const auto datagram = network.Next()) {
-    const std::chrono::duration<double, std::micro> wait(speed > 0.0 ? static_cast<double>((datagram->time - start).count()) / speed : 0.0);
-    if (WaitUntil(base + std::chrono::duration_cast<std::chrono::nanoseconds>(wait), stop_signals)) break;
+    if (WaitUntil(schedule.DueAt(datagram->time), stop_signals)) break;
     sink.Send(*datagram);
+    if (const auto line = schedule.Tell(datagram->time, std::chrono::steady_clock::now())) std::cerr << "lookout-sim: " << *line << '\n';
   }
+  if (const auto summary = schedule.Summary(); !summary.empty()) std::cerr << "lookout-sim: " << summary << '\n';
   if (sink.num_refused() > 0) std::cerr << "lookout-sim: the network did not take " << sink.num_refused() << " datagrams\n";
 }
 
@@ -141,12 +143,12 @@ int main(int argc, char** argv) try {
   Run(sim::ParseOptions(argc, argv));
   return EXIT_SUCCESS;
 } catch (const std::invalid_argument& error) {
-  std::cerr << "lookout-sim: " << error.what() << '\n';
+  std::cerr << "lookout-sim: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;
 } catch (const config::ConfigError& error) {
-  std::cerr << error.what() << '\n';
+  std::cerr << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;
 } catch (const std::exception& error) {
-  std::cerr << "lookout-sim: " << error.what() << '\n';
+  std::cerr << "lookout-sim: " << lookout::PrintableLines(error.what()) << '\n';
   return EXIT_FAILURE;
 }

@@ -1,7 +1,6 @@
 #include "tools/sim/scene_file.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -35,15 +34,6 @@ std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder) {
   return files;
 }
 
-std::string ReadFile(const fs::path& file) {
-  std::error_code error;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || !fs::is_regular_file(file, error)) throw config::ConfigError({file.string() + ":1: file: cannot be read"});
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 fs::path FindScene(const std::string& name_or_path, const fs::path& config_folder) {
@@ -66,7 +56,7 @@ std::vector<SceneSummary> ListScenes(const fs::path& config_folder) {
   return summaries;
 }
 
-Scene LoadScene(const fs::path& file, std::uint64_t seed) { return ParseScene(ReadFile(file), file.string(), seed); }
+Scene LoadScene(const fs::path& file, std::uint64_t seed) { return ParseScene(config::ReadConfigFile(file), file.string(), seed); }
 
 Scene ParseScene(const std::string& text, const std::string& name, std::uint64_t seed) {
   config::Scene scene;

@@ -60,19 +60,30 @@ struct Decoder {
 constexpr std::array kDecoders{Decoder{"lidar_packets_t", &DecodedPlace<lidar_packets_t>}, Decoder{"lidar_scan_t", &DecodedPlace<lidar_scan_t>},
                                Decoder{"lidar_clock_t", &DecodedPlace<lidar_clock_t>},     Decoder{"lidar_nmea_t", &DecodedPlace<lidar_nmea_t>},
                                Decoder{"segments_t", &DecodedPlace<segments_t>},           Decoder{"nav_raw_t", &DecodedPlace<nav_raw_t>},
-                               Decoder{"gnss_fix_t", &DecodedPlace<gnss_fix_t>},           Decoder{"attitude_t", &DecodedPlace<attitude_t>},
-                               Decoder{"run_info_t", &DecodedPlace<run_info_t>},           Decoder{"sim_truth_t", &DecodedPlace<sim_truth_t>}};
+                               Decoder{"attitude_t", &DecodedPlace<attitude_t>},           Decoder{"run_info_t", &DecodedPlace<run_info_t>},
+                               Decoder{"sim_truth_t", &DecodedPlace<sim_truth_t>}};
 
 const health_counter_t* FindCounter(const health_t& health, std::string_view name) {
   const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
   return found == health.counters.end() ? nullptr : &*found;
 }
 
-// Reasons are joined by "; ": the piece about the alarm says how near and where. Without one, the counter has at least the distance.
-constexpr std::string_view kAlarmWords = "obstacle within ";
+// In the order of the data.
+constexpr std::array<std::string_view, 5> kSuite{"vlp16", "segmenter", "navigator", "georeferencer", "recorder"};
+std::size_t PlaceInSuite(std::string_view process) { return static_cast<std::size_t>(std::ranges::find(kSuite, process) - kSuite.begin()); }
+bool IsOfSuite(std::string_view process) { return PlaceInSuite(process) < kSuite.size(); }
+
+// Reasons are joined by "; ": the pieces about the alarm say how near and where, or that nobody looks. Without one, counters have at least the
+// distance.
 std::string AlarmReason(const health_t& health) {
-  const auto start = health.reason.find(kAlarmWords);
-  if (start != std::string::npos) return health.reason.substr(start, health.reason.find(';', start) - start);
+  std::string words;
+  for (const std::string_view piece : {"obstacle within ", "guard zone not watched"}) {
+    const auto start = health.reason.find(piece);
+    if (start != std::string::npos) words += (words.empty() ? "" : "; ") + health.reason.substr(start, health.reason.find(';', start) - start);
+  }
+  if (!words.empty()) return words;
+  const auto* unwatched = FindCounter(health, "zone_unwatched");
+  if (unwatched != nullptr && unwatched->count != 0) return "guard zone not watched";
   const auto* nearest = FindCounter(health, "nearest_cm");
   return nearest == nullptr ? "obstacle near" : fmt::format("obstacle near: {:.1f} m", 0.01 * static_cast<double>(nearest->count));
 }
@@ -118,6 +129,15 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
     if (const auto message = bus::Decode<pose_t>(bytes)) {
       place = PlaceOf(*message);
       nearest_.Take(*message);
+      pose_ = *message;
+      pose_time_ = now;
+    }
+  } else if (entry->name == bus::kGnssFix.name) {
+    if (const auto message = bus::Decode<gnss_fix_t>(bytes)) {
+      place = PlaceOf(*message);
+      fix_quality_ = message->quality;
+      num_satellites_ = message->num_satellites;
+      fix_time_ = now;
     }
   } else {
     const auto decoder = std::ranges::find(kDecoders, entry->type, &Decoder::type);
@@ -130,6 +150,12 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
   }
 }
 
+bool Board::HasRoomFor(std::string_view process) const {
+  const bool is_of_suite = IsOfSuite(process);
+  const auto num_alike = std::ranges::count_if(processes_, [&](const auto& entry) { return IsOfSuite(entry.second.health.process) == is_of_suite; });
+  return static_cast<std::size_t>(num_alike) < (is_of_suite ? kMaxProcesses - kMaxStrangers : kMaxStrangers);
+}
+
 void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
   auto message = bus::Decode<health_t>(bytes);
   if (!message) {
@@ -138,8 +164,8 @@ void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
   }
   const ProcessKey key{message->process, message->host, message->pid};
   if (!processes_.contains(key)) ForgetReplaced(now);
-  if (!processes_.contains(key) && processes_.size() >= kMaxProcesses) {
-    ++num_unlisted_;
+  if (!processes_.contains(key) && !HasRoomFor(message->process)) {
+    ++num_unlisted_health_;
     return;
   }
   if (processes_.empty()) first_host_ = message->host;
@@ -183,13 +209,17 @@ std::vector<ChannelLine> Board::Channels(TimePoint now) const {
 }
 
 std::vector<ProcessLine> Board::Processes(TimePoint now) const {
+  std::vector<const std::pair<const ProcessKey, ProcessState>*> sorted;
+  for (const auto& entry : processes_) sorted.push_back(&entry);
+  std::ranges::stable_sort(sorted, {}, [](const auto* entry) { return PlaceInSuite(entry->first.name); });
   std::vector<ProcessLine> lines;
   const auto num_of = [this, now](const std::string& name) {
     return std::ranges::count_if(processes_, [&](const auto& entry) {
       return entry.first.name == name && now - entry.second.last <= kSilence && !IsReplaced(entry.first, entry.second);
     });
   };
-  for (const auto& [key, process] : processes_) {
+  for (const auto* entry : sorted) {
+    const auto& [key, process] = *entry;
     if (IsReplaced(key, process)) continue;
     const auto& health = process.health;
     ProcessLine line;
@@ -224,6 +254,16 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
     if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
   }
   return newest;
+}
+
+OwnShip Board::Own(TimePoint now) const {
+  OwnShip own;
+  own.pose = pose_;
+  own.pose_age = now - pose_time_;
+  own.fix_quality = fix_quality_;
+  own.num_satellites = num_satellites_;
+  own.fix_age = now - fix_time_;
+  return own;
 }
 
 const NearestObstacles* Board::Obstacles(TimePoint now) const {

@@ -12,6 +12,7 @@
 #include "common/bus/sequence.hpp"
 #include "common/core/bytes.hpp"
 #include "lookout/health_t.hpp"
+#include "lookout/pose_t.hpp"
 #include "tools/top/nearest.hpp"
 #include "tools/top/rate_meter.hpp"
 
@@ -37,10 +38,19 @@ struct ProcessLine {
   std::int64_t latency_p99_us = -1;  // greatest of its data channels, from measurement to publication; -1 = none
 };
 
-/// The nearest-obstacle alarm, out of HEALTH.
+/// Where the own boat is, out of POSE and GNSS_FIX.
+struct OwnShip {
+  std::optional<pose_t> pose;  // the newest
+  std::chrono::nanoseconds pose_age{0};
+  std::optional<std::int32_t> fix_quality;  // as in gnss_fix_t, of the newest
+  std::int32_t num_satellites = -1;         // -1 = not told
+  std::chrono::nanoseconds fix_age{0};
+};
+
+/// The alarm of the guard zone, out of HEALTH.
 struct Alarm {
   bool is_active = false;
-  std::string text;                 // what is near, in the words of HEALTH
+  std::string text;                 // what is near, or that nobody looks, in the words of HEALTH
   std::chrono::nanoseconds age{0};  // of the report
 };
 
@@ -55,12 +65,15 @@ class Board {
   /// Those of the channel table in its order, then the others by name.
   std::vector<ChannelLine> Channels(TimePoint now) const;
 
-  /// By name. One that fell silent stays, until another of its name on its host has taken its place. Of several that speak under one name each has
-  /// its line, that tells host and process id.
+  /// Those of the suite in the order of the data, then the others by name. One that fell silent stays, until another of its name on its host has
+  /// taken its place. Of several that speak under one name each has its line, that tells host and process id. Names that are not of the suite count
+  /// as kMaxStrangers at most.
   std::vector<ProcessLine> Processes(TimePoint now) const;
 
   /// @return nullopt when no process tells of an alarm
   std::optional<Alarm> NearestAlarm(TimePoint now) const;
+
+  OwnShip Own(TimePoint now) const;
 
   /// @return nullptr when OBSTACLES never came, or for more than 2 s
   const NearestObstacles* Obstacles(TimePoint now) const;
@@ -68,8 +81,12 @@ class Board {
   /// Messages on channels beyond kMaxChannels.
   std::int64_t num_unlisted() const { return num_unlisted_; }
 
+  /// Messages of HEALTH of processes that found no room.
+  std::int64_t num_unlisted_health() const { return num_unlisted_health_; }
+
   static constexpr std::size_t kMaxChannels = 64;
   static constexpr std::size_t kMaxProcesses = 64;
+  static constexpr std::size_t kMaxStrangers = 8;  // among them
 
  private:
   struct Traffic {
@@ -92,6 +109,7 @@ class Board {
     auto operator<=>(const ProcessKey&) const = default;
   };
 
+  bool HasRoomFor(std::string_view process) const;
   void TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now);
   bool IsReplaced(const ProcessKey& key, const ProcessState& process) const;
   void ForgetReplaced(TimePoint now);
@@ -102,6 +120,12 @@ class Board {
   std::string first_host_;
   Nearest nearest_;
   std::int64_t num_unlisted_ = 0;
+  std::int64_t num_unlisted_health_ = 0;
+  std::optional<pose_t> pose_;
+  TimePoint pose_time_;
+  std::optional<std::int32_t> fix_quality_;
+  std::int32_t num_satellites_ = -1;
+  TimePoint fix_time_;
 };
 
 }  // namespace lookout::top

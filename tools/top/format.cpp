@@ -42,12 +42,18 @@ std::string Count(std::int64_t count, int width) {
   return text.size() <= SizeOf(width) ? Right(text, width) : std::string(SizeOf(width), '#');
 }
 
-std::string Printable(std::string_view text) {
-  std::string printable(text);
-  for (char& letter : printable) {
-    if (letter < ' ' || letter > '~') letter = '?';
+std::string Fitting(const std::vector<std::string>& cells, int width) {
+  std::string line;
+  for (const auto& cell : cells) {
+    if (line.empty()) {
+      line = cell.substr(0, SizeOf(width));
+    } else if (line.size() + cell.size() <= SizeOf(width)) {
+      line += cell;
+    } else {
+      break;
+    }
   }
-  return printable;
+  return line;
 }
 
 std::vector<std::string> Wrapped(std::string_view text, int width, int max_lines) {

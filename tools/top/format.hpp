@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/printable.hpp"
+
 namespace lookout::top {
 
 /// Right-aligned. Where the number is too wide, decimals go first, then "###" stands for it; "-" for what is not finite.
@@ -20,8 +22,11 @@ std::string Left(std::string_view text, int width);
 /// Right-aligned, cut to the width.
 std::string Right(std::string_view text, int width);
 
+/// As many of the cells, one beside the other, as are whole within the width; the first is cut to it.
+std::string Fitting(const std::vector<std::string>& cells, int width);
+
 /// Text from outside, for a terminal: what is not printable ASCII becomes "?", so that no message can send a control sequence.
-std::string Printable(std::string_view text);
+using lookout::Printable;
 
 /// Words of printable `text` in lines of at most `width`; a longer word is broken. What is more than `max_lines` ends in "..".
 /// Precondition: width >= 3, max_lines >= 1.

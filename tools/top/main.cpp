@@ -15,6 +15,7 @@
 #include <string>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/runtime/log_pattern.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "tools/top/board.hpp"
@@ -159,7 +160,7 @@ int main(int argc, char** argv) {
   // The screen goes to stdout, all else to stderr.
   spdlog::set_default_logger(spdlog::stderr_color_st("top"));
   return lookout::runtime::RunMain("top", [&options] {
-    spdlog::set_pattern("%^%l%$ lookout-top: %v");
+    lookout::runtime::SetLogPattern("%^%l%$ lookout-top: %v");
     options.once ? PrintOnce(options) : Watch(options);
   });
 }

@@ -29,7 +29,7 @@ struct ObstacleLine {
   double height_m = 0.0;
 };
 
-/// The ten nearest of a turn.
+/// The nearest of a turn, at most Nearest::kMaxLines.
 struct NearestObstacles {
   std::vector<ObstacleLine> lines;       // nearest first; those without a range last
   std::vector<ObstacleLine> sure_lines;  // of those that are sure
@@ -41,7 +41,7 @@ struct NearestObstacles {
 
 class Nearest {
  public:
-  static constexpr std::size_t kMaxLines = 10;
+  static constexpr std::size_t kMaxLines = 50;  // as many as a screen may have room for
 
   void Take(const pose_t& pose);
   void Take(const obstacles_t& part, TimePoint now);

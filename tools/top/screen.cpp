@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tools/export/words.hpp"
@@ -15,40 +16,58 @@ namespace {
 // Widths of columns, so that both tables stand side by side on 80 columns.
 constexpr int kChannelsWidth = 41;
 constexpr int kProcessNameWidth = 13;  // "georeferencer"
+constexpr int kMaxProcessNameWidth = 24;
 // Where so little is left for processes, channels stand alone.
 constexpr int kMinProcessesWidth = 38;
 // A reason is cut after so many lines.
 constexpr int kMaxReasonLines = 4;
 // Obstacles that stay when rows are scarce.
 constexpr int kMinObstacleRows = 3;
+// Obstacles that stay as long as the head of the tables does.
+constexpr int kObstacleRowsWithHeader = 8;
+// Obstacles in text for scripts.
+constexpr std::size_t kTextObstacles = 10;
+// POSE comes every 20 ms, fixes once a second at least.
+constexpr std::chrono::seconds kOwnShipAge(3);
+constexpr double kLeastCourseSpeedMps = 0.3;
+constexpr const char* kKeys = "q quit  s sure only/all  c count anew";
+constexpr std::array kHeadingSource{words::Word{pose_t::HEADING_HDT, "hdt"}, words::Word{pose_t::HEADING_PASHR, "pashr"},
+                                    words::Word{pose_t::HEADING_COURSE, "course"}};
 
 double Seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
 // Ages: tenths below ten seconds, then whole ones.
 std::string Age(std::chrono::nanoseconds age, int width) { return Number(Seconds(age), width, Seconds(age) < 10.0 ? 1 : 0); }
 
-std::string ChannelsHeader() {
-  return Left("channel", 13) + Right("Hz", 7) + Right("kB/s", 7) + Right("lost", 5) + Right("bad", 4) + Right("age", 5);
+// A column: right-aligned, with a space before it at least.
+std::string Column(const std::string& text) { return " " + text; }
+
+std::string ChannelsHeader(int width) {
+  return Fitting({Left("channel", 13), Right("Hz", 7), Right("kB/s", 7), Right("lost", 5), Right("bad", 4), Right("age", 5)}, width);
 }
 
-std::vector<Span> ChannelRows(const Board& board, TimePoint now) {
+std::vector<Span> ChannelRows(const Board& board, TimePoint now, int width) {
   std::vector<Span> rows;
   for (const auto& channel : board.Channels(now)) {
     const bool is_faulty = channel.num_lost.value_or(0) > 0 || channel.num_bad > 0;
-    rows.push_back({Left(Printable(channel.name), 13) + (channel.rate ? Number(channel.rate->messages_hz, 7, 1) : Right("-", 7)) +
-                        (channel.rate ? Number(channel.rate->bytes_per_s / 1000.0, 7, 1) : Right("-", 7)) +
-                        (channel.num_lost ? Count(*channel.num_lost, 5) : Right("-", 5)) + Count(channel.num_bad, 4) + Age(channel.age, 5),
-                    channel.is_silent ? Style::kFault
-                    : is_faulty       ? Style::kWarning
-                                      : Style::kPlain});
+    const std::vector<std::string> cells{Left(Printable(channel.name), 13),
+                                         Column(channel.rate ? Number(channel.rate->messages_hz, 6, 1) : Right("-", 6)),
+                                         Column(channel.rate ? Number(channel.rate->bytes_per_s / 1000.0, 6, 1) : Right("-", 6)),
+                                         Column(channel.num_lost ? Count(*channel.num_lost, 4) : Right("-", 4)),
+                                         Column(Count(channel.num_bad, 3)),
+                                         Column(Age(channel.age, 4))};
+    rows.push_back({Fitting(cells, width), channel.is_silent ? Style::kFault : is_faulty ? Style::kWarning : Style::kPlain});
   }
   if (board.num_unlisted() > 0) rows.push_back({fmt::format("and {} messages of others", board.num_unlisted()), Style::kWarning});
   if (rows.empty()) rows.push_back({"nothing on the bus", Style::kFault});
   return rows;
 }
 
-std::string ProcessesHeader() {
-  return Left("process", kProcessNameWidth) + " " + Left("state", 8) + Right("cpu%", 5) + Right("MB", 5) + Right("p99ms", 6);
+// Where there is more room than the columns need, names get it.
+int ProcessNameWidth(int width) { return std::clamp(width - kMinProcessesWidth + kProcessNameWidth, kProcessNameWidth, kMaxProcessNameWidth); }
+
+std::string ProcessesHeader(int width) {
+  return Left("process", ProcessNameWidth(width)) + " " + Left("state", 8) + Right("cpu%", 5) + Right("MB", 5) + Right("p99ms", 6);
 }
 
 Style StyleOf(const ProcessLine& process) {
@@ -61,44 +80,85 @@ std::vector<Span> ProcessRows(const Board& board, TimePoint now, int width) {
   for (const auto& process : board.Processes(now)) {
     const Style style = StyleOf(process);
     const std::string state(process.is_silent ? "silent" : words::WordOf(words::kHealthState, process.state));
-    rows.push_back({Left(Printable(process.name), kProcessNameWidth) + " " + Left(state, 8) + Number(100.0 * process.cpu_fraction, 5, 1) +
-                        Number(1e-6 * static_cast<double>(process.resident_bytes), 5, 0) +
-                        (process.latency_p99_us < 0 ? Right("-", 6) : Number(1e-3 * static_cast<double>(process.latency_p99_us), 6, 1)),
+    rows.push_back({Left(Printable(process.name), ProcessNameWidth(width)) + " " + Left(state, 8) +
+                        Column(Number(100.0 * process.cpu_fraction, 4, 1)) +
+                        Column(Number(1e-6 * static_cast<double>(process.resident_bytes), 4, 0)) +
+                        Column(process.latency_p99_us < 0 ? Right("-", 5) : Number(1e-3 * static_cast<double>(process.latency_p99_us), 5, 1)),
                     style});
     const auto reason = process.is_silent ? fmt::format("no HEALTH for {:.0f} s", Seconds(process.age)) : Printable(process.reason);
     for (const auto& line : Wrapped(reason, width - 1, kMaxReasonLines)) rows.push_back({" " + line, style});
   }
+  if (board.num_unlisted_health() > 0) rows.push_back({fmt::format("and {} HEALTH of others", board.num_unlisted_health()), Style::kWarning});
   if (rows.empty()) rows.push_back({"no process sends HEALTH", Style::kFault});
   return rows;
 }
 
-std::string ObstaclesHeader(const NearestObstacles* obstacles, bool sure_only) {
-  const auto count = obstacles == nullptr
-                         ? std::string()
-                         : fmt::format("of {}", std::min<std::int64_t>(sure_only ? obstacles->num_sure : obstacles->num_obstacles, 999));
-  return Left(count, 6) + Right("id", 3) + Right("range m", 8) + Right("rel", 5) + Right("true", 5) + Right("latitude", 12) + Right("longitude", 13) +
-         "  " + Left("size m", 14) + Left(sure_only ? "sure only" : "confidence", 10);
+// "own 43.629590 -72.149989  heading 094 hdt  1.2 m/s  pose ok  fix rtk_fixed  course 092  14 satellites"
+Span OwnShipSpan(const OwnShip& own, int width) {
+  if (!own.pose) return {Fitting({"own ship: no POSE"}, width), Style::kFault};
+  const auto& pose = *own.pose;
+  const bool is_pose_old = own.pose_age > kOwnShipAge;
+  const bool has_fix = own.fix_quality && own.fix_age <= kOwnShipAge;
+  std::vector<std::string> cells{"own"};
+  if (is_pose_old) cells.push_back(fmt::format(" (no POSE for {:.0f} s)", Seconds(own.pose_age)));
+  const auto degrees = [](double value) { return " " + (std::abs(value) <= 360.0 ? fmt::format("{:.6f}", value) : "-"); };
+  const bool has_position = std::isfinite(pose.latitude_deg) && std::isfinite(pose.longitude_deg);
+  cells.push_back(has_position ? degrees(pose.latitude_deg) + degrees(pose.longitude_deg) : " without position");
+  cells.push_back("  heading " + Degrees(pose.heading_rad));
+  if (pose.heading_source != pose_t::HEADING_NONE) cells.push_back(" " + std::string(words::WordOf(kHeadingSource, pose.heading_source)));
+  const double speed_mps = std::hypot(pose.velocity_map_mps[0], pose.velocity_map_mps[1]);
+  cells.push_back("  " + (speed_mps < 1000.0 ? fmt::format("{:.1f}", speed_mps) : std::string("-")) + " m/s");
+  cells.push_back("  pose " + std::string(words::WordOf(words::kPoseStatus, pose.status)));
+  cells.push_back("  fix " + std::string(has_fix ? words::WordOf(words::kFixQuality, *own.fix_quality) : "-"));
+  // At less speed a course is noise.
+  const bool has_course = speed_mps >= kLeastCourseSpeedMps && speed_mps < 1000.0;
+  cells.push_back("  course " + (has_course ? Degrees(std::atan2(pose.velocity_map_mps[0], pose.velocity_map_mps[1])) : std::string("-")));
+  if (has_fix && own.num_satellites >= 0 && own.num_satellites < 1000) cells.push_back(fmt::format("  {} satellites", own.num_satellites));
+  const bool is_well = pose.status == pose_t::STATUS_OK && has_fix && *own.fix_quality != gnss_fix_t::QUALITY_NONE;
+  return {Fitting(cells, width), is_pose_old ? Style::kFault : is_well ? Style::kPlain : Style::kWarning};
 }
 
-Span ObstacleSpan(std::size_t index, const ObstacleLine& line) {
-  // Length and width of what was seen of it, and its height.
-  const auto side = [](double length_m) { return length_m >= 0.0 && length_m < 1000.0 ? fmt::format("{:.1f}", length_m) : std::string("-"); };
-  const std::string size = side(line.length_m) + "x" + side(line.width_m) + "x" + side(line.height_m);
+// One cell per column, as in ObstacleSpan.
+std::string ObstaclesHeader(const NearestObstacles* obstacles, View view) {
+  const auto count = obstacles == nullptr
+                         ? std::string()
+                         : fmt::format("of {}", std::min<std::int64_t>(view.sure_only ? obstacles->num_sure : obstacles->num_obstacles, 999));
+  return Fitting({Left(count, 6) + Right("id", 3), Right("range m", 8), Right("rel", 5), Right("true", 5), Right("latitude", 12),
+                  Right("longitude", 13), "  " + Left("size m", 13), " " + Left(view.sure_only ? "sure only" : "confidence", 10)},
+                 view.width);
+}
+
+// Length and width of what was seen of it, and its height; without decimals where it gets too wide.
+std::string SizeText(const ObstacleLine& line) {
+  const auto text = [&line](int decimals) {
+    const auto side = [decimals](double length_m) {
+      return length_m >= 0.0 && length_m < 1000.0 ? fmt::format("{:.{}f}", length_m, decimals) : std::string("-");
+    };
+    return side(line.length_m) + "x" + side(line.width_m) + "x" + side(line.height_m);
+  };
+  const auto fine = text(1);
+  return fine.size() <= 13 ? fine : text(0);
+}
+
+Span ObstacleSpan(std::size_t index, const ObstacleLine& line, int width) {
   const bool is_tentative = line.confidence == obstacle_t::CONFIDENCE_TENTATIVE;
   const bool is_land = line.kind == obstacle_t::KIND_LAND;
   std::string certainty(is_land ? "land" : words::WordOf(words::kConfidence, line.confidence));
   if (is_land && is_tentative) certainty += " ?";
-  return {Count(static_cast<std::int64_t>(index) + 1, 3) + " " + Count(line.id, 5) + Number(line.range_m, 8, 1) +
-              Right(Degrees(line.bearing_rad), 5) + Right(Degrees(line.true_bearing_rad), 5) + Number(line.latitude_deg, 12, 6) +
-              Number(line.longitude_deg, 13, 6) + "  " + Left(size, 14) + Left(certainty, 10),
+  return {Fitting({Count(static_cast<std::int64_t>(index) + 1, 3) + " " + Count(line.id, 5), Column(Number(line.range_m, 7, 1)),
+                   Right(Degrees(line.bearing_rad), 5), Right(Degrees(line.true_bearing_rad), 5), Column(Number(line.latitude_deg, 11, 6)),
+                   Column(Number(line.longitude_deg, 12, 6)), "  " + Left(SizeText(line), 13), " " + Left(certainty, 10)},
+                  width),
           is_tentative ? Style::kFaint : Style::kPlain};
 }
 
-std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, bool sure_only) {
+std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, View view) {
+  const bool sure_only = view.sure_only;
   std::vector<Span> rows;
   if (obstacles == nullptr) return {{"no OBSTACLES", Style::kFault}};
   const auto& lines = sure_only ? obstacles->sure_lines : obstacles->lines;
-  for (std::size_t i = 0; i < lines.size(); ++i) rows.push_back(ObstacleSpan(i, lines[i]));
+  const std::size_t most = view.height > 0 ? lines.size() : kTextObstacles;
+  for (std::size_t i = 0; i < std::min(lines.size(), most); ++i) rows.push_back(ObstacleSpan(i, lines[i], view.width));
   if (rows.empty()) rows.push_back({sure_only ? "nothing sure in sight" : "nothing in sight", Style::kPlain});
   if (obstacles->num_parts_missing > 0) {
     rows.insert(rows.begin(), {fmt::format("{} parts of this turn were lost: what follows is not all", obstacles->num_parts_missing), Style::kFault});
@@ -106,11 +166,19 @@ std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, bool sure_only
   return rows;
 }
 
-std::string AlarmLine(const Alarm& alarm) {
-  std::string text = "ALARM: " + Printable(alarm.text);
-  // HEALTH comes once a second.
-  if (Seconds(alarm.age) > 3.0) text += fmt::format(" ({:.0f} s ago, silent since)", Seconds(alarm.age));
-  return text;
+// A row for each thing that it tells; what is too long ends in "..".
+std::vector<std::string> AlarmLines(const Alarm& alarm, int width) {
+  std::vector<std::string> lines;
+  std::string_view text = alarm.text;
+  while (!text.empty()) {
+    const auto end = text.find("; ");
+    auto line = "ALARM: " + Printable(text.substr(0, end));
+    // HEALTH comes once a second.
+    if (Seconds(alarm.age) > 3.0) line += fmt::format(" ({:.0f} s ago, silent since)", Seconds(alarm.age));
+    lines.push_back(width < 3 ? line : Wrapped(line, width, 1).front());
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
+  }
+  return lines;
 }
 
 void Cut(Row& row, int width) {
@@ -124,16 +192,25 @@ void Cut(Row& row, int width) {
 // How many rows each section gets.
 struct Plan {
   bool has_title = true;
+  bool has_keys = false;  // in a row of their own
   bool has_header = true;
   int table_rows = 0;
   int obstacle_rows = 0;
 
   // `num_fixed` rows are always there.
   void Fit(int height, int num_fixed) {
-    const auto excess = [&] { return num_fixed + (has_title ? 1 : 0) + (has_header ? 1 : 0) + table_rows + obstacle_rows - height; };
+    const auto excess = [&] {
+      return num_fixed + (has_title ? 1 : 0) + (has_keys ? 1 : 0) + (has_header ? 1 : 0) + table_rows + obstacle_rows - height;
+    };
+    const auto shorten_obstacles = [&](int least) {
+      if (excess() > 0) obstacle_rows = std::max(std::min(obstacle_rows, least), obstacle_rows - excess());
+    };
+    shorten_obstacles(kTextObstacles);
     if (excess() > 0) has_title = false;
+    shorten_obstacles(kObstacleRowsWithHeader);
+    if (excess() > 0) has_keys = false;
     if (excess() > 0) has_header = false;
-    if (excess() > 0) obstacle_rows = std::max(std::min(obstacle_rows, kMinObstacleRows), obstacle_rows - excess());
+    shorten_obstacles(kMinObstacleRows);
     if (excess() > 0) table_rows = std::max(0, table_rows - excess());
   }
 };
@@ -143,23 +220,37 @@ struct Plan {
 std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePoint now, View view) {
   const int processes_width = view.width - kChannelsWidth - 1;
   const bool is_wide = processes_width >= kMinProcessesWidth;
-  const auto channels = ChannelRows(board, now);
-  const auto processes = is_wide ? ProcessRows(board, now, processes_width) : std::vector<Span>{};
+  const auto channels = ChannelRows(board, now, std::min(view.width, kChannelsWidth));
+  auto processes = is_wide ? ProcessRows(board, now, processes_width) : std::vector<Span>{};
   const auto* nearest = board.Obstacles(now);
-  const auto obstacles = ObstacleRows(nearest, view.sure_only);
+  const auto obstacles = ObstacleRows(nearest, view);
   const auto alarm = board.NearestAlarm(now);
-  const bool has_alarm = alarm && alarm->is_active;
+  const auto alarm_lines = alarm && alarm->is_active ? AlarmLines(*alarm, view.width) : std::vector<std::string>{};
 
   Plan plan;
   plan.table_rows = static_cast<int>(std::max(channels.size(), processes.size()));
   plan.obstacle_rows = static_cast<int>(obstacles.size());
-  if (view.height > 0) plan.Fit(view.height, has_alarm ? 2 : 1);
+  if (view.height > 0) {
+    // Keys stand in the free corner below the processes, else in a row of their own.
+    const bool has_corner = is_wide && processes.size() < channels.size();
+    if (has_corner) {
+      processes.resize(channels.size());
+      processes.back() = {Left(kKeys, processes_width), Style::kFaint};
+    }
+    plan.has_keys = !has_corner;
+    plan.Fit(view.height, 2 + static_cast<int>(alarm_lines.size()));
+    // Rows of the table that are cut take the corner with them.
+    if (has_corner && plan.table_rows > 0) std::swap(processes.back(), processes[static_cast<std::size_t>(plan.table_rows) - 1]);
+  }
 
   std::vector<Row> rows;
-  if (has_alarm) rows.push_back({{Left(AlarmLine(*alarm), view.width), Style::kAlarm}});
+  for (const auto& line : alarm_lines) rows.push_back({{Left(line, view.width), Style::kAlarm}});
   if (plan.has_title) rows.push_back({{title, Style::kPlain}});
-  if (plan.has_header)
-    rows.push_back({{Left(Left(ChannelsHeader(), kChannelsWidth) + " " + (is_wide ? ProcessesHeader() : ""), view.width), Style::kHeader}});
+  rows.push_back({OwnShipSpan(board.Own(now), view.width)});
+  if (plan.has_header) {
+    const auto head = ChannelsHeader(std::min(view.width, kChannelsWidth));
+    rows.push_back({{Left(Left(head, kChannelsWidth) + " " + (is_wide ? ProcessesHeader(processes_width) : ""), view.width), Style::kHeader}});
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.table_rows); ++i) {
     Row row;
     const Span left = i < channels.size() ? channels[i] : Span{};
@@ -170,8 +261,10 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
     }
     rows.push_back(std::move(row));
   }
-  rows.push_back({{Left(ObstaclesHeader(nearest, view.sure_only), view.width), Style::kHeader}});
+  rows.push_back({{Left(ObstaclesHeader(nearest, view), view.width), Style::kHeader}});
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.obstacle_rows); ++i) rows.push_back({obstacles[i]});
+
+  if (plan.has_keys) rows.push_back({{kKeys, Style::kFaint}});
 
   for (auto& row : rows) Cut(row, view.width);
   if (view.height > 0 && rows.size() > static_cast<std::size_t>(view.height)) rows.resize(static_cast<std::size_t>(view.height));

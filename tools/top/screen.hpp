@@ -22,8 +22,10 @@ struct View {
   bool sure_only = false;  // obstacles that one turn is sure of; else all
 };
 
-/// The nearest-obstacle alarm stands on top while there is one. Below are channels (left) and processes (right), then the ten nearest
-/// obstacles. Where rows are scarce the title goes first, then the header of the tables, then the farthest obstacles, then the last channels.
+/// The alarm of the guard zone stands on top while there is one, then the own ship. Below are channels (left) and processes (right), then the nearest
+/// obstacles: ten in text, as many as there is room for on a terminal. Keys stand in the free corner below the processes, or last. Where rows are
+/// scarce obstacles beyond the tenth go first, then the title, the ninth and tenth obstacle, the head of the tables, the farthest obstacles but
+/// three, and the last channels. Columns that do not fit whole are left out.
 ///
 /// @param title  printable; time, bus, version
 /// @return at most view.height rows of at most view.width letters

@@ -26,7 +26,7 @@ constexpr double kMinAreaRatio = 1e-4;
 template <typename Placed>
 Isometry3d TransformMapVessel(const Placed& pose) {
   Isometry3d T_map_vessel = Isometry3d::Identity();
-  T_map_vessel.linear() = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad);
+  T_map_vessel.linear() = pose.R_map_here * RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad);
   T_map_vessel.translation() = pose.position_map_m;
   return T_map_vessel;
 }
@@ -94,18 +94,22 @@ std::vector<Vector2d> SeenFromAbove(const std::vector<Vector3d>& points) {
 // Corners are placed at the mean height of their segment. On a boat that is level it does not matter; else their own height moves them by what the
 // lidar's axis leans. Heights are taken as evenly spread from the lowest to the highest return.
 Matrix2d HeightCovariance(const Segment& segment, const Pose& pose, const PlacementParams& params) {
-  const Vector3d axis_map = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad) * params.T_vessel_lidar.linear().col(2);
-  const Vector2d lean_m = (segment.max_z_m - segment.min_z_m) / std::sqrt(12.0) * axis_map.head<2>();
+  Vector3d axis_here = RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad) * params.T_vessel_lidar.linear().col(2);
+  axis_here.z() = 0.0;
+  const Vector2d lean_m = (segment.max_z_m - segment.min_z_m) / std::sqrt(12.0) * (pose.R_map_here * axis_here).head<2>();
   return lean_m * lean_m.transpose();
 }
 
 void PlaceOnEarth(const Segment& segment, const std::vector<Vector3d>& outline_map_m, const Pose& pose, const PlacementParams& params,
                   Obstacle& obstacle) {
-  const Vector3d center_map_m = FootprintCenter(outline_map_m);
+  // Seen from above where the boat is, which need not be above the map.
+  std::vector<Vector3d> outline_here_m;
+  outline_here_m.reserve(outline_map_m.size());
+  for (const auto& corner_map_m : outline_map_m) outline_here_m.push_back(pose.R_map_here.transpose() * (corner_map_m - pose.position_map_m));
+  const Vector3d center_map_m = pose.position_map_m + pose.R_map_here * FootprintCenter(outline_here_m);
   const Vector3d center_vessel_m = TransformMapVessel(pose).inverse() * center_map_m;
   const Datum& datum = pose.datum;
-  const LocalFrame map({datum.latitude_deg, datum.longitude_deg, std::isfinite(datum.ellipsoid_height_m) ? datum.ellipsoid_height_m : 0.0});
-  const GeodeticPlace place = map.Reverse(center_map_m);
+  const GeodeticPlace place = datum.Map().Reverse(center_map_m);
   obstacle.latitude_deg = place.latitude_deg;
   obstacle.longitude_deg = place.longitude_deg;
   obstacle.status = ObstacleStatus::kOk;
@@ -158,7 +162,7 @@ Vector3d FootprintCenter(const std::vector<Vector3d>& vertices) {
 }
 
 Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params) {
-  const Matrix3d by_heading = RotationAboutZ(kPi / 2.0 - pose.heading_rad);
+  const Matrix3d by_heading = pose.R_map_here * RotationAboutZ(kPi / 2.0 - pose.heading_rad);
   const Matrix3d by_pitch = RotationAboutY(-pose.pitch_rad);
   const Matrix3d by_roll = RotationAboutX(pose.roll_rad);
   const Vector3d rolled_m = by_roll * p_vessel_m;
@@ -170,7 +174,7 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
   jacobian.leftCols<2>().setIdentity();
   jacobian.col(2) = (by_heading * (by_pitch * Vector3d::UnitX().cross(rolled_m))).head<2>();
   jacobian.col(3) = -(by_heading * Vector3d::UnitY().cross(levelled_m)).head<2>();
-  jacobian.col(4) = -Vector3d::UnitZ().cross(p_m).head<2>();
+  jacobian.col(4) = -pose.R_map_here.col(2).cross(p_m).head<2>();
 
   const Matrix3d R_map_vessel = by_heading * by_pitch * by_roll;
   const Vector3d beam_m = p_m - R_map_vessel * params.T_vessel_lidar.translation();

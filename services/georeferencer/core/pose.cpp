@@ -25,8 +25,14 @@ bool Datum::IsSameAs(const Datum& other) const {
   return latitude_deg == other.latitude_deg && longitude_deg == other.longitude_deg && IsSameNumber(ellipsoid_height_m, other.ellipsoid_height_m);
 }
 
+LocalFrame Datum::Map() const { return LocalFrame({latitude_deg, longitude_deg, std::isfinite(ellipsoid_height_m) ? ellipsoid_height_m : 0.0}); }
+
 void PoseHistory::Add(const Pose& pose) {
   poses_.push_back(pose);
+  if (pose.is_placed && !pose.position_map_m.head<2>().isZero(0.0)) {
+    const LocalFrame map = pose.datum.Map();
+    poses_.back().R_map_here = map.TransformFrom(LocalFrame(map.Reverse(pose.position_map_m))).linear();
+  }
   while (pose.time - poses_.front().time > kLength) poses_.pop_front();
 }
 
@@ -60,6 +66,8 @@ std::optional<Pose> PoseHistory::At(Utime time) const {
   pose.is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(b.datum);
   pose.datum = a.datum;
   pose.position_map_m = a.position_map_m + share * (b.position_map_m - a.position_map_m);
+  // Of rotations by next to nothing the mean is a rotation.
+  pose.R_map_here = a.R_map_here + share * (b.R_map_here - a.R_map_here);
   pose.heading_rad = HeadingBetween(a.heading_rad, b.heading_rad, share);
   pose.pitch_rad = Between(a.pitch_rad, b.pitch_rad, share);
   pose.roll_rad = Between(a.roll_rad, b.roll_rad, share);
@@ -73,9 +81,13 @@ std::optional<Place> PoseHistory::PlaceAt(Utime time, const Datum& datum) const 
   if (!bracket) return std::nullopt;
   const auto& [a, b, share] = *bracket;
   const bool is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(datum) && b.datum.IsSameAs(datum);
-  if (&a == &b) return Place{is_placed, a.position_map_m, a.heading_rad, a.pitch_rad, a.roll_rad};
-  return Place{is_placed, a.position_map_m + share * (b.position_map_m - a.position_map_m), HeadingBetween(a.heading_rad, b.heading_rad, share),
-               Between(a.pitch_rad, b.pitch_rad, share), Between(a.roll_rad, b.roll_rad, share)};
+  if (&a == &b) return Place{is_placed, a.position_map_m, a.R_map_here, a.heading_rad, a.pitch_rad, a.roll_rad};
+  return Place{is_placed,
+               a.position_map_m + share * (b.position_map_m - a.position_map_m),
+               a.R_map_here + share * (b.R_map_here - a.R_map_here),
+               HeadingBetween(a.heading_rad, b.heading_rad, share),
+               Between(a.pitch_rad, b.pitch_rad, share),
+               Between(a.roll_rad, b.roll_rad, share)};
 }
 
 Datum PoseHistory::DatumAt(Utime time) const {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "common/core/geodesy.hpp"
 #include "common/core/utime.hpp"
 
 namespace lookout::georeferencer {
@@ -22,6 +23,8 @@ struct Datum {
 
   /// Latitude and longitude are known. A height that is not known moves no position by more than 1 mm per 60 m of it and kilometre of distance.
   bool IsKnown() const;
+  /// The map frame; a height that is not known counts as 0.
+  LocalFrame Map() const;
   /// The same map frame, bit for bit. A datum that is not known equals none.
   bool IsSameAs(const Datum& other) const;
 };
@@ -32,6 +35,9 @@ struct Pose {
   bool is_placed = false;  // position and heading are known; else position_map_m, heading_rad and covariance are not to be used
   Datum datum;
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();
+  /// East, north and up where the boat is, along the axes of the map: heading is from north there, roll and pitch from up there. Away from the datum
+  /// they turn away from the axes of the map: up by 1 deg in 111 km, north by more near the poles. PoseHistory::Add sets it.
+  Eigen::Matrix3d R_map_here = Eigen::Matrix3d::Identity();
   double heading_rad = 0.0;  // from true north, clockwise, 0 to 2 pi
   double pitch_rad = 0.0;    // positive bow up; 0 where not known
   double roll_rad = 0.0;     // positive starboard down; 0 where not known
@@ -44,6 +50,7 @@ struct Pose {
 struct Place {
   bool is_placed = false;  // as in Pose
   Eigen::Vector3d position_map_m;
+  Eigen::Matrix3d R_map_here;
   double heading_rad;
   double pitch_rad;
   double roll_rad;
@@ -51,11 +58,13 @@ struct Place {
 
 class PoseHistory {
  public:
-  /// Poses older than this against the newest are forgotten: 6000 of them, 2 MB. A turn is asked for within seconds of its end.
+  /// Poses older than this against the newest are forgotten: 6000 of them, 3 MB. A turn is asked for within seconds of its end.
   static constexpr std::chrono::seconds kLength{120};
   /// Between poses farther apart nothing is known. The grid is 20 ms; the bracket is 5 of it.
   static constexpr std::chrono::milliseconds kMaxBracket{100};
 
+  /// Sets its R_map_here by its place.
+  ///
   /// Precondition: pose.time > newest()->time. Call Clear() before a pose that goes back in time.
   void Add(const Pose& pose);
   void Clear() { poses_.clear(); }

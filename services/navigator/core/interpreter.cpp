@@ -168,7 +168,7 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
 Reading Interpreter::WholeFix(Source& source, GnssFix fix) {
   if (fix.position && !fix.when.is_from_sentence) ++counts_.sentence_time_unusable;
   const bool is_gga = fix.sentence_type == "GGA";
-  if (source.epoch && fix.when.has_sentence_utc && source.epoch->utc == fix.when.utc) {
+  if (source.epoch && fix.when.has_sentence_utc && source.epoch->utc == fix.when.utc && source.epoch->fix.when.num_leaps == fix.when.num_leaps) {
     const auto& known = source.epoch->fix;
     fix.repeats_position = known.position.has_value();
     fix.repeats_velocity = !std::isnan(known.speed_mps);

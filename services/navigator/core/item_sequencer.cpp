@@ -23,6 +23,7 @@ Item ItemSequencer::Make(Utime time, ItemKind kind) {
 Item ItemSequencer::Start(Utime time) {
   last_.reset();
   next_seq_ = 0;
+  last_host_time_ = time;
   next_tick_ = FloorToTick(time) + kTickPeriod;
   return Make(time, ItemKind::kStart);
 }
@@ -36,10 +37,11 @@ Item ItemSequencer::MakeSentence(Utime arrival, const std::string& source, const
 
 std::vector<Item> ItemSequencer::AdvanceTo(Utime host_time) {
   if (!last_) return {Start(host_time)};
-  if (host_time < *last_ - kMaxStepBack) {
+  if (host_time < last_host_time_ - kMaxSetBack || host_time < *last_ - kMaxStepBack) {
     ++num_clock_set_back_;
     return {Start(host_time)};
   }
+  last_host_time_ = std::max(last_host_time_, host_time);
   if (host_time - next_tick_ > kMaxTickGap) next_tick_ = FloorToTick(host_time);
   std::vector<Item> items;
   for (; next_tick_ <= host_time; next_tick_ += kTickPeriod) items.push_back(Make(next_tick_, ItemKind::kTick));

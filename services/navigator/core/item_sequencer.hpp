@@ -15,7 +15,9 @@ namespace lookout::navigator {
 class ItemSequencer {
  public:
   static constexpr std::chrono::milliseconds kTickPeriod{100};
-  /// The host clock was set back when it is so much behind the last item: a new start. What came in by a queue and is so far off is refused.
+  /// The host clock was set back when it is so much behind itself: a new start. Less than the second by which it is set back in a leap second.
+  static constexpr std::chrono::milliseconds kMaxSetBack{400};
+  /// What came in by a queue and is so far off the last item is refused.
   static constexpr std::chrono::seconds kMaxStepBack{1};
   /// Ticks of a longer silence are left out: the computer slept, or its clock was set forward.
   static constexpr std::chrono::seconds kMaxTickGap{10};
@@ -42,6 +44,7 @@ class ItemSequencer {
   Item MakeSentence(Utime arrival, const std::string& source, const std::string& sentence);
 
   std::optional<Utime> last_;  // time of the last item
+  Utime last_host_time_{};     // of the host clock itself, since the start; a lidar's sentence may be ahead of it
   Utime next_tick_{};
   std::int64_t next_seq_ = 0;
   std::int64_t num_clock_set_back_ = 0;

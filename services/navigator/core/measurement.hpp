@@ -21,6 +21,7 @@ struct MeasurementTime {
   // In UTC: what the sentence says, also where the computer's clock is far from it; else from the arrival by the fit of the clocks.
   Utime utc = time;
   bool has_sentence_utc = false;  // utc is what the sentence says
+  int num_leaps = 0;              // leap seconds through which its source went: the same UTC comes twice
 };
 
 /// Chooses between the time in a sentence and its arrival.

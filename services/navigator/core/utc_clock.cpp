@@ -1,5 +1,6 @@
 #include "services/navigator/core/utc_clock.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -7,6 +8,7 @@ namespace lookout::navigator {
 
 namespace {
 
+using namespace std::chrono_literals;
 using std::chrono::days;
 using std::chrono::microseconds;
 
@@ -14,6 +16,8 @@ using std::chrono::microseconds;
 constexpr days kRollover(1024 * 7);
 // Other sources have been silent for so long that they do not contradict.
 constexpr std::chrono::seconds kSilence(5);
+// A second less what lies between two instants of a receiver, of 2 Hz and more.
+constexpr std::chrono::milliseconds kMinLeapBack(400);
 
 struct Resolved {
   Utime utc;
@@ -53,33 +57,82 @@ bool UtcClock::IsBackward(SourceClock& source, Utime utc, bool has_date) {
   return source.num_backward < kMinForward;
 }
 
-void UtcClock::LearnThatItIsOff(SourceClock& source, Utime arrival, microseconds host_minus_utc) {
-  const bool is_the_same = source.num_off > 0 && std::chrono::abs(host_minus_utc - source.off) <= max_latency_;
-  source.num_off = is_the_same ? source.num_off + 1 : 1;
-  source.off = host_minus_utc;
-  const bool is_contradicted = last_agreement_ && arrival - *last_agreement_ < kSilence;
-  if (source.num_off < kMinSentences || is_contradicted) return;
-  is_off_ = std::chrono::abs(host_minus_utc) > max_latency_;
-  off_ = is_off_ ? host_minus_utc : microseconds(0);
-  off_fit_ = ClockFit();
-  fine_fit_ = ClockFit();
+// A receiver says 23:59:60, which is the first second of the next month as utime counts, and then that second; or it says 59 or 00 twice. In any case
+// its time goes back by a second while time goes on.
+void UtcClock::NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, microseconds latency) const {
+  const auto midnight = std::chrono::round<days>(utc);
+  const bool is_new_month = std::chrono::year_month_day(midnight).day() == std::chrono::day(1);
+  if (!is_new_month || utc < midnight - 1s || utc >= midnight + 1s || !source.last_utc || source.last_leap == midnight) return;
+  const auto back = *source.last_utc - utc;
+  const bool is_back = (back >= kMinLeapBack && back < 1s) || (back == 0us && arrival - source.last_arrival >= kMinLeapBack);
+  const auto known = source.fit.is_empty() || !source.fit.is_settled() ? off_ : source.fit.offset();
+  const auto late = arrival - (utc + std::chrono::seconds(source.num_leaps)) - latency - known;
+  if (!is_back || late < kMinLeapBack) return;
+  ++source.num_leaps;
+  source.last_leap = midnight;
 }
 
-void UtcClock::LearnFrom(SourceClock& source, Utime arrival, microseconds host_minus_utc, std::optional<microseconds> latency) {
-  source.num_off = 0;
-  last_agreement_ = arrival;
-  if (is_off_) {
-    off_fit_.Add(arrival.time_since_epoch(), host_minus_utc - latency.value_or(microseconds(0)));
-    off_ = off_fit_.offset();
-  } else if (latency) {
-    fine_fit_.Add(arrival.time_since_epoch(), host_minus_utc - *latency);
+// A sentence ahead of the clock is of another time scale. One behind it may have come late, where it is known when those come that do not.
+bool UtcClock::IsUsable(const SourceClock& source, microseconds host_minus_utc) const {
+  const auto ahead = host_minus_utc - off_;
+  if (ahead < -max_latency_) return false;
+  if (source.fit.is_empty() || !source.fit.is_settled()) return ahead <= max_latency_;
+  return std::chrono::abs(source.fit.offset() - off_) <= max_latency_;
+}
+
+void UtcClock::TakeForUtc() {
+  if (is_off_) fine_fit_ = ClockFit();
+  is_off_ = false;
+  off_ = microseconds(0);
+}
+
+// What a source says of the clock, once it is sure of it.
+void UtcClock::Judge(SourceClock& source, Utime arrival) {
+  const auto off = source.fit.offset();
+  const microseconds limit = std::max<microseconds>(max_latency_, kMinOff);
+  const auto limit_now = is_off_ ? microseconds(std::llround(kShareToStayOff * static_cast<double>(limit.count()))) : limit;
+  const bool is_right = std::chrono::abs(off) <= limit_now;
+  // Only another source that spoke lately can contradict.
+  const bool is_contradicted = agreeing_ != nullptr && agreeing_ != &source && std::chrono::abs(arrival - last_agreement_) < kSilence;
+  if (source.num_leaps > 0 && std::chrono::abs(off + std::chrono::seconds(source.num_leaps)) < std::chrono::abs(off)) {
+    // The computer's clock was told of the leap second: it goes by UTC again.
+    source.num_leaps = 0;
+    source.fit = ClockFit();
+    return;
   }
+  if (is_right) {
+    TakeForUtc();
+  } else if (!is_off_ && is_contradicted) {
+    return;
+  } else if (!is_off_ || (std::chrono::abs(off - off_) > max_latency_ && !is_contradicted)) {
+    is_off_ = true;
+    off_fit_ = source.fit;
+    off_ = off;
+  } else if (std::chrono::abs(off - off_) > max_latency_) {
+    return;
+  }
+  agreeing_ = &source;
+  last_agreement_ = arrival;
+  num_leaps_ = source.num_leaps;
+}
+
+void UtcClock::LearnFrom(SourceClock& source, Utime arrival, Utime utc, std::optional<microseconds> latency, bool is_usable) {
+  const auto time = utc.time_since_epoch();
+  const auto host_minus_utc = arrival - utc - latency.value_or(microseconds(0));
+  source.fit.Add(time, host_minus_utc);
+  if (is_usable && is_off_) {
+    off_fit_.Add(time, host_minus_utc);
+    off_ = off_fit_.offset();
+  } else if (is_usable && latency) {
+    fine_fit_.Add(time, host_minus_utc);
+  }
+  if (source.fit.is_settled()) Judge(source, arrival);
 }
 
 std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime arrival, microseconds time_of_day,
                                                     std::optional<std::chrono::sys_days> date, std::optional<microseconds> latency,
                                                     bool is_measured) {
-  const Utime expected = arrival - off_;
+  const Utime expected = arrival - off_ - std::chrono::seconds(source.num_leaps);
   MeasurementTime when = TimeOfMeasurement(expected, time_of_day, date, max_latency_);
   Resolved resolved{when.time, when.is_date_refused};
   if (!when.is_from_sentence) {
@@ -87,33 +140,40 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
     resolved = date ? MendRollover(*date + time_of_day, expected) : Resolved{OnTheDayNearest(near, time_of_day), false};
   }
   // The first fix sets a receiver's clock right.
-  if (is_measured && !source.has_measured) source.last_utc.reset();
+  if (is_measured && !source.has_measured) {
+    source.last_utc.reset();
+    source.fit = ClockFit();
+  }
   source.has_measured = is_measured;
+  const int num_leaps_before = source.num_leaps;
+  NoteLeapSecond(source, arrival, resolved.utc, latency.value_or(microseconds(0)));
   if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
-  const bool is_same_instant = source.last_utc == resolved.utc;
+  const bool is_same_instant = source.last_utc == resolved.utc && source.num_leaps == num_leaps_before;
   source.last_utc = resolved.utc;
   source.dated_utc = resolved.utc;
   source.dated_arrival = arrival;
+  if (!is_same_instant) source.last_arrival = arrival;
 
   when.arrival = arrival;
   when.utc = resolved.utc;
   when.has_sentence_utc = true;
   when.is_date_refused = resolved.is_date_refused;
-  const auto host_minus_utc = arrival - resolved.utc;
-  if (!when.is_from_sentence) {
-    // Another sentence of an instant, or the same again, was not measured later. How late it is tells nothing new.
-    when.time = is_same_instant ? source.last_time : arrival - latency.value_or(microseconds(0));
-    if (is_measured && !is_same_instant) LearnThatItIsOff(source, arrival, host_minus_utc);
+  when.num_leaps = source.num_leaps;
+  const Utime even_utc = resolved.utc + std::chrono::seconds(source.num_leaps);
+  when.is_from_sentence = IsUsable(source, arrival - even_utc);
+  if (is_measured && !is_same_instant) LearnFrom(source, arrival, even_utc, latency, when.is_from_sentence);
+  if (when.is_from_sentence) {
+    when.time = even_utc + off_;
   } else {
-    if (is_measured) LearnFrom(source, arrival, host_minus_utc, latency);
-    when.time = resolved.utc + off_;
+    // Another sentence of an instant, or the same again, was not measured later.
+    when.time = is_same_instant ? source.last_time : arrival - latency.value_or(microseconds(0));
   }
   source.last_time = when.time;
   return when;
 }
 
 void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
-  source.dated_utc = MendRollover(utc, arrival - off_).utc;
+  source.dated_utc = MendRollover(utc, arrival - off_ - std::chrono::seconds(source.num_leaps)).utc;
   // The first date corrects the guess of those before it.
   if (!source.has_date) source.last_utc.reset();
   source.has_date = true;
@@ -125,7 +185,7 @@ MeasurementTime UtcClock::OfArrival(Utime arrival, std::optional<microseconds> l
   MeasurementTime when;
   when.time = arrival - fine - latency.value_or(microseconds(0));
   when.arrival = arrival;
-  when.utc = when.time - off_;
+  when.utc = when.time - host_minus_utc();
   return when;
 }
 

@@ -20,18 +20,26 @@ struct SourceClock {
   bool has_measured = false;           // the last one came of a measurement; till then the time is that of the receiver's own clock
   std::optional<Utime> last_backward;  // refused because its time ran back
   int num_backward = 0;
-  std::chrono::microseconds off{0};  // arrival less UTC of its last sentences whose time was not usable
-  int num_off = 0;
+  int num_leaps = 0;  // leap seconds that it went through, and the midnight of the last
+  std::optional<std::chrono::sys_days> last_leap;
+  Utime last_arrival{};  // of its last new instant
+  ClockFit fit;          // of arrival less UTC (leap seconds counted on), less its delay where that is known
 };
 
 /// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the
 /// computer's clock is taken for UTC; sources whose delay is known (config) tell what it is off below that, which counts for measurements without
 /// a time. When all sources agree that it is farther off, it is another time scale: the one in which POSE goes on, and measurements are brought into
 /// it by the least of (arrival - UTC).
+///
+/// A sentence that comes late says nothing of the clock: see ClockFit. It was measured when it says. Through a leap second, in which UTC comes
+/// twice, measurements go on evenly.
 class UtcClock {
  public:
-  /// Sentences of so many instants in a row make it sure that the clock is off, or right again.
+  /// Sentences of so many instants, of three seconds or more, make it sure that the clock is off.
   static constexpr int kMinSentences = 5;
+  /// The clock is called off from max_latency on, and not below this; and right again below this share of it.
+  static constexpr std::chrono::milliseconds kMinOff{100};
+  static constexpr double kShareToStayOff = 0.8;
   /// Datagrams overtake each other. A source whose time runs back by more is refused ...
   static constexpr std::chrono::seconds kMaxBackward{1};
   /// ... until so many of its sentences in a row run forward from there: its clock was set.
@@ -53,19 +61,25 @@ class UtcClock {
   MeasurementTime OfArrival(Utime arrival, std::optional<std::chrono::microseconds> latency) const;
 
   /// Computer's clock less UTC; 0 while it is taken for UTC.
-  std::chrono::microseconds host_minus_utc() const { return off_; }
+  std::chrono::microseconds host_minus_utc() const { return off_ + std::chrono::seconds(num_leaps_); }
 
  private:
-  void LearnFrom(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc, std::optional<std::chrono::microseconds> latency);
   static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
-  void LearnThatItIsOff(SourceClock& source, Utime arrival, std::chrono::microseconds host_minus_utc);
+  void NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, std::chrono::microseconds latency) const;
+  bool IsUsable(const SourceClock& source, std::chrono::microseconds host_minus_utc) const;
+  void LearnFrom(SourceClock& source, Utime arrival, Utime utc, std::optional<std::chrono::microseconds> latency, bool is_usable);
+  void Judge(SourceClock& source, Utime arrival);
+  void TakeForUtc();
 
   std::chrono::microseconds max_latency_;
-  std::chrono::microseconds off_{0};
+  std::chrono::microseconds off_{0};  // computer's clock less UTC, leap seconds counted on
   bool is_off_ = false;
-  ClockFit off_fit_;                       // while is_off_
-  ClockFit fine_fit_;                      // while not, of sources whose delay is known
-  std::optional<Utime> last_agreement_{};  // arrival of a sentence whose time was usable
+  int num_leaps_ = 0;  // of the source that spoke last: so many seconds is the computer's clock ahead, as nobody told it of them
+  ClockFit off_fit_;   // while is_off_
+  ClockFit fine_fit_;  // while not, of sources whose delay is known
+  // The last source that says that the clock is right, or off by off_, and when.
+  const SourceClock* agreeing_ = nullptr;
+  Utime last_agreement_{};
 };
 
 }  // namespace lookout::navigator

@@ -98,6 +98,12 @@ TEST(ClockFitDisturbances, AQueueThatIsDrainedSlowlyIsNoStep) {
   }
 }
 
+// A moment between two stalls lets out what waited in the first: late by a second, then by twelve, for fourteen seconds and of more than three.
+TEST(ClockFitDisturbances, TwoStallsWithAMomentBetweenThemAreNoStep) {
+  late::Disturbance disturbance{"two stalls", {{26'405ms, 27'585ms}, {27'588ms, 41'873ms}}, {}, 41'873ms};
+  for (const auto period : {1327us, 100'000us, 1'000'000us}) EXPECT_LT(Play(disturbance, period, 100.0).late_us, 5000.0) << period.count();
+}
+
 // In one second after the other the source's clock went back to the same instant: the slope between them was divided by a time of 0.
 TEST(ClockFitDisturbances, AClockThatGoesBackWithinASecondLeavesTheDriftFinite) {
   ClockFit fit;

@@ -1,5 +1,6 @@
 #include "common/config/text_config.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -207,6 +208,39 @@ TEST(FaultLine, NamesTheLineOfTheValueThatIsWrong) {
 TEST(TextConfig, OfAFileThatIsNotThereIsRefused) {
   Vlp16 message;
   EXPECT_THROW(LoadText("/nonexistent.txtpb", message), ConfigError);
+}
+
+std::string FaultOfFile(const fs::path& file) {
+  try {
+    Vlp16 message;
+    LoadText(file, message);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+// A FIFO held the process for ever, deaf to SIGTERM; /dev/zero filled the memory.
+TEST(TextConfig, OfWhatIsNoFileIsRefusedAtOnce) {
+  const auto folder = fs::temp_directory_path() / ("lookout_config_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const auto fifo = folder / "vlp16.txtpb";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_EQ(FaultOfFile(fifo), fifo.string() + ":1: file: is no regular file (a FIFO, a socket or a device)");
+  fs::create_symlink(fifo, folder / "link.txtpb");
+  EXPECT_NE(FaultOfFile(folder / "link.txtpb").find("is no regular file"), std::string::npos);
+  EXPECT_EQ(FaultOfFile("/dev/zero"), "/dev/zero:1: file: is no regular file (a FIFO, a socket or a device)");
+  EXPECT_EQ(FaultOfFile(folder), folder.string() + ":1: file: is a folder");
+  std::ofstream(folder / "huge").flush();
+  fs::resize_file(folder / "huge", std::uintmax_t{8} << 30U);  // no byte of it is on the disk
+  EXPECT_EQ(FaultOfFile(folder / "huge"), (folder / "huge").string() + ":1: file: is greater than 4194304 bytes: no config");
+  fs::remove_all(folder);
+}
+
+TEST(TextConfig, WithAByteOrderMarkIsRefusedInWords) {
+  EXPECT_EQ(VlpFaults("\xEF\xBB\xBF" + kGoodVlp),
+            "f.txtpb:1: text: begins with a byte order mark (EF BB BF): save it as UTF-8 without one (\"UTF-8\", not \"UTF-8 with BOM\")");
+  EXPECT_EQ(VlpFaults(std::string("\xFF\xFEs\0o\0", 6)), "f.txtpb:1: text: is UTF-16 (it begins with its byte order mark): save it as UTF-8");
 }
 
 TEST(EffectiveText, ShowsDefaultsAndReadsBackTheSame) {

@@ -215,6 +215,8 @@ TEST(DoctorClocks, TellsEachStateOfTheSensors) {
 TEST(DoctorNavigation, TellsTheFix) {
   auto seen = Healthy();
   auto& fix = *seen.navigation.fix;
+  fix.latitude_deg = 43.63;
+  fix.longitude_deg = -72.15;
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kOk,
               "RTK, fixed from input 'udp' (GGA), 14 satellites, sd 0.02 m per axis, HDOP 0.7, 0.1 s old, at 43.63000 N 72.15000 W");
   fix.num_satellites = 4;
@@ -238,6 +240,22 @@ TEST(DoctorNavigation, TellsTheFix) {
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "source: LIVE");
   seen.config.navigation.reset();
   EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "is wrong");
+}
+
+TEST(DoctorNavigation, NamesADatumThatIsFarFromTheFix) {
+  auto seen = Healthy();
+  auto& fix = *seen.navigation.fix;
+  fix.latitude_deg = 43.63;
+  fix.longitude_deg = -72.15;
+  seen.config.navigation->navigator.filter.datum = navigator::Datum{fix.latitude_deg, fix.longitude_deg, 0.0};
+  EXPECT_EQ(JudgeNavigation(seen)[0].grade, Grade::kOk);
+  const auto num_findings = JudgeNavigation(seen).size();
+
+  seen.config.navigation->navigator.filter.datum = navigator::Datum{fix.longitude_deg, fix.latitude_deg, 0.0};
+  const auto findings = JudgeNavigation(seen);
+  ASSERT_EQ(findings.size(), num_findings + 1);
+  EXPECT_EQ(findings[1].grade, Grade::kWarning);
+  EXPECT_NE(findings[1].words.find("swapped latitude and longitude?"), std::string::npos) << findings[1].words;
 }
 
 TEST(DoctorNavigation, TellsTheHeading) {

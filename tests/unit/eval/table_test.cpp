@@ -25,6 +25,20 @@ TEST(Table, CsvQuotesWhatWouldBreakItsCells) {
   EXPECT_EQ(text.str(), "name,note\n\"a, b\",\"say \"\"hi\"\"\"\n");
 }
 
+// Names of objects come from files of others.
+TEST(Table, CsvHoldsNoFormulaAndNumbersStay) {
+  Table table({"name", "value"});
+  table.Add({"=cmd|' /C calc'!A1", "-7.5"});
+  table.Add({"-2+3+cmd|' /C calc'!A1", "+12%"});
+  table.Add({"\033[2J", "-"});
+  std::ostringstream text;
+  table.PrintCsv(text);
+  EXPECT_EQ(text.str(), "name,value\n'=cmd|' /C calc'!A1,-7.5\n'-2+3+cmd|' /C calc'!A1,+12%\n?[2J,-\n");
+  std::ostringstream printed;
+  table.Print(printed);
+  EXPECT_EQ(printed.str().find('\033'), std::string::npos);
+}
+
 TEST(Table, WhatIsNotKnownIsADash) {
   EXPECT_EQ(Number(std::numeric_limits<double>::quiet_NaN(), 2), "-");
   EXPECT_EQ(Number(1.005, 1), "1.0");

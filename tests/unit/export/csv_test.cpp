@@ -89,6 +89,19 @@ TEST(CsvWriter, QuotesTextThatHoldsSeparatorsOrQuotes) {
   EXPECT_EQ(Text("two\nlines"), "\"two\nlines\"");
 }
 
+// HEALTH and fixes of a log from elsewhere hold what their makers wrote.
+TEST(CsvWriter, WritesNoFormulaAndNoEscapeSequenceButNegativeNumbers) {
+  std::string text;
+  CsvWriter csv(text);
+  csv.Text("=1+1");
+  csv.Text("-1");
+  csv.Text("@A1\033[2J");
+  csv.Integer(-1);
+  csv.Fixed(-1.5, 2);
+  csv.Shortest(-0.25);
+  EXPECT_EQ(text, "'=1+1,'-1,'@A1?[2J,-1,-1.50,-0.25");
+}
+
 TEST(CsvWriter, SeparatesCellsAndEndsRows) {
   std::string text;
   CsvWriter csv(text);

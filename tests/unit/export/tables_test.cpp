@@ -193,8 +193,8 @@ pose_t MakePose() {
   pose_t pose{};
   pose.utime_us = kStartUs;
   pose.has_attitude = true;
-  pose.latitude_deg = 1.0;
-  pose.longitude_deg = 2.0;
+  pose.latitude_deg = pose.datum_latitude_deg = 1.0;
+  pose.longitude_deg = pose.datum_longitude_deg = 2.0;
   pose.ellipsoid_height_m = 3.0;
   pose.heading_rad = kPi / 2.0;
   pose.roll_rad = DegToRad(-1.5);
@@ -228,6 +228,36 @@ TEST_F(TablesTest, ABoatAtRestHasASpeedButNoCourse) {
   Add(bus::kPose, pose);
   ASSERT_EQ(Export("pose"), kExitFine);
   EXPECT_TRUE(Rows()[0].ends_with(",0.0000,,ok")) << Rows()[0];
+}
+
+// Noise of a receiver's Doppler gave courses all round the compass.
+TEST_F(TablesTest, ASpeedThatIsNotToldFromZeroHasNoCourse) {
+  auto pose = MakePose();
+  pose.covariance[3][3] = pose.covariance[4][4] = 0.05 * 0.05;
+  for (const double speed_mps : {0.1, 0.2}) {
+    pose.velocity_map_mps[0] = 0.0;
+    pose.velocity_map_mps[1] = speed_mps;
+    Add(bus::kPose, pose);
+  }
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_TRUE(Rows()[0].ends_with(",0.1000,,ok")) << Rows()[0];
+  EXPECT_TRUE(Rows()[1].ends_with(",0.2000,0.0000,ok")) << Rows()[1];
+}
+
+// 4.05 deg of meridians converge between 8 and 12.67 E at 60 N.
+TEST_F(TablesTest, CourseIsFromNorthAtTheBoatNotAtTheDatum) {
+  auto pose = MakePose();
+  pose.latitude_deg = pose.datum_latitude_deg = 60.0;
+  pose.datum_longitude_deg = 8.0;
+  pose.longitude_deg = 12.67;
+  // 5 m/s due east there.
+  const double turn_rad = DegToRad(4.67);
+  pose.velocity_map_mps[0] = 5.0 * std::cos(turn_rad);
+  pose.velocity_map_mps[1] = 5.0 * std::sin(turn_rad) * std::sin(DegToRad(60.0));
+  pose.velocity_map_mps[2] = -5.0 * std::sin(turn_rad) * std::cos(DegToRad(60.0));
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_TRUE(Rows()[0].ends_with(",5.0000,90.0000,ok")) << Rows()[0];
 }
 
 TEST_F(TablesTest, HealthQuotesReasonsAndSplitsIntoTrafficAndCounters) {

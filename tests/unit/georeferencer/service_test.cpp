@@ -55,6 +55,42 @@ class GeoreferencerService : public ::testing::Test {
   }
 };
 
+// 200 km off, and on the other side of the earth, as when latitude and longitude are swapped: such poses were refused, or taken without a word.
+TEST(GeoreferencerDatum, ThatIsFarFromTheBoatIsNamedAndUsed) {
+  for (const double wrong_latitude_deg : {41.9, -72.3}) {
+    SCOPED_TRACE(wrong_latitude_deg);
+    const Datum datum{wrong_latitude_deg, wrong_latitude_deg < 0.0 ? 43.7 : -72.3, 0.0};
+    bus::MemoryBus bus;
+    Params params{PlacementParams{}, std::chrono::milliseconds(500)};
+    params.datum = datum;
+    Service service(bus, params);
+    std::vector<obstacles_t> obstacles;
+    bus::Subscribe<obstacles_t>(bus, bus::kObstacles, [&obstacles](const obstacles_t& message) { obstacles.push_back(message); });
+    bus::Publish(bus, bus::kSegments, MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0)}));
+    const Eigen::Vector3d p_map_m = datum.Map().Forward({43.7, -72.3, 100.0});
+    for (std::int64_t offset_us = 0; offset_us <= 100'000; offset_us += 20'000) {
+      auto message = MakePoseMessage(offset_us, offset_us / 20'000);
+      message.datum_latitude_deg = datum.latitude_deg;
+      message.datum_longitude_deg = datum.longitude_deg;
+      message.datum_ellipsoid_height_m = datum.ellipsoid_height_m;
+      for (int axis = 0; axis < 3; ++axis) message.position_map_m[axis] = p_map_m[axis];
+      bus::Publish(bus, bus::kPose, message);
+    }
+    while (bus.HandleOnce()) {
+    }
+    ASSERT_EQ(obstacles.size(), 1U);
+    const auto& obstacle = obstacles[0].obstacles.at(0);
+    ASSERT_EQ(obstacle.status, obstacle_t::STATUS_OK);
+    EXPECT_NEAR(obstacle.latitude_deg, 43.7 + 10.0 / 111'110.0, 1e-7) << "10 m to the north";
+    EXPECT_NEAR(obstacle.longitude_deg, -72.3, 1e-7);
+    const auto report = service.Report();
+    EXPECT_EQ(report.state, HealthState::kDegraded);
+    const auto expected = wrong_latitude_deg < 0.0 ? "km from the first POSE at 43.70000 N 72.30000 W: swapped latitude and longitude?"
+                                                   : "is 200 km from the first POSE at 43.70000 N 72.30000 W: positions are right all the same";
+    EXPECT_NE(report.reason.find(expected), std::string::npos) << report.reason;
+  }
+}
+
 TEST_F(GeoreferencerService, PlacesATurn) {
   SendTurn(0);
   EXPECT_TRUE(obstacles_.empty());

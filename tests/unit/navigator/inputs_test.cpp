@@ -7,6 +7,7 @@
 
 #include "common/config/text_config.hpp"
 #include "services/navigator/params.hpp"
+#include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
 namespace {
@@ -135,6 +136,23 @@ TEST_F(InputsTest, MustNotShareADeviceOrAPort) {
   ExpectFault(kLive + "bind_address: '0.0.0.0'\ninput { name: 'b' udp { bind_address: '::' port: 10110 } }",
               ":3: input: 'b': udp port 10110 belongs to input 'udp'");
   ExpectFault(kLive + "input { name: 'a' gpsd {} }\ninput { name: 'b' gpsd {} }", "'b': gpsd 127.0.0.1 port 2947 is taken");
+}
+
+TEST_F(InputsTest, ADatumThatIsFarFromATextLogsFirstPositionIsNamed) {
+  const auto log = fs::temp_directory_path() / "lookout_datum_test.nmea";
+  std::ofstream(log) << "noise\n" << Line("GPGGA,120000,,,,,0,,,,M,,M,,") << "\r\n" << RmcLine(NoonPlus(0), 43.63, -72.15, 0.0, 0.0) << "\r\n";
+  auto params = Load(kLive + "input { name: 'day' text_log { file: '" + log.string() + "' } }");
+  params.navigator.filter.datum.reset();
+  EXPECT_NE(InWords(params).find("# datum: the first fix of the run."), std::string::npos);
+  params.navigator.filter.datum = Datum{43.6, -72.1, 0.0};
+  EXPECT_NE(InWords(params).find("is within 50 km."), std::string::npos) << InWords(params);
+  params.navigator.filter.datum = Datum{-72.15, 43.63, 0.0};
+  EXPECT_NE(InWords(params).find("# WARNING: datum 72.15000 S 43.63000 E of boat.txtpb is 11910 km from the first position of text log"),
+            std::string::npos)
+      << InWords(params);
+  EXPECT_NE(InWords(params).find("swapped latitude and longitude?"), std::string::npos);
+  fs::remove(log);
+  EXPECT_NE(InWords(params).find("Not compared with a position"), std::string::npos);
 }
 
 TEST_F(InputsTest, AreToldInWords) {

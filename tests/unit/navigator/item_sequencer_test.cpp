@@ -74,11 +74,20 @@ TEST(ItemSequencer, LetsALidarSentenceGoAheadWithoutTicks) {
 TEST(ItemSequencer, BeginsAgainWhenTheClockIsSetBack) {
   ItemSequencer sequencer;
   sequencer.AdvanceTo(NoonPlus(100));
-  EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(99))), "") << "a second is no step";
+  EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(99.6))), "") << "0.4 s is no step";
   EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(98.99))), "0 start 98.990\n");
   EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(99))), "1 tick 99.000\n");
   EXPECT_EQ(sequencer.counters()[0].name, "clock_set_back");
   EXPECT_EQ(sequencer.counters()[0].count, 1);
+}
+
+// A lidar's sentence of another computer may be ahead: that sets no clock back.
+TEST(ItemSequencer, BeginsAgainInALeapSecondButNotBehindALidarSentence) {
+  ItemSequencer sequencer;
+  sequencer.AdvanceTo(NoonPlus(100));
+  sequencer.OnLidarSentence(NoonPlus(100.9), "$A");
+  EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(100.1))), "2 tick 100.900\n");
+  EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(99.2))), "0 start 99.200\n");
 }
 
 TEST(ItemSequencer, SkipsTheTicksOfALongSilence) {

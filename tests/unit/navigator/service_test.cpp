@@ -90,6 +90,28 @@ TEST(Service, PublishesEachRawItemBeforeWhatComesOfIt) {
   EXPECT_EQ(rig.Messages<attitude_t>(bus::kAttitude)[0].raw_seq, 2);
 }
 
+// Latitude and longitude changed places in config: positions came out wrong, or none, with nothing but ok in HEALTH.
+TEST(Service, NamesADatumThatIsFarFromTheFirstFixAndIsRightAllTheSame) {
+  auto params = TestParams(Input::kOutside);
+  params.navigator.filter.datum = Datum{-72.15, 43.63, 0.0};
+  Rig rig(params);
+  rig.service.AdvanceTo(NoonPlus(0));
+  EXPECT_EQ(rig.service.Report().reason.find("datum"), std::string::npos) << "before the first fix nothing can be said";
+  rig.Datagram(0.05, GgaLine(NoonPlus(0.0), 43.63, -72.15, 4, 0.7, 201.0, -28.0) + "\r\n" + PashrLine(NoonPlus(0.0), 0.0, 0.0, 0.0, 0.0) + "\r\n");
+  rig.service.AdvanceTo(NoonPlus(0.1));
+  rig.Drain();
+  const auto report = rig.service.Report();
+  EXPECT_EQ(report.state, HealthState::kDegraded);
+  EXPECT_NE(report.reason.find("datum 72.15000 S 43.63000 E of boat.txtpb is 11910 km from the first fix at 43.63000 N 72.15000 W: swapped latitude "
+                               "and longitude?"),
+            std::string::npos)
+      << report.reason;
+  const auto pose = rig.Messages<pose_t>(bus::kPose).back();
+  EXPECT_EQ(pose.status, pose_t::STATUS_OK);
+  EXPECT_NEAR(pose.latitude_deg, 43.63 + 0.8 / 111'100.0, 1e-8);
+  EXPECT_NEAR(pose.ellipsoid_height_m, 173.0 - 0.9, 1e-6);
+}
+
 TEST(Service, PutsLinesWithWrongChecksumsIntoTheRawLogToo) {
   Rig rig(TestParams(Input::kOutside));
   rig.Datagram(0.0, "$GPHDT,1.0,T*00\r\n$GPHDT,1.0,T\r\n$\x80\r\nnothing\r\n");

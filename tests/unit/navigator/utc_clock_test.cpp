@@ -163,5 +163,33 @@ TEST_F(UtcClockTest, RefusesTimeThatRunsBackwardsUntilItRunsForward) {
   EXPECT_TRUE(clock_.OfSentence(source_, NoonPlus(113), OfDay(NoonPlus(53)), std::nullopt, std::nullopt));
 }
 
+// A TCP source that was stopped and drained: the clock was called off by 11 s, then by 0.0 s for ever.
+TEST_F(UtcClockTest, IsToldNothingByAQueueThatIsDrained) {
+  for (int i = 0; i < 300; ++i) Sentence(NoonPlus(0.1 * i), 0s);
+  for (int i = 0; i < 120; ++i) {
+    const auto utc = NoonPlus(30 + 0.1 * i);
+    const auto when = Sentence(utc, 0s, NoonPlus(42) + 50ms - utc);
+    ASSERT_TRUE(when);
+    EXPECT_EQ(when->time, utc) << "it was measured when it says";
+    EXPECT_EQ(clock_.host_minus_utc(), 0us) << i;
+  }
+  for (int i = 420; i < 600; ++i) Sentence(NoonPlus(0.1 * i), 0s);
+  EXPECT_EQ(clock_.host_minus_utc(), 0us);
+}
+
+// Between 0.4 and 0.5 s it stays what it was called.
+TEST_F(UtcClockTest, CallsAClockOffWithHysteresis) {
+  const auto run = [this](int from_s, microseconds off) {
+    for (int i = from_s; i < from_s + 15; ++i) Sentence(NoonPlus(i), off, 0ms);
+    return clock_.host_minus_utc();
+  };
+  EXPECT_EQ(run(0, 450ms), 0us);
+  EXPECT_EQ(run(20, 520ms), 520ms);
+  EXPECT_EQ(run(40, 450ms), 450ms);
+  EXPECT_EQ(run(60, 350ms), 0us);
+  EXPECT_EQ(run(80, -450ms), 0us);
+  EXPECT_EQ(run(100, -520ms), -520ms);
+}
+
 }  // namespace
 }  // namespace lookout::navigator

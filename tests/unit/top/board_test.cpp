@@ -141,22 +141,22 @@ TEST(Board, ForgetsNothingAboutManyChannelsButTheirNames) {
   EXPECT_EQ(board.num_unlisted(), 1000 - static_cast<std::int64_t>(Board::kMaxChannels));
 }
 
-TEST(Board, SortsObstaclesOfAllPartsAndKeepsTheTenNearest) {
+TEST(Board, SortsObstaclesOfAllPartsAndKeepsTheNearest) {
   Board board(kStart);
   std::vector<obstacle_t> far;
-  for (int i = 0; i < 9; ++i) far.push_back(ObstacleAt(10 + i, 50.0F + static_cast<float>(i), 1.0F));
+  for (int i = 0; i < 49; ++i) far.push_back(ObstacleAt(10 + i, 50.0F + static_cast<float>(i), 1.0F));
   Say(board, bus::kObstacles, TurnOf(1, far, 0, 2), 0.1);
   EXPECT_EQ(board.Obstacles(At(0.1)), nullptr);  // half a turn
   auto lost_range = ObstacleAt(20, static_cast<float>(kNan), 0.0F);
   Say(board, bus::kObstacles, TurnOf(1, {lost_range, ObstacleAt(21, 7.5F, 2.0F), ObstacleAt(22, 3.25F, 3.0F)}, 1, 2), 0.2);
   const auto* obstacles = board.Obstacles(At(0.3));
   ASSERT_NE(obstacles, nullptr);
-  EXPECT_EQ(obstacles->num_obstacles, 12);
+  EXPECT_EQ(obstacles->num_obstacles, 52);
   EXPECT_EQ(obstacles->num_parts_missing, 0);
-  ASSERT_EQ(obstacles->lines.size(), 10U);
+  ASSERT_EQ(obstacles->lines.size(), 50U);
   EXPECT_EQ(obstacles->lines[0].id, 22);
   EXPECT_EQ(obstacles->lines[1].id, 21);
-  EXPECT_EQ(obstacles->lines[9].id, 17);  // 57 m; the farthest and the one without range do not fit
+  EXPECT_EQ(obstacles->lines[49].id, 57);  // 97 m; the farthest and the one without range do not fit
 }
 
 TEST(Board, ShowsATurnWithoutItsLastPartWhenTheNextBegins) {
@@ -195,6 +195,24 @@ TEST(Board, WithoutAHeadingOfThatTimeTheTrueBearingIsNotKnown) {
   EXPECT_TRUE(std::isnan(board.Obstacles(At(0.5))->lines[0].true_bearing_rad));
 }
 
+// Names that somebody invents push no process off the screen, whoever is heard first.
+TEST(Board, KeepsTheProcessesOfTheSuiteAboveInventedNames) {
+  Board board(kStart);
+  for (int i = 0; i < 64; ++i) Say(board, bus::kHealth, HealthOf("a" + std::to_string(i), 0), 0.1);
+  for (const std::string process : {"recorder", "vlp16", "segmenter", "navigator", "georeferencer"}) {
+    Say(board, bus::kHealth, HealthOf(process, 0), 0.2);
+  }
+  for (int i = 0; i < 1000; ++i) Say(board, bus::kHealth, HealthOf("b" + std::to_string(i), 0), 0.3);
+  const auto processes = board.Processes(At(0.4));
+  ASSERT_GE(processes.size(), 5U);
+  EXPECT_EQ(processes[0].name, "vlp16");
+  EXPECT_EQ(processes[1].name, "segmenter");
+  EXPECT_EQ(processes[2].name, "navigator");
+  EXPECT_EQ(processes[3].name, "georeferencer");
+  EXPECT_EQ(processes[4].name, "recorder");
+  EXPECT_LE(processes.size(), 16U);
+}
+
 TEST(Board, TakesTheAlarmOutOfHealth) {
   Board board(kStart);
   Say(board, bus::kHealth, HealthOf("georeferencer", 0), 0.1);
@@ -214,6 +232,19 @@ TEST(Board, TakesTheAlarmOutOfHealth) {
   health.reason = "";
   Say(board, bus::kHealth, health, 3.1);
   EXPECT_EQ(board.NearestAlarm(At(3.2))->text, "obstacle near: 7.3 m");
+}
+
+TEST(Board, TellsThatTheGuardZoneIsNotWatched) {
+  Board board(kStart);
+  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED,
+                         "obstacle within 10.0 m: 7.3 m, 12 deg to port; guard zone not watched: no whole scan for 3.2 s; no SEGMENTS for 3 s");
+  AddCounter(health, "alarm_active", 1);
+  AddCounter(health, "zone_unwatched", 1);
+  Say(board, bus::kHealth, health, 1.1);
+  EXPECT_EQ(board.NearestAlarm(At(1.2))->text, "obstacle within 10.0 m: 7.3 m, 12 deg to port; guard zone not watched: no whole scan for 3.2 s");
+  health.reason = "";
+  Say(board, bus::kHealth, health, 2.1);
+  EXPECT_EQ(board.NearestAlarm(At(2.2))->text, "guard zone not watched");
 }
 
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {

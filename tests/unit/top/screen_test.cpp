@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/core/angles.hpp"
+#include "lookout/gnss_fix_t.hpp"
 #include "tests/unit/top/bus_talk.hpp"
 #include "tools/top/format.hpp"
 
@@ -18,7 +19,16 @@ Board BusyBoard() {
   for (const auto& channel : bus::kChannels) {
     if (channel.name != "SIM_TRUTH" && channel.name != "HEALTH") board.Take(channel.name, {}, At(1.9));
   }
-  Say(board, bus::kPose, PoseAt(1'000'000, DegToRad(90.0)), 1.9);
+  pose_t pose = PoseAt(1'000'000, DegToRad(90.0));
+  pose.heading_source = pose_t::HEADING_HDT;
+  pose.latitude_deg = 43.629590;
+  pose.longitude_deg = -72.149989;
+  pose.velocity_map_mps[0] = 1.2;
+  Say(board, bus::kPose, pose, 1.9);
+  gnss_fix_t fix{};
+  fix.quality = gnss_fix_t::QUALITY_RTK_FIXED;
+  fix.num_satellites = 14;
+  Say(board, bus::kGnssFix, fix, 1.9);
   std::vector<obstacle_t> obstacles;
   for (int i = 0; i < 12; ++i) obstacles.push_back(ObstacleAt(i + 1, 4.5F + static_cast<float>(i), static_cast<float>(DegToRad(30.0 * i))));
   obstacles[1].confidence = obstacle_t::CONFIDENCE_TENTATIVE;
@@ -53,16 +63,18 @@ bool Has(const std::vector<std::string>& lines, const std::string& piece) {
   return std::ranges::any_of(lines, [&](const std::string& line) { return line.find(piece) != std::string::npos; });
 }
 
-TEST(Screen, ShowsTenObstaclesWithAllNumbersOnEightyByTwentyFour) {
+TEST(Screen, ShowsNineObstaclesWithAllNumbersOnEightyByTwentyFour) {
   const auto rows = DrawScreen(BusyBoard(), "title", At(2.0), {80, 24});
   const auto lines = Lines(rows);
   ASSERT_EQ(lines.size(), 24U);
-  EXPECT_EQ(lines[0], "channel           Hz   kB/s lost bad  age process       state    cpu%   MB p99ms");
-  EXPECT_EQ(lines[13], "of 12  id range m  rel true    latitude    longitude  size m        confidence");
-  EXPECT_EQ(lines[14], "  1     1     4.5  000  090   43.500000   -72.250000  6.0x2.5x1.5   sure");
-  EXPECT_EQ(lines[15], "  2     2     5.5  030  120   43.500000   -72.250000  6.0x2.5x1.5   tentative");
-  EXPECT_EQ(lines[16], "  3     3     6.5  060  150   43.500000   -72.250000  6.0x2.5x1.5   land");
-  EXPECT_EQ(lines[23], " 10    10    13.5  270  000   43.500000   -72.250000  6.0x2.5x1.5   sure");
+  EXPECT_EQ(lines[0], "own 43.629590 -72.149989  heading 090 hdt  1.2 m/s  pose ok  fix rtk_fixed");
+  EXPECT_EQ(lines[1], "channel           Hz   kB/s lost bad  age process       state    cpu%   MB p99ms");
+  EXPECT_EQ(lines[14], "of 12  id range m  rel true    latitude    longitude  size m        confidence");
+  EXPECT_EQ(lines[15], "  1     1     4.5  000  090   43.500000   -72.250000  6.0x2.5x1.5   sure");
+  EXPECT_EQ(lines[16], "  2     2     5.5  030  120   43.500000   -72.250000  6.0x2.5x1.5   tentative");
+  EXPECT_EQ(lines[17], "  3     3     6.5  060  150   43.500000   -72.250000  6.0x2.5x1.5   land");
+  EXPECT_EQ(lines[23], "  9     9    12.5  240  330   43.500000   -72.250000  6.0x2.5x1.5   sure");
+  EXPECT_TRUE(Has(lines, "q quit  s sure only/all  c count anew"));
   EXPECT_TRUE(Has(lines, "navigator     degraded 12.5   14     -"));
   EXPECT_TRUE(Has(lines, " no heading: neither HDT nor PASHR for"));
   EXPECT_TRUE(Has(lines, "POSE             1.0"));
@@ -70,9 +82,9 @@ TEST(Screen, ShowsTenObstaclesWithAllNumbersOnEightyByTwentyFour) {
 
 TEST(Screen, MayLeaveOutWhatIsNotSure) {
   const auto lines = Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 24, true}));
-  EXPECT_EQ(lines[13], "of 11  id range m  rel true    latitude    longitude  size m        sure only");
+  EXPECT_EQ(lines[14], "of 11  id range m  rel true    latitude    longitude  size m        sure only");
   EXPECT_FALSE(Has(lines, "tentative"));
-  EXPECT_TRUE(Has(lines, " 10    11    14.5"));
+  EXPECT_TRUE(Has(lines, "  9    10    13.5"));
 }
 
 TEST(Screen, AlarmStandsOnTopInReverse) {
@@ -82,13 +94,28 @@ TEST(Screen, AlarmStandsOnTopInReverse) {
     EXPECT_EQ(rows[0][0].style, Style::kAlarm);
     EXPECT_EQ(Lines(rows)[0], "ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port") << height;
   }
-  EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(2.0), {80, 24})), " 10    10    13.5"));  // the ten have room beside it
+  EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(2.0), {80, 24})), "  8     8    11.5"));  // eight have room beside it
   const auto calm = DrawScreen(BusyBoard(), "title", At(2.0), {80, 24});
   EXPECT_FALSE(Has(Lines(calm), "ALARM"));
 }
 
 TEST(Screen, AnAlarmOfAProcessThatFellSilentStaysAndSaysSo) {
   EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(10.0), {80, 24})), "4.5 m, 12 deg to port (8 s ago, silent since)"));
+}
+
+TEST(Screen, TellsOfEachAlarmInARowOfItsOwn) {
+  Board board = AlarmedBoard();
+  auto health =
+      HealthOf("georeferencer", 2, health_t::STATE_DEGRADED,
+               "obstacle within 10.0 m: 4.5 m, 12 deg to port; guard zone not watched: no whole scan for 3.2 s, 31 that were not whole: lost "
+               "packets or a second sender, see HEALTH of vlp16 and segmenter; no SEGMENTS for 3 s");
+  AddCounter(health, "alarm_active", 1);
+  Say(board, bus::kHealth, health, 1.96);
+  const auto lines = Lines(DrawScreen(board, "title", At(2.0), {80, 24}));
+  ASSERT_EQ(lines.size(), 24U);
+  EXPECT_EQ(lines[0], "ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port");
+  EXPECT_EQ(lines[1], "ALARM: guard zone not watched: no whole scan for 3.2 s, 31 that were not whole..");
+  EXPECT_EQ(lines[2].substr(0, 4), "own ");
 }
 
 TEST(Screen, FitsAnySize) {
@@ -99,6 +126,92 @@ TEST(Screen, FitsAnySize) {
       for (const auto& line : Lines(rows)) EXPECT_LE(line.size(), static_cast<std::size_t>(width));
     }
   }
+}
+
+TEST(Screen, TellsTheOwnShip) {
+  const auto wide = Lines(DrawScreen(BusyBoard(), "title", At(2.0), {120, 40}));
+  EXPECT_EQ(wide[1], "own 43.629590 -72.149989  heading 090 hdt  1.2 m/s  pose ok  fix rtk_fixed  course 090  14 satellites");
+  EXPECT_EQ(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {40, 40}))[1], "own 43.629590 -72.149989  heading 090");
+  const auto rows = DrawScreen(BusyBoard(), "title", At(9.0), {80, 40});
+  EXPECT_EQ(Lines(rows)[1].substr(0, 40), "own (no POSE for 7 s) 43.629590 -72.1499");
+  EXPECT_EQ(rows[1][0].style, Style::kFault);
+  Board board(kStart);
+  EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(1.0), {80, 0})), "own ship: no POSE"));
+  auto lost = PoseAt(1'000'000, std::numeric_limits<double>::quiet_NaN());
+  lost.status = pose_t::STATUS_UNKNOWN;
+  lost.latitude_deg = lost.longitude_deg = lost.velocity_map_mps[0] = std::numeric_limits<double>::quiet_NaN();
+  Say(board, bus::kPose, lost, 1.0);
+  EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(1.1), {80, 0})), "own without position  heading -  - m/s  pose unknown  fix -  course -"));
+  EXPECT_EQ(DrawScreen(board, "title", At(1.1), {80, 0})[1][0].style, Style::kWarning);
+}
+
+TEST(Screen, ShowsMoreObstaclesWhereThereIsRoom) {
+  EXPECT_TRUE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 28})), " 12    12    15.5"));
+  EXPECT_FALSE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 0})), " 12    12    15.5")) << "ten in text";
+}
+
+TEST(Screen, ShowsTheKeysAtAnyWidthWhereThereIsRoom) {
+  for (const int width : {40, 79, 80, 120, 200}) {
+    EXPECT_TRUE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {width, 40})), "q quit  s sure only/all  c count anew")) << width;
+  }
+  EXPECT_FALSE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 0})), "q quit")) << "nobody presses keys at --once";
+}
+
+TEST(Screen, CountsTheHealthOfInventedNames) {
+  Board board = BusyBoard();
+  for (int i = 0; i < 64; ++i) Say(board, bus::kHealth, HealthOf("a" + std::to_string(i), 0), 1.95);
+  const auto lines = Lines(DrawScreen(board, "title", At(2.0), {80, 40}));
+  for (const std::string process : {" vlp16", " segmenter", " navigator", " georeferencer", " recorder"}) EXPECT_TRUE(Has(lines, process));
+  EXPECT_TRUE(Has(lines, "and 56 HEALTH of others"));
+}
+
+// Every column as wide as it gets: a number next to another without a space between is one that nobody sent.
+Board WideBoard() {
+  Board board(kStart);
+  std::vector<std::uint8_t> rubbish(100'000);
+  for (int i = 0; i < 12345; ++i) board.Take("A_CHANNEL_OF_A_LONG_NAME", {rubbish.data(), i < 200 ? rubbish.size() : 0}, At(1.5));
+  for (int i = 0; i < 123'456; ++i) board.Take("LIDAR_SCAN", {}, At(1.5));
+  auto health = HealthOf("georeferencer_of_a_long_name", 0, health_t::STATE_DEGRADED);
+  health.cpu_fraction = 12.345;
+  health.resident_bytes = 123'456'000'000;
+  health_channel_t channel{};
+  channel.channel = "OBSTACLES";
+  channel.latency_p99_us = 123'456'700;
+  health.channels = {channel};
+  health.num_channels = 1;
+  Say(board, bus::kHealth, health, 1.5);
+  pose_t pose = PoseAt(1'000'000, 6.28);
+  pose.latitude_deg = -83.123456;
+  pose.longitude_deg = -179.123456;
+  Say(board, bus::kPose, pose, 1.5);
+  auto obstacle = ObstacleAt(123'456, 123'456.7F, 6.28F);
+  obstacle.latitude_deg = -83.123456;
+  obstacle.longitude_deg = -179.123456;
+  obstacle.length_m = 123.4F;
+  obstacle.width_m = 123.4F;
+  obstacle.height_m = 12.3F;
+  Say(board, bus::kObstacles, TurnOf(1, {obstacle}), 1.5);
+  return board;
+}
+
+TEST(Screen, NoColumnsRunTogetherAtAnyWidth) {
+  const auto board = WideBoard();
+  for (int width = 1; width <= 200; ++width) {
+    const auto lines = Lines(DrawScreen(board, "title", At(2.0), {width, 40}));
+    for (const auto& line : lines) {
+      const bool is_number_cut = line.find("-83.") != std::string::npos && line.find("-83.123456") == std::string::npos;
+      EXPECT_FALSE(is_number_cut) << width << ": " << line;
+      for (const std::string touching : {"123k", "12k", "6173", "###"}) {
+        for (auto at = line.find(touching); at != std::string::npos; at = line.find(touching, at + touching.size())) {
+          EXPECT_TRUE(at == 0 || line[at - 1] == ' ' || line[at - 1] == '#') << width << ": " << line;
+          const auto end = at + touching.size();
+          EXPECT_TRUE(end == line.size() || line[end] == ' ' || line[end] == '#') << width << ": " << line;
+        }
+      }
+      EXPECT_EQ(line.find("-83.123456-179"), std::string::npos) << width << ": " << line;
+    }
+  }
+  EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(2.0), {80, 40})), "123x123x12"));
 }
 
 TEST(Screen, AnEmptyBusIsSaid) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/datum_check.hpp"
 #include "common/core/elementary.hpp"
 #include "services/navigator/core/filter/pose_output.hpp"
 
@@ -128,6 +129,11 @@ void PoseFilter::Add(const GnssFix& fix) {
   const double ellipsoid_height_m = fix.EllipsoidHeightM();
   const bool has_height = !std::isnan(ellipsoid_height_m);
   if (!datum_) SetDatum({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : 0.0});
+
+  if (!last_fix_arrival_ && params_.datum) {
+    const GeodeticPlace datum{datum_->latitude_deg, datum_->longitude_deg, 0.0};
+    datum_complaint_ = DatumComplaint(datum, {fix.position->latitude_deg, fix.position->longitude_deg, 0.0}, "the first fix");
+  }
 
   filter::FixMeasurement measurement;
   measurement.source = fix.source;

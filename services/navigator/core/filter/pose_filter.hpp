@@ -70,6 +70,9 @@ class PoseFilter {
   double nis_sum() const { return nis_sum_; }
   std::int64_t num_nis_degrees() const { return num_nis_degrees_; }
 
+  /// A datum out of config that is far from the first fix, in words (common/core/datum_check.hpp); empty = none.
+  const std::string& datum_complaint() const { return datum_complaint_; }
+
   /// What has stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = nothing.
   const std::string& stopped() const { return stopped_; }
 
@@ -110,6 +113,7 @@ class PoseFilter {
   double nis_sum_ = 0.0;
   std::int64_t num_nis_degrees_ = 0;
   std::string stopped_;
+  std::string datum_complaint_;
   bool has_had_heading_ = false;
 };
 
