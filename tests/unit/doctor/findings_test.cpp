@@ -300,6 +300,19 @@ TEST(DoctorMounting, IsToldInWords) {
   EXPECT_SAYS(said, kOk, "meets the water 5.6 m from the lidar");  // 1.5 m / tan 15 deg
 }
 
+TEST(DoctorMounting, WarnsOfABoxAndAnAntennaThatTheBoatHasNot) {
+  auto config = Healthy().config;
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kOk, "returns up to 1.4 m ahead");
+  config.boat->own_vessel_box_m.max().x() = 14.0;
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "returns up to 14.0 m ahead and 1.4 m astern");
+  config = Healthy().config;
+  config.boat->p_vessel_antenna_m.x() = 80.5;
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "the GNSS antenna is 80.0 m ahead of the lidar");
+  config = Healthy().config;
+  config.boat->hull_m.reset();
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "hull_length_m and hull_beam_m in boat.txtpb");
+}
+
 class Mounted : public ::testing::Test {
  protected:
   static Said Lidar(double yaw_deg, double pitch_deg, double roll_deg, double z_m) {
