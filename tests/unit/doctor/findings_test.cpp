@@ -258,6 +258,25 @@ TEST(DoctorNavigation, NamesADatumThatIsFarFromTheFix) {
   EXPECT_NE(findings[1].words.find("swapped latitude and longitude?"), std::string::npos) << findings[1].words;
 }
 
+TEST(DoctorNavigation, SaysWhatGpsdDoesNotPassWhereItAloneGivesSentencesAndNoHeadingComes) {
+  auto seen = Healthy();
+  seen.navigation.pose->heading_source = pose_t::HEADING_NONE;
+  const auto cure_of = [&seen] {
+    for (const auto& finding : JudgeNavigation(seen)) {
+      if (finding.subject == "heading") return finding.cure;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(cure_of().find("gpsd"), std::string::npos);
+  navigator::Connection gpsd;
+  gpsd.name = "daemon";
+  gpsd.kind = navigator::Connection::Kind::kGpsd;
+  seen.config.navigation->connections.push_back(gpsd);
+  EXPECT_EQ(cure_of().find("gpsd"), std::string::npos) << "other inputs give sentences too";
+  seen.navigation.num_by_source = {{"daemon", 10}};
+  EXPECT_NE(cure_of().find("gpsd 3.22 does not pass $HEHDT and $HEROT"), std::string::npos) << cure_of();
+}
+
 TEST(DoctorNavigation, TellsTheHeading) {
   auto seen = Healthy();
   auto& pose = *seen.navigation.pose;
