@@ -22,7 +22,7 @@ inline const std::vector<std::string> kServices{"recorder", "georeferencer", "se
 
 // An obstacle is wrong when a corner of its outline lies farther than this from all that is there: so many stated deviations, and what the outline
 // itself may be off by: noise of the range, time within a scan, what rocks.
-inline constexpr double kMaxDeviations = 4.0;
+inline constexpr double kMaxDeviations = 5.0;
 inline constexpr double kOutlineM = 0.5;
 // The guard zone of this run, all round, and what must be within it for certain to be missed.
 inline constexpr double kZoneM = 10.0;
