@@ -29,7 +29,7 @@ constexpr std::size_t kMaxLateBins = 100;
 constexpr int kMinLateInHalf = 2;
 // Of what comes at random times of a busy computer, from one to the next.
 constexpr microseconds kMaxGrowth = std::chrono::milliseconds(500);
-constexpr int kMinTimely = 5;
+constexpr int kMinSamples = 5;
 // A queue that drains more slowly than by 3 % of time passes for a step.
 constexpr microseconds kMaxShrinking = std::chrono::milliseconds(50);
 // Messages overtake each other by less, and leap seconds are shorter.
@@ -53,11 +53,15 @@ void ClockFit::Add(microseconds time, microseconds host_minus_time) {
   }
   if (time <= now_) return;
   now_ = time;
+  if (num_samples_ < kMinSamples) ++num_samples_;
   const microseconds late = host_minus_time - offset();
   const microseconds jitter = kMaxJitter + DriftIn(time - last_.time);
   if (late < -kMaxEarly && ++num_early_ < kSamplesOfAStep) return;
   if (late < -jitter) {
+    // Of a source whose delays differ by more than jitter: the clocks are as sure as before.
+    const bool is_still_settled = is_settled_ && late >= -kMaxEarly;
     Begin(sample);
+    is_settled_ = is_still_settled;
   } else if (late > jitter) {
     num_early_ = 0;
     OnLate(sample);
@@ -69,7 +73,7 @@ void ClockFit::Add(microseconds time, microseconds host_minus_time) {
 // All that was known of the offset is void. The drift is of the crystals: it stays.
 void ClockFit::Begin(const Sample& sample) {
   bins_.clear();
-  num_timely_ = 0;
+  num_samples_ = 1;
   is_settled_ = false;
   first_ = sample;
   now_ = sample.time;
@@ -80,9 +84,8 @@ void ClockFit::OnTimely(const Sample& sample) {
   num_early_ = 0;
   late_.clear();
   last_ = sample;
-  if (num_timely_ < kMinTimely) ++num_timely_;
   const bool is_long = sample.time - first_.time >= kStepWindow && sample.host() - first_.host() >= kStepWindow;
-  is_settled_ = is_settled_ || (num_timely_ >= kMinTimely && is_long);
+  is_settled_ = is_settled_ || (num_samples_ >= kMinSamples && is_long);
   if (bins_.empty() || sample.time >= bins_.back().end) {
     Measure();
     bins_.push_back({sample.time + kBin, sample});

@@ -18,6 +18,8 @@ constexpr days kRollover(1024 * 7);
 constexpr std::chrono::seconds kSilence(5);
 // A second less what lies between two instants of a receiver, of 2 Hz and more.
 constexpr std::chrono::milliseconds kMinLeapBack(400);
+// Of 1 Hz it says the same instant twice, so much apart; sentences of one instant come within half a second at 4800 baud.
+constexpr std::chrono::milliseconds kMinLeapRepeat(700);
 
 struct Resolved {
   Utime utc;
@@ -64,7 +66,7 @@ void UtcClock::NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, mic
   const bool is_new_month = std::chrono::year_month_day(midnight).day() == std::chrono::day(1);
   if (!is_new_month || utc < midnight - 1s || utc >= midnight + 1s || !source.last_utc || source.last_leap == midnight) return;
   const auto back = *source.last_utc - utc;
-  const bool is_back = (back >= kMinLeapBack && back < 1s) || (back == 0us && arrival - source.last_arrival >= kMinLeapBack);
+  const bool is_back = (back >= kMinLeapBack && back < 1s) || (back == 0us && arrival - source.last_arrival >= kMinLeapRepeat);
   const auto known = source.fit.is_empty() || !source.fit.is_settled() ? off_ : source.fit.offset();
   const auto late = arrival - (utc + std::chrono::seconds(source.num_leaps)) - latency - known;
   if (!is_back || late < kMinLeapBack) return;

@@ -1,6 +1,7 @@
 #include "services/navigator/core/utc_clock.hpp"
 
 #include <gtest/gtest.h>
+#include <random>
 
 #include "tests/unit/navigator/nmea_text.hpp"
 
@@ -174,6 +175,32 @@ TEST_F(UtcClockTest, IsToldNothingByAQueueThatIsDrained) {
     EXPECT_EQ(clock_.host_minus_utc(), 0us) << i;
   }
   for (int i = 420; i < 600; ++i) Sentence(NoonPlus(0.1 * i), 0s);
+  EXPECT_EQ(clock_.host_minus_utc(), 0us);
+}
+
+TEST_F(UtcClockTest, IsToldNothingByAQueueOfAReceiverWhoseDelayVaries) {
+  std::mt19937 random(3);
+  for (int run = 0; run < 200; ++run) {
+    clock_ = UtcClock(kMaxClockLatency);
+    source_ = {};
+    const int num_before = 100 + static_cast<int>(random() % 100);
+    const auto delay = [&] { return microseconds(20'000 + random() % 100'000); };
+    for (int i = 0; i < num_before; ++i) Sentence(NoonPlus(0.1 * i), 0s, delay());
+    for (int i = num_before; i < num_before + 120; ++i) {
+      const auto utc = NoonPlus(0.1 * i);
+      ASSERT_EQ(Sentence(utc, 0s, NoonPlus(0.1 * (num_before + 120)) + 50ms - utc)->time, utc) << run << ", " << i - num_before;
+      ASSERT_EQ(clock_.host_minus_utc(), 0us);
+    }
+  }
+}
+
+// 4800 baud: GGA comes half a second behind RMC, of the same instant. That is no leap second.
+TEST_F(UtcClockTest, GoesThroughANewMonthWithAReceiverThatIsSlow) {
+  const auto midnight = std::chrono::sys_days(std::chrono::year(2026) / 7 / 1);
+  for (int i = -20; i < 20; ++i) {
+    const Utime utc = midnight + std::chrono::seconds(i);
+    for (const auto delay : {100ms, 650ms}) EXPECT_EQ(Sentence(utc, 0s, delay)->time, utc) << i;
+  }
   EXPECT_EQ(clock_.host_minus_utc(), 0us);
 }
 
