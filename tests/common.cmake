@@ -24,7 +24,7 @@ add_test(NAME structure_libm COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/structure/libm_
 lookout_test(NAME unit_common
              SOURCES unit/common/angles_test.cpp unit/common/clock_fit_test.cpp unit/common/clock_fit_disturbances_test.cpp unit/common/frames_test.cpp unit/common/bytes_test.cpp unit/common/bus_test.cpp
                      unit/common/datagram_filter_test.cpp unit/common/sequence_test.cpp unit/common/stream_guard_test.cpp unit/common/log_file_test.cpp unit/common/wire_description_test.cpp
-                     unit/common/text_config_test.cpp unit/common/health_test.cpp unit/common/machine_test.cpp unit/common/notify_test.cpp unit/common/output_file_test.cpp
+                     unit/common/text_config_test.cpp unit/common/health_test.cpp unit/common/boat_words_test.cpp unit/common/machine_test.cpp unit/common/notify_test.cpp unit/common/output_file_test.cpp
                      unit/common/printable_test.cpp unit/common/progress_test.cpp
              LINKS lookout_runtime lookout_bus lookout_config lookout_io lookout_wire lcm)
 # Their bounds of error against the C library's long double and against GeographicLib.

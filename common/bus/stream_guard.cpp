@@ -152,6 +152,10 @@ StreamGuard::Time StreamGuard::SilenceOf(const Stream& stream) {
   return std::clamp<Time>(periods, kSilence, kMaxSilence);
 }
 
+bool StreamGuard::IsEven(const Stream& stream) {
+  return stream.num_periods >= kMinPeriods && stream.deviation_us < kEvenDeviation * stream.period_us;
+}
+
 StreamGuard::Fit StreamGuard::FitOf(const Stream& stream, const StreamPlace& place, Time now) const {
   const auto& last = stream.last;
   if (place.seq == last.seq) {
@@ -160,7 +164,12 @@ StreamGuard::Fit StreamGuard::FitOf(const Stream& stream, const StreamPlace& pla
   }
   if (place.seq < last.seq) return Fit::kNo;
   const auto distance = Distance(last.seq, place.seq);
-  if (distance == 1) return Fit::kExact;
+  if (distance == 1) {
+    // What comes at even times goes forward in time; but its clock may be set back, or be exchanged for another.
+    constexpr double kLeastStepBackUs = 200'000.0;
+    const double gap_us = GapUs(last, place);
+    return IsEven(stream) && gap_us <= 0.0 && gap_us > -kLeastStepBackUs ? Fit::kNo : Fit::kExact;
+  }
   return distance <= kMaxDistance && IsPlausibleLoss(stream, place, now, distance) ? Fit::kLoss : Fit::kNo;
 }
 
@@ -172,8 +181,8 @@ bool StreamGuard::IsPlausibleLoss(const Stream& stream, const StreamPlace& place
   const double measured_us = GapUs(stream.last, place);
   const double gap_us = measured_us < 0.0 ? received_us : std::min(measured_us, kGreatestSpeed * received_us + kQueueUs);
   const auto number = static_cast<double>(distance);
-  if (stream.num_periods >= kMinPeriods && stream.deviation_us < kEvenDeviation * stream.period_us) {
-    const double tolerance = 0.5 + 0.25 * number;
+  if (IsEven(stream)) {
+    const double tolerance = 0.25 + 0.25 * number;
     return (number - tolerance) * stream.period_us <= gap_us;
   }
   return number <= 1e-6 * gap_us * max_rate_hz_ + std::max(kLeastBurst, kBurstSeconds * max_rate_hz_);

@@ -121,6 +121,7 @@ class StreamGuard {
   Fit FitOf(const Stream& stream, const StreamPlace& place, Time now) const;
   bool IsPlausibleLoss(const Stream& stream, const StreamPlace& place, Time now, std::uint64_t distance) const;
   int Nearer(const StreamPlace& place, Time now) const;
+  static bool IsEven(const Stream& stream);
   static Time SilenceOf(const Stream& stream);
   static bool IsAlive(const Stream& stream, Time now) { return now - stream.received < SilenceOf(stream); }
   static std::int64_t Follow(Stream& stream, const StreamPlace& place, Time now);

@@ -14,6 +14,9 @@ BoatFacts LoadBoat(const std::filesystem::path& folder) {
   if (box.min_x_m() >= box.max_x_m()) faults.Add(FaultLine(file, "own_vessel.min_x_m", "must be less than max_x_m"));
   if (box.min_y_m() >= box.max_y_m()) faults.Add(FaultLine(file, "own_vessel.min_y_m", "must be less than max_y_m"));
   if (box.min_z_m() >= box.max_z_m()) faults.Add(FaultLine(file, "own_vessel.min_z_m", "must be less than max_z_m"));
+  if (boat.has_hull_length_m() != boat.has_hull_beam_m()) {
+    faults.Add(FaultLine(file, boat.has_hull_length_m() ? "hull_beam_m" : "hull_length_m", "must be set where the other of the two is"));
+  }
   faults.ThrowIfAny();
 
   BoatFacts facts;
@@ -28,6 +31,7 @@ BoatFacts LoadBoat(const std::filesystem::path& folder) {
   facts.reference_point_above_water_m = boat.reference_point_above_water_m();
   facts.own_vessel_box_m = {Eigen::Vector3d(box.min_x_m(), box.min_y_m(), box.min_z_m()),
                             Eigen::Vector3d(box.max_x_m(), box.max_y_m(), box.max_z_m())};
+  if (boat.has_hull_length_m()) facts.hull_m = HullSize{boat.hull_length_m(), boat.hull_beam_m()};
   if (boat.has_datum()) {
     facts.datum = BoatDatum{boat.datum().latitude_deg(), boat.datum().longitude_deg(), boat.datum().ellipsoid_height_m()};
   }

@@ -16,6 +16,12 @@ struct BoatDatum {
   double ellipsoid_height_m = 0.0;
 };
 
+/// Over all.
+struct HullSize {
+  double length_m = 0.0;
+  double beam_m = 0.0;
+};
+
 struct BoatFacts {
   std::string name;
   lookout::Mounting lidar;  // not the schema's message of that name
@@ -24,6 +30,7 @@ struct BoatFacts {
   Eigen::Vector3d p_vessel_imu_m = Eigen::Vector3d::Zero();  // the reference point where the file does not say
   double reference_point_above_water_m = 0.0;
   Eigen::AlignedBox3d own_vessel_box_m;  // vessel frame
+  std::optional<HullSize> hull_m;
   std::optional<BoatDatum> datum;
 };
 

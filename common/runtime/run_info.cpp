@@ -1,8 +1,11 @@
 #include "common/runtime/run_info.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include "common/bus/schema.hpp"
+#include "common/config/boat.hpp"
+#include "common/config/boat_words.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/machine.hpp"
 #include "common/runtime/options.hpp"
@@ -11,6 +14,8 @@
 namespace lookout::runtime {
 
 namespace {
+
+constexpr std::string_view kBoatFile = "boat.txtpb";
 
 std::vector<std::string> ConfigFiles(const std::filesystem::path& config_folder) {
   std::vector<std::string> names;
@@ -48,7 +53,12 @@ run_info_t MakeRunInfo(const std::string& program, const std::filesystem::path& 
 std::string EffectiveConfig(const std::filesystem::path& config_folder, const std::vector<std::string>& file_names) {
   std::string text;
   config::FaultList faults;
-  for (const auto& name : file_names) faults.Try([&] { text += "# " + name + "\n" + config::EffectiveTextOfFile(config_folder / name); });
+  for (const auto& name : file_names) {
+    faults.Try([&] { text += "# " + name + "\n" + config::EffectiveTextOfFile(config_folder / name); });
+    // Faults of more than one field are those of who uses the boat; here are words alone.
+    config::FaultList untold;
+    if (name == kBoatFile) untold.Try([&] { text += config::RemarksAsComments(config::LoadBoat(config_folder)); });
+  }
   faults.ThrowIfAny();
   return text;
 }

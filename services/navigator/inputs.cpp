@@ -257,6 +257,7 @@ std::optional<GeodeticPosition> FirstPosition(const std::filesystem::path& file)
     const auto parsed = ParseSentence(line);
     if (parsed.fault != SentenceFault::kNone) continue;
     if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence); rmc != nullptr && rmc->position && IsMeasured(rmc->quality)) return rmc->position;
+    if (const auto* gns = std::get_if<Gns>(&parsed.sentence); gns != nullptr && gns->position && IsMeasured(gns->quality)) return gns->position;
     if (const auto* gga = std::get_if<Gga>(&parsed.sentence); gga != nullptr && gga->position && IsMeasured(gga->quality)) return gga->position;
   }
   return std::nullopt;

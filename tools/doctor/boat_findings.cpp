@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "common/config/boat_words.hpp"
 #include "common/core/angles.hpp"
 #include "services/vlp16/core/model.hpp"
 #include "tools/doctor/findings.hpp"
@@ -92,6 +93,9 @@ Findings JudgeMounting(const ConfigSeen& config) {
                       "an object at the lidar's height, 10 m ahead of the reference point, is at " + SeenByLidar(boat, {kExampleM, 0.0, lidar_z_m}) +
                           " in the lidar's frame; one 10 m to starboard at " + SeenByLidar(boat, {0.0, -kExampleM, lidar_z_m}),
                       {}});
+  for (const auto& remark : config::RemarksOnBoat(boat)) {
+    findings.push_back({remark.cure.empty() ? Grade::kOk : Grade::kWarning, kMountingSubject, remark.words, remark.cure});
+  }
   const double antenna_above_water_m = boat.p_vessel_antenna_m.z() + boat.reference_point_above_water_m;
   Finding antenna{Grade::kOk,
                   kMountingSubject,

@@ -74,7 +74,7 @@ Finding JudgeFix(const Observations& seen) {
   }
   if (!navigation.fix) {
     const auto sources = Joined(navigation.num_by_source, [](const auto& entry) { return "'" + entry.first + "'"; });
-    return {Grade::kFault, kGnssSubject, "sentences come from " + sources + ", but none with a position (RMC, GGA, GLL, VNINS)",
+    return {Grade::kFault, kGnssSubject, "sentences come from " + sources + ", but none with a position (RMC, GGA, GNS, GLL, VNINS)",
             "turn RMC and GGA on in the receiver; role and checksum_required of the input in navigator.txtpb"};
   }
   const auto& fix = *navigation.fix;
@@ -96,11 +96,25 @@ Finding JudgeFix(const Observations& seen) {
 
 std::string CourseInWords(double min_speed_mps) { return "the course over ground stands in for it above " + Text(min_speed_mps, 1) + " m/s"; }
 
+// gpsd 3.22 (Debian 12) gives its clients neither $HEHDT nor $HEROT.
+std::string GpsdInWords(const Observations& seen) {
+  const auto& connections = seen.config.navigation->connections;
+  const auto is_gpsd = [&connections](const std::string& name) {
+    return std::ranges::any_of(
+        connections, [&name](const auto& connection) { return connection.name == name && connection.kind == navigator::Connection::Kind::kGpsd; });
+  };
+  const auto& sources = seen.navigation.num_by_source;
+  const bool is_gpsd_alone = !sources.empty() && std::ranges::all_of(sources, [&is_gpsd](const auto& entry) { return is_gpsd(entry.first); });
+  return is_gpsd_alone ? "; gpsd 3.22 does not pass $HEHDT and $HEROT: let the compass send to an input of its own" : "";
+}
+
 Finding JudgeHeading(const Observations& seen) {
   const auto& pose = seen.navigation.pose;
   const auto& filter = seen.config.navigation->navigator.filter;
-  const std::string cure =
-      "a GNSS compass, or an AHRS with heading (HDT, THS, PASHR, HDG with deviation and declination); its input and role in navigator.txtpb";
+  const std::string cure = std::string(
+                               "a GNSS compass, or an AHRS with heading (HDT, THS, PASHR, PTNTHTM, HDG with deviation and declination); its input "
+                               "and role in navigator.txtpb") +
+                           GpsdInWords(seen);
   if (!pose || pose->heading_source == pose_t::HEADING_NONE || !std::isfinite(pose->heading_rad)) {
     if (filter.use_course_as_heading) {
       return {Grade::kWarning, kHeadingSubject, "none: obstacles are placed in the vessel frame only; " + CourseInWords(filter.min_course_speed_mps),
@@ -127,7 +141,7 @@ Finding JudgeAttitude(const pose_t& pose) {
   if (!pose.has_attitude) {
     return {Grade::kWarning, kAttitudeSubject,
             "roll and pitch are not measured: in waves, heights over the water and far obstacles are off, as their covariance says",
-            "an AHRS or IMU (PASHR, PSAT,HPR, VNINS, VNYMR, VNIMU) as an input of navigator.txtpb"};
+            "an AHRS or IMU (PASHR, PSAT,HPR, PTNTHTM, XDR, VNINS, VNYMR, VNIMU) as an input of navigator.txtpb"};
   }
   const auto side = [](double angle_rad, const char* positive, const char* negative) {
     return Text(std::abs(RadToDeg(angle_rad)), 1) + " deg " + (angle_rad < 0.0 ? negative : positive);

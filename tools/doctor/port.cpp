@@ -97,8 +97,7 @@ PortSeen ReadPort(const BusSeen& bus) {
     }
   }
   std::ranges::sort(seen.without_filter);
-  const auto repeated = std::ranges::unique(seen.without_filter);
-  seen.without_filter.erase(repeated.begin(), repeated.end());
+  seen.without_filter.erase(std::unique(seen.without_filter.begin(), seen.without_filter.end()), seen.without_filter.end());
   return seen;
 }
 

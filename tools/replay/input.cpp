@@ -190,7 +190,9 @@ InputKind KindOf(const std::filesystem::path& file) {
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   if (std::ranges::find(kCaptureMagics, start) != kCaptureMagics.end()) return InputKind::kCapture;
   // A log may be damaged at its start.
-  return start == kLogSyncWord || bus::LogReader(file, io::ThrowIfStopAsked).Next() ? InputKind::kLog : InputKind::kCapture;
+  if (start == kLogSyncWord || bus::LogReader(file, io::ThrowIfStopAsked).Next()) return InputKind::kLog;
+  // Last: sentences stand in captures and logs too.
+  return navigator::IsTextLog(file) ? InputKind::kTextLog : InputKind::kCapture;
 }
 
 Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request) {
@@ -220,6 +222,8 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
   const auto& sizes_bytes = inspection.sizes_bytes;
   const auto total_bytes = static_cast<double>(std::max<std::int64_t>(1, std::accumulate(sizes_bytes.begin(), sizes_bytes.end(), std::int64_t{0})));
   std::int64_t num_bytes = 0;
+  const auto is_text_log = [](const auto& file) { return KindOf(file) == InputKind::kTextLog; };
+  if (inspection.day && std::ranges::none_of(files, is_text_log)) Warn(progress, "the input holds no text log; --date is not used");
   const auto speed = [&] {
     return fmt::format("{:.0f} times real time", ToSeconds(chain.span()) / ToSeconds(std::chrono::steady_clock::now() - start));
   };
@@ -231,9 +235,10 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
       progress.Update(static_cast<double>(num_bytes + num_bytes_of_file) / total_bytes, speed);
     };
     const Feeding feeding{file, chain, summary, progress, show};
-    if (KindOf(file) == InputKind::kLog) {
+    const auto kind = KindOf(file);
+    if (kind == InputKind::kLog) {
       logs.Feed(feeding);
-    } else if (navigator::IsTextLog(file)) {
+    } else if (kind == InputKind::kTextLog) {
       FeedTextLog(feeding, inspection.day);
     } else {
       FeedCapture(feeding);

@@ -17,9 +17,11 @@
 
 namespace lookout::replay {
 
-enum class InputKind { kCapture, kLog };  // a text log counts as a capture: both come from outside
+enum class InputKind { kCapture, kTextLog, kLog };
 
-/// @return by content: what begins as a capture is one, what holds an event of LCM is a log, all else is a text log (IsTextLog) or left to libpcap
+/// @return by content: what begins as a capture is one, what holds an event of LCM is a log, of all else what navigator::IsTextLog says is a text
+/// log, and the rest is
+///         left to libpcap
 /// @throws std::runtime_error when the file cannot be read, is empty or holds nothing but zero bytes
 InputKind KindOf(const std::filesystem::path& file);
 

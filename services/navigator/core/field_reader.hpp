@@ -29,6 +29,9 @@ class FieldReader {
 
   bool IsEmpty(std::size_t index) { return Field(index).empty(); }
 
+  /// As it stands. @return empty when at fault
+  std::string_view Text(std::size_t index) { return Field(index); }
+
   /// [+-]digits[.digits], between min and max. @return NaN when empty or at fault
   double Number(std::size_t index, double min, double max);
 

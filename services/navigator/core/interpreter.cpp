@@ -27,6 +27,10 @@ double WrapTilt(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo
 // The first of them that was said.
 double Or(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
+// A boat at rest has no course: what a receiver says there is the direction of its noise. Twice velocity_sd_mps of navigator.proto.
+constexpr double kRestMps = 0.2;
+double CourseOf(double speed_mps, double course_rad) { return speed_mps < kRestMps ? kNan : course_rad; }
+
 // A lidar goes on repeating the last sentence of a receiver that has gone. What is not of now says nothing until it changes.
 bool IsStale(Utime arrival, const ParseResult& parsed) {
   const auto is_stale = [arrival](const auto& time_of_day, const auto& date) {
@@ -167,12 +171,12 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
 // Sentences of one instant of one receiver are one fix: each is given with what those before it said.
 Reading Interpreter::WholeFix(Source& source, GnssFix fix) {
   if (fix.position && !fix.when.is_from_sentence) ++counts_.sentence_time_unusable;
-  const bool is_gga = fix.sentence_type == "GGA";
+  const bool is_gga = fix.sentence_type == "GGA" || fix.sentence_type == "GNS";
   if (source.epoch && fix.when.has_sentence_utc && source.epoch->utc == fix.when.utc && source.epoch->fix.when.num_leaps == fix.when.num_leaps) {
     const auto& known = source.epoch->fix;
     fix.repeats_position = known.position.has_value();
     fix.repeats_velocity = !std::isnan(known.speed_mps);
-    // GGA tells more of its position and quality than the others.
+    // GGA and GNS tell more of their position and quality than the others.
     if (!fix.position || (source.epoch->has_gga && !is_gga && known.position)) {
       fix.position = known.position;
       fix.quality = known.quality;
@@ -215,14 +219,18 @@ Reading Interpreter::On(const Item& item, Source& source, const Rmc& rmc) {
   auto fix = MakeFix(item, *when, "RMC", rmc.quality);
   fix.position = rmc.position;
   fix.speed_mps = rmc.speed_mps;
-  fix.course_rad = rmc.course_rad;
+  fix.course_rad = CourseOf(rmc.speed_mps, rmc.course_rad);
   return WholeFix(source, std::move(fix));
 }
 
-Reading Interpreter::On(const Item& item, Source& source, const Gga& gga) {
+Reading Interpreter::On(const Item& item, Source& source, const Gga& gga) { return OnQualified(item, source, gga, "GGA"); }
+
+Reading Interpreter::On(const Item& item, Source& source, const Gns& gns) { return OnQualified(item, source, gns, "GNS"); }
+
+Reading Interpreter::OnQualified(const Item& item, Source& source, const Gga& gga, std::string_view sentence_type) {
   const auto when = When(item, source, gga.time_of_day, std::nullopt, IsMeasured(gga.quality));
   if (!when) return {};
-  auto fix = MakeFix(item, *when, "GGA", gga.quality);
+  auto fix = MakeFix(item, *when, sentence_type, gga.quality);
   fix.position = gga.position;
   fix.num_satellites = gga.num_satellites;
   fix.hdop = gga.hdop;
@@ -261,7 +269,7 @@ Reading Interpreter::On(const Item& item, Source& source, const Vtg& vtg) {
   const Utime time = is_of_epoch ? source.epoch->fix.when.time : clock_.OfArrival(item.time, source.params.latency).time;
   // What RMC says of the same instant is the same measurement.
   if (is_of_epoch && !std::isnan(source.epoch->fix.speed_mps)) return reading;
-  reading.velocity = GroundVelocity{time, vtg.speed_mps, vtg.course_rad};
+  reading.velocity = GroundVelocity{time, vtg.speed_mps, CourseOf(vtg.speed_mps, vtg.course_rad)};
   return reading;
 }
 
@@ -277,7 +285,24 @@ Attitude Interpreter::MakeAttitude(const Item& item, const Source& source, const
   return attitude;
 }
 
+Reading Interpreter::On(const Item& item, Source& source, const Xdr& xdr) {
+  Reading reading;
+  if (std::isnan(xdr.pitch_rad) && std::isnan(xdr.roll_rad)) return reading;
+  reading.attitude = MakeAttitude(item, source, "XDR", clock_.OfArrival(item.time, source.params.latency), kNan, xdr.pitch_rad, xdr.roll_rad);
+  return reading;
+}
+
+Reading Interpreter::On(const Item& item, Source& source, const TntHtm& htm) {
+  Reading reading;
+  if (std::isnan(htm.heading_rad) && std::isnan(htm.pitch_rad) && std::isnan(htm.roll_rad)) return reading;
+  reading.attitude =
+      MakeAttitude(item, source, "PTNTHTM", clock_.OfArrival(item.time, source.params.latency), htm.heading_rad, htm.pitch_rad, htm.roll_rad);
+  return reading;
+}
+
 Reading Interpreter::On(const Item& item, Source& source, const Hdt& hdt) {
+  // A compass that has lost its heading goes on sending the sentence, empty.
+  if (std::isnan(hdt.heading_rad)) return {};
   Reading reading;
   reading.attitude = MakeAttitude(item, source, "HDT", clock_.OfArrival(item.time, source.params.latency), hdt.heading_rad, kNan, kNan);
   return reading;

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/core/health.hpp"
@@ -84,6 +85,9 @@ class Interpreter {
   Reading On(const Item& item, Source& source, const OtherSentence& sentence);
   Reading On(const Item& item, Source& source, const Rmc& rmc);
   Reading On(const Item& item, Source& source, const Gga& gga);
+  Reading On(const Item& item, Source& source, const Gns& gns);
+  Reading On(const Item& item, Source& source, const Xdr& xdr);
+  Reading On(const Item& item, Source& source, const TntHtm& htm);
   Reading On(const Item& item, Source& source, const Gll& gll);
   Reading On(const Item& item, Source& source, const Gst& gst);
   Reading On(const Item& item, Source& source, const Zda& zda);
@@ -99,6 +103,7 @@ class Interpreter {
 
   std::optional<MeasurementTime> When(const Item& item, Source& source, std::optional<std::chrono::microseconds> time_of_day,
                                       std::optional<std::chrono::sys_days> date, bool is_measured = true);
+  Reading OnQualified(const Item& item, Source& source, const Gga& gga, std::string_view sentence_type);
   Reading WholeFix(Source& source, GnssFix fix);
   Attitude MakeAttitude(const Item& item, const Source& source, const char* sentence_type, const MeasurementTime& when, double heading_rad,
                         double pitch_rad, double roll_rad) const;

@@ -1,6 +1,7 @@
 #include "services/navigator/core/nmea.hpp"
 
 #include <cmath>
+#include <string>
 
 #include "common/core/angles.hpp"
 #include "services/navigator/core/bounds.hpp"
@@ -75,7 +76,14 @@ Rmc ReadRmc(FieldReader& fields, std::size_t num_fields) {
   return rmc;
 }
 
-Gga ReadGga(FieldReader& fields) {
+// Of a sentence that is too short: a number that does not stand with its unit says nothing.
+double NumberWithUnitOrNan(const FieldReader& fields, std::size_t index, double min, double max) {
+  FieldReader reader = fields;
+  const double number = reader.NumberWithUnit(index, 'M', min, max);
+  return reader.fault() == SentenceFault::kNone ? number : kNan;
+}
+
+Gga ReadGga(FieldReader& fields, std::size_t num_fields) {
   // NovAtel: 9 = SBAS, which is a differential correction.
   constexpr int kNovatelSbas = 9;
   Gga gga;
@@ -85,10 +93,86 @@ Gga ReadGga(FieldReader& fields) {
   gga.quality = quality == kNovatelSbas ? FixQuality::kDifferential : static_cast<FixQuality>(quality < 0 ? 0 : quality);
   gga.num_satellites = fields.Count(6, kMaxSatellites);
   gga.hdop = fields.Number(7, 0.0, kMaxHdop);
+  constexpr std::size_t kNumFields = 14;
+  if (num_fields < kNumFields) {
+    gga.msl_height_m = NumberWithUnitOrNan(fields, 8, kMinHeightM, kMaxHeightM);
+    gga.geoid_separation_m = NumberWithUnitOrNan(fields, 10, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
+    return gga;
+  }
   gga.msl_height_m = fields.NumberWithUnit(8, 'M', kMinHeightM, kMaxHeightM);
   gga.geoid_separation_m = fields.NumberWithUnit(10, 'M', -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
   fields.IsEmpty(13);  // age and station of the correction are not used, but must be there
   return gga;
+}
+
+// Of all systems the best, in the order of what they are worth.
+FixQuality QualityOfModes(FieldReader& fields, std::size_t index) {
+  constexpr std::string_view kBestFirst = "RFDPAEMS";
+  const auto modes = fields.Text(index);
+  constexpr std::size_t kMaxSystems = 8;
+  if (modes.size() > kMaxSystems || modes.find_first_not_of(kModeLetters) != std::string_view::npos) {
+    fields.Letter(index, {});  // a fault
+    return FixQuality::kNone;
+  }
+  const auto best = kBestFirst.find_first_of(modes);
+  return best == std::string_view::npos ? FixQuality::kNone : QualityOfMode(kBestFirst[best]);
+}
+
+Gns ReadGns(FieldReader& fields) {
+  Gns gns;
+  gns.time_of_day = fields.TimeOfDay(0);
+  gns.position = fields.Position(1);
+  gns.quality = QualityOfModes(fields, 5);
+  gns.num_satellites = fields.Count(6, kMaxSatellites);
+  gns.hdop = fields.Number(7, 0.0, kMaxHdop);
+  gns.msl_height_m = fields.Number(8, kMinHeightM, kMaxHeightM);
+  gns.geoid_separation_m = fields.Number(9, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
+  fields.IsEmpty(11);  // age and station of the correction are not used, but must be there
+  return gns;
+}
+
+std::string UpperName(std::string_view name) {
+  std::string upper;
+  for (const char character : name.substr(0, name.find('#'))) {
+    upper.push_back(character >= 'a' && character <= 'z' ? static_cast<char>(character - 'a' + 'A') : character);
+  }
+  return upper;
+}
+
+// Other measurements are not looked at.
+Sentence ReadXdr(FieldReader& fields, std::size_t num_fields) {
+  constexpr std::size_t kGroup = 4;
+  Xdr xdr;
+  bool has_angle = false;
+  for (std::size_t first = 0; first + kGroup <= num_fields; first += kGroup) {
+    if (fields.Text(first) != "A" || fields.Text(first + 2) != "D") continue;
+    const auto name = UpperName(fields.Text(first + 3));
+    const bool is_pitch = name == "PTCH" || name == "PITCH";
+    if (!is_pitch && name != "ROLL" && name != "HEEL") continue;
+    has_angle = true;
+    (is_pitch ? xdr.pitch_rad : xdr.roll_rad) = is_pitch ? AngleRad(fields, first + 1, -90.0, 90.0) : AngleRad(fields, first + 1, -180.0, 180.0);
+  }
+  if (!has_angle) return OtherSentence{};
+  return xdr;
+}
+
+TntHtm ReadTntHtm(FieldReader& fields) {
+  constexpr double kCountsPerTurn = 65536.0;
+  constexpr double kDegreesPerTurn = 360.0;
+  bool is_in_degrees = false;
+  for (const std::size_t index : {0U, 2U, 4U, 6U}) is_in_degrees = is_in_degrees || fields.Text(index).find('.') != std::string_view::npos;
+  const double unit_deg = is_in_degrees ? 1.0 : kDegreesPerTurn / kCountsPerTurn;
+  const auto angle_rad = [&](std::size_t index, double min_deg, double max_deg) {
+    const double angle = DegToRad(unit_deg * fields.Number(index, min_deg / unit_deg, max_deg / unit_deg));
+    const char status = fields.Letter(index + 1, "CLMNOPV");
+    return status == 'N' || status == 'M' || status == 'O' ? angle : kNan;
+  };
+  TntHtm htm;
+  htm.heading_rad = WrapKnown(angle_rad(0, -180.0, 360.0));
+  htm.pitch_rad = angle_rad(2, -90.0, 90.0);
+  htm.roll_rad = angle_rad(4, -180.0, 180.0);
+  fields.IsEmpty(7);  // dip and field are not used, but must be there
+  return htm;
 }
 
 Vtg ReadVtg(FieldReader& fields, std::size_t num_fields) {
@@ -189,7 +273,10 @@ Pashr ReadPashr(FieldReader& fields) {
 
 Sentence Read(std::string_view type, FieldReader& fields, std::size_t num_fields) {
   if (type == "RMC") return ReadRmc(fields, num_fields);
-  if (type == "GGA") return ReadGga(fields);
+  if (type == "GGA") return ReadGga(fields, num_fields);
+  if (type == "GNS") return ReadGns(fields);
+  if (type == "XDR") return ReadXdr(fields, num_fields);
+  if (type == "PTNTHTM") return ReadTntHtm(fields);
   if (type == "VTG") return ReadVtg(fields, num_fields);
   if (type == "HDT") return ReadHdt(fields);
   if (type == "PASHR") return ReadPashr(fields);
@@ -217,6 +304,7 @@ std::string_view TypeOf(const FramedSentence& sentence) {
     const bool has_word = !sentence.fields.empty() && !sentence.fields.front().empty() && sentence.fields.front().front() >= 'A';
     if (address == "PASHR" && !has_word) return address;
     // Hemisphere's own sentences share an address; their first field tells them apart.
+    if (address == "PTNTHTM") return address;
     if (address == "PSAT" && !sentence.fields.empty() && sentence.fields.front() == "HPR") return address;
     return {};
   }

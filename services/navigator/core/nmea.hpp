@@ -43,6 +43,8 @@ struct Rmc {
 };
 
 /// GGA: time,latitude,N,longitude,E,quality,satellites,HDOP,height,M,geoid separation,M,age,station
+/// One that is too short (Saab's R4 leaves a field out) is taken for what it holds: position, quality and HDOP, and a height that stands with its
+/// unit.
 struct Gga {
   std::optional<std::chrono::microseconds> time_of_day;
   FixQuality quality = FixQuality::kNone;
@@ -52,6 +54,10 @@ struct Gga {
   double msl_height_m = kNan;
   double geoid_separation_m = kNan;
 };
+
+/// GNS: time,latitude,N,longitude,E,modes (a letter per system),satellites,HDOP,height,geoid separation,age,station[,navigational status]
+/// Source: gpsd's "NMEA Revealed", GNS. The quality is the best that a system has: the fix is made of all of them.
+struct Gns : Gga {};
 
 /// VTG: course,T,magnetic course,M,knots,N,km/h,K[,mode]
 struct Vtg {
@@ -122,6 +128,23 @@ struct PsatHpr {
   double roll_rad = kNan;
 };
 
+/// XDR: groups of type,value,unit,name. Taken are A (angular displacement) in D (degrees) by the names PTCH, PITCH (pitch) and ROLL, HEEL (roll),
+/// large or small letters, what follows # left out. Sources: NMEA's update to XDR (version 4.11: "Pitch", "Roll", "Heel"); Airmar (PTCH, ROLL); True
+/// North (PITCH, ROLL). Which way they are positive: see config; by default pitch bow up, roll starboard down, as Airmar has them.
+struct Xdr {
+  double pitch_rad = kNan;
+  double roll_rad = kNan;
+};
+
+/// PTNTHTM: heading,status,pitch,status,roll,status,dip,field, of True North's compasses. A status of C, L, P or V (alarms) voids its angle. Angles
+/// are in degrees where one of them has a decimal point, else in turns / 65536. The heading is true where the declination is set in the compass.
+/// Source: gpsd, driver_nmea0183.c, its description of the sentence.
+struct TntHtm {
+  double heading_rad = kNan;
+  double pitch_rad = kNan;
+  double roll_rad = kNan;
+};
+
 /// What a strapdown sensor measures, along its own axes: x forward, y to starboard, z down.
 struct StrapdownSample {
   Eigen::Vector3d angular_velocity_radps = kUnknownVector;
@@ -167,14 +190,15 @@ struct VnImu {
 /// A right sentence of a type that is not used.
 struct OtherSentence {};
 
-using Sentence = std::variant<OtherSentence, Rmc, Gga, Vtg, Hdt, Pashr, Gst, Gll, Zda, MagneticHeading, Rot, PsatHpr, VnIns, VnYmr, VnImu>;
+using Sentence =
+    std::variant<OtherSentence, Rmc, Gga, Gns, Xdr, TntHtm, Vtg, Hdt, Pashr, Gst, Gll, Zda, MagneticHeading, Rot, PsatHpr, VnIns, VnYmr, VnImu>;
 
 struct ParseResult {
   SentenceFault fault = SentenceFault::kNone;
   Sentence sentence;  // only when there is no fault
 };
 
-/// Whoever the talker is, numbers too; of proprietary sentences PASHR, PSAT,HPR, VNINS, VNYMR and VNIMU. THS is given as HDT.
+/// Whoever the talker is, numbers too; of proprietary sentences PASHR, PSAT,HPR, PTNTHTM, VNINS, VNYMR and VNIMU. THS is given as HDT.
 ///
 /// @param line               from $ or ! to the checksum
 /// @param requires_checksum  false: a line without * is taken too; one whose checksum is wrong never is

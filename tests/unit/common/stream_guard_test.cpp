@@ -152,6 +152,34 @@ TEST_F(Stream, ASecondPublisherWithNearNumbersIsRefused) {
   }
 }
 
+// Two navigators switched on within a tenth of a second: POSE of both comes for the same instants, five at once.
+TEST_F(Stream, ASecondPublisherOfTheSameInstantsWithNearNumbersIsRefused) {
+  for (const std::int64_t ahead : {-7, -5, -4, -2, -1, 1, 2, 3, 4, 5, 6, 8}) {
+    for (const bool is_first : {false, true}) {
+      SCOPED_TRACE(std::to_string(ahead) + (is_first ? " second first" : ""));
+      guard_ = StreamGuard(50.0);
+      taken_.clear();
+      held_.clear();
+      for (std::int64_t seq = 100; seq < 150; ++seq) {
+        SendAt('a', seq, seq * 20'000);
+        if (seq % 5 == 4) Pass(milliseconds(100));
+      }
+      for (std::int64_t i = 150; i < 400; i += 5) {
+        const auto send_five = [&](char maker, std::int64_t more) {
+          for (std::int64_t seq = i; seq < i + 5; ++seq) SendAt(maker, seq + more, seq * 20'000);
+        };
+        if (is_first) send_five('b', ahead);
+        send_five('a', 0);
+        if (!is_first) send_five('b', ahead);
+        Pass(milliseconds(100));
+      }
+      EXPECT_EQ(NumTaken('a'), 300);
+      EXPECT_EQ(NumTaken('b'), 0);
+      EXPECT_TRUE(HasSecond());
+    }
+  }
+}
+
 // The slower one is overtaken: for a while both have the same numbers.
 TEST_F(Stream, ASecondPublisherThatOvertakesIsRefusedOnItsWay) {
   Run('a', 1000, 20);

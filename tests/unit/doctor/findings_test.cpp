@@ -258,6 +258,25 @@ TEST(DoctorNavigation, NamesADatumThatIsFarFromTheFix) {
   EXPECT_NE(findings[1].words.find("swapped latitude and longitude?"), std::string::npos) << findings[1].words;
 }
 
+TEST(DoctorNavigation, SaysWhatGpsdDoesNotPassWhereItAloneGivesSentencesAndNoHeadingComes) {
+  auto seen = Healthy();
+  seen.navigation.pose->heading_source = pose_t::HEADING_NONE;
+  const auto cure_of = [&seen] {
+    for (const auto& finding : JudgeNavigation(seen)) {
+      if (finding.subject == "heading") return finding.cure;
+    }
+    return std::string();
+  };
+  EXPECT_EQ(cure_of().find("gpsd"), std::string::npos);
+  navigator::Connection gpsd;
+  gpsd.name = "daemon";
+  gpsd.kind = navigator::Connection::Kind::kGpsd;
+  seen.config.navigation->connections.push_back(gpsd);
+  EXPECT_EQ(cure_of().find("gpsd"), std::string::npos) << "other inputs give sentences too";
+  seen.navigation.num_by_source = {{"daemon", 10}};
+  EXPECT_NE(cure_of().find("gpsd 3.22 does not pass $HEHDT and $HEROT"), std::string::npos) << cure_of();
+}
+
 TEST(DoctorNavigation, TellsTheHeading) {
   auto seen = Healthy();
   auto& pose = *seen.navigation.pose;
@@ -298,6 +317,19 @@ TEST(DoctorMounting, IsToldInWords) {
   EXPECT_SAYS(said, kOk, "10 m ahead of the reference point, is at azimuth 4.4 deg, elevation -0.4 deg and range 9.50 m");
   EXPECT_SAYS(said, kOk, "GNSS antenna is 1.30 m above the water, 0.80 m aft and 0.40 m to port");
   EXPECT_SAYS(said, kOk, "meets the water 5.6 m from the lidar");  // 1.5 m / tan 15 deg
+}
+
+TEST(DoctorMounting, WarnsOfABoxAndAnAntennaThatTheBoatHasNot) {
+  auto config = Healthy().config;
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kOk, "returns up to 1.4 m ahead");
+  config.boat->own_vessel_box_m.max().x() = 14.0;
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "returns up to 14.0 m ahead and 1.4 m astern");
+  config = Healthy().config;
+  config.boat->p_vessel_antenna_m.x() = 80.5;
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "the GNSS antenna is 80.0 m ahead of the lidar");
+  config = Healthy().config;
+  config.boat->hull_m.reset();
+  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "hull_length_m and hull_beam_m in boat.txtpb");
 }
 
 class Mounted : public ::testing::Test {

@@ -227,5 +227,127 @@ TEST_F(InterpreterTest, CountsEachSource) {
   EXPECT_EQ(Count("b_understood"), 1);
 }
 
+// A multiplexer showed `$HEHDT,,T` of a compass that had lost its heading as an attitude, and "no heading" fell silent.
+TEST_F(InterpreterTest, MakesNoAttitudeOfAnEmptyHeading) {
+  EXPECT_FALSE(Read(0.0, Line("HEHDT,,T")).attitude);
+  EXPECT_FALSE(Read(0.1, Line("HETHS,,A")).attitude);
+  EXPECT_FALSE(Read(0.2, Line("PTNTHTM,,N,,N,,N,,")).attitude);
+  EXPECT_FALSE(Read(0.3, Line("YXXDR,A,,D,PTCH,A,,D,ROLL")).attitude);
+  EXPECT_EQ(Count("understood_sentence"), 4);
+  EXPECT_TRUE(Read(0.4, Line("HEHDT,0.0,T")).attitude) << "north is a heading";
+}
+
+// 0.034 knots on the recording of a VLP-16 that stood on its tripod, with a course of 212.5 deg.
+TEST_F(InterpreterTest, ABoatAtRestHasNoCourse) {
+  const auto rmc = Read(0.1, Line("GPRMC,120000.00,A,3649.7478558,N,00224.4542928,W,0.034,212.5,010626,0.0,E,A")).fix;
+  ASSERT_TRUE(rmc);
+  EXPECT_NEAR(rmc->speed_mps, 0.0175, 1e-4);
+  EXPECT_TRUE(std::isnan(rmc->course_rad));
+  const auto vtg = Read(5.0, Line("GPVTG,212.5,T,,M,0.30,N,0.56,K,A")).velocity;
+  ASSERT_TRUE(vtg);
+  EXPECT_TRUE(std::isnan(vtg->course_rad));
+  const auto under_way = Read(6.0, Line("GPVTG,212.5,T,,M,0.50,N,0.93,K,A")).velocity;
+  ASSERT_TRUE(under_way);
+  EXPECT_NEAR(under_way->course_rad, DegToRad(212.5), 1e-9);
+}
+
+// gpsd's example in its description of the sentence.
+TEST_F(InterpreterTest, ReadsGns) {
+  const auto fix = Read(0.1, Line("GPGNS,120000.00,3333.4268304,N,11153.3538273,W,D,19,0.6,406.110,-26.294,6.0,0138,S")).fix;
+  ASSERT_TRUE(fix);
+  EXPECT_EQ(fix->sentence_type, "GNS");
+  EXPECT_EQ(fix->quality, FixQuality::kDifferential);
+  EXPECT_EQ(fix->num_satellites, 19);
+  EXPECT_NEAR(fix->hdop, 0.6, 1e-12);
+  EXPECT_NEAR(fix->EllipsoidHeightM(), 406.110 - 26.294, 1e-9);
+  EXPECT_NEAR(fix->position->latitude_deg, 33.55711384, 1e-8);
+  EXPECT_TRUE(fix->when.is_from_sentence);
+  // A letter for each system.
+  const auto quality_of = [this](double time_s, const std::string& modes) {
+    const auto read = Read(time_s, Line("GNGNS," + TimeOfDay(NoonPlus(time_s)) + ",3333.4,N,11153.3,W," + modes + ",19,0.6,406.1,-26.3,,,V")).fix;
+    return read ? static_cast<int>(read->quality) : -1;
+  };
+  EXPECT_EQ(quality_of(1.0, "AAN"), static_cast<int>(FixQuality::kGnss));
+  EXPECT_EQ(quality_of(2.0, "ARNNN"), static_cast<int>(FixQuality::kRtkFixed));
+  EXPECT_EQ(quality_of(3.0, "NNNN"), static_cast<int>(FixQuality::kNone));
+  EXPECT_EQ(quality_of(4.0, ""), static_cast<int>(FixQuality::kNone));
+  EXPECT_EQ(quality_of(5.0, "AXN"), -1);
+  EXPECT_EQ(quality_of(6.0, "AAAAAAAAAA"), -1);
+  EXPECT_EQ(Count("bad_field"), 2);
+}
+
+// Saab's R4 leaves a field out.
+TEST_F(InterpreterTest, TakesAShortGgaForWhatItHolds) {
+  const auto last_left_out = Read(0.1, Line("GPGGA,120000.00,5012.790800,N,00806.879600,W,1,08,1.5,10.0,M,47.0,M,")).fix;
+  ASSERT_TRUE(last_left_out && last_left_out->position);
+  EXPECT_EQ(last_left_out->quality, FixQuality::kGnss);
+  EXPECT_NEAR(last_left_out->position->latitude_deg, 50.21318, 1e-8);
+  EXPECT_NEAR(last_left_out->EllipsoidHeightM(), 57.0, 1e-9);
+  // The unit of the height is missing: what follows cannot be told from the height of the geoid.
+  const auto unit_left_out = Read(1.1, Line("GPGGA,120001.00,5012.790800,N,00806.879600,W,1,08,1.5,10.0,47.0,M,,")).fix;
+  ASSERT_TRUE(unit_left_out && unit_left_out->position);
+  EXPECT_TRUE(std::isnan(unit_left_out->EllipsoidHeightM()));
+  EXPECT_NEAR(unit_left_out->hdop, 1.5, 1e-12);
+  EXPECT_FALSE(Read(2.1, Line("GPGGA,120002.00,5012.790800,N,00806.879600,W,1")).fix) << "too short to know its quality's worth";
+  EXPECT_EQ(Count("bad_field"), 1);
+}
+
+TEST_F(InterpreterTest, ReadsPitchAndRollOfXdrByTheNamesOfSeveralMakers) {
+  const auto expect = [this](double time_s, const std::string& body, double pitch_deg, double roll_deg) {
+    const auto attitude = Read(time_s, Line(body)).attitude;
+    ASSERT_TRUE(attitude) << body;
+    EXPECT_EQ(attitude->sentence_type, "XDR");
+    EXPECT_TRUE(std::isnan(attitude->heading_rad));
+    EXPECT_NEAR(attitude->pitch_rad, DegToRad(pitch_deg), 1e-12) << body;
+    EXPECT_NEAR(attitude->roll_rad, DegToRad(roll_deg), 1e-12) << body;
+  };
+  expect(0.0, "YXXDR,A,-2.5,D,PTCH,A,7.25,D,ROLL", -2.5, 7.25);
+  expect(0.1, "IIXDR,P,1.02421,B,Barometer,A,29.0,D,Roll,A,10.1,D,Pitch", 10.1, 29.0);
+  expect(0.2, "HCXDR,A,-0.8,D,PITCH,A,0.9,D,ROLL,G,122,,MAGX,G,1838,,MAGY", -0.8, 0.9);
+  expect(0.3, "MLXDR,A,-42.42,D,PTCH#CAL,A,30.07,D,ROLL#CAL", -42.42, 30.07);
+  expect(0.4, "IIXDR,A,3.0,D,HEEL,A,1.0,D,Pitch", 1.0, 3.0);
+  EXPECT_FALSE(Read(0.5, Line("IIXDR,C,19.52,C,TempAir")).attitude);
+  EXPECT_FALSE(Read(0.6, Line("IIXDR,A,5.0,D,Rudder,A,5.0,P,ROLL")).attitude);
+  EXPECT_EQ(Count("other_sentence"), 2);
+  EXPECT_FALSE(Read(0.7, Line("YXXDR,A,95.0,D,PTCH,A,0.0,D,ROLL")).attitude);
+  EXPECT_EQ(Count("implausible_value"), 1);
+  EXPECT_FALSE(Read(0.8, Line("YXXDR,A,x,D,PTCH,A,0.0,D,ROLL")).attitude);
+  EXPECT_EQ(Count("bad_field"), 1);
+  Read(0.9, Line("YXXDR,A,1.0,D,PTCH,A,1.0"));  // cut off: the whole group counts
+  Read(1.0, Line("YXXDR"));
+}
+
+TEST_F(InterpreterTest, TurnsTheSignsOfXdrAsConfigSays) {
+  SourceParams source;
+  source.name = "nav";
+  source.pitch_sign = -1.0;
+  Configure(source);
+  const auto attitude = Read(0.0, Line("YXXDR,A,-2.5,D,PTCH,A,7.25,D,ROLL")).attitude;
+  ASSERT_TRUE(attitude);
+  EXPECT_NEAR(attitude->pitch_rad, DegToRad(2.5), 1e-12);
+  EXPECT_NEAR(attitude->roll_rad, DegToRad(7.25), 1e-12);
+}
+
+// gpsd's example, in turns / 65536 (78.13 deg, and a dip of 74.9 deg), and one in degrees.
+TEST_F(InterpreterTest, ReadsTheCompassOfTrueNorth) {
+  const auto counts = Read(0.0, "$PTNTHTM,14223,N,169,N,-43,N,13641,2454*15").attitude;
+  ASSERT_TRUE(counts);
+  EXPECT_EQ(counts->sentence_type, "PTNTHTM");
+  EXPECT_NEAR(RadToDeg(counts->heading_rad), 14223.0 * 360.0 / 65536.0, 1e-9);
+  EXPECT_NEAR(RadToDeg(counts->pitch_rad), 0.928, 1e-3);
+  EXPECT_NEAR(RadToDeg(counts->roll_rad), -0.236, 1e-3);
+  const auto degrees = Read(0.1, Line("PTNTHTM,306.9,N,-2.4,N,10.7,N,59.1,3844")).attitude;
+  ASSERT_TRUE(degrees);
+  EXPECT_NEAR(RadToDeg(degrees->heading_rad), 306.9, 1e-9);
+  EXPECT_NEAR(RadToDeg(degrees->pitch_rad), -2.4, 1e-9);
+  const auto alarm = Read(0.2, Line("PTNTHTM,306.9,C,-2.4,N,10.7,M,59.1,3844")).attitude;
+  ASSERT_TRUE(alarm);
+  EXPECT_TRUE(std::isnan(alarm->heading_rad)) << "calibration alarm";
+  EXPECT_NEAR(RadToDeg(alarm->roll_rad), 10.7, 1e-9);
+  EXPECT_FALSE(Read(0.3, Line("PTNTHTM,306.9,N,-92.4,N,10.7,N,59.1,3844")).attitude);
+  EXPECT_FALSE(Read(0.4, Line("PTNTHTM,306.9,N,-2.4")).attitude);
+  EXPECT_EQ(Count("implausible_value") + Count("bad_field"), 2);
+}
+
 }  // namespace
 }  // namespace lookout::navigator

@@ -66,6 +66,20 @@ class LiveTextLog : public ::testing::Test {
   const fs::path config_ = fs::path(LOOKOUT_SOURCE_DIR) / "config/demo";
 };
 
+// Sentences stand in captures and in logs too.
+TEST_F(LiveTextLog, IsNotWhatBeginsAsACaptureOrHoldsAnEventOfLcm) {
+  const auto sentence = navigator::HdtLine(1.0) + "\r\n";
+  const auto kind_of = [this](const std::string& text) {
+    std::ofstream(file_, std::ios::binary) << text;
+    return KindOf(file_);
+  };
+  EXPECT_EQ(kind_of(sentence), InputKind::kTextLog);
+  EXPECT_EQ(kind_of("\xD4\xC3\xB2\xA1" + sentence), InputKind::kCapture);
+  EXPECT_EQ(kind_of("\x0A\x0D\x0D\x0A" + sentence), InputKind::kCapture);
+  EXPECT_EQ(kind_of("\xED\xA1\xDA\x01" + sentence), InputKind::kLog);
+  EXPECT_EQ(kind_of("no sentence"), InputKind::kCapture) << "libpcap says what it is not";
+}
+
 // A boat at 10 m/s: at ten times the speed its poses were up to 178 m off, with the stamps of the computer's clock.
 TEST_F(LiveTextLog, GivesTheMessagesOfItsReplayAtAnySpeed) {
   {

@@ -8,22 +8,22 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Utime kStart{1'000'000s};
-const Schedule::Clock::time_point kBase{100h};
+constexpr Utime kSimulated{1'000'000s};
+const Schedule::Clock::time_point kDue{100h};
 
 TEST(Schedule, HasADeadlineForEachDatagram) {
-  EXPECT_EQ(Schedule(kStart, kBase, 1.0).DueAt(kStart + 10s), kBase + 10s);
-  EXPECT_EQ(Schedule(kStart, kBase, 4.0).DueAt(kStart + 10s), kBase + 2500ms);
-  EXPECT_EQ(Schedule(kStart, kBase, 0.0).DueAt(kStart + 10s), kBase);
+  EXPECT_EQ(Schedule(kSimulated, kDue, 1.0).DueAt(kSimulated + 10s), kDue + 10s);
+  EXPECT_EQ(Schedule(kSimulated, kDue, 4.0).DueAt(kSimulated + 10s), kDue + 2500ms);
+  EXPECT_EQ(Schedule(kSimulated, kDue, 0.0).DueAt(kSimulated + 10s), kDue);
 }
 
 // It went on without a word: what heard it saw a late lidar.
 TEST(Schedule, TellsOnceASecondByHowMuchItIsBehind) {
-  Schedule schedule(kStart, kBase, 1.0);
+  Schedule schedule(kSimulated, kDue, 1.0);
   std::vector<std::string> told;
-  auto now = kBase;
+  auto now = kDue;
   for (int i = 0; i < 500; ++i) {
-    const auto time = kStart + i * 10ms;
+    const auto time = kSimulated + i * 10ms;
     now = std::max(now, schedule.DueAt(time));
     now += 15ms;  // to make one takes longer than there is time
     if (const auto line = schedule.Tell(time, now)) told.push_back(*line);
@@ -35,20 +35,20 @@ TEST(Schedule, TellsOnceASecondByHowMuchItIsBehind) {
 }
 
 TEST(Schedule, SaysNothingOfOneThatIsKeptOrThatThereIsNone) {
-  Schedule kept(kStart, kBase, 1.0);
-  Schedule none(kStart, kBase, 0.0);
+  Schedule kept(kSimulated, kDue, 1.0);
+  Schedule none(kSimulated, kDue, 0.0);
   for (int i = 0; i < 100; ++i) {
-    EXPECT_FALSE(kept.Tell(kStart + i * 10ms, kBase + i * 10ms + 49ms));
-    EXPECT_FALSE(none.Tell(kStart + i * 10ms, kBase + 1h));
+    EXPECT_FALSE(kept.Tell(kSimulated + i * 10ms, kDue + i * 10ms + 49ms));
+    EXPECT_FALSE(none.Tell(kSimulated + i * 10ms, kDue + 1h));
   }
   EXPECT_EQ(kept.Summary() + none.Summary(), "");
 }
 
 TEST(Schedule, TellsOfEachStretchThatIsLate) {
-  Schedule schedule(kStart, kBase, 2.0);
-  EXPECT_TRUE(schedule.Tell(kStart + 2s, kBase + 1s + 60ms));
-  EXPECT_FALSE(schedule.Tell(kStart + 4s, kBase + 2s));
-  EXPECT_TRUE(schedule.Tell(kStart + 6s, kBase + 3s + 60ms));
+  Schedule schedule(kSimulated, kDue, 2.0);
+  EXPECT_TRUE(schedule.Tell(kSimulated + 2s, kDue + 1s + 60ms));
+  EXPECT_FALSE(schedule.Tell(kSimulated + 4s, kDue + 2s));
+  EXPECT_TRUE(schedule.Tell(kSimulated + 6s, kDue + 3s + 60ms));
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ void PoseFilter::Add(const GnssFix& fix) {
 
   filter::FixMeasurement measurement;
   measurement.source = fix.source;
-  measurement.is_gga = fix.sentence_type == "GGA";
+  measurement.is_gga = fix.sentence_type == "GGA" || fix.sentence_type == "GNS";
   measurement.antenna = {fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m};
   measurement.has_height = has_height;
   measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
