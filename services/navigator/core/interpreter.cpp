@@ -96,6 +96,7 @@ void Interpreter::Reset() {
     source.epoch.reset();
     source.accuracy.reset();
     source.declination_rad = kNan;
+    source.arrivals = {};
   }
 }
 
@@ -137,8 +138,11 @@ Reading Interpreter::Read(const Item& item) {
 
 Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
   switch (parsed.fault) {
-    case SentenceFault::kNone:
-      return std::visit([&](const auto& sentence) { return On(item, SourceOf(item.source), sentence); }, parsed.sentence);
+    case SentenceFault::kNone: {
+      auto& source = SourceOf(item.source);
+      source.is_in_time = source.arrivals[parsed.sentence.index()].Add(item.time);
+      return std::visit([&](const auto& sentence) { return On(item, source, sentence); }, parsed.sentence);
+    }
     case SentenceFault::kNoChecksum:
       ++counts_.no_checksum;
       break;
@@ -155,10 +159,17 @@ Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
   return {};
 }
 
-// nullopt: the source's time runs backwards.
+// Of a sentence without a time; nullopt: it waited in a queue, and nobody knows how long.
+std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, const Source& source) {
+  if (source.is_in_time) return clock_.OfArrival(item.time, source.params.latency);
+  ++counts_.queued_sentence;
+  return std::nullopt;
+}
+
+// nullopt: the source's time runs backwards, or is not known.
 std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& source, std::optional<microseconds> time_of_day,
                                                  std::optional<std::chrono::sys_days> date, bool is_measured) {
-  if (!time_of_day) return clock_.OfArrival(item.time, source.params.latency);
+  if (!time_of_day) return WhenArrived(item, source);
   const auto when = clock_.OfSentence(source.clock, item.time, *time_of_day, date, source.params.latency, is_measured);
   if (!when) {
     ++counts_.time_backwards;
@@ -266,10 +277,11 @@ Reading Interpreter::On(const Item& item, Source& source, const Vtg& vtg) {
   Reading reading;
   // Behind the fix of its epoch it is of the same instant; it has no time of its own.
   const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= kMaxBurst;
-  const Utime time = is_of_epoch ? source.epoch->fix.when.time : clock_.OfArrival(item.time, source.params.latency).time;
   // What RMC says of the same instant is the same measurement.
   if (is_of_epoch && !std::isnan(source.epoch->fix.speed_mps)) return reading;
-  reading.velocity = GroundVelocity{time, vtg.speed_mps, CourseOf(vtg.speed_mps, vtg.course_rad)};
+  const auto when = is_of_epoch ? std::optional(source.epoch->fix.when) : WhenArrived(item, source);
+  if (!when) return reading;
+  reading.velocity = GroundVelocity{when->time, vtg.speed_mps, CourseOf(vtg.speed_mps, vtg.course_rad)};
   return reading;
 }
 
@@ -288,23 +300,28 @@ Attitude Interpreter::MakeAttitude(const Item& item, const Source& source, const
 Reading Interpreter::On(const Item& item, Source& source, const Xdr& xdr) {
   Reading reading;
   if (std::isnan(xdr.pitch_rad) && std::isnan(xdr.roll_rad)) return reading;
-  reading.attitude = MakeAttitude(item, source, "XDR", clock_.OfArrival(item.time, source.params.latency), kNan, xdr.pitch_rad, xdr.roll_rad);
+  const auto when = WhenArrived(item, source);
+  if (!when) return reading;
+  reading.attitude = MakeAttitude(item, source, "XDR", *when, kNan, xdr.pitch_rad, xdr.roll_rad);
   return reading;
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const TntHtm& htm) {
   Reading reading;
   if (std::isnan(htm.heading_rad) && std::isnan(htm.pitch_rad) && std::isnan(htm.roll_rad)) return reading;
-  reading.attitude =
-      MakeAttitude(item, source, "PTNTHTM", clock_.OfArrival(item.time, source.params.latency), htm.heading_rad, htm.pitch_rad, htm.roll_rad);
+  const auto when = WhenArrived(item, source);
+  if (!when) return reading;
+  reading.attitude = MakeAttitude(item, source, "PTNTHTM", *when, htm.heading_rad, htm.pitch_rad, htm.roll_rad);
   return reading;
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const Hdt& hdt) {
   // A compass that has lost its heading goes on sending the sentence, empty.
   if (std::isnan(hdt.heading_rad)) return {};
+  const auto when = WhenArrived(item, source);
+  if (!when) return {};
   Reading reading;
-  reading.attitude = MakeAttitude(item, source, "HDT", clock_.OfArrival(item.time, source.params.latency), hdt.heading_rad, kNan, kNan);
+  reading.attitude = MakeAttitude(item, source, "HDT", *when, hdt.heading_rad, kNan, kNan);
   return reading;
 }
 
@@ -320,15 +337,17 @@ Reading Interpreter::On(const Item& item, Source& source, const MagneticHeading&
     ++counts_.no_declination;
     return {};
   }
+  const auto when = WhenArrived(item, source);
+  if (!when) return {};
   Reading reading;
-  reading.attitude = MakeAttitude(item, source, "HDG", clock_.OfArrival(item.time, source.params.latency),
-                                  heading.compass_rad + deviation_rad + declination_rad, kNan, kNan);
+  reading.attitude = MakeAttitude(item, source, "HDG", *when, heading.compass_rad + deviation_rad + declination_rad, kNan, kNan);
   return reading;
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const Rot& rot) {
   Reading reading;
-  if (!std::isnan(rot.rate_radps)) reading.turn_rate = TurnRate{clock_.OfArrival(item.time, source.params.latency).time, rot.rate_radps};
+  if (std::isnan(rot.rate_radps)) return reading;
+  if (const auto when = WhenArrived(item, source)) reading.turn_rate = TurnRate{when->time, rot.rate_radps};
   return reading;
 }
 
@@ -379,23 +398,26 @@ Reading Interpreter::On(const Item& item, Source& source, const VnIns& ins) {
   return reading;
 }
 
-ImuSample Interpreter::MakeImu(const Item& item, const Source& source, const StrapdownSample& sample) const {
+ImuSample Interpreter::MakeImu(Utime time, const StrapdownSample& sample) {
   // From x forward, y to starboard, z down to x forward, y port, z up.
   const auto to_vessel = [](const Eigen::Vector3d& v) { return Eigen::Vector3d(v.x(), -v.y(), -v.z()); };
-  return {clock_.OfArrival(item.time, source.params.latency).time, to_vessel(sample.angular_velocity_radps), to_vessel(sample.specific_force_mps2)};
+  return {time, to_vessel(sample.angular_velocity_radps), to_vessel(sample.specific_force_mps2)};
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const VnYmr& ymr) {
+  const auto when = WhenArrived(item, source);
+  if (!when) return {};
   Reading reading;
-  reading.attitude =
-      MakeAttitude(item, source, "VNYMR", clock_.OfArrival(item.time, source.params.latency), ymr.yaw_rad, ymr.pitch_rad, ymr.roll_rad);
-  reading.imu = MakeImu(item, source, ymr.sample);
+  reading.attitude = MakeAttitude(item, source, "VNYMR", *when, ymr.yaw_rad, ymr.pitch_rad, ymr.roll_rad);
+  reading.imu = MakeImu(when->time, ymr.sample);
   return reading;
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const VnImu& imu) {
+  const auto when = WhenArrived(item, source);
+  if (!when) return {};
   Reading reading;
-  reading.imu = MakeImu(item, source, imu.sample);
+  reading.imu = MakeImu(when->time, imu.sample);
   return reading;
 }
 
@@ -410,6 +432,7 @@ std::vector<Counter> Interpreter::counters() const {
                                 {"implausible_value", counts_.implausible_value},
                                 {"sentence_time_unusable", counts_.sentence_time_unusable},
                                 {"time_backwards", counts_.time_backwards},
+                                {"queued_sentence", counts_.queued_sentence},
                                 {"date_unusable", counts_.date_unusable},
                                 {"stale_lidar_sentence", counts_.stale_lidar_sentence},
                                 {"no_deviation", counts_.no_deviation},

@@ -1,14 +1,17 @@
 // What the sentences of all sources measured, and when: from an item to measurements.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "common/core/health.hpp"
+#include "services/navigator/core/arrivals.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
 #include "services/navigator/core/source_params.hpp"
@@ -76,6 +79,8 @@ class Interpreter {
     std::optional<Epoch> epoch;
     std::optional<Accuracy> accuracy;
     double declination_rad = kNan;  // out of RMC
+    std::array<Arrivals, std::variant_size_v<Sentence>> arrivals;
+    bool is_in_time = true;  // the sentence that is read
   };
 
   Source& SourceOf(const std::string& name);
@@ -103,11 +108,12 @@ class Interpreter {
 
   std::optional<MeasurementTime> When(const Item& item, Source& source, std::optional<std::chrono::microseconds> time_of_day,
                                       std::optional<std::chrono::sys_days> date, bool is_measured = true);
+  std::optional<MeasurementTime> WhenArrived(const Item& item, const Source& source);
   Reading OnQualified(const Item& item, Source& source, const Gga& gga, std::string_view sentence_type);
   Reading WholeFix(Source& source, GnssFix fix);
   Attitude MakeAttitude(const Item& item, const Source& source, const char* sentence_type, const MeasurementTime& when, double heading_rad,
                         double pitch_rad, double roll_rad) const;
-  ImuSample MakeImu(const Item& item, const Source& source, const StrapdownSample& sample) const;
+  static ImuSample MakeImu(Utime time, const StrapdownSample& sample);
 
   InterpreterParams params_;
   UtcClock clock_;
@@ -125,6 +131,7 @@ class Interpreter {
     std::int64_t outside_role = 0;
     std::int64_t sentence_time_unusable = 0;
     std::int64_t time_backwards = 0;
+    std::int64_t queued_sentence = 0;
     std::int64_t date_unusable = 0;
     std::int64_t stale_lidar_sentence = 0;
     std::int64_t no_deviation = 0;

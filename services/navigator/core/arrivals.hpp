@@ -1,0 +1,50 @@
+// Whether a sentence without a time of its own came in time, or waited in a queue with others.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "common/core/utime.hpp"
+
+namespace lookout::navigator {
+
+/// The arrivals of one kind of sentence of one input. A sensor measures at an even interval. After a gap well beyond it, what comes faster than that
+/// is a queue that is drained: the n-th of it was measured n intervals after the gap began, and so is late by what is left of the gap. It may not
+/// count as measured on arrival, until the queue is empty. Where nothing comes faster, what fell into the gap is lost, and the first after it came in
+/// time.
+///
+/// Depends on the stamps of the arrivals alone.
+class Arrivals {
+ public:
+  /// What may be late by no more than this counts: buses and serial drivers give several at once.
+  static constexpr std::chrono::milliseconds kMaxLateness{100};
+  /// An interval is learned from so many, over so long.
+  static constexpr int kMinCount = 10;
+  static constexpr std::chrono::seconds kMinLearning{1};
+
+  /// @param arrival  not before the last one
+  /// @return whether it came in time, as far as is known
+  bool Add(Utime arrival);
+
+ private:
+  using microseconds = std::chrono::microseconds;
+
+  bool IsGap(microseconds interval) const;
+  void Learn(Utime arrival);
+  void EndQueue(Utime arrival);
+
+  bool has_last_ = false;
+  Utime last_{};
+  microseconds usual_{0};  // interval; 0 = not known yet
+  // Since when it is learned anew, and how many have come since.
+  Utime learning_since_{};
+  std::int64_t num_learned_ = 0;
+  // After a gap: how late the last one was, if it is of a queue; and how late at the begin of a while in which a queue would have become shorter.
+  bool is_queue_ = false;
+  microseconds lateness_{0};
+  microseconds gap_{0};  // the last interval, where it was a gap
+  Utime while_begin_{};
+  microseconds lateness_at_begin_{0};
+};
+
+}  // namespace lookout::navigator
