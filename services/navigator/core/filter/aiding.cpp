@@ -47,6 +47,17 @@ constexpr auto kMaxRefusal = 3s;
 // Of positions while accelerometers carry on, which are off by less than a metre by then: what jumps is rather the receiver.
 constexpr auto kMaxStrapdownRefusal = 10s;
 constexpr double kEvenInSds = 5.0;
+// One that changes, while what is refused agrees with itself, is of the state too: an IMU leads it away ever faster. A compass beside gyroscopes is
+// disturbed for so long by what the boat passes.
+constexpr auto kMaxAgreeingRefusal = 3s;
+constexpr auto kMaxCompassRefusal = 10s;
+// How far those that follow each other may differ: by their deviations, and by what a boat does meanwhile. Longer apart they say nothing of each
+// other.
+constexpr double kAgreeInSds = 7.0;
+constexpr double kMostAccelerationMps2 = 5.0;
+constexpr double kMostSpeedMps = 30.0;
+constexpr double kMostTurnRadps = 1.0;
+constexpr auto kMaxApart = 2500ms;
 
 // How fast the lever arm swings while nobody says where the bow points.
 constexpr double kUnknownTurnRadps = 0.2;
@@ -67,8 +78,49 @@ bool Judge(const Innovation<kSize>& innovation, bool is_forced, State& state, Ve
 
 // Counts a refusal. Returns whether it is the state that is wrong: a sensor's fault changes, a wrong state differs by the same all the time.
 bool IsStateWrong(const Eigen::Vector3d& residual, double sd, Utime time, std::chrono::seconds max_refusal, Refusals& refusals) {
-  if (!refusals.since || (residual - refusals.first_residual).norm() > kEvenInSds * sd) refusals = {time, residual};
+  if (!refusals.since || (residual - refusals.first_residual).norm() > kEvenInSds * sd) {
+    refusals.since = time;
+    refusals.first_residual = residual;
+  }
   return time - *refusals.since >= max_refusal;
+}
+
+// Counts one that was refused. Precondition: IsStateWrong was asked before. Returns whether they have agreed for so long, while they went away from
+// the state.
+bool IsStateLedAway(bool agrees, Utime time, std::chrono::seconds max_refusal, Refusals& refusals) {
+  if (!agrees || !refusals.agreeing_since || time - refusals.last > kMaxApart) refusals.agreeing_since = time;
+  refusals.last = time;
+  return *refusals.since > *refusals.agreeing_since && time - *refusals.agreeing_since >= max_refusal;
+}
+
+// What says the same to the last digit is frozen: it agrees with nothing.
+bool AgreesWithLast(const FixMeasurement& fix, const State& state) {
+  const auto& refusals = state.fix_refusals;
+  const bool is_frozen =
+      refusals.last_place.latitude_deg == fix.antenna.latitude_deg && refusals.last_place.longitude_deg == fix.antenna.longitude_deg;
+  if (!refusals.agreeing_since || is_frozen) return false;
+  const double since_s = SecondsBetween(refusals.last, state.time);
+  Eigen::Vector2d way_m = LocalFrame({refusals.last_place.latitude_deg, refusals.last_place.longitude_deg, 0.0})
+                              .Forward({fix.antenna.latitude_deg, fix.antenna.longitude_deg, 0.0})
+                              .head<2>();
+  double most_m = kAgreeInSds * fix.horizontal_sd_m;
+  if (fix.velocity) {
+    way_m -= since_s * fix.velocity->east_north_mps;
+    most_m += since_s * kAgreeInSds * fix.velocity->sd_mps + 0.5 * kMostAccelerationMps2 * since_s * since_s;
+  } else {
+    most_m += kMostSpeedMps * since_s;
+  }
+  return way_m.norm() <= most_m;
+}
+
+// @param angles_rad  of which those count that the measurement has; the others are 0
+bool AgreesWithLast(const Eigen::Vector3d& angles_rad, double sd_rad, Utime time, const Refusals& refusals) {
+  if (!refusals.agreeing_since || angles_rad == refusals.last_angles_rad) return false;
+  const double most_rad = kAgreeInSds * sd_rad + kMostTurnRadps * SecondsBetween(refusals.last, time);
+  for (int i = 0; i < 3; ++i) {
+    if (std::abs(WrapToPi(angles_rad[i] - refusals.last_angles_rad[i])) > most_rad) return false;
+  }
+  return true;
 }
 
 // The lever arm in the level frame. Without heading east and north are left to the position, which is then that of the antenna.
@@ -126,9 +178,14 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     const auto max_refusal = state.is_strapdown ? kMaxStrapdownRefusal : kMaxRefusal;
     // The state drifts meanwhile.
     const double sd_m = std::max(fix.horizontal_sd_m, std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1))));
-    if (!IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals)) return;
+    const bool agrees = AgreesWithLast(fix, state);
+    const bool is_wrong = IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals);
+    const bool is_led_away = IsStateLedAway(agrees, state.time, kMaxAgreeingRefusal, state.fix_refusals);
+    state.fix_refusals.last_place = fix.antenna;
+    if (!is_wrong && !is_led_away) return;
     ++verdict.num_renewed;
     ForgetPlace(state);
+    if (is_led_away && state.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
   }
   if (!is_taken) {
     // It says where the boat is, whatever was known. So does its velocity.
@@ -208,8 +265,16 @@ void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, do
     BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
   } else if (!JudgeHeading(heading_rad, noise_rad, false, state, verdict)) {
     const double residual_rad = WrapToPi(heading_rad - HeadingOf(state));
-    if (!IsStateWrong(Eigen::Vector3d(residual_rad, 0.0, 0.0), sd_rad, state.time, kMaxRefusal, state.heading_refusals)) return;
+    auto& refusals = state.heading_refusals;
+    const Eigen::Vector3d angles_rad(0.0, 0.0, heading_rad);
+    const bool agrees = AgreesWithLast(angles_rad, sd_rad, state.time, refusals);
+    const bool is_wrong = IsStateWrong(Eigen::Vector3d(residual_rad, 0.0, 0.0), sd_rad, state.time, kMaxRefusal, refusals);
+    const auto max_agreeing = state.has_gyro && source != HeadingSource::kPashr ? kMaxCompassRefusal : kMaxAgreeingRefusal;
+    const bool is_led_away = IsStateLedAway(agrees, state.time, max_agreeing, refusals);
+    refusals.last_angles_rad = angles_rad;
+    if (!is_wrong && !is_led_away) return;
     ++verdict.num_renewed;
+    if (is_led_away && state.has_gyro) RefuseImu(params.tilt_sd_rad, state);
     BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
   }
   state.heading_source = source;
@@ -266,8 +331,16 @@ void ApplyTilt(const AttitudeMeasurement& attitude, const FilterParams& params, 
   if (!is_taken && state.has_tilt) {
     Eigen::Vector3d residual_rad = Eigen::Vector3d::Zero();
     residual_rad.head<2>() = TiltOf(attitude, state).residual;
-    if (!IsStateWrong(residual_rad, attitude.roll_sd_rad + attitude.pitch_sd_rad, state.time, kMaxRefusal, state.tilt_refusals)) return;
+    auto& refusals = state.tilt_refusals;
+    const double sd_rad = attitude.roll_sd_rad + attitude.pitch_sd_rad;
+    const Eigen::Vector3d angles_rad(attitude.roll_rad, attitude.pitch_rad, 0.0);
+    const bool agrees = AgreesWithLast(angles_rad, sd_rad, state.time, refusals);
+    const bool is_wrong = IsStateWrong(residual_rad, sd_rad, state.time, kMaxRefusal, refusals);
+    const bool is_led_away = IsStateLedAway(agrees, state.time, kMaxAgreeingRefusal, refusals);
+    refusals.last_angles_rad = angles_rad;
+    if (!is_wrong && !is_led_away) return;
     ++verdict.num_renewed;
+    if (is_led_away && state.has_gyro) RefuseImu(params.tilt_sd_rad, state);
   }
   if (!is_taken) {
     const Eigen::Vector3d lever_level_m = LeverLevel(params, state);

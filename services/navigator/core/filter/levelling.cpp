@@ -33,6 +33,7 @@ void Apply(const InertialSample& sample, State& state) {
   const double since_s = state.imu.last ? SecondsBetween(*state.imu.last, state.time) : 0.0;
   const bool is_first = !state.imu.last || since_s > kCalmMeanTimeS;
   state.imu.Use(state.time);
+  if (IsImuRefused(state)) return;
   const Eigen::Vector3d& force_mps2 = sample.specific_force_mps2;
   if (is_first) {
     state.mean_force_mps2 = force_mps2;

@@ -239,6 +239,7 @@ void CarryOn(const InertialSample* sample, Utime time, const FilterParams& param
     return;
   }
   if (remaining_s <= 0.0) return;
+  if (IsImuRefused(state)) sample = nullptr;
   SwitchGyro(sample != nullptr, params, state);
   while (remaining_s > 0.0) {
     SwitchStrapdown(sample != nullptr && state.has_position && state.has_heading && state.has_tilt, params, state);

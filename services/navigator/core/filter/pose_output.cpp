@@ -104,6 +104,7 @@ std::string StoppedInputs(const State& state) {
   say(state.sensor_heading, "heading");
   say(state.tilt, "attitude");
   say(state.imu, "IMU");
+  if (IsImuRefused(state)) text += std::string(text.empty() ? "" : ", ") + "IMU not used: it contradicts fixes or attitudes";
   return text;
 }
 

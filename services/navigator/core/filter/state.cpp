@@ -1,6 +1,7 @@
 #include "services/navigator/core/filter/state.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "common/core/angles.hpp"
@@ -17,6 +18,12 @@ constexpr double kStopS = 1.0;
 constexpr double kUnknownRateSdRadps = 0.2;
 constexpr double kUnknownAccelerationSdMps2 = 0.5;
 constexpr double kUnknownLevelSdM = 1.0;
+
+// How long an IMU is not used that led the state astray.
+constexpr double kFirstRefusalS = 10.0;
+constexpr double kMaxRefusalS = 600.0;
+// A boat without an IMU goes up and down by so much.
+constexpr double kUpSdMps = 0.5;
 
 }  // namespace
 
@@ -43,6 +50,26 @@ State FreshState(Utime time, double tilt_sd_rad) {
 }
 
 Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
+
+void RefuseImu(double tilt_sd_rad, State& state) {
+  state.imu_refusal_s = std::clamp(2.0 * state.imu_refusal_s, kFirstRefusalS, kMaxRefusalS);
+  state.imu_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * state.imu_refusal_s));
+  state.has_gyro = state.is_strapdown = false;
+  state.last_gyro_bias_radps.setZero();
+  state.last_accelerometer_bias_mps2.setZero();
+  state.angular_velocity_radps.setZero();
+  state.rate.setZero();
+  state.acceleration.setZero();
+  state.velocity_level_mps.z() = 0.0;
+  Renew3(kRate, kUnknownRateSdRadps, state);
+  Renew3(kAcceleration, kUnknownAccelerationSdMps2, state);
+  Renew<1>(kVelocity + 2, Eigen::Matrix<double, 1, 1>(kUpSdMps), state);
+  state.covariance.diagonal().segment<2>(kRotation).array() += tilt_sd_rad * tilt_sd_rad;
+  state.num_forces = 0;
+  state.force_sum_mps2.setZero();
+}
+
+bool IsImuRefused(const State& state) { return state.imu_refused_until && state.time < *state.imu_refused_until; }
 
 void Inject(const ErrorVector& error, State& state) {
   state.p_level_m += error.segment<3>(kPosition);

@@ -44,10 +44,16 @@ struct ErrorModel {
   double time_constant_s = 1.0;
 };
 
-/// How long a measurement has been refused without the difference changing as the error of a sensor would.
+/// How long a measurement has been refused, one after the other.
 struct Refusals {
+  // Without the difference to the state changing.
   std::optional<Utime> since;
   Eigen::Vector3d first_residual = Eigen::Vector3d::Zero();
+  // While each agreed with the one before it, and what the last one said.
+  std::optional<Utime> agreeing_since;
+  Utime last;
+  GeodeticPlace last_place;  // of fixes
+  Eigen::Vector3d last_angles_rad = Eigen::Vector3d::Zero();
 };
 
 /// When an input was last used.
@@ -115,6 +121,10 @@ struct State {
   Refusals heading_refusals;
   Refusals tilt_refusals;
 
+  // The IMU contradicted fixes or attitudes that agree with each other: it is not used until then, and next time for so long.
+  std::optional<Utime> imu_refused_until;
+  double imu_refusal_s = 0.0;
+
   // Specific force since the last levelling by it, and how much the IMU has moved lately.
   Eigen::Vector3d force_sum_mps2 = Eigen::Vector3d::Zero();
   int num_forces = 0;
@@ -131,6 +141,10 @@ Eigen::Vector3d AntennaLever(const FilterParams& params);
 ///
 /// @param tilt_sd_rad  of a boat whose tilt nobody measured
 State FreshState(Utime time, double tilt_sd_rad);
+
+/// The IMU led the state astray: nothing that came of it counts any more, nor it itself for a while, twice as long each time.
+void RefuseImu(double tilt_sd_rad, State& state);
+bool IsImuRefused(const State& state);
 
 /// Adds an error to the state, and takes it out of it.
 void Inject(const ErrorVector& error, State& state);
