@@ -1,5 +1,5 @@
 lookout_test(NAME unit_navigator
-             SOURCES unit/navigator/sentence_test.cpp unit/navigator/nmea_test.cpp unit/navigator/measurement_test.cpp
+             SOURCES unit/navigator/arrivals_test.cpp unit/navigator/sentence_test.cpp unit/navigator/nmea_test.cpp unit/navigator/measurement_test.cpp
                      unit/navigator/item_sequencer_test.cpp unit/navigator/filter_test.cpp unit/navigator/filter_attitude_test.cpp
                      unit/navigator/filter_consistency_test.cpp unit/navigator/filter_recovery_test.cpp unit/navigator/filter_voyage_test.cpp unit/navigator/inputs_test.cpp unit/navigator/interpreter_test.cpp
                      unit/navigator/navigator_test.cpp unit/navigator/utc_clock_test.cpp unit/navigator/service_test.cpp

@@ -40,7 +40,7 @@ TEST_F(ArrivalsTest, RefusesAQueueToItsLast) {
     for (const double interval_s : {0.01, 0.1, 1.0}) {
       arrivals_ = {};
       EXPECT_EQ(AddEvenly(0.0, 30.0, interval_s), 0);
-      const int num_waiting = static_cast<int>(12.0 / interval_s + 0.5);
+      const int num_waiting = static_cast<int>(13.0 / interval_s + 0.5);  // till 43 s
       for (int i = 0; i < num_waiting; ++i) EXPECT_FALSE(Add(42.0 + drained_s * i / num_waiting)) << i;
       const int num_refused = AddEvenly(43.0, 60.0, interval_s);
       EXPECT_LE(num_refused * interval_s, 2.5) << interval_s << ", " << drained_s;
