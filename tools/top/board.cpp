@@ -250,6 +250,11 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
     alarm.is_active = active->count != 0;
     alarm.text = AlarmReason(process.health);
     alarm.age = now - process.last;
+    // Who says nothing any more cannot raise an alarm.
+    if (!alarm.is_active && alarm.age > kSilence) {
+      alarm.is_active = true;
+      alarm.text = "guard zone not watched: no HEALTH of " + key.name;
+    }
     // Where several tell of it, an alarm counts before none, then the newer.
     if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
   }

@@ -75,10 +75,11 @@ TEST(Board, ShowsTwoProcessesOfOneNameByHostAndProcessId) {
   }
   const auto processes = board.Processes(At(4.0));
   ASSERT_EQ(processes.size(), 4U);
-  EXPECT_EQ(processes[0].reason, "one of 2 navigators on this bus: pid 11 on boat");
-  EXPECT_EQ(processes[1].reason, "one of 2 navigators on this bus: pid 22 on boat");
-  EXPECT_EQ(processes[3].name, "vlp16@shore");
-  EXPECT_EQ(processes[3].reason, "one of 2 vlp16s on this bus: pid 33 on shore");
+  EXPECT_EQ(processes[0].reason, "one of 2 vlp16s on this bus: pid 33 on boat");
+  EXPECT_EQ(processes[1].name, "vlp16@shore");
+  EXPECT_EQ(processes[1].reason, "one of 2 vlp16s on this bus: pid 33 on shore");
+  EXPECT_EQ(processes[2].reason, "one of 2 navigators on this bus: pid 11 on boat");
+  EXPECT_EQ(processes[3].reason, "one of 2 navigators on this bus: pid 22 on boat");
   EXPECT_EQ(board.Channels(At(4.0))[0].num_lost, 0);  // each counts for itself
 }
 
@@ -245,6 +246,22 @@ TEST(Board, TellsThatTheGuardZoneIsNotWatched) {
   health.reason = "";
   Say(board, bus::kHealth, health, 2.1);
   EXPECT_EQ(board.NearestAlarm(At(2.2))->text, "guard zone not watched");
+}
+
+// A georeferencer that was stopped left the last word it had said: no alarm.
+TEST(Board, WhoWatchesTheGuardZoneAndFallsSilentIsAnAlarm) {
+  Board board(kStart);
+  auto health = HealthOf("georeferencer", 1);
+  AddCounter(health, "alarm_active", 0);
+  Say(board, bus::kHealth, health, 1.1);
+  EXPECT_FALSE(board.NearestAlarm(At(4.0))->is_active);
+  const auto alarm = board.NearestAlarm(At(4.2));
+  EXPECT_TRUE(alarm->is_active);
+  EXPECT_EQ(alarm->text, "guard zone not watched: no HEALTH of georeferencer");
+  // Another has taken its place.
+  health.pid += 1;
+  Say(board, bus::kHealth, health, 5.0);
+  EXPECT_FALSE(board.NearestAlarm(At(5.1))->is_active);
 }
 
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {

@@ -141,6 +141,9 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
       const Eigen::Vector3d velocity_here_mps(fix.velocity->east_north_mps.x(), fix.velocity->east_north_mps.y(), 0.0);
       state.velocity_level_mps.head<2>() = (HereOf(state).R_here_level.transpose() * velocity_here_mps).head<2>();
       Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
+    } else if (state.fix_refusals.since && !state.velocity.IsWithin(state.time, kTimedVelocityAge)) {
+      // Fixes contradicted, and nobody measures velocity: that is what was wrong, or the next fix would contradict again.
+      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }
   state.fix_refusals = {};
