@@ -120,7 +120,10 @@ class StreamGuard {
   Decision Weigh(const StreamPlace& place, Time now, std::int64_t mark);
   Fit FitOf(const Stream& stream, const StreamPlace& place, Time now) const;
   bool IsPlausibleLoss(const Stream& stream, const StreamPlace& place, Time now, std::uint64_t distance) const;
+  double MostWithin(double gap_us) const;
   int Nearer(const StreamPlace& place, Time now) const;
+  bool IsOtherKeptGoingOn() const;
+  Decision Join(const StreamPlace& place, Time now);
   static bool IsEven(const Stream& stream);
   static Time SilenceOf(const Stream& stream);
   static bool IsAlive(const Stream& stream, Time now) { return now - stream.received < SilenceOf(stream); }
