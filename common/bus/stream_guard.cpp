@@ -203,13 +203,16 @@ StreamGuard::Fit StreamGuard::FitOf(const Stream& stream, const StreamPlace& pla
 bool StreamGuard::IsPlausibleLoss(const Stream& stream, const StreamPlace& place, Time now, std::uint64_t distance) const {
   // Between two messages that waited in a queue there is no time of receipt; one from a computer whose clock is ahead must not pass by that.
   constexpr double kGreatestSpeed = 20.0;
+  constexpr double kPause = 2.0;
   const double received_us = InUs(now - stream.received);
   const double measured_us = GapUs(stream.last, place);
   const double gap_us = measured_us < 0.0 ? received_us : std::min(measured_us, kGreatestSpeed * received_us + kQueueUs);
   const auto number = static_cast<double>(distance);
   if (IsEven(stream)) {
     const double tolerance = 0.25 + 0.25 * number;
-    return (number - tolerance) * stream.period_us <= gap_us;
+    // More time than messages: the stream paused, which shows in their receipt too. Else the clock is another computer's.
+    const bool has_time = measured_us <= (number + tolerance) * stream.period_us || measured_us <= kPause * received_us;
+    return has_time && (number - tolerance) * stream.period_us <= gap_us;
   }
   return number <= MostWithin(gap_us);
 }

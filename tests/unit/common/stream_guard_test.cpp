@@ -189,6 +189,28 @@ TEST_F(Stream, ASecondPublisherWithNearNumbersIsRefused) {
   }
 }
 
+// Two computers of one switch, without a common clock. The second was taken for good, and the first refused.
+TEST_F(Stream, ASecondPublisherWithNearNumbersWhoseClockIsFarAheadIsRefused) {
+  for (const std::int64_t ahead : {2, 3, 6, 10, 20}) {
+    for (const std::int64_t clock_us : {3'000'000, 3'900'000, 100'000'000}) {
+      SCOPED_TRACE(std::to_string(ahead) + " " + std::to_string(clock_us));
+      guard_ = StreamGuard(40.0);
+      taken_.clear();
+      held_.clear();
+      Run('a', 100, 20);
+      for (std::int64_t i = 0; i < 50; ++i) {
+        Send('a', 120 + i);
+        Pass(milliseconds(50));
+        SendAt('b', 120 + i + ahead, (120 + i) * kPeriodUs + clock_us);
+        Pass(milliseconds(50));
+      }
+      EXPECT_EQ(NumTaken('a'), 70);
+      EXPECT_EQ(NumTaken('b'), 0);
+      EXPECT_TRUE(HasSecond());
+    }
+  }
+}
+
 // Two navigators switched on within a tenth of a second: POSE of both comes for the same instants, five at once.
 TEST_F(Stream, ASecondPublisherOfTheSameInstantsWithNearNumbersIsRefused) {
   for (const std::int64_t ahead : {-7, -5, -4, -2, -1, 1, 2, 3, 4, 5, 6, 8}) {
