@@ -137,7 +137,7 @@ class StreamReceiver {
   StreamReceiver(Bus& bus, const Channel& channel, Handler handler)
       : bus_(bus),
         is_guarded_(IsGuarded(channel)),
-        guard_(channel.max_rate_hz),
+        guard_(channel),
         handler_(std::move(handler)),
         traffic_(bus.input_traffic()[std::string(channel.name)]) {}  // a map: references stay valid
 

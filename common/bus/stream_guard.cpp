@@ -192,10 +192,10 @@ StreamGuard::Fit StreamGuard::FitOf(const Stream& stream, const StreamPlace& pla
   if (place.seq < last.seq) return Fit::kNo;
   const auto distance = Distance(last.seq, place.seq);
   if (distance == 1) {
-    // What comes at even times goes forward in time; but its clock may be set back, or be exchanged for another.
+    // Its clock may be set back, or be exchanged for another.
     constexpr double kLeastStepBackUs = 200'000.0;
     const double gap_us = GapUs(last, place);
-    return IsEven(stream) && gap_us <= 0.0 && gap_us > -kLeastStepBackUs ? Fit::kNo : Fit::kExact;
+    return IsEvenAndRising(stream) && gap_us <= 0.0 && gap_us > -kLeastStepBackUs ? Fit::kNo : Fit::kExact;
   }
   return distance <= kMaxDistance && IsPlausibleLoss(stream, place, now, distance) ? Fit::kLoss : Fit::kNo;
 }
@@ -209,7 +209,7 @@ bool StreamGuard::IsPlausibleLoss(const Stream& stream, const StreamPlace& place
   const double gap_us = measured_us < 0.0 ? received_us : std::min(measured_us, kGreatestSpeed * received_us + kQueueUs);
   const auto number = static_cast<double>(distance);
   if (IsEven(stream)) {
-    const double tolerance = 0.25 + 0.25 * number;
+    const double tolerance = (has_rising_times_ ? 0.25 : 0.5) + 0.25 * number;
     // More time than messages: the stream paused, which shows in their receipt too. Else the clock is another computer's.
     const bool has_time = measured_us <= (number + tolerance) * stream.period_us || measured_us <= kPause * received_us;
     return has_time && (number - tolerance) * stream.period_us <= gap_us;

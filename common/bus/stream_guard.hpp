@@ -44,6 +44,12 @@ StreamPlace PlaceOf(const T& message, Bytes bytes) {
 /// machine or of a simulation.
 constexpr bool IsGuarded(const Channel& channel) { return channel.is_replayed; }
 
+/// Whether each message of its publisher was measured after the one before: not where several sensors share a channel, or a time.
+constexpr bool HasRisingTimes(const Channel& channel) {
+  return channel.name == kPose.name || channel.name == kLidarScan.name || channel.name == kLidarClock.name || channel.name == kSegments.name ||
+         channel.name == kObstacles.name;
+}
+
 /// Keeps the stream first heard. A message that cannot follow in it is held: it belongs to a second publisher when the kept stream goes on, and to
 /// the same channel's next one (a restart) when the kept stream is silent for a second.
 ///
@@ -64,7 +70,9 @@ class StreamGuard {
     std::int64_t num_lost = 0;  // messages that are missing before those that are taken now, or among them
   };
 
-  explicit StreamGuard(double max_rate_hz) : max_rate_hz_(max_rate_hz) {}
+  /// @param has_rising_times  see HasRisingTimes
+  explicit StreamGuard(double max_rate_hz, bool has_rising_times = false) : max_rate_hz_(max_rate_hz), has_rising_times_(has_rising_times) {}
+  explicit StreamGuard(const Channel& channel) : StreamGuard(channel.max_rate_hz, HasRisingTimes(channel)) {}
 
   /// Takes the place of the next message.
   ///
@@ -125,6 +133,7 @@ class StreamGuard {
   bool IsOtherKeptGoingOn() const;
   Decision Join(const StreamPlace& place, Time now);
   static bool IsEven(const Stream& stream);
+  bool IsEvenAndRising(const Stream& stream) const { return has_rising_times_ && IsEven(stream); }
   static Time SilenceOf(const Stream& stream);
   static bool IsAlive(const Stream& stream, Time now) { return now - stream.received < SilenceOf(stream); }
   static std::int64_t Follow(Stream& stream, const StreamPlace& place, Time now);
@@ -138,6 +147,7 @@ class StreamGuard {
   void NoteTaken(const StreamPlace& place);
 
   double max_rate_hz_;
+  bool has_rising_times_;
   std::optional<Stream> kept_;
   std::optional<Stream> other_;
   std::int64_t num_held_ = 0;  // of `other_`

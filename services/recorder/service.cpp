@@ -162,7 +162,7 @@ void Service::WatchGaps(const bus::Channel& channel, Bytes bytes) {
   const auto place = bus::IsGuarded(channel) ? bus::PlaceOf(channel, bytes) : std::nullopt;
   if (!place) return;  // its readers refuse it, or it does not count
   auto found = guards_.find(channel.name);
-  if (found == guards_.end()) found = guards_.emplace(std::string(channel.name), bus::StreamGuard(channel.max_rate_hz)).first;
+  if (found == guards_.end()) found = guards_.emplace(std::string(channel.name), bus::StreamGuard(channel)).first;
   NoteMissing(channel, found->second.Next(*place, time_.Advance(clock_())).num_lost);
 }
 

@@ -15,7 +15,7 @@ std::optional<std::int64_t> Publishers::Add(Utime time, std::string_view channel
   const auto place = bus::PlaceOf(*entry, bytes);
   if (!place) return std::nullopt;
   auto found = guards_.find(channel);
-  if (found == guards_.end()) found = guards_.emplace(std::string(channel), bus::StreamGuard(entry->max_rate_hz)).first;
+  if (found == guards_.end()) found = guards_.emplace(std::string(channel), bus::StreamGuard(*entry)).first;
   return found->second.Next(*place, GuardTime(time), number).num_lost;
 }
 
