@@ -1,4 +1,5 @@
 // lookout-vlp16 and SIGHUP: a config that is read again, and a terminal that closes.
+#include <fcntl.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <pty.h>
@@ -6,7 +7,9 @@
 #include <sys/stat.h>
 #include <sys/syscall.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "tests/system/sources.hpp"
 
@@ -143,8 +146,9 @@ TEST_F(HangupTest, ATerminationDuringANewStartIsNotLost) {
 }
 
 TEST_F(HangupTest, AHangupBeforeTheProcessIsReadyDoesNotEndIt) {
-  fs::remove(folder_ / "vlp16.txtpb");
-  ASSERT_EQ(mkfifo((folder_ / "vlp16.txtpb").c_str(), 0600), 0);  // holds the start at reading its config
+  const auto capture = folder_ / "capture.pcap";
+  ASSERT_EQ(mkfifo(capture.c_str(), 0600), 0);  // holds the start at opening its capture
+  WriteConfig("source: CAPTURE capture_file: '" + capture.string() + "' cut_azimuth_deg: 0");
   child_ = std::make_unique<Child>(Command(), OutputFile());
   const auto is_blocked = [&] {
     std::ifstream status("/proc/" + std::to_string(child_->pid()) + "/status");
@@ -155,8 +159,16 @@ TEST_F(HangupTest, AHangupBeforeTheProcessIsReadyDoesNotEndIt) {
   };
   EXPECT_TRUE(WaitUntil(is_blocked, seconds(5)));
   child_->Signal(SIGHUP);
-  WriteConfig("");  // which is refused, as a pipe is no file: the process ends by itself
-  EXPECT_EQ(child_->Wait(seconds(5)).value_or(-1), 2) << child_->Output();
+  WriteConfig("source: UDP bind_address: '0.0.0.0' cut_azimuth_deg: 0");
+  int descriptor = -1;
+  ASSERT_TRUE(WaitUntil([&] { return (descriptor = open(capture.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) >= 0; }, seconds(5)))
+      << child_->Output() << " nobody reads the capture";
+  // A header of pcap and nothing behind it.
+  const std::array<std::uint32_t, 6> header{0xa1b2c3d4, 0x00040002, 0, 0, 65535, 1};
+  EXPECT_EQ(write(descriptor, header.data(), sizeof header), static_cast<ssize_t>(sizeof header));
+  close(descriptor);
+  EXPECT_TRUE(WaitForStarts(2)) << child_->Output();
+  EXPECT_NE(child_->Output().find("starts again"), std::string::npos) << child_->Output();
 }
 
 // Before Linux 5.11 there is no CLOSE_RANGE_CLOEXEC.

@@ -1,5 +1,6 @@
 #include "tools/top/board.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -140,6 +141,30 @@ TEST(Board, ForgetsNothingAboutManyChannelsButTheirNames) {
   EXPECT_EQ(channels.size(), Board::kMaxChannels + 1);
   EXPECT_EQ(channels[0].name, "POSE");
   EXPECT_EQ(board.num_unlisted(), 1000 - static_cast<std::int64_t>(Board::kMaxChannels));
+}
+
+// Invented processes under the names of the suite took its room for ever: what started again afterwards was not shown, nor its alarm.
+TEST(Board, WhatIsSilentMakesRoomForWhatSpeaks) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOf("recorder", 0), 0.1);
+  for (int i = 0; i < 200; ++i) {
+    auto invented = HealthOf("vlp16", 0);
+    invented.host = "elsewhere" + std::to_string(i);
+    Say(board, bus::kHealth, invented, 0.2);
+  }
+  EXPECT_GT(board.num_unlisted_health(), 0);
+  const auto num_unlisted = board.num_unlisted_health();
+  auto health = HealthOf("georeferencer", 0);
+  health.pid = 4711;
+  Say(board, bus::kHealth, health, 10.0);
+  EXPECT_EQ(board.num_unlisted_health(), num_unlisted);
+  const auto processes = board.Processes(At(10.1));
+  EXPECT_LE(processes.size(), Board::kMaxProcesses);
+  const auto is_shown = [&](const std::string& name) {
+    return std::ranges::any_of(processes, [&](const auto& line) { return line.name.rfind(name, 0) == 0; });
+  };
+  EXPECT_TRUE(is_shown("georeferencer"));
+  EXPECT_TRUE(is_shown("recorder")) << "silent, but the only one of its name";
 }
 
 TEST(Board, SortsObstaclesOfAllPartsAndKeepsTheNearest) {
