@@ -18,6 +18,8 @@ using std::chrono::microseconds;
 constexpr std::chrono::seconds kMaxFirstLidarAge(10);
 // A burst of sentences of one epoch takes less than this at 9600 baud with three of them; epochs are 50 ms apart or more.
 constexpr microseconds kMaxBurst = 50ms;
+// Less is the fit of the clocks that settles.
+constexpr std::chrono::milliseconds kMinScaleStep(100);
 // Receivers send GST with each epoch, or once in some.
 constexpr std::chrono::seconds kMaxAccuracyAge(5);
 
@@ -91,6 +93,7 @@ Interpreter::Source& Interpreter::SourceOf(const std::string& name) {
 void Interpreter::Reset() {
   clock_ = UtcClock(params_.max_sentence_latency);
   last_lidar_sentence_.clear();
+  time_scale_.reset();
   for (auto& [name, source] : sources_) {
     source.clock = {};
     source.epoch.reset();
@@ -158,7 +161,7 @@ Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
 // nullopt: the source's time runs backwards.
 std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& source, std::optional<microseconds> time_of_day,
                                                  std::optional<std::chrono::sys_days> date, bool is_measured) {
-  if (!time_of_day) return clock_.OfArrival(item.time, source.params.latency);
+  if (!time_of_day) return clock_.OfArrival(source.clock, item.time, source.params.latency);
   const auto when = clock_.OfSentence(source.clock, item.time, *time_of_day, date, source.params.latency, is_measured);
   if (!when) {
     ++counts_.time_backwards;
@@ -194,6 +197,11 @@ Reading Interpreter::WholeFix(Source& source, GnssFix fix) {
     source.epoch->has_gga = source.epoch->has_gga || is_gga;
   } else if (fix.when.has_sentence_utc) {
     source.epoch = Epoch{fix.when.utc, fix, is_gga};
+  }
+  if (fix.position && IsMeasured(fix.quality) && fix.when.is_from_sentence) {
+    const auto time_scale = clock_.pose_minus_even_utc();
+    fix.begins_time_scale = time_scale_ && std::chrono::abs(time_scale - *time_scale_) >= kMinScaleStep;
+    time_scale_ = time_scale;
   }
   const auto& accuracy = source.accuracy;
   const bool has_accuracy = accuracy && fix.when.arrival - accuracy->arrival <= kMaxAccuracyAge && IsMeasured(fix.quality);
@@ -266,7 +274,7 @@ Reading Interpreter::On(const Item& item, Source& source, const Vtg& vtg) {
   Reading reading;
   // Behind the fix of its epoch it is of the same instant; it has no time of its own.
   const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= kMaxBurst;
-  const Utime time = is_of_epoch ? source.epoch->fix.when.time : clock_.OfArrival(item.time, source.params.latency).time;
+  const Utime time = is_of_epoch ? source.epoch->fix.when.time : clock_.OfArrival(source.clock, item.time, source.params.latency).time;
   // What RMC says of the same instant is the same measurement.
   if (is_of_epoch && !std::isnan(source.epoch->fix.speed_mps)) return reading;
   reading.velocity = GroundVelocity{time, vtg.speed_mps, CourseOf(vtg.speed_mps, vtg.course_rad)};
@@ -288,15 +296,16 @@ Attitude Interpreter::MakeAttitude(const Item& item, const Source& source, const
 Reading Interpreter::On(const Item& item, Source& source, const Xdr& xdr) {
   Reading reading;
   if (std::isnan(xdr.pitch_rad) && std::isnan(xdr.roll_rad)) return reading;
-  reading.attitude = MakeAttitude(item, source, "XDR", clock_.OfArrival(item.time, source.params.latency), kNan, xdr.pitch_rad, xdr.roll_rad);
+  reading.attitude =
+      MakeAttitude(item, source, "XDR", clock_.OfArrival(source.clock, item.time, source.params.latency), kNan, xdr.pitch_rad, xdr.roll_rad);
   return reading;
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const TntHtm& htm) {
   Reading reading;
   if (std::isnan(htm.heading_rad) && std::isnan(htm.pitch_rad) && std::isnan(htm.roll_rad)) return reading;
-  reading.attitude =
-      MakeAttitude(item, source, "PTNTHTM", clock_.OfArrival(item.time, source.params.latency), htm.heading_rad, htm.pitch_rad, htm.roll_rad);
+  reading.attitude = MakeAttitude(item, source, "PTNTHTM", clock_.OfArrival(source.clock, item.time, source.params.latency), htm.heading_rad,
+                                  htm.pitch_rad, htm.roll_rad);
   return reading;
 }
 
@@ -304,7 +313,7 @@ Reading Interpreter::On(const Item& item, Source& source, const Hdt& hdt) {
   // A compass that has lost its heading goes on sending the sentence, empty.
   if (std::isnan(hdt.heading_rad)) return {};
   Reading reading;
-  reading.attitude = MakeAttitude(item, source, "HDT", clock_.OfArrival(item.time, source.params.latency), hdt.heading_rad, kNan, kNan);
+  reading.attitude = MakeAttitude(item, source, "HDT", clock_.OfArrival(source.clock, item.time, source.params.latency), hdt.heading_rad, kNan, kNan);
   return reading;
 }
 
@@ -321,14 +330,15 @@ Reading Interpreter::On(const Item& item, Source& source, const MagneticHeading&
     return {};
   }
   Reading reading;
-  reading.attitude = MakeAttitude(item, source, "HDG", clock_.OfArrival(item.time, source.params.latency),
+  reading.attitude = MakeAttitude(item, source, "HDG", clock_.OfArrival(source.clock, item.time, source.params.latency),
                                   heading.compass_rad + deviation_rad + declination_rad, kNan, kNan);
   return reading;
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const Rot& rot) {
   Reading reading;
-  if (!std::isnan(rot.rate_radps)) reading.turn_rate = TurnRate{clock_.OfArrival(item.time, source.params.latency).time, rot.rate_radps};
+  if (!std::isnan(rot.rate_radps))
+    reading.turn_rate = TurnRate{clock_.OfArrival(source.clock, item.time, source.params.latency).time, rot.rate_radps};
   return reading;
 }
 
@@ -382,13 +392,14 @@ Reading Interpreter::On(const Item& item, Source& source, const VnIns& ins) {
 ImuSample Interpreter::MakeImu(const Item& item, const Source& source, const StrapdownSample& sample) const {
   // From x forward, y to starboard, z down to x forward, y port, z up.
   const auto to_vessel = [](const Eigen::Vector3d& v) { return Eigen::Vector3d(v.x(), -v.y(), -v.z()); };
-  return {clock_.OfArrival(item.time, source.params.latency).time, to_vessel(sample.angular_velocity_radps), to_vessel(sample.specific_force_mps2)};
+  return {clock_.OfArrival(source.clock, item.time, source.params.latency).time, to_vessel(sample.angular_velocity_radps),
+          to_vessel(sample.specific_force_mps2)};
 }
 
 Reading Interpreter::On(const Item& item, Source& source, const VnYmr& ymr) {
   Reading reading;
   reading.attitude =
-      MakeAttitude(item, source, "VNYMR", clock_.OfArrival(item.time, source.params.latency), ymr.yaw_rad, ymr.pitch_rad, ymr.roll_rad);
+      MakeAttitude(item, source, "VNYMR", clock_.OfArrival(source.clock, item.time, source.params.latency), ymr.yaw_rad, ymr.pitch_rad, ymr.roll_rad);
   reading.imu = MakeImu(item, source, ymr.sample);
   return reading;
 }

@@ -119,14 +119,14 @@ Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params
 }
 
 void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
-  const bool is_taken = state.has_position && Judge(HorizontalOf(fix, params, state), false, state, verdict);
+  const bool is_taken = state.has_position && !fix.begins_time_scale && Judge(HorizontalOf(fix, params, state), false, state, verdict);
   if (!is_taken && state.has_position) {
     Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
     residual_m.head<2>() = HorizontalOf(fix, params, state).residual;
     const auto max_refusal = state.is_strapdown ? kMaxStrapdownRefusal : kMaxRefusal;
     // The state drifts meanwhile.
     const double sd_m = std::max(fix.horizontal_sd_m, std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1))));
-    if (!IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals)) return;
+    if (!fix.begins_time_scale && !IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals)) return;
     ++verdict.num_renewed;
     ForgetPlace(state);
   }
