@@ -243,8 +243,8 @@ TEST(Voyage, WithADatumFarAwayIsExactAtOnce) {
   ExpectExact(Sail(ParallelVoyage{43.63, -72.15, 5.0}, {.duration_s = 300.0, .datum = Datum{-72.15, 43.63, 0.0}}));
 }
 
-// 42 m off at 14 m/s, 90 m at 30 m/s for ever, 9 m stated, status ok: each time that the position began anew velocity was taken for known, and the next fixes
-// contradicted it.
+// 42 m off at 14 m/s, 90 m at 30 m/s for ever, 9 m stated, status ok: each time that the position began anew velocity was taken for known, and the
+// next fixes contradicted it.
 TEST(Voyage, ThatBeginsAtFullSpeedIsFoundByPositionsAlone) {
   for (const bool has_imu : {true, false}) {
     for (const double speed_mps : {3.0, 14.0, 20.0, 30.0}) {
