@@ -47,6 +47,7 @@ std::string_view SentenceBehind(std::string_view line) {
        start = start == 0 ? std::string_view::npos : line.find_last_of("$!", start - 1)) {
     const auto sentence = line.substr(start);
     if (std::ranges::all_of(sentence, IsPrintable) && Frame(sentence).fault == SentenceFault::kNone) return sentence;
+    end = start;
   }
   return {};
 }
