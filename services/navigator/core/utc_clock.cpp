@@ -154,6 +154,7 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
   NoteLeapSecond(source, arrival, resolved.utc, latency.value_or(microseconds(0)));
   if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
   const bool is_same_instant = source.last_utc == resolved.utc && source.num_leaps == num_leaps_before;
+  if (!is_same_instant) source.is_forward = source.last_utc && resolved.utc > *source.last_utc;
   source.last_utc = resolved.utc;
   source.dated_utc = resolved.utc;
   source.dated_arrival = arrival;
@@ -187,7 +188,7 @@ void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
 
 // Of the last sentence with a time, where that came with what comes now.
 microseconds UtcClock::Lateness(const SourceClock& source, Utime arrival, microseconds latency) {
-  const bool is_known = source.last_utc && !source.fit.is_empty() && source.fit.is_settled();
+  const bool is_known = source.last_utc && source.is_forward && !source.fit.is_empty() && source.fit.is_settled();
   if (!is_known || arrival < source.last_arrival || arrival - source.last_arrival > kBurst) return microseconds(0);
   const auto late = source.last_arrival - (*source.last_utc + std::chrono::seconds(source.num_leaps)) - latency - source.fit.offset();
   return late >= kMinLateness ? late : microseconds(0);

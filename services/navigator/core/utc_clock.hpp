@@ -22,8 +22,9 @@ struct SourceClock {
   int num_backward = 0;
   int num_leaps = 0;  // leap seconds that it went through, and the midnight of the last
   std::optional<std::chrono::sys_days> last_leap;
-  Utime last_arrival{};  // of its last new instant
-  ClockFit fit;          // of arrival less UTC (leap seconds counted on), less its delay where that is known
+  Utime last_arrival{};     // of its last new instant
+  bool is_forward = false;  // that instant was after the one before it: not so of the later of two receivers on one line
+  ClockFit fit;             // of arrival less UTC (leap seconds counted on), less its delay where that is known
 };
 
 /// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the

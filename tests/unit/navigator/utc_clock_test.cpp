@@ -77,8 +77,12 @@ TEST_F(UtcClockTest, TakesWhatCameWithALateSentenceForAsLate) {
   EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(32) + 10ms, 80ms).time, NoonPlus(20) + 10ms);
   EXPECT_EQ(clock_.OfArrival({}, NoonPlus(32), 80ms).time, NoonPlus(32) - 80ms) << "of another source";
   EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(33), 80ms).time, NoonPlus(33) - 80ms) << "long after it";
-  Sentence(NoonPlus(33), 0s, 200ms, 80ms);
-  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(33) + 200ms, 80ms).time, NoonPlus(33) + 120ms) << "sentences differ by as much";
+  // Of two receivers on one line one is late all the time.
+  Sentence(NoonPlus(34), 0s, 80ms, 80ms);
+  Sentence(NoonPlus(33), 0s, 1200ms, 80ms);
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(34) + 200ms, 80ms).time, NoonPlus(34) + 120ms);
+  Sentence(NoonPlus(35), 0s, 200ms, 80ms);
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(35) + 200ms, 80ms).time, NoonPlus(35) + 120ms) << "sentences differ by as much";
 }
 
 TEST_F(UtcClockTest, SeesThatTheClockWasSetRight) {
