@@ -17,8 +17,9 @@ constexpr int kDefaultPort = 7667;
 constexpr std::string_view kMulticast = "udpm://";
 constexpr std::string_view kExample = "udpm://239.255.76.67:7667?ttl=0";
 
-// A whole decimal number without anything around it.
+// A whole decimal number without anything around it. LCM takes one that begins with 0 for an octal: it would listen at another port than its filter.
 std::optional<int> ParseNumber(std::string_view text, int least, int greatest) {
+  if (text.size() > 1 && text.front() == '0') return std::nullopt;
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < least || value > greatest) return std::nullopt;

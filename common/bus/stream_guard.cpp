@@ -18,7 +18,12 @@ constexpr double kMaxPeriodUs = 60e6;
 // How many periods make a mean, and how even a stream is that is measured by it.
 constexpr std::int64_t kMinPeriods = 8;
 constexpr double kMeanWeight = 0.125;
-constexpr double kEvenDeviation = 0.2;
+constexpr double kEvenDeviation = 0.1;
+// A pause is no period: a longer one counts as so many times the mean, after the first few.
+constexpr double kMostPeriods = 4.0;
+constexpr std::int64_t kFewPeriods = 3;
+// Most that a queue holds that was not emptied (common/bus/channels.hpp).
+constexpr double kQueueUs = 2e6;
 // Silence before a restart is believed is bounded also for slow channels.
 constexpr std::chrono::seconds kMaxSilence(15);
 // Of two guesses the better counts where it is so much better.
@@ -26,6 +31,8 @@ constexpr double kClearlyNearer = 0.5;
 // Messages that come at one instant may be lost together.
 constexpr double kBurstSeconds = 0.1;
 constexpr double kLeastBurst = 2.0;
+// How far numbers and times of one publisher may be apart, of what passed between them.
+constexpr double kSameStream = 0.05;
 
 // Numbers come from outside: subtracted as unsigned, so that no pair of them overflows.
 std::uint64_t Distance(std::int64_t from, std::int64_t to) { return static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from); }
@@ -100,6 +107,7 @@ StreamGuard::Decision StreamGuard::Weigh(const StreamPlace& place, Time now, std
     // Silent: the next one, at once.
     return is_kept_alive || other_ ? TakeInNone(place, now, mark) : Keep(place, now, mark);
   }
+  if (in_kept == Fit::kLoss && in_other != Fit::kNo && num_held_ > 0 && IsOtherKeptGoingOn()) return Join(place, now);
   int nearer = static_cast<int>(in_kept) - static_cast<int>(in_other);
   if (nearer == 0) nearer = Nearer(place, now);
   if (nearer > 0) return TakeInKept(place, now);
@@ -113,6 +121,25 @@ StreamGuard::Decision StreamGuard::Weigh(const StreamPlace& place, Time now, std
   num_held_ = 0;
   return {Held::kRefuse, Act::kRefuse, 0};
 }
+
+// Whether what is held goes on where the kept stream ended, by its numbers and times. So it is when a reader stood still, and more was lost than its
+// queue held: until some time has passed nothing explains the jump, and then each message fits in both.
+bool StreamGuard::IsOtherKeptGoingOn() const {
+  const double gap_us = GapUs(kept_->last, other_->first);
+  if (other_->first.seq <= kept_->last.seq || gap_us < kQueueUs) return false;
+  const auto number = static_cast<double>(Distance(kept_->last.seq, other_->first.seq));
+  if (!IsEven(*kept_)) return number <= MostWithin(gap_us);
+  return std::abs(gap_us - number * kept_->period_us) <= (0.5 + kSameStream * number) * kept_->period_us;
+}
+
+// Both streams are one, and this is its next message.
+StreamGuard::Decision StreamGuard::Join(const StreamPlace& place, Time now) {
+  const auto num_lost = Follow(*other_, place, now);
+  other_->num_lost += num_lost;
+  return {Held::kTake, Act::kTake, ReleaseAtEnd().value_or(0)};
+}
+
+double StreamGuard::MostWithin(double gap_us) const { return 1e-6 * gap_us * max_rate_hz_ + std::max(kLeastBurst, kBurstSeconds * max_rate_hz_); }
 
 std::optional<std::int64_t> StreamGuard::Release(Time now) {
   if (num_held_ == 0 || IsAlive(*kept_, now)) return std::nullopt;
@@ -176,21 +203,22 @@ StreamGuard::Fit StreamGuard::FitOf(const Stream& stream, const StreamPlace& pla
 bool StreamGuard::IsPlausibleLoss(const Stream& stream, const StreamPlace& place, Time now, std::uint64_t distance) const {
   // Between two messages that waited in a queue there is no time of receipt; one from a computer whose clock is ahead must not pass by that.
   constexpr double kGreatestSpeed = 20.0;
-  constexpr double kQueueUs = 2e6;
+  constexpr double kPause = 2.0;
   const double received_us = InUs(now - stream.received);
   const double measured_us = GapUs(stream.last, place);
   const double gap_us = measured_us < 0.0 ? received_us : std::min(measured_us, kGreatestSpeed * received_us + kQueueUs);
   const auto number = static_cast<double>(distance);
   if (IsEven(stream)) {
     const double tolerance = (has_rising_times_ ? 0.25 : 0.5) + 0.25 * number;
-    return (number - tolerance) * stream.period_us <= gap_us;
+    // More time than messages: the stream paused, which shows in their receipt too. Else the clock is another computer's.
+    const bool has_time = measured_us <= (number + tolerance) * stream.period_us || measured_us <= kPause * received_us;
+    return has_time && (number - tolerance) * stream.period_us <= gap_us;
   }
-  return number <= 1e-6 * gap_us * max_rate_hz_ + std::max(kLeastBurst, kBurstSeconds * max_rate_hz_);
+  return number <= MostWithin(gap_us);
 }
 
 // Of a message that follows in both: > 0 it is of the kept stream, < 0 of the other, 0 nothing tells.
 int StreamGuard::Nearer(const StreamPlace& place, Time now) const {
-  constexpr std::int64_t kFewPeriods = 3;
   // Without a period: a program does not start again within so short a time.
   constexpr std::chrono::milliseconds kShortestRestart(300);
   if (std::max(kept_->num_periods, other_->num_periods) < kFewPeriods) return now - kept_->received < kShortestRestart ? 1 : -1;
@@ -217,8 +245,10 @@ std::int64_t StreamGuard::Follow(Stream& stream, const StreamPlace& place, Time 
   const double period_us = GapUs(last, place) / static_cast<double>(distance);
   if (period_us >= 0.0 && period_us < kMaxPeriodUs) {
     const double weight = std::max(kMeanWeight, 1.0 / static_cast<double>(stream.num_periods + 1));
-    stream.period_us += weight * (period_us - stream.period_us);
-    stream.deviation_us += weight * (std::abs(period_us - stream.period_us) - stream.deviation_us);
+    const bool has_period = stream.num_periods >= kFewPeriods && stream.period_us > 0.0;
+    const double sample_us = has_period ? std::min(period_us, kMostPeriods * stream.period_us) : period_us;
+    stream.period_us += weight * (sample_us - stream.period_us);
+    stream.deviation_us += weight * (std::abs(sample_us - stream.period_us) - stream.deviation_us);
     ++stream.num_periods;
   }
   const std::int64_t num_lost = distance - 1 + (has_parts ? last.num_parts - last.part_index - 1 + place.part_index : 0);

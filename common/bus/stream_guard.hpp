@@ -128,7 +128,10 @@ class StreamGuard {
   Decision Weigh(const StreamPlace& place, Time now, std::int64_t mark);
   Fit FitOf(const Stream& stream, const StreamPlace& place, Time now) const;
   bool IsPlausibleLoss(const Stream& stream, const StreamPlace& place, Time now, std::uint64_t distance) const;
+  double MostWithin(double gap_us) const;
   int Nearer(const StreamPlace& place, Time now) const;
+  bool IsOtherKeptGoingOn() const;
+  Decision Join(const StreamPlace& place, Time now);
   static bool IsEven(const Stream& stream);
   bool IsEvenAndRising(const Stream& stream) const { return has_rising_times_ && IsEven(stream); }
   static Time SilenceOf(const Stream& stream);

@@ -22,6 +22,7 @@
 
 namespace {
 
+using lookout::Utime;
 using lookout::navigator::Params;
 using lookout::navigator::Service;
 using lookout::navigator::Source;
@@ -40,12 +41,15 @@ struct Feed {
   std::int64_t num_lost = 0;
   std::string last_fault = {};
 
-  void Drain(Service& service) {
+  // @return arrival of the latest piece; Utime() without one
+  Utime Drain(Service& service) {
+    Utime latest{};
     for (int i = 0; i < kMaxPiecesPerRound; ++i) {
       const auto piece = source->Receive(HostNow());
       if (source->num_lost() != num_lost) service.OnStreamEnd(name);
       num_lost = source->num_lost();
       if (!piece) break;
+      latest = std::max(latest, piece->host_time);
       if (piece->is_datagram) {
         service.OnDatagram(piece->host_time, piece->bytes, name);
       } else {
@@ -53,6 +57,7 @@ struct Feed {
       }
     }
     TellFault();
+    return latest;
   }
 
   // Once for each change.
@@ -128,12 +133,14 @@ void RunLive(lookout::runtime::Process& process, const Params& params) {
   }
   process.Every(kTick, [&] {
     const auto now = HostNow();
+    auto latest = now;
     for (auto& feed : feeds) {
       feed.source->Poll(now);
       // Also without an event: libgps may hold lines that it has read already.
-      feed.Drain(service);
+      latest = std::max(latest, feed.Drain(service));
     }
-    service.AdvanceTo(now);
+    // Where the process stood still since `now`, that is behind what it took: it would look like a clock that was set back.
+    service.AdvanceTo(latest);
   });
   process.Run([&] {
     auto report = service.Report();

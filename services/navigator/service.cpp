@@ -15,8 +15,8 @@ bool IsUsable(Utime host_time) { return UtimeFromWire(ToUtimeUs(host_time)).has_
 
 // "-3.2 s"
 std::string InSeconds(std::chrono::microseconds duration) {
-  const auto tenths = std::chrono::abs(duration).count() / 100'000;
-  return (duration < std::chrono::microseconds(0) ? "-" : "") + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
+  const auto tenths = (std::chrono::abs(duration).count() + 50'000) / 100'000;
+  return (duration < std::chrono::microseconds(0) && tenths > 0 ? "-" : "") + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " s";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "common/bus/decode.hpp"
 #include "common/bus/memory_bus.hpp"
+#include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
@@ -37,6 +38,8 @@ struct Given {
   double east_m = 0.0;
   double sd_m = 0.0;
   bool has_position = false;
+  double heading_deg = kNan;
+  double heading_sd_deg = kNan;
 };
 struct Run {
   std::vector<Health> health;
@@ -49,6 +52,7 @@ struct World {
   std::function<std::string(microseconds)> date;         // ddmmyy
   std::function<Utime(microseconds)> host;
   std::function<microseconds(microseconds)> delivery;
+  double turn_degps = 0.0;  // of the bow, while the boat goes straight on
 };
 
 Run Play(const World& world, microseconds period, microseconds duration) {
@@ -68,6 +72,8 @@ Run Play(const World& world, microseconds period, microseconds duration) {
     if (channel != "POSE") return;
     const auto pose = bus::Decode<pose_t>(bytes).value();
     Given given{now, Utime(microseconds(pose.utime_us)), kNan, kNan, !std::isnan(pose.latitude_deg)};
+    given.heading_deg = RadToDeg(pose.heading_rad);
+    given.heading_sd_deg = RadToDeg(std::sqrt(pose.covariance[8][8]));
     if (given.has_position) {
       given.east_m = map.Forward({pose.latitude_deg, pose.longitude_deg, 0.0}).x();
       given.sd_m = std::sqrt(pose.covariance[0][0]);
@@ -82,7 +88,8 @@ Run Play(const World& world, microseconds period, microseconds duration) {
       const auto where = Angle(place.latitude_deg, 2, 'N', 'S') + "," + Angle(place.longitude_deg, 3, 'E', 'W');
       const auto time_of_day = world.time_of_day(next_sent);
       const std::string text = Line("GPRMC," + time_of_day + ",A," + where + Print(",%.6f,90.0,", kSpeedKnots) + world.date(next_sent) + ",,,R") +
-                               "\r\n" + Line("GPGGA," + time_of_day + "," + where + ",4,12,0.8,0.0,M,0.0,M,,") + "\r\n" + HdtLine(90.0) + "\r\n";
+                               "\r\n" + Line("GPGGA," + time_of_day + "," + where + ",4,12,0.8,0.0,M,0.0,M,,") + "\r\n" +
+                               HdtLine(std::fmod(90.0 + world.turn_degps * Seconds(next_sent), 360.0)) + "\r\n";
       service.OnStream(world.host(now), ToBytes(text), kTcp);
     }
     service.AdvanceTo(world.host(now));
@@ -144,6 +151,28 @@ TEST(NavigatorClockDisturbances, LateDeliveriesLeaveNoWrongPoseAndNoComplaint) {
           run, [](const Given& pose) { return pose.utime - NoonPlus(0); }, 3s);
       EXPECT_EQ(errors.num_wrong, 0) << errors.first;
       EXPECT_TRUE(run.poses.back().has_position);
+    }
+  }
+}
+
+// Headings have no time of their own. Those of twelve seconds, taken at their arrival, were one heading of 12 s ago for a second.
+TEST(NavigatorClockDisturbances, LateHeadingsAreOfWhenTheyWereMeasured) {
+  for (const auto period : {100ms, 200ms, 1000ms}) {
+    for (const auto& disturbance : {late::StoppedFor12SecondsAndDrained(), late::StoppedFor300MsAHundredTimes(), late::RandomStalls(3)}) {
+      SCOPED_TRACE(disturbance.name + ", every " + std::to_string(period.count()) + " ms");
+      auto world = WorldOf(disturbance);
+      world.turn_degps = 10.0;
+      int num_wrong = 0;
+      double worst_deg = 0.0;
+      for (const auto& pose : Play(world, period, disturbance.end + 12s).poses) {
+        if (pose.time < 3s || std::isnan(pose.heading_deg)) continue;
+        const double true_deg = 90.0 + world.turn_degps * Seconds(pose.utime - NoonPlus(0));
+        const double error_deg = std::abs(RadToDeg(WrapToPi(DegToRad(pose.heading_deg - true_deg))));
+        if (error_deg <= 3.0 * pose.heading_sd_deg + 1.0) continue;
+        ++num_wrong;
+        worst_deg = std::max(worst_deg, error_deg);
+      }
+      EXPECT_EQ(num_wrong, 0) << worst_deg << " deg off";
     }
   }
 }

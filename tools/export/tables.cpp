@@ -9,7 +9,6 @@
 
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
-#include "common/core/geodesy.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
@@ -21,6 +20,7 @@
 #include "tools/export/csv.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/scan_joiner.hpp"
+#include "tools/export/velocity.hpp"
 #include "tools/export/words.hpp"
 
 namespace lookout::exporter {
@@ -100,19 +100,6 @@ void WriteObstacles(const obstacles_t& message, CsvWriter& csv) {
 constexpr int kVelocityRow = 3;
 // Chi-square of two degrees of freedom that chance exceeds in one of 20 cases (Abramowitz and Stegun, table 26.8).
 constexpr double kChiSquare95 = 5.99;
-
-// East and north where the boat is: POSE has it along the axes of the map, which are those at the datum.
-Eigen::Vector2d VelocityHere(const pose_t& pose) {
-  const Eigen::Vector3d velocity_map_mps(pose.velocity_map_mps[0], pose.velocity_map_mps[1], pose.velocity_map_mps[2]);
-  const auto or_zero = [](double value) { return std::isfinite(value) ? value : 0.0; };
-  if (!std::isfinite(pose.latitude_deg) || !std::isfinite(pose.longitude_deg) || !std::isfinite(pose.datum_latitude_deg) ||
-      !std::isfinite(pose.datum_longitude_deg)) {
-    return velocity_map_mps.head<2>();
-  }
-  const LocalFrame map({pose.datum_latitude_deg, pose.datum_longitude_deg, or_zero(pose.datum_ellipsoid_height_m)});
-  const LocalFrame here({pose.latitude_deg, pose.longitude_deg, or_zero(pose.ellipsoid_height_m)});
-  return (here.TransformFrom(map).linear() * velocity_map_mps).head<2>();
-}
 
 void WritePose(const pose_t& pose, CsvWriter& csv) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,7 @@ void OnePublisher::Add(std::int64_t event, Utime time, const bus::Channel& chann
   State state = State::kTaken;
   const auto place = bus::IsGuarded(channel) ? bus::PlaceOf(channel, bytes) : std::nullopt;
   if (place) {
-    auto& guard = guards_.try_emplace(channel.name, channel.max_rate_hz).first->second;
+    auto& guard = guards_.try_emplace(channel.name, channel).first->second;
     const auto decision = guard.Next(*place, now, event);
     if (decision.held == bus::StreamGuard::Held::kTake) Resolve(channel, State::kTaken);
     if (decision.held == bus::StreamGuard::Held::kRefuse) Resolve(channel, State::kRefused);

@@ -164,7 +164,7 @@ void Board::TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now) {
   }
   const ProcessKey key{message->process, message->host, message->pid};
   if (!processes_.contains(key)) ForgetReplaced(now);
-  if (!processes_.contains(key) && !HasRoomFor(message->process)) {
+  if (!processes_.contains(key) && !HasRoomFor(message->process) && !ForgetSilent(message->process, now)) {
     ++num_unlisted_health_;
     return;
   }
@@ -184,6 +184,21 @@ bool Board::IsReplaced(const ProcessKey& key, const ProcessState& process) const
 
 void Board::ForgetReplaced(TimePoint now) {
   std::erase_if(processes_, [&](const auto& entry) { return now - entry.second.last > kSilence && IsReplaced(entry.first, entry.second); });
+}
+
+// The one that is silent for longest makes room, but never the only one of its name: that it is silent is what there is to show.
+bool Board::ForgetSilent(std::string_view process, TimePoint now) {
+  std::map<std::string_view, int> number;
+  for (const auto& [key, state] : processes_) ++number[key.name];
+  auto oldest = processes_.end();
+  for (auto entry = processes_.begin(); entry != processes_.end(); ++entry) {
+    const bool may_go = IsOfSuite(entry->first.name) == IsOfSuite(process) && now - entry->second.last > kSilence &&
+                        (!IsOfSuite(process) || entry->first.name == process || number[entry->first.name] > 1);
+    if (may_go && (oldest == processes_.end() || entry->second.last < oldest->second.last)) oldest = entry;
+  }
+  if (oldest == processes_.end()) return false;
+  processes_.erase(oldest);
+  return true;
 }
 
 std::vector<ChannelLine> Board::Channels(TimePoint now) const {
@@ -250,6 +265,11 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
     alarm.is_active = active->count != 0;
     alarm.text = AlarmReason(process.health);
     alarm.age = now - process.last;
+    // Who says nothing any more cannot raise an alarm.
+    if (!alarm.is_active && alarm.age > kSilence) {
+      alarm.is_active = true;
+      alarm.text = "guard zone not watched: no HEALTH of " + key.name;
+    }
     // Where several tell of it, an alarm counts before none, then the newer.
     if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
   }

@@ -113,6 +113,7 @@ class Board {
   void TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now);
   bool IsReplaced(const ProcessKey& key, const ProcessState& process) const;
   void ForgetReplaced(TimePoint now);
+  bool ForgetSilent(std::string_view process, TimePoint now);
 
   TimePoint start_;
   std::map<std::string, Traffic, std::less<>> channels_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "tools/export/velocity.hpp"
 #include "tools/export/words.hpp"
 #include "tools/top/format.hpp"
 
@@ -106,13 +107,14 @@ Span OwnShipSpan(const OwnShip& own, int width) {
   cells.push_back(has_position ? degrees(pose.latitude_deg) + degrees(pose.longitude_deg) : " without position");
   cells.push_back("  heading " + Degrees(pose.heading_rad));
   if (pose.heading_source != pose_t::HEADING_NONE) cells.push_back(" " + std::string(words::WordOf(kHeadingSource, pose.heading_source)));
-  const double speed_mps = std::hypot(pose.velocity_map_mps[0], pose.velocity_map_mps[1]);
+  const auto velocity_mps = VelocityHere(pose);
+  const double speed_mps = velocity_mps.norm();
   cells.push_back("  " + (speed_mps < 1000.0 ? fmt::format("{:.1f}", speed_mps) : std::string("-")) + " m/s");
   cells.push_back("  pose " + std::string(words::WordOf(words::kPoseStatus, pose.status)));
   cells.push_back("  fix " + std::string(has_fix ? words::WordOf(words::kFixQuality, *own.fix_quality) : "-"));
   // At less speed a course is noise.
   const bool has_course = speed_mps >= kLeastCourseSpeedMps && speed_mps < 1000.0;
-  cells.push_back("  course " + (has_course ? Degrees(std::atan2(pose.velocity_map_mps[0], pose.velocity_map_mps[1])) : std::string("-")));
+  cells.push_back("  course " + (has_course ? Degrees(std::atan2(velocity_mps.x(), velocity_mps.y())) : std::string("-")));
   if (has_fix && own.num_satellites >= 0 && own.num_satellites < 1000) cells.push_back(fmt::format("  {} satellites", own.num_satellites));
   const bool is_well = pose.status == pose_t::STATUS_OK && has_fix && *own.fix_quality != gnss_fix_t::QUALITY_NONE;
   return {Fitting(cells, width), is_pose_old ? Style::kFault : is_well ? Style::kPlain : Style::kWarning};

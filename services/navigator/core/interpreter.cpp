@@ -18,6 +18,8 @@ using std::chrono::microseconds;
 constexpr std::chrono::seconds kMaxFirstLidarAge(10);
 // A burst of sentences of one epoch takes less than this at 9600 baud with three of them; epochs are 50 ms apart or more.
 constexpr microseconds kMaxBurst = 50ms;
+// Less is the fit of the clocks that settles.
+constexpr std::chrono::milliseconds kMinScaleStep(100);
 // Receivers send GST with each epoch, or once in some.
 constexpr std::chrono::seconds kMaxAccuracyAge(5);
 
@@ -91,6 +93,7 @@ Interpreter::Source& Interpreter::SourceOf(const std::string& name) {
 void Interpreter::Reset() {
   clock_ = UtcClock(params_.max_sentence_latency);
   last_lidar_sentence_.clear();
+  time_scale_.reset();
   for (auto& [name, source] : sources_) {
     source.clock = {};
     source.epoch.reset();
@@ -161,7 +164,7 @@ Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
 
 // Of a sentence without a time; nullopt: it waited in a queue, and nobody knows how long.
 std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, const Source& source) {
-  if (source.is_in_time) return clock_.OfArrival(item.time, source.params.latency);
+  if (source.is_in_time) return clock_.OfArrival(source.clock, item.time, source.params.latency);
   ++counts_.queued_sentence;
   return std::nullopt;
 }
@@ -205,6 +208,11 @@ Reading Interpreter::WholeFix(Source& source, GnssFix fix) {
     source.epoch->has_gga = source.epoch->has_gga || is_gga;
   } else if (fix.when.has_sentence_utc) {
     source.epoch = Epoch{fix.when.utc, fix, is_gga};
+  }
+  if (fix.position && IsMeasured(fix.quality) && fix.when.is_from_sentence) {
+    const auto time_scale = clock_.pose_minus_even_utc();
+    fix.begins_time_scale = time_scale_ && std::chrono::abs(time_scale - *time_scale_) >= kMinScaleStep;
+    time_scale_ = time_scale;
   }
   const auto& accuracy = source.accuracy;
   const bool has_accuracy = accuracy && fix.when.arrival - accuracy->arrival <= kMaxAccuracyAge && IsMeasured(fix.quality);

@@ -119,6 +119,7 @@ class Interpreter {
   UtcClock clock_;
   std::map<std::string, Source> sources_;
   std::string last_lidar_sentence_;
+  std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
   struct Counts {
     std::int64_t no_checksum = 0;

@@ -54,6 +54,8 @@ struct GnssFix {
   // A sentence before this one gave the position (the velocity) of this epoch: one measurement, not two.
   bool repeats_position = false;
   bool repeats_velocity = false;
+  // The time scale of POSE was set since the fix before it: what was known of the place is of other instants.
+  bool begins_time_scale = false;
 
   /// Above the WGS84 ellipsoid, said so or as height above the geoid with its separation; NaN when neither is said.
   double EllipsoidHeightM() const { return std::isnan(direct_ellipsoid_height_m) ? msl_height_m + geoid_separation_m : direct_ellipsoid_height_m; }

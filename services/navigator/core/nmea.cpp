@@ -83,17 +83,29 @@ double NumberWithUnitOrNan(const FieldReader& fields, std::size_t index, double 
   return reader.fault() == SentenceFault::kNone ? number : kNan;
 }
 
+// A single digit, of which only the position counts: whatever it says, no better than a plain fix.
+FixQuality ModestQuality(FieldReader& fields, std::size_t index) {
+  const auto quality = fields.Text(index);
+  if (quality.size() != 1) fields.Letter(index, {});  // a fault: two digits are satellites
+  return quality.size() == 1 && std::string_view("123459").find(quality) != std::string_view::npos ? FixQuality::kGnss : FixQuality::kNone;
+}
+
 Gga ReadGga(FieldReader& fields, std::size_t num_fields) {
   // NovAtel: 9 = SBAS, which is a differential correction.
   constexpr int kNovatelSbas = 9;
   Gga gga;
   gga.time_of_day = fields.TimeOfDay(0);
   gga.position = fields.Position(1);
+  constexpr std::size_t kNumFields = 14;
+  if (num_fields > 8 && num_fields < kNumFields && fields.Text(8) == "M") {
+    // The unit of the height one place too early: satellites, HDOP or height are missing, and which of them cannot be told.
+    gga.quality = ModestQuality(fields, 5);
+    return gga;
+  }
   const int quality = fields.Count(5, kNovatelSbas);
   gga.quality = quality == kNovatelSbas ? FixQuality::kDifferential : static_cast<FixQuality>(quality < 0 ? 0 : quality);
   gga.num_satellites = fields.Count(6, kMaxSatellites);
   gga.hdop = fields.Number(7, 0.0, kMaxHdop);
-  constexpr std::size_t kNumFields = 14;
   if (num_fields < kNumFields) {
     gga.msl_height_m = NumberWithUnitOrNan(fields, 8, kMinHeightM, kMaxHeightM);
     gga.geoid_separation_m = NumberWithUnitOrNan(fields, 10, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);

@@ -44,7 +44,7 @@ struct Rmc {
 
 /// GGA: time,latitude,N,longitude,E,quality,satellites,HDOP,height,M,geoid separation,M,age,station
 /// One that is too short (Saab's R4 leaves a field out) is taken for what it holds: position, quality and HDOP, and a height that stands with its
-/// unit.
+/// unit. Where satellites, HDOP or height are missing these are not known, and the fix counts as one without correction.
 struct Gga {
   std::optional<std::chrono::microseconds> time_of_day;
   FixQuality quality = FixQuality::kNone;

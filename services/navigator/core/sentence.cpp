@@ -42,9 +42,12 @@ bool IsChecksumOf(std::string_view digits, std::string_view body) {
 // broken off. Empty when there is none.
 std::string_view SentenceBehind(std::string_view line) {
   line.remove_prefix(line.size() - std::min(line.size(), kMaxLineCharacters));
-  for (auto start = line.find_first_of("$!"); start != std::string_view::npos; start = line.find_first_of("$!", start + 1)) {
+  // The last: a start stands in no sentence, but a checksum may be right by chance.
+  for (auto start = line.find_last_of("$!"); start != std::string_view::npos;
+       start = start == 0 ? std::string_view::npos : line.find_last_of("$!", start - 1)) {
     const auto sentence = line.substr(start);
     if (std::ranges::all_of(sentence, IsPrintable) && Frame(sentence).fault == SentenceFault::kNone) return sentence;
+    end = start;
   }
   return {};
 }

@@ -21,6 +21,9 @@ constexpr std::chrono::milliseconds kMinLeapBack(400);
 // Of 1 Hz it says the same instant twice, so much apart; sentences of one instant come within half a second at 4800 baud.
 constexpr std::chrono::milliseconds kMinLeapRepeat(700);
 
+// Less is how sentences of one source differ. What is late by more waited somewhere.
+constexpr std::chrono::milliseconds kMinLateness(300);
+
 struct Resolved {
   Utime utc;
   bool is_date_refused = false;
@@ -151,6 +154,7 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
   NoteLeapSecond(source, arrival, resolved.utc, latency.value_or(microseconds(0)));
   if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
   const bool is_same_instant = source.last_utc == resolved.utc && source.num_leaps == num_leaps_before;
+  if (!is_same_instant) source.is_forward = source.last_utc && resolved.utc > *source.last_utc;
   source.last_utc = resolved.utc;
   source.dated_utc = resolved.utc;
   source.dated_arrival = arrival;
@@ -182,10 +186,18 @@ void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
   source.dated_arrival = arrival;
 }
 
-MeasurementTime UtcClock::OfArrival(Utime arrival, std::optional<microseconds> latency) const {
+// Of the last sentence with a time, where that came with what comes now.
+microseconds UtcClock::Lateness(const SourceClock& source, Utime arrival, microseconds latency) {
+  const bool is_known = source.last_utc && source.is_forward && !source.fit.is_empty() && source.fit.is_settled();
+  if (!is_known || arrival < source.last_arrival || arrival - source.last_arrival > kBurst) return microseconds(0);
+  const auto late = source.last_arrival - (*source.last_utc + std::chrono::seconds(source.num_leaps)) - latency - source.fit.offset();
+  return late >= kMinLateness ? late : microseconds(0);
+}
+
+MeasurementTime UtcClock::OfArrival(const SourceClock& source, Utime arrival, std::optional<microseconds> latency) const {
   const auto fine = is_off_ || fine_fit_.is_empty() ? microseconds(0) : fine_fit_.offset();
   MeasurementTime when;
-  when.time = arrival - fine - latency.value_or(microseconds(0));
+  when.time = arrival - fine - latency.value_or(microseconds(0)) - Lateness(source, arrival, latency.value_or(microseconds(0)));
   when.arrival = arrival;
   when.utc = when.time - host_minus_utc();
   return when;

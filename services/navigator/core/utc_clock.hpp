@@ -22,8 +22,9 @@ struct SourceClock {
   int num_backward = 0;
   int num_leaps = 0;  // leap seconds that it went through, and the midnight of the last
   std::optional<std::chrono::sys_days> last_leap;
-  Utime last_arrival{};  // of its last new instant
-  ClockFit fit;          // of arrival less UTC (leap seconds counted on), less its delay where that is known
+  Utime last_arrival{};     // of its last new instant
+  bool is_forward = false;  // that instant was after the one before it: not so of the later of two receivers on one line
+  ClockFit fit;             // of arrival less UTC (leap seconds counted on), less its delay where that is known
 };
 
 /// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the
@@ -57,13 +58,18 @@ class UtcClock {
   /// Date and time of a sentence that measures nothing (ZDA).
   void OnDate(SourceClock& source, Utime arrival, Utime utc) const;
 
-  /// Of a sentence without a time.
-  MeasurementTime OfArrival(Utime arrival, std::optional<std::chrono::microseconds> latency) const;
+  /// Of a sentence without a time. Where one of the same source that came with it, kBurst before at most, was late, it was as late itself.
+  MeasurementTime OfArrival(const SourceClock& source, Utime arrival, std::optional<std::chrono::microseconds> latency) const;
+  static constexpr std::chrono::milliseconds kBurst{50};
+
+  /// What the time scale of POSE is ahead of UTC, leap seconds counted on: it steps where the clock is found off, or right again.
+  std::chrono::microseconds pose_minus_even_utc() const { return off_; }
 
   /// Computer's clock less UTC; 0 while it is taken for UTC.
   std::chrono::microseconds host_minus_utc() const { return off_ + std::chrono::seconds(num_leaps_); }
 
  private:
+  static std::chrono::microseconds Lateness(const SourceClock& source, Utime arrival, std::chrono::microseconds latency);
   static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
   void NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, std::chrono::microseconds latency) const;
   bool IsUsable(const SourceClock& source, std::chrono::microseconds host_minus_utc) const;

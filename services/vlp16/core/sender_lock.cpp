@@ -34,16 +34,18 @@ ModelVerdict SenderLock::VerdictOf(ModelJudge& judge, Stream stream, Bytes paylo
   return result.fault == DataFault::kNone ? judge.Judge(result.packet) : ModelVerdict::kUnknown;
 }
 
-// The one on trial, this sender's; nullptr while another is.
-SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, const Sender& sender) const {
+// The one on trial, this sender's; nullptr while another is, and for one whose packet cannot be the lidar's: it would keep the place from the lidar.
+SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, const Sender& sender, ModelVerdict alone) const {
   auto& candidate = state.candidate;
   const bool is_over = !candidate || time < candidate->last || time - candidate->last > kTrialPause;
   if (candidate && candidate->sender == sender) {
     if (is_over) candidate->heard_for = std::chrono::microseconds(0);
     return &*candidate;
   }
-  // Without a holder nothing is decided by who was there first, but by who is valid first.
-  if (!is_over && state.holder) return nullptr;
+  if (!IsOfFamily(alone) && alone != ModelVerdict::kUndecided) return nullptr;
+  // Without a holder nothing is decided by who was there first, but by who is valid first. Of two that are known by their intervals alone one is
+  // judged after the other: by turns neither would show an interval.
+  if (!is_over && (state.holder || alone == ModelVerdict::kUndecided)) return nullptr;
   candidate = Candidate{sender, ModelJudge(model_), time, std::chrono::microseconds(0)};
   return &*candidate;
 }
@@ -66,14 +68,21 @@ SenderLock::Outcome SenderLock::Judge(Utime time, Stream stream, const Sender& s
     outcome.is_taken = outcome.is_taken && data.holder->address == sender.address;
     if (data.holder->address != sender.address) return outcome;
   }
-  auto* candidate = CandidateFor(state, time, sender);
+  ModelJudge judge(model_);
+  const auto alone = VerdictOf(judge, stream, payload);
+  auto* candidate = CandidateFor(state, time, sender, alone);
   if (candidate == nullptr) {
-    ModelJudge judge(model_);
-    outcome.is_valid = IsOfFamily(VerdictOf(judge, stream, payload));
+    outcome.is_valid = IsOfFamily(alone);
+    // The decoder judges by intervals too: a mixture of two would pass for an HDL-32E.
+    if (alone == ModelVerdict::kUndecided) outcome.is_taken = false;
     return outcome;
   }
-  outcome.is_valid = IsOfFamily(VerdictOf(candidate->judge, stream, payload));
-  if (!outcome.is_valid) return outcome;
+  const auto verdict = VerdictOf(candidate->judge, stream, payload);
+  outcome.is_valid = IsOfFamily(verdict);
+  if (!outcome.is_valid) {
+    if (verdict == ModelVerdict::kHdl32e) state.candidate.reset();
+    return outcome;
+  }
   if (time > candidate->last) candidate->heard_for += std::min<std::chrono::microseconds>(time - candidate->last, kTrialStep);
   candidate->last = time;
   if (state.holder) {

@@ -78,7 +78,7 @@ class SenderLock {
   };
 
   static ModelVerdict VerdictOf(ModelJudge& judge, Stream stream, Bytes payload);
-  Candidate* CandidateFor(StreamState& state, Utime time, const Sender& sender) const;
+  Candidate* CandidateFor(StreamState& state, Utime time, const Sender& sender, ModelVerdict alone) const;
 
   ModelChoice model_;
   std::vector<std::string> allowed_;

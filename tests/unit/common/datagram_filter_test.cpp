@@ -288,6 +288,7 @@ TEST(LcmUrl, RefusesTheOthersWithAReason) {
                                                                {"udpm://239.255.76.67:7667?recv_buf_size=0", "recv_buf_size=0"},
                                                                {"udpm://239.255.76.67:0", "port \"0\""},
                                                                {"udpm://239.255.76.67:70000", "port \"70000\""},
+                                                               {"udpm://239.255.76.67:07667", "port \"07667\""},  // to LCM 4023
                                                                {"udpm://239.255.76.67:", "port \"\""},
                                                                {"udpm://192.168.1.10:7667", "192.168.1.10 is no IPv4 multicast group"},
                                                                {"udpm://[ff02::1]:7667", "no IPv4 multicast group"},

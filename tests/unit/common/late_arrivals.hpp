@@ -103,7 +103,7 @@ inline std::vector<Disturbance> LateDeliveries() {
 inline std::vector<Disturbance> ClockSteps() {
   using std::chrono::milliseconds;
   std::vector<Disturbance> disturbances;
-  for (const std::int64_t step_ms : {500, -500, 5000, -5000, 3'600'000, -3'600'000}) {
+  for (const std::int64_t step_ms : {500, -500, 1000, -1000, 5000, -5000, 3'600'000, -3'600'000}) {
     disturbances.push_back(
         {"host clock set by " + std::to_string(step_ms) + " ms", {}, {{milliseconds(30'000), milliseconds(step_ms)}}, milliseconds(30'000)});
   }

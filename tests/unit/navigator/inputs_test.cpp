@@ -141,7 +141,7 @@ TEST_F(InputsTest, MustNotShareADeviceOrAPort) {
 TEST_F(InputsTest, ADatumThatIsFarFromATextLogsFirstPositionIsNamed) {
   const auto log = fs::temp_directory_path() / "lookout_datum_test.nmea";
   std::ofstream(log) << "noise\n" << Line("GPGGA,120000,,,,,0,,,,M,,M,,") << "\r\n" << RmcLine(NoonPlus(0), 43.63, -72.15, 0.0, 0.0) << "\r\n";
-  auto params = Load(kLive + "input { name: 'day' text_log { file: '" + log.string() + "' } }");
+  auto params = Load("source: LIVE use_lidar_nmea: false\ninput { name: 'day' text_log { file: '" + log.string() + "' } }");
   params.navigator.filter.datum.reset();
   EXPECT_NE(InWords(params).find("# datum: the first fix of the run."), std::string::npos);
   params.navigator.filter.datum = Datum{43.6, -72.1, 0.0};

@@ -292,6 +292,39 @@ TEST_F(InterpreterTest, TakesAShortGgaForWhatItHolds) {
   EXPECT_EQ(Count("bad_field"), 1);
 }
 
+// The height stood for the HDOP where that is missing: 0.3 m made a fix three times as good as it is.
+TEST_F(InterpreterTest, AShortGgaNeverTakesOneNumberForAnother) {
+  const std::vector<std::string> whole{"", "5012.790800", "N", "00806.879600", "W", "5", "08", "1.5", "0.3", "M", "47.0", "M", "", ""};
+  const double usual_sd_m = Read(0.0, Line("GPGGA,120000.00,5012.790800,N,00806.879600,W,1,08,,0.3,M,47.0,M,,")).fix->horizontal_sd_m;
+  for (std::size_t missing = 0; missing < whole.size(); ++missing) {
+    SCOPED_TRACE(missing);
+    const double time_s = 1.0 + static_cast<double>(missing);
+    auto fields = whole;
+    fields[0] = TimeOfDay(NoonPlus(time_s));
+    fields.erase(fields.begin() + static_cast<std::ptrdiff_t>(missing));
+    std::string body = "GPGGA";
+    for (const auto& field : fields) body += "," + field;
+    const auto fix = Read(time_s, Line(body)).fix;
+    EXPECT_EQ(fix.has_value(), missing > 5);
+    if (!fix) continue;
+    ASSERT_TRUE(fix->position);
+    EXPECT_NEAR(fix->position->latitude_deg, 50.21318, 1e-8);
+    EXPECT_NEAR(fix->position->longitude_deg, -8.11466, 1e-8);
+    const bool is_told = missing > 8;
+    EXPECT_EQ(fix->quality, is_told ? FixQuality::kRtkFloat : FixQuality::kGnss);
+    EXPECT_EQ(fix->num_satellites, is_told ? 8 : -1);
+    if (is_told) {
+      EXPECT_NEAR(fix->hdop, 1.5, 1e-12);
+    } else {
+      EXPECT_TRUE(std::isnan(fix->hdop));
+      EXPECT_NEAR(fix->horizontal_sd_m, usual_sd_m, 1e-12);
+    }
+    EXPECT_TRUE(std::isnan(fix->msl_height_m) || fix->msl_height_m == 0.3);
+    EXPECT_TRUE(std::isnan(fix->geoid_separation_m) || fix->geoid_separation_m == 47.0);
+    EXPECT_EQ(std::isnan(fix->EllipsoidHeightM()), missing < 12);
+  }
+}
+
 TEST_F(InterpreterTest, ReadsPitchAndRollOfXdrByTheNamesOfSeveralMakers) {
   const auto expect = [this](double time_s, const std::string& body, double pitch_deg, double roll_deg) {
     const auto attitude = Read(time_s, Line(body)).attitude;

@@ -322,7 +322,7 @@ INSTANTIATE_TEST_SUITE_P(Gga, RefusedSentence,
                                            Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,10.0,F,,,,", kBadField},         // feet
                                            Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,99999,M,,,,", kImplausible},     //
                                            Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,,,10.0,M,500,M,,", kImplausible},  //
-                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,", kBadField}));             // too few
+                                           Refused{"GPGGA,000000,0000.0,N,00000.0,E,1,", kBadField}));                   // too few
 
 INSTANTIATE_TEST_SUITE_P(OtherTypes, RefusedSentence,
                          ::testing::Values(Refused{"GPHDT,1.0", kBadField}, Refused{"GPHDT,1.0,M", kBadField}, Refused{"GPHDT,1.0,", kBadField},

@@ -246,8 +246,9 @@ std::map<std::string, int> Census(const fs::path& file) {
   census["not printable"] = static_cast<int>(lines.num_not_printable);
   for (const auto& line : lines.lines) {
     static const char* const kFaults[] = {"", "no checksum", "bad checksum", "bad field", "implausible"};
-    static const char* const kTypes[] = {"other", "RMC", "GGA", "VTG", "HDT",   "PASHR", "GST",  "GLL",
-                                         "ZDA",   "HDG", "ROT", "HPR", "VNINS", "VNYMR", "VNIMU"};
+    static const char* const kTypes[] = {"other", "RMC", "GGA", "GNS", "XDR", "TNTHTM", "VTG",   "HDT",   "PASHR",
+                                         "GST",   "GLL", "ZDA", "HDG", "ROT", "HPR",    "VNINS", "VNYMR", "VNIMU"};
+    static_assert(std::size(kTypes) == std::variant_size_v<Sentence>);
     const auto result = ParseSentence(line);
     ++census[result.fault == SentenceFault::kNone ? kTypes[result.sentence.index()] : kFaults[static_cast<int>(result.fault)]];
   }

@@ -41,14 +41,14 @@ TEST_F(UtcClockTest, TakesTheComputersClockForUtcWhileADelayCanExplainTheDiffere
     EXPECT_TRUE(when->is_from_sentence);
   }
   EXPECT_EQ(clock_.host_minus_utc(), 0us);
-  EXPECT_EQ(clock_.OfArrival(NoonPlus(20), std::nullopt).time, NoonPlus(20));
-  EXPECT_EQ(clock_.OfArrival(NoonPlus(20), 30ms).time, NoonPlus(19.97)) << "less the delay of its source";
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(20), std::nullopt).time, NoonPlus(20));
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(20), 30ms).time, NoonPlus(19.97)) << "less the delay of its source";
 }
 
 TEST_F(UtcClockTest, KnowsASmallOffsetFromASourceWhoseDelayIsKnown) {
   for (int i = 0; i < 20; ++i) Sentence(NoonPlus(i), -200ms, 80ms, 80ms);
   // 0.2 s behind UTC; HDT takes 20 ms.
-  const auto when = clock_.OfArrival(NoonPlus(20) - 200ms + 20ms, 20ms);
+  const auto when = clock_.OfArrival(source_, NoonPlus(20) - 200ms + 20ms, 20ms);
   EXPECT_EQ(when.time, NoonPlus(20));
   EXPECT_EQ(when.utc, NoonPlus(20));
 }
@@ -66,9 +66,23 @@ TEST_F(UtcClockTest, GoesOnByAClockThatIsOffAndStillSaysUtc) {
   EXPECT_TRUE(when->is_from_sentence);
   EXPECT_EQ(when->utc, NoonPlus(11));
   EXPECT_EQ(when->time, NoonPlus(11) + 1h + 30ms);
-  const auto untimed = clock_.OfArrival(NoonPlus(12) + 1h, 20ms);
+  const auto untimed = clock_.OfArrival(source_, NoonPlus(12) + 1h, 20ms);
   EXPECT_EQ(untimed.time, NoonPlus(12) + 1h - 20ms);
   EXPECT_EQ(untimed.utc, NoonPlus(12) - 30ms - 20ms);
+}
+
+TEST_F(UtcClockTest, TakesWhatCameWithALateSentenceForAsLate) {
+  for (int i = 0; i < 20; ++i) Sentence(NoonPlus(i), 0s, 80ms, 80ms);
+  Sentence(NoonPlus(20), 0s, 12s, 80ms);
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(32) + 10ms, 80ms).time, NoonPlus(20) + 10ms);
+  EXPECT_EQ(clock_.OfArrival({}, NoonPlus(32), 80ms).time, NoonPlus(32) - 80ms) << "of another source";
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(33), 80ms).time, NoonPlus(33) - 80ms) << "long after it";
+  // Of two receivers on one line one is late all the time.
+  Sentence(NoonPlus(34), 0s, 80ms, 80ms);
+  Sentence(NoonPlus(33), 0s, 1200ms, 80ms);
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(34) + 200ms, 80ms).time, NoonPlus(34) + 120ms);
+  Sentence(NoonPlus(35), 0s, 200ms, 80ms);
+  EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(35) + 200ms, 80ms).time, NoonPlus(35) + 120ms) << "sentences differ by as much";
 }
 
 TEST_F(UtcClockTest, SeesThatTheClockWasSetRight) {

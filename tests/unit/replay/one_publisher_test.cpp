@@ -73,6 +73,26 @@ TEST_F(OnePublisherOfALog, LeavesOutTheSecondOfTwoAndSaysFromWhere) {
   EXPECT_EQ(interleavings[0].num_left_out, 50);
 }
 
+// POSE of two navigators of one switch, for the same instants, five at once: told apart as the live readers do.
+TEST_F(OnePublisherOfALog, LeavesOutTheSecondOfTwoOfTheSameInstants) {
+  std::int64_t num_events = 0;
+  const auto send = [&](std::int64_t seq, double latitude_deg, std::int64_t instant) {
+    pose_t message{};
+    message.seq = seq;
+    message.utime_us = 1'800'000'000'000'000 + instant * 20'000;
+    message.latitude_deg = latitude_deg;
+    one_publisher_.Add(num_events++, time_, bus::kPose, bus::Encode(message));
+  };
+  for (std::int64_t i = 0; i < 400; i += 5) {
+    time_ += milliseconds(100);
+    for (std::int64_t k = i; i >= 50 && k < i + 5; ++k) send(k + 1, 51.0, k);
+    for (std::int64_t k = i; k < i + 5; ++k) send(k, 50.0, k);
+  }
+  one_publisher_.Finish();
+  EXPECT_EQ(taken_.size(), 400U);
+  EXPECT_EQ(one_publisher_.num_left_out(), 350);
+}
+
 TEST_F(OnePublisherOfALog, HandsOnWhatItsReadersRefuse) {
   NavRaw(700);
   const std::vector<std::uint8_t> noise(40, 7);

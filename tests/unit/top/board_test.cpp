@@ -1,5 +1,6 @@
 #include "tools/top/board.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -75,10 +76,11 @@ TEST(Board, ShowsTwoProcessesOfOneNameByHostAndProcessId) {
   }
   const auto processes = board.Processes(At(4.0));
   ASSERT_EQ(processes.size(), 4U);
-  EXPECT_EQ(processes[0].reason, "one of 2 navigators on this bus: pid 11 on boat");
-  EXPECT_EQ(processes[1].reason, "one of 2 navigators on this bus: pid 22 on boat");
-  EXPECT_EQ(processes[3].name, "vlp16@shore");
-  EXPECT_EQ(processes[3].reason, "one of 2 vlp16s on this bus: pid 33 on shore");
+  EXPECT_EQ(processes[0].reason, "one of 2 vlp16s on this bus: pid 33 on boat");
+  EXPECT_EQ(processes[1].name, "vlp16@shore");
+  EXPECT_EQ(processes[1].reason, "one of 2 vlp16s on this bus: pid 33 on shore");
+  EXPECT_EQ(processes[2].reason, "one of 2 navigators on this bus: pid 11 on boat");
+  EXPECT_EQ(processes[3].reason, "one of 2 navigators on this bus: pid 22 on boat");
   EXPECT_EQ(board.Channels(At(4.0))[0].num_lost, 0);  // each counts for itself
 }
 
@@ -139,6 +141,30 @@ TEST(Board, ForgetsNothingAboutManyChannelsButTheirNames) {
   EXPECT_EQ(channels.size(), Board::kMaxChannels + 1);
   EXPECT_EQ(channels[0].name, "POSE");
   EXPECT_EQ(board.num_unlisted(), 1000 - static_cast<std::int64_t>(Board::kMaxChannels));
+}
+
+// Invented processes under the names of the suite took its room for ever: what started again afterwards was not shown, nor its alarm.
+TEST(Board, WhatIsSilentMakesRoomForWhatSpeaks) {
+  Board board(kStart);
+  Say(board, bus::kHealth, HealthOf("recorder", 0), 0.1);
+  for (int i = 0; i < 200; ++i) {
+    auto invented = HealthOf("vlp16", 0);
+    invented.host = "elsewhere" + std::to_string(i);
+    Say(board, bus::kHealth, invented, 0.2);
+  }
+  EXPECT_GT(board.num_unlisted_health(), 0);
+  const auto num_unlisted = board.num_unlisted_health();
+  auto health = HealthOf("georeferencer", 0);
+  health.pid = 4711;
+  Say(board, bus::kHealth, health, 10.0);
+  EXPECT_EQ(board.num_unlisted_health(), num_unlisted);
+  const auto processes = board.Processes(At(10.1));
+  EXPECT_LE(processes.size(), Board::kMaxProcesses);
+  const auto is_shown = [&](const std::string& name) {
+    return std::ranges::any_of(processes, [&](const auto& line) { return line.name.rfind(name, 0) == 0; });
+  };
+  EXPECT_TRUE(is_shown("georeferencer"));
+  EXPECT_TRUE(is_shown("recorder")) << "silent, but the only one of its name";
 }
 
 TEST(Board, SortsObstaclesOfAllPartsAndKeepsTheNearest) {
@@ -245,6 +271,22 @@ TEST(Board, TellsThatTheGuardZoneIsNotWatched) {
   health.reason = "";
   Say(board, bus::kHealth, health, 2.1);
   EXPECT_EQ(board.NearestAlarm(At(2.2))->text, "guard zone not watched");
+}
+
+// A georeferencer that was stopped left the last word it had said: no alarm.
+TEST(Board, WhoWatchesTheGuardZoneAndFallsSilentIsAnAlarm) {
+  Board board(kStart);
+  auto health = HealthOf("georeferencer", 1);
+  AddCounter(health, "alarm_active", 0);
+  Say(board, bus::kHealth, health, 1.1);
+  EXPECT_FALSE(board.NearestAlarm(At(4.0))->is_active);
+  const auto alarm = board.NearestAlarm(At(4.2));
+  EXPECT_TRUE(alarm->is_active);
+  EXPECT_EQ(alarm->text, "guard zone not watched: no HEALTH of georeferencer");
+  // Another has taken its place.
+  health.pid += 1;
+  Say(board, bus::kHealth, health, 5.0);
+  EXPECT_FALSE(board.NearestAlarm(At(5.1))->is_active);
 }
 
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {

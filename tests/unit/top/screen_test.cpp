@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "common/core/angles.hpp"
+#include "common/core/geodesy.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "tests/unit/top/bus_talk.hpp"
 #include "tools/top/format.hpp"
@@ -23,6 +24,8 @@ Board BusyBoard() {
   pose.heading_source = pose_t::HEADING_HDT;
   pose.latitude_deg = 43.629590;
   pose.longitude_deg = -72.149989;
+  pose.datum_latitude_deg = 43.6;
+  pose.datum_longitude_deg = -72.1;
   pose.velocity_map_mps[0] = 1.2;
   Say(board, bus::kPose, pose, 1.9);
   gnss_fix_t fix{};
@@ -143,6 +146,24 @@ TEST(Screen, TellsTheOwnShip) {
   Say(board, bus::kPose, lost, 1.0);
   EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(1.1), {80, 0})), "own without position  heading -  - m/s  pose unknown  fix -  course -"));
   EXPECT_EQ(DrawScreen(board, "title", At(1.1), {80, 0})[1][0].style, Style::kWarning);
+}
+
+// At a datum with swapped latitude and longitude it said 4.8 m/s and 333 deg of a boat that goes 5 m/s due east.
+TEST(Screen, SpeedAndCourseAreThoseWhereTheBoatIs) {
+  Board board(kStart);
+  pose_t pose = PoseAt(1'000'000, DegToRad(90.0));
+  pose.latitude_deg = 43.62959;
+  pose.longitude_deg = -72.149989;
+  pose.datum_latitude_deg = -72.149989;
+  pose.datum_longitude_deg = 43.62959;
+  const LocalFrame map({pose.datum_latitude_deg, pose.datum_longitude_deg, 0.0});
+  const LocalFrame here({pose.latitude_deg, pose.longitude_deg, 0.0});
+  const Eigen::Vector3d velocity_map_mps = map.TransformFrom(here).linear() * Eigen::Vector3d(5.0, 0.0, 0.0);
+  for (int i = 0; i < 3; ++i) pose.velocity_map_mps[i] = velocity_map_mps[i];
+  Say(board, bus::kPose, pose, 1.0);
+  const auto lines = Lines(DrawScreen(board, "title", At(1.1), {120, 0}));
+  EXPECT_TRUE(Has(lines, "  5.0 m/s")) << lines[1];
+  EXPECT_TRUE(Has(lines, "  course 090")) << lines[1];
 }
 
 TEST(Screen, ShowsMoreObstaclesWhereThereIsRoom) {

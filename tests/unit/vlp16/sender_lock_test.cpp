@@ -204,6 +204,39 @@ TEST(SenderLock, IsNotHeldByAnotherModel) {
   EXPECT_TRUE(Of(MergedArrivals({hdl32e, lidar})).ScansWithoutRawSeq() == alone.ScansWithoutRawSeq());
 }
 
+// Early ones, which only the interval between their packets tells from an HDL-32E: by turns neither showed one, and both were taken for ever.
+TEST(SenderLock, IsHeldByOneOfTwoLidarsThatAreToldByTheirIntervals) {
+  const auto early = [](microseconds begin, const std::string& address) {
+    return OfLidar(begin, seconds(3), address, 2368, format::kModeStrongest, format::kProductHdl32e);
+  };
+  const auto first = early(seconds(0), kLidar.address);
+  const auto second = early(microseconds(600), kOther.address);
+  const auto both = Of(MergedArrivals({first, second}));
+  EXPECT_NEAR(static_cast<double>(both.NumData()), static_cast<double>(std::ranges::count(first, 2368, &Arrival::udp_port)), 8.0);
+  EXPECT_EQ(both.report.reason.rfind("packets that are not the lidar's: 192.168.1.202:2368 sends to port 2368 besides the lidar", 0), 0U)
+      << both.report.reason;
+  EXPECT_GE(both.Of("LIDAR_SCAN").size(), 29U);
+  // Beside an HDL-32E that was first.
+  const auto hdl32e = Foreign(seconds(0), seconds(3), 1808.0, [](SpinningSensor& sensor) {
+    sensor.product = format::kProductHdl32e;
+    sensor.time_ns -= sensor.period().count() - 553'000;
+    return sensor.Next();
+  });
+  const auto beside = Of(MergedArrivals({hdl32e, early(milliseconds(500), kLidar.address)}));
+  EXPECT_EQ(std::ranges::count(beside.notices, "takes the lidar at 192.168.1.201:2368"), 1);
+}
+
+// What cannot be the lidar took the place on trial for a second at a time.
+TEST(SenderLock, PassesToAnotherLidarInAFloodOfWhatIsNoPacket) {
+  const auto before = OfLidar(seconds(0), milliseconds(200));
+  const auto after = OfLidar(milliseconds(10'500), seconds(12), kOther.address);
+  const auto flood = Foreign(seconds(10), seconds(12), 8000.0, NoLidar, {"192.168.1.203", 4000});
+  const auto both = Of(MergedArrivals({before, after, flood}));
+  EXPECT_EQ(both.CountOf("lidar_changes"), 1);
+  const auto num_before = std::ranges::count(before, 2368, &Arrival::udp_port);
+  EXPECT_NEAR(static_cast<double>(both.NumData() - num_before), (1.5 - 0.25) * 753.5, 8.0);
+}
+
 TEST(SenderLock, IsHeldByTheFirstOfTwoLidarsAndTheSecondIsNamed) {
   const auto first = OfLidar(seconds(0), seconds(5), kOther.address);
   const auto both = Of(MergedArrivals({first, OfLidar(milliseconds(500), seconds(5))}));

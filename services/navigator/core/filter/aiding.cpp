@@ -171,7 +171,7 @@ Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params
 }
 
 void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
-  const bool is_taken = state.has_position && Judge(HorizontalOf(fix, params, state), false, state, verdict);
+  const bool is_taken = state.has_position && !fix.begins_time_scale && Judge(HorizontalOf(fix, params, state), false, state, verdict);
   if (!is_taken && state.has_position) {
     Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
     residual_m.head<2>() = HorizontalOf(fix, params, state).residual;
@@ -182,7 +182,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     const bool is_wrong = IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals);
     const bool is_led_away = IsStateLedAway(agrees, state.time, kMaxAgreeingRefusal, state.fix_refusals);
     state.fix_refusals.last_place = fix.antenna;
-    if (!is_wrong && !is_led_away) return;
+    if (!fix.begins_time_scale && !is_wrong && !is_led_away) return;
     ++verdict.num_renewed;
     ForgetPlace(state);
     if (is_led_away && state.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
@@ -197,6 +197,9 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     if (fix.velocity && !knew_velocity) {
       const Eigen::Vector3d velocity_here_mps(fix.velocity->east_north_mps.x(), fix.velocity->east_north_mps.y(), 0.0);
       state.velocity_level_mps.head<2>() = (HereOf(state).R_here_level.transpose() * velocity_here_mps).head<2>();
+      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
+    } else if (state.fix_refusals.since && !state.velocity.IsWithin(state.time, kTimedVelocityAge)) {
+      // Fixes contradicted, and nobody measures velocity: that is what was wrong, or the next fix would contradict again.
       Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }

@@ -25,7 +25,8 @@ struct VelocityMeasurement {
 struct FixMeasurement {
   std::string source;
   bool is_gga = false;
-  GeodeticPlace antenna;  // where the height is not said, that of the datum
+  bool begins_time_scale = false;  // as in GnssFix: it says where the boat is, whatever was known
+  GeodeticPlace antenna;           // where the height is not said, that of the datum
   bool has_height = false;
   double horizontal_sd_m = 0.0;  // per axis
   double vertical_sd_m = 0.0;

@@ -207,10 +207,8 @@ void Forget(const FilterParams& params, State& state) {
     const double variance = std::max(state.covariance(0, 0), state.covariance(1, 1));
     const double max_variance = state.position_sd_at_fix_m * state.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
     const bool is_carried = state.fix.IsWithin(state.time, params.max_position_age) && variance <= max_variance;
-    if (!is_carried && state.fix.IsStoppedAt(state.time)) {
-      ForgetPlace(state);
-      state.fix_refusals = {};
-    }
+    // Fixes that contradicted are not forgotten: they tell the next one what was wrong.
+    if (!is_carried && state.fix.IsStoppedAt(state.time)) ForgetPlace(state);
   }
   if (!state.has_position) {
     state.p_level_m.head<2>().setZero();

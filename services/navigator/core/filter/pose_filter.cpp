@@ -137,6 +137,7 @@ void PoseFilter::Add(const GnssFix& fix) {
 
   filter::FixMeasurement measurement;
   measurement.source = fix.source;
+  measurement.begins_time_scale = fix.begins_time_scale;
   measurement.is_gga = fix.sentence_type == "GGA" || fix.sentence_type == "GNS";
   measurement.antenna = {fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m};
   measurement.has_height = has_height;
@@ -167,6 +168,7 @@ void PoseFilter::Add(const GnssFix& fix) {
     if (takes_velocity) same_epoch->velocity = measurement.velocity;
     if (takes_position) {
       measurement.velocity = same_epoch->velocity;
+      measurement.begins_time_scale = measurement.begins_time_scale || same_epoch->begins_time_scale;
       *same_epoch = measurement;
     }
     Touch(index);
