@@ -75,7 +75,7 @@ class HangupTest : public SourcesTest {
     return {};
   }
   // Stops the child after it has blocked its signals, and before it reads them. @return false when it was past that
-  bool HoldAtItsStart() const {
+  bool HoldAtItsStart() {
     const auto is_stopped = [this] { return Status("State:").rfind('T', 0) == 0; };
     const auto blocked = [this] { return std::stoull("0" + Status("SigBlk:"), nullptr, 16); };
     const auto reads_signals = [this] {

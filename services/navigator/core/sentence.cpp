@@ -42,9 +42,10 @@ bool IsChecksumOf(std::string_view digits, std::string_view body) {
 // broken off. Empty when there is none.
 std::string_view SentenceBehind(std::string_view line) {
   line.remove_prefix(line.size() - std::min(line.size(), kMaxLineCharacters));
-  // The last: a start stands in no sentence, but a checksum may be right by chance.
-  for (auto start = line.find_last_of("$!"); start != std::string_view::npos;
-       start = start == 0 ? std::string_view::npos : line.find_last_of("$!", start - 1)) {
+  // From the last start on: of two that have a right checksum the later is the sentence, an even number of $ before it does not change the sum.
+  for (auto end = line.size(); end > 0;) {
+    const auto start = line.find_last_of("$!", end - 1);
+    if (start == std::string_view::npos) break;
     const auto sentence = line.substr(start);
     if (std::ranges::all_of(sentence, IsPrintable) && Frame(sentence).fault == SentenceFault::kNone) return sentence;
     end = start;
