@@ -1,5 +1,6 @@
 #include "services/navigator/core/interpreter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -100,6 +101,7 @@ void Interpreter::Reset() {
     source.accuracy.reset();
     source.declination_rad = kNan;
     source.arrivals = {};
+    source.told_by = {};
   }
 }
 
@@ -143,6 +145,7 @@ Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
   switch (parsed.fault) {
     case SentenceFault::kNone: {
       auto& source = SourceOf(item.source);
+      source.kind = parsed.sentence.index();
       source.is_in_time = source.arrivals[parsed.sentence.index()].Add(item.time);
       return std::visit([&](const auto& sentence) { return On(item, source, sentence); }, parsed.sentence);
     }
@@ -162,9 +165,22 @@ Reading Interpreter::ReadParsed(const Item& item, const ParseResult& parsed) {
   return {};
 }
 
-// Of a sentence without a time; nullopt: it waited in a queue, and nobody knows how long.
-std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, const Source& source) {
+// Of a sentence without a time; nullopt: it waited in a queue, and nobody knows how long. The first behind a timed one of its input was as late as
+// that.
+std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, Source& source) {
   if (source.is_in_time) return clock_.OfArrival(source.clock, item.time, source.params.latency);
+  auto& told_by = source.told_by[source.kind];
+  const auto& clock = source.clock;
+  const bool is_known = clock.last_utc && clock.is_forward && !clock.fit.is_empty() && clock.fit.is_settled();
+  if (is_known && item.time - clock.last_arrival <= kMaxBurst && told_by != clock.last_utc) {
+    told_by = clock.last_utc;
+    const auto utc = *clock.last_utc + std::chrono::seconds(clock.num_leaps) + source.params.latency.value_or(microseconds(0)) + clock.fit.offset();
+    const auto late = std::max<microseconds>(clock.last_arrival - utc, microseconds(0));
+    auto when = clock_.OfArrival({}, item.time, source.params.latency);
+    when.time -= late;
+    when.utc -= late;
+    return when;
+  }
   ++counts_.queued_sentence;
   return std::nullopt;
 }

@@ -80,7 +80,11 @@ class Interpreter {
     std::optional<Accuracy> accuracy;
     double declination_rad = kNan;  // out of RMC
     std::array<Arrivals, std::variant_size_v<Sentence>> arrivals;
-    bool is_in_time = true;  // the sentence that is read
+    // Of the sentence that is read.
+    std::size_t kind = 0;
+    bool is_in_time = true;
+    // The last timed sentence that told how late one of a queue was; by kind.
+    std::array<std::optional<Utime>, std::variant_size_v<Sentence>> told_by;
   };
 
   Source& SourceOf(const std::string& name);
@@ -108,7 +112,7 @@ class Interpreter {
 
   std::optional<MeasurementTime> When(const Item& item, Source& source, std::optional<std::chrono::microseconds> time_of_day,
                                       std::optional<std::chrono::sys_days> date, bool is_measured = true);
-  std::optional<MeasurementTime> WhenArrived(const Item& item, const Source& source);
+  std::optional<MeasurementTime> WhenArrived(const Item& item, Source& source);
   Reading OnQualified(const Item& item, Source& source, const Gga& gga, std::string_view sentence_type);
   Reading WholeFix(Source& source, GnssFix fix);
   Attitude MakeAttitude(const Item& item, const Source& source, const char* sentence_type, const MeasurementTime& when, double heading_rad,
