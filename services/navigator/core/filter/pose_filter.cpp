@@ -39,6 +39,9 @@ double PossibleAgeS(const MeasurementTime& when) {
   return age > 0us && age <= kMaxAge ? std::chrono::duration<double>(age).count() : 0.0;
 }
 
+// A speed without a direction is anywhere on a circle around 0: this is the deviation of each component.
+double SdOfUnknownCourse(double speed_mps) { return speed_mps * std::sqrt(0.5); }
+
 Eigen::Vector2d VelocityOf(double speed_mps, double course_rad) {
   const auto [east, north] = SinCosOf(course_rad);
   return speed_mps * Eigen::Vector2d(east, north);
@@ -152,8 +155,7 @@ void PoseFilter::Add(const GnssFix& fix) {
     velocity.course_rad = fix.course_rad;
     velocity.sd_mps = Hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
     if (std::isnan(fix.course_rad)) {
-      // A speed without a direction: anywhere on a circle around 0.
-      velocity.sd_mps = Hypot(velocity.sd_mps, fix.speed_mps);
+      velocity.sd_mps = Hypot(velocity.sd_mps, SdOfUnknownCourse(fix.speed_mps));
     } else {
       velocity.east_north_mps = VelocityOf(fix.speed_mps, fix.course_rad);
     }
@@ -186,7 +188,7 @@ void PoseFilter::Add(const GroundVelocity& velocity) {
   measurement.course_rad = velocity.course_rad;
   measurement.sd_mps = params_.velocity_sd_mps;
   if (std::isnan(velocity.course_rad)) {
-    measurement.sd_mps = Hypot(measurement.sd_mps, velocity.speed_mps);
+    measurement.sd_mps = Hypot(measurement.sd_mps, SdOfUnknownCourse(velocity.speed_mps));
   } else {
     measurement.east_north_mps = VelocityOf(velocity.speed_mps, velocity.course_rad);
   }
