@@ -23,7 +23,7 @@ void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<Neares
 void GuardAlarm::Add(const TurnHead& head, const std::optional<NearestPoint>& nearest) {
   if (!gathering_ || gathering_->time != head.time || gathering_->seq != head.seq) {
     Close(false);  // what is missing of the scan before does not come any more
-    gathering_.emplace();
+    gathering_ = Gathering{};
     gathering_->time = head.time;
     gathering_->seq = head.seq;
     gathering_->num_parts = head.num_parts;

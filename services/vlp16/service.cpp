@@ -202,7 +202,7 @@ void Service::NoteClock(const ClockReading& clock) {
 
 // What is wrong, for people; empty when nothing is.
 std::string Service::Complaint() const {
-  const auto own = OwnComplaint();
+  auto own = OwnComplaint();
   // A clock that was set back must not keep an old refusal alive.
   const bool is_foreign_now = refusal_ && now_ - refusal_->time < kForeignTold && refusal_->time - now_ < kForeignTold;
   if (!is_foreign_now) return own;

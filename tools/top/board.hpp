@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "common/bus/sequence.hpp"
@@ -106,7 +107,7 @@ class Board {
     std::string name;
     std::string host;
     std::int32_t pid = 0;
-    auto operator<=>(const ProcessKey&) const = default;
+    bool operator<(const ProcessKey& other) const { return std::tie(name, host, pid) < std::tie(other.name, other.host, other.pid); }
   };
 
   bool HasRoomFor(std::string_view process) const;

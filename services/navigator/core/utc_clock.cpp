@@ -107,14 +107,11 @@ void UtcClock::Judge(SourceClock& source, Utime arrival) {
   }
   if (is_right) {
     TakeForUtc();
-  } else if (!is_off_ && is_contradicted) {
-    return;
-  } else if (!is_off_ || (std::chrono::abs(off - off_) > max_latency_ && !is_contradicted)) {
+  } else if (!is_off_ || std::chrono::abs(off - off_) > max_latency_) {
+    if (is_contradicted) return;
     is_off_ = true;
     off_fit_ = source.fit;
     off_ = off;
-  } else if (std::chrono::abs(off - off_) > max_latency_) {
-    return;
   }
   agreeing_ = &source;
   last_agreement_ = arrival;

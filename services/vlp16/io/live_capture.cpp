@@ -193,7 +193,7 @@ std::optional<LiveDatagram> LiveCapture::Next() {
     const int outcome = capture_ ? pcap_next_ex(static_cast<pcap_t*>(capture_.get()), &header, &data) : 0;
     if (outcome == 1) {
       ++num_frames_;
-      const auto datagram = Judge(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
+      auto datagram = Judge(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
       if (datagram) return datagram;
       continue;
     }

@@ -208,7 +208,7 @@ TEST(PoseFilter, TakesASpeedWithoutCourseForUncertainty) {
   filter.Add(fix);
   const auto pose = filter.At(NoonPlus(0));
   EXPECT_EQ(pose.velocity_map_mps.x(), 0.0);
-  EXPECT_NEAR(pose.covariance(3, 3), 0.1 * 0.1 + 0.5 * 0.5, 1e-3);
+  EXPECT_NEAR(pose.covariance(3, 3), 0.1 * 0.1 + 0.5 * 0.5 / 2.0, 1e-3);
   EXPECT_EQ(pose.heading_source, HeadingSource::kNone);
 }
 
