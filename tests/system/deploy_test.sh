@@ -63,6 +63,7 @@ done
 cp "$work/rules1.nft" "$work/installed.nft"
 env -i sh -c '. "$1"; export LOOKOUT_BUS_FIREWALL LOOKOUT_LCM_INTERFACE LCM_DEFAULT_URL; exec "$2" rules' sh "$source_folder/deploy/default" "$source_folder/deploy/firewall" |
   cmp -s - "$work/installed.nft" || fail "as delivered the port is not closed"
+PATH=$PATH:/usr/sbin:/sbin
 if command -v nft >/dev/null && unshare -rn true 2>/dev/null; then
   for file in "$work"/rules?.nft; do
     unshare -rn nft -c -f "$file" || { cat "$file"; fail "nft does not read the rule"; }
