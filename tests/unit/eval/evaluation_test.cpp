@@ -210,8 +210,8 @@ TEST_F(EvaluationTest, KeepsTheLastWholeTurnForTheTable) {
   evaluation.Add(partial);
   EXPECT_EQ(evaluation.table_utime_us, kStartUs);
   EXPECT_EQ(evaluation.rows.size(), 2U);
-  EXPECT_EQ(evaluation.num_turns, 2);
-  EXPECT_EQ(evaluation.num_whole_turns, 1);
+  EXPECT_EQ(evaluation.num_scans, 2);
+  EXPECT_EQ(evaluation.num_whole_scans, 1);
 }
 
 TEST_F(EvaluationTest, PoseErrorsGoTheShortWayRound) {

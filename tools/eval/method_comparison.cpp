@@ -1,4 +1,4 @@
-#include "tools/eval/judge.hpp"
+#include "tools/eval/method_comparison.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -15,7 +15,7 @@ double ToMs(std::chrono::nanoseconds duration) { return std::chrono::duration<do
 
 }  // namespace
 
-Judge::Judge(const Methods& methods) : methods_(methods) {
+MethodComparison::MethodComparison(const Methods& methods) : methods_(methods) {
   for (const auto& method : methods) {
     if (!method->knows_doubt()) {
       results_.push_back({method->name(), {}, {}, {}});
@@ -26,7 +26,7 @@ Judge::Judge(const Methods& methods) : methods_(methods) {
   }
 }
 
-void Judge::Add(const TurnPlace& place, const LabelledScan& truth) {
+void MethodComparison::Add(const ScanPlace& place, const LabelledScan& truth) {
   auto result = results_.begin();
   for (const auto& method : methods_) {
     const auto begin = std::chrono::steady_clock::now();
@@ -41,46 +41,47 @@ void Judge::Add(const TurnPlace& place, const LabelledScan& truth) {
   }
 }
 
-void Judge::AddPoint(MethodResult& result, const TurnPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms) {
-  Score score = ScoreTurn(truth, labelling);
+void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms) {
+  Score score = ScoreScan(truth, labelling);
   score.time_ms.push_back(time_ms);
   result.by_scene[place.scene].Add(score);
-  if (score.num_turns_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
+  if (score.num_scans_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
 }
 
-void Judge::KeepIfBad(MethodResult& result, const TurnPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const {
+void MethodComparison::KeepIfBad(MethodResult& result, const ScanPlace& place, double iou, const LabelledScan& truth,
+                                 std::vector<std::int32_t> label) const {
   auto& worst = result.worst;
-  const auto same_scene = std::ranges::find(worst, place.scene, &WorstTurn::scene);
+  const auto same_scene = std::ranges::find(worst, place.scene, &WorstScan::scene);
   if (same_scene != worst.end()) {
     if (same_scene->iou <= iou) return;
     worst.erase(same_scene);
-  } else if (worst.size() == kMaxWorstTurns) {
+  } else if (worst.size() == kMaxWorstScans) {
     if (worst.back().iou <= iou) return;
     worst.pop_back();
   }
-  const auto at = std::ranges::upper_bound(worst, iou, {}, &WorstTurn::iou);
-  worst.insert(at, {place.scene, place.seed, place.turn, iou, truth, std::move(label)});
+  const auto at = std::ranges::upper_bound(worst, iou, {}, &WorstScan::iou);
+  worst.insert(at, {place.scene, place.seed, place.index, iou, truth, std::move(label)});
 }
 
 std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
 
-void ForEachTurn(const RunPlan& plan, const Boat& boat, Progress& progress,
-                 const std::function<void(const TurnPlace&, const LabelledScan&)>& on_turn) {
+void ForEachScan(const RunPlan& plan, const Boat& boat, Progress& progress,
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_turn) {
   std::vector<std::filesystem::path> files;
   for (const auto& scene : plan.scenes) {
     files.push_back(sim::FindScene(scene, boat.config_folder));
     sim::LoadScene(files.back(), plan.first_seed);
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
-    TurnPlace place{SceneLabel(plan.scenes[i]), 0, 0};
+    ScanPlace place{SceneLabel(plan.scenes[i]), 0, 0};
     for (int k = 0; k < plan.num_seeds; ++k) {
       place.seed = plan.first_seed + static_cast<std::uint64_t>(k);
-      place.turn = 0;
+      place.index = 0;
       const auto scene = sim::LoadScene(files[i], place.seed);
-      RenderTurns(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
+      RenderScans(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
         io::ThrowIfStopAsked();
         on_turn(place, truth);
-        ++place.turn;
+        ++place.index;
       });
       progress.Step(place.scene + ", seed " + std::to_string(place.seed));
     }

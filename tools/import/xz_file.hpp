@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 /// Bytes of a .xz file, unpacked as they are asked for.
 class XzFile {
@@ -75,4 +75,4 @@ class XzCsv {
   std::int64_t line_number_ = 0;
 };
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "tools/eval/labelled_scan.hpp"
 #include "tools/eval/method.hpp"
 #include "tools/eval/progress.hpp"
 #include "tools/eval/render.hpp"
@@ -14,36 +13,36 @@
 
 namespace lookout::eval {
 
-/// Which turn is judged.
-struct TurnPlace {
+/// Which scan is scored.
+struct ScanPlace {
   std::string scene;
   std::uint64_t seed = 0;
-  int turn = 0;  // of the scene and seed, from 0
+  int index = 0;  // of the scene and seed, from 0
 };
 
 /// Lets each method label each turn, and keeps the scores: one result for each operating point of a method, so that no row of a table holds figures
 /// of two. A method that knows doubt has two, in this order: all segments, and the sure ones alone.
 /// Everything but the times depends on the turns alone.
-class Judge {
+class MethodComparison {
  public:
   /// @param methods  outlive this
-  explicit Judge(const Methods& methods);
+  explicit MethodComparison(const Methods& methods);
 
-  void Add(const TurnPlace& place, const LabelledScan& truth);
+  void Add(const ScanPlace& place, const LabelledScan& truth);
 
   /// In the order of the methods, and of their operating points.
   const std::vector<MethodResult>& results() const { return results_; }
 
  private:
-  void AddPoint(MethodResult& result, const TurnPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms);
-  void KeepIfBad(MethodResult& result, const TurnPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const;
+  void AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms);
+  void KeepIfBad(MethodResult& result, const ScanPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const;
 
   const Methods& methods_;
   std::vector<MethodResult> results_;
 };
 
 /// Turns that are kept of each method, each of another scene: enough to see what goes wrong, few enough for one page.
-inline constexpr std::size_t kMaxWorstTurns = 3;
+inline constexpr std::size_t kMaxWorstScans = 3;
 
 /// What is rendered.
 struct RunPlan {
@@ -60,7 +59,7 @@ std::string SceneLabel(const std::string& name_or_path);
 ///
 /// @param progress  a step for each scene and seed
 /// @throws config::ConfigError for a scene that is wrong; all are loaded with their first seed before the first is rendered
-void ForEachTurn(const RunPlan& plan, const Boat& boat, Progress& progress,
-                 const std::function<void(const TurnPlace&, const LabelledScan&)>& on_turn);
+void ForEachScan(const RunPlan& plan, const Boat& boat, Progress& progress,
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_turn);
 
 }  // namespace lookout::eval

@@ -1,12 +1,12 @@
-#include "tools/eval/readers/kitti.hpp"
+#include "tools/import/kitti.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "tests/unit/eval_readers/cloud_text.hpp"
-#include "tools/eval/readers/file_bytes.hpp"
+#include "tests/unit/import/cloud_text.hpp"
+#include "tools/import/file_bytes.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 namespace {
 
 using namespace test;
@@ -85,4 +85,4 @@ TEST(Kitti, SaysWhereAFileIsBroken) {
 }
 
 }  // namespace
-}  // namespace lookout::eval
+}  // namespace lookout::importer

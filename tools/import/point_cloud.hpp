@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
-#include "tools/eval/labelled_scan.hpp"
+#include "tools/import/labelled_scan.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 /// In the frame of the sensor: x forward, y left, z up, the sensor at the origin.
 struct CloudPoint {
@@ -26,7 +26,7 @@ struct PointCloud {
   std::int64_t num_not_finite = 0;   // points left out: a place that is not a number is how a file says "no return"
 };
 
-/// As many cells as a turn of LIDAR_SCAN may have (segmenter/wire.hpp), so more points than that are no turn of a lidar.
+/// As many cells as a scan of LIDAR_SCAN may have (segmenter/wire.hpp), so more points than that are no scan of a lidar.
 inline constexpr std::int64_t kMaxCloudPoints = std::int64_t{1} << 21;
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

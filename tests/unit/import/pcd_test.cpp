@@ -1,4 +1,4 @@
-#include "tools/eval/readers/pcd.hpp"
+#include "tools/import/pcd.hpp"
 
 #include <unistd.h>
 
@@ -6,10 +6,10 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-#include "tests/unit/eval_readers/cloud_text.hpp"
-#include "tools/eval/readers/file_bytes.hpp"
+#include "tests/unit/import/cloud_text.hpp"
+#include "tools/import/file_bytes.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 namespace {
 
 using namespace test;
@@ -106,7 +106,7 @@ TEST(Pcd, SaysInWhichLineTheHeaderIsBroken) {
   EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nCOUNT 0\nDATA ascii\n"), "a.pcd:1: a point holds nothing");
   EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 3\nPOINTS 5\nDATA ascii\n"), "a.pcd:6: POINTS is not WIDTH times HEIGHT, 6");
   EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH -2\nHEIGHT 3\nDATA ascii\n"), "a.pcd:4: no whole number from 0 to 2097152: -2");
-  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2097152\nHEIGHT 2\nDATA ascii\n"), "a.pcd:4: 4194304 points are no turn");
+  EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2097152\nHEIGHT 2\nDATA ascii\n"), "a.pcd:4: 4194304 points are no scan");
   EXPECT_EQ(PcdFaultOf("FIELDS x\nSIZE 4\nTYPE F\nVIEWPOINT 1 0 0 1 0 0 0\nWIDTH 0\nHEIGHT 0\nDATA ascii\n"),
             "a.pcd:4: the sensor must be at the origin and upright (0 0 0 1 0 0 0): bring the points into its frame");
   EXPECT_NE(PcdFaultOf(Xyz(0, "binary_compressed")).find("a.pcd:10: DATA is ascii or binary here"), std::string::npos);
@@ -134,4 +134,4 @@ TEST(Pcd, SaysWhereAPointIsBroken) {
 }
 
 }  // namespace
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -1,4 +1,4 @@
-#include "tools/eval/readers/organise.hpp"
+#include "tools/import/organise.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,12 +9,12 @@
 
 #include "common/core/angles.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 namespace {
 
 constexpr int kNumBands = 64;        // as most lidars of the road have
-constexpr int kUsualColumns = 1800;  // of a turn at 10 Hz: a step of 0.2 degrees
+constexpr int kUsualColumns = 1800;  // of a revolution at 10 Hz: a step of 0.2 degrees
 constexpr int kMinColumns = 360;
 constexpr double kRangeUnitM = 0.002;  // as a VLP-16
 constexpr double kMaxRangeCount = std::numeric_limits<std::uint16_t>::max();
@@ -157,17 +157,17 @@ segmenter::Scan EmptyScan(std::vector<segmenter::Ring> rings, int num_columns, d
 // Points into cells: the nearer first, so that it has the cell.
 class Placer {
  public:
-  Placer(const PointCloud& cloud, OrganisedCloud& result) : cloud_(cloud), result_(result), num_columns_(result.turn.scan.columns.size()) {}
+  Placer(const PointCloud& cloud, OrganisedCloud& result) : cloud_(cloud), result_(result), num_columns_(result.labelled.scan.columns.size()) {}
 
   bool Place(const Beam& beam, int column) {
-    auto& scan = result_.turn.scan;
+    auto& scan = result_.labelled.scan;
     const auto cell = static_cast<std::size_t>(column) * scan.head.rings.size() + static_cast<std::size_t>(beam.ring);
     if (scan.columns.range[cell] != 0) return false;
     const auto& point = cloud_.points[beam.point];
     const double count = std::round(beam.range_m / scan.head.range_unit_m);
     scan.columns.range[cell] = static_cast<std::uint16_t>(std::clamp(count, 1.0, kMaxRangeCount));
     scan.columns.reflectivity[cell] = point.reflectivity;
-    result_.turn.object[cell] = point.object;
+    result_.labelled.object[cell] = point.object;
     result_.cell_of_point[beam.point] = static_cast<std::int32_t>(cell);
     return true;
   }
@@ -194,11 +194,11 @@ class Placer {
 OrganisedCloud Organise(const PointCloud& cloud, const OrganiseParams& params) {
   OrganisedCloud result;
   result.cell_of_point.assign(cloud.points.size(), OrganisedCloud::kNoCell);
-  result.turn.objects = cloud.objects;
+  result.labelled.objects = cloud.objects;
   auto beams = BeamsOf(cloud, result.num_out_of_range);
   if (beams.empty()) {
-    result.turn.scan = EmptyScan({segmenter::Ring{}}, kUsualColumns, kRangeUnitM, params.duration);
-    result.turn.object.assign(result.turn.scan.num_cells(), kNoTrueObject);
+    result.labelled.scan = EmptyScan({segmenter::Ring{}}, kUsualColumns, kRangeUnitM, params.duration);
+    result.labelled.object.assign(result.labelled.scan.num_cells(), kNoTrueObject);
     return result;
   }
   result.are_rings_found = FindRings(beams, params.num_rings);
@@ -206,8 +206,8 @@ OrganisedCloud Organise(const PointCloud& cloud, const OrganiseParams& params) {
   std::ranges::stable_sort(
       beams, [](const Beam& one, const Beam& other) { return one.ring != other.ring ? one.ring < other.ring : one.azimuth_rad < other.azimuth_rad; });
   const int num_columns = std::min(params.num_columns == 0 ? FindNumColumns(beams) : params.num_columns, kMaxCloudColumns);
-  result.turn.scan = EmptyScan(std::move(rings), num_columns, RangeUnit(beams), params.duration);
-  result.turn.object.assign(result.turn.scan.num_cells(), kNoTrueObject);
+  result.labelled.scan = EmptyScan(std::move(rings), num_columns, RangeUnit(beams), params.duration);
+  result.labelled.object.assign(result.labelled.scan.num_cells(), kNoTrueObject);
 
   std::ranges::stable_sort(beams, [](const Beam& one, const Beam& other) { return one.range_m < other.range_m; });
   Placer placer(cloud, result);
@@ -219,4 +219,4 @@ OrganisedCloud Organise(const PointCloud& cloud, const OrganiseParams& params) {
   return result;
 }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -1,9 +1,9 @@
-#include "tools/eval/readers/file_bytes.hpp"
+#include "tools/import/file_bytes.hpp"
 
 #include <fstream>
 #include <system_error>
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 std::string ReadFileBytes(const std::filesystem::path& file) {
   std::error_code fault;
@@ -11,7 +11,7 @@ std::string ReadFileBytes(const std::filesystem::path& file) {
   if (fault) throw PointFileError(file.string() + ": cannot be read: " + fault.message());
   if (size > kMaxPointFileBytes) {
     throw PointFileError(file.string() + ": " + std::to_string(size) + " bytes are more than the " + std::to_string(kMaxPointFileBytes) +
-                         " that a turn may take");
+                         " that a scan may take");
   }
   std::string bytes(size, '\0');
   std::ifstream in(file, std::ios::binary);
@@ -27,4 +27,4 @@ void RefuseLine(const std::string& name, int line, const std::string& reason) {
   throw PointFileError(name + ":" + std::to_string(line) + ": " + reason);
 }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

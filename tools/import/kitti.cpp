@@ -1,4 +1,4 @@
-#include "tools/eval/readers/kitti.hpp"
+#include "tools/import/kitti.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,9 +6,9 @@
 #include <set>
 
 #include "common/core/bytes.hpp"
-#include "tools/eval/readers/file_bytes.hpp"
+#include "tools/import/file_bytes.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 namespace {
 
@@ -36,7 +36,7 @@ PointCloud ParseKitti(std::string_view points, const std::string& points_name, s
     RefuseByte(points_name, points.size() / kPointBytes * kPointBytes, "the file ends inside a point of 16 bytes");
   }
   const std::size_t num_points = points.size() / kPointBytes;
-  if (num_points > static_cast<std::size_t>(kMaxCloudPoints)) RefuseByte(points_name, 0, std::to_string(num_points) + " points are no turn");
+  if (num_points > static_cast<std::size_t>(kMaxCloudPoints)) RefuseByte(points_name, 0, std::to_string(num_points) + " points are no scan");
   if (labels && labels->size() != num_points * kLabelBytes) {
     RefuseByte(labels_name, std::min(labels->size(), num_points * kLabelBytes),
                std::to_string(num_points) + " points need " + std::to_string(num_points * kLabelBytes) + " bytes of labels, not " +
@@ -84,4 +84,4 @@ PointCloud ReadKitti(const std::filesystem::path& points_file, const std::option
   return ParseKitti(points, points_file.string(), labels, label_file->string());
 }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

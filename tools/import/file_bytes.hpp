@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 /// What is wrong with a file: "file:line: reason" in its text, "file: byte N: reason" in its binary part.
 class PointFileError : public std::runtime_error {
@@ -23,4 +23,4 @@ std::string ReadFileBytes(const std::filesystem::path& file);
 [[noreturn]] void RefuseByte(const std::string& name, std::size_t offset, const std::string& reason);
 [[noreturn]] void RefuseLine(const std::string& name, int line, const std::string& reason);
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 struct PcdField {
   enum class Type { kSigned, kUnsigned, kFloat };
@@ -41,4 +41,4 @@ bool NextLine(std::string_view& rest, std::string_view& line);
 /// Words between blanks and tabs, into `words`, which is cleared first.
 void SplitWords(std::string_view line, std::vector<std::string_view>& words);
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -9,7 +9,7 @@
 
 namespace lookout::eval {
 
-struct JudgeOptions {
+struct ComparisonOptions {
   std::string command;  // for the report
   std::filesystem::path config_folder;
   std::vector<std::string> scenes;  // "all", names or files
@@ -34,10 +34,10 @@ struct JudgeOptions {
 /// Methods and tests of the paper take seeds of tables, sweeps those of tuning; the other range is refused (seeds.hpp).
 ///
 /// @throws config::ConfigError, std::invalid_argument for a wrong line; std::runtime_error when a file cannot be read or written
-int JudgeScenes(const JudgeOptions& options);
+int CompareMethods(const ComparisonOptions& options);
 
 /// Fills the marked blocks of options.block_files from options.figures_folder (FillBlocks): nothing else is looked at. @return exit code
 /// @throws std::runtime_error
-int FillBlocksOfFiles(const JudgeOptions& options);
+int FillBlocksOfFiles(const ComparisonOptions& options);
 
 }  // namespace lookout::eval

@@ -1,4 +1,4 @@
-#include "tools/eval/readers/pcd.hpp"
+#include "tools/import/pcd.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,10 +8,10 @@
 #include <limits>
 #include <utility>
 
-#include "tools/eval/readers/file_bytes.hpp"
-#include "tools/eval/readers/pcd_header.hpp"
+#include "tools/import/file_bytes.hpp"
+#include "tools/import/pcd_header.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 namespace {
 
@@ -170,4 +170,4 @@ PointCloud ParsePcd(std::string_view bytes, const std::string& name) {
 
 PointCloud ReadPcd(const std::filesystem::path& file) { return ParsePcd(ReadFileBytes(file), file.string()); }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -1,14 +1,14 @@
-#include "tools/eval/readers/pcd_header.hpp"
+#include "tools/import/pcd_header.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <map>
 #include <optional>
 
-#include "tools/eval/readers/file_bytes.hpp"
-#include "tools/eval/readers/point_cloud.hpp"
+#include "tools/import/file_bytes.hpp"
+#include "tools/import/point_cloud.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 namespace {
 
@@ -165,7 +165,7 @@ PcdHeader ParsePcdHeader(std::string_view bytes, const std::string& name) {
     RefuseLine(name, points->number, "POINTS is not WIDTH times HEIGHT, " + std::to_string(header.num_points));
   }
   if (header.num_points > static_cast<std::size_t>(kMaxCloudPoints)) {
-    RefuseLine(name, lines.At("WIDTH").number, std::to_string(header.num_points) + " points are no turn");
+    RefuseLine(name, lines.At("WIDTH").number, std::to_string(header.num_points) + " points are no scan");
   }
   const auto& data = lines.At("DATA");
   if (data.values.size() != 1 || (data.values[0] != "ascii" && data.values[0] != "binary")) {
@@ -184,4 +184,4 @@ PcdHeader ParsePcdHeader(std::string_view bytes, const std::string& name) {
   return header;
 }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -1,10 +1,10 @@
-#include "tools/eval/readers/scan_message.hpp"
+#include "tools/import/scan_message.hpp"
 
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 
-namespace lookout::eval {
+namespace lookout::importer {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<lidar_scan_t> ToScanMessages(const segmenter::Scan& scan, const std:
   return messages;
 }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

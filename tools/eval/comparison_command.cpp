@@ -1,4 +1,4 @@
-#include "tools/eval/judge_command.hpp"
+#include "tools/eval/comparison_command.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,18 +22,18 @@
 #include "services/segmenter/wire.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/eval/figures.hpp"
-#include "tools/eval/judge.hpp"
+#include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
-#include "tools/eval/readers/kitti.hpp"
-#include "tools/eval/readers/organise.hpp"
-#include "tools/eval/readers/pcd.hpp"
-#include "tools/eval/readers/scan_message.hpp"
 #include "tools/eval/report_html.hpp"
 #include "tools/eval/result_tables.hpp"
 #include "tools/eval/seeds.hpp"
 #include "tools/eval/sweep.hpp"
+#include "tools/import/kitti.hpp"
+#include "tools/import/organise.hpp"
+#include "tools/import/pcd.hpp"
+#include "tools/import/scan_message.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval {
@@ -51,7 +51,7 @@ std::string Computer() {
   return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, one used";
 }
 
-RunPlan PlanOf(const JudgeOptions& options, SeedUse use) {
+RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
   RunPlan plan{{}, options.first_seed.value_or(DefaultFirstSeed(use)), options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
     if (scene != "all") {
@@ -69,34 +69,34 @@ constexpr const char* kSecondWorld = "second world";
 // The column of the tables in which recordings stand.
 const std::string kPointsLabel = "points";
 
-PointCloud ReadPoints(const std::filesystem::path& file) {
-  if (file.extension() == ".pcd") return ReadPcd(file);
+importer::PointCloud ReadPoints(const std::filesystem::path& file) {
+  if (file.extension() == ".pcd") return importer::ReadPcd(file);
   if (file.extension() != ".bin") throw std::invalid_argument("--points " + file.string() + ": must end in .pcd or .bin");
   auto label_file = file;
   label_file.replace_extension(".label");
-  return std::filesystem::exists(label_file) ? ReadKitti(file, label_file) : ReadKitti(file, std::nullopt);
+  return std::filesystem::exists(label_file) ? importer::ReadKitti(file, label_file) : importer::ReadKitti(file, std::nullopt);
 }
 
-// As it would come over the bus, in LIDAR_SCAN: a turn that the segmenter would refuse is not judged.
+// As it would come over the bus, in LIDAR_SCAN: a scan that the segmenter would refuse is not scored.
 segmenter::Scan ThroughMessages(const segmenter::Scan& scan, const std::string& file) {
   segmenter::TurnGatherer gatherer;
-  for (const auto& message : ToScanMessages(scan, "recording", bus::kMaxMessageBytes)) {
+  for (const auto& message : importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes)) {
     auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
-    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::runtime_error(file + ": the segmenter refuses this turn");
+    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::runtime_error(file + ": the segmenter refuses this scan");
     auto whole = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)));
     if (whole && whole->num_cells() == scan.num_cells()) return std::move(*whole);
   }
-  throw std::runtime_error(file + ": the turn is not whole");
+  throw std::runtime_error(file + ": the scan is not whole");
 }
 
-void AddPoints(const std::vector<std::string>& files, Progress& progress, Judge& judge) {
-  int turn = 0;
+void AddPoints(const std::vector<std::string>& files, Progress& progress, MethodComparison& comparison) {
+  int index = 0;
   for (const auto& file : files) {
     const auto cloud = ReadPoints(file);
-    auto organised = Organise(cloud, {});
-    organised.turn.scan = ThroughMessages(organised.turn.scan, file);
-    judge.Add({kPointsLabel, 0, turn++}, organised.turn);
-    std::cerr << file << ": " << cloud.points.size() << " points, " << organised.turn.scan.head.num_rings() << " rings"
+    auto organised = importer::Organise(cloud, {});
+    organised.labelled.scan = ThroughMessages(organised.labelled.scan, file);
+    comparison.Add({kPointsLabel, 0, index++}, organised.labelled);
+    std::cerr << file << ": " << cloud.points.size() << " points, " << organised.labelled.scan.head.num_rings() << " rings"
               << (organised.are_rings_found ? "" : " (bands of equal height)") << ", " << organised.num_moved << " moved, " << organised.num_hidden
               << " hidden, " << organised.num_out_of_range << " out of range"
               << (!cloud.has_labels ? "; no labels: every segment counts as false" : "")
@@ -106,20 +106,20 @@ void AddPoints(const std::vector<std::string>& files, Progress& progress, Judge&
 }
 
 void RunMethods(const RunPlan& plan, const std::vector<std::string>& points, const Boat& boat, const Methods& methods, Results& results) {
-  Judge judge(methods);
+  MethodComparison comparison(methods);
   ProjectionTable projections(boat.segmenter);
   Progress progress(&std::cerr, static_cast<std::int64_t>(plan.scenes.size()) * plan.num_seeds + static_cast<std::int64_t>(points.size()));
-  ForEachTurn(plan, boat, progress, [&](const TurnPlace& place, const LabelledScan& truth) {
-    judge.Add(place, truth);
+  ForEachScan(plan, boat, progress, [&](const ScanPlace& place, const LabelledScan& truth) {
+    comparison.Add(place, truth);
     // A turn of each seed is enough: the others of the seed look much like it.
-    if (place.turn == 0) projections.Add(truth);
+    if (place.index == 0) projections.Add(truth);
   });
-  AddPoints(points, progress, judge);
-  results.methods = judge.results();
+  AddPoints(points, progress, comparison);
+  results.methods = comparison.results();
   results.projections = projections.Rows();
 }
 
-void Describe(const JudgeOptions& options, Results& results) {
+void Describe(const ComparisonOptions& options, Results& results) {
   results.command = options.command;
   results.version = runtime::Version();
   results.computer = Computer();
@@ -131,7 +131,7 @@ std::string NoteOn(const CaptureWithTruth& files, const CaptureReport& report) {
          std::to_string(report.num_clutter) + " clutter, " + std::to_string(report.num_unmatched) + " without truth (taken for clutter)";
 }
 
-Results RunCaptures(const JudgeOptions& options) {
+Results RunCaptures(const ComparisonOptions& options) {
   Results results;
   results.world = kSecondWorld;
   Describe(options, results);
@@ -144,21 +144,21 @@ Results RunCaptures(const JudgeOptions& options) {
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
   const auto methods = MakeMethods(boat.segmenter, options.methods);
-  Judge judge(methods);
+  MethodComparison comparison(methods);
   ProjectionTable projections(boat.segmenter);
   Progress progress(&std::cerr, static_cast<std::int64_t>(captures.size()));
   for (const auto& files : captures) {
     if (results.scenes.empty() || results.scenes.back() != files.scene) results.scenes.push_back(files.scene);
-    TurnPlace place{files.scene, files.seed, 0};
+    ScanPlace place{files.scene, files.seed, 0};
     const auto report = ReadCapture(files, boat, [&](const LabelledScan& truth) {
-      judge.Add(place, truth);
-      if (place.turn == 0) projections.Add(truth);
-      ++place.turn;
+      comparison.Add(place, truth);
+      if (place.index == 0) projections.Add(truth);
+      ++place.index;
     });
     results.notes.push_back(NoteOn(files, report));
     progress.Step(std::string(kSecondWorld) + ": " + files.scene + ", seed " + std::to_string(files.seed));
   }
-  results.methods = judge.results();
+  results.methods = comparison.results();
   results.projections = projections.Rows();
   return results;
 }
@@ -182,7 +182,7 @@ void RefuseIfThere(const std::filesystem::path& folder, bool is_forced) {
 
 }  // namespace
 
-int JudgeScenes(const JudgeOptions& options) {
+int CompareMethods(const ComparisonOptions& options) {
   const auto boat = LoadBoat(options.config_folder);
   const auto use = options.is_tuning ? SeedUse::kTuning : SeedUse::kTables;
   const auto plan = PlanOf(options, use);
@@ -239,7 +239,7 @@ int JudgeScenes(const JudgeOptions& options) {
   return FillBlocksOfFiles(options);
 }
 
-int FillBlocksOfFiles(const JudgeOptions& options) {
+int FillBlocksOfFiles(const ComparisonOptions& options) {
   for (const auto& file : options.block_files) {
     std::ifstream in(file, std::ios::binary);
     const std::string text(std::istreambuf_iterator<char>(in), {});

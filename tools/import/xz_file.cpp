@@ -1,4 +1,4 @@
-#include "tools/eval/readers/xz_file.hpp"
+#include "tools/import/xz_file.hpp"
 
 #include <lzma.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace lookout::eval {
+namespace lookout::importer {
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
@@ -155,4 +155,4 @@ void XzCsv::Split() {
   }
 }
 
-}  // namespace lookout::eval
+}  // namespace lookout::importer

@@ -1,4 +1,4 @@
-#include "tools/eval/readers/organise.hpp"
+#include "tools/import/organise.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/turn_gatherer.hpp"
 #include "services/segmenter/wire.hpp"
-#include "tools/eval/readers/scan_message.hpp"
+#include "tools/import/scan_message.hpp"
 
-namespace lookout::eval {
+namespace lookout::importer {
 namespace {
 
 CloudPoint Point(double azimuth_deg, double elevation_deg, double range_m, std::int32_t object = kNoTrueObject) {
@@ -34,8 +34,8 @@ PointCloud Cloud(int num_rings, double step_deg, int num_columns) {
 
 TEST(Organise, AnEmptyCloudIsAnEmptyTurn) {
   const auto organised = Organise({}, {});
-  EXPECT_EQ(organised.turn.scan.head.num_rings(), 1);
-  EXPECT_EQ(organised.turn.object.size(), organised.turn.scan.num_cells());
+  EXPECT_EQ(organised.labelled.scan.head.num_rings(), 1);
+  EXPECT_EQ(organised.labelled.object.size(), organised.labelled.scan.num_cells());
 }
 
 TEST(Organise, ASinglePointHasItsPlace) {
@@ -45,10 +45,10 @@ TEST(Organise, ASinglePointHasItsPlace) {
   EXPECT_TRUE(organised.are_rings_found);
   ASSERT_NE(organised.cell_of_point[0], OrganisedCloud::kNoCell);
   const auto cell = static_cast<std::size_t>(organised.cell_of_point[0]);
-  EXPECT_EQ(organised.turn.scan.columns.range[cell], 15000);
-  EXPECT_EQ(organised.turn.object[cell], 7);
-  EXPECT_NEAR(organised.turn.scan.head.rings[0].elevation_rad, DegToRad(4.0), 1e-6);
-  EXPECT_NEAR(organised.turn.scan.columns.azimuth_rad[cell], DegToRad(123.45), DegToRad(0.1) + 1e-6);
+  EXPECT_EQ(organised.labelled.scan.columns.range[cell], 15000);
+  EXPECT_EQ(organised.labelled.object[cell], 7);
+  EXPECT_NEAR(organised.labelled.scan.head.rings[0].elevation_rad, DegToRad(4.0), 1e-6);
+  EXPECT_NEAR(organised.labelled.scan.columns.azimuth_rad[cell], DegToRad(123.45), DegToRad(0.1) + 1e-6);
 }
 
 TEST(Organise, FindsTheRingsAndColumnsOfSensorsFrom16To128Rings) {
@@ -61,14 +61,14 @@ TEST(Organise, FindsTheRingsAndColumnsOfSensorsFrom16To128Rings) {
     const auto cloud = Cloud(sensor.num_rings, sensor.step_deg, sensor.num_columns);
     const auto organised = Organise(cloud, {});
     EXPECT_TRUE(organised.are_rings_found);
-    EXPECT_EQ(organised.turn.scan.head.num_rings(), sensor.num_rings);
-    EXPECT_EQ(organised.turn.scan.columns.size(), sensor.num_columns);
+    EXPECT_EQ(organised.labelled.scan.head.num_rings(), sensor.num_rings);
+    EXPECT_EQ(organised.labelled.scan.columns.size(), sensor.num_columns);
     EXPECT_EQ(organised.num_hidden, 0) << sensor.num_rings;
     EXPECT_EQ(organised.num_moved, 0) << sensor.num_rings;
     // Where the segmenter sees each return, and whose it is.
-    const auto classified = segmenter::ClassifyReturns(organised.turn.scan, {});
+    const auto classified = segmenter::ClassifyReturns(organised.labelled.scan, {});
     ASSERT_EQ(classified.returns.size(), cloud.points.size());
-    std::vector<const segmenter::Return*> at(organised.turn.scan.num_cells());
+    std::vector<const segmenter::Return*> at(organised.labelled.scan.num_cells());
     for (const auto& one : classified.returns) at[static_cast<std::size_t>(one.cell)] = &one;
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       const auto cell = static_cast<std::size_t>(organised.cell_of_point[i]);
@@ -77,7 +77,7 @@ TEST(Organise, FindsTheRingsAndColumnsOfSensorsFrom16To128Rings) {
       // 0.2 columns off, at up to 38 m.
       const double limit_m = 0.001 + 0.21 * kTwoPi / sensor.num_columns * at[cell]->range_m;
       ASSERT_LT(std::sqrt(segmenter::SquaredDistance(at[cell]->point, {point.x_m, point.y_m, point.z_m})), limit_m);
-      ASSERT_EQ(organised.turn.object[cell], point.object);
+      ASSERT_EQ(organised.labelled.object[cell], point.object);
     }
   }
 }
@@ -87,10 +87,10 @@ TEST(Organise, BlurredRingsBecomeBands) {
   for (int i = 0; i < 5000; ++i) cloud.points.push_back(Point(0.07 * i, -20.0 + 0.005 * i, 10.0));
   auto organised = Organise(cloud, {});
   EXPECT_FALSE(organised.are_rings_found);
-  EXPECT_EQ(organised.turn.scan.head.num_rings(), 64);
+  EXPECT_EQ(organised.labelled.scan.head.num_rings(), 64);
   organised = Organise(cloud, {.num_rings = 32});
-  EXPECT_EQ(organised.turn.scan.head.num_rings(), 32);
-  EXPECT_TRUE(std::ranges::is_sorted(organised.turn.scan.head.rings, {}, &segmenter::Ring::elevation_rad));
+  EXPECT_EQ(organised.labelled.scan.head.num_rings(), 32);
+  EXPECT_TRUE(std::ranges::is_sorted(organised.labelled.scan.head.rings, {}, &segmenter::Ring::elevation_rad));
 }
 
 TEST(Organise, TheNearerPointHasTheCellAndTheOtherMovesOrIsHidden) {
@@ -98,7 +98,7 @@ TEST(Organise, TheNearerPointHasTheCellAndTheOtherMovesOrIsHidden) {
   cloud.points = {Point(90.5, 0.0, 20.0, 1), Point(90.6, 0.0, 10.0, 2)};
   auto organised = Organise(cloud, {.num_columns = 360});
   EXPECT_EQ(organised.cell_of_point[1], 90);
-  EXPECT_EQ(organised.turn.object[90], 2);
+  EXPECT_EQ(organised.labelled.object[90], 2);
   EXPECT_EQ(organised.cell_of_point[0], 91);
   EXPECT_EQ(organised.num_moved, 1);
   cloud.points.push_back(Point(91.5, 0.0, 10.0, 3));
@@ -120,7 +120,7 @@ TEST(Organise, PointsOutOfRangeAreCountedAndFarOnesMakeTheUnitLarger) {
   cloud.points = {Point(1.0, 0.0, 0.0), Point(2.0, 0.0, 600.0), Point(3.0, 0.0, 300.0), Point(4.0, 0.0, 0.003)};
   const auto organised = Organise(cloud, {});
   EXPECT_EQ(organised.num_out_of_range, 2);
-  const auto& scan = organised.turn.scan;
+  const auto& scan = organised.labelled.scan;
   EXPECT_NEAR(scan.head.range_unit_m, 0.006, 1e-12);
   EXPECT_EQ(scan.columns.range[static_cast<std::size_t>(organised.cell_of_point[2])], 50000);
   EXPECT_EQ(scan.columns.range[static_cast<std::size_t>(organised.cell_of_point[3])], 1);  // never 0, which says no return
@@ -129,7 +129,7 @@ TEST(Organise, PointsOutOfRangeAreCountedAndFarOnesMakeTheUnitLarger) {
 TEST(ScanMessage, ComesBackThroughTheSegmentersOwnDoor) {
   constexpr int kMaxMessageBytes = 120'000;
   const auto organised = Organise(Cloud(64, 0.4, 2048), {});
-  const auto messages = ToScanMessages(organised.turn.scan, "cloud", kMaxMessageBytes);
+  const auto messages = ToScanMessages(organised.labelled.scan, "cloud", kMaxMessageBytes);
   EXPECT_EQ(messages.size(), 4U);
   segmenter::TurnGatherer gatherer;
   std::optional<segmenter::Scan> scan;
@@ -140,11 +140,11 @@ TEST(ScanMessage, ComesBackThroughTheSegmentersOwnDoor) {
     scan = gatherer.Add(std::get<segmenter::ScanPart>(part));
   }
   ASSERT_TRUE(scan);
-  EXPECT_EQ(scan->columns.range, organised.turn.scan.columns.range);
-  EXPECT_EQ(scan->columns.azimuth_rad, organised.turn.scan.columns.azimuth_rad);
-  EXPECT_EQ(scan->columns.time_ns, organised.turn.scan.columns.time_ns);
-  EXPECT_EQ(scan->head.rings, organised.turn.scan.head.rings);
+  EXPECT_EQ(scan->columns.range, organised.labelled.scan.columns.range);
+  EXPECT_EQ(scan->columns.azimuth_rad, organised.labelled.scan.columns.azimuth_rad);
+  EXPECT_EQ(scan->columns.time_ns, organised.labelled.scan.columns.time_ns);
+  EXPECT_EQ(scan->head.rings, organised.labelled.scan.head.rings);
 }
 
 }  // namespace
-}  // namespace lookout::eval
+}  // namespace lookout::importer

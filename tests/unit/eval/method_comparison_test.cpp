@@ -1,5 +1,5 @@
 // From scenes to figures: truth joined to its cells, methods, curves and tables.
-#include "tools/eval/judge.hpp"
+#include "tools/eval/method_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ RunPlan SmallPlan(const std::string& scene) { return {{scene}, 1, 1, kSeconds}; 
 std::vector<LabelledScan> Render(const std::string& scene) {
   std::vector<LabelledScan> turns;
   Progress silent(nullptr, 1);
-  ForEachTurn(SmallPlan(scene), Catabot(), silent, [&turns](const TurnPlace&, const LabelledScan& truth) { turns.push_back(truth); });
+  ForEachScan(SmallPlan(scene), Catabot(), silent, [&turns](const ScanPlace&, const LabelledScan& truth) { turns.push_back(truth); });
   return turns;
 }
 
@@ -103,29 +103,29 @@ TEST(Render, JoinsBothReturnsOfDualMode) {
   EXPECT_EQ(turns[0].scan.head.num_returns, 2);
 }
 
-TEST(Judge, TruthAsLabelsScoresOneHundred) {
+TEST(MethodComparison, TruthAsLabelsScoresOneHundred) {
   const auto turns = Render("sparse");
   Methods methods;
   methods.push_back(std::make_unique<Oracle>(turns));
-  Judge judge(methods);
-  for (const auto& turn : turns) judge.Add({"sparse", 1, 0}, turn);
-  const auto& score = judge.results()[0].by_scene.at("sparse");
+  MethodComparison comparison(methods);
+  for (const auto& turn : turns) comparison.Add({"sparse", 1, 0}, turn);
+  const auto& score = comparison.results()[0].by_scene.at("sparse");
   EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
   EXPECT_EQ(score.num_false_segments, 0);
-  EXPECT_EQ(judge.results()[0].worst.size(), 1U) << "one of each scene";
+  EXPECT_EQ(comparison.results()[0].worst.size(), 1U) << "one of each scene";
 }
 
-TEST(Judge, KeepsTheWorstTurnsOfDifferentScenesWorstFirst) {
+TEST(MethodComparison, KeepsTheWorstTurnsOfDifferentScenesWorstFirst) {
   const auto boat = Catabot();
   const std::vector<std::string> names{"paper W=512"};
   const auto methods = MakeMethods(boat.segmenter, names);
   ASSERT_EQ(methods.size(), 1U);
-  Judge judge(methods);
+  MethodComparison comparison(methods);
   const auto turns = Render("sparse");
   const auto easy = Render("motorboat_6m");
-  for (std::size_t i = 0; i < turns.size(); ++i) judge.Add({"sparse", 1, static_cast<int>(i)}, turns[i]);
-  judge.Add({"motorboat_6m", 1, 0}, easy.at(0));
-  const auto& worst = judge.results()[0].worst;
+  for (std::size_t i = 0; i < turns.size(); ++i) comparison.Add({"sparse", 1, static_cast<int>(i)}, turns[i]);
+  comparison.Add({"motorboat_6m", 1, 0}, easy.at(0));
+  const auto& worst = comparison.results()[0].worst;
   ASSERT_EQ(worst.size(), 2U);
   EXPECT_LE(worst[0].iou, worst[1].iou);
   EXPECT_NE(worst[0].scene, worst[1].scene);
@@ -183,15 +183,15 @@ class Doubter final : public Method {
   const LabelledScan& turn_;
 };
 
-TEST(Judge, AMethodThatKnowsDoubtHasARowForEachOperatingPoint) {
+TEST(MethodComparison, AMethodThatKnowsDoubtHasARowForEachOperatingPoint) {
   const auto turn = Render("sparse").at(0);
   Methods methods;
   methods.push_back(std::make_unique<Doubter>(turn));
-  Judge judge(methods);
-  judge.Add({"sparse", 1, 0}, turn);
+  MethodComparison comparison(methods);
+  comparison.Add({"sparse", 1, 0}, turn);
   Results results;
   results.scenes = {"sparse"};
-  results.methods = judge.results();
+  results.methods = comparison.results();
   std::map<std::string, std::string> csv;
   for (const auto& table : TablesOf(results)) {
     std::ostringstream out;
@@ -219,13 +219,13 @@ TEST(Methods, WithoutSearchEveryReturnIsAComponent) {
   for (const auto& segment : segmenter::SegmentScan(turn.scan, params).segments) ASSERT_EQ(segment.num_points, 1);
 }
 
-TEST(Methods, WhatIsOutsideOfTheFieldOfViewIsNotJudged) {
+TEST(Methods, WhatIsOutsideOfTheFieldOfViewIsNotScored) {
   const auto boat = Catabot();
   const std::vector<std::string> names{"paper W=1800 at 90 deg"};
   const auto turn = Render("sparse").at(0);
   const auto labelling = MakeMethods(boat.segmenter, names).at(0)->Segment(turn.scan);
-  const auto num_not_judged = std::ranges::count(labelling.label, kNotJudged);
-  EXPECT_GT(num_not_judged, 0);
+  const auto num_not_scored = std::ranges::count(labelling.label, kNotScored);
+  EXPECT_GT(num_not_scored, 0);
 }
 
 TEST(Methods, AreChosenByNameAndByGroup) {
@@ -296,7 +296,7 @@ TEST(PaperTests, PartsAreThoseOfOneObjectAlone) {
   add(2, 7, 2);
   add(1, 7, 3);
   add(1, 7, 0);
-  add(9, 7, kNotJudged);
+  add(9, 7, kNotScored);
   add(30, 8, 4);
   add(30, kNoTrueObject, 5);
   auto parts = PartsOf(7, truth, labelling);
@@ -350,7 +350,7 @@ TEST(ResultTables, AnotherWorldStandsBesideOurs) {
     Results results;
     results.scenes = {scene};
     Score score;
-    score.num_turns = score.num_turns_with_object = 1;
+    score.num_scans = score.num_scans_with_object = 1;
     score.sum_iou = iou;
     score.near_recall_by_kind["buoy"] = {1, 1};
     results.methods = {{"ours (all segments)", {{scene, score}}, {}, {}}, {"F3D (tuned)", {{scene, score}}, {}, {}}};
@@ -403,7 +403,7 @@ TEST(ResultTables, OursIsHeldAgainstTheBestPeers) {
     method.method = name;
     for (std::size_t i = 0; i < iou.size(); ++i) {
       Score score;
-      score.num_turns = score.num_turns_with_object = 1;
+      score.num_scans = score.num_scans_with_object = 1;
       score.sum_iou = iou[i];
       method.by_scene[results.scenes[i]] = score;
     }
@@ -436,10 +436,10 @@ TEST(ResultTables, SceneWithoutObjectsHasADash) {
   MethodResult method;
   method.method = "m";
   Score with_object;
-  with_object.num_turns = with_object.num_turns_with_object = 4;
+  with_object.num_scans = with_object.num_scans_with_object = 4;
   with_object.sum_iou = 3.0;
   Score without;
-  without.num_turns = 4;
+  without.num_scans = 4;
   without.num_false_segments = 2;
   method.by_scene = {{"a", with_object}, {"b", without}};
   results.methods.push_back(method);
