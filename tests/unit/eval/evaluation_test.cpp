@@ -77,9 +77,8 @@ Turn SmallTurn() {
 
 class EvaluationTest : public testing::Test {
  protected:
-  std::filesystem::path folder_ = WriteTruth("evaluation");
-  Truth truth_{folder_};
-  ~EvaluationTest() override { std::filesystem::remove_all(folder_); }
+  support::TempDir folder_;
+  Truth truth_{WriteTruth(folder_)};
 };
 
 TEST_F(EvaluationTest, MeasuresVerticesAgainstTheObjectThatReturnedThem) {

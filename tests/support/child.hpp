@@ -17,7 +17,7 @@
 
 extern char** environ;
 
-namespace lookout::system_test {
+namespace lookout::support {
 
 class Child {
  public:
@@ -105,4 +105,4 @@ inline RunResult RunProgram(const std::vector<std::string>& command, const std::
   return {exit_code.value_or(-1), child.Output()};
 }
 
-}  // namespace lookout::system_test
+}  // namespace lookout::support
