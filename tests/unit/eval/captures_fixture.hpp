@@ -17,7 +17,7 @@
 
 #include "tools/eval/captures.hpp"
 #include "tools/sim/lidar.hpp"
-#include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/sinks.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval::test {

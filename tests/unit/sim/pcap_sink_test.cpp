@@ -1,5 +1,3 @@
-#include "tools/sim/pcap_sink.hpp"
-
 #include <unistd.h>
 
 #include <array>
@@ -7,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <pcap/pcap.h>
 #include <stdexcept>
+
+#include "tools/sim/sinks.hpp"
 
 namespace lookout::sim {
 namespace {
