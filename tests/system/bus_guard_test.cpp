@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "tests/system/child.hpp"
 #include "tests/system/lcm_datagrams.hpp"
@@ -40,7 +41,7 @@ using std::chrono::seconds;
 
 constexpr const char* kGroup = "239.255.76.67";
 constexpr std::uint16_t kPort = 7667;
-const std::vector<std::string> kServices{"vlp16", "navigator", "segmenter", "georeferencer", "recorder"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
 std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
 
