@@ -65,7 +65,7 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
     sim::TruthWriter truth(folder, scene, boat, params.start);
     sim::Simulation simulation(scene, boat, params, &truth);
     replay::Chain chain(kDemo, {}, [&](Utime, std::string_view channel, Bytes bytes) { recording.Take(channel, bytes); });
-    while (const auto datagram = simulation.Next()) chain.OnDatagram(datagram->time, datagram->port, datagram->payload, {});
+    while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
     chain.Finish();
     truth.Close();
   }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/channels.hpp"
+#include "common/bus/services.hpp"
 #include "tests/support/files.hpp"
 
 namespace {
@@ -229,7 +229,7 @@ TEST(Structure, ReadmeNamesEveryProgram) {
     for (const auto& entry : fs::directory_iterator(kRoot / folder)) {
       if (!entry.is_directory()) continue;
       const std::string program = "lookout-" + entry.path().filename().string();
-      const bool is_program = Read(entry.path() / "CMakeLists.txt").find("lookout_program(") != std::string::npos;
+      const bool is_program = ReadFile(entry.path() / "CMakeLists.txt").find("lookout_program(") != std::string::npos;
       if (is_program) {
         EXPECT_NE(readme.find(program), std::string::npos) << "README.md does not name " << program;
       }
@@ -238,22 +238,63 @@ TEST(Structure, ReadmeNamesEveryProgram) {
   }
 }
 
-// deploy/README.md and systemd's reload go by this column.
-TEST(Structure, TheTableOfProcessesSaysWhoTakesSighup) {
-  std::istringstream table(ReadFile(kRoot / "deploy/processes"));
-  int num_processes = 0;
-  for (std::string line; std::getline(table, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream row(line);
-    std::string name;
-    std::string watchdog_s;
-    std::string reload;
-    row >> name >> watchdog_s >> reload;
-    const bool takes_it = ReadFile(kRoot / "services" / name / "main.cpp").find("process.OnHangup(") != std::string::npos;
-    EXPECT_EQ(reload == "yes", takes_it) << name;
-    ++num_processes;
+std::string Joined(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const auto word : words) text += (text.empty() ? "" : ", ") + std::string(word);
+  return text.empty() ? "-" : text;
+}
+
+std::vector<std::string_view> InputsOf(const lookout::bus::ServiceRow& service) {
+  std::vector<std::string_view> names;
+  for (const auto* channel : service.inputs) {
+    if (channel != nullptr) names.push_back(channel->name);
   }
-  EXPECT_GE(num_processes, 5);
+  return names;
+}
+
+std::vector<std::string_view> OutputsOf(const lookout::bus::ServiceRow& service) {
+  std::vector<std::string_view> names;
+  for (const auto& channel : lookout::bus::kChannels) {
+    if (channel.publisher == service.name) names.push_back(channel.name);
+  }
+  return names;
+}
+
+TEST(Structure, ReadmeOfDeployHoldsTheServiceTable) {
+  const std::string readme = ReadFile(kRoot / "deploy/README.md");
+  for (const auto& service : lookout::bus::kServices) {
+    std::ostringstream row;
+    row << "| " << service.name << " | " << service.purpose << " | " << (service.name == "recorder" ? "every channel" : Joined(InputsOf(service)))
+        << " | " << Joined(OutputsOf(service)) << " | " << service.state << " | " << service.hangup << " | " << service.watchdog_s << " |";
+    EXPECT_NE(readme.find(row.str()), std::string::npos) << "deploy/README.md lacks or differs from: " << row.str();
+  }
+}
+
+TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
+  std::istringstream readme(ReadFile(kRoot / "README.md"));
+  std::size_t num_rows = 0;
+  for (std::string line; std::getline(readme, line);) {
+    for (const auto& service : lookout::bus::kServices) {
+      if (!line.starts_with("| [lookout-" + std::string(service.name) + "](services/")) continue;
+      ++num_rows;
+      for (const auto& names : {InputsOf(service), OutputsOf(service)}) {
+        for (const auto name : names) EXPECT_NE(line.find(name), std::string::npos) << "README.md, " << service.name << " lacks " << name;
+      }
+    }
+  }
+  EXPECT_EQ(num_rows, lookout::bus::kServices.size());
+}
+
+// Readers start first: what they read, but for answers to what they publish, is published by a service above them.
+TEST(Structure, TheServiceTableIsInTheOrderOfTheData) {
+  std::vector<std::string_view> above;
+  for (const auto& service : lookout::bus::kServices) {
+    for (const auto* input : service.inputs) {
+      if (input == nullptr || input->is_raw) continue;
+      EXPECT_NE(std::ranges::find(above, input->publisher), above.end()) << service.name << " reads " << input->name;
+    }
+    above.push_back(service.name);
+  }
 }
 
 // A README says what a folder is and how to use it; why it became so stands beside it, with dates.
@@ -399,12 +440,8 @@ TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
 }
 
 // What is not in the table is neither in systemd's units nor started by lookout-up.
-TEST(Structure, TheTableOfProcessesNamesEveryService) {
-  std::vector<std::string> in_table;
-  std::istringstream table(ReadFile(kRoot / "deploy/processes"));
-  for (std::string line; std::getline(table, line);) {
-    if (!line.empty() && line[0] != '#') in_table.push_back(line.substr(0, line.find(' ')));
-  }
+TEST(Structure, TheServiceTableNamesEveryService) {
+  std::vector<std::string> in_table = lookout::bus::StartOrder();
   std::vector<std::string> in_folder;
   for (const auto& entry : fs::directory_iterator(kRoot / "services")) {
     if (entry.is_directory()) in_folder.push_back(entry.path().filename().string());
