@@ -14,6 +14,7 @@
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
 #include "lookout/sim_truth_t.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
@@ -28,8 +29,6 @@ constexpr int kSlotsPerPacket = 384;
 
 class TruthLogTest : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   // One second of a scene. @return messages of its truth.lcmlog
   std::vector<sim_truth_t> Run(const std::string& scene_name, ReturnMode mode) {
     const auto scene = MakeScene(scene_name, 3).value();
@@ -76,8 +75,7 @@ class TruthLogTest : public testing::Test {
     return rows;
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("lookout_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  support::TempDir folder_;
 };
 
 TEST_F(TruthLogTest, HasTheReturnsOfTheCsvFile) {
@@ -181,7 +179,6 @@ TEST_F(TruthLogTest, OwnBoatHasThePoseOfThePoseFile) {
 TEST_F(TruthLogTest, LargestScenesStayBelowTheLimitOfAMessage) {
   for (const auto& name : SceneNames()) {
     const auto scene = MakeScene(name, 1).value();
-    std::filesystem::create_directories(folder_);
     TruthLog log(folder_ / "truth.lcmlog", scene, SmallBoat(), Utime(1'781'532'600s), {.force = true});
     log.AdvanceTo(Utime(1'781'532'600s));
     log.Close();
