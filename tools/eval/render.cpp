@@ -63,7 +63,7 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
   return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
-segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets) {
+segmenter::Scan ScanOfTurn(const vlp16::Scan& turn, bool use_vertical_origin_offsets) {
   segmenter::TurnGatherer gatherer;
   for (const auto& message : vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
     auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
@@ -80,7 +80,7 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
   std::deque<Truth> truths;
   vlp16::Decoder decoder(
       boat.lidar.decoder,
-      [&](const vlp16::Turn& turn) {
+      [&](const vlp16::Scan& turn) {
         labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
         labelled.object = TakeObjects(labelled.scan, truths);
         if (!turn.is_partial_start && !turn.is_partial_end) on_scan(labelled);
