@@ -19,6 +19,7 @@
 #include "common/bus/guarded_bind.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/sequence.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/obstacles_t.hpp"
@@ -31,7 +32,7 @@ using namespace lookout;
 using namespace lookout::support;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kServices{"recorder", "georeferencer", "segmenter", "navigator", "vlp16"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
 // Targets of the suite, on the boat's computer.
 constexpr double kMaxLatencyMs = 10.0;

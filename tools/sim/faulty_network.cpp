@@ -1,5 +1,6 @@
-#include "tools/sim/faults.hpp"
+#include "tools/sim/faulty_network.hpp"
 
+#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -35,15 +36,9 @@ FaultyNetwork::FaultyNetwork(Source source, Observer observer, const FaultParams
 }
 
 double FaultyNetwork::Share(FaultKind kind, Utime time) const {
-  switch (kind) {
-    case FaultKind::kDropped:
-      return params_.drop_share + plan_.ValueAt(TimedFaultKind::kDrop, time);
-    case FaultKind::kDoubled:
-      return params_.double_share + plan_.ValueAt(TimedFaultKind::kDouble, time);
-    case FaultKind::kSwapped:
-      return params_.swap_share + plan_.ValueAt(TimedFaultKind::kSwap, time);
-  }
-  return 0.0;
+  // The first three kinds of TimedFaultKind are these.
+  const std::array shares{params_.drop_share, params_.double_share, params_.swap_share};
+  return shares.at(static_cast<std::size_t>(kind)) + plan_.ValueAt(static_cast<TimedFaultKind>(kind), time);
 }
 
 std::optional<Datagram> FaultyNetwork::Next() {
@@ -66,21 +61,21 @@ std::optional<Datagram> FaultyNetwork::Next() {
   }
 }
 
-// @return the data packet, unless it is lost or held
+// @return the data packet, unless it is dropped or waits for the next
 std::optional<Datagram> FaultyNetwork::Pass(Datagram datagram) {
   const std::int64_t packet_index = totals_.num_made++;
   const auto fault = Draw(datagram.time);
   if (overtaken_) {
-    Tell(FaultKind::kSwapped, overtaken_->time, packet_index - 1);
+    Report(FaultKind::kSwapped, overtaken_->time, packet_index - 1);
     ++totals_.num_swapped;
     overtaken_->time = datagram.time + kFrameTime;
     following_.push_back(*std::exchange(overtaken_, std::nullopt));
   } else if (fault == FaultKind::kDropped) {
-    Tell(FaultKind::kDropped, datagram.time, packet_index);
+    Report(FaultKind::kDropped, datagram.time, packet_index);
     ++totals_.num_dropped;
     return std::nullopt;
   } else if (fault == FaultKind::kDoubled) {
-    Tell(FaultKind::kDoubled, datagram.time, packet_index);
+    Report(FaultKind::kDoubled, datagram.time, packet_index);
     ++totals_.num_doubled;
     following_.push_back({datagram.time + kFrameTime, datagram.port, datagram.payload});
   } else if (fault == FaultKind::kSwapped) {
@@ -103,7 +98,7 @@ std::optional<FaultKind> FaultyNetwork::Draw(Utime time) {
   return std::nullopt;
 }
 
-void FaultyNetwork::Tell(FaultKind kind, Utime time, std::int64_t packet_index) {
+void FaultyNetwork::Report(FaultKind kind, Utime time, std::int64_t packet_index) {
   if (observer_) observer_({kind, time, packet_index});
 }
 

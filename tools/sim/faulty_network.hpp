@@ -1,5 +1,4 @@
-// What a network does to the lidar's data packets: some never come, some come twice, some are overtaken by the next. Everything else that is
-// sent passes untouched.
+// Faults of the network between lidar and host: data packets that are lost, come twice, or are overtaken by the next. All other datagrams pass.
 #pragma once
 
 #include <array>
@@ -16,12 +15,12 @@
 
 namespace lookout::sim {
 
-/// Shares of the data packets, together at most 1. The first and the last kFaultFree of a run are spared, and so is a packet that overtakes one.
+/// Shares of the data packets, together at most 1. The first and the last kFaultFree of a run have no faults, nor has a packet that overtakes one.
 struct FaultParams {
   double drop_share = 0.0;
   double double_share = 0.0;
   double swap_share = 0.0;
-  std::vector<TimedFault> timed{};  // drop, double and swap add their shares while they last; all others have no meaning here
+  std::vector<TimedFault> timed{};  // drop, double and swap add their shares while they last; others are ignored
 };
 
 enum class FaultKind { kDropped, kDoubled, kSwapped };
@@ -51,7 +50,7 @@ class FaultyNetwork {
   using Observer = std::function<void(const Fault&)>;
 
   /// @param source    datagrams by time; nullopt at the end
-  /// @param observer  hears of each fault
+  /// @param observer  is called for each fault
   /// @throws std::invalid_argument  as FaultPlan, and when shares are more than 1 together at any time
   FaultyNetwork(Source source, Observer observer, const FaultParams& params, int data_port, Utime start, Utime end, std::uint64_t seed);
 
@@ -64,7 +63,7 @@ class FaultyNetwork {
   double Share(FaultKind kind, Utime time) const;
   std::optional<FaultKind> Draw(Utime time);
   std::optional<Datagram> Pass(Datagram datagram);
-  void Tell(FaultKind kind, Utime time, std::int64_t packet_index);
+  void Report(FaultKind kind, Utime time, std::int64_t packet_index);
 
   Source source_;
   Observer observer_;

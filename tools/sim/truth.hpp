@@ -1,19 +1,23 @@
-// The truth about a simulation as CSV files (objects.csv, object_poses.csv, outlines.csv, returns.csv, pose.csv, faults.csv; columns:
-// README.md) and as truth.lcmlog.
+// The truth about a simulation: objects.csv, object_poses.csv, outlines.csv, returns.csv, pose.csv, faults.csv (columns: README.md), and the messages
+// of SIM_TRUTH in truth.lcmlog.
 #pragma once
 
 #include <GeographicLib/LocalCartesian.hpp>
 #include <filesystem>
 #include <vector>
 
+#include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
 #include "common/io/output_file.hpp"
 #include "tools/sim/fault_plan.hpp"
-#include "tools/sim/faults.hpp"
+#include "tools/sim/faulty_network.hpp"
 #include "tools/sim/lidar.hpp"
 #include "tools/sim/scene.hpp"
-#include "tools/sim/truth_log.hpp"
+
+namespace lookout {
+struct sim_truth_t;
+}
 
 namespace lookout::sim {
 
@@ -22,11 +26,13 @@ class TruthWriter {
   /// Makes the folder and writes objects, and the outlines of those that stand still.
   ///
   /// @param scene  outlives this
-  /// @throws std::runtime_error as io::OutputFile, of any of the files
+  /// @throws std::runtime_error as io::OutputFile, of any of the files; so do all functions below
   TruthWriter(const std::filesystem::path& folder, const Scene& scene, const config::BoatFacts& boat, Utime start,
               const io::OutputOptions& options = {});
 
+  /// Packets in the order in which they were made, each before AdvanceTo goes beyond it. The log has kPacketsPerMessage of them in a message.
   void AddPacket(const LidarPacket& packet);
+  static constexpr std::size_t kPacketsPerMessage = 24;  // as in LIDAR_PACKETS: 28 kB
 
   /// What happened to a packet.
   void AddFault(const Fault& fault);
@@ -34,24 +40,17 @@ class TruthWriter {
   /// What was ordered for a part of the run.
   void AddFault(const TimedFault& fault);
 
-  /// Writes poses and moving outlines up to `time`.
+  /// Writes poses and outlines up to `time`.
   void AdvanceTo(Utime time);
 
-  /// All is told: the files get their names. @throws std::runtime_error as io::CommitAll
+  /// The files get their names. @throws std::runtime_error as io::CommitAll
   void Close() { io::CommitAll(Finish()); }
 
-  /// All is told, and is in the files that are given: for io::CommitAll.
+  /// @return the files, complete, for io::CommitAll
   std::vector<io::OutputFile*> Finish();
 
  private:
-  void WriteObjects();
-  void WriteOutline(const SceneObject& object, Utime time);
-  void WriteOutline(int object_id, const Placement& placement, const std::vector<Eigen::Vector2d>& outline_m, Utime time);
-  void WriteObjectPose(int object_id, const Eigen::Isometry3d& T_map_object, Utime time);
-  void WriteObjectsAt(Utime time);
-  void WritePose(Utime time);
-
-  // The folder, taken away again where nothing came into it.
+  // The folder, removed at the end where it is empty.
   struct Folder {
     explicit Folder(const std::filesystem::path& path);
     ~Folder();
@@ -59,16 +58,36 @@ class TruthWriter {
     Folder& operator=(const Folder&) = delete;
     std::filesystem::path made;  // empty: it was there before
   };
+  struct LatitudeLongitude {
+    double latitude_deg = 0.0;
+    double longitude_deg = 0.0;
+  };
+  struct Packet {
+    Utime stamp;
+    std::vector<TrueReturn> returns;
+  };
+
+  LatitudeLongitude OnEarth(const Eigen::Vector3d& p_map_m) const;
+  void WriteOutline(int object_id, const Placement& placement, const std::vector<Eigen::Vector2d>& outline_m, Utime time);
+  void WriteObjects(Utime time);
+  void WritePose(Utime time);
+  void WritePackets();
+  void WriteMessage(sim_truth_t& message);
 
   Folder folder_;
   const Scene& scene_;
   double reference_point_above_water_m_;
   std::vector<Eigen::Vector2d> own_outline_m_;  // vessel frame
+  config::BoatDatum datum_;
   GeographicLib::LocalCartesian map_;
   Utime start_;
   Utime next_pose_;
-  Utime next_outline_;
-  TruthLog log_;
+  Utime next_objects_;
+  std::vector<Packet> packets_;   // not yet in the log
+  std::int64_t num_packets_ = 0;  // in the log
+  std::int64_t seq_ = 0;
+  io::OutputFile log_file_;
+  bus::LogWriter log_;
   io::OutputFile objects_;
   io::OutputFile object_poses_;
   io::OutputFile outlines_;

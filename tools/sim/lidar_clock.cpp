@@ -1,4 +1,4 @@
-#include "tools/sim/clock_faults.hpp"
+#include "tools/sim/lidar_clock.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,3 @@
-#include "tools/sim/truth_log.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -18,7 +16,7 @@
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
-#include "tools/sim/truth_writer.hpp"
+#include "tools/sim/truth.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -30,7 +28,7 @@ constexpr int kSlotsPerPacket = 384;
 class TruthLogTest : public testing::Test {
  protected:
   // One second of a scene. @return messages of its truth.lcmlog
-  std::vector<sim_truth_t> Run(const std::string& scene_name, ReturnMode mode) {
+  std::vector<sim_truth_t> Run(const std::string& scene_name, config::Scene::ReturnMode mode) {
     const auto scene = MakeScene(scene_name, 3).value();
     SimulationParams params;
     params.start = Utime(1'781'532'600s);
@@ -79,7 +77,7 @@ class TruthLogTest : public testing::Test {
 };
 
 TEST_F(TruthLogTest, HasTheReturnsOfTheCsvFile) {
-  for (const auto mode : {ReturnMode::kStrongest, ReturnMode::kDual}) {
+  for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     std::vector<std::tuple<int, std::string>> from_log;
     std::int64_t num_packets = 0;
     for (const auto& message : Run("rain", mode)) {
@@ -91,7 +89,7 @@ TEST_F(TruthLogTest, HasTheReturnsOfTheCsvFile) {
       EXPECT_EQ(message.utime_us, message.packet_utime_us.front());
       for (int packet = 0; packet < message.num_packets; ++packet) {
         // The CSV file has the order of the shots: in dual return the pair of a shot lies in two blocks.
-        const int blocks_per_shot = mode == ReturnMode::kDual ? 2 : 1;
+        const int blocks_per_shot = mode == config::Scene::DUAL ? 2 : 1;
         for (int block = 0; block < 12; block += blocks_per_shot) {
           for (int k = 0; k < 32; ++k) {
             for (int i = 0; i < blocks_per_shot; ++i) {
@@ -114,7 +112,7 @@ TEST_F(TruthLogTest, HasTheReturnsOfTheCsvFile) {
 }
 
 TEST_F(TruthLogTest, HasEveryObjectEachTenthOfASecondWithItsOutline) {
-  const auto messages = Run("dense", ReturnMode::kStrongest);
+  const auto messages = Run("dense", config::Scene::STRONGEST);
   const auto scene = MakeScene("dense", 3).value();
   std::int64_t next_utime_us = 1'781'532'600'000'000;
   for (const auto& message : messages) {
@@ -157,7 +155,7 @@ TEST_F(TruthLogTest, HasEveryObjectEachTenthOfASecondWithItsOutline) {
 }
 
 TEST_F(TruthLogTest, OwnBoatHasThePoseOfThePoseFile) {
-  const auto messages = Run("waves", ReturnMode::kStrongest);
+  const auto messages = Run("waves", config::Scene::STRONGEST);
   std::map<std::int64_t, std::vector<double>> poses;
   for (const auto& row : Rows("pose.csv")) {
     for (const auto& cell : row) poses[std::stoll(row[0])].push_back(std::stod(cell));
@@ -179,9 +177,9 @@ TEST_F(TruthLogTest, OwnBoatHasThePoseOfThePoseFile) {
 TEST_F(TruthLogTest, LargestScenesStayBelowTheLimitOfAMessage) {
   for (const auto& name : SceneNames()) {
     const auto scene = MakeScene(name, 1).value();
-    TruthLog log(folder_ / "truth.lcmlog", scene, SmallBoat(), Utime(1'781'532'600s), {.force = true});
-    log.AdvanceTo(Utime(1'781'532'600s));
-    log.Close();
+    TruthWriter truth(folder_, scene, SmallBoat(), Utime(1'781'532'600s), {.force = true});
+    truth.AdvanceTo(Utime(1'781'532'600s));
+    truth.Close();
     EXPECT_FALSE(Messages().empty()) << name;
   }
 }

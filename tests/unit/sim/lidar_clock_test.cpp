@@ -1,8 +1,7 @@
-#include "tools/sim/clock_faults.hpp"
-
 #include <gtest/gtest.h>
 
 #include "services/vlp16/core/packet_format.hpp"
+#include "tools/sim/lidar_clock.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -1,11 +1,18 @@
-#include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/sinks.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <pcap/pcap.h>
 #include <span>
 #include <stdexcept>
@@ -23,6 +30,7 @@ constexpr std::size_t kUdpBytes = 8;
 constexpr std::size_t kHeaderBytes = kEthernetBytes + kIpBytes + kUdpBytes;
 constexpr std::uint8_t kUdpProtocol = 17;
 constexpr std::uint8_t kTimeToLive = 64;
+constexpr int kSnapshotBytes = 65535;
 
 using Address = std::array<std::uint8_t, 4>;
 using Mac = std::array<std::uint8_t, 6>;
@@ -80,40 +88,25 @@ std::vector<std::uint8_t> Frame(const Datagram& datagram, bool is_lidar, std::ui
 
 }  // namespace
 
-struct PcapSink::Implementation {
-  Implementation(const std::filesystem::path& name, io::OutputOptions options) : file(name, std::move(options)) {}
-  io::OutputFile file;
-  pcap_t* capture = nullptr;
-  pcap_dumper_t* dumper = nullptr;
-  ~Implementation() {
-    if (dumper != nullptr) pcap_dump_close(dumper);
-    if (capture != nullptr) pcap_close(capture);
-  }
-  Implementation(const Implementation&) = delete;
-  Implementation& operator=(const Implementation&) = delete;
-
-  [[noreturn]] void Fail() const {
-    const auto reason = std::system_category().message(errno);
-    io::ThrowIfStopAsked();
-    throw std::runtime_error(file.file().string() + ": write failed: " + reason);
-  }
-};
-
 PcapSink::PcapSink(const std::filesystem::path& file, std::vector<int> lidar_ports, io::OutputOptions options)
-    : implementation_(std::make_unique<Implementation>(file, std::move(options))), lidar_ports_(std::move(lidar_ports)) {
-  constexpr int kSnapshotBytes = 65535;
-  auto& self = *implementation_;
-  self.capture = pcap_open_dead(DLT_EN10MB, kSnapshotBytes);
-  if (self.capture == nullptr) throw std::runtime_error("libpcap gives no capture");
-  // libpcap closes what it writes to; the name of the file hangs on the descriptor that stays.
-  const int descriptor = fcntl(self.file.descriptor(), F_DUPFD_CLOEXEC, 0);
+    : file_(file, std::move(options)),
+      lidar_ports_(std::move(lidar_ports)),
+      capture_(pcap_open_dead(DLT_EN10MB, kSnapshotBytes), pcap_close),
+      dumper_(nullptr, pcap_dump_close) {
+  if (!capture_) throw std::runtime_error(file.string() + ": libpcap cannot open a capture");
+  // libpcap closes what it writes to; the file keeps a descriptor of its own.
+  const int descriptor = fcntl(file_.descriptor(), F_DUPFD_CLOEXEC, 0);
   std::FILE* out = descriptor < 0 ? nullptr : fdopen(descriptor, "wb");
-  if (out == nullptr) self.Fail();
-  self.dumper = pcap_dump_fopen(self.capture, out);
-  if (self.dumper == nullptr) throw std::runtime_error(file.string() + ": " + pcap_geterr(self.capture));
+  if (out == nullptr) Fail();
+  dumper_.reset(pcap_dump_fopen(capture_.get(), out));
+  if (!dumper_) throw std::runtime_error(file.string() + ": " + pcap_geterr(capture_.get()));
 }
 
-PcapSink::~PcapSink() = default;
+void PcapSink::Fail() const {
+  const auto reason = std::system_category().message(errno);
+  io::ThrowIfStopAsked();
+  throw std::runtime_error(file_.file().string() + ": write failed: " + reason);
+}
 
 void PcapSink::Send(const Datagram& datagram) {
   const auto frame = Frame(datagram, std::ranges::find(lidar_ports_, datagram.port) != lidar_ports_.end(), num_sent_++);
@@ -123,13 +116,68 @@ void PcapSink::Send(const Datagram& datagram) {
   header.ts.tv_usec = (datagram.time - second).count();
   header.caplen = header.len = static_cast<bpf_u_int32>(frame.size());
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): libpcap takes the dumper as the user pointer of a callback.
-  pcap_dump(reinterpret_cast<u_char*>(implementation_->dumper), &header, frame.data());
-  if (std::ferror(pcap_dump_file(implementation_->dumper)) != 0) implementation_->Fail();
+  pcap_dump(reinterpret_cast<u_char*>(dumper_.get()), &header, frame.data());
+  if (std::ferror(pcap_dump_file(dumper_.get())) != 0) Fail();
 }
 
 io::OutputFile& PcapSink::Finish() {
-  if (pcap_dump_flush(implementation_->dumper) != 0) implementation_->Fail();
-  return implementation_->file;
+  if (pcap_dump_flush(dumper_.get()) != 0) Fail();
+  return file_;
+}
+
+UdpSink::UdpSink(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  const int code = getaddrinfo(host.c_str(), nullptr, &hints, &found);
+  if (code != 0) throw std::runtime_error(host + ": " + gai_strerror(code));
+  sockaddr_in address{};
+  std::memcpy(&address, found->ai_addr, sizeof(address));
+  address_ = address.sin_addr.s_addr;
+  freeaddrinfo(found);
+
+  socket_ = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_ < 0) throw std::runtime_error(std::string("socket: ") + std::strerror(errno));
+  const int allowed = 1;
+  setsockopt(socket_, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
+}
+
+UdpSink::~UdpSink() {
+  if (socket_ >= 0) close(socket_);
+}
+
+void UdpSink::Send(const Datagram& datagram) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(datagram.port));
+  address.sin_addr.s_addr = address_;
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the socket interface asks for it.
+  const auto* generic = reinterpret_cast<const sockaddr*>(&address);
+  if (sendto(socket_, datagram.payload.data(), datagram.payload.size(), 0, generic, sizeof(address)) < 0) ++num_refused_;
+}
+
+Schedule::Clock::time_point Schedule::DueAt(Utime time) const {
+  const std::chrono::duration<double, std::micro> wait(speed_ > 0.0 ? static_cast<double>((time - start_).count()) / speed_ : 0.0);
+  return base_ + std::chrono::duration_cast<Clock::duration>(wait);
+}
+
+std::optional<std::string> Schedule::Report(Utime time, Clock::time_point now) {
+  ++num_sent_;
+  if (speed_ <= 0.0) return std::nullopt;
+  const auto late = now - DueAt(time);
+  if (late <= kLate) return std::nullopt;
+  ++num_late_;
+  greatest_ = std::max(greatest_, late);
+  if (last_report_ && now - *last_report_ < kReportEvery) return std::nullopt;
+  last_report_ = now;
+  return fmt::format("{:.2f} s behind its schedule: this computer is too slow for the scene, or too busy; data arrive late", ToSeconds(late));
+}
+
+std::string Schedule::Summary() const {
+  if (num_late_ == 0) return {};
+  return fmt::format("{} of {} datagrams were sent more than {:.2f} s late, the latest {:.2f} s", num_late_, num_sent_, ToSeconds(kLate),
+                     ToSeconds(greatest_));
 }
 
 }  // namespace lookout::sim
