@@ -24,10 +24,7 @@ NavigatorOutput Navigator::Consume(const Item& item) {
   time_ = item.time;
   NavigatorOutput output;
   if (item.kind == ItemKind::kSentence) OnSentence(item, output);
-  if (item.imu) {
-    const auto to_vessel = [](const std::array<double, 3>& v) { return Eigen::Vector3d(v[0], -v[1], -v[2]); };
-    filter_.Add(ImuSample{item.time, to_vessel(item.imu->angular_velocity_radps), to_vessel(item.imu->specific_force_mps2)});
-  }
+  if (item.imu) filter_.Add(InVesselFrame(item.time, *item.imu));
   if (item.kind == ItemKind::kTick) filter_.AdvanceTo(item.time);
   GivePosesUntil(item.time, output);
   if (item.kind == ItemKind::kEnd && next_pose_ - item.time < kPosePeriod) GivePose(output);
