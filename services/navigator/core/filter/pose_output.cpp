@@ -23,19 +23,19 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
   Pose pose;
   pose.time = state.time;
   if (datum) pose.datum = *datum;
-  const Eigen::Matrix3d R_level_vessel = state.R_level_vessel();
+  const Eigen::Matrix3d R_level_vessel = state.nominal.R_level_vessel();
   const Eigen::Vector3d& p_vessel_origin_m = params.p_vessel_imu_m;
   Eigen::Vector3d reference_level_m = -(R_level_vessel * p_vessel_origin_m);  // from the origin
-  Eigen::Vector3d swing_level_mps = -(R_level_vessel * state.angular_velocity_radps.cross(p_vessel_origin_m));
-  if (!state.has_heading) {
+  Eigen::Vector3d swing_level_mps = -(R_level_vessel * state.nominal.angular_velocity_radps.cross(p_vessel_origin_m));
+  if (!state.aiding.has_heading) {
     reference_level_m.head<2>().setZero();
     swing_level_mps.setZero();
   }
 
   const Here here = HereOf(state);
   const Eigen::Matrix3d R_here_vessel = here.R_here_level * R_level_vessel;
-  const bool is_placed = state.has_position && state.level && map != nullptr;
-  const Eigen::Isometry3d T_map_level = is_placed ? map->TransformFrom(state.level->frame) : Eigen::Isometry3d::Identity();
+  const bool is_placed = state.aiding.has_position && state.nominal.level && map != nullptr;
+  const Eigen::Isometry3d T_map_level = is_placed ? map->TransformFrom(state.nominal.level->frame) : Eigen::Isometry3d::Identity();
 
   Eigen::Matrix<double, kNumRows, kNumErrors> jacobian = Eigen::Matrix<double, kNumRows, kNumErrors>::Zero();
   jacobian.block<3, 3>(kRowPosition, kPosition) = T_map_level.linear();
@@ -47,15 +47,15 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
   pose.covariance = (0.5 * (pose.covariance + pose.covariance.transpose())).eval();
 
   const Eigen::Vector3d angles_rad = AnglesOf(R_here_vessel);
-  pose.has_attitude = state.has_tilt;
-  pose.roll_rad = state.has_tilt ? angles_rad[0] : 0.0;
-  pose.pitch_rad = state.has_tilt ? angles_rad[1] : 0.0;
-  if (state.heave.IsWithin(state.time, params.max_attitude_age)) {
-    pose.heave_m = state.p_level_m.z() - state.water_level_m - (R_level_vessel * p_vessel_origin_m - p_vessel_origin_m).z();
+  pose.has_attitude = state.aiding.has_tilt;
+  pose.roll_rad = state.aiding.has_tilt ? angles_rad[0] : 0.0;
+  pose.pitch_rad = state.aiding.has_tilt ? angles_rad[1] : 0.0;
+  if (state.aiding.heave.IsWithin(state.time, params.max_attitude_age)) {
+    pose.heave_m = state.nominal.p_level_m.z() - state.nominal.water_level_m - (R_level_vessel * p_vessel_origin_m - p_vessel_origin_m).z();
   }
-  if (state.has_heading) {
+  if (state.aiding.has_heading) {
     pose.heading_rad = angles_rad[2];
-    pose.heading_source = state.heading_source;
+    pose.heading_source = state.aiding.heading_source;
   } else {
     Unknown(kRowHeading, 1, pose.covariance);
     // Position is that of the antenna.
@@ -63,15 +63,15 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
     pose.covariance.diagonal().head<2>().array() += lever_m * lever_m;
   }
   if (is_placed) {
-    Eigen::Vector3d p_level_m = state.p_level_m + reference_level_m;
-    if (!state.has_height) p_level_m.z() = 0.0;  // the height of the datum
+    Eigen::Vector3d p_level_m = state.nominal.p_level_m + reference_level_m;
+    if (!state.aiding.has_height) p_level_m.z() = 0.0;  // the height of the datum
     pose.p_map_m = T_map_level * p_level_m;
-    pose.velocity_map_mps = T_map_level.linear() * (state.velocity_level_mps + swing_level_mps);
-    const GeodeticPlace place = state.level->frame.Reverse(p_level_m);
+    pose.velocity_map_mps = T_map_level.linear() * (state.nominal.velocity_level_mps + swing_level_mps);
+    const GeodeticPlace place = state.nominal.level->frame.Reverse(p_level_m);
     pose.latitude_deg = place.latitude_deg;
     pose.longitude_deg = place.longitude_deg;
     pose.ellipsoid_height_m = place.ellipsoid_height_m;
-    if (!state.has_height) {
+    if (!state.aiding.has_height) {
       pose.ellipsoid_height_m = kNan;
       Unknown(kRowPosition + 2, 1, pose.covariance);
     }
@@ -80,13 +80,12 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
     Unknown(kRowVelocity, 3, pose.covariance);
   }
 
-  const bool is_fix_carried = state.fix.IsStoppedAt(state.time);
-  const auto& heading = state.heading_source == HeadingSource::kCourse ? state.course : state.sensor_heading;
-  if (state.has_position && state.has_heading) {
-    pose.status = is_fix_carried || heading.IsStoppedAt(state.time) ? PoseStatus::kCoasting : PoseStatus::kOk;
-  } else if (state.has_position) {
+  const bool is_fix_stopped = state.aiding.fix.IsStoppedAt(state.time);
+  if (state.aiding.has_position && state.aiding.has_heading) {
+    pose.status = is_fix_stopped || state.aiding.heading().IsStoppedAt(state.time) ? PoseStatus::kCoasting : PoseStatus::kOk;
+  } else if (state.aiding.has_position) {
     pose.status = PoseStatus::kNoHeading;
-  } else if (state.has_heading) {
+  } else if (state.aiding.has_heading) {
     pose.status = PoseStatus::kNoPosition;
   }
   return pose;
@@ -94,16 +93,16 @@ Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFr
 
 std::string StoppedInputs(const State& state) {
   std::string text;
-  const auto say = [&](const Input& input, const char* name) {
+  const auto say = [&](const UseTimes& input, const char* name) {
     if (!input.IsStoppedAt(state.time)) return;
     const auto since = std::chrono::floor<std::chrono::seconds>(state.time - *input.last).count();
     if (!text.empty()) text += ", ";
     text += "no " + std::string(name) + " for " + std::to_string(since) + " s";
   };
-  say(state.fix, "position fix");
-  say(state.sensor_heading, "heading");
-  say(state.tilt, "attitude");
-  say(state.imu, "IMU");
+  say(state.aiding.fix, "position fix");
+  say(state.aiding.sensor_heading, "heading");
+  say(state.aiding.tilt, "attitude");
+  say(state.aiding.imu, "IMU");
   if (IsImuRefused(state)) text += std::string(text.empty() ? "" : ", ") + "IMU not used: it contradicts fixes or attitudes";
   return text;
 }
