@@ -15,7 +15,6 @@
 namespace lookout::navigator {
 
 /// Why a NAV_RAW message is not an item.
-inline constexpr std::size_t kNumItemFaults = 5;
 enum class ItemFault {
   kNone,
   kBadTime,  // outside of the bounds of Utime
@@ -23,6 +22,7 @@ enum class ItemFault {
   kBadText,  // a sentence that is not IsLine, a source that is not a word, or either where there is none
   kBadImu,   // not as many samples as the kind has, or a number that cannot be
 };
+inline constexpr std::size_t kNumItemFaults = static_cast<std::size_t>(ItemFault::kBadImu) + 1;
 
 struct ItemResult {
   ItemFault fault = ItemFault::kNone;

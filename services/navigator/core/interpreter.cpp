@@ -114,7 +114,7 @@ Reading Interpreter::Read(const Item& item) {
   }
   if (parsed.fault != SentenceFault::kNone) {
     ++source.num_refused;
-    CountFault(parsed.fault);
+    ++counts_.faults[static_cast<std::size_t>(parsed.fault)];
     return {};
   }
   if (parsed.sentence.type != SentenceType::kOther) {
@@ -132,25 +132,6 @@ Reading Interpreter::Read(const Item& item) {
   KeepRole(source.params.role, reading);
   if (had_something && IsEmpty(reading)) ++counts_.outside_role;
   return reading;
-}
-
-void Interpreter::CountFault(SentenceFault fault) {
-  switch (fault) {
-    case SentenceFault::kNone:
-      break;
-    case SentenceFault::kNoChecksum:
-      ++counts_.no_checksum;
-      break;
-    case SentenceFault::kBadChecksum:
-      ++counts_.bad_checksum;
-      break;
-    case SentenceFault::kBadField:
-      ++counts_.bad_field;
-      break;
-    case SentenceFault::kImplausible:
-      ++counts_.implausible_value;
-      break;
-  }
 }
 
 Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sentence& sentence) {
@@ -312,14 +293,15 @@ Attitude Interpreter::MakeAttitude(const Item& item, const Source& source, const
 }
 
 std::vector<Counter> Interpreter::counters() const {
+  const auto faults = [this](SentenceFault fault) { return counts_.faults[static_cast<std::size_t>(fault)]; };
   std::vector<Counter> counters{{"understood_sentence", counts_.understood_sentence},
                                 {"other_sentence", counts_.other_sentence},
                                 {"repeated_sentence", counts_.repeated_sentence},
                                 {"outside_role", counts_.outside_role},
-                                {"no_checksum", counts_.no_checksum},
-                                {"bad_checksum", counts_.bad_checksum},
-                                {"bad_field", counts_.bad_field},
-                                {"implausible_value", counts_.implausible_value},
+                                {"no_checksum", faults(SentenceFault::kNoChecksum)},
+                                {"bad_checksum", faults(SentenceFault::kBadChecksum)},
+                                {"bad_field", faults(SentenceFault::kBadField)},
+                                {"implausible_value", faults(SentenceFault::kImplausible)},
                                 {"sentence_time_unusable", counts_.sentence_time_unusable},
                                 {"time_backwards", counts_.time_backwards},
                                 {"queued_sentence", counts_.queued_sentence},

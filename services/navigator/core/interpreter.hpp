@@ -109,7 +109,6 @@ class Interpreter {
 
   Source& SourceOf(const std::string& name);
   bool IsRepeated(const Item& item);
-  void CountFault(SentenceFault fault);
 
   Reading ReadUnderstood(const Item& item, Source& source, const Sentence& sentence);
   Reading ReadFix(const Item& item, Source& source, const Sentence& sentence);
@@ -129,10 +128,7 @@ class Interpreter {
   std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
   struct Counts {
-    std::int64_t no_checksum = 0;
-    std::int64_t bad_checksum = 0;
-    std::int64_t bad_field = 0;
-    std::int64_t implausible_value = 0;
+    std::array<std::int64_t, kNumSentenceFaults> faults{};  // by SentenceFault
     std::int64_t other_sentence = 0;
     std::int64_t repeated_sentence = 0;
     std::int64_t understood_sentence = 0;

@@ -67,7 +67,7 @@ void UtcClock::NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, mic
   if (!is_new_month || utc < midnight - 1s || utc >= midnight + 1s || !source.last_utc || source.last_leap == midnight) return;
   const auto back = *source.last_utc - utc;
   const bool is_back = (back >= kMinLeapBack && back < 1s) || (back == 0us && arrival - source.last_arrival >= kMinLeapRepeat);
-  const auto known = source.fit.is_empty() || !source.fit.is_settled() ? off_ : source.fit.offset();
+  const auto known = !source.KnowsOffset() ? off_ : source.fit.offset();
   const auto late = arrival - (utc + std::chrono::seconds(source.num_leaps)) - latency - known;
   if (!is_back || late < kMinLeapBack) return;
   ++source.num_leaps;
@@ -78,7 +78,7 @@ void UtcClock::NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, mic
 bool UtcClock::IsUsable(const SourceClock& source, microseconds host_minus_utc) const {
   const auto ahead = host_minus_utc - off_;
   if (ahead < -max_latency_) return false;
-  if (source.fit.is_empty() || !source.fit.is_settled()) return ahead <= max_latency_;
+  if (!source.KnowsOffset()) return ahead <= max_latency_;
   return std::chrono::abs(source.fit.offset() - off_) <= max_latency_;
 }
 
@@ -181,7 +181,7 @@ void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
 }
 
 bool UtcClock::IsBehindTimedSentence(const SourceClock& source, Utime arrival) {
-  const bool is_known = source.last_utc && source.is_forward && !source.fit.is_empty() && source.fit.is_settled();
+  const bool is_known = source.last_utc && source.is_forward && source.KnowsOffset();
   return is_known && arrival >= source.last_arrival && arrival - source.last_arrival <= kBurst;
 }
 

@@ -25,6 +25,8 @@ struct SourceClock {
   Utime last_arrival{};     // of its last new instant
   bool is_forward = false;  // that instant was after the one before it: not so of the later of two receivers on one line
   ClockFit fit;             // of arrival less UTC (leap seconds counted on), less its delay where that is known
+
+  bool KnowsOffset() const { return !fit.is_empty() && fit.is_settled(); }
 };
 
 /// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the
