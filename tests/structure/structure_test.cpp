@@ -82,22 +82,23 @@ const std::vector<Rule>& Rules() {
       {"common/core/.*", {"common/core"}},
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
+      {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
-      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
+      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
-      {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
-      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
+      {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
+      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
       // As params; it knows what an address is.
       {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
       // Opens what params name.
-      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "OWN", "OWN/core", "OWN/io"}},
+      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "OWN", "OWN/core"}},
+      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
-      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
+      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
   };

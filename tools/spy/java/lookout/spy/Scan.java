@@ -1,18 +1,19 @@
 package lookout.spy;
 
-import java.util.ArrayList;
+import java.util.Arrays;
+import java.util.Collection;
 import java.util.List;
 import lookout.lidar_scan_t;
 import lookout.segment_t;
 import lookout.segments_t;
 
-/** A turn of the lidar, whole: all parts of the scan and, where the segmenter runs, of its labels. Parts are checked; nothing changes them. */
-final class Turn {
+/** A whole scan: all its parts and, where the segmenter runs, its labels. Parts are checked; nothing changes them. */
+final class Scan {
   final List<lidar_scan_t> scanParts;
   /** Beside each part of the scan its labels; null where they did not come. Parts without columns follow. */
   final List<segments_t> segmentParts;
 
-  Turn(List<lidar_scan_t> scanParts, List<segments_t> segmentParts) {
+  Scan(List<lidar_scan_t> scanParts, List<segments_t> segmentParts) {
     this.scanParts = scanParts;
     this.segmentParts = segmentParts;
   }
@@ -26,11 +27,11 @@ final class Turn {
   }
 
   List<segment_t> segments() {
-    List<segment_t> segments = new ArrayList<>();
-    if (segmentParts != null) {
-      for (segments_t part : segmentParts) segments.addAll(List.of(part.segments));
-    }
-    return segments;
+    return segmentParts == null ? List.of() : segmentsOf(segmentParts);
+  }
+
+  static List<segment_t> segmentsOf(Collection<segments_t> parts) {
+    return parts.stream().flatMap(part -> Arrays.stream(part.segments)).toList();
   }
 
   interface Visitor {
