@@ -1,4 +1,4 @@
-# Where everything lies on a computer, and the Debian package. Programs install themselves (lookout_program in cmake/Rooms.cmake).
+# Where everything lies on a computer, and the Debian package. Programs install themselves (lookout_program in cmake/Targets.cmake).
 set(data_folder ${CMAKE_INSTALL_DATADIR}/lookout)
 install(PROGRAMS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/lookout-up DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(PROGRAMS backoff firewall DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/lookout)

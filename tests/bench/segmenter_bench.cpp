@@ -1,4 +1,4 @@
-// A turn of a VLP-16 from scan to segments by the paper's method, whole and by steps. Whole turns of ours stand in segmenter_turns.cpp.
+// A scan of a VLP-16 from scan to segments by the paper's method, whole and by steps. Whole scans of ours stand in segmenter_turns.cpp.
 // Scenes (second argument): 0 lake, 1 lake in rain (2880 drops), 2 nothing but 5000 drops, 3 a return on every beam.
 #include <benchmark/benchmark.h>
 #include <numeric>
@@ -97,13 +97,13 @@ void Measuring(benchmark::State& state) {
   }
 }
 
-void WholeTurn(benchmark::State& state) {
+void WholeScan(benchmark::State& state) {
   const Bench bench(state);
   for (auto _ : state) benchmark::DoNotOptimize(SegmentScan(bench.scan, bench.params));
 }
 
 // The paper's method to the letter: shadowed returns have no label.
-void WholeTurnOfThePaper(benchmark::State& state) {
+void WholeScanOfThePaper(benchmark::State& state) {
   Bench bench(state);
   bench.params.labelling.label_shadowed_returns = false;
   for (auto _ : state) benchmark::DoNotOptimize(SegmentScan(bench.scan, bench.params));
@@ -123,7 +123,7 @@ BENCHMARK(Search)->Apply(EachImage);
 BENCHMARK(Labelling)->Apply(EachImage);
 BENCHMARK(Clustering)->Apply(EachImage);
 BENCHMARK(Measuring)->Apply(EachImage);
-BENCHMARK(WholeTurn)->Apply(EachImage);
-BENCHMARK(WholeTurnOfThePaper)->Apply(EachImage);
+BENCHMARK(WholeScan)->Apply(EachImage);
+BENCHMARK(WholeScanOfThePaper)->Apply(EachImage);
 
 }  // namespace

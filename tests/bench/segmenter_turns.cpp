@@ -1,6 +1,6 @@
-// Processor time of whole turns, median and 99th percentile, ours and peers in turns on the same scans; and how it grows with the returns.
+// Processor time of whole scans, median and 99th percentile, ours and peers alternating on the same scans; and how it grows with the returns.
 //
-//   bench/turns_segmenter [--turns N]
+//   bench/turns_segmenter [--rounds N]
 //
 // Peers give labels alone. Ours is timed whole, measuring of each segment included, and up to its labels.
 #include <CLI/CLI.hpp>
@@ -90,9 +90,9 @@ struct Row {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Processor time of whole turns");
-  int num_turns = 300;
-  app.add_option("--turns", num_turns, "of each scan and method")->check(CLI::Range(2, 100000));
+  CLI::App app("Processor time of whole scans");
+  int num_rounds = 300;
+  app.add_option("--rounds", num_rounds, "of each scan and method")->check(CLI::Range(2, 100000));
   CLI11_PARSE(app, argc, argv);
 
   std::vector<Row> rows;
@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
     std::vector<double> labels_ms;
     std::vector<double> others_ms[2];
     segmenter.Segment(row.scan);  // takes its memory
-    for (int turn = 0; turn < num_turns; ++turn) {
+    for (int round = 0; round < num_rounds; ++round) {
       double begin_ms = ProcessorMs();
       segmenter.Segment(row.scan);
       ours_ms.push_back(ProcessorMs() - begin_ms);
@@ -135,7 +135,7 @@ int main(int argc, char** argv) {
       numbering.Number(method.pieces(), method.group_of_piece(), 1, std::numeric_limits<std::int16_t>::max());
       labels_ms.push_back(ProcessorMs() - begin_ms);
       for (std::size_t i = 0; i < 2; ++i) {
-        if (others[i] == nullptr || turn % 10 != 0) continue;  // a tenth of the turns is enough for their median
+        if (others[i] == nullptr || round % 10 != 0) continue;  // a tenth of the scans is enough for their median
         begin_ms = ProcessorMs();
         others[i]->Segment(row.scan);
         others_ms[i].push_back(ProcessorMs() - begin_ms);
@@ -158,7 +158,7 @@ int main(int argc, char** argv) {
     Segmenter segmenter{Params{}};
     segmenter.Segment(scan);
     std::vector<double> times_ms;
-    for (int turn = 0; turn < std::max(2, num_turns / 10); ++turn) {
+    for (int round = 0; round < std::max(2, num_rounds / 10); ++round) {
       const double begin_ms = ProcessorMs();
       segmenter.Segment(scan);
       times_ms.push_back(ProcessorMs() - begin_ms);

@@ -21,7 +21,7 @@ Scan Scene(std::uint64_t seed, const test::Shape& shape) {
   return scan;
 }
 
-// The same turn, cut elsewhere.
+// The same scan, cut elsewhere.
 Scan Rotated(const Scan& scan, int num_columns) {
   Scan rotated = scan;
   const auto rotate = [num_columns](auto& values, std::size_t per_column) {
@@ -56,7 +56,7 @@ Params Way(int image_columns, bool label_shadowed_returns = true) {
   return params;
 }
 
-TEST(SegmentScanLaw, LabelsDoNotDependOnWhereTheTurnIsCut) {
+TEST(SegmentScanLaw, LabelsDoNotDependOnWhereTheScanIsCut) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     for (const auto& params : {Params{}, Way(0), Way(512), Way(512, false), Way(1800)}) {
       const auto scan = Scene(seed, {.num_columns = 900, .num_returns = 1 + static_cast<int>(seed % 2)});

@@ -51,7 +51,7 @@ Scan Scene(std::uint64_t seed, const Shape& shape) {
 
 std::size_t CellsPerColumn(const Scan& scan) { return static_cast<std::size_t>(scan.head.num_rings() * scan.head.num_returns); }
 
-// What is seen in column c of the new turn was seen in column from(c); azimuths stay. For turns of evenly spaced columns.
+// What is seen in column c of the new scan was seen in column from(c); azimuths stay. For scans of evenly spaced columns.
 template <typename From>
 Scan Moved(const Scan& scan, From from) {
   Scan moved = scan;
@@ -230,7 +230,7 @@ TEST(LookoutLaw, WhatCameBeforeChangesNoByte) {
   }
 }
 
-// A turn of ranges that no water has, and small facts of the head that are valid all the same.
+// A scan of ranges that no water has, and small facts of the head that are valid all the same.
 Scan Garbage(std::mt19937_64& random) {
   const auto pick = [&random](std::initializer_list<int> values) { return *(values.begin() + random() % values.size()); };
   auto scan = test::EmptyScan({.num_columns = pick({3, 4, 7, 13, 100, 512, 900}),

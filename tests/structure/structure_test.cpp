@@ -209,7 +209,7 @@ TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor
 // Without these options sums are fused or taken in another order on another computer, and no test that runs on one computer notices.
 TEST(Structure, AllThatReachesAMessageIsCompiledForTheSameBytes) {
   EXPECT_STREQ(LOOKOUT_WITHOUT_SAME_BYTES, "")
-      << "these libraries are compiled without -ffp-contract=off or EIGEN_DONT_VECTORIZE (cmake/Rooms.cmake)";
+      << "these libraries are compiled without -ffp-contract=off or EIGEN_DONT_VECTORIZE (cmake/Targets.cmake)";
 #if !defined(EIGEN_DONT_VECTORIZE)
   ADD_FAILURE() << "Eigen's kernels are on";
 #endif
@@ -409,8 +409,8 @@ TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
   std::string tests;
   std::string lists;
   for (const auto& file : SourcesBelow(kRoot / "tests")) tests += Read(file);
-  for (const auto& entry : fs::directory_iterator(kRoot / "tests")) {
-    if (entry.path().extension() == ".cmake") lists += Read(entry.path());
+  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {
+    if (entry.path().filename() == "CMakeLists.txt") lists += Read(entry.path());
   }
   std::istringstream page(Read(kRoot / "SECURITY.md"));
   const std::regex quoted("`([^`]*)`");

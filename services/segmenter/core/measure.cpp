@@ -22,7 +22,7 @@ nanoseconds TimeOf(const Scan& scan, const Return& one) {
 
 microseconds RoundDown(nanoseconds time) { return std::chrono::floor<microseconds>(time); }
 
-// The mean of whole nanoseconds, rounded down to microseconds: towards the past also where a turn's times are below zero.
+// The mean of whole nanoseconds, rounded down to microseconds: towards the past also where a scan's times are below zero.
 microseconds RoundedMean(nanoseconds sum, std::int64_t count) {
   const std::int64_t divisor = 1000 * count;
   const std::int64_t quotient = sum.count() / divisor;

@@ -21,7 +21,7 @@ struct HullCorner {
   std::int32_t time_us = 0;  // of the return at this corner, since ScanHead::time, rounded down
 };
 
-/// How far one turn lets a segment be believed.
+/// How far one scan lets a segment be believed.
 enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
 
 /// Why a segment is tentative. Bits as on the wire.
@@ -65,7 +65,7 @@ struct Segment {
                                       // kMaxWaterlineCorners; empty for others
 };
 
-/// Measures the segments of one turn after the other, and keeps memory between them.
+/// Measures the segments of one scan after the other, and keeps memory between them.
 ///
 /// Hull and box are those of the nearest and the farthest return of each column. Lasers of a column look in directions up to 0.13 degrees apart, so a
 /// return may lie outside of its hull by that much at its sides: 7 cm at 30 m, less than the beam is wide there. Where beams of a column look farther
@@ -99,7 +99,7 @@ class Measurer {
   std::vector<Segment> spare_;
 };
 
-/// One turn by itself.
+/// One scan by itself.
 std::vector<Segment> Measure(const Scan& scan, std::span<const Return> returns, const Groups& groups, const Eigen::Vector3d& up);
 
 }  // namespace lookout::segmenter

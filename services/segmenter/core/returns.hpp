@@ -66,7 +66,7 @@ struct ClassifiedReturns {
 /// In dual return a shot with one echo is reported twice. Ranges are compared in whole range units, and only those of returns that are looked at:
 /// what lies beside one that is not is no repeat, so that no obstacle at a limit is lost.
 /// Point of a return at range r, azimuth a (of its column, plus the offset of its ring) and elevation e: (r cos e cos a, -r cos e sin a,
-/// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return. Allocates nothing once it has seen a turn of that size.
+/// r sin e + origin height). Cost: one sine and cosine per column and ring, none per return. Allocates nothing once it has seen a scan of that size.
 class ReturnClassifier {
  public:
   explicit ReturnClassifier(const ReturnFilter& filter) : filter_(filter) {}
@@ -93,7 +93,7 @@ class ReturnClassifier {
   ClassifiedReturns result_;
 };
 
-/// One turn by itself.
+/// One scan by itself.
 ClassifiedReturns ClassifyReturns(const Scan& scan, const ReturnFilter& filter);
 
 }  // namespace lookout::segmenter

@@ -1,4 +1,4 @@
-// One turn of a spinning lidar as the segmenter works on it. Values of these types are valid: wire.cpp lets no others in.
+// One scan of a spinning lidar as the segmenter works on it. Values of these types are valid: wire.cpp lets no others in.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Ring {
   friend bool operator==(const Ring&, const Ring&) = default;
 };
 
-/// What all parts of a turn share.
+/// What all parts of a scan share.
 struct ScanHead {
   Utime time;      // first firing
   Utime end_time;  // last shot
@@ -45,7 +45,7 @@ struct Columns {
   int size() const { return static_cast<int>(azimuth_rad.size()); }
 };
 
-/// Columns [first_column, first_column + num_columns) of a turn.
+/// Columns [first_column, first_column + num_columns) of a scan.
 struct ColumnSpan {
   int first_column = 0;
   int num_columns = 0;
@@ -60,7 +60,7 @@ struct ScanPart {
 
 struct Scan {
   ScanHead head;
-  Columns columns;                // all of the turn
+  Columns columns;                // all of the scan
   std::vector<ColumnSpan> parts;  // [head.num_parts] as it came
 
   std::size_t num_cells() const { return columns.range.size(); }

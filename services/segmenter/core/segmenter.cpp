@@ -28,7 +28,7 @@ const Segments& Segmenter::Segment(const Scan& scan) {
     numbering_.Number(components_, cluster_of_component_, params_.min_segment_points, kMaxSegments);
   }
   measurer_.Measure(scan, classified.returns, numbering_.groups(), result_.segments);
-  if (params_.method == Method::kLookout) TellWhatIsKnown(scan);
+  if (params_.method == Method::kLookout) DescribeSegments(scan);
   LabelReturns();
   result_.num_repeats = static_cast<std::int64_t>(classified.repeats.size());
   result_.num_too_small = numbering_.num_too_small();
@@ -47,7 +47,7 @@ void Segmenter::GroupAsThePaper(const Scan& scan) {
   }
 }
 
-void Segmenter::TellWhatIsKnown(const Scan& scan) {
+void Segmenter::DescribeSegments(const Scan& scan) {
   for (auto& segment : result_.segments) {
     const std::int32_t root = numbering_.ClusterOf(segment.id - 1);
     const GroupFacts& facts = method_.FactsOf(root);

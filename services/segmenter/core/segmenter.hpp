@@ -1,4 +1,4 @@
-// From a turn to its obstacles, by the lookout method or by that of Jeong and Quattrini Li (IROS 2021), with a label for every return.
+// From a scan to its obstacles, by the lookout method or by that of Jeong and Quattrini Li (IROS 2021), with a label for every return.
 #pragma once
 
 #include <cstdint>
@@ -38,20 +38,20 @@ struct Segments {
   std::int64_t num_repeats = 0;     // returns that repeat another of their shot: labelled as that one, and in no segment's numbers
 };
 
-/// Segments one turn after the other. What it gives depends on that turn alone; what it keeps is memory.
+/// Segments one scan after the other. What it gives depends on that scan alone; what it keeps is memory.
 class Segmenter {
  public:
   explicit Segmenter(const Params& params);
 
   /// The same scan gives the same segments, to the bit. The result holds until the next call.
   ///
-  /// Cost: about proportional to the returns; figures in the README. The lookout method allocates nothing once it has seen a turn of that size.
+  /// Cost: about proportional to the returns; figures in the README. The lookout method allocates nothing once it has seen a scan of that size.
   const Segments& Segment(const Scan& scan);
 
  private:
   void GroupAsThePaper(const Scan& scan);
   void LabelReturns();
-  void TellWhatIsKnown(const Scan& scan);
+  void DescribeSegments(const Scan& scan);
 
   Params params_;
   ReturnClassifier classifier_;
@@ -63,7 +63,7 @@ class Segmenter {
   Segments result_;
 };
 
-/// One turn by itself.
+/// One scan by itself.
 Segments SegmentScan(const Scan& scan, const Params& params);
 
 }  // namespace lookout::segmenter

@@ -52,7 +52,7 @@ TEST(SearchComponents, MakesOneReturnAComponent) {
   EXPECT_EQ(components.of_return, std::vector<std::int32_t>{0});
 }
 
-TEST(SearchComponents, JoinsAWholeTurnAtOneRange) {
+TEST(SearchComponents, JoinsAWholeScanAtOneRange) {
   auto scan = test::EmptyScan({});
   for (int column = 0; column < 1808; ++column) {
     for (int ring = 0; ring < 16; ++ring) test::SetReturn(scan, column, ring, 10.0);
@@ -92,7 +92,7 @@ TEST(SearchComponents, JoinsUpAndDownRings) {
   EXPECT_EQ(Search(scan).count, 1);
 }
 
-TEST(SearchComponents, JoinsAcrossTheSeamOfAWholeTurnOnly) {
+TEST(SearchComponents, JoinsAcrossTheSeamOfAWholeScanOnly) {
   auto whole = test::EmptyScan({.num_columns = 360, .num_rings = 1});
   test::SetReturn(whole, 0, 0, 10.0);
   test::SetReturn(whole, 359, 0, 10.0);

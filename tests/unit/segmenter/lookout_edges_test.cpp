@@ -1,4 +1,4 @@
-// The lookout method where the circle closes, where a turn is a part of one, and where a lidar is another than the VLP-16.
+// The lookout method where the circle closes, where a scan is a part of one, and where a lidar is another than the VLP-16.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST(WholeCircle, OfAHarbourWallIsLand) {
 }
 
 // A quarter of a turn, its columns from left to right, with something near that hides the middle of a shore.
-TEST(PartOfATurn, HasItsWaterlineFromLeftToRight) {
+TEST(PartOfAScan, HasItsWaterlineFromLeftToRight) {
   auto scan = EmptyScan({.num_columns = 452, .width_rad = kPi / 2});
   test::Look(scan, std::vector<Wall>{{40.0, 0.0, 0.0, -40.0, -3.0, 3.0}}, 0.02);
   for (int column = 200; column < 232; ++column) {
@@ -183,7 +183,7 @@ TEST(Mirrored, TwoQuaysAreAsManyPiecesOfLand) {
   }
 }
 
-TEST(Memory, NothingIsAllocatedForATurnThatHasBeenSeen) {
+TEST(Memory, NothingIsAllocatedForAScanThatHasBeenSeen) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     auto scan = EmptyScan({});
     test::Look(scan, test::Lake(seed), 0.03, seed);

@@ -44,7 +44,7 @@ std::vector<Wall> BankWithDock(double x_m, double lean_rad) {
 
 int NumJettyReturns(const Scan& scan) {
   const auto returns = ClassifyReturns(scan, {}).returns;
-  TurnGrid grid;
+  ScanGrid grid;
   RunTable runs;
   grid.Fill(scan, returns, Eigen::Matrix3d::Identity());
   runs.Find(grid, LookoutParams{}.link);
@@ -104,7 +104,7 @@ TEST(Jetties, CutRunsStayInOrder) {
   for (double turned_rad = -1.5; turned_rad < -1.0; turned_rad += 0.02) {  // the dock stands 67 to 78 degrees from the seam
     const auto scan = See(Turned(BankWithDock(5.0, 0.25), turned_rad));
     const auto returns = ClassifyReturns(scan, {}).returns;
-    TurnGrid grid;
+    ScanGrid grid;
     RunTable runs;
     grid.Fill(scan, returns, Eigen::Matrix3d::Identity());
     runs.Find(grid, LookoutParams{}.link);

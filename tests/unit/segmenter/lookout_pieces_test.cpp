@@ -14,7 +14,7 @@ using test::EmptyScan;
 using test::SetReturn;
 using test::Stages;
 
-// A turn of one ring, at 20 m in these columns: neighbours are linked, others more than 6 columns apart are not.
+// A scan of one ring, at 20 m in these columns: neighbours are linked, others more than 6 columns apart are not.
 Scan RingWith(const std::vector<std::pair<int, int>>& stretches, int num_columns = 360) {
   auto scan = EmptyScan({.num_columns = num_columns, .num_rings = 1});
   for (const auto& [first, num] : stretches) {

@@ -31,7 +31,7 @@ int NumPiecesOfTwo(int ring, double plan_m, int other_ring, int columns_on, doub
   return NumPieces(scan);
 }
 
-TEST(Runs, OfAnEmptyTurnAreNone) {
+TEST(Runs, OfAnEmptyScanAreNone) {
   const Stages stages(EmptyScan({}));
   EXPECT_EQ(stages.runs.size(), 0);
   EXPECT_EQ(stages.pieces.size(), 0);
@@ -196,7 +196,7 @@ Scan PatchyScan(std::mt19937_64& random, const test::Shape& shape) {
 
 // Sets of returns after all pairs were looked at; `share` of the link, and of the steps along a wall, is reach enough.
 UnionFind ByAllPairs(const Stages& stages, double share, bool goes_along_walls) {
-  const TurnGrid& grid = stages.grid;
+  const ScanGrid& grid = stages.grid;
   const Reach link = LookoutParams{}.link;
   const auto count = static_cast<std::int32_t>(grid.points().size());
   UnionFind sets(static_cast<std::size_t>(count));
@@ -240,9 +240,9 @@ TEST(Links, AreThoseOfAllPairs) {
 }
 
 // Two columns as fine as they can be, of 128 rings and two returns: the rest of the circle is not 65 534 columns of nothing.
-TEST(Grid, OfANarrowPartHasNoMoreCellsThanATurn) {
+TEST(Grid, OfANarrowPartHasNoMoreCellsThanAScan) {
   const auto scan = test::EmptyScan({.num_columns = 2, .num_rings = 128, .num_returns = 2, .width_rad = kTwoPi / 65536 * 2});
-  TurnGrid grid;
+  ScanGrid grid;
   grid.Fill(scan, {}, Eigen::Matrix3d::Identity());
   EXPECT_EQ(grid.num_columns(), (1 << 21) / 256);
 }

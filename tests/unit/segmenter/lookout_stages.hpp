@@ -1,4 +1,4 @@
-// The first steps of the lookout method on a turn, kept together for tests of single steps; and what a whole turn gives at a place.
+// The first steps of the lookout method on a scan, kept together for tests of single steps; and what a whole scan gives at a place.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ struct Stages {
   Stages& operator=(const Stages&) = delete;
 
   std::vector<Return> returns;
-  TurnGrid grid;
+  ScanGrid grid;
   RunTable runs;
   UnionFind sets;
   PieceTable pieces;

@@ -33,13 +33,13 @@ TEST(RangeImage, OfOwnColumnsHasAPixelForEveryReturn) {
   }
 }
 
-TEST(RangeImage, OfAWholeTurnHasNoSeam) {
+TEST(RangeImage, OfAWholeScanHasNoSeam) {
   const auto image = ProjectToOwnColumns(test::EmptyScan({}), {});
   EXPECT_EQ(NumNeighbours(image), 1808);
   EXPECT_NEAR(image.to_next_column.back().sin_angle, std::sin(kTwoPi / 1808), 1e-6);
 }
 
-TEST(RangeImage, OfAPartialTurnDoesNotWrap) {
+TEST(RangeImage, OfAPartialScanDoesNotWrap) {
   const auto image = ProjectToOwnColumns(test::EmptyScan({.num_columns = 900, .width_rad = kPi}), {});
   EXPECT_EQ(NumNeighbours(image), 899);
   EXPECT_FALSE(image.to_next_column.back().is_neighbour);

@@ -1,4 +1,4 @@
-// Turns for tests and benchmarks: beams of a VLP-16 cast on upright walls, in the lidar frame.
+// Scans for tests and benchmarks: beams of a VLP-16 cast on upright walls, in the lidar frame.
 #pragma once
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Shape {
   double width_rad = kTwoPi;
 };
 
-/// A turn without returns: columns evenly spread over the width, rings 2 degrees apart around the horizon, 55.296 us from column to column.
+/// A scan without returns: columns evenly spread over the width, rings 2 degrees apart around the horizon, 55.296 us from column to column.
 inline Scan EmptyScan(const Shape& shape) {
   Scan scan;
   scan.head.time = kScanTime;

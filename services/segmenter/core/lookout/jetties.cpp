@@ -40,7 +40,7 @@ float Cosine(const PlanVector& one, const PlanVector& other) { return (one.x_m *
 // A run from one of its ends.
 class RunEnd {
  public:
-  RunEnd(const TurnGrid& grid, const Run& run, bool from_end) : grid_(grid), run_(run), from_end_(from_end) {
+  RunEnd(const ScanGrid& grid, const Run& run, bool from_end) : grid_(grid), run_(run), from_end_(from_end) {
     off_m_ = static_cast<float>(kStraightOff.At(At(0).range_m));
   }
 
@@ -111,7 +111,7 @@ class RunEnd {
   }
 
  private:
-  const TurnGrid& grid_;
+  const ScanGrid& grid_;
   const Run& run_;
   bool from_end_ = false;
   float off_m_ = 0.0F;
@@ -119,7 +119,7 @@ class RunEnd {
 
 }  // namespace
 
-int JettyReturns(const TurnGrid& grid, const Run& run, bool from_end) {
+int JettyReturns(const ScanGrid& grid, const Run& run, bool from_end) {
   if (run.length < kLeastJettyReturns || run.length > grid.num_columns() / 2) return 0;
   const RunEnd end(grid, run, from_end);
   if (!end.MayBeLong() || !end.IsFree()) return 0;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "services/segmenter/core/lookout/runs.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 
 namespace lookout::segmenter {
 
@@ -16,6 +16,6 @@ namespace lookout::segmenter {
 ///
 /// @param from_end  looks at the last returns of the run, else at the first
 /// Cost: proportional to the returns looked at.
-int JettyReturns(const TurnGrid& grid, const Run& run, bool from_end);
+int JettyReturns(const ScanGrid& grid, const Run& run, bool from_end);
 
 }  // namespace lookout::segmenter

@@ -61,7 +61,7 @@ double Distance3d(const LevelPoint& one, const LevelPoint& other) {
 
 }  // namespace
 
-void LandFinder::Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+void LandFinder::Find(const ScanGrid& grid, const RunTable& runs, PieceTable& pieces) {
   MeasureTall(grid, pieces);
   JoinInLine(grid, pieces);
   pieces.Settle(grid);
@@ -74,18 +74,18 @@ void LandFinder::Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pi
   Complete(grid, pieces);
 }
 
-void LandFinder::FindGroves(const TurnGrid& grid, PieceTable& pieces) {
+void LandFinder::FindGroves(const ScanGrid& grid, PieceTable& pieces) {
   JoinTrees(grid, pieces);
   if (pieces.Settle(grid)) Complete(grid, pieces);
 }
 
-void LandFinder::Complete(const TurnGrid& grid, PieceTable& pieces) {
+void LandFinder::Complete(const ScanGrid& grid, PieceTable& pieces) {
   for (int round = 0; round < kMaxRounds && TakeIn(grid, pieces); ++round) pieces.Settle(grid);
   JoinLand(grid, pieces);
   pieces.Settle(grid);
 }
 
-void LandFinder::JoinInLine(const TurnGrid& grid, PieceTable& pieces) {
+void LandFinder::JoinInLine(const ScanGrid& grid, PieceTable& pieces) {
   candidates_.clear();
   for (const std::int32_t root : pieces.roots()) {
     const PieceFacts& facts = pieces.FactsOf(root);
@@ -115,7 +115,7 @@ void LandFinder::JoinInLine(const TurnGrid& grid, PieceTable& pieces) {
   }
 }
 
-bool LandFinder::IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const {
+bool LandFinder::IsHiddenBetween(const ScanGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const {
   const int num_columns = grid.num_columns();
   const auto free_between = [num_columns](const Arc& from, const Arc& to) {  // going up in columns
     const int begin = (from.first + from.num) % num_columns;
@@ -141,7 +141,7 @@ bool LandFinder::IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces,
   return num_open <= kFreeColumns + between.num / kFreeShare;
 }
 
-void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+void LandFinder::FindShores(const ScanGrid& grid, const RunTable& runs, PieceTable& pieces) {
   chains_.Reset(static_cast<std::size_t>(runs.size()));
   for (int line = 0; line < grid.num_lines(); ++line) {
     // A drop with nothing near it is no shore.
@@ -182,7 +182,7 @@ void LandFinder::FindShores(const TurnGrid& grid, const RunTable& runs, PieceTab
   }
 }
 
-void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces) {
+void LandFinder::TakeChain(const ScanGrid& grid, const RunTable& runs, PieceTable& pieces) {
   // From the widest gap on.
   const auto gap_before = [&](std::size_t i) {
     const Run& before = runs[chain_[i > 0 ? i - 1 : chain_.size() - 1]];
@@ -240,7 +240,7 @@ void LandFinder::TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTabl
   }
 }
 
-void LandFinder::ListLand(const TurnGrid& grid, const PieceTable& pieces) {
+void LandFinder::ListLand(const ScanGrid& grid, const PieceTable& pieces) {
   is_land_.assign(static_cast<std::size_t>(pieces.size()), 0);
   for (const std::int32_t root : pieces.roots()) is_land_[static_cast<std::size_t>(root)] = pieces.FactsOf(root).is_land ? 1 : 0;
   land_entries_.clear();
@@ -255,7 +255,7 @@ void LandFinder::ListLand(const TurnGrid& grid, const PieceTable& pieces) {
   begin_of_land_.push_back(land_entries_.size());
 }
 
-bool LandFinder::FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces) {
+bool LandFinder::FindWhatTakesIn(const ScanGrid& grid, const PieceTable& pieces) {
   ListLand(grid, pieces);
   const auto num_pieces = static_cast<std::size_t>(pieces.size());
   takes_in_.assign(num_pieces, kTakesNothing);
@@ -303,7 +303,7 @@ bool LandFinder::FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces)
   return true;
 }
 
-bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
+bool LandFinder::TakeIn(const ScanGrid& grid, PieceTable& pieces) {
   if (!FindWhatTakesIn(grid, pieces)) return false;
   bool is_taken = false;
   for (const std::int32_t root : pieces.roots()) {
@@ -320,7 +320,7 @@ bool LandFinder::TakeIn(const TurnGrid& grid, PieceTable& pieces) {
   return is_taken;
 }
 
-void LandFinder::MeasureTall(const TurnGrid& grid, const PieceTable& pieces) {
+void LandFinder::MeasureTall(const ScanGrid& grid, const PieceTable& pieces) {
   tall_.assign(static_cast<std::size_t>(pieces.size()), {});
   const auto tall_m = static_cast<float>(params_.tall_m - params_.lidar_above_water_m);
   const auto points = grid.points();
@@ -353,7 +353,7 @@ bool LandFinder::IsTall(const PieceTable& pieces, std::int32_t root) const {
 }
 
 // Trees of one grove are marked and joined.
-void LandFinder::JoinTrees(const TurnGrid& grid, PieceTable& pieces) {
+void LandFinder::JoinTrees(const ScanGrid& grid, PieceTable& pieces) {
   const auto num_pieces = static_cast<std::size_t>(pieces.size());
   near_sets_.Reset(num_pieces);
   candidates_.clear();
@@ -387,7 +387,7 @@ void LandFinder::JoinTrees(const TurnGrid& grid, PieceTable& pieces) {
   }
 }
 
-std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
+std::int32_t LandFinder::LandBefore(const ScanGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   int num_seen = 0;
   int num_behind = 0;
   for (std::int32_t piece = root; piece != PieceTable::kNone; piece = pieces.NextMember(piece)) {
@@ -419,7 +419,7 @@ std::int32_t LandFinder::LandBefore(const TurnGrid& grid, const PieceTable& piec
   return land;
 }
 
-std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const {
+std::int32_t LandFinder::LandBeside(const ScanGrid& grid, const PieceTable& pieces, std::int32_t root) const {
   const PieceFacts& facts = pieces.FactsOf(root);
   if (!IsTall(pieces, root)) return kNoLand;
   double least_m = params_.beside_land.At(facts.min_range_m);
@@ -458,7 +458,7 @@ std::int32_t LandFinder::LandBeside(const TurnGrid& grid, const PieceTable& piec
   return land;
 }
 
-void LandFinder::JoinLand(const TurnGrid& grid, PieceTable& pieces) {
+void LandFinder::JoinLand(const ScanGrid& grid, PieceTable& pieces) {
   near_sets_.Reset(static_cast<std::size_t>(pieces.size()));
   candidates_.clear();
   for (const std::int32_t root : pieces.roots()) {

@@ -10,7 +10,7 @@
 #include "services/segmenter/core/lookout/near_sets.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 #include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
@@ -30,9 +30,9 @@ class LandFinder {
  public:
   explicit LandFinder(const LookoutParams& params) : params_(params) {}
 
-  void Find(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
-  /// After Find in the same turn.
-  void FindGroves(const TurnGrid& grid, PieceTable& pieces);
+  void Find(const ScanGrid& grid, const RunTable& runs, PieceTable& pieces);
+  /// After Find in the same scan.
+  void FindGroves(const ScanGrid& grid, PieceTable& pieces);
 
  private:
   struct Fragment {
@@ -71,25 +71,25 @@ class LandFinder {
     double radius_m = 0.0;
   };
 
-  void Complete(const TurnGrid& grid, PieceTable& pieces);
-  void JoinInLine(const TurnGrid& grid, PieceTable& pieces);
-  bool IsHiddenBetween(const TurnGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const;
-  void FindShores(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
-  void TakeChain(const TurnGrid& grid, const RunTable& runs, PieceTable& pieces);
-  bool TakeIn(const TurnGrid& grid, PieceTable& pieces);
-  bool FindWhatTakesIn(const TurnGrid& grid, const PieceTable& pieces);
-  void ListLand(const TurnGrid& grid, const PieceTable& pieces);
+  void Complete(const ScanGrid& grid, PieceTable& pieces);
+  void JoinInLine(const ScanGrid& grid, PieceTable& pieces);
+  bool IsHiddenBetween(const ScanGrid& grid, const PieceTable& pieces, const PieceFacts& line, const PieceFacts& other) const;
+  void FindShores(const ScanGrid& grid, const RunTable& runs, PieceTable& pieces);
+  void TakeChain(const ScanGrid& grid, const RunTable& runs, PieceTable& pieces);
+  bool TakeIn(const ScanGrid& grid, PieceTable& pieces);
+  bool FindWhatTakesIn(const ScanGrid& grid, const PieceTable& pieces);
+  void ListLand(const ScanGrid& grid, const PieceTable& pieces);
   std::span<const LandEntry> LandInColumn(std::int32_t column) const {
     const auto at = static_cast<std::size_t>(column);
     return std::span(land_entries_).subspan(begin_of_land_[at], begin_of_land_[at + 1] - begin_of_land_[at]);
   }
-  std::int32_t LandBefore(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
-  std::int32_t LandBeside(const TurnGrid& grid, const PieceTable& pieces, std::int32_t root) const;
+  std::int32_t LandBefore(const ScanGrid& grid, const PieceTable& pieces, std::int32_t root) const;
+  std::int32_t LandBeside(const ScanGrid& grid, const PieceTable& pieces, std::int32_t root) const;
   bool TakesIn(std::int32_t root, std::uint8_t at_least) const { return takes_in_[static_cast<std::size_t>(root)] >= at_least; }
-  void MeasureTall(const TurnGrid& grid, const PieceTable& pieces);
+  void MeasureTall(const ScanGrid& grid, const PieceTable& pieces);
   bool IsTall(const PieceTable& pieces, std::int32_t root) const;
-  void JoinTrees(const TurnGrid& grid, PieceTable& pieces);
-  void JoinLand(const TurnGrid& grid, PieceTable& pieces);
+  void JoinTrees(const ScanGrid& grid, PieceTable& pieces);
+  void JoinLand(const ScanGrid& grid, PieceTable& pieces);
 
   LookoutParams params_;
   UnionFind chains_;

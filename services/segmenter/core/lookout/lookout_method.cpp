@@ -104,12 +104,12 @@ std::span<const std::int32_t> LookoutMethod::NearestOf(std::int32_t root) {
   nearest_.clear();
   const Arc arc = pieces_.FactsOf(root).arc;
   for (int step = 0; step < arc.num; ++step) {
-    std::int32_t nearest = TurnGrid::kNone;
+    std::int32_t nearest = ScanGrid::kNone;
     for (const OutlineEntry& entry : pieces_.InColumn(grid_.Wrap(arc.first + step))) {
       if (root_of_piece_[static_cast<std::size_t>(entry.piece)] != root) continue;
-      if (nearest == TurnGrid::kNone || grid_.PointOf(entry.nearest).range_m < grid_.PointOf(nearest).range_m) nearest = entry.nearest;
+      if (nearest == ScanGrid::kNone || grid_.PointOf(entry.nearest).range_m < grid_.PointOf(nearest).range_m) nearest = entry.nearest;
     }
-    if (nearest != TurnGrid::kNone) nearest_.push_back(nearest);
+    if (nearest != ScanGrid::kNone) nearest_.push_back(nearest);
   }
   return nearest_;
 }

@@ -1,4 +1,4 @@
-// The lookout method: from the returns of a turn to its obstacles, on the lidar's own rings and columns.
+// The lookout method: from the returns of a scan to its obstacles, on the lidar's own rings and columns.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,8 +13,8 @@
 #include "services/segmenter/core/lookout/pieces.hpp"
 #include "services/segmenter/core/lookout/run_links.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 #include "services/segmenter/core/lookout/thin_pieces.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
 #include "services/segmenter/core/measure.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
@@ -32,7 +32,7 @@ struct GroupFacts {
 /// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.
 Reach LinkFor(Reach link, double column_step_rad);
 
-/// Works on one turn after the other and keeps nothing of the last but its memory. Pure in what it gives: the same turn gives the same groups,
+/// Works on one scan after the other and keeps nothing of the last but its memory. Pure in what it gives: the same scan gives the same groups,
 /// whatever came before. Turning the scene by whole columns or mirroring it changes nothing but the numbers of the groups.
 class LookoutMethod {
  public:
@@ -40,7 +40,7 @@ class LookoutMethod {
       : params_(params), R_vessel_lidar_(R_vessel_lidar), land_(params), thin_(params), objects_(params) {}
 
   /// Groups the returns; each is in one. Results hold until the next call.
-  /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a turn of that size.
+  /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a scan of that size.
   void Group(const Scan& scan, std::span<const Return> returns);
 
   /// Single pieces, and the piece that names the group of each.
@@ -56,7 +56,7 @@ class LookoutMethod {
 
   LookoutParams params_;
   Eigen::Matrix3d R_vessel_lidar_;
-  TurnGrid grid_;
+  ScanGrid grid_;
   RunTable runs_;
   RunLinker linker_;
   UnionFind sets_of_runs_;

@@ -22,7 +22,7 @@ void NearSets::Reset(std::size_t num_pieces) {
   groups_.Reset(num_pieces);
 }
 
-void NearSets::Group(const TurnGrid& grid, const PieceTable& pieces, const Reach& reach) {
+void NearSets::Group(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
   for (int column = 0; column < grid.num_columns(); ++column) {
     for (const OutlineEntry& entry : pieces.InColumn(column)) {
       if (is_added_[static_cast<std::size_t>(pieces.RootOf(entry.piece))] == 0) continue;
@@ -31,7 +31,7 @@ void NearSets::Group(const TurnGrid& grid, const PieceTable& pieces, const Reach
   }
 }
 
-void NearSets::LookFrom(const OutlineEntry& entry, int way, const TurnGrid& grid, const PieceTable& pieces, const Reach& reach) {
+void NearSets::LookFrom(const OutlineEntry& entry, int way, const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
   const std::int32_t root = pieces.RootOf(entry.piece);
   // By the farthest reach that can be.
   const int window = grid.ColumnsOf(reach.At(entry.far_point.range_m), entry.near_point.range_m);

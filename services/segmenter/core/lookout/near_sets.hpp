@@ -7,7 +7,7 @@
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 #include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
@@ -20,13 +20,13 @@ class NearSets {
 
   /// Groups sets of which two entries of the outlines are at most `reach` apart, by the nearer of them. From each entry it looks to both sides as far
   /// as the next entry of the same set, which looks on from there. Cost: about proportional to the entries.
-  void Group(const TurnGrid& grid, const PieceTable& pieces, const Reach& reach);
+  void Group(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
 
   /// The set that names the group of this one.
   std::int32_t GroupOf(std::int32_t root) { return groups_.Find(root); }
 
  private:
-  void LookFrom(const OutlineEntry& entry, int way, const TurnGrid& grid, const PieceTable& pieces, const Reach& reach);
+  void LookFrom(const OutlineEntry& entry, int way, const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
 
   std::vector<std::uint8_t> is_added_;  // [pieces] of roots
   UnionFind groups_;

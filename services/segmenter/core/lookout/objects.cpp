@@ -28,7 +28,7 @@ constexpr int kRounds = 2;
 
 }  // namespace
 
-void ObjectJoiner::Join(const TurnGrid& grid, const ThinPieces& thin, const Reach& link, PieceTable& pieces) {
+void ObjectJoiner::Join(const ScanGrid& grid, const ThinPieces& thin, const Reach& link, PieceTable& pieces) {
   link_ = link;
   FindLinks(grid, thin, pieces);
   for (int round = 0; round < kRounds; ++round) {
@@ -88,7 +88,7 @@ bool ObjectJoiner::Touches(const PieceFacts& part, const PieceFacts& whole, doub
   return gap_m <= link_.At(std::min(part.min_range_m, whole.min_range_m));
 }
 
-bool ObjectJoiner::IsPart(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const {
+bool ObjectJoiner::IsPart(const ScanGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const {
   if (whole.num_returns < kSolidReturns) return false;
   const double range_m = std::min(part.min_range_m, whole.min_range_m);
   const bool is_part_solid = part.num_returns >= kSolidReturns;
@@ -101,7 +101,7 @@ bool ObjectJoiner::IsPart(const TurnGrid& grid, const PieceFacts& part, bool is_
 }
 
 // Gaps of single pieces: between solid things, and from them to tiny ones in their columns.
-void ObjectJoiner::FindLinks(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces) {
+void ObjectJoiner::FindLinks(const ScanGrid& grid, const ThinPieces& thin, const PieceTable& pieces) {
   links_.clear();
   solid_.clear();
   is_tiny_.assign(static_cast<std::size_t>(pieces.size()), 0);
@@ -127,7 +127,7 @@ void ObjectJoiner::FindLinks(const TurnGrid& grid, const ThinPieces& thin, const
   }
 }
 
-void ObjectJoiner::ListTiny(const TurnGrid& grid, const PieceTable& pieces) {
+void ObjectJoiner::ListTiny(const ScanGrid& grid, const PieceTable& pieces) {
   tiny_.clear();
   begin_of_tiny_.clear();
   for (int column = 0; column < grid.num_columns(); ++column) {
@@ -157,7 +157,7 @@ void ObjectJoiner::FindCrowds() {
   }
 }
 
-void ObjectJoiner::LinkPairs(const TurnGrid& grid, const PieceTable& pieces) {
+void ObjectJoiner::LinkPairs(const ScanGrid& grid, const PieceTable& pieces) {
   large_.clear();
   for (std::size_t i = 0; i < solid_.size(); ++i) {
     if (solid_[i].radius_m > kLargeM && !solid_[i].is_crowded) large_.push_back(i);
@@ -187,7 +187,7 @@ double ObjectJoiner::ReachM(const PieceFacts& facts) const {
   return std::max({params_.over_m, params_.attach.At(facts.min_range_m), params_.join.At(facts.min_range_m)});
 }
 
-void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other) {
+void ObjectJoiner::LinkSolid(const ScanGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other) {
   const std::int32_t one_root = pieces.RootOf(one);
   const std::int32_t other_root = pieces.RootOf(other);
   if (one_root == other_root) return;
@@ -205,7 +205,7 @@ void ObjectJoiner::LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std
   if (gap_m <= reach_m) links_.push_back({one, other, gap_m, false});
 }
 
-void ObjectJoiner::LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece) {
+void ObjectJoiner::LinkTiny(const ScanGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece) {
   const PieceFacts& facts = pieces.FactsOf(pieces.RootOf(piece));
   const auto outline = pieces.OutlineOf(piece);
   const double touch_m = link_.At(facts.max_range_m);

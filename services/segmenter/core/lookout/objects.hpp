@@ -8,8 +8,8 @@
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 #include "services/segmenter/core/lookout/thin_pieces.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
 
 namespace lookout::segmenter {
 
@@ -25,7 +25,7 @@ class ObjectJoiner {
   explicit ObjectJoiner(const LookoutParams& params) : params_(params) {}
 
   /// @param thin  as found in the same pieces
-  void Join(const TurnGrid& grid, const ThinPieces& thin, const Reach& link, PieceTable& pieces);
+  void Join(const ScanGrid& grid, const ThinPieces& thin, const Reach& link, PieceTable& pieces);
 
  private:
   struct Link {
@@ -60,18 +60,18 @@ class ObjectJoiner {
     std::int32_t piece = 0;
   };
 
-  void FindLinks(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces);
-  void ListTiny(const TurnGrid& grid, const PieceTable& pieces);
+  void FindLinks(const ScanGrid& grid, const ThinPieces& thin, const PieceTable& pieces);
+  void ListTiny(const ScanGrid& grid, const PieceTable& pieces);
   void FindCrowds();
-  void LinkPairs(const TurnGrid& grid, const PieceTable& pieces);
-  void LinkSolid(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
-  void LinkTiny(const TurnGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece);
+  void LinkPairs(const ScanGrid& grid, const PieceTable& pieces);
+  void LinkSolid(const ScanGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other);
+  void LinkTiny(const ScanGrid& grid, const ThinPieces& thin, const PieceTable& pieces, std::int32_t piece);
   double ReachM(const PieceFacts& facts) const;
   void JoinSideBySide(PieceTable& pieces) const;
   template <typename IsAttached>
   void Attach(PieceTable& pieces, IsAttached is_attached);
   bool Touches(const PieceFacts& part, const PieceFacts& whole, double gap_m) const;
-  bool IsPart(const TurnGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const;
+  bool IsPart(const ScanGrid& grid, const PieceFacts& part, bool is_part_clear, const PieceFacts& whole, double gap_m) const;
 
   LookoutParams params_;
   Reach link_;

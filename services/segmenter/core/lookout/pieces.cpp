@@ -37,7 +37,7 @@ void SumUp(std::vector<std::int32_t>& counts) {
 
 }  // namespace
 
-void PieceTable::Build(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs) {
+void PieceTable::Build(const ScanGrid& grid, const RunTable& runs, UnionFind& sets_of_runs) {
   NumberPieces(grid, runs, sets_of_runs);
   SumReturns(grid, runs);
   BuildOutlines(grid);
@@ -57,7 +57,7 @@ void PieceTable::Build(const TurnGrid& grid, const RunTable& runs, UnionFind& se
   new_land_.clear();
 }
 
-void PieceTable::NumberPieces(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs) {
+void PieceTable::NumberPieces(const ScanGrid& grid, const RunTable& runs, UnionFind& sets_of_runs) {
   const auto num_runs = static_cast<std::size_t>(runs.size());
   piece_of_run_.resize(num_runs);
   number_of_root_.assign(num_runs, kNone);
@@ -79,7 +79,7 @@ void PieceTable::NumberPieces(const TurnGrid& grid, const RunTable& runs, UnionF
   }
 }
 
-void PieceTable::SumReturns(const TurnGrid& grid, const RunTable& runs) {
+void PieceTable::SumReturns(const ScanGrid& grid, const RunTable& runs) {
   const auto points = grid.points();
   piece_of_return_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) piece_of_return_[i] = OfRun(runs.OfReturn(static_cast<std::int32_t>(i)));
@@ -112,7 +112,7 @@ void PieceTable::SumReturns(const TurnGrid& grid, const RunTable& runs) {
   }
 }
 
-void PieceTable::BuildOutlines(const TurnGrid& grid) {
+void PieceTable::BuildOutlines(const ScanGrid& grid) {
   entries_.clear();
   begin_of_column_.assign(1, 0);
   begin_of_piece_.assign(facts_.size() + 1, 0);
@@ -151,7 +151,7 @@ void PieceTable::BuildOutlines(const TurnGrid& grid) {
 }
 
 void PieceTable::AddToOutline(std::int32_t piece, std::int32_t column, std::int32_t first_of_column, std::int32_t nearest, std::int32_t farthest,
-                              const TurnGrid& grid) {
+                              const ScanGrid& grid) {
   const auto at = static_cast<std::size_t>(piece);
   const LevelPoint& near_point = grid.PointOf(nearest);
   const LevelPoint& far_point = grid.PointOf(farthest);
@@ -245,7 +245,7 @@ Arc PieceTable::CoveringArc(int num_columns) {
   std::ranges::sort(to_cover_, {}, &Arc::first);
   int end = 0;
   for (const Arc& arc : to_cover_) end = std::max(end, arc.first + arc.num);
-  end -= num_columns;  // where the last one ends, a turn before: so the gap over the seam is one like the others
+  end -= num_columns;  // where the last one ends, a revolution earlier: so the gap over the seam is like the others
   int widest = 0;
   int after_widest = to_cover_.front().first;
   for (const Arc& arc : to_cover_) {
@@ -258,7 +258,7 @@ Arc PieceTable::CoveringArc(int num_columns) {
   return {after_widest, num_columns - widest};
 }
 
-bool PieceTable::Settle(const TurnGrid& grid) {
+bool PieceTable::Settle(const ScanGrid& grid) {
   bool is_changed = false;
   for (const std::int32_t piece : new_land_) {
     bool& is_land = facts_[static_cast<std::size_t>(RootOf(piece))].is_land;
@@ -309,7 +309,7 @@ int SharedColumns(const Arc& one, const Arc& other, int num_columns) {
   return back < other.num ? std::min(other.num - back, one.num) : 0;
 }
 
-double PlanGap(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other, double limit_m) {
+double PlanGap(const ScanGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other, double limit_m) {
   if (pieces.OutlineOf(one).size() > pieces.OutlineOf(other).size()) std::swap(one, other);
   const auto inner = pieces.OutlineOf(other);
   const auto first_column = pieces.Entry(inner.front()).column;

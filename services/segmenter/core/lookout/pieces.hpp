@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "services/segmenter/core/lookout/runs.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 #include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
@@ -49,7 +49,7 @@ struct PieceFacts {
 /// Pieces are numbered in the order of their first run. A set of joined pieces is named by its root; FactsOf holds for roots.
 class PieceTable {
  public:
-  void Build(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs);
+  void Build(const ScanGrid& grid, const RunTable& runs, UnionFind& sets_of_runs);
 
   std::int32_t size() const { return static_cast<std::int32_t>(facts_.size()); }
   std::int32_t OfRun(std::int32_t run) const { return piece_of_run_[static_cast<std::size_t>(run)]; }
@@ -76,7 +76,7 @@ class PieceTable {
   void MarkDock(std::int32_t piece) { facts_[static_cast<std::size_t>(RootOf(piece))].is_dock = true; }
   /// Carries out what was wanted. What is of a set with land is land.
   /// @return whether anything changed
-  bool Settle(const TurnGrid& grid);
+  bool Settle(const ScanGrid& grid);
 
  private:
   struct Pair {
@@ -105,11 +105,11 @@ class PieceTable {
     std::int32_t after_widest = 0;
   };
 
-  void NumberPieces(const TurnGrid& grid, const RunTable& runs, UnionFind& sets_of_runs);
-  void SumReturns(const TurnGrid& grid, const RunTable& runs);
-  void BuildOutlines(const TurnGrid& grid);
+  void NumberPieces(const ScanGrid& grid, const RunTable& runs, UnionFind& sets_of_runs);
+  void SumReturns(const ScanGrid& grid, const RunTable& runs);
+  void BuildOutlines(const ScanGrid& grid);
   void AddToOutline(std::int32_t piece, std::int32_t column, std::int32_t first_of_column, std::int32_t nearest, std::int32_t farthest,
-                    const TurnGrid& grid);
+                    const ScanGrid& grid);
   void FindArcs(const RunTable& runs, int num_columns);
   void FitLine(std::int32_t root);
   Arc CoveringArc(int num_columns);
@@ -143,6 +143,6 @@ class PieceTable {
 int SharedColumns(const Arc& one, const Arc& other, int num_columns);
 
 /// Least distance between two single pieces seen from above, by the entries of their outlines; above `limit_m` when there is none within it.
-double PlanGap(const TurnGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other, double limit_m);
+double PlanGap(const ScanGrid& grid, const PieceTable& pieces, std::int32_t one, std::int32_t other, double limit_m);
 
 }  // namespace lookout::segmenter

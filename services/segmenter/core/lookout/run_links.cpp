@@ -20,7 +20,7 @@ using Strand = RunLinker::Strand;
 
 class Linker {
  public:
-  Linker(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) : grid_(grid), runs_(runs), link_(link), sets_(sets) {}
+  Linker(const ScanGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) : grid_(grid), runs_(runs), link_(link), sets_(sets) {}
 
   // @param in_line  scratch
   void LinkWithinLine(int line, std::vector<std::int32_t>& in_line) {
@@ -141,7 +141,7 @@ class Linker {
     for (int at = from; at <= to; ++at) {
       const int column = WrapFar(at);
       const std::int32_t one = grid_.At(lines.one, column);
-      if (one == TurnGrid::kNone || !AreLinked(grid_.PointOf(one), grid_.PointOf(other), lines.are_of_one_ring)) continue;
+      if (one == ScanGrid::kNone || !AreLinked(grid_.PointOf(one), grid_.PointOf(other), lines.are_of_one_ring)) continue;
       const std::int32_t run = runs_.OfReturn(one);
       if (!MayBeLinked(run, runs_.OfReturn(other))) continue;
       if (runs_[run].length == 1) {
@@ -218,7 +218,7 @@ class Linker {
     }
   }
 
-  const TurnGrid& grid_;
+  const ScanGrid& grid_;
   const RunTable& runs_;
   const Reach& link_;
   UnionFind& sets_;
@@ -226,7 +226,7 @@ class Linker {
 
 }  // namespace
 
-void RunLinker::FindStrands(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
+void RunLinker::FindStrands(const ScanGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
   const Linker linker(grid, runs, link, sets);
   strands_.clear();
   begin_of_line_.clear();
@@ -252,7 +252,7 @@ void RunLinker::FindStrands(const TurnGrid& grid, const RunTable& runs, const Re
   begin_of_line_.push_back(strands_.size());
 }
 
-void RunLinker::Link(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
+void RunLinker::Link(const ScanGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets) {
   Linker linker(grid, runs, link, sets);
   for (int line = 0; line < grid.num_lines(); ++line) linker.LinkWithinLine(line, in_line_);
   for (std::int32_t run = 0; run < runs.size(); ++run) linker.LinkGrazing(run);

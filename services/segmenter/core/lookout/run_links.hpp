@@ -7,7 +7,7 @@
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/runs.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 #include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
@@ -25,7 +25,7 @@ inline constexpr int kLinkRings = 3;          // 6 degrees at 2
 /// All relations are between pairs (or threes) of returns and do not depend on the order. Cost: about proportional to the returns.
 class RunLinker {
  public:
-  void Link(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets);
+  void Link(const ScanGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets);
 
   /// Runs of a line that follow each other and are joined already: columns [first, end), on over the seam of the circle. Drops between them that have
   /// nothing near them in the rings about are left out.
@@ -38,7 +38,7 @@ class RunLinker {
   };
 
  private:
-  void FindStrands(const TurnGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets);
+  void FindStrands(const ScanGrid& grid, const RunTable& runs, const Reach& link, UnionFind& sets);
 
   std::vector<std::int32_t> in_line_;  // scratch: runs of a line that have something near them there
   std::vector<Strand> strands_;
@@ -47,7 +47,7 @@ class RunLinker {
 
 /// Calls handle(run, other) for those of these runs of one line, in their order, with ends at most kLinkColumns apart, each pair once.
 template <typename Handler>
-void ForEachFollowing(const TurnGrid& grid, const RunTable& runs, std::span<const std::int32_t> of_line, Handler handle) {
+void ForEachFollowing(const ScanGrid& grid, const RunTable& runs, std::span<const std::int32_t> of_line, Handler handle) {
   const std::size_t count = of_line.size();
   for (std::size_t i = 0; i < count; ++i) {
     const int last_column = runs[of_line[i]].first + runs[of_line[i]].length - 1;

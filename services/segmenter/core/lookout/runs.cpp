@@ -21,7 +21,7 @@ struct Parts {
   int num = 0;
 };
 
-Parts PartsOf(const TurnGrid& grid, const Run& run) {
+Parts PartsOf(const ScanGrid& grid, const Run& run) {
   const int num_first = JettyReturns(grid, run, false);
   const int num_last = JettyReturns(grid, run, true);
   Parts parts;
@@ -41,7 +41,7 @@ Parts PartsOf(const TurnGrid& grid, const Run& run) {
 }  // namespace
 
 // Returns are taken column by column, as they lie in memory, twice: to find where runs begin, and to number them.
-void RunTable::Find(const TurnGrid& grid, const Reach& link) {
+void RunTable::Find(const ScanGrid& grid, const Reach& link) {
   const auto num_lines = static_cast<std::size_t>(grid.num_lines());
   const auto points = grid.points();
   const auto by_column = grid.by_column();
@@ -95,7 +95,7 @@ void RunTable::Find(const TurnGrid& grid, const Reach& link) {
   }
 }
 
-void RunTable::CutJetties(const TurnGrid& grid) {
+void RunTable::CutJetties(const ScanGrid& grid) {
   uncut_.swap(runs_);
   begin_of_uncut_.swap(begin_of_line_);
   runs_.clear();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 
 namespace lookout::segmenter {
 
@@ -18,17 +18,17 @@ struct Run {
   bool is_jetty = false;  // linked to no run that is none
 };
 
-/// All runs of a turn: line by line, in the order of their columns from the first break on. Where they begin and end does not depend on where the
+/// All runs of a scan: line by line, in the order of their columns from the first break on. Where they begin and end does not depend on where the
 /// turn was cut.
 class RunTable {
  public:
   static constexpr std::int32_t kNone = -1;
 
   /// Two returns in neighbouring columns of a line are of one run when they are at most `link` apart, at the nearer one's distance.
-  void Find(const TurnGrid& grid, const Reach& link);
+  void Find(const ScanGrid& grid, const Reach& link);
 
   /// Cuts jetties off the runs that hold a shore, too (JettyReturns), and marks them.
-  void CutJetties(const TurnGrid& grid);
+  void CutJetties(const ScanGrid& grid);
 
   std::int32_t size() const { return static_cast<std::int32_t>(runs_.size()); }
   const Run& operator[](std::int32_t run) const { return runs_[static_cast<std::size_t>(run)]; }
@@ -60,8 +60,8 @@ class RunTable {
 };
 
 /// Of a run, by its place in it.
-inline std::int32_t ReturnOf(const TurnGrid& grid, const Run& run, int place) { return grid.At(run.line, grid.Wrap(run.first + place)); }
-inline std::int32_t FirstReturn(const TurnGrid& grid, const Run& run) { return grid.At(run.line, run.first); }
-inline std::int32_t LastReturn(const TurnGrid& grid, const Run& run) { return ReturnOf(grid, run, run.length - 1); }
+inline std::int32_t ReturnOf(const ScanGrid& grid, const Run& run, int place) { return grid.At(run.line, grid.Wrap(run.first + place)); }
+inline std::int32_t FirstReturn(const ScanGrid& grid, const Run& run) { return grid.At(run.line, run.first); }
+inline std::int32_t LastReturn(const ScanGrid& grid, const Run& run) { return ReturnOf(grid, run, run.length - 1); }
 
 }  // namespace lookout::segmenter

@@ -38,7 +38,7 @@ constexpr double kMostFarM = 2.0;
 
 double FarReachM(double range_m) { return std::clamp(kFarPerRange * (range_m - kFarFromM), 0.0, kMostFarM); }
 
-void ThinPieces::Join(const TurnGrid& grid, PieceTable& pieces) {
+void ThinPieces::Join(const ScanGrid& grid, PieceTable& pieces) {
   thin_.clear();
   is_clear_.assign(static_cast<std::size_t>(pieces.size()), 0);
   for (const std::int32_t root : pieces.roots()) {
@@ -81,7 +81,7 @@ void ThinPieces::SortByCell() {
   thin_.swap(sorted_);
 }
 
-bool ThinPieces::StandsFree(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) {
+bool ThinPieces::StandsFree(const ScanGrid& grid, const PieceTable& pieces, const Thin& thin) {
   Stands& stands = stands_[static_cast<std::size_t>(thin.root)];
   if (stands == Stands::kUnknown) stands = StandsAtAThing(grid, pieces, thin) ? Stands::kAtAThing : Stands::kFree;
   return stands == Stands::kFree;
@@ -89,7 +89,7 @@ bool ThinPieces::StandsFree(const TurnGrid& grid, const PieceTable& pieces, cons
 
 // Whether something that is not thin, and no land, is within the reach of its parts: the side of a hull that is seen along shows in
 // single columns, as posts do.
-bool ThinPieces::StandsAtAThing(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) const {
+bool ThinPieces::StandsAtAThing(const ScanGrid& grid, const PieceTable& pieces, const Thin& thin) const {
   const double reach_m = params_.attach.At(thin.range_m);
   const auto reach_m2 = static_cast<float>(reach_m * reach_m);
   const int window = grid.ColumnsOf(reach_m, thin.range_m);
@@ -140,7 +140,7 @@ bool ThinPieces::FindNeighbours(const Thin& thin) {
 }
 
 // With `post` at one corner: u along the width, v along the length.
-void ThinPieces::JoinRectangles(const TurnGrid& grid, const Thin& post, PieceTable& pieces) {
+void ThinPieces::JoinRectangles(const ScanGrid& grid, const Thin& post, PieceTable& pieces) {
   const auto is_post = [&](const Thin& thin) { return StandsFree(grid, pieces, thin); };
   const double off_m = kCornerOff.At(post.range_m);
   for (const Thin& across : neighbours_) {

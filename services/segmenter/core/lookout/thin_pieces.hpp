@@ -7,7 +7,7 @@
 
 #include "services/segmenter/core/lookout/lookout_params.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 
 namespace lookout::segmenter {
 
@@ -26,7 +26,7 @@ class ThinPieces {
 
   explicit ThinPieces(const LookoutParams& params) : params_(params) {}
 
-  void Join(const TurnGrid& grid, PieceTable& pieces);
+  void Join(const ScanGrid& grid, PieceTable& pieces);
 
   /// Whether a piece is thin and no crowd of others stands about it. As found by Join.
   bool IsClear(std::int32_t piece) const { return is_clear_[static_cast<std::size_t>(piece)] != 0; }
@@ -45,10 +45,10 @@ class ThinPieces {
   double ReachM() const;
   std::size_t CellOf(double x_m, double y_m) const;
   void SortByCell();
-  bool StandsFree(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin);
-  bool StandsAtAThing(const TurnGrid& grid, const PieceTable& pieces, const Thin& thin) const;
+  bool StandsFree(const ScanGrid& grid, const PieceTable& pieces, const Thin& thin);
+  bool StandsAtAThing(const ScanGrid& grid, const PieceTable& pieces, const Thin& thin) const;
   bool FindNeighbours(const Thin& thin);
-  void JoinRectangles(const TurnGrid& grid, const Thin& post, PieceTable& pieces);
+  void JoinRectangles(const ScanGrid& grid, const Thin& post, PieceTable& pieces);
   void JoinFar(const Thin& thin, PieceTable& pieces) const;
 
   LookoutParams params_;

@@ -34,7 +34,7 @@ std::vector<BeamStep> RingSteps(const std::vector<Ring>& rings, bool offsets_cou
   return steps;
 }
 
-// The usual step is the median over the whole circle, so that it does not depend on where the turn was cut.
+// The usual step is the median over the whole circle, so that it does not depend on where the scan was cut.
 std::vector<BeamStep> ColumnSteps(const std::vector<float>& azimuth_rad) {
   std::vector<BeamStep> steps(azimuth_rad.size());
   if (azimuth_rad.size() < 2) return steps;

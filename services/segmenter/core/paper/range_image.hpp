@@ -47,7 +47,7 @@ struct RangeImage {
 };
 
 /// The scan's own columns: every return has a pixel. Columns are neighbours when they follow each other in time, the first on the last, and their
-/// azimuths lie at most kMaxNeighbourStep usual steps apart: so the seam of a whole turn is none, and holes and ends of a partial turn are.
+/// azimuths lie at most kMaxNeighbourStep usual steps apart: so the seam of a whole scan is none, and holes and ends of a partial scan are.
 RangeImage ProjectToOwnColumns(const Scan& scan, std::span<const Return> returns);
 
 /// Columns of equal width by azimuth (the paper). In a pixel the nearest return stays, of equals the one of the smaller azimuth, then cell.

@@ -1,4 +1,4 @@
-#include "services/segmenter/core/lookout/turn_grid.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +12,16 @@ namespace lookout::segmenter {
 
 namespace {
 
-// From the last column to the first where a turn is whole: as that from column to column, but for the unevenness of a turning head.
+// From the last column to the first where a scan is whole: as that from column to column, but for the unevenness of a turning head.
 constexpr double kMaxSeamSteps = 1.5;
 // Empty columns at least where it is not.
 constexpr int kLeastMissing = 8;
-// With those that stand for the rest of the circle: as many as a turn can have. A narrow part with fine columns would be millions of empty ones.
+// With those that stand for the rest of the circle: as many as a scan can have. A narrow part with fine columns would be millions of empty ones.
 constexpr int kMostCells = 1 << 21;
 
 }  // namespace
 
-void TurnGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eigen::Matrix3d& R_vessel_lidar) {
+void ScanGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eigen::Matrix3d& R_vessel_lidar) {
   num_layers_ = scan.head.num_returns;
   num_lines_ = scan.head.num_rings() * num_layers_;
   MeasureColumns(scan);
@@ -60,7 +60,7 @@ void TurnGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eig
   SortByColumn();
 }
 
-void TurnGrid::MeasureColumns(const Scan& scan) {
+void ScanGrid::MeasureColumns(const Scan& scan) {
   const auto& azimuth_rad = scan.columns.azimuth_rad;
   const int num_scanned = scan.columns.size();
   steps_rad_.clear();
@@ -76,10 +76,10 @@ void TurnGrid::MeasureColumns(const Scan& scan) {
     column_step_rad_ = *middle;
   }
   constexpr double kMostStepRad = kTwoPi / kMinColumns;
-  constexpr double kLeastStepRad = kTwoPi / 65536.0;  // columns that a turn may have
+  constexpr double kLeastStepRad = kTwoPi / 65536.0;  // columns that a scan may have
   const double step_rad = std::clamp(column_step_rad_, kLeastStepRad, kMostStepRad);
   const bool is_whole = num_scanned >= kMinColumns && seam_rad <= kMaxSeamSteps * column_step_rad_;
-  // The missing part counts as columns too; between two of them there is at least one when the turn is not whole.
+  // The missing part counts as columns too; between two of them there is at least one when the scan is not whole.
   const int round_the_circle = std::min(static_cast<int>(std::lround(kTwoPi / step_rad)), kMostCells / std::max(1, num_lines_));
   num_columns_ = is_whole ? num_scanned : std::max({kMinColumns, num_scanned + kLeastMissing, round_the_circle});
 
@@ -92,7 +92,7 @@ void TurnGrid::MeasureColumns(const Scan& scan) {
   }
 }
 
-void TurnGrid::SortByColumn() {
+void ScanGrid::SortByColumn() {
   by_column_.resize(column_of_.size());
   if (!is_shifted_) {
     std::iota(by_column_.begin(), by_column_.end(), 0);
@@ -106,7 +106,7 @@ void TurnGrid::SortByColumn() {
   }
 }
 
-int TurnGrid::ColumnsOf(double length_m, double range_m) const {
+int ScanGrid::ColumnsOf(double length_m, double range_m) const {
   const int half = num_columns_ / 2;
   if (range_m <= length_m || column_step_rad_ <= 0.0) return half;
   // Columns of a strange lidar may be so fine that their number is none of an int.

@@ -1,4 +1,4 @@
-// A turn as the lookout method works on it: returns levelled, and found by line and column.
+// A scan as the lookout method works on it: returns levelled, and found by line and column.
 #pragma once
 
 #include <Eigen/Core>
@@ -36,23 +36,23 @@ inline float WidestRange(double reach_m, float range_m) {
 
 /// Lines are the rings, from the lowest up, each once per return of a shot: line = ring x returns per shot + return.
 ///
-/// Columns make a whole circle: where the turn is a part of one, empty columns stand for the rest. Where a lidar fires the beams of a column to more
+/// Columns make a whole circle: where the scan is a part of one, empty columns stand for the rest. Where a lidar fires the beams of a column to more
 /// than a column's width aside (Ouster: up to 3 degrees), each return stands in the column that it looks along.
-class TurnGrid {
+class ScanGrid {
  public:
   static constexpr std::int32_t kNone = -1;
   /// More than any window of columns is wide.
   static constexpr int kMinColumns = 64;
 
   /// @param R_vessel_lidar  rotation from the lidar to the vessel frame: it levels the returns
-  /// Cost: proportional to the cells. Allocates nothing once it has seen a turn of that size.
+  /// Cost: proportional to the cells. Allocates nothing once it has seen a scan of that size.
   void Fill(const Scan& scan, std::span<const Return> returns, const Eigen::Matrix3d& R_vessel_lidar);
 
   int num_lines() const { return num_lines_; }
   int num_columns() const { return num_columns_; }
   int num_layers() const { return num_layers_; }
   int RingOf(int line) const { return line / num_layers_; }
-  /// The usual angle from a column to the next: the median round the circle, so that holes and the cut of the turn do not count.
+  /// The usual angle from a column to the next: the median round the circle, so that holes and the cut of the scan do not count.
   double column_step_rad() const { return column_step_rad_; }
 
   int Wrap(int column) const { return column < 0 ? column + num_columns_ : column < num_columns_ ? column : column - num_columns_; }
@@ -105,7 +105,7 @@ class TurnGrid {
   std::vector<std::int32_t> next_in_column_;
 };
 
-inline int TurnGrid::NextOccupied(int line, int column) const {
+inline int ScanGrid::NextOccupied(int line, int column) const {
   const std::uint64_t* words = occupied_.data() + static_cast<std::size_t>(line) * words_per_line_;
   auto word = static_cast<std::size_t>(column / kWordBits);
   std::uint64_t bits = words[word] & (~std::uint64_t{0} << (column % kWordBits));
@@ -117,7 +117,7 @@ inline int TurnGrid::NextOccupied(int line, int column) const {
 }
 
 template <int kWindow>
-int TurnGrid::NumNear(int line, int column, float range_m, float reach_m) const {
+int ScanGrid::NumNear(int line, int column, float range_m, float reach_m) const {
   static_assert(2 * kWindow < kMinColumns);
   int num_near = 0;
   if (column < kWindow || column + kWindow >= num_columns_) {

@@ -1,8 +1,0 @@
-lookout_test(NAME unit_top SOURCES unit/top/board_test.cpp unit/top/screen_test.cpp LINKS lookout_top lookout_wire)
-add_executable(system_top system/top_test.cpp)
-target_link_libraries(system_top PRIVATE lookout_bus lookout_wire GTest::gtest GTest::gtest_main util)
-target_compile_definitions(system_top PRIVATE LOOKOUT_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
-set_target_properties(system_top PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
-add_dependencies(system_top lookout-top)
-add_test(NAME system_top COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/system/in_namespace.sh route $<TARGET_FILE:system_top>)
-set_tests_properties(system_top PROPERTIES TIMEOUT 180 SKIP_RETURN_CODE 77)
