@@ -24,12 +24,12 @@
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
 
 namespace {
 
 using namespace lookout;
-using namespace lookout::system_test;
+using namespace lookout::support;
 namespace fs = std::filesystem;
 
 const std::vector<std::string> kServices = bus::StartOrder();

@@ -18,6 +18,7 @@
 #include "services/georeferencer/params.hpp"
 #include "services/georeferencer/service.hpp"
 #include "services/georeferencer/wire.hpp"
+#include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
@@ -25,7 +26,7 @@
 namespace lookout {
 namespace {
 
-const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+const std::string kDemo = support::kDemoConfig.string();
 constexpr Utime kStart{std::chrono::seconds(1'781'532'600)};
 
 // The rain of scene `rain` and nothing else: whatever rings the alarm is false.

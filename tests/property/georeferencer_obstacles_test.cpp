@@ -14,6 +14,7 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/config/boat.hpp"
+#include "tests/support/files.hpp"
 #include "tools/eval/evaluation.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
@@ -22,7 +23,7 @@
 namespace lookout {
 namespace {
 
-const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+const std::string kDemo = support::kDemoConfig.string();
 constexpr Utime kStart{std::chrono::seconds(1'781'532'600)};
 // Filters settle.
 constexpr double kSettleS = 2.0;
@@ -53,7 +54,7 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
                                          double from_s = kSettleS) {
   const auto boat = config::LoadBoat(kDemo);
   const auto scene = sim::MakeScene(scene_name, static_cast<std::uint64_t>(seed)).value();
-  const auto folder = std::filesystem::temp_directory_path() / ("lookout_obstacles_" + scene_name + "_" + std::to_string(getpid()));
+  const support::TempDir folder;
   Recording recording;
   {
     sim::SimulationParams params;
@@ -69,7 +70,6 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
     truth.Close();
   }
   const eval::Truth truth(folder);
-  std::filesystem::remove_all(folder);
   eval::Evaluation evaluation(&truth, 1);
   evaluation.SetMounting(boat.T_vessel_lidar);
   eval::TurnCollector collector([&](const eval::Turn& turn) {

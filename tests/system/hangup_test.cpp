@@ -16,6 +16,8 @@
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
+
 // An interactive shell on a terminal of its own.
 class Terminal {
  public:

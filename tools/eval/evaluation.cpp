@@ -33,9 +33,9 @@ void Errors::Add(const Errors& other) {
 Evaluation::Evaluation(const Truth* truth, int min_num_returns) : truth_(truth), min_num_returns_(min_num_returns) {}
 
 void Evaluation::Add(const Turn& turn) {
-  ++num_turns;
+  ++num_scans;
   const bool is_whole = turn.IsWhole();
-  if (is_whole) ++num_whole_turns;
+  if (is_whole) ++num_whole_scans;
   std::vector<ObstacleRow> turn_rows;
   for (const auto& [part_index, message] : turn.obstacles) {
     for (const auto& obstacle : message.obstacles) {

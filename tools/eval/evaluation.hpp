@@ -53,8 +53,8 @@ class Evaluation {
   void Add(const Turn& turn);
   void Add(const pose_t& pose);
 
-  std::int64_t num_turns = 0;
-  std::int64_t num_whole_turns = 0;
+  std::int64_t num_scans = 0;
+  std::int64_t num_whole_scans = 0;
   std::int64_t num_obstacles = 0;
   std::map<int, std::int64_t> num_by_status;
   std::optional<std::int64_t> table_utime_us;  // of the turn in `rows`: the last whole one, or the last

@@ -63,7 +63,7 @@ int EvaluateLog(const LogOptions& options) {
     }
     if (!is_taken) ++num_unusable;
   }
-  if (evaluation.num_turns == 0) {
+  if (evaluation.num_scans == 0) {
     std::cerr << options.log_file << ": no turn of OBSTACLES\n";
     return EXIT_FAILURE;
   }

@@ -73,7 +73,7 @@ segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_off
   throw std::logic_error("a scan of the decoder is not complete");
 }
 
-void RenderTurns(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
+void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
   LabelledScan labelled;
   for (const auto& object : scene.objects) labelled.objects[object.id] = {object.name, object.kind, object.is_in_water};
 

@@ -21,6 +21,7 @@
 #include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/source.hpp"
 #include "services/navigator/io/tcp_client.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -93,7 +94,6 @@ struct Pty {
 class SerialTest : public SourceTest {
  protected:
   SerialTest() { std::filesystem::create_directories(folder_); }
-  ~SerialTest() override { std::filesystem::remove_all(folder_); }
   // What udev does when an adapter is plugged in: the same name, another device.
   void PlugIn(const Pty& pty) const {
     std::filesystem::remove(link_);
@@ -101,7 +101,7 @@ class SerialTest : public SourceTest {
   }
   std::unique_ptr<Source> Serial(int baud) const { return std::make_unique<SerialPort>("gnss", link_, baud); }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_serial_" + std::to_string(getpid()));
+  support::TempDir folder_;
   std::filesystem::path link_ = folder_ / "gnss";
 };
 
