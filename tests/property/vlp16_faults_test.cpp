@@ -10,6 +10,7 @@
 #include "common/bus/memory_bus.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 #include "tools/sim/faulty_network.hpp"
@@ -78,7 +79,8 @@ TEST(Vlp16Faults, AreCountedExactlyOverAMinute) {
 
 // By way of a capture, with position packets and the latencies of the simulator.
 TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
-  const auto file = std::filesystem::path(testing::TempDir()) / ("lookout_vlp16_faults_test" + std::to_string(::getpid()) + ".pcap");
+  const support::TempDir folder;
+  const auto file = folder / "file.pcap";
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     sim::SimulationParams params;

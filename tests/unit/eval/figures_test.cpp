@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <iterator>
 
+#include "tests/support/files.hpp"
 #include "tests/unit/eval_report/made_up.hpp"
 
 namespace lookout::eval {
@@ -15,22 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = LOOKOUT_SOURCE_DIR;
-
-std::string Read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using support::kSources;
+using support::ReadFile;
 
 class Figures : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_figures_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "one.csv") << "# Caption.\n# More.\nmethod,%\nours,1.5\n\"a, \"\"b\"\"|c\",2\n";
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { std::ofstream(folder_ / "one.csv") << "# Caption.\n# More.\nmethod,%\nours,1.5\n\"a, \"\"b\"\"|c\",2\n"; }
 
   std::string Fill(const std::string& text) const { return FillBlocks(text, folder_, "README.md"); }
   std::string Fault(const std::string& text) const {
@@ -44,7 +35,7 @@ class Figures : public ::testing::Test {
 
   static constexpr const char* kFilled =
       "<!-- figures: one -->\n| method | % |\n|---|---|\n| ours | 1.5 |\n| a, \"b\"\\|c | 2 |\n\nCaption.\nMore.\n<!-- end -->\n";
-  fs::path folder_;
+  support::TempDir folder_;
 };
 
 TEST_F(Figures, ABlockIsFilledAndAllElseStays) {
@@ -103,11 +94,11 @@ TEST_F(Figures, AreMadeOfTheResultsAndReplacedOnlyWhenForced) {
   EXPECT_NE(scope->find("mean over the 2 with objects (open<water> counts for false segments alone)"), std::string::npos) << *scope;
 
   WriteFigures(figures, folder_ / "new", false);
-  const auto text = Read(folder_ / "new/main.csv");
+  const auto text = ReadFile(folder_ / "new/main.csv");
   EXPECT_NE(text.find("# Measured 2026-11-22 by"), std::string::npos);
   EXPECT_THROW(WriteFigures(figures, folder_ / "new", false), std::runtime_error);
   EXPECT_NO_THROW(WriteFigures(figures, folder_ / "new", true));
-  EXPECT_EQ(Read(folder_ / "new/main.csv"), text);
+  EXPECT_EQ(ReadFile(folder_ / "new/main.csv"), text);
   EXPECT_NE(FillBlocks("<!-- figures: main -->\n<!-- end -->\n", folder_ / "new", "").find("| ours (all segments) | 85.2 |"), std::string::npos);
 }
 
@@ -166,7 +157,7 @@ TEST_F(Figures, ASweepIsARowOfMeansOverItsScenes) {
   Results results;
   Curve curve{"Sweep of link_m", "link_m", "mIoU of all segments, %", {{"a", {{0.2, 90.0}, {0.3, 80.0}}}, {"b", {{0.2, 70.0}, {0.3, 90.0}}}}, ""};
   curve.value_of_boat = "0.3";
-  curve.turns_from = "seeds 1 to 4, 0.6 s each";
+  curve.scans_from = "seeds 1 to 4, 0.6 s each";
   results.curves = {curve};
   const auto figures = FiguresOf(results, "2026-11-22");
   ASSERT_EQ(figures.size(), 1U);
@@ -178,17 +169,17 @@ TEST_F(Figures, ASweepIsARowOfMeansOverItsScenes) {
 // `./dev figures` writes both; whoever edits one by hand is told here.
 TEST(ReadmeFiles, ShowWhatTheCommittedFiguresHold) {
   int num_blocks = 0;
-  for (auto entry = fs::recursive_directory_iterator(kRoot); entry != fs::recursive_directory_iterator(); ++entry) {
+  for (auto entry = fs::recursive_directory_iterator(kSources); entry != fs::recursive_directory_iterator(); ++entry) {
     const auto name = entry->path().filename().string();
     if (entry->is_directory() && (name == "build" || name.starts_with("."))) {
       entry.disable_recursion_pending();
       continue;
     }
     if (!entry->is_regular_file() || entry->path().extension() != ".md") continue;
-    const auto text = Read(entry->path());
+    const auto text = ReadFile(entry->path());
     for (auto at = text.find("\n<!-- figures: "); at != std::string::npos; at = text.find("\n<!-- figures: ", at + 1)) ++num_blocks;
     std::string filled;
-    ASSERT_NO_THROW(filled = FillBlocks(text, kRoot / "tools/eval/figures", entry->path().string()));
+    ASSERT_NO_THROW(filled = FillBlocks(text, kSources / "tools/eval/figures", entry->path().string()));
     EXPECT_TRUE(filled == text) << entry->path() << " shows other figures than tools/eval/figures: run ./dev figures, or lookout-eval --figures "
                                 << "tools/eval/figures --blocks " << entry->path().string();
   }

@@ -8,6 +8,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "tests/support/files.hpp"
 #include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {
@@ -237,10 +238,9 @@ TEST(Kinds, BoatsSwimmersBuoysAndMarkersAreInTheWater) {
 class SceneFolders : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_ / "scenes"); }
-  void TearDown() override { fs::remove_all(folder_); }
   void Write(const std::string& name, const std::string& text) { std::ofstream(folder_ / "scenes" / name) << text; }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / ("lookout_scene_folders" + std::to_string(::getpid()));
+  support::TempDir folder_;
 };
 
 TEST_F(SceneFolders, BesideTheBoatComeFirst) {
@@ -249,7 +249,7 @@ TEST_F(SceneFolders, BesideTheBoatComeFirst) {
   EXPECT_EQ(FindScene("mine", folder_ / "boat"), folder_ / "scenes/mine.txtpb");
   EXPECT_EQ(FindScene("mine", folder_ / "boat/"), folder_ / "scenes/mine.txtpb");
   EXPECT_EQ(FindScene("lake", folder_ / "boat"), folder_ / "scenes/lake.txtpb");
-  EXPECT_EQ(FindScene("dense", folder_ / "boat"), fs::path(LOOKOUT_SOURCE_DIR) / "config/scenes/dense.txtpb");
+  EXPECT_EQ(FindScene("dense", folder_ / "boat"), support::kSources / "config/scenes/dense.txtpb");
   EXPECT_EQ(FindScene("elsewhere/other.txtpb", folder_ / "boat"), "elsewhere/other.txtpb");
 }
 

@@ -9,6 +9,8 @@
 
 #include "tools/sim/sinks.hpp"
 
+#include "tests/support/files.hpp"
+
 namespace lookout::sim {
 namespace {
 
@@ -25,7 +27,8 @@ unsigned Folded(const std::uint8_t* bytes, std::size_t size, unsigned sum) {
 }
 
 TEST(PcapSink, IsReadBackByLibpcapWithRightHeaders) {
-  const auto file = std::filesystem::path(testing::TempDir()) / ("lookout_pcap_sink_test" + std::to_string(::getpid()) + ".pcap");
+  const support::TempDir folder;
+  const auto file = folder / "file.pcap";
   const Utime time = Utime(1'781'532'600s) + 123'456us;
   {
     PcapSink sink(file, {2368, 8308});

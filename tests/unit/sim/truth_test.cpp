@@ -12,6 +12,7 @@
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
 #include "lookout/sim_truth_t.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
@@ -26,8 +27,6 @@ constexpr int kSlotsPerPacket = 384;
 
 class TruthLogTest : public testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   // One second of a scene. @return messages of its truth.lcmlog
   std::vector<sim_truth_t> Run(const std::string& scene_name, config::Scene::ReturnMode mode) {
     const auto scene = MakeScene(scene_name, 3).value();
@@ -74,8 +73,7 @@ class TruthLogTest : public testing::Test {
     return rows;
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("lookout_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  support::TempDir folder_;
 };
 
 TEST_F(TruthLogTest, HasTheReturnsOfTheCsvFile) {
