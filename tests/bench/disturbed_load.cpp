@@ -14,15 +14,15 @@
 #include "common/bus/decode.hpp"
 #include "tests/bench/disturbances.hpp"
 #include "tests/bench/disturbed_judge.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace {
 
 using namespace lookout;
 using namespace lookout::bench;
-using system_test::Child;
-using system_test::RunProgram;
+using support::Child;
+using support::RunProgram;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;

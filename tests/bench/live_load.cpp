@@ -19,19 +19,20 @@
 #include "common/bus/guarded_bind.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/sequence.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
 
 namespace {
 
 using namespace lookout;
-using namespace lookout::system_test;
+using namespace lookout::support;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kServices{"recorder", "georeferencer", "segmenter", "navigator", "vlp16"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
 // Targets of the suite, on the boat's computer.
 constexpr double kMaxLatencyMs = 10.0;

@@ -18,6 +18,7 @@
 #include "services/georeferencer/params.hpp"
 #include "services/georeferencer/service.hpp"
 #include "services/georeferencer/wire.hpp"
+#include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
@@ -25,7 +26,7 @@
 namespace lookout {
 namespace {
 
-const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+const std::string kDemo = support::kDemoConfig.string();
 constexpr Utime kStart{std::chrono::seconds(1'781'532'600)};
 
 // The rain of scene `rain` and nothing else: whatever rings the alarm is false.
@@ -89,7 +90,7 @@ Run Simulate(const std::string& scene_text, int seed, double seconds) {
   replay::Chain chain(kDemo, {}, [&](Utime, std::string_view channel, Bytes bytes) {
     if (channel == bus::kSegments.name) take(bus::Decode<segments_t>(bytes).value());
   });
-  while (const auto datagram = simulation.Next()) chain.OnDatagram(datagram->time, datagram->port, datagram->payload, {});
+  while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
   chain.Finish();
   return run;
 }

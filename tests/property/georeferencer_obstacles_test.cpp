@@ -14,6 +14,7 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/config/boat.hpp"
+#include "tests/support/files.hpp"
 #include "tools/eval/evaluation.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
@@ -22,7 +23,7 @@
 namespace lookout {
 namespace {
 
-const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+const std::string kDemo = support::kDemoConfig.string();
 constexpr Utime kStart{std::chrono::seconds(1'781'532'600)};
 // Filters settle.
 constexpr double kSettleS = 2.0;
@@ -53,7 +54,7 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
                                          double from_s = kSettleS) {
   const auto boat = config::LoadBoat(kDemo);
   const auto scene = sim::MakeScene(scene_name, static_cast<std::uint64_t>(seed)).value();
-  const auto folder = std::filesystem::temp_directory_path() / ("lookout_obstacles_" + scene_name + "_" + std::to_string(getpid()));
+  const support::TempDir folder;
   Recording recording;
   {
     sim::SimulationParams params;
@@ -64,22 +65,28 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
     sim::TruthWriter truth(folder, scene, boat, params.start);
     sim::Simulation simulation(scene, boat, params, &truth);
     replay::Chain chain(kDemo, {}, [&](Utime, std::string_view channel, Bytes bytes) { recording.Take(channel, bytes); });
-    while (const auto datagram = simulation.Next()) chain.OnDatagram(datagram->time, datagram->port, datagram->payload, {});
+    while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
     chain.Finish();
     truth.Close();
   }
   const eval::Truth truth(folder);
-  std::filesystem::remove_all(folder);
   eval::Evaluation evaluation(&truth, 1);
   evaluation.SetMounting(boat.T_vessel_lidar);
-  eval::TurnCollector collector([&](const eval::Turn& turn) {
-    if (SecondsSinceStart(turn.obstacles.begin()->second.utime_us) >= from_s) evaluation.Add(turn);
-  });
-  // The collector holds some hundred turns: each message of OBSTACLES completes one.
+  int num_incomplete = 0;
+  messages::ScanCollector collector([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
+                                    messages::ScanCollector::Order::kOfCompletion, 256,
+                                    [&](const messages::ScanMessages& scan) {
+                                      if (!messages::HasAllParts(scan.obstacles)) {
+                                        num_incomplete += scan.obstacles.empty() ? 0 : 1;
+                                      } else if (SecondsSinceStart(scan.utime_us) >= from_s) {
+                                        evaluation.Add(scan);
+                                      }
+                                    });
   for (auto& message : recording.scans) EXPECT_TRUE(collector.Add(std::move(message)));
   for (auto& message : recording.segments) EXPECT_TRUE(collector.Add(std::move(message)));
   for (auto& message : recording.obstacles) EXPECT_TRUE(collector.Add(std::move(message)));
-  EXPECT_EQ(collector.num_incomplete(), 0);
+  collector.Finish();
+  EXPECT_EQ(num_incomplete, 0);
   return evaluation.seen;
 }
 

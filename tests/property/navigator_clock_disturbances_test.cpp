@@ -12,6 +12,7 @@
 #include "common/core/geodesy.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/common/late_arrivals.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
@@ -57,7 +58,7 @@ struct World {
 
 Run Play(const World& world, microseconds period, microseconds duration) {
   const LocalFrame map({50.0, 8.0, 0.0});
-  auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  auto params = LoadParams(support::kDemoConfig.string());
   params.input = Input::kOutside;
   SourceParams source;
   source.name = kTcp;

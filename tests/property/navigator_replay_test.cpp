@@ -10,6 +10,7 @@
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -21,7 +22,7 @@ constexpr double kLatitudeDeg = 43.63;
 constexpr double kLongitudeDeg = -72.15;
 
 Params TestParams(Input input) {
-  auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  auto params = LoadParams(support::kDemoConfig.string());
   params.input = input;
   // A compass and a strapdown sensor on a serial line, with all that config can say of it.
   SourceParams ahrs;

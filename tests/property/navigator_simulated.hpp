@@ -13,13 +13,14 @@
 #include "common/core/angles.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
+#include "tests/support/files.hpp"
 #include "tools/sim/map_frame.hpp"
 #include "tools/sim/navigation.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::navigator {
 
-inline const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+inline const std::string kDemo = support::kDemoConfig.string();
 inline const Utime kSimulatedStart = Utime(std::chrono::seconds(1'781'532'600));
 
 /// A pose beside the true one, east and north in the map of the simulation.

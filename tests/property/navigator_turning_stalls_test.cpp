@@ -14,6 +14,7 @@
 #include "common/core/geodesy.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator::turning {
@@ -115,7 +116,7 @@ struct Wrong {
 };
 
 Wrong Play(const Case& scene) {
-  auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  auto params = LoadParams(support::kDemoConfig.string());
   params.input = Input::kOutside;
   params.navigator.filter.p_vessel_antenna_m.setZero();
   params.navigator.filter.p_vessel_imu_m.setZero();

@@ -13,10 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/pcap_sink.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
+#include "tools/sim/sinks.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -148,12 +149,6 @@ Vector3d ToVessel(const Vector3d& p_lidar_m) {
 
 class SimWireTruth : public testing::Test {
  protected:
-  void SetUp() override {
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   void Run(const std::string& scene_name, const LidarParams& lidar) {
     const auto scene = MakeScene(scene_name, 4).value();
     SimulationParams params;
@@ -162,8 +157,6 @@ class SimWireTruth : public testing::Test {
     params.seed = 4;
     params.lidar = lidar;
     params.lidar.range_sd_m = 0.0;
-    std::filesystem::remove_all(folder_);  // of the run before
-    std::filesystem::create_directories(folder_);
     TruthWriter truth(folder_ / "truth", scene, TurnedBoat(), params.start);
     Simulation simulation(scene, TurnedBoat(), params, &truth);
     PcapSink sink(folder_ / "a.pcap", {2368, 8308});
@@ -248,9 +241,7 @@ class SimWireTruth : public testing::Test {
     EXPECT_GT(num_checked, 300U);
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) /
-      ("lookout_wire_" + std::to_string(::getpid()) + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  support::TempDir folder_;
   std::vector<Point> points_;
   std::vector<std::vector<std::string>> rows_;
 };
@@ -275,7 +266,7 @@ TEST_F(SimWireTruth, IsToldByPacketsOfDualReturn) {
 
 TEST_F(SimWireTruth, IsToldByPacketsOfAQuickHeadThatGivesTheLastReturn) {
   LidarParams lidar;
-  lidar.mode = ReturnMode::kLast;
+  lidar.mode = config::Scene::LAST;
   lidar.rotation_rpm = 1200.0;
   Run("marina", lidar);
   ExpectReturnsOfTheTruth(false);
@@ -283,7 +274,7 @@ TEST_F(SimWireTruth, IsToldByPacketsOfAQuickHeadThatGivesTheLastReturn) {
 }
 
 TEST_F(SimWireTruth, IsToldByPacketsOfALimitedFieldOfView) {
-  for (const auto mode : {ReturnMode::kStrongest, ReturnMode::kDual}) {
+  for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     LidarParams lidar;
     lidar.mode = mode;
     lidar.field_of_view = {300.0 * kDegree, 120.0 * kDegree};

@@ -10,12 +10,13 @@
 #include "common/bus/memory_bus.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
-#include "tools/sim/faults.hpp"
-#include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/faulty_network.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
+#include "tools/sim/sinks.hpp"
 
 namespace lookout::vlp16 {
 namespace {
@@ -78,11 +79,12 @@ TEST(Vlp16Faults, AreCountedExactlyOverAMinute) {
 
 // By way of a capture, with position packets and the latencies of the simulator.
 TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
-  const auto file = std::filesystem::path(testing::TempDir()) / ("lookout_vlp16_faults_test" + std::to_string(::getpid()) + ".pcap");
+  const support::TempDir folder;
+  const auto file = folder / "file.pcap";
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     sim::SimulationParams params;
-    params.lidar.mode = seed == 2 ? sim::ReturnMode::kDual : sim::ReturnMode::kStrongest;
+    params.lidar.mode = seed == 2 ? config::Scene::DUAL : config::Scene::STRONGEST;
     params.lidar.model = seed == 3 ? sim::LidarModel::kPuckHiRes : sim::LidarModel::kVlp16;
     params.start = kStart;
     params.duration = 5s;

@@ -9,20 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/channels.hpp"
+#include "common/bus/services.hpp"
+#include "tests/support/files.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = LOOKOUT_SOURCE_DIR;
-
-std::string Read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+const fs::path kRoot = lookout::support::kSources;
+using lookout::support::ReadFile;
 
 std::vector<fs::path> SourcesBelow(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -38,7 +33,7 @@ std::vector<fs::path> SourcesBelow(const fs::path& folder) {
 std::vector<std::string> Includes(const fs::path& file) {
   static const std::regex kInclude(R"re(^\s*#include\s*[<"]([^>"]+)[>"])re");
   std::vector<std::string> includes;
-  std::istringstream text(Read(file));
+  std::istringstream text(ReadFile(file));
   for (std::string line; std::getline(text, line);) {
     std::smatch match;
     if (std::regex_search(line, match, kInclude)) includes.push_back(match[1]);
@@ -87,22 +82,23 @@ const std::vector<Rule>& Rules() {
       {"common/core/.*", {"common/core"}},
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
+      {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
-      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
+      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
-      {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
-      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
+      {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
+      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
       // As params; it knows what an address is.
       {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
       // Opens what params name.
-      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "OWN", "OWN/core", "OWN/io"}},
+      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "OWN", "OWN/core"}},
+      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
-      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
+      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
   };
@@ -140,7 +136,7 @@ TEST(Structure, OutputsAreWrittenByOneClass) {
       const std::string path = fs::relative(file, kRoot).string();
       if (std::regex_match(path, exempt)) continue;
       std::smatch match;
-      const std::string text = Read(file);
+      const std::string text = ReadFile(file);
       EXPECT_FALSE(std::regex_search(text, match, writes)) << path << " writes a file by " << match.str() << ", not through io::OutputFile";
     }
   }
@@ -152,7 +148,7 @@ TEST(Structure, LinesOfTheLogAreMadePrintable) {
     for (const auto& file : SourcesBelow(kRoot / folder)) {
       const std::string path = fs::relative(file, kRoot).string();
       if (path == "common/runtime/log_pattern.cpp") continue;
-      const std::string text = Read(file);
+      const std::string text = ReadFile(file);
       EXPECT_EQ(text.find("spdlog::set_pattern"), std::string::npos) << path << ": use runtime::SetLogPattern";
       EXPECT_FALSE(std::regex_search(text, std::regex(R"(cerr[^;]*<< *error\.what\(\))"))) << path << " prints what() as it is: use PrintableLines";
     }
@@ -167,7 +163,7 @@ TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
     for (const auto& file : SourcesBelow(kRoot / folder)) {
       const std::string path = fs::relative(file, kRoot).string();
       if (std::regex_match(path, exempt)) continue;
-      EXPECT_FALSE(std::regex_search(Read(file), clock)) << path << " reads a clock";
+      EXPECT_FALSE(std::regex_search(ReadFile(file), clock)) << path << " reads a clock";
     }
   }
 }
@@ -178,7 +174,7 @@ TEST(Structure, NoProgramTakesTheUsersLocale) {
   int num_checked = 0;
   for (const auto& folder : {"common", "services", "tools"}) {
     for (const auto& file : SourcesBelow(kRoot / folder)) {
-      EXPECT_FALSE(std::regex_search(Read(file), locale)) << fs::relative(file, kRoot).string() << " takes a locale";
+      EXPECT_FALSE(std::regex_search(ReadFile(file), locale)) << fs::relative(file, kRoot).string() << " takes a locale";
       ++num_checked;
     }
   }
@@ -193,7 +189,7 @@ TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor
   int num_checked = 0;
   for (const auto& folder : {"common", "services", "tools/replay"}) {
     for (const auto& file : SourcesBelow(kRoot / folder)) {
-      std::istringstream text(Read(file));
+      std::istringstream text(ReadFile(file));
       int number = 0;
       for (std::string line; std::getline(text, line);) {
         ++number;
@@ -219,7 +215,7 @@ TEST(Structure, AllThatReachesAMessageIsCompiledForTheSameBytes) {
 }
 
 TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
-  const std::string readme = Read(kRoot / "lcmtypes/README.md");
+  const std::string readme = ReadFile(kRoot / "lcmtypes/README.md");
   for (const auto& channel : lookout::bus::kChannels) {
     std::ostringstream row;
     row << "| " << channel.name << " | " << channel.type << " | " << channel.publisher << " | " << channel.max_rate_hz << " | " << channel.queue_depth
@@ -229,12 +225,12 @@ TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
 }
 
 TEST(Structure, ReadmeNamesEveryProgram) {
-  const std::string readme = Read(kRoot / "README.md");
+  const std::string readme = ReadFile(kRoot / "README.md");
   for (const auto& folder : {"services", "tools"}) {
     for (const auto& entry : fs::directory_iterator(kRoot / folder)) {
       if (!entry.is_directory()) continue;
       const std::string program = "lookout-" + entry.path().filename().string();
-      const bool is_program = Read(entry.path() / "CMakeLists.txt").find("lookout_program(") != std::string::npos;
+      const bool is_program = ReadFile(entry.path() / "CMakeLists.txt").find("lookout_program(") != std::string::npos;
       if (is_program) {
         EXPECT_NE(readme.find(program), std::string::npos) << "README.md does not name " << program;
       }
@@ -243,22 +239,63 @@ TEST(Structure, ReadmeNamesEveryProgram) {
   }
 }
 
-// deploy/README.md and systemd's reload go by this column.
-TEST(Structure, TheTableOfProcessesSaysWhoTakesSighup) {
-  std::istringstream table(Read(kRoot / "deploy/processes"));
-  int num_processes = 0;
-  for (std::string line; std::getline(table, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream row(line);
-    std::string name;
-    std::string watchdog_s;
-    std::string reload;
-    row >> name >> watchdog_s >> reload;
-    const bool takes_it = Read(kRoot / "services" / name / "main.cpp").find("process.OnHangup(") != std::string::npos;
-    EXPECT_EQ(reload == "yes", takes_it) << name;
-    ++num_processes;
+std::string Joined(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const auto word : words) text += (text.empty() ? "" : ", ") + std::string(word);
+  return text.empty() ? "-" : text;
+}
+
+std::vector<std::string_view> InputsOf(const lookout::bus::ServiceRow& service) {
+  std::vector<std::string_view> names;
+  for (const auto* channel : service.inputs) {
+    if (channel != nullptr) names.push_back(channel->name);
   }
-  EXPECT_GE(num_processes, 5);
+  return names;
+}
+
+std::vector<std::string_view> OutputsOf(const lookout::bus::ServiceRow& service) {
+  std::vector<std::string_view> names;
+  for (const auto& channel : lookout::bus::kChannels) {
+    if (channel.publisher == service.name) names.push_back(channel.name);
+  }
+  return names;
+}
+
+TEST(Structure, ReadmeOfDeployHoldsTheServiceTable) {
+  const std::string readme = ReadFile(kRoot / "deploy/README.md");
+  for (const auto& service : lookout::bus::kServices) {
+    std::ostringstream row;
+    row << "| " << service.name << " | " << service.purpose << " | " << (service.name == "recorder" ? "every channel" : Joined(InputsOf(service)))
+        << " | " << Joined(OutputsOf(service)) << " | " << service.state << " | " << service.hangup << " | " << service.watchdog_s << " |";
+    EXPECT_NE(readme.find(row.str()), std::string::npos) << "deploy/README.md lacks or differs from: " << row.str();
+  }
+}
+
+TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
+  std::istringstream readme(ReadFile(kRoot / "README.md"));
+  std::size_t num_rows = 0;
+  for (std::string line; std::getline(readme, line);) {
+    for (const auto& service : lookout::bus::kServices) {
+      if (!line.starts_with("| [lookout-" + std::string(service.name) + "](services/")) continue;
+      ++num_rows;
+      for (const auto& names : {InputsOf(service), OutputsOf(service)}) {
+        for (const auto name : names) EXPECT_NE(line.find(name), std::string::npos) << "README.md, " << service.name << " lacks " << name;
+      }
+    }
+  }
+  EXPECT_EQ(num_rows, lookout::bus::kServices.size());
+}
+
+// Readers start first: what they read, but for answers to what they publish, is published by a service above them.
+TEST(Structure, TheServiceTableIsInTheOrderOfTheData) {
+  std::vector<std::string_view> above;
+  for (const auto& service : lookout::bus::kServices) {
+    for (const auto* input : service.inputs) {
+      if (input == nullptr || input->is_raw) continue;
+      EXPECT_NE(std::ranges::find(above, input->publisher), above.end()) << service.name << " reads " << input->name;
+    }
+    above.push_back(service.name);
+  }
 }
 
 // A README says what a folder is and how to use it; why it became so stands beside it, with dates.
@@ -269,18 +306,18 @@ TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
       const std::string path = fs::relative(entry.path(), kRoot).string();
       if (entry.path().filename() == "README.md") {
-        EXPECT_EQ(Read(entry.path()).find("\n## Decisions"), std::string::npos) << path << ": decisions stand in DECISIONS.md";
+        EXPECT_EQ(ReadFile(entry.path()).find("\n## Decisions"), std::string::npos) << path << ": decisions stand in DECISIONS.md";
       }
       if (entry.path().filename() != "DECISIONS.md") continue;
       ++num_files;
-      const std::string text = Read(entry.path());
+      const std::string text = ReadFile(entry.path());
       EXPECT_EQ(text.rfind("# Decisions", 0), 0U) << path << " has no heading";
       const auto first = text.find_first_not_of('\n', std::min(text.find('\n'), text.size()));
       ASSERT_NE(first, std::string::npos) << path << " is empty";
       EXPECT_TRUE(std::regex_search(text.substr(first, 20), dated)) << path << " does not begin with a date";
       const fs::path readme = entry.path().parent_path() / "README.md";
       if (!fs::exists(readme)) continue;
-      EXPECT_NE(Read(readme).find("(DECISIONS.md)"), std::string::npos) << path << " is not named in the README beside it";
+      EXPECT_NE(ReadFile(readme).find("(DECISIONS.md)"), std::string::npos) << path << " is not named in the README beside it";
     }
   }
   EXPECT_GT(num_files, 15);
@@ -316,7 +353,7 @@ TEST(Structure, LinksBetweenPagesLeadSomewhere) {
   const std::regex heading(R"((^|\n)#+ ([^\n]*))");
   int num_links = 0;
   for (const auto& page : Pages()) {
-    const std::string text = Read(page);
+    const std::string text = ReadFile(page);
     for (std::sregex_iterator match(text.begin(), text.end(), link), end; match != end; ++match) {
       const std::string target = (*match)[1];
       if (target.rfind("http", 0) == 0) continue;
@@ -325,7 +362,7 @@ TEST(Structure, LinksBetweenPagesLeadSomewhere) {
       ++num_links;
       const std::string anchor = (*match)[3];
       if (anchor.empty()) continue;
-      const std::string other = Read(file);
+      const std::string other = ReadFile(file);
       bool is_there = false;
       for (std::sregex_iterator found(other.begin(), other.end(), heading); found != end; ++found) is_there |= AnchorOf((*found)[2]) == anchor;
       EXPECT_TRUE(is_there) << page << " leads to " << target << "#" << anchor << ", and there is no such heading";
@@ -338,13 +375,13 @@ TEST(Structure, LinksBetweenPagesLeadSomewhere) {
 TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
   std::string code;
   for (const auto& folder : {"common", "services", "tools"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) code += Read(file);
+    for (const auto& file : SourcesBelow(kRoot / folder)) code += ReadFile(file);
   }
-  code += Read(kRoot / "deploy/lookout-up.in");
+  code += ReadFile(kRoot / "deploy/lookout-up.in");
   const std::regex joints("\"\\s*\"");  // a literal that goes on in the next line
   code = std::regex_replace(code, joints, "");
   code += " has no field named ";  // Protobuf's
-  std::istringstream page(Read(kRoot / "TROUBLESHOOTING.md"));
+  std::istringstream page(ReadFile(kRoot / "TROUBLESHOOTING.md"));
   const std::regex quoted("`([^`]*)`");
   int num_pieces = 0;
   for (std::string line; std::getline(page, line);) {
@@ -370,11 +407,11 @@ TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
 TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
   std::string tests;
   std::string lists;
-  for (const auto& file : SourcesBelow(kRoot / "tests")) tests += Read(file);
+  for (const auto& file : SourcesBelow(kRoot / "tests")) tests += ReadFile(file);
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {
-    if (entry.path().filename() == "CMakeLists.txt") lists += Read(entry.path());
+    if (entry.path().filename() == "CMakeLists.txt") lists += ReadFile(entry.path());
   }
-  std::istringstream page(Read(kRoot / "SECURITY.md"));
+  std::istringstream page(ReadFile(kRoot / "SECURITY.md"));
   const std::regex quoted("`([^`]*)`");
   bool is_in_table = false;
   int num_named = 0;
@@ -404,12 +441,8 @@ TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
 }
 
 // What is not in the table is neither in systemd's units nor started by lookout-up.
-TEST(Structure, TheTableOfProcessesNamesEveryService) {
-  std::vector<std::string> in_table;
-  std::istringstream table(Read(kRoot / "deploy/processes"));
-  for (std::string line; std::getline(table, line);) {
-    if (!line.empty() && line[0] != '#') in_table.push_back(line.substr(0, line.find(' ')));
-  }
+TEST(Structure, TheServiceTableNamesEveryService) {
+  std::vector<std::string> in_table = lookout::bus::StartOrder();
   std::vector<std::string> in_folder;
   for (const auto& entry : fs::directory_iterator(kRoot / "services")) {
     if (entry.is_directory()) in_folder.push_back(entry.path().filename().string());

@@ -9,12 +9,14 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "lookout/health_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -60,14 +62,11 @@ class Alarm : public ::testing::Test {
 
 TEST_F(Alarm, IsToldWhenItComesAndNotWithTheNextSecond) {
   // The demo's guard zone, 10 m ahead, and an obstacle 10 m ahead of a lidar that stands 0.5 m forward: a larger zone.
-  const std::string folder = testing::TempDir() + "lookout_alarm" + std::to_string(::getpid());
-  ASSERT_EQ(RunProgram(
-                {"/bin/sh", "-c",
-                 "cp -r " LOOKOUT_SOURCE_DIR "/config/demo " + folder + " && sed -i 's/range_m: 10/range_m: 15/' " + folder + "/georeferencer.txtpb"},
-                folder + ".copy")
-                .exit_code,
-            0);
-  Child child({std::string(LOOKOUT_BIN_DIR) + "/lookout-georeferencer", "--config", folder}, folder + ".out");
+  const TempDir temp_dir;
+  const auto folder = temp_dir / "config";
+  std::filesystem::copy(kDemoConfig, folder);
+  ReplaceIn(folder / "georeferencer.txtpb", "range_m: 10", "range_m: 15");
+  Child child({Bin("georeferencer"), "--config", folder.string()}, (temp_dir / "out").string());
   ASSERT_TRUE(Until([](const health_t&) { return true; }, false)) << child.Output();
   EXPECT_EQ(reports_.back().state, health_t::STATE_STARTING);
   EXPECT_EQ(reports_.back().reason, "guard zone not watched: no whole scan yet");
@@ -82,7 +81,6 @@ TEST_F(Alarm, IsToldWhenItComesAndNotWithTheNextSecond) {
   // On a busy computer a change may fall into the very round of the loop that reports anyway.
   EXPECT_GE(num_between, 2) << "of four changes";
   EXPECT_EQ(child.Terminate(), 0);
-  RunProgram({"/bin/rm", "-rf", folder}, folder + ".copy");
 }
 
 }  // namespace

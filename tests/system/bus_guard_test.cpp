@@ -27,22 +27,22 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/live_test.hpp"
 #include "tests/system/lcm_datagrams.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr const char* kGroup = "239.255.76.67";
 constexpr std::uint16_t kPort = 7667;
-const std::vector<std::string> kServices{"vlp16", "navigator", "segmenter", "georeferencer", "recorder"};
-
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
+const std::vector<std::string> kServices = bus::StartOrder();
 
 sockaddr_in Address(const std::string& address) {
   sockaddr_in result{};
@@ -115,45 +115,15 @@ std::int64_t CounterOf(const health_t& health, const std::string& name) {
   return -1;
 }
 
-class BusGuard : public ::testing::Test {
+class BusGuard : public LiveTest {
  protected:
-  fs::path folder_;
-  fs::path start_folder_ = fs::current_path();
-  std::map<std::string, std::unique_ptr<Child>> children_;
-
-  void SetUp() override {
-    unsetenv("LCM_DEFAULT_URL");
-    folder_ = fs::temp_directory_path() / ("lookout_bus_guard_" + std::to_string(getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
-    fs::current_path(folder_);
-  }
-  void TearDown() override {
-    children_.clear();
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
-
-  void Start(const std::string& program, const std::vector<std::string>& options = {}) {
-    std::vector<std::string> command{Bin(program)};
-    if (std::ranges::find(kServices, program) != kServices.end()) command.insert(command.end(), {"--config", (folder_ / "config").string()});
-    command.insert(command.end(), options.begin(), options.end());
-    children_[program] = std::make_unique<Child>(command, (folder_ / (program + ".out")).string());
-  }
-
-  template <typename Condition>
-  static bool WaitUntil(const Condition& is_true, seconds timeout = seconds(30)) {
-    const auto deadline = std::chrono::steady_clock::now() + timeout;
-    while (!is_true() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(milliseconds(20));
-    return is_true();
-  }
+  void SetUp() override { unsetenv("LCM_DEFAULT_URL"); }
 
   // All processes, lookout-top and lookout-doctor, up.
   void StartAll(HealthListener& listener) {
     for (const auto& service : kServices) Start(service);
-    Start("top", {"--once", "--seconds", "600"});
-    Start("doctor", {"--config", (folder_ / "config").string(), "--seconds", "600"});
+    children_["top"] = std::make_unique<Child>(std::vector<std::string>{Bin("top"), "--once", "--seconds", "600"}, Output("top"));
+    Start("doctor", {"--seconds", "600"});
     EXPECT_TRUE(WaitUntil([&] {
       listener.Listen();
       return listener.latest.size() == kServices.size();

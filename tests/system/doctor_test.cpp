@@ -11,42 +11,18 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
-
-class Doctor : public ::testing::Test {
+class Doctor : public LiveTest {
  protected:
-  fs::path folder_;
-  fs::path start_folder_ = fs::current_path();
-  std::map<std::string, std::unique_ptr<Child>> children_;
-
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_doctor_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
-    fs::current_path(folder_);  // the recorder's logs/ is made here
-  }
-  void TearDown() override {
-    children_.clear();
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
-
-  std::string Config() const { return (folder_ / "config").string(); }
-  std::string Output(const std::string& name) const { return (folder_ / (name + ".out")).string(); }
-  void Start(const std::string& name, std::vector<std::string> more = {}) {
-    more.insert(more.begin(), {Bin(name), "--config", Config()});
-    children_[name] = std::make_unique<Child>(more, Output(name));
-  }
   RunResult Ask() const { return RunProgram({Bin("doctor"), "--config", Config(), "--seconds", "2"}, Output("doctor")); }
 
   // All but the disk's: how much room this computer has is no matter of the test.

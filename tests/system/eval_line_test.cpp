@@ -7,30 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 
 class EvalLine : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_eval_line_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   RunResult Run(const std::vector<std::string>& options) const {
-    std::vector<std::string> command{LOOKOUT_BIN_DIR "/lookout-eval", "--config", LOOKOUT_SOURCE_DIR "/config/catabot"};
+    std::vector<std::string> command{Bin("eval"), "--config", kCatabotConfig.string()};
     command.insert(command.end(), options.begin(), options.end());
     return RunProgram(command, Path("out"));
   }
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
-  fs::path folder_;
+  TempDir folder_;
 };
 
 TEST_F(EvalLine, TablesAreNotMadeOfSeedsOfTuning) {

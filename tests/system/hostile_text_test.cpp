@@ -13,12 +13,14 @@
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/run_info_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 
 constexpr char kEvil[] =
@@ -27,19 +29,13 @@ constexpr char kEvil[] =
 
 class HostileText : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_hostile_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { fs::copy(kDemoConfig, folder_ / "config"); }
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
   // Standard output and standard error together.
   RunResult Run(const std::string& tool, const std::vector<std::string>& options) {
-    std::vector<std::string> command{std::string(LOOKOUT_BIN_DIR) + "/lookout-" + tool};
+    std::vector<std::string> command{Bin(tool)};
     command.insert(command.end(), options.begin(), options.end());
     return RunProgram(command, Path("out"));
   }
@@ -78,7 +74,7 @@ class HostileText : public ::testing::Test {
     writer.Flush();
   }
 
-  fs::path folder_;
+  TempDir folder_;
 };
 
 TEST_F(HostileText, OfALogReachesNoTerminalAsAnEscapeSequence) {

@@ -24,10 +24,15 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/health_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::system_test {
+
+using support::Child;
+using support::RunProgram;
+using support::RunResult;
 
 /// lookout-vlp16 with the config of the simulated boat, on loopback.
 class LiveVlp16 {
@@ -35,12 +40,11 @@ class LiveVlp16 {
   /// @param folder  for its config and what it prints; made here
   explicit LiveVlp16(const std::filesystem::path& folder) : config_folder_(folder / "config"), bus_(bus::DefaultLcmUrl()) {
     std::filesystem::create_directories(folder);
-    std::filesystem::copy(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config/demo", config_folder_);
+    std::filesystem::copy(support::kDemoConfig, config_folder_);
     bus::Subscribe<health_t>(bus_, bus::kHealth, [this](const health_t& message) {
       if (message.process == "vlp16") health_ = message;
     });
-    process_.emplace(std::vector<std::string>{std::string(LOOKOUT_BIN_DIR) + "/lookout-vlp16", "--config", config_folder_.string()},
-                     (folder / "vlp16.out").string());
+    process_.emplace(std::vector<std::string>{support::Bin("vlp16"), "--config", config_folder_.string()}, (folder / "vlp16.out").string());
   }
 
   const std::filesystem::path& config_folder() const { return config_folder_; }

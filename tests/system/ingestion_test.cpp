@@ -4,17 +4,16 @@
 #include <gtest/gtest.h>
 #include <regex>
 
+#include "tests/support/files.hpp"
+
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
+
 class Ingestion : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_ingestion_" + std::to_string(getpid()) + "_" +
-                                                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
-
-  void TearDown() override {
-    if (!HasFailure()) std::filesystem::remove_all(folder_);
-  }
+  TempDir folder_;
 };
 
 TEST_F(Ingestion, TakesEveryPacketOfALidarOnce) {
@@ -30,8 +29,8 @@ TEST_F(Ingestion, TakesEveryPacketOfALidarOnce) {
 TEST_F(Ingestion, CountsWhatTheNetworkDid) {
   LiveVlp16 vlp16(folder_);
   ASSERT_TRUE(vlp16.NextHealth()) << vlp16.process().Output();
-  const auto result = RunProgram({std::string(LOOKOUT_BIN_DIR) + "/lookout-sim", "--config", vlp16.config_folder().string(), "--scene", "open_water",
-                                  "--seed", "7", "--seconds", "6", "--udp", "127.0.0.1", "--drop", "0.05", "--double", "0.02", "--swap", "0.02"},
+  const auto result = RunProgram({Bin("sim"), "--config", vlp16.config_folder().string(), "--scene", "open_water", "--seed", "7", "--seconds", "6",
+                                  "--udp", "127.0.0.1", "--drop", "0.05", "--double", "0.02", "--swap", "0.02"},
                                  (folder_ / "sim.out").string());
   ASSERT_EQ(result.exit_code, 0) << result.output;
   std::smatch totals;

@@ -1,4 +1,6 @@
 // The boat's processes live on loopback LCM, in a network namespace of their own. Each test takes some seconds of real time.
+#include "tests/support/live_test.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -12,58 +14,23 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/segments_t.hpp"
-#include "tests/system/child.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const std::vector<std::string> kServices{"recorder", "georeferencer", "navigator", "segmenter", "vlp16"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
-
-// Payloads per channel, in their order.
-using Payloads = std::map<std::string, std::vector<std::vector<std::uint8_t>>>;
-
-Payloads ReadLog(const fs::path& file) {
-  Payloads payloads;
-  bus::LogReader reader(file);
-  while (auto event = reader.Next()) payloads[event->channel].push_back(std::move(event->bytes));
-  EXPECT_EQ(reader.num_damaged(), 0);
-  return payloads;
-}
-
-class Live : public ::testing::Test {
+class Live : public LiveTest {
  protected:
-  fs::path folder_;
-  fs::path start_folder_ = fs::current_path();
-  std::map<std::string, std::unique_ptr<Child>> children_;
-
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_live_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
-    fs::current_path(folder_);  // the recorder's logs/ is made here
-  }
-  void TearDown() override {
-    children_.clear();
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
-
-  std::string Output(const std::string& name) const { return (folder_ / (name + ".out")).string(); }
-
-  void Start(const std::string& service) {
-    children_[service] = std::make_unique<Child>(std::vector<std::string>{Bin(service), "--config", (folder_ / "config").string()}, Output(service));
-  }
-
   // All that `services` names, the lidar last so that nobody misses its start mark.
   void StartAll() {
     for (const auto& service : kServices) {
@@ -89,12 +56,7 @@ class Live : public ::testing::Test {
     }
   }
 
-  fs::path Log() const {
-    for (const auto& entry : fs::directory_iterator(folder_ / "logs")) {
-      if (entry.path().extension() == ".lcmlog") return entry.path();
-    }
-    return {};
-  }
+  fs::path Log() const { return FirstLogIn(folder_ / "logs"); }
 
   // The last HEALTH of a process in a log.
   static health_t LastHealth(const Payloads& payloads, const std::string& process) {

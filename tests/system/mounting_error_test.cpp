@@ -14,16 +14,16 @@
 #include "common/bus/log_file.hpp"
 #include "common/core/angles.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 
 constexpr double kYawErrorDeg = 1.0;
-
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
 
 class MountingError : public ::testing::Test {
  protected:
@@ -37,33 +37,23 @@ class MountingError : public ::testing::Test {
   // By turn and number in it.
   using Obstacles = std::map<std::pair<std::int64_t, int>, obstacle_t>;
 
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_mounting_" + std::to_string(getpid()));
+  TempDir folder_;
 
   void SetUp() override {
-    fs::create_directories(folder_);
     MakeConfig("right", 0.0, 0.0);
     const auto result = RunProgram(
         {Bin("sim"), "--config", Path("right"), "--scene", "lake", "--seed", "3", "--seconds", "4", "--pcap", Path("pcap"), "--truth", Path("truth")},
         Path("sim.out"));
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
   // config/demo with a yaw that is so much too large, and with such a deviation of the mounting stated.
   void MakeConfig(const std::string& name, double yaw_error_deg, double stated_sd_deg) const {
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / name);
-    Replace(folder_ / name / "boat.txtpb", "yaw_deg: 5.0", "yaw_deg: " + std::to_string(5.0 + yaw_error_deg));
-    Replace(folder_ / name / "georeferencer.txtpb", "mounting_sd_deg: 0\n", "mounting_sd_deg: " + std::to_string(stated_sd_deg) + "\n");
-  }
-  static void Replace(const fs::path& file, const std::string& from, const std::string& to) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    auto changed = text.str();
-    const auto place = changed.find(from);
-    ASSERT_NE(place, std::string::npos) << file << " has no " << from;
-    std::ofstream(file) << changed.replace(place, from.size(), to);
+    fs::copy(kDemoConfig, folder_ / name);
+    ReplaceIn(folder_ / name / "boat.txtpb", "yaw_deg: 5.0", "yaw_deg: " + std::to_string(5.0 + yaw_error_deg));
+    ReplaceIn(folder_ / name / "georeferencer.txtpb", "mounting_sd_deg: 0\n", "mounting_sd_deg: " + std::to_string(stated_sd_deg) + "\n");
   }
 
   Seen Evaluate(const std::string& config) const {

@@ -2,15 +2,18 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
+
 TEST(WithoutMulticastRoute, AServiceEndsAndNamesTheRoute) {
-  const auto output = (std::filesystem::temp_directory_path() / ("lookout_no_route_" + std::to_string(getpid()))).string();
-  const auto result =
-      RunProgram({std::string(LOOKOUT_BIN_DIR) + "/lookout-segmenter", "--config", std::string(LOOKOUT_SOURCE_DIR) + "/config/demo"}, output);
+  const TempDir folder;
+  const auto output = folder / "output";
+  const auto result = RunProgram({Bin("segmenter"), "--config", kDemoConfig.string()}, output);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("ip route add 239.255.76.0/24 dev lo"), std::string::npos) << result.output;
   std::filesystem::remove(output);

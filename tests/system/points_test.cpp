@@ -10,12 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/import/cloud_text.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using importer::test::Append;
 
@@ -55,30 +57,14 @@ std::vector<Point> Turn(int num_rings, double step_deg, double jitter_deg) {
 
 class Points : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_points_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
   std::string Write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return Path(name);
   }
   RunResult Evaluate(const std::vector<std::string>& files) const {
-    std::vector<std::string> command{LOOKOUT_BIN_DIR "/lookout-eval",
-                                     "--config",
-                                     LOOKOUT_SOURCE_DIR "/config/catabot",
-                                     "--methods",
-                                     "ours",
-                                     "--csv",
-                                     Path("csv"),
-                                     "--html",
-                                     Path("page.html"),
-                                     "--force",
-                                     "--points"};
+    std::vector<std::string> command{Bin("eval"), "--config", kCatabotConfig.string(), "--methods", "ours",    "--csv",
+                                     Path("csv"), "--html",   Path("page.html"),       "--force",   "--points"};
     command.insert(command.end(), files.begin(), files.end());
     return RunProgram(command, Path("out"));
   }
@@ -118,7 +104,7 @@ class Points : public ::testing::Test {
     return bytes;
   }
 
-  fs::path folder_;
+  TempDir folder_;
 };
 
 constexpr int kKittiRings = 64;

@@ -17,11 +17,12 @@
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -29,22 +30,9 @@ using std::chrono::seconds;
 // Sources end first, so that what they send at their end still finds its takers.
 const std::vector<std::string> kFromSourceToLog{"vlp16", "navigator", "segmenter", "georeferencer", "recorder"};
 
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
-
 int DataSeconds() {
   const char* text = std::getenv("LOOKOUT_PROOF_SECONDS");
   return text != nullptr ? std::max(1, std::atoi(text)) : 4;
-}
-
-// Payloads per channel, in their order.
-using Payloads = std::map<std::string, std::vector<std::vector<std::uint8_t>>>;
-
-Payloads ReadLog(const fs::path& file) {
-  Payloads payloads;
-  bus::LogReader reader(file);
-  while (auto event = reader.Next()) payloads[event->channel].push_back(std::move(event->bytes));
-  EXPECT_EQ(reader.num_damaged(), 0);
-  return payloads;
 }
 
 std::int64_t Count(const Payloads& log, const std::string& channel) {
@@ -87,41 +75,20 @@ void ExpectSameMessages(const Payloads& one, const Payloads& other) {
   }
 }
 
-class Proof : public ::testing::Test {
+class Proof : public LiveTest {
  protected:
-  fs::path folder_;
-  fs::path start_folder_ = fs::current_path();
-  std::map<std::string, std::unique_ptr<Child>> children_;
   std::set<std::string> heard_;  // processes of which HEALTH came
   std::map<std::string, std::int64_t> counts_;
   std::unique_ptr<bus::LcmBus> lcm_;
 
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lookout_proof_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override {
-    children_.clear();
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
-
-  static void SetSource(const fs::path& file, const std::string& from, const std::string& to) {
-    std::ifstream in(file);
-    std::string text((std::istreambuf_iterator<char>(in)), {});
-    const auto place = text.find(from);
-    ASSERT_NE(place, std::string::npos) << file;
-    std::ofstream(file) << text.replace(place, from.size(), to);
-  }
-
   // A folder for the run, with a config; the recorder's logs/ is made in it.
   void EnterRun(const std::string& run, bool is_played) {
     fs::create_directories(folder_ / run);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / run / "config");
+    fs::copy(kDemoConfig, folder_ / run / "config");
     fs::current_path(folder_ / run);
     if (is_played) {
-      SetSource("config/vlp16.txtpb", "source: UDP", "source: LOG");
-      SetSource("config/navigator.txtpb", "source: LIVE", "source: LOG");
+      ReplaceIn("config/vlp16.txtpb", "source: UDP", "source: LOG");
+      ReplaceIn("config/navigator.txtpb", "source: LIVE", "source: LOG");
     }
     heard_.clear();
     counts_.clear();
@@ -160,13 +127,8 @@ class Proof : public ::testing::Test {
       EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
     }
     children_.clear();
-    for (const auto& entry : fs::directory_iterator("logs")) {
-      if (entry.path().extension() != ".lcmlog") continue;
-      log_ = fs::absolute(entry.path());
-      return ReadLog(log_);
-    }
-    ADD_FAILURE() << "no log";
-    return {};
+    log_ = fs::absolute(FirstLogIn("logs"));
+    return ReadLog(log_);
   }
 
   fs::path log_;  // of the latest run

@@ -22,37 +22,32 @@
 #include "lookout/health_counter_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/nav_raw_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
 
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
-
 class RecorderSystem : public ::testing::Test {
  protected:
-  fs::path folder_;
+  TempDir folder_;
   fs::path logs_;
   std::unique_ptr<Child> recorder_;
   std::unique_ptr<bus::LcmBus> bus_;
   std::int64_t seq_ = 0;
 
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lookout_recorder_" + std::to_string(getpid()));
     logs_ = folder_ / "logs";
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
+    fs::copy(kDemoConfig, folder_ / "config");
     bus_ = std::make_unique<bus::LcmBus>(bus::DefaultLcmUrl());
   }
-  void TearDown() override {
-    recorder_.reset();
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
+  void TearDown() override { recorder_.reset(); }
 
   // Starts it and waits until it has its log, and takes what comes.
   void Start(const std::string& config = "reserve_bytes: 0") {

@@ -18,34 +18,20 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
-
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
-
-std::string Content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 class Replay : public ::testing::Test {
  protected:
-  fs::path folder_;
-  const fs::path data_ = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
-  const std::string config_ = std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot";
-
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_replay_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  TempDir folder_;
+  const fs::path data_ = kRecordings;
+  const std::string config_ = kCatabotConfig.string();
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -107,7 +93,7 @@ class Replay : public ::testing::Test {
     const auto first = ReplayTo(capture, "first");
     ASSERT_EQ(first.exit_code, 0) << first.output;
     ASSERT_EQ(ReplayTo(capture, "second").exit_code, 0);
-    EXPECT_EQ(Content(folder_ / "first"), Content(folder_ / "second"));
+    EXPECT_EQ(ReadFile(folder_ / "first"), ReadFile(folder_ / "second"));
     const auto again = ReplayTo(Path("first"), "again");
     ASSERT_EQ(again.exit_code, 0) << again.output;
     EXPECT_TRUE(PayloadsByChannel("first") == PayloadsByChannel("again"));
@@ -217,7 +203,7 @@ TEST_F(Replay, FromAnyLevelGivesTheSameBytes) {
     EXPECT_EQ(infos[0].file_text.back().substr(0, 5), "ran: ");
     // A part is a log as well.
     EXPECT_EQ(ReplayTo(Path("part"), "again", options).exit_code, 0);
-    EXPECT_EQ(Content(folder_ / "part"), Content(folder_ / "again"));
+    EXPECT_EQ(ReadFile(folder_ / "part"), ReadFile(folder_ / "again"));
   }
 }
 
@@ -327,9 +313,9 @@ TEST_F(Replay, RefusesAnOutputThatExistsUnlessItIsForced) {
   const auto result = RunProgram({Bin("replay"), "--config", config_, "--in", Path("sim.pcap"), "--out", Path("old")}, Path("replay.out"));
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("exists already; --force replaces it"), std::string::npos) << result.output;
-  EXPECT_EQ(Content(folder_ / "old"), "another recording");
+  EXPECT_EQ(ReadFile(folder_ / "old"), "another recording");
   EXPECT_EQ(ReplayTo(Path("sim.pcap"), "old").exit_code, 0);
-  EXPECT_EQ(Content(folder_ / "old"), Content(folder_ / "day"));
+  EXPECT_EQ(ReadFile(folder_ / "old"), ReadFile(folder_ / "day"));
 }
 
 TEST_F(Replay, LeavesNothingOfWhatItCouldNotCompute) {
@@ -439,12 +425,12 @@ TEST_F(Replay, DoesNotOverwriteItsInput) {
   std::ofstream(Path("in")) << "x";
   const auto result = ReplayTo(Path("in"), "in");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(Content(folder_ / "in"), "x");
+  EXPECT_EQ(ReadFile(folder_ / "in"), "x");
 }
 
 TEST_F(Replay, SaysWhichLineOfAConfigIsWrong) {
   fs::copy(config_, folder_ / "config");
-  const auto text = Content(folder_ / "config/vlp16.txtpb");
+  const auto text = ReadFile(folder_ / "config/vlp16.txtpb");
   const auto line = std::to_string(std::ranges::count(text, '\n') + 1);
   std::ofstream(folder_ / "config/vlp16.txtpb", std::ios::app) << "no_such_field: 1\n";
   const auto result = RunProgram({Bin("replay"), "--config", Path("config"), "--check"}, Path("check.out"));
@@ -478,7 +464,7 @@ TEST_F(Replay, ATextLogOfSentencesGivesATrack) {
   const auto track =
       RunProgram({Bin("export"), "--in", Path("track"), "--table", "pose", "--format", "svg", "--out", Path("track.svg")}, Path("export.out"));
   EXPECT_EQ(track.exit_code, 0) << track.output;
-  EXPECT_NE(Content(Path("track.svg")).find("polyline"), std::string::npos);
+  EXPECT_NE(ReadFile(Path("track.svg")).find("polyline"), std::string::npos);
 }
 
 TEST_F(Replay, ATextLogGivesTheSameBytesEachTime) {

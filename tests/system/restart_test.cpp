@@ -15,19 +15,21 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // In the order in which they are killed.
-const std::vector<std::string> kVictims{"recorder", "georeferencer", "segmenter", "navigator", "vlp16"};
+const std::vector<std::string> kVictims = bus::StartOrder();
 // The promise is 2 s on a boat's computer that has nothing else to do; tests run on busy ones.
 constexpr milliseconds kMostUntilDataFlows(2000);
 constexpr int kBusyComputer = 5;
@@ -36,8 +38,6 @@ int NumRounds() {
   const char* text = std::getenv("LOOKOUT_KILL_ROUNDS");
   return text == nullptr ? 1 : std::max(1, std::atoi(text));
 }
-
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
 
 // What the bus says of all processes.
 class Watch {
@@ -93,22 +93,9 @@ std::size_t NumLogsWithData(const fs::path& folder) {
   return number;
 }
 
-class Restart : public ::testing::Test {
+class Restart : public LiveTest {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_restart_" + std::to_string(getpid()));
-  fs::path start_folder_ = fs::current_path();
   std::size_t num_logs_ = 1;
-
-  void SetUp() override {
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
-    fs::current_path(folder_);  // the recorder's logs/ is made here
-  }
-  void TearDown() override {
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
-  std::string Output(const std::string& name) const { return (folder_ / (name + ".out")).string(); }
 };
 
 TEST_F(Restart, AProcessThatIsKilledComesBackAndTheOthersGoOn) {

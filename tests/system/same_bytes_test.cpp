@@ -13,17 +13,17 @@
 #include <string>
 #include <vector>
 
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 
 // The names of glibc 2.33 and later.
 const std::string kOlderProcessor = "GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-AVX2";
-
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
 
 // Not a test: run by what is below as a process of its own, to see what the C library's functions give there.
 TEST(CLibrary, DISABLED_PrintsADigestOfItsFunctions) {
@@ -39,15 +39,8 @@ TEST(CLibrary, DISABLED_PrintsADigestOfItsFunctions) {
 
 class SameBytes : public ::testing::Test {
  protected:
-  fs::path folder_;
-  const fs::path data_ = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
-
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_same_bytes_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  TempDir folder_;
+  const fs::path data_ = kRecordings;
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -97,7 +90,7 @@ class SameBytes : public ::testing::Test {
 
   // config/demo with the paper's method.
   std::string ConfigOfThePaper() {
-    fs::copy(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo", folder_ / "paper");
+    fs::copy(kDemoConfig.string(), folder_ / "paper");
     std::ofstream(folder_ / "paper/segmenter.txtpb")
         << "# proto-file: config/schema/segmenter.proto\n# proto-message: lookout.config.Segmenter\nmethod: PAPER\n";
     return Path("paper");
@@ -106,7 +99,7 @@ class SameBytes : public ::testing::Test {
 
 TEST_F(SameBytes, OfSimulatedScenesByBothMethodsWhateverTheProcessor) {
   if (!SwitchesTheCLibrary()) GTEST_SKIP() << "the C library has no other functions for an older processor than this one";
-  const std::string demo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+  const std::string demo = kDemoConfig.string();
   const std::string paper = ConfigOfThePaper();
   // Waves: roll and pitch, foam and spray. Dual: two returns a shot.
   for (const std::string scene : {"waves", "dual"}) {
@@ -124,7 +117,7 @@ TEST_F(SameBytes, OfSimulatedScenesByBothMethodsWhateverTheProcessor) {
 TEST_F(SameBytes, OfRecordingsWhateverTheProcessor) {
   if (!fs::exists(data_ / "vlp16")) GTEST_SKIP() << "no recordings at " << data_;
   if (!SwitchesTheCLibrary()) GTEST_SKIP() << "the C library has no other functions for an older processor than this one";
-  const std::string catabot = std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot";
+  const std::string catabot = kCatabotConfig.string();
   for (const char* folder : {"vlp16", "nmea"}) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(data_ / folder)) files.push_back(entry.path());

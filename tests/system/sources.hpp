@@ -17,10 +17,15 @@
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::system_test {
+
+using support::Child;
+using support::RunProgram;
+using support::RunResult;
 
 namespace fs = std::filesystem;
 namespace sensor = vlp16::test;
@@ -153,20 +158,14 @@ inline std::vector<Payload> Packets(int count, double azimuth_deg) {
 class SourcesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("lookout_sources_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo/boat.txtpb", folder_ / "boat.txtpb");
+    fs::copy(support::kDemoConfig / "boat.txtpb", folder_ / "boat.txtpb");
     bus_.emplace(bus::DefaultLcmUrl());
     bus::Subscribe<lidar_packets_t>(*bus_, bus::kLidarPackets, [this](const lidar_packets_t& message) { OnPackets(message); });
     bus::Subscribe<lidar_scan_t>(*bus_, bus::kLidarScan, [this](const lidar_scan_t&) { ++num_scans_; });
     bus::Subscribe<health_t>(*bus_, bus::kHealth, [this](const health_t& message) { health_ = message; });
     bus_->HandleOnce(milliseconds(0));  // joins LCM's group
   }
-  void TearDown() override {
-    child_.reset();
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
+  void TearDown() override { child_.reset(); }
 
   void OnPackets(const lidar_packets_t& message) {
     if ((message.marks & lidar_packets_t::MARK_START) != 0) starts_.push_back(message.seq);
@@ -179,7 +178,7 @@ class SourcesTest : public ::testing::Test {
   }
 
   void WriteConfig(const std::string& text) const { std::ofstream(folder_ / "vlp16.txtpb") << text << '\n'; }
-  std::string Program() const { return std::string(LOOKOUT_BIN_DIR) + "/lookout-vlp16"; }
+  std::string Program() const { return support::Bin("vlp16"); }
   void Start(const std::string& config) {
     WriteConfig(config);
     child_ = std::make_unique<Child>(std::vector<std::string>{Program(), "--config", folder_.string()}, (folder_ / "out").string());
@@ -216,7 +215,7 @@ class SourcesTest : public ::testing::Test {
     return -1;
   }
 
-  fs::path folder_;
+  support::TempDir folder_;
   std::optional<bus::LcmBus> bus_;
   std::unique_ptr<Child> child_;
   std::vector<Payload> payloads_;

@@ -4,6 +4,8 @@
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
+
 TEST_F(SourcesTest, RefuseAndCountASensorThatIsNotAllowed) {
   Start("source: UDP bind_address: '0.0.0.0' cut_azimuth_deg: 0 allowed_source_address: '127.0.0.1'");
   ASSERT_TRUE(WaitForOutput("starts"));

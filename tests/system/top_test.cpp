@@ -12,15 +12,17 @@
 #include "common/bus/lcm_bus.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const std::string kProgram = std::string(LOOKOUT_BIN_DIR) + "/lookout-top";
+const std::string kProgram = Bin("top");
 
 // A bus with an alarm, an obstacle 4.5 m ahead, and rubbish on every channel.
 class Talk {
@@ -147,8 +149,8 @@ const std::string kScreenOfBefore = "\x1b[?1049l";
 
 TEST(Top, OncePrintsTheBusAsText) {
   const Talk talk;
-  const auto result =
-      RunProgram({kProgram, "--once", "--seconds", "2"}, testing::TempDir() + "lookout_top_once" + std::to_string(::getpid()) + ".out");
+  const TempDir folder;
+  const auto result = RunProgram({kProgram, "--once", "--seconds", "2"}, (folder / "out").string());
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(result.output.rfind("ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port\n", 0), 0U) << result.output;
   EXPECT_NE(result.output.find("\nLIDAR_SCAN "), std::string::npos) << result.output;
@@ -158,7 +160,8 @@ TEST(Top, OncePrintsTheBusAsText) {
 }
 
 TEST(Top, WithoutATerminalItSaysHowToDoWithout) {
-  const auto result = RunProgram({kProgram}, testing::TempDir() + "lookout_top_dumb" + std::to_string(::getpid()) + ".out");
+  const TempDir folder;
+  const auto result = RunProgram({kProgram}, (folder / "out").string());
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.output.find("--once"), std::string::npos) << result.output;
 }

@@ -16,31 +16,23 @@
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr const char* kRoute = "239.255.76.0/24";
 
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
-
-class TwoComputers : public ::testing::Test {
+class TwoComputers : public LiveTest {
  protected:
-  fs::path folder_;
-  fs::path start_folder_ = fs::current_path();
   std::unique_ptr<Child> second_;  // holds the second computer's network namespace
-  std::map<std::string, std::unique_ptr<Child>> children_;
 
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lookout_two_computers_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
-    fs::current_path(folder_);  // the recorder's logs/ is made here
     // One hop: as far as the other end of the cable.
     setenv("LCM_DEFAULT_URL", "udpm://239.255.76.67:7667?ttl=1", 1);
     LayCable();
@@ -49,11 +41,7 @@ class TwoComputers : public ::testing::Test {
     children_.clear();
     Ip({"link", "del", "cable1"});
     second_.reset();
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
   }
-
-  std::string Output(const std::string& name) const { return (folder_ / (name + ".out")).string(); }
 
   void Ip(const std::vector<std::string>& words, bool is_on_second = false) const {
     std::vector<std::string> command{"ip"};

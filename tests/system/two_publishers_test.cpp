@@ -28,11 +28,12 @@
 #include "common/bus/log_file.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tests/system/child.hpp"
+#include "tests/support/live_test.hpp"
 
 namespace lookout::system_test {
 namespace {
 
+using namespace support;
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
@@ -41,8 +42,6 @@ using std::chrono::seconds;
 constexpr int kOtherPort = 10111;
 constexpr double kOtherNorthDeg = 0.063;  // 7 km
 constexpr double kMetresPerDeg = 111'000.0;
-
-std::string Bin(const std::string& name) { return std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name; }
 
 // Sentences of a boat that lies at one place, ten times a second.
 class Talker {
@@ -100,11 +99,8 @@ class Talker {
   std::thread thread_;
 };
 
-class TwoPublishers : public ::testing::Test {
+class TwoPublishers : public LiveTest {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_two_publishers_" + std::to_string(getpid()));
-  fs::path start_folder_ = fs::current_path();
-  std::map<std::string, std::unique_ptr<Child>> children_;
   std::map<std::string, health_t> health_;  // by process and pid
   std::unique_ptr<bus::LcmBus> lcm_;
   std::optional<std::pair<double, double>> first_place_deg_;
@@ -113,16 +109,8 @@ class TwoPublishers : public ::testing::Test {
   double greatest_off_m_ = 0.0;
 
   void SetUp() override {
-    fs::create_directories(folder_);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder_ / "config");
     fs::copy(folder_ / "config", folder_ / "other");
-    std::ifstream in(folder_ / "other/navigator.txtpb");
-    std::string text((std::istreambuf_iterator<char>(in)), {});
-    const std::string fact = "use_lidar_nmea: true";
-    ASSERT_NE(text.find(fact), std::string::npos);
-    text.replace(text.find(fact), fact.size(), "use_lidar_nmea: false nmea_port: " + std::to_string(kOtherPort));
-    std::ofstream(folder_ / "other/navigator.txtpb") << text;
-    fs::current_path(folder_);  // the recorder's logs/ is made here
+    ReplaceIn(folder_ / "other/navigator.txtpb", "use_lidar_nmea: true", "use_lidar_nmea: false nmea_port: " + std::to_string(kOtherPort));
 
     lcm_ = std::make_unique<bus::LcmBus>(bus::DefaultLcmUrl());
     lcm_->SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) {
@@ -133,12 +121,6 @@ class TwoPublishers : public ::testing::Test {
     });
     lcm_->HandleOnce(milliseconds(0));
   }
-  void TearDown() override {
-    children_.clear();
-    fs::current_path(start_folder_);
-    if (!HasFailure()) fs::remove_all(folder_);
-  }
-
   // The lidar sees 130 m, and the boat sails a few metres a second: no obstacle of this run is a kilometre from the first.
   double OffMetres(const obstacle_t& obstacle) const {
     return kMetresPerDeg * std::hypot(obstacle.latitude_deg - first_place_deg_->first,

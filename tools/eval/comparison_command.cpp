@@ -13,14 +13,13 @@
 #include <stdexcept>
 #include <thread>
 #include <utility>
-#include <variant>
 
 #include "common/bus/channels.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/messages/checks.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/progress.hpp"
-#include "services/segmenter/core/turn_gatherer.hpp"
 #include "services/segmenter/wire.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/eval/figures.hpp"
@@ -81,14 +80,13 @@ importer::PointCloud ReadPoints(const std::filesystem::path& file) {
 
 // As it would come over the bus, in LIDAR_SCAN: a scan that the segmenter would refuse is not scored.
 segmenter::Scan ThroughMessages(const segmenter::Scan& scan, const std::string& file) {
-  segmenter::TurnGatherer gatherer;
-  for (const auto& message : importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes)) {
-    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
-    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::runtime_error(file + ": the segmenter refuses this scan");
-    auto whole = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)));
-    if (whole && whole->num_cells() == scan.num_cells()) return std::move(*whole);
+  const auto parts = importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes);
+  for (const auto& part : parts) {
+    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::runtime_error(file + ": the segmenter refuses this scan");
   }
-  throw std::runtime_error(file + ": the scan is not whole");
+  auto whole = segmenter::ToScan(parts);
+  if (!whole || whole->num_cells() != scan.num_cells()) throw std::runtime_error(file + ": the scan is not whole");
+  return std::move(*whole);
 }
 
 void AddPoints(const std::vector<std::string>& files, MethodComparison& comparison) {

@@ -8,11 +8,12 @@
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::config {
 namespace {
 
-const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+const std::string kDemo = support::kDemoConfig.string();
 
 // Words and cures of what is doubtful.
 std::string Warnings(const BoatFacts& boat) {
@@ -26,7 +27,7 @@ std::string Warnings(const BoatFacts& boat) {
 bool Has(const std::string& text, const std::string& piece) { return text.find(piece) != std::string::npos; }
 
 TEST(BoatInWords, OfTheBoatsInConfigIsNotDoubtful) {
-  for (const std::string boat : {"demo", "catabot"}) EXPECT_EQ(Warnings(LoadBoat(std::string(LOOKOUT_SOURCE_DIR) + "/config/" + boat)), "");
+  for (const std::string boat : {"demo", "catabot"}) EXPECT_EQ(Warnings(LoadBoat(support::kSources / "config" / boat)), "");
   const auto remarks = RemarksOnBoat(LoadBoat(kDemo));
   ASSERT_EQ(remarks.size(), 3U);
   EXPECT_EQ(
@@ -89,8 +90,7 @@ TEST(BoatInWords, SaysThatTheHullIsNotTold) {
 }
 
 TEST(BoatInWords, ARefusedHullIsOneThatIsHalfTold) {
-  const auto folder = std::filesystem::temp_directory_path() / ("lookout_half_a_hull_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const support::TempDir folder;
   std::ifstream demo(kDemo + "/boat.txtpb");
   std::string text{std::istreambuf_iterator<char>(demo), {}};
   text.erase(text.find("hull_beam_m: 1.4"), 16);
@@ -101,18 +101,15 @@ TEST(BoatInWords, ARefusedHullIsOneThatIsHalfTold) {
   } catch (const ConfigError& error) {
     EXPECT_TRUE(Has(error.what(), "hull_beam_m: must be set where the other of the two is")) << error.what();
   }
-  std::filesystem::remove_all(folder);
 }
 
 // What --check prints is a config again: the words are comments.
 TEST(BoatInWords, StandsInTheEffectiveConfigAsComments) {
   const auto text = runtime::EffectiveConfig(kDemo, {"boat.txtpb"});
   EXPECT_TRUE(Has(text, "\n# boat.txtpb: returns up to 1.4 m ahead")) << text;
-  const auto folder = std::filesystem::temp_directory_path() / ("lookout_boat_words_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const support::TempDir folder;
   std::ofstream(folder / "boat.txtpb") << text;
   EXPECT_EQ(RemarksAsComments(LoadBoat(folder)), RemarksAsComments(LoadBoat(kDemo)));
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

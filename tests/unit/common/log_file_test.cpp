@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_event.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::bus {
 namespace {
@@ -17,8 +18,8 @@ namespace fs = std::filesystem;
 
 class LogFile : public ::testing::Test {
  protected:
-  fs::path file_ = fs::temp_directory_path() / ("lookout_log_file_test_" + std::to_string(::getpid()));
-  void TearDown() override { fs::remove(file_); }
+  support::TempDir folder_;
+  fs::path file_ = folder_ / "log";
 
   void WriteThree() {
     LogWriter writer(file_, true);
@@ -27,13 +28,8 @@ class LogFile : public ::testing::Test {
       writer.Write(Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", bytes);
     }
   }
-  std::string Content() {
-    std::ifstream in(file_, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
-  void SetContent(const std::string& text) { std::ofstream(file_, std::ios::binary) << text; }
+  std::string Content() { return support::ReadFile(file_); }
+  void SetContent(const std::string& text) { support::WriteFile(file_, text); }
   static constexpr std::size_t kEventBytes = 28 + 7 + 100;
 };
 
@@ -196,7 +192,7 @@ TEST_F(LogFile, ThatTheDiskDoesNotTakeIsAnError) {
 }
 
 TEST_F(LogFile, OfLcmsOwnToolsCanBeRead) {
-  const fs::path recording = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data/lcm/lcmproj_example.lcmlog";
+  const fs::path recording = support::kRecordings / "lcm/lcmproj_example.lcmlog";
   if (!fs::exists(recording)) GTEST_SKIP() << "no recording at " << recording;
   LogReader reader(recording);
   int num_events = 0;

@@ -21,7 +21,8 @@ namespace {
 // The supervisor's end of NOTIFY_SOCKET.
 class Notify : public ::testing::Test {
  protected:
-  std::filesystem::path path_ = std::filesystem::temp_directory_path() / ("lookout_notify_" + std::to_string(getpid()));
+  support::TempDir folder_;
+  std::filesystem::path path_ = folder_ / "notify";
   int socket_ = -1;
 
   void SetUp() override {
@@ -35,7 +36,6 @@ class Notify : public ::testing::Test {
   void TearDown() override {
     unsetenv("NOTIFY_SOCKET");
     close(socket_);
-    std::filesystem::remove(path_);
   }
 
   // The next message, empty when there is none.

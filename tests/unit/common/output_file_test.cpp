@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "common/io/stop_signal.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::io {
 namespace {
@@ -29,17 +30,11 @@ namespace fs = std::filesystem;
 
 class Output : public ::testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_output_test_" + std::to_string(::getpid()));
+  support::TempDir folder_;
   fs::path file_ = folder_ / "out";
   fs::path partial_ = folder_ / "out.partial";
   fs::path whole_ = folder_ / "out.whole";
   std::vector<std::string> told_;
-
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
 
   OutputOptions Options(bool force = false, std::vector<fs::path> inputs = {}) {
     return {force, std::move(inputs), [this](const std::string& line) { told_.push_back(line); }};

@@ -14,6 +14,7 @@
 #include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/vlp16.pb.h"
+#include "tests/support/files.hpp"
 
 namespace lookout::config {
 namespace {
@@ -194,7 +195,8 @@ TEST(FaultList, TellsTheFaultsOfTwoFilesEachOnce) {
 }
 
 TEST(FaultLine, NamesTheLineOfTheValueThatIsWrong) {
-  const auto file = std::filesystem::temp_directory_path() / ("lookout_fault_line_" + std::to_string(getpid()));
+  const support::TempDir folder;
+  const auto file = folder / "file";
   std::ofstream(file) << "# capture_file: 'x'\nsource: CAPTURE\ncapture_file: 'a' capture_file: 'b'\n\ncapture_file: 'c'\n";
   const auto line_of = [&](std::size_t index) { return FaultLine(file, "capture_file", "reason", index); };
   EXPECT_EQ(line_of(0), file.string() + ":3: capture_file: reason");
@@ -222,8 +224,7 @@ std::string FaultOfFile(const fs::path& file) {
 
 // A FIFO held the process for ever, deaf to SIGTERM; /dev/zero filled the memory.
 TEST(TextConfig, OfWhatIsNoFileIsRefusedAtOnce) {
-  const auto folder = fs::temp_directory_path() / ("lookout_config_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  const support::TempDir folder;
   const auto fifo = folder / "vlp16.txtpb";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   EXPECT_EQ(FaultOfFile(fifo), fifo.string() + ":1: file: is no regular file (a FIFO, a socket or a device)");
@@ -234,7 +235,6 @@ TEST(TextConfig, OfWhatIsNoFileIsRefusedAtOnce) {
   std::ofstream(folder / "huge").flush();
   fs::resize_file(folder / "huge", std::uintmax_t{8} << 30U);  // no byte of it is on the disk
   EXPECT_EQ(FaultOfFile(folder / "huge"), (folder / "huge").string() + ":1: file: is greater than 4194304 bytes: no config");
-  fs::remove_all(folder);
 }
 
 TEST(TextConfig, WithAByteOrderMarkIsRefusedInWords) {
@@ -256,7 +256,7 @@ TEST(EffectiveText, ShowsDefaultsAndReadsBackTheSame) {
 
 TEST(Config, EveryFileOfEveryBoatLoads) {
   int num_files = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(LOOKOUT_SOURCE_DIR) / "config")) {
+  for (const auto& entry : fs::recursive_directory_iterator(support::kSources / "config")) {
     if (entry.path().extension() != ".txtpb") continue;
     EXPECT_NO_THROW(EffectiveTextOfFile(entry.path())) << entry.path();
     ++num_files;
@@ -265,7 +265,7 @@ TEST(Config, EveryFileOfEveryBoatLoads) {
 }
 
 TEST(Boat, BoxesAreNotTurnedInsideOut) {
-  const auto boat = LoadBoat(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo");
+  const auto boat = LoadBoat(support::kDemoConfig);
   EXPECT_LT(boat.own_vessel_box_m.min().x(), boat.own_vessel_box_m.max().x());
   EXPECT_NEAR(boat.T_vessel_lidar.translation().x(), 0.5, 1e-12);
 }

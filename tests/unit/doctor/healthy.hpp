@@ -9,6 +9,7 @@
 
 #include "common/core/angles.hpp"
 #include "lookout/lidar_scan_t.hpp"
+#include "tests/support/files.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/machine.hpp"
 
@@ -39,7 +40,7 @@ inline InterfaceSeen Interface(const std::string& name, const std::string& addre
 /// config/demo, a lidar locked to PPS, RTK, PASHR, and the five processes.
 inline Observations Healthy() {
   Observations seen;
-  seen.config = ReadConfig(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  seen.config = ReadConfig(support::kDemoConfig.string());
   seen.bus = {"udpm://239.255.76.67:7667?ttl=0", "239.255.76.67", 0, "lo", {}};
   seen.buffers = {4 << 20, 4 << 20, 2 << 20};
   seen.interfaces = {Interface("lo", "127.0.0.1", 8), Interface("eth0", "192.168.1.77", 24)};

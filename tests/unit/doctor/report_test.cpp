@@ -9,6 +9,7 @@
 #include "common/bus/memory_bus.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/doctor/healthy.hpp"
 #include "tools/doctor/notes.hpp"
 
@@ -32,15 +33,14 @@ TEST(DoctorReport, IsAlignedAndWrapped) {
 }
 
 TEST(DoctorConfig, NamesEachWrongFileOnce) {
-  const auto folder = fs::temp_directory_path() / ("lookout_doctor_" + std::to_string(getpid()));
-  fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder);
+  const support::TempDir folder;
+  fs::copy(support::kDemoConfig, folder);
   fs::remove(folder / "segmenter.txtpb");
   std::ofstream(folder / "boat.txtpb") << "name: \"x\"\n";
   std::ofstream(folder / "vlp16.txtpb") << "source: UDP\nbind_address: \"nowhere\"\ncut_azimuth_deg: 0\n";
   std::ofstream(folder / "other.txtpb") << "x: 1\n";
   std::ofstream(folder / "georeferencer.txtpb") << "pose_timeout_s: 1000\n";
   const auto seen = ReadConfig(folder);
-  fs::remove_all(folder);
   std::map<std::string, std::string> first_fault;
   for (const auto& file : seen.files) first_fault[file.name] = file.faults.empty() ? "" : file.faults.front();
   EXPECT_EQ(first_fault.size(), 7U);

@@ -15,9 +15,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/files.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/sim/lidar.hpp"
-#include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/sinks.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval::test {
@@ -39,13 +40,6 @@ class Captures : public ::testing::Test {
  protected:
   static constexpr std::uint64_t kSeed = 7;
   static constexpr double kSeconds = 0.4;  // three whole scans
-
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() /
-              ("lookout_captures_" + std::to_string(getpid()) + "_" + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   void Write(const std::string& name, const std::string& bytes) const { std::ofstream(folder_ / name, std::ios::binary) << bytes; }
 
@@ -108,8 +102,8 @@ class Captures : public ::testing::Test {
     return "";
   }
 
-  const std::filesystem::path kConfig = std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config/catabot";
-  std::filesystem::path folder_;
+  const std::filesystem::path kConfig = support::kCatabotConfig;
+  support::TempDir folder_;
   std::string name_;
   std::string pcap_;
   std::string truth_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "tests/support/files.hpp"
 #include "tests/unit/eval/captures_fixture.hpp"
 #include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
@@ -207,7 +208,8 @@ TEST_F(Captures, AreFoundByTheirNames) {
 }
 
 TEST(XzFile, RefusesWhatUnpacksToTooMuch) {
-  const auto file = fs::temp_directory_path() / ("lookout_xz_" + std::to_string(getpid()) + ".xz");
+  const support::TempDir folder;
+  const auto file = folder / "file.xz";
   std::ofstream(file, std::ios::binary) << Pack(std::string(1 << 20, 'a'));
   std::vector<std::uint8_t> out(1 << 21);
   EXPECT_EQ(importer::XzFile(file, 1 << 20).Read(out), std::size_t{1} << 20);
@@ -217,12 +219,12 @@ TEST(XzFile, RefusesWhatUnpacksToTooMuch) {
 }
 
 TEST(SecondWorld, EveryReturnOfItsCapturesHasItsTruthAndTheDefaultMethodSeesItsThings) {
-  const auto folder = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data/second_world";
+  const auto folder = support::kRecordings / "second_world";
   if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not here";
   const auto captures = ListCaptures(folder);
   const auto dense = std::ranges::find(captures, "dense", &CaptureWithTruth::scene);
   ASSERT_NE(dense, captures.end());
-  const auto boat = LoadBoatOfCaptures(folder, fs::path(LOOKOUT_SOURCE_DIR) / "config/catabot");
+  const auto boat = LoadBoatOfCaptures(folder, support::kCatabotConfig);
   Methods methods;
   methods.push_back(std::make_unique<SegmenterMethod>("ours", boat.segmenter));
   MethodComparison comparison(methods);

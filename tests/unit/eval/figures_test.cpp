@@ -1,4 +1,4 @@
-// Figures of README files: a block shows what its CSV file holds, and nothing else.
+// Figures of README files: a block shows what the run has made, and nothing else.
 #include "tools/eval/figures.hpp"
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <map>
 #include <regex>
 
+#include "tests/support/files.hpp"
 #include "tests/unit/eval_report/made_up.hpp"
 
 namespace lookout::eval {
@@ -16,12 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = LOOKOUT_SOURCE_DIR;
-
-std::string Read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using support::kSources;
+using support::ReadFile;
 
 const std::vector<ReadmeFigure> kFigures = [] {
   Table table({"method", "%"});
@@ -167,14 +164,14 @@ TEST(ReadmeFiles, ShowEachFigureOnceMeasured) {
   const std::regex measured("\nMeasured 20[0-9-]{8} by `./dev figures`, version [0-9.]+\\.\n");
   std::map<std::string, std::string> shown;
   int num_blocks = 0;
-  for (auto entry = fs::recursive_directory_iterator(kRoot); entry != fs::recursive_directory_iterator(); ++entry) {
+  for (auto entry = fs::recursive_directory_iterator(kSources); entry != fs::recursive_directory_iterator(); ++entry) {
     const auto name = entry->path().filename().string();
     if (entry->is_directory() && (name == "build" || name.starts_with("."))) {
       entry.disable_recursion_pending();
       continue;
     }
     if (!entry->is_regular_file() || entry->path().extension() != ".md") continue;
-    const auto text = Read(entry->path());
+    const auto text = ReadFile(entry->path());
     ASSERT_NO_THROW(FillBlocks(text, {}, entry->path().string()));
     for (std::sregex_iterator match(text.begin(), text.end(), block), end; match != end; ++match, ++num_blocks) {
       EXPECT_TRUE(std::regex_search((*match)[2].str(), measured)) << entry->path() << ": " << (*match)[1];

@@ -12,6 +12,7 @@ namespace {
 class SeenFootprint : public testing::Test {
  protected:
   SeenFootprint() {
+    WriteTruth(folder_);
     const GeographicLib::LocalCartesian map(kDatumLatitudeDeg, kDatumLongitudeDeg, kDatumHeightM);
     double latitude_deg = 0.0;
     double longitude_deg = 0.0;
@@ -22,10 +23,9 @@ class SeenFootprint : public testing::Test {
                   longitude_deg);
     WriteFile(folder_ / "pose.csv", std::string("utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg\n") + rows);
   }
-  ~SeenFootprint() override { std::filesystem::remove_all(folder_); }
   TruePoses Poses() const { return {Truth(folder_), {kDatumLatitudeDeg, kDatumLongitudeDeg, kDatumHeightM}}; }
 
-  std::filesystem::path folder_ = WriteTruth("seen");
+  support::TempDir folder_;
 };
 
 TEST_F(SeenFootprint, PosesLieBetweenTheirNeighboursAndHeadingGoesTheShortWay) {

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/files.hpp"
+
 namespace lookout::eval {
 
 inline constexpr double kDatumLatitudeDeg = 43.63;
@@ -15,7 +17,7 @@ inline constexpr double kDatumLongitudeDeg = -72.15;
 inline constexpr double kDatumHeightM = 201.0;
 inline constexpr long long kStartUs = 1'781'532'600'000'000;
 
-inline void WriteFile(const std::filesystem::path& file, const std::string& text) { std::ofstream(file) << text; }
+using support::WriteFile;
 
 inline std::string OutlineRows(int object_id, long long utime_us, double east_m, double north_m) {
   const GeographicLib::LocalCartesian map(kDatumLatitudeDeg, kDatumLongitudeDeg, kDatumHeightM);
@@ -33,9 +35,7 @@ inline std::string OutlineRows(int object_id, long long utime_us, double east_m,
   return rows;
 }
 
-inline std::filesystem::path WriteTruth(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("lookout_eval_" + name);
-  std::filesystem::create_directories(folder);
+inline const std::filesystem::path& WriteTruth(const std::filesystem::path& folder) {
   WriteFile(folder / "objects.csv", "object_id,name,kind,is_moving\n-1,own_vessel,own_vessel,1\n0,stray,stray,0\n1,ferry,boat,1\n2,pile,pile,0\n");
   WriteFile(folder / "outlines.csv", "object_id,utime_us,vertex_index,latitude_deg,longitude_deg,east_m,north_m\n" +
                                          OutlineRows(1, kStartUs, 0.0, 0.0) + OutlineRows(1, kStartUs + 1'000'000, 0.0, 1.0) +

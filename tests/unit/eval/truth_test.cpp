@@ -9,7 +9,8 @@ namespace lookout::eval {
 namespace {
 
 TEST(Truth, FindsReturnsWithinAMicrosecondByRingAndReturn) {
-  const auto folder = WriteTruth("returns");
+  const support::TempDir folder;
+  WriteTruth(folder);
   const Truth truth(folder);
   EXPECT_EQ(truth.ObjectOf(kStartUs, 0, 0), 1);
   EXPECT_EQ(truth.ObjectOf(kStartUs + 1, 0, 0), 1);
@@ -18,11 +19,11 @@ TEST(Truth, FindsReturnsWithinAMicrosecondByRingAndReturn) {
   EXPECT_EQ(truth.ObjectOf(kStartUs, 1, 0), std::nullopt);
   EXPECT_EQ(truth.ObjectOf(kStartUs, 0, 1), std::nullopt);
   EXPECT_EQ(truth.ObjectOf(kStartUs + 55, 0, 0), 2);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Truth, OutlineOfAMovingObjectLiesBetweenItsSamples) {
-  const auto folder = WriteTruth("outlines");
+  const support::TempDir folder;
+  WriteTruth(folder);
   const Truth truth(folder);
   const auto outlines = truth.OutlinesIn({kDatumLatitudeDeg, kDatumLongitudeDeg, kDatumHeightM});
   const auto middle_m = outlines.At(1, kStartUs + 500'000);
@@ -33,11 +34,11 @@ TEST(Truth, OutlineOfAMovingObjectLiesBetweenItsSamples) {
   EXPECT_NEAR(outlines.At(1, kStartUs + 9'000'000)->at(2).y(), 3.0, 1e-3) << "behind the last it is the last";
   EXPECT_NEAR(outlines.At(2, kStartUs + 9'000'000)->at(1).x(), 12.0, 1e-3);
   EXPECT_FALSE(outlines.At(7, kStartUs));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Truth, BadFilesAreNamedWithTheirLine) {
-  const auto folder = WriteTruth("bad");
+  const support::TempDir folder;
+  WriteTruth(folder);
   WriteFile(folder / "returns.csv", "utime_us,ring,return_index,object_id\n1,2,3,4\n1,2,x,4\n");
   try {
     const Truth truth(folder);
@@ -51,7 +52,6 @@ TEST(Truth, BadFilesAreNamedWithTheirLine) {
   EXPECT_THROW(Truth{folder}, std::runtime_error);
   std::filesystem::remove(folder / "returns.csv");
   EXPECT_THROW(Truth{folder}, std::runtime_error);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "tests/support/files.hpp"
 #include "tools/export/export.hpp"
 
 namespace lookout::exporter {
@@ -102,12 +103,6 @@ inline segment_t MakeSegment(int id, float x_m) {
 /// A folder of one test, removed at its end.
 class ExportTest : public ::testing::Test {
  protected:
-  ExportTest() { std::filesystem::create_directories(folder_); }
-  ~ExportTest() override {
-    std::error_code error;
-    std::filesystem::remove_all(folder_, error);
-  }
-
   template <typename T>
   void Add(const bus::Channel& channel, const T& message) {
     AddBytes(channel.name, bus::Encode(message));
@@ -127,15 +122,8 @@ class ExportTest : public ::testing::Test {
     std::ostringstream errors;
     const int code = exporter::Run(request, errors);
     errors_ = errors.str();
-    text_ = ReadFile(request.output.value_or(""));
+    text_ = request.output && std::filesystem::exists(*request.output) ? support::ReadFile(*request.output) : "";
     return code;
-  }
-
-  static std::string ReadFile(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
   }
 
   /// Lines of text_ without the header.
@@ -148,8 +136,7 @@ class ExportTest : public ::testing::Test {
     return rows;
   }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_export_" + std::to_string(::getpid()) + "_" +
-                                                                            ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  support::TempDir folder_;
   std::filesystem::path log_ = folder_ / "log";
   std::unique_ptr<bus::LogWriter> writer_;
   std::string text_;

@@ -10,6 +10,7 @@
 
 #include "common/io/stop_signal.hpp"
 #include "lookout/run_info_t.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/export/export_logs.hpp"
 #include "tools/export/words.hpp"
 
@@ -184,7 +185,7 @@ class SvgTest : public ExportTest {
     run_info_t info{};
     info.num_files = 1;
     info.file_name = {"boat.txtpb"};
-    info.file_text = {ReadFile(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config/demo/boat.txtpb")};
+    info.file_text = {support::ReadFile(support::kDemoConfig / "boat.txtpb")};
     Add(bus::kRunInfo, info);
   }
 };
@@ -340,9 +341,10 @@ TEST_F(ExportTest, OfPosesWithoutPositionDrawsNoTrack) {
 }
 
 TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
-  const std::string program = std::string(LOOKOUT_BIN_DIR) + "/lookout-export";
+  const std::string program = support::Bin("export");
   ASSERT_TRUE(std::filesystem::exists(program)) << program << " is not built";
-  const auto log = std::filesystem::temp_directory_path() / ("lookout_export_pipe_" + std::to_string(::getpid()));
+  const support::TempDir folder;
+  const auto log = folder / "log";
   {
     bus::LogWriter writer(log, true);
     for (int i = 0; i < 20'000; ++i) writer.Write(Utime(std::chrono::microseconds(kStartUs)), "POSE", bus::Encode(pose_t{}));
@@ -359,7 +361,7 @@ TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
 }
 
 TEST(Words, StandInTheReadmeOfTheWire) {
-  std::ifstream file(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "lcmtypes/README.md");
+  std::ifstream file(support::kSources / "lcmtypes/README.md");
   ASSERT_TRUE(file);
   std::ostringstream readme;
   readme << file.rdbuf();

@@ -11,6 +11,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/config/text_config.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
 
 namespace lookout::georeferencer {
@@ -177,23 +178,21 @@ TEST_F(GeoreferencerService, TellsThatTheClocksDiffer) {
 }
 
 TEST(GeoreferencerParams, OfTheBoatsInConfigAreThoseOfTheirFiles) {
-  const auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  const auto params = LoadParams(support::kDemoConfig.string());
   EXPECT_EQ(params.pose_timeout, std::chrono::milliseconds(500));
   EXPECT_EQ(params.placement.mounting_sd_rad, 0.0) << "the simulated boat is as boat.txtpb says";
   EXPECT_NEAR(params.placement.azimuth_sd_rad, 0.05 * 3.14159265 / 180.0, 1e-9);
   EXPECT_EQ(params.placement.range_sd_m, 0.03);
   EXPECT_EQ(params.placement.reference_point_above_water_m, 0.4);
   EXPECT_EQ(params.placement.T_vessel_lidar.translation().z(), 1.1);
-  const auto catabot = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot");
+  const auto catabot = LoadParams(support::kCatabotConfig.string());
   EXPECT_NEAR(catabot.placement.mounting_sd_rad, 0.5 * 3.14159265 / 180.0, 1e-9);
 }
 
 // Returns in the box around the hull are own boat: such a zone was taken, and could never ring.
 TEST(GeoreferencerParams, RefuseAGuardZoneInsideTheOwnHull) {
-  const auto folder = std::filesystem::temp_directory_path() / ("lookout_guard_zone_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  std::filesystem::copy_file(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo/boat.txtpb", folder / "boat.txtpb",
-                             std::filesystem::copy_options::overwrite_existing);
+  const support::TempDir folder;
+  std::filesystem::copy_file(support::kDemoConfig / "boat.txtpb", folder / "boat.txtpb", std::filesystem::copy_options::overwrite_existing);
   const auto load = [&folder](const std::string& zone) {
     std::ofstream(folder / "georeferencer.txtpb") << "guard_zone { " + zone + " }\n";
     try {
@@ -210,7 +209,6 @@ TEST(GeoreferencerParams, RefuseAGuardZoneInsideTheOwnHull) {
       << fault;
   EXPECT_EQ(load("range_m: 1.3"), "") << "all round it reaches out to the sides";
   EXPECT_EQ(load("range_m: 1.5 from_bearing_deg: 330 to_bearing_deg: 30"), "");
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
+#include "tests/support/files.hpp"
 #include "tests/unit/import/cloud_text.hpp"
 #include "tools/import/file_bytes.hpp"
 
@@ -88,7 +89,8 @@ TEST(Pcd, PointsThatAreNotNumbersAreLeftOutAndCounted) {
 TEST(Pcd, NoPointsAreACloudToo) { EXPECT_TRUE(ParsePcd(Xyz(0, "binary"), "a.pcd").points.empty()); }
 
 TEST(Pcd, ReadsAFile) {
-  const auto file = std::filesystem::temp_directory_path() / ("lookout_pcd_" + std::to_string(getpid()) + ".pcd");
+  const support::TempDir folder;
+  const auto file = folder / "file.pcd";
   std::ofstream(file) << Xyz(1, "ascii") << "1 2 3\n";
   EXPECT_EQ(ReadPcd(file).points.size(), 1U);
   std::filesystem::remove(file);

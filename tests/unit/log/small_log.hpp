@@ -18,6 +18,7 @@
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::log_test {
 
@@ -29,12 +30,9 @@ inline const std::vector<std::uint8_t> kGoneFingerprint{0x7D, 0x10, 0xA8, 0xEF, 
 
 class SmallLog : public ::testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_log_test_" + std::to_string(getpid()));
+  support::TempDir folder_;
   // 2027-01-15T08:00:00Z
   Utime start_{std::chrono::seconds(1'800'000'000)};
-
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
 
   static bus::LogEvent Event(Utime time, std::string channel, std::vector<std::uint8_t> bytes) {
     return {time, std::move(channel), std::move(bytes)};

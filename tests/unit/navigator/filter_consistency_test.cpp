@@ -12,13 +12,14 @@
 #include "common/core/frames.hpp"
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/core/sentence.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/filter_measurements.hpp"
 
 namespace lookout::navigator {
 namespace {
 
 namespace fs = std::filesystem;
-const fs::path kData = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
+const fs::path kData = support::kRecordings;
 
 // A boat that goes round, rolls and pitches; its sensors with white noise, slow errors and biases as the filter supposes them.
 class DrawnBoat {

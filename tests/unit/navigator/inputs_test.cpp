@@ -7,6 +7,7 @@
 
 #include "common/config/text_config.hpp"
 #include "services/navigator/params.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -17,11 +18,9 @@ namespace fs = std::filesystem;
 class InputsTest : public ::testing::Test {
  protected:
   InputsTest() {
-    fs::create_directories(folder_);
-    fs::copy_file(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo/boat.txtpb", folder_ / "boat.txtpb", fs::copy_options::overwrite_existing);
+    fs::copy_file(support::kDemoConfig / "boat.txtpb", folder_ / "boat.txtpb", fs::copy_options::overwrite_existing);
     std::ofstream(folder_ / "day.nmea") << "$GPHDT,1.0,T*00\n";
   }
-  ~InputsTest() override { fs::remove_all(folder_); }
 
   Params Load(const std::string& text) const {
     std::ofstream(folder_ / "navigator.txtpb") << text << "\nheading_offset_deg: 0 pitch_offset_deg: 0 roll_offset_deg: 0\n";
@@ -41,7 +40,7 @@ class InputsTest : public ::testing::Test {
     EXPECT_NE(fault.find(expected), std::string::npos) << text << "\n" << fault;
   }
 
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_inputs_" + std::to_string(getpid()));
+  support::TempDir folder_;
 };
 
 const std::string kLive = "source: LIVE use_lidar_nmea: true\n";
@@ -139,7 +138,8 @@ TEST_F(InputsTest, MustNotShareADeviceOrAPort) {
 }
 
 TEST_F(InputsTest, ADatumThatIsFarFromATextLogsFirstPositionIsNamed) {
-  const auto log = fs::temp_directory_path() / "lookout_datum_test.nmea";
+  const support::TempDir folder;
+  const auto log = folder / "log";
   std::ofstream(log) << "noise\n" << Line("GPGGA,120000,,,,,0,,,,M,,M,,") << "\r\n" << RmcLine(NoonPlus(0), 43.63, -72.15, 0.0, 0.0) << "\r\n";
   auto params = Load("source: LIVE use_lidar_nmea: false\ninput { name: 'day' text_log { file: '" + log.string() + "' } }");
   params.navigator.filter.datum.reset();
@@ -167,8 +167,7 @@ TEST_F(InputsTest, AreToldInWords) {
       << words;
   EXPECT_NE(words.find("# input 'lidar': the lidar's position packets"), std::string::npos) << words;
   for (const char* config : {"demo", "catabot"}) {
-    EXPECT_NE(InWords(LoadParams(fs::path(LOOKOUT_SOURCE_DIR) / "config" / config)).find("# input 'udp': UDP on 0.0.0.0 port 10110"),
-              std::string::npos);
+    EXPECT_NE(InWords(LoadParams(support::kSources / "config" / config)).find("# input 'udp': UDP on 0.0.0.0 port 10110"), std::string::npos);
   }
 }
 

@@ -19,13 +19,14 @@
 
 #include "services/navigator/io/gpsd_client.hpp"
 #include "services/navigator/io/serial_port.hpp"
-#include "services/navigator/io/source.hpp"
 #include "services/navigator/io/tcp_client.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
 namespace {
 
+using io::Source;
 using namespace std::chrono_literals;
 
 // Host time that goes a tenth of a second with each round: pauses between attempts take no real time.
@@ -44,8 +45,7 @@ class SourceTest : public ::testing::Test {
   bool Wait(Source& source, bool has_fault) {
     for (int round = 0; round < 200 && source.fault().empty() == has_fault; ++round) {
       Step(source);
-      while (source.Receive(now_)) {
-      }
+      while (const auto piece = source.Receive(now_)) num_breaks_ += piece->kind == Source::Kind::kBreak ? 1 : 0;
       std::this_thread::sleep_for(10ms);
     }
     return source.fault().empty() != has_fault;
@@ -67,6 +67,7 @@ class SourceTest : public ::testing::Test {
   }
 
   Utime now_ = NoonPlus(0);
+  int num_breaks_ = 0;  // that Wait saw
 };
 
 // Both ends of a pseudo terminal: the "cable" and the device that a serial source opens.
@@ -93,7 +94,6 @@ struct Pty {
 class SerialTest : public SourceTest {
  protected:
   SerialTest() { std::filesystem::create_directories(folder_); }
-  ~SerialTest() override { std::filesystem::remove_all(folder_); }
   // What udev does when an adapter is plugged in: the same name, another device.
   void PlugIn(const Pty& pty) const {
     std::filesystem::remove(link_);
@@ -101,7 +101,7 @@ class SerialTest : public SourceTest {
   }
   std::unique_ptr<Source> Serial(int baud) const { return std::make_unique<SerialPort>("gnss", link_, baud); }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_serial_" + std::to_string(getpid()));
+  support::TempDir folder_;
   std::filesystem::path link_ = folder_ / "gnss";
 };
 
@@ -135,7 +135,7 @@ TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
   first->Unplug();
   std::filesystem::remove(link_);
   ASSERT_TRUE(Wait(*source, true));
-  EXPECT_EQ(source->num_lost(), 1);
+  EXPECT_EQ(num_breaks_, 1);
   EXPECT_NE(source->fault().find(link_.string()), std::string::npos) << source->fault();
   const Pty second;
   PlugIn(second);
@@ -143,6 +143,7 @@ TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
   second.Write("$C\r\n");
   EXPECT_EQ(Take(*source, 4), "$C\r\n");
   EXPECT_EQ(source->file_descriptor(), file_descriptor);
+  EXPECT_EQ(Count(*source, "gnss_lost"), 1);
   EXPECT_EQ(Count(*source, "gnss_opened"), 2);
 }
 
@@ -212,7 +213,8 @@ TEST_F(SourceTest, TcpConnectsAgainWhenTheServerWasAway) {
   server->Accept();
   server->Write("$B\r\n");
   EXPECT_EQ(Take(*source, 4), "$B\r\n");
-  EXPECT_EQ(source->num_lost(), 1);
+  EXPECT_EQ(num_breaks_, 1);
+  EXPECT_EQ(Count(*source, "plotter_lost"), 1);
   EXPECT_EQ(Count(*source, "plotter_opened"), 2);
 }
 

@@ -14,6 +14,7 @@
 #include "services/navigator/core/interpreter.hpp"
 #include "services/navigator/core/nmea.hpp"
 #include "services/navigator/core/sentence.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
@@ -21,14 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRecordings = fs::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
-
-std::string Content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using support::kRecordings;
+using support::ReadFile;
 
 // The value behind "key": in a line of JSON; empty when there is none.
 std::string JsonValue(const std::string& json, const std::string& key) {
@@ -65,7 +60,7 @@ class GpsdLog : public ::testing::TestWithParam<Expectation> {};
 TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
   const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
-  std::istringstream lines(Content(file));
+  std::istringstream lines(ReadFile(file));
   std::optional<ParseResult> last;
   int num_positions = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -101,7 +96,7 @@ TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
 TEST_P(GpsdTimes, GivesThePlacesThatGpsdReadsAtThem) {
   const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
-  std::istringstream lines(Content(file));
+  std::istringstream lines(ReadFile(file));
   std::map<Utime, GeodeticPosition> expected;
   std::map<Utime, GeodeticPosition> found;
   for (std::string line; std::getline(lines, line);) {
@@ -169,7 +164,7 @@ TEST_P(GpsdEpochs, HaveGpsdsPositionsTimesOfDayAndSpeeds) {
   std::vector<EpochFix> found_without_time;
   std::optional<std::int64_t> last;
   std::int64_t seq = 0;
-  for (const auto& line : SplitDatagram(ToBytes(Content(log))).lines) {
+  for (const auto& line : SplitDatagram(ToBytes(ReadFile(log))).lines) {
     // Far from the time in the sentences: the computer's clock says nothing.
     const auto [fix, attitude, velocity, turn_rate, imu] =
         interpreter.Read({NoonPlus(static_cast<double>(seq) * 0.01), seq, ItemKind::kSentence, "udp", line});
@@ -186,7 +181,7 @@ TEST_P(GpsdEpochs, HaveGpsdsPositionsTimesOfDayAndSpeeds) {
     found_without_time.push_back({*fix->position, fix->speed_mps});
   }
 
-  std::istringstream lines(Content(log.string() + ".chk"));
+  std::istringstream lines(ReadFile(log.string() + ".chk"));
   std::map<std::int64_t, std::string> expected;
   std::vector<std::string> expected_without_time;
   for (std::string line; std::getline(lines, line);) {
@@ -240,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(Logs, GpsdEpochs,
 
 // How many lines of a log are of each kind.
 std::map<std::string, int> Census(const fs::path& file) {
-  const auto lines = SplitDatagram(ToBytes(Content(file)));
+  const auto lines = SplitDatagram(ToBytes(ReadFile(file)));
   std::map<std::string, int> census;
   census["no start"] = static_cast<int>(lines.num_no_start);
   census["not printable"] = static_cast<int>(lines.num_not_printable);
@@ -266,7 +261,7 @@ TEST(Recordings, OfABoatInAmsterdamAreTakenWhole) {
   std::int64_t seq = 0;
   int num_fixes = 0;
   Utime last{};
-  for (const auto& line : SplitDatagram(ToBytes(Content(file))).lines) {
+  for (const auto& line : SplitDatagram(ToBytes(ReadFile(file))).lines) {
     const auto fix = interpreter.Read({NoonPlus(static_cast<double>(seq) * 0.25), seq, ItemKind::kSentence, "gnss", line}).fix;
     ++seq;
     if (!fix) continue;

@@ -10,13 +10,14 @@
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {
 namespace {
 
 Params TestParams(Input input) {
-  auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/demo");
+  auto params = LoadParams(support::kDemoConfig.string());
   params.input = input;
   return params;
 }

@@ -21,10 +21,9 @@ using std::chrono::sys_days;
 
 class TextLog : public ::testing::Test {
  protected:
-  const fs::path file_ = fs::temp_directory_path() / ("lookout_navigator_text_log_" + std::to_string(getpid()));
+  support::TempDir folder_;
+  const fs::path file_ = folder_ / "log";
   static constexpr sys_days kDay = std::chrono::year(2014) / 4 / 3;
-
-  void TearDown() override { fs::remove(file_); }
 
   void Write(const std::string& text) const { std::ofstream(file_, std::ios::binary) << text; }
   static std::string Gga(const std::string& time) { return "$GPGGA," + time + ",5222.3215,N,00454.5778,E,1,4,2.95,16.0,M,47.0,M,,\n"; }

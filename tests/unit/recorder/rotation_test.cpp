@@ -22,6 +22,7 @@
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/recorder/service.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::recorder {
 namespace {
@@ -33,13 +34,11 @@ constexpr std::int64_t kPlenty = 1'000'000'000'000;
 
 class Rotation : public ::testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_rotation_test_" + std::to_string(getpid()));
+  support::TempDir folder_;
   bus::MemoryBus bus_;
   Utime now_{seconds(1'800'000'000)};
   Params params_{.log_folder = folder_, .reserve_bytes = 0};
   std::int64_t seq_ = 0;
-
-  void TearDown() override { fs::remove_all(folder_); }
 
   Service Make(const Disk& disk = RealDisk()) {
     return Service(
@@ -452,7 +451,7 @@ TEST_F(Rotation, ALogThatIsDeletedIsFollowedByAnother) {
   service.Flush();
   EXPECT_EQ(Count(service, "events"), 11);
   const auto num_bytes = Count(service, "bytes");
-  fs::remove_all(folder_);
+  fs::remove_all(folder_.path());
   service.Flush();
   EXPECT_EQ(service.Report().state, HealthState::kFailed);
   EXPECT_NE(service.Report().reason.find("was deleted while it was recorded: 11 events"), std::string::npos) << service.Report().reason;

@@ -17,6 +17,7 @@
 #include "common/bus/memory_bus.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/nav_raw_t.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::recorder {
 namespace {
@@ -27,11 +28,9 @@ using std::chrono::seconds;
 
 class Recorder : public ::testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("lookout_recorder_test_" + std::to_string(getpid()));
+  support::TempDir folder_;
   bus::MemoryBus bus_;
   Utime now_{seconds(1'800'000'000)};
-
-  void TearDown() override { fs::remove_all(folder_); }
 
   // The disk that the tests run on may be nearly full.
   Params params_{.log_folder = folder_, .reserve_bytes = 0};
@@ -99,7 +98,6 @@ TEST_F(Recorder, NeverOverwritesALog) {
 
 TEST_F(Recorder, SaysWhyALogCannotBeMade) {
   EXPECT_THROW(Service(bus_, Params{.log_folder = "/proc/nowhere"}, run_info_t{}, [this] { return now_; }), std::runtime_error);
-  fs::create_directories(folder_);
   std::ofstream(folder_ / "file") << "in the way";
   EXPECT_THROW(Service(bus_, Params{.log_folder = folder_ / "file"}, run_info_t{}, [this] { return now_; }), std::runtime_error);
 }
@@ -389,17 +387,15 @@ TEST_F(Recorder, GoesOnInANewLogWhenADiskThatWasFullIsNotAnyMore) {
 }
 
 TEST(RecorderParams, AreThoseOfTheFileAndTheFolderMustBeNamed) {
-  const auto params = LoadParams(std::string(LOOKOUT_SOURCE_DIR) + "/config/catabot");
+  const auto params = LoadParams(support::kCatabotConfig.string());
   EXPECT_EQ(params.log_folder, "logs");
   EXPECT_EQ(params.max_file_bytes, 2'000'000'000);
   EXPECT_EQ(params.max_file_time, std::chrono::hours(1));
   EXPECT_EQ(params.reserve_bytes, 1'000'000'000);
   EXPECT_EQ(params.queue_bytes, 64'000'000);
-  const auto folder = fs::temp_directory_path() / ("lookout_recorder_params_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  const support::TempDir folder;
   std::ofstream(folder / "recorder.txtpb") << "log_folder: \"\"\n";
   EXPECT_THROW(LoadParams(folder), std::runtime_error);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "common/bus/memory_bus.hpp"
 #include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
@@ -24,8 +25,6 @@ using Messages = std::map<std::string, std::vector<std::vector<std::uint8_t>>, s
 
 class LiveTextLog : public ::testing::Test {
  protected:
-  void TearDown() override { fs::remove(file_); }
-
   Messages Replay() const {
     Messages messages;
     runtime::Progress progress("test", stderr, false);
@@ -62,8 +61,9 @@ class LiveTextLog : public ::testing::Test {
     return messages;
   }
 
-  const fs::path file_ = fs::temp_directory_path() / ("lookout_live_text_log_" + std::to_string(getpid()));
-  const fs::path config_ = fs::path(LOOKOUT_SOURCE_DIR) / "config/demo";
+  support::TempDir folder_;
+  const fs::path file_ = folder_ / "log";
+  const fs::path config_ = support::kDemoConfig;
 };
 
 // Sentences stand in captures and in logs too.

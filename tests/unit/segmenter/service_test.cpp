@@ -10,6 +10,7 @@
 #include "common/bus/memory_bus.hpp"
 #include "common/config/text_config.hpp"
 #include "lookout/segments_t.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
 
@@ -143,7 +144,7 @@ TEST_F(SegmenterService, SurvivesBytesThatAreNoMessage) {
 }
 
 TEST(SegmenterParams, AreTheDefaultsOfTheSchemaWhereNothingIsSet) {
-  const auto folder = std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config" / "catabot";
+  const auto folder = support::kSources / "config" / "catabot";
   const auto params = LoadParams(folder);
   const Params defaults;
   EXPECT_EQ(params.filter.min_range_m, defaults.filter.min_range_m);
@@ -166,9 +167,8 @@ TEST(SegmenterParams, AreTheDefaultsOfTheSchemaWhereNothingIsSet) {
 }
 
 TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
-  const auto folder = std::filesystem::path(::testing::TempDir()) / ("segmenter_params" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
-  std::filesystem::copy_file(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
+  const support::TempDir folder;
+  std::filesystem::copy_file(support::kSources / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
                              std::filesystem::copy_options::overwrite_existing);
   const std::map<std::string, std::string> reasons{
       {"min_range_m: 20 max_range_m: 20", "max_range_m: must be greater than min_range_m"},
@@ -184,7 +184,6 @@ TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
   }
   std::ofstream(folder / "segmenter.txtpb") << "image_columns: 16\n";
   EXPECT_EQ(LoadParams(folder).labelling.image_columns, 16);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -8,7 +8,8 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
-#include "tools/sim/scene_check.hpp"
+#include "tests/support/files.hpp"
+#include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -51,7 +52,7 @@ TEST(SceneFile, RefusesNumbersThatAreNotFiniteOrOutOfRange) {
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: nan"), "s.txtpb:3: object.east_m: must be a finite number (is nan)");
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: [5, 5000]"), "s.txtpb:3: object.east_m: must be at most 1000 (is 5000)");
   EXPECT_EQ(ObjectFaults("kind: BUOY count: 0"), "s.txtpb:3: object.count: must be at least 1 (is 0)");
-  EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability: must be at most 1 (is 1.5)");
+  EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability(): must be at most 1 (is 1.5)");
 }
 
 TEST(SceneFile, RefusesRangesThatAreNone) {
@@ -75,7 +76,7 @@ TEST(SceneFile, RefusesWaysThatCannotBeGone) {
             "s.txtpb:3: object[0].path.waypoint[0]: is where the object starts");
   EXPECT_EQ(FaultsOf(kHead + "object {\n kind: KAYAK east_m: 20\n path { speed_mps: 1\n waypoint { east_m: 30 north_m: 0 }\n"
                              " waypoint { east_m: 25 north_m: 0 }\n}\n}\n"),
-            "s.txtpb:6: object[0].path.waypoint[0]: the way stands still here, or turns back on the spot");
+            "s.txtpb:6: object[0].path.waypoint[0]: the path stands still here, or turns back on the spot");
   EXPECT_EQ(ObjectFaults("kind: KAYAK path { speed_mps: 1 circle { radius_m: 20 } waypoint { east_m: 5 north_m: 0 } }"),
             "s.txtpb:3: object[0].path.circle: not with waypoints");
 }
@@ -203,22 +204,17 @@ TEST(SceneFile, RocksTheOwnBoatNoMoreThanAsked) {
 
 TEST(SceneFile, TakesEffectsOverAndLeavesTheRestAtTheirDefaults) {
   const Scene scene = ParseScene(kHead + "effects { return_mode: DUAL rain_probability_per_m: 0.01 }", "s", 1);
-  EXPECT_EQ(scene.effects.return_mode, ReturnMode::kDual);
-  EXPECT_EQ(scene.effects.rain_probability_per_m, 0.01);
-  const Effects usual;
+  EXPECT_EQ(scene.effects.return_mode(), config::Scene::DUAL);
+  EXPECT_EQ(scene.effects.rain_probability_per_m(), 0.01);
   const Effects none = ParseScene(kHead, "s", 1).effects;
-  EXPECT_EQ(none.return_mode, usual.return_mode);
-  EXPECT_EQ(none.range_sd_m, usual.range_sd_m);
-  EXPECT_EQ(none.half_seen_range_m, usual.half_seen_range_m);
-  EXPECT_EQ(none.stray_probability, usual.stray_probability);
-  EXPECT_EQ(none.horizontal_divergence_mrad, usual.horizontal_divergence_mrad);
-  EXPECT_EQ(none.vertical_divergence_mrad, usual.vertical_divergence_mrad);
-  EXPECT_EQ(none.glint_probability, usual.glint_probability);
-  EXPECT_EQ(none.mirror_strength, usual.mirror_strength);
-  EXPECT_EQ(none.crest_probability, usual.crest_probability);
-  EXPECT_EQ(none.wake_probability, usual.wake_probability);
-  EXPECT_EQ(none.spray_probability, usual.spray_probability);
-  EXPECT_EQ(none.rain_probability_per_m, usual.rain_probability_per_m);
+  EXPECT_EQ(none.range_sd_m(), 0.025);
+  EXPECT_EQ(none.half_seen_range_m(), 100.0);
+  EXPECT_EQ(none.stray_probability(), 1e-4);
+  for (const double strength : {none.horizontal_divergence_mrad(), none.vertical_divergence_mrad(), none.glint_probability(), none.mirror_strength(),
+                                none.crest_probability(), none.wake_probability(), none.spray_probability(), none.rain_probability_per_m()}) {
+    EXPECT_EQ(strength, 0.0);
+  }
+  EXPECT_EQ(none.return_mode(), config::Scene::STRONGEST);
 }
 
 TEST(Kinds, EveryKindOfTheSchemaCanBeMade) {
@@ -242,10 +238,9 @@ TEST(Kinds, BoatsSwimmersBuoysAndMarkersAreInTheWater) {
 class SceneFolders : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_ / "scenes"); }
-  void TearDown() override { fs::remove_all(folder_); }
   void Write(const std::string& name, const std::string& text) { std::ofstream(folder_ / "scenes" / name) << text; }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / ("lookout_scene_folders" + std::to_string(::getpid()));
+  support::TempDir folder_;
 };
 
 TEST_F(SceneFolders, BesideTheBoatComeFirst) {
@@ -254,7 +249,7 @@ TEST_F(SceneFolders, BesideTheBoatComeFirst) {
   EXPECT_EQ(FindScene("mine", folder_ / "boat"), folder_ / "scenes/mine.txtpb");
   EXPECT_EQ(FindScene("mine", folder_ / "boat/"), folder_ / "scenes/mine.txtpb");
   EXPECT_EQ(FindScene("lake", folder_ / "boat"), folder_ / "scenes/lake.txtpb");
-  EXPECT_EQ(FindScene("dense", folder_ / "boat"), fs::path(LOOKOUT_SOURCE_DIR) / "config/scenes/dense.txtpb");
+  EXPECT_EQ(FindScene("dense", folder_ / "boat"), support::kSources / "config/scenes/dense.txtpb");
   EXPECT_EQ(FindScene("elsewhere/other.txtpb", folder_ / "boat"), "elsewhere/other.txtpb");
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -118,8 +119,7 @@ TEST(Simulation, BoatWithoutHeadingSendsWhatAReceiverSendsAlone) {
 TEST(Simulation, ALidarWithoutPowerSendsNothingAndItsTruthHoldsNothing) {
   auto params = Params(1, 1s);
   params.faults = {ParseTimedFault("sensor_restart:0.3:0.6:0.2")};
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("lookout_simulation_test" + std::to_string(::getpid()));
-  std::filesystem::remove_all(folder);
+  const support::TempDir folder;
   const auto scene = MakeScene("lake", 1);
   std::vector<std::pair<Utime, std::uint32_t>> stamps;
   {
@@ -150,7 +150,6 @@ TEST(Simulation, ALidarWithoutPowerSendsNothingAndItsTruthHoldsNothing) {
     EXPECT_TRUE(since_start < 300ms || since_start >= 600ms) << line;
   }
   EXPECT_GT(num_returns, 1000);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Simulation, FaultsOfAnotherSensorLeaveThePacketsOfTheLidarAlone) {
@@ -175,8 +174,7 @@ std::vector<std::string> Lines(const std::filesystem::path& file) {
 }
 
 TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("lookout_truth_writer_test" + std::to_string(::getpid()));
-  std::filesystem::remove_all(folder);
+  const support::TempDir folder;
   const auto params = Params(1, 500ms);
   const auto scene = MakeScene("lake", 1);
   std::size_t num_returns = 0;
@@ -216,7 +214,6 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   const auto object_poses = Lines(folder / "object_poses.csv");
   EXPECT_EQ(object_poses.size(), 1U + 6U * (scene->objects.size() + 1));
   EXPECT_EQ(object_poses[0], "object_id,utime_us,latitude_deg,longitude_deg,east_m,north_m,up_m,heading_deg,roll_deg,pitch_deg");
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

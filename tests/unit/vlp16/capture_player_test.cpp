@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <map>
 
+#include "tests/support/files.hpp"
+
 namespace lookout::vlp16 {
 namespace {
 
@@ -16,9 +18,6 @@ using std::chrono::seconds;
 // Captures of raw IP; the payload of each datagram is one byte.
 class Player : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directory(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   struct Record {
     std::uint32_t stamp_us;
     std::uint8_t payload;
@@ -60,7 +59,7 @@ class Player : public ::testing::Test {
   }
 
   using Payloads = std::vector<int>;
-  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_player_" + std::to_string(getpid()));
+  support::TempDir folder_;
 };
 
 TEST_F(Player, GivesEachDatagramWhenItIsDue) {

@@ -10,6 +10,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -151,17 +152,13 @@ TEST(Frame, IsCutAnywhereWithoutHarm) {
 class CaptureFile {
  public:
   explicit CaptureFile(const Text& bytes) {
-    static int number = 0;
-    path_ = std::filesystem::temp_directory_path() / ("lookout_capture_" + std::to_string(getpid()) + "_" + std::to_string(number++) + ".pcap");
     std::ofstream(path_, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   }
-  ~CaptureFile() { std::filesystem::remove(path_); }
-  CaptureFile(const CaptureFile&) = delete;
-  CaptureFile& operator=(const CaptureFile&) = delete;
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  std::filesystem::path path_;
+  support::TempDir folder_;
+  std::filesystem::path path_ = folder_ / "capture.pcap";
 };
 
 Text U32(std::uint32_t value) {
@@ -254,7 +251,7 @@ TEST(CaptureReader, NamesFileAndReasonWhenItCannotRead) {
   EXPECT_NE(FaultOf(wlan.path()).find("105 (IEEE802_11)"), std::string::npos) << FaultOf(wlan.path());
 }
 
-const std::filesystem::path kRecordings = std::filesystem::path(LOOKOUT_SOURCE_DIR) / "../shared/data";
+using support::kRecordings;
 
 TEST(CaptureReader, SurvivesEveryRecordingThatIsBroken) {
   if (!std::filesystem::exists(kRecordings / "bad_pcap")) GTEST_SKIP() << "no recordings at " << kRecordings;

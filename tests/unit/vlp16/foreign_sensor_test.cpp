@@ -9,6 +9,7 @@
 #include <random>
 
 #include "services/vlp16/io/capture_reader.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -154,7 +155,7 @@ TEST(NameOfForeignPayload, KnowsLivoxOfBothGenerations) {
   EXPECT_EQ(NameOfForeignPayload(mid360), "");
 }
 
-std::filesystem::path Recording(const std::string& name) { return std::filesystem::path(LOOKOUT_SOURCE_DIR) / "../shared/data" / name; }
+std::filesystem::path Recording(const std::string& name) { return support::kRecordings / name; }
 
 TEST(NameOfForeignPayloadRecordings, NameAnOusterAndLeaveTheHdl32eToThePacketInterval) {
   const auto ouster = Recording("other_lidar/ouster_single_packet_fragmented.pcap");

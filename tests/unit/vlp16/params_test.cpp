@@ -7,14 +7,13 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::vlp16 {
 namespace {
 
 class Vlp16Params : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directory(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
   Params Load(const std::string& text) const {
     std::ofstream(folder_ / "vlp16.txtpb") << text;
     return LoadParams(folder_);
@@ -27,7 +26,7 @@ class Vlp16Params : public ::testing::Test {
     }
     return "";
   }
-  const std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("lookout_vlp16_params_" + std::to_string(getpid()));
+  support::TempDir folder_;
 };
 
 TEST_F(Vlp16Params, HaveTheDefaultsOfTheSchema) {

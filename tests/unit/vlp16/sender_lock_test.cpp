@@ -15,6 +15,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
+#include "tests/support/files.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
@@ -411,7 +412,8 @@ class CaptureMaker {
 };
 
 TEST(SenderLock, GoesByTheAddressesInACapture) {
-  const auto file = std::filesystem::path(testing::TempDir()) / ("lookout_sender_lock_" + std::to_string(getpid()) + ".pcap");
+  const support::TempDir folder;
+  const auto file = folder / "file.pcap";
   const auto lidar = OfLidar(seconds(0), seconds(2));
   const auto expected = Of(lidar).messages;
   for (const auto form : {CaptureMaker::Form::kPlain, CaptureMaker::Form::kInVlan, CaptureMaker::Form::kInIpv6}) {

@@ -16,16 +16,10 @@
 namespace lookout {
 namespace {
 
-const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
+const std::filesystem::path kRoot = support::kSources;
 const std::filesystem::path kGolden = "tests/golden/fingerprints.txt";
 
-std::string ReadFile(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  EXPECT_TRUE(in) << file << " cannot be read";
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using support::ReadFile;
 
 // Names of the files lcmtypes/*.lcm, without ending.
 std::set<std::string> TypeFiles() {
