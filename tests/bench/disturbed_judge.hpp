@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "tests/bench/truth_beside.hpp"
 
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-inline const std::vector<std::string> kServices{"recorder", "georeferencer", "segmenter", "navigator", "vlp16"};
+inline const std::vector<std::string> kServices = bus::StartOrder();
 
 // An obstacle is wrong when a corner of its outline lies farther than this from all that is there: so many stated deviations, and what the outline
 // itself may be off by: noise of the range, time within a scan, what rocks.

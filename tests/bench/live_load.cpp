@@ -19,11 +19,13 @@
 #include "common/bus/guarded_bind.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/sequence.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace {
 
@@ -31,7 +33,7 @@ using namespace lookout;
 using namespace lookout::support;
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kServices{"recorder", "georeferencer", "segmenter", "navigator", "vlp16"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
 // Targets of the suite, on the boat's computer.
 constexpr double kMaxLatencyMs = 10.0;
@@ -184,7 +186,7 @@ class Run {
  public:
   Run(const fs::path& folder, std::string scene, int num_seconds) : folder_(folder), scene_(std::move(scene)), num_seconds_(num_seconds) {
     fs::create_directories(folder);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder / "config");
+    fs::copy(kDemoConfig, folder / "config");
     fs::current_path(folder);  // the recorder's logs/ is made here
   }
 
@@ -215,7 +217,7 @@ class Run {
   using CostOfProcess = std::map<std::string, ProcessCost>;
 
   void Start(const std::string& name, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name);
+    arguments.insert(arguments.begin(), Bin(name));
     children_[name] = std::make_unique<Child>(arguments, name + ".out");
   }
   void Handle() { listener_.HandleFor(std::chrono::milliseconds(20)); }

@@ -4,19 +4,19 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "tools/eval/readers/file_bytes.hpp"
-#include "tools/eval/readers/kitti.hpp"
-#include "tools/eval/readers/organise.hpp"
-#include "tools/eval/readers/pcd.hpp"
+#include "tools/import/file_bytes.hpp"
+#include "tools/import/kitti.hpp"
+#include "tools/import/organise.hpp"
+#include "tools/import/pcd.hpp"
 
 namespace {
 
-using namespace lookout::eval;
+using namespace lookout::importer;
 
 void MakeTurn(const PointCloud& cloud) {
   const auto organised = Organise(cloud, {});
   std::size_t num_returns = 0;
-  for (const auto range : organised.turn.scan.columns.range) num_returns += range != 0 ? 1 : 0;
+  for (const auto range : organised.labelled.scan.columns.range) num_returns += range != 0 ? 1 : 0;
   // No point is lost uncounted.
   if (num_returns + static_cast<std::size_t>(organised.num_hidden + organised.num_out_of_range) != cloud.points.size()) std::abort();
 }

@@ -90,7 +90,7 @@ Run Simulate(const std::string& scene_text, int seed, double seconds) {
   replay::Chain chain(kDemo, {}, [&](Utime, std::string_view channel, Bytes bytes) {
     if (channel == bus::kSegments.name) take(bus::Decode<segments_t>(bytes).value());
   });
-  while (const auto datagram = simulation.Next()) chain.OnDatagram(datagram->time, datagram->port, datagram->payload, {});
+  while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
   chain.Finish();
   return run;
 }

@@ -15,9 +15,9 @@
 
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/pcap_sink.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
+#include "tools/sim/sinks.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -266,7 +266,7 @@ TEST_F(SimWireTruth, IsToldByPacketsOfDualReturn) {
 
 TEST_F(SimWireTruth, IsToldByPacketsOfAQuickHeadThatGivesTheLastReturn) {
   LidarParams lidar;
-  lidar.mode = ReturnMode::kLast;
+  lidar.mode = config::Scene::LAST;
   lidar.rotation_rpm = 1200.0;
   Run("marina", lidar);
   ExpectReturnsOfTheTruth(false);
@@ -274,7 +274,7 @@ TEST_F(SimWireTruth, IsToldByPacketsOfAQuickHeadThatGivesTheLastReturn) {
 }
 
 TEST_F(SimWireTruth, IsToldByPacketsOfALimitedFieldOfView) {
-  for (const auto mode : {ReturnMode::kStrongest, ReturnMode::kDual}) {
+  for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     LidarParams lidar;
     lidar.mode = mode;
     lidar.field_of_view = {300.0 * kDegree, 120.0 * kDegree};

@@ -13,10 +13,10 @@
 #include "tests/support/files.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
-#include "tools/sim/faults.hpp"
-#include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/faulty_network.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
+#include "tools/sim/sinks.hpp"
 
 namespace lookout::vlp16 {
 namespace {
@@ -84,7 +84,7 @@ TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     sim::SimulationParams params;
-    params.lidar.mode = seed == 2 ? sim::ReturnMode::kDual : sim::ReturnMode::kStrongest;
+    params.lidar.mode = seed == 2 ? config::Scene::DUAL : config::Scene::STRONGEST;
     params.lidar.model = seed == 3 ? sim::LidarModel::kPuckHiRes : sim::LidarModel::kVlp16;
     params.start = kStart;
     params.duration = 5s;

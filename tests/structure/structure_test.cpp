@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/channels.hpp"
+#include "common/bus/services.hpp"
 #include "tests/support/files.hpp"
 
 namespace {
@@ -82,22 +82,23 @@ const std::vector<Rule>& Rules() {
       {"common/core/.*", {"common/core"}},
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
+      {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
-      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
+      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
-      {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
-      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
+      {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
+      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
       // As params; it knows what an address is.
       {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
       // Opens what params name.
-      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "OWN", "OWN/core", "OWN/io"}},
+      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "OWN", "OWN/core"}},
+      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
-      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
+      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
   };
@@ -229,28 +230,72 @@ TEST(Structure, ReadmeNamesEveryProgram) {
     for (const auto& entry : fs::directory_iterator(kSources / folder)) {
       if (!entry.is_directory()) continue;
       const std::string program = "lookout-" + entry.path().filename().string();
-      EXPECT_NE(readme.find(program), std::string::npos) << "README.md does not name " << program;
+      const bool is_program = ReadFile(entry.path() / "CMakeLists.txt").find("lookout_program(") != std::string::npos;
+      if (is_program) {
+        EXPECT_NE(readme.find(program), std::string::npos) << "README.md does not name " << program;
+      }
       EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path() << " has no README.md";
     }
   }
 }
 
-// deploy/README.md and systemd's reload go by this column.
-TEST(Structure, TheTableOfProcessesSaysWhoTakesSighup) {
-  std::istringstream table(ReadFile(kSources / "deploy/processes"));
-  int num_processes = 0;
-  for (std::string line; std::getline(table, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream row(line);
-    std::string name;
-    std::string watchdog_s;
-    std::string reload;
-    row >> name >> watchdog_s >> reload;
-    const bool takes_it = ReadFile(kSources / "services" / name / "main.cpp").find("process.OnHangup(") != std::string::npos;
-    EXPECT_EQ(reload == "yes", takes_it) << name;
-    ++num_processes;
+std::string Joined(const std::vector<std::string_view>& words) {
+  std::string text;
+  for (const auto word : words) text += (text.empty() ? "" : ", ") + std::string(word);
+  return text.empty() ? "-" : text;
+}
+
+std::vector<std::string_view> InputsOf(const lookout::bus::ServiceRow& service) {
+  std::vector<std::string_view> names;
+  for (const auto* channel : service.inputs) {
+    if (channel != nullptr) names.push_back(channel->name);
   }
-  EXPECT_GE(num_processes, 5);
+  return names;
+}
+
+std::vector<std::string_view> OutputsOf(const lookout::bus::ServiceRow& service) {
+  std::vector<std::string_view> names;
+  for (const auto& channel : lookout::bus::kChannels) {
+    if (channel.publisher == service.name) names.push_back(channel.name);
+  }
+  return names;
+}
+
+TEST(Structure, ReadmeOfDeployHoldsTheServiceTable) {
+  const std::string readme = ReadFile(kSources / "deploy/README.md");
+  for (const auto& service : lookout::bus::kServices) {
+    std::ostringstream row;
+    row << "| " << service.name << " | " << service.purpose << " | " << (service.name == "recorder" ? "every channel" : Joined(InputsOf(service)))
+        << " | " << Joined(OutputsOf(service)) << " | " << service.state << " | " << service.hangup << " | " << service.watchdog_s << " |";
+    EXPECT_NE(readme.find(row.str()), std::string::npos) << "deploy/README.md lacks or differs from: " << row.str();
+  }
+}
+
+TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
+  std::istringstream readme(ReadFile(kSources / "README.md"));
+  std::size_t num_rows = 0;
+  for (std::string line; std::getline(readme, line);) {
+    for (const auto& service : lookout::bus::kServices) {
+      if (!line.starts_with("| [lookout-" + std::string(service.name) + "](services/")) continue;
+      ++num_rows;
+      for (const auto& names : {InputsOf(service), OutputsOf(service)}) {
+        for (const auto name : names) EXPECT_NE(line.find(name), std::string::npos) << "README.md, " << service.name << " lacks " << name;
+      }
+    }
+  }
+  EXPECT_EQ(num_rows, lookout::bus::kServices.size());
+}
+
+// Readers start first: what they read, but for answers to what they publish, is published by a service above them.
+TEST(Structure, TheServiceTableIsInTheOrderOfTheData) {
+  std::vector<std::string_view> above;
+  for (const auto& service : lookout::bus::kServices) {
+    for (const auto* input : service.inputs) {
+      if (input == nullptr || input->is_raw) continue;
+      EXPECT_NE(std::ranges::find(above, input->publisher), above.end()) << service.name << " reads " << input->name;
+    }
+    above.push_back(service.name);
+  }
 }
 
 // A README says what a folder is and how to use it; why it became so stands beside it, with dates.
@@ -396,12 +441,8 @@ TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
 }
 
 // What is not in the table is neither in systemd's units nor started by lookout-up.
-TEST(Structure, TheTableOfProcessesNamesEveryService) {
-  std::vector<std::string> in_table;
-  std::istringstream table(ReadFile(kSources / "deploy/processes"));
-  for (std::string line; std::getline(table, line);) {
-    if (!line.empty() && line[0] != '#') in_table.push_back(line.substr(0, line.find(' ')));
-  }
+TEST(Structure, TheServiceTableNamesEveryService) {
+  std::vector<std::string> in_table = lookout::bus::StartOrder();
   std::vector<std::string> in_folder;
   for (const auto& entry : fs::directory_iterator(kSources / "services")) {
     if (entry.is_directory()) in_folder.push_back(entry.path().filename().string());

@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "common/bus/decode.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "tests/support/live_test.hpp"
 #include "tests/system/lcm_datagrams.hpp"
@@ -41,7 +42,7 @@ using std::chrono::seconds;
 
 constexpr const char* kGroup = "239.255.76.67";
 constexpr std::uint16_t kPort = 7667;
-const std::vector<std::string> kServices{"vlp16", "navigator", "segmenter", "georeferencer", "recorder"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
 sockaddr_in Address(const std::string& address) {
   sockaddr_in result{};

@@ -72,6 +72,23 @@ else
   echo "skipped: the syntax of the firewall's rule is not checked: there is no nft (package nftables), or it may not be run"
 fi
 
+# A row more in the service table is a unit more, started before what it reads from; a row that is none is refused.
+cat >"$work/units.cmake" <<'TEXT'
+include(${SOURCE}/deploy/ServiceTable.cmake)
+lookout_make_units(${WORK}/services.hpp ${WORK}/units)
+message("start order: ${start_order}")
+TEXT
+units() { cmake -DSOURCE="$source_folder" -DWORK="$work" -P "$work/units.cmake" 2>&1; }
+sed 's/^    ServiceRow{"recorder"/    ServiceRow{"tracker", "tracks of obstacles", 12,\n               "network", "none", "none", {\&kObstacles}},\n&/' "$source_folder/common/bus/services.hpp" >"$work/services.hpp"
+grep -qxF 'start order: recorder;tracker;georeferencer;navigator;segmenter;vlp16' <(units) || { units; fail "the start order with a row more"; }
+grep -qxF 'Description=Lookout tracker: tracks of obstacles' "$work/units/lookout-tracker.service" || fail "a row more has no unit"
+grep -qxF 'WatchdogSec=12s' "$work/units/lookout-tracker.service" || fail "the watchdog of a row more"
+grep -q 'After=.* lookout-tracker.service$' "$work/units/lookout-georeferencer.service" || fail "a row more is not started before what it reads from"
+grep -q 'Wants=.* lookout-tracker.service ' "$work/units/lookout.target" || fail "a row more is not in the target"
+sed -i 's/"tracks of obstacles", 12/"tracks of obstacles", 12.5/' "$work/services.hpp"
+if units >"$work/refused.txt"; then fail "a wrong row is accepted"; fi
+grep -q '5 of 6 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
+
 up=$build_folder/bin/lookout-up
 config=$work/config
 cp -r "$source_folder/config/demo" "$config"

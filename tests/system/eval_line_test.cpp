@@ -1,4 +1,4 @@
-// The command line of the judge: what it refuses, with which exit code, and that it leaves no table then.
+// The command line of lookout-eval: what it refuses, with which exit code, and that it leaves no table then.
 #include <unistd.h>
 
 #include <filesystem>

@@ -14,6 +14,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/segments_t.hpp"
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const std::vector<std::string> kServices{"recorder", "georeferencer", "navigator", "segmenter", "vlp16"};
+const std::vector<std::string> kServices = bus::StartOrder();
 
 class Live : public LiveTest {
  protected:

@@ -274,19 +274,19 @@ rm -f zeros
 
 # Pages and tables of lookout-eval.
 name=eval
-judge() { "$bin/lookout-eval" --config "$config" --scenes sparse --methods ours --seeds 1 --first-seed 101 --seconds 0.3 "$@" >said 2>&1; }
+compare() { "$bin/lookout-eval" --config "$config" --scenes sparse --methods ours --seeds 1 --first-seed 101 --seconds 0.3 "$@" >said 2>&1; }
 echo "an old file" >page.html
-judge --html page.html && fail "replaced its page unasked"
+compare --html page.html && fail "replaced its page unasked"
 expect_said "page.html: exists already"
 expect_old page.html
-judge --html page.html --csv tables --force || fail "exit code $? with --force"
+compare --html page.html --csv tables --force || fail "exit code $? with --force"
 [ "$(wc -c <page.html)" -gt 1000 ] || fail "--force wrote nothing"
 expect_nothing page.html.partial
-judge --csv tables && fail "replaced its tables unasked"
+compare --csv tables && fail "replaced its tables unasked"
 rm page.html
 (
   ulimit -f 4
-  judge --html page.html
+  compare --html page.html
 )
 [ $? -eq 1 ] || fail "exit code is not 1 with a limit on the size of files"
 expect_nothing page.html page.html.partial

@@ -12,14 +12,14 @@
 
 #include "tests/support/child.hpp"
 #include "tests/support/files.hpp"
-#include "tests/unit/eval_readers/cloud_text.hpp"
+#include "tests/unit/import/cloud_text.hpp"
 
 namespace lookout::system_test {
 namespace {
 
 using namespace support;
 namespace fs = std::filesystem;
-using eval::test::Append;
+using importer::test::Append;
 
 struct Point {
   float x_m;
@@ -62,7 +62,7 @@ class Points : public ::testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return Path(name);
   }
-  RunResult Judge(const std::vector<std::string>& files) const {
+  RunResult Evaluate(const std::vector<std::string>& files) const {
     std::vector<std::string> command{Bin("eval"), "--config", kCatabotConfig.string(), "--methods", "ours",    "--csv",
                                      Path("csv"), "--html",   Path("page.html"),       "--force",   "--points"};
     command.insert(command.end(), files.begin(), files.end());
@@ -80,7 +80,7 @@ class Points : public ::testing::Test {
 
   static std::string Kitti(const std::vector<Point>& points) {
     std::string bytes;
-    for (const auto& point : points) bytes += eval::test::KittiPoint(point.x_m, point.y_m, point.z_m);
+    for (const auto& point : points) bytes += importer::test::KittiPoint(point.x_m, point.y_m, point.z_m);
     return bytes;
   }
   template <typename ToLabel>
@@ -91,7 +91,7 @@ class Points : public ::testing::Test {
   }
   static std::string Pcd(const std::vector<Point>& points, bool is_binary) {
     std::string bytes =
-        eval::test::PcdHeaderText(static_cast<int>(points.size()), "x y z label", "4 4 4 4", "F F F U", is_binary ? "binary" : "ascii");
+        importer::test::PcdHeaderText(static_cast<int>(points.size()), "x y z label", "4 4 4 4", "F F F U", is_binary ? "binary" : "ascii");
     for (const auto& point : points) {
       if (is_binary) {
         for (const float value : {point.x_m, point.y_m, point.z_m}) Append(bytes, value);
@@ -110,11 +110,11 @@ class Points : public ::testing::Test {
 constexpr int kKittiRings = 64;
 constexpr double kKittiStepDeg = 0.4;
 
-TEST_F(Points, SixtyFourRingsWithInstancesAreJudged) {
+TEST_F(Points, SixtyFourRingsWithInstancesAreScored) {
   const auto turn = Turn(kKittiRings, kKittiStepDeg, 0.0);
   const auto file = Write("a.bin", Kitti(turn));
   Write("a.label", Labels(turn, [](const Point& point) { return (std::uint32_t{point.object} << 16) | 18U; }));
-  const auto result = Judge({file});
+  const auto result = Evaluate({file});
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(Miou(), "ours (all segments),100.0,100.0") << result.output;
   EXPECT_NE(result.output.find("rings"), std::string::npos);
@@ -126,7 +126,7 @@ TEST_F(Points, AClassWithoutInstanceIsNoObjectBesideOthersThatHaveOne) {
   const auto turn = Turn(kKittiRings, kKittiStepDeg, 0.0);
   const auto file = Write("a.bin", Kitti(turn));
   Write("a.label", Labels(turn, [](const Point& point) { return point.object == 3 ? 50U : (std::uint32_t{point.object} << 16) | 18U; }));
-  const auto result = Judge({file});
+  const auto result = Evaluate({file});
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(Miou(), "ours (all segments),100.0,100.0");
   std::ifstream in(folder_ / "csv/kinds.csv");
@@ -139,7 +139,7 @@ TEST_F(Points, ClassesAreObjectsWhereNoPointHasAnInstance) {
   const auto turn = Turn(kKittiRings, kKittiStepDeg, 0.0);
   const auto file = Write("a.bin", Kitti(turn));
   Write("a.label", Labels(turn, [](const Point& point) { return point.object + 10U; }));
-  const auto result = Judge({file});
+  const auto result = Evaluate({file});
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(Miou(), "ours (all segments),100.0,100.0");
   EXPECT_NE(result.output.find("each class is an object"), std::string::npos);
@@ -147,10 +147,10 @@ TEST_F(Points, ClassesAreObjectsWhereNoPointHasAnInstance) {
 
 TEST_F(Points, TextAndBinaryPcdGiveTheSameFigures) {
   const auto turn = Turn(16, 2.0, 0.0);
-  const auto text = Judge({Write("text.pcd", Pcd(turn, false))});
+  const auto text = Evaluate({Write("text.pcd", Pcd(turn, false))});
   ASSERT_EQ(text.exit_code, 0) << text.output;
   EXPECT_EQ(Miou(), "ours (all segments),100.0,100.0");
-  const auto binary = Judge({Write("binary.pcd", Pcd(turn, true))});
+  const auto binary = Evaluate({Write("binary.pcd", Pcd(turn, true))});
   ASSERT_EQ(binary.exit_code, 0) << binary.output;
   EXPECT_EQ(Miou(), "ours (all segments),100.0,100.0");
   // Of the 16 those from -9 to 9 degrees meet something.
@@ -159,7 +159,7 @@ TEST_F(Points, TextAndBinaryPcdGiveTheSameFigures) {
 
 TEST_F(Points, CloudWhoseRingsFlowTogetherIsOrganisedByElevation) {
   const auto turn = Turn(40, 0.7, 0.5);
-  const auto result = Judge({Write("a.pcd", Pcd(turn, true))});
+  const auto result = Evaluate({Write("a.pcd", Pcd(turn, true))});
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_NE(result.output.find("bands of equal height"), std::string::npos) << result.output;
   EXPECT_TRUE(Miou() == "ours (all segments),99.9,99.9" || Miou() == "ours (all segments),100.0,100.0")
@@ -167,7 +167,7 @@ TEST_F(Points, CloudWhoseRingsFlowTogetherIsOrganisedByElevation) {
 }
 
 TEST_F(Points, WithoutLabelsThereIsNoIou) {
-  const auto result = Judge({Write("a.bin", Kitti(Turn(kKittiRings, kKittiStepDeg, 0.0)))});
+  const auto result = Evaluate({Write("a.bin", Kitti(Turn(kKittiRings, kKittiStepDeg, 0.0)))});
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(Miou(), "ours (all segments),-,-");
   EXPECT_NE(result.output.find("no labels"), std::string::npos);
@@ -176,16 +176,16 @@ TEST_F(Points, WithoutLabelsThereIsNoIou) {
 TEST_F(Points, BrokenFileIsNamedWithItsReason) {
   const auto turn = Turn(16, 2.0, 0.0);
   const auto bytes = Kitti(turn);
-  const auto cut = Judge({Write("cut.bin", bytes.substr(0, bytes.size() - 3))});
+  const auto cut = Evaluate({Write("cut.bin", bytes.substr(0, bytes.size() - 3))});
   EXPECT_EQ(cut.exit_code, 1);
   EXPECT_NE(cut.output.find("cut.bin: byte"), std::string::npos) << cut.output;
   EXPECT_NE(cut.output.find("ends inside a point"), std::string::npos) << cut.output;
   const auto text = Pcd(turn, false);
-  const auto bad = Judge({Write("bad.pcd", text.substr(0, text.size() - 2) + "x\n")});
+  const auto bad = Evaluate({Write("bad.pcd", text.substr(0, text.size() - 2) + "x\n")});
   EXPECT_EQ(bad.exit_code, 1);
   EXPECT_NE(bad.output.find("bad.pcd:"), std::string::npos) << bad.output;
   EXPECT_NE(bad.output.find("not a number"), std::string::npos) << bad.output;
-  EXPECT_EQ(Judge({Write("a.xyz", "1 2 3\n")}).exit_code, 2);
+  EXPECT_EQ(Evaluate({Write("a.xyz", "1 2 3\n")}).exit_code, 2);
 }
 
 }  // namespace

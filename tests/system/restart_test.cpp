@@ -15,6 +15,7 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/health_t.hpp"
 #include "tests/support/live_test.hpp"
 
@@ -28,7 +29,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // In the order in which they are killed.
-const std::vector<std::string> kVictims{"recorder", "georeferencer", "segmenter", "navigator", "vlp16"};
+const std::vector<std::string> kVictims = bus::StartOrder();
 // The promise is 2 s on a boat's computer that has nothing else to do; tests run on busy ones.
 constexpr milliseconds kMostUntilDataFlows(2000);
 constexpr int kBusyComputer = 5;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/bus/services.hpp"
 #include "common/core/utime.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/words.hpp"
@@ -20,7 +21,6 @@ constexpr const char* kProcessSubject = "process";
 constexpr const char* kGuardZoneSubject = "guard zone";
 constexpr const char* kObstaclesSubject = "obstacles";
 
-constexpr std::array<const char*, 5> kSuite{"vlp16", "segmenter", "navigator", "georeferencer", "recorder"};
 // Whose HEALTH tells of the alarm.
 constexpr std::string_view kAlarmProcess = "georeferencer";
 // HEALTH comes once a second: two may be lost.
@@ -131,7 +131,8 @@ Findings JudgeProcesses(const Observations& seen) {
              "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor looked at the sensors itself",
              "start them, then ask again: what goes over the bus and into the log is seen only then"}};
   }
-  std::set<std::string> names(kSuite.begin(), kSuite.end());
+  std::set<std::string> names;
+  for (const auto& service : bus::kServices) names.emplace(service.name);
   for (const auto& [name, instances] : seen.processes) names.insert(name);
   Findings findings;
   for (const auto& name : names) {

@@ -14,14 +14,14 @@ constexpr double kLeastError = 0.0005;
 
 std::optional<AgainstPeer> Compare(const Results& results, const MethodResult& ours, bool is_tuned_only, const std::string& scene,
                                    const std::function<double(const MethodResult&, const Figure&)>& figure_of) {
-  AgainstPeer row{scene, figure_of(ours, MeanIou), figure_of(ours, FalseSegmentsPerTurn), "", -1.0, 0.0, 0.0};
+  AgainstPeer row{scene, figure_of(ours, MeanIou), figure_of(ours, FalseSegmentsPerScan), "", -1.0, 0.0, 0.0};
   for (const auto& method : results.methods) {
     if (is_tuned_only ? !IsTunedPeer(method) : !IsPeer(method)) continue;
     const double iou = figure_of(method, MeanIou);
     if (!(iou > row.peer_iou)) continue;
     row.peer = method.method;
     row.peer_iou = iou;
-    row.peer_false = figure_of(method, FalseSegmentsPerTurn);
+    row.peer_false = figure_of(method, FalseSegmentsPerScan);
   }
   if (row.peer.empty() || !std::isfinite(row.our_iou)) return std::nullopt;
   row.error_share = 1.0 - row.peer_iou >= kLeastError ? (1.0 - row.our_iou) / (1.0 - row.peer_iou) : std::numeric_limits<double>::quiet_NaN();

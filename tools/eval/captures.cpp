@@ -23,7 +23,7 @@
 #include "services/vlp16/core/decoder.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
-#include "tools/eval/readers/xz_file.hpp"
+#include "tools/import/xz_file.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -44,7 +44,7 @@ class UnpackedCapture {
   explicit UnpackedCapture(const fs::path& file) : descriptor_(memfd_create("capture", MFD_CLOEXEC)) {
     if (descriptor_ < 0) throw std::runtime_error(file.string() + ": cannot be unpacked: no memory file");
     try {
-      XzFile packed(file, kMaxCaptureBytes);
+      importer::XzFile packed(file, kMaxCaptureBytes);
       std::vector<std::uint8_t> block(std::size_t{1} << 16);
       while (const std::size_t size = Unpack(packed, block, file)) Append(std::span(block).first(size), file);
     } catch (...) {
@@ -59,7 +59,7 @@ class UnpackedCapture {
   fs::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
 
  private:
-  static std::size_t Unpack(XzFile& packed, std::span<std::uint8_t> block, const fs::path& file) {
+  static std::size_t Unpack(importer::XzFile& packed, std::span<std::uint8_t> block, const fs::path& file) {
     try {
       return packed.Read(block);
     } catch (const std::runtime_error& error) {
@@ -147,7 +147,7 @@ class TruthFile {
     return static_cast<std::uint16_t>(whole);
   }
 
-  XzCsv csv_;
+  importer::XzCsv csv_;
   std::int64_t num_kept_ = 0;
   std::int64_t last_us_ = std::numeric_limits<std::int64_t>::min();
   std::array<std::deque<TrueReturn>, kMaxRings> by_ring_;
@@ -163,7 +163,7 @@ bool IsInWater(const std::string& type) {
 std::map<std::int32_t, ScanObject> ReadObjects(const fs::path& file) {
   static constexpr std::array<std::string_view, 2> kColumns{"object_id", "type"};
   constexpr std::size_t kMaxObjects = 100'000;
-  XzCsv csv(file, kColumns);
+  importer::XzCsv csv(file, kColumns);
   std::map<std::int32_t, ScanObject> objects;
   while (csv.Next()) {
     const auto id = static_cast<std::int32_t>(csv.WholeNumber(0, 1, std::numeric_limits<std::int32_t>::max()));

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/eval/labelled_scan.hpp"
+#include "tools/eval/method.hpp"
 #include "tools/eval/render.hpp"
 
 namespace lookout::eval {

@@ -103,8 +103,8 @@ std::string Scope(const Results& world) {
     for (const auto& scene : world.scenes) {
       const auto found = world.methods.front().by_scene.find(scene);
       if (found == world.methods.front().by_scene.end()) continue;
-      num_scans += found->second.num_turns;
-      if (found->second.num_turns_with_object > 0) {
+      num_scans += found->second.num_scans;
+      if (found->second.num_scans_with_object > 0) {
         ++num_with_object;
       } else {
         without_object += (without_object.empty() ? "" : ", ") + scene;
@@ -132,8 +132,8 @@ std::string NearRecallOf(const MethodResult& method, const std::string& scene, c
   const auto found = method.by_scene.find(scene);
   if (found == method.by_scene.end()) return "-";
   const auto recall = found->second.near_recall_by_kind.find(kind);
-  if (recall == found->second.near_recall_by_kind.end() || recall->second.num_object_turns == 0) return "-";
-  return Number(100.0 * static_cast<double>(recall->second.num_found) / static_cast<double>(recall->second.num_object_turns), 1);
+  if (recall == found->second.near_recall_by_kind.end() || recall->second.num_object_scans == 0) return "-";
+  return Number(100.0 * static_cast<double>(recall->second.num_found) / static_cast<double>(recall->second.num_object_scans), 1);
 }
 
 Table MainTable(const Results& results) {
@@ -158,7 +158,7 @@ Table MainTable(const Results& results) {
       }
       const auto& method = world->methods.at(i);
       row.push_back(Number(100.0 * MeanOverScenes(*world, method, MeanIou), 1));
-      row.push_back(Number(MeanOverScenes(*world, method, FalseSegmentsPerTurn), 2));
+      row.push_back(Number(MeanOverScenes(*world, method, FalseSegmentsPerScan), 2));
       row.push_back(Number(100.0 * MeanOverScenes(*world, method, ThingsWithSegment), 1));
       if (world->world.empty()) row.push_back(NearRecallOf(method, "black_buoys", "buoy"));
     }
@@ -322,7 +322,7 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
     const auto& sweep = *std::ranges::find_if_not(results.curves, [](const Curve& curve) { return curve.value_of_boat.empty(); });
     figures.push_back({"sweeps",
                        {"One field at a time, all else as it is. mIoU of all segments, mean over the " + std::to_string(sweep.lines.size()) +
-                            " scenes with objects, on seeds of tuning (" + sweep.turns_from + ").",
+                            " scenes with objects, on seeds of tuning (" + sweep.scans_from + ").",
                         scope.front()},
                        sweeps});
   }

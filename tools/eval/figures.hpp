@@ -1,4 +1,4 @@
-// Figures that README files show: made by a run of the judge, kept as small CSV files, and put into marked blocks from there.
+// Figures that README files show: made by a comparison of methods, kept as small CSV files, and put into marked blocks from there.
 #pragma once
 
 #include <filesystem>

@@ -23,14 +23,14 @@ struct Return {
   std::int32_t label;
 };
 
-bool IsConsistent(const WorstTurn& turn) {
+bool IsConsistent(const WorstScan& turn) {
   const auto& scan = turn.truth.scan;
   const std::size_t cells_per_column = scan.head.rings.size() * static_cast<std::size_t>(scan.head.num_returns);
   const std::size_t num_cells = scan.columns.azimuth_rad.size() * cells_per_column;
   return scan.num_cells() == num_cells && turn.truth.object.size() == num_cells && turn.label.size() == num_cells;
 }
 
-std::vector<Return> ReturnsOf(const WorstTurn& turn) {
+std::vector<Return> ReturnsOf(const WorstScan& turn) {
   const auto& scan = turn.truth.scan;
   std::vector<Return> returns;
   std::size_t cell = 0;
@@ -42,8 +42,8 @@ std::vector<Return> ReturnsOf(const WorstTurn& turn) {
         const double distance_m = scan.columns.range[cell] * scan.head.range_unit_m * std::cos(double{ring.elevation_rad});
         const Spot spot{distance_m * std::sin(azimuth_rad), distance_m * std::cos(azimuth_rad)};
         // What the method was told not to look at belongs to nobody here.
-        const bool is_judged = turn.label[cell] != kNotJudged;
-        returns.push_back({spot, is_judged ? turn.truth.object[cell] : kNoTrueObject, std::max(0, turn.label[cell])});
+        const bool is_scored = turn.label[cell] != kNotScored;
+        returns.push_back({spot, is_scored ? turn.truth.object[cell] : kNoTrueObject, std::max(0, turn.label[cell])});
       }
     }
   }
@@ -80,7 +80,7 @@ struct Match {
   }
 };
 
-Match MatchTurn(const WorstTurn& turn) {
+Match MatchTurn(const WorstScan& turn) {
   Match match;
   match.returns = ReturnsOf(turn);
   std::map<std::int32_t, std::map<std::int32_t, std::int64_t>> shared;  // object, label
@@ -270,8 +270,8 @@ std::string TableOfObjects(const Match& match, const std::map<std::int32_t, Scan
 
 }  // namespace
 
-std::string FigureOfWorstTurn(const WorstTurn& turn, const std::string& method) {
-  std::string caption = method + ": " + turn.scene + ", seed " + std::to_string(turn.seed) + ", turn " + std::to_string(turn.turn) + ", mIoU " +
+std::string FigureOfWorstTurn(const WorstScan& turn, const std::string& method) {
+  std::string caption = method + ": " + turn.scene + ", seed " + std::to_string(turn.seed) + ", turn " + std::to_string(turn.index) + ", mIoU " +
                         Number(turn.iou * 100.0, 1) + " %";
   if (!IsConsistent(turn)) {
     return "<figure><figcaption>" + Escape(caption) +

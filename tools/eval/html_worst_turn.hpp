@@ -14,6 +14,6 @@ namespace lookout::eval {
 /// colour of text. Turns whose arrays do not fit each other give a sentence instead of the plans.
 ///
 /// @param method  name of the method, as plain text
-std::string FigureOfWorstTurn(const WorstTurn& turn, const std::string& method);
+std::string FigureOfWorstTurn(const WorstScan& turn, const std::string& method);
 
 }  // namespace lookout::eval

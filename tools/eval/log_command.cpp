@@ -15,6 +15,9 @@
 namespace lookout::eval {
 namespace {
 
+// A scan waits for its obstacles for some seconds of scans at most.
+constexpr std::size_t kMaxWaiting = 256;
+
 // Decodes and hands on. @return whether the message could be used
 template <typename Message, typename Taker>
 bool Take(const bus::LogEvent& event, Taker& taker) {
@@ -38,7 +41,16 @@ int EvaluateLog(const LogOptions& options) {
   Evaluation evaluation(truth.get(), options.min_num_returns);
   if (!options.true_boat_folder.empty()) evaluation.SetMounting(config::LoadBoat(options.true_boat_folder).T_vessel_lidar);
   Machine machine;
-  TurnCollector collector([&evaluation](const Turn& turn) { evaluation.Add(turn); });
+  std::int64_t num_incomplete = 0;
+  messages::ScanCollector collector([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
+                                    messages::ScanCollector::Order::kOfCompletion, kMaxWaiting,
+                                    [&](const messages::ScanMessages& scan) {
+                                      if (messages::HasAllParts(scan.obstacles)) {
+                                        evaluation.Add(scan);
+                                      } else if (!scan.obstacles.empty()) {
+                                        ++num_incomplete;
+                                      }
+                                    });
 
   bus::LogReader reader(options.log_file);
   exporter::Bearings bearings;
@@ -63,7 +75,8 @@ int EvaluateLog(const LogOptions& options) {
     }
     if (!is_taken) ++num_unusable;
   }
-  if (evaluation.num_turns == 0) {
+  collector.Finish();
+  if (evaluation.num_scans == 0) {
     std::cerr << options.log_file << ": no turn of OBSTACLES\n";
     return EXIT_FAILURE;
   }
@@ -76,7 +89,7 @@ int EvaluateLog(const LogOptions& options) {
   }
   PrintMachine(std::cout, machine);
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
-  if (collector.num_incomplete() > 0) std::cout << collector.num_incomplete() << " turns lack a part of OBSTACLES\n";
+  if (num_incomplete > 0) std::cout << num_incomplete << " turns lack a part of OBSTACLES\n";
   if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
   return EXIT_SUCCESS;
 }

@@ -31,7 +31,7 @@ void Machine::Add(const health_t& message) {
 void Machine::Add(const lidar_clock_t& message) {
   if (last_clock && message.seq < last_clock->seq) earlier_runs_ = Sum(earlier_runs_, *last_clock);
   last_clock = message;
-  (message.time_source == lidar_clock_t::TIME_SENSOR ? num_turns_by_sensor : num_turns_by_host) += 1;
+  (message.time_source == lidar_clock_t::TIME_SENSOR ? num_scans_by_sensor : num_scans_by_host) += 1;
 }
 
 PacketTotals Machine::Packets() const { return last_clock ? Sum(earlier_runs_, *last_clock) : earlier_runs_; }

@@ -48,8 +48,8 @@ class Machine {
 
   std::map<std::string, ProcessState> processes;
   std::map<std::pair<std::string, std::pair<bool, std::string>>, Traffic> traffic;  // process, is output, channel
-  std::int64_t num_turns_by_sensor = 0;                                             // stamped by the sensor's clock
-  std::int64_t num_turns_by_host = 0;
+  std::int64_t num_scans_by_sensor = 0;                                             // stamped by the sensor's clock
+  std::int64_t num_scans_by_host = 0;
   std::optional<lidar_clock_t> last_clock;
 
  private:

@@ -9,7 +9,7 @@
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/runtime/options.hpp"
-#include "tools/eval/judge_command.hpp"
+#include "tools/eval/comparison_command.hpp"
 #include "tools/eval/log_command.hpp"
 
 namespace {
@@ -20,7 +20,7 @@ constexpr int kExitUsage = 2;
 
 struct Options {
   eval::LogOptions log;
-  eval::JudgeOptions judge;
+  eval::ComparisonOptions comparison;
 };
 
 std::string CommandLine(int argc, char** argv) {
@@ -33,15 +33,15 @@ std::string CommandLine(int argc, char** argv) {
 Options ParseOptions(int argc, char** argv) {
   Options options;
   auto& log = options.log;
-  auto& judge = options.judge;
-  judge.command = CommandLine(argc, argv);
+  auto& comparison = options.comparison;
+  comparison.command = CommandLine(argc, argv);
   std::string config_folder;
   std::string csv_folder;
   std::string html_file;
   std::string figures_folder;
   std::vector<std::string> block_files;
   CLI::App app(
-      "Holds a log against the truth of lookout-sim (--in), or judges methods of segmentation on simulated scenes (--config with --scenes, "
+      "Holds a log against the truth of lookout-sim (--in), or compares methods of segmentation on simulated scenes (--config with --scenes, "
       "--captures, --sweep, --test or --points).",
       "lookout-eval");
   auto* in = app.add_option("--in", log.log_file, "lcm-log with OBSTACLES");
@@ -56,46 +56,48 @@ Options ParseOptions(int argc, char** argv) {
       ->capture_default_str();
 
   auto* config = app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
-  const auto of_judge = [config](CLI::Option* option) { return option->needs(config); };
-  of_judge(app.add_option("--scenes", judge.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
-  of_judge(app.add_option("--points", judge.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))->check(CLI::ExistingFile);
-  of_judge(
-      app.add_option("--captures", judge.captures, "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
-  of_judge(app.add_option("--seeds", judge.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
-  of_judge(app.add_option("--first-seed", judge.first_seed,
-                          "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
-  of_judge(app.add_flag("--tuning", judge.is_tuning, "methods on seeds of tuning; no file is written"));
-  of_judge(app.add_option("--seconds", judge.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
-  of_judge(app.add_option("--methods", judge.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
+  const auto needs_config = [config](CLI::Option* option) { return option->needs(config); };
+  needs_config(app.add_option("--scenes", comparison.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
+  needs_config(app.add_option("--points", comparison.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))
+      ->check(CLI::ExistingFile);
+  needs_config(app.add_option("--captures", comparison.captures,
+                              "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
+  needs_config(app.add_option("--seeds", comparison.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
+  needs_config(app.add_option("--first-seed", comparison.first_seed,
+                              "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
+  needs_config(app.add_flag("--tuning", comparison.is_tuning, "methods on seeds of tuning; no file is written"));
+  needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  needs_config(app.add_option("--methods", comparison.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
-  of_judge(app.add_option("--sweep", judge.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
-  of_judge(app.add_option("--test", judge.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
-  of_judge(app.add_option("--csv", csv_folder, "write each table as a CSV file to this folder"));
-  of_judge(app.add_option("--html", html_file, "write the report as one page"));
+  needs_config(app.add_option("--sweep", comparison.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
+  needs_config(app.add_option("--test", comparison.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
+  needs_config(app.add_option("--csv", csv_folder, "write each table as a CSV file to this folder"));
+  needs_config(app.add_option("--html", html_file, "write the report as one page"));
   auto* figures = app.add_option("--figures", figures_folder, "folder of the figures of README files: written with --config, read for --blocks");
   app.add_option("--blocks", block_files, "README files whose marked blocks are filled from --figures")->check(CLI::ExistingFile)->needs(figures);
-  of_judge(app.add_flag("--force", judge.is_forced, "replace files that are there"));
+  needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
     if (log.log_file.empty() && config_folder.empty() && block_files.empty())
       throw CLI::RequiredError("one of --in LOG, --config DIR, --blocks FILE");
     if (!config_folder.empty()) {
-      const bool has_turns = !judge.scenes.empty() || !judge.points.empty() || !judge.captures.empty();
-      if (!has_turns && judge.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
-      if (judge.scenes.empty() && !judge.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
-      if (!has_turns && !judge.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
-      if (judge.methods.empty() && ((judge.sweeps.empty() && judge.tests.empty()) || !judge.points.empty() || !judge.captures.empty()))
-        judge.methods = {"all"};
+      const bool has_turns = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
+      if (!has_turns && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
+      if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
+      if (!has_turns && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (comparison.methods.empty() &&
+          ((comparison.sweeps.empty() && comparison.tests.empty()) || !comparison.points.empty() || !comparison.captures.empty()))
+        comparison.methods = {"all"};
     }
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
-  judge.config_folder = config_folder;
-  judge.csv_folder = csv_folder;
-  judge.html_file = html_file;
-  judge.figures_folder = figures_folder;
-  judge.block_files.assign(block_files.begin(), block_files.end());
+  comparison.config_folder = config_folder;
+  comparison.csv_folder = csv_folder;
+  comparison.html_file = html_file;
+  comparison.figures_folder = figures_folder;
+  comparison.block_files.assign(block_files.begin(), block_files.end());
   return options;
 }
 
@@ -104,7 +106,7 @@ Options ParseOptions(int argc, char** argv) {
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
   if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
-  return options.judge.config_folder.empty() ? eval::FillBlocksOfFiles(options.judge) : eval::JudgeScenes(options.judge);
+  return options.comparison.config_folder.empty() ? eval::FillBlocksOfFiles(options.comparison) : eval::CompareMethods(options.comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;

@@ -1,4 +1,4 @@
-// What is judged: a way from a turn to a label for every return. Ours, the paper's and the peers' stand behind one interface.
+// A way from a scan to a label for every return. Ours, the paper's and the peers' stand behind one interface.
 #pragma once
 
 #include <chrono>
@@ -10,15 +10,21 @@
 #include <vector>
 
 #include "services/segmenter/core/scan.hpp"
+#include "tools/import/labelled_scan.hpp"
 
 namespace lookout::eval {
 
-/// Label of a return that the method was told not to look at, outside of its field of view: it is not judged by it.
-inline constexpr std::int32_t kNotJudged = -1;
+using importer::kNoTrueObject;
+using importer::kOwnVesselObject;
+using importer::LabelledScan;
+using importer::ScanObject;
 
-/// What a method says of one turn.
+/// Label of a return that the method was told not to look at, outside of its field of view: it does not count for its score.
+inline constexpr std::int32_t kNotScored = -1;
+
+/// What a method says of one scan.
 struct Labelling {
-  std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotJudged
+  std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotScored
   std::vector<bool> is_sure;        // [segments] by id - 1; false = the method itself takes the segment for tentative
   /// Components before they were clustered into segments; nullopt = the method has no such step.
   std::optional<std::int64_t> num_components = std::nullopt;
@@ -38,7 +44,7 @@ class Method {
   /// "paper W=512", "Euclidean 0.5 m (tuned)". In tables that of a method that knows doubt is followed by its operating point.
   virtual std::string name() const = 0;
 
-  /// It takes some of its segments for tentative: it is judged at two operating points, all segments and the sure ones alone.
+  /// It takes some of its segments for tentative: it is scored at two operating points, all segments and the sure ones alone.
   virtual bool knows_doubt() const { return false; }
 
   /// Pure but for its time: the same scan gives the same labels.

@@ -93,7 +93,7 @@ Labelling SegmenterMethod::Segment(const segmenter::Scan& scan) {
   Labelling labelling;
   labelling.label.resize(segments.label.size());
   std::ranges::transform(segments.label, labelling.label.begin(), [](std::int16_t label) -> std::int32_t {
-    if (label == ToLabel(Reason::kFieldOfView)) return kNotJudged;
+    if (label == ToLabel(Reason::kFieldOfView)) return kNotScored;
     return std::max<std::int32_t>(label, 0);
   });
   for (const auto& segment : segments.segments) labelling.is_sure.push_back(IsSure(segment));

@@ -84,7 +84,7 @@ double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling
   for (auto& id : truth.object) {
     if (id > 0 && id != object) id = kNoTrueObject;
   }
-  return MeanIou(ScoreTurn(truth, labelling));
+  return MeanIou(ScoreScan(truth, labelling));
 }
 
 // "4.00 m on (median over 18 seeds; in 2 more from no distance on)".
@@ -115,7 +115,7 @@ Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
   }
   add("ours", boat.segmenter);
   Progress progress(progress_out, plan.num_seeds);
-  ForEachTurn(plan, boat, progress, [&](const TurnPlace& place, const LabelledScan& truth) {
+  ForEachScan(plan, boat, progress, [&](const ScanPlace& place, const LabelledScan& truth) {
     const auto kayak = FindKayak(truth, boat.segmenter.filter);
     if (!kayak) return;
     for (auto& variant : variants) {
@@ -168,8 +168,8 @@ struct PartsAt {
 std::string ThresholdText(const ClusterTest& test, double value) { return test.name + " = " + Number(value, 1) + " " + test.unit; }
 
 // "from e3 = 3.0 m on", "up to e2 = 15.0 deg", "at no value", "at every value".
-std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_turns, const ClusterTest& test) {
-  const auto holds = [&](const PartsAt& at) { return at.*count == num_turns; };
+std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_scans, const ClusterTest& test) {
+  const auto holds = [&](const PartsAt& at) { return at.*count == num_scans; };
   if (std::ranges::all_of(parts, holds)) return "at every value";
   if (test.is_joined_above) {
     const auto last_cut = std::ranges::find_if_not(parts.rbegin(), parts.rend(), holds);
@@ -182,12 +182,12 @@ std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*cou
 Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, const Boat& boat, std::ostream* progress_out) {
   std::vector<PartsAt> parts;
   for (const double value : test.values) parts.push_back({value});
-  int num_turns = 0;
+  int num_scans = 0;
   Progress progress(progress_out, plan.num_seeds);
-  ForEachTurn(plan, boat, progress, [&](const TurnPlace&, const LabelledScan& truth) {
+  ForEachScan(plan, boat, progress, [&](const ScanPlace&, const LabelledScan& truth) {
     const auto object = TheObject(truth, test.kind);
     if (std::ranges::find(truth.object, object) == truth.object.end()) return;
-    ++num_turns;
+    ++num_scans;
     for (auto& at : parts) {
       auto params = PaperParams(boat.segmenter, kPaperFullColumns);
       test.set(params.clustering, at.value);
@@ -197,16 +197,16 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
       at.num_turns_one_large += of_turn.num_large == 1 ? 1 : 0;
     }
   });
-  if (num_turns == 0) return curve;
+  if (num_scans == 0) return curve;
   Curve::Line all{"all with a return of it", {}};
   Curve::Line large{"with a tenth of it or more", {}};
   for (const auto& at : parts) {
-    all.points.emplace_back(at.value, static_cast<double>(at.sum.num_segments) / num_turns);
-    large.points.emplace_back(at.value, static_cast<double>(at.sum.num_large) / num_turns);
+    all.points.emplace_back(at.value, static_cast<double>(at.sum.num_segments) / num_scans);
+    large.points.emplace_back(at.value, static_cast<double>(at.sum.num_large) / num_scans);
   }
   curve.lines = {std::move(all), std::move(large)};
-  const auto where = [&](int PartsAt::*count) { return WhereInAllTurns(parts, count, num_turns, test); };
-  curve.note += " Here, in all of " + std::to_string(num_turns) + " turns: one cluster " + where(&PartsAt::num_turns_in_one) +
+  const auto where = [&](int PartsAt::*count) { return WhereInAllTurns(parts, count, num_scans, test); };
+  curve.note += " Here, in all of " + std::to_string(num_scans) + " turns: one cluster " + where(&PartsAt::num_turns_in_one) +
                 "; one with a tenth of it or more " + where(&PartsAt::num_turns_one_large) + ".";
   const auto in_print = std::ranges::find(parts, test.value_in_print, &PartsAt::value);
   if (in_print != parts.end() && in_print->sum.num_returns > 0) {
@@ -247,7 +247,7 @@ ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labell
   std::map<std::int32_t, std::int64_t> returns_of;  // by label
   ObjectParts parts;
   for (std::size_t cell = 0; cell < truth.object.size(); ++cell) {
-    if (truth.object[cell] != object || truth.scan.columns.range[cell] == 0 || labelling.label[cell] == kNotJudged) continue;
+    if (truth.object[cell] != object || truth.scan.columns.range[cell] == 0 || labelling.label[cell] == kNotScored) continue;
     ++parts.num_returns;
     if (labelling.label[cell] > 0) ++returns_of[labelling.label[cell]];
   }

@@ -5,9 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "tools/eval/judge.hpp"
-#include "tools/eval/labelled_scan.hpp"
 #include "tools/eval/method.hpp"
+#include "tools/eval/method_comparison.hpp"
 #include "tools/eval/render.hpp"
 #include "tools/eval/results.hpp"
 
@@ -22,7 +21,7 @@ namespace lookout::eval {
 ///
 /// @param number   1, 2 or 3
 /// @param plan     seeds and, for Tests 2 and 3, seconds; its scenes are not looked at. Test 1 takes the 40 s that its kayak needs
-/// @throws config::ConfigError as ForEachTurn; std::runtime_error when the scene of a test does not hold one kayak, shore or motor boat
+/// @throws config::ConfigError as ForEachScan; std::runtime_error when the scene of a test does not hold one kayak, shore or motor boat
 Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::ostream* progress);
 
 /// Of Tests 2 and 3: into how much an object was cut.
@@ -30,7 +29,7 @@ struct ObjectParts {
   std::int64_t num_segments = 0;    // with a return of it
   std::int64_t num_large = 0;       // with a tenth of its returns or more (kLeastPartsOfObject)
   std::int64_t num_in_largest = 0;  // returns of it
-  std::int64_t num_returns = 0;     // of it that are judged
+  std::int64_t num_returns = 0;     // of it that are scored
 
   void Add(const ObjectParts& other);
 };

@@ -60,7 +60,7 @@ void ProjectionTable::AddTo(Sums& sums, int image_columns, const LabelledScan& t
   const NearestPoint nearest(returns);
   auto labelling = SegmenterMethod("", PaperParams(boat_, image_columns)).Segment(scan);
   std::vector<bool> is_kept(scan.num_cells(), false);
-  ++sums.num_turns;
+  ++sums.num_scans;
   sums.num_points += static_cast<std::int64_t>(returns.size());
   for (std::size_t i = 0; i < returns.size(); ++i) {
     if (!image.IsInImage(static_cast<std::int32_t>(i))) continue;
@@ -77,9 +77,9 @@ void ProjectionTable::AddTo(Sums& sums, int image_columns, const LabelledScan& t
     sums.squared_distance_m2 += distance_m * distance_m;
   }
   for (std::size_t cell = 0; cell < is_kept.size(); ++cell) {
-    if (!is_kept[cell]) labelling.label[cell] = kNotJudged;
+    if (!is_kept[cell]) labelling.label[cell] = kNotScored;
   }
-  const auto score = ScoreTurn(truth, labelling);
+  const auto score = ScoreScan(truth, labelling);
   sums.num_object_points += score.num_returns;
   sums.num_true_positives += score.num_labelled_returns;
 }
@@ -89,13 +89,13 @@ std::vector<Results::Projection> ProjectionTable::Rows() const {
   for (std::size_t i = 0; i < sums_.size(); ++i) {
     const Sums& sums = sums_[i];
     if (sums.num_kept == 0) continue;
-    const auto num_turns = static_cast<double>(sums.num_turns);
+    const auto num_scans = static_cast<double>(sums.num_scans);
     const auto num_kept = static_cast<double>(sums.num_kept);
     Results::Projection row;
     row.image_columns = kPaperColumns[i];
     row.true_positive_ratio = static_cast<double>(sums.num_true_positives) / static_cast<double>(sums.num_object_points);
-    row.num_ground_points = num_kept / num_turns;
-    row.num_points = static_cast<double>(sums.num_points) / num_turns;
+    row.num_ground_points = num_kept / num_scans;
+    row.num_points = static_cast<double>(sums.num_points) / num_scans;
     row.nearest_mean_m = sums.distance_m / num_kept;
     row.nearest_sd_m = std::sqrt(std::max(0.0, sums.squared_distance_m2 / num_kept - row.nearest_mean_m * row.nearest_mean_m));
     rows.push_back(row);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "services/segmenter/core/segmenter.hpp"
-#include "tools/eval/labelled_scan.hpp"
+#include "tools/eval/method.hpp"
 #include "tools/eval/results.hpp"
 
 namespace lookout::eval {
@@ -25,7 +25,7 @@ class ProjectionTable {
 
  private:
   struct Sums {
-    std::int64_t num_turns = 0;
+    std::int64_t num_scans = 0;
     std::int64_t num_points = 0;
     std::int64_t num_kept = 0;
     std::int64_t num_object_points = 0;  // of these that are kept

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <deque>
 #include <stdexcept>
-#include <variant>
 
 #include "common/bus/channels.hpp"
-#include "services/segmenter/core/turn_gatherer.hpp"
+#include "common/messages/checks.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/wire.hpp"
 #include "services/vlp16/core/decoder.hpp"
@@ -64,16 +63,16 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
 }
 
 segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets) {
-  segmenter::TurnGatherer gatherer;
-  for (const auto& message : vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
-    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
-    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::logic_error("the segmenter refuses a scan of the decoder");
-    if (auto scan = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)))) return std::move(*scan);
+  const auto parts = vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes);
+  for (const auto& part : parts) {
+    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::logic_error("the segmenter refuses a scan of the decoder");
   }
-  throw std::logic_error("a scan of the decoder is not complete");
+  auto scan = segmenter::ToScan(parts);
+  if (!scan) throw std::logic_error("a scan of the decoder is not complete");
+  return std::move(*scan);
 }
 
-void RenderTurns(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
+void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
   LabelledScan labelled;
   for (const auto& object : scene.objects) labelled.objects[object.id] = {object.name, object.kind, object.is_in_water};
 

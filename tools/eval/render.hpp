@@ -9,12 +9,12 @@
 #include "services/segmenter/core/segmenter.hpp"
 #include "services/vlp16/core/turn.hpp"
 #include "services/vlp16/params.hpp"
-#include "tools/eval/labelled_scan.hpp"
+#include "tools/eval/method.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::eval {
 
-/// The boat that is simulated and judged.
+/// The boat that is simulated and scored.
 struct Boat {
   std::filesystem::path config_folder;
   config::BoatFacts facts;
@@ -37,6 +37,6 @@ using ScanHandler = std::function<void(const LabelledScan&)>;
 /// @param seed     of the sensor
 /// @param seconds  of firing; the begun turns at both ends are left out
 /// Deterministic. Cost: that of the simulation. @throws std::logic_error when a packet was refused or truth and cells do not agree
-void RenderTurns(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan);
+void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan);
 
 }  // namespace lookout::eval

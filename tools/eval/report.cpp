@@ -65,7 +65,7 @@ void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_tr
     table.Add(cells);
   }
   table.Print(out);
-  out << evaluation.num_turns << " turns, " << evaluation.num_whole_turns << " of them whole; " << evaluation.num_obstacles << " obstacles";
+  out << evaluation.num_scans << " turns, " << evaluation.num_whole_scans << " of them whole; " << evaluation.num_obstacles << " obstacles";
   for (const auto& [status, count] : evaluation.num_by_status) out << ", " << count << ' ' << ShownCode(words::kObstacleStatus, status);
   out << "\n\n";
 }
@@ -155,8 +155,8 @@ void PrintMachine(std::ostream& out, const Machine& machine) {
   if (machine.last_clock) {
     const auto packets = machine.Packets();
     out << "lidar packets: " << packets.num_packets << ", lost " << packets.num_lost << ", duplicate " << packets.num_duplicate << ", reordered "
-        << packets.num_reordered << "; turns stamped by the sensor's clock " << machine.num_turns_by_sensor << ", by the host's "
-        << machine.num_turns_by_host << '\n';
+        << packets.num_reordered << "; turns stamped by the sensor's clock " << machine.num_scans_by_sensor << ", by the host's "
+        << machine.num_scans_by_host << '\n';
   }
   if (machine.processes.empty()) {
     out << "no HEALTH in the log: losses and times of processes are not known\n";

@@ -43,16 +43,16 @@ std::string WhatWasRun(const Results& results) {
     seeds = std::to_string(results.num_seeds) + " a scene (" + std::to_string(results.first_seed) + " to " + std::to_string(last) + "), " +
             Number(results.seconds, 1) + " s each";
   }
-  std::int64_t num_turns = 0;
+  std::int64_t num_scans = 0;
   for (const auto& method : results.methods) {
     std::int64_t count = 0;
-    for (const auto& [scene, score] : method.by_scene) count += score.num_turns;
-    num_turns = std::max(num_turns, count);
+    for (const auto& [scene, score] : method.by_scene) count += score.num_scans;
+    num_scans = std::max(num_scans, count);
   }
   return "<dl>\n" + Entry("command", results.command.empty() ? "-" : "<code>" + Escape(results.command) + "</code>") +
          Entry("version", or_dash(results.version)) + Entry("computer", or_dash(results.computer)) + Entry("scenes", or_dash(scenes)) +
          Entry("seeds", Escape(seeds)) + Entry("methods", Number(static_cast<std::int64_t>(results.methods.size()))) +
-         Entry("turns a method", Number(num_turns)) + SecondWorld(results) + "</dl>\n";
+         Entry("turns a method", Number(num_scans)) + SecondWorld(results) + "</dl>\n";
 }
 
 std::string Definitions() {

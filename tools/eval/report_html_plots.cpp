@@ -85,15 +85,15 @@ std::string FigureByRange(const Results& results, std::map<int, std::pair<std::i
     LineChart::Line line{method.method, {}, IsOurs(method)};
     LineChart::Line often = line;
     const auto total = Total(method, bins);
-    std::int64_t num_object_turns = 0;
-    for (const auto& [bin, entry] : total) num_object_turns += entry.first;
+    std::int64_t num_object_scans = 0;
+    for (const auto& [bin, entry] : total) num_object_scans += entry.first;
     for (const auto& [bin, entry] : total) {
       if (entry.first == 0) continue;
       const std::pair point((bin + 0.5) * Score::kRangeBinM, 100.0 * static_cast<double>(entry.second) / static_cast<double>(entry.first));
       line.points.push_back(point);
       // One object that happens to be far off would draw a peak.
       constexpr std::int64_t kLeastPartsOfAll = 100;
-      if (kLeastPartsOfAll * entry.first >= num_object_turns) often.points.push_back(point);
+      if (kLeastPartsOfAll * entry.first >= num_object_scans) often.points.push_back(point);
     }
     if (line.points.empty()) continue;
     if (IsOurs(method) || std::ranges::find(best, &method) != best.end()) chart.lines.push_back(std::move(often));
@@ -164,13 +164,13 @@ std::string Ablation(const Results& results) {
     const auto times = TimesOf(method);
     table.Add({{method.method},
                {Number(MeanOverScenes(results, method, IouPercent), 1)},
-               {Number(MeanOverScenes(results, method, ComponentsPerTurn), 1)},
-               {Number(MeanOverScenes(results, method, SegmentsPerTurn), 1)},
-               {Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2)},
+               {Number(MeanOverScenes(results, method, ComponentsPerScan), 1)},
+               {Number(MeanOverScenes(results, method, SegmentsPerScan), 1)},
+               {Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2)},
                {Number(times.median_ms, 2)},
                {Number(times.p99_ms, 2)}});
     chart.groups.push_back({method.method, {times.median_ms}});
-    components.groups.push_back({method.method, {MeanOverScenes(results, method, ComponentsPerTurn)}});
+    components.groups.push_back({method.method, {MeanOverScenes(results, method, ComponentsPerScan)}});
   }
   return table.Markup() + FigureOfBars(chart) + FigureOfBars(components) +
          "<p class=\"note\">In print: with breadth-first search 72 ms and 460 components, without 297 ms and 1604.</p>\n";
@@ -181,7 +181,7 @@ std::string Curves(const Results& results) {
   for (const auto& curve : results.curves) {
     LineChart chart{curve.title, curve.x_label, curve.y_label, {}, false};
     for (const auto& line : curve.lines) chart.lines.push_back({line.name, line.points, false});
-    markup += FigureOfLines(chart, curve.turns_from.empty() ? curve.note : "On " + curve.turns_from + ". " + curve.note, chart);
+    markup += FigureOfLines(chart, curve.scans_from.empty() ? curve.note : "On " + curve.scans_from + ". " + curve.note, chart);
   }
   return markup;
 }

@@ -15,7 +15,7 @@ double WaterIouPercent(const Score& score);
 
 /// A method's time per turn over all scenes, milliseconds.
 struct Times {
-  std::size_t num_turns = 0;
+  std::size_t num_scans = 0;
   double median_ms = 0.0;  // this and the others: NaN without turns
   double p99_ms = 0.0;     // nearest rank
   double mean_ms = 0.0;

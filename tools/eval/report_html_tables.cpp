@@ -153,7 +153,7 @@ std::string CutTable(const Results& results) {
     Score total;
     for (const auto& [scene, score] : method.by_scene) total.Add(score);
     table.Add({{method.method, IsOurs(method) ? "ours" : ""},
-               {Number(SegmentsPerTurn(total), 1)},
+               {Number(SegmentsPerScan(total), 1)},
                {Number(100.0 * OverSegmentedShare(total), 1)},
                {Number(100.0 * UnderSegmentedShare(total), 1)},
                {Number(100.0 * TruePositiveRatio(total), 1)}});
@@ -163,7 +163,7 @@ std::string CutTable(const Results& results) {
 
 // In two lines, so that all scenes fit beside each other.
 HtmlCell MedianAndP99(const Times& times) {
-  if (times.num_turns == 0) return {"-"};
+  if (times.num_scans == 0) return {"-"};
   return {Number(times.median_ms, 2) + "\n" + Number(times.p99_ms, 2), "two"};
 }
 
@@ -206,7 +206,7 @@ std::string Summary(const Results& results) {
   // Who finds nothing has no false segments and is fast.
   const auto is_of_use = [&](const MethodResult& method) { return mean_iou(method) >= overall[0].value / 2.0; };
   const auto false_segments = Rank(
-      results, [&](const MethodResult& method) { return is_of_use(method) ? MeanOverScenes(results, method, FalseSegmentsPerTurn) : kNoValue; }, 2);
+      results, [&](const MethodResult& method) { return is_of_use(method) ? MeanOverScenes(results, method, FalseSegmentsPerScan) : kNoValue; }, 2);
   const auto times = Rank(
       results, [&](const MethodResult& method) { return is_of_use(method) ? TimesOf(method).median_ms : kNoValue; }, 2);
   if (!false_segments.empty() || !times.empty()) text += " Of the methods with half of that or more:";
@@ -303,7 +303,7 @@ std::string NearRecall(const Results& results) {
           continue;
         }
         const auto& recall = found->second;
-        const double percent = 100.0 * Ratio(static_cast<double>(recall.num_found), static_cast<double>(recall.num_object_turns));
+        const double percent = 100.0 * Ratio(static_cast<double>(recall.num_found), static_cast<double>(recall.num_object_scans));
         row.push_back({Number(percent, 0), ShadeOf(percent)});
       }
       table.Add(std::move(row));
@@ -346,7 +346,7 @@ std::string WaterAndKinds(const Results& results) {
 
 std::string SegmentCounts(const Results& results) {
   if (results.methods.empty()) return "";
-  std::string markup = SceneTable(results, "False segments a turn", FalseSegmentsPerTurn, 2, false).Markup();
+  std::string markup = SceneTable(results, "False segments a turn", FalseSegmentsPerScan, 2, false).Markup();
   for (const auto* world : WorldsOf(results)) markup += CutTable(*world);
   return markup;
 }

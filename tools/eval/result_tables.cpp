@@ -77,9 +77,9 @@ Table Overall(const Results& results) {
     std::vector<std::string> row{method.method,
                                  Percent(MeanOverScenes(results, method, MeanIou)),
                                  Percent(MeanOverScenes(results, method, MeanWaterIou)),
-                                 Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2),
+                                 Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2),
                                  Percent(MeanOverScenes(results, method, ThingsWithSegment)),
-                                 Number(MeanOverScenes(results, method, SegmentsPerTurn), 2),
+                                 Number(MeanOverScenes(results, method, SegmentsPerScan), 2),
                                  Percent(OverSegmentedShare(total)),
                                  Percent(UnderSegmentedShare(total)),
                                  Percent(TruePositiveRatio(total))};
@@ -95,10 +95,10 @@ Table Ablation(const Results& results) {
   Table table({"method", "mIoU_%", "components", "segments", "false", "median_ms", "p99_ms"});
   for (const auto& method : results.methods) {
     const Score total = Total(method);
-    if (total.num_turns_with_components == 0) continue;
+    if (total.num_scans_with_components == 0) continue;
     const auto times = TimeCells(total.time_ms);
-    table.Add({method.method, Percent(MeanOverScenes(results, method, MeanIou)), Number(MeanOverScenes(results, method, ComponentsPerTurn), 1),
-               Number(MeanOverScenes(results, method, SegmentsPerTurn), 2), Number(MeanOverScenes(results, method, FalseSegmentsPerTurn), 2),
+    table.Add({method.method, Percent(MeanOverScenes(results, method, MeanIou)), Number(MeanOverScenes(results, method, ComponentsPerScan), 1),
+               Number(MeanOverScenes(results, method, SegmentsPerScan), 2), Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2),
                times[0], times[1]});
   }
   return table;
@@ -127,8 +127,8 @@ Table NearRecall(const Results& results) {
       const auto found = method.by_scene.find(scene);
       if (found == method.by_scene.end()) continue;
       for (const auto& [kind, recall] : found->second.near_recall_by_kind) {
-        table.Add({method.method, scene, kind, Number(recall.num_object_turns),
-                   Percent(Ratio(static_cast<double>(recall.num_found), recall.num_object_turns))});
+        table.Add({method.method, scene, kind, Number(recall.num_object_scans),
+                   Percent(Ratio(static_cast<double>(recall.num_found), recall.num_object_scans))});
       }
     }
   }
@@ -189,7 +189,7 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   };
   add("table_1", "Table I: mIoU, %", ByScene(results, MeanIou, Percent));
   add("water", "mIoU over objects in the water alone, %", ByScene(results, MeanWaterIou, Percent));
-  add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerTurn, [](double value) { return Number(value, 2); }));
+  add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerScan, [](double value) { return Number(value, 2); }));
   add("with_segment", "things of 5 returns or more that have a segment: more than half of some segment is theirs, %",
       ByScene(results, ThingsWithSegment, Percent));
   add("overall", "all scenes (mIoU, water, false, things with a segment, segments: mean over scenes; over, under, TPR, times: over all turns)",

@@ -21,54 +21,54 @@ void AddTo(std::map<Key, std::pair<std::int64_t, Sum>>& sums, const std::map<Key
 }  // namespace
 
 void Score::Add(const Score& other) {
-  num_turns += other.num_turns;
-  num_turns_with_object += other.num_turns_with_object;
+  num_scans += other.num_scans;
+  num_scans_with_object += other.num_scans_with_object;
   sum_iou += other.sum_iou;
-  num_turns_with_water_object += other.num_turns_with_water_object;
+  num_scans_with_water_object += other.num_scans_with_water_object;
   sum_water_iou += other.sum_water_iou;
   AddTo(iou_by_kind, other.iou_by_kind);
   AddTo(recall_by_range, other.recall_by_range);
   for (const auto& [kind, more] : other.near_recall_by_kind) {
     auto& recall = near_recall_by_kind[kind];
-    recall.num_object_turns += more.num_object_turns;
+    recall.num_object_scans += more.num_object_scans;
     recall.num_found += more.num_found;
   }
   AddTo(iou_by_range, other.iou_by_range);
   num_segments += other.num_segments;
   num_false_segments += other.num_false_segments;
-  num_object_turns += other.num_object_turns;
+  num_object_scans += other.num_object_scans;
   num_things += other.num_things;
   num_things_with_segment += other.num_things_with_segment;
   num_over_segmented += other.num_over_segmented;
   num_under_segmented += other.num_under_segmented;
   num_returns += other.num_returns;
   num_labelled_returns += other.num_labelled_returns;
-  num_not_judged += other.num_not_judged;
-  num_turns_with_components += other.num_turns_with_components;
+  num_not_scored += other.num_not_scored;
+  num_scans_with_components += other.num_scans_with_components;
   num_components += other.num_components;
   time_ms.insert(time_ms.end(), other.time_ms.begin(), other.time_ms.end());
 }
 
-double MeanIou(const Score& score) { return Ratio(score.sum_iou, score.num_turns_with_object); }
+double MeanIou(const Score& score) { return Ratio(score.sum_iou, score.num_scans_with_object); }
 
-double MeanWaterIou(const Score& score) { return Ratio(score.sum_water_iou, score.num_turns_with_water_object); }
+double MeanWaterIou(const Score& score) { return Ratio(score.sum_water_iou, score.num_scans_with_water_object); }
 
-double FalseSegmentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_false_segments), score.num_turns); }
+double FalseSegmentsPerScan(const Score& score) { return Ratio(static_cast<double>(score.num_false_segments), score.num_scans); }
 
 double ThingsWithSegment(const Score& score) { return Ratio(static_cast<double>(score.num_things_with_segment), score.num_things); }
 
-double SegmentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_segments), score.num_turns); }
+double SegmentsPerScan(const Score& score) { return Ratio(static_cast<double>(score.num_segments), score.num_scans); }
 
-double OverSegmentedShare(const Score& score) { return Ratio(static_cast<double>(score.num_over_segmented), score.num_object_turns); }
+double OverSegmentedShare(const Score& score) { return Ratio(static_cast<double>(score.num_over_segmented), score.num_object_scans); }
 
 double UnderSegmentedShare(const Score& score) { return Ratio(static_cast<double>(score.num_under_segmented), score.num_segments); }
 
 double TruePositiveRatio(const Score& score) { return Ratio(static_cast<double>(score.num_labelled_returns), score.num_returns); }
 
-double ComponentsPerTurn(const Score& score) { return Ratio(static_cast<double>(score.num_components), score.num_turns_with_components); }
+double ComponentsPerScan(const Score& score) { return Ratio(static_cast<double>(score.num_components), score.num_scans_with_components); }
 
 bool HasPartialView(const MethodResult& method) {
-  return std::ranges::any_of(method.by_scene, [](const auto& entry) { return entry.second.num_not_judged > 0; });
+  return std::ranges::any_of(method.by_scene, [](const auto& entry) { return entry.second.num_not_scored > 0; });
 }
 
 double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure) {

@@ -1,4 +1,4 @@
-// What the judge found: the numbers behind every table and plot of the report.
+// What a comparison of methods found: the numbers behind every table and plot of the report.
 #pragma once
 
 #include <array>
@@ -10,17 +10,17 @@
 #include <utility>
 #include <vector>
 
-#include "tools/eval/labelled_scan.hpp"
+#include "tools/eval/method.hpp"
 
 namespace lookout::eval {
 
 /// Sums over turns of one method at one operating point: which of its segments count. Nothing in here is of another. Figures are made of them by the
 /// functions below. All are additive: turns of one scene, scenes of one run.
 struct Score {
-  std::int64_t num_turns = 0;
-  std::int64_t num_turns_with_object = 0;  // with a return of an object; over open water there is none
+  std::int64_t num_scans = 0;
+  std::int64_t num_scans_with_object = 0;  // with a return of an object; over open water there is none
   double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
-  std::int64_t num_turns_with_water_object = 0;
+  std::int64_t num_scans_with_water_object = 0;
   double sum_water_iou = 0.0;                                          // the same over objects in the water alone
   std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-turns, sum of IoU
   static constexpr double kRangeBinM = 10.0;
@@ -30,13 +30,13 @@ struct Score {
   /// (2 degrees), so that a buoy of half a metre gives one to three returns.
   static constexpr double kNearM = 25.0;
   struct Recall {
-    std::int64_t num_object_turns = 0;
+    std::int64_t num_object_scans = 0;
     std::int64_t num_found = 0;  // IoU >= 0.5
   };
   std::map<std::string, Recall> near_recall_by_kind;
   std::int64_t num_segments = 0;
   std::int64_t num_false_segments = 0;  // without a return of any object
-  std::int64_t num_object_turns = 0;
+  std::int64_t num_object_scans = 0;
   /// Objects with at least so many returns in a scan: fewer may be an accident.
   static constexpr std::int64_t kMinReturnsOfThing = 5;
   std::int64_t num_things = 0;                 // object-turns with kMinReturnsOfThing or more
@@ -45,8 +45,8 @@ struct Score {
   std::int64_t num_under_segmented = 0;        // segments that hold a tenth each of two or more objects
   std::int64_t num_returns = 0;                // of objects
   std::int64_t num_labelled_returns = 0;       // of these, in a segment that belongs (by majority) to their object: the paper's true positives
-  std::int64_t num_not_judged = 0;             // returns that the method was told not to look at
-  std::int64_t num_turns_with_components = 0;  // of methods that say how many components they had before they clustered them
+  std::int64_t num_not_scored = 0;             // returns that the method was told not to look at
+  std::int64_t num_scans_with_components = 0;  // of methods that say how many components they had before they clustered them
   std::int64_t num_components = 0;             // of these turns
   std::vector<double> time_ms;                 // of each turn
 
@@ -57,19 +57,19 @@ struct Score {
 double MeanIou(const Score& score);
 double MeanWaterIou(const Score& score);
 
-double FalseSegmentsPerTurn(const Score& score);  // NaN without turns, and so below
+double FalseSegmentsPerScan(const Score& score);  // NaN without turns, and so below
 double ThingsWithSegment(const Score& score);     // share of the object-turns with kMinReturnsOfThing or more
-double SegmentsPerTurn(const Score& score);
+double SegmentsPerScan(const Score& score);
 double OverSegmentedShare(const Score& score);   // of object-turns
 double UnderSegmentedShare(const Score& score);  // of segments
 double TruePositiveRatio(const Score& score);    // of returns of objects
-double ComponentsPerTurn(const Score& score);    // before clustering; NaN for a method that has none
+double ComponentsPerScan(const Score& score);    // before clustering; NaN for a method that has none
 
 /// One turn, kept because it went worst: drawn from above with truth and prediction side by side.
-struct WorstTurn {
+struct WorstScan {
   std::string scene;
   std::uint64_t seed = 0;
-  int turn = 0;
+  int index = 0;
   double iou = 0.0;
   LabelledScan truth;
   std::vector<std::int32_t> label;
@@ -86,7 +86,7 @@ struct MethodResult {
   std::string method;
   std::map<std::string, Score> by_scene;
   std::map<std::string, std::vector<double>> stage_ms;  // by stage, of each turn
-  std::vector<WorstTurn> worst;                         // of the whole run, worst first; few
+  std::vector<WorstScan> worst;                         // of the whole run, worst first; few
 };
 
 /// A peer's name begins with neither "ours" nor "paper"; a tuned one's holds "(tuned".
@@ -114,7 +114,7 @@ struct Curve {
   std::vector<Line> lines;
   std::string note;                // a finding in words: "own object from 6.3 m"
   std::string value_of_boat = {};  // of a sweep: what the boat's config has of its field
-  std::string turns_from = {};     // of a sweep: seeds and seconds
+  std::string scans_from = {};     // of a sweep: seeds and seconds
 };
 
 struct Results {

@@ -38,11 +38,11 @@ struct Matches {
 
 Matches Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
   const auto& range = truth.scan.columns.range;
-  if (label.size() != range.size() || truth.object.size() != range.size()) throw std::logic_error("ScoreTurn: labels and cells do not agree");
+  if (label.size() != range.size() || truth.object.size() != range.size()) throw std::logic_error("ScoreScan: labels and cells do not agree");
   std::map<std::int32_t, ObjectTurn> by_id;
   std::int32_t max_label = 0;
   for (std::size_t cell = 0; cell < range.size(); ++cell) {
-    if (range[cell] == 0 || label[cell] == kNotJudged) continue;
+    if (range[cell] == 0 || label[cell] == kNotScored) continue;
     max_label = std::max(max_label, label[cell]);
     if (truth.object[cell] <= 0) continue;
     auto& object = by_id[truth.object[cell]];
@@ -121,11 +121,11 @@ Labelling SureOnly(Labelling labelling) {
   return labelling;
 }
 
-Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
+Score ScoreScan(const LabelledScan& truth, const Labelling& labelling) {
   Matches turn = Count(truth, labelling.label);
   Compare(turn);
   Score score;
-  score.num_turns = 1;
+  score.num_scans = 1;
   std::int64_t num_water = 0;
   for (const auto& object : turn.objects) {
     const auto& about = truth.objects.at(object.id);
@@ -141,7 +141,7 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
     AddTo(score.iou_by_range[bin], object.iou);
     if (object.nearest_m < Score::kNearM) {
       auto& recall = score.near_recall_by_kind[about.kind];
-      ++recall.num_object_turns;
+      ++recall.num_object_scans;
       recall.num_found += is_found ? 1 : 0;
     }
     if (object.num_returns >= Score::kMinReturnsOfThing) {
@@ -151,13 +151,13 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
     score.num_over_segmented += object.num_parts >= 2 ? 1 : 0;
     score.num_returns += object.num_returns;
   }
-  score.num_object_turns = static_cast<std::int64_t>(turn.objects.size());
+  score.num_object_scans = static_cast<std::int64_t>(turn.objects.size());
   if (!turn.objects.empty()) {
-    score.num_turns_with_object = 1;
+    score.num_scans_with_object = 1;
     score.sum_iou /= static_cast<double>(turn.objects.size());
   }
   if (num_water > 0) {
-    score.num_turns_with_water_object = 1;
+    score.num_scans_with_water_object = 1;
     score.sum_water_iou /= static_cast<double>(num_water);
   }
   for (const auto& segment : turn.segments) {
@@ -167,11 +167,11 @@ Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling) {
     score.num_false_segments += segment.num_of_objects == 0 ? 1 : 0;
   }
   for (std::size_t cell = 0; cell < labelling.label.size(); ++cell) {
-    score.num_not_judged += truth.scan.columns.range[cell] != 0 && labelling.label[cell] == kNotJudged ? 1 : 0;
+    score.num_not_scored += truth.scan.columns.range[cell] != 0 && labelling.label[cell] == kNotScored ? 1 : 0;
   }
   score.num_labelled_returns = NumTruePositives(turn);
   if (labelling.num_components) {
-    score.num_turns_with_components = 1;
+    score.num_scans_with_components = 1;
     score.num_components = *labelling.num_components;
   }
   return score;

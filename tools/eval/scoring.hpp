@@ -1,7 +1,6 @@
-// The judge: one turn's labels against the truth.
+// Scores: one scan's labels against the truth.
 #pragma once
 
-#include "tools/eval/labelled_scan.hpp"
 #include "tools/eval/method.hpp"
 #include "tools/eval/results.hpp"
 
@@ -18,7 +17,7 @@ Labelling SureOnly(Labelling labelling);
 
 /// Score of a single turn at one operating point, without times: every segment of the labelling counts.
 ///
-/// Judged are the cells with a return whose label is not kNotJudged. Let p_ij be the returns of true object i in segment j, n_i all of the object,
+/// Scored are the cells with a return whose label is not kNotScored. Let p_ij be the returns of true object i in segment j, n_i all of the object,
 /// m_j all of the segment. Returns of the own vessel and of no object are no object; in a segment they count in m_j.
 /// - IoU of object i: the greatest p_ij / (n_i + m_j - p_ij) over the segments, 0 when none holds any of it. mIoU of the turn: the mean over the k
 ///   objects with a return (the paper's equation). A turn without objects has none. The same over objects in the water alone.
@@ -33,6 +32,6 @@ Labelling SureOnly(Labelling labelling);
 ///
 /// Precondition: labelling.label is as long as the scan has cells; is_sure is not looked at.
 /// Ids of segments are names only: numbered otherwise, or with gaps, the score is the same. Cost: n log n in the returns.
-Score ScoreTurn(const LabelledScan& truth, const Labelling& labelling);
+Score ScoreScan(const LabelledScan& truth, const Labelling& labelling);
 
 }  // namespace lookout::eval

@@ -1,4 +1,4 @@
-// Which seeds of the simulator may choose values, and which may judge them. A figure on seeds that chose the method flatters it.
+// Which seeds of the simulator may choose values, and which may make tables. A figure on seeds that chose the method flatters it.
 #pragma once
 
 #include <cstdint>

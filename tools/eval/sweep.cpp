@@ -124,19 +124,19 @@ Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::o
   for (const double value : sweep.values) {
     methods.push_back(std::make_unique<SegmenterMethod>(ValueText(value), ParamsWith(boat, sweep.field, value)));
   }
-  Judge judge(methods);
+  MethodComparison comparison(methods);
   Progress progress(progress_out, static_cast<std::int64_t>(plan.scenes.size()) * plan.num_seeds);
-  ForEachTurn(plan, boat, progress, [&judge](const TurnPlace& place, const LabelledScan& truth) { judge.Add(place, truth); });
+  ForEachScan(plan, boat, progress, [&comparison](const ScanPlace& place, const LabelledScan& truth) { comparison.Add(place, truth); });
 
   // The curve is of all segments; results are in the order of the values, with the sure ones of a method that knows doubt between them.
   std::vector<const MethodResult*> all_segments;
-  for (const auto& result : judge.results()) {
+  for (const auto& result : comparison.results()) {
     if (!result.method.ends_with(kSureOnly)) all_segments.push_back(&result);
   }
 
   Curve curve{"Sweep of " + sweep.field, sweep.field, "mIoU of all segments, %", {}, ""};
   curve.value_of_boat = ValueText(ValueOfBoat(boat, sweep.field));
-  curve.turns_from = "seeds " + std::to_string(plan.first_seed) + " to " +
+  curve.scans_from = "seeds " + std::to_string(plan.first_seed) + " to " +
                      std::to_string(plan.first_seed + static_cast<std::uint64_t>(plan.num_seeds) - 1) + ", " + ValueText(plan.seconds) + " s each";
   double best_percent = -1.0;
   std::string best;
@@ -145,7 +145,7 @@ Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::o
     for (std::size_t i = 0; i < sweep.values.size(); ++i) {
       const auto& by_scene = all_segments[i]->by_scene;
       const auto found = by_scene.find(line.name);
-      if (found != by_scene.end() && found->second.num_turns_with_object > 0) {
+      if (found != by_scene.end() && found->second.num_scans_with_object > 0) {
         line.points.emplace_back(sweep.values[i], 100.0 * MeanIou(found->second));
       }
     }

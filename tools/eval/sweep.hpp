@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/eval/judge.hpp"
+#include "tools/eval/method_comparison.hpp"
 #include "tools/eval/render.hpp"
 #include "tools/eval/results.hpp"
 

@@ -1,31 +1,40 @@
 #include "tools/replay/chain.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
-#include "services/georeferencer/params.hpp"
-#include "services/navigator/params.hpp"
-#include "services/segmenter/params.hpp"
-#include "services/vlp16/params.hpp"
-#include "services/vlp16/sources.hpp"
 
 namespace lookout::replay {
 
+// The chain's bus as one service has it, so that traffic and times are counted for each service by itself.
+class StageBus final : public bus::Bus {
+ public:
+  explicit StageBus(bus::MemoryBus& bus) : bus_(bus) {}
+
+  bool HandleOnce(std::chrono::milliseconds timeout) override { return bus_.HandleOnce(timeout); }
+  int QueueDepth(std::string_view channel) const override { return bus_.QueueDepth(channel); }
+
+ protected:
+  bool Send(const bus::Channel& channel, Bytes bytes) override {
+    bus_.Publish(channel, bytes);
+    return true;
+  }
+  bool SendOwned(const bus::Channel& channel, std::vector<std::uint8_t>&& bytes) override {
+    bus_.Publish(channel, std::move(bytes));
+    return true;
+  }
+  void Attach(const bus::Channel* channel, RawHandler handler) override {
+    if (channel == nullptr) return bus_.SubscribeAll(std::move(handler));
+    bus_.SubscribeRaw(*channel, std::move(handler));
+  }
+
+ private:
+  bus::MemoryBus& bus_;
+};
+
 namespace {
-
-vlp16::Params LidarParams(const std::filesystem::path& config_folder, vlp16::Input input) {
-  auto params = vlp16::LoadParams(config_folder);
-  vlp16::WriteAllowedAlike(params.sources);
-  params.input = input;
-  return params;
-}
-
-navigator::Params NavigationParams(const std::filesystem::path& config_folder, navigator::Input input) {
-  auto params = navigator::LoadParams(config_folder);
-  params.input = input;
-  return params;
-}
 
 // Adds the time that `call` takes to `total`: for the table of stages only.
 template <typename Call>
@@ -37,25 +46,32 @@ void Timed(std::chrono::nanoseconds& total, Call call) {
 
 }  // namespace
 
+// They subscribe as they are made; the sink subscribes last, so that it sees a message after the services did.
+struct Chain::Running {
+  Running(bus::MemoryBus& memory_bus, const std::filesystem::path& config_folder, bool reads_raw, const StageFactory& factory)
+      : service(factory.service), bus(memory_bus), stage(factory.make(bus, config_folder, reads_raw)) {}
+
+  std::string service;
+  StageBus bus;
+  std::unique_ptr<Stage> stage;
+  std::chrono::nanoseconds time{0};  // without that of its handlers, which the bus measures
+};
+
 void CheckConfig(const std::filesystem::path& config_folder) {
   config::FaultList faults;
   faults.Try([&] { runtime::EffectiveConfig(config_folder); });
-  faults.Try([&] { vlp16::LoadParams(config_folder); });
-  faults.Try([&] { segmenter::LoadParams(config_folder); });
-  faults.Try([&] { navigator::LoadParams(config_folder); });
-  faults.Try([&] { georeferencer::LoadParams(config_folder); });
+  for (const auto& factory : StageFactories()) faults.Try([&] { factory.check_config(config_folder); });
   faults.ThrowIfAny();
 }
 
-Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink)
-    : sink_(std::move(sink)),
-      read_(plan.read),
-      is_navigation_live_(plan.navigation == navigator::Input::kOutside),
-      ports_(LidarParams(config_folder, plan.lidar), NavigationParams(config_folder, plan.navigation)) {
-  if (plan.runs_vlp16) vlp16_.emplace(bus_, LidarParams(config_folder, plan.lidar));
-  if (plan.runs_segmenter) segmenter_.emplace(bus_, segmenter::LoadParams(config_folder));
-  if (plan.runs_navigator) navigator_.emplace(bus_, NavigationParams(config_folder, plan.navigation));
-  if (plan.runs_georeferencer) georeferencer_.emplace(bus_, georeferencer::LoadParams(config_folder));
+Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink sink, const std::vector<StageFactory>& factories)
+    : sink_(std::move(sink)), read_(plan.read) {
+  for (const auto& service : plan.services) {
+    const auto& factory = *std::ranges::find(factories, service, &StageFactory::service);
+    const bool reads_raw = std::ranges::any_of(
+        bus::kChannels, [&](const bus::Channel& channel) { return channel.is_raw && channel.publisher == service && plan.Reads(channel.name); });
+    running_.push_back(std::make_unique<Running>(bus_, config_folder, reads_raw, factory));
+  }
   bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
     auto digest = digests_.find(channel);
     if (digest == digests_.end()) digest = digests_.try_emplace(std::string(channel)).first;
@@ -65,44 +81,32 @@ Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink 
   });
 }
 
-Chain::Ports::Ports(const vlp16::Params& lidar, const navigator::Params& navigation)
-    : lidar_data(lidar.data_port), lidar_position(lidar.position_port), nmea(navigation.source_of_port) {}
+Chain::~Chain() = default;
+
+template <typename Call>
+void Chain::ForEachStage(const Call& call) {
+  for (const auto& running : running_) {
+    Timed(running->time, [&] { call(*running->stage); });
+    Drain();
+  }
+}
 
 void Chain::AdvanceTo(Utime time) {
   if (!first_time_) first_time_ = time;
   time_ = time;
-  if (vlp16_) {
-    Timed(vlp16_time_, [&] { vlp16_->AdvanceTo(time); });
-    Drain();
-  }
-  if (navigator_ && is_navigation_live_) {
-    Timed(navigator_time_, [&] { navigator_->AdvanceTo(time); });
-    Drain();
-  }
+  ForEachStage([time](Stage& stage) { stage.AdvanceTo(time); });
 }
 
-void Chain::OnDatagram(Utime host_time, int udp_port, Bytes payload, const vlp16::Sender& sender) {
-  AdvanceTo(host_time);
-  const auto source = ports_.nmea.find(udp_port);
-  if (vlp16_ && (udp_port == ports_.lidar_data || udp_port == ports_.lidar_position)) {
-    num_data_datagrams_ += udp_port == ports_.lidar_data ? 1 : 0;
-    Timed(vlp16_time_, [&] { vlp16_->OnDatagram(host_time, udp_port, payload, sender); });
-  } else if (navigator_ && source != ports_.nmea.end()) {
-    ++num_nmea_datagrams_;
-    Timed(navigator_time_, [&] { navigator_->OnDatagram(host_time, payload, source->second); });
-  } else {
-    ++num_other_ports_;
-  }
-  Drain();
+void Chain::OnDatagram(const Datagram& datagram) {
+  AdvanceTo(datagram.host_time);
+  bool is_taken = false;
+  ForEachStage([&](Stage& stage) { is_taken = is_taken || stage.OnDatagram(datagram); });
+  num_other_ports_ += is_taken ? 0 : 1;
 }
 
 void Chain::OnTextLine(Utime time, Bytes line) {
   AdvanceTo(time);
-  if (navigator_) {
-    ++num_nmea_datagrams_;
-    Timed(navigator_time_, [&] { navigator_->OnDatagram(time, line); });
-  }
-  Drain();
+  ForEachStage([&](Stage& stage) { stage.OnTextLine(time, line); });
 }
 
 void Chain::OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes) {
@@ -113,31 +117,14 @@ void Chain::OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes) {
 
 void Chain::Finish() {
   if (!time_) return;  // nothing came: nothing waits
-  if (vlp16_) {
-    Timed(vlp16_time_, [&] { vlp16_->Finish(*time_); });
-    Drain();
-  }
-  if (navigator_) {
-    Timed(navigator_time_, [&] { navigator_->Finish(*time_); });
-    Drain();
-  }
-  if (georeferencer_) georeferencer_->Finish();
-  Drain();
+  ForEachStage([this](Stage& stage) { stage.Finish(*time_); });
 }
 
 std::int64_t Chain::FinishLogs(bool is_whole) {
-  if (!time_) return 0;
-  if (navigator_ && is_navigation_live_ && is_whole) {  // out of LIDAR_NMEA: it sets its own end mark
-    Timed(navigator_time_, [&] { navigator_->Finish(*time_); });
-    Drain();
-  }
-  if (!georeferencer_) return 0;
-  const auto pose = bus_.input_traffic().find(bus::kPose.name);
-  const bool has_pose = pose != bus_.input_traffic().end() && pose->second.num_messages > 0;
-  if (!is_whole && has_pose) return georeferencer_->num_waiting();
-  georeferencer_->Finish();
-  Drain();
-  return 0;
+  std::int64_t num_left_out = 0;
+  if (!time_) return num_left_out;
+  ForEachStage([&](Stage& stage) { num_left_out += stage.FinishLogs(*time_, is_whole); });
+  return num_left_out;
 }
 
 void Chain::Drain() {
@@ -145,45 +132,52 @@ void Chain::Drain() {
   }
 }
 
-std::vector<Chain::StageTime> Chain::StageTimes() const {
-  const auto handling = [this](const bus::Channel& channel) {
-    const auto traffic = bus_.input_traffic().find(channel.name);
-    return traffic == bus_.input_traffic().end() ? std::chrono::nanoseconds(0) : traffic->second.total_handling_time;
-  };
-  std::vector<StageTime> times;
-  if (vlp16_) times.push_back({"vlp16", ToSeconds(vlp16_time_ + handling(bus::kLidarPackets))});
-  if (segmenter_) times.push_back({"segmenter", ToSeconds(handling(bus::kLidarScan))});
-  if (navigator_) times.push_back({"navigator", ToSeconds(navigator_time_ + handling(bus::kNavRaw) + handling(bus::kLidarNmea))});
-  if (georeferencer_) times.push_back({"georeferencer", ToSeconds(handling(bus::kSegments) + handling(bus::kPose))});
+std::vector<std::pair<std::string, double>> Chain::StageTimes() const {
+  std::vector<std::pair<std::string, double>> times;
+  for (const auto& running : running_) {
+    auto time = running->time;
+    for (const auto& [channel, traffic] : running->bus.input_traffic()) time += traffic.total_handling_time;
+    times.emplace_back(running->service, ToSeconds(time));
+  }
   return times;
 }
 
 std::vector<std::pair<std::string, std::int64_t>> Chain::Counters() const {
   std::vector<std::pair<std::string, std::int64_t>> counters;
-  const auto add = [&counters](const std::string& service, const HealthReport& report) {
-    for (const auto& counter : report.counters) {
-      if (counter.count != 0) counters.emplace_back(service + "." + std::string(counter.name), counter.count);
+  std::map<std::string, std::int64_t> of_channels;  // of several readers of a channel each has lost the same
+  for (const auto& running : running_) {
+    for (const auto& counter : running->stage->Report().counters) {
+      if (counter.count != 0) counters.emplace_back(running->service + "." + std::string(counter.name), counter.count);
     }
-  };
-  if (vlp16_) add("vlp16", vlp16_->Report());
-  if (segmenter_) add("segmenter", segmenter_->Report());
-  if (navigator_) add("navigator", navigator_->Report());
-  if (georeferencer_) add("georeferencer", georeferencer_->Report());
-  for (const auto& [channel, traffic] : bus_.input_traffic()) {
-    if (traffic.num_undecodable != 0) counters.emplace_back(channel + ".undecodable", traffic.num_undecodable);
-    if (traffic.num_lost != 0) counters.emplace_back(channel + ".lost", traffic.num_lost);
+    for (const auto& [channel, traffic] : running->bus.input_traffic()) {
+      auto& num_undecodable = of_channels[channel + ".undecodable"];
+      num_undecodable = std::max(num_undecodable, traffic.num_undecodable);
+      auto& num_lost = of_channels[channel + ".lost"];
+      num_lost = std::max(num_lost, traffic.num_lost);
+    }
   }
+  std::erase_if(of_channels, [](const auto& counter) { return counter.second == 0; });
+  counters.insert(counters.end(), of_channels.begin(), of_channels.end());
   if (num_other_ports_ != 0) counters.emplace_back("input.other_port", num_other_ports_);
   return counters;
 }
 
 std::vector<std::pair<std::string, std::int64_t>> Chain::Gaps() const {
   std::vector<std::pair<std::string, std::int64_t>> gaps;
-  for (const auto channel : read_) {
-    const auto traffic = bus_.input_traffic().find(channel);
-    if (traffic != bus_.input_traffic().end() && traffic->second.num_lost > 0) gaps.emplace_back(channel, traffic->second.num_lost);
+  for (const auto& channel : read_) {
+    std::int64_t num_lost = 0;
+    for (const auto& running : running_) {
+      const auto traffic = running->bus.input_traffic().find(channel);
+      if (traffic != running->bus.input_traffic().end()) num_lost = std::max(num_lost, traffic->second.num_lost);
+    }
+    if (num_lost > 0) gaps.emplace_back(channel, num_lost);
   }
   return gaps;
+}
+
+const Stage* Chain::Find(std::string_view service) const {
+  const auto found = std::ranges::find_if(running_, [service](const auto& running) { return running->service == service; });
+  return found == running_.end() ? nullptr : (*found)->stage.get();
 }
 
 }  // namespace lookout::replay

@@ -105,7 +105,7 @@ void FeedCapture(const Feeding& feeding) {
   while (const auto datagram = reader.Next()) {
     order.Check(datagram->host_time);
     ++summary.num_events;
-    chain.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port});
+    chain.OnDatagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
     num_bytes += kFrameBytes + datagram->payload.size();
     show(static_cast<std::int64_t>(num_bytes));
   }

@@ -158,9 +158,9 @@ void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& cha
   for (const auto& [channel, count] : chain.Gaps()) {
     spdlog::warn("{}: {} messages are missing in the input; what follows a gap need not equal the live run", channel, count);
   }
-  for (const auto& stage : chain.StageTimes()) {
-    spdlog::info("{}: {:.3f} s{}", stage.service, stage.seconds,
-                 num_turns > 0 ? fmt::format(", {:.3f} ms a turn", 1e3 * stage.seconds / static_cast<double>(num_turns)) : "");
+  for (const auto& [service, seconds] : chain.StageTimes()) {
+    spdlog::info("{}: {:.3f} s{}", service, seconds,
+                 num_turns > 0 ? fmt::format(", {:.3f} ms a turn", 1e3 * seconds / static_cast<double>(num_turns)) : "");
   }
 }
 
@@ -223,12 +223,13 @@ void Replay(const Options& options) {
   spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
 
-  const bool is_capture = inspection.plan.lidar == lookout::vlp16::Input::kOutside;
-  if (is_capture && CountOf(chain, lookout::bus::kLidarPackets) == 0 && chain.num_nmea_datagrams() == 0) {
+  const auto* const lidar = chain.Find(lookout::bus::kLidarScan.publisher);
+  const auto* const navigation = chain.Find(lookout::bus::kPose.publisher);
+  if (!inspection.is_logs && CountOf(chain, lookout::bus::kLidarPackets) == 0 && (navigation == nullptr || navigation->num_measured() == 0)) {
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
   }
-  if (chain.num_data_datagrams() > 0 && num_turns == 0) {
-    throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + chain.LidarComplaint());
+  if (lidar != nullptr && lidar->num_measured() > 0 && num_turns == 0) {
+    throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + lidar->Report().reason);
   }
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();

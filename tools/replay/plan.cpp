@@ -1,166 +1,189 @@
 #include "tools/replay/plan.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+
+#include "tools/replay/stage.hpp"
 
 namespace lookout::replay {
 
 namespace {
 
-using ChannelSet = std::set<std::string, std::less<>>;
-
-// The chain as a table: what gives a channel at which a replay can begin, and what else is before that channel.
-struct Start {
-  std::string_view channel;
-  bool stops_vlp16;
-  bool stops_segmenter;
-  bool stops_navigator;
-};
-// NAV_RAW, not LIDAR_NMEA, is what POSE is made of: vlp16 is not before it.
-constexpr Start kStarts[] = {{bus::kLidarPackets.name, false, false, false}, {bus::kLidarScan.name, true, false, false},
-                             {bus::kLidarNmea.name, true, false, false},     {bus::kSegments.name, true, true, false},
-                             {bus::kNavRaw.name, false, false, false},       {bus::kPose.name, false, false, true}};
-
 bool Holds(const std::vector<std::string>& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
+std::vector<const bus::Channel*> Inputs(const bus::ServiceRow& service) {
+  std::vector<const bus::Channel*> inputs(service.inputs.begin(), service.inputs.end());
+  std::erase(inputs, nullptr);
+  return inputs;
+}
+
+// Each once, in the order of the channel table; what it does not hold stands last.
+std::vector<std::string> InTableOrder(std::vector<const bus::Channel*> channels) {
+  const auto place = [](const bus::Channel* channel) { return std::ranges::find(bus::kChannels, channel->name, &bus::Channel::name); };
+  std::ranges::stable_sort(channels, {}, place);
+  std::vector<std::string> names;
+  for (const auto* channel : channels) {
+    if (!Holds(names, channel->name)) names.emplace_back(channel->name);
+  }
+  return names;
+}
+
+// Adds to `stopped` the service and all whose outputs it needs.
+void AddUpstream(std::string_view name, const ServiceRows& services, std::vector<std::string>& stopped) {
+  const auto row = std::ranges::find(services, name, &bus::ServiceRow::name);
+  if (row == services.end() || Holds(stopped, name)) return;
+  stopped.emplace_back(name);
+  if (bus::RawOutput(*row) != nullptr) return;
+  for (const auto* input : Inputs(*row)) AddUpstream(input->publisher, services, stopped);
+}
+
+// Services that do not run with --from this channel.
+std::vector<std::string> StoppedBy(const std::string& from, const ServiceRows& services) {
+  std::vector<std::string> stopped;
+  for (const auto& service : services) {
+    for (const auto* input : Inputs(service)) {
+      if (input->name == from && !input->is_raw) AddUpstream(input->publisher, services, stopped);
+    }
+  }
+  return stopped;
 }
 
 // Which services run, with no word yet about what they read.
-Plan Running(const Request& request) {
+Plan Running(const Request& request, const ServiceRows& services) {
+  Plan plan{.services = ServiceNames(services)};
   for (const auto& name : request.only) {
-    if (!Holds(ServiceNames(), name)) throw RequestError("--only " + name + ": is none of " + Joined(ServiceNames()));
+    if (!Holds(plan.services, name)) throw RequestError(fmt::format("--only {}: is none of {}", name, fmt::join(plan.services, ", ")));
   }
-  const auto is_wanted = [&request](std::string_view service) { return request.only.empty() || Holds(request.only, service); };
-  Plan plan;
-  plan.runs_vlp16 = is_wanted("vlp16");
-  plan.runs_segmenter = is_wanted("segmenter");
-  plan.runs_navigator = is_wanted("navigator");
-  plan.runs_georeferencer = is_wanted("georeferencer");
+  std::erase_if(plan.services, [&](const auto& name) { return !request.only.empty() && !Holds(request.only, name); });
   for (const auto& name : request.from) {
-    const auto* start = std::ranges::find(kStarts, name, &Start::channel);
-    if (start == std::end(kStarts)) throw RequestError("--from " + name + ": is none of " + Joined(FromNames()));
-    const auto stop = [&](bool& runs, bool is_stopped, std::string_view service) {
-      if (is_stopped && Holds(request.only, service)) {
-        throw RequestError("--only " + std::string(service) + ": does not run with --from " + name);
-      }
-      runs = runs && !is_stopped;
-    };
-    stop(plan.runs_vlp16, start->stops_vlp16, "vlp16");
-    stop(plan.runs_segmenter, start->stops_segmenter, "segmenter");
-    stop(plan.runs_navigator, start->stops_navigator, "navigator");
+    if (!Holds(FromNames(services), name)) throw RequestError(fmt::format("--from {}: is none of {}", name, fmt::join(FromNames(services), ", ")));
+    for (const auto& service : StoppedBy(name, services)) {
+      if (Holds(request.only, service)) throw RequestError(fmt::format("--only {}: does not run with --from {}", service, name));
+      std::erase(plan.services, service);
+    }
   }
   return plan;
 }
 
-bool TakesLidarNmea(const Request& request, bool has_nav_raw) {
-  return !Holds(request.from, bus::kNavRaw.name) && (Holds(request.from, bus::kLidarNmea.name) || !has_nav_raw);
+// Whether the service reads the raw channel that it publishes live, in place of its inputs.
+bool ReadsRaw(const bus::ServiceRow& service, const Request& request, const ChannelSet& present) {
+  const auto* const raw = bus::RawOutput(service);
+  const auto inputs = Inputs(service);
+  if (raw == nullptr) return false;
+  if (inputs.empty() || Holds(request.from, raw->name)) return true;
+  return present.contains(raw->name) && std::ranges::none_of(inputs, [&](const auto* input) { return Holds(request.from, input->name); });
 }
 
-// Channels that the services of the plan take and do not give each other.
-std::vector<std::string_view> Unmet(const Plan& plan, bool takes_lidar_nmea) {
-  std::vector<std::string_view> channels;
-  const auto add = [&channels](const bus::Channel& channel, bool is_unmet) {
-    if (is_unmet) channels.push_back(channel.name);
-  };
-  add(bus::kLidarPackets, plan.runs_vlp16);
-  add(bus::kLidarScan, plan.runs_segmenter && !plan.runs_vlp16);
-  add(bus::kLidarNmea, plan.runs_navigator && takes_lidar_nmea && !plan.runs_vlp16);
-  add(bus::kSegments, plan.runs_georeferencer && !plan.runs_segmenter);
-  add(bus::kNavRaw, plan.runs_navigator && !takes_lidar_nmea);
-  add(bus::kPose, plan.runs_georeferencer && !plan.runs_navigator);
-  return channels;
-}
-
-void RequireTaken(const Request& request, const std::vector<std::string_view>& unmet) {
+// Adds the channels that services of the plan read and no service of the plan publishes.
+void AddUnmet(const Request& request, const ChannelSet& present, const ServiceRows& services, Plan& plan) {
+  std::vector<const bus::Channel*> unmet;
+  for (const auto& service : services) {
+    if (!plan.Runs(service.name)) continue;
+    if (ReadsRaw(service, request, present)) {
+      unmet.push_back(bus::RawOutput(service));
+      continue;
+    }
+    for (const auto* input : Inputs(service)) {
+      if (!plan.Runs(input->publisher)) unmet.push_back(input);
+    }
+  }
+  plan.read = InTableOrder(unmet);
   for (const auto& name : request.from) {
-    if (std::ranges::find(unmet, name) == unmet.end()) throw RequestError("--from " + name + ": no service that runs takes it");
+    if (!plan.Reads(name)) throw RequestError(fmt::format("--from {}: no service that runs reads it", name));
   }
 }
 
-// The services of the plan that get anything to do, by name.
-std::vector<std::string> FedServices(const Plan& plan, const ChannelSet& present) {
-  const auto has = [&present](const bus::Channel& channel) { return present.contains(channel.name); };
-  const bool is_vlp16_fed = plan.runs_vlp16 && has(bus::kLidarPackets);
-  const bool is_segmenter_fed = plan.runs_segmenter && (plan.runs_vlp16 ? is_vlp16_fed : has(bus::kLidarScan));
-  const bool has_sentences = plan.runs_vlp16 ? is_vlp16_fed : has(bus::kLidarNmea);
-  const bool is_navigator_fed = plan.runs_navigator && (plan.navigation == navigator::Input::kLog ? has(bus::kNavRaw) : has_sentences);
-  const bool is_georeferencer_fed = plan.runs_georeferencer && ((plan.runs_segmenter ? is_segmenter_fed : has(bus::kSegments)) ||
-                                                                (plan.runs_navigator ? is_navigator_fed : has(bus::kPose)));
+// The services of the plan that have an input: datagrams (when nothing is read), the raw channel that they read, or one of their inputs.
+std::vector<std::string> FedServices(const Plan& plan, const ChannelSet& present, const ServiceRows& services) {
   std::vector<std::string> fed;
-  if (is_vlp16_fed) fed.emplace_back("vlp16");
-  if (is_segmenter_fed) fed.emplace_back("segmenter");
-  if (is_navigator_fed) fed.emplace_back("navigator");
-  if (is_georeferencer_fed) fed.emplace_back("georeferencer");
+  const auto is_met = [&](const bus::Channel* input) {
+    return plan.Runs(input->publisher) ? Holds(fed, input->publisher) : present.contains(input->name);
+  };
+  for (const auto& service : services) {
+    if (!plan.Runs(service.name)) continue;
+    const auto* const raw = bus::RawOutput(service);
+    bool is_fed = raw != nullptr && plan.read.empty();
+    is_fed |= raw != nullptr && plan.Reads(raw->name) ? present.contains(raw->name) : std::ranges::any_of(Inputs(service), is_met);
+    if (is_fed) fed.emplace_back(service.name);
+  }
   return fed;
 }
 
 }  // namespace
 
-bool Plan::Reads(std::string_view channel) const { return std::ranges::find(read, channel) != read.end(); }
+bool Plan::Runs(std::string_view service) const { return Holds(services, service); }
+bool Plan::Reads(std::string_view channel) const { return Holds(read, channel); }
 
-const std::vector<std::string>& ServiceNames() {
-  static const std::vector<std::string> kNames{"vlp16", "segmenter", "navigator", "georeferencer"};
-  return kNames;
-}
-
-const std::vector<std::string>& FromNames() {
-  static const std::vector<std::string> kNames = [] {
-    std::vector<std::string> names;
-    for (const auto& start : kStarts) names.emplace_back(start.channel);
-    return names;
+const ServiceRows& ReplayedServices() {
+  static const ServiceRows kRows = [] {
+    ServiceRows rows(bus::kServices.begin(), bus::kServices.end());
+    std::erase_if(rows,
+                  [](const auto& row) { return std::ranges::find(StageFactories(), row.name, &StageFactory::service) == StageFactories().end(); });
+    return rows;
   }();
-  return kNames;
+  return kRows;
 }
 
-ChannelSet Candidates(const Request& request) {
-  const auto plan = Running(request);
-  const auto unmet = Unmet(plan, TakesLidarNmea(request, true));
-  RequireTaken(request, unmet);
-  return {unmet.begin(), unmet.end()};
+std::vector<std::string> ServiceNames(const ServiceRows& services) {
+  std::vector<std::string> names;
+  for (const auto& service : services) names.emplace_back(service.name);
+  return names;
 }
 
-Plan MakeLogPlan(const Request& request, const ChannelSet& present) {
-  Plan plan = Running(request);
-  const bool takes_lidar_nmea = TakesLidarNmea(request, present.contains(bus::kNavRaw.name));
-  plan.lidar = vlp16::Input::kLog;
-  plan.navigation = takes_lidar_nmea ? navigator::Input::kOutside : navigator::Input::kLog;
-  plan.read = Unmet(plan, takes_lidar_nmea);
-  RequireTaken(request, plan.read);
-  for (const auto& name : request.from) {
-    if (!present.contains(name)) throw std::runtime_error("--from " + name + ": the input does not hold it");
+std::vector<std::string> FromNames(const ServiceRows& services) {
+  std::vector<const bus::Channel*> channels;
+  for (const auto& service : services) {
+    const auto inputs = Inputs(service);
+    channels.insert(channels.end(), inputs.begin(), inputs.end());
+    if (const auto* const raw = bus::RawOutput(service)) channels.push_back(raw);
   }
-  const auto fed = FedServices(plan, present);
+  return InTableOrder(channels);
+}
+
+ChannelSet Candidates(const Request& request, const ServiceRows& services) {
+  Plan plan = Running(request, services);
+  const auto all = FromNames(services);
+  AddUnmet(request, {all.begin(), all.end()}, services, plan);
+  return {plan.read.begin(), plan.read.end()};
+}
+
+Plan MakeLogPlan(const Request& request, const ChannelSet& present, const ServiceRows& services) {
+  Plan plan = Running(request, services);
+  AddUnmet(request, present, services, plan);
+  for (const auto& name : request.from) {
+    if (!present.contains(name)) throw std::runtime_error(fmt::format("--from {}: the input does not hold it", name));
+  }
+  const auto fed = FedServices(plan, present, services);
   for (const auto& service : request.only) {
-    if (!Holds(fed, service)) throw std::runtime_error("--only " + service + ": the input holds nothing that it takes");
+    if (!Holds(fed, service)) throw std::runtime_error(fmt::format("--only {}: the input holds nothing that it reads", service));
   }
   if (fed.empty()) {
-    const auto candidates = Candidates(request);
-    throw std::runtime_error("the input holds none of " + Joined({candidates.begin(), candidates.end()}) + ": nothing can be computed again");
+    throw std::runtime_error(
+        fmt::format("the input holds none of {}: nothing can be computed again", fmt::join(Candidates(request, services), ", ")));
   }
   return plan;
 }
 
-Plan MakeCapturePlan(const Request& request) {
-  Plan plan = Running(request);
-  if (!request.from.empty()) throw RequestError("--from " + request.from.front() + ": a capture holds datagrams, not messages");
-  if (plan.runs_segmenter && !plan.runs_vlp16) throw RequestError("--only segmenter: a capture needs vlp16 too");
-  if (plan.runs_georeferencer && !plan.runs_segmenter && !plan.runs_navigator) {
-    throw RequestError("--only georeferencer: a capture needs vlp16 and segmenter, or navigator, too");
+Plan MakeCapturePlan(const Request& request, const ServiceRows& services) {
+  const Plan plan = Running(request, services);
+  if (!request.from.empty()) throw RequestError(fmt::format("--from {}: a capture holds datagrams, not messages", request.from.front()));
+  const auto fed = FedServices(plan, {}, services);
+  for (const auto& service : services) {
+    if (!plan.Runs(service.name) || Holds(fed, service.name)) continue;
+    std::vector<std::string_view> publishers;
+    for (const auto* input : Inputs(service)) publishers.push_back(input->publisher);
+    throw RequestError(fmt::format("--only {}: a capture needs {} too", service.name, fmt::join(publishers, " or ")));
   }
   return plan;
 }
+
+bool IsWhole(const Plan& plan) { return plan.services.size() == ReplayedServices().size(); }
 
 std::string InWords(const Plan& plan) {
-  std::vector<std::string> services;
-  if (plan.runs_vlp16) services.emplace_back("vlp16");
-  if (plan.runs_segmenter) services.emplace_back("segmenter");
-  if (plan.runs_navigator) services.emplace_back("navigator");
-  if (plan.runs_georeferencer) services.emplace_back("georeferencer");
-  const std::string input = plan.read.empty() ? "datagrams" : Joined({plan.read.begin(), plan.read.end()});
-  return "ran: " + Joined(services) + "\nread: " + input + "\n";
+  return fmt::format("ran: {}\nread: {}\n", fmt::join(plan.services, ", "),
+                     plan.read.empty() ? "datagrams" : fmt::format("{}", fmt::join(plan.read, ", ")));
 }
 
 }  // namespace lookout::replay

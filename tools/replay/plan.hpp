@@ -1,4 +1,4 @@
-// Which services run in a replay, and which channels they read from the logs.
+// Which services run in a replay, and which channels they read from the logs: derived from the service table and the channel table.
 #pragma once
 
 #include <set>
@@ -7,11 +7,21 @@
 #include <string_view>
 #include <vector>
 
-#include "common/bus/channels.hpp"
-#include "services/navigator/params.hpp"
-#include "services/vlp16/params.hpp"
+#include "common/bus/services.hpp"
 
 namespace lookout::replay {
+
+using ServiceRows = std::vector<bus::ServiceRow>;
+using ChannelSet = std::set<std::string, std::less<>>;
+
+/// Rows of the services that replay can run (StageFactories), in the order of the data.
+const ServiceRows& ReplayedServices();
+
+/// Their names.
+std::vector<std::string> ServiceNames(const ServiceRows& services = ReplayedServices());
+
+/// Channels at which a replay can begin: inputs and raw outputs of these services, in the order of the channel table.
+std::vector<std::string> FromNames(const ServiceRows& services = ReplayedServices());
 
 /// What the command line asks for.
 struct Request {
@@ -25,44 +35,35 @@ class RequestError : public std::invalid_argument {
   using std::invalid_argument::invalid_argument;
 };
 
-/// What runs, and where the data begin. As it is made: all services, fed with the datagrams of captures.
+/// What runs, and where the data begin. By default: all services, fed with the datagrams of captures.
 struct Plan {
-  bool runs_vlp16 = true;
-  bool runs_segmenter = true;
-  bool runs_navigator = true;
-  bool runs_georeferencer = true;
-  vlp16::Input lidar = vlp16::Input::kOutside;               // kLog: LIDAR_PACKETS
-  navigator::Input navigation = navigator::Input::kOutside;  // kLog: NAV_RAW
-  std::vector<std::string_view> read;                        // channels that come out of the logs, in the order of the channel table
+  std::vector<std::string> services = ServiceNames();  // that run, in the order of the data
+  std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
 
+  bool Runs(std::string_view service) const;
   bool Reads(std::string_view channel) const;
 };
-
-/// Services by name, in the order of the data.
-const std::vector<std::string>& ServiceNames();
-
-/// Channels at which a replay can begin.
-const std::vector<std::string>& FromNames();
 
 /// Channels that a replay of logs could read for this request: when all of them are known to be there, no more need be looked for.
 ///
 /// @throws RequestError when parts of the request contradict each other or name what is not there
-std::set<std::string, std::less<>> Candidates(const Request& request);
+ChannelSet Candidates(const Request& request, const ServiceRows& services = ReplayedServices());
 
-/// The rule: a service does not run when it gives a channel of --from, or is before that channel. What a service that runs takes and no service
-/// that runs gives, is read. The navigator takes NAV_RAW where the logs hold it, and else, or when that is asked for, LIDAR_NMEA.
+/// The rules: the publisher of a channel of --from does not run, nor does any service whose output it needs (a service with a raw output needs
+/// nobody's), but for raw channels, which are read in place of what their service reads live. What a service that runs reads and no service that runs
+/// publishes, is read. A service with a raw output reads that where the logs hold it, and else, or when --from names one of them, its inputs.
 ///
 /// @param present  channels that the logs hold
 /// @throws RequestError as Candidates; std::runtime_error when the logs lack a channel of --from, the input of a service of --only, or every input
-Plan MakeLogPlan(const Request& request, const std::set<std::string, std::less<>>& present);
+Plan MakeLogPlan(const Request& request, const ChannelSet& present, const ServiceRows& services = ReplayedServices());
 
-/// The same for captures: vlp16 and navigator take datagrams, and nothing can be read.
+/// The same for captures: services with a raw output read datagrams, and no message can be read.
 ///
-/// @throws RequestError also when --from is asked for, or a service that takes no datagrams and whose givers do not run
-Plan MakeCapturePlan(const Request& request);
+/// @throws RequestError also when --from is asked for, or a service of whose inputs none is published
+Plan MakeCapturePlan(const Request& request, const ServiceRows& services = ReplayedServices());
 
 /// Whether all services run.
-inline bool IsWhole(const Plan& plan) { return plan.runs_vlp16 && plan.runs_segmenter && plan.runs_navigator && plan.runs_georeferencer; }
+bool IsWhole(const Plan& plan);
 
 /// What runs and what is read, for RUN_INFO: two lines.
 std::string InWords(const Plan& plan);

@@ -94,10 +94,11 @@ Clutter::Clutter(const Scene& scene, const config::BoatFacts& boat, std::uint64_
       effects_(scene.effects),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       own_box_m_(boat.own_vessel_box_m),
-      has_drops_(effects_.rain_probability_per_m > 0.0 || effects_.spray_probability > 0.0),
-      has_water_(effects_.glint_probability > 0.0 || effects_.wake_probability > 0.0 || (effects_.crest_probability > 0.0 && !scene.sea.is_calm())),
+      has_drops_(effects_.rain_probability_per_m() > 0.0 || effects_.spray_probability() > 0.0),
+      has_water_(effects_.glint_probability() > 0.0 || effects_.wake_probability() > 0.0 ||
+                 (effects_.crest_probability() > 0.0 && !scene.sea.is_calm())),
       random_(seed, kClutterStream) {
-  if (effects_.wake_probability <= 0.0) return;
+  if (effects_.wake_probability() <= 0.0) return;
   sources_.push_back({{}, true, own_box_m_.min().x(), own_box_m_.sizes().y() / 2.0});
   for (const auto& object : scene.objects) {
     if (!object.track.is_moving() || !object.is_in_water) continue;
@@ -131,7 +132,7 @@ void Clutter::MoveTo(double time_s) {
     const Wake wake = WakeOf(source, time_s);
     if (wake.speed_mps >= kMinWakeSpeedMps) wakes_.push_back(wake);
   }
-  if (effects_.spray_probability > 0.0) {
+  if (effects_.spray_probability() > 0.0) {
     const auto bow_height_m = [this](double at_s) {
       const OwnState state = StateAt(scene_.own_motion, reference_point_above_water_m_, at_s);
       return state.position_map_m.z() + own_box_m_.max().x() * std::sin(state.pitch_rad);
@@ -162,9 +163,9 @@ std::optional<Clutter::Echo> Clutter::FromWater(const Ray& ray, double max_range
   const double draw = random_.Uniform();
   const bool is_calm = scene_.sea.is_calm();
   const double sine_calm = -ray.direction.z();
-  const auto glint = [this](double sine) { return std::min(effects_.glint_probability * sine * sine / (kGlintSine * kGlintSine), 1.0); };
+  const auto glint = [this](double sine) { return std::min(effects_.glint_probability() * sine * sine / (kGlintSine * kGlintSine), 1.0); };
   // Most shots give nothing whatever they meet: the sea need not be looked for.
-  const double most_of_foam = (wakes_.empty() ? 0.0 : effects_.wake_probability) + (is_calm ? 0.0 : effects_.crest_probability);
+  const double most_of_foam = (wakes_.empty() ? 0.0 : effects_.wake_probability()) + (is_calm ? 0.0 : effects_.crest_probability());
   const double sine_on_steepest = sine_calm * kSteepestCosine + std::sqrt(std::max(0.0, 1.0 - sine_calm * sine_calm)) * kSteepestSine;
   const double most_of_glint = glint(is_calm ? sine_calm : sine_on_steepest);
   if (draw >= most_of_foam + most_of_glint) return std::nullopt;
@@ -188,9 +189,9 @@ std::optional<Clutter::Echo> Clutter::FromWater(const Ray& ray, double max_range
     sine = std::max(-ray.direction.dot(Vector3d(-slope.x(), -slope.y(), 1.0).normalized()), 0.0);
     height_m = p_m.z();
   }
-  double sum = effects_.wake_probability * FoamAt(p_m.head<2>());
+  double sum = effects_.wake_probability() * FoamAt(p_m.head<2>());
   if (draw < sum) return Echo{*range_m, kFoamReflectance, sine, ReturnReason::kWake};
-  if (height_m > 0.0) sum += effects_.crest_probability * sine;
+  if (height_m > 0.0) sum += effects_.crest_probability() * sine;
   if (draw < sum) return Echo{*range_m, kFoamReflectance, sine, ReturnReason::kCrest};
   sum += glint(sine);
   if (draw < sum) return Echo{*range_m, kWaterReflectance, sine, ReturnReason::kGlint};
@@ -199,7 +200,7 @@ std::optional<Clutter::Echo> Clutter::FromWater(const Ray& ray, double max_range
 
 // Range of the first drop: the way to it is distributed exponentially in the drops that are met on the way.
 std::optional<double> Clutter::RainRange(double max_range_m) {
-  const double per_m = effects_.rain_probability_per_m;
+  const double per_m = effects_.rain_probability_per_m();
   if (per_m <= 0.0) return std::nullopt;
   const double draw = random_.Uniform();
   const double first = std::atan(kFirstDropM / kDropRangeM);
@@ -214,7 +215,7 @@ std::optional<double> Clutter::RainRange(double max_range_m) {
 
 // Somewhere on the ray's way through one of the two clouds.
 std::optional<double> Clutter::SprayRange(const Ray& ray_vessel, double max_range_m) {
-  const double probability = effects_.spray_probability * spray_;
+  const double probability = effects_.spray_probability() * spray_;
   if (probability <= 0.0) return std::nullopt;
   const double draw = random_.Uniform();
   if (draw >= probability) return std::nullopt;

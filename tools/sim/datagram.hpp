@@ -15,15 +15,4 @@ struct Datagram {
   std::vector<std::uint8_t> payload;
 };
 
-class Sink {
- public:
-  Sink() = default;
-  Sink(const Sink&) = delete;
-  Sink& operator=(const Sink&) = delete;
-  virtual ~Sink() = default;
-
-  /// @throws std::runtime_error
-  virtual void Send(const Datagram& datagram) = 0;
-};
-
 }  // namespace lookout::sim

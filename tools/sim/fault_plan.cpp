@@ -1,8 +1,12 @@
 #include "tools/sim/fault_plan.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <ranges>
 #include <stdexcept>
 #include <string>
 
@@ -11,34 +15,11 @@ namespace {
 
 constexpr double kMaxSeconds = 86400.0;  // the longest run
 
-std::vector<std::string_view> SplitAtColons(std::string_view text) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const auto colon = text.find(':');
-    parts.push_back(text.substr(0, colon));
-    if (colon == std::string_view::npos) return parts;
-    text.remove_prefix(colon + 1);
-  }
-}
-
 std::optional<double> ToNumber(std::string_view text) {
   double number = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
   return number;
-}
-
-std::string AllNames() {
-  std::string names;
-  for (const auto& form : kTimedFaultForms) names += (names.empty() ? "" : ", ") + std::string(form.name);
-  return names;
-}
-
-// As the defaults and bounds above are meant to be read: 0.5, 10, -3600.
-std::string ToText(double number) {
-  std::array<char, 32> text{};
-  const auto result = std::to_chars(text.data(), text.data() + text.size(), number);
-  return {text.data(), result.ptr};
 }
 
 bool IsShare(const TimedFault& fault) { return fault.kind <= TimedFaultKind::kSwap; }
@@ -51,9 +32,12 @@ TimedFault ParseTimedFault(std::string_view text) {
   const auto refuse = [&](const std::string& why) -> std::invalid_argument {
     return std::invalid_argument("fault '" + std::string(text) + "': " + why);
   };
-  const auto parts = SplitAtColons(text);
-  const auto form = std::ranges::find(kTimedFaultForms, parts[0], &TimedFaultForm::name);
-  if (form == kTimedFaultForms.end()) throw refuse("no such kind (there are: " + AllNames() + ")");
+  const auto form = std::ranges::find(kTimedFaultForms, text.substr(0, text.find(':')), &TimedFaultForm::name);
+  if (form == kTimedFaultForms.end()) {
+    throw refuse(fmt::format("no such kind (there are: {})", fmt::join(kTimedFaultForms | std::views::transform(&TimedFaultForm::name), ", ")));
+  }
+  std::vector<std::string_view> parts;
+  for (const auto part : std::views::split(text, ':')) parts.emplace_back(part.begin(), part.end());
   if (parts.size() < 3 || parts.size() > 4) throw refuse("must be KIND:BEGIN:END or KIND:BEGIN:END:VALUE");
 
   TimedFault fault;
@@ -74,7 +58,7 @@ TimedFault ParseTimedFault(std::string_view text) {
   if (form->unit.empty()) throw refuse("takes no VALUE");
   const auto value = ToNumber(parts[3]);
   if (!value || *value < form->min_value || *value > form->max_value) {
-    throw refuse("VALUE (" + std::string(form->unit) + ") must be a number from " + ToText(form->min_value) + " to " + ToText(form->max_value));
+    throw refuse(fmt::format("VALUE ({}) must be a number from {} to {}", form->unit, form->min_value, form->max_value));
   }
   if (fault.kind == TimedFaultKind::kWrongHour && *value != std::floor(*value)) throw refuse("VALUE must be whole hours");
   fault.value = *value;

@@ -5,7 +5,6 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
-#include "tools/sim/measurement_error.hpp"
 #include "tools/sim/motion.hpp"
 #include "tools/sim/nmea.hpp"
 #include "tools/sim/random.hpp"

@@ -42,13 +42,13 @@ std::vector<RayCaster::Body> BodiesOf(const Scene& scene) {
 
 Effects EffectsOf(const Scene& scene, const LidarParams& params) {
   Effects effects = scene.effects;
-  effects.return_mode = params.mode.value_or(effects.return_mode);
-  effects.stray_probability = params.stray_probability.value_or(effects.stray_probability);
-  effects.range_sd_m = params.range_sd_m.value_or(effects.range_sd_m);
+  effects.set_return_mode(params.mode.value_or(effects.return_mode()));
+  effects.set_stray_probability(params.stray_probability.value_or(effects.stray_probability()));
+  effects.set_range_sd_m(params.range_sd_m.value_or(effects.range_sd_m()));
   return effects;
 }
 
-BeamWidth BeamWidthOf(const Effects& effects) { return {effects.horizontal_divergence_mrad / 2000.0, effects.vertical_divergence_mrad / 2000.0}; }
+BeamWidth BeamWidthOf(const Effects& effects) { return {effects.horizontal_divergence_mrad() / 2000.0, effects.vertical_divergence_mrad() / 2000.0}; }
 
 // In its own frame a body has the heading that turns x, y into east, north.
 const Track kVesselFrame{{Eigen::Vector2d::Zero(), kPi / 2.0}};
@@ -111,10 +111,10 @@ double Lidar::AzimuthAt(double time_s) const {
 Lidar::Measurement Lidar::Measure(const Echo& echo) {
   const double range_m = echo.hit.range_m;
   const double brightness = echo.share * echo.material.reflectance * (kRoughShare + (1.0 - kRoughShare) * echo.hit.incidence_cosine);
-  const double half_seen_m = effects_.half_seen_range_m * std::sqrt(std::min(brightness / kHalfSeenReflectance, 1.0));
+  const double half_seen_m = effects_.half_seen_range_m() * std::sqrt(std::min(brightness / kHalfSeenReflectance, 1.0));
   const double seen = 1.0 / (1.0 + std::exp((range_m - half_seen_m) / (kDropoutWidth * half_seen_m)));
   if (range_m < kMinRangeM || random_.Uniform() >= seen) return {};
-  const double measured_m = range_m + effects_.range_sd_m * random_.Normal();
+  const double measured_m = range_m + effects_.range_sd_m() * random_.Normal();
   const double range_2mm = std::round(measured_m / format::kRangeUnitM);
   if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
   const double reflectivity = 100.0 * brightness + 2.0 * random_.Normal();
@@ -128,7 +128,7 @@ Lidar::Measurement Lidar::Measure(const Echo& echo) {
 
 // A drop is either large and near enough or not: no range at which it is seen half of the time.
 Lidar::Measurement Lidar::MeasureDrop(const Clutter::Echo& echo) {
-  const double range_2mm = std::round((echo.range_m + effects_.range_sd_m * random_.Normal()) / format::kRangeUnitM);
+  const double range_2mm = std::round((echo.range_m + effects_.range_sd_m() * random_.Normal()) / format::kRangeUnitM);
   const double reflectivity = 100.0 * echo.reflectance + 2.0 * random_.Normal();
   if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
   return {static_cast<std::uint16_t>(range_2mm),
@@ -163,7 +163,7 @@ Lidar::RayPair Lidar::RayOf(double origin_height_m, double azimuth_rad, double e
 Echoes Lidar::Meet(const RayPair& ray, double max_range_m, double time_s) {
   auto echoes = own_caster_.Cast(ray.vessel, max_range_m, false);
   if (echoes.count > 0) return echoes;
-  const bool wants_second = effects_.return_mode != ReturnMode::kStrongest;
+  const bool wants_second = effects_.return_mode() != config::Scene::STRONGEST;
   echoes = beam_width_.is_ray() ? caster_.Cast(ray.map, max_range_m, wants_second) : caster_.CastBeam(ray.map, max_range_m, wants_second);
   if (sea_.is_calm() || ray.map.direction.z() >= 0.0) return echoes;
   const double crest_m = sea_.max_height_m();
@@ -183,13 +183,13 @@ void Lidar::MeetWater(const Ray& ray, double max_range_m, Seen& seen) {
       seen.Add(Measure({{echo->range_m, echo->incidence_cosine}, kNoObject, {echo->reflectance}, echo->reason}));
     }
   }
-  if (effects_.mirror_strength > 0.0 && sea_.is_calm() && ray.direction.z() < 0.0) {
+  if (effects_.mirror_strength() > 0.0 && sea_.is_calm() && ray.direction.z() < 0.0) {
     // Mirrored at the water, the ray comes from the eye's image below it: its range is that of the whole way.
     const Ray image{{ray.origin_m.x(), ray.origin_m.y(), -ray.origin_m.z()}, {ray.direction.x(), ray.direction.y(), -ray.direction.z()}};
     auto echoes = caster_.Cast(image, kMaxRangeM, false);
     if (echoes.count == 0 || echoes.echo[0].hit.range_m <= -ray.origin_m.z() / ray.direction.z()) return;
     Echo& echo = echoes.echo[0];
-    const double mirrored = effects_.mirror_strength * FresnelReflectance(-ray.direction.z());
+    const double mirrored = effects_.mirror_strength() * FresnelReflectance(-ray.direction.z());
     echo.share = mirrored * mirrored;  // there and back
     echo.object_id = kNoObject;
     echo.reason = ReturnReason::kMirror;
@@ -204,7 +204,7 @@ Lidar::Shot Lidar::Choose(const Seen& seen) const {
   const Measurement* const end = begin + seen.count;
   const Measurement* last = std::max_element(begin, end, [](const auto& a, const auto& b) { return a.true_range_m < b.true_range_m; });
   const Measurement* strongest = std::max_element(begin, end, [](const auto& a, const auto& b) { return a.power < b.power; });
-  if (effects_.return_mode == ReturnMode::kDual && strongest == last && seen.count > 1) {
+  if (effects_.return_mode() == config::Scene::DUAL && strongest == last && seen.count > 1) {
     strongest = nullptr;
     for (const Measurement* other = begin; other != end; ++other) {
       if (other != last && (strongest == nullptr || other->power > strongest->power)) strongest = other;
@@ -234,7 +234,7 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
     if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) seen.Add(MeasureDrop(*drop));
   }
   // Only where nothing was met: a stray takes no return from an object.
-  if (echoes.count == 0 && seen.count == 0 && random_.Uniform() < effects_.stray_probability) {
+  if (echoes.count == 0 && seen.count == 0 && random_.Uniform() < effects_.stray_probability()) {
     const Measurement stray = Stray(max_range_m);
     return {stray, stray};
   }
@@ -250,7 +250,7 @@ bool Lidar::FiresFrom(std::int64_t sequence) const {
 
 LidarPacket Lidar::Next() {
   using std::chrono::nanoseconds;
-  const bool is_dual = effects_.return_mode == ReturnMode::kDual;
+  const bool is_dual = effects_.return_mode() == config::Scene::DUAL;
   LidarPacket packet;
   const std::span<std::uint8_t> payload(packet.payload);
   const auto skip_to_field_of_view = [this] {
@@ -303,15 +303,15 @@ LidarPacket Lidar::Next() {
         write(block, shot.last, 0);
         write(block + 1, shot.strongest, 1);
       } else {
-        write(block, effects_.return_mode == ReturnMode::kLast ? shot.last : shot.strongest, 0);
+        write(block, effects_.return_mode() == config::Scene::LAST ? shot.last : shot.strongest, 0);
       }
       packet.end_time = start_ + std::chrono::ceil<std::chrono::microseconds>(sequence_time + laser_time);
     }
   }
   WriteU32LittleEndian(payload, format::kStampOffset, MicrosecondsPastHour(stamp));
-  payload[format::kReturnModeOffset] = is_dual                                     ? format::kModeDual
-                                       : effects_.return_mode == ReturnMode::kLast ? format::kModeLast
-                                                                                   : format::kModeStrongest;
+  payload[format::kReturnModeOffset] = is_dual                                         ? format::kModeDual
+                                       : effects_.return_mode() == config::Scene::LAST ? format::kModeLast
+                                                                                       : format::kModeStrongest;
   payload[format::kProductOffset] = beams_.product;
   return packet;
 }

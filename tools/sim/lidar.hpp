@@ -11,7 +11,6 @@
 #include "common/core/utime.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tools/sim/clutter.hpp"
-#include "tools/sim/effects.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/ray_caster.hpp"
 #include "tools/sim/scene.hpp"
@@ -25,7 +24,7 @@ inline constexpr double kMinFieldOfViewRad = DegToRad(2.0);
 
 /// Facts of the device, and what overrides the effects of the scene.
 struct LidarParams {
-  std::optional<ReturnMode> mode;  // else as the scene says, and so below
+  std::optional<config::Scene::ReturnMode> mode;  // else as the scene says, and so below
   LidarModel model = LidarModel::kVlp16;
   Sector field_of_view;  // azimuths of the sensor in which its lasers fire; kMinFieldOfViewRad wide at least
   double rotation_rpm = 600.0;

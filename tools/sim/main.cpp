@@ -20,14 +20,12 @@
 #include "common/runtime/progress.hpp"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/vlp16.pb.h"
-#include "tools/sim/faults.hpp"
+#include "tools/sim/faulty_network.hpp"
 #include "tools/sim/options.hpp"
-#include "tools/sim/pcap_sink.hpp"
 #include "tools/sim/scene_file.hpp"
-#include "tools/sim/schedule.hpp"
 #include "tools/sim/simulation.hpp"
-#include "tools/sim/truth_writer.hpp"
-#include "tools/sim/udp_sink.hpp"
+#include "tools/sim/sinks.hpp"
+#include "tools/sim/truth.hpp"
 
 namespace {
 
@@ -58,10 +56,10 @@ void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double s
   while (const auto datagram = network.Next()) {
     if (WaitUntil(schedule.DueAt(datagram->time), stop_signals)) break;
     sink.Send(*datagram);
-    if (const auto line = schedule.Tell(datagram->time, std::chrono::steady_clock::now())) std::cerr << "lookout-sim: " << *line << '\n';
+    if (const auto line = schedule.Report(datagram->time, std::chrono::steady_clock::now())) std::cerr << "lookout-sim: " << *line << '\n';
   }
   if (const auto summary = schedule.Summary(); !summary.empty()) std::cerr << "lookout-sim: " << summary << '\n';
-  if (sink.num_refused() > 0) std::cerr << "lookout-sim: the network did not take " << sink.num_refused() << " datagrams\n";
+  if (sink.num_refused() > 0) std::cerr << "lookout-sim: the network refused " << sink.num_refused() << " datagrams\n";
 }
 
 sim::SimulationParams ToParams(const sim::Options& options) {

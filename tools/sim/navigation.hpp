@@ -7,12 +7,11 @@
 #include <vector>
 
 #include "common/config/boat.hpp"
-#include "tools/sim/clock_faults.hpp"
 #include "tools/sim/datagram.hpp"
 #include "tools/sim/fault_plan.hpp"
 #include "tools/sim/imu.hpp"
+#include "tools/sim/lidar_clock.hpp"
 #include "tools/sim/map_frame.hpp"
-#include "tools/sim/measurement_error.hpp"
 #include "tools/sim/nmea.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/scene.hpp"

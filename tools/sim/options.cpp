@@ -172,7 +172,7 @@ Options ParseOptions(int argc, char** argv) {
   }
   options.navigation = ToNavigation(options, words, sd->count() > 0);
   if (!words.mode.empty()) {
-    options.lidar.mode = words.mode == "dual" ? ReturnMode::kDual : words.mode == "last" ? ReturnMode::kLast : ReturnMode::kStrongest;
+    options.lidar.mode = words.mode == "dual" ? config::Scene::DUAL : words.mode == "last" ? config::Scene::LAST : config::Scene::STRONGEST;
   }
   options.lidar.model = words.model == "vlp16" ? LidarModel::kVlp16 : LidarModel::kPuckHiRes;
   options.faults = ToFaults(words.faults, options.seconds);

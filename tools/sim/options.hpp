@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/sim/faults.hpp"
+#include "tools/sim/faulty_network.hpp"
 #include "tools/sim/lidar.hpp"
 #include "tools/sim/navigation.hpp"
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "tools/sim/effects.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {

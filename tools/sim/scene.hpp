@@ -1,17 +1,40 @@
 // What floats and stands around the own boat.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "tools/sim/effects.hpp"
+#include "config/schema/scene.pb.h"
 #include "tools/sim/motion.hpp"
 #include "tools/sim/sea.hpp"
 #include "tools/sim/solid.hpp"
 
 namespace lookout::sim {
 
-/// What a surface gives back.
+/// Strengths of what the lidar meets besides clean surfaces. Models and their sources: README.md, "What is simulated".
+using Effects = config::Scene::Effects;
+
+/// Why there is a return. The values are on the wire (sim_truth_t): one may be added at the end, none changes its meaning.
+enum class ReturnReason {
+  kObject = 0,     // the surface of an object
+  kOwnVessel = 1,  // the own boat
+  kStray = 2,      // noise of the receiver
+  kGlint = 3,      // water near the boat
+  kCrest = 4,      // foam on a wave
+  kWake = 5,       // foam behind a moving boat
+  kSpray = 6,      // drops at the own bow
+  kRain = 7,
+  kMixedEdge = 8,  // a beam on two surfaces; it belongs to the nearer object
+  kMirror = 9,     // an object seen by way of the water's surface, below which it seems to lie
+};
+inline constexpr std::array<std::string_view, 10> kReasonNames{"object", "own_vessel", "stray", "glint",      "crest",
+                                                               "wake",   "spray",      "rain",  "mixed_edge", "mirror"};
+constexpr std::string_view NameOf(ReturnReason reason) { return kReasonNames[static_cast<std::size_t>(reason)]; }
+
+/// How a surface reflects.
 struct Material {
   double reflectance;      // diffuse, 0 to 1; the reflectivity of the device is this in per cent
   bool is_porous = false;  // foliage: a part of the beam goes on behind it

@@ -6,8 +6,6 @@
 
 #include "common/config/text_config.hpp"
 #include "config/schema/scene.pb.h"
-#include "tools/sim/scene_check.hpp"
-#include "tools/sim/scene_faults.hpp"
 #include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {

@@ -1,18 +1,16 @@
 #include "tools/sim/scene_maker.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "common/core/angles.hpp"
-#include "tools/sim/fleet.hpp"
 #include "tools/sim/random.hpp"
-#include "tools/sim/scene_check.hpp"
 #include "tools/sim/shore.hpp"
 #include "tools/sim/traffic.hpp"
 
@@ -47,12 +45,6 @@ Vector2d PlaceAtBearing(double bearing_rad, double radius_m) { return radius_m *
 double Draw(const Numbers& numbers, double usual, Random& random) {
   if (numbers.empty()) return usual;
   return numbers.size() == 1 ? numbers[0] : random.Uniform(numbers[0], numbers[1]);
-}
-
-std::string MetresText(double value_m) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2f m", value_m);
-  return text.data();
 }
 
 // Two waves each of roll, pitch and heave, as a light boat of some 2.5 m has them in a small chop: periods of 2 to 6 s.
@@ -92,25 +84,7 @@ OwnMotion DrawOwnMotion(const File::OwnBoat& boat, std::uint64_t seed, Random& w
   return motion;
 }
 
-Effects ToEffects(const File::Effects& file) {
-  static_assert(static_cast<int>(ReturnMode::kLast) == File::LAST && static_cast<int>(ReturnMode::kDual) == File::DUAL);
-  Effects effects;
-  effects.return_mode = static_cast<ReturnMode>(file.return_mode());
-  effects.range_sd_m = file.range_sd_m();
-  effects.half_seen_range_m = file.half_seen_range_m();
-  effects.horizontal_divergence_mrad = file.horizontal_divergence_mrad();
-  effects.vertical_divergence_mrad = file.vertical_divergence_mrad();
-  effects.stray_probability = file.stray_probability();
-  effects.glint_probability = file.glint_probability();
-  effects.mirror_strength = file.mirror_strength();
-  effects.crest_probability = file.crest_probability();
-  effects.wake_probability = file.wake_probability();
-  effects.spray_probability = file.spray_probability();
-  effects.rain_probability_per_m = file.rain_probability_per_m();
-  return effects;
-}
-
-// A waypoint at which the way would stand still or turn back.
+// A waypoint at which the path would stand still or turn back.
 bool IsBadCorner(const Vector2d& before_m, const Vector2d& at_m, const Vector2d& after_m) {
   const Vector2d in_m = at_m - before_m;
   const Vector2d out_m = after_m - at_m;
@@ -137,7 +111,7 @@ class Drawing {
   Scene DrawWithoutObjects() {
     Scene scene;
     scene.own_motion = DrawOwnMotion(file_.own_boat(), seed_, land_random_);
-    scene.effects = ToEffects(file_.effects());
+    scene.effects = file_.effects();
     if (file_.has_sea()) {
       const SeaState state{file_.sea().significant_height_m(), file_.sea().wavelength_m(), DegToRad(file_.sea().from_deg()),
                            DegToRad(file_.sea().spread_deg())};
@@ -202,7 +176,7 @@ class Drawing {
       if (IsBadCorner(points_m[(i + num_points - 1) % num_points], points_m[i], points_m[(i + 1) % num_points])) {
         std::string waypoint = field + ".path.waypoint";
         if (i > 0) waypoint += "[" + std::to_string(i - 1) + "]";
-        Stop(waypoint, "the way stands still here, or turns back on the spot");
+        Stop(waypoint, "the path stands still here, or turns back on the spot");
       }
     }
     return MakeRoute(points_m, speed_mps, path.turn_radius_m(), path.is_closed());
@@ -268,15 +242,13 @@ class Drawing {
           break;
         }
         if (is_drawn && num_tries < kMaxTries) continue;
-        std::string reason = name;
-        if (overlapping) {
-          reason += " and " + overlapping->name + " are in one place within 60 s";
-        } else {
+        std::string reason = fmt::format("{} and {} are in one place within 60 s", name, overlapping ? overlapping->name : "");
+        if (!overlapping) {
           const Approach& nearest = own_boat ? *own_boat : *other;
-          reason += " comes to " + MetresText(nearest.distance_m) + " of " + nearest.name + " within 60 s, must stay " +
-                    MetresText(own_boat ? kOwnBoatClearanceM : file.min_distance_m()) + " away";
+          reason = fmt::format("{} comes to {:.2f} m of {} within 60 s, must stay {:.2f} m away", name, nearest.distance_m, nearest.name,
+                               own_boat ? kOwnBoatClearanceM : file.min_distance_m());
         }
-        Stop(field, is_drawn ? "no place in " + std::to_string(kMaxTries) + " tries: at the last " + reason : reason);
+        Stop(field, is_drawn ? fmt::format("no place in {} tries: at the last {}", kMaxTries, reason) : reason);
       }
     }
   }

@@ -5,12 +5,12 @@
 #include <vector>
 
 #include "common/config/boat.hpp"
-#include "tools/sim/clock_faults.hpp"
 #include "tools/sim/datagram.hpp"
 #include "tools/sim/fault_plan.hpp"
 #include "tools/sim/lidar.hpp"
+#include "tools/sim/lidar_clock.hpp"
 #include "tools/sim/navigation.hpp"
-#include "tools/sim/truth_writer.hpp"
+#include "tools/sim/truth.hpp"
 
 namespace lookout::sim {
 

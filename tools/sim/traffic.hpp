@@ -1,15 +1,23 @@
-// Who is where in the first minute of a scene, seen from above, and how near they come to each other.
+// Outlines seen from above, and how near objects come to each other in the first minute of a scene.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "tools/sim/outline.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
 
-/// Between two in the first kCheckedS; found to the 0.2 s in which they are sampled.
+/// A simple polygon seen from above.
+using Outline = std::vector<Eigen::Vector2d>;
+
+/// A vertex or an edge itself may count either way.
+bool Contains(const Outline& outline_m, const Eigen::Vector2d& p_m);
+
+/// @return shortest distance between two polygons; 0 when they touch or one holds the other. Cost: product of their vertices.
+double DistanceM(const Outline& a_m, const Outline& b_m);
+
+/// Between two objects in the first kCheckedS, sampled every 0.2 s.
 struct Approach {
   double distance_m;
   std::string name;  // of the other one

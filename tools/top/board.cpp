@@ -7,6 +7,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/bus/services.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
@@ -69,9 +70,10 @@ const health_counter_t* FindCounter(const health_t& health, std::string_view nam
 }
 
 // In the order of the data.
-constexpr std::array<std::string_view, 5> kSuite{"vlp16", "segmenter", "navigator", "georeferencer", "recorder"};
-std::size_t PlaceInSuite(std::string_view process) { return static_cast<std::size_t>(std::ranges::find(kSuite, process) - kSuite.begin()); }
-bool IsOfSuite(std::string_view process) { return PlaceInSuite(process) < kSuite.size(); }
+std::size_t PlaceInSuite(std::string_view process) {
+  return static_cast<std::size_t>(std::ranges::find(bus::kServices, process, &bus::ServiceRow::name) - bus::kServices.begin());
+}
+bool IsOfSuite(std::string_view process) { return PlaceInSuite(process) < bus::kServices.size(); }
 
 // Reasons are joined by "; ": the pieces about the alarm say how near and where, or that nobody looks. Without one, counters have at least the
 // distance.
@@ -121,7 +123,7 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
   }
   std::optional<Place> place;
   if (entry->name == bus::kObstacles.name) {
-    if (const auto message = bus::Decode<obstacles_t>(bytes)) {
+    if (const auto message = bus::Decode<obstacles_t>(bytes); message && messages::IsWellFormed(*message)) {
       place = PlaceOf(*message);
       nearest_.Take(*message, now);
     }

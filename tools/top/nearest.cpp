@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
+#include <utility>
 
 #include "common/core/angles.hpp"
 
@@ -30,11 +32,6 @@ bool IsNearer(const ObstacleLine& a, const ObstacleLine& b) {
   return key(a) < key(b);
 }
 
-void Insert(std::vector<ObstacleLine>& lines, const ObstacleLine& line) {
-  lines.insert(std::ranges::lower_bound(lines, line, IsNearer), line);
-  if (lines.size() > Nearest::kMaxLines) lines.pop_back();
-}
-
 }  // namespace
 
 void Nearest::Take(const pose_t& pose) {
@@ -49,21 +46,7 @@ double Nearest::HeadingAt(std::int64_t utime_us) const {
 }
 
 void Nearest::Take(const obstacles_t& part, TimePoint now) {
-  const bool goes_on =
-      gathering_ && part.seq == gathering_->seq && part.utime_us == gathering_->utime_us && part.part_index > gathering_->last_part_index;
-  if (!goes_on) {
-    // A turn without its last part shows when the next one begins.
-    if (gathering_ && gathering_->num_parts_to_come > 0) {
-      newest_ = gathering_->obstacles;
-      newest_->num_parts_missing += gathering_->num_parts_to_come;
-    }
-    gathering_ = Gathering{part.utime_us, part.seq, -1, 0, {}};
-  }
-  auto& obstacles = gathering_->obstacles;
-  obstacles.num_parts_missing += std::max<std::int64_t>(0, std::int64_t{part.part_index} - gathering_->last_part_index - 1);
-  gathering_->last_part_index = part.part_index;
-  obstacles.num_obstacles += static_cast<std::int64_t>(part.obstacles.size());
-  obstacles.time = now;
+  Part kept{part.utime_us, part.seq, part.part_index, part.num_parts, {}, now};
   for (const auto& obstacle : part.obstacles) {
     ObstacleLine line;
     line.id = obstacle.id;
@@ -79,14 +62,27 @@ void Nearest::Take(const obstacles_t& part, TimePoint now) {
     line.height_m = obstacle.height_m;
     const double true_bearing_rad = HeadingAt(obstacle.utime_us) + line.bearing_rad;
     line.true_bearing_rad = std::isfinite(true_bearing_rad) ? WrapTo2Pi(true_bearing_rad) : kUnknown;
-    Insert(obstacles.lines, line);
-    if (line.confidence == obstacle_t::CONFIDENCE_SURE) {
-      ++obstacles.num_sure;
-      Insert(obstacles.sure_lines, line);
-    }
+    kept.lines.push_back(line);
   }
-  gathering_->num_parts_to_come = std::int64_t{part.num_parts} - part.part_index - 1;
-  if (gathering_->num_parts_to_come <= 0) newest_ = obstacles;
+  const auto ended = assembler_.Add(std::move(kept));
+  if (!ended.incomplete.empty()) newest_ = ToNearest(ended.incomplete);
+  if (!ended.whole.empty()) newest_ = ToNearest(ended.whole);
+}
+
+NearestObstacles Nearest::ToNearest(const std::vector<Part>& parts) {
+  NearestObstacles nearest;
+  nearest.num_parts_missing = parts.front().num_parts - static_cast<std::int64_t>(parts.size());
+  for (const auto& part : parts) {
+    nearest.lines.insert(nearest.lines.end(), part.lines.begin(), part.lines.end());
+    nearest.time = std::max(nearest.time, part.time);
+  }
+  nearest.num_obstacles = static_cast<std::int64_t>(nearest.lines.size());
+  std::ranges::sort(nearest.lines, IsNearer);
+  std::ranges::copy_if(nearest.lines, std::back_inserter(nearest.sure_lines),
+                       [](const ObstacleLine& line) { return line.confidence == obstacle_t::CONFIDENCE_SURE; });
+  nearest.num_sure = static_cast<std::int64_t>(nearest.sure_lines.size());
+  for (auto* lines : {&nearest.lines, &nearest.sure_lines}) lines->resize(std::min(lines->size(), kMaxLines));
+  return nearest;
 }
 
 }  // namespace lookout::top

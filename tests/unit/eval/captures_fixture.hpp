@@ -18,7 +18,7 @@
 #include "tests/support/files.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/sim/lidar.hpp"
-#include "tools/sim/pcap_sink.hpp"
+#include "tools/sim/sinks.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval::test {

@@ -6,9 +6,9 @@
 
 #include "tests/support/files.hpp"
 #include "tests/unit/eval/captures_fixture.hpp"
-#include "tools/eval/judge.hpp"
+#include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
-#include "tools/eval/readers/xz_file.hpp"
+#include "tools/import/xz_file.hpp"
 
 namespace lookout::eval::test {
 namespace {
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 TEST_F(Captures, GiveTheScansThatTheSimulatorRendersWithoutTheOwnVessel) {
   Make("sparse");
   std::vector<LabelledScan> rendered;
-  RenderTurns(scene_, boat_, kSeed, kSeconds, [&rendered](const LabelledScan& scan) { rendered.push_back(scan); });
+  RenderScans(scene_, boat_, kSeed, kSeconds, [&rendered](const LabelledScan& scan) { rendered.push_back(scan); });
   std::vector<LabelledScan> read;
   const auto report = Read([&read](const LabelledScan& scan) { read.push_back(scan); });
 
@@ -212,10 +212,10 @@ TEST(XzFile, RefusesWhatUnpacksToTooMuch) {
   const auto file = folder / "file.xz";
   std::ofstream(file, std::ios::binary) << Pack(std::string(1 << 20, 'a'));
   std::vector<std::uint8_t> out(1 << 21);
-  EXPECT_EQ(XzFile(file, 1 << 20).Read(out), std::size_t{1} << 20);
-  EXPECT_THROW(XzFile(file, (1 << 20) - 1).Read(out), std::runtime_error);
+  EXPECT_EQ(importer::XzFile(file, 1 << 20).Read(out), std::size_t{1} << 20);
+  EXPECT_THROW(importer::XzFile(file, (1 << 20) - 1).Read(out), std::runtime_error);
   fs::remove(file);
-  EXPECT_THROW(XzFile(file, 1), std::runtime_error);
+  EXPECT_THROW(importer::XzFile(file, 1), std::runtime_error);
 }
 
 TEST(SecondWorld, EveryReturnOfItsCapturesHasItsTruthAndTheDefaultMethodSeesItsThings) {
@@ -227,13 +227,13 @@ TEST(SecondWorld, EveryReturnOfItsCapturesHasItsTruthAndTheDefaultMethodSeesItsT
   const auto boat = LoadBoatOfCaptures(folder, support::kCatabotConfig);
   Methods methods;
   methods.push_back(std::make_unique<SegmenterMethod>("ours", boat.segmenter));
-  Judge judge(methods);
-  const auto report = ReadCapture(*dense, boat, [&judge](const LabelledScan& scan) { judge.Add({"dense", 0, 0}, scan); });
+  MethodComparison comparison(methods);
+  const auto report = ReadCapture(*dense, boat, [&comparison](const LabelledScan& scan) { comparison.Add({"dense", 0, 0}, scan); });
   EXPECT_GE(report.num_scans, 25);
   EXPECT_EQ(report.num_unmatched, 0);
   EXPECT_GT(report.num_own_vessel, 0);
   // Measured 2026-11-22: 97.8 % over both captures of the scene. A mounting or a truth that is off costs more than the points between.
-  EXPECT_GE(MeanIou(judge.results().at(0).by_scene.at("dense")), 0.93);
+  EXPECT_GE(MeanIou(comparison.results().at(0).by_scene.at("dense")), 0.93);
 }
 
 }  // namespace

@@ -4,29 +4,30 @@
 #include <memory>
 #include <string>
 
-#include "tools/eval/judge.hpp"
+#include "tests/support/files.hpp"
+#include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
 
 namespace lookout::eval {
 namespace {
 
-const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
+const std::filesystem::path kRoot = support::kSources;
 
 constexpr int kNumSeeds = 5;
 constexpr double kSeconds = 0.4;  // three whole turns of each seed
 
-enum class Count { kAll, kSureOnly };  // operating points of the judge, in its order
+enum class Count { kAll, kSureOnly };  // operating points of the comparison, in its order
 
 Score ScoreOf(const std::string& scene, Count count = Count::kAll) {
   const auto boat = LoadBoat(kRoot / "config/catabot");
   Methods methods;
   methods.push_back(std::make_unique<SegmenterMethod>("ours", boat.segmenter));
-  Judge judge(methods);
+  MethodComparison comparison(methods);
   Progress silent(nullptr, 1);
-  ForEachTurn({{scene}, 1, kNumSeeds, kSeconds}, boat, silent,
-              [&judge](const TurnPlace& place, const LabelledScan& truth) { judge.Add(place, truth); });
-  const auto score = judge.results().at(static_cast<std::size_t>(count)).by_scene.at(scene);
-  EXPECT_EQ(score.num_turns, 3 * kNumSeeds);
+  ForEachScan({{scene}, 1, kNumSeeds, kSeconds}, boat, silent,
+              [&comparison](const ScanPlace& place, const LabelledScan& truth) { comparison.Add(place, truth); });
+  const auto score = comparison.results().at(static_cast<std::size_t>(count)).by_scene.at(scene);
+  EXPECT_EQ(score.num_scans, 3 * kNumSeeds);
   return score;
 }
 
@@ -51,9 +52,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, MeanIouOfTheDefaultMethod,
 
 // Measured on these turns: none on open water and in rain, one in fifteen turns of waves.
 TEST(SureFalseSegmentsOfTheDefaultMethod, AreFewOnOpenWaterAndInRainAndWaves) {
-  EXPECT_LE(FalseSegmentsPerTurn(ScoreOf("open_water", Count::kSureOnly)), 0.2);
-  EXPECT_LE(FalseSegmentsPerTurn(ScoreOf("rain", Count::kSureOnly)), 0.3);
-  EXPECT_LE(FalseSegmentsPerTurn(ScoreOf("waves", Count::kSureOnly)), 0.5);
+  EXPECT_LE(FalseSegmentsPerScan(ScoreOf("open_water", Count::kSureOnly)), 0.2);
+  EXPECT_LE(FalseSegmentsPerScan(ScoreOf("rain", Count::kSureOnly)), 0.3);
+  EXPECT_LE(FalseSegmentsPerScan(ScoreOf("waves", Count::kSureOnly)), 0.5);
 }
 
 // Single buoys of few returns are found, if only as tentative: nothing that is small is dropped.
@@ -62,7 +63,7 @@ TEST(BlackBuoysOfTheDefaultMethod, AreFoundWithinTwentyFiveMetres) {
   std::int64_t num_found = 0;
   for (const auto& [kind, recall] : ScoreOf("black_buoys").near_recall_by_kind) {
     if (kind.find("buoy") == std::string::npos) continue;
-    num_buoys += recall.num_object_turns;
+    num_buoys += recall.num_object_scans;
     num_found += recall.num_found;
   }
   ASSERT_GT(num_buoys, 10);

@@ -12,8 +12,8 @@ namespace lookout::eval {
 namespace {
 
 // Two columns of two rings, 55 us apart: the ferry twice, the pile, a stray. Segment 1 holds the ferry, segment 2 pile and stray.
-Turn SmallTurn() {
-  Turn turn;
+messages::ScanMessages SmallTurn() {
+  messages::ScanMessages turn;
   lidar_scan_t scan{};
   scan.utime_us = kStartUs;
   scan.num_parts = 1;
@@ -209,8 +209,8 @@ TEST_F(EvaluationTest, KeepsTheLastWholeTurnForTheTable) {
   evaluation.Add(partial);
   EXPECT_EQ(evaluation.table_utime_us, kStartUs);
   EXPECT_EQ(evaluation.rows.size(), 2U);
-  EXPECT_EQ(evaluation.num_turns, 2);
-  EXPECT_EQ(evaluation.num_whole_turns, 1);
+  EXPECT_EQ(evaluation.num_scans, 2);
+  EXPECT_EQ(evaluation.num_whole_scans, 1);
 }
 
 TEST_F(EvaluationTest, PoseErrorsGoTheShortWayRound) {

@@ -157,7 +157,7 @@ TEST_F(Figures, ASweepIsARowOfMeansOverItsScenes) {
   Results results;
   Curve curve{"Sweep of link_m", "link_m", "mIoU of all segments, %", {{"a", {{0.2, 90.0}, {0.3, 80.0}}}, {"b", {{0.2, 70.0}, {0.3, 90.0}}}}, ""};
   curve.value_of_boat = "0.3";
-  curve.turns_from = "seeds 1 to 4, 0.6 s each";
+  curve.scans_from = "seeds 1 to 4, 0.6 s each";
   results.curves = {curve};
   const auto figures = FiguresOf(results, "2026-11-22");
   ASSERT_EQ(figures.size(), 1U);

@@ -40,7 +40,7 @@ TEST(Machine, PacketCountsGoOnOverAStartMark) {
   machine.Add(Clock(0, 70, 1));
   EXPECT_EQ(machine.Packets().num_packets, 220);
   EXPECT_EQ(machine.Packets().num_lost, 4);
-  EXPECT_EQ(machine.num_turns_by_sensor, 3);
+  EXPECT_EQ(machine.num_scans_by_sensor, 3);
 }
 
 TEST(Machine, TimesAreOfReportsInWhichAMessageCame) {

@@ -39,7 +39,7 @@ inline Case MakeCase(const std::vector<Cell>& cells) {
 
 inline Score ScoreOf(const std::vector<Cell>& cells) {
   const auto one = MakeCase(cells);
-  return ScoreTurn(one.truth, one.labelling);
+  return ScoreScan(one.truth, one.labelling);
 }
 
 inline void AddCells(std::vector<Cell>& cells, int count, Cell cell) { cells.insert(cells.end(), static_cast<std::size_t>(count), cell); }

@@ -1,4 +1,4 @@
-// The judge is judged: laws, and an obvious computation, over random labels.
+// Scores: laws, and an obvious computation, over random labels.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <numeric>
@@ -48,7 +48,7 @@ struct Obvious {
 double NearestM(const Case& one, int object) {
   double nearest_m = 1e9;
   for (std::size_t cell = 0; cell < one.truth.object.size(); ++cell) {
-    if (one.truth.object[cell] != object || one.labelling.label[cell] == kNotJudged || one.truth.scan.columns.range[cell] == 0) continue;
+    if (one.truth.object[cell] != object || one.labelling.label[cell] == kNotScored || one.truth.scan.columns.range[cell] == 0) continue;
     nearest_m = std::min(nearest_m, one.truth.scan.columns.range[cell] * kRangeUnitM);
   }
   return nearest_m;
@@ -60,7 +60,7 @@ Obvious Compute(const Case& one) {
   const auto count = [&](auto of) {
     int number = 0;
     for (std::size_t cell = 0; cell < label.size(); ++cell) {
-      if (one.truth.scan.columns.range[cell] != 0 && label[cell] != kNotJudged && of(object[cell], label[cell])) ++number;
+      if (one.truth.scan.columns.range[cell] != 0 && label[cell] != kNotScored && of(object[cell], label[cell])) ++number;
     }
     return number;
   };
@@ -129,11 +129,11 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
   for (std::uint64_t seed = 1; seed <= kNumCases; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const auto one = RandomCase(seed);
-    const auto score = ScoreTurn(one.truth, one.labelling);
+    const auto score = ScoreScan(one.truth, one.labelling);
     const auto expected = Compute(one);
-    EXPECT_EQ(score.num_object_turns, expected.num_objects);
+    EXPECT_EQ(score.num_object_scans, expected.num_objects);
     EXPECT_NEAR(score.sum_iou, expected.iou, 1e-12);
-    const auto sure = ScoreTurn(one.truth, SureOnly(one.labelling));
+    const auto sure = ScoreScan(one.truth, SureOnly(one.labelling));
     EXPECT_NEAR(sure.sum_iou, expected.sure_iou, 1e-12);
     EXPECT_EQ(score.num_things, expected.num_things);
     EXPECT_EQ(score.num_things_with_segment, expected.num_things_with_segment);
@@ -148,12 +148,12 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
     EXPECT_EQ(num_found, expected.num_found);
     Score::Recall near;
     for (const auto& [kind, recall] : score.near_recall_by_kind) {
-      near.num_object_turns += recall.num_object_turns;
+      near.num_object_scans += recall.num_object_scans;
       near.num_found += recall.num_found;
     }
     std::int64_t num_near_surely_found = 0;
     for (const auto& [kind, recall] : sure.near_recall_by_kind) num_near_surely_found += recall.num_found;
-    EXPECT_EQ(near.num_object_turns, expected.num_near);
+    EXPECT_EQ(near.num_object_scans, expected.num_near);
     EXPECT_EQ(near.num_found, expected.num_near_found);
     EXPECT_EQ(num_near_surely_found, expected.num_near_surely_found);
     if (HasFailure()) break;
@@ -164,8 +164,8 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     auto one = RandomCase(seed);
-    const auto before = ScoreTurn(one.truth, one.labelling);
-    const auto before_sure = ScoreTurn(one.truth, SureOnly(one.labelling));
+    const auto before = ScoreScan(one.truth, one.labelling);
+    const auto before_sure = ScoreScan(one.truth, SureOnly(one.labelling));
     // Ids are dealt anew, with gaps between them.
     const std::size_t num_labels = one.labelling.is_sure.size();
     std::vector<std::int32_t> new_id(num_labels);
@@ -180,13 +180,13 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
       if (label > 0) label = new_id[static_cast<std::size_t>(label - 1)];
     }
     one.labelling.is_sure = is_sure;
-    const auto after = ScoreTurn(one.truth, one.labelling);
+    const auto after = ScoreScan(one.truth, one.labelling);
     EXPECT_DOUBLE_EQ(after.sum_iou, before.sum_iou);
-    EXPECT_DOUBLE_EQ(ScoreTurn(one.truth, SureOnly(one.labelling)).sum_iou, before_sure.sum_iou);
+    EXPECT_DOUBLE_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).sum_iou, before_sure.sum_iou);
     EXPECT_DOUBLE_EQ(after.sum_water_iou, before.sum_water_iou);
     EXPECT_EQ(after.num_segments, before.num_segments);
     EXPECT_EQ(after.num_false_segments, before.num_false_segments);
-    EXPECT_EQ(ScoreTurn(one.truth, SureOnly(one.labelling)).num_false_segments, before_sure.num_false_segments);
+    EXPECT_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).num_false_segments, before_sure.num_false_segments);
     EXPECT_EQ(after.num_things_with_segment, before.num_things_with_segment);
     EXPECT_EQ(after.num_over_segmented, before.num_over_segmented);
     EXPECT_EQ(after.num_under_segmented, before.num_under_segmented);

@@ -1,4 +1,4 @@
-// The judge is judged: answers worked out by hand.
+// Scores: answers worked out by hand.
 #include "tools/eval/scoring.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ TEST(Scoring, PerfectLabelsGiveOneHundred) {
   EXPECT_EQ(score.num_false_segments, 0);
   EXPECT_EQ(score.num_over_segmented, 0);
   EXPECT_EQ(score.num_under_segmented, 0);
-  EXPECT_EQ(score.num_object_turns, 3);
+  EXPECT_EQ(score.num_object_scans, 3);
 }
 
 TEST(Scoring, AllInOneGivesEachObjectItsShareOfAll) {
@@ -81,7 +81,7 @@ TEST(Scoring, OwnVesselAndStraysAreNoObjectsButLowerIou) {
   AddCells(cells, 1, {kNoTrueObject, 1});
   AddCells(cells, 2, {kOwnVesselObject, 2});
   const auto score = ScoreOf(cells);
-  EXPECT_EQ(score.num_object_turns, 1);
+  EXPECT_EQ(score.num_object_scans, 1);
   EXPECT_DOUBLE_EQ(MeanIou(score), 0.6);
   EXPECT_EQ(score.num_false_segments, 1) << "the own boat as an obstacle is false";
 }
@@ -98,10 +98,10 @@ TEST(Scoring, SegmentThatStraysLeadGivesNoTruePositives) {
 TEST(Scoring, TentativeSegmentsAreAnOperatingPointOfTheirOwn) {
   auto one = MakeCase({{1, 1}, {1, 1}, {3, 2}, {kNoTrueObject, 3}, {kNoTrueObject, 4}});
   one.labelling.is_sure = {true, false, true, false};
-  const auto all = ScoreTurn(one.truth, one.labelling);
+  const auto all = ScoreScan(one.truth, one.labelling);
   EXPECT_DOUBLE_EQ(MeanIou(all), 1.0);
   EXPECT_EQ(all.num_false_segments, 2);
-  const auto sure = ScoreTurn(one.truth, SureOnly(one.labelling));
+  const auto sure = ScoreScan(one.truth, SureOnly(one.labelling));
   EXPECT_DOUBLE_EQ(MeanIou(sure), 0.5);
   EXPECT_EQ(sure.num_false_segments, 1);
   EXPECT_EQ(sure.num_segments, 2);
@@ -109,7 +109,7 @@ TEST(Scoring, TentativeSegmentsAreAnOperatingPointOfTheirOwn) {
 }
 
 TEST(Scoring, WhereNothingIsTentativeTheSureOnesAreAll) {
-  auto one = MakeCase({{1, 1}, {3, 2}, {5, 0}, {5, kNotJudged}});
+  auto one = MakeCase({{1, 1}, {3, 2}, {5, 0}, {5, kNotScored}});
   EXPECT_EQ(SureOnly(one.labelling).label, one.labelling.label) << "no word on it: all are sure";
   one.labelling.is_sure = {true, true};
   EXPECT_EQ(SureOnly(one.labelling).label, one.labelling.label);
@@ -136,31 +136,31 @@ TEST(Scoring, AThingHasASegmentWhenMoreThanHalfOfOneIsIts) {
   EXPECT_DOUBLE_EQ(ThingsWithSegment(total), 0.5);
 }
 
-TEST(Scoring, ReturnsThatAreNotJudgedDoNotCountAnywhere) {
+TEST(Scoring, ReturnsThatAreNotScoredDoNotCountAnywhere) {
   std::vector<Cell> cells;
   AddCells(cells, 6, {1, 1});
-  AddCells(cells, 9, {1, kNotJudged});
-  AddCells(cells, 9, {2, kNotJudged});
+  AddCells(cells, 9, {1, kNotScored});
+  AddCells(cells, 9, {2, kNotScored});
   const auto score = ScoreOf(cells);
   EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
-  EXPECT_EQ(score.num_object_turns, 1);
+  EXPECT_EQ(score.num_object_scans, 1);
   EXPECT_EQ(score.num_returns, 6);
-  EXPECT_EQ(score.num_not_judged, 18);
+  EXPECT_EQ(score.num_not_scored, 18);
 }
 
 TEST(Scoring, CellsWithoutReturnDoNotCount) {
   auto one = MakeCase({{1, 1}, {1, 1}, {2, 1}});
   one.truth.scan.columns.range[2] = 0;
-  const auto score = ScoreTurn(one.truth, one.labelling);
-  EXPECT_EQ(score.num_object_turns, 1);
+  const auto score = ScoreScan(one.truth, one.labelling);
+  EXPECT_EQ(score.num_object_scans, 1);
   EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
 }
 
 TEST(Scoring, OpenWaterHasNoIou) {
   const auto score = ScoreOf({{kNoTrueObject, 1}, {kNoTrueObject, 0}});
-  EXPECT_EQ(score.num_turns_with_object, 0);
+  EXPECT_EQ(score.num_scans_with_object, 0);
   EXPECT_TRUE(std::isnan(MeanIou(score)));
-  EXPECT_DOUBLE_EQ(FalseSegmentsPerTurn(score), 1.0);
+  EXPECT_DOUBLE_EQ(FalseSegmentsPerScan(score), 1.0);
   EXPECT_TRUE(std::isnan(MeanIou(ScoreOf({}))));
 }
 
@@ -177,16 +177,16 @@ TEST(Scoring, WhatIsNearIsCountedByKindAtEitherOperatingPoint) {
   // Kayaks 1 and 3 are near, 5 lies just beyond 25 m; dock 2 is near by its nearest return. Segment 3 is tentative.
   auto one = MakeCase({{1, 1, 10.0}, {3, 3, 24.9}, {5, 5, 25.1}, {2, 2, 60.0}, {2, 0, 60.0}, {2, 0, 5.0}});
   one.labelling.is_sure = {true, true, false, true, true};
-  const auto score = ScoreTurn(one.truth, one.labelling);
-  const auto sure = ScoreTurn(one.truth, SureOnly(one.labelling));
+  const auto score = ScoreScan(one.truth, one.labelling);
+  const auto sure = ScoreScan(one.truth, SureOnly(one.labelling));
   ASSERT_EQ(score.near_recall_by_kind.size(), 2U);
   const auto& kayaks = score.near_recall_by_kind.at("kayak");
-  EXPECT_EQ(kayaks.num_object_turns, 2);
+  EXPECT_EQ(kayaks.num_object_scans, 2);
   EXPECT_EQ(kayaks.num_found, 2);
-  EXPECT_EQ(sure.near_recall_by_kind.at("kayak").num_object_turns, 2);
+  EXPECT_EQ(sure.near_recall_by_kind.at("kayak").num_object_scans, 2);
   EXPECT_EQ(sure.near_recall_by_kind.at("kayak").num_found, 1);
   const auto& docks = score.near_recall_by_kind.at("dock");
-  EXPECT_EQ(docks.num_object_turns, 1);
+  EXPECT_EQ(docks.num_object_scans, 1);
   EXPECT_EQ(docks.num_found, 0) << "a third of it";
   EXPECT_DOUBLE_EQ(MeanWaterIou(score), 1.0);
   EXPECT_DOUBLE_EQ(MeanWaterIou(sure), 2.0 / 3.0);
@@ -203,12 +203,12 @@ TEST(Scoring, WhatIsNearIsCountedByKindAtEitherOperatingPoint) {
 
 TEST(Scoring, ComponentsAreAMeanOverTheTurnsThatHaveThem) {
   auto one = MakeCase({{1, 1}});
-  EXPECT_TRUE(std::isnan(ComponentsPerTurn(ScoreTurn(one.truth, one.labelling))));
+  EXPECT_TRUE(std::isnan(ComponentsPerScan(ScoreScan(one.truth, one.labelling))));
   one.labelling.num_components = 3;
-  Score total = ScoreTurn(one.truth, one.labelling);
+  Score total = ScoreScan(one.truth, one.labelling);
   one.labelling.num_components = 4;
-  total.Add(ScoreTurn(one.truth, one.labelling));
-  EXPECT_DOUBLE_EQ(ComponentsPerTurn(total), 3.5);
+  total.Add(ScoreScan(one.truth, one.labelling));
+  EXPECT_DOUBLE_EQ(ComponentsPerScan(total), 3.5);
 }
 
 TEST(Scoring, HalfIsFound) {
@@ -222,16 +222,16 @@ TEST(Scoring, ScoresAddUp) {
   Score total = ScoreOf({{1, 1}, {1, 1}});
   total.Add(ScoreOf({{1, 1}, {1, 0}, {kNoTrueObject, 2}}));
   total.Add(ScoreOf({{kNoTrueObject, 2}}));
-  EXPECT_EQ(total.num_turns, 3);
+  EXPECT_EQ(total.num_scans, 3);
   EXPECT_DOUBLE_EQ(MeanIou(total), 0.75) << "the turn without objects has no IoU";
-  EXPECT_DOUBLE_EQ(FalseSegmentsPerTurn(total), 2.0 / 3.0);
+  EXPECT_DOUBLE_EQ(FalseSegmentsPerScan(total), 2.0 / 3.0);
   EXPECT_EQ(total.iou_by_kind.at("kayak"), std::pair(std::int64_t{2}, 1.5));
 }
 
 TEST(Scoring, LabelsThatDoNotFitTheCellsAreRefused) {
   auto one = MakeCase({{1, 1}, {1, 1}});
   one.labelling.label.pop_back();
-  EXPECT_THROW(ScoreTurn(one.truth, one.labelling), std::logic_error);
+  EXPECT_THROW(ScoreScan(one.truth, one.labelling), std::logic_error);
 }
 
 }  // namespace

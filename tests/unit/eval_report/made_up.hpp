@@ -15,7 +15,7 @@ namespace lookout::eval {
 /// Four turns with two objects each, one of them in the water.
 inline Score MadeUpScore(double iou, double time_ms) {
   Score score;
-  score.num_turns = score.num_turns_with_object = score.num_turns_with_water_object = 4;
+  score.num_scans = score.num_scans_with_object = score.num_scans_with_water_object = 4;
   score.sum_iou = 4 * iou;
   score.sum_water_iou = 4 * (iou - 0.05);
   score.iou_by_kind = {{"buoy", {4, 4 * (iou - 0.05)}}, {"shore", {4, 4 * (iou + 0.05)}}};
@@ -24,7 +24,7 @@ inline Score MadeUpScore(double iou, double time_ms) {
   score.iou_by_range = {{0, {4, 4 * 0.625}}, {2, {4, 4 * iou}}};
   score.num_segments = 12;
   score.num_false_segments = 3;
-  score.num_object_turns = 8;
+  score.num_object_scans = 8;
   score.num_things = 8;
   score.num_things_with_segment = 7;
   score.num_over_segmented = 1;
@@ -38,11 +38,11 @@ inline Score MadeUpScore(double iou, double time_ms) {
 /// One ring of level beams, a column a degree.
 ///
 /// @param object, label  of each column; where both are 0 there is no return
-inline WorstTurn MadeUpTurn(const std::vector<std::int32_t>& object, const std::vector<std::int32_t>& label) {
-  WorstTurn turn;
+inline WorstScan MadeUpTurn(const std::vector<std::int32_t>& object, const std::vector<std::int32_t>& label) {
+  WorstScan turn;
   turn.scene = "rain";
   turn.seed = 7;
-  turn.turn = 3;
+  turn.index = 3;
   turn.iou = 0.125;
   auto& scan = turn.truth.scan;
   scan.head.range_unit_m = 0.002;
@@ -69,7 +69,7 @@ inline Results MadeUpResults() {
   results.num_seeds = 3;
   results.seconds = 2.0;
   Score empty_water;
-  empty_water.num_turns = 4;
+  empty_water.num_scans = 4;
   empty_water.time_ms = {0.5, 0.5, 0.5, 0.5};
   const auto add = [&](const std::string& name, double dense_iou, double rain_iou, double time_ms) {
     MethodResult method;
@@ -80,7 +80,7 @@ inline Results MadeUpResults() {
   add("ours", 0.902, 0.802, 1.25);
   add("paper W=512", 0.307, 0.803, 0.75);
   add("paper W=512 without BFS", 0.2, 0.1, 30.0);
-  for (auto& [scene, score] : results.methods[1].by_scene) score.num_turns_with_components = score.num_turns;
+  for (auto& [scene, score] : results.methods[1].by_scene) score.num_scans_with_components = score.num_scans;
   results.methods[1].by_scene["dense"].num_components = 460 * 4;
   results.methods[1].by_scene["rain"].num_components = 461 * 4;
   results.methods[1].by_scene["open<water>"].num_components = 462 * 4;

@@ -57,7 +57,7 @@ TEST(WriteHtml, SaysWhatWasRun) {
 // Sweeps run on other seeds than tables.
 TEST(WriteHtml, ASweepSaysWhichSeedsItRanOn) {
   auto results = MadeUpResults();
-  results.curves[0].turns_from = "seeds 1 to 4, 0.6 s each";
+  results.curves[0].scans_from = "seeds 1 to 4, 0.6 s each";
   EXPECT_TRUE(Holds(SectionOf(PageOf(results), "curves"), "seeds 1 to 4, 0.6 s each"));
   EXPECT_FALSE(Holds(SectionOf(PageOf(MadeUpResults()), "curves"), "seeds"));
 }
@@ -153,7 +153,7 @@ TEST(WriteHtml, AnotherWorldStandsBesideOursOrSaysThatItIsNotHere) {
 
 TEST(WriteHtml, MethodsThatLookAheadOnlyDoNotWin) {
   auto results = MadeUpResults();
-  results.methods[0].by_scene["dense"].num_not_judged = 1;
+  results.methods[0].by_scene["dense"].num_not_scored = 1;
   const auto section = SectionOf(PageOf(results), "summary");
   EXPECT_TRUE(Holds(section, "Highest mean mIoU over the scenes: paper W=512 with 55.5 %"));
   EXPECT_TRUE(Holds(section, "<th scope=\"row\">dense</th><td class=\"words\">paper W=512</td>"));

@@ -90,14 +90,14 @@ TEST(FigureOfWorstTurn, OneSegmentOverTwoObjectsBearsBothNumbers) {
   EXPECT_FALSE(Holds(figure, "dots s1"));
 }
 
-TEST(FigureOfWorstTurn, WhatIsNotJudgedBelongsToNoObject) {
-  const auto figure = FigureOfWorstTurn(MadeUpTurn({1, 1, 2, 2}, {1, 1, kNotJudged, kNotJudged}), "m");
+TEST(FigureOfWorstTurn, WhatIsNotScoredBelongsToNoObject) {
+  const auto figure = FigureOfWorstTurn(MadeUpTurn({1, 1, 2, 2}, {1, 1, kNotScored, kNotScored}), "m");
   EXPECT_TRUE(Holds(figure, "; 1 objects, 1 segments, of these 0 false"));
   EXPECT_FALSE(Holds(figure, "<td class=\"words\">shore</td>"));
 }
 
 TEST(FigureOfWorstTurn, EmptyTurnIsDrawn) {
-  for (const auto& turn : {MadeUpTurn({}, {}), MadeUpTurn({0, 0}, {0, 0}), WorstTurn{}}) {
+  for (const auto& turn : {MadeUpTurn({}, {}), MadeUpTurn({0, 0}, {0, 0}), WorstScan{}}) {
     const auto figure = FigureOfWorstTurn(turn, "m");
     EXPECT_EQ(FaultOf(figure), "");
     EXPECT_FALSE(Holds(figure, "nan"));

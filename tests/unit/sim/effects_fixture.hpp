@@ -16,8 +16,8 @@ inline constexpr int kShotsPerPacket = 384;
 
 inline Effects QuietEffects() {
   Effects effects;
-  effects.stray_probability = 0.0;
-  effects.range_sd_m = 0.0;
+  effects.set_stray_probability(0.0);
+  effects.set_range_sd_m(0.0);
   return effects;
 }
 

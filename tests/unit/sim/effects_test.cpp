@@ -1,6 +1,4 @@
 // What the lidar meets besides clean surfaces: each effect with its reason, its strength and its absence.
-#include "tools/sim/effects.hpp"
-
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -12,6 +10,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/frames.hpp"
 #include "tests/unit/sim/effects_fixture.hpp"
+#include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -113,23 +112,23 @@ TEST(Effects, PacketsSayWhereTheRaysMetTheirObjectsToACentimetre) {
 
 TEST(Effects, PacketsSayWhereEveryReturnOfEveryEffectIsToACentimetre) {
   Effects effects = QuietEffects();
-  effects.horizontal_divergence_mrad = 3.0;
-  effects.vertical_divergence_mrad = 1.5;
-  effects.glint_probability = 0.2;
-  effects.crest_probability = 0.5;
-  effects.wake_probability = 0.8;
-  effects.spray_probability = 0.1;
-  effects.rain_probability_per_m = 0.004;
-  effects.mirror_strength = 1.0;
+  effects.set_horizontal_divergence_mrad(3.0);
+  effects.set_vertical_divergence_mrad(1.5);
+  effects.set_glint_probability(0.2);
+  effects.set_crest_probability(0.5);
+  effects.set_wake_probability(0.8);
+  effects.set_spray_probability(0.1);
+  effects.set_rain_probability_per_m(0.004);
+  effects.set_mirror_strength(1.0);
   std::set<ReturnReason> reasons;
-  for (const auto mode : {ReturnMode::kStrongest, ReturnMode::kDual}) {
+  for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     for (const auto& sea : {Sea(), ChoppySea()}) {
-      effects.return_mode = mode;
+      effects.set_return_mode(mode);
       const auto scene = BusyScene(effects, sea);
       Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, 3);
       for (int i = 0; i < 8 * kPacketsPerTurn; ++i) {
         const auto packet = lidar.Next();
-        const auto positions = Positions(packet, mode == ReturnMode::kDual);
+        const auto positions = Positions(packet, mode == config::Scene::DUAL);
         ASSERT_EQ(positions.size(), packet.returns.size());
         for (const auto& made : packet.returns) {
           reasons.insert(made.reason);
@@ -159,7 +158,7 @@ TEST(Effects, AreAbsentAtStrengthZero) {
 
 TEST(Effects, StraysComeAsOftenAsTheySay) {
   Effects effects = QuietEffects();
-  effects.stray_probability = 0.01;
+  effects.set_stray_probability(0.01);
   auto scene = OpenWater(effects);
   const int num_shots = 4 * kPacketsPerTurn * kShotsPerPacket;
   auto counts = CountReasons(scene, 4 * kPacketsPerTurn);
@@ -171,7 +170,7 @@ TEST(Effects, StraysComeAsOftenAsTheySay) {
 TEST(Effects, RainComesAsOftenAsItSaysAndMostlyNear) {
   for (const double per_m : {0.001, 0.01}) {
     Effects effects = QuietEffects();
-    effects.rain_probability_per_m = per_m;
+    effects.set_rain_probability_per_m(per_m);
     double sum_expected = 0.0;
     int count = 0;
     int num_near = 0;
@@ -201,7 +200,7 @@ TEST(Effects, GlintsLieOnTheWaterNearTheBoatAndFollowTheirStrength) {
   Effects effects = QuietEffects();
   std::map<double, int> counts;
   for (const double probability : {0.02, 0.08}) {
-    effects.glint_probability = probability;
+    effects.set_glint_probability(probability);
     for (const auto& made : Look(OpenWater(effects), 8 * kPacketsPerTurn)) {
       if (made.reason != ReturnReason::kGlint) continue;
       ++counts[probability];
@@ -215,7 +214,7 @@ TEST(Effects, GlintsLieOnTheWaterNearTheBoatAndFollowTheirStrength) {
 
 TEST(Effects, CrestsNeedWavesAndLieOnTheirUpperHalf) {
   Effects effects = QuietEffects();
-  effects.crest_probability = 0.3;
+  effects.set_crest_probability(0.3);
   EXPECT_EQ(CountReasons(OpenWater(effects), 4 * kPacketsPerTurn)[ReturnReason::kCrest], 0);
   auto scene = OpenWater(effects);
   scene.sea = ChoppySea();
@@ -246,7 +245,7 @@ TEST(Effects, CrestsHideWhatLiesBehindThem) {
 
 TEST(Effects, WakesLieBehindBoatsThatMove) {
   Effects effects = QuietEffects();
-  effects.wake_probability = 0.8;
+  effects.set_wake_probability(0.8);
   auto scene = OpenWater(effects);
   scene.objects[0].track = {{{15.0, -10.0}, 0.0}, 3.0};  // northward, abeam
   scene.objects[0].parts = {{Prism{Rectangle(-3.0, 3.0, -1.0, 1.0), 0.0, 1.0}, {0.5}}};
@@ -269,7 +268,7 @@ TEST(Effects, WakesLieBehindBoatsThatMove) {
 
 TEST(Effects, SprayIsAtTheBowAndOnlyWhereTheBoatPitches) {
   Effects effects = QuietEffects();
-  effects.spray_probability = 0.5;
+  effects.set_spray_probability(0.5);
   auto scene = OpenWater(effects);
   EXPECT_EQ(CountReasons(scene, 10 * kPacketsPerTurn)[ReturnReason::kSpray], 0);
   scene.own_motion.heave_m = {{0.3, 2.0, 0.0}};
@@ -286,7 +285,7 @@ TEST(Effects, SprayIsAtTheBowAndOnlyWhereTheBoatPitches) {
 TEST(Effects, StillWaterMirrorsAWallBelowTheWater) {
   auto scene = StillScene(0.0, {{Prism{Rectangle(20.0, 21.0, -30.0, 30.0), 0.0, 4.0}, {0.8}}});
   scene.effects = QuietEffects();
-  scene.effects.mirror_strength = 1.0;
+  scene.effects.set_mirror_strength(1.0);
   int count = 0;
   for (const auto& made : Look(scene, 4 * kPacketsPerTurn)) {
     if (made.reason != ReturnReason::kMirror) continue;
@@ -296,7 +295,7 @@ TEST(Effects, StillWaterMirrorsAWallBelowTheWater) {
     EXPECT_GT(made.p_lidar_m.z(), -6.0);
   }
   EXPECT_GT(count, 100);
-  scene.effects.mirror_strength = 0.0;
+  scene.effects.set_mirror_strength(0.0);
   EXPECT_EQ(CountReasons(scene, 4 * kPacketsPerTurn)[ReturnReason::kMirror], 0);
 }
 
@@ -306,8 +305,8 @@ TEST(Effects, EdgesGiveReturnsBetweenSurfacesThatAreClose) {
   scene.objects.push_back({2, "wall", "wall", Track{}, {{Prism{Rectangle(30.7, 31.0, -30.0, 30.0), 0.0, 12.0}, {0.5}}}, {{0.0, 0.0}}});
   scene.effects = QuietEffects();
   EXPECT_EQ(CountReasons(scene, 4 * kPacketsPerTurn)[ReturnReason::kMixedEdge], 0);
-  scene.effects.horizontal_divergence_mrad = 3.0;
-  scene.effects.vertical_divergence_mrad = 1.5;
+  scene.effects.set_horizontal_divergence_mrad(3.0);
+  scene.effects.set_vertical_divergence_mrad(1.5);
   int count = 0;
   for (const auto& made : Look(scene, 4 * kPacketsPerTurn)) {
     if (made.reason != ReturnReason::kMixedEdge) continue;
@@ -326,9 +325,9 @@ TEST(Effects, EdgesFarApartGiveTwoReturnsInDualMode) {
   auto scene = StillScene(0.0, {{Prism{Rectangle(20.0, 20.1, -2.0, 2.0), 0.0, 12.0}, {0.5}}});
   scene.objects.push_back({2, "wall", "wall", Track{}, {{Prism{Rectangle(30.0, 31.0, -30.0, 30.0), 0.0, 12.0}, {0.5}}}, {{0.0, 0.0}}});
   scene.effects = QuietEffects();
-  scene.effects.return_mode = ReturnMode::kDual;
-  scene.effects.horizontal_divergence_mrad = 3.0;
-  scene.effects.vertical_divergence_mrad = 1.5;
+  scene.effects.set_return_mode(config::Scene::DUAL);
+  scene.effects.set_horizontal_divergence_mrad(3.0);
+  scene.effects.set_vertical_divergence_mrad(1.5);
   Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, 1);
   int num_pairs_apart = 0;
   for (int i = 0; i < 8 * kPacketsPerTurn; ++i) {
@@ -347,10 +346,10 @@ TEST(Effects, EdgesFarApartGiveTwoReturnsInDualMode) {
 
 TEST(Effects, GiveTheSameBytesForTheSameSeedOnly) {
   Effects effects = QuietEffects();
-  effects.horizontal_divergence_mrad = 3.0;
-  effects.rain_probability_per_m = 0.01;
-  effects.crest_probability = 0.3;
-  effects.wake_probability = 0.5;
+  effects.set_horizontal_divergence_mrad(3.0);
+  effects.set_rain_probability_per_m(0.01);
+  effects.set_crest_probability(0.3);
+  effects.set_wake_probability(0.5);
   const auto scene = BusyScene(effects, ChoppySea());
   const auto bytes = [&scene](std::uint64_t seed) {
     Lidar lidar(scene, SmallBoat(), LidarParams{}, kEffectsStart, seed);
@@ -369,7 +368,7 @@ TEST(Effects, ClutterLeavesTheReturnsOfObjectsWhereTheyAre) {
   // Rain alone does not move what is seen through it.
   Effects effects = QuietEffects();
   const auto dry = Look(BusyScene(effects, Sea()), kPacketsPerTurn);
-  effects.rain_probability_per_m = 0.002;
+  effects.set_rain_probability_per_m(0.002);
   std::set<std::pair<Utime, int>> places;
   for (const auto& made : dry) places.insert({made.time, made.ring});
   for (const auto& made : Look(BusyScene(effects, Sea()), kPacketsPerTurn)) {

@@ -169,7 +169,7 @@ TEST(Lidar, DualPacketsHavePairsOfOneAzimuthAndTheTruthNumbersTheirReturns) {
   parts.push_back({Ellipsoid{{15.0, 0.0, 3.0}, {2.0, 6.0, 4.0}}, {0.5, true}});
   const auto scene = StillScene(0.0, parts);
   auto params = QuietParams();
-  params.mode = ReturnMode::kDual;
+  params.mode = config::Scene::DUAL;
   Lidar lidar(scene, SmallBoat(), params, kStart, 1);
   int num_apart = 0;
   for (int i = 0; i < 151; ++i) {
@@ -292,8 +292,8 @@ struct Jumps {
 };
 
 // Azimuths and stamps against the rotor itself.
-Jumps ExpectFieldOfView(double from_deg, double to_deg, ReturnMode mode, double rpm) {
-  SCOPED_TRACE(testing::Message() << from_deg << " to " << to_deg << " at " << rpm << (mode == ReturnMode::kDual ? " dual" : ""));
+Jumps ExpectFieldOfView(double from_deg, double to_deg, config::Scene::ReturnMode mode, double rpm) {
+  SCOPED_TRACE(testing::Message() << from_deg << " to " << to_deg << " at " << rpm << (mode == config::Scene::DUAL ? " dual" : ""));
   const auto scene = StillScene(0.0, Wall(20.0));
   auto params = QuietParams();
   params.mode = mode;
@@ -302,7 +302,7 @@ Jumps ExpectFieldOfView(double from_deg, double to_deg, ReturnMode mode, double 
   Lidar lidar(scene, SmallBoat(), params, kStart, 1);
   const double width_deg = RadToDeg(params.field_of_view.width_rad);
   const double block_deg = rpm * 6.0 * 110.592e-6;
-  const std::size_t blocks_per_step = mode == ReturnMode::kDual ? 2 : 1;
+  const std::size_t blocks_per_step = mode == config::Scene::DUAL ? 2 : 1;
   int num_jumps_within = 0;
   int num_jumps_between = 0;
   double last_azimuth_deg = -1.0;
@@ -336,20 +336,20 @@ Jumps ExpectFieldOfView(double from_deg, double to_deg, ReturnMode mode, double 
 
 TEST(Lidar, FiresOnlyInItsFieldOfViewAndStampsWhatItFires) {
   Jumps total;
-  const auto check = [&total](double from_deg, double to_deg, ReturnMode mode, double rpm) {
+  const auto check = [&total](double from_deg, double to_deg, config::Scene::ReturnMode mode, double rpm) {
     const auto jumps = ExpectFieldOfView(from_deg, to_deg, mode, rpm);
     EXPECT_GE(jumps.within_packets + jumps.between_packets, 1) << from_deg << " to " << to_deg << " at " << rpm;
     total.within_packets += jumps.within_packets;
     total.between_packets += jumps.between_packets;
   };
-  for (const auto mode : {ReturnMode::kStrongest, ReturnMode::kDual}) {
+  for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     for (const double rpm : {300.0, 600.0, 1200.0}) {
       check(300.0, 60.0, mode, rpm);
       check(0.0, 90.0, mode, rpm);
     }
     check(10.0, 350.0, mode, 1200.0);
   }
-  check(20.0, 22.0, ReturnMode::kStrongest, 1200.0);
+  check(20.0, 22.0, config::Scene::STRONGEST, 1200.0);
   EXPECT_GT(total.within_packets, 100);
   EXPECT_GT(total.between_packets, 5);
 }

@@ -9,7 +9,7 @@
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "tests/support/files.hpp"
-#include "tools/sim/scene_check.hpp"
+#include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -52,7 +52,7 @@ TEST(SceneFile, RefusesNumbersThatAreNotFiniteOrOutOfRange) {
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: nan"), "s.txtpb:3: object.east_m: must be a finite number (is nan)");
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: [5, 5000]"), "s.txtpb:3: object.east_m: must be at most 1000 (is 5000)");
   EXPECT_EQ(ObjectFaults("kind: BUOY count: 0"), "s.txtpb:3: object.count: must be at least 1 (is 0)");
-  EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability: must be at most 1 (is 1.5)");
+  EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability(): must be at most 1 (is 1.5)");
 }
 
 TEST(SceneFile, RefusesRangesThatAreNone) {
@@ -76,7 +76,7 @@ TEST(SceneFile, RefusesWaysThatCannotBeGone) {
             "s.txtpb:3: object[0].path.waypoint[0]: is where the object starts");
   EXPECT_EQ(FaultsOf(kHead + "object {\n kind: KAYAK east_m: 20\n path { speed_mps: 1\n waypoint { east_m: 30 north_m: 0 }\n"
                              " waypoint { east_m: 25 north_m: 0 }\n}\n}\n"),
-            "s.txtpb:6: object[0].path.waypoint[0]: the way stands still here, or turns back on the spot");
+            "s.txtpb:6: object[0].path.waypoint[0]: the path stands still here, or turns back on the spot");
   EXPECT_EQ(ObjectFaults("kind: KAYAK path { speed_mps: 1 circle { radius_m: 20 } waypoint { east_m: 5 north_m: 0 } }"),
             "s.txtpb:3: object[0].path.circle: not with waypoints");
 }
@@ -204,22 +204,17 @@ TEST(SceneFile, RocksTheOwnBoatNoMoreThanAsked) {
 
 TEST(SceneFile, TakesEffectsOverAndLeavesTheRestAtTheirDefaults) {
   const Scene scene = ParseScene(kHead + "effects { return_mode: DUAL rain_probability_per_m: 0.01 }", "s", 1);
-  EXPECT_EQ(scene.effects.return_mode, ReturnMode::kDual);
-  EXPECT_EQ(scene.effects.rain_probability_per_m, 0.01);
-  const Effects usual;
+  EXPECT_EQ(scene.effects.return_mode(), config::Scene::DUAL);
+  EXPECT_EQ(scene.effects.rain_probability_per_m(), 0.01);
   const Effects none = ParseScene(kHead, "s", 1).effects;
-  EXPECT_EQ(none.return_mode, usual.return_mode);
-  EXPECT_EQ(none.range_sd_m, usual.range_sd_m);
-  EXPECT_EQ(none.half_seen_range_m, usual.half_seen_range_m);
-  EXPECT_EQ(none.stray_probability, usual.stray_probability);
-  EXPECT_EQ(none.horizontal_divergence_mrad, usual.horizontal_divergence_mrad);
-  EXPECT_EQ(none.vertical_divergence_mrad, usual.vertical_divergence_mrad);
-  EXPECT_EQ(none.glint_probability, usual.glint_probability);
-  EXPECT_EQ(none.mirror_strength, usual.mirror_strength);
-  EXPECT_EQ(none.crest_probability, usual.crest_probability);
-  EXPECT_EQ(none.wake_probability, usual.wake_probability);
-  EXPECT_EQ(none.spray_probability, usual.spray_probability);
-  EXPECT_EQ(none.rain_probability_per_m, usual.rain_probability_per_m);
+  EXPECT_EQ(none.range_sd_m(), 0.025);
+  EXPECT_EQ(none.half_seen_range_m(), 100.0);
+  EXPECT_EQ(none.stray_probability(), 1e-4);
+  for (const double strength : {none.horizontal_divergence_mrad(), none.vertical_divergence_mrad(), none.glint_probability(), none.mirror_strength(),
+                                none.crest_probability(), none.wake_probability(), none.spray_probability(), none.rain_probability_per_m()}) {
+    EXPECT_EQ(strength, 0.0);
+  }
+  EXPECT_EQ(none.return_mode(), config::Scene::STRONGEST);
 }
 
 TEST(Kinds, EveryKindOfTheSchemaCanBeMade) {

@@ -9,8 +9,8 @@
 #include "common/core/angles.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/lidar.hpp"
-#include "tools/sim/outline.hpp"
 #include "tools/sim/scene_file.hpp"
+#include "tools/sim/traffic.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -1,0 +1,47 @@
+// The service table: one row per process of a boat, in the order of the data. Replay, systemd units, lookout-up, doctor, top and tests are made of it
+// (deploy/ServiceTable.cmake reads these lines), the tables in README.md and deploy/README.md are tested against it. Outputs: Channel::publisher.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/channels.hpp"
+
+namespace lookout::bus {
+
+struct ServiceRow {
+  std::string_view name;  // of its folder below services/; the program is lookout-<name>
+  std::string_view purpose;
+  int watchdog_s;           // silence of the main loop after which systemd ends and restarts it; HEALTH feeds the watchdog once a second
+  std::string_view needs;   // logs: writes to /var/lib/lookout; serial: opens serial ports; network: nothing else
+  std::string_view hangup;  // what SIGHUP (systemctl reload) does
+  std::string_view state;   // what it remembers from message to message, and loses when it restarts
+  std::array<const Channel*, 8> inputs{};  // nullptr: no more. The recorder reads every channel
+};
+
+// Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
+inline constexpr std::array kServices{
+    ServiceRow{"vlp16", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
+    ServiceRow{"segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
+    ServiceRow{"navigator", "position and attitude of the vessel", 10, "serial", "new config, new run", "filter, latest measurements", {&kLidarNmea}},
+    ServiceRow{"georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans, alarm", {&kSegments, &kPose}},
+    ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
+
+/// The input from which replay computes the service's other outputs, if it publishes one: it holds all that the service consumed.
+constexpr const Channel* RawOutput(const ServiceRow& service) {
+  for (const auto& channel : kChannels) {
+    if (channel.is_raw && channel.publisher == service.name) return &channel;
+  }
+  return nullptr;
+}
+
+/// Names of all services in the order in which a boat starts them.
+inline std::vector<std::string> StartOrder() {
+  std::vector<std::string> names;
+  for (auto service = kServices.rbegin(); service != kServices.rend(); ++service) names.emplace_back(service->name);
+  return names;
+}
+
+}  // namespace lookout::bus

@@ -1,0 +1,91 @@
+#include "tools/eval/method_comparison.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "common/io/stop_signal.hpp"
+#include "tools/eval/scoring.hpp"
+#include "tools/sim/scene_file.hpp"
+
+namespace lookout::eval {
+namespace {
+
+double ToMs(std::chrono::nanoseconds duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
+
+}  // namespace
+
+MethodComparison::MethodComparison(const Methods& methods) : methods_(methods) {
+  for (const auto& method : methods) {
+    if (!method->knows_doubt()) {
+      results_.push_back({method->name(), {}, {}, {}});
+      continue;
+    }
+    results_.push_back({method->name() + std::string(kAllSegments), {}, {}, {}});
+    results_.push_back({method->name() + std::string(kSureOnly), {}, {}, {}});
+  }
+}
+
+void MethodComparison::Add(const ScanPlace& place, const LabelledScan& truth) {
+  auto result = results_.begin();
+  for (const auto& method : methods_) {
+    const auto begin = std::chrono::steady_clock::now();
+    auto labelling = method->Segment(truth.scan);
+    const double time_ms = ToMs(std::chrono::steady_clock::now() - begin - labelling.untimed);
+    for (const auto& [stage, stage_time] : labelling.stages) result->stage_ms[stage].push_back(ToMs(stage_time));
+    if (method->knows_doubt()) {
+      AddPoint(*result++, place, truth, labelling, time_ms);
+      labelling = SureOnly(std::move(labelling));
+    }
+    AddPoint(*result++, place, truth, std::move(labelling), time_ms);
+  }
+}
+
+void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms) {
+  Score score = ScoreScan(truth, labelling);
+  score.time_ms.push_back(time_ms);
+  result.by_scene[place.scene].Add(score);
+  if (score.num_scans_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
+}
+
+void MethodComparison::KeepIfBad(MethodResult& result, const ScanPlace& place, double iou, const LabelledScan& truth,
+                                 std::vector<std::int32_t> label) const {
+  auto& worst = result.worst;
+  const auto same_scene = std::ranges::find(worst, place.scene, &WorstScan::scene);
+  if (same_scene != worst.end()) {
+    if (same_scene->iou <= iou) return;
+    worst.erase(same_scene);
+  } else if (worst.size() == kMaxWorstScans) {
+    if (worst.back().iou <= iou) return;
+    worst.pop_back();
+  }
+  const auto at = std::ranges::upper_bound(worst, iou, {}, &WorstScan::iou);
+  worst.insert(at, {place.scene, place.seed, place.index, iou, truth, std::move(label)});
+}
+
+std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
+
+void ForEachScan(const RunPlan& plan, const Boat& boat, Progress& progress,
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_turn) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& scene : plan.scenes) {
+    files.push_back(sim::FindScene(scene, boat.config_folder));
+    sim::LoadScene(files.back(), plan.first_seed);
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    ScanPlace place{SceneLabel(plan.scenes[i]), 0, 0};
+    for (int k = 0; k < plan.num_seeds; ++k) {
+      place.seed = plan.first_seed + static_cast<std::uint64_t>(k);
+      place.index = 0;
+      const auto scene = sim::LoadScene(files[i], place.seed);
+      RenderScans(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
+        io::ThrowIfStopAsked();
+        on_turn(place, truth);
+        ++place.index;
+      });
+      progress.Step(place.scene + ", seed " + std::to_string(place.seed));
+    }
+  }
+}
+
+}  // namespace lookout::eval

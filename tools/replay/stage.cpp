@@ -1,0 +1,131 @@
+#include "tools/replay/stage.hpp"
+
+#include "services/georeferencer/params.hpp"
+#include "services/georeferencer/service.hpp"
+#include "services/navigator/params.hpp"
+#include "services/navigator/service.hpp"
+#include "services/segmenter/params.hpp"
+#include "services/segmenter/service.hpp"
+#include "services/vlp16/params.hpp"
+#include "services/vlp16/service.hpp"
+#include "services/vlp16/sources.hpp"
+
+namespace lookout::replay {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Vlp16Stage final : public Stage {
+ public:
+  Vlp16Stage(bus::Bus& bus, const fs::path& config_folder, bool reads_raw)
+      : params_(Load(config_folder, reads_raw ? vlp16::Input::kLog : vlp16::Input::kOutside)), service_(bus, params_) {}
+
+  void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
+  bool OnDatagram(const Datagram& datagram) override {
+    if (datagram.port != params_.data_port && datagram.port != params_.position_port) return false;
+    if (datagram.port == params_.data_port) ++num_measured_;
+    service_.OnDatagram(datagram.host_time, datagram.port, datagram.payload, datagram.sender);
+    return true;
+  }
+  void Finish(Utime time) override { service_.Finish(time); }
+  HealthReport Report() const override { return service_.Report(); }
+
+ private:
+  static vlp16::Params Load(const fs::path& config_folder, vlp16::Input input) {
+    auto params = vlp16::LoadParams(config_folder);
+    vlp16::WriteAllowedAlike(params.sources);
+    params.input = input;
+    return params;
+  }
+
+  vlp16::Params params_;
+  vlp16::Service service_;
+};
+
+class SegmenterStage final : public Stage {
+ public:
+  SegmenterStage(bus::Bus& bus, const fs::path& config_folder, bool /*reads_raw*/) : service_(bus, segmenter::LoadParams(config_folder)) {}
+
+  HealthReport Report() const override { return service_.Report(); }
+
+ private:
+  segmenter::Service service_;
+};
+
+class NavigatorStage final : public Stage {
+ public:
+  NavigatorStage(bus::Bus& bus, const fs::path& config_folder, bool reads_raw)
+      : reads_raw_(reads_raw),
+        params_(Load(config_folder, reads_raw ? navigator::Input::kLog : navigator::Input::kOutside)),
+        service_(bus, params_) {}
+
+  void AdvanceTo(Utime time) override {
+    if (!reads_raw_) service_.AdvanceTo(time);
+  }
+  bool OnDatagram(const Datagram& datagram) override {
+    const auto source = params_.source_of_port.find(datagram.port);
+    if (source == params_.source_of_port.end()) return false;
+    ++num_measured_;
+    service_.OnDatagram(datagram.host_time, datagram.payload, source->second);
+    return true;
+  }
+  void OnTextLine(Utime time, Bytes line) override {
+    ++num_measured_;
+    service_.OnDatagram(time, line);  // as if it had come by the input "udp"
+  }
+  void Finish(Utime time) override { service_.Finish(time); }
+  std::int64_t FinishLogs(Utime time, bool is_whole) override {
+    if (!reads_raw_ && is_whole) service_.Finish(time);  // LIDAR_NMEA has no end mark: it sets its own
+    return 0;
+  }
+  HealthReport Report() const override { return service_.Report(); }
+
+ private:
+  static navigator::Params Load(const fs::path& config_folder, navigator::Input input) {
+    auto params = navigator::LoadParams(config_folder);
+    params.input = input;
+    return params;
+  }
+
+  bool reads_raw_;
+  navigator::Params params_;
+  navigator::Service service_;
+};
+
+class GeoreferencerStage final : public Stage {
+ public:
+  GeoreferencerStage(bus::Bus& bus, const fs::path& config_folder, bool /*reads_raw*/)
+      : bus_(bus), service_(bus, georeferencer::LoadParams(config_folder)) {}
+
+  void Finish(Utime /*time*/) override { service_.Finish(); }
+  // It reads no marks. Where the run was cut, scans that wait for POSE are left out, unless no POSE can come.
+  std::int64_t FinishLogs(Utime /*time*/, bool is_whole) override {
+    if (!is_whole && bus_.input_traffic().find(bus::kPose.name)->second.num_messages > 0) return service_.num_waiting();
+    service_.Finish();
+    return 0;
+  }
+  HealthReport Report() const override { return service_.Report(); }
+
+ private:
+  bus::Bus& bus_;
+  georeferencer::Service service_;
+};
+
+template <typename S>
+std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, bool reads_raw) {
+  return std::make_unique<S>(bus, config_folder, reads_raw);
+}
+
+}  // namespace
+
+const std::vector<StageFactory>& StageFactories() {
+  static const std::vector<StageFactory> kFactories{
+      {"vlp16", [](const fs::path& folder) { vlp16::LoadParams(folder); }, Make<Vlp16Stage>},
+      {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<SegmenterStage>},
+      {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
+      {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>}};
+  return kFactories;
+}
+
+}  // namespace lookout::replay
