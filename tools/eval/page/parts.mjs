@@ -97,7 +97,8 @@ export function lineChart({ title, xLabel, yLabel, isPercent, lines, numbers, no
 
 /** Groups [{name, values}] of bars that lie, a bar for each series, its number at the end. */
 export function barChart(title, xLabel, series, groups, decimals) {
-  const bars = groups.flatMap(({ values }, group) => values.map((value, i) => ({ group, i, value, end: isDrawable(value) ? Math.max(0, value) : 0 })));
+  const endOf = (value) => (isDrawable(value) ? Math.max(0, value) : 0);
+  const bars = groups.flatMap(({ values }, group) => values.map((value, i) => ({ group, i, value, end: endOf(value) })));
   if (!bars.some(({ value }) => isDrawable(value))) return figure(title, [e("p", {}, "no numbers")]);
   const names = groups.map(({ name }) => (name.length > 44 ? `${name.slice(0, 44)}...` : name));
   const place = { fy: "group", y: "i" };
@@ -107,7 +108,8 @@ export function barChart(title, xLabel, series, groups, decimals) {
     y: { axis: null, domain: series.map((_, i) => i), paddingInner: 0.15, paddingOuter: 0.33 }, fy: { domain: groups.map((_, i) => i), padding: 0 },
     marks: [Plot.gridX({ ...grid, ticks: 6 }), Plot.axisX({ ...axis, label: xLabel, ticks: 6, tickSize: 0 }),
       Plot.axisFy({ anchor: "left", label: null, tickFormat: (i) => names[i] }),
-      Plot.barX(bars.filter(({ value }) => isDrawable(value)), { ...place, x: "end", fill: ({ i }) => colourOf(i) }), Plot.ruleX([0], { stroke: "var(--faint)" }),
+      Plot.barX(bars.filter(({ value }) => isDrawable(value)), { ...place, x: "end", fill: ({ i }) => colourOf(i) }),
+      Plot.ruleX([0], { stroke: "var(--faint)" }),
       Plot.text(bars, { ...place, x: "end", text: ({ value }) => number(value, decimals), dx: 5, textAnchor: "start", fontSize: 10, fill: "var(--faint)" })],
   }), ...(series.length > 1 ? [legend(series, (i) => [Plot.rect([0], { x1: 2, x2: 28, y1: 1, y2: 11, fill: colourOf(i) })])] : [])]);
 }
@@ -124,7 +126,8 @@ function match({ objects: scored, returns, unit_m: unit }) {
     }) }));
   const segments = new Map([...new Set(groups.map(({ segment }) => segment))].filter((id) => id > 0)
     .map((id) => [id, { ...merge(groups.filter(({ segment }) => segment === id)), numbers: [], numShared: 0 }]));
-  const objects = scored.map((object, i) => ({ ...object, ...merge(groups.filter((group) => group.object === object.id)), number: i + 1, colour: colourOf(i) }));
+  const objects = scored.map((object, i) =>
+    ({ ...object, ...merge(groups.filter((group) => group.object === object.id)), number: i + 1, colour: colourOf(i) }));
   for (const object of objects) {
     const pieces = groups.filter((group) => group.object === object.id && group.segment > 0);
     object.numPieces = pieces.length;
@@ -156,7 +159,7 @@ function outlineOf(runs, marginM) {
   const corners = [...new Map(runs.flat().map((spot) => [spot.join(), spot])).values()];
   if (corners.length === 1) {
     const [x, y] = corners[0];
-    return [[x - marginM, y - marginM], [x + marginM, y - marginM], [x + marginM, y + marginM], [x - marginM, y + marginM], [x - marginM, y - marginM]];
+    return [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]].map(([right, up]) => [x + right * marginM, y + up * marginM]);
   }
   const hull = polygonHull(corners) ?? corners;
   return [...hull, hull[0]];
@@ -171,10 +174,12 @@ function drawPlan(title, { x, y }, layers) {
   const hasRoom = ([right, up]) => Math.min(right - x[0], x[1] - right, up - y[0], y[1] - up) * scale >= 16;
   const rings = Array.from({ length: Math.ceil(reach / step) - 1 }, (_, i) => (i + 1) * step);
   const byColour = [...new Set(layers.map(({ colour }) => colour))];
-  const words = (texts, options) => Plot.text(texts, { x: ([, [right]]) => right, y: ([, [, up]]) => up, text: ([text]) => text, fontSize: 11, ...HALO, ...options });
-  const paths = (lines, options) => (lines.length ? [Plot.geo({ type: "MultiLineString", coordinates: lines }, { strokeLinecap: "round", ...options })] : []);
+  const words = (texts, options) =>
+    Plot.text(texts, { x: ([, [right]]) => right, y: ([, [, up]]) => up, text: ([text]) => text, fontSize: 11, ...HALO, ...options });
+  const paths = (lines, options) => (!lines.length ? [] : [Plot.geo({ type: "MultiLineString", coordinates: lines }, { strokeLinecap: "round", ...options })]);
   const outlines = (stroke, kind, options) =>
-    paths(layers.filter(({ colour, outline }) => colour === stroke && outline === kind).map(({ runs }) => outlineOf(runs, 4 / scale)), { stroke, ...options });
+    paths(layers.filter(({ colour, outline }) => colour === stroke && outline === kind).map(({ runs }) => outlineOf(runs, 4 / scale)),
+      { stroke, ...options });
   return svg("plan", title, {
     width, height: (y[1] - y[0]) * scale, margin: 0, x: { axis: null, domain: x }, y: { axis: null, domain: y },
     marks: [
@@ -213,9 +218,11 @@ export function plan(method, scan) {
   const shown = [...objects].sort((a, b) => a.iou_percent - b.iou_percent).slice(0, 6);
   const result = figure(`${caption}; ${objects.length} objects, ${segments.length} segments, of these ${numFalse} false`, [
     e("div", { className: "side" }, e("p", {}, "Truth"), truth), e("div", { className: "side" }, e("p", {}, "Prediction"), prediction),
-    ...(!shown.length ? [] : [table(shown.length < objects.length ? `The ${shown.length} of ${objects.length} objects that came off worst` : "All objects, worst first",
+    ...(!shown.length ? [] : [table(
+      shown.length < objects.length ? `The ${shown.length} of ${objects.length} objects that came off worst` : "All objects, worst first",
       ["No.", "object", "kind", "returns", "segments that hold some", "IoU %"],
-      shown.map((object) => [String(object.number), object.name, object.kind, String(object.num_returns), String(object.numPieces), number(object.iou_percent, 1)]))]),
+      shown.map(({ number: no, name, kind, num_returns, numPieces, iou_percent }) =>
+        [String(no), name, kind, String(num_returns), String(numPieces), number(iou_percent, 1)]))]),
   ]);
   result.className = "pair";
   return result;
