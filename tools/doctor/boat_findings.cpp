@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "common/config/boat_words.hpp"
+#include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 #include "services/vlp16/core/model.hpp"
 #include "tools/doctor/findings.hpp"
