@@ -1,4 +1,4 @@
-// What this computer says of itself: network, buffers, clock, disk, the boat's config files. Nothing here changes anything.
+// The state of this computer: network, buffers, clock, disk, the boat's config files. Nothing here changes anything.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ PortSeen ReadPort(const BusSeen& bus);
 /// @return empty when none matches
 std::string DeviceOfRoute(const std::string& table, const std::string& address);
 
-/// Asks the kernel for buffers as the processes do.
+/// Asks the kernel for receive buffers as the processes do.
 ///
 /// @param config  of which the lidar's buffer is taken, where it is right
 BuffersSeen ReadBuffers(const ConfigSeen& config);
