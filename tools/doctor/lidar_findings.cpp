@@ -168,7 +168,7 @@ Findings CheckLidar(const Observations& seen) {
     return findings;
   }
   if (!lidar.fault.empty()) {
-    return {Fault(kLidarSubject, lidar.fault, "mend what the line names; end a lookout-vlp16 on another bus")};
+    return {Fault(kLidarSubject, lidar.fault, "correct what the line names; if lookout-vlp16 is running on another bus, end it")};
   }
   findings.push_back(CheckPackets(seen));
   for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(CheckSender(seen, sender, num_datagrams));

@@ -46,7 +46,7 @@ std::vector<InterfaceSeen> ReadInterfaces();
 /// Whether something steers this computer's clock (the kernel's state, as NTP and PPS set it).
 bool IsHostClockSet();
 
-/// Of the log folder. Goes by the processes that were heard: a recorder that runs says where a relative folder is.
+/// Of the log folder; the rate stays as it is in `seen`. A recorder that runs shows where a relative folder is.
 DiskSeen ReadDisk(const Observations& seen);
 
 }  // namespace lookout::doctor

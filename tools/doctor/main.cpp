@@ -62,9 +62,7 @@ lookout::doctor::Observations Observe(const Options& options) {
   seen.port = doctor::ReadPort(seen.bus);
   seen.interfaces = doctor::ReadInterfaces();
   seen.is_host_clock_set = doctor::IsHostClockSet();
-  const auto rate_bytes_per_s = seen.disk.rate_bytes_per_s;
   seen.disk = doctor::ReadDisk(seen);
-  seen.disk.rate_bytes_per_s = rate_bytes_per_s;
   return seen;
 }
 

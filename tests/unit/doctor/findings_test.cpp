@@ -139,7 +139,7 @@ TEST(DoctorLidar, MissesIt) {
 TEST(DoctorLidar, SeesThatItHasStopped) {
   auto seen = Healthy();
   seen.lidar.heard_last = kEnd - std::chrono::seconds(2);
-  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "is the lidar powered");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "check the lidar's power and cable");
 }
 
 TEST(DoctorLidar, SeesLosses) {
@@ -156,7 +156,7 @@ TEST(DoctorLidar, SeesAPortThatIsTakenAndASensorThatIsNotWanted) {
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "running on another bus");
   seen = Healthy();
   seen.config.lidar->sources.kind = vlp16::Sources::Kind::kCapture;
-  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "takes no sensor");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "no sensor is checked");
   seen.config.lidar.reset();
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "vlp16.txtpb is wrong");
 }
