@@ -42,12 +42,12 @@ std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Tr
     for (std::size_t i = 0; i < column_cells; ++i) num_left += scan.columns.range[first + i] != 0 ? 1 : 0;
     std::vector<bool> is_taken(column_cells, false);
     for (; num_left > 0; --num_left) {
-      if (truths.empty()) throw std::logic_error("a simulated turn has returns without truth");
+      if (truths.empty()) throw std::logic_error("a simulated scan has returns without truth");
       const Truth truth = truths.front();
       truths.pop_front();
       const std::size_t i = static_cast<std::size_t>(truth.ring) * num_returns + static_cast<std::size_t>(truth.return_index);
       if (i >= column_cells || scan.columns.range[first + i] == 0 || is_taken[i]) {
-        throw std::logic_error("the truth of a simulated turn does not fit its returns");
+        throw std::logic_error("the truth of a simulated scan does not fit its returns");
       }
       is_taken[i] = true;
       object[first + i] = truth.object_id;
@@ -97,7 +97,7 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
     }
   }
   decoder.Flush();
-  if (!truths.empty()) throw std::logic_error("the truth of a simulated turn does not fit its returns");
+  if (!truths.empty()) throw std::logic_error("the truth of a simulated scan does not fit its returns");
 }
 
 }  // namespace lookout::eval

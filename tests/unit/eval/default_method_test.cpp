@@ -13,7 +13,7 @@ namespace {
 const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
 
 constexpr int kNumSeeds = 5;
-constexpr double kSeconds = 0.4;  // three whole turns of each seed
+constexpr double kSeconds = 0.4;  // three whole scans of each seed
 
 enum class Count { kAll, kSureOnly };  // operating points of the comparison, in its order
 

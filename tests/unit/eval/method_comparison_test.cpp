@@ -22,7 +22,7 @@ namespace lookout::eval {
 namespace {
 
 const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
-constexpr double kSeconds = 0.4;  // three whole turns
+constexpr double kSeconds = 0.4;  // three whole scans
 
 Boat Catabot() { return LoadBoat(kRoot / "config/catabot"); }
 

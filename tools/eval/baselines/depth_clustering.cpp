@@ -77,30 +77,25 @@ class Search {
     const std::size_t pixel = cell / static_cast<std::size_t>(image_.num_layers);
     const int column = static_cast<int>(pixel / depth_.elevation_rad.size());
     const int ring = static_cast<int>(pixel % depth_.elevation_rad.size());
-    double angle_rad = 0.0;
-    int next = column;
-    for (int step = 0; step < params_.reach_columns && depth_.joins_next[static_cast<std::size_t>(next)]; ++step) {
-      angle_rad += column_angle_rad_[static_cast<std::size_t>(next)];
-      next = depth_.NextColumn(next);
-      if (Meets(cell, next, ring, angle_rad)) break;
+    for (const bool is_forward : {true, false}) {
+      double angle_rad = 0.0;
+      int next = column;
+      for (int step = 0; step < params_.reach_columns; ++step) {
+        const auto earlier = static_cast<std::size_t>(is_forward ? next : depth_.PreviousColumn(next));
+        if (!depth_.joins_next[earlier]) break;
+        next = is_forward ? depth_.NextColumn(next) : static_cast<int>(earlier);
+        angle_rad += column_angle_rad_[earlier];
+        if (Meets(cell, next, ring, angle_rad)) break;
+      }
     }
-    angle_rad = 0.0;
-    next = column;
-    for (int step = 0; step < params_.reach_columns; ++step) {
-      next = depth_.PreviousColumn(next);
-      if (!depth_.joins_next[static_cast<std::size_t>(next)]) break;
-      angle_rad += column_angle_rad_[static_cast<std::size_t>(next)];
-      if (Meets(cell, next, ring, angle_rad)) break;
-    }
-    angle_rad = 0.0;
-    for (int higher = ring + 1; higher <= ring + params_.reach_rings && higher < depth_.num_rings(); ++higher) {
-      angle_rad += ring_angle_rad_[static_cast<std::size_t>(higher) - 1];
-      if (Meets(cell, column, higher, angle_rad)) break;
-    }
-    angle_rad = 0.0;
-    for (int lower = ring - 1; lower >= ring - params_.reach_rings && lower >= 0; --lower) {
-      angle_rad += ring_angle_rad_[static_cast<std::size_t>(lower)];
-      if (Meets(cell, column, lower, angle_rad)) break;
+    for (const bool is_upward : {true, false}) {
+      double angle_rad = 0.0;
+      for (int step = 1; step <= params_.reach_rings; ++step) {
+        const int other = is_upward ? ring + step : ring - step;
+        if (other < 0 || other >= depth_.num_rings()) break;
+        angle_rad += ring_angle_rad_[static_cast<std::size_t>(is_upward ? other - 1 : other)];
+        if (Meets(cell, column, other, angle_rad)) break;
+      }
     }
   }
 
@@ -135,16 +130,18 @@ class Search {
 
 }  // namespace
 
-segmenter::Groups DepthClustering::GroupReturns(const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) const {
-  Search search(scan, returns, params_);
-  clock.End("image");
-  if (params_.ground) {
-    search.DropGround(*params_.ground);
-    clock.End("ground");
-  }
-  auto groups = search.Components();
-  clock.End("clusters");
-  return groups;
+Grouping DepthGrouping(const DepthClusteringParams& params) {
+  return [params](const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) {
+    Search search(scan, returns, params);
+    clock.End("image");
+    if (params.ground) {
+      search.DropGround(*params.ground);
+      clock.End("ground");
+    }
+    auto groups = search.Components();
+    clock.End("clusters");
+    return groups;
+  };
 }
 
 }  // namespace lookout::eval

@@ -24,16 +24,6 @@ struct DepthClusteringParams {
 /// The image has the scan's own columns, and in dual return all returns of a shot; of these the ground step sees the nearest.
 /// Source: I. Bogoslavskyi and C. Stachniss, "Fast Range Image-Based Segmentation of Sparse 3D Laser Scans for Online Operation", IROS 2016, and
 /// "Efficient Online Segmentation for Sparse 3D Laser Scans", PFG 85 (2017). Written from these. Cost: proportional to the pixels.
-class DepthClustering final : public Peer {
- public:
-  DepthClustering(std::string name, const segmenter::ReturnFilter& filter, const DepthClusteringParams& params)
-      : Peer(std::move(name), filter, params.limits), params_(params) {}
-
- protected:
-  segmenter::Groups GroupReturns(const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) const override;
-
- private:
-  DepthClusteringParams params_;
-};
+Grouping DepthGrouping(const DepthClusteringParams& params);
 
 }  // namespace lookout::eval

@@ -58,17 +58,16 @@ void MergeWithRingAbove(const ScanLine& line, const ScanLine& above, std::span<c
   }
 }
 
-}  // namespace
-
-segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) const {
+segmenter::Groups Group(const F3dParams& params, const Eigen::Isometry3d& T_vessel_lidar, const segmenter::Scan& scan,
+                        std::span<const segmenter::Return> returns, StageClock& clock) {
   std::vector<bool> is_ground(returns.size(), false);
-  if (params_.ground) {
+  if (params.ground) {
     std::vector<Eigen::Vector3d> p_vessel_m;
     p_vessel_m.reserve(returns.size());
     for (const auto& one : returns) {
-      p_vessel_m.emplace_back(filter().T_vessel_lidar * Eigen::Vector3d(one.point.x_m, one.point.y_m, one.point.z_m));
+      p_vessel_m.emplace_back(T_vessel_lidar * Eigen::Vector3d(one.point.x_m, one.point.y_m, one.point.z_m));
     }
-    is_ground = FitGround(p_vessel_m, *params_.ground);
+    is_ground = FitGround(p_vessel_m, *params.ground);
     clock.End("ground");
   }
   std::vector<ScanLine> lines(static_cast<std::size_t>(scan.head.num_rings()));
@@ -76,10 +75,10 @@ segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const
     if (!is_ground[i]) lines[static_cast<std::size_t>(returns[i].ring)].push_back(static_cast<std::int32_t>(i));
   }
   segmenter::UnionFind sets(returns.size());
-  for (const auto& line : lines) JoinRuns(line, returns, params_.run_distance_m, sets);
+  for (const auto& line : lines) JoinRuns(line, returns, params.run_distance_m, sets);
   clock.End("runs");
   for (std::size_t ring = lines.size(); ring > 1; --ring) {
-    MergeWithRingAbove(lines[ring - 2], lines[ring - 1], returns, params_.merge_distance_m, sets);
+    MergeWithRingAbove(lines[ring - 2], lines[ring - 1], returns, params.merge_distance_m, sets);
   }
   clock.End("merging");
 
@@ -92,6 +91,14 @@ segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const
     groups.of_return[i] = root == i ? groups.count++ : groups.of_return[root];
   }
   return groups;
+}
+
+}  // namespace
+
+Grouping F3dGrouping(const F3dParams& params, const Eigen::Isometry3d& T_vessel_lidar) {
+  return [params, T_vessel_lidar](const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) {
+    return Group(params, T_vessel_lidar, scan, returns, clock);
+  };
 }
 
 }  // namespace lookout::eval
