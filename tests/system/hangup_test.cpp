@@ -169,9 +169,8 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
 TEST_F(HangupTest, SegmenterAndGeoreferencerCheckANewConfigAndKeepTheOldOne) {
   for (const std::string name : {"segmenter", "georeferencer"}) {
     const auto file = folder_ / (name + ".txtpb");
-    fs::copy_file(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo" / (name + ".txtpb"), file, fs::copy_options::overwrite_existing);
-    child_ = std::make_unique<Child>(std::vector<std::string>{std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name, "--config", folder_.string()},
-                                     OutputFile());
+    fs::copy_file(kDemoConfig / (name + ".txtpb"), file, fs::copy_options::overwrite_existing);
+    child_ = std::make_unique<Child>(std::vector<std::string>{Bin(name), "--config", folder_.string()}, OutputFile());
     ASSERT_TRUE(WaitForOutput("starts"));
     child_->Signal(SIGHUP);
     EXPECT_TRUE(WaitForOutput("it takes effect at the next start")) << child_->Output();

@@ -4,13 +4,14 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
 #include "tools/eval/report.hpp"
-#include "tools/export/bearings.hpp"
+#include "tools/export/boat_of_log.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -53,7 +54,7 @@ int EvaluateLog(const LogOptions& options) {
                                     });
 
   bus::LogReader reader(options.log_file);
-  exporter::Bearings bearings;
+  std::optional<exporter::BoatOfLog> boat;
   std::int64_t num_unusable = 0;
   while (const auto event = reader.Next()) {
     bool is_taken = true;
@@ -64,8 +65,8 @@ int EvaluateLog(const LogOptions& options) {
     } else if (event->channel == bus::kHealth.name) {
       is_taken = Take<health_t>(*event, machine);
     } else if (truth && event->channel == bus::kRunInfo.name) {
-      is_taken = bearings.TakeRunInfo(event->bytes) == exporter::Taken::kOk;
-      if (bearings.boat() && options.true_boat_folder.empty()) evaluation.SetMounting(bearings.boat()->T_vessel_lidar);
+      is_taken = exporter::TakeRunInfo(event->bytes, boat) == exporter::Taken::kOk;
+      if (boat && options.true_boat_folder.empty()) evaluation.SetMounting(boat->T_vessel_lidar);
     } else if (truth && event->channel == bus::kLidarScan.name) {
       is_taken = Take<lidar_scan_t>(*event, collector);
     } else if (truth && event->channel == bus::kSegments.name) {

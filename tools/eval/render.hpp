@@ -7,7 +7,7 @@
 
 #include "common/config/boat.hpp"
 #include "services/segmenter/core/segmenter.hpp"
-#include "services/vlp16/core/turn.hpp"
+#include "services/vlp16/core/scan.hpp"
 #include "services/vlp16/params.hpp"
 #include "tools/eval/method.hpp"
 #include "tools/sim/scene.hpp"
@@ -25,8 +25,8 @@ struct Boat {
 /// @throws config::ConfigError
 Boat LoadBoat(const std::filesystem::path& config_folder);
 
-/// The way of the messages, without a bus: what the segmenter gets of this scan. @throws std::logic_error when it would refuse it
-segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets);
+/// What the segmenter receives of this scan over messages, without a bus. @throws std::logic_error when it would refuse it
+segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets);
 
 using ScanHandler = std::function<void(const LabelledScan&)>;
 

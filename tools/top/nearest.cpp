@@ -12,19 +12,6 @@ namespace lookout::top {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-// POSE comes every 20 ms of message time: ten seconds of it hold any wait of the georeferencer.
-constexpr std::size_t kMaxHeadings = 500;
-// A boat turns by less than a degree within so long, at the 10 deg/s of a hard turn.
-constexpr std::uint64_t kMaxHeadingAgeUs = 100'000;
-
-// As unsigned, so that no pair of times out of corrupt messages overflows.
-std::uint64_t DistanceUs(std::int64_t a, std::int64_t b) {
-  const auto [low, high] = std::minmax(a, b);
-  return static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
-}
-
 bool IsNearer(const ObstacleLine& a, const ObstacleLine& b) {
   const auto key = [](const ObstacleLine& line) {
     return std::tuple(!std::isfinite(line.range_m), std::isfinite(line.range_m) ? line.range_m : 0.0, line.id);
@@ -33,17 +20,6 @@ bool IsNearer(const ObstacleLine& a, const ObstacleLine& b) {
 }
 
 }  // namespace
-
-void Nearest::Take(const pose_t& pose) {
-  if (headings_.size() == kMaxHeadings) headings_.pop_front();
-  headings_.push_back({pose.utime_us, pose.heading_rad});
-}
-
-double Nearest::HeadingAt(std::int64_t utime_us) const {
-  const auto nearest = std::ranges::min_element(headings_, {}, [&](const Heading& heading) { return DistanceUs(heading.utime_us, utime_us); });
-  if (nearest == headings_.end() || DistanceUs(nearest->utime_us, utime_us) > kMaxHeadingAgeUs) return kUnknown;
-  return nearest->heading_rad;
-}
 
 void Nearest::Take(const obstacles_t& part, TimePoint now) {
   Part kept{part.utime_us, part.seq, part.part_index, part.num_parts, {}, now};
@@ -60,8 +36,9 @@ void Nearest::Take(const obstacles_t& part, TimePoint now) {
     line.length_m = obstacle.length_m;
     line.width_m = obstacle.width_m;
     line.height_m = obstacle.height_m;
-    const double true_bearing_rad = HeadingAt(obstacle.utime_us) + line.bearing_rad;
-    line.true_bearing_rad = std::isfinite(true_bearing_rad) ? WrapTo2Pi(true_bearing_rad) : kUnknown;
+    if (const auto heading_rad = headings_.At(obstacle.utime_us); heading_rad && std::isfinite(line.bearing_rad)) {
+      line.true_bearing_rad = WrapTo2Pi(*heading_rad + line.bearing_rad);
+    }
     kept.lines.push_back(line);
   }
   const auto ended = assembler_.Add(std::move(kept));

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "common/messages/heading_history.hpp"
 #include "common/messages/part_assembler.hpp"
 #include "lookout/pose_t.hpp"
 #include "tools/top/rate_meter.hpp"
@@ -43,7 +43,7 @@ class Nearest {
  public:
   static constexpr std::size_t kMaxLines = 50;  // as many as a screen may have room for
 
-  void Take(const pose_t& pose);
+  void Take(const pose_t& pose) { headings_.Add(pose.utime_us, pose.heading_rad); }
   /// @param part  well-formed (messages::IsWellFormed)
   void Take(const obstacles_t& part, TimePoint now);
 
@@ -51,13 +51,6 @@ class Nearest {
   const std::optional<NearestObstacles>& newest() const { return newest_; }
 
  private:
-  // The heading at a time; NaN when no pose is near enough in time or it has none.
-  double HeadingAt(std::int64_t utime_us) const;
-
-  struct Heading {
-    std::int64_t utime_us;
-    double heading_rad;
-  };
   // What is kept of a message.
   struct Part {
     std::int64_t utime_us = 0;
@@ -69,7 +62,7 @@ class Nearest {
   };
   static NearestObstacles ToNearest(const std::vector<Part>& parts);
 
-  std::deque<Heading> headings_;
+  messages::HeadingHistory headings_;
   messages::PartAssembler<Part> assembler_;
   std::optional<NearestObstacles> newest_;
 };

@@ -4,13 +4,14 @@
 #include <memory>
 #include <string>
 
+#include "tests/support/files.hpp"
 #include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
 
 namespace lookout::eval {
 namespace {
 
-const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
+const std::filesystem::path kRoot = support::kSources;
 
 constexpr int kNumSeeds = 5;
 constexpr double kSeconds = 0.4;  // three whole scans of each seed

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "common/config/text_config.hpp"
+#include "tests/support/files.hpp"
 #include "tools/eval/against_peers.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
@@ -21,7 +22,7 @@
 namespace lookout::eval {
 namespace {
 
-const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
+const std::filesystem::path kRoot = support::kSources;
 constexpr double kSeconds = 0.4;  // three whole scans
 
 Boat Catabot() { return LoadBoat(kRoot / "config/catabot"); }

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/files.hpp"
+
 namespace lookout::messages {
 namespace {
 
@@ -140,7 +142,7 @@ TEST(IsCut, LooksAtBothEnds) {
 
 // The same cases are read by the test of lookout-spy, which joins messages by code of its own.
 TEST(ScanParts, CompleteTheScansOfTheSharedCases) {
-  std::ifstream file(LOOKOUT_SOURCE_DIR "/tests/unit/messages/scan_parts.txt");
+  std::ifstream file(support::kSources / "tests/unit/messages/scan_parts.txt");
   int num_cases = 0;
   for (std::string line; std::getline(file, line);) {
     if (line.empty() || line[0] == '#') continue;

@@ -296,7 +296,7 @@ TEST_F(SourceTest, GpsdThatEndsWithinALineOrNeverEndsOneIsLost) {
 TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
   // Installed, or as ./dev test unpacks it.
   std::string program = "/usr/sbin/gpsd";
-  if (access(program.c_str(), X_OK) != 0) program = LOOKOUT_SOURCE_DIR "/build/gpsd/usr/sbin/gpsd";
+  if (access(program.c_str(), X_OK) != 0) program = (support::kSources / "build/gpsd/usr/sbin/gpsd").string();
   if (access(program.c_str(), X_OK) != 0) GTEST_SKIP() << program << " is not at hand (package gpsd)";
   const Pty pty;
   int port = 0;

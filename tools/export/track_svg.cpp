@@ -1,20 +1,23 @@
-#include "tools/export/track.hpp"
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/pose_t.hpp"
-#include "tools/export/csv.hpp"
+#include "tools/export/svg.hpp"
 
 namespace lookout::exporter {
 namespace {
 
-constexpr double kTrackWidth = 1320.0;
-constexpr double kTrackHeight = 1000.0;
+constexpr double kWidth = 1320.0;
+constexpr double kHeight = 1000.0;
 constexpr double kMargin = 60.0;
 constexpr double kLeastStepM = 0.2;
 // Of a track that does not move, so that noise does not fill the page.
@@ -24,25 +27,12 @@ constexpr double kEarthRadiusM = 6'371'008.8;
 
 // Okabe and Ito: for readers who confuse red and green.
 struct Style {
+  int status;
   std::string_view name;
   std::string_view colour;
 };
-constexpr Style kOk{"ok", "#0072B2"};
-constexpr Style kCarriedOn{"coasting", "#D55E00"};
-constexpr Style kNoHeading{"no heading", "#56B4E9"};
-
-const Style* StyleOf(int status) {
-  switch (status) {
-    case pose_t::STATUS_OK:
-      return &kOk;
-    case pose_t::STATUS_COASTING:
-      return &kCarriedOn;
-    case pose_t::STATUS_NO_HEADING:
-      return &kNoHeading;
-    default:
-      return nullptr;
-  }
-}
+constexpr std::array kStyles{Style{pose_t::STATUS_OK, "ok", "#0072B2"}, Style{pose_t::STATUS_COASTING, "coasting", "#D55E00"},
+                             Style{pose_t::STATUS_NO_HEADING, "no heading", "#56B4E9"}};
 
 struct Place {
   double east_m;  // from the first place
@@ -53,12 +43,6 @@ struct Stretch {
   const Style* style;
   std::vector<Place> places;
 };
-
-std::string Decimal(double value, int decimals) {
-  std::string text;
-  CsvWriter(text).Fixed(value, decimals);
-  return text;
-}
 
 // 1, 2 or 5 times a power of ten, at most `length_m`.
 double RoundLength(double length_m) {
@@ -76,8 +60,8 @@ class TrackSvgSink : public Sink {
   Taken Take(std::string_view, Bytes bytes, std::string&) override {
     const auto pose = bus::Decode<pose_t>(bytes);
     if (!pose) return Taken::kUndecodable;
-    const auto* style = StyleOf(pose->status);
-    if (style == nullptr) {
+    const auto* style = std::ranges::find(kStyles, pose->status, &Style::status);
+    if (style == kStyles.end()) {
       is_broken_ = true;
       return UtimeFromWire(pose->utime_us) ? Taken::kOk : Taken::kInconsistent;
     }
@@ -125,45 +109,42 @@ class TrackSvgSink : public Sink {
         if (i > 0) length_m += std::hypot(place.east_m - stretch.places[i - 1].east_m, place.north_m - stretch.places[i - 1].north_m);
       }
     }
-    const double pixels_per_m = std::min((kTrackWidth - 2.0 * kMargin) / std::max(high.east_m - low.east_m, kLeastSpanM),
-                                         (kTrackHeight - 2.0 * kMargin) / std::max(high.north_m - low.north_m, kLeastSpanM));
-    const auto pixels = [&](const Place& place) {
-      return Decimal(kTrackWidth / 2.0 + pixels_per_m * (place.east_m - (low.east_m + high.east_m) / 2.0), 1) + "," +
-             Decimal(kTrackHeight / 2.0 - pixels_per_m * (place.north_m - (low.north_m + high.north_m) / 2.0), 1);
-    };
+    const double pixels_per_m = std::min((kWidth - 2.0 * kMargin) / std::max(high.east_m - low.east_m, kLeastSpanM),
+                                         (kHeight - 2.0 * kMargin) / std::max(high.north_m - low.north_m, kLeastSpanM));
+    const auto x = [&](const Place& place) { return kWidth / 2.0 + pixels_per_m * (place.east_m - (low.east_m + high.east_m) / 2.0); };
+    const auto y = [&](const Place& place) { return kHeight / 2.0 - pixels_per_m * (place.north_m - (low.north_m + high.north_m) / 2.0); };
     text +=
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1320\" height=\"1000\" font-family=\"sans-serif\" font-size=\"14\">\n"
         "<title>Track of the boat</title>\n<rect width=\"1320\" height=\"1000\" fill=\"#ffffff\"/>\n";
     for (const auto& stretch : stretches_) {
-      text += "<polyline fill=\"none\" stroke-width=\"2\" stroke-linecap=\"round\" stroke=\"" + std::string(stretch.style->colour) + "\" points=\"";
-      for (const auto& place : stretch.places) text += pixels(place) + " ";
+      std::string points;
+      for (const auto& place : stretch.places) points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", x(place), y(place));
       // A stretch of one place is seen as a dot.
-      if (stretch.places.size() == 1) text += pixels(stretch.places.front()) + " ";
-      text.back() = '"';
-      text += "/>\n";
+      if (stretch.places.size() == 1) points += " " + points;
+      text += fmt::format("<polyline fill=\"none\" stroke-width=\"2\" stroke-linecap=\"round\" stroke=\"{}\" points=\"{}\"/>\n",
+                          stretch.style->colour, points);
     }
-    const auto mark = [&](const Place& place, const char* word) {
-      const std::string at = pixels(place);
-      const auto comma = at.find(',');
-      const std::string x = at.substr(0, comma);
-      const std::string y = at.substr(comma + 1);
-      text += "<circle cx=\"" + x + "\" cy=\"" + y + "\" r=\"4\"/>\n<text x=\"" + x + "\" y=\"" + y + "\" dx=\"7\" dy=\"-7\">" + word + "</text>\n";
-    };
-    mark(stretches_.front().places.front(), "begin");
-    mark(stretches_.back().places.back(), "end");
-
-    text += "<text x=\"20\" y=\"28\" font-size=\"18\">Track of the boat, north up</text>\n<text x=\"20\" y=\"50\">" + Decimal(length_m, 0) +
-            " m; begins at " + Decimal(latitude_deg_, 6) + ", " + Decimal(longitude_deg_, 6) + "</text>\n";
-    double y = 72.0;
-    for (const auto* style : {&kOk, &kCarriedOn, &kNoHeading}) {
-      if (std::ranges::none_of(stretches_, [style](const Stretch& stretch) { return stretch.style == style; })) continue;
-      text += "<line x1=\"20\" x2=\"50\" y1=\"" + Decimal(y - 5.0, 0) + "\" y2=\"" + Decimal(y - 5.0, 0) + "\" stroke-width=\"3\" stroke=\"" +
-              std::string(style->colour) + "\"/>\n<text x=\"58\" y=\"" + Decimal(y, 0) + "\">" + std::string(style->name) + "</text>\n";
-      y += 20.0;
+    for (const auto& [place, word] : {std::pair(stretches_.front().places.front(), "begin"), {stretches_.back().places.back(), "end"}}) {
+      text += fmt::format("<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"4\"/>\n<text x=\"{0:.1f}\" y=\"{1:.1f}\" dx=\"7\" dy=\"-7\">{2}</text>\n",
+                          x(place), y(place), word);
     }
-    const double bar_m = RoundLength(kTrackWidth / 4.0 / pixels_per_m);
-    text += "<line x1=\"20\" x2=\"" + Decimal(20.0 + bar_m * pixels_per_m, 1) + "\" y1=\"970\" y2=\"970\" stroke=\"#000000\" stroke-width=\"3\"/>\n" +
-            "<text x=\"20\" y=\"962\">" + Decimal(bar_m, bar_m < 1.0 ? 1 : 0) + " m</text>\n</svg>\n";
+    text += fmt::format(
+        "<text x=\"20\" y=\"28\" font-size=\"18\">Track of the boat, north up</text>\n"
+        "<text x=\"20\" y=\"50\">{:.0f} m; begins at {:.6f}, {:.6f}</text>\n",
+        length_m, latitude_deg_, longitude_deg_);
+    int line_y = 72;
+    for (const auto& style : kStyles) {
+      if (std::ranges::none_of(stretches_, [&style](const Stretch& stretch) { return stretch.style == &style; })) continue;
+      text +=
+          fmt::format("<line x1=\"20\" x2=\"50\" y1=\"{0}\" y2=\"{0}\" stroke-width=\"3\" stroke=\"{1}\"/>\n<text x=\"58\" y=\"{2}\">{3}</text>\n",
+                      line_y - 5, style.colour, line_y, style.name);
+      line_y += 20;
+    }
+    const double bar_m = RoundLength(kWidth / 4.0 / pixels_per_m);
+    text += fmt::format(
+        "<line x1=\"20\" x2=\"{:.1f}\" y1=\"970\" y2=\"970\" stroke=\"#000000\" stroke-width=\"3\"/>\n<text x=\"20\" y=\"962\">{:.{}f} "
+        "m</text>\n</svg>\n",
+        20.0 + bar_m * pixels_per_m, bar_m, bar_m < 1.0 ? 1 : 0);
   }
 
   double latitude_deg_ = 0.0;  // of the first place
