@@ -1,5 +1,7 @@
 #include "tools/eval/paper_tests.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -35,12 +37,6 @@ void AddTo(Bins& bins, const std::vector<ShoreGap>& gaps) {
   }
 }
 
-Bins BinsOf(const std::vector<ShoreGap>& gaps) {
-  Bins bins;
-  AddTo(bins, gaps);
-  return bins;
-}
-
 // Looked for by kind: what else a scene holds is none of the test's business.
 std::int32_t TheObject(const LabelledScan& truth, const std::string& kind) {
   std::int32_t found = 0;
@@ -54,29 +50,25 @@ std::int32_t TheObject(const LabelledScan& truth, const std::string& kind) {
   return found;
 }
 
-// What Test 1 needs of one scan: the kayak's returns, and its distance from all else.
+// Test 1: the kayak, and how far its returns are from the nearest of any other object; nullopt where one of them is not seen.
 struct KayakInScan {
   std::int32_t id = 0;
-  double distance_m = std::numeric_limits<double>::infinity();
+  double distance_m = 0.0;
 };
 
 std::optional<KayakInScan> FindKayak(const LabelledScan& truth, const segmenter::ReturnFilter& filter) {
-  KayakInScan kayak;
-  kayak.id = TheObject(truth, "kayak");
+  const auto id = TheObject(truth, "kayak");
   std::vector<segmenter::Point> of_kayak;
   std::vector<segmenter::Point> of_others;
   for (const auto& one : segmenter::ClassifyReturns(truth.scan, filter).returns) {
     const auto object = truth.object[static_cast<std::size_t>(one.cell)];
-    if (object == kayak.id) of_kayak.push_back(one.point);
-    if (object > 0 && object != kayak.id) of_others.push_back(one.point);
+    if (object > 0) (object == id ? of_kayak : of_others).push_back(one.point);
   }
   double least_m2 = std::numeric_limits<double>::infinity();
   for (const auto& one : of_kayak) {
     for (const auto& other : of_others) least_m2 = std::min(least_m2, segmenter::SquaredDistance(one, other));
   }
-  if (!std::isfinite(least_m2)) return std::nullopt;
-  kayak.distance_m = std::sqrt(least_m2);
-  return kayak;
+  return std::isfinite(least_m2) ? std::optional(KayakInScan{id, std::sqrt(least_m2)}) : std::nullopt;
 }
 
 double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling) {
@@ -89,11 +81,9 @@ double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling
 
 // "4.00 m on (median over 18 seeds; in 2 more from no distance on)".
 std::string FoundFrom(const Summary& own_from_m, int num_never) {
-  const auto num_found = static_cast<int>(own_from_m.count());
-  if (num_found == 0) return "no distance on (" + std::to_string(num_never) + " seeds)";
-  std::string text = Number(own_from_m.Median(), 2) + " m on (median over " + std::to_string(num_found) + " seeds";
-  if (num_never > 0) text += "; in " + std::to_string(num_never) + " more from no distance on";
-  return text + ")";
+  if (own_from_m.count() == 0) return fmt::format("no distance on ({} seeds)", num_never);
+  return fmt::format("{:.2f} m on (median over {} seeds{})", own_from_m.Median(), own_from_m.count(),
+                     num_never > 0 ? fmt::format("; in {} more from no distance on", num_never) : "");
 }
 
 Curve RunTest1(RunPlan plan, const Boat& boat, std::FILE* progress) {
@@ -224,7 +214,8 @@ std::vector<double> Steps(double from, double step, int count) {
 }  // namespace
 
 std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps) {
-  const auto bins = BinsOf(gaps);
+  Bins bins;
+  AddTo(bins, gaps);
   std::optional<double> from_m;
   for (auto bin = bins.rbegin(); bin != bins.rend(); ++bin) {
     if (bin->first * kTest1BinM >= kTest1ReachM) continue;

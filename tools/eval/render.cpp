@@ -1,9 +1,11 @@
 #include "tools/eval/render.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
 #include <stdexcept>
+#include <utility>
 
 #include "common/bus/channels.hpp"
 #include "common/messages/checks.hpp"
@@ -62,14 +64,15 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
   return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
+std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts) {
+  if (std::ranges::any_of(parts, [](const auto& part) { return messages::FaultOf(part, bus::kMaxMessageBytes).has_value(); })) return std::nullopt;
+  return segmenter::ToScan(parts);
+}
+
 segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets) {
-  const auto parts = vlp16::ToScanMessages(scan, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes);
-  for (const auto& part : parts) {
-    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::logic_error("the segmenter refuses a scan of the decoder");
-  }
-  auto scan = segmenter::ToScan(parts);
-  if (!scan) throw std::logic_error("a scan of the decoder is not complete");
-  return std::move(*scan);
+  auto received = ScanOfMessages(vlp16::ToScanMessages(scan, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes));
+  if (!received) throw std::logic_error("the segmenter refuses a scan of the decoder");
+  return std::move(*received);
 }
 
 void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {

@@ -4,8 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "common/config/boat.hpp"
+#include "lookout/lidar_scan_t.hpp"
 #include "services/segmenter/core/segmenter.hpp"
 #include "services/vlp16/core/scan.hpp"
 #include "services/vlp16/params.hpp"
@@ -24,6 +27,9 @@ struct Boat {
 
 /// @throws config::ConfigError
 Boat LoadBoat(const std::filesystem::path& config_folder);
+
+/// What the segmenter makes of the parts of a scan; nullopt when it refuses one, or one is missing
+std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts);
 
 /// What the segmenter receives of this scan over messages, without a bus. @throws std::logic_error when it would refuse it
 segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets);

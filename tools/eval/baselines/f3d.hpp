@@ -1,12 +1,30 @@
 // F3D: runs along each ring, merged with those of the ring above.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
+#include <span>
+#include <vector>
 
-#include "tools/eval/baselines/ground_plane.hpp"
 #include "tools/eval/baselines/peer.hpp"
 
 namespace lookout::eval {
+
+/// Defaults: the paper's.
+struct GroundPlaneParams {
+  int num_segments = 3;  // along x, of equal length; each has a plane of its own
+  int num_iterations = 3;
+  int num_lowest = 20;          // whose mean height is the ground's to begin with
+  double seed_height_m = 0.4;   // points lower than that over it are the first guess
+  double max_distance_m = 0.2;  // of ground from the plane, above it; what lies below is ground too
+};
+
+/// The ground as planes fitted to the lowest points.
+///
+/// @param points_m  x forward, z up
+/// @return [points] whether it is ground
+/// Source: as F3dGrouping, algorithm 1.
+std::vector<bool> FitGround(std::span<const Eigen::Vector3d> points_m, const GroundPlaneParams& params);
 
 /// Defaults: the paper's.
 struct F3dParams {
