@@ -286,6 +286,13 @@ TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
   EXPECT_EQ(num_rows, lookout::bus::kServices.size());
 }
 
+// It handles SIGHUP for each.
+TEST(Structure, EachServiceUsesTheSharedMain) {
+  for (const auto& service : lookout::bus::kServices) {
+    EXPECT_NE(ReadFile(kRoot / "services" / service.name / "main.cpp").find("runtime::ServiceMain<"), std::string::npos) << service.name;
+  }
+}
+
 // Readers start first: what they read, but for answers to what they publish, is published by a service above them.
 TEST(Structure, TheServiceTableIsInTheOrderOfTheData) {
   std::vector<std::string_view> above;

@@ -62,7 +62,7 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
   return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
-segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets) {
+segmenter::Scan ScanOfTurn(const vlp16::Scan& turn, bool use_vertical_origin_offsets) {
   const auto parts = vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes);
   for (const auto& part : parts) {
     if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::logic_error("the segmenter refuses a scan of the decoder");
@@ -79,7 +79,7 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
   std::deque<Truth> truths;
   vlp16::Decoder decoder(
       boat.lidar.decoder,
-      [&](const vlp16::Turn& turn) {
+      [&](const vlp16::Scan& turn) {
         labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
         labelled.object = TakeObjects(labelled.scan, truths);
         if (!turn.is_partial_start && !turn.is_partial_end) on_scan(labelled);

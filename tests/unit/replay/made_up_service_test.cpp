@@ -41,18 +41,18 @@ ServiceRows WithTracker() {
   return rows;
 }
 
-const ChannelSet kDay{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "TRACKS"};
+const ChannelSet kDayWithTracks{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "TRACKS"};
 
-std::string PlanOf(const Request& request) { return InWords(MakeLogPlan(request, kDay, WithTracker())); }
+std::string PlanWithTracker(const Request& request) { return InWords(MakeLogPlan(request, kDayWithTracks, WithTracker())); }
 
 TEST(MadeUpService, IsPlannedByItsRow) {
-  EXPECT_EQ(PlanOf({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, plotter\nread: LIDAR_PACKETS, NAV_RAW\n");
-  EXPECT_EQ(PlanOf({.only = {"tracker"}}), "ran: tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanOf({.from = {"POSE"}, .only = {"tracker", "segmenter", "vlp16"}}),
+  EXPECT_EQ(PlanWithTracker({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, plotter\nread: LIDAR_PACKETS, NAV_RAW\n");
+  EXPECT_EQ(PlanWithTracker({.only = {"tracker"}}), "ran: tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
+  EXPECT_EQ(PlanWithTracker({.from = {"POSE"}, .only = {"tracker", "segmenter", "vlp16"}}),
             "ran: vlp16, segmenter, tracker\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanOf({.from = {"OBSTACLES"}}), "ran: tracker, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanOf({.from = {"TRACKS"}}), "ran: plotter\nread: TRACKS\n");
-  EXPECT_THROW(PlanOf({.from = {"TRACKS"}, .only = {"georeferencer"}}), RequestError);
+  EXPECT_EQ(PlanWithTracker({.from = {"OBSTACLES"}}), "ran: tracker, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
+  EXPECT_EQ(PlanWithTracker({.from = {"TRACKS"}}), "ran: plotter\nread: TRACKS\n");
+  EXPECT_THROW(PlanWithTracker({.from = {"TRACKS"}, .only = {"georeferencer"}}), RequestError);
   EXPECT_EQ(InWords(MakeCapturePlan({}, WithTracker())), "ran: vlp16, segmenter, navigator, georeferencer, tracker, plotter\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.only = {"tracker"}}, WithTracker()), RequestError);
 }
@@ -72,13 +72,15 @@ TEST(MadeUpService, RunsBehindWhatItReads) {
                        }});
   Plan plan = MakeCapturePlan({.only = {"navigator", "tracker"}}, WithTracker());
   EXPECT_EQ(plan.services, (std::vector<std::string>{"navigator", "tracker"}));
-  std::vector<std::string> channels;
   std::int64_t num_poses = 0;
+  std::int64_t num_tracks = 0;
   Chain chain(
       support::kDemoConfig, plan,
       [&](Utime, std::string_view channel, Bytes bytes) {
         num_poses += channel == "POSE" ? 1 : 0;
-        if (channel == "TRACKS") EXPECT_EQ(bus::Decode<pose_t>(bytes).value().seq, 1000 + num_poses - 1);
+        if (channel == "TRACKS") {
+          EXPECT_EQ(bus::Decode<pose_t>(bytes).value().seq, 1000 + num_tracks++);
+        }
       },
       factories);
   Utime time = UtimeFromWire(1'782'907'200'000'000).value();

@@ -1,4 +1,4 @@
-// Makes turns of data packets: gives each column its azimuth and time and cuts at the configured azimuth, inside packets.
+// Makes scans of data packets: gives each column its azimuth and time and cuts at the configured azimuth, inside packets.
 #pragma once
 
 #include <chrono>
@@ -7,31 +7,31 @@
 
 #include "services/vlp16/core/data_packet.hpp"
 #include "services/vlp16/core/packet_sequencer.hpp"
-#include "services/vlp16/core/turn.hpp"
+#include "services/vlp16/core/scan.hpp"
 
 namespace lookout::vlp16 {
 
-class ScanAssembler {
+class ScanCutter {
  public:
-  /// @param cut_azimuth_rad  a turn begins with the first column at or after it; resolution 0.005 deg, as of columns
-  /// @param on_turn          called with each turn that has a column; the turn is the assembler's and changes after the call
-  ScanAssembler(double cut_azimuth_rad, std::function<void(const Turn&)> on_turn);
+  /// @param cut_azimuth_rad  a scan begins with the first column at or after it; resolution 0.005 deg, as of columns
+  /// @param on_scan          called with each scan that has a column; the scan is the cutter's and changes after the call
+  ScanCutter(double cut_azimuth_rad, std::function<void(const Scan&)> on_scan);
 
   /// Cost: proportional to the returns; no trigonometry.
   ///
   /// @param placed  its time is greater than that of the packet before
-  /// @param clock   for the turn that begins in it
+  /// @param clock   for the scan that begins in it
   void Add(const PlacedPacket& placed, const ClockReading& clock, const PacketCounts& counts);
 
-  /// What follows does not belong to what was: ends the turn, if there is one.
+  /// What follows does not belong to what was: ends the scan, if there is one.
   void End(const PacketCounts& counts);
 
-  /// Clock of the turn that began last; nullopt before the first.
+  /// Clock of the scan that began last; nullopt before the first.
   const std::optional<ClockReading>& clock() const { return clock_; }
 
-  /// Turns ended for being larger than any turn of this sensor (it stands still, or packets lie).
+  /// Scans ended for being larger than any scan of this sensor (it stands still, or packets lie).
   std::int64_t num_capped() const { return num_capped_; }
-  /// Turn of the head per step in the last packet, 0 before the first.
+  /// Scan of the head per step in the last packet, 0 before the first.
   int last_gap_cdeg() const { return last_gap_cdeg_; }
 
  private:
@@ -43,22 +43,22 @@ class ScanAssembler {
   void Reserve(int num_columns);
 
   int cut_half_cdeg_;
-  std::function<void(const Turn&)> on_turn_;
-  std::int64_t num_turns_ = 0;
+  std::function<void(const Scan&)> on_scan_;
+  std::int64_t num_scans_ = 0;
   std::int64_t num_capped_ = 0;
   int last_gap_cdeg_ = 0;
 
   std::optional<ClockReading> clock_;
-  const Beams* beams_ = &BeamsOf(Model::kVlp16);  // of the turn that is being made
-  Turn turn_;                                     // its arrays are larger than num_columns_ while the turn is being made
-  int num_columns_ = 0;                           // 0 = no turn has begun
+  const Beams* beams_ = &BeamsOf(Model::kVlp16);  // of the scan that is being made
+  Scan scan_;                                     // its arrays are larger than num_columns_ while the scan is being made
+  int num_columns_ = 0;                           // 0 = no scan has begun
   int capacity_columns_ = 0;
-  bool is_after_cut_ = false;          // the next turn begins at the cut
-  int num_lost_before_turn_ = 0;       // packets lost that had columns in the turn that is to begin
+  bool is_after_cut_ = false;          // the next scan begins at the cut
+  int num_lost_before_scan_ = 0;       // packets lost that had columns in the scan that is to begin
   int reach_half_cdeg_ = 0;            // azimuth reached: noise of the encoder may go back behind it
   int advance_half_cdeg_ = 0;          // of the last column to the next
-  std::int64_t sum_gap_cdeg_ = 0;      // of the columns of this turn
-  std::chrono::nanoseconds start_{0};  // sensor time of turn_.time
+  std::int64_t sum_gap_cdeg_ = 0;      // of the columns of this scan
+  std::chrono::nanoseconds start_{0};  // sensor time of scan_.time
   std::chrono::nanoseconds last_column_{0};
 };
 

@@ -1,4 +1,4 @@
-// One turn of the head: columns (firing sequences) x rings (lowest beam first) x returns of a shot.
+// One scan of the head: columns (firing sequences) x rings (lowest beam first) x returns of a shot.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct PacketCounts {
   std::int64_t num_reordered = 0;
 };
 
-struct Turn {
+struct Scan {
   std::int64_t number = 0;  // since the start
   Utime time;               // of the first shot, rounded down
   Utime end_time;           // of the last shot, rounded down
@@ -28,8 +28,8 @@ struct Turn {
   bool is_partial_start = false;  // does not begin at the cut
   bool is_partial_end = false;    // does not end at the cut
   bool has_hole = false;          // packets were lost inside
-  int num_lost_packets = 0;       // those that had columns in this turn
-  double rate_radps = 0.0;        // mean turn rate of the head
+  int num_lost_packets = 0;       // those that had columns in this scan
+  double rate_radps = 0.0;        // mean rate of rotation of the head
   ClockReading clock;             // at the first column
   PacketCounts counts;            // at the packet that ended it
 

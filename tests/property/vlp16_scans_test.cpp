@@ -1,4 +1,4 @@
-// Laws of the way from packets to turns, on sensors that turn evenly at random rates, with random losses.
+// Laws of the way from packets to scans, on sensors that rotate evenly at random rates, with random losses.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ void Compare(const lidar_scan_t& part, double azimuth_at_time_zero_deg, double r
   }
 }
 
-TEST(Turns, HoldEveryReturnOnceAtItsAzimuthAndTime) {
+TEST(Scans, HoldEveryReturnOnceAtItsAzimuthAndTime) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
@@ -71,24 +71,24 @@ TEST(Turns, HoldEveryReturnOnceAtItsAzimuthAndTime) {
     const double begin_deg = sensor.azimuth_deg;
 
     Worst worst;
-    std::int64_t num_turns = 0;
+    std::int64_t num_scans = 0;
     Utime last_end;
     int num_disorders = 0;
     Decoder decoder(
         params,
-        [&](const Turn& turn) {
-          if (turn.number != num_turns || turn.is_partial_start != (num_turns == 0)) ++num_disorders;
-          if (num_turns > 0 && turn.time <= last_end) ++num_disorders;
-          if (loss == 0.0 && turn.has_hole) ++num_disorders;
-          ++num_turns;
-          last_end = turn.end_time;
+        [&](const Scan& scan) {
+          if (scan.number != num_scans || scan.is_partial_start != (num_scans == 0)) ++num_disorders;
+          if (num_scans > 0 && scan.time <= last_end) ++num_disorders;
+          if (loss == 0.0 && scan.has_hole) ++num_disorders;
+          ++num_scans;
+          last_end = scan.end_time;
           int num_columns = 0;
-          for (const auto& part : ToScanMessages(turn, 0, false, 120'000)) {
+          for (const auto& part : ToScanMessages(scan, 0, false, 120'000)) {
             if (part.first_column != num_columns) ++num_disorders;
             num_columns += part.num_columns;
             Compare(part, begin_deg, sensor.rpm, worst);
           }
-          if (num_columns != turn.num_columns()) ++num_disorders;
+          if (num_columns != scan.num_columns()) ++num_disorders;
         },
         [](const SentenceOfLidar&) {});
     std::int64_t num_packets = 0;
