@@ -157,9 +157,9 @@ class SimWireTruth : public testing::Test {
     params.seed = 4;
     params.lidar = lidar;
     params.lidar.range_sd_m = 0.0;
-    TruthWriter truth(folder_ / "truth", scene, TurnedBoat(), params.start);
+    TruthWriter truth(folder_ / "truth", scene, TurnedBoat(), params.start, {.force = true});
     Simulation simulation(scene, TurnedBoat(), params, &truth);
-    PcapSink sink(folder_ / "a.pcap", {2368, 8308});
+    PcapSink sink(folder_ / "a.pcap", {2368, 8308}, {.force = true});
     while (const auto datagram = simulation.Next()) sink.Send(*datagram);
     sink.Close();
     truth.Close();
