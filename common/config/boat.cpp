@@ -1,9 +1,9 @@
 #include "common/config/boat.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
@@ -16,11 +16,7 @@ namespace {
 constexpr double kBoxMarginM = 1.0;    // of fenders, an outboard engine, a bowsprit
 constexpr double kOutsideHullM = 2.0;  // of a stern arch or a boom
 
-std::string Metres(double length_m) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f m", length_m == 0.0 ? 0.0 : length_m);  // no "-0.0"
-  return text.data();
-}
+std::string Metres(double length_m) { return fmt::format("{:.1f} m", length_m == 0.0 ? 0.0 : length_m); }  // no "-0.0"
 
 // "1.4 m ahead", "0.5 m astern": of a place along x.
 std::string Along(double x_m) { return Metres(std::abs(x_m)) + (x_m < 0.0 ? " astern" : " ahead"); }
@@ -47,7 +43,7 @@ BoatRemark OwnBox(const BoatFacts& boat) {
   const bool is_too_wide = box.sizes().y() > beam_m + kBoxMarginM || std::max(-box.min().y(), box.max().y()) > beam_m + kBoxMarginM;
   if (is_too_long || is_too_wide) {
     remark.words += "; that box is " + Metres(box.sizes().x()) + " x " + Metres(box.sizes().y()) + ", the hull " + Metres(length_m) + " x " +
-                    Metres(beam_m) + ": obstacles beside the hull would be taken for own boat";
+                    Metres(beam_m) + ": obstacles beside the hull would count as own boat";
     remark.cure = "own_vessel in boat.txtpb should hold hull, mast and gear and no more; or hull_length_m and hull_beam_m are wrong";
   }
   return remark;
@@ -61,11 +57,16 @@ double OutsideHullM(const BoatFacts& boat, const Eigen::Vector3d& p_vessel_m) {
   return boat.own_vessel_box_m.exteriorDistance(beside_m);
 }
 
-BoatRemark Place(const BoatFacts& boat, const std::string& what, const std::string& field, const Eigen::Vector3d& p_vessel_m,
-                 const std::string& words) {
+BoatRemark Place(const BoatFacts& boat, const std::string& what, const std::string& field, const Eigen::Vector3d& p_vessel_m) {
+  const double above_water_m = p_vessel_m.z() + boat.reference_point_above_water_m;
   BoatRemark remark;
-  remark.words = words;
-  if (OutsideHullM(boat, p_vessel_m) > kOutsideHullM) {
+  remark.words = fmt::format("the {} is {:.2f} m {} and {:.2f} m {} of the reference point, {:.2f} m {} the water", what, std::abs(p_vessel_m.x()),
+                             p_vessel_m.x() < 0.0 ? "astern" : "ahead", std::abs(p_vessel_m.y()), p_vessel_m.y() < 0.0 ? "to starboard" : "to port",
+                             std::abs(above_water_m), above_water_m < 0.0 ? "below" : "above");
+  remark.is_under_water = above_water_m <= 0.0;
+  if (remark.is_under_water) {
+    remark.cure = "the sign of " + field + ".z_m (up is positive) and reference_point_above_water_m in boat.txtpb";
+  } else if (OutsideHullM(boat, p_vessel_m) > kOutsideHullM) {
     remark.words += "; that is more than " + Metres(kOutsideHullM) + " outside of " +
                     (boat.hull_m ? "a hull of " + Metres(boat.hull_m->length_m) + " x " + Metres(boat.hull_m->beam_m) : "own_vessel");
     remark.cure = "the place of the " + what + ": " + field + " in boat.txtpb, in metres from the reference point, x forward and y to port";
@@ -108,18 +109,10 @@ BoatFacts LoadBoat(const std::filesystem::path& folder) {
 }
 
 std::vector<BoatRemark> RemarksOnBoat(const BoatFacts& boat) {
-  const Eigen::Vector3d lidar_m = boat.T_vessel_lidar.translation();
-  const Eigen::Vector3d from_lidar_m = boat.p_vessel_antenna_m - lidar_m;
-  const double above_water_m = lidar_m.z() + boat.reference_point_above_water_m;
-  std::vector<BoatRemark> remarks{
-      OwnBox(boat),
-      Place(boat, "lidar", "lidar", lidar_m,
-            "the lidar is " + Along(lidar_m.x()) + " and " + Across(lidar_m.y()) + " of the reference point, " + AboveWater(above_water_m)),
-      Place(boat, "GNSS antenna", "gnss_antenna", boat.p_vessel_antenna_m,
-            "the GNSS antenna is " + Along(from_lidar_m.x()) + " of the lidar, " + Across(from_lidar_m.y()) + " and " +
-                Metres(std::abs(from_lidar_m.z())) + (from_lidar_m.z() < 0.0 ? " lower" : " higher"))};
+  std::vector<BoatRemark> remarks{OwnBox(boat), Place(boat, "lidar", "lidar", boat.T_vessel_lidar.translation()),
+                                  Place(boat, "GNSS antenna", "gnss_antenna", boat.p_vessel_antenna_m)};
   if (!boat.hull_m) {
-    remarks.push_back({"the size of the hull is not told: whether own_vessel is too large cannot be checked",
+    remarks.push_back({"the size of the hull is not set: whether own_vessel is too large cannot be checked",
                        "hull_length_m and hull_beam_m in boat.txtpb (metres over all)"});
   }
   return remarks;

@@ -6,7 +6,6 @@
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -41,27 +40,6 @@ AddressList Resolve(const UdpOptions& options) {
   const int fault = getaddrinfo(options.bind_address.c_str(), std::to_string(options.port).c_str(), &hints, &found);
   if (fault != 0) throw std::runtime_error(Where(options) + ": " + gai_strerror(fault));
   return {found, &freeaddrinfo};
-}
-
-std::string InterfaceNames() {
-  std::string names;
-  struct if_nameindex* const list = if_nameindex();
-  for (auto* item = list; item != nullptr && item->if_index != 0; ++item) {
-    names += names.empty() ? "" : ", ";
-    names += item->if_name;
-  }
-  if (list != nullptr) if_freenameindex(list);
-  return names;
-}
-
-bool IsUp(const std::string& interface) {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return false;
-  ifreq request{};
-  interface.copy(request.ifr_name, IFNAMSIZ - 1);
-  const bool is_up = ioctl(descriptor, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
-  close(descriptor);
-  return is_up;
 }
 
 // The interface in "fe80::1%eth0"; empty when there is none, or it is a number.
@@ -190,7 +168,8 @@ Utime ToUtime(const timespec& time) { return Utime(std::chrono::seconds(time.tv_
 
 }  // namespace
 
-UdpReceiver::UdpReceiver(UdpOptions options) : options_(std::move(options)), buffer_(kMaxDatagramBytes) {
+UdpReceiver::UdpReceiver(UdpOptions options)
+    : options_(std::move(options)), drops_name_(options_.name + "_kernel_drops"), buffer_(kMaxDatagramBytes) {
   for (const auto& text : options_.allowed_source_addresses) {
     const auto address = ParseIpAddress(text);
     if (!address) throw std::runtime_error(Where(options_) + ": '" + text + "' is no numeric address of a source");
@@ -199,11 +178,7 @@ UdpReceiver::UdpReceiver(UdpOptions options) : options_(std::move(options)), buf
   if (options_.interface.empty()) options_.interface = ZoneOf(options_.bind_address);
   if (!options_.interface.empty()) {
     interface_index_ = if_nametoindex(options_.interface.c_str());
-    if (interface_index_ == 0) {
-      throw std::runtime_error(Where(options_) + ": there is no such interface now (there are: " + InterfaceNames() +
-                               "). When it comes late at boot, start after it; systemd: After=sys-subsystem-net-devices-" + options_.interface +
-                               ".device");
-    }
+    if (interface_index_ == 0) throw std::runtime_error(Where(options_) + ": " + NoInterfaceText(options_.interface));
   }
   file_descriptor_ = Open(options_, interface_index_);
   port_ = PortOf(file_descriptor_);
@@ -212,7 +187,7 @@ UdpReceiver::UdpReceiver(UdpOptions options) : options_(std::move(options)), buf
 
 UdpReceiver::~UdpReceiver() { close(file_descriptor_); }
 
-std::optional<ReceivedDatagram> UdpReceiver::ReceiveAny() {
+std::optional<Source::Piece> UdpReceiver::ReceiveAny() {
   iovec part{buffer_.data(), buffer_.size()};
   alignas(cmsghdr) std::array<char, 256> control{};
   msghdr message{};
@@ -228,12 +203,11 @@ std::optional<ReceivedDatagram> UdpReceiver::ReceiveAny() {
   } while (num_bytes < 0 && errno == EINTR);
   if (num_bytes < 0) return std::nullopt;
 
-  ReceivedDatagram datagram;
-  datagram.port = port_;
-  datagram.source = AddressOf(source_);
   // The port stands at the same place in both families.
-  datagram.source_port = ntohs(reinterpret_cast<const sockaddr_in*>(&source_)->sin_port);
-  datagram.payload = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes));
+  Piece datagram{.host_time = {},
+                 .bytes = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes)),
+                 .port = port_,
+                 .source_port = ntohs(reinterpret_cast<const sockaddr_in*>(&source_)->sin_port)};
   bool has_time = false;
   for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr; item = CMSG_NXTHDR(&message, item)) {
     if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SCM_TIMESTAMPNS) continue;
@@ -250,17 +224,17 @@ std::optional<ReceivedDatagram> UdpReceiver::ReceiveAny() {
   return datagram;
 }
 
-bool UdpReceiver::IsAllowed() const {
-  return allowed_sources_.empty() || std::ranges::find(allowed_sources_, AddressOf(source_)) != allowed_sources_.end();
-}
-
-std::optional<ReceivedDatagram> UdpReceiver::Receive() {
+std::optional<Source::Piece> UdpReceiver::Receive(Utime) {
   for (int i = 0; i < kMaxRefusedPerCall; ++i) {
-    const auto datagram = ReceiveAny();
+    auto datagram = ReceiveAny();
     is_empty_ = !datagram;
     if (!datagram) return std::nullopt;
     last_time_ = datagram->host_time;
-    if (IsAllowed()) return datagram;
+    const auto source = AddressOf(source_);
+    if (allowed_sources_.empty() || std::ranges::find(allowed_sources_, source) != allowed_sources_.end()) {
+      datagram->source_address = ToText(source);
+      return datagram;
+    }
     ++num_source_refused_;
   }
   return std::nullopt;
@@ -306,23 +280,16 @@ std::string UdpReceiver::CheckInterface() {
     const auto fault = Reopen(index);
     if (!fault.empty()) return "interface '" + options_.interface + "' is back, but not ready: " + fault;
   }
-  return IsUp(options_.interface) ? "" : "interface '" + options_.interface + "' is down";
+  return IsInterfaceUp(options_.interface) ? "" : "interface '" + options_.interface + "' is down";
 }
 
-std::string UdpReceiver::FollowInterface() {
-  if (options_.interface.empty()) return "";
+std::string UdpReceiver::Poll(Utime now) {
+  if (options_.interface.empty() || !timer_.IsDue(now)) return "";
   const auto num_reopened_before = num_reopened_;
   const auto fault = CheckInterface();
   if (fault == fault_ && num_reopened_ == num_reopened_before) return "";
   fault_ = fault;
-  return fault.empty() ? "interface '" + options_.interface + "' is back" : fault;
-}
-
-std::string UdpReceiver::SourceAddress() const {
-  std::array<char, NI_MAXHOST> host{};
-  const socklen_t size = source_.ss_family == AF_INET ? sizeof(sockaddr_in) : sizeof(sockaddr_in6);
-  if (getnameinfo(reinterpret_cast<const sockaddr*>(&source_), size, host.data(), host.size(), nullptr, 0, NI_NUMERICHOST) != 0) return "";
-  return host.data();
+  return "port " + std::to_string(port_) + ": " + (fault.empty() ? "interface '" + options_.interface + "' is back" : fault);
 }
 
 }  // namespace lookout::io

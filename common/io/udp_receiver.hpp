@@ -8,13 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/interface.hpp"
 #include "common/io/ip_address.hpp"
+#include "common/io/source.hpp"
 
 namespace lookout::io {
 
 struct UdpOptions {
+  std::string name = {};         // of its counters
   std::string bind_address;      // numeric IPv4 or IPv6 address of this computer; "0.0.0.0" = every interface
   int port = 0;                  // 0 = one that is free
   int receive_buffer_bytes = 0;  // asked of the kernel, which may grant less: see receive_buffer_bytes()
@@ -26,51 +28,32 @@ struct UdpOptions {
   std::vector<std::string> allowed_source_addresses = {};  // numeric; empty = all
 };
 
-struct ReceivedDatagram {
-  Utime host_time;  // kernel stamp of the arrival
-  int port = 0;     // the port it was sent to
-  IpAddress source;
-  int source_port = 0;
-  Bytes payload;  // until the next call of Receive()
-};
-
-class UdpReceiver {
+class UdpReceiver : public Source {
  public:
   /// Binds for this process alone: a second program on the same port is an error at start, not a silent share of the datagrams.
   ///
   /// @throws std::runtime_error with address, port, interface, reason and, where it is known, what helps
   explicit UdpReceiver(UdpOptions options);
-  ~UdpReceiver();
-  UdpReceiver(const UdpReceiver&) = delete;
-  UdpReceiver& operator=(const UdpReceiver&) = delete;
+  ~UdpReceiver() override;
 
-  /// Readable while a datagram waits. Stays the same number for the life of the receiver.
-  int file_descriptor() const { return file_descriptor_; }
+  int file_descriptor() const override { return file_descriptor_; }
 
-  /// @return the oldest datagram that waits and comes from an allowed source; nullopt when none waits, and after kMaxRefusedPerCall that were
-  ///         refused: is_empty() tells which. Never waits, never throws, takes no memory.
-  std::optional<ReceivedDatagram> Receive();
+  /// An interface that went away and came back (a USB adapter) is another one to the kernel: a socket that is bound to it would stay deaf. Looks once
+  /// a second, and opens the socket again as soon as it can.
+  std::string Poll(Utime now) override;
 
-  /// The last Receive() left nothing behind. False after one that ended at kMaxRefusedPerCall.
-  bool is_empty() const { return is_empty_; }
-
-  /// Kernel stamp of the datagram that the last Receive() looked at, refused or not: what came before it has been taken. 1970 before the first.
-  Utime last_time() const { return last_time_; }
+  /// The oldest datagram from an allowed source. Never throws.
+  std::optional<Piece> Receive(Utime now) override;
 
   /// So that a flood from elsewhere does not hold the caller.
   static constexpr int kMaxRefusedPerCall = 64;
 
-  /// To be called about once a second. An interface that went away and came back (a USB adapter) is another one to the kernel: a socket that is
-  /// bound to it would stay deaf. Opens the socket again then, as soon as it can.
-  ///
-  /// @return what changed, for the log; empty = nothing
-  std::string FollowInterface();
+  bool is_empty() const override { return is_empty_; }
+  Utime last_time() const override { return last_time_; }
+  std::string fault() const override { return fault_; }
 
-  /// Why nothing can be received now, as FollowInterface() found; empty = nothing is known to be wrong.
-  const std::string& fault() const { return fault_; }
-
-  /// Numeric source of the datagram that Receive() gave last. For people: it makes a text.
-  std::string SourceAddress() const;
+  /// NAME_kernel_drops.
+  std::vector<Counter> counters() override { return {{drops_name_, num_kernel_drops()}}; }
 
   /// The real port, also when 0 was asked for.
   int port() const { return port_; }
@@ -84,19 +67,20 @@ class UdpReceiver {
   /// Datagrams whose source is not allowed.
   std::int64_t num_source_refused() const { return num_source_refused_; }
 
-  /// Times that the socket was opened again by FollowInterface().
+  /// Times that the socket was opened again by Poll().
   std::int64_t num_reopened() const { return num_reopened_; }
 
  private:
-  std::optional<ReceivedDatagram> ReceiveAny();
-  bool IsAllowed() const;
+  std::optional<Piece> ReceiveAny();
   std::string CheckInterface();
   std::string Reopen(unsigned int index);
 
   UdpOptions options_;
+  std::string drops_name_;
   std::vector<IpAddress> allowed_sources_;
   int file_descriptor_ = -1;
   unsigned int interface_index_ = 0;  // 0 = of none
+  InterfaceTimer timer_;
   std::string fault_;
   bool is_empty_ = true;
   Utime last_time_{};

@@ -76,6 +76,8 @@ void BlockStopSignals() {
 
 Utime HostNow() { return std::chrono::time_point_cast<std::chrono::microseconds>(std::chrono::system_clock::now()); }
 
+std::chrono::steady_clock::time_point SteadyNow() { return Clock::now(); }
+
 std::string HostName() {
   std::array<char, 256> name{};
   if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";

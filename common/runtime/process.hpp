@@ -14,6 +14,9 @@ namespace lookout::runtime {
 /// Host time. Only main, io and runtime call it; all else gets time as an argument.
 Utime HostNow();
 
+/// A clock that nobody sets, for durations. For whom HostNow() is.
+std::chrono::steady_clock::time_point SteadyNow();
+
 /// Name of this computer.
 std::string HostName();
 

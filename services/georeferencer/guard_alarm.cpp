@@ -20,29 +20,27 @@ void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<Neares
 
 }  // namespace
 
-void GuardAlarm::Add(const TurnHead& head, const std::optional<NearestPoint>& nearest) {
-  if (!gathering_ || gathering_->time != head.time || gathering_->seq != head.seq) {
-    Close(false);  // what is missing of the scan before does not come any more
-    gathering_ = Gathering{};
-    gathering_->time = head.time;
-    gathering_->seq = head.seq;
-    gathering_->num_parts = head.num_parts;
+void GuardAlarm::Add(const ScanHead& head, const std::optional<NearestPoint>& nearest) {
+  const ScanKey key{ToUtimeUs(head.time), head.seq};
+  if (key == last_scan_) return;  // came twice
+  const auto ended = assembler_.Add({key.first, key.second, head.part_index, head.num_parts, head.scan_flags, nearest});
+  if (!ended.incomplete.empty()) Evaluate(ended.incomplete, false);
+  if (!ended.whole.empty()) Evaluate(ended.whole, true);
+}
+
+void GuardAlarm::Evaluate(const std::vector<ZonePart>& parts, bool has_all_parts) {
+  const ScanKey key{parts.front().utime_us, parts.front().seq};
+  if (key == last_scan_) return;
+  last_scan_ = key;
+  Seen scan{Utime(microseconds(key.first)), has_all_parts, std::nullopt};
+  for (const auto& part : parts) {
+    if (part.scan_flags != 0) scan.is_whole = false;
+    KeepNearer(scan.nearest, part.nearest);
   }
-  auto& scan = *gathering_;
-  if (scan.is_closed || head.part_index < scan.next_part) return;  // came twice
-  if (head.part_index != scan.next_part || head.num_parts != scan.num_parts || head.scan_flags != 0) scan.is_whole = false;
-  scan.next_part = head.part_index + 1;
-  KeepNearer(scan.nearest, nearest);
-  if (scan.next_part == scan.num_parts) Close(true);
+  Evaluate(scan);
 }
 
-void GuardAlarm::Close(bool has_all_parts) {
-  if (!gathering_ || gathering_->is_closed) return;
-  gathering_->is_closed = true;
-  Judge({gathering_->time, gathering_->is_whole && has_all_parts, gathering_->nearest});
-}
-
-void GuardAlarm::Judge(const Seen& scan) {
+void GuardAlarm::Evaluate(const Seen& scan) {
   ++(scan.is_whole ? num_whole_ : num_partial_);
   if (newest_ && std::chrono::abs(scan.time - *newest_) > kTimeToClear) {
     // Another run, or a gap: nobody looked meanwhile, so an alarm that stands is not cleared by it.

@@ -8,10 +8,12 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
+#include "common/messages/part_assembler.hpp"
 #include "services/georeferencer/core/guard_zone.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 
@@ -30,10 +32,10 @@ class GuardAlarm {
   static constexpr std::chrono::seconds kTimeToClear{1};
   static constexpr std::chrono::milliseconds kTimeToUnwatched{500};
 
-  /// A scan, or a part of one; parts come one after the other.
+  /// A scan, or a part of one.
   ///
   /// @param nearest  of what this part shows within the zone; nullopt: nothing
-  void Add(const TurnHead& head, const std::optional<NearestPoint>& nearest);
+  void Add(const ScanHead& head, const std::optional<NearestPoint>& nearest);
 
   /// Live only, ten times a second or more. A step of the host's clock, or a time in which this process did not run, counts as 0.25 s at most.
   void AdvanceTo(Utime host_time);
@@ -63,14 +65,13 @@ class GuardAlarm {
   State state() const { return {num_alarms_, num_times_unwatched_, is_raised_, is_unwatched()}; }
 
  private:
-  // The scan whose parts come in.
-  struct Gathering {
-    Utime time;
+  using ScanKey = std::pair<std::int64_t, std::int64_t>;  // utime_us, seq
+  struct ZonePart {
+    std::int64_t utime_us = 0;
     std::int64_t seq = 0;
+    std::int32_t part_index = 0;
     std::int32_t num_parts = 0;
-    std::int32_t next_part = 0;
-    bool is_whole = true;  // so far
-    bool is_closed = false;
+    std::int32_t scan_flags = 0;
     std::optional<NearestPoint> nearest;
   };
   struct Seen {
@@ -79,11 +80,12 @@ class GuardAlarm {
     std::optional<NearestPoint> nearest;
   };
 
-  void Close(bool has_all_parts);
-  void Judge(const Seen& scan);
+  void Evaluate(const std::vector<ZonePart>& parts, bool has_all_parts);
+  void Evaluate(const Seen& scan);
 
-  std::optional<Gathering> gathering_;
-  std::deque<Seen> window_;  // whole scans, and others that show something
+  messages::PartAssembler<ZonePart> assembler_;
+  std::optional<ScanKey> last_scan_;  // the last that ended
+  std::deque<Seen> window_;           // whole scans, and others that show something
   std::optional<Utime> newest_;
   bool is_raised_ = false;
   NearestPoint last_nearest_;

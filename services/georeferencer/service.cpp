@@ -53,7 +53,8 @@ Service::Service(bus::Bus& bus, const Params& params)
       T_vessel_lidar_(params.placement.T_vessel_lidar),
       datum_(params.datum) {
   if (guard_zone_.range_m > 0.0) alarm_.emplace();
-  for (const auto& refusal : kRefusals) refusals_.push_back({refusal, 0});
+  for (const auto& fault : messages::kSegmentsFaults) refusals_.push_back({fault, 0});
+  for (const auto& refusal : kPoseRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
 }

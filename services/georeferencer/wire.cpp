@@ -16,14 +16,11 @@ namespace {
 
 using std::chrono::microseconds;
 
-// Bounds of what can be, wide enough for any lidar and boat, so that arithmetic inside stays far from overflow.
-constexpr double kMaxLidarM = 1e5;
+// Bounds of what can be, wide enough for any boat, so that arithmetic inside stays far from overflow.
 constexpr double kMaxMapM = 1.4e7;  // the earth's diameter, and more: a datum may be wrong
 constexpr double kMaxHeightM = 1e5;
 constexpr double kMaxHeaveM = 1e3;
 constexpr double kMaxVariance = 1e12;
-constexpr std::chrono::seconds kMaxTurn(60);
-constexpr std::int32_t kMaxParts = 1000;
 constexpr std::int64_t kPoseGridUs = 20'000;  // pose_t: a multiple of it
 // Rounding of a covariance that went through a filter.
 constexpr double kCovarianceTolerance = 1e-6;
@@ -45,16 +42,8 @@ static_assert(static_cast<int>(Kind::kLand) == obstacle_t::KIND_LAND);
 static_assert(static_cast<int>(obstacle_t::GROUND_FEW_RETURNS) == segment_t::GROUND_FEW_RETURNS);
 static_assert(static_cast<int>(obstacle_t::GROUND_SCATTERED) == segment_t::GROUND_SCATTERED);
 static_assert(static_cast<int>(obstacle_t::GROUND_AT_SURFACE) == segment_t::GROUND_AT_SURFACE);
-constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND_FEW_RETURNS) |
-                                     static_cast<std::int32_t>(segment_t::GROUND_SCATTERED) | static_cast<std::int32_t>(segment_t::GROUND_AT_SURFACE);
 
 bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }  // NaN is not
-
-bool IsPlace(const float (&point_m)[3]) {
-  return std::ranges::all_of(point_m, [](float value) { return IsWithin(value, kMaxLidarM); });
-}
-
-bool IsLength(double value) { return value >= 0.0 && value <= kMaxLidarM; }
 
 template <typename T>
 std::int32_t Count(const std::vector<T>& values) {
@@ -63,57 +52,15 @@ std::int32_t Count(const std::vector<T>& values) {
 
 Eigen::Vector3d ToVector(const float (&point_m)[3]) { return {point_m[0], point_m[1], point_m[2]}; }
 
-bool HasItsVertices(const segment_t& message) {
-  return message.num_points > 0 && message.num_hull > 0 && message.num_hull == Count(message.hull_x_m) &&
-         message.num_hull == Count(message.hull_y_m) && message.num_hull == Count(message.hull_time_us) &&
-         message.num_waterline == Count(message.waterline_x_m) && message.num_waterline == Count(message.waterline_y_m) &&
-         message.num_waterline == Count(message.waterline_time_us);
-}
-
-bool AreCodesKnown(const segment_t& message) {
-  return (message.confidence == segment_t::CONFIDENCE_TENTATIVE || message.confidence == segment_t::CONFIDENCE_SURE) &&
-         (message.kind == segment_t::KIND_OBSTACLE || message.kind == segment_t::KIND_LAND) && message.grounds >= 0 && message.grounds <= kAllGrounds;
-}
-
-// Of the corners of an outline or a waterline; the arrays are equally long.
-std::optional<Refusal> FaultOf(const std::vector<float>& x_m, const std::vector<float>& y_m, const std::vector<std::int32_t>& time_us,
-                               const TurnHead& head) {
-  for (std::size_t i = 0; i < x_m.size(); ++i) {
-    if (!IsWithin(x_m[i], kMaxLidarM) || !IsWithin(y_m[i], kMaxLidarM)) return kSegmentsNumber;
-    if (time_us[i] < 0 || microseconds(time_us[i]) > head.end_time - head.time) return kSegmentsTime;
-  }
-  return std::nullopt;
-}
-
-// Precondition: HasItsVertices.
-std::optional<Refusal> FaultOf(const segment_t& message, const TurnHead& head) {
-  const auto time = UtimeFromWire(message.utime_us);
-  const auto nearest_time = UtimeFromWire(message.nearest_utime_us);
-  for (const auto& moment : {time, nearest_time}) {
-    if (!moment || *moment < head.time || *moment > head.end_time) return kSegmentsTime;
-  }
-  if (!IsPlace(message.centroid_m) || !IsPlace(message.nearest_m) || !IsPlace(message.top_m) || !IsLength(message.length_m) ||
-      !IsLength(message.width_m) || !IsWithin(message.min_z_m, kMaxLidarM) || !IsWithin(message.max_z_m, kMaxLidarM) ||
-      message.min_z_m > message.max_z_m || !std::isfinite(message.length_azimuth_rad) || !std::isfinite(message.mean_reflectivity) ||
-      !IsWithin(message.box_center_m[0], kMaxLidarM) || !IsWithin(message.box_center_m[1], kMaxLidarM) || message.min_reflectivity < 0 ||
-      message.min_reflectivity > message.max_reflectivity || !(message.seen_share >= 0.0F && message.seen_share <= 1.0F)) {
-    return kSegmentsNumber;
-  }
-  if (!AreCodesKnown(message)) return kSegmentsCode;
-  if (const auto fault = FaultOf(message.hull_x_m, message.hull_y_m, message.hull_time_us, head)) return fault;
-  return FaultOf(message.waterline_x_m, message.waterline_y_m, message.waterline_time_us, head);
-}
-
 std::vector<HullVertex> ToCorners(const std::vector<float>& x_m, const std::vector<float>& y_m, const std::vector<std::int32_t>& time_us,
-                                  const TurnHead& head) {
+                                  Utime scan_time) {
   std::vector<HullVertex> corners;
   corners.reserve(x_m.size());
-  for (std::size_t i = 0; i < x_m.size(); ++i) corners.push_back({{x_m[i], y_m[i]}, head.time + microseconds(time_us[i])});
+  for (std::size_t i = 0; i < x_m.size(); ++i) corners.push_back({{x_m[i], y_m[i]}, scan_time + microseconds(time_us[i])});
   return corners;
 }
 
-// Precondition: FaultOf the message is none.
-Segment ToSegment(const segment_t& message, const TurnHead& head) {
+Segment ToSegment(const segment_t& message, Utime scan_time) {
   Segment segment;
   segment.time = Utime(microseconds(message.utime_us));
   segment.id = message.id;
@@ -127,8 +74,8 @@ Segment ToSegment(const segment_t& message, const TurnHead& head) {
   segment.min_z_m = message.min_z_m;
   segment.max_z_m = message.max_z_m;
   segment.mean_reflectivity = message.mean_reflectivity;
-  segment.hull = ToCorners(message.hull_x_m, message.hull_y_m, message.hull_time_us, head);
-  segment.waterline = ToCorners(message.waterline_x_m, message.waterline_y_m, message.waterline_time_us, head);
+  segment.hull = ToCorners(message.hull_x_m, message.hull_y_m, message.hull_time_us, scan_time);
+  segment.waterline = ToCorners(message.waterline_x_m, message.waterline_y_m, message.waterline_time_us, scan_time);
   return segment;
 }
 
@@ -221,27 +168,17 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
 }  // namespace
 
 std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int max_message_bytes) {
-  const auto time = UtimeFromWire(message.utime_us);
-  const auto end_time = UtimeFromWire(message.end_utime_us);
-  if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxTurn) return kSegmentsTime;
-  if (message.seq < 0 || message.raw_seq < 0 || message.num_parts < 1 || message.num_parts > kMaxParts || message.part_index < 0 ||
-      message.part_index >= message.num_parts) {
-    return kSegmentsParts;
-  }
-  if (message.num_segments > message.num_turn_segments || message.segments.size() != static_cast<std::size_t>(message.num_segments)) {
-    return kSegmentsCount;
-  }
-  if (!std::ranges::all_of(message.segments, HasItsVertices)) return kSegmentsCount;
-  if (message.getEncodedSize() > max_message_bytes) return kSegmentsSize;
+  if (const auto fault = messages::FaultOf(message, max_message_bytes)) return *fault;
   SegmentPart part;
-  part.head = {*time, *end_time, message.seq, message.raw_seq, message.scan_flags, message.part_index, message.num_parts, message.num_turn_segments};
-  std::int32_t last_id = 0;
-  for (const auto& segment : message.segments) {
-    if (segment.id <= last_id || segment.id > message.num_turn_segments) return kSegmentsId;
-    last_id = segment.id;
-    if (const auto fault = FaultOf(segment, part.head)) return *fault;
-    part.segments.push_back(ToSegment(segment, part.head));
-  }
+  part.head.time = Utime(microseconds(message.utime_us));
+  part.head.end_time = Utime(microseconds(message.end_utime_us));
+  part.head.seq = message.seq;
+  part.head.raw_seq = message.raw_seq;
+  part.head.scan_flags = message.scan_flags;
+  part.head.part_index = message.part_index;
+  part.head.num_parts = message.num_parts;
+  part.head.num_scan_segments = message.num_turn_segments;
+  for (const auto& segment : message.segments) part.segments.push_back(ToSegment(segment, part.head.time));
   return part;
 }
 
@@ -303,7 +240,7 @@ std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_by
   }
   // Other parts of the turn may need two messages: then each part gets two, since num_parts must be known with the first.
   const bool is_one_enough =
-      part.head.num_turn_segments <= static_cast<std::int32_t>(kFewSegments) || (part.head.num_parts == 1 && messages.size() == 1);
+      part.head.num_scan_segments <= static_cast<std::int32_t>(kFewSegments) || (part.head.num_parts == 1 && messages.size() == 1);
   if (!is_one_enough && messages.size() == 1) messages.push_back(head);
   for (std::size_t i = 0; i < messages.size(); ++i) {
     const auto per_part = static_cast<std::int32_t>(messages.size());

@@ -2,36 +2,27 @@
 #pragma once
 
 #include <array>
-#include <string_view>
 #include <variant>
 #include <vector>
 
+#include "common/messages/checks.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
-#include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/core/placement.hpp"
 #include "services/georeferencer/core/pose.hpp"
 
 namespace lookout::georeferencer {
 
-/// Why a message was refused: a name of a counter.
-using Refusal = std::string_view;
+/// Why a message was refused: the name of a counter; of SEGMENTS one of messages::kSegmentsFaults.
+using Refusal = messages::Fault;
 
-inline constexpr Refusal kSegmentsTime = "segments_refused_time";      // a time that does not exist, or is outside of its turn
-inline constexpr Refusal kSegmentsParts = "segments_refused_parts";    // part_index, num_parts, seq
-inline constexpr Refusal kSegmentsCount = "segments_refused_count";    // counts that do not agree
-inline constexpr Refusal kSegmentsId = "segments_refused_id";          // ids that do not increase, or are not in the turn
-inline constexpr Refusal kSegmentsNumber = "segments_refused_number";  // not finite, or not a place that a lidar sees
-inline constexpr Refusal kSegmentsCode = "segments_refused_code";      // a confidence, ground or kind that does not exist
-inline constexpr Refusal kSegmentsSize = "segments_refused_size";      // larger than a message may be
 inline constexpr Refusal kPoseTime = "pose_refused_time";              // a time that does not exist, or is not on the grid
 inline constexpr Refusal kPoseStatus = "pose_refused_status";          // a status that does not exist
 inline constexpr Refusal kPoseNumber = "pose_refused_number";          // what the status says is known is not, or is not a place on earth
 inline constexpr Refusal kPoseCovariance = "pose_refused_covariance";  // not a covariance
 
-inline constexpr std::array kRefusals{kSegmentsTime, kSegmentsParts, kSegmentsCount, kSegmentsId, kSegmentsNumber, kSegmentsCode,
-                                      kSegmentsSize, kPoseTime,      kPoseStatus,    kPoseNumber, kPoseCovariance};
+inline constexpr std::array kPoseRefusals{kPoseTime, kPoseStatus, kPoseNumber, kPoseCovariance};
 
 /// Encoded sizes: obstacles_t without obstacles, obstacle_t without outline and waterline, a corner of them in both frames.
 inline constexpr std::size_t kHeadBytes = 80;
@@ -42,8 +33,8 @@ inline constexpr std::size_t kVertexBytes = 16;
 std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int max_message_bytes);
 std::variant<Pose, Refusal> ToPose(const pose_t& message);
 
-/// @return OBSTACLES of one SEGMENTS message: one message, or two where the obstacles of the turn may not fit into one each (see README.md);
-///         part_index and num_parts count them through the turn
+/// @return OBSTACLES of one SEGMENTS message: one message, or two where the obstacles of the scan may not fit into one each (see README.md);
+///         part_index and num_parts count them through the scan
 std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_bytes);
 
 }  // namespace lookout::georeferencer

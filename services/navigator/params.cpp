@@ -1,19 +1,205 @@
 #include "services/navigator/params.hpp"
 
-#include <chrono>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <set>
+#include <utility>
 
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "common/io/ip_address.hpp"
 #include "config/schema/navigator.pb.h"
-#include "services/navigator/inputs.hpp"
+#include "services/navigator/core/day.hpp"
+#include "services/navigator/core/sentence.hpp"
 
 namespace lookout::navigator {
 
 namespace {
 
 std::chrono::microseconds ToMicroseconds(double duration_s) { return std::chrono::microseconds(std::llround(duration_s * 1e6)); }
+
+// What termios of Linux has names for, from 1200 on.
+constexpr std::array kBauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000};
+
+Role ToRole(config::NavigationInput::Role role) {
+  switch (role) {
+    case config::NavigationInput::GNSS:
+      return Role::kGnss;
+    case config::NavigationInput::HEADING:
+      return Role::kHeading;
+    case config::NavigationInput::ATTITUDE:
+      return Role::kAttitude;
+    case config::NavigationInput::IMU:
+      return Role::kImu;
+    case config::NavigationInput::RECORD_ONLY:
+      return Role::kNothing;
+    default:
+      return Role::kAll;
+  }
+}
+
+SourceParams ToSource(const config::NavigationInput& input) {
+  SourceParams source;
+  source.name = input.name();
+  source.role = ToRole(input.role());
+  source.requires_checksum = input.checksum_required();
+  if (input.has_latency_s()) source.latency = ToMicroseconds(input.latency_s());
+  source.roll_sign = input.roll_positive() == config::NavigationInput::PORT_DOWN ? -1.0 : 1.0;
+  source.pitch_sign = input.pitch_positive() == config::NavigationInput::BOW_DOWN ? -1.0 : 1.0;
+  if (input.has_deviation_deg()) source.deviation_rad = DegToRad(input.deviation_deg());
+  if (input.has_declination_deg()) source.declination_rad = DegToRad(input.declination_deg());
+  return source;
+}
+
+// Reads the inputs and collects their faults, each at the line where its input begins.
+class InputsReader {
+ public:
+  InputsReader(const std::filesystem::path& config_folder, const config::Navigator& message) : folder_(config_folder), message_(message) {}
+
+  /// Fills connections, source_of_port and navigator.sources. @throws config::ConfigError with every fault
+  void ReadInto(Params& params) {
+    const bool has_udp = !message_.bind_address().empty();
+    if (has_udp) {
+      Require(io::ParseIpAddress(message_.bind_address()).has_value(), "bind_address", "'" + message_.bind_address() + "' is no numeric address");
+      params.connections.push_back(
+          {.name = kUdpSource, .kind = Connection::Kind::kUdp, .address = message_.bind_address(), .port = message_.nmea_port(), .file = {}});
+      params.source_of_port[message_.nmea_port()] = kUdpSource;
+    }
+    for (index_ = 0; index_ < message_.input_size(); ++index_) ReadInput(message_.input(index_), params);
+    // In captures there is always one, unless another input has its port.
+    params.source_of_port.try_emplace(message_.nmea_port(), kUdpSource);
+    if (message_.source() == config::Navigator::LIVE) {
+      CheckTextLogs(params);
+      Require(!params.connections.empty() || message_.use_lidar_nmea(), "source",
+              "is LIVE, but there is nothing to take: neither bind_address, nor use_lidar_nmea, nor an input");
+    }
+    if (!faults_.empty()) throw config::ConfigError(faults_);
+  }
+
+ private:
+  void Require(bool is_fine, const std::string& field, const std::string& reason, int index = 0) {
+    if (!is_fine) faults_.push_back(config::FaultLine(folder_ / "navigator.txtpb", field, reason, static_cast<std::size_t>(index)));
+  }
+  void RequireOfInput(bool is_fine, const std::string& reason) {
+    Require(is_fine, "input", "'" + message_.input(index_).name() + "': " + reason, index_);
+  }
+
+  // A text log has times of its own, and what comes live those of now: they make no one sequence.
+  void CheckTextLogs(const Params& params) {
+    const auto is_text_log = [](const Connection& connection) { return connection.kind == Connection::Kind::kTextLog; };
+    const auto first = std::ranges::find_if(params.connections, is_text_log);
+    if (first == params.connections.end()) return;
+    const auto line_of = [this](const std::string& name) {
+      int index = 0;
+      while (index < message_.input_size() && message_.input(index).name() != name) ++index;
+      return index;
+    };
+    for (const auto& connection : params.connections) {
+      if (!is_text_log(connection)) {
+        Require(false, "input",
+                "'" + first->name + "': a text log is played at its own times, and input '" + connection.name +
+                    "' comes at those of now: take one of them away",
+                line_of(first->name));
+      } else if (connection.speed != first->speed) {
+        Require(false, "input", "'" + connection.name + "': text_log.speed must be that of input '" + first->name + "'", line_of(connection.name));
+      }
+    }
+    Require(!message_.use_lidar_nmea(), "use_lidar_nmea",
+            "must be false beside the text log of input '" + first->name + "', which is played at its own times: those of the lidar are of now");
+  }
+
+  void ReadInput(const config::NavigationInput& input, Params& params) {
+    RequireOfInput(IsSourceName(input.name()), "name must be 1 to 32 characters of a to z and 0 to 9");
+    RequireOfInput(names_.insert(input.name()).second, "the name stands twice");
+    const int num_kinds = static_cast<int>(input.has_serial()) + static_cast<int>(input.has_udp()) + static_cast<int>(input.has_tcp()) +
+                          static_cast<int>(input.has_gpsd()) + static_cast<int>(input.has_text_log());
+    const bool is_given_above = input.name() == kUdpSource || input.name() == kLidarSource;
+    if (is_given_above) {
+      RequireOfInput(num_kinds == 0, "is given by bind_address and nmea_port, or by use_lidar_nmea: it takes no connection here");
+    } else {
+      RequireOfInput(num_kinds == 1, "must have one of serial, udp, tcp, gpsd and text_log, and has " + std::to_string(num_kinds));
+    }
+    params.navigator.sources.push_back(ToSource(input));
+    if (num_kinds != 1 || is_given_above) return;
+    const auto connection = ToConnection(input);
+    if (connection.kind == Connection::Kind::kUdp) {
+      const bool is_free = params.source_of_port.try_emplace(connection.port, connection.name).second;
+      RequireOfInput(is_free, "udp port " + std::to_string(connection.port) + " belongs to input '" + params.source_of_port[connection.port] + "'");
+    } else {
+      RequireOfInput(places_.insert(PlaceOf(connection)).second, PlaceOf(connection) + " is taken by an input before it");
+    }
+    params.connections.push_back(connection);
+  }
+
+  Connection ToConnection(const config::NavigationInput& input) {
+    Connection connection;
+    connection.name = input.name();
+    const auto at_server = [&](Connection::Kind kind, const std::string& address, int port) {
+      connection.kind = kind;
+      connection.address = address;
+      connection.port = port;
+      RequireOfInput(io::ParseIpAddress(address).has_value(), "address '" + address + "' is no numeric address");
+    };
+    if (input.has_serial()) {
+      connection.kind = Connection::Kind::kSerial;
+      connection.file = input.serial().device();
+      connection.baud = input.serial().baud();
+      RequireOfInput(connection.file.is_absolute(), "serial.device must be the whole path of a device, as /dev/ttyUSB0");
+      RequireOfInput(std::ranges::find(kBauds, connection.baud) != kBauds.end(),
+                     "serial.baud " + std::to_string(connection.baud) + " is none that serial ports have (4800, 9600, 38400, 115200 ...)");
+    } else if (input.has_udp()) {
+      at_server(Connection::Kind::kUdp, input.udp().bind_address(), input.udp().port());
+    } else if (input.has_tcp()) {
+      at_server(Connection::Kind::kTcp, input.tcp().address(), input.tcp().port());
+    } else if (input.has_gpsd()) {
+      at_server(Connection::Kind::kGpsd, input.gpsd().address(), input.gpsd().port());
+    } else {
+      ReadTextLog(input.text_log(), connection);
+    }
+    return connection;
+  }
+
+  void ReadTextLog(const config::TextLog& log, Connection& connection) {
+    connection.kind = Connection::Kind::kTextLog;
+    connection.file = folder_ / log.file();
+    connection.speed = log.speed();
+    connection.day = ParseDay(log.date());
+    // Slower, a pause of the log may be more than a clock can tell.
+    constexpr double kMinSpeed = 0.001;
+    const auto quoted = "text_log.file '" + connection.file.string() + "' ";
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(connection.file, error);
+    RequireOfInput(connection.speed == 0.0 || connection.speed >= kMinSpeed, "text_log.speed must be 0 or at least 0.001");
+    RequireOfInput(is_file && std::ifstream(connection.file), quoted + "cannot be read");
+    RequireOfInput(!is_file || std::filesystem::file_size(connection.file, error) > 0, quoted + "is empty");
+    RequireOfInput(connection.day || !log.has_date(), "text_log.date '" + log.date() + "' is no day as 2026-07-01");
+  }
+
+  // Two inputs at one place would take the sentences from each other.
+  static std::string PlaceOf(const Connection& connection) {
+    std::error_code error;
+    switch (connection.kind) {
+      case Connection::Kind::kSerial:  // /dev/serial/by-id/... is another name of /dev/ttyUSB0
+        return "serial port " + std::filesystem::weakly_canonical(connection.file, error).string();
+      case Connection::Kind::kTextLog:
+        return "text log " + std::filesystem::weakly_canonical(connection.file, error).string();
+      case Connection::Kind::kGpsd:
+        return "gpsd " + connection.address + " port " + std::to_string(connection.port);
+      default:
+        return "tcp " + connection.address + " port " + std::to_string(connection.port);
+    }
+  }
+
+  std::filesystem::path folder_;
+  const config::Navigator& message_;
+  std::vector<std::string> faults_;
+  std::set<std::string> names_;
+  std::set<std::string> places_;
+  int index_ = 0;
+};
 
 }  // namespace
 
@@ -25,7 +211,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   if (loaded && loaded->max_sentence_latency_s() > loaded->max_attitude_age_s()) {
     faults.Add(config::FaultLine(config_folder / "navigator.txtpb", "max_sentence_latency_s", "must not be greater than max_attitude_age_s"));
   }
-  if (loaded) faults.Try([&] { TakeInputs(config_folder, *loaded, params); });
+  if (loaded) faults.Try([&] { InputsReader(config_folder, *loaded).ReadInto(params); });
   faults.ThrowIfAny();
   const auto& boat = *loaded_boat;
   const auto& message = *loaded;

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "services/navigator/core/sentence.hpp"
-#include "services/navigator/wire.hpp"
 
 namespace lookout::navigator {
 
@@ -67,31 +66,19 @@ void Service::Finish(Utime host_time) {
 }
 
 void Service::OnLidarNmea(const lidar_nmea_t& message) {
-  const auto sentence = ToLidarSentence(message);
-  if (!sentence) {
+  const auto arrival = UtimeFromWire(message.host_utime_us);
+  if (!arrival || !IsLine(message.sentence)) {
     ++counts_.lidar_nmea_bad;
     return;
   }
-  PublishAndConsume(sequencer_.OnLidarSentence(sentence->arrival, sentence->sentence));
+  PublishAndConsume(sequencer_.OnLidarSentence(*arrival, message.sentence));
 }
 
 void Service::OnNavRaw(const nav_raw_t& message) {
   const auto [fault, item] = ToItem(message);
-  switch (fault) {
-    case ItemFault::kNone:
-      break;
-    case ItemFault::kBadTime:
-      ++counts_.nav_raw_bad_time;
-      return;
-    case ItemFault::kBadKind:
-      ++counts_.nav_raw_bad_kind;
-      return;
-    case ItemFault::kBadText:
-      ++counts_.nav_raw_bad_text;
-      return;
-    case ItemFault::kBadImu:
-      ++counts_.nav_raw_bad_imu;
-      return;
+  if (fault != ItemFault::kNone) {
+    ++counts_.nav_raw_bad[static_cast<std::size_t>(fault)];
+    return;
   }
   if (item.kind != ItemKind::kStart && navigator_.time() && item.time < *navigator_.time()) {
     ++counts_.nav_raw_backwards;
@@ -120,16 +107,17 @@ void Service::PublishOutput(const NavigatorOutput& output) {
 }
 
 HealthReport Service::Report() const {
+  const auto bad = [this](ItemFault fault) { return counts_.nav_raw_bad[static_cast<std::size_t>(fault)]; };
   HealthReport report;
   report.counters = {{"no_start", counts_.no_start},
                      {"too_long", counts_.too_long},
                      {"not_printable", counts_.not_printable},
                      {"bad_host_time", counts_.bad_host_time},
                      {"lidar_nmea_bad", counts_.lidar_nmea_bad},
-                     {"nav_raw_bad_time", counts_.nav_raw_bad_time},
-                     {"nav_raw_bad_kind", counts_.nav_raw_bad_kind},
-                     {"nav_raw_bad_text", counts_.nav_raw_bad_text},
-                     {"nav_raw_bad_imu", counts_.nav_raw_bad_imu},
+                     {"nav_raw_bad_time", bad(ItemFault::kBadTime)},
+                     {"nav_raw_bad_kind", bad(ItemFault::kBadKind)},
+                     {"nav_raw_bad_text", bad(ItemFault::kBadText)},
+                     {"nav_raw_bad_imu", bad(ItemFault::kBadImu)},
                      {"nav_raw_backwards", counts_.nav_raw_backwards}};
   for (const auto& counter : sequencer_.counters()) report.counters.push_back(counter);
   for (const auto& counter : navigator_.counters()) report.counters.push_back(counter);

@@ -1,6 +1,7 @@
 // The navigator process without its sources: datagrams and LIDAR_NMEA, or NAV_RAW, in; NAV_RAW, GNSS_FIX, ATTITUDE and POSE out.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -16,6 +17,7 @@
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/core/sentence.hpp"
 #include "services/navigator/params.hpp"
+#include "services/navigator/wire.hpp"
 
 namespace lookout::navigator {
 
@@ -69,10 +71,7 @@ class Service {
     std::int64_t not_printable = 0;
     std::int64_t bad_host_time = 0;
     std::int64_t lidar_nmea_bad = 0;
-    std::int64_t nav_raw_bad_time = 0;
-    std::int64_t nav_raw_bad_kind = 0;
-    std::int64_t nav_raw_bad_text = 0;
-    std::int64_t nav_raw_bad_imu = 0;
+    std::array<std::int64_t, kNumItemFaults> nav_raw_bad{};  // by ItemFault
     std::int64_t nav_raw_backwards = 0;
   };
   Counts counts_;

@@ -1,14 +1,20 @@
 #include "services/navigator/sources.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <optional>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/io/udp_receiver.hpp"
 #include "services/navigator/io/gpsd_client.hpp"
 #include "services/navigator/io/serial_port.hpp"
 #include "services/navigator/io/tcp_client.hpp"
+#include "services/navigator/io/text_log_player.hpp"
 
 namespace lookout::navigator {
 
@@ -16,30 +22,58 @@ namespace {
 
 // Seconds of sentences at 115200 baud; more can only be a flood.
 constexpr int kReceiveBufferBytes = 256 * 1024;
+// How late a tick may come: a tenth of its period.
+constexpr std::chrono::milliseconds kTick(10);
+constexpr int kMaxPieces = 64;
 
-class UdpSource final : public Source {
- public:
-  explicit UdpSource(const Connection& connection)
-      : drops_name_(connection.name + "_kernel_drops"),
-        receiver_({.bind_address = connection.address, .port = connection.port, .receive_buffer_bytes = kReceiveBufferBytes}) {}
+// 2014-04-03 08:54:11
+std::string DayAndTime(Utime time) {
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::seconds>(time - day));
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()), clock.hours().count(), clock.minutes().count(), clock.seconds().count());
+}
 
-  int file_descriptor() const override { return receiver_.file_descriptor(); }
-  void Poll(Utime) override {}
-  std::optional<Piece> Receive(Utime) override {
-    const auto datagram = receiver_.Receive();
-    if (!datagram) return std::nullopt;
-    return Piece{datagram->host_time, datagram->payload, true};
+std::vector<TextLogPlayer::Log> LogsOf(const Params& params) {
+  std::vector<TextLogPlayer::Log> logs;
+  for (const auto& connection : params.connections) {
+    if (!IsTextLog(connection.file)) throw std::runtime_error("text log " + connection.file.string() + ": holds no sentence of NMEA 0183");
+    logs.push_back({connection.name, connection.file, connection.day});
   }
-  std::vector<Counter> counters() override { return {{drops_name_, receiver_.num_kernel_drops()}}; }
+  return logs;
+}
+
+// Text logs have times of their own: the clock of this computer decides only when a line is due.
+class TextLogSource final : public runtime::SourceReader {
+ public:
+  TextLogSource(const Params& params, Service& service)
+      : SourceReader(kTick),
+        taker_{[&service](Utime time) { service.AdvanceTo(time); },
+               [&service](Utime time, Bytes line, const std::string& name) { service.OnDatagram(time, line, name); }},
+        player_(LogsOf(params), params.connections.front().speed),
+        fault_("plays a text log of " + DayAndTime(player_.start()) + " UTC, so POSE is not of now: what is measured now finds none") {
+    for (const auto& name : player_.dateless()) fault_ += "; no sentence of input '" + name + "' tells a date, set text_log.date";
+    spdlog::warn("{}", fault_);
+  }
+
+  bool Read() override {
+    player_.Play(runtime::SteadyNow(), taker_);
+    return !player_.is_finished();
+  }
+  Utime Now() const override { return player_.time(); }
+  std::string fault() const override { return fault_; }
+  std::vector<Counter> counters() const override { return player_.counters(); }
 
  private:
-  std::string drops_name_;
-  io::UdpReceiver receiver_;
+  TextLogPlayer::Taker taker_;
+  TextLogPlayer player_;
+  std::string fault_;
 };
 
 }  // namespace
 
-std::unique_ptr<Source> OpenSource(const Connection& connection) {
+std::unique_ptr<io::Source> OpenSource(const Connection& connection) {
   switch (connection.kind) {
     case Connection::Kind::kSerial:
       return std::make_unique<SerialPort>(connection.name, connection.file, connection.baud);
@@ -52,7 +86,35 @@ std::unique_ptr<Source> OpenSource(const Connection& connection) {
     case Connection::Kind::kUdp:
       break;
   }
-  return std::make_unique<UdpSource>(connection);
+  return std::make_unique<io::UdpReceiver>(io::UdpOptions{
+      .name = connection.name, .bind_address = connection.address, .port = connection.port, .receive_buffer_bytes = kReceiveBufferBytes});
+}
+
+void Pass(const std::string& name, const io::Source::Piece& piece, Service& service) {
+  switch (piece.kind) {
+    case io::Source::Kind::kBreak:
+      return service.OnStreamEnd(name);
+    case io::Source::Kind::kDatagram:
+      return service.OnDatagram(piece.host_time, piece.bytes, name);
+    case io::Source::Kind::kStream:
+      return service.OnStream(piece.host_time, piece.bytes, name);
+  }
+}
+
+std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service& service) {
+  if (params.input == Input::kLog) return nullptr;
+  const auto is_text_log = [](const auto& connection) { return connection.kind == Connection::Kind::kTextLog; };
+  if (!params.connections.empty() && std::ranges::all_of(params.connections, is_text_log)) return std::make_unique<TextLogSource>(params, service);
+  std::vector<runtime::LiveReader::NamedSource> sources;
+  for (const auto& connection : params.connections) {
+    sources.push_back({"input '" + connection.name + "': ", connection.name, OpenSource(connection)});
+  }
+  return std::make_unique<runtime::LiveReader>(
+      std::move(sources), runtime::LiveReader::Limits{.period = kTick, .max_pieces = kMaxPieces, .reads_when_readable = true},
+      runtime::LiveReader::Handlers{
+          .on_piece = [&service](const std::string& name, const io::Source::Piece& piece) { Pass(name, piece, service); },
+          // Where the process stood still since the start of the round, that is before what was read: it would look like a clock that was set back.
+          .on_round = [&service](const auto& round) { service.AdvanceTo(round.latest); }});
 }
 
 }  // namespace lookout::navigator

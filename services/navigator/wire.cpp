@@ -12,8 +12,18 @@ namespace {
 // All that is unknown goes out as one and the same NaN: same bytes whatever made it.
 double Canonical(double value) { return std::isnan(value) ? kNan : value; }
 
-void Copy(const Eigen::Vector3d& from, double (&to)[3]) {
-  for (int axis = 0; axis < 3; ++axis) to[axis] = Canonical(from[axis]);
+// What GNSS_FIX and ATTITUDE have in common.
+template <typename Message, typename Measured>
+Message Begin(const Measured& measured, std::int64_t seq, std::int64_t raw_seq) {
+  Message message{};
+  message.utime_us = ToUtimeUs(measured.when.utc);
+  message.seq = seq;
+  message.raw_seq = raw_seq;
+  message.arrival_utime_us = ToUtimeUs(measured.when.arrival);
+  message.is_time_from_sentence = measured.when.has_sentence_utc ? 1 : 0;
+  message.source = measured.source;
+  message.sentence_type = measured.sentence_type;
+  return message;
 }
 
 static_assert(static_cast<int>(ItemKind::kStart) == nav_raw_t::KIND_START && static_cast<int>(ItemKind::kEnd) == nav_raw_t::KIND_END);
@@ -34,8 +44,8 @@ nav_raw_t ToMessage(const Item& item) {
   message.sentence = item.sentence;
   if (item.imu) {
     auto& sample = message.imu.emplace_back();
-    std::ranges::copy(item.imu->angular_velocity_radps, sample.angular_velocity_radps);
-    std::ranges::copy(item.imu->specific_force_mps2, sample.specific_force_mps2);
+    Eigen::Vector3d::Map(sample.angular_velocity_radps) = item.imu->angular_velocity_radps;
+    Eigen::Vector3d::Map(sample.specific_force_mps2) = item.imu->specific_force_mps2;
     std::ranges::fill(sample.magnetic_field_ut, kNan);
   }
   message.num_imu = static_cast<std::int32_t>(message.imu.size());
@@ -57,22 +67,13 @@ ItemResult ToItem(const nav_raw_t& message) {
     if (!std::ranges::all_of(sample.angular_velocity_radps, is_plausible) || !std::ranges::all_of(sample.specific_force_mps2, is_plausible)) {
       return {ItemFault::kBadImu, {}};
     }
-    auto& imu = result.item.imu.emplace();
-    std::ranges::copy(sample.angular_velocity_radps, imu.angular_velocity_radps.begin());
-    std::ranges::copy(sample.specific_force_mps2, imu.specific_force_mps2.begin());
+    result.item.imu = {Eigen::Vector3d::Map(sample.angular_velocity_radps), Eigen::Vector3d::Map(sample.specific_force_mps2)};
   }
   return result;
 }
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq) {
-  gnss_fix_t message{};
-  message.utime_us = ToUtimeUs(fix.when.utc);
-  message.seq = seq;
-  message.raw_seq = raw_seq;
-  message.arrival_utime_us = ToUtimeUs(fix.when.arrival);
-  message.is_time_from_sentence = fix.when.has_sentence_utc ? 1 : 0;
-  message.source = fix.source;
-  message.sentence_type = fix.sentence_type;
+  auto message = Begin<gnss_fix_t>(fix, seq, raw_seq);
   message.quality = static_cast<std::int32_t>(fix.quality);
   message.num_satellites = fix.num_satellites;
   message.hdop = Canonical(fix.hdop);
@@ -87,14 +88,7 @@ gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq)
 }
 
 attitude_t ToMessage(const Attitude& attitude, std::int64_t seq, std::int64_t raw_seq) {
-  attitude_t message{};
-  message.utime_us = ToUtimeUs(attitude.when.utc);
-  message.seq = seq;
-  message.raw_seq = raw_seq;
-  message.arrival_utime_us = ToUtimeUs(attitude.when.arrival);
-  message.is_time_from_sentence = attitude.when.has_sentence_utc ? 1 : 0;
-  message.source = attitude.source;
-  message.sentence_type = attitude.sentence_type;
+  auto message = Begin<attitude_t>(attitude, seq, raw_seq);
   message.heading_rad = Canonical(attitude.heading_rad);
   message.pitch_rad = Canonical(attitude.pitch_rad);
   message.roll_rad = Canonical(attitude.roll_rad);
@@ -119,22 +113,15 @@ pose_t ToMessage(const Pose& pose, std::int64_t seq, std::int64_t raw_seq) {
   message.latitude_deg = Canonical(pose.latitude_deg);
   message.longitude_deg = Canonical(pose.longitude_deg);
   message.ellipsoid_height_m = Canonical(pose.ellipsoid_height_m);
-  Copy(pose.p_map_m, message.position_map_m);
-  Copy(pose.velocity_map_mps, message.velocity_map_mps);
+  Eigen::Vector3d::Map(message.position_map_m) = pose.p_map_m.unaryExpr(&Canonical);
+  Eigen::Vector3d::Map(message.velocity_map_mps) = pose.velocity_map_mps.unaryExpr(&Canonical);
   message.heading_rad = Canonical(pose.heading_rad);
   message.pitch_rad = Canonical(pose.pitch_rad);
   message.roll_rad = Canonical(pose.roll_rad);
   message.heave_m = Canonical(pose.heave_m);
-  for (int row = 0; row < 9; ++row) {
-    for (int column = 0; column < 9; ++column) message.covariance[row][column] = Canonical(pose.covariance(row, column));
-  }
+  using RowMajor = Eigen::Matrix<double, 9, 9, Eigen::RowMajor>;
+  RowMajor::Map(&message.covariance[0][0]) = pose.covariance.unaryExpr(&Canonical);
   return message;
-}
-
-std::optional<LidarSentence> ToLidarSentence(const lidar_nmea_t& message) {
-  const auto arrival = UtimeFromWire(message.host_utime_us);
-  if (!arrival || !IsLine(message.sentence)) return std::nullopt;
-  return LidarSentence{*arrival, message.sentence};
 }
 
 }  // namespace lookout::navigator

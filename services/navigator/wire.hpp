@@ -1,12 +1,11 @@
 // Between the messages of navigator and its own types.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <optional>
 
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
-#include "lookout/lidar_nmea_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/core/item.hpp"
@@ -23,6 +22,7 @@ enum class ItemFault {
   kBadText,  // a sentence that is not IsLine, a source that is not a word, or either where there is none
   kBadImu,   // not as many samples as the kind has, or a number that cannot be
 };
+inline constexpr std::size_t kNumItemFaults = static_cast<std::size_t>(ItemFault::kBadImu) + 1;
 
 struct ItemResult {
   ItemFault fault = ItemFault::kNone;
@@ -35,14 +35,5 @@ ItemResult ToItem(const nav_raw_t& message);
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq);
 attitude_t ToMessage(const Attitude& attitude, std::int64_t seq, std::int64_t raw_seq);
 pose_t ToMessage(const Pose& pose, std::int64_t seq, std::int64_t raw_seq);
-
-/// A sentence out of LIDAR_NMEA.
-struct LidarSentence {
-  Utime arrival;
-  std::string sentence;
-};
-
-/// @return nullopt unless time and sentence may stand in NAV_RAW
-std::optional<LidarSentence> ToLidarSentence(const lidar_nmea_t& message);
 
 }  // namespace lookout::navigator

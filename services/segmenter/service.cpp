@@ -1,29 +1,35 @@
 #include "services/segmenter/service.hpp"
 
+#include <algorithm>
 #include <string>
-#include <utility>
+
+#include "services/segmenter/wire.hpp"
 
 namespace lookout::segmenter {
 
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), segmenter_(params) {
+  for (const auto& fault : messages::kScanFaults) refusals_.push_back({fault, 0});
   bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan, [this](const lidar_scan_t& message) { OnScan(message); });
 }
 
 void Service::OnScan(const lidar_scan_t& message) {
-  auto part = ToScanPart(message, bus::kMaxMessageBytes);
-  last_refusal_.reset();
-  if (const auto* refusal = std::get_if<Refusal>(&part)) {
-    ++num_refused_[static_cast<std::size_t>(*refusal)];
-    last_refusal_ = *refusal;
+  last_fault_ = messages::FaultOf(message, bus::kMaxMessageBytes);
+  if (last_fault_) {
+    ++std::ranges::find(refusals_, *last_fault_, &Counter::name)->count;
     refused_at_ = time_.passed();
     return;
   }
-  const auto scan = gatherer_.Add(std::get<ScanPart>(std::move(part)));
-  if (!scan) return;
+  const auto parts = assembler_.Add(message).whole;
+  if (parts.empty()) return;
+  const auto scan = ToScan(parts);
+  if (!scan) {
+    ++num_inconsistent_scans_;
+    return;
+  }
   const auto& segments = segmenter_.Segment(*scan);
   for (const auto& answer : ToMessages(*scan, segments, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kSegments, answer);
 
-  ++num_turns_;
+  ++num_scans_;
   num_segments_ += static_cast<std::int64_t>(segments.segments.size());
   num_too_small_ += segments.num_too_small;
   num_over_limit_ += segments.num_over_limit;
@@ -32,21 +38,21 @@ void Service::OnScan(const lidar_scan_t& message) {
 
 HealthReport Service::Report() const {
   HealthReport report;
-  if (last_refusal_ && time_.passed() - refused_at_ < Recently::kToldFor) {
+  if (last_fault_ && time_.passed() - refused_at_ < Recently::kToldFor) {
     report.state = HealthState::kDegraded;
-    report.reason = "the latest LIDAR_SCAN was refused: " + std::string(kRefusalNames[static_cast<std::size_t>(*last_refusal_)]);
+    report.reason = "the latest LIDAR_SCAN was refused: " + std::string(*last_fault_);
   }
-  const auto& counts = gatherer_.counts();
-  report.counters = {{"turns", num_turns_},
+  const auto& counts = assembler_.counts();
+  report.counters = {{"turns", num_scans_},
                      {"segments", num_segments_},
                      {"segments_too_small", num_too_small_},
                      {"segments_over_limit", num_over_limit_},
                      {"returns_repeated", num_repeats_},
-                     {"turns_incomplete", counts.incomplete_turns},
-                     {"turns_inconsistent", counts.inconsistent_turns},
+                     {"turns_incomplete", counts.incomplete_scans},
+                     {"turns_inconsistent", num_inconsistent_scans_},
                      {"parts_duplicate", counts.duplicate_parts},
                      {"parts_inconsistent", counts.inconsistent_parts}};
-  for (std::size_t i = 0; i < kRefusalNames.size(); ++i) report.counters.push_back({kRefusalNames[i], num_refused_[i]});
+  report.counters.insert(report.counters.end(), refusals_.begin(), refusals_.end());
   return report;
 }
 

@@ -1,19 +1,17 @@
-// The segmenter process without its shell: LIDAR_SCAN in, SEGMENTS out. It keeps nothing between turns.
+// The segmenter process without its shell: LIDAR_SCAN in, SEGMENTS out. It keeps nothing between scans.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
 #include "common/core/recently.hpp"
 #include "common/core/utime.hpp"
-#include "lookout/lidar_scan_t.hpp"
-#include "services/segmenter/core/turn_gatherer.hpp"
+#include "common/messages/part_assembler.hpp"
 #include "services/segmenter/params.hpp"
-#include "services/segmenter/wire.hpp"
 
 namespace lookout::segmenter {
 
@@ -32,12 +30,13 @@ class Service {
 
   bus::Bus& bus_;
   Segmenter segmenter_;
-  TurnGatherer gatherer_;
-  std::array<std::int64_t, kRefusalNames.size()> num_refused_{};
-  std::optional<Refusal> last_refusal_;  // of the latest message, if it was refused
+  messages::PartAssembler<lidar_scan_t> assembler_;
+  std::vector<Counter> refusals_;
+  std::optional<messages::Fault> last_fault_;  // of the latest message, if it was refused
   std::chrono::microseconds refused_at_{0};
   PassedTime time_{std::chrono::seconds(2)};
-  std::int64_t num_turns_ = 0;
+  std::int64_t num_scans_ = 0;
+  std::int64_t num_inconsistent_scans_ = 0;  // dropped because the columns of their parts overlap or leave gaps
   std::int64_t num_segments_ = 0;
   std::int64_t num_too_small_ = 0;
   std::int64_t num_over_limit_ = 0;

@@ -1,11 +1,8 @@
 #include "services/segmenter/wire.hpp"
 
-#include <algorithm>
-#include <bit>
-#include <cmath>
+#include <chrono>
+#include <cstdint>
 #include <utility>
-
-#include "common/core/angles.hpp"
 
 namespace lookout::segmenter {
 
@@ -24,53 +21,15 @@ static_assert(static_cast<int>(Ground::kAtSurface) == segment_t::GROUND_AT_SURFA
 static_assert(static_cast<int>(SegmentKind::kObstacle) == segment_t::KIND_OBSTACLE);
 static_assert(static_cast<int>(SegmentKind::kLand) == segment_t::KIND_LAND);
 
-// A beam starts inside of the sensor.
-constexpr float kMaxOriginHeightM = 10.0F;
-// 65 535 counts of a metre are more than any lidar sees.
-constexpr double kMaxRangeUnitM = 1.0;
-
 template <typename T>
 std::int32_t Count(const std::vector<T>& values) {
   return static_cast<std::int32_t>(values.size());
 }
 
-bool IsWithin(float value, float least, float greatest) { return value >= least && value <= greatest; }  // false for NaN
-
-bool CountsAgree(const lidar_scan_t& message) {
-  const auto num_cells = std::int64_t{message.num_columns} * message.num_rings * message.num_returns;
-  return message.num_rings == Count(message.elevation_rad) && message.num_rings == Count(message.azimuth_offset_rad) &&
-         message.num_rings == Count(message.time_offset_ns) && message.num_rings == Count(message.origin_height_m) &&
-         message.num_returns == Count(message.return_kind) && message.num_columns == Count(message.azimuth_rad) &&
-         message.num_columns == Count(message.time_ns) && message.num_cells == Count(message.range) &&
-         message.num_cells == Count(message.reflectivity) && message.num_cells == num_cells;
-}
-
-bool IsOfGoodSize(const lidar_scan_t& message) {
-  return message.num_rings >= 1 && message.num_rings <= kMaxRings && message.num_returns >= 1 && message.num_returns <= kMaxReturns &&
-         message.num_turn_columns >= 0 && message.num_turn_columns <= kMaxTurnColumns &&
-         std::int64_t{message.num_turn_columns} * message.num_rings * message.num_returns <= kMaxTurnCells;
-}
-
-bool AreBeamsGood(const lidar_scan_t& message) {
-  constexpr auto kRightAngle = static_cast<float>(kPi / 2.0);
-  constexpr auto kCircle = static_cast<float>(kTwoPi);
-  return std::ranges::all_of(message.elevation_rad, [](float angle_rad) { return IsWithin(angle_rad, -kRightAngle, kRightAngle); }) &&
-         std::ranges::is_sorted(message.elevation_rad) &&
-         std::ranges::all_of(message.azimuth_offset_rad, [](float angle_rad) { return IsWithin(angle_rad, -kCircle, kCircle); }) &&
-         std::ranges::all_of(message.origin_height_m, [](float height_m) { return IsWithin(height_m, -kMaxOriginHeightM, kMaxOriginHeightM); });
-}
-
-// A turn without columns is one part without columns; else no part is empty.
-bool IsPartOfTurn(const lidar_scan_t& message) {
-  if (message.seq < 0 || message.part_index < 0 || message.part_index >= message.num_parts) return false;
-  if (message.num_parts > std::max(1, message.num_turn_columns) || (message.num_columns == 0 && message.num_turn_columns > 0)) return false;
-  return message.first_column >= 0 && std::int64_t{message.first_column} + message.num_columns <= message.num_turn_columns;
-}
-
-ScanHead HeadOf(const lidar_scan_t& message, Utime time, Utime end_time) {
+ScanHead HeadOf(const lidar_scan_t& message) {
   ScanHead head;
-  head.time = time;
-  head.end_time = end_time;
+  head.time = Utime(std::chrono::microseconds(message.utime_us));
+  head.end_time = Utime(std::chrono::microseconds(message.end_utime_us));
   head.seq = message.seq;
   head.raw_seq = message.raw_seq;
   head.flags = message.flags;
@@ -145,30 +104,20 @@ segments_t PartOf(const Scan& scan, const Segments& segments, int part_index) {
 
 }  // namespace
 
-std::variant<ScanPart, Refusal> ToScanPart(const lidar_scan_t& message, int max_message_bytes) {
-  const auto time = UtimeFromWire(message.utime_us);
-  const auto end_time = UtimeFromWire(message.end_utime_us);
-  if (!time || !end_time || *end_time < *time) return Refusal::kTime;
-  // In this order: products of counts are taken once they are known to be small, and the encoded size once they are known to be true.
-  if (!IsOfGoodSize(message)) return Refusal::kSize;
-  if (!CountsAgree(message)) return Refusal::kCounts;
-  if (message.getEncodedSize() > max_message_bytes) return Refusal::kSize;
-  if (!AreBeamsGood(message)) return Refusal::kBeams;
-  if (!(message.range_unit_m > 0.0 && message.range_unit_m <= kMaxRangeUnitM)) return Refusal::kRangeUnit;
-  if (!IsPartOfTurn(message)) return Refusal::kPart;
-  constexpr auto kCircle = static_cast<float>(kTwoPi);
-  if (!std::ranges::all_of(message.azimuth_rad, [](float angle_rad) { return IsWithin(angle_rad, 0.0F, kCircle); })) return Refusal::kAzimuth;
-
-  ScanPart part;
-  part.head = HeadOf(message, *time, *end_time);
-  part.part_index = message.part_index;
-  part.first_column = message.first_column;
-  part.columns.azimuth_rad = message.azimuth_rad;
-  part.columns.time_ns = message.time_ns;
-  part.columns.range.resize(message.range.size());
-  std::ranges::transform(message.range, part.columns.range.begin(), [](std::int16_t count) { return std::bit_cast<std::uint16_t>(count); });
-  part.columns.reflectivity = message.reflectivity;
-  return part;
+std::optional<Scan> ToScan(const std::vector<lidar_scan_t>& parts) {
+  Scan scan{HeadOf(parts.front()), {}, {}};
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (const auto& part : parts) {
+    auto& columns = scan.columns;
+    if (part.first_column != columns.size()) return std::nullopt;
+    scan.parts.push_back({part.first_column, part.num_columns});
+    append(columns.azimuth_rad, part.azimuth_rad);
+    append(columns.time_ns, part.time_ns);
+    append(columns.range, part.range);  // an unsigned count, bit for bit
+    append(columns.reflectivity, part.reflectivity);
+  }
+  if (scan.columns.size() != scan.head.num_turn_columns) return std::nullopt;
+  return scan;
 }
 
 std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, int max_message_bytes) {

@@ -56,7 +56,7 @@ Service::Service(bus::Bus& bus, const Params& params)
       bundler_(params.data_port, params.position_port, params.decoder.cut_azimuth_rad),
       lock_(params.decoder.model, params.sources.allowed_source_addresses),
       decoder_(
-          params.decoder, [this](const Turn& turn) { PublishTurn(turn); }, [this](const SentenceOfLidar& sentence) { PublishSentence(sentence); }) {
+          params.decoder, [this](const Scan& scan) { PublishScan(scan); }, [this](const SentenceOfLidar& sentence) { PublishSentence(sentence); }) {
   if (params_.input == Input::kLog) {
     bus::Subscribe<lidar_packets_t>(bus_, bus::kLidarPackets, [this](const lidar_packets_t& message) { OnMessage(message); });
   }
@@ -176,10 +176,10 @@ void Service::Consume(const PacketBundle& bundle) {
   if (bundle.is_end) decoder_.Flush();
 }
 
-void Service::PublishTurn(const Turn& turn) {
-  NoteClock(turn.clock);
-  bus::Publish(bus_, bus::kLidarClock, ToClockMessage(turn, raw_seq_));
-  for (const auto& part : ToScanMessages(turn, raw_seq_, params_.use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
+void Service::PublishScan(const Scan& scan) {
+  NoteClock(scan.clock);
+  bus::Publish(bus_, bus::kLidarClock, ToClockMessage(scan, raw_seq_));
+  for (const auto& part : ToScanMessages(scan, raw_seq_, params_.use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
     bus::Publish(bus_, bus::kLidarScan, part);
   }
 }
@@ -193,7 +193,7 @@ void Service::NoteClock(const ClockReading& clock) {
   std::string line = "sensor clock: ";
   if (noted_state_ && noted_state_ != clock.state) line += std::string(Text(*noted_state_)) + " -> ";
   line += Text(clock.state);
-  line += clock.source == TimeSource::kSensor ? "; turns carry the sensor's time" : "; turns carry this computer's time";
+  line += clock.source == TimeSource::kSensor ? "; scans carry the sensor's time" : "; scans carry this computer's time";
   if (clock.host_minus_sensor) line += "; it is " + Text(ToSeconds(*clock.host_minus_sensor), 6) + " s ahead of the sensor's";
   noted_state_ = clock.state;
   noted_source_ = clock.source;
@@ -221,7 +221,7 @@ std::string Service::OwnComplaint() const {
     return "no lidar packets for " + seconds + " s";
   }
   if (out_of_stream_per_s_ > kMaxOutOfStreamPerS) {
-    return "the packets are of no even stream (" + std::to_string(out_of_stream_per_s_) +
+    return "the packets do not follow one another (" + std::to_string(out_of_stream_per_s_) +
            " breaks in the last second): two lidars on one port, or one whose clock or encoder jumps";
   }
   const auto& telemetry = decoder_.telemetry();
@@ -232,10 +232,10 @@ std::string Service::OwnComplaint() const {
   const auto& clock = decoder_.last_clock();
   if (params_.decoder.time == TimeChoice::kAuto && clock && clock->state == ClockState::kLocked && clock->source == TimeSource::kHost) {
     return "this computer's clock is " + Text(ToSeconds(clock->host_minus_sensor.value_or(std::chrono::microseconds(0))), 3) +
-           " s ahead of the sensor's, which is locked to GNSS: turns carry the computer's time until it is set";
+           " s ahead of the sensor's, which is locked to GNSS: scans carry the computer's time until it is set";
   }
   if (params_.decoder.time == TimeChoice::kSensor && clock && clock->state != ClockState::kLocked) {
-    return "turns carry the sensor's time as configured, but its clock is not locked to GNSS: " + std::string(Text(clock->state));
+    return "scans carry the sensor's time as configured, but its clock is not locked to GNSS: " + std::string(Text(clock->state));
   }
   return {};
 }

@@ -23,7 +23,7 @@ class Service {
   Service(bus::Bus& bus, const Params& params);
 
   /// A datagram from outside. Those of the right port and size from the lidar that holds the lock (SenderLock) are collected; when a bundle is full
-  /// or a turn ends, it is published as LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
+  /// or a scan ends, it is published as LIDAR_PACKETS and then exactly that bundle is decoded. Input::kOutside only.
   void OnDatagram(Utime host_time, int udp_port, Bytes payload, const Sender& sender = {});
 
   /// Host time has come so far: a bundle does not wait for more than 100 ms, and silence of the lidar shows in Report().
@@ -38,7 +38,7 @@ class Service {
 
   HealthReport Report() const;
 
-  /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the turns, changes, and when another
+  /// Called with a line for the journal each time that the state of the sensor's clock, or the clock that stamps the scans, changes, and when another
   /// lidar is taken or packets of others are refused: of these a line a second at most.
   void OnNotice(std::function<void(const std::string&)> handler) { on_notice_ = std::move(handler); }
 
@@ -46,7 +46,7 @@ class Service {
   void OnMessage(const lidar_packets_t& message);
   void PublishAndConsume(const PacketBundle& bundle);
   void Consume(const PacketBundle& bundle);
-  void PublishTurn(const Turn& turn);
+  void PublishScan(const Scan& scan);
   void PublishSentence(const SentenceOfLidar& sentence);
   void NoteClock(const ClockReading& clock);
   bool IsTaken(Utime host_time, int udp_port, const Sender& sender, Bytes payload);

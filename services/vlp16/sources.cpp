@@ -1,15 +1,75 @@
 #include "services/vlp16/sources.hpp"
 
+#include <chrono>
 #include <exception>
+#include <spdlog/spdlog.h>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/config/text_config.hpp"
+#include "services/vlp16/io/capture_player.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 
 namespace lookout::vlp16 {
 
 namespace {
+
+using std::chrono::milliseconds;
+
+// Sources are read at this period, not at each datagram: the kernel has stamped them, so this costs latency and no accuracy, and saves wake-ups.
+constexpr milliseconds kReadPeriod(5);
+constexpr milliseconds kCapturePeriod(10);
+constexpr milliseconds kMaxReadTime(20);
+
+// One of the lidar's two UDP ports.
+class LidarPort final : public io::UdpReceiver {
+ public:
+  LidarPort(const Sources& sources, const std::string& name, int port)
+      : UdpReceiver(ToUdpOptions(sources, port, name)), refused_name_(name + "_source_refused") {
+    if (receive_buffer_bytes() >= sources.receive_buffer_bytes) return;
+    spdlog::warn("port {}: the kernel grants a receive buffer of {} bytes, {} were asked for (sysctl net.core.rmem_max)", this->port(),
+                 receive_buffer_bytes(), sources.receive_buffer_bytes);
+  }
+  std::vector<Counter> counters() override {
+    return {UdpReceiver::counters().front(), {refused_name_, num_source_refused()}, {"sockets_reopened", num_reopened()}};
+  }
+
+ private:
+  std::string refused_name_;
+};
+
+class CaptureSource final : public runtime::SourceReader {
+ public:
+  CaptureSource(const Sources& sources, Service& service)
+      : SourceReader(kCapturePeriod), service_(service), player_(sources.capture_files, sources.capture_speed) {}
+  ~CaptureSource() override {
+    for (const auto& warning : player_.Warnings()) spdlog::warn("{}", warning);
+  }
+
+  bool Read() override {
+    const auto end = runtime::SteadyNow() + kMaxReadTime;
+    while (runtime::SteadyNow() < end) {
+      if (const auto datagram = player_.NextDue(Elapsed())) {
+        service_.OnDatagram(datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port});
+      } else if (player_.is_empty()) {
+        break;
+      }
+    }
+    if (player_.has_begun()) service_.AdvanceTo(Now());
+    return !player_.is_finished();
+  }
+  Utime Now() const override { return player_.CaptureTime(Elapsed()); }
+  std::string fault() const override { return {}; }
+  std::vector<Counter> counters() const override { return player_.counters(); }
+
+ private:
+  std::chrono::microseconds Elapsed() const { return std::chrono::duration_cast<std::chrono::microseconds>(runtime::SteadyNow() - start_); }
+
+  Service& service_;
+  CapturePlayer player_;
+  std::chrono::steady_clock::time_point start_ = runtime::SteadyNow();
+};
 
 // What is text in the params and must be right before anything starts.
 void CheckSources(const std::filesystem::path& config_folder, const Sources& sources, std::vector<std::string>& faults) {
@@ -68,8 +128,9 @@ void WriteAllowedAlike(Sources& sources) {
   }
 }
 
-io::UdpOptions ToUdpOptions(const Sources& sources, int port) {
-  return {.bind_address = sources.bind_address,
+io::UdpOptions ToUdpOptions(const Sources& sources, int port, const std::string& name) {
+  return {.name = name,
+          .bind_address = sources.bind_address,
           .port = port,
           .receive_buffer_bytes = sources.receive_buffer_bytes,
           .interface = sources.interface,
@@ -78,16 +139,60 @@ io::UdpOptions ToUdpOptions(const Sources& sources, int port) {
 }
 
 LiveOptions ToLiveOptions(const Params& params) {
-  LiveOptions options;
-  options.interface = params.sources.interface;
-  options.filter = params.sources.bpf_filter;
-  options.data_port = params.data_port;
-  options.position_port = params.position_port;
-  options.receive_buffer_bytes = params.sources.receive_buffer_bytes;
-  for (const auto& text : params.sources.allowed_source_addresses) {
-    options.allowed_source_addresses.push_back(io::ToText(*io::ParseIpAddress(text)));
+  return {.interface = params.sources.interface,
+          .filter = params.sources.bpf_filter,
+          .data_port = params.data_port,
+          .position_port = params.position_port,
+          .receive_buffer_bytes = params.sources.receive_buffer_bytes,
+          .allowed_source_addresses = params.sources.allowed_source_addresses};
+}
+
+std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service& service) {
+  const auto& sources = params.sources;
+  std::vector<runtime::LiveReader::NamedSource> opened;
+  const auto add = [&opened](auto source) { opened.push_back({"", "", std::move(source)}); };
+  switch (sources.kind) {
+    case Sources::Kind::kLog:
+      return nullptr;
+    case Sources::Kind::kCapture:
+      return std::make_unique<CaptureSource>(sources, service);
+    case Sources::Kind::kUdp:
+      add(std::make_unique<LidarPort>(sources, "data", params.data_port));
+      add(std::make_unique<LidarPort>(sources, "position", params.position_port));
+      if (const auto bound = BoundAddress(sources); bound && !bound->is_any() && !bound->is_multicast()) {
+        spdlog::info("hears only what is sent to {}; the sensor as delivered sends to 255.255.255.255, which needs bind_address \"0.0.0.0\"",
+                     sources.bind_address);
+      }
+      break;
+    case Sources::Kind::kInterface:
+      auto capture = std::make_unique<LiveCapture>(ToLiveOptions(params));
+      if (capture->fault().empty()) {
+        spdlog::info("captures on interface '{}', filter: {}", sources.interface, capture->filter());
+      } else {
+        spdlog::warn("{}; waiting for it", capture->fault());
+      }
+      add(std::move(capture));
   }
-  return options;
+  return std::make_unique<runtime::LiveReader>(
+      std::move(opened), runtime::LiveReader::Limits{.period = kReadPeriod, .max_time = kMaxReadTime},
+      runtime::LiveReader::Handlers{.on_piece =
+                                        [&service](const std::string&, const io::Source::Piece& piece) {
+                                          service.OnDatagram(piece.host_time, piece.port, piece.bytes, {piece.source_address, piece.source_port});
+                                        },
+                                    .on_round = [&service](const auto& round) { service.AdvanceTo(round.start, round.read_before); }});
+}
+
+void TrySources(const Params& next, const Params& running) {
+  const auto& sources = next.sources;
+  if (sources.kind == Sources::Kind::kUdp) {
+    for (const int port : {next.data_port, next.position_port}) {
+      // A port that this process holds is tried without it.
+      const bool is_held = running.sources.kind == Sources::Kind::kUdp && (port == running.data_port || port == running.position_port);
+      const io::UdpReceiver receiver(ToUdpOptions(sources, is_held ? 0 : port));
+    }
+  } else if (sources.kind == Sources::Kind::kInterface) {
+    const LiveCapture capture(ToLiveOptions(next));
+  }
 }
 
 }  // namespace lookout::vlp16

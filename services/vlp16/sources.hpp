@@ -1,13 +1,17 @@
-// What vlp16.txtpb says about sources, checked as far as it can be before any is opened. For whoever opens them: main, and lookout-doctor.
+// What vlp16.txtpb says about sources, checked as far as it can be before any is opened; and opens them. For main and lookout-doctor.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "common/io/ip_address.hpp"
 #include "common/io/udp_receiver.hpp"
+#include "common/runtime/source_reader.hpp"
 #include "services/vlp16/io/live_capture.hpp"
 #include "services/vlp16/params.hpp"
+#include "services/vlp16/service.hpp"
 
 namespace lookout::vlp16 {
 
@@ -24,9 +28,18 @@ void WriteAllowedAlike(Sources& sources);
 std::optional<io::IpAddress> BoundAddress(const Sources& sources);
 
 /// Of source UDP. Precondition: LoadChecked.
-io::UdpOptions ToUdpOptions(const Sources& sources, int port);
+io::UdpOptions ToUdpOptions(const Sources& sources, int port, const std::string& name = {});
 
 /// Of source INTERFACE. Precondition: LoadChecked.
 LiveOptions ToLiveOptions(const Params& params);
+
+/// Opens the sources for `service`, which must live longer, and logs what is worth knowing of them. Precondition: LoadChecked.
+///
+/// @return nullptr for source LOG: the service reads the bus alone
+/// @throws std::runtime_error when one cannot be opened
+std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service& service);
+
+/// Opens the sources of `next` beside those that run, and closes them. @throws std::runtime_error when one cannot be opened
+void TrySources(const Params& next, const Params& running);
 
 }  // namespace lookout::vlp16

@@ -53,30 +53,30 @@ std::vector<std::int32_t> ReturnKinds(ReturnMode mode) {
 }
 
 // All of a scan but its columns.
-lidar_scan_t ScanHead(const Turn& turn, std::int64_t raw_seq, bool use_vertical_origin_offsets) {
+lidar_scan_t ScanHead(const Scan& scan, std::int64_t raw_seq, bool use_vertical_origin_offsets) {
   lidar_scan_t message{};
-  message.utime_us = ToUtimeUs(turn.time);
-  message.seq = turn.number;
+  message.utime_us = ToUtimeUs(scan.time);
+  message.seq = scan.number;
   message.raw_seq = raw_seq;
-  message.end_utime_us = ToUtimeUs(turn.end_time);
-  message.flags = (turn.is_partial_start ? lidar_scan_t::FLAG_PARTIAL_START : 0) | (turn.is_partial_end ? lidar_scan_t::FLAG_PARTIAL_END : 0) |
-                  (turn.has_hole ? lidar_scan_t::FLAG_HOLE : 0);
-  message.num_lost_packets = turn.num_lost_packets;
-  message.time_source = ToWire(turn.clock.source, lidar_scan_t::TIME_HOST, lidar_scan_t::TIME_SENSOR);
-  const Beams& beams = BeamsOf(turn.model);
+  message.end_utime_us = ToUtimeUs(scan.end_time);
+  message.flags = (scan.is_partial_start ? lidar_scan_t::FLAG_PARTIAL_START : 0) | (scan.is_partial_end ? lidar_scan_t::FLAG_PARTIAL_END : 0) |
+                  (scan.has_hole ? lidar_scan_t::FLAG_HOLE : 0);
+  message.num_lost_packets = scan.num_lost_packets;
+  message.time_source = ToWire(scan.clock.source, lidar_scan_t::TIME_HOST, lidar_scan_t::TIME_SENSOR);
+  const Beams& beams = BeamsOf(scan.model);
   message.model = std::string(beams.name);
   message.range_unit_m = format::kRangeUnitM;
   for (std::size_t ring = 0; ring < beams.laser_of_ring.size(); ++ring) {
     const auto time_offset = beams.laser_of_ring[ring] * format::kLaserPeriod;
     message.elevation_rad.push_back(static_cast<float>(beams.elevation_rad[ring]));
-    message.azimuth_offset_rad.push_back(static_cast<float>(turn.rate_radps * ToSeconds(time_offset)));
+    message.azimuth_offset_rad.push_back(static_cast<float>(scan.rate_radps * ToSeconds(time_offset)));
     message.time_offset_ns.push_back(static_cast<std::int32_t>(time_offset.count()));
     message.origin_height_m.push_back(use_vertical_origin_offsets ? static_cast<float>(beams.origin_height_m[ring]) : 0.0F);
   }
   message.num_rings = Count(message.elevation_rad);
-  message.return_kind = ReturnKinds(turn.mode);
+  message.return_kind = ReturnKinds(scan.mode);
   message.num_returns = Count(message.return_kind);
-  message.num_turn_columns = turn.num_columns();
+  message.num_turn_columns = scan.num_columns();
   return message;
 }
 
@@ -135,13 +135,13 @@ lidar_nmea_t ToMessage(const SentenceOfLidar& sentence, std::int64_t seq, std::i
   return message;
 }
 
-lidar_clock_t ToClockMessage(const Turn& turn, std::int64_t raw_seq) {
+lidar_clock_t ToClockMessage(const Scan& scan, std::int64_t raw_seq) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   constexpr double kSecondsPerMinute = 60.0;
-  const auto& clock = turn.clock;
+  const auto& clock = scan.clock;
   lidar_clock_t message{};
-  message.utime_us = ToUtimeUs(turn.time);
-  message.seq = turn.number;
+  message.utime_us = ToUtimeUs(scan.time);
+  message.seq = scan.number;
   message.raw_seq = raw_seq;
   message.time_source = ToWire(clock.source, lidar_clock_t::TIME_HOST, lidar_clock_t::TIME_SENSOR);
   message.state = ToWire(clock.state);
@@ -149,36 +149,36 @@ lidar_clock_t ToClockMessage(const Turn& turn, std::int64_t raw_seq) {
   message.rmc_age_us = clock.rmc_age.value_or(microseconds(-1)).count();
   message.offset_s = clock.host_minus_sensor ? ToSeconds(*clock.host_minus_sensor) : kUnknown;
   message.drift_ppm = clock.drift_ppm.value_or(kUnknown);
-  message.rotation_rpm = turn.rate_radps / kTwoPi * kSecondsPerMinute;
-  message.num_packets = turn.counts.num_packets;
-  message.num_lost_packets = turn.counts.num_lost;
-  message.num_duplicate_packets = turn.counts.num_duplicates;
-  message.num_reordered_packets = turn.counts.num_reordered;
+  message.rotation_rpm = scan.rate_radps / kTwoPi * kSecondsPerMinute;
+  message.num_packets = scan.counts.num_packets;
+  message.num_lost_packets = scan.counts.num_lost;
+  message.num_duplicate_packets = scan.counts.num_duplicates;
+  message.num_reordered_packets = scan.counts.num_reordered;
   return message;
 }
 
-std::vector<lidar_scan_t> ToScanMessages(const Turn& turn, std::int64_t raw_seq, bool use_vertical_origin_offsets, int max_message_bytes) {
-  const lidar_scan_t head = ScanHead(turn, raw_seq, use_vertical_origin_offsets);
+std::vector<lidar_scan_t> ToScanMessages(const Scan& scan, std::int64_t raw_seq, bool use_vertical_origin_offsets, int max_message_bytes) {
+  const lidar_scan_t head = ScanHead(scan, raw_seq, use_vertical_origin_offsets);
   const int cells_per_column = head.num_rings * head.num_returns;
   const int column_bytes =
       static_cast<int>(sizeof(float) + sizeof(std::int32_t)) + cells_per_column * static_cast<int>(sizeof(std::int16_t) + sizeof(std::uint8_t));
   const int max_columns = std::max(1, (max_message_bytes - head.getEncodedSize()) / column_bytes);
-  const int num_parts = (turn.num_columns() + max_columns - 1) / max_columns;
-  const int part_columns = (turn.num_columns() + num_parts - 1) / num_parts;
+  const int num_parts = (scan.num_columns() + max_columns - 1) / max_columns;
+  const int part_columns = (scan.num_columns() + num_parts - 1) / num_parts;
   std::vector<lidar_scan_t> messages;
   for (int part = 0; part < num_parts; ++part) {
     lidar_scan_t& message = messages.emplace_back(head);
     message.part_index = part;
     message.num_parts = num_parts;
     message.first_column = part * part_columns;
-    const int end_column = std::min(message.first_column + part_columns, turn.num_columns());
-    message.azimuth_rad.assign(turn.azimuth_rad.begin() + message.first_column, turn.azimuth_rad.begin() + end_column);
-    message.time_ns.assign(turn.time_ns.begin() + message.first_column, turn.time_ns.begin() + end_column);
+    const int end_column = std::min(message.first_column + part_columns, scan.num_columns());
+    message.azimuth_rad.assign(scan.azimuth_rad.begin() + message.first_column, scan.azimuth_rad.begin() + end_column);
+    message.time_ns.assign(scan.time_ns.begin() + message.first_column, scan.time_ns.begin() + end_column);
     message.num_columns = Count(message.azimuth_rad);
     const auto first_cell = message.first_column * cells_per_column;
     const auto end_cell = end_column * cells_per_column;
-    message.range.assign(turn.range.begin() + first_cell, turn.range.begin() + end_cell);
-    message.reflectivity.assign(turn.reflectivity.begin() + first_cell, turn.reflectivity.begin() + end_cell);
+    message.range.assign(scan.range.begin() + first_cell, scan.range.begin() + end_cell);
+    message.reflectivity.assign(scan.reflectivity.begin() + first_cell, scan.reflectivity.begin() + end_cell);
     message.num_cells = Count(message.range);
   }
   return messages;

@@ -11,7 +11,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/core/bundler.hpp"
 #include "services/vlp16/core/decoder.hpp"
-#include "services/vlp16/core/turn.hpp"
+#include "services/vlp16/core/scan.hpp"
 
 namespace lookout::vlp16 {
 
@@ -23,9 +23,9 @@ std::optional<PacketBundle> ToBundle(const lidar_packets_t& message);
 
 lidar_nmea_t ToMessage(const SentenceOfLidar& sentence, std::int64_t seq, std::int64_t raw_seq);
 
-lidar_clock_t ToClockMessage(const Turn& turn, std::int64_t raw_seq);
+lidar_clock_t ToClockMessage(const Scan& scan, std::int64_t raw_seq);
 
-/// @param max_message_bytes  of an encoded message: a larger turn goes in parts of about the same number of columns
-std::vector<lidar_scan_t> ToScanMessages(const Turn& turn, std::int64_t raw_seq, bool use_vertical_origin_offsets, int max_message_bytes);
+/// @param max_message_bytes  of an encoded message: a larger scan goes in parts of about the same number of columns
+std::vector<lidar_scan_t> ToScanMessages(const Scan& scan, std::int64_t raw_seq, bool use_vertical_origin_offsets, int max_message_bytes);
 
 }  // namespace lookout::vlp16

@@ -15,6 +15,7 @@
 #include "tests/bench/disturbances.hpp"
 #include "tests/bench/disturbed_judge.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace {
@@ -33,7 +34,7 @@ constexpr double kMinuteS = 60.0;
 struct Options {
   int seconds = 600;
   std::uint64_t seed = 1;
-  fs::path bin_folder = LOOKOUT_BIN_DIR;
+  fs::path bin_folder = support::ProgramFolder();
   bool is_undisturbed = false;
   bool keeps_folder = false;
 };
@@ -92,7 +93,7 @@ class DisturbedRun {
 
   void MakeConfig() const {
     fs::create_directories(folder_);
-    const auto demo = fs::path(LOOKOUT_SOURCE_DIR) / "config/demo";
+    const auto demo = support::kDemoConfig;
     fs::copy(demo, folder_ / "config");
     std::ofstream(folder_ / "config/georeferencer.txtpb") << "pose_timeout_s: 0.5\nmounting_sd_deg: 0\nguard_zone { range_m: " << kZoneM << " }\n";
     // Another boat, 41 km to the north, with ports of its own.
@@ -124,10 +125,10 @@ class DisturbedRun {
   }
 
   void StartSimulator() {
-    const auto scene_file = fs::path(LOOKOUT_SOURCE_DIR) / "tests/bench/round_trip.txtpb";
+    const auto scene_file = support::kSources / "tests/bench/round_trip.txtpb";
     sim_ = std::make_unique<Child>(
-        std::vector<std::string>{LOOKOUT_BIN_DIR "/lookout-sim", "--config", "config", "--scene", scene_file.string(), "--seed",
-                                 std::to_string(options_.seed), "--seconds", std::to_string(options_.seconds + 120), "--udp", "127.0.0.1"},
+        std::vector<std::string>{support::Bin("sim"), "--config", "config", "--scene", scene_file.string(), "--seed", std::to_string(options_.seed),
+                                 "--seconds", std::to_string(options_.seconds + 120), "--udp", "127.0.0.1"},
         "sim.out");
     const std::string mark = "begins at utime_us ";
     std::string output;
@@ -215,7 +216,7 @@ class DisturbedRun {
   void OtherBoat(milliseconds duration) {
     judge_.Mark("another boat on the bus", duration);
     const auto start = [&](const std::string& name, std::vector<std::string> words) {
-      words.insert(words.begin(), {LOOKOUT_BIN_DIR "/lookout-" + name, "--config", "other"});
+      words.insert(words.begin(), {support::Bin(name), "--config", "other"});
       other_boat_.push_back(std::make_unique<Child>(words, "other_" + name + ".out"));
       judge_.AddOther(other_boat_.back()->pid());
     };

@@ -25,6 +25,7 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
 
 namespace {
 
@@ -185,7 +186,7 @@ class Run {
  public:
   Run(const fs::path& folder, std::string scene, int num_seconds) : folder_(folder), scene_(std::move(scene)), num_seconds_(num_seconds) {
     fs::create_directories(folder);
-    fs::copy(fs::path(LOOKOUT_SOURCE_DIR) / "config/demo", folder / "config");
+    fs::copy(kDemoConfig, folder / "config");
     fs::current_path(folder);  // the recorder's logs/ is made here
   }
 
@@ -216,7 +217,7 @@ class Run {
   using CostOfProcess = std::map<std::string, ProcessCost>;
 
   void Start(const std::string& name, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), std::string(LOOKOUT_BIN_DIR) + "/lookout-" + name);
+    arguments.insert(arguments.begin(), Bin(name));
     children_[name] = std::make_unique<Child>(arguments, name + ".out");
   }
   void Handle() { listener_.HandleFor(std::chrono::milliseconds(20)); }

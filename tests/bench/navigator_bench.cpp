@@ -5,6 +5,7 @@
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/core/sentence.hpp"
 #include "services/navigator/params.hpp"
+#include "tests/support/files.hpp"
 #include "tools/sim/navigation.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 constexpr int kSeconds = 20;
 const Utime kStart = Utime(std::chrono::seconds(1'781'532'600));
-const std::string kDemo = std::string(LOOKOUT_SOURCE_DIR) + "/config/demo";
+const std::string kDemo = support::kDemoConfig.string();
 
 std::vector<Item> Items() {
   const auto boat = config::LoadBoat(kDemo);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/config/boat.hpp"
+#include "tests/support/files.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 void BM_Render(benchmark::State& state, const std::string& name) {
   using namespace std::chrono_literals;
   const auto scene = MakeScene(name, 1).value();
-  const auto boat = config::LoadBoat(std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config" / "demo");
+  const auto boat = config::LoadBoat(support::kDemoConfig);
   SimulationParams params;
   params.start = Utime(1'781'532'600s);
   params.duration = 1s;

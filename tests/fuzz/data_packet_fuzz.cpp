@@ -31,7 +31,7 @@ bool IsPrintable(std::string_view text) {
   return std::ranges::all_of(text, [](char character) { return character >= 0x20 && character <= 0x7E; });
 }
 
-void CheckTurn(const Turn& turn, std::int64_t& last_number) {
+void CheckTurn(const Scan& turn, std::int64_t& last_number) {
   // A turn ends after two seconds at the latest; then its last column and packet may still be on their way.
   constexpr auto kMaxDuration = std::chrono::milliseconds(2147);
   constexpr auto kCircle = static_cast<float>(kTwoPi);
@@ -63,7 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < script::kHeadSizeBytes) return 0;
   std::int64_t last_number = -1;
   Decoder decoder(
-      ParamsOf({data, size}), [&](const Turn& turn) { CheckTurn(turn, last_number); },
+      ParamsOf({data, size}), [&](const Scan& turn) { CheckTurn(turn, last_number); },
       [](const SentenceOfLidar& sentence) { Expect(IsPrintable(sentence.text)); });
   Bytes rest = Bytes(data, size).subspan(script::kHeadSizeBytes);
   // Shortly before the hour, so that stamps go over it.

@@ -72,14 +72,21 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
   const eval::Truth truth(folder);
   eval::Evaluation evaluation(&truth, 1);
   evaluation.SetMounting(boat.T_vessel_lidar);
-  eval::TurnCollector collector([&](const eval::Turn& turn) {
-    if (SecondsSinceStart(turn.obstacles.begin()->second.utime_us) >= from_s) evaluation.Add(turn);
-  });
-  // The collector holds some hundred turns: each message of OBSTACLES completes one.
+  int num_incomplete = 0;
+  messages::ScanCollector collector([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
+                                    messages::ScanCollector::Order::kOfCompletion, 256,
+                                    [&](const messages::ScanMessages& scan) {
+                                      if (!messages::HasAllParts(scan.obstacles)) {
+                                        num_incomplete += scan.obstacles.empty() ? 0 : 1;
+                                      } else if (SecondsSinceStart(scan.utime_us) >= from_s) {
+                                        evaluation.Add(scan);
+                                      }
+                                    });
   for (auto& message : recording.scans) EXPECT_TRUE(collector.Add(std::move(message)));
   for (auto& message : recording.segments) EXPECT_TRUE(collector.Add(std::move(message)));
   for (auto& message : recording.obstacles) EXPECT_TRUE(collector.Add(std::move(message)));
-  EXPECT_EQ(collector.num_incomplete(), 0);
+  collector.Finish();
+  EXPECT_EQ(num_incomplete, 0);
   return evaluation.seen;
 }
 

@@ -8,6 +8,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "services/segmenter/service.hpp"
+#include "services/segmenter/wire.hpp"
 #include "tests/unit/segmenter/message_maker.hpp"
 #include "tests/unit/segmenter/scan_maker.hpp"
 

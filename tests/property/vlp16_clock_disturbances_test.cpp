@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using std::chrono::microseconds;
 
-constexpr int kPacketsPerTurn = 75;
+constexpr int kPacketsPerRevolution = 75;
 constexpr int kPositionEvery = 5;
 constexpr Utime kStart = std::chrono::sys_days(std::chrono::year(2026) / 6 / 15) + 14h + 10min;
 
@@ -29,19 +29,19 @@ struct Seen {
 };
 
 std::vector<Seen> Play(const late::Disturbance& disturbance, TimeChoice choice) {
-  std::vector<Seen> turns;
+  std::vector<Seen> scans;
   DecoderParams params;
   params.time = choice;
   microseconds delivery(0);
   Decoder decoder(
       params,
-      [&](const Turn& turn) {
-        const auto began = std::chrono::floor<microseconds>(turn.number * kPacketsPerTurn * format::kPacketPeriodSingle);
-        turns.push_back({began, delivery, turn.time - (kStart + began), turn.clock});
+      [&](const Scan& scan) {
+        const auto began = std::chrono::floor<microseconds>(scan.number * kPacketsPerRevolution * format::kPacketPeriodSingle);
+        scans.push_back({began, delivery, scan.time - (kStart + began), scan.clock});
       },
       [](const SentenceOfLidar&) {});
   test::SpinningSensor sensor;
-  sensor.rpm = 60e9 / (kPacketsPerTurn * static_cast<double>(format::kPacketPeriodSingle.count()));
+  sensor.rpm = 60e9 / (kPacketsPerRevolution * static_cast<double>(format::kPacketPeriodSingle.count()));
   std::mt19937 random(5);
   microseconds sent(0);
   for (int i = 0; sent < disturbance.end + 12s; ++i) {
@@ -58,30 +58,30 @@ std::vector<Seen> Play(const late::Disturbance& disturbance, TimeChoice choice) 
     }
     decoder.OnDataPayload(host, payload);
   }
-  return turns;
+  return scans;
 }
 
-int NumChanges(const std::vector<Seen>& turns) {
+int NumChanges(const std::vector<Seen>& scans) {
   int num_changes = 0;
-  for (std::size_t i = 1; i < turns.size(); ++i) num_changes += turns[i].clock.source != turns[i - 1].clock.source ? 1 : 0;
+  for (std::size_t i = 1; i < scans.size(); ++i) num_changes += scans[i].clock.source != scans[i - 1].clock.source ? 1 : 0;
   return num_changes;
 }
 
 TEST(Vlp16ClockDisturbances, LateDeliveriesChangeNeitherOffsetNorTimeSource) {
   for (const auto& disturbance : late::LateDeliveries()) {
     SCOPED_TRACE(disturbance.name);
-    const auto turns = Play(disturbance, TimeChoice::kAuto);
-    ASSERT_GT(turns.size(), 100U);
-    EXPECT_EQ(NumChanges(turns), 0);
+    const auto scans = Play(disturbance, TimeChoice::kAuto);
+    ASSERT_GT(scans.size(), 100U);
+    EXPECT_EQ(NumChanges(scans), 0);
     double worst_ms = 0.0;
     double worst_ppm = 0.0;
     int num_unlocked = 0;
     microseconds worst(0);
-    for (const auto& turn : turns) {
-      worst = std::max(worst, std::chrono::abs(turn.error));
-      worst_ms = std::max(worst_ms, 1e3 * std::abs(ToSeconds(*turn.clock.host_minus_sensor)));
-      worst_ppm = std::max(worst_ppm, std::abs(turn.clock.drift_ppm.value_or(0.0)));
-      num_unlocked += turn.clock.state == ClockState::kLocked ? 0 : 1;
+    for (const auto& scan : scans) {
+      worst = std::max(worst, std::chrono::abs(scan.error));
+      worst_ms = std::max(worst_ms, 1e3 * std::abs(ToSeconds(*scan.clock.host_minus_sensor)));
+      worst_ppm = std::max(worst_ppm, std::abs(scan.clock.drift_ppm.value_or(0.0)));
+      num_unlocked += scan.clock.state == ClockState::kLocked ? 0 : 1;
     }
     EXPECT_EQ(worst, 0us);
     EXPECT_LT(worst_ms, 5.0);
@@ -90,11 +90,11 @@ TEST(Vlp16ClockDisturbances, LateDeliveriesChangeNeitherOffsetNorTimeSource) {
   }
 }
 
-TEST(Vlp16ClockDisturbances, LateDeliveriesDoNotMoveTurnsThatAreStampedByTheHost) {
+TEST(Vlp16ClockDisturbances, LateDeliveriesDoNotMoveScansThatAreStampedByTheHost) {
   for (const auto& disturbance : {late::StoppedFor12SecondsAndDrained(), late::BusyComputer(1), late::RandomStalls(2)}) {
     SCOPED_TRACE(disturbance.name);
     microseconds worst(0);
-    for (const auto& turn : Play(disturbance, TimeChoice::kHost)) worst = std::max(worst, std::chrono::abs(turn.error));
+    for (const auto& scan : Play(disturbance, TimeChoice::kHost)) worst = std::max(worst, std::chrono::abs(scan.error));
     EXPECT_LT(worst, 5ms);
   }
 }
@@ -109,16 +109,16 @@ TEST(Vlp16ClockDisturbances, AStepOfTheHostIsKnownWithinFiveSecondsAndChangesThe
   }
   for (const auto& disturbance : disturbances) {
     SCOPED_TRACE(disturbance.name);
-    const auto turns = Play(disturbance, TimeChoice::kAuto);
-    EXPECT_EQ(NumChanges(turns), static_cast<int>(disturbance.steps.size()));
-    for (const auto& turn : turns) {
-      EXPECT_EQ(turn.clock.state, ClockState::kLocked);
-      if (turn.began < disturbance.end + 5s) continue;
-      const auto truth = disturbance.HostError(turn.began);
-      EXPECT_EQ(turn.clock.source, truth == 0us ? TimeSource::kSensor : TimeSource::kHost);
+    const auto scans = Play(disturbance, TimeChoice::kAuto);
+    EXPECT_EQ(NumChanges(scans), static_cast<int>(disturbance.steps.size()));
+    for (const auto& scan : scans) {
+      EXPECT_EQ(scan.clock.state, ClockState::kLocked);
+      if (scan.began < disturbance.end + 5s) continue;
+      const auto truth = disturbance.HostError(scan.began);
+      EXPECT_EQ(scan.clock.source, truth == 0us ? TimeSource::kSensor : TimeSource::kHost);
       // LIDAR_CLOCK says it within the hour that the stamp is in.
-      ASSERT_LT(std::chrono::abs(*turn.clock.host_minus_sensor - truth), 2ms) << turn.began.count();
-      ASSERT_LT(std::chrono::abs(turn.error - truth), 2ms) << turn.began.count();
+      ASSERT_LT(std::chrono::abs(*scan.clock.host_minus_sensor - truth), 2ms) << scan.began.count();
+      ASSERT_LT(std::chrono::abs(scan.error - truth), 2ms) << scan.began.count();
     }
   }
 }

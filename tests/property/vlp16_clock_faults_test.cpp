@@ -16,30 +16,30 @@ using namespace std::chrono_literals;
 const Utime kStart = Utime(1'781'532'600s);
 
 struct Seen {
-  double time_s;  // of the turn's last shot on the host's clock, since the start
-  Turn turn;
+  double time_s;  // of the scan's last shot on the host's clock, since the start
+  Scan scan;
 };
 
 struct Run {
-  std::vector<Seen> turns;
+  std::vector<Seen> scans;
   std::vector<Counter> counters;
 
   std::int64_t Count(std::string_view name) const {
     const auto found = std::ranges::find(counters, name, &Counter::name);
     return found != counters.end() ? found->count : -1;
   }
-  // States of the turns that ended in that time.
+  // States of the scans that ended in that time.
   std::set<ClockState> States(double from_s, double to_s) const {
     std::set<ClockState> states;
-    for (const auto& seen : turns) {
-      if (seen.time_s >= from_s && seen.time_s < to_s) states.insert(seen.turn.clock.state);
+    for (const auto& seen : scans) {
+      if (seen.time_s >= from_s && seen.time_s < to_s) states.insert(seen.scan.clock.state);
     }
     return states;
   }
-  std::vector<Turn> Between(double from_s, double to_s) const {
-    std::vector<Turn> found;
-    for (const auto& seen : turns) {
-      if (seen.time_s >= from_s && seen.time_s < to_s) found.push_back(seen.turn);
+  std::vector<Scan> Between(double from_s, double to_s) const {
+    std::vector<Scan> found;
+    for (const auto& seen : scans) {
+      if (seen.time_s >= from_s && seen.time_s < to_s) found.push_back(seen.scan);
     }
     return found;
   }
@@ -60,8 +60,8 @@ Run Play(const std::vector<std::string>& faults, std::chrono::microseconds durat
   decoder_params.time = choice;
   Decoder decoder(
       decoder_params,
-      [&](const Turn& turn) {
-        run.turns.push_back({now_s, turn});
+      [&](const Scan& scan) {
+        run.scans.push_back({now_s, scan});
       },
       [](const SentenceOfLidar&) {});
   while (const auto datagram = simulation.Next()) {
@@ -80,9 +80,9 @@ using States = std::set<ClockState>;
 TEST(Vlp16ClockFaults, WithoutFaultTheClockIsLockedAndRight) {
   const auto run = Play({}, 4s);
   EXPECT_EQ(run.States(0.5, 4.0), States{kLocked});
-  for (const auto& turn : run.Between(0.5, 4.0)) {
-    EXPECT_EQ(turn.clock.source, TimeSource::kSensor);
-    EXPECT_LT(std::abs(ToSeconds(*turn.clock.host_minus_sensor)), 1e-3);
+  for (const auto& scan : run.Between(0.5, 4.0)) {
+    EXPECT_EQ(scan.clock.source, TimeSource::kSensor);
+    EXPECT_LT(std::abs(ToSeconds(*scan.clock.host_minus_sensor)), 1e-3);
   }
   for (const auto* name : {"data_lost", "data_duplicate", "data_reordered", "sensor_restarts", "sensor_clock_steps", "turns_with_hole"}) {
     EXPECT_EQ(run.Count(name), 0) << name;
@@ -95,15 +95,15 @@ TEST(Vlp16ClockFaults, ALostPpsIsAFreeRunThenAcquiredThenLocked) {
   EXPECT_EQ(run.States(4.2, 6.0), States{ClockState::kFreeRunning});
   EXPECT_EQ(run.States(6.2, 9.0), States{ClockState::kAcquiring});
   EXPECT_EQ(run.States(9.2, 11.0), States{kLocked});
-  for (const auto& turn : run.Between(4.2, 9.0)) EXPECT_EQ(turn.clock.source, TimeSource::kHost);
+  for (const auto& scan : run.Between(4.2, 9.0)) EXPECT_EQ(scan.clock.source, TimeSource::kHost);
   EXPECT_EQ(run.Count("data_lost"), 0);
   EXPECT_EQ(run.Count("sensor_restarts"), 0);
 }
 
 TEST(Vlp16ClockFaults, AFreeRunThatSaysLockedShowsInTheDrift) {
   const auto run = Play({"free_run:0:100:150"}, 20s);
-  ASSERT_FALSE(run.turns.empty());
-  const auto& last = run.turns.back().turn;
+  ASSERT_FALSE(run.scans.empty());
+  const auto& last = run.scans.back().scan;
   ASSERT_TRUE(last.clock.drift_ppm);
   EXPECT_NEAR(*last.clock.drift_ppm, 150.0, 6.0);
   EXPECT_NEAR(ToSeconds(*last.clock.host_minus_sensor), -20.0 * 150e-6, 3e-4) << "it is fast";
@@ -112,8 +112,8 @@ TEST(Vlp16ClockFaults, AFreeRunThatSaysLockedShowsInTheDrift) {
 
 TEST(Vlp16ClockFaults, TheOffsetFollowsAClockThatIsFasterThanAnyCrystal) {
   const auto run = Play({"free_run:0:100:500"}, 20s);
-  ASSERT_FALSE(run.turns.empty());
-  const auto& last = run.turns.back().turn;
+  ASSERT_FALSE(run.scans.empty());
+  const auto& last = run.scans.back().scan;
   EXPECT_NEAR(last.clock.drift_ppm.value_or(0.0), ClockFit::kMaxDriftPpm, 1e-6) << "no crystal drifts more";
   EXPECT_NEAR(ToSeconds(*last.clock.host_minus_sensor), -20.0 * 500e-6, 1e-3) << "it is fast";
 }
@@ -123,16 +123,16 @@ TEST(Vlp16ClockFaults, AStampThatIsNotThatOfItsRmcIsAFreeRun) {
   EXPECT_EQ(run.States(0.5, 3.0), States{kLocked});
   EXPECT_EQ(run.States(4.5, 6.0), States{ClockState::kFreeRunning});
   EXPECT_EQ(run.States(7.5, 9.0), States{kLocked});
-  for (const auto& turn : run.Between(4.5, 6.0)) EXPECT_EQ(turn.clock.source, TimeSource::kHost);
+  for (const auto& scan : run.Between(4.5, 6.0)) EXPECT_EQ(scan.clock.source, TimeSource::kHost);
   EXPECT_EQ(run.Count("sensor_clock_steps"), 2) << "there and back";
   EXPECT_EQ(run.Count("data_lost"), 0);
 }
 
 TEST(Vlp16ClockFaults, AWrongHourTurnsTheSensorTimeDownWhereTheHostIsThereToTell) {
   const auto run = Play({"wrong_hour:0:100:-4"}, 4s);
-  for (const auto& turn : run.Between(2.5, 4.0)) {
-    EXPECT_EQ(turn.clock.source, TimeSource::kHost);
-    EXPECT_NEAR(ToSeconds(*turn.clock.host_minus_sensor), 4.0 * 3600.0, 1.0);
+  for (const auto& scan : run.Between(2.5, 4.0)) {
+    EXPECT_EQ(scan.clock.source, TimeSource::kHost);
+    EXPECT_NEAR(ToSeconds(*scan.clock.host_minus_sensor), 4.0 * 3600.0, 1.0);
   }
   const auto believed = Play({"wrong_hour:0:100:-4"}, 4s, TimeChoice::kSensor).Between(2.5, 4.0);
   ASSERT_FALSE(believed.empty());
@@ -142,9 +142,9 @@ TEST(Vlp16ClockFaults, AWrongHourTurnsTheSensorTimeDownWhereTheHostIsThereToTell
 TEST(Vlp16ClockFaults, AnRmcThatIsASecondLateChangesNothing) {
   const auto run = Play({"late_rmc:2:6"}, 8s);
   EXPECT_EQ(run.States(0.5, 8.0), States{kLocked});
-  for (const auto& turn : run.Between(0.5, 8.0)) {
-    EXPECT_EQ(turn.clock.source, TimeSource::kSensor);
-    EXPECT_LT(std::abs(ToSeconds(*turn.clock.host_minus_sensor)), 1e-3);
+  for (const auto& scan : run.Between(0.5, 8.0)) {
+    EXPECT_EQ(scan.clock.source, TimeSource::kSensor);
+    EXPECT_LT(std::abs(ToSeconds(*scan.clock.host_minus_sensor)), 1e-3);
   }
 }
 
@@ -164,10 +164,10 @@ TEST(Vlp16ClockFaults, ARestartedSensorIsSilentThenGoesThroughAllStates) {
   EXPECT_EQ(run.States(10.2, 13.0), States{kLocked});
   EXPECT_GE(run.Count("sensor_restarts"), 1);
   EXPECT_EQ(run.Count("data_lost"), 0) << "what was never sent is not lost";
-  // By the host's clock until the lock: never elsewhere in time. A turn that the silence cut short is told of when it is over.
-  for (const auto& seen : run.turns) {
-    if (seen.turn.is_partial_end) continue;
-    EXPECT_NEAR(ToSeconds(seen.turn.end_time - kStart), seen.time_s, 0.01);
+  // By the host's clock until the lock: never elsewhere in time. A scan that the silence cut short is told of when it is over.
+  for (const auto& seen : run.scans) {
+    if (seen.scan.is_partial_end) continue;
+    EXPECT_NEAR(ToSeconds(seen.scan.end_time - kStart), seen.time_s, 0.01);
   }
 }
 

@@ -8,27 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/files.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = LOOKOUT_SOURCE_DIR;
-
-std::string Read(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
+using lookout::support::kSources;
+using lookout::support::ReadFile;
 
 std::vector<fs::path> FilesWithEnding(const std::vector<std::string>& endings) {
   std::vector<fs::path> files;
   const auto add = [&](const fs::path& file) {
     if (std::ranges::find(endings, file.extension().string()) != endings.end()) files.push_back(file);
   };
-  for (const auto& entry : fs::directory_iterator(kRoot)) add(entry.path());
+  for (const auto& entry : fs::directory_iterator(kSources)) add(entry.path());
   for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
-    for (auto entry = fs::recursive_directory_iterator(kRoot / folder); entry != fs::recursive_directory_iterator(); ++entry) {
+    for (auto entry = fs::recursive_directory_iterator(kSources / folder); entry != fs::recursive_directory_iterator(); ++entry) {
       // Packages of npm, and what is built of them, are written by others.
       if (entry->path().filename() == "node_modules" || entry->path().filename() == "vendor") {
         entry.disable_recursion_pending();
@@ -44,7 +40,7 @@ std::vector<fs::path> FilesWithEnding(const std::vector<std::string>& endings) {
 // The lines of a page that are prose: no table, no block of code, no block that a tool fills.
 std::vector<std::string> ProseOf(const fs::path& page) {
   std::vector<std::string> prose;
-  std::istringstream text(Read(page));
+  std::istringstream text(ReadFile(page));
   bool is_code = false;
   bool is_filled = false;
   for (std::string line; std::getline(text, line);) {
@@ -68,7 +64,7 @@ TEST(Pages, OfAReadmeHaveAtMost150LinesApartFromTables) {
 }
 
 TEST(Pages, TheFirstPageFitsOnTwoScreens) {
-  std::istringstream text(Read(kRoot / "README.md"));
+  std::istringstream text(ReadFile(kSources / "README.md"));
   int num_lines = 0;
   for (std::string line; std::getline(text, line);) ++num_lines;
   EXPECT_LE(num_lines, 120);
@@ -88,7 +84,7 @@ TEST(Pages, AndCodeUseTheTermsOfTheField) {
       std::regex::icase);
   for (const auto& file : FilesWithEnding({".md", ".cpp", ".hpp", ".java", ".proto", ".lcm", ".txt", ".cmake", ".txtpb", ".in"})) {
     if (file.filename() == "pages_test.cpp" || file.filename() == "CONTRIBUTING.md" || file.filename() == "CHANGELOG.md") continue;
-    std::istringstream text(Read(file));
+    std::istringstream text(ReadFile(file));
     int number = 0;
     for (std::string line; std::getline(text, line);) {
       ++number;
@@ -101,14 +97,14 @@ TEST(Pages, AndCodeUseTheTermsOfTheField) {
 // "One packet's way to an obstacle" in CONTRIBUTING.md: each row names a file, and something that stands in it.
 TEST(Pages, TheWalkForNewcomersNamesWhatIsThere) {
   const std::regex row(R"(^\| ([^|]+) \| `([^`]+)` \| `([^`]+)` \|$)");
-  std::istringstream page(Read(kRoot / "CONTRIBUTING.md"));
+  std::istringstream page(ReadFile(kSources / "CONTRIBUTING.md"));
   int num_rows = 0;
   for (std::string line; std::getline(page, line);) {
     std::smatch match;
     if (!std::regex_match(line, match, row)) continue;
-    const fs::path file = kRoot / match[2].str();
+    const fs::path file = kSources / match[2].str();
     ASSERT_TRUE(fs::exists(file)) << file;
-    EXPECT_TRUE(std::regex_search(Read(file), std::regex("\\b" + match[3].str() + "\\b"))) << file << " has no " << match[3];
+    EXPECT_TRUE(std::regex_search(ReadFile(file), std::regex("\\b" + match[3].str() + "\\b"))) << file << " has no " << match[3];
     ++num_rows;
   }
   EXPECT_GE(num_rows, 10);

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = lookout::support::kSources;
+using lookout::support::kSources;
 using lookout::support::ReadFile;
 
 std::vector<fs::path> SourcesBelow(const fs::path& folder) {
@@ -82,22 +82,23 @@ const std::vector<Rule>& Rules() {
       {"common/core/.*", {"common/core"}},
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
-      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
-      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
+      {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
+      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
+      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
-      {"services/[^/]+/io/.*", {"common/core", "OWN/core", "OWN/io", "pcap", "socket"}},
-      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus"}},
+      {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
+      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
       // As params; it knows what an address is.
       {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
       // Opens what params name.
-      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "OWN", "OWN/core", "OWN/io"}},
+      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "OWN", "OWN/core"}},
+      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
-      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "wire types"}},
+      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
   };
@@ -107,8 +108,8 @@ const std::vector<Rule>& Rules() {
 TEST(Structure, RoomsIncludeOnlyWhatTheyMay) {
   int num_checked = 0;
   for (const auto& folder : {"common", "services"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) {
-      const std::string path = fs::relative(file, kRoot).string();
+    for (const auto& file : SourcesBelow(kSources / folder)) {
+      const std::string path = fs::relative(file, kSources).string();
       const auto rule = std::ranges::find_if(Rules(), [&](const Rule& candidate) { return std::regex_match(path, std::regex(candidate.room)); });
       ASSERT_NE(rule, Rules().end()) << path << " is in no room that the rules name";
       const std::string own = path.substr(0, path.find('/', path.find('/') + 1));
@@ -131,8 +132,8 @@ TEST(Structure, OutputsAreWrittenByOneClass) {
   const std::regex exempt("common/io/output_file\\.cpp|common/bus/log_file\\.cpp|services/recorder/io/disk_writer\\.cpp");
   const std::regex writes(R"(ofstream|\bfopen\(|freopen|pcap_dump_open\(|lcm_eventlog_create|O_CREAT|std::fstream)");
   for (const auto& folder : {"common", "services", "tools"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) {
-      const std::string path = fs::relative(file, kRoot).string();
+    for (const auto& file : SourcesBelow(kSources / folder)) {
+      const std::string path = fs::relative(file, kSources).string();
       if (std::regex_match(path, exempt)) continue;
       std::smatch match;
       const std::string text = ReadFile(file);
@@ -144,8 +145,8 @@ TEST(Structure, OutputsAreWrittenByOneClass) {
 // Names in logs, texts of messages and of configs reach the log of a process: no control character may pass to a terminal.
 TEST(Structure, LinesOfTheLogAreMadePrintable) {
   for (const auto& folder : {"common", "services", "tools"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) {
-      const std::string path = fs::relative(file, kRoot).string();
+    for (const auto& file : SourcesBelow(kSources / folder)) {
+      const std::string path = fs::relative(file, kSources).string();
       if (path == "common/runtime/log_pattern.cpp") continue;
       const std::string text = ReadFile(file);
       EXPECT_EQ(text.find("spdlog::set_pattern"), std::string::npos) << path << ": use runtime::SetLogPattern";
@@ -159,8 +160,8 @@ TEST(Structure, OnlyMainIoAndRuntimeReadTheClock) {
   const std::regex exempt("common/runtime/.*|common/bus/bus\\.cpp|common/io/.*|services/[^/]+/(main\\.cpp|io/.*)");
   const std::regex clock(R"(_clock::now|\bHostNow\(|gettimeofday|clock_gettime|\btime\(nullptr\))");
   for (const auto& folder : {"common", "services"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) {
-      const std::string path = fs::relative(file, kRoot).string();
+    for (const auto& file : SourcesBelow(kSources / folder)) {
+      const std::string path = fs::relative(file, kSources).string();
       if (std::regex_match(path, exempt)) continue;
       EXPECT_FALSE(std::regex_search(ReadFile(file), clock)) << path << " reads a clock";
     }
@@ -172,8 +173,8 @@ TEST(Structure, NoProgramTakesTheUsersLocale) {
   const std::regex locale(R"(\b(set|new|use)locale\s*\(|std::locale\b(?!::classic))");
   int num_checked = 0;
   for (const auto& folder : {"common", "services", "tools"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) {
-      EXPECT_FALSE(std::regex_search(ReadFile(file), locale)) << fs::relative(file, kRoot).string() << " takes a locale";
+    for (const auto& file : SourcesBelow(kSources / folder)) {
+      EXPECT_FALSE(std::regex_search(ReadFile(file), locale)) << fs::relative(file, kSources).string() << " takes a locale";
       ++num_checked;
     }
   }
@@ -187,13 +188,13 @@ TEST(Structure, NothingThatReachesAMessageCallsFunctionsThatDependOnTheProcessor
       R"re(\b(std::)?(a?(sin|cos|tan)h?|atan2|exp2?|expm1|log(2|10|1p)?|pow|hypot|cbrt|erfc?|lgamma|tgamma|fma|lerp|polar)f?\(|AngleAxis|\.slerp\(|angularDistance|eulerAngles|Rotation2D|std::complex|_distribution)re");
   int num_checked = 0;
   for (const auto& folder : {"common", "services", "tools/replay"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) {
+    for (const auto& file : SourcesBelow(kSources / folder)) {
       std::istringstream text(ReadFile(file));
       int number = 0;
       for (std::string line; std::getline(text, line);) {
         ++number;
         const std::string code = line.substr(0, line.find("//"));
-        EXPECT_FALSE(std::regex_search(code, call)) << fs::relative(file, kRoot).string() << ":" << number << ": " << line;
+        EXPECT_FALSE(std::regex_search(code, call)) << fs::relative(file, kSources).string() << ":" << number << ": " << line;
         ++num_checked;
       }
     }
@@ -214,7 +215,7 @@ TEST(Structure, AllThatReachesAMessageIsCompiledForTheSameBytes) {
 }
 
 TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
-  const std::string readme = ReadFile(kRoot / "lcmtypes/README.md");
+  const std::string readme = ReadFile(kSources / "lcmtypes/README.md");
   for (const auto& channel : lookout::bus::kChannels) {
     std::ostringstream row;
     row << "| " << channel.name << " | " << channel.type << " | " << channel.publisher << " | " << channel.max_rate_hz << " | " << channel.queue_depth
@@ -224,9 +225,9 @@ TEST(Structure, ReadmeOfTheTypesHoldsTheChannelTable) {
 }
 
 TEST(Structure, ReadmeNamesEveryProgram) {
-  const std::string readme = ReadFile(kRoot / "README.md");
+  const std::string readme = ReadFile(kSources / "README.md");
   for (const auto& folder : {"services", "tools"}) {
-    for (const auto& entry : fs::directory_iterator(kRoot / folder)) {
+    for (const auto& entry : fs::directory_iterator(kSources / folder)) {
       if (!entry.is_directory()) continue;
       const std::string program = "lookout-" + entry.path().filename().string();
       const bool is_program = ReadFile(entry.path() / "CMakeLists.txt").find("lookout_program(") != std::string::npos;
@@ -261,7 +262,7 @@ std::vector<std::string_view> OutputsOf(const lookout::bus::ServiceRow& service)
 }
 
 TEST(Structure, ReadmeOfDeployHoldsTheServiceTable) {
-  const std::string readme = ReadFile(kRoot / "deploy/README.md");
+  const std::string readme = ReadFile(kSources / "deploy/README.md");
   for (const auto& service : lookout::bus::kServices) {
     std::ostringstream row;
     row << "| " << service.name << " | " << service.purpose << " | " << (service.name == "recorder" ? "every channel" : Joined(InputsOf(service)))
@@ -271,7 +272,7 @@ TEST(Structure, ReadmeOfDeployHoldsTheServiceTable) {
 }
 
 TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
-  std::istringstream readme(ReadFile(kRoot / "README.md"));
+  std::istringstream readme(ReadFile(kSources / "README.md"));
   std::size_t num_rows = 0;
   for (std::string line; std::getline(readme, line);) {
     for (const auto& service : lookout::bus::kServices) {
@@ -283,6 +284,22 @@ TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
     }
   }
   EXPECT_EQ(num_rows, lookout::bus::kServices.size());
+}
+
+// It handles SIGHUP for each.
+TEST(Structure, EachServiceUsesTheSharedMain) {
+  for (const auto& service : lookout::bus::kServices) {
+    EXPECT_NE(ReadFile(kSources / "services" / service.name / "main.cpp").find("runtime::ServiceMain<"), std::string::npos) << service.name;
+  }
+}
+
+TEST(Structure, TheServiceTableSaysWhatSighupDoes) {
+  for (const auto& service : lookout::bus::kServices) {
+    const std::string main = ReadFile(kSources / "services" / service.name / "main.cpp");
+    const bool begins_run = main.find("Hangup::kNewRun") != std::string::npos;
+    const bool has_handler = main.find("OnHangup(") != std::string::npos;
+    EXPECT_EQ(service.hangup, begins_run ? "new config, new run" : has_handler ? "new log" : "checks the config") << service.name;
+  }
 }
 
 // Readers start first: what they read, but for answers to what they publish, is published by a service above them.
@@ -302,8 +319,8 @@ TEST(Structure, DecisionsStandBesideTheReadmeAndBeginWithADate) {
   const std::regex dated(R"(^(\*\*)?20[0-9]{2}-[0-9]{2}-[0-9]{2}[.,: *])");
   int num_files = 0;
   for (const auto& folder : {"common", "config", "deploy", "lcmtypes", "services", "tests", "tools"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
-      const std::string path = fs::relative(entry.path(), kRoot).string();
+    for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
+      const std::string path = fs::relative(entry.path(), kSources).string();
       if (entry.path().filename() == "README.md") {
         EXPECT_EQ(ReadFile(entry.path()).find("\n## Decisions"), std::string::npos) << path << ": decisions stand in DECISIONS.md";
       }
@@ -335,11 +352,11 @@ std::string AnchorOf(const std::string& heading) {
 
 std::vector<fs::path> Pages() {
   std::vector<fs::path> pages;
-  for (const auto& entry : fs::directory_iterator(kRoot)) {
+  for (const auto& entry : fs::directory_iterator(kSources)) {
     if (entry.path().extension() == ".md") pages.push_back(entry.path());
   }
   for (const auto& folder : {"config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
       if (entry.path().extension() == ".md") pages.push_back(entry.path());
     }
   }
@@ -374,13 +391,13 @@ TEST(Structure, LinksBetweenPagesLeadSomewhere) {
 TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
   std::string code;
   for (const auto& folder : {"common", "services", "tools"}) {
-    for (const auto& file : SourcesBelow(kRoot / folder)) code += ReadFile(file);
+    for (const auto& file : SourcesBelow(kSources / folder)) code += ReadFile(file);
   }
-  code += ReadFile(kRoot / "deploy/lookout-up.in");
+  code += ReadFile(kSources / "deploy/lookout-up.in");
   const std::regex joints("\"\\s*\"");  // a literal that goes on in the next line
   code = std::regex_replace(code, joints, "");
   code += " has no field named ";  // Protobuf's
-  std::istringstream page(ReadFile(kRoot / "TROUBLESHOOTING.md"));
+  std::istringstream page(ReadFile(kSources / "TROUBLESHOOTING.md"));
   const std::regex quoted("`([^`]*)`");
   int num_pieces = 0;
   for (std::string line; std::getline(page, line);) {
@@ -406,11 +423,11 @@ TEST(Structure, TroubleshootingCitesMessagesOfTheCode) {
 TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
   std::string tests;
   std::string lists;
-  for (const auto& file : SourcesBelow(kRoot / "tests")) tests += ReadFile(file);
-  for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {
+  for (const auto& file : SourcesBelow(kSources / "tests")) tests += ReadFile(file);
+  for (const auto& entry : fs::recursive_directory_iterator(kSources / "tests")) {
     if (entry.path().filename() == "CMakeLists.txt") lists += ReadFile(entry.path());
   }
-  std::istringstream page(ReadFile(kRoot / "SECURITY.md"));
+  std::istringstream page(ReadFile(kSources / "SECURITY.md"));
   const std::regex quoted("`([^`]*)`");
   bool is_in_table = false;
   int num_named = 0;
@@ -443,7 +460,7 @@ TEST(Structure, EachPromiseOfThePageOnSecurityNamesTestsThatAreThere) {
 TEST(Structure, TheServiceTableNamesEveryService) {
   std::vector<std::string> in_table = lookout::bus::StartOrder();
   std::vector<std::string> in_folder;
-  for (const auto& entry : fs::directory_iterator(kRoot / "services")) {
+  for (const auto& entry : fs::directory_iterator(kSources / "services")) {
     if (entry.is_directory()) in_folder.push_back(entry.path().filename().string());
   }
   std::ranges::sort(in_table);

@@ -15,14 +15,18 @@
 
 namespace lookout::support {
 
-inline const std::filesystem::path kSources = LOOKOUT_SOURCE_DIR;
+/// Folders of this checkout and of the programs of this build.
+const char* SourceFolder();
+const char* ProgramFolder();
+
+inline const std::filesystem::path kSources = SourceFolder();
 inline const std::filesystem::path kDemoConfig = kSources / "config/demo";
 inline const std::filesystem::path kCatabotConfig = kSources / "config/catabot";
 /// Recordings of others, beside the clone; a test that finds one absent skips.
 inline const std::filesystem::path kRecordings = kSources / "../shared/data";
 
 /// The program lookout-NAME of this build.
-inline std::string Bin(const std::string& name) { return LOOKOUT_BIN_DIR "/lookout-" + name; }
+inline std::string Bin(const std::string& name) { return std::string(ProgramFolder()) + "/lookout-" + name; }
 
 /// @return all bytes of the file
 /// @throws std::runtime_error  where it cannot be read

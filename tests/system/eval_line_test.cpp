@@ -76,8 +76,7 @@ TEST_F(EvalLine, OutputsThatAreThereAreRefusedBeforeTheRunUnlessForced) {
   std::ofstream(Path("page.html")) << "mine";
   fs::create_directories(Path("csv"));
   std::ofstream(Path("csv/table_1.csv")) << "mine";
-  for (const auto& output :
-       std::vector<std::vector<std::string>>{{"--html", Path("page.html")}, {"--csv", Path("csv")}, {"--figures", Path("csv")}}) {
+  for (const auto& output : std::vector<std::vector<std::string>>{{"--html", Path("page.html")}, {"--csv", Path("csv")}}) {
     const auto result = Run(with(output));
     EXPECT_EQ(result.exit_code, 1) << output[0] << result.output;
     EXPECT_NE(result.output.find("--force"), std::string::npos) << result.output;
@@ -85,26 +84,28 @@ TEST_F(EvalLine, OutputsThatAreThereAreRefusedBeforeTheRunUnlessForced) {
   }
   EXPECT_EQ(read("page.html"), "mine");
   EXPECT_EQ(read("csv/table_1.csv"), "mine");
-  EXPECT_EQ(Run(with({"--html", Path("page.html"), "--csv", Path("csv"), "--figures", Path("figures"), "--force"})).exit_code, 0);
+  EXPECT_EQ(Run(with({"--html", Path("page.html"), "--csv", Path("csv"), "--force"})).exit_code, 0);
   EXPECT_NE(read("page.html"), "mine");
   EXPECT_NE(read("csv/table_1.csv"), "mine");
-  EXPECT_TRUE(fs::exists(Path("figures/main.csv")));
   EXPECT_FALSE(fs::exists(Path("page.html.partial")));
 }
 
-TEST_F(EvalLine, BlocksAreFilledFromTheFiguresAlone) {
-  fs::create_directories(Path("figures"));
-  std::ofstream(Path("figures/one.csv")) << "# Text.\na,b\n1,2\n";
-  std::ofstream(Path("README.md")) << "# Title\n<!-- figures: one -->\n<!-- end -->\n";
-  const auto fill = [this] { return RunProgram({Bin("eval"), "--figures", Path("figures"), "--blocks", Path("README.md")}, Path("out")); };
-  EXPECT_EQ(fill().exit_code, 0);
+TEST_F(EvalLine, BlocksAreFilledWithTheFiguresOfTheRun) {
+  const std::string title = "# Title\n<!-- figures: ";
+  const auto fill = [&](const std::string& name) {
+    std::ofstream(Path("README.md")) << title << name << " -->\n<!-- end -->\n";
+    return Run({"--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3", "--blocks", Path("README.md")});
+  };
+  EXPECT_EQ(fill("main").exit_code, 0);
   std::ifstream in(Path("README.md"));
   const std::string text(std::istreambuf_iterator<char>(in), {});
-  EXPECT_EQ(text, "# Title\n<!-- figures: one -->\n| a | b |\n|---|---|\n| 1 | 2 |\n\nText.\n<!-- end -->\n");
-  std::ofstream(Path("README.md")) << "# Title\n<!-- figures: two -->\n<!-- end -->\n";
-  const auto unknown = fill();
+  EXPECT_TRUE(text.starts_with(title + "main -->\n| method | mIoU, % |")) << text;
+  EXPECT_NE(text.find("\n| ours (all segments) | "), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with(".\n<!-- end -->\n")) << text;
+  const auto unknown = fill("two");
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_NE(unknown.output.find("README.md:2: there are no figures of this name: two"), std::string::npos) << unknown.output;
+  EXPECT_EQ(unknown.output.find("mIoU"), std::string::npos) << "said before the run";
 }
 
 TEST_F(EvalLine, CapturesThatAreNotHereAreSaidInTheTables) {

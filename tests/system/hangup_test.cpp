@@ -1,4 +1,4 @@
-// lookout-vlp16 and SIGHUP: a config that is read again, and a terminal that closes.
+// SIGHUP: a config that is read again, or checked and kept, and a terminal that closes.
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <pty.h>
@@ -130,7 +130,7 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
 
   WriteConfig(config + "400 receive_buffer_bytes: 1");
   child_->Signal(SIGHUP);
-  EXPECT_TRUE(WaitForOutput("goes on with the old one"));
+  EXPECT_TRUE(WaitForOutput("the old one stays in force"));
   for (const char* fault : {"cut_azimuth_deg: must be", "receive_buffer_bytes: must be"}) {
     EXPECT_NE(child_->Output().find(fault), std::string::npos) << child_->Output();
   }
@@ -144,7 +144,7 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
     const auto length = child_->Output().size();
     WriteConfig(config + "90 " + fault);
     child_->Signal(SIGHUP);
-    EXPECT_TRUE(WaitUntil([&] { return child_->Output().find("goes on with the old one", length) != std::string::npos; })) << child_->Output();
+    EXPECT_TRUE(WaitUntil([&] { return child_->Output().find("the old one stays in force", length) != std::string::npos; })) << child_->Output();
   }
   EXPECT_TRUE(WaitForScans(3));
   EXPECT_EQ(starts_.size(), 1U);
@@ -164,6 +164,25 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
     EXPECT_EQ(NumOpen(pid), num_open);
   }
   EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
+}
+
+TEST_F(HangupTest, SegmenterAndGeoreferencerCheckANewConfigAndKeepTheOldOne) {
+  for (const std::string name : {"segmenter", "georeferencer"}) {
+    const auto file = folder_ / (name + ".txtpb");
+    fs::copy_file(kDemoConfig / (name + ".txtpb"), file, fs::copy_options::overwrite_existing);
+    child_ = std::make_unique<Child>(std::vector<std::string>{Bin(name), "--config", folder_.string()}, OutputFile());
+    ASSERT_TRUE(WaitForOutput("starts"));
+    child_->Signal(SIGHUP);
+    EXPECT_TRUE(WaitForOutput("it takes effect at the next start")) << child_->Output();
+    std::ofstream(file) << "\nno_such_field: 1\n";
+    child_->Signal(SIGHUP);
+    EXPECT_TRUE(WaitForOutput("the new config is wrong; the old one stays in force")) << child_->Output();
+    EXPECT_NE(child_->Output().find(name + ".txtpb:2: "), std::string::npos) << child_->Output();
+    health_ = {};
+    EXPECT_TRUE(WaitUntil([&] { return health_.pid == child_->pid(); })) << "it ended";
+    EXPECT_TRUE(WaitForStarts(1)) << child_->Output();
+    EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
+  }
 }
 
 TEST_F(HangupTest, ATerminationDuringANewStartIsNotLost) {

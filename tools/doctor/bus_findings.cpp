@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "tools/doctor/findings.hpp"
-#include "tools/doctor/words.hpp"
 
 namespace lookout::doctor {
 
@@ -25,91 +24,84 @@ std::string KibiBytes(std::int64_t bytes) { return std::to_string(bytes / 1024) 
 
 }  // namespace
 
-Findings JudgeConfig(const ConfigSeen& config) {
+Findings CheckConfig(const ConfigSeen& config) {
   Findings findings;
   std::string right;
   for (const auto& file : config.files) {
     if (file.faults.empty()) right += (right.empty() ? "" : ", ") + file.name;
     for (const auto& fault : file.faults) {
       const bool is_of_file = fault.find(": file: ") != std::string::npos;
-      findings.push_back({Grade::kFault, kConfigSubject, fault,
-                          is_of_file ? "the folder holds one file for each schema of config/schema, as config/catabot does, and no other"
-                                     : "mend that line; config/schema says what it may hold"});
+      findings.push_back(Fault(kConfigSubject, fault,
+                               is_of_file ? "the folder holds one file for each schema of config/schema, as config/catabot does, and no other"
+                                          : "mend that line; config/schema says what it may hold"));
     }
   }
-  if (!right.empty()) findings.insert(findings.begin(), {Grade::kOk, kConfigSubject, right, {}});
+  if (!right.empty()) findings.insert(findings.begin(), Ok(kConfigSubject, right));
   return findings;
 }
 
-Findings JudgeBus(const BusSeen& bus) {
+Findings CheckBus(const BusSeen& bus) {
   if (bus.group.empty()) {
-    if (!bus.fault.empty()) return {{Grade::kFault, kRouteSubject, bus.fault, "LCM_DEFAULT_URL or --lcm-url names the bus"}};
-    return {{Grade::kOk, kRouteSubject, "the bus is " + bus.url + ": no multicast, so it needs no route", {}}};
+    if (!bus.fault.empty()) return {Fault(kRouteSubject, bus.fault, "LCM_DEFAULT_URL or --lcm-url names the bus")};
+    return {Ok(kRouteSubject, "the bus is " + bus.url + ": no multicast, so it needs no route")};
   }
   const auto network = NetworkOfGroup(bus.group);
   if (!bus.fault.empty()) {
-    return {{Grade::kFault, kRouteSubject, bus.fault,
-             bus.time_to_live > 0 ? "as root: ip route add " + network + " dev <the interface to the other computer>"
-                                  : "as root: ip route add " + network + " dev lo"}};
+    return {Fault(kRouteSubject, bus.fault,
+                  bus.time_to_live > 0 ? "as root: ip route add " + network + " dev <the interface to the other computer>"
+                                       : "as root: ip route add " + network + " dev lo")};
   }
   const auto place = "multicast to " + bus.group + " goes by " + (bus.route_device.empty() ? "an interface that is not known" : bus.route_device);
   if (bus.time_to_live > 0 && bus.route_device == "lo") {
-    return {{Grade::kWarning, kRouteSubject,
-             place + ", but the bus has a time-to-live of " + std::to_string(bus.time_to_live) + ": other computers shall hear it, and do not",
-             "as root: ip route replace " + network + " dev <the interface to the other computer>; or ttl=0 in LCM_DEFAULT_URL"}};
+    return {Warning(kRouteSubject,
+                    place + ", but the bus has a time-to-live of " + std::to_string(bus.time_to_live) + ": other computers shall hear it, and do not",
+                    "as root: ip route replace " + network + " dev <the interface to the other computer>; or ttl=0 in LCM_DEFAULT_URL")};
   }
   if (bus.time_to_live == 0 && !bus.route_device.empty() && bus.route_device != "lo") {
-    return {{Grade::kWarning, kRouteSubject, place + ": when that interface goes down, the processes of this computer no longer hear each other",
-             "as root: ip route replace " + network + " dev lo"}};
+    return {Warning(kRouteSubject, place + ": when that interface goes down, the processes of this computer no longer hear each other",
+                    "as root: ip route replace " + network + " dev lo")};
   }
-  return {{Grade::kOk,
-           kRouteSubject,
-           place + (bus.time_to_live == 0 ? "; nothing leaves this computer" : "; time-to-live " + std::to_string(bus.time_to_live)),
-           {}}};
+  return {
+      Ok(kRouteSubject, place + (bus.time_to_live == 0 ? "; nothing leaves this computer" : "; time-to-live " + std::to_string(bus.time_to_live)))};
 }
 
-Findings JudgePort(const Observations& seen) {
+Findings CheckPort(const Observations& seen) {
   if (seen.bus.group.empty()) return {};
   const auto port = "port " + std::to_string(seen.port.port);
-  if (seen.port.is_closed)
-    return {{Grade::kOk, kPortSubject, port + " of the bus is closed to other interfaces than that of the bus (lookout-firewall)", {}}};
+  if (seen.port.is_closed) return {Ok(kPortSubject, port + " of the bus is closed to other interfaces than that of the bus (lookout-firewall)")};
   std::vector<std::string> outside;
   for (const auto& interface : seen.interfaces) {
     if (!interface.is_loopback && interface.has_carrier && std::ranges::find(outside, interface.name) == outside.end())
       outside.push_back(interface.name);
   }
-  if (outside.empty()) return {{Grade::kOk, kPortSubject, port + " of the bus: no interface leads to another computer", {}}};
-  const auto as_it_is = [](const std::string& word) { return word; };
-  const auto open = port + " of the bus is open on " + Joined(outside, as_it_is);
+  if (outside.empty()) return {Ok(kPortSubject, port + " of the bus: no interface leads to another computer")};
+  const auto open = port + " of the bus is open on " + Joined(outside);
   if (seen.port.without_filter.empty()) {
-    return {{Grade::kOk,
-             kPortSubject,
-             open + "; Lookout's programs take only sound datagrams" + (seen.bus.time_to_live == 0 ? " of this computer" : " to the group") +
-                 ", and no other listens",
-             {}}};
+    return {Ok(kPortSubject, open + "; Lookout's programs take only sound datagrams" +
+                                 (seen.bus.time_to_live == 0 ? " of this computer" : " to the group") + ", and no other listens")};
   }
-  return {{Grade::kWarning, kPortSubject,
-           open + ", and who listens there without a filter, as LCM's own tools do, can be ended by one datagram: " +
-               Joined(seen.port.without_filter, as_it_is),
-           "end it before casting off; or close the port: LOOKOUT_BUS_FIREWALL=on in /etc/default/lookout, then as root: systemctl restart "
-           "lookout-firewall"}};
+  return {Warning(
+      kPortSubject,
+      open + ", and who listens there without a filter, as LCM's own tools do, can be ended by one datagram: " + Joined(seen.port.without_filter),
+      "end it before casting off; or close the port: LOOKOUT_BUS_FIREWALL=on in /etc/default/lookout, then as root: systemctl restart "
+      "lookout-firewall")};
 }
 
-Findings JudgeBuffers(const BuffersSeen& buffers) {
+Findings CheckBuffers(const BuffersSeen& buffers) {
   Findings findings;
   if (buffers.granted < buffers.asked) {
-    findings.push_back({Grade::kWarning, kBuffersSubject,
-                        "a socket that asks for " + KibiBytes(buffers.asked) + " gets " + KibiBytes(buffers.granted) +
-                            ": a burst while the computer is busy is lost (and counted)",
-                        "as root: sysctl -w net.core.rmem_max=" + std::to_string(buffers.asked) + ", and the same line in /etc/sysctl.d"});
+    findings.push_back(Warning(kBuffersSubject,
+                               "a socket that asks for " + KibiBytes(buffers.asked) + " gets " + KibiBytes(buffers.granted) +
+                                   ": a burst while the computer is busy is lost (and counted)",
+                               "as root: sysctl -w net.core.rmem_max=" + std::to_string(buffers.asked) + ", and the same line in /etc/sysctl.d"));
   } else {
-    findings.push_back({Grade::kOk, kBuffersSubject, "a socket that asks for " + KibiBytes(buffers.asked) + " gets it", {}});
+    findings.push_back(Ok(kBuffersSubject, "a socket that asks for " + KibiBytes(buffers.asked) + " gets it"));
   }
   if (buffers.by_default < kWantedByLcmBytes) {
-    findings.push_back({Grade::kWarning, kBuffersSubject,
-                        "a socket that asks for none gets " + KibiBytes(buffers.by_default) +
-                            ": Lookout's processes ask, but lcm-spy and lcm-logger may lose bursts",
-                        "as root: sysctl -w net.core.rmem_default=" + std::to_string(kWantedByLcmBytes)});
+    findings.push_back(Warning(
+        kBuffersSubject,
+        "a socket that asks for none gets " + KibiBytes(buffers.by_default) + ": Lookout's processes ask, but lcm-spy and lcm-logger may lose bursts",
+        "as root: sysctl -w net.core.rmem_default=" + std::to_string(kWantedByLcmBytes)));
   }
   return findings;
 }

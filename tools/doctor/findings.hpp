@@ -1,39 +1,87 @@
-// From observations to findings: what is right, what is doubtful, what is wrong, and what mends it. Pure.
+// What lookout-doctor says: one finding per thing that it checked. Pure functions from observations to findings, and findings as text.
 #pragma once
 
-#include "tools/doctor/finding.hpp"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tools/doctor/observations.hpp"
 
 namespace lookout::doctor {
 
-/// A line per file, a line per fault.
-Findings JudgeConfig(const ConfigSeen& config);
+enum class Grade { kOk, kWarning, kFault };
 
-/// Route of the bus; receive buffers.
-Findings JudgeBus(const BusSeen& bus);
+struct Finding {
+  Grade grade = Grade::kOk;
+  std::string subject;  // one word
+  std::string text;     // what was found
+  std::string cure;     // what to do; empty where nothing is wrong
+};
+
+using Findings = std::vector<Finding>;
+
+inline Finding Ok(std::string subject, std::string text) { return {Grade::kOk, std::move(subject), std::move(text), {}}; }
+inline Finding Warning(std::string subject, std::string text, std::string cure) {
+  return {Grade::kWarning, std::move(subject), std::move(text), std::move(cure)};
+}
+inline Finding Fault(std::string subject, std::string text, std::string cure) {
+  return {Grade::kFault, std::move(subject), std::move(text), std::move(cure)};
+}
+
+/// "1.50"; never "-0.00".
+inline std::string Fixed(double value, int num_decimals) {
+  const double step = std::pow(10.0, num_decimals);
+  return fmt::format("{:.{}f}", std::round(value * step) / step + 0.0, num_decimals);  // + 0.0 makes a zero of minus zero
+}
+
+/// "1 packet", "2 packets".
+inline std::string Count(std::int64_t count, const std::string& noun) { return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s"); }
+
+/// "a, b, c".
+inline std::string Joined(const std::vector<std::string>& items) { return fmt::format("{}", fmt::join(items, ", ")); }
+
+/// A finding for the files that are right, one for each fault.
+Findings CheckConfig(const ConfigSeen& config);
+
+/// Route of the bus.
+Findings CheckBus(const BusSeen& bus);
 /// Whether other computers reach programs that have no filter. With ttl=0 none needs to.
-Findings JudgePort(const Observations& seen);
-Findings JudgeBuffers(const BuffersSeen& buffers);
+Findings CheckPort(const Observations& seen);
+/// Receive buffers.
+Findings CheckBuffers(const BuffersSeen& buffers);
 
 /// Packets, rate, model, return mode; the sender's address and this computer's own.
-Findings JudgeLidar(const Observations& seen);
+Findings CheckLidar(const Observations& seen);
 
 /// The sensor's clock and PPS; this computer's clock.
-Findings JudgeClocks(const Observations& seen);
+Findings CheckClocks(const Observations& seen);
 
 /// Position, heading, roll and pitch.
-Findings JudgeNavigation(const Observations& seen);
+Findings CheckNavigation(const Observations& seen);
 
-/// Where the lidar sits and looks, in words, so that a wrong sign is seen by who stands on the boat.
-Findings JudgeMounting(const ConfigSeen& config);
+/// Where lidar and antenna are and where the lidar looks, so that who stands on the boat sees a wrong sign.
+Findings CheckMounting(const ConfigSeen& config);
 
-/// Room for logs.
-Findings JudgeDisk(const DiskSeen& disk);
+/// Free space for logs.
+Findings CheckDisk(const DiskSeen& disk);
 
-/// HEALTH of each process; what comes out at the end of the chain.
-Findings JudgeProcesses(const Observations& seen);
+/// HEALTH of each process; the guard zone; obstacles.
+Findings CheckProcesses(const Observations& seen);
 
-/// All of the above, in the order in which one thing needs the other.
-Findings Judge(const Observations& seen);
+/// All of the above, in the order in which one depends on the other.
+Findings CheckAll(const Observations& seen);
+
+/// @param has_colours  grades in colour, for a terminal
+/// @return a line per finding: grade, subject, text; continued below the text where it is long; the cure behind an arrow; then a line that counts
+///         faults and warnings. Ends with a new line.
+std::string ToReport(const Findings& findings, bool has_colours);
+
+/// Whether any finding is a fault.
+bool HasFault(const Findings& findings);
 
 }  // namespace lookout::doctor

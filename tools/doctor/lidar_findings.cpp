@@ -8,7 +8,6 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tools/doctor/findings.hpp"
-#include "tools/doctor/words.hpp"
 
 namespace lookout::doctor {
 
@@ -36,7 +35,7 @@ std::string InterfacesInWords(const std::vector<InterfaceSeen>& interfaces) {
     const auto address = interface.address ? io::ToText(*interface.address) + "/" + std::to_string(interface.prefix_bits) : std::string("no address");
     words.push_back(interface.name + " " + address + (interface.has_carrier ? "" : " (no carrier: cable out, or other end off)"));
   }
-  return words.empty() ? "no interface but loopback" : Joined(words, [](const std::string& word) { return word; });
+  return words.empty() ? "no interface but loopback" : Joined(words);
 }
 
 bool IsInNetwork(const InterfaceSeen& interface, const io::IpAddress& address) {
@@ -51,48 +50,44 @@ bool IsInNetwork(const InterfaceSeen& interface, const io::IpAddress& address) {
   return true;
 }
 
-Finding JudgeSender(const Observations& seen, const std::string& sender, std::int64_t num_datagrams) {
+Finding CheckSender(const Observations& seen, const std::string& sender, std::int64_t num_datagrams) {
   const std::string words = Count(num_datagrams, "datagram") + " from " + sender + " to port " + std::to_string(seen.config.lidar->data_port);
   const auto& allowed = seen.config.lidar->sources.allowed_source_addresses;
   const auto address = io::ParseIpAddress(sender);
   const bool is_allowed =
       allowed.empty() || std::ranges::any_of(allowed, [&address](const std::string& text) { return io::ParseIpAddress(text) == address; });
   if (!is_allowed) {
-    return {Grade::kWarning, kNetworkSubject, words + ": refused, for allowed_source_address does not name it",
-            "if that is the lidar: allowed_source_address: \"" + sender + "\" in vlp16.txtpb"};
+    return Warning(kNetworkSubject, words + ": refused, for allowed_source_address does not name it",
+                   "if that is the lidar: allowed_source_address: \"" + sender + "\" in vlp16.txtpb");
   }
   const auto own = std::ranges::find_if(seen.interfaces, [&address](const auto& interface) { return address && IsInNetwork(interface, *address); });
   if (own == seen.interfaces.end()) {
-    return {Grade::kWarning, kNetworkSubject,
-            words + ", but no address of this computer is in its network (" + InterfacesInWords(seen.interfaces) + ")",
-            "broadcasts come even so, but the lidar's own page and packets to this computer alone do not: give the interface to the lidar an address "
-            "of that "
-            "network, e.g. ip address add <like " +
-                sender + " with another last number>/24 dev <interface>"};
+    return Warning(
+        kNetworkSubject, words + ", but no address of this computer is in its network (" + InterfacesInWords(seen.interfaces) + ")",
+        "broadcasts come even so, but the lidar's own page and packets to this computer alone do not: give the interface to the lidar an address "
+        "of that "
+        "network, e.g. ip address add <like " +
+            sender + " with another last number>/24 dev <interface>");
   }
-  return {Grade::kOk, kNetworkSubject, words + "; this computer is " + io::ToText(*own->address) + " on " + own->name, {}};
+  return Ok(kNetworkSubject, words + "; this computer is " + io::ToText(*own->address) + " on " + own->name);
 }
 
 // Why nothing comes, as far as the interfaces tell.
-Finding JudgeSilentNetwork(const Observations& seen) {
+Finding CheckSilentNetwork(const Observations& seen) {
   const auto factory = io::ParseIpAddress(kFactorySensor);
   const auto& allowed = seen.config.lidar->sources.allowed_source_addresses;
   const auto sensor = allowed.empty() ? factory : io::ParseIpAddress(allowed.front());
   const auto own = std::ranges::find_if(seen.interfaces, [&sensor](const auto& interface) { return sensor && IsInNetwork(interface, *sensor); });
   const auto name = sensor ? io::ToText(*sensor) : std::string();
   if (own == seen.interfaces.end()) {
-    return {Grade::kWarning, kNetworkSubject,
-            "no address of this computer is in the network of a lidar at " + name + " (" + InterfacesInWords(seen.interfaces) + ")",
-            "give the interface to the lidar an address there, e.g. ip address add " + name.substr(0, name.rfind('.')) + ".77/24 dev <interface>"};
+    return Warning(
+        kNetworkSubject, "no address of this computer is in the network of a lidar at " + name + " (" + InterfacesInWords(seen.interfaces) + ")",
+        "give the interface to the lidar an address there, e.g. ip address add " + name.substr(0, name.rfind('.')) + ".77/24 dev <interface>");
   }
   if (!own->has_carrier) {
-    return {Grade::kFault, kNetworkSubject, own->name + " (" + io::ToText(*own->address) + ") has no carrier",
-            "the cable to the lidar, and its power"};
+    return Fault(kNetworkSubject, own->name + " (" + io::ToText(*own->address) + ") has no carrier", "the cable to the lidar, and its power");
   }
-  return {Grade::kOk,
-          kNetworkSubject,
-          "this computer is " + io::ToText(*own->address) + " on " + own->name + ", in the network of a lidar at " + name,
-          {}};
+  return Ok(kNetworkSubject, "this computer is " + io::ToText(*own->address) + " on " + own->name + ", in the network of a lidar at " + name);
 }
 
 std::string ReturnMode(const LidarSeen& lidar) {
@@ -100,103 +95,99 @@ std::string ReturnMode(const LidarSeen& lidar) {
   return lidar.return_kind == lidar_scan_t::RETURN_LAST ? "last return" : "strongest return";
 }
 
-Finding JudgePackets(const Observations& seen) {
+Finding CheckPackets(const Observations& seen) {
   const auto& lidar = seen.lidar;
   const bool is_silent = lidar.num_packets == 0 || ToSeconds(seen.end - lidar.heard_last) > kLidarSilenceS;
   if (is_silent) {
-    return {Grade::kFault, kLidarSubject, lidar.complaint.empty() ? "no lidar packets" : lidar.complaint, kLidarCure};
+    return Fault(kLidarSubject, lidar.complaint.empty() ? "no lidar packets" : lidar.complaint, kLidarCure);
   }
   if (lidar.model.empty()) {
-    return {Grade::kFault, kLidarSubject,
-            Count(lidar.num_packets, "packet") + ", but no turn came of them" + (lidar.complaint.empty() ? "" : ": " + lidar.complaint),
-            "model in vlp16.txtpb; services/vlp16/README.md says which sensors are read"};
+    return Fault(kLidarSubject,
+                 Count(lidar.num_packets, "packet") + ", but no turn came of them" + (lidar.complaint.empty() ? "" : ": " + lidar.complaint),
+                 "model in vlp16.txtpb; services/vlp16/README.md says which sensors are read");
   }
   const double span_s = ToSeconds(lidar.last - lidar.first);
   const double rate_hz = span_s > 0.0 ? static_cast<double>(lidar.num_packets - 1) / span_s : 0.0;
   const double period_s = ToSeconds(lidar.num_returns == 2 ? vlp16::format::kPacketPeriodDual : vlp16::format::kPacketPeriodSingle);
   const double rpm = lidar.last_clock ? lidar.last_clock->rotation_rpm : std::nan("");
-  const std::string words = lidar.model + ", " + ReturnMode(lidar) + ", " + Text(rate_hz, 0) + " packets/s (" + Text(1.0 / period_s, 0) +
-                            " expected), " + (std::isfinite(rpm) ? Text(rpm, 0) + " rpm" : "rotation not known");
+  const std::string words = lidar.model + ", " + ReturnMode(lidar) + ", " + Fixed(rate_hz, 0) + " packets/s (" + Fixed(1.0 / period_s, 0) +
+                            " expected), " + (std::isfinite(rpm) ? Fixed(rpm, 0) + " rpm" : "rotation not known");
   if (lidar.first_clock && lidar.last_clock) {
     const auto num_lost = lidar.last_clock->num_lost_packets - lidar.first_clock->num_lost_packets;
     const auto num_came = lidar.last_clock->num_packets - lidar.first_clock->num_packets;
     if (static_cast<double>(num_lost) > kMaxLostShare * static_cast<double>(num_lost + num_came)) {
-      return {Grade::kWarning, kLidarSubject, words + "; " + std::to_string(num_lost) + " packets lost of " + std::to_string(num_lost + num_came),
-              "cable and switch; load of this computer; receive buffers above"};
+      return Warning(kLidarSubject, words + "; " + std::to_string(num_lost) + " packets lost of " + std::to_string(num_lost + num_came),
+                     "cable and switch; load of this computer; receive buffers above");
     }
   }
   if (!lidar.complaint.empty())
-    return {Grade::kWarning, kLidarSubject, words + "; " + lidar.complaint, "services/vlp16/README.md tells what each complaint means"};
-  return {Grade::kOk, kLidarSubject, words, {}};
+    return Warning(kLidarSubject, words + "; " + lidar.complaint, "services/vlp16/README.md tells what each complaint means");
+  return Ok(kLidarSubject, words);
 }
 
-Finding JudgeSensorClock(const LidarSeen& lidar) {
+Finding CheckSensorClock(const LidarSeen& lidar) {
   const auto& clock = *lidar.last_clock;
   const std::string source = clock.time_source == lidar_clock_t::TIME_SENSOR ? "turns carry the sensor's time" : "turns carry this computer's time";
   switch (clock.state) {
     case lidar_clock_t::STATE_LOCKED:
       if (std::abs(clock.offset_s) > kMaxClockDifferenceS) {
-        return {Grade::kWarning, kClockSubject,
-                "the lidar is locked to PPS and GNSS time, and this computer's clock is " + Text(clock.offset_s, 3) + " s ahead of it; " + source,
-                "set this computer's clock: chrony with the GNSS receiver or NTP"};
+        return Warning(
+            kClockSubject,
+            "the lidar is locked to PPS and GNSS time, and this computer's clock is " + Fixed(clock.offset_s, 3) + " s ahead of it; " + source,
+            "set this computer's clock: chrony with the GNSS receiver or NTP");
       }
-      return {Grade::kOk,
-              kClockSubject,
-              "the lidar is locked to PPS and GNSS time; this computer's clock is " + Text(1e3 * clock.offset_s, 1) + " ms ahead; " + source,
-              {}};
+      return Ok(kClockSubject,
+                "the lidar is locked to PPS and GNSS time; this computer's clock is " + Fixed(1e3 * clock.offset_s, 1) + " ms ahead; " + source);
     case lidar_clock_t::STATE_LOCKED_WITHOUT_TIME:
-      return {Grade::kWarning, kClockSubject, "the lidar has PPS, but no valid GPRMC; " + source,
-              "the receiver's serial line to the lidar's interface box: 9600 baud, GPRMC once a second, polarity; and a fix"};
+      return Warning(kClockSubject, "the lidar has PPS, but no valid GPRMC; " + source,
+                     "the receiver's serial line to the lidar's interface box: 9600 baud, GPRMC once a second, polarity; and a fix");
     case lidar_clock_t::STATE_ACQUIRING:
-      return {Grade::kWarning, kClockSubject, "the lidar has PPS and is being set to it; " + source, "wait a few seconds and ask again"};
+      return Warning(kClockSubject, "the lidar has PPS and is being set to it; " + source, "wait a few seconds and ask again");
     case lidar_clock_t::STATE_NO_PPS:
-      return {Grade::kWarning, kClockSubject, "the lidar gets no PPS; " + source,
-              "the receiver's PPS line to the lidar's interface box; it needs a fix first"};
+      return Warning(kClockSubject, "the lidar gets no PPS; " + source, "the receiver's PPS line to the lidar's interface box; it needs a fix first");
     case lidar_clock_t::STATE_FREE_RUNNING:
-      return {Grade::kWarning, kClockSubject, "the lidar's clock runs free: PPS is gone, or does not fit the GPRMC; " + source,
-              "the receiver's PPS and serial lines to the lidar's interface box"};
+      return Warning(kClockSubject, "the lidar's clock runs free: PPS is gone, or does not fit the GPRMC; " + source,
+                     "the receiver's PPS and serial lines to the lidar's interface box");
     case lidar_clock_t::STATE_ERROR:
-      return {Grade::kWarning, kClockSubject, "the lidar says that its PPS is wrong; " + source,
-              "PPS once a second, 3 to 15 V, at the lidar's interface box"};
+      return Warning(kClockSubject, "the lidar says that its PPS is wrong; " + source, "PPS once a second, 3 to 15 V, at the lidar's interface box");
     default:
-      return {Grade::kWarning, kClockSubject, "no position packets of the lidar: what its clock is worth is not known; " + source,
-              "position_port in vlp16.txtpb and in the lidar; a firewall"};
+      return Warning(kClockSubject, "no position packets of the lidar: what its clock is worth is not known; " + source,
+                     "position_port in vlp16.txtpb and in the lidar; a firewall");
   }
 }
 
 }  // namespace
 
-Findings JudgeLidar(const Observations& seen) {
-  if (!seen.config.lidar) return {{Grade::kWarning, kLidarSubject, "not looked for: vlp16.txtpb is wrong", "mend it first"}};
+Findings CheckLidar(const Observations& seen) {
+  if (!seen.config.lidar) return {Warning(kLidarSubject, "not looked for: vlp16.txtpb is wrong", "mend it first")};
   const auto& lidar = seen.lidar;
   const auto kind = seen.config.lidar->sources.kind;
   const bool is_sensor = kind == vlp16::Sources::Kind::kUdp || kind == vlp16::Sources::Kind::kInterface;
   Findings findings;
   if (!is_sensor) {
-    findings.push_back(
-        {Grade::kWarning, kLidarSubject, "vlp16.txtpb takes no sensor, but captures or a log: none is looked for", "source: UDP for a sensor"});
+    findings.push_back(Warning(kLidarSubject, "vlp16.txtpb takes no sensor, but captures or a log: none is looked for", "source: UDP for a sensor"));
     return findings;
   }
   if (!lidar.fault.empty()) {
-    return {{Grade::kFault, kLidarSubject, lidar.fault, "what that line says; is lookout-vlp16 running on another bus?"}};
+    return {Fault(kLidarSubject, lidar.fault, "what that line says; is lookout-vlp16 running on another bus?")};
   }
-  findings.push_back(JudgePackets(seen));
-  for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(JudgeSender(seen, sender, num_datagrams));
-  if (lidar.num_packets == 0 && lidar.num_by_sender.empty()) findings.push_back(JudgeSilentNetwork(seen));
+  findings.push_back(CheckPackets(seen));
+  for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(CheckSender(seen, sender, num_datagrams));
+  if (lidar.num_packets == 0 && lidar.num_by_sender.empty()) findings.push_back(CheckSilentNetwork(seen));
   return findings;
 }
 
-Findings JudgeClocks(const Observations& seen) {
+Findings CheckClocks(const Observations& seen) {
   Findings findings;
   const bool is_seen = seen.lidar.last_clock.has_value();
-  if (is_seen) findings.push_back(JudgeSensorClock(seen.lidar));
+  if (is_seen) findings.push_back(CheckSensorClock(seen.lidar));
   const bool is_locked = is_seen && seen.lidar.last_clock->state == lidar_clock_t::STATE_LOCKED;
   if (is_locked) return findings;  // which has measured this computer's
   if (seen.is_host_clock_set) {
-    findings.push_back({Grade::kOk, kClockSubject, "this computer's clock is steered (NTP or PPS)", {}});
+    findings.push_back(Ok(kClockSubject, "this computer's clock is steered (NTP or PPS)"));
   } else {
-    findings.push_back({Grade::kWarning, kClockSubject, "nothing steers this computer's clock, which stamps what has no time of its own",
-                        "install chrony, with the GNSS receiver or NTP as its source"});
+    findings.push_back(Warning(kClockSubject, "nothing steers this computer's clock, which stamps what has no time of its own",
+                               "install chrony, with the GNSS receiver or NTP as its source"));
   }
   return findings;
 }

@@ -15,7 +15,6 @@
 #include "common/runtime/run_info.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/machine.hpp"
-#include "tools/doctor/report.hpp"
 #include "tools/doctor/watch.hpp"
 
 namespace {
@@ -85,7 +84,7 @@ int main(int argc, char** argv) {
       std::cout << lookout::runtime::EffectiveConfig(options.config_folder);
       return;
     }
-    const auto findings = lookout::doctor::Judge(Observe(options));
+    const auto findings = lookout::doctor::CheckAll(Observe(options));
     // no-color.org
     const bool has_colours = isatty(STDOUT_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr;
     std::cout << lookout::doctor::ToReport(findings, has_colours);

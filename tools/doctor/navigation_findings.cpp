@@ -4,12 +4,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "common/core/angles.hpp"
 #include "common/core/datum_check.hpp"
 #include "common/core/utime.hpp"
 #include "tools/doctor/findings.hpp"
-#include "tools/doctor/words.hpp"
 
 namespace lookout::doctor {
 
@@ -52,49 +52,51 @@ std::string QualityInWords(int quality) {
 std::string FixInWords(const gnss_fix_t& fix, double age_s) {
   std::string words = QualityInWords(fix.quality) + " from input '" + fix.source + "' (" + fix.sentence_type + ")";
   if (fix.num_satellites >= 0) words += ", " + Count(fix.num_satellites, "satellite");
-  if (std::isfinite(fix.horizontal_sd_m)) words += ", sd " + Text(fix.horizontal_sd_m, 2) + " m per axis";
-  if (std::isfinite(fix.hdop)) words += ", HDOP " + Text(fix.hdop, 1);
-  words += ", " + Text(age_s, 1) + " s old";
+  if (std::isfinite(fix.horizontal_sd_m)) words += ", sd " + Fixed(fix.horizontal_sd_m, 2) + " m per axis";
+  if (std::isfinite(fix.hdop)) words += ", HDOP " + Fixed(fix.hdop, 1);
+  words += ", " + Fixed(age_s, 1) + " s old";
   if (std::isfinite(fix.latitude_deg) && std::isfinite(fix.longitude_deg)) {
-    words += ", at " + Text(std::abs(fix.latitude_deg), 5) + (fix.latitude_deg < 0.0 ? " S " : " N ") + Text(std::abs(fix.longitude_deg), 5) +
+    words += ", at " + Fixed(std::abs(fix.latitude_deg), 5) + (fix.latitude_deg < 0.0 ? " S " : " N ") + Fixed(std::abs(fix.longitude_deg), 5) +
              (fix.longitude_deg < 0.0 ? " W" : " E");
   }
   return words;
 }
 
 Finding ShutInput(const std::string& name, const std::string& fault) {
-  return {Grade::kFault, kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"};
+  return Fault(kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable");
 }
 
-Finding JudgeFix(const Observations& seen) {
+Finding CheckFix(const Observations& seen) {
   const auto& navigation = seen.navigation;
   if (navigation.num_by_source.empty()) {
-    return {Grade::kFault, kGnssSubject, "no sentence came from any input of navigator.txtpb",
-            "is the receiver on; lookout-navigator --check lists the inputs in words; serial: right device and baud; UDP: its destination and port"};
+    return Fault(
+        kGnssSubject, "no sentence came from any input of navigator.txtpb",
+        "is the receiver on; lookout-navigator --check lists the inputs in words; serial: right device and baud; UDP: its destination and port");
   }
   if (!navigation.fix) {
-    const auto sources = Joined(navigation.num_by_source, [](const auto& entry) { return "'" + entry.first + "'"; });
-    return {Grade::kFault, kGnssSubject, "sentences come from " + sources + ", but none with a position (RMC, GGA, GNS, GLL, VNINS)",
-            "turn RMC and GGA on in the receiver; role and checksum_required of the input in navigator.txtpb"};
+    std::vector<std::string> sources;
+    for (const auto& [name, num_sentences] : navigation.num_by_source) sources.push_back("'" + name + "'");
+    return Fault(kGnssSubject, "sentences come from " + Joined(sources) + ", but none with a position (RMC, GGA, GNS, GLL, VNINS)",
+                 "turn RMC and GGA on in the receiver; role and checksum_required of the input in navigator.txtpb");
   }
   const auto& fix = *navigation.fix;
   const double age_s = ToSeconds(seen.end - navigation.fix_heard);
   const auto words = FixInWords(fix, age_s);
   if (fix.quality == gnss_fix_t::QUALITY_NONE) {
-    return {Grade::kFault, kGnssSubject, words, "the antenna needs a free view of the sky, and after a cold start some minutes; its cable"};
+    return Fault(kGnssSubject, words, "the antenna needs a free view of the sky, and after a cold start some minutes; its cable");
   }
-  if (age_s > kFixSilenceS) return {Grade::kFault, kGnssSubject, words + ": it has stopped", "the receiver's power and cable"};
+  if (age_s > kFixSilenceS) return Fault(kGnssSubject, words + ": it has stopped", "the receiver's power and cable");
   if (fix.quality >= gnss_fix_t::QUALITY_DEAD_RECKONING) {
-    return {Grade::kWarning, kGnssSubject, words + ": not measured by satellites", "the antenna's view of the sky; the receiver's mode"};
+    return Warning(kGnssSubject, words + ": not measured by satellites", "the antenna's view of the sky; the receiver's mode");
   }
   if (fix.num_satellites >= 0 && fix.num_satellites < kFewSatellites) {
-    return {Grade::kWarning, kGnssSubject, words + ": few satellites", "a freer view of the sky for the antenna"};
+    return Warning(kGnssSubject, words + ": few satellites", "a freer view of the sky for the antenna");
   }
-  if (fix.horizontal_sd_m > kPoorFixM) return {Grade::kWarning, kGnssSubject, words + ": poor", "a freer view of the sky for the antenna; wait"};
-  return {Grade::kOk, kGnssSubject, words, {}};
+  if (fix.horizontal_sd_m > kPoorFixM) return Warning(kGnssSubject, words + ": poor", "a freer view of the sky for the antenna; wait");
+  return Ok(kGnssSubject, words);
 }
 
-std::string CourseInWords(double min_speed_mps) { return "the course over ground stands in for it above " + Text(min_speed_mps, 1) + " m/s"; }
+std::string CourseInWords(double min_speed_mps) { return "the course over ground stands in for it above " + Fixed(min_speed_mps, 1) + " m/s"; }
 
 // gpsd 3.22 (Debian 12) gives its clients neither $HEHDT nor $HEROT.
 std::string GpsdInWords(const Observations& seen) {
@@ -108,7 +110,7 @@ std::string GpsdInWords(const Observations& seen) {
   return is_gpsd_alone ? "; gpsd 3.22 does not pass $HEHDT and $HEROT: let the compass send to an input of its own" : "";
 }
 
-Finding JudgeHeading(const Observations& seen) {
+Finding CheckHeading(const Observations& seen) {
   const auto& pose = seen.navigation.pose;
   const auto& filter = seen.config.navigation->navigator.filter;
   const std::string cure = std::string(
@@ -117,70 +119,65 @@ Finding JudgeHeading(const Observations& seen) {
                            GpsdInWords(seen);
   if (!pose || pose->heading_source == pose_t::HEADING_NONE || !std::isfinite(pose->heading_rad)) {
     if (filter.use_course_as_heading) {
-      return {Grade::kWarning, kHeadingSubject, "none: obstacles are placed in the vessel frame only; " + CourseInWords(filter.min_course_speed_mps),
-              cure};
+      return Warning(kHeadingSubject, "none: obstacles are placed in the vessel frame only; " + CourseInWords(filter.min_course_speed_mps), cure);
     }
-    return {Grade::kFault, kHeadingSubject, "none, and the course shall not stand in: obstacles are placed in the vessel frame only", cure};
+    return Fault(kHeadingSubject, "none, and the course shall not stand in: obstacles are placed in the vessel frame only", cure);
   }
   const double sd_deg = RadToDeg(std::sqrt(std::max(0.0, pose->covariance[kHeadingIndex][kHeadingIndex])));
-  const std::string value = Text(RadToDeg(pose->heading_rad), 1) + " deg from true north, sd " + Text(sd_deg, 1) + " deg";
+  const std::string value = Fixed(RadToDeg(pose->heading_rad), 1) + " deg from true north, sd " + Fixed(sd_deg, 1) + " deg";
   if (pose->heading_source == pose_t::HEADING_COURSE) {
-    return {Grade::kWarning, kHeadingSubject, value + ", out of the course over ground: leeway and current are in it, and at rest there is none",
-            cure};
+    return Warning(kHeadingSubject, value + ", out of the course over ground: leeway and current are in it, and at rest there is none", cure);
   }
   std::string words = value;
   if (const auto& heading = seen.navigation.heading) words += ", from input '" + heading->source + "' (" + heading->sentence_type + ")";
   if (sd_deg > kPoorHeadingDeg) {
-    return {Grade::kWarning, kHeadingSubject, words + ": poor, at 10 m an obstacle is " + Text(10.0 * DegToRad(sd_deg), 1) + " m aside",
-            "the heading sensor's own state; wait for its alignment"};
+    return Warning(kHeadingSubject, words + ": poor, at 10 m an obstacle is " + Fixed(10.0 * DegToRad(sd_deg), 1) + " m aside",
+                   "the heading sensor's own state; wait for its alignment");
   }
-  return {Grade::kOk, kHeadingSubject, words, {}};
+  return Ok(kHeadingSubject, words);
 }
 
-Finding JudgeAttitude(const pose_t& pose) {
+Finding CheckAttitude(const pose_t& pose) {
   if (!pose.has_attitude) {
-    return {Grade::kWarning, kAttitudeSubject,
-            "roll and pitch are not measured: in waves, heights over the water and far obstacles are off, as their covariance says",
-            "an AHRS or IMU (PASHR, PSAT,HPR, PTNTHTM, XDR, VNINS, VNYMR, VNIMU) as an input of navigator.txtpb"};
+    return Warning(kAttitudeSubject,
+                   "roll and pitch are not measured: in waves, heights over the water and far obstacles are off, as their covariance says",
+                   "an AHRS or IMU (PASHR, PSAT,HPR, PTNTHTM, XDR, VNINS, VNYMR, VNIMU) as an input of navigator.txtpb");
   }
   const auto side = [](double angle_rad, const char* positive, const char* negative) {
-    return Text(std::abs(RadToDeg(angle_rad)), 1) + " deg " + (angle_rad < 0.0 ? negative : positive);
+    return Fixed(std::abs(RadToDeg(angle_rad)), 1) + " deg " + (angle_rad < 0.0 ? negative : positive);
   };
-  return {Grade::kOk,
-          kAttitudeSubject,
-          "now " + side(pose.pitch_rad, "bow up", "bow down") + " and " + side(pose.roll_rad, "starboard down", "port down") +
-              ": if the boat does not lie so, a sign in navigator.txtpb is wrong",
-          {}};
+  return Ok(kAttitudeSubject, "now " + side(pose.pitch_rad, "bow up", "bow down") + " and " + side(pose.roll_rad, "starboard down", "port down") +
+                                  ": if the boat does not lie so, a sign in navigator.txtpb is wrong");
 }
 
-std::optional<Finding> JudgeDatum(const Observations& seen) {
+std::optional<Finding> CheckDatum(const Observations& seen) {
   const auto& datum = seen.config.navigation->navigator.filter.datum;
   const auto& fix = seen.navigation.fix;
   if (!datum || !fix || fix->quality == gnss_fix_t::QUALITY_NONE || !std::isfinite(fix->latitude_deg) || !std::isfinite(fix->longitude_deg))
     return {};
   const auto complaint = DatumComplaint({datum->latitude_deg, datum->longitude_deg, 0.0}, {fix->latitude_deg, fix->longitude_deg, 0.0}, "the fix");
   if (complaint.empty()) return {};
-  return Finding{Grade::kWarning, kGnssSubject, complaint, "datum in boat.txtpb: mend it, or leave it out, and the first fix is taken"};
+  return Warning(kGnssSubject, complaint, "datum in boat.txtpb: mend it, or leave it out, and the first fix is taken");
 }
 
 }  // namespace
 
-Findings JudgeNavigation(const Observations& seen) {
-  if (!seen.config.navigation) return {{Grade::kWarning, kGnssSubject, "not looked for: navigator.txtpb or boat.txtpb is wrong", "mend it first"}};
+Findings CheckNavigation(const Observations& seen) {
+  if (!seen.config.navigation) return {Warning(kGnssSubject, "not looked for: navigator.txtpb or boat.txtpb is wrong", "mend it first")};
   if (seen.navigation.via == Via::kNothing) {
-    return {{Grade::kWarning, kGnssSubject, "navigator.txtpb takes NAV_RAW of a log: no receiver is looked for", "source: LIVE for a receiver"}};
+    return {Warning(kGnssSubject, "navigator.txtpb takes NAV_RAW of a log: no receiver is looked for", "source: LIVE for a receiver")};
   }
   Findings findings;
   for (const auto& [name, fault] : seen.navigation.input_faults) {
     findings.push_back(ShutInput(name, fault));
   }
-  findings.push_back(JudgeFix(seen));
+  findings.push_back(CheckFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;
-  if (auto datum = JudgeDatum(seen)) findings.push_back(std::move(*datum));
-  findings.push_back(JudgeHeading(seen));
-  if (seen.navigation.pose) findings.push_back(JudgeAttitude(*seen.navigation.pose));
+  if (auto datum = CheckDatum(seen)) findings.push_back(std::move(*datum));
+  findings.push_back(CheckHeading(seen));
+  if (seen.navigation.pose) findings.push_back(CheckAttitude(*seen.navigation.pose));
   if (seen.navigation.complaint.find("clock of this computer is off") != std::string::npos) {
-    findings.push_back({Grade::kWarning, "clock", seen.navigation.complaint, "set this computer's clock: chrony with the GNSS receiver or NTP"});
+    findings.push_back(Warning("clock", seen.navigation.complaint, "set this computer's clock: chrony with the GNSS receiver or NTP"));
   }
   return findings;
 }

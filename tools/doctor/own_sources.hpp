@@ -2,12 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/bus/memory_bus.hpp"
-#include "services/navigator/io/source.hpp"
+#include "common/io/source.hpp"
 #include "services/navigator/service.hpp"
 #include "services/vlp16/service.hpp"
 #include "tools/doctor/observations.hpp"
@@ -19,18 +18,14 @@ class OwnLidar {
  public:
   /// @throws std::runtime_error when a port or the interface cannot be opened
   OwnLidar(bus::Bus& bus, const vlp16::Params& params);
-  ~OwnLidar();
-  OwnLidar(const OwnLidar&) = delete;
-  OwnLidar& operator=(const OwnLidar&) = delete;
 
   /// Takes what waits. @param seen  gets senders and complaint
   void Poll(Utime now, LidarSeen& seen);
 
  private:
-  struct Inputs;
   vlp16::Params params_;
   vlp16::Service service_;
-  std::unique_ptr<Inputs> inputs_;
+  std::vector<std::unique_ptr<io::Source>> sources_;
 };
 
 /// The same for lookout-navigator. Text logs are not played.
@@ -47,8 +42,7 @@ class OwnNavigator {
  private:
   struct Input {
     std::string name;
-    std::unique_ptr<navigator::Source> source;
-    std::int64_t num_lost = 0;
+    std::unique_ptr<io::Source> source;
   };
   navigator::Service service_;
   std::vector<Input> inputs_;

@@ -11,7 +11,6 @@
 #include "common/bus/services.hpp"
 #include "common/core/utime.hpp"
 #include "tools/doctor/findings.hpp"
-#include "tools/doctor/words.hpp"
 
 namespace lookout::doctor {
 
@@ -46,90 +45,87 @@ std::string LossesInWords(const ProcessSeen& process) {
   for (const auto& counter : process.last.counters) {
     if (IsLoss(counter) && counter.count > 0) words.push_back(std::to_string(counter.count) + " " + counter.name);
   }
-  return Joined(words, [](const std::string& word) { return word; });
+  return Joined(words);
 }
 
-Finding JudgeProcess(const std::string& name, const ProcessSeen& process) {
+Finding CheckProcess(const std::string& name, const ProcessSeen& process) {
   const auto& health = process.last;
   const std::string who = name + " (pid " + std::to_string(health.pid) + " on " + health.host + ")";
   switch (health.state) {
     case health_t::STATE_OK:
       break;
     case health_t::STATE_STARTING:
-      return {Grade::kWarning, kProcessSubject, who + " is starting: " + health.reason, "ask again in a few seconds"};
+      return Warning(kProcessSubject, who + " is starting: " + health.reason, "ask again in a few seconds");
     case health_t::STATE_DEGRADED:
-      return {Grade::kWarning, kProcessSubject, who + " is degraded: " + health.reason,
-              "the lines above; services/" + name + "/README.md tells more"};
+      return Warning(kProcessSubject, who + " is degraded: " + health.reason, "the lines above; services/" + name + "/README.md tells more");
     default:
-      return {Grade::kFault, kProcessSubject, who + " has failed: " + health.reason, "what that says; its journal: journalctl -u lookout-" + name};
+      return Fault(kProcessSubject, who + " has failed: " + health.reason, "what that says; its journal: journalctl -u lookout-" + name);
   }
-  const std::string words = who + " is ok: " + Text(100.0 * health.cpu_fraction, 1) + " % of a core, " +
-                            Text(static_cast<double>(health.resident_bytes) / 1e6, 0) + " MB, up " + Text(health.uptime_s, 0) + " s";
+  const std::string words = who + " is ok: " + Fixed(100.0 * health.cpu_fraction, 1) + " % of a core, " +
+                            Fixed(static_cast<double>(health.resident_bytes) / 1e6, 0) + " MB, up " + Fixed(health.uptime_s, 0) + " s";
   const auto losses = LossesInWords(process);
   if (NumLost(health) > NumLost(process.first)) {
-    return {Grade::kWarning, kProcessSubject, words + "; it loses messages now: " + losses,
-            "load of this computer; receive buffers above; the network between two computers"};
+    return Warning(kProcessSubject, words + "; it loses messages now: " + losses,
+                   "load of this computer; receive buffers above; the network between two computers");
   }
-  return {Grade::kOk, kProcessSubject, words + (losses.empty() ? "" : "; lost since its start: " + losses), {}};
+  return Ok(kProcessSubject, words + (losses.empty() ? "" : "; lost since its start: " + losses));
 }
 
 Finding Missing(const std::string& name, bool was_heard) {
-  return {Grade::kFault, kProcessSubject, name + (was_heard ? " was heard, and has stopped" : " is not heard, others are"),
-          "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended"};
+  return Fault(kProcessSubject, name + (was_heard ? " was heard, and has stopped" : " is not heard, others are"),
+               "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended");
 }
 
 // Of georeferencer, where it has a guard zone.
-Findings JudgeGuardZone(const health_t& health) {
+Findings CheckGuardZone(const health_t& health) {
   const auto count = [&health](const char* name) {
     const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
     return found == health.counters.end() ? -1 : found->count;
   };
   if (count("alarm_active") < 0) return {};
   if (count("zone_unwatched") > 0) {
-    return {{Grade::kFault, kGuardZoneSubject, "the guard zone is not watched: no alarm can be raised now",
-             "whole scans must come: the lidar and process lines above; keep a look-out by eye meanwhile"}};
+    return {Fault(kGuardZoneSubject, "the guard zone is not watched: no alarm can be raised now",
+                  "whole scans must come: the lidar and process lines above; keep a look-out by eye meanwhile")};
   }
   const std::string words = "the guard zone is watched, " + std::to_string(count("alarms")) + " alarms and " +
                             std::to_string(count("zone_times_unwatched")) + " times unwatched since the start";
   if (count("alarm_active") > 0) {
-    return {{Grade::kWarning, kGuardZoneSubject,
-             words + "; something is in it now, " + Text(0.01 * static_cast<double>(count("nearest_cm")), 1) + " m off",
-             "nothing, if it is there; if it is the own boat or spray: own_vessel in boat.txtpb, guard_zone in georeferencer.txtpb"}};
+    return {Warning(kGuardZoneSubject, words + "; something is in it now, " + Fixed(0.01 * static_cast<double>(count("nearest_cm")), 1) + " m off",
+                    "nothing, if it is there; if it is the own boat or spray: own_vessel in boat.txtpb, guard_zone in georeferencer.txtpb")};
   }
-  return {{Grade::kOk, kGuardZoneSubject, words, {}}};
+  return {Ok(kGuardZoneSubject, words)};
 }
 
-Findings JudgeObstacles(const Observations& seen) {
+Findings CheckObstacles(const Observations& seen) {
   const auto& obstacles = seen.obstacles;
   if (obstacles.num_turns == 0) {
     if (seen.lidar.via != Via::kBus || seen.lidar.num_packets == 0) return {};  // nothing to make them of
-    return {{Grade::kFault, kObstaclesSubject, "the lidar runs, but no OBSTACLES come", "the processes' lines above"}};
+    return {Fault(kObstaclesSubject, "the lidar runs, but no OBSTACLES come", "the processes' lines above")};
   }
-  const std::string words = Text(static_cast<double>(obstacles.num_turns) / seen.watched_s, 1) + " turns/s, " +
-                            Text(static_cast<double>(obstacles.num_obstacles) / static_cast<double>(obstacles.num_turns), 1) + " obstacles in each";
+  const std::string words = Fixed(static_cast<double>(obstacles.num_turns) / seen.watched_s, 1) + " turns/s, " +
+                            Fixed(static_cast<double>(obstacles.num_obstacles) / static_cast<double>(obstacles.num_turns), 1) + " obstacles in each";
   if (obstacles.num_timeouts > 0) {
-    return {{Grade::kWarning, kObstaclesSubject, words + "; for " + std::to_string(obstacles.num_timeouts) + " the wait for POSE was given up",
-             "clocks of lidar and navigation differ, or navigator is late: the clock lines above"}};
+    return {Warning(kObstaclesSubject, words + "; for " + std::to_string(obstacles.num_timeouts) + " the wait for POSE was given up",
+                    "clocks of lidar and navigation differ, or navigator is late: the clock lines above")};
   }
   if (obstacles.num_placed < obstacles.num_obstacles) {
-    return {{Grade::kWarning, kObstaclesSubject,
-             words + "; " + std::to_string(obstacles.num_obstacles - obstacles.num_placed) + " of " + std::to_string(obstacles.num_obstacles) +
-                 " in the vessel frame only",
-             "the gnss and heading lines above"}};
+    return {Warning(kObstaclesSubject,
+                    words + "; " + std::to_string(obstacles.num_obstacles - obstacles.num_placed) + " of " + std::to_string(obstacles.num_obstacles) +
+                        " in the vessel frame only",
+                    "the gnss and heading lines above")};
   }
-  return {{Grade::kOk, kObstaclesSubject, words + (obstacles.num_obstacles > 0 ? ", all placed on the earth" : ""), {}}};
+  return {Ok(kObstaclesSubject, words + (obstacles.num_obstacles > 0 ? ", all placed on the earth" : ""))};
 }
 
 }  // namespace
 
-Findings JudgeProcesses(const Observations& seen) {
+Findings CheckProcesses(const Observations& seen) {
   if (seen.processes.empty() && !seen.bus.fault.empty()) {
-    return {{Grade::kFault, kProcessSubject, "none of Lookout's processes can be heard: the bus cannot be opened", "the route line above"}};
+    return {Fault(kProcessSubject, "none of Lookout's processes can be heard: the bus cannot be opened", "the route line above")};
   }
   if (seen.processes.empty()) {
-    return {{Grade::kWarning, kProcessSubject,
-             "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor looked at the sensors itself",
-             "start them, then ask again: what goes over the bus and into the log is seen only then"}};
+    return {Warning(kProcessSubject, "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor looked at the sensors itself",
+                    "start them, then ask again: what goes over the bus and into the log is seen only then")};
   }
   std::set<std::string> names;
   for (const auto& service : bus::kServices) names.emplace(service.name);
@@ -148,23 +144,22 @@ Findings JudgeProcesses(const Observations& seen) {
       continue;
     }
     for (const auto* process : alive) {
-      findings.push_back(JudgeProcess(name, *process));
-      if (name == kAlarmProcess) std::ranges::copy(JudgeGuardZone(process->last), std::back_inserter(findings));
+      findings.push_back(CheckProcess(name, *process));
+      if (name == kAlarmProcess) std::ranges::copy(CheckGuardZone(process->last), std::back_inserter(findings));
     }
     if (alive.size() > 1) {
-      findings.push_back({Grade::kFault, kProcessSubject,
-                          name + " runs " + std::to_string(alive.size()) + " times on one bus: a channel has one publisher",
-                          "end all but one, or give the other boat another LCM address"});
+      findings.push_back(Fault(kProcessSubject, name + " runs " + std::to_string(alive.size()) + " times on one bus: a channel has one publisher",
+                               "end all but one, or give the other boat another LCM address"));
     }
   }
-  for (auto& finding : JudgeObstacles(seen)) findings.push_back(std::move(finding));
+  for (auto& finding : CheckObstacles(seen)) findings.push_back(std::move(finding));
   return findings;
 }
 
-Findings Judge(const Observations& seen) {
+Findings CheckAll(const Observations& seen) {
   Findings all;
-  for (const auto& part : {JudgeConfig(seen.config), JudgeBus(seen.bus), JudgePort(seen), JudgeBuffers(seen.buffers), JudgeLidar(seen),
-                           JudgeClocks(seen), JudgeNavigation(seen), JudgeMounting(seen.config), JudgeDisk(seen.disk), JudgeProcesses(seen)}) {
+  for (const auto& part : {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen),
+                           CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config), CheckDisk(seen.disk), CheckProcesses(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

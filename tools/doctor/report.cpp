@@ -1,11 +1,9 @@
-#include "tools/doctor/report.hpp"
-
 #include <algorithm>
 #include <array>
 #include <sstream>
 
 #include "common/core/printable.hpp"
-#include "tools/doctor/words.hpp"
+#include "tools/doctor/findings.hpp"
 
 namespace lookout::doctor {
 
@@ -56,8 +54,7 @@ std::string ToReport(const Findings& findings, bool has_colours) {
     const auto& style = kStyles.at(grade);
     ++counts.at(grade);
     const auto word = Padded(style.word, kGradeWidth);
-    report +=
-        (has_colours ? style.colour + word + kColourEnd : word) + Padded(finding.subject, kSubjectWidth) + Wrapped(finding.words, indent) + "\n";
+    report += (has_colours ? style.colour + word + kColourEnd : word) + Padded(finding.subject, kSubjectWidth) + Wrapped(finding.text, indent) + "\n";
     if (!finding.cure.empty()) report += indent + kArrow + Wrapped(finding.cure, indent + std::string(3, ' ')) + "\n";
   }
   const auto num_faults = counts[static_cast<std::size_t>(Grade::kFault)];

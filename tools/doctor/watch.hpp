@@ -2,18 +2,49 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <string_view>
 
+#include "common/bus/bus.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/lidar_packets_t.hpp"
 #include "tools/doctor/observations.hpp"
 
 namespace lookout::doctor {
+
+/// Fills observations from a bus: the live one, or the one inside the doctor on which its own copies of the services publish.
+class Notes {
+ public:
+  /// @param seen   is filled; outlives this
+  /// @param clock  host time
+  Notes(Observations& seen, std::function<Utime()> clock);
+
+  /// Subscribes what the lidar and the navigation say.
+  void ListenTo(bus::Bus& bus, Via via);
+
+  /// Subscribes what only a live bus has: HEALTH, OBSTACLES, and the size of all.
+  void ListenToProcesses(bus::Bus& bus);
+
+  /// As a recorder would have written it.
+  std::int64_t num_log_bytes() const { return num_log_bytes_; }
+
+ private:
+  void OnPackets(const lidar_packets_t& message, Via via);
+  void OnFix(const gnss_fix_t& message);
+  void OnHealth(const health_t& message);
+
+  Observations& seen_;
+  std::function<Utime()> clock_;
+  std::int64_t num_log_bytes_ = 0;
+};
 
 /// Fills lidar, navigation, processes, obstacles, the rate of the disk, end and watched_s of `seen`. Sends nothing on the bus.
 ///
 /// @param seen  config and bus are read already
 void Watch(Observations& seen, std::chrono::milliseconds duration);
 
-/// A port that could not be opened is no fault where the process that reads it has been heard after all, its first HEALTH late on a busy computer:
-/// takes the faults of its ports from `seen`, which then speaks of the process.
+/// A port that could not be opened is no fault where the process that reads it was heard after all (on a busy computer its first HEALTH is late):
+/// removes the faults of its ports from `seen`.
 void ForgivePortsOfProcesses(Observations& seen);
 
 }  // namespace lookout::doctor

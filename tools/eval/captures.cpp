@@ -266,7 +266,7 @@ CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const
   params.time = vlp16::TimeChoice::kSensor;
   vlp16::Decoder decoder(
       params,
-      [&](const vlp16::Turn& turn) {
+      [&](const vlp16::Scan& turn) {
         io::ThrowIfStopAsked();
         if (turn.is_partial_start || turn.is_partial_end) return;
         labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);

@@ -1,24 +1,25 @@
 #include "tools/eval/comparison_command.hpp"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
 #include <iterator>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 #include <utility>
-#include <variant>
 
 #include "common/bus/channels.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/messages/checks.hpp"
 #include "common/runtime/options.hpp"
-#include "services/segmenter/core/turn_gatherer.hpp"
+#include "common/runtime/progress.hpp"
 #include "services/segmenter/wire.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/eval/figures.hpp"
@@ -28,7 +29,6 @@
 #include "tools/eval/projection.hpp"
 #include "tools/eval/report_html.hpp"
 #include "tools/eval/result_tables.hpp"
-#include "tools/eval/seeds.hpp"
 #include "tools/eval/sweep.hpp"
 #include "tools/import/kitti.hpp"
 #include "tools/import/organise.hpp"
@@ -52,7 +52,8 @@ std::string Computer() {
 }
 
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
-  RunPlan plan{{}, options.first_seed.value_or(DefaultFirstSeed(use)), options.num_seeds, options.seconds};
+  const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
+  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
     if (scene != "all") {
       plan.scenes.push_back(scene);
@@ -79,56 +80,52 @@ importer::PointCloud ReadPoints(const std::filesystem::path& file) {
 
 // As it would come over the bus, in LIDAR_SCAN: a scan that the segmenter would refuse is not scored.
 segmenter::Scan ThroughMessages(const segmenter::Scan& scan, const std::string& file) {
-  segmenter::TurnGatherer gatherer;
-  for (const auto& message : importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes)) {
-    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
-    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::runtime_error(file + ": the segmenter refuses this scan");
-    auto whole = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)));
-    if (whole && whole->num_cells() == scan.num_cells()) return std::move(*whole);
+  const auto parts = importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes);
+  for (const auto& part : parts) {
+    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::runtime_error(file + ": the segmenter refuses this scan");
   }
-  throw std::runtime_error(file + ": the scan is not whole");
+  auto whole = segmenter::ToScan(parts);
+  if (!whole || whole->num_cells() != scan.num_cells()) throw std::runtime_error(file + ": the scan is not whole");
+  return std::move(*whole);
 }
 
-void AddPoints(const std::vector<std::string>& files, Progress& progress, MethodComparison& comparison) {
+void AddPoints(const std::vector<std::string>& files, MethodComparison& comparison) {
   int index = 0;
   for (const auto& file : files) {
     const auto cloud = ReadPoints(file);
     auto organised = importer::Organise(cloud, {});
     organised.labelled.scan = ThroughMessages(organised.labelled.scan, file);
     comparison.Add({kPointsLabel, 0, index++}, organised.labelled);
-    std::cerr << file << ": " << cloud.points.size() << " points, " << organised.labelled.scan.head.num_rings() << " rings"
-              << (organised.are_rings_found ? "" : " (bands of equal height)") << ", " << organised.num_moved << " moved, " << organised.num_hidden
-              << " hidden, " << organised.num_out_of_range << " out of range"
-              << (!cloud.has_labels ? "; no labels: every segment counts as false" : "")
-              << (cloud.are_classes_objects ? "; no label has an instance: each class is an object" : "") << '\n';
-    progress.Step(file);
+    std::cerr << fmt::format("{}: {} points, {} rings{}, {} moved, {} hidden, {} out of range{}{}\n", file, cloud.points.size(),
+                             organised.labelled.scan.head.num_rings(), organised.are_rings_found ? "" : " (bands of equal height)",
+                             organised.num_moved, organised.num_hidden, organised.num_out_of_range,
+                             cloud.has_labels ? "" : "; no labels: every segment counts as false",
+                             cloud.are_classes_objects ? "; no label has an instance: each class is an object" : "");
   }
 }
 
-void RunMethods(const RunPlan& plan, const std::vector<std::string>& points, const Boat& boat, const Methods& methods, Results& results) {
-  MethodComparison comparison(methods);
-  ProjectionTable projections(boat.segmenter);
-  Progress progress(&std::cerr, static_cast<std::int64_t>(plan.scenes.size()) * plan.num_seeds + static_cast<std::int64_t>(points.size()));
-  ForEachScan(plan, boat, progress, [&](const ScanPlace& place, const LabelledScan& truth) {
+// What becomes of the scans of one world: scores, and for a scan of each seed (the others look much like it) what the paper's image keeps.
+class World {
+ public:
+  World(const segmenter::Params& boat, const Methods& methods) : comparison(methods), projections(boat) {}
+
+  void Add(const ScanPlace& place, const LabelledScan& truth) {
     comparison.Add(place, truth);
-    // A turn of each seed is enough: the others of the seed look much like it.
     if (place.index == 0) projections.Add(truth);
-  });
-  AddPoints(points, progress, comparison);
-  results.methods = comparison.results();
-  results.projections = projections.Rows();
-}
+  }
+  void Finish(Results& results) const {
+    results.methods = comparison.results();
+    results.projections = projections.Rows();
+  }
+
+  MethodComparison comparison;
+  ProjectionTable projections;
+};
 
 void Describe(const ComparisonOptions& options, Results& results) {
   results.command = options.command;
   results.version = runtime::Version();
   results.computer = Computer();
-}
-
-std::string NoteOn(const CaptureWithTruth& files, const CaptureReport& report) {
-  return files.scene + ", seed " + std::to_string(files.seed) + ": " + std::to_string(report.num_scans) + " scans, " +
-         std::to_string(report.num_returns) + " returns, of these " + std::to_string(report.num_own_vessel) + " of the own vessel (left out), " +
-         std::to_string(report.num_clutter) + " clutter, " + std::to_string(report.num_unmatched) + " without truth (taken for clutter)";
 }
 
 Results RunCaptures(const ComparisonOptions& options) {
@@ -144,39 +141,45 @@ Results RunCaptures(const ComparisonOptions& options) {
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
   const auto methods = MakeMethods(boat.segmenter, options.methods);
-  MethodComparison comparison(methods);
-  ProjectionTable projections(boat.segmenter);
-  Progress progress(&std::cerr, static_cast<std::int64_t>(captures.size()));
+  World world(boat.segmenter, methods);
+  runtime::Progress progress("lookout-eval", stderr);
   for (const auto& files : captures) {
     if (results.scenes.empty() || results.scenes.back() != files.scene) results.scenes.push_back(files.scene);
     ScanPlace place{files.scene, files.seed, 0};
+    const auto name = fmt::format("{}, seed {}", files.scene, files.seed);
     const auto report = ReadCapture(files, boat, [&](const LabelledScan& truth) {
-      comparison.Add(place, truth);
-      if (place.index == 0) projections.Add(truth);
+      world.Add(place, truth);
       ++place.index;
+      progress.Update(static_cast<double>(results.notes.size()) / static_cast<double>(captures.size()),
+                      [&] { return fmt::format("{}: {}", kSecondWorld, name); });
     });
-    results.notes.push_back(NoteOn(files, report));
-    progress.Step(std::string(kSecondWorld) + ": " + files.scene + ", seed " + std::to_string(files.seed));
+    results.notes.push_back(
+        fmt::format("{}: {} scans, {} returns, of these {} of the own vessel (left out), {} clutter, {} without truth (taken for clutter)", name,
+                    report.num_scans, report.num_returns, report.num_own_vessel, report.num_clutter, report.num_unmatched));
   }
-  results.methods = comparison.results();
-  results.projections = projections.Rows();
+  world.Finish(results);
   return results;
 }
 
-// Of UTC.
-std::string Today() {
-  const std::chrono::year_month_day today(std::chrono::floor<std::chrono::days>(std::chrono::system_clock::now()));
-  std::ostringstream text;
-  text << static_cast<int>(today.year()) << '-' << std::setfill('0') << std::setw(2) << static_cast<unsigned>(today.month()) << '-' << std::setw(2)
-       << static_cast<unsigned>(today.day());
-  return text.str();
-}
-
 // Said before a run of minutes, not after it.
-void RefuseIfThere(const std::filesystem::path& folder, bool is_forced) {
-  if (is_forced || folder.empty() || !std::filesystem::exists(folder)) return;
+void RefuseIfThere(const std::filesystem::path& folder) {
+  if (folder.empty() || !std::filesystem::exists(folder)) return;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() == ".csv") throw std::runtime_error(entry.path().string() + ": is there already; --force replaces it");
+  }
+}
+
+void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures) {
+  for (const auto& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+    const auto filled = FillBlocks(text, figures, file.string());
+    if (filled == text) continue;
+    io::OutputFile out(file, {.force = true});
+    out.Write(filled);
+    out.Commit();
+    std::cerr << file.string() << ": figures filled in\n";
   }
 }
 
@@ -188,10 +191,10 @@ int CompareMethods(const ComparisonOptions& options) {
   const auto plan = PlanOf(options, use);
   const auto sweep_plan = PlanOf(options, SeedUse::kTuning);
   const bool has_scenes = !options.methods.empty() && !options.scenes.empty();
-  if (has_scenes || !options.tests.empty()) CheckSeeds(use, plan.first_seed, plan.num_seeds);
-  if (!options.sweeps.empty()) CheckSeeds(SeedUse::kTuning, sweep_plan.first_seed, sweep_plan.num_seeds);
-  if (options.is_tuning && !(options.csv_folder.empty() && options.html_file.empty() && options.figures_folder.empty())) {
-    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv, --html and --figures");
+  if (has_scenes || !options.tests.empty()) plan.CheckSeeds(use);
+  if (!options.sweeps.empty()) sweep_plan.CheckSeeds(SeedUse::kTuning);
+  if (options.is_tuning && !(options.csv_folder.empty() && options.html_file.empty() && options.block_files.empty())) {
+    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv, --html and --blocks");
   }
   std::vector<Sweep> sweeps;
   for (const auto& text : options.sweeps) {
@@ -202,8 +205,8 @@ int CompareMethods(const ComparisonOptions& options) {
   const auto methods = MakeMethods(boat.segmenter, options.methods);
 
   io::CatchStopSignals();
-  RefuseIfThere(options.csv_folder, options.is_forced);
-  RefuseIfThere(options.figures_folder, options.is_forced);
+  if (!options.is_forced) RefuseIfThere(options.csv_folder);
+  FillBlocksOf(options.block_files, {});  // a block that is wrong stops the run before it begins
   std::optional<io::OutputFile> page;
   if (!options.html_file.empty()) page.emplace(options.html_file, io::OutputOptions{.force = options.is_forced});
 
@@ -215,7 +218,12 @@ int CompareMethods(const ComparisonOptions& options) {
   results.seconds = plan.seconds;
   for (const auto& scene : plan.scenes) results.scenes.push_back(SceneLabel(scene));
   if (!options.points.empty()) results.scenes.push_back(kPointsLabel);
-  if (!methods.empty()) RunMethods(plan, options.points, boat, methods, results);
+  if (!methods.empty()) {
+    World world(boat.segmenter, methods);
+    ForEachScan(plan, boat, stderr, [&world](const ScanPlace& place, const LabelledScan& truth) { world.Add(place, truth); });
+    AddPoints(options.points, world.comparison);
+    world.Finish(results);
+  }
   if (!options.captures.empty()) {
     auto captures = RunCaptures(options);
     if (results.scenes.empty() && !captures.is_here) throw std::runtime_error(options.captures.string() + ": is not here");
@@ -226,8 +234,8 @@ int CompareMethods(const ComparisonOptions& options) {
       results.other_worlds.push_back(std::move(captures));
     }
   }
-  for (const int test : options.tests) results.curves.push_back(RunPaperTest(test, plan, boat, &std::cerr));
-  for (const auto& sweep : sweeps) results.curves.push_back(RunSweep(sweep, sweep_plan, boat, &std::cerr));
+  for (const int test : options.tests) results.curves.push_back(RunPaperTest(test, plan, boat, stderr));
+  for (const auto& sweep : sweeps) results.curves.push_back(RunSweep(sweep, sweep_plan, boat, stderr));
 
   PrintTables(results, std::cout);
   if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder, options.is_forced);
@@ -235,22 +243,8 @@ int CompareMethods(const ComparisonOptions& options) {
     WriteHtml(results, page->stream());
     page->Commit();
   }
-  if (!options.figures_folder.empty()) WriteFigures(FiguresOf(results, Today()), options.figures_folder, options.is_forced);
-  return FillBlocksOfFiles(options);
-}
-
-int FillBlocksOfFiles(const ComparisonOptions& options) {
-  for (const auto& file : options.block_files) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
-    const auto filled = FillBlocks(text, options.figures_folder, file.string());
-    if (filled == text) continue;
-    io::OutputFile out(file, {.force = true});
-    out.Write(filled);
-    out.Commit();
-    std::cerr << file.string() << ": figures filled in\n";
-  }
+  const auto today = fmt::format("{:%F}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(results, today));
   return EXIT_SUCCESS;
 }
 

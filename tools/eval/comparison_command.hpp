@@ -13,10 +13,10 @@ struct ComparisonOptions {
   std::string command;  // for the report
   std::filesystem::path config_folder;
   std::vector<std::string> scenes;  // "all", names or files
-  std::vector<std::string> points;  // turns out of files: .pcd, or .bin with a .label beside it or without
+  std::vector<std::string> points;  // scans out of files: .pcd, or .bin with a .label beside it or without
   /// A folder of captures with truth (ListCaptures); where it does not exist, the tables say so. Empty = none.
   std::filesystem::path captures;
-  std::optional<std::uint64_t> first_seed;  // nullopt: the first of the range, DefaultFirstSeed
+  std::optional<std::uint64_t> first_seed;  // nullopt: the first of the range (run_plan.hpp)
   int num_seeds = 20;
   bool is_tuning = false;  // methods are shown on seeds of tuning, and no file is written
   double seconds = 2.0;
@@ -25,19 +25,14 @@ struct ComparisonOptions {
   std::vector<int> tests;            // RunPaperTest
   std::filesystem::path csv_folder;  // empty = none, and so below
   std::filesystem::path html_file;
-  std::filesystem::path figures_folder;            // WriteFigures
-  std::vector<std::filesystem::path> block_files;  // whose marked blocks are written anew from figures_folder
+  std::vector<std::filesystem::path> block_files;  // in whose marked blocks the figures are written (FillBlocks)
   bool is_forced = false;                          // files that are there are replaced
 };
 
 /// Prints tables to stdout and progress to stderr, and writes the files that are asked for. @return exit code
-/// Methods and tests of the paper take seeds of tables, sweeps those of tuning; the other range is refused (seeds.hpp).
+/// Methods and tests of the paper take seeds of tables, sweeps those of tuning; the other range is refused (run_plan.hpp).
 ///
 /// @throws config::ConfigError, std::invalid_argument for a wrong line; std::runtime_error when a file cannot be read or written
 int CompareMethods(const ComparisonOptions& options);
-
-/// Fills the marked blocks of options.block_files from options.figures_folder (FillBlocks): nothing else is looked at. @return exit code
-/// @throws std::runtime_error
-int FillBlocksOfFiles(const ComparisonOptions& options);
 
 }  // namespace lookout::eval

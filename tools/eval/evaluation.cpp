@@ -11,7 +11,7 @@ namespace lookout::eval {
 namespace {
 
 // Of a segment in the parts of SEGMENTS, and the time that its hull counts from.
-const segment_t* FindSegment(const Turn& turn, int id) {
+const segment_t* FindSegment(const messages::ScanMessages& turn, int id) {
   for (const auto& [part_index, message] : turn.segments) {
     const auto found = std::ranges::find(message.segments, id, &segment_t::id);
     if (found != message.segments.end()) return &*found;
@@ -32,9 +32,9 @@ void Errors::Add(const Errors& other) {
 
 Evaluation::Evaluation(const Truth* truth, int min_num_returns) : truth_(truth), min_num_returns_(min_num_returns) {}
 
-void Evaluation::Add(const Turn& turn) {
+void Evaluation::Add(const messages::ScanMessages& turn) {
   ++num_scans;
-  const bool is_whole = turn.IsWhole();
+  const bool is_whole = !messages::IsCut(turn.obstacles.begin()->second.scan_flags);
   if (is_whole) ++num_whole_scans;
   std::vector<ObstacleRow> turn_rows;
   for (const auto& [part_index, message] : turn.obstacles) {
@@ -59,7 +59,7 @@ void Evaluation::Add(const Turn& turn) {
 }
 
 // By label, then time.
-std::vector<Evaluation::JoinedReturn> Evaluation::Join(const Turn& turn) {
+std::vector<Evaluation::JoinedReturn> Evaluation::Join(const messages::ScanMessages& turn) {
   std::vector<JoinedReturn> returns;
   for (const auto& [part_index, scan] : turn.scans) {
     const auto found = turn.segments.find(part_index);
@@ -83,7 +83,7 @@ std::vector<Evaluation::JoinedReturn> Evaluation::Join(const Turn& turn) {
   return returns;
 }
 
-void Evaluation::Score(const Turn& turn, const Confusion& confusion) {
+void Evaluation::Score(const messages::ScanMessages& turn, const Confusion& confusion) {
   const auto scores = confusion.Scores();
   Summary ious;
   for (const auto& score : scores) {
@@ -117,7 +117,7 @@ const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
   return *outlines_;
 }
 
-void Evaluation::Measure(const Turn& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+void Evaluation::Measure(const messages::ScanMessages& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
                          std::vector<ObstacleRow>& turn_rows) {
   std::size_t row_index = 0;
   for (const auto& [part_index, message] : turn.obstacles) {

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "common/messages/scan_collector.hpp"
 #include "lookout/pose_t.hpp"
 #include "tools/eval/metrics.hpp"
 #include "tools/eval/seen_footprint.hpp"
 #include "tools/eval/truth.hpp"
-#include "tools/eval/turn_collector.hpp"
 
 namespace lookout::eval {
 
@@ -50,7 +50,7 @@ class Evaluation {
   /// Where the lidar is on the boat. Without it, or without truth, `seen` stays empty.
   void SetMounting(const Eigen::Isometry3d& T_vessel_lidar) { T_vessel_lidar_ = T_vessel_lidar; }
 
-  void Add(const Turn& turn);
+  void Add(const messages::ScanMessages& turn);
   void Add(const pose_t& pose);
 
   std::int64_t num_scans = 0;
@@ -80,9 +80,10 @@ class Evaluation {
     Eigen::Vector3f p_lidar_m;  // true
   };
 
-  std::vector<JoinedReturn> Join(const Turn& turn);
-  void Score(const Turn& turn, const Confusion& confusion);
-  void Measure(const Turn& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns, std::vector<ObstacleRow>& turn_rows);
+  std::vector<JoinedReturn> Join(const messages::ScanMessages& turn);
+  void Score(const messages::ScanMessages& turn, const Confusion& confusion);
+  void Measure(const messages::ScanMessages& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+               std::vector<ObstacleRow>& turn_rows);
   void MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
                        ObstacleRow& row);
   void MeasureSeen(const obstacles_t& message, const std::vector<JoinedReturn>& returns, int object_id, const obstacle_t& obstacle);

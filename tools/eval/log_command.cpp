@@ -4,16 +4,20 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
 #include "tools/eval/report.hpp"
-#include "tools/export/bearings.hpp"
+#include "tools/export/boat_of_log.hpp"
 
 namespace lookout::eval {
 namespace {
+
+// A scan waits for its obstacles for some seconds of scans at most.
+constexpr std::size_t kMaxWaiting = 256;
 
 // Decodes and hands on. @return whether the message could be used
 template <typename Message, typename Taker>
@@ -38,10 +42,19 @@ int EvaluateLog(const LogOptions& options) {
   Evaluation evaluation(truth.get(), options.min_num_returns);
   if (!options.true_boat_folder.empty()) evaluation.SetMounting(config::LoadBoat(options.true_boat_folder).T_vessel_lidar);
   Machine machine;
-  TurnCollector collector([&evaluation](const Turn& turn) { evaluation.Add(turn); });
+  std::int64_t num_incomplete = 0;
+  messages::ScanCollector collector([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
+                                    messages::ScanCollector::Order::kOfCompletion, kMaxWaiting,
+                                    [&](const messages::ScanMessages& scan) {
+                                      if (messages::HasAllParts(scan.obstacles)) {
+                                        evaluation.Add(scan);
+                                      } else if (!scan.obstacles.empty()) {
+                                        ++num_incomplete;
+                                      }
+                                    });
 
   bus::LogReader reader(options.log_file);
-  exporter::Bearings bearings;
+  std::optional<exporter::BoatOfLog> boat;
   std::int64_t num_unusable = 0;
   while (const auto event = reader.Next()) {
     bool is_taken = true;
@@ -52,8 +65,8 @@ int EvaluateLog(const LogOptions& options) {
     } else if (event->channel == bus::kHealth.name) {
       is_taken = Take<health_t>(*event, machine);
     } else if (truth && event->channel == bus::kRunInfo.name) {
-      is_taken = bearings.TakeRunInfo(event->bytes) == exporter::Taken::kOk;
-      if (bearings.boat() && options.true_boat_folder.empty()) evaluation.SetMounting(bearings.boat()->T_vessel_lidar);
+      is_taken = exporter::TakeRunInfo(event->bytes, boat) == exporter::Taken::kOk;
+      if (boat && options.true_boat_folder.empty()) evaluation.SetMounting(boat->T_vessel_lidar);
     } else if (truth && event->channel == bus::kLidarScan.name) {
       is_taken = Take<lidar_scan_t>(*event, collector);
     } else if (truth && event->channel == bus::kSegments.name) {
@@ -63,6 +76,7 @@ int EvaluateLog(const LogOptions& options) {
     }
     if (!is_taken) ++num_unusable;
   }
+  collector.Finish();
   if (evaluation.num_scans == 0) {
     std::cerr << options.log_file << ": no turn of OBSTACLES\n";
     return EXIT_FAILURE;
@@ -76,7 +90,7 @@ int EvaluateLog(const LogOptions& options) {
   }
   PrintMachine(std::cout, machine);
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
-  if (collector.num_incomplete() > 0) std::cout << collector.num_incomplete() << " turns lack a part of OBSTACLES\n";
+  if (num_incomplete > 0) std::cout << num_incomplete << " turns lack a part of OBSTACLES\n";
   if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
   return EXIT_SUCCESS;
 }

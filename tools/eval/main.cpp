@@ -35,11 +35,6 @@ Options ParseOptions(int argc, char** argv) {
   auto& log = options.log;
   auto& comparison = options.comparison;
   comparison.command = CommandLine(argc, argv);
-  std::string config_folder;
-  std::string csv_folder;
-  std::string html_file;
-  std::string figures_folder;
-  std::vector<std::string> block_files;
   CLI::App app(
       "Holds a log against the truth of lookout-sim (--in), or compares methods of segmentation on simulated scenes (--config with --scenes, "
       "--captures, --sweep, --test or --points).",
@@ -55,7 +50,8 @@ Options ParseOptions(int argc, char** argv) {
       ->needs(in)
       ->capture_default_str();
 
-  auto* config = app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
+  auto* config =
+      app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
   const auto needs_config = [config](CLI::Option* option) { return option->needs(config); };
   needs_config(app.add_option("--scenes", comparison.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
   needs_config(app.add_option("--points", comparison.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))
@@ -71,17 +67,16 @@ Options ParseOptions(int argc, char** argv) {
       ->delimiter(',');
   needs_config(app.add_option("--sweep", comparison.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
   needs_config(app.add_option("--test", comparison.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
-  needs_config(app.add_option("--csv", csv_folder, "write each table as a CSV file to this folder"));
-  needs_config(app.add_option("--html", html_file, "write the report as one page"));
-  auto* figures = app.add_option("--figures", figures_folder, "folder of the figures of README files: written with --config, read for --blocks");
-  app.add_option("--blocks", block_files, "README files whose marked blocks are filled from --figures")->check(CLI::ExistingFile)->needs(figures);
+  needs_config(app.add_option("--csv", comparison.csv_folder, "write each table as a CSV file to this folder"));
+  needs_config(app.add_option("--html", comparison.html_file, "write the report as one page"));
+  needs_config(app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written"))
+      ->check(CLI::ExistingFile);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
-    if (log.log_file.empty() && config_folder.empty() && block_files.empty())
-      throw CLI::RequiredError("one of --in LOG, --config DIR, --blocks FILE");
-    if (!config_folder.empty()) {
+    if (log.log_file.empty() && comparison.config_folder.empty()) throw CLI::RequiredError("one of --in LOG, --config DIR");
+    if (!comparison.config_folder.empty()) {
       const bool has_turns = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
       if (!has_turns && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
       if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
@@ -93,11 +88,6 @@ Options ParseOptions(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
-  comparison.config_folder = config_folder;
-  comparison.csv_folder = csv_folder;
-  comparison.html_file = html_file;
-  comparison.figures_folder = figures_folder;
-  comparison.block_files.assign(block_files.begin(), block_files.end());
   return options;
 }
 
@@ -105,8 +95,7 @@ Options ParseOptions(int argc, char** argv) {
 
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
-  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
-  return options.comparison.config_folder.empty() ? eval::FillBlocksOfFiles(options.comparison) : eval::CompareMethods(options.comparison);
+  return options.log.log_file.empty() ? eval::CompareMethods(options.comparison) : eval::EvaluateLog(options.log);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;

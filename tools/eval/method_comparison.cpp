@@ -1,12 +1,10 @@
 #include "tools/eval/method_comparison.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <chrono>
 #include <utility>
 
-#include "common/io/stop_signal.hpp"
 #include "tools/eval/scoring.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -61,31 +59,6 @@ void MethodComparison::KeepIfBad(MethodResult& result, const ScanPlace& place, d
   }
   const auto at = std::ranges::upper_bound(worst, iou, {}, &WorstScan::iou);
   worst.insert(at, {place.scene, place.seed, place.index, iou, truth, std::move(label)});
-}
-
-std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
-
-void ForEachScan(const RunPlan& plan, const Boat& boat, Progress& progress,
-                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_turn) {
-  std::vector<std::filesystem::path> files;
-  for (const auto& scene : plan.scenes) {
-    files.push_back(sim::FindScene(scene, boat.config_folder));
-    sim::LoadScene(files.back(), plan.first_seed);
-  }
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    ScanPlace place{SceneLabel(plan.scenes[i]), 0, 0};
-    for (int k = 0; k < plan.num_seeds; ++k) {
-      place.seed = plan.first_seed + static_cast<std::uint64_t>(k);
-      place.index = 0;
-      const auto scene = sim::LoadScene(files[i], place.seed);
-      RenderScans(scene, boat, place.seed, plan.seconds, [&](const LabelledScan& truth) {
-        io::ThrowIfStopAsked();
-        on_turn(place, truth);
-        ++place.index;
-      });
-      progress.Step(place.scene + ", seed " + std::to_string(place.seed));
-    }
-  }
 }
 
 }  // namespace lookout::eval

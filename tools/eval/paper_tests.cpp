@@ -96,10 +96,10 @@ std::string FoundFrom(const Summary& own_from_m, int num_never) {
   return text + ")";
 }
 
-Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
+Curve RunTest1(RunPlan plan, const Boat& boat, std::FILE* progress) {
   plan.scenes = {"kayak_shore"};
   plan.seconds = kTest1Seconds;
-  if (progress_out != nullptr) *progress_out << "Test 1 takes " << Number(kTest1Seconds, 0) << " s of each seed, whatever --seconds says\n";
+  if (progress != nullptr) std::fprintf(progress, "Test 1 takes %.0f s of each seed, whatever --seconds says\n", kTest1Seconds);
   struct Variant {
     std::unique_ptr<SegmenterMethod> method;
     std::map<std::uint64_t, std::vector<ShoreGap>> gaps_by_seed{};
@@ -114,7 +114,6 @@ Curve RunTest1(RunPlan plan, const Boat& boat, std::ostream* progress_out) {
     add("paper, e1 = " + Number(e1, 2), params);
   }
   add("ours", boat.segmenter);
-  Progress progress(progress_out, plan.num_seeds);
   ForEachScan(plan, boat, progress, [&](const ScanPlace& place, const LabelledScan& truth) {
     const auto kayak = FindKayak(truth, boat.segmenter.filter);
     if (!kayak) return;
@@ -179,11 +178,10 @@ std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*cou
   return first_cut == parts.begin() ? "at no value" : "up to " + ThresholdText(test, std::prev(first_cut)->value);
 }
 
-Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, const Boat& boat, std::ostream* progress_out) {
+Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, const Boat& boat, std::FILE* progress) {
   std::vector<PartsAt> parts;
   for (const double value : test.values) parts.push_back({value});
   int num_scans = 0;
-  Progress progress(progress_out, plan.num_seeds);
   ForEachScan(plan, boat, progress, [&](const ScanPlace&, const LabelledScan& truth) {
     const auto object = TheObject(truth, test.kind);
     if (std::ranges::find(truth.object, object) == truth.object.end()) return;
@@ -259,7 +257,7 @@ ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labell
   return parts;
 }
 
-Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::ostream* progress) {
+Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progress) {
   if (number == 1) return RunTest1(std::move(plan), boat, progress);
   const segmenter::ClusteringParams in_print;  // the defaults are the paper's
   if (number == 2) {

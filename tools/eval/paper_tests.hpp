@@ -6,9 +6,8 @@
 #include <vector>
 
 #include "tools/eval/method.hpp"
-#include "tools/eval/method_comparison.hpp"
-#include "tools/eval/render.hpp"
 #include "tools/eval/results.hpp"
+#include "tools/eval/run_plan.hpp"
 
 namespace lookout::eval {
 
@@ -22,7 +21,7 @@ namespace lookout::eval {
 /// @param number   1, 2 or 3
 /// @param plan     seeds and, for Tests 2 and 3, seconds; its scenes are not looked at. Test 1 takes the 40 s that its kayak needs
 /// @throws config::ConfigError as ForEachScan; std::runtime_error when the scene of a test does not hold one kayak, shore or motor boat
-Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::ostream* progress);
+Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progress);
 
 /// Of Tests 2 and 3: into how much an object was cut.
 struct ObjectParts {

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <deque>
 #include <stdexcept>
-#include <variant>
 
 #include "common/bus/channels.hpp"
-#include "services/segmenter/core/turn_gatherer.hpp"
+#include "common/messages/checks.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/wire.hpp"
 #include "services/vlp16/core/decoder.hpp"
@@ -63,14 +62,14 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
   return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
-segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets) {
-  segmenter::TurnGatherer gatherer;
-  for (const auto& message : vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes)) {
-    auto part = segmenter::ToScanPart(message, bus::kMaxMessageBytes);
-    if (!std::holds_alternative<segmenter::ScanPart>(part)) throw std::logic_error("the segmenter refuses a scan of the decoder");
-    if (auto scan = gatherer.Add(std::get<segmenter::ScanPart>(std::move(part)))) return std::move(*scan);
+segmenter::Scan ScanOfTurn(const vlp16::Scan& turn, bool use_vertical_origin_offsets) {
+  const auto parts = vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes);
+  for (const auto& part : parts) {
+    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::logic_error("the segmenter refuses a scan of the decoder");
   }
-  throw std::logic_error("a scan of the decoder is not complete");
+  auto scan = segmenter::ToScan(parts);
+  if (!scan) throw std::logic_error("a scan of the decoder is not complete");
+  return std::move(*scan);
 }
 
 void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
@@ -80,7 +79,7 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
   std::deque<Truth> truths;
   vlp16::Decoder decoder(
       boat.lidar.decoder,
-      [&](const vlp16::Turn& turn) {
+      [&](const vlp16::Scan& turn) {
         labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
         labelled.object = TakeObjects(labelled.scan, truths);
         if (!turn.is_partial_start && !turn.is_partial_end) on_scan(labelled);

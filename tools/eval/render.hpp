@@ -7,7 +7,7 @@
 
 #include "common/config/boat.hpp"
 #include "services/segmenter/core/segmenter.hpp"
-#include "services/vlp16/core/turn.hpp"
+#include "services/vlp16/core/scan.hpp"
 #include "services/vlp16/params.hpp"
 #include "tools/eval/method.hpp"
 #include "tools/sim/scene.hpp"
@@ -26,7 +26,7 @@ struct Boat {
 Boat LoadBoat(const std::filesystem::path& config_folder);
 
 /// The way of the messages, without a bus: what the segmenter gets of this turn. @throws std::logic_error when it would refuse it
-segmenter::Scan ScanOfTurn(const vlp16::Turn& turn, bool use_vertical_origin_offsets);
+segmenter::Scan ScanOfTurn(const vlp16::Scan& turn, bool use_vertical_origin_offsets);
 
 using ScanHandler = std::function<void(const LabelledScan&)>;
 

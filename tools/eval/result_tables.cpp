@@ -1,5 +1,7 @@
 #include "tools/eval/result_tables.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <limits>
@@ -25,11 +27,11 @@ Score Total(const MethodResult& method) {
 }
 
 Table ByScene(const Results& results, const Figure& figure, const std::function<std::string(double)>& text) {
-  std::vector<std::string> header{"method", "mean"};
+  Table::Row header{"method", "mean"};
   header.insert(header.end(), results.scenes.begin(), results.scenes.end());
   Table table(header);
   for (const auto& method : results.methods) {
-    std::vector<std::string> row{method.method, text(MeanOverScenes(results, method, figure))};
+    Table::Row row{method.method, text(MeanOverScenes(results, method, figure))};
     for (const auto& scene : results.scenes) {
       const auto found = method.by_scene.find(scene);
       row.push_back(found == method.by_scene.end() ? "-" : text(figure(found->second)));
@@ -39,31 +41,30 @@ Table ByScene(const Results& results, const Figure& figure, const std::function<
   return table;
 }
 
-// Methods in rows, what `column_of` and `cell_of` say of their totals in columns.
-template <typename Key, typename Sums>
-Table ByKey(const Results& results, const Sums& sums_of, const std::function<std::string(const Key&)>& title) {
+// Methods in rows, the keys of a sum of their totals in columns: what has been counted, and of it the share in per cent.
+template <typename Key, typename Sum>
+Table ByKey(const Results& results, std::map<Key, std::pair<std::int64_t, Sum>> Score::*sums, const std::function<std::string(const Key&)>& title) {
   std::set<Key> keys;
   std::vector<Score> totals;
   for (const auto& method : results.methods) {
     totals.push_back(Total(method));
-    for (const auto& [key, sum] : sums_of(totals.back())) keys.insert(key);
+    for (const auto& [key, sum] : totals.back().*sums) keys.insert(key);
   }
-  std::vector<std::string> header{"method"};
+  Table::Row header{"method"};
   for (const auto& key : keys) header.push_back(title(key));
   Table table(header);
-  for (std::size_t i = 0; i < totals.size(); ++i) {
-    std::vector<std::string> row{results.methods[i].method};
+  for (std::size_t i = 0; i < totals.size() && !keys.empty(); ++i) {
+    Table::Row row{results.methods[i].method};
     for (const auto& key : keys) {
-      const auto& sums = sums_of(totals[i]);
-      const auto found = sums.find(key);
-      row.push_back(found == sums.end() ? "-" : Percent(Ratio(static_cast<double>(found->second.second), found->second.first)));
+      const auto& [count, sum] = (totals[i].*sums)[key];
+      row.push_back(Percent(Ratio(static_cast<double>(sum), count)));
     }
-    if (!keys.empty()) table.Add(row);
+    table.Add(row);
   }
   return table;
 }
 
-std::vector<std::string> TimeCells(const std::vector<double>& time_ms) {
+Table::Row TimeCells(const std::vector<double>& time_ms) {
   if (time_ms.empty()) return {"-", "-"};
   Summary summary;
   for (const double value : time_ms) summary.Add(value);
@@ -74,15 +75,15 @@ Table Overall(const Results& results) {
   Table table({"method", "mIoU_%", "water_%", "false", "with_segment_%", "segments", "over_%", "under_%", "TPR_%", "median_ms", "p99_ms"});
   for (const auto& method : results.methods) {
     const Score total = Total(method);
-    std::vector<std::string> row{method.method,
-                                 Percent(MeanOverScenes(results, method, MeanIou)),
-                                 Percent(MeanOverScenes(results, method, MeanWaterIou)),
-                                 Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2),
-                                 Percent(MeanOverScenes(results, method, ThingsWithSegment)),
-                                 Number(MeanOverScenes(results, method, SegmentsPerScan), 2),
-                                 Percent(OverSegmentedShare(total)),
-                                 Percent(UnderSegmentedShare(total)),
-                                 Percent(TruePositiveRatio(total))};
+    Table::Row row{method.method,
+                   Percent(MeanOverScenes(results, method, MeanIou)),
+                   Percent(MeanOverScenes(results, method, MeanWaterIou)),
+                   Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2),
+                   Percent(MeanOverScenes(results, method, ThingsWithSegment)),
+                   Number(MeanOverScenes(results, method, SegmentsPerScan), 2),
+                   Percent(OverSegmentedShare(total)),
+                   Percent(UnderSegmentedShare(total)),
+                   Percent(TruePositiveRatio(total))};
     const auto times = TimeCells(total.time_ms);
     row.insert(row.end(), times.begin(), times.end());
     table.Add(row);
@@ -156,58 +157,49 @@ Table Projections(const Results& results) {
 }
 
 Table CurveTable(const Curve& curve) {
-  std::set<double> places;
-  std::vector<std::string> header{curve.x_label};
+  Table::Row header{curve.x_label};
+  std::map<double, Table::Row> rows;
   for (const auto& line : curve.lines) {
+    for (const auto& [x, y] : line.points) {
+      auto& row = rows[x];
+      row.resize(header.size(), "-");
+      row[0] = Number(x, 2);
+      row.push_back(Number(y, 2));
+    }
     header.push_back(line.name);
-    for (const auto& [x, y] : line.points) places.insert(x);
   }
   Table table(header);
-  for (const double place : places) {
-    std::vector<std::string> row{Number(place, 2)};
-    for (const auto& line : curve.lines) {
-      std::string cell = "-";
-      for (const auto& [x, y] : line.points) {
-        if (x == place) cell = Number(y, 2);
-      }
-      row.push_back(cell);
-    }
-    table.Add(row);
+  for (auto& [x, row] : rows) {
+    row.resize(header.size(), "-");
+    table.Add(std::move(row));
   }
   return table;
 }
 
 std::vector<NamedTable> TablesOfWorld(const Results& results) {
   std::vector<NamedTable> tables;
-  const auto add = [&tables](const std::string& name, const std::string& title, Table table) {
-    if (!table.empty()) tables.push_back({name, title, std::move(table)});
+  const auto add = [&tables](const std::string& name, const std::string& title, Table table, bool is_printed = true) {
+    if (!table.empty()) tables.push_back({name, title, std::move(table), is_printed});
   };
-  const auto kind_title = [](const std::string& kind) { return kind; };
-  const auto range_title = [](const int& bin) { return Number(bin * Score::kRangeBinM, 0) + "-" + Number((bin + 1) * Score::kRangeBinM, 0) + "_m"; };
-  const auto add_to_files = [&](const std::string& name, Table table) {
-    if (!table.empty()) tables.push_back({name, "", std::move(table), false});
+  const std::function kind_title = [](const std::string& kind) { return kind; };
+  const std::function range_title = [](const int& bin) {
+    return fmt::format("{:.0f}-{:.0f}_m", bin * Score::kRangeBinM, (bin + 1) * Score::kRangeBinM);
   };
   add("table_1", "Table I: mIoU, %", ByScene(results, MeanIou, Percent));
   add("water", "mIoU over objects in the water alone, %", ByScene(results, MeanWaterIou, Percent));
-  add("false_segments", "false segments a turn", ByScene(results, FalseSegmentsPerScan, [](double value) { return Number(value, 2); }));
+  add("false_segments", "false segments a scan", ByScene(results, FalseSegmentsPerScan, [](double value) { return Number(value, 2); }));
   add("with_segment", "things of 5 returns or more that have a segment: more than half of some segment is theirs, %",
       ByScene(results, ThingsWithSegment, Percent));
-  add("overall", "all scenes (mIoU, water, false, things with a segment, segments: mean over scenes; over, under, TPR, times: over all turns)",
+  add("overall", "all scenes (mIoU, water, false, things with a segment, segments: mean over scenes; over, under, TPR, times: over all scans)",
       Overall(results));
   add("against_peers", "ours against the best peer: 100 - mIoU of ours as a share of the peer's, %", AgainstPeers(results));
-  add("kinds", "mean IoU by kind, all scenes, %",
-      ByKey<std::string>(
-          results, [](const Score& score) -> const auto& { return score.iou_by_kind; }, kind_title));
-  add("recall_by_range", "recall at IoU 0.5 by range of the nearest return, all scenes, %",
-      ByKey<int>(
-          results, [](const Score& score) -> const auto& { return score.recall_by_range; }, range_title));
-  add_to_files("near_recall", NearRecall(results));
-  add("iou_by_range", "mean IoU by range of the nearest return, all scenes, %",
-      ByKey<int>(
-          results, [](const Score& score) -> const auto& { return score.iou_by_range; }, range_title));
-  add("table_2", "Table II: what the paper's image keeps, a turn", Projections(results));
+  add("kinds", "mean IoU by kind, all scenes, %", ByKey(results, &Score::iou_by_kind, kind_title));
+  add("recall_by_range", "recall at IoU 0.5 by range of the nearest return, all scenes, %", ByKey(results, &Score::recall_by_range, range_title));
+  add("near_recall", "", NearRecall(results), false);
+  add("iou_by_range", "mean IoU by range of the nearest return, all scenes, %", ByKey(results, &Score::iou_by_range, range_title));
+  add("table_2", "Table II: what the paper's image keeps, a scan", Projections(results));
   add("table_3", "Table III: time by stage", Stages(results));
-  add("ablation", "Ablation: components before they are clustered, segments, false segments (a turn, mean over scenes), time over all turns",
+  add("ablation", "Ablation: components before they are clustered, segments, false segments (a scan, mean over scenes), time over all scans",
       Ablation(results));
   int number = 0;
   for (const auto& curve : results.curves) {
@@ -216,53 +208,35 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   return tables;
 }
 
-// Columns that name a row; a table that is not here has rows that name scenes, and other worlds go below it.
-const std::map<std::string, std::size_t>& NumKeyColumns() {
-  static const std::map<std::string, std::size_t> kNumKeyColumns{{"near_recall", 0}, {"against_peers", 0}, {"table_3", 2}};
-  return kNumKeyColumns;
+// Columns that name a row; of tables whose rows name scenes, other worlds stand below (0).
+std::size_t NumKeyColumns(const std::string& table) {
+  if (table == "near_recall" || table == "against_peers") return 0;
+  return table == "table_3" ? 2 : 1;
 }
 
-// The table of another world beside ours, row by row.
+// The table of another world beside ours: the cells of the row with the same keys.
 Table Beside(const Table& own, const Table& other, std::size_t num_keys, const std::string& world) {
-  auto header = own.rows().front();
-  for (std::size_t i = num_keys; i < other.rows().front().size(); ++i) header.push_back(world + ": " + other.rows().front()[i]);
-  const std::size_t num_columns = header.size();
-  Table table(std::move(header));
-  const auto is_same = [num_keys](const std::vector<std::string>& one, const std::vector<std::string>& two) {
-    return std::equal(one.begin(), one.begin() + static_cast<std::ptrdiff_t>(num_keys), two.begin());
-  };
+  const auto first = static_cast<std::ptrdiff_t>(num_keys);
+  auto header = own.header();
+  for (std::size_t i = num_keys; i < other.header().size(); ++i) header.push_back(world + ": " + other.header()[i]);
+  Table table(header);
   for (std::size_t i = 1; i < own.rows().size(); ++i) {
     auto row = own.rows()[i];
-    for (std::size_t k = 1; k < other.rows().size(); ++k) {
-      const auto& beside = other.rows()[k];
-      if (is_same(row, beside)) row.insert(row.end(), beside.begin() + static_cast<std::ptrdiff_t>(num_keys), beside.end());
-    }
-    row.resize(num_columns, "-");
+    const auto is_same = [&](const Table::Row& beside) { return std::equal(row.begin(), row.begin() + first, beside.begin()); };
+    const auto beside = std::find_if(other.rows().begin() + 1, other.rows().end(), is_same);
+    if (beside != other.rows().end()) row.insert(row.end(), beside->begin() + first, beside->end());
+    row.resize(header.size(), "-");
     table.Add(std::move(row));
   }
   return table;
 }
 
 // Its rows below ours, the world before the name of the scene.
-Table Below(const Table& own, const Table& other, const std::string& world) {
-  const auto& header = own.rows().front();
-  const auto scene = static_cast<std::size_t>(std::ranges::find(header, "scene") - header.begin());
-  Table table = own;
+Table Below(Table table, const Table& other, const std::string& world) {
+  const auto scene = static_cast<std::size_t>(std::ranges::find(table.header(), "scene") - table.header().begin());
   for (std::size_t i = 1; i < other.rows().size(); ++i) {
     auto row = other.rows()[i];
     row.at(scene) = world + ": " + row.at(scene);
-    table.Add(std::move(row));
-  }
-  return table;
-}
-
-Table WithColumn(const Table& own, const std::string& title, const std::string& cell) {
-  auto header = own.rows().front();
-  header.push_back(title);
-  Table table(std::move(header));
-  for (std::size_t i = 1; i < own.rows().size(); ++i) {
-    auto row = own.rows()[i];
-    row.push_back(cell);
     table.Add(std::move(row));
   }
   return table;
@@ -276,11 +250,10 @@ std::vector<NamedTable> TablesOf(const Results& results) {
     const auto others = TablesOfWorld(world);
     for (auto& table : tables) {
       if (table.name.starts_with("curve_")) continue;  // of scenes of their own
-      const auto known = NumKeyColumns().find(table.name);
-      const std::size_t num_keys = known == NumKeyColumns().end() ? 1 : known->second;
+      const auto num_keys = NumKeyColumns(table.name);
       const auto other = std::ranges::find(others, table.name, &NamedTable::name);
       if (!world.is_here) {
-        table.table = WithColumn(table.table, world.world, "not here");
+        table.table.AddColumn(world.world, "not here");
       } else if (other != others.end()) {
         table.table = num_keys == 0 ? Below(table.table, other->table, world.world) : Beside(table.table, other->table, num_keys, world.world);
       }

@@ -11,6 +11,7 @@
 #include "common/config/text_config.hpp"
 #include "config/schema/segmenter.pb.h"
 #include "services/segmenter/params.hpp"
+#include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/table.hpp"
 
@@ -119,13 +120,12 @@ segmenter::Params ParamsWith(const Boat& boat, const std::string& field, double 
   return segmenter::ToParams(checked, boat.facts, file);
 }
 
-Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::ostream* progress_out) {
+Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::FILE* progress) {
   Methods methods;
   for (const double value : sweep.values) {
     methods.push_back(std::make_unique<SegmenterMethod>(ValueText(value), ParamsWith(boat, sweep.field, value)));
   }
   MethodComparison comparison(methods);
-  Progress progress(progress_out, static_cast<std::int64_t>(plan.scenes.size()) * plan.num_seeds);
   ForEachScan(plan, boat, progress, [&comparison](const ScanPlace& place, const LabelledScan& truth) { comparison.Add(place, truth); });
 
   // The curve is of all segments; results are in the order of the values, with the sure ones of a method that knows doubt between them.

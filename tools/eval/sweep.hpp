@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/eval/method_comparison.hpp"
-#include "tools/eval/render.hpp"
 #include "tools/eval/results.hpp"
+#include "tools/eval/run_plan.hpp"
 
 namespace lookout::eval {
 
@@ -26,7 +25,7 @@ Sweep ParseSweep(const std::string& text);
 segmenter::Params ParamsWith(const Boat& boat, const std::string& field, double value);
 
 /// mIoU in per cent against the field, all else as the boat's config has it: a line for each scene with objects.
-Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::ostream* progress);
+Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::FILE* progress);
 
 /// At most so many values: a step that is too small is a slip of the pen.
 inline constexpr int kMaxSweepValues = 200;

@@ -1,10 +1,9 @@
 #include "tools/eval/table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
 
 #include "common/core/printable.hpp"
 
@@ -37,6 +36,23 @@ void Table::Print(std::ostream& out) const {
   }
 }
 
+void Table::AddColumn(const std::string& heading, const std::string& cell) {
+  for (auto& row : rows_) row.push_back(&row == &rows_.front() ? heading : cell);
+}
+
+Table Table::Select(const std::vector<std::size_t>& columns, const std::function<bool(const std::string&)>& is_wanted) const {
+  const auto cells_of = [&columns](const Row& row) {
+    Row cells;
+    for (const auto column : columns) cells.push_back(row[column]);
+    return cells;
+  };
+  Table result(cells_of(header()));
+  for (std::size_t i = 1; i < rows_.size(); ++i) {
+    if (is_wanted(rows_[i].front())) result.Add(cells_of(rows_[i]));
+  }
+  return result;
+}
+
 void Table::PrintCsv(std::ostream& out) const {
   for (const auto& row : rows_) {
     for (std::size_t column = 0; column < row.size(); ++column) out << (column > 0 ? "," : "") << CsvCell(row[column]);
@@ -44,12 +60,25 @@ void Table::PrintCsv(std::ostream& out) const {
   }
 }
 
-std::string Number(double value, int decimals) {
-  if (!std::isfinite(value)) return "-";
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
-  return text.data();
+std::string Table::ToMarkdown() const {
+  std::string text;
+  for (const auto& row : rows_) {
+    text += '|';
+    for (const auto& cell : row) {
+      text += ' ';
+      for (const char letter : PrintableLines(cell)) text += letter == '|' ? std::string("\\|") : std::string(1, letter);
+      text += " |";
+    }
+    text += '\n';
+    if (&row != &header()) continue;
+    text += '|';
+    for (std::size_t i = 0; i < row.size(); ++i) text += "---|";
+    text += '\n';
+  }
+  return text;
 }
+
+std::string Number(double value, int decimals) { return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-"; }
 
 std::string Number(std::int64_t value) { return std::to_string(value); }
 

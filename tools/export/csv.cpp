@@ -16,12 +16,6 @@ constexpr std::array<double, 10> kPowerOf10{1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7
 // Above it a double holds no fraction.
 constexpr double kLargestExactInteger = 9007199254740992.0;
 
-void AppendInteger(std::int64_t value, std::string& text) {
-  std::array<char, 24> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), end);
-}
-
 void AppendShortest(double value, std::string& text) {
   std::array<char, 400> digits{};  // the longest double without exponent has 1 + 309 digits, or 2 + 324 + 17
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr;
@@ -51,39 +45,33 @@ void AppendScaled(std::int64_t value, int decimals, std::string& text) {
 
 }  // namespace
 
-void CsvWriter::Integer(std::int64_t value) {
-  Separate();
-  AppendInteger(value, text_);
+void AppendCell(std::int64_t value, std::string& text) {
+  std::array<char, 24> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  text.append(digits.data(), end);
 }
 
-void CsvWriter::Fixed(double value, int decimals) {
-  Separate();
-  if (!std::isfinite(value)) return;
-  const double scaled = std::round(value * kPowerOf10[static_cast<std::size_t>(decimals)]);
+void AppendCell(const Fixed& number, std::string& text) {
+  if (!std::isfinite(number.value)) return;
+  const double scaled = std::round(number.value * kPowerOf10[static_cast<std::size_t>(number.decimals)]);
   if (std::abs(scaled) < kLargestExactInteger) {
-    AppendScaled(static_cast<std::int64_t>(scaled), decimals, text_);
+    AppendScaled(static_cast<std::int64_t>(scaled), number.decimals, text);
   } else {
-    AppendShortest(value, text_);
+    AppendShortest(number.value, text);
   }
 }
 
-void CsvWriter::Shortest(double value) {
-  Separate();
-  if (!std::isfinite(value)) return;
-  AppendShortest(value == 0.0 ? 0.0 : value, text_);  // no "-0"
+void AppendCell(const Shortest& number, std::string& text) {
+  if (std::isfinite(number.value)) AppendShortest(number.value == 0.0 ? 0.0 : number.value, text);  // no "-0"
 }
 
-void CsvWriter::Direction(double angle_rad) {
-  Separate();
-  if (!std::isfinite(angle_rad)) return;
+void AppendCell(const Direction& direction, std::string& text) {
+  if (!std::isfinite(direction.angle_rad)) return;
   // Rounding may reach the full circle, which is 0 again.
-  const auto scaled = static_cast<std::int64_t>(std::round(RadToDeg(WrapTo2Pi(angle_rad)) * 1e4));
-  AppendScaled(scaled % 3'600'000, 4, text_);
+  const auto scaled = static_cast<std::int64_t>(std::round(RadToDeg(WrapTo2Pi(direction.angle_rad)) * 1e4));
+  AppendScaled(scaled % 3'600'000, 4, text);
 }
 
-void CsvWriter::Text(std::string_view value) {
-  Separate();
-  text_ += CsvText(value);
-}
+void AppendCell(std::string_view value, std::string& text) { text += CsvText(value); }
 
 }  // namespace lookout::exporter

@@ -14,7 +14,6 @@
 #include "tools/export/sink.hpp"
 #include "tools/export/svg.hpp"
 #include "tools/export/tables.hpp"
-#include "tools/export/track.hpp"
 
 namespace lookout::exporter {
 
@@ -38,9 +37,9 @@ std::string Fault(const Request& request) {
   if (request.format == "svg" && request.table != "returns" && request.table != "obstacles" && request.table != "pose") {
     return "--format svg is for --table returns, obstacles or pose only";
   }
-  if (request.table == "pose" && request.turn) return "--turn is not for --table pose";
+  if (request.table == "pose" && request.scan) return "--scan is not for --table pose";
   if (request.format != "csv" && request.format != "ply" && request.format != "svg") return "there is no format " + request.format;
-  if (request.format == "csv" && request.turn) return "--turn is for --format ply or svg";
+  if (request.format == "csv" && request.scan) return "--scan is for --format ply or svg";
   for (const auto& input : request.inputs) {
     std::error_code error;
     if (request.output && std::filesystem::equivalent(input, *request.output, error)) return "--out is one of the inputs: " + input.string();
@@ -49,9 +48,11 @@ std::string Fault(const Request& request) {
 }
 
 std::unique_ptr<Sink> MakeSink(const Request& request) {
-  if (request.format == "ply") return MakePlySink(request.turn);
+  if (request.format == "ply") return MakePlySink(request.scan);
   if (request.format == "svg" && request.table == "pose") return MakeTrackSvgSink();
-  if (request.format == "svg") return request.table == "returns" ? MakeReturnsSvgSink(request.turn) : MakeObstaclesSvgSink(request.turn);
+  if (request.format == "svg") {
+    return MakeScanSvgSink(request.table == "returns" ? ChosenScan::Of::kReturns : ChosenScan::Of::kObstacles, request.scan);
+  }
   return MakeCsvSink(request.table);
 }
 
@@ -97,12 +98,12 @@ int Export(const Request& request, std::ostream& errors) {
     const auto num_damaged = readers[i]->num_damaged();
     if (num_damaged > 0) errors << kProgram << request.inputs[i].string() << ": " << num_damaged << " damaged stretches skipped\n";
   }
+  sink->Finish(text);
   Tell(errors, *sink, tallies);
   if (tallies.front().num_taken == 0) throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name));
-  sink->Finish(text);
   if (request.format != "csv" && text.empty()) {  // nothing is written before the end there
     if (request.table == "pose") throw std::runtime_error("no pose knows its position");
-    throw std::runtime_error(request.turn ? "the input holds no turn " + std::to_string(*request.turn) : "the input holds no turn");
+    throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : "the input holds no scan");
   }
   output.Write(text);
   output.Commit();

@@ -16,7 +16,7 @@ struct Request {
   std::string format = "csv";                                  // "csv", "ply" (returns), "svg" (returns, obstacles)
   std::optional<std::filesystem::path> output = std::nullopt;  // nullopt = standard output
   bool force = false;                                          // an existing output is replaced
-  std::optional<std::int64_t> turn = std::nullopt;             // ply, svg: seq of the turn; nullopt = the last whole one
+  std::optional<std::int64_t> scan = std::nullopt;             // ply, svg: seq of the scan; nullopt = the last whole one
 };
 
 inline constexpr int kExitFine = 0;

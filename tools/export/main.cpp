@@ -15,26 +15,26 @@ int main(int argc, char** argv) {
   exporter::Request request;
   std::vector<std::string> inputs;
   std::string output;
-  std::string turn = "last";
+  std::string scan = "last";
 
   CLI::App app("Writes what lcm-logs hold as a CSV table, a PLY cloud or an SVG picture.", "lookout-export");
   app.add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles: a turn; pose: the track)")
+  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles: a scan; pose: the track)")
       ->check(CLI::IsMember({"csv", "ply", "svg"}))
       ->capture_default_str();
   app.add_option("--out", output, "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
   app.add_flag("--force", request.force, "replace an existing --out");
-  app.add_option("--turn", turn, "ply and svg: seq of the turn, or \"last\": the last whole one")->capture_default_str();
+  app.add_option("--scan", scan, "ply and svg: seq of the scan, or \"last\": the last whole one")->capture_default_str();
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line.");
   try {
     app.parse(argc, argv);
-    if (turn != "last") {
+    if (scan != "last") {
       std::int64_t seq = 0;
-      if (!CLI::detail::lexical_cast(turn, seq)) throw CLI::ValidationError("--turn", "must be a number or \"last\"");
-      request.turn = seq;
+      if (!CLI::detail::lexical_cast(scan, seq)) throw CLI::ValidationError("--scan", "must be a number or \"last\"");
+      request.scan = seq;
     }
   } catch (const CLI::ParseError& error) {
     // --help and --version come here too, with code 0.

@@ -4,10 +4,9 @@
 #include <cstdint>
 #include <string>
 
-#include "common/bus/decode.hpp"
 #include "tools/export/colour.hpp"
-#include "tools/export/labelled_turn.hpp"
 #include "tools/export/returns.hpp"
+#include "tools/export/scans.hpp"
 
 namespace lookout::exporter {
 
@@ -23,19 +22,20 @@ constexpr int kUnknownLabel = -1;
 
 class PlySink final : public Sink {
  public:
-  explicit PlySink(std::optional<std::int64_t> turn) : turn_(turn) {}
+  explicit PlySink(std::optional<std::int64_t> seq) : scan_(ChosenScan::Of::kReturns, seq) {}
 
   std::vector<bus::Channel> Channels() const override { return {bus::kLidarScan, bus::kSegments}; }
-  Taken Take(std::string_view channel, Bytes bytes, std::string&) override { return turn_.Take(channel, bytes); }
-  bool IsDone() const override { return turn_.IsDone(); }
+  Taken Take(std::string_view channel, Bytes bytes, std::string&) override { return scan_.Take(channel, bytes); }
+  bool IsDone() const override { return scan_.IsDone(); }
 
   void Finish(std::string& text) override {
-    turn_.Finish();
-    if (turn_.parts().empty()) return;
+    scan_.Finish();
+    const auto& scan = scan_.chosen();
+    if (!scan) return;
     std::string vertices;
     int count = 0;
-    for (const auto& part : turn_.parts()) {
-      ForEachReturn(part, [&](const Return& one) {
+    for (const auto& [part_index, part] : scan->scans) {
+      ForEachReturn(part, LabelsOf(*scan, part), [&](const Return& one) {
         ++count;
         for (const double coordinate_m : {one.p_lidar_m.x(), one.p_lidar_m.y(), one.p_lidar_m.z()}) AppendFloat(coordinate_m, vertices);
         const Rgb colour = one.label > 0 ? ColourOfSegment(one.label) : ColourOfReason(one.reason);
@@ -48,7 +48,7 @@ class PlySink final : public Sink {
     text +=
         "ply\nformat binary_little_endian 1.0\n"
         "comment Lookout, turn " +
-        std::to_string(turn_.place().seq) + ", first firing at " + std::to_string(turn_.place().utime_us) +
+        std::to_string(scan->seq) + ", first firing at " + std::to_string(scan->utime_us) +
         " us since 1970 UTC\n"
         "comment lidar frame, metres: x along azimuth 0, y left, z up\n"
         "comment label: id of the segment, 0 in none, -1 not labelled; ring from the lowest beam up\n"
@@ -63,11 +63,11 @@ class PlySink final : public Sink {
   }
 
  private:
-  LabelledTurn turn_;
+  ChosenScan scan_;
 };
 
 }  // namespace
 
-std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> turn) { return std::make_unique<PlySink>(turn); }
+std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq) { return std::make_unique<PlySink>(seq); }
 
 }  // namespace lookout::exporter

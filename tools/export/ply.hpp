@@ -1,4 +1,4 @@
-// The labelled cloud of one turn as a PLY file (binary, little-endian), for MeshLab, CloudCompare or Open3D.
+// The labelled cloud of one scan as a PLY file (binary, little-endian), for MeshLab, CloudCompare or Open3D.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace lookout::exporter {
 
-/// @param turn  seq of the turn; nullopt = the last whole one
-std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> turn);
+/// @param seq  of the scan; nullopt = the last whole one
+std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
 
 }  // namespace lookout::exporter

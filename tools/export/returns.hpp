@@ -1,4 +1,4 @@
-// The returns of a turn, one by one, with place, time and label.
+// The returns of a scan, one by one, with place, time and label.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,8 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/frames.hpp"
-#include "tools/export/scan_joiner.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/segments_t.hpp"
 #include "tools/export/words.hpp"
 
 namespace lookout::exporter {
@@ -29,10 +30,10 @@ struct Return {
 
 /// Calls `use(Return)` for each return, by column, then ring, then return of one firing.
 ///
-/// @param part  consistent
+/// @param scan    a part of a scan, well-formed
+/// @param labels  of the same columns; nullptr where there are none
 template <typename Use>
-void ForEachReturn(const LabelledScan& part, Use use) {
-  const auto& scan = part.scan;
+void ForEachReturn(const lidar_scan_t& scan, const segments_t* labels, Use use) {
   const auto num_rings = static_cast<std::size_t>(scan.num_rings);
   const auto num_returns = static_cast<std::size_t>(scan.num_returns);
   std::size_t cell = 0;
@@ -53,9 +54,9 @@ void ForEachReturn(const LabelledScan& part, Use use) {
         result.p_lidar_m = result.range_m * BeamDirection(result.azimuth_rad, static_cast<double>(scan.elevation_rad[ring]));
         result.p_lidar_m.z() += static_cast<double>(scan.origin_height_m[ring]);
         result.reflectivity = scan.reflectivity[cell];
-        result.has_label = part.segments.has_value();
+        result.has_label = labels != nullptr;
         if (result.has_label) {
-          const int label = part.segments->label[cell];
+          const int label = labels->label[cell];
           result.label = label > 0 ? label : 0;
           if (label < 0) result.reason = words::WordOf(words::kReason, -label);
         }

@@ -123,7 +123,7 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
   }
   std::optional<Place> place;
   if (entry->name == bus::kObstacles.name) {
-    if (const auto message = bus::Decode<obstacles_t>(bytes)) {
+    if (const auto message = bus::Decode<obstacles_t>(bytes); message && messages::IsWellFormed(*message)) {
       place = PlaceOf(*message);
       nearest_.Take(*message, now);
     }

@@ -23,7 +23,7 @@ struct ChannelLine {
   std::string name;
   std::optional<Rate> rate;              // nullopt: too early to tell
   std::optional<std::int64_t> num_lost;  // by gaps in seq, since the start; nullopt for a channel that is not of this project
-  std::int64_t num_bad = 0;              // did not decode
+  std::int64_t num_bad = 0;              // did not decode, or contradict themselves
   std::chrono::nanoseconds age{0};       // of its last message
   bool is_silent = false;                // for longer than it should be
 };

@@ -1,13 +1,13 @@
-// The obstacles of the newest turn, nearest first.
+// The obstacles of the newest scan, nearest first.
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <optional>
 #include <vector>
 
-#include "lookout/obstacles_t.hpp"
+#include "common/messages/heading_history.hpp"
+#include "common/messages/part_assembler.hpp"
 #include "lookout/pose_t.hpp"
 #include "tools/top/rate_meter.hpp"
 
@@ -29,11 +29,11 @@ struct ObstacleLine {
   double height_m = 0.0;
 };
 
-/// The nearest of a turn, at most Nearest::kMaxLines.
+/// The nearest of a scan, at most Nearest::kMaxLines.
 struct NearestObstacles {
   std::vector<ObstacleLine> lines;       // nearest first; those without a range last
   std::vector<ObstacleLine> sure_lines;  // of those that are sure
-  std::int64_t num_obstacles = 0;        // of the turn
+  std::int64_t num_obstacles = 0;        // of the scan
   std::int64_t num_sure = 0;             // of them
   std::int64_t num_parts_missing = 0;
   TimePoint time;  // when its last message came
@@ -43,29 +43,27 @@ class Nearest {
  public:
   static constexpr std::size_t kMaxLines = 50;  // as many as a screen may have room for
 
-  void Take(const pose_t& pose);
+  void Take(const pose_t& pose) { headings_.Add(pose.utime_us, pose.heading_rad); }
+  /// @param part  well-formed (messages::IsWellFormed)
   void Take(const obstacles_t& part, TimePoint now);
 
-  /// @return the newest turn that came whole, or as much of it as came; nullopt before the first
+  /// @return the newest scan that came whole, or, once the next has begun, as much of it as came; nullopt before the first
   const std::optional<NearestObstacles>& newest() const { return newest_; }
 
  private:
-  // The heading at a time; NaN when no pose is near enough in time or it has none.
-  double HeadingAt(std::int64_t utime_us) const;
+  // What is kept of a message.
+  struct Part {
+    std::int64_t utime_us = 0;
+    std::int64_t seq = 0;
+    std::int32_t part_index = 0;
+    std::int32_t num_parts = 1;
+    std::vector<ObstacleLine> lines;
+    TimePoint time;
+  };
+  static NearestObstacles ToNearest(const std::vector<Part>& parts);
 
-  struct Heading {
-    std::int64_t utime_us;
-    double heading_rad;
-  };
-  struct Gathering {
-    std::int64_t utime_us;
-    std::int64_t seq;
-    std::int32_t last_part_index;
-    std::int64_t num_parts_to_come;
-    NearestObstacles obstacles;
-  };
-  std::deque<Heading> headings_;
-  std::optional<Gathering> gathering_;
+  messages::HeadingHistory headings_;
+  messages::PartAssembler<Part> assembler_;
   std::optional<NearestObstacles> newest_;
 };
 

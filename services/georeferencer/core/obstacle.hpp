@@ -47,7 +47,7 @@ struct Segment {
 };
 
 /// What a SEGMENTS message and its OBSTACLES have in common.
-struct TurnHead {
+struct ScanHead {
   Utime time;
   Utime end_time;  // last laser shot
   std::int64_t seq = 0;
@@ -55,12 +55,12 @@ struct TurnHead {
   std::int32_t scan_flags = 0;
   std::int32_t part_index = 0;
   std::int32_t num_parts = 1;
-  std::int32_t num_turn_segments = 0;
+  std::int32_t num_scan_segments = 0;
 };
 
 /// One SEGMENTS message: a turn, or a part of one.
 struct SegmentPart {
-  TurnHead head;
+  ScanHead head;
   std::vector<Segment> segments;
 };
 
@@ -94,7 +94,7 @@ struct Obstacle {
 
 /// One SEGMENTS message, placed.
 struct ObstaclePart {
-  TurnHead head;
+  ScanHead head;
   Datum datum;  // origin of the map frame of its obstacles
   std::vector<Obstacle> obstacles;
 };

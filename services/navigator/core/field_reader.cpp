@@ -11,8 +11,6 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr int kFirstYearOf20thCentury = 80;
-
 bool IsDigit(char character) { return character >= '0' && character <= '9'; }
 
 bool AreDigits(std::string_view text) { return std::ranges::all_of(text, IsDigit); }
@@ -32,6 +30,9 @@ double ToDouble(std::string_view text) {
   return value;
 }
 
+// Years 80 to 99 are of the 20th century.
+int FullYear(int short_year) { return short_year + (short_year >= 80 ? 1900 : 2000); }
+
 // Precondition: AreDigits, at most 9 of them.
 int ToInt(std::string_view digits) {
   int value = 0;
@@ -41,104 +42,73 @@ int ToInt(std::string_view digits) {
 
 }  // namespace
 
-std::string_view FieldReader::Field(std::size_t index) {
-  if (index < fields_.size()) return fields_[index];
-  Fail(SentenceFault::kBadField);
-  return {};
-}
-
-void FieldReader::Fail(SentenceFault fault) {
-  if (fault_ == SentenceFault::kNone) fault_ = fault;
+std::string_view FieldReader::Text(std::size_t index) {
+  return index < fields_.size() ? fields_[index] : Fail(SentenceFault::kBadField, std::string_view{});
 }
 
 double FieldReader::Number(std::size_t index, double min, double max) {
-  auto text = Field(index);
+  auto text = Text(index);
   if (text.empty()) return kNan;
   const bool has_sign = text.front() == '+' || text.front() == '-';
-  if (!IsUnsignedNumber(text.substr(has_sign ? 1 : 0))) {
-    Fail(SentenceFault::kBadField);
-    return kNan;
-  }
+  if (!IsUnsignedNumber(text.substr(has_sign ? 1 : 0))) return Fail(SentenceFault::kBadField, kNan);
   if (text.front() == '+') text.remove_prefix(1);
   const double value = ToDouble(text);
-  if (!(value >= min && value <= max)) {
-    Fail(SentenceFault::kImplausible);
-    return kNan;
-  }
+  if (!(value >= min && value <= max)) return Fail(SentenceFault::kImplausible, kNan);
   return value;
 }
 
 int FieldReader::Count(std::size_t index, int max) {
-  const auto text = Field(index);
+  const auto text = Text(index);
   if (text.empty()) return -1;
-  if (!AreDigits(text) || text.size() > 9) {
-    Fail(SentenceFault::kBadField);
-    return -1;
-  }
+  if (!AreDigits(text) || text.size() > 9) return Fail(SentenceFault::kBadField, -1);
   const int value = ToInt(text);
-  if (value > max) {
-    Fail(SentenceFault::kImplausible);
-    return -1;
-  }
+  if (value > max) return Fail(SentenceFault::kImplausible, -1);
   return value;
 }
 
 char FieldReader::Letter(std::size_t index, std::string_view allowed) {
-  const auto text = Field(index);
+  const auto text = Text(index);
   if (text.empty()) return '\0';
-  if (text.size() != 1 || allowed.find(text.front()) == std::string_view::npos) {
-    Fail(SentenceFault::kBadField);
-    return '\0';
-  }
+  if (text.size() != 1 || allowed.find(text.front()) == std::string_view::npos) return Fail(SentenceFault::kBadField, '\0');
   return text.front();
 }
 
 double FieldReader::NumberWithUnit(std::size_t index, char unit, double min, double max) {
   const double value = Number(index, min, max);
   const char letter = Letter(index + 1, std::string_view(&unit, 1));
-  if (!std::isnan(value) && letter == '\0') Fail(SentenceFault::kBadField);
-  return value;
+  return !std::isnan(value) && letter == '\0' ? Fail(SentenceFault::kBadField, value) : value;
 }
 
 double FieldReader::NumberWithSide(std::size_t index, double max) {
   const double value = Number(index, 0.0, max);
   const char side = Letter(index + 1, "EW");
-  if (!std::isnan(value) && side == '\0') Fail(SentenceFault::kBadField);
+  if (!std::isnan(value) && side == '\0') return Fail(SentenceFault::kBadField, kNan);
   return side == 'W' ? -value : value;
 }
 
 int FieldReader::Hex(std::size_t index) {
   constexpr std::size_t kMaxDigits = 4;
   constexpr int kBase = 16;
-  const auto text = Field(index);
+  const auto text = Text(index);
   if (text.empty()) return -1;
   int value = -1;
   const auto end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value, kBase);
-  if (text.size() > kMaxDigits || error != std::errc{} || stop != end || value < 0) {
-    Fail(SentenceFault::kBadField);
-    return -1;
-  }
+  if (text.size() > kMaxDigits || error != std::errc{} || stop != end || value < 0) return Fail(SentenceFault::kBadField, -1);
   return value;
 }
 
 std::optional<microseconds> FieldReader::TimeOfDay(std::size_t index) {
   using namespace std::chrono_literals;
-  const auto text = Field(index);
+  const auto text = Text(index);
   if (text.empty()) return std::nullopt;
   const auto whole = text.substr(0, text.find('.'));
-  if (whole.size() != 6 || !IsUnsignedNumber(text)) {
-    Fail(SentenceFault::kBadField);
-    return std::nullopt;
-  }
+  if (whole.size() != 6 || !IsUnsignedNumber(text)) return Fail(SentenceFault::kBadField, std::nullopt);
   const int hour = ToInt(whole.substr(0, 2));
   const int minute = ToInt(whole.substr(2, 2));
   const int second = ToInt(whole.substr(4, 2));
   const bool is_leap_second = hour == 23 && minute == 59 && second == 60;
-  if (hour > 23 || minute > 59 || (second > 59 && !is_leap_second)) {
-    Fail(SentenceFault::kImplausible);
-    return std::nullopt;
-  }
+  if (hour > 23 || minute > 59 || (second > 59 && !is_leap_second)) return Fail(SentenceFault::kImplausible, std::nullopt);
   // Parts of a microsecond are dropped.
   microseconds time = std::chrono::hours(hour) + std::chrono::minutes(minute) + std::chrono::seconds(second);
   microseconds unit = 100ms;
@@ -147,59 +117,38 @@ std::optional<microseconds> FieldReader::TimeOfDay(std::size_t index) {
 }
 
 std::optional<std::chrono::sys_days> FieldReader::Date(std::size_t index) {
-  const auto text = Field(index);
+  const auto text = Text(index);
   if (text.empty()) return std::nullopt;
-  if (text.size() != 6 || !AreDigits(text)) {
-    Fail(SentenceFault::kBadField);
-    return std::nullopt;
-  }
-  const int short_year = ToInt(text.substr(4, 2));
-  const std::chrono::year_month_day date(std::chrono::year(short_year + (short_year >= kFirstYearOf20thCentury ? 1900 : 2000)),
-                                         std::chrono::month(static_cast<unsigned>(ToInt(text.substr(2, 2)))),
-                                         std::chrono::day(static_cast<unsigned>(ToInt(text.substr(0, 2)))));
-  if (!date.ok()) {
-    Fail(SentenceFault::kImplausible);
-    return std::nullopt;
-  }
-  return std::chrono::sys_days(date);
+  if (text.size() != 6 || !AreDigits(text)) return Fail(SentenceFault::kBadField, std::nullopt);
+  return Checked(ToInt(text.substr(0, 2)), ToInt(text.substr(2, 2)), FullYear(ToInt(text.substr(4, 2))));
 }
 
 std::optional<std::chrono::sys_days> FieldReader::Date(std::size_t day_index, std::size_t month_index, std::size_t year_index) {
-  // GPS begins in 1980; Utime ends before 2200.
-  constexpr int kFirstYear = 1980;
-  constexpr int kLastYear = 2199;
+  constexpr int kLastYear = 2199;  // Utime ends before 2200
   const int day = Count(day_index, 31);
   const int month = Count(month_index, 12);
-  int year = Count(year_index, kLastYear);
+  const int year = Count(year_index, kLastYear);
   if (day < 0 && month < 0 && year < 0) return std::nullopt;
-  if (day < 0 || month < 0 || year < 0) {
-    Fail(SentenceFault::kBadField);
-    return std::nullopt;
-  }
-  // Plotters that write ZDA themselves say two digits (B&G, in SignalK's recording of a boat's network).
-  if (year < 100) year += year >= kFirstYearOf20thCentury ? 1900 : 2000;
-  const std::chrono::year_month_day date(std::chrono::year{year}, std::chrono::month(static_cast<unsigned>(month)),
+  if (day < 0 || month < 0 || year < 0) return Fail(SentenceFault::kBadField, std::nullopt);
+  // Plotters that write ZDA themselves write two digits (B&G, in SignalK's recording of a boat's network).
+  return Checked(day, month, year < 100 ? FullYear(year) : year);
+}
+
+std::optional<std::chrono::sys_days> FieldReader::Checked(int day, int month, int year) {
+  constexpr int kFirstYear = 1980;  // GPS begins
+  const std::chrono::year_month_day date(std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
                                          std::chrono::day(static_cast<unsigned>(day)));
-  if (!date.ok() || year < kFirstYear) {
-    Fail(SentenceFault::kImplausible);
-    return std::nullopt;
-  }
+  if (!date.ok() || year < kFirstYear) return Fail(SentenceFault::kImplausible, std::nullopt);
   return std::chrono::sys_days(date);
 }
 
 // Degrees in a fixed number of digits, then minutes.
 double FieldReader::Angle(std::size_t index, std::size_t num_degree_digits, double max_deg) {
-  const auto text = Field(index);
-  if (text.substr(0, text.find('.')).size() != num_degree_digits + 2 || !IsUnsignedNumber(text)) {
-    Fail(SentenceFault::kBadField);
-    return kNan;
-  }
+  const auto text = Text(index);
+  if (text.substr(0, text.find('.')).size() != num_degree_digits + 2 || !IsUnsignedNumber(text)) return Fail(SentenceFault::kBadField, kNan);
   const double minutes = ToDouble(text.substr(num_degree_digits));
   const double angle_deg = ToInt(text.substr(0, num_degree_digits)) + minutes / 60.0;
-  if (minutes >= 60.0 || angle_deg > max_deg) {
-    Fail(SentenceFault::kImplausible);
-    return kNan;
-  }
+  if (minutes >= 60.0 || angle_deg > max_deg) return Fail(SentenceFault::kImplausible, kNan);
   return angle_deg;
 }
 
@@ -208,7 +157,7 @@ std::optional<GeodeticPosition> FieldReader::Position(std::size_t index) {
   GeodeticPosition position{Angle(index, 2, 90.0), Angle(index + 2, 3, 180.0)};
   const char latitude_letter = Letter(index + 1, "NS");
   const char longitude_letter = Letter(index + 3, "EW");
-  if (latitude_letter == '\0' || longitude_letter == '\0') Fail(SentenceFault::kBadField);
+  if (latitude_letter == '\0' || longitude_letter == '\0') return Fail(SentenceFault::kBadField, std::nullopt);
   if (fault_ != SentenceFault::kNone) return std::nullopt;
   if (latitude_letter == 'S') position.latitude_deg = -position.latitude_deg;
   if (longitude_letter == 'W') position.longitude_deg = -position.longitude_deg;

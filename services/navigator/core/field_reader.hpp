@@ -26,11 +26,19 @@ class FieldReader {
   explicit FieldReader(std::span<const std::string_view> fields) : fields_(fields) {}
 
   SentenceFault fault() const { return fault_; }
+  std::size_t size() const { return fields_.size(); }
 
-  bool IsEmpty(std::size_t index) { return Field(index).empty(); }
+  /// Remembers the fault, unless there was one before. @return `value`
+  template <typename T>
+  T Fail(SentenceFault fault, T value) {
+    if (fault_ == SentenceFault::kNone) fault_ = fault;
+    return value;
+  }
 
   /// As it stands. @return empty when at fault
-  std::string_view Text(std::size_t index) { return Field(index); }
+  std::string_view Text(std::size_t index);
+
+  bool IsEmpty(std::size_t index) { return Text(index).empty(); }
 
   /// [+-]digits[.digits], between min and max. @return NaN when empty or at fault
   double Number(std::size_t index, double min, double max);
@@ -63,8 +71,7 @@ class FieldReader {
   std::optional<GeodeticPosition> Position(std::size_t index);
 
  private:
-  std::string_view Field(std::size_t index);
-  void Fail(SentenceFault fault);
+  std::optional<std::chrono::sys_days> Checked(int day, int month, int year);
   double Angle(std::size_t index, std::size_t num_degree_digits, double max_deg);
 
   std::span<const std::string_view> fields_;

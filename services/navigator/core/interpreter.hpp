@@ -7,19 +7,43 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "common/core/health.hpp"
 #include "services/navigator/core/arrivals.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
-#include "services/navigator/core/source_params.hpp"
 #include "services/navigator/core/utc_clock.hpp"
 
 namespace lookout::navigator {
 
-/// What one sentence gave.
+/// Which measurements of a source are used. All its sentences are recorded, whatever the role.
+enum class Role {
+  kAll,
+  kGnss,      // positions and velocities
+  kHeading,   // headings and rates of turn
+  kAttitude,  // headings, roll, pitch, rates of turn
+  kImu,       // raw angular velocity and specific force
+  kNothing,   // recorded only
+};
+
+/// What config says of one source of sentences, as far as its sentences are read by it.
+struct SourceParams {
+  std::string name;  // as in NAV_RAW
+  Role role = Role::kAll;
+  bool requires_checksum = true;
+  // From the instant of a measurement to the arrival of its sentence, where the sentence has no time of its own; nullopt: not known, 0 counts, and
+  // the source tells nothing of the computer's clock below max_sentence_latency.
+  std::optional<std::chrono::microseconds> latency;
+  // Factors that turn the sensor's signs into ours: +1 where roll is positive starboard down, and pitch positive bow up.
+  double roll_sign = 1.0;
+  double pitch_sign = 1.0;
+  // Of the compass, where the sentence says none; positive east.
+  std::optional<double> deviation_rad;
+  std::optional<double> declination_rad;
+};
+
+/// What one sentence measured.
 struct Reading {
   std::optional<GnssFix> fix;
   std::optional<Attitude> attitude;
@@ -61,11 +85,9 @@ class Interpreter {
     GnssFix fix;
     bool has_gga = false;
   };
-  /// Deviations out of GST.
   struct Accuracy {
     Utime arrival;
-    double horizontal_sd_m = kNan;
-    double vertical_sd_m = kNan;
+    Sentence gst;
   };
   struct Source {
     SourceParams params;
@@ -79,45 +101,25 @@ class Interpreter {
     std::optional<Epoch> epoch;
     std::optional<Accuracy> accuracy;
     double declination_rad = kNan;  // out of RMC
-    std::array<Arrivals, std::variant_size_v<Sentence>> arrivals;
-    // Of the sentence that is read.
-    std::size_t kind = 0;
-    bool is_in_time = true;
-    // The last timed sentence that told how late one of a queue was; by kind.
-    std::array<std::optional<Utime>, std::variant_size_v<Sentence>> told_by;
+    std::array<Arrivals, kNumSentenceTypes> arrivals;
+    bool is_in_time = true;  // of the sentence that is read
+    // The last timed sentence that told how late one of a queue was; by type.
+    std::array<std::optional<Utime>, kNumSentenceTypes> told_by;
   };
 
   Source& SourceOf(const std::string& name);
   bool IsRepeated(const Item& item);
-  Reading ReadParsed(const Item& item, const ParseResult& parsed);
 
-  Reading On(const Item& item, Source& source, const OtherSentence& sentence);
-  Reading On(const Item& item, Source& source, const Rmc& rmc);
-  Reading On(const Item& item, Source& source, const Gga& gga);
-  Reading On(const Item& item, Source& source, const Gns& gns);
-  Reading On(const Item& item, Source& source, const Xdr& xdr);
-  Reading On(const Item& item, Source& source, const TntHtm& htm);
-  Reading On(const Item& item, Source& source, const Gll& gll);
-  Reading On(const Item& item, Source& source, const Gst& gst);
-  Reading On(const Item& item, Source& source, const Zda& zda);
-  Reading On(const Item& item, Source& source, const Vtg& vtg);
-  Reading On(const Item& item, Source& source, const Hdt& hdt);
-  Reading On(const Item& item, Source& source, const MagneticHeading& heading);
-  Reading On(const Item& item, Source& source, const Rot& rot);
-  Reading On(const Item& item, Source& source, const Pashr& pashr);
-  Reading On(const Item& item, Source& source, const PsatHpr& hpr);
-  Reading On(const Item& item, Source& source, const VnIns& ins);
-  Reading On(const Item& item, Source& source, const VnYmr& ymr);
-  Reading On(const Item& item, Source& source, const VnImu& imu);
+  Reading ReadUnderstood(const Item& item, Source& source, const Sentence& sentence);
+  Reading ReadFix(const Item& item, Source& source, const Sentence& sentence);
+  Reading ReadVelocity(const Item& item, Source& source, const Sentence& sentence);
+  Reading ReadTurnRate(const Item& item, Source& source, const Sentence& sentence);
+  Reading ReadAttitude(const Item& item, Source& source, const Sentence& sentence);
 
-  std::optional<MeasurementTime> When(const Item& item, Source& source, std::optional<std::chrono::microseconds> time_of_day,
-                                      std::optional<std::chrono::sys_days> date, bool is_measured = true);
-  std::optional<MeasurementTime> WhenArrived(const Item& item, Source& source);
-  Reading OnQualified(const Item& item, Source& source, const Gga& gga, std::string_view sentence_type);
-  Reading WholeFix(Source& source, GnssFix fix);
-  Attitude MakeAttitude(const Item& item, const Source& source, const char* sentence_type, const MeasurementTime& when, double heading_rad,
-                        double pitch_rad, double roll_rad) const;
-  static ImuSample MakeImu(Utime time, const StrapdownSample& sample);
+  std::optional<MeasurementTime> When(const Item& item, Source& source, const Sentence& sentence, bool is_measured = true);
+  std::optional<MeasurementTime> WhenArrived(const Item& item, Source& source, SentenceType type);
+  void CompleteFix(Source& source, GnssFix& fix);
+  Attitude MakeAttitude(const Item& item, const Source& source, const Sentence& sentence, const MeasurementTime& when, double heading_rad) const;
 
   InterpreterParams params_;
   UtcClock clock_;
@@ -126,10 +128,7 @@ class Interpreter {
   std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
   struct Counts {
-    std::int64_t no_checksum = 0;
-    std::int64_t bad_checksum = 0;
-    std::int64_t bad_field = 0;
-    std::int64_t implausible_value = 0;
+    std::array<std::int64_t, kNumSentenceFaults> faults{};  // by SentenceFault
     std::int64_t other_sentence = 0;
     std::int64_t repeated_sentence = 0;
     std::int64_t understood_sentence = 0;

@@ -33,46 +33,20 @@ struct MeasurementTime {
 MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<std::chrono::microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
                                   std::chrono::microseconds max_latency);
 
-/// A position fix at the antenna: what a sentence says, and what those before it said of the same epoch. NaN = not said, -1 for counts.
-struct GnssFix {
+/// A position fix at the antenna: what a sentence says, and what those before it said of the same epoch.
+struct GnssFix : FixValues {
   MeasurementTime when;
   std::string source;              // as in Item
-  std::string_view sentence_type;  // "RMC", "GGA", "GLL", "VNINS"
-  FixQuality quality = FixQuality::kNone;
-  int num_satellites = -1;
-  double hdop = kNan;
-  double horizontal_sd_m = kNan;  // one standard deviation per axis
-  double vertical_sd_m = kNan;    // only where the receiver says it
-  std::optional<GeodeticPosition> position;
-  double msl_height_m = kNan;
-  double geoid_separation_m = kNan;
-  double direct_ellipsoid_height_m = kNan;  // of receivers that say it so
-  double speed_mps = kNan;
-  double course_rad = kNan;
-  double climb_mps = kNan;        // positive up
-  double velocity_sd_mps = kNan;  // per axis, only where the receiver says it
-  // A sentence before this one gave the position (the velocity) of this epoch: one measurement, not two.
-  bool repeats_position = false;
-  bool repeats_velocity = false;
+  std::string_view sentence_type;  // Sentence::name
   // The time scale of POSE was set since the fix before it: what was known of the place is of other instants.
   bool begins_time_scale = false;
-
-  /// Above the WGS84 ellipsoid, said so or as height above the geoid with its separation; NaN when neither is said.
-  double EllipsoidHeightM() const { return std::isnan(direct_ellipsoid_height_m) ? msl_height_m + geoid_separation_m : direct_ellipsoid_height_m; }
 };
 
-/// Attitude of the vessel frame. NaN = not said. Heading from true north clockwise, pitch positive bow up, roll positive starboard down.
-struct Attitude {
+/// Attitude of the vessel frame. Heading from true north clockwise, pitch positive bow up, roll positive starboard down.
+struct Attitude : AttitudeValues {
   MeasurementTime when;
   std::string source;
-  std::string_view sentence_type;  // "HDT" (THS too), "HDG" (HDM too), "PASHR", "PSAT", "VNINS", "VNYMR"
-  double heading_rad = kNan;       // 0 to 2 pi
-  double pitch_rad = kNan;         // -pi to pi
-  double roll_rad = kNan;          // -pi to pi
-  double heave_m = kNan;           // positive up
-  double heading_sd_rad = kNan;
-  double pitch_sd_rad = kNan;
-  double roll_sd_rad = kNan;
+  std::string_view sentence_type;  // Sentence::name
 };
 
 /// Velocity over ground, out of VTG, which has no time of its own.
@@ -94,6 +68,12 @@ struct ImuSample {
   Eigen::Vector3d angular_velocity_radps = kUnknownVector;
   Eigen::Vector3d specific_force_mps2 = kUnknownVector;  // at rest and level z is +9.81
 };
+
+/// @param sample  of a sensor that is lined up with the boat
+inline ImuSample InVesselFrame(Utime time, const StrapdownSample& sample) {
+  const auto turned = [](const Eigen::Vector3d& v) { return Eigen::Vector3d(v.x(), -v.y(), -v.z()); };
+  return {time, turned(sample.angular_velocity_radps), turned(sample.specific_force_mps2)};
+}
 
 /// @param position_sd_m  of a fix without correction at HDOP 1, per axis
 /// @param hdop           NaN = not said: 1 counts

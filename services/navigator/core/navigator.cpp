@@ -12,47 +12,39 @@ Utime CeilToPose(Utime time) { return std::chrono::ceil<PosePeriods>(time); }
 
 }  // namespace
 
-Navigator::Navigator(const NavigatorParams& params) : params_(params), interpreter_(params), filter_(params.filter) {}
+Navigator::Navigator(const NavigatorParams& params) : interpreter_(params), filter_(params.filter) {}
 
 NavigatorOutput Navigator::Consume(const Item& item) {
   if (item.kind == ItemKind::kStart) Reset();
   if (!time_) next_pose_ = CeilToPose(item.time);
   if (time_ && item.time - *time_ > kMaxGap) {
-    ++counts_.time_jump;
+    ++num_time_jumps_;
     next_pose_ = CeilToPose(item.time);
   }
   time_ = item.time;
   NavigatorOutput output;
   if (item.kind == ItemKind::kSentence) OnSentence(item, output);
-  if (item.imu) {
-    const auto to_vessel = [](const std::array<double, 3>& v) { return Eigen::Vector3d(v[0], -v[1], -v[2]); };
-    filter_.Add(ImuSample{item.time, to_vessel(item.imu->angular_velocity_radps), to_vessel(item.imu->specific_force_mps2)});
-  }
+  if (item.imu) filter_.Add(InVesselFrame(item.time, *item.imu));
   if (item.kind == ItemKind::kTick) filter_.AdvanceTo(item.time);
-  GivePosesUntil(item.time, output);
-  if (item.kind == ItemKind::kEnd && next_pose_ - item.time < kPosePeriod) GivePose(output);
+  while (next_pose_ <= item.time) AppendPose(output);
+  if (item.kind == ItemKind::kEnd && next_pose_ - item.time < kPosePeriod) AppendPose(output);
   return output;
 }
 
 NavigatorOutput Navigator::Flush() {
   NavigatorOutput output;
-  if (time_ && next_pose_ > *time_ && next_pose_ - *time_ < kPosePeriod) GivePose(output);
+  if (time_ && next_pose_ > *time_ && next_pose_ - *time_ < kPosePeriod) AppendPose(output);
   return output;
 }
 
 void Navigator::Reset() {
-  counts_.before += filter_.counts();
-  filter_ = PoseFilter(params_.filter);
+  filter_.Reset();
   interpreter_.Reset();
   last_pose_.reset();
   time_.reset();
 }
 
-void Navigator::GivePosesUntil(Utime time, NavigatorOutput& output) {
-  while (next_pose_ <= time) GivePose(output);
-}
-
-void Navigator::GivePose(NavigatorOutput& output) {
+void Navigator::AppendPose(NavigatorOutput& output) {
   last_pose_ = filter_.At(next_pose_);
   output.poses.push_back(*last_pose_);
   next_pose_ += kPosePeriod;
@@ -70,10 +62,8 @@ void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
 
 std::vector<Counter> Navigator::counters() const {
   auto counters = interpreter_.counters();
-  auto filter = counts_.before;
-  filter += filter_.counts();
-  for (const auto& [name, count] : filter.Named()) counters.push_back({name, count});
-  counters.push_back({"time_jump", counts_.time_jump});
+  for (const auto& counter : filter_.counts().Named()) counters.push_back(counter);
+  counters.push_back({"time_jump", num_time_jumps_});
   return counters;
 }
 

@@ -55,22 +55,15 @@ class Navigator {
 
  private:
   void OnSentence(const Item& item, NavigatorOutput& output);
-  void GivePosesUntil(Utime time, NavigatorOutput& output);
-  void GivePose(NavigatorOutput& output);
+  void AppendPose(NavigatorOutput& output);
   void Reset();
 
-  NavigatorParams params_;
   Interpreter interpreter_;
   PoseFilter filter_;
   std::optional<Pose> last_pose_;
   std::optional<Utime> time_;
   Utime next_pose_{};
-
-  struct Counts {
-    FilterCounts before;  // of filters before the last start mark
-    std::int64_t time_jump = 0;
-  };
-  Counts counts_;
+  std::int64_t num_time_jumps_ = 0;
 };
 
 }  // namespace lookout::navigator

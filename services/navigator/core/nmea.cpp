@@ -1,13 +1,17 @@
 #include "services/navigator/core/nmea.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
 #include "common/core/angles.hpp"
-#include "services/navigator/core/bounds.hpp"
-#include "services/navigator/core/vectornav.hpp"
+#include "common/core/elementary.hpp"
+#include "common/core/utime.hpp"
 
 namespace lookout::navigator {
+
+bool IsMeasured(FixQuality quality) { return quality >= FixQuality::kGnss && quality <= FixQuality::kDeadReckoning; }
 
 namespace {
 
@@ -15,11 +19,19 @@ constexpr double kMpsPerKnot = 1852.0 / 3600.0;
 constexpr double kMpsPerKmh = 1.0 / 3.6;
 
 // Bounds of what can be.
+constexpr double kMaxSpeedMps = 100.0;   // of receivers on boats: 194 knots
+constexpr double kMinHeightM = -1000.0;  // the Dead Sea lies at -430 m
+constexpr double kMaxHeightM = 20'000.0;
+constexpr double kMaxSdM = 1e6;                 // receivers without a fix send great deviations
 constexpr double kMaxHdop = 100.0;              // receivers send 99.99 for "no fix"
 constexpr double kMaxGeoidSeparationM = 150.0;  // EGM2008: -107 m to +86 m
 constexpr double kMaxHeaveM = 50.0;
 constexpr int kMaxSatellites = 99;
 constexpr double kMaxTurnDegpmin = 36000.0;  // 100 turns a minute
+// Beyond the ranges of VectorNav's sensors (2000 deg/s, 16 g).
+constexpr double kMaxRateRadps = 100.0;
+constexpr double kMaxForceMps2 = 1000.0;
+constexpr double kMaxFieldGauss = 100.0;
 
 double AngleRad(FieldReader& fields, std::size_t index, double min_deg, double max_deg) { return DegToRad(fields.Number(index, min_deg, max_deg)); }
 
@@ -31,49 +43,34 @@ double CompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(Ang
 // Degrees, and behind them T, which must stand there when they do.
 double TrueCompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(DegToRad(fields.NumberWithUnit(index, 'T', 0.0, 360.0))); }
 
-// Mode letters of NMEA 0183 2.3 and later, in the numbers of GGA. P (precise) is given when no deliberate degradation is used.
-FixQuality QualityOfMode(char mode) {
-  switch (mode) {
-    case 'A':
-      return FixQuality::kGnss;
-    case 'D':
-      return FixQuality::kDifferential;
-    case 'P':
-      return FixQuality::kPps;
-    case 'R':
-      return FixQuality::kRtkFixed;
-    case 'F':
-      return FixQuality::kRtkFloat;
-    case 'E':
-      return FixQuality::kDeadReckoning;
-    case 'M':
-      return FixQuality::kManual;
-    case 'S':
-      return FixQuality::kSimulator;
-    default:
-      return FixQuality::kNone;
-  }
-}
+// Mode letters of NMEA 0183 2.3 and later, in the order of the numbers of GGA, from 0. P (precise) is given when no deliberate degradation is used.
+constexpr std::string_view kModeLetters = "NADPRFEMS";
+FixQuality QualityOfMode(char mode) { return static_cast<FixQuality>(kModeLetters.find(mode)); }
 
-constexpr std::string_view kModeLetters = "ADPRFEMSN";
+double Tilt(FieldReader& fields, std::size_t index, double max_deg) { return AngleRad(fields, index, -max_deg, max_deg); }
 
-Rmc ReadRmc(FieldReader& fields, std::size_t num_fields) {
-  Rmc rmc;
-  rmc.time_of_day = fields.TimeOfDay(0);
+// The last field of which anything is used may stand before some that must be there all the same.
+void RequireField(FieldReader& fields, std::size_t index) { fields.Text(index); }
+
+// Zeros stand for what is not known.
+double KnownSd(double sd) { return sd > 0.0 ? sd : kNan; }
+
+// RMC: time,status,latitude,N,longitude,E,knots,course,date,variation,E[,mode[,navigational status]]
+void ReadRmc(FieldReader& fields, Sentence& sentence) {
+  sentence.time_of_day = fields.TimeOfDay(0);
   const char status = fields.Letter(1, "AV");
-  rmc.position = fields.Position(2);
-  rmc.speed_mps = fields.Number(6, 0.0, kMaxSpeedMps / kMpsPerKnot) * kMpsPerKnot;
-  rmc.course_rad = CompassRad(fields, 7);
-  rmc.date = fields.Date(8);
-  fields.IsEmpty(10);
+  sentence.position = fields.Position(2);
+  sentence.speed_mps = fields.Number(6, 0.0, kMaxSpeedMps / kMpsPerKnot) * kMpsPerKnot;
+  sentence.course_rad = CompassRad(fields, 7);
+  sentence.date = fields.Date(8);
+  RequireField(fields, 10);
   // The declination is a by-product: where it is not in order, the fix is not refused for it.
   FieldReader declination = fields;
-  rmc.declination_rad = DegToRad(declination.NumberWithSide(9, 180.0));
-  if (declination.fault() != SentenceFault::kNone) rmc.declination_rad = kNan;
-  const char mode = num_fields > 11 ? fields.Letter(11, kModeLetters) : '\0';
+  sentence.declination_rad = DegToRad(declination.NumberWithSide(9, 180.0));
+  if (declination.fault() != SentenceFault::kNone) sentence.declination_rad = kNan;
+  const char mode = fields.size() > 11 ? fields.Letter(11, kModeLetters) : '\0';
   // The navigational status of NMEA 4.1 behind the mode is V in receivers that give no such status, whatever the fix (u-blox ZED-F9P).
-  if (status == 'A') rmc.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
-  return rmc;
+  if (status == 'A') sentence.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
 }
 
 // Of a sentence that is too short: a number that does not stand with its unit says nothing.
@@ -86,89 +83,90 @@ double NumberWithUnitOrNan(const FieldReader& fields, std::size_t index, double 
 // A single digit, of which only the position counts: whatever it says, no better than a plain fix.
 FixQuality ModestQuality(FieldReader& fields, std::size_t index) {
   const auto quality = fields.Text(index);
-  if (quality.size() != 1) fields.Letter(index, {});  // a fault: two digits are satellites
-  return quality.size() == 1 && std::string_view("123459").find(quality) != std::string_view::npos ? FixQuality::kGnss : FixQuality::kNone;
+  if (quality.size() != 1) return fields.Fail(SentenceFault::kBadField, FixQuality::kNone);  // two digits are satellites
+  return std::string_view("123459").find(quality) != std::string_view::npos ? FixQuality::kGnss : FixQuality::kNone;
 }
 
-Gga ReadGga(FieldReader& fields, std::size_t num_fields) {
-  // NovAtel: 9 = SBAS, which is a differential correction.
-  constexpr int kNovatelSbas = 9;
-  Gga gga;
-  gga.time_of_day = fields.TimeOfDay(0);
-  gga.position = fields.Position(1);
+// GGA: time,latitude,N,longitude,E,quality,satellites,HDOP,height,M,geoid separation,M,age,station
+// One that is too short (Saab's R4 leaves a field out) counts for what it holds: position, quality and HDOP, and a height that stands with its unit.
+// Where satellites, HDOP or height are missing these are not known, and the fix counts as one without correction.
+void ReadGga(FieldReader& fields, Sentence& sentence) {
+  constexpr int kNovatelSbas = 9;  // a differential correction
   constexpr std::size_t kNumFields = 14;
-  if (num_fields > 8 && num_fields < kNumFields && fields.Text(8) == "M") {
+  sentence.time_of_day = fields.TimeOfDay(0);
+  sentence.position = fields.Position(1);
+  if (fields.size() > 8 && fields.size() < kNumFields && fields.Text(8) == "M") {
     // The unit of the height one place too early: satellites, HDOP or height are missing, and which of them cannot be told.
-    gga.quality = ModestQuality(fields, 5);
-    return gga;
+    sentence.quality = ModestQuality(fields, 5);
+    return;
   }
   const int quality = fields.Count(5, kNovatelSbas);
-  gga.quality = quality == kNovatelSbas ? FixQuality::kDifferential : static_cast<FixQuality>(quality < 0 ? 0 : quality);
-  gga.num_satellites = fields.Count(6, kMaxSatellites);
-  gga.hdop = fields.Number(7, 0.0, kMaxHdop);
-  if (num_fields < kNumFields) {
-    gga.msl_height_m = NumberWithUnitOrNan(fields, 8, kMinHeightM, kMaxHeightM);
-    gga.geoid_separation_m = NumberWithUnitOrNan(fields, 10, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
-    return gga;
+  sentence.quality = quality == kNovatelSbas ? FixQuality::kDifferential : static_cast<FixQuality>(std::max(quality, 0));
+  sentence.num_satellites = fields.Count(6, kMaxSatellites);
+  sentence.hdop = fields.Number(7, 0.0, kMaxHdop);
+  if (fields.size() < kNumFields) {
+    sentence.msl_height_m = NumberWithUnitOrNan(fields, 8, kMinHeightM, kMaxHeightM);
+    sentence.geoid_separation_m = NumberWithUnitOrNan(fields, 10, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
+    return;
   }
-  gga.msl_height_m = fields.NumberWithUnit(8, 'M', kMinHeightM, kMaxHeightM);
-  gga.geoid_separation_m = fields.NumberWithUnit(10, 'M', -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
-  fields.IsEmpty(13);  // age and station of the correction are not used, but must be there
-  return gga;
+  sentence.msl_height_m = fields.NumberWithUnit(8, 'M', kMinHeightM, kMaxHeightM);
+  sentence.geoid_separation_m = fields.NumberWithUnit(10, 'M', -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
 }
 
 // Of all systems the best, in the order of what they are worth.
 FixQuality QualityOfModes(FieldReader& fields, std::size_t index) {
   constexpr std::string_view kBestFirst = "RFDPAEMS";
-  const auto modes = fields.Text(index);
   constexpr std::size_t kMaxSystems = 8;
+  const auto modes = fields.Text(index);
   if (modes.size() > kMaxSystems || modes.find_first_not_of(kModeLetters) != std::string_view::npos) {
-    fields.Letter(index, {});  // a fault
-    return FixQuality::kNone;
+    return fields.Fail(SentenceFault::kBadField, FixQuality::kNone);
   }
   const auto best = kBestFirst.find_first_of(modes);
   return best == std::string_view::npos ? FixQuality::kNone : QualityOfMode(kBestFirst[best]);
 }
 
-Gns ReadGns(FieldReader& fields) {
-  Gns gns;
-  gns.time_of_day = fields.TimeOfDay(0);
-  gns.position = fields.Position(1);
-  gns.quality = QualityOfModes(fields, 5);
-  gns.num_satellites = fields.Count(6, kMaxSatellites);
-  gns.hdop = fields.Number(7, 0.0, kMaxHdop);
-  gns.msl_height_m = fields.Number(8, kMinHeightM, kMaxHeightM);
-  gns.geoid_separation_m = fields.Number(9, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
-  fields.IsEmpty(11);  // age and station of the correction are not used, but must be there
-  return gns;
+// GNS: time,latitude,N,longitude,E,modes (a letter per system),satellites,HDOP,height,geoid separation,age,station[,navigational status]
+// Source: gpsd's "NMEA Revealed", GNS. The quality is the best that a system has: the fix is made of all of them.
+void ReadGns(FieldReader& fields, Sentence& sentence) {
+  sentence.time_of_day = fields.TimeOfDay(0);
+  sentence.position = fields.Position(1);
+  sentence.quality = QualityOfModes(fields, 5);
+  sentence.num_satellites = fields.Count(6, kMaxSatellites);
+  sentence.hdop = fields.Number(7, 0.0, kMaxHdop);
+  sentence.msl_height_m = fields.Number(8, kMinHeightM, kMaxHeightM);
+  sentence.geoid_separation_m = fields.Number(9, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
+  RequireField(fields, 11);
 }
 
 std::string UpperName(std::string_view name) {
-  std::string upper;
-  for (const char character : name.substr(0, name.find('#'))) {
-    upper.push_back(character >= 'a' && character <= 'z' ? static_cast<char>(character - 'a' + 'A') : character);
+  std::string upper(name.substr(0, name.find('#')));
+  for (char& letter : upper) {
+    if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
   }
   return upper;
 }
 
-// Other measurements are not looked at.
-Sentence ReadXdr(FieldReader& fields, std::size_t num_fields) {
+// XDR: groups of type,value,unit,name. Used are A (angular displacement) in D (degrees) with the names PTCH, PITCH (pitch) and ROLL, HEEL (roll), in
+// large or small letters, without what follows #. Sources: NMEA's update to XDR (version 4.11: "Pitch", "Roll", "Heel"); Airmar (PTCH, ROLL); True
+// North (PITCH, ROLL). Which way they are positive: see config; by default pitch bow up, roll starboard down, as Airmar has them.
+void ReadXdr(FieldReader& fields, Sentence& sentence) {
   constexpr std::size_t kGroup = 4;
-  Xdr xdr;
   bool has_angle = false;
-  for (std::size_t first = 0; first + kGroup <= num_fields; first += kGroup) {
+  for (std::size_t first = 0; first + kGroup <= fields.size(); first += kGroup) {
     if (fields.Text(first) != "A" || fields.Text(first + 2) != "D") continue;
     const auto name = UpperName(fields.Text(first + 3));
     const bool is_pitch = name == "PTCH" || name == "PITCH";
     if (!is_pitch && name != "ROLL" && name != "HEEL") continue;
     has_angle = true;
-    (is_pitch ? xdr.pitch_rad : xdr.roll_rad) = is_pitch ? AngleRad(fields, first + 1, -90.0, 90.0) : AngleRad(fields, first + 1, -180.0, 180.0);
+    (is_pitch ? sentence.pitch_rad : sentence.roll_rad) = Tilt(fields, first + 1, is_pitch ? 90.0 : 180.0);
   }
-  if (!has_angle) return OtherSentence{};
-  return xdr;
+  if (!has_angle) sentence.type = SentenceType::kOther;
 }
 
-TntHtm ReadTntHtm(FieldReader& fields) {
+// PTNTHTM: heading,status,pitch,status,roll,status,dip,field, of True North's compasses. A status of C, L, P or V (alarms) voids its angle. Angles
+// are in degrees where one of them has a decimal point, else in turns / 65536. The heading is true where the declination is set in the compass.
+// Source: gpsd, driver_nmea0183.c, its description of the sentence.
+void ReadTntHtm(FieldReader& fields, Sentence& sentence) {
   constexpr double kCountsPerTurn = 65536.0;
   constexpr double kDegreesPerTurn = 360.0;
   bool is_in_degrees = false;
@@ -179,132 +177,240 @@ TntHtm ReadTntHtm(FieldReader& fields) {
     const char status = fields.Letter(index + 1, "CLMNOPV");
     return status == 'N' || status == 'M' || status == 'O' ? angle : kNan;
   };
-  TntHtm htm;
-  htm.heading_rad = WrapKnown(angle_rad(0, -180.0, 360.0));
-  htm.pitch_rad = angle_rad(2, -90.0, 90.0);
-  htm.roll_rad = angle_rad(4, -180.0, 180.0);
-  fields.IsEmpty(7);  // dip and field are not used, but must be there
-  return htm;
+  sentence.heading_rad = WrapKnown(angle_rad(0, -180.0, 360.0));
+  sentence.pitch_rad = angle_rad(2, -90.0, 90.0);
+  sentence.roll_rad = angle_rad(4, -180.0, 180.0);
+  RequireField(fields, 7);
 }
 
-Vtg ReadVtg(FieldReader& fields, std::size_t num_fields) {
-  Vtg vtg;
-  vtg.course_rad = TrueCompassRad(fields, 0);
+// VTG: course,T,magnetic course,M,knots,N,km/h,K[,mode]
+void ReadVtg(FieldReader& fields, Sentence& sentence) {
+  const double course_rad = TrueCompassRad(fields, 0);
   const double knots_mps = fields.NumberWithUnit(4, 'N', 0.0, kMaxSpeedMps / kMpsPerKnot) * kMpsPerKnot;
   const double kmh_mps = fields.NumberWithUnit(6, 'K', 0.0, kMaxSpeedMps / kMpsPerKmh) * kMpsPerKmh;
-  vtg.speed_mps = std::isnan(knots_mps) ? kmh_mps : knots_mps;
-  const char mode = num_fields > 8 ? fields.Letter(8, kModeLetters) : '\0';
-  if (mode != '\0' && !IsMeasured(QualityOfMode(mode))) return {};
-  return vtg;
+  const char mode = fields.size() > 8 ? fields.Letter(8, kModeLetters) : '\0';
+  if (mode != '\0' && !IsMeasured(QualityOfMode(mode))) return;
+  sentence.course_rad = course_rad;
+  sentence.speed_mps = std::isnan(knots_mps) ? kmh_mps : knots_mps;
 }
 
-Hdt ReadHdt(FieldReader& fields) { return {TrueCompassRad(fields, 0)}; }
+// HDT: heading,T
+void ReadHdt(FieldReader& fields, Sentence& sentence) { sentence.heading_rad = TrueCompassRad(fields, 0); }
 
 // THS: heading,mode. Estimated, manual, simulated and invalid headings were not measured.
-Hdt ReadThs(FieldReader& fields) {
+void ReadThs(FieldReader& fields, Sentence& sentence) {
   const double heading_rad = CompassRad(fields, 0);
-  return {fields.Letter(1, "AEMSV") == 'A' ? heading_rad : kNan};
+  if (fields.Letter(1, "AEMSV") == 'A') sentence.heading_rad = heading_rad;
 }
 
-Gst ReadGst(FieldReader& fields) {
-  Gst gst;
-  gst.time_of_day = fields.TimeOfDay(0);
+// GST: time,rms,sd of the major axis,of the minor axis,direction,sd of latitude,of longitude,of height. Both axes get one deviation.
+void ReadGst(FieldReader& fields, Sentence& sentence) {
+  sentence.time_of_day = fields.TimeOfDay(0);
   for (const std::size_t index : {1U, 2U, 3U}) fields.Number(index, 0.0, kMaxSdM);
   fields.Number(4, -360.0, 360.0);
-  gst.north_sd_m = fields.Number(5, 0.0, kMaxSdM);
-  gst.east_sd_m = fields.Number(6, 0.0, kMaxSdM);
-  gst.height_sd_m = fields.Number(7, 0.0, kMaxSdM);
-  return gst;
+  const double north_sd_m = fields.Number(5, 0.0, kMaxSdM);
+  const double east_sd_m = fields.Number(6, 0.0, kMaxSdM);
+  sentence.horizontal_sd_m = KnownSd(std::sqrt((north_sd_m * north_sd_m + east_sd_m * east_sd_m) / 2.0));
+  sentence.vertical_sd_m = KnownSd(fields.Number(7, 0.0, kMaxSdM));
 }
 
-Gll ReadGll(FieldReader& fields, std::size_t num_fields) {
-  Gll gll;
-  gll.position = fields.Position(0);
-  // Before NMEA 0183 2.0 there was neither time nor status: such a position counts.
-  if (num_fields > 4) gll.time_of_day = fields.TimeOfDay(4);
-  const char status = num_fields > 4 ? fields.Letter(5, "AV") : 'A';
-  const char mode = num_fields > 6 ? fields.Letter(6, kModeLetters) : '\0';
-  if (status == 'A' && gll.position) gll.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
-  return gll;
+// GLL: latitude,N,longitude,E[,time,status[,mode]]. Before NMEA 0183 2.0 there was neither time nor status: such a position counts.
+void ReadGll(FieldReader& fields, Sentence& sentence) {
+  sentence.position = fields.Position(0);
+  if (fields.size() > 4) sentence.time_of_day = fields.TimeOfDay(4);
+  const char status = fields.size() > 4 ? fields.Letter(5, "AV") : 'A';
+  const char mode = fields.size() > 6 ? fields.Letter(6, kModeLetters) : '\0';
+  if (status == 'A' && sentence.position) sentence.quality = mode == '\0' ? FixQuality::kGnss : QualityOfMode(mode);
 }
 
-Zda ReadZda(FieldReader& fields) {
-  Zda zda;
-  zda.time_of_day = fields.TimeOfDay(0);
-  zda.date = fields.Date(1, 2, 3);
-  fields.Number(4, -13.0, 13.0);  // the zone is not used: time and date are UTC
+// ZDA: time,day,month,year,zone hours,zone minutes. Time and date are UTC: the zone is not used.
+void ReadZda(FieldReader& fields, Sentence& sentence) {
+  sentence.time_of_day = fields.TimeOfDay(0);
+  sentence.date = fields.Date(1, 2, 3);
+  fields.Number(4, -13.0, 13.0);
   fields.Number(5, -59.0, 59.0);
-  return zda;
 }
 
-MagneticHeading ReadHdm(FieldReader& fields) {
-  MagneticHeading heading;
-  heading.compass_rad = WrapKnown(DegToRad(fields.NumberWithUnit(0, 'M', 0.0, 360.0)));
-  return heading;
+// HDM: heading,M
+void ReadHdm(FieldReader& fields, Sentence& sentence) { sentence.heading_rad = WrapKnown(DegToRad(fields.NumberWithUnit(0, 'M', 0.0, 360.0))); }
+
+// HDG: heading of the compass,deviation,E,declination,E
+void ReadHdg(FieldReader& fields, Sentence& sentence) {
+  sentence.heading_rad = CompassRad(fields, 0);
+  sentence.deviation_rad = DegToRad(fields.NumberWithSide(1, 180.0));
+  sentence.declination_rad = DegToRad(fields.NumberWithSide(3, 180.0));
 }
 
-MagneticHeading ReadHdg(FieldReader& fields) {
-  MagneticHeading heading;
-  heading.compass_rad = CompassRad(fields, 0);
-  heading.deviation_rad = DegToRad(fields.NumberWithSide(1, 180.0));
-  heading.declination_rad = DegToRad(fields.NumberWithSide(3, 180.0));
-  return heading;
-}
-
-Rot ReadRot(FieldReader& fields, std::size_t num_fields) {
+// ROT: degrees per minute,A
+void ReadRot(FieldReader& fields, Sentence& sentence) {
   constexpr double kSecondsPerMinute = 60.0;
-  const double rate_radps = AngleRad(fields, 0, -kMaxTurnDegpmin, kMaxTurnDegpmin) / kSecondsPerMinute;
-  const char status = num_fields > 1 ? fields.Letter(1, "AV") : 'A';
-  return {status == 'A' ? rate_radps : kNan};
+  const double rate_radps = Tilt(fields, 0, kMaxTurnDegpmin) / kSecondsPerMinute;
+  const char status = fields.size() > 1 ? fields.Letter(1, "AV") : 'A';
+  if (status == 'A') sentence.turn_rate_radps = rate_radps;
 }
 
-// The first field is the word HPR.
-PsatHpr ReadPsatHpr(FieldReader& fields) {
-  PsatHpr hpr;
-  hpr.time_of_day = fields.TimeOfDay(1);
-  hpr.heading_rad = CompassRad(fields, 2);
-  hpr.pitch_rad = AngleRad(fields, 3, -90.0, 90.0);
-  hpr.roll_rad = AngleRad(fields, 4, -180.0, 180.0);
+// PSAT,HPR,time,heading,pitch,roll,type: N = by GNSS, G = by gyro.
+// Source: Hemisphere GNSS Technical Reference Guide, PSAT,HPR. Which way roll and pitch are positive is set in the receiver: see config.
+void ReadPsatHpr(FieldReader& fields, Sentence& sentence) {
+  sentence.time_of_day = fields.TimeOfDay(1);
+  sentence.heading_rad = CompassRad(fields, 2);
+  sentence.pitch_rad = Tilt(fields, 3, 90.0);
+  sentence.roll_rad = Tilt(fields, 4, 180.0);
   fields.Letter(5, "NG");
-  return hpr;
 }
 
-Pashr ReadPashr(FieldReader& fields) {
-  Pashr pashr;
-  pashr.time_of_day = fields.TimeOfDay(0);
-  pashr.heading_rad = TrueCompassRad(fields, 1);
-  pashr.roll_rad = AngleRad(fields, 3, -180.0, 180.0);
-  pashr.pitch_rad = AngleRad(fields, 4, -90.0, 90.0);
-  pashr.heave_m = fields.Number(5, -kMaxHeaveM, kMaxHeaveM);
-  pashr.roll_sd_rad = AngleRad(fields, 6, 0.0, 180.0);
-  pashr.pitch_sd_rad = AngleRad(fields, 7, 0.0, 180.0);
-  pashr.heading_sd_rad = AngleRad(fields, 8, 0.0, 180.0);
+// PASHR: time,heading,T,roll,pitch,heave,roll sd,pitch sd,heading sd,GNSS quality[,INS status]
+// Fields: Trimble, NMEA-0183 message PASHR (help.fieldsystems.trimble.com); NovAtel OEM7, PASHR. Signs: roll positive port side up, that is
+// starboard down; pitch positive bow up (Kongsberg Seapath, PSXN,23: "positive with port side up", "positive with bow up"; the crate
+// nmea-kit 0.5.6, pashr.rs: "negative = port", "negative = bow down"). GNSS quality and INS status mean different things by maker (INS status 0 is
+// "GPS only" with Trimble, "IMU out" with Applanix) and are checked but not used.
+void ReadPashr(FieldReader& fields, Sentence& sentence) {
+  sentence.time_of_day = fields.TimeOfDay(0);
+  sentence.heading_rad = TrueCompassRad(fields, 1);
+  sentence.roll_rad = Tilt(fields, 3, 180.0);
+  sentence.pitch_rad = Tilt(fields, 4, 90.0);
+  sentence.heave_m = fields.Number(5, -kMaxHeaveM, kMaxHeaveM);
+  sentence.roll_sd_rad = AngleRad(fields, 6, 0.0, 180.0);
+  sentence.pitch_sd_rad = AngleRad(fields, 7, 0.0, 180.0);
+  sentence.heading_sd_rad = AngleRad(fields, 8, 0.0, 180.0);
   fields.Count(9, 9);
-  return pashr;
 }
 
-Sentence Read(std::string_view type, FieldReader& fields, std::size_t num_fields) {
-  if (type == "RMC") return ReadRmc(fields, num_fields);
-  if (type == "GGA") return ReadGga(fields, num_fields);
-  if (type == "GNS") return ReadGns(fields);
-  if (type == "XDR") return ReadXdr(fields, num_fields);
-  if (type == "PTNTHTM") return ReadTntHtm(fields);
-  if (type == "VTG") return ReadVtg(fields, num_fields);
-  if (type == "HDT") return ReadHdt(fields);
-  if (type == "PASHR") return ReadPashr(fields);
-  if (type == "GST") return ReadGst(fields);
-  if (type == "GLL") return ReadGll(fields, num_fields);
-  if (type == "ZDA") return ReadZda(fields);
-  if (type == "THS") return ReadThs(fields);
-  if (type == "HDG") return ReadHdg(fields);
-  if (type == "HDM") return ReadHdm(fields);
-  if (type == "ROT") return ReadRot(fields, num_fields);
-  if (type == "PSAT") return ReadPsatHpr(fields);
-  if (type == "VNINS") return ReadVnIns(fields);
-  if (type == "VNYMR") return ReadVnYmr(fields);
-  if (type == "VNIMU") return ReadVnImu(fields);
-  return OtherSentence{};
+struct LeapDay {
+  int year;
+  unsigned month;
+};
+// First days of the months from which GPS time has been one second more ahead of UTC: 18 s since 2017. IERS, Bulletin C (hpiers.obspm.fr), list of
+// leap seconds; Bulletins C 71 and 72 announce none until the end of 2026.
+constexpr std::array<LeapDay, 18> kLeapDays{{{1981, 7},
+                                             {1982, 7},
+                                             {1983, 7},
+                                             {1985, 7},
+                                             {1988, 1},
+                                             {1990, 1},
+                                             {1991, 1},
+                                             {1992, 7},
+                                             {1993, 7},
+                                             {1994, 7},
+                                             {1996, 1},
+                                             {1997, 7},
+                                             {1999, 1},
+                                             {2006, 1},
+                                             {2009, 1},
+                                             {2012, 7},
+                                             {2015, 7},
+                                             {2017, 1}}};
+
+Utime UtcOfGps(Utime gps_time) {
+  // At the k-th of these days GPS time is k seconds more than UTC.
+  std::chrono::seconds leap(0);
+  for (const auto& [year, month] : kLeapDays) {
+    if (gps_time >= std::chrono::sys_days(std::chrono::year(year) / month / 1) + leap + std::chrono::seconds(1)) ++leap;
+  }
+  return gps_time - leap;
 }
+
+double YawRad(FieldReader& fields, std::size_t index) { return WrapKnown(Tilt(fields, index, 360.0)); }
+
+Eigen::Vector3d Vector(FieldReader& fields, std::size_t first, double max) {
+  return {fields.Number(first, -max, max), fields.Number(first + 1, -max, max), fields.Number(first + 2, -max, max)};
+}
+
+// Magnetometer x y z (not used), accelerometer x y z, gyro x y z.
+StrapdownSample Sample(FieldReader& fields, std::size_t first) {
+  StrapdownSample sample;
+  Vector(fields, first, kMaxFieldGauss);
+  sample.specific_force_mps2 = Vector(fields, first + 3, kMaxForceMps2);
+  sample.angular_velocity_radps = Vector(fields, first + 6, kMaxRateRadps);
+  return sample;
+}
+
+// VNINS: GPS time of week,week,status,yaw,pitch,roll,latitude,longitude,height,velocity north,east,down,sd of attitude,position,velocity.
+// Source: VectorNav VN-300 User Manual UM005, "INS Solution - LLA". Yaw from true north, pitch positive bow up, roll positive starboard down.
+// Before it tracks, or with a fault, its heading is that of its magnetometer; roll and pitch come from gravity and count.
+void ReadVnIns(FieldReader& fields, Sentence& sentence) {
+  constexpr double kSecondsPerWeek = 7 * 86400.0;
+  constexpr int kMaxWeek = 9999;
+  constexpr auto kGpsEpoch = std::chrono::sys_days(std::chrono::year(1980) / 1 / 6);
+  constexpr int kFaultBits = 0x78;  // bits 3 to 6: the filter's time, IMU, magnetometer or GNSS error
+  constexpr int kModeBits = 3;
+  constexpr int kNotTracking = 0;
+  constexpr int kGnssLost = 3;
+  const double time_of_week_s = fields.Number(0, 0.0, kSecondsPerWeek);
+  const int week = fields.Count(1, kMaxWeek);
+  // Before it has had GNSS time the sensor says week 0.
+  if (week > 0 && !std::isnan(time_of_week_s)) {
+    const Utime utc = UtcOfGps(kGpsEpoch + std::chrono::weeks(week) + std::chrono::microseconds(std::llround(time_of_week_s * 1e6)));
+    sentence.date = std::chrono::floor<std::chrono::days>(utc);
+    sentence.time_of_day = utc - *sentence.date;
+  }
+  const int status = std::max(fields.Hex(2), 0);
+  const int mode = status & kModeBits;
+  const double yaw_rad = YawRad(fields, 3);
+  sentence.pitch_rad = Tilt(fields, 4, 90.0);
+  sentence.roll_rad = Tilt(fields, 5, 180.0);
+  const double latitude_deg = fields.Number(6, -90.0, 90.0);
+  const double longitude_deg = fields.Number(7, -180.0, 180.0);
+  const double height_m = fields.Number(8, kMinHeightM, kMaxHeightM);
+  const Eigen::Vector3d velocity_ned_mps = Vector(fields, 9, kMaxSpeedMps);
+  sentence.heading_sd_rad = sentence.pitch_sd_rad = sentence.roll_sd_rad = KnownSd(DegToRad(fields.Number(12, 0.0, 360.0)));
+  const double position_sd_m = fields.Number(13, 0.0, kMaxSdM);
+  const double velocity_sd_mps = fields.Number(14, 0.0, kMaxSdM);
+  if (mode == kNotTracking || (status & kFaultBits) != 0) return;
+  sentence.quality = mode == kGnssLost ? FixQuality::kDeadReckoning : FixQuality::kGnss;
+  sentence.heading_rad = yaw_rad;
+  // Before it has a position the sensor says 0, 0.
+  if (!std::isnan(latitude_deg + longitude_deg) && (latitude_deg != 0.0 || longitude_deg != 0.0)) {
+    sentence.position = GeodeticPosition{latitude_deg, longitude_deg};
+  }
+  sentence.direct_ellipsoid_height_m = height_m;
+  sentence.horizontal_sd_m = sentence.vertical_sd_m = KnownSd(position_sd_m);
+  sentence.speed_mps = Hypot(velocity_ned_mps.x(), velocity_ned_mps.y());
+  if (sentence.speed_mps > 0.0) sentence.course_rad = WrapTo2Pi(Atan2(velocity_ned_mps.y(), velocity_ned_mps.x()));
+  sentence.velocity_sd_mps = KnownSd(velocity_sd_mps);
+}
+
+// VNYMR: yaw,pitch,roll,magnetometer x y z,accelerometer x y z,gyro x y z.
+// Source: VectorNav VN-100 User Manual UM001, "Yaw, Pitch, Roll, Magnetic, Acceleration, and Angular Rates". Signs as VNINS.
+void ReadVnYmr(FieldReader& fields, Sentence& sentence) {
+  sentence.heading_rad = YawRad(fields, 0);
+  sentence.pitch_rad = Tilt(fields, 1, 90.0);
+  sentence.roll_rad = Tilt(fields, 2, 180.0);
+  sentence.imu = Sample(fields, 3);
+}
+
+// VNIMU: magnetometer x y z,accelerometer x y z,gyro x y z,temperature,pressure. Source: VectorNav VN-100 User Manual UM001, "IMU Measurements".
+void ReadVnImu(FieldReader& fields, Sentence& sentence) {
+  sentence.imu = Sample(fields, 0);
+  RequireField(fields, 10);
+}
+
+struct Decoder {
+  std::string_view word;  // the address without its talker, or the whole of a proprietary one
+  SentenceType type;
+  std::string_view name;
+  void (*read)(FieldReader& fields, Sentence& sentence);
+};
+
+constexpr std::array kDecoders{Decoder{"RMC", SentenceType::kRmc, "RMC", ReadRmc},
+                               Decoder{"GGA", SentenceType::kGga, "GGA", ReadGga},
+                               Decoder{"GNS", SentenceType::kGns, "GNS", ReadGns},
+                               Decoder{"XDR", SentenceType::kXdr, "XDR", ReadXdr},
+                               Decoder{"PTNTHTM", SentenceType::kTntHtm, "PTNTHTM", ReadTntHtm},
+                               Decoder{"VTG", SentenceType::kVtg, "VTG", ReadVtg},
+                               Decoder{"HDT", SentenceType::kHdt, "HDT", ReadHdt},
+                               Decoder{"THS", SentenceType::kHdt, "HDT", ReadThs},
+                               Decoder{"PASHR", SentenceType::kPashr, "PASHR", ReadPashr},
+                               Decoder{"GST", SentenceType::kGst, "GST", ReadGst},
+                               Decoder{"GLL", SentenceType::kGll, "GLL", ReadGll},
+                               Decoder{"ZDA", SentenceType::kZda, "ZDA", ReadZda},
+                               Decoder{"HDG", SentenceType::kMagnetic, "HDG", ReadHdg},
+                               Decoder{"HDM", SentenceType::kMagnetic, "HDG", ReadHdm},
+                               Decoder{"ROT", SentenceType::kRot, "ROT", ReadRot},
+                               Decoder{"PSAT", SentenceType::kPsatHpr, "PSAT", ReadPsatHpr},
+                               Decoder{"VNINS", SentenceType::kVnIns, "VNINS", ReadVnIns},
+                               Decoder{"VNYMR", SentenceType::kVnYmr, "VNYMR", ReadVnYmr},
+                               Decoder{"VNIMU", SentenceType::kVnImu, "VNIMU", ReadVnImu}};
 
 // The type without its talker. Proprietary addresses begin with P and have none.
 std::string_view TypeOf(const FramedSentence& sentence) {
@@ -327,14 +433,16 @@ std::string_view TypeOf(const FramedSentence& sentence) {
 
 }  // namespace
 
-bool IsMeasured(FixQuality quality) { return quality >= FixQuality::kGnss && quality <= FixQuality::kDeadReckoning; }
-
 ParseResult ParseSentence(std::string_view line, bool requires_checksum) {
   const auto framed = Frame(line, requires_checksum);
   if (framed.fault != SentenceFault::kNone) return {framed.fault, {}};
-  FieldReader fields(framed.sentence.fields);
   ParseResult result;
-  result.sentence = line.front() == '$' ? Read(TypeOf(framed.sentence), fields, framed.sentence.fields.size()) : OtherSentence{};
+  const auto* const decoder = line.front() == '$' ? std::ranges::find(kDecoders, TypeOf(framed.sentence), &Decoder::word) : kDecoders.end();
+  if (decoder == kDecoders.end()) return result;
+  FieldReader fields(framed.sentence.fields);
+  result.sentence.type = decoder->type;
+  result.sentence.name = decoder->name;
+  decoder->read(fields, result.sentence);
   result.fault = fields.fault();
   return result;
 }

@@ -1,7 +1,7 @@
 #include "services/navigator/core/sentence.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <charconv>
 
 namespace lookout::navigator {
 
@@ -22,20 +22,14 @@ std::string_view FromStart(std::string_view line) {
   return start == std::string_view::npos ? std::string_view{} : line.substr(start);
 }
 
-std::optional<unsigned> HexDigit(char digit) {
-  if (digit >= '0' && digit <= '9') return static_cast<unsigned>(digit - '0');
-  if (digit >= 'A' && digit <= 'F') return static_cast<unsigned>(digit - 'A' + 10);
-  if (digit >= 'a' && digit <= 'f') return static_cast<unsigned>(digit - 'a' + 10);
-  return std::nullopt;
-}
-
 bool IsChecksumOf(std::string_view digits, std::string_view body) {
   if (digits.size() != 2) return false;
-  const auto high = HexDigit(digits[0]);
-  const auto low = HexDigit(digits[1]);
+  unsigned stated = 0;
+  const auto* const end = digits.data() + digits.size();
+  const bool is_hexadecimal = std::from_chars(digits.data(), end, stated, 16).ptr == end;
   unsigned checksum = 0;
   for (const char character : body) checksum ^= static_cast<unsigned char>(character);
-  return high && low && (*high << 4 | *low) == checksum;
+  return is_hexadecimal && stated == checksum;
 }
 
 // The whole sentence at the end of a line that does not begin as one: behind binary whose last bytes look like text, or behind a sentence that was

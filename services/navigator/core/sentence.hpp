@@ -1,6 +1,7 @@
 // NMEA 0183 lines: out of a datagram, and into address and fields.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ inline constexpr std::size_t kMaxLineCharacters = 256;
 
 /// The lines of a datagram that may enter NAV_RAW, and how many may not.
 struct DatagramLines {
-  std::vector<std::string> lines;      // each from $ or ! to its end, without CR LF; whether it is a right sentence is not judged here
+  std::vector<std::string> lines;      // each from $ or ! to its end, without CR LF; right sentences or not
   std::int64_t num_no_start = 0;       // no $ or ! in the line
   std::int64_t num_too_long = 0;       // more than kMaxLineCharacters
   std::int64_t num_not_printable = 0;  // bytes outside of 0x20 to 0x7E
@@ -53,6 +54,7 @@ enum class SentenceFault {
   kBadField,     // a field is missing or does not have its form
   kImplausible,  // a value is out of its range
 };
+inline constexpr std::size_t kNumSentenceFaults = static_cast<std::size_t>(SentenceFault::kImplausible) + 1;
 
 /// A line whose checksum is right. Views into the line.
 struct FramedSentence {

@@ -21,9 +21,6 @@ constexpr std::chrono::milliseconds kMinLeapBack(400);
 // Of 1 Hz it says the same instant twice, so much apart; sentences of one instant come within half a second at 4800 baud.
 constexpr std::chrono::milliseconds kMinLeapRepeat(700);
 
-// Less is how sentences of one source differ. What is late by more waited somewhere.
-constexpr std::chrono::milliseconds kMinLateness(300);
-
 struct Resolved {
   Utime utc;
   bool is_date_refused = false;
@@ -70,7 +67,7 @@ void UtcClock::NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, mic
   if (!is_new_month || utc < midnight - 1s || utc >= midnight + 1s || !source.last_utc || source.last_leap == midnight) return;
   const auto back = *source.last_utc - utc;
   const bool is_back = (back >= kMinLeapBack && back < 1s) || (back == 0us && arrival - source.last_arrival >= kMinLeapRepeat);
-  const auto known = source.fit.is_empty() || !source.fit.is_settled() ? off_ : source.fit.offset();
+  const auto known = !source.KnowsOffset() ? off_ : source.fit.offset();
   const auto late = arrival - (utc + std::chrono::seconds(source.num_leaps)) - latency - known;
   if (!is_back || late < kMinLeapBack) return;
   ++source.num_leaps;
@@ -81,18 +78,18 @@ void UtcClock::NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, mic
 bool UtcClock::IsUsable(const SourceClock& source, microseconds host_minus_utc) const {
   const auto ahead = host_minus_utc - off_;
   if (ahead < -max_latency_) return false;
-  if (source.fit.is_empty() || !source.fit.is_settled()) return ahead <= max_latency_;
+  if (!source.KnowsOffset()) return ahead <= max_latency_;
   return std::chrono::abs(source.fit.offset() - off_) <= max_latency_;
 }
 
-void UtcClock::TakeForUtc() {
+void UtcClock::UseHostAsUtc() {
   if (is_off_) fine_fit_ = ClockFit();
   is_off_ = false;
   off_ = microseconds(0);
 }
 
 // What a source says of the clock, once it is sure of it.
-void UtcClock::Judge(SourceClock& source, Utime arrival) {
+void UtcClock::CompareWithUtc(SourceClock& source, Utime arrival) {
   const auto off = source.fit.offset();
   const microseconds limit = std::max<microseconds>(max_latency_, kMinOff);
   const auto limit_now = is_off_ ? microseconds(std::llround(kShareToStayOff * static_cast<double>(limit.count()))) : limit;
@@ -106,7 +103,7 @@ void UtcClock::Judge(SourceClock& source, Utime arrival) {
     return;
   }
   if (is_right) {
-    TakeForUtc();
+    UseHostAsUtc();
   } else if (!is_off_ || std::chrono::abs(off - off_) > max_latency_) {
     if (is_contradicted) return;
     is_off_ = true;
@@ -128,7 +125,7 @@ void UtcClock::LearnFrom(SourceClock& source, Utime arrival, Utime utc, std::opt
   } else if (is_usable && latency) {
     fine_fit_.Add(time, host_minus_utc);
   }
-  if (source.fit.is_settled()) Judge(source, arrival);
+  if (source.fit.is_settled()) CompareWithUtc(source, arrival);
 }
 
 std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime arrival, microseconds time_of_day,
@@ -183,18 +180,22 @@ void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
   source.dated_arrival = arrival;
 }
 
-// Of the last sentence with a time, where that came with what comes now.
-microseconds UtcClock::Lateness(const SourceClock& source, Utime arrival, microseconds latency) {
-  const bool is_known = source.last_utc && source.is_forward && !source.fit.is_empty() && source.fit.is_settled();
-  if (!is_known || arrival < source.last_arrival || arrival - source.last_arrival > kBurst) return microseconds(0);
-  const auto late = source.last_arrival - (*source.last_utc + std::chrono::seconds(source.num_leaps)) - latency - source.fit.offset();
-  return late >= kMinLateness ? late : microseconds(0);
+bool UtcClock::IsBehindTimedSentence(const SourceClock& source, Utime arrival) {
+  const bool is_known = source.last_utc && source.is_forward && source.KnowsOffset();
+  return is_known && arrival >= source.last_arrival && arrival - source.last_arrival <= kBurst;
 }
 
-MeasurementTime UtcClock::OfArrival(const SourceClock& source, Utime arrival, std::optional<microseconds> latency) const {
+MeasurementTime UtcClock::OfArrival(const SourceClock& source, Utime arrival, std::optional<microseconds> known_latency,
+                                    microseconds min_lateness) const {
+  const auto latency = known_latency.value_or(microseconds(0));
+  auto late = microseconds(0);
+  if (IsBehindTimedSentence(source, arrival)) {
+    late = source.last_arrival - (*source.last_utc + std::chrono::seconds(source.num_leaps)) - latency - source.fit.offset();
+  }
+  if (late < min_lateness) late = microseconds(0);
   const auto fine = is_off_ || fine_fit_.is_empty() ? microseconds(0) : fine_fit_.offset();
   MeasurementTime when;
-  when.time = arrival - fine - latency.value_or(microseconds(0)) - Lateness(source, arrival, latency.value_or(microseconds(0)));
+  when.time = arrival - fine - latency - late;
   when.arrival = arrival;
   when.utc = when.time - host_minus_utc();
   return when;

@@ -25,6 +25,8 @@ struct SourceClock {
   Utime last_arrival{};     // of its last new instant
   bool is_forward = false;  // that instant was after the one before it: not so of the later of two receivers on one line
   ClockFit fit;             // of arrival less UTC (leap seconds counted on), less its delay where that is known
+
+  bool KnowsOffset() const { return !fit.is_empty() && fit.is_settled(); }
 };
 
 /// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the
@@ -58,9 +60,18 @@ class UtcClock {
   /// Date and time of a sentence that measures nothing (ZDA).
   void OnDate(SourceClock& source, Utime arrival, Utime utc) const;
 
-  /// Of a sentence without a time. Where one of the same source that came with it, kBurst before at most, was late, it was as late itself.
-  MeasurementTime OfArrival(const SourceClock& source, Utime arrival, std::optional<std::chrono::microseconds> latency) const;
+  /// A burst of sentences of one epoch takes less than this at 9600 baud with three of them; epochs are 50 ms apart or more.
   static constexpr std::chrono::milliseconds kBurst{50};
+  /// Less is how sentences of one source differ. What is late by more waited somewhere.
+  static constexpr std::chrono::milliseconds kMinLateness{300};
+
+  /// Of a sentence without a time. Where one of the same source with a time came with it, kBurst before at most, and was late by `min_lateness` or
+  /// more, it was as late itself.
+  MeasurementTime OfArrival(const SourceClock& source, Utime arrival, std::optional<std::chrono::microseconds> latency,
+                            std::chrono::microseconds min_lateness = kMinLateness) const;
+
+  /// Whether a sentence with a time came kBurst before `arrival` at most, whose lateness is known.
+  static bool IsBehindTimedSentence(const SourceClock& source, Utime arrival);
 
   /// What the time scale of POSE is ahead of UTC, leap seconds counted on: it steps where the clock is found off, or right again.
   std::chrono::microseconds pose_minus_even_utc() const { return off_; }
@@ -69,13 +80,12 @@ class UtcClock {
   std::chrono::microseconds host_minus_utc() const { return off_ + std::chrono::seconds(num_leaps_); }
 
  private:
-  static std::chrono::microseconds Lateness(const SourceClock& source, Utime arrival, std::chrono::microseconds latency);
   static bool IsBackward(SourceClock& source, Utime utc, bool has_date);
   void NoteLeapSecond(SourceClock& source, Utime arrival, Utime utc, std::chrono::microseconds latency) const;
   bool IsUsable(const SourceClock& source, std::chrono::microseconds host_minus_utc) const;
   void LearnFrom(SourceClock& source, Utime arrival, Utime utc, std::optional<std::chrono::microseconds> latency, bool is_usable);
-  void Judge(SourceClock& source, Utime arrival);
-  void TakeForUtc();
+  void CompareWithUtc(SourceClock& source, Utime arrival);
+  void UseHostAsUtc();
 
   std::chrono::microseconds max_latency_;
   std::chrono::microseconds off_{0};  // computer's clock less UTC, leap seconds counted on

@@ -74,12 +74,17 @@ void StreamSource::Fail(const std::string& fault, Utime now) {
   pause_ = pause_.count() == 0 ? kFirstPause : std::min(2 * pause_, kLastPause);
 }
 
-void StreamSource::Poll(Utime now) {
-  if (state_ == State::kConnecting) return Connect(now);
-  if (state_ == State::kOpen) return;
-  // A clock that was set back does not make the pause longer.
-  const bool is_time = !last_attempt_ || now - *last_attempt_ >= pause_ || now < *last_attempt_;
-  if (is_time) Attempt(now);
+std::string StreamSource::Poll(Utime now) {
+  if (state_ == State::kConnecting) {
+    Connect(now);
+  } else if (state_ == State::kClosed) {
+    // A clock that was set back does not make the pause longer.
+    const bool is_time = !last_attempt_ || now - *last_attempt_ >= pause_ || now < *last_attempt_;
+    if (is_time) Attempt(now);
+  }
+  if (fault_ == reported_fault_) return {};
+  reported_fault_ = fault_;
+  return fault_.empty() ? place_ + " is open" : fault_;
 }
 
 void StreamSource::Attempt(Utime now) {
@@ -123,7 +128,7 @@ void StreamSource::Connect(Utime now) {
   ++num_opened_;
 }
 
-std::optional<Source::Piece> StreamSource::Receive(Utime now) {
+std::optional<io::Source::Piece> StreamSource::Receive(Utime now) {
   if (state_ == State::kConnecting) Connect(now);
   if (state_ != State::kOpen) return std::nullopt;
   buffer_.clear();
@@ -133,14 +138,14 @@ std::optional<Source::Piece> StreamSource::Receive(Utime now) {
     case Result::kEnd:
       ++num_lost_;
       Fail(errno == 0 ? "ended" : std::strerror(errno), now);
-      return std::nullopt;
+      return Piece{.host_time = now, .bytes = {}, .kind = Kind::kBreak};
     case Result::kSome:
       break;
   }
   // A connection that gives something is sound: the next failure begins with the short pause.
   pause_ = std::chrono::milliseconds(0);
   num_bytes_ += static_cast<std::int64_t>(buffer_.size());
-  return Piece{now, buffer_, false};
+  return Piece{.host_time = now, .bytes = buffer_, .kind = Kind::kStream};
 }
 
 std::vector<Counter> StreamSource::counters() { return {{opened_name_, num_opened_}, {lost_name_, num_lost_}, {bytes_name_, num_bytes_}}; }

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "services/navigator/io/source.hpp"
+#include "common/io/source.hpp"
 
 namespace lookout::navigator {
 
-class StreamSource : public Source {
+class StreamSource : public io::Source {
  public:
   /// A connection that is not there after this is given up.
   static constexpr std::chrono::seconds kConnectTimeout{5};
@@ -23,9 +23,8 @@ class StreamSource : public Source {
   ~StreamSource() override;
 
   int file_descriptor() const override { return epoll_; }
-  void Poll(Utime now) override;
+  std::string Poll(Utime now) override;
   std::optional<Piece> Receive(Utime now) override;
-  std::int64_t num_lost() const override { return num_lost_; }
   std::string fault() const override { return fault_; }
   std::vector<Counter> counters() override;
 
@@ -64,6 +63,7 @@ class StreamSource : public Source {
   std::optional<Utime> last_attempt_;
   std::chrono::milliseconds pause_{0};
   std::string fault_;
+  std::string reported_fault_;  // by Poll()
   std::vector<std::uint8_t> buffer_;
   std::int64_t num_opened_ = 0;
   std::int64_t num_lost_ = 0;

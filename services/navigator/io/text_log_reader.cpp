@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <variant>
 
 #include "services/navigator/core/nmea.hpp"
 #include "services/navigator/core/sentence.hpp"
@@ -27,14 +26,7 @@ SaidTime TimeIn(const std::string& line) {
   if (lines.lines.empty()) return {};
   const auto parsed = ParseSentence(lines.lines.front(), false);
   if (parsed.fault != SentenceFault::kNone) return {};
-  return std::visit(
-      [](const auto& sentence) {
-        SaidTime said;
-        if constexpr (requires { sentence.time_of_day; }) said.of_day = sentence.time_of_day;
-        if constexpr (requires { sentence.date; }) said.date = sentence.date;
-        return said;
-      },
-      parsed.sentence);
+  return {parsed.sentence.time_of_day, parsed.sentence.date};
 }
 
 constexpr std::size_t kBlockBytes = 64UL * 1024;

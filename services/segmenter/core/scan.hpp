@@ -51,13 +51,6 @@ struct ColumnSpan {
   int num_columns = 0;
 };
 
-struct ScanPart {
-  ScanHead head;
-  int part_index = 0;
-  int first_column = 0;
-  Columns columns;
-};
-
 struct Scan {
   ScanHead head;
   Columns columns;                // all of the scan

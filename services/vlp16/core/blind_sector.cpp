@@ -60,7 +60,7 @@ bool BlindSector::WasSeenInside(const Gap& gap, int step_cdeg) const {
   bool has_inside = false;
   for (int inside_cdeg = margin_cdeg; inside_cdeg < gap.width_cdeg() - margin_cdeg; inside_cdeg += kBinCdeg) {
     has_inside = true;
-    if (seen_.test(static_cast<std::size_t>((gap.from_cdeg + inside_cdeg) % format::kAzimuthsPerTurn / kBinCdeg))) return true;
+    if (seen_.test(static_cast<std::size_t>((gap.from_cdeg + inside_cdeg) % format::kAzimuthsPerRevolution / kBinCdeg))) return true;
   }
   return !has_inside;  // too narrow to tell
 }

@@ -9,7 +9,7 @@
 namespace lookout::vlp16 {
 
 /// Learns the sector from the packets: a jump of azimuth inside of a packet cannot be a loss, so one is enough; a jump between packets is taken for
-/// a loss until the same has been seen in kNumSightings turns. A shot inside of the sector ends it.
+/// a loss until the same has been seen in kNumSightings scans. A shot inside of the sector ends it.
 class BlindSector {
  public:
   /// A packet at its place in the stream: where it was looked at, and where it jumped.
@@ -39,7 +39,7 @@ class BlindSector {
 
   std::optional<Gap> sector_;
   std::optional<Candidate> candidate_;
-  std::bitset<format::kAzimuthsPerTurn / kBinCdeg> seen_;  // by azimuth, since the start
+  std::bitset<format::kAzimuthsPerRevolution / kBinCdeg> seen_;  // by azimuth, since the start
 };
 
 }  // namespace lookout::vlp16

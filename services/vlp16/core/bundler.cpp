@@ -12,7 +12,7 @@ namespace lookout::vlp16 {
 Bundler::Bundler(int data_port, int position_port, double cut_azimuth_rad)
     : data_port_(data_port),
       position_port_(position_port),
-      cut_cdeg_(static_cast<int>(std::llround(RadToDeg(WrapTo2Pi(cut_azimuth_rad)) * 100.0) % format::kAzimuthsPerTurn)) {}
+      cut_cdeg_(static_cast<int>(std::llround(RadToDeg(WrapTo2Pi(cut_azimuth_rad)) * 100.0) % format::kAzimuthsPerRevolution)) {}
 
 std::optional<PacketBundle> Bundler::Add(Utime host_time, int udp_port, Bytes payload) {
   const bool is_data = udp_port == data_port_;
@@ -36,8 +36,8 @@ std::optional<PacketBundle> Bundler::Add(Utime host_time, int udp_port, Bytes pa
   if (bundle_.items.empty()) bundle_.time = host_time;
   bundle_.items.push_back({host_time, udp_port, bundle_.payload.size(), payload.size()});
   bundle_.payload.insert(bundle_.payload.end(), payload.begin(), payload.end());
-  const bool ends_turn = is_data && EndsTurn(payload);
-  if (!ends_turn && bundle_.items.size() < kMaxItems) return std::nullopt;
+  const bool ends_scan = is_data && EndsScan(payload);
+  if (!ends_scan && bundle_.items.size() < kMaxItems) return std::nullopt;
   return Close();
 }
 
@@ -63,19 +63,20 @@ PacketBundle Bundler::Close() {
 }
 
 // Only when to send depends on this, not what: azimuths are taken as they stand.
-bool Bundler::EndsTurn(Bytes payload) {
-  bool ends_turn = false;
+bool Bundler::EndsScan(Bytes payload) {
+  bool ends_scan = false;
   for (std::size_t block = 0; block < format::kNumBlocks; ++block) {
-    const int azimuth_cdeg = ReadU16LittleEndian(payload, block * format::kBlockSizeBytes + format::kBlockAzimuthOffset) % format::kAzimuthsPerTurn;
+    const int azimuth_cdeg =
+        ReadU16LittleEndian(payload, block * format::kBlockSizeBytes + format::kBlockAzimuthOffset) % format::kAzimuthsPerRevolution;
     if (last_azimuth_cdeg_) {
       const int to_cut_cdeg = ClockwiseCdeg(*last_azimuth_cdeg_, cut_cdeg_);
       const int sweep_cdeg = ClockwiseCdeg(*last_azimuth_cdeg_, azimuth_cdeg);
-      if (sweep_cdeg > format::kAzimuthsPerTurn - kMaxGapCdeg) continue;  // noise of the encoder goes back a little
-      ends_turn = ends_turn || (to_cut_cdeg > 0 && to_cut_cdeg <= sweep_cdeg);
+      if (sweep_cdeg > format::kAzimuthsPerRevolution - kMaxGapCdeg) continue;  // noise of the encoder goes back a little
+      ends_scan = ends_scan || (to_cut_cdeg > 0 && to_cut_cdeg <= sweep_cdeg);
     }
     last_azimuth_cdeg_ = azimuth_cdeg;
   }
-  return ends_turn;
+  return ends_scan;
 }
 
 std::vector<Counter> Bundler::counters() const {

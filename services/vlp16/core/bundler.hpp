@@ -39,7 +39,7 @@ class Bundler {
   /// Payloads do not wait longer for others.
   static constexpr std::chrono::milliseconds kMaxWait{100};
 
-  /// @param cut_azimuth_rad  a bundle ends with the packet in which a turn ends
+  /// @param cut_azimuth_rad  a bundle ends with the packet in which a scan ends
   Bundler(int data_port, int position_port, double cut_azimuth_rad);
 
   /// Takes a datagram, or refuses and counts it: another port, or not the size of the packets on that port. What is inside is not judged:
@@ -61,7 +61,7 @@ class Bundler {
 
  private:
   PacketBundle Close();
-  bool EndsTurn(Bytes payload);
+  bool EndsScan(Bytes payload);
 
   int data_port_;
   int position_port_;

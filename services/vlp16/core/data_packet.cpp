@@ -12,14 +12,14 @@ namespace {
 using namespace format;
 
 // The head rounds 359.996 deg to 36000, and may be a step beyond before it wraps (real packets: 35979, 36000, 18).
-constexpr int kMaxAzimuthCdeg = kAzimuthsPerTurn + kMaxGapCdeg;
+constexpr int kMaxAzimuthCdeg = kAzimuthsPerRevolution + kMaxGapCdeg;
 
-// A head that turns slower than half the least rate of the manual is starting or stands: its jumps are of the encoder, and take no time.
+// A head that rotates slower than half the least rate of the manual is starting or stands: its jumps are of the encoder, and take no time.
 constexpr double kMinRateCdeg =
-    0.5 * kMinRpm / 60.0 * kAzimuthsPerTurn * static_cast<double>(kBlockPeriod.count()) / static_cast<double>(std::nano::den);
+    0.5 * kMinRpm / 60.0 * kAzimuthsPerRevolution * static_cast<double>(kBlockPeriod.count()) / static_cast<double>(std::nano::den);
 
-// Steps that go back so little are noise of the encoder, not a turn of nearly a whole circle.
-constexpr bool IsBack(int gap_cdeg) { return gap_cdeg > kAzimuthsPerTurn - kMaxGapCdeg; }
+// Steps that go back so little are noise of the encoder, not a rotation by nearly a whole circle.
+constexpr bool IsBack(int gap_cdeg) { return gap_cdeg > kAzimuthsPerRevolution - kMaxGapCdeg; }
 
 std::optional<ReturnMode> ToReturnMode(std::uint8_t byte) {
   switch (byte) {
@@ -56,8 +56,8 @@ DataPacketResult ParseDataPacket(Bytes payload) {
     if (ReadU16LittleEndian(payload, block + kBlockFlagOffset) != kBlockFlag) return refused(DataFault::kFlag);
     azimuth_cdeg[i] = ReadU16LittleEndian(payload, block + kBlockAzimuthOffset);
     if (azimuth_cdeg[i] > kMaxAzimuthCdeg) return refused(DataFault::kAzimuth);
-    if (azimuth_cdeg[i] >= kAzimuthsPerTurn) {
-      azimuth_cdeg[i] -= kAzimuthsPerTurn;
+    if (azimuth_cdeg[i] >= kAzimuthsPerRevolution) {
+      azimuth_cdeg[i] -= kAzimuthsPerRevolution;
       packet.has_wrapped_azimuth = true;
     }
   }
@@ -73,7 +73,7 @@ DataPacketResult ParseDataPacket(Bytes payload) {
     packet.azimuth_cdeg[i] = azimuth_cdeg[i * blocks_per_step];
     if (azimuth_cdeg[i * blocks_per_step + blocks_per_step - 1] != packet.azimuth_cdeg[i]) return refused(DataFault::kDualPair);
   }
-  if (SweepCdeg(packet) >= kAzimuthsPerTurn) return refused(DataFault::kAzimuthOrder);
+  if (SweepCdeg(packet) >= kAzimuthsPerRevolution) return refused(DataFault::kAzimuthOrder);
   return {DataFault::kNone, packet};
 }
 
@@ -90,7 +90,7 @@ Steps MeasureSteps(const DataPacket& packet, double known_cdeg) {
   }
   steps.gap_cdeg[num_steps - 1] = num_usable > 0 ? usable[num_usable - 1] : fallback_cdeg;
   steps.duration = packet.period();
-  steps.end_cdeg = (packet.azimuth_cdeg[num_steps - 1] + steps.gap_cdeg[num_steps - 1]) % kAzimuthsPerTurn;
+  steps.end_cdeg = (packet.azimuth_cdeg[num_steps - 1] + steps.gap_cdeg[num_steps - 1]) % kAzimuthsPerRevolution;
   if (num_usable == num_steps - 1) return steps;
 
   const int sum_cdeg = std::accumulate(usable.begin(), usable.begin() + num_usable, 0);
@@ -109,7 +109,7 @@ Steps MeasureSteps(const DataPacket& packet, double known_cdeg) {
       if (!IsBack(gap_cdeg)) {
         const double num_periods = rate_cdeg >= kMinRateCdeg ? gap_cdeg / rate_cdeg - 1.0 : 0.0;
         waited += std::chrono::nanoseconds(std::llround(num_periods * static_cast<double>(kBlockPeriod.count())));
-        if (gap_cdeg > widest_cdeg) steps.jump = Gap{(packet.azimuth_cdeg[i] + usual_cdeg) % kAzimuthsPerTurn, packet.azimuth_cdeg[i + 1]};
+        if (gap_cdeg > widest_cdeg) steps.jump = Gap{(packet.azimuth_cdeg[i] + usual_cdeg) % kAzimuthsPerRevolution, packet.azimuth_cdeg[i + 1]};
         widest_cdeg = std::max(widest_cdeg, gap_cdeg);
       }
       steps.gap_cdeg[i] = usual_cdeg;

@@ -50,14 +50,15 @@ struct DataPacketResult {
 /// Checks a payload as a whole. The product byte is not judged here: see ModelJudge.
 DataPacketResult ParseDataPacket(Bytes payload);
 
-/// A turn of the head that is more than this in one step is a jump (limited field of view), not a rate: 1200 rpm and a quarter more.
+/// A rotation of the head by more than this in one step is a jump (limited field of view), not a rate: 1200 rpm and a quarter more.
 inline constexpr int kMaxGapCdeg = 99;
-static_assert(kMaxGapCdeg <= 1.25 * format::kMaxRpm / 60.0 * format::kAzimuthsPerTurn * std::chrono::duration<double>(format::kBlockPeriod).count());
+static_assert(kMaxGapCdeg <=
+              1.25 * format::kMaxRpm / 60.0 * format::kAzimuthsPerRevolution * std::chrono::duration<double>(format::kBlockPeriod).count());
 
 /// @return azimuth in [0, 36000) after going from `from_cdeg` to `to_cdeg` clockwise
 constexpr int ClockwiseCdeg(int from_cdeg, int to_cdeg) {
   const int difference = to_cdeg - from_cdeg;
-  return difference < 0 ? difference + format::kAzimuthsPerTurn : difference;
+  return difference < 0 ? difference + format::kAzimuthsPerRevolution : difference;
 }
 
 /// A part of the circle that the head went through without firing, or without being heard.
@@ -68,7 +69,7 @@ struct Gap {
   int width_cdeg() const { return ClockwiseCdeg(from_cdeg, to_cdeg); }
 };
 
-/// How far the head turns in each step and when, and how long the packet took.
+/// How far the head rotates in each step and when, and how long the packet took.
 struct Steps {
   std::array<int, format::kNumBlocks> gap_cdeg{};                   // [num_steps] per format::kBlockPeriod
   std::array<std::chrono::nanoseconds, format::kNumBlocks> time{};  // [num_steps] since the first shot of the packet

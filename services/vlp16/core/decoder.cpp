@@ -32,20 +32,20 @@ std::optional<int> PhaseCdeg(const PlacedPacket& placed) {
     const auto since_step = until_second - placed.steps.time[static_cast<std::size_t>(step)];
     if (since_step < std::chrono::nanoseconds(0)) continue;
     if (since_step >= format::kBlockPeriod) return std::nullopt;
-    const auto turned_cdeg = placed.steps.gap_cdeg[static_cast<std::size_t>(step)] * since_step / format::kBlockPeriod;
-    return static_cast<int>((placed.packet.azimuth_cdeg[static_cast<std::size_t>(step)] + turned_cdeg) % format::kAzimuthsPerTurn);
+    const auto rotated_cdeg = placed.steps.gap_cdeg[static_cast<std::size_t>(step)] * since_step / format::kBlockPeriod;
+    return static_cast<int>((placed.packet.azimuth_cdeg[static_cast<std::size_t>(step)] + rotated_cdeg) % format::kAzimuthsPerRevolution);
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-Decoder::Decoder(const DecoderParams& params, TurnHandler on_turn, SentenceHandler on_sentence)
-    : params_(params), on_turn_(std::move(on_turn)), on_sentence_(std::move(on_sentence)), state_(MakeState()) {}
+Decoder::Decoder(const DecoderParams& params, ScanHandler on_scan, SentenceHandler on_sentence)
+    : params_(params), on_scan_(std::move(on_scan)), on_sentence_(std::move(on_sentence)), state_(MakeState()) {}
 
 Decoder::State Decoder::MakeState() {
   return State(
-      params_, [this](const PlacedPacket& placed) { OnPacket(placed); }, [this](const Turn& turn) { OnTurn(turn); });
+      params_, [this](const PlacedPacket& placed) { OnPacket(placed); }, [this](const Scan& scan) { OnScan(scan); });
 }
 
 bool Decoder::OnDataPayload(Utime host_time, Bytes payload) {
@@ -116,7 +116,7 @@ void Decoder::OnPacket(const PlacedPacket& placed) {
   if (const auto phase_cdeg = PhaseCdeg(placed)) state_.phase_cdeg = phase_cdeg;
   const auto num_capped = state_.assembler.num_capped();
   state_.assembler.Add(placed, state_.clock.Read(placed.host_time), counts);
-  totals_.num_capped_turns += state_.assembler.num_capped() - num_capped;
+  totals_.num_capped_scans += state_.assembler.num_capped() - num_capped;
 }
 
 PacketCounts Decoder::Counts() const {
@@ -134,8 +134,8 @@ void Decoder::OnPositionPayload(Utime host_time, Bytes payload) {
   state_.clock.OnPositionPacket(host_time, result.packet, sensor_time);
   if (result.packet.sentence.empty()) return;
   ++totals_.num_sentences;
-  const auto& turn_clock = state_.assembler.clock();
-  const Utime time = sensor_time && turn_clock ? turn_clock->ToUtime(*sensor_time) : state_.clock.TimeOfStampAlone(host_time, stamp_us);
+  const auto& scan_clock = state_.assembler.clock();
+  const Utime time = sensor_time && scan_clock ? scan_clock->ToUtime(*sensor_time) : state_.clock.TimeOfStampAlone(host_time, stamp_us);
   on_sentence_({time, host_time, stamp_us, result.packet.pps, std::move(result.packet.sentence)});
 }
 
@@ -160,13 +160,13 @@ bool Decoder::Refuse(std::string_view reason) {
   return false;
 }
 
-void Decoder::OnTurn(const Turn& turn) {
-  ++totals_.num_turns;
-  if (turn.is_partial_start || turn.is_partial_end) ++totals_.num_partial_turns;
-  if (turn.has_hole) ++totals_.num_turns_with_hole;
-  last_clock_ = turn.clock;
-  last_rate_radps_ = turn.rate_radps;
-  on_turn_(turn);
+void Decoder::OnScan(const Scan& scan) {
+  ++totals_.num_scans;
+  if (scan.is_partial_start || scan.is_partial_end) ++totals_.num_partial_scans;
+  if (scan.has_hole) ++totals_.num_scans_with_hole;
+  last_clock_ = scan.clock;
+  last_rate_radps_ = scan.rate_radps;
+  on_scan_(scan);
 }
 
 std::int64_t Decoder::num_out_of_stream() const {
@@ -194,10 +194,10 @@ std::vector<Counter> Decoder::counters() const {
                                    {"data_azimuth_disagrees", sequence.num_disagreements},
                                    {"sensor_restarts", sequence.num_restarts},
                                    {"sensor_clock_steps", sequence.num_clock_steps},
-                                   {"turns", totals_.num_turns},
-                                   {"turns_partial", totals_.num_partial_turns},
-                                   {"turns_with_hole", totals_.num_turns_with_hole},
-                                   {"turns_capped", totals_.num_capped_turns},
+                                   {"turns", totals_.num_scans},
+                                   {"turns_partial", totals_.num_partial_scans},
+                                   {"turns_with_hole", totals_.num_scans_with_hole},
+                                   {"turns_capped", totals_.num_capped_scans},
                                    {"sentences", totals_.num_sentences}});
   return counters;
 }

@@ -1,4 +1,4 @@
-// From raw payloads to turns and sentences: everything that replay computes again from LIDAR_PACKETS.
+// From raw payloads to scans and sentences: everything that replay computes again from LIDAR_PACKETS.
 #pragma once
 
 #include <array>
@@ -16,9 +16,9 @@
 #include "services/vlp16/core/model.hpp"
 #include "services/vlp16/core/packet_sequencer.hpp"
 #include "services/vlp16/core/position_packet.hpp"
-#include "services/vlp16/core/scan_assembler.hpp"
+#include "services/vlp16/core/scan.hpp"
+#include "services/vlp16/core/scan_cutter.hpp"
 #include "services/vlp16/core/sensor_clock.hpp"
-#include "services/vlp16/core/turn.hpp"
 
 namespace lookout::vlp16 {
 
@@ -30,7 +30,7 @@ struct DecoderParams {
 
 /// The NMEA 0183 sentence of one position packet.
 struct SentenceOfLidar {
-  Utime time;       // when the packet was made, by the clock that stamps the turns
+  Utime time;       // when the packet was made, by the clock that stamps the scans
   Utime host_time;  // when it came
   std::uint32_t stamp_us = 0;
   int pps = 0;
@@ -39,21 +39,21 @@ struct SentenceOfLidar {
 
 class Decoder {
  public:
-  using TurnHandler = std::function<void(const Turn&)>;
+  using ScanHandler = std::function<void(const Scan&)>;
   using SentenceHandler = std::function<void(const SentenceOfLidar&)>;
 
-  Decoder(const DecoderParams& params, TurnHandler on_turn, SentenceHandler on_sentence);
+  Decoder(const DecoderParams& params, ScanHandler on_scan, SentenceHandler on_sentence);
   Decoder(const Decoder&) = delete;
   Decoder& operator=(const Decoder&) = delete;
 
-  /// A payload of the data port. Calls the turn handler for each turn that it ends.
+  /// A payload of the data port. Calls the scan handler for each scan that it ends.
   /// @return whether it is usable: a whole packet of a known model at its place in time
   bool OnDataPayload(Utime host_time, Bytes payload);
 
   /// A payload of the position port. Calls the sentence handler when it holds one.
   void OnPositionPayload(Utime host_time, Bytes payload);
 
-  /// End of input: ends the turn, if there is one.
+  /// End of input: ends the scan, if there is one.
   void Flush();
 
   /// Start of a run: all that was learnt is void; counters go on.
@@ -68,7 +68,7 @@ class Decoder {
   /// Packets since the start of the process that are not of one even stream: restarts, overlaps, azimuths elsewhere.
   std::int64_t num_out_of_stream() const;
 
-  /// Of the last turn.
+  /// Of the last scan.
   const std::optional<ClockReading>& last_clock() const { return last_clock_; }
   double last_rate_radps() const { return last_rate_radps_; }
 
@@ -92,21 +92,21 @@ class Decoder {
     std::int64_t num_undecided = 0;
     std::int64_t num_wrapped_azimuths = 0;
     std::int64_t num_stamps_beyond_hour = 0;
-    std::int64_t num_turns = 0;
-    std::int64_t num_partial_turns = 0;
-    std::int64_t num_turns_with_hole = 0;
-    std::int64_t num_capped_turns = 0;
+    std::int64_t num_scans = 0;
+    std::int64_t num_partial_scans = 0;
+    std::int64_t num_scans_with_hole = 0;
+    std::int64_t num_capped_scans = 0;
     std::int64_t num_sentences = 0;
   };
 
   /// What a start mark makes void.
   struct State {
-    State(const DecoderParams& params, PacketSequencer::Handler on_packet, TurnHandler on_turn)
-        : judge(params.model), sequencer(std::move(on_packet)), clock(params.time), assembler(params.cut_azimuth_rad, std::move(on_turn)) {}
+    State(const DecoderParams& params, PacketSequencer::Handler on_packet, ScanHandler on_scan)
+        : judge(params.model), sequencer(std::move(on_packet)), clock(params.time), assembler(params.cut_azimuth_rad, std::move(on_scan)) {}
     ModelJudge judge;
     PacketSequencer sequencer;
     SensorClock clock;
-    ScanAssembler assembler;
+    ScanCutter assembler;
     std::int64_t num_packets = 0;  // whole ones of a known model
     std::vector<HeldPacket> held;  // until the model is known
     std::optional<int> phase_cdeg;
@@ -120,11 +120,11 @@ class Decoder {
   bool Refuse(std::int64_t& counter, std::string_view reason);
   bool Refuse(std::string_view reason);
   void OnPacket(const PlacedPacket& placed);
-  void OnTurn(const Turn& turn);
+  void OnScan(const Scan& scan);
   PacketCounts Counts() const;
 
   DecoderParams params_;
-  TurnHandler on_turn_;
+  ScanHandler on_scan_;
   SentenceHandler on_sentence_;
   Totals totals_;
   SequenceCounts past_counts_;  // of the runs before the last start mark

@@ -25,8 +25,8 @@ inline constexpr std::size_t kStampOffset = 1200;      // u32, microseconds past
 inline constexpr std::size_t kReturnModeOffset = 1204;
 inline constexpr std::size_t kProductOffset = 1205;
 
-inline constexpr std::uint16_t kBlockFlag = 0xEEFF;  // the bytes 0xFF 0xEE as a little-endian number
-inline constexpr int kAzimuthsPerTurn = 36000;       // 0.01 deg
+inline constexpr std::uint16_t kBlockFlag = 0xEEFF;   // the bytes 0xFF 0xEE as a little-endian number
+inline constexpr int kAzimuthsPerRevolution = 36000;  // 0.01 deg
 inline constexpr double kRangeUnitM = 0.002;
 inline constexpr std::uint8_t kModeStrongest = 0x37;
 inline constexpr std::uint8_t kModeLast = 0x38;

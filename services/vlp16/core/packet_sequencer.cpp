@@ -17,7 +17,7 @@ constexpr microseconds kHour(format::kMicrosecondsPerHour);
 constexpr microseconds kMaxGap = std::chrono::seconds(1);
 // Rate of the head: it may change by so much of the way while packets are missing (real heads: 0.3 %).
 constexpr double kMaxRateError = 0.02;
-// A head that turns slower, per format::kBlockPeriod, is about to stand or to start: its azimuth tells of no loss.
+// A head that rotates slower, per format::kBlockPeriod, is about to stand or to start: its azimuth tells of no loss.
 constexpr double kStillRateCdeg = 1.0;
 // Datagrams may wait in a network for so long: the host's clock tells of no smaller step.
 constexpr microseconds kHostResolution = std::chrono::milliseconds(20);
@@ -134,21 +134,21 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
   if (sweep_cdeg <= 0.0) return place;  // a head that stands
   const Gap gap{last_->steps.end_cdeg, packet.azimuth_cdeg[0]};
   const int gap_cdeg = ClockwiseCdeg(gap.from_cdeg, gap.to_cdeg);
-  const double packets_per_turn = static_cast<double>(format::kAzimuthsPerTurn) / sweep_cdeg;
+  const double packets_per_revolution = static_cast<double>(format::kAzimuthsPerRevolution) / sweep_cdeg;
   const double num_passed = gap_cdeg / sweep_cdeg;
-  const double error = std::abs(std::remainder(num_passed - num_missing, packets_per_turn));
+  const double error = std::abs(std::remainder(num_passed - num_missing, packets_per_revolution));
   place.is_disagreeing = error > 0.5 + kMaxRateError * num_missing;
-  // A gap of about whole turns looks like none in azimuth.
-  const bool is_about_a_turn = num_missing > packets_per_turn - 1.0;
+  // A gap of about whole revolutions looks like none in azimuth.
+  const bool is_about_a_revolution = num_missing > packets_per_revolution - 1.0;
   const bool is_set = IsClockSet(host_time, packet, place.time - last_->time);
-  if (is_set && (place.is_disagreeing || is_about_a_turn)) {
+  if (is_set && (place.is_disagreeing || is_about_a_revolution)) {
     return {Kind::kStep, last_->time + std::chrono::round<microseconds>(last_->steps.duration), 0, false};
   }
   const int sector_cdeg = blind_sector_.WidthCdeg();
   if (sector_cdeg == 0 || place.is_disagreeing) return place;
-  const double num_turns = std::max(0.0, std::round((num_missing - num_passed) / packets_per_turn));
+  const double num_scans = std::max(0.0, std::round((num_missing - num_passed) / packets_per_revolution));
   const int hidden_cdeg = blind_sector_.HiddenCdeg(gap, last_->step_cdeg());
-  const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_turns * (format::kAzimuthsPerTurn - sector_cdeg);
+  const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_scans * (format::kAzimuthsPerRevolution - sector_cdeg);
   place.num_lost = std::max(0, static_cast<int>(std::lround(visible_cdeg / sweep_cdeg)));
   if (place.num_lost == 0) place.kind = Kind::kNext;
   return place;
@@ -157,8 +157,8 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
 // From the begin of one packet to that of the next where nothing was missing; the mean of some 16, as azimuths have a resolution of 0.01 deg.
 void PacketSequencer::MeasureRate(const DataPacket& packet, const PlacedPacket& placed) {
   constexpr double kShare = 1.0 / 16.0;
-  const int turned_cdeg = ClockwiseCdeg(last_->first_cdeg, packet.azimuth_cdeg[0]);
-  const double rate_cdeg = turned_cdeg / Ratio(placed.time - last_->time, format::kBlockPeriod);
+  const int rotated_cdeg = ClockwiseCdeg(last_->first_cdeg, packet.azimuth_cdeg[0]);
+  const double rate_cdeg = rotated_cdeg / Ratio(placed.time - last_->time, format::kBlockPeriod);
   if (rate_cdeg > kMaxGapCdeg) return;  // an encoder that went back a little
   rate_cdeg_ += (rate_cdeg - rate_cdeg_) * (rate_cdeg_ > 0.0 ? kShare : 1.0);
 }
@@ -168,7 +168,7 @@ double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kStillRateCdeg ?
 
 // To half of a packet; false when the rate is not known.
 bool PacketSequencer::IsAt(const DataPacket& packet, double azimuth_cdeg) const {
-  const double off_cdeg = std::abs(std::remainder(packet.azimuth_cdeg[0] - azimuth_cdeg, format::kAzimuthsPerTurn));
+  const double off_cdeg = std::abs(std::remainder(packet.azimuth_cdeg[0] - azimuth_cdeg, format::kAzimuthsPerRevolution));
   return SweepCdeg() > 0.0 && off_cdeg <= 0.5 * SweepCdeg();
 }
 

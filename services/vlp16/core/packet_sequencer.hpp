@@ -115,9 +115,9 @@ class PacketSequencer {
 
   Handler on_packet_;
   std::optional<Last> last_;
-  double rate_cdeg_ = 0.0;          // turn of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
+  double rate_cdeg_ = 0.0;          // rotation of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
   std::vector<Held> held_;          // by time
-  std::array<Known, 512> known_{};  // the last ones given: of a turn and more
+  std::array<Known, 512> known_{};  // the last ones given: of a revolution and more
   std::size_t next_known_ = 0;
   std::size_t num_late_in_a_row_ = 0;
   BlindSector blind_sector_;

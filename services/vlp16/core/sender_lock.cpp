@@ -44,7 +44,7 @@ SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, 
   }
   if (!IsOfFamily(alone) && alone != ModelVerdict::kUndecided) return nullptr;
   // Without a holder nothing is decided by who was there first, but by who is valid first. Of two that are known by their intervals alone one is
-  // judged after the other: by turns neither would show an interval.
+  // judged after the other: alternating, neither would show an interval.
   if (!is_over && (state.holder || alone == ModelVerdict::kUndecided)) return nullptr;
   candidate = Candidate{sender, ModelJudge(model_), time, std::chrono::microseconds(0)};
   return &*candidate;

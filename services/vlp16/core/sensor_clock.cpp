@@ -17,7 +17,7 @@ constexpr microseconds kMaxAge = std::chrono::seconds(3);
 // An RMC belongs to the PPS before it and comes up to a second behind; one that is late by a second more is still told by its stamp.
 constexpr microseconds kMinStampBehindRmc = std::chrono::milliseconds(-500);
 constexpr microseconds kMaxStampBehindRmc = std::chrono::milliseconds(2500);
-// POSE is labelled by the host's clock (arrivals), turns by the sensor's. Farther apart than this they would place obstacles of a boat that turns
+// POSE is labelled by the host's clock (arrivals), scans by the sensor's. Farther apart than this they would place obstacles of a boat that turns
 // at 10 deg/s and goes 3 m/s more than 2.5 deg and 0.75 m wrong; up to this, the host's clock is taken to be kept by UTC with some delay.
 constexpr microseconds kMaxDisagreement = std::chrono::milliseconds(250);
 constexpr microseconds kMaxDisagreementToStay = std::chrono::milliseconds(300);

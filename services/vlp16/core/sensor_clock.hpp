@@ -1,4 +1,4 @@
-// How the sensor's clock and the host's stand to each other, what the sensor knows of UTC, and which of the two clocks stamps a turn.
+// How the sensor's clock and the host's stand to each other, what the sensor knows of UTC, and which of the two clocks stamps a scan.
 #pragma once
 
 #include <chrono>
@@ -25,7 +25,7 @@ enum class ClockState {
   kError,              // the sensor says that its PPS is wrong
 };
 
-/// What the clock says at one instant; a turn keeps that of its first column, so that times inside a turn are regular.
+/// What the clock says at one instant; a scan keeps that of its first column, so that times inside a scan are regular.
 struct ClockReading {
   TimeSource source = TimeSource::kHost;
   std::chrono::microseconds offset{0};  // UTC minus SensorTime, by the clock that is in use: Utime(time + offset)

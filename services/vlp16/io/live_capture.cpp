@@ -1,12 +1,8 @@
 #include "services/vlp16/io/live_capture.hpp"
 
 #include <net/if.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <pcap/pcap.h>
 #include <stdexcept>
@@ -29,27 +25,6 @@ std::string ApplyFilter(pcap_t* capture, const std::string& filter, bool is_inst
   const bool is_fine = !is_installed || pcap_setfilter(capture, &program) == 0;
   pcap_freecode(&program);
   return is_fine ? "" : pcap_geterr(capture);
-}
-
-bool IsUp(const std::string& interface) {
-  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return false;
-  ifreq request{};
-  interface.copy(request.ifr_name, IFNAMSIZ - 1);
-  const bool is_up = ioctl(descriptor, SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) != 0;
-  close(descriptor);
-  return is_up;
-}
-
-std::string InterfaceNames() {
-  std::string names;
-  struct if_nameindex* const list = if_nameindex();
-  for (auto* item = list; item != nullptr && item->if_index != 0; ++item) {
-    names += names.empty() ? "" : ", ";
-    names += item->if_name;
-  }
-  if (list != nullptr) if_freenameindex(list);
-  return names;
 }
 
 std::string ProgramFile() {
@@ -83,11 +58,8 @@ void LiveCapture::Closer::operator()(void* capture) const { pcap_close(static_ca
 
 LiveCapture::LiveCapture(LiveOptions options) : options_(std::move(options)) {
   const auto& interface = options_.interface;
-  if (if_nametoindex(interface.c_str()) == 0) {
-    throw std::runtime_error("cannot capture: there is no interface '" + interface + "' now (there are: " + InterfaceNames() +
-                             "). When it comes late at boot, start after it; systemd: After=sys-subsystem-net-devices-" + interface + ".device");
-  }
-  if (!IsUp(interface)) {
+  if (if_nametoindex(interface.c_str()) == 0) throw std::runtime_error("cannot capture: " + io::NoInterfaceText(interface));
+  if (!io::IsInterfaceUp(interface)) {
     fault_ = CheckInterface();
     return;
   }
@@ -148,14 +120,15 @@ LiveCapture::Drops LiveCapture::CurrentDrops() const {
 std::string LiveCapture::CheckInterface() {
   const auto& interface = options_.interface;
   const unsigned int index = if_nametoindex(interface.c_str());
-  const bool is_up = index != 0 && IsUp(interface);
+  const bool is_up = index != 0 && io::IsInterfaceUp(interface);
   if (index != interface_index_ || !is_up) Close();
   if (index == 0) return "interface '" + interface + "' is not there";
   if (!is_up) return "interface '" + interface + "' is down";
   return capture_ ? "" : Open();
 }
 
-std::string LiveCapture::FollowInterface() {
+std::string LiveCapture::Poll(Utime now) {
+  if (!timer_.IsDue(now)) return "";
   const auto num_opened_before = num_opened_;
   const auto fault = CheckInterface();
   const bool is_reopened = num_opened_ != num_opened_before;
@@ -167,8 +140,8 @@ std::string LiveCapture::FollowInterface() {
          (read_fault.empty() ? "" : "; reading had ended: " + read_fault);
 }
 
-std::optional<LiveDatagram> LiveCapture::Judge(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction) {
-  const auto frame = ParseFrame(link_type_, bytes, is_cut);
+std::optional<io::Source::Piece> LiveCapture::Check(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction) {
+  auto frame = ParseFrame(link_type_, bytes, is_cut);
   const auto host_time = UtimeOfStamp(seconds, fraction * nanoseconds_per_fraction_);
   if (host_time) last_time_ = *host_time;
   if (frame.fault == FrameFault::kNone && !host_time) {
@@ -182,10 +155,14 @@ std::optional<LiveDatagram> LiveCapture::Judge(Bytes bytes, bool is_cut, std::in
     ++num_source_refused_;
     return std::nullopt;
   }
-  return LiveDatagram{*host_time, frame.source_address, frame.source_port, frame.destination_port, frame.payload};
+  return Piece{.host_time = *host_time,
+               .bytes = frame.payload,
+               .port = frame.destination_port,
+               .source_address = std::move(frame.source_address),
+               .source_port = frame.source_port};
 }
 
-std::optional<LiveDatagram> LiveCapture::Next() {
+std::optional<io::Source::Piece> LiveCapture::Receive(Utime) {
   is_empty_ = false;
   for (int i = 0; i < kMaxSkippedPerCall && !is_empty_; ++i) {
     pcap_pkthdr* header = nullptr;
@@ -193,13 +170,13 @@ std::optional<LiveDatagram> LiveCapture::Next() {
     const int outcome = capture_ ? pcap_next_ex(static_cast<pcap_t*>(capture_.get()), &header, &data) : 0;
     if (outcome == 1) {
       ++num_frames_;
-      auto datagram = Judge(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
+      auto datagram = Check(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
       if (datagram) return datagram;
       continue;
     }
     is_empty_ = true;
     if (outcome == 0) continue;
-    // FollowInterface opens it again.
+    // Poll opens it again.
     ++num_read_errors_;
     read_fault_ = pcap_geterr(static_cast<pcap_t*>(capture_.get()));
     Close();
@@ -207,7 +184,7 @@ std::optional<LiveDatagram> LiveCapture::Next() {
   return std::nullopt;
 }
 
-std::vector<Counter> LiveCapture::counters() const {
+std::vector<Counter> LiveCapture::counters() {
   const auto drops = CurrentDrops();
   std::vector<Counter> counters{{"capture_kernel_drops", drops.num_kernel},      {"capture_interface_drops", drops.num_interface},
                                 {"capture_source_refused", num_source_refused_}, {"capture_outages", num_outages_},

@@ -11,6 +11,8 @@
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/interface.hpp"
+#include "common/io/source.hpp"
 #include "services/vlp16/io/frame.hpp"
 
 namespace lookout::vlp16 {
@@ -24,14 +26,6 @@ struct LiveOptions {
   std::vector<std::string> allowed_source_addresses;  // as inet_ntop writes them; empty = all
 };
 
-struct LiveDatagram {
-  Utime host_time;             // kernel stamp of the arrival
-  std::string source_address;  // numeric
-  int source_port = 0;
-  int destination_port = 0;
-  Bytes payload;  // until the next call of Next()
-};
-
 /// Datagrams to one of two ports, plain or in up to two VLAN tags.
 ///
 /// @param has_vlan  whether the link type knows VLAN tags: Ethernet does
@@ -40,43 +34,33 @@ std::string FilterOfPorts(int data_port, int position_port, bool has_vlan);
 /// @return why a filter cannot be compiled for Ethernet; empty = it can
 std::string FilterFault(const std::string& filter);
 
-class LiveCapture {
+class LiveCapture final : public io::Source {
  public:
   /// @throws std::runtime_error when the interface is not there or the right to capture is missing (naming what gives it). An interface that is
   ///         down is waited for.
   explicit LiveCapture(LiveOptions options);
-  ~LiveCapture();
-  LiveCapture(const LiveCapture&) = delete;
-  LiveCapture& operator=(const LiveCapture&) = delete;
+  ~LiveCapture() override;
 
-  /// @return the next datagram that waits and comes from an allowed source; nullopt when none waits, and after kMaxSkippedPerCall frames that
-  ///         hold none: is_empty() tells which. Never waits.
-  std::optional<LiveDatagram> Next();
+  /// Looks once a second: closes when the interface goes down or away, opens again when it is back. Also says (and counts as an outage) what was
+  /// over before it looked.
+  std::string Poll(Utime now) override;
 
-  /// The last Next() left nothing behind. False after one that ended at kMaxSkippedPerCall.
-  bool is_empty() const { return is_empty_; }
-
-  /// Kernel stamp of the last frame that has one: what came before it has been taken. 1970 before the first.
-  Utime last_time() const { return last_time_; }
+  /// The next datagram from an allowed source.
+  std::optional<Piece> Receive(Utime now) override;
 
   /// So that a flood of other frames does not hold the caller.
   static constexpr int kMaxSkippedPerCall = 64;
 
-  /// To be called about once a second: closes when the interface goes down or away, opens again when it is back. Also tells (and counts as an
-  /// outage) what was over before it was called.
-  ///
-  /// @return what changed, for the log; empty = nothing
-  std::string FollowInterface();
-
-  /// Why nothing can be captured now; empty = it can.
-  const std::string& fault() const { return fault_; }
+  bool is_empty() const override { return is_empty_; }
+  Utime last_time() const override { return last_time_; }
+  std::string fault() const override { return fault_; }
 
   /// What is let through, as given to the kernel; empty while nothing can be captured.
   const std::string& filter() const { return filter_; }
 
   /// capture_kernel_drops, capture_interface_drops (reads the kernel's), capture_source_refused, capture_outages, capture_read_errors,
   /// frames_read, frames_datagram, then skipped frames by reason.
-  std::vector<Counter> counters() const;
+  std::vector<Counter> counters() override;
 
  private:
   struct Closer {
@@ -91,13 +75,14 @@ class LiveCapture {
   void Close();
   std::string CheckInterface();
   Drops CurrentDrops() const;
-  std::optional<LiveDatagram> Judge(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction);
+  std::optional<Piece> Check(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction);
 
   LiveOptions options_;
   std::unique_ptr<void, Closer> capture_;  // pcap_t
   int link_type_ = 0;
   std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as far as the kernel gives it
   unsigned int interface_index_ = 0;
+  io::InterfaceTimer timer_;
   bool is_empty_ = true;
   Utime last_time_{};
   std::string fault_;

@@ -34,8 +34,8 @@ TEST(BoatInWords, OfTheBoatsInConfigIsNotDoubtful) {
       remarks[0].words,
       "returns up to 1.4 m ahead and 1.4 m astern, up to 0.9 m to port and 0.9 m to starboard of the reference point, from 0.6 m below the water to "
       "2.4 m above the water, are own boat");
-  EXPECT_EQ(remarks[1].words, "the lidar is 0.5 m ahead and 0.1 m to starboard of the reference point, 1.5 m above the water");
-  EXPECT_EQ(remarks[2].words, "the GNSS antenna is 1.3 m astern of the lidar, 0.5 m to port and 0.2 m lower");
+  EXPECT_EQ(remarks[1].words, "the lidar is 0.50 m ahead and 0.10 m to starboard of the reference point, 1.50 m above the water");
+  EXPECT_EQ(remarks[2].words, "the GNSS antenna is 0.80 m astern and 0.40 m to port of the reference point, 1.30 m above the water");
 }
 
 // Such a box was taken without a word, and everything ahead of the boat was own boat.
@@ -72,21 +72,29 @@ TEST(BoatInWords, NamesAnAntennaAndALidarThatAreNotOnTheBoat) {
   auto boat = LoadBoat(kDemo);
   boat.p_vessel_antenna_m.x() = 80.5;
   EXPECT_TRUE(Has(Warnings(boat),
-                  "the GNSS antenna is 80.0 m ahead of the lidar, 0.5 m to port and 0.2 m lower; that is more than 2.0 m outside of a hull "
+                  "the GNSS antenna is 80.50 m ahead and 0.40 m to port of the reference point, 1.30 m above the water; that is more than 2.0 m "
+                  "outside of a hull "
                   "of 2.4 m x 1.4 m | the place of the GNSS antenna: gnss_antenna in boat.txtpb"))
       << Warnings(boat);
   boat = LoadBoat(kDemo);
   boat.T_vessel_lidar.translation().y() = -5.0;
-  EXPECT_TRUE(Has(Warnings(boat), "the lidar is 0.5 m ahead and 5.0 m to starboard")) << Warnings(boat);
+  EXPECT_TRUE(Has(Warnings(boat), "the lidar is 0.50 m ahead and 5.00 m to starboard")) << Warnings(boat);
   boat.hull_m.reset();
   EXPECT_TRUE(Has(Warnings(boat), "more than 2.0 m outside of own_vessel")) << Warnings(boat);
 }
 
-// Files of before there were these facts are taken as they were, with a word.
-TEST(BoatInWords, SaysThatTheHullIsNotTold) {
+TEST(BoatInWords, NamesAnAntennaUnderWater) {
+  auto boat = LoadBoat(kDemo);
+  boat.p_vessel_antenna_m.z() = -2.0;
+  EXPECT_TRUE(RemarksOnBoat(boat)[2].is_under_water);
+  EXPECT_TRUE(Has(Warnings(boat), "1.60 m below the water | the sign of gnss_antenna.z_m")) << Warnings(boat);
+}
+
+// A file from before these facts is accepted, with a warning.
+TEST(BoatInWords, SaysThatTheSizeOfTheHullIsNotSet) {
   auto boat = LoadBoat(kDemo);
   boat.hull_m.reset();
-  EXPECT_TRUE(Has(Warnings(boat), "the size of the hull is not told")) << Warnings(boat);
+  EXPECT_TRUE(Has(Warnings(boat), "the size of the hull is not set")) << Warnings(boat);
 }
 
 TEST(BoatInWords, ARefusedHullIsOneThatIsHalfTold) {

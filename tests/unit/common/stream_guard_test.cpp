@@ -1,75 +1,8 @@
-#include "common/bus/stream_guard.hpp"
-
-#include <cstdint>
-#include <gtest/gtest.h>
-#include <random>
-#include <vector>
+// One publisher on a channel: its losses, restarts and jumps.
+#include "tests/unit/common/guarded_stream.hpp"
 
 namespace lookout::bus {
 namespace {
-
-using std::chrono::milliseconds;
-using std::chrono::seconds;
-using Act = StreamGuard::Act;
-using Held = StreamGuard::Held;
-using Time = StreamGuard::Time;
-
-constexpr std::int64_t kPeriodUs = 100'000;
-
-// A guard, and what comes out of it: who made each message that was taken, in their order.
-class Stream : public ::testing::Test {
- protected:
-  StreamGuard guard_{40.0};
-  Time now_{seconds(1000)};
-  std::int64_t num_events_ = 0;
-  std::int64_t num_lost_ = 0;
-  struct Message {
-    char maker;
-    std::int64_t seq;
-    bool operator==(const Message&) const = default;
-  };
-  std::vector<Message> held_;
-  std::vector<Message> taken_;
-
-  void Take(const StreamGuard::Decision& decision, const Message& message) {
-    num_lost_ += decision.num_lost;
-    if (decision.held == Held::kTake) taken_.insert(taken_.end(), held_.begin(), held_.end());
-    if (decision.held != Held::kStay) held_.clear();
-    if (decision.act == Act::kHold) held_.push_back(message);
-    if (decision.act == Act::kTake) taken_.push_back(message);
-    EXPECT_EQ(guard_.is_holding(), !held_.empty());
-  }
-  // A message of `maker`, by default measured where its number says.
-  void Send(char maker, std::int64_t seq, std::int64_t offset_us = 0) { SendAt(maker, seq, seq * kPeriodUs + offset_us); }
-  void SendAt(char maker, std::int64_t seq, std::int64_t utime_us) {
-    const StreamPlace place{
-        .seq = seq, .utime_us = utime_us, .digest = static_cast<std::uint64_t>(maker) * 1'000'003 + static_cast<std::uint64_t>(seq)};
-    Take(guard_.Next(place, now_, num_events_++), {maker, seq});
-  }
-  void Pass(milliseconds time) {
-    for (milliseconds passed(0); passed < time; passed += milliseconds(50)) {
-      now_ += milliseconds(50);
-      Release(guard_.Release(now_));
-    }
-  }
-  void Release(std::optional<std::int64_t> num_lost) {
-    if (!num_lost) return;
-    num_lost_ += *num_lost;
-    taken_.insert(taken_.end(), held_.begin(), held_.end());
-    held_.clear();
-  }
-  // So many of one stream, as they come.
-  void Run(char maker, std::int64_t first, std::int64_t number, std::int64_t offset_us = 0) {
-    for (std::int64_t seq = first; seq < first + number; ++seq) {
-      Send(maker, seq, offset_us);
-      Pass(milliseconds(100));
-    }
-  }
-  std::int64_t NumTaken(char maker) const {
-    return std::count_if(taken_.begin(), taken_.end(), [maker](const Message& message) { return message.maker == maker; });
-  }
-  bool HasSecond() const { return guard_.HasSecond(now_, seconds(60)); }
-};
 
 TEST_F(Stream, ThatBeginsAnywhereIsTaken) {
   Run('a', 17, 3);
@@ -137,149 +70,6 @@ TEST_F(Stream, OfTimesThatVaryLosesWithoutASecondPublisher) {
   EXPECT_EQ(NumTaken('a'), num_sent);
   EXPECT_EQ(guard_.num_refused(), 0);
   EXPECT_FALSE(guard_.first_interleaving());
-}
-
-TEST_F(Stream, ASecondPublisherIsRefusedAndTheFirstGoesOn) {
-  Run('a', 1000, 20);
-  for (std::int64_t i = 0; i < 50; ++i) {
-    Send('b', 5 + i, 30'000);
-    Pass(milliseconds(50));
-    Send('a', 1020 + i);
-    Pass(milliseconds(50));
-  }
-  EXPECT_EQ(NumTaken('a'), 70);
-  EXPECT_EQ(NumTaken('b'), 0);
-  EXPECT_EQ(guard_.num_refused(), 50);
-  EXPECT_TRUE(HasSecond());
-  ASSERT_TRUE(guard_.first_interleaving());
-  EXPECT_EQ(guard_.first_interleaving()->mark, 20);
-  EXPECT_EQ(num_lost_, 0);
-}
-
-TEST_F(Stream, ASecondPublisherWithGreaterNumbersIsRefused) {
-  Run('a', 5, 20);
-  for (std::int64_t i = 0; i < 50; ++i) {
-    SendAt('b', 100'000 + i, (25 + i) * kPeriodUs + 30'000);
-    Pass(milliseconds(50));
-    Send('a', 25 + i);
-    Pass(milliseconds(50));
-  }
-  EXPECT_EQ(NumTaken('a'), 70);
-  EXPECT_EQ(NumTaken('b'), 0);
-  EXPECT_EQ(num_lost_, 0);
-}
-
-// Two computers switched on at the same time: numbers a few apart.
-TEST_F(Stream, ASecondPublisherWithNearNumbersIsRefused) {
-  for (const std::int64_t ahead : {-3, -2, -1, 0, 2, 3, 5, 10, 30}) {
-    SCOPED_TRACE(ahead);
-    guard_ = StreamGuard(40.0);
-    taken_.clear();
-    held_.clear();
-    Run('a', 100, 20);
-    for (std::int64_t i = 0; i < 50; ++i) {
-      Send('a', 120 + i);
-      Pass(milliseconds(50));
-      SendAt('b', 120 + i + ahead, (120 + i) * kPeriodUs + 30'000);
-      Pass(milliseconds(50));
-    }
-    EXPECT_EQ(NumTaken('a'), 70);
-    EXPECT_EQ(NumTaken('b'), 0);
-    EXPECT_TRUE(HasSecond());
-  }
-}
-
-// Two computers of one switch, without a common clock. The second was taken for good, and the first refused.
-TEST_F(Stream, ASecondPublisherWithNearNumbersWhoseClockIsFarAheadIsRefused) {
-  for (const std::int64_t ahead : {2, 3, 6, 10, 20}) {
-    for (const std::int64_t clock_us : {3'000'000, 3'900'000, 100'000'000}) {
-      SCOPED_TRACE(std::to_string(ahead) + " " + std::to_string(clock_us));
-      guard_ = StreamGuard(40.0);
-      taken_.clear();
-      held_.clear();
-      Run('a', 100, 20);
-      for (std::int64_t i = 0; i < 50; ++i) {
-        Send('a', 120 + i);
-        Pass(milliseconds(50));
-        SendAt('b', 120 + i + ahead, (120 + i) * kPeriodUs + clock_us);
-        Pass(milliseconds(50));
-      }
-      EXPECT_EQ(NumTaken('a'), 70);
-      EXPECT_EQ(NumTaken('b'), 0);
-      EXPECT_TRUE(HasSecond());
-    }
-  }
-}
-
-// Two navigators switched on within a tenth of a second: POSE of both comes for the same instants, five at once.
-TEST_F(Stream, ASecondPublisherOfTheSameInstantsWithNearNumbersIsRefused) {
-  for (const std::int64_t ahead : {-7, -5, -4, -2, -1, 1, 2, 3, 4, 5, 6, 8}) {
-    for (const bool is_first : {false, true}) {
-      SCOPED_TRACE(std::to_string(ahead) + (is_first ? " second first" : ""));
-      guard_ = StreamGuard(50.0, true);
-      taken_.clear();
-      held_.clear();
-      for (std::int64_t seq = 100; seq < 150; ++seq) {
-        SendAt('a', seq, seq * 20'000);
-        if (seq % 5 == 4) Pass(milliseconds(100));
-      }
-      for (std::int64_t i = 150; i < 400; i += 5) {
-        const auto send_five = [&](char maker, std::int64_t more) {
-          for (std::int64_t seq = i; seq < i + 5; ++seq) SendAt(maker, seq + more, seq * 20'000);
-        };
-        if (is_first) send_five('b', ahead);
-        send_five('a', 0);
-        if (!is_first) send_five('b', ahead);
-        Pass(milliseconds(100));
-      }
-      EXPECT_EQ(NumTaken('a'), 300);
-      EXPECT_EQ(NumTaken('b'), 0);
-      EXPECT_TRUE(HasSecond());
-    }
-  }
-}
-
-// ATTITUDE of two sensors: their times are shared, and go back by a little.
-TEST_F(Stream, AnEvenStreamWhoseTimesStandStillIsOne) {
-  for (std::int64_t seq = 100; seq < 300; ++seq) {
-    SendAt('a', seq, seq / 2 * 20'000 - (seq % 14 == 1 ? 5'000 : 0));
-    Pass(milliseconds(10));
-  }
-  EXPECT_EQ(NumTaken('a'), 200);
-  EXPECT_FALSE(HasSecond());
-}
-
-// The slower one is overtaken: for a while both have the same numbers.
-TEST_F(Stream, ASecondPublisherThatOvertakesIsRefusedOnItsWay) {
-  Run('a', 1000, 20);
-  std::int64_t seq_b = 1000;
-  std::int64_t next_a_us = 1020 * kPeriodUs;
-  std::int64_t next_b_us = 1020 * kPeriodUs + 37'000;
-  std::int64_t seq_a = 1020;
-  while (seq_a < 1600) {
-    if (next_a_us <= next_b_us) {
-      SendAt('a', seq_a++, next_a_us);
-      next_a_us += kPeriodUs;
-    } else {
-      SendAt('b', seq_b++, next_b_us);
-      next_b_us += kPeriodUs * 9 / 10;
-    }
-    now_ += milliseconds(47);
-  }
-  EXPECT_EQ(NumTaken('b'), 0);
-  EXPECT_GE(NumTaken('a'), 598);  // where number and time are those of both, neither is taken
-  EXPECT_TRUE(HasSecond());
-}
-
-TEST_F(Stream, BurstsOfTwoPublishersAreKeptApart) {
-  Run('a', 1000, 20);
-  for (std::int64_t i = 0; i < 200; i += 5) {
-    for (std::int64_t k = 0; k < 5; ++k) Send('b', 20 + i + k);
-    for (std::int64_t k = 0; k < 5; ++k) Send('a', 1020 + i + k);
-    Pass(milliseconds(100));
-  }
-  EXPECT_EQ(NumTaken('a'), 220);
-  EXPECT_EQ(NumTaken('b'), 0);
 }
 
 TEST_F(Stream, ARestartLosesNothing) {
@@ -362,23 +152,6 @@ TEST_F(Stream, RestartAfterRestartLosesNothing) {
   EXPECT_FALSE(HasSecond());
 }
 
-TEST_F(Stream, WhenTheFirstPublisherEndsTheSecondIsTaken) {
-  Run('a', 1000, 20);
-  for (std::int64_t i = 0; i < 20; ++i) {
-    Send('b', 5 + i, 30'000);
-    Pass(milliseconds(50));
-    Send('a', 1020 + i);
-    Pass(milliseconds(50));
-  }
-  const auto num_refused = guard_.num_refused();
-  Run('b', 25, 30);
-  EXPECT_EQ(NumTaken('b'), 30);  // from the end of the first on, none is lost
-  EXPECT_EQ(guard_.num_refused(), num_refused);
-  EXPECT_EQ(num_lost_, 0);
-  Pass(milliseconds(60'000));
-  EXPECT_FALSE(HasSecond());
-}
-
 TEST_F(Stream, ALoneWrongNumberIsRefusedAndIsNoSecondPublisher) {
   for (const std::int64_t wrong : {std::int64_t{3}, std::int64_t{100'000}, INT64_MAX, INT64_MIN}) {
     SCOPED_TRACE(wrong);
@@ -414,33 +187,6 @@ TEST_F(Stream, ARepeatedMessageIsTakenOnce) {
   EXPECT_EQ(NumTaken('a'), 20);
   EXPECT_EQ(guard_.num_refused(), 1);
   EXPECT_FALSE(HasSecond());
-}
-
-// A second segmenter with the same config gives the same bytes.
-TEST_F(Stream, TwoPublishersOfTheSameBytesAreTakenOnce) {
-  for (std::int64_t seq = 0; seq < 50; ++seq) {
-    Send('a', seq);
-    Send('a', seq);
-    Pass(milliseconds(100));
-  }
-  EXPECT_EQ(NumTaken('a'), 50);
-  EXPECT_TRUE(HasSecond());
-}
-
-// What nothing tells apart is not mixed: neither is taken.
-TEST_F(Stream, TwoPublishersOfEqualNumbersAndTimesAreNotMixed) {
-  Run('a', 0, 20);
-  for (std::int64_t seq = 20; seq < 60; ++seq) {
-    Send('a', seq);
-    Send('b', seq);
-    Pass(milliseconds(100));
-  }
-  EXPECT_EQ(NumTaken('b'), 0);
-  EXPECT_LE(NumTaken('a'), 21);
-  EXPECT_TRUE(HasSecond());
-  Run('a', 60, 40);  // one of them has ended
-  EXPECT_GE(NumTaken('a'), 45);
-  EXPECT_EQ(NumTaken('b'), 0);
 }
 
 TEST_F(Stream, AClockThatIsSetBackChangesNothing) {

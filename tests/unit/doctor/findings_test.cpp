@@ -10,15 +10,15 @@ constexpr auto kWarning = Grade::kWarning;
 constexpr auto kFault = Grade::kFault;
 
 TEST(Doctor, FindsNothingOnAHealthyBoat) {
-  for (const auto& finding : Judge(Healthy())) {
-    EXPECT_EQ(finding.grade, kOk) << finding.subject << ": " << finding.words;
-    EXPECT_TRUE(finding.cure.empty()) << finding.words;
+  for (const auto& finding : CheckAll(Healthy())) {
+    EXPECT_EQ(finding.grade, kOk) << finding.subject << ": " << finding.text;
+    EXPECT_TRUE(finding.cure.empty()) << finding.text;
   }
 }
 
 TEST(DoctorGuardZone, SaysThatNobodyLooks) {
   auto seen = Healthy();
-  EXPECT_EQ(About(JudgeProcesses(seen), "guard zone").text, "") << "none is configured";
+  EXPECT_EQ(About(CheckProcesses(seen), "guard zone").text, "") << "none is configured";
   auto& counters = seen.processes["georeferencer"][0].last.counters;
   const auto set = [&counters](const std::vector<std::pair<std::string, std::int64_t>>& values) {
     counters.clear();
@@ -29,47 +29,47 @@ TEST(DoctorGuardZone, SaysThatNobodyLooks) {
     }
   };
   set({{"alarm_active", 0}, {"alarms", 3}, {"zone_unwatched", 0}, {"zone_times_unwatched", 2}});
-  EXPECT_SAYS(About(JudgeProcesses(seen), "guard zone"), kOk, "is watched, 3 alarms and 2 times unwatched");
+  EXPECT_SAYS(About(CheckProcesses(seen), "guard zone"), kOk, "is watched, 3 alarms and 2 times unwatched");
   set({{"alarm_active", 1}, {"alarms", 3}, {"zone_unwatched", 1}, {"zone_times_unwatched", 2}});
-  EXPECT_SAYS(About(JudgeProcesses(seen), "guard zone"), kFault, "not watched: no alarm can be raised now");
+  EXPECT_SAYS(About(CheckProcesses(seen), "guard zone"), kFault, "not watched: no alarm can be raised now");
   set({{"alarm_active", 1}, {"alarms", 3}, {"nearest_cm", 730}, {"zone_unwatched", 0}, {"zone_times_unwatched", 2}});
-  EXPECT_SAYS(About(JudgeProcesses(seen), "guard zone"), kWarning, "something is in it now, 7.3 m off");
+  EXPECT_SAYS(About(CheckProcesses(seen), "guard zone"), kWarning, "something is in it now, 7.3 m off");
 }
 
 TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
   BusSeen bus = Healthy().bus;
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kOk, "nothing leaves this computer");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kOk, "nothing leaves this computer");
   bus.route_device = "eth0";
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kWarning, "ip route replace 239.255.76.0/24 dev lo");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kWarning, "ip route replace 239.255.76.0/24 dev lo");
   bus.time_to_live = 1;
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kOk, "goes by eth0; time-to-live 1");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kOk, "goes by eth0; time-to-live 1");
   bus.route_device = "lo";
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kWarning, "other computers shall hear it, and do not");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kWarning, "other computers shall hear it, and do not");
   bus.time_to_live = 0;
   bus.fault = "there is no route";
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kFault, "ip route add 239.255.76.0/24 dev lo");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kFault, "ip route add 239.255.76.0/24 dev lo");
   bus = {"memq://", "", 0, "", ""};
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kOk, "no multicast");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kOk, "no multicast");
   bus.fault = "LCM cannot be opened";
-  EXPECT_SAYS(About(JudgeBus(bus), "route"), kFault, "LCM_DEFAULT_URL");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kFault, "LCM_DEFAULT_URL");
 }
 
 TEST(DoctorPort, WarnsOfWhoListensToOtherComputersWithoutAFilter) {
   Observations seen = Healthy();
-  EXPECT_SAYS(About(JudgePort(seen), "port"), kOk,
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kOk,
               "port 7667 of the bus is open on eth0; Lookout's programs take only sound datagrams of this computer");
   seen.port.without_filter = {"a program of user pi", "lcm-logger (pid 17)"};
-  EXPECT_SAYS(About(JudgePort(seen), "port"), kWarning, "can be ended by one datagram: a program of user pi");
-  EXPECT_SAYS(About(JudgePort(seen), "port"), kWarning, "LOOKOUT_BUS_FIREWALL=on");
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning, "can be ended by one datagram: a program of user pi");
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning, "LOOKOUT_BUS_FIREWALL=on");
   seen.bus.time_to_live = 1;
-  EXPECT_SAYS(About(JudgePort(seen), "port"), kWarning, "lcm-logger (pid 17)");
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning, "lcm-logger (pid 17)");
   seen.port.is_closed = true;
-  EXPECT_SAYS(About(JudgePort(seen), "port"), kOk, "is closed");
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kOk, "is closed");
   seen.port.is_closed = false;
   for (auto& interface : seen.interfaces) interface.has_carrier = interface.is_loopback;
-  EXPECT_SAYS(About(JudgePort(seen), "port"), kOk, "no interface leads to another computer");
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kOk, "no interface leads to another computer");
   seen.bus.group.clear();
-  EXPECT_TRUE(JudgePort(seen).empty());
+  EXPECT_TRUE(CheckPort(seen).empty());
 }
 
 TEST(DoctorPort, FindsTheSocketsOfThePort) {
@@ -89,9 +89,9 @@ TEST(DoctorPort, FindsTheSocketsOfThePort) {
 
 TEST(DoctorBus, WantsBuffers) {
   BuffersSeen buffers{212'992, 4 << 20, 2 << 20};
-  EXPECT_SAYS(About(JudgeBuffers(buffers), "buffers"), kWarning, "net.core.rmem_max=4194304");
+  EXPECT_SAYS(About(CheckBuffers(buffers), "buffers"), kWarning, "net.core.rmem_max=4194304");
   buffers = {4 << 20, 4 << 20, 212'992};
-  EXPECT_SAYS(About(JudgeBuffers(buffers), "buffers"), kWarning, "net.core.rmem_default=2097152");
+  EXPECT_SAYS(About(CheckBuffers(buffers), "buffers"), kWarning, "net.core.rmem_default=2097152");
 }
 
 TEST(DoctorRoute, TakesTheLongestMatchThatIsUp) {
@@ -110,54 +110,54 @@ TEST(DoctorRoute, TakesTheLongestMatchThatIsUp) {
 
 TEST(DoctorLidar, SaysWhatItIs) {
   const auto seen = Healthy();
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kOk, "VLP-16, strongest return, 754 packets/s (754 expected), 600 rpm");
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kOk, "3770 datagrams from 192.168.1.201 to port 2368; this computer is 192.168.1.77 on eth0");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kOk, "VLP-16, strongest return, 754 packets/s (754 expected), 600 rpm");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kOk, "3770 datagrams from 192.168.1.201 to port 2368; this computer is 192.168.1.77 on eth0");
 }
 
 TEST(DoctorLidar, KnowsTheRateOfDualReturn) {
   auto seen = Healthy();
   seen.lidar.num_returns = 2;
   seen.lidar.num_packets *= 2;
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kOk, "dual return, 1507 packets/s (1507 expected)");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kOk, "dual return, 1507 packets/s (1507 expected)");
 }
 
 TEST(DoctorLidar, MissesIt) {
   auto seen = Healthy();
   seen.lidar.num_packets = 0;
   seen.lidar.num_by_sender.clear();
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "no lidar packets");
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kOk, "192.168.1.77 on eth0, in the network of a lidar at 192.168.1.201");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "no lidar packets");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kOk, "192.168.1.77 on eth0, in the network of a lidar at 192.168.1.201");
   seen.interfaces[1].has_carrier = false;
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kFault, "no carrier");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kFault, "no carrier");
   seen.interfaces[1] = Interface("eth0", "10.0.0.2", 24);
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kWarning, "ip address add 192.168.1.77/24");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kWarning, "ip address add 192.168.1.77/24");
   seen.lidar.complaint = "no usable lidar packets for 4 s; the last was refused: a packet of another sensor: Ouster";
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "Ouster");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "Ouster");
 }
 
 TEST(DoctorLidar, SeesThatItHasStopped) {
   auto seen = Healthy();
   seen.lidar.heard_last = kEnd - std::chrono::seconds(2);
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "is the lidar powered");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "is the lidar powered");
 }
 
 TEST(DoctorLidar, SeesLosses) {
   auto seen = Healthy();
   seen.lidar.last_clock->num_lost_packets = 20;
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kOk, "VLP-16");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kOk, "VLP-16");
   seen.lidar.last_clock->num_lost_packets = 40;
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kWarning, "40 packets lost of 3040");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "40 packets lost of 3040");
 }
 
 TEST(DoctorLidar, SeesAPortThatIsTakenAndASensorThatIsNotWanted) {
   auto seen = Healthy();
   seen.lidar.fault = "cannot listen on '0.0.0.0' port 2368: bind: Address already in use";
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "running on another bus");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "running on another bus");
   seen = Healthy();
   seen.config.lidar->sources.kind = vlp16::Sources::Kind::kCapture;
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kWarning, "takes no sensor");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "takes no sensor");
   seen.config.lidar.reset();
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kWarning, "vlp16.txtpb is wrong");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "vlp16.txtpb is wrong");
 }
 
 // On a busy computer the first HEALTH came later than the doctor waits for it, and it told of a taken port whose process sent on the same bus.
@@ -168,14 +168,14 @@ TEST(DoctorLidar, APortThatAProcessHoldsIsNoFaultThoughItsHealthCameLate) {
   seen.lidar.fault = "cannot listen on '0.0.0.0' port 2368: bind: Address already in use";
   seen.navigation.input_faults.emplace_back("udp", "cannot listen on '0.0.0.0' port 10110: bind: Address already in use");
   ForgivePortsOfProcesses(seen);
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kFault, "port 2368");
-  EXPECT_SAYS(About(JudgeNavigation(seen), "input"), kFault, "port 10110");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "port 2368");
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kFault, "port 10110");
 
   seen.processes["vlp16"].push_back(Running("vlp16", 8));
   ForgivePortsOfProcesses(seen);
-  EXPECT_SAYS(About(JudgeLidar(seen), "lidar"), kOk, "VLP-16");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kOk, "VLP-16");
   EXPECT_EQ(seen.lidar.via, Via::kBus);
-  EXPECT_SAYS(About(JudgeNavigation(seen), "input"), kFault, "port 10110");
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kFault, "port 10110");
 
   seen.processes["navigator"].push_back(Running("navigator", 9));
   ForgivePortsOfProcesses(seen);
@@ -186,30 +186,30 @@ TEST(DoctorLidar, APortThatAProcessHoldsIsNoFaultThoughItsHealthCameLate) {
 TEST(DoctorLidar, SeesAWrongNetworkAndAWrongSender) {
   auto seen = Healthy();
   seen.interfaces[1] = Interface("eth0", "192.168.2.77", 24);
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kWarning, "no address of this computer is in its network (eth0 192.168.2.77/24)");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kWarning, "no address of this computer is in its network (eth0 192.168.2.77/24)");
   seen.interfaces[1] = Interface("eth0", "192.168.2.77", 22);  // 192.168.0.0 to 192.168.3.255
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kOk, "192.168.2.77 on eth0");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kOk, "192.168.2.77 on eth0");
   seen.config.lidar->sources.allowed_source_addresses = {"192.168.1.202"};
-  EXPECT_SAYS(About(JudgeLidar(seen), "network"), kWarning, "allowed_source_address: \"192.168.1.201\"");
+  EXPECT_SAYS(About(CheckLidar(seen), "network"), kWarning, "allowed_source_address: \"192.168.1.201\"");
 }
 
 TEST(DoctorClocks, TellsEachStateOfTheSensors) {
   auto seen = Healthy();
-  EXPECT_SAYS(About(JudgeClocks(seen), "clock"), kOk, "locked to PPS and GNSS time; this computer's clock is 1.0 ms ahead");
+  EXPECT_SAYS(About(CheckClocks(seen), "clock"), kOk, "locked to PPS and GNSS time; this computer's clock is 1.0 ms ahead");
   seen.lidar.last_clock->offset_s = 3.5;
-  EXPECT_SAYS(About(JudgeClocks(seen), "clock"), kWarning, "3.500 s ahead");
+  EXPECT_SAYS(About(CheckClocks(seen), "clock"), kWarning, "3.500 s ahead");
   const std::map<int, std::string> words{
       {lidar_clock_t::STATE_UNKNOWN, "no position packets"}, {lidar_clock_t::STATE_NO_PPS, "no PPS"},
       {lidar_clock_t::STATE_ACQUIRING, "being set"},         {lidar_clock_t::STATE_LOCKED_WITHOUT_TIME, "no valid GPRMC"},
       {lidar_clock_t::STATE_FREE_RUNNING, "runs free"},      {lidar_clock_t::STATE_ERROR, "PPS is wrong"}};
   for (const auto& [state, part] : words) {
     seen.lidar.last_clock->state = state;
-    EXPECT_SAYS(About(JudgeClocks(seen), "clock"), kWarning, part);
+    EXPECT_SAYS(About(CheckClocks(seen), "clock"), kWarning, part);
   }
   seen.lidar.last_clock.reset();
-  EXPECT_SAYS(About(JudgeClocks(seen), "clock"), kOk, "steered");
+  EXPECT_SAYS(About(CheckClocks(seen), "clock"), kOk, "steered");
   seen.is_host_clock_set = false;
-  EXPECT_SAYS(About(JudgeClocks(seen), "clock"), kWarning, "chrony");
+  EXPECT_SAYS(About(CheckClocks(seen), "clock"), kWarning, "chrony");
 }
 
 TEST(DoctorNavigation, TellsTheFix) {
@@ -217,29 +217,29 @@ TEST(DoctorNavigation, TellsTheFix) {
   auto& fix = *seen.navigation.fix;
   fix.latitude_deg = 43.63;
   fix.longitude_deg = -72.15;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kOk,
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kOk,
               "RTK, fixed from input 'udp' (GGA), 14 satellites, sd 0.02 m per axis, HDOP 0.7, 0.1 s old, at 43.63000 N 72.15000 W");
   fix.num_satellites = 4;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "few satellites");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kWarning, "few satellites");
   fix.num_satellites = -1;  // not said
   fix.hdop = fix.horizontal_sd_m = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kOk, "(GGA), 0.1 s old");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kOk, "(GGA), 0.1 s old");
   fix.horizontal_sd_m = 8.0;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "poor");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kWarning, "poor");
   fix.quality = gnss_fix_t::QUALITY_DEAD_RECKONING;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "not measured by satellites");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kWarning, "not measured by satellites");
   seen.navigation.fix_heard = kEnd - std::chrono::milliseconds(2500);
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kFault, "it has stopped");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kFault, "it has stopped");
   fix.quality = gnss_fix_t::QUALITY_NONE;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kFault, "free view of the sky");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kFault, "free view of the sky");
   seen.navigation.fix.reset();
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kFault, "sentences come from 'udp', but none with a position");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kFault, "sentences come from 'udp', but none with a position");
   seen.navigation.num_by_source.clear();
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kFault, "no sentence came");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kFault, "no sentence came");
   seen.navigation.via = Via::kNothing;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "source: LIVE");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kWarning, "source: LIVE");
   seen.config.navigation.reset();
-  EXPECT_SAYS(About(JudgeNavigation(seen), "gnss"), kWarning, "is wrong");
+  EXPECT_SAYS(About(CheckNavigation(seen), "gnss"), kWarning, "is wrong");
 }
 
 TEST(DoctorNavigation, NamesADatumThatIsFarFromTheFix) {
@@ -248,21 +248,21 @@ TEST(DoctorNavigation, NamesADatumThatIsFarFromTheFix) {
   fix.latitude_deg = 43.63;
   fix.longitude_deg = -72.15;
   seen.config.navigation->navigator.filter.datum = navigator::Datum{fix.latitude_deg, fix.longitude_deg, 0.0};
-  EXPECT_EQ(JudgeNavigation(seen)[0].grade, Grade::kOk);
-  const auto num_findings = JudgeNavigation(seen).size();
+  EXPECT_EQ(CheckNavigation(seen)[0].grade, Grade::kOk);
+  const auto num_findings = CheckNavigation(seen).size();
 
   seen.config.navigation->navigator.filter.datum = navigator::Datum{fix.longitude_deg, fix.latitude_deg, 0.0};
-  const auto findings = JudgeNavigation(seen);
+  const auto findings = CheckNavigation(seen);
   ASSERT_EQ(findings.size(), num_findings + 1);
   EXPECT_EQ(findings[1].grade, Grade::kWarning);
-  EXPECT_NE(findings[1].words.find("swapped latitude and longitude?"), std::string::npos) << findings[1].words;
+  EXPECT_NE(findings[1].text.find("swapped latitude and longitude?"), std::string::npos) << findings[1].text;
 }
 
 TEST(DoctorNavigation, SaysWhatGpsdDoesNotPassWhereItAloneGivesSentencesAndNoHeadingComes) {
   auto seen = Healthy();
   seen.navigation.pose->heading_source = pose_t::HEADING_NONE;
   const auto cure_of = [&seen] {
-    for (const auto& finding : JudgeNavigation(seen)) {
+    for (const auto& finding : CheckNavigation(seen)) {
       if (finding.subject == "heading") return finding.cure;
     }
     return std::string();
@@ -280,56 +280,56 @@ TEST(DoctorNavigation, SaysWhatGpsdDoesNotPassWhereItAloneGivesSentencesAndNoHea
 TEST(DoctorNavigation, TellsTheHeading) {
   auto seen = Healthy();
   auto& pose = *seen.navigation.pose;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "heading"), kOk, "57.3 deg from true north, sd 0.0 deg, from input 'udp' (PASHR)");
+  EXPECT_SAYS(About(CheckNavigation(seen), "heading"), kOk, "57.3 deg from true north, sd 0.0 deg, from input 'udp' (PASHR)");
   pose.covariance[8][8] = DegToRad(6.0) * DegToRad(6.0);
-  EXPECT_SAYS(About(JudgeNavigation(seen), "heading"), kWarning, "1.0 m aside");
+  EXPECT_SAYS(About(CheckNavigation(seen), "heading"), kWarning, "1.0 m aside");
   pose.heading_source = pose_t::HEADING_COURSE;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "heading"), kWarning, "leeway and current");
+  EXPECT_SAYS(About(CheckNavigation(seen), "heading"), kWarning, "leeway and current");
   pose.heading_source = pose_t::HEADING_NONE;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "heading"), kWarning, "above 1.0 m/s");
+  EXPECT_SAYS(About(CheckNavigation(seen), "heading"), kWarning, "above 1.0 m/s");
   seen.config.navigation->navigator.filter.use_course_as_heading = false;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "heading"), kFault, "vessel frame only");
+  EXPECT_SAYS(About(CheckNavigation(seen), "heading"), kFault, "vessel frame only");
 }
 
 TEST(DoctorNavigation, TellsTheAttitudeInWordsThatShowAWrongSign) {
   auto seen = Healthy();
   seen.navigation.pose->pitch_rad = DegToRad(-2.0);
   seen.navigation.pose->roll_rad = DegToRad(3.0);
-  EXPECT_SAYS(About(JudgeNavigation(seen), "attitude"), kOk, "2.0 deg bow down and 3.0 deg starboard down");
+  EXPECT_SAYS(About(CheckNavigation(seen), "attitude"), kOk, "2.0 deg bow down and 3.0 deg starboard down");
   seen.navigation.pose->has_attitude = 0;
-  EXPECT_SAYS(About(JudgeNavigation(seen), "attitude"), kWarning, "not measured");
+  EXPECT_SAYS(About(CheckNavigation(seen), "attitude"), kWarning, "not measured");
 }
 
 TEST(DoctorNavigation, NamesAnInputThatIsShutAndAClockThatIsOff) {
   auto seen = Healthy();
   seen.navigation.input_faults.emplace_back("compass", "/dev/ttyUSB0: No such file or directory");
   seen.navigation.complaint = "clock of this computer is off UTC by -3.2 s";
-  EXPECT_SAYS(About(JudgeNavigation(seen), "input"), kFault, "'compass': /dev/ttyUSB0");
-  EXPECT_SAYS(About(JudgeNavigation(seen), "clock"), kWarning, "off UTC by -3.2 s");
+  EXPECT_SAYS(About(CheckNavigation(seen), "input"), kFault, "'compass': /dev/ttyUSB0");
+  EXPECT_SAYS(About(CheckNavigation(seen), "clock"), kWarning, "off UTC by -3.2 s");
 }
 
 // By hand: the lidar of config/demo is 0.5 m forward, so 9.5 m from an object 10 m ahead of the reference point, and 0.1 m to starboard of the way
 // to it; it is turned 5 deg to port, so the object is to the right of its azimuth 0.
 TEST(DoctorMounting, IsToldInWords) {
-  const auto said = About(JudgeMounting(Healthy().config), "mounting");
-  EXPECT_SAYS(said, kOk,
-              "looks forward (its azimuth 0 is 5.0 deg to port of the bow), 1.50 m above the water, 0.50 m forward and 0.10 m to starboard");
+  const auto said = About(CheckMounting(Healthy().config), "mounting");
+  EXPECT_SAYS(said, kOk, "looks forward (its azimuth 0 is 5.0 deg to port of the bow)");
+  EXPECT_SAYS(said, kOk, "the lidar is 0.50 m ahead and 0.10 m to starboard of the reference point, 1.50 m above the water");
   EXPECT_SAYS(said, kOk, "10 m ahead of the reference point, is at azimuth 4.4 deg, elevation -0.4 deg and range 9.50 m");
-  EXPECT_SAYS(said, kOk, "GNSS antenna is 1.30 m above the water, 0.80 m aft and 0.40 m to port");
+  EXPECT_SAYS(said, kOk, "the GNSS antenna is 0.80 m astern and 0.40 m to port of the reference point, 1.30 m above the water");
   EXPECT_SAYS(said, kOk, "meets the water 5.6 m from the lidar");  // 1.5 m / tan 15 deg
 }
 
 TEST(DoctorMounting, WarnsOfABoxAndAnAntennaThatTheBoatHasNot) {
   auto config = Healthy().config;
-  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kOk, "returns up to 1.4 m ahead");
+  EXPECT_SAYS(About(CheckMounting(config), "mounting"), kOk, "returns up to 1.4 m ahead");
   config.boat->own_vessel_box_m.max().x() = 14.0;
-  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "returns up to 14.0 m ahead and 1.4 m astern");
+  EXPECT_SAYS(About(CheckMounting(config), "mounting"), kWarning, "returns up to 14.0 m ahead and 1.4 m astern");
   config = Healthy().config;
   config.boat->p_vessel_antenna_m.x() = 80.5;
-  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "the GNSS antenna is 80.0 m ahead of the lidar");
+  EXPECT_SAYS(About(CheckMounting(config), "mounting"), kWarning, "the GNSS antenna is 80.50 m ahead");
   config = Healthy().config;
   config.boat->hull_m.reset();
-  EXPECT_SAYS(About(JudgeMounting(config), "mounting"), kWarning, "hull_length_m and hull_beam_m in boat.txtpb");
+  EXPECT_SAYS(About(CheckMounting(config), "mounting"), kWarning, "hull_length_m and hull_beam_m in boat.txtpb");
 }
 
 class Mounted : public ::testing::Test {
@@ -338,7 +338,7 @@ class Mounted : public ::testing::Test {
     auto config = Healthy().config;
     Mounting mounting{{0.5, 0.0, z_m}, DegToRad(roll_deg), DegToRad(pitch_deg), DegToRad(yaw_deg)};
     config.boat->T_vessel_lidar = TransformVesselSensor(mounting);
-    return About(JudgeMounting(config), "mounting");
+    return About(CheckMounting(config), "mounting");
   }
 };
 
@@ -358,71 +358,71 @@ TEST_F(Mounted, IsWarnedOf) {
   EXPECT_SAYS(Lidar(0, 20, 0, 1), kWarning, "one side sees only sky");
   EXPECT_SAYS(Lidar(0, 0, 180, 1), kWarning, "upside down");
   EXPECT_SAYS(Lidar(0, 0, 0, 2.5), kWarning, "outside of own_vessel");
-  EXPECT_SAYS(Lidar(0, 0, 0, -1), kFault, "under water");
+  EXPECT_SAYS(Lidar(0, 0, 0, -1), kFault, "0.60 m below the water");
 }
 
 TEST(DoctorDisk, CountsTheHours) {
   DiskSeen disk = Healthy().disk;
   disk.rate_bytes_per_s = 1e6;
   disk.free_bytes = 100'000'000'000;
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kOk, "/logs: 100.0 GB free beyond the reserve, 27.8 hours at 1.00 MB/s (heard on the bus)");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kOk, "/logs: 100.0 GB free beyond the reserve, 27.8 hours at 1.00 MB/s (heard on the bus)");
   disk.free_bytes = 30'000'000'000;
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kWarning, "8.3 hours");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kWarning, "8.3 hours");
   disk.free_bytes = 3'000'000'000;
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kFault, "move old logs away");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kFault, "move old logs away");
   disk.is_writable = false;
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kFault, "cannot be written");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kFault, "cannot be written");
   disk.free_bytes = -1;
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kFault, "cannot be looked at");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kFault, "cannot be looked at");
   disk.other_host = "cabin";
-  EXPECT_SAYS(About(JudgeDisk(disk), "disk"), kOk, "runs on cabin");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kOk, "runs on cabin");
 }
 
 TEST(DoctorProcesses, TellsEachState) {
   auto seen = Healthy();
   auto& segmenter = seen.processes["segmenter"].front();
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kOk, "segmenter (pid 7 on boat) is ok");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kOk, "segmenter (pid 7 on boat) is ok");
   segmenter.first.channels[0].num_lost = segmenter.last.channels[0].num_lost = 12;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kOk, "lost since its start: 12 messages of LIDAR_SCAN");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kOk, "lost since its start: 12 messages of LIDAR_SCAN");
   segmenter.last.channels[0].num_lost = 13;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kWarning, "it loses messages now: 13 messages of LIDAR_SCAN");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kWarning, "it loses messages now: 13 messages of LIDAR_SCAN");
   segmenter.last.reason = "no LIDAR_SCAN for 4 s";
   segmenter.last.state = health_t::STATE_STARTING;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kWarning, "is starting: no LIDAR_SCAN for 4 s");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kWarning, "is starting: no LIDAR_SCAN for 4 s");
   segmenter.last.state = health_t::STATE_DEGRADED;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kWarning, "is degraded: no LIDAR_SCAN for 4 s");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kWarning, "is degraded: no LIDAR_SCAN for 4 s");
   segmenter.last.state = health_t::STATE_FAILED;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kFault, "journalctl -u lookout-segmenter");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "journalctl -u lookout-segmenter");
   segmenter.last.state = 99;  // of a version to come
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kFault, "segmenter");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "segmenter");
   segmenter.heard_last = kEnd - std::chrono::seconds(4);
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kFault, "was heard, and has stopped");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "was heard, and has stopped");
   seen.processes.erase("segmenter");
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kFault, "segmenter is not heard, others are");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "segmenter is not heard, others are");
   seen.processes.clear();
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kWarning, "none of Lookout's processes is heard");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kWarning, "none of Lookout's processes is heard");
   seen.bus.fault = "there is no route";
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kFault, "the bus cannot be opened");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "the bus cannot be opened");
 }
 
 TEST(DoctorProcesses, SeesTwoOfAKindButNotARestart) {
   auto seen = Healthy();
   seen.processes["vlp16"].push_back(Running("vlp16", 8));
-  EXPECT_SAYS(About(JudgeProcesses(seen), "process"), kFault, "vlp16 runs 2 times on one bus");
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "vlp16 runs 2 times on one bus");
   seen.processes["vlp16"].front().heard_last = kEnd - std::chrono::seconds(4);
-  EXPECT_EQ(About(JudgeProcesses(seen), "process").grade, kOk);
+  EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
 }
 
 TEST(DoctorProcesses, LooksAtWhatComesOut) {
   auto seen = Healthy();
-  EXPECT_SAYS(About(JudgeProcesses(seen), "obstacles"), kOk, "10.0 turns/s, 10.0 obstacles in each, all placed on the earth");
+  EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kOk, "10.0 turns/s, 10.0 obstacles in each, all placed on the earth");
   seen.obstacles.num_placed = 100;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "obstacles"), kWarning, "400 of 500 in the vessel frame only");
+  EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kWarning, "400 of 500 in the vessel frame only");
   seen.obstacles.num_timeouts = 3;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "obstacles"), kWarning, "clocks of lidar and navigation differ");
+  EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kWarning, "clocks of lidar and navigation differ");
   seen.obstacles = {};
   seen.lidar.via = Via::kBus;
-  EXPECT_SAYS(About(JudgeProcesses(seen), "obstacles"), kFault, "no OBSTACLES come");
+  EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kFault, "no OBSTACLES come");
 }
 
 }  // namespace

@@ -109,8 +109,8 @@ inline Said About(const Findings& findings, const std::string& subject) {
   for (const auto& finding : findings) {
     if (finding.subject != subject) continue;
     said.grade = std::max(said.grade, finding.grade);
-    said.text += finding.words + "\n" + finding.cure + "\n";
-    EXPECT_EQ(finding.cure.empty(), finding.grade == Grade::kOk) << finding.words;
+    said.text += finding.text + "\n" + finding.cure + "\n";
+    EXPECT_EQ(finding.cure.empty(), finding.grade == Grade::kOk) << finding.text;
   }
   return said;
 }

@@ -1,6 +1,4 @@
 // What lookout-doctor reads of a config folder and of a bus, and how it prints.
-#include "tools/doctor/report.hpp"
-
 #include <unistd.h>
 
 #include <filesystem>
@@ -11,7 +9,8 @@
 #include "lookout/obstacles_t.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/doctor/healthy.hpp"
-#include "tools/doctor/notes.hpp"
+#include "tools/doctor/findings.hpp"
+#include "tools/doctor/watch.hpp"
 
 namespace lookout::doctor::test {
 namespace {
@@ -64,8 +63,8 @@ class DoctorNotes : public ::testing::Test {
 
   void SetUp() override {
     seen_.config.lidar.emplace();
-    notes_.TakeFrom(bus_, Via::kBus);
-    notes_.TakeRest(bus_);
+    notes_.ListenTo(bus_, Via::kBus);
+    notes_.ListenToProcesses(bus_);
   }
   template <typename T>
   void Send(const bus::Channel& channel, const T& message) {

@@ -4,13 +4,14 @@
 #include <memory>
 #include <string>
 
+#include "tests/support/files.hpp"
 #include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
 
 namespace lookout::eval {
 namespace {
 
-const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
+const std::filesystem::path kRoot = support::kSources;
 
 constexpr int kNumSeeds = 5;
 constexpr double kSeconds = 0.4;  // three whole turns of each seed
@@ -22,8 +23,7 @@ Score ScoreOf(const std::string& scene, Count count = Count::kAll) {
   Methods methods;
   methods.push_back(std::make_unique<SegmenterMethod>("ours", boat.segmenter));
   MethodComparison comparison(methods);
-  Progress silent(nullptr, 1);
-  ForEachScan({{scene}, 1, kNumSeeds, kSeconds}, boat, silent,
+  ForEachScan({{scene}, 1, kNumSeeds, kSeconds}, boat, nullptr,
               [&comparison](const ScanPlace& place, const LabelledScan& truth) { comparison.Add(place, truth); });
   const auto score = comparison.results().at(static_cast<std::size_t>(count)).by_scene.at(scene);
   EXPECT_EQ(score.num_scans, 3 * kNumSeeds);

@@ -12,8 +12,8 @@ namespace lookout::eval {
 namespace {
 
 // Two columns of two rings, 55 us apart: the ferry twice, the pile, a stray. Segment 1 holds the ferry, segment 2 pile and stray.
-Turn SmallTurn() {
-  Turn turn;
+messages::ScanMessages SmallTurn() {
+  messages::ScanMessages turn;
   lidar_scan_t scan{};
   scan.utime_us = kStartUs;
   scan.num_parts = 1;

@@ -1,12 +1,13 @@
-// Figures of README files: a block shows what its CSV file holds, and nothing else.
+// Figures of README files: a block shows what the run has made, and nothing else.
 #include "tools/eval/figures.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <iterator>
+#include <map>
+#include <regex>
 
 #include "tests/support/files.hpp"
 #include "tests/unit/eval_report/made_up.hpp"
@@ -19,59 +20,52 @@ namespace fs = std::filesystem;
 using support::kSources;
 using support::ReadFile;
 
-class Figures : public ::testing::Test {
- protected:
-  void SetUp() override { std::ofstream(folder_ / "one.csv") << "# Caption.\n# More.\nmethod,%\nours,1.5\n\"a, \"\"b\"\"|c\",2\n"; }
+const std::vector<ReadmeFigure> kFigures = [] {
+  Table table({"method", "%"});
+  table.Add({"ours", "1.5"});
+  table.Add({"a, \"b\"|c", "2"});
+  return std::vector<ReadmeFigure>{{"main", {"Caption.", "More."}, table}};
+}();
 
-  std::string Fill(const std::string& text) const { return FillBlocks(text, folder_, "README.md"); }
-  std::string Fault(const std::string& text) const {
-    try {
-      Fill(text);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
+std::string Fill(const std::string& text) { return FillBlocks(text, kFigures, "README.md"); }
+
+std::string Fault(const std::string& text) {
+  try {
+    Fill(text);
+  } catch (const std::runtime_error& error) {
+    return error.what();
   }
+  return "";
+}
 
-  static constexpr const char* kFilled =
-      "<!-- figures: one -->\n| method | % |\n|---|---|\n| ours | 1.5 |\n| a, \"b\"\\|c | 2 |\n\nCaption.\nMore.\n<!-- end -->\n";
-  support::TempDir folder_;
-};
+constexpr const char* kFilled =
+    "<!-- figures: main -->\n| method | % |\n|---|---|\n| ours | 1.5 |\n| a, \"b\"\\|c | 2 |\n\nCaption.\nMore.\n<!-- end -->\n";
 
-TEST_F(Figures, ABlockIsFilledAndAllElseStays) {
-  EXPECT_EQ(Fill("Text 1.\n\n<!-- figures: one -->\nold\n| x |\n<!-- end -->\nText 2."), std::string("Text 1.\n\n") + kFilled + "Text 2.");
+TEST(Figures, ABlockIsFilledAndAllElseStays) {
+  EXPECT_EQ(Fill("Text 1.\n\n<!-- figures: main -->\nold\n| x |\n<!-- end -->\nText 2."), std::string("Text 1.\n\n") + kFilled + "Text 2.");
   EXPECT_EQ(Fill(kFilled), kFilled);
-  EXPECT_EQ(Fill("<!-- figures: one -->\n<!-- end -->\n"), kFilled);
+  EXPECT_EQ(Fill("<!-- figures: main -->\n<!-- end -->\n"), kFilled);
   EXPECT_EQ(Fill("no block\n"), "no block\n");
   EXPECT_EQ(Fill("<!-- another comment -->\n"), "<!-- another comment -->\n");
   EXPECT_EQ(Fill(""), "");
 }
 
-TEST_F(Figures, ABlockThatIsNotWholeIsRefusedWithItsLine) {
-  EXPECT_EQ(Fault("\n<!-- figures: one -->\ntext\n"), "README.md:2: this block of figures has no end");
-  EXPECT_EQ(Fault("<!-- figures: one -->\n<!-- figures: one -->\n<!-- end -->\n"), "README.md:1: this block of figures has no end");
+TEST(Figures, ABlockOfAFigureThatTheRunHasNotMadeStays) {
+  const std::string sweeps = "<!-- figures: sweeps -->\nold\n<!-- end -->";
+  EXPECT_EQ(Fill(sweeps), sweeps);
+  EXPECT_EQ(Fill(sweeps + "\n<!-- figures: main -->\nold\n<!-- end -->\n"), sweeps + "\n" + kFilled);
+}
+
+TEST(Figures, ABlockThatIsNotWholeIsRefusedWithItsLine) {
+  EXPECT_EQ(Fault("\n<!-- figures: main -->\ntext\n"), "README.md:2: this block of figures has no end");
+  EXPECT_EQ(Fault("<!-- figures: main -->\n<!-- figures: main -->\n<!-- end -->\n"), "README.md:1: this block of figures has no end");
   EXPECT_EQ(Fault("\n\n<!-- end -->\n"), "README.md:3: the end of a block of figures that does not begin");
   EXPECT_EQ(Fault("<!-- figures: two -->\n<!-- end -->\n"), "README.md:1: there are no figures of this name: two");
-  EXPECT_EQ(Fault("<!-- figures: ../one -->\n<!-- end -->\n"), "README.md:1: there are no figures of this name: ../one");
-  EXPECT_EQ(Fault("<!-- figures: one\n<!-- end -->\n"), "README.md:1: a block of figures must begin as <!-- figures: NAME -->");
+  EXPECT_EQ(Fault("<!-- figures: ../main -->\n<!-- end -->\n"), "README.md:1: there are no figures of this name: ../main");
+  EXPECT_EQ(Fault("<!-- figures: main\n<!-- end -->\n"), "README.md:1: a block of figures must begin as <!-- figures: NAME -->");
 }
 
-TEST_F(Figures, AFileThatIsNoFigureIsRefusedWithItsLine) {
-  const auto fault = [](const std::string& csv) -> std::string {
-    try {
-      ToMarkdown(csv, "x.csv");
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(fault("# only a caption\n"), "x.csv: holds no table");
-  EXPECT_EQ(fault("a,b\n1\n"), "x.csv:2: not as many cells as the header has");
-  EXPECT_EQ(fault("a,b\n1,\"2\n"), "x.csv:2: a quote is not closed");
-  EXPECT_EQ(fault("a,b\n# late\n"), "x.csv:2: a caption below the table");
-}
-
-TEST_F(Figures, AreMadeOfTheResultsAndReplacedOnlyWhenForced) {
+TEST(Figures, AreMadeOfTheResults) {
   auto results = MadeUpResults();
   results.methods[0].method = "ours (all segments)";
   auto other = results;
@@ -92,18 +86,16 @@ TEST_F(Figures, AreMadeOfTheResultsAndReplacedOnlyWhenForced) {
   const auto scope = std::ranges::find_if(main->captions, [](const std::string& line) { return line.starts_with("Own simulator: "); });
   ASSERT_NE(scope, main->captions.end());
   EXPECT_NE(scope->find("mean over the 2 with objects (open<water> counts for false segments alone)"), std::string::npos) << *scope;
-
-  WriteFigures(figures, folder_ / "new", false);
-  const auto text = ReadFile(folder_ / "new/main.csv");
-  EXPECT_NE(text.find("# Measured 2026-11-22 by"), std::string::npos);
-  EXPECT_THROW(WriteFigures(figures, folder_ / "new", false), std::runtime_error);
-  EXPECT_NO_THROW(WriteFigures(figures, folder_ / "new", true));
-  EXPECT_EQ(ReadFile(folder_ / "new/main.csv"), text);
-  EXPECT_NE(FillBlocks("<!-- figures: main -->\n<!-- end -->\n", folder_ / "new", "").find("| ours (all segments) | 85.2 |"), std::string::npos);
+  for (const auto& figure : figures) {
+    const auto block = "<!-- figures: " + figure.name + " -->\n";
+    const auto text = FillBlocks(block + "<!-- end -->\n", figures, "");
+    EXPECT_TRUE(text.starts_with(block + "| " + figure.table.header().front() + " |")) << text;
+    EXPECT_NE(text.find("\nMeasured 2026-11-22 by"), std::string::npos) << text;
+  }
 }
 
 // A mean over scenes, whatever table shows it: scenes differ in how many things they hold.
-TEST_F(Figures, OneNameIsOneFigureInAllBlocks) {
+TEST(Figures, OneNameIsOneFigureInAllBlocks) {
   auto results = MadeUpResults();
   results.methods[0].method = "F3D (tuned)";
   auto& rain = results.methods[0].by_scene["rain"];
@@ -126,7 +118,7 @@ TEST_F(Figures, OneNameIsOneFigureInAllBlocks) {
 }
 
 // On a computer that does other work the slowest scan in a hundred says nothing about the method.
-TEST_F(Figures, OfTimesMediansAloneAreShown) {
+TEST(Figures, OfTimesMediansAloneAreShown) {
   for (const auto& figure : FiguresOf(MadeUpResults(), "2026-11-22")) {
     for (const auto& column : figure.table.rows().at(0)) {
       EXPECT_EQ(column.find("p99"), std::string::npos) << figure.name;
@@ -137,7 +129,7 @@ TEST_F(Figures, OfTimesMediansAloneAreShown) {
   }
 }
 
-TEST_F(Figures, AWorldThatIsNotHereIsSaid) {
+TEST(Figures, AWorldThatIsNotHereIsSaid) {
   auto results = MadeUpResults();
   results.methods[0].method = "ours (all segments)";
   results.other_worlds.emplace_back();
@@ -153,7 +145,7 @@ TEST_F(Figures, AWorldThatIsNotHereIsSaid) {
   }
 }
 
-TEST_F(Figures, ASweepIsARowOfMeansOverItsScenes) {
+TEST(Figures, ASweepIsARowOfMeansOverItsScenes) {
   Results results;
   Curve curve{"Sweep of link_m", "link_m", "mIoU of all segments, %", {{"a", {{0.2, 90.0}, {0.3, 80.0}}}, {"b", {{0.2, 70.0}, {0.3, 90.0}}}}, ""};
   curve.value_of_boat = "0.3";
@@ -166,8 +158,11 @@ TEST_F(Figures, ASweepIsARowOfMeansOverItsScenes) {
   EXPECT_NE(figures[0].captions.at(0).find("mean over the 2 scenes with objects, on seeds of tuning (seeds 1 to 4, 0.6 s each)"), std::string::npos);
 }
 
-// `./dev figures` writes both; whoever edits one by hand is told here.
-TEST(ReadmeFiles, ShowWhatTheCommittedFiguresHold) {
+// `./dev figures` fills all blocks: those of one name show the same, and each says when it was measured.
+TEST(ReadmeFiles, ShowEachFigureOnceMeasured) {
+  const std::regex block("\n<!-- figures: ([^\n]*) -->\n([^]*?)<!-- end -->\n");
+  const std::regex measured("\nMeasured 20[0-9-]{8} by `./dev figures`, version [0-9.]+\\.\n");
+  std::map<std::string, std::string> shown;
   int num_blocks = 0;
   for (auto entry = fs::recursive_directory_iterator(kSources); entry != fs::recursive_directory_iterator(); ++entry) {
     const auto name = entry->path().filename().string();
@@ -177,11 +172,12 @@ TEST(ReadmeFiles, ShowWhatTheCommittedFiguresHold) {
     }
     if (!entry->is_regular_file() || entry->path().extension() != ".md") continue;
     const auto text = ReadFile(entry->path());
-    for (auto at = text.find("\n<!-- figures: "); at != std::string::npos; at = text.find("\n<!-- figures: ", at + 1)) ++num_blocks;
-    std::string filled;
-    ASSERT_NO_THROW(filled = FillBlocks(text, kSources / "tools/eval/figures", entry->path().string()));
-    EXPECT_TRUE(filled == text) << entry->path() << " shows other figures than tools/eval/figures: run ./dev figures, or lookout-eval --figures "
-                                << "tools/eval/figures --blocks " << entry->path().string();
+    ASSERT_NO_THROW(FillBlocks(text, {}, entry->path().string()));
+    for (std::sregex_iterator match(text.begin(), text.end(), block), end; match != end; ++match, ++num_blocks) {
+      EXPECT_TRUE(std::regex_search((*match)[2].str(), measured)) << entry->path() << ": " << (*match)[1];
+      const auto [first, is_new] = shown.try_emplace((*match)[1], (*match)[2]);
+      EXPECT_TRUE(is_new || first->second == (*match)[2]) << entry->path() << " shows other figures than another page: " << (*match)[1];
+    }
   }
   EXPECT_GE(num_blocks, 5);
 }

@@ -11,18 +11,18 @@
 #include <sstream>
 
 #include "common/config/text_config.hpp"
+#include "tests/support/files.hpp"
 #include "tools/eval/against_peers.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
 #include "tools/eval/result_tables.hpp"
-#include "tools/eval/seeds.hpp"
 #include "tools/eval/sweep.hpp"
 
 namespace lookout::eval {
 namespace {
 
-const std::filesystem::path kRoot = LOOKOUT_SOURCE_DIR;
+const std::filesystem::path kRoot = support::kSources;
 constexpr double kSeconds = 0.4;  // three whole turns
 
 Boat Catabot() { return LoadBoat(kRoot / "config/catabot"); }
@@ -31,8 +31,7 @@ RunPlan SmallPlan(const std::string& scene) { return {{scene}, 1, 1, kSeconds}; 
 
 std::vector<LabelledScan> Render(const std::string& scene) {
   std::vector<LabelledScan> turns;
-  Progress silent(nullptr, 1);
-  ForEachScan(SmallPlan(scene), Catabot(), silent, [&turns](const ScanPlace&, const LabelledScan& truth) { turns.push_back(truth); });
+  ForEachScan(SmallPlan(scene), Catabot(), nullptr, [&turns](const ScanPlace&, const LabelledScan& truth) { turns.push_back(truth); });
   return turns;
 }
 
@@ -376,9 +375,11 @@ TEST(ResultTables, AnotherWorldStandsBesideOurs) {
   EXPECT_EQ(csv("table_1"), "method,mean,dense,second world\nours (all segments),50.0,50.0,not here\nF3D (tuned),50.0,50.0,not here\n");
 }
 
+void CheckSeeds(SeedUse use, std::uint64_t first_seed, int num_seeds) { RunPlan{{}, first_seed, num_seeds}.CheckSeeds(use); }
+
 TEST(Seeds, OfTuningAndOfTablesAreKeptApart) {
-  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTables, DefaultFirstSeed(SeedUse::kTables), 1000));
-  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTuning, DefaultFirstSeed(SeedUse::kTuning), 100));
+  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTables, kFirstTableSeed, 1000));
+  EXPECT_NO_THROW(CheckSeeds(SeedUse::kTuning, kFirstTuningSeed, 100));
   EXPECT_THROW(CheckSeeds(SeedUse::kTables, 1, 20), std::invalid_argument);
   EXPECT_THROW(CheckSeeds(SeedUse::kTables, 100, 2), std::invalid_argument) << "a mixture";
   EXPECT_THROW(CheckSeeds(SeedUse::kTuning, 101, 1), std::invalid_argument);

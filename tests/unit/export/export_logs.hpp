@@ -29,7 +29,7 @@ namespace lookout::exporter {
 inline constexpr std::int64_t kStartUs = 1'700'000'000'000'000;  // 2023-11-14 22:13:20 UTC
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Two rings (-15 and 0 degrees), `num_columns` columns 90 degrees apart from azimuth 0, single return; a turn of 0.1 s in one part.
+/// Two rings (-15 and 0 degrees), `num_columns` columns 90 degrees apart from azimuth 0, single return; a scan of 0.1 s in one part.
 /// Every range is 5000 counts (10 m), every reflectivity 7.
 inline lidar_scan_t MakeScan(std::int64_t seq, int num_columns = 2, int first_column = 0) {
   lidar_scan_t scan{};
@@ -114,8 +114,8 @@ class ExportTest : public ::testing::Test {
 
   /// Exports what was added so far.
   /// @return exit code; text_ is what was written, errors_ what was told
-  int Export(const std::string& table, const std::string& format = "csv", std::optional<std::int64_t> turn = std::nullopt) {
-    return Export(Request{.inputs = {log_}, .table = table, .format = format, .output = folder_ / "out", .force = true, .turn = turn});
+  int Export(const std::string& table, const std::string& format = "csv", std::optional<std::int64_t> scan = std::nullopt) {
+    return Export(Request{.inputs = {log_}, .table = table, .format = format, .output = folder_ / "out", .force = true, .scan = scan});
   }
   int Export(const Request& request) {
     writer_.reset();

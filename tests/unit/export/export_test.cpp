@@ -97,7 +97,7 @@ TEST_F(ExportTest, SkipsDamagedStretchesAndSaysSo) {
   EXPECT_NE(errors_.find("1 damaged stretches skipped"), std::string::npos) << errors_;
 }
 
-TEST_F(ExportTest, ReadsSeveralLogsAsOneAlsoAcrossTheLabelsOfATurn) {
+TEST_F(ExportTest, ReadsSeveralLogsAsOneAlsoAcrossTheLabelsOfAScan) {
   Add(bus::kLidarScan, MakeScan(0, 1));
   const auto first = log_;
   writer_.reset();
@@ -126,7 +126,7 @@ TEST_F(ExportTest, EndsWithoutAFileWhenItIsStopped) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out.partial"));
 }
 
-TEST_F(ExportTest, PlyHoldsOneVertexPerReturnOfTheTurn) {
+TEST_F(ExportTest, PlyHoldsOneVertexPerReturnOfTheScan) {
   Add(bus::kLidarScan, MakeScan(0));
   Add(bus::kSegments, MakeSegments(MakeScan(0), 1));
   Add(bus::kLidarScan, MakeScan(1, 1));
@@ -144,7 +144,7 @@ TEST_F(ExportTest, PlyHoldsOneVertexPerReturnOfTheTurn) {
   ASSERT_EQ(Export("returns", "ply", 0), kExitFine);
   EXPECT_NE(text_.find("element vertex 4\n"), std::string::npos);
   EXPECT_EQ(Export("returns", "ply", 9), kExitFailed);
-  EXPECT_NE(errors_.find("no turn 9"), std::string::npos) << errors_;
+  EXPECT_NE(errors_.find("no scan 9"), std::string::npos) << errors_;
 }
 
 TEST_F(ExportTest, PlyColoursTellSegmentsApart) {
@@ -160,7 +160,7 @@ TEST_F(ExportTest, PlyColoursTellSegmentsApart) {
 
 class SvgTest : public ExportTest {
  protected:
-  void AddTurn() {
+  void AddScan() {
     const auto scan = MakeScan(0, 4);
     auto segments = MakeSegments(scan);
     segments.segments = {MakeSegment(1, 4.0F)};
@@ -191,23 +191,23 @@ class SvgTest : public ExportTest {
   }
 };
 
-TEST_F(SvgTest, ShowsTheSegmentsOfAllPartsOfTheTurn) {
-  AddTurn();
+TEST_F(SvgTest, ShowsTheSegmentsOfAllPartsOfTheScan) {
+  AddScan();
   ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
   EXPECT_TRUE(text_.starts_with("<svg "));
-  EXPECT_NE(text_.find("Turn 0: 8 returns, 2 segments"), std::string::npos);
+  EXPECT_NE(text_.find("Scan 0: 8 returns, 2 segments"), std::string::npos);
   EXPECT_NE(text_.find("2023-11-14 22:13:20.000 UTC"), std::string::npos);
   EXPECT_NE(text_.find(">lidar x<"), std::string::npos);
 }
 
 TEST_F(SvgTest, TurnsTheBowUpWithTheConfigOfTheBoatAndNorthUpWithAHeading) {
   AddBoat();
-  AddTurn();
+  AddScan();
   ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
   EXPECT_NE(text_.find(">bow<"), std::string::npos);
   std::filesystem::remove(log_);
   AddBoat();
-  AddTurn();
+  AddScan();
   AddHeading(1.0);
   ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
   EXPECT_NE(text_.find(">N<"), std::string::npos);
@@ -215,7 +215,7 @@ TEST_F(SvgTest, TurnsTheBowUpWithTheConfigOfTheBoatAndNorthUpWithAHeading) {
 }
 
 TEST_F(SvgTest, IsTheSameTextForTheSameLog) {
-  AddTurn();
+  AddScan();
   ASSERT_EQ(Export("returns", "svg"), kExitFine);
   const auto first = text_;
   ASSERT_EQ(Export("returns", "svg"), kExitFine);
@@ -239,7 +239,7 @@ TEST_F(SvgTest, DrawsObstaclesAndSurvivesNumbersThatAreNone) {
   message.obstacles[1].footprint_vessel_x_m = {std::numeric_limits<float>::infinity()};
   Add(bus::kObstacles, message);
   ASSERT_EQ(Export("obstacles", "svg"), kExitFine) << errors_;
-  EXPECT_NE(text_.find("Turn 0: 2 obstacles"), std::string::npos);
+  EXPECT_NE(text_.find("Scan 0: 2 obstacles"), std::string::npos);
   EXPECT_NE(text_.find("status: 2 ok"), std::string::npos);
   EXPECT_EQ(text_.find("inf"), std::string::npos);
 }
@@ -264,12 +264,12 @@ TEST_F(SvgTest, DrawsTentativeSegmentsLightlyAndLandAsItsWaterline) {
   Add(bus::kLidarScan, scan);
   Add(bus::kSegments, segments);
   ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
-  EXPECT_NE(text_.find("Turn 0: 8 returns, 3 segments, 1 of them tentative"), std::string::npos);
+  EXPECT_NE(text_.find("Scan 0: 8 returns, 3 segments, 1 of them tentative"), std::string::npos);
   EXPECT_EQ(CountOf(text_, "stroke-dasharray=\"2 3\""), 1) << "one outline is dashed";
   EXPECT_EQ(CountOf(text_, "stroke-width=\"2.4\""), 1) << "one is a line";
   EXPECT_EQ(CountOf(text_, "fill-opacity=\"0.14\""), 1) << "one area is filled in full";
   // Five rings of 2 m make 43 pixels a metre; the lidar stands at 500, 535, and x is up.
-  EXPECT_NE(text_.find("d=\"M328 191L500 169.5L672 191\" fill=\"none\""), std::string::npos) << "open, from left to right";
+  EXPECT_NE(text_.find("d=\"M328.0 191.0L500.0 169.5L672.0 191.0\" fill=\"none\""), std::string::npos) << "open, from left to right";
   EXPECT_NE(text_.find(">8.0 m, land, 12 returns<"), std::string::npos);
   EXPECT_NE(text_.find(">4.0 m, tentative, 12 returns<"), std::string::npos);
   const auto in_legend = [this](const std::string& facts) { return text_.find(">" + facts + "<"); };
@@ -297,7 +297,7 @@ TEST_F(SvgTest, DrawsTentativeObstaclesLightlyAndLandAsItsWaterline) {
   message.obstacles[1].waterline_vessel_y_m = {2.0F, -2.0F};
   Add(bus::kObstacles, message);
   ASSERT_EQ(Export("obstacles", "svg"), kExitFine) << errors_;
-  EXPECT_NE(text_.find("Turn 0: 2 obstacles, 1 of them tentative"), std::string::npos);
+  EXPECT_NE(text_.find("Scan 0: 2 obstacles, 1 of them tentative"), std::string::npos);
   EXPECT_EQ(CountOf(text_, "stroke-dasharray=\"2 3\""), 1);
   EXPECT_EQ(CountOf(text_, "stroke-width=\"2.4\""), 1);
   EXPECT_NE(text_.find(">5.0 m at 0 deg, land<"), std::string::npos);
@@ -355,7 +355,7 @@ TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
   EXPECT_EQ(std::system((program + " --in /nonexistent --table pose 2> /dev/null").c_str()) >> 8, kExitFailed);
   EXPECT_EQ(std::system((program + " --table pose > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
   EXPECT_EQ(std::system((program + " --in " + log.string() + " --table nothing > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
-  EXPECT_EQ(std::system((program + " --in " + log.string() + " --table returns --format ply --turn x > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
+  EXPECT_EQ(std::system((program + " --in " + log.string() + " --table returns --format ply --scan x > /dev/null 2>&1").c_str()) >> 8, kExitUsage);
   EXPECT_EQ(std::system((program + " --help > /dev/null").c_str()), 0);
   EXPECT_EQ(std::system((program + " --version > /dev/null").c_str()), 0);
   std::filesystem::remove(log);

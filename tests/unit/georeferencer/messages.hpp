@@ -44,7 +44,7 @@ inline SegmentPart MakePart(std::int64_t offset_us, std::int64_t seq, std::vecto
   part.head.time = At(offset_us);
   part.head.end_time = At(offset_us + 99'000);
   part.head.seq = seq;
-  part.head.num_turn_segments = static_cast<std::int32_t>(segments.size());
+  part.head.num_scan_segments = static_cast<std::int32_t>(segments.size());
   part.segments = std::move(segments);
   return part;
 }

@@ -17,6 +17,7 @@ using test::MakeGoodSegments;
 using test::MakePoseMessage;
 using test::MakeSegmentMessage;
 using test::MakeSegmentsMessage;
+using namespace messages;  // NOLINT(google-build-using-namespace): the names of the faults
 
 constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfF = std::numeric_limits<float>::infinity();

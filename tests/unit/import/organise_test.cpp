@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
+#include "common/messages/checks.hpp"
 #include "services/segmenter/core/returns.hpp"
-#include "services/segmenter/core/turn_gatherer.hpp"
 #include "services/segmenter/wire.hpp"
 #include "tools/import/scan_message.hpp"
 
@@ -131,14 +131,11 @@ TEST(ScanMessage, ComesBackThroughTheSegmentersOwnDoor) {
   const auto organised = Organise(Cloud(64, 0.4, 2048), {});
   const auto messages = ToScanMessages(organised.labelled.scan, "cloud", kMaxMessageBytes);
   EXPECT_EQ(messages.size(), 4U);
-  segmenter::TurnGatherer gatherer;
-  std::optional<segmenter::Scan> scan;
   for (const auto& message : messages) {
     EXPECT_LE(message.getEncodedSize(), kMaxMessageBytes);
-    const auto part = segmenter::ToScanPart(message, kMaxMessageBytes);
-    ASSERT_TRUE(std::holds_alternative<segmenter::ScanPart>(part));
-    scan = gatherer.Add(std::get<segmenter::ScanPart>(part));
+    ASSERT_FALSE(messages::FaultOf(message, kMaxMessageBytes));
   }
+  const auto scan = segmenter::ToScan(messages);
   ASSERT_TRUE(scan);
   EXPECT_EQ(scan->columns.range, organised.labelled.scan.columns.range);
   EXPECT_EQ(scan->columns.azimuth_rad, organised.labelled.scan.columns.azimuth_rad);

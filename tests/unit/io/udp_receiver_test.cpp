@@ -41,10 +41,10 @@ UdpOptions On(const std::string& address, int receive_buffer_bytes = 1 << 16) {
   return options;
 }
 
-std::optional<ReceivedDatagram> Wait(UdpReceiver& receiver) {
+std::optional<Source::Piece> Wait(UdpReceiver& receiver) {
   pollfd descriptor{receiver.file_descriptor(), POLLIN, 0};
   poll(&descriptor, 1, 2000);
-  return receiver.Receive();
+  return receiver.Receive({});
 }
 
 std::string FaultOf(const UdpOptions& options) {
@@ -60,24 +60,24 @@ TEST(UdpReceiver, GivesWhatWasSentWithTimeAndSource) {
   UdpReceiver receiver(On("127.0.0.1"));
   EXPECT_GT(receiver.port(), 0);
   EXPECT_GE(receiver.receive_buffer_bytes(), 1 << 16);
-  EXPECT_FALSE(receiver.Receive());
+  EXPECT_FALSE(receiver.Receive({}));
   Send(receiver.port(), {1, 2, 3});
   const auto datagram = Wait(receiver);
   ASSERT_TRUE(datagram);
-  EXPECT_EQ(Payload(datagram->payload.begin(), datagram->payload.end()), (Payload{1, 2, 3}));
-  EXPECT_EQ(receiver.SourceAddress(), "127.0.0.1");
+  EXPECT_EQ(Payload(datagram->bytes.begin(), datagram->bytes.end()), (Payload{1, 2, 3}));
+  EXPECT_EQ(datagram->source_address, "127.0.0.1");
   EXPECT_EQ(datagram->port, receiver.port());
   const auto age = std::chrono::system_clock::now() - datagram->host_time;
   EXPECT_LT(std::chrono::abs(age), std::chrono::seconds(5));
-  EXPECT_FALSE(receiver.Receive());
+  EXPECT_FALSE(receiver.Receive({}));
 }
 
 TEST(UdpReceiver, TakesEmptyAndLargeDatagrams) {
   UdpReceiver receiver(On("0.0.0.0", 1 << 18));
   Send(receiver.port(), {});
   Send(receiver.port(), Payload(60'000, 7));
-  EXPECT_EQ(Wait(receiver)->payload.size(), 0U);
-  EXPECT_EQ(Wait(receiver)->payload.size(), 60'000U);
+  EXPECT_EQ(Wait(receiver)->bytes.size(), 0U);
+  EXPECT_EQ(Wait(receiver)->bytes.size(), 60'000U);
 }
 
 TEST(UdpReceiver, CountsWhatTheKernelDropped) {
@@ -85,7 +85,7 @@ TEST(UdpReceiver, CountsWhatTheKernelDropped) {
   constexpr int kNumSent = 500;
   for (int i = 0; i < kNumSent; ++i) Send(receiver.port(), Payload(1206, 1));
   int num_received = 0;
-  while (receiver.Receive()) ++num_received;
+  while (receiver.Receive({})) ++num_received;
   EXPECT_LT(num_received, kNumSent);
   EXPECT_EQ(receiver.num_kernel_drops(), kNumSent - num_received);  // at once, not with the next datagram
   EXPECT_EQ(receiver.num_kernel_drops(), kNumSent - num_received);
@@ -100,9 +100,9 @@ TEST(UdpReceiver, RefusesAndCountsOtherSources) {
   Send(receiver.port(), {3}, {.from = "127.0.0.3"});
   const auto datagram = Wait(receiver);
   ASSERT_TRUE(datagram);
-  EXPECT_EQ(datagram->payload[0], 2);
-  EXPECT_EQ(receiver.SourceAddress(), "127.0.0.2");
-  EXPECT_FALSE(receiver.Receive());
+  EXPECT_EQ(datagram->bytes[0], 2);
+  EXPECT_EQ(datagram->source_address, "127.0.0.2");
+  EXPECT_FALSE(receiver.Receive({}));
   EXPECT_EQ(receiver.num_source_refused(), 2);
 }
 
@@ -124,7 +124,7 @@ TEST(UdpReceiver, LetsItsCallerGoInAFloodOfRefusedDatagrams) {
   EXPECT_EQ(receiver.num_source_refused(), UdpReceiver::kMaxRefusedPerCall);
   EXPECT_FALSE(receiver.is_empty());
   EXPECT_LT(std::chrono::abs(std::chrono::system_clock::now() - receiver.last_time()), std::chrono::seconds(5));
-  EXPECT_FALSE(receiver.Receive());
+  EXPECT_FALSE(receiver.Receive({}));
   EXPECT_EQ(receiver.num_source_refused(), UdpReceiver::kMaxRefusedPerCall + 10);
   EXPECT_TRUE(receiver.is_empty());
 }
@@ -137,7 +137,7 @@ TEST(UdpReceiver, JoinsAMulticastGroupOfAnInterface) {
   Send(receiver.port(), {5}, {.to = "239.1.2.3"});
   const auto datagram = Wait(receiver);
   ASSERT_TRUE(datagram);
-  EXPECT_EQ(datagram->payload[0], 5);
+  EXPECT_EQ(datagram->bytes[0], 5);
 }
 
 TEST(UdpReceiver, IsDeafToGroupsThatOthersHaveJoined) {
@@ -158,7 +158,7 @@ TEST(UdpReceiver, TakesDatagramsOfItsInterfaceAlone) {
   UdpReceiver receiver(options);
   Send(receiver.port(), {1});
   EXPECT_TRUE(Wait(receiver));
-  EXPECT_EQ(receiver.FollowInterface(), "");
+  EXPECT_EQ(receiver.Poll(Utime(std::chrono::seconds(1))), "");
   EXPECT_EQ(receiver.num_reopened(), 0);
 }
 
@@ -173,12 +173,12 @@ TEST(UdpReceiver, SaysWhyItCannotListen) {
   EXPECT_NE(FaultOf(On("192.0.2.1")).find("ip address"), std::string::npos) << FaultOf(On("192.0.2.1"));
   options = On("0.0.0.0");
   options.interface = "nosuch0";
-  EXPECT_NE(FaultOf(options).find("there is no such interface now (there are: lo"), std::string::npos) << FaultOf(options);
+  EXPECT_NE(FaultOf(options).find("there is no interface 'nosuch0' now (there are: lo"), std::string::npos) << FaultOf(options);
   const auto without_zone = FaultOf(On("fe80::1"));
   if (without_zone.find("family not supported") == std::string::npos) {
     EXPECT_NE(without_zone.find("fe80::1%eth0"), std::string::npos) << without_zone;
   }
-  EXPECT_NE(FaultOf(On("fe80::1%nosuch0")).find("there is no such interface now"), std::string::npos) << FaultOf(On("fe80::1%nosuch0"));
+  EXPECT_NE(FaultOf(On("fe80::1%nosuch0")).find("there is no interface 'nosuch0' now"), std::string::npos) << FaultOf(On("fe80::1%nosuch0"));
   options = On("0.0.0.0");
   options.multicast_group = "ff02::1";
   EXPECT_NE(FaultOf(options).find("same family"), std::string::npos) << FaultOf(options);

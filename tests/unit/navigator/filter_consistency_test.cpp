@@ -271,11 +271,8 @@ TEST(Recordings, OfABoatGiveASmoothTrack) {
     const auto parsed = ParseSentence(line);
     if (parsed.fault != SentenceFault::kNone) continue;
     // A second's sentences come a fifth of a second after it.
-    const auto take_time = [&](const auto& time_of_day) {
-      if (time_of_day) now = std::max(now.value_or(kRecordedDay), kRecordedDay + *time_of_day + std::chrono::milliseconds(200));
-    };
-    if (const auto* rmc = std::get_if<Rmc>(&parsed.sentence)) take_time(rmc->time_of_day);
-    if (const auto* gga = std::get_if<Gga>(&parsed.sentence)) take_time(gga->time_of_day);
+    const auto& time_of_day = parsed.sentence.time_of_day;
+    if (time_of_day) now = std::max(now.value_or(kRecordedDay), kRecordedDay + *time_of_day + std::chrono::milliseconds(200));
     if (!now) continue;
     if (seq == 0) consume({*now, seq++, ItemKind::kStart, {}, {}});
     consume({*now, seq++, ItemKind::kSentence, kUdpSource, line});

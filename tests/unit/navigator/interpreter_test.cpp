@@ -48,9 +48,6 @@ TEST_F(InterpreterTest, MakesOneFixOfTheSentencesOfAnEpochInWhateverOrder) {
     const auto first = Read(0.1, is_rmc_first ? rmc : gga).fix;
     const auto second = Read(0.11, is_rmc_first ? gga : rmc).fix;
     ASSERT_TRUE(first && second);
-    EXPECT_FALSE(first->repeats_position);
-    EXPECT_TRUE(second->repeats_position);
-    EXPECT_FALSE(second->repeats_velocity && !is_rmc_first);
     EXPECT_EQ(second->quality, FixQuality::kRtkFixed) << "GGA tells more";
     EXPECT_NEAR(second->speed_mps, 2.0, 1e-5);
     EXPECT_NEAR(second->EllipsoidHeightM(), 147.0, 1e-9);
@@ -60,9 +57,8 @@ TEST_F(InterpreterTest, MakesOneFixOfTheSentencesOfAnEpochInWhateverOrder) {
 
 TEST_F(InterpreterTest, DoesNotPairSourcesOrEpochs) {
   Read(0.1, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0), "a");
-  EXPECT_FALSE(Read(0.1, GgaLine(NoonPlus(0), 50.0, 8.0, 4, 0.8, 100.0, 47.0), "b").fix->repeats_position);
+  EXPECT_TRUE(std::isnan(Read(0.1, GgaLine(NoonPlus(0), 50.0, 8.0, 4, 0.8, 100.0, 47.0), "b").fix->speed_mps));
   const auto next = Read(0.3, GgaLine(NoonPlus(0.2), 50.0, 8.0, 4, 0.8, 100.0, 47.0), "a").fix;
-  EXPECT_FALSE(next->repeats_position);
   EXPECT_TRUE(std::isnan(next->speed_mps));
 }
 
@@ -168,7 +164,6 @@ TEST_F(InterpreterTest, TakesPositionAndAttitudeOutOfVnins) {
   EXPECT_EQ(reading.fix->horizontal_sd_m, 1.6);
   EXPECT_NEAR(reading.fix->speed_mps, 5.0, 1e-12);
   EXPECT_NEAR(reading.fix->course_rad, WrapTo2Pi(std::atan2(-4.0, 3.0)), 1e-12);
-  EXPECT_EQ(reading.fix->climb_mps, -0.5);
   EXPECT_NEAR(reading.attitude->heading_rad, DegToRad(350.0), 1e-12);
   EXPECT_NEAR(reading.attitude->heading_sd_rad, DegToRad(1.0), 1e-12);
   const auto not_tracking = Read(0.06, line("0004", "129618.020000"));

@@ -19,7 +19,6 @@
 
 #include "services/navigator/io/gpsd_client.hpp"
 #include "services/navigator/io/serial_port.hpp"
-#include "services/navigator/io/source.hpp"
 #include "services/navigator/io/tcp_client.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
@@ -27,6 +26,7 @@
 namespace lookout::navigator {
 namespace {
 
+using io::Source;
 using namespace std::chrono_literals;
 
 // Host time that goes a tenth of a second with each round: pauses between attempts take no real time.
@@ -45,8 +45,7 @@ class SourceTest : public ::testing::Test {
   bool Wait(Source& source, bool has_fault) {
     for (int round = 0; round < 200 && source.fault().empty() == has_fault; ++round) {
       Step(source);
-      while (source.Receive(now_)) {
-      }
+      while (const auto piece = source.Receive(now_)) num_breaks_ += piece->kind == Source::Kind::kBreak ? 1 : 0;
       std::this_thread::sleep_for(10ms);
     }
     return source.fault().empty() != has_fault;
@@ -68,6 +67,7 @@ class SourceTest : public ::testing::Test {
   }
 
   Utime now_ = NoonPlus(0);
+  int num_breaks_ = 0;  // that Wait saw
 };
 
 // Both ends of a pseudo terminal: the "cable" and the device that a serial source opens.
@@ -135,7 +135,7 @@ TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
   first->Unplug();
   std::filesystem::remove(link_);
   ASSERT_TRUE(Wait(*source, true));
-  EXPECT_EQ(source->num_lost(), 1);
+  EXPECT_EQ(num_breaks_, 1);
   EXPECT_NE(source->fault().find(link_.string()), std::string::npos) << source->fault();
   const Pty second;
   PlugIn(second);
@@ -143,6 +143,7 @@ TEST_F(SerialTest, OpensAgainAfterItWasUnplugged) {
   second.Write("$C\r\n");
   EXPECT_EQ(Take(*source, 4), "$C\r\n");
   EXPECT_EQ(source->file_descriptor(), file_descriptor);
+  EXPECT_EQ(Count(*source, "gnss_lost"), 1);
   EXPECT_EQ(Count(*source, "gnss_opened"), 2);
 }
 
@@ -212,7 +213,8 @@ TEST_F(SourceTest, TcpConnectsAgainWhenTheServerWasAway) {
   server->Accept();
   server->Write("$B\r\n");
   EXPECT_EQ(Take(*source, 4), "$B\r\n");
-  EXPECT_EQ(source->num_lost(), 1);
+  EXPECT_EQ(num_breaks_, 1);
+  EXPECT_EQ(Count(*source, "plotter_lost"), 1);
   EXPECT_EQ(Count(*source, "plotter_opened"), 2);
 }
 
@@ -294,7 +296,7 @@ TEST_F(SourceTest, GpsdThatEndsWithinALineOrNeverEndsOneIsLost) {
 TEST_F(SourceTest, GpsdPassesTheSentencesOfAReceiverOn) {
   // Installed, or as ./dev test unpacks it.
   std::string program = "/usr/sbin/gpsd";
-  if (access(program.c_str(), X_OK) != 0) program = LOOKOUT_SOURCE_DIR "/build/gpsd/usr/sbin/gpsd";
+  if (access(program.c_str(), X_OK) != 0) program = (support::kSources / "build/gpsd/usr/sbin/gpsd").string();
   if (access(program.c_str(), X_OK) != 0) GTEST_SKIP() << program << " is not at hand (package gpsd)";
   const Pty pty;
   int port = 0;

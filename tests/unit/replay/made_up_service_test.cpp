@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "lookout/pose_t.hpp"
+#include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::replay {
@@ -74,7 +75,7 @@ TEST(MadeUpService, RunsBehindWhatItReads) {
   std::int64_t num_poses = 0;
   std::int64_t num_tracks = 0;
   Chain chain(
-      std::filesystem::path(LOOKOUT_SOURCE_DIR) / "config/demo", plan,
+      support::kDemoConfig, plan,
       [&](Utime, std::string_view channel, Bytes bytes) {
         num_poses += channel == "POSE" ? 1 : 0;
         if (channel == "TRACKS") {

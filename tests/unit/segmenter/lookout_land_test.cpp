@@ -24,14 +24,19 @@ int OnlyAt(const Scan& scan, const Segments& segments, double x_m, double y_m, d
   return ids.empty() ? 1 : *ids.begin();
 }
 
-TEST(Land, IsWhatIsAtLeastFifteenMetresLong) {
-  for (const auto& [length_m, kind] : {std::pair{17.0, SegmentKind::kLand}, {13.0, SegmentKind::kObstacle}}) {
+// A boat is not land, a long quay is, and between them there is one length from which on a wall is land.
+TEST(Land, IsWhatIsLongAndHasAWaterline) {
+  std::vector<bool> is_land;
+  for (double length_m = 6.0; length_m <= 40.0; length_m += 1.0) {
     const auto scan = See({{-length_m / 2, 20.0, length_m / 2, 20.0, kWaterM, 1.0}});
     const auto segments = SegmentScan(scan, {});
-    ASSERT_EQ(segments.segments.size(), 1U);
-    EXPECT_EQ(segments.segments[0].kind, kind) << length_m;
-    EXPECT_EQ(segments.segments[0].waterline.empty(), kind == SegmentKind::kObstacle);
+    ASSERT_EQ(segments.segments.size(), 1U) << length_m;
+    is_land.push_back(segments.segments[0].kind == SegmentKind::kLand);
+    EXPECT_EQ(segments.segments[0].waterline.empty(), !is_land.back()) << length_m;
   }
+  EXPECT_FALSE(is_land.front());
+  EXPECT_TRUE(is_land.back());
+  EXPECT_TRUE(std::ranges::is_sorted(is_land)) << testing::PrintToString(is_land);
 }
 
 TEST(Land, IsAlsoASquareBasinAllRound) {

@@ -25,12 +25,15 @@ void AddAround(Scan& scan, int num) {
   for (int i = 0; i < num; ++i) SetRow(scan, places[i][0], places[i][1], 1);
 }
 
-TEST(FarReach, GrowsFromFifteenMetresToTwoMetres) {
+TEST(FarReach, IsNoneNearGrowsSteadilyAndEnds) {
   EXPECT_EQ(FarReachM(5.0), 0.0);
-  EXPECT_EQ(FarReachM(15.0), 0.0);
-  EXPECT_NEAR(FarReachM(25.0), 1.0, 1e-12);
-  EXPECT_NEAR(FarReachM(35.0), 2.0, 1e-12);
-  EXPECT_EQ(FarReachM(100.0), 2.0);
+  for (double range_m = 5.0; range_m < 130.0; range_m += 0.5) {
+    const double growth_m = FarReachM(range_m + 0.5) - FarReachM(range_m);
+    EXPECT_GE(growth_m, 0.0) << range_m;
+    EXPECT_LE(growth_m, 0.1) << "no jump at " << range_m;
+  }
+  EXPECT_GT(FarReachM(60.0), 1.0);
+  EXPECT_EQ(FarReachM(100.0), FarReachM(130.0));
 }
 
 struct Apart {
@@ -65,25 +68,37 @@ TEST(FewReturns, AreOfABoatBesideThemFarAway) {
   }
 }
 
-// Thin things that have more than eight others within 8 m.
+// Two thin things that are joined when alone are not when many others are near, and then not again.
 TEST(FewReturns, InRainJoinNothing) {
-  for (const auto& [num_around, is_one] : {std::pair{7, true}, {8, false}}) {
+  std::vector<bool> are_two;
+  for (int num_around = 0; num_around <= 9; ++num_around) {
     auto scan = EmptyScan({});
     SetRow(scan, 40.0, 0.0, 1);
     SetRow(scan, 40.0, 1.5, 1);
     AddAround(scan, num_around);
-    EXPECT_EQ(SegmentScan(scan, {}).segments.size(), static_cast<std::size_t>(num_around) + (is_one ? 1U : 2U)) << num_around;
+    const auto num_segments = SegmentScan(scan, {}).segments.size() - static_cast<std::size_t>(num_around);
+    ASSERT_TRUE(num_segments == 1 || num_segments == 2) << num_around << " around, " << num_segments;
+    are_two.push_back(num_segments == 2);
   }
+  EXPECT_FALSE(are_two.front());
+  EXPECT_TRUE(are_two.back());
+  EXPECT_TRUE(std::ranges::is_sorted(are_two)) << testing::PrintToString(are_two);
 }
 
 TEST(FewReturns, InRainAreNotOfABoat) {
-  for (const auto& [num_around, is_one] : {std::pair{8, true}, {9, false}}) {
+  std::vector<bool> are_two;
+  for (int num_around = 0; num_around <= 9; ++num_around) {
     auto scan = EmptyScan({});
     for (const int ring : {7, 8}) SetRow(scan, 40.0, -1.2, 10, ring);  // up to 0.05 m aside: 1.25 m long, no thin thing
     SetRow(scan, 40.0, 1.5, 1);
     AddAround(scan, num_around);
-    EXPECT_EQ(SegmentScan(scan, {}).segments.size(), static_cast<std::size_t>(num_around) + (is_one ? 1U : 2U)) << num_around;
+    const auto num_segments = SegmentScan(scan, {}).segments.size() - static_cast<std::size_t>(num_around);
+    ASSERT_TRUE(num_segments == 1 || num_segments == 2) << num_around << " around, " << num_segments;
+    are_two.push_back(num_segments == 2);
   }
+  EXPECT_FALSE(are_two.front());
+  EXPECT_TRUE(are_two.back());
+  EXPECT_TRUE(std::ranges::is_sorted(are_two)) << testing::PrintToString(are_two);
 }
 
 // Posts at the corners of 5.5 m by 3.2 m, so many rings high: from ring 5, 5 degrees below the horizon, on.

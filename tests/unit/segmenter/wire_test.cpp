@@ -21,78 +21,93 @@ lidar_scan_t GoodMessage() {
   return test::ScanMessages(scan, 7, 2)[1];
 }
 
-std::variant<ScanPart, Refusal> Convert(const lidar_scan_t& message) { return ToScanPart(message, bus::kMaxMessageBytes); }
+std::optional<messages::Fault> FaultOf(const lidar_scan_t& message) { return messages::FaultOf(message, bus::kMaxMessageBytes); }
 
-TEST(ToScanPart, CopiesAGoodMessage) {
+TEST(ToScan, CopiesGoodMessages) {
   auto scan = test::EmptyScan({.num_columns = 20, .num_rings = 4});
   test::SetReturn(scan, 13, 2, 131.07, 0, 255);
-  const auto result = Convert(test::ScanMessages(scan, 7, 2)[1]);
-  ASSERT_TRUE(std::holds_alternative<ScanPart>(result));
-  const auto& part = std::get<ScanPart>(result);
-  EXPECT_EQ(part.head.seq, 7);
-  EXPECT_EQ(part.head.raw_seq, 12);
-  EXPECT_EQ(part.head.time, test::kScanTime);
-  EXPECT_EQ(part.head.flags, lidar_scan_t::FLAG_HOLE);
-  EXPECT_EQ(part.head.rings, scan.head.rings);
-  EXPECT_EQ(part.part_index, 1);
-  EXPECT_EQ(part.first_column, 10);
-  EXPECT_EQ(part.columns.size(), 10);
-  EXPECT_EQ(part.columns.range[test::CellOf(scan, 3, 2)], 65535);  // above what 16 bits with a sign hold
-  EXPECT_EQ(part.columns.reflectivity[test::CellOf(scan, 3, 2)], 255);
+  const auto messages = test::ScanMessages(scan, 7, 2);
+  const auto result = ToScan(messages);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->head.seq, 7);
+  EXPECT_EQ(result->head.raw_seq, 12);
+  EXPECT_EQ(result->head.time, test::kScanTime);
+  EXPECT_EQ(result->head.end_time, scan.head.end_time);
+  EXPECT_EQ(result->head.flags, lidar_scan_t::FLAG_HOLE);
+  EXPECT_EQ(result->head.num_parts, 2);
+  EXPECT_EQ(result->head.rings, scan.head.rings);
+  ASSERT_EQ(result->parts.size(), 2U);
+  EXPECT_EQ(result->parts[1].first_column, 10);
+  EXPECT_EQ(result->parts[1].num_columns, 10);
+  EXPECT_EQ(result->columns.azimuth_rad, scan.columns.azimuth_rad);
+  EXPECT_EQ(result->columns.time_ns, scan.columns.time_ns);
+  EXPECT_EQ(result->columns.range, scan.columns.range);
+  EXPECT_EQ(result->columns.range[test::CellOf(scan, 13, 2)], 65535);  // above what 16 bits with a sign hold
+  EXPECT_EQ(result->columns.reflectivity[test::CellOf(scan, 13, 2)], 255);
 }
 
-TEST(ToScanPart, RefusesWhateverIsWrongWithAMessageAndSaysWhat) {
+TEST(ToScan, RefusesColumnsThatOverlapOrLeaveGaps) {
+  auto messages = test::ScanMessages(test::EmptyScan({.num_columns = 20, .num_rings = 4}), 7, 2);
+  ASSERT_TRUE(ToScan(messages));
+  for (const int first_column : {9, 11}) {
+    messages[1].first_column = first_column;
+    EXPECT_FALSE(ToScan(messages)) << first_column;
+  }
+  EXPECT_FALSE(ToScan({messages[0]}));  // too few columns
+}
+
+TEST(FaultOfScan, SaysWhatIsWrongWithAMessage) {
   struct Case {
-    Refusal refusal;
+    messages::Fault fault;
     std::function<void(lidar_scan_t&)> spoil;
   };
   const std::vector<Case> cases{
-      {Refusal::kTime, [](lidar_scan_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
-      {Refusal::kTime, [](lidar_scan_t& m) { m.end_utime_us = std::numeric_limits<std::int64_t>::min(); }},
-      {Refusal::kTime, [](lidar_scan_t& m) { m.end_utime_us = m.utime_us - 1; }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.elevation_rad.pop_back(); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.azimuth_offset_rad.pop_back(); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.time_offset_ns.push_back(0); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.origin_height_m.clear(); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.return_kind.push_back(2); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.num_columns = 11; }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.num_columns = -1; }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.num_columns = std::numeric_limits<std::int32_t>::max(); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.time_ns.pop_back(); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.range.pop_back(); }},
-      {Refusal::kCounts, [](lidar_scan_t& m) { m.reflectivity.pop_back(); }},
-      {Refusal::kCounts,
+      {messages::kScanTime, [](lidar_scan_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
+      {messages::kScanTime, [](lidar_scan_t& m) { m.end_utime_us = std::numeric_limits<std::int64_t>::min(); }},
+      {messages::kScanTime, [](lidar_scan_t& m) { m.end_utime_us = m.utime_us - 1; }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.elevation_rad.pop_back(); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.azimuth_offset_rad.pop_back(); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.time_offset_ns.push_back(0); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.origin_height_m.clear(); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.return_kind.push_back(2); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.num_columns = 11; }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.num_columns = -1; }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.num_columns = std::numeric_limits<std::int32_t>::max(); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.time_ns.pop_back(); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.range.pop_back(); }},
+      {messages::kScanCounts, [](lidar_scan_t& m) { m.reflectivity.pop_back(); }},
+      {messages::kScanCounts,
        [](lidar_scan_t& m) {
          m.range.pop_back();
          m.reflectivity.pop_back();
          --m.num_cells;
        }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.num_rings = 0; }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.num_rings = 129; }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.num_returns = 0; }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.num_returns = 3; }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.num_turn_columns = -1; }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.num_turn_columns = 65537; }},
-      {Refusal::kSize, [](lidar_scan_t& m) { m.model.assign(120'000, 'x'); }},
-      {Refusal::kBeams, [](lidar_scan_t& m) { m.elevation_rad[1] = kNan; }},
-      {Refusal::kBeams, [](lidar_scan_t& m) { m.elevation_rad[3] = 1.6F; }},
-      {Refusal::kBeams, [](lidar_scan_t& m) { std::swap(m.elevation_rad[0], m.elevation_rad[1]); }},
-      {Refusal::kBeams, [](lidar_scan_t& m) { m.azimuth_offset_rad[0] = kNan; }},
-      {Refusal::kBeams, [](lidar_scan_t& m) { m.azimuth_offset_rad[0] = 7.0F; }},
-      {Refusal::kBeams, [](lidar_scan_t& m) { m.origin_height_m[2] = std::numeric_limits<float>::infinity(); }},
-      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = 0.0; }},
-      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = -0.002; }},
-      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = std::numeric_limits<double>::quiet_NaN(); }},
-      {Refusal::kRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = std::numeric_limits<double>::infinity(); }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.seq = -1; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.part_index = -1; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.part_index = 2; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.num_parts = 0; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.num_parts = 21; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.first_column = 11; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.first_column = -1; }},
-      {Refusal::kPart, [](lidar_scan_t& m) { m.first_column = std::numeric_limits<std::int32_t>::max(); }},
-      {Refusal::kPart,
+      {messages::kScanSize, [](lidar_scan_t& m) { m.num_rings = 0; }},
+      {messages::kScanSize, [](lidar_scan_t& m) { m.num_rings = 129; }},
+      {messages::kScanSize, [](lidar_scan_t& m) { m.num_returns = 0; }},
+      {messages::kScanSize, [](lidar_scan_t& m) { m.num_returns = 3; }},
+      {messages::kScanSize, [](lidar_scan_t& m) { m.num_turn_columns = -1; }},
+      {messages::kScanSize, [](lidar_scan_t& m) { m.num_turn_columns = 65537; }},
+      {messages::kScanSize, [](lidar_scan_t& m) { m.model.assign(120'000, 'x'); }},
+      {messages::kScanBeams, [](lidar_scan_t& m) { m.elevation_rad[1] = kNan; }},
+      {messages::kScanBeams, [](lidar_scan_t& m) { m.elevation_rad[3] = 1.6F; }},
+      {messages::kScanBeams, [](lidar_scan_t& m) { std::swap(m.elevation_rad[0], m.elevation_rad[1]); }},
+      {messages::kScanBeams, [](lidar_scan_t& m) { m.azimuth_offset_rad[0] = kNan; }},
+      {messages::kScanBeams, [](lidar_scan_t& m) { m.azimuth_offset_rad[0] = 7.0F; }},
+      {messages::kScanBeams, [](lidar_scan_t& m) { m.origin_height_m[2] = std::numeric_limits<float>::infinity(); }},
+      {messages::kScanRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = 0.0; }},
+      {messages::kScanRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = -0.002; }},
+      {messages::kScanRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = std::numeric_limits<double>::quiet_NaN(); }},
+      {messages::kScanRangeUnit, [](lidar_scan_t& m) { m.range_unit_m = std::numeric_limits<double>::infinity(); }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.seq = -1; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.part_index = -1; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.part_index = 2; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.num_parts = 0; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.num_parts = 21; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.first_column = 11; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.first_column = -1; }},
+      {messages::kScanPart, [](lidar_scan_t& m) { m.first_column = std::numeric_limits<std::int32_t>::max(); }},
+      {messages::kScanPart,
        [](lidar_scan_t& m) {
          m.num_columns = m.num_cells = 0;
          m.azimuth_rad.clear();
@@ -100,28 +115,25 @@ TEST(ToScanPart, RefusesWhateverIsWrongWithAMessageAndSaysWhat) {
          m.range.clear();
          m.reflectivity.clear();
        }},
-      {Refusal::kAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[0] = kNan; }},
-      {Refusal::kAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[9] = -0.001F; }},
-      {Refusal::kAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[5] = 6.2832F; }},
+      {messages::kScanAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[0] = kNan; }},
+      {messages::kScanAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[9] = -0.001F; }},
+      {messages::kScanAzimuth, [](lidar_scan_t& m) { m.azimuth_rad[5] = 6.2832F; }},
   };
-  ASSERT_TRUE(std::holds_alternative<ScanPart>(Convert(GoodMessage())));
+  ASSERT_FALSE(FaultOf(GoodMessage()));
   for (std::size_t i = 0; i < cases.size(); ++i) {
     auto message = GoodMessage();
     cases[i].spoil(message);
-    const auto result = Convert(message);
-    const auto* refusal = std::get_if<Refusal>(&result);
-    ASSERT_NE(refusal, nullptr) << "case " << i << " was taken";
-    EXPECT_EQ(*refusal, cases[i].refusal) << "case " << i << ": " << kRefusalNames[static_cast<std::size_t>(*refusal)];
+    EXPECT_EQ(FaultOf(message), cases[i].fault) << "case " << i;
   }
 }
 
-TEST(ToScanPart, TakesTheBoundsThemselves) {
+TEST(FaultOfScan, AcceptsTheBoundsThemselves) {
   auto message = GoodMessage();
   message.azimuth_rad[0] = 0.0F;
   message.azimuth_rad[9] = static_cast<float>(kTwoPi);
   message.end_utime_us = message.utime_us;
-  EXPECT_TRUE(std::holds_alternative<ScanPart>(Convert(message)));
-  EXPECT_TRUE(std::holds_alternative<ScanPart>(Convert(test::ScanMessages(test::EmptyScan({.num_columns = 0}), 0, 1)[0])));
+  EXPECT_FALSE(FaultOf(message));
+  EXPECT_FALSE(FaultOf(test::ScanMessages(test::EmptyScan({.num_columns = 0}), 0, 1)[0]));
 }
 
 // Segments with as many corners as there can be.

@@ -52,7 +52,7 @@ TEST(SceneFile, RefusesNumbersThatAreNotFiniteOrOutOfRange) {
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: nan"), "s.txtpb:3: object.east_m: must be a finite number (is nan)");
   EXPECT_EQ(ObjectFaults("kind: BUOY east_m: [5, 5000]"), "s.txtpb:3: object.east_m: must be at most 1000 (is 5000)");
   EXPECT_EQ(ObjectFaults("kind: BUOY count: 0"), "s.txtpb:3: object.count: must be at least 1 (is 0)");
-  EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability(): must be at most 1 (is 1.5)");
+  EXPECT_EQ(FaultsOf(kHead + "effects {\n  stray_probability: 1.5\n}\n"), "s.txtpb:4: effects.stray_probability: must be at most 1 (is 1.5)");
 }
 
 TEST(SceneFile, RefusesRangesThatAreNone) {

@@ -4,6 +4,8 @@ import java.awt.Color;
 import java.awt.Graphics2D;
 import java.awt.image.BufferedImage;
 import java.io.IOException;
+import java.nio.file.Files;
+import java.nio.file.Path;
 import java.util.ArrayList;
 import java.util.List;
 import java.util.Random;
@@ -131,10 +133,10 @@ public final class SpyTest {
     return bytes.toByteArray();
   }
 
-  private static BufferedImage painted(Turns turns, int width, int height, long now_ms) {
+  private static BufferedImage painted(Scans scans, int width, int height, long now_ms) {
     BufferedImage image = new BufferedImage(width, height, BufferedImage.TYPE_INT_RGB);
     Graphics2D g = image.createGraphics();
-    Painter.paint(g, width, height, turns.picture(), RADIUS_M, now_ms, turns.num_refused());
+    Painter.paint(g, width, height, scans.picture(), RADIUS_M, now_ms, scans.num_refused());
     g.dispose();
     return image;
   }
@@ -155,10 +157,10 @@ public final class SpyTest {
   }
 
   private static void aReturnIsDrawnWhereItIs() {
-    Turns turns = new Turns();
-    turns.add(scanOf(1), NOW_MS);
-    turns.add(segmentsOf(1), NOW_MS);
-    BufferedImage image = painted(turns, WIDTH, HEIGHT, NOW_MS);
+    Scans scans = new Scans();
+    scans.add(scanOf(1), NOW_MS);
+    scans.add(segmentsOf(1), NOW_MS);
+    BufferedImage image = painted(scans, WIDTH, HEIGHT, NOW_MS);
     Painter.Layout layout = new Painter.Layout(WIDTH, HEIGHT);
     int x = layout.ranges.x + RangeImage.xOf(0.5 * Math.PI, layout.ranges.width) + 5;
     int low = layout.ranges.y + 3 * layout.ranges.height / 4;
@@ -176,23 +178,23 @@ public final class SpyTest {
 
   private static void obstaclesGiveTheBowAndTheirMarks() {
     // The lidar is turned by 90 degrees: its x axis looks to port.
-    Turns turns = new Turns();
-    turns.add(scanOf(1), NOW_MS);
+    Scans scans = new Scans();
+    scans.add(scanOf(1), NOW_MS);
     segments_t segments = segmentsOf(1);
     segments.num_segments = 2;
     segments.segments = new segment_t[] {segmentOf(3, 0f, -20f), segmentOf(4, 10f, 0f)};
-    turns.add(segments, NOW_MS);
-    turns.add(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f)), NOW_MS);
-    Mounting mounting = turns.picture().mounting;
-    expect(mounting != null && Math.abs(mounting.yaw_rad - 0.5 * Math.PI) < 1e-6, "the mounting is found");
-    expect(turns.picture().obstacles.get(0).id == 4, "the nearest obstacle stands first");
+    scans.add(segments, NOW_MS);
+    scans.add(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f)), NOW_MS);
+    Mounting mounting = scans.picture().mounting();
+    expect(mounting != null && Math.abs(mounting.yaw_rad() - 0.5 * Math.PI) < 1e-6, "the mounting is found");
+    expect(scans.picture().obstacles().get(0).id == 4, "the nearest obstacle stands first");
     Painter.Layout layout = new Painter.Layout(WIDTH, HEIGHT);
-    BufferedImage image = painted(turns, WIDTH, HEIGHT, NOW_MS);
+    BufferedImage image = painted(scans, WIDTH, HEIGHT, NOW_MS);
     double x = MapView.screenX(layout.map, RADIUS_M, 0.0);
     double y = MapView.screenY(layout.map, RADIUS_M, 20.0);
     expectColour(image, Math.round(x), Math.round(y), Palette.ofSegment(3), "segment 3 is now ahead");
     expect(new Color(image.getRGB((int) Math.floor(x), (int) Math.floor(y - 4))).getRed() < 128, "a dark ring around the obstacle");
-    BufferedImage later = painted(turns, WIDTH, HEIGHT, NOW_MS + 2001);
+    BufferedImage later = painted(scans, WIDTH, HEIGHT, NOW_MS + 2001);
     expect(new Color(later.getRGB((int) Math.floor(x), (int) Math.floor(y - 4))).getRed() > 128, "after 2 s the ring is gone");
     expectColour(later, layout.map.getCenterX() - 80, layout.map.y + 12, Palette.ALERT, "and the picture says that it is old");
   }
@@ -210,16 +212,16 @@ public final class SpyTest {
       mirrored.add(obstacleOf(i + 1, p[0], -p[1]));
     }
     Mounting found = Mounting.estimate(segments, obstacles);
-    expect(found != null && Math.abs(found.yaw_rad - truth.yaw_rad) < 1e-5 && Math.abs(found.x_m - 0.5) < 1e-4 && Math.abs(found.y_m + 0.1) < 1e-4,
+    expect(found != null && Math.abs(found.yaw_rad() - truth.yaw_rad()) < 1e-5 && Math.abs(found.x_m() - 0.5) < 1e-4 && Math.abs(found.y_m() + 0.1) < 1e-4,
         "three obstacles give the mounting");
-    expect(Mounting.estimate(segments, mirrored) == null, "a lidar upside down fits no turn in the plane");
+    expect(Mounting.estimate(segments, mirrored) == null, "a lidar upside down fits no rotation in the plane");
     expect(Mounting.estimate(segments.subList(0, 1), obstacles) == null, "one obstacle is too few");
     expect(Mounting.estimate(List.of(segmentOf(1, 10f, 3f), segmentOf(2, 11f, 3f)), List.of(obstacleOf(1, 10f, 3f), obstacleOf(2, 11f, 3f))) == null,
         "two obstacles side by side are too few");
   }
 
-  private static void turnsAreDrawnWhole() {
-    Turns turns = new Turns();
+  private static void scansAreDrawnWhole() {
+    Scans scans = new Scans();
     lidar_scan_t second = scanOf(1);
     second.num_parts = 2;
     second.part_index = 1;
@@ -231,52 +233,83 @@ public final class SpyTest {
     segments_t more_labels = segmentsOf(1);
     more_labels.num_parts = 2;
     more_labels.part_index = 1;
-    turns.add(second, NOW_MS);
-    turns.add(more_labels, NOW_MS);
-    turns.add(labels, NOW_MS);
-    expect(turns.picture().turn == null, "half a scan is not drawn");
-    turns.add(first, NOW_MS);
-    expect(turns.picture().turn != null && turns.picture().turn.scanParts.get(0) == first, "both parts are, in their order, however they came");
+    scans.add(second, NOW_MS);
+    scans.add(more_labels, NOW_MS);
+    scans.add(labels, NOW_MS);
+    expect(scans.picture().scan() == null, "half a scan is not drawn");
+    scans.add(first, NOW_MS);
+    expect(scans.picture().scan() != null && scans.picture().scan().scanParts.get(0) == first, "both parts are, in their order, however they came");
 
-    Turns unlabelled = new Turns();
+    Scans unlabelled = new Scans();
     for (long seq = 1; seq <= 3; ++seq) unlabelled.add(scanOf(seq), NOW_MS);
-    expect(unlabelled.picture().turn != null && !unlabelled.picture().turn.isLabelled(), "without a segmenter scans are drawn nevertheless");
+    expect(unlabelled.picture().scan() != null && !unlabelled.picture().scan().isLabelled(), "without a segmenter scans are drawn nevertheless");
+  }
+
+  // The same cases as tests/unit/messages/scan_collector_test.cpp.
+  private static void sharedCasesCompleteTheirScans() throws Exception {
+    int num_cases = 0;
+    for (String line : Files.readAllLines(Path.of("tests/unit/messages/scan_parts.txt"))) {
+      if (line.isEmpty() || line.startsWith("#")) continue;
+      String[] sides = line.split(" -> ");
+      List<String> completed = new ArrayList<>();
+      Scans scans = new Scans();
+      for (String part : sides[0].split(" ")) {
+        String[] numbers = part.substring(1).split("[:/]");
+        Scan before = scans.picture().scan();
+        if (part.charAt(0) == 'C') {
+          lidar_scan_t scan = scanOf(Long.parseLong(numbers[0]));
+          scan.part_index = Integer.parseInt(numbers[1]);
+          scan.num_parts = Integer.parseInt(numbers[2]);
+          scans.add(scan, NOW_MS);
+        } else {
+          segments_t segments = segmentsOf(Long.parseLong(numbers[0]));
+          segments.part_index = Integer.parseInt(numbers[1]);
+          segments.num_parts = Integer.parseInt(numbers[2]);
+          scans.add(segments, NOW_MS);
+        }
+        Scan after = scans.picture().scan();
+        if (after != before && after.isLabelled()) completed.add(numbers[0]);
+      }
+      expect(String.join(" ", completed).equals(sides[1]), line + ", but " + completed);
+      ++num_cases;
+    }
+    expect(num_cases >= 8, "the shared cases are read");
   }
 
   private static void noMessageEndsIt() throws Exception {
     Random random = new Random(1);
     String[] channels = {"LIDAR_SCAN", "SEGMENTS", "OBSTACLES"};
     byte[][] good = {encoded(scanOf(1)), encoded(segmentsOf(1)), encoded(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f)))};
-    Turns turns = new Turns();
-    for (int i = 0; i < channels.length; ++i) Feed.decode(turns, channels[i], new LCMDataInputStream(good[i]), NOW_MS);
-    expect(turns.num_refused() == 0 && turns.picture().turn != null && turns.picture().obstacles.size() == 2, "the good ones are taken");
+    Scans scans = new Scans();
+    for (int i = 0; i < channels.length; ++i) Feed.decode(scans, channels[i], new LCMDataInputStream(good[i]), NOW_MS);
+    expect(scans.num_refused() == 0 && scans.picture().scan() != null && scans.picture().obstacles().size() == 2, "the good ones are taken");
     long num_cut = 0;
     for (int i = 0; i < channels.length; ++i) {
       for (int size = 0; size < good[i].length; ++size, ++num_cut) {
-        Feed.decode(turns, channels[i], new LCMDataInputStream(good[i], 0, size), NOW_MS);
+        Feed.decode(scans, channels[i], new LCMDataInputStream(good[i], 0, size), NOW_MS);
       }
     }
-    expect(turns.num_refused() == num_cut, "each message that is cut short is counted");
+    expect(scans.num_refused() == num_cut, "each message that is cut short is counted");
     for (int round = 0; round < 3000; ++round) {
       int i = round % channels.length;
       byte[] bytes = good[i].clone();
       int extreme = round % 4 == 1 ? 0xFF : 0x7F;
       for (int k = 0; k < 3; ++k) bytes[8 + random.nextInt(bytes.length - 8)] = (byte) (round % 2 == 0 ? random.nextInt() : extreme);
-      Feed.decode(turns, channels[i], new LCMDataInputStream(bytes), NOW_MS);
-      if (round % 100 == 0) painted(turns, 400 + round / 10, 500, NOW_MS);
+      Feed.decode(scans, channels[i], new LCMDataInputStream(bytes), NOW_MS);
+      if (round % 100 == 0) painted(scans, 400 + round / 10, 500, NOW_MS);
     }
-    expect(turns.num_refused() > num_cut + 100, "spoiled ones are counted");
-    Feed.decode(turns, "LIDAR_SCAN", new LCMDataInputStream(good[0]), NOW_MS);
-    for (int[] size : new int[][] {{1, 1}, {50, 900}, {900, 50}, {300, 200}}) painted(turns, size[0], size[1], NOW_MS);
+    expect(scans.num_refused() > num_cut + 100, "spoiled ones are counted");
+    Feed.decode(scans, "LIDAR_SCAN", new LCMDataInputStream(good[0]), NOW_MS);
+    for (int[] size : new int[][] {{1, 1}, {50, 900}, {900, 50}, {300, 200}}) painted(scans, size[0], size[1], NOW_MS);
   }
 
   private static void refuses(String what, java.util.function.Consumer<lidar_scan_t> spoil) {
     lidar_scan_t scan = scanOf(1);
     spoil.accept(scan);
-    Turns turns = new Turns();
-    turns.add(scan, NOW_MS);
-    turns.add(segmentsOf(1), NOW_MS);
-    expect(turns.num_refused() == 1 && turns.picture().turn == null, "a scan is refused: " + what);
+    Scans scans = new Scans();
+    scans.add(scan, NOW_MS);
+    scans.add(segmentsOf(1), NOW_MS);
+    expect(scans.num_refused() == 1 && scans.picture().scan() == null, "a scan is refused: " + what);
   }
 
   private static void whatContradictsItselfIsRefused() {
@@ -289,15 +322,15 @@ public final class SpyTest {
     refuses("an elevation that is no number", scan -> scan.elevation_rad[1] = Float.POSITIVE_INFINITY);
     refuses("a unit of range of 0", scan -> scan.range_unit_m = 0.0);
     refuses("a part beyond the last", scan -> scan.part_index = 1);
-    refuses("more parts than a turn can have", scan -> scan.num_parts = 1_000_000);
-    Turns turns = new Turns();
+    refuses("more parts than a scan can have", scan -> scan.num_parts = 1_000_000);
+    Scans scans = new Scans();
     segments_t segments = segmentsOf(1);
     segments.num_columns = 5;
-    turns.add(segments, NOW_MS);
+    scans.add(segments, NOW_MS);
     obstacles_t obstacles = obstaclesOf(1);
     obstacles.num_parts = 0;
-    turns.add(obstacles, NOW_MS);
-    expect(turns.num_refused() == 2, "segments and obstacles too");
+    scans.add(obstacles, NOW_MS);
+    expect(scans.num_refused() == 2, "segments and obstacles too");
   }
 
   private static void aCountThatCannotBeIsRefusedBeforeItIsTaken() throws Exception {
@@ -333,7 +366,8 @@ public final class SpyTest {
     aReturnIsDrawnWhereItIs();
     obstaclesGiveTheBowAndTheirMarks();
     theMountingIsNotGuessed();
-    turnsAreDrawnWhole();
+    scansAreDrawnWhole();
+    sharedCasesCompleteTheirScans();
     noMessageEndsIt();
     whatContradictsItselfIsRefused();
     aCountThatCannotBeIsRefusedBeforeItIsTaken();

@@ -34,7 +34,7 @@ TEST(Bundler, ClosesWhenItHolds24Payloads) {
   }
 }
 
-TEST(Bundler, ClosesWithThePacketInWhichATurnEnds) {
+TEST(Bundler, ClosesWithThePacketInWhichAScanEnds) {
   Bundler bundler(2368, 8308, 0.0);
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35000, 40), 0)));
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35480, 40), 0)));
@@ -42,7 +42,7 @@ TEST(Bundler, ClosesWithThePacketInWhichATurnEnds) {
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(440, 40), 0)));
 }
 
-TEST(Bundler, ClosesWhenATurnEndsBetweenTwoPackets) {
+TEST(Bundler, ClosesWhenAScanEndsBetweenTwoPackets) {
   Bundler bundler(2368, 8308, 0.0);
   EXPECT_FALSE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(35540, 40), 0)));  // to 35980
   EXPECT_TRUE(bundler.Add(kTime, 2368, MakeDataPacket(Azimuths(20, 40), 0)));

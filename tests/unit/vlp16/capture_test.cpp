@@ -272,16 +272,16 @@ TEST(CaptureReader, SurvivesEveryRecordingThatIsBroken) {
   }
 }
 
-struct TurnCount {
+struct ScanCount {
   int num_full = 0;
   int num_partial = 0;
   std::int64_t num_nonzero = 0;
 };
 
-TurnCount CountTurns(const std::filesystem::path& file) {
+ScanCount CountScans(const std::filesystem::path& file) {
   bus::MemoryBus bus;
   Service service(bus, Params{});
-  TurnCount count;
+  ScanCount count;
   bus::Subscribe<lidar_scan_t>(bus, bus::kLidarScan, [&count](const lidar_scan_t& scan) {
     ((scan.flags & ~std::int32_t{lidar_scan_t::FLAG_HOLE}) == 0 ? count.num_full : count.num_partial) += 1;
     for (const auto range : scan.range) count.num_nonzero += range != 0 ? 1 : 0;
@@ -309,7 +309,7 @@ std::int64_t CountNonzero(const std::filesystem::path& file) {
   return num_nonzero;
 }
 
-TEST(Recordings, GiveTheirTurnsAndEveryReturn) {
+TEST(Recordings, GiveTheirScansAndEveryReturn) {
   struct Expected {
     const char* file;
     int num_full;
@@ -319,17 +319,17 @@ TEST(Recordings, GiveTheirTurnsAndEveryReturn) {
                                Expected{"rlu_vlp16_example.pcap", 0, 2}}) {
     const auto file = kRecordings / "vlp16" / expected.file;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
-    const auto count = CountTurns(file);
+    const auto count = CountScans(file);
     EXPECT_EQ(count.num_full, expected.num_full) << file;
     EXPECT_EQ(count.num_partial, expected.num_partial) << file;
     EXPECT_EQ(count.num_nonzero, CountNonzero(file)) << file;
   }
 }
 
-TEST(Recordings, OfAnHdl32eGiveNoTurn) {
+TEST(Recordings, OfAnHdl32eGiveNoScan) {
   const auto file = kRecordings / "other_lidar/vv_hdl32_monterey.pcap";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no recording at " << file;
-  const auto count = CountTurns(file);
+  const auto count = CountScans(file);
   EXPECT_EQ(count.num_full + count.num_partial, 0);
 }
 

@@ -60,7 +60,7 @@ TEST(DataPacket, IsRefusedWhenAnAzimuthIsNoAngle) {
   }
 }
 
-TEST(DataPacket, WrapsAnAzimuthThatWasRoundedUpToAFullTurn) {
+TEST(DataPacket, WrapsAnAzimuthThatWasRoundedUpToAFullRevolution) {
   // As a real head sent it.
   const auto result = ParseDataPacket(MakeDataPacket({35921, 35941, 35960, 35979, 36000, 18, 38, 57, 77, 95, 116, 135}, 0));
   ASSERT_EQ(result.fault, DataFault::kNone);

@@ -1,4 +1,4 @@
-// Decoder and ScanAssembler together: packets in, turns out.
+// Decoder and ScanCutter together: packets in, scans out.
 #include "services/vlp16/core/decoder.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ const Utime kDecoderTime = Utime(std::chrono::hours(24 * 20000));
 struct Bench {
   explicit Bench(const DecoderParams& params = {})
       : decoder(
-            params, [this](const Turn& turn) { turns.push_back(turn); }, [this](const SentenceOfLidar& sentence) { sentences.push_back(sentence); }) {
+            params, [this](const Scan& scan) { scans.push_back(scan); }, [this](const SentenceOfLidar& sentence) { sentences.push_back(sentence); }) {
   }
 
   // The host takes a packet when its last shot has gone out.
@@ -37,7 +37,7 @@ struct Bench {
     return found != counters.end() ? found->count : -1;
   }
 
-  std::vector<Turn> turns;
+  std::vector<Scan> scans;
   std::vector<SentenceOfLidar> sentences;
   Decoder decoder;
 };
@@ -48,13 +48,13 @@ DecoderParams Cut(double cut_deg) {
   return params;
 }
 
-TEST(Decoder, GivesNoTurnWithoutPackets) {
+TEST(Decoder, GivesNoScanWithoutPackets) {
   Bench bench;
   bench.decoder.Flush();
-  EXPECT_TRUE(bench.turns.empty());
+  EXPECT_TRUE(bench.scans.empty());
 }
 
-TEST(Decoder, GivesOnePartialTurnForOnePacket) {
+TEST(Decoder, GivesOnePartialScanForOnePacket) {
   Bench bench;
   auto payload = MakeDataPacket(Azimuths(1000, 40), 1'000'000, format::kModeStrongest, format::kProductVlp16, {});
   test::SetReturn(payload, 0, 0, 0, {700, 11});  // lowest beam
@@ -63,29 +63,29 @@ TEST(Decoder, GivesOnePartialTurnForOnePacket) {
   test::SetReturn(payload, 3, 0, 4, {0, 99});  // no return has no reflectivity
   bench.decoder.OnDataPayload(kDecoderTime, payload);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  const auto& turn = bench.turns[0];
-  ASSERT_EQ(turn.num_columns(), 24);
-  EXPECT_TRUE(turn.is_partial_start);
-  EXPECT_TRUE(turn.is_partial_end);
-  EXPECT_FALSE(turn.has_hole);
-  EXPECT_EQ(turn.range.size(), 24U * 16U);
-  EXPECT_EQ(turn.range[0], 700);
-  EXPECT_EQ(turn.reflectivity[0], 11);
-  EXPECT_EQ(turn.range[16 + 8], 800);
-  EXPECT_EQ(turn.range[23 * 16 + 15], 65535);
-  EXPECT_EQ(turn.reflectivity[23 * 16 + 15], 255);
-  EXPECT_EQ(std::ranges::count_if(turn.range, [](std::uint16_t range) { return range != 0; }), 3);
-  EXPECT_EQ(std::ranges::count_if(turn.reflectivity, [](std::uint8_t value) { return value != 0; }), 3);
-  EXPECT_NEAR(turn.azimuth_rad[0], DegToRad(10.0), 1e-6);
-  EXPECT_NEAR(turn.azimuth_rad[1], DegToRad(10.2), 1e-6);
-  EXPECT_NEAR(turn.azimuth_rad[23], DegToRad(14.6), 1e-6);
-  EXPECT_EQ(turn.time_ns[0], 0);
-  EXPECT_EQ(turn.time_ns[1], 55296);
-  EXPECT_EQ(turn.time_ns[23], 23 * 55296);
-  EXPECT_EQ(turn.time, kDecoderTime - std::chrono::microseconds(1327));  // the host took it after its last shot
-  EXPECT_EQ(turn.end_time - turn.time, std::chrono::microseconds((23 * 55296 + 15 * 2304) / 1000));
-  EXPECT_NEAR(turn.rate_radps, kTwoPi * 10.0, kTwoPi * 0.05);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  const auto& scan = bench.scans[0];
+  ASSERT_EQ(scan.num_columns(), 24);
+  EXPECT_TRUE(scan.is_partial_start);
+  EXPECT_TRUE(scan.is_partial_end);
+  EXPECT_FALSE(scan.has_hole);
+  EXPECT_EQ(scan.range.size(), 24U * 16U);
+  EXPECT_EQ(scan.range[0], 700);
+  EXPECT_EQ(scan.reflectivity[0], 11);
+  EXPECT_EQ(scan.range[16 + 8], 800);
+  EXPECT_EQ(scan.range[23 * 16 + 15], 65535);
+  EXPECT_EQ(scan.reflectivity[23 * 16 + 15], 255);
+  EXPECT_EQ(std::ranges::count_if(scan.range, [](std::uint16_t range) { return range != 0; }), 3);
+  EXPECT_EQ(std::ranges::count_if(scan.reflectivity, [](std::uint8_t value) { return value != 0; }), 3);
+  EXPECT_NEAR(scan.azimuth_rad[0], DegToRad(10.0), 1e-6);
+  EXPECT_NEAR(scan.azimuth_rad[1], DegToRad(10.2), 1e-6);
+  EXPECT_NEAR(scan.azimuth_rad[23], DegToRad(14.6), 1e-6);
+  EXPECT_EQ(scan.time_ns[0], 0);
+  EXPECT_EQ(scan.time_ns[1], 55296);
+  EXPECT_EQ(scan.time_ns[23], 23 * 55296);
+  EXPECT_EQ(scan.time, kDecoderTime - std::chrono::microseconds(1327));  // the host took it after its last shot
+  EXPECT_EQ(scan.end_time - scan.time, std::chrono::microseconds((23 * 55296 + 15 * 2304) / 1000));
+  EXPECT_NEAR(scan.rate_radps, kTwoPi * 10.0, kTwoPi * 0.05);
 }
 
 TEST(Decoder, CutsInsideAPacketAtTheFirstColumnAtTheCut) {
@@ -94,52 +94,52 @@ TEST(Decoder, CutsInsideAPacketAtTheFirstColumnAtTheCut) {
   sensor.azimuth_deg = 355.0;
   bench.Send(sensor, 4);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_TRUE(bench.turns[0].is_partial_start);
-  EXPECT_FALSE(bench.turns[0].is_partial_end);
-  EXPECT_FALSE(bench.turns[1].is_partial_start);
-  EXPECT_TRUE(bench.turns[1].is_partial_end);
-  EXPECT_EQ(bench.turns[0].num_columns() + bench.turns[1].num_columns(), 4 * 24);
-  EXPECT_GT(bench.turns[0].azimuth_rad.back(), DegToRad(359.7));
-  EXPECT_LT(bench.turns[1].azimuth_rad.front(), DegToRad(0.2));
-  EXPECT_EQ(bench.turns[1].number, 1);
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_TRUE(bench.scans[0].is_partial_start);
+  EXPECT_FALSE(bench.scans[0].is_partial_end);
+  EXPECT_FALSE(bench.scans[1].is_partial_start);
+  EXPECT_TRUE(bench.scans[1].is_partial_end);
+  EXPECT_EQ(bench.scans[0].num_columns() + bench.scans[1].num_columns(), 4 * 24);
+  EXPECT_GT(bench.scans[0].azimuth_rad.back(), DegToRad(359.7));
+  EXPECT_LT(bench.scans[1].azimuth_rad.front(), DegToRad(0.2));
+  EXPECT_EQ(bench.scans[1].number, 1);
 }
 
-TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewTurn) {
+TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewScan) {
   Bench bench(Cut(120.0));
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(11780, 40), 0));  // second firing of block 5: 119.80 + 0.20
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_EQ(bench.turns[0].num_columns(), 11);
-  EXPECT_FLOAT_EQ(bench.turns[1].azimuth_rad.front(), static_cast<float>(DegToRad(120.0)));
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_EQ(bench.scans[0].num_columns(), 11);
+  EXPECT_FLOAT_EQ(bench.scans[1].azimuth_rad.front(), static_cast<float>(DegToRad(120.0)));
 }
 
 TEST(Decoder, InterpolatesAcrossTheSeam) {
   Bench bench(Cut(180.0));
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(35990, 40), 0));
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  EXPECT_NEAR(bench.turns[0].azimuth_rad[0], DegToRad(359.9), 1e-6);
-  EXPECT_NEAR(bench.turns[0].azimuth_rad[1], DegToRad(0.1), 1e-6);
-  EXPECT_NEAR(bench.turns[0].azimuth_rad[2], DegToRad(0.3), 1e-6);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  EXPECT_NEAR(bench.scans[0].azimuth_rad[0], DegToRad(359.9), 1e-6);
+  EXPECT_NEAR(bench.scans[0].azimuth_rad[1], DegToRad(0.1), 1e-6);
+  EXPECT_NEAR(bench.scans[0].azimuth_rad[2], DegToRad(0.3), 1e-6);
 }
 
-TEST(Decoder, CountsATurnFromCutToCutAsWhole) {
+TEST(Decoder, CountsAScanFromCutToCutAsWhole) {
   for (const double rpm : {300.0, 600.0, 1200.0}) {
     Bench bench;
     SpinningSensor sensor;
     sensor.rpm = rpm;
-    const int packets_per_turn = static_cast<int>(60e9 / rpm / 1327104.0);
-    bench.Send(sensor, 3 * packets_per_turn + 5);  // begins at the cut: nothing of its first turn is missing
+    const int packets_per_revolution = static_cast<int>(60e9 / rpm / 1327104.0);
+    bench.Send(sensor, 3 * packets_per_revolution + 5);  // begins at the cut: nothing of its first scan is missing
     bench.decoder.Flush();
-    ASSERT_GE(bench.turns.size(), 3U) << rpm;
-    for (std::size_t i = 0; i + 1 < bench.turns.size(); ++i) {
-      EXPECT_FALSE(bench.turns[i].is_partial_start) << rpm;
-      EXPECT_FALSE(bench.turns[i].is_partial_end) << rpm;
-      EXPECT_NEAR(bench.turns[i].num_columns(), 60e9 / rpm / 55296, 1.0);
-      EXPECT_NEAR(bench.turns[i].rate_radps, rpm / 60.0 * kTwoPi, 0.002 * rpm / 60.0 * kTwoPi);
+    ASSERT_GE(bench.scans.size(), 3U) << rpm;
+    for (std::size_t i = 0; i + 1 < bench.scans.size(); ++i) {
+      EXPECT_FALSE(bench.scans[i].is_partial_start) << rpm;
+      EXPECT_FALSE(bench.scans[i].is_partial_end) << rpm;
+      EXPECT_NEAR(bench.scans[i].num_columns(), 60e9 / rpm / 55296, 1.0);
+      EXPECT_NEAR(bench.scans[i].rate_radps, rpm / 60.0 * kTwoPi, 0.002 * rpm / 60.0 * kTwoPi);
     }
-    EXPECT_TRUE(bench.turns.back().is_partial_end);
+    EXPECT_TRUE(bench.scans.back().is_partial_end);
   }
 }
 
@@ -150,20 +150,20 @@ TEST(Decoder, TakesTwoReturnsPerShotInDualMode) {
   test::SetReturn(payload, 3, 1, 15, {800, 2});  // strongest, of the same shot
   bench.decoder.OnDataPayload(kDecoderTime, payload);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  const auto& turn = bench.turns[0];
-  EXPECT_EQ(turn.num_columns(), 12);
-  EXPECT_EQ(turn.num_returns(), 2);
-  ASSERT_EQ(turn.range.size(), 12U * 16U * 2U);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  const auto& scan = bench.scans[0];
+  EXPECT_EQ(scan.num_columns(), 12);
+  EXPECT_EQ(scan.num_returns(), 2);
+  ASSERT_EQ(scan.range.size(), 12U * 16U * 2U);
   const std::size_t cell = (3 * 16 + 15) * 2;
-  EXPECT_EQ(turn.range[cell], 900);
-  EXPECT_EQ(turn.range[cell + 1], 800);
-  EXPECT_EQ(turn.reflectivity[cell + 1], 2);
-  EXPECT_NEAR(turn.azimuth_rad[3], DegToRad(10.6), 1e-6);
-  EXPECT_EQ(turn.time_ns[11], 11 * 55296);
+  EXPECT_EQ(scan.range[cell], 900);
+  EXPECT_EQ(scan.range[cell + 1], 800);
+  EXPECT_EQ(scan.reflectivity[cell + 1], 2);
+  EXPECT_NEAR(scan.azimuth_rad[3], DegToRad(10.6), 1e-6);
+  EXPECT_EQ(scan.time_ns[11], 11 * 55296);
 }
 
-TEST(Decoder, EndsTheTurnWhenTheReturnModeChanges) {
+TEST(Decoder, EndsTheScanWhenTheReturnModeChanges) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
@@ -175,17 +175,17 @@ TEST(Decoder, EndsTheTurnWhenTheReturnModeChanges) {
   sensor.product = format::kProductPuckHiRes;
   bench.Send(sensor, 3);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 4U);
-  EXPECT_TRUE(bench.turns[0].is_partial_end);
-  EXPECT_TRUE(bench.turns[1].is_partial_start);
-  EXPECT_EQ(bench.turns[1].mode, ReturnMode::kDual);
-  EXPECT_EQ(bench.turns[1].num_columns(), 36);
-  EXPECT_EQ(bench.turns[2].mode, ReturnMode::kLast);
-  EXPECT_EQ(bench.turns[3].model, Model::kPuckHiRes);
-  EXPECT_EQ(bench.turns[3].counts.num_lost, 0);
+  ASSERT_EQ(bench.scans.size(), 4U);
+  EXPECT_TRUE(bench.scans[0].is_partial_end);
+  EXPECT_TRUE(bench.scans[1].is_partial_start);
+  EXPECT_EQ(bench.scans[1].mode, ReturnMode::kDual);
+  EXPECT_EQ(bench.scans[1].num_columns(), 36);
+  EXPECT_EQ(bench.scans[2].mode, ReturnMode::kLast);
+  EXPECT_EQ(bench.scans[3].model, Model::kPuckHiRes);
+  EXPECT_EQ(bench.scans[3].counts.num_lost, 0);
 }
 
-TEST(Decoder, MarksAHoleInsideATurn) {
+TEST(Decoder, MarksAHoleInsideAScan) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
@@ -193,15 +193,15 @@ TEST(Decoder, MarksAHoleInsideATurn) {
   sensor.Skip(5);
   bench.Send(sensor, 3);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  EXPECT_TRUE(bench.turns[0].has_hole);
-  EXPECT_EQ(bench.turns[0].num_lost_packets, 5);
-  EXPECT_EQ(bench.turns[0].counts.num_lost, 5);
-  EXPECT_EQ(bench.turns[0].num_columns(), 6 * 24);
-  EXPECT_NEAR(bench.turns[0].time_ns[72], 8 * 1327104, 1000);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  EXPECT_TRUE(bench.scans[0].has_hole);
+  EXPECT_EQ(bench.scans[0].num_lost_packets, 5);
+  EXPECT_EQ(bench.scans[0].counts.num_lost, 5);
+  EXPECT_EQ(bench.scans[0].num_columns(), 6 * 24);
+  EXPECT_NEAR(bench.scans[0].time_ns[72], 8 * 1327104, 1000);
 }
 
-TEST(Decoder, SharesALossAcrossTheCutBetweenBothTurns) {
+TEST(Decoder, SharesALossAcrossTheCutBetweenBothScans) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 345.0;
@@ -209,17 +209,17 @@ TEST(Decoder, SharesALossAcrossTheCutBetweenBothTurns) {
   sensor.Skip(2);         // to 4.1
   bench.Send(sensor, 2);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_TRUE(bench.turns[0].has_hole);
-  EXPECT_TRUE(bench.turns[1].has_hole);
-  EXPECT_FALSE(bench.turns[0].is_partial_end);
-  EXPECT_FALSE(bench.turns[1].is_partial_start);
-  EXPECT_EQ(bench.turns[0].num_lost_packets, 2);  // one before the cut, one across it
-  EXPECT_EQ(bench.turns[1].num_lost_packets, 1);  // the one across it
-  EXPECT_EQ(bench.turns[1].counts.num_lost, 2);
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_TRUE(bench.scans[0].has_hole);
+  EXPECT_TRUE(bench.scans[1].has_hole);
+  EXPECT_FALSE(bench.scans[0].is_partial_end);
+  EXPECT_FALSE(bench.scans[1].is_partial_start);
+  EXPECT_EQ(bench.scans[0].num_lost_packets, 2);  // one before the cut, one across it
+  EXPECT_EQ(bench.scans[1].num_lost_packets, 1);  // the one across it
+  EXPECT_EQ(bench.scans[1].counts.num_lost, 2);
 }
 
-TEST(Decoder, DoesNotJoinWhatLiesMoreThanATurnApart) {
+TEST(Decoder, DoesNotJoinWhatLiesMoreThanAScanApart) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
@@ -227,11 +227,11 @@ TEST(Decoder, DoesNotJoinWhatLiesMoreThanATurnApart) {
   sensor.Skip(76);
   bench.Send(sensor, 2);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_TRUE(bench.turns[0].is_partial_end);
-  EXPECT_TRUE(bench.turns[0].has_hole);
-  EXPECT_TRUE(bench.turns[1].is_partial_start);
-  EXPECT_TRUE(bench.turns[1].has_hole);
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_TRUE(bench.scans[0].is_partial_end);
+  EXPECT_TRUE(bench.scans[0].has_hole);
+  EXPECT_TRUE(bench.scans[1].is_partial_start);
+  EXPECT_TRUE(bench.scans[1].has_hole);
   EXPECT_EQ(bench.CountOf("data_lost"), 76);
 }
 
@@ -244,18 +244,18 @@ TEST(Decoder, DropsCopiesAndPutsLatePacketsRight) {
   const auto third = sensor.Next();
   for (const auto* payload : {&first, &third, &third, &second}) bench.decoder.OnDataPayload(kDecoderTime, *payload);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  const auto& turn = bench.turns[0];
-  EXPECT_EQ(turn.num_columns(), 72);
-  EXPECT_TRUE(std::ranges::is_sorted(turn.time_ns));
-  EXPECT_FALSE(turn.has_hole);
-  EXPECT_EQ(turn.counts.num_packets, 4);
-  EXPECT_EQ(turn.counts.num_duplicates, 1);
-  EXPECT_EQ(turn.counts.num_reordered, 1);
-  EXPECT_EQ(turn.counts.num_lost, 0);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  const auto& scan = bench.scans[0];
+  EXPECT_EQ(scan.num_columns(), 72);
+  EXPECT_TRUE(std::ranges::is_sorted(scan.time_ns));
+  EXPECT_FALSE(scan.has_hole);
+  EXPECT_EQ(scan.counts.num_packets, 4);
+  EXPECT_EQ(scan.counts.num_duplicates, 1);
+  EXPECT_EQ(scan.counts.num_reordered, 1);
+  EXPECT_EQ(scan.counts.num_lost, 0);
 }
 
-TEST(Decoder, KeepsATurnWholeWhenTheSensorsClockIsSet) {
+TEST(Decoder, KeepsAScanWholeWhenTheSensorsClockIsSet) {
   Bench bench;
   SpinningSensor sensor;
   sensor.time_ns = 100'000'000'000;
@@ -266,11 +266,11 @@ TEST(Decoder, KeepsATurnWholeWhenTheSensorsClockIsSet) {
   send(100);
   sensor.time_ns += 700'000'000'000;
   send(100);
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_FALSE(bench.turns[1].is_partial_start);
-  EXPECT_FALSE(bench.turns[1].is_partial_end);
-  EXPECT_FALSE(bench.turns[1].has_hole);
-  EXPECT_NEAR(bench.turns[1].time_ns.back(), 100'000'000, 100'000);
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_FALSE(bench.scans[1].is_partial_start);
+  EXPECT_FALSE(bench.scans[1].is_partial_end);
+  EXPECT_FALSE(bench.scans[1].has_hole);
+  EXPECT_NEAR(bench.scans[1].time_ns.back(), 100'000'000, 100'000);
   EXPECT_EQ(bench.CountOf("sensor_clock_steps"), 1);
 }
 
@@ -278,33 +278,33 @@ TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
   Bench bench;
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({1000, 1040, 1080, 1120, 1160, 1200, 10200, 10240, 10280, 10320, 10360, 10400}, 0));
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  EXPECT_EQ(bench.turns[0].time_ns[11], 11 * 55296);
-  EXPECT_EQ(bench.turns[0].time_ns[12], (6 + 224) * 110592);
-  EXPECT_EQ(bench.turns[0].time_ns[23], (11 + 224) * 110592 + 55296);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  EXPECT_EQ(bench.scans[0].time_ns[11], 11 * 55296);
+  EXPECT_EQ(bench.scans[0].time_ns[12], (6 + 224) * 110592);
+  EXPECT_EQ(bench.scans[0].time_ns[23], (11 + 224) * 110592 + 55296);
 }
 
-TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatTurns) {
+TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatScans) {
   Bench bench;
   int azimuth_cdeg = 18000;
   for (int packet = 0; packet < 1600; ++packet) {
     std::array<int, format::kNumBlocks> azimuths{};
     for (auto& azimuth : azimuths) {
       azimuth = azimuth_cdeg;
-      azimuth_cdeg = (azimuth_cdeg + format::kAzimuthsPerTurn - 2) % format::kAzimuthsPerTurn;
+      azimuth_cdeg = (azimuth_cdeg + format::kAzimuthsPerRevolution - 2) % format::kAzimuthsPerRevolution;
     }
     bench.decoder.OnDataPayload(kDecoderTime + packet * std::chrono::microseconds(1327),
                                 MakeDataPacket(azimuths, static_cast<std::uint32_t>(packet * 1327)));
   }
   bench.decoder.Flush();
-  for (const auto& turn : bench.turns) {
-    EXPECT_TRUE(turn.is_partial_start || turn.is_partial_end);
-    EXPECT_LT(turn.rate_radps, 1.0);
+  for (const auto& scan : bench.scans) {
+    EXPECT_TRUE(scan.is_partial_start || scan.is_partial_end);
+    EXPECT_LT(scan.rate_radps, 1.0);
   }
-  EXPECT_LE(bench.turns.size(), 3U);
+  EXPECT_LE(bench.scans.size(), 3U);
 }
 
-TEST(Decoder, EndsTheTurnWhereTheHeadIsNotWhereItShouldBe) {
+TEST(Decoder, EndsTheScanWhereTheHeadIsNotWhereItShouldBe) {
   Bench bench;
   SpinningSensor sensor;
   bench.Send(sensor, 100);
@@ -312,14 +312,14 @@ TEST(Decoder, EndsTheTurnWhereTheHeadIsNotWhereItShouldBe) {
   bench.Send(sensor, 100);
   bench.decoder.Flush();
   EXPECT_EQ(bench.CountOf("data_azimuth_disagrees"), 1);
-  for (const auto& turn : bench.turns) {
-    if (!turn.is_partial_start && !turn.is_partial_end) {
-      EXPECT_NEAR(turn.num_columns(), 1808, 2);
+  for (const auto& scan : bench.scans) {
+    if (!scan.is_partial_start && !scan.is_partial_end) {
+      EXPECT_NEAR(scan.num_columns(), 1808, 2);
     }
   }
 }
 
-TEST(Decoder, DoesNotJoinTurnsWhenALittleLessThanATurnIsMissing) {
+TEST(Decoder, DoesNotJoinScansWhenALittleLessThanAScanIsMissing) {
   for (const int lost : {74, 75, 76}) {
     Bench bench;
     SpinningSensor sensor;
@@ -329,7 +329,7 @@ TEST(Decoder, DoesNotJoinTurnsWhenALittleLessThanATurnIsMissing) {
     bench.Send(sensor, 110);
     bench.decoder.Flush();
     EXPECT_EQ(bench.CountOf("data_lost"), lost);
-    for (const auto& turn : bench.turns) EXPECT_LT(turn.time_ns.back(), 101'000'000) << lost;
+    for (const auto& scan : bench.scans) EXPECT_LT(scan.time_ns.back(), 101'000'000) << lost;
   }
 }
 
@@ -364,7 +364,7 @@ TEST(Decoder, NamesASensorThatIsNotOfTheFamily) {
   EXPECT_EQ(bench.CountOf("data_unknown_product"), 1);
 }
 
-TEST(Decoder, EndsTheTurnWhenTheSensorRestarts) {
+TEST(Decoder, EndsTheScanWhenTheSensorRestarts) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
@@ -373,26 +373,26 @@ TEST(Decoder, EndsTheTurnWhenTheSensorRestarts) {
   sensor.time_ns = 0;
   bench.Send(sensor, 2);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_TRUE(bench.turns[0].is_partial_end);
-  EXPECT_TRUE(bench.turns[1].is_partial_start);
-  EXPECT_FALSE(bench.turns[1].has_hole);
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_TRUE(bench.scans[0].is_partial_end);
+  EXPECT_TRUE(bench.scans[1].is_partial_start);
+  EXPECT_FALSE(bench.scans[1].has_hole);
   EXPECT_EQ(bench.CountOf("sensor_restarts"), 1);
-  EXPECT_EQ(bench.turns[1].time, kDecoderTime);  // its own offset, not that of the time before
+  EXPECT_EQ(bench.scans[1].time, kDecoderTime);  // its own offset, not that of the time before
 }
 
-TEST(Decoder, CapsATurnThatDoesNotEnd) {
+TEST(Decoder, CapsAScanThatDoesNotEnd) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   sensor.rpm = 0.0;
   bench.Send(sensor, 1600);  // 2.1 s
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
+  ASSERT_EQ(bench.scans.size(), 2U);
   EXPECT_EQ(bench.CountOf("turns_capped"), 1);
-  EXPECT_TRUE(bench.turns[0].is_partial_end);
-  EXPECT_LE(bench.turns[0].time_ns.back(), 2'000'000'000);
-  EXPECT_EQ(bench.turns[0].rate_radps, 0.0);
+  EXPECT_TRUE(bench.scans[0].is_partial_end);
+  EXPECT_LE(bench.scans[0].time_ns.back(), 2'000'000'000);
+  EXPECT_EQ(bench.scans[0].rate_radps, 0.0);
 }
 
 TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
@@ -402,17 +402,17 @@ TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
   bench.Send(sensor, 1);
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({35900, 35940, 35980, 20, 35999, 10, 35998, 30, 60, 100, 140, 180}, 1327));
   bench.decoder.Flush();
-  EXPECT_EQ(bench.turns.size(), 2U);
+  EXPECT_EQ(bench.scans.size(), 2U);
 }
 
 TEST(Decoder, CutsWhereALimitedFieldOfViewJumpsOverTheCut) {
   Bench bench;
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({9000, 9040, 9080, 9120, 9160, 9200, 4500, 4540, 4580, 4620, 4660, 4700}, 0));
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 2U);
-  EXPECT_EQ(bench.turns[0].num_columns(), 12);
-  EXPECT_FALSE(bench.turns[0].is_partial_end);
-  EXPECT_NEAR(bench.turns[0].azimuth_rad[11], DegToRad(92.2), 1e-6);
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_EQ(bench.scans[0].num_columns(), 12);
+  EXPECT_FALSE(bench.scans[0].is_partial_end);
+  EXPECT_NEAR(bench.scans[0].azimuth_rad[11], DegToRad(92.2), 1e-6);
 }
 
 TEST(Decoder, HoldsPacketsOfTheSharedProductByteUntilItKnowsTheModel) {
@@ -421,8 +421,8 @@ TEST(Decoder, HoldsPacketsOfTheSharedProductByteUntilItKnowsTheModel) {
   sensor.product = format::kProductHdl32e;
   bench.Send(sensor, 10);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 1U);
-  EXPECT_EQ(bench.turns[0].num_columns(), 10 * 24);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  EXPECT_EQ(bench.scans[0].num_columns(), 10 * 24);
   EXPECT_EQ(bench.CountOf("data_model_undecided"), 0);
 }
 
@@ -432,7 +432,7 @@ TEST(Decoder, RefusesAnHdl32eByName) {
     bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(100 + i * 240, 20), static_cast<std::uint32_t>(i * 553), 0x37, 0x21));
   }
   bench.decoder.Flush();
-  EXPECT_TRUE(bench.turns.empty());
+  EXPECT_TRUE(bench.scans.empty());
   EXPECT_EQ(bench.CountOf("data_hdl32e"), 10);
   EXPECT_NE(bench.decoder.last_refusal().find("HDL-32E"), std::string_view::npos);
 }
@@ -441,7 +441,7 @@ TEST(Decoder, RefusesALonePacketOfTheSharedProductByte) {
   Bench bench;
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(100, 40), 5, 0x37, 0x21));
   bench.decoder.Flush();
-  EXPECT_TRUE(bench.turns.empty());
+  EXPECT_TRUE(bench.scans.empty());
   EXPECT_EQ(bench.CountOf("data_model_undecided"), 1);
 }
 
@@ -461,7 +461,7 @@ TEST(Decoder, CountsEachKindOfBadPacketUnderItsOwnName) {
   }
 }
 
-TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
+TEST(Decoder, StampsAScanByTheSensorFromTheFirstScanThatBeginsLocked) {
   constexpr std::string_view kRmc = "$GPRMC,000000.00,A,,,,,,,041024,,";  // kDecoderTime
   Bench bench;
   SpinningSensor sensor;
@@ -478,32 +478,32 @@ TEST(Decoder, StampsATurnByTheSensorFromTheFirstTurnThatBeginsLocked) {
   bench.decoder.OnPositionPayload(behind, test::MakePositionPacket(8'000, format::kPpsLocked, kRmc));
   send(100);
   bench.decoder.Flush();
-  ASSERT_EQ(bench.turns.size(), 3U);
-  EXPECT_EQ(bench.turns[0].clock.source, TimeSource::kHost);
-  EXPECT_EQ(bench.turns[1].clock.source, TimeSource::kSensor);
-  EXPECT_EQ(bench.turns[1].clock.state, ClockState::kLocked);
-  EXPECT_NEAR(ToSeconds(*bench.turns[1].clock.host_minus_sensor), -0.007, 1e-5);
+  ASSERT_EQ(bench.scans.size(), 3U);
+  EXPECT_EQ(bench.scans[0].clock.source, TimeSource::kHost);
+  EXPECT_EQ(bench.scans[1].clock.source, TimeSource::kSensor);
+  EXPECT_EQ(bench.scans[1].clock.state, ClockState::kLocked);
+  EXPECT_NEAR(ToSeconds(*bench.scans[1].clock.host_minus_sensor), -0.007, 1e-5);
   ASSERT_EQ(bench.sentences.size(), 1U);
   EXPECT_EQ(bench.sentences[0].text, kRmc);
   EXPECT_EQ(bench.sentences[0].stamp_us, 8'000U);
-  EXPECT_NEAR(ToSeconds(bench.sentences[0].time - (behind + std::chrono::microseconds(1'000))), 0.0, 2e-6);  // by the host, as its turn
+  EXPECT_NEAR(ToSeconds(bench.sentences[0].time - (behind + std::chrono::microseconds(1'000))), 0.0, 2e-6);  // by the host, as its scan
 }
 
 TEST(Decoder, BeginsAnewAfterAStartMark) {
   Bench bench;
   SpinningSensor sensor;
   bench.Send(sensor, 200);
-  const auto turns = bench.turns;
+  const auto scans = bench.scans;
   bench.decoder.Reset();
-  bench.turns.clear();
+  bench.scans.clear();
   sensor = SpinningSensor();
   bench.Send(sensor, 200);
-  ASSERT_EQ(bench.turns.size(), turns.size());
-  for (std::size_t i = 0; i < turns.size(); ++i) {
-    EXPECT_EQ(bench.turns[i].number, turns[i].number);
-    EXPECT_EQ(bench.turns[i].time, turns[i].time);
-    EXPECT_EQ(bench.turns[i].time_ns, turns[i].time_ns);
-    EXPECT_EQ(bench.turns[i].counts.num_packets, turns[i].counts.num_packets);
+  ASSERT_EQ(bench.scans.size(), scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    EXPECT_EQ(bench.scans[i].number, scans[i].number);
+    EXPECT_EQ(bench.scans[i].time, scans[i].time);
+    EXPECT_EQ(bench.scans[i].time_ns, scans[i].time_ns);
+    EXPECT_EQ(bench.scans[i].counts.num_packets, scans[i].counts.num_packets);
   }
 }
 

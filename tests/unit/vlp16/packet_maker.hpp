@@ -53,12 +53,12 @@ inline void SetReturn(Payload& payload, int block, int sequence, int laser, Retu
 inline std::array<int, format::kNumBlocks> Azimuths(int first_cdeg, int gap_cdeg, bool is_dual = false) {
   std::array<int, format::kNumBlocks> azimuth_cdeg{};
   for (int block = 0; block < format::kNumBlocks; ++block) {
-    azimuth_cdeg[static_cast<std::size_t>(block)] = (first_cdeg + (is_dual ? block / 2 : block) * gap_cdeg) % format::kAzimuthsPerTurn;
+    azimuth_cdeg[static_cast<std::size_t>(block)] = (first_cdeg + (is_dual ? block / 2 : block) * gap_cdeg) % format::kAzimuthsPerRevolution;
   }
   return azimuth_cdeg;
 }
 
-/// A sensor that turns evenly: one packet after the other. Azimuth and stamp are rounded down, as the sensor's counters do.
+/// A sensor that rotates evenly: one packet after the other. Azimuth and stamp are rounded down, as the sensor's counters do.
 class SpinningSensor {
  public:
   /// What the laser sees: (azimuth in deg, laser, return index as transmitted) to a return.

@@ -150,7 +150,7 @@ TEST(PacketSequencer, CountsLossesOnceTheyAreSure) {
   EXPECT_EQ(bench.counts().num_disagreements, 0);
 }
 
-TEST(PacketSequencer, CountsLossesOfWholeTurnsToo) {
+TEST(PacketSequencer, CountsLossesOfWholeRevolutionsToo) {
   for (const int lost : {74, 75, 76, 77, 200, 700}) {
     SequencerBench bench;
     SpinningSensor sensor;
@@ -164,7 +164,7 @@ TEST(PacketSequencer, CountsLossesOfWholeTurnsToo) {
 }
 
 TEST(PacketSequencer, TellsAClockThatIsSetFromALoss) {
-  // By PPS, forwards and backwards, by little and by much; the head turns on, and the host sees no gap.
+  // By PPS, forwards and backwards, by little and by much; the head rotates on, and the host sees no gap.
   for (const std::int64_t step_us :
        {-1'800'000'000LL, -1'000'000LL, -20'000LL, -5'000LL, -900LL, 5'000LL, 100'000LL, 999'000LL, 2'000'000LL, 700'000'000LL}) {
     SequencerBench bench;
@@ -206,7 +206,7 @@ TEST(PacketSequencer, TakesAPauseOrAnotherAzimuthForARestart) {
   SpinningSensor sensor;
   sensor.time_ns = 100'000'000'000;
   bench.Add(sensor, 3);
-  sensor.time_ns += 1'100'000'000;  // and the head went eleven turns, which nobody saw
+  sensor.time_ns += 1'100'000'000;  // and the head went round eleven times, which nobody saw
   bench.Add(sensor, 3);
   EXPECT_EQ(bench.counts().num_restarts, 1);
   sensor.time_ns = 0;
@@ -259,10 +259,10 @@ TEST(PacketSequencer, CountsLossesOfAHeadThatStandsOrTrembles) {
 TEST(PacketSequencer, TakesWhatIsLateWithoutEndForAnotherStream) {
   SequencerBench bench;
   SpinningSensor sensor;
-  sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a turn is 75 packets
+  sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a revolution is 75 packets
   sensor.time_ns = 100'000'000'000;
   bench.Add(sensor, 100);
-  sensor.time_ns -= 10 * 75 * 1'327'104LL;  // set back by ten turns, and a packet was lost: it looks like packets of a second ago
+  sensor.time_ns -= 10 * 75 * 1'327'104LL;  // set back by ten revolutions, and a packet was lost: it looks like packets of a second ago
   sensor.Skip(1);
   bench.Add(sensor, 100);
   EXPECT_EQ(bench.counts().num_late, 8);
@@ -270,7 +270,7 @@ TEST(PacketSequencer, TakesWhatIsLateWithoutEndForAnotherStream) {
   EXPECT_EQ(bench.given.size(), 192U);
 }
 
-TEST(PacketSequencer, DropsACopyThatIsATurnOld) {
+TEST(PacketSequencer, DropsACopyThatIsARevolutionOld) {
   SequencerBench bench;
   SpinningSensor sensor;
   sensor.rpm = 60e9 / (75.0 * 1327104.0);
@@ -352,7 +352,7 @@ class LimitedSensor {
     std::array<int, format::kNumBlocks> azimuth_cdeg{};
     const double stamp_us = time_us_;
     for (auto& azimuth : azimuth_cdeg) {
-      azimuth = static_cast<int>(azimuth_deg_ * 100.0) % format::kAzimuthsPerTurn;
+      azimuth = static_cast<int>(azimuth_deg_ * 100.0) % format::kAzimuthsPerRevolution;
       Advance();
     }
     return test::MakeDataPacket(azimuth_cdeg, static_cast<std::uint32_t>(stamp_us));
@@ -377,7 +377,7 @@ class LimitedSensor {
 };
 
 TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
-  // The second of each makes the jump fall between packets in every turn, the hardest case: a multiple of a packet's sweep at 600 rpm.
+  // The second of each makes the jump fall between packets in every scan, the hardest case: a multiple of a packet's sweep at 600 rpm.
   const double sweep_deg = 12 * 110.592e-6 * 3600.0;
   for (const auto& [first_deg, last_deg] : {std::pair(0.0, 180.0), std::pair(30.0, 30.0 + 20.0 * sweep_deg - 0.2), std::pair(300.0, 420.0),
                                             std::pair(10.0, 340.0), std::pair(90.0, 120.0)}) {
@@ -409,7 +409,7 @@ TEST(PacketSequencer, CountsLossesBesideALimitedFieldOfView) {
   EXPECT_EQ(bench.counts().num_lost, num_dropped);
 }
 
-TEST(PacketSequencer, CountsLossesOfTurnsOfALimitedFieldOfView) {
+TEST(PacketSequencer, CountsLossesOfRevolutionsOfALimitedFieldOfView) {
   for (const int lost : {30, 38, 75, 100, 200}) {
     for (int phase = 0; phase < 38; phase += 3) {
       SequencerBench bench;
@@ -425,9 +425,9 @@ TEST(PacketSequencer, CountsLossesOfTurnsOfALimitedFieldOfView) {
 TEST(PacketSequencer, CountsEveryLossOfASectorThatWasSeenBefore) {
   SequencerBench bench;
   SpinningSensor sensor;
-  sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a turn is 75 packets: the same place each time
+  sensor.rpm = 60e9 / (75.0 * 1327104.0);  // a revolution is 75 packets: the same place each time
   bench.Add(sensor, 150);
-  for (int turn = 0; turn < 10; ++turn) {
+  for (int scan = 0; scan < 10; ++scan) {
     sensor.Skip(10);
     bench.Add(sensor, 65);
   }

@@ -205,7 +205,7 @@ TEST(SenderLock, IsNotHeldByAnotherModel) {
   EXPECT_TRUE(Of(MergedArrivals({hdl32e, lidar})).ScansWithoutRawSeq() == alone.ScansWithoutRawSeq());
 }
 
-// Early ones, which only the interval between their packets tells from an HDL-32E: by turns neither showed one, and both were taken for ever.
+// Early ones, which only the interval between their packets tells from an HDL-32E: alternating, neither showed one, and both were taken for ever.
 TEST(SenderLock, IsHeldByOneOfTwoLidarsThatAreToldByTheirIntervals) {
   const auto early = [](microseconds begin, const std::string& address) {
     return OfLidar(begin, seconds(3), address, 2368, format::kModeStrongest, format::kProductHdl32e);
@@ -294,9 +294,9 @@ TEST(SenderLock, IsKeptWhileTwoLidarsAlternate) {
   Arrivals first;
   Arrivals second;
   for (int i = 0; i < 20; ++i) {
-    auto& turn = i % 2 == 0 ? first : second;
+    auto& scan = i % 2 == 0 ? first : second;
     const auto part = OfLidar(seconds(i), seconds(i + 1), i % 2 == 0 ? kLidar.address : kOther.address);
-    turn.insert(turn.end(), part.begin(), part.end());
+    scan.insert(scan.end(), part.begin(), part.end());
   }
   EXPECT_TRUE(Of(MergedArrivals({first, second})).Of("LIDAR_SCAN") == Of(first).Of("LIDAR_SCAN"));
 }

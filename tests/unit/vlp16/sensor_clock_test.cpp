@@ -1,4 +1,4 @@
-// The clock through the whole decoder: a sensor, its receiver and the host's clock as they are at sea, and the expected utime of turns to the
+// The clock through the whole decoder: a sensor, its receiver and the host's clock as they are at sea, and the expected utime of scans to the
 // microsecond.
 #include "services/vlp16/core/sensor_clock.hpp"
 
@@ -23,8 +23,8 @@ using std::chrono::seconds;
 using std::chrono::sys_days;
 using std::chrono::year;
 
-// A turn of exactly 75 packets, so that turn k begins with packet 75 k.
-constexpr int kPacketsPerTurn = 75;
+// A scan of exactly 75 packets, so that scan k begins with packet 75 k.
+constexpr int kPacketsPerRevolution = 75;
 constexpr int kPositionEvery = 5;
 
 std::string Rmc(Utime time, char status = 'A', const char* time_of_day = nullptr) {
@@ -46,9 +46,9 @@ std::string Rmc(Utime time, char status = 'A', const char* time_of_day = nullptr
   return std::string(text.data()) + end.data();
 }
 
-// What is expected of the turn that begins `at` after the start (in turns).
+// What is expected of the scan that begins `at` after the start (in scans).
 struct Expected {
-  int turn;
+  int scan;
   microseconds utime_error;  // of its utime, against the start plus the time that went by
   TimeSource source;
   ClockState state;
@@ -69,7 +69,7 @@ struct Scenario {
     return Rmc(std::chrono::floor<seconds>(began + microseconds(static_cast<std::int64_t>((time_s - 0.2) * 1e6))));
   };
   std::function<bool(double)> is_on = [](double) { return true; };
-  int num_unseen = 0;  // turns of which nothing was sent, from 2 s on
+  int num_unseen = 0;  // scans of which nothing was sent, from 2 s on
   std::vector<Expected> expected;
 };
 
@@ -77,18 +77,18 @@ constexpr auto kHost = TimeSource::kHost;
 constexpr auto kSensor = TimeSource::kSensor;
 
 microseconds After(int packet) { return std::chrono::floor<microseconds>(packet * format::kPacketPeriodSingle); }
-double TurnSeconds(int turn) { return ToSeconds(After(turn * kPacketsPerTurn)); }
-// The turn that runs at `time_s`, and begins up to 0.1 s before.
-int TurnAt(double time_s) { return static_cast<int>(time_s / TurnSeconds(1)); }
+double TurnSeconds(int scan) { return ToSeconds(After(scan * kPacketsPerRevolution)); }
+// The scan that runs at `time_s`, and begins up to 0.1 s before.
+int ScanAt(double time_s) { return static_cast<int>(time_s / TurnSeconds(1)); }
 
-std::map<std::int64_t, Turn> Play(const Scenario& scenario) {
-  std::map<std::int64_t, Turn> turns;  // by number
+std::map<std::int64_t, Scan> Play(const Scenario& scenario) {
+  std::map<std::int64_t, Scan> scans;  // by number
   DecoderParams params;
   params.time = scenario.choice;
   Decoder decoder(
-      params, [&](const Turn& turn) { turns.emplace(turn.number, turn); }, [](const SentenceOfLidar&) {});
+      params, [&](const Scan& scan) { scans.emplace(scan.number, scan); }, [](const SentenceOfLidar&) {});
   test::SpinningSensor sensor;
-  sensor.rpm = 60e9 / (kPacketsPerTurn * static_cast<double>(format::kPacketPeriodSingle.count()));
+  sensor.rpm = 60e9 / (kPacketsPerRevolution * static_cast<double>(format::kPacketPeriodSingle.count()));
   const int num_packets = static_cast<int>(scenario.duration_s / ToSeconds(format::kPacketPeriodSingle));
   for (int i = 0; i < num_packets; ++i) {
     const microseconds gone_by = After(i);
@@ -109,7 +109,7 @@ std::map<std::int64_t, Turn> Play(const Scenario& scenario) {
     decoder.OnDataPayload(host, payload);
   }
   decoder.Flush();
-  return turns;
+  return scans;
 }
 
 std::vector<Scenario> Scenarios() {
@@ -138,7 +138,7 @@ std::vector<Scenario> Scenarios() {
   add("acquiring, then locked", [&](Scenario& s) {
     s.host_error = constant(milliseconds(40));
     s.pps = [](double time_s) { return time_s < 2.0 ? format::kPpsSynchronising : format::kPpsLocked; };
-    s.expected = {{TurnAt(1.5), milliseconds(40), kHost, ClockState::kAcquiring}, {TurnAt(2.5), milliseconds(0), kSensor, ClockState::kLocked}};
+    s.expected = {{ScanAt(1.5), milliseconds(40), kHost, ClockState::kAcquiring}, {ScanAt(2.5), milliseconds(0), kSensor, ClockState::kLocked}};
   });
   add("locked, but the receiver has no fix", [&](Scenario& s) {
     s.host_error = constant(milliseconds(40));
@@ -149,13 +149,13 @@ std::vector<Scenario> Scenarios() {
     s.duration_s = 9.0;
     s.host_error = constant(milliseconds(40));
     s.sentence = [](Utime start, double time_s) { return Rmc(start + seconds(static_cast<int>(std::min(time_s, 2.5)))); };
-    s.expected = {{TurnAt(4.5), milliseconds(0), kSensor, ClockState::kLocked},
-                  {TurnAt(5.5), milliseconds(40), kHost, ClockState::kLockedWithoutTime}};
+    s.expected = {{ScanAt(4.5), milliseconds(0), kSensor, ClockState::kLocked},
+                  {ScanAt(5.5), milliseconds(40), kHost, ClockState::kLockedWithoutTime}};
   });
   add("PPS lost after a lock", [&](Scenario& s) {
     s.host_error = constant(milliseconds(40));
     s.pps = [](double time_s) { return time_s < 2.0 ? format::kPpsLocked : format::kPpsAbsent; };
-    s.expected = {{TurnAt(1.5), milliseconds(0), kSensor, ClockState::kLocked}, {TurnAt(2.5), milliseconds(40), kHost, ClockState::kFreeRunning}};
+    s.expected = {{ScanAt(1.5), milliseconds(0), kSensor, ClockState::kLocked}, {ScanAt(2.5), milliseconds(40), kHost, ClockState::kFreeRunning}};
   });
   add("says locked, but free-runs", [&](Scenario& s) {
     s.host_error = constant(milliseconds(40));
@@ -177,7 +177,7 @@ std::vector<Scenario> Scenarios() {
   });
   add("host that wanders over the limit does not make the source flip", [&](Scenario& s) {
     s.host_error = [](double time_s) { return milliseconds(240 + static_cast<int>(time_s * 10.0) % 2 * 30); };
-    for (int turn = 5; turn < 50; ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+    for (int scan = 5; scan < 50; ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
   });
 
   // --- The hour, by the sensor's clock.
@@ -186,7 +186,7 @@ std::vector<Scenario> Scenarios() {
       s.start = moment - seconds(2);
       s.duration_s = 5.0;
       s.host_error = constant(milliseconds(40));
-      for (int turn = 0; turn < TurnAt(4.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+      for (int scan = 0; scan < ScanAt(4.9); ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
     });
   };
   across("the hour", sys_days(year(2026) / 6 / 15) + hours(15));
@@ -198,7 +198,7 @@ std::vector<Scenario> Scenarios() {
     s.choice = TimeChoice::kSensor;
     s.start = sys_days(year(2026) / 6 / 16) - seconds(2);
     s.host_error = constant(hours(-75));
-    for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+    for (int scan = 0; scan < ScanAt(5.9); ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
   });
   add("host's clock counts from 1970", [&](Scenario& s) {
     s.choice = TimeChoice::kSensor;
@@ -219,7 +219,7 @@ std::vector<Scenario> Scenarios() {
       const auto rmc = Rmc(std::chrono::floor<seconds>(start + microseconds(static_cast<std::int64_t>(time_s * 1e6))));
       return "$GPGGA," + rmc.substr(7, 6) + ",4338.00,N,07209.00,W,4,12,0.8,200.0,M,-30.0,M,,";
     };
-    for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+    for (int scan = 0; scan < ScanAt(5.9); ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
   });
   add("RMC and GGA in turn with a host days off", [&](Scenario& s) {
     s.choice = TimeChoice::kSensor;
@@ -228,14 +228,14 @@ std::vector<Scenario> Scenarios() {
       const auto rmc = Rmc(std::chrono::floor<seconds>(start + microseconds(static_cast<std::int64_t>(time_s * 1e6))));
       return static_cast<int>(time_s * 10.0) % 2 == 0 ? rmc : "$GPGGA," + rmc.substr(7, 6) + ",4338.00,N,07209.00,W,4,12,0.8,200.0,M,-30.0,M,,";
     };
-    for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+    for (int scan = 0; scan < ScanAt(5.9); ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
   });
   add("RMC one second late across the hour", [&](Scenario& s) {
     s.start = sys_days(year(2026) / 6 / 15) + hours(15) - seconds(2);
     s.sentence = [](Utime start, double time_s) {
       return Rmc(std::chrono::floor<seconds>(start + microseconds(static_cast<std::int64_t>((time_s - 1.2) * 1e6))));
     };
-    for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, milliseconds(0), kSensor, ClockState::kLocked});
+    for (int scan = 0; scan < ScanAt(5.9); ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
   });
   // The sensor took the late RMC for that of the next PPS: its own clock is a second behind. Only the host can tell.
   for (const auto choice : {TimeChoice::kAuto, TimeChoice::kSensor}) {
@@ -255,7 +255,7 @@ std::vector<Scenario> Scenarios() {
     s.host_error = [](double time_s) { return milliseconds(static_cast<int>(time_s * 5.0) % 2 * 20 - 10); };
     s.pps = [](double) { return format::kPpsAbsent; };
     s.sentence = no_sentence;
-    for (int turn = 0; turn < TurnAt(5.9); ++turn) s.expected.push_back({turn, minutes(-30), kSensor, ClockState::kNoPps});
+    for (int scan = 0; scan < ScanAt(5.9); ++scan) s.expected.push_back({scan, minutes(-30), kSensor, ClockState::kNoPps});
   });
   for (const auto choice : {TimeChoice::kHost, TimeChoice::kSensor}) {
     add("values beyond 3600 s of a clock that never was set", [&](Scenario& s) {
@@ -264,8 +264,8 @@ std::vector<Scenario> Scenarios() {
       s.does_stamp_wrap = false;
       s.pps = [](double) { return format::kPpsAbsent; };
       s.sentence = no_sentence;
-      for (int turn = 0; turn < TurnAt(5.9); ++turn)
-        s.expected.push_back({turn, milliseconds(0), choice == TimeChoice::kHost ? kHost : kSensor, ClockState::kNoPps});
+      for (int scan = 0; scan < ScanAt(5.9); ++scan)
+        s.expected.push_back({scan, milliseconds(0), choice == TimeChoice::kHost ? kHost : kSensor, ClockState::kNoPps});
     });
   }
   // 23:59:60 is 3600 s past the hour, and in POSIX time the same second as 00:00:00, which then comes once more.
@@ -284,10 +284,10 @@ std::vector<Scenario> Scenarios() {
       };
       const auto source = choice == TimeChoice::kHost ? kHost : kSensor;
       const auto in_leap_second = choice == TimeChoice::kHost ? seconds(-1) : seconds(0);
-      s.expected = {{TurnAt(1.5), seconds(0), source, ClockState::kLocked},
-                    {TurnAt(2.5), in_leap_second, source, ClockState::kLocked},
-                    {TurnAt(3.3), seconds(-1), source, ClockState::kLocked},
-                    {TurnAt(5.5), seconds(-1), source, ClockState::kLocked}};
+      s.expected = {{ScanAt(1.5), seconds(0), source, ClockState::kLocked},
+                    {ScanAt(2.5), in_leap_second, source, ClockState::kLocked},
+                    {ScanAt(3.3), seconds(-1), source, ClockState::kLocked},
+                    {ScanAt(5.5), seconds(-1), source, ClockState::kLocked}};
     });
   }
 
@@ -303,9 +303,9 @@ std::vector<Scenario> Scenarios() {
       };
       const bool is_auto = choice == TimeChoice::kAuto;
       const auto source = is_auto ? kHost : kSensor;
-      s.expected = {{TurnAt(2.0), is_auto ? microseconds(milliseconds(40)) : seconds(18), source, ClockState::kLocked},
-                    {TurnAt(3.6), is_auto ? microseconds(milliseconds(40)) : seconds(18), source, ClockState::kFreeRunning},
-                    {TurnAt(5.5), milliseconds(0), kSensor, ClockState::kLocked}};
+      s.expected = {{ScanAt(2.0), is_auto ? microseconds(milliseconds(40)) : seconds(18), source, ClockState::kLocked},
+                    {ScanAt(3.6), is_auto ? microseconds(milliseconds(40)) : seconds(18), source, ClockState::kFreeRunning},
+                    {ScanAt(5.5), milliseconds(0), kSensor, ClockState::kLocked}};
     });
   }
   add("sensor restarts and locks again", [&](Scenario& s) {
@@ -320,35 +320,35 @@ std::vector<Scenario> Scenarios() {
       if (time_s > 5.0 && time_s < 7.0) return std::string();
       return Rmc(std::chrono::floor<seconds>(start + microseconds(static_cast<std::int64_t>((time_s - 0.2) * 1e6))));
     };
-    // Two turns in parts, before and after the pause, and 30 that nobody saw: numbers are those of turns that were sent.
-    const int num_unseen = TurnAt(5.0) - TurnAt(2.0) - 1;
-    s.expected = {{TurnAt(1.5), milliseconds(0), kSensor, ClockState::kLocked},
-                  {TurnAt(6.0), milliseconds(40), kHost, ClockState::kNoPps},
-                  {TurnAt(7.5), milliseconds(40), kHost, ClockState::kAcquiring},
-                  {TurnAt(10.0), milliseconds(0), kSensor, ClockState::kLocked}};
+    // Two scans in parts, before and after the pause, and 30 that nobody saw: numbers are those of scans that were sent.
+    const int num_unseen = ScanAt(5.0) - ScanAt(2.0) - 1;
+    s.expected = {{ScanAt(1.5), milliseconds(0), kSensor, ClockState::kLocked},
+                  {ScanAt(6.0), milliseconds(40), kHost, ClockState::kNoPps},
+                  {ScanAt(7.5), milliseconds(40), kHost, ClockState::kAcquiring},
+                  {ScanAt(10.0), milliseconds(0), kSensor, ClockState::kLocked}};
     s.num_unseen = num_unseen;
   });
   add("host's clock is set by ten seconds", [&](Scenario& s) {
     s.choice = TimeChoice::kHost;
     s.host_error = [](double time_s) { return time_s < 2.0 ? seconds(10) : seconds(0); };
-    s.expected = {{TurnAt(1.5), seconds(10), kHost, ClockState::kLocked}, {TurnAt(2.5), seconds(0), kHost, ClockState::kLocked}};
+    s.expected = {{ScanAt(1.5), seconds(10), kHost, ClockState::kLocked}, {ScanAt(2.5), seconds(0), kHost, ClockState::kLocked}};
   });
   return scenarios;
 }
 
-TEST(SensorClock, StampsTurnsToTheMicrosecond) {
+TEST(SensorClock, StampsScansToTheMicrosecond) {
   for (const auto& scenario : Scenarios()) {
     SCOPED_TRACE(scenario.name + (scenario.choice == TimeChoice::kAuto ? ", auto" : scenario.choice == TimeChoice::kHost ? ", host" : ", sensor"));
-    const auto turns = Play(scenario);
+    const auto scans = Play(scenario);
     ASSERT_FALSE(scenario.expected.empty());
     for (const auto& expected : scenario.expected) {
-      const auto found = turns.find(expected.turn - (expected.turn > TurnAt(2.0) ? scenario.num_unseen : 0));
-      ASSERT_NE(found, turns.end()) << "turn " << expected.turn;
-      const Turn& turn = found->second;
-      const Utime true_time = scenario.start + After(expected.turn * kPacketsPerTurn);
-      EXPECT_EQ((turn.time - true_time).count(), expected.utime_error.count()) << "turn " << expected.turn;
-      EXPECT_EQ(turn.clock.source, expected.source) << "turn " << expected.turn;
-      EXPECT_EQ(turn.clock.state, expected.state) << "turn " << expected.turn;
+      const auto found = scans.find(expected.scan - (expected.scan > ScanAt(2.0) ? scenario.num_unseen : 0));
+      ASSERT_NE(found, scans.end()) << "scan " << expected.scan;
+      const Scan& scan = found->second;
+      const Utime true_time = scenario.start + After(expected.scan * kPacketsPerRevolution);
+      EXPECT_EQ((scan.time - true_time).count(), expected.utime_error.count()) << "scan " << expected.scan;
+      EXPECT_EQ(scan.clock.source, expected.source) << "scan " << expected.scan;
+      EXPECT_EQ(scan.clock.state, expected.state) << "scan " << expected.scan;
     }
   }
 }

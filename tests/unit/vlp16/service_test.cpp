@@ -97,7 +97,7 @@ TEST(Service, PublishesRawThenClockThenScan) {
   EXPECT_EQ(scans[1].raw_seq, packets.back().seq);
   EXPECT_EQ(packets.front().marks, lidar_packets_t::MARK_START);
   EXPECT_EQ(packets.back().marks, lidar_packets_t::MARK_END);
-  // The bundle that completes a turn is the last before it on the bus.
+  // The bundle that completes a scan is the last before it on the bus.
   const auto raw =
       std::find_if(std::make_reverse_iterator(first), out.messages.rend(), [](const Message& m) { return m.channel == "LIDAR_PACKETS"; });
   EXPECT_EQ(bus::Decode<lidar_packets_t>(raw->bytes)->seq, scans[0].raw_seq);
@@ -168,7 +168,7 @@ TEST(Service, RefusesABadRawMessageAsAWhole) {
   EXPECT_EQ(out.messages.size(), 1U);
 }
 
-TEST(Service, SplitsATurnThatIsTooLargeByColumns) {
+TEST(Service, SplitsAScanThatIsTooLargeByColumns) {
   Recorded out;
   Service service(out.bus, Params{});
   SpinningSensor sensor;
@@ -179,7 +179,7 @@ TEST(Service, SplitsATurnThatIsTooLargeByColumns) {
   out.Handle();
   const auto parts = out.All<lidar_scan_t>(bus::kLidarScan);
   ASSERT_GE(parts.size(), 4U);
-  EXPECT_EQ(out.All<lidar_clock_t>(bus::kLidarClock).size(), 2U);  // one per turn, not per part
+  EXPECT_EQ(out.All<lidar_clock_t>(bus::kLidarClock).size(), 2U);  // one per scan, not per part
   int next_column = 0;
   for (int i = 0; i < parts[0].num_parts; ++i) {
     const auto& part = parts[static_cast<std::size_t>(i)];
@@ -323,9 +323,9 @@ TEST(Service, NoticesEachChangeOfTheClockOnce) {
   send(format::kPpsSynchronising);
   send(format::kPpsLocked);
   ASSERT_EQ(notices.size(), 3U);
-  EXPECT_TRUE(notices[0].starts_with("sensor clock: no PPS; turns carry this computer's time")) << notices[0];
-  EXPECT_TRUE(notices[1].starts_with("sensor clock: no PPS -> acquiring; turns carry")) << notices[1];
-  EXPECT_TRUE(notices[2].starts_with("sensor clock: acquiring -> locked without time; turns carry")) << notices[2];
+  EXPECT_TRUE(notices[0].starts_with("sensor clock: no PPS; scans carry this computer's time")) << notices[0];
+  EXPECT_TRUE(notices[1].starts_with("sensor clock: no PPS -> acquiring; scans carry")) << notices[1];
+  EXPECT_TRUE(notices[2].starts_with("sensor clock: acquiring -> locked without time; scans carry")) << notices[2];
 }
 
 TEST(Service, WorksWithTimesBefore1970) {

@@ -36,7 +36,7 @@ constexpr double kHeadingErrorTimeS = 30.0;
 // Attitude sensors send the same error again and again: their output is filtered. So long two samples count as one.
 constexpr double kHeadingCorrelationS = 0.1;
 constexpr double kTiltCorrelationS = 0.5;
-// Velocities of receivers without phase solution are filtered, and at walking pace off by the same decimetre a second for many seconds: carried on as
+// Velocities of receivers without phase solution are filtered, and at walking pace off by the same decimetre a second for many seconds: propagated as
 // white noise they led 20 m away from the fixes of a recording (signalk_gps.log).
 constexpr double kVelocityCorrelationS = 10.0;
 // Accuracy of heave: 5 cm or 5 % (Kongsberg MRU and Seapath data sheets).
@@ -44,7 +44,7 @@ constexpr double kHeaveSdM = 0.05;
 
 // A contradiction that lasts so long without changing is one of the state.
 constexpr auto kMaxRefusal = 3s;
-// Of positions while accelerometers carry on, which are off by less than a metre by then: what jumps is rather the receiver.
+// Of positions while accelerometers are used, which are off by less than a metre by then: what jumps is rather the receiver.
 constexpr auto kMaxStrapdownRefusal = 10s;
 constexpr double kEvenInSds = 5.0;
 // One that changes, while what is refused agrees with itself, is of the state too: an IMU leads it away ever faster. A compass beside gyroscopes is
@@ -65,37 +65,42 @@ constexpr double kUnknownTurnRadps = 0.2;
 constexpr double kLateVelocitySdMps = 0.15;
 constexpr auto kTimedVelocityAge = 2s;
 
+// @return whether the measurement was accepted
 template <int kSize>
-bool Judge(const Innovation<kSize>& innovation, bool is_forced, State& state, Verdict& verdict) {
+bool Update(const Innovation<kSize>& innovation, bool is_forced, State& state, GateCounts& counts) {
   const auto correction = Correct(innovation, is_forced, state);
   if (!is_forced) {
-    verdict.nis_sum += correction.nis;
-    verdict.num_degrees += kSize;
+    counts.nis_sum += correction.nis;
+    counts.num_degrees += kSize;
   }
-  ++(correction.is_taken ? verdict.num_taken : verdict.num_gated);
-  return correction.is_taken;
+  counts.num_gated += correction.is_accepted ? 0 : 1;
+  return correction.is_accepted;
 }
 
-// Counts a refusal. Returns whether it is the state that is wrong: a sensor's fault changes, a wrong state differs by the same all the time.
-bool IsStateWrong(const Eigen::Vector3d& residual, double sd, Utime time, std::chrono::seconds max_refusal, Refusals& refusals) {
+// What refused measurements say of the state. A sensor's fault changes; a wrong state differs by the same all the time. And it was led away where the
+// refused have agreed with each other for long while they went away from it.
+struct StateFault {
+  bool is_wrong = false;
+  bool is_led_away = false;
+
+  explicit operator bool() const { return is_wrong || is_led_away; }
+};
+
+// Counts a refusal.
+StateFault AddRefusal(const Eigen::Vector3d& residual, double sd, bool agrees, Utime time, std::chrono::seconds max_even,
+                      std::chrono::seconds max_agreeing, Refusals& refusals) {
   if (!refusals.since || (residual - refusals.first_residual).norm() > kEvenInSds * sd) {
     refusals.since = time;
     refusals.first_residual = residual;
   }
-  return time - *refusals.since >= max_refusal;
-}
-
-// Counts one that was refused. Precondition: IsStateWrong was asked before. Returns whether they have agreed for so long, while they went away from
-// the state.
-bool IsStateLedAway(bool agrees, Utime time, std::chrono::seconds max_refusal, Refusals& refusals) {
   if (!agrees || !refusals.agreeing_since || time - refusals.last > kMaxApart) refusals.agreeing_since = time;
   refusals.last = time;
-  return *refusals.since > *refusals.agreeing_since && time - *refusals.agreeing_since >= max_refusal;
+  return {time - *refusals.since >= max_even, *refusals.since > *refusals.agreeing_since && time - *refusals.agreeing_since >= max_agreeing};
 }
 
 // What says the same to the last digit is frozen: it agrees with nothing.
 bool AgreesWithLast(const FixMeasurement& fix, const State& state) {
-  const auto& refusals = state.fix_refusals;
+  const auto& refusals = state.aiding.fix_refusals;
   const bool is_frozen =
       refusals.last_place.latitude_deg == fix.antenna.latitude_deg && refusals.last_place.longitude_deg == fix.antenna.longitude_deg;
   if (!refusals.agreeing_since || is_frozen) return false;
@@ -123,10 +128,22 @@ bool AgreesWithLast(const Eigen::Vector3d& angles_rad, double sd_rad, Utime time
   return true;
 }
 
+// A refusal of angles. @return whether the attitude is given up for it
+bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d& residual_rad, double sd_rad, std::chrono::seconds max_agreeing,
+                       const FilterParams& params, Refusals& refusals, State& state, GateCounts& counts) {
+  const bool agrees = AgreesWithLast(angles_rad, sd_rad, state.time, refusals);
+  const auto fault = AddRefusal(residual_rad, sd_rad, agrees, state.time, kMaxRefusal, max_agreeing, refusals);
+  refusals.last_angles_rad = angles_rad;
+  if (!fault) return false;
+  ++counts.num_renewed;
+  if (fault.is_led_away && state.aiding.has_gyro) RefuseImu(params.tilt_sd_rad, state);
+  return true;
+}
+
 // The lever arm in the level frame. Without heading east and north are left to the position, which is then that of the antenna.
 Eigen::Vector3d LeverLevel(const FilterParams& params, const State& state) {
-  Eigen::Vector3d lever_level_m = state.q_level_vessel * AntennaLever(params);
-  if (!state.has_heading) lever_level_m.head<2>().setZero();
+  Eigen::Vector3d lever_level_m = state.nominal.q_level_vessel * AntennaLever(params);
+  if (!state.aiding.has_heading) lever_level_m.head<2>().setZero();
   return lever_level_m;
 }
 
@@ -134,192 +151,186 @@ double White(double sd, double slow_sd) { return std::sqrt(std::max(sd * sd - sl
 
 // Satellites that come and go change what a receiver says of itself, and its error. A little of that is the same error; much is another one, but
 // not each little step on the way, or many of them would be many independent measurements.
-void Model(const ErrorModel& model, State& state) {
-  const double ratio = model.sd / state.fix_error_begun_sd_m;
-  if (model.kind != state.fix_error_model.kind || ratio < kSameErrorRatio || ratio * kSameErrorRatio > 1.0) {
-    state.fix_error_m.setZero();
-    state.fix_error_begun_sd_m = model.sd;
-    Renew<3>(kFixError, Eigen::Vector3d(model.sd, model.sd, model.up_factor * model.sd), state);
+void UseFixErrorModel(const ErrorModel& model, State& state) {
+  const double ratio = model.sd / state.aiding.fix_error_begun_sd_m;
+  if (model.kind != state.aiding.fix_error_model.kind || ratio < kSameErrorRatio || ratio * kSameErrorRatio > 1.0) {
+    state.nominal.fix_error_m.setZero();
+    state.aiding.fix_error_begun_sd_m = model.sd;
+    ResetError<3>(kFixError, Eigen::Vector3d(model.sd, model.sd, model.up_factor * model.sd), state);
   }
-  state.fix_error_model = model;
+  state.aiding.fix_error_model = model;
 }
 
-void ModelHeading(const ErrorModel& model, State& state) {
-  if (model.kind != state.heading_error_model.kind) {
-    state.heading_error_rad = 0.0;
-    Renew<1>(kHeadingError, Eigen::Matrix<double, 1, 1>(model.sd), state);
+void UseHeadingErrorModel(const ErrorModel& model, State& state) {
+  if (model.kind != state.aiding.heading_error_model.kind) {
+    state.nominal.heading_error_rad = 0.0;
+    ResetError<1>(kHeadingError, Eigen::Matrix<double, 1, 1>(model.sd), state);
   }
-  state.heading_error_model = model;
+  state.aiding.heading_error_model = model;
 }
 
 // The bound of a kind is wider for what is of that kind already: a deviation that hovers about it does not make a new error each time.
 double Bound(double max_sd, bool is_of_kind) { return is_of_kind ? max_sd / kSameErrorRatio : max_sd; }
 
-Eigen::Vector3d AntennaOf(const FixMeasurement& fix, const State& state) { return state.level->frame.Forward(fix.antenna); }
+Eigen::Vector3d AntennaOf(const FixMeasurement& fix, const State& state) { return state.nominal.level->frame.Forward(fix.antenna); }
 
 // Precondition, as of all that follows about places: there is a level frame.
 Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params, const State& state) {
   const Eigen::Vector3d lever_level_m = LeverLevel(params, state);
   Innovation<2> innovation;
-  innovation.residual = (AntennaOf(fix, state) - state.p_level_m - lever_level_m - state.fix_error_m).head<2>();
+  innovation.residual = (AntennaOf(fix, state) - state.nominal.p_level_m - lever_level_m - state.nominal.fix_error_m).head<2>();
   innovation.jacobian.middleCols<2>(kPosition).setIdentity();
   innovation.jacobian.middleCols<2>(kFixError).setIdentity();
-  if (state.has_heading) innovation.jacobian.middleCols<3>(kRotation) = -Cross(lever_level_m).topRows<2>();
-  const double white_m = White(fix.horizontal_sd_m, state.fix_error_model.sd);
+  if (state.aiding.has_heading) innovation.jacobian.middleCols<3>(kRotation) = -Cross(lever_level_m).topRows<2>();
+  const double white_m = White(fix.horizontal_sd_m, state.aiding.fix_error_model.sd);
   innovation.noise.diagonal().setConstant(white_m * white_m);
   return innovation;
 }
 
-void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
-  const bool is_taken = state.has_position && !fix.begins_time_scale && Judge(HorizontalOf(fix, params, state), false, state, verdict);
-  if (!is_taken && state.has_position) {
+void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, State& state, GateCounts& counts) {
+  const bool is_accepted = state.aiding.has_position && !fix.begins_time_scale && Update(HorizontalOf(fix, params, state), false, state, counts);
+  if (!is_accepted && state.aiding.has_position) {
     Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
     residual_m.head<2>() = HorizontalOf(fix, params, state).residual;
-    const auto max_refusal = state.is_strapdown ? kMaxStrapdownRefusal : kMaxRefusal;
+    const auto max_refusal = state.aiding.is_strapdown ? kMaxStrapdownRefusal : kMaxRefusal;
     // The state drifts meanwhile.
-    const double sd_m = std::max(fix.horizontal_sd_m, std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1))));
-    const bool agrees = AgreesWithLast(fix, state);
-    const bool is_wrong = IsStateWrong(residual_m, sd_m, state.time, max_refusal, state.fix_refusals);
-    const bool is_led_away = IsStateLedAway(agrees, state.time, kMaxAgreeingRefusal, state.fix_refusals);
-    state.fix_refusals.last_place = fix.antenna;
-    if (!fix.begins_time_scale && !is_wrong && !is_led_away) return;
-    ++verdict.num_renewed;
+    const double sd_m = std::max(fix.horizontal_sd_m, std::sqrt(state.HorizontalVarianceM2()));
+    const auto fault =
+        AddRefusal(residual_m, sd_m, AgreesWithLast(fix, state), state.time, max_refusal, kMaxAgreeingRefusal, state.aiding.fix_refusals);
+    state.aiding.fix_refusals.last_place = fix.antenna;
+    if (!fix.begins_time_scale && !fault) return;
+    ++counts.num_renewed;
     ForgetPlace(state);
-    if (is_led_away && state.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
+    if (fault.is_led_away && state.aiding.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
   }
-  if (!is_taken) {
+  if (!is_accepted) {
     // It says where the boat is, whatever was known. So does its velocity.
-    const bool knew_velocity = state.timed_velocity.IsWithin(state.time, kTimedVelocityAge) && !state.fix_refusals.since;
-    BeginLevel(fix.antenna, -(LeverLevel(params, state) + state.fix_error_m).head<2>(), state);
-    Renew<2>(kPosition, Eigen::Vector2d::Constant(kAnywhereM), state);
-    Judge(HorizontalOf(fix, params, state), true, state, verdict);
-    state.has_position = true;
+    const bool knew_velocity = state.aiding.timed_velocity.IsWithin(state.time, kTimedVelocityAge) && !state.aiding.fix_refusals.since;
+    BeginLevel(fix.antenna, -(LeverLevel(params, state) + state.nominal.fix_error_m).head<2>(), state);
+    ResetError<2>(kPosition, Eigen::Vector2d::Constant(kAnywhereM), state);
+    Update(HorizontalOf(fix, params, state), true, state, counts);
+    state.aiding.has_position = true;
     if (fix.velocity && !knew_velocity) {
       const Eigen::Vector3d velocity_here_mps(fix.velocity->east_north_mps.x(), fix.velocity->east_north_mps.y(), 0.0);
-      state.velocity_level_mps.head<2>() = (HereOf(state).R_here_level.transpose() * velocity_here_mps).head<2>();
-      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
-    } else if (state.fix_refusals.since && !state.velocity.IsWithin(state.time, kTimedVelocityAge)) {
+      state.nominal.velocity_level_mps.head<2>() = (HereOf(state).R_here_level.transpose() * velocity_here_mps).head<2>();
+      ResetError<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
+    } else if (state.aiding.fix_refusals.since && !state.aiding.velocity.IsWithin(state.time, kTimedVelocityAge)) {
       // Fixes contradicted, and nobody measures velocity: that is what was wrong, or the next fix would contradict again.
-      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
+      ResetError<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }
-  state.fix_refusals = {};
-  state.fix.Use(state.time);
-  state.position_sd_at_fix_m = std::sqrt(std::max(state.covariance(0, 0), state.covariance(1, 1)));
+  state.aiding.fix_refusals = {};
+  state.aiding.fix.Use(state.time);
+  state.aiding.position_sd_at_fix_m = std::sqrt(state.HorizontalVarianceM2());
 }
 
-void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
+void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& state, GateCounts& counts) {
   if (!fix.has_height) return;
-  const double up_m = AntennaOf(fix, state).z() - LeverLevel(params, state).z() - state.fix_error_m.z();
-  const bool is_first = !state.has_height;
+  const double up_m = AntennaOf(fix, state).z() - LeverLevel(params, state).z() - state.nominal.fix_error_m.z();
+  const bool is_first = !state.aiding.has_height;
   if (is_first) {
     // The boat and the water under it are somewhere together.
-    state.water_level_m += up_m - state.p_level_m.z();
-    state.p_level_m.z() = up_m;
-    for (const int row : {static_cast<int>(kPosition) + 2, static_cast<int>(kWaterLevel)}) {
-      for (const int column : {static_cast<int>(kPosition) + 2, static_cast<int>(kWaterLevel)}) {
+    state.nominal.water_level_m += up_m - state.nominal.p_level_m.z();
+    state.nominal.p_level_m.z() = up_m;
+    for (const int row : {kPositionUp, kWaterLevel}) {
+      for (const int column : {kPositionUp, kWaterLevel}) {
         state.covariance(row, column) += kAnywhereM * kAnywhereM;
       }
     }
-    state.has_height = true;
+    state.aiding.has_height = true;
   }
   Innovation<1> innovation;
-  innovation.residual[0] = up_m - state.p_level_m.z();
-  innovation.jacobian(0, kPosition + 2) = 1.0;
-  innovation.jacobian(0, kFixError + 2) = 1.0;
+  innovation.residual[0] = up_m - state.nominal.p_level_m.z();
+  innovation.jacobian(0, kPositionUp) = 1.0;
+  innovation.jacobian(0, kFixErrorUp) = 1.0;
   innovation.jacobian.middleCols<3>(kRotation) = -Cross(LeverLevel(params, state)).row(2);
-  const double white_m = White(fix.vertical_sd_m, state.fix_error_model.up_factor * state.fix_error_model.sd);
+  const double white_m = White(fix.vertical_sd_m, state.aiding.fix_error_model.up_factor * state.aiding.fix_error_model.sd);
   innovation.noise(0, 0) = white_m * white_m;
-  Judge(innovation, is_first, state, verdict);
+  Update(innovation, is_first, state, counts);
 }
 
 // Error of a heading, of which the attitude takes what the compass's slow error does not.
-bool JudgeHeading(double heading_rad, double noise_rad, bool is_forced, State& state, Verdict& verdict) {
+bool UpdateHeading(double heading_rad, double noise_rad, bool is_forced, State& state, GateCounts& counts) {
   const Here here = HereOf(state);
-  const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.R_level_vessel();
+  const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.nominal.R_level_vessel();
   Innovation<1> innovation;
-  innovation.residual[0] = WrapToPi(heading_rad - state.heading_error_rad - AnglesOf(R_here_vessel)[2]);
+  innovation.residual[0] = WrapToPi(heading_rad - state.nominal.heading_error_rad - AnglesOf(R_here_vessel)[2]);
   innovation.jacobian.middleCols<3>(kRotation) = AngleJacobian(R_here_vessel).row(2) * here.R_here_level;
   innovation.jacobian.middleCols<3>(kPosition) = here.heading_per_east_radpm * here.R_here_level.row(0);
   innovation.jacobian(0, kHeadingError) = 1.0;
   innovation.noise(0, 0) = noise_rad * noise_rad;
-  return Judge(innovation, is_forced, state, verdict);
+  return Update(innovation, is_forced, state, counts);
 }
 
-double HeadingOf(const State& state) { return AnglesOf(HereOf(state).R_here_level * state.R_level_vessel())[2]; }
+double HeadingOf(const State& state) { return AnglesOf(HereOf(state).R_here_level * state.nominal.R_level_vessel())[2]; }
 
 // The heading becomes known.
-void BeginHeading(double heading_rad, double noise_rad, HeadingSource source, const FilterParams& params, State& state, Verdict& verdict) {
+void BeginHeading(double heading_rad, double noise_rad, HeadingSource source, const FilterParams& params, State& state, GateCounts& counts) {
   // Meanwhile position is that of the antenna, as it was before there was a heading.
-  if (state.has_position && state.has_heading) ShiftPosition(LeverLevel(params, state), state);
-  TurnClockwise(WrapToPi(heading_rad - state.heading_error_rad - HeadingOf(state)), state);
-  Renew<1>(kRotation + 2, Eigen::Matrix<double, 1, 1>(kAnyHeadingRad), state);
-  JudgeHeading(heading_rad, noise_rad, true, state, verdict);
-  state.has_heading = true;
-  state.heading_source = source;
-  if (state.has_position) ShiftPosition(-LeverLevel(params, state), state);
+  if (state.aiding.has_position && state.aiding.has_heading) ShiftPosition(LeverLevel(params, state), state);
+  TurnClockwise(WrapToPi(heading_rad - state.nominal.heading_error_rad - HeadingOf(state)), state);
+  ResetError<1>(kRotationUp, Eigen::Matrix<double, 1, 1>(kAnyHeadingRad), state);
+  UpdateHeading(heading_rad, noise_rad, true, state, counts);
+  state.aiding.has_heading = true;
+  state.aiding.heading_source = source;
+  if (state.aiding.has_position) ShiftPosition(-LeverLevel(params, state), state);
 }
 
-void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, double noise_rad, HeadingSource source, Input& input,
-                  const FilterParams& params, State& state, Verdict& verdict) {
-  ModelHeading(model, state);
-  const bool is_other_kind = (state.heading_source == HeadingSource::kCourse) != (source == HeadingSource::kCourse);
-  if (!state.has_heading || is_other_kind) {
-    BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
-  } else if (!JudgeHeading(heading_rad, noise_rad, false, state, verdict)) {
+void ApplyHeading(double heading_rad, double sd_rad, const ErrorModel& model, double noise_rad, HeadingSource source, UseTimes& input,
+                  const FilterParams& params, State& state, GateCounts& counts) {
+  UseHeadingErrorModel(model, state);
+  const bool is_other_kind = (state.aiding.heading_source == HeadingSource::kCourse) != (source == HeadingSource::kCourse);
+  if (!state.aiding.has_heading || is_other_kind) {
+    BeginHeading(heading_rad, noise_rad, source, params, state, counts);
+  } else if (!UpdateHeading(heading_rad, noise_rad, false, state, counts)) {
     const double residual_rad = WrapToPi(heading_rad - HeadingOf(state));
-    auto& refusals = state.heading_refusals;
-    const Eigen::Vector3d angles_rad(0.0, 0.0, heading_rad);
-    const bool agrees = AgreesWithLast(angles_rad, sd_rad, state.time, refusals);
-    const bool is_wrong = IsStateWrong(Eigen::Vector3d(residual_rad, 0.0, 0.0), sd_rad, state.time, kMaxRefusal, refusals);
-    const auto max_agreeing = state.has_gyro && source != HeadingSource::kPashr ? kMaxCompassRefusal : kMaxAgreeingRefusal;
-    const bool is_led_away = IsStateLedAway(agrees, state.time, max_agreeing, refusals);
-    refusals.last_angles_rad = angles_rad;
-    if (!is_wrong && !is_led_away) return;
-    ++verdict.num_renewed;
-    if (is_led_away && state.has_gyro) RefuseImu(params.tilt_sd_rad, state);
-    BeginHeading(heading_rad, noise_rad, source, params, state, verdict);
+    const auto max_agreeing = state.aiding.has_gyro && source != HeadingSource::kPashr ? kMaxCompassRefusal : kMaxAgreeingRefusal;
+    if (!IsAttitudeGivenUp({0.0, 0.0, heading_rad}, {residual_rad, 0.0, 0.0}, sd_rad, max_agreeing, params, state.aiding.heading_refusals, state,
+                           counts)) {
+      return;
+    }
+    BeginHeading(heading_rad, noise_rad, source, params, state, counts);
   }
-  state.heading_source = source;
-  state.heading_refusals = {};
+  state.aiding.heading_source = source;
+  state.aiding.heading_refusals = {};
   input.Use(state.time);
 }
 
 // Noise of one of many samples whose errors have much in common.
-double Thinned(double sd, double correlation_s, const Input& input, Utime time) {
+double Thinned(double sd, double correlation_s, const UseTimes& input, Utime time) {
   if (!input.last) return sd;
   const double since_s = std::max(SecondsBetween(*input.last, time), correlation_s / 10.0);
   return sd * std::sqrt(std::max(correlation_s / since_s, 1.0));
 }
 
-void ApplyCourse(const VelocityMeasurement& velocity, const FilterParams& params, State& state, Verdict& verdict) {
+void ApplyCourse(const VelocityMeasurement& velocity, const FilterParams& params, State& state, GateCounts& counts) {
   if (!params.use_course_as_heading || std::isnan(velocity.course_rad) || velocity.speed_mps < params.min_course_speed_mps) return;
   // Not beside a heading that was measured.
-  if (state.has_heading && state.heading_source != HeadingSource::kCourse) return;
+  if (state.aiding.has_heading && state.aiding.heading_source != HeadingSource::kCourse) return;
   const double slow_rad = kCompassSlowShare * params.course_heading_sd_rad;
   const ErrorModel model{ErrorKind::kCourse, slow_rad, 1.0, kHeadingErrorTimeS};
   ApplyHeading(velocity.course_rad, params.course_heading_sd_rad, model, White(params.course_heading_sd_rad, slow_rad), HeadingSource::kCourse,
-               state.course, params, state, verdict);
+               state.aiding.course, params, state, counts);
 }
 
-void ApplyCompass(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+void ApplyCompass(const AttitudeValues& attitude, const FilterParams& params, State& state, GateCounts& counts) {
   if (std::isnan(attitude.heading_rad)) return;
   // Sensors of attitude say when they measured; a compass alone is late by an unknown time.
-  if (!attitude.has_tilt() && state.attitude_heading.IsWithin(state.time, params.max_attitude_age)) return;
-  const bool is_precise = attitude.heading_sd_rad <= Bound(kTwoAntennasMaxSdRad, state.heading_error_model.kind == ErrorKind::kTwoAntennas);
+  if (!attitude.has_tilt() && state.aiding.attitude_heading.IsWithin(state.time, params.max_attitude_age)) return;
+  const bool is_precise = attitude.heading_sd_rad <= Bound(kTwoAntennasMaxSdRad, state.aiding.heading_error_model.kind == ErrorKind::kTwoAntennas);
   const double slow_rad = (is_precise ? kTwoAntennasSlowShare : kCompassSlowShare) * attitude.heading_sd_rad;
   const ErrorModel model{is_precise ? ErrorKind::kTwoAntennas : ErrorKind::kCompass, slow_rad, 1.0, kHeadingErrorTimeS};
-  const double noise_rad = Thinned(White(attitude.heading_sd_rad, slow_rad), kHeadingCorrelationS, state.sensor_heading, state.time);
-  if (attitude.has_tilt()) state.attitude_heading.Use(state.time);
+  const double noise_rad = Thinned(White(attitude.heading_sd_rad, slow_rad), kHeadingCorrelationS, state.aiding.sensor_heading, state.time);
+  if (attitude.has_tilt()) state.aiding.attitude_heading.Use(state.time);
   ApplyHeading(attitude.heading_rad, attitude.heading_sd_rad, model, noise_rad, attitude.has_tilt() ? HeadingSource::kPashr : HeadingSource::kHdt,
-               state.sensor_heading, params, state, verdict);
+               state.aiding.sensor_heading, params, state, counts);
 }
 
-Innovation<2> TiltOf(const AttitudeMeasurement& attitude, const State& state) {
-  const double roll_sd_rad = Thinned(attitude.roll_sd_rad, kTiltCorrelationS, state.tilt, state.time);
-  const double pitch_sd_rad = Thinned(attitude.pitch_sd_rad, kTiltCorrelationS, state.tilt, state.time);
+Innovation<2> TiltOf(const AttitudeValues& attitude, const State& state) {
+  const double roll_sd_rad = Thinned(attitude.roll_sd_rad, kTiltCorrelationS, state.aiding.tilt, state.time);
+  const double pitch_sd_rad = Thinned(attitude.pitch_sd_rad, kTiltCorrelationS, state.aiding.tilt, state.time);
   const Here here = HereOf(state);
-  const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.R_level_vessel();
+  const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.nominal.R_level_vessel();
   const Eigen::Vector3d angles_rad = AnglesOf(R_here_vessel);
   Innovation<2> innovation;
   innovation.residual = {WrapToPi(attitude.roll_rad - angles_rad[0]), WrapToPi(attitude.pitch_rad - angles_rad[1])};
@@ -328,98 +339,93 @@ Innovation<2> TiltOf(const AttitudeMeasurement& attitude, const State& state) {
   return innovation;
 }
 
-void ApplyTilt(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+void ApplyTilt(const AttitudeValues& attitude, const FilterParams& params, State& state, GateCounts& counts) {
   if (!attitude.has_tilt()) return;
-  const bool is_taken = state.has_tilt && Judge(TiltOf(attitude, state), false, state, verdict);
-  if (!is_taken && state.has_tilt) {
+  const bool is_accepted = state.aiding.has_tilt && Update(TiltOf(attitude, state), false, state, counts);
+  if (!is_accepted && state.aiding.has_tilt) {
     Eigen::Vector3d residual_rad = Eigen::Vector3d::Zero();
     residual_rad.head<2>() = TiltOf(attitude, state).residual;
-    auto& refusals = state.tilt_refusals;
-    const double sd_rad = attitude.roll_sd_rad + attitude.pitch_sd_rad;
-    const Eigen::Vector3d angles_rad(attitude.roll_rad, attitude.pitch_rad, 0.0);
-    const bool agrees = AgreesWithLast(angles_rad, sd_rad, state.time, refusals);
-    const bool is_wrong = IsStateWrong(residual_rad, sd_rad, state.time, kMaxRefusal, refusals);
-    const bool is_led_away = IsStateLedAway(agrees, state.time, kMaxAgreeingRefusal, refusals);
-    refusals.last_angles_rad = angles_rad;
-    if (!is_wrong && !is_led_away) return;
-    ++verdict.num_renewed;
-    if (is_led_away && state.has_gyro) RefuseImu(params.tilt_sd_rad, state);
+    if (!IsAttitudeGivenUp({attitude.roll_rad, attitude.pitch_rad, 0.0}, residual_rad, attitude.roll_sd_rad + attitude.pitch_sd_rad,
+                           kMaxAgreeingRefusal, params, state.aiding.tilt_refusals, state, counts)) {
+      return;
+    }
   }
-  if (!is_taken) {
+  if (!is_accepted) {
     const Eigen::Vector3d lever_level_m = LeverLevel(params, state);
     const Eigen::Quaterniond q_level_vessel =
         RotationBy(Eigen::Vector3d(0.0, -attitude.pitch_rad, 0.0)) * RotationBy(Eigen::Vector3d(attitude.roll_rad, 0.0, 0.0));
     BeginTilt(q_level_vessel, kAnyTiltRad, state);
-    Judge(TiltOf(attitude, state), true, state, verdict);
-    if (state.has_position) state.p_level_m += lever_level_m - LeverLevel(params, state);
+    Update(TiltOf(attitude, state), true, state, counts);
+    if (state.aiding.has_position) state.nominal.p_level_m += lever_level_m - LeverLevel(params, state);
   }
-  state.tilt_refusals = {};
-  state.tilt.Use(state.time);
+  state.aiding.tilt_refusals = {};
+  state.aiding.tilt.Use(state.time);
 }
 
 // How much higher the origin lies than if the boat were level.
 double SwingUp(const FilterParams& params, const State& state) {
-  return (state.q_level_vessel * params.p_vessel_imu_m).z() - params.p_vessel_imu_m.z();
+  return (state.nominal.q_level_vessel * params.p_vessel_imu_m).z() - params.p_vessel_imu_m.z();
 }
 
-void ApplyHeave(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
+void ApplyHeave(const AttitudeValues& attitude, const FilterParams& params, State& state, GateCounts& counts) {
   if (std::isnan(attitude.heave_m)) return;
   Innovation<1> innovation;
-  innovation.residual[0] = attitude.heave_m + SwingUp(params, state) - (state.p_level_m.z() - state.water_level_m);
-  innovation.jacobian(0, kPosition + 2) = 1.0;
+  innovation.residual[0] = attitude.heave_m + SwingUp(params, state) - (state.nominal.p_level_m.z() - state.nominal.water_level_m);
+  innovation.jacobian(0, kPositionUp) = 1.0;
   innovation.jacobian(0, kWaterLevel) = -1.0;
-  const double noise_m = Thinned(kHeaveSdM, kTiltCorrelationS, state.heave, state.time);
+  const double noise_m = Thinned(kHeaveSdM, kTiltCorrelationS, state.aiding.heave, state.time);
   innovation.noise(0, 0) = noise_m * noise_m;
-  const bool is_first = !state.heave.IsWithin(state.time, params.max_attitude_age);
-  if (Judge(innovation, is_first, state, verdict)) state.heave.Use(state.time);
+  const bool is_first = !state.aiding.heave.IsWithin(state.time, params.max_attitude_age);
+  if (Update(innovation, is_first, state, counts)) state.aiding.heave.Use(state.time);
 }
 
 }  // namespace
 
-void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict) {
-  const bool is_rtk = fix.horizontal_sd_m <= Bound(kRtkMaxSdM, state.fix_error_model.kind == ErrorKind::kRtk);
+void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, GateCounts& counts) {
+  const bool is_rtk = fix.horizontal_sd_m <= Bound(kRtkMaxSdM, state.aiding.fix_error_model.kind == ErrorKind::kRtk);
   const double slow_m = (is_rtk ? kRtkSlowShare : kGnssSlowShare) * fix.horizontal_sd_m;
-  Model({is_rtk ? ErrorKind::kRtk : ErrorKind::kGnss, slow_m, fix.vertical_sd_m / fix.horizontal_sd_m, kFixErrorTimeS}, state);
-  ApplyHorizontal(fix, params, state, verdict);
-  if (!state.has_position) return;
-  ApplyHeight(fix, params, state, verdict);
-  if (fix.velocity) Apply(*fix.velocity, params, state, verdict);
+  UseFixErrorModel({is_rtk ? ErrorKind::kRtk : ErrorKind::kGnss, slow_m, fix.vertical_sd_m / fix.horizontal_sd_m, kFixErrorTimeS}, state);
+  ApplyHorizontal(fix, params, state, counts);
+  if (!state.aiding.has_position) return;
+  ApplyHeight(fix, params, state, counts);
+  if (fix.velocity) Apply(*fix.velocity, params, state, counts);
 }
 
-void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, Verdict& verdict) {
-  if (!velocity.has_own_time && state.timed_velocity.IsWithin(state.time, kTimedVelocityAge)) return;
-  const Eigen::Matrix3d R_level_vessel = state.R_level_vessel();
+void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, GateCounts& counts) {
+  if (!velocity.has_own_time && state.aiding.timed_velocity.IsWithin(state.time, kTimedVelocityAge)) return;
+  const Eigen::Matrix3d R_level_vessel = state.nominal.R_level_vessel();
   const Eigen::Vector3d lever_m = AntennaLever(params);
   Innovation<2> innovation;
   const Here here = HereOf(state);
-  const Eigen::Vector3d velocity_here_mps = here.R_here_level * state.velocity_level_mps;
+  const Eigen::Vector3d velocity_here_mps = here.R_here_level * state.nominal.velocity_level_mps;
   innovation.residual = velocity.east_north_mps - velocity_here_mps.head<2>();
   innovation.jacobian.middleCols<3>(kVelocity) = here.R_here_level.topRows<2>();
   innovation.jacobian.middleCols<3>(kPosition) =
       here.heading_per_east_radpm * Eigen::Vector2d(velocity_here_mps.y(), -velocity_here_mps.x()) * here.R_here_level.row(0);
-  const bool is_rtk = state.fix_error_model.kind == ErrorKind::kRtk;
-  double noise_mps = is_rtk ? velocity.sd_mps : Thinned(velocity.sd_mps, kVelocityCorrelationS, state.velocity, state.time);
+  const bool is_rtk = state.aiding.fix_error_model.kind == ErrorKind::kRtk;
+  double noise_mps = is_rtk ? velocity.sd_mps : Thinned(velocity.sd_mps, kVelocityCorrelationS, state.aiding.velocity, state.time);
   if (!velocity.has_own_time) noise_mps = Hypot(noise_mps, kLateVelocitySdMps);
-  if (state.has_heading) {
-    const Eigen::Vector3d swing_level_mps = R_level_vessel * state.angular_velocity_radps.cross(lever_m);
+  if (state.aiding.has_heading) {
+    const Eigen::Vector3d swing_level_mps = R_level_vessel * state.nominal.angular_velocity_radps.cross(lever_m);
     innovation.residual -= (here.R_here_level * swing_level_mps).head<2>();
     innovation.jacobian.middleCols<3>(kRotation) = -(here.R_here_level * Cross(swing_level_mps)).topRows<2>();
-    innovation.jacobian.middleCols<3>(kRate) = (state.has_gyro ? 1.0 : -1.0) * (here.R_here_level * R_level_vessel * Cross(lever_m)).topRows<2>();
+    innovation.jacobian.middleCols<3>(kRate) =
+        (state.aiding.has_gyro ? 1.0 : -1.0) * (here.R_here_level * R_level_vessel * Cross(lever_m)).topRows<2>();
   } else {
     noise_mps = Hypot(noise_mps, kUnknownTurnRadps * lever_m.norm());
   }
   innovation.noise.diagonal().setConstant(noise_mps * noise_mps);
-  if (Judge(innovation, false, state, verdict)) {
-    state.velocity.Use(state.time);
-    if (velocity.has_own_time) state.timed_velocity.Use(state.time);
+  if (Update(innovation, false, state, counts)) {
+    state.aiding.velocity.Use(state.time);
+    if (velocity.has_own_time) state.aiding.timed_velocity.Use(state.time);
   }
-  ApplyCourse(velocity, params, state, verdict);
+  ApplyCourse(velocity, params, state, counts);
 }
 
-void Apply(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict) {
-  ApplyTilt(attitude, params, state, verdict);
-  ApplyCompass(attitude, params, state, verdict);
-  ApplyHeave(attitude, params, state, verdict);
+void Apply(const AttitudeValues& attitude, const FilterParams& params, State& state, GateCounts& counts) {
+  ApplyTilt(attitude, params, state, counts);
+  ApplyCompass(attitude, params, state, counts);
+  ApplyHeave(attitude, params, state, counts);
 }
 
 }  // namespace lookout::navigator::filter

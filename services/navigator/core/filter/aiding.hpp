@@ -33,38 +33,26 @@ struct FixMeasurement {
   std::optional<VelocityMeasurement> velocity;
 };
 
-/// Of the vessel frame, against north and up where the boat is; NaN = not said.
-struct AttitudeMeasurement {
-  double heading_rad = kNan;
-  double heading_sd_rad = 0.0;
-  double roll_rad = kNan;
-  double pitch_rad = kNan;
-  double roll_sd_rad = 0.0;
-  double pitch_sd_rad = 0.0;
-  double heave_m = kNan;
-
-  bool has_tilt() const { return !std::isnan(roll_rad) && !std::isnan(pitch_rad); }
-};
-
 /// What became of the numbers of a measurement.
-struct Verdict {
-  std::int64_t num_taken = 0;
+struct GateCounts {
   std::int64_t num_gated = 0;    // contradict the state by more than chance
   std::int64_t num_renewed = 0;  // contradicted it for so long, and so evenly, that the state was given up
-  // Of those that were judged: sum of normalised innovations squared, and of their degrees of freedom.
+  // Of those that were gated: sum of normalised innovations squared, and of their degrees of freedom.
   double nis_sum = 0.0;
   std::int64_t num_degrees = 0;
 };
 
-/// Each precondition: the state has been carried on to the time of the measurement.
-void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, Verdict& verdict);
-void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, Verdict& verdict);
-void Apply(const AttitudeMeasurement& attitude, const FilterParams& params, State& state, Verdict& verdict);
+/// Each precondition: the state has been propagated to the time of the measurement.
+void Apply(const FixMeasurement& fix, const FilterParams& params, State& state, GateCounts& counts);
+void Apply(const VelocityMeasurement& velocity, const FilterParams& params, State& state, GateCounts& counts);
+/// @param attitude  with standard deviations of all that it says
+void Apply(const AttitudeValues& attitude, const FilterParams& params, State& state, GateCounts& counts);
 
-/// Gravity as the IMU feels it: levels the attitude while accelerometers do not carry the motion.
-void Apply(const InertialSample& sample, State& state);
+/// Gravity as the IMU feels it: levels the attitude while accelerometers do not propagate the velocity.
+void Apply(const ImuSample& sample, const FilterParams& params, State& state, GateCounts& counts);
 
-/// The vessel floats: its up is that of the water, in the mean. At most once a second.
-void ApplyWater(State& state);
+/// Time has come so far. The vessel floats: its up is that of the water, in the mean. At most once a second.
+struct Tick {};
+void Apply(const Tick& tick, const FilterParams& params, State& state, GateCounts& counts);
 
 }  // namespace lookout::navigator::filter

@@ -7,7 +7,7 @@
 
 namespace lookout::navigator::filter {
 
-/// Numbers of a measurement that are judged together.
+/// Numbers of a measurement that are gated together.
 template <int kSize>
 struct Innovation {
   Eigen::Matrix<double, kSize, 1> residual;            // measured minus predicted
@@ -17,14 +17,14 @@ struct Innovation {
 };
 
 struct Correction {
-  bool is_taken = false;
+  bool is_accepted = false;
   double nis = 0.0;  // normalised innovation squared: of chi-square distribution with as many degrees of freedom as there are numbers
 };
 
 /// Chi-square that a right measurement exceeds once in 10 000, for one, two and three numbers (Abramowitz and Stegun,
 /// table 26.8: 15.14, 18.42, 21.11).
 template <int kSize>
-constexpr double Gate() {
+constexpr double GateThreshold() {
   static_assert(kSize >= 1 && kSize <= 3);
   return kSize == 1 ? 15.14 : kSize == 2 ? 18.42 : 21.11;
 }
@@ -39,8 +39,8 @@ Correction Correct(const Innovation<kSize>& innovation, bool is_forced, State& s
   const Eigen::Matrix<double, kSize, kSize> inverse = covariance.inverse();
   Correction correction;
   correction.nis = innovation.residual.dot(inverse * innovation.residual);
-  correction.is_taken = is_forced || correction.nis <= Gate<kSize>();
-  if (!correction.is_taken) return correction;
+  correction.is_accepted = is_forced || correction.nis <= GateThreshold<kSize>();
+  if (!correction.is_accepted) return correction;
   const Eigen::Matrix<double, kNumErrors, kSize> gain = cross * inverse;
   state.covariance -= gain * cross.transpose();
   // Rounding only: the two halves stay the same, and a variance stays above 0.

@@ -10,7 +10,7 @@ namespace lookout::navigator::filter {
 
 namespace {
 
-// Longer ways are gone in steps: the turn of the lever arms is linear in each.
+// Longer intervals are propagated in steps: the turn of the lever arms is linear in each.
 constexpr double kMaxStepS = 0.1;
 // After so long without any item nothing is left of what was known.
 constexpr double kMaxSilenceS = 60.0;
@@ -66,64 +66,64 @@ struct Fading {
 };
 
 void SwitchGyro(bool has_gyro, const FilterParams& params, State& state) {
-  if (has_gyro == state.has_gyro) return;
-  state.has_gyro = has_gyro;
+  if (has_gyro == state.aiding.has_gyro) return;
+  state.aiding.has_gyro = has_gyro;
   if (has_gyro) {
-    const bool is_new = state.last_gyro_bias_radps.isZero();
-    state.rate = state.last_gyro_bias_radps;
-    Renew3(kRate, is_new ? params.gyro_bias_sd_radps : kReturnedGyroBiasSdRadps, state);
+    const bool is_new = state.aiding.last_gyro_bias_radps.isZero();
+    state.nominal.rate = state.aiding.last_gyro_bias_radps;
+    ResetError3(kRate, is_new ? params.gyro_bias_sd_radps : kReturnedGyroBiasSdRadps, state);
   } else {
-    state.last_gyro_bias_radps = state.rate;
-    state.rate = state.angular_velocity_radps;
-    Renew<3>(kRate, Eigen::Vector3d(kSwingSdRadps, kSwingSdRadps, kTurnSdRadps), state);
+    state.aiding.last_gyro_bias_radps = state.nominal.rate;
+    state.nominal.rate = state.nominal.angular_velocity_radps;
+    ResetError<3>(kRate, Eigen::Vector3d(kSwingSdRadps, kSwingSdRadps, kTurnSdRadps), state);
   }
 }
 
 void SwitchStrapdown(bool is_strapdown, const FilterParams& params, State& state) {
-  if (is_strapdown == state.is_strapdown) return;
-  state.is_strapdown = is_strapdown;
+  if (is_strapdown == state.aiding.is_strapdown) return;
+  state.aiding.is_strapdown = is_strapdown;
   if (is_strapdown) {
-    const bool is_new = state.last_accelerometer_bias_mps2.isZero();
-    state.acceleration = state.last_accelerometer_bias_mps2;
-    Renew3(kAcceleration, is_new ? params.accelerometer_bias_sd_mps2 : kReturnedAccelerometerBiasSdMps2, state);
+    const bool is_new = state.aiding.last_accelerometer_bias_mps2.isZero();
+    state.nominal.acceleration = state.aiding.last_accelerometer_bias_mps2;
+    ResetError3(kAcceleration, is_new ? params.accelerometer_bias_sd_mps2 : kReturnedAccelerometerBiasSdMps2, state);
   } else {
-    state.last_accelerometer_bias_mps2 = state.acceleration;
-    state.acceleration.setZero();
-    Renew3(kAcceleration, kAccelerationSdMps2, state);
+    state.aiding.last_accelerometer_bias_mps2 = state.nominal.acceleration;
+    state.nominal.acceleration.setZero();
+    ResetError3(kAcceleration, kAccelerationSdMps2, state);
   }
 }
 
-// Attitude: gyroscopes, or the rate that fades. A tilt that nobody measures stays.
-void Turn(const InertialSample* sample, double step_s, const Earth& earth, State& state) {
+// By the gyroscopes, or the rate that fades. A tilt that nobody measures stays.
+void PropagateAttitude(const ImuSample* sample, double step_s, const Earth& earth, State& state) {
   if (sample != nullptr) {
-    const Eigen::Vector3d earth_rate_radps = state.q_level_vessel.conjugate() * earth.rate_level_radps;
-    state.angular_velocity_radps = sample->angular_velocity_radps - state.rate - earth_rate_radps;
+    const Eigen::Vector3d earth_rate_radps = state.nominal.q_level_vessel.conjugate() * earth.rate_level_radps;
+    state.nominal.angular_velocity_radps = sample->angular_velocity_radps - state.nominal.rate - earth_rate_radps;
   } else {
-    if (!state.has_tilt) state.rate.head<2>().setZero();
-    state.angular_velocity_radps = state.rate;
+    if (!state.aiding.has_tilt) state.nominal.rate.head<2>().setZero();
+    state.nominal.angular_velocity_radps = state.nominal.rate;
   }
-  state.q_level_vessel = (state.q_level_vessel * RotationBy(state.angular_velocity_radps * step_s)).normalized();
+  state.nominal.q_level_vessel = (state.nominal.q_level_vessel * RotationBy(state.nominal.angular_velocity_radps * step_s)).normalized();
 }
 
-void Step(const InertialSample* sample, double step_s, const Earth& earth, const FilterParams& params, State& state) {
+void PropagateStep(const ImuSample* sample, double step_s, const Earth& earth, const FilterParams& params, State& state) {
   auto& covariance = state.covariance;
-  const Eigen::Matrix3d R_begin = state.R_level_vessel();
-  Turn(sample, step_s, earth, state);
-  const Eigen::Matrix3d R_middle = (R_begin * RotationBy(state.angular_velocity_radps * (step_s / 2.0)).toRotationMatrix()).eval();
+  const Eigen::Matrix3d R_begin = state.nominal.R_level_vessel();
+  PropagateAttitude(sample, step_s, earth, state);
+  const Eigen::Matrix3d R_middle = (R_begin * RotationBy(state.nominal.angular_velocity_radps * (step_s / 2.0)).toRotationMatrix()).eval();
   const double half_step2_s2 = step_s * step_s / 2.0;
 
-  Eigen::Vector3d acceleration_level_mps2 = state.acceleration;
+  Eigen::Vector3d acceleration_level_mps2 = state.nominal.acceleration;
   Eigen::Matrix3d velocity_by_rotation = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d velocity_by_acceleration = Eigen::Matrix3d::Identity() * step_s;
-  if (state.is_strapdown) {
-    const Eigen::Vector3d force_level_mps2 = R_middle * (sample->specific_force_mps2 - state.acceleration);
+  if (state.aiding.is_strapdown) {
+    const Eigen::Vector3d force_level_mps2 = R_middle * (sample->specific_force_mps2 - state.nominal.acceleration);
     acceleration_level_mps2 =
-        force_level_mps2 - Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2) - 2.0 * earth.rate_level_radps.cross(state.velocity_level_mps);
+        force_level_mps2 - Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2) - 2.0 * earth.rate_level_radps.cross(state.nominal.velocity_level_mps);
     velocity_by_rotation = -step_s * Cross(force_level_mps2);
     velocity_by_acceleration = -step_s * R_middle;
   }
-  state.p_level_m += step_s * state.velocity_level_mps + half_step2_s2 * acceleration_level_mps2;
-  state.velocity_level_mps += step_s * acceleration_level_mps2;
+  state.nominal.p_level_m += step_s * state.nominal.velocity_level_mps + half_step2_s2 * acceleration_level_mps2;
+  state.nominal.velocity_level_mps += step_s * acceleration_level_mps2;
   const Eigen::Matrix3d rotation_by_rate = (sample != nullptr ? -step_s : step_s) * R_middle;
 
   // Position takes up velocity, velocity attitude and acceleration, attitude rate, each as it was.
@@ -143,96 +143,96 @@ void Step(const InertialSample* sample, double step_s, const Earth& earth, const
   };
   const auto wander = [&](double sd) { return added(sd * std::sqrt(2.0 / kBiasTimeS), step_s); };
   if (sample != nullptr) {
-    const double scale_noise_radps_rthz = kGyroScaleErrorRootS * state.angular_velocity_radps.norm();
+    const double scale_noise_radps_rthz = kGyroScaleErrorRootS * state.nominal.angular_velocity_radps.norm();
     AddVariance(kRotation, added(Hypot(params.gyro_noise_radps_rthz, scale_noise_radps_rthz), step_s), covariance);
     AddVariance(kRate, wander(kGyroBiasWanderRadps), covariance);
   } else {
     const Fading swing(kSwingSdRadps, kSwingTimeS, step_s);
     const Fading turn(kTurnSdRadps, kTurnTimeS, step_s);
-    state.rate = state.rate.cwiseProduct(Eigen::Vector3d(swing.kept, swing.kept, turn.kept));
+    state.nominal.rate = state.nominal.rate.cwiseProduct(Eigen::Vector3d(swing.kept, swing.kept, turn.kept));
     Scale(kRate, 2, swing.kept, covariance);
     Scale(kRate + 2, 1, turn.kept, covariance);
     AddVariance(kRate, {swing.added_variance, swing.added_variance, turn.added_variance}, covariance);
-    if (!state.has_tilt) {
+    if (!state.aiding.has_tilt) {
       covariance.middleRows<2>(kRate).setZero();
       covariance.middleCols<2>(kRate).setZero();
     }
   }
-  if (state.is_strapdown) {
+  if (state.aiding.is_strapdown) {
     AddVariance(kVelocity, added(params.accelerometer_noise_mps2_rthz, step_s), covariance);
     AddVariance(kAcceleration, wander(kAccelerometerBiasWanderMps2), covariance);
   } else {
     const Fading acceleration(kAccelerationSdMps2, kAccelerationTimeS, step_s);
-    state.acceleration *= acceleration.kept;
+    state.nominal.acceleration *= acceleration.kept;
     Scale(kAcceleration, 3, acceleration.kept, covariance);
     AddVariance(kAcceleration, Eigen::Vector3d::Constant(acceleration.added_variance), covariance);
   }
-  const Fading fix(state.fix_error_model.sd, state.fix_error_model.time_constant_s, step_s);
-  state.fix_error_m *= fix.kept;
+  const Fading fix(state.aiding.fix_error_model.sd, state.aiding.fix_error_model.time_constant_s, step_s);
+  state.nominal.fix_error_m *= fix.kept;
   Scale(kFixError, 3, fix.kept, covariance);
-  const double up_factor2 = state.fix_error_model.up_factor * state.fix_error_model.up_factor;
+  const double up_factor2 = state.aiding.fix_error_model.up_factor * state.aiding.fix_error_model.up_factor;
   AddVariance(kFixError, {fix.added_variance, fix.added_variance, up_factor2 * fix.added_variance}, covariance);
-  const Fading heading(state.heading_error_model.sd, state.heading_error_model.time_constant_s, step_s);
-  state.heading_error_rad *= heading.kept;
+  const Fading heading(state.aiding.heading_error_model.sd, state.aiding.heading_error_model.time_constant_s, step_s);
+  state.nominal.heading_error_rad *= heading.kept;
   Scale(kHeadingError, 1, heading.kept, covariance);
   covariance(kHeadingError, kHeadingError) += heading.added_variance;
   covariance(kWaterLevel, kWaterLevel) += kWaterLevelMPerRootS * kWaterLevelMPerRootS * step_s;
 }
 
-// What may no longer be told from what was measured long ago.
-void Forget(const FilterParams& params, State& state) {
-  if (state.has_heading) {
-    const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
-    const auto& source = state.heading_source == HeadingSource::kCourse ? state.course : state.sensor_heading;
-    const auto max_age = state.heading_source == HeadingSource::kCourse ? params.max_position_age : params.max_attitude_age;
-    const bool is_carried =
-        state.has_gyro ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad : source.IsWithin(state.time, max_age);
+// Gives up what was measured too long ago.
+void ForgetOld(const FilterParams& params, State& state) {
+  if (state.aiding.has_heading) {
+    const double heading_variance = state.covariance(kRotationUp, kRotationUp);
+    const auto& source = state.aiding.heading();
+    const auto max_age = state.aiding.heading_source == HeadingSource::kCourse ? params.max_position_age : params.max_attitude_age;
+    const bool is_carried = state.aiding.has_gyro ? heading_variance <= params.max_heading_coast_sd_rad * params.max_heading_coast_sd_rad
+                                                  : source.IsWithin(state.time, max_age);
     if (!is_carried && !source.IsWithin(state.time, params.max_attitude_age)) {
       // Position is that of the antenna again.
-      if (state.has_position) ShiftPosition(state.R_level_vessel() * AntennaLever(params), state);
-      state.has_heading = false;
-      state.heading_source = HeadingSource::kNone;
-      state.heading_refusals = {};
+      if (state.aiding.has_position) ShiftPosition(state.nominal.R_level_vessel() * AntennaLever(params), state);
+      state.aiding.has_heading = false;
+      state.aiding.heading_source = HeadingSource::kNone;
+      state.aiding.heading_refusals = {};
     }
   }
-  if (state.has_tilt && !state.has_gyro && !state.tilt.IsWithin(state.time, params.max_attitude_age)) {
+  if (state.aiding.has_tilt && !state.aiding.has_gyro && !state.aiding.tilt.IsWithin(state.time, params.max_attitude_age)) {
     // Level, as boats lie in the mean.
-    state.has_tilt = false;
-    const double heading_rad = AnglesOf(state.R_level_vessel())[2];
-    state.q_level_vessel = RotationBy(Eigen::Vector3d(0.0, 0.0, kPi / 2.0 - heading_rad));
-    const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
-    Renew<3>(kRotation, Eigen::Vector3d(params.unmeasured_tilt_sd_rad, params.unmeasured_tilt_sd_rad, std::sqrt(heading_variance)), state);
+    state.aiding.has_tilt = false;
+    const double heading_rad = AnglesOf(state.nominal.R_level_vessel())[2];
+    state.nominal.q_level_vessel = RotationBy(Eigen::Vector3d(0.0, 0.0, kPi / 2.0 - heading_rad));
+    const double heading_variance = state.covariance(kRotationUp, kRotationUp);
+    ResetError<3>(kRotation, Eigen::Vector3d(params.unmeasured_tilt_sd_rad, params.unmeasured_tilt_sd_rad, std::sqrt(heading_variance)), state);
   }
-  if (state.has_position) {
-    const double variance = std::max(state.covariance(0, 0), state.covariance(1, 1));
-    const double max_variance = state.position_sd_at_fix_m * state.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
-    const bool is_carried = state.fix.IsWithin(state.time, params.max_position_age) && variance <= max_variance;
+  if (state.aiding.has_position) {
+    const double variance = state.HorizontalVarianceM2();
+    const double max_variance = state.aiding.position_sd_at_fix_m * state.aiding.position_sd_at_fix_m + params.max_coast_sd_m * params.max_coast_sd_m;
+    const bool is_carried = state.aiding.fix.IsWithin(state.time, params.max_position_age) && variance <= max_variance;
     // Fixes that contradicted are not forgotten: they tell the next one what was wrong.
-    if (!is_carried && state.fix.IsStoppedAt(state.time)) ForgetPlace(state);
+    if (!is_carried && state.aiding.fix.IsStoppedAt(state.time)) ForgetPlace(state);
   }
-  if (!state.has_position) {
-    state.p_level_m.head<2>().setZero();
-    Renew<2>(kPosition, Eigen::Vector2d::Zero(), state);
-    if (state.covariance(kVelocity, kVelocity) > kUnknownSpeedSdMps * kUnknownSpeedSdMps) {
-      state.velocity_level_mps.head<2>().setZero();
-      Renew<2>(kVelocity, Eigen::Vector2d::Constant(kUnknownSpeedSdMps), state);
+  if (!state.aiding.has_position) {
+    state.nominal.p_level_m.head<2>().setZero();
+    ResetError<2>(kPosition, Eigen::Vector2d::Zero(), state);
+    if (state.covariance(kVelocityEast, kVelocityEast) > kUnknownSpeedSdMps * kUnknownSpeedSdMps) {
+      state.nominal.velocity_level_mps.head<2>().setZero();
+      ResetError<2>(kVelocity, Eigen::Vector2d::Constant(kUnknownSpeedSdMps), state);
     }
   }
 }
 
 }  // namespace
 
-void CarryOn(const InertialSample* sample, Utime time, const FilterParams& params, State& state) {
+void Propagate(const ImuSample* sample, Utime time, const FilterParams& params, State& state) {
   FollowBoat(state);
   double remaining_s = SecondsBetween(state.time, time);
   if (remaining_s > kMaxSilenceS) {
     State fresh = FreshState(time, params.unmeasured_tilt_sd_rad);
-    fresh.level = state.level;
+    fresh.nominal.level = state.nominal.level;
     // Which inputs there were: HEALTH names those that do not come back.
-    fresh.fix = state.fix;
-    fresh.sensor_heading = state.sensor_heading;
-    fresh.tilt = state.tilt;
-    fresh.imu = state.imu;
+    fresh.aiding.fix = state.aiding.fix;
+    fresh.aiding.sensor_heading = state.aiding.sensor_heading;
+    fresh.aiding.tilt = state.aiding.tilt;
+    fresh.aiding.imu = state.aiding.imu;
     state = fresh;
     return;
   }
@@ -240,13 +240,13 @@ void CarryOn(const InertialSample* sample, Utime time, const FilterParams& param
   if (IsImuRefused(state)) sample = nullptr;
   SwitchGyro(sample != nullptr, params, state);
   while (remaining_s > 0.0) {
-    SwitchStrapdown(sample != nullptr && state.has_position && state.has_heading && state.has_tilt, params, state);
+    SwitchStrapdown(sample != nullptr && state.aiding.has_position && state.aiding.has_heading && state.aiding.has_tilt, params, state);
     const double step_s = std::min(remaining_s, kMaxStepS);
     remaining_s -= step_s;
     state.time = remaining_s > 0.0 ? time - std::chrono::microseconds(std::llround(remaining_s * 1e6)) : time;
-    Step(sample, step_s, EarthOf(state), params, state);
+    PropagateStep(sample, step_s, EarthOf(state), params, state);
     FollowBoat(state);
-    Forget(params, state);
+    ForgetOld(params, state);
   }
 }
 

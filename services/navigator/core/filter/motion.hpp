@@ -1,27 +1,22 @@
-// How the state goes on from one instant to the next.
+// The motion model: the state from one instant to the next.
 #pragma once
 
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/filter/state.hpp"
+#include "services/navigator/core/measurement.hpp"
 
 namespace lookout::navigator::filter {
 
-/// One sample of the IMU, along the axes of the vessel: the mean since the sample before.
-struct InertialSample {
-  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
-  Eigen::Vector3d specific_force_mps2 = Eigen::Vector3d::Zero();
-};
-
-/// Carries the state on to `time`.
+/// Propagates the state to `time`.
 ///
 /// With an IMU attitude follows its gyroscopes, and, once position, heading and tilt are known, velocity its accelerometers (strapdown navigation;
 /// Groves, "Principles of GNSS, Inertial, and Multisensor Integrated Navigation Systems", 2nd edition, section 5.4). Without it the vessel keeps
 /// its rate of turn and its acceleration, both of which fade (Singer, "Estimating Optimal Tracking Filter Performance for Manned Maneuvering
 /// Targets", IEEE AES 1970): a first-order Gauss-Markov process each.
 /// The level frame follows the boat.
-/// @param sample  of the IMU, for the whole way; nullptr: there is none
+/// @param sample  of the IMU, for the whole interval; nullptr: there is none
 /// @param time    not before that of the state
 /// Cost: some 2 microseconds.
-void CarryOn(const InertialSample* sample, Utime time, const FilterParams& params, State& state);
+void Propagate(const ImuSample* sample, Utime time, const FilterParams& params, State& state);
 
 }  // namespace lookout::navigator::filter

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/core/angles.hpp"
 #include "common/core/datum_check.hpp"
 #include "common/core/elementary.hpp"
-#include "services/navigator/core/filter/pose_output.hpp"
 
 namespace lookout::navigator {
 
@@ -42,9 +42,15 @@ double PossibleAgeS(const MeasurementTime& when) {
 // A speed without a direction is anywhere on a circle around 0: this is the deviation of each component.
 double SdOfUnknownCourse(double speed_mps) { return speed_mps * std::sqrt(0.5); }
 
-Eigen::Vector2d VelocityOf(double speed_mps, double course_rad) {
-  const auto [east, north] = SinCosOf(course_rad);
-  return speed_mps * Eigen::Vector2d(east, north);
+filter::VelocityMeasurement ToVelocity(double speed_mps, double course_rad, double sd_mps, bool has_own_time) {
+  filter::VelocityMeasurement velocity{.sd_mps = sd_mps, .course_rad = course_rad, .speed_mps = speed_mps, .has_own_time = has_own_time};
+  if (std::isnan(course_rad)) {
+    velocity.sd_mps = Hypot(sd_mps, SdOfUnknownCourse(speed_mps));
+  } else {
+    const auto [east, north] = SinCosOf(course_rad);
+    velocity.east_north_mps = speed_mps * Eigen::Vector2d(east, north);
+  }
+  return velocity;
 }
 
 // Without its height.
@@ -52,20 +58,105 @@ GeodeticPlace Flat(const GeodeticPlace& place) { return {place.latitude_deg, pla
 
 double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
 
-}  // namespace
+// Order of PoseCovariance.
+enum Row { kRowPosition = 0, kRowVelocity = 3, kRowAngles = 6, kRowHeading = 8, kNumRows = 9 };
 
-FilterCounts& FilterCounts::operator+=(const FilterCounts& other) {
-  unusable_fix += other.unusable_fix;
-  late_fix += other.late_fix;
-  late_attitude += other.late_attitude;
-  late_imu += other.late_imu;
-  unusable_imu += other.unusable_imu;
-  gated_fix += other.gated_fix;
-  gated_attitude += other.gated_attitude;
-  renewed_position += other.renewed_position;
-  renewed_attitude += other.renewed_attitude;
-  return *this;
+void Unknown(int first, int size, PoseCovariance& covariance) {
+  covariance.middleRows(first, size).setConstant(kNan);
+  covariance.middleCols(first, size).setConstant(kNan);
 }
+
+// @param map  of the datum; nullptr: no datum is known yet
+Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFrame* map, const FilterParams& params) {
+  Pose pose;
+  pose.time = state.time;
+  if (datum) pose.datum = *datum;
+  const Eigen::Matrix3d R_level_vessel = state.nominal.R_level_vessel();
+  const Eigen::Vector3d& p_vessel_origin_m = params.p_vessel_imu_m;
+  Eigen::Vector3d reference_level_m = -(R_level_vessel * p_vessel_origin_m);  // from the origin
+  Eigen::Vector3d swing_level_mps = -(R_level_vessel * state.nominal.angular_velocity_radps.cross(p_vessel_origin_m));
+  if (!state.aiding.has_heading) {
+    reference_level_m.head<2>().setZero();
+    swing_level_mps.setZero();
+  }
+
+  const auto here = HereOf(state);
+  const Eigen::Matrix3d R_here_vessel = here.R_here_level * R_level_vessel;
+  const bool is_placed = state.aiding.has_position && state.nominal.level && map != nullptr;
+  const Eigen::Isometry3d T_map_level = is_placed ? map->TransformFrom(state.nominal.level->frame) : Eigen::Isometry3d::Identity();
+
+  Eigen::Matrix<double, kNumRows, filter::kNumErrors> jacobian = Eigen::Matrix<double, kNumRows, filter::kNumErrors>::Zero();
+  jacobian.block<3, 3>(kRowPosition, filter::kPosition) = T_map_level.linear();
+  jacobian.block<3, 3>(kRowVelocity, filter::kVelocity) = T_map_level.linear();
+  jacobian.block<3, 3>(kRowPosition, filter::kRotation) = -(T_map_level.linear() * filter::Cross(reference_level_m));
+  jacobian.block<3, 3>(kRowAngles, filter::kRotation) = filter::AngleJacobian(R_here_vessel) * here.R_here_level;
+  jacobian.block<1, 3>(kRowHeading, filter::kPosition) = here.heading_per_east_radpm * here.R_here_level.row(0);
+  pose.covariance = jacobian * state.covariance * jacobian.transpose();
+  pose.covariance = (0.5 * (pose.covariance + pose.covariance.transpose())).eval();
+
+  const Eigen::Vector3d angles_rad = filter::AnglesOf(R_here_vessel);
+  pose.has_attitude = state.aiding.has_tilt;
+  pose.roll_rad = state.aiding.has_tilt ? angles_rad[0] : 0.0;
+  pose.pitch_rad = state.aiding.has_tilt ? angles_rad[1] : 0.0;
+  if (state.aiding.heave.IsWithin(state.time, params.max_attitude_age)) {
+    pose.heave_m = state.nominal.p_level_m.z() - state.nominal.water_level_m - (R_level_vessel * p_vessel_origin_m - p_vessel_origin_m).z();
+  }
+  if (state.aiding.has_heading) {
+    pose.heading_rad = angles_rad[2];
+    pose.heading_source = state.aiding.heading_source;
+  } else {
+    Unknown(kRowHeading, 1, pose.covariance);
+    // Position is that of the antenna.
+    const double lever_m = params.p_vessel_antenna_m.head<2>().norm();
+    pose.covariance.diagonal().head<2>().array() += lever_m * lever_m;
+  }
+  if (is_placed) {
+    Eigen::Vector3d p_level_m = state.nominal.p_level_m + reference_level_m;
+    if (!state.aiding.has_height) p_level_m.z() = 0.0;  // the height of the datum
+    pose.p_map_m = T_map_level * p_level_m;
+    pose.velocity_map_mps = T_map_level.linear() * (state.nominal.velocity_level_mps + swing_level_mps);
+    const GeodeticPlace place = state.nominal.level->frame.Reverse(p_level_m);
+    pose.latitude_deg = place.latitude_deg;
+    pose.longitude_deg = place.longitude_deg;
+    pose.ellipsoid_height_m = place.ellipsoid_height_m;
+    if (!state.aiding.has_height) {
+      pose.ellipsoid_height_m = kNan;
+      Unknown(kRowPosition + 2, 1, pose.covariance);
+    }
+  } else {
+    Unknown(kRowPosition, 3, pose.covariance);
+    Unknown(kRowVelocity, 3, pose.covariance);
+  }
+
+  const bool is_fix_stopped = state.aiding.fix.IsStoppedAt(state.time);
+  if (state.aiding.has_position && state.aiding.has_heading) {
+    pose.status = is_fix_stopped || state.aiding.heading().IsStoppedAt(state.time) ? PoseStatus::kCoasting : PoseStatus::kOk;
+  } else if (state.aiding.has_position) {
+    pose.status = PoseStatus::kNoHeading;
+  } else if (state.aiding.has_heading) {
+    pose.status = PoseStatus::kNoPosition;
+  }
+  return pose;
+}
+
+// "no position fix for 3 s, no heading for 2 s" of those that came and do not come any more; empty = none.
+std::string StoppedInputs(const State& state) {
+  std::string text;
+  const auto say = [&](const filter::UseTimes& input, const char* name) {
+    if (!input.IsStoppedAt(state.time)) return;
+    const auto since = std::chrono::floor<std::chrono::seconds>(state.time - *input.last).count();
+    if (!text.empty()) text += ", ";
+    text += "no " + std::string(name) + " for " + std::to_string(since) + " s";
+  };
+  say(state.aiding.fix, "position fix");
+  say(state.aiding.sensor_heading, "heading");
+  say(state.aiding.tilt, "attitude");
+  say(state.aiding.imu, "IMU");
+  if (IsImuRefused(state)) text += std::string(text.empty() ? "" : ", ") + "IMU not used: it contradicts fixes or attitudes";
+  return text;
+}
+
+}  // namespace
 
 std::vector<Counter> FilterCounts::Named() const {
   return {{"unusable_fix", unusable_fix},        {"late_fix", late_fix},   {"late_attitude", late_attitude},   {"late_imu", late_imu},
@@ -75,6 +166,12 @@ std::vector<Counter> FilterCounts::Named() const {
 
 PoseFilter::PoseFilter(const FilterParams& params) : params_(params) {
   if (params_.datum) SetDatum(*params_.datum);
+}
+
+void PoseFilter::Reset() {
+  const FilterCounts counts = counts_;
+  *this = PoseFilter(params_);
+  counts_ = counts;
 }
 
 void PoseFilter::SetDatum(const Datum& datum) {
@@ -101,7 +198,7 @@ void PoseFilter::DropOld() {
   const Utime oldest = *newest_ - params_.max_latency - kMoreHistory;
   while (num_processed_ > 1 && (events_.front().time < oldest || events_.size() > kMaxEvents)) {
     base_ = std::move(events_.front().after);
-    if (const auto* sample = std::get_if<filter::InertialSample>(&events_.front().measurement)) {
+    if (const auto* sample = std::get_if<ImuSample>(&events_.front().measurement)) {
       base_sample_ = *sample;
       base_sample_time_ = events_.front().time;
     }
@@ -149,17 +246,8 @@ void PoseFilter::Add(const GnssFix& fix) {
   const double age_s = PossibleAgeS(fix.when);
   measurement.horizontal_sd_m = Hypot(measurement.horizontal_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
   if (!std::isnan(fix.speed_mps)) {
-    filter::VelocityMeasurement velocity;
-    velocity.has_own_time = true;
-    velocity.speed_mps = fix.speed_mps;
-    velocity.course_rad = fix.course_rad;
-    velocity.sd_mps = Hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
-    if (std::isnan(fix.course_rad)) {
-      velocity.sd_mps = Hypot(velocity.sd_mps, SdOfUnknownCourse(fix.speed_mps));
-    } else {
-      velocity.east_north_mps = VelocityOf(fix.speed_mps, fix.course_rad);
-    }
-    measurement.velocity = velocity;
+    const double sd_mps = Hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
+    measurement.velocity = ToVelocity(fix.speed_mps, fix.course_rad, sd_mps, true);
   }
 
   std::size_t index = 0;
@@ -183,27 +271,15 @@ void PoseFilter::Add(const GnssFix& fix) {
 
 void PoseFilter::Add(const GroundVelocity& velocity) {
   if (std::isnan(velocity.speed_mps)) return;
-  filter::VelocityMeasurement measurement;
-  measurement.speed_mps = velocity.speed_mps;
-  measurement.course_rad = velocity.course_rad;
-  measurement.sd_mps = params_.velocity_sd_mps;
-  if (std::isnan(velocity.course_rad)) {
-    measurement.sd_mps = Hypot(measurement.sd_mps, SdOfUnknownCourse(velocity.speed_mps));
-  } else {
-    measurement.east_north_mps = VelocityOf(velocity.speed_mps, velocity.course_rad);
-  }
+  const auto measurement = ToVelocity(velocity.speed_mps, velocity.course_rad, params_.velocity_sd_mps, false);
   if (!Insert(velocity.time, measurement)) ++counts_.late_fix;
 }
 
 void PoseFilter::Add(const Attitude& attitude) {
-  filter::AttitudeMeasurement measurement;
-  measurement.heading_rad = attitude.heading_rad;
+  AttitudeValues measurement = attitude;
   measurement.heading_sd_rad = SdOr(attitude.heading_sd_rad, params_.heading_sd_rad);
-  measurement.roll_rad = attitude.roll_rad;
-  measurement.pitch_rad = attitude.pitch_rad;
   measurement.roll_sd_rad = SdOr(attitude.roll_sd_rad, params_.tilt_sd_rad);
   measurement.pitch_sd_rad = SdOr(attitude.pitch_sd_rad, params_.tilt_sd_rad);
-  measurement.heave_m = attitude.heave_m;
   if (!Insert(attitude.when.time, measurement)) {
     ++counts_.late_attitude;
     return;
@@ -216,19 +292,19 @@ void PoseFilter::Add(const ImuSample& sample) {
     ++counts_.unusable_imu;
     return;
   }
-  if (!Insert(sample.time, filter::InertialSample{sample.angular_velocity_radps, sample.specific_force_mps2})) ++counts_.late_imu;
+  if (!Insert(sample.time, sample)) ++counts_.late_imu;
 }
 
-void PoseFilter::AdvanceTo(Utime time) { Insert(time, Tick{}); }
+void PoseFilter::AdvanceTo(Utime time) { Insert(time, filter::Tick{}); }
 
 const State& PoseFilter::StateBefore(std::size_t index) const { return index > 0 ? events_[index - 1].after : *base_; }
 
-const filter::InertialSample* PoseFilter::SampleFor(std::size_t next_index, Utime time) const {
+const ImuSample* PoseFilter::SampleFor(std::size_t next_index, Utime time) const {
   for (std::size_t i = next_index; i < events_.size() && events_[i].time - time <= kMaxSampleAge; ++i) {
-    if (const auto* sample = std::get_if<filter::InertialSample>(&events_[i].measurement)) return sample;
+    if (const auto* sample = std::get_if<ImuSample>(&events_[i].measurement)) return sample;
   }
   for (std::size_t i = std::min(next_index, events_.size()); i-- > 0 && time - events_[i].time <= kMaxSampleAge;) {
-    if (const auto* sample = std::get_if<filter::InertialSample>(&events_[i].measurement)) return sample;
+    if (const auto* sample = std::get_if<ImuSample>(&events_[i].measurement)) return sample;
   }
   return base_sample_ && time - base_sample_time_ <= kMaxSampleAge ? &*base_sample_ : nullptr;
 }
@@ -236,20 +312,16 @@ const filter::InertialSample* PoseFilter::SampleFor(std::size_t next_index, Utim
 void PoseFilter::Process(Event& event, std::size_t index) {
   State& state = event.after;
   state = StateBefore(index);
-  CarryOn(SampleFor(index, event.time), event.time, params_, state);
-  filter::Verdict verdict;
-  if (const auto* sample = std::get_if<filter::InertialSample>(&event.measurement)) Apply(*sample, state);
-  if (const auto* fix = std::get_if<filter::FixMeasurement>(&event.measurement)) Apply(*fix, params_, state, verdict);
-  if (const auto* attitude = std::get_if<filter::AttitudeMeasurement>(&event.measurement)) Apply(*attitude, params_, state, verdict);
-  if (const auto* velocity = std::get_if<filter::VelocityMeasurement>(&event.measurement)) Apply(*velocity, params_, state, verdict);
-  if (std::holds_alternative<Tick>(event.measurement)) ApplyWater(state);
-  if (event.was_judged) return;
-  event.was_judged = true;
-  const bool is_attitude = std::holds_alternative<filter::AttitudeMeasurement>(event.measurement);
-  (is_attitude ? counts_.gated_attitude : counts_.gated_fix) += verdict.num_gated;
-  (is_attitude ? counts_.renewed_attitude : counts_.renewed_position) += verdict.num_renewed;
-  nis_sum_ += verdict.nis_sum;
-  num_nis_degrees_ += verdict.num_degrees;
+  Propagate(SampleFor(index, event.time), event.time, params_, state);
+  filter::GateCounts counts;
+  std::visit([&](const auto& measurement) { Apply(measurement, params_, state, counts); }, event.measurement);
+  if (event.is_counted) return;
+  event.is_counted = true;
+  const bool is_attitude = std::holds_alternative<AttitudeValues>(event.measurement);
+  (is_attitude ? counts_.gated_attitude : counts_.gated_fix) += counts.num_gated;
+  (is_attitude ? counts_.renewed_attitude : counts_.renewed_position) += counts.num_renewed;
+  nis_sum_ += counts.nis_sum;
+  num_nis_degrees_ += counts.num_degrees;
 }
 
 void PoseFilter::ProcessUntil(Utime time) {
@@ -268,10 +340,10 @@ void PoseFilter::ProcessUntil(Utime time) {
 Pose PoseFilter::At(Utime time) {
   ProcessUntil(time);
   State state = num_processed_ > 0 || base_ ? StateBefore(num_processed_) : filter::FreshState(time, params_.unmeasured_tilt_sd_rad);
-  CarryOn(SampleFor(num_processed_, time), time, params_, state);
+  Propagate(SampleFor(num_processed_, time), time, params_, state);
   state.time = time;
   DropOld();
-  stopped_ = filter::StoppedInputs(state);
+  stopped_ = StoppedInputs(state);
   return ToPose(state, datum_, map_ ? &*map_ : nullptr, params_);
 }
 

@@ -19,7 +19,7 @@
 
 namespace lookout::navigator {
 
-/// What was not used, or only against what was known.
+/// Measurements that were not used, or only against what was known.
 struct FilterCounts {
   std::int64_t unusable_fix = 0;  // not measured, or without a position
   std::int64_t late_fix = 0;      // older than what is kept
@@ -31,7 +31,6 @@ struct FilterCounts {
   std::int64_t renewed_position = 0;  // given up for measurements that contradicted it for seconds
   std::int64_t renewed_attitude = 0;
 
-  FilterCounts& operator+=(const FilterCounts& other);
   std::vector<Counter> Named() const;
 };
 
@@ -45,6 +44,9 @@ class PoseFilter {
   static constexpr std::size_t kMaxEvents = 4000;
 
   explicit PoseFilter(const FilterParams& params);
+
+  /// A start mark: all but the counts is void.
+  void Reset();
 
   /// Sentences of one epoch (the same time) are one fix: RMC adds its velocity, GGA its position and height.
   void Add(const GnssFix& fix);
@@ -66,7 +68,7 @@ class PoseFilter {
   /// A sensor of heading has come.
   bool has_had_heading() const { return has_had_heading_; }
   const FilterCounts& counts() const { return counts_; }
-  /// Of all measurements that were judged: the sum of normalised innovations squared, and of their degrees of freedom.
+  /// Of all measurements that were gated: the sum of normalised innovations squared, and of their degrees of freedom.
   double nis_sum() const { return nis_sum_; }
   std::int64_t num_nis_degrees() const { return num_nis_degrees_; }
 
@@ -77,12 +79,11 @@ class PoseFilter {
   const std::string& stopped() const { return stopped_; }
 
  private:
-  struct Tick {};
-  using Measurement = std::variant<Tick, filter::InertialSample, filter::AttitudeMeasurement, filter::VelocityMeasurement, filter::FixMeasurement>;
+  using Measurement = std::variant<filter::Tick, ImuSample, AttitudeValues, filter::VelocityMeasurement, filter::FixMeasurement>;
   struct Event {
     Utime time;
     Measurement measurement;
-    bool was_judged = false;  // in the counts
+    bool is_counted = false;  // in the counts
     filter::State after;      // once it is processed
   };
 
@@ -93,8 +94,8 @@ class PoseFilter {
   void DropOld();
   // That of the same epoch; nullptr when there is none.
   filter::FixMeasurement* SameEpoch(const filter::FixMeasurement& fix, Utime time, std::size_t& index);
-  // The sample for the way that ends at `time`, by the events around it.
-  const filter::InertialSample* SampleFor(std::size_t next_index, Utime time) const;
+  // The sample for the interval that ends at `time`, by the events around it.
+  const ImuSample* SampleFor(std::size_t next_index, Utime time) const;
   const filter::State& StateBefore(std::size_t index) const;
   void Process(Event& event, std::size_t index);
   void ProcessUntil(Utime time);
@@ -104,8 +105,8 @@ class PoseFilter {
   std::optional<LocalFrame> map_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;
-  std::optional<filter::State> base_;                  // before events_
-  std::optional<filter::InertialSample> base_sample_;  // the last one before events_
+  std::optional<filter::State> base_;     // before events_
+  std::optional<ImuSample> base_sample_;  // the last one before events_
   Utime base_sample_time_{};
   std::optional<Utime> newest_;  // of all times given
   std::optional<Utime> last_fix_arrival_;

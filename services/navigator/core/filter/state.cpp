@@ -30,60 +30,66 @@ constexpr double kUpSdMps = 0.5;
 // Not through ToSeconds: its nanoseconds overflow after 292 years, and times from outside may be 300 years apart.
 double SecondsBetween(Utime from, Utime to) { return std::chrono::duration<double>(to - from).count(); }
 
-void Input::Use(Utime time) {
+void UseTimes::Use(Utime time) {
   if (last && time > *last) interval_s = std::min(SecondsBetween(*last, time), kMaxIntervalS);
   if (!last || time > *last) last = time;
 }
 
-bool Input::IsStoppedAt(Utime time) const { return last && SecondsBetween(*last, time) > std::max(kStopS, 1.5 * interval_s + 0.5); }
+bool UseTimes::IsStoppedAt(Utime time) const { return last && SecondsBetween(*last, time) > std::max(kStopS, 1.5 * interval_s + 0.5); }
 
 State FreshState(Utime time, double tilt_sd_rad) {
   State state;
   state.time = time;
-  Renew3(kVelocity, kUnknownSpeedSdMps, state);
-  Renew3(kRotation, tilt_sd_rad, state);
-  Renew3(kRate, kUnknownRateSdRadps, state);
-  Renew3(kAcceleration, kUnknownAccelerationSdMps2, state);
-  state.covariance(kPosition + 2, kPosition + 2) = kUnknownLevelSdM * kUnknownLevelSdM;
+  ResetError3(kVelocity, kUnknownSpeedSdMps, state);
+  ResetError3(kRotation, tilt_sd_rad, state);
+  ResetError3(kRate, kUnknownRateSdRadps, state);
+  ResetError3(kAcceleration, kUnknownAccelerationSdMps2, state);
+  state.covariance(kPositionUp, kPositionUp) = kUnknownLevelSdM * kUnknownLevelSdM;
   state.covariance(kWaterLevel, kWaterLevel) = kUnknownLevelSdM * kUnknownLevelSdM;
   return state;
 }
 
+double State::HorizontalVarianceM2() const { return std::max(covariance(kPositionEast, kPositionEast), covariance(kPositionNorth, kPositionNorth)); }
+
 Eigen::Vector3d AntennaLever(const FilterParams& params) { return params.p_vessel_antenna_m - params.p_vessel_imu_m; }
 
 void RefuseImu(double tilt_sd_rad, State& state) {
-  state.imu_refusal_s = std::clamp(2.0 * state.imu_refusal_s, kFirstRefusalS, kMaxRefusalS);
-  state.imu_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * state.imu_refusal_s));
-  state.has_gyro = state.is_strapdown = false;
-  state.last_gyro_bias_radps.setZero();
-  state.last_accelerometer_bias_mps2.setZero();
-  state.angular_velocity_radps.setZero();
-  state.rate.setZero();
-  state.acceleration.setZero();
-  state.velocity_level_mps.z() = 0.0;
-  Renew3(kRate, kUnknownRateSdRadps, state);
-  Renew3(kAcceleration, kUnknownAccelerationSdMps2, state);
-  Renew<1>(kVelocity + 2, Eigen::Matrix<double, 1, 1>(kUpSdMps), state);
+  state.aiding.imu_refusal_s = std::clamp(2.0 * state.aiding.imu_refusal_s, kFirstRefusalS, kMaxRefusalS);
+  state.aiding.imu_refused_until = state.time + std::chrono::microseconds(std::llround(1e6 * state.aiding.imu_refusal_s));
+  state.aiding.has_gyro = state.aiding.is_strapdown = false;
+  state.aiding.last_gyro_bias_radps.setZero();
+  state.aiding.last_accelerometer_bias_mps2.setZero();
+  state.nominal.angular_velocity_radps.setZero();
+  state.nominal.rate.setZero();
+  state.nominal.acceleration.setZero();
+  state.nominal.velocity_level_mps.z() = 0.0;
+  ResetError3(kRate, kUnknownRateSdRadps, state);
+  ResetError3(kAcceleration, kUnknownAccelerationSdMps2, state);
+  ResetError<1>(kVelocityUp, Eigen::Matrix<double, 1, 1>(kUpSdMps), state);
   state.covariance.diagonal().segment<2>(kRotation).array() += tilt_sd_rad * tilt_sd_rad;
-  state.num_forces = 0;
-  state.force_sum_mps2.setZero();
+  BeginMeanForce(state);
 }
 
-bool IsImuRefused(const State& state) { return state.imu_refused_until && state.time < *state.imu_refused_until; }
+void BeginMeanForce(State& state) {
+  state.aiding.num_forces = 0;
+  state.aiding.force_sum_mps2.setZero();
+}
+
+bool IsImuRefused(const State& state) { return state.aiding.imu_refused_until && state.time < *state.aiding.imu_refused_until; }
 
 void Inject(const ErrorVector& error, State& state) {
-  state.p_level_m += error.segment<3>(kPosition);
-  state.velocity_level_mps += error.segment<3>(kVelocity);
-  state.q_level_vessel = (RotationBy(error.segment<3>(kRotation)) * state.q_level_vessel).normalized();
-  state.rate += error.segment<3>(kRate);
-  state.acceleration += error.segment<3>(kAcceleration);
-  state.fix_error_m += error.segment<3>(kFixError);
-  state.heading_error_rad += error[kHeadingError];
-  state.water_level_m += error[kWaterLevel];
-  state.angular_velocity_radps += (state.has_gyro ? -1.0 : 1.0) * error.segment<3>(kRate);
+  state.nominal.p_level_m += error.segment<3>(kPosition);
+  state.nominal.velocity_level_mps += error.segment<3>(kVelocity);
+  state.nominal.q_level_vessel = (RotationBy(error.segment<3>(kRotation)) * state.nominal.q_level_vessel).normalized();
+  state.nominal.rate += error.segment<3>(kRate);
+  state.nominal.acceleration += error.segment<3>(kAcceleration);
+  state.nominal.fix_error_m += error.segment<3>(kFixError);
+  state.nominal.heading_error_rad += error[kHeadingError];
+  state.nominal.water_level_m += error[kWaterLevel];
+  state.nominal.angular_velocity_radps += (state.aiding.has_gyro ? -1.0 : 1.0) * error.segment<3>(kRate);
 }
 
-void Renew3(int part, double sd, State& state) { Renew<3>(part, Eigen::Vector3d::Constant(sd), state); }
+void ResetError3(int part, double sd, State& state) { ResetError<3>(part, Eigen::Vector3d::Constant(sd), state); }
 
 Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R) {
   return {Atan2(R(2, 1), R(2, 2)), Asin(std::clamp(R(2, 0), -1.0, 1.0)), WrapTo2Pi(Atan2(R(0, 0), R(1, 0)))};
@@ -127,24 +133,24 @@ Eigen::Quaterniond RotationBy(const Eigen::Vector3d& rotation_rad) {
 void TurnClockwise(double angle_rad, State& state) {
   const Eigen::Quaterniond turn = RotationBy(Eigen::Vector3d(0.0, 0.0, -angle_rad));
   const Eigen::Matrix3d R = turn.toRotationMatrix();
-  state.q_level_vessel = (turn * state.q_level_vessel).normalized();
+  state.nominal.q_level_vessel = (turn * state.nominal.q_level_vessel).normalized();
   state.covariance.middleRows<3>(kRotation) = (R * state.covariance.middleRows<3>(kRotation)).eval();
   state.covariance.middleCols<3>(kRotation) = (state.covariance.middleCols<3>(kRotation) * R.transpose()).eval();
 }
 
 void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state) {
-  const double heading_rad = AnglesOf(state.R_level_vessel())[2];
-  const double heading_variance = state.covariance(kRotation + 2, kRotation + 2);
-  state.q_level_vessel = q_level_vessel.normalized();
-  state.q_level_vessel =
-      (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.R_level_vessel())[2] - heading_rad)) * state.q_level_vessel).normalized();
-  Renew<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
-  state.covariance(kRotation + 2, kRotation + 2) = heading_variance;
-  state.has_tilt = true;
+  const double heading_rad = AnglesOf(state.nominal.R_level_vessel())[2];
+  const double heading_variance = state.covariance(kRotationUp, kRotationUp);
+  state.nominal.q_level_vessel = q_level_vessel.normalized();
+  state.nominal.q_level_vessel =
+      (RotationBy(Eigen::Vector3d(0.0, 0.0, AnglesOf(state.nominal.R_level_vessel())[2] - heading_rad)) * state.nominal.q_level_vessel).normalized();
+  ResetError<2>(kRotation, Eigen::Vector2d::Constant(sd_rad), state);
+  state.covariance(kRotationUp, kRotationUp) = heading_variance;
+  state.aiding.has_tilt = true;
 }
 
 void ShiftPosition(const Eigen::Vector3d& lever_level_m, State& state) {
-  state.p_level_m.head<2>() += lever_level_m.head<2>();
+  state.nominal.p_level_m.head<2>() += lever_level_m.head<2>();
   const Eigen::Matrix<double, 2, 3> by_rotation = -Cross(lever_level_m).topRows<2>();
   state.covariance.middleRows<2>(kPosition) += by_rotation * state.covariance.middleRows<3>(kRotation);
   state.covariance.middleCols<2>(kPosition) += state.covariance.middleCols<3>(kRotation) * by_rotation.transpose();

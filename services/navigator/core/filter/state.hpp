@@ -1,4 +1,4 @@
-// What the filter knows at one instant: a nominal state and the covariance of its error.
+// What the filter knows at one instant: a nominal state, the covariance of its error, and the status of its aids.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,9 +12,9 @@
 
 namespace lookout::navigator::filter {
 
-/// Where each part begins in the error. All are true value minus estimate; the rotation is that about the level frame's axes which turns the
-/// estimated attitude into the true one, radians (Sola, "Quaternion kinematics for the error-state Kalman filter", arXiv:1711.02508, section 7,
-/// global errors).
+/// Places in the error: where each part begins, and single elements that have a use of their own. All are true value minus estimate; the rotation is
+/// that about the level frame's axes which turns the estimated attitude into the true one, radians (Sola, "Quaternion kinematics for the error-state
+/// Kalman filter", arXiv:1711.02508, section 7, global errors).
 enum Part : int {
   kPosition = 0,       // east, north, up, m
   kVelocity = 3,       // east, north, up, m/s
@@ -25,6 +25,14 @@ enum Part : int {
   kHeadingError = 18,  // the same of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
   kNumErrors = 20,
+
+  kPositionEast = kPosition,
+  kPositionNorth = kPosition + 1,
+  kPositionUp = kPosition + 2,
+  kVelocityEast = kVelocity,
+  kVelocityUp = kVelocity + 2,
+  kRotationUp = kRotation + 2,
+  kFixErrorUp = kFixError + 2,
 };
 
 using ErrorVector = Eigen::Matrix<double, kNumErrors, 1>;
@@ -56,25 +64,25 @@ struct Refusals {
   Eigen::Vector3d last_angles_rad = Eigen::Vector3d::Zero();
 };
 
-/// When an input was last used.
-struct Input {
+/// When measurements of a kind were used.
+struct UseTimes {
   std::optional<Utime> last;
   double interval_s = 0.0;  // between the last two, at most 2 s
 
   void Use(Utime time);
-  /// An input has stopped when it has not come for a second, or, of slow ones, for one and a half of its intervals and half a second.
+  /// They have stopped when none has come for a second, or, of slow ones, for one and a half of their intervals and half a second.
   bool IsStoppedAt(Utime time) const;
   bool IsWithin(Utime time, std::chrono::microseconds age) const { return last && time - *last <= age; }
 };
 
-struct State {
-  Utime time;
-
+/// The best estimate, to which the errors are added.
+struct NominalState {
   // East, north and up near the boat: the frame of all that follows. nullopt: no place is known yet, and attitude is against east, north and up
   // there.
   std::optional<Level> level;
 
-  // Of the vessel's origin: the place of the IMU in it.
+  // Of the vessel's origin: the place of the IMU in it. Without heading p_level_m is the place of the antenna in east and north, and q_level_vessel
+  // holds roll and pitch only.
   Eigen::Vector3d p_level_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_level_mps = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_level_vessel = Eigen::Quaterniond::Identity();
@@ -83,37 +91,39 @@ struct State {
   Eigen::Vector3d fix_error_m = Eigen::Vector3d::Zero();
   double heading_error_rad = 0.0;
   double water_level_m = 0.0;
-  ErrorCovariance covariance = ErrorCovariance::Zero();
+  // Of the vessel, in its frame: follows from the IMU or from `rate`.
+  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
 
-  // What of it means something. Without heading q_level_vessel holds roll and pitch only, and p_level_m is that of the antenna in east and north.
+  Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }
+};
+
+/// Which parts of the state mean something, what propagates them, and which measurements came when.
+struct AidingStatus {
   bool has_position = false;
   bool has_height = false;
   bool has_heading = false;
   bool has_tilt = false;  // measured; else level
 
-  // What carries it on.
   bool has_gyro = false;      // `rate` is a bias
   bool is_strapdown = false;  // `acceleration` is a bias
   // What the IMU was known to be off by when it stopped.
   Eigen::Vector3d last_gyro_bias_radps = Eigen::Vector3d::Zero();
   Eigen::Vector3d last_accelerometer_bias_mps2 = Eigen::Vector3d::Zero();
-  // Angular velocity of the vessel, vessel frame.
-  Eigen::Vector3d angular_velocity_radps = Eigen::Vector3d::Zero();
 
   ErrorModel fix_error_model;
   double fix_error_begun_sd_m = 0.0;  // its deviation when it began
   ErrorModel heading_error_model;
   HeadingSource heading_source = HeadingSource::kNone;
 
-  Input fix;
-  Input sensor_heading;  // of an attitude sensor or a compass
-  Input course;          // in its place
-  Input attitude_heading;
-  Input tilt;
-  Input heave;
-  Input imu;
-  Input velocity;
-  Input timed_velocity;
+  UseTimes fix;
+  UseTimes sensor_heading;  // of an attitude sensor or a compass
+  UseTimes course;          // in its place
+  UseTimes attitude_heading;
+  UseTimes tilt;
+  UseTimes heave;
+  UseTimes imu;
+  UseTimes velocity;
+  UseTimes timed_velocity;
   std::optional<Utime> last_water_aid;
   double position_sd_at_fix_m = 0.0;
 
@@ -131,7 +141,18 @@ struct State {
   Eigen::Vector3d mean_force_mps2 = Eigen::Vector3d::Zero();
   double force_variance_mps2_2 = 1.0;
 
-  Eigen::Matrix3d R_level_vessel() const { return q_level_vessel.toRotationMatrix(); }
+  /// Of what the heading came from.
+  const UseTimes& heading() const { return heading_source == HeadingSource::kCourse ? course : sensor_heading; }
+};
+
+struct State {
+  Utime time;
+  NominalState nominal;
+  ErrorCovariance covariance = ErrorCovariance::Zero();
+  AidingStatus aiding;
+
+  /// The greater of east and north.
+  double HorizontalVarianceM2() const;
 };
 
 /// Place of the antenna as seen from the origin, vessel frame.
@@ -146,17 +167,20 @@ State FreshState(Utime time, double tilt_sd_rad);
 void RefuseImu(double tilt_sd_rad, State& state);
 bool IsImuRefused(const State& state);
 
+/// The next specific force is the first of a new mean.
+void BeginMeanForce(State& state);
+
 /// Adds an error to the state, and takes it out of it.
 void Inject(const ErrorVector& error, State& state);
 
 /// The part of the error is no longer what it was: another deviation, and nothing in common with the rest.
 template <int kSize>
-void Renew(int part, const Eigen::Matrix<double, kSize, 1>& sd, State& state) {
+void ResetError(int part, const Eigen::Matrix<double, kSize, 1>& sd, State& state) {
   state.covariance.middleRows<kSize>(part).setZero();
   state.covariance.middleCols<kSize>(part).setZero();
   state.covariance.block<kSize, kSize>(part, part).diagonal() = sd.cwiseAbs2();
 }
-void Renew3(int part, double sd, State& state);
+void ResetError3(int part, double sd, State& state);
 
 /// Roll (starboard down), pitch (bow up) and heading (clockwise from north) of an attitude.
 Eigen::Vector3d AnglesOf(const Eigen::Matrix3d& R_level_vessel);

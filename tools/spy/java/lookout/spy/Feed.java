@@ -9,12 +9,12 @@ import lookout.obstacles_t;
 import lookout.pose_t;
 import lookout.segments_t;
 
-/** Listens on a bus of its own (LCM_DEFAULT_URL, as the spy), since the spy keeps only the last message of a channel, and turns come in parts. */
+/** Listens on a bus of its own (LCM_DEFAULT_URL, as the spy), since the spy keeps only the last message of a channel, and scans come in parts. */
 final class Feed implements LCMSubscriber, AutoCloseable {
   /** As common/bus/channels.hpp; LCM takes them as one regular expression. */
   private static final String CHANNELS = "LIDAR_SCAN|SEGMENTS|OBSTACLES|POSE";
 
-  private final Turns turns = new Turns();
+  private final Scans scans = new Scans();
   private final LCM lcm;
 
   /** @throws IOException when LCM cannot be opened */
@@ -24,30 +24,30 @@ final class Feed implements LCMSubscriber, AutoCloseable {
   }
 
   synchronized Picture picture() {
-    return turns.picture();
+    return scans.picture();
   }
 
   synchronized long num_refused() {
-    return turns.num_refused();
+    return scans.num_refused();
   }
 
   @Override
   public synchronized void messageReceived(LCM unused, String channel, LCMDataInputStream bytes) {
-    decode(turns, channel, bytes, System.currentTimeMillis());
+    decode(scans, channel, bytes, System.currentTimeMillis());
   }
 
   /** Decodes a message and hands it on; what does not decode is counted. Never throws. */
-  static void decode(Turns turns, String channel, LCMDataInputStream bytes, long now_ms) {
+  static void decode(Scans scans, String channel, LCMDataInputStream bytes, long now_ms) {
     try {
       switch (channel) {
-        case "LIDAR_SCAN" -> turns.add(new lidar_scan_t(bytes), now_ms);
-        case "SEGMENTS" -> turns.add(new segments_t(bytes), now_ms);
-        case "OBSTACLES" -> turns.add(new obstacles_t(bytes), now_ms);
-        case "POSE" -> turns.add(new pose_t(bytes));
+        case "LIDAR_SCAN" -> scans.add(new lidar_scan_t(bytes), now_ms);
+        case "SEGMENTS" -> scans.add(new segments_t(bytes), now_ms);
+        case "OBSTACLES" -> scans.add(new obstacles_t(bytes), now_ms);
+        case "POSE" -> scans.add(new pose_t(bytes));
         default -> { }
       }
     } catch (IOException | RuntimeException corrupt) {
-      turns.refuse();
+      scans.refuse();
     }
   }
 

@@ -16,7 +16,7 @@ import java.util.List;
 import lookout.obstacle_t;
 import lookout.segment_t;
 
-/** The turn from above, bow up, the vessel in the middle, with rings of range. */
+/** The scan from above, bow up, the vessel in the middle, with rings of range. */
 final class MapView {
   private static final int MAX_LABELS = 24;
   private static final int MAX_TENTATIVE_MARKS = 40;
@@ -71,11 +71,11 @@ final class MapView {
   }
 
   private double vesselX(double x_m, double y_m) {
-    return picture.mounting == null ? x_m : picture.mounting.vesselX(x_m, y_m);
+    return picture.mounting() == null ? x_m : picture.mounting().vesselX(x_m, y_m);
   }
 
   private double vesselY(double x_m, double y_m) {
-    return picture.mounting == null ? y_m : picture.mounting.vesselY(x_m, y_m);
+    return picture.mounting() == null ? y_m : picture.mounting().vesselY(x_m, y_m);
   }
 
   private void grid() {
@@ -102,12 +102,12 @@ final class MapView {
   }
 
   private void returns() {
-    if (picture.turn == null) return;
+    if (picture.scan() == null) return;
     // Squares of three pixels have no edges to smooth, and smoothing takes most of the time.
     g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_OFF);
     // Those in no segment lie below.
     for (boolean in_segment : new boolean[] {false, true}) {
-      picture.turn.forEachReturn((ring, azimuth_rad, elevation_rad, range_m, label) -> {
+      picture.scan().forEachReturn((ring, azimuth_rad, elevation_rad, range_m, label) -> {
         if (label > 0 != in_segment) return;
         double flat_m = range_m * Math.cos(elevation_rad);
         double x_m = flat_m * Math.cos(azimuth_rad);
@@ -120,8 +120,8 @@ final class MapView {
   }
 
   private void outlines() {
-    if (picture.turn == null) return;
-    for (segment_t segment : picture.turn.segments()) {
+    if (picture.scan() == null) return;
+    for (segment_t segment : picture.scan().segments()) {
       boolean is_land = segment.num_waterline > 0;
       float[] x_m = is_land ? segment.waterline_x_m : segment.hull_x_m;
       float[] y_m = is_land ? segment.waterline_y_m : segment.hull_y_m;
@@ -158,10 +158,10 @@ final class MapView {
   }
 
   private void north() {
-    if (!Double.isFinite(picture.heading_rad) || picture.mounting == null) return;
+    if (!Double.isFinite(picture.heading_rad()) || picture.mounting() == null) return;
     double reach = 0.5 * Math.min(area.width, area.height) - 16;
-    double x = area.getCenterX() - Math.sin(picture.heading_rad) * reach;
-    double y = area.getCenterY() - Math.cos(picture.heading_rad) * reach;
+    double x = area.getCenterX() - Math.sin(picture.heading_rad()) * reach;
+    double y = area.getCenterY() - Math.cos(picture.heading_rad()) * reach;
     g.setColor(Palette.INK);
     g.setFont(g.getFont().deriveFont(Font.BOLD, 16f));
     FontMetrics metrics = g.getFontMetrics();
@@ -175,7 +175,7 @@ final class MapView {
   private void obstacles() {
     List<obstacle_t> sure = new ArrayList<>();
     List<obstacle_t> tentative = new ArrayList<>();
-    for (obstacle_t obstacle : picture.obstacles) {
+    for (obstacle_t obstacle : picture.obstacles()) {
       List<obstacle_t> kin = obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? sure : tentative;
       boolean is_in_sight = area.contains(toX(obstacle.nearest_vessel_m[1]), toY(obstacle.nearest_vessel_m[0]));
       if (is_in_sight && (kin == sure || kin.size() < MAX_TENTATIVE_MARKS)) kin.add(obstacle);

@@ -6,21 +6,12 @@ import lookout.segment_t;
 
 /**
  * Where the lidar sits in the vessel, seen from above. SEGMENTS hold the nearest return of each segment in the lidar frame, OBSTACLES the same
- * return in the vessel frame, under the same id: the turn and shift between them is the mounting, so that no config is needed here.
+ * return in the vessel frame, under the same id: the rotation and shift between them are the mounting, so that no config is needed here.
+ *
+ * @param yaw_rad from the vessel's x axis (bow) to the lidar's, counter-clockwise
+ * @param x_m of the lidar in the vessel frame (x forward, y port)
  */
-final class Mounting {
-  /** From the vessel's x axis (bow) to the lidar's, counter-clockwise. */
-  final double yaw_rad;
-  /** Of the lidar in the vessel frame (x forward, y port). */
-  final double x_m;
-  final double y_m;
-
-  Mounting(double yaw_rad, double x_m, double y_m) {
-    this.yaw_rad = yaw_rad;
-    this.x_m = x_m;
-    this.y_m = y_m;
-  }
-
+record Mounting(double yaw_rad, double x_m, double y_m) {
   double vesselX(double x_lidar_m, double y_lidar_m) {
     return x_m + Math.cos(yaw_rad) * x_lidar_m - Math.sin(yaw_rad) * y_lidar_m;
   }
@@ -48,7 +39,7 @@ final class Mounting {
     }
     if (num_pairs < 2) return null;
 
-    // Least squares in the plane: turn about the means, then shift (Umeyama 1991, without scale).
+    // Least squares in the plane: rotate about the means, then shift (Umeyama 1991, without scale).
     double[] mean = new double[4];
     for (int i = 0; i < num_pairs; ++i) {
       for (int k = 0; k < 4; ++k) mean[k] += pairs[i][k] / num_pairs;

@@ -67,12 +67,12 @@ final class Painter {
   }
 
   private static String segmentsCaption(Picture picture) {
-    if (picture.turn == null || picture.turn.isLabelled()) return "SEGMENTS: a colour each; grey in none, brown own vessel";
-    return "SEGMENTS: none for this turn";
+    if (picture.scan() == null || picture.scan().isLabelled()) return "SEGMENTS: a colour each; grey in none, brown own vessel";
+    return "SEGMENTS: none for this scan";
   }
 
   private static String mapCaption(Picture picture, double radius_m) {
-    String frame = picture.mounting != null ? "From above, bow up" : "From above, the lidar's x axis up (OBSTACLES would tell where the bow is)";
+    String frame = picture.mounting() != null ? "From above, bow up" : "From above, the lidar's x axis up (OBSTACLES would tell where the bow is)";
     return String.format(Locale.ROOT, "%s; %.0f m to the edge (wheel or + and - change it)", frame, radius_m);
   }
 
@@ -118,9 +118,9 @@ final class Painter {
     y += line_height + 8;
 
     int num_sure = 0;
-    for (obstacle_t obstacle : picture.obstacles) num_sure += obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? 1 : 0;
+    for (obstacle_t obstacle : picture.obstacles()) num_sure += obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? 1 : 0;
     g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 12));
-    String count = picture.obstacles.size() + ", " + num_sure + " of them sure";
+    String count = picture.obstacles().size() + ", " + num_sure + " of them sure";
     g.drawString("OBSTACLES: " + (picture.hasObstacles(now_ms) ? count : "none on the bus"), side.x, y);
     y += line_height;
     g.setFont(new Font(Font.MONOSPACED, Font.PLAIN, 12));
@@ -129,7 +129,7 @@ final class Painter {
     y += line_height;
     int rows = Math.max(0, (side.y + side.height - y - line_height) / line_height);
     if (picture.hasObstacles(now_ms)) {
-      for (obstacle_t obstacle : sureFirst(picture.obstacles, rows)) {
+      for (obstacle_t obstacle : sureFirst(picture.obstacles(), rows)) {
         g.setColor(Palette.ofSegment(obstacle.id));
         g.fillRect(side.x, y - 9, 9, 9);
         g.setColor(obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? Palette.INK : Palette.FAINT_INK);
@@ -157,8 +157,8 @@ final class Painter {
 
   private static void banner(Graphics2D g, Rectangle map, Picture picture, long now_ms) {
     if (picture.hasScan(now_ms)) return;
-    double age_s = (now_ms - picture.scanTime_ms) / 1000.0;
-    String text = picture.turn == null ? "waiting for LIDAR_SCAN" : String.format(Locale.ROOT, "no LIDAR_SCAN for %.0f s: an old picture", age_s);
+    double age_s = (now_ms - picture.scanTime_ms()) / 1000.0;
+    String text = picture.scan() == null ? "waiting for LIDAR_SCAN" : String.format(Locale.ROOT, "no LIDAR_SCAN for %.0f s: an old picture", age_s);
     g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 15));
     int width = g.getFontMetrics().stringWidth(text) + 20;
     g.setColor(Palette.ALERT);

@@ -4,16 +4,16 @@ import java.awt.Graphics2D;
 import java.awt.Rectangle;
 import java.awt.image.BufferedImage;
 
-/** A turn as the lidar saw it: a row per ring, the highest on top; from astern over port, ahead (in the middle) and starboard to astern again. */
+/** A scan as the lidar saw it: a row per ring, the highest on top; from astern over port, ahead (in the middle) and starboard to astern again. */
 final class RangeImage {
   private RangeImage() {}
 
   /** Two strips of the same size: colours of range, and colours of segments. */
   static void paint(Graphics2D g, Picture picture, Rectangle ranges, Rectangle segments) {
-    int num_rings = picture.turn == null ? 1 : picture.turn.numRings();
+    int num_rings = picture.scan() == null ? 1 : picture.scan().numRings();
     BufferedImage range_image = blank(ranges.width, num_rings);
     BufferedImage segment_image = blank(segments.width, num_rings);
-    if (picture.turn != null) fill(picture, range_image, segment_image);
+    if (picture.scan() != null) fill(picture, range_image, segment_image);
     g.drawImage(range_image, ranges.x, ranges.y, ranges.width, ranges.height, null);
     g.drawImage(segment_image, segments.x, segments.y, segments.width, segments.height, null);
   }
@@ -28,11 +28,11 @@ final class RangeImage {
     int width = range_image.getWidth();
     int num_rings = range_image.getHeight();
     int num_columns = 0;
-    for (lookout.lidar_scan_t part : picture.turn.scanParts) num_columns += part.num_columns;
+    for (lookout.lidar_scan_t part : picture.scan().scanParts) num_columns += part.num_columns;
     // Where there are fewer columns than pixels, each takes several.
     int pixels_per_column = Math.max(1, (int) Math.ceil((double) width / Math.max(1, num_columns)));
     double[] nearest_m = new double[width * num_rings];
-    picture.turn.forEachReturn((ring, azimuth_rad, elevation_rad, range_m, label) -> {
+    picture.scan().forEachReturn((ring, azimuth_rad, elevation_rad, range_m, label) -> {
       int x = xOf(azimuth_rad - picture.bowAzimuth_rad(), width);
       int y = num_rings - 1 - ring;
       for (int i = x; i < Math.min(width, x + pixels_per_column); ++i) {

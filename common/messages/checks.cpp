@@ -1,0 +1,184 @@
+#include "common/messages/checks.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/core/angles.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::messages {
+
+namespace {
+
+using std::chrono::microseconds;
+
+// A beam starts inside of the sensor.
+constexpr float kMaxOriginHeightM = 10.0F;
+// 65 535 counts of a metre are more than any lidar sees.
+constexpr double kMaxRangeUnitM = 1.0;
+// Wide enough for any lidar, so that arithmetic stays far from overflow.
+constexpr double kMaxLidarM = 1e5;
+constexpr std::chrono::seconds kMaxScan(60);
+constexpr std::int32_t kMaxParts = 1000;
+constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND_FEW_RETURNS) |
+                                     static_cast<std::int32_t>(segment_t::GROUND_SCATTERED) | static_cast<std::int32_t>(segment_t::GROUND_AT_SURFACE);
+
+template <typename T>
+std::int64_t Count(const std::vector<T>& values) {
+  return static_cast<std::int64_t>(values.size());
+}
+
+template <typename Message>
+bool HasPlace(const Message& message) {
+  return UtimeFromWire(message.utime_us) && message.part_index >= 0 && message.part_index < message.num_parts;
+}
+
+// The generated decoder has checked that no count is negative and none exceeds the bytes; two of them may be multiplied.
+template <typename Message>
+bool HasCells(const Message& message) {
+  if (message.num_columns < 0 || message.num_rings < 0 || message.num_returns < 0) return false;
+  const std::int64_t cells_per_column = std::int64_t{message.num_rings} * message.num_returns;
+  if (cells_per_column == 0 || message.num_columns == 0) return message.num_cells == 0;
+  return message.num_cells % cells_per_column == 0 && message.num_cells / cells_per_column == message.num_columns;
+}
+
+bool IsWithin(float value, float least, float greatest) { return value >= least && value <= greatest; }  // false for NaN
+bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }
+
+bool CountsAgree(const lidar_scan_t& message) {
+  const auto num_cells = std::int64_t{message.num_columns} * message.num_rings * message.num_returns;
+  return message.num_rings == Count(message.elevation_rad) && message.num_rings == Count(message.azimuth_offset_rad) &&
+         message.num_rings == Count(message.time_offset_ns) && message.num_rings == Count(message.origin_height_m) &&
+         message.num_returns == Count(message.return_kind) && message.num_columns == Count(message.azimuth_rad) &&
+         message.num_columns == Count(message.time_ns) && message.num_cells == Count(message.range) &&
+         message.num_cells == Count(message.reflectivity) && message.num_cells == num_cells;
+}
+
+bool IsSizeGood(const lidar_scan_t& message) {
+  return message.num_rings >= 1 && message.num_rings <= kMaxRings && message.num_returns >= 1 && message.num_returns <= kMaxReturns &&
+         message.num_turn_columns >= 0 && message.num_turn_columns <= kMaxScanColumns &&
+         std::int64_t{message.num_turn_columns} * message.num_rings * message.num_returns <= kMaxScanCells;
+}
+
+bool AreBeamsGood(const lidar_scan_t& message) {
+  constexpr auto kRightAngle = static_cast<float>(kPi / 2.0);
+  constexpr auto kCircle = static_cast<float>(kTwoPi);
+  return std::ranges::all_of(message.elevation_rad, [](float angle_rad) { return IsWithin(angle_rad, -kRightAngle, kRightAngle); }) &&
+         std::ranges::is_sorted(message.elevation_rad) &&
+         std::ranges::all_of(message.azimuth_offset_rad, [](float angle_rad) { return IsWithin(angle_rad, -kCircle, kCircle); }) &&
+         std::ranges::all_of(message.origin_height_m, [](float height_m) { return IsWithin(height_m, -kMaxOriginHeightM, kMaxOriginHeightM); });
+}
+
+// A scan without columns is one part without columns; else no part is empty.
+bool IsPartOfScan(const lidar_scan_t& message) {
+  if (message.seq < 0 || message.part_index < 0 || message.part_index >= message.num_parts) return false;
+  if (message.num_parts > std::max(1, message.num_turn_columns) || (message.num_columns == 0 && message.num_turn_columns > 0)) return false;
+  return message.first_column >= 0 && std::int64_t{message.first_column} + message.num_columns <= message.num_turn_columns;
+}
+
+bool IsPlace(const float (&point_m)[3]) {
+  return std::ranges::all_of(point_m, [](float value) { return IsWithin(double{value}, kMaxLidarM); });
+}
+
+bool IsLength(double value) { return value >= 0.0 && value <= kMaxLidarM; }
+
+bool CountsAgree(const segment_t& segment) {
+  return segment.num_points > 0 && segment.num_hull > 0 && segment.num_hull == Count(segment.hull_x_m) &&
+         segment.num_hull == Count(segment.hull_y_m) && segment.num_hull == Count(segment.hull_time_us) &&
+         segment.num_waterline == Count(segment.waterline_x_m) && segment.num_waterline == Count(segment.waterline_y_m) &&
+         segment.num_waterline == Count(segment.waterline_time_us);
+}
+
+bool AreNumbersGood(const segment_t& segment) {
+  return IsPlace(segment.centroid_m) && IsPlace(segment.nearest_m) && IsPlace(segment.top_m) && IsLength(segment.length_m) &&
+         IsLength(segment.width_m) && IsWithin(segment.min_z_m, kMaxLidarM) && IsWithin(segment.max_z_m, kMaxLidarM) &&
+         segment.min_z_m <= segment.max_z_m && std::isfinite(segment.length_azimuth_rad) && std::isfinite(segment.mean_reflectivity) &&
+         IsWithin(segment.box_center_m[0], kMaxLidarM) && IsWithin(segment.box_center_m[1], kMaxLidarM) && segment.min_reflectivity >= 0 &&
+         segment.min_reflectivity <= segment.max_reflectivity && IsWithin(segment.seen_share, 0.0F, 1.0F);
+}
+
+bool AreCodesKnown(const segment_t& segment) {
+  return (segment.confidence == segment_t::CONFIDENCE_TENTATIVE || segment.confidence == segment_t::CONFIDENCE_SURE) &&
+         (segment.kind == segment_t::KIND_OBSTACLE || segment.kind == segment_t::KIND_LAND) && segment.grounds >= 0 && segment.grounds <= kAllGrounds;
+}
+
+// Of the corners of a hull or a waterline; the arrays are equally long.
+std::optional<Fault> FaultOf(const std::vector<float>& x_m, const std::vector<float>& y_m, const std::vector<std::int32_t>& time_us,
+                             microseconds scan_duration) {
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    if (!IsWithin(x_m[i], kMaxLidarM) || !IsWithin(y_m[i], kMaxLidarM)) return kSegmentsNumber;
+    if (time_us[i] < 0 || microseconds(time_us[i]) > scan_duration) return kSegmentsTime;
+  }
+  return std::nullopt;
+}
+
+// Precondition: CountsAgree.
+std::optional<Fault> FaultOf(const segment_t& segment, Utime scan_time, Utime scan_end) {
+  for (const auto utime_us : {segment.utime_us, segment.nearest_utime_us}) {
+    const auto time = UtimeFromWire(utime_us);
+    if (!time || *time < scan_time || *time > scan_end) return kSegmentsTime;
+  }
+  if (!AreNumbersGood(segment)) return kSegmentsNumber;
+  if (!AreCodesKnown(segment)) return kSegmentsCode;
+  if (const auto fault = FaultOf(segment.hull_x_m, segment.hull_y_m, segment.hull_time_us, scan_end - scan_time)) return fault;
+  return FaultOf(segment.waterline_x_m, segment.waterline_y_m, segment.waterline_time_us, scan_end - scan_time);
+}
+
+}  // namespace
+
+bool IsWellFormed(const lidar_scan_t& message) { return HasPlace(message) && HasCells(message); }
+
+bool IsWellFormed(const segments_t& message) { return HasPlace(message) && HasCells(message); }
+
+bool IsWellFormed(const obstacles_t& message) {
+  return HasPlace(message) && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
+           return obstacle.num_map == 0 || obstacle.num_map == obstacle.num_footprint;
+         });
+}
+
+std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes) {
+  const auto time = UtimeFromWire(message.utime_us);
+  const auto end_time = UtimeFromWire(message.end_utime_us);
+  if (!time || !end_time || *end_time < *time) return kScanTime;
+  // In this order: counts are multiplied once they are known to be small, and the encoded size is asked for once they are known to be true.
+  if (!IsSizeGood(message)) return kScanSize;
+  if (!CountsAgree(message)) return kScanCounts;
+  if (message.getEncodedSize() > max_message_bytes) return kScanSize;
+  if (!AreBeamsGood(message)) return kScanBeams;
+  if (!(message.range_unit_m > 0.0 && message.range_unit_m <= kMaxRangeUnitM)) return kScanRangeUnit;
+  if (!IsPartOfScan(message)) return kScanPart;
+  constexpr auto kCircle = static_cast<float>(kTwoPi);
+  if (!std::ranges::all_of(message.azimuth_rad, [](float angle_rad) { return IsWithin(angle_rad, 0.0F, kCircle); })) return kScanAzimuth;
+  return std::nullopt;
+}
+
+std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes) {
+  const auto time = UtimeFromWire(message.utime_us);
+  const auto end_time = UtimeFromWire(message.end_utime_us);
+  if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxScan) return kSegmentsTime;
+  if (message.seq < 0 || message.raw_seq < 0 || message.num_parts > kMaxParts || !HasPlace(message)) return kSegmentsParts;
+  if (message.num_segments > message.num_turn_segments || message.num_segments != Count(message.segments)) return kSegmentsCount;
+  if (!std::ranges::all_of(message.segments, [](const segment_t& segment) { return CountsAgree(segment); })) return kSegmentsCount;
+  if (message.getEncodedSize() > max_message_bytes) return kSegmentsSize;
+  std::int32_t last_id = 0;
+  for (const auto& segment : message.segments) {
+    if (segment.id <= last_id || segment.id > message.num_turn_segments) return kSegmentsId;
+    last_id = segment.id;
+    if (const auto fault = FaultOf(segment, *time, *end_time)) return fault;
+  }
+  return std::nullopt;
+}
+
+bool AgreeAboutScan(const lidar_scan_t& one, const lidar_scan_t& other) {
+  return one.end_utime_us == other.end_utime_us && one.raw_seq == other.raw_seq && one.flags == other.flags && one.num_parts == other.num_parts &&
+         one.range_unit_m == other.range_unit_m && one.elevation_rad == other.elevation_rad && one.azimuth_offset_rad == other.azimuth_offset_rad &&
+         one.time_offset_ns == other.time_offset_ns && one.origin_height_m == other.origin_height_m && one.num_returns == other.num_returns &&
+         one.num_turn_columns == other.num_turn_columns;
+}
+
+bool IsCut(std::int32_t scan_flags) {
+  return (scan_flags & lidar_scan_t::FLAG_PARTIAL_START) != 0 || (scan_flags & lidar_scan_t::FLAG_PARTIAL_END) != 0;
+}
+
+}  // namespace lookout::messages

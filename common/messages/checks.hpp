@@ -1,0 +1,59 @@
+// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES. A service computes from what FaultOf accepts; a tool, which shows also what a
+// service refuses, asks IsWellFormed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "lookout/segments_t.hpp"
+
+namespace lookout::messages {
+
+/// Whether the time exists, part_index lies below num_parts, and the counts agree, so that every array may be read by them.
+bool IsWellFormed(const lidar_scan_t& message);
+bool IsWellFormed(const segments_t& message);
+bool IsWellFormed(const obstacles_t& message);
+
+/// What is wrong with a message: the name of the counter of its refusals.
+using Fault = std::string_view;
+
+inline constexpr Fault kScanTime = "refused_time";             // utime out of bounds, or the end before the begin
+inline constexpr Fault kScanCounts = "refused_counts";         // counts do not agree with the arrays or with each other
+inline constexpr Fault kScanSize = "refused_size";             // more rings, returns, columns or cells than kMax..., or too large a message
+inline constexpr Fault kScanBeams = "refused_beams";           // angles or height of a ring not finite or out of range, or not from the lowest up
+inline constexpr Fault kScanRangeUnit = "refused_range_unit";  // not above 0, above 1 m, or not finite
+inline constexpr Fault kScanPart = "refused_part";             // no such part, or columns outside of the scan
+inline constexpr Fault kScanAzimuth = "refused_azimuth";       // of a column, not in [0, 2 pi]
+inline constexpr std::array kScanFaults{kScanTime, kScanCounts, kScanSize, kScanBeams, kScanRangeUnit, kScanPart, kScanAzimuth};
+
+inline constexpr Fault kSegmentsTime = "segments_refused_time";      // does not exist, lies outside of its scan, or the scan is longer than 60 s
+inline constexpr Fault kSegmentsParts = "segments_refused_parts";    // part_index, num_parts (above 1000), seq
+inline constexpr Fault kSegmentsCount = "segments_refused_count";    // counts that do not agree
+inline constexpr Fault kSegmentsId = "segments_refused_id";          // ids that do not increase, or are not in the scan
+inline constexpr Fault kSegmentsNumber = "segments_refused_number";  // not finite, or not a place that a lidar sees
+inline constexpr Fault kSegmentsCode = "segments_refused_code";      // a confidence, ground or kind that does not exist
+inline constexpr Fault kSegmentsSize = "segments_refused_size";      // larger than a message may be
+inline constexpr std::array kSegmentsFaults{kSegmentsTime,   kSegmentsParts, kSegmentsCount, kSegmentsId,
+                                            kSegmentsNumber, kSegmentsCode,  kSegmentsSize};
+
+/// Bounds of a scan: 65 536 columns and 2^21 cells are more than any scan of a known lidar has (128 rings x 2 returns x 4096 columns make 2^20).
+inline constexpr int kMaxRings = 128;
+inline constexpr int kMaxReturns = 2;
+inline constexpr int kMaxScanColumns = 65'536;
+inline constexpr std::int64_t kMaxScanCells = std::int64_t{1} << 21;
+
+/// @return the first fault of a message; nullopt where there is none
+std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes);
+std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes);
+
+/// Whether two parts of one scan say the same of the whole of it.
+bool AgreeAboutScan(const lidar_scan_t& one, const lidar_scan_t& other);
+
+/// Whether a scan does not begin or does not end at the cut: flags of lidar_scan_t.
+bool IsCut(std::int32_t scan_flags);
+
+}  // namespace lookout::messages

@@ -1,0 +1,74 @@
+#include "common/runtime/service_main.hpp"
+
+#include <cstdlib>
+#include <iostream>
+#include <spdlog/spdlog.h>
+
+#include "common/config/text_config.hpp"
+#include "common/runtime/execute_again.hpp"
+#include "common/runtime/options.hpp"
+#include "common/runtime/run_info.hpp"
+
+namespace lookout::runtime {
+
+namespace {
+
+struct Checked {
+  AnyParams params;
+  std::string text;  // the values in force
+};
+
+// @throws config::ConfigError with the faults of both files
+Checked CheckConfig(const ServiceProgram<AnyParams>& program, const std::filesystem::path& config_folder) {
+  config::FaultList faults;
+  const auto params = faults.Take([&] { return program.load(config_folder); });
+  const auto text = faults.Take([&] { return EffectiveConfig(config_folder, {"boat.txtpb", program.name + ".txtpb"}); });
+  faults.ThrowIfAny();
+  return {*params, *text};
+}
+
+bool IsConfigRight(const ServiceProgram<AnyParams>& program, const std::filesystem::path& config_folder, const AnyParams& running) {
+  try {
+    const auto next = CheckConfig(program, config_folder);
+    if (program.try_sources) program.try_sources(next.params, running);
+    return true;
+  } catch (const config::ConfigError& error) {
+    for (const auto& fault : error.faults()) spdlog::error("{}", fault);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+  }
+  spdlog::error("SIGHUP: the new config is wrong; the old one stays in force");
+  return false;
+}
+
+}  // namespace
+
+int RunService(int argc, char** argv, const ServiceProgram<AnyParams>& program) {
+  BlockStopSignals();
+  const auto options = ParseOptions(argc, argv, "lookout-" + program.name, program.purpose);
+  bool starts_again = false;
+  const int code = RunMain(program.name, [&] {
+    if (options.check_only) {
+      const auto checked = CheckConfig(program, options.config_folder);
+      std::cout << checked.text << (program.remarks ? program.remarks(checked.params) : "");
+      return;
+    }
+    const auto params = program.load(options.config_folder);
+    Process process(program.name, options.lcm_url);
+    process.OnHangup([&] {
+      if (!IsConfigRight(program, options.config_folder, params)) return;
+      if (program.hangup == Hangup::kKeepConfig) {
+        spdlog::info("SIGHUP: the config in the folder is right; it takes effect at the next start, until then the old one stays in force");
+        return;
+      }
+      spdlog::info("SIGHUP: starts again with the new config");
+      starts_again = true;
+      process.Stop();
+    });
+    program.run(process, params);
+  });
+  if (code != EXIT_SUCCESS || !starts_again) return code;
+  return RunMain(program.name, [argv] { ExecuteAgain(argv); });
+}
+
+}  // namespace lookout::runtime

@@ -1,0 +1,45 @@
+// One scan of the head: columns (firing sequences) x rings (lowest beam first) x returns of a shot.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/core/utime.hpp"
+#include "services/vlp16/core/data_packet.hpp"
+#include "services/vlp16/core/model.hpp"
+#include "services/vlp16/core/sensor_clock.hpp"
+
+namespace lookout::vlp16 {
+
+/// Data packets since the start.
+struct PacketCounts {
+  std::int64_t num_packets = 0;  // whole ones of a known model, also those dropped as duplicates or late
+  std::int64_t num_lost = 0;
+  std::int64_t num_duplicates = 0;
+  std::int64_t num_reordered = 0;
+};
+
+struct Scan {
+  std::int64_t number = 0;  // since the start
+  Utime time;               // of the first shot, rounded down
+  Utime end_time;           // of the last shot, rounded down
+  Model model = Model::kVlp16;
+  ReturnMode mode = ReturnMode::kStrongest;
+  bool is_partial_start = false;  // does not begin at the cut
+  bool is_partial_end = false;    // does not end at the cut
+  bool has_hole = false;          // packets were lost inside
+  int num_lost_packets = 0;       // those that had columns in this scan
+  double rate_radps = 0.0;        // mean rate of rotation of the head
+  ClockReading clock;             // at the first column
+  PacketCounts counts;            // at the packet that ended it
+
+  std::vector<float> azimuth_rad;          // [columns] of laser 0, in [0, 2 pi)
+  std::vector<std::int32_t> time_ns;       // [columns] of laser 0, since `time`
+  std::vector<std::uint16_t> range;        // [columns x rings x returns] in format::kRangeUnitM; 0 = no return
+  std::vector<std::uint8_t> reflectivity;  // [columns x rings x returns]; 0 where there is no return
+
+  int num_columns() const { return static_cast<int>(azimuth_rad.size()); }
+  int num_returns() const { return mode == ReturnMode::kDual ? 2 : 1; }
+};
+
+}  // namespace lookout::vlp16

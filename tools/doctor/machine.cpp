@@ -1,0 +1,290 @@
+#include "tools/doctor/machine.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <pwd.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <system_error>
+
+#include "common/bus/lcm_bus.hpp"
+#include "common/runtime/process.hpp"
+
+namespace lookout::doctor {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class UdpSocket {
+ public:
+  UdpSocket() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
+  ~UdpSocket() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  UdpSocket(const UdpSocket&) = delete;
+  UdpSocket& operator=(const UdpSocket&) = delete;
+
+  // Bytes that the kernel keeps for waiting datagrams.
+  std::int64_t ReceiveBuffer() const {
+    int size = 0;
+    socklen_t length = sizeof size;
+    return getsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &size, &length) == 0 ? size : 0;
+  }
+  void AskForReceiveBuffer(int size) const { setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &size, sizeof size); }
+
+ private:
+  int descriptor_;
+};
+
+std::string TextOfFile(const char* path) {
+  std::ifstream in(path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+InterfaceSeen ToInterface(const ifaddrs& entry) {
+  InterfaceSeen interface;
+  interface.name = entry.ifa_name;
+  // RUNNING stands for the carrier.
+  interface.has_carrier = (entry.ifa_flags & IFF_UP) != 0 && (entry.ifa_flags & IFF_RUNNING) != 0;
+  interface.is_loopback = (entry.ifa_flags & IFF_LOOPBACK) != 0;
+  return interface;
+}
+
+// Numeric; empty for what is no IP address.
+std::string AddressText(const sockaddr* address) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (address == nullptr) return {};
+  if (address->sa_family == AF_INET) {
+    inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(address)->sin_addr, text.data(), text.size());
+  } else if (address->sa_family == AF_INET6) {
+    inet_ntop(AF_INET6, &reinterpret_cast<const sockaddr_in6*>(address)->sin6_addr, text.data(), text.size());
+  }
+  return text.data();
+}
+
+int PrefixBits(const sockaddr* netmask) {
+  const auto mask = io::ParseIpAddress(AddressText(netmask));
+  if (!mask) return 0;
+  // An IPv4 mask is mapped behind 80 zeros and 16 ones, which are none of its own.
+  int num_bits = netmask->sa_family == AF_INET ? -16 : 0;
+  for (const auto byte : mask->bytes) num_bits += std::popcount(byte);
+  return num_bits;
+}
+
+// Written by lookout-firewall.service while its rule is loaded (deploy/firewall).
+constexpr const char* kClosedFile = "/run/lookout-firewall/closed";
+// The user of the package's units.
+constexpr const char* kOwnUser = "lookout";
+constexpr std::string_view kOwnPrograms = "lookout-";
+
+std::string FirstLine(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::string UserName(unsigned int user) {
+  const passwd* entry = getpwuid(user);
+  return entry != nullptr ? entry->pw_name : std::to_string(user);
+}
+
+// Programs that hold sockets, as far as this user may look: "lcm-logger (pid 17)" by inode.
+std::map<std::uint64_t, std::string> HoldersOfSockets() {
+  std::map<std::uint64_t, std::string> holders;
+  std::error_code error;
+  for (fs::directory_iterator process("/proc", error), end; !error && process != end; process.increment(error)) {
+    const auto pid = process->path().filename().string();
+    if (pid.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::error_code denied;
+    for (fs::directory_iterator descriptor(process->path() / "fd", denied), last; !denied && descriptor != last; descriptor.increment(denied)) {
+      std::error_code gone;
+      const auto target = fs::read_symlink(descriptor->path(), gone).string();
+      constexpr std::string_view kSocket = "socket:[";
+      if (gone || target.rfind(kSocket, 0) != 0) continue;
+      holders[std::strtoull(target.c_str() + kSocket.size(), nullptr, 10)] = FirstLine(process->path() / "comm") + " (pid " + pid + ")";
+    }
+  }
+  return holders;
+}
+
+// The recorder that was heard last; nullptr = none.
+const health_t* RecorderHeard(const Observations& seen) {
+  const auto found = seen.processes.find("recorder");
+  return found == seen.processes.end() || found->second.empty() ? nullptr : &found->second.back().last;
+}
+
+// Where it is, or its nearest parent that is there: the recorder makes what is missing.
+fs::path Existing(fs::path folder) {
+  std::error_code error;
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  return folder;
+}
+
+}  // namespace
+
+BusSeen ReadBus(const std::string& url) {
+  BusSeen bus;
+  bus.url = url;
+  bus.fault = bus::LcmUrlFault(url);
+  if (!bus.fault.empty()) return bus;
+  const auto multicast = bus::ParseMulticast(url);
+  if (!multicast) return bus;
+  bus.group = multicast->group;
+  bus.time_to_live = multicast->time_to_live;
+  bus.port = multicast->port;
+  if (!bus::HasRoute(*multicast)) {
+    bus.fault = "there is no route for multicast to " + bus.group + ": no process can start";
+    return bus;
+  }
+  bus.route_device = DeviceOfRoute(TextOfFile("/proc/net/route"), bus.group);
+  return bus;
+}
+
+std::string DeviceOfRoute(const std::string& table, const std::string& address) {
+  in_addr target{};
+  if (inet_pton(AF_INET, address.c_str(), &target) != 1) return {};
+  constexpr unsigned int kUp = 0x1;        // RTF_UP
+  constexpr unsigned int kReject = 0x200;  // RTF_REJECT
+  std::string best;
+  int best_bits = -1;
+  long best_metric = 0;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string device;
+    std::string gateway;
+    std::uint32_t destination = 0;
+    unsigned int flags = 0;
+    long references = 0;
+    long uses = 0;
+    long metric = 0;
+    std::uint32_t mask = 0;
+    // Addresses stand there as numbers of this machine, so they compare with those in memory.
+    if (!(words >> device >> std::hex >> destination >> gateway >> flags >> std::dec >> references >> uses >> metric >> std::hex >> mask)) continue;
+    if ((flags & kUp) == 0 || (flags & kReject) != 0 || (target.s_addr & mask) != destination) continue;
+    const int num_bits = std::popcount(mask);
+    if (num_bits < best_bits || (num_bits == best_bits && metric >= best_metric)) continue;
+    best = device;
+    best_bits = num_bits;
+    best_metric = metric;
+  }
+  return best;
+}
+
+BuffersSeen ReadBuffers(const ConfigSeen& config) {
+  BuffersSeen buffers;
+  buffers.asked = bus::kReceiveBufferBytes;
+  if (config.lidar) buffers.asked = std::max<std::int64_t>(buffers.asked, config.lidar->sources.receive_buffer_bytes);
+  const UdpSocket socket;
+  buffers.by_default = socket.ReceiveBuffer();
+  socket.AskForReceiveBuffer(static_cast<int>(buffers.asked));
+  buffers.granted = socket.ReceiveBuffer() / 2;  // socket(7): the kernel doubles what is asked for, and tells that
+  return buffers;
+}
+
+std::vector<InterfaceSeen> ReadInterfaces() {
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return {};
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(first, &freeifaddrs);
+  std::vector<InterfaceSeen> interfaces;
+  for (const ifaddrs* entry = first; entry != nullptr; entry = entry->ifa_next) {
+    auto interface = ToInterface(*entry);
+    interface.address = io::ParseIpAddress(AddressText(entry->ifa_addr));
+    if (interface.address) interface.prefix_bits = PrefixBits(entry->ifa_netmask);
+    interfaces.push_back(std::move(interface));
+  }
+  // Each interface stands there once more for its link: that is told only where it has no address.
+  std::vector<InterfaceSeen> told;
+  for (const auto& interface : interfaces) {
+    const bool has_address = std::ranges::any_of(interfaces, [&](const auto& other) { return other.name == interface.name && other.address; });
+    if (interface.address || !has_address) told.push_back(interface);
+  }
+  return told;
+}
+
+std::vector<SocketSeen> SocketsOfPort(const std::string& table, int port) {
+  std::vector<SocketSeen> sockets;
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);  // names of the columns
+  while (std::getline(lines, line)) {
+    std::istringstream words(line);
+    std::string number;
+    std::string local;
+    std::string skipped;
+    SocketSeen socket;
+    // sl local_address rem_address st tx:rx tr:when retrnsmt uid timeout inode
+    if (!(words >> number >> local >> skipped >> skipped >> skipped >> skipped >> skipped >> socket.user >> skipped >> socket.inode)) continue;
+    const auto colon = local.find(':');
+    if (colon == std::string::npos || std::strtol(local.c_str() + colon + 1, nullptr, 16) != port) continue;
+    sockets.push_back(socket);
+  }
+  return sockets;
+}
+
+PortSeen ReadPort(const BusSeen& bus) {
+  PortSeen seen;
+  seen.port = bus.port;
+  if (bus.group.empty()) return seen;
+  seen.is_closed = FirstLine(kClosedFile).rfind(std::to_string(bus.port) + " ", 0) == 0;
+  const auto holders = HoldersOfSockets();
+  for (const auto& socket : SocketsOfPort(TextOfFile("/proc/net/udp"), bus.port)) {
+    const auto holder = holders.find(socket.inode);
+    if (holder != holders.end()) {
+      if (holder->second.rfind(kOwnPrograms, 0) != 0) seen.without_filter.push_back(holder->second);
+    } else if (const auto user = UserName(socket.user); user != kOwnUser) {
+      seen.without_filter.push_back("a program of user " + user);
+    }
+  }
+  std::ranges::sort(seen.without_filter);
+  seen.without_filter.erase(std::unique(seen.without_filter.begin(), seen.without_filter.end()), seen.without_filter.end());
+  return seen;
+}
+
+bool IsHostClockSet() {
+  timex state{};  // modes 0: only asks
+  return adjtimex(&state) != TIME_ERROR;
+}
+
+DiskSeen ReadDisk(const Observations& seen) {
+  DiskSeen disk;
+  if (!seen.config.log_folder) return disk;
+  const auto* recorder = RecorderHeard(seen);
+  if (recorder != nullptr && recorder->host != runtime::HostName()) {
+    disk.other_host = recorder->host;
+    return disk;
+  }
+  std::error_code error;
+  auto folder = *seen.config.log_folder;
+  if (folder.is_relative()) {
+    const auto start = recorder != nullptr ? fs::read_symlink("/proc/" + std::to_string(recorder->pid) + "/cwd", error) : fs::path();
+    disk.is_guessed = start.empty();
+    folder = (start.empty() ? fs::current_path(error) : start) / folder;
+  }
+  disk.folder = folder;
+  const auto existing = Existing(folder);
+  const auto space = fs::space(existing, error);
+  if (!error) disk.free_bytes = std::max<std::int64_t>(0, static_cast<std::int64_t>(space.available) - seen.config.log_reserve_bytes);
+  // A recorder that writes may be another user.
+  const bool is_recording = recorder != nullptr && recorder->state != health_t::STATE_FAILED;
+  disk.is_writable = is_recording || access(existing.c_str(), W_OK) == 0;
+  return disk;
+}
+
+}  // namespace lookout::doctor

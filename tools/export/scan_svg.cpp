@@ -1,0 +1,444 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/bus/decode.hpp"
+#include "common/core/angles.hpp"
+#include "common/core/utime.hpp"
+#include "common/messages/heading_history.hpp"
+#include "lookout/pose_t.hpp"
+#include "tools/export/boat_of_log.hpp"
+#include "tools/export/colour.hpp"
+#include "tools/export/returns.hpp"
+#include "tools/export/svg.hpp"
+#include "tools/export/words.hpp"
+
+namespace lookout::exporter {
+
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// The page, in pixels: a round view at the left, the legend at the right.
+constexpr double kMiddleX = 500.0;
+constexpr double kMiddleY = 535.0;
+constexpr double kRadius = 430.0;
+constexpr double kLegendX = 985.0;
+constexpr double kLegendTop = 96.0;
+constexpr double kLegendLine = 22.0;
+constexpr double kLegendBottom = 960.0;
+constexpr const char* kDark = "#1c2b3a";
+constexpr const char* kGrey = "#5b6b7b";
+constexpr const char* kHull = "#31465a";
+
+// Points are in metres to the right of and above the middle of the view.
+struct Dots {
+  Rgb colour{};
+  std::vector<Vector2d> points;
+};
+
+struct Outline {
+  int id = 0;
+  std::string facts;              // stands in the legend
+  std::vector<Vector2d> corners;  // one or two are drawn as a point or a line
+  double distance_m = 0.0;        // of its nearest point
+  bool is_tentative = false;
+  bool is_line = false;  // open, not filled
+};
+
+struct Picture {
+  std::string title;
+  std::array<std::string, 2> subtitles;
+  std::string outlines_title;     // stands over the outlines in the legend
+  std::string up;                 // what is above: "N", "bow", "lidar x"
+  std::optional<double> bow_rad;  // clockwise from above; nullopt: only the lidar is known
+  std::optional<Eigen::AlignedBox3d> own_vessel_box_m;
+  std::vector<Dots> dots;  // in the order of drawing
+  std::vector<std::pair<Rgb, std::string>> dots_legend;
+  std::vector<Outline> outlines;  // nearest first, the tentative behind all that are sure: in rain they would else fill the legend
+};
+
+bool IsFinite(const Outline& outline) {
+  return !outline.corners.empty() && std::ranges::all_of(outline.corners, [](const Vector2d& corner) { return corner.allFinite(); });
+}
+
+std::string Css(const Rgb& colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue); }
+
+class Drawing {
+ public:
+  explicit Drawing(const Picture& picture) : picture_(picture) {
+    ChooseRings();
+    pixels_per_m_ = kRadius / (ring_step_m_ * num_rings_);
+  }
+
+  std::string Draw() {
+    Add(R"(<svg xmlns="http://www.w3.org/2000/svg" width="1320" height="1000" viewBox="0 0 1320 1000" )"
+        R"(font-family="DejaVu Sans, Helvetica, Arial, sans-serif">)"
+        "\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
+        "<clipPath id=\"view\"><circle cx=\"{}\" cy=\"{}\" r=\"{}\"/></clipPath>\n",
+        kMiddleX, kMiddleY, kRadius);
+    Text({40, 44}, picture_.title, 24, kDark, "font-weight=\"bold\"");
+    Text({40, 68}, picture_.subtitles[0], 14, kGrey);
+    Text({40, 88}, picture_.subtitles[1], 14, kGrey);
+    DrawWater();
+    svg_ += "<g clip-path=\"url(#view)\">\n";
+    DrawBoat();
+    for (const auto& dots : picture_.dots) DrawDots(dots);
+    for (const auto& outline : picture_.outlines) DrawOutline(outline);
+    svg_ += "</g>\n";
+    DrawRingNames();
+    Add("<path d=\"M{0} {1}l9 22l-9 -6l-9 6Z\" fill=\"#b3261e\"/>\n", kMiddleX, kMiddleY - kRadius - 24.0);
+    Text({kMiddleX + 16.0, kMiddleY - kRadius - 8.0}, picture_.up, 18, "#b3261e", "font-weight=\"bold\"");
+    DrawNames();
+    DrawLegend();
+    return std::move(svg_) + "</svg>\n";
+  }
+
+ private:
+  template <typename... Values>
+  void Add(fmt::format_string<Values...> format, Values&&... values) {
+    fmt::format_to(std::back_inserter(svg_), format, std::forward<Values>(values)...);
+  }
+
+  void Text(const Vector2d& at, const std::string& text, int size, const std::string& colour, const std::string& style = "") {
+    Add("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"{}\" fill=\"{}\" {}>{}</text>\n", at.x(), at.y(), size, colour, style, text);
+  }
+
+  Vector2d ToPixel(const Vector2d& point_m) const { return {kMiddleX + point_m.x() * pixels_per_m_, kMiddleY - point_m.y() * pixels_per_m_}; }
+
+  static Vector2d OnCircle(double radius, double clockwise_rad) {
+    return {kMiddleX + radius * std::sin(clockwise_rad), kMiddleY - radius * std::cos(clockwise_rad)};
+  }
+
+  std::string PathOf(const std::vector<Vector2d>& corners) const {
+    std::string path;
+    for (const auto& corner : corners) {
+      const auto pixel = ToPixel(corner);
+      fmt::format_to(std::back_inserter(path), "{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', pixel.x(), pixel.y());
+    }
+    return path;
+  }
+
+  // So that what is worth seeing fills the view.
+  void ChooseRings() {
+    double far_m = 0.0;
+    const auto reach = [&far_m](const std::vector<Vector2d>& points) {
+      for (const auto& point : points) far_m = point.allFinite() ? std::max(far_m, point.norm()) : far_m;
+    };
+    for (const auto& outline : picture_.outlines) reach(outline.corners);
+    if (far_m == 0.0) {
+      for (const auto& dots : picture_.dots) reach(dots.points);
+    }
+    constexpr std::array kStepsM{0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 500.0, 1000.0};
+    constexpr int kMaxRings = 5;
+    const auto* step_m = std::ranges::find_if(kStepsM, [far_m](double candidate_m) { return far_m <= candidate_m * kMaxRings; });
+    ring_step_m_ = step_m == kStepsM.end() ? kStepsM.back() : *step_m;
+    num_rings_ = std::clamp(static_cast<int>(std::ceil(std::min(far_m, 1e6) / ring_step_m_)), 2, kMaxRings);
+  }
+
+  void DrawWater() {
+    for (int ring = num_rings_; ring >= 1; --ring) {
+      Add("<circle cx=\"{}\" cy=\"{}\" r=\"{:.1f}\" fill=\"{}\" stroke=\"#bccbd8\"/>\n", kMiddleX, kMiddleY, kRadius * ring / num_rings_,
+          ring == num_rings_ ? "#f1f6fa" : "none");
+    }
+    for (int spoke = 0; spoke < 12; ++spoke) {
+      const auto from = OnCircle(kRadius / num_rings_, spoke * kPi / 6.0);
+      const auto to = OnCircle(kRadius, spoke * kPi / 6.0);
+      Add("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"#dbe5ed\"/>\n", from.x(), from.y(), to.x(), to.y());
+    }
+  }
+
+  void DrawBoat() {
+    if (!picture_.bow_rad) {
+      Add("<circle cx=\"{}\" cy=\"{}\" r=\"6\" fill=\"{}\"/>\n", kMiddleX, kMiddleY, kHull);
+      return;
+    }
+    // A hull in its box, in pixels to starboard and ahead; a mark of 10 x 26 pixels where the box is not known or too small to be seen.
+    Vector2d least(-5.0, -13.0), greatest(5.0, 13.0);
+    if (const auto& box_m = picture_.own_vessel_box_m; box_m && box_m->sizes().x() * pixels_per_m_ >= 26.0) {
+      least = pixels_per_m_ * Vector2d(-box_m->max().y(), box_m->min().x());
+      greatest = pixels_per_m_ * Vector2d(-box_m->min().y(), box_m->max().x());
+    }
+    const double shoulder = greatest.y() - 0.35 * (greatest.y() - least.y());
+    Add("<g transform=\"translate({} {}) rotate({:.2f})\"><path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}V{:.1f}H{:.1f}V{:.1f}Z\" fill=\"{}\"/>"
+        "<path d=\"M0 {:.1f}V{}\" stroke=\"{}\" stroke-dasharray=\"7 6\" stroke-opacity=\"0.6\"/></g>\n",
+        kMiddleX, kMiddleY, RadToDeg(*picture_.bow_rad), (least.x() + greatest.x()) / 2.0, -greatest.y(), greatest.x(), -shoulder, -least.y(),
+        least.x(), -shoulder, kHull, -greatest.y() - 4.0, -kRadius, kHull);
+  }
+
+  void DrawDots(const Dots& dots) {
+    std::string path;
+    for (const auto& point : dots.points) {
+      if (point.allFinite() && point.norm() <= ring_step_m_ * num_rings_) path += PathOf({point}) + "h0";
+    }
+    if (path.empty()) return;
+    Add("<path d=\"{}\" stroke=\"{}\" stroke-width=\"3.2\" stroke-linecap=\"round\"/>\n", path, Css(dots.colour));
+  }
+
+  void DrawOutline(const Outline& outline) {
+    if (!IsFinite(outline)) return;
+    const std::string path = PathOf(outline.corners) + (outline.corners.size() == 1 ? "h0" : outline.is_line ? "" : "Z");
+    const std::string colour = Css(ColourOfSegment(outline.id));
+    // A wide stroke around the returns themselves, so that the line does not cover them.
+    const std::string fill = outline.is_line ? "none" : colour + "\" fill-opacity=\"" + (outline.is_tentative ? "0.05" : "0.14");
+    Add("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"9\" stroke-opacity=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
+        path, fill, colour, outline.is_tentative ? "0.08" : "0.18");
+    Add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\" stroke-width=\"{}\"/>\n", path, colour,
+        outline.is_tentative ? "0.8\" stroke-dasharray=\"2 3\" stroke-opacity=\"0.6"
+        : outline.is_line    ? "2.4"
+                             : "1.2");
+  }
+
+  void DrawRingNames() {
+    for (int ring = 1; ring <= num_rings_; ++ring) {
+      // Along 120 degrees, where neither the bow nor the arrow above stand.
+      const auto place = OnCircle(kRadius * ring / num_rings_, DegToRad(120.0));
+      Text({place.x(), place.y() + 4.0}, fmt::format("{} m", ring_step_m_ * ring), 12, kGrey,
+           "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"");
+    }
+  }
+
+  // Numbers beside their outlines; one that would cover another is left to the legend.
+  void DrawNames() {
+    constexpr double kTextHeight = 13.0;
+    constexpr double kGap = 8.0;
+    std::vector<Eigen::AlignedBox2d> occupied;
+    for (const auto& outline : picture_.outlines) {
+      if (!IsFinite(outline)) continue;
+      Eigen::AlignedBox2d box;
+      for (const auto& corner : outline.corners) box.extend(ToPixel(corner));
+      const std::string name = std::to_string(outline.id);
+      const double width = 9.0 * static_cast<double>(name.size());
+      const Vector2d middle = box.center();
+      // To the right, left, above, below.
+      const std::array<Vector2d, 4> places{Vector2d(box.max().x() + kGap, middle.y() + 5.0), Vector2d(box.min().x() - kGap - width, middle.y() + 5.0),
+                                           Vector2d(middle.x() - width / 2.0, box.min().y() - kGap),
+                                           Vector2d(middle.x() - width / 2.0, box.max().y() + kGap + kTextHeight)};
+      for (const auto& place : places) {
+        const Eigen::AlignedBox2d needed(Vector2d(place.x() - 2.0, place.y() - kTextHeight), Vector2d(place.x() + width + 2.0, place.y() + 3.0));
+        const bool is_in_view = std::hypot(place.x() + width / 2.0 - kMiddleX, place.y() - kMiddleY) < kRadius - 14.0;
+        if (!is_in_view || std::ranges::any_of(occupied, [&needed](const auto& other) { return needed.intersects(other); })) continue;
+        occupied.push_back(needed);
+        Text(place, name, 13, Css(ColourOfSegment(outline.id)),
+             fmt::format("{} stroke=\"#ffffff\" stroke-width=\"3.5\" paint-order=\"stroke\"",
+                         outline.is_tentative ? "fill-opacity=\"0.7\"" : "font-weight=\"bold\""));
+        break;
+      }
+    }
+  }
+
+  void DrawLegend() {
+    double y = kLegendTop;
+    const auto mark = [&](const Rgb& colour, const char* opacity = "1") {
+      Add("<circle cx=\"{}\" cy=\"{}\" r=\"6\" fill=\"{}\" fill-opacity=\"{}\"/>\n", kLegendX + 6.0, y - 5.0, Css(colour), opacity);
+    };
+    for (const auto& [colour, text] : picture_.dots_legend) {
+      mark(colour);
+      Text({kLegendX + 22.0, y}, text, 14, kDark);
+      y += kLegendLine;
+    }
+    const auto& outlines = picture_.outlines;
+    if (outlines.empty()) return;
+    y += 12.0;
+    Text({kLegendX, y}, picture_.outlines_title, 13, kGrey);
+    y += kLegendLine;
+    for (std::size_t i = 0; i < outlines.size(); ++i, y += kLegendLine) {
+      if (y + kLegendLine > kLegendBottom && i + 1 < outlines.size()) {
+        Text({kLegendX + 22.0, y}, fmt::format("and {} more", outlines.size() - i), 13, kGrey);
+        return;
+      }
+      mark(ColourOfSegment(outlines[i].id), outlines[i].is_tentative ? "0.4" : "1");
+      Text({kLegendX + 22.0, y}, std::to_string(outlines[i].id), 14, kDark, "font-weight=\"bold\"");
+      Text({kLegendX + 60.0, y}, outlines[i].facts, 14, kDark);
+    }
+  }
+
+  const Picture& picture_;
+  double ring_step_m_ = 0.0;
+  int num_rings_ = 0;
+  double pixels_per_m_ = 0.0;
+  std::string svg_;
+};
+
+// "2026-11-21 12:18:05.250 UTC"
+std::string UtcText(std::int64_t utime_us) {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S}.{:03} UTC", fmt::gmtime(static_cast<std::time_t>(utime_us / 1'000'000)), utime_us / 1000 % 1000);
+}
+
+// From a frame whose x axis is forward and y axis left to the picture; `heading_rad` rotates it so that north is up.
+Vector2d SeenFromAbove(const Vector2d& point_m, double heading_rad) {
+  const double sine = std::sin(heading_rad);
+  const double cosine = std::cos(heading_rad);
+  return {point_m.x() * sine - point_m.y() * cosine, point_m.x() * cosine + point_m.y() * sine};
+}
+
+// An outline without its corners. The size says little of what is tentative, or of land.
+Outline MakeOutline(int id, int confidence, int kind, double distance_m, double length_m, double width_m, const std::string& place) {
+  Outline outline;
+  outline.id = id;
+  outline.distance_m = distance_m;
+  outline.is_tentative = confidence == segment_t::CONFIDENCE_TENTATIVE;
+  const auto what = outline.is_tentative           ? std::string(words::WordOf(words::kConfidence, confidence))
+                    : kind == segment_t::KIND_LAND ? std::string(words::WordOf(words::kKind, kind))
+                                                   : fmt::format("{:.1f} x {:.1f} m", length_m, width_m);
+  outline.facts = fmt::format("{:.1f} m{}, {}", distance_m, place, what);
+  return outline;
+}
+
+// Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
+template <typename ToPicture>
+void AddCorners(Outline& outline, int kind, const std::vector<float> (&waterline_m)[2], const std::vector<float> (&hull_m)[2], ToPicture to_picture) {
+  outline.is_line = kind == segment_t::KIND_LAND && !waterline_m[0].empty();
+  const auto& corners_m = outline.is_line ? waterline_m : hull_m;
+  for (std::size_t i = 0; i < corners_m[0].size(); ++i) outline.corners.push_back(to_picture(corners_m[0][i], corners_m[1][i]));
+}
+
+// Sorts the outlines. @return "3 obstacles, 1 of them tentative"
+std::string RankAndCount(std::vector<Outline>& outlines, const char* things) {
+  // What is not finite counts as farthest, so that the order stays one.
+  std::ranges::stable_sort(outlines, {}, [](const Outline& outline) {
+    return std::pair(outline.is_tentative, std::isfinite(outline.distance_m) ? outline.distance_m : 1e9);
+  });
+  const auto num_tentative = std::ranges::count(outlines, true, &Outline::is_tentative);
+  return fmt::format("{} {}", outlines.size(), things) + (num_tentative > 0 ? fmt::format(", {} of them tentative", num_tentative) : "");
+}
+
+std::string NorthText(double heading_rad) { return fmt::format("north up, heading {:.1f} deg", RadToDeg(heading_rad)); }
+
+Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog>& boat, std::optional<double> heading_rad) {
+  const bool is_north_up = boat && heading_rad;
+  const double up_rad = is_north_up ? *heading_rad : 0.0;
+  const Eigen::Isometry3d T_vessel_lidar = boat ? boat->T_vessel_lidar : Eigen::Isometry3d::Identity();
+  const auto to_picture = [&](const Vector3d& p_lidar_m) { return SeenFromAbove((T_vessel_lidar * p_lidar_m).head<2>(), up_rad); };
+
+  Picture picture;
+  picture.up = is_north_up ? "N" : (boat ? "bow" : "lidar x");
+  if (boat) {
+    picture.bow_rad = up_rad;
+    picture.own_vessel_box_m = boat->own_vessel_box_m;
+  }
+  // Ordered by reason, then label: what is in no segment lies below.
+  std::map<std::string_view, Dots> loose;
+  std::map<int, Dots> labelled;
+  int num_returns = 0;
+  bool has_labels = false;
+  for (const auto& [part_index, part] : scan.scans) {
+    const auto* labels = LabelsOf(scan, part);
+    has_labels = has_labels || labels != nullptr;
+    ForEachReturn(part, labels, [&](const Return& one) {
+      ++num_returns;
+      auto& dots = one.label > 0 ? labelled[one.label] : loose[one.reason];
+      dots.colour = one.label > 0 ? ColourOfSegment(one.label) : ColourOfReason(one.reason);
+      dots.points.push_back(to_picture(one.p_lidar_m));
+    });
+  }
+  for (auto& [reason, dots] : loose) {
+    const auto name = !reason.empty() ? reason : has_labels ? "without label" : "not labelled: no SEGMENTS in the log";
+    picture.dots_legend.emplace_back(dots.colour, fmt::format("{} ({} returns)", name, dots.points.size()));
+    picture.dots.push_back(std::move(dots));
+  }
+  for (auto& [label, dots] : labelled) picture.dots.push_back(std::move(dots));
+
+  for (const auto& [part_index, part] : scan.segments) {
+    for (const auto& segment : part.segments) {
+      auto& outline = picture.outlines.emplace_back(MakeOutline(segment.id, segment.confidence, segment.kind,
+                                                                std::hypot(double{segment.nearest_m[0]}, double{segment.nearest_m[1]}),
+                                                                segment.length_m, segment.width_m, ""));
+      outline.facts += fmt::format(", {} returns", segment.num_points);
+      AddCorners(outline, segment.kind, {segment.waterline_x_m, segment.waterline_y_m}, {segment.hull_x_m, segment.hull_y_m},
+                 [&](double x_m, double y_m) {
+                   return to_picture({x_m, y_m, segment.centroid_m[2]});
+                 });
+    }
+  }
+  picture.title = fmt::format("Scan {}: {} returns, {}", scan.seq, num_returns, RankAndCount(picture.outlines, "segments"));
+  picture.subtitles = {UtcText(scan.utime_us), is_north_up ? NorthText(up_rad)
+                                               : boat      ? "bow up: no heading in the log"
+                                                           : "lidar frame: no config of the boat in the log"};
+  picture.outlines_title = "segments, nearest first, tentative last";
+  return picture;
+}
+
+Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<BoatOfLog>& boat, std::optional<double> heading_rad) {
+  Picture picture;
+  picture.up = heading_rad ? "N" : "bow";
+  picture.bow_rad = heading_rad.value_or(0.0);
+  if (boat) picture.own_vessel_box_m = boat->own_vessel_box_m;
+  std::map<int, int> num_by_status;
+  for (const auto& [part_index, part] : scan.obstacles) {
+    for (const auto& obstacle : part.obstacles) {
+      ++num_by_status[obstacle.status];
+      auto& outline = picture.outlines.emplace_back(MakeOutline(obstacle.id, obstacle.confidence, obstacle.kind, obstacle.range_m, obstacle.length_m,
+                                                                obstacle.width_m, fmt::format(" at {:.0f} deg", RadToDeg(obstacle.bearing_rad))));
+      AddCorners(outline, obstacle.kind, {obstacle.waterline_vessel_x_m, obstacle.waterline_vessel_y_m},
+                 {obstacle.footprint_vessel_x_m, obstacle.footprint_vessel_y_m}, [&](double x_m, double y_m) {
+                   return SeenFromAbove({x_m, y_m}, *picture.bow_rad);
+                 });
+    }
+  }
+  std::string statuses;
+  for (const auto& [status, count] : num_by_status) {
+    statuses += fmt::format("{}{} {}", statuses.empty() ? ", status: " : ", ", count, words::WordOf(words::kObstacleStatus, status));
+  }
+  picture.title = fmt::format("Scan {}: {}", scan.seq, RankAndCount(picture.outlines, "obstacles"));
+  picture.subtitles = {UtcText(scan.utime_us) + statuses, heading_rad ? NorthText(*heading_rad) : "bow up: no heading in the log"};
+  picture.outlines_title = "nearest first, tentative last; bearing from the bow";
+  return picture;
+}
+
+class ScanSvgSink final : public Sink {
+ public:
+  ScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq) : what_(what), scan_(what, seq) {}
+
+  std::vector<bus::Channel> Channels() const override {
+    if (what_ == ChosenScan::Of::kObstacles) return {bus::kObstacles, bus::kPose, bus::kRunInfo};
+    return {bus::kLidarScan, bus::kSegments, bus::kPose, bus::kRunInfo};
+  }
+
+  Taken Take(std::string_view channel, Bytes bytes, std::string&) override {
+    if (channel == bus::kRunInfo.name) return TakeRunInfo(bytes, boat_);
+    if (channel == bus::kPose.name) return TakePose(bytes);
+    return scan_.Take(channel, bytes);
+  }
+
+  void Finish(std::string& text) override {
+    scan_.Finish();
+    const auto& scan = scan_.chosen();
+    if (!scan) return;
+    const auto heading_rad = headings_.At(scan->utime_us);
+    text += Drawing(what_ == ChosenScan::Of::kReturns ? PictureOfReturns(*scan, boat_, heading_rad) : PictureOfObstacles(*scan, boat_, heading_rad))
+                .Draw();
+  }
+
+ private:
+  Taken TakePose(Bytes bytes) {
+    const auto pose = bus::Decode<pose_t>(bytes);
+    if (!pose) return Taken::kUndecodable;
+    if (!UtimeFromWire(pose->utime_us)) return Taken::kInconsistent;
+    // Poses that come long after the scan must not replace those of its time.
+    constexpr std::int64_t kSpanUs = 10'000'000;
+    const auto scan_utime_us = scan_.utime_us();
+    if (scan_utime_us == 0 || std::abs(pose->utime_us - scan_utime_us) <= kSpanUs) headings_.Add(pose->utime_us, pose->heading_rad);
+    return Taken::kOk;
+  }
+
+  ChosenScan::Of what_;
+  ChosenScan scan_;
+  messages::HeadingHistory headings_;
+  std::optional<BoatOfLog> boat_;
+};
+
+}  // namespace
+
+std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq) { return std::make_unique<ScanSvgSink>(what, seq); }
+
+}  // namespace lookout::exporter
