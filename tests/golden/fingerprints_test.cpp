@@ -12,6 +12,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/schema.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout {
 namespace {
