@@ -16,7 +16,6 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
-#include "common/bus/header.hpp"
 #include "common/bus/sequence.hpp"
 #include "common/bus/stream_guard.hpp"
 #include "common/core/bytes.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/bus/lcm_url.hpp"
-#include "common/bus/log_event.hpp"
+#include "common/bus/log_file.hpp"
 
 namespace lookout::bus {
 

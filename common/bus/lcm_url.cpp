@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "common/core/printable.hpp"
+
 namespace lookout::bus {
 
 namespace {
@@ -31,13 +33,6 @@ bool IsMulticastGroup(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 28) == 0xE;  // 224.0.0.0/4
 }
 
-// What is printed may come from the environment.
-std::string Printable(std::string_view text) {
-  std::string printable;
-  for (const char letter : text.substr(0, 200)) printable += letter >= ' ' && letter <= '~' ? letter : '?';
-  return printable;
-}
-
 struct Parsed {
   MulticastAddress address{std::string(kDefaultGroup), kDefaultPort, 0};
   std::string fault;
@@ -45,21 +40,21 @@ struct Parsed {
 
 Parsed ParseUdpm(std::string_view url) {
   Parsed parsed;
+  const auto fault = [&parsed](const std::string& text) {
+    parsed.fault = text;
+    return parsed;
+  };
   url.remove_prefix(kMulticast.size());
   const auto question = url.find('?');
   const auto network = url.substr(0, question);
   const auto colon = network.find(':');
   if (const auto group = network.substr(0, colon); !group.empty()) parsed.address.group = group;
   if (!IsMulticastGroup(parsed.address.group)) {
-    parsed.fault = Printable(parsed.address.group) + " is no IPv4 multicast group (224.0.0.0 to 239.255.255.255)";
-    return parsed;
+    return fault(Printable(parsed.address.group) + " is no IPv4 multicast group (224.0.0.0 to 239.255.255.255)");
   }
   if (colon != std::string_view::npos) {
     const auto port = ParseNumber(network.substr(colon + 1), 1, 65'535);
-    if (!port) {
-      parsed.fault = "the port \"" + Printable(network.substr(colon + 1)) + "\" is no number from 1 to 65535";
-      return parsed;
-    }
+    if (!port) return fault("the port \"" + Printable(network.substr(colon + 1)) + "\" is no number from 1 to 65535");
     parsed.address.port = *port;
   }
   std::string_view arguments = question == std::string_view::npos ? std::string_view() : url.substr(question + 1);
@@ -71,19 +66,12 @@ Parsed ParseUdpm(std::string_view url) {
     const auto value = equals == std::string_view::npos ? std::string_view() : argument.substr(equals + 1);
     if (name == "ttl") {
       const auto time_to_live = ParseNumber(value, 0, 255);
-      if (!time_to_live) {
-        parsed.fault = "ttl=" + Printable(value) + ": 0 (this computer only) to 255";
-        return parsed;
-      }
+      if (!time_to_live) return fault("ttl=" + Printable(value) + ": 0 (this computer only) to 255");
       parsed.address.time_to_live = *time_to_live;
     } else if (name == "recv_buf_size") {
-      if (!ParseNumber(value, 1, 1 << 30)) {
-        parsed.fault = "recv_buf_size=" + Printable(value) + ": 1 to 1073741824 bytes";
-        return parsed;
-      }
+      if (!ParseNumber(value, 1, 1 << 30)) return fault("recv_buf_size=" + Printable(value) + ": 1 to 1073741824 bytes");
     } else {
-      parsed.fault = "\"" + Printable(name) + "\" is neither ttl nor recv_buf_size";
-      return parsed;
+      return fault("\"" + Printable(name) + "\" is neither ttl nor recv_buf_size");
     }
   }
   return parsed;

@@ -4,12 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
-
-#include "common/bus/log_event.hpp"
 
 namespace lookout::bus {
 
@@ -156,6 +155,22 @@ std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::st
     in.position = in.FindSync(in.position + 1);
   }
   return std::nullopt;
+}
+
+void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes) {
+  std::array<std::uint8_t, kLogEventHeaderBytes> header{};
+  std::size_t place = 0;
+  const auto put = [&](std::uint64_t value, int size) {
+    for (int shift = 8 * (size - 1); shift >= 0; shift -= 8) header[place++] = static_cast<std::uint8_t>(value >> shift);
+  };
+  put(kLogSyncWord, 4);
+  put(static_cast<std::uint64_t>(number), 8);
+  put(static_cast<std::uint64_t>(ToUtimeUs(time)), 8);
+  put(channel.size(), 4);
+  put(bytes.size(), 4);
+  log.insert(log.end(), header.begin(), header.end());
+  log.insert(log.end(), channel.begin(), channel.end());
+  log.insert(log.end(), bytes.begin(), bytes.end());
 }
 
 void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) {

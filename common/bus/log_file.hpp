@@ -17,6 +17,16 @@
 
 namespace lookout::bus {
 
+/// Bytes of an event in front of its channel's name. All numbers big-endian: sync word u32, event number i64, time i64 (us), length of the channel
+/// i32, length of the data i32 (LCM: lcm/eventlog.c).
+inline constexpr std::size_t kLogEventHeaderBytes = 28;
+inline constexpr std::uint32_t kLogSyncWord = 0xEDA1DA01;
+
+/// What an event may hold to be read again. LCM's own channels have at most 63 characters and never none, its reader stops at an event without name;
+/// a length of the data beyond is taken for damage.
+inline constexpr std::size_t kMaxLogChannelBytes = 63;
+inline constexpr std::size_t kMaxLogDataBytes = 16U * 1024 * 1024;
+
 struct LogEvent {
   Utime time;  // as logged: receive time, or in a replayed log the host time of the raw event
   std::string channel;
@@ -60,6 +70,12 @@ class LogReader {
   std::unique_ptr<Implementation> implementation_;
   std::int64_t num_damaged_ = 0;
 };
+
+/// Appends an event to `log`.
+///
+/// @param number   of the event in its file, from 0
+/// @param channel  not empty: LCM's reader stops at an event without name
+void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes);
 
 /// Makes the bytes of a log out of events.
 class LogWriter {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/header.hpp"
+#include "common/bus/decode.hpp"
 #include "common/core/bytes.hpp"
 
 namespace lookout::bus {

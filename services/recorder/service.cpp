@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "common/bus/header.hpp"
-#include "common/bus/log_event.hpp"
+#include "common/bus/decode.hpp"
+#include "common/bus/log_file.hpp"
 #include "common/core/printable.hpp"
 
 namespace lookout::recorder {

@@ -83,7 +83,7 @@ const std::vector<Rule>& Rules() {
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
       {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
-      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
+      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
@@ -289,7 +289,16 @@ TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
 // It handles SIGHUP for each.
 TEST(Structure, EachServiceUsesTheSharedMain) {
   for (const auto& service : lookout::bus::kServices) {
-    EXPECT_NE(ReadFile(kRoot / "services" / service.name / "main.cpp").find("runtime::ServiceMain<"), std::string::npos) << service.name;
+    EXPECT_NE(ReadFile(kSources / "services" / service.name / "main.cpp").find("runtime::ServiceMain<"), std::string::npos) << service.name;
+  }
+}
+
+TEST(Structure, TheServiceTableSaysWhatSighupDoes) {
+  for (const auto& service : lookout::bus::kServices) {
+    const std::string main = ReadFile(kSources / "services" / service.name / "main.cpp");
+    const bool begins_run = main.find("Hangup::kNewRun") != std::string::npos;
+    const bool has_handler = main.find("OnHangup(") != std::string::npos;
+    EXPECT_EQ(service.hangup, begins_run ? "new config, new run" : has_handler ? "new log" : "checks the config") << service.name;
   }
 }
 

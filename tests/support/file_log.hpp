@@ -17,6 +17,7 @@ class FileLog {
   FileLog& operator=(const FileLog&) = delete;
 
   void Write(Utime time, std::string_view channel, Bytes bytes) { writer_.Write(time, channel, bytes); }
+  void Flush() { writer_.Flush(); }
 
  private:
   std::ofstream out_;

@@ -16,7 +16,7 @@
 #include <thread>
 #include <vector>
 
-#include "common/bus/header.hpp"
+#include "common/bus/decode.hpp"
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/log_file.hpp"
 #include "lookout/health_counter_t.hpp"

@@ -10,7 +10,6 @@
 #include <type_traits>
 
 #include "common/bus/decode.hpp"
-#include "common/bus/header.hpp"
 #include "common/bus/schema.hpp"
 #include "tools/diff/fields.hpp"
 

@@ -10,8 +10,7 @@
 #include <stdexcept>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/header.hpp"
-#include "common/bus/log_event.hpp"
+#include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/core/printable.hpp"
 #include "tools/log/publishers.hpp"
@@ -37,45 +36,35 @@ struct ChannelResult {
   std::int64_t num_behind_a = 0;  // of these, behind the last message of the other log
   std::int64_t num_behind_b = 0;
   std::optional<FirstDifference> first;
-
-  bool IsEqual() const { return !first; }
 };
 
 // One log, and where the events of each channel stand.
-class IndexedLog {
- public:
-  explicit IndexedLog(const std::filesystem::path& file) : reader_(file) {
-    for (std::int64_t number = 0; const auto event = reader_.Next(); ++number) {
+struct IndexedLog {
+  explicit IndexedLog(const std::filesystem::path& file) : reader(file) {
+    for (std::int64_t number = 0; const auto event = reader.Next(); ++number) {
       const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
-      places_[event->channel].push_back(reader_.position_bytes() - size);
-      marks_.Add(event->time, event->channel, event->bytes);
-      publishers_.Add(number, event->time, event->channel, event->bytes);
-      if (!first_time_) first_time_ = event->time;
+      places[event->channel].push_back(reader.position_bytes() - size);
+      marks.Add(event->time, event->channel, event->bytes);
+      publishers.Add(number, event->time, event->channel, event->bytes);
+      if (!first_time) first_time = event->time;
     }
-    num_damaged_ = reader_.num_damaged();
-    if (places_.empty() && reader_.size_bytes() > 0) throw std::runtime_error(file.string() + ": is no lcm-log: it holds no event");
+    num_damaged = reader.num_damaged();
+    if (places.empty() && reader.size_bytes() > 0) throw std::runtime_error(file.string() + ": is no lcm-log: it holds no event");
   }
 
-  const std::map<std::string, std::vector<std::int64_t>, std::less<>>& places() const { return places_; }
-  std::int64_t num_damaged() const { return num_damaged_; }
-  const log::RunMarks& marks() const { return marks_; }
-  const log::Publishers& publishers() const { return publishers_; }
-  std::optional<Utime> first_time() const { return first_time_; }
-
   bus::LogEvent Read(std::int64_t place) {
-    reader_.Seek(place);
-    auto event = reader_.Next();
+    reader.Seek(place);
+    auto event = reader.Next();
     if (!event) throw std::runtime_error("a log has changed while it was read");
     return *std::move(event);
   }
 
- private:
-  bus::LogReader reader_;
-  std::map<std::string, std::vector<std::int64_t>, std::less<>> places_;
-  log::RunMarks marks_;
-  log::Publishers publishers_;
-  std::optional<Utime> first_time_;
-  std::int64_t num_damaged_ = 0;
+  bus::LogReader reader;
+  std::map<std::string, std::vector<std::int64_t>, std::less<>> places;
+  log::RunMarks marks;
+  log::Publishers publishers;
+  std::optional<Utime> first_time;
+  std::int64_t num_damaged = 0;
 };
 
 // They tell of the machine, not of the water; LCM_SELF_TEST is what LCM sends to itself when it opens UDP multicast.
@@ -116,8 +105,8 @@ class ChannelComparison {
  private:
   struct Side {
     Side(IndexedLog& indexed_log, const std::string& channel) : log(indexed_log) {
-      const auto found = log.places().find(channel);
-      if (found != log.places().end()) places = &found->second;
+      const auto found = log.places.find(channel);
+      if (found != log.places.end()) places = &found->second;
     }
     std::int64_t NumLeft() const { return places == nullptr ? 0 : static_cast<std::int64_t>(places->size() - next); }
     bus::LogEvent Read(std::size_t ahead) { return log.Read((*places)[next + ahead]); }
@@ -195,18 +184,18 @@ class Cuts {
     if (result.num_behind_b > 0) behind_b_.push_back(fmt::format("{} {}", channel, result.num_behind_b));
     has_others_ = has_others_ || result.num_different > 0 || result.num_only_a > result.num_behind_a || result.num_only_b > result.num_behind_b;
     if (!result.first) return;
-    const auto start = std::max(a_.first_time(), b_.first_time());
+    const auto start = std::max(a_.first_time, b_.first_time);
     is_early_ = is_early_ || (start && result.first->time - *start < kSettling);
   }
 
   void Print(std::ostream& out) const {
-    const auto end_a = a_.marks().WithoutEnd();
-    const auto end_b = b_.marks().WithoutEnd();
+    const auto end_a = a_.marks.WithoutEnd();
+    const auto end_b = b_.marks.WithoutEnd();
     if (!end_a.empty() && !behind_b_.empty()) PrintCut(out, "A", end_a, "B", behind_b_);
     if (!end_b.empty() && !behind_a_.empty()) PrintCut(out, "B", end_b, "A", behind_a_);
     if (!is_early_) return;
     for (const auto& [name, log] : {std::pair("A", &a_), std::pair("B", &b_)}) {
-      const auto channels = log->marks().WithoutStart();
+      const auto channels = log->marks.WithoutStart();
       if (channels.empty()) continue;
       out << fmt::format("reason, perhaps: {} begins without a start mark of {}: what is computed first depends on what came before\n", name,
                          fmt::join(channels, ", "));
@@ -236,12 +225,12 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
   IndexedLog a(request.a);
   IndexedLog b(request.b);
   for (const auto& [log, file] : {std::pair(&a, &request.a), std::pair(&b, &request.b)}) {
-    if (log->num_damaged() > 0) errors << fmt::format("{}: {} damaged stretches were skipped\n", file->string(), log->num_damaged());
+    if (log->num_damaged > 0) errors << fmt::format("{}: {} damaged stretches were skipped\n", file->string(), log->num_damaged);
   }
   std::set<std::string> channels;
   std::set<std::string> left_out;
   for (const auto* log : {&a, &b}) {
-    for (const auto& entry : log->places()) (IsLeftOut(entry.first) ? left_out : channels).insert(entry.first);
+    for (const auto& entry : log->places) (IsLeftOut(entry.first) ? left_out : channels).insert(entry.first);
   }
   if (!request.channels.empty()) {
     for (const auto& channel : request.channels) {
@@ -267,12 +256,12 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
     const auto result = ChannelComparison(channel, tolerances, a, b).Compare();
     num_messages += std::max(result.num_a, result.num_b);
     cuts.Add(Printable(channel), result);
-    if (!result.IsEqual()) ++num_different;
+    if (result.first) ++num_different;
     out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", Printable(channel), result.num_a, result.num_b, result.num_different,
                        result.num_only_a, result.num_only_b, result.first ? "  " + FirstText(*result.first) : "");
   }
   for (const auto& [name, log] : {std::pair("A", &a), std::pair("B", &b)}) {
-    const auto interleavings = log->publishers().Interleavings();
+    const auto interleavings = log->publishers.Interleavings();
     for (const auto& interleaving : interleavings) out << fmt::format("{} holds {}\n", name, InWords(interleaving));
     if (!interleavings.empty()) out << log::kOutsideProof << "\n";
   }

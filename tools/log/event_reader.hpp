@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "common/bus/log_event.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/io/stop_signal.hpp"
 

@@ -5,15 +5,17 @@
 #include <optional>
 #include <ostream>
 #include <set>
+#include <sstream>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/header.hpp"
+#include "common/bus/decode.hpp"
 #include "common/bus/schema.hpp"
 #include "common/bus/sequence.hpp"
+#include "common/core/printable.hpp"
+#include "lookout/run_info_t.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
 #include "tools/log/publishers.hpp"
-#include "tools/log/recorded_run.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
 
@@ -43,6 +45,29 @@ struct ChannelSummary {
     silence_start = from;
   }
 };
+
+// RUN_INFO of an event, where it is one that this version can read.
+std::optional<run_info_t> RunInfoOf(const bus::LogEvent& event) {
+  if (event.channel != bus::kRunInfo.name) return std::nullopt;
+  return bus::Decode<run_info_t>(event.bytes);
+}
+
+// The computer in one line: the values of "machine.txt" of its RUN_INFO, comma by comma. Empty when it has none.
+std::string MachineOf(const run_info_t& run_info) {
+  std::string machine;
+  for (std::size_t i = 0; i < run_info.file_name.size(); ++i) {
+    if (run_info.file_name[i] != "machine.txt") continue;
+    std::istringstream lines(run_info.file_text[i]);
+    for (std::string line; std::getline(lines, line);) {
+      const auto colon = line.find(": ");
+      if (colon == std::string::npos) continue;
+      const auto value = line.substr(colon + 2);
+      const bool needs_name = line.starts_with("glibc_tunables") || line.starts_with("compiler") || line.starts_with("kernel") || value == "unknown";
+      machine += (machine.empty() ? "" : ", ") + (needs_name ? line : value);
+    }
+  }
+  return machine;
+}
 
 const bus::TypeFingerprint* FindType(std::uint64_t fingerprint) {
   const auto found = std::ranges::find(bus::TypeFingerprints(), fingerprint, &bus::TypeFingerprint::fingerprint);

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/header.hpp"
+#include "common/bus/decode.hpp"
 #include "lookout/lidar_packets_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 

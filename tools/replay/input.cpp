@@ -48,28 +48,6 @@ void Warn(runtime::Progress& progress, fmt::format_string<Values...> form, Value
   spdlog::warn(form, std::forward<Values>(values)...);
 }
 
-// Where the events of one file are, in time.
-class Order {
- public:
-  /// @param before  time of the last event of the files before it
-  Order(std::filesystem::path file, std::optional<Utime> before, runtime::Progress& progress)
-      : file_(std::move(file)), before_(before), progress_(progress) {}
-
-  /// Before an event is handed in.
-  void Check(Utime time) {
-    if (before_ && time < *before_) {
-      Warn(progress_, "{}: begins {:.3f} s before the file before it ends; are the files in their order?", file_.string(),
-           ToSeconds(*before_ - time));
-    }
-    before_.reset();
-  }
-
- private:
-  std::filesystem::path file_;
-  std::optional<Utime> before_;
-  runtime::Progress& progress_;
-};
-
 // One file on its way into the chain.
 struct Feeding {
   const std::filesystem::path& file;
@@ -79,16 +57,25 @@ struct Feeding {
   const std::function<void(std::int64_t num_bytes_of_file)>& show;
 };
 
+// Before the first event of a file. @param before  time of the last event of the files before it; none from now on
+void CheckOrder(const Feeding& feeding, std::optional<Utime>& before, Utime time) {
+  if (before && time < *before) {
+    Warn(feeding.progress, "{}: begins {:.3f} s before the file before it ends; are the files in their order?", feeding.file.string(),
+         ToSeconds(*before - time));
+  }
+  before.reset();
+}
+
 void FeedTextLog(const Feeding& feeding, std::optional<std::chrono::sys_days> day) {
   const auto& [file, chain, summary, progress, show] = feeding;
   navigator::TextLogReader reader(file, day);
-  Order order(file, chain.time(), progress);
+  auto before = chain.time();
   if (!reader.has_date() && !day) {
     Warn(progress, "{}: no sentence tells a date; its times are taken as those of 1970-01-01, give --date", file.string());
   }
   if (reader.has_date() && day) Warn(progress, "{}: its sentences tell a date; --date is not used", file.string());
   while (const auto line = reader.Next()) {
-    order.Check(line->time);
+    CheckOrder(feeding, before, line->time);
     ++summary.num_events;
     chain.OnTextLine(line->time, line->bytes);
     show(reader.position());
@@ -100,10 +87,10 @@ void FeedCapture(const Feeding& feeding) {
   // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
   constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
   vlp16::CaptureReader reader(file);
-  Order order(file, chain.time(), progress);
+  auto before = chain.time();
   std::size_t num_bytes = 0;
   while (const auto datagram = reader.Next()) {
-    order.Check(datagram->host_time);
+    CheckOrder(feeding, before, datagram->host_time);
     ++summary.num_events;
     chain.OnDatagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
     num_bytes += kFrameBytes + datagram->payload.size();
@@ -129,7 +116,7 @@ class LogFeeder {
   void Feed(const Feeding& feeding) {
     const auto& [file, chain, summary, progress, show] = feeding;
     bus::LogReader reader(file, io::ThrowIfStopAsked);
-    Order order(file, last_time_, progress);
+    auto before = last_time_;
     std::int64_t num_oversize = 0;
     const auto is_wanted = [this](std::string_view channel) { return plan_.Reads(channel) || log::RunMarks::IsMarked(channel); };
     for (; const auto event = reader.NextView(is_wanted); ++num_events_) {
@@ -141,7 +128,7 @@ class LogFeeder {
       } else if (event->bytes.size() > bus::kMaxMessageBytes) {
         ++num_oversize;
       } else {
-        order.Check(event->time);
+        CheckOrder(feeding, before, event->time);
         last_time_ = event->time;
         one_publisher_.Add(num_events_, event->time, *bus::FindChannel(event->channel), event->bytes);
       }
@@ -263,24 +250,16 @@ std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, C
 }
 
 std::vector<std::string> DifferingConfigFiles(const run_info_t& a, const run_info_t& b) {
-  const auto texts = [](const run_info_t& info) {
-    std::map<std::string, std::string> text_of_file;
+  std::map<std::string, std::array<std::optional<std::string>, 2>> texts_of_file;
+  for (const std::size_t side : {0, 1}) {
+    const auto& info = side == 0 ? a : b;
     for (std::size_t i = 0; i < info.file_name.size(); ++i) {
-      if (std::filesystem::path(info.file_name[i]).extension() == ".txtpb") text_of_file[info.file_name[i]] = info.file_text[i];
+      if (std::filesystem::path(info.file_name[i]).extension() == ".txtpb") texts_of_file[info.file_name[i]].at(side) = info.file_text[i];
     }
-    return text_of_file;
-  };
-  const auto texts_a = texts(a);
-  const auto texts_b = texts(b);
-  std::set<std::string> names;
-  for (const auto* side : {&texts_a, &texts_b}) {
-    for (const auto& entry : *side) names.insert(entry.first);
   }
   std::vector<std::string> differing;
-  for (const auto& name : names) {
-    const auto in_a = texts_a.find(name);
-    const auto in_b = texts_b.find(name);
-    if (in_a == texts_a.end() || in_b == texts_b.end() || in_a->second != in_b->second) differing.push_back(name);
+  for (const auto& [name, texts] : texts_of_file) {
+    if (texts[0] != texts[1]) differing.push_back(name);
   }
   return differing;
 }

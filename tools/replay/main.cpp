@@ -61,9 +61,9 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--in", inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
   app.add_option("--out", output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
   app.add_flag("--force", options.force, "replace an existing --out");
-  app.add_option("--from", options.request.from, "channel of the log at which to begin; what gives it, and is before that, does not run (several)")
+  app.add_option("--from", options.request.from, "channel to read from the log; the service that publishes it, and those before that, do not run (several)")
       ->check(CLI::IsMember(lookout::replay::FromNames()));
-  app.add_option("--only", options.request.only, "service to run, and no other; what it takes is read from the log (several)")
+  app.add_option("--only", options.request.only, "service to run, and no other; its inputs are read from the log (several)")
       ->check(CLI::IsMember(lookout::replay::ServiceNames()));
   app.add_flag("--progress", options.shows_progress,
                "show progress as on a terminal; without it, where standard error is none, a line comes each minute");
@@ -211,7 +211,7 @@ void Replay(const Options& options) {
   PrintDigests(chain, out);  // last: the log is there, whoever reads these
 }
 
-// Memory that is given back to the system is asked for again at the next scan: page faults took a tenth of the time.
+// Memory that is returned to the system is requested again at the next scan: page faults took a tenth of the time.
 void KeepMemory() {
   constexpr int kKeptBytes = 256 * 1024 * 1024;
   constexpr int kHeapBytes = 32 * 1024 * 1024;  // the greatest that mallopt takes; no message is so large

@@ -8,7 +8,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/bus/log_event.hpp"
 #include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 

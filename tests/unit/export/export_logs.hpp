@@ -21,6 +21,7 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 #include "tools/export/export.hpp"
 
@@ -108,7 +109,7 @@ class ExportTest : public ::testing::Test {
     AddBytes(channel.name, bus::Encode(message));
   }
   void AddBytes(std::string_view channel, const std::vector<std::uint8_t>& bytes) {
-    if (!writer_) writer_ = std::make_unique<bus::LogWriter>(log_);
+    if (!writer_) writer_ = std::make_unique<support::FileLog>(log_);
     writer_->Write(Utime(std::chrono::microseconds(kStartUs)), channel, bytes);
   }
 
@@ -138,7 +139,7 @@ class ExportTest : public ::testing::Test {
 
   support::TempDir folder_;
   std::filesystem::path log_ = folder_ / "log";
-  std::unique_ptr<bus::LogWriter> writer_;
+  std::unique_ptr<support::FileLog> writer_;
   std::string text_;
   std::string errors_;
 };

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/bus/header.hpp"
+#include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "lookout/nav_raw_t.hpp"
