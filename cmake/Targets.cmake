@@ -61,6 +61,8 @@ endfunction()
 set(LOOKOUT_TEST_OPTIONS "")
 if(CMAKE_BUILD_TYPE STREQUAL "RelWithDebInfo")
   set(LOOKOUT_TEST_OPTIONS -O1 -g0)
+elseif(LOOKOUT_SANITIZE)
+  set(LOOKOUT_TEST_OPTIONS -O0)
 endif()
 
 # Gives a test its level (the first word of its name), time limit and folder. Sanitizers slow filters and simulations ten times and more.

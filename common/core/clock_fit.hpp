@@ -8,23 +8,20 @@
 
 namespace lookout {
 
-/// A message may come late, not early: of the (host - source) of one second the least is the truest. Their slope is the drift (the median of the
-/// slopes of all pairs, Theil and Sen); the offset is the least of the last two seconds, carried along that slope.
+/// A message can arrive late, never early: of all (host - source) within one second the least is nearest to the truth. The slope of these is the
+/// drift (median of the slopes of all pairs, Theil and Sen); the offset is the least of the last two seconds, extrapolated along that slope.
 ///
-/// - What comes earlier than the offset allows is proof that the host's clock was set back, or that the offset was of late messages: it counts at
-/// once.
-/// - What comes later is late, or the host's clock was set forward. A stall whose queue is then drained looks like such a step, but it goes back to
-/// the
-///   old offset. So it counts as a step when for three seconds, of both clocks, nothing comes in time and the lateness does not shrink. Till then,
-///   and while it shrinks, the offset stays.
+/// - An arrival earlier than the offset allows proves that the host's clock was set back, or that the offset was of late messages: it counts at once.
+/// - A later arrival is a late message, or the host's clock was set forward. A stall whose queue is then drained looks like such a step, but
+///   returns to the old offset. So it counts as a step when for three seconds of both clocks nothing arrives in time and the lateness does not
+///   shrink. Until then, and while the lateness shrinks, the offset stays.
 class ClockFit {
  public:
   /// Crystals are good to 100 ppm at worst, and there are two of them.
   static constexpr double kMaxDriftPpm = 200.0;
 
-  /// @param time             by the source's clock, increasing. One that comes out of order, or once more, tells nothing; one that is set back by
-  /// more
-  ///                         than two seconds begins anew
+  /// @param time             by the source's clock, increasing. One that comes out of order, or again, is ignored; one that goes back by more than
+  ///                         two seconds starts a new fit
   /// @param host_minus_time  of a message sent at `time`, at its arrival
   void Add(std::chrono::microseconds time, std::chrono::microseconds host_minus_time);
 

@@ -1,4 +1,4 @@
-// What has happened is told for a minute, then its count alone says it.
+// A count that grows is named as a reason for one minute; afterwards its counter alone shows it.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,13 @@
 
 namespace lookout {
 
-/// Time that passes, out of host times that may be set: a step back counts as nothing, one ahead as `most`.
+/// Elapsed time from host times whose clock may be set: a step back counts as 0, a step ahead as `most`.
 class PassedTime {
  public:
   /// @param most  a little longer than the period in which Advance is called
   explicit PassedTime(std::chrono::microseconds most) : most_(most) {}
 
-  /// @return time passed since the first call
+  /// @return time since the first call
   std::chrono::microseconds Advance(Utime now) {
     if (last_) passed_ += std::clamp(std::chrono::duration_cast<std::chrono::microseconds>(now - *last_), std::chrono::microseconds(0), most_);
     last_ = now;

@@ -18,7 +18,7 @@ class HealthReporter {
   explicit HealthReporter(std::string process);
 
   /// @param now  host time
-  /// @return the state of the process since the call before; takes the handling times out of `bus`
+  /// @return the state of the process since the call before; removes the handling times from `bus`
   health_t Make(Utime now, const HealthReport& report, bus::Bus& bus);
 
   /// @return the same with state, reason and counters of now; what is measured over an interval is that of the call of Make before

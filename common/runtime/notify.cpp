@@ -8,7 +8,7 @@ namespace lookout::runtime {
 
 namespace {
 
-// Each call opens the socket anew; a message that nobody takes is no reason to end a look-out.
+// Each call opens the socket anew; a message that nobody reads is no reason to end a look-out.
 void NotifySupervisor(const std::string& message) { sd_notify(0, message.c_str()); }
 
 std::string HealthStateName(std::int32_t state) {

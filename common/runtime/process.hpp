@@ -20,7 +20,7 @@ std::chrono::steady_clock::time_point SteadyNow();
 /// Name of this computer.
 std::string HostName();
 
-/// Blocks SIGINT, SIGTERM and SIGHUP: what comes from here on waits for Process::Run. First thing in a main that takes SIGHUP, so that one that comes
+/// Blocks SIGINT, SIGTERM and SIGHUP: what comes from here on waits for Process::Run. First thing in main, so that one that comes
 /// early does not end the start.
 void BlockStopSignals();
 

@@ -1,10 +1,17 @@
 #include "common/runtime/source_reader.hpp"
 
 #include <algorithm>
+#include <set>
 #include <spdlog/spdlog.h>
 #include <utility>
 
 namespace lookout::runtime {
+
+namespace {
+
+std::string Label(const LiveReader::NamedSource& source) { return source.name.empty() ? "" : "input '" + source.name + "': "; }
+
+}  // namespace
 
 LiveReader::LiveReader(std::vector<NamedSource> sources, const Limits& limits, Handlers handlers)
     : SourceReader(limits.period), sources_(std::move(sources)), limits_(limits), handlers_(std::move(handlers)) {}
@@ -30,8 +37,8 @@ bool LiveReader::Read() {
   for (auto& entry : sources_) {
     auto& source = *entry.source;
     const auto change = source.Poll(now);
-    if (!change.empty() && source.fault().empty()) spdlog::info("{}{}", entry.label, change);
-    if (!change.empty() && !source.fault().empty()) spdlog::warn("{}{}", entry.label, change);
+    if (!change.empty() && source.fault().empty()) spdlog::info("{}{}", Label(entry), change);
+    if (!change.empty() && !source.fault().empty()) spdlog::warn("{}{}", Label(entry), change);
     round.latest = std::max(round.latest, ReadOne(entry));
     if (!source.is_empty()) round.read_before = std::min(round.read_before, source.last_time());
   }
@@ -47,10 +54,10 @@ void LiveReader::WatchReadable(Process& process) {
 }
 
 std::string LiveReader::fault() const {
-  std::vector<std::string> faults;
+  std::set<std::string> faults;
   for (const auto& entry : sources_) {
     const auto fault = entry.source->fault();
-    if (!fault.empty() && std::ranges::find(faults, entry.label + fault) == faults.end()) faults.push_back(entry.label + fault);
+    if (!fault.empty()) faults.insert(Label(entry) + fault);
   }
   std::string text;
   for (const auto& fault : faults) text += (text.empty() ? "" : "; ") + fault;
@@ -60,13 +67,10 @@ std::string LiveReader::fault() const {
 std::vector<Counter> LiveReader::counters() const {
   std::vector<Counter> sums;
   for (const auto& entry : sources_) {
-    for (const auto& counter : entry.source->counters()) {
-      const auto same = std::ranges::find(sums, counter.name, &Counter::name);
-      if (same == sums.end()) {
-        sums.push_back(counter);
-      } else {
-        same->count += counter.count;
-      }
+    for (const auto& [name, count] : entry.source->counters()) {
+      auto same = std::ranges::find(sums, name, &Counter::name);
+      if (same == sums.end()) same = sums.insert(same, {name, 0});
+      same->count += count;
     }
   }
   return sums;

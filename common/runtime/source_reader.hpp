@@ -46,8 +46,7 @@ class SourceReader {
 class LiveReader final : public SourceReader {
  public:
   struct NamedSource {
-    std::string label;  // stands before its lines in log and HEALTH: "input 'gnss': "
-    std::string name;
+    std::string name;  // in log and HEALTH: "input 'gnss': ..."; empty where the source names itself
     std::unique_ptr<io::Source> source;
   };
   /// How long one source may be read before signals, the bus, timers and the other sources get their turn.

@@ -1,6 +1,6 @@
 // The alarm of the guard zone over time: how many scans must see something in it, and whether anybody looks.
 //
-// It is told of in HEALTH alone, so it may know the host's clock and stands outside the proof of replay.
+// It stands in HEALTH alone, so it may know the host's clock and stands outside the proof of replay.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@ namespace lookout::georeferencer {
 /// not count against; what it shows counts. What is older than 1 s counts neither way.
 ///
 /// The zone is watched while whole scans come: after none for 0.5 s of host time it is not, until 3 came within 1 s, as many as it takes to raise an
-/// alarm. So it is not watched at the start. Without host time (replay) this is not judged.
+/// alarm. So it is not watched at the start. Without host time (replay) this is not known.
 class GuardAlarm {
  public:
   static constexpr std::size_t kWindowScans = 5;

@@ -16,7 +16,7 @@ namespace lookout::georeferencer {
 
 namespace {
 
-// POSE comes ten times a second, SEGMENTS once a turn: so long without is worth a word. A time-out is told of for as long.
+// POSE comes 50 times a second, SEGMENTS once a scan: HEALTH names a silence that lasts this long, and a time-out for as long.
 constexpr std::chrono::seconds kSilence(2);
 
 // "obstacle within 10.0 m: 7.3 m, 12 deg to starboard"
@@ -28,7 +28,7 @@ std::string AlarmText(const NearestPoint& nearest, double guard_range_m) {
   return text.data();
 }
 
-// What the state of POSE means for the whole; empty where it is as it should be.
+// What the status of POSE means for obstacles; empty where it is OK.
 std::string_view PoseText(std::int32_t pose_status) {
   switch (pose_status) {
     case pose_t::STATUS_NO_HEADING:
@@ -73,14 +73,14 @@ void Service::OnPose(const pose_t& message) {
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
   pose_seen_ = now_;
   newest_pose_status_ = message.status;
-  JudgeDatum(std::get<Pose>(pose));
+  CheckDatum(std::get<Pose>(pose));
   Publish(georeferencer_.AddPose(std::get<Pose>(pose)));
 }
 
 // A voyage may end far from its datum: the first place in it counts.
-void Service::JudgeDatum(const Pose& pose) {
-  if (!pose.is_placed || (judged_datum_ && judged_datum_->IsSameAs(pose.datum))) return;
-  judged_datum_ = pose.datum;
+void Service::CheckDatum(const Pose& pose) {
+  if (!pose.is_placed || (checked_datum_ && checked_datum_->IsSameAs(pose.datum))) return;
+  checked_datum_ = pose.datum;
   datum_complaint_.clear();
   if (!datum_ || datum_->latitude_deg != pose.datum.latitude_deg || datum_->longitude_deg != pose.datum.longitude_deg) return;
   datum_complaint_ =

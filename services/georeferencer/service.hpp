@@ -40,7 +40,7 @@ class Service {
   void OnSegments(const segments_t& message);
   void OnPose(const pose_t& message);
   void Publish(const std::vector<ObstaclePart>& parts);
-  void JudgeDatum(const Pose& pose);
+  void CheckDatum(const Pose& pose);
   void Refuse(std::string_view name);
 
   bus::Bus& bus_;
@@ -50,7 +50,7 @@ class Service {
   std::optional<GuardAlarm> alarm_;  // where a guard zone is configured
   GuardAlarm::State reported_alarm_;
   std::optional<Datum> datum_;  // of boat.txtpb
-  std::optional<Datum> judged_datum_;
+  std::optional<Datum> checked_datum_;
   std::string datum_complaint_;
   std::vector<Counter> refusals_;
   std::int64_t num_split_ = 0;

@@ -25,7 +25,7 @@ constexpr std::int64_t kPoseGridUs = 20'000;  // pose_t: a multiple of it
 // Rounding of a covariance that went through a filter.
 constexpr double kCovarianceTolerance = 1e-6;
 
-// A turn of so few obstacles fits into one message, however large their outlines and waterlines are.
+// A scan of so few obstacles fits into one message, however large their outlines and waterlines are.
 constexpr std::size_t kFewSegments = 18;
 constexpr std::size_t kMaxObstacleBytes = kObstacleBytes + (kMaxFootprintVertices + kMaxWaterlineVertices) * kVertexBytes;
 static_assert(kHeadBytes + kFewSegments * kMaxObstacleBytes <= 120'000);
@@ -39,6 +39,9 @@ static_assert(static_cast<int>(Kind::kObstacle) == segment_t::KIND_OBSTACLE);
 static_assert(static_cast<int>(Kind::kObstacle) == obstacle_t::KIND_OBSTACLE);
 static_assert(static_cast<int>(Kind::kLand) == segment_t::KIND_LAND);
 static_assert(static_cast<int>(Kind::kLand) == obstacle_t::KIND_LAND);
+static_assert(static_cast<int>(ObstacleStatus::kOk) == obstacle_t::STATUS_OK);
+static_assert(static_cast<int>(ObstacleStatus::kVesselFrameOnly) == obstacle_t::STATUS_VESSEL_FRAME_ONLY);
+static_assert(static_cast<int>(ObstacleStatus::kPoseTimeout) == obstacle_t::STATUS_POSE_TIMEOUT);
 static_assert(static_cast<int>(obstacle_t::GROUND_FEW_RETURNS) == segment_t::GROUND_FEW_RETURNS);
 static_assert(static_cast<int>(obstacle_t::GROUND_SCATTERED) == segment_t::GROUND_SCATTERED);
 static_assert(static_cast<int>(obstacle_t::GROUND_AT_SURFACE) == segment_t::GROUND_AT_SURFACE);
@@ -64,7 +67,7 @@ Segment ToSegment(const segment_t& message, Utime scan_time) {
   Segment segment;
   segment.time = Utime(microseconds(message.utime_us));
   segment.id = message.id;
-  segment.judgement = {static_cast<Confidence>(message.confidence), message.grounds, static_cast<Kind>(message.kind), message.seen_share};
+  segment.rating = {static_cast<Confidence>(message.confidence), message.grounds, static_cast<Kind>(message.kind), message.seen_share};
   segment.num_points = message.num_points;
   segment.centroid_m = ToVector(message.centroid_m);
   segment.nearest_m = ToVector(message.nearest_m);
@@ -105,17 +108,6 @@ bool IsCovariance(const double (&covariance)[9][9]) {
 
 double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
 
-std::int32_t ToWire(ObstacleStatus status) {
-  switch (status) {
-    case ObstacleStatus::kOk:
-      return obstacle_t::STATUS_OK;
-    case ObstacleStatus::kPoseTimeout:
-      return obstacle_t::STATUS_POSE_TIMEOUT;
-    default:
-      return obstacle_t::STATUS_VESSEL_FRAME_ONLY;
-  }
-}
-
 // All that is unknown goes out as one and the same NaN: same bytes whatever made it.
 double Canonical(double value) { return std::isnan(value) ? kUnknown : value; }
 
@@ -130,11 +122,11 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
   obstacle_t message{};
   message.utime_us = ToUtimeUs(obstacle.time);
   message.id = obstacle.id;
-  message.status = ToWire(obstacle.status);
-  message.confidence = static_cast<std::int32_t>(obstacle.judgement.confidence);
-  message.grounds = obstacle.judgement.grounds;
-  message.kind = static_cast<std::int32_t>(obstacle.judgement.kind);
-  message.seen_share = obstacle.judgement.seen_share;
+  message.status = static_cast<std::int32_t>(obstacle.status);
+  message.confidence = static_cast<std::int32_t>(obstacle.rating.confidence);
+  message.grounds = obstacle.rating.grounds;
+  message.kind = static_cast<std::int32_t>(obstacle.rating.kind);
+  message.seen_share = obstacle.rating.seen_share;
   message.latitude_deg = obstacle.latitude_deg;
   message.longitude_deg = obstacle.longitude_deg;
   message.position_map_m[0] = obstacle.position_map_m.x();
@@ -225,7 +217,7 @@ std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_by
   head.datum_ellipsoid_height_m = Canonical(part.datum.ellipsoid_height_m);
   const int head_bytes = head.getEncodedSize();
 
-  // Filled in order; the second takes what the first does not hold.
+  // Filled in order; the second holds what does not fit into the first.
   std::vector<obstacles_t> messages{head};
   int num_bytes = head_bytes;
   for (const auto& obstacle : part.obstacles) {
@@ -238,7 +230,7 @@ std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_by
     num_bytes += size;
     messages.back().obstacles.push_back(std::move(message));
   }
-  // Other parts of the turn may need two messages: then each part gets two, since num_parts must be known with the first.
+  // Other parts of the scan may need two messages: then each part gets two, since num_parts must be known with the first.
   const bool is_one_enough =
       part.head.num_scan_segments <= static_cast<std::int32_t>(kFewSegments) || (part.head.num_parts == 1 && messages.size() == 1);
   if (!is_one_enough && messages.size() == 1) messages.push_back(head);

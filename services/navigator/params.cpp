@@ -74,7 +74,7 @@ class InputsReader {
     if (message_.source() == config::Navigator::LIVE) {
       CheckTextLogs(params);
       Require(!params.connections.empty() || message_.use_lidar_nmea(), "source",
-              "is LIVE, but there is nothing to take: neither bind_address, nor use_lidar_nmea, nor an input");
+              "is LIVE, but there is nothing to read: neither bind_address, nor use_lidar_nmea, nor an input");
     }
     if (!faults_.empty()) throw config::ConfigError(faults_);
   }
@@ -118,7 +118,7 @@ class InputsReader {
                           static_cast<int>(input.has_gpsd()) + static_cast<int>(input.has_text_log());
     const bool is_given_above = input.name() == kUdpSource || input.name() == kLidarSource;
     if (is_given_above) {
-      RequireOfInput(num_kinds == 0, "is given by bind_address and nmea_port, or by use_lidar_nmea: it takes no connection here");
+      RequireOfInput(num_kinds == 0, "is opened by bind_address and nmea_port, or by use_lidar_nmea: remove its connection here");
     } else {
       RequireOfInput(num_kinds == 1, "must have one of serial, udp, tcp, gpsd and text_log, and has " + std::to_string(num_kinds));
     }
@@ -129,7 +129,7 @@ class InputsReader {
       const bool is_free = params.source_of_port.try_emplace(connection.port, connection.name).second;
       RequireOfInput(is_free, "udp port " + std::to_string(connection.port) + " belongs to input '" + params.source_of_port[connection.port] + "'");
     } else {
-      RequireOfInput(places_.insert(PlaceOf(connection)).second, PlaceOf(connection) + " is taken by an input before it");
+      RequireOfInput(places_.insert(PlaceOf(connection)).second, PlaceOf(connection) + " is used by an input before it");
     }
     params.connections.push_back(connection);
   }

@@ -25,7 +25,7 @@ struct Connection {
   std::filesystem::path file;                     // kSerial: the device; kTextLog: the log
   int baud = 0;                                   // kSerial
   double speed = 1.0;                             // kTextLog: times as fast; 0 = as fast as can be; of all text logs the same
-  std::optional<std::chrono::sys_days> day = {};  // kTextLog: of its first time, where no sentence tells a date
+  std::optional<std::chrono::sys_days> day = {};  // kTextLog: of its first time, where no sentence has a date
 };
 
 struct Params {
@@ -43,7 +43,7 @@ struct Params {
 /// @throws config::ConfigError
 Params LoadParams(const std::filesystem::path& config_folder);
 
-/// What --check says besides the values: each source, and what its signs mean, in words. Lines of a comment.
+/// What --check prints besides the values: each source, and the meaning of its signs. Lines of a comment.
 std::string InWords(const Params& params);
 
 }  // namespace lookout::navigator

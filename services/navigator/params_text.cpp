@@ -38,15 +38,15 @@ std::string PlaceInWords(const Params& params, const std::string& name) {
 std::string RoleInWords(Role role) {
   switch (role) {
     case Role::kAll:
-      return "all that its sentences say is taken";
+      return "all that its sentences say is used";
     case Role::kGnss:
-      return "positions and velocities are taken";
+      return "positions and velocities are used";
     case Role::kHeading:
-      return "headings and rates of turn are taken";
+      return "headings and rates of turn are used";
     case Role::kAttitude:
-      return "headings, roll, pitch and rates of turn are taken";
+      return "headings, roll, pitch and rates of turn are used";
     case Role::kImu:
-      return "raw angular velocity and specific force are taken";
+      return "raw angular velocity and specific force are used";
     case Role::kNothing:
       return "recorded only";
   }
@@ -133,7 +133,7 @@ std::string SourceInWords(const Params& params, const SourceParams& source) {
 }  // namespace
 
 std::string InWords(const Params& params) {
-  if (params.input == Input::kLog) return "# takes NAV_RAW from the bus; nothing is opened\n";
+  if (params.input == Input::kLog) return "# reads NAV_RAW from the bus; nothing is opened\n";
   // Those that config does not name have the defaults.
   auto sources = params.navigator.sources;
   const auto add = [&sources](const std::string& name) {

@@ -33,13 +33,13 @@ class Service {
   /// The same out of a stream, in pieces of any size.
   void OnStream(Utime arrival, Bytes bytes, const std::string& source);
 
-  /// The stream broke off: what it left half said is void.
+  /// The stream broke off: its incomplete line is void.
   void OnStreamEnd(const std::string& source);
 
-  /// Host time has come so far: ticks, and a start mark when the host clock was set back. Input::kOutside only.
+  /// Advances to this host time: ticks, and a start mark when the host clock was set back. Input::kOutside only.
   void AdvanceTo(Utime host_time);
 
-  /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: gives the last pose, unless an END mark did.
+  /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: publishes the last pose, unless an END mark did.
   void Finish(Utime host_time);
 
   HealthReport Report() const;

@@ -106,9 +106,7 @@ std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service
   const auto is_text_log = [](const auto& connection) { return connection.kind == Connection::Kind::kTextLog; };
   if (!params.connections.empty() && std::ranges::all_of(params.connections, is_text_log)) return std::make_unique<TextLogSource>(params, service);
   std::vector<runtime::LiveReader::NamedSource> sources;
-  for (const auto& connection : params.connections) {
-    sources.push_back({"input '" + connection.name + "': ", connection.name, OpenSource(connection)});
-  }
+  for (const auto& connection : params.connections) sources.push_back({connection.name, OpenSource(connection)});
   return std::make_unique<runtime::LiveReader>(
       std::move(sources), runtime::LiveReader::Limits{.period = kTick, .max_pieces = kMaxPieces, .reads_when_readable = true},
       runtime::LiveReader::Handlers{

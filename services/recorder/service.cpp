@@ -95,7 +95,7 @@ void Service::OnEvent(std::string_view channel, Bytes bytes) {
   Write(clock_(), channel, bytes);
 }
 
-// A log that holds one that is not cannot be read on. Each reason is told once, and then counted.
+// A log that holds one that is not cannot be read on. Each reason is logged once, and then counted.
 bool Service::IsRecordable(std::string_view channel, Bytes bytes) {
   const auto refuse = [&](std::int64_t& count, const std::string& what) {
     if (count++ == 0) warnings_.push_back(what + " cannot be recorded; further ones are counted in HEALTH");

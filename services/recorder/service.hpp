@@ -71,7 +71,7 @@ class Service {
   DiskWriter writer_;
   Utime file_start_;
   Utime last_run_info_;
-  std::int64_t file_bytes_ = 0;  // of the file when all that was given to the writer is in it
+  std::int64_t file_bytes_ = 0;  // of the file when all that was passed to the writer is in it
   std::int64_t num_file_events_ = 0;
   std::vector<std::uint8_t> event_;                              // scratch
   std::deque<std::vector<std::uint8_t>> own_run_infos_;          // sent, and not yet come back from the bus

@@ -8,40 +8,15 @@ namespace lookout::vlp16 {
 
 namespace {
 
-ModelChoice ToChoice(config::Vlp16::Model model) {
-  switch (model) {
-    case config::Vlp16::MODEL_VLP16:
-      return ModelChoice::kVlp16;
-    case config::Vlp16::MODEL_PUCK_HI_RES:
-      return ModelChoice::kPuckHiRes;
-    default:
-      return ModelChoice::kAuto;
-  }
+// The enumerators of the schema count from 1, in the order of ours.
+template <typename Choice, typename Field>
+Choice ToChoice(Field field) {
+  return static_cast<Choice>(static_cast<int>(field) - 1);
 }
-
-TimeChoice ToChoice(config::Vlp16::TimeSource source) {
-  switch (source) {
-    case config::Vlp16::TIME_SENSOR:
-      return TimeChoice::kSensor;
-    case config::Vlp16::TIME_HOST:
-      return TimeChoice::kHost;
-    default:
-      return TimeChoice::kAuto;
-  }
-}
-
-Sources::Kind ToKind(config::Vlp16::Source source) {
-  switch (source) {
-    case config::Vlp16::CAPTURE:
-      return Sources::Kind::kCapture;
-    case config::Vlp16::LOG:
-      return Sources::Kind::kLog;
-    case config::Vlp16::INTERFACE:
-      return Sources::Kind::kInterface;
-    default:
-      return Sources::Kind::kUdp;
-  }
-}
+using Schema = config::Vlp16;
+static_assert(Schema::MODEL_AUTO == 1 && Schema::MODEL_VLP16 == 2 && Schema::MODEL_PUCK_HI_RES == 3);
+static_assert(Schema::TIME_AUTO == 1 && Schema::TIME_SENSOR == 2 && Schema::TIME_HOST == 3);
+static_assert(Schema::UDP == 1 && Schema::CAPTURE == 2 && Schema::LOG == 3 && Schema::INTERFACE == 4);
 
 // What no field is wrong by itself in.
 void CheckRelations(const std::filesystem::path& file, const config::Vlp16& message, std::vector<std::string>& faults) {
@@ -49,7 +24,7 @@ void CheckRelations(const std::filesystem::path& file, const config::Vlp16& mess
     if (!is_fine) faults.push_back(config::FaultLine(file, field, reason, static_cast<std::size_t>(index)));
   };
   const bool are_ports_apart = message.data_port() != message.position_port();
-  // The one that stands in the file is told.
+  // The fault names the one that stands in the file.
   if (message.has_position_port() || !message.has_data_port()) {
     require(are_ports_apart, "position_port", "must differ from data_port, which is " + std::to_string(message.data_port()));
   } else {
@@ -76,7 +51,7 @@ void CheckRelations(const std::filesystem::path& file, const config::Vlp16& mess
 
 Sources ToSources(const std::filesystem::path& config_folder, const config::Vlp16& message) {
   Sources sources;
-  sources.kind = ToKind(message.source());
+  sources.kind = ToChoice<Sources::Kind>(message.source());
   for (const auto& name : message.capture_file()) sources.capture_files.push_back(config_folder / name);
   sources.capture_speed = message.capture_speed();
   sources.bind_address = message.bind_address();
@@ -107,8 +82,8 @@ Params LoadParams(const std::filesystem::path& config_folder, std::vector<std::s
   params.input = message.source() == config::Vlp16::LOG ? Input::kLog : Input::kOutside;
   params.data_port = message.data_port();
   params.position_port = message.position_port();
-  params.decoder.model = ToChoice(message.model());
-  params.decoder.time = ToChoice(message.time_source());
+  params.decoder.model = ToChoice<ModelChoice>(message.model());
+  params.decoder.time = ToChoice<TimeChoice>(message.time_source());
   params.decoder.cut_azimuth_rad = DegToRad(message.cut_azimuth_deg());
   params.use_vertical_origin_offsets = message.use_vertical_origin_offsets();
   params.sources = ToSources(config_folder, message);

@@ -14,7 +14,7 @@ enum class Input { kOutside, kLog };  // kLog: subscribes LIDAR_PACKETS and publ
 
 /// Where datagrams come from: for main. The service does not look at it.
 struct Sources {
-  enum class Kind { kUdp, kCapture, kLog, kInterface };
+  enum class Kind { kUdp, kCapture, kLog, kInterface };  // in the order of the schema
   Kind kind = Kind::kUdp;
   std::vector<std::filesystem::path> capture_files;  // in the order in which they are read
   double capture_speed = 1.0;                        // 0 = as fast as possible

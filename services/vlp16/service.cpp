@@ -24,22 +24,9 @@ constexpr std::chrono::seconds kLinePeriod(1);
 constexpr std::chrono::seconds kSameLinePeriod(60);
 
 std::string_view Text(ClockState state) {
-  switch (state) {
-    case ClockState::kUnknown:
-      return "unknown (no position packets)";
-    case ClockState::kNoPps:
-      return "no PPS";
-    case ClockState::kAcquiring:
-      return "acquiring";
-    case ClockState::kLockedWithoutTime:
-      return "locked without time";
-    case ClockState::kLocked:
-      return "locked";
-    case ClockState::kFreeRunning:
-      return "free-running";
-    default:
-      return "PPS error";
-  }
+  constexpr std::array<std::string_view, 7> kTexts{
+      "unknown (no position packets)", "no PPS", "acquiring", "locked without time", "locked", "free-running", "PPS error"};
+  return kTexts[static_cast<std::size_t>(state)];
 }
 
 std::string Text(double value, int num_decimals) {
@@ -74,7 +61,7 @@ bool Service::IsTaken(Utime host_time, int udp_port, const Sender& sender, Bytes
   if ((!is_data && !is_position) || !UtimeFromWire(ToUtimeUs(host_time))) return true;
   const auto stream = is_data ? Stream::kData : Stream::kPosition;
   const auto before = lock_.holder(stream);
-  const auto outcome = lock_.Judge(host_time, stream, sender, payload);
+  const auto outcome = lock_.Check(host_time, stream, sender, payload);
   if (outcome.is_new_holder) NoteHolder(host_time, stream, before);
   if (!outcome.is_taken) NoteRefused(host_time, stream, sender, outcome.is_valid);
   return outcome.is_taken;
@@ -86,7 +73,7 @@ void Service::NoteHolder(Utime host_time, Stream stream, const std::optional<Sen
   // Whoever was refused until now is the lidar.
   if (refusal_ && refusal_->sender == holder) refusal_.reset();
   if (holder.address.empty() || stream != Stream::kData || !on_notice_) return;
-  std::string line = "takes the lidar at " + ToText(holder);
+  std::string line = "uses the lidar at " + ToText(holder);
   if (before) line += "; the one at " + ToText(*before) + " is silent";
   told_refusal_ = Refusal{.sender = holder, .time = host_time};
   on_notice_(line);
@@ -115,7 +102,7 @@ std::string Service::ForeignComplaint() const {
   }
   return (is_valid ? "two lidars on one port: " : "packets that are not the lidar's: ") + ToText(sender) + " sends to port " + std::to_string(port) +
          " besides the lidar at " + (holder ? ToText(*holder) : "another address") + " (" + refused +
-         "); allowed_source_address in vlp16.txtpb takes one lidar alone";
+         "); set allowed_source_address in vlp16.txtpb to the lidar to use";
 }
 
 void Service::AdvanceTo(Utime host_time) { AdvanceTo(host_time, host_time); }

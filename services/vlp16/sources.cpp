@@ -98,7 +98,7 @@ void CheckSources(const std::filesystem::path& config_folder, const Sources& sou
   }
   if (sources.kind != Sources::Kind::kCapture) return;
   for (std::size_t i = 0; i < sources.capture_files.size(); ++i) {
-    if (!sources.capture_files[i].has_filename()) continue;  // an empty name, told by LoadParams
+    if (!sources.capture_files[i].has_filename()) continue;  // an empty name, reported by LoadParams
     try {
       const CaptureReader reader(sources.capture_files[i]);
     } catch (const std::exception& error) {
@@ -150,7 +150,7 @@ LiveOptions ToLiveOptions(const Params& params) {
 std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service& service) {
   const auto& sources = params.sources;
   std::vector<runtime::LiveReader::NamedSource> opened;
-  const auto add = [&opened](auto source) { opened.push_back({"", "", std::move(source)}); };
+  const auto add = [&opened](auto source) { opened.push_back({"", std::move(source)}); };
   switch (sources.kind) {
     case Sources::Kind::kLog:
       return nullptr;

@@ -22,24 +22,15 @@ std::int32_t Count(const std::vector<T>& values) {
 
 std::int32_t ToWire(TimeSource source, std::int32_t host, std::int32_t sensor) { return source == TimeSource::kHost ? host : sensor; }
 
-std::int32_t ToWire(ClockState state) {
-  switch (state) {
-    case ClockState::kUnknown:
-      return lidar_clock_t::STATE_UNKNOWN;
-    case ClockState::kNoPps:
-      return lidar_clock_t::STATE_NO_PPS;
-    case ClockState::kAcquiring:
-      return lidar_clock_t::STATE_ACQUIRING;
-    case ClockState::kLockedWithoutTime:
-      return lidar_clock_t::STATE_LOCKED_WITHOUT_TIME;
-    case ClockState::kLocked:
-      return lidar_clock_t::STATE_LOCKED;
-    case ClockState::kFreeRunning:
-      return lidar_clock_t::STATE_FREE_RUNNING;
-    default:
-      return lidar_clock_t::STATE_ERROR;
-  }
-}
+// In the order of the wire.
+std::int32_t ToWire(ClockState state) { return static_cast<std::int32_t>(state); }
+static_assert(static_cast<int>(ClockState::kUnknown) == lidar_clock_t::STATE_UNKNOWN &&
+              static_cast<int>(ClockState::kNoPps) == lidar_clock_t::STATE_NO_PPS &&
+              static_cast<int>(ClockState::kAcquiring) == lidar_clock_t::STATE_ACQUIRING &&
+              static_cast<int>(ClockState::kLockedWithoutTime) == lidar_clock_t::STATE_LOCKED_WITHOUT_TIME &&
+              static_cast<int>(ClockState::kLocked) == lidar_clock_t::STATE_LOCKED &&
+              static_cast<int>(ClockState::kFreeRunning) == lidar_clock_t::STATE_FREE_RUNNING &&
+              static_cast<int>(ClockState::kError) == lidar_clock_t::STATE_ERROR);
 
 std::vector<std::int32_t> ReturnKinds(ReturnMode mode) {
   switch (mode) {

@@ -18,7 +18,7 @@ namespace lookout::vlp16 {
 lidar_packets_t ToMessage(const PacketBundle& bundle);
 
 /// @return nullopt unless the whole message is valid: counts that agree, at most Bundler::kMaxItems payloads, times and marks that exist.
-///         What is inside the payloads is not judged.
+///         What is inside the payloads is not checked.
 std::optional<PacketBundle> ToBundle(const lidar_packets_t& message);
 
 lidar_nmea_t ToMessage(const SentenceOfLidar& sentence, std::int64_t seq, std::int64_t raw_seq);

@@ -25,7 +25,7 @@
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
-#include "tools/eval/report_html.hpp"
+#include "tools/eval/report_page.hpp"
 #include "tools/eval/result_tables.hpp"
 #include "tools/eval/sweep.hpp"
 #include "tools/import/kitti.hpp"

@@ -10,10 +10,7 @@
 #include "common/core/printable.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
-#include "tools/export/ply.hpp"
-#include "tools/export/sink.hpp"
-#include "tools/export/svg.hpp"
-#include "tools/export/tables.hpp"
+#include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
 

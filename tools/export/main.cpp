@@ -8,7 +8,7 @@
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/options.hpp"
 #include "tools/export/export.hpp"
-#include "tools/export/tables.hpp"
+#include "tools/export/sinks.hpp"
 
 int main(int argc, char** argv) {
   namespace exporter = lookout::exporter;

@@ -1,12 +1,10 @@
-#include "tools/export/ply.hpp"
-
 #include <bit>
 #include <cstdint>
 #include <string>
 
 #include "tools/export/colour.hpp"
 #include "tools/export/returns.hpp"
-#include "tools/export/scans.hpp"
+#include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
 

@@ -18,7 +18,7 @@
 #include "tools/export/boat_of_log.hpp"
 #include "tools/export/colour.hpp"
 #include "tools/export/returns.hpp"
-#include "tools/export/svg.hpp"
+#include "tools/export/sinks.hpp"
 #include "tools/export/words.hpp"
 
 namespace lookout::exporter {

@@ -1,4 +1,4 @@
-// What takes the messages of a log and makes text of them.
+// Makes text out of the messages of a log.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ class Sink {
  public:
   virtual ~Sink() = default;
 
-  /// Channels that it takes; the first is the one that must be there.
+  /// Channels that it reads; the first is the one that must be there.
   virtual std::vector<bus::Channel> Channels() const = 0;
 
   /// Takes a message of one of its channels, in the order of the log, and appends to `text` what can be written of it.

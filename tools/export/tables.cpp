@@ -1,5 +1,3 @@
-#include "tools/export/tables.hpp"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -19,7 +17,7 @@
 #include "lookout/segments_t.hpp"
 #include "tools/export/csv.hpp"
 #include "tools/export/returns.hpp"
-#include "tools/export/scans.hpp"
+#include "tools/export/sinks.hpp"
 #include "tools/export/velocity.hpp"
 #include "tools/export/words.hpp"
 
@@ -77,7 +75,7 @@ void Append(const pose_t& pose, std::string& text) {
   constexpr double kChiSquare95 = 5.99;
   const Eigen::Vector2d velocity_mps = VelocityHere(pose);
   const double speed_mps = velocity_mps.norm();
-  // A boat at rest has no course: of a speed that is not told from 0 the direction is noise.
+  // A boat at rest has no course: the direction of a speed that may be 0 is noise.
   const double variance_mps2 = std::max(pose.covariance[kVelocityRow][kVelocityRow], pose.covariance[kVelocityRow + 1][kVelocityRow + 1]);
   const bool is_at_rest = speed_mps == 0.0 || speed_mps * speed_mps < kChiSquare95 * variance_mps2;
   const double course_rad = is_at_rest ? kUnknown : std::atan2(velocity_mps.x(), velocity_mps.y());

@@ -11,7 +11,7 @@
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/pose_t.hpp"
-#include "tools/export/svg.hpp"
+#include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
 namespace {

@@ -28,7 +28,7 @@ using std::chrono::seconds;
 // HEALTH and the slowest data come once a second, RUN_INFO every ten.
 constexpr seconds kSilence(3);
 constexpr seconds kRunInfoSilence(25);
-// OBSTACLES come with every turn: what is older says nothing about the water of now.
+// OBSTACLES come with every scan: what is older says nothing about the water of now.
 constexpr seconds kObstaclesAge(2);
 
 // Where a message stands in its channel's sequence.
@@ -69,7 +69,7 @@ const health_counter_t* FindCounter(const health_t& health, std::string_view nam
   return found == health.counters.end() ? nullptr : &*found;
 }
 
-// In the order of the data.
+// In the order of the data flow.
 std::size_t PlaceInSuite(std::string_view process) {
   return static_cast<std::size_t>(std::ranges::find(bus::kServices, process, &bus::ServiceRow::name) - bus::kServices.begin());
 }
@@ -131,15 +131,15 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
     if (const auto message = bus::Decode<pose_t>(bytes)) {
       place = PlaceOf(*message);
       nearest_.Take(*message);
-      pose_ = *message;
-      pose_time_ = now;
+      own_.pose = *message;
+      own_.pose_time = now;
     }
   } else if (entry->name == bus::kGnssFix.name) {
     if (const auto message = bus::Decode<gnss_fix_t>(bytes)) {
       place = PlaceOf(*message);
-      fix_quality_ = message->quality;
-      num_satellites_ = message->num_satellites;
-      fix_time_ = now;
+      own_.fix_quality = message->quality;
+      own_.num_satellites = message->num_satellites;
+      own_.fix_time = now;
     }
   } else {
     const auto decoder = std::ranges::find(kDecoders, entry->type, &Decoder::type);
@@ -272,20 +272,10 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
       alarm.is_active = true;
       alarm.text = "guard zone not watched: no HEALTH of " + key.name;
     }
-    // Where several tell of it, an alarm counts before none, then the newer.
+    // Where several processes have one, an alarm counts before none, then the newer.
     if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
   }
   return newest;
-}
-
-OwnShip Board::Own(TimePoint now) const {
-  OwnShip own;
-  own.pose = pose_;
-  own.pose_age = now - pose_time_;
-  own.fix_quality = fix_quality_;
-  own.num_satellites = num_satellites_;
-  own.fix_age = now - fix_time_;
-  return own;
 }
 
 const NearestObstacles* Board::Obstacles(TimePoint now) const {

@@ -42,10 +42,10 @@ struct ProcessLine {
 /// Where the own boat is, out of POSE and GNSS_FIX.
 struct OwnShip {
   std::optional<pose_t> pose;  // the newest
-  std::chrono::nanoseconds pose_age{0};
+  TimePoint pose_time;
   std::optional<std::int32_t> fix_quality;  // as in gnss_fix_t, of the newest
-  std::int32_t num_satellites = -1;         // -1 = not told
-  std::chrono::nanoseconds fix_age{0};
+  std::int32_t num_satellites = -1;         // -1 = not known
+  TimePoint fix_time;
 };
 
 /// The alarm of the guard zone, out of HEALTH.
@@ -60,21 +60,21 @@ class Board {
   /// @param start  since when it listens
   explicit Board(TimePoint start) : start_(start) {}
 
-  /// Takes whatever came on a channel. What does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
+  /// A message of any channel. What does not decode is counted. Memory is bounded: names above kMaxChannels are not told apart.
   void Take(std::string_view channel, Bytes bytes, TimePoint now);
 
   /// Those of the channel table in its order, then the others by name.
   std::vector<ChannelLine> Channels(TimePoint now) const;
 
-  /// Those of the suite in the order of the data, then the others by name. One that fell silent stays, until another of its name on its host has
-  /// taken its place. Of several that speak under one name each has its line, that tells host and process id. Names that are not of the suite count
+  /// Those of the suite in the order of the data flow, then the others by name. One that fell silent stays, until another of its name on its host has
+  /// taken its place. Of several that speak under one name each has its line, with host and process id. Names that are not of the suite count
   /// as kMaxStrangers at most.
   std::vector<ProcessLine> Processes(TimePoint now) const;
 
-  /// @return nullopt when no process tells of an alarm
+  /// @return nullopt when no process has a guard zone
   std::optional<Alarm> NearestAlarm(TimePoint now) const;
 
-  OwnShip Own(TimePoint now) const;
+  const OwnShip& own() const { return own_; }
 
   /// @return nullptr when OBSTACLES never came, or for more than 2 s
   const NearestObstacles* Obstacles(TimePoint now) const;
@@ -123,11 +123,7 @@ class Board {
   Nearest nearest_;
   std::int64_t num_unlisted_ = 0;
   std::int64_t num_unlisted_health_ = 0;
-  std::optional<pose_t> pose_;
-  TimePoint pose_time_;
-  std::optional<std::int32_t> fix_quality_;
-  std::int32_t num_satellites_ = -1;
-  TimePoint fix_time_;
+  OwnShip own_;
 };
 
 }  // namespace lookout::top

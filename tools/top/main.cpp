@@ -1,4 +1,5 @@
 // lookout-top: the bus on one screen of a terminal.
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/signalfd.h>
@@ -29,7 +30,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   bool once = false;
-  double once_s = 3.0;  // the last three of HEALTH, thirty turns
+  double once_s = 3.0;  // the last three of HEALTH, thirty scans
   bool sure_only = false;
   std::string lcm_url;
 };
@@ -40,7 +41,7 @@ Options ParseOptions(int argc, char** argv) {
                "lookout-top");
   app.add_flag("--once", options.once, "listen for --seconds, print one screen as text, exit");
   app.add_option("--seconds", options.once_s, "how long --once listens (1 to 3600)")->check(CLI::Range(1.0, 3600.0))->capture_default_str();
-  app.add_flag("--sure", options.sure_only, "obstacles that one turn is sure of only");
+  app.add_flag("--sure", options.sure_only, "only obstacles that the segmenter is sure of");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
   app.set_version_flag("--version", "lookout-top " + lookout::runtime::Version());
   try {
@@ -84,7 +85,7 @@ class Listener {
     bus_.SubscribeAll([this](std::string_view channel, lookout::Bytes bytes) { board_.Take(channel, bytes, Clock::now()); });
   }
 
-  /// Waits for messages, stop signals and (where asked) keys, at most for so long, and takes the messages that are there.
+  /// Waits for messages, stop signals and (where asked) keys, at most for so long, and handles the messages that are there.
   /// @return false when it is to stop
   bool Wait(const StopSignals& signals, bool with_keys, std::chrono::milliseconds timeout) {
     std::array<pollfd, 3> descriptors{
@@ -92,7 +93,7 @@ class Listener {
     // A signal that was not blocked (a terminal of another size) ends the wait early, as a message does.
     if (poll(descriptors.data(), descriptors.size(), static_cast<int>(timeout.count())) < 0) return errno == EINTR;
     if (descriptors[0].revents != 0 || (descriptors[2].revents & (POLLHUP | POLLERR)) != 0) return false;
-    // Not for ever: keys want their turn whatever the load.
+    // Not for ever: keys must be read whatever the load.
     constexpr int kMaxMessages = 256;
     for (int i = 0; i < kMaxMessages && descriptors[1].revents != 0; ++i) {
       if (!bus_.HandleOnce(std::chrono::milliseconds(0))) break;
@@ -110,10 +111,8 @@ class Listener {
 
 std::string Title(const std::string& lcm_url) {
   const auto now = std::chrono::system_clock::to_time_t(lookout::runtime::HostNow());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  return fmt::format("lookout-top {}   {:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC   {}", lookout::runtime::Version(), utc.tm_year + 1900, utc.tm_mon + 1,
-                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec, lookout::top::Printable(lcm_url));
+  return fmt::format("lookout-top {}   {:%Y-%m-%d %H:%M:%S} UTC   {}", lookout::runtime::Version(), fmt::gmtime(now),
+                     lookout::top::Printable(lcm_url));
 }
 
 void PrintOnce(const Options& options) {

@@ -24,18 +24,11 @@ bool IsNearer(const ObstacleLine& a, const ObstacleLine& b) {
 void Nearest::Take(const obstacles_t& part, TimePoint now) {
   Part kept{part.utime_us, part.seq, part.part_index, part.num_parts, {}, now};
   for (const auto& obstacle : part.obstacles) {
-    ObstacleLine line;
-    line.id = obstacle.id;
-    line.status = obstacle.status;
-    line.confidence = obstacle.confidence;
-    line.kind = obstacle.kind;
-    line.range_m = obstacle.range_m;
-    line.bearing_rad = obstacle.bearing_rad;
-    line.latitude_deg = obstacle.latitude_deg;
-    line.longitude_deg = obstacle.longitude_deg;
-    line.length_m = obstacle.length_m;
-    line.width_m = obstacle.width_m;
-    line.height_m = obstacle.height_m;
+    ObstacleLine line{obstacle};
+    for (auto* numbers : {&line.footprint_vessel_x_m, &line.footprint_vessel_y_m, &line.footprint_east_m, &line.footprint_north_m,
+                          &line.waterline_vessel_x_m, &line.waterline_vessel_y_m, &line.waterline_east_m, &line.waterline_north_m}) {
+      *numbers = {};
+    }
     if (const auto heading_rad = headings_.At(obstacle.utime_us); heading_rad && std::isfinite(line.bearing_rad)) {
       line.true_bearing_rad = WrapTo2Pi(*heading_rad + line.bearing_rad);
     }

@@ -13,20 +13,9 @@
 
 namespace lookout::top {
 
-/// What a line about an obstacle needs. NaN = not known.
-struct ObstacleLine {
-  std::int32_t id = 0;
-  std::int32_t status = 0;                                             // as in obstacle_t
-  std::int32_t confidence = 0;                                         // as in obstacle_t
-  std::int32_t kind = 0;                                               // as in obstacle_t
-  double range_m = 0.0;                                                // horizontal, vessel origin to the nearest return
-  double bearing_rad = 0.0;                                            // of the nearest return, from the bow clockwise
-  double true_bearing_rad = std::numeric_limits<double>::quiet_NaN();  // from true north clockwise
-  double latitude_deg = 0.0;                                           // centre of the seen footprint
-  double longitude_deg = 0.0;
-  double length_m = 0.0;
-  double width_m = 0.0;
-  double height_m = 0.0;
+/// An obstacle without its outlines.
+struct ObstacleLine : obstacle_t {
+  double true_bearing_rad = std::numeric_limits<double>::quiet_NaN();  // of the nearest return, from true north clockwise; NaN = not known
 };
 
 /// The nearest of a scan, at most Nearest::kMaxLines.

@@ -95,13 +95,13 @@ std::vector<Span> ProcessRows(const Board& board, TimePoint now, int width) {
 }
 
 // "own 43.629590 -72.149989  heading 094 hdt  1.2 m/s  pose ok  fix rtk_fixed  course 092  14 satellites"
-Span OwnShipSpan(const OwnShip& own, int width) {
+Span OwnShipSpan(const OwnShip& own, TimePoint now, int width) {
   if (!own.pose) return {Fitting({"own ship: no POSE"}, width), Style::kFault};
   const auto& pose = *own.pose;
-  const bool is_pose_old = own.pose_age > kOwnShipAge;
-  const bool has_fix = own.fix_quality && own.fix_age <= kOwnShipAge;
+  const bool is_pose_old = now - own.pose_time > kOwnShipAge;
+  const bool has_fix = own.fix_quality && now - own.fix_time <= kOwnShipAge;
   std::vector<std::string> cells{"own"};
-  if (is_pose_old) cells.push_back(fmt::format(" (no POSE for {:.0f} s)", Seconds(own.pose_age)));
+  if (is_pose_old) cells.push_back(fmt::format(" (no POSE for {:.0f} s)", Seconds(now - own.pose_time)));
   const auto degrees = [](double value) { return " " + (std::abs(value) <= 360.0 ? fmt::format("{:.6f}", value) : "-"); };
   const bool has_position = std::isfinite(pose.latitude_deg) && std::isfinite(pose.longitude_deg);
   cells.push_back(has_position ? degrees(pose.latitude_deg) + degrees(pose.longitude_deg) : " without position");
@@ -163,12 +163,13 @@ std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, View view) {
   for (std::size_t i = 0; i < std::min(lines.size(), most); ++i) rows.push_back(ObstacleSpan(i, lines[i], view.width));
   if (rows.empty()) rows.push_back({sure_only ? "nothing sure in sight" : "nothing in sight", Style::kPlain});
   if (obstacles->num_parts_missing > 0) {
-    rows.insert(rows.begin(), {fmt::format("{} parts of this turn were lost: what follows is not all", obstacles->num_parts_missing), Style::kFault});
+    rows.insert(rows.begin(),
+                {fmt::format("{} parts of this scan were lost: obstacles are missing below", obstacles->num_parts_missing), Style::kFault});
   }
   return rows;
 }
 
-// A row for each thing that it tells; what is too long ends in "..".
+// A row for each thing; what is too long ends in "..".
 std::vector<std::string> AlarmLines(const Alarm& alarm, int width) {
   std::vector<std::string> lines;
   std::string_view text = alarm.text;
@@ -249,7 +250,7 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
   rows.reserve(alarm_lines.size());
   for (const auto& line : alarm_lines) rows.push_back({{Left(line, view.width), Style::kAlarm}});
   if (plan.has_title) rows.push_back({{title, Style::kPlain}});
-  rows.push_back({OwnShipSpan(board.Own(now), view.width)});
+  rows.push_back({OwnShipSpan(board.own(), now, view.width)});
   if (plan.has_header) {
     const auto head = ChannelsHeader(std::min(view.width, kChannelsWidth));
     rows.push_back({{Left(Left(head, kChannelsWidth) + " " + (is_wide ? ProcessesHeader(processes_width) : ""), view.width), Style::kHeader}});

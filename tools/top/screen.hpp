@@ -19,7 +19,7 @@ using Row = std::vector<Span>;
 struct View {
   int width = 80;
   int height = 0;          // 0 = as many rows as it takes
-  bool sure_only = false;  // obstacles that one turn is sure of; else all
+  bool sure_only = false;  // obstacles that the segmenter is sure of; else all
 };
 
 /// The alarm of the guard zone stands on top while there is one, then the own ship. Below are channels (left) and processes (right), then the nearest

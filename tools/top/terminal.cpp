@@ -20,7 +20,7 @@ constexpr short kWarningPair = 1;
 constexpr short kFaultPair = 2;
 constexpr short kAlarmPair = 3;
 
-// What is told by colour is told by bold and reverse too, for terminals without.
+// Bold and reverse say the same as the colour, for terminals without.
 attr_t AttributesOf(Style style) {
   const auto colour = [](short pair) { return has_colors() ? static_cast<attr_t>(COLOR_PAIR(pair)) : attr_t{0}; };
   switch (style) {

@@ -83,17 +83,7 @@ void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& 
     if (segment.hull.size() > kMaxFootprintVertices) ++counts_.footprints_thinned;
     if (segment.waterline.size() > kMaxWaterlineVertices) ++counts_.waterlines_thinned;
     const auto& obstacle = placed.obstacles.emplace_back(PlaceSegment(segment, poses_, placed.datum, has_timed_out, placement_));
-    switch (obstacle.status) {
-      case ObstacleStatus::kOk:
-        ++counts_.obstacles_ok;
-        break;
-      case ObstacleStatus::kVesselFrameOnly:
-        ++counts_.obstacles_vessel_frame_only;
-        break;
-      case ObstacleStatus::kPoseTimeout:
-        ++counts_.obstacles_pose_timeout;
-        break;
-    }
+    ++counts_.obstacles_by_status[static_cast<std::size_t>(obstacle.status)];
   }
   ++counts_.parts_released;
   waiting_.pop_front();
@@ -108,9 +98,9 @@ std::vector<Counter> Georeferencer::counters() const {
           {"poses_taken", counts_.poses_taken},
           {"poses_duplicate", counts_.poses_duplicate},
           {"pose_restarts", counts_.pose_restarts},
-          {"obstacles_ok", counts_.obstacles_ok},
-          {"obstacles_vessel_frame_only", counts_.obstacles_vessel_frame_only},
-          {"obstacles_pose_timeout", counts_.obstacles_pose_timeout},
+          {"obstacles_ok", counts_.obstacles_by_status[0]},
+          {"obstacles_vessel_frame_only", counts_.obstacles_by_status[1]},
+          {"obstacles_pose_timeout", counts_.obstacles_by_status[2]},
           {"footprints_thinned", counts_.footprints_thinned},
           {"waterlines_thinned", counts_.waterlines_thinned}};
 }

@@ -1,6 +1,7 @@
-// Brings segments and poses together: a turn is placed once POSE has reached its last return.
+// Brings segments and poses together: a scan is placed once POSE has reached its last return.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -14,12 +15,12 @@
 
 namespace lookout::georeferencer {
 
-/// What it gives depends on the order of the segments and on that of the poses, not on how the two interleave, as long as host time is kept out
+/// Its output depends on the order of the segments and on that of the poses, not on how the two interleave, as long as host time is kept out
 /// (AdvanceTo is not called), POSE does not go back in time (navigator starts again in the past), and runs ahead by less than
 /// PoseHistory::kLength, or segments by less than kMaxWaiting.
 class Georeferencer {
  public:
-  /// Messages that may wait for POSE: at 10 turns a second 100 s of them.
+  /// Messages that may wait for POSE: at 10 scans a second 100 s of them.
   static constexpr std::size_t kMaxWaiting = 1000;
 
   Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout);
@@ -54,9 +55,7 @@ class Georeferencer {
     std::int64_t poses_taken = 0;
     std::int64_t poses_duplicate = 0;
     std::int64_t pose_restarts = 0;
-    std::int64_t obstacles_ok = 0;
-    std::int64_t obstacles_vessel_frame_only = 0;
-    std::int64_t obstacles_pose_timeout = 0;
+    std::array<std::int64_t, 3> obstacles_by_status{};
     std::int64_t footprints_thinned = 0;
     std::int64_t waterlines_thinned = 0;
   };

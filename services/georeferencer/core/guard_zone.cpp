@@ -21,34 +21,34 @@ Eigen::Vector2d DirectionOf(double bearing_rad) {
 
 double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// Keeps the nearest of the points that it is shown.
-class NearestSoFar {
+// The nearest of some points and edges within a sector.
+class NearestFinder {
  public:
-  explicit NearestSoFar(const Sector& bearing) : bearing_(bearing) {}
+  explicit NearestFinder(const Sector& bearing) : bearing_(bearing) {}
 
-  void Show(const Eigen::Vector2d& p_vessel_m) {
+  void Add(const Eigen::Vector2d& p_vessel_m) {
     const double bearing_rad = BearingOf(p_vessel_m);
-    if (bearing_.Contains(bearing_rad)) Take({p_vessel_m.norm(), bearing_rad});
+    if (bearing_.Contains(bearing_rad)) Keep({p_vessel_m.norm(), bearing_rad});
   }
 
-  void ShowEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
+  void AddEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
     const Eigen::Vector2d along = to_m - from_m;
-    if (along.squaredNorm() > 0.0) Show(from_m + std::clamp(-from_m.dot(along) / along.squaredNorm(), 0.0, 1.0) * along);
+    if (along.squaredNorm() > 0.0) Add(from_m + std::clamp(-from_m.dot(along) / along.squaredNorm(), 0.0, 1.0) * along);
     // Where the sector's sides cut the edge: the nearest point of what lies within may be there.
     for (const double side_rad : {bearing_.start_rad, bearing_.start_rad + bearing_.width_rad}) {
       const Eigen::Vector2d side = DirectionOf(side_rad);
-      const double turned = Cross(side, along);
-      if (turned == 0.0) continue;
-      const double range_m = Cross(from_m, along) / turned;
-      const double share = Cross(from_m, side) / turned;
-      if (range_m >= 0.0 && share >= 0.0 && share <= 1.0) Take({range_m, WrapTo2Pi(side_rad)});
+      const double sine = Cross(side, along);
+      if (sine == 0.0) continue;
+      const double range_m = Cross(from_m, along) / sine;
+      const double share = Cross(from_m, side) / sine;
+      if (range_m >= 0.0 && share >= 0.0 && share <= 1.0) Keep({range_m, WrapTo2Pi(side_rad)});
     }
   }
 
   const std::optional<NearestPoint>& nearest() const { return nearest_; }
 
  private:
-  void Take(const NearestPoint& point) {
+  void Keep(const NearestPoint& point) {
     if (!nearest_ || point.range_m < nearest_->range_m) nearest_ = point;
   }
 
@@ -64,7 +64,7 @@ bool IsInsideBox(const GuardZoneParams& params, const Eigen::AlignedBox3d& box_m
     constexpr double kRoundingM = 1e-9;
     return flat_m.exteriorDistance(Eigen::Vector2d(params.range_m * DirectionOf(bearing_rad))) <= kRoundingM;
   };
-  // How far a sector reaches to each side of a box is told by its apex, the ends of its arc, and the four directions that lie within.
+  // How far a sector reaches to each side of a box shows at its apex, the ends of its arc, and the four directions that lie within.
   if (!flat_m.contains(Eigen::Vector2d(0.0, 0.0))) return false;
   if (!is_inside(params.bearing.start_rad) || !is_inside(params.bearing.start_rad + params.bearing.width_rad)) return false;
   return std::ranges::all_of(std::array{0.0, 0.5 * kPi, kPi, 1.5 * kPi},
@@ -72,20 +72,20 @@ bool IsInsideBox(const GuardZoneParams& params, const Eigen::AlignedBox3d& box_m
 }
 
 std::optional<NearestPoint> NearestWithin(const Sector& bearing, const VesselOutline& outline) {
-  NearestSoFar nearest(bearing);
+  NearestFinder nearest(bearing);
   const bool has_waterline = !outline.waterline_m.empty();
   const auto& corners_m = has_waterline ? outline.waterline_m : outline.footprint_m;
-  nearest.Show(outline.nearest_m.head<2>());
-  for (const auto& corner_m : corners_m) nearest.Show(corner_m.head<2>());
-  for (std::size_t i = 0; i + 1 < corners_m.size(); ++i) nearest.ShowEdge(corners_m[i].head<2>(), corners_m[i + 1].head<2>());
-  if (!has_waterline && corners_m.size() > 2) nearest.ShowEdge(corners_m.back().head<2>(), corners_m.front().head<2>());
+  nearest.Add(outline.nearest_m.head<2>());
+  for (const auto& corner_m : corners_m) nearest.Add(corner_m.head<2>());
+  for (std::size_t i = 0; i + 1 < corners_m.size(); ++i) nearest.AddEdge(corners_m[i].head<2>(), corners_m[i + 1].head<2>());
+  if (!has_waterline && corners_m.size() > 2) nearest.AddEdge(corners_m.back().head<2>(), corners_m.front().head<2>());
   return nearest.nearest();
 }
 
 std::optional<NearestPoint> NearestInZone(const GuardZoneParams& params, const SegmentPart& part, const Eigen::Isometry3d& T_vessel_lidar) {
   std::optional<NearestPoint> nearest;
   for (const auto& segment : part.segments) {
-    if (segment.judgement.confidence == Confidence::kTentative && !params.takes_tentative) continue;
+    if (segment.rating.confidence == Confidence::kTentative && !params.takes_tentative) continue;
     const auto point = NearestWithin(params.bearing, OutlineOf(segment, T_vessel_lidar));
     if (point && point->range_m <= params.range_m && (!nearest || point->range_m < nearest->range_m)) nearest = point;
   }

@@ -1,4 +1,4 @@
-// What georeferencer takes (segments of one SEGMENTS message) and gives (their obstacles).
+// Input and output of the georeferencer: the segments of one SEGMENTS message, and their obstacles.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,28 +20,32 @@ struct HullVertex {
 enum class Confidence : std::int32_t { kTentative = 1, kSure = 2 };
 enum class Kind : std::int32_t { kObstacle = 0, kLand = 1 };
 
-/// What the segmenter says of a segment; its obstacle repeats it.
-struct Judgement {
+/// How the segmenter rates a segment; its obstacle repeats it.
+struct Rating {
   Confidence confidence = Confidence::kSure;
   std::int32_t grounds = 0;  // bits of the wire: why it is tentative
   Kind kind = Kind::kObstacle;
   float seen_share = 1.0F;  // 0 to 1, of the columns from its first to its last
 };
 
-/// One segment in the lidar frame. Numbers are finite, times within the turn, the hull is not empty.
-struct Segment {
+/// What an obstacle has of its segment.
+struct Seen {
   Utime time;  // mean of the times of its returns
   std::int32_t id = 0;
-  Judgement judgement;
+  Rating rating;
   std::int32_t num_points = 0;
+  float length_m = 0.0F;
+  float width_m = 0.0F;
+  float mean_reflectivity = 0.0F;
+};
+
+/// One segment in the lidar frame. Numbers are finite, times within the scan, the hull is not empty.
+struct Segment : Seen {
   Eigen::Vector3d centroid_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d nearest_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d top_m = Eigen::Vector3d::Zero();  // highest return along the vessel's z axis
-  float length_m = 0.0F;
-  float width_m = 0.0F;
   double min_z_m = 0.0;
   double max_z_m = 0.0;
-  float mean_reflectivity = 0.0F;
   std::vector<HullVertex> hull;       // counter-clockwise seen from the lidar's z axis
   std::vector<HullVertex> waterline;  // of land, an open line, clockwise seen from the lidar's z axis; empty for others
 };
@@ -58,19 +62,17 @@ struct ScanHead {
   std::int32_t num_scan_segments = 0;
 };
 
-/// One SEGMENTS message: a turn, or a part of one.
+/// One SEGMENTS message: a scan, or a part of one.
 struct SegmentPart {
   ScanHead head;
   std::vector<Segment> segments;
 };
 
-enum class ObstacleStatus { kOk, kVesselFrameOnly, kPoseTimeout };
+// Numbers are those of the wire.
+enum class ObstacleStatus : std::int32_t { kOk = 0, kVesselFrameOnly = 1, kPoseTimeout = 2 };
 
 /// One obstacle. Members for the map are NaN, footprint_map_m and waterline_map_m are empty, unless status is kOk.
-struct Obstacle {
-  Utime time;
-  std::int32_t id = 0;
-  Judgement judgement;
+struct Obstacle : Seen {
   ObstacleStatus status = ObstacleStatus::kVesselFrameOnly;
   double latitude_deg = kUnknown;
   double longitude_deg = kUnknown;
@@ -81,11 +83,7 @@ struct Obstacle {
   Eigen::Vector3d nearest_vessel_m = Eigen::Vector3d::Zero();
   double range_m = 0.0;      // horizontal, from the vessel's origin to the nearest return
   double bearing_rad = 0.0;  // of the nearest return, from the bow clockwise, 0 to 2 pi
-  float length_m = 0.0F;
-  float width_m = 0.0F;
   double height_m = 0.0;
-  std::int32_t num_points = 0;
-  float mean_reflectivity = 0.0F;
   std::vector<Eigen::Vector2d> footprint_vessel_m;  // counter-clockwise seen from above
   std::vector<Eigen::Vector2d> footprint_map_m;
   std::vector<Eigen::Vector2d> waterline_vessel_m;  // clockwise seen from above

@@ -22,12 +22,10 @@ using Eigen::Vector3d;
 // Area over extent squared below which an outline counts as a line: there the centroid divides two numbers that are rounding errors.
 constexpr double kMinAreaRatio = 1e-4;
 
-// Of a pose or a place.
-template <typename Placed>
-Isometry3d TransformMapVessel(const Placed& pose) {
+Isometry3d TransformMapVessel(const Place& place) {
   Isometry3d T_map_vessel = Isometry3d::Identity();
-  T_map_vessel.linear() = pose.R_map_here * RotationMapVessel(pose.heading_rad, pose.pitch_rad, pose.roll_rad);
-  T_map_vessel.translation() = pose.position_map_m;
+  T_map_vessel.linear() = place.R_map_here * RotationMapVessel(place.heading_rad, place.pitch_rad, place.roll_rad);
+  T_map_vessel.translation() = place.position_map_m;
   return T_map_vessel;
 }
 
@@ -169,7 +167,7 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
   const Vector3d levelled_m = by_pitch * rolled_m;
   const Vector3d p_m = by_heading * levelled_m;  // map axes, from the vessel's origin
 
-  // A turn about an axis moves a point by axis x point. Heading and pitch are counted against the right-handed sense.
+  // A rotation about an axis moves a point by axis x point. Heading and pitch are counted against the right-handed sense.
   Eigen::Matrix<double, 2, 5> jacobian;
   jacobian.leftCols<2>().setIdentity();
   jacobian.col(2) = (by_heading * (by_pitch * Vector3d::UnitX().cross(rolled_m))).head<2>();
@@ -183,7 +181,7 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
 
   Matrix2d covariance_m2 = jacobian * pose.covariance * jacobian.transpose();
   covariance_m2 += params.mounting_sd_rad * params.mounting_sd_rad * (beam_m2 * Matrix2d::Identity() - along_m2);
-  // An azimuth turns the beam about the lidar's axis.
+  // An azimuth rotates the beam about the lidar's axis.
   const Vector3d across_m = (R_map_vessel * params.T_vessel_lidar.linear().col(2)).cross(beam_m);
   covariance_m2 += params.azimuth_sd_rad * params.azimuth_sd_rad * (across_m * across_m.transpose()).topLeftCorner<2, 2>();
   if (beam_m2 > 0.0) covariance_m2 += params.range_sd_m * params.range_sd_m / beam_m2 * along_m2;
@@ -198,18 +196,12 @@ Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Da
   const auto pose = poses.At(segment.time);
 
   Obstacle obstacle;
-  obstacle.time = segment.time;
-  obstacle.id = segment.id;
-  obstacle.judgement = segment.judgement;
+  static_cast<Seen&>(obstacle) = static_cast<const Seen&>(segment);
   obstacle.center_vessel_m = FootprintCenter(outline_vessel_m).head<2>();
   obstacle.nearest_vessel_m = T_vessel_lidar * segment.nearest_m;
   obstacle.range_m = obstacle.nearest_vessel_m.head<2>().norm();
   obstacle.bearing_rad = WrapTo2Pi(Atan2(-obstacle.nearest_vessel_m.y(), obstacle.nearest_vessel_m.x()));
-  obstacle.length_m = segment.length_m;
-  obstacle.width_m = segment.width_m;
   obstacle.height_m = segment.max_z_m - segment.min_z_m;
-  obstacle.num_points = segment.num_points;
-  obstacle.mean_reflectivity = segment.mean_reflectivity;
   obstacle.footprint_vessel_m = SeenFromAbove(outline_vessel_m);
   obstacle.waterline_vessel_m = SeenFromAbove(waterline_vessel_m);
   obstacle.top_above_water_m = AboveWaterM(T_vessel_lidar * segment.top_m, pose, params.reference_point_above_water_m);

@@ -21,7 +21,7 @@ struct PlacementParams {
 /// farther than 25 mm from the outline; a range is off by 30 mm.
 inline constexpr std::size_t kMaxFootprintVertices = 140;
 
-/// As many as segmenter gives a waterline at most; a longer one, of another publisher, is thinned, evenly by number, both ends kept.
+/// A waterline of the segmenter has no more; a longer one, of another publisher, is thinned, evenly by number, both ends kept.
 inline constexpr std::size_t kMaxWaterlineVertices = 256;
 
 /// @return every vertex; of more than kMaxFootprintVertices so many, the first among them

@@ -56,21 +56,29 @@ std::optional<PoseHistory::Bracket> PoseHistory::BracketAt(Utime time) const {
   return Bracket{before, after, ToSeconds(time - before.time) / ToSeconds(after.time - before.time)};
 }
 
+// Its is_placed is that of both in whatever datum.
+Place PoseHistory::PlaceIn(const Bracket& bracket) {
+  const auto& [a, b, share] = bracket;
+  if (bracket.IsOnePose()) return static_cast<const Place&>(a);
+  // Of rotations by next to nothing the mean is a rotation.
+  return {a.is_placed && b.is_placed,
+          a.position_map_m + share * (b.position_map_m - a.position_map_m),
+          a.R_map_here + share * (b.R_map_here - a.R_map_here),
+          HeadingBetween(a.heading_rad, b.heading_rad, share),
+          Between(a.pitch_rad, b.pitch_rad, share),
+          Between(a.roll_rad, b.roll_rad, share)};
+}
+
 std::optional<Pose> PoseHistory::At(Utime time) const {
   const auto bracket = BracketAt(time);
   if (!bracket) return std::nullopt;
   const auto& [a, b, share] = *bracket;
-  if (&a == &b) return a;
+  if (bracket->IsOnePose()) return a;
   Pose pose;
+  static_cast<Place&>(pose) = PlaceIn(*bracket);
+  pose.is_placed = pose.is_placed && a.datum.IsSameAs(b.datum);
   pose.time = time;
-  pose.is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(b.datum);
   pose.datum = a.datum;
-  pose.position_map_m = a.position_map_m + share * (b.position_map_m - a.position_map_m);
-  // Of rotations by next to nothing the mean is a rotation.
-  pose.R_map_here = a.R_map_here + share * (b.R_map_here - a.R_map_here);
-  pose.heading_rad = HeadingBetween(a.heading_rad, b.heading_rad, share);
-  pose.pitch_rad = Between(a.pitch_rad, b.pitch_rad, share);
-  pose.roll_rad = Between(a.roll_rad, b.roll_rad, share);
   pose.heave_m = Between(a.heave_m, b.heave_m, share);
   pose.covariance = a.covariance + share * (b.covariance - a.covariance);
   return pose;
@@ -79,15 +87,9 @@ std::optional<Pose> PoseHistory::At(Utime time) const {
 std::optional<Place> PoseHistory::PlaceAt(Utime time, const Datum& datum) const {
   const auto bracket = BracketAt(time);
   if (!bracket) return std::nullopt;
-  const auto& [a, b, share] = *bracket;
-  const bool is_placed = a.is_placed && b.is_placed && a.datum.IsSameAs(datum) && b.datum.IsSameAs(datum);
-  if (&a == &b) return Place{is_placed, a.position_map_m, a.R_map_here, a.heading_rad, a.pitch_rad, a.roll_rad};
-  return Place{is_placed,
-               a.position_map_m + share * (b.position_map_m - a.position_map_m),
-               a.R_map_here + share * (b.R_map_here - a.R_map_here),
-               HeadingBetween(a.heading_rad, b.heading_rad, share),
-               Between(a.pitch_rad, b.pitch_rad, share),
-               Between(a.roll_rad, b.roll_rad, share)};
+  auto place = PlaceIn(*bracket);
+  place.is_placed = place.is_placed && bracket->before.datum.IsSameAs(datum) && bracket->after.datum.IsSameAs(datum);
+  return place;
 }
 
 Datum PoseHistory::DatumAt(Utime time) const {

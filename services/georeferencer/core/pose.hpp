@@ -29,36 +29,29 @@ struct Datum {
   bool IsSameAs(const Datum& other) const;
 };
 
-/// Where the vessel frame is in the map frame of `datum`.
-struct Pose {
-  Utime time;
-  bool is_placed = false;  // position and heading are known; else position_map_m, heading_rad and covariance are not to be used
-  Datum datum;
+/// What of a pose places a point: where the vessel frame is in the map frame.
+struct Place {
+  bool is_placed = false;  // position and heading are known; else position_map_m and heading_rad are not to be used
   Eigen::Vector3d position_map_m = Eigen::Vector3d::Zero();
   /// East, north and up where the boat is, along the axes of the map: heading is from north there, roll and pitch from up there. Away from the datum
-  /// they turn away from the axes of the map: up by 1 deg in 111 km, north by more near the poles. PoseHistory::Add sets it.
+  /// they differ from the axes of the map: up by 1 deg in 111 km, north by more near the poles. PoseHistory::Add sets it.
   Eigen::Matrix3d R_map_here = Eigen::Matrix3d::Identity();
   double heading_rad = 0.0;  // from true north, clockwise, 0 to 2 pi
   double pitch_rad = 0.0;    // positive bow up; 0 where not known
   double roll_rad = 0.0;     // positive starboard down; 0 where not known
-  double heave_m = 0.0;      // reference point above its place on calm water; 0 where not known
-  // Of east, north (m), roll, pitch, heading (rad), in this order. NaN = not known.
-  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 };
 
-/// A pose without what is not needed to place a point.
-struct Place {
-  bool is_placed = false;  // as in Pose
-  Eigen::Vector3d position_map_m;
-  Eigen::Matrix3d R_map_here;
-  double heading_rad;
-  double pitch_rad;
-  double roll_rad;
+struct Pose : Place {
+  Utime time;
+  Datum datum;           // of the map frame
+  double heave_m = 0.0;  // reference point above its place on calm water; 0 where not known
+  // Of east, north (m), roll, pitch, heading (rad), in this order. NaN = not known; not to be used unless placed.
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 };
 
 class PoseHistory {
  public:
-  /// Poses older than this against the newest are forgotten: 6000 of them, 3 MB. A turn is asked for within seconds of its end.
+  /// Poses older than this against the newest are forgotten: 6000 of them, 3 MB. A scan is placed within seconds of its end.
   static constexpr std::chrono::seconds kLength{120};
   /// Between poses farther apart nothing is known. The grid is 20 ms; the bracket is 5 of it.
   static constexpr std::chrono::milliseconds kMaxBracket{100};
@@ -91,7 +84,10 @@ class PoseHistory {
     const Pose& before;
     const Pose& after;
     double share;
+
+    bool IsOnePose() const { return &before == &after; }
   };
+  static Place PlaceIn(const Bracket& bracket);
   std::optional<Bracket> BracketAt(Utime time) const;
 
   std::deque<Pose> poses_;  // increasing in time

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 using std::chrono::microseconds;
 
 // A queue that is drained at one and a third of the usual rate has become shorter by a quarter of the while in it. What is drained more slowly is
-// taken for a loss, and the lateness that is left for a delay.
+// counted as a loss, and the lateness that is left as a delay.
 constexpr microseconds kMinWhile = 300ms;
 constexpr int kMinIntervalsInWhile = 2;
 constexpr int kShrinkingShare = 4;
@@ -72,7 +72,7 @@ bool Arrivals::Add(Utime arrival) {
     while_begin_ = arrival;
     lateness_at_begin_ = lateness_;
   }
-  // Rounding of the interval adds up in a long queue: its end is also told by what comes no faster than usual.
+  // Rounding of the interval adds up in a long queue: it also ends where sentences come no faster than usual.
   const bool is_drained = lateness_ <= kMaxLateness / 2 && interval >= usual_ - usual_ / 4;
   if (is_drained || is_lost) EndQueue(arrival);
   return !is_queue_;

@@ -25,14 +25,14 @@ std::size_t IndexOf(SentenceType type) { return static_cast<std::size_t>(type); 
 double WrapHeading(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo2Pi(angle_rad); }
 double WrapTilt(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapToPi(angle_rad); }
 
-// The first of them that was said.
+// The first of them that is known.
 double Or(double value, double otherwise) { return std::isnan(value) ? otherwise : value; }
 
 // A boat at rest has no course: what a receiver says there is the direction of its noise. Twice velocity_sd_mps of navigator.proto.
 constexpr double kRestMps = 0.2;
 double CourseOf(double speed_mps, double course_rad) { return speed_mps < kRestMps ? kNan : course_rad; }
 
-// A lidar goes on repeating the last sentence of a receiver that has gone. What is not of now says nothing until it changes.
+// A lidar repeats the last sentence of a receiver that has gone: an old one is not used until it changes.
 bool IsStale(Utime arrival, const ParseResult& parsed) {
   const auto& sentence = parsed.sentence;
   const bool tells_time = sentence.type == SentenceType::kRmc || sentence.type == SentenceType::kGga;
@@ -40,13 +40,13 @@ bool IsStale(Utime arrival, const ParseResult& parsed) {
 }
 
 void KeepRole(Role role, Reading& reading) {
-  const bool takes_all = role == Role::kAll;
-  const bool takes_heading = takes_all || role == Role::kHeading || role == Role::kAttitude;
-  if (!takes_all && role != Role::kGnss) {
+  const bool uses_all = role == Role::kAll;
+  const bool uses_heading = uses_all || role == Role::kHeading || role == Role::kAttitude;
+  if (!uses_all && role != Role::kGnss) {
     reading.fix.reset();
     reading.velocity.reset();
   }
-  if (!takes_heading) {
+  if (!uses_heading) {
     reading.attitude.reset();
     reading.turn_rate.reset();
   }
@@ -54,7 +54,7 @@ void KeepRole(Role role, Reading& reading) {
     auto& attitude = *reading.attitude;
     attitude.pitch_rad = attitude.roll_rad = attitude.heave_m = attitude.pitch_sd_rad = attitude.roll_sd_rad = kNan;
   }
-  if (!takes_all && role != Role::kImu) reading.imu.reset();
+  if (!uses_all && role != Role::kImu) reading.imu.reset();
 }
 
 bool IsEmpty(const Reading& reading) { return !reading.fix && !reading.attitude && !reading.velocity && !reading.turn_rate && !reading.imu; }
@@ -72,7 +72,7 @@ Interpreter::Source& Interpreter::SourceOf(const std::string& name) {
   auto& source = place->second;
   if (is_new) {
     source.params.name = name;
-    source.taken_name = name + "_understood";
+    source.understood_name = name + "_understood";
     source.refused_name = name + "_refused";
   }
   return source;
@@ -118,9 +118,9 @@ Reading Interpreter::Read(const Item& item) {
     return {};
   }
   if (parsed.sentence.type != SentenceType::kOther) {
-    ++source.num_taken;
+    ++source.num_understood;
     ++counts_.understood_sentence;
-    // What is only recorded tells nothing of the clock either.
+    // What is only recorded does not correct the clock either.
     if (source.params.role == Role::kNothing) {
       ++counts_.outside_role;
       return {};
@@ -162,7 +162,7 @@ Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sent
   }
 }
 
-// Of a sentence without a time; nullopt: it waited in a queue, and nobody knows how long. The first behind a timed one of its input was as late as
+// Of a sentence without a time; nullopt: it waited in a queue for an unknown time. The first behind a timed one of its input was as late as
 // that.
 std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, Source& source, SentenceType type) {
   if (source.is_in_time) return clock_.OfArrival(source.clock, item.time, source.params.latency);
@@ -262,7 +262,7 @@ Reading Interpreter::ReadTurnRate(const Item& item, Source& source, const Senten
 Reading Interpreter::ReadAttitude(const Item& item, Source& source, const Sentence& sentence) {
   const bool may_be_empty = sentence.imu || sentence.type == SentenceType::kPashr || sentence.type == SentenceType::kPsatHpr;
   const bool is_empty = std::isnan(sentence.heading_rad) && std::isnan(sentence.pitch_rad) && std::isnan(sentence.roll_rad);
-  // A compass that has lost its heading goes on sending the sentence, empty.
+  // A compass that has lost its heading still sends the sentence, empty.
   if (is_empty && !may_be_empty) return {};
   double heading_rad = sentence.heading_rad;
   if (sentence.type == SentenceType::kMagnetic) {
@@ -310,7 +310,7 @@ std::vector<Counter> Interpreter::counters() const {
                                 {"no_deviation", counts_.no_deviation},
                                 {"no_declination", counts_.no_declination}};
   for (const auto& [name, source] : sources_) {
-    counters.push_back({source.taken_name, source.num_taken});
+    counters.push_back({source.understood_name, source.num_understood});
     counters.push_back({source.refused_name, source.num_refused});
   }
   return counters;

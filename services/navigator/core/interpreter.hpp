@@ -33,7 +33,7 @@ struct SourceParams {
   Role role = Role::kAll;
   bool requires_checksum = true;
   // From the instant of a measurement to the arrival of its sentence, where the sentence has no time of its own; nullopt: not known, 0 counts, and
-  // the source tells nothing of the computer's clock below max_sentence_latency.
+  // the source does not correct the computer's clock below max_sentence_latency.
   std::optional<std::chrono::microseconds> latency;
   // Factors that turn the sensor's signs into ours: +1 where roll is positive starboard down, and pitch positive bow up.
   double roll_sign = 1.0;
@@ -72,7 +72,7 @@ class Interpreter {
   /// A start mark: all but the counters is void.
   void Reset();
 
-  /// Computer's clock less UTC; 0 while it is taken for UTC.
+  /// Computer's clock less UTC; 0 while it counts as UTC.
   std::chrono::microseconds host_minus_utc() const { return clock_.host_minus_utc(); }
 
   /// Of all sources, and then of each.
@@ -92,9 +92,9 @@ class Interpreter {
   struct Source {
     SourceParams params;
     // Names of its counters.
-    std::string taken_name;
+    std::string understood_name;
     std::string refused_name;
-    std::int64_t num_taken = 0;
+    std::int64_t num_understood = 0;
     std::int64_t num_refused = 0;
     // Void at a start mark.
     SourceClock clock;
@@ -103,7 +103,7 @@ class Interpreter {
     double declination_rad = kNan;  // out of RMC
     std::array<Arrivals, kNumSentenceTypes> arrivals;
     bool is_in_time = true;  // of the sentence that is read
-    // The last timed sentence that told how late one of a queue was; by type.
+    // The last timed sentence by which one of a queue got its lateness; by type.
     std::array<std::optional<Utime>, kNumSentenceTypes> told_by;
   };
 

@@ -22,15 +22,15 @@ class ItemSequencer {
   /// Ticks of a longer silence are left out: the computer slept, or its clock was set forward.
   static constexpr std::chrono::seconds kMaxTickGap{10};
 
-  /// Host time has come so far.
+  /// Advances to this host time.
   /// @return START when nothing came before or the clock was set back, else the ticks at whole multiples of kTickPeriod since the last
   std::vector<Item> AdvanceTo(Utime host_time);
 
   /// Lines of a datagram, or of another piece of input.
-  /// @param arrival  less than the last item by up to kMaxStepBack: it waited while time went on, and takes the time of the last item
+  /// @param arrival  less than the last item by up to kMaxStepBack: it waited, and gets the time of the last item
   std::vector<Item> OnLines(Utime arrival, const std::vector<std::string>& lines, const std::string& source = kUdpSource);
 
-  /// A sentence by way of the lidar. It comes late, in a bundle, so it does not move the ticks.
+  /// A sentence out of the lidar. It comes late, in a bundle, so it does not move the ticks.
   std::vector<Item> OnLidarSentence(Utime arrival, const std::string& sentence);
 
   /// @return END after the ticks until then; nothing when nothing came before. What comes after it begins a new sequence.

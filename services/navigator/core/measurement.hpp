@@ -33,7 +33,7 @@ struct MeasurementTime {
 MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<std::chrono::microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
                                   std::chrono::microseconds max_latency);
 
-/// A position fix at the antenna: what a sentence says, and what those before it said of the same epoch.
+/// A position fix at the antenna: what a sentence and those before it of the same epoch say.
 struct GnssFix : FixValues {
   MeasurementTime when;
   std::string source;              // as in Item

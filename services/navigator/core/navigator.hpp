@@ -1,4 +1,4 @@
-// The method of the navigator process: items in; fixes, attitude and poses out. What it gives depends on the items alone.
+// The method of the navigator process: items in; fixes, attitude and poses out. Its output depends on the items alone.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ struct NavigatorParams : InterpreterParams {
   FilterParams filter;
 };
 
-/// What one item gave.
+/// Results of one item.
 struct NavigatorOutput {
   std::optional<GnssFix> fix;
   std::optional<Attitude> attitude;
@@ -33,22 +33,22 @@ class Navigator {
 
   explicit Navigator(const NavigatorParams& params);
 
-  /// Takes the item, and then gives a pose for every whole 20 ms after the item before and until this one. A start mark voids what was before; an end
-  /// mark gives one more pose, at or after its time.
+  /// Consumes the item; returns the poses of every whole 20 ms after the item before, up to this one. A start mark voids what was before; an end mark
+  /// adds one more pose, at or after its time.
   ///
   /// @param item  not before the last one, unless it is a start mark
   NavigatorOutput Consume(const Item& item);
 
-  /// End of input that has no end mark: the pose that an end mark would have given.
+  /// End of input that has no end mark: the pose that an end mark would have added.
   NavigatorOutput Flush();
 
   /// Time of the last item.
   const std::optional<Utime>& time() const { return time_; }
-  /// The last pose that was given since the start mark.
+  /// The last pose since the start mark.
   const std::optional<Pose>& last_pose() const { return last_pose_; }
   const PoseFilter& filter() const { return filter_; }
 
-  /// Computer's clock less UTC, as the sentences say; 0 while it is taken for UTC.
+  /// Computer's clock less UTC, as the sentences say; 0 while it counts as UTC.
   std::chrono::microseconds host_minus_utc() const { return interpreter_.host_minus_utc(); }
 
   std::vector<Counter> counters() const;

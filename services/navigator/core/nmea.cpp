@@ -43,7 +43,7 @@ double CompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(Ang
 // Degrees, and behind them T, which must stand there when they do.
 double TrueCompassRad(FieldReader& fields, std::size_t index) { return WrapKnown(DegToRad(fields.NumberWithUnit(index, 'T', 0.0, 360.0))); }
 
-// Mode letters of NMEA 0183 2.3 and later, in the order of the numbers of GGA, from 0. P (precise) is given when no deliberate degradation is used.
+// Mode letters of NMEA 0183 2.3 and later, in the order of the numbers of GGA, from 0. P (precise) means that no deliberate degradation is used.
 constexpr std::string_view kModeLetters = "NADPRFEMS";
 FixQuality QualityOfMode(char mode) { return static_cast<FixQuality>(kModeLetters.find(mode)); }
 
@@ -52,7 +52,7 @@ double Tilt(FieldReader& fields, std::size_t index, double max_deg) { return Ang
 // The last field of which anything is used may stand before some that must be there all the same.
 void RequireField(FieldReader& fields, std::size_t index) { fields.Text(index); }
 
-// Zeros stand for what is not known.
+// Zero means unknown.
 double KnownSd(double sd) { return sd > 0.0 ? sd : kNan; }
 
 // RMC: time,status,latitude,N,longitude,E,knots,course,date,variation,E[,mode[,navigational status]]
@@ -96,7 +96,7 @@ void ReadGga(FieldReader& fields, Sentence& sentence) {
   sentence.time_of_day = fields.TimeOfDay(0);
   sentence.position = fields.Position(1);
   if (fields.size() > 8 && fields.size() < kNumFields && fields.Text(8) == "M") {
-    // The unit of the height one place too early: satellites, HDOP or height are missing, and which of them cannot be told.
+    // The unit of the height one place too early: satellites, HDOP or height are missing, and nobody can know which.
     sentence.quality = ModestQuality(fields, 5);
     return;
   }
@@ -421,7 +421,7 @@ std::string_view TypeOf(const FramedSentence& sentence) {
     // Ashtech's own sentences have a word in place of the time: $PASHR,POS,...
     const bool has_word = !sentence.fields.empty() && !sentence.fields.front().empty() && sentence.fields.front().front() >= 'A';
     if (address == "PASHR" && !has_word) return address;
-    // Hemisphere's own sentences share an address; their first field tells them apart.
+    // Hemisphere's own sentences share an address; their first field distinguishes them.
     if (address == "PTNTHTM") return address;
     if (address == "PSAT" && !sentence.fields.empty() && sentence.fields.front() == "HPR") return address;
     return {};

@@ -112,7 +112,7 @@ struct ParseResult {
 /// Whoever the talker is, numbers too; of proprietary sentences PASHR, PSAT,HPR, PTNTHTM, VNINS, VNYMR and VNIMU.
 ///
 /// @param line               from $ or ! to the checksum
-/// @param requires_checksum  false: a line without * is taken too; one whose checksum is wrong never is
+/// @param requires_checksum  false: a line without * is accepted too, one with a wrong checksum never
 ParseResult ParseSentence(std::string_view line, bool requires_checksum = true);
 
 }  // namespace lookout::navigator

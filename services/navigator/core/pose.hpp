@@ -9,7 +9,7 @@
 namespace lookout::navigator {
 
 /// The numbers of pose_t.
-/// kCoasting: as kOk, but no fix or no heading has come for about a second; carried on, with growing covariance.
+/// kCoasting: as kOk, but no fix or no heading has come for about a second: propagated, with growing covariance.
 enum class PoseStatus { kOk = 0, kNoHeading = 1, kNoPosition = 2, kUnknown = 3, kCoasting = 4 };
 enum class HeadingSource { kNone = 0, kHdt = 1, kPashr = 2, kCourse = 3 };
 

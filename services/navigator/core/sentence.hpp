@@ -23,7 +23,7 @@ struct DatagramLines {
 };
 
 /// Cuts at CR and LF, and drops what stands before the first $ or ! of a line: tag blocks (\...\) and junk. Where what is left has no right checksum,
-/// but a sentence that has one stands at the end of the line, that is taken.
+/// but a sentence that has one stands at the end of the line, that is used.
 DatagramLines SplitDatagram(Bytes payload);
 
 /// @return whether `line` may stand in NAV_RAW: begins with $ or !, printable ASCII, at most kMaxLineCharacters
@@ -32,7 +32,7 @@ bool IsLine(std::string_view line);
 /// @return whether `name` may stand in NAV_RAW for a source: 1 to 32 of a to z and 0 to 9
 bool IsSourceName(std::string_view name);
 
-/// Cuts the bytes of a stream, which come in pieces of any size, into what SplitDatagram takes.
+/// Cuts the bytes of a stream, which come in pieces of any size, into whole lines.
 class LineAssembler {
  public:
   /// @return the lines that are whole now; what is not stays for the next call. A line that does not end within kMaxLineCharacters several times
@@ -68,7 +68,7 @@ struct FrameResult {
 };
 
 /// @param line               as in DatagramLines; must outlive the result
-/// @param requires_checksum  false: a line without * is taken too
+/// @param requires_checksum  false: a line without * is accepted too
 FrameResult Frame(std::string_view line, bool requires_checksum = true);
 
 }  // namespace lookout::navigator

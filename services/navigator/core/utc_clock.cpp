@@ -97,7 +97,7 @@ void UtcClock::CompareWithUtc(SourceClock& source, Utime arrival) {
   // Only another source that spoke lately can contradict.
   const bool is_contradicted = agreeing_ != nullptr && agreeing_ != &source && std::chrono::abs(arrival - last_agreement_) < kSilence;
   if (source.num_leaps > 0 && std::chrono::abs(off + std::chrono::seconds(source.num_leaps)) < std::chrono::abs(off)) {
-    // The computer's clock was told of the leap second: it goes by UTC again.
+    // The computer's clock got the leap second: it is UTC again.
     source.num_leaps = 0;
     source.fit = ClockFit();
     return;

@@ -14,7 +14,7 @@ namespace lookout::navigator {
 struct SourceClock {
   std::optional<Utime> last_utc;   // of its measurements
   Utime last_time{};               // of the same, on the time scale of POSE
-  std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: tells the day to those without a date
+  std::optional<Utime> dated_utc;  // of its last sentence, with or without a measurement, and when that came: gives the day to those without a date
   Utime dated_arrival{};
   bool has_date = false;               // one of them held a date; till then the day is a guess by the computer's clock
   bool has_measured = false;           // the last one came of a measurement; till then the time is that of the receiver's own clock
@@ -29,10 +29,10 @@ struct SourceClock {
   bool KnowsOffset() const { return !fit.is_empty() && fit.is_settled(); }
 };
 
-/// A receiver's delay cannot be told from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in sentences, the
-/// computer's clock is taken for UTC; sources whose delay is known (config) tell what it is off below that, which counts for measurements without
-/// a time. When all sources agree that it is farther off, it is another time scale: the one in which POSE goes on, and measurements are brought into
-/// it by the least of (arrival - UTC).
+/// A receiver's delay cannot be distinguished from a clock that is off by as much. So while arrivals lie within `max_latency` of the UTC in
+/// sentences, the computer's clock counts as UTC; sources whose delay is known (config) measure what it is off below that, which corrects
+/// measurements without a time. When all sources agree that it is farther off, it is another time scale: the one in which POSE goes on, and
+/// measurements are brought into it by the least of (arrival - UTC).
 ///
 /// A sentence that comes late says nothing of the clock: see ClockFit. It was measured when it says. Through a leap second, in which UTC comes
 /// twice, measurements go on evenly.
@@ -51,7 +51,7 @@ class UtcClock {
   explicit UtcClock(std::chrono::microseconds max_latency) : max_latency_(max_latency) {}
 
   /// @param latency      of the source; nullopt = not known
-  /// @param is_measured  false: of a receiver without a fix, whose clock may begin anywhere. It tells nothing of the computer's
+  /// @param is_measured  false: of a receiver without a fix, whose clock may begin anywhere. It does not correct the computer's
   /// @return nullopt when the source's time runs backwards
   std::optional<MeasurementTime> OfSentence(SourceClock& source, Utime arrival, std::chrono::microseconds time_of_day,
                                             std::optional<std::chrono::sys_days> date, std::optional<std::chrono::microseconds> latency,
@@ -60,7 +60,7 @@ class UtcClock {
   /// Date and time of a sentence that measures nothing (ZDA).
   void OnDate(SourceClock& source, Utime arrival, Utime utc) const;
 
-  /// A burst of sentences of one epoch takes less than this at 9600 baud with three of them; epochs are 50 ms apart or more.
+  /// A burst of sentences of one epoch is shorter than this at 9600 baud with three of them; epochs are 50 ms apart or more.
   static constexpr std::chrono::milliseconds kBurst{50};
   /// Less is how sentences of one source differ. What is late by more waited somewhere.
   static constexpr std::chrono::milliseconds kMinLateness{300};
@@ -76,7 +76,7 @@ class UtcClock {
   /// What the time scale of POSE is ahead of UTC, leap seconds counted on: it steps where the clock is found off, or right again.
   std::chrono::microseconds pose_minus_even_utc() const { return off_; }
 
-  /// Computer's clock less UTC; 0 while it is taken for UTC.
+  /// Computer's clock less UTC; 0 while it counts as UTC.
   std::chrono::microseconds host_minus_utc() const { return off_ + std::chrono::seconds(num_leaps_); }
 
  private:
@@ -90,7 +90,7 @@ class UtcClock {
   std::chrono::microseconds max_latency_;
   std::chrono::microseconds off_{0};  // computer's clock less UTC, leap seconds counted on
   bool is_off_ = false;
-  int num_leaps_ = 0;  // of the source that spoke last: so many seconds is the computer's clock ahead, as nobody told it of them
+  int num_leaps_ = 0;  // of the source that was compared last: so many seconds is the computer's clock ahead, as it did not get them
   ClockFit off_fit_;   // while is_off_
   ClockFit fine_fit_;  // while not, of sources whose delay is known
   // The last source that says that the clock is right, or off by off_, and when.

@@ -142,7 +142,7 @@ std::optional<io::Source::Piece> StreamSource::Receive(Utime now) {
     case Result::kSome:
       break;
   }
-  // A connection that gives something is sound: the next failure begins with the short pause.
+  // A connection that delivers something is sound: the next failure begins with the short pause.
   pause_ = std::chrono::milliseconds(0);
   num_bytes_ += static_cast<std::int64_t>(buffer_.size());
   return Piece{.host_time = now, .bytes = buffer_, .kind = Kind::kStream};

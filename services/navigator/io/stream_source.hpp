@@ -34,7 +34,7 @@ class StreamSource : public io::Source {
 
   /// @return a descriptor that does not block, open or connecting; kNone with `fault`
   virtual int Open(std::string& fault) = 0;
-  /// Whether Open() gives a connection that is still being made.
+  /// Whether Open() returns a connection that is still being made.
   virtual bool IsConnecting() const { return false; }
   /// The connection is made. @return the descriptor to read from, `descriptor` or another one for it; kNone with `fault`
   virtual int OnConnected(int descriptor, std::string& fault);

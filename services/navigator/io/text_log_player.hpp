@@ -15,13 +15,13 @@
 
 namespace lookout::navigator {
 
-/// Gives the lines of one text log, or of several in the order of their times, each at the time that the log says. The clock of the computer decides
-/// when a line is given, and nothing else: at whatever speed the same calls are made, but for calls of advance_to between two lines.
+/// Plays the lines of one text log, or of several in the order of their times, each at the time that the log says. The clock of the computer decides
+/// when a line is played, and nothing else: at whatever speed the same calls are made, but for calls of advance_to between two lines.
 class TextLogPlayer {
  public:
   /// A longer silence in the log, and a time that runs back, are not waited for.
   static constexpr std::chrono::seconds kMaxPause{60};
-  /// Of the log, that one call of Play gives at most: POSE of more than that at once would not pass the bus.
+  /// Of the log, that one call of Play reads at most: POSE of more than that at once would not pass the bus.
   static constexpr std::chrono::seconds kMaxRound{1};
 
   struct Log {
@@ -39,16 +39,16 @@ class TextLogPlayer {
   /// @throws std::runtime_error as TextLogReader
   TextLogPlayer(const std::vector<Log>& logs, double speed);
 
-  /// Gives what is due.
+  /// Plays what is due.
   void Play(std::chrono::steady_clock::time_point now, const Taker& taker);
 
   bool is_finished() const { return !next_; }
 
-  /// Of the first line of all, and of what was given last: UTC as the logs say.
+  /// Of the first line of all, and of what was played last: UTC as the logs say.
   Utime start() const { return start_; }
   Utime time() const { return time_; }
 
-  /// Logs in which no sentence tells a date, and for which none was given.
+  /// Logs in which no sentence holds a date, and for which the config has none.
   std::vector<std::string> dateless() const;
 
   std::vector<Counter> counters() const;
@@ -57,7 +57,7 @@ class TextLogPlayer {
   struct Reading {
     Log log;
     TextLogReader reader;
-    std::optional<TextLogReader::Line> line;  // read, and not given yet
+    std::optional<TextLogReader::Line> line;  // read, and not played yet
     std::string counter;
     std::int64_t num_lines = 0;
   };

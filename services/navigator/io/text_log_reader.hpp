@@ -39,11 +39,11 @@ class TextLogReader {
   };
 
   /// @return the next line that is not empty, whatever it holds; nullopt at the end. CR, LF or both end a line; of one that is longer than
-  ///         kMaxLineBytes only the last part is given.
+  ///         kMaxLineBytes only the last part is returned.
   std::optional<Line> Next();
   static constexpr std::size_t kMaxLineBytes = 4096;
 
-  /// No sentence of the file tells a date: the times are those of the given day, or of 1970-01-01.
+  /// No sentence of the file holds a date: the times are those of the given day, or of 1970-01-01.
   bool has_date() const { return has_date_; }
 
   /// Bytes read so far.

@@ -58,14 +58,14 @@ struct DiskStatus {
 /// Files are written in blocks of whole events. A block that the disk does not take whole is cut off again, so that a log ends with a whole event,
 /// and its file is closed; what comes until the next BeginFile is lost. The file is locked (flock). After each block and each sync it is looked at:
 /// one that was deleted, or cut, has lost what was in it; one that is not any more under its name, or to which somebody else writes, is written on
-/// until the next BeginFile. Everything is on the disk (fdatasync) at most 0.7 s after Append, as long as the disk itself takes no longer.
+/// until the next BeginFile. Everything is on the disk (fdatasync) at most 0.7 s after Append, unless the disk itself needs longer.
 class DiskWriter {
  public:
   /// Starts the thread.
   /// @param folder  of the files; made anew when it is gone
   DiskWriter(std::filesystem::path folder, const DiskLimits& limits, Disk disk);
 
-  /// Writes what waits, as far as the disk takes it.
+  /// Writes what waits, as far as the disk accepts it.
   ~DiskWriter();
   DiskWriter(const DiskWriter&) = delete;
   DiskWriter& operator=(const DiskWriter&) = delete;
@@ -81,7 +81,7 @@ class DiskWriter {
   /// @return whether it waits for the disk; else it is lost and counted
   bool Append(Bytes event);
 
-  /// Waits until all that was given is on the disk, or lost.
+  /// Waits until all that was appended is on the disk, or lost.
   void Flush();
 
   DiskStatus Status() const;

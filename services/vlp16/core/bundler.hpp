@@ -34,7 +34,7 @@ struct PacketBundle {
 
 class Bundler {
  public:
-  /// 24 x 1206 bytes make a message of 29 kB, which every bus takes.
+  /// 24 x 1206 bytes make a message of 29 kB, which every bus carries.
   static constexpr std::size_t kMaxItems = 24;
   /// Payloads do not wait longer for others.
   static constexpr std::chrono::milliseconds kMaxWait{100};
@@ -42,7 +42,7 @@ class Bundler {
   /// @param cut_azimuth_rad  a bundle ends with the packet in which a scan ends
   Bundler(int data_port, int position_port, double cut_azimuth_rad);
 
-  /// Takes a datagram, or refuses and counts it: another port, or not the size of the packets on that port. What is inside is not judged:
+  /// Accepts a datagram, or refuses and counts it: another port, or not the size of the packets on that port. What is inside is not checked:
   /// a bundle is the raw truth.
   ///
   /// @return the bundle that this datagram completes

@@ -47,7 +47,7 @@ struct DataPacketResult {
   DataPacket packet;  // only when there is no fault
 };
 
-/// Checks a payload as a whole. The product byte is not judged here: see ModelJudge.
+/// Checks a payload as a whole. The product byte is not checked here: see ModelDetector.
 DataPacketResult ParseDataPacket(Bytes payload);
 
 /// A rotation of the head by more than this in one step is a jump (limited field of view), not a rate: 1200 rpm and a quarter more.

@@ -9,7 +9,7 @@ namespace lookout::vlp16 {
 
 namespace {
 
-// More than ModelJudge needs when nothing is lost: without an interval in so many packets they are no stream.
+// More than ModelDetector needs when nothing is lost: without an interval in so many packets they are no stream.
 constexpr std::size_t kMaxHeld = 16;
 
 void Add(SequenceCounts& sum, const SequenceCounts& counts) {
@@ -58,7 +58,7 @@ bool Decoder::OnDataPayload(Utime host_time, Bytes payload) {
   }
   if (result.packet.has_wrapped_azimuth) ++totals_.num_wrapped_azimuths;
   if (result.packet.stamp_us >= format::kMicrosecondsPerHour) ++totals_.num_stamps_beyond_hour;
-  const auto verdict = state_.judge.Judge(result.packet);
+  const auto verdict = state_.detector.Detect(result.packet);
   if (verdict == ModelVerdict::kUndecided) {
     if (state_.held.size() == kMaxHeld) ReleaseHeld(ModelVerdict::kUndecided);
     auto& held = state_.held.emplace_back();
@@ -111,12 +111,12 @@ bool Decoder::Take(Utime host_time, const DataPacket& packet, Model model) {
 
 void Decoder::OnPacket(const PlacedPacket& placed) {
   const PacketCounts counts = Counts();
-  if (placed.is_restart) state_.assembler.End(counts);
+  if (placed.is_restart) state_.cutter.End(counts);
   state_.clock.OnDataPacket(placed);
   if (const auto phase_cdeg = PhaseCdeg(placed)) state_.phase_cdeg = phase_cdeg;
-  const auto num_capped = state_.assembler.num_capped();
-  state_.assembler.Add(placed, state_.clock.Read(placed.host_time), counts);
-  totals_.num_capped_scans += state_.assembler.num_capped() - num_capped;
+  const auto num_capped = state_.cutter.num_capped();
+  state_.cutter.Add(placed, state_.clock.Read(placed.host_time), counts);
+  totals_.num_capped_scans += state_.cutter.num_capped() - num_capped;
 }
 
 PacketCounts Decoder::Counts() const {
@@ -134,15 +134,15 @@ void Decoder::OnPositionPayload(Utime host_time, Bytes payload) {
   state_.clock.OnPositionPacket(host_time, result.packet, sensor_time);
   if (result.packet.sentence.empty()) return;
   ++totals_.num_sentences;
-  const auto& scan_clock = state_.assembler.clock();
+  const auto& scan_clock = state_.cutter.clock();
   const Utime time = sensor_time && scan_clock ? scan_clock->ToUtime(*sensor_time) : state_.clock.TimeOfStampAlone(host_time, stamp_us);
   on_sentence_({time, host_time, stamp_us, result.packet.pps, std::move(result.packet.sentence)});
 }
 
 void Decoder::Flush() {
-  if (!state_.held.empty()) ReleaseHeld(state_.judge.JudgeNow());
+  if (!state_.held.empty()) ReleaseHeld(state_.detector.Decide());
   state_.sequencer.Flush();
-  state_.assembler.End(Counts());
+  state_.cutter.End(Counts());
 }
 
 void Decoder::Reset() {

@@ -65,7 +65,7 @@ class Decoder {
   /// Why the last data payload was not usable, with the name of the sensor it seems to come from; empty when it was. For people.
   const std::string& last_refusal() const { return last_refusal_; }
 
-  /// Packets since the start of the process that are not of one even stream: restarts, overlaps, azimuths elsewhere.
+  /// Packets since the start of the process that do not follow one another: restarts, overlaps, azimuths elsewhere.
   std::int64_t num_out_of_stream() const;
 
   /// Of the last scan.
@@ -102,11 +102,11 @@ class Decoder {
   /// What a start mark makes void.
   struct State {
     State(const DecoderParams& params, PacketSequencer::Handler on_packet, ScanHandler on_scan)
-        : judge(params.model), sequencer(std::move(on_packet)), clock(params.time), assembler(params.cut_azimuth_rad, std::move(on_scan)) {}
-    ModelJudge judge;
+        : detector(params.model), sequencer(std::move(on_packet)), clock(params.time), cutter(params.cut_azimuth_rad, std::move(on_scan)) {}
+    ModelDetector detector;
     PacketSequencer sequencer;
     SensorClock clock;
-    ScanCutter assembler;
+    ScanCutter cutter;
     std::int64_t num_packets = 0;  // whole ones of a known model
     std::vector<HeldPacket> held;  // until the model is known
     std::optional<int> phase_cdeg;

@@ -9,7 +9,7 @@
 namespace lookout::vlp16 {
 
 /// What a payload seems to come from. Says nothing of a packet of the VLP-16 family, nor of the HDL-32E, whose product byte some early VLP-16 share
-/// (ModelJudge tells them apart): their names are never given.
+/// (ModelDetector tells them apart): their names are never given.
 ///
 /// @return maker and where possible model, printable ASCII; empty when nothing is recognised
 std::string_view NameOfForeignPayload(Bytes payload);

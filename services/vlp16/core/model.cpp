@@ -41,7 +41,7 @@ const Beams& BeamsOf(Model model) {
   return model == Model::kVlp16 ? vlp16 : puck_hi_res;
 }
 
-ModelVerdict ModelJudge::Judge(const DataPacket& packet) {
+ModelVerdict ModelDetector::Detect(const DataPacket& packet) {
   const bool is_chosen = choice_ != ModelChoice::kAuto;
   const auto chosen = choice_ == ModelChoice::kPuckHiRes ? ModelVerdict::kPuckHiRes : ModelVerdict::kVlp16;
   if (packet.product != kProductHdl32e) {
@@ -50,11 +50,11 @@ ModelVerdict ModelJudge::Judge(const DataPacket& packet) {
     if (!is_own) return ModelVerdict::kUnknown;
     return packet.product == kProductVlp16 ? ModelVerdict::kVlp16 : ModelVerdict::kPuckHiRes;
   }
-  const auto verdict = JudgeInterval(packet);
+  const auto verdict = DetectByInterval(packet);
   return is_chosen && verdict != ModelVerdict::kHdl32e ? chosen : verdict;
 }
 
-ModelVerdict ModelJudge::JudgeInterval(const DataPacket& packet) {
+ModelVerdict ModelDetector::DetectByInterval(const DataPacket& packet) {
   if (shared_byte_verdict_) return *shared_byte_verdict_;
   if (last_stamp_us_) {
     const std::int64_t interval_us = (packet.stamp_us + kMicrosecondsPerHour - *last_stamp_us_) % kMicrosecondsPerHour;
@@ -65,10 +65,10 @@ ModelVerdict ModelJudge::JudgeInterval(const DataPacket& packet) {
     }
   }
   last_stamp_us_ = packet.stamp_us;
-  return num_intervals_ < kNumIntervals ? ModelVerdict::kUndecided : JudgeNow();
+  return num_intervals_ < kNumIntervals ? ModelVerdict::kUndecided : Decide();
 }
 
-ModelVerdict ModelJudge::JudgeNow() {
+ModelVerdict ModelDetector::Decide() {
   if (num_intervals_ == 0) return ModelVerdict::kUndecided;
   shared_byte_verdict_ = least_interval_ >= kLeastIntervalOfVlp16 ? ModelVerdict::kVlp16 : ModelVerdict::kHdl32e;
   return *shared_byte_verdict_;

@@ -29,20 +29,20 @@ enum class ModelVerdict { kVlp16, kPuckHiRes, kUndecided, kHdl32e, kUnknown };
 
 /// Decides by the product byte, and for byte 0x21, which the HDL-32E and some early VLP-16 share, by the interval between packets: 1327 us
 /// (664 us dual) or 553 us (276 us dual). The least of three intervals counts, since a lost packet only makes one longer. Once taken the
-/// decision about 0x21 stays. A choice by config takes packets of the whole family (0x21, 0x22, 0x24) and of unknown product bytes for what it says,
-/// at once; but intervals of an HDL-32E overrule it.
-class ModelJudge {
+/// decision about 0x21 stays. A choice by config accepts packets of the whole family (0x21, 0x22, 0x24) and of unknown product bytes for what it
+/// says, at once; but intervals of an HDL-32E overrule it.
+class ModelDetector {
  public:
-  explicit ModelJudge(ModelChoice choice) : choice_(choice) {}
+  explicit ModelDetector(ModelChoice choice) : choice_(choice) {}
 
   /// @return kUndecided: hold the packet, its like and their order until another verdict comes
-  ModelVerdict Judge(const DataPacket& packet);
+  ModelVerdict Detect(const DataPacket& packet);
 
   /// Decides about 0x21 with the intervals that are there; kUndecided when there is none.
-  ModelVerdict JudgeNow();
+  ModelVerdict Decide();
 
  private:
-  ModelVerdict JudgeInterval(const DataPacket& packet);
+  ModelVerdict DetectByInterval(const DataPacket& packet);
 
   ModelChoice choice_;
   std::optional<ModelVerdict> shared_byte_verdict_;

@@ -172,14 +172,14 @@ bool PacketSequencer::IsAt(const DataPacket& packet, double azimuth_cdeg) const 
   return SweepCdeg() > 0.0 && off_cdeg <= 0.5 * SweepCdeg();
 }
 
-// Whether the head is where the last packet ended, as far as it can be told.
+// Whether the head is where the last packet ended, as far as is known.
 bool PacketSequencer::IsContinuing(const DataPacket& packet) const { return IsAt(packet, last_->steps.end_cdeg); }
 
 bool PacketSequencer::IsKnown(const DataPacket& packet) const {
   const auto is_same = [&](std::uint32_t stamp_us, int azimuth_cdeg) {
     return stamp_us == packet.stamp_us && azimuth_cdeg == packet.azimuth_cdeg[0];
   };
-  // Packets that are after the last cannot have been given.
+  // Packets that are after the last cannot have been passed on.
   const bool may_be_given = Difference(last_->stamp_us, packet.stamp_us) <= microseconds(0);
   return (may_be_given && std::ranges::any_of(known_, [&](const Known& known) { return is_same(known.stamp_us, known.azimuth_cdeg); })) ||
          std::ranges::any_of(held_, [&](const Held& held) { return is_same(held.packet.stamp_us, held.packet.azimuth_cdeg[0]); });

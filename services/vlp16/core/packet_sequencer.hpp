@@ -20,7 +20,7 @@ namespace lookout::vlp16 {
 using SensorTime = std::chrono::microseconds;
 
 struct PlacedPacket {
-  DataPacket packet;  // its payload is valid during the call that gives it
+  DataPacket packet;  // its payload is valid during the call that passes it on
   Steps steps;
   Model model = Model::kVlp16;
   Utime host_time;            // of its arrival
@@ -31,7 +31,7 @@ struct PlacedPacket {
 };
 
 enum class PacketVerdict {
-  kTaken,  // given, or held until it is known whether the one before it comes
+  kTaken,  // passed on, or held until it is known whether the one before it comes
   kDuplicate,
   kLate,         // its place has been passed
   kOverlapping,  // less than half a period after the last and elsewhere in azimuth, which one sensor does not send
@@ -59,10 +59,10 @@ class PacketSequencer {
 
   explicit PacketSequencer(Handler on_packet) : on_packet_(std::move(on_packet)) {}
 
-  /// Gives packets, in their order, to the handler: this one, or those that waited for it, or none.
+  /// Passes packets, in their order, to the handler: this one, or those that waited for it, or none.
   PacketVerdict Add(Utime host_time, const DataPacket& packet, Model model);
 
-  /// End of input: gives what is held.
+  /// End of input: passes on what is held.
   void Flush();
 
   /// Sensor time of the stamp of a position packet; nullopt when no data packet came within a second of it by the host's clock.
@@ -117,7 +117,7 @@ class PacketSequencer {
   std::optional<Last> last_;
   double rate_cdeg_ = 0.0;          // rotation of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
   std::vector<Held> held_;          // by time
-  std::array<Known, 512> known_{};  // the last ones given: of a revolution and more
+  std::array<Known, 512> known_{};  // the last ones passed on: of a revolution and more
   std::size_t next_known_ = 0;
   std::size_t num_late_in_a_row_ = 0;
   BlindSector blind_sector_;

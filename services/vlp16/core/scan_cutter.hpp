@@ -1,4 +1,4 @@
-// Makes scans of data packets: gives each column its azimuth and time and cuts at the configured azimuth, inside packets.
+// Makes scans of data packets: computes azimuth and time of each column and cuts at the configured azimuth, inside packets.
 #pragma once
 
 #include <chrono>

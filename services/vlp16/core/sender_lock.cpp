@@ -25,13 +25,13 @@ bool SenderLock::IsAllowed(const Sender& sender) const { return allowed_.empty()
 void SenderLock::Reset() { streams_ = {}; }
 
 // kUnknown for what is not valid as a whole.
-ModelVerdict SenderLock::VerdictOf(ModelJudge& judge, Stream stream, Bytes payload) {
+ModelVerdict SenderLock::VerdictOf(ModelDetector& detector, Stream stream, Bytes payload) {
   if (stream == Stream::kPosition) {
     const auto fault = ParsePositionPacket(payload).fault;
     return fault == PositionFault::kNone || fault == PositionFault::kSentence ? ModelVerdict::kVlp16 : ModelVerdict::kUnknown;
   }
   const auto result = ParseDataPacket(payload);
-  return result.fault == DataFault::kNone ? judge.Judge(result.packet) : ModelVerdict::kUnknown;
+  return result.fault == DataFault::kNone ? detector.Detect(result.packet) : ModelVerdict::kUnknown;
 }
 
 // The one on trial, this sender's; nullptr while another is, and for one whose packet cannot be the lidar's: it would keep the place from the lidar.
@@ -44,19 +44,19 @@ SenderLock::Candidate* SenderLock::CandidateFor(StreamState& state, Utime time, 
   }
   if (!IsOfFamily(alone) && alone != ModelVerdict::kUndecided) return nullptr;
   // Without a holder nothing is decided by who was there first, but by who is valid first. Of two that are known by their intervals alone one is
-  // judged after the other: alternating, neither would show an interval.
+  // tried after the other: alternating, neither would show an interval.
   if (!is_over && (state.holder || alone == ModelVerdict::kUndecided)) return nullptr;
-  candidate = Candidate{sender, ModelJudge(model_), time, std::chrono::microseconds(0)};
+  candidate = Candidate{sender, ModelDetector(model_), time, std::chrono::microseconds(0)};
   return &*candidate;
 }
 
-SenderLock::Outcome SenderLock::Judge(Utime time, Stream stream, const Sender& sender, Bytes payload) {
+SenderLock::Outcome SenderLock::Check(Utime time, Stream stream, const Sender& sender, Bytes payload) {
   if (!IsAllowed(sender)) return {};
   auto& data = streams_[static_cast<std::size_t>(Stream::kData)];
   auto& state = streams_[static_cast<std::size_t>(stream)];
   if (time < state.heard) state.heard = time;
   if (state.holder == sender) {
-    const bool is_valid = IsOfFamily(VerdictOf(*state.judge, stream, payload));
+    const bool is_valid = IsOfFamily(VerdictOf(*state.detector, stream, payload));
     if (is_valid) {
       state.heard = time;
       state.candidate.reset();
@@ -68,16 +68,16 @@ SenderLock::Outcome SenderLock::Judge(Utime time, Stream stream, const Sender& s
     outcome.is_taken = outcome.is_taken && data.holder->address == sender.address;
     if (data.holder->address != sender.address) return outcome;
   }
-  ModelJudge judge(model_);
-  const auto alone = VerdictOf(judge, stream, payload);
+  ModelDetector detector(model_);
+  const auto alone = VerdictOf(detector, stream, payload);
   auto* candidate = CandidateFor(state, time, sender, alone);
   if (candidate == nullptr) {
     outcome.is_valid = IsOfFamily(alone);
-    // The decoder judges by intervals too: a mixture of two would pass for an HDL-32E.
+    // The decoder goes by intervals too: a mixture of two would pass for an HDL-32E.
     if (alone == ModelVerdict::kUndecided) outcome.is_taken = false;
     return outcome;
   }
-  const auto verdict = VerdictOf(candidate->judge, stream, payload);
+  const auto verdict = VerdictOf(candidate->detector, stream, payload);
   outcome.is_valid = IsOfFamily(verdict);
   if (!outcome.is_valid) {
     if (verdict == ModelVerdict::kHdl32e) state.candidate.reset();
@@ -91,7 +91,7 @@ SenderLock::Outcome SenderLock::Judge(Utime time, Stream stream, const Sender& s
   }
   const bool is_other_address = !state.holder || state.holder->address != sender.address;
   state.holder = sender;
-  state.judge = candidate->judge;
+  state.detector = candidate->detector;
   state.heard = time;
   state.candidate.reset();
   if (stream == Stream::kData && is_other_address) {

@@ -1,4 +1,4 @@
-// Whose packets are taken: the lidar that was heard first, by address and source port, until it is silent.
+// Whose packets are used: the lidar that was heard first, by address and source port, until it is silent.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ std::string ToText(const Sender& sender);
 
 enum class Stream { kData, kPosition };
 
-/// The rule, which knows stamps of arrival and no clock, so that a capture gives live and in replay the same:
+/// The rule uses stamps of arrival and no clock, so live and replay of a capture accept the same packets:
 /// - The first sender of a valid packet of the VLP-16 family holds the stream. Before it every packet is taken.
 /// - Data packets decide the address; position packets are taken from it alone. Each stream has a source port of its own. While nobody sends valid
 ///   data, the first sender of valid position packets holds that stream by itself.
@@ -53,7 +53,7 @@ class SenderLock {
   };
 
   /// A packet of the right size for its stream.
-  Outcome Judge(Utime time, Stream stream, const Sender& sender, Bytes payload);
+  Outcome Check(Utime time, Stream stream, const Sender& sender, Bytes payload);
 
   /// nullopt while there is none.
   const std::optional<Sender>& holder(Stream stream) const { return streams_[static_cast<std::size_t>(stream)].holder; }
@@ -66,18 +66,18 @@ class SenderLock {
  private:
   struct Candidate {
     Sender sender;
-    ModelJudge judge;
+    ModelDetector detector;
     Utime last{};
     std::chrono::microseconds heard_for{0};
   };
   struct StreamState {
     std::optional<Sender> holder;
-    std::optional<ModelJudge> judge;  // of the holder's data
-    Utime heard{};                    // the holder, at its last valid packet
+    std::optional<ModelDetector> detector;  // of the holder's data
+    Utime heard{};                          // the holder, at its last valid packet
     std::optional<Candidate> candidate;
   };
 
-  static ModelVerdict VerdictOf(ModelJudge& judge, Stream stream, Bytes payload);
+  static ModelVerdict VerdictOf(ModelDetector& detector, Stream stream, Bytes payload);
   Candidate* CandidateFor(StreamState& state, Utime time, const Sender& sender, ModelVerdict alone) const;
 
   ModelChoice model_;

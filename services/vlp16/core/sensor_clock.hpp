@@ -54,7 +54,7 @@ class SensorClock {
 
   /// Precondition: OnDataPacket.
   ///
-  /// TimeChoice::kAuto takes the sensor's clock while it is locked and the host's agrees with it, else the host's.
+  /// TimeChoice::kAuto uses the sensor's clock while it is locked and the host's agrees with it, else the host's.
   ClockReading Read(Utime host_time);
 
   /// Time of a stamp while no data packet has come: of the sensor where it is in use, else the host's.

@@ -36,7 +36,7 @@ class CapturePlayer {
   /// After NextDue() gave nothing: nothing is due, as the next datagram is known and comes later, or there is none.
   bool is_empty() const { return next_.has_value() || is_finished(); }
 
-  /// Every datagram has been given.
+  /// Every datagram has been returned.
   bool is_finished() const { return !next_ && reader_index_ == readers_.size(); }
 
   /// A datagram was found: from then on there is a CaptureTime().

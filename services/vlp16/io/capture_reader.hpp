@@ -39,7 +39,7 @@ class CaptureReader {
   bool is_at_end() const { return is_at_end_; }
 
   std::int64_t num_frames() const { return num_frames_; }        // read so far
-  std::int64_t num_datagrams() const { return num_datagrams_; }  // given so far; 0 at the end with num_frames() above 0: all were refused
+  std::int64_t num_datagrams() const { return num_datagrams_; }  // returned so far; 0 at the end with num_frames() above 0: all were refused
   std::int64_t num_damaged() const { return damage_.empty() ? 0 : 1; }
   const std::string& damage() const { return damage_; }  // what is wrong, and after how many frames; empty = nothing
 

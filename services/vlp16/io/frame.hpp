@@ -46,7 +46,7 @@ bool IsLinkTypeUnderstood(int link_type);
 /// Fragments are not put together: a data packet of the lidar fits into one frame.
 Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
 
-/// Time of a frame, as libpcap gives it when nanoseconds were asked for.
+/// Time of a frame, as libpcap reports it when nanoseconds were asked for.
 ///
 /// @return nullopt when it cannot be: nanoseconds outside of a second, or a year outside of 1900 to 2200
 std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds);

@@ -36,7 +36,8 @@ std::string FilterFault(const std::string& filter);
 
 class LiveCapture final : public io::Source {
  public:
-  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (naming what gives it). An interface that is
+  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (the text says how to get it). An interface that
+  /// is
   ///         down is waited for.
   explicit LiveCapture(LiveOptions options);
   ~LiveCapture() override;
@@ -80,13 +81,13 @@ class LiveCapture final : public io::Source {
   LiveOptions options_;
   std::unique_ptr<void, Closer> capture_;  // pcap_t
   int link_type_ = 0;
-  std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as far as the kernel gives it
+  std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as precise as the kernel has it
   unsigned int interface_index_ = 0;
   io::InterfaceTimer timer_;
   bool is_empty_ = true;
   Utime last_time_{};
   std::string fault_;
-  std::string read_fault_;  // why reading ended; until it is told
+  std::string read_fault_;  // why reading ended; until Poll() reports it
   std::string filter_;
   Drops past_drops_;  // of what has been closed
   std::int64_t num_frames_ = 0;

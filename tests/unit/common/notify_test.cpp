@@ -14,6 +14,7 @@
 #include <string>
 
 #include "common/runtime/process.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::runtime {
 namespace {

@@ -38,13 +38,13 @@ inline Score MadeUpScore(double iou, double time_ms) {
 /// One ring of level beams, a column a degree.
 ///
 /// @param object, label  of each column; where both are 0 there is no return
-inline WorstScan MadeUpTurn(const std::vector<std::int32_t>& object, const std::vector<std::int32_t>& label) {
-  WorstScan turn;
-  turn.scene = "rain";
-  turn.seed = 7;
-  turn.index = 3;
-  turn.iou = 0.125;
-  auto& scan = turn.truth.scan;
+inline WorstScan MadeUpScan(const std::vector<std::int32_t>& object, const std::vector<std::int32_t>& label) {
+  WorstScan worst;
+  worst.scene = "rain";
+  worst.seed = 7;
+  worst.index = 3;
+  worst.iou = 0.125;
+  auto& scan = worst.truth.scan;
   scan.head.range_unit_m = 0.002;
   scan.head.rings.resize(1);
   for (std::size_t column = 0; column < object.size(); ++column) {
@@ -53,10 +53,10 @@ inline WorstScan MadeUpTurn(const std::vector<std::int32_t>& object, const std::
     scan.columns.range.push_back(object[column] == 0 && label[column] == 0 ? 0 : 5000);
     scan.columns.reflectivity.push_back(0);
   }
-  turn.truth.object = object;
-  turn.truth.objects = {{1, {"<Anna>", "kayak", true}}, {2, {"shore", "shore", false}}};
-  turn.label = label;
-  return turn;
+  worst.truth.object = object;
+  worst.truth.objects = {{1, {"<Anna>", "kayak", true}}, {2, {"shore", "shore", false}}};
+  worst.label = label;
+  return worst;
 }
 
 inline Results MadeUpResults() {
@@ -85,7 +85,7 @@ inline Results MadeUpResults() {
   results.methods[1].by_scene["rain"].num_components = 461 * 4;
   results.methods[1].by_scene["open<water>"].num_components = 462 * 4;
   results.methods[0].stage_ms = {{"cluster", {0.25, 0.5}}, {"project", {0.125, 0.125}}, {"zeal", {0.1}}};
-  results.methods[0].worst = {MadeUpTurn({1, 1, 1, 2, 0, 0, -1}, {1, 1, 2, 0, 3, 0, 0})};
+  results.methods[0].worst = {MadeUpScan({1, 1, 1, 2, 0, 0, -1}, {1, 1, 2, 0, 3, 0, 0})};
   results.curves = {{"Test <1>", "distance, m", "segments", {{"e1 = 0.95", {{1.0, 2.0}, {2.0, 3.25}}}}, "own & sure from 6.3 m"}};
   results.projections = {{512, 0.902, 1563.0, 5580.0, 0.079, std::numeric_limits<double>::quiet_NaN()}};
   return results;

@@ -1,4 +1,4 @@
-#include "tools/export/tables.hpp"
+#include "tools/export/sinks.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>

@@ -54,7 +54,7 @@ TEST(NearestWithin, OfLandTakesTheWaterlineAlone) {
 
 SegmentPart MakePart(double x_m, double y_m, Confidence confidence = Confidence::kSure) {
   auto part = test::MakePart(0, 0, {test::MakePoint(0, x_m, y_m, 0.0)});
-  part.segments[0].judgement.confidence = confidence;
+  part.segments[0].rating.confidence = confidence;
   return part;
 }
 

@@ -116,7 +116,7 @@ TEST(PlaceSegment, AWaterlineSeenFromATurningBoatIsStraightOnTheMap) {
   params.T_vessel_lidar = TransformVesselSensor(mounting);
 
   Segment segment = MakePoint(50'000, 0.0, 0.0, -1.5);
-  segment.judgement.kind = Kind::kLand;
+  segment.rating.kind = Kind::kLand;
   const auto add = [&](std::int64_t offset_us, double east_m, std::vector<HullVertex>& corners) {
     const Pose pose = pose_at(offset_us);
     const Eigen::Vector3d p_vessel_m =
@@ -132,7 +132,7 @@ TEST(PlaceSegment, AWaterlineSeenFromATurningBoatIsStraightOnTheMap) {
 
   const auto obstacle = PlaceSegment(segment, poses, test::kLake, false, params);
   ASSERT_EQ(obstacle.status, ObstacleStatus::kOk);
-  EXPECT_EQ(obstacle.judgement.kind, Kind::kLand);
+  EXPECT_EQ(obstacle.rating.kind, Kind::kLand);
   ASSERT_EQ(obstacle.waterline_map_m.size(), 11U);
   for (std::size_t i = 0; i <= 10; ++i) {
     // Within the metre that the boat goes, north turns by a tenth of a microradian.

@@ -22,14 +22,14 @@ class ArrivalsTest : public ::testing::Test {
   Arrivals arrivals_;
 };
 
-TEST_F(ArrivalsTest, TakesAllOfAnEvenSensor) {
+TEST_F(ArrivalsTest, UsesAllOfAnEvenSensor) {
   for (const double interval_s : {0.0025, 0.01, 0.1, 1.0}) {
     arrivals_ = {};
     EXPECT_EQ(AddEvenly(0.0, 60.0, interval_s), 0) << interval_s;
   }
 }
 
-TEST_F(ArrivalsTest, TakesAllThatComesSeveralAtOnce) {
+TEST_F(ArrivalsTest, UsesAllThatComesSeveralAtOnce) {
   int num_refused = 0;
   for (int i = 0; i < 1000; ++i) num_refused += Add(0.08 * (i / 8)) ? 0 : 1;
   EXPECT_EQ(num_refused, 0);
@@ -48,7 +48,7 @@ TEST_F(ArrivalsTest, RefusesAQueueToItsLast) {
   }
 }
 
-TEST_F(ArrivalsTest, TakesASensorThatComesBackWithoutAQueue) {
+TEST_F(ArrivalsTest, UsesASensorThatComesBackWithoutAQueue) {
   for (const double interval_s : {0.01, 0.1, 1.0}) {
     arrivals_ = {};
     EXPECT_EQ(AddEvenly(0.0, 30.0, interval_s), 0);

@@ -30,7 +30,7 @@ TEST(PoseFilterAttitude, PrefersAnAttitudeSensorWhileItIsAlive) {
   EXPECT_EQ(filter.At(NoonPlus(2.1)).heading_source, HeadingSource::kNone);
 }
 
-TEST(PoseFilterAttitude, TakesTheCourseForHeadingOnlyAboveTheSpeedAndWhereAllowed) {
+TEST(PoseFilterAttitude, UsesTheCourseForHeadingOnlyAboveTheSpeedAndWhereAllowed) {
   auto params = TestFilterParams();
   PoseFilter fast(params);
   fast.Add(MovingFix(0, 1.0, 60.0));
@@ -121,7 +121,7 @@ TEST(PoseFilterAttitude, FreesTheVelocityFromTheSwingOfTheAntenna) {
   EXPECT_LT(filter.At(NoonPlus(5.0)).velocity_map_mps.norm(), 0.05);
 }
 
-TEST(PoseFilterAttitude, GivesHeave) {
+TEST(PoseFilterAttitude, HasHeave) {
   PoseFilter filter(TestFilterParams());
   auto attitude = HeadingSample(0, 0.0);
   attitude.heave_m = -0.2;

@@ -178,7 +178,7 @@ TEST(Consistency, ErrorsAreWhatTheCovarianceSays) {
   EXPECT_NEAR(nees.nis, 1.0, 0.1);
 }
 
-TEST(Consistency, HoldsWhilePositionIsCarriedOn) {
+TEST(Consistency, HoldsWhilePositionIsPropagated) {
   const auto nees = MeanNees(60, 28.0, 20.0);
   std::printf("after 8 s without a fix: position %.2f, velocity %.2f, attitude %.2f; NIS %.2f\n", nees.position, nees.velocity, nees.angles,
               nees.nis);

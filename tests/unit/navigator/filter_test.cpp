@@ -44,7 +44,7 @@ TEST(PoseFilter, PutsTheDatumAtTheFirstFix) {
   EXPECT_TRUE(std::isnan(pose.ellipsoid_height_m) && std::isnan(pose.covariance(2, 2)));
 }
 
-TEST(PoseFilter, TakesTheDatumFromConfig) {
+TEST(PoseFilter, UsesTheDatumFromConfig) {
   auto params = TestFilterParams();
   params.datum = Datum{kLatitudeDeg, kLongitudeDeg, 200.0};
   PoseFilter filter(params);
@@ -115,7 +115,7 @@ TEST(PoseFilter, DoesNotCountAnEpochTwice) {
 }
 
 // What a measurement says does not depend on when it comes, as long as it is kept for.
-TEST(PoseFilter, TakesLateMeasurementsAtTheirTime) {
+TEST(PoseFilter, UsesLateMeasurementsAtTheirTime) {
   PoseFilter in_order(TestFilterParams());
   PoseFilter late(TestFilterParams());
   const auto attitude = [](int i) { return AttitudeSample(0.05 * i, 10.0 + i, 0.1 * i, -0.1 * i); };
@@ -187,7 +187,7 @@ TEST(PoseFilter, RefusesAFixThatContradictsUntilItIsThereForSeconds) {
   EXPECT_NEAR(DistanceM(filter.At(NoonPlus(7.8))), 50.0, 0.5);
 }
 
-TEST(PoseFilter, TakesVtgForVelocityWhereFixesHaveNone) {
+TEST(PoseFilter, UsesVtgForVelocityWhereFixesHaveNone) {
   PoseFilter filter(TestFilterParams());
   for (int i = 0; i < 20; ++i) {
     auto fix = Fix(0.2 * i, "GGA");
@@ -201,7 +201,7 @@ TEST(PoseFilter, TakesVtgForVelocityWhereFixesHaveNone) {
   EXPECT_NEAR(pose.heading_rad, DegToRad(90.0), DegToRad(3.0));
 }
 
-TEST(PoseFilter, TakesASpeedWithoutCourseForUncertainty) {
+TEST(PoseFilter, UsesASpeedWithoutCourseForUncertainty) {
   PoseFilter filter(TestFilterParams());
   auto fix = Fix(0);
   fix.speed_mps = 0.5;
@@ -253,7 +253,7 @@ TEST(PoseFilter, NamesInputsThatStoppedBeforeALongSilence) {
   EXPECT_EQ(filter.stopped(), "no position fix for 3595 s, no heading for 3595 s, no attitude for 3595 s");
 }
 
-TEST(PoseFilter, GivesTheReceiverOfOneFixASecondMoreTime) {
+TEST(PoseFilter, WaitsASecondLongerForTheReceiverOfOneFix) {
   PoseFilter filter(TestFilterParams());
   for (int i = 0; i <= 3; ++i) {
     auto fix = MovingFix(i, 3.0, 0.0);

@@ -45,7 +45,7 @@ class InputsTest : public ::testing::Test {
 
 const std::string kLive = "source: LIVE use_lidar_nmea: true\n";
 
-TEST_F(InputsTest, AreUdpAndLidarWhereNoneIsGiven) {
+TEST_F(InputsTest, AreUdpAndLidarByDefault) {
   const auto params = Load(kLive + "bind_address: '0.0.0.0'");
   ASSERT_EQ(params.connections.size(), 1U);
   EXPECT_EQ(params.connections[0].name, "udp");
@@ -53,7 +53,7 @@ TEST_F(InputsTest, AreUdpAndLidarWhereNoneIsGiven) {
   EXPECT_EQ(params.source_of_port.at(10110), "udp");
 }
 
-TEST_F(InputsTest, AreTakenManyAtOnce) {
+TEST_F(InputsTest, MayBeManyAtOnce) {
   const auto params = Load(kLive + R"(
     input { name: 'gnss' role: GNSS serial { device: '/dev/ttyUSB0' baud: 38400 } latency_s: 0.08 }
     input { name: 'ahrs' role: ATTITUDE tcp { address: '192.168.1.7' port: 10111 } roll_positive: PORT_DOWN pitch_positive: BOW_DOWN }
@@ -83,7 +83,7 @@ TEST_F(InputsTest, AreRefusedWithLineAndReason) {
   ExpectFault(kLive + "input { name: 'a' gpsd {} }\ninput { name: 'a' gpsd { port: 1 } }", ":3: input: 'a': the name stands twice");
   ExpectFault(kLive + "input { name: 'a' }", ":2: input: 'a': must have one of serial, udp, tcp, gpsd and text_log, and has 0");
   ExpectFault(kLive + "input { name: 'a' gpsd {} udp { bind_address: '::' port: 1 } }", "and has 2");
-  ExpectFault(kLive + "input { name: 'udp' gpsd {} }", "'udp': is given by bind_address");
+  ExpectFault(kLive + "input { name: 'udp' gpsd {} }", "'udp': is opened by bind_address");
   ExpectFault(kLive + "input { name: 'a' serial { device: '/dev/ttyUSB0' baud: 4801 } }", "baud 4801 is none that serial ports have");
   ExpectFault(kLive + "input { name: 'a' serial { device: 'ttyUSB0' baud: 4800 } }", "must be the whole path");
   ExpectFault(kLive + "input { name: 'a' serial { device: '/dev/ttyUSB0' } }", "input.serial.baud: must be set");
@@ -92,7 +92,7 @@ TEST_F(InputsTest, AreRefusedWithLineAndReason) {
   ExpectFault(kLive + "input { name: 'a' text_log { file: 'navigator.txtpb' speed: 1e-9 } }", "text_log.speed must be 0 or at least 0.001");
   ExpectFault(kLive + "bind_address: 'eth0'", ":2: bind_address: 'eth0' is no numeric address");
   ExpectFault(kLive + "input { name: 'a' gpsd {} latency_s: -1 }", "input.latency_s: must be at least 0");
-  ExpectFault("source: LIVE use_lidar_nmea: false", ":1: source: is LIVE, but there is nothing to take");
+  ExpectFault("source: LIVE use_lidar_nmea: false", ":1: source: is LIVE, but there is nothing to read");
 }
 
 const std::string kPlayed = "source: LIVE use_lidar_nmea: false\n";
@@ -131,10 +131,10 @@ TEST_F(InputsTest, MustNotShareADeviceOrAPort) {
   const auto serial = [](const std::string& name, const std::string& device) {
     return "input { name: '" + name + "' serial { device: '" + device + "' baud: 4800 } }\n";
   };
-  ExpectFault(kLive + serial("a", "/dev/null") + serial("b", (folder_ / "by-id").string()), ":3: input: 'b': serial port /dev/null is taken");
+  ExpectFault(kLive + serial("a", "/dev/null") + serial("b", (folder_ / "by-id").string()), ":3: input: 'b': serial port /dev/null is used by");
   ExpectFault(kLive + "bind_address: '0.0.0.0'\ninput { name: 'b' udp { bind_address: '::' port: 10110 } }",
               ":3: input: 'b': udp port 10110 belongs to input 'udp'");
-  ExpectFault(kLive + "input { name: 'a' gpsd {} }\ninput { name: 'b' gpsd {} }", "'b': gpsd 127.0.0.1 port 2947 is taken");
+  ExpectFault(kLive + "input { name: 'a' gpsd {} }\ninput { name: 'b' gpsd {} }", "'b': gpsd 127.0.0.1 port 2947 is used by");
 }
 
 TEST_F(InputsTest, ADatumThatIsFarFromATextLogsFirstPositionIsNamed) {
@@ -155,9 +155,9 @@ TEST_F(InputsTest, ADatumThatIsFarFromATextLogsFirstPositionIsNamed) {
   EXPECT_NE(InWords(params).find("Not compared with a position"), std::string::npos);
 }
 
-TEST_F(InputsTest, AreToldInWords) {
+TEST_F(InputsTest, ArePrintedInWords) {
   const auto words = InWords(Load(kLive + "input { name: 'ahrs' serial { device: '/dev/ttyUSB0' baud: 4800 } pitch_positive: BOW_DOWN }"));
-  EXPECT_NE(words.find("# input 'ahrs': serial port /dev/ttyUSB0, 4800 baud, 8N1; all that its sentences say is taken."), std::string::npos) << words;
+  EXPECT_NE(words.find("# input 'ahrs': serial port /dev/ttyUSB0, 4800 baud, 8N1; all that its sentences say is used."), std::string::npos) << words;
   EXPECT_NE(words.find("bow down is positive; where the sensor says +5 deg, an object 10 m ahead along the deck would be at 0.87 m below"),
             std::string::npos)
       << words;

@@ -62,7 +62,7 @@ TEST_F(InterpreterTest, DoesNotPairSourcesOrEpochs) {
   EXPECT_TRUE(std::isnan(next->speed_mps));
 }
 
-TEST_F(InterpreterTest, TakesDeviationsOutOfGst) {
+TEST_F(InterpreterTest, UsesDeviationsOutOfGst) {
   Read(0.1, Line("GPGST," + TimeOfDay(NoonPlus(0)) + ",1,1,1,0,3.0,4.0,5.0"));
   const auto fix = Read(0.2, GgaLine(NoonPlus(0), 50.0, 8.0, 1, 0.8, 100.0, 47.0)).fix;
   EXPECT_NEAR(fix->horizontal_sd_m, std::sqrt(12.5), 1e-12);
@@ -70,7 +70,7 @@ TEST_F(InterpreterTest, TakesDeviationsOutOfGst) {
   EXPECT_EQ(Read(6.0, GgaLine(NoonPlus(5.9), 50.0, 8.0, 1, 1.0, 100.0, 47.0)).fix->horizontal_sd_m, 2.5) << "of old";
 }
 
-TEST_F(InterpreterTest, GivesVtgTheInstantOfItsEpoch) {
+TEST_F(InterpreterTest, VtgHasTheInstantOfItsEpoch) {
   Read(0.2, GgaLine(NoonPlus(0), 50.0, 8.0, 1, 0.8, 100.0, 47.0));
   EXPECT_EQ(Read(0.21, Line("GPVTG,30.0,T,,M,4.0,N,,K")).velocity->time, NoonPlus(0));
   EXPECT_EQ(Read(0.4, Line("GPVTG,30.0,T,,M,4.0,N,,K")).velocity->time, NoonPlus(0.4));
@@ -78,7 +78,7 @@ TEST_F(InterpreterTest, GivesVtgTheInstantOfItsEpoch) {
   EXPECT_FALSE(Read(1.21, Line("GPVTG,30.0,T,,M,4.0,N,,K")).velocity) << "RMC has said it";
 }
 
-TEST_F(InterpreterTest, TakesTheDelayOfItsSourceFromASentenceWithoutATime) {
+TEST_F(InterpreterTest, UsesTheDelayOfItsSourceFromASentenceWithoutATime) {
   SourceParams source;
   source.name = "nav";
   source.latency = 30ms;
@@ -120,7 +120,7 @@ TEST_F(InterpreterTest, RefusesMagneticHeadingsThatCannotBeTurnedToTrue) {
   EXPECT_NEAR(Read(0, Line("HCHDG,100.0,1.0,W,3.0,E")).attitude->heading_rad, DegToRad(102.0), 1e-12) << "what the sentence says counts";
 }
 
-TEST_F(InterpreterTest, TakesOfASourceWhatItsRoleIs) {
+TEST_F(InterpreterTest, UsesOfASourceWhatItsRoleIs) {
   const std::string ymr = Line("VNYMR,10.0,2.0,3.0,0,0,0,0.5,0.2,-9.8,0.1,0.2,0.3");
   const auto parts = [&](Role role) {
     SourceParams source;
@@ -150,7 +150,7 @@ TEST_F(InterpreterTest, TurnsAStrapdownSensorIntoTheVesselFrame) {
   EXPECT_EQ(imu->angular_velocity_radps, Eigen::Vector3d(0.1, -0.2, -0.3));
 }
 
-TEST_F(InterpreterTest, TakesPositionAndAttitudeOutOfVnins) {
+TEST_F(InterpreterTest, UsesPositionAndAttitudeOutOfVnins) {
   // 2026-06-01, noon: Monday of GPS week 2421, 18 s ahead of UTC.
   const auto line = [](const char* status, const char* time_of_week = "129618.000000") {
     return Line(std::string("VNINS,") + time_of_week + ",2421," + status + ",350.0,2.0,-3.0,50.0,8.0,147.0,3.0,-4.0,0.5,1.0,1.6,0.2");
@@ -192,7 +192,7 @@ TEST_F(InterpreterTest, DoesNotTakeTheComputersClockForWrongBeforeAReceiverHasAF
 
 // A multiplexer that repeats the last sentences of a receiver that has gone. Each was a new fix, and the time that stood still dragged the clock
 // along.
-TEST_F(InterpreterTest, TakesASentenceThatIsRepeatedForTheInstantThatItWas) {
+TEST_F(InterpreterTest, UsesASentenceThatIsRepeatedForTheInstantThatItWas) {
   for (int i = 0; i < 300; ++i) {
     const auto fix = Read(0.1 + 0.1 * i, RmcLine(NoonPlus(0), 50.0, 8.0, 2.0, 30.0)).fix;
     ASSERT_TRUE(fix);
@@ -202,7 +202,7 @@ TEST_F(InterpreterTest, TakesASentenceThatIsRepeatedForTheInstantThatItWas) {
   EXPECT_EQ(interpreter_.host_minus_utc(), 0us);
 }
 
-TEST_F(InterpreterTest, IsToldNothingOfTheClockByASourceThatIsOnlyRecorded) {
+TEST_F(InterpreterTest, DoesNotCorrectTheClockByASourceThatIsOnlyRecorded) {
   SourceParams recorded;
   recorded.name = "nav";
   recorded.role = Role::kNothing;
@@ -272,7 +272,7 @@ TEST_F(InterpreterTest, ReadsGns) {
 }
 
 // Saab's R4 leaves a field out.
-TEST_F(InterpreterTest, TakesAShortGgaForWhatItHolds) {
+TEST_F(InterpreterTest, UsesAShortGgaForWhatItHolds) {
   const auto last_left_out = Read(0.1, Line("GPGGA,120000.00,5012.790800,N,00806.879600,W,1,08,1.5,10.0,M,47.0,M,")).fix;
   ASSERT_TRUE(last_left_out && last_left_out->position);
   EXPECT_EQ(last_left_out->quality, FixQuality::kGnss);
@@ -288,7 +288,7 @@ TEST_F(InterpreterTest, TakesAShortGgaForWhatItHolds) {
 }
 
 // The height stood for the HDOP where that is missing: 0.3 m made a fix three times as good as it is.
-TEST_F(InterpreterTest, AShortGgaNeverTakesOneNumberForAnother) {
+TEST_F(InterpreterTest, AShortGgaNeverConfusesOneNumberWithAnother) {
   const std::vector<std::string> whole{"", "5012.790800", "N", "00806.879600", "W", "5", "08", "1.5", "0.3", "M", "47.0", "M", "", ""};
   const double usual_sd_m = Read(0.0, Line("GPGGA,120000.00,5012.790800,N,00806.879600,W,1,08,,0.3,M,47.0,M,,")).fix->horizontal_sd_m;
   for (std::size_t missing = 0; missing < whole.size(); ++missing) {

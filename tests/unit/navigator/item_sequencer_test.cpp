@@ -26,7 +26,7 @@ TEST(ItemSequencer, BeginsWithAStartMark) {
   EXPECT_EQ(Text(other.OnLines(NoonPlus(0.03), {"$A", "$B"})), "0 start 0.030\n1 sentence 0.030\n2 sentence 0.030\n");
 }
 
-TEST(ItemSequencer, GivesNothingAtTheEndWhenNothingCame) {
+TEST(ItemSequencer, MakesNothingAtTheEndWhenNothingCame) {
   ItemSequencer sequencer;
   EXPECT_TRUE(sequencer.Finish(NoonPlus(0)).empty());
 }

@@ -43,7 +43,7 @@ class NavigatorTest : public ::testing::Test {
   std::int64_t seq_ = 0;
 };
 
-TEST_F(NavigatorTest, GivesAPoseForEveryWhole20Ms) {
+TEST_F(NavigatorTest, MakesAPoseForEveryWhole20Ms) {
   EXPECT_EQ(TimesMs(Mark(ItemKind::kStart, 0.005)), std::vector<double>{});
   EXPECT_EQ(TimesMs(Mark(ItemKind::kTick, 0.0199)), std::vector<double>{});
   EXPECT_EQ(TimesMs(Mark(ItemKind::kTick, 0.02)), std::vector<double>{20});
@@ -51,15 +51,15 @@ TEST_F(NavigatorTest, GivesAPoseForEveryWhole20Ms) {
   EXPECT_EQ(TimesMs(Mark(ItemKind::kImu, 0.085)), (std::vector<double>{40, 60, 80}));
 }
 
-TEST_F(NavigatorTest, GivesAPoseAtAStartOnTheGrid) { EXPECT_EQ(TimesMs(Mark(ItemKind::kStart, 0.04)), std::vector<double>{40}); }
+TEST_F(NavigatorTest, MakesAPoseAtAStartOnTheGrid) { EXPECT_EQ(TimesMs(Mark(ItemKind::kStart, 0.04)), std::vector<double>{40}); }
 
-TEST_F(NavigatorTest, GivesOneMorePoseAtTheEnd) {
+TEST_F(NavigatorTest, MakesOneMorePoseAtTheEnd) {
   Mark(ItemKind::kStart, 0.005);
   EXPECT_EQ(TimesMs(Mark(ItemKind::kEnd, 0.05)), (std::vector<double>{20, 40, 60}));
   EXPECT_EQ(TimesMs(navigator_.Flush()), std::vector<double>{});
 }
 
-TEST_F(NavigatorTest, GivesNoneBeyondAnEndOnTheGrid) {
+TEST_F(NavigatorTest, MakesNoneBeyondAnEndOnTheGrid) {
   Mark(ItemKind::kStart, 0.005);
   EXPECT_EQ(TimesMs(Mark(ItemKind::kEnd, 0.04)), (std::vector<double>{20, 40}));
 }
@@ -91,7 +91,7 @@ TEST_F(NavigatorTest, IsVoidAfterAStartMark) {
   EXPECT_TRUE(std::isnan(output.poses[0].datum.latitude_deg)) << "the datum came from the first fix";
 }
 
-TEST_F(NavigatorTest, MovesTheStateBeforeItGivesPoses) {
+TEST_F(NavigatorTest, MovesTheStateBeforeItMakesPoses) {
   Mark(ItemKind::kStart, 0.0);
   const auto output = Sentence(0.1, RmcLine(NoonPlus(0.05), 50.0, 8.0, 0.0, 0.0));
   ASSERT_EQ(output.poses.size(), 5U);
@@ -101,7 +101,7 @@ TEST_F(NavigatorTest, MovesTheStateBeforeItGivesPoses) {
   }
 }
 
-TEST_F(NavigatorTest, NeverGivesATimeTwiceWhenAFixIsLate) {
+TEST_F(NavigatorTest, NeverMakesATimeTwiceWhenAFixIsLate) {
   Mark(ItemKind::kStart, 0.0);
   Sentence(1.0, RmcLine(NoonPlus(0.9), 50.0, 8.0, 0.0, 0.0));
   const auto before = Mark(ItemKind::kTick, 1.0);
@@ -114,7 +114,7 @@ TEST_F(NavigatorTest, NeverGivesATimeTwiceWhenAFixIsLate) {
   EXPECT_EQ(Count("late_fix"), 0);
 }
 
-TEST_F(NavigatorTest, GivesAFixPerRmcAndGga) {
+TEST_F(NavigatorTest, MakesAFixPerRmcAndGga) {
   Mark(ItemKind::kStart, 0.0);
   const auto rmc = Sentence(0.1, RmcLine(NoonPlus(0.05), 50.0, -8.0, 2.0, 30.0)).fix;
   ASSERT_TRUE(rmc);
@@ -135,7 +135,7 @@ TEST_F(NavigatorTest, GivesAFixPerRmcAndGga) {
   EXPECT_EQ(Count("understood_sentence"), 3);
 }
 
-TEST_F(NavigatorTest, GivesAFixWithoutPositionWhereThereIsNone) {
+TEST_F(NavigatorTest, MakesAFixWithoutPositionWhereThereIsNone) {
   Mark(ItemKind::kStart, 0.0);
   const auto fix = Sentence(0.1, "$GPGGA,,,,,,0,,,,M,,M,,*66").fix;
   ASSERT_TRUE(fix);
@@ -185,7 +185,7 @@ TEST_F(NavigatorTest, CountsWhatItDoesNotTake) {
   EXPECT_EQ(Count("understood_sentence"), 0);
 }
 
-TEST_F(NavigatorTest, TakesASentenceThatTheLidarRepeatsOnce) {
+TEST_F(NavigatorTest, UsesASentenceThatTheLidarRepeatsOnce) {
   const auto line = RmcLine(NoonPlus(0.0), 50.0, 8.0, 2.0, 30.0);
   EXPECT_TRUE(Sentence(0.1, line, kLidarSource).fix);
   EXPECT_FALSE(Sentence(0.107, line, kLidarSource).fix);
@@ -197,7 +197,7 @@ TEST_F(NavigatorTest, TakesASentenceThatTheLidarRepeatsOnce) {
   EXPECT_TRUE(Sentence(2.0, RmcLine(NoonPlus(1.0), 50.0, 8.0, 2.0, 30.0), kLidarSource).fix) << "after a start mark it is the first";
 }
 
-TEST_F(NavigatorTest, TakesTheArrivalWhereTheReceiversTimeIsOff) {
+TEST_F(NavigatorTest, UsesTheArrivalWhereTheReceiversTimeIsOff) {
   const auto fix = Sentence(0.1, RmcLine(NoonPlus(-60.0), 50.0, 8.0, 2.0, 30.0)).fix;
   ASSERT_TRUE(fix);
   EXPECT_FALSE(fix->when.is_from_sentence);

@@ -26,7 +26,7 @@ bool IsOther(const std::string& line) {
 }
 
 // The recording of a real VLP-16 with a receiver (MRPT's sample).
-TEST(Rmc, GivesAllItsValues) {
+TEST(Rmc, HasAllItsValues) {
   const auto rmc = Parsed(SentenceType::kRmc, "$GPRMC,081802.00,A,3649.7478558,N,00224.4542928,W,0.034,212.5,210116,0.0,E,A*2E");
   EXPECT_EQ(rmc.time_of_day, 8h + 18min + 2s);
   EXPECT_EQ(rmc.date, std::chrono::sys_days(std::chrono::year(2016) / 1 / 21));
@@ -56,7 +56,7 @@ TEST(Rmc, OfOldReceiversHasNoMode) {
   EXPECT_EQ(Parsed(SentenceType::kRmc, Line("GPRMC,195719,A,5310.8115,N,00525.7025,E,0.0,0.0,160414,0.7,E")).quality, FixQuality::kGnss);
 }
 
-TEST(Rmc, TakesItsQualityFromTheMode) {
+TEST(Rmc, UsesItsQualityFromTheMode) {
   const auto quality = [](const std::string& status, const std::string& mode) {
     return Parsed(SentenceType::kRmc, Line("GPRMC,000000," + status + ",0000.0,N,00000.0,E,0.0,0.0,010126,,," + mode)).quality;
   };
@@ -72,7 +72,7 @@ TEST(Rmc, TakesItsQualityFromTheMode) {
   EXPECT_EQ(quality("", "A"), FixQuality::kNone);
 }
 
-TEST(Gga, GivesAllItsValues) {
+TEST(Gga, HasAllItsValues) {
   const auto gga = Parsed(SentenceType::kGga, "$GNGGA,132819.60,4134.49795459,N,09345.03431408,W,2,10,0.9,278.161,M,-31.442,M,6.6,0133*6A");
   EXPECT_EQ(gga.time_of_day, 13h + 28min + 19600ms);
   EXPECT_EQ(gga.quality, FixQuality::kDifferential);
@@ -96,13 +96,13 @@ TEST(Gga, OfNovatelNinesIsDifferential) {
   EXPECT_EQ(Parsed(SentenceType::kGga, Line("GPGGA,000000,0000.0,N,00000.0,E,9,08,1.0,1.0,M,1.0,M,,")).quality, FixQuality::kDifferential);
 }
 
-TEST(Vtg, GivesCourseAndSpeed) {
+TEST(Vtg, HasCourseAndSpeed) {
   const auto vtg = Parsed(SentenceType::kVtg, "$GPVTG,251.34,T,,M,0.58,N,1.07,K,A*37");
   EXPECT_NEAR(vtg.course_rad, DegToRad(251.34), 1e-12);
   EXPECT_NEAR(vtg.speed_mps, 0.58 * 1852.0 / 3600.0, 1e-12);
 }
 
-TEST(Vtg, TakesKilometresPerHourWhereThereAreNoKnots) {
+TEST(Vtg, UsesKilometresPerHourWhereThereAreNoKnots) {
   EXPECT_NEAR(Parsed(SentenceType::kVtg, Line("GPVTG,1.0,T,,M,,N,36.0,K")).speed_mps, 10.0, 1e-12);
 }
 
@@ -114,14 +114,14 @@ TEST(Vtg, WithoutAFixSaysNothing) {
   EXPECT_TRUE(std::isnan(Parsed(SentenceType::kVtg, Line("GPVTG,1.0,T,,M,2.0,N,,K,N")).speed_mps));
 }
 
-TEST(Hdt, GivesTheHeading) {
+TEST(Hdt, HasTheHeading) {
   EXPECT_NEAR(Parsed(SentenceType::kHdt, "$GPHDT,274.07,T*03").heading_rad, DegToRad(274.07), 1e-12);
   EXPECT_TRUE(std::isnan(Parsed(SentenceType::kHdt, "$GPHDT,,T*1B").heading_rad));
   EXPECT_EQ(Parsed(SentenceType::kHdt, Line("HEHDT,360.0,T")).heading_rad, 0.0);
 }
 
 // NovAtel's example (OEM7 manual, PASHR).
-TEST(Pashr, GivesAllItsValues) {
+TEST(Pashr, HasAllItsValues) {
   const auto pashr = Parsed(SentenceType::kPashr, "$PASHR,163029.000,158.09,T,-0.30,+0.31,+0.01,0.029,0.029,0.059,1,1*3B");
   EXPECT_EQ(pashr.time_of_day, 16h + 30min + 29s);
   EXPECT_NEAR(pashr.heading_rad, DegToRad(158.09), 1e-12);
@@ -139,13 +139,13 @@ TEST(Pashr, MayLackTheLastFieldAndAnyValue) {
   EXPECT_TRUE(std::isnan(pashr.heading_rad) && std::isnan(pashr.roll_rad) && std::isnan(pashr.heave_m) && std::isnan(pashr.heading_sd_rad));
 }
 
-TEST(Rmc, GivesItsDeclinationAndIsNotRefusedForIt) {
+TEST(Rmc, HasItsDeclinationAndIsNotRefusedForIt) {
   EXPECT_NEAR(Parsed(SentenceType::kRmc, Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,2.5,W,A")).declination_rad, DegToRad(-2.5), 1e-12);
   EXPECT_TRUE(std::isnan(Parsed(SentenceType::kRmc, Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,-2.5,E,A")).declination_rad));
   EXPECT_TRUE(std::isnan(Parsed(SentenceType::kRmc, Line("GPRMC,000000,A,0000.0,N,00000.0,E,0.0,0.0,010126,,,A")).declination_rad));
 }
 
-TEST(Gst, GivesTheDeviations) {
+TEST(Gst, HasTheDeviations) {
   const auto gst = Parsed(SentenceType::kGst, "$GPGST,172814.0,0.006,0.023,0.020,273.6,0.023,0.020,0.031*6A");
   EXPECT_EQ(gst.time_of_day, 17h + 28min + 14s);
   EXPECT_DOUBLE_EQ(gst.horizontal_sd_m, std::sqrt((0.023 * 0.023 + 0.020 * 0.020) / 2.0));
@@ -154,7 +154,7 @@ TEST(Gst, GivesTheDeviations) {
   EXPECT_TRUE(std::isnan(zeros.horizontal_sd_m) && std::isnan(zeros.vertical_sd_m)) << "a receiver does not know its place exactly";
 }
 
-TEST(Gll, GivesPositionTimeAndQuality) {
+TEST(Gll, HasPositionTimeAndQuality) {
   const auto gll = Parsed(SentenceType::kGll, "$ECGLL,5119.881,N,00125.169,E,164326,A,D*52");
   EXPECT_EQ(gll.time_of_day, 16h + 43min + 26s);
   EXPECT_EQ(gll.quality, FixQuality::kDifferential);
@@ -166,7 +166,7 @@ TEST(Gll, GivesPositionTimeAndQuality) {
   EXPECT_FALSE(old.time_of_day);
 }
 
-TEST(Zda, GivesDateAndTime) {
+TEST(Zda, HasDateAndTime) {
   const auto zda = Parsed(SentenceType::kZda, "$GPZDA,193913.00,07,09,2018,00,00*63");
   EXPECT_EQ(zda.time_of_day, 19h + 39min + 13s);
   EXPECT_EQ(zda.date, std::chrono::sys_days(std::chrono::year(2018) / 9 / 7));
@@ -198,7 +198,7 @@ TEST(Rot, IsPositiveToStarboardAndVoidWhereItSaysSo) {
   EXPECT_TRUE(std::isnan(Parsed(SentenceType::kRot, Line("TIROT,-60.0,V")).turn_rate_radps));
 }
 
-TEST(PsatHpr, GivesItsAngles) {
+TEST(PsatHpr, HasItsAngles) {
   const auto hpr = Parsed(SentenceType::kPsatHpr, Line("PSAT,HPR,201400.00,74.58,-2.33,1.10,N"));
   EXPECT_EQ(hpr.time_of_day, 20h + 14min);
   EXPECT_NEAR(hpr.heading_rad, DegToRad(74.58), 1e-12);
@@ -208,7 +208,7 @@ TEST(PsatHpr, GivesItsAngles) {
 }
 
 // VectorNav's own examples (user manuals UM001 and UM005).
-TEST(VectorNav, GivesWhatItsSensorsMeasure) {
+TEST(VectorNav, HasWhatItsSensorsMeasure) {
   const auto with_status = [](const char* status) {
     return Parsed(SentenceType::kVnIns,
                   Line(std::string("VNINS,333733.000159,1694,") + status +

@@ -57,7 +57,7 @@ struct Expectation {
 class GpsdTimes : public ::testing::TestWithParam<Expectation> {};
 class GpsdLog : public ::testing::TestWithParam<Expectation> {};
 
-TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
+TEST_P(GpsdLog, HasTheFixesThatGpsdReads) {
   const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   std::istringstream lines(ReadFile(file));
@@ -93,7 +93,7 @@ TEST_P(GpsdLog, GivesTheFixesThatGpsdReads) {
 }
 
 // gpsd often reports later, when an epoch is whole: its reports of the time of an RMC hold the place of that RMC.
-TEST_P(GpsdTimes, GivesThePlacesThatGpsdReadsAtThem) {
+TEST_P(GpsdTimes, HasThePlacesThatGpsdReadsAtThem) {
   const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   std::istringstream lines(ReadFile(file));
@@ -251,7 +251,7 @@ std::map<std::string, int> Census(const fs::path& file) {
 }
 
 // Every sentence that is understood goes through: nothing is refused, and time never runs backwards.
-TEST(Recordings, OfABoatInAmsterdamAreTakenWhole) {
+TEST(Recordings, OfABoatInAmsterdamAreReadWhole) {
   const auto file = kRecordings / "nmea/signalk_gps.log";
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   InterpreterParams params;

@@ -59,7 +59,7 @@ TEST(IsLine, WantsAStartAndPrintableCharacters) {
   EXPECT_FALSE(IsLine("$" + std::string(kMaxLineCharacters, 'A')));
 }
 
-TEST(Frame, GivesAddressAndFields) {
+TEST(Frame, HasAddressAndFields) {
   const auto result = Frame("$GPHDT,274.07,T*03");
   ASSERT_EQ(result.fault, SentenceFault::kNone);
   EXPECT_EQ(result.sentence.address, "GPHDT");
@@ -72,7 +72,7 @@ TEST(Frame, KeepsEmptyFields) {
   EXPECT_EQ(Frame(Line("")).fault, SentenceFault::kNone);
 }
 
-TEST(Frame, TakesSmallHexadecimalDigits) {
+TEST(Frame, UsesSmallHexadecimalDigits) {
   EXPECT_EQ(Frame("$GPRMC,193221.00,A,2037.7279,N,08704.0848,W,00.1,201.8,231207,01,W,A*2d").fault, SentenceFault::kNone);
 }
 

@@ -146,7 +146,7 @@ TEST(Service, SendsPosesOfTheDemoBoat) {
   EXPECT_GT(pose.covariance[8][8], 0.0);
 }
 
-TEST(Service, TakesLidarSentencesOnlyWhereConfigSaysSo) {
+TEST(Service, UsesLidarSentencesOnlyWhereConfigSaysSo) {
   auto params = TestParams(Input::kOutside);
   for (const bool use_lidar_nmea : {true, false}) {
     params.use_lidar_nmea = use_lidar_nmea;
@@ -172,7 +172,7 @@ TEST(Service, CountsTheSeqOfItsOutputsFromAStartMark) {
   EXPECT_EQ(poses[6].utime_us, ToUtimeUs(NoonPlus(-5.0)));
 }
 
-TEST(Service, FromALogTakesNothingElseAndSendsNoRaw) {
+TEST(Service, FromALogReadsNothingElseAndSendsNoRaw) {
   Rig rig(TestParams(Input::kLog));
   rig.Datagram(0.0, HdtLine(1.0));
   rig.service.AdvanceTo(NoonPlus(1.0));

@@ -11,6 +11,7 @@
 #include "services/navigator/core/day.hpp"
 #include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/io/text_log_reader.hpp"
+#include "tests/support/files.hpp"
 
 namespace lookout::navigator {
 namespace {

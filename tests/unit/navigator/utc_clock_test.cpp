@@ -32,7 +32,7 @@ class UtcClockTest : public ::testing::Test {
   SourceClock source_;
 };
 
-TEST_F(UtcClockTest, TakesTheComputersClockForUtcWhileADelayCanExplainTheDifference) {
+TEST_F(UtcClockTest, UsesTheComputersClockForUtcWhileADelayCanExplainTheDifference) {
   for (int i = 0; i < 20; ++i) {
     const auto when = Sentence(NoonPlus(i), -200ms);
     ASSERT_TRUE(when);
@@ -71,7 +71,7 @@ TEST_F(UtcClockTest, GoesOnByAClockThatIsOffAndStillSaysUtc) {
   EXPECT_EQ(untimed.utc, NoonPlus(12) - 30ms - 20ms);
 }
 
-TEST_F(UtcClockTest, TakesWhatCameWithALateSentenceForAsLate) {
+TEST_F(UtcClockTest, UsesWhatCameWithALateSentenceForAsLate) {
   for (int i = 0; i < 20; ++i) Sentence(NoonPlus(i), 0s, 80ms, 80ms);
   Sentence(NoonPlus(20), 0s, 12s, 80ms);
   EXPECT_EQ(clock_.OfArrival(source_, NoonPlus(32) + 10ms, 80ms).time, NoonPlus(20) + 10ms);
@@ -129,7 +129,7 @@ TEST_F(UtcClockTest, CarriesTheDayOverMidnight) {
   EXPECT_EQ(Sentence(midnight + 1s, kNoBattery, 50ms, {}, std::nullopt)->utc, midnight + 1s);
 }
 
-TEST_F(UtcClockTest, TakesTheDateOfAZdaThatRunsAhead) {
+TEST_F(UtcClockTest, UsesTheDateOfAZdaThatRunsAhead) {
   // gpsd's tcp-torture: ZDA is two seconds ahead of the fixes.
   clock_.OnDate(source_, NoonPlus(0) + kNoBattery, NoonPlus(2));
   EXPECT_EQ(Sentence(NoonPlus(0), kNoBattery, 50ms, {}, std::nullopt)->utc, NoonPlus(0));
@@ -149,7 +149,7 @@ TEST_F(UtcClockTest, LetsTheFirstDateCorrectTheGuessOfSentencesBeforeIt) {
   }
 }
 
-TEST_F(UtcClockTest, TakesADateThatIsSetBackAlthoughSentencesWithoutADateGoOn) {
+TEST_F(UtcClockTest, UsesADateThatIsSetBackAlthoughSentencesWithoutADateGoOn) {
   // All at once, so that the computer's clock cannot be told.
   const Utime arrival = NoonPlus(0) - 5h;
   const auto take = [&](int i, std::optional<std::chrono::sys_days> date) {

@@ -49,60 +49,60 @@ TEST(Beams, OfThePuckHiResAreOneAndAThirdDegreesApart) {
     EXPECT_NEAR(beams.elevation_rad[ring] - beams.elevation_rad[ring - 1], DegToRad(20.0 / 15), DegToRad(0.011));
 }
 
-TEST(ModelJudge, GoesByTheProductByte) {
-  ModelJudge judge(ModelChoice::kAuto);
-  EXPECT_EQ(judge.Judge(PacketOf(0x22)), ModelVerdict::kVlp16);
-  EXPECT_EQ(judge.Judge(PacketOf(0x24)), ModelVerdict::kPuckHiRes);
-  EXPECT_EQ(judge.Judge(PacketOf(0x28)), ModelVerdict::kUnknown);
-  EXPECT_EQ(judge.Judge(PacketOf(0x21)), ModelVerdict::kUndecided);
+TEST(ModelDetector, GoesByTheProductByte) {
+  ModelDetector detector(ModelChoice::kAuto);
+  EXPECT_EQ(detector.Detect(PacketOf(0x22)), ModelVerdict::kVlp16);
+  EXPECT_EQ(detector.Detect(PacketOf(0x24)), ModelVerdict::kPuckHiRes);
+  EXPECT_EQ(detector.Detect(PacketOf(0x28)), ModelVerdict::kUnknown);
+  EXPECT_EQ(detector.Detect(PacketOf(0x21)), ModelVerdict::kUndecided);
 }
 
-TEST(ModelJudge, ObeysConfigForTheFamilyAndForUnknownBytes) {
+TEST(ModelDetector, ObeysConfigForTheFamilyAndForUnknownBytes) {
   for (const std::uint8_t product : {0x21, 0x22, 0x24, 0x99}) {
-    EXPECT_EQ(ModelJudge(ModelChoice::kVlp16).Judge(PacketOf(product)), ModelVerdict::kVlp16);
-    EXPECT_EQ(ModelJudge(ModelChoice::kPuckHiRes).Judge(PacketOf(product)), ModelVerdict::kPuckHiRes);
+    EXPECT_EQ(ModelDetector(ModelChoice::kVlp16).Detect(PacketOf(product)), ModelVerdict::kVlp16);
+    EXPECT_EQ(ModelDetector(ModelChoice::kPuckHiRes).Detect(PacketOf(product)), ModelVerdict::kPuckHiRes);
   }
 }
 
-TEST(ModelJudge, TakesNoOtherSensorForAVlp16WhateverConfigSays) {
-  EXPECT_EQ(ModelJudge(ModelChoice::kVlp16).Judge(PacketOf(0x28)), ModelVerdict::kUnknown);  // VLP-32C
-  ModelJudge judge(ModelChoice::kVlp16);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(judge.Judge(PacketOf(0x21, static_cast<std::uint32_t>(i * 553))), ModelVerdict::kVlp16);
-  EXPECT_EQ(judge.Judge(PacketOf(0x21, 3 * 553)), ModelVerdict::kHdl32e);
+TEST(ModelDetector, TakesNoOtherSensorForAVlp16WhateverConfigSays) {
+  EXPECT_EQ(ModelDetector(ModelChoice::kVlp16).Detect(PacketOf(0x28)), ModelVerdict::kUnknown);  // VLP-32C
+  ModelDetector detector(ModelChoice::kVlp16);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(detector.Detect(PacketOf(0x21, static_cast<std::uint32_t>(i * 553))), ModelVerdict::kVlp16);
+  EXPECT_EQ(detector.Detect(PacketOf(0x21, 3 * 553)), ModelVerdict::kHdl32e);
 }
 
-ModelVerdict JudgeStream(double interval_us, ReturnMode mode, int skip_every = 0) {
-  ModelJudge judge(ModelChoice::kAuto);
+ModelVerdict DetectStream(double interval_us, ReturnMode mode, int skip_every = 0) {
+  ModelDetector detector(ModelChoice::kAuto);
   ModelVerdict verdict = ModelVerdict::kUndecided;
   for (int i = 0, sent = 0; sent < 8; ++i) {
     if (skip_every > 0 && i % skip_every == 1) continue;
     // Over the hour on the way.
     const auto stamp_us =
         static_cast<std::uint32_t>((3'599'999'000.0 + i * interval_us) - (3'599'999'000.0 + i * interval_us >= 3.6e9 ? 3.6e9 : 0.0));
-    verdict = judge.Judge(PacketOf(0x21, stamp_us, mode));
+    verdict = detector.Detect(PacketOf(0x21, stamp_us, mode));
     ++sent;
     EXPECT_EQ(verdict == ModelVerdict::kUndecided, sent <= 3);
   }
   return verdict;
 }
 
-TEST(ModelJudge, TellsTheSharedByteByTheIntervalBetweenPackets) {
-  EXPECT_EQ(JudgeStream(1327.104, ReturnMode::kStrongest), ModelVerdict::kVlp16);
-  EXPECT_EQ(JudgeStream(552.96, ReturnMode::kStrongest), ModelVerdict::kHdl32e);
-  EXPECT_EQ(JudgeStream(663.552, ReturnMode::kDual), ModelVerdict::kVlp16);
-  EXPECT_EQ(JudgeStream(276.48, ReturnMode::kDual), ModelVerdict::kHdl32e);
+TEST(ModelDetector, TellsTheSharedByteByTheIntervalBetweenPackets) {
+  EXPECT_EQ(DetectStream(1327.104, ReturnMode::kStrongest), ModelVerdict::kVlp16);
+  EXPECT_EQ(DetectStream(552.96, ReturnMode::kStrongest), ModelVerdict::kHdl32e);
+  EXPECT_EQ(DetectStream(663.552, ReturnMode::kDual), ModelVerdict::kVlp16);
+  EXPECT_EQ(DetectStream(276.48, ReturnMode::kDual), ModelVerdict::kHdl32e);
 }
 
-TEST(ModelJudge, IsNotMisledByALostPacket) { EXPECT_EQ(JudgeStream(552.96, ReturnMode::kStrongest, 4), ModelVerdict::kHdl32e); }
+TEST(ModelDetector, IsNotMisledByALostPacket) { EXPECT_EQ(DetectStream(552.96, ReturnMode::kStrongest, 4), ModelVerdict::kHdl32e); }
 
-TEST(ModelJudge, CanDecideEarlyOnlyWithAnInterval) {
-  ModelJudge judge(ModelChoice::kAuto);
-  EXPECT_EQ(judge.JudgeNow(), ModelVerdict::kUndecided);
-  judge.Judge(PacketOf(0x21, 1000));
-  judge.Judge(PacketOf(0x21, 1000));  // the same again is no interval
-  EXPECT_EQ(judge.JudgeNow(), ModelVerdict::kUndecided);
-  judge.Judge(PacketOf(0x21, 2327));
-  EXPECT_EQ(judge.JudgeNow(), ModelVerdict::kVlp16);
+TEST(ModelDetector, CanDecideEarlyOnlyWithAnInterval) {
+  ModelDetector detector(ModelChoice::kAuto);
+  EXPECT_EQ(detector.Decide(), ModelVerdict::kUndecided);
+  detector.Detect(PacketOf(0x21, 1000));
+  detector.Detect(PacketOf(0x21, 1000));  // the same again is no interval
+  EXPECT_EQ(detector.Decide(), ModelVerdict::kUndecided);
+  detector.Detect(PacketOf(0x21, 2327));
+  EXPECT_EQ(detector.Decide(), ModelVerdict::kVlp16);
 }
 
 }  // namespace

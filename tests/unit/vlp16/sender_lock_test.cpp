@@ -224,7 +224,7 @@ TEST(SenderLock, IsHeldByOneOfTwoLidarsThatAreToldByTheirIntervals) {
     return sensor.Next();
   });
   const auto beside = Of(MergedArrivals({hdl32e, early(milliseconds(500), kLidar.address)}));
-  EXPECT_EQ(std::ranges::count(beside.notices, "takes the lidar at 192.168.1.201:2368"), 1);
+  EXPECT_EQ(std::ranges::count(beside.notices, "uses the lidar at 192.168.1.201:2368"), 1);
 }
 
 // What cannot be the lidar took the place on trial for a second at a time.
@@ -270,7 +270,7 @@ TEST(SenderLock, PassesToAnotherAddressAfterTenSecondsOfSilence) {
   EXPECT_NEAR(static_cast<double>(both.NumData() - num_before), 8.0 * 753.5, 8.0);
   EXPECT_EQ(both.NumData() + both.CountOf("data_sender_refused"), num_before + std::ranges::count(after, 2368, &Arrival::udp_port));
   const auto tells_the_change = [](const std::string& line) {
-    return line == "takes the lidar at 192.168.1.202:2368; the one at 192.168.1.201:2368 is silent";
+    return line == "uses the lidar at 192.168.1.202:2368; the one at 192.168.1.201:2368 is silent";
   };
   EXPECT_EQ(std::ranges::count_if(both.notices, tells_the_change), 1);
   // After a pause nothing but the trial is lost.

@@ -59,7 +59,7 @@ constexpr double kMostSpeedMps = 30.0;
 constexpr double kMostTurnRadps = 1.0;
 constexpr auto kMaxApart = 2500ms;
 
-// How fast the lever arm swings while nobody says where the bow points.
+// How fast the lever arm swings while the heading is unknown.
 constexpr double kUnknownTurnRadps = 0.2;
 // A velocity without a time of its own is late by some tenths of a second, in which a boat changes it by so much.
 constexpr double kLateVelocitySdMps = 0.15;
@@ -128,7 +128,7 @@ bool AgreesWithLast(const Eigen::Vector3d& angles_rad, double sd_rad, Utime time
   return true;
 }
 
-// A refusal of angles. @return whether the attitude is given up for it
+// Adds a refusal of angles. @return whether the attitude is given up for it
 bool IsAttitudeGivenUp(const Eigen::Vector3d& angles_rad, const Eigen::Vector3d& residual_rad, double sd_rad, std::chrono::seconds max_agreeing,
                        const FilterParams& params, Refusals& refusals, State& state, GateCounts& counts) {
   const bool agrees = AgreesWithLast(angles_rad, sd_rad, state.time, refusals);
@@ -149,8 +149,8 @@ Eigen::Vector3d LeverLevel(const FilterParams& params, const State& state) {
 
 double White(double sd, double slow_sd) { return std::sqrt(std::max(sd * sd - slow_sd * slow_sd, 0.01 * sd * sd)); }
 
-// Satellites that come and go change what a receiver says of itself, and its error. A little of that is the same error; much is another one, but
-// not each little step on the way, or many of them would be many independent measurements.
+// Satellites that come and go change the deviation that a receiver states, and its error. A little of that is the same error; much is another one,
+// but not each small step between, or many of them would be many independent measurements.
 void UseFixErrorModel(const ErrorModel& model, State& state) {
   const double ratio = model.sd / state.aiding.fix_error_begun_sd_m;
   if (model.kind != state.aiding.fix_error_model.kind || ratio < kSameErrorRatio || ratio * kSameErrorRatio > 1.0) {
@@ -204,7 +204,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     if (fault.is_led_away && state.aiding.is_strapdown) RefuseImu(params.tilt_sd_rad, state);
   }
   if (!is_accepted) {
-    // It says where the boat is, whatever was known. So does its velocity.
+    // The fix alone decides the place, and its velocity the velocity.
     const bool knew_velocity = state.aiding.timed_velocity.IsWithin(state.time, kTimedVelocityAge) && !state.aiding.fix_refusals.since;
     BeginLevel(fix.antenna, -(LeverLevel(params, state) + state.nominal.fix_error_m).head<2>(), state);
     ResetError<2>(kPosition, Eigen::Vector2d::Constant(kAnywhereM), state);
@@ -215,7 +215,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
       state.nominal.velocity_level_mps.head<2>() = (HereOf(state).R_here_level.transpose() * velocity_here_mps).head<2>();
       ResetError<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     } else if (state.aiding.fix_refusals.since && !state.aiding.velocity.IsWithin(state.time, kTimedVelocityAge)) {
-      // Fixes contradicted, and nobody measures velocity: that is what was wrong, or the next fix would contradict again.
+      // Fixes contradicted, and no velocity was measured: the velocity was wrong, or the next fix would contradict again.
       ResetError<2>(kVelocity, Eigen::Vector2d::Constant(kAnySpeedMps), state);
     }
   }
@@ -249,7 +249,7 @@ void ApplyHeight(const FixMeasurement& fix, const FilterParams& params, State& s
   Update(innovation, is_first, state, counts);
 }
 
-// Error of a heading, of which the attitude takes what the compass's slow error does not.
+// The innovation of a heading is shared by the attitude and the compass's slow error.
 bool UpdateHeading(double heading_rad, double noise_rad, bool is_forced, State& state, GateCounts& counts) {
   const Here here = HereOf(state);
   const Eigen::Matrix3d R_here_vessel = here.R_here_level * state.nominal.R_level_vessel();

@@ -1,4 +1,4 @@
-// What each kind of measurement tells the state, and what is done when it contradicts it.
+// The measurement models: each kind of measurement is gated and applied; the state is given up where measurements contradict it for long.
 #pragma once
 
 #include <cmath>
@@ -21,11 +21,11 @@ struct VelocityMeasurement {
   bool has_own_time = false;  // else it counts as measured when it came
 };
 
-/// All that a receiver says of one epoch.
+/// One epoch of a receiver.
 struct FixMeasurement {
   std::string source;
   bool is_gga = false;
-  bool begins_time_scale = false;  // as in GnssFix: it says where the boat is, whatever was known
+  bool begins_time_scale = false;  // as in GnssFix: it alone decides the place
   GeodeticPlace antenna;           // where the height is not said, that of the datum
   bool has_height = false;
   double horizontal_sd_m = 0.0;  // per axis
@@ -33,7 +33,7 @@ struct FixMeasurement {
   std::optional<VelocityMeasurement> velocity;
 };
 
-/// What became of the numbers of a measurement.
+/// Results of gating.
 struct GateCounts {
   std::int64_t num_gated = 0;    // contradict the state by more than chance
   std::int64_t num_renewed = 0;  // contradicted it for so long, and so evenly, that the state was given up

@@ -19,7 +19,7 @@ void MoveToBoat(State& state) {
   const Eigen::Isometry3d T_next_level = next.frame.TransformFrom(state.nominal.level->frame);
   const Eigen::Matrix3d& R = T_next_level.linear();
 
-  // The water is as far below the boat as it was. A height that nobody measures stays 0.
+  // The water is as far below the boat as it was. A height that was not measured stays 0.
   const double above_water_m = state.nominal.p_level_m.z() - state.nominal.water_level_m;
   const double old_up_m = state.nominal.p_level_m.z();
   state.nominal.p_level_m = T_next_level * state.nominal.p_level_m;

@@ -19,7 +19,7 @@ struct Earth {
 Earth EarthAt(const GeodeticPlace& place);
 
 /// Fixed to the earth. The boat is no farther than kMaxLevelM from the origin: there gravity leans by 16 microradians (0.15 mm/s2, a third of a
-/// hundredth of what is supposed of the bias of accelerometers), and the surface lies 0.8 mm below the plane.
+/// hundredth of the assumed bias of accelerometers), and the surface lies 0.8 mm below the plane.
 struct Level {
   explicit Level(const GeodeticPlace& place) : origin(place), frame(place), earth(EarthAt(place)) {}
 
@@ -50,7 +50,7 @@ void FollowBoat(State& state);
 /// The place of the boat is given up: attitude and velocity stay as they are against east, north and up where it was.
 void ForgetPlace(State& state);
 
-/// The boat is found, whatever was known of its position: the level frame there, the boat in its origin. Attitude and velocity stay as they are
+/// The position becomes known anew: the level frame begins there, the boat in its origin. Attitude and velocity stay as they are
 /// against east, north and up.
 ///
 /// @param from_place_m  the boat from the place, east and north

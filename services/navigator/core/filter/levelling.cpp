@@ -1,4 +1,4 @@
-// What gravity and the water tell.
+// The measurement models of gravity and of the water.
 #include <cmath>
 
 #include "common/core/angles.hpp"
@@ -12,7 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Accelerations of a boat that are not told from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). What is left of them when the IMU is calm.
+// Accelerations of a boat that cannot be distinguished from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). What is left of them when the IMU is
+// calm.
 constexpr double kForceSdMps2 = 0.5;
 constexpr double kForceTimeS = 2.0;
 constexpr double kCalmForceSdMps2 = 0.1;
@@ -43,7 +44,7 @@ void Apply(const ImuSample& sample, const FilterParams& /*params*/, State& state
   const Eigen::Vector3d deviation_mps2 = force_mps2 - state.aiding.mean_force_mps2;
   state.aiding.mean_force_mps2 += share * deviation_mps2;
   state.aiding.force_variance_mps2_2 += share * (deviation_mps2.squaredNorm() / 3.0 - state.aiding.force_variance_mps2_2);
-  // The way in which gravity pulls is up to half a g of motion known at the first look.
+  // The first sample gives the direction of gravity, unless the boat moves with more than half a g.
   if (!state.aiding.has_tilt && std::abs(force_mps2.norm() - earth.gravity_mps2) < earth.gravity_mps2 / 2.0) {
     BeginTilt(Eigen::Quaterniond::FromTwoVectors(force_mps2, Eigen::Vector3d::UnitZ()), kForceSdMps2 / earth.gravity_mps2, state);
   }

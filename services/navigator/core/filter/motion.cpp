@@ -58,7 +58,7 @@ void Scale(int part, int size, double factor, ErrorCovariance& covariance) {
 
 void AddVariance(int part, const Eigen::Vector3d& variance, ErrorCovariance& covariance) { covariance.diagonal().segment<3>(part) += variance; }
 
-// Variance that a Gauss-Markov process of this deviation takes up in a step, and what it keeps.
+// Variance that a Gauss-Markov process of this deviation gains in a step, and the share that it keeps.
 struct Fading {
   Fading(double sd, double time_constant_s, double step_s) : kept(Exp(-step_s / time_constant_s)), added_variance(sd * sd * (1.0 - kept * kept)) {}
   double kept;
@@ -93,7 +93,7 @@ void SwitchStrapdown(bool is_strapdown, const FilterParams& params, State& state
   }
 }
 
-// By the gyroscopes, or the rate that fades. A tilt that nobody measures stays.
+// By the gyroscopes, or the rate that fades. A tilt that was not measured stays.
 void PropagateAttitude(const ImuSample* sample, double step_s, const Earth& earth, State& state) {
   if (sample != nullptr) {
     const Eigen::Vector3d earth_rate_radps = state.nominal.q_level_vessel.conjugate() * earth.rate_level_radps;
@@ -126,7 +126,7 @@ void PropagateStep(const ImuSample* sample, double step_s, const Earth& earth, c
   state.nominal.velocity_level_mps += step_s * acceleration_level_mps2;
   const Eigen::Matrix3d rotation_by_rate = (sample != nullptr ? -step_s : step_s) * R_middle;
 
-  // Position takes up velocity, velocity attitude and acceleration, attitude rate, each as it was.
+  // Position integrates velocity; velocity attitude and acceleration; attitude rate: each of the step before.
   AddRows(kPosition, step_s, kVelocity, covariance);
   AddRows(kPosition, (step_s / 2.0 * velocity_by_acceleration).eval(), kAcceleration, covariance);
   AddRows(kVelocity, velocity_by_rotation, kRotation, covariance);
@@ -228,7 +228,7 @@ void Propagate(const ImuSample* sample, Utime time, const FilterParams& params, 
   if (remaining_s > kMaxSilenceS) {
     State fresh = FreshState(time, params.unmeasured_tilt_sd_rad);
     fresh.nominal.level = state.nominal.level;
-    // Which inputs there were: HEALTH names those that do not come back.
+    // HEALTH names the sensors that do not come back.
     fresh.aiding.fix = state.aiding.fix;
     fresh.aiding.sensor_heading = state.aiding.sensor_heading;
     fresh.aiding.tilt = state.aiding.tilt;

@@ -1,4 +1,4 @@
-// What the filter is told about the boat and its sensors.
+// Parameters of the filter: the boat and its sensors.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,12 +21,12 @@ struct FilterParams {
 
   /// Measurements that are older than this when they come are not used.
   std::chrono::microseconds max_latency{0};
-  std::chrono::microseconds max_position_age{0};  // carried on without a fix for at most so long,
+  std::chrono::microseconds max_position_age{0};  // propagated without a fix for at most so long,
   double max_coast_sd_m = 0.0;                    // and while its deviation has not grown by more than this
-  std::chrono::microseconds max_attitude_age{0};  // heading and tilt likewise, where there is no IMU to carry them on
+  std::chrono::microseconds max_attitude_age{0};  // heading and tilt likewise, where no IMU propagates them
   double max_heading_coast_sd_rad = 0.0;
 
-  // Standard deviations where the sentence says none.
+  // Standard deviations where the sentence states none.
   double velocity_sd_mps = 0.0;
   double heading_sd_rad = 0.0;
   double tilt_sd_rad = 0.0;

@@ -181,7 +181,7 @@ void PoseFilter::SetDatum(const Datum& datum) {
 
 bool PoseFilter::Insert(Utime time, const Measurement& measurement) {
   if (base_ && time < base_->time) return false;
-  // Behind all of its time, but attitude before position: a lever arm is turned by what is known.
+  // Behind all of its time, but attitude before position: the attitude turns the lever arm.
   const auto place = std::ranges::upper_bound(events_, std::pair(time, measurement.index()), {},
                                               [](const Event& event) { return std::pair(event.time, event.measurement.index()); });
   const auto index = static_cast<std::size_t>(place - events_.begin());

@@ -1,4 +1,4 @@
-// Position, velocity and attitude of the vessel out of whatever is there: fixes, headings, attitude, samples of an IMU.
+// Position, velocity and attitude of the vessel from the fixes, headings, attitudes and IMU samples that there are.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,14 +28,14 @@ struct FilterCounts {
   std::int64_t unusable_imu = 0;  // lacks a number
   std::int64_t gated_fix = 0;     // positions, heights and velocities that contradict the state
   std::int64_t gated_attitude = 0;
-  std::int64_t renewed_position = 0;  // given up for measurements that contradicted it for seconds
+  std::int64_t renewed_position = 0;  // replaced by measurements that contradicted it for seconds
   std::int64_t renewed_attitude = 0;
 
   std::vector<Counter> Named() const;
 };
 
-/// An error-state Kalman filter that is run again from the instant of a late measurement: what it says of a time depends on what came, and in which
-/// order, not on when it was asked.
+/// An error-state Kalman filter that is run again from the instant of a late measurement: the pose of a time depends on the
+/// measurements and their order, not on when it was asked.
 ///
 /// Inputs are kept, with the state behind each, for `max_latency` and a second, and at most kMaxEvents of them.
 class PoseFilter {
@@ -57,7 +57,7 @@ class PoseFilter {
   /// Time has come so far: nothing else need have.
   void AdvanceTo(Utime time);
 
-  /// Of what is known when it is called.
+  /// From the measurements so far.
   ///
   /// @param time  not before that of the last call
   Pose At(Utime time);
@@ -108,7 +108,7 @@ class PoseFilter {
   std::optional<filter::State> base_;     // before events_
   std::optional<ImuSample> base_sample_;  // the last one before events_
   Utime base_sample_time_{};
-  std::optional<Utime> newest_;  // of all times given
+  std::optional<Utime> newest_;  // of all measurements
   std::optional<Utime> last_fix_arrival_;
   FilterCounts counts_;
   double nis_sum_ = 0.0;

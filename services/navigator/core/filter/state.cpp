@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxIntervalS = 2.0;
 constexpr double kStopS = 1.0;
 
-// Of what is not known yet. How fast a boat turns; its accelerations.
+// Priors: how fast a boat turns, its accelerations.
 constexpr double kUnknownRateSdRadps = 0.2;
 constexpr double kUnknownAccelerationSdMps2 = 0.5;
 constexpr double kUnknownLevelSdM = 1.0;

@@ -20,7 +20,7 @@ enum Part : int {
   kVelocity = 3,       // east, north, up, m/s
   kRotation = 6,       // about east, north, up, rad
   kRate = 9,           // rad/s, vessel frame: bias of the gyroscopes, or without them the rate itself
-  kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; where they do not carry the motion, acceleration in the level frame
+  kAcceleration = 12,  // m/s2: bias of the accelerometers in the vessel frame; without strapdown navigation, acceleration in the level frame
   kFixError = 15,      // what the receiver's positions have in common for a while: east, north, up, m
   kHeadingError = 18,  // the same of the compass, rad, clockwise
   kWaterLevel = 19,    // up of the origin while the boat lies still on calm water, m
@@ -41,7 +41,7 @@ using ErrorCovariance = Eigen::Matrix<double, kNumErrors, kNumErrors>;
 /// Whose slow error it is: of another sensor, or of another kind of fix, it begins anew.
 enum class ErrorKind { kNone, kRtk, kGnss, kTwoAntennas, kCompass, kCourse };
 
-/// How fast a boat goes of which nothing is known: standard deviation of each component ("a boat at 3 m/s").
+/// Speed of a boat before it is measured: standard deviation of each component ("a boat at 3 m/s").
 inline constexpr double kUnknownSpeedSdMps = 3.0;
 
 /// A slow error: a first-order Gauss-Markov process.
@@ -160,20 +160,20 @@ Eigen::Vector3d AntennaLever(const FilterParams& params);
 
 /// Nothing is known. Position and height get a deviation only when they are first measured.
 ///
-/// @param tilt_sd_rad  of a boat whose tilt nobody measured
+/// @param tilt_sd_rad  of a boat whose tilt was not measured
 State FreshState(Utime time, double tilt_sd_rad);
 
-/// The IMU led the state astray: nothing that came of it counts any more, nor it itself for a while, twice as long each time.
+/// The IMU led the state astray: its effects are removed, and it is not used for a while, twice as long each time.
 void RefuseImu(double tilt_sd_rad, State& state);
 bool IsImuRefused(const State& state);
 
 /// The next specific force is the first of a new mean.
 void BeginMeanForce(State& state);
 
-/// Adds an error to the state, and takes it out of it.
+/// Adds an error to the nominal state.
 void Inject(const ErrorVector& error, State& state);
 
-/// The part of the error is no longer what it was: another deviation, and nothing in common with the rest.
+/// Gives a part of the error a new deviation, and no correlation with the rest.
 template <int kSize>
 void ResetError(int part, const Eigen::Matrix<double, kSize, 1>& sd, State& state) {
   state.covariance.middleRows<kSize>(part).setZero();
@@ -202,7 +202,7 @@ void TurnClockwise(double angle_rad, State& state);
 /// @param q_level_vessel  of any heading
 void BeginTilt(const Eigen::Quaterniond& q_level_vessel, double sd_rad, State& state);
 
-/// Moves the place that p_level_m tells of by `lever_level_m`, which turns with the vessel; east and north only.
+/// Moves the place that p_level_m describes by `lever_level_m`, which turns with the vessel; east and north only.
 void ShiftPosition(const Eigen::Vector3d& lever_level_m, State& state);
 
 double SecondsBetween(Utime from, Utime to);

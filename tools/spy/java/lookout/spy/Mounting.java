@@ -20,7 +20,7 @@ record Mounting(double yaw_rad, double x_m, double y_m) {
     return y_m + Math.sin(yaw_rad) * x_lidar_m + Math.cos(yaw_rad) * y_lidar_m;
   }
 
-  /** So far apart the points must be for 0.1 m of tilt and height to turn the picture by less than a degree. */
+  /** So far apart the points must be for 0.1 m of tilt and height to rotate the picture by less than a degree. */
   private static final double MIN_SPREAD_M = 6.0;
   /** Roll and pitch of a mounting, which are left out here, move points by so much; a lidar upside down by far more. */
   private static final double MAX_RESIDUAL_M = 0.5;

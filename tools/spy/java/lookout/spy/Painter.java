@@ -38,7 +38,7 @@ final class Painter {
     }
   }
 
-  /** @param num_refused messages that did not decode, to be told */
+  /** @param num_refused messages that did not decode or contradict themselves */
   static void paint(Graphics2D g, int width, int height, Picture picture, double radius_m, long now_ms, long num_refused) {
     Layout layout = new Layout(width, height);
     g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
@@ -72,7 +72,7 @@ final class Painter {
   }
 
   private static String mapCaption(Picture picture, double radius_m) {
-    String frame = picture.mounting() != null ? "From above, bow up" : "From above, the lidar's x axis up (OBSTACLES would tell where the bow is)";
+    String frame = picture.mounting() != null ? "From above, bow up" : "From above, the lidar's x axis up (where the bow is shows with OBSTACLES)";
     return String.format(Locale.ROOT, "%s; %.0f m to the edge (wheel or + and - change it)", frame, radius_m);
   }
 

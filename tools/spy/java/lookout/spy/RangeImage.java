@@ -20,8 +20,8 @@ final class RangeImage {
 
   /** @param bearing_rad from the bow, clockwise */
   static int xOf(double bearing_rad, int width) {
-    double turns = bearing_rad / (2.0 * Math.PI) + 0.5;
-    return Math.min(width - 1, (int) ((turns - Math.floor(turns)) * width));
+    double circles = bearing_rad / (2.0 * Math.PI) + 0.5;
+    return Math.min(width - 1, (int) ((circles - Math.floor(circles)) * width));
   }
 
   private static void fill(Picture picture, BufferedImage range_image, BufferedImage segment_image) {

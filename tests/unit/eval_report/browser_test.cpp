@@ -1,0 +1,439 @@
+// The page as a browser shows it.
+#include <algorithm>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <limits>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/files.hpp"
+#include "tests/unit/eval_report/made_up.hpp"
+#include "tools/eval/report_page.hpp"
+
+namespace lookout::eval {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+int CountOf(std::string_view text, std::string_view word) {
+  int count = 0;
+  for (auto at = text.find(word); at != std::string_view::npos; at = text.find(word, at + word.size())) ++count;
+  return count;
+}
+
+bool Holds(std::string_view text, std::string_view word) { return text.find(word) != std::string_view::npos; }
+
+/// What Chromium makes of the page of these results, as HTML without the page's own data, style and script.
+std::string PageOf(const Results& results) {
+  const support::TempDir folder;
+  std::ostringstream page;
+  WriteHtml(results, page);
+  support::WriteFile(folder / "page.html", page.str());
+  // Root has no sandbox.
+  const auto line = "chromium --headless --no-sandbox --disable-gpu --user-data-dir=" + (folder / "profile").string() +
+                    " --host-resolver-rules='MAP * ~NOTFOUND' --dump-dom file://" + (folder / "page.html").string() + " 2>" +
+                    (folder / "said").string();
+  std::string dom;
+  auto* pipe = popen(line.c_str(), "r");
+  if (pipe == nullptr) throw std::runtime_error("no pipe");
+  std::vector<char> block(65536);
+  for (std::size_t count = 0; (count = fread(block.data(), 1, block.size(), pipe)) > 0;) dom.append(block.data(), count);
+  EXPECT_EQ(pclose(pipe), 0) << "Debian's package chromium: " << support::ReadFile(folder / "said");
+  return dom.substr(std::min(dom.find("<body>"), dom.size()));
+}
+
+std::string SectionOf(const std::string& page, const std::string& id) {
+  const auto at = page.find("<section id=\"" + id + "\">");
+  return at == std::string::npos ? "" : page.substr(at, page.find("</section>", at) - at);
+}
+
+// The figure of a curve of its own.
+std::string CurveOf(const std::vector<Curve::Line>& lines) {
+  Results results;
+  results.curves = {{"t", "x", "y", lines, ""}};
+  return SectionOf(PageOf(results), "curves");
+}
+
+std::string WorstOf(const WorstScan& worst) {
+  auto results = MadeUpResults();
+  results.methods[0].worst = {worst};
+  return SectionOf(PageOf(results), "worst");
+}
+
+// The markup of the second plan.
+std::string PredictionOf(const std::string& figure) { return figure.substr(figure.find("<p>Prediction</p>")); }
+
+enum class Strokes { kDots, kOutlines, kDashed };
+
+// Data of the paths of a colour in a plan.
+std::vector<std::string> PathsOf(const std::string& markup, const std::string& colour, Strokes strokes) {
+  std::vector<std::string> paths;
+  const auto head = "<g aria-label=\"geo\" fill=\"none\" stroke=\"var(--" + colour + ")\"";
+  const std::string data = "d=\"";
+  for (auto at = markup.find(head); at != std::string::npos; at = markup.find(head, at + 1)) {
+    const auto attributes = markup.substr(at, markup.find('>', at) - at);
+    const auto kind = Holds(attributes, "stroke-width=\"3\"")       ? Strokes::kDots
+                      : Holds(attributes, "stroke-dasharray=\"3.5") ? Strokes::kDashed
+                                                                    : Strokes::kOutlines;
+    const auto begin = markup.find(data, at) + data.size();
+    if (kind == strokes) paths.push_back(markup.substr(begin, markup.find('"', begin) - begin));
+  }
+  return paths;
+}
+
+bool HasLabel(const std::string& svg, const std::string& label) { return Holds(svg, ">" + label + "</text>"); }
+
+TEST(Page, HasItsSectionsAndALinkToEach) {
+  const auto page = PageOf(MadeUpResults());
+  int num_links = 0;
+  for (auto at = page.find("href=\"#"); at != std::string::npos; at = page.find("href=\"#", at + 1)) {
+    const auto id = page.substr(at + 7, page.find('"', at + 7) - at - 7);
+    EXPECT_NE(SectionOf(page, id), "") << id;
+    ++num_links;
+  }
+  EXPECT_EQ(num_links, 12);
+  EXPECT_EQ(CountOf(page, "<section "), 12);
+  EXPECT_FALSE(Holds(page, "NaN"));
+  EXPECT_TRUE(Holds(SectionOf(page, "run"), "lookout-eval --scenes 'dense' &lt;&amp;&gt;"));
+  EXPECT_TRUE(Holds(SectionOf(page, "run"), "3 a scene (5 to 7), 2.0 s each"));
+  EXPECT_TRUE(Holds(SectionOf(page, "run"), "<dt>scans a method</dt><dd>12</dd>"));
+}
+
+TEST(Page, HostileTextStaysText) {
+  auto results = MadeUpResults();
+  const std::string hostile =
+      "</script><script>document.body.textContent = \"taken\"</script><img src=x onerror=\"document.body.textContent = 1\"><!--";
+  results.command = results.version = results.computer = results.scenes[1] = results.methods[1].method = hostile;
+  results.methods[0].stage_ms[hostile] = {1.0};
+  results.methods[0].worst[0].scene = hostile;
+  results.methods[0].worst[0].truth.objects[1] = {hostile, hostile, true};
+  results.curves[0].title = results.curves[0].note = results.curves[0].lines[0].name = hostile;
+  results.other_worlds = {MadeUpResults()};
+  results.other_worlds[0].world = hostile;
+  results.other_worlds[0].notes = {hostile};
+  const auto page = PageOf(results);
+  EXPECT_EQ(CountOf(page, "<section "), 12);
+  EXPECT_FALSE(Holds(page, "<script"));
+  EXPECT_FALSE(Holds(page, "<img"));
+  EXPECT_GT(CountOf(page, "&lt;/script&gt;&lt;script&gt;"), 20);
+}
+
+// Sweeps run on other seeds than tables.
+TEST(Page, ASweepSaysWhichSeedsItRanOn) {
+  auto results = MadeUpResults();
+  results.curves[0].scans_from = "seeds 1 to 4, 0.6 s each";
+  EXPECT_TRUE(Holds(SectionOf(PageOf(results), "curves"), "seeds 1 to 4, 0.6 s each"));
+  EXPECT_FALSE(Holds(SectionOf(PageOf(MadeUpResults()), "curves"), "seeds"));
+}
+
+TEST(Page, SummaryNamesTheWinnerOfEachScene) {
+  const auto section = SectionOf(PageOf(MadeUpResults()), "summary");
+  EXPECT_TRUE(Holds(section, "Highest mean mIoU over the scenes: ours with 85.2 %, before paper W=512 with 55.5 %."));
+  EXPECT_TRUE(Holds(section, "Scenes won: ours 1, paper W=512 1."));
+  EXPECT_TRUE(
+      Holds(section,
+            "<th scope=\"row\">dense</th><td class=\"words\">ours</td><td>90.2</td><td class=\"words\">paper W=512</td><td>30.7</td><td>59.5</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">rain</th><td class=\"words\">paper W=512</td><td>80.3</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">open&lt;water&gt;</th><td class=\"words\">-</td><td>-</td>"));
+}
+
+TEST(Page, MethodsThatArePrintedTheSameWinTogether) {
+  auto results = MadeUpResults();
+  results.methods[1].by_scene["rain"].sum_iou = 4 * 0.80199;
+  const auto section = SectionOf(PageOf(results), "summary");
+  EXPECT_TRUE(Holds(
+      section, "<th scope=\"row\">rain</th><td class=\"words\">ours, paper W=512</td><td>80.2</td><td class=\"words\">paper W=512 without BFS</td>"));
+  EXPECT_TRUE(Holds(section, "Scenes won: ours 2, paper W=512 1."));
+}
+
+TEST(Page, TableOneHoldsIouAndTimesAndADashWhereThereIsNoObject) {
+  const auto section = SectionOf(PageOf(MadeUpResults()), "table-1");
+  // Mean over the two scenes with objects, then by scene; the best of the column is marked.
+  EXPECT_TRUE(Holds(section,
+                    "<th scope=\"row\" class=\"ours\">ours</th><td class=\"h8 best\">85.2</td><td class=\"h9 best\">90.2</td><td>-</td><td "
+                    "class=\"h8\">80.2</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"col\" class=\"upright\"><span>open&lt;water&gt;</span></th>"));
+  // Nearest rank of 12 scans, four of them over open water; of four scans in each scene.
+  EXPECT_TRUE(Holds(section, "<td class=\"two\">1.25\n2.50</td><td class=\"two\">1.25\n2.50</td><td class=\"two\">0.50\n0.50</td>"));
+}
+
+TEST(Page, OtherTablesHoldTheirNumbers) {
+  const auto page = PageOf(MadeUpResults());
+  const auto water = SectionOf(page, "water");
+  EXPECT_TRUE(Holds(water, "<td class=\"h8 best\">80.2</td><td class=\"h8 best\">85.2</td>"));            // in the water alone
+  EXPECT_TRUE(Holds(water, "<td class=\"h8 best\">87.5</td><td class=\"h8 best\">87.5</td><td>-</td>"));  // things with a segment
+  EXPECT_TRUE(Holds(water, "<td class=\"h8\">80.2</td><td class=\"h9\">90.2</td>"));                      // buoy, shore
+  const auto segments = SectionOf(page, "segments");
+  EXPECT_TRUE(Holds(segments, "<td>0.50</td><td>0.75</td><td>0.00</td><td>0.75</td>"));
+  EXPECT_TRUE(Holds(segments, "<td>2.0</td><td>12.5</td><td>25.0</td><td>93.7</td>"));
+  EXPECT_TRUE(Holds(SectionOf(page, "table-2"), "<th scope=\"row\">512</th><td>90.2</td><td>1563</td><td>5580</td><td>0.079</td><td>-</td>"));
+  const auto ablation = SectionOf(page, "ablation");
+  EXPECT_TRUE(Holds(ablation, "<th scope=\"row\">paper W=512 without BFS</th><td>15.0</td><td>-</td>"));
+  EXPECT_TRUE(Holds(ablation, "<th scope=\"row\">paper W=512</th><td>55.5</td><td>461.0</td>")) << "components, mean over scenes";
+  EXPECT_FALSE(Holds(ablation, ">ours</th>"));
+  const auto curves = SectionOf(page, "curves");
+  for (const auto* text : {"Test &lt;1&gt;", "own &amp; sure from 6.3 m", "<td>3.25</td>"}) EXPECT_TRUE(Holds(curves, text)) << text;
+  const auto range = SectionOf(page, "range");
+  EXPECT_TRUE(Holds(range, "<th scope=\"row\">5.00</th><td>62.50</td>"));
+  EXPECT_TRUE(Holds(range, "<th scope=\"row\">25.00</th><td>25.00</td>"));
+  EXPECT_TRUE(Holds(range, "<th scope=\"row\">dense: buoy</th><td class=\"h7\">75</td>"));
+  EXPECT_TRUE(Holds(range, "<th scope=\"row\">dense: shore</th><td class=\"h9\">100</td>"));
+}
+
+TEST(Page, StagesStandInTheOrderOfTheWork) {
+  const auto section = SectionOf(PageOf(MadeUpResults()), "table-3");
+  const auto project = section.find("<td class=\"words\">project</td><td>0.125</td>");
+  const auto cluster = section.find("<td class=\"words\">cluster</td><td>0.250</td><td>0.500</td><td>0.375</td><td>0.125</td>");
+  ASSERT_NE(project, std::string::npos);
+  ASSERT_NE(cluster, std::string::npos);
+  EXPECT_LT(project, cluster);
+  EXPECT_LT(cluster, section.find("zeal"));
+}
+
+TEST(Page, OurErrorStandsBesideThePeers) {
+  auto results = MadeUpResults();
+  results.methods[1].method = "Euclidean (tuned)";
+  results.methods[2].method = "F3D";
+  const auto section = SectionOf(PageOf(results), "summary");
+  EXPECT_TRUE(Holds(
+      section,
+      "<th scope=\"row\">dense</th><td>90.2</td><td>0.75</td><td class=\"words\">Euclidean (tuned)</td><td>30.7</td><td>0.75</td><td>14.1</td>"));
+  EXPECT_TRUE(Holds(
+      section,
+      "<th scope=\"row\">rain</th><td>80.2</td><td>0.75</td><td class=\"words\">Euclidean (tuned)</td><td>80.3</td><td>0.75</td><td>100.5</td>"));
+  EXPECT_TRUE(Holds(section, "<td class=\"total\">33.3</td>"));
+}
+
+TEST(Page, AnotherWorldStandsBesideOursOrSaysThatItIsNotHere) {
+  auto results = MadeUpResults();
+  auto other = MadeUpResults();
+  other.world = "second world";
+  other.methods[0].by_scene["dense"] = MadeUpScore(0.602, 1.0);
+  results.other_worlds = {other};
+  const auto page = PageOf(results);
+  // Mean and scenes of ours, then those of the other.
+  EXPECT_TRUE(Holds(SectionOf(page, "table-1"), "<td class=\"h8\">80.2</td><td class=\"h7 best\">70.2</td><td class=\"h6 best\">60.2</td>"));
+  for (const auto* section : {"summary", "range", "table-2", "table-3", "ablation", "worst"}) {
+    EXPECT_TRUE(Holds(SectionOf(page, section), "<h3>second world</h3>")) << section;
+  }
+  results.other_worlds[0] = {};
+  results.other_worlds[0].world = "second world";
+  results.other_worlds[0].is_here = false;
+  EXPECT_TRUE(Holds(SectionOf(PageOf(results), "run"), "<dt>second world</dt><dd>not here</dd>"));
+}
+
+TEST(Page, MethodsThatLookAheadOnlyDoNotWin) {
+  auto results = MadeUpResults();
+  results.methods[0].by_scene["dense"].num_not_scored = 1;
+  const auto page = PageOf(results);
+  EXPECT_TRUE(Holds(SectionOf(page, "summary"), "Highest mean mIoU over the scenes: paper W=512 with 55.5 %"));
+  EXPECT_TRUE(Holds(SectionOf(page, "summary"), "<th scope=\"row\">dense</th><td class=\"words\">paper W=512</td>"));
+  const auto table = SectionOf(page, "table-1");
+  EXPECT_TRUE(Holds(table, "ours</th><td class=\"h8\">85.2</td><td class=\"h9\">90.2</td>"));
+  EXPECT_TRUE(Holds(table, "<td class=\"h5 best\">55.5</td><td class=\"h3 best\">30.7</td>"));
+}
+
+TEST(Page, SeldomBinsAreNotDrawnButListed) {
+  auto results = MadeUpResults();
+  results.methods[0].by_scene["dense"].iou_by_range = {{0, {1000, 900.0}}};
+  results.methods[0].by_scene["rain"].iou_by_range.clear();
+  const auto without = SectionOf(PageOf(results), "range");
+  results.methods[0].by_scene["dense"].iou_by_range[9] = {1, 0.25};
+  const auto section = SectionOf(PageOf(results), "range");
+  EXPECT_EQ(section.substr(0, section.find("<details>")), without.substr(0, without.find("<details>")));
+  EXPECT_FALSE(Holds(without, "<th scope=\"row\">95.00</th>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">95.00</th><td>25.00</td>"));
+}
+
+TEST(Page, EmptyResultsGiveAPageThatSaysSo) {
+  const auto page = PageOf(Results{});
+  EXPECT_TRUE(Holds(page, "No method was evaluated"));
+  EXPECT_EQ(SectionOf(page, "table-1"), "");
+  EXPECT_NE(SectionOf(page, "definitions"), "");
+}
+
+TEST(Page, WhatIsNotANumberIsADash) {
+  auto results = MadeUpResults();
+  for (auto& method : results.methods) {
+    for (auto& [scene, score] : method.by_scene) {
+      score.sum_iou = score.sum_water_iou = kNan;
+      score.time_ms = {kNan};
+    }
+    method.worst.clear();
+  }
+  results.methods.push_back({"method without scenes", {}, {}, {}});
+  results.curves.push_back({"nothing", "x", "y", {{"a", {{kNan, kNan}}}, {"b", {}}}, ""});
+  const auto page = PageOf(results);
+  EXPECT_FALSE(Holds(page, "NaN"));
+  EXPECT_TRUE(Holds(SectionOf(page, "table-1"), "<td>-</td>"));
+  EXPECT_TRUE(Holds(SectionOf(page, "curves"), "<p>no numbers</p>"));
+}
+
+// printf rounds an exact half to even; so do the tables on the terminal and in CSV files.
+TEST(Page, NumbersAreRoundedAsInTheTables) {
+  const auto figure = CurveOf({{"a", {{0.125, 0.375}, {1.0, 1.005}, {2.0, -2.675}, {3.0, 0.5}}}});
+  EXPECT_TRUE(Holds(figure, "<th scope=\"row\">0.12</th><td>0.38</td>"));
+  EXPECT_TRUE(Holds(figure, "<th scope=\"row\">1.00</th><td>1.00</td>"));
+  EXPECT_TRUE(Holds(figure, "<th scope=\"row\">2.00</th><td>-2.67</td>"));
+}
+
+TEST(Lines, AxesHaveRoundNumbersAroundThePoints) {
+  const auto figure = CurveOf({{"a", {{0.6, 3.0}, {0.95, 11.0}}}});
+  for (const auto* label : {"0.60", "0.70", "0.95", "0", "2", "12"}) EXPECT_TRUE(HasLabel(figure, label)) << label;
+  EXPECT_FALSE(HasLabel(figure, "14"));
+}
+
+TEST(Lines, NumberThatIsNoneBreaksTheLine) {
+  const auto path_of = [](const std::string& figure) {
+    const auto at = figure.find("<path d=\"", figure.find("aria-label=\"line\""));
+    return figure.substr(at, figure.find("\"></path>", at) - at);
+  };
+  const auto whole = path_of(CurveOf({{"a", {{0.0, 1.0}, {1.0, 2.0}, {2.0, 3.0}}}}));
+  EXPECT_EQ(CountOf(whole, "M"), 1) << whole;
+  EXPECT_EQ(CountOf(whole, "L"), 2) << whole;
+  const auto broken = path_of(CurveOf({{"a", {{0.0, 1.0}, {1.0, kNan}, {2.0, 3.0}}}}));
+  EXPECT_EQ(CountOf(broken, "M"), 2) << broken;
+  EXPECT_EQ(CountOf(broken, "L"), 0) << broken;
+}
+
+TEST(Lines, OnePointOrAllTheSameOrHugeOrNoneIsDrawnWithoutNan) {
+  Results results;
+  for (const double value : {0.0, -3.0, 7.25, 9e11, -9e11, 1e-9, 1e300, kNan, std::numeric_limits<double>::infinity()}) {
+    results.curves.push_back({"t", "x", "y", {{"a", {{value, value}}}, {"empty", {}}}, ""});
+  }
+  results.curves.push_back({});
+  const auto section = SectionOf(PageOf(results), "curves");
+  EXPECT_FALSE(Holds(section, "NaN"));
+  EXPECT_FALSE(Holds(section, "Infinity"));
+  EXPECT_EQ(CountOf(section, "<figure>"), 10);
+  EXPECT_EQ(CountOf(section, "<p>no numbers</p>"), 4);
+}
+
+TEST(Lines, ThirtyFiveSeriesLookDifferent) {
+  const auto figure = CurveOf(std::vector<Curve::Line>(35, {"a", {{0.0, 1.0}}}));
+  std::set<std::string> keys;
+  int count = 0;
+  for (auto at = figure.find("<li>"); at != std::string::npos; at = figure.find("<li>", at + 1), ++count) {
+    const auto key = figure.substr(at, figure.find("</li>", at) - at);
+    keys.insert(key.substr(key.find("aria-label=\"line\"")));
+  }
+  EXPECT_EQ(count, 35);
+  EXPECT_EQ(keys.size(), 35U);
+}
+
+TEST(Bars, AreAsLongAsTheirNumbersAndLongNamesAreCut) {
+  Results results;
+  results.scenes = {"s"};
+  for (const auto& [name, components] : {std::pair{std::string("<b> without BFS"), 10}, {"<b>", 20}, {std::string(200, 'x') + " without y", 0}}) {
+    MethodResult method;
+    method.method = name;
+    auto& score = method.by_scene["s"];
+    score.num_scans = 1;
+    score.num_scans_with_components = components > 0 ? 1 : 0;
+    score.num_components = components;
+    results.methods.push_back(method);
+  }
+  const auto section = SectionOf(PageOf(results), "ablation");
+  EXPECT_TRUE(Holds(section, "<p>no numbers</p>")) << "there are no times";
+  const auto figure = section.substr(section.find("Components of a scan"));
+  std::vector<double> widths;
+  for (auto at = figure.find("<rect "); at != std::string::npos; at = figure.find("<rect ", at + 1)) {
+    widths.push_back(std::stod(figure.substr(figure.find("width=\"", at) + 7)));
+  }
+  ASSERT_EQ(widths.size(), 2U);
+  EXPECT_NEAR(widths[1], 2.0 * widths[0], 0.2);
+  EXPECT_TRUE(HasLabel(figure, "-"));
+  EXPECT_TRUE(HasLabel(figure, "20"));
+  EXPECT_TRUE(HasLabel(figure, "&lt;b&gt;"));
+  EXPECT_TRUE(HasLabel(figure, std::string(44, 'x') + "..."));
+}
+
+TEST(WorstScan, SaysWhatIsSeen) {
+  const auto section = WorstOf(MadeUpScan({1, 1, 1, 2, 0, 0, -1}, {1, 1, 2, 0, 3, 0, 0}));
+  EXPECT_TRUE(Holds(section, "ours: rain, seed 7, scan 3, mIoU 12.5 %; 2 objects, 3 segments, of these 1 false"));
+  EXPECT_TRUE(Holds(section, "&lt;Anna&gt;"));
+  EXPECT_EQ(CountOf(section, " plan\""), 2);
+}
+
+TEST(WorstScan, TableHoldsTheIouOfEachObjectWorstFirst) {
+  const auto section = WorstOf(MadeUpScan({1, 1, 1, 2, 2}, {1, 1, 2, 0, 0}));
+  const auto shore = section.find("<td class=\"words\">shore</td><td>2</td><td>0</td><td>0.0</td>");
+  const auto kayak = section.find("<td class=\"words\">kayak</td><td>3</td><td>2</td><td>66.7</td>");
+  ASSERT_NE(shore, std::string::npos);
+  ASSERT_NE(kayak, std::string::npos);
+  EXPECT_LT(shore, kayak);
+}
+
+TEST(WorstScan, RightIsRightAndForwardIsUp) {
+  // Ahead, and to the right of it.
+  const auto section = WorstOf(MadeUpScan({1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2}, std::vector<std::int32_t>(21, 0)));
+  const auto ahead = PathsOf(section, "s0", Strokes::kDots);
+  const auto aside = PathsOf(section, "s1", Strokes::kDots);
+  ASSERT_EQ(ahead.size(), 1U);
+  ASSERT_EQ(aside.size(), 1U);
+  const auto x = [](const std::string& path) { return std::stod(path.substr(1)); };
+  const auto y = [](const std::string& path) { return std::stod(path.substr(path.find(',') + 1)); };
+  EXPECT_LT(x(ahead[0]), x(aside[0]));
+  EXPECT_LT(y(ahead[0]), y(aside[0])) << "y of the screen grows downwards";
+}
+
+TEST(WorstScan, SameObjectHasTheSameColourInBothPlansWhateverTheLabelsAre) {
+  for (const std::int32_t label : {1, 17}) {
+    const auto section = WorstOf(MadeUpScan({2, 2, 2, 0, 1, 1, 1}, {label, label, label, 0, 5, 5, 5}));
+    // The object of the lesser bearing is the first.
+    for (const auto* colour : {"s0", "s1"}) {
+      const auto paths = PathsOf(section, colour, Strokes::kDots);
+      ASSERT_EQ(paths.size(), 2U) << colour;
+      EXPECT_EQ(paths[0], paths[1]);
+      EXPECT_TRUE(PathsOf(section, colour, Strokes::kDashed).empty());
+    }
+  }
+}
+
+TEST(WorstScan, PieceOfAnObjectIsDashedAndFalseSegmentIsOutlined) {
+  const auto prediction = PredictionOf(WorstOf(MadeUpScan({1, 1, 1, 0, 0, 0}, {1, 1, 2, 0, 3, 3})));
+  const auto dashed = PathsOf(prediction, "s0", Strokes::kDashed);
+  ASSERT_EQ(dashed.size(), 1U);
+  EXPECT_EQ(CountOf(dashed[0], "L"), 4) << "one return: a square";
+  const auto outline = PathsOf(prediction, "text", Strokes::kOutlines);
+  ASSERT_EQ(outline.size(), 1U);
+  EXPECT_EQ(CountOf(outline[0], "M"), 1);
+}
+
+TEST(WorstScan, OfHundredsOfPiecesTheLargestAreOutlined) {
+  // 5 pieces of 20 returns, then 260 of one.
+  std::vector<std::int32_t> label;
+  for (int i = 0; i < 100; ++i) label.push_back(1 + i / 20);
+  for (int i = 0; i < 260; ++i) label.push_back(6 + i);
+  const auto dashed = PathsOf(PredictionOf(WorstOf(MadeUpScan(std::vector<std::int32_t>(label.size(), 1), label))), "s0", Strokes::kDashed);
+  ASSERT_EQ(dashed.size(), 1U);
+  EXPECT_EQ(CountOf(dashed[0], "M"), 4) << "the fifth of 20 is the object's best";
+}
+
+TEST(WorstScan, OneSegmentOverTwoObjectsBearsBothNumbers) {
+  const auto prediction = PredictionOf(WorstOf(MadeUpScan({1, 1, 1, 2, 2}, {1, 1, 1, 1, 1})));
+  EXPECT_TRUE(Holds(prediction, ">1+2</text>"));
+  EXPECT_TRUE(PathsOf(prediction, "s1", Strokes::kDots).empty());
+}
+
+TEST(WorstScan, WhatIsNotScoredBelongsToNoObject) {
+  const auto section = WorstOf(MadeUpScan({1, 1, 2, 2}, {1, 1, kNotScored, kNotScored}));
+  EXPECT_TRUE(Holds(section, "; 1 objects, 1 segments, of these 0 false"));
+  EXPECT_FALSE(Holds(section, "<td class=\"words\">shore</td>"));
+}
+
+TEST(WorstScan, EmptyScanIsDrawnAndOneWhoseArraysDifferInSizeIsNot) {
+  auto results = MadeUpResults();
+  results.methods[0].worst = {MadeUpScan({}, {}), MadeUpScan({0, 0}, {0, 0}), WorstScan{}, MadeUpScan({1, 1}, {1, 1})};
+  results.methods[0].worst[3].label.pop_back();
+  const auto section = SectionOf(PageOf(results), "worst");
+  EXPECT_FALSE(Holds(section, "NaN"));
+  EXPECT_EQ(CountOf(section, " plan\""), 6);
+  EXPECT_EQ(CountOf(section, "Not drawn: the scan, its truth and its labels differ in size."), 1);
+}
+
+}  // namespace
+}  // namespace lookout::eval

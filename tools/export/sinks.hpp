@@ -1,0 +1,35 @@
+// What lookout-export writes: tables as CSV, a cloud as PLY, pictures as SVG.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "tools/export/scans.hpp"
+#include "tools/export/sink.hpp"
+
+namespace lookout::exporter {
+
+/// Names of all tables, in the order of --help.
+std::vector<std::string_view> TableNames();
+
+/// @return the header line of a table without its end; empty when there is no such table
+std::string_view TableHeader(std::string_view table);
+
+/// @return what writes `table` as CSV, without header; nullptr when there is no such table
+std::unique_ptr<Sink> MakeCsvSink(std::string_view table);
+
+/// The labelled cloud of one scan (binary, little-endian), for MeshLab, CloudCompare or Open3D.
+///
+/// @param seq  of the scan; nullopt = the last whole one
+std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
+
+/// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. The same text for the same log.
+std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq);
+
+/// The track of the boat out of POSE, 1320 x 1000 pixels: north up, one line for each stretch of one status. Places closer than 0.2 m to the last one
+/// are left out, so that a day at anchor stays small. Poses without position break the line.
+std::unique_ptr<Sink> MakeTrackSvgSink();
+
+}  // namespace lookout::exporter
