@@ -243,7 +243,7 @@ TEST(Evaluation, WorksWithoutTruth) {
   std::ostringstream text;
   PrintObstacles(text, evaluation, false);
   EXPECT_EQ(text.str().find("outside_m"), std::string::npos);
-  EXPECT_NE(text.str().find("1 turns, 1 of them whole; 2 obstacles, 2 ok"), std::string::npos) << text.str();
+  EXPECT_NE(text.str().find("1 scans, 1 of them whole; 2 obstacles, 2 ok"), std::string::npos) << text.str();
 }
 
 TEST_F(EvaluationTest, TablesArePrintedAlsoWhenNothingWasMeasured) {
