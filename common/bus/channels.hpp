@@ -16,7 +16,7 @@ struct Channel {
   bool is_replayed;            // computed again by replay, byte for byte (or raw); else it tells of the machine
 };
 
-// Depths hold two seconds at the greatest rate. A turn in parts, or a turn in rain, comes as a burst.
+// Depths hold two seconds at the greatest rate. A scan in parts, or a scan in rain, comes as a burst.
 inline constexpr Channel kLidarPackets{"LIDAR_PACKETS", "lidar_packets_t", "vlp16", 100, 200, true, true};
 inline constexpr Channel kLidarScan{"LIDAR_SCAN", "lidar_scan_t", "vlp16", 40, 80, false, true};
 inline constexpr Channel kLidarClock{"LIDAR_CLOCK", "lidar_clock_t", "vlp16", 20, 40, false, true};

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -22,7 +21,7 @@ constexpr std::size_t kHeaderBytes = kLogEventHeaderBytes;
 constexpr std::int64_t kMaxChannelBytes = 1000;
 // Far above any message that LCM carries; a greater length is damage.
 constexpr auto kMaxDataBytes = static_cast<std::int64_t>(kMaxLogDataBytes);
-// What is read or written at once: system calls cost more than the copy. A turn's messages are larger than what is read: those that nobody
+// What is read or written at once: system calls cost more than the copy. A scan's messages are larger than what is read: those that nobody
 // wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
 constexpr std::size_t kJumpBytes = 4 * 1024;
@@ -159,59 +158,18 @@ std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::st
   return std::nullopt;
 }
 
-struct LogWriter::Implementation {
-  explicit Implementation(Take some_take) : take(std::move(some_take)) {}
-  ~Implementation() {
-    if (file != nullptr) std::fclose(file);
-  }
-
-  Take take;
-  std::FILE* file = nullptr;  // where it writes one of its own
-  std::vector<std::uint8_t> block;
-  std::int64_t num_events = 0;
-};
-
-LogWriter::LogWriter(Take take) : implementation_(std::make_unique<Implementation>(std::move(take))) {
-  implementation_->block.reserve(2 * kWriteBytes);
-}
-
-LogWriter::LogWriter(const std::filesystem::path& file, bool overwrite) : LogWriter(Take()) {
-  std::error_code error;
-  if (!overwrite && std::filesystem::exists(file, error)) throw std::runtime_error(file.string() + ": exists already");
-  auto* const out = std::fopen(file.c_str(), "wb");
-  if (out == nullptr) throw std::runtime_error(file.string() + ": cannot be written");
-  std::setvbuf(out, nullptr, _IONBF, 0);
-  implementation_->file = out;
-  implementation_->take = [out, name = file.string()](Bytes bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size()) return;
-    throw std::runtime_error(name + ": write failed: " + std::system_category().message(errno));
-  };
-}
-
-LogWriter::~LogWriter() {
-  if (implementation_->file == nullptr) return;
-  try {
-    Flush();
-  } catch (const std::runtime_error&) {
-    // Who must know calls Flush.
-  }
-}
-
 void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) {
-  auto& self = *implementation_;
-  AppendLogEvent(self.block, self.num_events++, time, channel, bytes);
+  AppendLogEvent(block_, num_events_++, time, channel, bytes);
   num_bytes_ += static_cast<std::int64_t>(kHeaderBytes + channel.size() + bytes.size());
-  if (self.block.size() >= kWriteBytes) Flush();
+  if (block_.size() >= kWriteBytes) Flush();
 }
 
 void LogWriter::Flush() {
   // What was not taken is not given again: the log is torn there.
-  if (implementation_->block.empty()) return;
-  auto block = std::move(implementation_->block);
-  implementation_->block.clear();
-  implementation_->take(block);
+  auto block = std::exchange(block_, {});
+  if (!block.empty()) take_(block);
   block.clear();
-  implementation_->block = std::move(block);  // its memory is used again
+  block_ = std::move(block);  // its memory is used again
 }
 
 }  // namespace lookout::bus

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/core/bytes.hpp"
@@ -60,29 +61,25 @@ class LogReader {
   std::int64_t num_damaged_ = 0;
 };
 
+/// Makes the bytes of a log out of events.
 class LogWriter {
  public:
-  /// Takes a piece of the log; what it throws comes through.
+  /// Takes a piece of the log, say into an io::OutputFile; what it throws comes through.
   using Take = std::function<void(Bytes)>;
 
-  /// Gives the log in pieces to `take`: to an io::OutputFile, say. What Flush was not called for stays behind.
-  explicit LogWriter(Take take);
+  explicit LogWriter(Take take) : take_(std::move(take)) {}
 
-  /// Writes a new file by itself, in place: for logs that nobody needs whole. @throws std::runtime_error when it cannot be made or exists already and
-  /// `overwrite` is not set
-  explicit LogWriter(const std::filesystem::path& file, bool overwrite = false);
-  ~LogWriter();
-  LogWriter(const LogWriter&) = delete;
-  LogWriter& operator=(const LogWriter&) = delete;
-
-  /// @throws std::runtime_error when the disk does not take it
   void Write(Utime time, std::string_view channel, Bytes bytes);
+
+  /// Hands on what was written: else the last of it stays behind.
   void Flush();
+
   std::int64_t num_bytes() const { return num_bytes_; }
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  Take take_;
+  std::vector<std::uint8_t> block_;
+  std::int64_t num_events_ = 0;
   std::int64_t num_bytes_ = 0;
 };
 

@@ -10,6 +10,7 @@ namespace lookout::bus {
 struct TypeFingerprint {
   std::string type;
   std::uint64_t fingerprint;
+  bool has_seq;  // begins with utime_us and seq
 };
 
 /// All types of package lookout, also those that are only parts of others, by name.

@@ -10,8 +10,8 @@ class SequenceWatch {
  public:
   /// Takes the number of the next message. A number that is not greater than the last is a new start of the publisher, no loss.
   ///
-  /// @param part_index, num_parts  place within a turn that goes in parts; parts of one turn share `seq`
-  /// @return how many messages are missing between the last and this one (at least: parts of turns that are missing whole count once)
+  /// @param part_index, num_parts  place within a scan that goes in parts; parts of one scan share `seq`
+  /// @return how many messages are missing between the last and this one (at least: parts of scans that are missing whole count once)
   std::int64_t NumLostBefore(std::int64_t seq, std::int64_t part_index = 0, std::int64_t num_parts = 1) {
     std::int64_t num_lost = 0;
     // A first message may be in the middle of a run: nothing was lost before it that we asked for.

@@ -33,7 +33,7 @@ std::string Sha256::Finish() {
 
 std::string SchemaDigest() {
   Sha256 sha256;
-  for (const auto& [type, fingerprint] : TypeFingerprints()) {
+  for (const auto& [type, fingerprint, has_seq] : TypeFingerprints()) {
     std::array<char, 32> number{};
     std::snprintf(number.data(), number.size(), " %016" PRIx64 "\n", fingerprint);
     const std::string line = type + number.data();

@@ -1,9 +1,10 @@
-// boat.txtpb as checked values, for the services that need facts of the boat.
+// boat.txtpb as checked values, for the services that need facts of the boat; and what its numbers mean, in words for who stands on the boat.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/frames.hpp"
 
@@ -37,5 +38,19 @@ struct BoatFacts {
 /// @param folder  the boat's folder, holding boat.txtpb
 /// @throws ConfigError
 BoatFacts LoadBoat(const std::filesystem::path& folder);
+
+struct BoatRemark {
+  std::string words;
+  std::string cure;  // what to look at; empty where nothing is doubtful
+  bool is_under_water = false;
+};
+
+/// The box of own returns, and where lidar and antenna are. Doubtful is a box that is larger than the hull by more than 1 m in any direction, a lidar
+/// or an antenna that is under water or more than 2 m outside of the hull (of the box, where the size of the hull is not set), and a hull whose size
+/// is not set.
+std::vector<BoatRemark> RemarksOnBoat(const BoatFacts& boat);
+
+/// The same as comments of a text config, a line each: "# boat.txtpb: ...", "# boat.txtpb: warning: ...".
+std::string RemarksAsComments(const BoatFacts& boat);
 
 }  // namespace lookout::config

@@ -5,7 +5,6 @@
 
 #include "common/bus/schema.hpp"
 #include "common/config/boat.hpp"
-#include "common/config/boat_words.hpp"
 #include "common/config/text_config.hpp"
 #include "common/runtime/machine.hpp"
 #include "common/runtime/options.hpp"

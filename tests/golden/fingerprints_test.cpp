@@ -33,7 +33,7 @@ std::set<std::string> TypeFiles() {
 
 std::string CurrentTable() {
   std::ostringstream table;
-  for (const auto& [type, fingerprint] : bus::TypeFingerprints()) {
+  for (const auto& [type, fingerprint, has_seq] : bus::TypeFingerprints()) {
     table << type << ' ' << std::hex << std::setfill('0') << std::setw(16) << fingerprint << '\n';
   }
   return table.str();
@@ -66,7 +66,7 @@ TEST(Fingerprints, AreThoseOfTheFirstRecording) {
 
 TEST(Fingerprints, HaveNoTwins) {
   std::map<std::uint64_t, std::string> by_fingerprint;
-  for (const auto& [type, fingerprint] : bus::TypeFingerprints()) {
+  for (const auto& [type, fingerprint, has_seq] : bus::TypeFingerprints()) {
     const auto [twin, is_new] = by_fingerprint.emplace(fingerprint, type);
     EXPECT_TRUE(is_new) << type << " and " << twin->second << " would decode as each other";
   }

@@ -14,6 +14,7 @@
 #include "lookout/health_t.hpp"
 #include "lookout/run_info_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
@@ -52,7 +53,7 @@ class HostileText : public ::testing::Test {
     }
     ASSERT_EQ(Run("replay", {"--config", Path("config"), "--in", Path("day.nmea"), "--out", Path("day")}).exit_code, 0);
     bus::LogReader reader(Path("day"));
-    bus::LogWriter writer(Path("evil"));
+    support::FileLog writer(Path("evil"));
     while (auto event = reader.Next()) {
       if (event->channel == bus::kRunInfo.name) {
         auto run_info = *bus::Decode<run_info_t>(event->bytes);

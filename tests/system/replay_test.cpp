@@ -19,6 +19,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
 #include "tests/support/child.hpp"
+#include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::system_test {
@@ -55,7 +56,7 @@ class Replay : public ::testing::Test {
   // The first events of a log, as a recorder leaves them that is killed there.
   void Cut(const std::string& log, const std::string& cut, std::size_t num_events) {
     bus::LogReader reader(Path(log));
-    bus::LogWriter writer(Path(cut), true);
+    support::FileLog writer(Path(cut));
     for (std::size_t i = 0; i < num_events; ++i) {
       const auto event = reader.Next();
       ASSERT_TRUE(event);
@@ -69,8 +70,8 @@ class Replay : public ::testing::Test {
     bus::LogReader reader(Path(log));
     while (const auto event = reader.Next()) events.push_back(*event);
     ASSERT_EQ(events.front().channel, "RUN_INFO");
-    bus::LogWriter one(Path(first));
-    bus::LogWriter other(Path(second));
+    support::FileLog one(Path(first));
+    support::FileLog other(Path(second));
     other.Write(events[events.size() / 2].time, "RUN_INFO", events.front().bytes);
     for (std::size_t i = 0; i < events.size(); ++i) (i < events.size() / 2 ? one : other).Write(events[i].time, events[i].channel, events[i].bytes);
   }
@@ -293,7 +294,7 @@ TEST_F(Replay, OfALogThatWasCutAndHoldsNoNavigationGivesItsObstaclesAllTheSame) 
   MakeDay();
   {
     bus::LogReader reader(Path("day"));
-    bus::LogWriter writer(Path("lidar"));
+    support::FileLog writer(Path("lidar"));
     int num_bundles = 0;
     while (const auto event = reader.Next()) {
       num_bundles += event->channel == "LIDAR_PACKETS" ? 1 : 0;
@@ -329,7 +330,7 @@ TEST_F(Replay, TellsOfGapsAndOfProgressWhenAskedFor) {
   MakeDay();
   {
     bus::LogReader reader(Path("day"));
-    bus::LogWriter writer(Path("holes"));
+    support::FileLog writer(Path("holes"));
     int num_bundles = 0;
     while (const auto event = reader.Next()) {
       num_bundles += event->channel == "LIDAR_PACKETS" ? 1 : 0;

@@ -6,57 +6,35 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <functional>
+#include <type_traits>
 
+#include "common/bus/decode.hpp"
 #include "common/bus/header.hpp"
+#include "common/bus/schema.hpp"
+#include "tools/diff/fields.hpp"
 
 namespace lookout::diff {
 
 namespace {
 
-using bus::WireKind;
-using bus::WireMember;
-using bus::WireType;
-using bus::WireTypes;
-
-// The bytes are not a message of their type.
-struct NotDecodable {};
-
 // Longer strings are cut in what is shown.
 constexpr std::size_t kMaxShownLetters = 60;
-// Lookout's own types have some 600 fields.
-constexpr int kMaxPaths = 1'000'000;
 
-class FieldReader {
- public:
-  explicit FieldReader(Bytes bytes) : bytes_(bytes) {}
-
-  std::size_t num_left() const { return bytes_.size(); }
-
-  Bytes Take(std::size_t size) {
-    if (size > bytes_.size()) throw NotDecodable();
-    const Bytes taken = bytes_.first(size);
-    bytes_ = bytes_.subspan(size);
-    return taken;
-  }
-
-  std::uint64_t Number(std::size_t size) {
-    std::uint64_t value = 0;
-    for (const auto byte : Take(size)) value = value << 8 | byte;
-    return value;
-  }
-
-  // Without its closing zero.
-  Bytes String() {
-    const auto size = Number(4);
-    if (size < 1 || size > bytes_.size() || bytes_[size - 1] != 0) throw NotDecodable();
-    return Take(size).first(size - 1);
-  }
-
- private:
-  Bytes bytes_;
+template <typename T>
+concept WireStruct = requires {
+  T::getTypeName();
 };
+
+// Of an array of any dimensions the type of its elements.
+template <typename T>
+struct ElementOf {
+  using Type = T;
+};
+template <typename T>
+struct ElementOf<std::vector<T>> : ElementOf<T> {};
+template <typename T, std::size_t N>
+struct ElementOf<T[N]> : ElementOf<T> {};  // NOLINT(modernize-avoid-c-arrays): as lcm-gen makes them
 
 template <typename T>
 std::string NumberText(T value) {
@@ -65,10 +43,10 @@ std::string NumberText(T value) {
   return {text.data(), result.ptr};
 }
 
-std::string StringText(Bytes letters) {
+std::string StringText(const std::string& letters) {
   std::string text = "\"";
-  for (const auto letter : letters.first(std::min(letters.size(), kMaxShownLetters))) {
-    text += letter >= ' ' && letter <= '~' ? static_cast<char>(letter) : '?';
+  for (const auto letter : letters.substr(0, kMaxShownLetters)) {
+    text += letter >= ' ' && letter <= '~' ? letter : '?';
   }
   return text + (letters.size() > kMaxShownLetters ? "...\"" : "\"");
 }
@@ -87,115 +65,65 @@ Difference NumbersDiffer(std::string a, std::string b, std::uint64_t bits_a, std
   return {"", std::move(a), std::move(b)};
 }
 
-class MessageComparison {
- public:
-  MessageComparison(const WireTypes& types, const Tolerances& tolerances, Bytes a, Bytes b) : types_(types), tolerances_(tolerances), a_(a), b_(b) {}
+std::string PathOf(const std::string& path, std::string_view name) { return path + (path.empty() ? "" : ".") + std::string(name); }
 
-  // @return where they differ. @throws NotDecodable
-  std::optional<Difference> Compare(const WireType& type) {
-    a_.Take(8);  // the fingerprint
-    b_.Take(8);
-    auto difference = CompareStruct(type, "");
-    if (!difference && (a_.num_left() > 0 || b_.num_left() > 0)) throw NotDecodable();
-    return difference;
+template <std::floating_point Real>
+std::optional<Difference> CompareNumbers(Real a, Real b, double tolerance) {
+  using Bits = std::conditional_t<sizeof(Real) == 8, std::uint64_t, std::uint32_t>;
+  const auto bits_a = std::bit_cast<Bits>(a);
+  const auto bits_b = std::bit_cast<Bits>(b);
+  if (bits_a == bits_b) return std::nullopt;
+  if (tolerance > 0.0 && ((std::isnan(a) && std::isnan(b)) || std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance || a == b)) {
+    return std::nullopt;
   }
+  return NumbersDiffer(NumberText(a), NumberText(b), bits_a, bits_b);
+}
 
- private:
-  std::optional<Difference> CompareStruct(const WireType& type, const std::string& path) {
-    std::vector<std::int64_t> counts(type.members.size());
-    for (std::size_t i = 0; i < type.members.size(); ++i) {
-      const auto& member = type.members[i];
-      const std::string member_path = tolerances_.empty() ? "" : (path.empty() ? "" : path + ".") + member.name;
-      const double tolerance = tolerances_.empty() || member.is_count ? 0.0 : tolerances_.Of(member_path);
-      const auto lengths = Lengths(member, counts);
-      std::uint64_t num_elements = 1;
-      for (const auto length : lengths) num_elements *= static_cast<std::uint64_t>(length);  // bounded by Lengths
-      for (std::uint64_t element = 0; element < num_elements; ++element) {
-        auto difference = member.kind == WireKind::kStruct ? CompareStruct(types_.types()[member.type], member_path)
-                                                           : CompareValue(member, tolerance, member.is_count ? &counts[i] : nullptr);
-        if (!difference) continue;
-        difference->field = member.name + Indices(lengths, element) + (difference->field.empty() ? "" : "." + difference->field);
-        return difference;
-      }
+template <std::integral Integer>
+std::optional<Difference> CompareNumbers(Integer a, Integer b, double tolerance) {
+  const auto distance = static_cast<std::uint64_t>(std::max(a, b)) - static_cast<std::uint64_t>(std::min(a, b));  // does not overflow
+  if (static_cast<double>(distance) <= tolerance) return std::nullopt;
+  return Difference{"", NumberText(a), NumberText(b)};
+}
+
+template <WireStruct T>
+std::optional<Difference> CompareFields(const T& a, const T& b, const Tolerances& tolerances, const std::string& path);
+
+// @param path  of the field, without indices
+// @return the difference with what comes behind the name of the field: "[3].centroid_m[0]"
+template <typename T>
+std::optional<Difference> CompareValues(const T& a, const T& b, double tolerance, const Tolerances& tolerances, const std::string& path) {
+  if constexpr (WireStruct<T>) {
+    auto difference = CompareFields(a, b, tolerances, path);
+    if (difference) difference->field.insert(0, ".");
+    return difference;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (a == b) return std::nullopt;
+    return Difference{"", StringText(a), StringText(b)};
+  } else if constexpr (std::is_arithmetic_v<T>) {
+    return CompareNumbers(a, b, tolerance);
+  } else {
+    for (std::size_t i = 0; i < std::size(a); ++i) {  // both have so many: their counts are compared before them
+      auto difference = CompareValues(a[i], b[i], tolerance, tolerances, path);
+      if (!difference) continue;
+      difference->field.insert(0, "[" + std::to_string(i) + "]");
+      return difference;
     }
     return std::nullopt;
   }
+}
 
-  // Lengths of the dimensions; no more elements than there are bytes.
-  std::vector<std::int64_t> Lengths(const WireMember& member, const std::vector<std::int64_t>& counts) const {
-    std::vector<std::int64_t> lengths;
-    const auto element_size = member.kind == WireKind::kStruct ? types_.types()[member.type].min_size_bytes : bus::WireSizeBytes(member.kind);
-    double size = static_cast<double>(element_size);  // does not overflow
-    for (const auto& dimension : member.dimensions) {
-      const auto length = dimension.count_member ? counts[*dimension.count_member] : dimension.length;
-      if (length < 0) throw NotDecodable();
-      size *= static_cast<double>(length);
-      lengths.push_back(length);
-    }
-    if (size > static_cast<double>(std::min(a_.num_left(), b_.num_left()))) throw NotDecodable();
-    return lengths;
-  }
-
-  static std::string Indices(const std::vector<std::int64_t>& lengths, std::uint64_t element) {
-    std::string text;
-    for (auto length = lengths.rbegin(); length != lengths.rend(); ++length) {
-      text.insert(0, "[" + std::to_string(element % static_cast<std::uint64_t>(*length)) + "]");
-      element /= static_cast<std::uint64_t>(*length);
-    }
-    return text;
-  }
-
-  std::optional<Difference> CompareValue(const WireMember& member, double tolerance, std::int64_t* count) {
-    if (member.kind == WireKind::kString) {
-      const auto a = a_.String();
-      const auto b = b_.String();
-      if (std::ranges::equal(a, b)) return std::nullopt;
-      return Difference{"", StringText(a), StringText(b)};
-    }
-    const auto size = bus::WireSizeBytes(member.kind);
-    const auto a = a_.Number(size);
-    const auto b = b_.Number(size);
-    if (count != nullptr) *count = Integer(member.kind, a);
-    if (a == b) return std::nullopt;
-    if (member.kind == WireKind::kDouble) return CompareReal(std::bit_cast<double>(a), std::bit_cast<double>(b), tolerance, a, b);
-    if (member.kind == WireKind::kFloat) {
-      return CompareReal(std::bit_cast<float>(static_cast<std::uint32_t>(a)), std::bit_cast<float>(static_cast<std::uint32_t>(b)), tolerance, a, b);
-    }
-    const auto value_a = Integer(member.kind, a);
-    const auto value_b = Integer(member.kind, b);
-    const auto distance = value_a > value_b ? static_cast<std::uint64_t>(value_a) - static_cast<std::uint64_t>(value_b)
-                                            : static_cast<std::uint64_t>(value_b) - static_cast<std::uint64_t>(value_a);
-    if (member.kind != WireKind::kBoolean && static_cast<double>(distance) <= tolerance) return std::nullopt;
-    return Difference{"", NumberText(value_a), NumberText(value_b)};
-  }
-
-  template <typename Real>
-  static std::optional<Difference> CompareReal(Real a, Real b, double tolerance, std::uint64_t bits_a, std::uint64_t bits_b) {
-    if (tolerance > 0.0) {
-      if (std::isnan(a) && std::isnan(b)) return std::nullopt;
-      if (a == b || std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance) return std::nullopt;
-    }
-    return NumbersDiffer(NumberText(a), NumberText(b), bits_a, bits_b);
-  }
-
-  static std::int64_t Integer(WireKind kind, std::uint64_t bits) {
-    switch (kind) {
-      case WireKind::kInt8:
-        return static_cast<std::int8_t>(bits);
-      case WireKind::kInt16:
-        return static_cast<std::int16_t>(bits);
-      case WireKind::kInt32:
-        return static_cast<std::int32_t>(bits);
-      default:
-        return static_cast<std::int64_t>(bits);
-    }
-  }
-
-  const WireTypes& types_;
-  const Tolerances& tolerances_;
-  FieldReader a_;
-  FieldReader b_;
-};
+template <WireStruct T>
+std::optional<Difference> CompareFields(const T& a, const T& b, const Tolerances& tolerances, const std::string& path) {
+  std::optional<Difference> first;
+  VisitFields(a, b, [&](std::string_view name, const auto& in_a, const auto& in_b, bool is_exact) {
+    if (first) return;
+    const auto field = tolerances.empty() ? std::string() : PathOf(path, name);
+    first = CompareValues(in_a, in_b, tolerances.empty() || is_exact ? 0.0 : tolerances.Of(field), tolerances, field);
+    if (first) first->field.insert(0, name);
+  });
+  return first;
+}
 
 std::string ByteText(std::uint8_t byte) {
   std::array<char, 8> text{};
@@ -209,37 +137,38 @@ Difference CompareBytes(Bytes a, Bytes b) {
   return {"byte " + std::to_string(place_a - a.begin()), ByteText(*place_a), ByteText(*place_b)};
 }
 
-// "pose_t (0x...)": types of two versions may share their name.
-std::string TypeText(const std::vector<const WireTypes*>& versions, Bytes message) {
-  const auto fingerprint = bus::ReadU64BigEndian(message, 0);
-  std::string name = "unknown";
-  for (const auto* version : versions) {
-    const auto* type = version->Find(fingerprint);
-    if (type == nullptr) continue;
-    name = type->name;
-    break;
-  }
+// @return nullopt also where the fields do not say all: nobody reads the closing zero of a string
+template <WireStruct T>
+std::optional<T> DecodeWhole(Bytes bytes) {
+  auto message = bus::Decode<T>(bytes);
+  if (message && !std::ranges::equal(bus::Encode(*message), bytes)) message.reset();
+  return message;
+}
+
+// "pose_t (0x...)"
+std::string TypeText(std::uint64_t fingerprint) {
+  const auto known = std::ranges::find(bus::TypeFingerprints(), fingerprint, &bus::TypeFingerprint::fingerprint);
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), " (0x%016llx)", static_cast<unsigned long long>(fingerprint));
-  return name + text.data();
+  return (known == bus::TypeFingerprints().end() ? "unknown" : known->type) + text.data();
 }
 
 bool NameFits(std::string_view name, std::string_view path) {
   return path.ends_with(name) && (path.size() == name.size() || path[path.size() - name.size() - 1] == '.');
 }
 
-// Calls `visit` with the path of each number of a type and of its parts, `budget` times at most: types of a log may be nested without measure.
-void VisitNumbers(const WireTypes& types, const WireType& type, const std::string& path, int& budget,
-                  const std::function<void(const std::string&)>& visit) {
-  for (const auto& member : type.members) {
-    if (--budget < 0) return;
-    const auto member_path = path.empty() ? member.name : path + "." + member.name;
-    if (member.kind == WireKind::kStruct) {
-      VisitNumbers(types, types.types()[member.type], member_path, budget, visit);
-    } else if (member.kind != WireKind::kString && member.kind != WireKind::kBoolean && !member.is_count) {
-      visit(member_path);
+// Calls `visit` with the path of each number of a type and of its parts.
+template <WireStruct T>
+void VisitNumbers(const std::string& path, const std::function<void(const std::string&)>& visit) {
+  const T none{};
+  VisitFields(none, none, [&](std::string_view name, const auto& value, const auto& /*same*/, bool is_exact) {
+    using Element = typename ElementOf<std::remove_cvref_t<decltype(value)>>::Type;
+    if constexpr (WireStruct<Element>) {
+      VisitNumbers<Element>(PathOf(path, name), visit);
+    } else if constexpr (std::is_arithmetic_v<Element>) {
+      if (!is_exact) visit(PathOf(path, name));
     }
-  }
+  });
 }
 
 }  // namespace
@@ -255,33 +184,30 @@ double Tolerances::Of(std::string_view path) const {
   return tolerance;
 }
 
-std::vector<std::string> Tolerances::Unknown(const std::vector<const bus::WireTypes*>& versions) const {
+std::vector<std::string> Tolerances::Unknown() const {
   std::vector<std::string> unknown;
   for (const auto& entry : tolerances_) unknown.push_back(entry.first);
-  int budget = kMaxPaths;
-  for (const auto* version : versions) {
-    for (const auto& type : version->types()) {
-      VisitNumbers(*version, type, "", budget,
-                   [&](const std::string& path) { std::erase_if(unknown, [&](const auto& name) { return NameFits(name, path); }); });
-    }
-  }
+  ForEachType([&]<typename T>(const T& /*message*/) {
+    VisitNumbers<T>("", [&](const std::string& path) { std::erase_if(unknown, [&](const auto& name) { return NameFits(name, path); }); });
+  });
   return unknown;
 }
 
-std::optional<Difference> CompareMessages(const std::vector<const bus::WireTypes*>& versions, const Tolerances& tolerances, Bytes a, Bytes b) {
+std::optional<Difference> CompareMessages(const Tolerances& tolerances, Bytes a, Bytes b) {
   if (std::ranges::equal(a, b)) return std::nullopt;
   if (a.size() < 8 || b.size() < 8) return CompareBytes(a, b);
-  if (bus::ReadU64BigEndian(a, 0) != bus::ReadU64BigEndian(b, 0)) return Difference{"type", TypeText(versions, a), TypeText(versions, b)};
-  for (const auto* version : versions) {
-    const auto* type = version->Find(bus::ReadU64BigEndian(a, 0));
-    if (type == nullptr) continue;
-    try {
-      return MessageComparison(*version, tolerances, a, b).Compare(*type);
-    } catch (const NotDecodable&) {
-      break;
-    }
-  }
-  return CompareBytes(a, b);
+  const auto fingerprint = bus::ReadU64BigEndian(a, 0);
+  if (const auto other = bus::ReadU64BigEndian(b, 0); other != fingerprint) return Difference{"type", TypeText(fingerprint), TypeText(other)};
+  bool is_decoded = false;
+  std::optional<Difference> difference;
+  ForEachType([&]<typename T>(const T& /*message*/) {
+    if (static_cast<std::uint64_t>(T::getHash()) != fingerprint) return;
+    const auto message_a = DecodeWhole<T>(a);
+    const auto message_b = DecodeWhole<T>(b);
+    is_decoded = message_a && message_b;
+    if (is_decoded) difference = CompareFields(*message_a, *message_b, tolerances, "");
+  });
+  return is_decoded ? difference : CompareBytes(a, b);
 }
 
 }  // namespace lookout::diff

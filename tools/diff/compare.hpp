@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "common/bus/wire_description.hpp"
 #include "common/core/bytes.hpp"
 
 namespace lookout::diff {
@@ -32,8 +31,8 @@ class Tolerances {
   /// @return the tolerance of the longest name that fits; 0 = bit for bit
   double Of(std::string_view path) const;
 
-  /// @return names that fit no number of these types
-  std::vector<std::string> Unknown(const std::vector<const bus::WireTypes*>& versions) const;
+  /// @return names that fit no number of any wire type
+  std::vector<std::string> Unknown() const;
 
  private:
   std::map<std::string, double, std::less<>> tolerances_;
@@ -44,8 +43,7 @@ class Tolerances {
 /// Numbers are equal when their bits are, or, with a tolerance, when they lie no farther apart than that, or are both NaN. Lengths of arrays, strings
 /// and booleans have no tolerance.
 ///
-/// @param versions  where the type is looked for, in this order
 /// @return nullopt when they are equal
-std::optional<Difference> CompareMessages(const std::vector<const bus::WireTypes*>& versions, const Tolerances& tolerances, Bytes a, Bytes b);
+std::optional<Difference> CompareMessages(const Tolerances& tolerances, Bytes a, Bytes b);
 
 }  // namespace lookout::diff

@@ -15,7 +15,6 @@
 #include "common/bus/log_file.hpp"
 #include "common/core/printable.hpp"
 #include "tools/log/publishers.hpp"
-#include "tools/log/recorded_run.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
 
@@ -42,29 +41,22 @@ struct ChannelResult {
   bool IsEqual() const { return !first; }
 };
 
-// One log: where the events of each channel stand, and the types that it describes.
+// One log, and where the events of each channel stand.
 class IndexedLog {
  public:
   explicit IndexedLog(const std::filesystem::path& file) : reader_(file) {
-    bool has_types = false;
-    while (const auto event = reader_.Next()) {
+    for (std::int64_t number = 0; const auto event = reader_.Next(); ++number) {
       const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
       places_[event->channel].push_back(reader_.position_bytes() - size);
       marks_.Add(event->time, event->channel, event->bytes);
-      publishers_.Add(event->time, event->channel, event->bytes);
+      publishers_.Add(number, event->time, event->channel, event->bytes);
       if (!first_time_) first_time_ = event->time;
-      if (has_types) continue;
-      if (const auto run_info = log::RunInfoOf(*event)) {
-        types_ = log::TypesOf(*run_info);
-        has_types = true;
-      }
     }
     num_damaged_ = reader_.num_damaged();
     if (places_.empty() && reader_.size_bytes() > 0) throw std::runtime_error(file.string() + ": is no lcm-log: it holds no event");
   }
 
   const std::map<std::string, std::vector<std::int64_t>, std::less<>>& places() const { return places_; }
-  const bus::WireTypes& types() const { return types_; }
   std::int64_t num_damaged() const { return num_damaged_; }
   const log::RunMarks& marks() const { return marks_; }
   const log::Publishers& publishers() const { return publishers_; }
@@ -80,7 +72,6 @@ class IndexedLog {
  private:
   bus::LogReader reader_;
   std::map<std::string, std::vector<std::int64_t>, std::less<>> places_;
-  bus::WireTypes types_;
   log::RunMarks marks_;
   log::Publishers publishers_;
   std::optional<Utime> first_time_;
@@ -97,9 +88,8 @@ constexpr int kMaxSearchesInVain = 4;
 // The messages of one channel in both logs, in their order.
 class ChannelComparison {
  public:
-  ChannelComparison(const std::string& channel, const Tolerances& tolerances, const std::vector<const bus::WireTypes*>& versions, IndexedLog& a,
-                    IndexedLog& b)
-      : tolerances_(tolerances), versions_(versions), a_(a, channel), b_(b, channel) {}
+  ChannelComparison(const std::string& channel, const Tolerances& tolerances, IndexedLog& a, IndexedLog& b)
+      : tolerances_(tolerances), a_(a, channel), b_(b, channel) {}
 
   ChannelResult Compare() {
     result_.num_a = a_.NumLeft();
@@ -107,7 +97,7 @@ class ChannelComparison {
     while (a_.NumLeft() > 0 && b_.NumLeft() > 0) {
       const auto event_a = a_.Read(0);
       const auto event_b = b_.Read(0);
-      auto difference = CompareMessages(versions_, tolerances_, event_a.bytes, event_b.bytes);
+      auto difference = CompareMessages(tolerances_, event_a.bytes, event_b.bytes);
       if (difference && StepOverMissing(event_a, event_b)) continue;
       if (difference) {
         ++result_.num_different;
@@ -144,7 +134,7 @@ class ChannelComparison {
            header_a->seq == header_b->seq;
   }
 
-  // Of what is left in one log when the other has come to its end: messages not before the other's last one (parts of a turn have one time). Where
+  // Of what is left in one log when the other has come to its end: messages not before the other's last one (parts of a scan have one time). Where
   // the pairs were not found, or the other log has none at all, nobody knows.
   std::int64_t NumBehind(Side& side, const Side& other) const {
     if (side.NumLeft() == 0 || num_in_vain_ > 0 || other.places == nullptr) return 0;
@@ -183,7 +173,6 @@ class ChannelComparison {
   }
 
   const Tolerances& tolerances_;
-  const std::vector<const bus::WireTypes*>& versions_;
   Side a_;
   Side b_;
   ChannelResult result_;
@@ -220,7 +209,7 @@ class Cuts {
       const auto channels = log->marks().WithoutStart();
       if (channels.empty()) continue;
       out << fmt::format("reason, perhaps: {} begins without a start mark of {}: what is computed first depends on what came before\n", name,
-                         log::Joined(channels));
+                         fmt::join(channels, ", "));
     }
   }
 
@@ -231,7 +220,7 @@ class Cuts {
   void PrintCut(std::ostream& out, const char* cut, const std::vector<std::string>& channels, const char* other,
                 const std::vector<std::string>& behind) const {
     out << fmt::format("reason{}: {} ends without an end mark of {}: it was cut there, and lacks what was under way\n",
-                       has_others_ ? ", perhaps" : "", cut, log::Joined(channels));
+                       has_others_ ? ", perhaps" : "", cut, fmt::join(channels, ", "));
     out << fmt::format("behind the last message of the other log {} has: {}\n", other, fmt::join(behind, ", "));
   }
 
@@ -249,9 +238,6 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
   for (const auto& [log, file] : {std::pair(&a, &request.a), std::pair(&b, &request.b)}) {
     if (log->num_damaged() > 0) errors << fmt::format("{}: {} damaged stretches were skipped\n", file->string(), log->num_damaged());
   }
-  const auto own_types = log::OwnTypes();
-  const std::vector<const bus::WireTypes*> versions{&own_types, &a.types(), &b.types()};
-
   std::set<std::string> channels;
   std::set<std::string> left_out;
   for (const auto* log : {&a, &b}) {
@@ -264,10 +250,10 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
     channels = {request.channels.begin(), request.channels.end()};
     left_out.clear();
   }
-  auto unknown = request.tolerances.Unknown(versions);
+  auto unknown = request.tolerances.Unknown();
   for (const auto& [channel, tolerances] : request.channel_tolerances) {
     if (!channels.contains(channel)) throw std::runtime_error("--tolerance: channel " + channel + " is not compared");
-    std::ranges::copy(tolerances.Unknown(versions), std::back_inserter(unknown));
+    std::ranges::copy(tolerances.Unknown(), std::back_inserter(unknown));
   }
   if (!unknown.empty()) throw std::runtime_error("--tolerance: no number of any type is called " + unknown.front());
 
@@ -278,11 +264,11 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
   for (const auto& channel : channels) {
     const auto own = request.channel_tolerances.find(channel);
     const auto& tolerances = own == request.channel_tolerances.end() ? request.tolerances : own->second;
-    const auto result = ChannelComparison(channel, tolerances, versions, a, b).Compare();
+    const auto result = ChannelComparison(channel, tolerances, a, b).Compare();
     num_messages += std::max(result.num_a, result.num_b);
-    cuts.Add(log::Printable(channel), result);
+    cuts.Add(Printable(channel), result);
     if (!result.IsEqual()) ++num_different;
-    out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", log::Printable(channel), result.num_a, result.num_b, result.num_different,
+    out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}{}\n", Printable(channel), result.num_a, result.num_b, result.num_different,
                        result.num_only_a, result.num_only_b, result.first ? "  " + FirstText(*result.first) : "");
   }
   for (const auto& [name, log] : {std::pair("A", &a), std::pair("B", &b)}) {

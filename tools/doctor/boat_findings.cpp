@@ -1,11 +1,11 @@
-// Mounting in words, and the disk.
+// Mounting and disk.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 
-#include "common/config/boat_words.hpp"
+#include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 #include "services/vlp16/core/model.hpp"
 #include "tools/doctor/findings.hpp"
@@ -20,7 +20,7 @@ constexpr const char* kDiskSubject = "disk";
 // Half the height of the VLP-16's field of view: leaning more, one side sees only sky or only water.
 constexpr double kMaxLeanDeg = 15.0;
 constexpr double kExampleM = 10.0;
-// What recording takes where it was not heard: the simulated lake at 10 turns a second (README, "Figures").
+// The rate of recording where it was not heard: the simulated lake at 10 scans a second (README, "Figures").
 constexpr double kUsualRateBytesPerS = 2.9e6;
 constexpr double kLeastHours = 1.0;
 constexpr double kDayHours = 10.0;  // a day on the water
@@ -67,7 +67,7 @@ Finding CheckLidarDirection(const config::BoatFacts& boat) {
 }  // namespace
 
 Findings CheckMounting(const ConfigSeen& config) {
-  if (!config.boat) return {};  // the config's own lines say why
+  if (!config.boat) return {};  // the config's lines of the file say why
   const auto& boat = *config.boat;
   Findings findings{CheckLidarDirection(boat)};
   const double lidar_z_m = boat.T_vessel_lidar.translation().z();
@@ -95,10 +95,10 @@ Findings CheckDisk(const DiskSeen& disk) {
   if (!disk.other_host.empty()) {
     return {Ok(kDiskSubject, "lookout-recorder runs on " + disk.other_host + ": ask lookout-doctor there about its disk")};
   }
-  if (disk.folder.empty()) return {};  // the config's own lines say why
+  if (disk.folder.empty()) return {};  // the config's lines of the file say why
   const auto folder = disk.folder.string();
   if (disk.free_bytes < 0) {
-    return {Fault(kDiskSubject, "the log folder " + folder + " cannot be looked at", "log_folder in recorder.txtpb, or mount the disk")};
+    return {Fault(kDiskSubject, "the log folder " + folder + " cannot be read", "correct log_folder in recorder.txtpb, or mount the disk")};
   }
   const double rate_bytes_per_s = disk.rate_bytes_per_s.value_or(kUsualRateBytesPerS);
   const double hours = static_cast<double>(disk.free_bytes) / rate_bytes_per_s / 3600.0;
@@ -107,7 +107,8 @@ Findings CheckDisk(const DiskSeen& disk) {
                   Fixed(hours, 1), Fixed(rate_bytes_per_s / 1e6, 2), disk.rate_bytes_per_s ? "heard on the bus" : "the usual rate",
                   disk.is_guessed ? "; log_folder is relative to this folder: start the recorder here too" : "");
   if (!disk.is_writable) {
-    return {Fault(kDiskSubject, text + "; it cannot be written", "give its owner or its rights to who runs lookout-recorder")};
+    return {
+        Fault(kDiskSubject, text + "; it cannot be written", "make the user of lookout-recorder its owner, or give that user the right to write")};
   }
   if (hours < kDayHours) {
     return {{hours < kLeastHours ? Grade::kFault : Grade::kWarning, kDiskSubject, text, "move old logs away: lookout-recorder deletes nothing"}};

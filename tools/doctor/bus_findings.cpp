@@ -33,7 +33,7 @@ Findings CheckConfig(const ConfigSeen& config) {
       const bool is_of_file = fault.find(": file: ") != std::string::npos;
       findings.push_back(Fault(kConfigSubject, fault,
                                is_of_file ? "the folder holds one file for each schema of config/schema, as config/catabot does, and no other"
-                                          : "mend that line; config/schema says what it may hold"));
+                                          : "correct that line; config/schema says what it may hold"));
     }
   }
   if (!right.empty()) findings.insert(findings.begin(), Ok(kConfigSubject, right));
@@ -54,7 +54,7 @@ Findings CheckBus(const BusSeen& bus) {
   const auto place = "multicast to " + bus.group + " goes by " + (bus.route_device.empty() ? "an interface that is not known" : bus.route_device);
   if (bus.time_to_live > 0 && bus.route_device == "lo") {
     return {Warning(kRouteSubject,
-                    place + ", but the bus has a time-to-live of " + std::to_string(bus.time_to_live) + ": other computers shall hear it, and do not",
+                    place + ", but the bus has a time-to-live of " + std::to_string(bus.time_to_live) + ": other computers cannot hear it",
                     "as root: ip route replace " + network + " dev <the interface to the other computer>; or ttl=0 in LCM_DEFAULT_URL")};
   }
   if (bus.time_to_live == 0 && !bus.route_device.empty() && bus.route_device != "lo") {
@@ -77,12 +77,12 @@ Findings CheckPort(const Observations& seen) {
   if (outside.empty()) return {Ok(kPortSubject, port + " of the bus: no interface leads to another computer")};
   const auto open = port + " of the bus is open on " + Joined(outside);
   if (seen.port.without_filter.empty()) {
-    return {Ok(kPortSubject, open + "; Lookout's programs take only sound datagrams" +
-                                 (seen.bus.time_to_live == 0 ? " of this computer" : " to the group") + ", and no other listens")};
+    return {Ok(kPortSubject, open + "; Lookout's programs accept only valid datagrams" +
+                                 (seen.bus.time_to_live == 0 ? " of this computer" : " to the group") + ", and no other program listens")};
   }
   return {Warning(
       kPortSubject,
-      open + ", and who listens there without a filter, as LCM's own tools do, can be ended by one datagram: " + Joined(seen.port.without_filter),
+      open + ", and one datagram can end a program that listens there without a filter, as LCM's own tools do: " + Joined(seen.port.without_filter),
       "end it before casting off; or close the port: LOOKOUT_BUS_FIREWALL=on in /etc/default/lookout, then as root: systemctl restart "
       "lookout-firewall")};
 }

@@ -17,16 +17,16 @@ constexpr const char* kLidarSubject = "lidar";
 constexpr const char* kNetworkSubject = "network";
 constexpr const char* kClockSubject = "clock";
 
-// Share of the packets that may be missing before it is worth a word: at 1 % a turn in two has a hole.
+// Share of the packets that may be missing without a warning: at 1 % every second scan has a gap.
 constexpr double kMaxLostShare = 0.01;
-// As long a silence as after which vlp16 complains.
+// After such a silence vlp16 complains.
 constexpr double kLidarSilenceS = 1.0;
-// What vlp16's TIME_AUTO takes (vlp16.proto).
+// As vlp16's TIME_AUTO (vlp16.proto).
 constexpr double kMaxClockDifferenceS = 0.25;
 constexpr const char* kFactorySensor = "192.168.1.201";  // VLP-16 User Manual 63-9243 Rev E: as delivered; sends to 255.255.255.255
 constexpr const char* kLidarCure =
-    "is the lidar powered, and its cable in; does http://192.168.1.201 (as delivered) show it; is its destination this computer or "
-    "255.255.255.255, with the ports of vlp16.txtpb; does a firewall let UDP in";
+    "check the lidar's power and cable; open its page http://192.168.1.201 (as delivered): its destination must be this computer or "
+    "255.255.255.255, with the ports of vlp16.txtpb; check that a firewall lets UDP in";
 
 std::string InterfacesInWords(const std::vector<InterfaceSeen>& interfaces) {
   std::vector<std::string> words;
@@ -57,15 +57,14 @@ Finding CheckSender(const Observations& seen, const std::string& sender, std::in
   const bool is_allowed =
       allowed.empty() || std::ranges::any_of(allowed, [&address](const std::string& text) { return io::ParseIpAddress(text) == address; });
   if (!is_allowed) {
-    return Warning(kNetworkSubject, words + ": refused, for allowed_source_address does not name it",
+    return Warning(kNetworkSubject, words + ": refused, because allowed_source_address does not name it",
                    "if that is the lidar: allowed_source_address: \"" + sender + "\" in vlp16.txtpb");
   }
   const auto own = std::ranges::find_if(seen.interfaces, [&address](const auto& interface) { return address && IsInNetwork(interface, *address); });
   if (own == seen.interfaces.end()) {
     return Warning(
         kNetworkSubject, words + ", but no address of this computer is in its network (" + InterfacesInWords(seen.interfaces) + ")",
-        "broadcasts come even so, but the lidar's own page and packets to this computer alone do not: give the interface to the lidar an address "
-        "of that "
+        "broadcasts arrive, but the lidar's own page and packets to this computer alone do not: give the interface to the lidar an address of that "
         "network, e.g. ip address add <like " +
             sender + " with another last number>/24 dev <interface>");
   }
@@ -103,7 +102,7 @@ Finding CheckPackets(const Observations& seen) {
   }
   if (lidar.model.empty()) {
     return Fault(kLidarSubject,
-                 Count(lidar.num_packets, "packet") + ", but no turn came of them" + (lidar.complaint.empty() ? "" : ": " + lidar.complaint),
+                 Count(lidar.num_packets, "packet") + ", but no scan was made of them" + (lidar.complaint.empty() ? "" : ": " + lidar.complaint),
                  "model in vlp16.txtpb; services/vlp16/README.md says which sensors are read");
   }
   const double span_s = ToSeconds(lidar.last - lidar.first);
@@ -127,7 +126,7 @@ Finding CheckPackets(const Observations& seen) {
 
 Finding CheckSensorClock(const LidarSeen& lidar) {
   const auto& clock = *lidar.last_clock;
-  const std::string source = clock.time_source == lidar_clock_t::TIME_SENSOR ? "turns carry the sensor's time" : "turns carry this computer's time";
+  const std::string source = clock.time_source == lidar_clock_t::TIME_SENSOR ? "scans have the sensor's time" : "scans have this computer's time";
   switch (clock.state) {
     case lidar_clock_t::STATE_LOCKED:
       if (std::abs(clock.offset_s) > kMaxClockDifferenceS) {
@@ -151,7 +150,7 @@ Finding CheckSensorClock(const LidarSeen& lidar) {
     case lidar_clock_t::STATE_ERROR:
       return Warning(kClockSubject, "the lidar says that its PPS is wrong; " + source, "PPS once a second, 3 to 15 V, at the lidar's interface box");
     default:
-      return Warning(kClockSubject, "no position packets of the lidar: what its clock is worth is not known; " + source,
+      return Warning(kClockSubject, "no position packets of the lidar, so the state of its clock is not known; " + source,
                      "position_port in vlp16.txtpb and in the lidar; a firewall");
   }
 }
@@ -159,17 +158,17 @@ Finding CheckSensorClock(const LidarSeen& lidar) {
 }  // namespace
 
 Findings CheckLidar(const Observations& seen) {
-  if (!seen.config.lidar) return {Warning(kLidarSubject, "not looked for: vlp16.txtpb is wrong", "mend it first")};
+  if (!seen.config.lidar) return {Warning(kLidarSubject, "not checked: vlp16.txtpb is wrong", "correct it first")};
   const auto& lidar = seen.lidar;
   const auto kind = seen.config.lidar->sources.kind;
   const bool is_sensor = kind == vlp16::Sources::Kind::kUdp || kind == vlp16::Sources::Kind::kInterface;
   Findings findings;
   if (!is_sensor) {
-    findings.push_back(Warning(kLidarSubject, "vlp16.txtpb takes no sensor, but captures or a log: none is looked for", "source: UDP for a sensor"));
+    findings.push_back(Warning(kLidarSubject, "vlp16.txtpb names captures or a log: no sensor is checked", "source: UDP for a sensor"));
     return findings;
   }
   if (!lidar.fault.empty()) {
-    return {Fault(kLidarSubject, lidar.fault, "what that line says; is lookout-vlp16 running on another bus?")};
+    return {Fault(kLidarSubject, lidar.fault, "correct what the line names; if lookout-vlp16 is running on another bus, end it")};
   }
   findings.push_back(CheckPackets(seen));
   for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(CheckSender(seen, sender, num_datagrams));
@@ -186,7 +185,7 @@ Findings CheckClocks(const Observations& seen) {
   if (seen.is_host_clock_set) {
     findings.push_back(Ok(kClockSubject, "this computer's clock is steered (NTP or PPS)"));
   } else {
-    findings.push_back(Warning(kClockSubject, "nothing steers this computer's clock, which stamps what has no time of its own",
+    findings.push_back(Warning(kClockSubject, "nothing steers this computer's clock, which stamps data without a time of their own",
                                "install chrony, with the GNSS receiver or NTP as its source"));
   }
   return findings;

@@ -263,7 +263,7 @@ bool IsHostClockSet() {
 }
 
 DiskSeen ReadDisk(const Observations& seen) {
-  DiskSeen disk;
+  DiskSeen disk = seen.disk;
   if (!seen.config.log_folder) return disk;
   const auto* recorder = RecorderHeard(seen);
   if (recorder != nullptr && recorder->host != runtime::HostName()) {

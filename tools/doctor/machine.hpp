@@ -1,4 +1,4 @@
-// What this computer says of itself: network, buffers, clock, disk, the boat's config files. Nothing here changes anything.
+// The state of this computer: network, buffers, clock, disk, the boat's config files. Nothing here changes anything.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ PortSeen ReadPort(const BusSeen& bus);
 /// @return empty when none matches
 std::string DeviceOfRoute(const std::string& table, const std::string& address);
 
-/// Asks the kernel for buffers as the processes do.
+/// Asks the kernel for receive buffers as the processes do.
 ///
 /// @param config  of which the lidar's buffer is taken, where it is right
 BuffersSeen ReadBuffers(const ConfigSeen& config);
@@ -46,7 +46,7 @@ std::vector<InterfaceSeen> ReadInterfaces();
 /// Whether something steers this computer's clock (the kernel's state, as NTP and PPS set it).
 bool IsHostClockSet();
 
-/// Of the log folder. Goes by the processes that were heard: a recorder that runs says where a relative folder is.
+/// Of the log folder; the rate stays as it is in `seen`. A recorder that runs shows where a relative folder is.
 DiskSeen ReadDisk(const Observations& seen);
 
 }  // namespace lookout::doctor

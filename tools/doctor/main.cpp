@@ -1,4 +1,4 @@
-// lookout-doctor: is this boat ready to cast off? Looks, tells, changes nothing.
+// lookout-doctor: is this boat ready to cast off? Checks, reports, changes nothing.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -34,7 +34,7 @@ struct Options {
 Options ParseOptions(int argc, char** argv) {
   Options options;
   std::string config_folder;
-  CLI::App app("Looks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
+  CLI::App app("Checks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
   app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
   app.add_flag("--check", options.check_only, "check the config of every process, print the values in force or every fault, exit");
@@ -62,9 +62,7 @@ lookout::doctor::Observations Observe(const Options& options) {
   seen.port = doctor::ReadPort(seen.bus);
   seen.interfaces = doctor::ReadInterfaces();
   seen.is_host_clock_set = doctor::IsHostClockSet();
-  const auto rate_bytes_per_s = seen.disk.rate_bytes_per_s;
   seen.disk = doctor::ReadDisk(seen);
-  seen.disk.rate_bytes_per_s = rate_bytes_per_s;
   return seen;
 }
 

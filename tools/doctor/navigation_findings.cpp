@@ -71,7 +71,7 @@ Finding CheckFix(const Observations& seen) {
   if (navigation.num_by_source.empty()) {
     return Fault(
         kGnssSubject, "no sentence came from any input of navigator.txtpb",
-        "is the receiver on; lookout-navigator --check lists the inputs in words; serial: right device and baud; UDP: its destination and port");
+        "switch the receiver on; compare it with the inputs that lookout-navigator --check lists: serial device and baud, UDP destination and port");
   }
   if (!navigation.fix) {
     std::vector<std::string> sources;
@@ -96,7 +96,7 @@ Finding CheckFix(const Observations& seen) {
   return Ok(kGnssSubject, words);
 }
 
-std::string CourseInWords(double min_speed_mps) { return "the course over ground stands in for it above " + Fixed(min_speed_mps, 1) + " m/s"; }
+std::string CourseInWords(double min_speed_mps) { return "the course over ground replaces it above " + Fixed(min_speed_mps, 1) + " m/s"; }
 
 // gpsd 3.22 (Debian 12) gives its clients neither $HEHDT nor $HEROT.
 std::string GpsdInWords(const Observations& seen) {
@@ -107,7 +107,7 @@ std::string GpsdInWords(const Observations& seen) {
   };
   const auto& sources = seen.navigation.num_by_source;
   const bool is_gpsd_alone = !sources.empty() && std::ranges::all_of(sources, [&is_gpsd](const auto& entry) { return is_gpsd(entry.first); });
-  return is_gpsd_alone ? "; gpsd 3.22 does not pass $HEHDT and $HEROT: let the compass send to an input of its own" : "";
+  return is_gpsd_alone ? "; gpsd 3.22 does not pass $HEHDT and $HEROT: connect the compass to an input of its own" : "";
 }
 
 Finding CheckHeading(const Observations& seen) {
@@ -121,12 +121,12 @@ Finding CheckHeading(const Observations& seen) {
     if (filter.use_course_as_heading) {
       return Warning(kHeadingSubject, "none: obstacles are placed in the vessel frame only; " + CourseInWords(filter.min_course_speed_mps), cure);
     }
-    return Fault(kHeadingSubject, "none, and the course shall not stand in: obstacles are placed in the vessel frame only", cure);
+    return Fault(kHeadingSubject, "none, and use_course_as_heading is off: obstacles are placed in the vessel frame only", cure);
   }
   const double sd_deg = RadToDeg(std::sqrt(std::max(0.0, pose->covariance[kHeadingIndex][kHeadingIndex])));
   const std::string value = Fixed(RadToDeg(pose->heading_rad), 1) + " deg from true north, sd " + Fixed(sd_deg, 1) + " deg";
   if (pose->heading_source == pose_t::HEADING_COURSE) {
-    return Warning(kHeadingSubject, value + ", out of the course over ground: leeway and current are in it, and at rest there is none", cure);
+    return Warning(kHeadingSubject, value + ", from the course over ground: it includes leeway and current, and at rest there is none", cure);
   }
   std::string words = value;
   if (const auto& heading = seen.navigation.heading) words += ", from input '" + heading->source + "' (" + heading->sentence_type + ")";
@@ -157,15 +157,15 @@ std::optional<Finding> CheckDatum(const Observations& seen) {
     return {};
   const auto complaint = DatumComplaint({datum->latitude_deg, datum->longitude_deg, 0.0}, {fix->latitude_deg, fix->longitude_deg, 0.0}, "the fix");
   if (complaint.empty()) return {};
-  return Warning(kGnssSubject, complaint, "datum in boat.txtpb: mend it, or leave it out, and the first fix is taken");
+  return Warning(kGnssSubject, complaint, "correct datum in boat.txtpb, or remove it: then the first fix is the datum");
 }
 
 }  // namespace
 
 Findings CheckNavigation(const Observations& seen) {
-  if (!seen.config.navigation) return {Warning(kGnssSubject, "not looked for: navigator.txtpb or boat.txtpb is wrong", "mend it first")};
+  if (!seen.config.navigation) return {Warning(kGnssSubject, "not checked: navigator.txtpb or boat.txtpb is wrong", "correct it first")};
   if (seen.navigation.via == Via::kNothing) {
-    return {Warning(kGnssSubject, "navigator.txtpb takes NAV_RAW of a log: no receiver is looked for", "source: LIVE for a receiver")};
+    return {Warning(kGnssSubject, "navigator.txtpb names NAV_RAW of a log: no receiver is checked", "source: LIVE for a receiver")};
   }
   Findings findings;
   for (const auto& [name, fault] : seen.navigation.input_faults) {

@@ -1,4 +1,4 @@
-// What was observed, before anybody judges it: plain values, so that each judgement can be tested without a boat.
+// What was observed, in plain values, so that each check can be tested without a boat.
 #pragma once
 
 #include <cstdint>
@@ -88,7 +88,7 @@ struct LidarSeen {
   Utime first{};
   Utime last{};
   Utime heard_last{};   // by this computer's clock, which may not be the one of `last`
-  std::string model;    // of the last turn; empty = no turn
+  std::string model;    // of the last scan; empty = no scan
   int num_returns = 0;  // per shot
   int return_kind = 0;  // lidar_scan_t::RETURN_..., of the first
   std::optional<lidar_clock_t> first_clock;
@@ -113,9 +113,9 @@ struct ProcessSeen {
   Utime heard_last{};
 };
 
-/// What comes out at the end.
+/// OBSTACLES that were heard.
 struct ObstaclesSeen {
-  std::int64_t num_turns = 0;
+  std::int64_t num_scans = 0;
   std::int64_t num_obstacles = 0;
   std::int64_t num_placed = 0;  // on the earth
   std::int64_t num_timeouts = 0;
@@ -126,7 +126,7 @@ struct DiskSeen {
   std::filesystem::path folder;  // absolute; empty = not known
   bool is_guessed = false;       // relative in the config, and the recorder does not run: taken from where the doctor was started
   bool is_writable = true;
-  std::int64_t free_bytes = -1;            // beyond the recorder's reserve            // -1 = not known
+  std::int64_t free_bytes = -1;            // beyond the recorder's reserve; -1 = not known
   std::optional<double> rate_bytes_per_s;  // heard on the bus with the lidar running
 };
 

@@ -1,4 +1,4 @@
-// HEALTH of the processes, and what comes out at the end of the chain.
+// HEALTH of the processes, the guard zone, and obstacles.
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -20,7 +20,7 @@ constexpr const char* kProcessSubject = "process";
 constexpr const char* kGuardZoneSubject = "guard zone";
 constexpr const char* kObstaclesSubject = "obstacles";
 
-// Whose HEALTH tells of the alarm.
+// Its HEALTH has the alarm.
 constexpr std::string_view kAlarmProcess = "georeferencer";
 // HEALTH comes once a second: two may be lost.
 constexpr double kHealthSilenceS = 3.5;
@@ -59,7 +59,7 @@ Finding CheckProcess(const std::string& name, const ProcessSeen& process) {
     case health_t::STATE_DEGRADED:
       return Warning(kProcessSubject, who + " is degraded: " + health.reason, "the lines above; services/" + name + "/README.md tells more");
     default:
-      return Fault(kProcessSubject, who + " has failed: " + health.reason, "what that says; its journal: journalctl -u lookout-" + name);
+      return Fault(kProcessSubject, who + " has failed: " + health.reason, "mend what the reason names; its journal: journalctl -u lookout-" + name);
   }
   const std::string words = who + " is ok: " + Fixed(100.0 * health.cpu_fraction, 1) + " % of a core, " +
                             Fixed(static_cast<double>(health.resident_bytes) / 1e6, 0) + " MB, up " + Fixed(health.uptime_s, 0) + " s";
@@ -91,19 +91,19 @@ Findings CheckGuardZone(const health_t& health) {
                             std::to_string(count("zone_times_unwatched")) + " times unwatched since the start";
   if (count("alarm_active") > 0) {
     return {Warning(kGuardZoneSubject, words + "; something is in it now, " + Fixed(0.01 * static_cast<double>(count("nearest_cm")), 1) + " m off",
-                    "nothing, if it is there; if it is the own boat or spray: own_vessel in boat.txtpb, guard_zone in georeferencer.txtpb")};
+                    "if it is the own boat or spray: correct own_vessel in boat.txtpb, guard_zone in georeferencer.txtpb")};
   }
   return {Ok(kGuardZoneSubject, words)};
 }
 
 Findings CheckObstacles(const Observations& seen) {
   const auto& obstacles = seen.obstacles;
-  if (obstacles.num_turns == 0) {
+  if (obstacles.num_scans == 0) {
     if (seen.lidar.via != Via::kBus || seen.lidar.num_packets == 0) return {};  // nothing to make them of
     return {Fault(kObstaclesSubject, "the lidar runs, but no OBSTACLES come", "the processes' lines above")};
   }
-  const std::string words = Fixed(static_cast<double>(obstacles.num_turns) / seen.watched_s, 1) + " turns/s, " +
-                            Fixed(static_cast<double>(obstacles.num_obstacles) / static_cast<double>(obstacles.num_turns), 1) + " obstacles in each";
+  const std::string words = Fixed(static_cast<double>(obstacles.num_scans) / seen.watched_s, 1) + " scans/s, " +
+                            Fixed(static_cast<double>(obstacles.num_obstacles) / static_cast<double>(obstacles.num_scans), 1) + " obstacles in each";
   if (obstacles.num_timeouts > 0) {
     return {Warning(kObstaclesSubject, words + "; for " + std::to_string(obstacles.num_timeouts) + " the wait for POSE was given up",
                     "clocks of lidar and navigation differ, or navigator is late: the clock lines above")};
@@ -124,8 +124,8 @@ Findings CheckProcesses(const Observations& seen) {
     return {Fault(kProcessSubject, "none of Lookout's processes can be heard: the bus cannot be opened", "the route line above")};
   }
   if (seen.processes.empty()) {
-    return {Warning(kProcessSubject, "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor looked at the sensors itself",
-                    "start them, then ask again: what goes over the bus and into the log is seen only then")};
+    return {Warning(kProcessSubject, "none of Lookout's processes is heard on " + seen.bus.url + "; the doctor checked the sensors itself",
+                    "start them, then ask again: bus and log are checked only then")};
   }
   std::set<std::string> names;
   for (const auto& service : bus::kServices) names.emplace(service.name);

@@ -151,7 +151,7 @@ void Notes::ListenToProcesses(bus::Bus& bus) {
   bus::Subscribe<health_t>(bus, bus::kHealth, [this](const health_t& message) { OnHealth(message); });
   bus::Subscribe<obstacles_t>(bus, bus::kObstacles, [this](const obstacles_t& message) {
     auto& obstacles = seen_.obstacles;
-    if (message.part_index == message.num_parts - 1) ++obstacles.num_turns;
+    if (message.part_index == message.num_parts - 1) ++obstacles.num_scans;
     obstacles.num_obstacles += message.num_obstacles;
     for (const auto& obstacle : message.obstacles) {
       obstacles.num_placed += obstacle.status == obstacle_t::STATUS_OK ? 1 : 0;

@@ -23,6 +23,7 @@
 #include "services/vlp16/core/decoder.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
+#include "tools/import/csv_file.hpp"
 #include "tools/import/xz_file.hpp"
 
 namespace lookout::eval {
@@ -147,7 +148,7 @@ class TruthFile {
     return static_cast<std::uint16_t>(whole);
   }
 
-  importer::XzCsv csv_;
+  importer::CsvFile csv_;
   std::int64_t num_kept_ = 0;
   std::int64_t last_us_ = std::numeric_limits<std::int64_t>::min();
   std::array<std::deque<TrueReturn>, kMaxRings> by_ring_;
@@ -163,7 +164,7 @@ bool IsInWater(const std::string& type) {
 std::map<std::int32_t, ScanObject> ReadObjects(const fs::path& file) {
   static constexpr std::array<std::string_view, 2> kColumns{"object_id", "type"};
   constexpr std::size_t kMaxObjects = 100'000;
-  importer::XzCsv csv(file, kColumns);
+  importer::CsvFile csv(file, kColumns);
   std::map<std::int32_t, ScanObject> objects;
   while (csv.Next()) {
     const auto id = static_cast<std::int32_t>(csv.WholeNumber(0, 1, std::numeric_limits<std::int32_t>::max()));
@@ -244,15 +245,12 @@ std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder) {
 }
 
 Boat LoadBoatOfCaptures(const fs::path& folder, const fs::path& config_folder) {
-  Boat boat;
-  boat.config_folder = config_folder;
-  boat.facts = config::LoadBoat(fs::exists(folder / "boat.txtpb") ? folder : config_folder);
-  boat.lidar = vlp16::LoadParams(config_folder);
+  if (!fs::exists(folder / "boat.txtpb")) return LoadBoat(config_folder);
   const auto file = config_folder / "segmenter.txtpb";
   config::Segmenter message;
   config::LoadText(file, message);
-  boat.segmenter = segmenter::ToParams(message, boat.facts, file);
-  return boat;
+  const auto facts = config::LoadBoat(folder);
+  return {config_folder, facts, vlp16::LoadParams(config_folder), segmenter::ToParams(message, facts, file)};
 }
 
 CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const ScanHandler& on_scan) {
@@ -266,10 +264,10 @@ CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const
   params.time = vlp16::TimeChoice::kSensor;
   vlp16::Decoder decoder(
       params,
-      [&](const vlp16::Scan& turn) {
+      [&](const vlp16::Scan& scan) {
         io::ThrowIfStopAsked();
-        if (turn.is_partial_start || turn.is_partial_end) return;
-        labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
+        if (scan.is_partial_start || scan.is_partial_end) return;
+        labelled.scan = ToSegmenterScan(scan, boat.lidar.use_vertical_origin_offsets);
         Join(files, truth, labelled, report);
         on_scan(labelled);
       },

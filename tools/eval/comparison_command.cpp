@@ -17,10 +17,8 @@
 #include "common/bus/channels.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
-#include "common/messages/checks.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/progress.hpp"
-#include "services/segmenter/wire.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/eval/figures.hpp"
 #include "tools/eval/method_comparison.hpp"
@@ -78,23 +76,16 @@ importer::PointCloud ReadPoints(const std::filesystem::path& file) {
   return std::filesystem::exists(label_file) ? importer::ReadKitti(file, label_file) : importer::ReadKitti(file, std::nullopt);
 }
 
-// As it would come over the bus, in LIDAR_SCAN: a scan that the segmenter would refuse is not scored.
-segmenter::Scan ThroughMessages(const segmenter::Scan& scan, const std::string& file) {
-  const auto parts = importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes);
-  for (const auto& part : parts) {
-    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::runtime_error(file + ": the segmenter refuses this scan");
-  }
-  auto whole = segmenter::ToScan(parts);
-  if (!whole || whole->num_cells() != scan.num_cells()) throw std::runtime_error(file + ": the scan is not whole");
-  return std::move(*whole);
-}
-
 void AddPoints(const std::vector<std::string>& files, MethodComparison& comparison) {
   int index = 0;
   for (const auto& file : files) {
     const auto cloud = ReadPoints(file);
     auto organised = importer::Organise(cloud, {});
-    organised.labelled.scan = ThroughMessages(organised.labelled.scan, file);
+    auto& scan = organised.labelled.scan;
+    // As it would come over the bus: a scan that the segmenter would refuse is not scored.
+    auto received = ScanOfMessages(importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes));
+    if (!received || received->num_cells() != scan.num_cells()) throw std::runtime_error(file + ": the segmenter refuses this scan");
+    scan = std::move(*received);
     comparison.Add({kPointsLabel, 0, index++}, organised.labelled);
     std::cerr << fmt::format("{}: {} points, {} rings{}, {} moved, {} hidden, {} out of range{}{}\n", file, cloud.points.size(),
                              organised.labelled.scan.head.num_rings(), organised.are_rings_found ? "" : " (bands of equal height)",

@@ -11,8 +11,8 @@ namespace lookout::eval {
 namespace {
 
 // Of a segment in the parts of SEGMENTS, and the time that its hull counts from.
-const segment_t* FindSegment(const messages::ScanMessages& turn, int id) {
-  for (const auto& [part_index, message] : turn.segments) {
+const segment_t* FindSegment(const messages::ScanMessages& scan, int id) {
+  for (const auto& [part_index, message] : scan.segments) {
     const auto found = std::ranges::find(message.segments, id, &segment_t::id);
     if (found != message.segments.end()) return &*found;
   }
@@ -32,46 +32,46 @@ void Errors::Add(const Errors& other) {
 
 Evaluation::Evaluation(const Truth* truth, int min_num_returns) : truth_(truth), min_num_returns_(min_num_returns) {}
 
-void Evaluation::Add(const messages::ScanMessages& turn) {
+void Evaluation::Add(const messages::ScanMessages& scan) {
   ++num_scans;
-  const bool is_whole = !messages::IsCut(turn.obstacles.begin()->second.scan_flags);
+  const bool is_whole = !messages::IsCut(scan.obstacles.begin()->second.scan_flags);
   if (is_whole) ++num_whole_scans;
-  std::vector<ObstacleRow> turn_rows;
-  for (const auto& [part_index, message] : turn.obstacles) {
+  std::vector<ObstacleRow> scan_rows;
+  for (const auto& [part_index, message] : scan.obstacles) {
     for (const auto& obstacle : message.obstacles) {
       ++num_obstacles;
       ++num_by_status[obstacle.status];
-      turn_rows.push_back({obstacle, "?", {}, {}});
+      scan_rows.push_back({obstacle, "?", {}, {}});
     }
   }
   if (truth_ != nullptr) {
-    const auto returns = Join(turn);
+    const auto returns = Join(scan);
     Confusion confusion;
     for (const auto& made : returns) confusion.Add(made.object_id, made.label);
-    if (is_whole) Score(turn, confusion);
-    Measure(turn, confusion, returns, turn_rows);
+    if (is_whole) Score(scan, confusion);
+    Measure(scan, confusion, returns, scan_rows);
   }
   if (is_whole || !is_table_whole_) {
     is_table_whole_ = is_whole;
-    table_utime_us = turn.obstacles.begin()->second.utime_us;
-    rows = std::move(turn_rows);
+    table_utime_us = scan.obstacles.begin()->second.utime_us;
+    rows = std::move(scan_rows);
   }
 }
 
 // By label, then time.
-std::vector<Evaluation::JoinedReturn> Evaluation::Join(const messages::ScanMessages& turn) {
+std::vector<Evaluation::JoinedReturn> Evaluation::Join(const messages::ScanMessages& scan) {
   std::vector<JoinedReturn> returns;
-  for (const auto& [part_index, scan] : turn.scans) {
-    const auto found = turn.segments.find(part_index);
-    if (found == turn.segments.end() || found->second.num_cells != scan.num_cells) continue;
+  for (const auto& [part_index, part] : scan.scans) {
+    const auto found = scan.segments.find(part_index);
+    if (found == scan.segments.end() || found->second.num_cells != part.num_cells) continue;
     std::size_t cell = 0;
-    for (std::size_t column = 0; column < static_cast<std::size_t>(scan.num_columns); ++column) {
-      for (std::size_t ring = 0; ring < static_cast<std::size_t>(scan.num_rings); ++ring) {
-        for (int k = 0; k < scan.num_returns; ++k, ++cell) {
-          if (scan.range[cell] == 0) continue;
+    for (std::size_t column = 0; column < static_cast<std::size_t>(part.num_columns); ++column) {
+      for (std::size_t ring = 0; ring < static_cast<std::size_t>(part.num_rings); ++ring) {
+        for (int k = 0; k < part.num_returns; ++k, ++cell) {
+          if (part.range[cell] == 0) continue;
           ++num_returns;
-          const std::int64_t time_ns = std::int64_t{scan.time_ns[column]} + scan.time_offset_ns[ring];
-          const auto* truth = truth_->Find(scan.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
+          const std::int64_t time_ns = std::int64_t{part.time_ns[column]} + part.time_offset_ns[ring];
+          const auto* truth = truth_->Find(part.utime_us + ToMicroseconds(time_ns), static_cast<int>(ring), k);
           if (truth == nullptr) continue;
           ++num_joined;
           returns.push_back({found->second.label[cell], time_ns, truth->object_id, truth->p_lidar_m});
@@ -83,7 +83,7 @@ std::vector<Evaluation::JoinedReturn> Evaluation::Join(const messages::ScanMessa
   return returns;
 }
 
-void Evaluation::Score(const messages::ScanMessages& turn, const Confusion& confusion) {
+void Evaluation::Score(const messages::ScanMessages& scan, const Confusion& confusion) {
   const auto scores = confusion.Scores();
   Summary ious;
   for (const auto& score : scores) {
@@ -95,11 +95,11 @@ void Evaluation::Score(const messages::ScanMessages& turn, const Confusion& conf
     ++kind.num_present;
     if (score.has_own_segment) ++kind.num_found;
   }
-  if (ious.count() > 0) turn_iou.Add(ious.Mean());
+  if (ious.count() > 0) scan_iou.Add(ious.Mean());
   const auto clutter = confusion.ClutterSegments();
   clutter_segments.Add(static_cast<double>(clutter.size()));
-  const auto is_sure = [&turn](int label) {
-    const auto* segment = FindSegment(turn, label);
+  const auto is_sure = [&scan](int label) {
+    const auto* segment = FindSegment(scan, label);
     return segment != nullptr && segment->confidence == segment_t::CONFIDENCE_SURE;
   };
   sure_clutter_segments.Add(static_cast<double>(std::ranges::count_if(clutter, is_sure)));
@@ -117,19 +117,19 @@ const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
   return *outlines_;
 }
 
-void Evaluation::Measure(const messages::ScanMessages& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
-                         std::vector<ObstacleRow>& turn_rows) {
+void Evaluation::Measure(const messages::ScanMessages& scan, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+                         std::vector<ObstacleRow>& scan_rows) {
   std::size_t row_index = 0;
-  for (const auto& [part_index, message] : turn.obstacles) {
+  for (const auto& [part_index, message] : scan.obstacles) {
     const bool has_datum =
         std::isfinite(message.datum_latitude_deg) && std::isfinite(message.datum_longitude_deg) && std::isfinite(message.datum_ellipsoid_height_m);
     for (const auto& obstacle : message.obstacles) {
-      ObstacleRow& row = turn_rows[row_index++];
+      ObstacleRow& row = scan_rows[row_index++];
       const int object_id = confusion.MajorityObject(obstacle.id);
       const auto object = truth_->objects().find(object_id);
       if (object != truth_->objects().end()) row.object_name = object->second.name;
       if (obstacle.status == obstacle_t::STATUS_OK && has_datum) {
-        MeasureObstacle(message, FindSegment(turn, obstacle.id), returns, object_id, row);
+        MeasureObstacle(message, FindSegment(scan, obstacle.id), returns, object_id, row);
         if (T_vessel_lidar_ && object_id > 0) MeasureSeen(message, returns, object_id, obstacle);
       }
     }
@@ -200,7 +200,7 @@ void Evaluation::MeasureSeen(const obstacles_t& message, const std::vector<Joine
   if (!center_m) return;
   const auto object = truth_->objects().find(object_id);
   SeenObstacle& result = seen.emplace_back();
-  result.turn_utime_us = message.utime_us;
+  result.scan_utime_us = message.utime_us;
   result.object_id = object_id;
   result.is_moving = object != truth_->objects().end() && object->second.is_moving;
   result.is_sure = obstacle.confidence == obstacle_t::CONFIDENCE_SURE;

@@ -1,4 +1,4 @@
-// Holds a log against the truth, turn by turn.
+// Holds a log against the truth, scan by scan.
 #pragma once
 
 #include <array>
@@ -36,54 +36,54 @@ struct ObstacleRow {
 };
 
 struct KindScore {
-  std::int64_t num_present = 0;  // object-turns with enough returns
+  std::int64_t num_present = 0;  // object-scans with enough returns
   std::int64_t num_found = 0;    // of these, with a segment of their own
-  Summary iou;                   // of all object-turns with a return
+  Summary iou;                   // of all object-scans with a return
 };
 
 class Evaluation {
  public:
   /// @param truth           may be nullptr; outlives this
-  /// @param min_num_returns an object with fewer in a turn does not count for recall
+  /// @param min_num_returns an object with fewer in a scan does not count for recall
   Evaluation(const Truth* truth, int min_num_returns);
 
   /// Where the lidar is on the boat. Without it, or without truth, `seen` stays empty.
   void SetMounting(const Eigen::Isometry3d& T_vessel_lidar) { T_vessel_lidar_ = T_vessel_lidar; }
 
-  void Add(const messages::ScanMessages& turn);
+  void Add(const messages::ScanMessages& scan);
   void Add(const pose_t& pose);
 
   std::int64_t num_scans = 0;
   std::int64_t num_whole_scans = 0;
   std::int64_t num_obstacles = 0;
   std::map<int, std::int64_t> num_by_status;
-  std::optional<std::int64_t> table_utime_us;  // of the turn in `rows`: the last whole one, or the last
+  std::optional<std::int64_t> table_utime_us;  // of the scan in `rows`: the last whole one, or the last
   std::vector<ObstacleRow> rows;
 
   // With truth:
   std::map<std::pair<std::string, bool>, Errors> errors_by_kind;  // kind, is_moving
   std::map<std::string, KindScore> scores_by_kind;
-  Summary turn_iou;                    // mean over the objects of a whole turn
-  Summary clutter_segments;            // per whole turn
+  Summary scan_iou;                    // mean over the objects of a whole scan
+  Summary clutter_segments;            // per whole scan
   Summary sure_clutter_segments;       // of these, those that are sure
-  Summary segments;                    // per whole turn
-  std::int64_t num_returns = 0;        // of turns whose scan and segments are in the log
+  Summary segments;                    // per whole scan
+  std::int64_t num_returns = 0;        // of scans whose scan and segments are in the log
   std::int64_t num_joined = 0;         // of these, found in the truth
-  std::vector<SeenObstacle> seen;      // of status ok; in the order of their turns
+  std::vector<SeenObstacle> seen;      // of status ok; in the order of their scans
   std::array<Summary, 4> pose_errors;  // horizontal m, heading deg, roll deg, pitch deg
 
  private:
   struct JoinedReturn {
     int label;
-    std::int64_t time_ns;  // since utime_us of the turn
+    std::int64_t time_ns;  // since utime_us of the scan
     int object_id;
     Eigen::Vector3f p_lidar_m;  // true
   };
 
-  std::vector<JoinedReturn> Join(const messages::ScanMessages& turn);
-  void Score(const messages::ScanMessages& turn, const Confusion& confusion);
-  void Measure(const messages::ScanMessages& turn, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
-               std::vector<ObstacleRow>& turn_rows);
+  std::vector<JoinedReturn> Join(const messages::ScanMessages& scan);
+  void Score(const messages::ScanMessages& scan, const Confusion& confusion);
+  void Measure(const messages::ScanMessages& scan, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+               std::vector<ObstacleRow>& scan_rows);
   void MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
                        ObstacleRow& row);
   void MeasureSeen(const obstacles_t& message, const std::vector<JoinedReturn>& returns, int object_id, const obstacle_t& obstacle);

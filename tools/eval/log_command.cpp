@@ -78,7 +78,7 @@ int EvaluateLog(const LogOptions& options) {
   }
   collector.Finish();
   if (evaluation.num_scans == 0) {
-    std::cerr << options.log_file << ": no turn of OBSTACLES\n";
+    std::cerr << options.log_file << ": no scan of OBSTACLES\n";
     return EXIT_FAILURE;
   }
 
@@ -90,7 +90,7 @@ int EvaluateLog(const LogOptions& options) {
   }
   PrintMachine(std::cout, machine);
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";
-  if (num_incomplete > 0) std::cout << num_incomplete << " turns lack a part of OBSTACLES\n";
+  if (num_incomplete > 0) std::cout << num_incomplete << " scans lack a part of OBSTACLES\n";
   if (reader.num_damaged() > 0) std::cout << reader.num_damaged() << " stretches of the log are damaged\n";
   return EXIT_SUCCESS;
 }

@@ -16,8 +16,6 @@ void Machine::Add(const health_t& message) {
   process.reason = message.reason;
   process.cpu_fraction.Add(message.cpu_fraction);
   process.resident_bytes = message.resident_bytes;
-  process.counters.clear();
-  for (const auto& counter : message.counters) process.counters[counter.name] = counter.count;
   for (const auto& channel : message.channels) {
     auto& entry = traffic[{message.process, {channel.is_input == 0, channel.channel}}];
     entry.num_messages = channel.num_messages;

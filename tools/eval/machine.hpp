@@ -28,7 +28,6 @@ struct ProcessState {
   std::string reason;
   Summary cpu_fraction;
   std::int64_t resident_bytes = 0;
-  std::map<std::string, std::int64_t> counters;
 };
 
 /// Data packets over all runs in the log: counts begin anew at a start mark.

@@ -45,7 +45,7 @@ Options ParseOptions(int argc, char** argv) {
                  "folder with the boat.txtpb of the simulation, where the log was computed with another mounting of the lidar")
       ->check(CLI::ExistingDirectory)
       ->needs(truth);
-  app.add_option("--min-returns", log.min_num_returns, "an object with fewer returns in a turn does not count for recall")
+  app.add_option("--min-returns", log.min_num_returns, "an object with fewer returns in a scan does not count for recall")
       ->check(CLI::Range(1, 1'000'000))
       ->needs(in)
       ->capture_default_str();
@@ -54,7 +54,7 @@ Options ParseOptions(int argc, char** argv) {
       app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
   const auto needs_config = [config](CLI::Option* option) { return option->needs(config); };
   needs_config(app.add_option("--scenes", comparison.scenes, "all, or names of scenes or .txtpb files"))->delimiter(',');
-  needs_config(app.add_option("--points", comparison.points, "turns out of files: .pcd, or .bin (KITTI) with a .label beside it"))
+  needs_config(app.add_option("--points", comparison.points, "scans out of files: .pcd, or .bin (KITTI) with a .label beside it"))
       ->check(CLI::ExistingFile);
   needs_config(app.add_option("--captures", comparison.captures,
                               "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));

@@ -19,7 +19,7 @@ using segmenter::ToLabel;
 constexpr double kPaperFieldOfViewRad = DegToRad(90.0);
 
 // The steps of the segmenter once more, for their times and the number of components between them.
-void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params, Labelling& labelling_of_turn) {
+void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params, Labelling& labelling_of_scan) {
   StageClock clock;
   const auto classified = segmenter::ClassifyReturns(scan, params.filter);
   const auto& returns = classified.returns;
@@ -31,7 +31,7 @@ void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params,
     method.Group(scan, returns);
     numbering.Number(method.pieces(), method.group_of_piece(), params.min_segment_points, kMaxSegments);
     clock.End("cluster");
-    labelling_of_turn.num_components = method.pieces().count;
+    labelling_of_scan.num_components = method.pieces().count;
   } else {
     segmenter::Groups components;
     const auto& labelling = params.labelling;
@@ -53,11 +53,11 @@ void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params,
     if (params.component_clustering) clusters = segmenter::ClusterComponents(segmenter::Centroids(returns, components), params.clustering);
     numbering.Number(components, clusters, params.min_segment_points, kMaxSegments);
     clock.End("cluster");
-    labelling_of_turn.num_components = components.count;
+    labelling_of_scan.num_components = components.count;
   }
   segmenter::Measure(scan, returns, numbering.groups(), params.filter.T_vessel_lidar.linear().row(2));
   clock.End("measure");
-  labelling_of_turn.stages = clock.stages();
+  labelling_of_scan.stages = clock.stages();
 }
 
 bool IsSure(const segmenter::Segment& segment) { return segment.confidence == segmenter::Confidence::kSure; }

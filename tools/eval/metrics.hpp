@@ -7,7 +7,7 @@
 
 namespace lookout::eval {
 
-/// Which returns of a turn belong to which true object and to which segment.
+/// Which returns of a scan belong to which true object and to which segment.
 class Confusion {
  public:
   /// @param object_id  true object; 0 and below are none

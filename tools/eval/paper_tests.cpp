@@ -1,5 +1,7 @@
 #include "tools/eval/paper_tests.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -24,7 +26,7 @@ constexpr double kTest1BinM = 1.0;
 // Farther off the kayak gives so few returns that it is lost now and then for another reason than the shore; in print the greatest is 24.67 m.
 constexpr double kTest1ReachM = 30.0;
 
-// Number of turns and sum of IoU, by distance in steps of kTest1BinM.
+// Number of scans and sum of IoU, by distance in steps of kTest1BinM.
 using Bins = std::map<int, std::pair<int, double>>;
 
 void AddTo(Bins& bins, const std::vector<ShoreGap>& gaps) {
@@ -33,12 +35,6 @@ void AddTo(Bins& bins, const std::vector<ShoreGap>& gaps) {
     ++bin.first;
     bin.second += gap.iou;
   }
-}
-
-Bins BinsOf(const std::vector<ShoreGap>& gaps) {
-  Bins bins;
-  AddTo(bins, gaps);
-  return bins;
 }
 
 // Looked for by kind: what else a scene holds is none of the test's business.
@@ -54,29 +50,25 @@ std::int32_t TheObject(const LabelledScan& truth, const std::string& kind) {
   return found;
 }
 
-// What Test 1 needs of one turn: the kayak's returns, and its distance from all else.
-struct KayakTurn {
+// Test 1: the kayak, and how far its returns are from the nearest of any other object; nullopt where one of them is not seen.
+struct KayakInScan {
   std::int32_t id = 0;
-  double distance_m = std::numeric_limits<double>::infinity();
+  double distance_m = 0.0;
 };
 
-std::optional<KayakTurn> FindKayak(const LabelledScan& truth, const segmenter::ReturnFilter& filter) {
-  KayakTurn kayak;
-  kayak.id = TheObject(truth, "kayak");
+std::optional<KayakInScan> FindKayak(const LabelledScan& truth, const segmenter::ReturnFilter& filter) {
+  const auto id = TheObject(truth, "kayak");
   std::vector<segmenter::Point> of_kayak;
   std::vector<segmenter::Point> of_others;
   for (const auto& one : segmenter::ClassifyReturns(truth.scan, filter).returns) {
     const auto object = truth.object[static_cast<std::size_t>(one.cell)];
-    if (object == kayak.id) of_kayak.push_back(one.point);
-    if (object > 0 && object != kayak.id) of_others.push_back(one.point);
+    if (object > 0) (object == id ? of_kayak : of_others).push_back(one.point);
   }
   double least_m2 = std::numeric_limits<double>::infinity();
   for (const auto& one : of_kayak) {
     for (const auto& other : of_others) least_m2 = std::min(least_m2, segmenter::SquaredDistance(one, other));
   }
-  if (!std::isfinite(least_m2)) return std::nullopt;
-  kayak.distance_m = std::sqrt(least_m2);
-  return kayak;
+  return std::isfinite(least_m2) ? std::optional(KayakInScan{id, std::sqrt(least_m2)}) : std::nullopt;
 }
 
 double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling) {
@@ -89,11 +81,9 @@ double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling
 
 // "4.00 m on (median over 18 seeds; in 2 more from no distance on)".
 std::string FoundFrom(const Summary& own_from_m, int num_never) {
-  const auto num_found = static_cast<int>(own_from_m.count());
-  if (num_found == 0) return "no distance on (" + std::to_string(num_never) + " seeds)";
-  std::string text = Number(own_from_m.Median(), 2) + " m on (median over " + std::to_string(num_found) + " seeds";
-  if (num_never > 0) text += "; in " + std::to_string(num_never) + " more from no distance on";
-  return text + ")";
+  if (own_from_m.count() == 0) return fmt::format("no distance on ({} seeds)", num_never);
+  return fmt::format("{:.2f} m on (median over {} seeds{})", own_from_m.Median(), own_from_m.count(),
+                     num_never > 0 ? fmt::format("; in {} more from no distance on", num_never) : "");
 }
 
 Curve RunTest1(RunPlan plan, const Boat& boat, std::FILE* progress) {
@@ -155,19 +145,19 @@ struct ClusterTest {
   void (*set)(segmenter::ClusteringParams&, double) = nullptr;
 };
 
-// Sums over turns at one value of the threshold.
+// Sums over scans at one value of the threshold.
 struct PartsAt {
   double value = 0.0;
   ObjectParts sum{};
-  int num_turns_in_one = 0;  // all of the object that is in a cluster is in one
-  int num_turns_one_large = 0;
+  int num_scans_in_one = 0;  // all of the object that is in a cluster is in one
+  int num_scans_one_large = 0;
 };
 
 // "e3 = 3.0 m".
 std::string ThresholdText(const ClusterTest& test, double value) { return test.name + " = " + Number(value, 1) + " " + test.unit; }
 
 // "from e3 = 3.0 m on", "up to e2 = 15.0 deg", "at no value", "at every value".
-std::string WhereInAllTurns(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_scans, const ClusterTest& test) {
+std::string WhereInAllScans(const std::vector<PartsAt>& parts, int PartsAt::*count, int num_scans, const ClusterTest& test) {
   const auto holds = [&](const PartsAt& at) { return at.*count == num_scans; };
   if (std::ranges::all_of(parts, holds)) return "at every value";
   if (test.is_joined_above) {
@@ -189,10 +179,10 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
     for (auto& at : parts) {
       auto params = PaperParams(boat.segmenter, kPaperFullColumns);
       test.set(params.clustering, at.value);
-      const auto of_turn = PartsOf(object, truth, SegmenterMethod("", params).Segment(truth.scan));
-      at.sum.Add(of_turn);
-      at.num_turns_in_one += of_turn.num_segments == 1 ? 1 : 0;
-      at.num_turns_one_large += of_turn.num_large == 1 ? 1 : 0;
+      const auto of_scan = PartsOf(object, truth, SegmenterMethod("", params).Segment(truth.scan));
+      at.sum.Add(of_scan);
+      at.num_scans_in_one += of_scan.num_segments == 1 ? 1 : 0;
+      at.num_scans_one_large += of_scan.num_large == 1 ? 1 : 0;
     }
   });
   if (num_scans == 0) return curve;
@@ -203,9 +193,9 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
     large.points.emplace_back(at.value, static_cast<double>(at.sum.num_large) / num_scans);
   }
   curve.lines = {std::move(all), std::move(large)};
-  const auto where = [&](int PartsAt::*count) { return WhereInAllTurns(parts, count, num_scans, test); };
-  curve.note += " Here, in all of " + std::to_string(num_scans) + " turns: one cluster " + where(&PartsAt::num_turns_in_one) +
-                "; one with a tenth of it or more " + where(&PartsAt::num_turns_one_large) + ".";
+  const auto where = [&](int PartsAt::*count) { return WhereInAllScans(parts, count, num_scans, test); };
+  curve.note += " Here, in all of " + std::to_string(num_scans) + " scans: one cluster " + where(&PartsAt::num_scans_in_one) +
+                "; one with a tenth of it or more " + where(&PartsAt::num_scans_one_large) + ".";
   const auto in_print = std::ranges::find(parts, test.value_in_print, &PartsAt::value);
   if (in_print != parts.end() && in_print->sum.num_returns > 0) {
     const double share = static_cast<double>(in_print->sum.num_in_largest) / static_cast<double>(in_print->sum.num_returns);
@@ -224,7 +214,8 @@ std::vector<double> Steps(double from, double step, int count) {
 }  // namespace
 
 std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps) {
-  const auto bins = BinsOf(gaps);
+  Bins bins;
+  AddTo(bins, gaps);
   std::optional<double> from_m;
   for (auto bin = bins.rbegin(); bin != bins.rend(); ++bin) {
     if (bin->first * kTest1BinM >= kTest1ReachM) continue;
@@ -269,7 +260,7 @@ Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progre
                            std::round(RadToDeg(in_print.e2_angle_rad)),
                            false,
                            [](segmenter::ClusteringParams& params, double deg) { params.e2_angle_rad = DegToRad(deg); }};
-    return CountClusters({"Test 2: a shore at 20 m", "e2, degrees", "clusters of the shore a turn", {}, "One shore should be one object."}, test,
+    return CountClusters({"Test 2: a shore at 20 m", "e2, degrees", "clusters of the shore a scan", {}, "One shore should be one object."}, test,
                          plan, boat, progress);
   }
   plan.scenes = {"motorboat_6m"};
@@ -278,7 +269,7 @@ Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progre
         params.e3_distance_m = m;
       }};
   return CountClusters(
-      {"Test 3: a motor boat of 6 m", "e3, m", "clusters of the boat a turn", {}, "One boat should be one object; in print it is from 3 m on."}, test,
+      {"Test 3: a motor boat of 6 m", "e3, m", "clusters of the boat a scan", {}, "One boat should be one object; in print it is from 3 m on."}, test,
       plan, boat, progress);
 }
 

@@ -36,13 +36,13 @@ struct ObjectParts {
 /// Precondition: labelling.label is as long as the scan has cells.
 ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labelling& labelling);
 
-/// Of Test 1: a turn in which the kayak and the shore are seen.
+/// Of Test 1: a scan in which the kayak and the shore are seen.
 struct ShoreGap {
   double distance_m = 0.0;  // from the kayak's returns to the nearest of any other object
   double iou = 0.0;         // of the kayak
 };
 
-/// @return the least distance from which on the kayak is its own segment: in steps of a metre up to 30 m, those with turns, its mean IoU is kFoundIou
+/// @return the least distance from which on the kayak is its own segment: in steps of a metre up to 30 m, those with scans, its mean IoU is kFoundIou
 /// or
 ///         more; nullopt when it is not even at the farthest
 std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps);

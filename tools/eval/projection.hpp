@@ -1,4 +1,4 @@
-// Table II of the paper: what its image of a turn keeps, and how far it moves it.
+// Table II of the paper: what its image of a scan keeps, and how far it moves it.
 #pragma once
 
 #include "services/segmenter/core/segmenter.hpp"
@@ -7,11 +7,11 @@
 
 namespace lookout::eval {
 
-/// Sums over turns, for each width of the paper's image.
+/// Sums over scans, for each width of the paper's image.
 ///
-/// Ground points are the returns that keep their pixel, out of those that the boat's filter lets through; in the paper's words, for its turns are
+/// Ground points are the returns that keep their pixel, out of those that the boat's filter lets through; in the paper's words, for its scans are
 /// mostly shore. The point of a pixel lies at the range and ring of its return, in the middle of its column; its distance to the nearest return
-/// of the turn is without sign. True positives: of the returns of objects that keep their pixel, those that the paper's method puts into
+/// of the scan is without sign. True positives: of the returns of objects that keep their pixel, those that the paper's method puts into
 /// a segment that belongs to their object (scoring.hpp).
 class ProjectionTable {
  public:
@@ -20,7 +20,7 @@ class ProjectionTable {
 
   void Add(const LabelledScan& truth);
 
-  /// By width; empty without turns.
+  /// By width; empty without scans.
   std::vector<Results::Projection> Rows() const;
 
  private:

@@ -1,9 +1,11 @@
 #include "tools/eval/render.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <deque>
 #include <stdexcept>
+#include <utility>
 
 #include "common/bus/channels.hpp"
 #include "common/messages/checks.hpp"
@@ -42,12 +44,12 @@ std::vector<std::int32_t> TakeObjects(const segmenter::Scan& scan, std::deque<Tr
     for (std::size_t i = 0; i < column_cells; ++i) num_left += scan.columns.range[first + i] != 0 ? 1 : 0;
     std::vector<bool> is_taken(column_cells, false);
     for (; num_left > 0; --num_left) {
-      if (truths.empty()) throw std::logic_error("a simulated turn has returns without truth");
+      if (truths.empty()) throw std::logic_error("a simulated scan has returns without truth");
       const Truth truth = truths.front();
       truths.pop_front();
       const std::size_t i = static_cast<std::size_t>(truth.ring) * num_returns + static_cast<std::size_t>(truth.return_index);
       if (i >= column_cells || scan.columns.range[first + i] == 0 || is_taken[i]) {
-        throw std::logic_error("the truth of a simulated turn does not fit its returns");
+        throw std::logic_error("the truth of a simulated scan does not fit its returns");
       }
       is_taken[i] = true;
       object[first + i] = truth.object_id;
@@ -62,14 +64,15 @@ Boat LoadBoat(const std::filesystem::path& config_folder) {
   return {config_folder, config::LoadBoat(config_folder), vlp16::LoadParams(config_folder), segmenter::LoadParams(config_folder)};
 }
 
-segmenter::Scan ScanOfTurn(const vlp16::Scan& turn, bool use_vertical_origin_offsets) {
-  const auto parts = vlp16::ToScanMessages(turn, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes);
-  for (const auto& part : parts) {
-    if (messages::FaultOf(part, bus::kMaxMessageBytes)) throw std::logic_error("the segmenter refuses a scan of the decoder");
-  }
-  auto scan = segmenter::ToScan(parts);
-  if (!scan) throw std::logic_error("a scan of the decoder is not complete");
-  return std::move(*scan);
+std::optional<segmenter::Scan> ScanOfMessages(const std::vector<lidar_scan_t>& parts) {
+  if (std::ranges::any_of(parts, [](const auto& part) { return messages::FaultOf(part, bus::kMaxMessageBytes).has_value(); })) return std::nullopt;
+  return segmenter::ToScan(parts);
+}
+
+segmenter::Scan ToSegmenterScan(const vlp16::Scan& scan, bool use_vertical_origin_offsets) {
+  auto received = ScanOfMessages(vlp16::ToScanMessages(scan, 0, use_vertical_origin_offsets, bus::kMaxMessageBytes));
+  if (!received) throw std::logic_error("the segmenter refuses a scan of the decoder");
+  return std::move(*received);
 }
 
 void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, double seconds, const ScanHandler& on_scan) {
@@ -79,10 +82,10 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
   std::deque<Truth> truths;
   vlp16::Decoder decoder(
       boat.lidar.decoder,
-      [&](const vlp16::Scan& turn) {
-        labelled.scan = ScanOfTurn(turn, boat.lidar.use_vertical_origin_offsets);
+      [&](const vlp16::Scan& scan) {
+        labelled.scan = ToSegmenterScan(scan, boat.lidar.use_vertical_origin_offsets);
         labelled.object = TakeObjects(labelled.scan, truths);
-        if (!turn.is_partial_start && !turn.is_partial_end) on_scan(labelled);
+        if (!scan.is_partial_start && !scan.is_partial_end) on_scan(labelled);
       },
       [](const vlp16::SentenceOfLidar&) {});
 
@@ -97,7 +100,7 @@ void RenderScans(const sim::Scene& scene, const Boat& boat, std::uint64_t seed, 
     }
   }
   decoder.Flush();
-  if (!truths.empty()) throw std::logic_error("the truth of a simulated turn does not fit its returns");
+  if (!truths.empty()) throw std::logic_error("the truth of a simulated scan does not fit its returns");
 }
 
 }  // namespace lookout::eval

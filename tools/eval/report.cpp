@@ -36,7 +36,7 @@ void AddErrors(Table& table, const std::string& name, const Errors& errors) {
 }  // namespace
 
 void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_truth) {
-  out << "obstacles of the last whole turn";
+  out << "obstacles of the last whole scan";
   if (evaluation.table_utime_us) out << " (utime_us " << *evaluation.table_utime_us << ")";
   out << '\n';
   std::vector<std::string> header{"id",      "range_m", "bearing_deg", "latitude_deg", "longitude_deg", "length_m",
@@ -65,13 +65,13 @@ void PrintObstacles(std::ostream& out, const Evaluation& evaluation, bool has_tr
     table.Add(cells);
   }
   table.Print(out);
-  out << evaluation.num_scans << " turns, " << evaluation.num_whole_scans << " of them whole; " << evaluation.num_obstacles << " obstacles";
+  out << evaluation.num_scans << " scans, " << evaluation.num_whole_scans << " of them whole; " << evaluation.num_obstacles << " obstacles";
   for (const auto& [status, count] : evaluation.num_by_status) out << ", " << count << ' ' << ShownCode(words::kObstacleStatus, status);
   out << "\n\n";
 }
 
 void PrintAccuracy(std::ostream& out, const Evaluation& evaluation) {
-  out << "distance to the true outline, metres, over all turns (edge: to the line; outside: 0 inside of it)\n";
+  out << "distance to the true outline, metres, over all scans (edge: to the line; outside: 0 inside of it)\n";
   Table table({"objects", "vertices", "edge_median", "edge_95", "edge_max", "outside_median", "outside_95", "outside_max", "positions",
                "position_median", "position_95", "position_max"});
   Errors fixed;
@@ -130,14 +130,14 @@ void PrintSeen(std::ostream& out, const Evaluation& evaluation) {
 }
 
 void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_num_returns) {
-  out << "segmentation over " << evaluation.turn_iou.count() << " whole turns";
+  out << "segmentation over " << evaluation.scan_iou.count() << " whole scans";
   if (evaluation.num_returns > 0) {
     out << "; " << evaluation.num_returns << " returns, "
         << Percent(static_cast<double>(evaluation.num_joined) / static_cast<double>(evaluation.num_returns)) << " % found in the truth";
   }
   out << '\n';
-  if (evaluation.turn_iou.count() > 0) {
-    out << "mIoU " << Percent(evaluation.turn_iou.Mean()) << " %, segments per turn " << Number(evaluation.segments.Mean(), 2) << ", of pure clutter "
+  if (evaluation.scan_iou.count() > 0) {
+    out << "mIoU " << Percent(evaluation.scan_iou.Mean()) << " %, segments per scan " << Number(evaluation.segments.Mean(), 2) << ", of pure clutter "
         << Number(evaluation.clutter_segments.Mean(), 2) << ", of these sure " << Number(evaluation.sure_clutter_segments.Mean(), 2) << '\n';
   }
   out << "recall: objects with " << min_num_returns << " returns or more that have a segment of their own\n";
@@ -155,7 +155,7 @@ void PrintMachine(std::ostream& out, const Machine& machine) {
   if (machine.last_clock) {
     const auto packets = machine.Packets();
     out << "lidar packets: " << packets.num_packets << ", lost " << packets.num_lost << ", duplicate " << packets.num_duplicate << ", reordered "
-        << packets.num_reordered << "; turns stamped by the sensor's clock " << machine.num_scans_by_sensor << ", by the host's "
+        << packets.num_reordered << "; scans stamped by the sensor's clock " << machine.num_scans_by_sensor << ", by the host's "
         << machine.num_scans_by_host << '\n';
   }
   if (machine.processes.empty()) {

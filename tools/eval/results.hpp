@@ -14,18 +14,18 @@
 
 namespace lookout::eval {
 
-/// Sums over turns of one method at one operating point: which of its segments count. Nothing in here is of another. Figures are made of them by the
-/// functions below. All are additive: turns of one scene, scenes of one run.
+/// Sums over scans of one method at one operating point: which of its segments count. Nothing in here is of another. Figures are made of them by the
+/// functions below. All are additive: scans of one scene, scenes of one run.
 struct Score {
   std::int64_t num_scans = 0;
   std::int64_t num_scans_with_object = 0;  // with a return of an object; over open water there is none
   double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
   std::int64_t num_scans_with_water_object = 0;
   double sum_water_iou = 0.0;                                          // the same over objects in the water alone
-  std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-turns, sum of IoU
+  std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-scans, sum of IoU
   static constexpr double kRangeBinM = 10.0;
-  std::map<int, std::pair<std::int64_t, std::int64_t>> recall_by_range;  // bin of nearest return: object-turns, of these IoU >= 0.5
-  std::map<int, std::pair<std::int64_t, double>> iou_by_range;           // bin: object-turns, sum of IoU
+  std::map<int, std::pair<std::int64_t, std::int64_t>> recall_by_range;  // bin of nearest return: object-scans, of these IoU >= 0.5
+  std::map<int, std::pair<std::int64_t, double>> iou_by_range;           // bin: object-scans, sum of IoU
   /// Objects whose nearest return is nearer than this: where a small boat has to see a small thing. At 25 m the rings of a VLP-16 are 0.87 m apart
   /// (2 degrees), so that a buoy of half a metre gives one to three returns.
   static constexpr double kNearM = 25.0;
@@ -39,7 +39,7 @@ struct Score {
   std::int64_t num_object_scans = 0;
   /// Objects with at least so many returns in a scan: fewer may be an accident.
   static constexpr std::int64_t kMinReturnsOfThing = 5;
-  std::int64_t num_things = 0;                 // object-turns with kMinReturnsOfThing or more
+  std::int64_t num_things = 0;                 // object-scans with kMinReturnsOfThing or more
   std::int64_t num_things_with_segment = 0;    // of these: more than half of the returns of some segment are its
   std::int64_t num_over_segmented = 0;         // objects of which two or more segments hold a tenth each
   std::int64_t num_under_segmented = 0;        // segments that hold a tenth each of two or more objects
@@ -47,25 +47,25 @@ struct Score {
   std::int64_t num_labelled_returns = 0;       // of these, in a segment that belongs (by majority) to their object: the paper's true positives
   std::int64_t num_not_scored = 0;             // returns that the method was told not to look at
   std::int64_t num_scans_with_components = 0;  // of methods that say how many components they had before they clustered them
-  std::int64_t num_components = 0;             // of these turns
-  std::vector<double> time_ms;                 // of each turn
+  std::int64_t num_components = 0;             // of these scans
+  std::vector<double> time_ms;                 // of each scan
 
   void Add(const Score& other);
 };
 
-// 0 to 1; NaN without turns in which there was an object.
+// 0 to 1; NaN without scans in which there was an object.
 double MeanIou(const Score& score);
 double MeanWaterIou(const Score& score);
 
-double FalseSegmentsPerScan(const Score& score);  // NaN without turns, and so below
-double ThingsWithSegment(const Score& score);     // share of the object-turns with kMinReturnsOfThing or more
+double FalseSegmentsPerScan(const Score& score);  // NaN without scans, and so below
+double ThingsWithSegment(const Score& score);     // share of the object-scans with kMinReturnsOfThing or more
 double SegmentsPerScan(const Score& score);
-double OverSegmentedShare(const Score& score);   // of object-turns
+double OverSegmentedShare(const Score& score);   // of object-scans
 double UnderSegmentedShare(const Score& score);  // of segments
 double TruePositiveRatio(const Score& score);    // of returns of objects
 double ComponentsPerScan(const Score& score);    // before clustering; NaN for a method that has none
 
-/// One turn, kept because it went worst: drawn from above with truth and prediction side by side.
+/// One scan, kept because it went worst: drawn from above with truth and prediction side by side.
 struct WorstScan {
   std::string scene;
   std::uint64_t seed = 0;
@@ -85,7 +85,7 @@ inline constexpr std::string_view kSureOnly = " (sure only)";
 struct MethodResult {
   std::string method;
   std::map<std::string, Score> by_scene;
-  std::map<std::string, std::vector<double>> stage_ms;  // by stage, of each turn
+  std::map<std::string, std::vector<double>> stage_ms;  // by stage, of each scan
   std::vector<WorstScan> worst;                         // of the whole run, worst first; few
 };
 
@@ -93,7 +93,7 @@ struct MethodResult {
 bool IsPeer(const MethodResult& method);
 bool IsTunedPeer(const MethodResult& method);
 
-/// It looks at a part of each turn alone: its figures are not those of the same task as others'.
+/// It looks at a part of each scan alone: its figures are not those of the same task as others'.
 bool HasPartialView(const MethodResult& method);
 
 /// A figure of one score; NaN = not known.
@@ -133,8 +133,8 @@ struct Results {
   struct Projection {
     int image_columns = 0;
     double true_positive_ratio = 0.0;
-    double num_ground_points = 0.0;  // returns that the image keeps, per turn
-    double num_points = 0.0;         // returns of the turn
+    double num_ground_points = 0.0;  // returns that the image keeps, per scan
+    double num_points = 0.0;         // returns of the scan
     double nearest_mean_m = 0.0;     // from a pixel's point to the nearest raw return
     double nearest_sd_m = 0.0;
   };

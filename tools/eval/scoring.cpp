@@ -9,7 +9,7 @@
 namespace lookout::eval {
 namespace {
 
-struct ObjectTurn {
+struct ObjectInScan {
   std::int32_t id = 0;
   std::int64_t num_returns = 0;
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -18,7 +18,7 @@ struct ObjectTurn {
   int num_parts = 0;         // segments with a tenth of it or more
 };
 
-struct SegmentTurn {
+struct SegmentInScan {
   std::int64_t num_returns = 0;
   std::int64_t num_own_vessel = 0;
   std::int64_t num_none = 0;
@@ -31,15 +31,15 @@ struct SegmentTurn {
 using Pair = std::pair<std::size_t, std::size_t>;
 
 struct Matches {
-  std::vector<ObjectTurn> objects;    // those with a return, by id
-  std::vector<SegmentTurn> segments;  // by id - 1; ids that do not occur have no returns
-  std::vector<Pair> pairs;            // sorted
+  std::vector<ObjectInScan> objects;    // those with a return, by id
+  std::vector<SegmentInScan> segments;  // by id - 1; ids that do not occur have no returns
+  std::vector<Pair> pairs;              // sorted
 };
 
 Matches Count(const LabelledScan& truth, const std::vector<std::int32_t>& label) {
   const auto& range = truth.scan.columns.range;
   if (label.size() != range.size() || truth.object.size() != range.size()) throw std::logic_error("ScoreScan: labels and cells do not agree");
-  std::map<std::int32_t, ObjectTurn> by_id;
+  std::map<std::int32_t, ObjectInScan> by_id;
   std::int32_t max_label = 0;
   for (std::size_t cell = 0; cell < range.size(); ++cell) {
     if (range[cell] == 0 || label[cell] == kNotScored) continue;
@@ -50,40 +50,40 @@ Matches Count(const LabelledScan& truth, const std::vector<std::int32_t>& label)
     ++object.num_returns;
     object.nearest_m = std::min(object.nearest_m, range[cell] * truth.scan.head.range_unit_m);
   }
-  Matches turn;
+  Matches scan;
   std::map<std::int32_t, std::size_t> index_of;
   for (const auto& [id, object] : by_id) {
-    index_of[id] = turn.objects.size();
-    turn.objects.push_back(object);
+    index_of[id] = scan.objects.size();
+    scan.objects.push_back(object);
   }
-  turn.segments.resize(static_cast<std::size_t>(max_label));
+  scan.segments.resize(static_cast<std::size_t>(max_label));
   for (std::size_t cell = 0; cell < range.size(); ++cell) {
     if (range[cell] == 0 || label[cell] <= 0) continue;
-    auto& segment = turn.segments[static_cast<std::size_t>(label[cell] - 1)];
+    auto& segment = scan.segments[static_cast<std::size_t>(label[cell] - 1)];
     ++segment.num_returns;
     if (truth.object[cell] > 0) {
-      turn.pairs.emplace_back(static_cast<std::size_t>(label[cell] - 1), index_of.at(truth.object[cell]));
+      scan.pairs.emplace_back(static_cast<std::size_t>(label[cell] - 1), index_of.at(truth.object[cell]));
     } else {
       ++(truth.object[cell] == kOwnVesselObject ? segment.num_own_vessel : segment.num_none);
     }
   }
-  std::ranges::sort(turn.pairs);
-  return turn;
+  std::ranges::sort(scan.pairs);
+  return scan;
 }
 
 // Calls for each pair of segment and object that share returns, segment by segment, with their number.
 template <typename Handler>
-void ForEachOverlap(Matches& turn, Handler handle) {
-  for (auto begin = turn.pairs.begin(); begin != turn.pairs.end();) {
-    const auto end = std::find_if(begin, turn.pairs.end(), [&](const Pair& pair) { return pair != *begin; });
+void ForEachOverlap(Matches& scan, Handler handle) {
+  for (auto begin = scan.pairs.begin(); begin != scan.pairs.end();) {
+    const auto end = std::find_if(begin, scan.pairs.end(), [&](const Pair& pair) { return pair != *begin; });
     const auto [segment, object] = *begin;
-    handle(turn.segments[segment], turn.objects[object], static_cast<std::int64_t>(end - begin));
+    handle(scan.segments[segment], scan.objects[object], static_cast<std::int64_t>(end - begin));
     begin = end;
   }
 }
 
-void Compare(Matches& turn) {
-  ForEachOverlap(turn, [&](SegmentTurn& segment, ObjectTurn& object, std::int64_t num_both) {
+void Compare(Matches& scan) {
+  ForEachOverlap(scan, [&](SegmentInScan& segment, ObjectInScan& object, std::int64_t num_both) {
     const double iou = static_cast<double>(num_both) / static_cast<double>(object.num_returns + segment.num_returns - num_both);
     object.iou = std::max(object.iou, iou);
     if (2 * num_both > segment.num_returns) object.has_segment = true;
@@ -102,9 +102,9 @@ void AddTo(std::pair<std::int64_t, Value>& count_and_sum, Value value) {
   count_and_sum.second += value;
 }
 
-std::int64_t NumTruePositives(const Matches& turn) {
+std::int64_t NumTruePositives(const Matches& scan) {
   std::int64_t count = 0;
-  for (const auto& segment : turn.segments) {
+  for (const auto& segment : scan.segments) {
     // Of equals the object with the least id takes it; which one it is does not change the number.
     if (segment.num_of_majority >= std::max(segment.num_own_vessel, segment.num_none)) count += segment.num_of_majority;
   }
@@ -122,12 +122,12 @@ Labelling SureOnly(Labelling labelling) {
 }
 
 Score ScoreScan(const LabelledScan& truth, const Labelling& labelling) {
-  Matches turn = Count(truth, labelling.label);
-  Compare(turn);
+  Matches scan = Count(truth, labelling.label);
+  Compare(scan);
   Score score;
   score.num_scans = 1;
   std::int64_t num_water = 0;
-  for (const auto& object : turn.objects) {
+  for (const auto& object : scan.objects) {
     const auto& about = truth.objects.at(object.id);
     score.sum_iou += object.iou;
     if (about.is_in_water) {
@@ -151,16 +151,16 @@ Score ScoreScan(const LabelledScan& truth, const Labelling& labelling) {
     score.num_over_segmented += object.num_parts >= 2 ? 1 : 0;
     score.num_returns += object.num_returns;
   }
-  score.num_object_scans = static_cast<std::int64_t>(turn.objects.size());
-  if (!turn.objects.empty()) {
+  score.num_object_scans = static_cast<std::int64_t>(scan.objects.size());
+  if (!scan.objects.empty()) {
     score.num_scans_with_object = 1;
-    score.sum_iou /= static_cast<double>(turn.objects.size());
+    score.sum_iou /= static_cast<double>(scan.objects.size());
   }
   if (num_water > 0) {
     score.num_scans_with_water_object = 1;
     score.sum_water_iou /= static_cast<double>(num_water);
   }
-  for (const auto& segment : turn.segments) {
+  for (const auto& segment : scan.segments) {
     if (segment.num_returns == 0) continue;
     ++score.num_segments;
     score.num_under_segmented += segment.num_parts >= 2 ? 1 : 0;
@@ -169,7 +169,7 @@ Score ScoreScan(const LabelledScan& truth, const Labelling& labelling) {
   for (std::size_t cell = 0; cell < labelling.label.size(); ++cell) {
     score.num_not_scored += truth.scan.columns.range[cell] != 0 && labelling.label[cell] == kNotScored ? 1 : 0;
   }
-  score.num_labelled_returns = NumTruePositives(turn);
+  score.num_labelled_returns = NumTruePositives(scan);
   if (labelling.num_components) {
     score.num_scans_with_components = 1;
     score.num_components = *labelling.num_components;

@@ -15,13 +15,13 @@ inline constexpr double kFoundIou = 0.5;
 /// The operating point at which only what the method is sure of counts: returns of tentative segments are in none.
 Labelling SureOnly(Labelling labelling);
 
-/// Score of a single turn at one operating point, without times: every segment of the labelling counts.
+/// Score of a single scan at one operating point, without times: every segment of the labelling counts.
 ///
 /// Scored are the cells with a return whose label is not kNotScored. Let p_ij be the returns of true object i in segment j, n_i all of the object,
 /// m_j all of the segment. Returns of the own vessel and of no object are no object; in a segment they count in m_j.
-/// - IoU of object i: the greatest p_ij / (n_i + m_j - p_ij) over the segments, 0 when none holds any of it. mIoU of the turn: the mean over the k
-///   objects with a return (the paper's equation). A turn without objects has none. The same over objects in the water alone.
-/// - By kind, and by range of the object's nearest return in bins of Score::kRangeBinM: object-turns and their IoU; found is an IoU of kFoundIou. By
+/// - IoU of object i: the greatest p_ij / (n_i + m_j - p_ij) over the segments, 0 when none holds any of it. mIoU of the scan: the mean over the k
+///   objects with a return (the paper's equation). A scan without objects has none. The same over objects in the water alone.
+/// - By kind, and by range of the object's nearest return in bins of Score::kRangeBinM: object-scans and their IoU; found is an IoU of kFoundIou. By
 ///   kind, found among the objects nearer than Score::kNearM.
 /// - Thing: an object with Score::kMinReturnsOfThing returns or more. It has a segment when more than half of the returns of some segment are its.
 /// - False segment: none of its returns is of an object.

@@ -16,8 +16,8 @@ using Eigen::Vector2d;
 
 // Truth has a pose each 20 ms: five of them.
 constexpr std::int64_t kMaxBracketUs = 100'000;
-// Turns of one object are neighbours up to here: at 300 rpm one takes 0.2 s.
-constexpr std::int64_t kMaxTurnUs = 250'000;
+// Scans of one object are neighbours up to here: at 300 rpm one takes 0.2 s.
+constexpr std::int64_t kMaxScanUs = 250'000;
 // So many objects tell a shift of all from the noise of one.
 constexpr std::size_t kMinObjects = 3;
 // As georeferencer: below it an outline counts as a line.
@@ -103,24 +103,24 @@ std::optional<Vector2d> TrueCenter(std::span<const SeenReturn> returns, const Is
 SeenSummary Summarise(std::span<const SeenObstacle> obstacles, const std::function<bool(const SeenObstacle&)>& is_meant) {
   SeenSummary summary;
   std::int64_t num_in_ellipse = 0;
-  std::map<std::int64_t, std::map<int, const SeenObstacle*>> turns;  // by object, that with most returns
+  std::map<std::int64_t, std::map<int, const SeenObstacle*>> scans;  // by object, that with most returns
   for (const auto& obstacle : obstacles) {
     if (!is_meant(obstacle)) continue;
     summary.distance_m.Add(obstacle.error_m.norm());
     summary.stated_sd_m.Add(obstacle.sd_m());
     summary.nees.Add(obstacle.nees());
     if (obstacle.IsInEllipse()) ++num_in_ellipse;
-    auto& largest = turns[obstacle.turn_utime_us][obstacle.object_id];
+    auto& largest = scans[obstacle.scan_utime_us][obstacle.object_id];
     if (largest == nullptr || obstacle.num_points > largest->num_points) largest = &obstacle;
   }
   if (summary.distance_m.count() > 0) summary.in_ellipse = static_cast<double>(num_in_ellipse) / static_cast<double>(summary.distance_m.count());
-  for (auto turn = turns.begin(); turn != turns.end() && std::next(turn) != turns.end(); ++turn) {
-    const auto& [next_utime_us, next] = *std::next(turn);
-    if (next_utime_us - turn->first > kMaxTurnUs) continue;
+  for (auto scan = scans.begin(); scan != scans.end() && std::next(scan) != scans.end(); ++scan) {
+    const auto& [next_utime_us, next] = *std::next(scan);
+    if (next_utime_us - scan->first > kMaxScanUs) continue;
     Summary east_m;
     Summary north_m;
     Summary sd_m;
-    for (const auto& [object_id, before] : turn->second) {
+    for (const auto& [object_id, before] : scan->second) {
       const auto after = next.find(object_id);
       if (after == next.end()) continue;
       east_m.Add(after->second->error_m.x() - before->error_m.x());

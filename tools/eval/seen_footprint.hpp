@@ -45,9 +45,9 @@ struct SeenReturn {
 ///         the extent squared) the mean of the hull's corners, as georeferencer has it; nullopt when there is none or a pose is missing
 std::optional<Eigen::Vector2d> TrueCenter(std::span<const SeenReturn> returns, const Eigen::Isometry3d& T_vessel_lidar, const TruePoses& poses);
 
-/// One obstacle of one turn, more than half of whose returns are of one object.
+/// One obstacle of one scan, more than half of whose returns are of one object.
 struct SeenObstacle {
-  std::int64_t turn_utime_us = 0;
+  std::int64_t scan_utime_us = 0;
   int object_id = 0;
   bool is_moving = false;
   bool is_sure = false;
@@ -69,13 +69,13 @@ struct SeenSummary {
   Summary stated_sd_m;
   Summary nees;             // per degree of freedom
   double in_ellipse = 0.0;  // share, 0 to 1
-  // From one turn to the next: how far the errors of all objects moved together (median over three objects or more, each by its obstacle with most
+  // From one scan to the next: how far the errors of all objects moved together (median over three objects or more, each by its obstacle with most
   // returns, so that an outline which changes its shape does not count), and that over the median of the deviations stated before.
   Summary jump_m;
   Summary jump_sds;
 };
 
-/// @param obstacles  in the order of their turns
+/// @param obstacles  in the order of their scans
 SeenSummary Summarise(std::span<const SeenObstacle> obstacles, const std::function<bool(const SeenObstacle&)>& is_meant);
 
 }  // namespace lookout::eval

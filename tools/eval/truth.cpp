@@ -1,13 +1,35 @@
 #include "tools/eval/truth.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <string_view>
 #include <tuple>
 
-#include "tools/eval/csv_reader.hpp"
+#include "tools/import/csv_file.hpp"
 
 namespace lookout::eval {
+
+OutlineDistance DistanceToOutline(const Eigen::Vector2d& p_m, const Polygon& outline_m) {
+  double nearest_m2 = std::numeric_limits<double>::infinity();
+  bool is_inside = false;
+  for (std::size_t i = 0, previous = outline_m.size() - 1; i < outline_m.size(); previous = i++) {
+    const Eigen::Vector2d& a_m = outline_m[previous];
+    const Eigen::Vector2d& b_m = outline_m[i];
+    const Eigen::Vector2d edge_m = b_m - a_m;
+    const double length2_m2 = edge_m.squaredNorm();
+    const double share = length2_m2 > 0.0 ? std::clamp((p_m - a_m).dot(edge_m) / length2_m2, 0.0, 1.0) : 0.0;
+    nearest_m2 = std::min(nearest_m2, (p_m - a_m - share * edge_m).squaredNorm());
+    // A ray along +x crosses the edges that have one end above it and one not.
+    if ((a_m.y() > p_m.y()) != (b_m.y() > p_m.y())) {
+      const double crossing_m = a_m.x() + (p_m.y() - a_m.y()) / edge_m.y() * edge_m.x();
+      if (p_m.x() < crossing_m) is_inside = !is_inside;
+    }
+  }
+  const double edge_m = std::sqrt(nearest_m2);
+  return {edge_m, is_inside ? 0.0 : edge_m};
+}
 
 std::optional<Polygon> Outlines::At(int object_id, std::int64_t utime_us) const {
   const auto object = by_object_.find(object_id);
@@ -26,33 +48,31 @@ std::optional<Polygon> Outlines::At(int object_id, std::int64_t utime_us) const 
 }
 
 Truth::Truth(const std::filesystem::path& folder) {
-  CsvReader objects(folder / "objects.csv", "object_id,name,kind,is_moving");
-  while (objects.Next()) {
-    objects_[objects.Value<int>(0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), objects.Value<int>(3) != 0};
-  }
-  CsvReader outlines(folder / "outlines.csv", "object_id,utime_us,vertex_index,latitude_deg,longitude_deg");
-  while (outlines.Next()) {
-    outlines_[outlines.Value<int>(0)][outlines.Value<std::int64_t>(1)].push_back({outlines.Value<double>(3), outlines.Value<double>(4)});
-  }
-  CsvReader poses(folder / "pose.csv", "utime_us,latitude_deg,longitude_deg,heading_deg,roll_deg,pitch_deg");
-  while (poses.Next()) {
-    poses_[poses.Value<std::int64_t>(0)] = {poses.Value<double>(1), poses.Value<double>(2), poses.Value<double>(3), poses.Value<double>(4),
-                                            poses.Value<double>(5)};
-  }
-  LoadReturns(folder / "returns.csv");
-}
+  constexpr auto kMaxTime = std::numeric_limits<std::int64_t>::max();
+  constexpr auto kMinId = std::numeric_limits<int>::min();
+  constexpr auto kMaxId = std::numeric_limits<int>::max();
+  const auto whole = [](const importer::CsvFile& file, std::size_t column) { return static_cast<int>(file.WholeNumber(column, kMinId, kMaxId)); };
 
-void Truth::LoadReturns(const std::filesystem::path& file) {
-  CsvReader rows(file, "utime_us,ring,return_index,object_id");
-  // Truths of older simulators end before these.
-  const auto x_column = rows.ColumnOf("x_m");
-  const auto z_column = rows.ColumnOf("z_m");
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  while (rows.Next()) {
-    Return made{rows.Value<std::int64_t>(0), rows.Value<int>(1), rows.Value<int>(2), rows.Value<int>(3), Eigen::Vector3f::Constant(kUnknown)};
-    if (x_column && z_column == *x_column + 2) {
-      made.p_lidar_m = {rows.Value<float>(*x_column), rows.Value<float>(*x_column + 1), rows.Value<float>(*x_column + 2)};
-    }
+  importer::CsvFile objects(folder / "objects.csv", std::to_array<std::string_view>({"object_id", "name", "kind", "is_moving"}));
+  while (objects.Next()) objects_[whole(objects, 0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), whole(objects, 3) != 0};
+
+  importer::CsvFile outlines(folder / "outlines.csv", std::to_array<std::string_view>({"object_id", "utime_us", "latitude_deg", "longitude_deg"}));
+  while (outlines.Next()) {
+    outlines_[whole(outlines, 0)][outlines.WholeNumber(1, 0, kMaxTime)].push_back({outlines.Number(2), outlines.Number(3)});
+  }
+  importer::CsvFile poses(folder / "pose.csv",
+                          std::to_array<std::string_view>({"utime_us", "latitude_deg", "longitude_deg", "heading_deg", "roll_deg", "pitch_deg"}));
+  while (poses.Next()) {
+    poses_[poses.WholeNumber(0, 0, kMaxTime)] = {poses.Number(1), poses.Number(2), poses.Number(3), poses.Number(4), poses.Number(5)};
+  }
+  // Truths of older simulators end before the places.
+  importer::CsvFile returns(folder / "returns.csv", std::to_array<std::string_view>({"utime_us", "ring", "return_index", "object_id"}),
+                            std::to_array<std::string_view>({"x_m", "y_m", "z_m"}));
+  const bool has_places = returns.Has(4) && returns.Has(5) && returns.Has(6);
+  while (returns.Next()) {
+    Return made{returns.WholeNumber(0, 0, kMaxTime), whole(returns, 1), whole(returns, 2), whole(returns, 3),
+                Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN())};
+    if (has_places) made.p_lidar_m = Eigen::Vector3d(returns.Number(4), returns.Number(5), returns.Number(6)).cast<float>();
     returns_.push_back(made);
   }
   std::ranges::sort(returns_, {}, [](const Return& made) { return std::tuple(made.utime_us, made.ring, made.return_index); });
@@ -64,11 +84,6 @@ const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_ind
     if (made->ring == ring && made->return_index == return_index) return &*made;
   }
   return nullptr;
-}
-
-std::optional<int> Truth::ObjectOf(std::int64_t utime_us, int ring, int return_index) const {
-  const Return* made = Find(utime_us, ring, return_index);
-  return made != nullptr ? std::optional(made->object_id) : std::nullopt;
 }
 
 Outlines Truth::OutlinesIn(const GeographicLib::LocalCartesian& map) const {

@@ -1,6 +1,7 @@
 // The truth of a simulation, as lookout-sim writes it (columns: tools/sim/README.md).
 #pragma once
 
+#include <Eigen/Core>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <cstdint>
 #include <filesystem>
@@ -9,9 +10,17 @@
 #include <string>
 #include <vector>
 
-#include "tools/eval/geometry.hpp"
-
 namespace lookout::eval {
+
+using Polygon = std::vector<Eigen::Vector2d>;  // simple, in either direction; the last vertex joins the first
+
+struct OutlineDistance {
+  double edge_m = 0.0;     // to the nearest point of the line itself
+  double outside_m = 0.0;  // the same, but 0 for a point inside
+};
+
+/// Precondition: the polygon has a vertex. Cost: proportional to its vertices.
+OutlineDistance DistanceToOutline(const Eigen::Vector2d& p_m, const Polygon& outline_m);
 
 struct TruthObject {
   std::string name;
@@ -65,14 +74,9 @@ class Truth {
   /// @return a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullptr = not in the truth
   const Return* Find(std::int64_t utime_us, int ring, int return_index) const;
 
-  /// @return its object
-  std::optional<int> ObjectOf(std::int64_t utime_us, int ring, int return_index) const;
-
   Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
 
  private:
-  void LoadReturns(const std::filesystem::path& file);
-
   std::map<int, TruthObject> objects_;
   std::map<int, std::map<std::int64_t, std::vector<Geodetic>>> outlines_;
   std::map<std::int64_t, TruthPose> poses_;

@@ -2,10 +2,8 @@
 
 #include <lzma.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 
 namespace lookout::importer {
@@ -70,89 +68,6 @@ std::size_t XzFile::Read(std::span<std::uint8_t> out) {
   if (count > num_left_) throw std::runtime_error("larger, when unpacked, than a file of this kind may be");
   num_left_ -= count;
   return count;
-}
-
-XzCsv::XzCsv(const std::filesystem::path& file, std::span<const std::string_view> columns)
-    : file_(file), bytes_(file, kMaxBytes), block_(kBlockBytes), names_(columns.begin(), columns.end()) {
-  if (!ReadLine()) Refuse("empty: a header is missing");
-  Split();
-  num_columns_ = cells_.size();
-  for (const auto& name : names_) {
-    const auto found = std::ranges::find(cells_, name);
-    if (found == cells_.end()) Refuse("the header lacks the column " + name);
-    place_.push_back(static_cast<std::size_t>(found - cells_.begin()));
-  }
-}
-
-bool XzCsv::Next() {
-  if (!ReadLine()) return false;
-  Split();
-  if (cells_.size() != num_columns_) {
-    Refuse(std::to_string(cells_.size()) + " columns, where the header has " + std::to_string(num_columns_));
-  }
-  return true;
-}
-
-std::int64_t XzCsv::WholeNumber(std::size_t column, std::int64_t min, std::int64_t max) const {
-  const auto cell = Text(column);
-  std::int64_t value = 0;
-  const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (fault != std::errc() || end != cell.data() + cell.size()) Refuse(names_[column] + ": not a whole number: " + std::string(cell));
-  if (value < min || value > max) {
-    Refuse(names_[column] + ": " + std::string(cell) + " is not within " + std::to_string(min) + " to " + std::to_string(max));
-  }
-  return value;
-}
-
-double XzCsv::Number(std::size_t column) const {
-  const auto cell = Text(column);
-  double value = 0.0;
-  const auto [end, fault] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (fault != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) {
-    Refuse(names_[column] + ": not a finite number: " + std::string(cell));
-  }
-  return value;
-}
-
-void XzCsv::Refuse(const std::string& reason) const {
-  throw std::runtime_error(file_.string() + ":" + std::to_string(std::max<std::int64_t>(1, line_number_)) + ": " + reason);
-}
-
-bool XzCsv::ReadLine() {
-  line_.clear();
-  ++line_number_;
-  for (;;) {
-    if (block_begin_ == block_end_) {
-      block_begin_ = 0;
-      try {
-        block_end_ = bytes_.Read(block_);
-      } catch (const std::runtime_error& error) {
-        Refuse(error.what());
-      }
-      if (block_end_ == 0) return !line_.empty();
-    }
-    const auto begin = block_.begin() + static_cast<std::ptrdiff_t>(block_begin_);
-    const auto end = block_.begin() + static_cast<std::ptrdiff_t>(block_end_);
-    const auto newline = std::find(begin, end, std::uint8_t{'\n'});
-    if (line_.size() + static_cast<std::size_t>(newline - begin) > kMaxLineBytes)
-      Refuse("a line of more than " + std::to_string(kMaxLineBytes) + " bytes");
-    line_.append(begin, newline);
-    block_begin_ += static_cast<std::size_t>(newline - begin) + (newline == end ? 0 : 1);
-    if (newline == end) continue;
-    if (!line_.empty() && line_.back() == '\r') line_.pop_back();
-    return true;
-  }
-}
-
-void XzCsv::Split() {
-  cells_.clear();
-  std::string_view rest(line_);
-  for (;;) {
-    const auto comma = rest.find(',');
-    cells_.push_back(rest.substr(0, comma));
-    if (comma == std::string_view::npos) return;
-    rest.remove_prefix(comma + 1);
-  }
 }
 
 }  // namespace lookout::importer

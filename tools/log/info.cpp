@@ -8,6 +8,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/header.hpp"
+#include "common/bus/schema.hpp"
 #include "common/bus/sequence.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
@@ -43,34 +44,16 @@ struct ChannelSummary {
   }
 };
 
-// Both known types and those of the log: it may be older, or newer.
-class TypeNames {
- public:
-  TypeNames() { versions_.push_back(OwnTypes()); }
+const bus::TypeFingerprint* FindType(std::uint64_t fingerprint) {
+  const auto found = std::ranges::find(bus::TypeFingerprints(), fingerprint, &bus::TypeFingerprint::fingerprint);
+  return found == bus::TypeFingerprints().end() ? nullptr : &*found;
+}
 
-  void Add(const run_info_t& run_info) {
-    if (schemas_.insert(run_info.schema).second && schemas_.size() <= kMaxVersions) versions_.push_back(TypesOf(run_info));
-  }
-  const bus::WireType* Find(std::uint64_t fingerprint) const {
-    for (const auto& version : versions_) {
-      if (const auto* type = version.Find(fingerprint)) return type;
-    }
-    return nullptr;
-  }
-  std::string Text(const std::set<std::uint64_t>& fingerprints) const {
-    std::string text;
-    for (const auto fingerprint : fingerprints) {
-      const auto* type = Find(fingerprint);
-      if (type != nullptr) text += (text.empty() ? "" : ",") + type->name;
-    }
-    return text.empty() ? "?" : text;
-  }
-
- private:
-  static constexpr std::size_t kMaxVersions = 20;
-  std::vector<bus::WireTypes> versions_;
-  std::set<std::string> schemas_;
-};
+std::string TypeNames(const std::set<std::uint64_t>& fingerprints) {
+  std::string text;
+  for (const auto fingerprint : fingerprints) text += (text.empty() ? "" : ",") + FindType(fingerprint)->type;
+  return text.empty() ? "?" : text;
+}
 
 class LogSummary {
  public:
@@ -82,7 +65,8 @@ class LogSummary {
     ++num_events_;
     if (const auto run_info = RunInfoOf(event)) AddRun(*run_info);
     marks_.Add(event.time, event.channel, event.bytes);
-    AddToChannel(event, publishers_.Add(event.time, event.channel, event.bytes));
+    const auto decision = publishers_.Add(num_events_ - 1, event.time, event.channel, event.bytes);
+    AddToChannel(event, decision ? std::optional(decision->num_lost) : std::nullopt);
   }
 
   bool is_empty() const { return num_events_ == 0; }
@@ -103,7 +87,7 @@ class LogSummary {
       channel.AddSilence(*first_, channel.first);
       channel.AddSilence(channel.last, *latest_);
       const double span_s = ToSeconds(channel.last - channel.first);
-      out << fmt::format("{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11.3f}  {}\n", Printable(name), Printable(names_.Text(channel.fingerprints)),
+      out << fmt::format("{:<20} {:<18} {:>9} {:>12} {:>9} {:>8} {:>11.3f}  {}\n", Printable(name), TypeNames(channel.fingerprints),
                          channel.num_events, channel.num_bytes,
                          span_s > 0.0 ? fmt::format("{:.3f}", static_cast<double>(channel.num_events - 1) / span_s) : "",
                          channel.has_sequence ? std::to_string(channel.num_missing) : "", ToSeconds(channel.silence),
@@ -113,7 +97,6 @@ class LogSummary {
 
  private:
   void AddRun(const run_info_t& run_info) {
-    names_.Add(run_info);
     const auto text = Printable(run_info.program + " " + run_info.version + " on " + run_info.host + ", wire types " + run_info.schema.substr(0, 12));
     if (std::ranges::find(runs_, text) == runs_.end() && runs_.size() < kMaxStretchesNamed) runs_.push_back(text);
     const auto machine = Printable(MachineOf(run_info));
@@ -132,14 +115,14 @@ class LogSummary {
       for (const auto& channel : marks_.Channels()) {
         if (std::ranges::find(without, channel) == without.end()) with.push_back(channel);
       }
-      if (!with.empty()) out << fmt::format("{:<9} with {} mark: {}\n", word, mark, Joined(with));
-      if (!without.empty()) out << fmt::format("{:<9} without {} mark: {}; {}\n", word, mark, Joined(without), meaning);
+      if (!with.empty()) out << fmt::format("{:<9} with {} mark: {}\n", word, mark, fmt::join(with, ", "));
+      if (!without.empty()) out << fmt::format("{:<9} without {} mark: {}; {}\n", word, mark, fmt::join(without, ", "), meaning);
     };
     print("begins", "a start", marks_.WithoutStart(), "what a replay gives first need not equal the live run");
     print("ends", "an end", marks_.WithoutEnd(), "cut there: a replay gives nothing for the scan and the poses that were under way");
     if (const auto channels = marks_.CutInside(); !channels.empty()) {
       out << fmt::format("{:<9} a run without an end mark is followed by another: {}; what a replay gives there need not equal the live run\n",
-                         "within", Joined(channels));
+                         "within", fmt::join(channels, ", "));
     }
   }
 
@@ -156,18 +139,16 @@ class LogSummary {
     channel.num_bytes += static_cast<std::int64_t>(event.bytes.size());
     if (event.bytes.size() < 8) return;
     const auto fingerprint = bus::ReadU64BigEndian(event.bytes, 0);
-    const auto* type = names_.Find(fingerprint);
+    const auto* type = FindType(fingerprint);
     if (type == nullptr) return;
     if (channel.fingerprints.size() < kMaxTypesNamed) channel.fingerprints.insert(fingerprint);
     // HEALTH has a seq per process.
-    const bool has_sequence = type->members.size() > 1 && type->members[0].name == "utime_us" && type->members[1].name == "seq";
     const auto header = bus::ReadHeader(event.bytes);
-    if (!has_sequence || !header || event.channel == bus::kHealth.name) return;
+    if (!type->has_seq || !header || event.channel == bus::kHealth.name) return;
     channel.has_sequence = true;
     channel.num_missing += num_missing ? *num_missing : channel.sequence.NumLostBefore(header->seq);
   }
 
-  TypeNames names_;
   RunMarks marks_;
   Publishers publishers_;
   std::vector<std::string> runs_;

@@ -16,11 +16,11 @@ class LogOutput {
       : file_(file, std::move(options)), writer_([this](Bytes bytes) { file_.Write(bytes); }) {}
 
   /// Events are numbered from 0, without a gap. @throws std::runtime_error when the disk does not take it
-  void Write(const bus::LogEvent& event) { Write(event.time, event); }
-  void Write(Utime time, const bus::LogEvent& event) {
-    writer_.Write(time, event.channel, event.bytes);
+  void Write(Utime time, std::string_view channel, Bytes bytes) {
+    writer_.Write(time, channel, bytes);
     ++num_events_;
   }
+  void Write(const bus::LogEvent& event) { Write(event.time, event.channel, event.bytes); }
 
   /// @throws std::runtime_error when it cannot be put in its place
   void Commit() {

@@ -8,18 +8,16 @@
 
 namespace lookout::log {
 
-std::optional<std::int64_t> Publishers::Add(Utime time, std::string_view channel, Bytes bytes) {
-  const auto number = num_events_++;
+std::optional<bus::StreamGuard::Decision> Publishers::Add(std::int64_t event, Utime time, std::string_view channel, Bytes bytes) {
   const auto* entry = bus::FindChannel(channel);
-  if (entry == nullptr || !bus::IsGuarded(*entry)) return std::nullopt;
-  const auto place = bus::PlaceOf(*entry, bytes);
+  const auto place = entry != nullptr && bus::IsGuarded(*entry) ? bus::PlaceOf(*entry, bytes) : std::nullopt;
   if (!place) return std::nullopt;
   auto found = guards_.find(channel);
   if (found == guards_.end()) found = guards_.emplace(std::string(channel), bus::StreamGuard(*entry)).first;
-  return found->second.Next(*place, GuardTime(time), number).num_lost;
+  return found->second.Next(*place, time.time_since_epoch(), event);
 }
 
-std::vector<Publishers::Interleaving> Publishers::Interleavings() const {
+std::vector<Interleaving> Publishers::Interleavings() const {
   std::vector<Interleaving> interleavings;
   for (const auto& [channel, guard] : guards_) {
     const auto& first = guard.first_interleaving();
@@ -30,7 +28,7 @@ std::vector<Publishers::Interleaving> Publishers::Interleavings() const {
   return interleavings;
 }
 
-std::string InWords(const Publishers::Interleaving& interleaving) {
+std::string InWords(const Interleaving& interleaving) {
   return fmt::format("two publishers of {} from event {} on, {}: {} messages are of the second", interleaving.channel, interleaving.event,
                      TimeText(interleaving.time), interleaving.num_messages);
 }

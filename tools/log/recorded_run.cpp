@@ -5,21 +5,12 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
-#include "common/bus/schema.hpp"
 
 namespace lookout::log {
 
 std::optional<run_info_t> RunInfoOf(const bus::LogEvent& event) {
   if (event.channel != bus::kRunInfo.name) return std::nullopt;
   return bus::Decode<run_info_t>(event.bytes);
-}
-
-bus::WireTypes TypesOf(const run_info_t& run_info) {
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < run_info.file_name.size(); ++i) {
-    if (run_info.file_name[i].starts_with("lcmtypes/")) texts.push_back(run_info.file_text[i]);
-  }
-  return bus::WireTypes(texts);
 }
 
 std::string MachineOf(const run_info_t& run_info) {
@@ -36,12 +27,6 @@ std::string MachineOf(const run_info_t& run_info) {
     }
   }
   return machine;
-}
-
-bus::WireTypes OwnTypes() {
-  std::vector<std::string> texts;
-  for (const auto& type : bus::TypeTexts()) texts.push_back(type.text);
-  return bus::WireTypes(texts);
 }
 
 }  // namespace lookout::log

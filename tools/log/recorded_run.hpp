@@ -6,7 +6,6 @@
 #include <string>
 
 #include "common/bus/log_file.hpp"
-#include "common/bus/wire_description.hpp"
 #include "common/core/printable.hpp"
 #include "lookout/run_info_t.hpp"
 
@@ -15,14 +14,8 @@ namespace lookout::log {
 /// RUN_INFO of an event, where it is one that this version can read.
 std::optional<run_info_t> RunInfoOf(const bus::LogEvent& event);
 
-/// The wire types as a log describes them: files "lcmtypes/*.lcm" of its RUN_INFO. None when it has none.
-bus::WireTypes TypesOf(const run_info_t& run_info);
-
 /// The computer in one line: the values of "machine.txt" of its RUN_INFO, comma by comma. Empty when it has none.
 std::string MachineOf(const run_info_t& run_info);
-
-/// The wire types of this version.
-bus::WireTypes OwnTypes();
 
 /// Texts of a log come from outside.
 using lookout::Printable;

@@ -51,7 +51,7 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
       const bool is_run_info = event->channel == bus::kRunInfo.name;
       const bool is_wanted = request.channels.empty() || std::ranges::find(request.channels, event->channel) != request.channels.end();
       if (is_wanted && (!from || event->time >= *from) && (!to || event->time < *to)) {
-        if (num_events == 0 && run_info && !is_run_info) output.Write(event->time, *run_info);
+        if (num_events == 0 && run_info && !is_run_info) output.Write(event->time, run_info->channel, run_info->bytes);
         output.Write(*event);
         ++num_events;
       } else if (is_run_info && num_events == 0) {

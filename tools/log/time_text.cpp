@@ -1,9 +1,10 @@
 #include "tools/log/time_text.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <charconv>
 #include <chrono>
-#include <cstdio>
+#include <cstdlib>
 
 namespace lookout::log {
 
@@ -62,22 +63,15 @@ std::optional<Utime> ParseUtc(std::string_view text) {
 std::string TimeText(Utime time) {
   const auto day = std::chrono::floor<std::chrono::days>(time);
   const std::chrono::year_month_day date(day);
-  const auto since_midnight_us = (time - day).count();
-  const auto seconds = since_midnight_us / kMicrosecondsPerSecond;
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%06dZ", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                static_cast<unsigned>(date.day()), static_cast<int>(seconds / 3600), static_cast<int>(seconds / 60 % 60),
-                static_cast<int>(seconds % 60), static_cast<int>(since_midnight_us % kMicrosecondsPerSecond));
-  return text.data();
+  const std::chrono::hh_mm_ss clock(time - day);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}Z", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()), clock.hours().count(), clock.minutes().count(), clock.seconds().count(),
+                     clock.subseconds().count());
 }
 
 std::string SecondsText(std::chrono::microseconds duration) {
-  const auto microseconds = duration.count();
-  const auto magnitude = microseconds < 0 ? -microseconds : microseconds;
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%s%lld.%06lld s", microseconds < 0 ? "-" : "", static_cast<long long>(magnitude / kMicrosecondsPerSecond),
-                static_cast<long long>(magnitude % kMicrosecondsPerSecond));
-  return text.data();
+  const auto microseconds = std::abs(duration.count());
+  return fmt::format("{}{}.{:06} s", duration.count() < 0 ? "-" : "", microseconds / kMicrosecondsPerSecond, microseconds % kMicrosecondsPerSecond);
 }
 
 std::optional<Utime> ParseTime(std::string_view text, Utime start) {

@@ -16,6 +16,6 @@ for scene in lake dense; do
     taskset -c 0 "$bin/lookout-replay" --config config/demo --in "$work/day.lcmlog" --out "$work/replay.lcmlog" >/dev/null 2>"$work/replay.err"
     grep 'times real time' "$work/replay.err"
   done
-  grep 'a turn' "$work/replay.err"
+  grep 'a scan' "$work/replay.err"
 done
 rm -f "$work/sim.pcap" "$work/day.lcmlog" "$work/replay.lcmlog"

@@ -81,7 +81,7 @@ class Chain {
  private:
   struct Running;
 
-  // Calls `call` with the stage of each service in turn, and hands out the messages that come of it.
+  // Calls `call` with the stage of each service, one after the other, and hands out the messages that come of it.
   template <typename Call>
   void ForEachStage(const Call& call);
   void AdvanceTo(Utime time);

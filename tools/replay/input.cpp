@@ -250,7 +250,7 @@ InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspect
 }
 
 std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, Chain& chain) {
-  // A navigator that ended long before the lidar: live the wait for it was given up, turn by turn.
+  // A navigator that ended long before the lidar: live the wait for it was given up, scan by scan.
   constexpr std::chrono::seconds kGivenUp(2);
   if (!inspection.is_logs) {
     chain.Finish();

@@ -44,7 +44,7 @@ struct InputSummary {
   std::vector<std::pair<std::string, std::int64_t>> left;     // messages of logs that were not read, by channel: computed again, or of no use here
   std::vector<std::pair<std::string, std::int64_t>> refused;  // reason, count; counts above 0
   log::RunMarks marks;                                        // of the logs
-  std::vector<OnePublisher::Interleaving> interleavings;      // events are counted over all files
+  std::vector<log::Interleaving> interleavings;               // events are counted over all files
 };
 
 /// Feeds the files, in their order, into the chain. @throws std::runtime_error when one cannot be read; io::Stopped

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/log_file.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
@@ -26,6 +25,7 @@
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
 #include "services/navigator/core/day.hpp"
+#include "tools/log/log_output.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
 #include "tools/replay/chain.hpp"
@@ -85,40 +85,6 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
-// The log, begun when the time of the first event is known, so that RUN_INFO stands first.
-class Output {
- public:
-  explicit Output(const Options& options)
-      : file_(options.output,
-              {.force = options.force, .inputs = InputsOf(options), .tell = [](const std::string& line) { spdlog::warn("{}", line); }}),
-        writer_([this](lookout::Bytes bytes) { file_.Write(bytes); }) {}
-
-  void SetRunInfo(lookout::run_info_t run_info) { run_info_ = std::move(run_info); }
-  void Write(lookout::Utime time, std::string_view channel, lookout::Bytes bytes) {
-    if (!has_begun_) {
-      has_begun_ = true;
-      run_info_.utime_us = lookout::ToUtimeUs(time);
-      writer_.Write(time, lookout::bus::kRunInfo.name, lookout::bus::Encode(run_info_));
-    }
-    writer_.Write(time, channel, bytes);
-  }
-  void Flush() { writer_.Flush(); }
-  void Commit() { file_.Commit(); }
-  bool IsStandardOutput() const { return file_.IsStandardOutput(); }
-
- private:
-  static std::vector<fs::path> InputsOf(const Options& options) {
-    auto inputs = lookout::io::FilesIn(options.config_folder);
-    inputs.insert(inputs.end(), options.inputs.begin(), options.inputs.end());
-    return inputs;
-  }
-
-  lookout::io::OutputFile file_;
-  lookout::bus::LogWriter writer_;
-  lookout::run_info_t run_info_{};
-  bool has_begun_ = false;
-};
-
 void PrintDigests(Chain& chain, std::FILE* out) {
   for (const auto& channel : lookout::bus::kChannels) {
     const auto entry = chain.digests().find(channel.name);
@@ -151,7 +117,7 @@ lookout::run_info_t RunInfoOf(const Options& options, const lookout::replay::Ins
   return run_info;
 }
 
-void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& chain, std::int64_t num_turns) {
+void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& chain, std::int64_t num_scans) {
   for (const auto& [channel, count] : summary.left) spdlog::info("not read: {} {}", channel, count);
   for (const auto& [reason, count] : summary.refused) spdlog::warn("{}: {}", reason, count);
   for (const auto& [name, count] : chain.Counters()) spdlog::info("{}: {}", name, count);
@@ -160,17 +126,17 @@ void PrintSummary(const lookout::replay::InputSummary& summary, const Chain& cha
   }
   for (const auto& [service, seconds] : chain.StageTimes()) {
     spdlog::info("{}: {:.3f} s{}", service, seconds,
-                 num_turns > 0 ? fmt::format(", {:.3f} ms a turn", 1e3 * seconds / static_cast<double>(num_turns)) : "");
+                 num_scans > 0 ? fmt::format(", {:.3f} ms a scan", 1e3 * seconds / static_cast<double>(num_scans)) : "");
   }
 }
 
 // Two publishers of one channel.
-void PrintInterleavings(const std::vector<lookout::replay::OnePublisher::Interleaving>& interleavings) {
+void PrintInterleavings(const std::vector<lookout::log::Interleaving>& interleavings) {
   for (const auto& interleaving : interleavings) {
     spdlog::warn(
         "{} has two publishers from event {} of the input on, {}: {} messages of the second are left out; what is computed from there on "
         "stands outside the proof and need not equal the live run",
-        interleaving.channel, interleaving.event, lookout::log::TimeText(interleaving.time), interleaving.num_left_out);
+        interleaving.channel, interleaving.event, lookout::log::TimeText(interleaving.time), interleaving.num_messages);
   }
 }
 
@@ -178,15 +144,15 @@ void PrintInterleavings(const std::vector<lookout::replay::OnePublisher::Interle
 void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) {
   if (const auto channels = marks.WithoutStart(); !channels.empty()) {
     spdlog::warn("{}: the input begins without a start mark, in the middle of a run; what is computed first need not equal the live run",
-                 lookout::log::Joined(channels));
+                 fmt::join(channels, ", "));
   }
   if (const auto channels = marks.WithoutEnd(); !channels.empty()) {
     spdlog::warn("{}: the input ends without an end mark: it was cut there, and nothing is computed for the scan and the poses that were under way",
-                 lookout::log::Joined(channels));
+                 fmt::join(channels, ", "));
   }
   if (const auto channels = marks.CutInside(); !channels.empty()) {
     spdlog::warn("{}: the input holds a run without an end mark and another behind it; what is computed where it was cut need not equal the live run",
-                 lookout::log::Joined(channels));
+                 fmt::join(channels, ", "));
   }
   if (num_left_out > 0) {
     spdlog::warn("{} messages of SEGMENTS at the end waited for a POSE that the input does not hold: no OBSTACLES are computed of them",
@@ -195,13 +161,23 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
 }
 
 void Replay(const Options& options) {
-  Output output(options);  // before all work
+  auto config_and_inputs = lookout::io::FilesIn(options.config_folder);
+  config_and_inputs.insert(config_and_inputs.end(), options.inputs.begin(), options.inputs.end());
+  // Before all work.
+  lookout::log::LogOutput output(
+      options.output,
+      {.force = options.force, .inputs = std::move(config_and_inputs), .tell = [](const std::string& line) { spdlog::warn("{}", line); }});
   const auto start = std::chrono::steady_clock::now();
   auto inspection = lookout::replay::Inspect(options.inputs, options.request);
   inspection.day = options.day;
-  Chain chain(options.config_folder, inspection.plan,
-              [&output](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) { output.Write(time, channel, bytes); });
-  output.SetRunInfo(RunInfoOf(options, inspection));
+  auto run_info = RunInfoOf(options, inspection);
+  Chain chain(options.config_folder, inspection.plan, [&](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) {
+    if (output.num_events() == 0) {  // RUN_INFO first, with the time of the first event
+      run_info.utime_us = lookout::ToUtimeUs(time);
+      output.Write(time, lookout::bus::kRunInfo.name, lookout::bus::Encode(run_info));
+    }
+    output.Write(time, channel, bytes);
+  });
 
   lookout::replay::InputSummary summary;
   std::int64_t num_left_out = 0;
@@ -210,17 +186,16 @@ void Replay(const Options& options) {
     lookout::runtime::Progress progress("replay", stderr, is_terminal);
     summary = lookout::replay::Feed(options.inputs, inspection, chain, progress);
     num_left_out = lookout::replay::Finish(summary, inspection, chain);
-    output.Flush();
   }
   const double digest_s = lookout::ToSeconds(chain.digest_time());
   const double elapsed_s = lookout::ToSeconds(std::chrono::steady_clock::now() - start) - digest_s;
 
-  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a turn; else turns are told by what they give
-  const auto num_turns = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
-  PrintSummary(summary, chain, num_turns);
+  const bool has_clock = chain.digests().contains(lookout::bus::kLidarClock.name);  // one a scan; else scans are told by what they give
+  const auto num_scans = CountOf(chain, has_clock ? lookout::bus::kLidarClock : lookout::bus::kSegments);
+  PrintSummary(summary, chain, num_scans);
   PrintInterleavings(summary.interleavings);
   PrintMarks(summary.marks, num_left_out);
-  spdlog::info("{} events, {} turns, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_turns,
+  spdlog::info("{} events, {} scans, {:.3f} s in {:.3f} s: {:.0f} times real time; digests {:.3f} s more", summary.num_events, num_scans,
                lookout::ToSeconds(chain.span()), elapsed_s, lookout::ToSeconds(chain.span()) / elapsed_s, digest_s);
 
   const auto* const lidar = chain.Find(lookout::bus::kLidarScan.publisher);
@@ -228,15 +203,15 @@ void Replay(const Options& options) {
   if (!inspection.is_logs && CountOf(chain, lookout::bus::kLidarPackets) == 0 && (navigation == nullptr || navigation->num_measured() == 0)) {
     throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
   }
-  if (lidar != nullptr && lidar->num_measured() > 0 && num_turns == 0) {
-    throw std::runtime_error("no turn came out of the lidar's packets, see the counts above. " + lidar->Report().reason);
+  if (lidar != nullptr && lidar->num_measured() > 0 && num_scans == 0) {
+    throw std::runtime_error("no scan came out of the lidar's packets, see the counts above. " + lidar->Report().reason);
   }
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
   PrintDigests(chain, out);  // last: the log is there, whoever reads these
 }
 
-// Memory that is given back to the system is asked for again at the next turn: page faults took a tenth of the time.
+// Memory that is given back to the system is asked for again at the next scan: page faults took a tenth of the time.
 void KeepMemory() {
   constexpr int kKeptBytes = 256 * 1024 * 1024;
   constexpr int kHeapBytes = 32 * 1024 * 1024;  // the greatest that mallopt takes; no message is so large

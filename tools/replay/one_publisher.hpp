@@ -4,14 +4,13 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <map>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/bus/channels.hpp"
-#include "common/bus/stream_guard.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "tools/log/publishers.hpp"
 
 namespace lookout::replay {
 
@@ -29,14 +28,8 @@ class OnePublisher {
   /// End of the input: what waits is handed on.
   void Finish();
 
-  struct Interleaving {
-    std::string_view channel;
-    std::int64_t event = 0;  // first message of the second publisher
-    Utime time;
-    std::int64_t num_left_out = 0;
-  };
-  /// Channels with two publishers, by name.
-  std::vector<Interleaving> Interleavings() const;
+  /// Channels with two publishers, in the order in which the second was first heard.
+  std::vector<log::Interleaving> Interleavings() const { return publishers_.Interleavings(); }
 
   /// Lone messages whose number does not fit were left out, too.
   std::int64_t num_left_out() const;
@@ -50,11 +43,11 @@ class OnePublisher {
     State state;
   };
 
-  void Resolve(const bus::Channel& channel, State state);
+  void Resolve(std::string_view channel, State state);
   void HandOn();
 
   Take take_;
-  std::map<std::string_view, bus::StreamGuard> guards_;
+  log::Publishers publishers_;
   std::deque<Waiting> waiting_;
   std::size_t num_bytes_ = 0;
 };

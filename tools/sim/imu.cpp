@@ -20,7 +20,7 @@ double PressureKpa(double height_m) { return 101.325 * std::pow(1.0 - 2.25577e-5
 // Vessel frame (x forward, y port, z up) to that of the device.
 Eigen::Vector3d ToDevice(const Eigen::Vector3d& v_vessel) { return {v_vessel.x(), -v_vessel.y(), -v_vessel.z()}; }
 
-// Axis times angle of a rotation that is small against half a turn.
+// Axis times angle of a rotation that is small against pi.
 Eigen::Vector3d RotationVector(const Eigen::Matrix3d& rotation) {
   const Eigen::AngleAxisd angle_axis(rotation);
   return angle_axis.angle() * angle_axis.axis();

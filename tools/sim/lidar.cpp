@@ -93,7 +93,7 @@ Lidar::Lidar(const Scene& scene, const config::BoatFacts& boat, const LidarParam
       start_(start) {
   Random random(seed, kRotorStream);
   rotor_phase_rad_ = random.Uniform(0.0, kTwoPi);
-  // Captures of real sensors show 601 to 607 rpm where 600 were asked for, and some hundredths of a degree of wander within a turn.
+  // Captures of real sensors show 601 to 607 rpm where 600 were asked for, and some hundredths of a degree of wander within a revolution.
   rotor_rate_radps_ = params.rotation_rpm / 60.0 * kTwoPi * (1.0 + 0.001 * random.Normal());
   for (const double amplitude_deg : {0.10, 0.04, 0.02}) {
     const double period_s = random.Uniform(0.3, 1.0) * amplitude_deg * 10.0;
@@ -108,35 +108,23 @@ double Lidar::AzimuthAt(double time_s) const {
   return azimuth_rad;
 }
 
+// Draws the noise of range and reflectivity.
+Lidar::Measurement Lidar::ToMeasurement(double range_m, double brightness, int object_id, ReturnReason reason) {
+  const double range_2mm = std::round((range_m + effects_.range_sd_m() * random_.Normal()) / format::kRangeUnitM);
+  if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
+  const double reflectivity = 100.0 * brightness + 2.0 * random_.Normal();
+  return {
+      static_cast<std::uint16_t>(range_2mm), static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)), object_id, reason, range_m,
+      brightness / (range_m * range_m)};
+}
+
 Lidar::Measurement Lidar::Measure(const Echo& echo) {
   const double range_m = echo.hit.range_m;
   const double brightness = echo.share * echo.material.reflectance * (kRoughShare + (1.0 - kRoughShare) * echo.hit.incidence_cosine);
   const double half_seen_m = effects_.half_seen_range_m() * std::sqrt(std::min(brightness / kHalfSeenReflectance, 1.0));
   const double seen = 1.0 / (1.0 + std::exp((range_m - half_seen_m) / (kDropoutWidth * half_seen_m)));
   if (range_m < kMinRangeM || random_.Uniform() >= seen) return {};
-  const double measured_m = range_m + effects_.range_sd_m() * random_.Normal();
-  const double range_2mm = std::round(measured_m / format::kRangeUnitM);
-  if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
-  const double reflectivity = 100.0 * brightness + 2.0 * random_.Normal();
-  return {static_cast<std::uint16_t>(range_2mm),
-          static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)),
-          echo.object_id,
-          echo.reason,
-          range_m,
-          brightness / (range_m * range_m)};
-}
-
-// A drop is either large and near enough or not: no range at which it is seen half of the time.
-Lidar::Measurement Lidar::MeasureDrop(const Clutter::Echo& echo) {
-  const double range_2mm = std::round((echo.range_m + effects_.range_sd_m() * random_.Normal()) / format::kRangeUnitM);
-  const double reflectivity = 100.0 * echo.reflectance + 2.0 * random_.Normal();
-  if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
-  return {static_cast<std::uint16_t>(range_2mm),
-          static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)),
-          kNoObject,
-          echo.reason,
-          echo.range_m,
-          echo.reflectance / (echo.range_m * echo.range_m)};
+  return ToMeasurement(range_m, brightness, echo.object_id, echo.reason);
 }
 
 Lidar::Measurement Lidar::Stray(double max_range_m) {
@@ -231,7 +219,10 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
   }
   if (echoes.count == 0) MeetWater(ray.map, max_range_m, seen);
   if (clutter_.has_drops()) {
-    if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) seen.Add(MeasureDrop(*drop));
+    if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
+      // A drop is either large and near enough or not: no range at which it is seen half of the time.
+      seen.Add(ToMeasurement(drop->range_m, drop->reflectance, kNoObject, drop->reason));
+    }
   }
   // Only where nothing was met: a stray takes no return from an object.
   if (echoes.count == 0 && seen.count == 0 && random_.Uniform() < effects_.stray_probability()) {

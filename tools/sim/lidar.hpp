@@ -108,7 +108,7 @@ class Lidar {
   Shot Choose(const Seen& seen) const;
   bool FiresFrom(std::int64_t sequence) const;
   Measurement Measure(const Echo& echo);
-  Measurement MeasureDrop(const Clutter::Echo& echo);
+  Measurement ToMeasurement(double range_m, double brightness, int object_id, ReturnReason reason);
   Measurement Stray(double max_range_m);
 
   LidarParams params_;

@@ -38,10 +38,10 @@ struct Track {
   Placement At(double time_s) const;
 };
 
-/// Sharper corners have no arc worth the name: the way would turn back on the spot.
+/// Sharper corners have no arc: the path would turn back on the spot.
 inline constexpr double kMaxRouteTurnRad = DegToRad(170.0);
 
-/// Way through waypoints with rounded corners. An open route begins at the first and stops at the last; a closed one goes on to the first and
+/// Path through waypoints with rounded corners. An open route begins at the first and stops at the last; a closed one goes on to the first and
 /// round again.
 ///
 /// @param waypoints_map_m  two at least, no two neighbours at one place, no turn of more than kMaxRouteTurnRad

@@ -24,17 +24,6 @@ constexpr microseconds kHeadingPeriod = 50ms;
 // Captures of a real VLP-16: 57 position packets in 0.39 s.
 constexpr microseconds kPositionPacketPeriod = 7100us;
 
-// From measurement to arrival: a receiver computes and sends by serial line, one sentence after the other; a compass and an attitude sensor are
-// quicker; an IMU's 118 characters take 1.3 ms at 921 600 baud.
-constexpr microseconds kRmcLatency = 100ms;
-constexpr microseconds kGgaLatency = 102ms;
-constexpr microseconds kVtgLatency = 104ms;
-constexpr microseconds kGstLatency = 106ms;
-constexpr microseconds kZdaLatency = 108ms;
-constexpr microseconds kHdtLatency = 20ms;
-constexpr microseconds kRotLatency = 22ms;
-constexpr microseconds kPashrLatency = 15ms;
-constexpr microseconds kImuLatency = 2ms;
 constexpr microseconds kLatencyJitter = 2ms;
 constexpr microseconds kPositionPacketLatency = 60us;
 
@@ -93,7 +82,9 @@ Navigation::Navigation(const Scene& scene, const config::BoatFacts& boat, const 
   }
 }
 
-OwnState Navigation::StateAtTime(Utime time) const { return StateAt(own_motion_, boat_.reference_point_above_water_m, ToSeconds(time - start_)); }
+OwnState Navigation::StateAfter(Utime time, double offset_s) const {
+  return StateAt(own_motion_, boat_.reference_point_above_water_m, ToSeconds(time - start_) + offset_s);
+}
 
 Utime Navigation::next_time() const { return std::min(next_epoch_, next_position_packet_); }
 
@@ -117,10 +108,7 @@ std::vector<Datagram> Navigation::Next() {
 
 GnssMeasurement Navigation::MeasureGnss(Utime time, microseconds since_last) {
   // With the antenna's swing in the waves.
-  const auto antenna_m = [&](double offset_s) -> Eigen::Vector3d {
-    const auto state = StateAt(own_motion_, boat_.reference_point_above_water_m, ToSeconds(time - start_) + offset_s);
-    return state.T_map_vessel() * boat_.p_vessel_antenna_m;
-  };
+  const auto antenna_m = [&](double offset_s) -> Eigen::Vector3d { return StateAfter(time, offset_s).T_map_vessel() * boat_.p_vessel_antenna_m; };
   Eigen::Vector3d position_m = antenna_m(0.0);
   Eigen::Vector3d velocity_mps = (antenna_m(kDifferenceStepS) - antenna_m(-kDifferenceStepS)) / (2.0 * kDifferenceStepS);
   for (std::size_t axis = 0; axis < gnss_error_m_.size(); ++axis) {
@@ -146,18 +134,17 @@ Navigation::Heading Navigation::MeasureHeading(Utime time) {
   const double error_deg = heading_error_deg_.Next(ToSeconds(kHeadingPeriod), attitude_random_);
   const double rate_error_degpmin = kRateSdDegpmin * attitude_random_.Normal();
   if (plan_.At(TimedFaultKind::kFrozenHeading, time) != nullptr && frozen_heading_) return *frozen_heading_;
-  const double time_s = ToSeconds(time - start_);
-  const auto heading_rad = [&](double at_s) { return StateAt(own_motion_, boat_.reference_point_above_water_m, at_s).heading_rad; };
-  const double rate_radps = WrapToPi(heading_rad(time_s + kDifferenceStepS) - heading_rad(time_s - kDifferenceStepS)) / (2.0 * kDifferenceStepS);
+  const auto heading_rad = [&](double offset_s) { return StateAfter(time, offset_s).heading_rad; };
+  const double rate_radps = WrapToPi(heading_rad(kDifferenceStepS) - heading_rad(-kDifferenceStepS)) / (2.0 * kDifferenceStepS);
   Heading heading;
-  heading.heading_deg = RadToDeg(WrapTo2Pi(heading_rad(time_s) + DegToRad(error_deg - params_.heading_offset_deg)));
+  heading.heading_deg = RadToDeg(WrapTo2Pi(heading_rad(0.0) + DegToRad(error_deg - params_.heading_offset_deg)));
   heading.rate_degpmin = 60.0 * RadToDeg(rate_radps) + rate_error_degpmin;
   frozen_heading_ = heading;
   return heading;
 }
 
 AttitudeMeasurement Navigation::MeasureAttitude(Utime time) {
-  const auto state = StateAtTime(time);
+  const auto state = StateAfter(time, 0.0);
   AttitudeMeasurement result{};
   result.time = time;
   // Between two headings of the compass the gyroscopes of the attitude sensor carry the heading, and with it the error of the compass.
@@ -171,6 +158,8 @@ AttitudeMeasurement Navigation::MeasureAttitude(Utime time) {
   return result;
 }
 
+// Latency from measurement to arrival: a receiver computes and sends by serial line, one sentence after the other; a compass and an attitude sensor
+// are quicker; an IMU's 118 characters take 1.3 ms at 921 600 baud.
 Datagram Navigation::Line(microseconds latency, const std::string& sentence) {
   const auto jitter = microseconds(static_cast<std::int64_t>(static_cast<double>(kLatencyJitter.count()) * latency_random_.Uniform()));
   return {next_epoch_ + latency + jitter, params_.nmea_port, {sentence.begin(), sentence.end()}};
@@ -178,28 +167,28 @@ Datagram Navigation::Line(microseconds latency, const std::string& sentence) {
 
 void Navigation::AddGnss(std::vector<Datagram>& datagrams) {
   const auto measurement = MeasureGnss(next_epoch_, microseconds(1s) / params_.gnss_rate_hz);
-  datagrams.push_back(Line(kRmcLatency, Rmc(measurement)));
-  datagrams.push_back(Line(kGgaLatency, Gga(measurement)));
-  datagrams.push_back(Line(kVtgLatency, Vtg(measurement)));
-  datagrams.push_back(Line(kGstLatency, Gst(measurement)));
+  datagrams.push_back(Line(100ms, Rmc(measurement)));
+  datagrams.push_back(Line(102ms, Gga(measurement)));
+  datagrams.push_back(Line(104ms, Vtg(measurement)));
+  datagrams.push_back(Line(106ms, Gst(measurement)));
   if (!IsMultiple(next_epoch_, 1s)) return;
-  datagrams.push_back(Line(kZdaLatency, Zda(next_epoch_)));
+  datagrams.push_back(Line(108ms, Zda(next_epoch_)));
   whole_seconds_.push_back(measurement);
   if (whole_seconds_.front().time < next_epoch_ - LidarClock::kOldestRmc - 1s) whole_seconds_.pop_front();
 }
 
 void Navigation::AddHeading(std::vector<Datagram>& datagrams) {
   const auto heading = MeasureHeading(next_epoch_);
-  datagrams.push_back(Line(kHdtLatency, Hdt(heading.heading_deg)));
-  datagrams.push_back(Line(kRotLatency, Rot(heading.rate_degpmin)));
+  datagrams.push_back(Line(20ms, Hdt(heading.heading_deg)));
+  datagrams.push_back(Line(22ms, Rot(heading.rate_degpmin)));
 }
 
 void Navigation::AddAttitude(std::vector<Datagram>& datagrams) {
-  datagrams.push_back(Line(kPashrLatency, Pashr(MeasureAttitude(next_epoch_), params_.tilt_sd_deg, params_.heading_sd_deg)));
+  datagrams.push_back(Line(15ms, Pashr(MeasureAttitude(next_epoch_), params_.tilt_sd_deg, params_.heading_sd_deg)));
 }
 
 void Navigation::AddImu(std::vector<Datagram>& datagrams) {
-  auto datagram = Line(kImuLatency, VnImu(imu_.Measure(next_epoch_)));
+  auto datagram = Line(2ms, VnImu(imu_.Measure(next_epoch_)));
   if (plan_.At(TimedFaultKind::kImuStop, next_epoch_) == nullptr) datagrams.push_back(std::move(datagram));
 }
 

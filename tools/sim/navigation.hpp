@@ -59,7 +59,7 @@ class Navigation {
     double rate_degpmin = 0.0;  // positive to starboard
   };
 
-  OwnState StateAtTime(Utime time) const;
+  OwnState StateAfter(Utime time, double offset_s) const;
   GnssMeasurement MeasureGnss(Utime time, std::chrono::microseconds since_last);
   Heading MeasureHeading(Utime time);
   AttitudeMeasurement MeasureAttitude(Utime time);

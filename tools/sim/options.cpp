@@ -1,10 +1,10 @@
 #include "tools/sim/options.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdlib>
-#include <iomanip>
-#include <iostream>
 
 #include "common/runtime/options.hpp"
 #include "tools/sim/scene_file.hpp"
@@ -17,16 +17,6 @@ constexpr int kExitUsage = 2;
 // 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
 constexpr std::int64_t kDefaultStartUtimeUs = 1'781'532'600'000'000;
 
-// What stands on the line, where it is not yet in the form of Options.
-struct Words {
-  std::string mode;
-  std::string model = "vlp16";
-  std::string navigation = "rtk";
-  std::vector<double> field_of_view_deg;
-  std::vector<std::string> faults;
-  bool has_no_heading = false;
-};
-
 // CLI::Range lets NaN pass, which is neither below nor above.
 CLI::Validator Within(double min, double max) {
   const CLI::Range range(min, max);
@@ -36,12 +26,6 @@ CLI::Validator Within(double min, double max) {
     return range(text);
   };
   return {check, range.get_description(), ""};
-}
-
-void PrintScenes(const std::filesystem::path& config_folder) {
-  constexpr int kNameWidth = 16;
-  for (const auto& scene : ListScenes(config_folder))
-    std::cout << std::left << std::setw(kNameWidth) << scene.name << ' ' << scene.description << '\n';
 }
 
 std::string FaultHelp() {
@@ -82,65 +66,50 @@ void AddRun(CLI::App& app, Options& options) {
       ->check(Within(0.0, 1000.0))
       ->needs(udp)
       ->capture_default_str();
-  app.add_flag_callback(
-      "--list-scenes",
-      [&options] {
-        PrintScenes(options.config_folder);
-        throw CLI::Success();
-      },
-      "print the names of the scenes, and what they are for, and exit");
+  const auto list_scenes = [&options] {
+    for (const auto& scene : ListScenes(options.config_folder)) fmt::print("{:<16} {}\n", scene.name, scene.description);
+    throw CLI::Success();
+  };
+  app.add_flag_callback("--list-scenes", list_scenes, "print the names of the scenes, and what they are for, and exit");
 }
 
-void AddLidar(CLI::App& app, Options& options, Words& words) {
-  app.add_option("--return-mode", words.mode, "strongest, last or dual; else as the scene says")->check(CLI::IsMember({"strongest", "last", "dual"}));
-  app.add_option("--rpm", options.lidar.rotation_rpm, "turns of the lidar per minute")
+void AddLidar(CLI::App& app, Options& options) {
+  auto& lidar = options.lidar;
+  const auto set_mode = [&lidar](const std::string& mode) {
+    lidar.mode = mode == "dual" ? config::Scene::DUAL : mode == "last" ? config::Scene::LAST : config::Scene::STRONGEST;
+  };
+  app.add_option_function<std::string>("--return-mode", set_mode, "strongest, last or dual; else as the scene says")
+      ->check(CLI::IsMember({"strongest", "last", "dual"}));
+  app.add_option("--rpm", lidar.rotation_rpm, "revolutions of the lidar per minute")
       ->check(Within(vlp16::format::kMinRpm, vlp16::format::kMaxRpm))
       ->capture_default_str();
-  app.add_option("--strays", options.lidar.stray_probability, "stray returns per shot that meets nothing; else as the scene says")
-      ->check(Within(0.0, 1.0));
-  app.add_option("--model", words.model, "vlp16 or hi-res (Puck Hi-Res)")->check(CLI::IsMember({"vlp16", "hi-res"}))->capture_default_str();
-  app.add_option("--field-of-view", words.field_of_view_deg, "lasers fire from this azimuth clockwise to that one, degrees")
+  app.add_option("--strays", lidar.stray_probability, "stray returns per shot that meets nothing; else as the scene says")->check(Within(0.0, 1.0));
+  const auto set_model = [&lidar](const std::string& model) { lidar.model = model == "vlp16" ? LidarModel::kVlp16 : LidarModel::kPuckHiRes; };
+  app.add_option_function<std::string>("--model", set_model, "vlp16 or hi-res (Puck Hi-Res)")
+      ->check(CLI::IsMember({"vlp16", "hi-res"}))
+      ->default_str("vlp16");
+  const auto set_field = [&lidar](const std::vector<double>& from_to_deg) { lidar.field_of_view = ToFieldOfView(from_to_deg); };
+  app.add_option_function<std::vector<double>>("--field-of-view", set_field, "lasers fire from this azimuth clockwise to that one, degrees")
       ->expected(2)
       ->type_name("FROM TO")
       ->check(Within(0.0, 360.0));
 }
 
-// @return --gnss-sd, which a set of sensors gives way to
-CLI::Option* AddNavigation(CLI::App& app, Options& options, Words& words) {
-  app.add_option("--navigation", words.navigation, "rtk (0.02 m, 0.2 deg) or standalone (1.5 m, 2 deg)")
+void AddNavigation(CLI::App& app, Options& options) {
+  auto& navigation = options.navigation;
+  // Before the others in time, so that they override it.
+  const auto set_all = [&navigation](const std::string& set) { navigation = set == "rtk" ? NavigationParams{} : StandaloneNavigation(); };
+  app.add_option_function<std::string>("--navigation", set_all, "rtk (0.02 m, 0.2 deg) or standalone (1.5 m, 2 deg)")
       ->check(CLI::IsMember({"rtk", "standalone"}))
-      ->capture_default_str();
-  app.add_option("--rate", options.navigation.gnss_rate_hz, "RMC, GGA, VTG and GST per second")
+      ->trigger_on_parse()
+      ->default_str("rtk");
+  app.add_option("--rate", navigation.gnss_rate_hz, "RMC, GGA, VTG and GST per second")
       ->check(CLI::IsMember({1, 2, 4, 5, 10, 20}))
       ->capture_default_str();
-  auto* sd = app.add_option("--gnss-sd", options.navigation.gnss_sd_m, "standard deviation of a position, metres per axis; else as --navigation says")
-                 ->check(Within(0.0, 100.0));
-  app.add_flag("--no-heading", words.has_no_heading, "a boat with a GNSS receiver alone: no HDT, ROT, PASHR, VNIMU");
-  return sd;
-}
-
-void AddFaults(CLI::App& app, Options& options, Words& words) {
-  const auto share = Within(0.0, 1.0);
-  app.add_option("--drop", options.network.drop_share, "share of the data packets that never come")->check(share)->capture_default_str();
-  app.add_option("--double", options.network.double_share, "share of them that come twice")->check(share)->capture_default_str();
-  app.add_option("--swap", options.network.swap_share, "share of them that come after the next")->check(share)->capture_default_str();
-  app.add_option("--fault", words.faults, FaultHelp());
-}
-
-// @throws CLI::ParseError
-void Check(const Options& options) {
-  if (options.pcap_file.empty() == options.udp_host.empty()) throw CLI::RequiredError("either --pcap FILE or --udp HOST");
-  if (options.network.drop_share + options.network.double_share + options.network.swap_share > 1.0) {
-    throw CLI::ValidationError("--drop, --double and --swap: together they must not be more than 1");
-  }
-}
-
-NavigationParams ToNavigation(const Options& options, const Words& words, bool has_sd) {
-  auto navigation = words.navigation == "rtk" ? NavigationParams{} : StandaloneNavigation();
-  navigation.gnss_rate_hz = options.navigation.gnss_rate_hz;
-  if (has_sd) navigation.gnss_sd_m = options.navigation.gnss_sd_m;
-  navigation.has_heading = !words.has_no_heading;
-  return navigation;
+  app.add_option("--gnss-sd", navigation.gnss_sd_m, "standard deviation of a position, metres per axis; else as --navigation says")
+      ->check(Within(0.0, 100.0));
+  app.add_flag_callback(
+      "--no-heading", [&navigation] { navigation.has_heading = false; }, "a boat with a GNSS receiver alone: no HDT, ROT, PASHR, VNIMU");
 }
 
 std::vector<TimedFault> ToFaults(const std::vector<std::string>& texts, double seconds) {
@@ -156,26 +125,27 @@ std::vector<TimedFault> ToFaults(const std::vector<std::string>& texts, double s
 
 Options ParseOptions(int argc, char** argv) {
   Options options;
-  Words words;
+  std::vector<std::string> faults;
   CLI::App app("Sends what the sensors of a simulated boat send: VLP-16 packets, NMEA 0183 and IMU samples.", "lookout-sim");
   AddRun(app, options);
-  AddLidar(app, options, words);
-  const auto* sd = AddNavigation(app, options, words);
-  AddFaults(app, options, words);
+  AddLidar(app, options);
+  AddNavigation(app, options);
+  auto& network = options.network;
+  app.add_option("--drop", network.drop_share, "share of the data packets that are lost")->check(Within(0.0, 1.0))->capture_default_str();
+  app.add_option("--double", network.double_share, "share of them that come twice")->check(Within(0.0, 1.0))->capture_default_str();
+  app.add_option("--swap", network.swap_share, "share of them that come after the next")->check(Within(0.0, 1.0))->capture_default_str();
+  app.add_option("--fault", faults, FaultHelp());
   app.set_version_flag("--version", "lookout-sim " + runtime::Version());
   try {
     app.parse(argc, argv);
-    Check(options);
-    options.lidar.field_of_view = ToFieldOfView(words.field_of_view_deg);
+    if (options.pcap_file.empty() == options.udp_host.empty()) throw CLI::RequiredError("either --pcap FILE or --udp HOST");
+    if (network.drop_share + network.double_share + network.swap_share > 1.0) {
+      throw CLI::ValidationError("--drop, --double and --swap: together they must not be more than 1");
+    }
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
-  options.navigation = ToNavigation(options, words, sd->count() > 0);
-  if (!words.mode.empty()) {
-    options.lidar.mode = words.mode == "dual" ? config::Scene::DUAL : words.mode == "last" ? config::Scene::LAST : config::Scene::STRONGEST;
-  }
-  options.lidar.model = words.model == "vlp16" ? LidarModel::kVlp16 : LidarModel::kPuckHiRes;
-  options.faults = ToFaults(words.faults, options.seconds);
+  options.faults = ToFaults(faults, options.seconds);
   return options;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "common/core/angles.hpp"
 
@@ -55,51 +56,34 @@ double DistanceFromOrigin(const Vector2d& a_m, const Vector2d& b_m) {
 
 int WrapBin(int bin) { return ((bin % kNumBins) + kNumBins) % kNumBins; }
 
-struct Heights {
-  double low_m;
-  double high_m;
-};
-Heights HeightsOf(const Cylinder& cylinder) { return {cylinder.bottom_m, cylinder.top_m}; }
-Heights HeightsOf(const Prism& prism) { return {prism.bottom_m, prism.top_m}; }
-Heights HeightsOf(const Ellipsoid& ellipsoid) {
-  return {ellipsoid.center_m.z() - ellipsoid.radii_m.z(), ellipsoid.center_m.z() + ellipsoid.radii_m.z()};
-}
-Heights HeightsOf(const Triangle& triangle) {
-  const auto [low_m, high_m] = std::minmax({triangle.a_m.z(), triangle.b_m.z(), triangle.c_m.z()});
-  return {low_m, high_m};
-}
-
 }  // namespace
 
 RayCaster::RayCaster(const std::vector<Body>& bodies, const BeamWidth& width, const Sea* sea)
     : bodies_(bodies), width_(width), sea_(sea), places_(bodies.size()), bins_(kNumBins) {
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    const Placement placement = bodies_[body].track.At(0.0);
-    places_[body].origin_m = placement.position_map_m;
-    places_[body].sine = std::sin(placement.heading_rad);
-    places_[body].cosine = std::cos(placement.heading_rad);
+    MoveBody(body, 0.0);
     places_[body].is_tilted = sea_ != nullptr && !sea_->is_calm() && bodies_[body].rider != nullptr && bodies_[body].rider->is_afloat();
     for (const auto& part : *bodies_[body].parts) {
       Item item;
       item.part = &part;
       item.bounds = BoundsOf(part.solid);
       item.body = body;
-      const Heights heights = std::visit([](const auto& shape) { return HeightsOf(shape); }, part.solid);
-      item.low_m = heights.low_m;
-      item.high_m = heights.high_m;
       items_.push_back(std::move(item));
     }
   }
   order_.resize(items_.size());
 }
 
+void RayCaster::MoveBody(std::size_t body, double time_s) {
+  const Placement placement = bodies_[body].track.At(time_s);
+  places_[body].origin_m = placement.position_map_m;
+  places_[body].sine = std::sin(placement.heading_rad);
+  places_[body].cosine = std::cos(placement.heading_rad);
+}
+
 void RayCaster::MoveTo(double time_s, const Vector2d& eye_m) {
   for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    if (!bodies_[body].track.is_moving()) continue;
-    const Placement placement = bodies_[body].track.At(time_s);
-    places_[body].origin_m = placement.position_map_m;
-    places_[body].sine = std::sin(placement.heading_rad);
-    places_[body].cosine = std::cos(placement.heading_rad);
+    if (bodies_[body].track.is_moving()) MoveBody(body, time_s);
   }
   if (std::abs(time_s - tilted_at_s_) >= kTiltPeriodS) {
     tilted_at_s_ = time_s;
@@ -126,14 +110,14 @@ void RayCaster::Tilt(double time_s) {
 RayCaster::Bins RayCaster::BinsOf(Item& item, const Vector2d& eye_m) const {
   const Place& place = places_[item.body];
   double radius_m = item.bounds.radius_m + kMarginM;
-  item.low_map_m = item.low_m;
-  item.high_map_m = item.high_m;
+  item.low_map_m = item.bounds.low_m;
+  item.high_map_m = item.bounds.high_m;
   if (place.is_tilted) {
     // A lean moves what is high up or far out.
     const double tilt_sine = std::sqrt(std::max(0.0, 1.0 - place.R_tilt(2, 2) * place.R_tilt(2, 2)));
     double reach_m = 0.0;
     for (const auto& p_m : item.bounds.points_m) reach_m = std::max(reach_m, p_m.norm() + item.bounds.radius_m);
-    const double height_m = std::max(std::abs(item.low_m), std::abs(item.high_m));
+    const double height_m = std::max(std::abs(item.bounds.low_m), std::abs(item.bounds.high_m));
     radius_m += tilt_sine * (height_m + tilt_sine * reach_m);
     item.low_map_m += place.height_m - tilt_sine * (reach_m + height_m);
     item.high_map_m += place.height_m + tilt_sine * (reach_m + height_m);
@@ -250,22 +234,24 @@ Echo RayCaster::ToEcho(const Meeting& meeting) const {
   return echo;
 }
 
-Echoes RayCaster::Cast(const Ray& ray, double max_range_m, bool wants_second) {
+// The surface that was met first, and the one behind it where that is porous.
+Echoes RayCaster::ToEchoes(const Meeting& first, const Ray& ray, double max_range_m, bool wants_second) const {
   Echoes echoes;
-  Gather(ray, max_range_m, 0.0);
-  const Meeting first = NearestOf(ray, max_range_m, nullptr);
   if (first.item == nullptr) return echoes;
   echoes.echo[0] = ToEcho(first);
   echoes.count = 1;
-  if (wants_second && first.item->part->material.is_porous) {
-    const Meeting second = NearestOf(ray, max_range_m, first.item);
-    if (second.item != nullptr) {
-      echoes.echo[1] = ToEcho(second);
-      echoes.echo[1].is_behind_foliage = true;
-      echoes.count = 2;
-    }
-  }
+  if (!wants_second || !first.item->part->material.is_porous) return echoes;
+  const Meeting second = NearestOf(ray, max_range_m, first.item);
+  if (second.item == nullptr) return echoes;
+  echoes.echo[1] = ToEcho(second);
+  echoes.echo[1].is_behind_foliage = true;
+  echoes.count = 2;
   return echoes;
+}
+
+Echoes RayCaster::Cast(const Ray& ray, double max_range_m, bool wants_second) {
+  Gather(ray, max_range_m, 0.0);
+  return ToEchoes(NearestOf(ray, max_range_m, nullptr), ray, max_range_m, wants_second);
 }
 
 // One echo of rays that meet surfaces close to each other, nearest first: between them, as the light is shared.
@@ -305,20 +291,7 @@ Echoes RayCaster::CastBeam(const Ray& axis, double max_range_m, bool wants_secon
   for (std::size_t i = 0; i < kNumProbeRays; ++i) meetings[i] = meet(kBeamRays[i]);
   const bool is_edge =
       std::any_of(meetings.begin() + 1, meetings.begin() + kNumProbeRays, [&](const Meeting& meeting) { return meeting.item != meetings[0].item; });
-  if (!is_edge) {
-    // One surface: what its middle gives.
-    Echoes echoes;
-    if (meetings[0].item == nullptr) return echoes;
-    echoes.echo[echoes.count++] = ToEcho(meetings[0]);
-    if (wants_second && meetings[0].item->part->material.is_porous) {
-      const Meeting second = NearestOf(axis, max_range_m, meetings[0].item);
-      if (second.item != nullptr) {
-        echoes.echo[echoes.count] = ToEcho(second);
-        echoes.echo[echoes.count++].is_behind_foliage = true;
-      }
-    }
-    return echoes;
-  }
+  if (!is_edge) return ToEchoes(meetings[0], axis, max_range_m, wants_second);
   for (std::size_t i = kNumProbeRays; i < kBeamRays.size(); ++i) meetings[i] = meet(kBeamRays[i]);
   const auto met = std::partition(meetings.begin(), meetings.end(), [](const Meeting& meeting) { return meeting.item != nullptr; });
   std::sort(meetings.begin(), met, [](const Meeting& a, const Meeting& b) { return a.hit.range_m < b.hit.range_m; });

@@ -75,10 +75,8 @@ class RayCaster {
   };
   struct Item {
     const Part* part = nullptr;
-    PlanBounds bounds;
+    Bounds bounds;  // frame of its body
     std::size_t body = 0;
-    double low_m = 0.0;  // heights of the part in its frame
-    double high_m = 0.0;
     // As of the last sorting, from the eye, widened by kMarginM.
     double nearest_m = 0.0;
     double farthest_m = 0.0;
@@ -97,6 +95,7 @@ class RayCaster {
     Hit hit;
   };
 
+  void MoveBody(std::size_t body, double time_s);
   void Tilt(double time_s);
   void Sort(const Eigen::Vector2d& eye_m);
   Bins BinsOf(Item& item, const Eigen::Vector2d& eye_m) const;
@@ -104,6 +103,7 @@ class RayCaster {
   void Gather(const Ray& axis, double max_range_m, double slope_margin);
   Meeting NearestOf(const Ray& ray, double max_range_m, const Item* skipped) const;
   Echo ToEcho(const Meeting& meeting) const;
+  Echoes ToEchoes(const Meeting& first, const Ray& ray, double max_range_m, bool wants_second) const;
   Echo Merge(const Meeting* begin, const Meeting* end, int num_rays) const;
 
   std::vector<Body> bodies_;

@@ -106,10 +106,18 @@ std::optional<Hit> IntersectSolid(const Triangle& triangle, const Ray& ray) {
   return Hit{range_m, std::abs(ab_m.cross(ac_m).normalized().dot(ray.direction))};
 }
 
-PlanBounds BoundsOfSolid(const Cylinder& cylinder) { return {{cylinder.center_m}, cylinder.radius_m}; }
-PlanBounds BoundsOfSolid(const Ellipsoid& ellipsoid) { return {{ellipsoid.center_m.head<2>()}, ellipsoid.radii_m.head<2>().maxCoeff()}; }
-PlanBounds BoundsOfSolid(const Prism& prism) { return {prism.footprint_m, 0.0}; }
-PlanBounds BoundsOfSolid(const Triangle& triangle) { return {{triangle.a_m.head<2>(), triangle.b_m.head<2>(), triangle.c_m.head<2>()}, 0.0}; }
+Bounds BoundsOfSolid(const Cylinder& cylinder) { return {{cylinder.center_m}, cylinder.radius_m, cylinder.bottom_m, cylinder.top_m}; }
+Bounds BoundsOfSolid(const Ellipsoid& ellipsoid) {
+  return {{ellipsoid.center_m.head<2>()},
+          ellipsoid.radii_m.head<2>().maxCoeff(),
+          ellipsoid.center_m.z() - ellipsoid.radii_m.z(),
+          ellipsoid.center_m.z() + ellipsoid.radii_m.z()};
+}
+Bounds BoundsOfSolid(const Prism& prism) { return {prism.footprint_m, 0.0, prism.bottom_m, prism.top_m}; }
+Bounds BoundsOfSolid(const Triangle& triangle) {
+  const auto heights_m = std::minmax({triangle.a_m.z(), triangle.b_m.z(), triangle.c_m.z()});
+  return {{triangle.a_m.head<2>(), triangle.b_m.head<2>(), triangle.c_m.head<2>()}, 0.0, heights_m.first, heights_m.second};
+}
 
 }  // namespace
 
@@ -117,7 +125,7 @@ std::optional<Hit> Intersect(const Solid& solid, const Ray& ray) {
   return std::visit([&ray](const auto& shape) { return IntersectSolid(shape, ray); }, solid);
 }
 
-PlanBounds BoundsOf(const Solid& solid) {
+Bounds BoundsOf(const Solid& solid) {
   return std::visit([](const auto& shape) { return BoundsOfSolid(shape); }, solid);
 }
 

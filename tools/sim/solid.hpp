@@ -52,12 +52,14 @@ using Solid = std::variant<Cylinder, Ellipsoid, Prism, Triangle>;
 /// @return nullopt when the ray misses, or starts inside
 std::optional<Hit> Intersect(const Solid& solid, const Ray& ray);
 
-/// What holds a solid, seen from above: discs of one radius around points whose convex hull, widened by it, contains the solid.
-struct PlanBounds {
+/// Seen from above, the convex hull of the points, widened by the radius, contains the solid; so do the heights.
+struct Bounds {
   std::vector<Eigen::Vector2d> points_m;
   double radius_m = 0.0;
+  double low_m = 0.0;
+  double high_m = 0.0;
 };
-PlanBounds BoundsOf(const Solid& solid);
+Bounds BoundsOf(const Solid& solid);
 
 /// @return rectangle from (min_x, min_y) to (max_x, max_y), counter-clockwise
 std::vector<Eigen::Vector2d> Rectangle(double min_x_m, double max_x_m, double min_y_m, double max_y_m);

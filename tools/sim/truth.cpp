@@ -34,7 +34,7 @@ void Print(io::OutputFile& out, const char* form, Values... values) {
   out.Write(std::string_view(text.data()));
 }
 
-// ",-12.3456". Much quicker than printf, of which a turn of the lidar would need 15 000.
+// ",-12.3456". Much quicker than printf: a scan has 15 000 of them.
 void AppendMetres(double value_m, std::string& text) {
   constexpr long long kUnitsPerMetre = 10'000;
   const long long units = std::llround(value_m * static_cast<double>(kUnitsPerMetre));

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "common/bus/log_event.hpp"
+#include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::bus {
@@ -22,7 +23,7 @@ class LogFile : public ::testing::Test {
   fs::path file_ = folder_ / "log";
 
   void WriteThree() {
-    LogWriter writer(file_, true);
+    support::FileLog writer(file_);
     for (int i = 0; i < 3; ++i) {
       const std::vector<std::uint8_t> bytes(100, static_cast<std::uint8_t>(i));
       writer.Write(Utime(std::chrono::microseconds(1000 + i)), "CHANNEL", bytes);
@@ -130,7 +131,7 @@ TEST_F(LogFile, SkipsJunkInFrontAndBetween) {
 TEST_F(LogFile, PassesOverWhatIsNotWanted) {
   const std::vector<std::uint8_t> large(200'000, 7);  // more than is read at once
   {
-    LogWriter writer(file_, true);
+    support::FileLog writer(file_);
     for (int i = 0; i < 20; ++i) {
       writer.Write(Utime(std::chrono::microseconds(i)), i % 2 == 0 ? "LARGE" : "SMALL", i % 2 == 0 ? Bytes(large) : Bytes(large).first(10));
     }
@@ -172,24 +173,7 @@ TEST_F(LogFile, TellsWhatTheTakerThrows) {
   EXPECT_THROW(writer.Flush(), std::runtime_error);
 }
 
-TEST_F(LogFile, IsNotOverwrittenUnlessAskedFor) {
-  WriteThree();
-  EXPECT_THROW(LogWriter(file_, false), std::runtime_error);
-}
-
 TEST_F(LogFile, ThatDoesNotExistIsAnError) { EXPECT_THROW(LogReader("/nonexistent/file"), std::runtime_error); }
-
-TEST_F(LogFile, ThatTheDiskDoesNotTakeIsAnError) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this computer";
-  LogWriter writer("/dev/full", true);
-  const std::vector<std::uint8_t> bytes(100'000);
-  EXPECT_THROW(
-      {
-        for (int i = 0; i < 10; ++i) writer.Write(Utime(), "CHANNEL", bytes);
-        writer.Flush();
-      },
-      std::runtime_error);
-}
 
 TEST_F(LogFile, OfLcmsOwnToolsCanBeRead) {
   const fs::path recording = support::kRecordings / "lcm/lcmproj_example.lcmlog";

@@ -44,7 +44,7 @@ TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
   bus.time_to_live = 1;
   EXPECT_SAYS(About(CheckBus(bus), "route"), kOk, "goes by eth0; time-to-live 1");
   bus.route_device = "lo";
-  EXPECT_SAYS(About(CheckBus(bus), "route"), kWarning, "other computers shall hear it, and do not");
+  EXPECT_SAYS(About(CheckBus(bus), "route"), kWarning, "other computers cannot hear it");
   bus.time_to_live = 0;
   bus.fault = "there is no route";
   EXPECT_SAYS(About(CheckBus(bus), "route"), kFault, "ip route add 239.255.76.0/24 dev lo");
@@ -57,9 +57,10 @@ TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
 TEST(DoctorPort, WarnsOfWhoListensToOtherComputersWithoutAFilter) {
   Observations seen = Healthy();
   EXPECT_SAYS(About(CheckPort(seen), "port"), kOk,
-              "port 7667 of the bus is open on eth0; Lookout's programs take only sound datagrams of this computer");
+              "port 7667 of the bus is open on eth0; Lookout's programs accept only valid datagrams of this computer");
   seen.port.without_filter = {"a program of user pi", "lcm-logger (pid 17)"};
-  EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning, "can be ended by one datagram: a program of user pi");
+  EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning,
+              "one datagram can end a program that listens there without a filter, as LCM's own tools do: a program of user pi");
   EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning, "LOOKOUT_BUS_FIREWALL=on");
   seen.bus.time_to_live = 1;
   EXPECT_SAYS(About(CheckPort(seen), "port"), kWarning, "lcm-logger (pid 17)");
@@ -138,7 +139,7 @@ TEST(DoctorLidar, MissesIt) {
 TEST(DoctorLidar, SeesThatItHasStopped) {
   auto seen = Healthy();
   seen.lidar.heard_last = kEnd - std::chrono::seconds(2);
-  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "is the lidar powered");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "check the lidar's power and cable");
 }
 
 TEST(DoctorLidar, SeesLosses) {
@@ -155,7 +156,7 @@ TEST(DoctorLidar, SeesAPortThatIsTakenAndASensorThatIsNotWanted) {
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kFault, "running on another bus");
   seen = Healthy();
   seen.config.lidar->sources.kind = vlp16::Sources::Kind::kCapture;
-  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "takes no sensor");
+  EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "no sensor is checked");
   seen.config.lidar.reset();
   EXPECT_SAYS(About(CheckLidar(seen), "lidar"), kWarning, "vlp16.txtpb is wrong");
 }
@@ -373,7 +374,7 @@ TEST(DoctorDisk, CountsTheHours) {
   disk.is_writable = false;
   EXPECT_SAYS(About(CheckDisk(disk), "disk"), kFault, "cannot be written");
   disk.free_bytes = -1;
-  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kFault, "cannot be looked at");
+  EXPECT_SAYS(About(CheckDisk(disk), "disk"), kFault, "cannot be read");
   disk.other_host = "cabin";
   EXPECT_SAYS(About(CheckDisk(disk), "disk"), kOk, "runs on cabin");
 }
@@ -415,7 +416,7 @@ TEST(DoctorProcesses, SeesTwoOfAKindButNotARestart) {
 
 TEST(DoctorProcesses, LooksAtWhatComesOut) {
   auto seen = Healthy();
-  EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kOk, "10.0 turns/s, 10.0 obstacles in each, all placed on the earth");
+  EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kOk, "10.0 scans/s, 10.0 obstacles in each, all placed on the earth");
   seen.obstacles.num_placed = 100;
   EXPECT_SAYS(About(CheckProcesses(seen), "obstacles"), kWarning, "400 of 500 in the vessel frame only");
   seen.obstacles.num_timeouts = 3;

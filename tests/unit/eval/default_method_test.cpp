@@ -14,7 +14,7 @@ namespace {
 const std::filesystem::path kRoot = support::kSources;
 
 constexpr int kNumSeeds = 5;
-constexpr double kSeconds = 0.4;  // three whole turns of each seed
+constexpr double kSeconds = 0.4;  // three whole scans of each seed
 
 enum class Count { kAll, kSureOnly };  // operating points of the comparison, in its order
 

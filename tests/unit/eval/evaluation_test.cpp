@@ -117,7 +117,7 @@ TEST_F(EvaluationTest, ScoresSegmentsByReturns) {
   EXPECT_EQ(evaluation.num_returns, 4);
   EXPECT_EQ(evaluation.num_joined, 4);
   // Ferry 2 of 2, pile 1 of 2 (the other is a stray).
-  EXPECT_DOUBLE_EQ(evaluation.turn_iou.Mean(), 0.75);
+  EXPECT_DOUBLE_EQ(evaluation.scan_iou.Mean(), 0.75);
   EXPECT_EQ(evaluation.scores_by_kind.at("boat").num_found, 1);
   EXPECT_EQ(evaluation.scores_by_kind.at("pile").num_present, 1);
   EXPECT_EQ(evaluation.scores_by_kind.at("pile").num_found, 0) << "half of a segment is not its own";

@@ -1,6 +1,6 @@
-#include "tools/eval/geometry.hpp"
-
 #include <gtest/gtest.h>
+
+#include "tools/eval/truth.hpp"
 
 namespace lookout::eval {
 namespace {

@@ -23,7 +23,7 @@ namespace lookout::eval {
 namespace {
 
 const std::filesystem::path kRoot = support::kSources;
-constexpr double kSeconds = 0.4;  // three whole turns
+constexpr double kSeconds = 0.4;  // three whole scans
 
 Boat Catabot() { return LoadBoat(kRoot / "config/catabot"); }
 

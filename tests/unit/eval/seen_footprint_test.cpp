@@ -75,7 +75,7 @@ TEST_F(SeenFootprint, CentreOfALineIsItsMiddleAndOfAPointThePoint) {
 
 SeenObstacle At(std::int64_t turn, int object_id, double east_error_m) {
   SeenObstacle obstacle;
-  obstacle.turn_utime_us = kStartUs + 100'000 * turn;
+  obstacle.scan_utime_us = kStartUs + 100'000 * turn;
   obstacle.object_id = object_id;
   obstacle.num_points = 10;
   obstacle.error_m = {east_error_m, 0.0};

@@ -12,13 +12,17 @@ TEST(Truth, FindsReturnsWithinAMicrosecondByRingAndReturn) {
   const support::TempDir folder;
   WriteTruth(folder);
   const Truth truth(folder);
-  EXPECT_EQ(truth.ObjectOf(kStartUs, 0, 0), 1);
-  EXPECT_EQ(truth.ObjectOf(kStartUs + 1, 0, 0), 1);
-  EXPECT_EQ(truth.ObjectOf(kStartUs - 1, 0, 0), 1);
-  EXPECT_EQ(truth.ObjectOf(kStartUs - 2, 0, 0), std::nullopt);
-  EXPECT_EQ(truth.ObjectOf(kStartUs, 1, 0), std::nullopt);
-  EXPECT_EQ(truth.ObjectOf(kStartUs, 0, 1), std::nullopt);
-  EXPECT_EQ(truth.ObjectOf(kStartUs + 55, 0, 0), 2);
+  const auto object_of = [&truth](std::int64_t utime_us, int ring, int return_index) {
+    const auto* found = truth.Find(utime_us, ring, return_index);
+    return found != nullptr ? std::optional(found->object_id) : std::nullopt;
+  };
+  EXPECT_EQ(object_of(kStartUs, 0, 0), 1);
+  EXPECT_EQ(object_of(kStartUs + 1, 0, 0), 1);
+  EXPECT_EQ(object_of(kStartUs - 1, 0, 0), 1);
+  EXPECT_EQ(object_of(kStartUs - 2, 0, 0), std::nullopt);
+  EXPECT_EQ(object_of(kStartUs, 1, 0), std::nullopt);
+  EXPECT_EQ(object_of(kStartUs, 0, 1), std::nullopt);
+  EXPECT_EQ(object_of(kStartUs + 55, 0, 0), 2);
 }
 
 TEST(Truth, OutlineOfAMovingObjectLiesBetweenItsSamples) {
@@ -44,7 +48,7 @@ TEST(Truth, BadFilesAreNamedWithTheirLine) {
     const Truth truth(folder);
     FAIL();
   } catch (const std::runtime_error& error) {
-    EXPECT_EQ(std::string(error.what()), (folder / "returns.csv").string() + ":3: not a number: x");
+    EXPECT_EQ(std::string(error.what()), (folder / "returns.csv").string() + ":3: return_index: not a whole number: x");
   }
   WriteFile(folder / "returns.csv", "utime_us,ring\n");
   EXPECT_THROW(Truth{folder}, std::runtime_error);

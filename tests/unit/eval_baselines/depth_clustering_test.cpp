@@ -17,7 +17,7 @@ DepthClusteringParams WithoutGround() {
 }
 
 Labelling Segment(const segmenter::Scan& scan, const DepthClusteringParams& params) {
-  return DepthClustering("depth clustering", {}, params).Segment(scan);
+  return Peer("depth clustering", {}, params.limits, DepthGrouping(params)).Segment(scan);
 }
 
 DepthImage Column(std::vector<float> range_m) {

@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 
 Labelling Segment(const segmenter::Scan& scan, double distance_m, SizeLimits limits = {}, const segmenter::ReturnFilter& filter = {}) {
-  return EuclideanClustering("Euclidean", filter, {distance_m, limits}).Segment(scan);
+  return Peer("Euclidean", filter, limits, EuclideanGrouping(distance_m)).Segment(scan);
 }
 
 TEST(EuclideanClustering, OfAnEmptyTurnIsEmpty) {

@@ -16,7 +16,9 @@ F3dParams F3dWithoutGround() {
   return params;
 }
 
-Labelling Segment(const segmenter::Scan& scan, const F3dParams& params) { return F3d("F3D", {}, params).Segment(scan); }
+Labelling Segment(const segmenter::Scan& scan, const F3dParams& params) {
+  return Peer("F3D", {}, {}, F3dGrouping(params, segmenter::ReturnFilter{}.T_vessel_lidar)).Segment(scan);
+}
 
 TEST(F3d, OfAnEmptyTurnIsEmpty) {
   const auto scan = Turn();

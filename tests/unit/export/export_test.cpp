@@ -10,6 +10,7 @@
 
 #include "common/io/stop_signal.hpp"
 #include "lookout/run_info_t.hpp"
+#include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/export/export_logs.hpp"
 #include "tools/export/words.hpp"
@@ -346,7 +347,7 @@ TEST(ExportProgram, EndsQuietlyWhenNobodyReads) {
   const support::TempDir folder;
   const auto log = folder / "log";
   {
-    bus::LogWriter writer(log, true);
+    support::FileLog writer(log);
     for (int i = 0; i < 20'000; ++i) writer.Write(Utime(std::chrono::microseconds(kStartUs)), "POSE", bus::Encode(pose_t{}));
   }
   const std::string command = "bash -c 'set -o pipefail; " + program + " --in " + log.string() + " --table pose | head -n 1 > /dev/null'";

@@ -18,6 +18,7 @@
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/run_info_t.hpp"
+#include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::log_test {
@@ -25,8 +26,7 @@ namespace lookout::log_test {
 namespace fs = std::filesystem;
 
 // A type that no version of Lookout has, and its fingerprint as lcm-gen 1.3.1 gives it.
-inline const std::string kGoneType = "package lookout; struct gone_t { int64_t utime_us; int64_t seq; }";
-inline const std::vector<std::uint8_t> kGoneFingerprint{0x7D, 0x10, 0xA8, 0xEF, 0xBF, 0xE5, 0xE4, 0xFF};
+inline const std::vector<std::uint8_t> kUnknownFingerprint{0x7D, 0x10, 0xA8, 0xEF, 0xBF, 0xE5, 0xE4, 0xFF};
 
 class SmallLog : public ::testing::Test {
  protected:
@@ -66,7 +66,7 @@ class SmallLog : public ::testing::Test {
   }
 
   fs::path Write(const std::string& name, const std::vector<bus::LogEvent>& events) const {
-    bus::LogWriter writer(folder_ / name, true);
+    support::FileLog writer(folder_ / name);
     for (const auto& event : events) writer.Write(event.time, event.channel, event.bytes);
     return folder_ / name;
   }

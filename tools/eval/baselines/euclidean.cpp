@@ -6,8 +6,9 @@
 
 namespace lookout::eval {
 
-segmenter::Groups EuclideanClustering::GroupReturns(const segmenter::Scan& /*scan*/, std::span<const segmenter::Return> returns,
-                                                    StageClock& clock) const {
+namespace {
+
+segmenter::Groups Group(std::span<const segmenter::Return> returns, double distance_m, StageClock& clock) {
   std::vector<segmenter::Point> points_m;
   points_m.reserve(returns.size());
   for (const auto& one : returns) points_m.push_back(one.point);
@@ -24,7 +25,7 @@ segmenter::Groups EuclideanClustering::GroupReturns(const segmenter::Scan& /*sca
     groups.of_return[seed] = group;
     queue.assign(1, static_cast<std::int32_t>(seed));
     for (std::size_t next = 0; next < queue.size(); ++next) {
-      tree.FindWithin(returns[static_cast<std::size_t>(queue[next])].point, params_.distance_m, neighbours);
+      tree.FindWithin(returns[static_cast<std::size_t>(queue[next])].point, distance_m, neighbours);
       for (const auto neighbour : neighbours) {
         auto& neighbours_group = groups.of_return[static_cast<std::size_t>(neighbour)];
         if (neighbours_group != segmenter::Groups::kNone) continue;
@@ -35,6 +36,14 @@ segmenter::Groups EuclideanClustering::GroupReturns(const segmenter::Scan& /*sca
   }
   clock.End("clusters");
   return groups;
+}
+
+}  // namespace
+
+Grouping EuclideanGrouping(double distance_m) {
+  return [distance_m](const segmenter::Scan&, std::span<const segmenter::Return> returns, StageClock& clock) {
+    return Group(returns, distance_m, clock);
+  };
 }
 
 }  // namespace lookout::eval

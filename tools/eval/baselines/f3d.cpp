@@ -1,5 +1,7 @@
 #include "tools/eval/baselines/f3d.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cstddef>
 
 #include "services/segmenter/core/union_find.hpp"
@@ -8,6 +10,41 @@
 namespace lookout::eval {
 
 namespace {
+
+using Indices = std::vector<std::size_t>;
+
+struct Plane {
+  Eigen::Vector3d normal;  // upward
+  double offset_m = 0.0;   // of the plane along the normal
+};
+
+Plane FitPlane(std::span<const Eigen::Vector3d> points_m, const Indices& indices) {
+  Eigen::Vector3d mean_m = Eigen::Vector3d::Zero();
+  for (const auto i : indices) mean_m += points_m[i];
+  mean_m /= static_cast<double>(indices.size());
+  Eigen::Matrix3d spread_m2 = Eigen::Matrix3d::Zero();
+  for (const auto i : indices) spread_m2 += (points_m[i] - mean_m) * (points_m[i] - mean_m).transpose();
+  // Eigenvalues come in increasing order: the normal is where the points spread least.
+  Eigen::Vector3d normal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread_m2).eigenvectors().col(0);
+  if (normal.z() < 0.0) normal = -normal;
+  return {normal, normal.dot(mean_m)};
+}
+
+// Of `indices`, those lower than a height over the mean of the lowest.
+Indices Seeds(std::span<const Eigen::Vector3d> points_m, const Indices& indices, const GroundPlaneParams& params) {
+  std::vector<double> height_m;
+  for (const auto i : indices) height_m.push_back(points_m[i].z());
+  const auto num_lowest = std::min(height_m.size(), static_cast<std::size_t>(params.num_lowest));
+  std::partial_sort(height_m.begin(), height_m.begin() + static_cast<std::ptrdiff_t>(num_lowest), height_m.end());
+  double sum_m = 0.0;
+  for (std::size_t i = 0; i < num_lowest; ++i) sum_m += height_m[i];
+  const double limit_m = sum_m / static_cast<double>(num_lowest) + params.seed_height_m;
+  Indices seeds;
+  for (const auto i : indices) {
+    if (points_m[i].z() < limit_m) seeds.push_back(i);
+  }
+  return seeds;
+}
 
 using ScanLine = std::vector<std::int32_t>;  // indices of returns, in the order of columns
 
@@ -58,17 +95,16 @@ void MergeWithRingAbove(const ScanLine& line, const ScanLine& above, std::span<c
   }
 }
 
-}  // namespace
-
-segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) const {
+segmenter::Groups Group(const F3dParams& params, const Eigen::Isometry3d& T_vessel_lidar, const segmenter::Scan& scan,
+                        std::span<const segmenter::Return> returns, StageClock& clock) {
   std::vector<bool> is_ground(returns.size(), false);
-  if (params_.ground) {
+  if (params.ground) {
     std::vector<Eigen::Vector3d> p_vessel_m;
     p_vessel_m.reserve(returns.size());
     for (const auto& one : returns) {
-      p_vessel_m.emplace_back(filter().T_vessel_lidar * Eigen::Vector3d(one.point.x_m, one.point.y_m, one.point.z_m));
+      p_vessel_m.emplace_back(T_vessel_lidar * Eigen::Vector3d(one.point.x_m, one.point.y_m, one.point.z_m));
     }
-    is_ground = FitGround(p_vessel_m, *params_.ground);
+    is_ground = FitGround(p_vessel_m, *params.ground);
     clock.End("ground");
   }
   std::vector<ScanLine> lines(static_cast<std::size_t>(scan.head.num_rings()));
@@ -76,10 +112,10 @@ segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const
     if (!is_ground[i]) lines[static_cast<std::size_t>(returns[i].ring)].push_back(static_cast<std::int32_t>(i));
   }
   segmenter::UnionFind sets(returns.size());
-  for (const auto& line : lines) JoinRuns(line, returns, params_.run_distance_m, sets);
+  for (const auto& line : lines) JoinRuns(line, returns, params.run_distance_m, sets);
   clock.End("runs");
   for (std::size_t ring = lines.size(); ring > 1; --ring) {
-    MergeWithRingAbove(lines[ring - 2], lines[ring - 1], returns, params_.merge_distance_m, sets);
+    MergeWithRingAbove(lines[ring - 2], lines[ring - 1], returns, params.merge_distance_m, sets);
   }
   clock.End("merging");
 
@@ -92,6 +128,42 @@ segmenter::Groups F3d::GroupReturns(const segmenter::Scan& scan, std::span<const
     groups.of_return[i] = root == i ? groups.count++ : groups.of_return[root];
   }
   return groups;
+}
+
+}  // namespace
+
+std::vector<bool> FitGround(std::span<const Eigen::Vector3d> points_m, const GroundPlaneParams& params) {
+  std::vector<bool> is_ground(points_m.size(), false);
+  if (points_m.empty()) return is_ground;
+  const auto [first, last] =
+      std::minmax_element(points_m.begin(), points_m.end(), [](const auto& one, const auto& other) { return one.x() < other.x(); });
+  const double begin_m = first->x();
+  const double length_m = last->x() - begin_m;
+  std::vector<Indices> segments(static_cast<std::size_t>(params.num_segments));
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    const double place = length_m > 0.0 ? (points_m[i].x() - begin_m) / length_m * params.num_segments : 0.0;
+    segments[std::min(segments.size() - 1, static_cast<std::size_t>(place))].push_back(i);
+  }
+  constexpr std::size_t kPointsOfPlane = 3;
+  for (const auto& segment : segments) {
+    if (segment.empty()) continue;
+    auto ground = Seeds(points_m, segment, params);
+    for (int iteration = 0; iteration < params.num_iterations && ground.size() >= kPointsOfPlane; ++iteration) {
+      const auto plane = FitPlane(points_m, ground);
+      ground.clear();
+      for (const auto i : segment) {
+        if (plane.normal.dot(points_m[i]) - plane.offset_m < params.max_distance_m) ground.push_back(i);
+      }
+    }
+    for (const auto i : ground) is_ground[i] = true;
+  }
+  return is_ground;
+}
+
+Grouping F3dGrouping(const F3dParams& params, const Eigen::Isometry3d& T_vessel_lidar) {
+  return [params, T_vessel_lidar](const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) {
+    return Group(params, T_vessel_lidar, scan, returns, clock);
+  };
 }
 
 }  // namespace lookout::eval

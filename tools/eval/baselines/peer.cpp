@@ -29,7 +29,7 @@ Labelling Peer::Segment(const segmenter::Scan& scan) {
   StageClock clock;
   const auto classified = segmenter::ClassifyReturns(scan, filter_);
   clock.End("returns");
-  const auto groups = GroupReturns(scan, classified.returns, clock);
+  const auto groups = grouping_(scan, classified.returns, clock);
 
   Labelling labelling;
   std::int32_t num_segments = 0;

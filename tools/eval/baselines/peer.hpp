@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -39,28 +40,27 @@ class StageClock {
   std::vector<std::pair<std::string, std::chrono::nanoseconds>> stages_;
 };
 
-/// A method that groups the returns of a whole turn.
+/// Groups the returns of a whole scan, and ends its stages. @return a group for each return, kNone for those that it leaves out
+using Grouping = std::function<segmenter::Groups(const segmenter::Scan&, std::span<const segmenter::Return>, StageClock&)>;
+
+/// A method that is a grouping of the returns.
 ///
-/// Returns out of range, out of the field of view and of the own vessel are sorted out by the filter of the segmenter, so that all methods look at
+/// Returns out of range, out of the field of view and of the own vessel are left out by the filter of the segmenter, so that all methods see
 /// the same ones; in dual return, what repeats another return of its shot has the label of that one. Segments are numbered in the order of their
-/// first return. None of the papers knows a doubt: a size is the choice that they give (SizeLimits).
-class Peer : public Method {
+/// first return. None of the papers knows a doubt: a size is the choice that they offer (SizeLimits).
+class Peer final : public Method {
  public:
-  Peer(std::string name, const segmenter::ReturnFilter& filter, SizeLimits limits) : name_(std::move(name)), filter_(filter), limits_(limits) {}
+  Peer(std::string name, const segmenter::ReturnFilter& filter, SizeLimits limits, Grouping grouping)
+      : name_(std::move(name)), filter_(filter), limits_(limits), grouping_(std::move(grouping)) {}
 
-  std::string name() const final { return name_; }
-  Labelling Segment(const segmenter::Scan& scan) final;
-
- protected:
-  const segmenter::ReturnFilter& filter() const { return filter_; }
-
-  /// @return a group for each return, kNone for those that the method leaves out
-  virtual segmenter::Groups GroupReturns(const segmenter::Scan& scan, std::span<const segmenter::Return> returns, StageClock& clock) const = 0;
+  std::string name() const override { return name_; }
+  Labelling Segment(const segmenter::Scan& scan) override;
 
  private:
   std::string name_;
   segmenter::ReturnFilter filter_;
   SizeLimits limits_;
+  Grouping grouping_;
 };
 
 }  // namespace lookout::eval

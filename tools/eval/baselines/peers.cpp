@@ -1,6 +1,8 @@
 #include "tools/eval/baselines/peers.hpp"
 
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "tools/eval/baselines/depth_clustering.hpp"
 #include "tools/eval/baselines/euclidean.hpp"
@@ -8,50 +10,37 @@
 
 namespace lookout::eval {
 
-namespace {
-
-// The choice that peers give between what they find and what they find for nothing: a least size. 1 and 3 were in the grid of tuning.
-constexpr SizeLimits kThreeOrMore{3};
-
-// Of any size unless said: on the water a single return may be a buoy.
-EuclideanParams Within(double distance_m, SizeLimits limits = {}) { return {distance_m, limits}; }
-
-// Tuned values: README.md says on which scenes and over which grid.
-DepthClusteringParams TunedDepthClustering(SizeLimits limits = {}) {
-  DepthClusteringParams params;
-  params.ground.reset();
-  params.angle_rad = DegToRad(10);
-  params.reach_columns = 16;
-  params.reach_rings = 1;
-  params.limits = limits;
-  return params;
-}
-
-F3dParams TunedF3d(SizeLimits limits = {}) {
-  F3dParams params;
-  params.ground.reset();
-  params.run_distance_m = 2.0;
-  params.merge_distance_m = 3.0;
-  params.limits = limits;
-  return params;
-}
-
-}  // namespace
-
 Methods MakePeers(const segmenter::ReturnFilter& filter) {
   Methods methods;
-  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 0.02 m (PCL tutorial)", filter, EuclideanParams{}));
-  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 0.5 m", filter, Within(0.5)));
-  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 2 m", filter, Within(2.0)));
-  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 4 m", filter, Within(4.0)));
-  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 2.5 m (tuned)", filter, Within(2.5)));
-  methods.push_back(std::make_unique<EuclideanClustering>("Euclidean 2.5 m (tuned, 3 returns or more)", filter, Within(2.5, kThreeOrMore)));
-  methods.push_back(std::make_unique<DepthClustering>("depth clustering (defaults)", filter, DepthClusteringParams{}));
-  methods.push_back(std::make_unique<DepthClustering>("depth clustering (tuned)", filter, TunedDepthClustering()));
-  methods.push_back(std::make_unique<DepthClustering>("depth clustering (tuned, 3 returns or more)", filter, TunedDepthClustering(kThreeOrMore)));
-  methods.push_back(std::make_unique<F3d>("F3D (defaults)", filter, F3dParams{}));
-  methods.push_back(std::make_unique<F3d>("F3D (tuned)", filter, TunedF3d()));
-  methods.push_back(std::make_unique<F3d>("F3D (tuned, 3 returns or more)", filter, TunedF3d(kThreeOrMore)));
+  const auto add = [&](const char* name, SizeLimits limits, Grouping grouping) {
+    methods.push_back(std::make_unique<Peer>(name, filter, limits, std::move(grouping)));
+  };
+  // Of any size unless said: on the water a single return may be a buoy. A least size is the choice that peers offer between what they find and what
+  // they find for nothing; 1 and 3 were in the grid of tuning.
+  constexpr SizeLimits kAnySize{};
+  constexpr SizeLimits kThreeOrMore{3};
+  // PCL's tutorial is about things on a table.
+  constexpr SizeLimits kTutorial{100, 25'000};
+  // Tuned values: README.md says on which scenes and over which grid.
+  const DepthClusteringParams depth;
+  const DepthClusteringParams tuned_depth{
+      .ground = std::nullopt, .angle_rad = DegToRad(10), .reach_columns = 16, .reach_rings = 1, .limits = kAnySize};
+  const F3dParams f3d;
+  const F3dParams tuned_f3d{.ground = std::nullopt, .run_distance_m = 2.0, .merge_distance_m = 3.0};
+  const auto& mounting = filter.T_vessel_lidar;
+
+  add("Euclidean 0.02 m (PCL tutorial)", kTutorial, EuclideanGrouping(0.02));
+  add("Euclidean 0.5 m", kAnySize, EuclideanGrouping(0.5));
+  add("Euclidean 2 m", kAnySize, EuclideanGrouping(2.0));
+  add("Euclidean 4 m", kAnySize, EuclideanGrouping(4.0));
+  add("Euclidean 2.5 m (tuned)", kAnySize, EuclideanGrouping(2.5));
+  add("Euclidean 2.5 m (tuned, 3 returns or more)", kThreeOrMore, EuclideanGrouping(2.5));
+  add("depth clustering (defaults)", depth.limits, DepthGrouping(depth));
+  add("depth clustering (tuned)", kAnySize, DepthGrouping(tuned_depth));
+  add("depth clustering (tuned, 3 returns or more)", kThreeOrMore, DepthGrouping(tuned_depth));
+  add("F3D (defaults)", kAnySize, F3dGrouping(f3d, mounting));
+  add("F3D (tuned)", kAnySize, F3dGrouping(tuned_f3d, mounting));
+  add("F3D (tuned, 3 returns or more)", kThreeOrMore, F3dGrouping(tuned_f3d, mounting));
   return methods;
 }
 

@@ -1,4 +1,4 @@
-#include "common/config/boat_words.hpp"
+#include "common/config/boat.hpp"
 
 #include <unistd.h>
 
