@@ -18,8 +18,8 @@
 #include "tests/support/files.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/sim/lidar.hpp"
-#include "tools/sim/sinks.hpp"
 #include "tools/sim/scene_file.hpp"
+#include "tools/sim/sinks.hpp"
 
 namespace lookout::eval::test {
 

@@ -1,5 +1,3 @@
-#include "tools/export/sinks.hpp"
-
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -9,6 +7,7 @@
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
 #include "tests/unit/export/export_logs.hpp"
+#include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
 namespace {

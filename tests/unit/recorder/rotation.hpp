@@ -34,7 +34,8 @@ inline constexpr std::int64_t kPlenty = 1'000'000'000'000;
 
 class Rotation : public ::testing::Test {
  protected:
-  support::TempDir folder_;
+  support::TempDir temp_dir_;
+  fs::path folder_ = temp_dir_.path();  // a test may look elsewhere
   bus::MemoryBus bus_;
   Utime now_{seconds(1'800'000'000)};
   Params params_{.log_folder = folder_, .reserve_bytes = 0};

@@ -11,7 +11,7 @@ TEST_F(Rotation, ALogThatIsDeletedIsFollowedByAnother) {
   service.Flush();
   EXPECT_EQ(Count(service, "events"), 11);
   const auto num_bytes = Count(service, "bytes");
-  fs::remove_all(folder_.path());
+  fs::remove_all(folder_);
   service.Flush();
   EXPECT_EQ(service.Report().state, HealthState::kFailed);
   EXPECT_NE(service.Report().reason.find("was deleted while it was recorded: 11 events"), std::string::npos) << service.Report().reason;

@@ -1,9 +1,9 @@
+#include "tools/sim/faulty_network.hpp"
+
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
 #include <vector>
-
-#include "tools/sim/faulty_network.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -1,7 +1,8 @@
+#include "tools/sim/lidar_clock.hpp"
+
 #include <gtest/gtest.h>
 
 #include "services/vlp16/core/packet_format.hpp"
-#include "tools/sim/lidar_clock.hpp"
 
 namespace lookout::sim {
 namespace {

@@ -1,3 +1,5 @@
+#include "tools/sim/sinks.hpp"
+
 #include <unistd.h>
 
 #include <array>
@@ -6,8 +8,6 @@
 #include <pcap/pcap.h>
 #include <stdexcept>
 #include <vector>
-
-#include "tools/sim/sinks.hpp"
 
 #include "tests/support/files.hpp"
 

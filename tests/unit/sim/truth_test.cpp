@@ -1,3 +1,5 @@
+#include "tools/sim/truth.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +18,6 @@
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
-#include "tools/sim/truth.hpp"
 
 namespace lookout::sim {
 namespace {
