@@ -289,7 +289,7 @@ TEST(Structure, ReadmeSaysWhatEachServiceReadsAndPublishes) {
 // It handles SIGHUP for each.
 TEST(Structure, EachServiceUsesTheSharedMain) {
   for (const auto& service : lookout::bus::kServices) {
-    EXPECT_NE(ReadFile(kRoot / "services" / service.name / "main.cpp").find("runtime::ServiceMain<"), std::string::npos) << service.name;
+    EXPECT_NE(ReadFile(kSources / "services" / service.name / "main.cpp").find("runtime::ServiceMain<"), std::string::npos) << service.name;
   }
 }
 
