@@ -83,7 +83,7 @@ const std::vector<Rule>& Rules() {
       {"common/io/.*", {"common/core", "common/io", "socket"}},
       {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
       {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
-      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf"}},
+      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
