@@ -157,7 +157,7 @@ TEST(ObstaclesAfterAGnssGap, DoNotJumpByMoreThanWasStated) {
     const auto seen = Simulate("crossing", seed, kGapEndS + 3.0, {"gnss_gap:12:20"});
     const auto between = [&](double from_s, double to_s) {
       return Summarise(seen, [from_s, to_s](const auto& obstacle) {
-        const double time_s = SecondsSinceStart(obstacle.turn_utime_us) - kGapEndS;
+        const double time_s = SecondsSinceStart(obstacle.scan_utime_us) - kGapEndS;
         return IsMeant(obstacle) && time_s > from_s && time_s < to_s;
       });
     };

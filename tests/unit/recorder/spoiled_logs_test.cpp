@@ -137,9 +137,9 @@ TEST_F(Rotation, AFolderThatIsRenamedIsMadeAnewAndItsReserveHolds) {
   EXPECT_EQ(Count(service, "lost"), 0);
   EXPECT_FALSE(is_asked_of_nothing);
   EXPECT_EQ(Recorded(), (std::vector<std::int64_t>{10, 11, 12, 13, 14}));
-  const auto anew = std::exchange(folder_, fs::path(moved));
+  fs::remove_all(folder_);
+  fs::rename(moved, folder_);
   EXPECT_EQ(Recorded(), UpTo(10));
-  fs::remove_all(anew);
 }
 
 TEST_F(Rotation, ALogToWhichAnotherProgramWritesIsFollowedByAnother) {
