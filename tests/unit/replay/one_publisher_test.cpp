@@ -52,7 +52,7 @@ TEST_F(OnePublisherOfALog, HandsOnAllOfALogWithRestartsInItsOrder) {
   }
   one_publisher_.Finish();
   EXPECT_EQ(taken_, expected);
-  EXPECT_EQ(one_publisher_.num_left_out(), 0);
+  EXPECT_EQ(one_publisher_.num_messages(), 0);
   EXPECT_TRUE(one_publisher_.Interleavings().empty());
 }
 
@@ -70,7 +70,7 @@ TEST_F(OnePublisherOfALog, LeavesOutTheSecondOfTwoAndSaysFromWhere) {
   ASSERT_EQ(interleavings.size(), 1U);
   EXPECT_EQ(interleavings[0].channel, "NAV_RAW");
   EXPECT_EQ(interleavings[0].event, 10);
-  EXPECT_EQ(interleavings[0].num_left_out, 50);
+  EXPECT_EQ(interleavings[0].num_messages, 50);
 }
 
 // POSE of two navigators of one switch, for the same instants, five at once: told apart as the live readers do.
@@ -90,7 +90,7 @@ TEST_F(OnePublisherOfALog, LeavesOutTheSecondOfTwoOfTheSameInstants) {
   }
   one_publisher_.Finish();
   EXPECT_EQ(taken_.size(), 400U);
-  EXPECT_EQ(one_publisher_.num_left_out(), 350);
+  EXPECT_EQ(one_publisher_.num_messages(), 350);
 }
 
 TEST_F(OnePublisherOfALog, HandsOnWhatItsReadersRefuse) {
@@ -109,7 +109,7 @@ TEST_F(OnePublisherOfALog, HoldsNoMoreThanThereIsRoomFor) {
   const std::vector<std::uint8_t> large(100'000, 1);
   for (int i = 0; i < 700; ++i) one_publisher_.Add(2 + i, time_, bus::kLidarPackets, large);
   EXPECT_GE(taken_.size(), 701U);
-  EXPECT_EQ(one_publisher_.num_left_out(), 1);
+  EXPECT_EQ(one_publisher_.num_messages(), 1);
   one_publisher_.Finish();
   EXPECT_EQ(taken_.size(), 701U);
 }
