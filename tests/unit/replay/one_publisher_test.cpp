@@ -52,7 +52,7 @@ TEST_F(OnePublisherOfALog, HandsOnAllOfALogWithRestartsInItsOrder) {
   }
   one_publisher_.Finish();
   EXPECT_EQ(taken_, expected);
-  EXPECT_EQ(one_publisher_.num_messages(), 0);
+  EXPECT_EQ(one_publisher_.num_left_out(), 0);
   EXPECT_TRUE(one_publisher_.Interleavings().empty());
 }
 
@@ -90,7 +90,7 @@ TEST_F(OnePublisherOfALog, LeavesOutTheSecondOfTwoOfTheSameInstants) {
   }
   one_publisher_.Finish();
   EXPECT_EQ(taken_.size(), 400U);
-  EXPECT_EQ(one_publisher_.num_messages(), 350);
+  EXPECT_EQ(one_publisher_.num_left_out(), 350);
 }
 
 TEST_F(OnePublisherOfALog, HandsOnWhatItsReadersRefuse) {
@@ -109,7 +109,7 @@ TEST_F(OnePublisherOfALog, HoldsNoMoreThanThereIsRoomFor) {
   const std::vector<std::uint8_t> large(100'000, 1);
   for (int i = 0; i < 700; ++i) one_publisher_.Add(2 + i, time_, bus::kLidarPackets, large);
   EXPECT_GE(taken_.size(), 701U);
-  EXPECT_EQ(one_publisher_.num_messages(), 1);
+  EXPECT_EQ(one_publisher_.num_left_out(), 1);
   one_publisher_.Finish();
   EXPECT_EQ(taken_.size(), 701U);
 }
