@@ -132,7 +132,7 @@ TEST(Effects, PacketsSayWhereEveryReturnOfEveryEffectIsToACentimetre) {
         ASSERT_EQ(positions.size(), packet.returns.size());
         for (const auto& made : packet.returns) {
           reasons.insert(made.reason);
-          // Azimuths are rounded to 0.01 deg, and two of them tell the turn of the head: 0.01 deg are a centimetre at 57 m.
+          // Azimuths are rounded to 0.01 deg, and two of them give the rotation of the head: 0.01 deg are a centimetre at 57 m.
           const double limit_m = std::max(0.01, made.p_lidar_m.norm() * DegToRad(0.0105));
           ASSERT_LT((positions.at(made.slot) - made.p_lidar_m).norm(), limit_m) << NameOf(made.reason);
           const bool is_of_object = made.reason == ReturnReason::kObject || made.reason == ReturnReason::kMixedEdge;
