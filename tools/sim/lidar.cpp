@@ -265,7 +265,8 @@ LidarPacket Lidar::Next() {
     clutter_.MoveTo(time_s);
 
     if (sequence == 0) {
-      const auto azimuth_cdeg = static_cast<std::uint16_t>(std::lround(RadToDeg(WrapTo2Pi(AzimuthAt(time_s))) * 100.0) % format::kAzimuthsPerRevolution);
+      const auto azimuth_cdeg =
+          static_cast<std::uint16_t>(std::lround(RadToDeg(WrapTo2Pi(AzimuthAt(time_s))) * 100.0) % format::kAzimuthsPerRevolution);
       for (int i = 0; i < (is_dual ? 2 : 1); ++i) {
         const std::size_t offset = static_cast<std::size_t>(block + i) * format::kBlockSizeBytes;
         WriteU16LittleEndian(payload, offset + format::kBlockFlagOffset, format::kBlockFlag);
