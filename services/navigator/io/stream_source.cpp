@@ -80,7 +80,11 @@ std::string StreamSource::Poll(Utime now) {
   } else if (state_ == State::kClosed) {
     // A clock that was set back does not make the pause longer.
     const bool is_time = !last_attempt_ || now - *last_attempt_ >= pause_ || now < *last_attempt_;
-    if (is_time) Attempt(now);
+    if (is_time) {
+      Attempt(now);
+      // A server of this computer answers at once: the next call says what has come of it.
+      if (state_ == State::kConnecting) return {};
+    }
   }
   if (fault_ == reported_fault_) return {};
   reported_fault_ = fault_;

@@ -146,9 +146,9 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
   }
   const int sector_cdeg = blind_sector_.WidthCdeg();
   if (sector_cdeg == 0 || place.is_disagreeing) return place;
-  const double num_scans = std::max(0.0, std::round((num_missing - num_passed) / packets_per_revolution));
+  const double num_revolutions = std::max(0.0, std::round((num_missing - num_passed) / packets_per_revolution));
   const int hidden_cdeg = blind_sector_.HiddenCdeg(gap, last_->step_cdeg());
-  const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_scans * (format::kAzimuthsPerRevolution - sector_cdeg);
+  const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_revolutions * (format::kAzimuthsPerRevolution - sector_cdeg);
   place.num_lost = std::max(0, static_cast<int>(std::lround(visible_cdeg / sweep_cdeg)));
   if (place.num_lost == 0) place.kind = Kind::kNext;
   return place;

@@ -31,7 +31,7 @@ class ScanCutter {
 
   /// Scans ended for being larger than any scan of this sensor (it stands still, or packets lie).
   std::int64_t num_capped() const { return num_capped_; }
-  /// Scan of the head per step in the last packet, 0 before the first.
+  /// Rotation of the head per step in the last packet, 0 before the first.
   int last_gap_cdeg() const { return last_gap_cdeg_; }
 
  private:

@@ -218,6 +218,37 @@ TEST_F(SourceTest, TcpConnectsAgainWhenTheServerWasAway) {
   EXPECT_EQ(Count(*source, "plotter_opened"), 2);
 }
 
+TEST_F(SourceTest, TcpReportsNothingOfAConnectionThatIsMadeAtOnceAndEachChangeOnce) {
+  auto server = std::make_unique<Server>();
+  const auto source = Tcp(server->port);
+  std::vector<std::string> changes;
+  const auto poll = [&] {
+    now_ += 100ms;
+    if (const auto change = source->Poll(now_); !change.empty()) changes.push_back(change);
+    while (source->Receive(now_)) {
+    }
+  };
+  for (int round = 0; round < 5; ++round) poll();
+  EXPECT_TRUE(source->fault().empty()) << source->fault();
+  EXPECT_TRUE(changes.empty()) << changes.front();
+  server->Accept();
+  const int port = server->port;
+  server.reset();
+  for (int round = 0; round < 200 && changes.empty(); ++round) {
+    poll();
+    std::this_thread::sleep_for(10ms);
+  }
+  ASSERT_EQ(changes.size(), 1U);
+  EXPECT_NE(changes.back().find(": "), std::string::npos) << changes.back();
+  for (int round = 0; round < 40; ++round) poll();
+  ASSERT_EQ(changes.size(), 2U);
+  EXPECT_NE(changes.back().find("Connection refused"), std::string::npos) << changes.back();
+  server = std::make_unique<Server>(port);
+  for (int round = 0; round < 100 && changes.size() == 2; ++round) poll();
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_NE(changes.back().find(" is open"), std::string::npos) << changes.back();
+}
+
 TEST_F(SourceTest, TcpWaitsLongerAfterEachFailure) {
   int port = 0;
   {

@@ -219,7 +219,7 @@ TEST(Decoder, SharesALossAcrossTheCutBetweenBothScans) {
   EXPECT_EQ(bench.scans[1].counts.num_lost, 2);
 }
 
-TEST(Decoder, DoesNotJoinWhatLiesMoreThanAScanApart) {
+TEST(Decoder, DoesNotJoinWhatLiesMoreThanARevolutionApart) {
   Bench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
@@ -284,7 +284,7 @@ TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
   EXPECT_EQ(bench.scans[0].time_ns[23], (11 + 224) * 110592 + 55296);
 }
 
-TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatScans) {
+TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatRotates) {
   Bench bench;
   int azimuth_cdeg = 18000;
   for (int packet = 0; packet < 1600; ++packet) {
@@ -319,7 +319,7 @@ TEST(Decoder, EndsTheScanWhereTheHeadIsNotWhereItShouldBe) {
   }
 }
 
-TEST(Decoder, DoesNotJoinScansWhenALittleLessThanAScanIsMissing) {
+TEST(Decoder, DoesNotJoinScansWhenALittleLessThanARevolutionIsMissing) {
   for (const int lost : {74, 75, 76}) {
     Bench bench;
     SpinningSensor sensor;
