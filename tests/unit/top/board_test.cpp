@@ -195,6 +195,14 @@ TEST(Board, ShowsATurnWithoutItsLastPartWhenTheNextBegins) {
   EXPECT_EQ(obstacles->num_parts_missing, 2);
 }
 
+TEST(Board, RefusesObstaclesThatAnnouncePartsWithoutEnd) {
+  Board board(kStart);
+  Say(board, bus::kObstacles, TurnOf(1, {}, 0, 2000), 0.1);
+  Say(board, bus::kObstacles, TurnOf(2, {}, 0, 2001), 0.2);
+  const auto channels = board.Channels(At(0.3));
+  EXPECT_EQ(std::ranges::find(channels, bus::kObstacles.name, &ChannelLine::name)->num_bad, 1);
+}
+
 TEST(Board, ObstaclesAgeOutAfterTwoSeconds) {
   Board board(kStart);
   Say(board, bus::kObstacles, TurnOf(1, {ObstacleAt(1, 5.0F, 0.0F)}), 1.0);
