@@ -132,7 +132,8 @@ bool IsWellFormed(const lidar_scan_t& message) { return HasPlace(message) && Has
 bool IsWellFormed(const segments_t& message) { return HasPlace(message) && HasCells(message); }
 
 bool IsWellFormed(const obstacles_t& message) {
-  return HasPlace(message) && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
+  constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
+  return HasPlace(message) && message.num_parts <= kMaxObstaclesParts && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
            return obstacle.num_map == 0 || obstacle.num_map == obstacle.num_footprint;
          });
 }

@@ -13,7 +13,8 @@
 
 namespace lookout::messages {
 
-/// Whether the time exists, part_index lies below num_parts, and the counts agree, so that every array may be read by them.
+/// Whether the time exists, part_index lies below num_parts, and the counts agree, so that every array may be read by them; of
+/// OBSTACLES also that no more than 2000 parts are announced, so that who waits for them needs no memory without end.
 bool IsWellFormed(const lidar_scan_t& message);
 bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);

@@ -27,7 +27,7 @@ bool HasAllParts(const std::map<std::int32_t, Message>& parts) {
 }
 
 /// Messages of a channel come in their order; the channels may be ahead of each other by max_waiting scans. A part that came before begins its scan
-/// again: a log that was recorded or read twice.
+/// once more, beside the first: a log that was read twice, or one of two publishers. A message belongs to the first of them that lacks it.
 class ScanCollector {
  public:
   enum class Order { kOfArrival, kOfCompletion };
@@ -53,7 +53,6 @@ class ScanCollector {
  private:
   template <typename Message>
   bool Add(Message message, std::map<std::int32_t, Message> ScanMessages::*parts);
-  std::size_t IndexOf(std::int64_t utime_us, std::int64_t seq) const;
   void HandOn(std::size_t index);
 
   Predicate is_complete_;

@@ -22,17 +22,17 @@ void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<Neares
 
 void GuardAlarm::Add(const ScanHead& head, const std::optional<NearestPoint>& nearest) {
   const ScanKey key{ToUtimeUs(head.time), head.seq};
-  if (key == last_scan_) return;  // came twice
+  if (key == last_whole_) return;  // came twice
   const auto ended = assembler_.Add({key.first, key.second, head.part_index, head.num_parts, head.scan_flags, nearest});
   if (!ended.incomplete.empty()) Evaluate(ended.incomplete, false);
-  if (!ended.whole.empty()) Evaluate(ended.whole, true);
+  if (ended.whole.empty()) return;
+  const bool is_one_scan = std::ranges::all_of(ended.whole, [&head](const ZonePart& part) { return part.num_parts == head.num_parts; });
+  if (is_one_scan) last_whole_ = key;
+  Evaluate(ended.whole, is_one_scan);
 }
 
 void GuardAlarm::Evaluate(const std::vector<ZonePart>& parts, bool has_all_parts) {
-  const ScanKey key{parts.front().utime_us, parts.front().seq};
-  if (key == last_scan_) return;
-  last_scan_ = key;
-  Seen scan{Utime(microseconds(key.first)), has_all_parts, std::nullopt};
+  Seen scan{Utime(microseconds(parts.front().utime_us)), has_all_parts, std::nullopt};
   for (const auto& part : parts) {
     if (part.scan_flags != 0) scan.is_whole = false;
     KeepNearer(scan.nearest, part.nearest);

@@ -32,7 +32,8 @@ class GuardAlarm {
   static constexpr std::chrono::seconds kTimeToClear{1};
   static constexpr std::chrono::milliseconds kTimeToUnwatched{500};
 
-  /// A scan, or a part of one.
+  /// A scan, or a part of one. Whatever a part shows counts, also one that comes after its scan ended without it, or that disagrees with others about
+  /// the number of parts: such a scan is not whole.
   ///
   /// @param nearest  of what this part shows within the zone; nullopt: nothing
   void Add(const ScanHead& head, const std::optional<NearestPoint>& nearest);
@@ -73,6 +74,9 @@ class GuardAlarm {
     std::int32_t num_parts = 0;
     std::int32_t scan_flags = 0;
     std::optional<NearestPoint> nearest;
+
+    // None is refused for its num_parts: it may show what no other does.
+    friend bool AgreeAboutScan(const ZonePart& /*one*/, const ZonePart& /*other*/) { return true; }
   };
   struct Seen {
     Utime time;
@@ -84,8 +88,8 @@ class GuardAlarm {
   void Evaluate(const Seen& scan);
 
   messages::PartAssembler<ZonePart> assembler_;
-  std::optional<ScanKey> last_scan_;  // the last that ended
-  std::deque<Seen> window_;           // whole scans, and others that show something
+  std::optional<ScanKey> last_whole_;  // the last of which all parts came
+  std::deque<Seen> window_;            // whole scans, and others that show something
   std::optional<Utime> newest_;
   bool is_raised_ = false;
   NearestPoint last_nearest_;

@@ -79,7 +79,7 @@ TEST(Pages, HaveNoLongLineOutsideOfTables) {
 // Words of a dialect that only its authors spoke; CONTRIBUTING.md has the terms.
 TEST(Pages, AndCodeUseTheTermsOfTheField) {
   const std::regex dialect(
-      R"(way of the data|throng|what is of it|as settled|the order of nothing|of no even stream|TellWhatIsKnown|CarryOn\b|lookout_room|)"
+      R"(way of the data|throng|what is of it|the order of nothing|of no even stream|TellWhatIsKnown|CarryOn\b|lookout_room|)"
       R"((whole|partial|half a|per|each|every) turn\b|turns? of the (lidar|sensor|head|scanner)\b|TurnGatherer|TurnCollector|TurnPicker)",
       std::regex::icase);
   for (const auto& file : FilesWithEnding({".md", ".cpp", ".hpp", ".java", ".proto", ".lcm", ".txt", ".cmake", ".txtpb", ".in"})) {
@@ -94,7 +94,7 @@ TEST(Pages, AndCodeUseTheTermsOfTheField) {
   }
 }
 
-// "One packet's way to an obstacle" in CONTRIBUTING.md: each row names a file, and something that stands in it.
+// "From packet to obstacle" in CONTRIBUTING.md: each row names a file, and something that stands in it.
 TEST(Pages, TheWalkForNewcomersNamesWhatIsThere) {
   const std::regex row(R"(^\| ([^|]+) \| `([^`]+)` \| `([^`]+)` \|$)");
   std::istringstream page(ReadFile(kSources / "CONTRIBUTING.md"));

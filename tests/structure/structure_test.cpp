@@ -41,7 +41,7 @@ std::vector<std::string> Includes(const fs::path& file) {
   return includes;
 }
 
-// What an include is: the room of ours, the library, or "std".
+// What an include is: the module of ours, the library, or "std".
 std::string KindOf(const std::string& include) {
   static const std::vector<std::pair<std::string, std::string>> kPrefixes{{"lookout/", "wire types"},
                                                                           {"config/schema/", "config types"},
@@ -71,9 +71,9 @@ std::string KindOf(const std::string& include) {
   return "std";
 }
 
-// A room and the kinds that its files may include besides std and Eigen. "OWN" stands for the service's folder.
+// A module and the kinds that its files may include besides std and Eigen. "OWN" stands for the service's folder.
 struct Rule {
-  std::string room;  // regular expression of the path below the root
+  std::string module;  // regular expression of the path below the root
   std::vector<std::string> allowed;
 };
 
@@ -89,9 +89,8 @@ const std::vector<Rule>& Rules() {
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
-      {"services/[^/]+/params\\..pp", {"common/core", "common/config", "OWN/core", "OWN", "config types"}},
-      // As params; it knows what an address is.
-      {"services/[^/]+/inputs\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
+      // It knows what an address is.
+      {"services/[^/]+/params(_text)?\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
       // Opens what params name.
       {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
@@ -105,13 +104,13 @@ const std::vector<Rule>& Rules() {
   return kRules;
 }
 
-TEST(Structure, RoomsIncludeOnlyWhatTheyMay) {
+TEST(Structure, ModulesIncludeOnlyWhatTheyMay) {
   int num_checked = 0;
   for (const auto& folder : {"common", "services"}) {
     for (const auto& file : SourcesBelow(kSources / folder)) {
       const std::string path = fs::relative(file, kSources).string();
-      const auto rule = std::ranges::find_if(Rules(), [&](const Rule& candidate) { return std::regex_match(path, std::regex(candidate.room)); });
-      ASSERT_NE(rule, Rules().end()) << path << " is in no room that the rules name";
+      const auto rule = std::ranges::find_if(Rules(), [&](const Rule& candidate) { return std::regex_match(path, std::regex(candidate.module)); });
+      ASSERT_NE(rule, Rules().end()) << path << " is in no module that the rules name";
       const std::string own = path.substr(0, path.find('/', path.find('/') + 1));
       for (const auto& include : Includes(file)) {
         const std::string kind = KindOf(include);

@@ -244,8 +244,10 @@ TEST_F(BusGuard, AnAddressThatIsNoBusIsRefusedWithItsReason) {
       if (program == "doctor" && url != wrong.front().first) continue;  // it takes its time
       std::vector<std::string> options{"--lcm-url", url};
       if (program == "top") options.emplace_back("--once");
-      if (program == "doctor") options.insert(options.end(), {"--seconds", "2", "--config", (folder_ / "config").string()});
-      Start(program, options);
+      if (program == "doctor") options.insert(options.end(), {"--seconds", "2"});
+      if (program != "top") options.insert(options.end(), {"--config", Config()});
+      options.insert(options.begin(), Bin(program));
+      children_[program] = std::make_unique<Child>(options, Output(program));
       const auto& child = children_[program];
       // The doctor looks at all the rest too, and calls it a fault.
       EXPECT_EQ(child->Wait(seconds(20)).value_or(-1), program == "doctor" ? 1 : 2) << program << " " << url;

@@ -50,7 +50,8 @@ TEST_F(EvalLine, EachTakesItsOwnSeedsWhereNoneAreNamed) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
   std::ifstream in(Path("page.html"));
   const std::string page(std::istreambuf_iterator<char>(in), {});
-  EXPECT_NE(page.find("1 a scene (101 to 101)"), std::string::npos);
+  EXPECT_NE(page.find(R"("first_seed":"101")"), std::string::npos);
+  EXPECT_NE(page.find(R"("last_seed":"101")"), std::string::npos);
 }
 
 TEST_F(EvalLine, SeedsOfTuningCanBeLookedAtWithoutMakingATable) {

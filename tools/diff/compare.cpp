@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <stdexcept>
 #include <type_traits>
 
 #include "common/bus/decode.hpp"
@@ -136,11 +137,16 @@ Difference CompareBytes(Bytes a, Bytes b) {
   return {"byte " + std::to_string(place_a - a.begin()), ByteText(*place_a), ByteText(*place_b)};
 }
 
-// @return nullopt also where the fields do not say all: nobody reads the closing zero of a string
+// @return nullopt also where the fields do not say all: nobody reads the closing zero of a string, and LCM ends a string that it encodes at its first
+//         zero
 template <WireStruct T>
 std::optional<T> DecodeWhole(Bytes bytes) {
   auto message = bus::Decode<T>(bytes);
-  if (message && !std::ranges::equal(bus::Encode(*message), bytes)) message.reset();
+  try {
+    if (message && !std::ranges::equal(bus::Encode(*message), bytes)) message.reset();
+  } catch (const std::logic_error&) {
+    message.reset();
+  }
   return message;
 }
 

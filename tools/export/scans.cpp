@@ -36,8 +36,8 @@ bool IsWhole(const ScanMessages& scan, ChosenScan::Of channels) {
 bool IsLabelled(const ScanMessages& scan) { return messages::HasAllParts(scan.scans) && messages::HasAllParts(scan.segments); }
 
 messages::ScanCollector MakeCollector(messages::ScanCollector::Predicate is_complete, messages::ScanCollector::Handler on_scan) {
-  // A few seconds of scans, some megabytes: more than the segmenter is ever behind.
-  constexpr std::size_t kMaxWaiting = 64;
+  // 6.4 s of scans at 300 rpm, some megabytes: more than the segmenter is ever behind, and less than the ten seconds of POSE that a picture keeps.
+  constexpr std::size_t kMaxWaiting = 32;
   return {is_complete, messages::ScanCollector::Order::kOfArrival, kMaxWaiting, std::move(on_scan)};
 }
 

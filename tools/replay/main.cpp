@@ -61,7 +61,8 @@ Options ParseOptions(int argc, char** argv) {
   app.add_option("--in", inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
   app.add_option("--out", output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
   app.add_flag("--force", options.force, "replace an existing --out");
-  app.add_option("--from", options.request.from, "channel to read from the log; the service that publishes it, and those before that, do not run (several)")
+  app.add_option("--from", options.request.from,
+                 "channel to read from the log; the service that publishes it, and those before that, do not run (several)")
       ->check(CLI::IsMember(lookout::replay::FromNames()));
   app.add_option("--only", options.request.only, "service to run, and no other; its inputs are read from the log (several)")
       ->check(CLI::IsMember(lookout::replay::ServiceNames()));

@@ -167,7 +167,7 @@ Plan MakeLogPlan(const Request& request, const ChannelSet& present, const Servic
 }
 
 Plan MakeCapturePlan(const Request& request, const ServiceRows& services) {
-  const Plan plan = Running(request, services);
+  Plan plan = Running(request, services);
   if (!request.from.empty()) throw RequestError(fmt::format("--from {}: a capture holds datagrams, not messages", request.from.front()));
   const auto fed = FedServices(plan, {}, services);
   for (const auto& service : services) {

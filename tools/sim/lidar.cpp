@@ -108,7 +108,7 @@ double Lidar::AzimuthAt(double time_s) const {
   return azimuth_rad;
 }
 
-// Draws the noise of range and reflectivity.
+// Draws the noise of range, then, where the range can be measured, that of reflectivity.
 Lidar::Measurement Lidar::ToMeasurement(double range_m, double brightness, int object_id, ReturnReason reason) {
   const double range_2mm = std::round((range_m + effects_.range_sd_m() * random_.Normal()) / format::kRangeUnitM);
   if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
@@ -221,7 +221,9 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
   if (clutter_.has_drops()) {
     if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
       // A drop is either large and near enough or not: no range at which it is seen half of the time.
-      seen.Add(ToMeasurement(drop->range_m, drop->reflectance, kNoObject, drop->reason));
+      const Measurement measured = ToMeasurement(drop->range_m, drop->reflectance, kNoObject, drop->reason);
+      if (measured.range_2mm == 0) random_.Normal();  // of its reflectivity: each drop draws both, so that the seed gives the same data at any range
+      seen.Add(measured);
     }
   }
   // Only where nothing was met: a stray takes no return from an object.
@@ -265,7 +267,8 @@ LidarPacket Lidar::Next() {
     clutter_.MoveTo(time_s);
 
     if (sequence == 0) {
-      const auto azimuth_cdeg = static_cast<std::uint16_t>(std::lround(RadToDeg(WrapTo2Pi(AzimuthAt(time_s))) * 100.0) % format::kAzimuthsPerRevolution);
+      const auto azimuth_cdeg =
+          static_cast<std::uint16_t>(std::lround(RadToDeg(WrapTo2Pi(AzimuthAt(time_s))) * 100.0) % format::kAzimuthsPerRevolution);
       for (int i = 0; i < (is_dual ? 2 : 1); ++i) {
         const std::size_t offset = static_cast<std::size_t>(block + i) * format::kBlockSizeBytes;
         WriteU16LittleEndian(payload, offset + format::kBlockFlagOffset, format::kBlockFlag);

@@ -46,8 +46,7 @@ class Nearest {
     std::int64_t seq = 0;
     std::int32_t part_index = 0;
     std::int32_t num_parts = 1;
-    std::vector<ObstacleLine> lines;
-    TimePoint time;
+    NearestObstacles nearest;
   };
   static NearestObstacles ToNearest(const std::vector<Part>& parts);
 

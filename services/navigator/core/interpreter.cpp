@@ -233,7 +233,7 @@ Reading Interpreter::ReadFix(const Item& item, Source& source, const Sentence& s
   if (is_measured) source.declination_rad = Or(sentence.declination_rad, source.declination_rad);
   const bool is_vectornav = sentence.type == SentenceType::kVnIns;
   Reading reading;
-  auto& fix = reading.fix.emplace(GnssFix{sentence, *when, item.source, sentence.name});
+  auto& fix = reading.fix.emplace(GnssFix{static_cast<const FixValues&>(sentence), *when, item.source, sentence.name});
   if (!is_vectornav) fix.course_rad = CourseOf(fix.speed_mps, fix.course_rad);
   CompleteFix(source, fix);
   if (is_vectornav) reading.attitude = MakeAttitude(item, source, sentence, *when, sentence.heading_rad);
@@ -285,7 +285,7 @@ Reading Interpreter::ReadAttitude(const Item& item, Source& source, const Senten
 
 Attitude Interpreter::MakeAttitude(const Item& item, const Source& source, const Sentence& sentence, const MeasurementTime& when,
                                    double heading_rad) const {
-  Attitude attitude{sentence, when, item.source, sentence.name};
+  Attitude attitude{static_cast<const AttitudeValues&>(sentence), when, item.source, sentence.name};
   attitude.heading_rad = WrapHeading(heading_rad + params_.heading_offset_rad);
   attitude.pitch_rad = WrapTilt(source.params.pitch_sign * sentence.pitch_rad + params_.pitch_offset_rad);
   attitude.roll_rad = WrapTilt(source.params.roll_sign * sentence.roll_rad + params_.roll_offset_rad);

@@ -106,6 +106,20 @@ TEST_F(Compare, WithoutToleranceIsBitForBit) {
   EXPECT_EQ(Text(a, b), "heading_rad: nan (0x7ff8000000000000) | nan (0x7ff8000000000007)");
 }
 
+// LCM ends a string that it encodes at its first zero: such a message cannot be encoded again.
+TEST_F(Compare, AStringWithAZeroInsideIsComparedByteByByte) {
+  nav_raw_t raw{};
+  raw.sentence = "$GPHDT,1.0,T";
+  const auto original = bus::Encode(raw);
+  auto spoiled = original;
+  spoiled[spoiled.size() - 4 - 1 - 5] = 0;  // behind the sentence stand its closing zero and num_imu
+  ASSERT_TRUE(bus::Decode<nav_raw_t>(spoiled));
+  const auto difference = Differ(Bytes(original), Bytes(spoiled));
+  ASSERT_TRUE(difference);
+  EXPECT_TRUE(difference->field.starts_with("byte ")) << difference->field;
+  EXPECT_EQ(difference->b, "0x00");
+}
+
 TEST_F(Compare, AToleranceHoldsForItsFieldAlone) {
   auto a = TwoSegments();
   auto b = a;

@@ -91,7 +91,7 @@ TEST_F(Diff, NamesALogThatBeginsInTheMiddleOfARunAsTheReasonOfEarlyDifferences) 
   EXPECT_TRUE(Said("reason, perhaps: B begins without a start mark of NAV_RAW")) << out_.str();
   EXPECT_FALSE(Said("A begins")) << out_.str();
   EXPECT_EQ(Compare({NavRaw(0, 7), Pose(1, 0), Pose(60, 1, 0.5)}, {NavRaw(0, 7), Pose(1, 0), Pose(60, 1, 0.75)}), kExitDifferent);
-  EXPECT_FALSE(Said("reason")) << "it has settled by then: " << out_.str();
+  EXPECT_FALSE(Said("reason")) << "the clock fit has settled by then: " << out_.str();
 }
 
 TEST_F(Diff, SaysWhichLogHoldsTwoPublishersAndFromWhere) {

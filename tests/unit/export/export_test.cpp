@@ -176,9 +176,9 @@ class SvgTest : public ExportTest {
     further.num_segments = 1;
     Add(bus::kSegments, further);
   }
-  void AddHeading(double heading_rad) {
+  void AddHeading(double heading_rad, std::int64_t utime_us = kStartUs) {
     pose_t pose{};
-    pose.utime_us = kStartUs;
+    pose.utime_us = utime_us;
     pose.heading_rad = heading_rad;
     Add(bus::kPose, pose);
   }
@@ -212,6 +212,21 @@ TEST_F(SvgTest, TurnsTheBowUpWithTheConfigOfTheBoatAndNorthUpWithAHeading) {
   ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
   EXPECT_NE(text_.find(">N<"), std::string::npos);
   EXPECT_NE(text_.find("heading 57.3 deg"), std::string::npos);
+}
+
+TEST_F(SvgTest, KnowsTheHeadingAlsoWithoutSegmentsAtThreeHundredRpm) {
+  AddBoat();
+  constexpr int kNumScans = 150;
+  for (int seq = 0; seq < kNumScans; ++seq) {
+    auto scan = MakeScan(seq);
+    scan.utime_us = kStartUs + seq * 200'000;
+    Add(bus::kLidarScan, scan);
+    for (int i = 0; i < 10; ++i) AddHeading(1.0, scan.utime_us + i * 20'000);
+  }
+  for (const auto seq : {std::optional<std::int64_t>(), std::optional<std::int64_t>(70)}) {
+    ASSERT_EQ(Export("returns", "svg", seq), kExitFine) << errors_;
+    EXPECT_NE(text_.find("heading 57.3 deg"), std::string::npos);
+  }
 }
 
 TEST_F(SvgTest, IsTheSameTextForTheSameLog) {

@@ -42,6 +42,12 @@ class TheAlarm : public ::testing::Test {
     message.scan_flags = flags;
     return message;
   }
+  segments_t PartAt(std::int64_t offset_us, int part_index, int num_parts, bool has_obstacle) const {
+    auto message = ScanAt(offset_us, has_obstacle);
+    message.part_index = part_index;
+    message.num_parts = num_parts;
+    return message;
+  }
   // The next scan, a period after the one before in message time and host time.
   void Scan(bool has_obstacle, std::int32_t flags = 0) {
     Wait(milliseconds(kPeriodUs / 1000));
@@ -194,6 +200,47 @@ TEST_F(TheAlarm, CountsAScanInPartsOnce) {
   EXPECT_EQ(Alarms(), 0);
   EXPECT_EQ(Counter("zone_unwatched"), 0);
   EXPECT_EQ(Counter("scans_whole"), 6);
+}
+
+TEST_F(TheAlarm, TakesPartsInAnyOrder) {
+  for (int i = 0; i < 3; ++i) {
+    Wait(milliseconds(100));
+    for (const int part : {1, 0}) Take(PartAt(time_us_, part, 2, part == 0));
+    time_us_ += kPeriodUs;
+    ++seq_;
+  }
+  EXPECT_TRUE(IsObstacleTold());
+  EXPECT_EQ(Counter("scans_whole"), 3);
+}
+
+TEST_F(TheAlarm, IsRungByPartsThatComeAfterTheNextScanBegan) {
+  for (int i = 0; i < 5; ++i) {
+    Wait(milliseconds(100));
+    Take(PartAt(time_us_, 0, 2, false));
+    if (i > 0) {
+      --seq_;
+      Take(PartAt(time_us_ - kPeriodUs, 1, 2, true));
+      ++seq_;
+    }
+    time_us_ += kPeriodUs;
+    ++seq_;
+  }
+  EXPECT_TRUE(IsObstacleTold());
+  EXPECT_EQ(Counter("scans_whole"), 0);
+}
+
+TEST_F(TheAlarm, IsRungByPartsThatDisagreeAboutTheirNumber) {
+  for (const auto& num_parts : {std::vector{3, 2, 3}, {3, 4, 3}, {2, 3, 3}}) {
+    service_.emplace(bus_, params_);
+    for (int i = 0; i < 4; ++i) {
+      Wait(milliseconds(100));
+      for (int part = 0; part < 3; ++part) Take(PartAt(time_us_, part, num_parts[static_cast<std::size_t>(part)], part == 1));
+      time_us_ += kPeriodUs;
+      ++seq_;
+    }
+    EXPECT_TRUE(IsObstacleTold()) << num_parts[0] << num_parts[1];
+    EXPECT_EQ(Counter("scans_whole"), 0) << num_parts[0] << num_parts[1];
+  }
 }
 
 TEST_F(TheAlarm, NeedsSixTenthsOfASecondAtThreeHundredRpm) {

@@ -83,13 +83,29 @@ TEST_F(ScanCollectorTest, TellsARestartedScanByItsTime) {
   EXPECT_EQ(out_, "0:100 0:010");
 }
 
-TEST_F(ScanCollectorTest, BeginsAScanAgainThatComesAgain) {
+TEST_F(ScanCollectorTest, BeginsAScanOnceMoreThatComesAgain) {
   auto collector = Make(IsSegmented, ScanCollector::Order::kOfArrival);
   for (int i = 0; i < 2; ++i) collector.Add(Part<lidar_scan_t>(0, 0, 2));
-  EXPECT_EQ(out_, "0:100");
   collector.Add(Part<lidar_scan_t>(0, 1, 2));
   collector.Add(Part<segments_t>(0, 0, 1));
-  EXPECT_EQ(out_, "0:100 0:210");
+  EXPECT_EQ(out_, "0:210");
+  collector.Finish();
+  EXPECT_EQ(out_, "0:210 0:100");
+}
+
+TEST_F(ScanCollectorTest, CompletesBothOfTwoScansWhoseMessagesAlternate) {
+  auto collector = Make(IsSegmented, ScanCollector::Order::kOfArrival);
+  for (const int part : {0, 0, 1, 1}) collector.Add(Part<lidar_scan_t>(0, part, 2));
+  for (int i = 0; i < 2; ++i) collector.Add(Part<segments_t>(0, 0, 1));
+  EXPECT_EQ(out_, "0:210 0:210");
+}
+
+TEST_F(ScanCollectorTest, LosesNothingOfAScanWithTheSegmentsOfASecondSegmenter) {
+  auto collector = Make(HasObstacles, ScanCollector::Order::kOfCompletion);
+  collector.Add(Part<lidar_scan_t>(0, 0, 1));
+  for (int i = 0; i < 2; ++i) collector.Add(Part<segments_t>(0, 0, 1));
+  collector.Add(Part<obstacles_t>(0, 0, 1));
+  EXPECT_EQ(out_, "0:111");
 }
 
 TEST_F(ScanCollectorTest, LeavesOutWhatIsNotWellFormed) {

@@ -1,4 +1,4 @@
-// Land: what is of it, and what stays an obstacle beside it.
+// Land: what belongs to it, and what stays an obstacle beside it.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>

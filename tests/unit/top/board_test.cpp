@@ -172,7 +172,7 @@ TEST(Board, SortsObstaclesOfAllPartsAndKeepsTheNearest) {
   std::vector<obstacle_t> far;
   for (int i = 0; i < 49; ++i) far.push_back(ObstacleAt(10 + i, 50.0F + static_cast<float>(i), 1.0F));
   Say(board, bus::kObstacles, TurnOf(1, far, 0, 2), 0.1);
-  EXPECT_EQ(board.Obstacles(At(0.1)), nullptr);  // half a turn
+  EXPECT_EQ(board.Obstacles(At(0.1)), nullptr);  // half a scan
   auto lost_range = ObstacleAt(20, static_cast<float>(kNan), 0.0F);
   Say(board, bus::kObstacles, TurnOf(1, {lost_range, ObstacleAt(21, 7.5F, 2.0F), ObstacleAt(22, 3.25F, 3.0F)}, 1, 2), 0.2);
   const auto* obstacles = board.Obstacles(At(0.3));
@@ -193,6 +193,14 @@ TEST(Board, ShowsATurnWithoutItsLastPartWhenTheNextBegins) {
   ASSERT_NE(obstacles, nullptr);
   EXPECT_EQ(obstacles->lines.size(), 1U);
   EXPECT_EQ(obstacles->num_parts_missing, 2);
+}
+
+TEST(Board, RefusesObstaclesThatAnnouncePartsWithoutEnd) {
+  Board board(kStart);
+  Say(board, bus::kObstacles, TurnOf(1, {}, 0, 2000), 0.1);
+  Say(board, bus::kObstacles, TurnOf(2, {}, 0, 2001), 0.2);
+  const auto channels = board.Channels(At(0.3));
+  EXPECT_EQ(std::ranges::find(channels, bus::kObstacles.name, &ChannelLine::name)->num_bad, 1);
 }
 
 TEST(Board, ObstaclesAgeOutAfterTwoSeconds) {

@@ -276,7 +276,7 @@ void PoseFilter::Add(const GroundVelocity& velocity) {
 }
 
 void PoseFilter::Add(const Attitude& attitude) {
-  AttitudeValues measurement = attitude;
+  auto measurement = static_cast<const AttitudeValues&>(attitude);
   measurement.heading_sd_rad = SdOr(attitude.heading_sd_rad, params_.heading_sd_rad);
   measurement.roll_sd_rad = SdOr(attitude.roll_sd_rad, params_.tilt_sd_rad);
   measurement.pitch_sd_rad = SdOr(attitude.pitch_sd_rad, params_.tilt_sd_rad);

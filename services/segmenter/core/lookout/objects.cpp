@@ -15,8 +15,8 @@ constexpr double kOverShare = 0.7;  // of the columns of the farther one
 constexpr double kWiderM = 2.0;     // by which the farther one may be longer
 
 // Solid things within so many metres of each other that none of them is joined.
-constexpr double kThrongM = 2.0;
-constexpr int kMostInThrong = 24;
+constexpr double kDenseM = 2.0;
+constexpr int kMostInDense = 24;
 constexpr std::size_t kMostDrops = 64;  // tiny ones within reach of one thing
 constexpr double kLargeM = 4.0;
 // Longer than any length is rounded.
@@ -147,13 +147,13 @@ void ObjectJoiner::FindCrowds() {
     const auto look_at = [&](const Solid& other) {
       const double x_m = other.x_m - solid.x_m;
       const double y_m = other.y_m - solid.y_m;
-      if (std::abs(x_m) > kThrongM) return false;
-      num_near += other.root != solid.root && x_m * x_m + y_m * y_m <= kThrongM * kThrongM ? 1 : 0;
-      return num_near <= kMostInThrong;
+      if (std::abs(x_m) > kDenseM) return false;
+      num_near += other.root != solid.root && x_m * x_m + y_m * y_m <= kDenseM * kDenseM ? 1 : 0;
+      return num_near <= kMostInDense;
     };
     for (std::size_t j = i; j > 0 && look_at(solid_[j - 1]);) --j;
     for (std::size_t j = i + 1; j < solid_.size() && look_at(solid_[j]);) ++j;
-    solid.is_crowded = num_near > kMostInThrong;
+    solid.is_crowded = num_near > kMostInDense;
   }
 }
 

@@ -54,7 +54,7 @@ class PieceTable {
   std::int32_t size() const { return static_cast<std::int32_t>(facts_.size()); }
   std::int32_t OfRun(std::int32_t run) const { return piece_of_run_[static_cast<std::size_t>(run)]; }
   std::span<const std::int32_t> of_returns() const { return piece_of_return_; }
-  /// As settled.
+  /// After Settle().
   std::int32_t RootOf(std::int32_t piece) const { return root_of_piece_[static_cast<std::size_t>(piece)]; }
   std::span<const std::int32_t> roots() const { return roots_; }
   const PieceFacts& FactsOf(std::int32_t root) const { return facts_[static_cast<std::size_t>(root)]; }
