@@ -1,5 +1,6 @@
 #include "common/messages/part_assembler.hpp"
 
+#include <array>
 #include <gtest/gtest.h>
 
 namespace lookout::messages {
@@ -76,6 +77,28 @@ TEST(PartAssembler, RefusesAPartThatDisagreesAboutTheScan) {
   EXPECT_TRUE(assembler.Add(Part(7, 1, 3)).whole.empty());
   EXPECT_EQ(assembler.counts().inconsistent_parts, 2);
   ExpectWhole(assembler.Add(Part(7, 1, 2)).whole, 2);
+}
+
+TEST(PartAssembler, LooksAtAllThatPartsShare) {
+  using Change = void (*)(lidar_scan_t&);
+  const auto changes =
+      std::to_array<Change>({[](lidar_scan_t& part) { ++part.end_utime_us; }, [](lidar_scan_t& part) { ++part.raw_seq; },
+                             [](lidar_scan_t& part) { part.flags = lidar_scan_t::FLAG_HOLE; }, [](lidar_scan_t& part) { ++part.num_parts; },
+                             [](lidar_scan_t& part) { part.range_unit_m = 0.004; },
+                             [](lidar_scan_t& part) {
+                               part.elevation_rad = {0.0F, 0.1F};
+                             },
+                             [](lidar_scan_t& part) { part.azimuth_offset_rad = {0.1F}; }, [](lidar_scan_t& part) { part.time_offset_ns = {1}; },
+                             [](lidar_scan_t& part) { part.origin_height_m = {0.1F}; }, [](lidar_scan_t& part) { part.num_returns = 2; },
+                             [](lidar_scan_t& part) { ++part.num_turn_columns; }});
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    PartAssembler<lidar_scan_t> assembler;
+    assembler.Add(Part(7, 0, 2));
+    auto other = Part(7, 1, 2);
+    changes[i](other);
+    EXPECT_TRUE(assembler.Add(other).whole.empty()) << "case " << i;
+    EXPECT_EQ(assembler.counts().inconsistent_parts, 1) << "case " << i;
+  }
 }
 
 // What a process keeps of a message has no more than its place.
