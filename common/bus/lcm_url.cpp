@@ -33,6 +33,12 @@ bool IsMulticastGroup(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &address) == 1 && (ntohl(address.s_addr) >> 28) == 0xE;  // 224.0.0.0/4
 }
 
+// What is printed may come from the environment, and be of any length.
+std::string Shown(std::string_view text) {
+  constexpr std::size_t kMaxShownLetters = 200;
+  return Printable(text.substr(0, kMaxShownLetters));
+}
+
 struct Parsed {
   MulticastAddress address{std::string(kDefaultGroup), kDefaultPort, 0};
   std::string fault;
@@ -50,11 +56,11 @@ Parsed ParseUdpm(std::string_view url) {
   const auto colon = network.find(':');
   if (const auto group = network.substr(0, colon); !group.empty()) parsed.address.group = group;
   if (!IsMulticastGroup(parsed.address.group)) {
-    return fault(Printable(parsed.address.group) + " is no IPv4 multicast group (224.0.0.0 to 239.255.255.255)");
+    return fault(Shown(parsed.address.group) + " is no IPv4 multicast group (224.0.0.0 to 239.255.255.255)");
   }
   if (colon != std::string_view::npos) {
     const auto port = ParseNumber(network.substr(colon + 1), 1, 65'535);
-    if (!port) return fault("the port \"" + Printable(network.substr(colon + 1)) + "\" is no number from 1 to 65535");
+    if (!port) return fault("the port \"" + Shown(network.substr(colon + 1)) + "\" is no number from 1 to 65535");
     parsed.address.port = *port;
   }
   std::string_view arguments = question == std::string_view::npos ? std::string_view() : url.substr(question + 1);
@@ -66,12 +72,12 @@ Parsed ParseUdpm(std::string_view url) {
     const auto value = equals == std::string_view::npos ? std::string_view() : argument.substr(equals + 1);
     if (name == "ttl") {
       const auto time_to_live = ParseNumber(value, 0, 255);
-      if (!time_to_live) return fault("ttl=" + Printable(value) + ": 0 (this computer only) to 255");
+      if (!time_to_live) return fault("ttl=" + Shown(value) + ": 0 (this computer only) to 255");
       parsed.address.time_to_live = *time_to_live;
     } else if (name == "recv_buf_size") {
-      if (!ParseNumber(value, 1, 1 << 30)) return fault("recv_buf_size=" + Printable(value) + ": 1 to 1073741824 bytes");
+      if (!ParseNumber(value, 1, 1 << 30)) return fault("recv_buf_size=" + Shown(value) + ": 1 to 1073741824 bytes");
     } else {
-      return fault("\"" + Printable(name) + "\" is neither ttl nor recv_buf_size");
+      return fault("\"" + Shown(name) + "\" is neither ttl nor recv_buf_size");
     }
   }
   return parsed;
@@ -92,7 +98,7 @@ std::string Reason(const std::string& url) {
 std::string LcmUrlFault(const std::string& url) {
   const auto reason = Reason(url);
   if (reason.empty()) return {};
-  return "LCM address \"" + Printable(url) + "\": " + reason + ". Write it as " + std::string(kExample) +
+  return "LCM address \"" + Shown(url) + "\": " + reason + ". Write it as " + std::string(kExample) +
          " (--lcm-url, or LCM_DEFAULT_URL in the environment)";
 }
 

@@ -297,6 +297,7 @@ TEST(LcmUrl, RefusesTheOthersWithAReason) {
     EXPECT_NE(LcmUrlFault(url).find(reason), std::string::npos) << url << ": " << LcmUrlFault(url);
     EXPECT_FALSE(ParseMulticast(url)) << url;
   }
+  EXPECT_LT(LcmUrlFault("udpm://239.255.76.67:7667?ttl=" + std::string(100'000, '9')).size(), 1000U) << "is printed at each start";
 }
 
 }  // namespace
