@@ -34,6 +34,7 @@ TimedFault ParseTimedFault(std::string_view text) {
   const auto form = std::ranges::find(kTimedFaultForms, text.substr(0, text.find(':')), &TimedFaultForm::name);
   if (form == kTimedFaultForms.end()) {
     std::vector<std::string_view> names;
+    names.reserve(kTimedFaultForms.size());
     for (const auto& known : kTimedFaultForms) names.push_back(known.name);
     throw refuse(fmt::format("no such kind (there are: {})", fmt::join(names, ", ")));
   }
