@@ -6,56 +6,22 @@
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
+#include "tests/unit/vlp16/decoder_bench.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 
 namespace lookout::vlp16 {
 namespace {
 
-using test::Azimuths;
-using test::MakeDataPacket;
-using test::SpinningSensor;
-
-const Utime kDecoderTime = Utime(std::chrono::hours(24 * 20000));
-
-struct Bench {
-  explicit Bench(const DecoderParams& params = {})
-      : decoder(
-            params, [this](const Scan& scan) { scans.push_back(scan); }, [this](const SentenceOfLidar& sentence) { sentences.push_back(sentence); }) {
-  }
-
-  // The host takes a packet when its last shot has gone out.
-  void Send(SpinningSensor& sensor, int num_packets = 1) {
-    for (int i = 0; i < num_packets; ++i) {
-      const auto payload = sensor.Next();
-      decoder.OnDataPayload(kDecoderTime + std::chrono::floor<std::chrono::microseconds>(std::chrono::nanoseconds(sensor.time_ns)), payload);
-    }
-  }
-
-  std::int64_t CountOf(std::string_view name) const {
-    const auto counters = decoder.counters();
-    const auto found = std::ranges::find(counters, name, &Counter::name);
-    return found != counters.end() ? found->count : -1;
-  }
-
-  std::vector<Scan> scans;
-  std::vector<SentenceOfLidar> sentences;
-  Decoder decoder;
-};
-
-DecoderParams Cut(double cut_deg) {
-  DecoderParams params;
-  params.cut_azimuth_rad = DegToRad(cut_deg);
-  return params;
-}
+using namespace test;
 
 TEST(Decoder, GivesNoScanWithoutPackets) {
-  Bench bench;
+  DecoderBench bench;
   bench.decoder.Flush();
   EXPECT_TRUE(bench.scans.empty());
 }
 
 TEST(Decoder, GivesOnePartialScanForOnePacket) {
-  Bench bench;
+  DecoderBench bench;
   auto payload = MakeDataPacket(Azimuths(1000, 40), 1'000'000, format::kModeStrongest, format::kProductVlp16, {});
   test::SetReturn(payload, 0, 0, 0, {700, 11});  // lowest beam
   test::SetReturn(payload, 0, 1, 1, {800, 12});  // laser 1 is ring 8
@@ -89,7 +55,7 @@ TEST(Decoder, GivesOnePartialScanForOnePacket) {
 }
 
 TEST(Decoder, CutsInsideAPacketAtTheFirstColumnAtTheCut) {
-  Bench bench;
+  DecoderBench bench;
   auto sensor = SpinningSensor();
   sensor.azimuth_deg = 355.0;
   bench.Send(sensor, 4);
@@ -106,7 +72,7 @@ TEST(Decoder, CutsInsideAPacketAtTheFirstColumnAtTheCut) {
 }
 
 TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewScan) {
-  Bench bench(Cut(120.0));
+  DecoderBench bench(Cut(120.0));
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(11780, 40), 0));  // second firing of block 5: 119.80 + 0.20
   bench.decoder.Flush();
   ASSERT_EQ(bench.scans.size(), 2U);
@@ -115,7 +81,7 @@ TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewScan) {
 }
 
 TEST(Decoder, InterpolatesAcrossTheSeam) {
-  Bench bench(Cut(180.0));
+  DecoderBench bench(Cut(180.0));
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(35990, 40), 0));
   bench.decoder.Flush();
   ASSERT_EQ(bench.scans.size(), 1U);
@@ -126,7 +92,7 @@ TEST(Decoder, InterpolatesAcrossTheSeam) {
 
 TEST(Decoder, CountsAScanFromCutToCutAsWhole) {
   for (const double rpm : {300.0, 600.0, 1200.0}) {
-    Bench bench;
+    DecoderBench bench;
     SpinningSensor sensor;
     sensor.rpm = rpm;
     const int packets_per_revolution = static_cast<int>(60e9 / rpm / 1327104.0);
@@ -144,7 +110,7 @@ TEST(Decoder, CountsAScanFromCutToCutAsWhole) {
 }
 
 TEST(Decoder, TakesTwoReturnsPerShotInDualMode) {
-  Bench bench;
+  DecoderBench bench;
   auto payload = MakeDataPacket(Azimuths(1000, 40, true), 0, format::kModeDual, format::kProductVlp16, {});
   test::SetReturn(payload, 2, 1, 15, {900, 1});  // last
   test::SetReturn(payload, 3, 1, 15, {800, 2});  // strongest, of the same shot
@@ -164,7 +130,7 @@ TEST(Decoder, TakesTwoReturnsPerShotInDualMode) {
 }
 
 TEST(Decoder, EndsTheScanWhenTheReturnModeChanges) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   bench.Send(sensor, 3);
@@ -186,7 +152,7 @@ TEST(Decoder, EndsTheScanWhenTheReturnModeChanges) {
 }
 
 TEST(Decoder, MarksAHoleInsideAScan) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   bench.Send(sensor, 3);
@@ -202,7 +168,7 @@ TEST(Decoder, MarksAHoleInsideAScan) {
 }
 
 TEST(Decoder, SharesALossAcrossTheCutBetweenBothScans) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 345.0;
   bench.Send(sensor, 2);  // to 354.55
@@ -220,7 +186,7 @@ TEST(Decoder, SharesALossAcrossTheCutBetweenBothScans) {
 }
 
 TEST(Decoder, DoesNotJoinWhatLiesMoreThanARevolutionApart) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   bench.Send(sensor, 2);
@@ -236,7 +202,7 @@ TEST(Decoder, DoesNotJoinWhatLiesMoreThanARevolutionApart) {
 }
 
 TEST(Decoder, DropsCopiesAndPutsLatePacketsRight) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   const auto first = sensor.Next();
@@ -256,7 +222,7 @@ TEST(Decoder, DropsCopiesAndPutsLatePacketsRight) {
 }
 
 TEST(Decoder, KeepsAScanWholeWhenTheSensorsClockIsSet) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.time_ns = 100'000'000'000;
   Utime host = kDecoderTime;
@@ -275,7 +241,7 @@ TEST(Decoder, KeepsAScanWholeWhenTheSensorsClockIsSet) {
 }
 
 TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
-  Bench bench;
+  DecoderBench bench;
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({1000, 1040, 1080, 1120, 1160, 1200, 10200, 10240, 10280, 10320, 10360, 10400}, 0));
   bench.decoder.Flush();
   ASSERT_EQ(bench.scans.size(), 1U);
@@ -285,7 +251,7 @@ TEST(Decoder, TellsTimesBehindAJumpOfALimitedFieldOfView) {
 }
 
 TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatRotates) {
-  Bench bench;
+  DecoderBench bench;
   int azimuth_cdeg = 18000;
   for (int packet = 0; packet < 1600; ++packet) {
     std::array<int, format::kNumBlocks> azimuths{};
@@ -305,7 +271,7 @@ TEST(Decoder, DoesNotTakeAHeadThatCreepsBackForOneThatRotates) {
 }
 
 TEST(Decoder, EndsTheScanWhereTheHeadIsNotWhereItShouldBe) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   bench.Send(sensor, 100);
   sensor.azimuth_deg += 200.0;  // and no time has passed
@@ -321,7 +287,7 @@ TEST(Decoder, EndsTheScanWhereTheHeadIsNotWhereItShouldBe) {
 
 TEST(Decoder, DoesNotJoinScansWhenALittleLessThanARevolutionIsMissing) {
   for (const int lost : {74, 75, 76}) {
-    Bench bench;
+    DecoderBench bench;
     SpinningSensor sensor;
     sensor.rpm = 601.0;
     bench.Send(sensor, 110);
@@ -336,7 +302,7 @@ TEST(Decoder, DoesNotJoinScansWhenALittleLessThanARevolutionIsMissing) {
 TEST(Decoder, StampsASentenceByTheHostWhenNoDataCome) {
   DecoderParams params;
   params.time = TimeChoice::kHost;
-  Bench bench(params);
+  DecoderBench bench(params);
   SpinningSensor sensor;
   bench.Send(sensor, 100);
   const Utime later = kDecoderTime + std::chrono::minutes(40);
@@ -346,7 +312,7 @@ TEST(Decoder, StampsASentenceByTheHostWhenNoDataCome) {
 }
 
 TEST(Decoder, TellsThePhaseOfTheHead) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.time_ns = 999'000'000;
   sensor.azimuth_deg = 100.0;
@@ -358,14 +324,14 @@ TEST(Decoder, TellsThePhaseOfTheHead) {
 }
 
 TEST(Decoder, NamesASensorThatIsNotOfTheFamily) {
-  Bench bench;
+  DecoderBench bench;
   EXPECT_FALSE(bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x28)));
   EXPECT_NE(bench.decoder.last_refusal().find("VLP-32C"), std::string::npos);
   EXPECT_EQ(bench.CountOf("data_unknown_product"), 1);
 }
 
 TEST(Decoder, EndsTheScanWhenTheSensorRestarts) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   sensor.time_ns = 100'000'000'000;
@@ -382,7 +348,7 @@ TEST(Decoder, EndsTheScanWhenTheSensorRestarts) {
 }
 
 TEST(Decoder, CapsAScanThatDoesNotEnd) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 10.0;
   sensor.rpm = 0.0;
@@ -396,7 +362,7 @@ TEST(Decoder, CapsAScanThatDoesNotEnd) {
 }
 
 TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
-  Bench bench;
+  DecoderBench bench;
   SpinningSensor sensor;
   sensor.azimuth_deg = 354.2;
   bench.Send(sensor, 1);
@@ -406,105 +372,13 @@ TEST(Decoder, DoesNotCutTwiceWhenTheEncoderTremblesAtTheCut) {
 }
 
 TEST(Decoder, CutsWhereALimitedFieldOfViewJumpsOverTheCut) {
-  Bench bench;
+  DecoderBench bench;
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket({9000, 9040, 9080, 9120, 9160, 9200, 4500, 4540, 4580, 4620, 4660, 4700}, 0));
   bench.decoder.Flush();
   ASSERT_EQ(bench.scans.size(), 2U);
   EXPECT_EQ(bench.scans[0].num_columns(), 12);
   EXPECT_FALSE(bench.scans[0].is_partial_end);
   EXPECT_NEAR(bench.scans[0].azimuth_rad[11], DegToRad(92.2), 1e-6);
-}
-
-TEST(Decoder, HoldsPacketsOfTheSharedProductByteUntilItKnowsTheModel) {
-  Bench bench;
-  SpinningSensor sensor;
-  sensor.product = format::kProductHdl32e;
-  bench.Send(sensor, 10);
-  bench.decoder.Flush();
-  ASSERT_EQ(bench.scans.size(), 1U);
-  EXPECT_EQ(bench.scans[0].num_columns(), 10 * 24);
-  EXPECT_EQ(bench.CountOf("data_model_undecided"), 0);
-}
-
-TEST(Decoder, RefusesAnHdl32eByName) {
-  Bench bench;
-  for (int i = 0; i < 10; ++i) {
-    bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(100 + i * 240, 20), static_cast<std::uint32_t>(i * 553), 0x37, 0x21));
-  }
-  bench.decoder.Flush();
-  EXPECT_TRUE(bench.scans.empty());
-  EXPECT_EQ(bench.CountOf("data_hdl32e"), 10);
-  EXPECT_NE(bench.decoder.last_refusal().find("HDL-32E"), std::string_view::npos);
-}
-
-TEST(Decoder, RefusesALonePacketOfTheSharedProductByte) {
-  Bench bench;
-  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(100, 40), 5, 0x37, 0x21));
-  bench.decoder.Flush();
-  EXPECT_TRUE(bench.scans.empty());
-  EXPECT_EQ(bench.CountOf("data_model_undecided"), 1);
-}
-
-TEST(Decoder, CountsEachKindOfBadPacketUnderItsOwnName) {
-  Bench bench;
-  auto bad_flag = MakeDataPacket(Azimuths(0, 40), 0);
-  bad_flag[0] = 0;
-  bench.decoder.OnDataPayload(kDecoderTime, bad_flag);
-  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(0, 40), 0, 0x37, 0x55));
-  bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(0, 40), 0, 0x12));
-  bench.decoder.OnDataPayload(kDecoderTime, {});
-  bench.decoder.OnPositionPayload(kDecoderTime, {});
-  bench.decoder.OnPositionPayload(kDecoderTime, test::MakePositionPacket(0, 9, ""));
-  for (const auto* name :
-       {"data_bad_flag", "data_unknown_product", "data_bad_return_mode", "data_bad_size", "position_bad_size", "position_bad_pps"}) {
-    EXPECT_EQ(bench.CountOf(name), 1) << name;
-  }
-}
-
-TEST(Decoder, StampsAScanByTheSensorFromTheFirstScanThatBeginsLocked) {
-  constexpr std::string_view kRmc = "$GPRMC,000000.00,A,,,,,,,041024,,";  // kDecoderTime
-  Bench bench;
-  SpinningSensor sensor;
-  sensor.azimuth_deg = 350.0;
-  sensor.time_ns = 7'000'000;  // the host is 7 ms behind: both at kDecoderTime past the hour
-  const Utime behind = kDecoderTime;
-  const auto send = [&](int num_packets) {
-    for (int i = 0; i < num_packets; ++i) {
-      const auto payload = sensor.Next();
-      bench.decoder.OnDataPayload(behind + std::chrono::microseconds(sensor.time_ns / 1000 - 7000), payload);
-    }
-  };
-  send(1);
-  bench.decoder.OnPositionPayload(behind, test::MakePositionPacket(8'000, format::kPpsLocked, kRmc));
-  send(100);
-  bench.decoder.Flush();
-  ASSERT_EQ(bench.scans.size(), 3U);
-  EXPECT_EQ(bench.scans[0].clock.source, TimeSource::kHost);
-  EXPECT_EQ(bench.scans[1].clock.source, TimeSource::kSensor);
-  EXPECT_EQ(bench.scans[1].clock.state, ClockState::kLocked);
-  EXPECT_NEAR(ToSeconds(*bench.scans[1].clock.host_minus_sensor), -0.007, 1e-5);
-  ASSERT_EQ(bench.sentences.size(), 1U);
-  EXPECT_EQ(bench.sentences[0].text, kRmc);
-  EXPECT_EQ(bench.sentences[0].stamp_us, 8'000U);
-  EXPECT_NEAR(ToSeconds(bench.sentences[0].time - (behind + std::chrono::microseconds(1'000))), 0.0, 2e-6);  // by the host, as its scan
-}
-
-TEST(Decoder, BeginsAnewAfterAStartMark) {
-  Bench bench;
-  SpinningSensor sensor;
-  bench.Send(sensor, 200);
-  const auto scans = bench.scans;
-  bench.decoder.Reset();
-  bench.scans.clear();
-  sensor = SpinningSensor();
-  bench.Send(sensor, 200);
-  ASSERT_EQ(bench.scans.size(), scans.size());
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    EXPECT_EQ(bench.scans[i].number, scans[i].number);
-    EXPECT_EQ(bench.scans[i].time, scans[i].time);
-    EXPECT_EQ(bench.scans[i].time_ns, scans[i].time_ns);
-    EXPECT_EQ(bench.scans[i].counts.num_packets, scans[i].counts.num_packets);
-  }
 }
 
 }  // namespace
