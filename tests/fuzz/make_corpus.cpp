@@ -5,9 +5,11 @@
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "common/bus/decode.hpp"
+#include "common/bus/schema.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tests/fuzz/packet_script.hpp"
 #include "tests/unit/import/cloud_text.hpp"
@@ -300,14 +302,31 @@ void WriteCaptures(const Folder& folder) {
 
 // --- Messages ---
 
+constexpr std::ptrdiff_t kFingerprintBytes = 8;
+
 void WriteMessages(const Folder& folder) {
   // As the target takes them: the number of the type, then the message without its fingerprint.
-  constexpr std::ptrdiff_t kFingerprintBytes = 8;
   std::uint8_t type = 0;
   ForEachFilledMessage([&](const auto& message) {
     const auto encoded = bus::Encode(message);
     folder.Write("message_" + std::to_string(type), Payload{type} + Payload(encoded.begin() + kFingerprintBytes, encoded.end()));
     ++type;
+  });
+}
+
+// The number of a type, then two of its messages without their fingerprint: the second has another last byte.
+void WritePairsOfMessages(const Folder& folder) {
+  ForEachFilledMessage([&](const auto& message) {
+    const auto encoded = bus::Encode(message);
+    const auto fingerprint = static_cast<std::uint64_t>(std::decay_t<decltype(message)>::getHash());
+    const auto& types = bus::TypeFingerprints();
+    for (std::size_t type = 0; type < types.size(); ++type) {
+      if (types[type].fingerprint != fingerprint) continue;
+      const Payload one(encoded.begin() + kFingerprintBytes, encoded.end());
+      Payload other = one;
+      other.back() ^= 1;
+      folder.Write("pair_" + std::to_string(type), Payload{static_cast<std::uint8_t>(type)} + one + other);
+    }
   });
 }
 
@@ -388,6 +407,7 @@ int main(int argc, char** argv) try {
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
   WriteCaptures(Folder(root / "fuzz_capture"));
   WriteMessages(Folder(root / "fuzz_message"));
+  WritePairsOfMessages(Folder(root / "fuzz_message_diff"));
   WriteScans(Folder(root / "fuzz_segmenter"));
   WritePatches(Folder(root / "fuzz_georeferencer"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
