@@ -1,6 +1,7 @@
 #include "common/runtime/process.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <pthread.h>
 #include <sys/signalfd.h>
@@ -31,6 +32,8 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kHealthPeriod(1000);
 // How late messages that are held for a second publisher's sake may be handed out.
 constexpr std::chrono::milliseconds kReleasePeriod(100);
+// Memory that a burst took, as when a process stood still or a disk was slow, goes back to the system: else each process keeps its worst one.
+constexpr std::chrono::seconds kTrimPeriod(10);
 // Messages handled before sockets and timers get their turn again.
 constexpr int kMaxMessagesPerRound = 64;
 
@@ -169,6 +172,7 @@ void Process::Run(const std::function<HealthReport()>& report) {
     NotifyAlive(health);
   });
   Every(kReleasePeriod, [this] { bus_.ReleaseHeld(); });
+  Every(kTrimPeriod, [] { malloc_trim(0); });
   NotifyReady();
   spdlog::info("starts, version {}", Version());
   while (!self.is_stopping) {

@@ -95,6 +95,9 @@ class DisturbedJudge {
   bool AreAllUp() const { return lives_.size() == kServices.size(); }
   int PidOf(const std::string& service) const { return lives_.at(service).back().pid; }
 
+  /// How long it has lived, by its first HEALTH.
+  double AgeS(const std::string& service) const { return std::chrono::duration<double>(Clock::now() - lives_.at(service).back().begin).count(); }
+
   /// A process of another boat, which is not judged.
   void AddOther(int pid) { others_.insert(pid); }
 
