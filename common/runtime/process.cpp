@@ -32,7 +32,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kHealthPeriod(1000);
 // How late messages that are held for a second publisher's sake may be handed out.
 constexpr std::chrono::milliseconds kReleasePeriod(100);
-// Memory that a burst took, as when a process stood still or a disk was slow, goes back to the system: else each process keeps its worst one.
+// Memory that a burst took, as when a process stood still or a disk was slow, goes back to the system: a large block when it is freed (glibc would
+// raise the size from which it does so), what is left between small ones now and then. Else each process keeps its worst burst.
+constexpr int kLargeBlockBytes = 256 * 1024;
 constexpr std::chrono::seconds kTrimPeriod(10);
 // Messages handled before sockets and timers get their turn again.
 constexpr int kMaxMessagesPerRound = 64;
@@ -54,6 +56,7 @@ constexpr std::chrono::milliseconds kLastTime(300);
 // Goes before anything that starts a thread (LCM does): threads inherit the blocked signals.
 std::string Prepared(const std::string& lcm_url) {
   BlockStopSignals();
+  mallopt(M_MMAP_THRESHOLD, kLargeBlockBytes);
   std::signal(SIGPIPE, SIG_IGN);  // a log that nobody reads any more does not end a look-out
   return lcm_url;
 }

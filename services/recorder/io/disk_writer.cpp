@@ -25,6 +25,8 @@ constexpr std::size_t kBlockBytes = 1024 * 1024;
 // freed makes one more small file.
 constexpr std::int64_t kResumeShareOfReserve = 10;
 constexpr std::int64_t kResumeBytes = 2 * kBlockBytes;
+// Marks of a file, for each 0.1 s at first. Of more every second one goes: they stay as far apart as a share of the file.
+constexpr std::size_t kMaxMarks = 4096;
 
 std::string ErrnoText() { return std::system_category().message(errno); }
 
@@ -95,7 +97,7 @@ bool DiskWriter::Append(Bytes event) {
       return false;
     }
     if (queue_.empty() || !queue_.back().stem.empty() || queue_.back().bytes.size() + event.size() > kBlockBytes) {
-      queue_.emplace_back();
+      queue_.emplace_back().bytes.reserve(kBlockBytes);
       is_block_full = queue_.size() > 1;
     }
     auto& block = queue_.back();
@@ -185,8 +187,16 @@ void DiskWriter::WriteBlock(const Block& block) {
   file_bytes_ += size_bytes;
   num_unsynced_ += block.num_events;
   unsynced_bytes_ += size_bytes;
-  marks_.push_back({file_bytes_, (marks_.empty() ? 0 : marks_.back().num_events) + block.num_events});
+  AddMark(block.num_events);
   CheckFile(&block);
+}
+
+void DiskWriter::AddMark(std::int64_t num_events) {
+  if (marks_.size() == kMaxMarks) {
+    for (std::size_t i = 0; i < kMaxMarks / 2; ++i) marks_[i] = marks_[2 * i + 1];
+    marks_.resize(kMaxMarks / 2);
+  }
+  marks_.push_back({file_bytes_, (marks_.empty() ? 0 : marks_.back().num_events) + num_events});
 }
 
 bool DiskWriter::HasRoomFor(const Block& block) {
@@ -236,6 +246,7 @@ bool DiskWriter::OpenFile(const std::string& stem) {
   file_ = file;
   file_bytes_ = 0;
   marks_.clear();
+  marks_.reserve(kMaxMarks);
   is_disturbed_ = false;
   // A file system that gives an open file another number than its name has (some on networks) cannot tell a file that was moved.
   can_tell_name_ = descriptor_ >= 0 && IsNameOf(file_, descriptor_);

@@ -95,6 +95,7 @@ class DiskWriter {
 
   void Run();
   void WriteBlock(const Block& block);
+  void AddMark(std::int64_t num_events);
   bool HasRoomFor(const Block& block);
   bool OpenFile(const std::string& stem);
   void CutTorn(std::int64_t torn_bytes, std::string& reason);
@@ -128,7 +129,7 @@ class DiskWriter {
   };
   std::filesystem::path file_;
   std::int64_t file_bytes_ = 0;
-  std::vector<Mark> marks_;  // of the file: 16 bytes for each 0.1 s of it
+  std::vector<Mark> marks_;  // of the file
   bool is_disturbed_ = false;
   bool can_tell_name_ = false;     // the file system tells whether a name is that of the open file
   std::int64_t num_unsynced_ = 0;  // events that the kernel has and the disk may not
