@@ -111,7 +111,7 @@ function(lookout_test)
 endfunction()
 
 # A script, or a test program once more with other arguments. NETWORK: in a network namespace of its own, with a route for LCM or with none. Such a
-# test keeps real time and runs alone, unless PARALLEL says that it need not.
+# test keeps real time and mostly waits. Under sanitizers, which slow the processes, it runs alone, unless PARALLEL says that it need not.
 #   lookout_command_test(NAME system_options COMMAND a.sh b [NETWORK route|no-route] [PARALLEL] [TIMEOUT 180])
 set(LOOKOUT_IN_NAMESPACE ${CMAKE_SOURCE_DIR}/tests/system/in_namespace.sh)
 function(lookout_command_test)
@@ -124,7 +124,7 @@ function(lookout_command_test)
   endif()
   add_test(NAME ${test_NAME} COMMAND ${test_COMMAND})
   lookout_test_properties(${test_NAME} ${test_TIMEOUT})
-  if(test_NETWORK AND NOT test_PARALLEL)
+  if(LOOKOUT_SANITIZE AND test_NETWORK AND NOT test_PARALLEL)
     set_tests_properties(${test_NAME} PROPERTIES RUN_SERIAL TRUE)
   endif()
 endfunction()
