@@ -14,28 +14,15 @@ void AddHandlingTime(ChannelTraffic& traffic, std::chrono::steady_clock::duratio
   traffic.handling_times.push_back(std::chrono::duration_cast<std::chrono::microseconds>(duration));
 }
 
-void RequireSize(const Channel& channel, Bytes bytes) {
-  if (bytes.size() <= kMaxMessageBytes) return;
-  throw std::runtime_error(std::string(channel.name) + ": a message of " + std::to_string(bytes.size()) + " bytes is larger than " +
-                           std::to_string(kMaxMessageBytes));
-}
-
 }  // namespace
 
-void Bus::Publish(const Channel& channel, Bytes bytes) {
-  RequireSize(channel, bytes);
-  const auto header = ReadHeader(bytes);
-  NoteSent(channel, header, Send(channel, bytes));
-}
-
-void Bus::Publish(const Channel& channel, std::vector<std::uint8_t>&& bytes) {
-  RequireSize(channel, bytes);
+void Bus::Publish(const Channel& channel, std::vector<std::uint8_t> bytes) {
+  if (bytes.size() > kMaxMessageBytes) {
+    throw std::runtime_error(std::string(channel.name) + ": a message of " + std::to_string(bytes.size()) + " bytes is larger than " +
+                             std::to_string(kMaxMessageBytes));
+  }
   const auto header = ReadHeader(bytes);  // the bytes may be gone afterwards
-  NoteSent(channel, header, SendOwned(channel, std::move(bytes)));
-}
-
-void Bus::NoteSent(const Channel& channel, std::optional<MessageHeader> header, bool was_taken) {
-  if (!was_taken) {
+  if (!Send(channel, std::move(bytes))) {
     ++num_unsent_;
     return;
   }

@@ -10,7 +10,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -53,9 +52,7 @@ class Bus {
 
   /// Sends bytes. A transport that fails (no route, no buffer) does not end a look-out: the message is lost and counted.
   /// @throws std::runtime_error when the message is larger than the transport carries
-  void Publish(const Channel& channel, Bytes bytes);
-  /// The same for bytes that the caller needs no more.
-  void Publish(const Channel& channel, std::vector<std::uint8_t>&& bytes);
+  void Publish(const Channel& channel, std::vector<std::uint8_t> bytes);
 
   /// Messages that the transport did not take.
   std::int64_t num_unsent() const { return num_unsent_; }
@@ -80,8 +77,7 @@ class Bus {
   /// Calls `handler` each time that ReleaseHeld is called.
   void OnRelease(std::function<void(bool is_end)> handler) { on_release_.push_back(std::move(handler)); }
 
-  /// Hands out messages that were held, where it shows by now that they are to be taken. To be called some ten times a second, also when nothing
-  /// comes.
+  /// Hands out messages that were held, where it shows by now that they are to be taken. To be called some ten times a second, come what may.
   ///
   /// @param is_end  nothing more will come
   /// @throws what a handler threw
@@ -95,8 +91,6 @@ class Bus {
   /// @throws what a handler threw, after the transport has let go of the message
   virtual bool HandleOnce(std::chrono::milliseconds timeout) = 0;
 
-  const std::map<std::string, ChannelTraffic, std::less<>>& input_traffic() const { return inputs_; }
-  const std::map<std::string, ChannelTraffic, std::less<>>& output_traffic() const { return outputs_; }
   std::map<std::string, ChannelTraffic, std::less<>>& input_traffic() { return inputs_; }
   std::map<std::string, ChannelTraffic, std::less<>>& output_traffic() { return outputs_; }
 
@@ -111,15 +105,11 @@ class Bus {
 
  protected:
   /// @return whether the transport took the message
-  virtual bool Send(const Channel& channel, Bytes bytes) = 0;
-  /// The same; a transport that holds messages may keep the bytes.
-  virtual bool SendOwned(const Channel& channel, std::vector<std::uint8_t>&& bytes) { return Send(channel, bytes); }
+  virtual bool Send(const Channel& channel, std::vector<std::uint8_t>&& bytes) = 0;
   /// `channel` is nullptr for all channels.
   virtual void Attach(const Channel* channel, RawHandler handler) = 0;
 
  private:
-  void NoteSent(const Channel& channel, std::optional<MessageHeader> header, bool was_taken);
-
   std::map<std::string, ChannelTraffic, std::less<>> inputs_;
   std::map<std::string, ChannelTraffic, std::less<>> outputs_;
   std::int64_t num_unsent_ = 0;

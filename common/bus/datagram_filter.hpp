@@ -11,8 +11,7 @@
 
 namespace lookout::bus {
 
-/// LCM's header of a short message (LC02) and of a fragment (LC03), its longest channel name, and the most that one UDP datagram carries of a
-/// message.
+/// LCM's header of a short message (LC02) and of a fragment (LC03), its longest channel name, and the most of a message in one UDP datagram.
 inline constexpr std::uint32_t kShortHeaderBytes = 8;
 inline constexpr std::uint32_t kFragmentHeaderBytes = 20;
 inline constexpr std::uint32_t kMaxChannelCharacters = kMaxLogChannelBytes;
@@ -30,8 +29,7 @@ struct DatagramPolicy {
 
 /// A classic BPF program for SO_ATTACH_FILTER on an IPv4 UDP socket. It takes a datagram, whole, when all of this is so, and drops it otherwise:
 /// - it was sent to the group and port;
-/// - where only this computer counts: it was looped back (PACKET_LOOPBACK) or came by `lo`. No address is asked, as a sender's may change or be made
-/// up;
+/// - where only this computer counts: it was looped back (PACKET_LOOPBACK) or came by `lo`. No address is asked: a sender's may change or be made up;
 /// - it is a short message or a fragment of LCM with its whole header;
 /// - where it has a channel's name (a short message, a first fragment): 1 to 63 printable ASCII characters, and its NUL is in the datagram;
 /// - of a fragment: its number is below that of the fragments, so many can hold the message, the message has at most kMaxForeignMessageBytes, and

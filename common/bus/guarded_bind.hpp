@@ -34,8 +34,7 @@ class BindGuard {
   BindGuard* outer_;
 };
 
-/// Datagrams that the kernel has dropped at this socket since it was made: refused by its filter, damaged, or without room in its buffer. The kernel
-/// counts all as one. -1 when it does not tell.
+/// Datagrams that the kernel has dropped at this socket since it was made: refused by its filter, damaged, or without room. -1 when it does not tell.
 std::int64_t NumDropped(int descriptor);
 
 }  // namespace lookout::bus

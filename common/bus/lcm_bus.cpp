@@ -62,9 +62,7 @@ bool HasRoute(const MulticastAddress& address) {
 struct LcmBus::Implementation {
   struct Subscription {
     Implementation* owner = nullptr;
-    std::string channel;  // empty = all
     RawHandler handler;
-    lcm_subscription_t* handle = nullptr;
   };
 
   lcm_t* lcm = nullptr;
@@ -113,9 +111,7 @@ LcmBus::LcmBus(const std::string& url) : implementation_(std::make_unique<Implem
   if (implementation_->lcm == nullptr) throw std::runtime_error("LCM cannot be opened at " + implementation_->url);
 }
 
-LcmBus::~LcmBus() {
-  if (implementation_->lcm != nullptr) lcm_destroy(implementation_->lcm);
-}
+LcmBus::~LcmBus() { lcm_destroy(implementation_->lcm); }
 
 std::optional<std::int64_t> LcmBus::NumDatagramsDropped() const {
   std::optional<std::int64_t> sum;
@@ -141,7 +137,7 @@ bool LcmBus::HandleOnce(std::chrono::milliseconds timeout) {
 // LCM 1.3.1 does not tell how many messages wait.
 int LcmBus::QueueDepth(std::string_view /*channel*/) const { return -1; }
 
-bool LcmBus::Send(const Channel& channel, Bytes bytes) {
+bool LcmBus::Send(const Channel& channel, std::vector<std::uint8_t>&& bytes) {
   const std::string name(channel.name);
   return lcm_publish(implementation_->lcm, name.c_str(), bytes.data(), static_cast<unsigned int>(bytes.size())) == 0;
 }
@@ -149,13 +145,12 @@ bool LcmBus::Send(const Channel& channel, Bytes bytes) {
 void LcmBus::Attach(const Channel* channel, RawHandler handler) {
   auto subscription = std::make_unique<Implementation::Subscription>();
   subscription->owner = implementation_.get();
-  subscription->channel = channel == nullptr ? std::string() : std::string(channel->name);
   subscription->handler = std::move(handler);
   implementation_->StartReceiver();
   const std::string pattern = channel == nullptr ? ".*" : Escaped(channel->name);
-  subscription->handle = lcm_subscribe(implementation_->lcm, pattern.c_str(), &Implementation::OnMessage, subscription.get());
-  if (subscription->handle == nullptr) throw std::runtime_error("LCM cannot subscribe to " + pattern);
-  lcm_subscription_set_queue_capacity(subscription->handle, channel == nullptr ? kAllChannelsQueueDepth : channel->queue_depth);
+  auto* handle = lcm_subscribe(implementation_->lcm, pattern.c_str(), &Implementation::OnMessage, subscription.get());
+  if (handle == nullptr) throw std::runtime_error("LCM cannot subscribe to " + pattern);
+  lcm_subscription_set_queue_capacity(handle, channel == nullptr ? kAllChannelsQueueDepth : channel->queue_depth);
   implementation_->subscriptions.push_back(std::move(subscription));
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/lcm_url.hpp"
@@ -21,8 +22,7 @@ bool HasRoute(const MulticastAddress& address);
 class LcmBus final : public Bus {
  public:
   /// @param url  LCM address; "udpm://..." is completed with a large receive buffer unless it names one. memq:// is for tests.
-  /// @throws std::runtime_error when it is wrong, or LCM cannot be opened; where no multicast route exists the text holds the `ip route` line that
-  /// mends it
+  /// @throws std::runtime_error when it is wrong, or LCM cannot be opened; the text holds the `ip route` line that mends a missing multicast route
   explicit LcmBus(const std::string& url);
   ~LcmBus() override;
 
@@ -36,7 +36,7 @@ class LcmBus final : public Bus {
   int file_descriptor() const;
 
  protected:
-  bool Send(const Channel& channel, Bytes bytes) override;
+  bool Send(const Channel& channel, std::vector<std::uint8_t>&& bytes) override;
   void Attach(const Channel* channel, RawHandler handler) override;
 
  private:

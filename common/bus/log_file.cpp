@@ -14,14 +14,10 @@ namespace lookout::bus {
 
 namespace {
 
-constexpr std::uint32_t kSyncWord = kLogSyncWord;
-constexpr std::size_t kHeaderBytes = kLogEventHeaderBytes;
 // LCM channel names have at most 63 characters; its logs allow more.
 constexpr std::int64_t kMaxChannelBytes = 1000;
-// Far above any message that LCM carries; a greater length is damage.
 constexpr auto kMaxDataBytes = static_cast<std::int64_t>(kMaxLogDataBytes);
-// What is read or written at once: system calls cost more than the copy. A scan's messages are larger than what is read: those that nobody
-// wants are passed over.
+// Read or written at once: system calls cost more than the copy. A scan's messages are larger: those that nobody wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
 constexpr std::size_t kJumpBytes = 4 * 1024;
 constexpr std::size_t kWriteBytes = 16 * 1024;
@@ -75,22 +71,22 @@ struct LogReader::Implementation {
 
   // The event that begins at `start`, and `position` behind it; nullopt when there is no whole one.
   std::optional<LogEventView> EventAt(std::int64_t start, const std::function<bool(std::string_view channel)>& is_wanted) {
-    const Bytes header = View(start, kHeaderBytes);
-    if (header.size() < kHeaderBytes || ReadBigEndian(header, 0, 4) != kSyncWord) return std::nullopt;
+    const Bytes header = View(start, kLogEventHeaderBytes);
+    if (header.size() < kLogEventHeaderBytes || ReadBigEndian(header, 0, 4) != kLogSyncWord) return std::nullopt;
     const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
     const std::int64_t channel_size = ReadI32(header, 20);
     const std::int64_t data_size = ReadI32(header, 24);
     if (!time || channel_size <= 0 || channel_size > kMaxChannelBytes || data_size < 0 || data_size > kMaxDataBytes) return std::nullopt;
-    const std::int64_t end = start + static_cast<std::int64_t>(kHeaderBytes) + channel_size + data_size;
+    const std::int64_t end = start + static_cast<std::int64_t>(kLogEventHeaderBytes) + channel_size + data_size;
     if (end > size_bytes) return std::nullopt;
 
-    const std::size_t head_size = kHeaderBytes + static_cast<std::size_t>(channel_size);
+    const std::size_t head_size = kLogEventHeaderBytes + static_cast<std::size_t>(channel_size);
     const std::size_t size = head_size + static_cast<std::size_t>(data_size);
     const Bytes head = View(start, head_size);
     if (head.size() < head_size) return std::nullopt;
-    channel.assign(head.begin() + kHeaderBytes, head.end());  // what stands behind the event may be another stretch
+    channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // what stands behind the event may be another stretch
     const bool has_data = is_wanted(channel);
-    if (has_data) View(start, size + sizeof(kSyncWord));  // one stretch for all
+    if (has_data) View(start, size + sizeof(kLogSyncWord));  // one stretch for all
     if (!IsWhole(start, end, has_data ? kReadBytes : kJumpBytes)) return std::nullopt;
     const Bytes whole = has_data ? View(start, size) : Bytes();
     if (has_data && whole.size() < size) return std::nullopt;
@@ -103,7 +99,7 @@ struct LogReader::Implementation {
   bool IsWhole(std::int64_t start, std::int64_t end, std::size_t least_bytes) {
     if (end == size_bytes) return true;
     const Bytes word = View(end, 4, least_bytes);
-    if (word.size() == 4 && ReadBigEndian(word, 0, 4) == kSyncWord) return true;
+    if (word.size() == 4 && ReadBigEndian(word, 0, 4) == kLogSyncWord) return true;
     return FindSync(start + 4) >= end;
   }
 
@@ -114,7 +110,7 @@ struct LogReader::Implementation {
       const Bytes bytes = View(offset, kReadBytes);
       if (bytes.size() < 4) break;
       for (std::size_t i = 0; i + 4 <= bytes.size(); ++i) {
-        if (ReadBigEndian(bytes, i, 4) == kSyncWord) return offset + static_cast<std::int64_t>(i);
+        if (ReadBigEndian(bytes, i, 4) == kLogSyncWord) return offset + static_cast<std::int64_t>(i);
       }
       offset += static_cast<std::int64_t>(bytes.size()) - 3;
     }
@@ -175,7 +171,7 @@ void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime t
 
 void LogWriter::Write(Utime time, std::string_view channel, Bytes bytes) {
   AppendLogEvent(block_, num_events_++, time, channel, bytes);
-  num_bytes_ += static_cast<std::int64_t>(kHeaderBytes + channel.size() + bytes.size());
+  num_bytes_ += static_cast<std::int64_t>(kLogEventHeaderBytes + channel.size() + bytes.size());
   if (block_.size() >= kWriteBytes) Flush();
 }
 

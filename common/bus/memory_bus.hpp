@@ -1,8 +1,10 @@
 // A bus inside one process, for replay and tests: messages are handled in the order in which they were published.
 #pragma once
 
+#include <algorithm>
 #include <deque>
-#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -12,14 +14,26 @@ namespace lookout::bus {
 class MemoryBus final : public Bus {
  public:
   /// Handles the oldest message that waits: each subscriber of its channel, in the order of subscription. Never waits.
-  bool HandleOnce(std::chrono::milliseconds timeout = std::chrono::milliseconds(0)) override;
+  bool HandleOnce(std::chrono::milliseconds /*timeout*/ = std::chrono::milliseconds(0)) override {
+    if (messages_.empty()) return false;
+    const Message message = std::move(messages_.front());
+    messages_.pop_front();
+    for (const auto& subscription : subscriptions_) {
+      if (subscription.channel.empty() || subscription.channel == message.channel) subscription.handler(message.channel, message.bytes);
+    }
+    return true;
+  }
 
-  int QueueDepth(std::string_view channel) const override;
+  int QueueDepth(std::string_view channel) const override { return static_cast<int>(std::ranges::count(messages_, channel, &Message::channel)); }
 
  protected:
-  bool Send(const Channel& channel, Bytes bytes) override;
-  bool SendOwned(const Channel& channel, std::vector<std::uint8_t>&& bytes) override;
-  void Attach(const Channel* channel, RawHandler handler) override;
+  bool Send(const Channel& channel, std::vector<std::uint8_t>&& bytes) override {
+    messages_.push_back({channel.name, std::move(bytes)});
+    return true;
+  }
+  void Attach(const Channel* channel, RawHandler handler) override {
+    subscriptions_.push_back({channel == nullptr ? std::string_view() : channel->name, std::move(handler)});
+  }
 
  private:
   struct Message {

@@ -35,8 +35,6 @@ constexpr unsigned kLockTimeUs = 20'000;
 
 std::runtime_error Fault(const fs::path& file, const std::string& reason) { return std::runtime_error(file.string() + ": " + reason); }
 
-std::string ErrnoText() { return std::system_category().message(errno); }
-
 bool IsSame(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
 // Symbolic links are not followed.
@@ -80,15 +78,6 @@ bool IsLocked(const fs::path& file) {
   const bool is_locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor);
   return is_locked;
-}
-
-// The names of a folder are on the disk as well. Where folders cannot be synced the file system does it by itself.
-void SyncFolder(const fs::path& file) {
-  const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  fsync(descriptor);
-  close(descriptor);
 }
 
 // @return 0, or an error number: EEXIST where `to` is there
@@ -206,9 +195,7 @@ struct OutputFile::Implementation final : public std::streambuf {
     // Another program may have found it between the two calls, and now looks at it (for a moment only) or has removed it.
     while (flock(made, LOCK_EX) != 0 && errno == EINTR && !IsStopAsked()) {
     }
-    struct stat own {};
-    const auto state = StateOfName(partial);
-    if (fstat(made, &own) != 0 || !state || !IsSame(own, *state)) {
+    if (!IsNameOf(partial, made)) {
       close(made);
       return false;
     }
@@ -239,8 +226,7 @@ struct OutputFile::Implementation final : public std::streambuf {
       if (flock(found, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return "is being written by another program";
     }
     // Between open and lock the other program may have come to its end and have moved the file to its place.
-    const auto state = StateOfName(partial);
-    if (!state || !IsSame(own, *state)) return "";
+    if (!IsNameOf(partial, found)) return "";
     if (!options.force) return "is there: left by a run that did not come to its end, or somebody's file; remove it, or --force does";
     if (unlink(partial.c_str()) != 0 && errno != ENOENT) return "cannot be replaced: " + ErrnoText();
     Tell(partial.string() + ": was there, and nobody was writing it; removed");
@@ -248,9 +234,7 @@ struct OutputFile::Implementation final : public std::streambuf {
   }
 
   void TakeAway() const {
-    struct stat own {};
-    const auto state = StateOfName(partial);
-    if (!state || fstat(descriptor, &own) != 0 || !IsSame(own, *state)) {
+    if (!IsNameOf(partial, descriptor)) {
       Tell(file.string() + ": not written; " + partial.string() + " was taken away by somebody else");
     } else if (unlink(partial.c_str()) != 0) {
       Tell(file.string() + ": not written; " + partial.string() + " is left, incomplete: " + ErrnoText());
@@ -320,18 +304,14 @@ struct OutputFile::Implementation final : public std::streambuf {
     Prepare();
     if (!partial.empty()) {
       MoveToPlace();
-      SyncFolder(file);
+      SyncName(file);
     }
     is_done = true;
     if (close(std::exchange(descriptor, -1)) != 0 && partial.empty()) throw Fault(file, "write failed: " + ErrnoText());
   }
 
   void MoveToPlace() {
-    struct stat own {};
-    const auto state = StateOfName(partial);
-    if (!state || fstat(descriptor, &own) != 0 || !IsSame(own, *state)) {
-      throw Fault(file, partial.string() + " was moved or removed while it was written");
-    }
+    if (!IsNameOf(partial, descriptor)) throw Fault(file, partial.string() + " was moved or removed while it was written");
     if (options.force && IsLocked(file)) throw Fault(file, "is being written by another program; the whole result is in " + KeepWhole().string());
     const int fault = options.force ? (rename(partial.c_str(), file.c_str()) == 0 ? 0 : errno) : RenameWithoutReplacing(partial, file);
     if (fault == 0) return;
@@ -347,7 +327,7 @@ struct OutputFile::Implementation final : public std::streambuf {
       auto name = file;
       name += i == 0 ? ".whole" : ".whole." + std::to_string(i);
       const int fault = RenameWithoutReplacing(partial, name);
-      if (fault == 0) SyncFolder(file);
+      if (fault == 0) SyncName(file);
       if (fault == 0) return name;
       if (fault != EEXIST) break;
     }
@@ -413,6 +393,22 @@ std::vector<fs::path> FilesIn(const fs::path& folder) {
     if (entry->is_regular_file(error)) files.push_back(entry->path());
   }
   return files;
+}
+
+std::string ErrnoText() { return std::system_category().message(errno); }
+
+bool IsNameOf(const fs::path& file, int descriptor) {
+  struct stat own {};
+  const auto named = StateOfName(file);
+  return named && fstat(descriptor, &own) == 0 && IsSame(own, *named);
+}
+
+void SyncName(const fs::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  fsync(descriptor);
+  close(descriptor);
 }
 
 }  // namespace lookout::io

@@ -76,4 +76,13 @@ void CommitAll(const std::vector<OutputFile*>& files);
 /// The regular files of a folder, for OutputOptions::inputs.
 std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& folder);
 
+/// What errno says.
+std::string ErrnoText();
+
+/// Whether a name is that of an open file. Symbolic links are not followed.
+bool IsNameOf(const std::filesystem::path& file, int descriptor);
+
+/// Brings the name of a file to the disk, as fsync its bytes. Where folders cannot be synced the file system does it by itself.
+void SyncName(const std::filesystem::path& file);
+
 }  // namespace lookout::io

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <string>
 
 namespace lookout::io {
@@ -50,11 +51,6 @@ void Catch(int signal, void (*handler)(int)) {
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
 }
 
-bool IsIgnored(int signal) {
-  struct sigaction action {};
-  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
-
 // An output would get the number of a standard stream that is closed, and the program's own lines would be written into it. What is opened instead
 // lets input and output fail, as the closed one did; lines for people go nowhere.
 void OpenStandardStreams() {
@@ -64,18 +60,12 @@ void OpenStandardStreams() {
   }
 }
 
-std::string NameOf(int signal) {
-  switch (signal) {
-    case SIGINT:
-      return "SIGINT";
-    case SIGTERM:
-      return "SIGTERM";
-    default:
-      return "SIGHUP";
-  }
-}
-
 }  // namespace
+
+bool IsIgnored(int signal) {
+  struct sigaction action {};
+  return sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
 
 void CatchStopSignals() {
   OpenStandardStreams();
@@ -90,7 +80,7 @@ void CatchStopSignals() {
 bool IsStopAsked() { return stop_signal != 0; }
 
 void ThrowIfStopAsked() {
-  if (const int signal = stop_signal; signal != 0) throw Stopped("stopped by " + NameOf(signal));
+  if (const int signal = stop_signal; signal != 0) throw Stopped(std::string("stopped by SIG") + sigabbrev_np(signal));
 }
 
 }  // namespace lookout::io

@@ -17,6 +17,9 @@ class Stopped : public std::runtime_error {
 /// number. To be called once, first in main.
 void CatchStopSignals();
 
+/// Whether the program was started so that this signal does nothing, as nohup does with SIGHUP.
+bool IsIgnored(int signal);
+
 /// Whether one has come. Any thread.
 bool IsStopAsked();
 

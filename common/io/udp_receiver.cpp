@@ -102,21 +102,19 @@ class OpenedSocket {
 };
 
 void JoinGroup(const OpenedSocket& opened, const UdpOptions& options, int family, unsigned int interface_index) {
-  constexpr const char* kBadGroup = ": the multicast group is no numeric address of the same family";
-  if (family == AF_INET) {
-    ip_mreqn request{};
-    request.imr_ifindex = static_cast<int>(interface_index);
-    if (inet_pton(AF_INET, options.multicast_group.c_str(), &request.imr_multiaddr) != 1) throw std::runtime_error(Where(options) + kBadGroup);
-    // Else the kernel hands on every group that any program of this computer has joined.
-    opened.Require(opened.Set(IPPROTO_IP, IP_MULTICAST_ALL, 0), "multicast of this group alone");
-    opened.Require(opened.Set(IPPROTO_IP, IP_ADD_MEMBERSHIP, request), "joining the multicast group");
-  } else {
-    ipv6_mreq request{};
-    request.ipv6mr_interface = interface_index;
-    if (inet_pton(AF_INET6, options.multicast_group.c_str(), &request.ipv6mr_multiaddr) != 1) throw std::runtime_error(Where(options) + kBadGroup);
-    opened.Require(opened.Set(IPPROTO_IPV6, IPV6_MULTICAST_ALL, 0), "multicast of this group alone");
-    opened.Require(opened.Set(IPPROTO_IPV6, IPV6_JOIN_GROUP, request), "joining the multicast group");
+  const bool is_ipv4 = family == AF_INET;
+  const int level = is_ipv4 ? IPPROTO_IP : IPPROTO_IPV6;
+  group_req request{};
+  request.gr_interface = interface_index;
+  request.gr_group.ss_family = static_cast<sa_family_t>(family);
+  void* address = &reinterpret_cast<sockaddr_in6*>(&request.gr_group)->sin6_addr;
+  if (is_ipv4) address = &reinterpret_cast<sockaddr_in*>(&request.gr_group)->sin_addr;
+  if (inet_pton(family, options.multicast_group.c_str(), address) != 1) {
+    throw std::runtime_error(Where(options) + ": the multicast group is no numeric address of the same family");
   }
+  // Else the kernel hands on every group that any program of this computer has joined.
+  opened.Require(opened.Set(level, is_ipv4 ? IP_MULTICAST_ALL : IPV6_MULTICAST_ALL, 0), "multicast of this group alone");
+  opened.Require(opened.Set(level, MCAST_JOIN_GROUP, request), "joining the multicast group");
 }
 
 int Open(const UdpOptions& options, unsigned int interface_index) {
@@ -203,25 +201,19 @@ std::optional<Source::Piece> UdpReceiver::ReceiveAny() {
   } while (num_bytes < 0 && errno == EINTR);
   if (num_bytes < 0) return std::nullopt;
 
-  // The port stands at the same place in both families.
-  Piece datagram{.host_time = {},
-                 .bytes = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes)),
-                 .port = port_,
-                 .source_port = ntohs(reinterpret_cast<const sockaddr_in*>(&source_)->sin_port)};
+  timespec time{};
   bool has_time = false;
   for (cmsghdr* item = CMSG_FIRSTHDR(&message); item != nullptr; item = CMSG_NXTHDR(&message, item)) {
     if (item->cmsg_level != SOL_SOCKET || item->cmsg_type != SCM_TIMESTAMPNS) continue;
-    timespec time{};
     std::memcpy(&time, CMSG_DATA(item), sizeof time);
-    datagram.host_time = ToUtime(time);
     has_time = true;
   }
-  if (!has_time) {
-    timespec time{};
-    clock_gettime(CLOCK_REALTIME, &time);
-    datagram.host_time = ToUtime(time);
-  }
-  return datagram;
+  if (!has_time) clock_gettime(CLOCK_REALTIME, &time);
+  // The port stands at the same place in both families.
+  return Piece{.host_time = ToUtime(time),
+               .bytes = Bytes(buffer_.data(), static_cast<std::size_t>(num_bytes)),
+               .port = port_,
+               .source_port = ntohs(reinterpret_cast<const sockaddr_in*>(&source_)->sin_port)};
 }
 
 std::optional<Source::Piece> UdpReceiver::Receive(Utime) {

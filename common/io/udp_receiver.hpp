@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "common/core/utime.hpp"
-#include "common/io/interface.hpp"
-#include "common/io/ip_address.hpp"
+#include "common/io/network.hpp"
 #include "common/io/source.hpp"
 
 namespace lookout::io {

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <systemd/sd-daemon.h>
 #include <utility>
 #include <vector>
 
@@ -48,6 +50,10 @@ std::int64_t QuantileUs(const std::vector<std::chrono::microseconds>& sorted, do
   return sorted[index].count();
 }
 
+// In the order of the wire.
+constexpr std::array kStateNames{"ok", "degraded", "failed", "starting"};
+static_assert(health_t::STATE_OK == 0 && health_t::STATE_DEGRADED == 1 && health_t::STATE_FAILED == 2 && health_t::STATE_STARTING == 3);
+
 }  // namespace
 
 HealthReporter::HealthReporter(std::string process)
@@ -74,12 +80,7 @@ void HealthReporter::Fill(Utime now, const HealthReport& report, health_t& messa
   counters.push_back({"second_publisher", last_num_refused_});
   if (last_num_dropped_) counters.push_back({"datagrams_dropped", *last_num_dropped_});
   message.counters.clear();
-  for (const auto& counter : counters) {
-    health_counter_t entry{};
-    entry.name = counter.name;
-    entry.count = counter.count;
-    message.counters.push_back(entry);
-  }
+  for (const auto& [name, count] : counters) message.counters.push_back({std::string(name), count});
   message.num_counters = static_cast<std::int32_t>(message.counters.size());
 }
 
@@ -153,6 +154,17 @@ health_t HealthReporter::Make(Utime now, const HealthReport& report, bus::Bus& b
   last_cpu_s_ = cpu_s;
   last_message_ = message;
   return message;
+}
+
+// sd_notify opens the socket anew each time; a message that nobody reads is no reason to end a look-out.
+void NotifyReady() { sd_notify(0, "READY=1\nSTATUS=started"); }
+
+void NotifyAlive(const health_t& health) {
+  std::string reason = health.reason;
+  std::ranges::replace(reason, '\n', ' ');  // a line is an assignment of its own
+  sd_notify(
+      0,
+      (std::string("WATCHDOG=1\nSTATUS=") + kStateNames.at(static_cast<std::size_t>(health.state)) + (reason.empty() ? "" : ": ") + reason).c_str());
 }
 
 }  // namespace lookout::runtime

@@ -1,4 +1,4 @@
-// Makes the HEALTH message of this process.
+// Makes the HEALTH message of this process, and tells systemd how the process fares.
 #pragma once
 
 #include <chrono>
@@ -41,5 +41,13 @@ class HealthReporter {
   health_t last_message_{};
   std::map<std::string, std::int64_t> last_counts_;  // by channel, inputs and outputs apart
 };
+
+/// READY=1 to systemd: the bus is open, inputs are set up, the main loop begins. Where no supervisor listens (NOTIFY_SOCKET is not set) nothing
+/// happens. There is no STOPPING=1: a process that starts itself anew (SIGHUP) would be ended by it.
+void NotifyReady();
+
+/// STATUS with state and reason of this HEALTH message, and WATCHDOG=1. To be called by the main loop only: what is fed anywhere else lives on when
+/// the loop hangs.
+void NotifyAlive(const health_t& health);
 
 }  // namespace lookout::runtime

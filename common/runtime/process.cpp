@@ -12,16 +12,19 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <memory>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "common/config/text_config.hpp"
+#include "common/core/printable.hpp"
+#include "common/io/stop_signal.hpp"
 #include "common/runtime/health.hpp"
-#include "common/runtime/log_pattern.hpp"
-#include "common/runtime/notify.hpp"
-#include "common/runtime/options.hpp"
+#include "common/runtime/version.hpp"
 
 namespace lookout::runtime {
 
@@ -68,10 +71,14 @@ bool HasTerminal() {
   return descriptor >= 0;
 }
 
-bool IsHangupIgnored() {
-  struct sigaction action {};
-  return sigaction(SIGHUP, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
-}
+class PrintableText final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& line) override {
+    const auto text = PrintableLines(std::string_view(message.payload.data(), message.payload.size()));
+    line.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<PrintableText>(); }
+};
 
 }  // namespace
 
@@ -106,7 +113,7 @@ struct Process::Implementation {
   bool is_stopping = false;
   bool is_report_due = false;
   bool had_terminal = HasTerminal();
-  bool is_hangup_ignored = IsHangupIgnored();
+  bool is_hangup_ignored = io::IsIgnored(SIGHUP);
   std::vector<Timer> timers;
   std::vector<Readable> readables;
   std::function<void()> on_hangup;
@@ -207,6 +214,12 @@ void Process::Run(const std::function<HealthReport()>& report) {
   for (const auto& counter : last_report.counters) {
     if (counter.count > 0) spdlog::info("{}: {}", counter.name, counter.count);
   }
+}
+
+void SetLogPattern(const std::string& pattern, bool is_utc) {
+  auto formatter = std::make_unique<spdlog::pattern_formatter>(is_utc ? spdlog::pattern_time_type::utc : spdlog::pattern_time_type::local);
+  formatter->add_flag<PrintableText>('v').set_pattern(pattern);
+  spdlog::set_formatter(std::move(formatter));
 }
 
 int RunMain(const std::string& name, const std::function<void()>& body) try {

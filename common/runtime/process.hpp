@@ -43,8 +43,7 @@ class Process {
   /// Calls `handler` about every `period`, late rather than twice.
   void Every(std::chrono::milliseconds period, std::function<void()> handler);
 
-  /// Calls `handler` on SIGHUP instead of ending Run. One that comes because the terminal is gone still ends it, whoever sends it (the kernel, or a
-  /// shell to its jobs).
+  /// Calls `handler` on SIGHUP instead of ending Run. One that the kernel, or a shell, sends because the terminal is gone still ends it.
   void OnHangup(std::function<void()> handler);
 
   /// Runs until SIGINT, SIGTERM, SIGHUP (unless it was ignored at the start: nohup) or Stop(). Sends HEALTH once a second with what `report` says,
@@ -53,8 +52,7 @@ class Process {
   /// @throws what a handler threw
   void Run(const std::function<HealthReport()>& report);
 
-  /// Sends HEALTH after the timers of this round too, not only with the second: for what may be over before the next report. Rates, cpu and memory in
-  /// it are those of the last second.
+  /// Sends HEALTH after the timers of this round too: for what may be over before the next report. Rates, cpu, memory are those of the last second.
   void ReportNow();
 
   /// Ends Run after the handler that calls it (end of a capture).
@@ -65,6 +63,12 @@ class Process {
   bus::LcmBus bus_;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Sets the pattern of the default logger; "%v" is the text, of which no control character passes (PrintableLines): names in logs and captures, texts
+/// of messages and configs may hold anything.
+///
+/// @param is_utc  whether times in the pattern are UTC, else local
+void SetLogPattern(const std::string& pattern, bool is_utc = false);
 
 /// Runs `body`, and turns what it throws into a line of the log and an exit code: 0 fine, 1 failed, 2 wrong config. Lines of the log carry `name`.
 int RunMain(const std::string& name, const std::function<void()>& body);

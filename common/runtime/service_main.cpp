@@ -4,6 +4,7 @@
 #include <linux/close_range.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cerrno>
 #include <charconv>
 #include <cstdlib>
@@ -12,13 +13,45 @@
 #include <spdlog/spdlog.h>
 #include <stdexcept>
 
+#include "common/bus/lcm_url.hpp"
 #include "common/config/text_config.hpp"
-#include "common/runtime/options.hpp"
 #include "common/runtime/run_info.hpp"
+#include "common/runtime/version.hpp"
 
 namespace lookout::runtime {
 
 namespace {
+
+struct Options {
+  std::filesystem::path config_folder;  // --config DIR
+  bool check_only = false;              // --check: print the effective values and exit
+  std::string lcm_url;                  // --lcm-url URL; else LCM_DEFAULT_URL, else LCM's default group on this computer
+};
+
+// --help and --version print and exit here, with 0. A wrong line prints what is wrong and exits with 2.
+Options ParseOptions(int argc, char** argv, const std::string& program, const std::string& purpose) {
+  Options options;
+  std::string config_folder;
+  CLI::App app(purpose, program);
+  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
+  app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
+  app.set_version_flag("--version", program + " " + Version());
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // --help and --version come here too, with code 0.
+    const int code = app.exit(error);
+    std::exit(code == 0 ? EXIT_SUCCESS : 2);
+  }
+  options.config_folder = config_folder;
+  if (options.lcm_url.empty()) options.lcm_url = bus::DefaultLcmUrl();
+  if (const auto fault = bus::LcmUrlFault(options.lcm_url); !fault.empty()) {
+    std::cerr << program << ": " << fault << "\n";
+    std::exit(2);
+  }
+  return options;
+}
 
 struct Checked {
   AnyParams params;

@@ -10,7 +10,7 @@
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
-#include "common/io/ip_address.hpp"
+#include "common/io/network.hpp"
 #include "config/schema/navigator.pb.h"
 #include "services/navigator/core/day.hpp"
 #include "services/navigator/core/sentence.hpp"

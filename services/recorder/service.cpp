@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
+#include <ctime>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -30,13 +30,11 @@ constexpr std::chrono::milliseconds kMostPassed(600);
 
 // "20261121T134501Z"
 std::string FileStem(Utime time) {
-  const auto day = std::chrono::floor<std::chrono::days>(time);
-  const std::chrono::year_month_day date(day);
-  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::seconds>(time - day));
+  const std::time_t seconds = std::chrono::floor<std::chrono::seconds>(time).time_since_epoch().count();
+  std::tm date{};
+  gmtime_r(&seconds, &date);
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%04d%02u%02uT%02d%02d%02dZ", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
-                static_cast<int>(clock.seconds().count()));
+  std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &date);
   return text.data();
 }
 
@@ -177,20 +175,18 @@ void Service::NoteMissing(const bus::Channel& channel, std::int64_t number) {
 // Says once when recording stops, and each time when the queue overflowed anew.
 void Service::WatchDisk() {
   const auto status = writer_.Status();
-  lost_.Note(status.num_lost_fault + status.num_lost_full + status.num_lost_queue_full, time_.passed());
+  lost_.Note(status.num_lost(), time_.passed());
   disturbed_.Note(status.num_disturbed, time_.passed());
   if (status.is_waiting_for_file) return;
-  if (was_recording_ && !status.is_recording) {
+  const auto before = std::exchange(seen_, status);
+  const auto num_overflowed = status.num_lost_queue_full - before.num_lost_queue_full;
+  if (before.is_recording && !status.is_recording) {
     warnings_.push_back(Printable(status.fault) + "; events are lost until it works again");
-  } else if (status.num_lost_queue_full > last_lost_queue_full_) {
-    warnings_.push_back(std::to_string(status.num_lost_queue_full - last_lost_queue_full_) + " events lost: " + Printable(status.fault));
+  } else if (num_overflowed > 0) {
+    warnings_.push_back(std::to_string(num_overflowed) + " events lost: " + Printable(status.fault));
   }
-  const bool wants_anew = status.wants_new_file && !wanted_new_file_;
-  if (status.is_recording && (status.num_disturbed > last_disturbed_ || wants_anew)) warnings_.push_back(Printable(status.fault));
-  last_disturbed_ = status.num_disturbed;
-  wanted_new_file_ = status.wants_new_file;
-  was_recording_ = status.is_recording;
-  last_lost_queue_full_ = status.num_lost_queue_full;
+  const bool is_disturbed = status.num_disturbed > before.num_disturbed || (status.wants_new_file && !before.wants_new_file);
+  if (status.is_recording && is_disturbed) warnings_.push_back(Printable(status.fault));
 }
 
 void Service::WatchUnknown(std::string_view channel) {
@@ -220,7 +216,6 @@ std::string Service::SecondPublisherText() const {
 
 HealthReport Service::Report() const {
   const auto status = writer_.Status();
-  const auto num_lost = status.num_lost_fault + status.num_lost_full + status.num_lost_queue_full;
   const auto now = time_.passed();
   std::int64_t num_second = 0;
   for (const auto& entry : guards_) num_second += entry.second.num_refused();
@@ -232,7 +227,7 @@ HealthReport Service::Report() const {
   report.counters = {{"events", status.num_events},
                      {"bytes", status.num_bytes},
                      {"files", status.num_files},
-                     {"lost", num_lost},
+                     {"lost", status.num_lost()},
                      {"lost_queue_full", status.num_lost_queue_full},
                      {"lost_disk_full", status.num_lost_full},
                      {"lost_bytes", status.num_lost_bytes},
@@ -248,11 +243,11 @@ HealthReport Service::Report() const {
                      {"queue_bytes", status.queue_bytes},
                      {"queue_peak_bytes", status.queue_peak_bytes},
                      {"disk_free_bytes", status.free_bytes}};
-  if (!status.is_recording && !(status.is_waiting_for_file && was_recording_)) {
+  if (!status.is_recording && !(status.is_waiting_for_file && seen_.is_recording)) {
     report.state = HealthState::kFailed;
     report.reason = "not recording: " + Printable(status.fault);
   } else if (lost_.HasGrown(now)) {
-    degrade("recording again; " + std::to_string(num_lost) + " events lost: " + Printable(status.fault));
+    degrade("recording again; " + std::to_string(status.num_lost()) + " events lost: " + Printable(status.fault));
   } else if (disturbed_.HasGrown(now) || status.wants_new_file) {
     degrade("recording, nothing lost, but " + Printable(status.fault));
   } else if (raw_missing_.HasGrown(now)) {

@@ -78,10 +78,7 @@ class Service {
   std::map<std::string, bus::StreamGuard, std::less<>> guards_;  // watch only: everything is recorded
   std::set<std::string, std::less<>> unknown_channels_;
   std::vector<std::string> warnings_;
-  bool was_recording_ = true;
-  std::int64_t last_lost_queue_full_ = 0;
-  std::int64_t last_disturbed_ = 0;
-  bool wanted_new_file_ = false;
+  DiskStatus seen_{.is_recording = true};  // when no log was waited for last
   std::int64_t num_unknown_ = 0;
   std::int64_t num_nameless_ = 0;
   std::int64_t num_name_too_long_ = 0;

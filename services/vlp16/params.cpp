@@ -2,6 +2,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "common/io/network.hpp"
 #include "config/schema/vlp16.pb.h"
 
 namespace lookout::vlp16 {
@@ -57,7 +58,10 @@ Sources ToSources(const std::filesystem::path& config_folder, const config::Vlp1
   sources.bind_address = message.bind_address();
   sources.interface = message.interface();
   sources.multicast_group = message.multicast_group();
-  sources.allowed_source_addresses = {message.allowed_source_address().begin(), message.allowed_source_address().end()};
+  for (const auto& text : message.allowed_source_address()) {
+    const auto address = io::ParseIpAddress(text);
+    sources.allowed_source_addresses.push_back(address ? io::ToText(*address) : text);
+  }
   sources.bpf_filter = message.bpf_filter();
   sources.receive_buffer_bytes = message.receive_buffer_bytes();
   return sources;

@@ -21,7 +21,7 @@ struct Sources {
   std::string bind_address;
   std::string interface;                              // empty = any
   std::string multicast_group;                        // empty = none
-  std::vector<std::string> allowed_source_addresses;  // empty = all; as inet_ntop writes them once WriteAllowedAlike was called
+  std::vector<std::string> allowed_source_addresses;  // empty = all; as inet_ntop writes them, to be compared as texts; what is no address stays
   std::string bpf_filter;                             // empty = made of the ports
   int receive_buffer_bytes = 0;
 };
@@ -36,8 +36,7 @@ struct Params {
 };
 
 /// @param config_folder  the boat's folder, holding vlp16.txtpb
-/// @throws config::ConfigError with every fault. Addresses, captures and the filter are texts here: whoever opens the sources checks them (main
-///         does at its start and for --check).
+/// @throws config::ConfigError with every fault. Addresses, captures and the filter are texts here: LoadChecked checks them for who opens sources
 Params LoadParams(const std::filesystem::path& config_folder);
 
 /// The same, but fields that do not go together are added to `faults`, each as a line: for who has more to check and tells all at once.

@@ -105,9 +105,7 @@ std::string Service::ForeignComplaint() const {
          "); set allowed_source_address in vlp16.txtpb to the lidar to use";
 }
 
-void Service::AdvanceTo(Utime host_time) { AdvanceTo(host_time, host_time); }
-
-void Service::AdvanceTo(Utime host_time, Utime taken_until) {
+void Service::AdvanceTo(Utime host_time, std::optional<Utime> taken_until) {
   if (!silent_since_ || *silent_since_ > host_time) silent_since_ = host_time;
   now_ = host_time;
   if (!second_began_ || *second_began_ > host_time) second_began_ = host_time;
@@ -118,7 +116,7 @@ void Service::AdvanceTo(Utime host_time, Utime taken_until) {
     num_out_of_stream_ = decoder_.num_out_of_stream();
     second_began_ = host_time;
   }
-  if (const auto bundle = bundler_.AdvanceTo(taken_until)) PublishAndConsume(*bundle);
+  if (const auto bundle = bundler_.AdvanceTo(taken_until.value_or(host_time))) PublishAndConsume(*bundle);
 }
 
 void Service::Finish(Utime host_time) {
@@ -200,11 +198,9 @@ std::string Service::Complaint() const {
 std::string Service::OwnComplaint() const {
   if (params_.input == Input::kOutside && silent_since_ && now_ - *silent_since_ >= kSilence) {
     const auto seconds = std::to_string(std::chrono::floor<std::chrono::seconds>(now_ - *silent_since_).count());
-    if (!decoder_.last_refusal().empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + decoder_.last_refusal();
-    if (!bundler_.foreign_sensor().empty()) {
-      return "no usable lidar packets for " + seconds +
-             " s; the last was refused: a packet of another sensor: " + std::string(bundler_.foreign_sensor());
-    }
+    std::string refusal = decoder_.last_refusal();
+    if (refusal.empty() && !bundler_.foreign_sensor().empty()) refusal = "a packet of another sensor: " + std::string(bundler_.foreign_sensor());
+    if (!refusal.empty()) return "no usable lidar packets for " + seconds + " s; the last was refused: " + refusal;
     return "no lidar packets for " + seconds + " s";
   }
   if (out_of_stream_per_s_ > kMaxOutOfStreamPerS) {

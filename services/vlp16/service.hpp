@@ -27,11 +27,10 @@ class Service {
   void OnDatagram(Utime host_time, int udp_port, Bytes payload, const Sender& sender = {});
 
   /// Host time has come so far: a bundle does not wait for more than 100 ms, and silence of the lidar shows in Report().
-  void AdvanceTo(Utime host_time);
-
-  /// The same while datagrams wait that came before `host_time`: bundles go by `taken_until`, before which all are taken; silence and rates by
-  /// `host_time`, so that a flood that never ends cannot hide them.
-  void AdvanceTo(Utime host_time, Utime taken_until);
+  ///
+  /// @param taken_until  before it all datagrams are taken; nullopt = host_time. Bundles go by it, silence and rates by `host_time`, so that a flood
+  ///                     that never ends cannot hide them
+  void AdvanceTo(Utime host_time, std::optional<Utime> taken_until = std::nullopt);
 
   /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: flushes, unless an END mark did.
   void Finish(Utime host_time);

@@ -2,12 +2,14 @@
 
 #include <chrono>
 #include <exception>
+#include <optional>
 #include <spdlog/spdlog.h>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/config/text_config.hpp"
+#include "common/io/network.hpp"
 #include "services/vlp16/io/capture_player.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
 
@@ -71,6 +73,11 @@ class CaptureSource final : public runtime::SourceReader {
   std::chrono::steady_clock::time_point start_ = runtime::SteadyNow();
 };
 
+// bind_address without a zone ("%eth0"); nullopt when it is no numeric address.
+std::optional<io::IpAddress> BoundAddress(const Sources& sources) {
+  return io::ParseIpAddress(sources.bind_address.substr(0, sources.bind_address.find('%')));
+}
+
 // What is text in the params and must be right before anything starts.
 void CheckSources(const std::filesystem::path& config_folder, const Sources& sources, std::vector<std::string>& faults) {
   const auto file = config_folder / "vlp16.txtpb";
@@ -109,23 +116,12 @@ void CheckSources(const std::filesystem::path& config_folder, const Sources& sou
 
 }  // namespace
 
-std::optional<io::IpAddress> BoundAddress(const Sources& sources) {
-  return io::ParseIpAddress(sources.bind_address.substr(0, sources.bind_address.find('%')));
-}
-
 Params LoadChecked(const std::filesystem::path& config_folder) {
   std::vector<std::string> faults;
   auto params = LoadParams(config_folder, faults);
   CheckSources(config_folder, params.sources, faults);
   if (!faults.empty()) throw config::ConfigError(faults);
-  WriteAllowedAlike(params.sources);
   return params;
-}
-
-void WriteAllowedAlike(Sources& sources) {
-  for (auto& text : sources.allowed_source_addresses) {
-    if (const auto address = io::ParseIpAddress(text)) text = io::ToText(*address);
-  }
 }
 
 io::UdpOptions ToUdpOptions(const Sources& sources, int port, const std::string& name) {

@@ -3,10 +3,8 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 
-#include "common/io/ip_address.hpp"
 #include "common/io/udp_receiver.hpp"
 #include "common/runtime/source_reader.hpp"
 #include "services/vlp16/io/live_capture.hpp"
@@ -20,12 +18,6 @@ namespace lookout::vlp16 {
 /// @param config_folder  the boat's folder, holding vlp16.txtpb
 /// @throws config::ConfigError with all faults, but those of the schema before others
 Params LoadChecked(const std::filesystem::path& config_folder);
-
-/// So that allowed addresses can be compared as texts: each as inet_ntop writes it. What is no address stays, and is nobody's.
-void WriteAllowedAlike(Sources& sources);
-
-/// @return bind_address without a zone ("%eth0"); nullopt when it is no numeric address
-std::optional<io::IpAddress> BoundAddress(const Sources& sources);
 
 /// Of source UDP. Precondition: LoadChecked.
 io::UdpOptions ToUdpOptions(const Sources& sources, int port, const std::string& name = {});

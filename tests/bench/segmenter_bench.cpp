@@ -1,4 +1,4 @@
-// A scan of a VLP-16 from scan to segments by the paper's method, whole and by steps. Whole scans of ours stand in segmenter_turns.cpp.
+// A scan of a VLP-16 from scan to segments by the paper's method, whole and by steps. Whole scans of ours stand in segmenter_scans.cpp.
 // Scenes (second argument): 0 lake, 1 lake in rain (2880 drops), 2 nothing but 5000 drops, 3 a return on every beam.
 #include <benchmark/benchmark.h>
 #include <numeric>

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     params.labelling.image_columns = data[0] % 3 == 1 ? 0 : 64;
   }
   const lookout::segmenter::Service service(bus, params);
-  bus.Publish(lookout::bus::kLidarScan, lookout::Bytes(data, size).subspan(size > 0 ? 1 : 0));
+  bus.Publish(lookout::bus::kLidarScan, {data + (size > 0 ? 1 : 0), data + size});
   while (bus.HandleOnce()) {
   }
   static_cast<void>(service.Report());

@@ -84,7 +84,7 @@ TEST(Vlp16ClockFaults, WithoutFaultTheClockIsLockedAndRight) {
     EXPECT_EQ(scan.clock.source, TimeSource::kSensor);
     EXPECT_LT(std::abs(ToSeconds(*scan.clock.host_minus_sensor)), 1e-3);
   }
-  for (const auto* name : {"data_lost", "data_duplicate", "data_reordered", "sensor_restarts", "sensor_clock_steps", "turns_with_hole"}) {
+  for (const auto* name : {"data_lost", "data_duplicate", "data_reordered", "sensor_restarts", "sensor_clock_steps", "scans_with_hole"}) {
     EXPECT_EQ(run.Count(name), 0) << name;
   }
 }

@@ -146,7 +146,6 @@ TEST(Structure, LinesOfTheLogAreMadePrintable) {
   for (const auto& folder : {"common", "services", "tools"}) {
     for (const auto& file : SourcesBelow(kSources / folder)) {
       const std::string path = fs::relative(file, kSources).string();
-      if (path == "common/runtime/log_pattern.cpp") continue;
       const std::string text = ReadFile(file);
       EXPECT_EQ(text.find("spdlog::set_pattern"), std::string::npos) << path << ": use runtime::SetLogPattern";
       EXPECT_FALSE(std::regex_search(text, std::regex(R"(cerr[^;]*<< *error\.what\(\))"))) << path << " prints what() as it is: use PrintableLines";

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/core/printable.hpp"
-#include "common/runtime/options.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/diff/diff.hpp"
 
 int main(int argc, char** argv) {

@@ -10,9 +10,9 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/config/text_config.hpp"
-#include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/machine.hpp"
 #include "tools/doctor/watch.hpp"

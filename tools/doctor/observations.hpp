@@ -11,7 +11,7 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
-#include "common/io/ip_address.hpp"
+#include "common/io/network.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"

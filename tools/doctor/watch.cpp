@@ -59,7 +59,7 @@ class Watcher {
       notes_.ListenTo(*lcm_, Via::kBus);
       notes_.ListenToProcesses(*lcm_);
       // For a navigator of our own, when the lidar's process runs.
-      lcm_->SubscribeRaw(bus::kLidarNmea, [this](std::string_view, Bytes bytes) { memory_.Publish(bus::kLidarNmea, bytes); });
+      lcm_->SubscribeRaw(bus::kLidarNmea, [this](std::string_view, Bytes bytes) { memory_.Publish(bus::kLidarNmea, {bytes.begin(), bytes.end()}); });
       lcm_->HandleOnce(std::chrono::milliseconds(0));  // joins LCM's group
     } catch (const std::exception& error) {
       seen_.bus.fault = error.what();

@@ -8,7 +8,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
-#include "common/runtime/options.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/eval/comparison_command.hpp"
 #include "tools/eval/log_command.hpp"
 

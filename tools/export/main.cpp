@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/io/stop_signal.hpp"
-#include "common/runtime/options.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/export/export.hpp"
 #include "tools/export/sinks.hpp"
 

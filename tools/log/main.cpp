@@ -7,7 +7,7 @@
 
 #include "common/core/printable.hpp"
 #include "common/io/stop_signal.hpp"
-#include "common/runtime/options.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/log/commands.hpp"
 
 namespace {

@@ -17,11 +17,7 @@ class StageBus final : public bus::Bus {
   int QueueDepth(std::string_view channel) const override { return bus_.QueueDepth(channel); }
 
  protected:
-  bool Send(const bus::Channel& channel, Bytes bytes) override {
-    bus_.Publish(channel, bytes);
-    return true;
-  }
-  bool SendOwned(const bus::Channel& channel, std::vector<std::uint8_t>&& bytes) override {
+  bool Send(const bus::Channel& channel, std::vector<std::uint8_t>&& bytes) override {
     bus_.Publish(channel, std::move(bytes));
     return true;
   }
@@ -111,7 +107,7 @@ void Chain::OnTextLine(Utime time, Bytes line) {
 
 void Chain::OnLogged(Utime log_time, const bus::Channel& channel, Bytes bytes) {
   AdvanceTo(log_time);
-  bus_.Publish(channel, bytes);
+  bus_.Publish(channel, {bytes.begin(), bytes.end()});
   Drain();
 }
 

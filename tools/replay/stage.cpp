@@ -34,7 +34,6 @@ class Vlp16Stage final : public Stage {
  private:
   static vlp16::Params Load(const fs::path& config_folder, vlp16::Input input) {
     auto params = vlp16::LoadParams(config_folder);
-    vlp16::WriteAllowedAlike(params.sources);
     params.input = input;
     return params;
   }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "common/runtime/options.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/sim/scene_file.hpp"
 
 namespace lookout::sim {

@@ -16,9 +16,8 @@
 #include <string>
 
 #include "common/bus/lcm_bus.hpp"
-#include "common/runtime/log_pattern.hpp"
-#include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/top/board.hpp"
 #include "tools/top/format.hpp"
 #include "tools/top/screen.hpp"

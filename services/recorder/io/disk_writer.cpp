@@ -12,9 +12,14 @@
 #include <system_error>
 #include <utility>
 
+#include "common/io/output_file.hpp"
+
 namespace lookout::recorder {
 
 namespace {
+
+using io::ErrnoText;
+using io::IsNameOf;
 
 // What waits goes to the kernel so often: with the time of a sync below the second that is promised.
 constexpr std::chrono::milliseconds kWritePeriod(100);
@@ -28,21 +33,12 @@ constexpr std::int64_t kResumeBytes = 2 * kBlockBytes;
 // Marks of a file, for each 0.1 s at first. Of more every second one goes: they stay as far apart as a share of the file.
 constexpr std::size_t kMaxMarks = 4096;
 
-std::string ErrnoText() { return std::system_category().message(errno); }
-
 std::string Megabytes(std::int64_t size_bytes) { return std::to_string(size_bytes / 1'000'000) + " MB"; }
 
 // "1234 events, 17.2 MB"
 std::string AmountText(std::int64_t num_events, std::int64_t num_bytes) {
   const auto tenths = (num_bytes + 50'000) / 100'000;
   return std::to_string(num_events) + " events, " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10) + " MB";
-}
-
-// Whether a name is still that of an open file.
-bool IsNameOf(const std::filesystem::path& file, int descriptor) {
-  struct stat named {};
-  struct stat own {};
-  return lstat(file.c_str(), &named) == 0 && fstat(descriptor, &own) == 0 && named.st_dev == own.st_dev && named.st_ino == own.st_ino;
 }
 
 constexpr const char* kAdvice = "begin a new log (SIGHUP) before the old one is moved, deleted or changed";
@@ -166,7 +162,9 @@ void DiskWriter::WriteBlock(const Block& block) {
       } else if (result == 0 || errno != EINTR) {
         std::string reason = "write failed: " + (result == 0 ? "nothing is taken" : ErrnoText());
         CutTorn(static_cast<std::int64_t>(num_written), reason);
-        if (SyncToDisk()) Fail(reason);
+        if (!SyncToDisk()) break;
+        const std::lock_guard lock(mutex_);
+        Fail(reason);
       }
     }
   }
@@ -231,9 +229,14 @@ bool DiskWriter::OpenFile(const std::string& stem) {
     number.insert(0, number.size() < 3 ? 3 - number.size() : 0, '0');
     file = folder_ / (stem + number.append(".lcmlog"));
   }
-  const std::string reason = made < 0 ? "cannot be made: " + ErrnoText() : "";
-  if (made < 0 && descriptor_ >= 0) {
+  if (made < 0) {
+    const std::string reason = "cannot be made: " + ErrnoText();
     const std::lock_guard lock(mutex_);
+    if (descriptor_ < 0) {
+      status_.file = file;
+      Fail(reason);
+      return true;
+    }
     status_.fault = file.string() + ": " + reason + "; " + file_.string() + " is written on";
     status_.wants_new_file = true;
     status_.is_waiting_for_file = false;
@@ -242,41 +245,29 @@ bool DiskWriter::OpenFile(const std::string& stem) {
   }
   if (descriptor_ >= 0) close(descriptor_);
   descriptor_ = made;
-  if (descriptor_ >= 0) flock(descriptor_, LOCK_EX | LOCK_NB);  // nobody else can hold it: the file is new
+  flock(descriptor_, LOCK_EX | LOCK_NB);  // nobody else can hold it: the file is new
   file_ = file;
   file_bytes_ = 0;
   marks_.clear();
   marks_.reserve(kMaxMarks);
   is_disturbed_ = false;
   // A file system that gives an open file another number than its name has (some on networks) cannot tell a file that was moved.
-  can_tell_name_ = descriptor_ >= 0 && IsNameOf(file_, descriptor_);
+  can_tell_name_ = IsNameOf(file_, descriptor_);
   num_unsynced_ = 0;
   unsynced_bytes_ = 0;
   {
     const std::lock_guard lock(mutex_);
     status_.file = file;
-    if (descriptor_ >= 0) {
-      status_.is_recording = true;
-      status_.is_full = false;
-      status_.wants_new_file = false;
-      ++status_.num_files;
-    }
+    status_.is_recording = true;
+    status_.is_full = false;
+    status_.wants_new_file = false;
+    ++status_.num_files;
   }
-  if (descriptor_ < 0) {
-    Fail(reason);
-    return true;
-  }
-  // The name of the file is on the disk as well. Where folders cannot be synced the file system does it by itself.
-  const int folder = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder >= 0) {
-    fsync(folder);
-    close(folder);
-  }
+  io::SyncName(file_);
   return true;
 }
 
-// What is torn is cut off: the log ends with a whole event. Somebody may have cut it as well: then it is not made longer, and what was lost is
-// counted.
+// What is torn is cut off: the log ends with a whole event. If somebody has cut it as well it is not made longer, and what was lost is counted.
 // @param torn_bytes  of the last block, that were taken
 void DiskWriter::CutTorn(std::int64_t torn_bytes, std::string& reason) {
   struct stat own {};
@@ -293,23 +284,17 @@ void DiskWriter::CutTorn(std::int64_t torn_bytes, std::string& reason) {
 bool DiskWriter::SyncToDisk() {
   last_sync_ = std::chrono::steady_clock::now();
   if (descriptor_ < 0) return false;
-  if (num_unsynced_ > 0 && disk_.sync(descriptor_) != 0) {
-    const std::string reason = ErrnoText();
-    {
-      const std::lock_guard lock(mutex_);
-      status_.num_lost_fault += num_unsynced_;  // some may be there; nobody knows which
-      status_.num_events -= num_unsynced_;
-      status_.num_lost_bytes += unsynced_bytes_;
-      status_.num_bytes -= unsynced_bytes_;
-    }
-    num_unsynced_ = 0;
-    unsynced_bytes_ = 0;
-    Fail("not on the disk: " + reason);
-    return false;
-  }
-  num_unsynced_ = 0;
-  unsynced_bytes_ = 0;
-  return true;
+  const auto num_unsynced = std::exchange(num_unsynced_, 0);
+  const auto unsynced_bytes = std::exchange(unsynced_bytes_, 0);
+  if (num_unsynced == 0 || disk_.sync(descriptor_) == 0) return true;
+  const std::string reason = "not on the disk: " + ErrnoText();
+  const std::lock_guard lock(mutex_);
+  status_.num_lost_fault += num_unsynced;  // some may be there; nobody knows which
+  status_.num_events -= num_unsynced;
+  status_.num_lost_bytes += unsynced_bytes;
+  status_.num_bytes -= unsynced_bytes;
+  Fail(reason);
+  return false;
 }
 
 void DiskWriter::SyncFile() {
@@ -354,7 +339,7 @@ void DiskWriter::CheckFile(const Block* last_block) {
     file_bytes_ = old_bytes;  // the name may be that of another file by now: nothing is removed
     const std::lock_guard lock(mutex_);
     ++status_.num_disturbed;
-    FailLocked((is_name_there ? "was replaced by another file while it was recorded: " : "was deleted while it was recorded: ") + lost);
+    Fail((is_name_there ? "was replaced by another file while it was recorded: " : "was deleted while it was recorded: ") + lost);
     return;
   }
   if (size_bytes > file_bytes_) {
@@ -384,11 +369,6 @@ void DiskWriter::CloseFile() {
 }
 
 void DiskWriter::Fail(const std::string& reason) {
-  const std::lock_guard lock(mutex_);
-  FailLocked(reason);
-}
-
-void DiskWriter::FailLocked(const std::string& reason) {
   if (descriptor_ >= 0) {
     // On a full disk there would be one more empty file with each attempt.
     if (file_bytes_ == 0 && (!can_tell_name_ || IsNameOf(status_.file, descriptor_))) {

@@ -35,12 +35,12 @@ struct DiskLimits {
 
 /// What became of the events, since the start.
 struct DiskStatus {
-  std::filesystem::path file;  // that is written, or was last
+  std::filesystem::path file = {};  // that is written, or was last
   bool is_recording = false;
   bool is_waiting_for_file = false;  // one was asked for and is not yet begun
   bool is_full = false;              // not recording, for lack of room
   bool wants_new_file = false;       // recording, into a file that somebody moved, cut or wrote to, or that should have ended
-  std::string fault;                 // why something was lost last, or why it does not record
+  std::string fault = {};            // why something was lost last, or why it does not record
   std::int64_t num_events = 0;       // handed to the kernel
   std::int64_t num_bytes = 0;        // of them, as in the files
   std::int64_t num_files = 0;
@@ -53,6 +53,8 @@ struct DiskStatus {
   std::int64_t queue_bytes = 0;
   std::int64_t queue_peak_bytes = 0;
   std::int64_t free_bytes = -1;  // as seen last; -1 = not known
+
+  std::int64_t num_lost() const { return num_lost_fault + num_lost_full + num_lost_queue_full; }
 };
 
 /// Files are written in blocks of whole events. A block that the disk does not take whole is cut off again, so that a log ends with a whole event,
@@ -104,8 +106,7 @@ class DiskWriter {
   void CheckFile(const Block* last_block);
   void Disturb(const std::string& reason);
   void CloseFile();
-  void Fail(const std::string& reason);
-  void FailLocked(const std::string& reason);  // mutex_ is held
+  void Fail(const std::string& reason);  // mutex_ is held
 
   const std::filesystem::path folder_;
   const DiskLimits limits_;

@@ -15,24 +15,18 @@ Bundler::Bundler(int data_port, int position_port, double cut_azimuth_rad)
       cut_cdeg_(static_cast<int>(std::llround(RadToDeg(WrapTo2Pi(cut_azimuth_rad)) * 100.0) % format::kAzimuthsPerRevolution)) {}
 
 std::optional<PacketBundle> Bundler::Add(Utime host_time, int udp_port, Bytes payload) {
+  const auto refuse = [](std::int64_t& count) {
+    ++count;
+    return std::nullopt;
+  };
   const bool is_data = udp_port == data_port_;
-  if (!is_data && udp_port != position_port_) {
-    ++num_other_port_;
-    return std::nullopt;
-  }
+  if (!is_data && udp_port != position_port_) return refuse(num_other_port_);
   if (is_data && payload.size() != format::kDataPacketSizeBytes) {
-    ++num_data_wrong_size_;
     foreign_sensor_ = NameOfForeignPayload(payload);
-    return std::nullopt;
+    return refuse(num_data_wrong_size_);
   }
-  if (!is_data && payload.size() != format::kPositionPacketSizeBytes) {
-    ++num_position_wrong_size_;
-    return std::nullopt;
-  }
-  if (!UtimeFromWire(ToUtimeUs(host_time))) {
-    ++num_bad_host_time_;
-    return std::nullopt;
-  }
+  if (!is_data && payload.size() != format::kPositionPacketSizeBytes) return refuse(num_position_wrong_size_);
+  if (!UtimeFromWire(ToUtimeUs(host_time))) return refuse(num_bad_host_time_);
   if (bundle_.items.empty()) bundle_.time = host_time;
   bundle_.items.push_back({host_time, udp_port, bundle_.payload.size(), payload.size()});
   bundle_.payload.insert(bundle_.payload.end(), payload.begin(), payload.end());

@@ -42,8 +42,7 @@ class Bundler {
   /// @param cut_azimuth_rad  a bundle ends with the packet in which a scan ends
   Bundler(int data_port, int position_port, double cut_azimuth_rad);
 
-  /// Accepts a datagram, or refuses and counts it: another port, or not the size of the packets on that port. What is inside is not checked:
-  /// a bundle is the raw truth.
+  /// Accepts a datagram, or refuses and counts it: another port, or another size than that port's packets. A bundle is raw: no more is checked.
   ///
   /// @return the bundle that this datagram completes
   std::optional<PacketBundle> Add(Utime host_time, int udp_port, Bytes payload);

@@ -194,10 +194,10 @@ std::vector<Counter> Decoder::counters() const {
                                    {"data_azimuth_disagrees", sequence.num_disagreements},
                                    {"sensor_restarts", sequence.num_restarts},
                                    {"sensor_clock_steps", sequence.num_clock_steps},
-                                   {"turns", totals_.num_scans},
-                                   {"turns_partial", totals_.num_partial_scans},
-                                   {"turns_with_hole", totals_.num_scans_with_hole},
-                                   {"turns_capped", totals_.num_capped_scans},
+                                   {"scans", totals_.num_scans},
+                                   {"scans_partial", totals_.num_partial_scans},
+                                   {"scans_with_hole", totals_.num_scans_with_hole},
+                                   {"scans_capped", totals_.num_capped_scans},
                                    {"sentences", totals_.num_sentences}});
   return counters;
 }

@@ -14,10 +14,19 @@ using namespace std::string_view_literals;
 
 // The manual, table 9-2, as printed; VeloView and two drivers have the same. Byte 0x23 is VLP-32A in some sources and Puck LITE in others, 0xA0 is
 // defined by no maker: both stay without a name. 0x63 was the VLS-128 before 0xA1.
-constexpr std::uint8_t kProductVlp32c = 0x28;
-constexpr std::uint8_t kProductVelarray = 0x31;
 constexpr std::uint8_t kProductVls128Early = 0x63;
 constexpr std::uint8_t kProductVls128 = 0xA1;
+struct Product {
+  std::uint8_t byte;
+  std::string_view name;
+};
+constexpr std::array kProducts{Product{format::kProductHdl32e, "Velodyne HDL-32E"},
+                               Product{format::kProductVlp16, "Velodyne VLP-16"},
+                               Product{format::kProductPuckHiRes, "Velodyne Puck Hi-Res"},
+                               Product{0x28, "Velodyne VLP-32C"},
+                               Product{0x31, "Velodyne Velarray"},
+                               Product{kProductVls128Early, "Velodyne VLS-128 (Alpha Prime)"},
+                               Product{kProductVls128, "Velodyne VLS-128 (Alpha Prime)"}};
 
 // HDL-64E S3 User Manual: blocks of the upper lasers begin with 0xEEFF, of the lower ones with 0xDDFF. VLS-128 User Manual:
 // 0xCCFF and 0xBBFF for its third and fourth bank.
@@ -143,23 +152,8 @@ bool IsLivox(Bytes payload) {
 }  // namespace
 
 std::string_view NameOfProduct(std::uint8_t product) {
-  switch (product) {
-    case format::kProductHdl32e:
-      return "Velodyne HDL-32E";
-    case format::kProductVlp16:
-      return "Velodyne VLP-16";
-    case format::kProductPuckHiRes:
-      return "Velodyne Puck Hi-Res";
-    case kProductVlp32c:
-      return "Velodyne VLP-32C";
-    case kProductVelarray:
-      return "Velodyne Velarray";
-    case kProductVls128Early:
-    case kProductVls128:
-      return "Velodyne VLS-128 (Alpha Prime)";
-    default:
-      return {};
-  }
+  const auto found = std::ranges::find(kProducts, product, &Product::byte);
+  return found == kProducts.end() ? ""sv : found->name;
 }
 
 std::string_view NameOfForeignPayload(Bytes payload) {

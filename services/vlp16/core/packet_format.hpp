@@ -50,9 +50,8 @@ static_assert(kNumLasers * kLaserPeriod + kRechargeTime == kSequencePeriod);
 static_assert(kPacketPeriodSingle == 1'327'104ns && kPacketPeriodDual == 663'552ns);
 static_assert(kBlockReturnsOffset + std::size_t{kSequencesPerBlock} * kNumLasers * kReturnSizeBytes == kBlockSizeBytes);
 static_assert(kNumBlocks * kBlockSizeBytes == kStampOffset);
-// HDL-32E User Manual 63-9113: 32 lasers in 46.08 us, a sequence per block. Its packets come so far apart in single and dual return.
+// HDL-32E User Manual 63-9113: 32 lasers in 46.08 us, a sequence per block. Its packets come so far apart in single return.
 inline constexpr std::chrono::nanoseconds kHdl32ePacketPeriodSingle = kNumBlocks * 46080ns;
-inline constexpr std::chrono::nanoseconds kHdl32ePacketPeriodDual = kHdl32ePacketPeriodSingle / 2;
 
 // The manual: 300 to 1200 rpm.
 inline constexpr double kMinRpm = 300.0;

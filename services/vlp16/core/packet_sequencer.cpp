@@ -84,30 +84,30 @@ void PacketSequencer::Flush() {
 
 std::optional<SensorTime> PacketSequencer::TimeOfStamp(Utime host_time, std::uint32_t stamp_us) const {
   if (!last_ || std::chrono::abs(host_time - last_->host_time) > kMaxGap) return std::nullopt;
-  return last_->time + Difference(last_->stamp_us, stamp_us);
+  return last_->time + Difference(last_->packet.stamp_us, stamp_us);
 }
 
 // Precondition: there is a last packet. Changes nothing.
 PacketSequencer::Place PacketSequencer::PlaceOf(Utime host_time, const DataPacket& packet) const {
-  const microseconds difference = Difference(last_->stamp_us, packet.stamp_us);
+  const microseconds difference = Difference(last_->packet.stamp_us, packet.stamp_us);
   const bool is_set = IsClockSet(host_time, packet, difference);
   Place place;
   place.time = last_->time + difference;
   // A packet that comes late was fired where the head was then.
   const double back_cdeg = rate_cdeg_ * Ratio(difference, format::kBlockPeriod);
-  const bool is_late = difference >= -kMaxGap && IsAt(packet, last_->first_cdeg + back_cdeg);
-  const bool is_far_back = difference < -static_cast<int>(kMaxHeld) * last_->period && !is_late;
+  const bool is_late = difference >= -kMaxGap && IsAt(packet, last_->packet.azimuth_cdeg[0] + back_cdeg);
+  const bool is_far_back = difference < -static_cast<int>(kMaxHeld) * last_->packet.period() && !is_late;
   const bool is_long_ago = std::chrono::abs(host_time - last_->host_time) > kHour / 2 && !IsContinuing(packet);
   if (is_long_ago || difference > kMaxGap || is_far_back) {
     place.kind = is_set ? Kind::kStep : Kind::kRestart;
   } else if (difference <= microseconds(0)) {
     place.kind = is_set ? Kind::kStep : Kind::kLate;
-  } else if (difference < last_->period / 2) {
+  } else if (difference < last_->packet.period() / 2) {
     place.kind = is_set ? Kind::kStep : Kind::kOverlapping;
   } else {
-    const double num_missing = Ratio(difference - last_->steps.duration, last_->period);
+    const double num_missing = Ratio(difference - last_->steps.duration, last_->packet.period());
     // How long the head was dark within the last packet is an estimate; where it goes on, nothing is missing.
-    const double num_dark = Ratio(last_->steps.duration, last_->period) - 1.0;
+    const double num_dark = Ratio(last_->steps.duration, last_->packet.period()) - 1.0;
     const bool is_dark_longer = IsContinuing(packet) && num_missing < kMaxDarkError * num_dark;
     if (num_missing >= 0.5 && !is_dark_longer) return PlaceBehindGap(host_time, packet, place, num_missing);
     place.is_disagreeing = !IsContinuing(packet) && SweepCdeg() > 0.0;
@@ -147,7 +147,7 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
   const int sector_cdeg = blind_sector_.WidthCdeg();
   if (sector_cdeg == 0 || place.is_disagreeing) return place;
   const double num_revolutions = std::max(0.0, std::round((num_missing - num_passed) / packets_per_revolution));
-  const int hidden_cdeg = blind_sector_.HiddenCdeg(gap, last_->step_cdeg());
+  const int hidden_cdeg = blind_sector_.HiddenCdeg(gap, last_->last_gap_cdeg());
   const double visible_cdeg = (gap_cdeg - hidden_cdeg) + num_revolutions * (format::kAzimuthsPerRevolution - sector_cdeg);
   place.num_lost = std::max(0, static_cast<int>(std::lround(visible_cdeg / sweep_cdeg)));
   if (place.num_lost == 0) place.kind = Kind::kNext;
@@ -157,14 +157,14 @@ PacketSequencer::Place PacketSequencer::PlaceBehindGap(Utime host_time, const Da
 // From the begin of one packet to that of the next where nothing was missing; the mean of some 16, as azimuths have a resolution of 0.01 deg.
 void PacketSequencer::MeasureRate(const DataPacket& packet, const PlacedPacket& placed) {
   constexpr double kShare = 1.0 / 16.0;
-  const int rotated_cdeg = ClockwiseCdeg(last_->first_cdeg, packet.azimuth_cdeg[0]);
+  const int rotated_cdeg = ClockwiseCdeg(last_->packet.azimuth_cdeg[0], packet.azimuth_cdeg[0]);
   const double rate_cdeg = rotated_cdeg / Ratio(placed.time - last_->time, format::kBlockPeriod);
   if (rate_cdeg > kMaxGapCdeg) return;  // an encoder that went back a little
   rate_cdeg_ += (rate_cdeg - rate_cdeg_) * (rate_cdeg_ > 0.0 ? kShare : 1.0);
 }
 
 // Of a packet; 0 when the head stands, or its rate is not known.
-double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kStillRateCdeg ? 0.0 : rate_cdeg_ * last_->num_steps; }
+double PacketSequencer::SweepCdeg() const { return rate_cdeg_ < kStillRateCdeg ? 0.0 : rate_cdeg_ * last_->packet.num_steps; }
 
 // To half of a packet; false when the rate is not known.
 bool PacketSequencer::IsAt(const DataPacket& packet, double azimuth_cdeg) const {
@@ -180,13 +180,13 @@ bool PacketSequencer::IsKnown(const DataPacket& packet) const {
     return stamp_us == packet.stamp_us && azimuth_cdeg == packet.azimuth_cdeg[0];
   };
   // Packets that are after the last cannot have been passed on.
-  const bool may_be_given = Difference(last_->stamp_us, packet.stamp_us) <= microseconds(0);
+  const bool may_be_given = Difference(last_->packet.stamp_us, packet.stamp_us) <= microseconds(0);
   return (may_be_given && std::ranges::any_of(known_, [&](const Known& known) { return is_same(known.stamp_us, known.azimuth_cdeg); })) ||
          std::ranges::any_of(held_, [&](const Held& held) { return is_same(held.packet.stamp_us, held.packet.azimuth_cdeg[0]); });
 }
 
 void PacketSequencer::Hold(Utime host_time, const DataPacket& packet, Model model) {
-  const auto since_last = [this](std::uint32_t stamp_us) { return Difference(last_->stamp_us, stamp_us); };
+  const auto since_last = [this](std::uint32_t stamp_us) { return Difference(last_->packet.stamp_us, stamp_us); };
   const auto place =
       std::ranges::upper_bound(held_, since_last(packet.stamp_us), {}, [&](const Held& held) { return since_last(held.packet.stamp_us); });
   if (place != held_.end()) ++counts_.num_reordered;
@@ -233,14 +233,15 @@ void PacketSequencer::Give(Utime host_time, const DataPacket& packet, Model mode
   }
   if (place.kind == Kind::kMissing) {
     const Gap gap{last_->steps.end_cdeg, packet.azimuth_cdeg[0]};
-    const int num_unsent = blind_sector_.OnLoss(gap, place.num_lost, last_->step_cdeg());
+    const int num_unsent = blind_sector_.OnLoss(gap, place.num_lost, last_->last_gap_cdeg());
     placed.num_lost = num_unsent > 0 ? 0 : place.num_lost;
     counts_.num_lost += place.num_lost - num_unsent;
   }
   counts_.num_lost -= blind_sector_.OnPacket(packet, placed.steps);
   known_[next_known_] = {packet.stamp_us, packet.azimuth_cdeg[0]};
   next_known_ = (next_known_ + 1) % known_.size();
-  last_ = Last{placed.time, packet.stamp_us, host_time, packet.period(), placed.steps, packet.azimuth_cdeg[0], packet.num_steps};
+  last_ = placed;
+  last_->packet.payload = {};
   on_packet_(placed);
 }
 

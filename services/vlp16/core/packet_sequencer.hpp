@@ -28,6 +28,8 @@ struct PlacedPacket {
   int num_lost = 0;           // packets missing before it
   bool is_restart = true;     // nothing before it belongs to it: the first, or the sensor started anew, or paused
   bool is_elsewhere = false;  // time goes on, but the head is not where it should be: its azimuths do not go on from those before
+
+  int last_gap_cdeg() const { return steps.gap_cdeg[static_cast<std::size_t>(packet.num_steps) - 1]; }
 };
 
 enum class PacketVerdict {
@@ -71,17 +73,6 @@ class PacketSequencer {
   const SequenceCounts& counts() const { return counts_; }
 
  private:
-  struct Last {
-    SensorTime time;
-    std::uint32_t stamp_us;
-    Utime host_time;
-    std::chrono::nanoseconds period;
-    Steps steps;
-    int first_cdeg;
-    int num_steps;
-
-    int step_cdeg() const { return steps.gap_cdeg[static_cast<std::size_t>(num_steps) - 1]; }
-  };
   struct Held {
     Utime host_time;
     DataPacket packet;  // its payload is that below
@@ -114,10 +105,10 @@ class PacketSequencer {
   void Give(Utime host_time, const DataPacket& packet, Model model, const Place& place);
 
   Handler on_packet_;
-  std::optional<Last> last_;
-  double rate_cdeg_ = 0.0;          // rotation of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
-  std::vector<Held> held_;          // by time
-  std::array<Known, 512> known_{};  // the last ones passed on: of a revolution and more
+  std::optional<PlacedPacket> last_;  // without its payload
+  double rate_cdeg_ = 0.0;            // rotation of the head per format::kBlockPeriod, smoothed; 0 = not known, or it stands
+  std::vector<Held> held_;            // by time
+  std::array<Known, 512> known_{};    // the last ones passed on: of a revolution and more
   std::size_t next_known_ = 0;
   std::size_t num_late_in_a_row_ = 0;
   BlindSector blind_sector_;

@@ -89,7 +89,7 @@ void ScanCutter::Add(const PlacedPacket& placed, const ClockReading& clock, cons
       AddColumn(packet, step, sequence, azimuth_half_cdeg, gap_cdeg, time);
     }
   }
-  last_gap_cdeg_ = placed.steps.gap_cdeg[packet.num_steps - 1];
+  last_gap_cdeg_ = placed.last_gap_cdeg();
 }
 
 void ScanCutter::End(const PacketCounts& counts) {
@@ -112,7 +112,7 @@ void ScanCutter::Begin(const PlacedPacket& placed, const ClockReading& clock, in
   scan_.model = placed.model;
   beams_ = &BeamsOf(placed.model);
   scan_.mode = placed.packet.mode;
-  Reserve(std::max(kUsualColumns, scan_.num_columns()));
+  Resize(std::max(kUsualColumns, scan_.num_columns()));
   // Without a scan before it, it begins at the cut when no column of its own could have been there.
   scan_.is_partial_start = !is_after_cut_ && Clockwise(cut_half_cdeg_, azimuth_half_cdeg) >= std::max(1, advance_half_cdeg);
   scan_.is_partial_end = false;
@@ -125,14 +125,9 @@ void ScanCutter::Begin(const PlacedPacket& placed, const ClockReading& clock, in
 }
 
 void ScanCutter::Finish(const PacketCounts& counts) {
-  const auto num_columns = static_cast<std::size_t>(num_columns_);
-  const auto num_cells = num_columns * kNumLasers * static_cast<std::size_t>(scan_.num_returns());
-  scan_.azimuth_rad.resize(num_columns);
-  scan_.time_ns.resize(num_columns);
-  scan_.range.resize(num_cells);
-  scan_.reflectivity.resize(num_cells);
+  Resize(num_columns_);
   scan_.end_time = scan_.time + std::chrono::floor<std::chrono::microseconds>(last_column_ - start_ + (kNumLasers - 1) * kLaserPeriod);
-  const double mean_gap_rad = DegToRad(static_cast<double>(sum_gap_cdeg_) / static_cast<double>(num_columns) / 100.0);
+  const double mean_gap_rad = DegToRad(static_cast<double>(sum_gap_cdeg_) / static_cast<double>(num_columns_) / 100.0);
   scan_.rate_radps = mean_gap_rad / ToSeconds(kBlockPeriod);
   scan_.counts = counts;
   ++num_scans_;
@@ -141,7 +136,7 @@ void ScanCutter::Finish(const PacketCounts& counts) {
 }
 
 void ScanCutter::AddColumn(const DataPacket& packet, int step, int sequence, int azimuth_half_cdeg, int gap_cdeg, nanoseconds time) {
-  if (num_columns_ == capacity_columns_) Reserve(2 * capacity_columns_);
+  if (num_columns_ == capacity_columns_) Resize(2 * capacity_columns_);
   const auto column = static_cast<std::size_t>(num_columns_);
   scan_.azimuth_rad[column] = static_cast<float>(azimuth_half_cdeg * kRadPerHalfCdeg);
   scan_.time_ns[column] = static_cast<std::int32_t>((time - start_).count());
@@ -197,7 +192,7 @@ bool ScanCutter::CrossesCut(int azimuth_half_cdeg, nanoseconds time) const {
 }
 
 // The arrays keep their memory from scan to scan; only what they grow by is filled with zeros.
-void ScanCutter::Reserve(int num_columns) {
+void ScanCutter::Resize(int num_columns) {
   capacity_columns_ = num_columns;
   const auto capacity = static_cast<std::size_t>(num_columns);
   const auto num_cells = capacity * kNumLasers * static_cast<std::size_t>(scan_.num_returns());

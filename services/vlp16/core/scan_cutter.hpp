@@ -31,8 +31,6 @@ class ScanCutter {
 
   /// Scans ended for being larger than any scan of this sensor (it stands still, or packets lie).
   std::int64_t num_capped() const { return num_capped_; }
-  /// Rotation of the head per step in the last packet, 0 before the first.
-  int last_gap_cdeg() const { return last_gap_cdeg_; }
 
  private:
   void Begin(const PlacedPacket& placed, const ClockReading& clock, int azimuth_half_cdeg, int advance_half_cdeg, std::chrono::nanoseconds time);
@@ -40,13 +38,13 @@ class ScanCutter {
   void AddColumn(const DataPacket& packet, int step, int sequence, int azimuth_half_cdeg, int gap_cdeg, std::chrono::nanoseconds time);
   void AddLoss(const PlacedPacket& placed, int azimuth_half_cdeg, const PacketCounts& counts);
   bool CrossesCut(int azimuth_half_cdeg, std::chrono::nanoseconds time) const;
-  void Reserve(int num_columns);
+  void Resize(int num_columns);
 
   int cut_half_cdeg_;
   std::function<void(const Scan&)> on_scan_;
   std::int64_t num_scans_ = 0;
   std::int64_t num_capped_ = 0;
-  int last_gap_cdeg_ = 0;
+  int last_gap_cdeg_ = 0;  // rotation of the head per step in the last packet
 
   std::optional<ClockReading> clock_;
   const Beams* beams_ = &BeamsOf(Model::kVlp16);  // of the scan that is being made

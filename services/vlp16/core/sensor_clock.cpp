@@ -33,8 +33,7 @@ microseconds InNearestHour(microseconds value, microseconds target) {
   return target + rest - kClockHour / 2;
 }
 
-// UTC of a sentence, on the day that is nearest to `about` where it has no date, and put right against the host where its date is off by whole
-// rollovers.
+// UTC of a sentence, on the day nearest to `about` where it has no date, and put right against the host where its date is off by whole rollovers.
 microseconds ToUtc(const SentenceTime& time, Utime host_time, microseconds about) {
   using std::chrono::days;
   const microseconds host = host_time.time_since_epoch();

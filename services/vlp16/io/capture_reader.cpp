@@ -1,5 +1,6 @@
 #include "services/vlp16/io/capture_reader.hpp"
 
+#include <array>
 #include <pcap/pcap.h>
 #include <stdexcept>
 
@@ -14,19 +15,16 @@ std::string LinkTypeText(int link_type) {
 
 }  // namespace
 
-void CaptureReader::Closer::operator()(void* capture) const { pcap_close(static_cast<pcap_t*>(capture)); }
-
-CaptureReader::CaptureReader(const std::filesystem::path& file) {
+CaptureReader::CaptureReader(const std::filesystem::path& file) : capture_(nullptr, &pcap_close) {
   std::array<char, PCAP_ERRBUF_SIZE> fault{};
   // libpcap takes "-" for standard input.
   const std::string name = file == "-" ? "./-" : file.string();
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
     throw std::runtime_error(name + ": is a folder or a pipe, not the file of a capture");
   }
-  pcap_t* capture = pcap_open_offline_with_tstamp_precision(name.c_str(), PCAP_TSTAMP_PRECISION_NANO, fault.data());
-  if (capture == nullptr) throw std::runtime_error(name + ": cannot be read as a capture: " + fault.data());
-  capture_.reset(capture);
-  link_type_ = pcap_datalink(capture);
+  capture_.reset(pcap_open_offline_with_tstamp_precision(name.c_str(), PCAP_TSTAMP_PRECISION_NANO, fault.data()));
+  if (!capture_) throw std::runtime_error(name + ": cannot be read as a capture: " + fault.data());
+  link_type_ = pcap_datalink(capture_.get());
   if (!IsLinkTypeUnderstood(link_type_)) {
     throw std::runtime_error(name + ": link type " + LinkTypeText(link_type_) +
                              " is not understood; Ethernet, Linux cooked, raw IP and BSD loopback are");
@@ -34,37 +32,28 @@ CaptureReader::CaptureReader(const std::filesystem::path& file) {
 }
 
 std::optional<Datagram> CaptureReader::Next(std::int64_t max_frames) {
-  auto* capture = static_cast<pcap_t*>(capture_.get());
   for (std::int64_t i = 0; i < max_frames && !is_at_end_; ++i) {
     pcap_pkthdr* header = nullptr;
     const u_char* data = nullptr;
-    const int outcome = pcap_next_ex(capture, &header, &data);
+    const int outcome = pcap_next_ex(capture_.get(), &header, &data);
     is_at_end_ = outcome != 1;
     if (outcome == PCAP_ERROR_BREAK) return std::nullopt;  // the end
     if (outcome != 1) {
-      damage_ = std::string(pcap_geterr(capture)) + ", after " + std::to_string(num_frames_) + " frames";
+      damage_ = std::string(pcap_geterr(capture_.get())) + ", after " + std::to_string(num_frames()) + " frames";
       return std::nullopt;
     }
-    ++num_frames_;
     const auto frame = ParseFrame(link_type_, Bytes(data, header->caplen), header->caplen < header->len);
     // Nanoseconds were asked for: libpcap then leaves them in tv_usec.
     const auto host_time = UtimeOfStamp(header->ts.tv_sec, header->ts.tv_usec);
-    if (frame.fault == FrameFault::kNone && !host_time) {
-      ++num_bad_times_;
-      continue;
-    }
-    ++num_by_fault_[static_cast<std::size_t>(frame.fault)];
-    if (frame.fault != FrameFault::kNone) continue;
-    ++num_datagrams_;
+    if (!frames_.Add(frame, host_time)) continue;
     return Datagram{*host_time, frame.source_address, frame.source_port, frame.destination_port, {frame.payload.begin(), frame.payload.end()}};
   }
   return std::nullopt;
 }
 
 std::vector<Counter> CaptureReader::counters() const {
-  std::vector<Counter> counters{{"frames_read", num_frames_}};
-  for (std::size_t i = 0; i < kFrameFaultNames.size(); ++i) counters.push_back({kFrameFaultNames[i], num_by_fault_[i]});
-  counters.push_back({"frames_bad_time", num_bad_times_});
+  std::vector<Counter> counters;
+  frames_.AppendTo(counters);
   counters.push_back({"capture_damaged", num_damaged()});
   return counters;
 }

@@ -1,11 +1,9 @@
 // UDP datagrams out of a capture file: classic pcap (microseconds or nanoseconds) or pcapng.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,8 +36,8 @@ class CaptureReader {
 
   bool is_at_end() const { return is_at_end_; }
 
-  std::int64_t num_frames() const { return num_frames_; }        // read so far
-  std::int64_t num_datagrams() const { return num_datagrams_; }  // returned so far; 0 at the end with num_frames() above 0: all were refused
+  std::int64_t num_frames() const { return frames_.num_frames(); }        // read so far
+  std::int64_t num_datagrams() const { return frames_.num_datagrams(); }  // returned so far; 0 at the end with num_frames() above 0: all were refused
   std::int64_t num_damaged() const { return damage_.empty() ? 0 : 1; }
   const std::string& damage() const { return damage_; }  // what is wrong, and after how many frames; empty = nothing
 
@@ -47,16 +45,10 @@ class CaptureReader {
   std::vector<Counter> counters() const;
 
  private:
-  struct Closer {
-    void operator()(void* capture) const;
-  };
-  std::unique_ptr<void, Closer> capture_;  // pcap_t
+  CaptureHandle capture_;
   int link_type_ = 0;
   bool is_at_end_ = false;
-  std::int64_t num_frames_ = 0;
-  std::int64_t num_datagrams_ = 0;
-  std::int64_t num_bad_times_ = 0;
-  std::array<std::int64_t, kFrameFaultNames.size()> num_by_fault_{};
+  FrameCounts frames_;
   std::string damage_;
 };
 

@@ -28,11 +28,7 @@ constexpr std::array<std::uint32_t, 4> kFamiliesIpv6{10, 24, 28, 30};  // Linux,
 
 int ReadU16BigEndian(Bytes bytes, std::size_t offset) { return bytes[offset] << 8 | bytes[offset + 1]; }
 
-Frame Refused(FrameFault fault) {
-  Frame frame;
-  frame.fault = fault;
-  return frame;
-}
+Frame Refused(FrameFault fault) { return {.fault = fault}; }
 
 std::string AddressText(int family, Bytes address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -142,6 +138,19 @@ std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds
   if (nanoseconds < 0 || nanoseconds >= kNanosecondsPerSecond) return std::nullopt;
   if (seconds < kMinUtimeUs / kMicrosecondsPerSecond || seconds > kMaxUtimeUs / kMicrosecondsPerSecond) return std::nullopt;
   return UtimeFromWire(seconds * kMicrosecondsPerSecond + nanoseconds / 1000);
+}
+
+bool FrameCounts::Add(const Frame& frame, const std::optional<Utime>& time) {
+  ++num_frames_;
+  const bool is_datagram = frame.fault == FrameFault::kNone;
+  ++(is_datagram && !time ? num_bad_times_ : num_by_fault_[static_cast<std::size_t>(frame.fault)]);
+  return is_datagram && time;
+}
+
+void FrameCounts::AppendTo(std::vector<Counter>& counters) const {
+  counters.push_back({"frames_read", num_frames_});
+  for (std::size_t i = 0; i < kFrameFaultNames.size(); ++i) counters.push_back({kFrameFaultNames[i], num_by_fault_[i]});
+  counters.push_back({"frames_bad_time", num_bad_times_});
 }
 
 }  // namespace lookout::vlp16

@@ -3,12 +3,17 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/core/bytes.hpp"
+#include "common/core/health.hpp"
 #include "common/core/utime.hpp"
+
+struct pcap;  // libpcap's pcap_t
 
 namespace lookout::vlp16 {
 
@@ -28,14 +33,16 @@ inline constexpr std::array<std::string_view, 8> kFrameFaultNames{"frames_datagr
 
 struct Frame {
   FrameFault fault = FrameFault::kNone;  // the rest is set when it is kNone
-  std::string source_address;            // numeric
+  std::string source_address = {};       // numeric
   int source_port = 0;
   int destination_port = 0;
-  Bytes payload;  // within the bytes of the frame
+  Bytes payload = {};  // within the bytes of the frame
 };
 
-/// Link types that are understood, by libpcap's DLT numbers: Ethernet (also VLAN-tagged, stacked), Linux cooked v1 and v2, raw IP,
-/// BSD loopback.
+/// What libpcap captures or reads; closes itself.
+using CaptureHandle = std::unique_ptr<pcap, void (*)(pcap*)>;
+
+/// Link types that are understood, by libpcap's DLT numbers: Ethernet (also VLAN-tagged, stacked), Linux cooked v1, v2, raw IP, BSD loopback.
 bool IsLinkTypeUnderstood(int link_type);
 
 /// @param link_type  DLT number; IsLinkTypeUnderstood
@@ -50,5 +57,26 @@ Frame ParseFrame(int link_type, Bytes bytes, bool is_cut);
 ///
 /// @return nullopt when it cannot be: nanoseconds outside of a second, or a year outside of 1900 to 2200
 std::optional<Utime> UtimeOfStamp(std::int64_t seconds, std::int64_t nanoseconds);
+
+/// The frames of one capture, live or from a file, one after the other: what was a datagram, and what was skipped and why.
+class FrameCounts {
+ public:
+  /// Counts a frame.
+  ///
+  /// @param time  nullopt: its stamp cannot be
+  /// @return whether it holds a datagram with a time
+  bool Add(const Frame& frame, const std::optional<Utime>& time);
+
+  std::int64_t num_frames() const { return num_frames_; }
+  std::int64_t num_datagrams() const { return num_by_fault_[static_cast<std::size_t>(FrameFault::kNone)]; }
+
+  /// Appends frames_read, frames_datagram, then skipped frames by reason.
+  void AppendTo(std::vector<Counter>& counters) const;
+
+ private:
+  std::int64_t num_frames_ = 0;
+  std::int64_t num_bad_times_ = 0;
+  std::array<std::int64_t, kFrameFaultNames.size()> num_by_fault_{};
+};
 
 }  // namespace lookout::vlp16

@@ -15,8 +15,6 @@ namespace {
 // A data packet takes 1248 bytes with its headers, 8 more with two VLAN tags; jumbo frames are no lidar's.
 constexpr int kSnapLengthBytes = 2048;
 
-using CaptureOwner = std::unique_ptr<pcap_t, decltype(&pcap_close)>;
-
 // Compiles and, with a live handle, installs it.
 std::string ApplyFilter(pcap_t* capture, const std::string& filter, bool is_installed) {
   constexpr int kOptimise = 1;
@@ -50,13 +48,11 @@ std::string FilterOfPorts(int data_port, int position_port, bool has_vlan) {
 }
 
 std::string FilterFault(const std::string& filter) {
-  const CaptureOwner dead(pcap_open_dead(DLT_EN10MB, kSnapLengthBytes), &pcap_close);
+  const CaptureHandle dead(pcap_open_dead(DLT_EN10MB, kSnapLengthBytes), &pcap_close);
   return dead ? ApplyFilter(dead.get(), filter, false) : "libpcap does not start";
 }
 
-void LiveCapture::Closer::operator()(void* capture) const { pcap_close(static_cast<pcap_t*>(capture)); }
-
-LiveCapture::LiveCapture(LiveOptions options) : options_(std::move(options)) {
+LiveCapture::LiveCapture(LiveOptions options) : options_(std::move(options)), capture_(nullptr, &pcap_close) {
   const auto& interface = options_.interface;
   if (if_nametoindex(interface.c_str()) == 0) throw std::runtime_error("cannot capture: " + io::NoInterfaceText(interface));
   if (!io::IsInterfaceUp(interface)) {
@@ -67,12 +63,10 @@ LiveCapture::LiveCapture(LiveOptions options) : options_(std::move(options)) {
   if (!fault.empty()) throw std::runtime_error(fault);
 }
 
-LiveCapture::~LiveCapture() = default;
-
 std::string LiveCapture::Open() {
   const std::string where = "cannot capture on interface '" + options_.interface + "': ";
   std::array<char, PCAP_ERRBUF_SIZE> fault{};
-  CaptureOwner opened(pcap_create(options_.interface.c_str(), fault.data()), &pcap_close);
+  CaptureHandle opened(pcap_create(options_.interface.c_str(), fault.data()), &pcap_close);
   if (!opened) return where + fault.data();
   pcap_t* capture = opened.get();
   pcap_set_snaplen(capture, kSnapLengthBytes);
@@ -95,7 +89,7 @@ std::string LiveCapture::Open() {
   link_type_ = link_type;
   interface_index_ = index;
   filter_ = filter;
-  capture_.reset(opened.release());
+  capture_ = std::move(opened);
   ++num_opened_;
   return "";
 }
@@ -110,7 +104,7 @@ void LiveCapture::Close() {
 LiveCapture::Drops LiveCapture::CurrentDrops() const {
   Drops drops = past_drops_;
   pcap_stat statistics{};
-  if (capture_ && pcap_stats(static_cast<pcap_t*>(capture_.get()), &statistics) == 0) {
+  if (capture_ && pcap_stats(capture_.get(), &statistics) == 0) {
     drops.num_kernel += statistics.ps_drop;
     drops.num_interface += statistics.ps_ifdrop;
   }
@@ -144,12 +138,7 @@ std::optional<io::Source::Piece> LiveCapture::Check(Bytes bytes, bool is_cut, st
   auto frame = ParseFrame(link_type_, bytes, is_cut);
   const auto host_time = UtimeOfStamp(seconds, fraction * nanoseconds_per_fraction_);
   if (host_time) last_time_ = *host_time;
-  if (frame.fault == FrameFault::kNone && !host_time) {
-    ++num_bad_times_;
-    return std::nullopt;
-  }
-  ++num_by_fault_[static_cast<std::size_t>(frame.fault)];
-  if (frame.fault != FrameFault::kNone) return std::nullopt;
+  if (!frames_.Add(frame, host_time)) return std::nullopt;
   const auto& allowed = options_.allowed_source_addresses;
   if (!allowed.empty() && std::ranges::find(allowed, frame.source_address) == allowed.end()) {
     ++num_source_refused_;
@@ -167,9 +156,8 @@ std::optional<io::Source::Piece> LiveCapture::Receive(Utime) {
   for (int i = 0; i < kMaxSkippedPerCall && !is_empty_; ++i) {
     pcap_pkthdr* header = nullptr;
     const u_char* data = nullptr;
-    const int outcome = capture_ ? pcap_next_ex(static_cast<pcap_t*>(capture_.get()), &header, &data) : 0;
+    const int outcome = capture_ ? pcap_next_ex(capture_.get(), &header, &data) : 0;
     if (outcome == 1) {
-      ++num_frames_;
       auto datagram = Check(Bytes(data, header->caplen), header->caplen < header->len, header->ts.tv_sec, header->ts.tv_usec);
       if (datagram) return datagram;
       continue;
@@ -178,7 +166,7 @@ std::optional<io::Source::Piece> LiveCapture::Receive(Utime) {
     if (outcome == 0) continue;
     // Poll opens it again.
     ++num_read_errors_;
-    read_fault_ = pcap_geterr(static_cast<pcap_t*>(capture_.get()));
+    read_fault_ = pcap_geterr(capture_.get());
     Close();
   }
   return std::nullopt;
@@ -186,11 +174,12 @@ std::optional<io::Source::Piece> LiveCapture::Receive(Utime) {
 
 std::vector<Counter> LiveCapture::counters() {
   const auto drops = CurrentDrops();
-  std::vector<Counter> counters{{"capture_kernel_drops", drops.num_kernel},      {"capture_interface_drops", drops.num_interface},
-                                {"capture_source_refused", num_source_refused_}, {"capture_outages", num_outages_},
-                                {"capture_read_errors", num_read_errors_},       {"frames_read", num_frames_}};
-  for (std::size_t i = 0; i < kFrameFaultNames.size(); ++i) counters.push_back({kFrameFaultNames[i], num_by_fault_[i]});
-  counters.push_back({"frames_bad_time", num_bad_times_});
+  std::vector<Counter> counters{{"capture_kernel_drops", drops.num_kernel},
+                                {"capture_interface_drops", drops.num_interface},
+                                {"capture_source_refused", num_source_refused_},
+                                {"capture_outages", num_outages_},
+                                {"capture_read_errors", num_read_errors_}};
+  frames_.AppendTo(counters);
   return counters;
 }
 

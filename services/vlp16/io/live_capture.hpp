@@ -1,9 +1,7 @@
 // UDP datagrams out of the frames that a network interface sees.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,7 +9,7 @@
 #include "common/core/bytes.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
-#include "common/io/interface.hpp"
+#include "common/io/network.hpp"
 #include "common/io/source.hpp"
 #include "services/vlp16/io/frame.hpp"
 
@@ -36,14 +34,11 @@ std::string FilterFault(const std::string& filter);
 
 class LiveCapture final : public io::Source {
  public:
-  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (the text says how to get it). An interface that
-  /// is
-  ///         down is waited for.
+  /// @throws std::runtime_error when the interface is not there or the right to capture is missing (the text says how to get it). One that is down is
+  ///         waited for
   explicit LiveCapture(LiveOptions options);
-  ~LiveCapture() override;
 
-  /// Looks once a second: closes when the interface goes down or away, opens again when it is back. Also says (and counts as an outage) what was
-  /// over before it looked.
+  /// Looks once a second: closes when the interface goes down or away, opens when it is back. Says, and counts, an outage that is over by then, too.
   std::string Poll(Utime now) override;
 
   /// The next datagram from an allowed source.
@@ -64,9 +59,6 @@ class LiveCapture final : public io::Source {
   std::vector<Counter> counters() override;
 
  private:
-  struct Closer {
-    void operator()(void* capture) const;
-  };
   struct Drops {
     std::int64_t num_kernel = 0;
     std::int64_t num_interface = 0;
@@ -79,7 +71,7 @@ class LiveCapture final : public io::Source {
   std::optional<Piece> Check(Bytes bytes, bool is_cut, std::int64_t seconds, std::int64_t fraction);
 
   LiveOptions options_;
-  std::unique_ptr<void, Closer> capture_;  // pcap_t
+  CaptureHandle capture_;
   int link_type_ = 0;
   std::int64_t nanoseconds_per_fraction_ = 1;  // of a stamp, as precise as the kernel has it
   unsigned int interface_index_ = 0;
@@ -90,13 +82,11 @@ class LiveCapture final : public io::Source {
   std::string read_fault_;  // why reading ended; until Poll() reports it
   std::string filter_;
   Drops past_drops_;  // of what has been closed
-  std::int64_t num_frames_ = 0;
-  std::int64_t num_bad_times_ = 0;
+  FrameCounts frames_;
   std::int64_t num_source_refused_ = 0;
   std::int64_t num_outages_ = 0;
   std::int64_t num_opened_ = 0;
   std::int64_t num_read_errors_ = 0;
-  std::array<std::int64_t, kFrameFaultNames.size()> num_by_fault_{};
 };
 
 }  // namespace lookout::vlp16

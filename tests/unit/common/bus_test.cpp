@@ -138,7 +138,7 @@ TEST(Subscribe, CountsWhatDoesNotDecodeAndGoesOn) {
   bus.Publish(kLidarNmea, bytes);
   bytes.resize(bytes.size() / 2);  // cut short
   bus.Publish(kLidarNmea, bytes);
-  bus.Publish(kLidarNmea, Bytes());
+  bus.Publish(kLidarNmea, {});
   Publish(bus, kLidarNmea, Sentence(0));
   HandleAll(bus);
   EXPECT_EQ(num_handled, 1);

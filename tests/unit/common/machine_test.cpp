@@ -1,6 +1,6 @@
-#include "common/runtime/machine.hpp"
-
 #include <gtest/gtest.h>
+
+#include "common/runtime/run_info.hpp"
 
 namespace lookout::runtime {
 namespace {

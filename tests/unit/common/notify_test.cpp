@@ -1,6 +1,4 @@
 // What systemd hears of a process.
-#include "common/runtime/notify.hpp"
-
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -13,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
+#include "common/runtime/health.hpp"
 #include "common/runtime/process.hpp"
 #include "tests/support/files.hpp"
 

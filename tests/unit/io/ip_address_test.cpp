@@ -1,6 +1,6 @@
-#include "common/io/ip_address.hpp"
-
 #include <gtest/gtest.h>
+
+#include "common/io/network.hpp"
 
 namespace lookout::io {
 namespace {

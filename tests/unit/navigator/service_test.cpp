@@ -223,7 +223,7 @@ TEST(Service, LivesOnAfterBytesThatAreNoMessage) {
   Rig rig(TestParams(Input::kLog));
   auto bytes = bus::Encode(RawMessage(0.0, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
   const auto whole = bytes;
-  for (std::size_t size = 0; size < whole.size(); ++size) rig.bus.Publish(bus::kNavRaw, Bytes(whole).first(size));
+  for (auto end = whole.begin(); end != whole.end(); ++end) rig.bus.Publish(bus::kNavRaw, {whole.begin(), end});
   for (std::size_t place = 0; place < whole.size(); ++place) {
     bytes = whole;
     bytes[place] ^= 0x80;

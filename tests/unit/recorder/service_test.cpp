@@ -196,7 +196,7 @@ class AnythingBus final : public bus::Bus {
   void Bring(std::string_view channel, Bytes bytes) { handler_(channel, bytes); }
 
  protected:
-  bool Send(const bus::Channel& /*channel*/, Bytes /*bytes*/) override { return true; }
+  bool Send(const bus::Channel& /*channel*/, std::vector<std::uint8_t>&& /*bytes*/) override { return true; }
   void Attach(const bus::Channel* /*channel*/, RawHandler handler) override { handler_ = std::move(handler); }
 
  private:

@@ -355,7 +355,7 @@ TEST(Decoder, CapsAScanThatDoesNotEnd) {
   bench.Send(sensor, 1600);  // 2.1 s
   bench.decoder.Flush();
   ASSERT_EQ(bench.scans.size(), 2U);
-  EXPECT_EQ(bench.CountOf("turns_capped"), 1);
+  EXPECT_EQ(bench.CountOf("scans_capped"), 1);
   EXPECT_TRUE(bench.scans[0].is_partial_end);
   EXPECT_LE(bench.scans[0].time_ns.back(), 2'000'000'000);
   EXPECT_EQ(bench.scans[0].rate_radps, 0.0);

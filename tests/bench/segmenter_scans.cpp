@@ -1,6 +1,6 @@
 // Processor time of whole scans, median and 99th percentile, ours and peers alternating on the same scans; and how it grows with the returns.
 //
-//   bench/turns_segmenter [--rounds N]
+//   bench/scans_segmenter [--rounds N]
 //
 // Peers give labels alone. Ours is timed whole, measuring of each segment included, and up to its labels.
 #include <CLI/CLI.hpp>

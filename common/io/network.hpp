@@ -1,10 +1,12 @@
-// Numeric addresses of IPv4 and IPv6, compared in binary: one address has many texts.
+// Numeric addresses of IPv4 and IPv6, compared in binary, as one address has many texts; and network interfaces of this computer, by name ("eth0").
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+
+#include "common/core/utime.hpp"
 
 namespace lookout::io {
 
@@ -24,5 +26,19 @@ std::optional<IpAddress> ParseIpAddress(const std::string& text);
 
 /// The one text that the system writes for it: IPv4 where it is mapped.
 std::string ToText(const IpAddress& address);
+
+bool IsInterfaceUp(const std::string& interface);
+
+/// For errors: that it is not there, which ones there are, and what to do when it comes late at boot.
+std::string NoInterfaceText(const std::string& interface);
+
+/// Says when an interface is to be looked at: about once a second.
+class InterfaceTimer {
+ public:
+  bool IsDue(Utime now);
+
+ private:
+  Utime last_{};
+};
 
 }  // namespace lookout::io
