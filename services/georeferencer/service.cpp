@@ -38,7 +38,7 @@ std::string_view PoseText(std::int32_t pose_status) {
     case pose_t::STATUS_UNKNOWN:
       return "no position and no heading: obstacles in the vessel frame only";
     case pose_t::STATUS_COASTING:
-      return "POSE is only carried on: obstacles drift as their covariance says";
+      return "position or heading is only propagated: obstacles drift as their covariance says, see HEALTH of navigator";
     default:
       return {};
   }

@@ -43,13 +43,13 @@ HealthReport Service::Report() const {
     report.reason = "the latest LIDAR_SCAN was refused: " + std::string(*last_fault_);
   }
   const auto& counts = assembler_.counts();
-  report.counters = {{"turns", num_scans_},
+  report.counters = {{"scans", num_scans_},
                      {"segments", num_segments_},
                      {"segments_too_small", num_too_small_},
                      {"segments_over_limit", num_over_limit_},
                      {"returns_repeated", num_repeats_},
-                     {"turns_incomplete", counts.incomplete_scans},
-                     {"turns_inconsistent", num_inconsistent_scans_},
+                     {"scans_incomplete", counts.incomplete_scans},
+                     {"scans_inconsistent", num_inconsistent_scans_},
                      {"parts_duplicate", counts.duplicate_parts},
                      {"parts_inconsistent", counts.inconsistent_parts}};
   report.counters.insert(report.counters.end(), refusals_.begin(), refusals_.end());

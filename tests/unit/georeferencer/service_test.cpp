@@ -162,7 +162,7 @@ TEST_F(GeoreferencerService, TellsThatPoseIsOnlyCarriedOn) {
   SendPoses(0, 100'000, pose_t::STATUS_COASTING);
   SendTurn(0);
   EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
-  EXPECT_EQ(service_.Report().reason, "POSE is only carried on: obstacles drift as their covariance says");
+  EXPECT_EQ(service_.Report().reason, "position or heading is only propagated: obstacles drift as their covariance says, see HEALTH of navigator");
   SendPoses(120'000, 120'000);
   EXPECT_EQ(service_.Report().state, HealthState::kOk);
 }
