@@ -10,7 +10,6 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/datum_check.hpp"
-#include "services/georeferencer/wire.hpp"
 
 namespace lookout::georeferencer {
 
@@ -53,15 +52,13 @@ Service::Service(bus::Bus& bus, const Params& params)
       T_vessel_lidar_(params.placement.T_vessel_lidar),
       datum_(params.datum) {
   if (guard_zone_.range_m > 0.0) alarm_.emplace();
-  for (const auto& fault : messages::kSegmentsFaults) refusals_.push_back({fault, 0});
-  for (const auto& refusal : kPoseRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
 }
 
 void Service::OnSegments(const segments_t& message) {
   auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
-  if (const auto* refusal = std::get_if<Refusal>(&part)) return Refuse(*refusal);
+  if (const auto* refusal = std::get_if<Refusal>(&part)) return segments_refused_.Add(*refusal);
   segments_seen_ = now_;
   auto& segments = std::get<SegmentPart>(part);
   if (alarm_) alarm_->Add(segments.head, NearestInZone(guard_zone_, segments, T_vessel_lidar_));
@@ -70,7 +67,7 @@ void Service::OnSegments(const segments_t& message) {
 
 void Service::OnPose(const pose_t& message) {
   const auto pose = ToPose(message);
-  if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
+  if (const auto* refusal = std::get_if<Refusal>(&pose)) return poses_refused_.Add(*refusal);
   pose_seen_ = now_;
   newest_pose_status_ = message.status;
   CheckDatum(std::get<Pose>(pose));
@@ -110,39 +107,34 @@ void Service::Publish(const std::vector<ObstaclePart>& parts) {
   }
 }
 
-void Service::Refuse(std::string_view name) { ++std::ranges::find(refusals_, name, &Counter::name)->count; }
-
 HealthReport Service::Report() const {
   HealthReport report;
   report.counters = georeferencer_.counters();
   report.counters.push_back({"parts_split", num_split_});
-  report.counters.insert(report.counters.end(), refusals_.begin(), refusals_.end());
+  segments_refused_.AppendTo(report.counters);
+  poses_refused_.AppendTo(report.counters);
 
-  const auto degrade = [&report](const std::string& reason) {
-    report.state = HealthState::kDegraded;
-    report.reason += (report.reason.empty() ? "" : "; ") + reason;
-  };
   const auto silence = [this](std::optional<Utime> seen) { return now_ && seen ? *now_ - *seen : std::chrono::microseconds(0); };
   const auto seconds = [](std::chrono::microseconds duration) {
     return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
   };
   // The alarm comes first: HEALTH is read from its beginning.
   if (alarm_) {
-    if (const auto nearest = alarm_->nearest()) degrade(AlarmText(*nearest, guard_zone_.range_m));
-    if (alarm_->is_unwatched()) degrade(alarm_->UnwatchedText());
+    if (const auto nearest = alarm_->nearest()) report.Degrade(AlarmText(*nearest, guard_zone_.range_m));
+    if (alarm_->is_unwatched()) report.Degrade(alarm_->UnwatchedText());
     for (const auto& counter : alarm_->counters()) report.counters.push_back(counter);
   }
-  if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
+  if (silence(segments_seen_) >= kSilence) report.Degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
   if (silence(pose_seen_) >= kSilence) {
-    degrade("no POSE for " + seconds(silence(pose_seen_)));
+    report.Degrade("no POSE for " + seconds(silence(pose_seen_)));
   } else {
     const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
-    if (const auto text = PoseText(status); !text.empty()) degrade(std::string(text));
+    if (const auto text = PoseText(status); !text.empty()) report.Degrade(text);
     const bool is_placed = status == pose_t::STATUS_OK || status == pose_t::STATUS_COASTING;
     const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
-    if (is_placed && is_late) degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
+    if (is_placed && is_late) report.Degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
-  if (!datum_complaint_.empty()) degrade(datum_complaint_);
+  if (!datum_complaint_.empty()) report.Degrade(datum_complaint_);
   return report;
 }
 

@@ -65,16 +65,10 @@ class Service {
   std::int64_t attitude_seq_ = 0;
   std::int64_t pose_seq_ = 0;
 
-  struct Counts {
-    std::int64_t no_start = 0;
-    std::int64_t too_long = 0;
-    std::int64_t not_printable = 0;
-    std::int64_t bad_host_time = 0;
-    std::int64_t lidar_nmea_bad = 0;
-    std::array<std::int64_t, kNumItemFaults> nav_raw_bad{};  // by ItemFault
-    std::int64_t nav_raw_backwards = 0;
-  };
-  Counts counts_;
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"no_start", "too_long", "not_printable", "bad_host_time", "lidar_nmea_bad", kRawTime, kRawKind, kRawText, kRawImu,
+                                       "nav_raw_backwards"});
+  Counts<kCountNames> counts_;
 };
 
 }  // namespace lookout::navigator

@@ -79,6 +79,4 @@ std::vector<Item> ItemSequencer::Finish(Utime host_time) {
   return items;
 }
 
-std::vector<Counter> ItemSequencer::counters() const { return {{"clock_set_back", num_clock_set_back_}, {"stale_sentence", num_stale_sentences_}}; }
-
 }  // namespace lookout::navigator

@@ -174,7 +174,7 @@ TEST(PoseFilterAttitude, RefusesSamplesThatLackANumber) {
   auto sample = RestSample(0);
   sample.specific_force_mps2.y() = kNan;
   filter.Add(sample);
-  EXPECT_EQ(filter.counts().unusable_imu, 1);
+  EXPECT_EQ(filter.counts()["unusable_imu"], 1);
   EXPECT_FALSE(filter.At(NoonPlus(0)).has_attitude);
 }
 

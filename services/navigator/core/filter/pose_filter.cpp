@@ -158,12 +158,6 @@ std::string StoppedInputs(const State& state) {
 
 }  // namespace
 
-std::vector<Counter> FilterCounts::Named() const {
-  return {{"unusable_fix", unusable_fix},        {"late_fix", late_fix},   {"late_attitude", late_attitude},   {"late_imu", late_imu},
-          {"unusable_imu", unusable_imu},        {"gated_fix", gated_fix}, {"gated_attitude", gated_attitude}, {"renewed_position", renewed_position},
-          {"renewed_attitude", renewed_attitude}};
-}
-
 PoseFilter::PoseFilter(const FilterParams& params) : params_(params) {
   if (params_.datum) SetDatum(*params_.datum);
 }
@@ -223,7 +217,7 @@ filter::FixMeasurement* PoseFilter::SameEpoch(const filter::FixMeasurement& fix,
 
 void PoseFilter::Add(const GnssFix& fix) {
   if (!IsMeasured(fix.quality) || !fix.position || !(fix.horizontal_sd_m > 0.0)) {
-    ++counts_.unusable_fix;
+    ++counts_["unusable_fix"];
     return;
   }
   const double ellipsoid_height_m = fix.EllipsoidHeightM();
@@ -263,7 +257,7 @@ void PoseFilter::Add(const GnssFix& fix) {
     }
     Touch(index);
   } else if (!Insert(fix.when.time, measurement)) {
-    ++counts_.late_fix;
+    ++counts_["late_fix"];
     return;
   }
   last_fix_arrival_ = fix.when.arrival;
@@ -272,7 +266,7 @@ void PoseFilter::Add(const GnssFix& fix) {
 void PoseFilter::Add(const GroundVelocity& velocity) {
   if (std::isnan(velocity.speed_mps)) return;
   const auto measurement = ToVelocity(velocity.speed_mps, velocity.course_rad, params_.velocity_sd_mps, false);
-  if (!Insert(velocity.time, measurement)) ++counts_.late_fix;
+  if (!Insert(velocity.time, measurement)) ++counts_["late_fix"];
 }
 
 void PoseFilter::Add(const Attitude& attitude) {
@@ -281,7 +275,7 @@ void PoseFilter::Add(const Attitude& attitude) {
   measurement.roll_sd_rad = SdOr(attitude.roll_sd_rad, params_.tilt_sd_rad);
   measurement.pitch_sd_rad = SdOr(attitude.pitch_sd_rad, params_.tilt_sd_rad);
   if (!Insert(attitude.when.time, measurement)) {
-    ++counts_.late_attitude;
+    ++counts_["late_attitude"];
     return;
   }
   has_had_heading_ = has_had_heading_ || !std::isnan(attitude.heading_rad);
@@ -289,10 +283,10 @@ void PoseFilter::Add(const Attitude& attitude) {
 
 void PoseFilter::Add(const ImuSample& sample) {
   if (!sample.angular_velocity_radps.allFinite() || !sample.specific_force_mps2.allFinite()) {
-    ++counts_.unusable_imu;
+    ++counts_["unusable_imu"];
     return;
   }
-  if (!Insert(sample.time, sample)) ++counts_.late_imu;
+  if (!Insert(sample.time, sample)) ++counts_["late_imu"];
 }
 
 void PoseFilter::AdvanceTo(Utime time) { Insert(time, filter::Tick{}); }
@@ -318,8 +312,8 @@ void PoseFilter::Process(Event& event, std::size_t index) {
   if (event.is_counted) return;
   event.is_counted = true;
   const bool is_attitude = std::holds_alternative<AttitudeValues>(event.measurement);
-  (is_attitude ? counts_.gated_attitude : counts_.gated_fix) += counts.num_gated;
-  (is_attitude ? counts_.renewed_attitude : counts_.renewed_position) += counts.num_renewed;
+  (is_attitude ? counts_["gated_attitude"] : counts_["gated_fix"]) += counts.num_gated;
+  (is_attitude ? counts_["renewed_attitude"] : counts_["renewed_position"]) += counts.num_renewed;
   nis_sum_ += counts.nis_sum;
   num_nis_degrees_ += counts.num_degrees;
 }
