@@ -1,9 +1,9 @@
 #include "services/georeferencer/service.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 #include <variant>
@@ -21,10 +21,8 @@ constexpr std::chrono::seconds kSilence(2);
 // "obstacle within 10.0 m: 7.3 m, 12 deg to starboard"
 std::string AlarmText(const NearestPoint& nearest, double guard_range_m) {
   const double bearing_deg = RadToDeg(WrapToPi(nearest.bearing_rad));
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "obstacle within %.1f m: %.1f m, %.0f deg to %s", guard_range_m, nearest.range_m, std::abs(bearing_deg),
-                bearing_deg < 0.0 ? "port" : "starboard");
-  return text.data();
+  return fmt::format("obstacle within {:.1f} m: {:.1f} m, {:.0f} deg to {}", guard_range_m, nearest.range_m, std::abs(bearing_deg),
+                     bearing_deg < 0.0 ? "port" : "starboard");
 }
 
 // What the status of POSE means for obstacles; empty where it is OK.
@@ -80,8 +78,7 @@ void Service::CheckDatum(const Pose& pose) {
   checked_datum_ = pose.datum;
   datum_complaint_.clear();
   if (!datum_ || datum_->latitude_deg != pose.datum.latitude_deg || datum_->longitude_deg != pose.datum.longitude_deg) return;
-  datum_complaint_ =
-      DatumComplaint({datum_->latitude_deg, datum_->longitude_deg, 0.0}, pose.datum.Map().Reverse(pose.position_map_m), "the first POSE");
+  datum_complaint_ = DatumComplaint(*datum_, pose.datum.Map().Reverse(pose.position_map_m), "the first POSE");
 }
 
 void Service::AdvanceTo(Utime host_time) {
@@ -115,18 +112,16 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
 
   const auto silence = [this](std::optional<Utime> seen) { return now_ && seen ? *now_ - *seen : std::chrono::microseconds(0); };
-  const auto seconds = [](std::chrono::microseconds duration) {
-    return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
-  };
   // The alarm comes first: HEALTH is read from its beginning.
   if (alarm_) {
     if (const auto nearest = alarm_->nearest()) report.Degrade(AlarmText(*nearest, guard_zone_.range_m));
     if (alarm_->is_unwatched()) report.Degrade(alarm_->UnwatchedText());
     for (const auto& counter : alarm_->counters()) report.counters.push_back(counter);
   }
-  if (silence(segments_seen_) >= kSilence) report.Degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
+  if (silence(segments_seen_) >= kSilence)
+    report.Degrade(fmt::format("no SEGMENTS for {} s", std::chrono::floor<std::chrono::seconds>(silence(segments_seen_)).count()));
   if (silence(pose_seen_) >= kSilence) {
-    report.Degrade("no POSE for " + seconds(silence(pose_seen_)));
+    report.Degrade(fmt::format("no POSE for {} s", std::chrono::floor<std::chrono::seconds>(silence(pose_seen_)).count()));
   } else {
     const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
     if (const auto text = PoseText(status); !text.empty()) report.Degrade(text);

@@ -49,7 +49,7 @@ class Service {
   Eigen::Isometry3d T_vessel_lidar_;
   std::optional<GuardAlarm> alarm_;  // where a guard zone is configured
   GuardAlarm::State reported_alarm_;
-  std::optional<Datum> datum_;  // of boat.txtpb
+  std::optional<GeodeticPlace> datum_;  // of boat.txtpb
   std::optional<Datum> checked_datum_;
   std::string datum_complaint_;
   Counts<messages::kSegmentsFaults> segments_refused_;

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
 
@@ -21,7 +21,7 @@ std::string InSeconds(std::chrono::microseconds duration) {
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
-  if (params_.input == Input::kLog) {
+  if (params_.reads_nav_raw) {
     bus::Subscribe<nav_raw_t>(bus_, bus::kNavRaw, [this](const nav_raw_t& message) { OnNavRaw(message); });
   } else if (params_.use_lidar_nmea) {
     bus::Subscribe<lidar_nmea_t>(bus_, bus::kLidarNmea, [this](const lidar_nmea_t& message) { OnLidarNmea(message); });
@@ -35,7 +35,7 @@ void Service::OnStream(Utime arrival, Bytes bytes, const std::string& source) { 
 void Service::OnStreamEnd(const std::string& source) { assemblers_[source].Clear(); }
 
 void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::string& source) {
-  if (params_.input != Input::kOutside) return;
+  if (params_.reads_nav_raw) return;
   if (!IsUsable(arrival)) {
     ++counts_["bad_host_time"];
     return;
@@ -47,7 +47,7 @@ void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::stri
 }
 
 void Service::AdvanceTo(Utime host_time) {
-  if (params_.input != Input::kOutside) return;
+  if (params_.reads_nav_raw) return;
   if (!IsUsable(host_time)) {
     ++counts_["bad_host_time"];
     return;
@@ -56,7 +56,7 @@ void Service::AdvanceTo(Utime host_time) {
 }
 
 void Service::Finish(Utime host_time) {
-  if (params_.input == Input::kLog) {
+  if (params_.reads_nav_raw) {
     PublishOutput(navigator_.Flush());
   } else if (IsUsable(host_time)) {
     PublishAndConsume(sequencer_.Finish(host_time));

@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
 
 namespace {
-
-// All that is unknown goes out as one and the same NaN: same bytes whatever made it.
-double Canonical(double value) { return std::isnan(value) ? kNan : value; }
 
 // What GNSS_FIX and ATTITUDE have in common.
 template <typename Message, typename Measured>

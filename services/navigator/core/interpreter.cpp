@@ -62,8 +62,6 @@ void KeepRole(Role role, Reading& reading) {
 
 bool IsEmpty(const Reading& reading) { return !reading.fix && !reading.attitude && !reading.velocity && !reading.turn_rate && !reading.imu; }
 
-bool IsGga(const GnssFix& fix) { return fix.sentence_type == "GGA" || fix.sentence_type == "GNS"; }
-
 }  // namespace
 
 Interpreter::Interpreter(const InterpreterParams& params) : params_(params), clock_(params.max_sentence_latency) {
@@ -193,8 +191,11 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
 // Sentences of one instant of one receiver are one fix: each gets what those before it said.
 void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
   if (fix.position && !fix.when.is_from_sentence) ++counts_["sentence_time_unusable"];
-  const bool is_gga = IsGga(fix);
-  if (source.epoch && fix.when.has_sentence_utc && source.epoch->utc == fix.when.utc && source.epoch->fix.when.num_leaps == fix.when.num_leaps) {
+  const bool is_gga = fix.is_gga();
+  const auto is_of_epoch = [&fix](const Epoch& epoch) {
+    return epoch.fix.when.utc == fix.when.utc && epoch.fix.when.num_leaps == fix.when.num_leaps;
+  };
+  if (source.epoch && fix.when.has_sentence_utc && is_of_epoch(*source.epoch)) {
     const auto& known = source.epoch->fix;
     // GGA and GNS tell more of their position and quality than the others.
     if (!fix.position || (source.epoch->has_gga && !is_gga && known.position)) {
@@ -213,7 +214,7 @@ void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
     source.epoch->fix = fix;
     source.epoch->has_gga = source.epoch->has_gga || is_gga;
   } else if (fix.when.has_sentence_utc) {
-    source.epoch = Epoch{fix.when.utc, fix, is_gga};
+    source.epoch = Epoch{fix, is_gga};
   }
   if (fix.position && IsMeasured(fix.quality) && fix.when.is_from_sentence) {
     const auto time_scale = clock_.pose_minus_even_utc();

@@ -17,9 +17,9 @@
 
 namespace lookout::navigator {
 
-/// Which measurements of a source are used. All its sentences are recorded, whatever the role.
+/// Which measurements of a source are used. All its sentences are recorded, whatever the role. The numbers of config.
 enum class Role {
-  kAll,
+  kAll = 1,
   kGnss,      // positions and velocities
   kHeading,   // headings and rates of turn
   kAttitude,  // headings, roll, pitch, rates of turn
@@ -81,7 +81,6 @@ class Interpreter {
  private:
   /// What is known of the epoch of a receiver.
   struct Epoch {
-    Utime utc;
     GnssFix fix;
     bool has_gga = false;
   };

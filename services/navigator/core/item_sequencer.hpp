@@ -39,9 +39,8 @@ class ItemSequencer {
   std::vector<Counter> counters() const { return {{"clock_set_back", num_clock_set_back_}, {"stale_sentence", num_stale_sentences_}}; }
 
  private:
-  Item Make(Utime time, ItemKind kind);
+  Item Make(Utime time, ItemKind kind, const std::string& source = {}, const std::string& sentence = {});
   Item Start(Utime time);
-  Item MakeSentence(Utime arrival, const std::string& source, const std::string& sentence);
 
   std::optional<Utime> last_;  // time of the last item
   Utime last_host_time_{};     // of the host clock itself, since the start; a lidar's sentence may be ahead of it

@@ -46,7 +46,7 @@ TEST(PoseFilter, PutsTheDatumAtTheFirstFix) {
 
 TEST(PoseFilter, UsesTheDatumFromConfig) {
   auto params = TestFilterParams();
-  params.datum = Datum{kLatitudeDeg, kLongitudeDeg, 200.0};
+  params.datum = GeodeticPlace{kLatitudeDeg, kLongitudeDeg, 200.0};
   PoseFilter filter(params);
   EXPECT_EQ(filter.At(NoonPlus(0)).datum.ellipsoid_height_m, 200.0) << "known before any fix";
   auto fix = Fix(0.02, "GGA");
@@ -268,8 +268,7 @@ TEST(PoseFilter, WaitsASecondLongerForTheReceiverOfOneFix) {
 }
 
 TEST(PoseFilter, HoldsNearThePoleAndAcrossTheDateLine) {
-  for (const auto& position :
-       {GeodeticPosition{90.0, 0.0}, GeodeticPosition{-90.0, 10.0}, GeodeticPosition{0.0, 180.0}, GeodeticPosition{10.0, -180.0}}) {
+  for (const auto& position : {GeodeticPlace{90.0, 0.0}, GeodeticPlace{-90.0, 10.0}, GeodeticPlace{0.0, 180.0}, GeodeticPlace{10.0, -180.0}}) {
     PoseFilter filter(TestFilterParams());
     auto fix = MovingFix(0, 3.0, 90.0);
     fix.position = position;

@@ -94,7 +94,7 @@ struct Run {
   double duration_s = 0.0;
   bool has_imu = false;
   double fix_sd_m = 0.0;  // 0: exact, and the fix says 0.5 m
-  std::optional<Datum> datum = std::nullopt;
+  std::optional<GeodeticPlace> datum = std::nullopt;
   bool has_height = true;
   bool has_velocity = true;
   double settle_s = 60.0;
@@ -238,9 +238,9 @@ TEST(Voyage, OfExactFixesAt20MpsAt60NorthIsExactAt260Km) {
 
 // 4.8 m off from the first fix on.
 TEST(Voyage, WithADatumFarAwayIsExactAtOnce) {
-  ExpectExact(Sail(ParallelVoyage{45.0, 8.0, 5.0}, {.duration_s = 300.0, .datum = Datum{45.0, 8.0 - 2.54, 0.0}}));
+  ExpectExact(Sail(ParallelVoyage{45.0, 8.0, 5.0}, {.duration_s = 300.0, .datum = GeodeticPlace{45.0, 8.0 - 2.54, 0.0}}));
   // On the other side of the earth, as when latitude and longitude are swapped.
-  ExpectExact(Sail(ParallelVoyage{43.63, -72.15, 5.0}, {.duration_s = 300.0, .datum = Datum{-72.15, 43.63, 0.0}}));
+  ExpectExact(Sail(ParallelVoyage{43.63, -72.15, 5.0}, {.duration_s = 300.0, .datum = GeodeticPlace{-72.15, 43.63, 0.0}}));
 }
 
 // 42 m off at 14 m/s, 90 m at 30 m/s for ever, 9 m stated, status ok: each time that the position began anew velocity was taken for known, and the

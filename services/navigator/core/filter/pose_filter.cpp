@@ -53,9 +53,6 @@ filter::VelocityMeasurement ToVelocity(double speed_mps, double course_rad, doub
   return velocity;
 }
 
-// Without its height.
-GeodeticPlace Flat(const GeodeticPlace& place) { return {place.latitude_deg, place.longitude_deg, 0.0}; }
-
 double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
 
 // Order of PoseCovariance.
@@ -67,7 +64,7 @@ void Unknown(int first, int size, PoseCovariance& covariance) {
 }
 
 // @param map  of the datum; nullptr: no datum is known yet
-Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFrame* map, const FilterParams& params) {
+Pose ToPose(const State& state, const std::optional<GeodeticPlace>& datum, const LocalFrame* map, const FilterParams& params) {
   Pose pose;
   pose.time = state.time;
   if (datum) pose.datum = *datum;
@@ -168,9 +165,9 @@ void PoseFilter::Reset() {
   counts_ = counts;
 }
 
-void PoseFilter::SetDatum(const Datum& datum) {
+void PoseFilter::SetDatum(const GeodeticPlace& datum) {
   datum_ = datum;
-  map_.emplace(GeodeticPlace{datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m});
+  map_.emplace(datum);
 }
 
 bool PoseFilter::Insert(Utime time, const Measurement& measurement) {
@@ -207,7 +204,7 @@ filter::FixMeasurement* PoseFilter::SameEpoch(const filter::FixMeasurement& fix,
   for (auto event = begin; event != events_.end() && event->time == time; ++event) {
     auto* other = std::get_if<filter::FixMeasurement>(&event->measurement);
     if (other == nullptr) continue;
-    const bool is_same_place = LocalFrame(Flat(fix.antenna)).Forward(Flat(other->antenna)).head<2>().norm() < kSamePlaceM;
+    const bool is_same_place = LocalFrame(OnEllipsoid(fix.antenna)).Forward(OnEllipsoid(other->antenna)).head<2>().norm() < kSamePlaceM;
     if (other->source != fix.source && !is_same_place) continue;
     index = static_cast<std::size_t>(event - events_.begin());
     return other;
@@ -222,19 +219,14 @@ void PoseFilter::Add(const GnssFix& fix) {
   }
   const double ellipsoid_height_m = fix.EllipsoidHeightM();
   const bool has_height = !std::isnan(ellipsoid_height_m);
-  if (!datum_) SetDatum({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : 0.0});
+  GeodeticPlace antenna = *fix.position;
+  if (has_height) antenna.ellipsoid_height_m = ellipsoid_height_m;
+  if (!datum_) SetDatum(antenna);
+  if (!has_height) antenna.ellipsoid_height_m = datum_->ellipsoid_height_m;
+  if (!last_fix_arrival_ && params_.datum) datum_complaint_ = DatumComplaint(*datum_, antenna, "the first fix");
 
-  if (!last_fix_arrival_ && params_.datum) {
-    const GeodeticPlace datum{datum_->latitude_deg, datum_->longitude_deg, 0.0};
-    datum_complaint_ = DatumComplaint(datum, {fix.position->latitude_deg, fix.position->longitude_deg, 0.0}, "the first fix");
-  }
-
-  filter::FixMeasurement measurement;
-  measurement.source = fix.source;
-  measurement.begins_time_scale = fix.begins_time_scale;
-  measurement.is_gga = fix.sentence_type == "GGA" || fix.sentence_type == "GNS";
-  measurement.antenna = {fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m};
-  measurement.has_height = has_height;
+  filter::FixMeasurement measurement{
+      .source = fix.source, .is_gga = fix.is_gga(), .begins_time_scale = fix.begins_time_scale, .antenna = antenna, .has_height = has_height};
   measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
   measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
   const double age_s = PossibleAgeS(fix.when);
@@ -324,8 +316,7 @@ void PoseFilter::ProcessUntil(Utime time) {
     if (!base_) {
       base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
       // Until the first fix says better.
-      if (params_.datum)
-        filter::BeginLevel({datum_->latitude_deg, datum_->longitude_deg, datum_->ellipsoid_height_m}, Eigen::Vector2d::Zero(), *base_);
+      if (params_.datum) filter::BeginLevel(*datum_, Eigen::Vector2d::Zero(), *base_);
     }
     Process(events_[num_processed_], num_processed_);
   }
