@@ -103,7 +103,7 @@ BoatFacts LoadBoat(const std::filesystem::path& folder) {
                             Eigen::Vector3d(box.max_x_m(), box.max_y_m(), box.max_z_m())};
   if (boat.has_hull_length_m()) facts.hull_m = HullSize{boat.hull_length_m(), boat.hull_beam_m()};
   if (boat.has_datum()) {
-    facts.datum = BoatDatum{boat.datum().latitude_deg(), boat.datum().longitude_deg(), boat.datum().ellipsoid_height_m()};
+    facts.datum = GeodeticPlace{boat.datum().latitude_deg(), boat.datum().longitude_deg(), boat.datum().ellipsoid_height_m()};
   }
   return facts;
 }

@@ -8,9 +8,7 @@ namespace lookout {
 
 namespace {
 
-double DistanceM(const GeodeticPlace& a, const GeodeticPlace& b) {
-  return LocalFrame({a.latitude_deg, a.longitude_deg, 0.0}).Forward({b.latitude_deg, b.longitude_deg, 0.0}).norm();
-}
+double DistanceM(const GeodeticPlace& a, const GeodeticPlace& b) { return LocalFrame(OnEllipsoid(a)).Forward(OnEllipsoid(b)).norm(); }
 
 }  // namespace
 

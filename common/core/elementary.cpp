@@ -11,7 +11,6 @@ namespace lookout {
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Numbers that are not themselves doubles, as a sum of two.

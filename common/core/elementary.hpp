@@ -6,12 +6,19 @@
 // to fused multiply-adds. Error bounds are held by the unit test elementary_test.cpp against long double; an ulp is the distance of neighbouring
 // doubles at the true value.
 //
-// What is not a number gives std::numeric_limits<double>::quiet_NaN(), always with the same bits; of Hypot a NaN of any bits, as sums have it.
+// What is not a number gives kNan, always with the same bits; of Hypot a NaN of any bits, as sums have it.
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace lookout {
+
+/// Not a number; elsewhere also what is not known.
+inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// The value; of whatever is not a number kNan, so that it goes out in the same bytes whatever made it.
+inline double Canonical(double value) { return std::isnan(value) ? kNan : value; }
 
 struct SinCos {
   double sin = 0.0;

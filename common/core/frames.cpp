@@ -11,24 +11,14 @@ Eigen::Vector3d BeamDirection(double azimuth_rad, double elevation_rad) {
   return {cos_elevation * cos_azimuth, -cos_elevation * sin_azimuth, sin_elevation};
 }
 
-Eigen::Matrix3d RotationAboutX(double angle_rad) {
+Eigen::Matrix3d RotationAbout(int axis, double angle_rad) {
   const auto [sine, cosine] = SinCosOf(angle_rad);
-  Eigen::Matrix3d rotation;
-  rotation << 1.0, 0.0, 0.0, 0.0, cosine, -sine, 0.0, sine, cosine;
-  return rotation;
-}
-
-Eigen::Matrix3d RotationAboutY(double angle_rad) {
-  const auto [sine, cosine] = SinCosOf(angle_rad);
-  Eigen::Matrix3d rotation;
-  rotation << cosine, 0.0, sine, 0.0, 1.0, 0.0, -sine, 0.0, cosine;
-  return rotation;
-}
-
-Eigen::Matrix3d RotationAboutZ(double angle_rad) {
-  const auto [sine, cosine] = SinCosOf(angle_rad);
-  Eigen::Matrix3d rotation;
-  rotation << cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0;
+  const int next = (axis + 1) % 3;
+  const int last = (axis + 2) % 3;
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  rotation(next, next) = rotation(last, last) = cosine;
+  rotation(next, last) = -sine;
+  rotation(last, next) = sine;
   return rotation;
 }
 

@@ -12,10 +12,11 @@ namespace lookout {
 /// @return unit vector
 Eigen::Vector3d BeamDirection(double azimuth_rad, double elevation_rad);
 
-/// Rotations about one axis, right-handed.
-Eigen::Matrix3d RotationAboutX(double angle_rad);
-Eigen::Matrix3d RotationAboutY(double angle_rad);
-Eigen::Matrix3d RotationAboutZ(double angle_rad);
+/// Rotations about one axis (x, y, z: 0, 1, 2), right-handed.
+Eigen::Matrix3d RotationAbout(int axis, double angle_rad);
+inline Eigen::Matrix3d RotationAboutX(double angle_rad) { return RotationAbout(0, angle_rad); }
+inline Eigen::Matrix3d RotationAboutY(double angle_rad) { return RotationAbout(1, angle_rad); }
+inline Eigen::Matrix3d RotationAboutZ(double angle_rad) { return RotationAbout(2, angle_rad); }
 
 /// Place and attitude of a sensor in the vessel frame, as config gives it.
 struct Mounting {

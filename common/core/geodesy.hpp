@@ -15,6 +15,9 @@ struct GeodeticPlace {
   double ellipsoid_height_m = 0.0;
 };
 
+/// The place on the ellipsoid, without its height.
+constexpr GeodeticPlace OnEllipsoid(const GeodeticPlace& place) { return {place.latitude_deg, place.longitude_deg, 0.0}; }
+
 /// East, north and up at a datum: the map frame. A plane that touches the earth there, no projection.
 class LocalFrame {
  public:

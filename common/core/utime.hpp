@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <ratio>
 
 namespace lookout {
 
@@ -18,6 +19,21 @@ inline constexpr std::int64_t kMaxUtimeUs = 7'258'118'400'000'000;
 constexpr std::optional<Utime> UtimeFromWire(std::int64_t utime_us) {
   if (utime_us < kMinUtimeUs || utime_us > kMaxUtimeUs) return std::nullopt;
   return Utime(std::chrono::microseconds(utime_us));
+}
+
+/// @return the time of day on that day which brings it nearest to `near`
+constexpr Utime OnTheDayNearest(Utime near, std::chrono::microseconds time_of_day) {
+  return std::chrono::floor<std::chrono::days>(near - time_of_day + std::chrono::hours(12)) + time_of_day;
+}
+
+/// GPS counts weeks in 10 bits: receivers of the first kind fall back by so much when the count rolls over.
+using WeekRollovers = std::chrono::duration<std::int64_t, std::ratio_multiply<std::chrono::weeks::period, std::ratio<1024>>>;
+
+/// @return `utc` and the whole number of rollovers that brings it within a day of `near`; `utc` itself where none does: then the fault may be that of
+///         the computer's clock
+constexpr Utime MendRollover(Utime utc, Utime near) {
+  const Utime mended = utc + std::chrono::round<WeekRollovers>(near - utc);
+  return std::chrono::abs(near - mended) <= std::chrono::days(1) ? mended : utc;
 }
 
 constexpr std::int64_t ToUtimeUs(Utime time) { return time.time_since_epoch().count(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
@@ -24,11 +25,6 @@ constexpr std::int32_t kMaxParts = 1000;
 constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND_FEW_RETURNS) |
                                      static_cast<std::int32_t>(segment_t::GROUND_SCATTERED) | static_cast<std::int32_t>(segment_t::GROUND_AT_SURFACE);
 
-template <typename T>
-std::int64_t Count(const std::vector<T>& values) {
-  return static_cast<std::int64_t>(values.size());
-}
-
 template <typename Message>
 bool HasPlace(const Message& message) {
   return UtimeFromWire(message.utime_us) && message.part_index >= 0 && message.part_index < message.num_parts;
@@ -48,11 +44,11 @@ bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }
 
 bool CountsAgree(const lidar_scan_t& message) {
   const auto num_cells = std::int64_t{message.num_columns} * message.num_rings * message.num_returns;
-  return message.num_rings == Count(message.elevation_rad) && message.num_rings == Count(message.azimuth_offset_rad) &&
-         message.num_rings == Count(message.time_offset_ns) && message.num_rings == Count(message.origin_height_m) &&
-         message.num_returns == Count(message.return_kind) && message.num_columns == Count(message.azimuth_rad) &&
-         message.num_columns == Count(message.time_ns) && message.num_cells == Count(message.range) &&
-         message.num_cells == Count(message.reflectivity) && message.num_cells == num_cells;
+  return message.num_rings == std::ssize(message.elevation_rad) && message.num_rings == std::ssize(message.azimuth_offset_rad) &&
+         message.num_rings == std::ssize(message.time_offset_ns) && message.num_rings == std::ssize(message.origin_height_m) &&
+         message.num_returns == std::ssize(message.return_kind) && message.num_columns == std::ssize(message.azimuth_rad) &&
+         message.num_columns == std::ssize(message.time_ns) && message.num_cells == std::ssize(message.range) &&
+         message.num_cells == std::ssize(message.reflectivity) && message.num_cells == num_cells;
 }
 
 bool IsSizeGood(const lidar_scan_t& message) {
@@ -84,10 +80,10 @@ bool IsPlace(const float (&point_m)[3]) {
 bool IsLength(double value) { return value >= 0.0 && value <= kMaxLidarM; }
 
 bool CountsAgree(const segment_t& segment) {
-  return segment.num_points > 0 && segment.num_hull > 0 && segment.num_hull == Count(segment.hull_x_m) &&
-         segment.num_hull == Count(segment.hull_y_m) && segment.num_hull == Count(segment.hull_time_us) &&
-         segment.num_waterline == Count(segment.waterline_x_m) && segment.num_waterline == Count(segment.waterline_y_m) &&
-         segment.num_waterline == Count(segment.waterline_time_us);
+  return segment.num_points > 0 && segment.num_hull > 0 && segment.num_hull == std::ssize(segment.hull_x_m) &&
+         segment.num_hull == std::ssize(segment.hull_y_m) && segment.num_hull == std::ssize(segment.hull_time_us) &&
+         segment.num_waterline == std::ssize(segment.waterline_x_m) && segment.num_waterline == std::ssize(segment.waterline_y_m) &&
+         segment.num_waterline == std::ssize(segment.waterline_time_us);
 }
 
 bool AreNumbersGood(const segment_t& segment) {
@@ -159,7 +155,7 @@ std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes) {
   const auto end_time = UtimeFromWire(message.end_utime_us);
   if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxScan) return kSegmentsTime;
   if (message.seq < 0 || message.raw_seq < 0 || message.num_parts > kMaxParts || !HasPlace(message)) return kSegmentsParts;
-  if (message.num_segments > message.num_turn_segments || message.num_segments != Count(message.segments)) return kSegmentsCount;
+  if (message.num_segments > message.num_turn_segments || message.num_segments != std::ssize(message.segments)) return kSegmentsCount;
   if (!std::ranges::all_of(message.segments, [](const segment_t& segment) { return CountsAgree(segment); })) return kSegmentsCount;
   if (message.getEncodedSize() > max_message_bytes) return kSegmentsSize;
   std::int32_t last_id = 0;

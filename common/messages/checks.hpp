@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
@@ -50,6 +51,12 @@ inline constexpr std::int64_t kMaxScanCells = std::int64_t{1} << 21;
 /// @return the first fault of a message; nullopt where there is none
 std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes);
 std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes);
+
+/// The count of an array, as a message says it.
+template <typename T>
+std::int32_t CountOf(const std::vector<T>& values) {
+  return static_cast<std::int32_t>(values.size());
+}
 
 /// Whether two parts of one scan say the same of the whole of it.
 bool AgreeAboutScan(const lidar_scan_t& one, const lidar_scan_t& other);

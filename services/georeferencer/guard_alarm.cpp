@@ -1,9 +1,9 @@
 #include "services/georeferencer/guard_alarm.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace lookout::georeferencer {
 
@@ -13,10 +13,6 @@ using std::chrono::microseconds;
 
 // Above the longest scan (0.2 s at 300 rpm), and with it below the time to unwatched: one step of the clock alone says nothing.
 constexpr std::chrono::milliseconds kGreatestStep(250);
-
-void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<NearestPoint>& other) {
-  if (other && (!nearest || other->range_m < nearest->range_m)) nearest = other;
-}
 
 }  // namespace
 
@@ -99,19 +95,16 @@ std::optional<NearestPoint> GuardAlarm::nearest() const {
 
 std::string GuardAlarm::UnwatchedText() const {
   if (!is_unwatched()) return {};
-  std::array<char, 160> text{};
-  if (num_whole_ == 0) {
-    std::snprintf(text.data(), text.size(), "guard zone not watched: no whole scan yet");
-  } else if (unseen_ >= kTimeToUnwatched) {
-    std::snprintf(text.data(), text.size(), "guard zone not watched: no whole scan for %.1f s", ToSeconds(unseen_));
-  } else {
-    std::snprintf(text.data(), text.size(), "guard zone not watched: less than %d whole scans within %.1f s", kScansToRaise, ToSeconds(kTimeToClear));
+  std::string text = "guard zone not watched: no whole scan yet";
+  if (num_whole_ > 0 && unseen_ >= kTimeToUnwatched) {
+    text = fmt::format("guard zone not watched: no whole scan for {:.1f} s", ToSeconds(unseen_));
+  } else if (num_whole_ > 0) {
+    text = fmt::format("guard zone not watched: less than {} whole scans within {:.1f} s", kScansToRaise, ToSeconds(kTimeToClear));
   }
-  std::string words = text.data();
   if (num_partial_since_ > 0) {
-    words += ", " + std::to_string(num_partial_since_) + " that were not whole: lost packets or a second sender, see HEALTH of vlp16 and segmenter";
+    text += fmt::format(", {} that were not whole: lost packets or a second sender, see HEALTH of vlp16 and segmenter", num_partial_since_);
   }
-  return words;
+  return text;
 }
 
 std::vector<Counter> GuardAlarm::counters() const {

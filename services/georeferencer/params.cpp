@@ -1,8 +1,8 @@
 #include "services/georeferencer/params.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "common/config/boat.hpp"
@@ -15,13 +15,11 @@ namespace lookout::georeferencer {
 namespace {
 
 std::string InsideHullText(const GuardZoneParams& zone, const Eigen::AlignedBox3d& own_vessel_box_m) {
-  std::array<char, 256> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "the zone of %.1f m lies wholly inside own_vessel of boat.txtpb, which reaches %.1f m forward, %.1f m aft, %.1f m to port and %.1f m to "
+  return fmt::format(
+      "the zone of {:.1f} m lies wholly inside own_vessel of boat.txtpb, which reaches {:.1f} m forward, {:.1f} m aft, {:.1f} m to port and {:.1f} m "
+      "to "
       "starboard: returns in there are own boat, so nothing can ring the alarm",
       zone.range_m, own_vessel_box_m.max().x(), -own_vessel_box_m.min().x(), own_vessel_box_m.max().y(), -own_vessel_box_m.min().y());
-  return text.data();
 }
 
 }  // namespace
@@ -50,7 +48,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
                                  std::abs(width_deg) >= 360.0 ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))};
     params.guard_zone.takes_tentative = zone.takes_tentative();
   }
-  if (boat.datum) params.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
+  params.datum = boat.datum;
   if (message.has_guard_zone() && IsInsideBox(params.guard_zone, boat.own_vessel_box_m)) {
     faults.Add(
         config::FaultLine(config_folder / "georeferencer.txtpb", "guard_zone.range_m", InsideHullText(params.guard_zone, boat.own_vessel_box_m)));

@@ -14,7 +14,7 @@ struct Params {
   PlacementParams placement;
   std::chrono::microseconds pose_timeout{0};
   GuardZoneParams guard_zone{};
-  std::optional<Datum> datum = std::nullopt;  // of boat.txtpb; nullopt: that of POSE is the first fix, whatever it is
+  std::optional<GeodeticPlace> datum = std::nullopt;  // of boat.txtpb; nullopt: that of POSE is the first fix, whatever it is
 };
 
 /// @param config_folder  the boat's folder, holding boat.txtpb and georeferencer.txtpb

@@ -1,16 +1,15 @@
 #include "services/georeferencer/service.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 #include <utility>
 #include <variant>
 
 #include "common/core/angles.hpp"
 #include "common/core/datum_check.hpp"
-#include "services/georeferencer/wire.hpp"
 
 namespace lookout::georeferencer {
 
@@ -22,10 +21,8 @@ constexpr std::chrono::seconds kSilence(2);
 // "obstacle within 10.0 m: 7.3 m, 12 deg to starboard"
 std::string AlarmText(const NearestPoint& nearest, double guard_range_m) {
   const double bearing_deg = RadToDeg(WrapToPi(nearest.bearing_rad));
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "obstacle within %.1f m: %.1f m, %.0f deg to %s", guard_range_m, nearest.range_m, std::abs(bearing_deg),
-                bearing_deg < 0.0 ? "port" : "starboard");
-  return text.data();
+  return fmt::format("obstacle within {:.1f} m: {:.1f} m, {:.0f} deg to {}", guard_range_m, nearest.range_m, std::abs(bearing_deg),
+                     bearing_deg < 0.0 ? "port" : "starboard");
 }
 
 // What the status of POSE means for obstacles; empty where it is OK.
@@ -38,7 +35,7 @@ std::string_view PoseText(std::int32_t pose_status) {
     case pose_t::STATUS_UNKNOWN:
       return "no position and no heading: obstacles in the vessel frame only";
     case pose_t::STATUS_COASTING:
-      return "POSE is only carried on: obstacles drift as their covariance says";
+      return "position or heading is only propagated: obstacles drift as their covariance says, see HEALTH of navigator";
     default:
       return {};
   }
@@ -53,15 +50,13 @@ Service::Service(bus::Bus& bus, const Params& params)
       T_vessel_lidar_(params.placement.T_vessel_lidar),
       datum_(params.datum) {
   if (guard_zone_.range_m > 0.0) alarm_.emplace();
-  for (const auto& fault : messages::kSegmentsFaults) refusals_.push_back({fault, 0});
-  for (const auto& refusal : kPoseRefusals) refusals_.push_back({refusal, 0});
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
 }
 
 void Service::OnSegments(const segments_t& message) {
   auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
-  if (const auto* refusal = std::get_if<Refusal>(&part)) return Refuse(*refusal);
+  if (const auto* refusal = std::get_if<Refusal>(&part)) return segments_refused_.Add(*refusal);
   segments_seen_ = now_;
   auto& segments = std::get<SegmentPart>(part);
   if (alarm_) alarm_->Add(segments.head, NearestInZone(guard_zone_, segments, T_vessel_lidar_));
@@ -70,7 +65,7 @@ void Service::OnSegments(const segments_t& message) {
 
 void Service::OnPose(const pose_t& message) {
   const auto pose = ToPose(message);
-  if (const auto* refusal = std::get_if<Refusal>(&pose)) return Refuse(*refusal);
+  if (const auto* refusal = std::get_if<Refusal>(&pose)) return poses_refused_.Add(*refusal);
   pose_seen_ = now_;
   newest_pose_status_ = message.status;
   CheckDatum(std::get<Pose>(pose));
@@ -83,8 +78,7 @@ void Service::CheckDatum(const Pose& pose) {
   checked_datum_ = pose.datum;
   datum_complaint_.clear();
   if (!datum_ || datum_->latitude_deg != pose.datum.latitude_deg || datum_->longitude_deg != pose.datum.longitude_deg) return;
-  datum_complaint_ =
-      DatumComplaint({datum_->latitude_deg, datum_->longitude_deg, 0.0}, pose.datum.Map().Reverse(pose.position_map_m), "the first POSE");
+  datum_complaint_ = DatumComplaint(*datum_, pose.datum.Map().Reverse(pose.position_map_m), "the first POSE");
 }
 
 void Service::AdvanceTo(Utime host_time) {
@@ -110,39 +104,32 @@ void Service::Publish(const std::vector<ObstaclePart>& parts) {
   }
 }
 
-void Service::Refuse(std::string_view name) { ++std::ranges::find(refusals_, name, &Counter::name)->count; }
-
 HealthReport Service::Report() const {
   HealthReport report;
   report.counters = georeferencer_.counters();
   report.counters.push_back({"parts_split", num_split_});
-  report.counters.insert(report.counters.end(), refusals_.begin(), refusals_.end());
+  segments_refused_.AppendTo(report.counters);
+  poses_refused_.AppendTo(report.counters);
 
-  const auto degrade = [&report](const std::string& reason) {
-    report.state = HealthState::kDegraded;
-    report.reason += (report.reason.empty() ? "" : "; ") + reason;
-  };
   const auto silence = [this](std::optional<Utime> seen) { return now_ && seen ? *now_ - *seen : std::chrono::microseconds(0); };
-  const auto seconds = [](std::chrono::microseconds duration) {
-    return std::to_string(std::chrono::floor<std::chrono::seconds>(duration).count()) + " s";
-  };
   // The alarm comes first: HEALTH is read from its beginning.
   if (alarm_) {
-    if (const auto nearest = alarm_->nearest()) degrade(AlarmText(*nearest, guard_zone_.range_m));
-    if (alarm_->is_unwatched()) degrade(alarm_->UnwatchedText());
+    if (const auto nearest = alarm_->nearest()) report.Degrade(AlarmText(*nearest, guard_zone_.range_m));
+    if (alarm_->is_unwatched()) report.Degrade(alarm_->UnwatchedText());
     for (const auto& counter : alarm_->counters()) report.counters.push_back(counter);
   }
-  if (silence(segments_seen_) >= kSilence) degrade("no SEGMENTS for " + seconds(silence(segments_seen_)));
+  if (silence(segments_seen_) >= kSilence)
+    report.Degrade(fmt::format("no SEGMENTS for {} s", std::chrono::floor<std::chrono::seconds>(silence(segments_seen_)).count()));
   if (silence(pose_seen_) >= kSilence) {
-    degrade("no POSE for " + seconds(silence(pose_seen_)));
+    report.Degrade(fmt::format("no POSE for {} s", std::chrono::floor<std::chrono::seconds>(silence(pose_seen_)).count()));
   } else {
     const auto status = newest_pose_status_.value_or(pose_t::STATUS_OK);
-    if (const auto text = PoseText(status); !text.empty()) degrade(std::string(text));
+    if (const auto text = PoseText(status); !text.empty()) report.Degrade(text);
     const bool is_placed = status == pose_t::STATUS_OK || status == pose_t::STATUS_COASTING;
     const bool is_late = georeferencer_.last_timeout() && silence(georeferencer_.last_timeout()) < kSilence;
-    if (is_placed && is_late) degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
+    if (is_placed && is_late) report.Degrade("POSE does not reach the time of SEGMENTS: the clocks of lidar and navigation differ, or POSE is late");
   }
-  if (!datum_complaint_.empty()) degrade(datum_complaint_);
+  if (!datum_complaint_.empty()) report.Degrade(datum_complaint_);
   return report;
 }
 

@@ -14,6 +14,7 @@
 #include "services/georeferencer/core/guard_zone.hpp"
 #include "services/georeferencer/guard_alarm.hpp"
 #include "services/georeferencer/params.hpp"
+#include "services/georeferencer/wire.hpp"
 
 namespace lookout::georeferencer {
 
@@ -41,7 +42,6 @@ class Service {
   void OnPose(const pose_t& message);
   void Publish(const std::vector<ObstaclePart>& parts);
   void CheckDatum(const Pose& pose);
-  void Refuse(std::string_view name);
 
   bus::Bus& bus_;
   Georeferencer georeferencer_;
@@ -49,10 +49,11 @@ class Service {
   Eigen::Isometry3d T_vessel_lidar_;
   std::optional<GuardAlarm> alarm_;  // where a guard zone is configured
   GuardAlarm::State reported_alarm_;
-  std::optional<Datum> datum_;  // of boat.txtpb
+  std::optional<GeodeticPlace> datum_;  // of boat.txtpb
   std::optional<Datum> checked_datum_;
   std::string datum_complaint_;
-  std::vector<Counter> refusals_;
+  Counts<messages::kSegmentsFaults> segments_refused_;
+  Counts<kPoseRefusals> poses_refused_;
   std::int64_t num_split_ = 0;
   std::optional<std::int32_t> newest_pose_status_;  // of pose_t
   // Host time, live only.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
 
 namespace lookout::georeferencer {
@@ -47,11 +48,6 @@ static_assert(static_cast<int>(obstacle_t::GROUND_SCATTERED) == segment_t::GROUN
 static_assert(static_cast<int>(obstacle_t::GROUND_AT_SURFACE) == segment_t::GROUND_AT_SURFACE);
 
 bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }  // NaN is not
-
-template <typename T>
-std::int32_t Count(const std::vector<T>& values) {
-  return static_cast<std::int32_t>(values.size());
-}
 
 Eigen::Vector3d ToVector(const float (&point_m)[3]) { return {point_m[0], point_m[1], point_m[2]}; }
 
@@ -108,9 +104,6 @@ bool IsCovariance(const double (&covariance)[9][9]) {
 
 double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
 
-// All that is unknown goes out as one and the same NaN: same bytes whatever made it.
-double Canonical(double value) { return std::isnan(value) ? kUnknown : value; }
-
 void Split(const std::vector<Eigen::Vector2d>& places_m, std::vector<float>& first_m, std::vector<float>& second_m) {
   for (const auto& place_m : places_m) {
     first_m.push_back(static_cast<float>(place_m.x()));
@@ -147,13 +140,13 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
   message.num_points = obstacle.num_points;
   message.mean_reflectivity = obstacle.mean_reflectivity;
   Split(obstacle.footprint_vessel_m, message.footprint_vessel_x_m, message.footprint_vessel_y_m);
-  message.num_footprint = Count(message.footprint_vessel_x_m);
+  message.num_footprint = messages::CountOf(message.footprint_vessel_x_m);
   Split(obstacle.footprint_map_m, message.footprint_east_m, message.footprint_north_m);
-  message.num_map = Count(message.footprint_east_m);
+  message.num_map = messages::CountOf(message.footprint_east_m);
   Split(obstacle.waterline_vessel_m, message.waterline_vessel_x_m, message.waterline_vessel_y_m);
-  message.num_waterline = Count(message.waterline_vessel_x_m);
+  message.num_waterline = messages::CountOf(message.waterline_vessel_x_m);
   Split(obstacle.waterline_map_m, message.waterline_east_m, message.waterline_north_m);
-  message.num_waterline_map = Count(message.waterline_east_m);
+  message.num_waterline_map = messages::CountOf(message.waterline_east_m);
   return message;
 }
 
@@ -238,7 +231,7 @@ std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_by
     const auto per_part = static_cast<std::int32_t>(messages.size());
     messages[i].part_index = part.head.part_index * per_part + static_cast<std::int32_t>(i);
     messages[i].num_parts = part.head.num_parts * per_part;
-    messages[i].num_obstacles = Count(messages[i].obstacles);
+    messages[i].num_obstacles = messages::CountOf(messages[i].obstacles);
   }
   return messages;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -12,8 +13,7 @@
 #include "common/core/angles.hpp"
 #include "common/io/network.hpp"
 #include "config/schema/navigator.pb.h"
-#include "services/navigator/core/day.hpp"
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
 
@@ -24,27 +24,16 @@ std::chrono::microseconds ToMicroseconds(double duration_s) { return std::chrono
 // What termios of Linux has names for, from 1200 on.
 constexpr std::array kBauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000};
 
-Role ToRole(config::NavigationInput::Role role) {
-  switch (role) {
-    case config::NavigationInput::GNSS:
-      return Role::kGnss;
-    case config::NavigationInput::HEADING:
-      return Role::kHeading;
-    case config::NavigationInput::ATTITUDE:
-      return Role::kAttitude;
-    case config::NavigationInput::IMU:
-      return Role::kImu;
-    case config::NavigationInput::RECORD_ONLY:
-      return Role::kNothing;
-    default:
-      return Role::kAll;
-  }
-}
+static_assert(static_cast<int>(Role::kAll) == config::NavigationInput::ALL && static_cast<int>(Role::kGnss) == config::NavigationInput::GNSS &&
+              static_cast<int>(Role::kHeading) == config::NavigationInput::HEADING &&
+              static_cast<int>(Role::kAttitude) == config::NavigationInput::ATTITUDE &&
+              static_cast<int>(Role::kImu) == config::NavigationInput::IMU &&
+              static_cast<int>(Role::kNothing) == config::NavigationInput::RECORD_ONLY);
 
 SourceParams ToSource(const config::NavigationInput& input) {
   SourceParams source;
   source.name = input.name();
-  source.role = ToRole(input.role());
+  source.role = static_cast<Role>(input.role());
   source.requires_checksum = input.checksum_required();
   if (input.has_latency_s()) source.latency = ToMicroseconds(input.latency_s());
   source.roll_sign = input.roll_positive() == config::NavigationInput::PORT_DOWN ? -1.0 : 1.0;
@@ -203,6 +192,16 @@ class InputsReader {
 
 }  // namespace
 
+std::optional<std::chrono::sys_days> ParseDay(std::string_view text) {
+  static const std::regex kForm("(19[7-9][0-9]|2[01][0-9]{2})-([0-9]{2})-([0-9]{2})");
+  std::cmatch match;
+  if (!std::regex_match(text.begin(), text.end(), match, kForm)) return std::nullopt;
+  const auto number = [&match](std::size_t group) { return std::stoi(match[group].str()); };
+  const auto day = std::chrono::year(number(1)) / number(2) / number(3);
+  if (!day.ok()) return std::nullopt;
+  return std::chrono::sys_days(day);
+}
+
 Params LoadParams(const std::filesystem::path& config_folder) {
   Params params;
   config::FaultList faults;
@@ -215,7 +214,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   faults.ThrowIfAny();
   const auto& boat = *loaded_boat;
   const auto& message = *loaded;
-  params.input = message.source() == config::Navigator::LOG ? Input::kLog : Input::kOutside;
+  params.reads_nav_raw = message.source() == config::Navigator::LOG;
   params.use_lidar_nmea = message.use_lidar_nmea();
 
   auto& navigator = params.navigator;
@@ -226,7 +225,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   navigator.roll_offset_rad = DegToRad(message.roll_offset_deg());
 
   auto& filter = navigator.filter;
-  if (boat.datum) filter.datum = Datum{boat.datum->latitude_deg, boat.datum->longitude_deg, boat.datum->ellipsoid_height_m};
+  filter.datum = boat.datum;
   filter.p_vessel_antenna_m = boat.p_vessel_antenna_m;
   filter.p_vessel_imu_m = boat.p_vessel_imu_m;
   filter.gyro_noise_radps_rthz = DegToRad(message.gyro_noise_degps_rthz());

@@ -6,13 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/navigator/core/navigator.hpp"
 
 namespace lookout::navigator {
-
-enum class Input { kOutside, kLog };  // kOutside: datagrams and LIDAR_NMEA; kLog: NAV_RAW only, and publishes none
 
 /// Where the sentences of one source come from, live.
 struct Connection {
@@ -29,7 +28,7 @@ struct Connection {
 };
 
 struct Params {
-  Input input = Input::kOutside;
+  bool reads_nav_raw = false;  // and nothing else, and publishes none; else it reads sources and LIDAR_NMEA
   bool use_lidar_nmea = true;
   NavigatorParams navigator;
 
@@ -38,6 +37,11 @@ struct Params {
   // For replay: the source of each UDP port of a capture.
   std::map<int, std::string> source_of_port;
 };
+
+/// A day as config and command lines write it.
+///
+/// @return the day of "2026-07-01"; nullopt when it is written in another way, or is no day from 1970 to 2199
+std::optional<std::chrono::sys_days> ParseDay(std::string_view text);
 
 /// @param config_folder  the boat's folder, holding boat.txtpb and navigator.txtpb
 /// @throws config::ConfigError

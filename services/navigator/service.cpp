@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
 
@@ -21,7 +21,7 @@ std::string InSeconds(std::chrono::microseconds duration) {
 }  // namespace
 
 Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(params), navigator_(params.navigator) {
-  if (params_.input == Input::kLog) {
+  if (params_.reads_nav_raw) {
     bus::Subscribe<nav_raw_t>(bus_, bus::kNavRaw, [this](const nav_raw_t& message) { OnNavRaw(message); });
   } else if (params_.use_lidar_nmea) {
     bus::Subscribe<lidar_nmea_t>(bus_, bus::kLidarNmea, [this](const lidar_nmea_t& message) { OnLidarNmea(message); });
@@ -35,53 +35,51 @@ void Service::OnStream(Utime arrival, Bytes bytes, const std::string& source) { 
 void Service::OnStreamEnd(const std::string& source) { assemblers_[source].Clear(); }
 
 void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::string& source) {
-  if (params_.input != Input::kOutside) return;
+  if (params_.reads_nav_raw) return;
   if (!IsUsable(arrival)) {
-    ++counts_.bad_host_time;
+    ++counts_["bad_host_time"];
     return;
   }
-  counts_.no_start += lines.num_no_start;
-  counts_.too_long += lines.num_too_long;
-  counts_.not_printable += lines.num_not_printable;
+  counts_["no_start"] += lines.num_no_start;
+  counts_["too_long"] += lines.num_too_long;
+  counts_["not_printable"] += lines.num_not_printable;
   PublishAndConsume(sequencer_.OnLines(arrival, lines.lines, source));
 }
 
 void Service::AdvanceTo(Utime host_time) {
-  if (params_.input != Input::kOutside) return;
+  if (params_.reads_nav_raw) return;
   if (!IsUsable(host_time)) {
-    ++counts_.bad_host_time;
+    ++counts_["bad_host_time"];
     return;
   }
   PublishAndConsume(sequencer_.AdvanceTo(host_time));
 }
 
 void Service::Finish(Utime host_time) {
-  if (params_.input == Input::kLog) {
+  if (params_.reads_nav_raw) {
     PublishOutput(navigator_.Flush());
   } else if (IsUsable(host_time)) {
     PublishAndConsume(sequencer_.Finish(host_time));
   } else {
-    ++counts_.bad_host_time;
+    ++counts_["bad_host_time"];
   }
 }
 
 void Service::OnLidarNmea(const lidar_nmea_t& message) {
   const auto arrival = UtimeFromWire(message.host_utime_us);
   if (!arrival || !IsLine(message.sentence)) {
-    ++counts_.lidar_nmea_bad;
+    ++counts_["lidar_nmea_bad"];
     return;
   }
   PublishAndConsume(sequencer_.OnLidarSentence(*arrival, message.sentence));
 }
 
 void Service::OnNavRaw(const nav_raw_t& message) {
-  const auto [fault, item] = ToItem(message);
-  if (fault != ItemFault::kNone) {
-    ++counts_.nav_raw_bad[static_cast<std::size_t>(fault)];
-    return;
-  }
+  const auto result = ToItem(message);
+  if (const auto* refusal = std::get_if<Refusal>(&result)) return counts_.Add(*refusal);
+  const auto& item = std::get<Item>(result);
   if (item.kind != ItemKind::kStart && navigator_.time() && item.time < *navigator_.time()) {
-    ++counts_.nav_raw_backwards;
+    ++counts_["nav_raw_backwards"];
     return;
   }
   Consume(item);
@@ -107,32 +105,22 @@ void Service::PublishOutput(const NavigatorOutput& output) {
 }
 
 HealthReport Service::Report() const {
-  const auto bad = [this](ItemFault fault) { return counts_.nav_raw_bad[static_cast<std::size_t>(fault)]; };
   HealthReport report;
-  report.counters = {{"no_start", counts_.no_start},
-                     {"too_long", counts_.too_long},
-                     {"not_printable", counts_.not_printable},
-                     {"bad_host_time", counts_.bad_host_time},
-                     {"lidar_nmea_bad", counts_.lidar_nmea_bad},
-                     {"nav_raw_bad_time", bad(ItemFault::kBadTime)},
-                     {"nav_raw_bad_kind", bad(ItemFault::kBadKind)},
-                     {"nav_raw_bad_text", bad(ItemFault::kBadText)},
-                     {"nav_raw_bad_imu", bad(ItemFault::kBadImu)},
-                     {"nav_raw_backwards", counts_.nav_raw_backwards}};
+  counts_.AppendTo(report.counters);
   for (const auto& counter : sequencer_.counters()) report.counters.push_back(counter);
   for (const auto& counter : navigator_.counters()) report.counters.push_back(counter);
 
   // What never came, then what came and has stopped.
   const auto& pose = navigator_.last_pose();
-  report.reason = navigator_.filter().stopped();
-  const auto add = [&report](const std::string& text) { report.reason += (report.reason.empty() ? "" : ", ") + text; };
-  if (!navigator_.filter().last_fix_arrival()) add("no position fix yet");
-  if (!pose || (pose->heading_source == HeadingSource::kNone && !navigator_.filter().has_had_heading())) add("no heading");
-  if (const auto& complaint = navigator_.filter().datum_complaint(); !complaint.empty()) add(complaint);
+  const auto add = [&report](const std::string& reason) { report.Degrade(reason, ", "); };
+  const auto& filter = navigator_.filter();
+  if (!filter.stopped().empty()) add(filter.stopped());
+  if (!filter.last_fix_arrival()) add("no position fix yet");
+  if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
+  if (!filter.datum_complaint().empty()) add(filter.datum_complaint());
   if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
     add("clock of this computer is off UTC by " + InSeconds(off));
   }
-  if (!report.reason.empty()) report.state = HealthState::kDegraded;
   return report;
 }
 

@@ -14,8 +14,8 @@
 #include "lookout/lidar_nmea_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "services/navigator/core/item_sequencer.hpp"
+#include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/navigator.hpp"
-#include "services/navigator/core/sentence.hpp"
 #include "services/navigator/params.hpp"
 #include "services/navigator/wire.hpp"
 
@@ -25,7 +25,7 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// NMEA 0183 from outside, some whole lines. Each line is published as NAV_RAW, and then exactly that is consumed. Input::kOutside only.
+  /// NMEA 0183 from outside, some whole lines. Each line is published as NAV_RAW, and then exactly that is consumed. Not for who reads NAV_RAW.
   ///
   /// @param source  IsSourceName
   void OnDatagram(Utime arrival, Bytes payload, const std::string& source = kUdpSource);
@@ -36,10 +36,10 @@ class Service {
   /// The stream broke off: its incomplete line is void.
   void OnStreamEnd(const std::string& source);
 
-  /// Advances to this host time: ticks, and a start mark when the host clock was set back. Input::kOutside only.
+  /// Advances to this host time: ticks, and a start mark when the host clock was set back. Not for who reads NAV_RAW.
   void AdvanceTo(Utime host_time);
 
-  /// End of input. kOutside: publishes the END mark, if anything ever came, and consumes it. kLog: publishes the last pose, unless an END mark did.
+  /// End of input: publishes the END mark, if anything ever came, and consumes it; who reads NAV_RAW publishes the last pose, unless an END mark did.
   void Finish(Utime host_time);
 
   HealthReport Report() const;
@@ -65,16 +65,9 @@ class Service {
   std::int64_t attitude_seq_ = 0;
   std::int64_t pose_seq_ = 0;
 
-  struct Counts {
-    std::int64_t no_start = 0;
-    std::int64_t too_long = 0;
-    std::int64_t not_printable = 0;
-    std::int64_t bad_host_time = 0;
-    std::int64_t lidar_nmea_bad = 0;
-    std::array<std::int64_t, kNumItemFaults> nav_raw_bad{};  // by ItemFault
-    std::int64_t nav_raw_backwards = 0;
-  };
-  Counts counts_;
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"no_start", "too_long", "not_printable", "bad_host_time", "lidar_nmea_bad", kRawTime, kRawKind, kRawText, kRawImu, "nav_raw_backwards"});
+  Counts<kCountNames> counts_;
 };
 
 }  // namespace lookout::navigator

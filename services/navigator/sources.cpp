@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
-#include <spdlog/fmt/fmt.h>
+#include <spdlog/fmt/chrono.h>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
 #include <string>
@@ -26,15 +26,6 @@ constexpr int kReceiveBufferBytes = 256 * 1024;
 constexpr std::chrono::milliseconds kTick(10);
 constexpr int kMaxPieces = 64;
 
-// 2014-04-03 08:54:11
-std::string DayAndTime(Utime time) {
-  const auto day = std::chrono::floor<std::chrono::days>(time);
-  const std::chrono::year_month_day date(day);
-  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::seconds>(time - day));
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                     static_cast<unsigned>(date.day()), clock.hours().count(), clock.minutes().count(), clock.seconds().count());
-}
-
 std::vector<TextLogPlayer::Log> LogsOf(const Params& params) {
   std::vector<TextLogPlayer::Log> logs;
   for (const auto& connection : params.connections) {
@@ -52,7 +43,8 @@ class TextLogSource final : public runtime::SourceReader {
         taker_{[&service](Utime time) { service.AdvanceTo(time); },
                [&service](Utime time, Bytes line, const std::string& name) { service.OnDatagram(time, line, name); }},
         player_(LogsOf(params), params.connections.front().speed),
-        fault_("plays a text log of " + DayAndTime(player_.start()) + " UTC, so POSE is not of now: what is measured now finds none") {
+        fault_(fmt::format("plays a text log of {:%Y-%m-%d %H:%M:%S} UTC, so POSE is not of now: what is measured now finds none",
+                           std::chrono::floor<std::chrono::seconds>(player_.start()))) {
     for (const auto& name : player_.dateless()) fault_ += "; no sentence of input '" + name + "' tells a date, set text_log.date";
     spdlog::warn("{}", fault_);
   }
@@ -102,7 +94,7 @@ void Pass(const std::string& name, const io::Source::Piece& piece, Service& serv
 }
 
 std::unique_ptr<runtime::SourceReader> OpenSources(const Params& params, Service& service) {
-  if (params.input == Input::kLog) return nullptr;
+  if (params.reads_nav_raw) return nullptr;
   const auto is_text_log = [](const auto& connection) { return connection.kind == Connection::Kind::kTextLog; };
   if (!params.connections.empty() && std::ranges::all_of(params.connections, is_text_log)) return std::make_unique<TextLogSource>(params, service);
   std::vector<runtime::LiveReader::NamedSource> sources;

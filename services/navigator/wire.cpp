@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
 
 namespace {
-
-// All that is unknown goes out as one and the same NaN: same bytes whatever made it.
-double Canonical(double value) { return std::isnan(value) ? kNan : value; }
 
 // What GNSS_FIX and ATTITUDE have in common.
 template <typename Message, typename Measured>
@@ -52,24 +49,24 @@ nav_raw_t ToMessage(const Item& item) {
   return message;
 }
 
-ItemResult ToItem(const nav_raw_t& message) {
+std::variant<Item, Refusal> ToItem(const nav_raw_t& message) {
   const auto time = UtimeFromWire(message.utime_us);
-  if (!time) return {ItemFault::kBadTime, {}};
-  if (message.kind < nav_raw_t::KIND_START || message.kind > nav_raw_t::KIND_END) return {ItemFault::kBadKind, {}};
-  if (message.imu.size() != (message.kind == nav_raw_t::KIND_IMU ? 1U : 0U)) return {ItemFault::kBadImu, {}};
+  if (!time) return kRawTime;
+  if (message.kind < nav_raw_t::KIND_START || message.kind > nav_raw_t::KIND_END) return kRawKind;
+  if (message.imu.size() != (message.kind == nav_raw_t::KIND_IMU ? 1U : 0U)) return kRawImu;
   const bool is_sentence = message.kind == nav_raw_t::KIND_SENTENCE;
   const bool has_source = is_sentence || message.kind == nav_raw_t::KIND_IMU;
-  if (is_sentence ? !IsLine(message.sentence) : !message.sentence.empty()) return {ItemFault::kBadText, {}};
-  if (has_source ? !IsSourceName(message.source) : !message.source.empty()) return {ItemFault::kBadText, {}};
-  ItemResult result{ItemFault::kNone, {*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence}};
+  if (is_sentence ? !IsLine(message.sentence) : !message.sentence.empty()) return kRawText;
+  if (has_source ? !IsSourceName(message.source) : !message.source.empty()) return kRawText;
+  Item item{*time, message.seq, static_cast<ItemKind>(message.kind), message.source, message.sentence};
   for (const auto& sample : message.imu) {
     const auto is_plausible = [](double value) { return std::abs(value) <= kMaxImuValue; };  // not for NaN
     if (!std::ranges::all_of(sample.angular_velocity_radps, is_plausible) || !std::ranges::all_of(sample.specific_force_mps2, is_plausible)) {
-      return {ItemFault::kBadImu, {}};
+      return kRawImu;
     }
-    result.item.imu = {Eigen::Vector3d::Map(sample.angular_velocity_radps), Eigen::Vector3d::Map(sample.specific_force_mps2)};
+    item.imu = {Eigen::Vector3d::Map(sample.angular_velocity_radps), Eigen::Vector3d::Map(sample.specific_force_mps2)};
   }
-  return result;
+  return item;
 }
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq) {

@@ -1,8 +1,9 @@
 // Between the messages of navigator and its own types.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
+#include <string_view>
+#include <variant>
 
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
@@ -14,23 +15,16 @@
 
 namespace lookout::navigator {
 
-/// Why a NAV_RAW message is not an item.
-enum class ItemFault {
-  kNone,
-  kBadTime,  // outside of the bounds of Utime
-  kBadKind,
-  kBadText,  // a sentence that is not IsLine, a source that is not a word, or either where there is none
-  kBadImu,   // not as many samples as the kind has, or a number that cannot be
-};
-inline constexpr std::size_t kNumItemFaults = static_cast<std::size_t>(ItemFault::kBadImu) + 1;
+/// Why a NAV_RAW message is not an item: the name of a counter.
+using Refusal = std::string_view;
 
-struct ItemResult {
-  ItemFault fault = ItemFault::kNone;
-  Item item;  // only when there is no fault
-};
+inline constexpr Refusal kRawTime = "nav_raw_bad_time";  // outside of the bounds of Utime
+inline constexpr Refusal kRawKind = "nav_raw_bad_kind";
+inline constexpr Refusal kRawText = "nav_raw_bad_text";  // a sentence that is not IsLine, a source that is not a word, or either where there is none
+inline constexpr Refusal kRawImu = "nav_raw_bad_imu";    // not as many samples as the kind has, or a number that cannot be
 
 nav_raw_t ToMessage(const Item& item);
-ItemResult ToItem(const nav_raw_t& message);
+std::variant<Item, Refusal> ToItem(const nav_raw_t& message);
 
 gnss_fix_t ToMessage(const GnssFix& fix, std::int64_t seq, std::int64_t raw_seq);
 attitude_t ToMessage(const Attitude& attitude, std::int64_t seq, std::int64_t raw_seq);

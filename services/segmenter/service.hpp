@@ -31,16 +31,14 @@ class Service {
   bus::Bus& bus_;
   Segmenter segmenter_;
   messages::PartAssembler<lidar_scan_t> assembler_;
-  std::vector<Counter> refusals_;
+  Counts<messages::kScanFaults> refusals_;
   std::optional<messages::Fault> last_fault_;  // of the latest message, if it was refused
   std::chrono::microseconds refused_at_{0};
   PassedTime time_{std::chrono::seconds(2)};
-  std::int64_t num_scans_ = 0;
-  std::int64_t num_inconsistent_scans_ = 0;  // dropped because the columns of their parts overlap or leave gaps
-  std::int64_t num_segments_ = 0;
-  std::int64_t num_too_small_ = 0;
-  std::int64_t num_over_limit_ = 0;
-  std::int64_t num_repeats_ = 0;
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"scans", "segments", "segments_too_small", "segments_over_limit", "returns_repeated", "scans_incomplete",
+                                       "scans_inconsistent", "parts_duplicate", "parts_inconsistent"});
+  Counts<kCountNames> counts_;
 };
 
 }  // namespace lookout::segmenter

@@ -21,11 +21,6 @@ static_assert(static_cast<int>(Ground::kAtSurface) == segment_t::GROUND_AT_SURFA
 static_assert(static_cast<int>(SegmentKind::kObstacle) == segment_t::KIND_OBSTACLE);
 static_assert(static_cast<int>(SegmentKind::kLand) == segment_t::KIND_LAND);
 
-template <typename T>
-std::int32_t Count(const std::vector<T>& values) {
-  return static_cast<std::int32_t>(values.size());
-}
-
 ScanHead HeadOf(const lidar_scan_t& message) {
   ScanHead head;
   head.time = Utime(std::chrono::microseconds(message.utime_us));
@@ -77,13 +72,13 @@ segment_t ToMessage(const Segment& segment) {
     message.hull_y_m.push_back(corner.y_m);
     message.hull_time_us.push_back(corner.time_us);
   }
-  message.num_hull = Count(message.hull_x_m);
+  message.num_hull = messages::CountOf(message.hull_x_m);
   for (const auto& corner : segment.waterline) {
     message.waterline_x_m.push_back(corner.x_m);
     message.waterline_y_m.push_back(corner.y_m);
     message.waterline_time_us.push_back(corner.time_us);
   }
-  message.num_waterline = Count(message.waterline_x_m);
+  message.num_waterline = messages::CountOf(message.waterline_x_m);
   return message;
 }
 
@@ -98,7 +93,7 @@ segments_t PartOf(const Scan& scan, const Segments& segments, int part_index) {
   part.part_index = part_index;
   part.num_rings = scan.head.num_rings();
   part.num_returns = scan.head.num_returns;
-  part.num_turn_segments = Count(segments.segments);
+  part.num_turn_segments = messages::CountOf(segments.segments);
   return part;
 }
 
@@ -131,7 +126,7 @@ std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, i
       if (size_bytes > max_message_bytes) break;
       part.segments.push_back(std::move(message));
     }
-    part.num_segments = Count(part.segments);
+    part.num_segments = messages::CountOf(part.segments);
   };
 
   const auto cells_per_column = static_cast<std::ptrdiff_t>(scan.head.num_rings()) * scan.head.num_returns;
@@ -141,7 +136,7 @@ std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, i
     part.num_columns = span.num_columns;
     const auto begin = segments.label.begin() + span.first_column * cells_per_column;
     part.label.assign(begin, begin + span.num_columns * cells_per_column);
-    part.num_cells = Count(part.label);
+    part.num_cells = messages::CountOf(part.label);
     fill(part);
   }
   while (segment != segments.segments.end()) {
@@ -149,7 +144,7 @@ std::vector<segments_t> ToMessages(const Scan& scan, const Segments& segments, i
     part.first_column = scan.head.num_turn_columns;
     fill(part);
   }
-  for (auto& part : parts) part.num_parts = Count(parts);
+  for (auto& part : parts) part.num_parts = messages::CountOf(parts);
   return parts;
 }
 

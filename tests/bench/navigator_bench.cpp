@@ -2,8 +2,8 @@
 #include <benchmark/benchmark.h>
 #include <vector>
 
+#include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/navigator.hpp"
-#include "services/navigator/core/sentence.hpp"
 #include "services/navigator/params.hpp"
 #include "tests/support/files.hpp"
 #include "tools/sim/navigation.hpp"

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "services/navigator/core/item_sequencer.hpp"
+#include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/navigator.hpp"
-#include "services/navigator/core/sentence.hpp"
 #include "tests/unit/navigator/filter_params.hpp"
 
 namespace {

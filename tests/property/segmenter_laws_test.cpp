@@ -260,7 +260,7 @@ TEST(SegmenterServiceLaw, MessagesThatLieAreRefusedAndNothingElseHappens) {
   for (const auto& counter : service.Report().counters) counts[counter.name] = counter.count;
   EXPECT_GT(num_answers, 200);
   for (const auto* name : {"refused_time", "refused_size", "refused_beams", "refused_range_unit", "refused_part", "refused_azimuth",
-                           "turns_incomplete", "parts_duplicate"}) {
+                           "scans_incomplete", "parts_duplicate"}) {
     EXPECT_GT(counts[name], 0) << name;
   }
 }

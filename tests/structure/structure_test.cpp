@@ -90,14 +90,14 @@ const std::vector<Rule>& Rules() {
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       // It knows what an address is.
-      {"services/[^/]+/params(_text)?\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types"}},
+      {"services/[^/]+/params(_text)?\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types", "fmt"}},
       // Opens what params name.
       {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core"}},
+      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core", "fmt"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
-      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
+      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},
       {"services/[^/]+/main\\.cpp",
        {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
   };

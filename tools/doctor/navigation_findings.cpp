@@ -155,7 +155,7 @@ std::optional<Finding> CheckDatum(const Observations& seen) {
   const auto& fix = seen.navigation.fix;
   if (!datum || !fix || fix->quality == gnss_fix_t::QUALITY_NONE || !std::isfinite(fix->latitude_deg) || !std::isfinite(fix->longitude_deg))
     return {};
-  const auto complaint = DatumComplaint({datum->latitude_deg, datum->longitude_deg, 0.0}, {fix->latitude_deg, fix->longitude_deg, 0.0}, "the fix");
+  const auto complaint = DatumComplaint(*datum, {fix->latitude_deg, fix->longitude_deg, 0.0}, "the fix");
   if (complaint.empty()) return {};
   return Warning(kGnssSubject, complaint, "correct datum in boat.txtpb, or remove it: then the first fix is the datum");
 }

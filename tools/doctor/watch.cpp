@@ -82,7 +82,7 @@ class Watcher {
     }
     if (seen_.processes.contains("navigator")) {
       seen_.navigation.via = Via::kBus;
-    } else if (config.navigation && config.navigation->input == navigator::Input::kOutside) {
+    } else if (config.navigation && !config.navigation->reads_nav_raw) {
       seen_.navigation.via = Via::kItself;
       navigator_.emplace(memory_, *config.navigation, seen_.navigation);
     }

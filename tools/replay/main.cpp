@@ -23,7 +23,7 @@
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
-#include "services/navigator/core/day.hpp"
+#include "services/navigator/params.hpp"
 #include "tools/log/log_output.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"

@@ -54,14 +54,9 @@ class SegmenterStage final : public Stage {
 
 class NavigatorStage final : public Stage {
  public:
-  NavigatorStage(bus::Bus& bus, const fs::path& config_folder, bool reads_raw)
-      : reads_raw_(reads_raw),
-        params_(Load(config_folder, reads_raw ? navigator::Input::kLog : navigator::Input::kOutside)),
-        service_(bus, params_) {}
+  NavigatorStage(bus::Bus& bus, const fs::path& config_folder, bool reads_raw) : params_(Load(config_folder, reads_raw)), service_(bus, params_) {}
 
-  void AdvanceTo(Utime time) override {
-    if (!reads_raw_) service_.AdvanceTo(time);
-  }
+  void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
   bool OnDatagram(const Datagram& datagram) override {
     const auto source = params_.source_of_port.find(datagram.port);
     if (source == params_.source_of_port.end()) return false;
@@ -75,19 +70,18 @@ class NavigatorStage final : public Stage {
   }
   void Finish(Utime time) override { service_.Finish(time); }
   std::int64_t FinishLogs(Utime time, bool is_whole) override {
-    if (!reads_raw_ && is_whole) service_.Finish(time);  // LIDAR_NMEA has no end mark: it sets its own
+    if (!params_.reads_nav_raw && is_whole) service_.Finish(time);  // LIDAR_NMEA has no end mark: it sets its own
     return 0;
   }
   HealthReport Report() const override { return service_.Report(); }
 
  private:
-  static navigator::Params Load(const fs::path& config_folder, navigator::Input input) {
+  static navigator::Params Load(const fs::path& config_folder, bool reads_raw) {
     auto params = navigator::LoadParams(config_folder);
-    params.input = input;
+    params.reads_nav_raw = reads_raw;
     return params;
   }
 
-  bool reads_raw_;
   navigator::Params params_;
   navigator::Service service_;
 };

@@ -8,7 +8,7 @@
 namespace lookout::sim {
 
 /// Origin of the map where boat.txtpb holds no datum: a lake in New Hampshire; west of Greenwich, so that a wrong sign shows.
-inline constexpr config::BoatDatum kLakeDatum{43.6300, -72.1500, 201.0};
+inline constexpr GeodeticPlace kLakeDatum{43.6300, -72.1500, 201.0};
 
 inline GeographicLib::LocalCartesian MapFrame(const config::BoatFacts& boat) {
   const auto datum = boat.datum.value_or(kLakeDatum);

@@ -78,7 +78,7 @@ class TruthWriter {
   const Scene& scene_;
   double reference_point_above_water_m_;
   std::vector<Eigen::Vector2d> own_outline_m_;  // vessel frame
-  config::BoatDatum datum_;
+  GeodeticPlace datum_;
   GeographicLib::LocalCartesian map_;
   Utime start_;
   Utime next_pose_;

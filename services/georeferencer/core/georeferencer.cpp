@@ -5,6 +5,13 @@
 
 namespace lookout::georeferencer {
 
+namespace {
+
+// By ObstacleStatus.
+constexpr std::array kObstacleCounts{"obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout"};
+
+}  // namespace
+
 Georeferencer::Georeferencer(const PlacementParams& placement, std::chrono::microseconds pose_timeout)
     : placement_(placement), pose_timeout_(pose_timeout) {}
 
@@ -13,7 +20,7 @@ std::vector<ObstaclePart> Georeferencer::AddSegments(SegmentPart part) {
   waiting_.push_back({std::move(part), host_time_});
   ReleaseReady(released);
   if (waiting_.size() > kMaxWaiting) {
-    ++counts_.parts_overflowed;
+    ++counts_["parts_overflowed"];
     ReleaseFront(true, released);
     ReleaseReady(released);
   }
@@ -24,20 +31,20 @@ std::vector<ObstaclePart> Georeferencer::AddPose(const Pose& pose) {
   std::vector<ObstaclePart> released;
   if (const Pose* newest = poses_.newest()) {
     if (pose.time == newest->time) {
-      ++counts_.poses_duplicate;
+      ++counts_["poses_duplicate"];
       return released;
     }
     if (pose.time < newest->time) {
       // A new run, in the past of the one before. What waits and lies so far ahead of it belongs to the old run.
-      ++counts_.pose_restarts;
+      ++counts_["pose_restarts"];
       while (!waiting_.empty() && waiting_.front().part.head.time - pose.time > PoseHistory::kLength) {
-        ++counts_.parts_flushed;
+        ++counts_["parts_flushed"];
         ReleaseFront(false, released);
       }
       poses_.Clear();
     }
   }
-  ++counts_.poses_taken;
+  ++counts_["poses_taken"];
   poses_.Add(pose);
   ReleaseReady(released);
   return released;
@@ -51,7 +58,7 @@ std::vector<ObstaclePart> Georeferencer::AdvanceTo(Utime host_time) {
     waiting.arrival = std::min(waiting.arrival.value_or(host_time), host_time);
   }
   while (!waiting_.empty() && host_time - *waiting_.front().arrival > pose_timeout_) {
-    ++counts_.parts_timed_out;
+    ++counts_["parts_timed_out"];
     last_timeout_ = host_time;
     ReleaseFront(true, released);
     ReleaseReady(released);
@@ -62,7 +69,7 @@ std::vector<ObstaclePart> Georeferencer::AdvanceTo(Utime host_time) {
 std::vector<ObstaclePart> Georeferencer::Finish() {
   std::vector<ObstaclePart> released;
   while (!waiting_.empty()) {
-    ++counts_.parts_flushed;
+    ++counts_["parts_flushed"];
     ReleaseFront(false, released);
   }
   return released;
@@ -80,29 +87,21 @@ void Georeferencer::ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& 
   placed.head = part.head;
   placed.datum = poses_.DatumAt(part.head.end_time);
   for (const auto& segment : part.segments) {
-    if (segment.hull.size() > kMaxFootprintVertices) ++counts_.footprints_thinned;
-    if (segment.waterline.size() > kMaxWaterlineVertices) ++counts_.waterlines_thinned;
+    if (segment.hull.size() > kMaxFootprintVertices) ++counts_["footprints_thinned"];
+    if (segment.waterline.size() > kMaxWaterlineVertices) ++counts_["waterlines_thinned"];
     const auto& obstacle = placed.obstacles.emplace_back(PlaceSegment(segment, poses_, placed.datum, has_timed_out, placement_));
-    ++counts_.obstacles_by_status[static_cast<std::size_t>(obstacle.status)];
+    counts_.Add(kObstacleCounts[static_cast<std::size_t>(obstacle.status)]);
   }
-  ++counts_.parts_released;
+  ++counts_["parts_released"];
   waiting_.pop_front();
 }
 
 std::vector<Counter> Georeferencer::counters() const {
-  return {{"parts_released", counts_.parts_released},
-          {"parts_timed_out", counts_.parts_timed_out},
-          {"parts_overflowed", counts_.parts_overflowed},
-          {"parts_flushed", counts_.parts_flushed},
-          {"parts_waiting", static_cast<std::int64_t>(waiting_.size())},
-          {"poses_taken", counts_.poses_taken},
-          {"poses_duplicate", counts_.poses_duplicate},
-          {"pose_restarts", counts_.pose_restarts},
-          {"obstacles_ok", counts_.obstacles_by_status[0]},
-          {"obstacles_vessel_frame_only", counts_.obstacles_by_status[1]},
-          {"obstacles_pose_timeout", counts_.obstacles_by_status[2]},
-          {"footprints_thinned", counts_.footprints_thinned},
-          {"waterlines_thinned", counts_.waterlines_thinned}};
+  auto counts = counts_;
+  counts["parts_waiting"] = num_waiting();
+  std::vector<Counter> counters;
+  counts.AppendTo(counters);
+  return counters;
 }
 
 }  // namespace lookout::georeferencer

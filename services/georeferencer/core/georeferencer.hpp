@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "common/core/health.hpp"
@@ -47,18 +48,9 @@ class Georeferencer {
     SegmentPart part;
     std::optional<Utime> arrival;  // host time, where there is one
   };
-  struct Counts {
-    std::int64_t parts_released = 0;
-    std::int64_t parts_timed_out = 0;
-    std::int64_t parts_overflowed = 0;
-    std::int64_t parts_flushed = 0;
-    std::int64_t poses_taken = 0;
-    std::int64_t poses_duplicate = 0;
-    std::int64_t pose_restarts = 0;
-    std::array<std::int64_t, 3> obstacles_by_status{};
-    std::int64_t footprints_thinned = 0;
-    std::int64_t waterlines_thinned = 0;
-  };
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"parts_released", "parts_timed_out", "parts_overflowed", "parts_flushed", "parts_waiting", "poses_taken", "poses_duplicate", "pose_restarts",
+       "obstacles_ok", "obstacles_vessel_frame_only", "obstacles_pose_timeout", "footprints_thinned", "waterlines_thinned"});
 
   bool IsReady(const SegmentPart& part) const;
   void ReleaseFront(bool has_timed_out, std::vector<ObstaclePart>& released);
@@ -70,7 +62,7 @@ class Georeferencer {
   std::deque<Waiting> waiting_;
   std::optional<Utime> host_time_;
   std::optional<Utime> last_timeout_;
-  Counts counts_;
+  Counts<kCountNames> counts_;
 };
 
 }  // namespace lookout::georeferencer

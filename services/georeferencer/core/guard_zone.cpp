@@ -28,7 +28,7 @@ class NearestFinder {
 
   void Add(const Eigen::Vector2d& p_vessel_m) {
     const double bearing_rad = BearingOf(p_vessel_m);
-    if (bearing_.Contains(bearing_rad)) Keep({p_vessel_m.norm(), bearing_rad});
+    if (bearing_.Contains(bearing_rad)) KeepNearer(nearest_, NearestPoint{p_vessel_m.norm(), bearing_rad});
   }
 
   void AddEdge(const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
@@ -41,17 +41,13 @@ class NearestFinder {
       if (sine == 0.0) continue;
       const double range_m = Cross(from_m, along) / sine;
       const double share = Cross(from_m, side) / sine;
-      if (range_m >= 0.0 && share >= 0.0 && share <= 1.0) Keep({range_m, WrapTo2Pi(side_rad)});
+      if (range_m >= 0.0 && share >= 0.0 && share <= 1.0) KeepNearer(nearest_, NearestPoint{range_m, WrapTo2Pi(side_rad)});
     }
   }
 
   const std::optional<NearestPoint>& nearest() const { return nearest_; }
 
  private:
-  void Keep(const NearestPoint& point) {
-    if (!nearest_ || point.range_m < nearest_->range_m) nearest_ = point;
-  }
-
   Sector bearing_;
   std::optional<NearestPoint> nearest_;
 };
@@ -87,7 +83,7 @@ std::optional<NearestPoint> NearestInZone(const GuardZoneParams& params, const S
   for (const auto& segment : part.segments) {
     if (segment.rating.confidence == Confidence::kTentative && !params.takes_tentative) continue;
     const auto point = NearestWithin(params.bearing, OutlineOf(segment, T_vessel_lidar));
-    if (point && point->range_m <= params.range_m && (!nearest || point->range_m < nearest->range_m)) nearest = point;
+    if (point && point->range_m <= params.range_m) KeepNearer(nearest, point);
   }
   return nearest;
 }

@@ -25,6 +25,11 @@ struct NearestPoint {
   double bearing_rad = 0.0;  // from the bow clockwise, 0 to 2 pi
 };
 
+/// Keeps the nearer of two.
+inline void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<NearestPoint>& other) {
+  if (other && (!nearest || other->range_m < nearest->range_m)) nearest = other;
+}
+
 /// Along the outline: the footprint, or of land its waterline where there is one. Not only its corners: a long wall is nearest between two.
 ///
 /// @return nullopt when nothing of the outline lies within the sector

@@ -19,8 +19,6 @@ double HeadingBetween(double from_rad, double to_rad, double share) { return Wra
 
 }  // namespace
 
-bool Datum::IsKnown() const { return std::isfinite(latitude_deg) && std::isfinite(longitude_deg); }
-
 bool Datum::IsSameAs(const Datum& other) const {
   return latitude_deg == other.latitude_deg && longitude_deg == other.longitude_deg && IsSameNumber(ellipsoid_height_m, other.ellipsoid_height_m);
 }

@@ -21,9 +21,7 @@ struct Datum {
   double longitude_deg = kUnknown;
   double ellipsoid_height_m = kUnknown;
 
-  /// Latitude and longitude are known. A height that is not known moves no position by more than 1 mm per 60 m of it and kilometre of distance.
-  bool IsKnown() const;
-  /// The map frame; a height that is not known counts as 0.
+  /// The map frame; a height that is not known counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
   LocalFrame Map() const;
   /// The same map frame, bit for bit. A datum that is not known equals none.
   bool IsSameAs(const Datum& other) const;

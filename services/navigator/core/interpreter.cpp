@@ -20,6 +20,9 @@ constexpr std::chrono::milliseconds kMinScaleStep(100);
 // Receivers send GST with each epoch, or once in some.
 constexpr std::chrono::seconds kMaxAccuracyAge(5);
 
+// By SentenceFault.
+constexpr std::array kFaultCounts{"", "no_checksum", "bad_checksum", "bad_field", "implausible_value"};
+
 std::size_t IndexOf(SentenceType type) { return static_cast<std::size_t>(type); }
 
 double WrapHeading(double angle_rad) { return std::isnan(angle_rad) ? kNan : WrapTo2Pi(angle_rad); }
@@ -58,8 +61,6 @@ void KeepRole(Role role, Reading& reading) {
 }
 
 bool IsEmpty(const Reading& reading) { return !reading.fix && !reading.attitude && !reading.velocity && !reading.turn_rate && !reading.imu; }
-
-bool IsGga(const GnssFix& fix) { return fix.sentence_type == "GGA" || fix.sentence_type == "GNS"; }
 
 }  // namespace
 
@@ -103,26 +104,26 @@ bool Interpreter::IsRepeated(const Item& item) {
 Reading Interpreter::Read(const Item& item) {
   const bool is_first_of_lidar = item.source == kLidarSource && last_lidar_sentence_.empty();
   if (IsRepeated(item)) {
-    ++counts_.repeated_sentence;
+    ++counts_["repeated_sentence"];
     return {};
   }
   auto& source = SourceOf(item.source);
   const auto parsed = ParseSentence(item.sentence, source.params.requires_checksum);
   if (is_first_of_lidar && IsStale(item.time, parsed)) {
-    ++counts_.stale_lidar_sentence;
+    ++counts_["stale_lidar_sentence"];
     return {};
   }
   if (parsed.fault != SentenceFault::kNone) {
     ++source.num_refused;
-    ++counts_.faults[static_cast<std::size_t>(parsed.fault)];
+    counts_.Add(kFaultCounts[static_cast<std::size_t>(parsed.fault)]);
     return {};
   }
   if (parsed.sentence.type != SentenceType::kOther) {
     ++source.num_understood;
-    ++counts_.understood_sentence;
+    ++counts_["understood_sentence"];
     // What is only recorded does not correct the clock either.
     if (source.params.role == Role::kNothing) {
-      ++counts_.outside_role;
+      ++counts_["outside_role"];
       return {};
     }
   }
@@ -130,14 +131,14 @@ Reading Interpreter::Read(const Item& item) {
   auto reading = ReadUnderstood(item, source, parsed.sentence);
   const bool had_something = !IsEmpty(reading);
   KeepRole(source.params.role, reading);
-  if (had_something && IsEmpty(reading)) ++counts_.outside_role;
+  if (had_something && IsEmpty(reading)) ++counts_["outside_role"];
   return reading;
 }
 
 Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sentence& sentence) {
   switch (sentence.type) {
     case SentenceType::kOther:
-      ++counts_.other_sentence;
+      ++counts_["other_sentence"];
       return {};
     case SentenceType::kZda:
       // Tells the date to the sentences that have none.
@@ -168,7 +169,7 @@ std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, Source
   if (source.is_in_time) return clock_.OfArrival(source.clock, item.time, source.params.latency);
   auto& told_by = source.told_by[IndexOf(type)];
   if (!UtcClock::IsBehindTimedSentence(source.clock, item.time) || told_by == source.clock.last_utc) {
-    ++counts_.queued_sentence;
+    ++counts_["queued_sentence"];
     return std::nullopt;
   }
   told_by = source.clock.last_utc;
@@ -180,18 +181,21 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
   if (!sentence.time_of_day) return WhenArrived(item, source, sentence.type);
   const auto when = clock_.OfSentence(source.clock, item.time, *sentence.time_of_day, sentence.date, source.params.latency, is_measured);
   if (!when) {
-    ++counts_.time_backwards;
+    ++counts_["time_backwards"];
   } else if (when->is_date_refused) {
-    ++counts_.date_unusable;
+    ++counts_["date_unusable"];
   }
   return when;
 }
 
 // Sentences of one instant of one receiver are one fix: each gets what those before it said.
 void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
-  if (fix.position && !fix.when.is_from_sentence) ++counts_.sentence_time_unusable;
-  const bool is_gga = IsGga(fix);
-  if (source.epoch && fix.when.has_sentence_utc && source.epoch->utc == fix.when.utc && source.epoch->fix.when.num_leaps == fix.when.num_leaps) {
+  if (fix.position && !fix.when.is_from_sentence) ++counts_["sentence_time_unusable"];
+  const bool is_gga = fix.is_gga();
+  const auto is_of_epoch = [&fix](const Epoch& epoch) {
+    return epoch.fix.when.utc == fix.when.utc && epoch.fix.when.num_leaps == fix.when.num_leaps;
+  };
+  if (source.epoch && fix.when.has_sentence_utc && is_of_epoch(*source.epoch)) {
     const auto& known = source.epoch->fix;
     // GGA and GNS tell more of their position and quality than the others.
     if (!fix.position || (source.epoch->has_gga && !is_gga && known.position)) {
@@ -210,7 +214,7 @@ void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
     source.epoch->fix = fix;
     source.epoch->has_gga = source.epoch->has_gga || is_gga;
   } else if (fix.when.has_sentence_utc) {
-    source.epoch = Epoch{fix.when.utc, fix, is_gga};
+    source.epoch = Epoch{fix, is_gga};
   }
   if (fix.position && IsMeasured(fix.quality) && fix.when.is_from_sentence) {
     const auto time_scale = clock_.pose_minus_even_utc();
@@ -269,14 +273,14 @@ Reading Interpreter::ReadAttitude(const Item& item, Source& source, const Senten
     const double deviation_rad = Or(sentence.deviation_rad, source.params.deviation_rad.value_or(kNan));
     const double declination_rad = Or(sentence.declination_rad, Or(source.params.declination_rad.value_or(kNan), source.declination_rad));
     if (std::isnan(deviation_rad) || std::isnan(declination_rad)) {
-      ++(std::isnan(deviation_rad) ? counts_.no_deviation : counts_.no_declination);
+      ++(std::isnan(deviation_rad) ? counts_["no_deviation"] : counts_["no_declination"]);
       return {};
     }
     heading_rad = heading_rad + deviation_rad + declination_rad;
   }
   const auto when = When(item, source, sentence);
   if (!when) return {};
-  if (sentence.type == SentenceType::kPashr && sentence.time_of_day && !when->is_from_sentence) ++counts_.sentence_time_unusable;
+  if (sentence.type == SentenceType::kPashr && sentence.time_of_day && !when->is_from_sentence) ++counts_["sentence_time_unusable"];
   Reading reading;
   if (sentence.type != SentenceType::kVnImu) reading.attitude = MakeAttitude(item, source, sentence, *when, heading_rad);
   if (sentence.imu) reading.imu = InVesselFrame(when->time, *sentence.imu);
@@ -293,22 +297,8 @@ Attitude Interpreter::MakeAttitude(const Item& item, const Source& source, const
 }
 
 std::vector<Counter> Interpreter::counters() const {
-  const auto faults = [this](SentenceFault fault) { return counts_.faults[static_cast<std::size_t>(fault)]; };
-  std::vector<Counter> counters{{"understood_sentence", counts_.understood_sentence},
-                                {"other_sentence", counts_.other_sentence},
-                                {"repeated_sentence", counts_.repeated_sentence},
-                                {"outside_role", counts_.outside_role},
-                                {"no_checksum", faults(SentenceFault::kNoChecksum)},
-                                {"bad_checksum", faults(SentenceFault::kBadChecksum)},
-                                {"bad_field", faults(SentenceFault::kBadField)},
-                                {"implausible_value", faults(SentenceFault::kImplausible)},
-                                {"sentence_time_unusable", counts_.sentence_time_unusable},
-                                {"time_backwards", counts_.time_backwards},
-                                {"queued_sentence", counts_.queued_sentence},
-                                {"date_unusable", counts_.date_unusable},
-                                {"stale_lidar_sentence", counts_.stale_lidar_sentence},
-                                {"no_deviation", counts_.no_deviation},
-                                {"no_declination", counts_.no_declination}};
+  std::vector<Counter> counters;
+  counts_.AppendTo(counters);
   for (const auto& [name, source] : sources_) {
     counters.push_back({source.understood_name, source.num_understood});
     counters.push_back({source.refused_name, source.num_refused});

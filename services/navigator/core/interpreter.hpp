@@ -17,9 +17,9 @@
 
 namespace lookout::navigator {
 
-/// Which measurements of a source are used. All its sentences are recorded, whatever the role.
+/// Which measurements of a source are used. All its sentences are recorded, whatever the role. The numbers of config.
 enum class Role {
-  kAll,
+  kAll = 1,
   kGnss,      // positions and velocities
   kHeading,   // headings and rates of turn
   kAttitude,  // headings, roll, pitch, rates of turn
@@ -81,7 +81,6 @@ class Interpreter {
  private:
   /// What is known of the epoch of a receiver.
   struct Epoch {
-    Utime utc;
     GnssFix fix;
     bool has_gga = false;
   };
@@ -127,21 +126,10 @@ class Interpreter {
   std::string last_lidar_sentence_;
   std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
-  struct Counts {
-    std::array<std::int64_t, kNumSentenceFaults> faults{};  // by SentenceFault
-    std::int64_t other_sentence = 0;
-    std::int64_t repeated_sentence = 0;
-    std::int64_t understood_sentence = 0;
-    std::int64_t outside_role = 0;
-    std::int64_t sentence_time_unusable = 0;
-    std::int64_t time_backwards = 0;
-    std::int64_t queued_sentence = 0;
-    std::int64_t date_unusable = 0;
-    std::int64_t stale_lidar_sentence = 0;
-    std::int64_t no_deviation = 0;
-    std::int64_t no_declination = 0;
-  };
-  Counts counts_;
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"understood_sentence", "other_sentence", "repeated_sentence", "outside_role", "no_checksum", "bad_checksum", "bad_field", "implausible_value",
+       "sentence_time_unusable", "time_backwards", "queued_sentence", "date_unusable", "stale_lidar_sentence", "no_deviation", "no_declination"});
+  Counts<kCountNames> counts_;
 };
 
 }  // namespace lookout::navigator

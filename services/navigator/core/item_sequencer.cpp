@@ -15,9 +15,9 @@ Utime FloorToTick(Utime time) { return std::chrono::floor<TickPeriods>(time); }
 
 static_assert(TickPeriods(1) == ItemSequencer::kTickPeriod);
 
-Item ItemSequencer::Make(Utime time, ItemKind kind) {
+Item ItemSequencer::Make(Utime time, ItemKind kind, const std::string& source, const std::string& sentence) {
   last_ = last_ ? std::max(*last_, time) : time;
-  return {*last_, next_seq_++, kind, {}, {}};
+  return {*last_, next_seq_++, kind, source, sentence};
 }
 
 Item ItemSequencer::Start(Utime time) {
@@ -26,13 +26,6 @@ Item ItemSequencer::Start(Utime time) {
   last_host_time_ = time;
   next_tick_ = FloorToTick(time) + kTickPeriod;
   return Make(time, ItemKind::kStart);
-}
-
-Item ItemSequencer::MakeSentence(Utime arrival, const std::string& source, const std::string& sentence) {
-  Item item = Make(arrival, ItemKind::kSentence);
-  item.source = source;
-  item.sentence = sentence;
-  return item;
 }
 
 std::vector<Item> ItemSequencer::AdvanceTo(Utime host_time) {
@@ -55,7 +48,7 @@ std::vector<Item> ItemSequencer::OnLines(Utime arrival, const std::vector<std::s
     num_stale_sentences_ += static_cast<std::int64_t>(lines.size());
     return items;
   }
-  for (const auto& line : lines) items.push_back(MakeSentence(arrival, source, line));
+  for (const auto& line : lines) items.push_back(Make(arrival, ItemKind::kSentence, source, line));
   return items;
 }
 
@@ -66,7 +59,7 @@ std::vector<Item> ItemSequencer::OnLidarSentence(Utime arrival, const std::strin
     ++num_stale_sentences_;
     return items;
   }
-  items.push_back(MakeSentence(arrival, kLidarSource, sentence));
+  items.push_back(Make(arrival, ItemKind::kSentence, kLidarSource, sentence));
   return items;
 }
 
@@ -78,7 +71,5 @@ std::vector<Item> ItemSequencer::Finish(Utime host_time) {
   last_.reset();
   return items;
 }
-
-std::vector<Counter> ItemSequencer::counters() const { return {{"clock_set_back", num_clock_set_back_}, {"stale_sentence", num_stale_sentences_}}; }
 
 }  // namespace lookout::navigator

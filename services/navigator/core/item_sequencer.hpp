@@ -36,12 +36,11 @@ class ItemSequencer {
   /// @return END after the ticks until then; nothing when nothing came before. What comes after it begins a new sequence.
   std::vector<Item> Finish(Utime host_time);
 
-  std::vector<Counter> counters() const;
+  std::vector<Counter> counters() const { return {{"clock_set_back", num_clock_set_back_}, {"stale_sentence", num_stale_sentences_}}; }
 
  private:
-  Item Make(Utime time, ItemKind kind);
+  Item Make(Utime time, ItemKind kind, const std::string& source = {}, const std::string& sentence = {});
   Item Start(Utime time);
-  Item MakeSentence(Utime arrival, const std::string& source, const std::string& sentence);
 
   std::optional<Utime> last_;  // time of the last item
   Utime last_host_time_{};     // of the host clock itself, since the start; a lidar's sentence may be ahead of it

@@ -15,21 +15,14 @@ constexpr double kRtkFixedSdM = 0.02;  // baseline of 10 km
 constexpr double kRtkFloatSdM = 0.3;
 constexpr double kDeadReckoningFactor = 4.0;
 
-microseconds Distance(Utime a, Utime b) { return a < b ? b - a : a - b; }
-
 }  // namespace
 
 MeasurementTime TimeOfMeasurement(Utime arrival, std::optional<microseconds> time_of_day, std::optional<std::chrono::sys_days> date,
                                   microseconds max_latency) {
   if (!time_of_day) return {arrival, arrival, false};
-  const auto arrival_day = std::chrono::floor<std::chrono::days>(arrival);
-  if (date && Distance(*date + *time_of_day, arrival) <= max_latency) return {*date + *time_of_day, arrival, true};
-  Utime best = arrival_day + *time_of_day;
-  for (const auto day : {arrival_day - std::chrono::days(1), arrival_day + std::chrono::days(1)}) {
-    const Utime candidate = day + *time_of_day;
-    if (Distance(candidate, arrival) < Distance(best, arrival)) best = candidate;
-  }
-  if (Distance(best, arrival) > max_latency) return {arrival, arrival, false};
+  if (date && std::chrono::abs(*date + *time_of_day - arrival) <= max_latency) return {*date + *time_of_day, arrival, true};
+  const Utime best = OnTheDayNearest(arrival, *time_of_day);
+  if (std::chrono::abs(best - arrival) > max_latency) return {arrival, arrival, false};
   return {best, arrival, true, date.has_value()};
 }
 

@@ -38,6 +38,7 @@ struct GnssFix : FixValues {
   MeasurementTime when;
   std::string source;              // as in Item
   std::string_view sentence_type;  // Sentence::name
+  bool is_gga() const { return sentence_type == "GGA" || sentence_type == "GNS"; }
   // The time scale of POSE was set since the fix before it: what was known of the place is of other instants.
   bool begins_time_scale = false;
 };

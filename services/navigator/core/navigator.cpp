@@ -62,7 +62,7 @@ void Navigator::OnSentence(const Item& item, NavigatorOutput& output) {
 
 std::vector<Counter> Navigator::counters() const {
   auto counters = interpreter_.counters();
-  for (const auto& counter : filter_.counts().Named()) counters.push_back(counter);
+  filter_.counts().AppendTo(counters);
   counters.push_back({"time_jump", num_time_jumps_});
   return counters;
 }

@@ -276,36 +276,16 @@ void ReadPashr(FieldReader& fields, Sentence& sentence) {
   fields.Count(9, 9);
 }
 
-struct LeapDay {
-  int year;
-  unsigned month;
-};
-// First days of the months from which GPS time has been one second more ahead of UTC: 18 s since 2017. IERS, Bulletin C (hpiers.obspm.fr), list of
+// Year and month from whose first day GPS time has been one second more ahead of UTC: 18 s since 2017. IERS, Bulletin C (hpiers.obspm.fr), list of
 // leap seconds; Bulletins C 71 and 72 announce none until the end of 2026.
-constexpr std::array<LeapDay, 18> kLeapDays{{{1981, 7},
-                                             {1982, 7},
-                                             {1983, 7},
-                                             {1985, 7},
-                                             {1988, 1},
-                                             {1990, 1},
-                                             {1991, 1},
-                                             {1992, 7},
-                                             {1993, 7},
-                                             {1994, 7},
-                                             {1996, 1},
-                                             {1997, 7},
-                                             {1999, 1},
-                                             {2006, 1},
-                                             {2009, 1},
-                                             {2012, 7},
-                                             {2015, 7},
-                                             {2017, 1}}};
+constexpr std::array kLeapMonths{198107, 198207, 198307, 198507, 198801, 199001, 199101, 199207, 199307,
+                                 199407, 199601, 199707, 199901, 200601, 200901, 201207, 201507, 201701};
 
 Utime UtcOfGps(Utime gps_time) {
-  // At the k-th of these days GPS time is k seconds more than UTC.
+  // At the begin of the k-th of these months GPS time is k seconds more than UTC.
   std::chrono::seconds leap(0);
-  for (const auto& [year, month] : kLeapDays) {
-    if (gps_time >= std::chrono::sys_days(std::chrono::year(year) / month / 1) + leap + std::chrono::seconds(1)) ++leap;
+  for (const int month : kLeapMonths) {
+    if (gps_time >= std::chrono::sys_days(std::chrono::year(month / 100) / (month % 100) / 1) + leap + std::chrono::seconds(1)) ++leap;
   }
   return gps_time - leap;
 }
@@ -361,7 +341,7 @@ void ReadVnIns(FieldReader& fields, Sentence& sentence) {
   sentence.heading_rad = yaw_rad;
   // Before it has a position the sensor says 0, 0.
   if (!std::isnan(latitude_deg + longitude_deg) && (latitude_deg != 0.0 || longitude_deg != 0.0)) {
-    sentence.position = GeodeticPosition{latitude_deg, longitude_deg};
+    sentence.position = GeodeticPlace{latitude_deg, longitude_deg};
   }
   sentence.direct_ellipsoid_height_m = height_m;
   sentence.horizontal_sd_m = sentence.vertical_sd_m = KnownSd(position_sd_m);
@@ -412,22 +392,17 @@ constexpr std::array kDecoders{Decoder{"RMC", SentenceType::kRmc, "RMC", ReadRmc
                                Decoder{"VNYMR", SentenceType::kVnYmr, "VNYMR", ReadVnYmr},
                                Decoder{"VNIMU", SentenceType::kVnImu, "VNIMU", ReadVnImu}};
 
-// The type without its talker. Proprietary addresses begin with P and have none.
+// The type without its talker; of proprietary sentences, which begin with P and have none, and of VectorNav's, whose VN is no talker, the address.
 std::string_view TypeOf(const FramedSentence& sentence) {
   constexpr std::size_t kTalkerCharacters = 2;
   constexpr std::size_t kTypeCharacters = 3;
   const auto address = sentence.address;
-  if (address.starts_with('P')) {
-    // Ashtech's own sentences have a word in place of the time: $PASHR,POS,...
-    const bool has_word = !sentence.fields.empty() && !sentence.fields.front().empty() && sentence.fields.front().front() >= 'A';
-    if (address == "PASHR" && !has_word) return address;
-    // Hemisphere's own sentences share an address; their first field distinguishes them.
-    if (address == "PTNTHTM") return address;
-    if (address == "PSAT" && !sentence.fields.empty() && sentence.fields.front() == "HPR") return address;
-    return {};
-  }
-  // VN is VectorNav's mark, not a talker.
-  if (address == "VNINS" || address == "VNYMR" || address == "VNIMU") return address;
+  const auto first = sentence.fields.empty() ? std::string_view{} : sentence.fields.front();
+  // Ashtech's own sentences have a word in place of the time: $PASHR,POS,...
+  if (address == "PASHR" && !first.empty() && first.front() >= 'A') return {};
+  // Hemisphere's own sentences share an address; their first field distinguishes them.
+  if (address == "PSAT" && first != "HPR") return {};
+  if (address.starts_with('P') || address == "VNINS" || address == "VNYMR" || address == "VNIMU") return address;
   return address.size() == kTalkerCharacters + kTypeCharacters ? address.substr(kTalkerCharacters) : std::string_view{};
 }
 

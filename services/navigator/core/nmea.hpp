@@ -8,8 +8,8 @@
 #include <optional>
 #include <string_view>
 
-#include "services/navigator/core/field_reader.hpp"
-#include "services/navigator/core/sentence.hpp"
+#include "common/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 namespace lookout::navigator {
 
@@ -39,7 +39,7 @@ struct FixValues {
   double hdop = kNan;
   double horizontal_sd_m = kNan;  // one standard deviation per axis
   double vertical_sd_m = kNan;    // only where the receiver says it
-  std::optional<GeodeticPosition> position;
+  std::optional<GeodeticPlace> position;
   double msl_height_m = kNan;
   double geoid_separation_m = kNan;
   double direct_ellipsoid_height_m = kNan;  // of receivers that say it so

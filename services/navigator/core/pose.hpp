@@ -13,13 +13,6 @@ namespace lookout::navigator {
 enum class PoseStatus { kOk = 0, kNoHeading = 1, kNoPosition = 2, kUnknown = 3, kCoasting = 4 };
 enum class HeadingSource { kNone = 0, kHdt = 1, kPashr = 2, kCourse = 3 };
 
-/// Geodetic origin of the map frame.
-struct Datum {
-  double latitude_deg = kNan;
-  double longitude_deg = kNan;
-  double ellipsoid_height_m = kNan;
-};
-
 /// Position, velocity (east, north, up), roll, pitch, heading.
 using PoseCovariance = Eigen::Matrix<double, 9, 9>;
 
@@ -28,8 +21,8 @@ struct Pose {
   PoseStatus status = PoseStatus::kUnknown;
   HeadingSource heading_source = HeadingSource::kNone;
   bool has_attitude = false;
-  Datum datum;
-  double latitude_deg = kNan;  // of the reference point
+  GeodeticPlace datum{kNan, kNan, kNan};  // origin of the map frame
+  double latitude_deg = kNan;             // of the reference point
   double longitude_deg = kNan;
   double ellipsoid_height_m = kNan;
   Eigen::Vector3d p_map_m = Eigen::Vector3d::Constant(kNan);  // while the height is not known, at that of the datum

@@ -12,35 +12,12 @@ using namespace std::chrono_literals;
 using std::chrono::days;
 using std::chrono::microseconds;
 
-// GPS counts weeks in 10 bits; receivers of the first kind fall back by so much when the count rolls over.
-constexpr days kRollover(1024 * 7);
 // Other sources have been silent for so long that they do not contradict.
 constexpr std::chrono::seconds kSilence(5);
 // A second less what lies between two instants of a receiver, of 2 Hz and more.
 constexpr std::chrono::milliseconds kMinLeapBack(400);
 // Of 1 Hz it says the same instant twice, so much apart; sentences of one instant come within half a second at 4800 baud.
 constexpr std::chrono::milliseconds kMinLeapRepeat(700);
-
-struct Resolved {
-  Utime utc;
-  bool is_date_refused = false;
-};
-
-Utime OnTheDayNearest(Utime near, microseconds time_of_day) {
-  constexpr std::chrono::hours kHalfADay(12);
-  return std::chrono::floor<days>(near - time_of_day + kHalfADay) + time_of_day;
-}
-
-// A whole number of rollovers brings a date back to the day of the computer; any other difference may be the computer's fault.
-Resolved MendRollover(Utime utc, Utime expected) {
-  const auto behind = expected - utc;
-  const auto num_rollovers =
-      std::llround(static_cast<double>(behind.count()) / static_cast<double>(std::chrono::duration_cast<microseconds>(kRollover).count()));
-  const Utime mended = utc + num_rollovers * kRollover;
-  const auto left = mended < expected ? expected - mended : mended - expected;
-  if (num_rollovers == 0 || left > days(1)) return {utc, false};
-  return {mended, true};
-}
 
 }  // namespace
 
@@ -133,10 +110,11 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
                                                     bool is_measured) {
   const Utime expected = arrival - off_ - std::chrono::seconds(source.num_leaps);
   MeasurementTime when = TimeOfMeasurement(expected, time_of_day, date, max_latency_);
-  Resolved resolved{when.time, when.is_date_refused};
-  if (!when.is_from_sentence) {
-    const Utime near = source.dated_utc ? *source.dated_utc + (arrival - source.dated_arrival) : expected;
-    resolved = date ? MendRollover(*date + time_of_day, expected) : Resolved{OnTheDayNearest(near, time_of_day), false};
+  if (!when.is_from_sentence && date) {
+    when.utc = MendRollover(*date + time_of_day, expected);
+    when.is_date_refused = when.utc != *date + time_of_day;
+  } else if (!when.is_from_sentence) {
+    when.utc = OnTheDayNearest(source.dated_utc ? *source.dated_utc + (arrival - source.dated_arrival) : expected, time_of_day);
   }
   // The first fix sets a receiver's clock right.
   if (is_measured && !source.has_measured) {
@@ -145,21 +123,19 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
   }
   source.has_measured = is_measured;
   const int num_leaps_before = source.num_leaps;
-  NoteLeapSecond(source, arrival, resolved.utc, latency.value_or(microseconds(0)));
-  if (IsBackward(source, resolved.utc, date.has_value())) return std::nullopt;
-  const bool is_same_instant = source.last_utc == resolved.utc && source.num_leaps == num_leaps_before;
-  if (!is_same_instant) source.is_forward = source.last_utc && resolved.utc > *source.last_utc;
-  source.last_utc = resolved.utc;
-  source.dated_utc = resolved.utc;
+  NoteLeapSecond(source, arrival, when.utc, latency.value_or(microseconds(0)));
+  if (IsBackward(source, when.utc, date.has_value())) return std::nullopt;
+  const bool is_same_instant = source.last_utc == when.utc && source.num_leaps == num_leaps_before;
+  if (!is_same_instant) source.is_forward = source.last_utc && when.utc > *source.last_utc;
+  source.last_utc = when.utc;
+  source.dated_utc = when.utc;
   source.dated_arrival = arrival;
   if (!is_same_instant) source.last_arrival = arrival;
 
   when.arrival = arrival;
-  when.utc = resolved.utc;
   when.has_sentence_utc = true;
-  when.is_date_refused = resolved.is_date_refused;
   when.num_leaps = source.num_leaps;
-  const Utime even_utc = resolved.utc + std::chrono::seconds(source.num_leaps);
+  const Utime even_utc = when.utc + std::chrono::seconds(source.num_leaps);
   when.is_from_sentence = IsUsable(source, arrival - even_utc);
   if (is_measured && !is_same_instant) LearnFrom(source, arrival, even_utc, latency, when.is_from_sentence);
   if (when.is_from_sentence) {
@@ -173,7 +149,7 @@ std::optional<MeasurementTime> UtcClock::OfSentence(SourceClock& source, Utime a
 }
 
 void UtcClock::OnDate(SourceClock& source, Utime arrival, Utime utc) const {
-  source.dated_utc = MendRollover(utc, arrival - off_ - std::chrono::seconds(source.num_leaps)).utc;
+  source.dated_utc = MendRollover(utc, arrival - off_ - std::chrono::seconds(source.num_leaps));
   // The first date corrects the guess of those before it.
   if (!source.has_date) source.last_utc.reset();
   source.has_date = true;

@@ -38,8 +38,6 @@ struct SourceClock {
 /// twice, measurements go on evenly.
 class UtcClock {
  public:
-  /// Sentences of so many instants, of three seconds or more, make it sure that the clock is off.
-  static constexpr int kMinSentences = 5;
   /// The clock is called off from max_latency on, and not below this; and right again below this share of it.
   static constexpr std::chrono::milliseconds kMinOff{100};
   static constexpr double kShareToStayOff = 0.8;

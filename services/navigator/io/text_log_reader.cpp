@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/nmea.hpp"
-#include "services/navigator/core/sentence.hpp"
 
 namespace lookout::navigator {
 
@@ -28,8 +28,6 @@ SaidTime TimeIn(const std::string& line) {
   if (parsed.fault != SentenceFault::kNone) return {};
   return {parsed.sentence.time_of_day, parsed.sentence.date};
 }
-
-constexpr std::size_t kBlockBytes = 64UL * 1024;
 
 bool IsLineEnd(char letter) { return letter == '\n' || letter == '\r'; }
 
@@ -88,23 +86,13 @@ TextLogReader::TextLogReader(const std::filesystem::path& file, std::optional<sy
   last_ = day_ + *first;
   in_.clear();
   in_.seekg(0);
-  block_.clear();
-  block_used_ = 0;
   position_ = 0;
 }
 
 // Sets line_ to the next that is not empty.
 bool TextLogReader::ReadLine() {
   line_.clear();
-  while (true) {
-    if (block_used_ == block_.size()) {
-      block_.resize(kBlockBytes);
-      in_.read(block_.data(), kBlockBytes);
-      block_.resize(static_cast<std::size_t>(in_.gcount()));
-      block_used_ = 0;
-      if (block_.empty()) return !line_.empty();
-    }
-    const char letter = block_[block_used_++];
+  for (char letter = 0; in_.get(letter);) {
     ++position_;
     if (!IsLineEnd(letter)) {
       // No sentence is so long: what goes is binary, and a sentence may stand behind it.
@@ -114,6 +102,7 @@ bool TextLogReader::ReadLine() {
       return true;
     }
   }
+  return !line_.empty();
 }
 
 std::optional<TextLogReader::Line> TextLogReader::Next() {

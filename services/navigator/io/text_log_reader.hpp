@@ -7,7 +7,6 @@
 #include <fstream>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
@@ -53,8 +52,6 @@ class TextLogReader {
   bool ReadLine();
 
   std::ifstream in_;
-  std::vector<char> block_;
-  std::size_t block_used_ = 0;
   std::string line_;
   std::int64_t position_ = 0;
   bool has_date_ = false;

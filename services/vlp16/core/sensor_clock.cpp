@@ -23,8 +23,6 @@ constexpr microseconds kMaxDisagreement = std::chrono::milliseconds(250);
 constexpr microseconds kMaxDisagreementToStay = std::chrono::milliseconds(300);
 // An hour that was found is kept unless it is more than this off: half an hour would flip to and fro for a clock that is half an hour off.
 constexpr microseconds kMaxOffHour = std::chrono::minutes(45);
-// A receiver whose week counter of ten bits ran over says a date so much too early.
-constexpr std::chrono::days kGpsWeekRollover(1024 * 7);
 
 // `value` plus or minus whole hours, nearest to `target`.
 microseconds InNearestHour(microseconds value, microseconds target) {
@@ -35,13 +33,8 @@ microseconds InNearestHour(microseconds value, microseconds target) {
 
 // UTC of a sentence, on the day nearest to `about` where it has no date, and put right against the host where its date is off by whole rollovers.
 microseconds ToUtc(const SentenceTime& time, Utime host_time, microseconds about) {
-  using std::chrono::days;
-  const microseconds host = host_time.time_since_epoch();
-  if (!time.date) return time.time_of_day + std::chrono::round<days>(about - time.time_of_day);
-  const microseconds utc = time.date->time_since_epoch() + time.time_of_day;
-  const auto rollovers =
-      std::chrono::round<std::chrono::duration<int, std::ratio_multiply<days::period, std::ratio<kGpsWeekRollover.count()>>>>(host - utc);
-  return std::chrono::abs(host - utc - rollovers) <= days(1) ? utc + rollovers : utc;
+  const Utime utc = time.date ? MendRollover(*time.date + time.time_of_day, host_time) : OnTheDayNearest(Utime(about), time.time_of_day);
+  return utc.time_since_epoch();
 }
 
 }  // namespace

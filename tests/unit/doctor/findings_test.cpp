@@ -248,11 +248,11 @@ TEST(DoctorNavigation, NamesADatumThatIsFarFromTheFix) {
   auto& fix = *seen.navigation.fix;
   fix.latitude_deg = 43.63;
   fix.longitude_deg = -72.15;
-  seen.config.navigation->navigator.filter.datum = navigator::Datum{fix.latitude_deg, fix.longitude_deg, 0.0};
+  seen.config.navigation->navigator.filter.datum = GeodeticPlace{fix.latitude_deg, fix.longitude_deg, 0.0};
   EXPECT_EQ(CheckNavigation(seen)[0].grade, Grade::kOk);
   const auto num_findings = CheckNavigation(seen).size();
 
-  seen.config.navigation->navigator.filter.datum = navigator::Datum{fix.longitude_deg, fix.latitude_deg, 0.0};
+  seen.config.navigation->navigator.filter.datum = GeodeticPlace{fix.longitude_deg, fix.latitude_deg, 0.0};
   const auto findings = CheckNavigation(seen);
   ASSERT_EQ(findings.size(), num_findings + 1);
   EXPECT_EQ(findings[1].grade, Grade::kWarning);

@@ -60,7 +60,7 @@ class GeoreferencerService : public ::testing::Test {
 TEST(GeoreferencerDatum, ThatIsFarFromTheBoatIsNamedAndUsed) {
   for (const double wrong_latitude_deg : {41.9, -72.3}) {
     SCOPED_TRACE(wrong_latitude_deg);
-    const Datum datum{wrong_latitude_deg, wrong_latitude_deg < 0.0 ? 43.7 : -72.3, 0.0};
+    const GeodeticPlace datum{wrong_latitude_deg, wrong_latitude_deg < 0.0 ? 43.7 : -72.3, 0.0};
     bus::MemoryBus bus;
     Params params{PlacementParams{}, std::chrono::milliseconds(500)};
     params.datum = datum;
@@ -68,7 +68,7 @@ TEST(GeoreferencerDatum, ThatIsFarFromTheBoatIsNamedAndUsed) {
     std::vector<obstacles_t> obstacles;
     bus::Subscribe<obstacles_t>(bus, bus::kObstacles, [&obstacles](const obstacles_t& message) { obstacles.push_back(message); });
     bus::Publish(bus, bus::kSegments, MakeSegmentsMessage(0, 0, {MakeSegmentMessage(1, 0)}));
-    const Eigen::Vector3d p_map_m = datum.Map().Forward({43.7, -72.3, 100.0});
+    const Eigen::Vector3d p_map_m = LocalFrame(datum).Forward({43.7, -72.3, 100.0});
     for (std::int64_t offset_us = 0; offset_us <= 100'000; offset_us += 20'000) {
       auto message = MakePoseMessage(offset_us, offset_us / 20'000);
       message.datum_latitude_deg = datum.latitude_deg;
@@ -162,7 +162,7 @@ TEST_F(GeoreferencerService, TellsThatPoseIsOnlyCarriedOn) {
   SendPoses(0, 100'000, pose_t::STATUS_COASTING);
   SendTurn(0);
   EXPECT_EQ(service_.Report().state, HealthState::kDegraded);
-  EXPECT_EQ(service_.Report().reason, "POSE is only carried on: obstacles drift as their covariance says");
+  EXPECT_EQ(service_.Report().reason, "position or heading is only propagated: obstacles drift as their covariance says, see HEALTH of navigator");
   SendPoses(120'000, 120'000);
   EXPECT_EQ(service_.Report().state, HealthState::kOk);
 }

@@ -51,7 +51,7 @@ TEST(PoseFilterAttitude, PutsTheReferencePointALeverArmFromTheAntenna) {
   for (const bool heading_first : {true, false}) {
     for (const Eigen::Vector3d& p_vessel_imu_m : {Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(1.0, 2.0, -1.0)}) {
       auto params = TestFilterParams();
-      params.datum = Datum{kLatitudeDeg, kLongitudeDeg, 0.0};
+      params.datum = GeodeticPlace{kLatitudeDeg, kLongitudeDeg, 0.0};
       params.p_vessel_antenna_m = {-2.0, 0.5, 3.0};
       params.p_vessel_imu_m = p_vessel_imu_m;
       PoseFilter filter(params);
@@ -174,7 +174,7 @@ TEST(PoseFilterAttitude, RefusesSamplesThatLackANumber) {
   auto sample = RestSample(0);
   sample.specific_force_mps2.y() = kNan;
   filter.Add(sample);
-  EXPECT_EQ(filter.counts().unusable_imu, 1);
+  EXPECT_EQ(filter.counts()["unusable_imu"], 1);
   EXPECT_FALSE(filter.At(NoonPlus(0)).has_attitude);
 }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/core/frames.hpp"
+#include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/navigator.hpp"
-#include "services/navigator/core/sentence.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/navigator/filter_measurements.hpp"
 
@@ -111,7 +111,7 @@ class DrawnBoat {
 
   static FilterParams Params() {
     auto params = TestFilterParams();
-    params.datum = Datum{kLatitudeDeg, kLongitudeDeg, 0.0};
+    params.datum = GeodeticPlace{kLatitudeDeg, kLongitudeDeg, 0.0};
     params.p_vessel_antenna_m = {-0.8, 0.4, 0.9};
     params.velocity_sd_mps = 0.1;
     return params;

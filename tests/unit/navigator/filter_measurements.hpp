@@ -20,7 +20,7 @@ inline GnssFix Fix(double time_s, const char* type = "RMC") {
   fix.source = "udp";
   fix.sentence_type = type;
   fix.quality = FixQuality::kGnss;
-  fix.position = GeodeticPosition{kLatitudeDeg, kLongitudeDeg};
+  fix.position = GeodeticPlace{kLatitudeDeg, kLongitudeDeg};
   fix.horizontal_sd_m = 2.0;
   return fix;
 }

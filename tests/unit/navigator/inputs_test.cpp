@@ -144,9 +144,9 @@ TEST_F(InputsTest, ADatumThatIsFarFromATextLogsFirstPositionIsNamed) {
   auto params = Load("source: LIVE use_lidar_nmea: false\ninput { name: 'day' text_log { file: '" + log.string() + "' } }");
   params.navigator.filter.datum.reset();
   EXPECT_NE(InWords(params).find("# datum: the first fix of the run."), std::string::npos);
-  params.navigator.filter.datum = Datum{43.6, -72.1, 0.0};
+  params.navigator.filter.datum = GeodeticPlace{43.6, -72.1, 0.0};
   EXPECT_NE(InWords(params).find("is within 50 km."), std::string::npos) << InWords(params);
-  params.navigator.filter.datum = Datum{-72.15, 43.63, 0.0};
+  params.navigator.filter.datum = GeodeticPlace{-72.15, 43.63, 0.0};
   EXPECT_NE(InWords(params).find("# WARNING: datum 72.15000 S 43.63000 E of boat.txtpb is 11910 km from the first position of text log"),
             std::string::npos)
       << InWords(params);

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "services/navigator/core/interpreter.hpp"
+#include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/nmea.hpp"
-#include "services/navigator/core/sentence.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
@@ -97,8 +97,8 @@ TEST_P(GpsdTimes, HasThePlacesThatGpsdReadsAtThem) {
   const fs::path file = kRecordings / "gpsd" / (std::string(GetParam().name) + ".log.chk");
   if (!fs::exists(file)) GTEST_SKIP() << file << " is not at hand";
   std::istringstream lines(ReadFile(file));
-  std::map<Utime, GeodeticPosition> expected;
-  std::map<Utime, GeodeticPosition> found;
+  std::map<Utime, GeodeticPlace> expected;
+  std::map<Utime, GeodeticPlace> found;
   for (std::string line; std::getline(lines, line);) {
     while (!line.empty() && line.back() == '\r') line.pop_back();
     if (JsonValue(line, "class") == "TPV" && !JsonValue(line, "time").empty() && !JsonValue(line, "lat").empty()) {
@@ -145,7 +145,7 @@ struct GpsdComparison {
 class GpsdEpochs : public ::testing::TestWithParam<GpsdComparison> {};
 
 struct EpochFix {
-  GeodeticPosition position;
+  GeodeticPlace position;
   double speed_mps = kNan;
 };
 

@@ -1,7 +1,6 @@
-#include "services/navigator/core/sentence.hpp"
-
 #include <gtest/gtest.h>
 
+#include "services/navigator/core/lines.hpp"
 #include "tests/unit/navigator/nmea_text.hpp"
 
 namespace lookout::navigator {

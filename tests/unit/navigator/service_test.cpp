@@ -16,9 +16,12 @@
 namespace lookout::navigator {
 namespace {
 
-Params TestParams(Input input) {
+constexpr bool kFromSources = false;
+constexpr bool kFromNavRaw = true;
+
+Params TestParams(bool reads_nav_raw) {
   auto params = LoadParams(support::kDemoConfig.string());
-  params.input = input;
+  params.reads_nav_raw = reads_nav_raw;
   return params;
 }
 
@@ -76,7 +79,7 @@ lidar_nmea_t LidarMessage(double time_s, const std::string& sentence) {
 }
 
 TEST(Service, PublishesEachRawItemBeforeWhatComesOfIt) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   std::vector<std::string> order;
   rig.bus.SubscribeAll([&order](std::string_view channel, Bytes) { order.emplace_back(channel); });
   rig.Datagram(0.02, RmcLine(NoonPlus(0.0), 43.63, -72.15, 2.0, 10.0) + "\r\n" + HdtLine(10.0) + "\r\n");
@@ -93,8 +96,8 @@ TEST(Service, PublishesEachRawItemBeforeWhatComesOfIt) {
 
 // Latitude and longitude changed places in config: positions came out wrong, or none, with nothing but ok in HEALTH.
 TEST(Service, NamesADatumThatIsFarFromTheFirstFixAndIsRightAllTheSame) {
-  auto params = TestParams(Input::kOutside);
-  params.navigator.filter.datum = Datum{-72.15, 43.63, 0.0};
+  auto params = TestParams(kFromSources);
+  params.navigator.filter.datum = GeodeticPlace{-72.15, 43.63, 0.0};
   Rig rig(params);
   rig.service.AdvanceTo(NoonPlus(0));
   EXPECT_EQ(rig.service.Report().reason.find("datum"), std::string::npos) << "before the first fix nothing can be said";
@@ -114,7 +117,7 @@ TEST(Service, NamesADatumThatIsFarFromTheFirstFixAndIsRightAllTheSame) {
 }
 
 TEST(Service, PutsLinesWithWrongChecksumsIntoTheRawLogToo) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   rig.Datagram(0.0, "$GPHDT,1.0,T*00\r\n$GPHDT,1.0,T\r\n$\x80\r\nnothing\r\n");
   EXPECT_EQ(rig.Messages<nav_raw_t>(bus::kNavRaw).size(), 3U) << "the start mark and two lines";
   EXPECT_EQ(rig.Count("bad_checksum"), 1);
@@ -124,7 +127,7 @@ TEST(Service, PutsLinesWithWrongChecksumsIntoTheRawLogToo) {
 }
 
 TEST(Service, SendsPosesOfTheDemoBoat) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   rig.service.AdvanceTo(NoonPlus(0));
   rig.Datagram(0.05, GgaLine(NoonPlus(0.0), 43.63, -72.15, 4, 0.7, 201.0, -28.0) + "\r\n" + PashrLine(NoonPlus(0.0), 0.0, 0.0, 0.0, 0.0) + "\r\n");
   rig.service.AdvanceTo(NoonPlus(0.1));
@@ -147,7 +150,7 @@ TEST(Service, SendsPosesOfTheDemoBoat) {
 }
 
 TEST(Service, UsesLidarSentencesOnlyWhereConfigSaysSo) {
-  auto params = TestParams(Input::kOutside);
+  auto params = TestParams(kFromSources);
   for (const bool use_lidar_nmea : {true, false}) {
     params.use_lidar_nmea = use_lidar_nmea;
     Rig rig(params);
@@ -158,7 +161,7 @@ TEST(Service, UsesLidarSentencesOnlyWhereConfigSaysSo) {
 }
 
 TEST(Service, CountsTheSeqOfItsOutputsFromAStartMark) {
-  Rig rig(TestParams(Input::kLog));
+  Rig rig(TestParams(kFromNavRaw));
   rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));
   rig.Send(bus::kNavRaw, RawMessage(0.1, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
   rig.Send(bus::kNavRaw, RawMessage(-5.0, nav_raw_t::KIND_START));
@@ -173,7 +176,7 @@ TEST(Service, CountsTheSeqOfItsOutputsFromAStartMark) {
 }
 
 TEST(Service, FromALogReadsNothingElseAndSendsNoRaw) {
-  Rig rig(TestParams(Input::kLog));
+  Rig rig(TestParams(kFromNavRaw));
   rig.Datagram(0.0, HdtLine(1.0));
   rig.service.AdvanceTo(NoonPlus(1.0));
   rig.Send(bus::kLidarNmea, LidarMessage(0.0, HdtLine(1.0)));
@@ -184,7 +187,7 @@ TEST(Service, FromALogReadsNothingElseAndSendsNoRaw) {
 }
 
 TEST(Service, RefusesRawMessagesThatCannotBe) {
-  Rig rig(TestParams(Input::kLog));
+  Rig rig(TestParams(kFromNavRaw));
   rig.Send(bus::kNavRaw, RawMessage(0.0, nav_raw_t::KIND_START));
   const auto sent_before = rig.sent["POSE"].size();
   for (const std::int64_t utime_us : {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max(), kMaxUtimeUs + 1}) {
@@ -220,7 +223,7 @@ TEST(Service, RefusesRawMessagesThatCannotBe) {
 }
 
 TEST(Service, LivesOnAfterBytesThatAreNoMessage) {
-  Rig rig(TestParams(Input::kLog));
+  Rig rig(TestParams(kFromNavRaw));
   auto bytes = bus::Encode(RawMessage(0.0, nav_raw_t::KIND_SENTENCE, HdtLine(1.0)));
   const auto whole = bytes;
   for (auto end = whole.begin(); end != whole.end(); ++end) rig.bus.Publish(bus::kNavRaw, {whole.begin(), end});
@@ -236,7 +239,7 @@ TEST(Service, LivesOnAfterBytesThatAreNoMessage) {
 }
 
 TEST(Service, RefusesLidarSentencesThatCannotBe) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   rig.service.AdvanceTo(NoonPlus(0));
   auto bad_time = LidarMessage(0.0, HdtLine(1.0));
   bad_time.host_utime_us = std::numeric_limits<std::int64_t>::max();
@@ -250,7 +253,7 @@ TEST(Service, RefusesLidarSentencesThatCannotBe) {
 }
 
 TEST(Service, RefusesHostTimesThatCannotBe) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   const Utime never{std::chrono::microseconds(std::numeric_limits<std::int64_t>::max())};
   rig.service.AdvanceTo(never);
   rig.service.OnDatagram(never, ToBytes(HdtLine(1.0)));
@@ -261,7 +264,7 @@ TEST(Service, RefusesHostTimesThatCannotBe) {
 }
 
 TEST(Service, StandsTheBoundsOfTime) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   rig.service.AdvanceTo(Utime(std::chrono::microseconds(kMinUtimeUs)));
   rig.Datagram(0.0, RmcLine(NoonPlus(0.0), 43.63, -72.15, 2.0, 10.0) + "\r\n" + HdtLine(1.0));
   rig.service.AdvanceTo(Utime(std::chrono::microseconds(kMaxUtimeUs)));
@@ -272,7 +275,7 @@ TEST(Service, StandsTheBoundsOfTime) {
 }
 
 TEST(Service, SaysWhyItIsDegraded) {
-  Rig rig(TestParams(Input::kOutside));
+  Rig rig(TestParams(kFromSources));
   EXPECT_EQ(rig.service.Report().reason, "no position fix yet, no heading");
   rig.service.AdvanceTo(NoonPlus(0));
   rig.Datagram(0.1, RmcLine(NoonPlus(0.0), 43.63, -72.15, 0.0, 10.0));

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "services/navigator/core/day.hpp"
 #include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/io/text_log_reader.hpp"
+#include "services/navigator/params.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::navigator {

@@ -54,7 +54,7 @@ TEST_F(UtcClockTest, KnowsASmallOffsetFromASourceWhoseDelayIsKnown) {
 }
 
 TEST_F(UtcClockTest, GoesOnByAClockThatIsOffAndStillSaysUtc) {
-  for (int i = 0; i < UtcClock::kMinSentences; ++i) {
+  for (int i = 0; i < 5; ++i) {
     const auto when = Sentence(NoonPlus(i), 1h);
     EXPECT_EQ(when->time, NoonPlus(i) + 1h + 50ms) << "not sure yet: the arrival";
     EXPECT_EQ(when->utc, NoonPlus(i));

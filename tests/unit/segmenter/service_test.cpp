@@ -60,12 +60,12 @@ TEST_F(SegmenterService, AnswersATurnInOneMessage) {
   EXPECT_EQ(answer->num_cells, 28928);
   EXPECT_GT(answer->num_segments, 3);
   EXPECT_EQ(answer->num_turn_segments, answer->num_segments);
-  EXPECT_EQ(Count("turns"), 1);
+  EXPECT_EQ(Count("scans"), 1);
   EXPECT_EQ(Count("segments"), answer->num_segments);
   EXPECT_EQ(service_.Report().state, HealthState::kOk);
 }
 
-TEST_F(SegmenterService, AnswersATurnInPartsWithTheSameLabels) {
+TEST_F(SegmenterService, AnswersAScanInPartsWithTheSameLabels) {
   const auto scan = LakeInRain();
   Send(test::ScanMessages(scan, 7, 1)[0]);
   const auto whole = bus::Decode<segments_t>(answers_.at(0));
@@ -84,7 +84,7 @@ TEST_F(SegmenterService, AnswersATurnInPartsWithTheSameLabels) {
   EXPECT_EQ(label, whole->label);
 }
 
-TEST_F(SegmenterService, GivesTheSameBytesForTheSameTurnWhateverCameBefore) {
+TEST_F(SegmenterService, GivesTheSameBytesForTheSameScanWhateverCameBefore) {
   const auto messages = test::ScanMessages(LakeInRain(), 7, 2);
   Send(messages[0]);
   Send(messages[1]);
@@ -95,7 +95,7 @@ TEST_F(SegmenterService, GivesTheSameBytesForTheSameTurnWhateverCameBefore) {
   Send(messages[0]);
   Send(messages[1]);
   EXPECT_EQ(answers_, first);
-  EXPECT_EQ(Count("turns_incomplete"), 1);
+  EXPECT_EQ(Count("scans_incomplete"), 1);
 }
 
 TEST_F(SegmenterService, TellsOfARefusalForAMinuteWhereNothingFollows) {
@@ -131,7 +131,7 @@ TEST_F(SegmenterService, DropsATurnWithAMissingPart) {
   Send(lost[2]);
   EXPECT_EQ(Count("parts_duplicate"), 1);
   Send(test::ScanMessages(test::EmptyScan({}), 8, 1)[0]);
-  EXPECT_EQ(Count("turns_incomplete"), 1);
+  EXPECT_EQ(Count("scans_incomplete"), 1);
   ASSERT_EQ(answers_.size(), 1U);
   EXPECT_EQ(bus::Decode<segments_t>(answers_[0])->seq, 8);
 }

@@ -65,6 +65,21 @@ constexpr double kUnknownTurnRadps = 0.2;
 constexpr double kLateVelocitySdMps = 0.15;
 constexpr auto kTimedVelocityAge = 2s;
 
+// Accelerations of a boat that cannot be distinguished from gravity: 0.5 m/s2 for 2 s, a wave's (motion.cpp). What is left of them when the IMU is
+// calm.
+constexpr double kForceSdMps2 = 0.5;
+constexpr double kForceTimeS = 2.0;
+constexpr double kCalmForceSdMps2 = 0.1;
+constexpr double kLevelPeriodS = 0.1;
+constexpr double kCalmMeanTimeS = 1.0;
+constexpr double kCalmMaxVariance = 0.05 * 0.05;
+constexpr double kCalmMaxRateRadps = DegToRad(2.0);
+
+// Heave of small boats, and how fast.
+constexpr double kFloatingSdM = 0.5;
+constexpr double kFloatingSdMps = 0.5;
+constexpr auto kWaterPeriod = 1s;
+
 // @return whether the measurement was accepted
 template <int kSize>
 bool Update(const Innovation<kSize>& innovation, bool is_forced, State& state, GateCounts& counts) {
@@ -105,9 +120,7 @@ bool AgreesWithLast(const FixMeasurement& fix, const State& state) {
       refusals.last_place.latitude_deg == fix.antenna.latitude_deg && refusals.last_place.longitude_deg == fix.antenna.longitude_deg;
   if (!refusals.agreeing_since || is_frozen) return false;
   const double since_s = SecondsBetween(refusals.last, state.time);
-  Eigen::Vector2d way_m = LocalFrame({refusals.last_place.latitude_deg, refusals.last_place.longitude_deg, 0.0})
-                              .Forward({fix.antenna.latitude_deg, fix.antenna.longitude_deg, 0.0})
-                              .head<2>();
+  Eigen::Vector2d way_m = LocalFrame(OnEllipsoid(refusals.last_place)).Forward(OnEllipsoid(fix.antenna)).head<2>();
   double most_m = kAgreeInSds * fix.horizontal_sd_m;
   if (fix.velocity) {
     way_m -= since_s * fix.velocity->east_north_mps;
@@ -426,6 +439,52 @@ void Apply(const AttitudeValues& attitude, const FilterParams& params, State& st
   ApplyTilt(attitude, params, state, counts);
   ApplyCompass(attitude, params, state, counts);
   ApplyHeave(attitude, params, state, counts);
+}
+
+void Apply(const ImuSample& sample, const FilterParams& /*params*/, State& state, GateCounts& /*counts*/) {
+  const Earth earth = EarthOf(state);
+  const double since_s = state.aiding.imu.last ? SecondsBetween(*state.aiding.imu.last, state.time) : 0.0;
+  const bool is_first = !state.aiding.imu.last || since_s > kCalmMeanTimeS;
+  state.aiding.imu.Use(state.time);
+  if (IsImuRefused(state)) return;
+  const Eigen::Vector3d& force_mps2 = sample.specific_force_mps2;
+  if (is_first) {
+    state.aiding.mean_force_mps2 = force_mps2;
+    state.aiding.force_variance_mps2_2 = 1.0;
+  }
+  const double share = 1.0 - Exp(-since_s / kCalmMeanTimeS);
+  const Eigen::Vector3d deviation_mps2 = force_mps2 - state.aiding.mean_force_mps2;
+  state.aiding.mean_force_mps2 += share * deviation_mps2;
+  state.aiding.force_variance_mps2_2 += share * (deviation_mps2.squaredNorm() / 3.0 - state.aiding.force_variance_mps2_2);
+  // The first sample gives the direction of gravity, unless the boat moves with more than half a g.
+  if (!state.aiding.has_tilt && std::abs(force_mps2.norm() - earth.gravity_mps2) < earth.gravity_mps2 / 2.0) {
+    BeginTilt(Eigen::Quaterniond::FromTwoVectors(force_mps2, Eigen::Vector3d::UnitZ()), kForceSdMps2 / earth.gravity_mps2, state);
+  }
+  if (state.aiding.is_strapdown || !state.aiding.has_tilt) return BeginMeanForce(state);
+  state.aiding.force_sum_mps2 += force_mps2;
+  ++state.aiding.num_forces;
+  if (since_s * state.aiding.num_forces < kLevelPeriodS) return;
+  const Eigen::Vector3d up_vessel_mps2 = state.nominal.q_level_vessel.conjugate() * Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2);
+  Innovation<3> innovation;
+  innovation.residual = state.aiding.force_sum_mps2 / state.aiding.num_forces - up_vessel_mps2;
+  innovation.jacobian.middleCols<3>(kRotation) = state.nominal.R_level_vessel().transpose() * Cross(Eigen::Vector3d(0.0, 0.0, earth.gravity_mps2));
+  const bool is_calm = state.aiding.force_variance_mps2_2 < kCalmMaxVariance && state.nominal.angular_velocity_radps.norm() < kCalmMaxRateRadps;
+  const double sd_mps2 = is_calm ? kCalmForceSdMps2 : kForceSdMps2;
+  innovation.noise.diagonal().setConstant(2.0 * sd_mps2 * sd_mps2 * kForceTimeS / kLevelPeriodS);
+  Correct(innovation, false, state);
+  BeginMeanForce(state);
+}
+
+void Apply(const Tick& /*tick*/, const FilterParams& /*params*/, State& state, GateCounts& /*counts*/) {
+  if (state.aiding.last_water_aid && state.time - *state.aiding.last_water_aid < kWaterPeriod) return;
+  state.aiding.last_water_aid = state.time;
+  Innovation<2> innovation;
+  innovation.residual = {state.nominal.water_level_m - state.nominal.p_level_m.z(), -state.nominal.velocity_level_mps.z()};
+  innovation.jacobian(0, kPositionUp) = 1.0;
+  innovation.jacobian(0, kWaterLevel) = -1.0;
+  innovation.jacobian(1, kVelocityUp) = 1.0;
+  innovation.noise.diagonal() = Eigen::Vector2d(kFloatingSdM * kFloatingSdM, kFloatingSdMps * kFloatingSdMps);
+  Correct(innovation, false, state);
 }
 
 }  // namespace lookout::navigator::filter

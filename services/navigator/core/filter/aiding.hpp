@@ -30,7 +30,7 @@ struct FixMeasurement {
   bool has_height = false;
   double horizontal_sd_m = 0.0;  // per axis
   double vertical_sd_m = 0.0;
-  std::optional<VelocityMeasurement> velocity;
+  std::optional<VelocityMeasurement> velocity{};
 };
 
 /// Results of gating.

@@ -10,7 +10,7 @@
 namespace lookout::navigator {
 
 struct FilterParams {
-  std::optional<Datum> datum;  // nullopt: the first fix
+  std::optional<GeodeticPlace> datum;  // origin of the map frame; nullopt: the first fix
   Eigen::Vector3d p_vessel_antenna_m = Eigen::Vector3d::Zero();
 
   Eigen::Vector3d p_vessel_imu_m = Eigen::Vector3d::Zero();

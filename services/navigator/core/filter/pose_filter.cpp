@@ -53,9 +53,6 @@ filter::VelocityMeasurement ToVelocity(double speed_mps, double course_rad, doub
   return velocity;
 }
 
-// Without its height.
-GeodeticPlace Flat(const GeodeticPlace& place) { return {place.latitude_deg, place.longitude_deg, 0.0}; }
-
 double SdOr(double said_sd, double default_sd) { return said_sd > 0.0 ? said_sd : default_sd; }
 
 // Order of PoseCovariance.
@@ -67,7 +64,7 @@ void Unknown(int first, int size, PoseCovariance& covariance) {
 }
 
 // @param map  of the datum; nullptr: no datum is known yet
-Pose ToPose(const State& state, const std::optional<Datum>& datum, const LocalFrame* map, const FilterParams& params) {
+Pose ToPose(const State& state, const std::optional<GeodeticPlace>& datum, const LocalFrame* map, const FilterParams& params) {
   Pose pose;
   pose.time = state.time;
   if (datum) pose.datum = *datum;
@@ -158,12 +155,6 @@ std::string StoppedInputs(const State& state) {
 
 }  // namespace
 
-std::vector<Counter> FilterCounts::Named() const {
-  return {{"unusable_fix", unusable_fix},        {"late_fix", late_fix},   {"late_attitude", late_attitude},   {"late_imu", late_imu},
-          {"unusable_imu", unusable_imu},        {"gated_fix", gated_fix}, {"gated_attitude", gated_attitude}, {"renewed_position", renewed_position},
-          {"renewed_attitude", renewed_attitude}};
-}
-
 PoseFilter::PoseFilter(const FilterParams& params) : params_(params) {
   if (params_.datum) SetDatum(*params_.datum);
 }
@@ -174,9 +165,9 @@ void PoseFilter::Reset() {
   counts_ = counts;
 }
 
-void PoseFilter::SetDatum(const Datum& datum) {
+void PoseFilter::SetDatum(const GeodeticPlace& datum) {
   datum_ = datum;
-  map_.emplace(GeodeticPlace{datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m});
+  map_.emplace(datum);
 }
 
 bool PoseFilter::Insert(Utime time, const Measurement& measurement) {
@@ -213,7 +204,7 @@ filter::FixMeasurement* PoseFilter::SameEpoch(const filter::FixMeasurement& fix,
   for (auto event = begin; event != events_.end() && event->time == time; ++event) {
     auto* other = std::get_if<filter::FixMeasurement>(&event->measurement);
     if (other == nullptr) continue;
-    const bool is_same_place = LocalFrame(Flat(fix.antenna)).Forward(Flat(other->antenna)).head<2>().norm() < kSamePlaceM;
+    const bool is_same_place = LocalFrame(OnEllipsoid(fix.antenna)).Forward(OnEllipsoid(other->antenna)).head<2>().norm() < kSamePlaceM;
     if (other->source != fix.source && !is_same_place) continue;
     index = static_cast<std::size_t>(event - events_.begin());
     return other;
@@ -223,24 +214,19 @@ filter::FixMeasurement* PoseFilter::SameEpoch(const filter::FixMeasurement& fix,
 
 void PoseFilter::Add(const GnssFix& fix) {
   if (!IsMeasured(fix.quality) || !fix.position || !(fix.horizontal_sd_m > 0.0)) {
-    ++counts_.unusable_fix;
+    ++counts_["unusable_fix"];
     return;
   }
   const double ellipsoid_height_m = fix.EllipsoidHeightM();
   const bool has_height = !std::isnan(ellipsoid_height_m);
-  if (!datum_) SetDatum({fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : 0.0});
+  GeodeticPlace antenna = *fix.position;
+  if (has_height) antenna.ellipsoid_height_m = ellipsoid_height_m;
+  if (!datum_) SetDatum(antenna);
+  if (!has_height) antenna.ellipsoid_height_m = datum_->ellipsoid_height_m;
+  if (!last_fix_arrival_ && params_.datum) datum_complaint_ = DatumComplaint(*datum_, antenna, "the first fix");
 
-  if (!last_fix_arrival_ && params_.datum) {
-    const GeodeticPlace datum{datum_->latitude_deg, datum_->longitude_deg, 0.0};
-    datum_complaint_ = DatumComplaint(datum, {fix.position->latitude_deg, fix.position->longitude_deg, 0.0}, "the first fix");
-  }
-
-  filter::FixMeasurement measurement;
-  measurement.source = fix.source;
-  measurement.begins_time_scale = fix.begins_time_scale;
-  measurement.is_gga = fix.sentence_type == "GGA" || fix.sentence_type == "GNS";
-  measurement.antenna = {fix.position->latitude_deg, fix.position->longitude_deg, has_height ? ellipsoid_height_m : datum_->ellipsoid_height_m};
-  measurement.has_height = has_height;
+  filter::FixMeasurement measurement{
+      .source = fix.source, .is_gga = fix.is_gga(), .begins_time_scale = fix.begins_time_scale, .antenna = antenna, .has_height = has_height};
   measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
   measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
   const double age_s = PossibleAgeS(fix.when);
@@ -263,7 +249,7 @@ void PoseFilter::Add(const GnssFix& fix) {
     }
     Touch(index);
   } else if (!Insert(fix.when.time, measurement)) {
-    ++counts_.late_fix;
+    ++counts_["late_fix"];
     return;
   }
   last_fix_arrival_ = fix.when.arrival;
@@ -272,7 +258,7 @@ void PoseFilter::Add(const GnssFix& fix) {
 void PoseFilter::Add(const GroundVelocity& velocity) {
   if (std::isnan(velocity.speed_mps)) return;
   const auto measurement = ToVelocity(velocity.speed_mps, velocity.course_rad, params_.velocity_sd_mps, false);
-  if (!Insert(velocity.time, measurement)) ++counts_.late_fix;
+  if (!Insert(velocity.time, measurement)) ++counts_["late_fix"];
 }
 
 void PoseFilter::Add(const Attitude& attitude) {
@@ -281,7 +267,7 @@ void PoseFilter::Add(const Attitude& attitude) {
   measurement.roll_sd_rad = SdOr(attitude.roll_sd_rad, params_.tilt_sd_rad);
   measurement.pitch_sd_rad = SdOr(attitude.pitch_sd_rad, params_.tilt_sd_rad);
   if (!Insert(attitude.when.time, measurement)) {
-    ++counts_.late_attitude;
+    ++counts_["late_attitude"];
     return;
   }
   has_had_heading_ = has_had_heading_ || !std::isnan(attitude.heading_rad);
@@ -289,10 +275,10 @@ void PoseFilter::Add(const Attitude& attitude) {
 
 void PoseFilter::Add(const ImuSample& sample) {
   if (!sample.angular_velocity_radps.allFinite() || !sample.specific_force_mps2.allFinite()) {
-    ++counts_.unusable_imu;
+    ++counts_["unusable_imu"];
     return;
   }
-  if (!Insert(sample.time, sample)) ++counts_.late_imu;
+  if (!Insert(sample.time, sample)) ++counts_["late_imu"];
 }
 
 void PoseFilter::AdvanceTo(Utime time) { Insert(time, filter::Tick{}); }
@@ -318,8 +304,8 @@ void PoseFilter::Process(Event& event, std::size_t index) {
   if (event.is_counted) return;
   event.is_counted = true;
   const bool is_attitude = std::holds_alternative<AttitudeValues>(event.measurement);
-  (is_attitude ? counts_.gated_attitude : counts_.gated_fix) += counts.num_gated;
-  (is_attitude ? counts_.renewed_attitude : counts_.renewed_position) += counts.num_renewed;
+  (is_attitude ? counts_["gated_attitude"] : counts_["gated_fix"]) += counts.num_gated;
+  (is_attitude ? counts_["renewed_attitude"] : counts_["renewed_position"]) += counts.num_renewed;
   nis_sum_ += counts.nis_sum;
   num_nis_degrees_ += counts.num_degrees;
 }
@@ -330,8 +316,7 @@ void PoseFilter::ProcessUntil(Utime time) {
     if (!base_) {
       base_ = filter::FreshState(events_.front().time - params_.max_latency - kMoreHistory, params_.unmeasured_tilt_sd_rad);
       // Until the first fix says better.
-      if (params_.datum)
-        filter::BeginLevel({datum_->latitude_deg, datum_->longitude_deg, datum_->ellipsoid_height_m}, Eigen::Vector2d::Zero(), *base_);
+      if (params_.datum) filter::BeginLevel(*datum_, Eigen::Vector2d::Zero(), *base_);
     }
     Process(events_[num_processed_], num_processed_);
   }

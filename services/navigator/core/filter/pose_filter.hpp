@@ -2,12 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
-#include <vector>
 
 #include "common/core/geodesy.hpp"
 #include "common/core/health.hpp"
@@ -19,20 +20,10 @@
 
 namespace lookout::navigator {
 
-/// Measurements that were not used, or only against what was known.
-struct FilterCounts {
-  std::int64_t unusable_fix = 0;  // not measured, or without a position
-  std::int64_t late_fix = 0;      // older than what is kept
-  std::int64_t late_attitude = 0;
-  std::int64_t late_imu = 0;
-  std::int64_t unusable_imu = 0;  // lacks a number
-  std::int64_t gated_fix = 0;     // positions, heights and velocities that contradict the state
-  std::int64_t gated_attitude = 0;
-  std::int64_t renewed_position = 0;  // replaced by measurements that contradicted it for seconds
-  std::int64_t renewed_attitude = 0;
-
-  std::vector<Counter> Named() const;
-};
+/// Measurements that were not used, or only against what was known: README.md has the meaning of each.
+inline constexpr auto kFilterCountNames = std::to_array<std::string_view>(
+    {"unusable_fix", "late_fix", "late_attitude", "late_imu", "unusable_imu", "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude"});
+using FilterCounts = Counts<kFilterCountNames>;
 
 /// An error-state Kalman filter that is run again from the instant of a late measurement: the pose of a time depends on the
 /// measurements and their order, not on when it was asked.
@@ -62,7 +53,6 @@ class PoseFilter {
   /// @param time  not before that of the last call
   Pose At(Utime time);
 
-  const std::optional<Datum>& datum() const { return datum_; }
   /// Arrival of the last usable fix.
   std::optional<Utime> last_fix_arrival() const { return last_fix_arrival_; }
   /// A sensor of heading has come.
@@ -87,7 +77,7 @@ class PoseFilter {
     filter::State after;      // once it is processed
   };
 
-  void SetDatum(const Datum& datum);
+  void SetDatum(const GeodeticPlace& datum);
   // False: older than all that is kept.
   bool Insert(Utime time, const Measurement& measurement);
   void Touch(std::size_t index);
@@ -101,7 +91,7 @@ class PoseFilter {
   void ProcessUntil(Utime time);
 
   FilterParams params_;
-  std::optional<Datum> datum_;
+  std::optional<GeodeticPlace> datum_;
   std::optional<LocalFrame> map_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;

@@ -1,23 +1,42 @@
-// Fields of a sentence as values, strictly: a field has its exact form and its range, or the sentence is refused as a whole.
+// A sentence of NMEA 0183: its checksum, and its fields as values, strictly. A field has its exact form and its range, or the sentence is refused as
+// a whole.
 #pragma once
 
 #include <chrono>
-#include <limits>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
-#include "services/navigator/core/sentence.hpp"
+#include "common/core/elementary.hpp"
+#include "common/core/geodesy.hpp"
 
-namespace lookout::navigator {
+namespace lookout {
 
-/// A number that was not said.
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-struct GeodeticPosition {
-  double latitude_deg = 0.0;   // WGS84, positive north
-  double longitude_deg = 0.0;  // WGS84, positive east
+/// Why a line is not a sentence, or not one with values that can be.
+enum class SentenceFault {
+  kNone,
+  kNoChecksum,   // no * in the line
+  kBadChecksum,  // what stands behind the * is not the exclusive or of what stands before, in two hexadecimal digits
+  kBadField,     // a field is missing or does not have its form
+  kImplausible,  // a value is out of its range
 };
+
+/// A line whose checksum is right. Views into the line.
+struct FramedSentence {
+  std::string_view address;              // talker and type: "GPRMC", "PASHR", "04HDM"
+  std::vector<std::string_view> fields;  // behind the address; empty = not said
+};
+
+struct FrameResult {
+  SentenceFault fault = SentenceFault::kNone;
+  FramedSentence sentence;
+};
+
+/// @param line               from $ or ! to its end, without CR LF; must outlive the result
+/// @param requires_checksum  false: a line without * is accepted too
+FrameResult Frame(std::string_view line, bool requires_checksum = true);
 
 /// Reads fields by index and remembers the first fault. An empty field is no fault: it says nothing (NaN or nullopt). A field behind the last
 /// is a fault.
@@ -67,8 +86,8 @@ class FieldReader {
   /// Day, month and year (of four digits, or two as above), each a field: all there or all empty.
   std::optional<std::chrono::sys_days> Date(std::size_t day_index, std::size_t month_index, std::size_t year_index);
 
-  /// ddmm[.m...],N|S,dddmm[.m...],E|W: four fields, all there or all empty.
-  std::optional<GeodeticPosition> Position(std::size_t index);
+  /// ddmm[.m...],N|S,dddmm[.m...],E|W: four fields, all there or all empty. The height stays 0.
+  std::optional<GeodeticPlace> Position(std::size_t index);
 
  private:
   std::optional<std::chrono::sys_days> Checked(int day, int month, int year);
@@ -78,4 +97,4 @@ class FieldReader {
   SentenceFault fault_ = SentenceFault::kNone;
 };
 
-}  // namespace lookout::navigator
+}  // namespace lookout

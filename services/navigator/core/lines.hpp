@@ -1,4 +1,4 @@
-// NMEA 0183 lines: out of a datagram, and into address and fields.
+// Lines of NMEA 0183 out of datagrams and streams.
 #pragma once
 
 #include <cstddef>
@@ -45,30 +45,5 @@ class LineAssembler {
  private:
   std::string rest_;
 };
-
-/// Why a line is not a sentence, or not one with values that can be.
-enum class SentenceFault {
-  kNone,
-  kNoChecksum,   // no * in the line
-  kBadChecksum,  // what stands behind the * is not the exclusive or of what stands before, in two hexadecimal digits
-  kBadField,     // a field is missing or does not have its form
-  kImplausible,  // a value is out of its range
-};
-inline constexpr std::size_t kNumSentenceFaults = static_cast<std::size_t>(SentenceFault::kImplausible) + 1;
-
-/// A line whose checksum is right. Views into the line.
-struct FramedSentence {
-  std::string_view address;              // talker and type: "GPRMC", "PASHR", "04HDM"
-  std::vector<std::string_view> fields;  // behind the address; empty = not said
-};
-
-struct FrameResult {
-  SentenceFault fault = SentenceFault::kNone;
-  FramedSentence sentence;
-};
-
-/// @param line               as in DatagramLines; must outlive the result
-/// @param requires_checksum  false: a line without * is accepted too
-FrameResult Frame(std::string_view line, bool requires_checksum = true);
 
 }  // namespace lookout::navigator

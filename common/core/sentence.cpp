@@ -1,11 +1,11 @@
-#include "services/navigator/core/field_reader.hpp"
+#include "common/core/sentence.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
 
-namespace lookout::navigator {
+namespace lookout {
 
 namespace {
 
@@ -40,7 +40,37 @@ int ToInt(std::string_view digits) {
   return value;
 }
 
+bool IsChecksumOf(std::string_view digits, std::string_view body) {
+  if (digits.size() != 2) return false;
+  unsigned stated = 0;
+  const auto* const end = digits.data() + digits.size();
+  const bool is_hexadecimal = std::from_chars(digits.data(), end, stated, 16).ptr == end;
+  unsigned checksum = 0;
+  for (const char character : body) checksum ^= static_cast<unsigned char>(character);
+  return is_hexadecimal && stated == checksum;
+}
+
 }  // namespace
+
+FrameResult Frame(std::string_view line, bool requires_checksum) {
+  const auto star = line.rfind('*');
+  const bool has_star = star != std::string_view::npos && star != 0;
+  if (!has_star && (requires_checksum || line.empty())) return {SentenceFault::kNoChecksum, {}};
+  auto body = has_star ? line.substr(1, star - 1) : line.substr(1);
+  if (has_star && !IsChecksumOf(line.substr(star + 1), body)) return {SentenceFault::kBadChecksum, {}};
+
+  FrameResult result;
+  const auto address_end = std::min(body.find(','), body.size());
+  result.sentence.address = body.substr(0, address_end);
+  body.remove_prefix(address_end);
+  while (!body.empty()) {
+    body.remove_prefix(1);  // the comma
+    const auto end = std::min(body.find(','), body.size());
+    result.sentence.fields.push_back(body.substr(0, end));
+    body.remove_prefix(end);
+  }
+  return result;
+}
 
 std::string_view FieldReader::Text(std::size_t index) {
   return index < fields_.size() ? fields_[index] : Fail(SentenceFault::kBadField, std::string_view{});
@@ -152,9 +182,9 @@ double FieldReader::Angle(std::size_t index, std::size_t num_degree_digits, doub
   return angle_deg;
 }
 
-std::optional<GeodeticPosition> FieldReader::Position(std::size_t index) {
+std::optional<GeodeticPlace> FieldReader::Position(std::size_t index) {
   if (IsEmpty(index) && IsEmpty(index + 1) && IsEmpty(index + 2) && IsEmpty(index + 3)) return std::nullopt;
-  GeodeticPosition position{Angle(index, 2, 90.0), Angle(index + 2, 3, 180.0)};
+  GeodeticPlace position{Angle(index, 2, 90.0), Angle(index + 2, 3, 180.0)};
   const char latitude_letter = Letter(index + 1, "NS");
   const char longitude_letter = Letter(index + 3, "EW");
   if (latitude_letter == '\0' || longitude_letter == '\0') return Fail(SentenceFault::kBadField, std::nullopt);
@@ -164,4 +194,4 @@ std::optional<GeodeticPosition> FieldReader::Position(std::size_t index) {
   return position;
 }
 
-}  // namespace lookout::navigator
+}  // namespace lookout

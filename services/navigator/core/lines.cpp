@@ -1,7 +1,8 @@
-#include "services/navigator/core/sentence.hpp"
+#include "services/navigator/core/lines.hpp"
 
 #include <algorithm>
-#include <charconv>
+
+#include "common/core/sentence.hpp"
 
 namespace lookout::navigator {
 
@@ -20,16 +21,6 @@ std::string_view FromStart(std::string_view line) {
   line.remove_prefix(block_end == std::string_view::npos ? 1 : block_end + 1);
   const auto start = line.find_first_of("$!");
   return start == std::string_view::npos ? std::string_view{} : line.substr(start);
-}
-
-bool IsChecksumOf(std::string_view digits, std::string_view body) {
-  if (digits.size() != 2) return false;
-  unsigned stated = 0;
-  const auto* const end = digits.data() + digits.size();
-  const bool is_hexadecimal = std::from_chars(digits.data(), end, stated, 16).ptr == end;
-  unsigned checksum = 0;
-  for (const char character : body) checksum ^= static_cast<unsigned char>(character);
-  return is_hexadecimal && stated == checksum;
 }
 
 // The whole sentence at the end of a line that does not begin as one: behind binary whose last bytes look like text, or behind a sentence that was
@@ -105,26 +96,6 @@ DatagramLines LineAssembler::Add(Bytes bytes) {
 
 bool IsLine(std::string_view line) {
   return !line.empty() && line.size() <= kMaxLineCharacters && (line.front() == '$' || line.front() == '!') && std::ranges::all_of(line, IsPrintable);
-}
-
-FrameResult Frame(std::string_view line, bool requires_checksum) {
-  const auto star = line.rfind('*');
-  const bool has_star = star != std::string_view::npos && star != 0;
-  if (!has_star && (requires_checksum || line.empty())) return {SentenceFault::kNoChecksum, {}};
-  auto body = has_star ? line.substr(1, star - 1) : line.substr(1);
-  if (has_star && !IsChecksumOf(line.substr(star + 1), body)) return {SentenceFault::kBadChecksum, {}};
-
-  FrameResult result;
-  const auto address_end = std::min(body.find(','), body.size());
-  result.sentence.address = body.substr(0, address_end);
-  body.remove_prefix(address_end);
-  while (!body.empty()) {
-    body.remove_prefix(1);  // the comma
-    const auto end = std::min(body.find(','), body.size());
-    result.sentence.fields.push_back(body.substr(0, end));
-    body.remove_prefix(end);
-  }
-  return result;
 }
 
 }  // namespace lookout::navigator
