@@ -64,8 +64,8 @@ std::string Scope(const Results& world) {
   for (const auto& scene : world.scenes) {
     if (world.methods.empty() || !world.methods.front().by_scene.contains(scene)) continue;
     const auto& score = world.methods.front().by_scene.at(scene);
-    num_scans += score.num_scans;
-    if (score.num_scans_with_object > 0) {
+    num_scans += score.num_scans();
+    if (score.iou.count > 0) {
       ++num_with_object;
     } else {
       without_object.push_back(scene);
@@ -86,8 +86,7 @@ std::string NearRecallOf(const MethodResult& method, const std::string& scene, c
   const auto found = method.by_scene.find(scene);
   if (found == method.by_scene.end()) return "-";
   const auto recall = found->second.near_recall_by_kind.find(kind);
-  if (recall == found->second.near_recall_by_kind.end() || recall->second.num_object_scans == 0) return "-";
-  return Number(100.0 * static_cast<double>(recall->second.num_found) / static_cast<double>(recall->second.num_object_scans), 1);
+  return recall == found->second.near_recall_by_kind.end() ? "-" : Number(100.0 * recall->second.value(), 1);
 }
 
 Table MainTable(const Results& results) {
@@ -111,9 +110,9 @@ Table MainTable(const Results& results) {
         continue;
       }
       const auto& method = world->methods.at(i);
-      row.push_back(Number(100.0 * MeanOverScenes(*world, method, MeanIou), 1));
-      row.push_back(Number(MeanOverScenes(*world, method, FalseSegmentsPerScan), 2));
-      row.push_back(Number(100.0 * MeanOverScenes(*world, method, ThingsWithSegment), 1));
+      row.push_back(Number(100.0 * MeanOverScenes(*world, method, &Score::iou), 1));
+      row.push_back(Number(MeanOverScenes(*world, method, &Score::false_segments), 2));
+      row.push_back(Number(100.0 * MeanOverScenes(*world, method, &Score::with_segment), 1));
       if (world->world.empty()) row.push_back(NearRecallOf(method, "black_buoys", "buoy"));
     }
     table.Add(std::move(row));

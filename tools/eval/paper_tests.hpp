@@ -23,19 +23,6 @@ namespace lookout::eval {
 /// @throws config::ConfigError as ForEachScan; std::runtime_error when the scene of a test does not hold one kayak, shore or motor boat
 Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progress);
 
-/// Of Tests 2 and 3: into how much an object was cut.
-struct ObjectParts {
-  std::int64_t num_segments = 0;    // with a return of it
-  std::int64_t num_large = 0;       // with a tenth of its returns or more (kLeastPartsOfObject)
-  std::int64_t num_in_largest = 0;  // returns of it
-  std::int64_t num_returns = 0;     // of it that are scored
-
-  void Add(const ObjectParts& other);
-};
-
-/// Precondition: labelling.label is as long as the scan has cells.
-ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labelling& labelling);
-
 /// Of Test 1: a scan in which the kayak and the shore are seen.
 struct ShoreGap {
   double distance_m = 0.0;  // from the kayak's returns to the nearest of any other object

@@ -80,8 +80,7 @@ void ProjectionTable::AddTo(Sums& sums, int image_columns, const LabelledScan& t
     if (!is_kept[cell]) labelling.label[cell] = kNotScored;
   }
   const auto score = ScoreScan(truth, labelling);
-  sums.num_object_points += score.num_returns;
-  sums.num_true_positives += score.num_labelled_returns;
+  sums.true_positives.Add(score.true_positives);
 }
 
 std::vector<Results::Projection> ProjectionTable::Rows() const {
@@ -93,7 +92,7 @@ std::vector<Results::Projection> ProjectionTable::Rows() const {
     const auto num_kept = static_cast<double>(sums.num_kept);
     Results::Projection row;
     row.image_columns = kPaperColumns[i];
-    row.true_positive_ratio = static_cast<double>(sums.num_true_positives) / static_cast<double>(sums.num_object_points);
+    row.true_positive_ratio = sums.true_positives.value();
     row.num_ground_points = num_kept / num_scans;
     row.num_points = static_cast<double>(sums.num_points) / num_scans;
     row.nearest_mean_m = sums.distance_m / num_kept;

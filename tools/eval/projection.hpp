@@ -28,8 +28,7 @@ class ProjectionTable {
     std::int64_t num_scans = 0;
     std::int64_t num_points = 0;
     std::int64_t num_kept = 0;
-    std::int64_t num_object_points = 0;  // of these that are kept
-    std::int64_t num_true_positives = 0;
+    Mean true_positives;  // of the returns of objects that are kept
     double distance_m = 0.0;
     double squared_distance_m2 = 0.0;
   };

@@ -130,22 +130,21 @@ void PrintSeen(std::ostream& out, const Evaluation& evaluation) {
 }
 
 void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_num_returns) {
-  out << "segmentation over " << evaluation.scan_iou.count() << " whole scans";
+  out << "segmentation over " << evaluation.scan_iou.count << " whole scans";
   if (evaluation.num_returns > 0) {
     out << "; " << evaluation.num_returns << " returns, "
         << Percent(static_cast<double>(evaluation.num_joined) / static_cast<double>(evaluation.num_returns)) << " % found in the truth";
   }
   out << '\n';
-  if (evaluation.scan_iou.count() > 0) {
-    out << "mIoU " << Percent(evaluation.scan_iou.Mean()) << " %, segments per scan " << Number(evaluation.segments.Mean(), 2) << ", of pure clutter "
-        << Number(evaluation.clutter_segments.Mean(), 2) << ", of these sure " << Number(evaluation.sure_clutter_segments.Mean(), 2) << '\n';
+  if (evaluation.scan_iou.count > 0) {
+    out << "mIoU " << Percent(evaluation.scan_iou.value()) << " %, segments per scan " << Number(evaluation.segments.value(), 2)
+        << ", of pure clutter " << Number(evaluation.clutter_segments.value(), 2) << ", of these sure "
+        << Number(evaluation.sure_clutter_segments.value(), 2) << '\n';
   }
   out << "recall: objects with " << min_num_returns << " returns or more that have a segment of their own\n";
-  Table table({"kind", "object_turns", "found", "recall_%", "mean_IoU_%"});
+  Table table({"kind", "object_scans", "found", "recall_%", "mean_IoU_%"});
   for (const auto& [kind, score] : evaluation.scores_by_kind) {
-    const std::string recall =
-        score.num_present > 0 ? Percent(static_cast<double>(score.num_found) / static_cast<double>(score.num_present)) : std::string("-");
-    table.Add({kind, Number(score.num_present), Number(score.num_found), recall, Percent(score.iou.Mean())});
+    table.Add({kind, Number(score.recall.count), Number(score.recall.sum, 0), Percent(score.recall.value()), Percent(score.iou.value())});
   }
   table.Print(out);
   out << '\n';

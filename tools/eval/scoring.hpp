@@ -6,14 +6,16 @@
 
 namespace lookout::eval {
 
-/// A segment or an object counts as cut, or as merged, by parts of at least this share of an object's returns.
-inline constexpr int kLeastPartsOfObject = 10;  // a tenth
-
 /// IoU from which an object counts as found.
 inline constexpr double kFoundIou = 0.5;
 
 /// The operating point at which only what the method is sure of counts: returns of tentative segments are in none.
 Labelling SureOnly(Labelling labelling);
+
+/// Objects and segments of the cells with a return whose label is not kNotScored.
+///
+/// @throws std::logic_error unless labels and cells agree in number
+Confusion::Matches MatchScan(const LabelledScan& truth, const std::vector<std::int32_t>& label);
 
 /// Score of a single scan at one operating point, without times: every segment of the labelling counts.
 ///

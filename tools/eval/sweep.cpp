@@ -145,8 +145,8 @@ Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::F
     for (std::size_t i = 0; i < sweep.values.size(); ++i) {
       const auto& by_scene = all_segments[i]->by_scene;
       const auto found = by_scene.find(line.name);
-      if (found != by_scene.end() && found->second.num_scans_with_object > 0) {
-        line.points.emplace_back(sweep.values[i], 100.0 * MeanIou(found->second));
+      if (found != by_scene.end() && found->second.iou.count > 0) {
+        line.points.emplace_back(sweep.values[i], 100.0 * found->second.iou.value());
       }
     }
     if (!line.points.empty()) curve.lines.push_back(std::move(line));

@@ -17,6 +17,7 @@
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
 #include "tools/eval/result_tables.hpp"
+#include "tools/eval/scoring.hpp"
 #include "tools/eval/sweep.hpp"
 
 namespace lookout::eval {
@@ -109,8 +110,8 @@ TEST(MethodComparison, TruthAsLabelsScoresOneHundred) {
   MethodComparison comparison(methods);
   for (const auto& turn : turns) comparison.Add({"sparse", 1, 0}, turn);
   const auto& score = comparison.results()[0].by_scene.at("sparse");
-  EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
-  EXPECT_EQ(score.num_false_segments, 0);
+  EXPECT_DOUBLE_EQ(score.iou.value(), 1.0);
+  EXPECT_EQ(score.false_segments.sum, 0);
   EXPECT_EQ(comparison.results()[0].worst.size(), 1U) << "one of each scene";
 }
 
@@ -298,12 +299,13 @@ TEST(PaperTests, PartsAreThoseOfOneObjectAlone) {
   add(9, 7, kNotScored);
   add(30, 8, 4);
   add(30, kNoTrueObject, 5);
-  auto parts = PartsOf(7, truth, labelling);
+  const auto objects = MatchScan(truth, labelling.label).objects;
+  const auto& parts = objects.at(7);
   EXPECT_EQ(parts.num_segments, 3);
-  EXPECT_EQ(parts.num_large, 2) << "2 of 20 are a tenth";
+  EXPECT_EQ(parts.num_parts, 2) << "2 of 20 are a tenth";
   EXPECT_EQ(parts.num_in_largest, 16);
   EXPECT_EQ(parts.num_returns, 20);
-  EXPECT_EQ(PartsOf(9, truth, labelling).num_segments, 0);
+  EXPECT_FALSE(objects.contains(9));
 }
 
 TEST(PaperTests, ABoatIsMoreClustersTheLessE3Joins) {
@@ -349,8 +351,7 @@ TEST(ResultTables, AnotherWorldStandsBesideOurs) {
     Results results;
     results.scenes = {scene};
     Score score;
-    score.num_scans = score.num_scans_with_object = 1;
-    score.sum_iou = iou;
+    score.iou = {1, iou};
     score.near_recall_by_kind["buoy"] = {1, 1};
     results.methods = {{"ours (all segments)", {{scene, score}}, {}, {}}, {"F3D (tuned)", {{scene, score}}, {}, {}}};
     return results;
@@ -403,10 +404,7 @@ TEST(ResultTables, OursIsHeldAgainstTheBestPeers) {
     MethodResult method;
     method.method = name;
     for (std::size_t i = 0; i < iou.size(); ++i) {
-      Score score;
-      score.num_scans = score.num_scans_with_object = 1;
-      score.sum_iou = iou[i];
-      method.by_scene[results.scenes[i]] = score;
+      method.by_scene[results.scenes[i]].iou = {1, iou[i]};
     }
     results.methods.push_back(method);
   };
@@ -436,13 +434,8 @@ TEST(ResultTables, SceneWithoutObjectsHasADash) {
   results.scenes = {"a", "b"};
   MethodResult method;
   method.method = "m";
-  Score with_object;
-  with_object.num_scans = with_object.num_scans_with_object = 4;
-  with_object.sum_iou = 3.0;
-  Score without;
-  without.num_scans = 4;
-  without.num_false_segments = 2;
-  method.by_scene = {{"a", with_object}, {"b", without}};
+  method.by_scene["a"].iou = {4, 3.0};
+  method.by_scene["b"].false_segments = {4, 2.0};
   results.methods.push_back(method);
   std::ostringstream out;
   TablesOf(results).at(0).table.PrintCsv(out);
