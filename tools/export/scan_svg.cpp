@@ -287,7 +287,7 @@ Outline OutlineOf(const Thing& thing, double distance_m, const std::string& plac
 
 std::string NorthText(double heading_rad) { return fmt::format("north up, heading {:.1f} deg", RadToDeg(heading_rad)); }
 
-Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog>& boat, std::optional<double> heading_rad) {
+Picture PictureOfReturns(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, std::optional<double> heading_rad) {
   const bool is_north_up = boat && heading_rad;
   const double up_rad = is_north_up ? *heading_rad : 0.0;
   const Eigen::Isometry3d T_vessel_lidar = boat ? boat->T_vessel_lidar : Eigen::Isometry3d::Identity();
@@ -337,7 +337,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog
   return picture;
 }
 
-Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<BoatOfLog>& boat, std::optional<double> heading_rad) {
+Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, std::optional<double> heading_rad) {
   Picture picture;
   picture.up = heading_rad ? "N" : "bow";
   picture.bow_rad = heading_rad.value_or(0.0);
@@ -401,7 +401,7 @@ class ScanSvgSink final : public Sink {
   ChosenScan::Of what_;
   ChosenScan scan_;
   messages::HeadingHistory headings_;
-  std::optional<BoatOfLog> boat_;
+  std::optional<config::BoatFacts> boat_;
 };
 
 }  // namespace
