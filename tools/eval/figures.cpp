@@ -133,18 +133,15 @@ Table SweepTable(const Results& results) {
   Table table({"field", "its value", "tried", "mIoU, %"});
   for (const auto& curve : results.curves) {
     if (curve.value_of_boat.empty()) continue;
-    std::map<double, std::pair<double, int>> sums;
+    std::map<double, Mean> percents;
     for (const auto& line : curve.lines) {
-      for (const auto& [value, percent] : line.points) {
-        sums[value].first += percent;
-        ++sums[value].second;
-      }
+      for (const auto& [value, percent] : line.points) percents[value].Add(percent);
     }
     std::string values;
     std::string means;
-    for (const auto& [value, sum] : sums) {
+    for (const auto& [value, percent] : percents) {
       values += (values.empty() ? "" : " / ") + Number(value, 1);
-      means += (means.empty() ? "" : " / ") + Number(sum.first / sum.second, 1);
+      means += (means.empty() ? "" : " / ") + Number(percent.value(), 1);
     }
     table.Add({"`" + curve.x_label + "`", curve.value_of_boat, values, means});
   }

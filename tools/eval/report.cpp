@@ -110,10 +110,9 @@ void PrintSeen(std::ostream& out, const Evaluation& evaluation) {
     std::vector<std::string> row{name};
     const auto distances = SummaryCells(summary.distance_m, 3);
     row.insert(row.end(), distances.begin(), distances.end());
-    const bool has_any = summary.distance_m.count() > 0;
-    row.push_back(has_any ? Number(summary.stated_sd_m.Median(), 3) : "-");
-    row.push_back(has_any ? Percent(summary.in_ellipse) : "-");
-    row.push_back(has_any ? Number(summary.nees.Mean(), 2) : "-");
+    row.push_back(summary.stated_sd_m.count() > 0 ? Number(summary.stated_sd_m.Median(), 3) : "-");
+    row.push_back(Percent(summary.in_ellipse.value()));
+    row.push_back(Number(summary.nees.value(), 2));
     const auto jumps = SummaryCells(summary.jump_m, 3);
     row.insert(row.end(), jumps.begin() + 1, jumps.end());
     row.push_back(summary.jump_sds.count() > 0 ? Number(summary.jump_sds.Max(), 2) : "-");
@@ -151,8 +150,8 @@ void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_
 }
 
 void PrintMachine(std::ostream& out, const Machine& machine) {
-  if (machine.last_clock) {
-    const auto packets = machine.Packets();
+  const auto& packets = machine.packets;
+  if (machine.num_scans_by_sensor + machine.num_scans_by_host > 0) {
     out << "lidar packets: " << packets.num_packets << ", lost " << packets.num_lost << ", duplicate " << packets.num_duplicate << ", reordered "
         << packets.num_reordered << "; scans stamped by the sensor's clock " << machine.num_scans_by_sensor << ", by the host's "
         << machine.num_scans_by_host << '\n';

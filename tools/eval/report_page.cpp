@@ -46,14 +46,11 @@ Json TimesOf(const std::vector<double>& time_ms) {
   }
   if (summary.count() == 0) return nullptr;
   const double mean_ms = summary.Mean();
-  double squares = 0.0;
+  Summary deviations;
   for (const double value : time_ms) {
-    if (std::isfinite(value)) squares += (value - mean_ms) * (value - mean_ms);
+    if (std::isfinite(value)) deviations.Add(value - mean_ms);
   }
-  return {{"median", summary.Median()},
-          {"p99", summary.Percentile(99)},
-          {"mean", mean_ms},
-          {"sd", std::sqrt(squares / static_cast<double>(summary.count()))}};
+  return {{"median", summary.Median()}, {"p99", summary.Percentile(99)}, {"mean", mean_ms}, {"sd", deviations.Rms()}};
 }
 
 Json FiguresOf(const Score& score) {
@@ -193,23 +190,21 @@ Json NearRecallOf(const Results& world) {
   return rows;
 }
 
-Json PeerOf(const AgainstPeer& peer) {
-  return {{"name", PrintableLines(peer.peer)},
-          {"iou_percent", 100.0 * peer.peer_iou},
-          {"false_segments", peer.peer_false},
+Json PeerOf(const BestPeer& peer) {
+  return {{"name", PrintableLines(peer.name)},
+          {"iou_percent", 100.0 * peer.iou},
+          {"false_segments", peer.false_segments},
           {"error_percent", 100.0 * peer.error_share}};
 }
 
 Json AgainstPeersOf(const Results& world) {
-  const auto tuned = CompareWithPeers(world, true);
-  const auto all = CompareWithPeers(world, false);
   Json rows = Json::array();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    rows.push_back({{"scene", PrintableLines(all[i].scene)},
-                    {"iou_percent", 100.0 * all[i].our_iou},
-                    {"false_segments", all[i].our_false},
-                    {"tuned", i < tuned.size() ? PeerOf(tuned[i]) : Json(nullptr)},
-                    {"all", PeerOf(all[i])}});
+  for (const auto& row : CompareWithPeers(world)) {
+    rows.push_back({{"scene", PrintableLines(row.scene)},
+                    {"iou_percent", 100.0 * row.our_iou},
+                    {"false_segments", row.our_false},
+                    {"tuned", row.tuned ? PeerOf(*row.tuned) : Json(nullptr)},
+                    {"all", PeerOf(row.of_all)}});
   }
   return rows;
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -108,14 +109,14 @@ constexpr std::array kAblation{Column{"mIoU_%", &Score::iou, Column::kPercent}, 
 Table AgainstPeers(const Results& results) {
   Table table({"scene", "ours_%", "ours_false", "best_tuned_peer", "peer_%", "peer_false", "our_error_of_its_error_%", "best_peer_of_all", "best_%",
                "best_false", "our_error_of_best_error_%"});
-  const auto tuned = CompareWithPeers(results, true);
-  const auto all = CompareWithPeers(results, false);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool has_tuned = i < tuned.size();
-    table.Add({all[i].scene, Percent(all[i].our_iou), Number(all[i].our_false, 2), has_tuned ? tuned[i].peer : "-",
-               has_tuned ? Percent(tuned[i].peer_iou) : "-", has_tuned ? Number(tuned[i].peer_false, 2) : "-",
-               has_tuned ? Percent(tuned[i].error_share) : "-", all[i].peer, Percent(all[i].peer_iou), Number(all[i].peer_false, 2),
-               Percent(all[i].error_share)});
+  for (const auto& row : CompareWithPeers(results)) {
+    Table::Row cells{row.scene, Percent(row.our_iou), Number(row.our_false, 2)};
+    for (const auto& peer : {row.tuned, std::optional(row.of_all)}) {
+      const auto of_peer = peer ? Table::Row{peer->name, Percent(peer->iou), Number(peer->false_segments, 2), Percent(peer->error_share)}
+                                : Table::Row{"-", "-", "-", "-"};
+      cells.insert(cells.end(), of_peer.begin(), of_peer.end());
+    }
+    table.Add(std::move(cells));
   }
   return table;
 }

@@ -410,23 +410,22 @@ TEST(ResultTables, OursIsHeldAgainstTheBestPeers) {
   };
   add("paper W=512", {0.99, 0.99, 0.99});
   add("ours", {0.9, 0.6, 0.7});
-  EXPECT_TRUE(CompareWithPeers(results, false).empty()) << "no peers";
+  EXPECT_TRUE(CompareWithPeers(results).empty()) << "no peers";
   add("Euclidean 2 m", {0.95, 0.3, 1.0});
   add("Euclidean 3 m (tuned)", {0.8, 0.5, 0.4});
   add("F3D (tuned)", {0.8, 0.2, 0.9});
-  const auto tuned = CompareWithPeers(results, true);
-  ASSERT_EQ(tuned.size(), 4U);
-  EXPECT_EQ(tuned[0].peer, "Euclidean 3 m (tuned)") << "of equals the first";
-  EXPECT_NEAR(tuned[0].error_share, 0.1 / 0.2, 1e-12);
-  EXPECT_NEAR(tuned[1].error_share, 0.4 / 0.5, 1e-12);
-  EXPECT_EQ(tuned[2].peer, "F3D (tuned)");
-  EXPECT_NEAR(tuned[2].error_share, 0.3 / 0.1, 1e-12);
-  EXPECT_EQ(tuned[3].scene, "mean");
-  EXPECT_EQ(tuned[3].peer, "F3D (tuned)");
-  EXPECT_NEAR(tuned[3].error_share, (0.8 / 3.0) / (1.1 / 3.0), 1e-12);
-  const auto all = CompareWithPeers(results, false);
-  EXPECT_EQ(all[0].peer, "Euclidean 2 m");
-  EXPECT_TRUE(std::isnan(all[2].error_share)) << "that peer makes no error";
+  const auto rows = CompareWithPeers(results);
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].tuned->name, "Euclidean 3 m (tuned)") << "of equals the first";
+  EXPECT_NEAR(rows[0].tuned->error_share, 0.1 / 0.2, 1e-12);
+  EXPECT_NEAR(rows[1].tuned->error_share, 0.4 / 0.5, 1e-12);
+  EXPECT_EQ(rows[2].tuned->name, "F3D (tuned)");
+  EXPECT_NEAR(rows[2].tuned->error_share, 0.3 / 0.1, 1e-12);
+  EXPECT_EQ(rows[3].scene, "mean");
+  EXPECT_EQ(rows[3].tuned->name, "F3D (tuned)");
+  EXPECT_NEAR(rows[3].tuned->error_share, (0.8 / 3.0) / (1.1 / 3.0), 1e-12);
+  EXPECT_EQ(rows[0].of_all.name, "Euclidean 2 m");
+  EXPECT_TRUE(std::isnan(rows[2].of_all.error_share)) << "that peer makes no error";
 }
 
 TEST(ResultTables, SceneWithoutObjectsHasADash) {
