@@ -76,9 +76,9 @@ BoatRemark Place(const BoatFacts& boat, const std::string& what, const std::stri
 
 }  // namespace
 
-BoatFacts LoadBoat(const std::filesystem::path& folder) {
-  const auto file = folder / "boat.txtpb";
-  const auto boat = Load<Boat>(folder, "boat.txtpb");
+BoatFacts LoadBoat(const std::filesystem::path& folder) { return ToFacts(Load<Boat>(folder, "boat.txtpb"), folder / "boat.txtpb"); }
+
+BoatFacts ToFacts(const Boat& boat, const std::filesystem::path& file) {
   const auto& box = boat.own_vessel();
   FaultList faults;
   if (box.min_x_m() >= box.max_x_m()) faults.Add(FaultLine(file, "own_vessel.min_x_m", "must be less than max_x_m"));

@@ -29,6 +29,12 @@ struct BoatFacts {
   std::optional<GeodeticPlace> datum;  // origin of the map frame
 };
 
+class Boat;
+
+/// @param file  of the message, for faults
+/// @throws ConfigError
+BoatFacts ToFacts(const Boat& boat, const std::filesystem::path& file);
+
 /// @param folder  the boat's folder, holding boat.txtpb
 /// @throws ConfigError
 BoatFacts LoadBoat(const std::filesystem::path& folder);

@@ -14,7 +14,7 @@ namespace {
 using namespace lookout::importer;
 
 void MakeTurn(const PointCloud& cloud) {
-  const auto organised = Organise(cloud, {});
+  const auto organised = Organise(cloud);
   std::size_t num_returns = 0;
   for (const auto range : organised.labelled.scan.columns.range) num_returns += range != 0 ? 1 : 0;
   // No point is lost uncounted.

@@ -1,16 +1,18 @@
 #include "tools/eval/captures.hpp"
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <deque>
 #include <limits>
 #include <map>
+#include <memory>
+#include <regex>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -42,41 +44,24 @@ fs::path Beside(const fs::path& capture, const std::string& ending) {
 // A capture, unpacked into memory that has the name of a file, as libpcap asks for one.
 class UnpackedCapture {
  public:
-  explicit UnpackedCapture(const fs::path& file) : descriptor_(memfd_create("capture", MFD_CLOEXEC)) {
-    if (descriptor_ < 0) throw std::runtime_error(file.string() + ": cannot be unpacked: no memory file");
+  explicit UnpackedCapture(const fs::path& file) : memory_(fdopen(memfd_create("capture", MFD_CLOEXEC), "wb"), &std::fclose) {
+    if (!memory_) throw std::runtime_error(file.string() + ": cannot be unpacked: no memory file");
+    importer::XzFile packed(file, kMaxCaptureBytes);
+    std::vector<std::uint8_t> block(std::size_t{1} << 16);
     try {
-      importer::XzFile packed(file, kMaxCaptureBytes);
-      std::vector<std::uint8_t> block(std::size_t{1} << 16);
-      while (const std::size_t size = Unpack(packed, block, file)) Append(std::span(block).first(size), file);
-    } catch (...) {
-      close(descriptor_);
-      throw;
-    }
-  }
-  ~UnpackedCapture() { close(descriptor_); }
-  UnpackedCapture(const UnpackedCapture&) = delete;
-  UnpackedCapture& operator=(const UnpackedCapture&) = delete;
-
-  fs::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
-
- private:
-  static std::size_t Unpack(importer::XzFile& packed, std::span<std::uint8_t> block, const fs::path& file) {
-    try {
-      return packed.Read(block);
+      while (const std::size_t size = packed.Read(block)) {
+        if (std::fwrite(block.data(), 1, size, memory_.get()) != size) throw std::runtime_error("cannot be unpacked: out of memory");
+      }
+      if (std::fflush(memory_.get()) != 0) throw std::runtime_error("cannot be unpacked: out of memory");
     } catch (const std::runtime_error& error) {
       throw std::runtime_error(file.string() + ": " + error.what());
     }
   }
 
-  void Append(std::span<const std::uint8_t> bytes, const fs::path& file) const {
-    while (!bytes.empty()) {
-      const auto written = write(descriptor_, bytes.data(), bytes.size());
-      if (written <= 0) throw std::runtime_error(file.string() + ": cannot be unpacked: out of memory");
-      bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
-  }
+  fs::path path() const { return "/proc/self/fd/" + std::to_string(fileno(memory_.get())); }
 
-  int descriptor_;
+ private:
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> memory_;
 };
 
 struct TrueReturn {
@@ -90,7 +75,7 @@ struct TrueReturn {
 // The truth about the returns of one stretch of time after the other.
 class TruthFile {
  public:
-  explicit TruthFile(const fs::path& file) : csv_(file, kColumns) {}
+  explicit TruthFile(const fs::path& file) : csv_(file, {"utime_us", "ring", "return_index", "range_m", "object_id"}) {}
 
   // Reads up to a time and forgets what lies before another.
   void MoveTo(std::int64_t begin_us, std::int64_t end_us) {
@@ -120,7 +105,6 @@ class TruthFile {
   }
 
  private:
-  static constexpr std::array<std::string_view, 5> kColumns{"utime_us", "ring", "return_index", "range_m", "object_id"};
   static constexpr int kMaxRings = 128;
   static constexpr std::int64_t kMaxKept = std::int64_t{1} << 22;  // twice the cells that a scan may have
 
@@ -162,9 +146,8 @@ bool IsInWater(const std::string& type) {
 }
 
 std::map<std::int32_t, ScanObject> ReadObjects(const fs::path& file) {
-  static constexpr std::array<std::string_view, 2> kColumns{"object_id", "type"};
   constexpr std::size_t kMaxObjects = 100'000;
-  importer::CsvFile csv(file, kColumns);
+  importer::CsvFile csv(file, {"object_id", "type"});
   std::map<std::int32_t, ScanObject> objects;
   while (csv.Next()) {
     const auto id = static_cast<std::int32_t>(csv.WholeNumber(0, 1, std::numeric_limits<std::int32_t>::max()));
@@ -216,21 +199,20 @@ void Join(const CaptureWithTruth& files, TruthFile& truth, LabelledScan& labelle
 }  // namespace
 
 std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder) {
+  static const std::regex kName(R"((.+)-(\d+)\.pcap\.xz)");
   std::error_code fault;
   std::vector<CaptureWithTruth> captures;
   for (const auto& entry : fs::directory_iterator(folder, fault)) {
     const auto name = entry.path().filename().string();
     if (!name.ends_with(kCaptureEnding)) continue;
     CaptureWithTruth files;
-    const auto stem = name.substr(0, name.size() - kCaptureEnding.size());
-    const auto dash = stem.rfind('-');
-    const char* const end = stem.data() + stem.size();
-    const bool has_both = dash != std::string::npos && dash != 0 && dash + 1 != stem.size();
-    const auto read = has_both ? std::from_chars(stem.data() + dash + 1, end, files.seed) : std::from_chars_result{end, std::errc::invalid_argument};
-    if (read.ec != std::errc() || read.ptr != end) {
+    std::smatch parts;
+    std::regex_match(name, parts, kName);
+    const std::string seed = parts[2];  // empty without a match
+    if (std::from_chars(seed.data(), seed.data() + seed.size(), files.seed).ec != std::errc()) {
       throw std::runtime_error(entry.path().string() + ": the name is not NAME-SEED" + std::string(kCaptureEnding));
     }
-    files.scene = stem.substr(0, dash);
+    files.scene = parts[1];
     files.capture = entry.path();
     files.truth = Beside(files.capture, ".truth.csv.xz");
     files.objects = Beside(files.capture, ".objects.csv.xz");

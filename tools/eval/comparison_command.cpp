@@ -80,7 +80,7 @@ void AddPoints(const std::vector<std::string>& files, MethodComparison& comparis
   int index = 0;
   for (const auto& file : files) {
     const auto cloud = ReadPoints(file);
-    auto organised = importer::Organise(cloud, {});
+    auto organised = importer::Organise(cloud);
     auto& scan = organised.labelled.scan;
     // As it would come over the bus: a scan that the segmenter would refuse is not scored.
     auto received = ScanOfMessages(importer::ToScanMessages(scan, "recording", bus::kMaxMessageBytes));

@@ -48,8 +48,9 @@ void Evaluation::Add(const messages::ScanMessages& scan) {
     const auto returns = Join(scan);
     Confusion confusion;
     for (const auto& made : returns) confusion.Add(made.object_id, made.label);
-    if (is_whole) Score(scan, confusion);
-    Measure(scan, confusion, returns, scan_rows);
+    const auto matches = confusion.Match();
+    if (is_whole) Score(scan, matches);
+    Measure(scan, matches, returns, scan_rows);
   }
   if (is_whole || !is_table_whole_) {
     is_table_whole_ = is_whole;
@@ -83,27 +84,27 @@ std::vector<Evaluation::JoinedReturn> Evaluation::Join(const messages::ScanMessa
   return returns;
 }
 
-void Evaluation::Score(const messages::ScanMessages& scan, const Confusion& confusion) {
-  const auto scores = confusion.Scores();
-  Summary ious;
-  for (const auto& score : scores) {
-    ious.Add(score.iou);
-    const auto object = truth_->objects().find(score.object_id);
-    auto& kind = scores_by_kind[object != truth_->objects().end() ? object->second.kind : "?"];
-    kind.iou.Add(score.iou);
-    if (score.num_returns < min_num_returns_) continue;
-    ++kind.num_present;
-    if (score.has_own_segment) ++kind.num_found;
+void Evaluation::Score(const messages::ScanMessages& scan, const Confusion::Matches& matches) {
+  Mean iou;
+  for (const auto& [id, object] : matches.objects) {
+    iou.Add(object.iou);
+    const auto known = truth_->objects().find(id);
+    auto& kind = scores_by_kind[known != truth_->objects().end() ? known->second.kind : "?"];
+    kind.iou.Add(object.iou);
+    if (object.num_returns >= min_num_returns_) kind.recall.Add(object.has_own_segment ? 1.0 : 0.0);
   }
-  if (ious.count() > 0) scan_iou.Add(ious.Mean());
-  const auto clutter = confusion.ClutterSegments();
-  clutter_segments.Add(static_cast<double>(clutter.size()));
-  const auto is_sure = [&scan](int label) {
+  if (iou.count > 0) scan_iou.Add(iou.value());
+  double num_clutter = 0.0;
+  double num_sure_clutter = 0.0;
+  for (const auto& [label, of_clutter] : matches.segments) {
+    if (of_clutter.has_object || of_clutter.has_own_vessel) continue;
+    ++num_clutter;
     const auto* segment = FindSegment(scan, label);
-    return segment != nullptr && segment->confidence == segment_t::CONFIDENCE_SURE;
-  };
-  sure_clutter_segments.Add(static_cast<double>(std::ranges::count_if(clutter, is_sure)));
-  segments.Add(confusion.NumSegments());
+    if (segment != nullptr && segment->confidence == segment_t::CONFIDENCE_SURE) ++num_sure_clutter;
+  }
+  clutter_segments.Add(num_clutter);
+  sure_clutter_segments.Add(num_sure_clutter);
+  segments.Add(static_cast<double>(matches.segments.size()));
 }
 
 const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
@@ -117,7 +118,7 @@ const Outlines& Evaluation::OutlinesFor(const obstacles_t& message) {
   return *outlines_;
 }
 
-void Evaluation::Measure(const messages::ScanMessages& scan, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+void Evaluation::Measure(const messages::ScanMessages& scan, const Confusion::Matches& matches, const std::vector<JoinedReturn>& returns,
                          std::vector<ObstacleRow>& scan_rows) {
   std::size_t row_index = 0;
   for (const auto& [part_index, message] : scan.obstacles) {
@@ -125,7 +126,8 @@ void Evaluation::Measure(const messages::ScanMessages& scan, const Confusion& co
         std::isfinite(message.datum_latitude_deg) && std::isfinite(message.datum_longitude_deg) && std::isfinite(message.datum_ellipsoid_height_m);
     for (const auto& obstacle : message.obstacles) {
       ObstacleRow& row = scan_rows[row_index++];
-      const int object_id = confusion.MajorityObject(obstacle.id);
+      const auto segment = matches.segments.find(obstacle.id);
+      const int object_id = segment == matches.segments.end() ? 0 : segment->second.majority_object;
       const auto object = truth_->objects().find(object_id);
       if (object != truth_->objects().end()) row.object_name = object->second.name;
       if (obstacle.status == obstacle_t::STATUS_OK && has_datum) {

@@ -36,9 +36,8 @@ struct ObstacleRow {
 };
 
 struct KindScore {
-  std::int64_t num_present = 0;  // object-scans with enough returns
-  std::int64_t num_found = 0;    // of these, with a segment of their own
-  Summary iou;                   // of all object-scans with a return
+  Mean recall;  // share of the object-scans with enough returns that have a segment of their own
+  Mean iou;     // of all object-scans with a return
 };
 
 class Evaluation {
@@ -63,10 +62,10 @@ class Evaluation {
   // With truth:
   std::map<std::pair<std::string, bool>, Errors> errors_by_kind;  // kind, is_moving
   std::map<std::string, KindScore> scores_by_kind;
-  Summary scan_iou;                    // mean over the objects of a whole scan
-  Summary clutter_segments;            // per whole scan
-  Summary sure_clutter_segments;       // of these, those that are sure
-  Summary segments;                    // per whole scan
+  Mean scan_iou;                       // of whole scans: mean over the objects
+  Mean clutter_segments;               // per whole scan
+  Mean sure_clutter_segments;          // of these, those that are sure
+  Mean segments;                       // per whole scan
   std::int64_t num_returns = 0;        // of scans whose scan and segments are in the log
   std::int64_t num_joined = 0;         // of these, found in the truth
   std::vector<SeenObstacle> seen;      // of status ok; in the order of their scans
@@ -81,8 +80,8 @@ class Evaluation {
   };
 
   std::vector<JoinedReturn> Join(const messages::ScanMessages& scan);
-  void Score(const messages::ScanMessages& scan, const Confusion& confusion);
-  void Measure(const messages::ScanMessages& scan, const Confusion& confusion, const std::vector<JoinedReturn>& returns,
+  void Score(const messages::ScanMessages& scan, const Confusion::Matches& matches);
+  void Measure(const messages::ScanMessages& scan, const Confusion::Matches& matches, const std::vector<JoinedReturn>& returns,
                std::vector<ObstacleRow>& scan_rows);
   void MeasureObstacle(const obstacles_t& message, const segment_t* segment, const std::vector<JoinedReturn>& returns, int object_id,
                        ObstacleRow& row);

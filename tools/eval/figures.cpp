@@ -64,8 +64,8 @@ std::string Scope(const Results& world) {
   for (const auto& scene : world.scenes) {
     if (world.methods.empty() || !world.methods.front().by_scene.contains(scene)) continue;
     const auto& score = world.methods.front().by_scene.at(scene);
-    num_scans += score.num_scans;
-    if (score.num_scans_with_object > 0) {
+    num_scans += score.num_scans();
+    if (score.iou.count > 0) {
       ++num_with_object;
     } else {
       without_object.push_back(scene);
@@ -86,8 +86,7 @@ std::string NearRecallOf(const MethodResult& method, const std::string& scene, c
   const auto found = method.by_scene.find(scene);
   if (found == method.by_scene.end()) return "-";
   const auto recall = found->second.near_recall_by_kind.find(kind);
-  if (recall == found->second.near_recall_by_kind.end() || recall->second.num_object_scans == 0) return "-";
-  return Number(100.0 * static_cast<double>(recall->second.num_found) / static_cast<double>(recall->second.num_object_scans), 1);
+  return recall == found->second.near_recall_by_kind.end() ? "-" : Number(100.0 * recall->second.value(), 1);
 }
 
 Table MainTable(const Results& results) {
@@ -111,9 +110,9 @@ Table MainTable(const Results& results) {
         continue;
       }
       const auto& method = world->methods.at(i);
-      row.push_back(Number(100.0 * MeanOverScenes(*world, method, MeanIou), 1));
-      row.push_back(Number(MeanOverScenes(*world, method, FalseSegmentsPerScan), 2));
-      row.push_back(Number(100.0 * MeanOverScenes(*world, method, ThingsWithSegment), 1));
+      row.push_back(Number(100.0 * MeanOverScenes(*world, method, &Score::iou), 1));
+      row.push_back(Number(MeanOverScenes(*world, method, &Score::false_segments), 2));
+      row.push_back(Number(100.0 * MeanOverScenes(*world, method, &Score::with_segment), 1));
       if (world->world.empty()) row.push_back(NearRecallOf(method, "black_buoys", "buoy"));
     }
     table.Add(std::move(row));
@@ -134,18 +133,15 @@ Table SweepTable(const Results& results) {
   Table table({"field", "its value", "tried", "mIoU, %"});
   for (const auto& curve : results.curves) {
     if (curve.value_of_boat.empty()) continue;
-    std::map<double, std::pair<double, int>> sums;
+    std::map<double, Mean> percents;
     for (const auto& line : curve.lines) {
-      for (const auto& [value, percent] : line.points) {
-        sums[value].first += percent;
-        ++sums[value].second;
-      }
+      for (const auto& [value, percent] : line.points) percents[value].Add(percent);
     }
     std::string values;
     std::string means;
-    for (const auto& [value, sum] : sums) {
+    for (const auto& [value, percent] : percents) {
       values += (values.empty() ? "" : " / ") + Number(value, 1);
-      means += (means.empty() ? "" : " / ") + Number(sum.first / sum.second, 1);
+      means += (means.empty() ? "" : " / ") + Number(percent.value(), 1);
     }
     table.Add({"`" + curve.x_label + "`", curve.value_of_boat, values, means});
   }

@@ -54,7 +54,7 @@ int EvaluateLog(const LogOptions& options) {
                                     });
 
   bus::LogReader reader(options.log_file);
-  std::optional<exporter::BoatOfLog> boat;
+  std::optional<config::BoatFacts> boat;
   std::int64_t num_unusable = 0;
   while (const auto event = reader.Next()) {
     bool is_taken = true;

@@ -1,14 +1,6 @@
 #include "tools/eval/machine.hpp"
 
 namespace lookout::eval {
-namespace {
-
-PacketTotals Sum(const PacketTotals& a, const lidar_clock_t& b) {
-  return {a.num_packets + b.num_packets, a.num_lost + b.num_lost_packets, a.num_duplicate + b.num_duplicate_packets,
-          a.num_reordered + b.num_reordered_packets};
-}
-
-}  // namespace
 
 void Machine::Add(const health_t& message) {
   auto& process = processes[message.process];
@@ -27,11 +19,14 @@ void Machine::Add(const health_t& message) {
 }
 
 void Machine::Add(const lidar_clock_t& message) {
-  if (last_clock && message.seq < last_clock->seq) earlier_runs_ = Sum(earlier_runs_, *last_clock);
-  last_clock = message;
+  const bool is_new_run = !last_clock_ || message.seq < last_clock_->seq;
+  const lidar_clock_t before = is_new_run ? lidar_clock_t{} : *last_clock_;
+  packets.num_packets += message.num_packets - before.num_packets;
+  packets.num_lost += message.num_lost_packets - before.num_lost_packets;
+  packets.num_duplicate += message.num_duplicate_packets - before.num_duplicate_packets;
+  packets.num_reordered += message.num_reordered_packets - before.num_reordered_packets;
+  last_clock_ = message;
   (message.time_source == lidar_clock_t::TIME_SENSOR ? num_scans_by_sensor : num_scans_by_host) += 1;
 }
-
-PacketTotals Machine::Packets() const { return last_clock ? Sum(earlier_runs_, *last_clock) : earlier_runs_; }
 
 }  // namespace lookout::eval

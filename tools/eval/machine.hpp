@@ -43,16 +43,14 @@ class Machine {
   void Add(const health_t& message);
   void Add(const lidar_clock_t& message);
 
-  PacketTotals Packets() const;
-
   std::map<std::string, ProcessState> processes;
   std::map<std::pair<std::string, std::pair<bool, std::string>>, Traffic> traffic;  // process, is output, channel
   std::int64_t num_scans_by_sensor = 0;                                             // stamped by the sensor's clock
   std::int64_t num_scans_by_host = 0;
-  std::optional<lidar_clock_t> last_clock;
+  PacketTotals packets;
 
  private:
-  PacketTotals earlier_runs_;
+  std::optional<lidar_clock_t> last_clock_;
 };
 
 }  // namespace lookout::eval

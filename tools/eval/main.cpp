@@ -1,5 +1,7 @@
 // lookout-eval: how good the obstacles of a log are, against the truth of a simulation; and how good methods of segmentation are, on simulated
 // scenes or on recordings of others.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <iostream>
@@ -23,18 +25,12 @@ struct Options {
   eval::ComparisonOptions comparison;
 };
 
-std::string CommandLine(int argc, char** argv) {
-  std::string line = "lookout-eval";
-  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
-  return line;
-}
-
 // Exits here for --help, --version and wrong lines.
 Options ParseOptions(int argc, char** argv) {
   Options options;
   auto& log = options.log;
   auto& comparison = options.comparison;
-  comparison.command = CommandLine(argc, argv);
+  comparison.command = fmt::format("lookout-eval {}", fmt::join(argv + 1, argv + argc, " "));
   CLI::App app(
       "Holds a log against the truth of lookout-sim (--in), or compares methods of segmentation on simulated scenes (--config with --scenes, "
       "--captures, --sweep, --test or --points).",
@@ -77,10 +73,10 @@ Options ParseOptions(int argc, char** argv) {
     app.parse(argc, argv);
     if (log.log_file.empty() && comparison.config_folder.empty()) throw CLI::RequiredError("one of --in LOG, --config DIR");
     if (!comparison.config_folder.empty()) {
-      const bool has_turns = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
-      if (!has_turns && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
+      const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
+      if (!has_scans && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
       if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
-      if (!has_turns && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (!has_scans && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
       if (comparison.methods.empty() &&
           ((comparison.sweeps.empty() && comparison.tests.empty()) || !comparison.points.empty() || !comparison.captures.empty()))
         comparison.methods = {"all"};

@@ -43,7 +43,7 @@ void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, co
   Score score = ScoreScan(truth, labelling);
   score.time_ms.push_back(time_ms);
   result.by_scene[place.scene].Add(score);
-  if (score.num_scans_with_object > 0) KeepIfBad(result, place, MeanIou(score), truth, std::move(labelling.label));
+  if (score.iou.count > 0) KeepIfBad(result, place, score.iou.value(), truth, std::move(labelling.label));
 }
 
 void MethodComparison::KeepIfBad(MethodResult& result, const ScanPlace& place, double iou, const LabelledScan& truth,

@@ -8,49 +8,34 @@ namespace lookout::eval {
 
 void Confusion::Add(int object_id, int label) {
   if (object_id > 0) ++object_returns_[object_id];
-  if (label > 0) {
-    ++segment_returns_[label];
-    ++returns_by_segment_[label][object_id];
-  }
+  if (label > 0) ++returns_by_segment_[label][object_id];
 }
 
-std::vector<Confusion::ObjectScore> Confusion::Scores() const {
-  std::vector<ObjectScore> scores;
-  for (const auto& [object_id, num_object] : object_returns_) {
-    ObjectScore score{object_id, num_object, 0.0, false};
-    for (const auto& [label, by_object] : returns_by_segment_) {
-      const auto found = by_object.find(object_id);
-      if (found == by_object.end()) continue;
-      const std::int64_t num_both = found->second;
-      const std::int64_t num_segment = segment_returns_.at(label);
-      score.iou = std::max(score.iou, static_cast<double>(num_both) / static_cast<double>(num_object + num_segment - num_both));
-      if (2 * num_both > num_segment) score.has_own_segment = true;
-    }
-    scores.push_back(score);
-  }
-  return scores;
-}
-
-int Confusion::MajorityObject(int label) const {
-  const auto found = returns_by_segment_.find(label);
-  if (found == returns_by_segment_.end()) return 0;
-  int best = 0;
-  std::int64_t best_count = 0;
-  for (const auto& [object_id, count] : found->second) {
-    if (count > best_count || (count == best_count && best <= 0)) {
-      best = object_id;
-      best_count = count;
-    }
-  }
-  return best;
-}
-
-std::vector<int> Confusion::ClutterSegments() const {
-  std::vector<int> labels;
+Confusion::Matches Confusion::Match() const {
+  Matches matches;
+  for (const auto& [object_id, count] : object_returns_) matches.objects[object_id].num_returns = count;
   for (const auto& [label, by_object] : returns_by_segment_) {
-    if (by_object.size() == 1 && by_object.begin()->first == 0) labels.push_back(label);
+    auto& segment = matches.segments[label];
+    for (const auto& [object_id, count] : by_object) segment.num_returns += count;
+    for (const auto& [object_id, num_both] : by_object) {
+      if (num_both > segment.num_of_majority || (num_both == segment.num_of_majority && segment.majority_object <= 0)) {
+        segment.majority_object = object_id;
+        segment.num_of_majority = num_both;
+      }
+      segment.has_own_vessel = segment.has_own_vessel || object_id < 0;
+      if (object_id <= 0) continue;
+      segment.has_object = true;
+      auto& object = matches.objects.at(object_id);
+      object.iou = std::max(object.iou, static_cast<double>(num_both) / static_cast<double>(object.num_returns + segment.num_returns - num_both));
+      object.has_own_segment = object.has_own_segment || 2 * num_both > segment.num_returns;
+      object.num_in_largest = std::max(object.num_in_largest, num_both);
+      ++object.num_segments;
+      if (kLeastPartsOfObject * num_both < object.num_returns) continue;
+      ++object.num_parts;
+      ++segment.num_parts;
+    }
   }
-  return labels;
+  return matches;
 }
 
 double Summary::Percentile(int percent) const {

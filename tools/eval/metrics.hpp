@@ -2,39 +2,64 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <vector>
 
 namespace lookout::eval {
 
+/// A sum and what it is of.
+struct Mean {
+  std::int64_t count = 0;
+  double sum = 0.0;
+
+  void Add(double value) { Add({1, value}); }
+  void Add(const Mean& other) {
+    count += other.count;
+    sum += other.sum;
+  }
+  /// NaN when nothing was counted.
+  double value() const { return count > 0 ? sum / static_cast<double>(count) : std::numeric_limits<double>::quiet_NaN(); }
+
+  bool operator==(const Mean&) const = default;
+};
+
+/// A segment or an object counts as cut, or as merged, by parts of at least this share of an object's returns.
+inline constexpr int kLeastPartsOfObject = 10;  // a tenth
+
 /// Which returns of a scan belong to which true object and to which segment.
 class Confusion {
  public:
-  /// @param object_id  true object; 0 and below are none
+  struct Object {
+    std::int64_t num_returns = 0;
+    /// The paper's measure: max over segments j of p_ij / (all of object i + all of segment j - p_ij); 0 when none of its returns is in a segment.
+    double iou = 0.0;
+    bool has_own_segment = false;     // one of which it holds more than half
+    int num_segments = 0;             // with a return of it
+    int num_parts = 0;                // of these, with a tenth of its returns or more
+    std::int64_t num_in_largest = 0;  // of its returns, in the segment that holds most of them
+  };
+  struct Segment {
+    std::int64_t num_returns = 0;
+    int majority_object = 0;           // with most of the returns; of equals an object before a stray (0) and the own vessel (-1), then the least id
+    std::int64_t num_of_majority = 0;  // returns
+    int num_parts = 0;                 // objects of which it holds a tenth or more
+    bool has_object = false;
+    bool has_own_vessel = false;
+  };
+  struct Matches {
+    std::map<int, Object> objects;    // by id; those with a return
+    std::map<int, Segment> segments;  // by label; those with a return
+  };
+
+  /// @param object_id  true object; 0 a stray, -1 the own vessel
   /// @param label      predicted segment; 0 and below are none
   void Add(int object_id, int label);
 
-  struct ObjectScore {
-    int object_id;
-    std::int64_t num_returns;
-    double iou;            // with the predicted segment of largest IoU; 0 when none of its returns is in a segment
-    bool has_own_segment;  // a segment of which it holds more than half
-  };
-
-  /// The paper's measure: IoU_i = max over segments j of p_ij / (all of object i + all of segment j - p_ij). By object_id.
-  std::vector<ObjectScore> Scores() const;
-
-  /// @return the object with most returns in the segment, of equals an object before a stray and then the least id; -1 for the own vessel, 0 when
-  /// strays lead or the segment is unknown
-  int MajorityObject(int label) const;
-
-  /// Labels of the segments without a single return of an object or the own vessel, in their order.
-  std::vector<int> ClutterSegments() const;
-  int NumSegments() const { return static_cast<int>(segment_returns_.size()); }
+  Matches Match() const;
 
  private:
   std::map<int, std::int64_t> object_returns_;                     // objects only
-  std::map<int, std::int64_t> segment_returns_;                    // segments only
   std::map<int, std::map<int, std::int64_t>> returns_by_segment_;  // label, object_id (also none)
 };
 

@@ -26,15 +26,11 @@ constexpr double kTest1BinM = 1.0;
 // Farther off the kayak gives so few returns that it is lost now and then for another reason than the shore; in print the greatest is 24.67 m.
 constexpr double kTest1ReachM = 30.0;
 
-// Number of scans and sum of IoU, by distance in steps of kTest1BinM.
-using Bins = std::map<int, std::pair<int, double>>;
+// IoU by distance in steps of kTest1BinM.
+using Bins = std::map<int, Mean>;
 
 void AddTo(Bins& bins, const std::vector<ShoreGap>& gaps) {
-  for (const auto& gap : gaps) {
-    auto& bin = bins[static_cast<int>(gap.distance_m / kTest1BinM)];
-    ++bin.first;
-    bin.second += gap.iou;
-  }
+  for (const auto& gap : gaps) bins[static_cast<int>(gap.distance_m / kTest1BinM)].Add(gap.iou);
 }
 
 // Looked for by kind: what else a scene holds is none of the test's business.
@@ -71,14 +67,6 @@ std::optional<KayakInScan> FindKayak(const LabelledScan& truth, const segmenter:
   return std::isfinite(least_m2) ? std::optional(KayakInScan{id, std::sqrt(least_m2)}) : std::nullopt;
 }
 
-double IouOf(std::int32_t object, LabelledScan truth, const Labelling& labelling) {
-  // The mean over one object is that object's.
-  for (auto& id : truth.object) {
-    if (id > 0 && id != object) id = kNoTrueObject;
-  }
-  return MeanIou(ScoreScan(truth, labelling));
-}
-
 // "4.00 m on (median over 18 seeds; in 2 more from no distance on)".
 std::string FoundFrom(const Summary& own_from_m, int num_never) {
   if (own_from_m.count() == 0) return fmt::format("no distance on ({} seeds)", num_never);
@@ -108,7 +96,8 @@ Curve RunTest1(RunPlan plan, const Boat& boat, std::FILE* progress) {
     const auto kayak = FindKayak(truth, boat.segmenter.filter);
     if (!kayak) return;
     for (auto& variant : variants) {
-      variant.gaps_by_seed[place.seed].push_back({kayak->distance_m, IouOf(kayak->id, truth, variant.method->Segment(truth.scan))});
+      const auto matches = MatchScan(truth, variant.method->Segment(truth.scan).label);
+      variant.gaps_by_seed[place.seed].push_back({kayak->distance_m, matches.objects.at(kayak->id).iou});
     }
   });
 
@@ -126,7 +115,7 @@ Curve RunTest1(RunPlan plan, const Boat& boat, std::FILE* progress) {
       }
     }
     Curve::Line line{variant.method->name(), {}};
-    for (const auto& [bin, sum] : bins) line.points.emplace_back((bin + 0.5) * kTest1BinM, 100.0 * sum.second / sum.first);
+    for (const auto& [bin, iou] : bins) line.points.emplace_back((bin + 0.5) * kTest1BinM, 100.0 * iou.value());
     curve.lines.push_back(std::move(line));
     if (!curve.note.empty()) curve.note += " ";
     curve.note += variant.method->name() + ": own segment from " + FoundFrom(own_from_m, num_never) + ".";
@@ -145,10 +134,12 @@ struct ClusterTest {
   void (*set)(segmenter::ClusteringParams&, double) = nullptr;
 };
 
-// Sums over scans at one value of the threshold.
+// What became of the object over scans at one value of the threshold.
 struct PartsAt {
   double value = 0.0;
-  ObjectParts sum{};
+  Mean clusters{};           // a scan, with a return of it
+  Mean large{};              // a scan, with a tenth of it or more
+  Mean in_largest{};         // share of its returns in the cluster that holds most of them
   int num_scans_in_one = 0;  // all of the object that is in a cluster is in one
   int num_scans_one_large = 0;
 };
@@ -173,34 +164,35 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
   for (const double value : test.values) parts.push_back({value});
   int num_scans = 0;
   ForEachScan(plan, boat, progress, [&](const ScanPlace&, const LabelledScan& truth) {
-    const auto object = TheObject(truth, test.kind);
-    if (std::ranges::find(truth.object, object) == truth.object.end()) return;
+    const auto id = TheObject(truth, test.kind);
+    if (std::ranges::find(truth.object, id) == truth.object.end()) return;
     ++num_scans;
     for (auto& at : parts) {
       auto params = PaperParams(boat.segmenter, kPaperFullColumns);
       test.set(params.clustering, at.value);
-      const auto of_scan = PartsOf(object, truth, SegmenterMethod("", params).Segment(truth.scan));
-      at.sum.Add(of_scan);
-      at.num_scans_in_one += of_scan.num_segments == 1 ? 1 : 0;
-      at.num_scans_one_large += of_scan.num_large == 1 ? 1 : 0;
+      const auto object = MatchScan(truth, SegmenterMethod("", params).Segment(truth.scan).label).objects.at(id);
+      at.clusters.Add(object.num_segments);
+      at.large.Add(object.num_parts);
+      at.in_largest.Add({object.num_returns, static_cast<double>(object.num_in_largest)});
+      at.num_scans_in_one += object.num_segments == 1 ? 1 : 0;
+      at.num_scans_one_large += object.num_parts == 1 ? 1 : 0;
     }
   });
   if (num_scans == 0) return curve;
   Curve::Line all{"all with a return of it", {}};
   Curve::Line large{"with a tenth of it or more", {}};
   for (const auto& at : parts) {
-    all.points.emplace_back(at.value, static_cast<double>(at.sum.num_segments) / num_scans);
-    large.points.emplace_back(at.value, static_cast<double>(at.sum.num_large) / num_scans);
+    all.points.emplace_back(at.value, at.clusters.value());
+    large.points.emplace_back(at.value, at.large.value());
   }
   curve.lines = {std::move(all), std::move(large)};
   const auto where = [&](int PartsAt::*count) { return WhereInAllScans(parts, count, num_scans, test); };
   curve.note += " Here, in all of " + std::to_string(num_scans) + " scans: one cluster " + where(&PartsAt::num_scans_in_one) +
                 "; one with a tenth of it or more " + where(&PartsAt::num_scans_one_large) + ".";
   const auto in_print = std::ranges::find(parts, test.value_in_print, &PartsAt::value);
-  if (in_print != parts.end() && in_print->sum.num_returns > 0) {
-    const double share = static_cast<double>(in_print->sum.num_in_largest) / static_cast<double>(in_print->sum.num_returns);
-    curve.note +=
-        " At " + ThresholdText(test, in_print->value) + ", the value in print, the largest holds " + Number(100.0 * share, 1) + " % of its returns.";
+  if (in_print != parts.end()) {
+    curve.note += " At " + ThresholdText(test, in_print->value) + ", the value in print, the largest holds " +
+                  Number(100.0 * in_print->in_largest.value(), 1) + " % of its returns.";
   }
   return curve;
 }
@@ -219,33 +211,10 @@ std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps) {
   std::optional<double> from_m;
   for (auto bin = bins.rbegin(); bin != bins.rend(); ++bin) {
     if (bin->first * kTest1BinM >= kTest1ReachM) continue;
-    if (bin->second.second < kFoundIou * bin->second.first) break;
+    if (bin->second.value() < kFoundIou) break;
     from_m = bin->first * kTest1BinM;
   }
   return from_m;
-}
-
-void ObjectParts::Add(const ObjectParts& other) {
-  num_segments += other.num_segments;
-  num_large += other.num_large;
-  num_in_largest += other.num_in_largest;
-  num_returns += other.num_returns;
-}
-
-ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labelling& labelling) {
-  std::map<std::int32_t, std::int64_t> returns_of;  // by label
-  ObjectParts parts;
-  for (std::size_t cell = 0; cell < truth.object.size(); ++cell) {
-    if (truth.object[cell] != object || truth.scan.columns.range[cell] == 0 || labelling.label[cell] == kNotScored) continue;
-    ++parts.num_returns;
-    if (labelling.label[cell] > 0) ++returns_of[labelling.label[cell]];
-  }
-  for (const auto& [label, count] : returns_of) {
-    ++parts.num_segments;
-    parts.num_in_largest = std::max(parts.num_in_largest, count);
-    if (kLeastPartsOfObject * count >= parts.num_returns) ++parts.num_large;
-  }
-  return parts;
 }
 
 Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progress) {

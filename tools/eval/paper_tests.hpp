@@ -11,30 +11,14 @@
 
 namespace lookout::eval {
 
-/// Test 1 (scene kayak_shore): from how far off the shore is the kayak its own segment? In the paper from 8.58 m with e1 = 0.95 and from 24.67 m
-/// with e1 = 0.6. Test 2 (shore_20m): a shore should be one object: number of clusters against e2. Test 3 (motorboat_6m): the same of a
-/// motor boat of 6 m, against e3.
-///
-/// Clusters are segments with a return of that shore or boat, counted twice: all of them, and those that hold a tenth of it. e2 is 50 degrees in
-/// Tests 1 and 3, e3 is 3.5 m in Tests 1 and 2, e1 is 0.95 in 2 and 3.
+/// Test 1 (scene kayak_shore): from how far off the shore is the kayak its own segment? Test 2 (shore_20m): a shore should be one object. Test 3
+/// (motorboat_6m): the same of a motor boat. README.md (Definitions) says what is counted. e2 is 50 degrees in Tests 1 and 3, e3 is 3.5 m in Tests 1
+/// and 2, e1 is 0.95 in 2 and 3.
 ///
 /// @param number   1, 2 or 3
 /// @param plan     seeds and, for Tests 2 and 3, seconds; its scenes are not looked at. Test 1 takes the 40 s that its kayak needs
 /// @throws config::ConfigError as ForEachScan; std::runtime_error when the scene of a test does not hold one kayak, shore or motor boat
 Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progress);
-
-/// Of Tests 2 and 3: into how much an object was cut.
-struct ObjectParts {
-  std::int64_t num_segments = 0;    // with a return of it
-  std::int64_t num_large = 0;       // with a tenth of its returns or more (kLeastPartsOfObject)
-  std::int64_t num_in_largest = 0;  // returns of it
-  std::int64_t num_returns = 0;     // of it that are scored
-
-  void Add(const ObjectParts& other);
-};
-
-/// Precondition: labelling.label is as long as the scan has cells.
-ObjectParts PartsOf(std::int32_t object, const LabelledScan& truth, const Labelling& labelling);
 
 /// Of Test 1: a scan in which the kayak and the shore are seen.
 struct ShoreGap {

@@ -7,12 +7,8 @@
 
 namespace lookout::eval {
 
-/// Sums over scans, for each width of the paper's image.
-///
-/// Ground points are the returns that keep their pixel, out of those that the boat's filter lets through; in the paper's words, for its scans are
-/// mostly shore. The point of a pixel lies at the range and ring of its return, in the middle of its column; its distance to the nearest return
-/// of the scan is without sign. True positives: of the returns of objects that keep their pixel, those that the paper's method puts into
-/// a segment that belongs to their object (scoring.hpp).
+/// Sums over scans, for each width of the paper's image (README.md, Definitions). What it keeps is "ground points" in the paper's words, for its
+/// scans are mostly shore; out of the returns that the boat's filter lets through.
 class ProjectionTable {
  public:
   /// @param boat  params of the boat's segmenter
@@ -25,12 +21,10 @@ class ProjectionTable {
 
  private:
   struct Sums {
-    std::int64_t num_scans = 0;
-    std::int64_t num_points = 0;
-    std::int64_t num_kept = 0;
-    std::int64_t num_object_points = 0;  // of these that are kept
-    std::int64_t num_true_positives = 0;
-    double distance_m = 0.0;
+    Mean points;          // a scan
+    Mean kept;            // a scan
+    Mean true_positives;  // of the returns of objects that are kept
+    Mean distance_m;      // of a return that is kept
     double squared_distance_m2 = 0.0;
   };
 

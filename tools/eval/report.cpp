@@ -110,10 +110,9 @@ void PrintSeen(std::ostream& out, const Evaluation& evaluation) {
     std::vector<std::string> row{name};
     const auto distances = SummaryCells(summary.distance_m, 3);
     row.insert(row.end(), distances.begin(), distances.end());
-    const bool has_any = summary.distance_m.count() > 0;
-    row.push_back(has_any ? Number(summary.stated_sd_m.Median(), 3) : "-");
-    row.push_back(has_any ? Percent(summary.in_ellipse) : "-");
-    row.push_back(has_any ? Number(summary.nees.Mean(), 2) : "-");
+    row.push_back(summary.stated_sd_m.count() > 0 ? Number(summary.stated_sd_m.Median(), 3) : "-");
+    row.push_back(Percent(summary.in_ellipse.value()));
+    row.push_back(Number(summary.nees.value(), 2));
     const auto jumps = SummaryCells(summary.jump_m, 3);
     row.insert(row.end(), jumps.begin() + 1, jumps.end());
     row.push_back(summary.jump_sds.count() > 0 ? Number(summary.jump_sds.Max(), 2) : "-");
@@ -130,30 +129,29 @@ void PrintSeen(std::ostream& out, const Evaluation& evaluation) {
 }
 
 void PrintSegmentation(std::ostream& out, const Evaluation& evaluation, int min_num_returns) {
-  out << "segmentation over " << evaluation.scan_iou.count() << " whole scans";
+  out << "segmentation over " << evaluation.scan_iou.count << " whole scans";
   if (evaluation.num_returns > 0) {
     out << "; " << evaluation.num_returns << " returns, "
         << Percent(static_cast<double>(evaluation.num_joined) / static_cast<double>(evaluation.num_returns)) << " % found in the truth";
   }
   out << '\n';
-  if (evaluation.scan_iou.count() > 0) {
-    out << "mIoU " << Percent(evaluation.scan_iou.Mean()) << " %, segments per scan " << Number(evaluation.segments.Mean(), 2) << ", of pure clutter "
-        << Number(evaluation.clutter_segments.Mean(), 2) << ", of these sure " << Number(evaluation.sure_clutter_segments.Mean(), 2) << '\n';
+  if (evaluation.scan_iou.count > 0) {
+    out << "mIoU " << Percent(evaluation.scan_iou.value()) << " %, segments per scan " << Number(evaluation.segments.value(), 2)
+        << ", of pure clutter " << Number(evaluation.clutter_segments.value(), 2) << ", of these sure "
+        << Number(evaluation.sure_clutter_segments.value(), 2) << '\n';
   }
   out << "recall: objects with " << min_num_returns << " returns or more that have a segment of their own\n";
-  Table table({"kind", "object_turns", "found", "recall_%", "mean_IoU_%"});
+  Table table({"kind", "object_scans", "found", "recall_%", "mean_IoU_%"});
   for (const auto& [kind, score] : evaluation.scores_by_kind) {
-    const std::string recall =
-        score.num_present > 0 ? Percent(static_cast<double>(score.num_found) / static_cast<double>(score.num_present)) : std::string("-");
-    table.Add({kind, Number(score.num_present), Number(score.num_found), recall, Percent(score.iou.Mean())});
+    table.Add({kind, Number(score.recall.count), Number(score.recall.sum, 0), Percent(score.recall.value()), Percent(score.iou.value())});
   }
   table.Print(out);
   out << '\n';
 }
 
 void PrintMachine(std::ostream& out, const Machine& machine) {
-  if (machine.last_clock) {
-    const auto packets = machine.Packets();
+  const auto& packets = machine.packets;
+  if (machine.num_scans_by_sensor + machine.num_scans_by_host > 0) {
     out << "lidar packets: " << packets.num_packets << ", lost " << packets.num_lost << ", duplicate " << packets.num_duplicate << ", reordered "
         << packets.num_reordered << "; scans stamped by the sensor's clock " << machine.num_scans_by_sensor << ", by the host's "
         << machine.num_scans_by_host << '\n';

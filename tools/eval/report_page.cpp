@@ -13,9 +13,9 @@
 
 #include "common/core/printable.hpp"
 #include "tools/eval/against_peers.hpp"
-#include "tools/eval/method.hpp"
 #include "tools/eval/metrics.hpp"
 #include "tools/eval/page_template.hpp"
+#include "tools/eval/scoring.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -24,19 +24,20 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // null in JSON
 
-double Percent(double part, std::int64_t whole) { return whole > 0 ? 100.0 * part / static_cast<double>(whole) : kNone; }
-
-const std::array<std::pair<const char*, Figure>, 9> kFigures{{
-    {"iou_percent", [](const Score& score) { return 100.0 * MeanIou(score); }},
-    {"water_iou_percent", [](const Score& score) { return 100.0 * MeanWaterIou(score); }},
-    {"with_segment_percent", [](const Score& score) { return 100.0 * ThingsWithSegment(score); }},
-    {"false_segments", FalseSegmentsPerScan},
-    {"segments", SegmentsPerScan},
-    {"components", ComponentsPerScan},
-    {"over_segmented_percent", [](const Score& score) { return 100.0 * OverSegmentedShare(score); }},
-    {"under_segmented_percent", [](const Score& score) { return 100.0 * UnderSegmentedShare(score); }},
-    {"true_positive_percent", [](const Score& score) { return 100.0 * TruePositiveRatio(score); }},
-}};
+struct PageFigure {
+  const char* name;
+  Mean Score::*mean;
+  double unit;  // 100: in per cent
+};
+constexpr std::array kFigures{PageFigure{"iou_percent", &Score::iou, 100.0},
+                              PageFigure{"water_iou_percent", &Score::water_iou, 100.0},
+                              PageFigure{"with_segment_percent", &Score::with_segment, 100.0},
+                              PageFigure{"false_segments", &Score::false_segments, 1.0},
+                              PageFigure{"segments", &Score::segments, 1.0},
+                              PageFigure{"components", &Score::components, 1.0},
+                              PageFigure{"over_segmented_percent", &Score::over_segmented, 100.0},
+                              PageFigure{"under_segmented_percent", &Score::under_segmented, 100.0},
+                              PageFigure{"true_positive_percent", &Score::true_positives, 100.0}};
 
 Json TimesOf(const std::vector<double>& time_ms) {
   Summary summary;
@@ -45,30 +46,24 @@ Json TimesOf(const std::vector<double>& time_ms) {
   }
   if (summary.count() == 0) return nullptr;
   const double mean_ms = summary.Mean();
-  double squares = 0.0;
+  Summary deviations;
   for (const double value : time_ms) {
-    if (std::isfinite(value)) squares += (value - mean_ms) * (value - mean_ms);
+    if (std::isfinite(value)) deviations.Add(value - mean_ms);
   }
-  return {{"median", summary.Median()},
-          {"p99", summary.Percentile(99)},
-          {"mean", mean_ms},
-          {"sd", std::sqrt(squares / static_cast<double>(summary.count()))}};
+  return {{"median", summary.Median()}, {"p99", summary.Percentile(99)}, {"mean", mean_ms}, {"sd", deviations.Rms()}};
 }
 
 Json FiguresOf(const Score& score) {
-  Json json{{"num_scans", score.num_scans}, {"time_ms", TimesOf(score.time_ms)}};
-  for (const auto& [name, figure] : kFigures) json[name] = figure(score);
+  Json json{{"num_scans", score.num_scans()}, {"time_ms", TimesOf(score.time_ms)}};
+  for (const auto& figure : kFigures) json[figure.name] = figure.unit * (score.*figure.mean).value();
   return json;
 }
 
-template <typename Value>
-Json ByRange(const std::map<int, std::pair<std::int64_t, Value>>& bins) {
+Json ByRange(const std::map<int, Mean>& bins) {
   Json json = Json::array();
-  for (const auto& [bin, entry] : bins) {
-    if (entry.first == 0) continue;
-    json.push_back({{"middle_m", (bin + 0.5) * Score::kRangeBinM},
-                    {"num_object_scans", entry.first},
-                    {"percent", Percent(static_cast<double>(entry.second), entry.first)}});
+  for (const auto& [bin, mean] : bins) {
+    if (mean.count == 0) continue;
+    json.push_back({{"middle_m", (bin + 0.5) * Score::kRangeBinM}, {"num_object_scans", mean.count}, {"percent", 100.0 * mean.value()}});
   }
   return json;
 }
@@ -109,28 +104,27 @@ Json WorstScanOf(const WorstScan& worst) {
   if (scan.num_cells() != num_cells || worst.truth.object.size() != num_cells || worst.label.size() != num_cells) return json;
 
   const auto spots = SpotsOf(worst);
-  Confusion confusion;
   std::map<std::int32_t, std::pair<double, double>> sums;  // of (right, forward), by object
   std::pair min_m{0.0, 0.0};
   std::pair max_m{0.0, 0.0};
   for (const auto& spot : spots) {
-    confusion.Add(spot.object, spot.segment);
     sums[spot.object].first += spot.right_m;
     sums[spot.object].second += spot.forward_m;
     if (spot.object <= 0 && spot.segment == 0) continue;
     min_m = {std::min(min_m.first, spot.right_m), std::min(min_m.second, spot.forward_m)};
     max_m = {std::max(max_m.first, spot.right_m), std::max(max_m.second, spot.forward_m)};
   }
-  auto scores = confusion.Scores();
-  std::ranges::stable_sort(scores, {}, [&sums](const auto& score) { return std::atan2(sums[score.object_id].first, sums[score.object_id].second); });
-  for (const auto& score : scores) {
-    const auto found = worst.truth.objects.find(score.object_id);
+  const auto matches = MatchScan(worst.truth, worst.label);
+  std::vector<std::pair<int, Confusion::Object>> objects(matches.objects.begin(), matches.objects.end());
+  std::ranges::stable_sort(objects, {}, [&sums](const auto& object) { return std::atan2(sums[object.first].first, sums[object.first].second); });
+  for (const auto& [id, object] : objects) {
+    const auto found = worst.truth.objects.find(id);
     const bool is_known = found != worst.truth.objects.end();
-    json["objects"].push_back({{"id", score.object_id},
+    json["objects"].push_back({{"id", id},
                                {"name", is_known ? PrintableLines(found->second.name) : "?"},
                                {"kind", is_known ? PrintableLines(found->second.kind) : "?"},
-                               {"num_returns", score.num_returns},
-                               {"iou_percent", 100.0 * score.iou}});
+                               {"num_returns", object.num_returns},
+                               {"iou_percent", 100.0 * object.iou}});
   }
   constexpr double kSteps = 210.0;  // a plan is 460 wide and its dots 3: those that touch still do
   const double unit_m = std::max({1.0, max_m.first - min_m.first, max_m.second - min_m.second}) / kSteps;
@@ -158,20 +152,16 @@ Json WorstScanOf(const WorstScan& worst) {
 
 // Columns of scenes and kinds are those of the world.
 Json MethodOf(const Results& world, const MethodResult& method, const std::set<std::string>& kinds) {
-  Score total;
-  for (const auto& [scene, score] : method.by_scene) total.Add(score);
+  Score total = Total(method);
   Json json{{"name", PrintableLines(method.method)}, {"is_partial", HasPartialView(method)}, {"mean", Json::object()}, {"total", FiguresOf(total)}};
-  for (const auto& [name, figure] : kFigures) json["mean"][name] = MeanOverScenes(world, method, figure);
+  for (const auto& figure : kFigures) json["mean"][figure.name] = figure.unit * MeanOverScenes(world, method, figure.mean);
   json["scenes"] = Json::array();
   for (const auto& scene : world.scenes) {
     const auto found = method.by_scene.find(scene);
     json["scenes"].push_back(found == method.by_scene.end() ? Json(nullptr) : FiguresOf(found->second));
   }
   json["kinds_iou_percent"] = Json::array();
-  for (const auto& kind : kinds) {
-    const auto& [count, sum] = total.iou_by_kind[kind];
-    json["kinds_iou_percent"].push_back(Percent(sum, count));
-  }
+  for (const auto& kind : kinds) json["kinds_iou_percent"].push_back(100.0 * total.iou_by_kind[kind].value());
   json["iou_by_range"] = ByRange(total.iou_by_range);
   json["recall_by_range"] = ByRange(total.recall_by_range);
   json["stages"] = Json::array();
@@ -192,7 +182,7 @@ Json NearRecallOf(const Results& world) {
       for (const auto& [kind, recall] : found->second.near_recall_by_kind) {
         auto& row = percents[kind];
         row.resize(world.methods.size(), kNone);
-        row[i] = Percent(static_cast<double>(recall.num_found), recall.num_object_scans);
+        row[i] = 100.0 * recall.value();
       }
     }
     for (const auto& [kind, row] : percents) rows.push_back({{"scene", PrintableLines(scene)}, {"kind", PrintableLines(kind)}, {"percent", row}});
@@ -200,23 +190,21 @@ Json NearRecallOf(const Results& world) {
   return rows;
 }
 
-Json PeerOf(const AgainstPeer& peer) {
-  return {{"name", PrintableLines(peer.peer)},
-          {"iou_percent", 100.0 * peer.peer_iou},
-          {"false_segments", peer.peer_false},
+Json PeerOf(const BestPeer& peer) {
+  return {{"name", PrintableLines(peer.name)},
+          {"iou_percent", 100.0 * peer.iou},
+          {"false_segments", peer.false_segments},
           {"error_percent", 100.0 * peer.error_share}};
 }
 
 Json AgainstPeersOf(const Results& world) {
-  const auto tuned = CompareWithPeers(world, true);
-  const auto all = CompareWithPeers(world, false);
   Json rows = Json::array();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    rows.push_back({{"scene", PrintableLines(all[i].scene)},
-                    {"iou_percent", 100.0 * all[i].our_iou},
-                    {"false_segments", all[i].our_false},
-                    {"tuned", i < tuned.size() ? PeerOf(tuned[i]) : Json(nullptr)},
-                    {"all", PeerOf(all[i])}});
+  for (const auto& row : CompareWithPeers(world)) {
+    rows.push_back({{"scene", PrintableLines(row.scene)},
+                    {"iou_percent", 100.0 * row.our_iou},
+                    {"false_segments", row.our_false},
+                    {"tuned", row.tuned ? PeerOf(*row.tuned) : Json(nullptr)},
+                    {"all", PeerOf(row.of_all)}});
   }
   return rows;
 }

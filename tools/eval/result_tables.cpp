@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
-#include <limits>
 #include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <stdexcept>
 
 #include "common/io/output_file.hpp"
@@ -18,47 +20,48 @@ namespace {
 
 std::string Percent(double share) { return Number(100.0 * share, 1); }
 
-double Ratio(double part, std::int64_t whole) { return whole > 0 ? part / static_cast<double>(whole) : std::numeric_limits<double>::quiet_NaN(); }
+// A figure of the tables, as it is printed.
+struct Column {
+  const char* heading;
+  Mean Score::*figure;
+  int decimals;            // kPercent: a share, in per cent
+  bool is_of_all = false;  // over all scans; else the mean over the scenes
 
-Score Total(const MethodResult& method) {
-  Score total;
-  for (const auto& [scene, score] : method.by_scene) total.Add(score);
-  return total;
-}
+  static constexpr int kPercent = -1;
+  std::string Text(double value) const { return decimals == kPercent ? Percent(value) : Number(value, decimals); }
+};
 
-Table ByScene(const Results& results, const Figure& figure, const std::function<std::string(double)>& text) {
-  Table::Row header{"method", "mean"};
+Table ByScene(const Results& results, Mean Score::*figure, int decimals = Column::kPercent) {
+  const Column column{"mean", figure, decimals};
+  Table::Row header{"method", column.heading};
   header.insert(header.end(), results.scenes.begin(), results.scenes.end());
   Table table(header);
   for (const auto& method : results.methods) {
-    Table::Row row{method.method, text(MeanOverScenes(results, method, figure))};
+    Table::Row row{method.method, column.Text(MeanOverScenes(results, method, figure))};
     for (const auto& scene : results.scenes) {
       const auto found = method.by_scene.find(scene);
-      row.push_back(found == method.by_scene.end() ? "-" : text(figure(found->second)));
+      row.push_back(found == method.by_scene.end() ? "-" : column.Text((found->second.*figure).value()));
     }
     table.Add(row);
   }
   return table;
 }
 
-// Methods in rows, the keys of a sum of their totals in columns: what has been counted, and of it the share in per cent.
-template <typename Key, typename Sum>
-Table ByKey(const Results& results, std::map<Key, std::pair<std::int64_t, Sum>> Score::*sums, const std::function<std::string(const Key&)>& title) {
+// Methods in rows, the keys of a figure of their totals in columns, in per cent.
+template <typename Key>
+Table ByKey(const Results& results, std::map<Key, Mean> Score::*means, const std::function<std::string(const Key&)>& title) {
   std::set<Key> keys;
   std::vector<Score> totals;
   for (const auto& method : results.methods) {
     totals.push_back(Total(method));
-    for (const auto& [key, sum] : totals.back().*sums) keys.insert(key);
+    for (const auto& [key, mean] : totals.back().*means) keys.insert(key);
   }
   Table::Row header{"method"};
   for (const auto& key : keys) header.push_back(title(key));
   Table table(header);
   for (std::size_t i = 0; i < totals.size() && !keys.empty(); ++i) {
     Table::Row row{results.methods[i].method};
-    for (const auto& key : keys) {
-      const auto& [count, sum] = (totals[i].*sums)[key];
-      row.push_back(Percent(Ratio(static_cast<double>(sum), count)));
-    }
+    for (const auto& key : keys) row.push_back(Percent((totals[i].*means)[key].value()));
     table.Add(row);
   }
   return table;
@@ -71,19 +74,19 @@ Table::Row TimeCells(const std::vector<double>& time_ms) {
   return {Number(summary.Median(), 3), Number(summary.Percentile(99), 3)};
 }
 
-Table Overall(const Results& results) {
-  Table table({"method", "mIoU_%", "water_%", "false", "with_segment_%", "segments", "over_%", "under_%", "TPR_%", "median_ms", "p99_ms"});
+// A row for each method: these figures, then its times.
+Table OfMethods(const Results& results, std::span<const Column> columns, bool (*is_wanted)(const Score& total)) {
+  Table::Row header{"method"};
+  for (const auto& column : columns) header.emplace_back(column.heading);
+  header.insert(header.end(), {"median_ms", "p99_ms"});
+  Table table(header);
   for (const auto& method : results.methods) {
     const Score total = Total(method);
-    Table::Row row{method.method,
-                   Percent(MeanOverScenes(results, method, MeanIou)),
-                   Percent(MeanOverScenes(results, method, MeanWaterIou)),
-                   Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2),
-                   Percent(MeanOverScenes(results, method, ThingsWithSegment)),
-                   Number(MeanOverScenes(results, method, SegmentsPerScan), 2),
-                   Percent(OverSegmentedShare(total)),
-                   Percent(UnderSegmentedShare(total)),
-                   Percent(TruePositiveRatio(total))};
+    if (!is_wanted(total)) continue;
+    Table::Row row{method.method};
+    for (const auto& column : columns) {
+      row.push_back(column.Text(column.is_of_all ? (total.*column.figure).value() : MeanOverScenes(results, method, column.figure)));
+    }
     const auto times = TimeCells(total.time_ms);
     row.insert(row.end(), times.begin(), times.end());
     table.Add(row);
@@ -91,45 +94,42 @@ Table Overall(const Results& results) {
   return table;
 }
 
-// With and without a step of the segmenter: methods that have components before they cluster them.
-Table Ablation(const Results& results) {
-  Table table({"method", "mIoU_%", "components", "segments", "false", "median_ms", "p99_ms"});
-  for (const auto& method : results.methods) {
-    const Score total = Total(method);
-    if (total.num_scans_with_components == 0) continue;
-    const auto times = TimeCells(total.time_ms);
-    table.Add({method.method, Percent(MeanOverScenes(results, method, MeanIou)), Number(MeanOverScenes(results, method, ComponentsPerScan), 1),
-               Number(MeanOverScenes(results, method, SegmentsPerScan), 2), Number(MeanOverScenes(results, method, FalseSegmentsPerScan), 2),
-               times[0], times[1]});
-  }
-  return table;
-}
+constexpr std::array kOverall{Column{"mIoU_%", &Score::iou, Column::kPercent},
+                              Column{"water_%", &Score::water_iou, Column::kPercent},
+                              Column{"false", &Score::false_segments, 2},
+                              Column{"with_segment_%", &Score::with_segment, Column::kPercent},
+                              Column{"segments", &Score::segments, 2},
+                              Column{"over_%", &Score::over_segmented, Column::kPercent, true},
+                              Column{"under_%", &Score::under_segmented, Column::kPercent, true},
+                              Column{"TPR_%", &Score::true_positives, Column::kPercent, true}};
+// With and without a step of the segmenter.
+constexpr std::array kAblation{Column{"mIoU_%", &Score::iou, Column::kPercent}, Column{"components", &Score::components, 1},
+                               Column{"segments", &Score::segments, 2}, Column{"false", &Score::false_segments, 2}};
 
 Table AgainstPeers(const Results& results) {
   Table table({"scene", "ours_%", "ours_false", "best_tuned_peer", "peer_%", "peer_false", "our_error_of_its_error_%", "best_peer_of_all", "best_%",
                "best_false", "our_error_of_best_error_%"});
-  const auto tuned = CompareWithPeers(results, true);
-  const auto all = CompareWithPeers(results, false);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const bool has_tuned = i < tuned.size();
-    table.Add({all[i].scene, Percent(all[i].our_iou), Number(all[i].our_false, 2), has_tuned ? tuned[i].peer : "-",
-               has_tuned ? Percent(tuned[i].peer_iou) : "-", has_tuned ? Number(tuned[i].peer_false, 2) : "-",
-               has_tuned ? Percent(tuned[i].error_share) : "-", all[i].peer, Percent(all[i].peer_iou), Number(all[i].peer_false, 2),
-               Percent(all[i].error_share)});
+  for (const auto& row : CompareWithPeers(results)) {
+    Table::Row cells{row.scene, Percent(row.our_iou), Number(row.our_false, 2)};
+    for (const auto& peer : {row.tuned, std::optional(row.of_all)}) {
+      const auto of_peer = peer ? Table::Row{peer->name, Percent(peer->iou), Number(peer->false_segments, 2), Percent(peer->error_share)}
+                                : Table::Row{"-", "-", "-", "-"};
+      cells.insert(cells.end(), of_peer.begin(), of_peer.end());
+    }
+    table.Add(std::move(cells));
   }
   return table;
 }
 
 // A row for each method, scene and kind.
 Table NearRecall(const Results& results) {
-  Table table({"method", "scene", "kind", "object_turns", "recall_%"});
+  Table table({"method", "scene", "kind", "object_scans", "recall_%"});
   for (const auto& method : results.methods) {
     for (const auto& scene : results.scenes) {
       const auto found = method.by_scene.find(scene);
       if (found == method.by_scene.end()) continue;
       for (const auto& [kind, recall] : found->second.near_recall_by_kind) {
-        table.Add({method.method, scene, kind, Number(recall.num_object_scans),
-                   Percent(Ratio(static_cast<double>(recall.num_found), recall.num_object_scans))});
+        table.Add({method.method, scene, kind, Number(recall.count), Percent(recall.value())});
       }
     }
   }
@@ -185,13 +185,13 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   const std::function range_title = [](const int& bin) {
     return fmt::format("{:.0f}-{:.0f}_m", bin * Score::kRangeBinM, (bin + 1) * Score::kRangeBinM);
   };
-  add("table_1", "Table I: mIoU, %", ByScene(results, MeanIou, Percent));
-  add("water", "mIoU over objects in the water alone, %", ByScene(results, MeanWaterIou, Percent));
-  add("false_segments", "false segments a scan", ByScene(results, FalseSegmentsPerScan, [](double value) { return Number(value, 2); }));
+  add("table_1", "Table I: mIoU, %", ByScene(results, &Score::iou));
+  add("water", "mIoU over objects in the water alone, %", ByScene(results, &Score::water_iou));
+  add("false_segments", "false segments a scan", ByScene(results, &Score::false_segments, 2));
   add("with_segment", "things of 5 returns or more that have a segment: more than half of some segment is theirs, %",
-      ByScene(results, ThingsWithSegment, Percent));
+      ByScene(results, &Score::with_segment));
   add("overall", "all scenes (mIoU, water, false, things with a segment, segments: mean over scenes; over, under, TPR, times: over all scans)",
-      Overall(results));
+      OfMethods(results, kOverall, [](const Score&) { return true; }));
   add("against_peers", "ours against the best peer: 100 - mIoU of ours as a share of the peer's, %", AgainstPeers(results));
   add("kinds", "mean IoU by kind, all scenes, %", ByKey(results, &Score::iou_by_kind, kind_title));
   add("recall_by_range", "recall at IoU 0.5 by range of the nearest return, all scenes, %", ByKey(results, &Score::recall_by_range, range_title));
@@ -200,7 +200,7 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   add("table_2", "Table II: what the paper's image keeps, a scan", Projections(results));
   add("table_3", "Table III: time by stage", Stages(results));
   add("ablation", "Ablation: components before they are clustered, segments, false segments (a scan, mean over scenes), time over all scans",
-      Ablation(results));
+      OfMethods(results, kAblation, [](const Score& total) { return total.components.count > 0; }));
   int number = 0;
   for (const auto& curve : results.curves) {
     add("curve_" + std::to_string(++number), curve.title + ": " + curve.y_label + (curve.note.empty() ? "" : "\n" + curve.note), CurveTable(curve));

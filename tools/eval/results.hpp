@@ -1,9 +1,7 @@
 // What a comparison of methods found: the numbers behind every table and plot of the report.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -11,59 +9,38 @@
 #include <vector>
 
 #include "tools/eval/method.hpp"
+#include "tools/eval/metrics.hpp"
 
 namespace lookout::eval {
 
-/// Sums over scans of one method at one operating point: which of its segments count. Nothing in here is of another. Figures are made of them by the
-/// functions below. All are additive: scans of one scene, scenes of one run.
+/// Figures of one method at one operating point, over scans: which of its segments count. Nothing in here is of another. All are additive: scans of
+/// one scene, scenes of one run. A share has 0 or 1 for each.
 struct Score {
-  std::int64_t num_scans = 0;
-  std::int64_t num_scans_with_object = 0;  // with a return of an object; over open water there is none
-  double sum_iou = 0.0;                    // of these: mean over true objects with a return (the paper's mIoU)
-  std::int64_t num_scans_with_water_object = 0;
-  double sum_water_iou = 0.0;                                          // the same over objects in the water alone
-  std::map<std::string, std::pair<std::int64_t, double>> iou_by_kind;  // number of object-scans, sum of IoU
+  Mean iou;                                 // of the scans with a return of an object: mean over true objects with a return (the paper's mIoU)
+  Mean water_iou;                           // the same over objects in the water alone
+  std::map<std::string, Mean> iou_by_kind;  // of object-scans
   static constexpr double kRangeBinM = 10.0;
-  std::map<int, std::pair<std::int64_t, std::int64_t>> recall_by_range;  // bin of nearest return: object-scans, of these IoU >= 0.5
-  std::map<int, std::pair<std::int64_t, double>> iou_by_range;           // bin: object-scans, sum of IoU
+  std::map<int, Mean> recall_by_range;  // by bin of nearest return: share of object-scans with IoU >= 0.5
+  std::map<int, Mean> iou_by_range;     // of object-scans, by the same bins
   /// Objects whose nearest return is nearer than this: where a small boat has to see a small thing. At 25 m the rings of a VLP-16 are 0.87 m apart
   /// (2 degrees), so that a buoy of half a metre gives one to three returns.
   static constexpr double kNearM = 25.0;
-  struct Recall {
-    std::int64_t num_object_scans = 0;
-    std::int64_t num_found = 0;  // IoU >= 0.5
-  };
-  std::map<std::string, Recall> near_recall_by_kind;
-  std::int64_t num_segments = 0;
-  std::int64_t num_false_segments = 0;  // without a return of any object
-  std::int64_t num_object_scans = 0;
+  std::map<std::string, Mean> near_recall_by_kind;  // share of object-scans with IoU >= 0.5
+  Mean segments;                                    // a scan
+  Mean false_segments;                              // a scan: without a return of any object
   /// Objects with at least so many returns in a scan: fewer may be an accident.
   static constexpr std::int64_t kMinReturnsOfThing = 5;
-  std::int64_t num_things = 0;                 // object-scans with kMinReturnsOfThing or more
-  std::int64_t num_things_with_segment = 0;    // of these: more than half of the returns of some segment are its
-  std::int64_t num_over_segmented = 0;         // objects of which two or more segments hold a tenth each
-  std::int64_t num_under_segmented = 0;        // segments that hold a tenth each of two or more objects
-  std::int64_t num_returns = 0;                // of objects
-  std::int64_t num_labelled_returns = 0;       // of these, in a segment that belongs (by majority) to their object: the paper's true positives
-  std::int64_t num_not_scored = 0;             // returns that the method was told not to look at
-  std::int64_t num_scans_with_components = 0;  // of methods that say how many components they had before they clustered them
-  std::int64_t num_components = 0;             // of these scans
-  std::vector<double> time_ms;                 // of each scan
+  Mean with_segment;                // share of object-scans with kMinReturnsOfThing or more: more than half of the returns of some segment are its
+  Mean over_segmented;              // share of object-scans: two or more segments hold a tenth each
+  Mean under_segmented;             // share of segments: hold a tenth each of two or more objects
+  Mean true_positives;              // share of returns of objects: in a segment that belongs (by majority) to their object, the paper's TPR
+  Mean components;                  // a scan, before clustering; of methods that say how many
+  std::int64_t num_not_scored = 0;  // returns that the method was told not to look at
+  std::vector<double> time_ms;      // of each scan
 
+  std::int64_t num_scans() const { return segments.count; }
   void Add(const Score& other);
 };
-
-// 0 to 1; NaN without scans in which there was an object.
-double MeanIou(const Score& score);
-double MeanWaterIou(const Score& score);
-
-double FalseSegmentsPerScan(const Score& score);  // NaN without scans, and so below
-double ThingsWithSegment(const Score& score);     // share of the object-scans with kMinReturnsOfThing or more
-double SegmentsPerScan(const Score& score);
-double OverSegmentedShare(const Score& score);   // of object-scans
-double UnderSegmentedShare(const Score& score);  // of segments
-double TruePositiveRatio(const Score& score);    // of returns of objects
-double ComponentsPerScan(const Score& score);    // before clustering; NaN for a method that has none
 
 /// One scan, kept because it went worst: drawn from above with truth and prediction side by side.
 struct WorstScan {
@@ -96,11 +73,11 @@ bool IsTunedPeer(const MethodResult& method);
 /// It looks at a part of each scan alone: its figures are not those of the same task as others'.
 bool HasPartialView(const MethodResult& method);
 
-/// A figure of one score; NaN = not known.
-using Figure = std::function<double(const Score&)>;
-
 /// Of the scenes in which it is known, each counting the same; NaN when there is none.
-double MeanOverScenes(const Results& results, const MethodResult& method, const Figure& figure);
+double MeanOverScenes(const Results& results, const MethodResult& method, Mean Score::*figure);
+
+/// Over all scans.
+Score Total(const MethodResult& method);
 
 /// A curve of one of the paper's tests or of a sweep.
 struct Curve {

@@ -102,18 +102,16 @@ std::optional<Vector2d> TrueCenter(std::span<const SeenReturn> returns, const Is
 
 SeenSummary Summarise(std::span<const SeenObstacle> obstacles, const std::function<bool(const SeenObstacle&)>& is_meant) {
   SeenSummary summary;
-  std::int64_t num_in_ellipse = 0;
   std::map<std::int64_t, std::map<int, const SeenObstacle*>> scans;  // by object, that with most returns
   for (const auto& obstacle : obstacles) {
     if (!is_meant(obstacle)) continue;
     summary.distance_m.Add(obstacle.error_m.norm());
     summary.stated_sd_m.Add(obstacle.sd_m());
     summary.nees.Add(obstacle.nees());
-    if (obstacle.IsInEllipse()) ++num_in_ellipse;
+    summary.in_ellipse.Add(obstacle.IsInEllipse() ? 1.0 : 0.0);
     auto& largest = scans[obstacle.scan_utime_us][obstacle.object_id];
     if (largest == nullptr || obstacle.num_points > largest->num_points) largest = &obstacle;
   }
-  if (summary.distance_m.count() > 0) summary.in_ellipse = static_cast<double>(num_in_ellipse) / static_cast<double>(summary.distance_m.count());
   for (auto scan = scans.begin(); scan != scans.end() && std::next(scan) != scans.end(); ++scan) {
     const auto& [next_utime_us, next] = *std::next(scan);
     if (next_utime_us - scan->first > kMaxScanUs) continue;

@@ -67,8 +67,8 @@ struct SeenObstacle {
 struct SeenSummary {
   Summary distance_m;
   Summary stated_sd_m;
-  Summary nees;             // per degree of freedom
-  double in_ellipse = 0.0;  // share, 0 to 1
+  Mean nees;        // per degree of freedom
+  Mean in_ellipse;  // share, 0 to 1
   // From one scan to the next: how far the errors of all objects moved together (median over three objects or more, each by its obstacle with most
   // returns, so that an outline which changes its shape does not count), and that over the median of the deviations stated before.
   Summary jump_m;

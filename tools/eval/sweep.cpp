@@ -1,9 +1,11 @@
 #include "tools/eval/sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <google/protobuf/descriptor.h>
-#include <optional>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -20,22 +22,15 @@ namespace {
 
 using google::protobuf::FieldDescriptor;
 
-const std::vector<std::pair<std::string, std::string>>& ShortNames() {
-  static const std::vector<std::pair<std::string, std::string>> kShortNames{{"e1", "e1_cosine"}, {"e2", "e2_angle_deg"}, {"e3", "e3_distance_m"}};
-  return kShortNames;
-}
-
 bool IsNumeric(const FieldDescriptor& field) {
   return !field.is_repeated() && (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE || field.cpp_type() == FieldDescriptor::CPPTYPE_INT32);
 }
 
 const FieldDescriptor& FieldOf(const std::string& name) {
-  std::string full_name = name;
-  for (const auto& [short_name, meant] : ShortNames()) {
-    if (name == short_name) full_name = meant;
-  }
+  static const std::map<std::string, std::string> kShortNames{{"e1", "e1_cosine"}, {"e2", "e2_angle_deg"}, {"e3", "e3_distance_m"}};
+  const auto short_name = kShortNames.find(name);
   const auto& schema = *config::Segmenter::descriptor();
-  const auto* field = schema.FindFieldByName(full_name);
+  const auto* field = schema.FindFieldByName(short_name == kShortNames.end() ? name : short_name->second);
   if (field != nullptr && IsNumeric(*field)) return *field;
   std::string names = "e1, e2, e3";
   for (int i = 0; i < schema.field_count(); ++i) {
@@ -61,13 +56,7 @@ double ToNumber(const std::string& sweep, const std::string& text) {
 }
 
 // Six digits are more than any step needs, and hide that 0.6 + 0.05 + 0.05 is not quite 0.7.
-std::string ValueText(double value) {
-  constexpr int kDecimals = 6;
-  std::string text = Number(value, kDecimals);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
+std::string ValueText(double value) { return fmt::format("{}", std::round(value * 1e6) / 1e6); }
 
 double ValueOfBoat(const Boat& boat, const std::string& field) {
   config::Segmenter message;
@@ -145,18 +134,17 @@ Curve RunSweep(const Sweep& sweep, const RunPlan& plan, const Boat& boat, std::F
     for (std::size_t i = 0; i < sweep.values.size(); ++i) {
       const auto& by_scene = all_segments[i]->by_scene;
       const auto found = by_scene.find(line.name);
-      if (found != by_scene.end() && found->second.num_scans_with_object > 0) {
-        line.points.emplace_back(sweep.values[i], 100.0 * MeanIou(found->second));
+      if (found != by_scene.end() && found->second.iou.count > 0) {
+        line.points.emplace_back(sweep.values[i], 100.0 * found->second.iou.value());
       }
     }
     if (!line.points.empty()) curve.lines.push_back(std::move(line));
   }
   for (std::size_t i = 0; i < sweep.values.size() && !curve.lines.empty(); ++i) {
-    double sum_percent = 0.0;
-    for (const auto& line : curve.lines) sum_percent += line.points[i].second;
-    const double mean_percent = sum_percent / static_cast<double>(curve.lines.size());
-    if (mean_percent <= best_percent) continue;
-    best_percent = mean_percent;
+    Mean percent;
+    for (const auto& line : curve.lines) percent.Add(line.points[i].second);
+    if (percent.value() <= best_percent) continue;
+    best_percent = percent.value();
     best = ValueText(sweep.values[i]);
   }
   if (!best.empty()) curve.note = "Best on the mean of the scenes at " + best + ": " + Number(best_percent, 1) + " %.";

@@ -1,10 +1,8 @@
 #include "tools/eval/truth.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 #include <tuple>
 
 #include "tools/import/csv_file.hpp"
@@ -53,21 +51,19 @@ Truth::Truth(const std::filesystem::path& folder) {
   constexpr auto kMaxId = std::numeric_limits<int>::max();
   const auto whole = [](const importer::CsvFile& file, std::size_t column) { return static_cast<int>(file.WholeNumber(column, kMinId, kMaxId)); };
 
-  importer::CsvFile objects(folder / "objects.csv", std::to_array<std::string_view>({"object_id", "name", "kind", "is_moving"}));
+  importer::CsvFile objects(folder / "objects.csv", {"object_id", "name", "kind", "is_moving"});
   while (objects.Next()) objects_[whole(objects, 0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), whole(objects, 3) != 0};
 
-  importer::CsvFile outlines(folder / "outlines.csv", std::to_array<std::string_view>({"object_id", "utime_us", "latitude_deg", "longitude_deg"}));
+  importer::CsvFile outlines(folder / "outlines.csv", {"object_id", "utime_us", "latitude_deg", "longitude_deg"});
   while (outlines.Next()) {
     outlines_[whole(outlines, 0)][outlines.WholeNumber(1, 0, kMaxTime)].push_back({outlines.Number(2), outlines.Number(3)});
   }
-  importer::CsvFile poses(folder / "pose.csv",
-                          std::to_array<std::string_view>({"utime_us", "latitude_deg", "longitude_deg", "heading_deg", "roll_deg", "pitch_deg"}));
+  importer::CsvFile poses(folder / "pose.csv", {"utime_us", "latitude_deg", "longitude_deg", "heading_deg", "roll_deg", "pitch_deg"});
   while (poses.Next()) {
     poses_[poses.WholeNumber(0, 0, kMaxTime)] = {poses.Number(1), poses.Number(2), poses.Number(3), poses.Number(4), poses.Number(5)};
   }
   // Truths of older simulators end before the places.
-  importer::CsvFile returns(folder / "returns.csv", std::to_array<std::string_view>({"utime_us", "ring", "return_index", "object_id"}),
-                            std::to_array<std::string_view>({"x_m", "y_m", "z_m"}));
+  importer::CsvFile returns(folder / "returns.csv", {"utime_us", "ring", "return_index", "object_id"}, {"x_m", "y_m", "z_m"});
   const bool has_places = returns.Has(4) && returns.Has(5) && returns.Has(6);
   while (returns.Next()) {
     Return made{returns.WholeNumber(0, 0, kMaxTime), whole(returns, 1), whole(returns, 2), whole(returns, 3),

@@ -1,8 +1,11 @@
 #include "tools/export/csv.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 
 #include "common/core/angles.hpp"
 #include "common/core/printable.hpp"
@@ -24,32 +27,15 @@ void AppendShortest(double value, std::string& text) {
 
 // value / 10^decimals
 void AppendScaled(std::int64_t value, int decimals, std::string& text) {
-  if (value < 0) {
-    text += '-';
-    value = -value;
-  }
-  std::array<char, 24> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  const auto num_digits = static_cast<int>(end - digits.data());
-  const int num_before = num_digits - decimals;
-  if (num_before > 0) {
-    text.append(digits.data(), static_cast<std::size_t>(num_before));
-  } else {
-    text += '0';
-  }
-  if (decimals == 0) return;
-  text += '.';
-  if (num_before < 0) text.append(static_cast<std::size_t>(-num_before), '0');
-  text.append(digits.data() + (num_before > 0 ? num_before : 0), end);
+  const auto unit = static_cast<std::int64_t>(kPowerOf10[static_cast<std::size_t>(decimals)]);
+  const auto magnitude = std::abs(value);
+  fmt::format_to(std::back_inserter(text), "{}{}", value < 0 ? "-" : "", magnitude / unit);
+  if (decimals > 0) fmt::format_to(std::back_inserter(text), ".{:0{}}", magnitude % unit, decimals);
 }
 
 }  // namespace
 
-void AppendCell(std::int64_t value, std::string& text) {
-  std::array<char, 24> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  text.append(digits.data(), end);
-}
+void AppendCell(std::int64_t value, std::string& text) { fmt::format_to(std::back_inserter(text), "{}", value); }
 
 void AppendCell(const Fixed& number, std::string& text) {
   if (!std::isfinite(number.value)) return;

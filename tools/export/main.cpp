@@ -13,18 +13,17 @@
 int main(int argc, char** argv) {
   namespace exporter = lookout::exporter;
   exporter::Request request;
-  std::vector<std::string> inputs;
-  std::string output;
   std::string scan = "last";
 
   CLI::App app("Writes what lcm-logs hold as a CSV table, a PLY cloud or an SVG picture.", "lookout-export");
-  app.add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
+  app.add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
   app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles: a scan; pose: the track)")
       ->check(CLI::IsMember({"csv", "ply", "svg"}))
       ->capture_default_str();
-  app.add_option("--out", output, "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
+  app.add_option("--out", request.output,
+                 "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
   app.add_flag("--force", request.force, "replace an existing --out");
   app.add_option("--scan", scan, "ply and svg: seq of the scan, or \"last\": the last whole one")->capture_default_str();
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
@@ -40,8 +39,6 @@ int main(int argc, char** argv) {
     // --help and --version come here too, with code 0.
     return app.exit(error) == 0 ? EXIT_SUCCESS : exporter::kExitUsage;
   }
-  request.inputs.assign(inputs.begin(), inputs.end());
-  if (!output.empty()) request.output = output;
   lookout::io::CatchStopSignals();
   return exporter::Run(request, std::cerr);
 }

@@ -39,65 +39,70 @@ constexpr double kLegendBottom = 960.0;
 constexpr const char* kDark = "#1c2b3a";
 constexpr const char* kGrey = "#5b6b7b";
 constexpr const char* kHull = "#31465a";
+const std::string kHalo = "stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";  // of texts over what is drawn
 
-// Points are in metres to the right of and above the middle of the view.
+// Returns of one colour. Points are in metres to the right of and above the middle of the view, here and below.
 struct Dots {
   Rgb colour{};
+  std::string legend;  // empty = none
   std::vector<Vector2d> points;
 };
 
+// A segment or an obstacle.
 struct Outline {
   int id = 0;
+  bool is_tentative = false;
+  bool is_line = false;           // open, not filled
+  double distance_m = 0.0;        // of its nearest point
   std::string facts;              // stands in the legend
   std::vector<Vector2d> corners;  // one or two are drawn as a point or a line
-  double distance_m = 0.0;        // of its nearest point
-  bool is_tentative = false;
-  bool is_line = false;  // open, not filled
+
+  bool IsFinite() const {
+    return !corners.empty() && std::ranges::all_of(corners, [](const Vector2d& corner) { return corner.allFinite(); });
+  }
 };
 
-struct Picture {
+std::string Css(const Rgb& colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue); }
+
+class Picture {
+ public:
   std::string title;
   std::array<std::string, 2> subtitles;
   std::string outlines_title;     // stands over the outlines in the legend
   std::string up;                 // what is above: "N", "bow", "lidar x"
   std::optional<double> bow_rad;  // clockwise from above; nullopt: only the lidar is known
   std::optional<Eigen::AlignedBox3d> own_vessel_box_m;
-  std::vector<Dots> dots;  // in the order of drawing
-  std::vector<std::pair<Rgb, std::string>> dots_legend;
-  std::vector<Outline> outlines;  // nearest first, the tentative behind all that are sure: in rain they would else fill the legend
-};
+  std::vector<Dots> dots;         // in the order of drawing
+  std::vector<Outline> outlines;  // by Rank
 
-bool IsFinite(const Outline& outline) {
-  return !outline.corners.empty() && std::ranges::all_of(outline.corners, [](const Vector2d& corner) { return corner.allFinite(); });
-}
-
-std::string Css(const Rgb& colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue); }
-
-class Drawing {
- public:
-  explicit Drawing(const Picture& picture) : picture_(picture) {
-    ChooseRings();
-    pixels_per_m_ = kRadius / (ring_step_m_ * num_rings_);
+  // Nearest first, the tentative behind all that are sure: in rain they would else fill the legend. What is not finite counts as farthest, so that
+  // the order stays one. @return "3 obstacles, 1 of them tentative"
+  std::string Rank(const char* things) {
+    std::ranges::stable_sort(outlines, {}, [](const Outline& outline) {
+      return std::pair(outline.is_tentative, std::isfinite(outline.distance_m) ? outline.distance_m : 1e9);
+    });
+    const auto num_tentative = std::ranges::count(outlines, true, &Outline::is_tentative);
+    return fmt::format("{} {}", outlines.size(), things) + (num_tentative > 0 ? fmt::format(", {} of them tentative", num_tentative) : "");
   }
 
   std::string Draw() {
+    ChooseRings();
     Add(R"(<svg xmlns="http://www.w3.org/2000/svg" width="1320" height="1000" viewBox="0 0 1320 1000" )"
         R"(font-family="DejaVu Sans, Helvetica, Arial, sans-serif">)"
         "\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n"
         "<clipPath id=\"view\"><circle cx=\"{}\" cy=\"{}\" r=\"{}\"/></clipPath>\n",
         kMiddleX, kMiddleY, kRadius);
-    Text({40, 44}, picture_.title, 24, kDark, "font-weight=\"bold\"");
-    Text({40, 68}, picture_.subtitles[0], 14, kGrey);
-    Text({40, 88}, picture_.subtitles[1], 14, kGrey);
+    Text({40, 44}, title, 24, kDark, "font-weight=\"bold\"");
+    Text({40, 68}, subtitles[0], 14, kGrey);
+    Text({40, 88}, subtitles[1], 14, kGrey);
     DrawWater();
     svg_ += "<g clip-path=\"url(#view)\">\n";
     DrawBoat();
-    for (const auto& dots : picture_.dots) DrawDots(dots);
-    for (const auto& outline : picture_.outlines) DrawOutline(outline);
+    for (const auto& of_colour : dots) DrawDots(of_colour);
+    for (const auto& outline : outlines) DrawOutline(outline);
     svg_ += "</g>\n";
-    DrawRingNames();
     Add("<path d=\"M{0} {1}l9 22l-9 -6l-9 6Z\" fill=\"#b3261e\"/>\n", kMiddleX, kMiddleY - kRadius - 24.0);
-    Text({kMiddleX + 16.0, kMiddleY - kRadius - 8.0}, picture_.up, 18, "#b3261e", "font-weight=\"bold\"");
+    Text({kMiddleX + 16.0, kMiddleY - kRadius - 8.0}, up, 18, "#b3261e", "font-weight=\"bold\"");
     DrawNames();
     DrawLegend();
     return std::move(svg_) + "</svg>\n";
@@ -134,105 +139,84 @@ class Drawing {
     const auto reach = [&far_m](const std::vector<Vector2d>& points) {
       for (const auto& point : points) far_m = point.allFinite() ? std::max(far_m, point.norm()) : far_m;
     };
-    for (const auto& outline : picture_.outlines) reach(outline.corners);
+    for (const auto& outline : outlines) reach(outline.corners);
     if (far_m == 0.0) {
-      for (const auto& dots : picture_.dots) reach(dots.points);
+      for (const auto& of_colour : dots) reach(of_colour.points);
     }
     constexpr std::array kStepsM{0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 50.0, 100.0, 200.0, 500.0, 1000.0};
     constexpr int kMaxRings = 5;
     const auto* step_m = std::ranges::find_if(kStepsM, [far_m](double candidate_m) { return far_m <= candidate_m * kMaxRings; });
     ring_step_m_ = step_m == kStepsM.end() ? kStepsM.back() : *step_m;
     num_rings_ = std::clamp(static_cast<int>(std::ceil(std::min(far_m, 1e6) / ring_step_m_)), 2, kMaxRings);
+    pixels_per_m_ = kRadius / (ring_step_m_ * num_rings_);
   }
 
   void DrawWater() {
-    for (int ring = num_rings_; ring >= 1; --ring) {
-      Add("<circle cx=\"{}\" cy=\"{}\" r=\"{:.1f}\" fill=\"{}\" stroke=\"#bccbd8\"/>\n", kMiddleX, kMiddleY, kRadius * ring / num_rings_,
-          ring == num_rings_ ? "#f1f6fa" : "none");
-    }
+    Add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"#f1f6fa\"/>\n", kMiddleX, kMiddleY, kRadius);
     for (int spoke = 0; spoke < 12; ++spoke) {
       const auto from = OnCircle(kRadius / num_rings_, spoke * kPi / 6.0);
       const auto to = OnCircle(kRadius, spoke * kPi / 6.0);
       Add("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"#dbe5ed\"/>\n", from.x(), from.y(), to.x(), to.y());
     }
+    for (int ring = 1; ring <= num_rings_; ++ring) {
+      const double radius = kRadius * ring / num_rings_;
+      Add("<circle cx=\"{}\" cy=\"{}\" r=\"{:.1f}\" fill=\"none\" stroke=\"#bccbd8\"/>\n", kMiddleX, kMiddleY, radius);
+      // Along 120 degrees, where neither the bow nor the arrow above stand.
+      Text(OnCircle(radius, DegToRad(120.0)), fmt::format("{} m", ring_step_m_ * ring), 12, kGrey, "text-anchor=\"middle\" " + kHalo);
+    }
   }
 
   void DrawBoat() {
-    if (!picture_.bow_rad) {
+    if (!bow_rad) {
       Add("<circle cx=\"{}\" cy=\"{}\" r=\"6\" fill=\"{}\"/>\n", kMiddleX, kMiddleY, kHull);
       return;
     }
     // A hull in its box, in pixels to starboard and ahead; a mark of 10 x 26 pixels where the box is not known or too small to be seen.
     Vector2d least(-5.0, -13.0), greatest(5.0, 13.0);
-    if (const auto& box_m = picture_.own_vessel_box_m; box_m && box_m->sizes().x() * pixels_per_m_ >= 26.0) {
+    if (const auto& box_m = own_vessel_box_m; box_m && box_m->sizes().x() * pixels_per_m_ >= 26.0) {
       least = pixels_per_m_ * Vector2d(-box_m->max().y(), box_m->min().x());
       greatest = pixels_per_m_ * Vector2d(-box_m->min().y(), box_m->max().x());
     }
     const double shoulder = greatest.y() - 0.35 * (greatest.y() - least.y());
     Add("<g transform=\"translate({} {}) rotate({:.2f})\"><path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}V{:.1f}H{:.1f}V{:.1f}Z\" fill=\"{}\"/>"
         "<path d=\"M0 {:.1f}V{}\" stroke=\"{}\" stroke-dasharray=\"7 6\" stroke-opacity=\"0.6\"/></g>\n",
-        kMiddleX, kMiddleY, RadToDeg(*picture_.bow_rad), (least.x() + greatest.x()) / 2.0, -greatest.y(), greatest.x(), -shoulder, -least.y(),
-        least.x(), -shoulder, kHull, -greatest.y() - 4.0, -kRadius, kHull);
+        kMiddleX, kMiddleY, RadToDeg(*bow_rad), (least.x() + greatest.x()) / 2.0, -greatest.y(), greatest.x(), -shoulder, -least.y(), least.x(),
+        -shoulder, kHull, -greatest.y() - 4.0, -kRadius, kHull);
   }
 
-  void DrawDots(const Dots& dots) {
+  void DrawDots(const Dots& of_colour) {
     std::string path;
-    for (const auto& point : dots.points) {
+    for (const auto& point : of_colour.points) {
       if (point.allFinite() && point.norm() <= ring_step_m_ * num_rings_) path += PathOf({point}) + "h0";
     }
     if (path.empty()) return;
-    Add("<path d=\"{}\" stroke=\"{}\" stroke-width=\"3.2\" stroke-linecap=\"round\"/>\n", path, Css(dots.colour));
+    Add("<path d=\"{}\" stroke=\"{}\" stroke-width=\"3.2\" stroke-linecap=\"round\"/>\n", path, Css(of_colour.colour));
   }
 
   void DrawOutline(const Outline& outline) {
-    if (!IsFinite(outline)) return;
+    if (!outline.IsFinite()) return;
     const std::string path = PathOf(outline.corners) + (outline.corners.size() == 1 ? "h0" : outline.is_line ? "" : "Z");
     const std::string colour = Css(ColourOfSegment(outline.id));
-    // A wide stroke around the returns themselves, so that the line does not cover them.
     const std::string fill = outline.is_line ? "none" : colour + "\" fill-opacity=\"" + (outline.is_tentative ? "0.05" : "0.14");
-    Add("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"9\" stroke-opacity=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
-        path, fill, colour, outline.is_tentative ? "0.08" : "0.18");
-    Add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\" stroke-width=\"{}\"/>\n", path, colour,
+    Add("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-linecap=\"round\" stroke-width=\"{}\"/>\n", path, fill, colour,
         outline.is_tentative ? "0.8\" stroke-dasharray=\"2 3\" stroke-opacity=\"0.6"
         : outline.is_line    ? "2.4"
                              : "1.2");
   }
 
-  void DrawRingNames() {
-    for (int ring = 1; ring <= num_rings_; ++ring) {
-      // Along 120 degrees, where neither the bow nor the arrow above stand.
-      const auto place = OnCircle(kRadius * ring / num_rings_, DegToRad(120.0));
-      Text({place.x(), place.y() + 4.0}, fmt::format("{} m", ring_step_m_ * ring), 12, kGrey,
-           "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"");
-    }
-  }
-
-  // Numbers beside their outlines; one that would cover another is left to the legend.
+  // Numbers at the right of their outlines; one that would cover another is left to the legend.
   void DrawNames() {
-    constexpr double kTextHeight = 13.0;
-    constexpr double kGap = 8.0;
     std::vector<Eigen::AlignedBox2d> occupied;
-    for (const auto& outline : picture_.outlines) {
-      if (!IsFinite(outline)) continue;
+    for (const auto& outline : outlines) {
+      if (!outline.IsFinite()) continue;
       Eigen::AlignedBox2d box;
       for (const auto& corner : outline.corners) box.extend(ToPixel(corner));
       const std::string name = std::to_string(outline.id);
-      const double width = 9.0 * static_cast<double>(name.size());
-      const Vector2d middle = box.center();
-      // To the right, left, above, below.
-      const std::array<Vector2d, 4> places{Vector2d(box.max().x() + kGap, middle.y() + 5.0), Vector2d(box.min().x() - kGap - width, middle.y() + 5.0),
-                                           Vector2d(middle.x() - width / 2.0, box.min().y() - kGap),
-                                           Vector2d(middle.x() - width / 2.0, box.max().y() + kGap + kTextHeight)};
-      for (const auto& place : places) {
-        const Eigen::AlignedBox2d needed(Vector2d(place.x() - 2.0, place.y() - kTextHeight), Vector2d(place.x() + width + 2.0, place.y() + 3.0));
-        const bool is_in_view = std::hypot(place.x() + width / 2.0 - kMiddleX, place.y() - kMiddleY) < kRadius - 14.0;
-        if (!is_in_view || std::ranges::any_of(occupied, [&needed](const auto& other) { return needed.intersects(other); })) continue;
-        occupied.push_back(needed);
-        Text(place, name, 13, Css(ColourOfSegment(outline.id)),
-             fmt::format("{} stroke=\"#ffffff\" stroke-width=\"3.5\" paint-order=\"stroke\"",
-                         outline.is_tentative ? "fill-opacity=\"0.7\"" : "font-weight=\"bold\""));
-        break;
-      }
+      const Vector2d place(box.max().x() + 8.0, box.center().y() + 5.0);
+      const Eigen::AlignedBox2d needed(place - Vector2d(2.0, 13.0), place + Vector2d(9.0 * static_cast<double>(name.size()) + 2.0, 3.0));
+      if (std::ranges::any_of(occupied, [&needed](const auto& other) { return needed.intersects(other); })) continue;
+      occupied.push_back(needed);
+      Text(place, name, 13, Css(ColourOfSegment(outline.id)), outline.is_tentative ? kHalo : "font-weight=\"bold\" " + kHalo);
     }
   }
 
@@ -241,15 +225,15 @@ class Drawing {
     const auto mark = [&](const Rgb& colour, const char* opacity = "1") {
       Add("<circle cx=\"{}\" cy=\"{}\" r=\"6\" fill=\"{}\" fill-opacity=\"{}\"/>\n", kLegendX + 6.0, y - 5.0, Css(colour), opacity);
     };
-    for (const auto& [colour, text] : picture_.dots_legend) {
-      mark(colour);
-      Text({kLegendX + 22.0, y}, text, 14, kDark);
+    for (const auto& of_colour : dots) {
+      if (of_colour.legend.empty()) continue;
+      mark(of_colour.colour);
+      Text({kLegendX + 22.0, y}, of_colour.legend, 14, kDark);
       y += kLegendLine;
     }
-    const auto& outlines = picture_.outlines;
     if (outlines.empty()) return;
     y += 12.0;
-    Text({kLegendX, y}, picture_.outlines_title, 13, kGrey);
+    Text({kLegendX, y}, outlines_title, 13, kGrey);
     y += kLegendLine;
     for (std::size_t i = 0; i < outlines.size(); ++i, y += kLegendLine) {
       if (y + kLegendLine > kLegendBottom && i + 1 < outlines.size()) {
@@ -262,7 +246,6 @@ class Drawing {
     }
   }
 
-  const Picture& picture_;
   double ring_step_m_ = 0.0;
   int num_rings_ = 0;
   double pixels_per_m_ = 0.0;
@@ -281,40 +264,30 @@ Vector2d SeenFromAbove(const Vector2d& point_m, double heading_rad) {
   return {point_m.x() * sine - point_m.y() * cosine, point_m.x() * cosine + point_m.y() * sine};
 }
 
-// An outline without its corners. The size says little of what is tentative, or of land.
-Outline MakeOutline(int id, int confidence, int kind, double distance_m, double length_m, double width_m, const std::string& place) {
-  Outline outline;
-  outline.id = id;
-  outline.distance_m = distance_m;
-  outline.is_tentative = confidence == segment_t::CONFIDENCE_TENTATIVE;
-  const auto what = outline.is_tentative           ? std::string(words::WordOf(words::kConfidence, confidence))
-                    : kind == segment_t::KIND_LAND ? std::string(words::WordOf(words::kKind, kind))
-                                                   : fmt::format("{:.1f} x {:.1f} m", length_m, width_m);
-  outline.facts = fmt::format("{:.1f} m{}, {}", distance_m, place, what);
-  return outline;
-}
-
-// Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
+// Both lists of coordinates are of the same corners.
 template <typename ToPicture>
-void AddCorners(Outline& outline, int kind, const std::vector<float> (&waterline_m)[2], const std::vector<float> (&hull_m)[2], ToPicture to_picture) {
-  outline.is_line = kind == segment_t::KIND_LAND && !waterline_m[0].empty();
-  const auto& corners_m = outline.is_line ? waterline_m : hull_m;
-  for (std::size_t i = 0; i < corners_m[0].size(); ++i) outline.corners.push_back(to_picture(corners_m[0][i], corners_m[1][i]));
+std::vector<Vector2d> Corners(const std::vector<float>& x_m, const std::vector<float>& y_m, ToPicture to_picture) {
+  std::vector<Vector2d> corners;
+  for (std::size_t i = 0; i < x_m.size(); ++i) corners.push_back(to_picture(Vector2d(x_m[i], y_m[i])));
+  return corners;
 }
 
-// Sorts the outlines. @return "3 obstacles, 1 of them tentative"
-std::string RankAndCount(std::vector<Outline>& outlines, const char* things) {
-  // What is not finite counts as farthest, so that the order stays one.
-  std::ranges::stable_sort(outlines, {}, [](const Outline& outline) {
-    return std::pair(outline.is_tentative, std::isfinite(outline.distance_m) ? outline.distance_m : 1e9);
-  });
-  const auto num_tentative = std::ranges::count(outlines, true, &Outline::is_tentative);
-  return fmt::format("{} {}", outlines.size(), things) + (num_tentative > 0 ? fmt::format(", {} of them tentative", num_tentative) : "");
+// Of a segment or an obstacle. Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
+template <typename Thing>
+Outline OutlineOf(const Thing& thing, double distance_m, const std::string& place, std::vector<Vector2d> hull, std::vector<Vector2d> waterline) {
+  const bool is_tentative = thing.confidence == segment_t::CONFIDENCE_TENTATIVE;
+  const bool is_land = thing.kind == segment_t::KIND_LAND;
+  // The size says little of what is tentative, or of land.
+  const auto what = is_tentative ? std::string(words::WordOf(words::kConfidence, thing.confidence))
+                    : is_land    ? std::string(words::WordOf(words::kKind, thing.kind))
+                                 : fmt::format("{:.1f} x {:.1f} m", thing.length_m, thing.width_m);
+  const bool is_line = is_land && !waterline.empty();
+  return {thing.id, is_tentative, is_line, distance_m, fmt::format("{:.1f} m{}, {}", distance_m, place, what), std::move(is_line ? waterline : hull)};
 }
 
 std::string NorthText(double heading_rad) { return fmt::format("north up, heading {:.1f} deg", RadToDeg(heading_rad)); }
 
-Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog>& boat, std::optional<double> heading_rad) {
+Picture PictureOfReturns(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, std::optional<double> heading_rad) {
   const bool is_north_up = boat && heading_rad;
   const double up_rad = is_north_up ? *heading_rad : 0.0;
   const Eigen::Isometry3d T_vessel_lidar = boat ? boat->T_vessel_lidar : Eigen::Isometry3d::Identity();
@@ -326,9 +299,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog
     picture.bow_rad = up_rad;
     picture.own_vessel_box_m = boat->own_vessel_box_m;
   }
-  // Ordered by reason, then label: what is in no segment lies below.
-  std::map<std::string_view, Dots> loose;
-  std::map<int, Dots> labelled;
+  std::map<std::pair<int, std::string_view>, Dots> dots;  // by label, then reason: what is in no segment lies below
   int num_returns = 0;
   bool has_labels = false;
   for (const auto& [part_index, part] : scan.scans) {
@@ -336,31 +307,29 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog
     has_labels = has_labels || labels != nullptr;
     ForEachReturn(part, labels, [&](const Return& one) {
       ++num_returns;
-      auto& dots = one.label > 0 ? labelled[one.label] : loose[one.reason];
-      dots.colour = one.label > 0 ? ColourOfSegment(one.label) : ColourOfReason(one.reason);
-      dots.points.push_back(to_picture(one.p_lidar_m));
+      dots[{one.label, one.reason}].points.push_back(to_picture(one.p_lidar_m));
     });
   }
-  for (auto& [reason, dots] : loose) {
-    const auto name = !reason.empty() ? reason : has_labels ? "without label" : "not labelled: no SEGMENTS in the log";
-    picture.dots_legend.emplace_back(dots.colour, fmt::format("{} ({} returns)", name, dots.points.size()));
-    picture.dots.push_back(std::move(dots));
+  for (auto& [key, of_colour] : dots) {
+    const auto& [label, reason] = key;
+    of_colour.colour = label > 0 ? ColourOfSegment(label) : ColourOfReason(reason);
+    if (label == 0) {
+      const auto name = !reason.empty() ? reason : has_labels ? "without label" : "not labelled: no SEGMENTS in the log";
+      of_colour.legend = fmt::format("{} ({} returns)", name, of_colour.points.size());
+    }
+    picture.dots.push_back(std::move(of_colour));
   }
-  for (auto& [label, dots] : labelled) picture.dots.push_back(std::move(dots));
 
   for (const auto& [part_index, part] : scan.segments) {
     for (const auto& segment : part.segments) {
-      auto& outline = picture.outlines.emplace_back(MakeOutline(segment.id, segment.confidence, segment.kind,
-                                                                std::hypot(double{segment.nearest_m[0]}, double{segment.nearest_m[1]}),
-                                                                segment.length_m, segment.width_m, ""));
+      const auto to_corner = [&](const Vector2d& p_m) { return to_picture({p_m.x(), p_m.y(), segment.centroid_m[2]}); };
+      auto& outline = picture.outlines.emplace_back(OutlineOf(segment, std::hypot(double{segment.nearest_m[0]}, double{segment.nearest_m[1]}), "",
+                                                              Corners(segment.hull_x_m, segment.hull_y_m, to_corner),
+                                                              Corners(segment.waterline_x_m, segment.waterline_y_m, to_corner)));
       outline.facts += fmt::format(", {} returns", segment.num_points);
-      AddCorners(outline, segment.kind, {segment.waterline_x_m, segment.waterline_y_m}, {segment.hull_x_m, segment.hull_y_m},
-                 [&](double x_m, double y_m) {
-                   return to_picture({x_m, y_m, segment.centroid_m[2]});
-                 });
     }
   }
-  picture.title = fmt::format("Scan {}: {} returns, {}", scan.seq, num_returns, RankAndCount(picture.outlines, "segments"));
+  picture.title = fmt::format("Scan {}: {} returns, {}", scan.seq, num_returns, picture.Rank("segments"));
   picture.subtitles = {UtcText(scan.utime_us), is_north_up ? NorthText(up_rad)
                                                : boat      ? "bow up: no heading in the log"
                                                            : "lidar frame: no config of the boat in the log"};
@@ -368,28 +337,26 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::optional<BoatOfLog
   return picture;
 }
 
-Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<BoatOfLog>& boat, std::optional<double> heading_rad) {
+Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, std::optional<double> heading_rad) {
   Picture picture;
   picture.up = heading_rad ? "N" : "bow";
   picture.bow_rad = heading_rad.value_or(0.0);
   if (boat) picture.own_vessel_box_m = boat->own_vessel_box_m;
+  const auto to_corner = [&picture](const Vector2d& p_m) { return SeenFromAbove(p_m, *picture.bow_rad); };
   std::map<int, int> num_by_status;
   for (const auto& [part_index, part] : scan.obstacles) {
     for (const auto& obstacle : part.obstacles) {
       ++num_by_status[obstacle.status];
-      auto& outline = picture.outlines.emplace_back(MakeOutline(obstacle.id, obstacle.confidence, obstacle.kind, obstacle.range_m, obstacle.length_m,
-                                                                obstacle.width_m, fmt::format(" at {:.0f} deg", RadToDeg(obstacle.bearing_rad))));
-      AddCorners(outline, obstacle.kind, {obstacle.waterline_vessel_x_m, obstacle.waterline_vessel_y_m},
-                 {obstacle.footprint_vessel_x_m, obstacle.footprint_vessel_y_m}, [&](double x_m, double y_m) {
-                   return SeenFromAbove({x_m, y_m}, *picture.bow_rad);
-                 });
+      picture.outlines.push_back(OutlineOf(obstacle, obstacle.range_m, fmt::format(" at {:.0f} deg", RadToDeg(obstacle.bearing_rad)),
+                                           Corners(obstacle.footprint_vessel_x_m, obstacle.footprint_vessel_y_m, to_corner),
+                                           Corners(obstacle.waterline_vessel_x_m, obstacle.waterline_vessel_y_m, to_corner)));
     }
   }
   std::string statuses;
   for (const auto& [status, count] : num_by_status) {
     statuses += fmt::format("{}{} {}", statuses.empty() ? ", status: " : ", ", count, words::WordOf(words::kObstacleStatus, status));
   }
-  picture.title = fmt::format("Scan {}: {}", scan.seq, RankAndCount(picture.outlines, "obstacles"));
+  picture.title = fmt::format("Scan {}: {}", scan.seq, picture.Rank("obstacles"));
   picture.subtitles = {UtcText(scan.utime_us) + statuses, heading_rad ? NorthText(*heading_rad) : "bow up: no heading in the log"};
   picture.outlines_title = "nearest first, tentative last; bearing from the bow";
   return picture;
@@ -415,8 +382,8 @@ class ScanSvgSink final : public Sink {
     const auto& scan = scan_.chosen();
     if (!scan) return;
     const auto heading_rad = headings_.At(scan->utime_us);
-    text += Drawing(what_ == ChosenScan::Of::kReturns ? PictureOfReturns(*scan, boat_, heading_rad) : PictureOfObstacles(*scan, boat_, heading_rad))
-                .Draw();
+    auto picture = what_ == ChosenScan::Of::kReturns ? PictureOfReturns(*scan, boat_, heading_rad) : PictureOfObstacles(*scan, boat_, heading_rad);
+    text += picture.Draw();
   }
 
  private:
@@ -434,7 +401,7 @@ class ScanSvgSink final : public Sink {
   ChosenScan::Of what_;
   ChosenScan scan_;
   messages::HeadingHistory headings_;
-  std::optional<BoatOfLog> boat_;
+  std::optional<config::BoatFacts> boat_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -34,14 +35,9 @@ struct Style {
 constexpr std::array kStyles{Style{pose_t::STATUS_OK, "ok", "#0072B2"}, Style{pose_t::STATUS_COASTING, "coasting", "#D55E00"},
                              Style{pose_t::STATUS_NO_HEADING, "no heading", "#56B4E9"}};
 
-struct Place {
-  double east_m;  // from the first place
-  double north_m;
-};
-
 struct Stretch {
   const Style* style;
-  std::vector<Place> places;
+  std::vector<Eigen::Vector2d> places_m;  // east and north of the first of all
 };
 
 // 1, 2 or 5 times a power of ten, at most `length_m`.
@@ -82,51 +78,46 @@ class TrackSvgSink : public Sink {
       latitude_deg_ = latitude_deg;
       longitude_deg_ = longitude_deg;
     }
-    const Place place{kEarthRadiusM * std::cos(DegToRad(latitude_deg_)) * WrapToPi(DegToRad(longitude_deg - longitude_deg_)),
-                      kEarthRadiusM * DegToRad(latitude_deg - latitude_deg_)};
+    const Eigen::Vector2d place_m(kEarthRadiusM * std::cos(DegToRad(latitude_deg_)) * WrapToPi(DegToRad(longitude_deg - longitude_deg_)),
+                                  kEarthRadiusM * DegToRad(latitude_deg - latitude_deg_));
     if (is_broken_ || stretches_.empty()) {
-      stretches_.push_back({&style, {place}});
+      stretches_.push_back({&style, {place_m}});
     } else if (stretches_.back().style != &style) {
       // The new stretch begins where the old one ends.
-      const Place last = stretches_.back().places.back();
-      stretches_.push_back({&style, {last, place}});
-    } else {
-      const Place& last = stretches_.back().places.back();
-      if (std::hypot(place.east_m - last.east_m, place.north_m - last.north_m) >= kLeastStepM) stretches_.back().places.push_back(place);
+      stretches_.push_back({&style, {Eigen::Vector2d(stretches_.back().places_m.back()), place_m}});
+    } else if ((place_m - stretches_.back().places_m.back()).norm() >= kLeastStepM) {
+      stretches_.back().places_m.push_back(place_m);
     }
     is_broken_ = false;
   }
 
   void Draw(std::string& text) const {
-    Place low = stretches_.front().places.front();
-    Place high = low;
+    Eigen::AlignedBox2d box_m;
     double length_m = 0.0;
     for (const auto& stretch : stretches_) {
-      for (std::size_t i = 0; i < stretch.places.size(); ++i) {
-        const Place& place = stretch.places[i];
-        low = {std::min(low.east_m, place.east_m), std::min(low.north_m, place.north_m)};
-        high = {std::max(high.east_m, place.east_m), std::max(high.north_m, place.north_m)};
-        if (i > 0) length_m += std::hypot(place.east_m - stretch.places[i - 1].east_m, place.north_m - stretch.places[i - 1].north_m);
+      for (std::size_t i = 0; i < stretch.places_m.size(); ++i) {
+        box_m.extend(stretch.places_m[i]);
+        if (i > 0) length_m += (stretch.places_m[i] - stretch.places_m[i - 1]).norm();
       }
     }
-    const double pixels_per_m = std::min((kWidth - 2.0 * kMargin) / std::max(high.east_m - low.east_m, kLeastSpanM),
-                                         (kHeight - 2.0 * kMargin) / std::max(high.north_m - low.north_m, kLeastSpanM));
-    const auto x = [&](const Place& place) { return kWidth / 2.0 + pixels_per_m * (place.east_m - (low.east_m + high.east_m) / 2.0); };
-    const auto y = [&](const Place& place) { return kHeight / 2.0 - pixels_per_m * (place.north_m - (low.north_m + high.north_m) / 2.0); };
+    const double pixels_per_m = std::min((kWidth - 2.0 * kMargin) / std::max(box_m.sizes().x(), kLeastSpanM),
+                                         (kHeight - 2.0 * kMargin) / std::max(box_m.sizes().y(), kLeastSpanM));
+    const auto x = [&](const Eigen::Vector2d& place_m) { return kWidth / 2.0 + pixels_per_m * (place_m - box_m.center()).x(); };
+    const auto y = [&](const Eigen::Vector2d& place_m) { return kHeight / 2.0 - pixels_per_m * (place_m - box_m.center()).y(); };
     text +=
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1320\" height=\"1000\" font-family=\"sans-serif\" font-size=\"14\">\n"
         "<title>Track of the boat</title>\n<rect width=\"1320\" height=\"1000\" fill=\"#ffffff\"/>\n";
     for (const auto& stretch : stretches_) {
       std::string points;
-      for (const auto& place : stretch.places) points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", x(place), y(place));
+      for (const auto& place_m : stretch.places_m) points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", x(place_m), y(place_m));
       // A stretch of one place is seen as a dot.
-      if (stretch.places.size() == 1) points += " " + points;
+      if (stretch.places_m.size() == 1) points += " " + points;
       text += fmt::format("<polyline fill=\"none\" stroke-width=\"2\" stroke-linecap=\"round\" stroke=\"{}\" points=\"{}\"/>\n",
                           stretch.style->colour, points);
     }
-    for (const auto& [place, word] : {std::pair(stretches_.front().places.front(), "begin"), {stretches_.back().places.back(), "end"}}) {
+    for (const auto& [place_m, word] : {std::pair(stretches_.front().places_m.front(), "begin"), {stretches_.back().places_m.back(), "end"}}) {
       text += fmt::format("<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"4\"/>\n<text x=\"{0:.1f}\" y=\"{1:.1f}\" dx=\"7\" dy=\"-7\">{2}</text>\n",
-                          x(place), y(place), word);
+                          x(place_m), y(place_m), word);
     }
     text += fmt::format(
         "<text x=\"20\" y=\"28\" font-size=\"18\">Track of the boat, north up</text>\n"

@@ -29,7 +29,7 @@ std::function<std::size_t(std::span<std::uint8_t>)> Reader(const std::filesystem
 
 }  // namespace
 
-CsvFile::CsvFile(const std::filesystem::path& file, std::span<const std::string_view> columns, std::span<const std::string_view> optional)
+CsvFile::CsvFile(const std::filesystem::path& file, std::initializer_list<std::string_view> columns, std::initializer_list<std::string_view> optional)
     : file_(file), read_(Reader(file)), block_(kReadBytes), names_(columns.begin(), columns.end()) {
   names_.insert(names_.end(), optional.begin(), optional.end());
   if (!ReadLine()) Refuse("empty: a header is missing");

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,7 +22,7 @@ class CsvFile {
   /// @param columns   that must be there, in any order; others are left alone
   /// @param optional  that need not be there
   /// @throws std::runtime_error "file:line: reason", as all below; "file: reason" when it cannot be opened
-  CsvFile(const std::filesystem::path& file, std::span<const std::string_view> columns, std::span<const std::string_view> optional = {});
+  CsvFile(const std::filesystem::path& file, std::initializer_list<std::string_view> columns, std::initializer_list<std::string_view> optional = {});
 
   /// @return whether there is another row; its cells are then at hand
   bool Next();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -19,6 +20,7 @@ constexpr int kMinColumns = 360;
 constexpr double kRangeUnitM = 0.002;  // as a VLP-16
 constexpr double kMaxRangeCount = std::numeric_limits<std::uint16_t>::max();
 constexpr double kMinStepRad = 1e-4;  // smaller steps are the rounding of one place
+constexpr std::chrono::microseconds kScanDuration{100'000};
 
 struct Beam {
   std::size_t point = 0;
@@ -72,28 +74,25 @@ std::optional<std::vector<Heap>> HeapsOf(const std::vector<double>& sorted_rad, 
 }
 
 // Sets the ring of each beam. @return whether rings were found
-bool FindRings(std::vector<Beam>& beams, int num_rings) {
+bool FindRings(std::vector<Beam>& beams) {
   std::vector<double> sorted_rad;
   sorted_rad.reserve(beams.size());
   for (const auto& beam : beams) sorted_rad.push_back(beam.elevation_rad);
   std::ranges::sort(sorted_rad);
-  if (num_rings == 0) {
-    // From sensors of few rings to those of 128, which are 0.11 degrees apart at the horizon.
-    for (const double min_gap_deg : {0.5, 0.25, 0.1, 0.05, 0.02}) {
-      const auto heaps = HeapsOf(sorted_rad, DegToRad(min_gap_deg));
-      if (!heaps) continue;
-      std::vector<double> begin_rad;
-      for (const auto& heap : *heaps) begin_rad.push_back(sorted_rad[heap.begin]);
-      for (auto& beam : beams) beam.ring = static_cast<int>(std::ranges::upper_bound(begin_rad, beam.elevation_rad) - begin_rad.begin()) - 1;
-      return true;
-    }
+  // From sensors of few rings to those of 128, which are 0.11 degrees apart at the horizon.
+  for (const double min_gap_deg : {0.5, 0.25, 0.1, 0.05, 0.02}) {
+    const auto heaps = HeapsOf(sorted_rad, DegToRad(min_gap_deg));
+    if (!heaps) continue;
+    std::vector<double> begin_rad;
+    for (const auto& heap : *heaps) begin_rad.push_back(sorted_rad[heap.begin]);
+    for (auto& beam : beams) beam.ring = static_cast<int>(std::ranges::upper_bound(begin_rad, beam.elevation_rad) - begin_rad.begin()) - 1;
+    return true;
   }
-  const int num_bands = std::min(num_rings == 0 ? kNumBands : num_rings, kMaxCloudRings);
   const double bottom_rad = sorted_rad.front();
   const double height_rad = sorted_rad.back() - bottom_rad;
   for (auto& beam : beams) {
     const double part = height_rad > 0.0 ? (beam.elevation_rad - bottom_rad) / height_rad : 0.0;
-    beam.ring = std::min(num_bands - 1, static_cast<int>(part * num_bands));
+    beam.ring = std::min(kNumBands - 1, static_cast<int>(part * kNumBands));
   }
   return false;
 }
@@ -136,17 +135,17 @@ double RangeUnit(const std::vector<Beam>& beams) {
   return kRangeUnitM * std::max(1.0, std::ceil(max_m / (kRangeUnitM * kMaxRangeCount)));
 }
 
-segmenter::Scan EmptyScan(std::vector<segmenter::Ring> rings, int num_columns, double range_unit_m, std::chrono::microseconds duration) {
+segmenter::Scan EmptyScan(std::vector<segmenter::Ring> rings, int num_columns, double range_unit_m) {
   segmenter::Scan scan;
   scan.head.time = Utime{};
-  scan.head.end_time = scan.head.time + duration;
+  scan.head.end_time = scan.head.time + kScanDuration;
   scan.head.range_unit_m = range_unit_m;
   scan.head.rings = std::move(rings);
   scan.head.num_turn_columns = num_columns;
   scan.parts = {{0, num_columns}};
   for (int column = 0; column < num_columns; ++column) {
     scan.columns.azimuth_rad.push_back(static_cast<float>(kTwoPi * (column + 0.5) / num_columns));
-    scan.columns.time_ns.push_back(static_cast<std::int32_t>(std::chrono::nanoseconds(duration).count() * column / num_columns));
+    scan.columns.time_ns.push_back(static_cast<std::int32_t>(std::chrono::nanoseconds(kScanDuration).count() * column / num_columns));
   }
   const auto num_cells = static_cast<std::size_t>(num_columns) * scan.head.rings.size();
   scan.columns.range.assign(num_cells, 0);
@@ -191,22 +190,21 @@ class Placer {
 
 }  // namespace
 
-OrganisedCloud Organise(const PointCloud& cloud, const OrganiseParams& params) {
+OrganisedCloud Organise(const PointCloud& cloud) {
   OrganisedCloud result;
   result.cell_of_point.assign(cloud.points.size(), OrganisedCloud::kNoCell);
   result.labelled.objects = cloud.objects;
   auto beams = BeamsOf(cloud, result.num_out_of_range);
   if (beams.empty()) {
-    result.labelled.scan = EmptyScan({segmenter::Ring{}}, kUsualColumns, kRangeUnitM, params.duration);
+    result.labelled.scan = EmptyScan({segmenter::Ring{}}, kUsualColumns, kRangeUnitM);
     result.labelled.object.assign(result.labelled.scan.num_cells(), kNoTrueObject);
     return result;
   }
-  result.are_rings_found = FindRings(beams, params.num_rings);
+  result.are_rings_found = FindRings(beams);
   auto rings = NumberRings(beams);
   std::ranges::stable_sort(
       beams, [](const Beam& one, const Beam& other) { return one.ring != other.ring ? one.ring < other.ring : one.azimuth_rad < other.azimuth_rad; });
-  const int num_columns = std::min(params.num_columns == 0 ? FindNumColumns(beams) : params.num_columns, kMaxCloudColumns);
-  result.labelled.scan = EmptyScan(std::move(rings), num_columns, RangeUnit(beams), params.duration);
+  result.labelled.scan = EmptyScan(std::move(rings), FindNumColumns(beams), RangeUnit(beams));
   result.labelled.object.assign(result.labelled.scan.num_cells(), kNoTrueObject);
 
   std::ranges::stable_sort(beams, [](const Beam& one, const Beam& other) { return one.range_m < other.range_m; });

@@ -1,7 +1,6 @@
 // From points to a scan: which laser and which firing each point came from.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -9,12 +8,6 @@
 #include "tools/import/point_cloud.hpp"
 
 namespace lookout::importer {
-
-struct OrganiseParams {
-  int num_rings = 0;                            // 0 = find them; else bands of equal height, at most 128
-  int num_columns = 0;                          // 0 = find the step of the sensor
-  std::chrono::microseconds duration{100'000};  // of a scan
-};
 
 struct OrganisedCloud {
   static constexpr std::int32_t kNoCell = -1;
@@ -38,6 +31,6 @@ inline constexpr int kMaxCloudColumns = 4096;
 /// @return a scan that LIDAR_SCAN can hold. Its ranges are exact to half a unit (2 mm, or as much as the farthest point needs); a direction is that
 ///         of its cell: off by half a column at most (one and a half where moved), and by half the height of its ring
 /// Cost: sorting of the points.
-OrganisedCloud Organise(const PointCloud& cloud, const OrganiseParams& params);
+OrganisedCloud Organise(const PointCloud& cloud);
 
 }  // namespace lookout::importer

@@ -1,7 +1,5 @@
 #include "tools/import/xz_file.hpp"
 
-#include <lzma.h>
-
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -29,42 +27,29 @@ std::string ReasonOf(lzma_ret outcome) {
 
 }  // namespace
 
-struct XzFile::Decoder {
-  Decoder() {
-    if (lzma_stream_decoder(&stream, kMaxDecoderBytes, LZMA_CONCATENATED) != LZMA_OK) throw std::runtime_error("liblzma cannot be used");
-  }
-  ~Decoder() { lzma_end(&stream); }
-  Decoder(const Decoder&) = delete;
-  Decoder& operator=(const Decoder&) = delete;
-
-  lzma_stream stream = LZMA_STREAM_INIT;
-  bool is_at_end = false;
-};
-
-XzFile::XzFile(const std::filesystem::path& file, std::uint64_t max_bytes)
-    : in_(file, std::ios::binary), decoder_(std::make_unique<Decoder>()), packed_(kBlockBytes), num_left_(max_bytes) {
+XzFile::XzFile(const std::filesystem::path& file, std::uint64_t max_bytes) : in_(file, std::ios::binary), packed_(kBlockBytes), num_left_(max_bytes) {
   std::error_code fault;
   if (!in_ || !std::filesystem::is_regular_file(file, fault)) throw std::runtime_error(file.string() + ": cannot be opened");
+  if (lzma_stream_decoder(&stream_, kMaxDecoderBytes, LZMA_CONCATENATED) != LZMA_OK) throw std::runtime_error("liblzma cannot be used");
 }
 
-XzFile::~XzFile() = default;
+XzFile::~XzFile() { lzma_end(&stream_); }
 
 std::size_t XzFile::Read(std::span<std::uint8_t> out) {
-  auto& stream = decoder_->stream;
-  stream.next_out = out.data();
-  stream.avail_out = out.size();
-  while (stream.avail_out > 0 && !decoder_->is_at_end) {
-    if (stream.avail_in == 0 && in_) {
+  stream_.next_out = out.data();
+  stream_.avail_out = out.size();
+  while (stream_.avail_out > 0 && !is_at_end_) {
+    if (stream_.avail_in == 0 && in_) {
       // A byte of the file is a byte whatever type the stream gives it.
       in_.read(reinterpret_cast<char*>(packed_.data()), static_cast<std::streamsize>(packed_.size()));
-      stream.next_in = packed_.data();
-      stream.avail_in = static_cast<std::size_t>(in_.gcount());
+      stream_.next_in = packed_.data();
+      stream_.avail_in = static_cast<std::size_t>(in_.gcount());
     }
-    const auto outcome = lzma_code(&stream, in_ ? LZMA_RUN : LZMA_FINISH);
-    decoder_->is_at_end = outcome == LZMA_STREAM_END;
+    const auto outcome = lzma_code(&stream_, in_ ? LZMA_RUN : LZMA_FINISH);
+    is_at_end_ = outcome == LZMA_STREAM_END;
     if (outcome != LZMA_OK && outcome != LZMA_STREAM_END) throw std::runtime_error(ReasonOf(outcome));
   }
-  const std::size_t count = out.size() - stream.avail_out;
+  const std::size_t count = out.size() - stream_.avail_out;
   if (count > num_left_) throw std::runtime_error("larger, when unpacked, than a file of this kind may be");
   num_left_ -= count;
   return count;

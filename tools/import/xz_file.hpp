@@ -1,10 +1,11 @@
 // Files compressed by xz, bit by bit, so that a small file that unpacks to a huge one takes no memory.
 #pragma once
 
+#include <lzma.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,9 @@ class XzFile {
   std::size_t Read(std::span<std::uint8_t> out);
 
  private:
-  struct Decoder;
   std::ifstream in_;
-  std::unique_ptr<Decoder> decoder_;
+  lzma_stream stream_ = LZMA_STREAM_INIT;
+  bool is_at_end_ = false;
   std::vector<std::uint8_t> packed_;
   std::uint64_t num_left_;
 };

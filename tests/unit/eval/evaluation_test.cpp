@@ -117,11 +117,11 @@ TEST_F(EvaluationTest, ScoresSegmentsByReturns) {
   EXPECT_EQ(evaluation.num_returns, 4);
   EXPECT_EQ(evaluation.num_joined, 4);
   // Ferry 2 of 2, pile 1 of 2 (the other is a stray).
-  EXPECT_DOUBLE_EQ(evaluation.scan_iou.Mean(), 0.75);
-  EXPECT_EQ(evaluation.scores_by_kind.at("boat").num_found, 1);
-  EXPECT_EQ(evaluation.scores_by_kind.at("pile").num_present, 1);
-  EXPECT_EQ(evaluation.scores_by_kind.at("pile").num_found, 0) << "half of a segment is not its own";
-  EXPECT_DOUBLE_EQ(evaluation.clutter_segments.Mean(), 0.0);
+  EXPECT_DOUBLE_EQ(evaluation.scan_iou.value(), 0.75);
+  EXPECT_EQ(evaluation.scores_by_kind.at("boat").recall.sum, 1);
+  EXPECT_EQ(evaluation.scores_by_kind.at("pile").recall.count, 1);
+  EXPECT_EQ(evaluation.scores_by_kind.at("pile").recall.sum, 0) << "half of a segment is not its own";
+  EXPECT_DOUBLE_EQ(evaluation.clutter_segments.value(), 0.0);
 }
 
 // The stray has a segment of its own, beside those of ferry and pile.
@@ -137,8 +137,8 @@ TEST_F(EvaluationTest, SegmentsOfStraysAreCountedAlsoAtSure) {
     for (auto& segment : turn.segments[0].segments) segment.confidence = segment_t::CONFIDENCE_SURE;
     turn.segments[0].segments[2].confidence = confidence;
     evaluation.Add(turn);
-    EXPECT_DOUBLE_EQ(evaluation.clutter_segments.Mean(), 1.0);
-    EXPECT_DOUBLE_EQ(evaluation.sure_clutter_segments.Mean(), num_sure);
+    EXPECT_DOUBLE_EQ(evaluation.clutter_segments.value(), 1.0);
+    EXPECT_DOUBLE_EQ(evaluation.sure_clutter_segments.value(), num_sure);
     std::ostringstream text;
     PrintSegmentation(text, evaluation, 1);
     EXPECT_NE(text.str().find(num_sure > 0.0 ? "of pure clutter 1.00, of these sure 1.00" : "of pure clutter 1.00, of these sure 0.00"),
@@ -173,8 +173,8 @@ TEST_F(EvaluationTest, TheFirstTableShowsConfidenceAndKind) {
 TEST_F(EvaluationTest, ObjectsWithFewReturnsDoNotCountForRecall) {
   Evaluation evaluation(&truth_, 2);
   evaluation.Add(SmallTurn());
-  EXPECT_EQ(evaluation.scores_by_kind.at("boat").num_present, 1);
-  EXPECT_EQ(evaluation.scores_by_kind.at("pile").num_present, 0);
+  EXPECT_EQ(evaluation.scores_by_kind.at("boat").recall.count, 1);
+  EXPECT_EQ(evaluation.scores_by_kind.at("pile").recall.count, 0);
 }
 
 TEST_F(EvaluationTest, ObstaclesThatAreNotOnTheEarthHaveNoDistance) {

@@ -98,9 +98,7 @@ TEST(Figures, AreMadeOfTheResults) {
 TEST(Figures, OneNameIsOneFigureInAllBlocks) {
   auto results = MadeUpResults();
   results.methods[0].method = "F3D (tuned)";
-  auto& rain = results.methods[0].by_scene["rain"];
-  rain.num_things = 80;
-  rain.num_things_with_segment = 20;
+  results.methods[0].by_scene["rain"].with_segment = {80, 20};
   const auto cell = [figures = FiguresOf(results, "2026-11-22")](const std::string& name, const std::string& column) -> std::string {
     const auto figure = std::ranges::find(figures, name, &ReadmeFigure::name);
     if (figure == figures.end()) return "no " + name;

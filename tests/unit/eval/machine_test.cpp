@@ -38,8 +38,8 @@ TEST(Machine, PacketCountsGoOnOverAStartMark) {
   machine.Add(Clock(0, 75, 0));
   machine.Add(Clock(1, 150, 3));
   machine.Add(Clock(0, 70, 1));
-  EXPECT_EQ(machine.Packets().num_packets, 220);
-  EXPECT_EQ(machine.Packets().num_lost, 4);
+  EXPECT_EQ(machine.packets.num_packets, 220);
+  EXPECT_EQ(machine.packets.num_lost, 4);
   EXPECT_EQ(machine.num_scans_by_sensor, 3);
 }
 

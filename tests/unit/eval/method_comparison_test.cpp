@@ -17,6 +17,7 @@
 #include "tools/eval/paper_tests.hpp"
 #include "tools/eval/projection.hpp"
 #include "tools/eval/result_tables.hpp"
+#include "tools/eval/scoring.hpp"
 #include "tools/eval/sweep.hpp"
 
 namespace lookout::eval {
@@ -109,8 +110,8 @@ TEST(MethodComparison, TruthAsLabelsScoresOneHundred) {
   MethodComparison comparison(methods);
   for (const auto& turn : turns) comparison.Add({"sparse", 1, 0}, turn);
   const auto& score = comparison.results()[0].by_scene.at("sparse");
-  EXPECT_DOUBLE_EQ(MeanIou(score), 1.0);
-  EXPECT_EQ(score.num_false_segments, 0);
+  EXPECT_DOUBLE_EQ(score.iou.value(), 1.0);
+  EXPECT_EQ(score.false_segments.sum, 0);
   EXPECT_EQ(comparison.results()[0].worst.size(), 1U) << "one of each scene";
 }
 
@@ -298,12 +299,13 @@ TEST(PaperTests, PartsAreThoseOfOneObjectAlone) {
   add(9, 7, kNotScored);
   add(30, 8, 4);
   add(30, kNoTrueObject, 5);
-  auto parts = PartsOf(7, truth, labelling);
+  const auto objects = MatchScan(truth, labelling.label).objects;
+  const auto& parts = objects.at(7);
   EXPECT_EQ(parts.num_segments, 3);
-  EXPECT_EQ(parts.num_large, 2) << "2 of 20 are a tenth";
+  EXPECT_EQ(parts.num_parts, 2) << "2 of 20 are a tenth";
   EXPECT_EQ(parts.num_in_largest, 16);
   EXPECT_EQ(parts.num_returns, 20);
-  EXPECT_EQ(PartsOf(9, truth, labelling).num_segments, 0);
+  EXPECT_FALSE(objects.contains(9));
 }
 
 TEST(PaperTests, ABoatIsMoreClustersTheLessE3Joins) {
@@ -349,8 +351,7 @@ TEST(ResultTables, AnotherWorldStandsBesideOurs) {
     Results results;
     results.scenes = {scene};
     Score score;
-    score.num_scans = score.num_scans_with_object = 1;
-    score.sum_iou = iou;
+    score.iou = {1, iou};
     score.near_recall_by_kind["buoy"] = {1, 1};
     results.methods = {{"ours (all segments)", {{scene, score}}, {}, {}}, {"F3D (tuned)", {{scene, score}}, {}, {}}};
     return results;
@@ -403,32 +404,28 @@ TEST(ResultTables, OursIsHeldAgainstTheBestPeers) {
     MethodResult method;
     method.method = name;
     for (std::size_t i = 0; i < iou.size(); ++i) {
-      Score score;
-      score.num_scans = score.num_scans_with_object = 1;
-      score.sum_iou = iou[i];
-      method.by_scene[results.scenes[i]] = score;
+      method.by_scene[results.scenes[i]].iou = {1, iou[i]};
     }
     results.methods.push_back(method);
   };
   add("paper W=512", {0.99, 0.99, 0.99});
   add("ours", {0.9, 0.6, 0.7});
-  EXPECT_TRUE(CompareWithPeers(results, false).empty()) << "no peers";
+  EXPECT_TRUE(CompareWithPeers(results).empty()) << "no peers";
   add("Euclidean 2 m", {0.95, 0.3, 1.0});
   add("Euclidean 3 m (tuned)", {0.8, 0.5, 0.4});
   add("F3D (tuned)", {0.8, 0.2, 0.9});
-  const auto tuned = CompareWithPeers(results, true);
-  ASSERT_EQ(tuned.size(), 4U);
-  EXPECT_EQ(tuned[0].peer, "Euclidean 3 m (tuned)") << "of equals the first";
-  EXPECT_NEAR(tuned[0].error_share, 0.1 / 0.2, 1e-12);
-  EXPECT_NEAR(tuned[1].error_share, 0.4 / 0.5, 1e-12);
-  EXPECT_EQ(tuned[2].peer, "F3D (tuned)");
-  EXPECT_NEAR(tuned[2].error_share, 0.3 / 0.1, 1e-12);
-  EXPECT_EQ(tuned[3].scene, "mean");
-  EXPECT_EQ(tuned[3].peer, "F3D (tuned)");
-  EXPECT_NEAR(tuned[3].error_share, (0.8 / 3.0) / (1.1 / 3.0), 1e-12);
-  const auto all = CompareWithPeers(results, false);
-  EXPECT_EQ(all[0].peer, "Euclidean 2 m");
-  EXPECT_TRUE(std::isnan(all[2].error_share)) << "that peer makes no error";
+  const auto rows = CompareWithPeers(results);
+  ASSERT_EQ(rows.size(), 4U);
+  EXPECT_EQ(rows[0].tuned->name, "Euclidean 3 m (tuned)") << "of equals the first";
+  EXPECT_NEAR(rows[0].tuned->error_share, 0.1 / 0.2, 1e-12);
+  EXPECT_NEAR(rows[1].tuned->error_share, 0.4 / 0.5, 1e-12);
+  EXPECT_EQ(rows[2].tuned->name, "F3D (tuned)");
+  EXPECT_NEAR(rows[2].tuned->error_share, 0.3 / 0.1, 1e-12);
+  EXPECT_EQ(rows[3].scene, "mean");
+  EXPECT_EQ(rows[3].tuned->name, "F3D (tuned)");
+  EXPECT_NEAR(rows[3].tuned->error_share, (0.8 / 3.0) / (1.1 / 3.0), 1e-12);
+  EXPECT_EQ(rows[0].of_all.name, "Euclidean 2 m");
+  EXPECT_TRUE(std::isnan(rows[2].of_all.error_share)) << "that peer makes no error";
 }
 
 TEST(ResultTables, SceneWithoutObjectsHasADash) {
@@ -436,13 +433,8 @@ TEST(ResultTables, SceneWithoutObjectsHasADash) {
   results.scenes = {"a", "b"};
   MethodResult method;
   method.method = "m";
-  Score with_object;
-  with_object.num_scans = with_object.num_scans_with_object = 4;
-  with_object.sum_iou = 3.0;
-  Score without;
-  without.num_scans = 4;
-  without.num_false_segments = 2;
-  method.by_scene = {{"a", with_object}, {"b", without}};
+  method.by_scene["a"].iou = {4, 3.0};
+  method.by_scene["b"].false_segments = {4, 2.0};
   results.methods.push_back(method);
   std::ostringstream out;
   TablesOf(results).at(0).table.PrintCsv(out);

@@ -13,9 +13,9 @@ TEST(Confusion, PerfectSegmentationHasAnIouOfOne) {
   Confusion confusion;
   AddMany(confusion, 1, 2, 10);
   AddMany(confusion, 2, 1, 5);
-  for (const auto& score : confusion.Scores()) {
-    EXPECT_DOUBLE_EQ(score.iou, 1.0);
-    EXPECT_TRUE(score.has_own_segment);
+  for (const auto& [id, object] : confusion.Match().objects) {
+    EXPECT_DOUBLE_EQ(object.iou, 1.0);
+    EXPECT_TRUE(object.has_own_segment);
   }
 }
 
@@ -27,50 +27,59 @@ TEST(Confusion, IouIsThatOfTheBestSegment) {
   AddMany(confusion, 1, -1, 1);
   AddMany(confusion, 0, 1, 2);
   AddMany(confusion, -1, 1, 1);
-  const auto scores = confusion.Scores();
-  ASSERT_EQ(scores.size(), 1U);
-  EXPECT_EQ(scores[0].num_returns, 10);
-  EXPECT_DOUBLE_EQ(scores[0].iou, 6.0 / (10.0 + 9.0 - 6.0));
+  const auto objects = confusion.Match().objects;
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_EQ(objects.at(1).num_returns, 10);
+  EXPECT_DOUBLE_EQ(objects.at(1).iou, 6.0 / (10.0 + 9.0 - 6.0));
 }
 
 TEST(Confusion, SwallowedObjectHasNoSegmentOfItsOwn) {
   Confusion confusion;
   AddMany(confusion, 1, 1, 90);
   AddMany(confusion, 2, 1, 10);
-  const auto scores = confusion.Scores();
-  EXPECT_TRUE(scores[0].has_own_segment);
-  EXPECT_FALSE(scores[1].has_own_segment);
-  EXPECT_DOUBLE_EQ(scores[1].iou, 0.1);
-  EXPECT_EQ(confusion.MajorityObject(1), 1);
+  const auto matches = confusion.Match();
+  EXPECT_TRUE(matches.objects.at(1).has_own_segment);
+  EXPECT_FALSE(matches.objects.at(2).has_own_segment);
+  EXPECT_DOUBLE_EQ(matches.objects.at(2).iou, 0.1);
+  EXPECT_EQ(matches.segments.at(1).majority_object, 1);
 }
 
 TEST(Confusion, HalfOfASegmentIsNotItsMajority) {
   Confusion confusion;
   AddMany(confusion, 1, 1, 5);
   AddMany(confusion, 2, 1, 5);
-  EXPECT_FALSE(confusion.Scores()[0].has_own_segment);
-  EXPECT_FALSE(confusion.Scores()[1].has_own_segment);
-  EXPECT_EQ(confusion.MajorityObject(1), 1) << "the least id of equals";
+  const auto matches = confusion.Match();
+  EXPECT_FALSE(matches.objects.at(1).has_own_segment);
+  EXPECT_FALSE(matches.objects.at(2).has_own_segment);
+  EXPECT_EQ(matches.segments.at(1).majority_object, 1) << "the least id of equals";
 }
 
 TEST(Confusion, ObjectOutsideOfAllSegmentsScoresZero) {
   Confusion confusion;
   AddMany(confusion, 3, 0, 4);
-  EXPECT_DOUBLE_EQ(confusion.Scores()[0].iou, 0.0);
-  EXPECT_EQ(confusion.NumSegments(), 0);
+  EXPECT_DOUBLE_EQ(confusion.Match().objects.at(3).iou, 0.0);
+  EXPECT_TRUE(confusion.Match().segments.empty());
 }
 
-TEST(Confusion, ClutterIsASegmentOfStraysOnly) {
+TEST(Confusion, SegmentsSayWhatIsInThem) {
   Confusion confusion;
   AddMany(confusion, 0, 1, 2);
   AddMany(confusion, 0, 2, 2);
   AddMany(confusion, 1, 2, 1);
   AddMany(confusion, -1, 3, 1);
+  AddMany(confusion, 0, 3, 1);
   AddMany(confusion, 0, 0, 5);
-  EXPECT_EQ(confusion.NumSegments(), 3);
-  EXPECT_EQ(confusion.ClutterSegments(), std::vector<int>{1});
-  EXPECT_EQ(confusion.MajorityObject(3), -1);
-  EXPECT_EQ(confusion.MajorityObject(9), 0);
+  const auto segments = confusion.Match().segments;
+  ASSERT_EQ(segments.size(), 3U);
+  EXPECT_FALSE(segments.at(1).has_object || segments.at(1).has_own_vessel);
+  EXPECT_TRUE(segments.at(2).has_object);
+  EXPECT_FALSE(segments.at(2).has_own_vessel);
+  EXPECT_EQ(segments.at(2).majority_object, 0);
+  EXPECT_FALSE(segments.at(3).has_object);
+  EXPECT_TRUE(segments.at(3).has_own_vessel);
+  EXPECT_EQ(segments.at(3).num_returns, 2);
+  AddMany(confusion, -1, 3, 1);
+  EXPECT_EQ(confusion.Match().segments.at(3).majority_object, -1);
 }
 
 TEST(Summary, PercentilesAreOfTheNearestRank) {

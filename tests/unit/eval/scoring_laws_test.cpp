@@ -131,30 +131,27 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
     const auto one = RandomCase(seed);
     const auto score = ScoreScan(one.truth, one.labelling);
     const auto expected = Compute(one);
-    EXPECT_EQ(score.num_object_scans, expected.num_objects);
-    EXPECT_NEAR(score.sum_iou, expected.iou, 1e-12);
+    EXPECT_EQ(score.over_segmented.count, expected.num_objects);
+    EXPECT_NEAR(score.iou.sum, expected.iou, 1e-12);
     const auto sure = ScoreScan(one.truth, SureOnly(one.labelling));
-    EXPECT_NEAR(sure.sum_iou, expected.sure_iou, 1e-12);
-    EXPECT_EQ(score.num_things, expected.num_things);
-    EXPECT_EQ(score.num_things_with_segment, expected.num_things_with_segment);
-    EXPECT_NEAR(score.sum_water_iou, expected.water_iou, 1e-12);
-    EXPECT_EQ(score.num_segments, expected.num_segments);
-    EXPECT_EQ(score.num_false_segments, expected.num_false);
-    EXPECT_EQ(score.num_over_segmented, expected.num_over);
-    EXPECT_EQ(score.num_under_segmented, expected.num_under);
-    EXPECT_EQ(score.num_labelled_returns, expected.num_true_positives);
-    std::int64_t num_found = 0;
-    for (const auto& [bin, recall] : score.recall_by_range) num_found += recall.second;
+    EXPECT_NEAR(sure.iou.sum, expected.sure_iou, 1e-12);
+    EXPECT_EQ(score.with_segment.count, expected.num_things);
+    EXPECT_EQ(score.with_segment.sum, expected.num_things_with_segment);
+    EXPECT_NEAR(score.water_iou.sum, expected.water_iou, 1e-12);
+    EXPECT_EQ(score.segments.sum, expected.num_segments);
+    EXPECT_EQ(score.false_segments.sum, expected.num_false);
+    EXPECT_EQ(score.over_segmented.sum, expected.num_over);
+    EXPECT_EQ(score.under_segmented.sum, expected.num_under);
+    EXPECT_EQ(score.true_positives.sum, expected.num_true_positives);
+    double num_found = 0.0;
+    for (const auto& [bin, recall] : score.recall_by_range) num_found += recall.sum;
     EXPECT_EQ(num_found, expected.num_found);
-    Score::Recall near;
-    for (const auto& [kind, recall] : score.near_recall_by_kind) {
-      near.num_object_scans += recall.num_object_scans;
-      near.num_found += recall.num_found;
-    }
-    std::int64_t num_near_surely_found = 0;
-    for (const auto& [kind, recall] : sure.near_recall_by_kind) num_near_surely_found += recall.num_found;
-    EXPECT_EQ(near.num_object_scans, expected.num_near);
-    EXPECT_EQ(near.num_found, expected.num_near_found);
+    Mean near;
+    for (const auto& [kind, recall] : score.near_recall_by_kind) near.Add(recall);
+    double num_near_surely_found = 0.0;
+    for (const auto& [kind, recall] : sure.near_recall_by_kind) num_near_surely_found += recall.sum;
+    EXPECT_EQ(near.count, expected.num_near);
+    EXPECT_EQ(near.sum, expected.num_near_found);
     EXPECT_EQ(num_near_surely_found, expected.num_near_surely_found);
     if (HasFailure()) break;
   }
@@ -181,16 +178,16 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
     }
     one.labelling.is_sure = is_sure;
     const auto after = ScoreScan(one.truth, one.labelling);
-    EXPECT_DOUBLE_EQ(after.sum_iou, before.sum_iou);
-    EXPECT_DOUBLE_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).sum_iou, before_sure.sum_iou);
-    EXPECT_DOUBLE_EQ(after.sum_water_iou, before.sum_water_iou);
-    EXPECT_EQ(after.num_segments, before.num_segments);
-    EXPECT_EQ(after.num_false_segments, before.num_false_segments);
-    EXPECT_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).num_false_segments, before_sure.num_false_segments);
-    EXPECT_EQ(after.num_things_with_segment, before.num_things_with_segment);
-    EXPECT_EQ(after.num_over_segmented, before.num_over_segmented);
-    EXPECT_EQ(after.num_under_segmented, before.num_under_segmented);
-    EXPECT_EQ(after.num_labelled_returns, before.num_labelled_returns);
+    EXPECT_DOUBLE_EQ(after.iou.sum, before.iou.sum);
+    EXPECT_DOUBLE_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).iou.sum, before_sure.iou.sum);
+    EXPECT_DOUBLE_EQ(after.water_iou.sum, before.water_iou.sum);
+    EXPECT_EQ(after.segments.sum, before.segments.sum);
+    EXPECT_EQ(after.false_segments.sum, before.false_segments.sum);
+    EXPECT_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).false_segments.sum, before_sure.false_segments.sum);
+    EXPECT_EQ(after.with_segment.sum, before.with_segment.sum);
+    EXPECT_EQ(after.over_segmented.sum, before.over_segmented.sum);
+    EXPECT_EQ(after.under_segmented.sum, before.under_segmented.sum);
+    EXPECT_EQ(after.true_positives.sum, before.true_positives.sum);
     EXPECT_EQ(after.recall_by_range, before.recall_by_range);
   }
 }

@@ -88,9 +88,9 @@ TEST(Summarise, CountsWhatLiesInTheEllipse) {
   const std::vector<SeenObstacle> seen{At(0, 1, 0.2447), At(0, 2, 0.2448), At(0, 3, 9.0)};
   const auto summary = Summarise(seen, [](const SeenObstacle& obstacle) { return obstacle.object_id != 3; });
   EXPECT_EQ(summary.distance_m.count(), 2U);
-  EXPECT_DOUBLE_EQ(summary.in_ellipse, 0.5);
+  EXPECT_EQ(summary.in_ellipse, (Mean{2, 1.0}));
   EXPECT_NEAR(summary.stated_sd_m.Median(), std::sqrt(0.02), 1e-12);
-  EXPECT_NEAR(summary.nees.Max(), 0.2448 * 0.2448 / 0.01 / 2.0, 1e-9);
+  EXPECT_NEAR(summary.nees.sum, (0.2447 * 0.2447 + 0.2448 * 0.2448) / 0.01 / 2.0, 1e-9);
 }
 
 TEST(Summarise, AJumpIsWhatAllObjectsMakeTogether) {

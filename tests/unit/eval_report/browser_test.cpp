@@ -142,7 +142,7 @@ TEST(Page, SummaryNamesTheWinnerOfEachScene) {
 
 TEST(Page, MethodsThatArePrintedTheSameWinTogether) {
   auto results = MadeUpResults();
-  results.methods[1].by_scene["rain"].sum_iou = 4 * 0.80199;
+  results.methods[1].by_scene["rain"].iou.sum = 4 * 0.80199;
   const auto section = SectionOf(PageOf(results), "summary");
   EXPECT_TRUE(Holds(
       section, "<th scope=\"row\">rain</th><td class=\"words\">ours, paper W=512</td><td>80.2</td><td class=\"words\">paper W=512 without BFS</td>"));
@@ -259,7 +259,7 @@ TEST(Page, WhatIsNotANumberIsADash) {
   auto results = MadeUpResults();
   for (auto& method : results.methods) {
     for (auto& [scene, score] : method.by_scene) {
-      score.sum_iou = score.sum_water_iou = kNan;
+      score.iou.sum = score.water_iou.sum = kNan;
       score.time_ms = {kNan};
     }
     method.worst.clear();
@@ -331,9 +331,8 @@ TEST(Bars, AreAsLongAsTheirNumbersAndLongNamesAreCut) {
     MethodResult method;
     method.method = name;
     auto& score = method.by_scene["s"];
-    score.num_scans = 1;
-    score.num_scans_with_components = components > 0 ? 1 : 0;
-    score.num_components = components;
+    score.segments.count = 1;
+    if (components > 0) score.components.Add(components);
     results.methods.push_back(method);
   }
   const auto section = SectionOf(PageOf(results), "ablation");

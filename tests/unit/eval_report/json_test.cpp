@@ -167,7 +167,7 @@ TEST(Json, WhatIsNotANumberIsNull) {
   auto results = MadeUpResults();
   for (auto& method : results.methods) {
     for (auto& [scene, score] : method.by_scene) {
-      score.sum_iou = std::numeric_limits<double>::quiet_NaN();
+      score.iou.sum = std::numeric_limits<double>::quiet_NaN();
       score.time_ms = {std::numeric_limits<double>::infinity()};
     }
   }

@@ -15,22 +15,18 @@ namespace lookout::eval {
 /// Four turns with two objects each, one of them in the water.
 inline Score MadeUpScore(double iou, double time_ms) {
   Score score;
-  score.num_scans = score.num_scans_with_object = score.num_scans_with_water_object = 4;
-  score.sum_iou = 4 * iou;
-  score.sum_water_iou = 4 * (iou - 0.05);
+  score.iou = {4, 4 * iou};
+  score.water_iou = {4, 4 * (iou - 0.05)};
   score.iou_by_kind = {{"buoy", {4, 4 * (iou - 0.05)}}, {"shore", {4, 4 * (iou + 0.05)}}};
   score.recall_by_range = {{0, {4, 4}}, {2, {4, 1}}};
   score.near_recall_by_kind = {{"buoy", {4, 3}}, {"shore", {4, 4}}};
   score.iou_by_range = {{0, {4, 4 * 0.625}}, {2, {4, 4 * iou}}};
-  score.num_segments = 12;
-  score.num_false_segments = 3;
-  score.num_object_scans = 8;
-  score.num_things = 8;
-  score.num_things_with_segment = 7;
-  score.num_over_segmented = 1;
-  score.num_under_segmented = 3;
-  score.num_returns = 1000;
-  score.num_labelled_returns = 937;
+  score.segments = {4, 12};
+  score.false_segments = {4, 3};
+  score.with_segment = {8, 7};
+  score.over_segmented = {8, 1};
+  score.under_segmented = {12, 3};
+  score.true_positives = {1000, 937};
   score.time_ms = {time_ms, time_ms, time_ms, time_ms * 2};
   return score;
 }
@@ -69,7 +65,7 @@ inline Results MadeUpResults() {
   results.num_seeds = 3;
   results.seconds = 2.0;
   Score empty_water;
-  empty_water.num_scans = 4;
+  empty_water.segments = empty_water.false_segments = {4, 0};
   empty_water.time_ms = {0.5, 0.5, 0.5, 0.5};
   const auto add = [&](const std::string& name, double dense_iou, double rain_iou, double time_ms) {
     MethodResult method;
@@ -80,10 +76,9 @@ inline Results MadeUpResults() {
   add("ours", 0.902, 0.802, 1.25);
   add("paper W=512", 0.307, 0.803, 0.75);
   add("paper W=512 without BFS", 0.2, 0.1, 30.0);
-  for (auto& [scene, score] : results.methods[1].by_scene) score.num_scans_with_components = score.num_scans;
-  results.methods[1].by_scene["dense"].num_components = 460 * 4;
-  results.methods[1].by_scene["rain"].num_components = 461 * 4;
-  results.methods[1].by_scene["open<water>"].num_components = 462 * 4;
+  results.methods[1].by_scene["dense"].components = {4, 460 * 4};
+  results.methods[1].by_scene["rain"].components = {4, 461 * 4};
+  results.methods[1].by_scene["open<water>"].components = {4, 462 * 4};
   results.methods[0].stage_ms = {{"cluster", {0.25, 0.5}}, {"project", {0.125, 0.125}}, {"zeal", {0.1}}};
   results.methods[0].worst = {MadeUpScan({1, 1, 1, 2, 0, 0, -1}, {1, 1, 2, 0, 3, 0, 0})};
   results.curves = {{"Test <1>", "distance, m", "segments", {{"e1 = 0.95", {{1.0, 2.0}, {2.0, 3.25}}}}, "own & sure from 6.3 m"}};

@@ -33,7 +33,7 @@ PointCloud Cloud(int num_rings, double step_deg, int num_columns) {
 }
 
 TEST(Organise, AnEmptyCloudIsAnEmptyTurn) {
-  const auto organised = Organise({}, {});
+  const auto organised = Organise({});
   EXPECT_EQ(organised.labelled.scan.head.num_rings(), 1);
   EXPECT_EQ(organised.labelled.object.size(), organised.labelled.scan.num_cells());
 }
@@ -41,7 +41,7 @@ TEST(Organise, AnEmptyCloudIsAnEmptyTurn) {
 TEST(Organise, ASinglePointHasItsPlace) {
   PointCloud cloud;
   cloud.points = {Point(123.45, 4.0, 30.0, 7)};
-  const auto organised = Organise(cloud, {});
+  const auto organised = Organise(cloud);
   EXPECT_TRUE(organised.are_rings_found);
   ASSERT_NE(organised.cell_of_point[0], OrganisedCloud::kNoCell);
   const auto cell = static_cast<std::size_t>(organised.cell_of_point[0]);
@@ -59,7 +59,7 @@ TEST(Organise, FindsTheRingsAndColumnsOfSensorsFrom16To128Rings) {
   } kSensors[] = {{16, 2.0, 1800}, {32, 1.33, 2170}, {64, 0.4, 2048}, {128, 0.11, 1024}};
   for (const auto& sensor : kSensors) {
     const auto cloud = Cloud(sensor.num_rings, sensor.step_deg, sensor.num_columns);
-    const auto organised = Organise(cloud, {});
+    const auto organised = Organise(cloud);
     EXPECT_TRUE(organised.are_rings_found);
     EXPECT_EQ(organised.labelled.scan.head.num_rings(), sensor.num_rings);
     EXPECT_EQ(organised.labelled.scan.columns.size(), sensor.num_columns);
@@ -85,40 +85,45 @@ TEST(Organise, FindsTheRingsAndColumnsOfSensorsFrom16To128Rings) {
 TEST(Organise, BlurredRingsBecomeBands) {
   PointCloud cloud;
   for (int i = 0; i < 5000; ++i) cloud.points.push_back(Point(0.07 * i, -20.0 + 0.005 * i, 10.0));
-  auto organised = Organise(cloud, {});
+  const auto organised = Organise(cloud);
   EXPECT_FALSE(organised.are_rings_found);
   EXPECT_EQ(organised.labelled.scan.head.num_rings(), 64);
-  organised = Organise(cloud, {.num_rings = 32});
-  EXPECT_EQ(organised.labelled.scan.head.num_rings(), 32);
   EXPECT_TRUE(std::ranges::is_sorted(organised.labelled.scan.head.rings, {}, &segmenter::Ring::elevation_rad));
 }
 
-TEST(Organise, TheNearerPointHasTheCellAndTheOtherMovesOrIsHidden) {
+// A column for each degree: these points, and after them a ring below, whose cells are the even ones.
+PointCloud WithRingBelow(std::vector<CloudPoint> points) {
   PointCloud cloud;
-  cloud.points = {Point(90.5, 0.0, 20.0, 1), Point(90.6, 0.0, 10.0, 2)};
-  auto organised = Organise(cloud, {.num_columns = 360});
-  EXPECT_EQ(organised.cell_of_point[1], 90);
-  EXPECT_EQ(organised.labelled.object[90], 2);
-  EXPECT_EQ(organised.cell_of_point[0], 91);
+  cloud.points = std::move(points);
+  for (int degree = 0; degree < 360; ++degree) cloud.points.push_back(Point(degree + 0.5, -10.0, 30.0));
+  return cloud;
+}
+
+TEST(Organise, TheNearerPointHasTheCellAndTheOtherMovesOrIsHidden) {
+  std::vector<CloudPoint> points{Point(90.5, 0.0, 20.0, 1), Point(90.6, 0.0, 10.0, 2)};
+  auto organised = Organise(WithRingBelow(points));
+  EXPECT_EQ(organised.cell_of_point[1], 2 * 90 + 1);
+  EXPECT_EQ(organised.labelled.object[2 * 90 + 1], 2);
+  EXPECT_EQ(organised.cell_of_point[0], 2 * 91 + 1);
   EXPECT_EQ(organised.num_moved, 1);
-  cloud.points.push_back(Point(91.5, 0.0, 10.0, 3));
-  cloud.points.push_back(Point(89.5, 0.0, 10.0, 3));
-  organised = Organise(cloud, {.num_columns = 360});
+  points.push_back(Point(91.5, 0.0, 10.0, 3));
+  points.push_back(Point(89.5, 0.0, 10.0, 3));
+  organised = Organise(WithRingBelow(points));
   EXPECT_EQ(organised.cell_of_point[0], OrganisedCloud::kNoCell);
   EXPECT_EQ(organised.num_moved, 0);
   EXPECT_EQ(organised.num_hidden, 1);
 }
 
 TEST(Organise, AMovedPointCrossesTheSeam) {
-  PointCloud cloud;
-  cloud.points = {Point(359.6, 0.0, 10.0), Point(359.7, 0.0, 20.0)};
-  EXPECT_EQ(Organise(cloud, {.num_columns = 360}).cell_of_point, (std::vector<std::int32_t>{359, 0}));
+  const auto organised = Organise(WithRingBelow({Point(359.6, 0.0, 10.0), Point(359.7, 0.0, 20.0)}));
+  EXPECT_EQ(organised.cell_of_point[0], 2 * 359 + 1);
+  EXPECT_EQ(organised.cell_of_point[1], 1);
 }
 
 TEST(Organise, PointsOutOfRangeAreCountedAndFarOnesMakeTheUnitLarger) {
   PointCloud cloud;
   cloud.points = {Point(1.0, 0.0, 0.0), Point(2.0, 0.0, 600.0), Point(3.0, 0.0, 300.0), Point(4.0, 0.0, 0.003)};
-  const auto organised = Organise(cloud, {});
+  const auto organised = Organise(cloud);
   EXPECT_EQ(organised.num_out_of_range, 2);
   const auto& scan = organised.labelled.scan;
   EXPECT_NEAR(scan.head.range_unit_m, 0.006, 1e-12);
@@ -128,7 +133,7 @@ TEST(Organise, PointsOutOfRangeAreCountedAndFarOnesMakeTheUnitLarger) {
 
 TEST(ScanMessage, ComesBackThroughTheSegmentersOwnDoor) {
   constexpr int kMaxMessageBytes = 120'000;
-  const auto organised = Organise(Cloud(64, 0.4, 2048), {});
+  const auto organised = Organise(Cloud(64, 0.4, 2048));
   const auto messages = ToScanMessages(organised.labelled.scan, "cloud", kMaxMessageBytes);
   EXPECT_EQ(messages.size(), 4U);
   for (const auto& message : messages) {

@@ -2,6 +2,7 @@ package lookout.spy;
 
 import java.awt.Color;
 import java.awt.Graphics2D;
+import java.awt.geom.Point2D;
 import java.awt.image.BufferedImage;
 import java.io.IOException;
 import java.nio.file.Files;
@@ -141,6 +142,10 @@ public final class SpyTest {
     return image;
   }
 
+  private static Point2D onMap(Painter.Layout layout, double x_m, double y_m) {
+    return MapView.toScreen(layout.map, RADIUS_M).transform(new Point2D.Double(x_m, y_m), null);
+  }
+
   private static void theSpyFindsThePluginWhichHandlesThreeTypes() {
     List<String> found = new ArrayList<>();
     lcm.util.ClassDiscoverer.findClasses((jar, type) -> {
@@ -169,11 +174,10 @@ public final class SpyTest {
     expectColour(image, x, high, Palette.NOTHING, "nothing in the upper ring");
     expectColour(image, layout.ranges.x + layout.ranges.width / 2 + 5, low, Palette.NOTHING, "nothing ahead");
     expectColour(image, x, low + layout.segments.y - layout.ranges.y, Palette.ofSegment(3), "segment 3 to starboard in the lower ring");
-    double map_x = MapView.screenX(layout.map, RADIUS_M, -20.0);
-    double map_y = MapView.screenY(layout.map, RADIUS_M, 0.0);
-    expectColour(image, Math.round(map_x), Math.round(map_y), Palette.ofSegment(3), "segment 3 on the map, 20 m to starboard");
+    Point2D place = onMap(layout, 0.0, -20.0);
+    expectColour(image, Math.round(place.getX()), Math.round(place.getY()), Palette.ofSegment(3), "segment 3 on the map, 20 m to starboard");
     // Between the rings of 20 and 30 m, off the line at 270 degrees.
-    expectColour(image, Math.round(MapView.screenX(layout.map, RADIUS_M, 25.0)), Math.round(map_y) + 30, Palette.BACKGROUND, "nothing to port");
+    expectColour(image, Math.round(onMap(layout, 0.0, 25.0).getX()), Math.round(place.getY()) + 30, Palette.BACKGROUND, "nothing to port");
   }
 
   private static void obstaclesGiveTheBowAndTheirMarks() {
@@ -190,8 +194,8 @@ public final class SpyTest {
     expect(scans.picture().obstacles().get(0).id == 4, "the nearest obstacle stands first");
     Painter.Layout layout = new Painter.Layout(WIDTH, HEIGHT);
     BufferedImage image = painted(scans, WIDTH, HEIGHT, NOW_MS);
-    double x = MapView.screenX(layout.map, RADIUS_M, 0.0);
-    double y = MapView.screenY(layout.map, RADIUS_M, 20.0);
+    double x = onMap(layout, 20.0, 0.0).getX();
+    double y = onMap(layout, 20.0, 0.0).getY();
     expectColour(image, Math.round(x), Math.round(y), Palette.ofSegment(3), "segment 3 is now ahead");
     expect(new Color(image.getRGB((int) Math.floor(x), (int) Math.floor(y - 4))).getRed() < 128, "a dark ring around the obstacle");
     BufferedImage later = painted(scans, WIDTH, HEIGHT, NOW_MS + 2001);
@@ -208,7 +212,8 @@ public final class SpyTest {
     for (int i = 0; i < places.length; ++i) {
       float[] p = places[i];
       segments.add(segmentOf(i + 1, p[0], p[1]));
-      obstacles.add(0, obstacleOf(i + 1, (float) truth.vesselX(p[0], p[1]), (float) truth.vesselY(p[0], p[1])));
+      Point2D place = truth.toVessel().transform(new Point2D.Float(p[0], p[1]), null);
+      obstacles.add(0, obstacleOf(i + 1, (float) place.getX(), (float) place.getY()));
       mirrored.add(obstacleOf(i + 1, p[0], -p[1]));
     }
     Mounting found = Mounting.estimate(segments, obstacles);

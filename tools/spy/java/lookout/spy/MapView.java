@@ -8,9 +8,11 @@ import java.awt.Graphics2D;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
 import java.awt.Shape;
+import java.awt.geom.AffineTransform;
 import java.awt.geom.Ellipse2D;
 import java.awt.geom.Line2D;
 import java.awt.geom.Path2D;
+import java.awt.geom.Point2D;
 import java.util.ArrayList;
 import java.util.List;
 import lookout.obstacle_t;
@@ -27,12 +29,17 @@ final class MapView {
   private final Rectangle area;
   private final Picture picture;
   private final double radius_m;
+  private final AffineTransform vesselToScreen;
+  private final AffineTransform lidarToScreen;
 
   private MapView(Graphics2D g, Rectangle area, Picture picture, double radius_m) {
     this.g = g;
     this.area = area;
     this.picture = picture;
     this.radius_m = radius_m;
+    vesselToScreen = toScreen(area, radius_m);
+    lidarToScreen = toScreen(area, radius_m);
+    if (picture.mounting() != null) lidarToScreen.concatenate(picture.mounting().toVessel());
   }
 
   /** @param radius_m what fits between the middle and the nearer edge */
@@ -49,33 +56,22 @@ final class MapView {
     g.setClip(clip);
   }
 
-  /** Of a point in the vessel frame (x forward, y port; before the mounting is known, the lidar's). */
-  static double screenX(Rectangle area, double radius_m, double y_m) {
-    return area.getCenterX() - y_m * scale(area, radius_m);
+  /** From the vessel frame (x forward, y port; before the mounting is known, the lidar's). */
+  static AffineTransform toScreen(Rectangle area, double radius_m) {
+    double scale = 0.5 * Math.min(area.width, area.height) / radius_m;
+    return new AffineTransform(0, -scale, -scale, 0, area.getCenterX(), area.getCenterY());
   }
 
-  static double screenY(Rectangle area, double radius_m, double x_m) {
-    return area.getCenterY() - x_m * scale(area, radius_m);
+  private static Point2D at(AffineTransform toScreen, double x_m, double y_m) {
+    return toScreen.transform(new Point2D.Double(x_m, y_m), null);
   }
 
-  private static double scale(Rectangle area, double radius_m) {
-    return 0.5 * Math.min(area.width, area.height) / radius_m;
+  private Point2D at(obstacle_t obstacle) {
+    return at(vesselToScreen, obstacle.nearest_vessel_m[0], obstacle.nearest_vessel_m[1]);
   }
 
-  private double toX(double y_m) {
-    return screenX(area, radius_m, y_m);
-  }
-
-  private double toY(double x_m) {
-    return screenY(area, radius_m, x_m);
-  }
-
-  private double vesselX(double x_m, double y_m) {
-    return picture.mounting() == null ? x_m : picture.mounting().vesselX(x_m, y_m);
-  }
-
-  private double vesselY(double x_m, double y_m) {
-    return picture.mounting() == null ? y_m : picture.mounting().vesselY(x_m, y_m);
+  private void circle(Point2D middle, double radius) {
+    g.draw(new Ellipse2D.Double(middle.getX() - radius, middle.getY() - radius, 2 * radius, 2 * radius));
   }
 
   private void grid() {
@@ -84,20 +80,20 @@ final class MapView {
     double step_m = RING_STEPS_M[RING_STEPS_M.length - 1];
     for (int i = RING_STEPS_M.length - 1; i >= 0 && radius_m / RING_STEPS_M[i] <= 7.0; --i) step_m = RING_STEPS_M[i];
     double corner_m = radius_m * Math.hypot(area.width, area.height) / Math.min(area.width, area.height);
+    Point2D middle = at(vesselToScreen, 0, 0);
     g.setStroke(new BasicStroke(1f));
     g.setColor(Palette.GRID);
     for (int degrees = 0; degrees < 360; degrees += 30) {
-      double x_m = Math.cos(Math.toRadians(degrees)) * corner_m;
-      double y_m = -Math.sin(Math.toRadians(degrees)) * corner_m;
-      g.draw(new Line2D.Double(toX(0), toY(0), toX(y_m), toY(x_m)));
+      double bearing_rad = Math.toRadians(degrees);
+      g.draw(new Line2D.Double(middle, at(vesselToScreen, Math.cos(bearing_rad) * corner_m, -Math.sin(bearing_rad) * corner_m)));
     }
     for (double r_m = step_m; r_m <= corner_m; r_m += step_m) {
       g.setColor(Palette.GRID);
-      g.draw(new Ellipse2D.Double(toX(r_m), toY(r_m), toX(-r_m) - toX(r_m), toY(-r_m) - toY(r_m)));
+      circle(middle, at(vesselToScreen, r_m, 0).distance(middle));
       g.setColor(Palette.FAINT_INK);
       // Along 45 degrees on the starboard bow, where the bow's own line does not cross the numbers.
-      double along_m = r_m * Math.sqrt(0.5);
-      if (r_m < 1.2 * radius_m) g.drawString((int) r_m + " m", (float) toX(-along_m) + 2, (float) toY(along_m) - 2);
+      Point2D place = at(vesselToScreen, r_m * Math.sqrt(0.5), -r_m * Math.sqrt(0.5));
+      if (r_m < 1.2 * radius_m) g.drawString((int) r_m + " m", (float) place.getX() + 2, (float) place.getY() - 2);
     }
   }
 
@@ -110,10 +106,9 @@ final class MapView {
       picture.scan().forEachReturn((ring, azimuth_rad, elevation_rad, range_m, label) -> {
         if (label > 0 != in_segment) return;
         double flat_m = range_m * Math.cos(elevation_rad);
-        double x_m = flat_m * Math.cos(azimuth_rad);
-        double y_m = -flat_m * Math.sin(azimuth_rad);
+        Point2D place = at(lidarToScreen, flat_m * Math.cos(azimuth_rad), -flat_m * Math.sin(azimuth_rad));
         g.setColor(Palette.ofLabel(label));
-        g.fillRect((int) Math.round(toX(vesselY(x_m, y_m))) - 1, (int) Math.round(toY(vesselX(x_m, y_m))) - 1, 3, 3);
+        g.fillRect((int) Math.round(place.getX()) - 1, (int) Math.round(place.getY()) - 1, 3, 3);
       });
     }
     g.setRenderingHint(RenderingHints.KEY_ANTIALIASING, RenderingHints.VALUE_ANTIALIAS_ON);
@@ -128,11 +123,10 @@ final class MapView {
       if (x_m.length < 2) continue;
       Path2D path = new Path2D.Double();
       for (int i = 0; i < x_m.length; ++i) {
-        double x = toX(vesselY(x_m[i], y_m[i]));
-        double y = toY(vesselX(x_m[i], y_m[i]));
-        if (!Double.isFinite(x + y)) return;
-        if (i == 0) path.moveTo(x, y);
-        else path.lineTo(x, y);
+        Point2D corner = at(lidarToScreen, x_m[i], y_m[i]);
+        if (!Double.isFinite(corner.getX() + corner.getY())) return;
+        if (i == 0) path.moveTo(corner.getX(), corner.getY());
+        else path.lineTo(corner.getX(), corner.getY());
       }
       if (!is_land) path.closePath();
       Color colour = Palette.ofSegment(segment.id);
@@ -146,8 +140,8 @@ final class MapView {
   // A mark of fixed size: the boat's own measures are in its config, not on the bus.
   private void vessel() {
     Path2D hull = new Path2D.Double();
-    double x = toX(0);
-    double y = toY(0);
+    double x = area.getCenterX();
+    double y = area.getCenterY();
     hull.moveTo(x, y - 11);
     hull.lineTo(x + 6, y + 7);
     hull.lineTo(x, y + 4);
@@ -166,7 +160,7 @@ final class MapView {
     g.setFont(g.getFont().deriveFont(Font.BOLD, 16f));
     FontMetrics metrics = g.getFontMetrics();
     g.setStroke(new BasicStroke(1.2f));
-    g.draw(new Ellipse2D.Double(x - 12, y - 12, 24, 24));
+    circle(new Point2D.Double(x, y), 12);
     g.drawString("N", (float) (x - 0.5 * metrics.stringWidth("N")), (float) (y + 0.37 * metrics.getAscent()));
   }
 
@@ -177,13 +171,13 @@ final class MapView {
     List<obstacle_t> tentative = new ArrayList<>();
     for (obstacle_t obstacle : picture.obstacles()) {
       List<obstacle_t> kin = obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? sure : tentative;
-      boolean is_in_sight = area.contains(toX(obstacle.nearest_vessel_m[1]), toY(obstacle.nearest_vessel_m[0]));
+      boolean is_in_sight = area.contains(at(obstacle));
       if (is_in_sight && (kin == sure || kin.size() < MAX_TENTATIVE_MARKS)) kin.add(obstacle);
     }
     marks(tentative, Palette.FAINT_INK, 1f);
     marks(sure, Palette.INK, 1.6f);
     List<Rectangle> taken = new ArrayList<>();
-    taken.add(new Rectangle((int) toX(0) - 8, (int) toY(0) - 12, 16, 22));
+    taken.add(new Rectangle((int) area.getCenterX() - 8, (int) area.getCenterY() - 12, 16, 22));
     g.setFont(g.getFont().deriveFont(Font.BOLD, 12f));
     labels(sure, Palette.INK, taken);
     g.setFont(g.getFont().deriveFont(Font.PLAIN, 11f));
@@ -193,20 +187,18 @@ final class MapView {
   private void marks(List<obstacle_t> obstacles, Color colour, float width) {
     g.setColor(colour);
     g.setStroke(new BasicStroke(width));
-    for (obstacle_t obstacle : obstacles) {
-      g.draw(new Ellipse2D.Double(toX(obstacle.nearest_vessel_m[1]) - 4, toY(obstacle.nearest_vessel_m[0]) - 4, 8, 8));
-    }
+    for (obstacle_t obstacle : obstacles) circle(at(obstacle), 4);
   }
 
   private void labels(List<obstacle_t> obstacles, Color colour, List<Rectangle> taken) {
     FontMetrics metrics = g.getFontMetrics();
     for (obstacle_t obstacle : obstacles) {
       if (taken.size() > MAX_LABELS) return;
-      double x = toX(obstacle.nearest_vessel_m[1]);
-      double y = toY(obstacle.nearest_vessel_m[0]);
+      int x = (int) at(obstacle).getX();
+      int y = (int) at(obstacle).getY();
       for (String text : new String[] {Texts.obstacle(obstacle), Integer.toString(obstacle.id)}) {
-        Rectangle box = new Rectangle((int) x + 7, (int) y - metrics.getAscent() / 2 - 2, metrics.stringWidth(text) + 4, metrics.getAscent() + 3);
-        if (box.x + box.width > area.x + area.width) box.x = (int) x - 7 - box.width;
+        Rectangle box = new Rectangle(x + 7, y - metrics.getAscent() / 2 - 2, metrics.stringWidth(text) + 4, metrics.getAscent() + 3);
+        if (box.x + box.width > area.x + area.width) box.x = x - 7 - box.width;
         if (taken.stream().anyMatch(box::intersects)) continue;
         g.setColor(LABEL_BACKGROUND);
         g.fill(box);

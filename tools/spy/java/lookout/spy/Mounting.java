@@ -1,5 +1,9 @@
 package lookout.spy;
 
+import java.awt.geom.AffineTransform;
+import java.awt.geom.Point2D;
+import java.util.ArrayList;
+import java.util.HashMap;
 import java.util.List;
 import lookout.obstacle_t;
 import lookout.segment_t;
@@ -12,12 +16,11 @@ import lookout.segment_t;
  * @param x_m of the lidar in the vessel frame (x forward, y port)
  */
 record Mounting(double yaw_rad, double x_m, double y_m) {
-  double vesselX(double x_lidar_m, double y_lidar_m) {
-    return x_m + Math.cos(yaw_rad) * x_lidar_m - Math.sin(yaw_rad) * y_lidar_m;
-  }
-
-  double vesselY(double x_lidar_m, double y_lidar_m) {
-    return y_m + Math.sin(yaw_rad) * x_lidar_m + Math.cos(yaw_rad) * y_lidar_m;
+  /** From the lidar frame to the vessel's. */
+  AffineTransform toVessel() {
+    AffineTransform transform = AffineTransform.getTranslateInstance(x_m, y_m);
+    transform.rotate(yaw_rad);
+    return transform;
   }
 
   /** So far apart the points must be for 0.1 m of tilt and height to rotate the picture by less than a degree. */
@@ -27,41 +30,39 @@ record Mounting(double yaw_rad, double x_m, double y_m) {
 
   /** @return null where the pairs are too few, too close to each other, or do not fit (a lidar that hangs upside down) */
   static Mounting estimate(List<segment_t> segments, List<obstacle_t> obstacles) {
-    double[][] pairs = new double[Math.min(segments.size(), obstacles.size())][];
-    int num_pairs = 0;
-    java.util.HashMap<Integer, segment_t> byId = new java.util.HashMap<>();
+    List<double[]> pairs = new ArrayList<>();
+    HashMap<Integer, segment_t> byId = new HashMap<>();
     for (segment_t segment : segments) byId.put(segment.id, segment);
     for (obstacle_t obstacle : obstacles) {
       segment_t segment = byId.remove(obstacle.id);
       if (segment == null) continue;
       double[] pair = {segment.nearest_m[0], segment.nearest_m[1], obstacle.nearest_vessel_m[0], obstacle.nearest_vessel_m[1]};
-      if (Double.isFinite(pair[0] + pair[1] + pair[2] + pair[3])) pairs[num_pairs++] = pair;
+      if (Double.isFinite(pair[0] + pair[1] + pair[2] + pair[3])) pairs.add(pair);
     }
-    if (num_pairs < 2) return null;
+    if (pairs.size() < 2) return null;
 
     // Least squares in the plane: rotate about the means, then shift (Umeyama 1991, without scale).
     double[] mean = new double[4];
-    for (int i = 0; i < num_pairs; ++i) {
-      for (int k = 0; k < 4; ++k) mean[k] += pairs[i][k] / num_pairs;
+    for (double[] pair : pairs) {
+      for (int k = 0; k < 4; ++k) mean[k] += pair[k] / pairs.size();
     }
     double dot = 0.0;
     double cross = 0.0;
     double spread_m = 0.0;
-    for (int i = 0; i < num_pairs; ++i) {
+    for (double[] pair : pairs) {
       double[] d = new double[4];
-      for (int k = 0; k < 4; ++k) d[k] = pairs[i][k] - mean[k];
+      for (int k = 0; k < 4; ++k) d[k] = pair[k] - mean[k];
       dot += d[0] * d[2] + d[1] * d[3];
       cross += d[0] * d[3] - d[1] * d[2];
       spread_m = Math.max(spread_m, Math.hypot(d[0], d[1]));
     }
     if (spread_m < MIN_SPREAD_M) return null;
     double yaw_rad = Math.atan2(cross, dot);
-    Mounting turned = new Mounting(yaw_rad, 0.0, 0.0);
-    Mounting mounting = new Mounting(yaw_rad, mean[2] - turned.vesselX(mean[0], mean[1]), mean[3] - turned.vesselY(mean[0], mean[1]));
-    for (int i = 0; i < num_pairs; ++i) {
-      double[] pair = pairs[i];
-      double residual_m = Math.hypot(mounting.vesselX(pair[0], pair[1]) - pair[2], mounting.vesselY(pair[0], pair[1]) - pair[3]);
-      if (!(residual_m <= MAX_RESIDUAL_M)) return null;
+    Point2D rotated = AffineTransform.getRotateInstance(yaw_rad).transform(new Point2D.Double(mean[0], mean[1]), null);
+    Mounting mounting = new Mounting(yaw_rad, mean[2] - rotated.getX(), mean[3] - rotated.getY());
+    for (double[] pair : pairs) {
+      Point2D place = mounting.toVessel().transform(new Point2D.Double(pair[0], pair[1]), null);
+      if (!(place.distance(pair[2], pair[3]) <= MAX_RESIDUAL_M)) return null;
     }
     return mounting;
   }

@@ -5,8 +5,7 @@ import java.awt.Font;
 import java.awt.Graphics2D;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
-import java.util.ArrayList;
-import java.util.List;
+import java.util.Comparator;
 import java.util.Locale;
 import lookout.obstacle_t;
 
@@ -117,8 +116,7 @@ final class Painter {
     g.drawString("\u25cb obstacle: id, range, bearing; \"?\" tentative", side.x, y);
     y += line_height + 8;
 
-    int num_sure = 0;
-    for (obstacle_t obstacle : picture.obstacles()) num_sure += obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? 1 : 0;
+    long num_sure = picture.obstacles().stream().filter(obstacle -> obstacle.confidence == obstacle_t.CONFIDENCE_SURE).count();
     g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 12));
     String count = picture.obstacles().size() + ", " + num_sure + " of them sure";
     g.drawString("OBSTACLES: " + (picture.hasObstacles(now_ms) ? count : "none on the bus"), side.x, y);
@@ -129,7 +127,9 @@ final class Painter {
     y += line_height;
     int rows = Math.max(0, (side.y + side.height - y - line_height) / line_height);
     if (picture.hasObstacles(now_ms)) {
-      for (obstacle_t obstacle : sureFirst(picture.obstacles(), rows)) {
+      // Drops of spray near the boat would fill the list.
+      Comparator<obstacle_t> sureFirst = Comparator.comparing(obstacle -> obstacle.confidence != obstacle_t.CONFIDENCE_SURE);
+      for (obstacle_t obstacle : picture.obstacles().stream().sorted(sureFirst).limit(rows).toList()) {
         g.setColor(Palette.ofSegment(obstacle.id));
         g.fillRect(side.x, y - 9, 9, 9);
         g.setColor(obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? Palette.INK : Palette.FAINT_INK);
@@ -142,17 +142,6 @@ final class Painter {
       g.setColor(Palette.ALERT);
       g.drawString(num_refused + " messages refused", side.x, side.y + side.height);
     }
-  }
-
-  // Drops of spray near the boat would fill the list.
-  private static List<obstacle_t> sureFirst(List<obstacle_t> obstacles, int max_rows) {
-    List<obstacle_t> ordered = new ArrayList<>();
-    for (boolean sure : new boolean[] {true, false}) {
-      for (obstacle_t obstacle : obstacles) {
-        if (obstacle.confidence == obstacle_t.CONFIDENCE_SURE == sure) ordered.add(obstacle);
-      }
-    }
-    return ordered.subList(0, Math.min(max_rows, ordered.size()));
   }
 
   private static void banner(Graphics2D g, Rectangle map, Picture picture, long now_ms) {
