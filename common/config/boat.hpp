@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "common/core/frames.hpp"
+#include "common/core/geodesy.hpp"
 
 namespace lookout::config {
-
-/// Geodetic origin of the map frame.
-struct BoatDatum {
-  double latitude_deg = 0.0;
-  double longitude_deg = 0.0;
-  double ellipsoid_height_m = 0.0;
-};
 
 /// Over all.
 struct HullSize {
@@ -32,7 +26,7 @@ struct BoatFacts {
   double reference_point_above_water_m = 0.0;
   Eigen::AlignedBox3d own_vessel_box_m;  // vessel frame
   std::optional<HullSize> hull_m;
-  std::optional<BoatDatum> datum;
+  std::optional<GeodeticPlace> datum;  // origin of the map frame
 };
 
 /// @param folder  the boat's folder, holding boat.txtpb
