@@ -16,20 +16,24 @@ namespace {
 constexpr double kBoxMarginM = 1.0;    // of fenders, an outboard engine, a bowsprit
 constexpr double kOutsideHullM = 2.0;  // of a stern arch or a boom
 
-std::string Metres(double length_m) { return fmt::format("{:.1f} m", length_m == 0.0 ? 0.0 : length_m); }  // no "-0.0"
+std::string Metres(double length_m, int num_decimals = 1) {
+  return fmt::format("{:.{}f} m", length_m == 0.0 ? 0.0 : length_m, num_decimals);  // no "-0.0"
+}
 
 // "1.4 m ahead", "0.5 m astern": of a place along x.
-std::string Along(double x_m) { return Metres(std::abs(x_m)) + (x_m < 0.0 ? " astern" : " ahead"); }
-std::string Across(double y_m) { return Metres(std::abs(y_m)) + (y_m < 0.0 ? " to starboard" : " to port"); }
-std::string AboveWater(double z_m) { return Metres(std::abs(z_m)) + (z_m < 0.0 ? " below" : " above") + " the water"; }
+std::string Along(double x_m, int num_decimals) { return Metres(std::abs(x_m), num_decimals) + (x_m < 0.0 ? " astern" : " ahead"); }
+std::string Across(double y_m, int num_decimals) { return Metres(std::abs(y_m), num_decimals) + (y_m < 0.0 ? " to starboard" : " to port"); }
+std::string AboveWater(double z_m, int num_decimals = 1) {
+  return Metres(std::abs(z_m), num_decimals) + (z_m < 0.0 ? " below" : " above") + " the water";
+}
 
 BoatRemark OwnBox(const BoatFacts& boat) {
   const auto& box = boat.own_vessel_box_m;
   const double water_m = boat.reference_point_above_water_m;
   // A box that does not hold the reference point begins on the same side.
   const auto side = [](double near_m, double far_m, auto in_words) {
-    return near_m * far_m < 0.0 || near_m == 0.0 || far_m == 0.0 ? "up to " + in_words(far_m) + " and " + in_words(near_m)
-                                                                 : "from " + in_words(near_m) + " to " + in_words(far_m);
+    return near_m * far_m < 0.0 || near_m == 0.0 || far_m == 0.0 ? "up to " + in_words(far_m, 1) + " and " + in_words(near_m, 1)
+                                                                 : "from " + in_words(near_m, 1) + " to " + in_words(far_m, 1);
   };
   BoatRemark remark;
   remark.words = "returns " + side(box.min().x(), box.max().x(), Along) + ", " + side(box.min().y(), box.max().y(), Across) +
@@ -60,9 +64,8 @@ double OutsideHullM(const BoatFacts& boat, const Eigen::Vector3d& p_vessel_m) {
 BoatRemark Place(const BoatFacts& boat, const std::string& what, const std::string& field, const Eigen::Vector3d& p_vessel_m) {
   const double above_water_m = p_vessel_m.z() + boat.reference_point_above_water_m;
   BoatRemark remark;
-  remark.words = fmt::format("the {} is {:.2f} m {} and {:.2f} m {} of the reference point, {:.2f} m {} the water", what, std::abs(p_vessel_m.x()),
-                             p_vessel_m.x() < 0.0 ? "astern" : "ahead", std::abs(p_vessel_m.y()), p_vessel_m.y() < 0.0 ? "to starboard" : "to port",
-                             std::abs(above_water_m), above_water_m < 0.0 ? "below" : "above");
+  remark.words = fmt::format("the {} is {} and {} of the reference point, {}", what, Along(p_vessel_m.x(), 2), Across(p_vessel_m.y(), 2),
+                             AboveWater(above_water_m, 2));
   remark.is_under_water = above_water_m <= 0.0;
   if (remark.is_under_water) {
     remark.cure = "the sign of " + field + ".z_m (up is positive) and reference_point_above_water_m in boat.txtpb";

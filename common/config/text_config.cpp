@@ -1,5 +1,8 @@
 #include "common/config/text_config.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,15 +36,6 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::TextFormat;
 
-std::string Joined(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const auto& line : lines) {
-    if (!text.empty()) text += '\n';
-    text += line;
-  }
-  return text;
-}
-
 // Shortest decimal that reads back as the same number.
 std::string NumberText(double value) {
   std::array<char, 32> text{};
@@ -64,40 +58,26 @@ const Descriptor* FindSchema(const std::string& schema_file) {
 // More than these help nobody, and a text of nonsense has thousands.
 constexpr std::size_t kMaxFaults = 100;
 
-struct Fault {
-  int line = 0;  // from 1
-  std::string text;
-};
-
 class FaultCollector final : public google::protobuf::io::ErrorCollector {
  public:
-  explicit FaultCollector(std::vector<Fault>& faults) : faults_(faults) {}
+  explicit FaultCollector(std::vector<TextFault>& faults) : faults_(faults) {}
   void AddError(int line, int column, const std::string& message) override {
     // Lines and columns count from 0; -1 stands for the whole text.
-    faults_.push_back({line + 1, "text: column " + std::to_string(column + 1) + ": " + message});
+    faults_.push_back({line, "text", "column " + std::to_string(column + 1) + ": " + message});
   }
 
  private:
-  std::vector<Fault>& faults_;
+  std::vector<TextFault>& faults_;
 };
 
 std::optional<double> NumberOf(const Message& message, const FieldDescriptor& field, int index) {
-  const auto& reflection = *message.GetReflection();
-  const bool is_list = field.is_repeated();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return is_list ? reflection.GetRepeatedDouble(message, &field, index) : reflection.GetDouble(message, &field);
-    case FieldDescriptor::CPPTYPE_FLOAT:
-      return is_list ? reflection.GetRepeatedFloat(message, &field, index) : reflection.GetFloat(message, &field);
-    case FieldDescriptor::CPPTYPE_INT32:
-      return is_list ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
-    case FieldDescriptor::CPPTYPE_INT64: {
-      const auto value = is_list ? reflection.GetRepeatedInt64(message, &field, index) : reflection.GetInt64(message, &field);
-      return static_cast<double>(value);  // limits are round numbers: what rounds onto one is as good as it
-    }
-    default:
-      return std::nullopt;
-  }
+  const auto type = field.cpp_type();
+  const bool is_number = type == FieldDescriptor::CPPTYPE_DOUBLE || type == FieldDescriptor::CPPTYPE_FLOAT ||
+                         type == FieldDescriptor::CPPTYPE_INT32 || type == FieldDescriptor::CPPTYPE_INT64;
+  if (!is_number) return std::nullopt;
+  std::string text;  // reads back as the same number; limits are round numbers: what a long integer rounds onto is as good as it
+  TextFormat::PrintFieldValueToString(message, &field, field.is_repeated() ? index : -1, &text);
+  return std::strtod(text.c_str(), nullptr);
 }
 
 std::string RangeFault(const google::protobuf::FieldOptions& options, double value) {
@@ -111,7 +91,7 @@ std::string RangeFault(const google::protobuf::FieldOptions& options, double val
 class Checker {
  public:
   /// @param refused  fields whose values were wrong by themselves, by path and line of their message: they are set, but not here
-  Checker(const std::set<std::pair<std::string, int>>& refused, std::vector<Fault>& faults) : refused_(refused), faults_(faults) {}
+  Checker(const std::set<std::pair<std::string, int>>& refused, std::vector<TextFault>& faults) : refused_(refused), faults_(faults) {}
 
   void Check(const Message& message, const TextFormat::ParseInfoTree* positions, const std::string& prefix, int line_of_message) {
     const auto& reflection = *message.GetReflection();
@@ -142,10 +122,10 @@ class Checker {
   }
 
  private:
-  void Add(int line, const std::string& field, const std::string& reason) { faults_.push_back({line < 0 ? 1 : line + 1, field + ": " + reason}); }
+  void Add(int line, const std::string& field, const std::string& reason) { faults_.push_back({std::max(line, 0), field, reason}); }
 
   const std::set<std::pair<std::string, int>>& refused_;
-  std::vector<Fault>& faults_;
+  std::vector<TextFault>& faults_;
 };
 
 // What begins the files of editors that mark their coding; empty = none.
@@ -154,32 +134,6 @@ std::string ByteOrderMark(const std::string& text) {
     return "begins with a byte order mark (EF BB BF): save it as UTF-8 without one (\"UTF-8\", not \"UTF-8 with BOM\")";
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return "is UTF-16 (it begins with its byte order mark): save it as UTF-8";
   return {};
-}
-
-void AppendEffective(const Message& message, const std::string& indent, std::string& text) {
-  const auto& reflection = *message.GetReflection();
-  const Descriptor& descriptor = *message.GetDescriptor();
-  for (int i = 0; i < descriptor.field_count(); ++i) {
-    const FieldDescriptor& field = *descriptor.field(i);
-    const bool is_list = field.is_repeated();
-    const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
-    const bool has_value = is_list || reflection.HasField(message, &field) || field.has_default_value();
-    if (!has_value) continue;
-    const int count = is_list ? reflection.FieldSize(message, &field) : 1;
-    for (int k = 0; k < count; ++k) {
-      if (is_message) {
-        text += indent + field.name() + " {\n";
-        AppendEffective(is_list ? reflection.GetRepeatedMessage(message, &field, k) : reflection.GetMessage(message, &field), indent + "  ", text);
-        text += indent + "}\n";
-        continue;
-      }
-      std::string value;
-      TextFormat::PrintFieldValueToString(message, &field, is_list ? k : -1, &value);
-      text += indent;
-      text += field.name() + ": " + value;
-      text += !is_list && !reflection.HasField(message, &field) ? "  # default\n" : "\n";
-    }
-  }
 }
 
 }  // namespace
@@ -200,7 +154,8 @@ void FaultList::ThrowIfAny() const {
   if (!faults_.empty()) throw ConfigError(faults_);
 }
 
-ConfigError::ConfigError(std::vector<std::string> faults) : std::runtime_error(Joined(faults)), faults_(std::move(faults)) {}
+ConfigError::ConfigError(std::vector<std::string> faults)
+    : std::runtime_error(fmt::format("{}", fmt::join(faults, "\n"))), faults_(std::move(faults)) {}
 
 std::string ReadConfigFile(const std::filesystem::path& file) {
   const auto refuse = [&file](const std::string& reason) { throw ConfigError({file.string() + ":1: file: " + reason}); };
@@ -221,7 +176,7 @@ std::string ReadConfigFile(const std::filesystem::path& file) {
 
 void ParseText(const std::string& text, const std::string& name, Message& message) {
   if (const auto mark = ByteOrderMark(text); !mark.empty()) throw ConfigError({name + ":1: text: " + mark});
-  std::vector<Fault> faults;
+  std::vector<TextFault> faults;
   FaultCollector collector(faults);
   const auto parse = [&](const std::string& part, TextFormat::ParseInfoTree& positions) {
     TextFormat::Parser parser;
@@ -229,7 +184,7 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
     parser.WriteLocationsTo(&positions);
     google::protobuf::io::ArrayInputStream input(part.data(), static_cast<int>(part.size()));
     const bool is_parsed = parser.Parse(&input, &message);
-    if (!is_parsed && faults.empty()) faults.push_back({1, "text: cannot be parsed"});
+    if (!is_parsed && faults.empty()) faults.push_back({0, "text", "cannot be parsed"});
     return is_parsed;
   };
   SalvagedText salvaged;
@@ -242,28 +197,49 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
       faults.clear();
       positions = std::make_unique<TextFormat::ParseInfoTree>();
       is_parsed = parse(salvaged.text, *positions);
-      for (const auto& fault : salvaged.faults) faults.push_back({fault.line + 1, fault.field + ": " + fault.reason});
+      faults.insert(faults.end(), salvaged.faults.begin(), salvaged.faults.end());
     }
   }
   if (is_parsed) Checker(salvaged.blanked, faults).Check(message, positions.get(), "", -1);
   if (faults.empty()) return;
-  std::ranges::stable_sort(faults, {}, &Fault::line);
-  std::vector<std::string> lines;
-  for (const auto& fault : faults) {
-    if (lines.size() == kMaxFaults) {
-      lines.push_back(name + ":" + std::to_string(fault.line) + ": text: and " + std::to_string(faults.size() - kMaxFaults) + " faults more");
-      break;
-    }
-    lines.push_back(name + ":" + std::to_string(fault.line) + ": " + fault.text);
+  std::ranges::stable_sort(faults, {}, &TextFault::line);
+  const std::size_t num_more = faults.size() - std::min(faults.size(), kMaxFaults);
+  if (num_more > 0) {
+    faults.resize(kMaxFaults + 1);
+    faults.back() = {faults.back().line, "text", "and " + std::to_string(num_more) + " faults more"};
   }
+  std::vector<std::string> lines;
+  for (const auto& fault : faults) lines.push_back(fmt::format("{}:{}: {}: {}", name, fault.line + 1, fault.field, fault.reason));
   throw ConfigError(lines);
 }
 
 void LoadText(const std::filesystem::path& file, Message& message) { ParseText(ReadConfigFile(file), file.string(), message); }
 
-std::string EffectiveText(const Message& message) {
+std::string EffectiveText(const Message& message, const std::string& indent) {
   std::string text;
-  AppendEffective(message, "", text);
+  const auto& reflection = *message.GetReflection();
+  const Descriptor& descriptor = *message.GetDescriptor();
+  for (int i = 0; i < descriptor.field_count(); ++i) {
+    const FieldDescriptor& field = *descriptor.field(i);
+    const bool is_list = field.is_repeated();
+    const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+    const bool has_value = is_list || reflection.HasField(message, &field) || field.has_default_value();
+    if (!has_value) continue;
+    const int count = is_list ? reflection.FieldSize(message, &field) : 1;
+    for (int k = 0; k < count; ++k) {
+      if (is_message) {
+        text += indent + field.name() + " {\n";
+        text += EffectiveText(is_list ? reflection.GetRepeatedMessage(message, &field, k) : reflection.GetMessage(message, &field), indent + "  ");
+        text += indent + "}\n";
+        continue;
+      }
+      std::string value;
+      TextFormat::PrintFieldValueToString(message, &field, is_list ? k : -1, &value);
+      text += indent;
+      text += field.name() + ": " + value;
+      text += !is_list && !reflection.HasField(message, &field) ? "  # default\n" : "\n";
+    }
+  }
   return text;
 }
 
@@ -295,10 +271,6 @@ std::string FaultLine(const std::filesystem::path& file, const std::string& fiel
     }
   }
   return file.string() + ":" + std::to_string(line_number) + ": " + field + ": " + reason;
-}
-
-void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason) {
-  throw ConfigError({FaultLine(file, field, reason)});
 }
 
 }  // namespace lookout::config

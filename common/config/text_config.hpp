@@ -40,6 +40,8 @@ class FaultList {
   /// @throws ConfigError with all faults, if there are any
   void ThrowIfAny() const;
 
+  const std::vector<std::string>& faults() const { return faults_; }
+
  private:
   std::vector<std::string> faults_;
 };
@@ -68,7 +70,7 @@ Message Load(const std::filesystem::path& folder, const std::string& file_name) 
 }
 
 /// @return values and defaults, a line each, in the order of the schema: what is in force
-std::string EffectiveText(const google::protobuf::Message& message);
+std::string EffectiveText(const google::protobuf::Message& message, const std::string& indent = "");
 
 /// @return EffectiveText of a file; x.txtpb has the schema config/schema/x.proto. @throws ConfigError
 std::string EffectiveTextOfFile(const std::filesystem::path& file);
@@ -77,8 +79,5 @@ std::string EffectiveTextOfFile(const std::filesystem::path& file);
 ///
 /// @param index  of a repeated field: which of its values
 std::string FaultLine(const std::filesystem::path& file, const std::string& field, const std::string& reason, std::size_t index = 0);
-
-/// The same as the only fault: throws ConfigError.
-[[noreturn]] void Refuse(const std::filesystem::path& file, const std::string& field, const std::string& reason);
 
 }  // namespace lookout::config

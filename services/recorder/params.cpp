@@ -7,7 +7,8 @@ namespace lookout::recorder {
 
 Params LoadParams(const std::filesystem::path& config_folder) {
   const auto message = config::Load<config::Recorder>(config_folder, "recorder.txtpb");
-  if (message.log_folder().empty()) config::Refuse(config_folder / "recorder.txtpb", "log_folder", "must not be empty");
+  if (message.log_folder().empty())
+    throw config::ConfigError({config::FaultLine(config_folder / "recorder.txtpb", "log_folder", "must not be empty")});
   return {message.log_folder(), message.max_file_bytes(), std::chrono::seconds(message.max_file_s()), message.reserve_bytes(), message.queue_bytes()};
 }
 

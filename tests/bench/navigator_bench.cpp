@@ -6,8 +6,8 @@
 #include "services/navigator/core/navigator.hpp"
 #include "services/navigator/params.hpp"
 #include "tests/support/files.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tools/sim/navigation.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::navigator {
 namespace {
@@ -18,7 +18,7 @@ const std::string kDemo = support::kDemoConfig.string();
 
 std::vector<Item> Items() {
   const auto boat = config::LoadBoat(kDemo);
-  const auto scene = sim::MakeScene("waves", 1).value();
+  const auto scene = sim::MakeScene("waves", 1);
   const sim::FaultPlan plan;
   const sim::NavigationParams params;
   sim::Navigation navigation(scene, boat, params, plan, kStart, 1);

@@ -5,7 +5,7 @@
 
 #include "common/config/boat.hpp"
 #include "tests/support/files.hpp"
-#include "tools/sim/scene_file.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tools/sim/simulation.hpp"
 
 namespace lookout::sim {
@@ -13,7 +13,7 @@ namespace {
 
 void BM_Render(benchmark::State& state, const std::string& name) {
   using namespace std::chrono_literals;
-  const auto scene = MakeScene(name, 1).value();
+  const auto scene = MakeScene(name, 1);
   const auto boat = config::LoadBoat(support::kDemoConfig);
   SimulationParams params;
   params.start = Utime(1'781'532'600s);

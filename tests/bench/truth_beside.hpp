@@ -11,7 +11,6 @@
 #include "common/core/geodesy.hpp"
 #include "common/core/utime.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tools/sim/map_frame.hpp"
 #include "tools/sim/motion.hpp"
 #include "tools/sim/scene.hpp"
 

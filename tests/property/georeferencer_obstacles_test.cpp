@@ -15,9 +15,9 @@
 #include "common/bus/decode.hpp"
 #include "common/config/boat.hpp"
 #include "tests/support/files.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tools/eval/evaluation.hpp"
 #include "tools/replay/chain.hpp"
-#include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
 
 namespace lookout {
@@ -53,7 +53,7 @@ struct Recording {
 std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed, double seconds, const std::vector<std::string>& faults = {},
                                          double from_s = kSettleS) {
   const auto boat = config::LoadBoat(kDemo);
-  const auto scene = sim::MakeScene(scene_name, static_cast<std::uint64_t>(seed)).value();
+  const auto scene = sim::MakeScene(scene_name, static_cast<std::uint64_t>(seed));
   const support::TempDir folder;
   Recording recording;
   {
@@ -67,7 +67,7 @@ std::vector<eval::SeenObstacle> Simulate(const std::string& scene_name, int seed
     replay::Chain chain(kDemo, {}, [&](Utime, std::string_view channel, Bytes bytes) { recording.Take(channel, bytes); });
     while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
     chain.Finish();
-    truth.Close();
+    io::CommitAll(truth.Finish());
   }
   const eval::Truth truth(folder);
   eval::Evaluation evaluation(&truth, 1);

@@ -14,9 +14,9 @@
 #include "lookout/pose_t.hpp"
 #include "services/navigator/service.hpp"
 #include "tests/support/files.hpp"
-#include "tools/sim/map_frame.hpp"
+#include "tests/unit/sim/scenes.hpp"
+#include "tools/sim/motion.hpp"
 #include "tools/sim/navigation.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::navigator {
 
@@ -59,7 +59,7 @@ inline SimulatedRun Simulate(const std::string& scene_name, std::uint64_t seed, 
                              const sim::NavigationParams& navigation_params = {}) {
   using namespace std::chrono_literals;
   const auto boat = config::LoadBoat(kDemo);
-  const auto scene = sim::MakeScene(scene_name, seed).value();
+  const auto scene = sim::MakeScene(scene_name, seed);
   std::vector<sim::TimedFault> timed;
   for (const auto& fault : faults) timed.push_back(sim::ParseTimedFault(fault));
   const sim::FaultPlan plan(timed, kSimulatedStart);

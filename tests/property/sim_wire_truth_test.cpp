@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "tests/support/files.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
 #include "tools/sim/sinks.hpp"
 
@@ -149,20 +149,21 @@ Vector3d ToVessel(const Vector3d& p_lidar_m) {
 
 class SimWireTruth : public testing::Test {
  protected:
-  void Run(const std::string& scene_name, const LidarParams& lidar) {
-    const auto scene = MakeScene(scene_name, 4).value();
+  void Run(const std::string& scene_name, const LidarParams& lidar, std::optional<config::Scene::ReturnMode> mode = {}) {
+    auto scene = MakeScene(scene_name, 4);
+    scene.effects.set_range_sd_m(0.0);
+    if (mode) scene.effects.set_return_mode(*mode);
     SimulationParams params;
     params.start = Utime(1'781'532'600s);
     params.duration = 1500ms;
     params.seed = 4;
     params.lidar = lidar;
-    params.lidar.range_sd_m = 0.0;
     TruthWriter truth(folder_ / "truth", scene, TurnedBoat(), params.start, {.force = true});
     Simulation simulation(scene, TurnedBoat(), params, &truth);
     PcapSink sink(folder_ / "a.pcap", {2368, 8308}, {.force = true});
     while (const auto datagram = simulation.Next()) sink.Send(*datagram);
-    sink.Close();
-    truth.Close();
+    sink.Finish().Commit();
+    io::CommitAll(truth.Finish());
     points_ = Decode(DataPackets(folder_ / "a.pcap"));
     rows_ = Rows(folder_ / "truth" / "returns.csv");
   }
@@ -266,9 +267,8 @@ TEST_F(SimWireTruth, IsToldByPacketsOfDualReturn) {
 
 TEST_F(SimWireTruth, IsToldByPacketsOfAQuickHeadThatGivesTheLastReturn) {
   LidarParams lidar;
-  lidar.mode = config::Scene::LAST;
   lidar.rotation_rpm = 1200.0;
-  Run("marina", lidar);
+  Run("marina", lidar, config::Scene::LAST);
   ExpectReturnsOfTheTruth(false);
   ExpectReturnsWithinOutlines();
 }
@@ -276,9 +276,8 @@ TEST_F(SimWireTruth, IsToldByPacketsOfAQuickHeadThatGivesTheLastReturn) {
 TEST_F(SimWireTruth, IsToldByPacketsOfALimitedFieldOfView) {
   for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     LidarParams lidar;
-    lidar.mode = mode;
     lidar.field_of_view = {300.0 * kDegree, 120.0 * kDegree};
-    Run("marina", lidar);
+    Run("marina", lidar, mode);
     ExpectReturnsOfTheTruth(true);
     ExpectReturnsWithinOutlines();
   }

@@ -11,10 +11,10 @@
 #include "services/vlp16/io/capture_reader.hpp"
 #include "services/vlp16/service.hpp"
 #include "tests/support/files.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tests/unit/vlp16/packet_maker.hpp"
 #include "tools/sim/faulty_network.hpp"
-#include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
 #include "tools/sim/sinks.hpp"
 
@@ -84,17 +84,17 @@ TEST(Vlp16Faults, AreCountedExactlyOutOfACapture) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     sim::SimulationParams params;
-    params.lidar.mode = seed == 2 ? config::Scene::DUAL : config::Scene::STRONGEST;
-    params.lidar.model = seed == 3 ? sim::LidarModel::kPuckHiRes : sim::LidarModel::kVlp16;
+    params.lidar.model = seed == 3 ? Model::kPuckHiRes : Model::kVlp16;
     params.start = kStart;
     params.duration = 5s;
     params.seed = seed;
-    const auto scene = sim::MakeScene("open_water", seed);
-    sim::Simulation simulation(*scene, sim::SmallBoat(), params, nullptr);
+    auto scene = sim::MakeScene("open_water", seed);
+    scene.effects.set_return_mode(seed == 2 ? config::Scene::DUAL : config::Scene::STRONGEST);
+    sim::Simulation simulation(scene, sim::SmallBoat(), params, nullptr);
     sim::FaultyNetwork network([&] { return simulation.Next(); }, {}, {0.05, 0.02, 0.02}, params.data_port, kStart, kStart + params.duration, seed);
     sim::PcapSink sink(file, {params.data_port, params.navigation.position_port}, {.force = true});
     while (const auto datagram = network.Next()) sink.Send(*datagram);
-    sink.Close();
+    sink.Finish().Commit();
 
     bus::MemoryBus bus;
     Service service(bus, Params{});

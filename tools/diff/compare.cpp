@@ -1,17 +1,19 @@
 #include "tools/diff/compare.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <stdexcept>
 #include <type_traits>
 
 #include "common/bus/decode.hpp"
 #include "common/bus/schema.hpp"
+#include "common/core/printable.hpp"
 #include "tools/diff/fields.hpp"
 
 namespace lookout::diff {
@@ -44,23 +46,14 @@ std::string NumberText(T value) {
 }
 
 std::string StringText(const std::string& letters) {
-  std::string text = "\"";
-  for (const auto letter : letters.substr(0, kMaxShownLetters)) {
-    text += letter >= ' ' && letter <= '~' ? letter : '?';
-  }
-  return text + (letters.size() > kMaxShownLetters ? "...\"" : "\"");
+  return "\"" + Printable(letters.substr(0, kMaxShownLetters)) + (letters.size() > kMaxShownLetters ? "...\"" : "\"");
 }
 
 // The same text would tell nothing: different bits can print alike (NaN).
 Difference NumbersDiffer(std::string a, std::string b, std::uint64_t bits_a, std::uint64_t bits_b) {
   if (a == b) {
-    const auto hexadecimal = [](std::uint64_t bits) {
-      std::array<char, 24> text{};
-      std::snprintf(text.data(), text.size(), " (0x%llx)", static_cast<unsigned long long>(bits));
-      return std::string(text.data());
-    };
-    a += hexadecimal(bits_a);
-    b += hexadecimal(bits_b);
+    a += fmt::format(" (0x{:x})", bits_a);
+    b += fmt::format(" (0x{:x})", bits_b);
   }
   return {"", std::move(a), std::move(b)};
 }
@@ -125,16 +118,10 @@ std::optional<Difference> CompareFields(const T& a, const T& b, const Tolerances
   return first;
 }
 
-std::string ByteText(std::uint8_t byte) {
-  std::array<char, 8> text{};
-  std::snprintf(text.data(), text.size(), "0x%02x", byte);
-  return text.data();
-}
-
 Difference CompareBytes(Bytes a, Bytes b) {
   const auto [place_a, place_b] = std::ranges::mismatch(a, b);
   if (place_a == a.end() || place_b == b.end()) return {"size", std::to_string(a.size()) + " bytes", std::to_string(b.size()) + " bytes"};
-  return {"byte " + std::to_string(place_a - a.begin()), ByteText(*place_a), ByteText(*place_b)};
+  return {"byte " + std::to_string(place_a - a.begin()), fmt::format("0x{:02x}", *place_a), fmt::format("0x{:02x}", *place_b)};
 }
 
 // @return nullopt also where the fields do not say all: nobody reads the closing zero of a string, and LCM ends a string that it encodes at its first
@@ -153,9 +140,7 @@ std::optional<T> DecodeWhole(Bytes bytes) {
 // "pose_t (0x...)"
 std::string TypeText(std::uint64_t fingerprint) {
   const auto known = std::ranges::find(bus::TypeFingerprints(), fingerprint, &bus::TypeFingerprint::fingerprint);
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), " (0x%016llx)", static_cast<unsigned long long>(fingerprint));
-  return (known == bus::TypeFingerprints().end() ? "unknown" : known->type) + text.data();
+  return fmt::format("{} (0x{:016x})", known == bus::TypeFingerprints().end() ? "unknown" : known->type, fingerprint);
 }
 
 bool NameFits(std::string_view name, std::string_view path) {

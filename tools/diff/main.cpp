@@ -12,13 +12,11 @@
 int main(int argc, char** argv) {
   namespace diff = lookout::diff;
   diff::Request request;
-  std::string a;
-  std::string b;
   std::vector<std::string> tolerances;
 
   CLI::App app("Compares two lcm-logs, message by message: counts, and the first difference by channel, time and field.", "lookout-diff");
-  app.add_option("A", a, "lcm-log")->required();
-  app.add_option("B", b, "lcm-log")->required();
+  app.add_option("A", request.a, "lcm-log")->required();
+  app.add_option("B", request.b, "lcm-log")->required();
   app.add_option("--channel", request.channels,
                  "compare this channel only; may be given several times (without it: all but HEALTH, RUN_INFO and LCM_SELF_TEST)")
       ->allow_extra_args(false);
@@ -43,8 +41,6 @@ int main(int argc, char** argv) {
     std::cerr << lookout::PrintableLines(error.what()) << "\n";
     return diff::kExitUnreadable;
   }
-  request.a = a;
-  request.b = b;
   const int code = diff::Run(request, std::cout, std::cerr);
   std::cout.flush();
   if (!std::cout) {

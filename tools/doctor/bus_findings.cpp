@@ -27,9 +27,9 @@ std::string KibiBytes(std::int64_t bytes) { return std::to_string(bytes / 1024) 
 Findings CheckConfig(const ConfigSeen& config) {
   Findings findings;
   std::string right;
-  for (const auto& file : config.files) {
-    if (file.faults.empty()) right += (right.empty() ? "" : ", ") + file.name;
-    for (const auto& fault : file.faults) {
+  for (const auto& [file, faults] : config.files) {
+    if (faults.empty()) right += (right.empty() ? "" : ", ") + file;
+    for (const auto& fault : faults) {
       const bool is_of_file = fault.find(": file: ") != std::string::npos;
       findings.push_back(Fault(kConfigSubject, fault,
                                is_of_file ? "the folder holds one file for each schema of config/schema, as config/catabot does, and no other"
@@ -67,7 +67,7 @@ Findings CheckBus(const BusSeen& bus) {
 
 Findings CheckPort(const Observations& seen) {
   if (seen.bus.group.empty()) return {};
-  const auto port = "port " + std::to_string(seen.port.port);
+  const auto port = "port " + std::to_string(seen.bus.port);
   if (seen.port.is_closed) return {Ok(kPortSubject, port + " of the bus is closed to other interfaces than that of the bus (lookout-firewall)")};
   std::vector<std::string> outside;
   for (const auto& interface : seen.interfaces) {

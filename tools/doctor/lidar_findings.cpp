@@ -1,5 +1,6 @@
 // The lidar, the network to it, its clock and this computer's.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -96,8 +97,7 @@ std::string ReturnMode(const LidarSeen& lidar) {
 
 Finding CheckPackets(const Observations& seen) {
   const auto& lidar = seen.lidar;
-  const bool is_silent = lidar.num_packets == 0 || ToSeconds(seen.end - lidar.heard_last) > kLidarSilenceS;
-  if (is_silent) {
+  if (lidar.num_packets == 0 || ToSeconds(seen.end - lidar.heard_last) > kLidarSilenceS) {
     return Fault(kLidarSubject, lidar.complaint.empty() ? "no lidar packets" : lidar.complaint, kLidarCure);
   }
   if (lidar.model.empty()) {
@@ -124,35 +124,36 @@ Finding CheckPackets(const Observations& seen) {
   return Ok(kLidarSubject, words);
 }
 
-Finding CheckSensorClock(const LidarSeen& lidar) {
-  const auto& clock = *lidar.last_clock;
-  const std::string source = clock.time_source == lidar_clock_t::TIME_SENSOR ? "scans have the sensor's time" : "scans have this computer's time";
-  switch (clock.state) {
-    case lidar_clock_t::STATE_LOCKED:
-      if (std::abs(clock.offset_s) > kMaxClockDifferenceS) {
-        return Warning(
-            kClockSubject,
-            "the lidar is locked to PPS and GNSS time, and this computer's clock is " + Fixed(clock.offset_s, 3) + " s ahead of it; " + source,
-            "set this computer's clock: chrony with the GNSS receiver or NTP");
-      }
-      return Ok(kClockSubject,
-                "the lidar is locked to PPS and GNSS time; this computer's clock is " + Fixed(1e3 * clock.offset_s, 1) + " ms ahead; " + source);
-    case lidar_clock_t::STATE_LOCKED_WITHOUT_TIME:
-      return Warning(kClockSubject, "the lidar has PPS, but no valid GPRMC; " + source,
-                     "the receiver's serial line to the lidar's interface box: 9600 baud, GPRMC once a second, polarity; and a fix");
-    case lidar_clock_t::STATE_ACQUIRING:
-      return Warning(kClockSubject, "the lidar has PPS and is being set to it; " + source, "wait a few seconds and ask again");
-    case lidar_clock_t::STATE_NO_PPS:
-      return Warning(kClockSubject, "the lidar gets no PPS; " + source, "the receiver's PPS line to the lidar's interface box; it needs a fix first");
-    case lidar_clock_t::STATE_FREE_RUNNING:
-      return Warning(kClockSubject, "the lidar's clock runs free: PPS is gone, or does not fit the GPRMC; " + source,
-                     "the receiver's PPS and serial lines to the lidar's interface box");
-    case lidar_clock_t::STATE_ERROR:
-      return Warning(kClockSubject, "the lidar says that its PPS is wrong; " + source, "PPS once a second, 3 to 15 V, at the lidar's interface box");
-    default:
-      return Warning(kClockSubject, "no position packets of the lidar, so the state of its clock is not known; " + source,
-                     "position_port in vlp16.txtpb and in the lidar; a firewall");
+// What a state of the lidar's clock means, and what to do; the locked one apart.
+struct ClockState {
+  std::int32_t state;  // lidar_clock_t::STATE_...
+  const char* text;
+  const char* cure;
+};
+constexpr std::array kClockStates{
+    ClockState{lidar_clock_t::STATE_LOCKED_WITHOUT_TIME, "the lidar has PPS, but no valid GPRMC",
+               "the receiver's serial line to the lidar's interface box: 9600 baud, GPRMC once a second, polarity; and a fix"},
+    ClockState{lidar_clock_t::STATE_ACQUIRING, "the lidar has PPS and is being set to it", "wait a few seconds and ask again"},
+    ClockState{lidar_clock_t::STATE_NO_PPS, "the lidar gets no PPS", "the receiver's PPS line to the lidar's interface box; it needs a fix first"},
+    ClockState{lidar_clock_t::STATE_FREE_RUNNING, "the lidar's clock runs free: PPS is gone, or does not fit the GPRMC",
+               "the receiver's PPS and serial lines to the lidar's interface box"},
+    ClockState{lidar_clock_t::STATE_ERROR, "the lidar says that its PPS is wrong", "PPS once a second, 3 to 15 V, at the lidar's interface box"}};
+constexpr ClockState kClockNotKnown{lidar_clock_t::STATE_UNKNOWN, "no position packets of the lidar, so the state of its clock is not known",
+                                    "position_port in vlp16.txtpb and in the lidar; a firewall"};
+
+Finding CheckSensorClock(const lidar_clock_t& clock) {
+  const std::string source = clock.time_source == lidar_clock_t::TIME_SENSOR ? "; scans have the sensor's time" : "; scans have this computer's time";
+  if (clock.state != lidar_clock_t::STATE_LOCKED) {
+    const auto* const known = std::ranges::find(kClockStates, clock.state, &ClockState::state);
+    const auto& state = known == kClockStates.end() ? kClockNotKnown : *known;
+    return Warning(kClockSubject, state.text + source, state.cure);
   }
+  const std::string locked = "the lidar is locked to PPS and GNSS time";
+  if (std::abs(clock.offset_s) > kMaxClockDifferenceS) {
+    return Warning(kClockSubject, locked + ", and this computer's clock is " + Fixed(clock.offset_s, 3) + " s ahead of it" + source,
+                   "set this computer's clock: chrony with the GNSS receiver or NTP");
+  }
+  return Ok(kClockSubject, locked + "; this computer's clock is " + Fixed(1e3 * clock.offset_s, 1) + " ms ahead" + source);
 }
 
 }  // namespace
@@ -162,15 +163,11 @@ Findings CheckLidar(const Observations& seen) {
   const auto& lidar = seen.lidar;
   const auto kind = seen.config.lidar->sources.kind;
   const bool is_sensor = kind == vlp16::Sources::Kind::kUdp || kind == vlp16::Sources::Kind::kInterface;
-  Findings findings;
-  if (!is_sensor) {
-    findings.push_back(Warning(kLidarSubject, "vlp16.txtpb names captures or a log: no sensor is checked", "source: UDP for a sensor"));
-    return findings;
-  }
+  if (!is_sensor) return {Warning(kLidarSubject, "vlp16.txtpb names captures or a log: no sensor is checked", "source: UDP for a sensor")};
   if (!lidar.fault.empty()) {
     return {Fault(kLidarSubject, lidar.fault, "correct what the line names; if lookout-vlp16 is running on another bus, end it")};
   }
-  findings.push_back(CheckPackets(seen));
+  Findings findings{CheckPackets(seen)};
   for (const auto& [sender, num_datagrams] : lidar.num_by_sender) findings.push_back(CheckSender(seen, sender, num_datagrams));
   if (lidar.num_packets == 0 && lidar.num_by_sender.empty()) findings.push_back(CheckSilentNetwork(seen));
   return findings;
@@ -178,16 +175,14 @@ Findings CheckLidar(const Observations& seen) {
 
 Findings CheckClocks(const Observations& seen) {
   Findings findings;
-  const bool is_seen = seen.lidar.last_clock.has_value();
-  if (is_seen) findings.push_back(CheckSensorClock(seen.lidar));
-  const bool is_locked = is_seen && seen.lidar.last_clock->state == lidar_clock_t::STATE_LOCKED;
-  if (is_locked) return findings;  // which has measured this computer's
-  if (seen.is_host_clock_set) {
-    findings.push_back(Ok(kClockSubject, "this computer's clock is steered (NTP or PPS)"));
-  } else {
-    findings.push_back(Warning(kClockSubject, "nothing steers this computer's clock, which stamps data without a time of their own",
-                               "install chrony, with the GNSS receiver or NTP as its source"));
+  if (const auto& clock = seen.lidar.last_clock) {
+    findings.push_back(CheckSensorClock(*clock));
+    if (clock->state == lidar_clock_t::STATE_LOCKED) return findings;  // which has measured this computer's
   }
+  findings.push_back(seen.is_host_clock_set
+                         ? Ok(kClockSubject, "this computer's clock is steered (NTP or PPS)")
+                         : Warning(kClockSubject, "nothing steers this computer's clock, which stamps data without a time of their own",
+                                   "install chrony, with the GNSS receiver or NTP as its source"));
   return findings;
 }
 

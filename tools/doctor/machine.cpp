@@ -16,11 +16,17 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <set>
 #include <sstream>
 #include <system_error>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/config/text_config.hpp"
 #include "common/runtime/process.hpp"
+#include "services/georeferencer/params.hpp"
+#include "services/recorder/params.hpp"
+#include "services/segmenter/params.hpp"
+#include "services/vlp16/sources.hpp"
 
 namespace lookout::doctor {
 
@@ -28,41 +34,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class UdpSocket {
- public:
-  UdpSocket() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
-  ~UdpSocket() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  UdpSocket(const UdpSocket&) = delete;
-  UdpSocket& operator=(const UdpSocket&) = delete;
-
-  // Bytes that the kernel keeps for waiting datagrams.
-  std::int64_t ReceiveBuffer() const {
-    int size = 0;
-    socklen_t length = sizeof size;
-    return getsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &size, &length) == 0 ? size : 0;
-  }
-  void AskForReceiveBuffer(int size) const { setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &size, sizeof size); }
-
- private:
-  int descriptor_;
-};
-
 std::string TextOfFile(const char* path) {
   std::ifstream in(path);
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
-}
-
-InterfaceSeen ToInterface(const ifaddrs& entry) {
-  InterfaceSeen interface;
-  interface.name = entry.ifa_name;
-  // RUNNING stands for the carrier.
-  interface.has_carrier = (entry.ifa_flags & IFF_UP) != 0 && (entry.ifa_flags & IFF_RUNNING) != 0;
-  interface.is_loopback = (entry.ifa_flags & IFF_LOOPBACK) != 0;
-  return interface;
 }
 
 // Numeric; empty for what is no IP address.
@@ -123,12 +99,6 @@ std::map<std::uint64_t, std::string> HoldersOfSockets() {
   return holders;
 }
 
-// The recorder that was heard last; nullptr = none.
-const health_t* RecorderHeard(const Observations& seen) {
-  const auto found = seen.processes.find("recorder");
-  return found == seen.processes.end() || found->second.empty() ? nullptr : &found->second.back().last;
-}
-
 // Where it is, or its nearest parent that is there: the recorder makes what is missing.
 fs::path Existing(fs::path folder) {
   std::error_code error;
@@ -137,6 +107,40 @@ fs::path Existing(fs::path folder) {
 }
 
 }  // namespace
+
+ConfigSeen ReadConfig(const fs::path& config_folder) {
+  ConfigSeen seen;
+  const auto check = [&](const std::string& file_name, const auto& load) {
+    config::FaultList found;
+    // By itself first: a process whose boat.txtpb is wrong looks no further.
+    found.Try([&] { config::EffectiveTextOfFile(config_folder / file_name); });
+    found.Try(load);
+    seen.files[file_name];
+    for (const auto& fault : found.faults()) {
+      // Into the file that the line names: a process may find that boat.txtpb is wrong.
+      const auto path = fault.substr(0, fault.find(".txtpb:"));
+      auto& lines = seen.files[path == fault ? file_name : fs::path(path).filename().string() + ".txtpb"];
+      if (std::ranges::find(lines, fault) == lines.end()) lines.push_back(fault);
+    }
+  };
+  check("boat.txtpb", [&] { seen.boat = config::LoadBoat(config_folder); });
+  check("vlp16.txtpb", [&] { seen.lidar = vlp16::LoadChecked(config_folder); });
+  check("segmenter.txtpb", [&] { segmenter::LoadParams(config_folder); });
+  check("navigator.txtpb", [&] { seen.navigation = navigator::LoadParams(config_folder); });
+  check("georeferencer.txtpb", [&] { georeferencer::LoadParams(config_folder); });
+  check("recorder.txtpb", [&] {
+    const auto params = recorder::LoadParams(config_folder);
+    seen.log_folder = params.log_folder;
+    seen.log_reserve_bytes = params.reserve_bytes;
+  });
+  // RUN_INFO holds every file of the folder, so the recorder does not start where any is wrong.
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(config_folder, error)) {
+    const auto name = entry.path().filename().string();
+    if (entry.path().extension() == ".txtpb" && !seen.files.contains(name)) check(name, [] {});
+  }
+  return seen;
+}
 
 BusSeen ReadBus(const std::string& url) {
   BusSeen bus;
@@ -191,10 +195,17 @@ BuffersSeen ReadBuffers(const ConfigSeen& config) {
   BuffersSeen buffers;
   buffers.asked = bus::kReceiveBufferBytes;
   if (config.lidar) buffers.asked = std::max<std::int64_t>(buffers.asked, config.lidar->sources.receive_buffer_bytes);
-  const UdpSocket socket;
-  buffers.by_default = socket.ReceiveBuffer();
-  socket.AskForReceiveBuffer(static_cast<int>(buffers.asked));
-  buffers.granted = socket.ReceiveBuffer() / 2;  // socket(7): the kernel doubles what is asked for, and tells that
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const auto granted = [descriptor] {
+    int size = 0;
+    socklen_t length = sizeof size;
+    return getsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &size, &length) == 0 ? size : 0;
+  };
+  buffers.by_default = granted();
+  const int asked = static_cast<int>(buffers.asked);
+  setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &asked, sizeof asked);
+  buffers.granted = granted() / 2;  // socket(7): the kernel doubles what is asked for, and tells that
+  close(descriptor);
   return buffers;
 }
 
@@ -204,18 +215,22 @@ std::vector<InterfaceSeen> ReadInterfaces() {
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(first, &freeifaddrs);
   std::vector<InterfaceSeen> interfaces;
   for (const ifaddrs* entry = first; entry != nullptr; entry = entry->ifa_next) {
-    auto interface = ToInterface(*entry);
+    InterfaceSeen interface;
+    interface.name = entry->ifa_name;
+    // RUNNING stands for the carrier.
+    interface.has_carrier = (entry->ifa_flags & IFF_UP) != 0 && (entry->ifa_flags & IFF_RUNNING) != 0;
+    interface.is_loopback = (entry->ifa_flags & IFF_LOOPBACK) != 0;
     interface.address = io::ParseIpAddress(AddressText(entry->ifa_addr));
     if (interface.address) interface.prefix_bits = PrefixBits(entry->ifa_netmask);
     interfaces.push_back(std::move(interface));
   }
   // Each interface stands there once more for its link: that is told only where it has no address.
-  std::vector<InterfaceSeen> told;
+  std::set<std::string> with_address;
   for (const auto& interface : interfaces) {
-    const bool has_address = std::ranges::any_of(interfaces, [&](const auto& other) { return other.name == interface.name && other.address; });
-    if (interface.address || !has_address) told.push_back(interface);
+    if (interface.address) with_address.insert(interface.name);
   }
-  return told;
+  std::erase_if(interfaces, [&](const auto& interface) { return !interface.address && with_address.contains(interface.name); });
+  return interfaces;
 }
 
 std::vector<SocketSeen> SocketsOfPort(const std::string& table, int port) {
@@ -240,7 +255,6 @@ std::vector<SocketSeen> SocketsOfPort(const std::string& table, int port) {
 
 PortSeen ReadPort(const BusSeen& bus) {
   PortSeen seen;
-  seen.port = bus.port;
   if (bus.group.empty()) return seen;
   seen.is_closed = FirstLine(kClosedFile).rfind(std::to_string(bus.port) + " ", 0) == 0;
   const auto holders = HoldersOfSockets();
@@ -265,7 +279,7 @@ bool IsHostClockSet() {
 DiskSeen ReadDisk(const Observations& seen) {
   DiskSeen disk = seen.disk;
   if (!seen.config.log_folder) return disk;
-  const auto* recorder = RecorderHeard(seen);
+  const auto* recorder = seen.LastHealth("recorder");
   if (recorder != nullptr && recorder->host != runtime::HostName()) {
     disk.other_host = recorder->host;
     return disk;

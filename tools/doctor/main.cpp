@@ -33,9 +33,8 @@ struct Options {
 
 Options ParseOptions(int argc, char** argv) {
   Options options;
-  std::string config_folder;
   CLI::App app("Checks whether a boat is ready to cast off: config, bus, lidar, clocks, GNSS, heading, mounting, disk, processes.", "lookout-doctor");
-  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_option("--seconds", options.seconds, "listen for so long")->check(CLI::Range(kMinSeconds, kMaxSeconds))->capture_default_str();
   app.add_flag("--check", options.check_only, "check the config of every process, print the values in force or every fault, exit");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
@@ -47,7 +46,6 @@ Options ParseOptions(int argc, char** argv) {
     // --help and --version come here too, with code 0.
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : 2);
   }
-  options.config_folder = config_folder;
   if (options.lcm_url.empty()) options.lcm_url = lookout::bus::DefaultLcmUrl();
   return options;
 }
@@ -75,8 +73,8 @@ int main(int argc, char** argv) {
     if (options.check_only) {
       // What each process would find at its start, of all files at once.
       lookout::config::FaultList faults;
-      for (const auto& file : lookout::doctor::ReadConfig(options.config_folder).files) {
-        for (const auto& fault : file.faults) faults.Add(fault);
+      for (const auto& [file, lines] : lookout::doctor::ReadConfig(options.config_folder).files) {
+        for (const auto& fault : lines) faults.Add(fault);
       }
       faults.ThrowIfAny();
       std::cout << lookout::runtime::EffectiveConfig(options.config_folder);

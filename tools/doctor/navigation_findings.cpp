@@ -1,5 +1,6 @@
 // Position, heading, roll and pitch.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -18,7 +19,6 @@ namespace {
 constexpr const char* kGnssSubject = "gnss";
 constexpr const char* kHeadingSubject = "heading";
 constexpr const char* kAttitudeSubject = "attitude";
-constexpr const char* kInputSubject = "input";
 
 constexpr double kFixSilenceS = 2.0;     // two periods of a receiver that gives one fix a second
 constexpr double kPoorFixM = 5.0;        // twice GNSS without correction: position_sd_m of navigator.proto
@@ -26,27 +26,14 @@ constexpr int kFewSatellites = 5;        // four give a place in space; one to s
 constexpr double kPoorHeadingDeg = 5.0;  // max_heading_coast_sd_deg of navigator.proto: 0.9 m at 10 m
 constexpr int kHeadingIndex = 8;         // of POSE.covariance
 
+// By gnss_fix_t::QUALITY_...
+constexpr std::array kQualityInWords{"no fix",     "GNSS",           "differential GNSS", "precise GNSS",          "RTK, fixed",
+                                     "RTK, float", "dead reckoning", "entered by hand",   "a receiver's simulator"};
+static_assert(kQualityInWords.size() == gnss_fix_t::QUALITY_SIMULATOR + 1);
+
 std::string QualityInWords(int quality) {
-  switch (quality) {
-    case gnss_fix_t::QUALITY_GNSS:
-      return "GNSS";
-    case gnss_fix_t::QUALITY_DIFFERENTIAL:
-      return "differential GNSS";
-    case gnss_fix_t::QUALITY_PPS:
-      return "precise GNSS";
-    case gnss_fix_t::QUALITY_RTK_FIXED:
-      return "RTK, fixed";
-    case gnss_fix_t::QUALITY_RTK_FLOAT:
-      return "RTK, float";
-    case gnss_fix_t::QUALITY_DEAD_RECKONING:
-      return "dead reckoning";
-    case gnss_fix_t::QUALITY_MANUAL:
-      return "entered by hand";
-    case gnss_fix_t::QUALITY_SIMULATOR:
-      return "a receiver's simulator";
-    default:
-      return "no fix";
-  }
+  const bool is_known = quality >= 0 && quality < static_cast<int>(kQualityInWords.size());
+  return kQualityInWords.at(is_known ? static_cast<std::size_t>(quality) : 0);
 }
 
 std::string FixInWords(const gnss_fix_t& fix, double age_s) {
@@ -55,15 +42,9 @@ std::string FixInWords(const gnss_fix_t& fix, double age_s) {
   if (std::isfinite(fix.horizontal_sd_m)) words += ", sd " + Fixed(fix.horizontal_sd_m, 2) + " m per axis";
   if (std::isfinite(fix.hdop)) words += ", HDOP " + Fixed(fix.hdop, 1);
   words += ", " + Fixed(age_s, 1) + " s old";
-  if (std::isfinite(fix.latitude_deg) && std::isfinite(fix.longitude_deg)) {
-    words += ", at " + Fixed(std::abs(fix.latitude_deg), 5) + (fix.latitude_deg < 0.0 ? " S " : " N ") + Fixed(std::abs(fix.longitude_deg), 5) +
-             (fix.longitude_deg < 0.0 ? " W" : " E");
-  }
+  if (std::isfinite(fix.latitude_deg) && std::isfinite(fix.longitude_deg))
+    words += ", at " + PlaceInWords({fix.latitude_deg, fix.longitude_deg, 0.0});
   return words;
-}
-
-Finding ShutInput(const std::string& name, const std::string& fault) {
-  return Fault(kInputSubject, "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable");
 }
 
 Finding CheckFix(const Observations& seen) {
@@ -169,7 +150,7 @@ Findings CheckNavigation(const Observations& seen) {
   }
   Findings findings;
   for (const auto& [name, fault] : seen.navigation.input_faults) {
-    findings.push_back(ShutInput(name, fault));
+    findings.push_back(Fault("input", "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"));
   }
   findings.push_back(CheckFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;

@@ -22,14 +22,9 @@
 
 namespace lookout::doctor {
 
-struct FileSeen {
-  std::string name;                 // of the file, without its folder
-  std::vector<std::string> faults;  // lines "path:line: field: reason"; none = it is right
-};
-
 /// The boat's config, as far as it is right.
 struct ConfigSeen {
-  std::vector<FileSeen> files;
+  std::map<std::string, std::vector<std::string>> files;  // by name, without the folder: lines "path:line: field: reason"; none = it is right
   std::optional<config::BoatFacts> boat;
   std::optional<vlp16::Params> lidar;
   std::optional<navigator::Params> navigation;
@@ -49,7 +44,6 @@ struct BusSeen {
 
 /// The port of the bus, which LCM opens on every address of the computer.
 struct PortSeen {
-  int port = 7667;
   bool is_closed = false;  // by lookout-firewall: to other computers, but for the interface of the bus
   // Who listens to it and is not of Lookout: "lcm-logger (pid 17)", "a program of user pi". No filter stands in front of it.
   std::vector<std::string> without_filter;
@@ -144,6 +138,12 @@ struct Observations {
   DiskSeen disk;
   Utime end{};  // host time at which watching ended
   double watched_s = 0.0;
+
+  /// The last HEALTH of the process of that name that was heard of last; nullptr = none.
+  const health_t* LastHealth(const std::string& process) const {
+    const auto found = processes.find(process);
+    return found == processes.end() || found->second.empty() ? nullptr : &found->second.back().last;
+  }
 };
 
 }  // namespace lookout::doctor

@@ -21,8 +21,6 @@ constexpr std::size_t kSubjectWidth = 11;
 constexpr std::size_t kWordsWidth = 100;
 constexpr const char* kArrow = "-> ";
 
-std::string Padded(const std::string& text, std::size_t width) { return text + std::string(text.size() < width ? width - text.size() : 1, ' '); }
-
 // Lines of at most kWordsWidth, each but the first behind `indent`. What comes from outside (a reason in HEALTH) may hold anything: only what can
 // be printed is.
 std::string Wrapped(const std::string& text, const std::string& indent) {
@@ -53,8 +51,9 @@ std::string ToReport(const Findings& findings, bool has_colours) {
     const auto grade = static_cast<std::size_t>(finding.grade);
     const auto& style = kStyles.at(grade);
     ++counts.at(grade);
-    const auto word = Padded(style.word, kGradeWidth);
-    report += (has_colours ? style.colour + word + kColourEnd : word) + Padded(finding.subject, kSubjectWidth) + Wrapped(finding.text, indent) + "\n";
+    const auto word = fmt::format("{:<{}}", style.word, kGradeWidth);
+    report += (has_colours ? style.colour + word + kColourEnd : word) + fmt::format("{:<{}}", finding.subject, kSubjectWidth) +
+              Wrapped(finding.text, indent) + "\n";
     if (!finding.cure.empty()) report += indent + kArrow + Wrapped(finding.cure, indent + std::string(3, ' ')) + "\n";
   }
   const auto num_faults = counts[static_cast<std::size_t>(Grade::kFault)];

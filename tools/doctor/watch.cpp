@@ -3,18 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/source.hpp"
+#include "common/io/udp_receiver.hpp"
 #include "common/runtime/process.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "tools/doctor/own_sources.hpp"
+#include "services/navigator/service.hpp"
+#include "services/navigator/sources.hpp"
+#include "services/vlp16/service.hpp"
+#include "services/vlp16/sources.hpp"
 
 namespace lookout::doctor {
 
@@ -27,6 +35,91 @@ constexpr std::chrono::milliseconds kHealthWait(1500);
 constexpr std::chrono::milliseconds kPoll(5);
 // lcm-log: sync word, number, time, two lengths.
 constexpr std::int64_t kEventHeaderBytes = 28;
+
+// Taken from one source before the others get their turn: 100 ms of packets in dual return.
+constexpr int kMaxDatagramsPerPoll = 150;
+
+// Reads the lidar's datagrams as lookout-vlp16 does, and tells on `bus` what it would tell.
+class OwnLidar {
+ public:
+  /// @throws std::runtime_error when a port or the interface cannot be opened
+  OwnLidar(bus::Bus& bus, const vlp16::Params& params) : params_(params), service_(bus, params) {
+    if (params.sources.kind == vlp16::Sources::Kind::kInterface) {
+      sources_.push_back(std::make_unique<vlp16::LiveCapture>(vlp16::ToLiveOptions(params)));
+      return;
+    }
+    for (const int port : {params.data_port, params.position_port}) {
+      auto options = vlp16::ToUdpOptions(params.sources, port);
+      options.allowed_source_addresses.clear();  // whoever sends is to be seen; who may is decided here
+      sources_.push_back(std::make_unique<io::UdpReceiver>(options));
+    }
+  }
+
+  /// Takes what waits. @param seen  gets senders and complaint
+  void Poll(Utime now, LidarSeen& seen) {
+    const auto& allowed = params_.sources.allowed_source_addresses;
+    const bool is_udp = params_.sources.kind == vlp16::Sources::Kind::kUdp;
+    for (auto& source : sources_) {
+      source->Poll(now);
+      for (int i = 0; i < kMaxDatagramsPerPoll; ++i) {
+        const auto datagram = source->Receive(now);
+        if (!datagram) break;
+        const auto& sender = datagram->source_address;
+        if (is_udp && datagram->port == params_.data_port) ++seen.num_by_sender[sender];
+        if (is_udp && !allowed.empty() && std::ranges::find(allowed, sender) == allowed.end()) continue;
+        service_.OnDatagram(datagram->host_time, datagram->port, datagram->bytes, {sender, datagram->source_port});
+      }
+      if (!source->fault().empty()) seen.fault = source->fault();
+    }
+    service_.AdvanceTo(now);
+    seen.complaint = service_.Report().reason;
+  }
+
+ private:
+  vlp16::Params params_;
+  vlp16::Service service_;
+  std::vector<std::unique_ptr<io::Source>> sources_;
+};
+
+// The same for lookout-navigator. Text logs are not played.
+class OwnNavigator {
+ public:
+  /// @param seen  gets the inputs that cannot be opened
+  OwnNavigator(bus::Bus& bus, const navigator::Params& params, NavigationSeen& seen) : service_(bus, params) {
+    for (const auto& connection : params.connections) {
+      if (connection.kind == navigator::Connection::Kind::kTextLog) continue;
+      try {
+        inputs_.emplace_back(connection.name, navigator::OpenSource(connection));
+      } catch (const std::exception& error) {
+        seen.input_faults.emplace_back(connection.name, error.what());
+      }
+    }
+  }
+
+  void Poll(Utime now, NavigationSeen& seen) {
+    for (auto& [name, source] : inputs_) {
+      source->Poll(now);
+      for (int i = 0; i < kMaxDatagramsPerPoll; ++i) {
+        const auto piece = source->Receive(runtime::HostNow());
+        if (!piece) break;
+        navigator::Pass(name, *piece, service_);
+      }
+    }
+    service_.AdvanceTo(now);
+    seen.complaint = service_.Report().reason;
+  }
+
+  /// Adds the faults of inputs that are still not open.
+  void Finish(NavigationSeen& seen) const {
+    for (const auto& [name, source] : inputs_) {
+      if (const auto fault = source->fault(); !fault.empty()) seen.input_faults.emplace_back(name, fault);
+    }
+  }
+
+ private:
+  navigator::Service service_;
+  std::vector<std::pair<std::string, std::unique_ptr<io::Source>>> inputs_;
+};
 
 class Watcher {
  public:
@@ -48,8 +141,8 @@ class Watcher {
     if (seen_.lidar.via == Via::kBus && seen_.lidar.num_packets > 0) {
       seen_.disk.rate_bytes_per_s = static_cast<double>(notes_.num_log_bytes()) / seen_.watched_s;
     }
-    if (const auto* health = HealthOf("vlp16")) seen_.lidar.complaint = health->reason;
-    if (const auto* health = HealthOf("navigator")) seen_.navigation.complaint = health->reason;
+    if (const auto* health = seen_.LastHealth("vlp16")) seen_.lidar.complaint = health->reason;
+    if (const auto* health = seen_.LastHealth("navigator")) seen_.navigation.complaint = health->reason;
   }
 
  private:
@@ -106,11 +199,6 @@ class Watcher {
         std::this_thread::sleep_for(kPoll);
       }
     }
-  }
-
-  const health_t* HealthOf(const std::string& process) const {
-    const auto found = seen_.processes.find(process);
-    return found == seen_.processes.end() || found->second.empty() ? nullptr : &found->second.back().last;
   }
 
   Observations& seen_;

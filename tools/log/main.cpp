@@ -1,8 +1,8 @@
 // lookout-log: what is in a log, a part of it, and a damaged one made readable.
 #include <CLI/CLI.hpp>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
-#include <string>
 #include <vector>
 
 #include "common/core/printable.hpp"
@@ -25,23 +25,21 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer("Exit code: 0 fine; 1 a log cannot be read, holds nothing of it, or cannot be written; 2 wrong command line.");
 
-  std::vector<std::string> logs;
+  std::vector<std::filesystem::path> logs;
   auto* info = app.add_subcommand("info", "channels, types, rates, gaps, size, span, version, damage");
   info->add_option("LOG", logs, "lcm-log; several are read in this order, as one")->required();
 
   log::SliceRequest request;
-  std::vector<std::string> inputs;
-  std::string output;
   auto* slice = app.add_subcommand("slice", "the events of a time and of some channels");
-  slice->add_option("--in", inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
-  slice->add_option("--out", output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
+  slice->add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
+  slice->add_option("--out", request.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
   slice->add_flag("--force", request.force, "replace an existing --out");
   slice->add_option("--from", request.from, "seconds from the start of the log, or UTC as 2026-11-21T13:45:01Z");
   slice->add_option("--to", request.to, "the same; the first time that is not in it");
   slice->add_option("--channel", request.channels, "this channel only; may be given several times")->allow_extra_args(false);
 
-  std::string damaged;
-  std::string mended;
+  std::filesystem::path damaged;
+  std::filesystem::path mended;
   auto* repair = app.add_subcommand("repair", "every whole event of a damaged log, and what was lost");
   repair->add_option("IN", damaged, "lcm-log")->required();
   repair->add_option("OUT", mended, "lcm-log to write: as OUT.partial until it is whole; one that exists is refused")->required();
@@ -56,10 +54,8 @@ int main(int argc, char** argv) {
   }
   try {
     if (info->parsed()) {
-      log::Info({logs.begin(), logs.end()}, std::cout);
+      log::Info(logs, std::cout);
     } else if (slice->parsed()) {
-      request.inputs.assign(inputs.begin(), inputs.end());
-      request.output = output;
       log::Slice(request, std::cout, std::cerr);
     } else {
       log::Repair(damaged, mended, force, std::cout, std::cerr);

@@ -6,7 +6,6 @@
 #include <array>
 #include <chrono>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -23,6 +22,7 @@ namespace lookout::replay {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Magic = std::array<unsigned char, 4>;
 
 constexpr Magic kLogSyncWord{0xED, 0xA1, 0xDA, 0x01};
@@ -41,115 +41,135 @@ void Count(std::vector<std::pair<std::string, std::int64_t>>& refused, std::stri
   refused.emplace_back(reason, count);
 }
 
-// A line of the log, beside which no progress stands.
-template <typename... Values>
-void Warn(runtime::Progress& progress, fmt::format_string<Values...> form, Values&&... values) {
-  progress.Clear();
-  spdlog::warn(form, std::forward<Values>(values)...);
-}
-
-// One file on its way into the chain.
-struct Feeding {
-  const std::filesystem::path& file;
-  Chain& chain;
-  InputSummary& summary;
-  runtime::Progress& progress;
-  const std::function<void(std::int64_t num_bytes_of_file)>& show;
-};
-
-// Before the first event of a file. @param before  time of the last event of the files before it; none from now on
-void CheckOrder(const Feeding& feeding, std::optional<Utime>& before, Utime time) {
-  if (before && time < *before) {
-    Warn(feeding.progress, "{}: begins {:.3f} s before the file before it ends; are the files in their order?", feeding.file.string(),
-         ToSeconds(*before - time));
-  }
-  before.reset();
-}
-
-void FeedTextLog(const Feeding& feeding, std::optional<std::chrono::sys_days> day) {
-  const auto& [file, chain, summary, progress, show] = feeding;
-  navigator::TextLogReader reader(file, day);
-  auto before = chain.time();
-  if (!reader.has_date() && !day) {
-    Warn(progress, "{}: no sentence tells a date; its times are taken as those of 1970-01-01, give --date", file.string());
-  }
-  if (reader.has_date() && day) Warn(progress, "{}: its sentences tell a date; --date is not used", file.string());
-  while (const auto line = reader.Next()) {
-    CheckOrder(feeding, before, line->time);
-    ++summary.num_events;
-    chain.OnTextLine(line->time, line->bytes);
-    show(reader.position());
-  }
-}
-
-void FeedCapture(const Feeding& feeding) {
-  const auto& [file, chain, summary, progress, show] = feeding;
-  // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
-  constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
-  vlp16::CaptureReader reader(file);
-  auto before = chain.time();
-  std::size_t num_bytes = 0;
-  while (const auto datagram = reader.Next()) {
-    CheckOrder(feeding, before, datagram->host_time);
-    ++summary.num_events;
-    chain.OnDatagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
-    num_bytes += kFrameBytes + datagram->payload.size();
-    show(static_cast<std::int64_t>(num_bytes));
-  }
-  if (reader.num_damaged() > 0) Warn(progress, "{}: {}", file.string(), reader.damage());
-  for (const auto& counter : reader.counters()) {
-    if (counter.name == "frames_read" || counter.name == "frames_datagram") continue;  // work done, no refusal
-    Count(summary.refused, "capture." + std::string(counter.name), counter.count);
-  }
-}
-
-// One log after the other: a publisher goes on from one to the next.
-class LogFeeder {
+// Reads the files, one after the other, into the chain.
+class Feeder {
  public:
-  LogFeeder(const Plan& plan, Chain& chain, InputSummary& summary)
-      : plan_(plan), chain_(chain), summary_(summary), one_publisher_([this](Utime time, const bus::Channel& channel, Bytes bytes) {
+  Feeder(const std::vector<fs::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress)
+      : files_(files),
+        inspection_(inspection),
+        chain_(chain),
+        progress_(progress),
+        total_bytes_(std::max<std::int64_t>(1, std::accumulate(inspection.sizes_bytes.begin(), inspection.sizes_bytes.end(), std::int64_t{0}))),
+        one_publisher_([this](Utime time, const bus::Channel& channel, Bytes bytes) {
           summary_.marks.Add(time, channel.name, bytes);
           ++summary_.num_events;
           chain_.OnLogged(time, channel, bytes);
         }) {}
 
-  void Feed(const Feeding& feeding) {
-    const auto& [file, chain, summary, progress, show] = feeding;
-    bus::LogReader reader(file, io::ThrowIfStopAsked);
-    auto before = last_time_;
-    std::int64_t num_oversize = 0;
-    const auto is_wanted = [this](std::string_view channel) { return plan_.Reads(channel) || log::RunMarks::IsMarked(channel); };
-    for (; const auto event = reader.NextView(is_wanted); ++num_events_) {
-      show(reader.position_bytes());
-      if (!plan_.Reads(event->channel)) {
-        summary.marks.Add(event->time, event->channel, event->bytes);
-        const auto* known = bus::FindChannel(event->channel);
-        Count(summary.left, known != nullptr ? known->name : "of other channels", 1);
-      } else if (event->bytes.size() > bus::kMaxMessageBytes) {
-        ++num_oversize;
+  InputSummary Run() {
+    const auto is_text_log = [](const auto& file) { return KindOf(file) == InputKind::kTextLog; };
+    if (inspection_.day && std::ranges::none_of(files_, is_text_log)) Warn("the input holds no text log; --date is not used");
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      before_ = last_time_;
+      const auto kind = KindOf(files_[i]);
+      if (kind == InputKind::kLog) {
+        FeedLog(files_[i]);
+      } else if (kind == InputKind::kTextLog) {
+        FeedTextLog(files_[i]);
       } else {
-        CheckOrder(feeding, before, event->time);
-        last_time_ = event->time;
-        one_publisher_.Add(num_events_, event->time, *bus::FindChannel(event->channel), event->bytes);
+        FeedCapture(files_[i]);
       }
+      num_bytes_ += inspection_.sizes_bytes[i];  // not asked for again: a file that is open may be moved or deleted
     }
-    Count(summary.refused, "log.damaged", reader.num_damaged());
-    Count(summary.refused, "log.oversize_message", num_oversize);
-  }
-
-  void Finish() {
     one_publisher_.Finish();
     summary_.interleavings = one_publisher_.Interleavings();
     Count(summary_.refused, "log.second_publisher", one_publisher_.num_left_out());
+    return std::move(summary_);
   }
 
  private:
-  const Plan& plan_;
+  // A line of the log, beside which no progress stands.
+  template <typename... Values>
+  void Warn(fmt::format_string<Values...> form, Values&&... values) {
+    progress_.Clear();
+    spdlog::warn(form, std::forward<Values>(values)...);
+  }
+
+  // Before an event is handed in.
+  void CheckOrder(const fs::path& file, Utime time) {
+    if (before_ && time < *before_) {
+      Warn("{}: begins {:.3f} s before the file before it ends; are the files in their order?", file.string(), ToSeconds(*before_ - time));
+    }
+    before_.reset();
+    last_time_ = time;
+  }
+
+  void Show(std::int64_t num_bytes_of_file) {
+    io::ThrowIfStopAsked();
+    progress_.Update(static_cast<double>(num_bytes_ + num_bytes_of_file) / static_cast<double>(total_bytes_), [this] {
+      return fmt::format("{:.0f} times real time", ToSeconds(chain_.span()) / ToSeconds(std::chrono::steady_clock::now() - start_));
+    });
+  }
+
+  void FeedTextLog(const fs::path& file) {
+    const auto& day = inspection_.day;
+    navigator::TextLogReader reader(file, day);
+    if (!reader.has_date() && !day) {
+      Warn("{}: no sentence tells a date; its times are taken as those of 1970-01-01, give --date", file.string());
+    }
+    if (reader.has_date() && day) Warn("{}: its sentences tell a date; --date is not used", file.string());
+    while (const auto line = reader.Next()) {
+      CheckOrder(file, line->time);
+      ++summary_.num_events;
+      chain_.OnTextLine(line->time, line->bytes);
+      Show(reader.position());
+    }
+  }
+
+  void FeedCapture(const fs::path& file) {
+    // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
+    constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
+    vlp16::CaptureReader reader(file);
+    std::size_t num_bytes = 0;
+    while (const auto datagram = reader.Next()) {
+      CheckOrder(file, datagram->host_time);
+      ++summary_.num_events;
+      chain_.OnDatagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
+      num_bytes += kFrameBytes + datagram->payload.size();
+      Show(static_cast<std::int64_t>(num_bytes));
+    }
+    if (reader.num_damaged() > 0) Warn("{}: {}", file.string(), reader.damage());
+    for (const auto& counter : reader.counters()) {
+      if (counter.name == "frames_read" || counter.name == "frames_datagram") continue;  // work done, no refusal
+      Count(summary_.refused, "capture." + std::string(counter.name), counter.count);
+    }
+  }
+
+  // A publisher goes on from one log to the next.
+  void FeedLog(const fs::path& file) {
+    const auto& plan = inspection_.plan;
+    bus::LogReader reader(file, io::ThrowIfStopAsked);
+    std::int64_t num_oversize = 0;
+    const auto is_wanted = [&plan](std::string_view channel) { return plan.Reads(channel) || log::RunMarks::IsMarked(channel); };
+    for (; const auto event = reader.NextView(is_wanted); ++num_events_) {
+      Show(reader.position_bytes());
+      if (!plan.Reads(event->channel)) {
+        summary_.marks.Add(event->time, event->channel, event->bytes);
+        const auto* known = bus::FindChannel(event->channel);
+        Count(summary_.left, known != nullptr ? known->name : "of other channels", 1);
+      } else if (event->bytes.size() > bus::kMaxMessageBytes) {
+        ++num_oversize;
+      } else {
+        CheckOrder(file, event->time);
+        one_publisher_.Add(num_events_, event->time, *bus::FindChannel(event->channel), event->bytes);
+      }
+    }
+    Count(summary_.refused, "log.damaged", reader.num_damaged());
+    Count(summary_.refused, "log.oversize_message", num_oversize);
+  }
+
+  const std::vector<fs::path>& files_;
+  const Inspection& inspection_;
   Chain& chain_;
-  InputSummary& summary_;
+  runtime::Progress& progress_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::int64_t total_bytes_;
+  std::int64_t num_bytes_ = 0;  // of the files before this one
   OnePublisher one_publisher_;
-  std::optional<Utime> last_time_;
-  std::int64_t num_events_ = 0;
+  std::int64_t num_events_ = 0;     // of logs
+  std::optional<Utime> last_time_;  // of an event
+  std::optional<Utime> before_;     // the same of the files before this one, until its first event
+  InputSummary summary_;
 };
 
 // Reads until all that is looked for was found.
@@ -204,36 +224,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
 }
 
 InputSummary Feed(const std::vector<std::filesystem::path>& files, const Inspection& inspection, Chain& chain, runtime::Progress& progress) {
-  InputSummary summary;
-  const auto start = std::chrono::steady_clock::now();
-  const auto& sizes_bytes = inspection.sizes_bytes;
-  const auto total_bytes = static_cast<double>(std::max<std::int64_t>(1, std::accumulate(sizes_bytes.begin(), sizes_bytes.end(), std::int64_t{0})));
-  std::int64_t num_bytes = 0;
-  const auto is_text_log = [](const auto& file) { return KindOf(file) == InputKind::kTextLog; };
-  if (inspection.day && std::ranges::none_of(files, is_text_log)) Warn(progress, "the input holds no text log; --date is not used");
-  const auto speed = [&] {
-    return fmt::format("{:.0f} times real time", ToSeconds(chain.span()) / ToSeconds(std::chrono::steady_clock::now() - start));
-  };
-  LogFeeder logs(inspection.plan, chain, summary);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto& file = files[i];
-    const auto show = [&](std::int64_t num_bytes_of_file) {
-      io::ThrowIfStopAsked();
-      progress.Update(static_cast<double>(num_bytes + num_bytes_of_file) / total_bytes, speed);
-    };
-    const Feeding feeding{file, chain, summary, progress, show};
-    const auto kind = KindOf(file);
-    if (kind == InputKind::kLog) {
-      logs.Feed(feeding);
-    } else if (kind == InputKind::kTextLog) {
-      FeedTextLog(feeding, inspection.day);
-    } else {
-      FeedCapture(feeding);
-    }
-    num_bytes += sizes_bytes[i];  // not asked for again: a file that is open may be moved or deleted
-  }
-  logs.Finish();
-  return summary;
+  return Feeder(files, inspection, chain, progress).Run();
 }
 
 std::int64_t Finish(const InputSummary& summary, const Inspection& inspection, Chain& chain) {

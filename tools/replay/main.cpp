@@ -49,16 +49,13 @@ struct Options {
 
 Options ParseOptions(int argc, char** argv) {
   Options options;
-  std::string config_folder;
-  std::vector<std::string> inputs;
-  std::string output;
   std::string day;
   CLI::App app("Runs captures or lcm-logs through all services, or some, in one process and writes an lcm-log. Same input, same bytes.",
                "lookout-replay");
-  app.add_option("--config", config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
+  app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_flag("--check", options.check_only, "check the config, print the values in force, exit");
-  app.add_option("--in", inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
-  app.add_option("--out", output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
+  app.add_option("--in", options.inputs, "pcap, pcapng, text log of NMEA 0183 or lcm-log; several are read in their order")->check(CLI::ExistingFile);
+  app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused");
   app.add_flag("--force", options.force, "replace an existing --out");
   app.add_option("--from", options.request.from,
                  "channel to read from the log; the service that publishes it, and those before that, do not run (several)")
@@ -73,14 +70,11 @@ Options ParseOptions(int argc, char** argv) {
   app.set_version_flag("--version", "lookout-replay " + lookout::runtime::Version());
   try {
     app.parse(argc, argv);
-    if (!options.check_only && (inputs.empty() || output.empty()))
+    if (!options.check_only && (options.inputs.empty() || options.output.empty()))
       throw CLI::RequiredError("--in and --out are required", CLI::ExitCodes::RequiredError);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : 2);
   }
-  options.config_folder = config_folder;
-  options.inputs.assign(inputs.begin(), inputs.end());
-  options.output = output;
   options.day = lookout::navigator::ParseDay(day);
   return options;
 }
@@ -142,18 +136,12 @@ void PrintInterleavings(const std::vector<lookout::log::Interleaving>& interleav
 
 // Whether the logs hold a run from its start to its end, and what it means where they do not.
 void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) {
-  if (const auto channels = marks.WithoutStart(); !channels.empty()) {
-    spdlog::warn("{}: the input begins without a start mark, in the middle of a run; what is computed first need not equal the live run",
-                 fmt::join(channels, ", "));
-  }
-  if (const auto channels = marks.WithoutEnd(); !channels.empty()) {
-    spdlog::warn("{}: the input ends without an end mark: it was cut there, and nothing is computed for the scan and the poses that were under way",
-                 fmt::join(channels, ", "));
-  }
-  if (const auto channels = marks.CutInside(); !channels.empty()) {
-    spdlog::warn("{}: the input holds a run without an end mark and another behind it; what is computed where it was cut need not equal the live run",
-                 fmt::join(channels, ", "));
-  }
+  const auto warn = [](const std::vector<std::string>& channels, const char* meaning) {
+    if (!channels.empty()) spdlog::warn("{}: the input {}", fmt::join(channels, ", "), meaning);
+  };
+  warn(marks.WithoutStart(), "begins without a start mark, in the middle of a run; what is computed first need not equal the live run");
+  warn(marks.WithoutEnd(), "ends without an end mark: it was cut there, and nothing is computed for the scan and the poses that were under way");
+  warn(marks.CutInside(), "holds a run without an end mark and another behind it; what is computed where it was cut need not equal the live run");
   if (num_left_out > 0) {
     spdlog::warn("{} messages of SEGMENTS at the end waited for a POSE that the input does not hold: no OBSTACLES are computed of them",
                  num_left_out);

@@ -94,7 +94,6 @@ Clutter::Clutter(const Scene& scene, const config::BoatFacts& boat, std::uint64_
       effects_(scene.effects),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       own_box_m_(boat.own_vessel_box_m),
-      has_drops_(effects_.rain_probability_per_m() > 0.0 || effects_.spray_probability() > 0.0),
       has_water_(effects_.glint_probability() > 0.0 || effects_.wake_probability() > 0.0 ||
                  (effects_.crest_probability() > 0.0 && !scene.sea.is_calm())),
       random_(seed, kClutterStream) {
@@ -158,8 +157,8 @@ double Clutter::FoamAt(const Vector2d& p_map_m) const {
   return most;
 }
 
-std::optional<Clutter::Echo> Clutter::FromWater(const Ray& ray, double max_range_m) {
-  if (ray.direction.z() >= 0.0) return std::nullopt;
+std::optional<Echo> Clutter::FromWater(const Ray& ray, double max_range_m) {
+  if (!has_water_ || ray.direction.z() >= 0.0) return std::nullopt;
   const double draw = random_.Uniform();
   const bool is_calm = scene_.sea.is_calm();
   const double sine_calm = -ray.direction.z();
@@ -190,11 +189,11 @@ std::optional<Clutter::Echo> Clutter::FromWater(const Ray& ray, double max_range
     height_m = p_m.z();
   }
   double sum = effects_.wake_probability() * FoamAt(p_m.head<2>());
-  if (draw < sum) return Echo{*range_m, kFoamReflectance, sine, ReturnReason::kWake};
+  if (draw < sum) return Echo{{*range_m, sine}, kNoObject, {kFoamReflectance}, ReturnReason::kWake};
   if (height_m > 0.0) sum += effects_.crest_probability() * sine;
-  if (draw < sum) return Echo{*range_m, kFoamReflectance, sine, ReturnReason::kCrest};
+  if (draw < sum) return Echo{{*range_m, sine}, kNoObject, {kFoamReflectance}, ReturnReason::kCrest};
   sum += glint(sine);
-  if (draw < sum) return Echo{*range_m, kWaterReflectance, sine, ReturnReason::kGlint};
+  if (draw < sum) return Echo{{*range_m, sine}, kNoObject, {kWaterReflectance}, ReturnReason::kGlint};
   return std::nullopt;
 }
 
@@ -237,11 +236,11 @@ std::optional<double> Clutter::SprayRange(const Ray& ray_vessel, double max_rang
   return std::nullopt;
 }
 
-std::optional<Clutter::Echo> Clutter::FromDrops(const Ray& ray_vessel, double max_range_m) {
+std::optional<Echo> Clutter::FromDrops(const Ray& ray_vessel, double max_range_m) {
   const auto spray_m = SprayRange(ray_vessel, max_range_m);
   const auto rain_m = RainRange(spray_m.value_or(max_range_m));
-  if (rain_m) return Echo{*rain_m, kDropReflectance, 1.0, ReturnReason::kRain};
-  if (spray_m) return Echo{*spray_m, kDropReflectance, 1.0, ReturnReason::kSpray};
+  if (rain_m) return Echo{{*rain_m, 1.0}, kNoObject, {kDropReflectance}, ReturnReason::kRain};
+  if (spray_m) return Echo{{*spray_m, 1.0}, kNoObject, {kDropReflectance}, ReturnReason::kSpray};
   return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 
 #include "common/config/boat.hpp"
 #include "tools/sim/random.hpp"
+#include "tools/sim/ray_caster.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
@@ -22,18 +23,8 @@ double FresnelReflectance(double sine);
 
 class Clutter {
  public:
-  struct Echo {
-    double range_m = 0.0;
-    double reflectance = 0.0;
-    double incidence_cosine = 1.0;
-    ReturnReason reason = ReturnReason::kGlint;
-  };
-
   /// @param scene  outlives this
   Clutter(const Scene& scene, const config::BoatFacts& boat, std::uint64_t seed);
-
-  bool has_drops() const { return has_drops_; }
-  bool has_water() const { return has_water_; }
 
   /// Wakes and spray are where they are at `time_s`, to kPeriodS.
   void MoveTo(double time_s);
@@ -68,7 +59,6 @@ class Clutter {
   const Effects& effects_;
   double reference_point_above_water_m_;
   Eigen::AlignedBox3d own_box_m_;
-  bool has_drops_;
   bool has_water_;
   Random random_;
   std::vector<Source> sources_;

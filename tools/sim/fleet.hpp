@@ -1,9 +1,12 @@
-// What floats and what is built: boats, swimmers, buoys, markers, docks, piers and walls. Sizes are those of common craft, rounded.
+// What floats and what is built: boats, swimmers, buoys, markers, docks, piers and walls (sizes are those of common craft, rounded); and land: a bank
+// along an irregular waterline, rising ground behind it, and trees.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string_view>
 
+#include "tools/sim/random.hpp"
 #include "tools/sim/scene.hpp"
 
 namespace lookout::sim {
@@ -26,10 +29,24 @@ struct KindOfObject {
   void (*make)(const Size& size, SceneObject& object);
 };
 
-/// All kinds but shores and islands (shore.hpp).
+/// All kinds but shores and islands.
 std::span<const KindOfObject> Kinds();
 
 /// @return an object of this kind without id, name and way
 SceneObject MakeObject(const KindOfObject& kind, const Size& size);
+
+/// @return radius of the waterline at a bearing
+using Waterline = std::function<double(double bearing_rad)>;
+
+struct Shore {
+  SceneObject object;  // frame: x north, y west, origin in the middle of the circle
+  Waterline waterline_m;
+};
+
+/// Land outward of the waterline.
+Shore MakeShore(const config::Scene::Land& land, Random& random);
+
+/// Land inward of the waterline: a bank round it and a hill. Trees only where their crowns stay over the land.
+SceneObject MakeIsland(const config::Scene::Land& land, Random& random);
 
 }  // namespace lookout::sim

@@ -3,8 +3,6 @@
 #include <GeographicLib/NormalGravity.hpp>
 #include <cmath>
 
-#include "tools/sim/map_frame.hpp"
-
 namespace lookout::sim {
 namespace {
 

@@ -34,28 +34,7 @@ constexpr double kBehindFoliageShare = 0.25;
 constexpr double kStrayMinRangeM = 1.0;
 constexpr double kStrayMaxRangeM = 40.0;
 
-std::vector<RayCaster::Body> BodiesOf(const Scene& scene) {
-  std::vector<RayCaster::Body> bodies;
-  for (const auto& object : scene.objects) bodies.push_back({object.id, object.track, &object.parts, &object});
-  return bodies;
-}
-
-Effects EffectsOf(const Scene& scene, const LidarParams& params) {
-  Effects effects = scene.effects;
-  effects.set_return_mode(params.mode.value_or(effects.return_mode()));
-  effects.set_stray_probability(params.stray_probability.value_or(effects.stray_probability()));
-  effects.set_range_sd_m(params.range_sd_m.value_or(effects.range_sd_m()));
-  return effects;
-}
-
 BeamWidth BeamWidthOf(const Effects& effects) { return {effects.horizontal_divergence_mrad() / 2000.0, effects.vertical_divergence_mrad() / 2000.0}; }
-
-// In its own frame a body has the heading that turns x, y into east, north.
-const Track kVesselFrame{{Eigen::Vector2d::Zero(), kPi / 2.0}};
-
-int RingOfLaser(const std::array<double, format::kNumLasers>& elevations_deg, std::size_t laser) {
-  return static_cast<int>(std::ranges::count_if(elevations_deg, [&](double elevation_deg) { return elevation_deg < elevations_deg[laser]; }));
-}
 
 std::uint32_t MicrosecondsPastHour(Utime time) {
   return static_cast<std::uint32_t>((time - std::chrono::floor<std::chrono::hours>(time)) / std::chrono::microseconds(1));
@@ -70,24 +49,18 @@ void WriteReturn(std::span<std::uint8_t> payload, int block, int sequence, std::
 
 }  // namespace
 
-const Lidar::Beams& Lidar::BeamsOf(LidarModel model) {
-  static constexpr Beams kVlp16{format::kElevationDegVlp16, format::kOriginHeightMmVlp16, format::kProductVlp16};
-  static constexpr Beams kPuckHiRes{format::kElevationDegPuckHiRes, format::kOriginHeightMmPuckHiRes, format::kProductPuckHiRes};
-  return model == LidarModel::kVlp16 ? kVlp16 : kPuckHiRes;
-}
-
 Lidar::Lidar(const Scene& scene, const config::BoatFacts& boat, const LidarParams& params, Utime start, std::uint64_t seed)
     : params_(params),
-      effects_(EffectsOf(scene, params)),
+      effects_(scene.effects),
       sea_(scene.sea),
-      beams_(BeamsOf(params.model)),
+      beams_(vlp16::BeamsOf(params.model)),
       own_motion_(scene.own_motion),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       T_vessel_lidar_(boat.T_vessel_lidar),
-      own_hull_(MakeOwnHull(boat.own_vessel_box_m, boat.lidar.p_vessel_m.z(), boat.p_vessel_antenna_m)),
-      own_caster_({{kOwnVessel, kVesselFrame, &own_hull_}}, BeamWidth{}, nullptr),
+      own_hull_{MakeOwnHull(boat.own_vessel_box_m, boat.lidar.p_vessel_m.z(), boat.p_vessel_antenna_m)},
+      own_caster_(own_hull_, BeamWidth{}, nullptr),
       beam_width_(BeamWidthOf(effects_)),
-      caster_(BodiesOf(scene), beam_width_, &scene.sea),
+      caster_(scene.objects, beam_width_, &scene.sea),
       clutter_(scene, boat, seed),
       random_(seed, kShotStream),
       start_(start) {
@@ -166,11 +139,7 @@ Echoes Lidar::Meet(const RayPair& ray, double max_range_m, double time_s) {
 
 // A shot that meets nothing on its way into the water.
 void Lidar::MeetWater(const Ray& ray, double max_range_m, Seen& seen) {
-  if (clutter_.has_water()) {
-    if (const auto echo = clutter_.FromWater(ray, max_range_m)) {
-      seen.Add(Measure({{echo->range_m, echo->incidence_cosine}, kNoObject, {echo->reflectance}, echo->reason}));
-    }
-  }
+  if (const auto echo = clutter_.FromWater(ray, max_range_m)) seen.Add(Measure(*echo));
   if (effects_.mirror_strength() > 0.0 && sea_.is_calm() && ray.direction.z() < 0.0) {
     // Mirrored at the water, the ray comes from the eye's image below it: its range is that of the whole way.
     const Ray image{{ray.origin_m.x(), ray.origin_m.y(), -ray.origin_m.z()}, {ray.direction.x(), ray.direction.y(), -ray.direction.z()}};
@@ -218,13 +187,11 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
     seen.Add(measured);
   }
   if (echoes.count == 0) MeetWater(ray.map, max_range_m, seen);
-  if (clutter_.has_drops()) {
-    if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
-      // A drop is either large and near enough or not: no range at which it is seen half of the time.
-      const Measurement measured = ToMeasurement(drop->range_m, drop->reflectance, kNoObject, drop->reason);
-      if (measured.range_2mm == 0) random_.Normal();  // of its reflectivity: each drop draws both, so that the seed gives the same data at any range
-      seen.Add(measured);
-    }
+  if (const auto drop = clutter_.FromDrops(ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
+    // A drop is either large and near enough or not: no range at which it is seen half of the time.
+    const Measurement measured = ToMeasurement(drop->hit.range_m, drop->material.reflectance, kNoObject, drop->reason);
+    if (measured.range_2mm == 0) random_.Normal();  // of its reflectivity: each drop draws both, so that the seed gives the same data at any range
+    seen.Add(measured);
   }
   // Only where nothing was met: a stray takes no return from an object.
   if (echoes.count == 0 && seen.count == 0 && random_.Uniform() < effects_.stray_probability()) {
@@ -280,8 +247,9 @@ LidarPacket Lidar::Next() {
     for (std::size_t laser = 0; laser < format::kNumLasers; ++laser) {
       const nanoseconds laser_time = static_cast<std::int64_t>(laser) * format::kLaserPeriod;
       const double laser_azimuth_rad = azimuth_rad + rate_radps * ToSeconds(laser_time);
-      const double elevation_rad = DegToRad(beams_.elevation_deg[laser]);
-      const double origin_height_m = params_.use_vertical_origin_offsets ? beams_.origin_height_mm[laser] / 1000.0 : 0.0;
+      const auto ring = static_cast<std::size_t>(beams_.ring_of_laser[laser]);
+      const double elevation_rad = beams_.elevation_rad[ring];
+      const double origin_height_m = params_.use_vertical_origin_offsets ? beams_.origin_height_m[ring] : 0.0;
       const Shot shot = Fire(RayOf(origin_height_m, laser_azimuth_rad, elevation_rad, T_map_vessel), time_s);
       // Time as a reader of the packet finds it: the stamp holds whole microseconds.
       const Utime time = stamp + std::chrono::round<std::chrono::microseconds>(sequence_time - first + laser_time);
@@ -290,7 +258,7 @@ LidarPacket Lidar::Next() {
         if (measurement.range_2mm == 0) return;
         const int slot = (written_block * format::kSequencesPerBlock + sequence) * format::kNumLasers + static_cast<int>(laser);
         packet.returns.push_back(
-            {time, RingOfLaser(beams_.elevation_deg, laser), return_index, measurement.object_id, measurement.reason, slot,
+            {time, beams_.ring_of_laser[laser], return_index, measurement.object_id, measurement.reason, slot,
              Eigen::Vector3d(0.0, 0.0, origin_height_m) + measurement.true_range_m * BeamDirection(laser_azimuth_rad, elevation_rad)});
       };
       if (is_dual) {
@@ -306,7 +274,7 @@ LidarPacket Lidar::Next() {
   payload[format::kReturnModeOffset] = is_dual                                         ? format::kModeDual
                                        : effects_.return_mode() == config::Scene::LAST ? format::kModeLast
                                                                                        : format::kModeStrongest;
-  payload[format::kProductOffset] = beams_.product;
+  payload[format::kProductOffset] = params_.model == vlp16::Model::kVlp16 ? format::kProductVlp16 : format::kProductPuckHiRes;
   return packet;
 }
 

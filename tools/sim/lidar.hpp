@@ -9,6 +9,7 @@
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 #include "common/core/utime.hpp"
+#include "services/vlp16/core/model.hpp"
 #include "services/vlp16/core/packet_format.hpp"
 #include "tools/sim/clutter.hpp"
 #include "tools/sim/random.hpp"
@@ -17,20 +18,15 @@
 
 namespace lookout::sim {
 
-enum class LidarModel { kVlp16, kPuckHiRes };
-
 /// A block of the fastest head sweeps 0.8 deg and is not torn: it needs a place in the field of view.
 inline constexpr double kMinFieldOfViewRad = DegToRad(2.0);
 
-/// Facts of the device, and what overrides the effects of the scene.
+/// Facts of the device. Its return mode and its noise are effects of the scene.
 struct LidarParams {
-  std::optional<config::Scene::ReturnMode> mode;  // else as the scene says, and so below
-  LidarModel model = LidarModel::kVlp16;
+  vlp16::Model model = vlp16::Model::kVlp16;
   Sector field_of_view;  // azimuths of the sensor in which its lasers fire; kMinFieldOfViewRad wide at least
   double rotation_rpm = 600.0;
   bool use_vertical_origin_offsets = false;  // as in vlp16.txtpb
-  std::optional<double> stray_probability;
-  std::optional<double> range_sd_m;
 };
 
 /// What made a return that is not zero.
@@ -89,13 +85,6 @@ class Lidar {
       if (seen.range_2mm != 0) measurement[static_cast<std::size_t>(count++)] = seen;
     }
   };
-  // By laser id.
-  struct Beams {
-    std::array<double, vlp16::format::kNumLasers> elevation_deg;
-    std::array<double, vlp16::format::kNumLasers> origin_height_mm;
-    std::uint8_t product;
-  };
-  static const Beams& BeamsOf(LidarModel model);
 
   struct RayPair {  // one ray in two frames
     Ray vessel;
@@ -112,13 +101,13 @@ class Lidar {
   Measurement Stray(double max_range_m);
 
   LidarParams params_;
-  Effects effects_;
+  const Effects& effects_;
   const Sea& sea_;
-  const Beams& beams_;
+  const vlp16::Beams& beams_;
   OwnMotion own_motion_;
   double reference_point_above_water_m_;
   Eigen::Isometry3d T_vessel_lidar_;
-  std::vector<Part> own_hull_;
+  std::vector<SceneObject> own_hull_;
   RayCaster own_caster_;  // vessel frame
   BeamWidth beam_width_;
   RayCaster caster_;  // map frame

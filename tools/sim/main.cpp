@@ -65,10 +65,8 @@ void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double s
 sim::SimulationParams ToParams(const sim::Options& options) {
   const auto vlp16 = config::Load<config::Vlp16>(options.config_folder, "vlp16.txtpb");
   const auto navigator = config::Load<config::Navigator>(options.config_folder, "navigator.txtpb");
-  sim::SimulationParams params;
-  params.lidar = options.lidar;
+  auto params = options.simulation;
   params.lidar.use_vertical_origin_offsets = vlp16.use_vertical_origin_offsets();
-  params.navigation = options.navigation;
   params.navigation.nmea_port = navigator.nmea_port();
   params.navigation.position_port = vlp16.position_port();
   params.navigation.heading_offset_deg = navigator.heading_offset_deg();
@@ -77,18 +75,15 @@ sim::SimulationParams ToParams(const sim::Options& options) {
   params.data_port = vlp16.data_port();
   params.start = options.udp_host.empty() ? Utime(std::chrono::microseconds(options.start_utime_us)) : runtime::HostNow();
   params.duration = std::chrono::microseconds(std::llround(options.seconds * 1e6));
-  params.seed = options.seed;
-  params.faults = options.faults;
   return params;
 }
 
 void Run(const sim::Options& options) {
   const auto boat = config::LoadBoat(options.config_folder);
   const auto scene_file = sim::FindScene(options.scene, options.config_folder);
-  const auto scene = sim::LoadScene(scene_file, options.seed);
+  auto scene = sim::LoadScene(scene_file, options.simulation.seed);
+  scene.effects.MergeFrom(options.effects);
   const auto params = ToParams(options);
-  auto network_params = options.network;
-  network_params.timed = options.faults;
 
   // Outputs before all work.
   io::OutputOptions outputs;
@@ -107,9 +102,9 @@ void Run(const sim::Options& options) {
                              [&](const sim::Fault& fault) {
                                if (truth) truth->AddFault(fault);
                              },
-                             network_params, params.data_port, params.start, params.start + params.duration, params.seed);
+                             options.network, params.data_port, params.start, params.start + params.duration, params.seed);
   if (truth) {
-    for (const auto& fault : options.faults) truth->AddFault(fault);
+    for (const auto& fault : params.faults) truth->AddFault(fault);
   }
   if (capture) {
     runtime::Progress progress("lookout-sim", stderr);

@@ -107,12 +107,12 @@ Eigen::Isometry3d OwnState::T_map_vessel() const {
 OwnState StateAt(const OwnMotion& motion, double reference_point_above_water_m, double time_s) {
   OwnState state{};
   Vector2d position_m;
-  double course_rad = motion.still_heading_rad;
-  if (motion.track) {
-    const Placement placement = motion.track->At(time_s);
+  double course_rad = 0.0;
+  if (motion.semi_axes_m.isZero()) {
+    const Placement placement = motion.track.At(time_s);
     position_m = placement.position_map_m;
     course_rad = placement.heading_rad;
-    state.velocity_map_mps = motion.track->speed_mps * Vector2d(std::sin(course_rad), std::cos(course_rad));
+    state.velocity_map_mps = motion.track.speed_mps * Vector2d(std::sin(course_rad), std::cos(course_rad));
   } else {
     const double rate_radps = kTwoPi / motion.period_s;
     const double angle_rad = motion.start_rad + rate_radps * time_s;
@@ -120,7 +120,7 @@ OwnState StateAt(const OwnMotion& motion, double reference_point_above_water_m, 
     const double cosine = std::cos(angle_rad);
     position_m = motion.center_map_m + motion.semi_axes_m.cwiseProduct(Vector2d(cosine, sine));
     state.velocity_map_mps = rate_radps * motion.semi_axes_m.cwiseProduct(Vector2d(-sine, cosine));
-    if (!motion.semi_axes_m.isZero()) course_rad = std::atan2(state.velocity_map_mps.x(), state.velocity_map_mps.y());
+    course_rad = std::atan2(state.velocity_map_mps.x(), state.velocity_map_mps.y());
   }
   state.heading_rad = WrapTo2Pi(course_rad + SumAt(motion.leeway_rad, time_s));
   state.roll_rad = SumAt(motion.roll_rad, time_s);

@@ -3,12 +3,21 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <optional>
+#include <GeographicLib/LocalCartesian.hpp>
 #include <vector>
 
+#include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
 
 namespace lookout::sim {
+
+/// Datum where boat.txtpb holds none: a lake in New Hampshire; west of Greenwich, so that a wrong sign shows.
+inline constexpr GeodeticPlace kLakeDatum{43.6300, -72.1500, 201.0};
+
+inline GeographicLib::LocalCartesian MapFrame(const config::BoatFacts& boat) {
+  const auto datum = boat.datum.value_or(kLakeDatum);
+  return {datum.latitude_deg, datum.longitude_deg, datum.ellipsoid_height_m};
+}
 
 /// Place and heading of an object whose frame (x forward, y port, z up) has its origin on the water.
 struct Placement {
@@ -58,15 +67,14 @@ struct Wave {
 /// Of the own boat: round an ellipse or along a track, bow along the course but for the leeway, with the waves' motion on top.
 struct OwnMotion {
   Eigen::Vector2d center_map_m = Eigen::Vector2d::Zero();
-  Eigen::Vector2d semi_axes_m = Eigen::Vector2d::Zero();  // east, north; both 0 = the boat lies still
+  Eigen::Vector2d semi_axes_m = Eigen::Vector2d::Zero();  // east, north; both 0 = along `track`
   double period_s = 1.0;                                  // of one round, counter-clockwise
   double start_rad = 0.0;                                 // where on the round: 0 = east, pi / 2 = north
-  double still_heading_rad = 0.0;                         // of a boat that lies still
   std::vector<Wave> leeway_rad{};                         // heading minus course
   std::vector<Wave> roll_rad{};
   std::vector<Wave> pitch_rad{};
   std::vector<Wave> heave_m{};
-  std::optional<Track> track{};  // in place of the ellipse: a straight line or a circle
+  Track track{};  // in place of the ellipse: a straight line or a circle
 };
 
 /// State of the vessel frame. Signs as in POSE: heading clockwise from north, pitch positive bow up, roll positive starboard down.

@@ -97,8 +97,14 @@ std::vector<Datagram> Navigation::Next() {
   }
   if (params_.has_heading) {
     if (next_epoch_ >= start_ + Imu::kFirst) AddImu(datagrams);
-    if (IsMultiple(next_epoch_, kHeadingPeriod)) AddHeading(datagrams);
-    if (IsMultiple(next_epoch_, kAttitudePeriod)) AddAttitude(datagrams);
+    if (IsMultiple(next_epoch_, kHeadingPeriod)) {
+      const auto heading = MeasureHeading(next_epoch_);
+      datagrams.push_back(Line(20ms, Hdt(heading.heading_deg)));
+      datagrams.push_back(Line(22ms, Rot(heading.rate_degpmin)));
+    }
+    if (IsMultiple(next_epoch_, kAttitudePeriod)) {
+      datagrams.push_back(Line(15ms, Pashr(MeasureAttitude(next_epoch_), params_.tilt_sd_deg, params_.heading_sd_deg)));
+    }
   }
   if (IsMultiple(next_epoch_, microseconds(1s) / params_.gnss_rate_hz)) AddGnss(datagrams);
   std::ranges::stable_sort(datagrams, {}, &Datagram::time);
@@ -175,16 +181,6 @@ void Navigation::AddGnss(std::vector<Datagram>& datagrams) {
   datagrams.push_back(Line(108ms, Zda(next_epoch_)));
   whole_seconds_.push_back(measurement);
   if (whole_seconds_.front().time < next_epoch_ - LidarClock::kOldestRmc - 1s) whole_seconds_.pop_front();
-}
-
-void Navigation::AddHeading(std::vector<Datagram>& datagrams) {
-  const auto heading = MeasureHeading(next_epoch_);
-  datagrams.push_back(Line(20ms, Hdt(heading.heading_deg)));
-  datagrams.push_back(Line(22ms, Rot(heading.rate_degpmin)));
-}
-
-void Navigation::AddAttitude(std::vector<Datagram>& datagrams) {
-  datagrams.push_back(Line(15ms, Pashr(MeasureAttitude(next_epoch_), params_.tilt_sd_deg, params_.heading_sd_deg)));
 }
 
 void Navigation::AddImu(std::vector<Datagram>& datagrams) {

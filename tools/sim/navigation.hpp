@@ -11,7 +11,6 @@
 #include "tools/sim/fault_plan.hpp"
 #include "tools/sim/imu.hpp"
 #include "tools/sim/lidar_clock.hpp"
-#include "tools/sim/map_frame.hpp"
 #include "tools/sim/nmea.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/scene.hpp"
@@ -64,8 +63,6 @@ class Navigation {
   Heading MeasureHeading(Utime time);
   AttitudeMeasurement MeasureAttitude(Utime time);
   void AddGnss(std::vector<Datagram>& datagrams);
-  void AddHeading(std::vector<Datagram>& datagrams);
-  void AddAttitude(std::vector<Datagram>& datagrams);
   void AddImu(std::vector<Datagram>& datagrams);
   std::optional<Datagram> PositionPacket();
   std::string LidarSentence(Utime time) const;

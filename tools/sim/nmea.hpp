@@ -47,7 +47,7 @@ std::string Sentence(std::string_view body);
 std::string Rmc(const GnssMeasurement& measurement);
 std::string Gga(const GnssMeasurement& measurement);
 std::string Vtg(const GnssMeasurement& measurement);
-/// Pseudorange noise statistics: deviations of latitude, longitude and height, the height's being twice the others'.
+/// Pseudorange noise statistics: deviations of latitude, longitude and height, all the same; real heights are worse.
 std::string Gst(const GnssMeasurement& measurement);
 std::string Zda(Utime time);
 std::string Hdt(double heading_deg);

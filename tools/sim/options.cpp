@@ -14,9 +14,6 @@ namespace {
 
 constexpr int kExitUsage = 2;
 
-// 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
-constexpr std::int64_t kDefaultStartUtimeUs = 1'781'532'600'000'000;
-
 // CLI::Range lets NaN pass, which is neither below nor above.
 CLI::Validator Within(double min, double max) {
   const CLI::Range range(min, max);
@@ -50,14 +47,13 @@ Sector ToFieldOfView(const std::vector<double>& from_to_deg) {
 void AddRun(CLI::App& app, Options& options) {
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->required()->check(CLI::ExistingDirectory);
   app.add_option("--scene", options.scene, "name of a scene (--list-scenes), or path of a file that ends in .txtpb")->required();
-  app.add_option("--seed", options.seed, "of all that is random")->required();
+  app.add_option("--seed", options.simulation.seed, "of all that is random")->required();
   app.add_option("--seconds", options.seconds, "length")->required()->check(Within(0.001, 86400.0));
   auto* pcap = app.add_option("--pcap", options.pcap_file, "write a capture: as FILE.partial until it is whole; one that exists is refused");
   auto* udp = app.add_option("--udp", options.udp_host, "send to this host in real time; times are those of now");
   pcap->excludes(udp);
   app.add_option("--truth", options.truth_folder, "write the truth to this folder; files in it that exist are refused");
   app.add_flag("--force", options.force, "replace existing files of --pcap and --truth");
-  options.start_utime_us = kDefaultStartUtimeUs;
   app.add_option("--start-utime-us", options.start_utime_us, "with --pcap: time of the first shot")
       ->check(CLI::Range(std::int64_t{0}, kMaxUtimeUs))
       ->excludes(udp)
@@ -74,17 +70,19 @@ void AddRun(CLI::App& app, Options& options) {
 }
 
 void AddLidar(CLI::App& app, Options& options) {
-  auto& lidar = options.lidar;
-  const auto set_mode = [&lidar](const std::string& mode) {
-    lidar.mode = mode == "dual" ? config::Scene::DUAL : mode == "last" ? config::Scene::LAST : config::Scene::STRONGEST;
+  auto& lidar = options.simulation.lidar;
+  const auto set_mode = [&options](const std::string& mode) {
+    options.effects.set_return_mode(mode == "dual" ? config::Scene::DUAL : mode == "last" ? config::Scene::LAST : config::Scene::STRONGEST);
   };
   app.add_option_function<std::string>("--return-mode", set_mode, "strongest, last or dual; else as the scene says")
       ->check(CLI::IsMember({"strongest", "last", "dual"}));
   app.add_option("--rpm", lidar.rotation_rpm, "revolutions of the lidar per minute")
       ->check(Within(vlp16::format::kMinRpm, vlp16::format::kMaxRpm))
       ->capture_default_str();
-  app.add_option("--strays", lidar.stray_probability, "stray returns per shot that meets nothing; else as the scene says")->check(Within(0.0, 1.0));
-  const auto set_model = [&lidar](const std::string& model) { lidar.model = model == "vlp16" ? LidarModel::kVlp16 : LidarModel::kPuckHiRes; };
+  const auto set_strays = [&options](double probability) { options.effects.set_stray_probability(probability); };
+  app.add_option_function<double>("--strays", set_strays, "stray returns per shot that meets nothing; else as the scene says")
+      ->check(Within(0.0, 1.0));
+  const auto set_model = [&lidar](const std::string& model) { lidar.model = model == "vlp16" ? vlp16::Model::kVlp16 : vlp16::Model::kPuckHiRes; };
   app.add_option_function<std::string>("--model", set_model, "vlp16 or hi-res (Puck Hi-Res)")
       ->check(CLI::IsMember({"vlp16", "hi-res"}))
       ->default_str("vlp16");
@@ -96,7 +94,7 @@ void AddLidar(CLI::App& app, Options& options) {
 }
 
 void AddNavigation(CLI::App& app, Options& options) {
-  auto& navigation = options.navigation;
+  auto& navigation = options.simulation.navigation;
   // Before the others in time, so that they override it.
   const auto set_all = [&navigation](const std::string& set) { navigation = set == "rtk" ? NavigationParams{} : StandaloneNavigation(); };
   app.add_option_function<std::string>("--navigation", set_all, "rtk (0.02 m, 0.2 deg) or standalone (1.5 m, 2 deg)")
@@ -145,7 +143,7 @@ Options ParseOptions(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage);
   }
-  options.faults = ToFaults(faults, options.seconds);
+  options.network.timed = options.simulation.faults = ToFaults(faults, options.seconds);
   return options;
 }
 

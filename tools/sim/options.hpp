@@ -4,29 +4,26 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "tools/sim/faulty_network.hpp"
-#include "tools/sim/lidar.hpp"
-#include "tools/sim/navigation.hpp"
+#include "tools/sim/simulation.hpp"
 
 namespace lookout::sim {
 
 struct Options {
   std::filesystem::path config_folder;
   std::string scene;  // name or path, as in FindScene
-  std::uint64_t seed = 1;
   double seconds = 0.0;
   std::filesystem::path pcap_file;     // empty: to udp_host
   std::string udp_host;                // empty: to pcap_file
   std::filesystem::path truth_folder;  // empty: none
   bool force = false;                  // existing files are replaced
-  std::int64_t start_utime_us = 0;     // of a capture
-  double speed = 1.0;                  // to udp_host, times real time; 0 = without waiting
-  LidarParams lidar;
-  NavigationParams navigation;
+  // Of a capture. 2026-06-15 14:10:00 UTC: any date serves, as long as it is always the same.
+  std::int64_t start_utime_us = 1'781'532'600'000'000;
+  double speed = 1.0;           // to udp_host, times real time; 0 = without waiting
+  SimulationParams simulation;  // seed, faults, and what of lidar and navigation no config file says
+  Effects effects;              // what is set here overrides the scene's
   FaultParams network;
-  std::vector<TimedFault> faults;
 };
 
 /// Exits here for --help, --version, --list-scenes and wrong lines.

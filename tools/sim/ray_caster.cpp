@@ -32,19 +32,9 @@ struct Offset {
   double horizontal;
   double vertical;
 };
-constexpr std::array<Offset, 13> kBeamRays{{{0.0, 0.0},
-                                            {-0.8, 0.0},
-                                            {0.8, 0.0},
-                                            {0.0, -0.8},
-                                            {0.0, 0.8},
-                                            {-0.4, 0.0},
-                                            {0.4, 0.0},
-                                            {0.0, -0.4},
-                                            {0.0, 0.4},
-                                            {-0.55, -0.55},
-                                            {-0.55, 0.55},
-                                            {0.55, -0.55},
-                                            {0.55, 0.55}}};
+constexpr std::array kBeamRays{Offset{0.0, 0.0},    Offset{-0.8, 0.0},   Offset{0.8, 0.0},  Offset{0.0, -0.8}, Offset{0.0, 0.8},
+                               Offset{-0.4, 0.0},   Offset{0.4, 0.0},    Offset{0.0, -0.4}, Offset{0.0, 0.4},  Offset{-0.55, -0.55},
+                               Offset{-0.55, 0.55}, Offset{0.55, -0.55}, Offset{0.55, 0.55}};
 constexpr std::size_t kNumProbeRays = 5;
 
 double DistanceFromOrigin(const Vector2d& a_m, const Vector2d& b_m) {
@@ -58,32 +48,32 @@ int WrapBin(int bin) { return ((bin % kNumBins) + kNumBins) % kNumBins; }
 
 }  // namespace
 
-RayCaster::RayCaster(const std::vector<Body>& bodies, const BeamWidth& width, const Sea* sea)
-    : bodies_(bodies), width_(width), sea_(sea), places_(bodies.size()), bins_(kNumBins) {
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    MoveBody(body, 0.0);
-    places_[body].is_tilted = sea_ != nullptr && !sea_->is_calm() && bodies_[body].rider != nullptr && bodies_[body].rider->is_afloat();
-    for (const auto& part : *bodies_[body].parts) {
+RayCaster::RayCaster(const std::vector<SceneObject>& objects, const BeamWidth& width, const Sea* sea)
+    : objects_(objects), width_(width), sea_(sea), places_(objects.size()), bins_(kNumBins) {
+  for (std::size_t object = 0; object < objects_.size(); ++object) {
+    Move(object, 0.0);
+    places_[object].is_tilted = sea_ != nullptr && !sea_->is_calm() && objects_[object].is_afloat();
+    for (const auto& part : objects_[object].parts) {
       Item item;
       item.part = &part;
       item.bounds = BoundsOf(part.solid);
-      item.body = body;
+      item.object = object;
       items_.push_back(std::move(item));
     }
   }
   order_.resize(items_.size());
 }
 
-void RayCaster::MoveBody(std::size_t body, double time_s) {
-  const Placement placement = bodies_[body].track.At(time_s);
-  places_[body].origin_m = placement.position_map_m;
-  places_[body].sine = std::sin(placement.heading_rad);
-  places_[body].cosine = std::cos(placement.heading_rad);
+void RayCaster::Move(std::size_t object, double time_s) {
+  const Placement placement = objects_[object].track.At(time_s);
+  places_[object].origin_m = placement.position_map_m;
+  places_[object].sine = std::sin(placement.heading_rad);
+  places_[object].cosine = std::cos(placement.heading_rad);
 }
 
 void RayCaster::MoveTo(double time_s, const Vector2d& eye_m) {
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    if (bodies_[body].track.is_moving()) MoveBody(body, time_s);
+  for (std::size_t object = 0; object < objects_.size(); ++object) {
+    if (objects_[object].track.is_moving()) Move(object, time_s);
   }
   if (std::abs(time_s - tilted_at_s_) >= kTiltPeriodS) {
     tilted_at_s_ = time_s;
@@ -96,10 +86,10 @@ void RayCaster::MoveTo(double time_s, const Vector2d& eye_m) {
 }
 
 void RayCaster::Tilt(double time_s) {
-  for (std::size_t body = 0; body < bodies_.size(); ++body) {
-    Place& place = places_[body];
+  for (std::size_t object = 0; object < objects_.size(); ++object) {
+    Place& place = places_[object];
     if (!place.is_tilted) continue;
-    const Eigen::Isometry3d T_map_object = PoseAt(*bodies_[body].rider, *sea_, time_s);
+    const Eigen::Isometry3d T_map_object = PoseAt(objects_[object], *sea_, time_s);
     Eigen::Matrix3d R_object_map;  // level: x forward is (sine, cosine) in east, north
     R_object_map << place.sine, place.cosine, 0.0, -place.cosine, place.sine, 0.0, 0.0, 0.0, 1.0;
     place.R_tilt = R_object_map * T_map_object.linear();
@@ -108,7 +98,7 @@ void RayCaster::Tilt(double time_s) {
 }
 
 RayCaster::Bins RayCaster::BinsOf(Item& item, const Vector2d& eye_m) const {
-  const Place& place = places_[item.body];
+  const Place& place = places_[item.object];
   double radius_m = item.bounds.radius_m + kMarginM;
   item.low_map_m = item.bounds.low_m;
   item.high_map_m = item.bounds.high_m;
@@ -173,7 +163,7 @@ void RayCaster::Sort(const Vector2d& eye_m) {
 }
 
 std::optional<Hit> RayCaster::IntersectItem(const Item& item, const Ray& ray) const {
-  const Place& place = places_[item.body];
+  const Place& place = places_[item.object];
   const Vector2d from_m = ray.origin_m.head<2>() - place.origin_m;
   const auto turn = [&place](const Vector2d& v) {
     return Vector2d(place.sine * v.x() + place.cosine * v.y(), place.sine * v.y() - place.cosine * v.x());
@@ -228,7 +218,7 @@ RayCaster::Meeting RayCaster::NearestOf(const Ray& ray, double max_range_m, cons
 Echo RayCaster::ToEcho(const Meeting& meeting) const {
   Echo echo;
   echo.hit = meeting.hit;
-  echo.object_id = bodies_[meeting.item->body].object_id;
+  echo.object_id = objects_[meeting.item->object].id;
   echo.material = meeting.item->part->material;
   echo.reason = echo.object_id == kOwnVessel ? ReturnReason::kOwnVessel : ReturnReason::kObject;
   return echo;

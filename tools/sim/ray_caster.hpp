@@ -34,18 +34,11 @@ struct BeamWidth {
 
 class RayCaster {
  public:
-  /// A set of parts with one frame.
-  struct Body {
-    int object_id = kNoObject;
-    Track track;
-    const std::vector<Part>* parts = nullptr;  // outlives the caster
-    const SceneObject* rider = nullptr;        // rides the waves; outlives the caster
-  };
+  /// @param objects  outlive the caster
+  /// @param sea      what floats rides it; outlives the caster; may be nullptr where nothing does
+  RayCaster(const std::vector<SceneObject>& objects, const BeamWidth& width, const Sea* sea);
 
-  /// @param sea  what riders ride; outlives the caster; may be nullptr where there are none
-  RayCaster(const std::vector<Body>& bodies, const BeamWidth& width, const Sea* sea);
-
-  /// Moves the bodies to where they are at `time_s`, and sorts anew when the last sorting is older than kSortPeriodS.
+  /// Moves the objects to where they are at `time_s`, and sorts anew when the last sorting is older than kSortPeriodS.
   ///
   /// @param eye_m  where rays start from now on, within kMarginM
   void MoveTo(double time_s, const Eigen::Vector2d& eye_m);
@@ -59,13 +52,13 @@ class RayCaster {
   Echoes CastBeam(const Ray& axis, double max_range_m, bool wants_second);
 
   static constexpr double kSortPeriodS = 0.01;
-  // Way of the eye and a body towards each other between two sortings: 10 m/s for 10 ms.
+  // Way of the eye and an object towards each other between two sortings: 10 m/s for 10 ms.
   static constexpr double kMarginM = 0.1;
   // A pulse of 6 ns is 0.9 m long there and back: echoes that are closer run into each other.
   static constexpr double kMergeM = 1.0;
 
  private:
-  struct Place {  // of a body: p_object = R_tilt^T (Rz (p_map - origin))
+  struct Place {  // of an object: p_object = R_tilt^T (Rz (p_map - origin))
     Eigen::Vector2d origin_m;
     double sine = 0.0;
     double cosine = 1.0;
@@ -75,8 +68,8 @@ class RayCaster {
   };
   struct Item {
     const Part* part = nullptr;
-    Bounds bounds;  // frame of its body
-    std::size_t body = 0;
+    Bounds bounds;  // frame of its object
+    std::size_t object = 0;
     // As of the last sorting, from the eye, widened by kMarginM.
     double nearest_m = 0.0;
     double farthest_m = 0.0;
@@ -95,7 +88,7 @@ class RayCaster {
     Hit hit;
   };
 
-  void MoveBody(std::size_t body, double time_s);
+  void Move(std::size_t object, double time_s);
   void Tilt(double time_s);
   void Sort(const Eigen::Vector2d& eye_m);
   Bins BinsOf(Item& item, const Eigen::Vector2d& eye_m) const;
@@ -106,7 +99,7 @@ class RayCaster {
   Echoes ToEchoes(const Meeting& first, const Ray& ray, double max_range_m, bool wants_second) const;
   Echo Merge(const Meeting* begin, const Meeting* end, int num_rays) const;
 
-  std::vector<Body> bodies_;
+  const std::vector<SceneObject>& objects_;
   BeamWidth width_;
   const Sea* sea_;
   std::vector<Place> places_;

@@ -31,27 +31,22 @@ Eigen::Isometry3d PoseAt(const SceneObject& object, const Sea& sea, double time_
   return T_map_object;
 }
 
-Attitude AttitudeOf(const Eigen::Matrix3d& R_map_object) {
-  const Eigen::Vector3d ahead = R_map_object.col(0);
-  // The y axis points to port: it rises as starboard goes down.
-  return {WrapTo2Pi(std::atan2(ahead.x(), ahead.y())), std::asin(std::clamp(ahead.z(), -1.0, 1.0)),
-          std::atan2(R_map_object(2, 1), R_map_object(2, 2))};
-}
-
-std::vector<Part> MakeOwnHull(const Eigen::AlignedBox3d& box_m, double lidar_height_m, const Eigen::Vector3d& p_vessel_antenna_m) {
+SceneObject MakeOwnHull(const Eigen::AlignedBox3d& box_m, double lidar_height_m, const Eigen::Vector3d& p_vessel_antenna_m) {
   constexpr Material kPaintedDeck{0.4};
   constexpr double kMarginM = 0.2;  // as the boxes in config/ are larger than the hulls
   constexpr double kMotorBelowLidarM = 0.15;
   constexpr double kPostRadiusM = 0.03;
   const double stern_m = box_m.min().x() + kMarginM;
   const double top_m = std::min(lidar_height_m - kMotorBelowLidarM, box_m.max().z() - kMarginM);
-  std::vector<Part> parts{
+  // In its own frame an object has the heading that turns x, y into east, north.
+  SceneObject hull{kOwnVessel, "own_vessel", "own_vessel", Track{{Eigen::Vector2d::Zero(), kPi / 2.0}}, {}, {}};
+  hull.parts = {
       {Prism{Rectangle(stern_m, box_m.max().x() - kMarginM, box_m.min().y() + kMarginM, box_m.max().y() - kMarginM), -0.3, 0.0}, kPaintedDeck},
       {Prism{Rectangle(stern_m, stern_m + 0.2, -0.25, 0.25), 0.0, top_m}, kPaintedDeck}};
   if (box_m.contains(p_vessel_antenna_m)) {
-    parts.push_back({Cylinder{p_vessel_antenna_m.head<2>(), kPostRadiusM, 0.0, p_vessel_antenna_m.z()}, kPaintedDeck});
+    hull.parts.push_back({Cylinder{p_vessel_antenna_m.head<2>(), kPostRadiusM, 0.0, p_vessel_antenna_m.z()}, kPaintedDeck});
   }
-  return parts;
+  return hull;
 }
 
 }  // namespace lookout::sim

@@ -65,17 +65,6 @@ struct SceneObject {
 /// Where the frame of an object is. What floats goes up and down with the water under it and leans as the water between its ends does.
 Eigen::Isometry3d PoseAt(const SceneObject& object, const Sea& sea, double time_s);
 
-/// How a frame (x forward, y port, z up) lies in the map. Signs as in POSE: heading clockwise from north, pitch positive bow up, roll positive
-/// starboard down.
-struct Attitude {
-  double heading_rad = 0.0;  // 0 to 2 pi
-  double pitch_rad = 0.0;
-  double roll_rad = 0.0;
-};
-
-/// Inverse of RotationMapVessel. @param R_map_object  no bow straight up or down
-Attitude AttitudeOf(const Eigen::Matrix3d& R_map_object);
-
 struct Scene {
   OwnMotion own_motion;
   std::vector<SceneObject> objects;
@@ -88,6 +77,6 @@ struct Scene {
 /// @param box_m                own_vessel of boat.txtpb
 /// @param lidar_height_m       z of the lidar: the motor stays below its level
 /// @param p_vessel_antenna_m   top of the post
-std::vector<Part> MakeOwnHull(const Eigen::AlignedBox3d& box_m, double lidar_height_m, const Eigen::Vector3d& p_vessel_antenna_m);
+SceneObject MakeOwnHull(const Eigen::AlignedBox3d& box_m, double lidar_height_m, const Eigen::Vector3d& p_vessel_antenna_m);
 
 }  // namespace lookout::sim

@@ -1,29 +1,33 @@
 #include "tools/sim/scene_file.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+#include <initializer_list>
 #include <map>
 #include <sstream>
+#include <utility>
 
 #include "common/config/text_config.hpp"
-#include "config/schema/scene.pb.h"
 #include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {
 namespace {
 
 namespace fs = std::filesystem;
+using File = config::Scene;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
 
 constexpr std::string_view kExtension = ".txtpb";
-
-fs::path SourceFolder() { return fs::path(LOOKOUT_SCENE_FOLDER); }
-fs::path InstalledFolder() { return fs::path(LOOKOUT_INSTALLED_SCENE_FOLDER); }
 
 // By name; what lies beside the boat hides a scene of the source tree, and that one of the package.
 std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder) {
   std::map<std::string, fs::path> files;
   // "config/demo/" has an empty last part.
   const fs::path boat = (config_folder / "").lexically_normal().parent_path();
-  for (const auto& folder : {boat.parent_path() / "scenes", SourceFolder(), InstalledFolder()}) {
+  for (const auto& folder : {boat.parent_path() / "scenes", fs::path(LOOKOUT_SCENE_FOLDER), fs::path(LOOKOUT_INSTALLED_SCENE_FOLDER)}) {
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       if (entry.path().extension() == kExtension) files.emplace(entry.path().stem().string(), entry.path());
@@ -32,7 +36,177 @@ std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder) {
   return files;
 }
 
+bool IsLand(File::Kind kind) { return kind == File::SHORE || kind == File::ISLAND; }
+
+// Of one message of the file.
+class Checker {
+ public:
+  // @param path  of the message in the file, with a dot behind it
+  Checker(const Message& message, std::string path, SceneFaults& faults) : message_(message), path_(std::move(path)), faults_(faults) {}
+
+  void Refuse(const std::string& field, const std::string& reason) { faults_.Add(path_ + field, reason); }
+
+  void RefuseIf(bool is_wrong, const std::string& field, const std::string& reason) {
+    if (is_wrong) Refuse(field, reason);
+  }
+
+  // For each of the fields that the file sets.
+  void Forbid(std::initializer_list<const char*> fields, const std::string& reason) {
+    const auto* reflection = message_.GetReflection();
+    for (const char* name : fields) {
+      const auto* field = message_.GetDescriptor()->FindFieldByName(name);
+      RefuseIf(field->is_repeated() ? reflection->FieldSize(message_, field) > 0 : reflection->HasField(message_, field), name, reason);
+    }
+  }
+
+ private:
+  const Message& message_;
+  std::string path_;
+  SceneFaults& faults_;
+};
+
+// Every repeated number of the schema is "value or range".
+void CheckRanges(const Message& message, const std::string& path, SceneFaults& faults) {
+  const auto* reflection = message.GetReflection();
+  std::vector<const FieldDescriptor*> fields;
+  reflection->ListFields(message, &fields);
+  for (const auto* field : fields) {
+    if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      for (int i = 0; field->is_repeated() && i < reflection->FieldSize(message, field); ++i) {
+        CheckRanges(reflection->GetRepeatedMessage(message, field, i), path + field->name() + "[" + std::to_string(i) + "].", faults);
+      }
+      if (!field->is_repeated()) CheckRanges(reflection->GetMessage(message, field), path + field->name() + ".", faults);
+    } else if (field->is_repeated()) {
+      const int num_values = reflection->FieldSize(message, field);
+      if (num_values > 2) faults.Add(path + field->name(), "must be a value or a range of two values");
+      if (num_values == 2 && reflection->GetRepeatedDouble(message, field, 0) > reflection->GetRepeatedDouble(message, field, 1)) {
+        faults.Add(path + field->name(), "the range must run from the lesser to the greater value");
+      }
+    }
+  }
+}
+
+void CheckNameAndSize(const File::Object& object, Checker& check) {
+  const auto is_allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+  check.RefuseIf(object.has_name() && (object.name().empty() || !std::ranges::all_of(object.name(), is_allowed)), "name",
+                 "must consist of lower case letters, digits and _ (is \"" + object.name() + "\")");
+  const KindOfObject* kind = FindKind(object.kind());
+  const Size usual = kind == nullptr ? Size{} : kind->usual;
+  const std::string reason = "a " + NameOf(object.kind()) + " has none";
+  if (usual.length_m == 0.0) check.Forbid({"length_m"}, reason);
+  if (usual.width_m == 0.0) check.Forbid({"width_m"}, reason);
+  if (usual.height_m == 0.0) check.Forbid({"height_m"}, reason);
+  if (usual.reflectance == 0.0) check.Forbid({"reflectance"}, reason);
+}
+
+void CheckLand(const File::Object& object, Checker& check) {
+  if (!IsLand(object.kind())) return check.Forbid({"land"}, "only a shore or an island has it");
+  if (!object.has_land()) return check.Refuse("land", "must be set");
+  check.RefuseIf(object.land().roughness_m() >= object.land().mean_radius_m(), "land.roughness_m", "must be less than mean_radius_m");
+  check.Forbid({"heading_deg"}, "land has none");
+  if (object.kind() != File::ISLAND) return;
+  check.RefuseIf(object.land().has_from_bearing_deg(), "land.from_bearing_deg", "an island goes all round");
+  check.RefuseIf(object.land().has_width_deg(), "land.width_deg", "an island goes all round");
+}
+
+void CheckPlace(const File::Object& object, bool has_shore_before, Checker& check) {
+  if (object.has_on_shore_bearing_deg()) {
+    check.RefuseIf(object.kind() != File::DOCK && object.kind() != File::PIER, "on_shore_bearing_deg", "only a dock or a pier has it");
+    check.RefuseIf(!has_shore_before, "on_shore_bearing_deg", "there is no shore before it");
+    check.Forbid({"east_m", "north_m", "heading_deg"}, "the shore says it");
+    check.RefuseIf(object.count() > 1, "count", "must be 1 on a shore");
+  }
+  if (object.has_row()) {
+    check.RefuseIf(object.row().gap_m().empty(), "row.gap_m", "must be set");
+    check.RefuseIf(object.count() < 2, "row", "needs a count of two or more");
+  }
+}
+
+void CheckPath(const File::Object& object, Checker& check) {
+  if (!object.has_path()) return;
+  const KindOfObject* kind = FindKind(object.kind());
+  const auto& path = object.path();
+  const bool has_waypoints = path.waypoint_size() > 0;
+  check.RefuseIf(kind == nullptr || !kind->is_afloat, "path", "a " + NameOf(object.kind()) + " cannot move");
+  check.RefuseIf(path.speed_mps().empty(), "path.speed_mps", "must be set");
+  check.RefuseIf(path.has_circle() && has_waypoints, "path.circle", "not with waypoints");
+  check.RefuseIf(object.has_row() && has_waypoints, "row", "not with waypoints");
+  check.RefuseIf(path.is_closed() && path.waypoint_size() < 2, "path.is_closed", "needs two waypoints or more");
+  if (path.has_circle() || has_waypoints) check.Forbid({"heading_deg"}, "the path says it");
+}
+
+// Ranges from the lesser to the greater value, fields that suit the kind, paths that can be followed, names that fit into a table.
+void CheckScene(const File& scene, SceneFaults& faults) {
+  CheckRanges(scene, "", faults);
+  const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
+  if (scene.description().empty() || !std::ranges::all_of(scene.description(), is_printable)) {
+    faults.Add("description", "must be one line of printable ASCII");
+  }
+  Checker own_boat(scene.own_boat(), "own_boat.", faults);
+  if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps"}, "the ellipse says it");
+  // Michell, "The highest waves in water", 1893: no wave is higher than about a seventh of its length.
+  if (scene.has_sea() && scene.sea().significant_height_m() > scene.sea().wavelength_m() / 7.0) {
+    faults.Add("sea.significant_height_m", "must be at most a seventh of wavelength_m, or the waves break");
+  }
+  bool has_shore = false;
+  for (int i = 0; i < scene.object_size(); ++i) {
+    const auto& object = scene.object(i);
+    Checker check(object, "object[" + std::to_string(i) + "].", faults);
+    CheckNameAndSize(object, check);
+    CheckLand(object, check);
+    CheckPlace(object, has_shore, check);
+    CheckPath(object, check);
+    has_shore = has_shore || object.kind() == File::SHORE;
+  }
+}
+
 }  // namespace
+
+SceneFaults::SceneFaults(const std::string& text, std::string name) : name_(std::move(name)) {
+  File scene;
+  google::protobuf::TextFormat::Parser parser;
+  parser.WriteLocationsTo(&positions_);
+  parser.ParseFromString(text, &scene);
+}
+
+void SceneFaults::Add(const std::string& field, const std::string& reason) {
+  faults_.push_back(name_ + ":" + std::to_string(LineOf(field)) + ": " + field + ": " + reason);
+}
+
+void SceneFaults::ThrowIfAny() const {
+  if (!faults_.empty()) throw config::ConfigError(faults_);
+}
+
+int SceneFaults::LineOf(const std::string& field) const {
+  const auto* tree = &positions_;
+  const auto* message = File::descriptor();
+  int line = 0;
+  std::istringstream parts(field);
+  for (std::string part; tree != nullptr && message != nullptr && std::getline(parts, part, '.');) {
+    const std::size_t bracket = part.find('[');
+    const auto* descriptor = message->FindFieldByName(part.substr(0, bracket));
+    if (descriptor == nullptr) break;
+    int index = descriptor->is_repeated() ? 0 : -1;
+    if (bracket != std::string::npos) index = std::stoi(part.substr(bracket + 1));
+    const int found = tree->GetLocation(descriptor, index).line;
+    if (found < 0) break;
+    line = found;
+    message = descriptor->message_type();
+    tree = message == nullptr ? nullptr : tree->GetTreeForNested(descriptor, index);
+  }
+  return line + 1;
+}
+
+std::string NameOf(File::Kind kind) {
+  std::string name = File::Kind_Name(kind);
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return name;
+}
+
+const KindOfObject* FindKind(File::Kind kind) {
+  const auto found = std::ranges::find(Kinds(), NameOf(kind), &KindOfObject::name);
+  return found == Kinds().end() ? nullptr : &*found;
+}
 
 fs::path FindScene(const std::string& name_or_path, const fs::path& config_folder) {
   if (name_or_path.ends_with(kExtension)) return name_or_path;
@@ -63,18 +237,6 @@ Scene ParseScene(const std::string& text, const std::string& name, std::uint64_t
   CheckScene(scene, faults);
   faults.ThrowIfAny();
   return DrawScene(scene, seed, faults);
-}
-
-std::vector<std::string> SceneNames() {
-  std::vector<std::string> names;
-  for (const auto& [name, file] : SceneFiles(SourceFolder())) names.push_back(name);
-  return names;
-}
-
-std::optional<Scene> MakeScene(std::string_view name, std::uint64_t seed) {
-  const fs::path file = SourceFolder() / (std::string(name) + std::string(kExtension));
-  if (!fs::exists(file)) return std::nullopt;
-  return LoadScene(file, seed);
 }
 
 }  // namespace lookout::sim

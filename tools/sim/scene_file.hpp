@@ -3,9 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tools/sim/scene.hpp"
@@ -35,11 +33,5 @@ Scene LoadScene(const std::filesystem::path& file, std::uint64_t seed);
 
 /// The same from text; `name` stands in for the path in faults.
 Scene ParseScene(const std::string& text, const std::string& name, std::uint64_t seed);
-
-/// Names of the scenes of the source tree, sorted.
-std::vector<std::string> SceneNames();
-
-/// A scene of the source tree. @return nullopt when none has that name. @throws config::ConfigError
-std::optional<Scene> MakeScene(std::string_view name, std::uint64_t seed);
 
 }  // namespace lookout::sim

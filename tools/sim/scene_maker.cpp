@@ -11,7 +11,6 @@
 
 #include "common/core/angles.hpp"
 #include "tools/sim/random.hpp"
-#include "tools/sim/shore.hpp"
 #include "tools/sim/traffic.hpp"
 
 namespace lookout::sim {
@@ -112,12 +111,8 @@ class Drawing {
     Scene scene;
     scene.own_motion = DrawOwnMotion(file_.own_boat(), seed_, land_random_);
     scene.effects = file_.effects();
-    if (file_.has_sea()) {
-      const SeaState state{file_.sea().significant_height_m(), file_.sea().wavelength_m(), DegToRad(file_.sea().from_deg()),
-                           DegToRad(file_.sea().spread_deg())};
-      Random random(seed_, kSeaStream);
-      scene.sea = Sea::Draw(state, random);
-    }
+    Random sea_random(seed_, kSeaStream);
+    scene.sea = Sea::Draw(file_.sea(), sea_random);
     return scene;
   }
 
@@ -137,9 +132,8 @@ class Drawing {
       size.reflectance = Draw(file.reflectance(), kind->usual.reflectance, random);
       return MakeObject(*kind, size);
     }
-    const LandShape shape{file.land().mean_radius_m(), file.land().roughness_m(), file.land().num_trees()};
-    if (file.kind() == File::ISLAND) return MakeIsland(shape, land_random_);
-    Shore shore = MakeShore(shape, {DegToRad(file.land().from_bearing_deg()), DegToRad(file.land().width_deg())}, land_random_);
+    if (file.kind() == File::ISLAND) return MakeIsland(file.land(), land_random_);
+    Shore shore = MakeShore(file.land(), land_random_);
     shore_ = ShoreOnMap{Vector2d::Zero(), shore.waterline_m};
     return std::move(shore.object);
   }
@@ -228,12 +222,11 @@ class Drawing {
         if (file.kind() == File::SHORE) shore_->middle_m = place.position_map_m;
         object.track = DrawTrack(file, field, place, random);
         if (file.has_row() && member > 0) PutInRow(file, scene_.objects.back(), random, object);
-        const auto own_boat = traffic_.ToOwnBoat(object, kOwnBoatClearanceM);
+        auto too_near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM);
         // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
-        std::optional<Approach> other;
-        if (is_drawn && !own_boat) other = traffic_.ToOthers(object, file.min_distance_m(), file.has_row() ? num_before : traffic_.num_objects());
-        const auto overlapping = own_boat || other ? std::nullopt : traffic_.Overlapping(object);
-        if (!own_boat && !other && !overlapping) {
+        if (is_drawn && !too_near) too_near = traffic_.ToOthers(object, file.min_distance_m(), file.has_row() ? num_before : traffic_.num_objects());
+        if (!too_near) too_near = traffic_.Overlapping(object);
+        if (!too_near) {
           object.id = static_cast<int>(scene_.objects.size()) + 1;
           bytes_in_truth_ += BytesInTruth(object);
           if (bytes_in_truth_ > kMaxBytesOfObjects) Stop(field, "too many objects, or too long an outline: all must fit into one message of 120 kB");
@@ -242,12 +235,9 @@ class Drawing {
           break;
         }
         if (is_drawn && num_tries < kMaxTries) continue;
-        std::string reason = fmt::format("{} and {} are in one place within 60 s", name, overlapping ? overlapping->name : "");
-        if (!overlapping) {
-          const Approach& nearest = own_boat ? *own_boat : *other;
-          reason = fmt::format("{} comes to {:.2f} m of {} within 60 s, must stay {:.2f} m away", name, nearest.distance_m, nearest.name,
-                               own_boat ? kOwnBoatClearanceM : file.min_distance_m());
-        }
+        const std::string reason = too_near->limit_m == 0.0 ? fmt::format("{} and {} are in one place within 60 s", name, too_near->name)
+                                                            : fmt::format("{} comes to {:.2f} m of {} within 60 s, must stay {:.2f} m away", name,
+                                                                          too_near->distance_m, too_near->name, too_near->limit_m);
         Stop(field, is_drawn ? fmt::format("no place in {} tries: at the last {}", kMaxTries, reason) : reason);
       }
     }

@@ -1,4 +1,4 @@
-// From the text of a scene file and a seed to a scene: faults with their lines, checks beyond the schema's own, drawing.
+// From the text of a scene file and a seed to a scene: faults with their lines, drawing.
 #pragma once
 
 #include <cstdint>
@@ -39,10 +39,7 @@ std::string NameOf(config::Scene::Kind kind);
 /// @return nullptr for shores and islands
 const KindOfObject* FindKind(config::Scene::Kind kind);
 
-/// Ranges from the lesser to the greater value, fields that suit the kind, paths that can be followed, names that fit into a table.
-void CheckScene(const config::Scene& scene, SceneFaults& faults);
-
-/// @param scene   in which CheckScene finds no fault
+/// @param scene   as ParseScene checks it
 /// @param faults  gets what the drawing finds: no place for an object, a name twice, an object in the way of the own boat
 /// @throws config::ConfigError with `faults`
 Scene DrawScene(const config::Scene& scene, std::uint64_t seed, SceneFaults& faults);

@@ -21,8 +21,8 @@ Sea::Sea(const std::vector<WaveTrain>& trains) {
   }
 }
 
-Sea Sea::Draw(const SeaState& state, Random& random) {
-  if (state.significant_height_m <= 0.0) return Sea();
+Sea Sea::Draw(const config::Scene::SeaState& state, Random& random) {
+  if (state.significant_height_m() <= 0.0) return Sea();
   // Wavelength and amplitude of each train as shares of the middle one: long and short waves about it, so that groups form.
   struct Share {
     double wavelength;
@@ -32,11 +32,11 @@ Sea Sea::Draw(const SeaState& state, Random& random) {
   double sum_squares = 0.0;
   for (const auto& share : kShares) sum_squares += share.amplitude * share.amplitude;
   // A sine of amplitude a has the variance a^2 / 2.
-  const double scale_m = state.significant_height_m / 4.0 / std::sqrt(sum_squares / 2.0);
+  const double scale_m = state.significant_height_m() / 4.0 / std::sqrt(sum_squares / 2.0);
   std::vector<WaveTrain> trains;
   for (const auto& share : kShares) {
-    const double to_rad = state.from_rad + kPi + state.spread_rad * random.Uniform(-1.0, 1.0);
-    trains.push_back({scale_m * share.amplitude, state.wavelength_m * share.wavelength, to_rad, random.Uniform(0.0, kTwoPi)});
+    const double to_rad = DegToRad(state.from_deg()) + kPi + DegToRad(state.spread_deg()) * random.Uniform(-1.0, 1.0);
+    trains.push_back({scale_m * share.amplitude, state.wavelength_m() * share.wavelength, to_rad, random.Uniform(0.0, kTwoPi)});
   }
   return Sea(trains);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "config/schema/scene.pb.h"
 #include "tools/sim/random.hpp"
 
 namespace lookout::sim {
@@ -17,21 +18,13 @@ struct WaveTrain {
   double phase_rad;
 };
 
-/// What a scene file says of its sea; the seed draws the trains.
-struct SeaState {
-  double significant_height_m = 0.0;  // four standard deviations of the surface
-  double wavelength_m = 8.0;          // of the middle train
-  double from_rad = 0.0;              // where the waves come from, clockwise from north
-  double spread_rad = 0.0;            // greatest difference of a train from that
-};
-
 class Sea {
  public:
   Sea() = default;  // calm
   explicit Sea(const std::vector<WaveTrain>& trains);
 
   /// Trains whose standard deviation together is a quarter of the significant height; calm when that is 0.
-  static Sea Draw(const SeaState& state, Random& random);
+  static Sea Draw(const config::Scene::SeaState& state, Random& random);
 
   /// @param p_map_m  east, north
   /// @return up from the calm water

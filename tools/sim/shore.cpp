@@ -1,10 +1,9 @@
-#include "tools/sim/shore.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "tools/sim/fleet.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -29,15 +28,15 @@ Vector2d AtBearing(double bearing_rad, double radius_m) { return radius_m * Vect
 Vector3d WithHeight(const Vector2d& p_m, double z_m) { return {p_m.x(), p_m.y(), z_m}; }
 
 // Bays and headlands: waves around the circle with random phases.
-Waterline MakeWaterline(const LandShape& shape, Random& random) {
+Waterline MakeWaterline(const config::Scene::Land& land, Random& random) {
   constexpr std::array<int, 4> kWavesPerTurn{2, 5, 11, 29};
   constexpr std::array<double, 4> kShare{0.45, 0.3, 0.17, 0.08};
   std::array<double, 4> phases_rad{};
   for (auto& phase_rad : phases_rad) phase_rad = random.Uniform(0.0, kTwoPi);
-  return [=](double bearing_rad) {
-    double radius_m = shape.mean_radius_m;
+  return [=, mean_radius_m = land.mean_radius_m(), roughness_m = land.roughness_m()](double bearing_rad) {
+    double radius_m = mean_radius_m;
     for (std::size_t i = 0; i < kShare.size(); ++i) {
-      radius_m += shape.roughness_m * kShare[i] * std::sin(kWavesPerTurn[i] * bearing_rad + phases_rad[i]);
+      radius_m += roughness_m * kShare[i] * std::sin(kWavesPerTurn[i] * bearing_rad + phases_rad[i]);
     }
     return radius_m;
   };
@@ -53,60 +52,61 @@ void AddTree(const Vector2d& foot_m, double ground_m, Random& random, std::vecto
       {Ellipsoid{WithHeight(foot_m, crown_bottom_m + crown_half_height_m), {crown_radius_m, crown_radius_m, crown_half_height_m}}, kFoliage});
 }
 
+// Across the land at one bearing.
+struct Profile {
+  Vector3d water_m;
+  Vector3d bank_m;
+};
+
+void AddBank(const Profile& a, const Profile& b, std::vector<Part>& parts) {
+  parts.push_back({Triangle{a.water_m, b.water_m, b.bank_m}, kSoil});
+  parts.push_back({Triangle{a.water_m, b.bank_m, a.bank_m}, kSoil});
+}
+
 }  // namespace
 
-Shore MakeShore(const LandShape& shape, const Stretch& stretch, Random& random) {
-  Shore shore{SceneObject{0, "", "shore", Track{}, {}, {}}, MakeWaterline(shape, random)};
+Shore MakeShore(const config::Scene::Land& land, Random& random) {
+  Shore shore{SceneObject{0, "", "shore", Track{}, {}, {}}, MakeWaterline(land, random)};
+  const double from_rad = DegToRad(land.from_bearing_deg());
+  const double width_rad = DegToRad(land.width_deg());
   auto& parts = shore.object.parts;
   auto& outline_m = shore.object.outline_m;
 
-  const int num_steps = static_cast<int>(std::ceil(stretch.width_rad * shape.mean_radius_m / kStepM));
-  const auto bearing_rad = [&](int step) { return stretch.from_rad + stretch.width_rad * step / num_steps; };
-  struct Profile {
-    Vector3d water_m;
-    Vector3d bank_m;
-    Vector3d slope_m;
-  };
+  const int num_steps = static_cast<int>(std::ceil(width_rad * land.mean_radius_m() / kStepM));
   std::vector<Profile> profiles;
+  std::vector<Vector3d> slopes_m;  // the upper end of the ground behind each
   for (int step = 0; step <= num_steps; ++step) {
-    const double radius_m = shore.waterline_m(bearing_rad(step));
+    const double bearing_rad = from_rad + width_rad * step / num_steps;
+    const double radius_m = shore.waterline_m(bearing_rad);
     const double bank_height_m = random.Uniform(0.5, 1.3);
-    profiles.push_back({WithHeight(AtBearing(bearing_rad(step), radius_m), 0.0),
-                        WithHeight(AtBearing(bearing_rad(step), radius_m + kBankWidthM), bank_height_m),
-                        WithHeight(AtBearing(bearing_rad(step), radius_m + kBankWidthM + kSlopeWidthM), bank_height_m + kSlopeRise * kSlopeWidthM)});
+    profiles.push_back(
+        {WithHeight(AtBearing(bearing_rad, radius_m), 0.0), WithHeight(AtBearing(bearing_rad, radius_m + kBankWidthM), bank_height_m)});
+    slopes_m.push_back(WithHeight(AtBearing(bearing_rad, radius_m + kBankWidthM + kSlopeWidthM), bank_height_m + kSlopeRise * kSlopeWidthM));
+    outline_m.emplace_back(profiles.back().water_m.head<2>());
   }
   for (std::size_t i = 0; i + 1 < profiles.size(); ++i) {
-    const auto& a = profiles[i];
-    const auto& b = profiles[i + 1];
-    parts.push_back({Triangle{a.water_m, b.water_m, b.bank_m}, kSoil});
-    parts.push_back({Triangle{a.water_m, b.bank_m, a.bank_m}, kSoil});
-    parts.push_back({Triangle{a.bank_m, b.bank_m, b.slope_m}, kSoil});
-    parts.push_back({Triangle{a.bank_m, b.slope_m, a.slope_m}, kSoil});
+    AddBank(profiles[i], profiles[i + 1], parts);
+    parts.push_back({Triangle{profiles[i].bank_m, profiles[i + 1].bank_m, slopes_m[i + 1]}, kSoil});
+    parts.push_back({Triangle{profiles[i].bank_m, slopes_m[i + 1], slopes_m[i]}, kSoil});
   }
-  for (int tree = 0; tree < shape.num_trees; ++tree) {
+  for (int tree = 0; tree < land.num_trees(); ++tree) {
     // Crowns stay over the land and inside of the outline: at least their greatest radius from its ends.
-    const double margin_rad = 3.0 / shape.mean_radius_m;
-    const double at_rad = stretch.from_rad + random.Uniform(margin_rad, stretch.width_rad - margin_rad);
+    const double margin_rad = 3.0 / land.mean_radius_m();
+    const double at_rad = from_rad + random.Uniform(margin_rad, width_rad - margin_rad);
     const double inland_m = random.Uniform(3.5, 18.0);
     const double ground_m = 0.9 + kSlopeRise * (inland_m > kBankWidthM ? inland_m - kBankWidthM : 0.0);
     AddTree(AtBearing(at_rad, shore.waterline_m(at_rad) + inland_m), ground_m, random, parts);
   }
-
-  for (const auto& profile : profiles) outline_m.emplace_back(profile.water_m.head<2>());
-  for (auto profile = profiles.rbegin(); profile != profiles.rend(); ++profile) outline_m.emplace_back(profile->slope_m.head<2>());
+  for (auto slope_m = slopes_m.rbegin(); slope_m != slopes_m.rend(); ++slope_m) outline_m.emplace_back(slope_m->head<2>());
   return shore;
 }
 
-SceneObject MakeIsland(const LandShape& shape, Random& random) {
+SceneObject MakeIsland(const config::Scene::Land& land, Random& random) {
   SceneObject island{0, "", "island", Track{}, {}, {}};
-  const Waterline waterline_m = MakeWaterline(shape, random);
+  const Waterline waterline_m = MakeWaterline(land, random);
   // The bank is narrower on a small island, and the hill no steeper than elsewhere.
-  const double bank_width_m = std::min(kBankWidthM, 0.25 * shape.mean_radius_m);
-  const int num_steps = std::max(kMinIslandSteps, static_cast<int>(std::ceil(kTwoPi * shape.mean_radius_m / kStepM)));
-  struct Profile {
-    Vector3d water_m;
-    Vector3d bank_m;
-  };
+  const double bank_width_m = std::min(kBankWidthM, 0.25 * land.mean_radius_m());
+  const int num_steps = std::max(kMinIslandSteps, static_cast<int>(std::ceil(kTwoPi * land.mean_radius_m() / kStepM)));
   std::vector<Profile> profiles;
   for (int step = 0; step < num_steps; ++step) {
     // Against the clock seen from above, as outlines run.
@@ -116,18 +116,17 @@ SceneObject MakeIsland(const LandShape& shape, Random& random) {
         {WithHeight(AtBearing(bearing_rad, radius_m), 0.0), WithHeight(AtBearing(bearing_rad, radius_m - bank_width_m), random.Uniform(0.5, 1.3))});
     island.outline_m.emplace_back(profiles.back().water_m.head<2>());
   }
-  const double plateau_m = shape.mean_radius_m - bank_width_m;
+  const double plateau_m = land.mean_radius_m() - bank_width_m;
   const Vector3d top_m(0.0, 0.0, 0.9 + kSlopeRise * plateau_m);
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     const auto& a = profiles[i];
     const auto& b = profiles[(i + 1) % profiles.size()];
-    island.parts.push_back({Triangle{a.water_m, b.water_m, b.bank_m}, kSoil});
-    island.parts.push_back({Triangle{a.water_m, b.bank_m, a.bank_m}, kSoil});
+    AddBank(a, b, island.parts);
     island.parts.push_back({Triangle{a.bank_m, b.bank_m, top_m}, kSoil});
   }
   // Crowns stay inside of the outline, bays or not.
-  const double wooded_m = shape.mean_radius_m - shape.roughness_m - kMaxCrownRadiusM;
-  for (int tree = 0; tree < shape.num_trees && wooded_m > 0.0; ++tree) {
+  const double wooded_m = land.mean_radius_m() - land.roughness_m() - kMaxCrownRadiusM;
+  for (int tree = 0; tree < land.num_trees() && wooded_m > 0.0; ++tree) {
     const double bearing_rad = random.Uniform(0.0, kTwoPi);
     const double radius_m = wooded_m * std::sqrt(random.Uniform());
     AddTree(AtBearing(bearing_rad, radius_m), 0.9 + kSlopeRise * std::max(0.0, plateau_m - radius_m), random, island.parts);

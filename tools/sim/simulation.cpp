@@ -27,20 +27,15 @@ Simulation::Simulation(const Scene& scene, const config::BoatFacts& boat, const 
       navigation_(scene, boat, params.navigation, plan_, params.start, params.seed),
       random_(params.seed, kNetworkStream) {}
 
-// Replaces the right stamp in the payload by what the lidar's clock says. @return whether the lidar had power for the whole packet
-bool Simulation::Stamp(LidarPacket& packet) const {
-  if (!clock_.IsOn(packet.stamp) || !clock_.IsOn(packet.end_time)) return false;
-  WriteU32LittleEndian(packet.payload, format::kStampOffset, clock_.StampUs(packet.stamp));
-  return true;
-}
-
 void Simulation::Fill() {
   while (!lidar_datagram_) {
     LidarPacket packet = lidar_.Next();
     const auto jitter = std::chrono::microseconds(static_cast<std::int64_t>(kDataJitterUs * random_.Uniform()));
     const Utime arrival = packet.end_time + kDataLatency + jitter;
     const bool has_ended = arrival > params_.start + params_.duration;
-    const bool is_sent = Stamp(packet);
+    const bool is_sent = clock_.IsOn(packet.stamp) && clock_.IsOn(packet.end_time);
+    // In place of the right stamp.
+    if (is_sent) WriteU32LittleEndian(packet.payload, format::kStampOffset, clock_.StampUs(packet.stamp));
     if (truth_ != nullptr && !has_ended) {
       if (is_sent) truth_->AddPacket(packet);
       truth_->AdvanceTo(packet.end_time);

@@ -39,7 +39,6 @@ class Simulation {
 
  private:
   void Fill();
-  bool Stamp(LidarPacket& packet) const;
 
   SimulationParams params_;
   TruthWriter* truth_;

@@ -27,9 +27,6 @@ class PcapSink {
   /// @throws std::runtime_error when the write fails
   void Send(const Datagram& datagram);
 
-  /// The file gets its name. @throws std::runtime_error as io::OutputFile::Commit
-  void Close() { Finish().Commit(); }
-
   /// @return the file, complete, for io::CommitAll. @throws std::runtime_error when the write fails
   io::OutputFile& Finish();
 

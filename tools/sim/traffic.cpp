@@ -76,36 +76,33 @@ double DistanceM(const Outline& a_m, const Outline& b_m) {
   return distance_m;
 }
 
-Traffic::Traffic(const OwnMotion& own_motion) : own_boat_{"own boat", {}, 0.0} {
-  const Outline hull_m = Rectangle(-kOwnHalfLengthM, kOwnHalfLengthM, -kOwnHalfWidthM, kOwnHalfWidthM);
-  const double radius_m = RadiusOf(hull_m);
-  double last_heading_rad = 0.0;
-  for (int i = 0; i < kNumSamples; ++i) {
-    const OwnState state = StateAt(own_motion, 0.0, i * kStepS);
-    const Placement placement{state.position_map_m.head<2>(), state.heading_rad};
-    if (i > 0) {
-      const double way_m = (placement.position_map_m - own_boat_.shapes.back().center_m).norm() +
-                           radius_m * std::abs(WrapToPi(placement.heading_rad - last_heading_rad));
-      own_boat_.speed_mps = std::max(own_boat_.speed_mps, way_m / kStepS);
-    }
-    last_heading_rad = placement.heading_rad;
-    own_boat_.shapes.push_back({At(placement, hull_m), placement.position_map_m, radius_m});
-  }
-}
+Traffic::Traffic(const OwnMotion& own_motion)
+    : own_boat_(Sampled("own boat", Rectangle(-kOwnHalfLengthM, kOwnHalfLengthM, -kOwnHalfWidthM, kOwnHalfWidthM), kNumSamples, [&](double time_s) {
+        const OwnState state = StateAt(own_motion, 0.0, time_s);
+        return Placement{state.position_map_m.head<2>(), state.heading_rad};
+      })) {}
 
 Traffic::Mover Traffic::ToMover(const SceneObject& object) {
-  Mover mover{object.name, {}, 0.0, object.is_in_water};
-  const double radius_m = RadiusOf(object.outline_m);
-  const int num_samples = object.track.is_moving() ? kNumSamples : 1;
+  Mover mover =
+      Sampled(object.name, object.outline_m, object.track.is_moving() ? kNumSamples : 1, [&](double time_s) { return object.track.At(time_s); });
+  mover.is_in_water = object.is_in_water;
+  return mover;
+}
+
+// Between two samples it goes straight from the one to the other.
+Traffic::Mover Traffic::Sampled(const std::string& name, const Outline& outline_m, int num_samples, const std::function<Placement(double)>& at) {
+  Mover mover{name, {}, 0.0};
+  const double radius_m = RadiusOf(outline_m);
   double last_heading_rad = 0.0;
   for (int i = 0; i < num_samples; ++i) {
-    const Placement placement = object.track.At(i * kStepS);
+    const Placement placement = at(i * kStepS);
     if (i > 0) {
-      const double turned_rad = std::abs(WrapToPi(placement.heading_rad - last_heading_rad));
-      mover.speed_mps = std::max(mover.speed_mps, object.track.speed_mps + radius_m * turned_rad / kStepS);
+      const double way_m =
+          (placement.position_map_m - mover.shapes.back().center_m).norm() + radius_m * std::abs(WrapToPi(placement.heading_rad - last_heading_rad));
+      mover.speed_mps = std::max(mover.speed_mps, way_m / kStepS);
     }
     last_heading_rad = placement.heading_rad;
-    mover.shapes.push_back({At(placement, object.outline_m), placement.position_map_m, radius_m});
+    mover.shapes.push_back({At(placement, outline_m), placement.position_map_m, radius_m});
   }
   return mover;
 }
@@ -132,14 +129,14 @@ void Traffic::Add(const SceneObject& object) { others_.push_back(ToMover(object)
 std::optional<Approach> Traffic::ToOwnBoat(const SceneObject& object, double limit_m) const {
   const double distance_m = NearestM(ToMover(object), own_boat_, limit_m);
   if (distance_m >= limit_m) return std::nullopt;
-  return Approach{distance_m, own_boat_.name};
+  return Approach{distance_m, own_boat_.name, limit_m};
 }
 
 std::optional<Approach> Traffic::ToOthers(const SceneObject& object, double limit_m, std::size_t num_first) const {
   const Mover mover = ToMover(object);
   for (std::size_t i = 0; i < std::min(num_first, others_.size()); ++i) {
     const double distance_m = NearestM(mover, others_[i], limit_m);
-    if (distance_m < limit_m) return Approach{distance_m, others_[i].name};
+    if (distance_m < limit_m) return Approach{distance_m, others_[i].name, limit_m};
   }
   return std::nullopt;
 }

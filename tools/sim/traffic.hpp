@@ -1,6 +1,7 @@
 // Outlines seen from above, and how near objects come to each other in the first minute of a scene.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,8 @@ double DistanceM(const Outline& a_m, const Outline& b_m);
 /// Between two objects in the first kCheckedS, sampled every 0.2 s.
 struct Approach {
   double distance_m;
-  std::string name;  // of the other one
+  std::string name;      // of the other one
+  double limit_m = 0.0;  // nearer than which it may not come; 0 = in one place
 };
 
 class Traffic {
@@ -54,10 +56,11 @@ class Traffic {
   struct Mover {
     std::string name;
     std::vector<Shape> shapes;  // by sample; one of what stands still
-    double speed_mps;           // no point of it is faster
+    double speed_mps;           // from one sample to the next no point of it is faster
     bool is_in_water = true;
   };
   static Mover ToMover(const SceneObject& object);
+  static Mover Sampled(const std::string& name, const Outline& outline_m, int num_samples, const std::function<Placement(double)>& at);
   static double NearestM(const Mover& a, const Mover& b, double limit_m);
 
   Mover own_boat_;

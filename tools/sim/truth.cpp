@@ -1,5 +1,6 @@
 #include "tools/sim/truth.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -12,7 +13,6 @@
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
 #include "lookout/sim_truth_t.hpp"
-#include "tools/sim/map_frame.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -43,21 +43,27 @@ void AppendMetres(double value_m, std::string& text) {
   text += std::to_string(std::abs(units) / kUnitsPerMetre) + "." + digits.substr(1);
 }
 
-sim_object_t ToObject(const Eigen::Isometry3d& T_map_object, const std::vector<Eigen::Vector2d>& outline_m) {
-  const Attitude attitude = AttitudeOf(T_map_object.linear());
+// @param T_map_object  no bow straight up or down; angles as in POSE: heading clockwise, pitch positive bow up, roll positive starboard down
+sim_object_t ToMessage(const SceneObject& scene_object, bool is_moving, const Eigen::Isometry3d& T_map_object) {
+  const Eigen::Matrix3d R_map_object = T_map_object.linear();
   sim_object_t object{};
+  object.id = scene_object.id;
+  object.name = scene_object.name;
+  object.kind = scene_object.kind;
+  object.is_in_water = scene_object.is_in_water;
+  object.is_moving = is_moving;
   object.east_m = T_map_object.translation().x();
   object.north_m = T_map_object.translation().y();
   object.up_m = T_map_object.translation().z();
-  object.heading_rad = attitude.heading_rad;
-  object.pitch_rad = attitude.pitch_rad;
-  object.roll_rad = attitude.roll_rad;
-  for (const auto& p_m : outline_m) {
+  object.heading_rad = WrapTo2Pi(std::atan2(R_map_object(0, 0), R_map_object(1, 0)));
+  object.pitch_rad = std::asin(std::clamp(R_map_object(2, 0), -1.0, 1.0));
+  object.roll_rad = std::atan2(R_map_object(2, 1), R_map_object(2, 2));  // the y axis points to port: it rises as starboard goes down
+  for (const auto& p_m : scene_object.outline_m) {
     const Eigen::Vector3d p_map_m = T_map_object * Eigen::Vector3d(p_m.x(), p_m.y(), 0.0);
     object.outline_east_m.push_back(p_map_m.x());
     object.outline_north_m.push_back(p_map_m.y());
   }
-  object.num_outline = static_cast<std::int32_t>(outline_m.size());
+  object.num_outline = static_cast<std::int32_t>(object.outline_east_m.size());
   return object;
 }
 
@@ -77,8 +83,14 @@ TruthWriter::TruthWriter(const std::filesystem::path& folder, const Scene& scene
     : folder_(folder),
       scene_(scene),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
-      own_outline_m_(Rectangle(boat.own_vessel_box_m.min().x(), boat.own_vessel_box_m.max().x(), boat.own_vessel_box_m.min().y(),
-                               boat.own_vessel_box_m.max().y())),
+      own_vessel_{kOwnVessel,
+                  "own_vessel",
+                  "own_vessel",
+                  Track{},
+                  {},
+                  Rectangle(boat.own_vessel_box_m.min().x(), boat.own_vessel_box_m.max().x(), boat.own_vessel_box_m.min().y(),
+                            boat.own_vessel_box_m.max().y()),
+                  true},
       datum_(boat.datum.value_or(kLakeDatum)),
       map_(MapFrame(boat)),
       start_(start),
@@ -129,21 +141,11 @@ void TruthWriter::WriteObjects(Utime time) {
   sim_truth_t message{};
   message.utime_us = ToUtimeUs(time);
   const OwnState own_state = StateAt(scene_.own_motion, reference_point_above_water_m_, time_s);
-  WriteOutline(kOwnVessel, {own_state.position_map_m.head<2>(), own_state.heading_rad}, own_outline_m_, time);
-  auto own = ToObject(own_state.T_map_vessel(), own_outline_m_);
-  own.id = kOwnVessel;
-  own.name = own.kind = "own_vessel";
-  own.is_in_water = own.is_moving = true;
-  message.objects.push_back(std::move(own));
+  WriteOutline(kOwnVessel, {own_state.position_map_m.head<2>(), own_state.heading_rad}, own_vessel_.outline_m, time);
+  message.objects.push_back(ToMessage(own_vessel_, true, own_state.T_map_vessel()));
   for (const auto& object : scene_.objects) {
     if (object.track.is_moving()) WriteOutline(object.id, object.track.At(time_s), object.outline_m, time);
-    auto written = ToObject(PoseAt(object, scene_.sea, time_s), object.outline_m);
-    written.id = object.id;
-    written.name = object.name;
-    written.kind = object.kind;
-    written.is_in_water = object.is_in_water;
-    written.is_moving = object.track.is_moving();
-    message.objects.push_back(std::move(written));
+    message.objects.push_back(ToMessage(object, object.track.is_moving(), PoseAt(object, scene_.sea, time_s)));
   }
   for (const auto& object : message.objects) {
     const auto place = OnEarth({object.east_m, object.north_m, object.up_m});
@@ -183,7 +185,7 @@ void TruthWriter::AddPacket(const LidarPacket& packet) {
     text.push_back('\n');
   }
   returns_.Write(text);
-  packets_.push_back({packet.stamp, packet.returns});
+  packets_.push_back(packet);
   if (packets_.size() == kPacketsPerMessage) WritePackets();
 }
 

@@ -43,9 +43,6 @@ class TruthWriter {
   /// Writes poses and outlines up to `time`.
   void AdvanceTo(Utime time);
 
-  /// The files get their names. @throws std::runtime_error as io::CommitAll
-  void Close() { io::CommitAll(Finish()); }
-
   /// @return the files, complete, for io::CommitAll
   std::vector<io::OutputFile*> Finish();
 
@@ -62,10 +59,6 @@ class TruthWriter {
     double latitude_deg = 0.0;
     double longitude_deg = 0.0;
   };
-  struct Packet {
-    Utime stamp;
-    std::vector<TrueReturn> returns;
-  };
 
   LatitudeLongitude OnEarth(const Eigen::Vector3d& p_map_m) const;
   void WriteOutline(int object_id, const Placement& placement, const std::vector<Eigen::Vector2d>& outline_m, Utime time);
@@ -77,14 +70,14 @@ class TruthWriter {
   Folder folder_;
   const Scene& scene_;
   double reference_point_above_water_m_;
-  std::vector<Eigen::Vector2d> own_outline_m_;  // vessel frame
+  SceneObject own_vessel_;  // its outline: vessel frame
   GeodeticPlace datum_;
   GeographicLib::LocalCartesian map_;
   Utime start_;
   Utime next_pose_;
   Utime next_objects_;
-  std::vector<Packet> packets_;   // not yet in the log
-  std::int64_t num_packets_ = 0;  // in the log
+  std::vector<LidarPacket> packets_;  // not yet in the log
+  std::int64_t num_packets_ = 0;      // in the log
   std::int64_t seq_ = 0;
   io::OutputFile log_file_;
   bus::LogWriter log_;

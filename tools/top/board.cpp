@@ -3,21 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/services.hpp"
-#include "lookout/attitude_t.hpp"
-#include "lookout/gnss_fix_t.hpp"
-#include "lookout/lidar_clock_t.hpp"
-#include "lookout/lidar_nmea_t.hpp"
-#include "lookout/lidar_packets_t.hpp"
-#include "lookout/lidar_scan_t.hpp"
-#include "lookout/nav_raw_t.hpp"
-#include "lookout/run_info_t.hpp"
-#include "lookout/segments_t.hpp"
-#include "lookout/sim_truth_t.hpp"
+#include "common/core/angles.hpp"
+#include "tools/diff/fields.hpp"
 
 namespace lookout::top {
 
@@ -31,38 +26,14 @@ constexpr seconds kRunInfoSilence(25);
 // OBSTACLES come with every scan: what is older says nothing about the water of now.
 constexpr seconds kObstaclesAge(2);
 
-// Where a message stands in its channel's sequence.
-struct Place {
-  std::int64_t seq;
-  std::int64_t part_index;
-  std::int64_t num_parts;
-};
-
 template <typename T>
-Place PlaceOf(const T& message) {
+std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
   if constexpr (requires { message.part_index; }) {
-    return {message.seq, message.part_index, message.num_parts};
+    return sequence.NumLostBefore(message.seq, message.part_index, message.num_parts);
   } else {
-    return {message.seq, 0, 1};
+    return sequence.NumLostBefore(message.seq);
   }
 }
-
-template <typename T>
-std::optional<Place> DecodedPlace(Bytes bytes) {
-  const auto message = bus::Decode<T>(bytes);
-  return message ? std::optional(PlaceOf(*message)) : std::nullopt;
-}
-
-// Types of which only the place counts here.
-struct Decoder {
-  std::string_view type;
-  std::optional<Place> (*decode)(Bytes);
-};
-constexpr std::array kDecoders{Decoder{"lidar_packets_t", &DecodedPlace<lidar_packets_t>}, Decoder{"lidar_scan_t", &DecodedPlace<lidar_scan_t>},
-                               Decoder{"lidar_clock_t", &DecodedPlace<lidar_clock_t>},     Decoder{"lidar_nmea_t", &DecodedPlace<lidar_nmea_t>},
-                               Decoder{"segments_t", &DecodedPlace<segments_t>},           Decoder{"nav_raw_t", &DecodedPlace<nav_raw_t>},
-                               Decoder{"attitude_t", &DecodedPlace<attitude_t>},           Decoder{"run_info_t", &DecodedPlace<run_info_t>},
-                               Decoder{"sim_truth_t", &DecodedPlace<sim_truth_t>}};
 
 const health_counter_t* FindCounter(const health_t& health, std::string_view name) {
   const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
@@ -99,7 +70,61 @@ std::int64_t GreatestLatencyUs(const health_t& health) {
   return greatest_us;
 }
 
+bool IsNearer(const ObstacleLine& a, const ObstacleLine& b) {
+  const auto key = [](const ObstacleLine& line) {
+    return std::tuple(!std::isfinite(line.range_m), std::isfinite(line.range_m) ? line.range_m : 0.0, line.id);
+  };
+  return key(a) < key(b);
+}
+
+// Sorted; memory stays small whatever a message holds.
+void KeepNearest(std::vector<ObstacleLine>& lines) {
+  std::ranges::sort(lines, IsNearer);
+  lines.resize(std::min(lines.size(), Nearest::kMaxLines));
+  lines.shrink_to_fit();
+}
+
 }  // namespace
+
+void Nearest::Take(const obstacles_t& part, TimePoint now) {
+  Part kept{part.utime_us, part.seq, part.part_index, part.num_parts, {}};
+  auto& nearest = kept.nearest;
+  nearest.time = now;
+  for (const auto& obstacle : part.obstacles) {
+    ObstacleLine line{obstacle};
+    for (auto* numbers : {&line.footprint_vessel_x_m, &line.footprint_vessel_y_m, &line.footprint_east_m, &line.footprint_north_m,
+                          &line.waterline_vessel_x_m, &line.waterline_vessel_y_m, &line.waterline_east_m, &line.waterline_north_m}) {
+      *numbers = {};
+    }
+    if (const auto heading_rad = headings_.At(obstacle.utime_us); heading_rad && std::isfinite(line.bearing_rad)) {
+      line.true_bearing_rad = WrapTo2Pi(*heading_rad + line.bearing_rad);
+    }
+    nearest.lines.push_back(line);
+    if (line.confidence == obstacle_t::CONFIDENCE_SURE) nearest.sure_lines.push_back(line);
+  }
+  nearest.num_obstacles = static_cast<std::int64_t>(nearest.lines.size());
+  nearest.num_sure = static_cast<std::int64_t>(nearest.sure_lines.size());
+  KeepNearest(nearest.lines);
+  KeepNearest(nearest.sure_lines);
+  const auto ended = assembler_.Add(std::move(kept));
+  if (!ended.incomplete.empty()) newest_ = ToNearest(ended.incomplete);
+  if (!ended.whole.empty()) newest_ = ToNearest(ended.whole);
+}
+
+NearestObstacles Nearest::ToNearest(const std::vector<Part>& parts) {
+  NearestObstacles nearest;
+  nearest.num_parts_missing = parts.front().num_parts - static_cast<std::int64_t>(parts.size());
+  for (const auto& [utime_us, seq, part_index, num_parts, part] : parts) {
+    nearest.lines.insert(nearest.lines.end(), part.lines.begin(), part.lines.end());
+    nearest.sure_lines.insert(nearest.sure_lines.end(), part.sure_lines.begin(), part.sure_lines.end());
+    nearest.num_obstacles += part.num_obstacles;
+    nearest.num_sure += part.num_sure;
+    nearest.time = std::max(nearest.time, part.time);
+  }
+  KeepNearest(nearest.lines);
+  KeepNearest(nearest.sure_lines);
+  return nearest;
+}
 
 void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
   auto found = channels_.find(channel);
@@ -121,35 +146,34 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
     TakeHealth(traffic, bytes, now);
     return;
   }
-  std::optional<Place> place;
-  if (entry->name == bus::kObstacles.name) {
-    if (const auto message = bus::Decode<obstacles_t>(bytes); message && messages::IsWellFormed(*message)) {
-      place = PlaceOf(*message);
-      nearest_.Take(*message, now);
+  bool is_good = false;
+  ForEachType([&]<typename T>(const T& /*message*/) {
+    if constexpr (requires(T message) { message.seq; }) {
+      if (T::getTypeName() != entry->type) return;
+      const auto message = bus::Decode<T>(bytes);
+      is_good = message && Note(*message, now);
+      if (is_good) traffic.num_lost += NumLostBefore(*message, traffic.sequence);
     }
-  } else if (entry->name == bus::kPose.name) {
-    if (const auto message = bus::Decode<pose_t>(bytes)) {
-      place = PlaceOf(*message);
-      nearest_.Take(*message);
-      own_.pose = *message;
-      own_.pose_time = now;
-    }
-  } else if (entry->name == bus::kGnssFix.name) {
-    if (const auto message = bus::Decode<gnss_fix_t>(bytes)) {
-      place = PlaceOf(*message);
-      own_.fix_quality = message->quality;
-      own_.num_satellites = message->num_satellites;
-      own_.fix_time = now;
-    }
-  } else {
-    const auto decoder = std::ranges::find(kDecoders, entry->type, &Decoder::type);
-    if (decoder != kDecoders.end()) place = decoder->decode(bytes);
+  });
+  if (!is_good) ++traffic.num_bad;
+}
+
+// Keeps what is shown of a message. @return false when it contradicts itself
+template <typename T>
+bool Board::Note(const T& message, TimePoint now) {
+  if constexpr (std::is_same_v<T, obstacles_t>) {
+    if (!messages::IsWellFormed(message)) return false;
+    nearest_.Take(message, now);
+  } else if constexpr (std::is_same_v<T, pose_t>) {
+    nearest_.Take(message);
+    own_.pose = message;
+    own_.pose_time = now;
+  } else if constexpr (std::is_same_v<T, gnss_fix_t>) {
+    own_.fix_quality = message.quality;
+    own_.num_satellites = message.num_satellites;
+    own_.fix_time = now;
   }
-  if (place) {
-    traffic.num_lost += traffic.sequence.NumLostBefore(place->seq, place->part_index, place->num_parts);
-  } else {
-    ++traffic.num_bad;
-  }
+  return true;
 }
 
 bool Board::HasRoomFor(std::string_view process) const {

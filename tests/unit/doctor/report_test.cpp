@@ -41,7 +41,7 @@ TEST(DoctorConfig, NamesEachWrongFileOnce) {
   std::ofstream(folder / "georeferencer.txtpb") << "pose_timeout_s: 1000\n";
   const auto seen = ReadConfig(folder);
   std::map<std::string, std::string> first_fault;
-  for (const auto& file : seen.files) first_fault[file.name] = file.faults.empty() ? "" : file.faults.front();
+  for (const auto& [file, faults] : seen.files) first_fault[file] = faults.empty() ? "" : faults.front();
   EXPECT_EQ(first_fault.size(), 7U);
   EXPECT_NE(first_fault["boat.txtpb"].find("boat.txtpb:1: lidar"), std::string::npos) << first_fault["boat.txtpb"];
   EXPECT_NE(first_fault["vlp16.txtpb"].find("vlp16.txtpb:2: bind_address: 'nowhere' is no numeric address"), std::string::npos);

@@ -67,7 +67,7 @@ class Captures : public ::testing::Test {
               << std::to_string(1000 + range % 500 * 2).substr(1) << ',' << one.object_id << '\n';
       }
     }
-    sink.Close();
+    sink.Finish().Commit();
     std::ifstream in(capture, std::ios::binary);
     pcap_ = std::string(std::istreambuf_iterator<char>(in), {});
     std::filesystem::remove(capture);

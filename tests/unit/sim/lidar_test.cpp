@@ -17,11 +17,13 @@ namespace format = vlp16::format;
 
 const Utime kStart = Utime(1'781'532'600s);  // 10 minutes past the hour
 
-LidarParams QuietParams() {
-  LidarParams params;
-  params.stray_probability = 0.0;
-  params.range_sd_m = 0.0;
-  return params;
+// Without strays and noise of the range.
+Scene QuietScene(double own_heading_rad, std::vector<Part> parts, config::Scene::ReturnMode mode = config::Scene::STRONGEST) {
+  Scene scene = StillScene(own_heading_rad, std::move(parts));
+  scene.effects.set_stray_probability(0.0);
+  scene.effects.set_range_sd_m(0.0);
+  scene.effects.set_return_mode(mode);
+  return scene;
 }
 
 struct Decoded {
@@ -55,8 +57,8 @@ std::vector<Decoded> Decode(const LidarPacket& packet) {
 std::vector<Part> Wall(double north_m) { return {{Prism{Rectangle(north_m, north_m + 1.0, -200.0, 200.0), 0.0, 50.0}, {0.6}}}; }
 
 TEST(Lidar, MeasuresAWallWhereItStands) {
-  const auto scene = StillScene(0.0, Wall(20.0));
-  Lidar lidar(scene, SmallBoat(), QuietParams(), kStart, 1);
+  const auto scene = QuietScene(0.0, Wall(20.0));
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
   int num_checked = 0;
   for (int i = 0; i < 76; ++i) {
     for (const auto& made : Decode(lidar.Next())) {
@@ -74,8 +76,8 @@ TEST(Lidar, MeasuresAWallWhereItStands) {
 }
 
 TEST(Lidar, WaterGivesNothingAndLowBeamsSeeTheOwnBoat) {
-  const auto scene = StillScene(0.0, {{Cylinder{{50.0, 0.0}, 0.01, 0.0, 0.01}, {0.5}}});
-  Lidar lidar(scene, SmallBoat(), QuietParams(), kStart, 1);
+  const auto scene = QuietScene(0.0, {{Cylinder{{50.0, 0.0}, 0.01, 0.0, 0.01}, {0.5}}});
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
   int num_own = 0;
   for (int i = 0; i < 76; ++i) {
     const auto packet = lidar.Next();
@@ -97,8 +99,8 @@ void ExpectPostAt(double own_heading_deg, double bearing_deg) {
   const double true_bearing_rad = DegToRad(own_heading_deg + bearing_deg);
   // Object frame: x north, y west.
   const Eigen::Vector2d foot_m = 20.0 * Eigen::Vector2d(std::cos(true_bearing_rad), -std::sin(true_bearing_rad));
-  const auto scene = StillScene(DegToRad(own_heading_deg), {{Cylinder{foot_m, 0.2, 0.0, 10.0}, {0.6}}});
-  Lidar lidar(scene, SmallBoat(), QuietParams(), kStart, 1);
+  const auto scene = QuietScene(DegToRad(own_heading_deg), {{Cylinder{foot_m, 0.2, 0.0, 10.0}, {0.6}}});
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
   int num_seen = 0;
   for (int i = 0; i < 76; ++i) {
     for (const auto& made : Decode(lidar.Next())) {
@@ -123,8 +125,8 @@ TEST(Lidar, MountingYawTurnsWhatItSeesTheOtherWay) {
   auto boat = SmallBoat();
   boat.lidar.yaw_rad = DegToRad(10.0);  // the lidar's x axis to port: a thing ahead is to the right of it
   boat.T_vessel_lidar = TransformVesselSensor(boat.lidar);
-  const auto scene = StillScene(0.0, {{Cylinder{{20.0, 0.0}, 0.2, 0.0, 10.0}, {0.6}}});
-  Lidar lidar(scene, boat, QuietParams(), kStart, 1);
+  const auto scene = QuietScene(0.0, {{Cylinder{{20.0, 0.0}, 0.2, 0.0, 10.0}, {0.6}}});
+  Lidar lidar(scene, boat, LidarParams{}, kStart, 1);
   int num_seen = 0;
   for (int i = 0; i < 76; ++i) {
     for (const auto& made : Decode(lidar.Next())) {
@@ -139,9 +141,9 @@ TEST(Lidar, MountingYawTurnsWhatItSeesTheOtherWay) {
 TEST(Lidar, RollToStarboardLowersTheBeamsThere) {
   // A low wall all around: rolled by 6 deg to starboard the level beams pass over it to port and go into the water to starboard.
   auto scene =
-      StillScene(0.0, {{Prism{Rectangle(-30.0, 30.0, -21.0, -20.0), 0.0, 1.0}, {0.6}}, {Prism{Rectangle(-30.0, 30.0, 20.0, 21.0), 0.0, 1.0}, {0.6}}});
+      QuietScene(0.0, {{Prism{Rectangle(-30.0, 30.0, -21.0, -20.0), 0.0, 1.0}, {0.6}}, {Prism{Rectangle(-30.0, 30.0, 20.0, 21.0), 0.0, 1.0}, {0.6}}});
   scene.own_motion.roll_rad = {{DegToRad(6.0), 1e9, kPi / 2.0}};
-  Lidar lidar(scene, SmallBoat(), QuietParams(), kStart, 1);
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
   std::map<bool, double> highest_elevation_deg{{true, -90.0}, {false, -90.0}};
   for (int i = 0; i < 76; ++i) {
     for (const auto& made : Decode(lidar.Next())) {
@@ -156,9 +158,9 @@ TEST(Lidar, RollToStarboardLowersTheBeamsThere) {
 }
 
 TEST(Lidar, StampsFollowThePacketPeriodAcrossTheHour) {
-  const auto scene = StillScene(0.0, Wall(20.0));
+  const auto scene = QuietScene(0.0, Wall(20.0));
   const Utime start = Utime(1'781'532'000s) - 2000us;  // 14:00:00 comes 2 ms later
-  Lidar lidar(scene, SmallBoat(), QuietParams(), start, 1);
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, start, 1);
   EXPECT_EQ(ReadU32LittleEndian(lidar.Next().payload, 1200), 3'600'000'000U - 2000U);
   EXPECT_EQ(ReadU32LittleEndian(lidar.Next().payload, 1200), 3'600'000'000U - 2000U + 1327U);
   EXPECT_EQ(ReadU32LittleEndian(lidar.Next().payload, 1200), 654U);  // 2 x 1327.104 - 2000, whole microseconds
@@ -167,10 +169,8 @@ TEST(Lidar, StampsFollowThePacketPeriodAcrossTheHour) {
 TEST(Lidar, DualPacketsHavePairsOfOneAzimuthAndTheTruthNumbersTheirReturns) {
   std::vector<Part> parts = Wall(30.0);
   parts.push_back({Ellipsoid{{15.0, 0.0, 3.0}, {2.0, 6.0, 4.0}}, {0.5, true}});
-  const auto scene = StillScene(0.0, parts);
-  auto params = QuietParams();
-  params.mode = config::Scene::DUAL;
-  Lidar lidar(scene, SmallBoat(), params, kStart, 1);
+  const auto scene = QuietScene(0.0, parts, config::Scene::DUAL);
+  Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
   int num_apart = 0;
   for (int i = 0; i < 151; ++i) {
     const auto packet = lidar.Next();
@@ -226,8 +226,8 @@ TEST(Lidar, RotorNeitherDriftsFromItsRateNorJumps) {
 
 TEST(Lidar, BlackThingsAreLostEarlierThanBrightOnes) {
   const auto count = [](double reflectance) {
-    const auto scene = StillScene(0.0, {{Prism{Rectangle(40.0, 41.0, -5.0, 5.0), 0.0, 5.0}, {reflectance}}});
-    Lidar lidar(scene, SmallBoat(), QuietParams(), kStart, 1);
+    const auto scene = QuietScene(0.0, {{Prism{Rectangle(40.0, 41.0, -5.0, 5.0), 0.0, 5.0}, {reflectance}}});
+    Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
     int num_seen = 0;
     for (int i = 0; i < 76; ++i) {
       for (const auto& made : lidar.Next().returns) num_seen += made.object_id == 1 ? 1 : 0;
@@ -239,9 +239,9 @@ TEST(Lidar, BlackThingsAreLostEarlierThanBrightOnes) {
 }
 
 TEST(Lidar, APuckHiResLooksAlongItsOwnBeams) {
-  const auto scene = StillScene(0.0, Wall(20.0));
-  auto params = QuietParams();
-  params.model = LidarModel::kPuckHiRes;
+  const auto scene = QuietScene(0.0, Wall(20.0));
+  LidarParams params;
+  params.model = vlp16::Model::kPuckHiRes;
   Lidar lidar(scene, SmallBoat(), params, kStart, 1);
   int num_checked = 0;
   for (int i = 0; i < 76; ++i) {
@@ -262,9 +262,9 @@ TEST(Lidar, APuckHiResLooksAlongItsOwnBeams) {
 
 TEST(Lidar, VerticalOriginsAreThoseOfTheModel) {
   // A level wall of beams cannot be had; the lowest beam of each model meets flat ground 1.5 m below at a range that tells its origin.
-  const auto range_of_lowest_m = [](LidarModel model, bool use_vertical_origin_offsets) {
-    const auto scene = StillScene(0.0, {{Prism{Rectangle(-50.0, 50.0, -50.0, 50.0), 0.0, 0.5}, {0.9}}});
-    auto params = QuietParams();
+  const auto range_of_lowest_m = [](vlp16::Model model, bool use_vertical_origin_offsets) {
+    const auto scene = QuietScene(0.0, {{Prism{Rectangle(-50.0, 50.0, -50.0, 50.0), 0.0, 0.5}, {0.9}}});
+    LidarParams params;
     params.model = model;
     params.use_vertical_origin_offsets = use_vertical_origin_offsets;
     Lidar lidar(scene, SmallBoat(), params, kStart, 1);
@@ -280,10 +280,10 @@ TEST(Lidar, VerticalOriginsAreThoseOfTheModel) {
     EXPECT_GT(count, 500);
     return sum_m / count;
   };
-  EXPECT_NEAR(range_of_lowest_m(LidarModel::kVlp16, false), 1.5 / std::sin(DegToRad(15.0)), 0.002);
-  EXPECT_NEAR(range_of_lowest_m(LidarModel::kVlp16, true), 1.5112 / std::sin(DegToRad(15.0)), 0.002);
-  EXPECT_NEAR(range_of_lowest_m(LidarModel::kPuckHiRes, false), 1.5 / std::sin(DegToRad(10.0)), 0.002);
-  EXPECT_NEAR(range_of_lowest_m(LidarModel::kPuckHiRes, true), 1.5074 / std::sin(DegToRad(10.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(vlp16::Model::kVlp16, false), 1.5 / std::sin(DegToRad(15.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(vlp16::Model::kVlp16, true), 1.5112 / std::sin(DegToRad(15.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(vlp16::Model::kPuckHiRes, false), 1.5 / std::sin(DegToRad(10.0)), 0.002);
+  EXPECT_NEAR(range_of_lowest_m(vlp16::Model::kPuckHiRes, true), 1.5074 / std::sin(DegToRad(10.0)), 0.002);
 }
 
 struct Jumps {
@@ -294,9 +294,8 @@ struct Jumps {
 // Azimuths and stamps against the rotor itself.
 Jumps ExpectFieldOfView(double from_deg, double to_deg, config::Scene::ReturnMode mode, double rpm) {
   SCOPED_TRACE(testing::Message() << from_deg << " to " << to_deg << " at " << rpm << (mode == config::Scene::DUAL ? " dual" : ""));
-  const auto scene = StillScene(0.0, Wall(20.0));
-  auto params = QuietParams();
-  params.mode = mode;
+  const auto scene = QuietScene(0.0, Wall(20.0), mode);
+  LidarParams params;
   params.rotation_rpm = rpm;
   params.field_of_view = {DegToRad(from_deg), WrapTo2Pi(DegToRad(to_deg - from_deg))};
   Lidar lidar(scene, SmallBoat(), params, kStart, 1);
@@ -355,8 +354,8 @@ TEST(Lidar, FiresOnlyInItsFieldOfViewAndStampsWhatItFires) {
 }
 
 TEST(Lidar, TruthOfAPacketAcrossTheGapHasTheTimesOfItsShots) {
-  const auto scene = StillScene(0.0, Wall(20.0));
-  auto params = QuietParams();
+  const auto scene = QuietScene(0.0, Wall(20.0));
+  LidarParams params;
   params.field_of_view = {DegToRad(330.0), DegToRad(60.0)};
   Lidar lidar(scene, SmallBoat(), params, kStart, 1);
   int num_across = 0;

@@ -18,11 +18,11 @@ Options Parse(std::vector<std::string> more) {
 TEST(Options, ReadsALine) {
   const auto options = Parse({"--seconds", "2.5", "--rpm", "1200", "--drop", "0.1", "--navigation", "standalone", "--fault", "drop:1:2:0.5"});
   EXPECT_EQ(options.seconds, 2.5);
-  EXPECT_EQ(options.lidar.rotation_rpm, 1200.0);
+  EXPECT_EQ(options.simulation.lidar.rotation_rpm, 1200.0);
   EXPECT_EQ(options.network.drop_share, 0.1);
-  EXPECT_EQ(options.navigation.gnss_sd_m, 1.5);
-  EXPECT_EQ(options.navigation.heading_sd_deg, 2.0);
-  EXPECT_EQ(options.faults.size(), 1U);
+  EXPECT_EQ(options.simulation.navigation.gnss_sd_m, 1.5);
+  EXPECT_EQ(options.simulation.navigation.heading_sd_deg, 2.0);
+  EXPECT_EQ(options.simulation.faults.size(), 1U);
 }
 
 // NaN used to pass: a run of no length, a head that never turns, noise that is not a number.

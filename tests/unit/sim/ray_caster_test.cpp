@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tools/sim/random.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -34,10 +34,8 @@ TEST(RayCaster, FindsWhatASearchThroughEverythingFinds) {
   SCOPED_TRACE(seed);
   Random random(seed, 99);
   for (const auto& name : SceneNames()) {
-    const auto scene = MakeScene(name, seed).value();
-    std::vector<RayCaster::Body> bodies;
-    for (const auto& object : scene.objects) bodies.push_back({object.id, object.track, &object.parts, &object});
-    RayCaster caster(bodies, BeamWidth{0.0015, 0.00075}, &scene.sea);
+    const auto scene = MakeScene(name, seed);
+    RayCaster caster(scene.objects, BeamWidth{0.0015, 0.00075}, &scene.sea);
     int num_hits = 0;
     for (int i = 0; i < 3000; ++i) {
       // Within the period of a sorting, so that rays start a little beside the eye that was sorted for; riders have been listed anew.
@@ -62,11 +60,15 @@ TEST(RayCaster, FindsWhatASearchThroughEverythingFinds) {
   }
 }
 
+// An object whose frame is that of the map.
+SceneObject Standing(int id, std::vector<Part> parts) { return {id, "", "", Track{{Eigen::Vector2d::Zero(), kPi / 2.0}}, std::move(parts), {}}; }
+
 TEST(RayCaster, SeesBehindFoliageOnly) {
   const std::vector<Part> tree_and_wall{{Ellipsoid{{10.0, 0.0, 2.0}, {1.0, 1.0, 2.0}}, {0.35, true}},
                                         {Prism{Rectangle(20.0, 21.0, -5.0, 5.0), 0.0, 5.0}, {0.3}},
                                         {Prism{Rectangle(30.0, 31.0, -5.0, 5.0), 0.0, 5.0}, {0.3}}};
-  RayCaster caster({{1, Track{{Eigen::Vector2d::Zero(), kPi / 2.0}}, &tree_and_wall}}, BeamWidth{}, nullptr);
+  const std::vector objects{Standing(1, tree_and_wall)};
+  RayCaster caster(objects, BeamWidth{}, nullptr);
   caster.MoveTo(0.0, {0.0, 0.0});
   const auto through = caster.Cast({{0.0, 0.0, 2.0}, {1.0, 0.0, 0.0}}, 100.0, true);
   ASSERT_EQ(through.count, 2);
@@ -76,8 +78,8 @@ TEST(RayCaster, SeesBehindFoliageOnly) {
 }
 
 TEST(RayCaster, FindsWhatLiesAcrossTheSeamOfItsSectors) {
-  const std::vector<Part> post{{Cylinder{{-10.0, 0.0}, 0.5, 0.0, 3.0}, {0.5}}};
-  RayCaster caster({{1, Track{{Eigen::Vector2d::Zero(), kPi / 2.0}}, &post}}, BeamWidth{}, nullptr);
+  const std::vector objects{Standing(1, {{Cylinder{{-10.0, 0.0}, 0.5, 0.0, 3.0}, {0.5}}})};
+  RayCaster caster(objects, BeamWidth{}, nullptr);
   caster.MoveTo(0.0, {0.0, 0.0});
   for (const double offset_rad : {-0.03, -1e-9, 0.0, 1e-9, 0.03}) {
     EXPECT_EQ(caster.Cast({{0.0, 0.0, 1.0}, {std::cos(kPi + offset_rad), std::sin(kPi + offset_rad), 0.0}}, 100.0, false).count, 1) << offset_rad;
@@ -90,8 +92,8 @@ class Edge : public testing::Test {
   Echoes CastAt(double near_m, double far_m, double offset_rad) {
     const std::vector<Part> board{{Prism{Rectangle(near_m, near_m + 0.05, 0.0, 2.0), 0.0, 3.0}, {0.5}}};
     const std::vector<Part> wall{{Prism{Rectangle(far_m, far_m + 1.0, -5.0, 5.0), 0.0, 3.0}, {0.5}}};
-    const Track track{{Eigen::Vector2d::Zero(), kPi / 2.0}};
-    RayCaster caster({{1, track, &board}, {2, track, &wall}}, BeamWidth{0.0015, 0.00075}, nullptr);
+    const std::vector objects{Standing(1, board), Standing(2, wall)};
+    RayCaster caster(objects, BeamWidth{0.0015, 0.00075}, nullptr);
     caster.MoveTo(0.0, {0.0, 0.0});
     return caster.CastBeam({{0.0, 0.0, 1.5}, {std::cos(offset_rad), std::sin(offset_rad), 0.0}}, 100.0, true);
   }

@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "common/core/angles.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
 #include "tools/sim/lidar.hpp"
-#include "tools/sim/scene_file.hpp"
 #include "tools/sim/traffic.hpp"
 
 namespace lookout::sim {
@@ -55,11 +55,10 @@ TEST(Scenes, LoadWithEverySeedAndAreTheSameAgain) {
     std::set<std::string> lakes;
     for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
       SCOPED_TRACE(name + " seed " + std::to_string(seed));
-      std::optional<Scene> scene;
+      Scene scene;
       ASSERT_NO_THROW(scene = MakeScene(name, seed));
-      ASSERT_TRUE(scene);
-      const std::string text = TextOf(*scene);
-      EXPECT_EQ(text, TextOf(*MakeScene(name, seed)));
+      const std::string text = TextOf(scene);
+      EXPECT_EQ(text, TextOf(MakeScene(name, seed)));
       lakes.insert(text);
     }
     EXPECT_EQ(lakes.size(), kNumSeeds) << name << ": seeds are to make different scenes";
@@ -69,10 +68,9 @@ TEST(Scenes, LoadWithEverySeedAndAreTheSameAgain) {
 TEST(Scenes, NumberTheirObjectsFromOneAndNameEachOnce) {
   for (const auto& scene_name : SceneNames()) {
     const auto scene = MakeScene(scene_name, 1);
-    ASSERT_TRUE(scene);
     std::set<std::string> names;
     int id = 0;
-    for (const auto& object : scene->objects) {
+    for (const auto& object : scene.objects) {
       EXPECT_EQ(object.id, ++id);
       EXPECT_TRUE(names.insert(object.name).second) << object.name;
       EXPECT_GE(object.outline_m.size(), 3U) << object.name;
@@ -86,7 +84,7 @@ TEST(Scenes, KeepIdsNamesAndKindsWithEverySeed) {
     const auto list = [&name](std::uint64_t seed) {
       const auto scene = MakeScene(name, seed);
       std::string text;
-      for (const auto& object : scene->objects) text += object.name + ' ' + object.kind + (object.is_in_water ? " in water\n" : "\n");
+      for (const auto& object : scene.objects) text += object.name + ' ' + object.kind + (object.is_in_water ? " in water\n" : "\n");
       return text;
     };
     EXPECT_EQ(list(1), list(2)) << name;
@@ -96,7 +94,7 @@ TEST(Scenes, KeepIdsNamesAndKindsWithEverySeed) {
 TEST(Scenes, OutlinesHoldAllPartsOfTheirObjects) {
   for (const auto& scene_name : SceneNames()) {
     const auto scene = MakeScene(scene_name, 3);
-    for (const auto& object : scene->objects) {
+    for (const auto& object : scene.objects) {
       for (const auto& part : object.parts) {
         const auto bounds = BoundsOf(part.solid);
         Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
@@ -112,11 +110,11 @@ TEST(Scenes, NothingComesWithinAMetreAndAHalfOfTheOwnBoat) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const auto scene = MakeScene(scene_name, seed);
       for (double time_s = 0.0; time_s <= 60.0; time_s += 1.0) {
-        const auto state = StateAt(scene->own_motion, 0.5, time_s);
+        const auto state = StateAt(scene.own_motion, 0.5, time_s);
         const Placement own{state.position_map_m.head<2>(), state.heading_rad};
         Outline hull_m;
         for (const auto& p_m : Rectangle(-1.2, 1.2, -0.7, 0.7)) hull_m.push_back(own.ToMap(p_m));
-        for (const auto& object : scene->objects) {
+        for (const auto& object : scene.objects) {
           ASSERT_GE(DistanceM(OutlineAt(object, time_s), hull_m), 1.5 - 1e-9) << scene_name << ' ' << object.name << " at " << time_s << " s";
         }
       }
@@ -129,8 +127,8 @@ TEST(Scenes, DrawnObjectsKeepTheirDistances) {
   for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
     const auto scene = MakeScene("dense", seed);
     for (double time_s = 0.0; time_s <= 60.0; time_s += 4.0) {
-      for (const auto& a : scene->objects) {
-        for (const auto& b : scene->objects) {
+      for (const auto& a : scene.objects) {
+        for (const auto& b : scene.objects) {
           if (a.id < b.id) {
             ASSERT_GE(DistanceM(OutlineAt(a, time_s), OutlineAt(b, time_s)), 2.9) << a.name << ' ' << b.name << " seed " << seed;
           }
@@ -143,8 +141,8 @@ TEST(Scenes, DrawnObjectsKeepTheirDistances) {
 TEST(Scenes, LakeKeepsItsBoatsApartForTenMinutes) {
   const auto scene = MakeScene("lake", 1);
   for (double time_s = 0.0; time_s < 600.0; time_s += 0.5) {
-    const Eigen::Vector2d own_m = StateAt(scene->own_motion, 0.5, time_s).position_map_m.head<2>();
-    for (const auto& object : scene->objects) {
+    const Eigen::Vector2d own_m = StateAt(scene.own_motion, 0.5, time_s).position_map_m.head<2>();
+    for (const auto& object : scene.objects) {
       for (const auto& vertex_m : OutlineAt(object, time_s)) ASSERT_GT((vertex_m - own_m).norm(), 4.0) << object.name << " at " << time_s << " s";
     }
   }
@@ -152,8 +150,8 @@ TEST(Scenes, LakeKeepsItsBoatsApartForTenMinutes) {
 
 TEST(Scenes, EightObjectsHasItsPairFourMetresApart) {
   const auto scene = MakeScene("eight_objects", 1);
-  ASSERT_EQ(scene->objects.size(), 8U);
-  EXPECT_NEAR(DistanceM(OutlineAt(scene->objects[0], 0.0), OutlineAt(scene->objects[1], 0.0)), 4.0, 1e-9);
+  ASSERT_EQ(scene.objects.size(), 8U);
+  EXPECT_NEAR(DistanceM(OutlineAt(scene.objects[0], 0.0), OutlineAt(scene.objects[1], 0.0)), 4.0, 1e-9);
 }
 
 // By the name before the number: in the order of their numbers.
@@ -167,7 +165,7 @@ std::vector<const SceneObject*> RowOf(const Scene& scene, const std::string& nam
 
 TEST(Scenes, MarinaHasGapsOfThreeToEightMetres) {
   for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
-    const auto scene = MakeScene("marina", seed).value();
+    const auto scene = MakeScene("marina", seed);
     for (const auto* name : {"north", "south", "east"}) {
       const auto row = RowOf(scene, name);
       ASSERT_GE(row.size(), 3U);
@@ -182,7 +180,7 @@ TEST(Scenes, MarinaHasGapsOfThreeToEightMetres) {
 
 TEST(Scenes, CanalHasWallsAtEightToFifteenMetresAndBoatsWithinAMetreOfThem) {
   for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
-    const auto scene = MakeScene("canal", seed).value();
+    const auto scene = MakeScene("canal", seed);
     for (const auto* name : {"north", "south"}) {
       const auto wall_m = OutlineAt(*RowOf(scene, "wall")[std::string(name) == "north" ? 0 : 1], 0.0);
       for (const auto* boat : RowOf(scene, name)) {
@@ -202,10 +200,10 @@ TEST(Scenes, CanalHasWallsAtEightToFifteenMetresAndBoatsWithinAMetreOfThem) {
 
 TEST(Scenes, OwnBoatMovesAsTheirNamesSay) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    const auto waves = MakeScene("waves", seed).value();
-    const auto crossing = MakeScene("crossing", seed).value();
-    const auto turning = MakeScene("turning", seed).value();
-    const auto kayak_shore = MakeScene("kayak_shore", seed).value();
+    const auto waves = MakeScene("waves", seed);
+    const auto crossing = MakeScene("crossing", seed);
+    const auto turning = MakeScene("turning", seed);
+    const auto kayak_shore = MakeScene("kayak_shore", seed);
     double roll_rad = 0.0;
     double pitch_rad = 0.0;
     for (int i = 0; i < 6000; ++i) {
@@ -229,7 +227,7 @@ TEST(Scenes, BlackBuoysGiveOneToThreeReturns) {
   std::map<int, int> num_seen;  // by returns in a turn
   int num_all = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    const auto scene = MakeScene("black_buoys", seed).value();
+    const auto scene = MakeScene("black_buoys", seed);
     config::BoatFacts boat = SmallBoat();
     Lidar lidar(scene, boat, LidarParams{}, Utime(std::chrono::seconds(1'781'532'600)), seed);
     for (int turn = 0; turn < 60; ++turn) {
@@ -276,7 +274,7 @@ TEST(PoseAt, LeavesWhatStandsOnTheGroundAlone) {
 
 TEST(OwnHull, LiesInsideOfTheBoxOfTheOwnVessel) {
   const Eigen::AlignedBox3d box_m(Eigen::Vector3d(-1.4, -0.9, -1.0), Eigen::Vector3d(1.4, 0.9, 2.0));
-  const auto parts = MakeOwnHull(box_m, 1.1, {-0.8, 0.4, 0.9});
+  const auto parts = MakeOwnHull(box_m, 1.1, {-0.8, 0.4, 0.9}).parts;
   EXPECT_EQ(parts.size(), 3U);
   for (const auto& part : parts) {
     const auto bounds = BoundsOf(part.solid);
@@ -290,7 +288,7 @@ TEST(OwnHull, LiesInsideOfTheBoxOfTheOwnVessel) {
 
 TEST(OwnHull, HasNoPostForAnAntennaOutsideOfTheBox) {
   const Eigen::AlignedBox3d box_m(Eigen::Vector3d(-1.4, -0.9, -1.0), Eigen::Vector3d(1.4, 0.9, 2.0));
-  EXPECT_EQ(MakeOwnHull(box_m, 1.1, {-3.0, 0.0, 0.9}).size(), 2U);
+  EXPECT_EQ(MakeOwnHull(box_m, 1.1, {-3.0, 0.0, 0.9}).parts.size(), 2U);
 }
 
 }  // namespace

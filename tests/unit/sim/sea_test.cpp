@@ -10,6 +10,16 @@ namespace {
 
 using Eigen::Vector2d;
 
+Sea DrawSea(double significant_height_m, double wavelength_m, double from_deg, double spread_deg, std::uint64_t seed) {
+  config::Scene::SeaState state;
+  state.set_significant_height_m(significant_height_m);
+  state.set_wavelength_m(wavelength_m);
+  state.set_from_deg(from_deg);
+  state.set_spread_deg(spread_deg);
+  Random random(seed, 1);
+  return Sea::Draw(state, random);
+}
+
 TEST(Sea, IsCalmWithoutWaves) {
   const Sea sea;
   EXPECT_TRUE(sea.is_calm());
@@ -20,8 +30,7 @@ TEST(Sea, IsCalmWithoutWaves) {
 }
 
 TEST(Sea, SlopeIsTheDerivativeOfTheHeight) {
-  Random random(7, 1);
-  const Sea sea = Sea::Draw({0.8, 10.0, 1.0, 0.6}, random);
+  const Sea sea = DrawSea(0.8, 10.0, 57.0, 34.0, 7);
   constexpr double kStepM = 1e-5;
   for (double t = 0.0; t < 20.0; t += 1.3) {
     const Vector2d p_m(3.0 * t - 20.0, 11.0 - 2.0 * t);
@@ -42,8 +51,7 @@ TEST(Sea, AWaveRunsWhereItIsSentAtTheSpeedOfDeepWater) {
 }
 
 TEST(Sea, SignificantHeightIsFourStandardDeviations) {
-  Random random(3, 1);
-  const Sea sea = Sea::Draw({0.6, 12.0, 4.0, 0.6}, random);
+  const Sea sea = DrawSea(0.6, 12.0, 229.0, 34.0, 3);
   double sum_squares_m2 = 0.0;
   int count = 0;
   for (double east_m = 0.0; east_m < 600.0; east_m += 3.7) {
@@ -58,8 +66,7 @@ TEST(Sea, SignificantHeightIsFourStandardDeviations) {
 
 TEST(Sea, ComesFromWhereTheFileSays) {
   // From the north without spread: nothing changes to the east, and crests go south.
-  Random random(3, 1);
-  const Sea sea = Sea::Draw({0.6, 12.0, 0.0, 0.0}, random);
+  const Sea sea = DrawSea(0.6, 12.0, 0.0, 0.0, 3);
   EXPECT_NEAR(sea.Slope({5.0, 6.0}, 7.0).x(), 0.0, 1e-9);
   const Sea one({{0.5, 10.0, kPi, 0.0}});
   EXPECT_NEAR(one.HeightM({0.0, -1.0}, 1.0 / std::sqrt(9.80665 * 10.0 / kTwoPi)), one.HeightM({0.0, 0.0}, 0.0), 1e-9);

@@ -21,7 +21,7 @@ inline config::BoatFacts SmallBoat() {
 /// One object around a boat that lies still at the origin. Object frame = map turned so that x is north.
 inline Scene StillScene(double own_heading_rad, std::vector<Part> parts) {
   Scene scene;
-  scene.own_motion.still_heading_rad = own_heading_rad;
+  scene.own_motion.track.start.heading_rad = own_heading_rad;
   scene.objects.push_back({1, "thing", "buoy", Track{}, std::move(parts), {{0.0, 0.0}}});
   return scene;
 }

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "tests/support/files.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/scene_file.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -29,7 +29,7 @@ SimulationParams Params(std::uint64_t seed, std::chrono::microseconds duration) 
 
 std::vector<Datagram> RunAll(const std::string& scene_name, const SimulationParams& params) {
   const auto scene = MakeScene(scene_name, params.seed);
-  Simulation simulation(*scene, SmallBoat(), params, nullptr);
+  Simulation simulation(scene, SmallBoat(), params, nullptr);
   std::vector<Datagram> datagrams;
   while (auto datagram = simulation.Next()) datagrams.push_back(std::move(*datagram));
   return datagrams;
@@ -123,13 +123,13 @@ TEST(Simulation, ALidarWithoutPowerSendsNothingAndItsTruthHoldsNothing) {
   const auto scene = MakeScene("lake", 1);
   std::vector<std::pair<Utime, std::uint32_t>> stamps;
   {
-    TruthWriter truth(folder, *scene, SmallBoat(), params.start);
-    Simulation simulation(*scene, SmallBoat(), params, &truth);
+    TruthWriter truth(folder, scene, SmallBoat(), params.start);
+    Simulation simulation(scene, SmallBoat(), params, &truth);
     while (const auto datagram = simulation.Next()) {
       if (datagram->port == 10110) continue;
       stamps.emplace_back(datagram->time, ReadU32LittleEndian(datagram->payload, datagram->port == 2368 ? 1200 : 198));
     }
-    truth.Close();
+    io::CommitAll(truth.Finish());
   }
   const std::uint32_t start_us = 600'000'000;  // ten minutes past the hour
   for (const auto& [time, stamp_us] : stamps) {
@@ -179,8 +179,8 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   const auto scene = MakeScene("lake", 1);
   std::size_t num_returns = 0;
   {
-    TruthWriter truth(folder, *scene, SmallBoat(), params.start);
-    Simulation simulation(*scene, SmallBoat(), params, &truth);
+    TruthWriter truth(folder, scene, SmallBoat(), params.start);
+    Simulation simulation(scene, SmallBoat(), params, &truth);
     truth.AddFault(ParseTimedFault("gnss_gap:0.1:0.3"));
     truth.AddFault(ParseTimedFault("gnss_jump:0.25:60:2.5"));
     truth.AddFault(Fault{FaultKind::kDoubled, params.start + 40ms, 29});
@@ -190,9 +190,9 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
         for (std::size_t k = 0; k < 32; ++k) num_returns += ReadU16LittleEndian(datagram->payload, block * 100 + 4 + k * 3) != 0 ? 1U : 0U;
       }
     }
-    truth.Close();
+    io::CommitAll(truth.Finish());
   }
-  EXPECT_EQ(Lines(folder / "objects.csv").size(), scene->objects.size() + 3);
+  EXPECT_EQ(Lines(folder / "objects.csv").size(), scene.objects.size() + 3);
   EXPECT_EQ(Lines(folder / "returns.csv").size(), num_returns + 1);
   EXPECT_EQ(Lines(folder / "returns.csv")[0], "utime_us,ring,return_index,object_id,reason,x_m,y_m,z_m");
   EXPECT_EQ(Lines(folder / "faults.csv"),
@@ -212,7 +212,7 @@ TEST(TruthWriter, WritesObjectsOutlinesPosesReturnsAndFaults) {
   EXPECT_EQ(num_buoy, 24);
   // All objects and the own boat each 100 ms.
   const auto object_poses = Lines(folder / "object_poses.csv");
-  EXPECT_EQ(object_poses.size(), 1U + 6U * (scene->objects.size() + 1));
+  EXPECT_EQ(object_poses.size(), 1U + 6U * (scene.objects.size() + 1));
   EXPECT_EQ(object_poses[0], "object_id,utime_us,latitude_deg,longitude_deg,east_m,north_m,up_m,heading_deg,roll_deg,pitch_deg");
 }
 

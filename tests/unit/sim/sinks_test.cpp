@@ -34,7 +34,7 @@ TEST(PcapSink, IsReadBackByLibpcapWithRightHeaders) {
     PcapSink sink(file, {2368, 8308});
     sink.Send({time, 2368, std::vector<std::uint8_t>(1206, 0xAB)});
     sink.Send({time + 1s, 10110, {'$', 'G', 'P'}});  // an odd number of bytes
-    sink.Close();
+    sink.Finish().Commit();
   }
   std::array<char, PCAP_ERRBUF_SIZE> fault{};
   pcap_t* capture = pcap_open_offline(file.c_str(), fault.data());

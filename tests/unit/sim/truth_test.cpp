@@ -15,8 +15,8 @@
 #include "common/core/angles.hpp"
 #include "lookout/sim_truth_t.hpp"
 #include "tests/support/files.hpp"
+#include "tests/unit/sim/scenes.hpp"
 #include "tests/unit/sim/sim_fixture.hpp"
-#include "tools/sim/scene_file.hpp"
 #include "tools/sim/simulation.hpp"
 
 namespace lookout::sim {
@@ -30,17 +30,17 @@ class TruthLogTest : public testing::Test {
  protected:
   // One second of a scene. @return messages of its truth.lcmlog
   std::vector<sim_truth_t> Run(const std::string& scene_name, config::Scene::ReturnMode mode) {
-    const auto scene = MakeScene(scene_name, 3).value();
+    auto scene = MakeScene(scene_name, 3);
+    scene.effects.set_return_mode(mode);
     SimulationParams params;
     params.start = Utime(1'781'532'600s);
     params.duration = 1s;
     params.seed = 3;
-    params.lidar.mode = mode;
     TruthWriter truth(folder_, scene, SmallBoat(), params.start, {.force = true});
     Simulation simulation(scene, SmallBoat(), params, &truth);
     while (simulation.Next()) {
     }
-    truth.Close();
+    io::CommitAll(truth.Finish());
     return Messages();
   }
 
@@ -114,7 +114,7 @@ TEST_F(TruthLogTest, HasTheReturnsOfTheCsvFile) {
 
 TEST_F(TruthLogTest, HasEveryObjectEachTenthOfASecondWithItsOutline) {
   const auto messages = Run("dense", config::Scene::STRONGEST);
-  const auto scene = MakeScene("dense", 3).value();
+  const auto scene = MakeScene("dense", 3);
   std::int64_t next_utime_us = 1'781'532'600'000'000;
   for (const auto& message : messages) {
     if (message.num_objects == 0) continue;
@@ -177,10 +177,10 @@ TEST_F(TruthLogTest, OwnBoatHasThePoseOfThePoseFile) {
 
 TEST_F(TruthLogTest, LargestScenesStayBelowTheLimitOfAMessage) {
   for (const auto& name : SceneNames()) {
-    const auto scene = MakeScene(name, 1).value();
+    const auto scene = MakeScene(name, 1);
     TruthWriter truth(folder_, scene, SmallBoat(), Utime(1'781'532'600s), {.force = true});
     truth.AdvanceTo(Utime(1'781'532'600s));
-    truth.Close();
+    io::CommitAll(truth.Finish());
     EXPECT_FALSE(Messages().empty()) << name;
   }
 }
