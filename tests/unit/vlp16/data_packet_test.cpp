@@ -54,6 +54,8 @@ TEST(DataPacket, IsRefusedWhenAnAzimuthIsNoAngle) {
   azimuth_cdeg[11] = 35999;
   azimuth_cdeg[10] = 35990;
   EXPECT_EQ(ParseDataPacket(MakeDataPacket(azimuth_cdeg, 0)).fault, DataFault::kNone);
+  azimuth_cdeg[11] = 36099;  // the most that rounding can be
+  EXPECT_EQ(ParseDataPacket(MakeDataPacket(azimuth_cdeg, 0)).packet.azimuth_cdeg[11], 99);
   for (const int azimuth : {36100, 36400, 65535}) {
     azimuth_cdeg[11] = azimuth;
     EXPECT_EQ(ParseDataPacket(MakeDataPacket(azimuth_cdeg, 0)).fault, DataFault::kAzimuth) << azimuth;
