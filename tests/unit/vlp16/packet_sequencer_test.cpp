@@ -398,6 +398,16 @@ TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
   }
 }
 
+TEST(PacketSequencer, CountsAJumpBetweenPacketsAsALossUntilItsThirdTime) {
+  const double step_deg = 110.592e-6 * 3600.0;
+  SequencerBench bench;
+  LimitedSensor sensor(30.0, 30.0 + 239.5 * step_deg);  // 20 packets
+  for (int i = 0; i < 55; ++i) bench.Add(sensor.Next());
+  EXPECT_GT(bench.counts().num_lost, 100);
+  for (int i = 0; i < 20; ++i) bench.Add(sensor.Next());
+  EXPECT_EQ(bench.counts().num_lost, 0);
+}
+
 TEST(PacketSequencer, TakesBackALossThatAJumpInsideOfAPacketExplains) {
   // The first jump is between packets, the second, 20.5 packets later, inside of one.
   const double step_deg = 110.592e-6 * 3600.0;
