@@ -199,6 +199,39 @@ TEST_F(Stream, AClockThatIsSetBackChangesNothing) {
   EXPECT_EQ(NumTaken('a'), 41);
 }
 
+// Where each message is measured after the one before, one that is not is somebody else's; but a clock that is set back by much is no publisher.
+TEST_F(Stream, OfRisingTimesWhoseClockIsSetBackGoesOnAtOnce) {
+  guard_ = StreamGuard(40.0, true);
+  Run('a', 100, 20);
+  SendAt('a', 120, 119 * kPeriodUs - 3'000'000);
+  EXPECT_EQ(NumTaken('a'), 21);
+  Run('a', 121, 20, -3'000'000);
+  EXPECT_EQ(NumTaken('a'), 41);
+  SendAt('b', 141, 140 * kPeriodUs - 3'000'000 - 1000);
+  EXPECT_EQ(NumTaken('b'), 0);
+}
+
+// A number gone wrong is held when the publisher starts again: it must not keep the place from what follows.
+TEST_F(Stream, ARestartBehindALoneWrongNumberLosesNothing) {
+  Run('a', 100, 20);
+  SendAt('x', 100'000, 119 * kPeriodUs);
+  Run('b', 0, 30);
+  EXPECT_EQ(NumTaken('b'), 30);
+  EXPECT_EQ(NumTaken('x'), 0);
+  EXPECT_EQ(guard_.num_refused(), 1);
+}
+
+TEST_F(Stream, TwoMessagesOfASecondPublisherAreEnoughToNameIt) {
+  Run('a', 100, 20);
+  SendAt('b', 5000, 119 * kPeriodUs);
+  SendAt('b', 5001, 120 * kPeriodUs);
+  Send('a', 120);
+  EXPECT_EQ(guard_.num_refused(), 2);
+  EXPECT_TRUE(HasSecond());
+  ASSERT_TRUE(guard_.first_interleaving());
+  EXPECT_EQ(guard_.first_interleaving()->mark, 20);
+}
+
 TEST_F(Stream, OfASlowChannelIsNotReplacedWithinThreePeriods) {
   constexpr std::int64_t kSecondUs = 1'000'000;
   for (std::int64_t i = 0; i < 20; ++i) {

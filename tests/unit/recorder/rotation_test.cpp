@@ -276,11 +276,13 @@ TEST_F(Rotation, WhatTheDiskCouldNotKeepIsLost) {
   Send(10);
   service.Flush();
   const auto kept_bytes = Count(service, "bytes");
+  const auto num_kept = Count(service, "events");
   is_broken = true;
   Send(4);
   service.Flush();
   EXPECT_EQ(Count(service, "lost"), 4);
   EXPECT_EQ(Count(service, "bytes"), kept_bytes);
+  EXPECT_EQ(Count(service, "events"), num_kept);
   EXPECT_GT(Count(service, "lost_bytes"), 0);
   EXPECT_EQ(service.Report().state, HealthState::kFailed);
   is_broken = false;

@@ -114,6 +114,18 @@ TEST_F(Recorder, SendsRunInfoOnTheBusToo) {
   EXPECT_EQ(received[1].seq, 1);
 }
 
+// A log that is played on the bus, say.
+TEST_F(Recorder, LogsACopyOfItsRunInfoThatComesAgain) {
+  Service service = Make();
+  HandleAll();
+  service.Flush();
+  ASSERT_EQ(Events(service.log_file()).size(), 1U);
+  bus_.Publish(bus::kRunInfo, Events(service.log_file())[0].bytes);
+  HandleAll();
+  service.Flush();
+  EXPECT_EQ(Events(service.log_file()).size(), 2U);
+}
+
 TEST_F(Recorder, LogsTheRunInfoOfSomebodyElse) {
   Service service = Make();
   run_info_t other{};

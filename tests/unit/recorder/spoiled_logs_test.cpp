@@ -115,6 +115,19 @@ TEST_F(Rotation, ALogThatIsRenamedLosesNothingAndIsFollowedByAnother) {
   EXPECT_NE(service.Report().reason.find("was moved or renamed: what was recorded is in it"), std::string::npos) << service.Report().reason;
 }
 
+TEST_F(Rotation, ALogThatIsWrittenToTwiceCountsOnce) {
+  Service service = Make();
+  Send(10);
+  service.Flush();
+  for (int i = 0; i < 2; ++i) {
+    std::ofstream(service.log_file(), std::ios::app) << "of another program";
+    Send(1);
+    service.Flush();
+  }
+  EXPECT_EQ(Count(service, "files_disturbed"), 1);
+  EXPECT_EQ(Count(service, "lost"), 0);
+}
+
 // The new folder may be on another disk: room is looked for there, before anything is written.
 TEST_F(Rotation, AFolderThatIsRenamedIsMadeAnewAndItsReserveHolds) {
   const auto moved = folder_.string() + "_moved";

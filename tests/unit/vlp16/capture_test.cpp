@@ -137,6 +137,21 @@ TEST(Frame, WithoutADatagramIsRefusedByReason) {
   EXPECT_EQ(fault(kRaw, ip), FrameFault::kBadLength);
 }
 
+TEST(FrameCounts, HaveADatagramWithoutATimeByItself) {
+  FrameCounts frames;
+  EXPECT_TRUE(frames.Add({}, Utime()));
+  EXPECT_FALSE(frames.Add({}, std::nullopt));
+  EXPECT_FALSE(frames.Add({.fault = FrameFault::kNotIp}, std::nullopt));
+  std::vector<Counter> counters;
+  frames.AppendTo(counters);
+  std::map<std::string_view, std::int64_t> by_name;
+  for (const auto& [name, count] : counters) by_name[name] = count;
+  EXPECT_EQ(by_name["frames_read"], 3);
+  EXPECT_EQ(by_name["frames_datagram"], 1);
+  EXPECT_EQ(by_name["frames_bad_time"], 1);
+  EXPECT_EQ(by_name["frames_not_ip"], 1);
+}
+
 TEST(Frame, IsCutAnywhereWithoutHarm) {
   for (const auto& [link_type, whole] : std::map<int, Text>{{kEthernet, kMacs + Text{0x81, 0x00, 0, 5, 0x08, 0x00} + Ipv4(Udp(2368, kPayload))},
                                                             {kCooked2, Text{0x86, 0xDD} + Text(18, 0) + Ipv6(Udp(2368, kPayload))},

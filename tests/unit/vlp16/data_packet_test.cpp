@@ -67,6 +67,8 @@ TEST(DataPacket, WrapsAnAzimuthThatWasRoundedUpToAFullRevolution) {
   EXPECT_TRUE(result.packet.has_wrapped_azimuth);
   EXPECT_EQ(result.packet.azimuth_cdeg[4], 0);
   EXPECT_EQ(result.packet.azimuth_cdeg[5], 18);
+  // The most that rounding can be.
+  EXPECT_EQ(ParseDataPacket(MakeDataPacket({35921, 35941, 35960, 35979, 36000, 36099, 138, 157, 177, 195, 216, 235}, 0)).packet.azimuth_cdeg[5], 99);
   EXPECT_FALSE(ParseDataPacket(MakeDataPacket(Azimuths(0, 40), 0)).packet.has_wrapped_azimuth);
   // Not where its neighbours are elsewhere: the blocks would go round more than once.
   EXPECT_EQ(ParseDataPacket(MakeDataPacket({100, 140, 180, 220, 36000, 300, 340, 380, 420, 460, 500, 540}, 0)).fault, DataFault::kAzimuthOrder);

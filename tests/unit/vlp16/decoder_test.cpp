@@ -80,6 +80,16 @@ TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewScan) {
   EXPECT_FLOAT_EQ(bench.scans[1].azimuth_rad.front(), static_cast<float>(DegToRad(120.0)));
 }
 
+TEST(Decoder, TakesAScanForWholeWhoseNextColumnWouldBeExactlyAtTheCut) {
+  for (const double cut_deg : {14.80, 14.81}) {
+    DecoderBench bench(Cut(cut_deg));
+    bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(1000, 40), 0));  // the last column: 14.40 + 0.20
+    bench.decoder.Flush();
+    ASSERT_EQ(bench.scans.size(), 1U);
+    EXPECT_EQ(bench.scans[0].is_partial_end, cut_deg > 14.80);
+  }
+}
+
 TEST(Decoder, InterpolatesAcrossTheSeam) {
   DecoderBench bench(Cut(180.0));
   bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(35990, 40), 0));

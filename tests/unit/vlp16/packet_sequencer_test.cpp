@@ -348,6 +348,9 @@ class LimitedSensor {
 
   double rpm = 600.0;
 
+  void Skip(int num_steps) {
+    for (int i = 0; i < num_steps; ++i) Advance();
+  }
   Payload Next() {
     std::array<int, format::kNumBlocks> azimuth_cdeg{};
     const double stamp_us = time_us_;
@@ -393,6 +396,28 @@ TEST(PacketSequencer, CountsNoLossForALimitedFieldOfView) {
       EXPECT_EQ(bench.counts().num_restarts, 0);
     }
   }
+}
+
+TEST(PacketSequencer, CountsAJumpBetweenPacketsAsALossUntilItsThirdTime) {
+  const double step_deg = 110.592e-6 * 3600.0;
+  SequencerBench bench;
+  LimitedSensor sensor(30.0, 30.0 + 239.5 * step_deg);  // 20 packets
+  for (int i = 0; i < 55; ++i) bench.Add(sensor.Next());
+  EXPECT_GT(bench.counts().num_lost, 100);
+  for (int i = 0; i < 20; ++i) bench.Add(sensor.Next());
+  EXPECT_EQ(bench.counts().num_lost, 0);
+}
+
+TEST(PacketSequencer, TakesBackALossThatAJumpInsideOfAPacketExplains) {
+  // The first jump is between packets, the second, 20.5 packets later, inside of one.
+  const double step_deg = 110.592e-6 * 3600.0;
+  SequencerBench bench;
+  LimitedSensor sensor(30.0, 30.0 + 245.5 * step_deg);
+  sensor.Skip(6);
+  for (int i = 0; i < 35; ++i) bench.Add(sensor.Next());
+  EXPECT_GT(bench.counts().num_lost, 50);
+  for (int i = 0; i < 10; ++i) bench.Add(sensor.Next());
+  EXPECT_EQ(bench.counts().num_lost, 0);
 }
 
 TEST(PacketSequencer, CountsLossesBesideALimitedFieldOfView) {

@@ -175,7 +175,13 @@ std::vector<Scenario> Scenarios() {
     s.host_error = constant(milliseconds(-250));
     s.expected = {{10, milliseconds(0), kSensor, ClockState::kLocked}};
   });
-  add("host that wanders over the limit does not make the source flip", [&](Scenario& s) {
+  // A host that is earlier is followed at once: no later arrival can explain it.
+  add("host that goes a little over the limit keeps the source, and loses it beyond", [&](Scenario& s) {
+    s.host_error = [](double time_s) { return milliseconds(time_s < 2.0 ? -240 : time_s < 4.0 ? -270 : -310); };
+    for (int scan = 5; scan < ScanAt(3.9); ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
+    s.expected.push_back({ScanAt(4.5), milliseconds(-310), kHost, ClockState::kLocked});
+  });
+  add("host whose deliveries wander over the limit does not make the source flip", [&](Scenario& s) {
     s.host_error = [](double time_s) { return milliseconds(240 + static_cast<int>(time_s * 10.0) % 2 * 30); };
     for (int scan = 5; scan < 50; ++scan) s.expected.push_back({scan, milliseconds(0), kSensor, ClockState::kLocked});
   });

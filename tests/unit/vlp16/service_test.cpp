@@ -1,6 +1,7 @@
 #include "services/vlp16/service.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <gtest/gtest.h>
 #include <map>
 
@@ -152,20 +153,48 @@ TEST(Service, FlushesALogThatHasNoEndMark) {
 }
 
 TEST(Service, RefusesABadRawMessageAsAWhole) {
+  const std::vector<std::function<void(lidar_packets_t&)>> kFaults{[](auto& message) { message.size_bytes[0] = 1207; },
+                                                                   [](auto& message) { message.size_bytes[0] = 1205; },
+                                                                   [](auto& message) { message.size_bytes[0] = -1; },
+                                                                   [](auto& message) { message.udp_port[0] = -1; },
+                                                                   [](auto& message) { message.udp_port[0] = 65536; },
+                                                                   [](auto& message) { message.marks = 4; },
+                                                                   [](auto& message) { message.seq = -1; },
+                                                                   [](auto& message) { message.utime_us = INT64_MIN; },
+                                                                   [](auto& message) { message.host_utime_us[0] = INT64_MAX; }};
+  Params params;
+  params.input = Input::kLog;
+  Bundler bundler(2368, 8308, 0.0);
+  bundler.Add(kServiceTime, 2368, SpinningSensor().Next());
+  const auto good = ToMessage(*bundler.Finish(kServiceTime));
+  for (std::size_t i = 0; i < kFaults.size(); ++i) {
+    Recorded out;
+    Service service(out.bus, params);
+    auto message = good;
+    kFaults[i](message);
+    bus::Publish(out.bus, bus::kLidarPackets, message);
+    out.Handle();
+    EXPECT_EQ(CountOf(service, "messages_refused"), 1) << i;
+    EXPECT_EQ(out.messages.size(), 1U) << i;
+  }
+}
+
+// A log of two runs is computed as each run was, live.
+TEST(Service, NumbersSentencesAnewBehindAStartMark) {
   Recorded out;
   Params params;
   params.input = Input::kLog;
-  Service service(out.bus, params);
-  auto message = ToMessage(*[] {
-    Bundler bundler(2368, 8308, 0.0);
-    bundler.Add(kServiceTime, 2368, SpinningSensor().Next());
-    return bundler.Finish(kServiceTime);
-  }());
-  message.size_bytes[0] = 1207;
-  bus::Publish(out.bus, bus::kLidarPackets, message);
+  const Service service(out.bus, params);
+  Bundler bundler(2368, 8308, 0.0);
+  for (int run = 0; run < 2; ++run) {
+    for (int i = 0; i < 2; ++i)
+      bundler.Add(kServiceTime + milliseconds(i), 8308, test::MakePositionPacket(static_cast<std::uint32_t>(1000 * i), 2, test::kValidRmc));
+    bus::Publish(out.bus, bus::kLidarPackets, ToMessage(*bundler.Finish(kServiceTime + milliseconds(10))));
+  }
   out.Handle();
-  EXPECT_EQ(CountOf(service, "messages_refused"), 1);
-  EXPECT_EQ(out.messages.size(), 1U);
+  std::vector<std::int64_t> seqs;
+  for (const auto& message : out.All<lidar_nmea_t>(bus::kLidarNmea)) seqs.push_back(message.seq);
+  EXPECT_EQ(seqs, (std::vector<std::int64_t>{0, 1, 0, 1}));
 }
 
 TEST(Service, SplitsAScanThatIsTooLargeByColumns) {
