@@ -104,11 +104,13 @@ bool IsCovariance(const double (&covariance)[9][9]) {
 
 double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
 
-void Split(const std::vector<Eigen::Vector2d>& places_m, std::vector<float>& first_m, std::vector<float>& second_m) {
+// @return their number
+std::int32_t Split(const std::vector<Eigen::Vector2d>& places_m, std::vector<float>& first_m, std::vector<float>& second_m) {
   for (const auto& place_m : places_m) {
     first_m.push_back(static_cast<float>(place_m.x()));
     second_m.push_back(static_cast<float>(place_m.y()));
   }
+  return messages::CountOf(places_m);
 }
 
 obstacle_t ToMessage(const Obstacle& obstacle) {
@@ -139,14 +141,10 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
   message.height_m = static_cast<float>(obstacle.height_m);
   message.num_points = obstacle.num_points;
   message.mean_reflectivity = obstacle.mean_reflectivity;
-  Split(obstacle.footprint_vessel_m, message.footprint_vessel_x_m, message.footprint_vessel_y_m);
-  message.num_footprint = messages::CountOf(message.footprint_vessel_x_m);
-  Split(obstacle.footprint_map_m, message.footprint_east_m, message.footprint_north_m);
-  message.num_map = messages::CountOf(message.footprint_east_m);
-  Split(obstacle.waterline_vessel_m, message.waterline_vessel_x_m, message.waterline_vessel_y_m);
-  message.num_waterline = messages::CountOf(message.waterline_vessel_x_m);
-  Split(obstacle.waterline_map_m, message.waterline_east_m, message.waterline_north_m);
-  message.num_waterline_map = messages::CountOf(message.waterline_east_m);
+  message.num_footprint = Split(obstacle.footprint_vessel_m, message.footprint_vessel_x_m, message.footprint_vessel_y_m);
+  message.num_map = Split(obstacle.footprint_map_m, message.footprint_east_m, message.footprint_north_m);
+  message.num_waterline = Split(obstacle.waterline_vessel_m, message.waterline_vessel_x_m, message.waterline_vessel_y_m);
+  message.num_waterline_map = Split(obstacle.waterline_map_m, message.waterline_east_m, message.waterline_north_m);
   return message;
 }
 

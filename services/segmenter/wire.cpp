@@ -67,18 +67,16 @@ segment_t ToMessage(const Segment& segment) {
   message.mean_reflectivity = segment.mean_reflectivity;
   message.max_reflectivity = segment.max_reflectivity;
   message.seen_share = segment.seen_share;
-  for (const auto& corner : segment.hull) {
-    message.hull_x_m.push_back(corner.x_m);
-    message.hull_y_m.push_back(corner.y_m);
-    message.hull_time_us.push_back(corner.time_us);
-  }
-  message.num_hull = messages::CountOf(message.hull_x_m);
-  for (const auto& corner : segment.waterline) {
-    message.waterline_x_m.push_back(corner.x_m);
-    message.waterline_y_m.push_back(corner.y_m);
-    message.waterline_time_us.push_back(corner.time_us);
-  }
-  message.num_waterline = messages::CountOf(message.waterline_x_m);
+  const auto split = [](const auto& corners, auto& x_m, auto& y_m, auto& time_us) {
+    for (const auto& corner : corners) {
+      x_m.push_back(corner.x_m);
+      y_m.push_back(corner.y_m);
+      time_us.push_back(corner.time_us);
+    }
+    return messages::CountOf(corners);
+  };
+  message.num_hull = split(segment.hull, message.hull_x_m, message.hull_y_m, message.hull_time_us);
+  message.num_waterline = split(segment.waterline, message.waterline_x_m, message.waterline_y_m, message.waterline_time_us);
   return message;
 }
 

@@ -59,7 +59,7 @@ struct World {
 Run Play(const World& world, microseconds period, microseconds duration) {
   const LocalFrame map({50.0, 8.0, 0.0});
   auto params = LoadParams(support::kDemoConfig.string());
-  params.input = Input::kOutside;
+  params.reads_nav_raw = false;
   SourceParams source;
   source.name = kTcp;
   source.latency = kDelay;

@@ -21,9 +21,9 @@ using Sent = std::map<std::string, std::vector<std::vector<std::uint8_t>>>;
 constexpr double kLatitudeDeg = 43.63;
 constexpr double kLongitudeDeg = -72.15;
 
-Params TestParams(Input input) {
+Params TestParams(bool reads_nav_raw) {
   auto params = LoadParams(support::kDemoConfig.string());
-  params.input = input;
+  params.reads_nav_raw = reads_nav_raw;
   // A compass and a strapdown sensor on a serial line, with all that config can say of it.
   SourceParams ahrs;
   ahrs.name = "ahrs";
@@ -48,7 +48,7 @@ Sent RunFromOutside(unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&random](double min, double max) { return std::uniform_real_distribution<double>(min, max)(random); };
   bus::MemoryBus bus;
-  Service service(bus, TestParams(Input::kOutside));
+  Service service(bus, TestParams(false));
   Sent sent;
   Collect(bus, sent);
   double time_s = 0.0;
@@ -112,7 +112,7 @@ Sent RunFromOutside(unsigned seed) {
 
 Sent RunFromLog(const Sent& log) {
   bus::MemoryBus bus;
-  Service service(bus, TestParams(Input::kLog));
+  Service service(bus, TestParams(true));
   Sent sent;
   Collect(bus, sent);
   for (const auto& bytes : log.at("NAV_RAW")) {

@@ -117,7 +117,7 @@ struct Wrong {
 
 Wrong Play(const Case& scene) {
   auto params = LoadParams(support::kDemoConfig.string());
-  params.input = Input::kOutside;
+  params.reads_nav_raw = false;
   params.navigator.filter.p_vessel_antenna_m.setZero();
   params.navigator.filter.p_vessel_imu_m.setZero();
   bus::MemoryBus bus;

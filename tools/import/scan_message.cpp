@@ -8,6 +8,11 @@ namespace lookout::importer {
 
 namespace {
 
+template <typename T>
+std::int32_t Count(const std::vector<T>& values) {
+  return static_cast<std::int32_t>(values.size());
+}
+
 lidar_scan_t HeadOf(const segmenter::Scan& scan, const std::string& model) {
   lidar_scan_t message{};
   message.utime_us = ToUtimeUs(scan.head.time);
@@ -24,9 +29,9 @@ lidar_scan_t HeadOf(const segmenter::Scan& scan, const std::string& model) {
     message.time_offset_ns.push_back(ring.time_offset_ns);
     message.origin_height_m.push_back(ring.origin_height_m);
   }
-  message.num_rings = messages::CountOf(message.elevation_rad);
+  message.num_rings = Count(message.elevation_rad);
   message.return_kind.assign(static_cast<std::size_t>(scan.head.num_returns), lidar_scan_t::RETURN_STRONGEST);
-  message.num_returns = messages::CountOf(message.return_kind);
+  message.num_returns = Count(message.return_kind);
   message.num_turn_columns = scan.columns.size();
   return message;
 }
@@ -52,14 +57,14 @@ std::vector<lidar_scan_t> ToScanMessages(const segmenter::Scan& scan, const std:
     const int end_column = column_at(part + 1);
     message.azimuth_rad.assign(scan.columns.azimuth_rad.begin() + message.first_column, scan.columns.azimuth_rad.begin() + end_column);
     message.time_ns.assign(scan.columns.time_ns.begin() + message.first_column, scan.columns.time_ns.begin() + end_column);
-    message.num_columns = messages::CountOf(message.azimuth_rad);
+    message.num_columns = Count(message.azimuth_rad);
     const auto first_cell = static_cast<std::ptrdiff_t>(message.first_column) * cells_per_column;
     const auto end_cell = static_cast<std::ptrdiff_t>(end_column) * cells_per_column;
     message.range.resize(static_cast<std::size_t>(end_cell - first_cell));
     std::transform(scan.columns.range.begin() + first_cell, scan.columns.range.begin() + end_cell, message.range.begin(),
                    [](std::uint16_t count) { return std::bit_cast<std::int16_t>(count); });
     message.reflectivity.assign(scan.columns.reflectivity.begin() + first_cell, scan.columns.reflectivity.begin() + end_cell);
-    message.num_cells = messages::CountOf(message.range);
+    message.num_cells = Count(message.range);
   }
   return messages;
 }
