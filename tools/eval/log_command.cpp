@@ -1,6 +1,5 @@
 #include "tools/eval/log_command.hpp"
 
-#include <concepts>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "common/config/boat.hpp"
 #include "tools/eval/report.hpp"
 #include "tools/export/boat_of_log.hpp"
+#include "tools/export/scans.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -20,18 +20,11 @@ namespace {
 constexpr std::size_t kMaxWaiting = 256;
 
 // Decodes and hands on. @return whether the message could be used
-template <typename Message, typename Taker>
-bool Take(const bus::LogEvent& event, Taker& taker) {
-  auto message = bus::Decode<Message>(event.bytes);
-  if (!message) return false;
-  if constexpr (requires {
-                  { taker.Add(std::move(*message)) } -> std::same_as<bool>;
-                }) {
-    return taker.Add(std::move(*message));
-  } else {
-    taker.Add(*message);
-    return true;
-  }
+template <typename Message>
+bool Take(const bus::LogEvent& event, auto& taker) {
+  const auto message = bus::Decode<Message>(event.bytes);
+  if (message) taker.Add(*message);
+  return message.has_value();
 }
 
 }  // namespace
@@ -58,20 +51,17 @@ int EvaluateLog(const LogOptions& options) {
   std::int64_t num_unusable = 0;
   while (const auto event = reader.Next()) {
     bool is_taken = true;
-    if (event->channel == bus::kObstacles.name) {
-      is_taken = Take<obstacles_t>(*event, collector);
-    } else if (event->channel == bus::kLidarClock.name) {
+    const auto& channel = event->channel;
+    if (channel == bus::kObstacles.name || (truth && (channel == bus::kLidarScan.name || channel == bus::kSegments.name))) {
+      is_taken = exporter::AddTo(collector, channel, event->bytes) == exporter::Taken::kOk;
+    } else if (channel == bus::kLidarClock.name) {
       is_taken = Take<lidar_clock_t>(*event, machine);
-    } else if (event->channel == bus::kHealth.name) {
+    } else if (channel == bus::kHealth.name) {
       is_taken = Take<health_t>(*event, machine);
-    } else if (truth && event->channel == bus::kRunInfo.name) {
+    } else if (truth && channel == bus::kRunInfo.name) {
       is_taken = exporter::TakeRunInfo(event->bytes, boat) == exporter::Taken::kOk;
       if (boat && options.true_boat_folder.empty()) evaluation.SetMounting(boat->T_vessel_lidar);
-    } else if (truth && event->channel == bus::kLidarScan.name) {
-      is_taken = Take<lidar_scan_t>(*event, collector);
-    } else if (truth && event->channel == bus::kSegments.name) {
-      is_taken = Take<segments_t>(*event, collector);
-    } else if (truth && event->channel == bus::kPose.name) {
+    } else if (truth && channel == bus::kPose.name) {
       is_taken = Take<pose_t>(*event, evaluation);
     }
     if (!is_taken) ++num_unusable;

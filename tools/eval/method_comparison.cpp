@@ -15,12 +15,8 @@ double ToMs(std::chrono::nanoseconds duration) { return std::chrono::duration<do
 
 MethodComparison::MethodComparison(const Methods& methods) : methods_(methods) {
   for (const auto& method : methods) {
-    if (!method->knows_doubt()) {
-      results_.push_back({method->name(), {}, {}, {}});
-      continue;
-    }
-    results_.push_back({method->name() + std::string(kAllSegments), {}, {}, {}});
-    results_.push_back({method->name() + std::string(kSureOnly), {}, {}, {}});
+    results_.push_back({method->name() + std::string(method->knows_doubt() ? kAllSegments : ""), {}, {}, {}});
+    if (method->knows_doubt()) results_.push_back({method->name() + std::string(kSureOnly), {}, {}, {}});
   }
 }
 

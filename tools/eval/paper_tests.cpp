@@ -197,6 +197,9 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
   return curve;
 }
 
+void SetE2(segmenter::ClusteringParams& params, double deg) { params.e2_angle_rad = DegToRad(deg); }
+void SetE3(segmenter::ClusteringParams& params, double m) { params.e3_distance_m = m; }
+
 std::vector<double> Steps(double from, double step, int count) {
   std::vector<double> values(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = from + i * step;
@@ -220,26 +223,14 @@ std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps) {
 Curve RunPaperTest(int number, RunPlan plan, const Boat& boat, std::FILE* progress) {
   if (number == 1) return RunTest1(std::move(plan), boat, progress);
   const segmenter::ClusteringParams in_print;  // the defaults are the paper's
-  if (number == 2) {
-    plan.scenes = {"shore_20m"};
-    const ClusterTest test{"shore",
-                           "e2",
-                           "deg",
-                           Steps(5.0, 5.0, 17),
-                           std::round(RadToDeg(in_print.e2_angle_rad)),
-                           false,
-                           [](segmenter::ClusteringParams& params, double deg) { params.e2_angle_rad = DegToRad(deg); }};
-    return CountClusters({"Test 2: a shore at 20 m", "e2, degrees", "clusters of the shore a scan", {}, "One shore should be one object."}, test,
-                         plan, boat, progress);
-  }
-  plan.scenes = {"motorboat_6m"};
-  const ClusterTest test{
-      "motor_boat", "e3", "m", Steps(0.0, 0.5, 13), in_print.e3_distance_m, true, [](segmenter::ClusteringParams& params, double m) {
-        params.e3_distance_m = m;
-      }};
-  return CountClusters(
-      {"Test 3: a motor boat of 6 m", "e3, m", "clusters of the boat a scan", {}, "One boat should be one object; in print it is from 3 m on."}, test,
-      plan, boat, progress);
+  const bool is_shore = number == 2;
+  plan.scenes = {is_shore ? "shore_20m" : "motorboat_6m"};
+  const ClusterTest shore{"shore", "e2", "deg", Steps(5.0, 5.0, 17), std::round(RadToDeg(in_print.e2_angle_rad)), false, SetE2};
+  const ClusterTest boat_test{"motor_boat", "e3", "m", Steps(0.0, 0.5, 13), in_print.e3_distance_m, true, SetE3};
+  Curve of_shore{"Test 2: a shore at 20 m", "e2, degrees", "clusters of the shore a scan", {}, "One shore should be one object."};
+  Curve of_boat{
+      "Test 3: a motor boat of 6 m", "e3, m", "clusters of the boat a scan", {}, "One boat should be one object; in print it is from 3 m on."};
+  return CountClusters(is_shore ? of_shore : of_boat, is_shore ? shore : boat_test, plan, boat, progress);
 }
 
 }  // namespace lookout::eval

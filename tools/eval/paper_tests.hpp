@@ -27,8 +27,7 @@ struct ShoreGap {
 };
 
 /// @return the least distance from which on the kayak is its own segment: in steps of a metre up to 30 m, those with scans, its mean IoU is kFoundIou
-/// or
-///         more; nullopt when it is not even at the farthest
+///         or more; nullopt when it is not even at the farthest
 std::optional<double> OwnSegmentFromM(const std::vector<ShoreGap>& gaps);
 
 }  // namespace lookout::eval

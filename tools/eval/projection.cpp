@@ -27,6 +27,7 @@ void ProjectionTable::AddTo(Sums& sums, int image_columns, const LabelledScan& t
   std::iota(indices.begin(), indices.end(), 0);
   const auto image = segmenter::ProjectToAzimuths(scan, returns, indices, image_columns);
   std::vector<segmenter::Point> points;
+  points.reserve(returns.size());
   for (const auto& one : returns) points.push_back(one.point);
   const PointTree tree(std::move(points));
   auto labelling = SegmenterMethod("", PaperParams(boat_, image_columns)).Segment(scan);

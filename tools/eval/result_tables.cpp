@@ -22,9 +22,9 @@ std::string Percent(double share) { return Number(100.0 * share, 1); }
 
 // A figure of the tables, as it is printed.
 struct Column {
-  const char* heading;
-  Mean Score::*figure;
-  int decimals;            // kPercent: a share, in per cent
+  const char* heading = "";
+  Mean Score::*figure = nullptr;
+  int decimals = 0;        // kPercent: a share, in per cent
   bool is_of_all = false;  // over all scans; else the mean over the scenes
 
   static constexpr int kPercent = -1;

@@ -64,11 +64,9 @@ Vector2d Center(const std::vector<Vector2d>& hull) {
 
 TruePoses::TruePoses(const Truth& truth, const GeographicLib::LocalCartesian& map) {
   for (const auto& [utime_us, pose] : truth.poses()) {
-    double east_m = 0.0;
-    double north_m = 0.0;
-    double up_m = 0.0;
-    map.Forward(pose.latitude_deg, pose.longitude_deg, map.HeightOrigin(), east_m, north_m, up_m);
-    samples_.push_back({utime_us, {east_m, north_m}, DegToRad(pose.heading_deg), DegToRad(pose.roll_deg), DegToRad(pose.pitch_deg)});
+    Eigen::Vector3d p_map_m;
+    map.Forward(pose.latitude_deg, pose.longitude_deg, map.HeightOrigin(), p_map_m.x(), p_map_m.y(), p_map_m.z());
+    samples_.push_back({utime_us, p_map_m.head<2>(), DegToRad(pose.heading_deg), DegToRad(pose.roll_deg), DegToRad(pose.pitch_deg)});
   }
 }
 

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     // --help and --version come here too, with code 0.
     return app.exit(error) == 0 ? EXIT_SUCCESS : exporter::kExitUsage;
   }
+  if (request.output == "") request.output = std::nullopt;
   lookout::io::CatchStopSignals();
   return exporter::Run(request, std::cerr);
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 #include "services/segmenter/core/union_find.hpp"
 #include "tools/eval/baselines/point_tree.hpp"
@@ -36,8 +37,7 @@ Indices Seeds(std::span<const Eigen::Vector3d> points_m, const Indices& indices,
   for (const auto i : indices) height_m.push_back(points_m[i].z());
   const auto num_lowest = std::min(height_m.size(), static_cast<std::size_t>(params.num_lowest));
   std::partial_sort(height_m.begin(), height_m.begin() + static_cast<std::ptrdiff_t>(num_lowest), height_m.end());
-  double sum_m = 0.0;
-  for (std::size_t i = 0; i < num_lowest; ++i) sum_m += height_m[i];
+  const double sum_m = std::accumulate(height_m.begin(), height_m.begin() + static_cast<std::ptrdiff_t>(num_lowest), 0.0);
   const double limit_m = sum_m / static_cast<double>(num_lowest) + params.seed_height_m;
   Indices seeds;
   for (const auto i : indices) {
