@@ -16,11 +16,11 @@
 #include <string>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/core/printable.hpp"
 #include "common/runtime/log_pattern.hpp"
 #include "common/runtime/options.hpp"
 #include "common/runtime/process.hpp"
 #include "tools/top/board.hpp"
-#include "tools/top/format.hpp"
 #include "tools/top/screen.hpp"
 #include "tools/top/terminal.hpp"
 
@@ -111,8 +111,7 @@ class Listener {
 
 std::string Title(const std::string& lcm_url) {
   const auto now = std::chrono::system_clock::to_time_t(lookout::runtime::HostNow());
-  return fmt::format("lookout-top {}   {:%Y-%m-%d %H:%M:%S} UTC   {}", lookout::runtime::Version(), fmt::gmtime(now),
-                     lookout::top::Printable(lcm_url));
+  return fmt::format("lookout-top {}   {:%Y-%m-%d %H:%M:%S} UTC   {}", lookout::runtime::Version(), fmt::gmtime(now), lookout::Printable(lcm_url));
 }
 
 void PrintOnce(const Options& options) {
