@@ -156,23 +156,23 @@ class Salvager {
       if (IsEnd()) return;  // it is never closed: the parser says so
       ++next_;
       if (IsSeparator(Now())) ++next_;
-      if (IsSecond(*field, line, line_of_first)) Refuse(first, {line, prefix + name, SecondReason(*field, line_of_first)}, line_of_message);
+      if (const auto reason = SecondReason(*field, line, line_of_first)) Refuse(first, {line, prefix + name, *reason}, line_of_message);
       return;
     }
     next_ = EndOf(first, value);
     if (IsSeparator(Now())) ++next_;
     if (const auto error = ErrorOf(*descriptor, first)) {
       Refuse(first, {line + std::min(std::max(error->first, 0), At(next_ - 1).line - line), prefix + name, error->second}, line_of_message);
-    } else if (field != nullptr && IsSecond(*field, line, line_of_first)) {
-      Refuse(first, {line, prefix + name, SecondReason(*field, line_of_first)}, line_of_message);
+    } else if (field != nullptr) {
+      if (const auto reason = SecondReason(*field, line, line_of_first)) Refuse(first, {line, prefix + name, *reason}, line_of_message);
     }
   }
 
-  static bool IsSecond(const FieldDescriptor& field, int line, std::map<const FieldDescriptor*, int>& line_of_first) {
-    return !field.is_repeated() && !line_of_first.try_emplace(&field, line).second;
-  }
-  static std::string SecondReason(const FieldDescriptor& field, const std::map<const FieldDescriptor*, int>& line_of_first) {
-    return "stands twice; the first is in line " + std::to_string(line_of_first.at(&field) + 1);
+  // nullopt: it is the first value of the field, or one of a list.
+  static std::optional<std::string> SecondReason(const FieldDescriptor& field, int line, std::map<const FieldDescriptor*, int>& line_of_first) {
+    const auto [first, is_first] = line_of_first.try_emplace(&field, line);
+    if (is_first || field.is_repeated()) return std::nullopt;
+    return "stands twice; the first is in line " + std::to_string(first->second + 1);
   }
 
   // One behind the last piece of a statement that is no known message: a value, a list, a message that is not known, or what is no statement.

@@ -34,7 +34,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string TextOfFile(const char* path) {
+std::string TextOfFile(const fs::path& path) {
   std::ifstream in(path);
   std::ostringstream text;
   text << in.rdbuf();
@@ -68,13 +68,6 @@ constexpr const char* kClosedFile = "/run/lookout-firewall/closed";
 constexpr const char* kOwnUser = "lookout";
 constexpr std::string_view kOwnPrograms = "lookout-";
 
-std::string FirstLine(const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
-}
-
 std::string UserName(unsigned int user) {
   const passwd* entry = getpwuid(user);
   return entry != nullptr ? entry->pw_name : std::to_string(user);
@@ -93,7 +86,8 @@ std::map<std::uint64_t, std::string> HoldersOfSockets() {
       const auto target = fs::read_symlink(descriptor->path(), gone).string();
       constexpr std::string_view kSocket = "socket:[";
       if (gone || target.rfind(kSocket, 0) != 0) continue;
-      holders[std::strtoull(target.c_str() + kSocket.size(), nullptr, 10)] = FirstLine(process->path() / "comm") + " (pid " + pid + ")";
+      const auto name = TextOfFile(process->path() / "comm");  // a line
+      holders[std::strtoull(target.c_str() + kSocket.size(), nullptr, 10)] = name.substr(0, name.find('\n')) + " (pid " + pid + ")";
     }
   }
   return holders;
@@ -256,7 +250,7 @@ std::vector<SocketSeen> SocketsOfPort(const std::string& table, int port) {
 PortSeen ReadPort(const BusSeen& bus) {
   PortSeen seen;
   if (bus.group.empty()) return seen;
-  seen.is_closed = FirstLine(kClosedFile).rfind(std::to_string(bus.port) + " ", 0) == 0;
+  seen.is_closed = TextOfFile(kClosedFile).starts_with(std::to_string(bus.port) + " ");
   const auto holders = HoldersOfSockets();
   for (const auto& socket : SocketsOfPort(TextOfFile("/proc/net/udp"), bus.port)) {
     const auto holder = holders.find(socket.inode);

@@ -1,6 +1,5 @@
 // HEALTH of the processes, the guard zone, and obstacles.
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <set>
 #include <string>

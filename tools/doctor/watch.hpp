@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <functional>
-#include <string_view>
 
 #include "common/bus/bus.hpp"
 #include "lookout/health_t.hpp"

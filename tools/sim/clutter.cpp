@@ -1,7 +1,6 @@
 #include "tools/sim/clutter.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/core/angles.hpp"

@@ -1,7 +1,6 @@
 // Lidar, receiver and attitude sensor of the simulated boat, in one order of arrival.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "common/config/boat.hpp"

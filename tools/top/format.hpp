@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "common/core/printable.hpp"
-
 namespace lookout::top {
 
 /// Right-aligned. Where the number is too wide, decimals go first, then "###" stands for it; "-" for what is not finite.
@@ -24,9 +22,6 @@ std::string Right(std::string_view text, int width);
 
 /// As many of the cells, one beside the other, as are whole within the width; the first is cut to it.
 std::string Fitting(const std::vector<std::string>& cells, int width);
-
-/// Text from outside, for a terminal: what is not printable ASCII becomes "?", so that no message can send a control sequence.
-using lookout::Printable;
 
 /// Words of printable `text` in lines of at most `width`; a longer word is broken. What is more than `max_lines` ends in "..".
 /// Precondition: width >= 3, max_lines >= 1.

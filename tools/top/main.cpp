@@ -16,10 +16,10 @@
 #include <string>
 
 #include "common/bus/lcm_bus.hpp"
+#include "common/core/printable.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/top/board.hpp"
-#include "tools/top/format.hpp"
 #include "tools/top/screen.hpp"
 #include "tools/top/terminal.hpp"
 
@@ -110,8 +110,7 @@ class Listener {
 
 std::string Title(const std::string& lcm_url) {
   const auto now = std::chrono::system_clock::to_time_t(lookout::runtime::HostNow());
-  return fmt::format("lookout-top {}   {:%Y-%m-%d %H:%M:%S} UTC   {}", lookout::runtime::Version(), fmt::gmtime(now),
-                     lookout::top::Printable(lcm_url));
+  return fmt::format("lookout-top {}   {:%Y-%m-%d %H:%M:%S} UTC   {}", lookout::runtime::Version(), fmt::gmtime(now), lookout::Printable(lcm_url));
 }
 
 void PrintOnce(const Options& options) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/core/printable.hpp"
 #include "tools/export/velocity.hpp"
 #include "tools/export/words.hpp"
 #include "tools/top/format.hpp"
@@ -247,7 +248,6 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
   }
 
   std::vector<Row> rows;
-  rows.reserve(alarm_lines.size());
   for (const auto& line : alarm_lines) rows.push_back({{Left(line, view.width), Style::kAlarm}});
   if (plan.has_title) rows.push_back({{title, Style::kPlain}});
   rows.push_back({OwnShipSpan(board.own(), now, view.width)});

@@ -7,6 +7,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
+#include "common/core/printable.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "tests/unit/top/bus_talk.hpp"
 #include "tools/top/format.hpp"
