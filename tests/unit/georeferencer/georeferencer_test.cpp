@@ -54,6 +54,16 @@ TEST(Georeferencer, ReleasesATurnWithTheFirstPoseAtOrAfterItsEnd) {
   EXPECT_TRUE(released[0].datum.IsSameAs(test::kLake));
 }
 
+// The pose of that instant is all that it needs: waiting for the next would cost 20 ms.
+TEST(Georeferencer, ReleasesAScanWithThePoseOfItsVeryEnd) {
+  auto georeferencer = Make();
+  auto part = Turn(0, 7);
+  part.head.end_time = At(100'000);
+  EXPECT_TRUE(georeferencer.AddSegments(part).empty());
+  EXPECT_TRUE(AddPoses(georeferencer, 0, 80'000).empty());
+  EXPECT_EQ(georeferencer.AddPose(MakePose(100'000)).size(), 1U);
+}
+
 TEST(Georeferencer, ReleasesAtOnceWhenPoseWasFaster) {
   auto georeferencer = Make();
   AddPoses(georeferencer, 0, 1'000'000);

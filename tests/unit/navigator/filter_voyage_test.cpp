@@ -8,6 +8,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
+#include "services/navigator/core/filter/motion.hpp"
 #include "services/navigator/core/filter/pose_filter.hpp"
 #include "tests/unit/navigator/filter_measurements.hpp"
 
@@ -220,6 +221,26 @@ void ExpectExact(const Result& result) {
   EXPECT_EQ(result.num_not_ok, 0);
   EXPECT_EQ(result.counts["gated_fix"] + result.counts["gated_attitude"], 0);
   EXPECT_EQ(result.counts["renewed_position"], 0);
+}
+
+// Fixes hide what the earth's turn does: as a bias of the accelerometers. Of the wrong sign it would be 0.1 m/s within these 10 s without one.
+TEST(Voyage, IsPropagatedByTheImuAloneAlongItsParallel) {
+  const ParallelVoyage voyage{45.0, 8.0, 50.0};
+  auto state = filter::FreshState(NoonPlus(0.0), 0.001);
+  filter::BeginLevel({45.0, 8.0, kHeightM}, Eigen::Vector2d::Zero(), state);
+  // The bow points east: the axes of the vessel are those of the level frame.
+  state.nominal.velocity_level_mps = {50.0, 0.0, 0.0};
+  state.aiding.has_position = state.aiding.has_height = state.aiding.has_heading = state.aiding.has_tilt = true;
+  state.aiding.sensor_heading.Use(NoonPlus(0.0));
+  for (double t = 0.05; t < 10.0; t += 0.05) {
+    const Truth truth = voyage.At(t);
+    const ImuSample sample{NoonPlus(t), truth.angular_velocity_radps, truth.specific_force_mps2};
+    filter::Propagate(&sample, sample.time, TestFilterParams(), state);
+  }
+  ASSERT_TRUE(state.aiding.is_strapdown);
+  EXPECT_NEAR(state.nominal.velocity_level_mps.x(), 50.0, 0.01);
+  EXPECT_NEAR(state.nominal.velocity_level_mps.y(), 0.0, 0.01);
+  EXPECT_NEAR(state.nominal.velocity_level_mps.z(), 0.0, 0.01);
 }
 
 // 54 m off at 175 km with a stated deviation of 1.8 m, and 2000 m too high, while the filter lived in the map frame of its datum.

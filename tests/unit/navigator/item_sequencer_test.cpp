@@ -71,6 +71,15 @@ TEST(ItemSequencer, LetsALidarSentenceGoAheadWithoutTicks) {
   EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(0.3))), "2 tick 0.250\n3 tick 0.250\n4 tick 0.300\n");
 }
 
+// A computer that is told of a leap second is set back by a second; slewed clocks never go back.
+TEST(ItemSequencer, BeginsAgainWhenTheClockIsSetBackByMoreThanZeroPointFourSeconds) {
+  for (const auto& [back_s, expected] : {std::pair(0.4, ""), std::pair(0.41, "0 start 99.590\n"), std::pair(0.9, "0 start 99.100\n")}) {
+    ItemSequencer sequencer;
+    sequencer.AdvanceTo(NoonPlus(100));
+    EXPECT_EQ(Text(sequencer.AdvanceTo(NoonPlus(100 - back_s))), expected) << back_s;
+  }
+}
+
 TEST(ItemSequencer, BeginsAgainWhenTheClockIsSetBack) {
   ItemSequencer sequencer;
   sequencer.AdvanceTo(NoonPlus(100));

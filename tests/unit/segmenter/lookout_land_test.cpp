@@ -127,6 +127,15 @@ TEST(Land, DoesNotTakeABoatBehindAStraightPier) {
   }
 }
 
+// Behind land means most of it: of this one a quarter is.
+TEST(Land, DoesNotTakeABoatThatLiesPastItsEnd) {
+  auto walls = ShoreWithTrees();
+  AddBoat(walls, 32.0, 37.0, 0.0, 12.0, 3.0, kWaterM, 2.0);
+  const auto scan = See(walls);
+  const auto segments = SegmentScan(scan, {});
+  EXPECT_EQ(SegmentOf(segments, OnlyAt(scan, segments, 34.0, 35.5, 2.0)).kind, SegmentKind::kObstacle);
+}
+
 TEST(Land, DoesNotTakeABoatBeforeIt) {
   auto walls = ShoreWithTrees();
   AddBoat(walls, 2.0, 20.0, 0.3, 6.0, 2.0, kWaterM, 1.0);

@@ -34,6 +34,16 @@ TEST(Objects, ACabinOverAHullIsOfItUnlessItIsFarBehindItsSide) {
   EXPECT_TRUE(std::ranges::is_sorted(num_segments)) << testing::PrintToString(num_segments);
 }
 
+// A cabin stands over its hull: what is seen beyond a boat, and lower than her top, is another boat.
+TEST(Objects, WhatIsSeenOverAHullButLowerThanItsTopIsNotOfIt) {
+  for (const bool has_tower : {false, true}) {
+    std::vector<Wall> walls{{10.5, -4.5, 10.5, 4.5, kObjectsWaterM, -0.2}};
+    if (has_tower) walls.push_back({10.5, 3.0, 10.5, 4.5, -0.2, 2.5});
+    AddBoat(walls, 12.5, -1.0, kPi / 2, 3.0, 1.6, 0.0, 1.0);
+    EXPECT_EQ(SegmentScan(See(walls), {}).segments.size(), has_tower ? 2U : 1U) << has_tower;
+  }
+}
+
 // 2 m behind and over a hull of 5 m, whose ends hide less than a third of it: a cabin as wide as the hull is of it, a wall of twice its width is not.
 TEST(Objects, WhatIsSeenOverANearerThingIsNotMuchWider) {
   std::vector<std::size_t> num_segments;

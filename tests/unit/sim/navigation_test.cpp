@@ -67,7 +67,7 @@ Run RunAll(const NavigationParams& params, std::chrono::microseconds duration, c
 
 navigator::Sentence Parsed(navigator::SentenceType type, const Line& line) {
   const auto result = navigator::ParseSentence(line.text);
-  EXPECT_EQ(result.fault, navigator::SentenceFault::kNone) << line.text;
+  EXPECT_EQ(result.fault, SentenceFault::kNone) << line.text;
   EXPECT_EQ(result.sentence.type, type) << line.text;
   return result.sentence;
 }
@@ -101,7 +101,7 @@ TEST(Navigation, EverySentenceIsUnderstoodByTheNavigator) {
   for (const auto& params : {NavigationParams{}, StandaloneNavigation()}) {
     for (const auto& line : RunAll(params, 3s, {"gnss_gap:1:2"}).lines) {
       const auto result = navigator::ParseSentence(line.text);
-      EXPECT_EQ(result.fault, navigator::SentenceFault::kNone) << line.text;
+      EXPECT_EQ(result.fault, SentenceFault::kNone) << line.text;
       EXPECT_NE(result.sentence.type, navigator::SentenceType::kOther) << line.text;
     }
   }
