@@ -97,8 +97,8 @@ bool IsMeant(const eval::SeenObstacle& obstacle) { return obstacle.is_sure && !o
 void Print(const std::string& name, const eval::SeenSummary& summary) {
   if (summary.distance_m.count() == 0) return;
   std::printf("| %s | %zu | %.3f | %.3f | %.3f | %.3f | %.1f | %.2f |\n", name.c_str(), summary.distance_m.count(), summary.distance_m.Median(),
-              summary.distance_m.Percentile(95), summary.distance_m.Max(), summary.stated_sd_m.Median(), 100.0 * summary.in_ellipse,
-              summary.nees.Mean());
+              summary.distance_m.Percentile(95), summary.distance_m.Max(), summary.stated_sd_m.Median(), 100.0 * summary.in_ellipse.value(),
+              summary.nees.value());
 }
 
 class ObstaclesOf : public ::testing::TestWithParam<const char*> {};
@@ -125,8 +125,8 @@ TEST_P(ObstaclesOf, LieWhereTheyWereSeen) {
   Print("land", Summarise(seen, [](const auto& obstacle) { return obstacle.is_land && obstacle.range_m <= 40.0; }));
   EXPECT_LE(meant.distance_m.Median(), 0.10);
   EXPECT_LE(meant.distance_m.Percentile(95), 0.30);
-  EXPECT_GE(meant.in_ellipse, 0.90);
-  EXPECT_LE(meant.in_ellipse, 0.99);
+  EXPECT_GE(meant.in_ellipse.value(), 0.90);
+  EXPECT_LE(meant.in_ellipse.value(), 0.99);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ObstaclesOf, ::testing::Values("turning", "waves", "crossing"), [](const auto& scene) { return scene.param; });

@@ -1,6 +1,7 @@
 // The inputs of navigator.txtpb, and what --check says of them.
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -168,6 +169,14 @@ TEST_F(InputsTest, ArePrintedInWords) {
   EXPECT_NE(words.find("# input 'lidar': the lidar's position packets"), std::string::npos) << words;
   for (const char* config : {"demo", "catabot"}) {
     EXPECT_NE(InWords(LoadParams(support::kSources / "config" / config)).find("# input 'udp': UDP on 0.0.0.0 port 10110"), std::string::npos);
+  }
+}
+
+TEST(Day, IsReadInOneFormOnly) {
+  EXPECT_EQ(ParseDay("2020-02-29"), std::chrono::sys_days(std::chrono::year(2020) / 2 / 29));
+  for (const char* text :
+       {"2021-02-29", "2020-13-01", "2020-00-10", "2020-1-1", "20200101", "1969-12-31", "2200-01-01", "2020-01-01 ", "", "2020-01-0x"}) {
+    EXPECT_FALSE(ParseDay(text)) << text;
   }
 }
 
