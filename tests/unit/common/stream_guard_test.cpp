@@ -245,6 +245,27 @@ TEST_F(Stream, OfASlowChannelIsNotReplacedWithinThreePeriods) {
   EXPECT_TRUE(HasSecond());
 }
 
+TEST_F(Stream, OfAVerySlowChannelIsReplacedAfterFifteenSeconds) {
+  for (std::int64_t i = 0; i < 5; ++i) {
+    if (i > 0) Pass(milliseconds(30'000));
+    SendAt('a', 100 + i, i * 30'000'000);
+  }
+  Send('b', 0);
+  Send('b', 1);
+  Pass(milliseconds(14'900));
+  EXPECT_EQ(NumTaken('b'), 0);
+  Pass(milliseconds(200));
+  EXPECT_EQ(NumTaken('b'), 2);
+}
+
+TEST_F(Stream, CountsItsLossesOverASmallStepBackOfTheReceivingClock) {
+  Run('a', 0, 20);
+  now_ -= milliseconds(500);
+  Send('a', 22);
+  EXPECT_EQ(NumTaken('a'), 21);
+  EXPECT_EQ(num_lost_, 2);
+}
+
 TEST_F(Stream, OfALogThatBeginsBeforeTheOneBeforeIsTaken) {
   Run('a', 100, 20);
   now_ -= seconds(3600);

@@ -62,6 +62,13 @@ class Player : public ::testing::Test {
   support::TempDir folder_;
 };
 
+TEST_F(Player, GoesOnEvenlyBehindStampsThatGoFarBack) {
+  CapturePlayer player({Write("a", {{500'000'000, 1}, {100'000'000, 2}, {101'000'000, 3}})}, 1.0);
+  EXPECT_EQ(Due(player, milliseconds(0)), (Payloads{1, 2}));
+  EXPECT_EQ(Due(player, milliseconds(999)), (Payloads{}));
+  EXPECT_EQ(Due(player, milliseconds(1000)), (Payloads{3}));
+}
+
 TEST_F(Player, GivesEachDatagramWhenItIsDue) {
   CapturePlayer player({Write("a", {{5'000'000, 1}, {5'010'000, 2}, {5'010'000, 3}, {5'030'000, 4}})}, 1.0);
   EXPECT_EQ(Due(player, milliseconds(0)), (Payloads{1}));

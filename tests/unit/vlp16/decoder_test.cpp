@@ -80,6 +80,43 @@ TEST(Decoder, PutsAColumnExactlyAtTheCutIntoTheNewScan) {
   EXPECT_FLOAT_EQ(bench.scans[1].azimuth_rad.front(), static_cast<float>(DegToRad(120.0)));
 }
 
+TEST(Decoder, EndsTheScanWhereTheSensorPausedForMoreThanASecond) {
+  DecoderBench bench(Cut(180.0));
+  SpinningSensor sensor;
+  bench.Send(sensor, 10);
+  sensor.time_ns += 1'500'000'000;
+  sensor.azimuth_deg += 30.0;
+  bench.Send(sensor, 10);
+  bench.decoder.Flush();
+  ASSERT_EQ(bench.scans.size(), 2U);
+  EXPECT_TRUE(bench.scans[0].is_partial_end);
+  EXPECT_TRUE(bench.scans[1].is_partial_start);
+  EXPECT_EQ(bench.CountOf("sensor_restarts"), 1);
+}
+
+TEST(Decoder, KeepsWhatIsHeldOfProduct0x21FromTheVerdictAboutAnotherByte) {
+  DecoderBench bench;
+  SpinningSensor sensor;
+  sensor.product = format::kProductHdl32e;
+  bench.Send(sensor);
+  sensor.product = format::kProductVlp16;
+  bench.Send(sensor);
+  bench.decoder.Flush();
+  EXPECT_EQ(bench.CountOf("data_model_undecided"), 1);
+  ASSERT_EQ(bench.scans.size(), 1U);
+  EXPECT_EQ(bench.scans[0].num_columns(), 24);
+}
+
+TEST(Decoder, TakesAScanForPartialThatBeginsOneColumnBehindTheCut) {
+  for (const double cut_deg : {9.80, 9.81}) {
+    DecoderBench bench(Cut(cut_deg));
+    bench.decoder.OnDataPayload(kDecoderTime, MakeDataPacket(Azimuths(1000, 40), 0));
+    bench.decoder.Flush();
+    ASSERT_EQ(bench.scans.size(), 1U);
+    EXPECT_EQ(bench.scans[0].is_partial_start, cut_deg < 9.81);
+  }
+}
+
 TEST(Decoder, TakesAScanForWholeWhoseNextColumnWouldBeExactlyAtTheCut) {
   for (const double cut_deg : {14.80, 14.81}) {
     DecoderBench bench(Cut(cut_deg));

@@ -57,6 +57,11 @@ TEST(ModelDetector, GoesByTheProductByte) {
   EXPECT_EQ(detector.Detect(PacketOf(0x21)), ModelVerdict::kUndecided);
 }
 
+TEST(ModelDetector, DecidesNothingByPauses) {
+  ModelDetector detector(ModelChoice::kAuto);
+  for (std::uint32_t i = 0; i < 10; ++i) EXPECT_EQ(detector.Detect(PacketOf(0x21, 100'000 * i)), ModelVerdict::kUndecided);
+}
+
 TEST(ModelDetector, ObeysConfigForTheFamilyAndForUnknownBytes) {
   for (const std::uint8_t product : {0x21, 0x22, 0x24, 0x99}) {
     EXPECT_EQ(ModelDetector(ModelChoice::kVlp16).Detect(PacketOf(product)), ModelVerdict::kVlp16);

@@ -341,6 +341,17 @@ TEST(PacketSequencer, GoesOnWithAClockThatStandsOrCountsBeyondTheHour) {
   EXPECT_EQ(beyond.given.back().time, microseconds(3'599'995'000 + 9 * 1327));
 }
 
+// The stamps are those of the hour, and go on as if nothing had been.
+TEST(PacketSequencer, TellsAPauseOfAnHourByTheHostsClock) {
+  SequencerBench bench;
+  SpinningSensor sensor;
+  bench.Add(sensor, 50);
+  sensor.azimuth_deg += 90.0;
+  bench.Add(sensor.Next(), kStart + std::chrono::hours(1) + microseconds(sensor.time_ns / 1000));
+  EXPECT_EQ(bench.counts().num_restarts, 1);
+  EXPECT_TRUE(bench.given.back().is_restart);
+}
+
 // A head that fires only from `first_deg` to `last_deg`; packets hold shots of that sector alone.
 class LimitedSensor {
  public:

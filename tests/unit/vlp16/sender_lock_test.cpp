@@ -276,6 +276,7 @@ TEST(SenderLock, PassesToAnotherAddressAfterTenSecondsOfSilence) {
   // After a pause nothing but the trial is lost.
   const auto late = Of(MergedArrivals({before, OfLidar(seconds(14), seconds(20), kOther.address)}));
   EXPECT_NEAR(static_cast<double>(late.NumData() - num_before), (6.0 - 0.25) * 753.5, 8.0);
+  EXPECT_NEAR(static_cast<double>(late.CountOf("position_sender_refused")), 0.25 * 75.35, 3.0);
   const auto early = Of(MergedArrivals({before, OfLidar(seconds(3), seconds(11), kOther.address)}));
   EXPECT_EQ(early.NumData(), num_before);
   EXPECT_NE(early.report.reason.find("no lidar packets for 8 s; two lidars on one port: 192.168.1.202:"), std::string::npos) << early.report.reason;

@@ -237,6 +237,45 @@ TEST(Service, SaysWhenTheLidarIsSilentAndRecovers) {
   EXPECT_EQ(service.Report().state, HealthState::kOk);
 }
 
+TEST(Service, SaysThatTheLidarIsSilentAlsoAfterTheHostsClockWasSetBack) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  service.AdvanceTo(kServiceTime);
+  const Utime set_back = kServiceTime - std::chrono::hours(1);
+  service.AdvanceTo(set_back);
+  EXPECT_EQ(service.Report().reason, "");
+  service.AdvanceTo(set_back + milliseconds(2500));
+  EXPECT_EQ(service.Report().reason, "no lidar packets for 2 s");
+}
+
+TEST(Service, ForgetsASecondLidarWhenTheHostsClockWasSetBack) {
+  Recorded out;
+  Service service(out.bus, Params{});
+  SpinningSensor sensor;
+  service.OnDatagram(kServiceTime, 2368, sensor.Next(), {"192.168.1.201", 2368});
+  service.OnDatagram(kServiceTime, 2368, sensor.Next(), {"192.168.1.202", 2368});
+  service.AdvanceTo(kServiceTime);
+  EXPECT_NE(service.Report().reason.find("two lidars on one port"), std::string::npos);
+  service.AdvanceTo(kServiceTime - std::chrono::hours(1));
+  EXPECT_EQ(service.Report().reason, "");
+}
+
+TEST(Service, SaysWhenMoreThanTenPacketsASecondDoNotFollowOneAnother) {
+  for (const int num_breaks : {10, 25}) {
+    Recorded out;
+    Service service(out.bus, Params{});
+    SpinningSensor sensor;
+    service.AdvanceTo(kServiceTime);
+    for (int i = 0; i < 740; ++i) {
+      if (i % 28 == 27 && i / 28 < num_breaks) sensor.azimuth_deg += 90.0;
+      service.OnDatagram(kServiceTime + microseconds(sensor.time_ns / 1000), 2368, sensor.Next());
+    }
+    service.AdvanceTo(kServiceTime + milliseconds(1000));
+    const auto reason = service.Report().reason;
+    EXPECT_EQ(reason.find("(25 breaks in the last second)") != std::string::npos, num_breaks == 25) << reason;
+  }
+}
+
 TEST(Service, SaysThatTheLidarIsSilentWhileOtherDatagramsNeverEnd) {
   Recorded out;
   Service service(out.bus, Params{});
