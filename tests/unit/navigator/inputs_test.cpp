@@ -171,5 +171,13 @@ TEST_F(InputsTest, ArePrintedInWords) {
   }
 }
 
+TEST(Day, IsReadInOneFormOnly) {
+  EXPECT_EQ(ParseDay("2020-02-29"), std::chrono::sys_days(std::chrono::year(2020) / 2 / 29));
+  for (const char* text :
+       {"2021-02-29", "2020-13-01", "2020-00-10", "2020-1-1", "20200101", "1969-12-31", "2200-01-01", "2020-01-01 ", "", "2020-01-0x"}) {
+    EXPECT_FALSE(ParseDay(text)) << text;
+  }
+}
+
 }  // namespace
 }  // namespace lookout::navigator

@@ -10,7 +10,6 @@
 
 #include "services/navigator/io/text_log_player.hpp"
 #include "services/navigator/io/text_log_reader.hpp"
-#include "services/navigator/params.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::navigator {
@@ -149,14 +148,6 @@ TEST_F(TextLog, TakesTheGivenDayOnlyWhereNoSentenceTellsADate) {
   EXPECT_EQ(Times(given), (std::vector<Utime>{given + 24h - 1s, given + 24h + 1s}));
   Write(Gga("120000.000") + Rmc("120001.000", "030414"));
   EXPECT_EQ(Times(given).front(), Utime(kDay + 12h));
-}
-
-TEST(Day, IsReadInOneFormOnly) {
-  EXPECT_EQ(ParseDay("2020-02-29"), sys_days(std::chrono::year(2020) / 2 / 29));
-  for (const char* text :
-       {"2021-02-29", "2020-13-01", "2020-00-10", "2020-1-1", "20200101", "1969-12-31", "2200-01-01", "2020-01-01 ", "", "2020-01-0x"}) {
-    EXPECT_FALSE(ParseDay(text)) << text;
-  }
 }
 
 // What a player gives, one call each 10 ms.
