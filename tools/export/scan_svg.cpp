@@ -39,7 +39,6 @@ constexpr double kLegendBottom = 960.0;
 constexpr const char* kDark = "#1c2b3a";
 constexpr const char* kGrey = "#5b6b7b";
 constexpr const char* kHull = "#31465a";
-const std::string kHalo = "stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"";  // of texts over what is drawn
 
 // Returns of one colour. Points are in metres to the right of and above the middle of the view, here and below.
 struct Dots {
@@ -101,6 +100,7 @@ class Picture {
     for (const auto& of_colour : dots) DrawDots(of_colour);
     for (const auto& outline : outlines) DrawOutline(outline);
     svg_ += "</g>\n";
+    DrawRingNames();
     Add("<path d=\"M{0} {1}l9 22l-9 -6l-9 6Z\" fill=\"#b3261e\"/>\n", kMiddleX, kMiddleY - kRadius - 24.0);
     Text({kMiddleX + 16.0, kMiddleY - kRadius - 8.0}, up, 18, "#b3261e", "font-weight=\"bold\"");
     DrawNames();
@@ -152,17 +152,14 @@ class Picture {
   }
 
   void DrawWater() {
-    Add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"#f1f6fa\"/>\n", kMiddleX, kMiddleY, kRadius);
+    for (int ring = num_rings_; ring >= 1; --ring) {
+      Add("<circle cx=\"{}\" cy=\"{}\" r=\"{:.1f}\" fill=\"{}\" stroke=\"#bccbd8\"/>\n", kMiddleX, kMiddleY, kRadius * ring / num_rings_,
+          ring == num_rings_ ? "#f1f6fa" : "none");
+    }
     for (int spoke = 0; spoke < 12; ++spoke) {
       const auto from = OnCircle(kRadius / num_rings_, spoke * kPi / 6.0);
       const auto to = OnCircle(kRadius, spoke * kPi / 6.0);
       Add("<path d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"#dbe5ed\"/>\n", from.x(), from.y(), to.x(), to.y());
-    }
-    for (int ring = 1; ring <= num_rings_; ++ring) {
-      const double radius = kRadius * ring / num_rings_;
-      Add("<circle cx=\"{}\" cy=\"{}\" r=\"{:.1f}\" fill=\"none\" stroke=\"#bccbd8\"/>\n", kMiddleX, kMiddleY, radius);
-      // Along 120 degrees, where neither the bow nor the arrow above stand.
-      Text(OnCircle(radius, DegToRad(120.0)), fmt::format("{} m", ring_step_m_ * ring), 12, kGrey, "text-anchor=\"middle\" " + kHalo);
     }
   }
 
@@ -197,26 +194,51 @@ class Picture {
     if (!outline.IsFinite()) return;
     const std::string path = PathOf(outline.corners) + (outline.corners.size() == 1 ? "h0" : outline.is_line ? "" : "Z");
     const std::string colour = Css(ColourOfSegment(outline.id));
+    // A wide stroke around the returns themselves, so that the line does not cover them.
     const std::string fill = outline.is_line ? "none" : colour + "\" fill-opacity=\"" + (outline.is_tentative ? "0.05" : "0.14");
-    Add("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-linecap=\"round\" stroke-width=\"{}\"/>\n", path, fill, colour,
+    Add("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"9\" stroke-opacity=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
+        path, fill, colour, outline.is_tentative ? "0.08" : "0.18");
+    Add("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\" stroke-width=\"{}\"/>\n", path, colour,
         outline.is_tentative ? "0.8\" stroke-dasharray=\"2 3\" stroke-opacity=\"0.6"
         : outline.is_line    ? "2.4"
                              : "1.2");
   }
 
-  // Numbers at the right of their outlines; one that would cover another is left to the legend.
+  void DrawRingNames() {
+    for (int ring = 1; ring <= num_rings_; ++ring) {
+      // Along 120 degrees, where neither the bow nor the arrow above stand.
+      const auto place = OnCircle(kRadius * ring / num_rings_, DegToRad(120.0));
+      Text({place.x(), place.y() + 4.0}, fmt::format("{} m", ring_step_m_ * ring), 12, kGrey,
+           "text-anchor=\"middle\" stroke=\"#ffffff\" stroke-width=\"4\" paint-order=\"stroke\"");
+    }
+  }
+
+  // Numbers beside their outlines; one that would cover another is left to the legend.
   void DrawNames() {
+    constexpr double kTextHeight = 13.0;
+    constexpr double kGap = 8.0;
     std::vector<Eigen::AlignedBox2d> occupied;
     for (const auto& outline : outlines) {
       if (!outline.IsFinite()) continue;
       Eigen::AlignedBox2d box;
       for (const auto& corner : outline.corners) box.extend(ToPixel(corner));
       const std::string name = std::to_string(outline.id);
-      const Vector2d place(box.max().x() + 8.0, box.center().y() + 5.0);
-      const Eigen::AlignedBox2d needed(place - Vector2d(2.0, 13.0), place + Vector2d(9.0 * static_cast<double>(name.size()) + 2.0, 3.0));
-      if (std::ranges::any_of(occupied, [&needed](const auto& other) { return needed.intersects(other); })) continue;
-      occupied.push_back(needed);
-      Text(place, name, 13, Css(ColourOfSegment(outline.id)), outline.is_tentative ? kHalo : "font-weight=\"bold\" " + kHalo);
+      const double width = 9.0 * static_cast<double>(name.size());
+      const Vector2d middle = box.center();
+      // To the right, left, above, below.
+      const std::array<Vector2d, 4> places{Vector2d(box.max().x() + kGap, middle.y() + 5.0), Vector2d(box.min().x() - kGap - width, middle.y() + 5.0),
+                                           Vector2d(middle.x() - width / 2.0, box.min().y() - kGap),
+                                           Vector2d(middle.x() - width / 2.0, box.max().y() + kGap + kTextHeight)};
+      for (const auto& place : places) {
+        const Eigen::AlignedBox2d needed(Vector2d(place.x() - 2.0, place.y() - kTextHeight), Vector2d(place.x() + width + 2.0, place.y() + 3.0));
+        const bool is_in_view = std::hypot(place.x() + width / 2.0 - kMiddleX, place.y() - kMiddleY) < kRadius - 14.0;
+        if (!is_in_view || std::ranges::any_of(occupied, [&needed](const auto& other) { return needed.intersects(other); })) continue;
+        occupied.push_back(needed);
+        Text(place, name, 13, Css(ColourOfSegment(outline.id)),
+             fmt::format("{} stroke=\"#ffffff\" stroke-width=\"3.5\" paint-order=\"stroke\"",
+                         outline.is_tentative ? "fill-opacity=\"0.7\"" : "font-weight=\"bold\""));
+        break;
+      }
     }
   }
 
