@@ -37,7 +37,7 @@ constexpr std::chrono::milliseconds kHealthPeriod(1000);
 constexpr std::chrono::milliseconds kReleasePeriod(100);
 // Memory that a burst took, as when a process stood still or a disk was slow, goes back to the system: a large block when it is freed (glibc would
 // raise the size from which it does so), what is left between small ones now and then. Else each process keeps its worst burst.
-constexpr int kLargeBlockBytes = 256 * 1024;
+constexpr int kLargeBlockBytes = 64 * 1024;
 constexpr std::chrono::seconds kTrimPeriod(10);
 // Messages handled before sockets and timers get their turn again.
 constexpr int kMaxMessagesPerRound = 64;
