@@ -162,9 +162,9 @@ void NotifyReady() { sd_notify(0, "READY=1\nSTATUS=started"); }
 void NotifyAlive(const health_t& health) {
   std::string reason = health.reason;
   std::ranges::replace(reason, '\n', ' ');  // a line is an assignment of its own
-  sd_notify(
-      0,
-      (std::string("WATCHDOG=1\nSTATUS=") + kStateNames.at(static_cast<std::size_t>(health.state)) + (reason.empty() ? "" : ": ") + reason).c_str());
+  const auto* const state = kStateNames.at(static_cast<std::size_t>(health.state));
+  const std::string message = std::string("WATCHDOG=1\nSTATUS=") + state + (reason.empty() ? "" : ": ") + reason;
+  sd_notify(0, message.c_str());
 }
 
 }  // namespace lookout::runtime

@@ -16,9 +16,8 @@ namespace {
 
 std::string InsideHullText(const GuardZoneParams& zone, const Eigen::AlignedBox3d& own_vessel_box_m) {
   return fmt::format(
-      "the zone of {:.1f} m lies wholly inside own_vessel of boat.txtpb, which reaches {:.1f} m forward, {:.1f} m aft, {:.1f} m to port and {:.1f} m "
-      "to "
-      "starboard: returns in there are own boat, so nothing can ring the alarm",
+      "the zone of {:.1f} m lies wholly inside own_vessel of boat.txtpb, which reaches {:.1f} m forward, {:.1f} m aft, {:.1f} m to port "
+      "and {:.1f} m to starboard: returns in there are own boat, so nothing can ring the alarm",
       zone.range_m, own_vessel_box_m.max().x(), -own_vessel_box_m.min().x(), own_vessel_box_m.max().y(), -own_vessel_box_m.min().y());
 }
 

@@ -190,9 +190,10 @@ void DiskWriter::WriteBlock(const Block& block) {
 }
 
 void DiskWriter::AddMark(std::int64_t num_events) {
-  if (marks_.size() == kMaxMarks) {
-    for (std::size_t i = 0; i < kMaxMarks / 2; ++i) marks_[i] = marks_[2 * i + 1];
-    marks_.resize(kMaxMarks / 2);
+  if (marks_.size() >= kMaxMarks) {  // one more where somebody cut off what another had written
+    std::size_t num_kept = 0;
+    for (auto i = (marks_.size() + 1) % 2; i < marks_.size(); i += 2) marks_[num_kept++] = marks_[i];  // the last one stays
+    marks_.resize(num_kept);
   }
   marks_.push_back({file_bytes_, (marks_.empty() ? 0 : marks_.back().num_events) + num_events});
 }

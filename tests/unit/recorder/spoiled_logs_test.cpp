@@ -83,6 +83,32 @@ TEST_F(Rotation, ALogThatIsCutIsFollowedByAnotherAndWhatItLostIsCounted) {
   EXPECT_TRUE(service.TakeWarnings().empty());
 }
 
+// Of a long log it is known more coarsely where its events end: what is lost is never said to be less than it is.
+TEST_F(Rotation, ALongLogThatIsCutSaysWhatItLostToAShareOfIt) {
+  auto disk = RealDisk();
+  disk.sync = [](int) { return 0; };
+  Service service = Make(disk);
+  constexpr int kNumBlocks = 9000;
+  std::int64_t half_bytes = 0;
+  for (int i = 0; i < kNumBlocks; ++i) {
+    Send(1);
+    service.Flush();
+    if (i + 1 == kNumBlocks / 2) half_bytes = Count(service, "bytes");
+    if (i == 4094) {  // all marks are made, and one more comes of what is cut off of another program's bytes
+      std::ofstream(service.log_file(), std::ios::app) << "of another program";
+      service.Flush();
+      fs::resize_file(service.log_file(), fs::file_size(service.log_file()) - 1);
+      service.Flush();
+      EXPECT_EQ(Count(service, "lost"), 0);
+    }
+  }
+  fs::resize_file(service.log_file(), static_cast<std::uintmax_t>(half_bytes));
+  service.Flush();
+  EXPECT_GE(Count(service, "lost"), kNumBlocks / 2);
+  EXPECT_LE(Count(service, "lost"), kNumBlocks / 2 + 8);
+  EXPECT_EQ(Count(service, "lost") + Count(service, "events"), kNumBlocks + 1);
+}
+
 TEST_F(Rotation, ALogThatIsEmptiedIsLostWhole) {
   Service service = Make();
   Send(10);

@@ -62,10 +62,12 @@ TEST_F(Vlp16Params, FindTheCapturesBesideTheConfigAndKeepTheirOrder) {
 TEST_F(Vlp16Params, HoldWhatTheSourcesNeed) {
   const auto udp = Load(
       "source: UDP bind_address: '0.0.0.0' cut_azimuth_deg: 0 interface: 'eth0' multicast_group: '239.1.2.3' "
-      "allowed_source_address: '192.168.1.201' allowed_source_address: '192.168.1.202'");
+      "allowed_source_address: '192.168.1.201' allowed_source_address: '::ffff:192.168.1.202' allowed_source_address: 'FE80:0::1' "
+      "allowed_source_address: 'lidar'");
   EXPECT_EQ(udp.sources.interface, "eth0");
   EXPECT_EQ(udp.sources.multicast_group, "239.1.2.3");
-  EXPECT_EQ(udp.sources.allowed_source_addresses, (std::vector<std::string>{"192.168.1.201", "192.168.1.202"}));
+  // As inet_ntop writes them, whatever stands in the config; what is no address is refused by LoadChecked.
+  EXPECT_EQ(udp.sources.allowed_source_addresses, (std::vector<std::string>{"192.168.1.201", "192.168.1.202", "fe80::1", "lidar"}));
   const auto live = Load("source: INTERFACE interface: 'eth0' bpf_filter: 'udp' cut_azimuth_deg: 0");
   EXPECT_EQ(live.sources.kind, Sources::Kind::kInterface);
   EXPECT_EQ(live.input, Input::kOutside);

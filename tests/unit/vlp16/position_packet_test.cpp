@@ -98,6 +98,7 @@ TEST(TimeOfSentence, MayBeThatOfAGgaWithAFix) {
 
 TEST(TimeOfSentence, KnowsLeapSecondsFractionsAndCenturies) {
   EXPECT_EQ(TimeOfSentence("$GPRMC,235960,A,,,,,,,311216")->time_of_day, std::chrono::seconds(86'400));
+  EXPECT_FALSE(TimeOfSentence("$GPRMC,120060,A,,,,,,,311216")) << "a leap second comes at the end of a day";
   EXPECT_EQ(TimeOfSentence("$GPRMC,000000.1234567,A,,,,,,,010100")->time_of_day, std::chrono::microseconds(123'456));
   using std::chrono::year;
   EXPECT_EQ(TimeOfSentence("$GPRMC,000000,A,,,,,,,010100")->date, std::chrono::sys_days(year(2000) / 1 / 1));
