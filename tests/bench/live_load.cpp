@@ -1,4 +1,4 @@
-// All processes live with the default config, a simulated boat at 10 turns a second: how late are the obstacles, and what do they cost? Run by
+// All processes live with the default config, a simulated boat at 10 scans a second: how late are the obstacles, and what do they cost? Run by
 // ./dev bench live in a network namespace; tools/replay/README.md says what is measured. Exit code 1 when a target is missed.
 #include <CLI/CLI.hpp>
 #include <algorithm>

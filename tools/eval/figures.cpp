@@ -173,8 +173,8 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
   if (!results.methods.empty()) {
     add("main",
         fmt::format(
-            "Each row is one operating point: mIoU, the segments a scan that hold no return of any object, and the things of 5 returns or more "
-            "that have a segment are of the same segments. Black buoys: recall at IoU 0.5 within {:.0f} m, scene black_buoys.",
+            "Each row counts one set of segments in all columns. False a scan: segments that hold no return of any object. Things with a segment: "
+            "share of the objects with 5 returns or more that have one. Black buoys: recall at IoU 0.5 within {:.0f} m, scene black_buoys.",
             Score::kNearM),
         scope, MainTable(results));
     // On a computer that does other work the 99th percentile says more about that work than about the method: medians alone are shown.
