@@ -3,6 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <Eigen/Core>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -316,6 +318,35 @@ TEST_F(SvgTest, DrawsTentativeObstaclesLightlyAndLandAsItsWaterline) {
   EXPECT_EQ(CountOf(text_, "stroke-dasharray=\"2 3\""), 1);
   EXPECT_EQ(CountOf(text_, "stroke-width=\"2.4\""), 1);
   EXPECT_NE(text_.find(">5.0 m at 0 deg, land<"), std::string::npos);
+}
+
+// A buoy of one return was a dot of 1.2 pixels, a tentative one of 0.8, and nobody saw it; numbers that found no room to the right were left out,
+// also where there was room on another side, and one at the edge stood outside of the picture.
+TEST_F(SvgTest, ShowsAnObstacleOfOneReturnAndNumbersBesideEachOther) {
+  obstacles_t message{};
+  message.utime_us = kStartUs;
+  message.num_parts = 1;
+  message.num_obstacles = 3;
+  message.obstacles.resize(3);
+  const std::array<Eigen::Vector2f, 3> places_m{Eigen::Vector2f(10.0F, 0.0F), Eigen::Vector2f(10.0F, -0.2F), Eigen::Vector2f(0.0F, -20.0F)};
+  for (std::size_t i = 0; i < places_m.size(); ++i) {
+    auto& obstacle = message.obstacles[i];
+    obstacle.id = 71 + static_cast<int>(i);
+    obstacle.confidence = obstacle_t::CONFIDENCE_SURE;
+    obstacle.range_m = places_m[i].norm();
+    obstacle.num_footprint = 1;
+    obstacle.footprint_vessel_x_m = {places_m[i].x()};
+    obstacle.footprint_vessel_y_m = {places_m[i].y()};
+  }
+  Add(bus::kObstacles, message);
+  ASSERT_EQ(Export("obstacles", "svg"), kExitFine) << errors_;
+  EXPECT_EQ(CountOf(text_, "stroke-width=\"9\""), 3) << "each stands out";
+  const auto in_picture = [this](int id) { return CountOf(text_, "paint-order=\"stroke\">" + std::to_string(id) + "<"); };
+  EXPECT_EQ(in_picture(71), 1);
+  EXPECT_EQ(in_picture(72), 1) << "on another side than 71";
+  EXPECT_EQ(in_picture(73), 1) << "at the edge, on its inner side";
+  const auto at = text_.rfind("x=\"", text_.find("paint-order=\"stroke\">73<"));
+  EXPECT_LT(std::stod(text_.substr(at + 3)), 930.0) << "the view ends there";
 }
 
 pose_t PoseAt(std::int64_t index, double latitude_deg, double longitude_deg, int status = pose_t::STATUS_OK) {
