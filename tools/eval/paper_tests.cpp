@@ -170,7 +170,7 @@ Curve CountClusters(Curve curve, const ClusterTest& test, const RunPlan& plan, c
     for (auto& at : parts) {
       auto params = PaperParams(boat.segmenter, kPaperFullColumns);
       test.set(params.clustering, at.value);
-      const auto object = MatchScan(truth, SegmenterMethod("", params).Segment(truth.scan).label).objects.at(id);
+      const auto object = MatchScan(truth, SegmenterMethod("", params).Segment(truth.scan).label).objects[id];  // none where it is not scored
       at.clusters.Add(object.num_segments);
       at.large.Add(object.num_parts);
       at.in_largest.Add({object.num_returns, static_cast<double>(object.num_in_largest)});
