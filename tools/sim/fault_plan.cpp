@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <ranges>
 #include <stdexcept>
 #include <string>
 
@@ -39,8 +38,12 @@ TimedFault ParseTimedFault(std::string_view text) {
     for (const auto& known : kTimedFaultForms) names.push_back(known.name);
     throw refuse(fmt::format("no such kind (there are: {})", fmt::join(names, ", ")));
   }
-  std::vector<std::string_view> parts;
-  for (const auto part : std::views::split(text, ':')) parts.emplace_back(part.begin(), part.end());
+  std::vector<std::string_view> parts;  // not by std::views::split, which Clang 14 does not compile
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    parts.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
   if (parts.size() < 3 || parts.size() > 4) throw refuse("must be KIND:BEGIN:END or KIND:BEGIN:END:VALUE");
 
   TimedFault fault;
