@@ -25,6 +25,20 @@ TEST(Options, ReadsALine) {
   EXPECT_EQ(options.simulation.faults.size(), 1U);
 }
 
+TEST(Options, OverrideTheEffectsOfTheSceneAlsoByZeroAndLeaveTheOthers) {
+  Effects effects;
+  effects.set_return_mode(config::Scene::DUAL);
+  effects.set_stray_probability(0.1);
+  effects.set_range_sd_m(0.5);
+  effects.MergeFrom(Parse({"--seconds", "1"}).effects);
+  EXPECT_EQ(effects.return_mode(), config::Scene::DUAL);
+  EXPECT_EQ(effects.stray_probability(), 0.1);
+  effects.MergeFrom(Parse({"--seconds", "1", "--return-mode", "strongest", "--strays", "0"}).effects);
+  EXPECT_EQ(effects.return_mode(), config::Scene::STRONGEST);
+  EXPECT_EQ(effects.stray_probability(), 0.0);
+  EXPECT_EQ(effects.range_sd_m(), 0.5);
+}
+
 // NaN used to pass: a run of no length, a head that never turns, noise that is not a number.
 TEST(Options, RefusesWhatIsNoNumberOrOutOfRange) {
   for (const auto* value : {"nan", "-nan", "NaN", "inf", "-1", "1e9", "x", ""}) {
