@@ -1,6 +1,7 @@
 #include "services/vlp16/core/model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "common/core/angles.hpp"
@@ -47,6 +48,24 @@ TEST(Beams, OfThePuckHiResAreOneAndAThirdDegreesApart) {
   EXPECT_DOUBLE_EQ(beams.origin_height_m[0], 0.0074);
   for (std::size_t ring = 1; ring < 16; ++ring)
     EXPECT_NEAR(beams.elevation_rad[ring] - beams.elevation_rad[ring - 1], DegToRad(20.0 / 15), DegToRad(0.011));
+}
+
+// By laws in place of the tables: simulator and decoder share the beams, so that neither would notice those of another laser.
+TEST(Beams, OfEachLaserFollowTheirLaws) {
+  for (const auto model : {Model::kVlp16, Model::kPuckHiRes}) {
+    const auto& beams = BeamsOf(model);
+    const double step_deg = model == Model::kVlp16 ? 2.0 : 20.0 / 15.0;
+    for (int laser = 0; laser < format::kNumLasers; ++laser) {
+      SCOPED_TRACE(testing::Message() << beams.name << " laser " << laser);
+      // Lasers take turns below and above the level, upwards in each half.
+      const auto ring = static_cast<std::size_t>(beams.ring_of_laser[static_cast<std::size_t>(laser)]);
+      EXPECT_EQ(static_cast<int>(ring), laser / 2 + (laser % 2) * 8);
+      const double elevation_rad = DegToRad((static_cast<double>(ring) - 7.5) * step_deg);
+      EXPECT_NEAR(beams.elevation_rad[ring], elevation_rad, DegToRad(0.006));
+      // Beams cross: what looks down starts above. At one point in the VLP-16, 42 mm from the axis.
+      EXPECT_NEAR(beams.origin_height_m[ring], -0.042 * std::tan(elevation_rad), model == Model::kVlp16 ? 0.0001 : 0.0005);
+    }
+  }
 }
 
 TEST(ModelDetector, GoesByTheProductByte) {
