@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "common/messages/checks.hpp"
+
 namespace lookout::segmenter {
 
 namespace {
