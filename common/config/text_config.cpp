@@ -209,6 +209,7 @@ void ParseText(const std::string& text, const std::string& name, Message& messag
     faults.back() = {faults.back().line, "text", "and " + std::to_string(num_more) + " faults more"};
   }
   std::vector<std::string> lines;
+  lines.reserve(faults.size());
   for (const auto& fault : faults) lines.push_back(fmt::format("{}:{}: {}: {}", name, fault.line + 1, fault.field, fault.reason));
   throw ConfigError(lines);
 }

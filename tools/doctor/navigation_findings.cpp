@@ -1,4 +1,6 @@
 // Position, heading, roll and pitch.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -150,7 +152,7 @@ Findings CheckNavigation(const Observations& seen) {
   }
   Findings findings;
   for (const auto& [name, fault] : seen.navigation.input_faults) {
-    findings.push_back(Fault("input", "'" + name + "': " + fault, "its entry in navigator.txtpb; its cable"));
+    findings.push_back(Fault("input", fmt::format("'{}': {}", name, fault), "its entry in navigator.txtpb; its cable"));
   }
   findings.push_back(CheckFix(seen));
   if (seen.navigation.num_by_source.empty()) return findings;
