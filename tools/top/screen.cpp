@@ -248,6 +248,7 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
   }
 
   std::vector<Row> rows;
+  rows.reserve(static_cast<std::size_t>(std::max(view.height, 0)) + alarm_lines.size());
   for (const auto& line : alarm_lines) rows.push_back({{Left(line, view.width), Style::kAlarm}});
   if (plan.has_title) rows.push_back({{title, Style::kPlain}});
   rows.push_back({OwnShipSpan(board.own(), now, view.width)});
