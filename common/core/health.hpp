@@ -49,9 +49,9 @@ struct HealthReport {
   std::string reason;  // why it is not OK
   std::vector<Counter> counters;
 
-  /// One more reason why it is degraded.
+  /// One more reason why it is degraded. What has failed stays failed.
   void Degrade(std::string_view why, std::string_view separator = "; ") {
-    state = HealthState::kDegraded;
+    state = std::max(state, HealthState::kDegraded);
     if (!reason.empty()) reason += separator;
     reason += why;
   }

@@ -220,10 +220,6 @@ HealthReport Service::Report() const {
   std::int64_t num_second = 0;
   for (const auto& entry : guards_) num_second += entry.second.num_refused();
   HealthReport report;
-  const auto degrade = [&report](const std::string& reason) {
-    report.state = std::max(report.state, HealthState::kDegraded);
-    report.reason += (report.reason.empty() ? "" : "; ") + reason;
-  };
   report.counters = {{"events", status.num_events},
                      {"bytes", status.num_bytes},
                      {"files", status.num_files},
@@ -247,13 +243,13 @@ HealthReport Service::Report() const {
     report.state = HealthState::kFailed;
     report.reason = "not recording: " + Printable(status.fault);
   } else if (lost_.HasGrown(now)) {
-    degrade("recording again; " + std::to_string(status.num_lost()) + " events lost: " + Printable(status.fault));
+    report.Degrade("recording again; " + std::to_string(status.num_lost()) + " events lost: " + Printable(status.fault));
   } else if (disturbed_.HasGrown(now) || status.wants_new_file) {
-    degrade("recording, nothing lost, but " + Printable(status.fault));
+    report.Degrade("recording, nothing lost, but " + Printable(status.fault));
   } else if (raw_missing_.HasGrown(now)) {
-    degrade(std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full");
+    report.Degrade(std::to_string(num_raw_missing_) + " raw messages did not arrive: the log cannot be computed again in full");
   }
-  if (const auto text = SecondPublisherText(); !text.empty()) degrade(text);
+  if (const auto text = SecondPublisherText(); !text.empty()) report.Degrade(text);
   return report;
 }
 

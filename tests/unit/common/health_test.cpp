@@ -8,6 +8,18 @@
 namespace lookout::runtime {
 namespace {
 
+// A process that has failed must not say "degraded" because something else is wrong, too.
+TEST(HealthReport, StaysFailedWhateverElseIsWrong) {
+  HealthReport report{HealthState::kFailed, "not recording", {}};
+  report.Degrade("two publishers");
+  EXPECT_EQ(report.state, HealthState::kFailed);
+  EXPECT_EQ(report.reason, "not recording; two publishers");
+  HealthReport fine;
+  fine.Degrade("no POSE for 3 s");
+  EXPECT_EQ(fine.state, HealthState::kDegraded);
+  EXPECT_EQ(fine.reason, "no POSE for 3 s");
+}
+
 TEST(HealthReporter, TellsTrafficCountersAndTheMachine) {
   bus::MemoryBus bus;
   bus::Subscribe<lidar_nmea_t>(bus, bus::kLidarNmea, [](const lidar_nmea_t&) {});
