@@ -71,13 +71,22 @@ class FaultCollector final : public google::protobuf::io::ErrorCollector {
 };
 
 std::optional<double> NumberOf(const Message& message, const FieldDescriptor& field, int index) {
-  const auto type = field.cpp_type();
-  const bool is_number = type == FieldDescriptor::CPPTYPE_DOUBLE || type == FieldDescriptor::CPPTYPE_FLOAT ||
-                         type == FieldDescriptor::CPPTYPE_INT32 || type == FieldDescriptor::CPPTYPE_INT64;
-  if (!is_number) return std::nullopt;
-  std::string text;  // reads back as the same number; limits are round numbers: what a long integer rounds onto is as good as it
-  TextFormat::PrintFieldValueToString(message, &field, field.is_repeated() ? index : -1, &text);
-  return std::strtod(text.c_str(), nullptr);
+  const auto& reflection = *message.GetReflection();
+  const bool is_list = field.is_repeated();
+  switch (field.cpp_type()) {
+    case FieldDescriptor::CPPTYPE_DOUBLE:
+      return is_list ? reflection.GetRepeatedDouble(message, &field, index) : reflection.GetDouble(message, &field);
+    case FieldDescriptor::CPPTYPE_FLOAT:
+      return is_list ? reflection.GetRepeatedFloat(message, &field, index) : reflection.GetFloat(message, &field);
+    case FieldDescriptor::CPPTYPE_INT32:
+      return is_list ? reflection.GetRepeatedInt32(message, &field, index) : reflection.GetInt32(message, &field);
+    case FieldDescriptor::CPPTYPE_INT64: {
+      const auto value = is_list ? reflection.GetRepeatedInt64(message, &field, index) : reflection.GetInt64(message, &field);
+      return static_cast<double>(value);  // limits are round numbers: what rounds onto one is as good as it
+    }
+    default:
+      return std::nullopt;
+  }
 }
 
 std::string RangeFault(const google::protobuf::FieldOptions& options, double value) {
