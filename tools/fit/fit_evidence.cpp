@@ -125,6 +125,7 @@ std::string TablesOf(const FittedEvidence& evidence) {
     text += fmt::format("\n{}, {} trees\n{:24} {:>10} {:>8} {:>8} {:>8}\n", layout.name, report.fitted.trees.size(), "family", "rows", "true, %",
                         "loss", "AUC");
     const auto add = [&text](const std::string& name, const Score& score) {
+      if (score.num_rows == 0) return;
       text += fmt::format("{:24} {:>10} {:8.1f} {:8.4f} {:8.4f}\n", name, score.num_rows, 100.0 * score.true_share, score.loss, score.auc);
     };
     for (std::size_t i = 0; i < report.families.size(); ++i) add(report.families[i], report.of_family[i]);
