@@ -15,6 +15,7 @@ constexpr double kRoughStepM = 2.5;  // between vertices of a waterline with bay
 constexpr double kPlainStepM = 8.0;  // and without
 constexpr double kArcStepRad = DegToRad(12.0);
 constexpr int kNumBendTries = 20;
+constexpr double kLeastDepthM = 1.0;
 constexpr double kMostBayOfRadius = 0.35;  // of a closed line, which so stays simple
 
 Vector2d LeftOf(const Vector2d& v) { return {-v.y(), v.x()}; }
@@ -122,12 +123,12 @@ std::vector<Vector2d> InlandOf(const Line& line_m, bool is_closed) {
 }
 
 // How far inland from a vertex the others of the line are at least 0.8 of that away.
-double MaxDepthM(const std::vector<WaterlineVertex>& vertices, std::size_t of) {
+double MaxDepthM(const Line& line_m, const std::vector<Vector2d>& inland, std::size_t of) {
   constexpr double kRest = 1.0 - 0.8 * 0.8;
   double depth_m = 1e3;
-  for (const auto& other : vertices) {
-    const Vector2d from_m = vertices[of].place_m - other.place_m;
-    const double towards_m = from_m.dot(vertices[of].inland);
+  for (const auto& other_m : line_m) {
+    const Vector2d from_m = line_m[of] - other_m;
+    const double towards_m = from_m.dot(inland[of]);
     const double discriminant = towards_m * towards_m - kRest * from_m.squaredNorm();
     if (towards_m >= 0.0 || discriminant < 0.0) continue;
     depth_m = std::min(depth_m, (-towards_m - std::sqrt(discriminant)) / kRest);
@@ -171,7 +172,7 @@ std::vector<WaterlineVertex> WithBays(const Line& line_m, bool is_closed, const 
   double bay_m = DrawNumber(land.bay_m(), 0.0, 0.0, random);
   const double bay_length_m = DrawNumber(land.bay_length_m(), 30.0, 30.0, random);
   const Line finer_m = is_closed ? line_m : Resampled(line_m, false, bay_m > 0.0 ? kRoughStepM : kPlainStepM);
-  const auto outward = InlandOf(finer_m, is_closed);
+  const auto inland = InlandOf(finer_m, is_closed);
   // Waves along the line; round a closed one a whole number of them.
   constexpr std::array<double, 3> kWavelength{1.0, 0.43, 0.17};
   constexpr std::array<double, 3> kShare{0.6, 0.28, 0.12};
@@ -182,7 +183,7 @@ std::vector<WaterlineVertex> WithBays(const Line& line_m, bool is_closed, const 
     total_m += (finer_m.front() - finer_m.back()).norm();
     bay_m = std::min(bay_m, kMostBayOfRadius * total_m / kTwoPi);
   }
-  Line moved_m;
+  std::vector<WaterlineVertex> vertices;
   double along_m = 0.0;
   for (std::size_t i = 0; i < finer_m.size(); ++i) {
     if (i > 0) along_m += (finer_m[i] - finer_m[i - 1]).norm();
@@ -192,15 +193,11 @@ std::vector<WaterlineVertex> WithBays(const Line& line_m, bool is_closed, const 
       if (is_closed) waves = std::max(2.0, std::round(waves));
       inland_m += bay_m * kShare[k] * std::sin(kTwoPi * waves * along_m / total_m + phase_rad[k]);
     }
-    moved_m.emplace_back(finer_m[i] + inland_m * outward[i]);
+    // Across the line without its bays, whose sides would run into each other.
+    const double depth_m = std::max(MaxDepthM(finer_m, inland, i) - inland_m, kLeastDepthM);
+    const double step_m = i > 0 ? (finer_m[i] + inland_m * inland[i] - vertices.back().place_m).norm() : 0.0;
+    vertices.push_back({finer_m[i] + inland_m * inland[i], inland[i], (i > 0 ? vertices.back().along_m : 0.0) + step_m, depth_m});
   }
-  const auto inland = InlandOf(moved_m, is_closed);
-  std::vector<WaterlineVertex> vertices;
-  for (std::size_t i = 0; i < moved_m.size(); ++i) {
-    const double step_m = i > 0 ? (moved_m[i] - moved_m[i - 1]).norm() : 0.0;
-    vertices.push_back({moved_m[i], inland[i], (i > 0 ? vertices.back().along_m : 0.0) + step_m, 0.0});
-  }
-  for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i].max_depth_m = MaxDepthM(vertices, i);
   return vertices;
 }
 
@@ -213,6 +210,13 @@ Line Opposite(const Line& line_m, double distance_m) {
     // Inside of a bend that is sharper than the distance it would run backwards.
     const bool is_too_near = std::ranges::any_of(finer_m, [&](const Vector2d& q_m) { return (q_m - p_m).norm() < 0.98 * distance_m; });
     if (!is_too_near) other_m.push_back(p_m);
+  }
+  // Where the rest of such a bend turns back on itself.
+  constexpr double kLeastCosine = 0.5;
+  for (std::size_t i = 1; i + 1 < other_m.size();) {
+    const bool is_kink = (other_m[i] - other_m[i - 1]).normalized().dot((other_m[i + 1] - other_m[i]).normalized()) < kLeastCosine;
+    if (is_kink) other_m.erase(other_m.begin() + static_cast<std::ptrdiff_t>(i));
+    i = is_kink && i > 1 ? i - 1 : is_kink ? i : i + 1;
   }
   if (other_m.size() < 2) other_m = {finer_m.back() - distance_m * inland.back(), finer_m.front() - distance_m * inland.front()};
   return other_m;

@@ -8,7 +8,7 @@ namespace lookout::sim {
 /// A vertex of a waterline.
 struct WaterlineVertex {
   Eigen::Vector2d place_m;
-  Eigen::Vector2d inland;  // unit vector, square to the line
+  Eigen::Vector2d inland;  // unit vector, square to the line without its bays
   double along_m;          // from the first
   double max_depth_m;      // so far inland the line's other parts are about as far away as this one
 };
