@@ -19,19 +19,6 @@
 namespace lookout::fit {
 namespace {
 
-// Scene files of the folder `families` beside the scenes.
-std::vector<std::string> Families(const std::filesystem::path& config_folder) {
-  const auto folder = sim::FindScene(sim::ListScenes(config_folder).front().name, config_folder).parent_path() / "families";
-  std::vector<std::string> files;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".txtpb") files.push_back(entry.path().string());
-  }
-  if (files.empty()) throw std::invalid_argument("--scenes families: " + folder.string() + " holds none");
-  std::ranges::sort(files);
-  return files;
-}
-
 eval::RunPlan PlanOf(const Options& options) {
   eval::RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
@@ -39,8 +26,7 @@ eval::RunPlan PlanOf(const Options& options) {
       plan.scenes.push_back(scene);
       continue;
     }
-    const auto families = Families(options.config_folder);
-    plan.scenes.insert(plan.scenes.end(), families.begin(), families.end());
+    for (const auto& family : sim::ListFamilies(options.config_folder)) plan.scenes.push_back(family.name);
   }
   plan.CheckSeeds(eval::SeedUse::kTuning);
   return plan;
