@@ -149,8 +149,9 @@ std::optional<Hit> IntersectSolid(const Rod& rod, const Ray& ray) {
   const Vector3d from_axis_m = from_m - axis.dot(from_m) * axis;
   const double a = across.squaredNorm();
   const double b = across.dot(from_axis_m);
-  const double discriminant = b * b - a * (from_axis_m.squaredNorm() - rod.radius_m * rod.radius_m);
-  if (discriminant <= 0.0) return std::nullopt;
+  const double c = from_axis_m.squaredNorm() - rod.radius_m * rod.radius_m;
+  const double discriminant = b * b - a * c;
+  if (a > 0.0 ? discriminant <= 0.0 : c >= 0.0) return std::nullopt;
   if (a > 0.0) {
     const double range_m = (-b - std::sqrt(discriminant)) / a;
     const double at_m = axis.dot(from_m) + range_m * axis_rate;
