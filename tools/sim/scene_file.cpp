@@ -257,12 +257,13 @@ const KindOfObject* FindKind(File::Kind kind) {
 
 fs::path FindScene(const std::string& name_or_path, const fs::path& config_folder) {
   if (name_or_path.ends_with(kExtension)) return name_or_path;
-  auto files = SceneFiles(config_folder, {});
-  files.merge(SceneFiles(config_folder, kFamilies));
-  const auto found = files.find(name_or_path);
-  if (found != files.end()) return found->second;
   std::string names;
-  for (const auto& [name, file] : files) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& folder : {fs::path(), fs::path(kFamilies)}) {
+    const auto files = SceneFiles(config_folder, folder);
+    const auto found = files.find(name_or_path);
+    if (found != files.end()) return found->second;
+    for (const auto& [name, file] : files) names += (names.empty() ? "" : ", ") + name;
+  }
   throw config::ConfigError({"--scene: no such scene: " + name_or_path + " (there are: " + names + ")"});
 }
 
