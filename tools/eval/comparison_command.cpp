@@ -53,11 +53,12 @@ RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
   const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
   RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
-    if (scene != "all") {
+    if (scene != "all" && scene != "families") {
       plan.scenes.push_back(scene);
       continue;
     }
-    for (const auto& known : sim::ListScenes(options.config_folder)) plan.scenes.push_back(known.name);
+    const auto all = scene == "all" ? sim::ListScenes(options.config_folder) : sim::ListFamilies(options.config_folder);
+    for (const auto& known : all) plan.scenes.push_back(known.name);
   }
   return plan;
 }
