@@ -18,8 +18,9 @@ double Wrap(double offset_m, double reach_m) { return offset_m - 2.0 * reach_m *
 }  // namespace
 
 // From terns to geese: 0.25 to 0.9 m long, wings of 0.6 to 1.6 m, 6 to 16 m/s, most of them below a few metres.
-Birds::Birds(int count, std::uint64_t seed) {
+Birds::Birds(double mean_count, std::uint64_t seed) {
   Random random(seed, kBirdStream);
+  const int count = static_cast<int>(mean_count + random.Uniform());
   for (int i = 0; i < count; ++i) {
     Bird bird{};
     bird.start_m.x() = random.Uniform(-kReachM, kReachM);

@@ -12,7 +12,8 @@ namespace lookout::sim {
 
 class Birds {
  public:
-  Birds(int count, std::uint64_t seed);
+  /// @param mean_count  of 2.3 there are two or three
+  Birds(double mean_count, std::uint64_t seed);
 
   /// They stay within kReachM of `eye_m`: who leaves on one side comes in on the other.
   void MoveTo(double time_s, const Eigen::Vector2d& eye_m);

@@ -14,13 +14,15 @@ constexpr std::uint64_t kGearStream = 25;
 void AddCrewAndGear(const Effects& effects, const Eigen::AlignedBox3d& box_m, std::uint64_t seed, SceneObject& hull) {
   Random random(seed, kGearStream);
   Model model(hull, random);
-  for (int i = 0; i < effects.own_crew(); ++i) {
+  const int num_crew = static_cast<int>(effects.own_crew() + random.Uniform());
+  const int num_gear = static_cast<int>(effects.own_gear() + random.Uniform());
+  for (int i = 0; i < num_crew; ++i) {
     // At the stern, some half outside of the box.
     const double x_m = box_m.min().x() + model.Between(-0.3, 0.4);
     const double y_m = model.Between(0.8 * box_m.min().y(), 0.8 * box_m.max().y());
     model.Person({x_m, y_m, 0.0}, {1.0, 0.0}, model.Chance(0.5) ? Model::Posture::kStanding : Model::Posture::kSitting);
   }
-  for (int i = 0; i < effects.own_gear(); ++i) {
+  for (int i = 0; i < num_gear; ++i) {
     // Aerials, flag staffs, rods and fenders at the edge of the deck.
     const bool is_aft = model.Chance(0.6);
     const double x_m = is_aft ? box_m.min().x() + model.Between(-0.4, 0.3) : model.Between(box_m.min().x(), box_m.max().x());
