@@ -163,7 +163,8 @@ class Drawing {
     std::optional<Approach> too_near;
     for (int num_tries = 0; num_tries < kMaxOwnTries; ++num_tries) {
       OwnMotion motion = DrawOwnMotion(boat, own_boat_random_, land_random_);
-      if (boat.has_beside()) {
+      // Else anywhere in its ranges: there happens to be none.
+      if (boat.has_beside() && edges_.Has(boat.beside().object())) {
         Edges::Row row;
         // As large as a boat: the distance is kept from its hull.
         const auto found = edges_.Draw(boat.beside(), kOwnOutline, motion.track.start.heading_rad, 0, row, own_boat_random_);
