@@ -23,6 +23,7 @@ constexpr double kGreatestLifeS = 4.5;
 constexpr double kMeanLifeS = (kLeastLifeS + kGreatestLifeS) / 2.0;
 constexpr double kSquareMetresPerHectare = 10'000.0;
 
+constexpr double kGreatestHeightM = 0.45;
 constexpr double kFrontCosine = 0.6;  // of the incidence on a steep, rough front
 
 std::uint64_t StreamOf(std::int64_t column, std::int64_t row, std::int64_t slot) {
@@ -52,7 +53,7 @@ void Breakers::AddBornIn(std::int64_t column, std::int64_t row, std::int64_t slo
     const double life_s = random.Uniform(kLeastLifeS, kGreatestLifeS);
     const double half_length_m = 0.4 + 3.6 * random.Uniform() * random.Uniform();
     const double bend_m = half_length_m * random.Uniform(-0.1, 0.4);
-    const double full_height_m = random.Uniform(0.1, 0.45);
+    const double full_height_m = random.Uniform(0.1, kGreatestHeightM);
     const double thickness_m = random.Uniform(0.1, 0.7);
     const double strength = random.Uniform(0.3, 0.95);
     const double speed_mps = random.Uniform(0.8, 3.5);
@@ -84,6 +85,8 @@ void Breakers::MoveTo(double time_s, const Vector2d& eye_m) {
 
 // Seen from above an arc is a parabola over its crest: ahead = bend (1 - (along / half length)^2).
 std::optional<Echo> Breakers::Meet(const Ray& ray, double max_range_m) {
+  // Level beams and those that rise are over all of them.
+  if (breakers_.empty() || (ray.direction.z() >= 0.0 && ray.origin_m.z() > sea_.max_height_m() + kGreatestHeightM)) return std::nullopt;
   double nearest_m = max_range_m;
   const Breaker* met = nullptr;
   for (const Breaker& breaker : breakers_) {

@@ -237,7 +237,8 @@ TEST(Kinds, BoatsSwimmersBuoysAndMarkersAreInTheWater) {
   for (const auto& kind : Kinds()) in_water += kind.is_in_water ? std::string(kind.name) + ' ' : "";
   EXPECT_EQ(in_water,
             "motor_boat cabin_boat sailing_boat kayak swimmer buoy marker open_boat cruiser sailing_dinghy yacht twin_hull raft canoe paddle_board "
-            "pedal_boat barge workboat navigation_buoy float race_mark stake fish_farm bather log water_bird any_craft any_buoy ");
+            "pedal_boat barge workboat navigation_buoy float race_mark stake fish_farm bather log water_bird rowing_shell houseboat jet_ski "
+            "windsurfer robot_boat any_craft any_buoy ");
 }
 
 class SceneFolders : public testing::Test {
