@@ -6,10 +6,12 @@
 #include <google/protobuf/message.h>
 #include <initializer_list>
 #include <map>
+#include <set>
 #include <sstream>
 #include <utility>
 
 #include "common/config/text_config.hpp"
+#include "tools/sim/family.hpp"
 #include "tools/sim/scene_maker.hpp"
 
 namespace lookout::sim {
@@ -21,13 +23,16 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
 constexpr std::string_view kExtension = ".txtpb";
+constexpr std::string_view kFamilies = "families";  // the folder of theirs among the scenes
 
 // By name; what lies beside the boat hides a scene of the source tree, and that one of the package.
-std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder) {
+std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder, const fs::path& subfolder) {
   std::map<std::string, fs::path> files;
   // "config/demo/" has an empty last part.
   const fs::path boat = (config_folder / "").lexically_normal().parent_path();
-  for (const auto& folder : {boat.parent_path() / "scenes", fs::path(LOOKOUT_SCENE_FOLDER), fs::path(LOOKOUT_INSTALLED_SCENE_FOLDER)}) {
+  const fs::path beside_boat = boat.parent_path() / "scenes";
+  for (const auto& scenes : {beside_boat, fs::path(LOOKOUT_SCENE_FOLDER), fs::path(LOOKOUT_INSTALLED_SCENE_FOLDER)}) {
+    const fs::path folder = subfolder.empty() ? scenes : scenes / subfolder;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
       if (entry.path().extension() == kExtension) files.emplace(entry.path().stem().string(), entry.path());
@@ -36,7 +41,14 @@ std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder) {
   return files;
 }
 
-bool IsLand(File::Kind kind) { return kind == File::SHORE || kind == File::ISLAND; }
+bool IsLand(File::Kind kind) {
+  return kind == File::SHORE || kind == File::ISLAND || kind == File::COAST || kind == File::QUAY || kind == File::BREAKWATER;
+}
+
+// Whose sizes are those of land, or drawn by its maker.
+bool HasFreeSizes(const File::Object& object) {
+  return object.kind() == File::JETTY || object.kind() == File::BRIDGE || (IsLand(object.kind()) && !object.land().has_mean_radius_m());
+}
 
 // Of one message of the file.
 class Checker {
@@ -76,7 +88,7 @@ void CheckRanges(const Message& message, const std::string& path, SceneFaults& f
         CheckRanges(reflection->GetRepeatedMessage(message, field, i), path + field->name() + "[" + std::to_string(i) + "].", faults);
       }
       if (!field->is_repeated()) CheckRanges(reflection->GetMessage(message, field), path + field->name() + ".", faults);
-    } else if (field->is_repeated()) {
+    } else if (field->is_repeated() && field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE) {
       const int num_values = reflection->FieldSize(message, field);
       if (num_values > 2) faults.Add(path + field->name(), "must be a value or a range of two values");
       if (num_values == 2 && reflection->GetRepeatedDouble(message, field, 0) > reflection->GetRepeatedDouble(message, field, 1)) {
@@ -90,6 +102,7 @@ void CheckNameAndSize(const File::Object& object, Checker& check) {
   const auto is_allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   check.RefuseIf(object.has_name() && (object.name().empty() || !std::ranges::all_of(object.name(), is_allowed)), "name",
                  "must consist of lower case letters, digits and _ (is \"" + object.name() + "\")");
+  if (HasFreeSizes(object)) return;
   const KindOfObject* kind = FindKind(object.kind());
   const Size usual = kind == nullptr ? Size{} : kind->usual;
   const std::string reason = "a " + NameOf(object.kind()) + " has none";
@@ -102,6 +115,11 @@ void CheckNameAndSize(const File::Object& object, Checker& check) {
 void CheckLand(const File::Object& object, Checker& check) {
   if (!IsLand(object.kind())) return check.Forbid({"land"}, "only a shore or an island has it");
   if (!object.has_land()) return check.Refuse("land", "must be set");
+  const bool is_ring = object.kind() == File::SHORE || (object.kind() == File::ISLAND && object.land().edge().empty());
+  check.RefuseIf(is_ring && !object.land().has_mean_radius_m(), "land.mean_radius_m", "must be set");
+  check.RefuseIf(!is_ring && object.land().has_mean_radius_m(), "land.mean_radius_m", "land with edges has length_m");
+  check.RefuseIf(is_ring && !object.land().edge().empty(), "land.edge", "a coast has edges");
+  if (!is_ring) return;
   check.RefuseIf(object.land().roughness_m() >= object.land().mean_radius_m(), "land.roughness_m", "must be less than mean_radius_m");
   check.Forbid({"heading_deg"}, "land has none");
   if (object.kind() != File::ISLAND) return;
@@ -148,15 +166,37 @@ void CheckScene(const File& scene, SceneFaults& faults) {
   if (scene.has_sea() && scene.sea().significant_height_m() > scene.sea().wavelength_m() / 7.0) {
     faults.Add("sea.significant_height_m", "must be at most a seventh of wavelength_m, or the waves break");
   }
+  std::set<std::string> names;
+  const auto check_beside = [&names, &faults](const auto& place, const std::string& path) {
+    if (!names.contains(place.object())) faults.Add(path + ".object", "there is no object of this name before it");
+  };
+  if (scene.own_boat().has_beside()) {
+    for (const auto& object : scene.object()) names.insert(object.name());
+    check_beside(scene.own_boat().beside(), "own_boat.beside");
+    own_boat.RefuseIf(scene.own_boat().beside().gap_m().empty(), "beside.gap_m", "must be set");
+    own_boat.RefuseIf(!scene.own_boat().has_free_by_m(), "beside", "only with free_by_m");
+    names.clear();
+  }
   bool has_shore = false;
   for (int i = 0; i < scene.object_size(); ++i) {
+    const std::string path = "object[" + std::to_string(i) + "]";
+    const auto check_one = [&](const File::Object& object, const std::string& one_path) {
+      Checker check(object, one_path + ".", faults);
+      if (!object.has_kind()) return faults.Add(one_path, "kind: must be set");
+      CheckNameAndSize(object, check);
+      CheckLand(object, check);
+      CheckPlace(object, has_shore, check);
+      CheckPath(object, check);
+      if (object.has_beside()) check_beside(object.beside(), one_path + ".beside");
+      check.RefuseIf(object.has_beside() && object.beside().gap_m().empty(), "beside.gap_m", "must be set");
+      if (object.has_opposite()) check_beside(object.opposite(), one_path + ".opposite");
+      check.RefuseIf(object.has_opposite() && object.opposite().distance_m().empty(), "opposite.distance_m", "must be set");
+      has_shore = has_shore || object.kind() == File::SHORE;
+    };
     const auto& object = scene.object(i);
-    Checker check(object, "object[" + std::to_string(i) + "].", faults);
-    CheckNameAndSize(object, check);
-    CheckLand(object, check);
-    CheckPlace(object, has_shore, check);
-    CheckPath(object, check);
-    has_shore = has_shore || object.kind() == File::SHORE;
+    if (object.one_of().empty()) check_one(object, path);
+    for (int k = 0; k < object.one_of_size(); ++k) check_one(MergedWith(object, object.one_of(k)), path + ".one_of[" + std::to_string(k) + "]");
+    names.insert(object.name());
   }
 }
 
@@ -210,7 +250,8 @@ const KindOfObject* FindKind(File::Kind kind) {
 
 fs::path FindScene(const std::string& name_or_path, const fs::path& config_folder) {
   if (name_or_path.ends_with(kExtension)) return name_or_path;
-  const auto files = SceneFiles(config_folder);
+  auto files = SceneFiles(config_folder, {});
+  files.merge(SceneFiles(config_folder, kFamilies));
   const auto found = files.find(name_or_path);
   if (found != files.end()) return found->second;
   std::string names;
@@ -218,15 +259,19 @@ fs::path FindScene(const std::string& name_or_path, const fs::path& config_folde
   throw config::ConfigError({"--scene: no such scene: " + name_or_path + " (there are: " + names + ")"});
 }
 
-std::vector<SceneSummary> ListScenes(const fs::path& config_folder) {
+std::vector<SceneSummary> Summaries(const std::map<std::string, fs::path>& files) {
   std::vector<SceneSummary> summaries;
-  for (const auto& [name, file] : SceneFiles(config_folder)) {
+  for (const auto& [name, file] : files) {
     config::Scene scene;
     config::LoadText(file, scene);
     summaries.push_back({name, scene.description()});
   }
   return summaries;
 }
+
+std::vector<SceneSummary> ListScenes(const fs::path& config_folder) { return Summaries(SceneFiles(config_folder, {})); }
+
+std::vector<SceneSummary> ListFamilies(const fs::path& config_folder) { return Summaries(SceneFiles(config_folder, kFamilies)); }
 
 Scene LoadScene(const fs::path& file, std::uint64_t seed) { return ParseScene(config::ReadConfigFile(file), file.string(), seed); }
 

@@ -21,10 +21,13 @@ struct SceneSummary {
   std::string description;  // one line: what it is for
 };
 
-/// What FindScene finds by name, sorted.
+/// What FindScene finds by name, sorted, but for families.
 ///
 /// @throws config::ConfigError for a file that is wrong
 std::vector<SceneSummary> ListScenes(const std::filesystem::path& config_folder);
+
+/// The same of families: scenes whose things are drawn as a whole, in the folder `families` of those of the scenes.
+std::vector<SceneSummary> ListFamilies(const std::filesystem::path& config_folder);
 
 /// @param seed  draws waves, shores, trees and whatever the file gives as a range
 /// @throws config::ConfigError with file, line and reason; also when a drawn object finds no place, or when the own boat comes closer than 1.5 m to

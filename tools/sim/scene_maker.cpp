@@ -10,6 +10,9 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "tools/sim/built.hpp"
+#include "tools/sim/coast.hpp"
+#include "tools/sim/family.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/traffic.hpp"
 
@@ -27,7 +30,10 @@ constexpr std::uint64_t kOwnBoatStream = 102;
 constexpr std::uint64_t kFirstObjectStream = 1000;  // and one for each object of the file
 
 constexpr double kOwnBoatClearanceM = 1.5;
-constexpr int kMaxTries = 200;  // for an object to find a place
+// M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
+const std::vector<Vector2d> kOwnOutline = Rectangle(-1.2, 1.2, -0.7, 0.7);
+constexpr int kMaxTries = 200;      // for an object to find a place
+constexpr int kMaxOwnTries = 3000;  // for the own boat, when it is placed last
 
 // One message of the truth holds all objects and the own boat: below bus::kMaxMessageBytes (120 kB) with 400 bytes for its head and the own boat.
 constexpr std::size_t kMaxBytesOfObjects = 119'600;
@@ -63,8 +69,8 @@ void AddWaves(const File::OwnBoat& boat, Random& random, OwnMotion& motion) {
   add(motion.leeway_rad, DegToRad(boat.leeway_deg()), 7.0, 12.0);
 }
 
-OwnMotion DrawOwnMotion(const File::OwnBoat& boat, std::uint64_t seed, Random& waves_random) {
-  Random random(seed, kOwnBoatStream);
+// @param waves_random  of its waves
+OwnMotion DrawOwnMotion(const File::OwnBoat& boat, Random& random, Random& waves_random) {
   OwnMotion motion;
   const double east_m = Draw(boat.east_m(), 0.0, random);
   const double north_m = Draw(boat.north_m(), 0.0, random);
@@ -83,6 +89,24 @@ OwnMotion DrawOwnMotion(const File::OwnBoat& boat, std::uint64_t seed, Random& w
   return motion;
 }
 
+bool IsLand(File::Kind kind) {
+  return kind == File::SHORE || kind == File::ISLAND || kind == File::COAST || kind == File::QUAY || kind == File::BREAKWATER;
+}
+
+// Of land with edges. A quay is a wall with fenders, a breakwater boulders, where nothing else is said.
+Coast MakeLand(const File::Object& file, const Line* along_m, Random& random) {
+  const bool is_closed = file.kind() == File::ISLAND || file.kind() == File::BREAKWATER;
+  const double length_m = Draw(file.length_m(), is_closed ? 30.0 : 200.0, random);
+  config::Scene::Land land = file.land();
+  if (land.edge().empty()) land.add_edge(file.kind() == File::QUAY ? File::FENDERED : file.kind() == File::BREAKWATER ? File::RIPRAP : File::BANK);
+  const std::string name = file.kind() == File::COAST ? "shore" : NameOf(file.kind());
+  if (along_m != nullptr) return MakeCoastAlong(name, land, *along_m, random);
+  if (!is_closed) return MakeCoast(name, land, length_m, random);
+  // Breakwaters are narrow, islands are about as wide as long.
+  const double width_m = file.kind() == File::BREAKWATER ? 6.0 : length_m * random.Uniform(0.4, 1.0);
+  return MakeIslandOf(name, land, length_m, Draw(file.width_m(), width_m, random), random);
+}
+
 // A waypoint at which the path would stand still or turn back.
 bool IsBadCorner(const Vector2d& before_m, const Vector2d& at_m, const Vector2d& after_m) {
   const Vector2d in_m = at_m - before_m;
@@ -94,10 +118,17 @@ bool IsBadCorner(const Vector2d& before_m, const Vector2d& at_m, const Vector2d&
 class Drawing {
  public:
   Drawing(const File& file, std::uint64_t seed, SceneFaults& faults)
-      : file_(file), seed_(seed), faults_(faults), land_random_(seed, kSceneStream), scene_(DrawWithoutObjects()), traffic_(scene_.own_motion) {}
+      : file_(WithDrawnNumbers(file, seed)),
+        seed_(seed),
+        faults_(faults),
+        land_random_(seed, kSceneStream),
+        own_boat_random_(seed, kOwnBoatStream),
+        traffic_(file.lasts_s()) {}
 
   Scene Run() {
+    DrawWithoutObjects();
     for (int i = 0; i < file_.object_size(); ++i) AddObjects(file_.object(i), i);
+    if (file_.own_boat().has_free_by_m()) PlaceOwnBoat();
     return std::move(scene_);
   }
 
@@ -107,13 +138,36 @@ class Drawing {
     Waterline waterline_m;
   };
 
-  Scene DrawWithoutObjects() {
-    Scene scene;
-    scene.own_motion = DrawOwnMotion(file_.own_boat(), seed_, land_random_);
-    scene.effects = file_.effects();
+  void DrawWithoutObjects() {
+    if (!file_.own_boat().has_free_by_m()) {
+      scene_.own_motion = DrawOwnMotion(file_.own_boat(), own_boat_random_, land_random_);
+      traffic_.SetOwnBoat(scene_.own_motion);
+    }
+    scene_.effects = file_.effects();
     Random sea_random(seed_, kSeaStream);
-    scene.sea = Sea::Draw(file_.sea(), sea_random);
-    return scene;
+    scene_.sea = Sea::Draw(file_.sea(), sea_random);
+  }
+
+  // Where it keeps clear of everything.
+  void PlaceOwnBoat() {
+    const auto& boat = file_.own_boat();
+    std::optional<Approach> too_near;
+    for (int num_tries = 0; num_tries < kMaxOwnTries; ++num_tries) {
+      OwnMotion motion = DrawOwnMotion(boat, own_boat_random_, land_random_);
+      if (boat.has_beside()) {
+        Edges::Row row;
+        // As large as a boat: the distance is kept from its hull.
+        const auto found = edges_.Draw(boat.beside(), kOwnOutline, motion.track.start.heading_rad, 0, row, own_boat_random_);
+        if (!found) break;
+        motion.track.start = found->placement;
+      }
+      too_near = traffic_.OfOwnBoat(motion, boat.free_by_m());
+      if (too_near) continue;
+      scene_.own_motion = motion;
+      return;
+    }
+    const std::string at_last = too_near ? fmt::format(": at the last it comes to {:.2f} m of {}", too_near->distance_m, too_near->name) : "";
+    Stop("own_boat", fmt::format("no place in {} tries{}", kMaxOwnTries, at_last));
   }
 
   [[noreturn]] void Stop(const std::string& field, const std::string& reason) {
@@ -123,6 +177,20 @@ class Drawing {
   }
 
   SceneObject DrawBody(const File::Object& file, Random& random) {
+    if (file.kind() == File::JETTY || file.kind() == File::BRIDGE) {
+      const bool is_jetty = file.kind() == File::JETTY;
+      const Size size{Draw(file.length_m(), is_jetty ? 30.0 : 80.0, random), Draw(file.width_m(), is_jetty ? 3.0 : 8.0, random),
+                      Draw(file.height_m(), 0.0, random), Draw(file.reflectance(), 0.0, random)};
+      return is_jetty ? MakeJetty(size, random) : MakeBridge(size, random);
+    }
+    if (IsLand(file.kind()) && !file.land().has_mean_radius_m()) {
+      Line along_m;
+      if (file.has_opposite()) along_m = Opposite(lines_.at(file.opposite().object()), Draw(file.opposite().distance_m(), 0.0, random));
+      Coast coast = MakeLand(file, file.has_opposite() ? &along_m : nullptr, random);
+      line_m_ = coast.line_m;
+      num_front_ = coast.num_front;
+      return std::move(coast.object);
+    }
     const KindOfObject* kind = FindKind(file.kind());
     if (kind != nullptr) {
       Size size;
@@ -194,62 +262,116 @@ class Drawing {
     const auto is_range = [](const Numbers& numbers) { return numbers.size() == 2; };
     return is_range(file.east_m()) || is_range(file.north_m()) || is_range(file.heading_deg()) || is_range(file.length_m()) ||
            is_range(file.width_m()) || is_range(file.path().speed_mps()) || is_range(file.path().circle().from_bearing_deg()) ||
-           is_range(file.row().gap_m());
+           is_range(file.row().gap_m()) || file.has_beside();
   }
 
   std::string NameOfObject(const File::Object& file, const std::string& field, int member) {
     std::string name = file.name();
     if (name.empty()) {
       name = NameOf(file.kind()) + "_" + std::to_string(++num_unnamed_[file.kind()]);
-    } else if (file.count() > 1) {
+    } else if (file.count() > 1 || !file.number().empty()) {
       name += "_" + std::to_string(member + 1);
     }
     if (!names_.insert(name).second) Stop(field + ".name", "there are two objects of the name " + name);
     return name;
   }
 
-  void AddObjects(const File::Object& file, int index) {
+  // Beside another object, or as the file says.
+  std::optional<Edges::Found> DrawBeside(const File::Object& file, const SceneObject& object, int member, Edges::Row& row, Random& random) {
+    const double heading_rad = file.heading_deg().empty() ? random.Uniform(0.0, kTwoPi) : DegToRad(Draw(file.heading_deg(), 0.0, random));
+    return edges_.Draw(file.beside(), object.outline_m, heading_rad, member, row, random);
+  }
+
+  // What else may lie beside it, and on the other side of the water.
+  void AddEdges(const std::string& name, const SceneObject& object) {
+    const auto to_map = [&object](const std::vector<Vector2d>& line_m) {
+      std::vector<Vector2d> map_m;
+      for (const auto& p_m : line_m) map_m.push_back(object.track.start.ToMap(p_m));
+      return map_m;
+    };
+    const bool is_open = num_front_ > 0 && num_front_ < object.outline_m.size();
+    const auto front_m = is_open ? std::vector<Vector2d>(object.outline_m.begin(), object.outline_m.begin() + static_cast<std::ptrdiff_t>(num_front_))
+                                 : object.outline_m;
+    edges_.Add(name, scene_.objects.size(), to_map(front_m), !is_open);
+    if (is_open) lines_[name] = to_map(line_m_);
+    num_front_ = 0;
+  }
+
+  // Why an object cannot be where it is.
+  std::optional<Approach> IsInTheWay(const File::Object& file, const SceneObject& object, const std::optional<Edges::Found>& found, bool is_drawn,
+                                     std::size_t num_before) const {
+    const bool is_in_row = file.has_row();
+    if (const auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
+    if (found && found->least_gap_m > 0.0) {
+      if (const auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
+    }
+    // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
+    if (is_drawn) {
+      const auto skipped = found ? std::optional<std::size_t>(found->object) : std::nullopt;
+      if (const auto near = traffic_.ToOthers(object, file.min_distance_m(), is_in_row ? num_before : traffic_.num_objects(), skipped)) return near;
+    }
+    return traffic_.Overlapping(object);
+  }
+
+  void AddObjects(const File::Object& entry, int index) {
     const std::string field = "object[" + std::to_string(index) + "]";
     Random random(seed_, kFirstObjectStream + static_cast<std::uint64_t>(index));
-    const bool is_drawn = IsDrawn(file);
+    if (entry.has_chance() && random.Uniform() >= entry.chance()) return;
+    const bool is_family = !entry.number().empty();
+    const int count = is_family ? static_cast<int>(std::lround(Draw(entry.number(), 0.0, random))) : entry.count();
     const std::size_t num_before = traffic_.num_objects();
-    for (int member = 0; member < file.count(); ++member) {
+    Edges::Row row;
+    for (int member = 0; member < count; ++member) {
+      const File::Object file = DrawMember(entry, random);
+      const bool is_drawn = IsDrawn(file);
       const std::string name = NameOfObject(file, field, member);
+      if (file.has_beside() && !edges_.Has(file.beside().object())) continue;  // there happens to be none
       for (int num_tries = 1;; ++num_tries) {
         SceneObject object = DrawBody(file, random);
         object.name = name;
-        const Placement place = DrawPlace(file, random);
+        std::optional<Edges::Found> found;
+        if (file.has_beside()) {
+          found = DrawBeside(file, object, member, row, random);
+          if (!found) break;
+        }
+        const Placement place = found ? found->placement : file.has_opposite() ? Placement{{0.0, 0.0}, kPi / 2.0} : DrawPlace(file, random);
         if (file.kind() == File::SHORE) shore_->middle_m = place.position_map_m;
         object.track = DrawTrack(file, field, place, random);
         if (file.has_row() && member > 0) PutInRow(file, scene_.objects.back(), random, object);
-        auto too_near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM);
-        // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
-        if (is_drawn && !too_near) too_near = traffic_.ToOthers(object, file.min_distance_m(), file.has_row() ? num_before : traffic_.num_objects());
-        if (!too_near) too_near = traffic_.Overlapping(object);
+        const auto too_near = IsInTheWay(file, object, found, is_drawn, num_before);
         if (!too_near) {
           object.id = static_cast<int>(scene_.objects.size()) + 1;
           bytes_in_truth_ += BytesInTruth(object);
           if (bytes_in_truth_ > kMaxBytesOfObjects) Stop(field, "too many objects, or too long an outline: all must fit into one message of 120 kB");
+          AddEdges(entry.name(), object);
+          if (found) row.along_m = found->next_along_m;
           traffic_.Add(object);
           scene_.objects.push_back(std::move(object));
           break;
         }
         if (is_drawn && num_tries < kMaxTries) continue;
-        const std::string reason = too_near->limit_m == 0.0 ? fmt::format("{} and {} are in one place within 60 s", name, too_near->name)
-                                                            : fmt::format("{} comes to {:.2f} m of {} within 60 s, must stay {:.2f} m away", name,
-                                                                          too_near->distance_m, too_near->name, too_near->limit_m);
+        if (is_family) break;
+        const std::string reason = too_near->limit_m == 0.0
+                                       ? fmt::format("{} and {} are in one place within {:.0f} s", name, too_near->name, file_.lasts_s())
+                                       : fmt::format("{} comes to {:.2f} m of {} within {:.0f} s, must stay {:.2f} m away", name,
+                                                     too_near->distance_m, too_near->name, file_.lasts_s(), too_near->limit_m);
         Stop(field, is_drawn ? fmt::format("no place in {} tries: at the last {}", kMaxTries, reason) : reason);
       }
     }
   }
 
-  const File& file_;
+  const File file_;
   std::uint64_t seed_;
   SceneFaults& faults_;
   Random land_random_;
-  Scene scene_;
+  Random own_boat_random_;
+  Scene scene_{};
   Traffic traffic_;
   std::optional<ShoreOnMap> shore_;
+  Edges edges_;
+  std::map<std::string, Line> lines_;  // of coasts, in the map
+  Line line_m_;                        // of the body drawn last
+  std::size_t num_front_ = 0;          // of it; 0: its whole outline
   std::size_t bytes_in_truth_ = 0;
   std::map<File::Kind, int> num_unnamed_;
   std::set<std::string> names_;

@@ -12,7 +12,6 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kStepS = 0.2;
-constexpr int kNumSamples = static_cast<int>(Traffic::kCheckedS / kStepS) + 1;
 
 // M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
 constexpr double kOwnHalfLengthM = 1.2;
@@ -76,15 +75,20 @@ double DistanceM(const Outline& a_m, const Outline& b_m) {
   return distance_m;
 }
 
-Traffic::Traffic(const OwnMotion& own_motion)
-    : own_boat_(Sampled("own boat", Rectangle(-kOwnHalfLengthM, kOwnHalfLengthM, -kOwnHalfWidthM, kOwnHalfWidthM), kNumSamples, [&](double time_s) {
-        const OwnState state = StateAt(own_motion, 0.0, time_s);
-        return Placement{state.position_map_m.head<2>(), state.heading_rad};
-      })) {}
+Traffic::Traffic(double checked_s) : num_samples_(static_cast<int>(checked_s / kStepS) + 1) {}
 
-Traffic::Mover Traffic::ToMover(const SceneObject& object) {
+void Traffic::SetOwnBoat(const OwnMotion& own_motion) { own_boat_ = ToMover(own_motion); }
+
+Traffic::Mover Traffic::ToMover(const OwnMotion& own_motion) const {
+  return Sampled("own boat", Rectangle(-kOwnHalfLengthM, kOwnHalfLengthM, -kOwnHalfWidthM, kOwnHalfWidthM), num_samples_, [&](double time_s) {
+    const OwnState state = StateAt(own_motion, 0.0, time_s);
+    return Placement{state.position_map_m.head<2>(), state.heading_rad};
+  });
+}
+
+Traffic::Mover Traffic::ToMover(const SceneObject& object) const {
   Mover mover =
-      Sampled(object.name, object.outline_m, object.track.is_moving() ? kNumSamples : 1, [&](double time_s) { return object.track.At(time_s); });
+      Sampled(object.name, object.outline_m, object.track.is_moving() ? num_samples_ : 1, [&](double time_s) { return object.track.At(time_s); });
   mover.is_in_water = object.is_in_water;
   return mover;
 }
@@ -107,7 +111,7 @@ Traffic::Mover Traffic::Sampled(const std::string& name, const Outline& outline_
   return mover;
 }
 
-double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) {
+double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) const {
   const std::size_t num_samples = std::max(a.shapes.size(), b.shapes.size());
   double nearest_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < num_samples;) {
@@ -119,7 +123,7 @@ double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) {
     if (nearest_m <= 0.0) return 0.0;
     // They cannot come within the limit before they have gone the rest of the way.
     const double rest_steps = (distance_m - limit_m) / (std::max(a.speed_mps + b.speed_mps, 1e-6) * kStepS);
-    i += static_cast<std::size_t>(std::clamp(rest_steps, 1.0, static_cast<double>(kNumSamples)));
+    i += static_cast<std::size_t>(std::clamp(rest_steps, 1.0, static_cast<double>(num_samples_)));
   }
   return nearest_m;
 }
@@ -127,16 +131,34 @@ double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) {
 void Traffic::Add(const SceneObject& object) { others_.push_back(ToMover(object)); }
 
 std::optional<Approach> Traffic::ToOwnBoat(const SceneObject& object, double limit_m) const {
-  const double distance_m = NearestM(ToMover(object), own_boat_, limit_m);
+  if (!own_boat_) return std::nullopt;
+  const double distance_m = NearestM(ToMover(object), *own_boat_, limit_m);
   if (distance_m >= limit_m) return std::nullopt;
-  return Approach{distance_m, own_boat_.name, limit_m};
+  return Approach{distance_m, own_boat_->name, limit_m};
 }
 
-std::optional<Approach> Traffic::ToOthers(const SceneObject& object, double limit_m, std::size_t num_first) const {
+std::optional<Approach> Traffic::ToOthers(const SceneObject& object, double limit_m, std::size_t num_first,
+                                          std::optional<std::size_t> skipped) const {
   const Mover mover = ToMover(object);
   for (std::size_t i = 0; i < std::min(num_first, others_.size()); ++i) {
+    if (i == skipped) continue;
     const double distance_m = NearestM(mover, others_[i], limit_m);
     if (distance_m < limit_m) return Approach{distance_m, others_[i].name, limit_m};
+  }
+  return std::nullopt;
+}
+
+std::optional<Approach> Traffic::ToOne(const SceneObject& object, double limit_m, std::size_t other) const {
+  const double distance_m = NearestM(ToMover(object), others_[other], limit_m);
+  if (distance_m >= limit_m) return std::nullopt;
+  return Approach{distance_m, others_[other].name, limit_m};
+}
+
+std::optional<Approach> Traffic::OfOwnBoat(const OwnMotion& own_motion, double limit_m) const {
+  const Mover own_boat = ToMover(own_motion);
+  for (const auto& other : others_) {
+    const double distance_m = NearestM(own_boat, other, limit_m);
+    if (distance_m < limit_m) return Approach{distance_m, other.name, limit_m};
   }
   return std::nullopt;
 }

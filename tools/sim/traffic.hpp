@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ bool Contains(const Outline& outline_m, const Eigen::Vector2d& p_m);
 /// @return shortest distance between two polygons; 0 when they touch or one holds the other. Cost: product of their vertices.
 double DistanceM(const Outline& a_m, const Outline& b_m);
 
-/// Between two objects in the first kCheckedS, sampled every 0.2 s.
+/// Between two objects in the first part of a scene, sampled every 0.2 s.
 struct Approach {
   double distance_m;
   std::string name;      // of the other one
@@ -27,10 +28,11 @@ struct Approach {
 
 class Traffic {
  public:
-  static constexpr double kCheckedS = 60.0;
+  /// @param checked_s  how long from the start
+  explicit Traffic(double checked_s);
 
-  /// The own boat is taken as the hull of 2.4 m x 1.4 m of the paper's boat.
-  explicit Traffic(const OwnMotion& own_motion);
+  /// From now on it is in the way of others. It is taken as the hull of 2.4 m x 1.4 m of the paper's boat.
+  void SetOwnBoat(const OwnMotion& own_motion);
 
   /// From now on it is in the way of others.
   void Add(const SceneObject& object);
@@ -39,8 +41,16 @@ class Traffic {
   std::optional<Approach> ToOwnBoat(const SceneObject& object, double limit_m) const;
 
   /// @param num_first  only the first so many that were added
+  /// @param skipped    but for this one, by the order in which they were added
   /// @return the first of them to which it comes nearer than `limit_m`
-  std::optional<Approach> ToOthers(const SceneObject& object, double limit_m, std::size_t num_first) const;
+  std::optional<Approach> ToOthers(const SceneObject& object, double limit_m, std::size_t num_first,
+                                   std::optional<std::size_t> skipped = std::nullopt) const;
+
+  /// @return how near it comes to the one that was added as `other` when that is less than `limit_m`
+  std::optional<Approach> ToOne(const SceneObject& object, double limit_m, std::size_t other) const;
+
+  /// @return the first of all to which an own boat that moved so would come nearer than `limit_m`
+  std::optional<Approach> OfOwnBoat(const OwnMotion& own_motion, double limit_m) const;
 
   /// @return the first of the others whose outline it crosses, both in the water; what lies on land, at docks or walls may
   std::optional<Approach> Overlapping(const SceneObject& object) const;
@@ -59,11 +69,13 @@ class Traffic {
     double speed_mps;           // from one sample to the next no point of it is faster
     bool is_in_water = true;
   };
-  static Mover ToMover(const SceneObject& object);
+  Mover ToMover(const SceneObject& object) const;
+  Mover ToMover(const OwnMotion& own_motion) const;
   static Mover Sampled(const std::string& name, const Outline& outline_m, int num_samples, const std::function<Placement(double)>& at);
-  static double NearestM(const Mover& a, const Mover& b, double limit_m);
+  double NearestM(const Mover& a, const Mover& b, double limit_m) const;
 
-  Mover own_boat_;
+  int num_samples_;
+  std::optional<Mover> own_boat_;
   std::vector<Mover> others_;
 };
 

@@ -37,7 +37,8 @@ TEST(Outline, HoldsWhatLiesInItAlsoWhenItIsNotConvex) {
 
 TEST(Traffic, FindsWhatMeetsAfterAWhile) {
   OwnMotion still;
-  Traffic traffic(still);
+  Traffic traffic(60.0);
+  traffic.SetOwnBoat(still);
   EXPECT_FALSE(traffic.ToOwnBoat(Box("far", Track{{{0.0, 50.0}}}), 1.5));
   EXPECT_TRUE(traffic.ToOwnBoat(Box("comes", Track{{{0.0, 50.0}, kPi}, 1.0}), 1.5)) << "there after 50 s";
   EXPECT_FALSE(traffic.ToOwnBoat(Box("comes too late", Track{{{0.0, 90.0}, kPi}, 1.0}), 1.5));
@@ -49,14 +50,16 @@ TEST(Traffic, FindsWhatMeetsAfterAWhile) {
 
 TEST(Traffic, AFastBoatDoesNotSlipThroughBetweenTwoSamples) {
   OwnMotion still;
-  Traffic traffic(still);
+  Traffic traffic(60.0);
+  traffic.SetOwnBoat(still);
   // 20 m/s: 4 m in a sample, 2 m long, passing 1 m off for a moment; the limit is wider than its way in a sample.
   EXPECT_TRUE(traffic.ToOwnBoat(Box("fast", Track{{{-300.0, 2.7}, kPi / 2.0}, 20.0}), 1.5));
 }
 
 TEST(Traffic, NamesTheFirstThatIsTooNearAmongTheFirstFew) {
   OwnMotion still;
-  Traffic traffic(still);
+  Traffic traffic(60.0);
+  traffic.SetOwnBoat(still);
   traffic.Add(Box("a", Track{{{20.0, 0.0}}}));
   traffic.Add(Box("b", Track{{{30.0, 0.0}}}));
   const auto object = Box("c", Track{{{34.0, 0.0}}});
