@@ -19,6 +19,7 @@
 
 #include "common/config/text_salvage.hpp"
 #include "config/schema/boat.pb.h"
+#include "config/schema/evidence.pb.h"
 #include "config/schema/georeferencer.pb.h"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/options.pb.h"
@@ -49,7 +50,7 @@ std::string NumberText(double value) {
 // The message of a schema file. Naming the descriptors here also makes the linker keep them.
 const Descriptor* FindSchema(const std::string& schema_file) {
   for (const auto* descriptor : {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(),
-                                 Georeferencer::descriptor(), Recorder::descriptor(), Scene::descriptor()}) {
+                                 Georeferencer::descriptor(), Recorder::descriptor(), Scene::descriptor(), Evidence::descriptor()}) {
     if (descriptor->file()->name() == schema_file) return descriptor;
   }
   return nullptr;
@@ -255,9 +256,13 @@ std::string EffectiveText(const Message& message, const std::string& indent) {
 
 std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   const std::string text = ReadConfigFile(file);
-  // All scenes have one schema, whatever their names.
-  const bool is_scene = file.parent_path().filename() == "scenes";
-  const std::string schema_file = "config/schema/" + (is_scene ? "scene" : file.stem().string()) + ".proto";
+  // All scenes have one schema, whatever their names; so has all evidence.
+  const auto folder = file.parent_path().filename();
+  const std::string schema_file = "config/schema/" +
+                                  (folder == "scenes"     ? "scene"
+                                   : folder == "evidence" ? "evidence"
+                                                          : file.stem().string()) +
+                                  ".proto";
   const auto* descriptor = FindSchema(schema_file);
   if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});
   const std::unique_ptr<Message> message(google::protobuf::MessageFactory::generated_factory()->GetPrototype(descriptor)->New());

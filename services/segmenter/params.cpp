@@ -15,20 +15,6 @@ constexpr double kWholeCircleDeg = 360.0;
 LookoutParams LookoutOf(const config::Segmenter& message) {
   LookoutParams params;
   params.link = {message.link_m(), message.link_per_range()};
-  params.land_length_m = message.land_length_m();
-  params.shore_gap = {message.shore_gap_m(), message.shore_gap_per_range()};
-  params.behind_land = {message.behind_land_m(), message.behind_land_per_range()};
-  params.beside_land = {message.beside_land_m(), message.beside_land_per_range()};
-  params.tall_m = message.tall_m();
-  params.join = {message.join_m(), message.join_per_range()};
-  params.attach = {message.attach_m(), message.attach_per_range()};
-  params.attach_length_m = message.attach_length_m();
-  params.over_m = message.over_m();
-  params.post_spacing_m = message.post_spacing_m();
-  params.sure_returns = message.sure_returns();
-  params.sure_fill = message.sure_fill();
-  params.sure_height_m = message.sure_height_m();
-  params.surface_range_m = message.surface_range_m();
   return params;
 }
 

@@ -90,7 +90,8 @@ const std::vector<Rule>& Rules() {
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       // It knows what an address is.
-      {"services/[^/]+/params(_text)?\\..pp", {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types", "fmt"}},
+      {"services/[^/]+/(params(_text)?|evidence_text)\\..pp",
+       {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types", "fmt"}},
       // Opens what params name.
       {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.

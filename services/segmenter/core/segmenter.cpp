@@ -22,7 +22,9 @@ const Segments& Segmenter::Segment(const Scan& scan) {
   const auto& classified = classifier_.Classify(scan);
   if (params_.method == Method::kLookout) {
     method_.Group(scan, classified.returns);
-    numbering_.Number(method_.pieces(), method_.group_of_piece(), params_.min_segment_points, kMaxSegments);
+    identity_.resize(static_cast<std::size_t>(method_.groups().count));
+    std::iota(identity_.begin(), identity_.end(), 0);
+    numbering_.Number(method_.groups(), identity_, params_.min_segment_points, kMaxSegments);
   } else {
     GroupAsThePaper(scan);
     numbering_.Number(components_, cluster_of_component_, params_.min_segment_points, kMaxSegments);
@@ -52,8 +54,8 @@ void Segmenter::DescribeSegments(const Scan& scan) {
     const std::int32_t root = numbering_.ClusterOf(segment.id - 1);
     const GroupFacts& facts = method_.FactsOf(root);
     segment.kind = facts.is_land ? SegmentKind::kLand : SegmentKind::kObstacle;
-    segment.grounds = facts.grounds;
-    segment.confidence = facts.grounds == 0 ? Confidence::kSure : Confidence::kTentative;
+    segment.confidence = facts.is_land || facts.thing_log_odds > params_.lookout.sure_log_odds ? Confidence::kSure : Confidence::kTentative;
+    segment.grounds = segment.confidence == Confidence::kSure ? 0 : kFewReturns;
     segment.seen_share = facts.seen_share;
     if (facts.is_land) measurer_.MeasureWaterline(scan, classifier_.result().returns, method_.NearestOf(root), segment);
   }
@@ -64,7 +66,7 @@ void Segmenter::LabelReturns() {
   const auto& classified = classifier_.result();
   const auto& returns = classified.returns;
   const auto& segments = numbering_.groups();
-  const auto& groups = params_.method == Method::kLookout ? method_.pieces() : components_;
+  const auto& groups = params_.method == Method::kLookout ? method_.groups() : components_;
   auto& label = result_.label;
   label = classified.label;
   for (std::size_t i = 0; i < returns.size(); ++i) {

@@ -7,27 +7,29 @@
 #include <vector>
 
 #include "services/segmenter/core/groups.hpp"
-#include "services/segmenter/core/lookout/land.hpp"
+#include "services/segmenter/core/lookout/evidence.hpp"
 #include "services/segmenter/core/lookout/lookout_params.hpp"
-#include "services/segmenter/core/lookout/objects.hpp"
+#include "services/segmenter/core/lookout/pairs.hpp"
+#include "services/segmenter/core/lookout/partition.hpp"
+#include "services/segmenter/core/lookout/piece_features.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
-#include "services/segmenter/core/lookout/run_links.hpp"
-#include "services/segmenter/core/lookout/runs.hpp"
 #include "services/segmenter/core/lookout/scan_grid.hpp"
-#include "services/segmenter/core/lookout/thin_pieces.hpp"
-#include "services/segmenter/core/measure.hpp"
+#include "services/segmenter/core/lookout/tight_pieces.hpp"
 #include "services/segmenter/core/returns.hpp"
 #include "services/segmenter/core/scan.hpp"
-#include "services/segmenter/core/union_find.hpp"
 
 namespace lookout::segmenter {
 
 /// What is said of a group beside its returns.
 struct GroupFacts {
   bool is_land = false;
-  std::int32_t grounds = 0;  // bits of Ground
-  float seen_share = 1.0F;   // of the columns from its first to its last: in the others something nearer hides it, or there is no return
+  float land_log_odds = 0.0F;
+  float thing_log_odds = 0.0F;  // that it is a thing, and not spray, rain, foam or a glint
+  float seen_share = 1.0F;      // of the columns from its first to its last: in the others something nearer hides it, or there is no return
 };
+
+/// Merging, twice: what is beyond doubt; then the rest, by what these larger pieces look like.
+enum class MergeStage : std::uint8_t { kFirst, kSecond };
 
 /// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.
 Reach LinkFor(Reach link, double column_step_rad);
@@ -37,45 +39,45 @@ Reach LinkFor(Reach link, double column_step_rad);
 class LookoutMethod {
  public:
   LookoutMethod(const LookoutParams& params, const Eigen::Matrix3d& R_vessel_lidar)
-      : params_(params), R_vessel_lidar_(R_vessel_lidar), land_(params), thin_(params), objects_(params) {}
+      : params_(params), R_vessel_lidar_(R_vessel_lidar), pair_finder_(params.lidar_above_water_m) {}
 
   /// Groups the returns; each is in one. Results hold until the next call.
   /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a scan of that size.
   void Group(const Scan& scan, std::span<const Return> returns);
 
-  /// Single pieces, and the piece that names the group of each.
-  const Groups& pieces() const { return piece_groups_; }
-  std::span<const std::int32_t> group_of_piece() const { return root_of_piece_; }
-  /// Of the group that this piece names.
-  const GroupFacts& FactsOf(std::int32_t root) const { return facts_[static_cast<std::size_t>(root)]; }
+  /// The steps of Group, in this order; lookout-fit takes what it fits on from between them.
+  /// 1. Tight pieces.
+  void FindPieces(const Scan& scan, std::span<const Return> returns);
+  /// 2. What is measured of pairs of pieces. Until the pieces change.
+  std::span<const PiecePair> FindPairs(MergeStage stage);
+  /// 3. Merges pieces by the log odds of these pairs.
+  void Merge(MergeStage stage, std::span<const PiecePair> pairs);
+  /// 4. What is measured of each piece.
+  std::span<const PieceFeatures> MeasureGroups();
+  void Judge(std::span<const PieceFeatures> features);
+
+  const ScanGrid& grid() const { return grid_; }
+  const PieceTable& pieces() const { return pieces_; }
+  std::int32_t num_tight_pieces() const { return tight_.count(); }
+
+  const Groups& groups() const { return groups_; }
+  const GroupFacts& FactsOf(std::int32_t group) const { return facts_[static_cast<std::size_t>(group)]; }
   /// The nearest return of that group in each of its columns, from left to right as the lidar sees them. Until the next call.
-  std::span<const std::int32_t> NearestOf(std::int32_t root);
+  std::span<const std::int32_t> NearestOf(std::int32_t group);
 
  private:
-  void Judge();
-
   LookoutParams params_;
   Eigen::Matrix3d R_vessel_lidar_;
   ScanGrid grid_;
-  RunTable runs_;
-  RunLinker linker_;
-  UnionFind sets_of_runs_;
+  TightPieces tight_;
   PieceTable pieces_;
-  LandFinder land_;
-  ThinPieces thin_;
-  ObjectJoiner objects_;
-  Groups piece_groups_;
-  std::vector<std::int32_t> root_of_piece_;
+  PairFinder pair_finder_;
+  std::vector<EvidencePair> evidence_;
+  Partition partition_;
+  std::vector<std::int32_t> label_;
+  std::vector<PieceFeatures> features_;
+  Groups groups_;
   std::vector<GroupFacts> facts_;
-  struct Span {
-    std::int32_t line = -1;
-    std::int32_t num_returns = 0;
-    std::int32_t first = 0;  // counted from the begin of the arc
-    std::int32_t last = 0;
-    std::int32_t num_beams = 0;  // of the lines before
-  };
-  std::vector<Span> spans_;
-  std::vector<std::int32_t> num_seen_;
   std::vector<std::int32_t> nearest_;
 };
 

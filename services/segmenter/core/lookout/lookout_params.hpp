@@ -1,39 +1,36 @@
 // What the lookout method goes by. Lengths in metres, "per range" in metres per metre of distance.
 #pragma once
 
-#include "common/core/angles.hpp"
+#include "services/segmenter/core/lookout/evidence.hpp"
+#include "services/segmenter/core/lookout/pairs.hpp"
+#include "services/segmenter/core/lookout/piece_features.hpp"
+#include "services/segmenter/core/lookout/reach.hpp"
 
 namespace lookout::segmenter {
 
-/// A length that grows with the distance r from the lidar: at_lidar_m + per_range r, as the spacing of its returns does.
-struct Reach {
-  double at_lidar_m = 0.0;
-  double per_range = 0.0;
-
-  double At(double range_m) const { return at_lidar_m + per_range * range_m; }
-};
+/// The sums of a file of weights, by what they are evidence of.
+inline constexpr EvidenceLayout kMergeFirstLayout{"merge_first", kPairFeatureNames};    // that two tight pieces are one
+inline constexpr EvidenceLayout kMergeSecondLayout{"merge_second", kPairFeatureNames};  // that two larger pieces are one
+inline constexpr EvidenceLayout kLandLayout{"land", kPieceFeatureNames};                // that a group is land
+inline constexpr EvidenceLayout kThingLayout{"thing", kPieceFeatureNames};              // that it is a thing, not clutter
 
 /// Defaults are those of config/schema/segmenter.proto, which says where they come from.
 struct LookoutParams {
   // Pieces: returns that lie so close that nothing passes between them.
   Reach link{0.3, 0.01};
-  // Land.
-  double land_length_m = 15.0;
-  Reach shore_gap{1.5, 0.03};     // along the water's edge
-  Reach behind_land{12.0, 0.15};  // from land to what stands behind it
-  Reach beside_land{6.0, 0.08};   // from land to what is tall beside it, and, half of it at the lidar, from land to land
-  double tall_m = 3.5;
-  // Objects.
-  Reach join{0.3, 0.03};         // side by side
-  Reach attach{1.2, 0.03};       // from a small part to the thing that it is of
-  double attach_length_m = 1.4;  // of a small part
-  double over_m = 3.0;           // one seen over the other
-  double post_spacing_m = 6.0;
-  // Sure or tentative.
-  int sure_returns = 4;
-  double sure_fill = 0.6;
-  double sure_height_m = 0.25;
-  double surface_range_m = 10.0;
+  // Pairs of pieces that are asked whether they are one, in the first and in the second merging.
+  Reach first_reach{1.5, 0.04};
+  Reach second_reach{4.0, 0.12};
+  // Merged when the mean evidence is above this.
+  double first_log_odds = 1.5;
+  double second_log_odds = 0.0;
+  // What is above this is land, and sure.
+  double land_log_odds = 0.0;
+  double sure_log_odds = 2.0;
+  Evidence merge_first = DefaultEvidence(kMergeFirstLayout);
+  Evidence merge_second = DefaultEvidence(kMergeSecondLayout);
+  Evidence land = DefaultEvidence(kLandLayout);
+  Evidence thing = DefaultEvidence(kThingLayout);
   /// Of the lidar over the water when the boat floats at rest.
   double lidar_above_water_m = 1.0;
 };

@@ -54,6 +54,8 @@ class ScanGrid {
   int RingOf(int line) const { return line / num_layers_; }
   /// The usual angle from a column to the next: the median round the circle, so that holes and the cut of the scan do not count.
   double column_step_rad() const { return column_step_rad_; }
+  /// The mean angle from a ring to the next; 0 where there is one ring.
+  double ring_step_rad() const { return ring_step_rad_; }
 
   int Wrap(int column) const { return column < 0 ? column + num_columns_ : column < num_columns_ ? column : column - num_columns_; }
   /// @param column  0 to num_columns() - 1
@@ -90,6 +92,7 @@ class ScanGrid {
   int num_columns_ = 0;
   int num_layers_ = 1;
   double column_step_rad_ = 0.0;
+  double ring_step_rad_ = 0.0;
   std::vector<std::int32_t> return_at_;  // [lines x columns]
   std::vector<float> range_at_;          // [lines x columns]
   std::size_t words_per_line_ = 0;

@@ -1,0 +1,94 @@
+#include "services/segmenter/core/lookout/evidence.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace lookout::segmenter {
+
+Evidence::Evidence(const NamedSum& sum, const EvidenceLayout& layout) : bias_(sum.bias) {
+  trees_.reserve(sum.trees.size());
+  for (const auto& named : sum.trees) {
+    Tree tree;
+    tree.above.fill(std::numeric_limits<float>::infinity());
+    for (const auto& split : named.splits) {
+      if (split.feature.empty()) break;
+      const auto feature = std::ranges::find(layout.features, split.feature);
+      if (feature == layout.features.end()) {
+        throw std::invalid_argument("tree " + std::to_string(trees_.size() + 1) + ": there is no feature " + std::string(split.feature));
+      }
+      tree.feature[tree.num_splits] = static_cast<std::uint16_t>(feature - layout.features.begin());
+      tree.above[tree.num_splits] = split.above;
+      ++tree.num_splits;
+    }
+    std::copy_n(named.log_odds.begin(), std::size_t{1} << tree.num_splits, tree.log_odds.begin());
+    trees_.push_back(tree);
+  }
+}
+
+float Evidence::Of(std::span<const float> features) const {
+  float sum = bias_;
+  for (const auto& tree : trees_) {
+    unsigned leaf = 0;
+    for (std::size_t i = 0; i < kTreeDepth; ++i) leaf |= static_cast<unsigned>(features[tree.feature[i]] > tree.above[i]) << i;
+    sum += tree.log_odds[leaf];
+  }
+  return sum;
+}
+
+void Evidence::Terms(std::span<const float> features, std::span<float> terms) const {
+  std::ranges::fill(terms, 0.0F);
+  for (const auto& tree : trees_) {
+    // Each answer halves the leaves: the last split's first, so that what remains stands together.
+    std::size_t first = 0;
+    std::size_t count = std::size_t{1} << tree.num_splits;
+    const auto mean = [&] {
+      float sum = 0.0F;
+      for (std::size_t i = first; i < first + count; ++i) sum += tree.log_odds[i];
+      return sum / static_cast<float>(count);
+    };
+    float before = mean();
+    for (std::size_t i = tree.num_splits; i-- > 0;) {
+      count /= 2;
+      if (features[tree.feature[i]] > tree.above[i]) first += count;
+      const float after = mean();
+      terms[tree.feature[i]] += after - before;
+      before = after;
+    }
+  }
+}
+
+float Evidence::Base() const {
+  float base = bias_;
+  for (const auto& tree : trees_) {
+    const std::size_t count = std::size_t{1} << tree.num_splits;
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < count; ++i) sum += tree.log_odds[i];
+    base += sum / static_cast<float>(count);
+  }
+  return base;
+}
+
+std::string FeatureFault(std::span<const std::string_view> features, const EvidenceLayout& layout) {
+  for (const auto& feature : features) {
+    if (std::ranges::count(features, feature) > 1) return "has " + std::string(feature) + " twice";
+    if (std::ranges::find(layout.features, feature) == layout.features.end()) return "there is no feature " + std::string(feature);
+  }
+  for (const auto& feature : layout.features) {
+    if (std::ranges::find(features, feature) == features.end()) return "lacks " + std::string(feature);
+  }
+  return {};
+}
+
+Evidence DefaultEvidence(const EvidenceLayout& layout) {
+  const auto sums = DefaultSums();
+  const auto sum = std::ranges::find(sums, layout.name, &NamedSum::name);
+  const std::string name(layout.name);
+  if (sum == sums.end()) throw std::invalid_argument("no evidence is compiled in for " + name);
+  if (const auto fault = FeatureFault(sum->features, layout); !fault.empty()) {
+    throw std::invalid_argument("the evidence that is compiled in for " + name + " is of other features: " + fault);
+  }
+  return {*sum, layout};
+}
+
+}  // namespace lookout::segmenter

@@ -1,0 +1,199 @@
+#include "services/segmenter/core/lookout/pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lookout::segmenter {
+
+namespace {
+
+constexpr std::int32_t kFree = -1;
+constexpr int kMostColumnsBeside = 128;
+constexpr float kFacedM = 1.0F;
+constexpr std::size_t kLeastSlots = 1024;
+
+// Least distance between what two pieces show in two columns, seen from above, and the returns that it is between.
+struct Closest {
+  float squared_m2;
+  const LevelPoint* one;
+  const LevelPoint* other;
+};
+
+Closest ClosestOf(const OutlineEntry& one, const OutlineEntry& other) {
+  Closest closest{SquaredPlanDistance(one.near_point, other.near_point), &one.near_point, &other.near_point};
+  const auto look_at = [&closest](const LevelPoint& a, const LevelPoint& b) {
+    const float squared_m2 = SquaredPlanDistance(a, b);
+    if (squared_m2 < closest.squared_m2) closest = {squared_m2, &a, &b};
+  };
+  look_at(one.near_point, other.far_point);
+  look_at(one.far_point, other.near_point);
+  look_at(one.far_point, other.far_point);
+  return closest;
+}
+
+float Over(double value, double by) { return static_cast<float>(by > 0.0 ? value / by : 0.0); }
+
+}  // namespace
+
+std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
+  FindContacts(grid, pieces, reach);
+  std::ranges::sort(contacts_, [](const Contact& a, const Contact& b) { return a.one < b.one || (a.one == b.one && a.other < b.other); });
+  pairs_.resize(contacts_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i) Measure(grid, pieces, contacts_[i], pairs_[i]);
+  return pairs_;
+}
+
+void PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
+  contacts_.clear();
+  slots_.assign(std::max(kLeastSlots, slots_.size()), kFree);
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    const auto seen = pieces.InColumn(column);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const OutlineEntry& front = seen[i];
+      const auto reach_m = static_cast<float>(reach.At(front.far_point.range_m));
+      for (std::size_t j = i + 1; j < seen.size(); ++j) {
+        const OutlineEntry& back = seen[j];
+        const float gap_m = std::max(0.0F, back.near_point.range_m - front.far_point.range_m);
+        if (gap_m > reach_m) break;
+        Meet(front, front.far_point, back, back.near_point, gap_m * gap_m);
+        if (gap_m <= kFacedM) ++At(front.piece, back.piece).num_faced;
+      }
+      LookBeside(grid, pieces, reach, front, 1);
+      LookBeside(grid, pieces, reach, front, -1);
+    }
+  }
+}
+
+// From where a piece ends in a column, on to what stands beside it.
+void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, const OutlineEntry& entry, int direction) {
+  const auto reach_m = static_cast<float>(reach.At(entry.near_point.range_m));
+  const double across_m = std::max(1e-3, grid.column_step_rad() * entry.near_point.range_m);
+  const int num_steps = static_cast<int>(std::min(static_cast<double>(kMostColumnsBeside), std::ceil(reach_m / across_m)));
+  for (int step = 1; step <= num_steps; ++step) {
+    const int column = grid.Wrap(entry.column + direction * step);
+    const auto seen = pieces.InColumn(column);
+    if (std::ranges::any_of(seen, [&](const OutlineEntry& beside) { return beside.piece == entry.piece; })) return;
+    for (const OutlineEntry& beside : seen) {
+      if (beside.near_point.range_m > entry.far_point.range_m + reach_m) break;
+      if (beside.far_point.range_m < entry.near_point.range_m - reach_m) continue;
+      const Closest closest = ClosestOf(entry, beside);
+      const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
+      const auto limit_m = static_cast<float>(reach.At(least_range_m));
+      if (closest.squared_m2 > limit_m * limit_m) continue;
+      if (closest.one->range_m <= closest.other->range_m) {
+        Meet(entry, *closest.one, beside, *closest.other, closest.squared_m2);
+      } else {
+        Meet(beside, *closest.other, entry, *closest.one, closest.squared_m2);
+      }
+    }
+  }
+}
+
+PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {
+  if (one > other) std::swap(one, other);
+  if (2 * contacts_.size() >= slots_.size()) {
+    slots_.assign(2 * slots_.size(), kFree);
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      std::size_t slot = (static_cast<std::size_t>(contacts_[i].one) * 31 + static_cast<std::size_t>(contacts_[i].other)) % slots_.size();
+      while (slots_[slot] != kFree) slot = (slot + 1) % slots_.size();
+      slots_[slot] = static_cast<std::int32_t>(i);
+    }
+  }
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = (static_cast<std::size_t>(one) * 31 + static_cast<std::size_t>(other)) & mask;
+  for (; slots_[slot] != kFree; slot = (slot + 1) & mask) {
+    Contact& contact = contacts_[static_cast<std::size_t>(slots_[slot])];
+    if (contact.one == one && contact.other == other) return contact;
+  }
+  slots_[slot] = static_cast<std::int32_t>(contacts_.size());
+  contacts_.push_back({.one = one, .other = other});
+  return contacts_.back();
+}
+
+void PairFinder::Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point,
+                      float squared_gap_m2) {
+  Contact& contact = At(front.piece, back.piece);
+  // Of equal gaps the nearest.
+  if (contact.front != nullptr && (squared_gap_m2 > contact.squared_gap_m2 ||
+                                   (squared_gap_m2 == contact.squared_gap_m2 && front_point.range_m >= contact.lesser_range_m)))
+    return;
+  contact.squared_gap_m2 = squared_gap_m2;
+  contact.lesser_range_m = front_point.range_m;
+  contact.greater_range_m = back_point.range_m;
+  contact.front = &front;
+  contact.back = &back;
+}
+
+void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const {
+  pair.one = contact.one;
+  pair.other = contact.other;
+  pair.gap_m = std::sqrt(contact.squared_gap_m2);
+  const OutlineEntry& front = *contact.front;
+  const OutlineEntry& back = *contact.back;
+  const auto set = [&pair](PairFeature feature, double value) { pair.features[static_cast<std::size_t>(feature)] = static_cast<float>(value); };
+
+  // Where they come closest.
+  const double range_m = contact.lesser_range_m;
+  const double radial_m = std::max(0.0F, contact.greater_range_m - contact.lesser_range_m);
+  int columns = std::abs(front.column - back.column);
+  columns = std::min(columns, grid.num_columns() - columns);
+  const int ring_gap = std::max({0, front.min_ring - back.max_ring, back.min_ring - front.max_ring});
+  set(PairFeature::kRange, range_m);
+  set(PairFeature::kGap, pair.gap_m);
+  set(PairFeature::kGapColumns, columns);
+  set(PairFeature::kRadialGap, radial_m);
+  set(PairFeature::kRadialGapRings, radial_m * lidar_above_water_m_ / std::max(1e-6, range_m * range_m * grid.ring_step_rad()));
+  set(PairFeature::kRingGap, ring_gap);
+  set(PairFeature::kStepUp, back.min_height_m - front.max_height_m);
+
+  const PieceFacts& a = pieces[pair.one];
+  const PieceFacts& b = pieces[pair.other];
+  const int lesser_arc = std::min(a.arc.num, b.arc.num);
+  set(PairFeature::kOverlap, static_cast<double>(SharedColumns(a.arc, b.arc, grid.num_columns())) / lesser_arc);
+  set(PairFeature::kFaced, static_cast<double>(contact.num_faced) / lesser_arc);
+
+  // Beams between them: in the columns between, and in the rings of both.
+  int num_beams = 0;
+  int num_through = 0;
+  int num_hidden = 0;
+  if (columns > 1) {
+    const bool is_on = grid.Wrap(front.column + columns) == back.column;
+    const int first = is_on ? front.column : back.column;
+    const int from_line = std::min(front.min_ring, back.min_ring) * grid.num_layers();
+    const int end_line = (std::max(front.max_ring, back.max_ring) + 1) * grid.num_layers();
+    for (int line = from_line; line < end_line; ++line) {
+      for (int step = 1; step < columns; ++step) {
+        const float beam_m = grid.RangeAt(line, grid.Wrap(first + step));
+        ++num_beams;
+        if (std::isinf(beam_m)) continue;
+        num_through += beam_m > contact.greater_range_m ? 1 : 0;
+        num_hidden += beam_m < contact.lesser_range_m ? 1 : 0;
+      }
+    }
+  }
+  set(PairFeature::kSeenThrough, Over(num_through, num_beams));
+  set(PairFeature::kHidden, Over(num_hidden, num_beams));
+
+  const bool is_a_small = a.width_m < b.width_m || (a.width_m == b.width_m && a.num_returns < b.num_returns);
+  const PieceFacts& small = is_a_small ? a : b;
+  const PieceFacts& large = is_a_small ? b : a;
+  set(PairFeature::kSmallReturns, small.num_returns);
+  set(PairFeature::kLargeReturns, large.num_returns);
+  set(PairFeature::kSmallWidth, small.width_m);
+  set(PairFeature::kLargeWidth, large.width_m);
+  set(PairFeature::kSmallDepth, small.max_range_m - small.min_range_m);
+  set(PairFeature::kLargeDepth, large.max_range_m - large.min_range_m);
+  const Eigen::Vector2d between_m = small.mean_m - large.mean_m;
+  set(PairFeature::kUnionLength, std::sqrt(between_m.squaredNorm()) + small.radius_m + large.radius_m);
+  set(PairFeature::kSmallTop, small.max_height_m + lidar_above_water_m_);
+  set(PairFeature::kLargeTop, large.max_height_m + lidar_above_water_m_);
+  set(PairFeature::kSmallBottom, small.min_height_m + lidar_above_water_m_);
+  set(PairFeature::kLargeBottom, large.min_height_m + lidar_above_water_m_);
+  set(PairFeature::kSmallFill, Over(small.num_returns, small.num_beams));
+  set(PairFeature::kLargeFill, Over(large.num_returns, large.num_beams));
+  set(PairFeature::kOffLine, std::abs(between_m.x() * large.direction.y() - between_m.y() * large.direction.x()));
+  set(PairFeature::kLargeOff, large.off_m);
+  set(PairFeature::kLargeLength, large.length_m);
+}
+
+}  // namespace lookout::segmenter

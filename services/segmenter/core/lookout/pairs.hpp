@@ -1,0 +1,96 @@
+// Pairs of neighbouring pieces, and what is measured of each pair: the features that say whether the two are one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "services/segmenter/core/lookout/reach.hpp"
+#include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/scan_grid.hpp"
+
+namespace lookout::segmenter {
+
+/// Of a pair. "Small" and "large" are the one of less and of greater width, "front" and "back" what is nearer and farther where the two come closest.
+/// Heights are over the water at rest. None depends on which piece is named first.
+enum class PairFeature : std::uint8_t {
+  kRange,           // m, where the two come closest
+  kGap,             // m, seen from above
+  kGapColumns,      // columns between them there; 0 where they share columns
+  kRadialGap,       // m, how much farther the back is there
+  kRadialGapRings,  // the same over the distance at which the next ring would meet calm water
+  kRingGap,         // rings between them there; 0 where they share rings
+  kStepUp,          // m, from the top of the front to the bottom of the back, there
+  kOverlap,         // columns that their arcs share, over those of the lesser arc
+  kFaced,           // columns in which one stands within a metre of the other, over those of the lesser arc
+  kSeenThrough,     // share of the beams between them that met something farther than both
+  kHidden,          // share of the beams between them that met something nearer than both
+  kSmallReturns,
+  kLargeReturns,
+  kSmallWidth,   // m, across the line of sight
+  kLargeWidth,   // m
+  kSmallDepth,   // m, along the line of sight
+  kLargeDepth,   // m
+  kUnionLength,  // m, at most: distance of the means and both radii
+  kSmallTop,     // m
+  kLargeTop,     // m
+  kSmallBottom,  // m
+  kLargeBottom,  // m
+  kSmallFill,    // returns over beams between its ends
+  kLargeFill,
+  kOffLine,        // m, from the mean of the small to the line through the large
+  kLargeOff,       // m, root mean square of the large off that line
+  kLargeLength,    // m, along that line
+  kNum
+};
+inline constexpr std::size_t kNumPairFeatures = static_cast<std::size_t>(PairFeature::kNum);
+/// As they stand in the file of weights.
+inline constexpr std::array<std::string_view, kNumPairFeatures> kPairFeatureNames{
+    "range_m",       "gap_m",         "gap_columns",   "radial_gap_m", "radial_gap_rings", "ring_gap",       "step_up_m",
+    "overlap",       "faced",         "seen_through",  "hidden",       "small_returns",    "large_returns",  "small_width_m",
+    "large_width_m", "small_depth_m", "large_depth_m", "union_length_m", "small_top_m",    "large_top_m",    "small_bottom_m",
+    "large_bottom_m", "small_fill",   "large_fill",    "off_line_m",   "large_off_m",      "large_length_m"};
+
+struct PiecePair {
+  std::int32_t one = 0;  // below other
+  std::int32_t other = 0;
+  float gap_m = 0.0F;
+  std::array<float, kNumPairFeatures> features{};
+};
+
+class PairFinder {
+ public:
+  explicit PairFinder(double lidar_above_water_m) : lidar_above_water_m_(lidar_above_water_m) {}
+
+  /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other. Sorted by their pieces.
+  /// Cost: about proportional to the columns of all pieces. Allocates nothing once it has seen a scan of that size.
+  std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
+
+ private:
+  // Where two pieces come closest.
+  struct Contact {
+    std::int32_t one = -1;  // below other
+    std::int32_t other = -1;
+    float squared_gap_m2 = 0.0F;
+    float lesser_range_m = 0.0F;
+    float greater_range_m = 0.0F;
+    const OutlineEntry* front = nullptr;
+    const OutlineEntry* back = nullptr;
+    std::int32_t num_faced = 0;
+  };
+
+  void FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
+  void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, const OutlineEntry& entry, int direction);
+  Contact& At(std::int32_t one, std::int32_t other);
+  void Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point, float squared_gap_m2);
+  void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
+
+  double lidar_above_water_m_;
+  std::vector<Contact> contacts_;
+  std::vector<std::int32_t> slots_;  // an open hash table: index into contacts_, or -1
+  std::vector<PiecePair> pairs_;
+};
+
+}  // namespace lookout::segmenter

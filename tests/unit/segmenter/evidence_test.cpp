@@ -1,0 +1,132 @@
+#include "services/segmenter/core/lookout/evidence.hpp"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/config/text_config.hpp"
+#include "services/segmenter/evidence_text.hpp"
+#include "tests/support/files.hpp"
+
+namespace lookout::segmenter {
+namespace {
+
+constexpr std::array<std::string_view, 3> kFeatures{"gap", "range_m", "width_m"};
+constexpr EvidenceLayout kLayout{"merge", kFeatures};
+
+// Near and narrow: 1. Near and wide: 2. Far and narrow: 4. Far and wide: 8.
+constexpr NamedTree kRangeAndWidth{{{{"range_m", 10.0F}, {"width_m", 3.0F}}}, {1.0F, 4.0F, 2.0F, 8.0F}};
+constexpr NamedTree kGap{{{{"gap", 2.0F}}}, {0.5F, -0.25F}};
+
+Evidence Make(const std::vector<NamedTree>& trees, float bias = 0.0F) { return {{"merge", kFeatures, bias, trees}, kLayout}; }
+
+TEST(Evidence, AddsTheBiasAndALeafOfEachTree) {
+  const auto evidence = Make({kRangeAndWidth, kGap}, 100.0F);
+  EXPECT_EQ(evidence.Of(std::array{0.0F, 5.0F, 1.0F}), 101.5F);
+  EXPECT_EQ(evidence.Of(std::array{0.0F, 5.0F, 4.0F}), 102.5F);
+  EXPECT_EQ(evidence.Of(std::array{0.0F, 11.0F, 1.0F}), 104.5F);
+  EXPECT_EQ(evidence.Of(std::array{3.0F, 11.0F, 4.0F}), 107.75F);
+}
+
+TEST(Evidence, IsNotAboveWhatItEquals) { EXPECT_EQ(Make({kGap}).Of(std::array{2.0F, 0.0F, 0.0F}), 0.5F); }
+
+TEST(Evidence, OfNothingIsNothing) {
+  EXPECT_EQ(Evidence().Of({}), 0.0F);
+  EXPECT_EQ(Make({NamedTree{{}, {7.0F}}}).Of(std::array{1.0F, 2.0F, 3.0F}), 7.0F);
+}
+
+TEST(Evidence, TermsSayWhichFeatureAddedWhat) {
+  const auto evidence = Make({kGap}, 1.0F);
+  std::array<float, 3> terms{};
+  evidence.Terms(std::array{3.0F, 0.0F, 0.0F}, terms);
+  EXPECT_EQ(evidence.Base(), 1.125F);
+  EXPECT_EQ(terms, (std::array{-0.375F, 0.0F, 0.0F}));
+}
+
+TEST(Evidence, TermsAndTheBaseAreTheSum) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform(-3.0F, 3.0F);
+  std::vector<NamedTree> trees(100);
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    for (std::size_t k = 0; k < i % (kTreeDepth + 1); ++k) trees[i].splits[k] = {kFeatures[random() % kFeatures.size()], uniform(random)};
+    for (auto& leaf : trees[i].log_odds) leaf = uniform(random);
+  }
+  const auto evidence = Make(trees, 0.5F);
+  for (int i = 0; i < 1000; ++i) {
+    const std::array features{uniform(random), uniform(random), uniform(random)};
+    std::array<float, 3> terms{};
+    evidence.Terms(features, terms);
+    EXPECT_NEAR(std::accumulate(terms.begin(), terms.end(), evidence.Base()), evidence.Of(features), 1e-4);
+  }
+}
+
+TEST(Evidence, RefusesAFeatureThatTheMethodDoesNotHave) {
+  EXPECT_THROW(Make({NamedTree{{{{"colour", 1.0F}}}, {0.0F, 1.0F}}}), std::invalid_argument);
+  EXPECT_THROW(DefaultEvidence({"no such sum", kFeatures}), std::invalid_argument);
+}
+
+// What CMake compiles in and what the loader reads are one.
+TEST(Evidence, CompiledInIsThatOfTheFile) {
+  std::vector<EvidenceLayout> layouts;
+  std::vector<Evidence> compiled_in;
+  for (const auto& sum : DefaultSums()) {
+    layouts.push_back({sum.name, sum.features});
+    compiled_in.push_back(DefaultEvidence(layouts.back()));
+  }
+  EXPECT_EQ(LoadEvidence(support::kSources / "config/evidence/lookout.txtpb", layouts), compiled_in);
+}
+
+class EvidenceText : public ::testing::Test {
+ protected:
+  std::vector<Evidence> Load(const std::string& text) {
+    const auto file = std::filesystem::path(::testing::TempDir()) / "evidence.txtpb";
+    std::ofstream(file) << text;
+    return LoadEvidence(file, std::array{kLayout});
+  }
+
+  // The faults, without the name of the file.
+  std::string FaultsOf(const std::string& text) {
+    try {
+      Load(text);
+    } catch (const config::ConfigError& error) {
+      std::string faults;
+      for (const auto& fault : error.faults()) faults += fault.substr(fault.find(".txtpb:") + 7) + "\n";
+      return faults;
+    }
+    return "none";
+  }
+};
+
+constexpr const char* kHead = "sum {\n  name: \"merge\"\n  feature: \"gap\"\n  feature: \"width_m\"\n  feature: \"range_m\"\n  bias: 1\n";
+
+TEST_F(EvidenceText, IsReadInAnyOrderOfTheFeatures) {
+  const auto evidence =
+      Load(std::string(kHead) +
+           "  tree {\n    split { feature: \"range_m\" above: 10 }\n    split { feature: \"width_m\" above: 3 }\n"
+           "    log_odds: [1, 4, 2, 8]\n  }\n  tree {\n    split { feature: \"gap\" above: 2 }\n    log_odds: [0.5, -0.25]\n  }\n}\n");
+  EXPECT_EQ(evidence.front(), Make({kRangeAndWidth, kGap}, 1.0F));
+}
+
+TEST_F(EvidenceText, WithFaultsIsRefusedWithTheirLines) {
+  EXPECT_EQ(FaultsOf(""), "1: sum: there is none of the name merge\n");
+  EXPECT_EQ(FaultsOf("sum {\n  name: \"split\"\n  bias: 1\n}\n"),
+            "2: sum.name: the method asks for no split\n1: sum: there is none of the name merge\n");
+  EXPECT_EQ(FaultsOf("sum {\n  name: \"merge\"\n  feature: \"gap\"\n  feature: \"colour\"\n  bias: 1\n}\n"),
+            "4: sum.feature: merge: there is no feature colour\n");
+  EXPECT_EQ(FaultsOf("sum {\n  name: \"merge\"\n  feature: \"gap\"\n  feature: \"range_m\"\n  bias: 1\n}\n"),
+            "4: sum.feature: merge: lacks width_m\n");
+  EXPECT_EQ(
+      FaultsOf(std::string(kHead) + "  tree {\n    log_odds: 1\n  }\n  tree {\n    split { feature: \"hue\" above: 2 }\n    log_odds: [1]\n  }\n}\n"),
+      "12: sum.tree.log_odds: 1 splits make 2 leaves, not 1\n11: sum.tree.split.feature: merge: there is no feature hue\n");
+  EXPECT_EQ(FaultsOf(std::string(kHead) + "  tree {\n    log_odds: nan\n  }\n}\n"), "8: sum.tree.log_odds: must be a finite number (is nan)\n");
+  EXPECT_EQ(FaultsOf(std::string(kHead) + "}\n" + kHead + "}\n"), "9: sum.name: merge is there twice\n");
+}
+
+}  // namespace
+}  // namespace lookout::segmenter
