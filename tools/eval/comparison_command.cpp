@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +10,10 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -21,6 +25,7 @@
 #include "common/runtime/version.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/eval/figures.hpp"
+#include "tools/eval/leave_out.hpp"
 #include "tools/eval/lost_list.hpp"
 #include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
@@ -51,17 +56,42 @@ std::string Computer() {
   return model + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, one used";
 }
 
+constexpr const char* kFamilies = "families";
+
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
   const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
   RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
-    if (scene != "all") {
+    if (scene != "all" && scene != kFamilies) {
       plan.scenes.push_back(scene);
       continue;
     }
-    for (const auto& known : sim::ListScenes(options.config_folder)) plan.scenes.push_back(known.name);
+    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
+    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
   }
   return plan;
+}
+
+std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
+  std::set<std::string> families;
+  for (const auto& known : sim::ListFamilies(options.config_folder)) families.insert(known.name);
+  std::set<std::string> left_out;
+  for (const auto& name : options.left_out) {
+    if (name == kFamilies) return families;
+    if (!families.contains(name))
+      throw std::invalid_argument(fmt::format("--leave-out: no such family: {} (there are: {})", name, fmt::join(families, ", ")));
+    left_out.insert(name);
+  }
+  return left_out;
+}
+
+// Those that are asked for; before them, where something is left out, ours with evidence that knows none of these scenes.
+Methods MethodsFor(const ComparisonOptions& options, const segmenter::Params& boat, const std::set<std::string>& left_out,
+                   std::span<const std::string> scenes) {
+  auto methods = MakeMethods(boat, options.methods);
+  if (options.left_out.empty()) return methods;
+  methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, left_out), scenes));
+  return methods;
 }
 
 // As tables call the captures.
@@ -166,7 +196,9 @@ Results RunCaptures(const ComparisonOptions& options, Failures& failures) {
   const auto captures = ListCaptures(options.captures);
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
-  const auto methods = MakeMethods(boat.segmenter, options.methods);
+  std::vector<std::string> scenes;
+  for (const auto& files : captures) scenes.push_back(files.scene);
+  const auto methods = MethodsFor(options, boat.segmenter, {}, scenes);  // none of them is of a family, whatever its name
   World world(boat.segmenter, methods, failures.HandlerOf(kSecondWorld));
   runtime::Progress progress("lookout-eval", stderr);
   for (const auto& files : captures) {
@@ -228,7 +260,10 @@ int CompareMethods(const ComparisonOptions& options) {
     // A value that is out of range stops the run before it begins.
     for (const double value : sweeps.back().values) ParamsWith(boat, sweeps.back().field, value);
   }
-  const auto methods = MakeMethods(boat.segmenter, options.methods);
+  std::vector<std::string> scenes;
+  for (const auto& scene : plan.scenes) scenes.push_back(SceneLabel(scene));
+  if (!options.points.empty()) scenes.push_back(kPointsLabel);
+  const auto methods = MethodsFor(options, boat.segmenter, LeftOutOf(options), scenes);
 
   io::CatchStopSignals();
   if (!options.is_forced) {
@@ -246,8 +281,7 @@ int CompareMethods(const ComparisonOptions& options) {
   results.first_seed = is_sweep_alone ? sweep_plan.first_seed : plan.first_seed;
   results.num_seeds = plan.num_seeds;
   results.seconds = plan.seconds;
-  for (const auto& scene : plan.scenes) results.scenes.push_back(SceneLabel(scene));
-  if (!options.points.empty()) results.scenes.push_back(kPointsLabel);
+  results.scenes = scenes;
   if (!methods.empty()) {
     World world(boat.segmenter, methods, failures.HandlerOf(""));
     ForEachScan(plan, boat, stderr, [&world](const ScanPlace& place, const LabelledScan& truth) { world.Add(place, truth); });

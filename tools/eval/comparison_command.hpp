@@ -13,7 +13,10 @@ namespace lookout::eval {
 struct ComparisonOptions {
   std::string command;  // for the report
   std::filesystem::path config_folder;
-  std::vector<std::string> scenes;  // "all", names or files
+  std::vector<std::string> scenes;  // "all", "families", names or files
+  /// Families, or "families": scored with evidence that was fitted without them, out of a folder (LeaveOutEvidence).
+  std::vector<std::string> left_out;
+  std::filesystem::path weights_folder;
   std::vector<std::string> points;  // scans out of files: .pcd, or .bin with a .label beside it or without
   /// A folder of captures with truth (ListCaptures); where it does not exist, the tables say so. Empty = none.
   std::filesystem::path captures;

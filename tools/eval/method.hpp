@@ -49,6 +49,9 @@ class Method {
   /// It takes some of its segments for tentative: it is scored at two operating points, all segments and the sure ones alone.
   virtual bool knows_doubt() const { return false; }
 
+  /// The scans that follow are of this scene: for methods that must not know anything of it.
+  virtual void BeginScene(const std::string& /*scene*/) {}
+
   /// Pure but for its time: the same scan gives the same labels.
   virtual Labelling Segment(const segmenter::Scan& scan) = 0;
 };

@@ -25,6 +25,7 @@ void MethodComparison::Add(const ScanPlace& place, const LabelledScan& truth) {
   auto result = results_.begin();
   const auto near_land = NearLand(truth, Score::kNearLandM);
   for (const auto& method : methods_) {
+    method->BeginScene(place.scene);
     const auto begin = std::chrono::steady_clock::now();
     auto labelling = method->Segment(truth.scan);
     const double time_ms = ToMs(std::chrono::steady_clock::now() - begin - labelling.untimed);

@@ -15,6 +15,7 @@
 #include "common/io/output_file.hpp"
 #include "tools/eval/against_peers.hpp"
 #include "tools/eval/failure_tables.hpp"
+#include "tools/eval/leave_out_tables.hpp"
 #include "tools/eval/metrics.hpp"
 
 namespace lookout::eval {
@@ -187,6 +188,7 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   const std::function range_title = [](const int& bin) {
     return fmt::format("{:.0f}-{:.0f}_m", bin * Score::kRangeBinM, (bin + 1) * Score::kRangeBinM);
   };
+  for (auto& table : LeaveOutTablesOf(results)) add(table.name, table.title, std::move(table.table));
   add("table_1", "Table I: mIoU, %", ByScene(results, &Score::iou));
   add("water", "mIoU over objects in the water alone, %", ByScene(results, &Score::water_iou));
   add("false_segments", "false segments a scan", ByScene(results, &Score::false_segments, 2));
