@@ -1,9 +1,12 @@
 #include "services/segmenter/params.hpp"
 
+#include <array>
+
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "config/schema/segmenter.pb.h"
+#include "services/segmenter/evidence_text.hpp"
 
 namespace lookout::segmenter {
 
@@ -12,8 +15,16 @@ namespace {
 constexpr int kMinImageColumns = 16;
 constexpr double kWholeCircleDeg = 360.0;
 
-LookoutParams LookoutOf(const config::Segmenter& message) {
+LookoutParams LookoutOf(const config::Segmenter& message, const std::filesystem::path& file) {
   LookoutParams params;
+  if (!message.evidence().empty()) {
+    const auto evidence =
+        LoadEvidence(file.parent_path() / message.evidence(), std::array{kMergeFirstLayout, kMergeSecondLayout, kLandLayout, kThingLayout});
+    params.merge_first = evidence[0];
+    params.merge_second = evidence[1];
+    params.land = evidence[2];
+    params.thing = evidence[3];
+  }
   params.link = {message.link_m(), message.link_per_range()};
   return params;
 }
@@ -62,7 +73,7 @@ Params ToParams(const config::Segmenter& message, const config::BoatFacts& boat,
   params.clustering.e2_max_distance_m = message.e2_max_distance_m();
   params.min_segment_points = message.min_segment_points();
   params.method = message.method() == config::Segmenter::PAPER ? Method::kPaper : Method::kLookout;
-  params.lookout = LookoutOf(message);
+  params.lookout = LookoutOf(message, file);
   params.lookout.lidar_above_water_m = boat.reference_point_above_water_m + boat.T_vessel_lidar.translation().z();
   return params;
 }

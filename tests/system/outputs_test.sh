@@ -304,5 +304,17 @@ pid=''
 expect_said "page.html: not written, nothing of it is left"
 expect_nothing page.html page.html.partial
 
+# Evidence.
+name=fit
+echo "an old file" >evidence.txtpb
+"$bin/lookout-fit" --config "$config" --scenes marina --seeds 1 --trees 1 --out evidence.txtpb >said 2>&1 && fail "replaced its evidence unasked"
+expect_said "evidence.txtpb: exists already"
+expect_old evidence.txtpb
+"$bin/lookout-fit" --config "$config" --scenes marina --seeds 2 --trees 1 --out evidence.txtpb --force >said 2>&1 || fail "exit code $? with --force"
+grep -q merge_second evidence.txtpb || fail "--force wrote nothing"
+"$bin/lookout-fit" --config "$config" --scenes marina --first-seed 101 --out other.txtpb >said 2>&1
+[ $? -eq 2 ] || fail "seeds of tables are not refused"
+expect_nothing other.txtpb other.txtpb.partial
+
 [ "$num_failed" -eq 0 ] || { echo "$num_failed expectations failed" >&2; exit 1; }
 echo "all outputs: whole or none, in $(($(date +%s) - sync_time)) s; full disk: ${LOOKOUT_SMALL_DISK}"

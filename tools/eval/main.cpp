@@ -49,7 +49,7 @@ Options ParseOptions(int argc, char** argv) {
   auto* config =
       app.add_option("--config", comparison.config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->excludes(in);
   const auto needs_config = [config](CLI::Option* option) { return option->needs(config); };
-  needs_config(app.add_option("--scenes", comparison.scenes, "all, families, or names of scenes or .txtpb files"))->delimiter(',');
+  needs_config(app.add_option("--scenes", comparison.scenes, "all, families (all of them), or names of scenes or .txtpb files"))->delimiter(',');
   auto* weights = needs_config(app.add_option("--weights", comparison.weights_folder, "folder of evidence: without-FAMILY.txtpb and all.txtpb"))
                       ->check(CLI::ExistingDirectory);
   auto* left_out = app.add_option("--leave-out", comparison.left_out, "families, or names of some: ours with evidence fitted without them, too")

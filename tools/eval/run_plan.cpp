@@ -28,13 +28,13 @@ void RunPlan::CheckSeeds(SeedUse use) const {
 std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
 
 void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
-                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan) {
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan, const std::string& program) {
   std::vector<std::filesystem::path> files;
   for (const auto& scene : plan.scenes) {
     files.push_back(sim::FindScene(scene, boat.config_folder));
     sim::LoadScene(files.back(), plan.first_seed);
   }
-  runtime::Progress shown("lookout-eval", progress);
+  runtime::Progress shown(program, progress);
   const auto num_runs = static_cast<double>(files.size()) * plan.num_seeds;
   for (std::size_t i = 0; i < files.size(); ++i) {
     ScanPlace place{SceneLabel(plan.scenes[i]), 0, 0};

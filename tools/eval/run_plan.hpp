@@ -42,8 +42,9 @@ std::string SceneLabel(const std::string& name_or_path);
 /// Renders scene after scene, seed after seed, and calls with each scan.
 ///
 /// @param progress  for people (runtime::Progress); nullptr: silent
+/// @param program   whose lines they are
 /// @throws config::ConfigError for a scene that is wrong; all are loaded with their first seed before the first is rendered
 void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
-                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan);
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan, const std::string& program = "lookout-eval");
 
 }  // namespace lookout::eval

@@ -21,14 +21,14 @@ void AddRailing(double length_m, double y_m, double deck_m, Random& random, std:
 
 }  // namespace
 
-SceneObject MakeJetty(const Size& size, Random& random) {
-  SceneObject jetty{0, "", "pier", Track{}, {}, {}};
+SceneObject MakePilePier(const Size& size, Random& random) {
+  SceneObject pier{0, "", "pier", Track{}, {}, {}};
   const double deck_m = size.height_m > 0.0 ? size.height_m : random.Uniform(1.0, 4.0);
   const Material material{size.reflectance > 0.0 ? size.reflectance : random.Uniform(0.15, 0.4)};
   const double half_m = size.width_m / 2.0;
-  jetty.outline_m = Rectangle(0.0, size.length_m, -half_m, half_m);
+  pier.outline_m = Rectangle(0.0, size.length_m, -half_m, half_m);
   const double thickness_m = random.Uniform(0.15, 0.6);
-  jetty.parts.push_back({Prism{jetty.outline_m, deck_m - thickness_m, deck_m}, material});
+  pier.parts.push_back({Prism{pier.outline_m, deck_m - thickness_m, deck_m}, material});
   const double bent_spacing_m = random.Uniform(3.0, 8.0);
   const double pile_radius_m = random.Uniform(0.1, 0.3);
   const int num_piles = std::max(2, static_cast<int>(size.width_m / random.Uniform(2.0, 4.0)) + 1);
@@ -38,21 +38,21 @@ SceneObject MakeJetty(const Size& size, Random& random) {
   for (double x_m = size.length_m - pile_radius_m; x_m > 0.0; x_m -= bent_spacing_m) {
     for (int pile = 0; pile < num_piles; ++pile) {
       const double y_m = (half_m - pile_radius_m) * (2.0 * pile / (num_piles - 1) - 1.0);
-      jetty.parts.push_back({Cylinder{{x_m, y_m}, pile_radius_m, kPileFootM, pile_top_m}, material});
+      pier.parts.push_back({Cylinder{{x_m, y_m}, pile_radius_m, kPileFootM, pile_top_m}, material});
     }
     const auto beam = Rectangle(std::max(0.0, x_m - 0.15), x_m + pile_radius_m, -half_m, half_m);
-    if (has_beams) jetty.parts.push_back({Prism{beam, deck_m - thickness_m - 0.3, deck_m - thickness_m}, material});
-    if (has_braces) jetty.parts.push_back({Prism{beam, 0.3, 0.5}, material});
+    if (has_beams) pier.parts.push_back({Prism{beam, deck_m - thickness_m - 0.3, deck_m - thickness_m}, material});
+    if (has_braces) pier.parts.push_back({Prism{beam, 0.3, 0.5}, material});
   }
   if (random.Uniform() < 0.5) {
-    for (const double side : {-1.0, 1.0}) AddRailing(size.length_m, side * (half_m - 0.05), deck_m, random, jetty.parts);
+    for (const double side : {-1.0, 1.0}) AddRailing(size.length_m, side * (half_m - 0.05), deck_m, random, pier.parts);
   }
   const int num_people = static_cast<int>(random.Uniform(0.0, 4.0));
   for (int person = 0; person < num_people; ++person) {
     const double x_m = random.Uniform(0.0, size.length_m);
-    jetty.parts.push_back({Cylinder{{x_m, random.Uniform(-0.6, 0.6) * half_m}, 0.22, deck_m, deck_m + random.Uniform(1.2, 1.9)}, Material{0.4}});
+    pier.parts.push_back({Cylinder{{x_m, random.Uniform(-0.6, 0.6) * half_m}, 0.22, deck_m, deck_m + random.Uniform(1.2, 1.9)}, Material{0.4}});
   }
-  return jetty;
+  return pier;
 }
 
 SceneObject MakeBridge(const Size& size, Random& random) {

@@ -9,9 +9,9 @@ namespace lookout::sim {
 /// A deck on rows of piles (bents), with or without a railing: seen through. The origin is the middle of its landward end, x runs out along it.
 ///
 /// @param size  all but the length and the width may be 0: then they are drawn
-SceneObject MakeJetty(const Size& size, Random& random);
+SceneObject MakePilePier(const Size& size, Random& random);
 
-/// A deck on massive piers. The origin as of a jetty.
+/// A deck on massive piers. The origin as of a pier.
 SceneObject MakeBridge(const Size& size, Random& random);
 
 }  // namespace lookout::sim

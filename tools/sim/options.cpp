@@ -64,6 +64,7 @@ void AddRun(CLI::App& app, Options& options) {
       ->capture_default_str();
   const auto list_scenes = [&options] {
     for (const auto& scene : ListScenes(options.config_folder)) fmt::print("{:<16} {}\n", scene.name, scene.description);
+    for (const auto& family : ListFamilies(options.config_folder)) fmt::print("{:<16} {}\n", family.name, family.description);
     throw CLI::Success();
   };
   app.add_flag_callback("--list-scenes", list_scenes, "print the names of the scenes, and what they are for, and exit");

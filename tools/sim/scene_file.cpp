@@ -47,7 +47,7 @@ bool IsLand(File::Kind kind) {
 
 // Whose sizes are those of land, or drawn by its maker.
 bool HasFreeSizes(const File::Object& object) {
-  return object.kind() == File::JETTY || object.kind() == File::BRIDGE || (IsLand(object.kind()) && !object.land().has_mean_radius_m());
+  return object.kind() == File::PILE_PIER || object.kind() == File::BRIDGE || (IsLand(object.kind()) && !object.land().has_mean_radius_m());
 }
 
 // Of one message of the file.
@@ -136,7 +136,7 @@ void CheckPlace(const File::Object& object, bool has_shore_before, Checker& chec
   }
   if (object.has_row()) {
     check.RefuseIf(object.row().gap_m().empty(), "row.gap_m", "must be set");
-    check.RefuseIf(object.count() < 2, "row", "needs a count of two or more");
+    check.RefuseIf(object.count() < 2 && object.number().empty(), "row", "needs a count of two or more");
   }
 }
 

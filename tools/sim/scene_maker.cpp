@@ -177,11 +177,11 @@ class Drawing {
   }
 
   SceneObject DrawBody(const File::Object& file, Random& random) {
-    if (file.kind() == File::JETTY || file.kind() == File::BRIDGE) {
-      const bool is_jetty = file.kind() == File::JETTY;
-      const Size size{Draw(file.length_m(), is_jetty ? 30.0 : 80.0, random), Draw(file.width_m(), is_jetty ? 3.0 : 8.0, random),
+    if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
+      const bool is_pier = file.kind() == File::PILE_PIER;
+      const Size size{Draw(file.length_m(), is_pier ? 30.0 : 80.0, random), Draw(file.width_m(), is_pier ? 3.0 : 8.0, random),
                       Draw(file.height_m(), 0.0, random), Draw(file.reflectance(), 0.0, random)};
-      return is_jetty ? MakeJetty(size, random) : MakeBridge(size, random);
+      return is_pier ? MakePilePier(size, random) : MakeBridge(size, random);
     }
     if (IsLand(file.kind()) && !file.land().has_mean_radius_m()) {
       Line along_m;
@@ -337,7 +337,7 @@ class Drawing {
         const Placement place = found ? found->placement : file.has_opposite() ? Placement{{0.0, 0.0}, kPi / 2.0} : DrawPlace(file, random);
         if (file.kind() == File::SHORE) shore_->middle_m = place.position_map_m;
         object.track = DrawTrack(file, field, place, random);
-        if (file.has_row() && member > 0) PutInRow(file, scene_.objects.back(), random, object);
+        if (file.has_row() && traffic_.num_objects() > num_before) PutInRow(file, scene_.objects.back(), random, object);
         const auto too_near = IsInTheWay(file, object, found, is_drawn, num_before);
         if (!too_near) {
           object.id = static_cast<int>(scene_.objects.size()) + 1;

@@ -12,6 +12,7 @@
 
 #include "common/config/text_config.hpp"
 #include "services/segmenter/evidence_text.hpp"
+#include "services/segmenter/params.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::segmenter {
@@ -111,6 +112,20 @@ TEST_F(EvidenceText, IsReadInAnyOrderOfTheFeatures) {
            "  tree {\n    split { feature: \"range_m\" above: 10 }\n    split { feature: \"width_m\" above: 3 }\n"
            "    log_odds: [1, 4, 2, 8]\n  }\n  tree {\n    split { feature: \"gap\" above: 2 }\n    log_odds: [0.5, -0.25]\n  }\n}\n");
   EXPECT_EQ(evidence.front(), Make({kRangeAndWidth, kGap}, 1.0F));
+}
+
+// segmenter.txtpb names a file beside it.
+TEST(EvidenceOfParams, IsThatOfTheFileThatTheConfigNames) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "config_with_evidence";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy(support::kSources / "config/demo/boat.txtpb", folder, std::filesystem::copy_options::overwrite_existing);
+  std::filesystem::copy(support::kSources / "config/evidence/lookout.txtpb", folder, std::filesystem::copy_options::overwrite_existing);
+  std::ofstream(folder / "segmenter.txtpb") << "evidence: \"lookout.txtpb\"\n";
+  EXPECT_EQ(LoadParams(folder).lookout.merge_second, LookoutParams().merge_second);
+  std::ofstream(folder / "lookout.txtpb") << "sum { name: \"land\" bias: 1 }\n";
+  EXPECT_THROW(LoadParams(folder), config::ConfigError);
+  std::ofstream(folder / "segmenter.txtpb") << "evidence: \"no_such_file.txtpb\"\n";
+  EXPECT_THROW(LoadParams(folder), config::ConfigError);
 }
 
 TEST_F(EvidenceText, WithFaultsIsRefusedWithTheirLines) {

@@ -1,0 +1,128 @@
+#include "tools/fit/fit_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <vector>
+
+#include "common/core/angles.hpp"
+#include "services/segmenter/evidence_text.hpp"
+
+namespace lookout::fit {
+namespace {
+
+constexpr int kColumns = 1800;
+constexpr int kRings = 16;
+constexpr double kUnitM = 0.002;
+constexpr std::int32_t kWall = 1;
+constexpr std::int32_t kBoat = 2;
+constexpr std::int32_t kMoored = 3;
+
+// A wall round half of the circle 20 m away, a boat moored at it, and before it one in three pieces, the third 2 m from the second; a drop of spray
+// here and there. All of it moves with `step`.
+TrainingScan MakeScan(const std::string& family, int step) {
+  TrainingScan scan{family, {}};
+  auto& truth = scan.truth;
+  truth.objects = {{kWall, {"wall", "wall", false}}, {kBoat, {"boat", "motor_boat", true}}, {kMoored, {"moored", "motor_boat", true}}};
+  auto& head = truth.scan.head;
+  head.range_unit_m = kUnitM;
+  for (int ring = 0; ring < kRings; ++ring) head.rings.push_back({static_cast<float>(DegToRad(2.0 * ring - 15.0)), 0.0F, 0, 0.0F});
+  head.num_turn_columns = kColumns;
+  truth.scan.parts = {{0, kColumns}};
+  auto& columns = truth.scan.columns;
+  for (int column = 0; column < kColumns; ++column) {
+    columns.azimuth_rad.push_back(static_cast<float>(kTwoPi * column / kColumns));
+    columns.time_ns.push_back(column * 55'296);
+    for (int ring = 0; ring < kRings; ++ring) {
+      const int off = column - 10 * step;
+      const bool is_low = ring >= 6 && ring <= 8;
+      const bool is_boat = is_low && ((off >= 300 && off < 330) || (off >= 345 && off < 370) || (off >= 440 && off < 460));
+      const bool is_moored = is_low && off >= 600 && off < 640;
+      const bool is_wall = ring >= 6 && column < 900;
+      const bool is_spray = column > 1000 && (column * 7 + ring * 131 + step * 17) % 997 == 0;
+      const double range_m = is_boat ? 8.0 + 0.2 * step : is_moored ? 19.2 : is_wall ? 20.0 : is_spray ? 3.0 + column % 5 : 0.0;
+      columns.range.push_back(static_cast<std::uint16_t>(std::lround(range_m / kUnitM)));
+      columns.reflectivity.push_back(30);
+      truth.object.push_back(is_boat ? kBoat : is_moored ? kMoored : is_wall ? kWall : importer::kNoTrueObject);
+    }
+  }
+  return scan;
+}
+
+std::vector<TrainingScan> MakeScans() {
+  std::vector<TrainingScan> scans;
+  for (int step = 0; step < 8; ++step) scans.push_back(MakeScan(step % 2 == 0 ? "course" : "canal", step));
+  return scans;
+}
+
+FittedEvidence FitAll(const std::set<std::string>& without = {}) {
+  return FitEvidence(MakeScans(), {}, {.num_trees = 10, .l2 = 1.0}, without, [](const std::string&) {});
+}
+
+TEST(TrainingRows, PairsOfOneObjectAreTrueAndPairsOfClutterAreNone) {
+  Rows rows;
+  RowMaker({}).Add(Sum::kMergeFirst, MakeScan("course", 0), rows);
+  ASSERT_GT(rows.size(), 0U);
+  EXPECT_EQ(rows.features.size(), segmenter::kNumPairFeatures);
+  EXPECT_EQ(rows.families, std::vector<std::string>{"course"});
+  EXPECT_EQ(std::ranges::count(rows.is_true, 1), 1) << "two pieces of the boat; the third is beyond the first reach";
+  EXPECT_EQ(std::ranges::count(rows.is_true, 0), 1) << "the boat at the wall";
+}
+
+TEST(TrainingRows, GroupsAreThingsOrLandByTheirObject) {
+  Rows things;
+  Rows land;
+  const auto scan = MakeScan("course", 0);
+  RowMaker({}).Add(Sum::kThing, scan, things);
+  RowMaker({}).Add(Sum::kLand, scan, land);
+  EXPECT_EQ(things.size(), land.size());
+  EXPECT_EQ(std::ranges::count(land.is_true, 1), 1);
+  EXPECT_GT(std::ranges::count(things.is_true, 1), 1);
+  EXPECT_GT(std::ranges::count(things.is_true, 0), 5);
+}
+
+TEST(TrainingRows, APairWeighsTheShareOfItsObjectThatTheLesserPieceIs) {
+  const PieceTruth boat{kBoat, 10, 10};
+  const PieceTruth quay{kWall, 1000, 2000};
+  const PieceTruth stone{kWall, 5, 2000};
+  const PieceTruth drop{importer::kNoTrueObject, 2, 2};
+  EXPECT_EQ(PairWeight(boat, quay), 1.0F);
+  EXPECT_EQ(PairWeight(quay, boat), 1.0F);
+  EXPECT_EQ(PairWeight(stone, quay), kLeastWeight);
+  EXPECT_EQ(PairWeight(drop, boat), 0.2F);
+  EXPECT_EQ(PairWeight({kBoat, 1, 1}, quay), 0.2F) << "too few returns to be scored";
+}
+
+TEST(FitEvidence, TellsWhatItWasFittedOn) {
+  const auto evidence = FitAll();
+  for (const auto& report : evidence.sums) {
+    EXPECT_GT(report.of_all.auc, 0.95) << LayoutOf(report.sum).name;
+    EXPECT_EQ(report.families, (std::vector<std::string>{"course", "canal"}));
+  }
+  EXPECT_GT(evidence.miou.at("course"), 0.99);
+}
+
+TEST(FitEvidence, DoesNotLookAtWhatIsLeftOut) {
+  const auto evidence = FitAll({"canal"});
+  EXPECT_EQ(evidence.sums.front().families, std::vector<std::string>{"course"});
+  EXPECT_TRUE(evidence.miou.contains("canal"));
+}
+
+// The same scans twice: the same text. And the text is read as what was fitted.
+TEST(FitEvidence, ItsTextIsTheSameEachTimeAndReadsBackAsItWas) {
+  const auto evidence = FitAll();
+  const auto text = TextOf(evidence, {"Written by a test."});
+  EXPECT_EQ(text, TextOf(FitAll(), {"Written by a test."}));
+  const auto file = std::filesystem::path(::testing::TempDir()) / "fitted.txtpb";
+  std::ofstream(file) << text;
+  std::vector<segmenter::EvidenceLayout> layouts;
+  for (const auto sum : kSums) layouts.push_back(LayoutOf(sum));
+  const auto params = evidence.In({}).lookout;
+  EXPECT_EQ(segmenter::LoadEvidence(file, layouts), (std::vector{params.merge_first, params.merge_second, params.land, params.thing}));
+}
+
+}  // namespace
+}  // namespace lookout::fit

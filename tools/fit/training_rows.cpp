@@ -1,0 +1,150 @@
+#include "tools/fit/training_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+namespace lookout::fit {
+namespace {
+
+using segmenter::MergeStage;
+
+struct Sign {
+  std::string_view feature;
+  int sign;
+};
+
+// Of two pieces: more between them, less likely one.
+constexpr std::array<Sign, 6> kPairSigns{
+    {{"gap_m", -1}, {"gap_columns", -1}, {"radial_gap_m", -1}, {"ring_gap", -1}, {"seen_through", -1}, {"faced", +1}}};
+constexpr std::array<Sign, 1> kLandSigns{{{"length_m", +1}}};
+constexpr std::array<Sign, 2> kThingSigns{{{"returns", +1}, {"crowd", -1}}};
+
+std::span<const Sign> SignsOf(Sum sum) {
+  switch (sum) {
+    case Sum::kMergeFirst:
+    case Sum::kMergeSecond:
+      return kPairSigns;
+    case Sum::kLand:
+      return kLandSigns;
+    case Sum::kThing:
+      return kThingSigns;
+  }
+  throw std::logic_error("no such sum");
+}
+
+// What stands on the ground and is no land: a row of posts or a floating deck may be either.
+bool IsDock(const importer::ScanObject& object) { return object.kind == "dock"; }
+bool IsLand(const importer::ScanObject& object) { return !object.is_in_water; }
+
+std::int32_t FamilyNumber(const std::string& family, Rows& rows) {
+  const auto found = std::ranges::find(rows.families, family);
+  if (found == rows.families.end()) {
+    rows.families.push_back(family);
+    return static_cast<std::int32_t>(rows.families.size()) - 1;
+  }
+  return static_cast<std::int32_t>(found - rows.families.begin());
+}
+
+}  // namespace
+
+const segmenter::EvidenceLayout& LayoutOf(Sum sum) {
+  switch (sum) {
+    case Sum::kMergeFirst:
+      return segmenter::kMergeFirstLayout;
+    case Sum::kMergeSecond:
+      return segmenter::kMergeSecondLayout;
+    case Sum::kLand:
+      return segmenter::kLandLayout;
+    case Sum::kThing:
+      return segmenter::kThingLayout;
+  }
+  throw std::logic_error("no such sum");
+}
+
+std::vector<Feature> FeaturesOf(Sum sum) {
+  std::vector<Feature> features;
+  for (const auto& name : LayoutOf(sum).features) features.push_back({name, 0});
+  for (const auto& sign : SignsOf(sum)) {
+    const auto feature = std::ranges::find(features, sign.feature, &Feature::name);
+    if (feature == features.end()) throw std::logic_error("a sign for a feature that is not there: " + std::string(sign.feature));
+    feature->sign = sign.sign;
+  }
+  return features;
+}
+
+float PairWeight(const PieceTruth& one, const PieceTruth& other) {
+  const auto& lesser =
+      one.num_returns < other.num_returns || (one.num_returns == other.num_returns && one.num_of_object < other.num_of_object) ? one : other;
+  const auto& greater = &lesser == &one ? other : one;
+  const auto whole = [](const PieceTruth& piece) { return static_cast<float>(std::max(piece.num_of_object, kWholeObject)); };
+  // Clutter by itself loses nothing; what takes it in is diluted.
+  const float of = lesser.object == importer::kNoTrueObject ? whole(greater) : whole(lesser);
+  return std::max(kLeastWeight, std::min(1.0F, static_cast<float>(lesser.num_returns) / of));
+}
+
+void RowMaker::Add(Sum sum, const TrainingScan& scan, Rows& rows) {
+  if (rows.features.empty()) rows.features = FeaturesOf(sum);
+  const auto scan_number = static_cast<std::int32_t>(rows.family_of.size());
+  rows.family_of.push_back(FamilyNumber(scan.family, rows));
+  method_.FindPieces(scan.truth.scan, classifier_.Classify(scan.truth.scan).returns);
+  if (sum == Sum::kMergeFirst) return AddPairs(sum, scan, scan_number, rows);
+  method_.Merge(MergeStage::kFirst, method_.FindPairs(MergeStage::kFirst));
+  if (sum == Sum::kMergeSecond) return AddPairs(sum, scan, scan_number, rows);
+  method_.Merge(MergeStage::kSecond, method_.FindPairs(MergeStage::kSecond));
+  AddGroups(sum, scan, scan_number, rows);
+}
+
+std::vector<PieceTruth> RowMaker::TruthOfPieces(const importer::LabelledScan& truth) {
+  const auto& returns = classifier_.result().returns;
+  const auto of_returns = method_.pieces().of_returns();
+  std::map<std::int32_t, std::int32_t> num_of_object;
+  std::vector<std::map<std::int32_t, std::int32_t>> votes(static_cast<std::size_t>(method_.pieces().size()));
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const std::int32_t object = std::max(truth.object[static_cast<std::size_t>(returns[i].cell)], importer::kNoTrueObject);
+    ++num_of_object[object];
+    ++votes[static_cast<std::size_t>(of_returns[i])][object];
+  }
+  std::vector<PieceTruth> pieces(votes.size());
+  for (std::size_t i = 0; i < votes.size(); ++i) {
+    std::int32_t most = 0;
+    for (const auto& [object, count] : votes[i]) {
+      pieces[i].num_returns += count;
+      if (count <= most) continue;
+      most = count;
+      pieces[i].object = object;
+    }
+    const bool is_clutter = pieces[i].object == importer::kNoTrueObject;
+    pieces[i].num_of_object = is_clutter ? pieces[i].num_returns : num_of_object[pieces[i].object];
+  }
+  return pieces;
+}
+
+void RowMaker::AddPairs(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
+  const auto truth = TruthOfPieces(scan.truth);
+  for (const auto& pair : method_.FindPairs(sum == Sum::kMergeFirst ? MergeStage::kFirst : MergeStage::kSecond)) {
+    const auto& one = truth[static_cast<std::size_t>(pair.one)];
+    const auto& other = truth[static_cast<std::size_t>(pair.other)];
+    if (one.object == importer::kNoTrueObject && other.object == importer::kNoTrueObject) continue;
+    rows.Add(pair.features, one.object == other.object, PairWeight(one, other), scan_number);
+  }
+}
+
+void RowMaker::AddGroups(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
+  const auto truth = TruthOfPieces(scan.truth);
+  const auto features = method_.MeasureGroups();
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    const bool is_thing = truth[i].object != importer::kNoTrueObject;
+    bool is_true = is_thing;
+    if (sum == Sum::kLand && is_thing) {
+      const auto& object = scan.truth.objects.at(truth[i].object);
+      if (IsDock(object)) continue;
+      is_true = IsLand(object);
+    }
+    rows.Add(features[i], is_true, 1.0F, scan_number);
+  }
+}
+
+}  // namespace lookout::fit

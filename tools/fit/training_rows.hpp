@@ -1,0 +1,66 @@
+// From scans with their truth to rows: what the lookout method asks between its steps, and what would have been the right answer.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "services/segmenter/core/lookout/lookout_method.hpp"
+#include "services/segmenter/core/segmenter.hpp"
+#include "tools/fit/rows.hpp"
+#include "tools/import/labelled_scan.hpp"
+
+namespace lookout::fit {
+
+struct TrainingScan {
+  std::string family;
+  importer::LabelledScan truth;
+};
+
+/// The sums of the method, in the order in which each needs those before it.
+enum class Sum : std::uint8_t { kMergeFirst, kMergeSecond, kLand, kThing };
+inline constexpr std::array kSums{Sum::kMergeFirst, Sum::kMergeSecond, Sum::kLand, Sum::kThing};
+const segmenter::EvidenceLayout& LayoutOf(Sum sum);
+
+/// The features of a sum with their signs (README). @throws std::logic_error for a sign of a feature that the method does not have
+std::vector<Feature> FeaturesOf(Sum sum);
+
+/// What a group is in truth: the object that most of its returns are of.
+struct PieceTruth {
+  std::int32_t object = importer::kNoTrueObject;  // clutter and the own vessel: kNoTrueObject
+  std::int32_t num_returns = 0;
+  std::int32_t num_of_object = 0;  // all returns of that object in the scan; of clutter, its own
+};
+
+/// How much a wrong answer costs: the share of its object that the lesser piece is, which is by how much the IoU of that object falls when it is left
+/// alone or given to another; a small piece of a quay counts little, a boat all of whose returns it is counts whole. Objects of fewer than
+/// kWholeObject returns count less.
+float PairWeight(const PieceTruth& one, const PieceTruth& other);
+inline constexpr int kWholeObject = 5;        // the least object that is scored
+inline constexpr float kLeastWeight = 0.02F;  // drawn: fragments of land are many
+
+/// Rows of land and of things, from groups of returns.
+class RowMaker {
+ public:
+  /// @param params  of the segmenter; its evidence of the steps before is used
+  explicit RowMaker(const segmenter::Params& params)
+      : params_(params), classifier_(params.filter), method_(params.lookout, params.filter.T_vessel_lidar.linear()) {}
+
+  /// Adds the rows of a scan.
+  ///
+  /// Merging: a row for each pair of pieces, true where both are mostly of one object. Where both are clutter there is none.
+  /// Land: a row for each group, true where it is mostly of land (LandOf); none where it is of a dock, which may be either.
+  /// Thing: a row for each group, true where it is mostly of an object.
+  void Add(Sum sum, const TrainingScan& scan, Rows& rows);
+
+ private:
+  std::vector<PieceTruth> TruthOfPieces(const importer::LabelledScan& truth);
+  void AddPairs(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
+  void AddGroups(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
+
+  segmenter::Params params_;
+  segmenter::ReturnClassifier classifier_;
+  segmenter::LookoutMethod method_;
+};
+
+}  // namespace lookout::fit
