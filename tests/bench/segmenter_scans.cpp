@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
       ours_ms.push_back(ProcessorMs() - begin_ms);
       begin_ms = ProcessorMs();
       method.Group(row.scan, classifier.Classify(row.scan).returns);
-      numbering.Number(method.pieces(), method.group_of_piece(), 1, std::numeric_limits<std::int16_t>::max());
+      numbering.Number(method.groups(), {}, 1, std::numeric_limits<std::int16_t>::max());
       labels_ms.push_back(ProcessorMs() - begin_ms);
       for (std::size_t i = 0; i < 2; ++i) {
         if (others[i] == nullptr || round % 10 != 0) continue;  // a tenth of the scans is enough for their median

@@ -29,9 +29,7 @@ void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params,
     clock.End("project");
     segmenter::LookoutMethod method(params.lookout, params.filter.T_vessel_lidar.linear());
     method.Group(scan, returns);
-    std::vector<std::int32_t> groups(static_cast<std::size_t>(method.groups().count));
-    std::iota(groups.begin(), groups.end(), 0);
-    numbering.Number(method.groups(), groups, params.min_segment_points, kMaxSegments);
+    numbering.Number(method.groups(), {}, params.min_segment_points, kMaxSegments);
     clock.End("cluster");
     labelling_of_scan.num_components = method.num_tight_pieces();
   } else {

@@ -22,11 +22,13 @@ namespace {
 eval::RunPlan PlanOf(const Options& options) {
   eval::RunPlan plan{{}, options.first_seed, options.num_seeds, options.seconds};
   for (const auto& scene : options.scenes) {
-    if (scene != "families") {
+    if (scene != "families" && scene != "all") {
       plan.scenes.push_back(scene);
       continue;
     }
-    for (const auto& family : sim::ListFamilies(options.config_folder)) plan.scenes.push_back(family.name);
+    for (const auto& known : scene == "families" ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder)) {
+      plan.scenes.push_back(known.name);
+    }
   }
   plan.CheckSeeds(eval::SeedUse::kTuning);
   return plan;

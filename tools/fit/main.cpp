@@ -23,7 +23,9 @@ fit::Options ParseOptions(int argc, char** argv) {
   options.command = fmt::format("lookout-fit {}", fmt::join(argv + 1, argv + argc, " "));
   CLI::App app("Fits the evidence of the lookout method on simulated scenes, and writes it as a file that segmenter.txtpb can name.", "lookout-fit");
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files")->check(CLI::ExistingDirectory)->required();
-  app.add_option("--scenes", options.scenes, "families, or names of scenes or .txtpb files")->delimiter(',')->required();
+  app.add_option("--scenes", options.scenes, "families, all (scenes that are no families), or names of scenes or .txtpb files")
+      ->delimiter(',')
+      ->required();
   app.add_option("--without", options.without, "names of scenes that are not fitted on; their IoU is shown beside that of the others")
       ->delimiter(',');
   app.add_option("--hold-out", options.hold_out, "names of scenes that only say when trees are enough: where their loss is least")->delimiter(',');

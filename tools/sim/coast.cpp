@@ -111,6 +111,20 @@ Section DrawSection(const Stretch& stretch, double depth_m, Random& random) {
   return section;
 }
 
+// Hills run on behind the border of two stretches.
+void SmoothHills(bool is_closed, std::vector<Section>& sections) {
+  constexpr int kNumPasses = 6;
+  const std::size_t count = sections.size();
+  for (int pass = 0; pass < kNumPasses; ++pass) {
+    const auto before = sections;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t left = i > 0 ? i - 1 : is_closed ? count - 1 : 0;
+      const std::size_t right = i + 1 < count ? i + 1 : is_closed ? 0 : i;
+      sections[i].height_m[3] = (before[left].height_m[3] + before[i].height_m[3] + before[right].height_m[3]) / 3.0;
+    }
+  }
+}
+
 Vector3d OnGround(const Vector2d& p_m, double z_m) { return {p_m.x(), p_m.y(), z_m}; }
 
 Material MaterialOf(config::Scene::Edge edge) {
@@ -163,6 +177,7 @@ Coast MakeLandAlong(std::string_view kind, const Land& land, const Line& line_m,
     stretch_of.push_back(k);
     ground.sections.push_back(DrawSection(stretches[k], std::min(depth_m, vertices[i].max_depth_m * (is_closed ? 0.85 : 1.0)), random));
   }
+  SmoothHills(is_closed, ground.sections);
   auto& parts = coast.object.parts;
   const std::size_t num_strips = is_closed ? vertices.size() : vertices.size() - 1;
   for (std::size_t i = 0; i < num_strips; ++i) AddStrip(ground, i, (i + 1) % vertices.size(), MaterialOf(stretches[stretch_of[i]].edge), parts);

@@ -30,6 +30,20 @@ void DrawBetween(const Message& to, Random& random, Message& from) {
   }
 }
 
+// Clears the lists of `merged` that `one` has, as a list that is merged would grow.
+void ClearListsOf(const Message& one, Message& merged) {
+  std::vector<const FieldDescriptor*> fields;
+  one.GetReflection()->ListFields(one, &fields);
+  for (const auto* field : fields) {
+    const auto* reflection = merged.GetReflection();
+    if (field->is_repeated()) {
+      reflection->ClearField(&merged, field);
+    } else if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE && reflection->HasField(merged, field)) {
+      ClearListsOf(one.GetReflection()->GetMessage(one, field), *reflection->MutableMessage(&merged, field));
+    }
+  }
+}
+
 double DrawOf(const google::protobuf::RepeatedField<double>& numbers, Random& random) {
   return numbers.size() == 1 ? numbers[0] : random.Uniform(numbers[0], numbers[1]);
 }
@@ -54,6 +68,7 @@ File WithDrawnNumbers(const File& scene, std::uint64_t seed) {
 File::Object MergedWith(const File::Object& object, const File::Object& one) {
   File::Object merged = object;
   merged.clear_one_of();
+  ClearListsOf(one, merged);
   merged.MergeFrom(one);
   return merged;
 }

@@ -1,6 +1,10 @@
 #include "tools/sim/fleet.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+
+#include "tools/sim/things.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -12,6 +16,7 @@ using Eigen::Vector3d;
 constexpr double kGelcoat = 0.6;
 constexpr double kPaint = 0.5;
 constexpr double kConcrete = 0.4;
+constexpr double kBrightest = 0.9;
 constexpr Material kAluminium{0.5};
 constexpr Material kGlassFrame{0.2};
 constexpr Material kCloth{0.5};
@@ -135,7 +140,32 @@ void MakeWall(const Size& size, SceneObject& wall) {
   wall.parts = {{Prism{wall.outline_m, -1.0, size.height_m}, Material{size.reflectance}}};
 }
 
-constexpr std::array<KindOfObject, 10> kKinds{{
+void DrawOneOf(std::span<const std::string_view> names, Random& random, SceneObject& object) {
+  const auto chosen = static_cast<std::size_t>(random.Uniform() * static_cast<double>(names.size()));
+  const auto kind = std::ranges::find(Kinds(), names[chosen], &KindOfObject::name);
+  object.kind = kind->name;
+  object.is_in_water = kind->is_in_water;
+  kind->draw({}, random, object);
+}
+
+// Each as often as the others; the large ones stand for several sorts of craft.
+void MakeAnyCraft(const Size& /*size*/, Random& random, SceneObject& boat) {
+  static constexpr std::array<std::string_view, 12> kNames{"open_boat", "open_boat", "cruiser",      "cruiser",    "sailing_dinghy", "yacht",
+                                                           "twin_hull", "canoe",     "paddle_board", "pedal_boat", "raft",           "workboat"};
+  DrawOneOf(kNames, random, boat);
+}
+
+void MakeAnyBuoy(const Size& /*size*/, Random& random, SceneObject& buoy) {
+  static constexpr std::array<std::string_view, 6> kNames{"navigation_buoy", "navigation_buoy", "float", "float", "race_mark", "stake"};
+  DrawOneOf(kNames, random, buoy);
+}
+
+void MakeAnyDock(const Size& /*size*/, Random& random, SceneObject& dock) {
+  static constexpr std::array<std::string_view, 3> kNames{"jetty", "pontoon", "dock_bays"};
+  DrawOneOf(kNames, random, dock);
+}
+
+constexpr std::array<KindOfObject, 35> kKinds{{
     {"motor_boat", {6.0, 2.2, 0.0, kGelcoat}, true, true, MakeMotorBoat},
     {"cabin_boat", {9.0, 3.0, 0.0, kGelcoat}, true, true, MakeCabinBoat},
     {"sailing_boat", {7.0, 2.4, 0.0, kGelcoat}, true, true, MakeSailingBoat},
@@ -146,16 +176,45 @@ constexpr std::array<KindOfObject, 10> kKinds{{
     {"dock", {9.0, 2.0, 0.0, 0.0}, false, false, MakeDock},
     {"pier", {30.0, 3.0, 1.2, kConcrete}, false, false, MakePier},
     {"wall", {50.0, 0.5, 1.5, kConcrete}, false, false, MakeWall},
+    {"open_boat", {6.5, 2.3, 0.0, kBrightest}, true, true, nullptr, MakeOpenBoat},
+    {"cruiser", {16.0, 5.5, 0.0, kBrightest}, true, true, nullptr, MakeCruiser},
+    {"sailing_dinghy", {6.0, 2.3, 0.0, kBrightest}, true, true, nullptr, MakeSailingDinghy},
+    {"yacht", {16.0, 5.2, 0.0, kBrightest}, true, true, nullptr, MakeYacht},
+    {"twin_hull", {15.0, 9.0, 0.0, kBrightest}, true, true, nullptr, MakeTwinHull},
+    {"raft", {6.0, 5.7, 0.0, kBrightest}, true, true, nullptr, MakeRaft},
+    {"canoe", {6.5, 1.0, 0.0, kBrightest}, true, true, nullptr, MakeCanoe},
+    {"paddle_board", {4.2, 0.9, 0.0, kBrightest}, true, true, nullptr, MakePaddleBoard},
+    {"pedal_boat", {4.2, 2.0, 0.0, kBrightest}, true, true, nullptr, MakePedalBoat},
+    {"barge", {40.0, 5.8, 0.0, kBrightest}, true, true, nullptr, MakeBarge},
+    {"workboat", {20.0, 6.7, 0.0, kBrightest}, true, true, nullptr, MakeWorkboat},
+    {"jetty", {35.0, 3.5, 0.0, 0.0}, false, false, nullptr, MakeJetty},
+    {"pontoon", {35.0, 3.5, 0.0, 0.0}, false, false, nullptr, MakePontoon},
+    {"dock_bays", {9.0, 27.0, 0.0, 0.0}, false, false, nullptr, MakeDockBays},
+    {"navigation_buoy", {0.0, 3.0, 5.0, kBrightest}, true, true, nullptr, MakeNavigationBuoy},
+    {"float", {0.0, 0.8, 0.72, kBrightest}, true, true, nullptr, MakeFloat},
+    {"race_mark", {0.0, 1.6, 2.2, kBrightest}, true, true, nullptr, MakeRaceMark},
+    {"stake", {0.0, 0.4, 4.5, kBrightest}, true, false, nullptr, MakeStake},
+    {"fish_farm", {0.0, 16.0, 0.0, kBrightest}, true, true, nullptr, MakeFishFarm},
+    {"bather", {0.0, 0.26, 0.0, kBrightest}, true, true, nullptr, MakeBather},
+    {"log", {8.0, 0.6, 0.0, kBrightest}, true, true, nullptr, MakeLog},
+    {"water_bird", {1.3, 0.0, 0.0, kBrightest}, true, true, nullptr, MakeWaterBird},
+    {"any_craft", {}, true, true, nullptr, MakeAnyCraft},
+    {"any_buoy", {}, true, true, nullptr, MakeAnyBuoy},
+    {"any_dock", {}, false, false, nullptr, MakeAnyDock},
 }};
 
 }  // namespace
 
 std::span<const KindOfObject> Kinds() { return kKinds; }
 
-SceneObject MakeObject(const KindOfObject& kind, const Size& size) {
+SceneObject MakeObject(const KindOfObject& kind, const Size& size, Random& random) {
   SceneObject object{0, "", std::string(kind.name), Track{}, {}, {}};
-  kind.make(size, object);
   object.is_in_water = kind.is_in_water;
+  if (kind.draw != nullptr) {
+    kind.draw(size, random, object);
+    return object;
+  }
+  kind.make(size, object);
   // What has no length is round.
   if (kind.is_afloat) object.waterline_m = {size.length_m > 0.0 ? size.length_m : size.width_m, size.width_m};
   return object;

@@ -19,21 +19,24 @@ struct Size {
   double reflectance = 0.0;
 };
 
-/// A kind of object and how to make one.
+/// A kind of object and how to make one: always the same one, or one that a seed draws.
 struct KindOfObject {
   std::string_view name;  // as in scene files, lower case
-  Size usual;             // 0 = the kind has no such size
+  Size usual;             // 0 = the kind has no such size; of a drawn one the greatest that is drawn
   bool is_in_water;       // a boat, swimmer, buoy or marker
   bool is_afloat;         // rides the waves
-  /// Makes parts and outline.
+  /// Makes parts and outline. Null where `draw` is not.
   void (*make)(const Size& size, SceneObject& object);
+  /// Draws parts, outline and waterline, and every size that is 0. One that stands for several kinds sets the object's kind.
+  void (*draw)(const Size& size, Random& random, SceneObject& object) = nullptr;
 };
 
 /// All kinds but shores and islands.
 std::span<const KindOfObject> Kinds();
 
+/// @param size  with what is not given: usual sizes, 0 of a drawn kind
 /// @return an object of this kind without id, name and way
-SceneObject MakeObject(const KindOfObject& kind, const Size& size);
+SceneObject MakeObject(const KindOfObject& kind, const Size& size, Random& random);
 
 /// @return radius of the waterline at a bearing
 using Waterline = std::function<double(double bearing_rad)>;

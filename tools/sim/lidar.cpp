@@ -86,9 +86,14 @@ Lidar::Measurement Lidar::ToMeasurement(double range_m, double brightness, int o
   const double range_2mm = std::round((range_m + effects_.range_sd_m() * random_.Normal()) / format::kRangeUnitM);
   if (range_2mm < 1.0 || range_2mm > std::numeric_limits<std::uint16_t>::max()) return {};
   const double reflectivity = 100.0 * brightness + 2.0 * random_.Normal();
-  return {
-      static_cast<std::uint16_t>(range_2mm), static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, 100.0)), object_id, reason, range_m,
-      brightness / (range_m * range_m)};
+  // The manual, "Calibrated reflectivities": 0 to 100 of diffuse surfaces, 101 to 255 of retro-reflectors.
+  const double greatest = brightness > 1.0 ? 255.0 : 100.0;
+  return {static_cast<std::uint16_t>(range_2mm),
+          static_cast<std::uint8_t>(std::clamp(std::round(reflectivity), 1.0, greatest)),
+          object_id,
+          reason,
+          range_m,
+          brightness / (range_m * range_m)};
 }
 
 Lidar::Measurement Lidar::Measure(const Echo& echo) {

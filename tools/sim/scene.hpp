@@ -36,7 +36,7 @@ constexpr std::string_view NameOf(ReturnReason reason) { return kReasonNames[sta
 
 /// How a surface reflects.
 struct Material {
-  double reflectance;      // diffuse, 0 to 1; the reflectivity of the device is this in per cent
+  double reflectance;      // diffuse, 0 to 1; above 1, to 2.55, of a retro-reflector; the reflectivity of the device is this in per cent
   bool is_porous = false;  // foliage: a part of the beam goes on behind it
 };
 

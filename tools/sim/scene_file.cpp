@@ -1,6 +1,7 @@
 #include "tools/sim/scene_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/message.h>
@@ -48,6 +49,12 @@ bool IsLand(File::Kind kind) {
 // Whose sizes are those of land, or drawn by its maker.
 bool HasFreeSizes(const File::Object& object) {
   return object.kind() == File::PILE_PIER || object.kind() == File::BRIDGE || (IsLand(object.kind()) && !object.land().has_mean_radius_m());
+}
+
+// From its landward end out into the water.
+bool IsDock(File::Kind kind) {
+  constexpr std::array kDocks{File::DOCK, File::PIER, File::JETTY, File::PONTOON, File::DOCK_BAYS, File::ANY_DOCK};
+  return std::ranges::find(kDocks, kind) != kDocks.end();
 }
 
 // Of one message of the file.
@@ -129,7 +136,7 @@ void CheckLand(const File::Object& object, Checker& check) {
 
 void CheckPlace(const File::Object& object, bool has_shore_before, Checker& check) {
   if (object.has_on_shore_bearing_deg()) {
-    check.RefuseIf(object.kind() != File::DOCK && object.kind() != File::PIER, "on_shore_bearing_deg", "only a dock or a pier has it");
+    check.RefuseIf(!IsDock(object.kind()), "on_shore_bearing_deg", "only a dock or a pier has it");
     check.RefuseIf(!has_shore_before, "on_shore_bearing_deg", "there is no shore before it");
     check.Forbid({"east_m", "north_m", "heading_deg"}, "the shore says it");
     check.RefuseIf(object.count() > 1, "count", "must be 1 on a shore");
@@ -250,12 +257,13 @@ const KindOfObject* FindKind(File::Kind kind) {
 
 fs::path FindScene(const std::string& name_or_path, const fs::path& config_folder) {
   if (name_or_path.ends_with(kExtension)) return name_or_path;
-  auto files = SceneFiles(config_folder, {});
-  files.merge(SceneFiles(config_folder, kFamilies));
-  const auto found = files.find(name_or_path);
-  if (found != files.end()) return found->second;
   std::string names;
-  for (const auto& [name, file] : files) names += (names.empty() ? "" : ", ") + name;
+  for (const auto& folder : {fs::path(), fs::path(kFamilies)}) {
+    const auto files = SceneFiles(config_folder, folder);
+    const auto found = files.find(name_or_path);
+    if (found != files.end()) return found->second;
+    for (const auto& [name, file] : files) names += (names.empty() ? "" : ", ") + name;
+  }
   throw config::ConfigError({"--scene: no such scene: " + name_or_path + " (there are: " + names + ")"});
 }
 

@@ -193,12 +193,13 @@ class Drawing {
     }
     const KindOfObject* kind = FindKind(file.kind());
     if (kind != nullptr) {
+      const Size usual = kind->draw == nullptr ? kind->usual : Size{};
       Size size;
-      size.length_m = Draw(file.length_m(), kind->usual.length_m, random);
-      size.width_m = Draw(file.width_m(), kind->usual.width_m, random);
-      size.height_m = Draw(file.height_m(), kind->usual.height_m, random);
-      size.reflectance = Draw(file.reflectance(), kind->usual.reflectance, random);
-      return MakeObject(*kind, size);
+      size.length_m = Draw(file.length_m(), usual.length_m, random);
+      size.width_m = Draw(file.width_m(), usual.width_m, random);
+      size.height_m = Draw(file.height_m(), usual.height_m, random);
+      size.reflectance = Draw(file.reflectance(), usual.reflectance, random);
+      return MakeObject(*kind, size, random);
     }
     if (file.kind() == File::ISLAND) return MakeIsland(file.land(), land_random_);
     Shore shore = MakeShore(file.land(), land_random_);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/core/angles.hpp"
 
@@ -106,6 +107,109 @@ std::optional<Hit> IntersectSolid(const Triangle& triangle, const Ray& ray) {
   return Hit{range_m, std::abs(ab_m.cross(ac_m).normalized().dot(ray.direction))};
 }
 
+std::optional<Hit> IntersectSolid(const Cone& cone, const Ray& ray) {
+  // On the wall |p - center| = radius + slope (z - bottom), from the ray's height on: radius = start + rate x range.
+  const double slope = (cone.top_radius_m - cone.bottom_radius_m) / (cone.top_m - cone.bottom_m);
+  const Vector2d direction = ray.direction.head<2>();
+  const Vector2d from_center_m = ray.origin_m.head<2>() - cone.center_m;
+  const double start_m = cone.bottom_radius_m + slope * (ray.origin_m.z() - cone.bottom_m);
+  const double rate = slope * ray.direction.z();
+  const double a = direction.squaredNorm() - rate * rate;
+  const double b = direction.dot(from_center_m) - start_m * rate;
+  const double c = from_center_m.squaredNorm() - start_m * start_m;
+  std::optional<Hit> best;
+  const auto consider = [&](double range_m, const Vector3d& normal) {
+    if (range_m > 0.0 && (!best || range_m < best->range_m)) best = Hit{range_m, std::abs(normal.normalized().dot(ray.direction))};
+  };
+  const double discriminant = b * b - a * c;
+  if (discriminant > 0.0 && a != 0.0) {
+    for (const double sign : {-1.0, 1.0}) {
+      const double range_m = (-b + sign * std::sqrt(discriminant)) / a;
+      const double height_m = ray.origin_m.z() + range_m * ray.direction.z();
+      if (height_m < cone.bottom_m || height_m > cone.top_m) continue;  // also the cone beyond its tip
+      const Vector2d outward = (from_center_m + range_m * direction).normalized();
+      consider(range_m, {outward.x(), outward.y(), -slope});
+    }
+  }
+  for (const auto& [height_m, radius_m] : {std::pair(cone.bottom_m, cone.bottom_radius_m), std::pair(cone.top_m, cone.top_radius_m)}) {
+    if (ray.direction.z() == 0.0) break;
+    const double range_m = (height_m - ray.origin_m.z()) / ray.direction.z();
+    if ((from_center_m + range_m * direction).squaredNorm() < radius_m * radius_m) consider(range_m, Vector3d::UnitZ());
+  }
+  return best;
+}
+
+std::optional<Hit> IntersectSolid(const Rod& rod, const Ray& ray) {
+  const Vector3d along_m = rod.to_m - rod.from_m;
+  const double length_m = along_m.norm();
+  const Vector3d axis = length_m > 0.0 ? Vector3d(along_m / length_m) : Vector3d(Vector3d::UnitZ());
+  const Vector3d from_m = ray.origin_m - rod.from_m;
+  const double axis_rate = axis.dot(ray.direction);
+  const Vector3d across = ray.direction - axis_rate * axis;
+  const Vector3d from_axis_m = from_m - axis.dot(from_m) * axis;
+  const double a = across.squaredNorm();
+  const double b = across.dot(from_axis_m);
+  const double c = from_axis_m.squaredNorm() - rod.radius_m * rod.radius_m;
+  const double discriminant = b * b - a * c;
+  if (a > 0.0 ? discriminant <= 0.0 : c >= 0.0) return std::nullopt;
+  if (a > 0.0) {
+    const double range_m = (-b - std::sqrt(discriminant)) / a;
+    const double at_m = axis.dot(from_m) + range_m * axis_rate;
+    if (at_m >= 0.0 && at_m <= length_m) return range_m > 0.0 ? std::optional(Hit{range_m, std::sqrt(discriminant) / rod.radius_m}) : std::nullopt;
+  }
+  // An end that lies in the rod is met behind the rod's own surface: the nearer of the two ends is the one.
+  std::optional<Hit> best;
+  for (const Vector3d& end_m : {rod.from_m, rod.to_m}) {
+    const auto hit = IntersectSolid(Ellipsoid{end_m, Vector3d::Constant(rod.radius_m)}, ray);
+    if (hit && (!best || hit->range_m < best->range_m)) best = hit;
+  }
+  return best;
+}
+
+// Where a ray is inside of half spaces, and how steeply it meets the planes there.
+struct Passage {
+  double enter_m = -std::numeric_limits<double>::infinity();
+  double leave_m = std::numeric_limits<double>::infinity();
+  double enter_cosine = 1.0;
+  double leave_cosine = 1.0;
+};
+
+std::optional<Passage> PassageOf(const std::vector<Plane>& planes, const Ray& ray) {
+  Passage passage;
+  for (const Plane& plane : planes) {
+    const double distance_m = plane.offset_m - plane.normal.dot(ray.origin_m);
+    const double rate = plane.normal.dot(ray.direction);
+    if (rate == 0.0) {
+      if (distance_m < 0.0) return std::nullopt;
+      continue;
+    }
+    const double at_m = distance_m / rate;
+    if (rate < 0.0 && at_m > passage.enter_m) {
+      passage.enter_m = at_m;
+      passage.enter_cosine = -rate;
+    } else if (rate > 0.0 && at_m < passage.leave_m) {
+      passage.leave_m = at_m;
+      passage.leave_cosine = rate;
+    }
+    if (passage.enter_m > passage.leave_m) return std::nullopt;
+  }
+  return passage;
+}
+
+std::optional<Hit> IntersectSolid(const Convex& convex, const Ray& ray) {
+  const auto outer = PassageOf(convex.planes, ray);
+  if (!outer || outer->enter_m <= 0.0) return std::nullopt;
+  if (!convex.hollow.empty()) {
+    const auto inner = PassageOf(convex.hollow, ray);
+    if (inner && inner->enter_m <= outer->enter_m && inner->leave_m > outer->enter_m) {
+      // In by the opening: on to the inner side of a wall, unless it leaves by the opening again.
+      if (inner->leave_m >= outer->leave_m) return std::nullopt;
+      return Hit{inner->leave_m, inner->leave_cosine};
+    }
+  }
+  return Hit{outer->enter_m, outer->enter_cosine};
+}
+
 Bounds BoundsOfSolid(const Cylinder& cylinder) { return {{cylinder.center_m}, cylinder.radius_m, cylinder.bottom_m, cylinder.top_m}; }
 Bounds BoundsOfSolid(const Ellipsoid& ellipsoid) {
   return {{ellipsoid.center_m.head<2>()},
@@ -118,6 +222,12 @@ Bounds BoundsOfSolid(const Triangle& triangle) {
   const auto heights_m = std::minmax({triangle.a_m.z(), triangle.b_m.z(), triangle.c_m.z()});
   return {{triangle.a_m.head<2>(), triangle.b_m.head<2>(), triangle.c_m.head<2>()}, 0.0, heights_m.first, heights_m.second};
 }
+Bounds BoundsOfSolid(const Cone& cone) { return {{cone.center_m}, std::max(cone.bottom_radius_m, cone.top_radius_m), cone.bottom_m, cone.top_m}; }
+Bounds BoundsOfSolid(const Rod& rod) {
+  const auto heights_m = std::minmax(rod.from_m.z(), rod.to_m.z());
+  return {{rod.from_m.head<2>(), rod.to_m.head<2>()}, rod.radius_m, heights_m.first - rod.radius_m, heights_m.second + rod.radius_m};
+}
+Bounds BoundsOfSolid(const Convex& convex) { return convex.bounds; }
 
 }  // namespace
 
@@ -127,6 +237,29 @@ std::optional<Hit> Intersect(const Solid& solid, const Ray& ray) {
 
 Bounds BoundsOf(const Solid& solid) {
   return std::visit([](const auto& shape) { return BoundsOfSolid(shape); }, solid);
+}
+
+Convex ToConvex(const LeaningWalls& walls) {
+  Convex convex;
+  const auto& footprint = walls.footprint_m;
+  double highest_m = -std::numeric_limits<double>::infinity();
+  for (const auto& p_m : footprint) highest_m = std::max(highest_m, walls.top_m + walls.top_slope * p_m.x());
+  const double widest_m = walls.is_widest_on_top ? highest_m : walls.bottom_m;
+  for (std::size_t i = 0; i < footprint.size(); ++i) {
+    const Vector2d edge_m = footprint[i + 1 < footprint.size() ? i + 1 : 0] - footprint[i];
+    const double lean = walls.lean.size() == 1 ? walls.lean[0] : walls.lean[i];
+    const Vector2d outward = Vector2d(edge_m.y(), -edge_m.x()).normalized();
+    const Vector3d normal = Vector3d(outward.x(), outward.y(), walls.is_widest_on_top ? -lean : lean).normalized();
+    const double offset_m = normal.dot(Vector3d(footprint[i].x(), footprint[i].y(), widest_m));
+    convex.planes.push_back({normal, offset_m});
+    if (walls.wall_m > 0.0) convex.hollow.push_back({normal, offset_m - walls.wall_m});
+  }
+  const Vector3d up = Vector3d(-walls.top_slope, 0.0, 1.0).normalized();
+  convex.planes.push_back({up, walls.top_m * up.z()});
+  convex.planes.push_back({-Vector3d::UnitZ(), -walls.bottom_m});
+  if (walls.wall_m > 0.0) convex.hollow.push_back({-Vector3d::UnitZ(), -walls.hollow_bottom_m});
+  convex.bounds = {footprint, 0.0, walls.bottom_m, highest_m};
+  return convex;
 }
 
 std::vector<Vector2d> Rectangle(double min_x_m, double max_x_m, double min_y_m, double max_y_m) {

@@ -47,10 +47,21 @@ struct Triangle {
   Eigen::Vector3d c_m;
 };
 
-using Solid = std::variant<Cylinder, Ellipsoid, Prism, Triangle>;
+/// Upright and round; its radius goes straight from that of the bottom to that of the top. One of the two may be 0.
+struct Cone {
+  Eigen::Vector2d center_m;
+  double bottom_radius_m;
+  double top_radius_m;
+  double bottom_m;
+  double top_m;
+};
 
-/// @return nullopt when the ray misses, or starts inside
-std::optional<Hit> Intersect(const Solid& solid, const Ray& ray);
+/// Straight, in any direction, with half balls as its ends.
+struct Rod {
+  Eigen::Vector3d from_m;
+  Eigen::Vector3d to_m;
+  double radius_m;
+};
 
 /// Seen from above, the convex hull of the points, widened by the radius, contains the solid; so do the heights.
 struct Bounds {
@@ -59,6 +70,39 @@ struct Bounds {
   double low_m = 0.0;
   double high_m = 0.0;
 };
+
+/// A half space: what has normal . p <= offset.
+struct Plane {
+  Eigen::Vector3d normal;  // unit vector, outward
+  double offset_m;
+};
+
+/// What lies inside of all planes, without what lies inside of all planes of the hollow.
+struct Convex {
+  std::vector<Plane> planes;
+  std::vector<Plane> hollow;  // none = solid. Where it goes beyond the planes it is open: one sees what lies in it
+  Bounds bounds;
+};
+
+using Solid = std::variant<Cylinder, Ellipsoid, Prism, Triangle, Cone, Rod, Convex>;
+
+/// Walls that lean over a convex footprint, under a top that may slope.
+struct LeaningWalls {
+  std::vector<Eigen::Vector2d> footprint_m;  // counter-clockwise, where it is widest: at the bottom of a cabin, at the top of a hull
+  // By edge of the footprint from its first vertex on; one value = all. Not negative: how much a wall comes in per metre from the widest height.
+  std::vector<double> lean;
+  bool is_widest_on_top = false;
+  double bottom_m = 0.0;
+  double top_m = 0.0;            // at x = 0
+  double top_slope = 0.0;        // rise per metre along x
+  double wall_m = 0.0;           // thickness; 0 = solid, else open on top
+  double hollow_bottom_m = 0.0;  // of what is open on top
+};
+Convex ToConvex(const LeaningWalls& walls);
+
+/// @return nullopt when the ray misses, or starts inside
+std::optional<Hit> Intersect(const Solid& solid, const Ray& ray);
+
 Bounds BoundsOf(const Solid& solid);
 
 /// @return rectangle from (min_x, min_y) to (max_x, max_y), counter-clockwise

@@ -5,7 +5,10 @@
 namespace lookout::segmenter {
 
 void Numbering::Number(const Groups& components, std::span<const std::int32_t> cluster_of_component, int min_points, std::int32_t max_segments) {
-  clusters_.assign(cluster_of_component.size(), {});
+  clusters_.assign(static_cast<std::size_t>(components.count), {});
+  const auto cluster_of = [&](std::size_t component) {
+    return cluster_of_component.empty() ? static_cast<std::int32_t>(component) : cluster_of_component[component];
+  };
   in_order_.clear();
   // Returns that follow each other are of one component in most cases.
   const auto& of_return = components.of_return;
@@ -13,7 +16,7 @@ void Numbering::Number(const Groups& components, std::span<const std::int32_t> c
     const std::int32_t component = of_return[i];
     for (end = i + 1; end < of_return.size() && of_return[end] == component;) ++end;
     if (component == Groups::kNone) continue;
-    const std::int32_t cluster = cluster_of_component[static_cast<std::size_t>(component)];
+    const std::int32_t cluster = cluster_of(static_cast<std::size_t>(component));
     auto& num_points = clusters_[static_cast<std::size_t>(cluster)].num_points;
     if (num_points == 0) in_order_.push_back(cluster);
     num_points += static_cast<std::int32_t>(end - i);
@@ -30,9 +33,9 @@ void Numbering::Number(const Groups& components, std::span<const std::int32_t> c
   }
   groups_.count = 0;
   for (const std::int32_t cluster : in_order_) clusters_[static_cast<std::size_t>(cluster)].number = groups_.count++;
-  number_of_component_.resize(cluster_of_component.size());
-  for (std::size_t component = 0; component < cluster_of_component.size(); ++component) {
-    number_of_component_[component] = clusters_[static_cast<std::size_t>(cluster_of_component[component])].number;
+  number_of_component_.resize(clusters_.size());
+  for (std::size_t component = 0; component < clusters_.size(); ++component) {
+    number_of_component_[component] = clusters_[static_cast<std::size_t>(cluster_of(component))].number;
   }
   groups_.of_return.resize(of_return.size());
   for (std::size_t i = 0; i < of_return.size(); ++i) {

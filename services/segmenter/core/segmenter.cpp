@@ -22,9 +22,7 @@ const Segments& Segmenter::Segment(const Scan& scan) {
   const auto& classified = classifier_.Classify(scan);
   if (params_.method == Method::kLookout) {
     method_.Group(scan, classified.returns);
-    identity_.resize(static_cast<std::size_t>(method_.groups().count));
-    std::iota(identity_.begin(), identity_.end(), 0);
-    numbering_.Number(method_.groups(), identity_, params_.min_segment_points, kMaxSegments);
+    numbering_.Number(method_.groups(), {}, params_.min_segment_points, kMaxSegments);
   } else {
     GroupAsThePaper(scan);
     numbering_.Number(components_, cluster_of_component_, params_.min_segment_points, kMaxSegments);

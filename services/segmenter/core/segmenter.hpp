@@ -60,7 +60,6 @@ class Segmenter {
   Measurer measurer_;
   Groups components_;  // the paper's
   std::vector<std::int32_t> cluster_of_component_;
-  std::vector<std::int32_t> identity_;
   Segments result_;
 };
 

@@ -155,7 +155,7 @@ Scan BowOn() {
 TEST(BowOn, TheLengthIsFromBowToStern) {
   const Stages stages(BowOn());
   ASSERT_EQ(stages.pieces.size(), 1);
-  EXPECT_GT(stages.pieces.FactsOf(0).length_m, 7.0);
+  EXPECT_GT(stages.pieces[0].length_m, 7.0);
 }
 
 // What is small is attached by the gap to the bow, up to 1.2 + 0.03 x 4.8 = 1.34 m; the middle of the boat is farther off.

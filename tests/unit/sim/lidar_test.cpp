@@ -238,6 +238,18 @@ TEST(Lidar, BlackThingsAreLostEarlierThanBrightOnes) {
   EXPECT_LT(count(0.03), 5);
 }
 
+TEST(Lidar, OnlyRetroReflectorsAreBrighterThanAHundred) {
+  for (const double reflectance : {0.99, 2.0}) {
+    const auto scene = QuietScene(0.0, {{Prism{Rectangle(10.0, 11.0, -5.0, 5.0), 0.0, 5.0}, {reflectance}}});
+    Lidar lidar(scene, SmallBoat(), LidarParams{}, kStart, 1);
+    int greatest = 0;
+    for (int i = 0; i < 76; ++i) {
+      for (const auto& decoded : Decode(lidar.Next())) greatest = std::max(greatest, decoded.reflectivity);
+    }
+    EXPECT_NEAR(greatest, reflectance > 1.0 ? 200 : 100, reflectance > 1.0 ? 10 : 0);
+  }
+}
+
 TEST(Lidar, APuckHiResLooksAlongItsOwnBeams) {
   const auto scene = QuietScene(0.0, Wall(20.0));
   LidarParams params;

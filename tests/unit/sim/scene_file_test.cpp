@@ -220,7 +220,7 @@ TEST(SceneFile, TakesEffectsOverAndLeavesTheRestAtTheirDefaults) {
 
 TEST(Kinds, EveryKindOfTheSchemaCanBeMade) {
   for (int value = config::Scene::Kind_MIN; value <= config::Scene::Kind_MAX; ++value) {
-    ASSERT_TRUE(config::Scene::Kind_IsValid(value));
+    if (!config::Scene::Kind_IsValid(value)) continue;
     const auto kind = static_cast<config::Scene::Kind>(value);
     const bool is_land = kind == config::Scene::SHORE || kind == config::Scene::ISLAND;
     EXPECT_EQ(FindKind(kind) == nullptr, is_land) << NameOf(kind);
@@ -233,7 +233,9 @@ TEST(Kinds, EveryKindOfTheSchemaCanBeMade) {
 TEST(Kinds, BoatsSwimmersBuoysAndMarkersAreInTheWater) {
   std::string in_water;
   for (const auto& kind : Kinds()) in_water += kind.is_in_water ? std::string(kind.name) + ' ' : "";
-  EXPECT_EQ(in_water, "motor_boat cabin_boat sailing_boat kayak swimmer buoy marker ");
+  EXPECT_EQ(in_water,
+            "motor_boat cabin_boat sailing_boat kayak swimmer buoy marker open_boat cruiser sailing_dinghy yacht twin_hull raft canoe paddle_board "
+            "pedal_boat barge workboat navigation_buoy float race_mark stake fish_farm bather log water_bird any_craft any_buoy ");
 }
 
 class SceneFolders : public testing::Test {

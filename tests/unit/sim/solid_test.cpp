@@ -66,5 +66,53 @@ TEST(Solid, LevelRaysMeetLevelFacesNever) {
   EXPECT_FALSE(Intersect(Prism{Rectangle(5.0, 7.0, -1.0, 1.0), 1.1, 2.0}, kAhead));
 }
 
+TEST(Solid, ConeIsMetOnItsWallItsTopAndNotBeyondItsTip) {
+  const Cone cone{{10.0, 0.0}, 2.0, 0.0, 0.0, 2.0};
+  const auto hit = Intersect(cone, kAhead);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->range_m, 9.0, 1e-12);
+  EXPECT_NEAR(hit->incidence_cosine, std::sqrt(0.5), 1e-12);
+  EXPECT_FALSE(Intersect(cone, Ray{{0.0, 0.0, 2.5}, {1.0, 0.0, 0.0}})) << "the cone beyond its tip";
+  const auto top = Intersect(Cone{{10.0, 0.0}, 1.0, 2.0, 0.0, 1.0}, Ray{{10.5, 0.5, 5.0}, {0.0, 0.0, -1.0}});
+  ASSERT_TRUE(top);
+  EXPECT_NEAR(top->range_m, 4.0, 1e-12);
+}
+
+TEST(Solid, RodIsMetAcrossAndAtItsRoundEnds) {
+  const Rod across{{5.0, -1.0, 1.0}, {5.0, 1.0, 1.0}, 0.25};
+  EXPECT_NEAR(Intersect(across, kAhead).value_or(Hit{}).range_m, 4.75, 1e-12);
+  EXPECT_NEAR(Intersect(across, Ray{{0.0, 1.2, 1.0}, {1.0, 0.0, 0.0}}).value_or(Hit{}).range_m, 5.0 - 0.15, 1e-12);
+  EXPECT_FALSE(Intersect(across, Ray{{0.0, 1.3, 1.0}, {1.0, 0.0, 0.0}}));
+  const Rod along{{5.0, 0.0, 1.0}, {8.0, 0.0, 1.0}, 0.25};
+  EXPECT_NEAR(Intersect(along, kAhead).value_or(Hit{}).range_m, 4.75, 1e-12);
+}
+
+TEST(Solid, LeaningWallsAreNarrowerAwayFromWhereTheyAreWidest) {
+  LeaningWalls hull;
+  hull.footprint_m = Rectangle(5.0, 9.0, -2.0, 2.0);
+  hull.lean = {0.5};
+  hull.is_widest_on_top = true;
+  hull.top_m = 2.0;
+  EXPECT_NEAR(Intersect(ToConvex(hull), kAhead).value_or(Hit{}).range_m, 5.5, 1e-12) << "1 m under the top";
+  hull.is_widest_on_top = false;
+  EXPECT_NEAR(Intersect(ToConvex(hull), kAhead).value_or(Hit{}).range_m, 5.5, 1e-12) << "1 m over the bottom";
+}
+
+TEST(Solid, AnOpenHullIsSeenFromInsideWhereTheRayComesOverItsSide) {
+  LeaningWalls hull;
+  hull.footprint_m = Rectangle(5.0, 9.0, -2.0, 2.0);
+  hull.lean = {0.0};
+  hull.top_m = 1.0;
+  hull.wall_m = 0.1;
+  hull.hollow_bottom_m = 0.2;
+  const Convex open = ToConvex(hull);
+  EXPECT_NEAR(Intersect(open, Ray{{0.0, 0.0, 0.5}, {1.0, 0.0, 0.0}}).value_or(Hit{}).range_m, 5.0, 1e-12) << "the side that is near";
+  const double slope = 0.1;
+  const Ray down{{0.0, 0.0, 1.55}, Eigen::Vector3d(1.0, 0.0, -slope).normalized()};
+  EXPECT_NEAR(Intersect(open, down).value_or(Hit{}).range_m / std::sqrt(1.0 + slope * slope), 8.9, 1e-9) << "the inner side that is far";
+  const Ray steep{{4.5, 0.0, 3.0}, Eigen::Vector3d(1.0, 0.0, -1.0).normalized()};
+  EXPECT_NEAR(Intersect(open, steep).value_or(Hit{}).range_m, 2.8 * std::sqrt(2.0), 1e-9) << "the floor";
+}
+
 }  // namespace
 }  // namespace lookout::sim

@@ -89,18 +89,25 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   }
 }
 
+std::size_t PairFinder::SlotOf(std::int32_t one, std::int32_t other) const {
+  // Fibonacci hashing: pieces that are neighbours have numbers that follow each other, and must not crowd neighbouring slots.
+  constexpr std::uint64_t kGolden = 0x9E37'79B9'7F4A'7C15U;
+  const std::uint64_t key = static_cast<std::uint64_t>(one) << 32U | static_cast<std::uint64_t>(other);
+  return static_cast<std::size_t>((key * kGolden) >> 32U) & (slots_.size() - 1);
+}
+
 PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {
   if (one > other) std::swap(one, other);
   if (2 * contacts_.size() >= slots_.size()) {
     slots_.assign(2 * slots_.size(), kFree);
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      std::size_t slot = (static_cast<std::size_t>(contacts_[i].one) * 31 + static_cast<std::size_t>(contacts_[i].other)) % slots_.size();
+      std::size_t slot = SlotOf(contacts_[i].one, contacts_[i].other);
       while (slots_[slot] != kFree) slot = (slot + 1) % slots_.size();
       slots_[slot] = static_cast<std::int32_t>(i);
     }
   }
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = (static_cast<std::size_t>(one) * 31 + static_cast<std::size_t>(other)) & mask;
+  std::size_t slot = SlotOf(one, other);
   for (; slots_[slot] != kFree; slot = (slot + 1) & mask) {
     Contact& contact = contacts_[static_cast<std::size_t>(slots_[slot])];
     if (contact.one == one && contact.other == other) return contact;
@@ -114,8 +121,8 @@ void PairFinder::Meet(const OutlineEntry& front, const LevelPoint& front_point, 
                       float squared_gap_m2) {
   Contact& contact = At(front.piece, back.piece);
   // Of equal gaps the nearest.
-  if (contact.front != nullptr && (squared_gap_m2 > contact.squared_gap_m2 ||
-                                   (squared_gap_m2 == contact.squared_gap_m2 && front_point.range_m >= contact.lesser_range_m)))
+  if (contact.front != nullptr &&
+      (squared_gap_m2 > contact.squared_gap_m2 || (squared_gap_m2 == contact.squared_gap_m2 && front_point.range_m >= contact.lesser_range_m)))
     return;
   contact.squared_gap_m2 = squared_gap_m2;
   contact.lesser_range_m = front_point.range_m;

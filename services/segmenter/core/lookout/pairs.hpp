@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "services/segmenter/core/lookout/reach.hpp"
 #include "services/segmenter/core/lookout/pieces.hpp"
+#include "services/segmenter/core/lookout/reach.hpp"
 #include "services/segmenter/core/lookout/scan_grid.hpp"
 
 namespace lookout::segmenter {
@@ -40,18 +40,18 @@ enum class PairFeature : std::uint8_t {
   kLargeBottom,  // m
   kSmallFill,    // returns over beams between its ends
   kLargeFill,
-  kOffLine,        // m, from the mean of the small to the line through the large
-  kLargeOff,       // m, root mean square of the large off that line
-  kLargeLength,    // m, along that line
+  kOffLine,      // m, from the mean of the small to the line through the large
+  kLargeOff,     // m, root mean square of the large off that line
+  kLargeLength,  // m, along that line
   kNum
 };
 inline constexpr std::size_t kNumPairFeatures = static_cast<std::size_t>(PairFeature::kNum);
 /// As they stand in the file of weights.
 inline constexpr std::array<std::string_view, kNumPairFeatures> kPairFeatureNames{
-    "range_m",       "gap_m",         "gap_columns",   "radial_gap_m", "radial_gap_rings", "ring_gap",       "step_up_m",
-    "overlap",       "faced",         "seen_through",  "hidden",       "small_returns",    "large_returns",  "small_width_m",
-    "large_width_m", "small_depth_m", "large_depth_m", "union_length_m", "small_top_m",    "large_top_m",    "small_bottom_m",
-    "large_bottom_m", "small_fill",   "large_fill",    "off_line_m",   "large_off_m",      "large_length_m"};
+    "range_m",        "gap_m",         "gap_columns",   "radial_gap_m",   "radial_gap_rings", "ring_gap",      "step_up_m",
+    "overlap",        "faced",         "seen_through",  "hidden",         "small_returns",    "large_returns", "small_width_m",
+    "large_width_m",  "small_depth_m", "large_depth_m", "union_length_m", "small_top_m",      "large_top_m",   "small_bottom_m",
+    "large_bottom_m", "small_fill",    "large_fill",    "off_line_m",     "large_off_m",      "large_length_m"};
 
 struct PiecePair {
   std::int32_t one = 0;  // below other
@@ -83,6 +83,7 @@ class PairFinder {
 
   void FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
   void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, const OutlineEntry& entry, int direction);
+  std::size_t SlotOf(std::int32_t one, std::int32_t other) const;
   Contact& At(std::int32_t one, std::int32_t other);
   void Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point, float squared_gap_m2);
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
