@@ -86,9 +86,8 @@ std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
 }
 
 // Those that are asked for; before them, where something is left out, ours with evidence that knows none of these scenes.
-Methods MethodsFor(const ComparisonOptions& options, const segmenter::Params& boat, const std::set<std::string>& left_out,
-                   std::span<const std::string> scenes) {
-  auto methods = MakeMethods(boat, options.methods);
+Methods MethodsFor(const ComparisonOptions& options, const Boat& boat, const std::set<std::string>& left_out, std::span<const std::string> scenes) {
+  auto methods = MakeMethods(boat.segmenter, options.methods);
   if (options.left_out.empty()) return methods;
   methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, left_out), scenes));
   return methods;
@@ -198,7 +197,7 @@ Results RunCaptures(const ComparisonOptions& options, Failures& failures) {
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
   std::vector<std::string> scenes;
   for (const auto& files : captures) scenes.push_back(files.scene);
-  const auto methods = MethodsFor(options, boat.segmenter, {}, scenes);  // none of them is of a family, whatever its name
+  const auto methods = MethodsFor(options, boat, {}, scenes);  // none of them is of a family, whatever its name
   World world(boat.segmenter, methods, failures.HandlerOf(kSecondWorld));
   runtime::Progress progress("lookout-eval", stderr);
   for (const auto& files : captures) {
@@ -263,7 +262,7 @@ int CompareMethods(const ComparisonOptions& options) {
   std::vector<std::string> scenes;
   for (const auto& scene : plan.scenes) scenes.push_back(SceneLabel(scene));
   if (!options.points.empty()) scenes.push_back(kPointsLabel);
-  const auto methods = MethodsFor(options, boat.segmenter, LeftOutOf(options), scenes);
+  const auto methods = MethodsFor(options, boat, LeftOutOf(options), scenes);
 
   io::CatchStopSignals();
   if (!options.is_forced) {

@@ -1,12 +1,12 @@
 #include "tools/eval/leave_out.hpp"
 
-#include <array>
 #include <fstream>
 #include <regex>
 #include <stdexcept>
 
-#include "services/segmenter/core/lookout/lookout_params.hpp"
-#include "services/segmenter/evidence_text.hpp"
+#include "common/config/text_config.hpp"
+#include "config/schema/segmenter.pb.h"
+#include "services/segmenter/params.hpp"
 
 namespace lookout::eval {
 
@@ -38,16 +38,15 @@ std::filesystem::path LeaveOutEvidence::FileOf(const std::string& scene) const {
   return file;
 }
 
-segmenter::Params WithEvidence(segmenter::Params params, const std::filesystem::path& evidence_file) {
-  constexpr std::array kLayouts{segmenter::kMergeFirstLayout, segmenter::kMergeSecondLayout, segmenter::kLandLayout, segmenter::kThingLayout};
-  auto evidence = segmenter::LoadEvidence(evidence_file, kLayouts);
-  auto& lookout = params.lookout;
-  const std::array places{&lookout.merge_first, &lookout.merge_second, &lookout.land, &lookout.thing};
-  for (std::size_t i = 0; i < places.size(); ++i) *places[i] = std::move(evidence[i]);
-  return params;
+segmenter::Params WithEvidence(const Boat& boat, const std::filesystem::path& evidence_file) {
+  const auto file = boat.config_folder / "segmenter.txtpb";
+  config::Segmenter message;
+  config::LoadText(file, message);
+  message.set_evidence(std::filesystem::absolute(evidence_file));
+  return segmenter::ToParams(message, boat.facts, file);
 }
 
-LeaveOutMethod::LeaveOutMethod(const segmenter::Params& boat, const LeaveOutEvidence& evidence, std::span<const std::string> scenes) {
+LeaveOutMethod::LeaveOutMethod(const Boat& boat, const LeaveOutEvidence& evidence, std::span<const std::string> scenes) {
   for (const auto& scene : scenes) {
     of_scene_.emplace(scene, std::make_unique<SegmenterMethod>(name(), WithEvidence(boat, evidence.FileOf(scene))));
   }

@@ -11,6 +11,7 @@
 
 #include "tools/eval/method.hpp"
 #include "tools/eval/methods.hpp"
+#include "tools/eval/render.hpp"
 
 namespace lookout::eval {
 
@@ -37,13 +38,13 @@ class LeaveOutEvidence {
 };
 
 /// The segmenter of the boat with another file of evidence. @throws config::ConfigError
-segmenter::Params WithEvidence(segmenter::Params params, const std::filesystem::path& evidence_file);
+segmenter::Params WithEvidence(const Boat& boat, const std::filesystem::path& evidence_file);
 
 /// Ours, in each scene with its evidence.
 class LeaveOutMethod final : public Method {
  public:
   /// Reads all that it needs for these scenes. @throws std::invalid_argument (LeaveOutEvidence::FileOf); config::ConfigError
-  LeaveOutMethod(const segmenter::Params& boat, const LeaveOutEvidence& evidence, std::span<const std::string> scenes);
+  LeaveOutMethod(const Boat& boat, const LeaveOutEvidence& evidence, std::span<const std::string> scenes);
 
   std::string name() const override { return std::string(kLeftOut); }
   bool knows_doubt() const override { return true; }

@@ -44,8 +44,8 @@ Table ByMethod(const Results& results) {
 
 // Each scene, the mean, and the worst: the least mIoU, the greatest share of a peer's error.
 Table AgainstBest(const Results& results) {
-  Table table({"scene", "left_out_%", "left_out_false", "compiled_in_%", "best_tuned_peer", "peer_%", "our_error_of_its_error_%",
-               "best_peer_of_all", "best_%", "our_error_of_best_error_%"});
+  Table table({"scene", "left_out_%", "left_out_false", "compiled_in_%", "best_tuned_peer", "peer_%", "our_error_of_its_error_%", "best_peer_of_all",
+               "best_%", "our_error_of_best_error_%"});
   const auto rows = CompareWithPeers(results, kLeftOut);
   const auto compiled_in = CompareWithPeers(results);
   double least = kUnknown;

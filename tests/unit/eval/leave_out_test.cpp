@@ -64,7 +64,7 @@ TEST(LeaveOutMethod, UsesTheEvidenceOfTheScene) {
   WriteEvidence(folder / "all.txtpb", kOfTwo, false);
   const auto boat = LoadBoat(support::kCatabotConfig);
   const std::vector<std::string> scenes{"harbour", "lake"};
-  LeaveOutMethod method(boat.segmenter, LeaveOutEvidence(folder, {"harbour"}), scenes);
+  LeaveOutMethod method(boat, LeaveOutEvidence(folder, {"harbour"}), scenes);
   LabelledScan scan;
   ForEachScan({{"lake"}, 1, 1, 0.4}, boat, nullptr, [&scan](const ScanPlace&, const LabelledScan& truth) { scan = truth; });
   const auto count = [&](const std::string& scene) {
