@@ -34,7 +34,7 @@ std::filesystem::path LeaveOutEvidence::FileOf(const std::string& scene) const {
     throw std::invalid_argument(file.string() + ": is not there; lookout-fit --scenes families " + (is_left_out ? "--without " + scene + " " : "") +
                                 "--out " + file.string() + " writes it");
   }
-  if (FittedOn(file).contains(scene)) throw std::invalid_argument(file.string() + ": was fitted on " + scene + ", and cannot be judged on it");
+  if (FittedOn(file).contains(scene)) throw std::invalid_argument(file.string() + ": was fitted on " + scene + ", and cannot be scored on it");
   return file;
 }
 

@@ -1,4 +1,4 @@
-// Leaving families out: ours with evidence that was fitted without the family that is judged, beside all other methods.
+// Leaving families out: ours with evidence that was fitted without the family that is scored, beside all other methods.
 #pragma once
 
 #include <filesystem>

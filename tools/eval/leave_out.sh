@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Fits the evidence of the lookout method without each family in turn, and judges it there, beside the peers: ./dev leave-out.
-#   tools/eval/leave_out.sh [--out DIR] [--jobs N] [--keep] [--judge-seeds N] [--families NAME,NAME] [OPTION of lookout-fit ...]
+# Fits the evidence of the lookout method without each family in turn, and scores it there, beside the peers: ./dev leave-out.
+#   tools/eval/leave_out.sh [--out DIR] [--jobs N] [--keep] [--eval-seeds N] [--families NAME,NAME] [OPTION of lookout-fit ...]
 #     --out          folder of the evidence and the tables (default build/leave-out)
 #     --jobs         fits at a time (default: as many as there are cores)
-#     --keep         evidence that is there already is not fitted again: after a change of what is judged, not of what is fitted
-#     --judge-seeds  layouts of each family that are judged (default 60)
+#     --keep         evidence that is there already is not fitted again: after a change of what is scored, not of what is fitted
+#     --eval-seeds   layouts of each family that are scored (default 60)
 #     --families     left out, one after the other (default all)
 # All else goes to lookout-fit: its seeds (of 1 to 100), its length of a scene, its trees. Families that are not left out are always fitted on.
 # The captures of the second world, which nothing is fitted on, lie beside the project, or where LOOKOUT_CAPTURES says.
@@ -16,7 +16,7 @@ while [ $# -gt 0 ]; do
     --out) out=$2; shift 2 ;;
     --jobs) jobs=$2; shift 2 ;;
     --keep) keep=1; shift ;;
-    --judge-seeds) seeds=$2; shift 2 ;;
+    --eval-seeds) seeds=$2; shift 2 ;;
     --families) families=$2; shift 2 ;;
     *) fit_options+=("$1"); shift ;;
   esac
@@ -36,14 +36,16 @@ fit() {  # FILE [OPTION ...]
   echo "== $file" >&2
   "$bin/lookout-fit" --config config/catabot --scenes families "${fit_options[@]}" "$@" --out "$file" --force >"${file%.txtpb}.log"
 }
-trap 'kill $(jobs -p) 2>/dev/null || true' EXIT
-fit "$out/all.txtpb" &
+fits=()
+trap 'kill "${fits[@]}" 2>/dev/null || true' EXIT
 IFS=, read -r -a left_out <<<"$families"
-for family in "${left_out[@]}"; do
-  while [ "$(jobs -pr | wc -l)" -ge "$jobs" ]; do wait -n; done
-  fit "$out/without-$family.txtpb" --without "$family" &
+for family in '' "${left_out[@]}"; do
+  while [ "$(jobs -pr | wc -l)" -ge "$jobs" ]; do sleep 1; done
+  if [ -z "$family" ]; then fit "$out/all.txtpb" & else fit "$out/without-$family.txtpb" --without "$family" & fi
+  fits+=($!)
 done
-while [ "$(jobs -pr | wc -l)" -gt 0 ]; do wait -n; done
+for one in "${fits[@]}"; do wait "$one"; done
+fits=()
 
 "$bin/lookout-eval" --config config/catabot --scenes "$families" --leave-out "$families" --weights "$out" --methods ours,peers --seeds "$seeds" --seconds 0.3 \
   --captures "${LOOKOUT_CAPTURES:-../shared/data/second_world}" --csv "$out/tables" --force | tee "$out/tables.txt"
