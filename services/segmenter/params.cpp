@@ -1,5 +1,6 @@
 #include "services/segmenter/params.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "common/config/boat.hpp"
@@ -18,12 +19,7 @@ constexpr double kWholeCircleDeg = 360.0;
 LookoutParams LookoutOf(const config::Segmenter& message, const std::filesystem::path& file) {
   LookoutParams params;
   if (!message.evidence().empty()) {
-    const auto evidence =
-        LoadEvidence(file.parent_path() / message.evidence(), std::array{kMergeFirstLayout, kMergeSecondLayout, kLandLayout, kThingLayout});
-    params.merge_first = evidence[0];
-    params.merge_second = evidence[1];
-    params.land = evidence[2];
-    params.thing = evidence[3];
+    std::ranges::copy(LoadEvidence(file.parent_path() / message.evidence(), kEvidenceLayouts), params.evidence.begin());
   }
   params.link = {message.link_m(), message.link_per_range()};
   return params;

@@ -13,28 +13,11 @@ namespace lookout::fit {
 namespace {
 
 segmenter::Evidence ToEvidence(const SumReport& report) {
-  const auto& layout = LayoutOf(report.sum);
+  const auto& layout = segmenter::kEvidenceLayouts.at(report.sum);
   return {report.fitted.Named(layout.name, layout.features), layout};
 }
 
-void Put(const SumReport& report, segmenter::LookoutParams& params) {
-  switch (report.sum) {
-    case Sum::kMergeFirst:
-      params.merge_first = ToEvidence(report);
-      break;
-    case Sum::kMergeSecond:
-      params.merge_second = ToEvidence(report);
-      break;
-    case Sum::kLand:
-      params.land = ToEvidence(report);
-      break;
-    case Sum::kThing:
-      params.thing = ToEvidence(report);
-      break;
-  }
-}
-
-SumReport FitOne(Sum sum, Rows& rows, const BoostingParams& boosting) {
+SumReport FitOne(std::size_t sum, Rows& rows, const BoostingParams& boosting) {
   BalanceWeights(rows);
   SumReport report{sum, Fit(rows, boosting), rows.families, {}, {}, DigestOf(rows)};
   const auto log_odds = LogOddsOf(rows, ToEvidence(report));
@@ -46,24 +29,24 @@ SumReport FitOne(Sum sum, Rows& rows, const BoostingParams& boosting) {
 }  // namespace
 
 segmenter::Params FittedEvidence::In(segmenter::Params params) const {
-  for (const auto& report : sums) Put(report, params.lookout);
+  for (const auto& report : sums) params.lookout.evidence[report.sum] = ToEvidence(report);
   return params;
 }
 
 FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter::Params& params, const BoostingParams& boosting,
                            const std::set<std::string>& without, const std::function<void(const std::string&)>& tell) {
   FittedEvidence evidence;
-  for (const auto sum : kSums) {
+  for (std::size_t sum = 0; sum < segmenter::kNumSums; ++sum) {
     Rows rows;
     RowMaker maker(evidence.In(params));
     for (const auto& scan : scans) {
       if (!without.contains(scan.family)) maker.Add(sum, scan, rows);
     }
-    tell(fmt::format("{}: {} rows of {} scans", LayoutOf(sum).name, rows.size(), rows.family_of.size()));
+    tell(fmt::format("{}: {} rows of {} scans", segmenter::kEvidenceLayouts.at(sum).name, rows.size(), rows.family_of.size()));
     try {
       evidence.sums.push_back(FitOne(sum, rows, boosting));
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("{}: {}", LayoutOf(sum).name, error.what()));
+      throw std::invalid_argument(fmt::format("{}: {}", segmenter::kEvidenceLayouts.at(sum).name, error.what()));
     }
   }
   evidence.miou = MeanIou(scans, evidence.In(params));
@@ -93,7 +76,7 @@ std::string TextOf(const FittedEvidence& evidence, const std::vector<std::string
   std::string text = "# proto-file: config/schema/evidence.proto\n# proto-message: lookout.config.Evidence\n";
   for (const auto& comment : comments) text += "# " + comment + "\n";
   for (const auto& report : evidence.sums) {
-    const auto& layout = LayoutOf(report.sum);
+    const auto& layout = segmenter::kEvidenceLayouts.at(report.sum);
     text +=
         fmt::format("\n# {} rows, SHA-256 {}.\n# What the splits of each feature lowered the loss by, %:\n", report.of_all.num_rows, report.digest);
     for (std::size_t i = 0; i < layout.features.size(); ++i)
@@ -121,7 +104,7 @@ std::string TextOf(const FittedEvidence& evidence, const std::vector<std::string
 std::string TablesOf(const FittedEvidence& evidence) {
   std::string text;
   for (const auto& report : evidence.sums) {
-    const auto& layout = LayoutOf(report.sum);
+    const auto& layout = segmenter::kEvidenceLayouts.at(report.sum);
     text += fmt::format("\n{}, {} trees\n{:24} {:>10} {:>8} {:>8} {:>8}\n", layout.name, report.fitted.trees.size(), "family", "rows", "true, %",
                         "loss", "AUC");
     const auto add = [&text](const std::string& name, const Score& score) {

@@ -16,7 +16,7 @@ namespace lookout::fit {
 
 /// A sum, and how well it tells the rows that it was fitted on.
 struct SumReport {
-  Sum sum = Sum::kMergeFirst;
+  std::size_t sum = 0;  // of segmenter::kEvidenceLayouts
   FittedSum fitted;
   std::vector<std::string> families;
   std::vector<Score> of_family;  // [families]
@@ -25,7 +25,7 @@ struct SumReport {
 };
 
 struct FittedEvidence {
-  std::vector<SumReport> sums;  // in the order of kSums
+  std::vector<SumReport> sums;  // in the order of segmenter::kEvidenceLayouts
   /// Mean IoU of the objects of a family as the evidence groups their returns; also of families that were left out.
   std::map<std::string, double> miou;
   std::set<std::string> without;

@@ -9,30 +9,21 @@
 namespace lookout::fit {
 namespace {
 
-using segmenter::MergeStage;
-
 struct Sign {
   std::string_view feature;
   int sign;
 };
 
 // Of two pieces: more between them, less likely one.
-constexpr std::array<Sign, 6> kPairSigns{
-    {{"gap_m", -1}, {"gap_columns", -1}, {"radial_gap_m", -1}, {"ring_gap", -1}, {"seen_through", -1}, {"faced", +1}}};
+constexpr std::array<Sign, 7> kPairSigns{
+    {{"gap_m", -1}, {"free_gap_m", -1}, {"gap_columns", -1}, {"radial_gap_m", -1}, {"ring_gap", -1}, {"seen_through", -1}, {"faced", +1}}};
 constexpr std::array<Sign, 1> kLandSigns{{{"length_m", +1}}};
 constexpr std::array<Sign, 2> kThingSigns{{{"returns", +1}, {"crowd", -1}}};
 
-std::span<const Sign> SignsOf(Sum sum) {
-  switch (sum) {
-    case Sum::kMergeFirst:
-    case Sum::kMergeSecond:
-      return kPairSigns;
-    case Sum::kLand:
-      return kLandSigns;
-    case Sum::kThing:
-      return kThingSigns;
-  }
-  throw std::logic_error("no such sum");
+std::span<const Sign> SignsOf(std::size_t sum) {
+  if (sum < segmenter::kNumMerges) return kPairSigns;
+  if (sum == segmenter::kLandSum) return kLandSigns;
+  return kThingSigns;
 }
 
 // What stands on the ground and is no land: a row of posts or a floating deck may be either.
@@ -50,23 +41,9 @@ std::int32_t FamilyNumber(const std::string& family, Rows& rows) {
 
 }  // namespace
 
-const segmenter::EvidenceLayout& LayoutOf(Sum sum) {
-  switch (sum) {
-    case Sum::kMergeFirst:
-      return segmenter::kMergeFirstLayout;
-    case Sum::kMergeSecond:
-      return segmenter::kMergeSecondLayout;
-    case Sum::kLand:
-      return segmenter::kLandLayout;
-    case Sum::kThing:
-      return segmenter::kThingLayout;
-  }
-  throw std::logic_error("no such sum");
-}
-
-std::vector<Feature> FeaturesOf(Sum sum) {
+std::vector<Feature> FeaturesOf(std::size_t sum) {
   std::vector<Feature> features;
-  for (const auto& name : LayoutOf(sum).features) features.push_back({name, 0});
+  for (const auto& name : segmenter::kEvidenceLayouts.at(sum).features) features.push_back({name, 0});
   for (const auto& sign : SignsOf(sum)) {
     const auto feature = std::ranges::find(features, sign.feature, &Feature::name);
     if (feature == features.end()) throw std::logic_error("a sign for a feature that is not there: " + std::string(sign.feature));
@@ -85,15 +62,15 @@ float PairWeight(const PieceTruth& one, const PieceTruth& other) {
   return std::max(kLeastWeight, std::min(1.0F, static_cast<float>(lesser.num_returns) / of));
 }
 
-void RowMaker::Add(Sum sum, const TrainingScan& scan, Rows& rows) {
+void RowMaker::Add(std::size_t sum, const TrainingScan& scan, Rows& rows) {
   if (rows.features.empty()) rows.features = FeaturesOf(sum);
   const auto scan_number = static_cast<std::int32_t>(rows.family_of.size());
   rows.family_of.push_back(FamilyNumber(scan.family, rows));
   method_.FindPieces(scan.truth.scan, classifier_.Classify(scan.truth.scan).returns);
-  if (sum == Sum::kMergeFirst) return AddPairs(sum, scan, scan_number, rows);
-  method_.Merge(MergeStage::kFirst, method_.FindPairs(MergeStage::kFirst));
-  if (sum == Sum::kMergeSecond) return AddPairs(sum, scan, scan_number, rows);
-  method_.Merge(MergeStage::kSecond, method_.FindPairs(MergeStage::kSecond));
+  for (std::size_t merge = 0; merge < segmenter::kNumMerges; ++merge) {
+    if (merge == sum) return AddPairs(merge, scan, scan_number, rows);
+    method_.Merge(merge, method_.FindPairs(merge));
+  }
   AddGroups(sum, scan, scan_number, rows);
 }
 
@@ -122,9 +99,9 @@ std::vector<PieceTruth> RowMaker::TruthOfPieces(const importer::LabelledScan& tr
   return pieces;
 }
 
-void RowMaker::AddPairs(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
+void RowMaker::AddPairs(std::size_t merge, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
   const auto truth = TruthOfPieces(scan.truth);
-  for (const auto& pair : method_.FindPairs(sum == Sum::kMergeFirst ? MergeStage::kFirst : MergeStage::kSecond)) {
+  for (const auto& pair : method_.FindPairs(merge)) {
     const auto& one = truth[static_cast<std::size_t>(pair.one)];
     const auto& other = truth[static_cast<std::size_t>(pair.other)];
     if (one.object == importer::kNoTrueObject && other.object == importer::kNoTrueObject) continue;
@@ -132,13 +109,13 @@ void RowMaker::AddPairs(Sum sum, const TrainingScan& scan, std::int32_t scan_num
   }
 }
 
-void RowMaker::AddGroups(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
+void RowMaker::AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows) {
   const auto truth = TruthOfPieces(scan.truth);
   const auto features = method_.MeasureGroups();
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const bool is_thing = truth[i].object != importer::kNoTrueObject;
     bool is_true = is_thing;
-    if (sum == Sum::kLand && is_thing) {
+    if (sum == segmenter::kLandSum && is_thing) {
       const auto& object = scan.truth.objects.at(truth[i].object);
       if (IsDock(object)) continue;
       is_true = IsLand(object);

@@ -17,13 +17,9 @@ struct TrainingScan {
   importer::LabelledScan truth;
 };
 
-/// The sums of the method, in the order in which each needs those before it.
-enum class Sum : std::uint8_t { kMergeFirst, kMergeSecond, kLand, kThing };
-inline constexpr std::array kSums{Sum::kMergeFirst, Sum::kMergeSecond, Sum::kLand, Sum::kThing};
-const segmenter::EvidenceLayout& LayoutOf(Sum sum);
-
-/// The features of a sum with their signs (README). @throws std::logic_error for a sign of a feature that the method does not have
-std::vector<Feature> FeaturesOf(Sum sum);
+/// The features of a sum (by its number in segmenter::kEvidenceLayouts) with their signs (README). @throws std::logic_error for a sign of a feature
+/// that the method does not have
+std::vector<Feature> FeaturesOf(std::size_t sum);
 
 /// What a group is in truth: the object that most of its returns are of.
 struct PieceTruth {
@@ -51,12 +47,12 @@ class RowMaker {
   /// Merging: a row for each pair of pieces, true where both are mostly of one object. Where both are clutter there is none.
   /// Land: a row for each group, true where it is mostly of land (LandOf); none where it is of a dock, which may be either.
   /// Thing: a row for each group, true where it is mostly of an object.
-  void Add(Sum sum, const TrainingScan& scan, Rows& rows);
+  void Add(std::size_t sum, const TrainingScan& scan, Rows& rows);
 
  private:
   std::vector<PieceTruth> TruthOfPieces(const importer::LabelledScan& truth);
-  void AddPairs(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
-  void AddGroups(Sum sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
+  void AddPairs(std::size_t merge, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
+  void AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t scan_number, Rows& rows);
 
   segmenter::Params params_;
   segmenter::ReturnClassifier classifier_;

@@ -64,7 +64,7 @@ FittedEvidence FitAll(const std::set<std::string>& without = {}) {
 
 TEST(TrainingRows, PairsOfOneObjectAreTrueAndPairsOfClutterAreNone) {
   Rows rows;
-  RowMaker({}).Add(Sum::kMergeFirst, MakeScan("course", 0), rows);
+  RowMaker({}).Add(0, MakeScan("course", 0), rows);
   ASSERT_GT(rows.size(), 0U);
   EXPECT_EQ(rows.features.size(), segmenter::kNumPairFeatures);
   EXPECT_EQ(rows.families, std::vector<std::string>{"course"});
@@ -76,8 +76,8 @@ TEST(TrainingRows, GroupsAreThingsOrLandByTheirObject) {
   Rows things;
   Rows land;
   const auto scan = MakeScan("course", 0);
-  RowMaker({}).Add(Sum::kThing, scan, things);
-  RowMaker({}).Add(Sum::kLand, scan, land);
+  RowMaker({}).Add(segmenter::kThingSum, scan, things);
+  RowMaker({}).Add(segmenter::kLandSum, scan, land);
   EXPECT_EQ(things.size(), land.size());
   EXPECT_EQ(std::ranges::count(land.is_true, 1), 1);
   EXPECT_GT(std::ranges::count(things.is_true, 1), 1);
@@ -99,7 +99,7 @@ TEST(TrainingRows, APairWeighsTheShareOfItsObjectThatTheLesserPieceIs) {
 TEST(FitEvidence, TellsWhatItWasFittedOn) {
   const auto evidence = FitAll();
   for (const auto& report : evidence.sums) {
-    EXPECT_GT(report.of_all.auc, 0.95) << LayoutOf(report.sum).name;
+    EXPECT_GT(report.of_all.auc, 0.95) << segmenter::kEvidenceLayouts.at(report.sum).name;
     EXPECT_EQ(report.families, (std::vector<std::string>{"course", "canal"}));
   }
   EXPECT_GT(evidence.miou.at("course"), 0.99);
@@ -118,10 +118,8 @@ TEST(FitEvidence, ItsTextIsTheSameEachTimeAndReadsBackAsItWas) {
   EXPECT_EQ(text, TextOf(FitAll(), {"Written by a test."}));
   const auto file = std::filesystem::path(::testing::TempDir()) / "fitted.txtpb";
   std::ofstream(file) << text;
-  std::vector<segmenter::EvidenceLayout> layouts;
-  for (const auto sum : kSums) layouts.push_back(LayoutOf(sum));
   const auto params = evidence.In({}).lookout;
-  EXPECT_EQ(segmenter::LoadEvidence(file, layouts), (std::vector{params.merge_first, params.merge_second, params.land, params.thing}));
+  EXPECT_EQ(segmenter::LoadEvidence(file, segmenter::kEvidenceLayouts), std::vector(params.evidence.begin(), params.evidence.end()));
 }
 
 }  // namespace

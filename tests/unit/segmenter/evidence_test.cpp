@@ -121,7 +121,7 @@ TEST(EvidenceOfParams, IsThatOfTheFileThatTheConfigNames) {
   std::filesystem::copy(support::kSources / "config/demo/boat.txtpb", folder, std::filesystem::copy_options::overwrite_existing);
   std::filesystem::copy(support::kSources / "config/evidence/lookout.txtpb", folder, std::filesystem::copy_options::overwrite_existing);
   std::ofstream(folder / "segmenter.txtpb") << "evidence: \"lookout.txtpb\"\n";
-  EXPECT_EQ(LoadParams(folder).lookout.merge_second, LookoutParams().merge_second);
+  EXPECT_EQ(LoadParams(folder).lookout.evidence, LookoutParams().evidence);
   std::ofstream(folder / "lookout.txtpb") << "sum { name: \"land\" bias: 1 }\n";
   EXPECT_THROW(LoadParams(folder), config::ConfigError);
   std::ofstream(folder / "segmenter.txtpb") << "evidence: \"no_such_file.txtpb\"\n";

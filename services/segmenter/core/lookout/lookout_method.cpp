@@ -10,6 +10,12 @@ constexpr double kLinkedColumns = 2.8;  // LookoutParams::link grows by as many 
 
 }  // namespace
 
+std::array<Evidence, kNumSums> DefaultEvidences() {
+  std::array<Evidence, kNumSums> evidence;
+  std::ranges::transform(kEvidenceLayouts, evidence.begin(), DefaultEvidence);
+  return evidence;
+}
+
 Reach LinkFor(Reach link, double column_step_rad) {
   link.per_range = std::max(link.per_range, kLinkedColumns * column_step_rad);
   return link;
@@ -17,7 +23,7 @@ Reach LinkFor(Reach link, double column_step_rad) {
 
 void LookoutMethod::Group(const Scan& scan, std::span<const Return> returns) {
   FindPieces(scan, returns);
-  for (const MergeStage stage : {MergeStage::kFirst, MergeStage::kSecond}) Merge(stage, FindPairs(stage));
+  for (std::size_t merge = 0; merge < kNumMerges; ++merge) Merge(merge, FindPairs(merge));
   Judge(MeasureGroups());
 }
 
@@ -27,16 +33,13 @@ void LookoutMethod::FindPieces(const Scan& scan, std::span<const Return> returns
   pieces_.Build(grid_, tight_.of_return(), tight_.count());
 }
 
-std::span<const PiecePair> LookoutMethod::FindPairs(MergeStage stage) {
-  return pair_finder_.Find(grid_, pieces_, stage == MergeStage::kFirst ? params_.first_reach : params_.second_reach);
-}
+std::span<const PiecePair> LookoutMethod::FindPairs(std::size_t merge) { return pair_finder_.Find(grid_, pieces_, params_.merges[merge].reach); }
 
-void LookoutMethod::Merge(MergeStage stage, std::span<const PiecePair> pairs) {
-  const bool is_first = stage == MergeStage::kFirst;
-  const Evidence& evidence = is_first ? params_.merge_first : params_.merge_second;
+void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
+  const Evidence& evidence = params_.evidence[merge];
   evidence_.clear();
   for (const PiecePair& pair : pairs) evidence_.push_back({pair.one, pair.other, evidence.Of(pair.features), pair.gap_m});
-  partition_.Find(pieces_.size(), evidence_, static_cast<float>(is_first ? params_.first_log_odds : params_.second_log_odds));
+  partition_.Find(pieces_.size(), evidence_, static_cast<float>(params_.merges[merge].log_odds));
   const auto group_of_piece = partition_.group_of_piece();
   label_.clear();
   for (const std::int32_t piece : pieces_.of_returns()) label_.push_back(group_of_piece[static_cast<std::size_t>(piece)]);
@@ -55,8 +58,8 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
   for (std::int32_t group = 0; group < pieces_.size(); ++group) {
     const PieceFacts& piece = pieces_[group];
     GroupFacts facts;
-    facts.land_log_odds = params_.land.Of(features[static_cast<std::size_t>(group)]);
-    facts.thing_log_odds = params_.thing.Of(features[static_cast<std::size_t>(group)]);
+    facts.land_log_odds = params_.evidence[kLandSum].Of(features[static_cast<std::size_t>(group)]);
+    facts.thing_log_odds = params_.evidence[kThingSum].Of(features[static_cast<std::size_t>(group)]);
     facts.is_land = facts.land_log_odds > params_.land_log_odds;
     facts.seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num);
     facts_.push_back(facts);

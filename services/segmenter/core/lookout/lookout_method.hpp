@@ -28,9 +28,6 @@ struct GroupFacts {
   float seen_share = 1.0F;      // of the columns from its first to its last: in the others something nearer hides it, or there is no return
 };
 
-/// Merging, twice: what is beyond doubt; then the rest, by what these larger pieces look like.
-enum class MergeStage : std::uint8_t { kFirst, kSecond };
-
 /// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.
 Reach LinkFor(Reach link, double column_step_rad);
 
@@ -48,10 +45,10 @@ class LookoutMethod {
   /// The steps of Group, in this order; lookout-fit takes what it fits on from between them.
   /// 1. Tight pieces.
   void FindPieces(const Scan& scan, std::span<const Return> returns);
-  /// 2. What is measured of pairs of pieces. Until the pieces change.
-  std::span<const PiecePair> FindPairs(MergeStage stage);
-  /// 3. Merges pieces by the log odds of these pairs.
-  void Merge(MergeStage stage, std::span<const PiecePair> pairs);
+  /// 2. kNumMerges times: what is measured of pairs of pieces (until the pieces change),
+  std::span<const PiecePair> FindPairs(std::size_t merge);
+  /// 3. and pieces merged by the log odds of these pairs.
+  void Merge(std::size_t merge, std::span<const PiecePair> pairs);
   /// 4. What is measured of each piece.
   std::span<const PieceFeatures> MeasureGroups();
   void Judge(std::span<const PieceFeatures> features);

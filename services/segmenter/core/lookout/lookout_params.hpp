@@ -1,6 +1,9 @@
 // What the lookout method goes by. Lengths in metres, "per range" in metres per metre of distance.
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "services/segmenter/core/lookout/evidence.hpp"
 #include "services/segmenter/core/lookout/pairs.hpp"
 #include "services/segmenter/core/lookout/piece_features.hpp"
@@ -8,29 +11,36 @@
 
 namespace lookout::segmenter {
 
-/// The sums of a file of weights, by what they are evidence of.
-inline constexpr EvidenceLayout kMergeFirstLayout{"merge_first", kPairFeatureNames};    // that two tight pieces are one
-inline constexpr EvidenceLayout kMergeSecondLayout{"merge_second", kPairFeatureNames};  // that two larger pieces are one
-inline constexpr EvidenceLayout kLandLayout{"land", kPieceFeatureNames};                // that a group is land
-inline constexpr EvidenceLayout kThingLayout{"thing", kPieceFeatureNames};              // that it is a thing, not clutter
+/// The sums of a file of evidence: that two pieces are one, in each round of merging; that a group is land; that it is a thing, not clutter.
+inline constexpr std::size_t kNumMerges = 3;
+inline constexpr std::size_t kLandSum = kNumMerges;
+inline constexpr std::size_t kThingSum = kNumMerges + 1;
+inline constexpr std::size_t kNumSums = kNumMerges + 2;
+inline constexpr std::array<EvidenceLayout, kNumSums> kEvidenceLayouts{{{"merge_1", kPairFeatureNames},
+                                                                        {"merge_2", kPairFeatureNames},
+                                                                        {"merge_3", kPairFeatureNames},
+                                                                        {"land", kPieceFeatureNames},
+                                                                        {"thing", kPieceFeatureNames}}};
+
+/// The sums that are compiled in, in the order of the layouts.
+std::array<Evidence, kNumSums> DefaultEvidences();
+
+/// One round of merging: pairs within reach are merged while their mean log odds are above a threshold.
+struct MergeParams {
+  Reach reach;
+  double log_odds = 0.0;
+};
 
 /// Defaults are those of config/schema/segmenter.proto, which says where they come from.
 struct LookoutParams {
   // Pieces: returns that lie so close that nothing passes between them.
   Reach link{0.3, 0.01};
-  // Pairs of pieces that are asked whether they are one, in the first and in the second merging.
-  Reach first_reach{1.5, 0.04};
-  Reach second_reach{4.0, 0.12};
-  // Merged when the mean evidence is above this.
-  double first_log_odds = 1.5;
-  double second_log_odds = 0.0;
+  // What is beyond doubt first; then the rest, by what the larger pieces look like.
+  std::array<MergeParams, kNumMerges> merges{{{{1.5, 0.04}, 2.0}, {{4.0, 0.12}, 1.0}, {{6.0, 0.12}, 0.0}}};
   // What is above this is land, and sure.
   double land_log_odds = 0.0;
   double sure_log_odds = 2.0;
-  Evidence merge_first = DefaultEvidence(kMergeFirstLayout);
-  Evidence merge_second = DefaultEvidence(kMergeSecondLayout);
-  Evidence land = DefaultEvidence(kLandLayout);
-  Evidence thing = DefaultEvidence(kThingLayout);
+  std::array<Evidence, kNumSums> evidence = DefaultEvidences();
   /// Of the lidar over the water when the boat floats at rest.
   double lidar_above_water_m = 1.0;
 };

@@ -8,8 +8,9 @@ namespace lookout::segmenter {
 namespace {
 
 constexpr std::int32_t kFree = -1;
-constexpr int kMostColumnsBeside = 128;
+constexpr int kMostColumnsBeside = 160;
 constexpr float kFacedM = 1.0F;
+constexpr float kNearerM = 0.5F;
 constexpr std::size_t kLeastSlots = 1024;
 
 // Least distance between what two pieces show in two columns, seen from above, and the returns that it is between.
@@ -29,6 +30,15 @@ Closest ClosestOf(const OutlineEntry& one, const OutlineEntry& other) {
   look_at(one.far_point, other.near_point);
   look_at(one.far_point, other.far_point);
   return closest;
+}
+
+// Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
+bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) {
+  int num_hidden = 0;
+  const int first = entry.min_ring * grid.num_layers();
+  const int end = (entry.max_ring + 1) * grid.num_layers();
+  for (int line = first; line < end; ++line) num_hidden += grid.RangeAt(line, column) < entry.near_point.range_m - kNearerM ? 1 : 0;
+  return 2 * num_hidden >= end - first;
 }
 
 float Over(double value, double by) { return static_cast<float>(by > 0.0 ? value / by : 0.0); }
@@ -69,16 +79,19 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   const auto reach_m = static_cast<float>(reach.At(entry.near_point.range_m));
   const double across_m = std::max(1e-3, grid.column_step_rad() * entry.near_point.range_m);
   const int num_steps = static_cast<int>(std::min(static_cast<double>(kMostColumnsBeside), std::ceil(reach_m / across_m)));
-  for (int step = 1; step <= num_steps; ++step) {
+  int num_hidden = 0;
+  for (int step = 1; step <= num_steps + num_hidden && step <= kMostColumnsBeside; ++step) {
     const int column = grid.Wrap(entry.column + direction * step);
     const auto seen = pieces.InColumn(column);
+    if (IsHidden(grid, entry, column)) ++num_hidden;
     if (std::ranges::any_of(seen, [&](const OutlineEntry& beside) { return beside.piece == entry.piece; })) return;
+    const auto widest_m = static_cast<float>(reach_m + num_hidden * across_m);
     for (const OutlineEntry& beside : seen) {
-      if (beside.near_point.range_m > entry.far_point.range_m + reach_m) break;
-      if (beside.far_point.range_m < entry.near_point.range_m - reach_m) continue;
+      if (beside.near_point.range_m > entry.far_point.range_m + widest_m) break;
+      if (beside.far_point.range_m < entry.near_point.range_m - widest_m) continue;
       const Closest closest = ClosestOf(entry, beside);
       const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
-      const auto limit_m = static_cast<float>(reach.At(least_range_m));
+      const auto limit_m = static_cast<float>(reach.At(least_range_m) + num_hidden * across_m);
       if (closest.squared_m2 > limit_m * limit_m) continue;
       if (closest.one->range_m <= closest.other->range_m) {
         Meet(entry, *closest.one, beside, *closest.other, closest.squared_m2);
@@ -180,6 +193,7 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   }
   set(PairFeature::kSeenThrough, Over(num_through, num_beams));
   set(PairFeature::kHidden, Over(num_hidden, num_beams));
+  set(PairFeature::kFreeGap, pair.gap_m * (1.0F - Over(num_hidden, num_beams)));
 
   const bool is_a_small = a.width_m < b.width_m || (a.width_m == b.width_m && a.num_returns < b.num_returns);
   const PieceFacts& small = is_a_small ? a : b;
@@ -201,6 +215,10 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   set(PairFeature::kOffLine, std::abs(between_m.x() * large.direction.y() - between_m.y() * large.direction.x()));
   set(PairFeature::kLargeOff, large.off_m);
   set(PairFeature::kLargeLength, large.length_m);
+  set(PairFeature::kSmallLength, small.length_m);
+  set(PairFeature::kParallel, std::abs(small.direction.dot(large.direction)));
+  set(PairFeature::kTopStep, std::abs(small.max_height_m - large.max_height_m));
+  set(PairFeature::kBottomStep, std::abs(small.min_height_m - large.min_height_m));
 }
 
 }  // namespace lookout::segmenter

@@ -18,6 +18,7 @@ namespace lookout::segmenter {
 enum class PairFeature : std::uint8_t {
   kRange,           // m, where the two come closest
   kGap,             // m, seen from above
+  kFreeGap,         // m, of the gap what nothing nearer hides
   kGapColumns,      // columns between them there; 0 where they share columns
   kRadialGap,       // m, how much farther the back is there
   kRadialGapRings,  // the same over the distance at which the next ring would meet calm water
@@ -43,15 +44,19 @@ enum class PairFeature : std::uint8_t {
   kOffLine,      // m, from the mean of the small to the line through the large
   kLargeOff,     // m, root mean square of the large off that line
   kLargeLength,  // m, along that line
+  kSmallLength,  // m, along the line through the small
+  kParallel,     // cosine of the angle between the two lines
+  kTopStep,      // m, between their tops
+  kBottomStep,   // m, between their bottoms
   kNum
 };
 inline constexpr std::size_t kNumPairFeatures = static_cast<std::size_t>(PairFeature::kNum);
 /// As they stand in the file of weights.
 inline constexpr std::array<std::string_view, kNumPairFeatures> kPairFeatureNames{
-    "range_m",        "gap_m",         "gap_columns",   "radial_gap_m",   "radial_gap_rings", "ring_gap",      "step_up_m",
-    "overlap",        "faced",         "seen_through",  "hidden",         "small_returns",    "large_returns", "small_width_m",
-    "large_width_m",  "small_depth_m", "large_depth_m", "union_length_m", "small_top_m",      "large_top_m",   "small_bottom_m",
-    "large_bottom_m", "small_fill",    "large_fill",    "off_line_m",     "large_off_m",      "large_length_m"};
+    "range_m",       "gap_m",         "free_gap_m",     "gap_columns",    "radial_gap_m",   "radial_gap_rings", "ring_gap",       "step_up_m",
+    "overlap",       "faced",         "seen_through",   "hidden",         "small_returns",  "large_returns",    "small_width_m",  "large_width_m",
+    "small_depth_m", "large_depth_m", "union_length_m", "small_top_m",    "large_top_m",    "small_bottom_m",   "large_bottom_m", "small_fill",
+    "large_fill",    "off_line_m",    "large_off_m",    "large_length_m", "small_length_m", "parallel",         "top_step_m",     "bottom_step_m"};
 
 struct PiecePair {
   std::int32_t one = 0;  // below other

@@ -15,8 +15,8 @@ struct EvidencePair {
   float gap_m = 0.0F;  // of equal evidence, the least gap comes first
 };
 
-/// Merges the two groups with the greatest mean of the log odds of the pairs between them, again and again, while that is above a threshold. Pairs that
-/// are not given are no evidence, neither for nor against.
+/// Merges the two groups with the greatest mean of the log odds of the pairs between them, again and again, while that is above a threshold. Pairs
+/// that are not given are no evidence, neither for nor against.
 class Partition {
  public:
   /// @param pairs  each pair at most once

@@ -13,7 +13,6 @@ constexpr int kCrowdColumns = 8;
 constexpr std::int32_t kCrowdReturns = 2;
 constexpr double kLeastDepthM = 0.1;
 
-
 // A column has entries of a few pieces; where it has very many, as in spray before the lens, the nearest of these say enough.
 constexpr std::size_t kMostInColumn = 24;
 

@@ -13,30 +13,30 @@ namespace lookout::segmenter {
 
 /// Heights are over the water at rest.
 enum class PieceFeature : std::uint8_t {
-  kRange,    // m, of its nearest return
+  kRange,  // m, of its nearest return
   kReturns,
-  kColumns,  // in which it has a return
-  kRings,    // from its lowest to its highest
-  kWidth,    // m, across the line of sight
-  kDepth,    // m, along the line of sight
-  kLength,   // m, of the line through it
-  kOff,      // m, root mean square off that line
-  kTop,      // m
-  kBottom,   // m
-  kMiddle,   // m, mean height
-  kSlope,    // rise from bottom to top over the depth, which counts as 0.1 m at least
-  kFill,     // returns over beams between its ends
-  kBoxFill,  // returns over the beams of its columns and rings
-  kGaps,     // share of the columns of its arc in which it has no return
-  kBackdrop,    // share of its columns in which something stands at most 5 m behind
-  kCovered,     // share of its columns in which something stands nearer
-  kCrowd,       // pieces of one or two returns within 3 m of range and 8 columns, per column of its arc
+  kColumns,   // in which it has a return
+  kRings,     // from its lowest to its highest
+  kWidth,     // m, across the line of sight
+  kDepth,     // m, along the line of sight
+  kLength,    // m, of the line through it
+  kOff,       // m, root mean square off that line
+  kTop,       // m
+  kBottom,    // m
+  kMiddle,    // m, mean height
+  kSlope,     // rise from bottom to top over the depth, which counts as 0.1 m at least
+  kFill,      // returns over beams between its ends
+  kBoxFill,   // returns over the beams of its columns and rings
+  kGaps,      // share of the columns of its arc in which it has no return
+  kBackdrop,  // share of its columns in which something stands at most 5 m behind
+  kCovered,   // share of its columns in which something stands nearer
+  kCrowd,     // pieces of one or two returns within 3 m of range and 8 columns, per column of its arc
   kNum
 };
 inline constexpr std::size_t kNumPieceFeatures = static_cast<std::size_t>(PieceFeature::kNum);
 inline constexpr std::array<std::string_view, kNumPieceFeatures> kPieceFeatureNames{
-    "range_m", "returns", "columns", "rings", "width_m",  "depth_m", "length_m", "off_m",   "top_m",
-    "bottom_m", "middle_m", "slope",  "fill",  "box_fill", "gaps",    "backdrop", "covered", "crowd"};
+    "range_m",  "returns",  "columns", "rings", "width_m",  "depth_m", "length_m", "off_m",   "top_m",
+    "bottom_m", "middle_m", "slope",   "fill",  "box_fill", "gaps",    "backdrop", "covered", "crowd"};
 using PieceFeatures = std::array<float, kNumPieceFeatures>;
 
 /// @param features  [pieces]

@@ -46,9 +46,9 @@ struct PieceFacts {
   // Of the line through it, seen from above.
   Eigen::Vector2d mean_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d direction = Eigen::Vector2d::UnitX();
-  double length_m = 0.0;  // along it
-  double off_m = 0.0;     // off it, root mean square
-  double radius_m = 0.0;  // from the mean to the farthest return
+  double length_m = 0.0;       // along it
+  double off_m = 0.0;          // off it, root mean square
+  double radius_m = 0.0;       // from the mean to the farthest return
   double mean_height_m = 0.0;  // over the lidar
   double width_m = 0.0;        // across the line of sight: of its arc, at its nearest range
 };

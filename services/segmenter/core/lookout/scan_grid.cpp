@@ -26,7 +26,8 @@ void ScanGrid::Fill(const Scan& scan, std::span<const Return> returns, const Eig
   num_lines_ = scan.head.num_rings() * num_layers_;
   MeasureColumns(scan);
   const auto& rings = scan.head.rings;
-  ring_step_rad_ = rings.size() < 2 ? 0.0 : (double{rings.back().elevation_rad} - rings.front().elevation_rad) / static_cast<double>(rings.size() - 1);
+  ring_step_rad_ =
+      rings.size() < 2 ? 0.0 : (double{rings.back().elevation_rad} - rings.front().elevation_rad) / static_cast<double>(rings.size() - 1);
   return_at_.assign(static_cast<std::size_t>(num_lines_) * static_cast<std::size_t>(num_columns_), kNone);
   range_at_.assign(return_at_.size(), std::numeric_limits<float>::infinity());
   words_per_line_ = static_cast<std::size_t>((num_columns_ + kWordBits - 1) / kWordBits);

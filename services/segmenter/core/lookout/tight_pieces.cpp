@@ -26,8 +26,7 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
     for (int column = grid.NextOccupied(line, 0); column < grid.num_columns();
          column = column + 1 < grid.num_columns() ? grid.NextOccupied(line, column + 1) : grid.num_columns()) {
       const std::int32_t index = grid.At(line, column);
-      const bool goes_on =
-          last != ScanGrid::kNone && column - last_column == 1 && AreLinked(grid.PointOf(last), grid.PointOf(index), true, link);
+      const bool goes_on = last != ScanGrid::kNone && column - last_column == 1 && AreLinked(grid.PointOf(last), grid.PointOf(index), true, link);
       if (!goes_on) ++num_runs_;
       run_of_return_[static_cast<std::size_t>(index)] = num_runs_ - 1;
       last = index;
