@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -85,16 +84,14 @@ std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
   return left_out;
 }
 
-// Those that are asked for; before them, where something is left out, ours with evidence that knows none of these scenes.
-Methods MethodsFor(const ComparisonOptions& options, const Boat& boat, const std::set<std::string>& left_out, std::span<const std::string> scenes) {
-  auto methods = MakeMethods(boat.segmenter, options.methods);
-  if (options.left_out.empty()) return methods;
-  methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, left_out), scenes));
-  return methods;
-}
-
 // As tables call the captures.
 constexpr const char* kSecondWorld = "second world";
+
+// Nothing is fitted on them, also where a scene of ours is called the same.
+std::unique_ptr<Method> LeftOutOfCaptures(const ComparisonOptions& options, const Boat& boat) {
+  const auto evidence = LeaveOutEvidence(options.weights_folder, {}).FileOf(kSecondWorld);
+  return std::make_unique<SegmenterMethod>(std::string(kLeftOut), WithEvidence(boat, evidence));
+}
 
 // The column of the tables in which recordings stand.
 const std::string kPointsLabel = "points";
@@ -195,9 +192,8 @@ Results RunCaptures(const ComparisonOptions& options, Failures& failures) {
   const auto captures = ListCaptures(options.captures);
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
-  std::vector<std::string> scenes;
-  for (const auto& files : captures) scenes.push_back(files.scene);
-  const auto methods = MethodsFor(options, boat, {}, scenes);  // none of them is of a family, whatever its name
+  auto methods = MakeMethods(boat.segmenter, options.methods);
+  if (!options.left_out.empty()) methods.insert(methods.begin(), LeftOutOfCaptures(options, boat));
   World world(boat.segmenter, methods, failures.HandlerOf(kSecondWorld));
   runtime::Progress progress("lookout-eval", stderr);
   for (const auto& files : captures) {
@@ -262,7 +258,11 @@ int CompareMethods(const ComparisonOptions& options) {
   std::vector<std::string> scenes;
   for (const auto& scene : plan.scenes) scenes.push_back(SceneLabel(scene));
   if (!options.points.empty()) scenes.push_back(kPointsLabel);
-  const auto methods = MethodsFor(options, boat, LeftOutOf(options), scenes);
+  auto methods = MakeMethods(boat.segmenter, options.methods);
+  if (!options.left_out.empty()) {
+    methods.insert(methods.begin(), std::make_unique<LeaveOutMethod>(boat, LeaveOutEvidence(options.weights_folder, LeftOutOf(options)), scenes));
+    if (!options.captures.empty()) LeftOutOfCaptures(options, boat);  // what is missing stops the run before it begins
+  }
 
   io::CatchStopSignals();
   if (!options.is_forced) {
