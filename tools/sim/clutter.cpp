@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/core/angles.hpp"
+#include "tools/sim/foam.hpp"
 
 namespace lookout::sim {
 namespace {
@@ -16,11 +17,8 @@ constexpr std::uint64_t kClutterStream = 6;
 // Hale and Querry, "Optical constants of water in the 200-nm to 200-um wavelength region", Applied Optics 12, 1973: 1.328 at 0.9 um.
 constexpr double kRefractiveIndex = 1.328;
 
-// Koepke, "Effective reflectance of oceanic whitecaps", Applied Optics 23, 1984: 0.22, foam of all ages.
-constexpr double kFoamReflectance = 0.22;
 // What comes back out of clear water near the surface: some per cent.
 constexpr double kWaterReflectance = 0.03;
-constexpr double kDropReflectance = 0.04;
 
 // Incidence for which Effects::glint_probability is said: the lowest beam, 15 deg below level.
 constexpr double kGlintSine = 0.25881904510252074;
@@ -33,10 +31,8 @@ constexpr double kFirstDropM = 0.5;
 
 // Kelvin's wedge: asin(1 / 3) to either side on deep water (Lamb, "Hydrodynamics", article 256).
 constexpr double kKelvinTangent = 0.35355339059327379;
-// Foam of breaking waves fades with a time constant of 2.5 s in fresh and 3.9 s in salt water (Monahan and Zietlow, "Laboratory comparisons of
-// fresh-water and salt-water whitecaps", Journal of Geophysical Research 74, 1969).
-constexpr double kFoamFadesS = 3.0;
-constexpr double kFoamEndsS = 3.0 * kFoamFadesS;
+// Of a return from the fresh patch of a wave that broke there: flat, so seldom seen, but for seconds at one place.
+constexpr double kPatchProbability = 0.3;
 constexpr double kArmHalfWidthM = 0.35;
 constexpr double kStripSpreadMps = 0.1;  // of the strip of foam behind the stern, to either side
 constexpr double kMinWakeSpeedMps = 0.8;
@@ -93,9 +89,12 @@ Clutter::Clutter(const Scene& scene, const config::BoatFacts& boat, std::uint64_
       effects_(scene.effects),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       own_box_m_(boat.own_vessel_box_m),
-      has_water_(effects_.glint_probability() > 0.0 || effects_.wake_probability() > 0.0 ||
+      has_water_(effects_.glint_probability() > 0.0 || effects_.wake_probability() > 0.0 || effects_.breakers_per_hectare() > 0.0 ||
                  (effects_.crest_probability() > 0.0 && !scene.sea.is_calm())),
-      random_(seed, kClutterStream) {
+      random_(seed, kClutterStream),
+      breakers_(effects_.breakers_per_hectare(), scene.sea, seed),
+      birds_(effects_.flying_birds(), seed),
+      clouds_(scene, boat, seed) {
   if (effects_.wake_probability() <= 0.0) return;
   sources_.push_back({{}, true, own_box_m_.min().x(), own_box_m_.sizes().y() / 2.0});
   for (const auto& object : scene.objects) {
@@ -125,6 +124,10 @@ void Clutter::MoveTo(double time_s) {
   time_s_ = time_s;
   if (std::abs(time_s - moved_at_s_) < kPeriodS) return;
   moved_at_s_ = time_s;
+  const Vector2d own_m = StateAt(scene_.own_motion, reference_point_above_water_m_, time_s).position_map_m.head<2>();
+  breakers_.MoveTo(time_s, own_m);
+  birds_.MoveTo(time_s, own_m);
+  clouds_.MoveTo(time_s);
   wakes_.clear();
   for (const auto& source : sources_) {
     const Wake wake = WakeOf(source, time_s);
@@ -163,7 +166,8 @@ std::optional<Echo> Clutter::FromWater(const Ray& ray, double max_range_m) {
   const double sine_calm = -ray.direction.z();
   const auto glint = [this](double sine) { return std::min(effects_.glint_probability() * sine * sine / (kGlintSine * kGlintSine), 1.0); };
   // Most shots give nothing whatever they meet: the sea need not be looked for.
-  const double most_of_foam = (wakes_.empty() ? 0.0 : effects_.wake_probability()) + (is_calm ? 0.0 : effects_.crest_probability());
+  const double most_of_foam = (wakes_.empty() ? 0.0 : effects_.wake_probability()) + (is_calm ? 0.0 : effects_.crest_probability()) +
+                              (breakers_.is_off() ? 0.0 : kPatchProbability);
   const double sine_on_steepest = sine_calm * kSteepestCosine + std::sqrt(std::max(0.0, 1.0 - sine_calm * sine_calm)) * kSteepestSine;
   const double most_of_glint = glint(is_calm ? sine_calm : sine_on_steepest);
   if (draw >= most_of_foam + most_of_glint) return std::nullopt;
@@ -190,10 +194,17 @@ std::optional<Echo> Clutter::FromWater(const Ray& ray, double max_range_m) {
   double sum = effects_.wake_probability() * FoamAt(p_m.head<2>());
   if (draw < sum) return Echo{{*range_m, sine}, kNoObject, {kFoamReflectance}, ReturnReason::kWake};
   if (height_m > 0.0) sum += effects_.crest_probability() * sine;
+  if (!breakers_.is_off()) sum += kPatchProbability * breakers_.FoamAt(p_m.head<2>());
   if (draw < sum) return Echo{{*range_m, sine}, kNoObject, {kFoamReflectance}, ReturnReason::kCrest};
   sum += glint(sine);
   if (draw < sum) return Echo{{*range_m, sine}, kNoObject, {kWaterReflectance}, ReturnReason::kGlint};
   return std::nullopt;
+}
+
+std::optional<Echo> Clutter::FromBreakersAndBirds(const Ray& ray, double max_range_m) {
+  const auto bird = birds_.Meet(ray, max_range_m);
+  const auto breaker = breakers_.Meet(ray, bird ? bird->hit.range_m : max_range_m);
+  return breaker ? breaker : bird;
 }
 
 // Range of the first drop: the way to it is distributed exponentially in the drops that are met on the way.

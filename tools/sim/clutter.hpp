@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "common/config/boat.hpp"
+#include "tools/sim/birds.hpp"
+#include "tools/sim/breakers.hpp"
+#include "tools/sim/clouds.hpp"
 #include "tools/sim/random.hpp"
 #include "tools/sim/ray_caster.hpp"
 #include "tools/sim/scene.hpp"
@@ -35,6 +38,12 @@ class Clutter {
   /// What the water gives to a ray that goes down and meets nothing else before `max_range_m`.
   std::optional<Echo> FromWater(const Ray& ray, double max_range_m);
 
+  /// Waves that break and birds: what they hide is not met.
+  std::optional<Echo> FromBreakersAndBirds(const Ray& ray, double max_range_m);
+
+  /// Churned water, plumes and fog, as FromDrops.
+  std::optional<Echo> FromClouds(const Ray& ray, const Ray& ray_vessel, double max_range_m) { return clouds_.Meet(ray, ray_vessel, max_range_m); }
+
   static constexpr double kPeriodS = 0.01;
 
  private:
@@ -61,6 +70,9 @@ class Clutter {
   Eigen::AlignedBox3d own_box_m_;
   bool has_water_;
   Random random_;
+  Breakers breakers_;
+  Birds birds_;
+  Clouds clouds_;
   std::vector<Source> sources_;
   std::vector<Wake> wakes_;
   double spray_ = 0.0;  // 0 to 1

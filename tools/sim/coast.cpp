@@ -16,6 +16,9 @@ using Land = config::Scene::Land;
 using Section = Ground::Section;
 
 constexpr double kUsualDepthM = 40.0;
+// Points of a section.
+constexpr std::size_t kKnee = 3;
+constexpr std::size_t kRim = 4;
 constexpr double kWallFootM = -1.0;  // of walls, below the water
 
 bool IsUpright(config::Scene::Edge edge) { return edge == config::Scene::FACE || edge == config::Scene::FENDERED; }
@@ -94,20 +97,21 @@ std::vector<Stretch> DrawStretches(const Land& land, const std::vector<Waterline
 Section DrawSection(const Stretch& stretch, double depth_m, Random& random) {
   const bool is_upright = IsUpright(stretch.edge);
   // Room for the three steps on narrow land.
-  const double run_m = is_upright ? 0.0 : std::min(stretch.run_m, 0.7 * depth_m) * random.Uniform(0.8, 1.2);
-  Section section{};
   const double uneven = is_upright ? 0.0 : stretch.edge == config::Scene::BEACH ? 0.06 : 0.2;
+  const double run_m = is_upright ? 0.0 : std::min(stretch.run_m, 0.7 * depth_m) * (1.0 + uneven * random.Uniform(-1.0, 1.0));
+  Section section{};
   const double top_m = stretch.top_m * (1.0 + uneven * random.Uniform(-1.0, 1.0)) * (is_upright ? 1.0 : std::min(1.0, run_m / stretch.run_m + 0.2));
-  if (is_upright) {
-    section.inland_m = {0.0, 0.0, std::min(0.4, 0.5 * depth_m), depth_m};
-    section.height_m = {kWallFootM, top_m, top_m, 0.0};
-  } else {
-    const double under_m = std::min(0.7, run_m);
-    const double bulge = stretch.edge == config::Scene::BEACH ? random.Uniform(0.9, 1.1) : random.Uniform(0.7, 1.3);
-    section.inland_m = {-under_m, 0.5 * run_m, run_m, depth_m};
-    section.height_m = {-under_m * top_m / run_m, 0.5 * top_m * bulge, top_m, 0.0};
+  const double under_m = is_upright ? 0.0 : std::min(0.7, run_m);  // below the water, so that a trough bares it
+  const double top_inland_m = is_upright ? std::min(0.4, 0.5 * depth_m) : run_m;
+  const double knee_m = top_inland_m + random.Uniform(0.2, 0.6) * (depth_m - top_inland_m);
+  section.inland_m = {-under_m, 0.5 * run_m, top_inland_m, knee_m, depth_m};
+  const double bulge = is_upright ? 2.0 : stretch.edge == config::Scene::BEACH ? random.Uniform(0.9, 1.1) : random.Uniform(0.7, 1.3);
+  section.height_m = {is_upright ? kWallFootM : -under_m * top_m / run_m, 0.5 * top_m * bulge, top_m, 0.0, 0.0};
+  // Hummocks, but for the ground behind a wall.
+  for (const std::size_t i : {kKnee, kRim}) {
+    const double rise = stretch.hill_slope * (is_upright ? 1.0 : random.Uniform(0.4, 1.6));
+    section.height_m[i] = section.height_m[i - 1] + rise * (section.inland_m[i] - section.inland_m[i - 1]);
   }
-  section.height_m[3] = section.height_m[2] + stretch.hill_slope * (depth_m - section.inland_m[2]) * (is_upright ? 1.0 : random.Uniform(0.7, 1.3));
   return section;
 }
 
@@ -120,7 +124,10 @@ void SmoothHills(bool is_closed, std::vector<Section>& sections) {
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t left = i > 0 ? i - 1 : is_closed ? count - 1 : 0;
       const std::size_t right = i + 1 < count ? i + 1 : is_closed ? 0 : i;
-      sections[i].height_m[3] = (before[left].height_m[3] + before[i].height_m[3] + before[right].height_m[3]) / 3.0;
+      sections[i].height_m[kRim] = (before[left].height_m[kRim] + before[i].height_m[kRim] + before[right].height_m[kRim]) / 3.0;
+      // Hummocks of the knee stay half as high as they are.
+      const double around_m = (before[left].height_m[kKnee] + before[right].height_m[kKnee]) / 2.0;
+      if (pass < 2) sections[i].height_m[kKnee] = std::lerp(before[i].height_m[kKnee], around_m, 0.5);
     }
   }
 }

@@ -82,8 +82,8 @@ void AddHouse(double aft_m, double front_m, double half_y_m, double bottom_m, do
 
 struct Hull {
   HullPlan plan;
-  double rail_m;  // height of the side amidships
-  double floor_m;
+  double rail_m = 0.0;  // height of the side amidships
+  double floor_m = 0.0;
 };
 
 // Flared, higher at the bow; open on top or decked.
@@ -92,11 +92,11 @@ Hull AddHull(const HullPlan& plan, double rail_m, bool is_open, const Material& 
   hull.footprint_m = OutlineOf(plan);
   hull.lean = {model.Between(0.05, 0.5)};
   hull.is_widest_on_top = true;
-  hull.bottom_m = -0.15;
+  hull.bottom_m = -0.15 - 0.03 * plan.length_m;  // long hulls bridge troughs
   hull.top_m = rail_m;
   hull.top_slope = model.Between(0.0, 0.09);
   // What leans in must not meet in the middle above the bottom.
-  hull.lean[0] = std::min(hull.lean[0], 0.3 * plan.width_m / (rail_m + 0.3));
+  hull.lean[0] = std::min(hull.lean[0], 0.3 * plan.width_m / (rail_m + 0.15 + 0.08 * plan.length_m));
   const double floor_m = is_open ? std::min(model.Between(0.05, 0.25), rail_m - 0.1) : rail_m;
   if (is_open) {
     hull.wall_m = std::min(model.Between(0.04, 0.12), 0.15 * plan.width_m);
@@ -330,7 +330,7 @@ void MakeBarge(const Size& size, Random& random, SceneObject& boat) {
   hull.footprint_m = OutlineOf(plan);
   hull.lean = {model.Between(0.0, 0.15)};
   hull.is_widest_on_top = true;
-  hull.bottom_m = -0.3;
+  hull.bottom_m = -0.8;
   hull.top_m = rail_m;
   model.Add(ToConvex(hull), model.Paint(size.reflectance));
   const double house_m = std::clamp(length_m * model.Between(0.1, 0.3), 2.0, 9.0);

@@ -148,10 +148,12 @@ void DrawOneOf(std::span<const std::string_view> names, Random& random, SceneObj
   kind->draw({}, random, object);
 }
 
-// Each as often as the others; the large ones stand for several sorts of craft.
+// Those of many forms come more often.
 void MakeAnyCraft(const Size& /*size*/, Random& random, SceneObject& boat) {
-  static constexpr std::array<std::string_view, 12> kNames{"open_boat", "open_boat", "cruiser",      "cruiser",    "sailing_dinghy", "yacht",
-                                                           "twin_hull", "canoe",     "paddle_board", "pedal_boat", "raft",           "workboat"};
+  static constexpr std::array<std::string_view, 20> kNames{"open_boat",      "open_boat",      "open_boat",    "cruiser",      "cruiser",
+                                                           "sailing_dinghy", "sailing_dinghy", "yacht",        "yacht",        "twin_hull",
+                                                           "twin_hull",      "canoe",          "canoe",        "paddle_board", "pedal_boat",
+                                                           "raft",           "workboat",       "rowing_shell", "jet_ski",      "robot_boat"};
   DrawOneOf(kNames, random, boat);
 }
 
@@ -165,7 +167,7 @@ void MakeAnyDock(const Size& /*size*/, Random& random, SceneObject& dock) {
   DrawOneOf(kNames, random, dock);
 }
 
-constexpr std::array<KindOfObject, 35> kKinds{{
+constexpr std::array<KindOfObject, 40> kKinds{{
     {"motor_boat", {6.0, 2.2, 0.0, kGelcoat}, true, true, MakeMotorBoat},
     {"cabin_boat", {9.0, 3.0, 0.0, kGelcoat}, true, true, MakeCabinBoat},
     {"sailing_boat", {7.0, 2.4, 0.0, kGelcoat}, true, true, MakeSailingBoat},
@@ -198,6 +200,11 @@ constexpr std::array<KindOfObject, 35> kKinds{{
     {"bather", {0.0, 0.26, 0.0, kBrightest}, true, true, nullptr, MakeBather},
     {"log", {8.0, 0.6, 0.0, kBrightest}, true, true, nullptr, MakeLog},
     {"water_bird", {1.3, 0.0, 0.0, kBrightest}, true, true, nullptr, MakeWaterBird},
+    {"rowing_shell", {18.5, 0.65, 0.0, kBrightest}, true, true, nullptr, MakeRowingShell},
+    {"houseboat", {18.0, 4.8, 0.0, kBrightest}, true, true, nullptr, MakeHouseboat},
+    {"jet_ski", {3.6, 1.25, 0.0, kBrightest}, true, true, nullptr, MakeJetSki},
+    {"windsurfer", {3.6, 1.0, 0.0, kBrightest}, true, true, nullptr, MakeWindsurfer},
+    {"robot_boat", {4.0, 2.4, 0.0, kBrightest}, true, true, nullptr, MakeRobotBoat},
     {"any_craft", {}, true, true, nullptr, MakeAnyCraft},
     {"any_buoy", {}, true, true, nullptr, MakeAnyBuoy},
     {"any_dock", {}, false, false, nullptr, MakeAnyDock},

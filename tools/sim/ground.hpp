@@ -21,9 +21,9 @@ struct Stretch {
   double reach_m = 0.0;     // what stands in the water before it, or hangs over it
 };
 
-/// Heights of the ground at four distances inland from each vertex, straight in between.
+/// Heights of the ground at five distances inland from each vertex, straight in between: under water, on the edge, on top of it, and two behind it.
 struct Ground {
-  static constexpr std::size_t kNumPoints = 4;
+  static constexpr std::size_t kNumPoints = 5;
   struct Section {
     std::array<double, kNumPoints> inland_m;  // ascending
     std::array<double, kNumPoints> height_m;

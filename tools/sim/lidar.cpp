@@ -40,6 +40,12 @@ std::uint32_t MicrosecondsPastHour(Utime time) {
   return static_cast<std::uint32_t>((time - std::chrono::floor<std::chrono::hours>(time)) / std::chrono::microseconds(1));
 }
 
+SceneObject OwnHullOf(const Effects& effects, const config::BoatFacts& boat, std::uint64_t seed) {
+  SceneObject hull = MakeOwnHull(boat.own_vessel_box_m, boat.lidar.p_vessel_m.z(), boat.p_vessel_antenna_m);
+  AddCrewAndGear(effects, boat.own_vessel_box_m, seed, hull);
+  return hull;
+}
+
 void WriteReturn(std::span<std::uint8_t> payload, int block, int sequence, std::size_t laser, std::uint16_t range_2mm, std::uint8_t reflectivity) {
   const std::size_t offset = static_cast<std::size_t>(block) * format::kBlockSizeBytes + format::kBlockReturnsOffset +
                              (static_cast<std::size_t>(sequence) * format::kNumLasers + laser) * format::kReturnSizeBytes;
@@ -57,7 +63,7 @@ Lidar::Lidar(const Scene& scene, const config::BoatFacts& boat, const LidarParam
       own_motion_(scene.own_motion),
       reference_point_above_water_m_(boat.reference_point_above_water_m),
       T_vessel_lidar_(boat.T_vessel_lidar),
-      own_hull_{MakeOwnHull(boat.own_vessel_box_m, boat.lidar.p_vessel_m.z(), boat.p_vessel_antenna_m)},
+      own_hull_{OwnHullOf(scene.effects, boat, seed)},
       own_caster_(own_hull_, BeamWidth{}, nullptr),
       beam_width_(BeamWidthOf(effects_)),
       caster_(scene.objects, beam_width_, &scene.sea),
@@ -180,8 +186,15 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
   const double down = ray.map.direction.z();
   const double to_water_m = down < 0.0 ? -(ray.map.origin_m.z() + sea_.max_height_m()) / down : kMaxRangeM;
   const double max_range_m = std::clamp(to_water_m, 0.0, kMaxRangeM);
-  const Echoes echoes = Meet(ray, max_range_m, time_s);
+  Echoes echoes = Meet(ray, max_range_m, time_s);
   Seen seen;
+  const bool meets_own = echoes.count > 0 && echoes.echo[0].reason == ReturnReason::kOwnVessel;
+  if (!meets_own) {
+    if (const auto before = clutter_.FromBreakersAndBirds(ray.map, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
+      echoes.count = 1;
+      echoes.echo[0] = *before;
+    }
+  }
   for (int i = 0; i < echoes.count; ++i) {
     const Echo& echo = echoes.echo[static_cast<std::size_t>(i)];
     // Half of the shots into foliage give a second return behind it.
@@ -197,6 +210,9 @@ Lidar::Shot Lidar::Fire(const RayPair& ray, double time_s) {
     const Measurement measured = ToMeasurement(drop->hit.range_m, drop->material.reflectance, kNoObject, drop->reason);
     if (measured.range_2mm == 0) random_.Normal();  // of its reflectivity: each drop draws both, so that the seed gives the same data at any range
     seen.Add(measured);
+  }
+  if (const auto drop = clutter_.FromClouds(ray.map, ray.vessel, echoes.count > 0 ? echoes.echo[0].hit.range_m : max_range_m)) {
+    seen.Add(ToMeasurement(drop->hit.range_m, drop->material.reflectance, kNoObject, drop->reason));
   }
   // Only where nothing was met: a stray takes no return from an object.
   if (echoes.count == 0 && seen.count == 0 && random_.Uniform() < effects_.stray_probability()) {

@@ -93,9 +93,9 @@ void AddSlimHull(double y_m, double length_m, double width_m, double top_m, cons
   LeaningWalls hull;
   hull.footprint_m = OutlineOf(plan);
   for (auto& p_m : hull.footprint_m) p_m.y() += y_m;
-  hull.lean = {std::min(0.2, 0.2 * width_m / (top_m + 0.2))};
+  hull.lean = {std::min(0.2, 0.2 * width_m / (top_m + 0.2 + 0.03 * length_m))};
   hull.is_widest_on_top = true;
-  hull.bottom_m = -0.15;
+  hull.bottom_m = -0.15 - 0.02 * length_m;
   hull.top_m = top_m;
   hull.top_slope = 0.02;
   model.Add(ToConvex(hull), paint);
@@ -263,7 +263,7 @@ void MakeYacht(const Size& size, Random& random, SceneObject& boat) {
   hull.footprint_m = OutlineOf(plan);
   hull.lean = {model.Between(0.05, 0.35)};
   hull.is_widest_on_top = true;
-  hull.bottom_m = -0.2;
+  hull.bottom_m = -0.2 - 0.03 * length_m;
   hull.top_m = rail_m;
   hull.top_slope = model.Between(0.01, 0.05);
   const Material paint = model.Paint(size.reflectance);

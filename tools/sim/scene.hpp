@@ -29,9 +29,11 @@ enum class ReturnReason {
   kRain = 7,
   kMixedEdge = 8,  // a beam on two surfaces; it belongs to the nearer object
   kMirror = 9,     // an object seen by way of the water's surface, below which it seems to lie
+  kBird = 10,      // in flight
+  kFog = 11,
 };
-inline constexpr std::array<std::string_view, 10> kReasonNames{"object", "own_vessel", "stray", "glint",      "crest",
-                                                               "wake",   "spray",      "rain",  "mixed_edge", "mirror"};
+inline constexpr std::array<std::string_view, 12> kReasonNames{"object", "own_vessel", "stray",      "glint",  "crest", "wake",
+                                                               "spray",  "rain",       "mixed_edge", "mirror", "bird",  "fog"};
 constexpr std::string_view NameOf(ReturnReason reason) { return kReasonNames[static_cast<std::size_t>(reason)]; }
 
 /// How a surface reflects.
@@ -78,5 +80,8 @@ struct Scene {
 /// @param lidar_height_m       z of the lidar: the motor stays below its level
 /// @param p_vessel_antenna_m   top of the post
 SceneObject MakeOwnHull(const Eigen::AlignedBox3d& box_m, double lidar_height_m, const Eigen::Vector3d& p_vessel_antenna_m);
+
+/// Effects::own_crew and own_gear: people at the stern, rods at the edges, some of them a little outside of the box around the own vessel.
+void AddCrewAndGear(const Effects& effects, const Eigen::AlignedBox3d& box_m, std::uint64_t seed, SceneObject& hull);
 
 }  // namespace lookout::sim

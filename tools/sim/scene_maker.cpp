@@ -115,14 +115,23 @@ bool IsBadCorner(const Vector2d& before_m, const Vector2d& at_m, const Vector2d&
   return std::abs(std::atan2(in_m.x() * out_m.y() - in_m.y() * out_m.x(), in_m.dot(out_m))) > kMaxRouteTurnRad;
 }
 
+// Families that begin alike would draw the same things from the same seed. Scenes with a fixed structure keep theirs.
+std::uint64_t SeedOf(const File& file, std::uint64_t seed) {
+  if (!file.own_boat().has_free_by_m()) return seed;
+  // G. Fowler, L. Noll, K.-P. Vo: FNV-1a, 64 bits.
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : file.description()) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return seed ^ hash;
+}
+
 class Drawing {
  public:
   Drawing(const File& file, std::uint64_t seed, SceneFaults& faults)
-      : file_(WithDrawnNumbers(file, seed)),
-        seed_(seed),
+      : file_(WithDrawnNumbers(file, SeedOf(file, seed))),
+        seed_(SeedOf(file, seed)),
         faults_(faults),
-        land_random_(seed, kSceneStream),
-        own_boat_random_(seed, kOwnBoatStream),
+        land_random_(seed_, kSceneStream),
+        own_boat_random_(seed_, kOwnBoatStream),
         traffic_(file.lasts_s()) {}
 
   Scene Run() {
@@ -154,7 +163,8 @@ class Drawing {
     std::optional<Approach> too_near;
     for (int num_tries = 0; num_tries < kMaxOwnTries; ++num_tries) {
       OwnMotion motion = DrawOwnMotion(boat, own_boat_random_, land_random_);
-      if (boat.has_beside()) {
+      // Else anywhere in its ranges: there happens to be none.
+      if (boat.has_beside() && edges_.Has(boat.beside().object())) {
         Edges::Row row;
         // As large as a boat: the distance is kept from its hull.
         const auto found = edges_.Draw(boat.beside(), kOwnOutline, motion.track.start.heading_rad, 0, row, own_boat_random_);
@@ -287,6 +297,7 @@ class Drawing {
   void AddEdges(const std::string& name, const SceneObject& object) {
     const auto to_map = [&object](const std::vector<Vector2d>& line_m) {
       std::vector<Vector2d> map_m;
+      map_m.reserve(line_m.size());
       for (const auto& p_m : line_m) map_m.push_back(object.track.start.ToMap(p_m));
       return map_m;
     };
@@ -302,14 +313,14 @@ class Drawing {
   std::optional<Approach> IsInTheWay(const File::Object& file, const SceneObject& object, const std::optional<Edges::Found>& found, bool is_drawn,
                                      std::size_t num_before) const {
     const bool is_in_row = file.has_row();
-    if (const auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
+    if (auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
     if (found && found->least_gap_m > 0.0) {
-      if (const auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
+      if (auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
     }
     // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
     if (is_drawn) {
       const auto skipped = found ? std::optional<std::size_t>(found->object) : std::nullopt;
-      if (const auto near = traffic_.ToOthers(object, file.min_distance_m(), is_in_row ? num_before : traffic_.num_objects(), skipped)) return near;
+      if (auto near = traffic_.ToOthers(object, file.min_distance_m(), is_in_row ? num_before : traffic_.num_objects(), skipped)) return near;
     }
     return traffic_.Overlapping(object);
   }

@@ -57,4 +57,10 @@ Eigen::Vector2d Sea::Slope(const Eigen::Vector2d& p_map_m, double time_s) const 
   return slope;
 }
 
+Eigen::Vector2d Sea::Towards() const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const auto& term : terms_) sum += std::abs(term.amplitude_m) * term.wave_number_radpm.normalized();
+  return sum.isZero() ? sum : Eigen::Vector2d(sum.normalized());
+}
+
 }  // namespace lookout::sim

@@ -33,6 +33,9 @@ class Sea {
   /// @return derivative of HeightM to the east and to the north
   Eigen::Vector2d Slope(const Eigen::Vector2d& p_map_m, double time_s) const;
 
+  /// @return unit vector to where the waves run, by their heights; zero when calm
+  Eigen::Vector2d Towards() const;
+
   bool is_calm() const { return terms_.empty(); }
 
   /// No crest is higher, no trough deeper.

@@ -24,6 +24,13 @@ void MakePedalBoat(const Size& size, Random& random, SceneObject& boat);
 void MakeRaft(const Size& size, Random& random, SceneObject& raft);
 void MakeBather(const Size& size, Random& random, SceneObject& bather);
 
+// Long shells, houses afloat, fast toys, boats without crew: sport_craft.cpp.
+void MakeRowingShell(const Size& size, Random& random, SceneObject& boat);
+void MakeHouseboat(const Size& size, Random& random, SceneObject& boat);
+void MakeJetSki(const Size& size, Random& random, SceneObject& boat);
+void MakeWindsurfer(const Size& size, Random& random, SceneObject& board);
+void MakeRobotBoat(const Size& size, Random& random, SceneObject& boat);
+
 // Origin in the middle of the landward end, x runs out: docks.cpp.
 void MakeJetty(const Size& size, Random& random, SceneObject& dock);
 void MakePontoon(const Size& size, Random& random, SceneObject& dock);

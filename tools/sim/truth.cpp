@@ -24,8 +24,8 @@ constexpr microseconds kPosePeriod = 20ms;  // the grid of POSE: whole multiples
 constexpr microseconds kObjectPeriod = 100ms;
 constexpr std::size_t kSlotsPerPacket = std::size_t{vlp16::format::kNumBlocks} * vlp16::format::kSequencesPerBlock * vlp16::format::kNumLasers;
 
-static_assert(static_cast<int>(ReturnReason::kMirror) == sim_truth_t::REASON_MIRROR);
-static_assert(kReasonNames.size() == static_cast<std::size_t>(ReturnReason::kMirror) + 1);
+static_assert(static_cast<int>(ReturnReason::kFog) == sim_truth_t::REASON_FOG);
+static_assert(kReasonNames.size() == static_cast<std::size_t>(ReturnReason::kFog) + 1);
 
 template <typename... Values>
 void Print(io::OutputFile& out, const char* form, Values... values) {

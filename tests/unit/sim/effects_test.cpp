@@ -121,6 +121,8 @@ TEST(Effects, PacketsSayWhereEveryReturnOfEveryEffectIsToACentimetre) {
   effects.set_spray_probability(0.1);
   effects.set_rain_probability_per_m(0.004);
   effects.set_mirror_strength(1.0);
+  effects.set_flying_birds(50);
+  effects.set_fog_probability(0.02);
   std::set<ReturnReason> reasons;
   for (const auto mode : {config::Scene::STRONGEST, config::Scene::DUAL}) {
     for (const auto& sea : {Sea(), ChoppySea()}) {

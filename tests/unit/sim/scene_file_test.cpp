@@ -46,7 +46,7 @@ TEST(SceneFile, NeedsADescriptionAndAnOwnBoat) {
 TEST(SceneFile, RefusesUnknownKindsAndFieldsWithTheirLine) {
   EXPECT_NE(ObjectFaults("kind: SUBMARINE").find("s.txtpb:3:"), std::string::npos);
   EXPECT_NE(ObjectFaults("kind: BUOY colour: 3").find("s.txtpb:3:"), std::string::npos);
-  EXPECT_EQ(ObjectFaults("east_m: 20"), "s.txtpb:3: object.kind: must be set");
+  EXPECT_EQ(ObjectFaults("east_m: 20"), "s.txtpb:3: object[0]: kind: must be set");
 }
 
 TEST(SceneFile, RefusesNumbersThatAreNotFiniteOrOutOfRange) {
@@ -222,9 +222,11 @@ TEST(Kinds, EveryKindOfTheSchemaCanBeMade) {
   for (int value = config::Scene::Kind_MIN; value <= config::Scene::Kind_MAX; ++value) {
     if (!config::Scene::Kind_IsValid(value)) continue;
     const auto kind = static_cast<config::Scene::Kind>(value);
-    const bool is_land = kind == config::Scene::SHORE || kind == config::Scene::ISLAND;
-    EXPECT_EQ(FindKind(kind) == nullptr, is_land) << NameOf(kind);
-    const std::string place = is_land ? " land { mean_radius_m: 12 num_trees: 5 }" : "";
+    const bool is_ring = kind == config::Scene::SHORE || kind == config::Scene::ISLAND;
+    const bool is_along_a_line = kind == config::Scene::COAST || kind == config::Scene::QUAY || kind == config::Scene::BREAKWATER;
+    const bool is_built = kind == config::Scene::PILE_PIER || kind == config::Scene::BRIDGE;
+    EXPECT_EQ(FindKind(kind) == nullptr, is_ring || is_along_a_line || is_built) << NameOf(kind);
+    const std::string place = is_ring ? " land { mean_radius_m: 12 num_trees: 5 }" : is_along_a_line ? " length_m: 40 land { depth_m: 20 }" : "";
     // A shore lies outward of its place, so the own boat is in it at the place only when it is an island.
     EXPECT_EQ(ObjectFaults("kind: " + config::Scene::Kind_Name(kind) + (kind == config::Scene::SHORE ? "" : " east_m: 60") + place), "");
   }
@@ -235,7 +237,8 @@ TEST(Kinds, BoatsSwimmersBuoysAndMarkersAreInTheWater) {
   for (const auto& kind : Kinds()) in_water += kind.is_in_water ? std::string(kind.name) + ' ' : "";
   EXPECT_EQ(in_water,
             "motor_boat cabin_boat sailing_boat kayak swimmer buoy marker open_boat cruiser sailing_dinghy yacht twin_hull raft canoe paddle_board "
-            "pedal_boat barge workboat navigation_buoy float race_mark stake fish_farm bather log water_bird any_craft any_buoy ");
+            "pedal_boat barge workboat navigation_buoy float race_mark stake fish_farm bather log water_bird rowing_shell houseboat jet_ski "
+            "windsurfer robot_boat any_craft any_buoy ");
 }
 
 class SceneFolders : public testing::Test {

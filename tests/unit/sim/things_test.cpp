@@ -137,7 +137,7 @@ TEST(DrawnKinds, OneOfSeveralHasTheKindThatWasDrawn) {
       kinds.insert(object.kind);
     }
   }
-  EXPECT_EQ(kinds.size(), 10U + 4U + 3U);
+  EXPECT_EQ(kinds.size(), 13U + 4U + 3U);
 }
 
 TEST(DrawnKinds, DocksRunOutFromTheirLandwardEnd) {

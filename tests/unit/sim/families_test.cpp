@@ -1,0 +1,197 @@
+// The families of the source tree, and what makes a scene one.
+#include <chrono>
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+
+#include "common/config/text_config.hpp"
+#include "tests/unit/sim/scenes.hpp"
+#include "tools/sim/family.hpp"
+#include "tools/sim/scene_maker.hpp"
+#include "tools/sim/traffic.hpp"
+
+namespace lookout::sim {
+namespace {
+
+using Eigen::Vector2d;
+
+const std::string kBegin = "description: \"a test\"\n";
+const std::string kFreeBoat = kBegin + "own_boat { free_by_m: 1 beside { object: \"quay\" gap_m: [3, 9] turned: ALONG } }\n";
+
+std::string FaultsOfFamily(const std::string& text) {
+  try {
+    ParseScene(text, "s.txtpb", 1);
+  } catch (const config::ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Outline OnMap(const SceneObject& object) {
+  Outline outline_m;
+  for (const auto& p_m : object.outline_m) outline_m.push_back(object.track.At(0.0).ToMap(p_m));
+  return outline_m;
+}
+
+Outline OwnOutline(const Scene& scene, double time_s) {
+  const OwnState state = StateAt(scene.own_motion, 0.0, time_s);
+  Outline outline_m;
+  for (const auto& p_m : Rectangle(-1.2, 1.2, -0.7, 0.7)) {
+    outline_m.push_back(Placement{state.position_map_m.head<2>(), state.heading_rad}.ToMap(p_m));
+  }
+  return outline_m;
+}
+
+// Names, kinds, places and numbers of parts: what differs where two layouts do.
+std::string LayoutOf(const Scene& scene) {
+  std::string layout;
+  for (const auto& object : scene.objects) {
+    layout += object.name + ' ' + object.kind + ' ' + std::to_string(object.track.start.position_map_m.x()) + ' ' +
+              std::to_string(object.track.start.position_map_m.y()) + ' ' + std::to_string(object.parts.size()) + '\n';
+  }
+  return layout;
+}
+
+class Family : public testing::TestWithParam<std::string> {
+ protected:
+  Scene Make(std::uint64_t seed) { return LoadScene(support::kSources / "config/scenes/families" / (GetParam() + ".txtpb"), seed); }
+};
+
+std::vector<std::string> FamilyNames() {
+  std::vector<std::string> names;
+  for (const auto& family : ListFamilies(support::kSources / "config/demo")) names.push_back(family.name);
+  return names;
+}
+
+TEST_P(Family, DrawsThirtyLayoutsInTimeThatDiffer) {
+  constexpr std::uint64_t kNumSeeds = 30;
+  constexpr std::chrono::seconds kLongest(3);
+  std::set<std::string> layouts;
+  for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
+    const auto begin = std::chrono::steady_clock::now();
+    Scene scene;
+    ASSERT_NO_THROW(scene = Make(seed)) << seed;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, kLongest) << seed;
+    layouts.insert(LayoutOf(scene));
+  }
+  EXPECT_GE(layouts.size(), kNumSeeds - 3) << "all but those of empty water";
+}
+
+TEST_P(Family, GivesTheSameForTheSameSeed) { EXPECT_EQ(LayoutOf(Make(4)), LayoutOf(Make(4))); }
+
+TEST_P(Family, KeepsTheOwnBoatFreeOfEverything) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Scene scene = Make(seed);
+    for (const auto& object : scene.objects) {
+      EXPECT_GT(DistanceM(OwnOutline(scene, 0.0), OnMap(object)), 0.5) << object.name << ", seed " << seed;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Family, testing::ValuesIn(FamilyNames()), [](const auto& family) { return family.param; });
+
+TEST(Families, AreFoundByNameAndListedApart) {
+  EXPECT_EQ(FindScene("beach", support::kSources / "config/demo"), support::kSources / "config/scenes/families/beach.txtpb");
+  EXPECT_GE(FamilyNames().size(), 12U);
+  for (const auto& name : SceneNames()) EXPECT_NE(name, "beach");
+}
+
+TEST(Beside, ThingsLieAtTheirGapInFrontOfTheEdge) {
+  const std::string text = kFreeBoat +
+                           "object { kind: QUAY name: \"quay\" length_m: 120 heading_deg: 90 land { edge: FACE } }\n"
+                           "object { kind: KAYAK name: \"kayak\" number: 6 beside { object: \"quay\" gap_m: [1, 2] turned: ALONG } }\n";
+  const Scene scene = ParseScene(text, "s", 3);
+  ASSERT_GE(scene.objects.size(), 5U);
+  const Outline quay_m = OnMap(scene.objects[0]);
+  for (std::size_t i = 1; i < scene.objects.size(); ++i) {
+    const auto& kayak = scene.objects[i];
+    EXPECT_LT(kayak.track.start.position_map_m.y(), 0.0) << "land is on the port side of a line to the east";
+    const double gap_m = DistanceM(OnMap(kayak), quay_m);
+    EXPECT_GE(gap_m, 0.99) << i;
+    EXPECT_LE(gap_m, 2.01) << i;
+    EXPECT_NEAR(std::abs(std::sin(kayak.track.start.heading_rad)), 1.0, 1e-6) << "parallel";
+  }
+  const double own_gap_m = DistanceM(OwnOutline(scene, 0.0), quay_m);
+  EXPECT_GE(own_gap_m, 2.99);
+  EXPECT_LE(own_gap_m, 9.01);
+}
+
+TEST(Beside, ARowKeepsItsGapsAndEachMemberItsPartner) {
+  const std::string quay = "object { kind: QUAY name: \"quay\" length_m: 120 heading_deg: 90 land { edge: FACE } }\n";
+  const Scene row = ParseScene(kFreeBoat + quay +
+                                   "object { kind: KAYAK name: \"kayak\" number: 4 min_distance_m: 0\n"
+                                   " beside { object: \"quay\" gap_m: 1 turned: OUT row_gap_m: 2 } }\n",
+                               "s", 5);
+  ASSERT_EQ(row.objects.size(), 5U);
+  for (std::size_t i = 2; i < 5; ++i) EXPECT_NEAR(DistanceM(OnMap(row.objects[i - 1]), OnMap(row.objects[i])), 2.0, 1e-6);
+  const Scene pairs = ParseScene(
+      kFreeBoat + quay +
+          "object { kind: BUOY name: \"ball\" number: 3 east_m: [-50, 50] north_m: [-60, -30] min_distance_m: 12 }\n"
+          "object { kind: KAYAK name: \"kayak\" number: 9 min_distance_m: 0 beside { object: \"ball\" gap_m: 1 is_each: true turned: IN } }\n",
+      "s", 5);
+  ASSERT_EQ(pairs.objects.size(), 7U) << "a kayak for each ball";
+  for (std::size_t i = 1; i <= 3; ++i) EXPECT_NEAR(DistanceM(OnMap(pairs.objects[i]), OnMap(pairs.objects[i + 3])), 1.0, 0.05);
+}
+
+TEST(Opposite, BanksRunAtTheirDistance) {
+  const Scene scene = ParseScene(kFreeBoat +
+                                     "object { kind: QUAY name: \"quay\" length_m: 150 heading_deg: 90\n"
+                                     " land { edge: FACE bends: 2 bend_deg: [-20, 20] bend_radius_m: 80 } }\n"
+                                     "object { kind: QUAY name: \"other\" opposite { object: \"quay\" distance_m: 20 } land { edge: FACE } }\n",
+                                 "s", 2);
+  ASSERT_EQ(scene.objects.size(), 2U);
+  EXPECT_NEAR(DistanceM(OnMap(scene.objects[0]), OnMap(scene.objects[1])), 20.0, 0.6);
+}
+
+TEST(OneOf, DrawsByWeightAndAListOfOneReplacesThatOfTheObject) {
+  config::Scene scene;
+  config::ParseText(
+      "description: 'x' own_boat {}\nobject { length_m: [5, 9] path { speed_mps: [1, 2] }\n"
+      " one_of { kind: KAYAK weight: 9 length_m: 4 } one_of { kind: SWIMMER path { speed_mps: 0.5 } } }",
+      "s", scene);
+  const auto& object = scene.object(0);
+  Random random(1, 1);
+  std::map<config::Scene::Kind, int> drawn;
+  for (int i = 0; i < 1000; ++i) {
+    const auto member = DrawMember(object, random);
+    ++drawn[member.kind()];
+    EXPECT_EQ(member.length_m_size(), member.kind() == config::Scene::KAYAK ? 1 : 2);
+    EXPECT_EQ(member.path().speed_mps_size(), member.kind() == config::Scene::KAYAK ? 2 : 1);
+  }
+  EXPECT_NEAR(drawn[config::Scene::KAYAK], 900, 40);
+}
+
+TEST(DrawnNumbers, LieBetweenBothAndWavesDoNotBreak) {
+  config::Scene scene;
+  config::ParseText(
+      "description: 'x' own_boat { roll_deg: 1 }\nown_boat_to { roll_deg: 3 }\n"
+      "sea { significant_height_m: 0 wavelength_m: 2 }\nsea_to { significant_height_m: 1 wavelength_m: 3 }\neffects_to { rain_probability_per_m: 0.5 "
+      "}",
+      "s", scene);
+  std::set<double> rolls;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const auto drawn = WithDrawnNumbers(scene, seed);
+    EXPECT_GE(drawn.own_boat().roll_deg(), 1.0);
+    EXPECT_LE(drawn.own_boat().roll_deg(), 3.0);
+    EXPECT_LE(drawn.effects().rain_probability_per_m(), 0.5);
+    EXPECT_GE(drawn.sea().wavelength_m(), 7.0 * drawn.sea().significant_height_m());
+    rolls.insert(drawn.own_boat().roll_deg());
+  }
+  EXPECT_EQ(rolls.size(), 20U);
+}
+
+TEST(FamilyFaults, NameTheFieldAndTheLine) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { kind: KAYAK number: 2 beside { object: \"quay\" gap_m: 1 } }\n"),
+            "s.txtpb:3: object[0].beside.object: there is no object of this name before it");
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { name: \"a\" number: 2\n one_of { weight: 2 } }\n"),
+            "s.txtpb:4: object[0].one_of[0]: kind: must be set");
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { kind: COAST land { mean_radius_m: 5 } }\n"),
+            "s.txtpb:3: object[0].land.mean_radius_m: land with edges has length_m");
+  const std::string no_room = FaultsOfFamily(kFreeBoat +
+                                             "object { kind: QUAY name: \"quay\" length_m: 9 heading_deg: 90 land { edge: FACE } }\n"
+                                             "object { kind: DOCK length_m: 30 width_m: 50 north_m: -22 heading_deg: 0 }\n");
+  EXPECT_NE(no_room.find("own_boat: "), std::string::npos) << no_room;
+}
+
+}  // namespace
+}  // namespace lookout::sim
