@@ -91,6 +91,32 @@ TEST_F(EvalLine, OutputsThatAreThereAreRefusedBeforeTheRunUnlessForced) {
   EXPECT_FALSE(fs::exists(Path("page.html.partial")));
 }
 
+TEST_F(EvalLine, EvidenceThatKnowsWhatItIsScoredOnIsRefusedBeforeTheRun) {
+  const auto out = Path("out.csv");
+  const std::vector<std::string> line{"--scenes", "beach",   "--leave-out", "beach",     "--weights", Path("evidence"), "--methods",
+                                      "ours",     "--seeds", "1",           "--seconds", "0.3",       "--lost",         out};
+  EXPECT_EQ(Run(line).exit_code, 2) << "there is no such folder";
+  fs::create_directories(Path("evidence"));
+  const auto missing = Run(line);
+  EXPECT_EQ(missing.exit_code, 2) << missing.output;
+  EXPECT_NE(missing.output.find("without-beach.txtpb: is not there; lookout-fit --scenes families --without beach"), std::string::npos)
+      << missing.output;
+  const auto file = Path("evidence/without-beach.txtpb");
+  std::ofstream(file) << "# Fitted on seeds 1 to 4, 0.5 s each, of beach, quay_side.\n";
+  const auto known = Run(line);
+  EXPECT_EQ(known.exit_code, 2) << known.output;
+  EXPECT_NE(known.output.find("was fitted on beach"), std::string::npos) << known.output;
+  EXPECT_FALSE(fs::exists(out));
+  std::ofstream(file) << "# Fitted on seeds 1 to 4, 0.5 s each, of quay_side.\n" << ReadFile(kSources / "config/evidence/lookout.txtpb");
+  const auto scored = Run(line);
+  EXPECT_EQ(scored.exit_code, 0) << scored.output;
+  EXPECT_NE(scored.output.find("ours, left out (all segments)"), std::string::npos) << scored.output;
+  EXPECT_TRUE(ReadFile(out).starts_with("method,scene,seed,scan,")) << ReadFile(out);
+  auto unknown = line;
+  unknown[3] = "nowhere";
+  EXPECT_NE(Run(unknown).output.find("no such family: nowhere"), std::string::npos);
+}
+
 TEST_F(EvalLine, BlocksAreFilledWithTheFiguresOfTheRun) {
   const std::string title = "# Title\n<!-- figures: ";
   const auto fill = [&](const std::string& name) {

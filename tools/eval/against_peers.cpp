@@ -27,10 +27,11 @@ std::optional<BestPeer> FindBest(const Results& results, bool (*is_wanted)(const
 
 }  // namespace
 
-std::vector<AgainstPeers> CompareWithPeers(const Results& results) {
+std::vector<AgainstPeers> CompareWithPeers(const Results& results, std::string_view name) {
   std::vector<AgainstPeers> rows;
-  const auto ours = std::ranges::find_if(
-      results.methods, [](const MethodResult& method) { return method.method == "ours" || method.method == "ours" + std::string(kAllSegments); });
+  const auto ours = std::ranges::find_if(results.methods, [name](const MethodResult& method) {
+    return method.method == name || method.method == std::string(name) + std::string(kAllSegments);
+  });
   if (ours == results.methods.end()) return rows;
   const auto add = [&](const std::string& scene, const FigureOf& figure_of) {
     const double our_iou = figure_of(*ours, &Score::iou);

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/eval/results.hpp"
@@ -27,8 +28,9 @@ struct AgainstPeers {
   BestPeer of_all;
 };
 
+/// @param name  of the row that is held against the peers, without its operating point
 /// @return scenes with objects in the order of the results, and then "mean": the peer of the greatest mean over the scenes, and the means. Empty
-///         without ours or without peers
-std::vector<AgainstPeers> CompareWithPeers(const Results& results);
+///         without that row or without peers
+std::vector<AgainstPeers> CompareWithPeers(const Results& results, std::string_view name = "ours");
 
 }  // namespace lookout::eval

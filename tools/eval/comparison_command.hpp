@@ -1,6 +1,7 @@
 // lookout-eval --config: methods against the truth of simulated scenes, of captures of a second world, or of recordings of others.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,7 +13,10 @@ namespace lookout::eval {
 struct ComparisonOptions {
   std::string command;  // for the report
   std::filesystem::path config_folder;
-  std::vector<std::string> scenes;  // "all", names or files
+  std::vector<std::string> scenes;  // "all", "families", names or files
+  /// Families, or "families": scored with evidence that was fitted without them, out of a folder (LeaveOutEvidence).
+  std::vector<std::string> left_out;
+  std::filesystem::path weights_folder;
   std::vector<std::string> points;  // scans out of files: .pcd, or .bin with a .label beside it or without
   /// A folder of captures with truth (ListCaptures); where it does not exist, the tables say so. Empty = none.
   std::filesystem::path captures;
@@ -25,6 +29,9 @@ struct ComparisonOptions {
   std::vector<int> tests;            // RunPaperTest
   std::filesystem::path csv_folder;  // empty = none, and so below
   std::filesystem::path html_file;
+  std::filesystem::path lost_file;                 // LostList
+  std::filesystem::path pictures_folder;           // WorstPictures
+  std::size_t num_worst = 30;                      // pictures of each scene and row
   std::vector<std::filesystem::path> block_files;  // in whose marked blocks the figures are written (FillBlocks)
   bool is_forced = false;                          // files that are there are replaced
 };

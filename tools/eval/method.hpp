@@ -26,6 +26,8 @@ inline constexpr std::int32_t kNotScored = -1;
 struct Labelling {
   std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotScored
   std::vector<bool> is_sure;        // [segments] by id - 1; false = the method itself takes the segment for tentative
+  /// [segments] by id - 1: that the segment is of an object and not clutter, 0 to 1; nullopt = the method states none.
+  std::optional<std::vector<double>> probability = std::nullopt;
   /// Components before they were clustered into segments; nullopt = the method has no such step.
   std::optional<std::int64_t> num_components = std::nullopt;
   /// Stages in their order, as the method measured them; empty when it does not.
@@ -46,6 +48,9 @@ class Method {
 
   /// It takes some of its segments for tentative: it is scored at two operating points, all segments and the sure ones alone.
   virtual bool knows_doubt() const { return false; }
+
+  /// The scans that follow are of this scene: for methods that must not know anything of it.
+  virtual void BeginScene(const std::string& /*scene*/) {}
 
   /// Pure but for its time: the same scan gives the same labels.
   virtual Labelling Segment(const segmenter::Scan& scan) = 0;

@@ -1,6 +1,7 @@
 #include "tools/eval/methods.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -32,6 +33,11 @@ void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params,
     numbering.Number(method.groups(), {}, params.min_segment_points, kMaxSegments);
     clock.End("cluster");
     labelling_of_scan.num_components = method.num_tight_pieces();
+    auto& probability = labelling_of_scan.probability.emplace();
+    for (std::int32_t i = 0; i < numbering.groups().count; ++i) {
+      const double log_odds = method.FactsOf(numbering.ClusterOf(i)).thing_log_odds;
+      probability.push_back(1.0 / (1.0 + std::exp(-log_odds)));
+    }
   } else {
     segmenter::Groups components;
     const auto& labelling = params.labelling;

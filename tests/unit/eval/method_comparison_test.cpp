@@ -142,6 +142,17 @@ TEST(Methods, LabelsAreThoseOfTheSegmenter) {
     for (std::size_t i = 0; i < segments.label.size(); ++i) ASSERT_EQ(labelling.label[i], std::max<int>(segments.label[i], 0));
     ASSERT_EQ(labelling.stages.size(), params.method == segmenter::Method::kPaper ? 4U : 3U);  // ours has no search of its own
     EXPECT_EQ(labelling.stages[0].first, "project");
+    ASSERT_EQ(labelling.probability.has_value(), params.method == segmenter::Method::kLookout);
+    if (!labelling.probability) continue;
+    ASSERT_EQ(labelling.probability->size(), segments.segments.size());
+    double of_sure = 0.0;
+    double of_tentative = 0.0;
+    for (std::size_t i = 0; i < segments.segments.size(); ++i) {
+      if (segments.segments[i].kind == segmenter::SegmentKind::kLand) continue;  // sure for being land
+      auto& greatest = labelling.is_sure[i] ? of_sure : of_tentative;
+      greatest = std::max(greatest, (*labelling.probability)[i]);
+    }
+    EXPECT_GT(of_sure, of_tentative);
   }
 }
 
