@@ -15,6 +15,7 @@ constexpr double kRoughStepM = 2.5;  // between vertices of a waterline with bay
 constexpr double kPlainStepM = 8.0;  // and without
 constexpr double kArcStepRad = DegToRad(12.0);
 constexpr int kNumBendTries = 20;
+constexpr double kMostBayOfLength = 0.25;  // from one bay to the next: their sides then run at some 60 deg to the shore
 constexpr double kLeastDepthM = 1.0;
 constexpr double kMostBayOfRadius = 0.35;  // of a closed line, which so stays simple
 
@@ -171,6 +172,7 @@ Line Ring(double length_m, double width_m) {
 std::vector<WaterlineVertex> WithBays(const Line& line_m, bool is_closed, const config::Scene::Land& land, Random& random) {
   double bay_m = DrawNumber(land.bay_m(), 0.0, 0.0, random);
   const double bay_length_m = DrawNumber(land.bay_length_m(), 30.0, 30.0, random);
+  bay_m = std::min(bay_m, kMostBayOfLength * bay_length_m);
   const Line finer_m = is_closed ? line_m : Resampled(line_m, false, bay_m > 0.0 ? kRoughStepM : kPlainStepM);
   const auto inland = InlandOf(finer_m, is_closed);
   // Waves along the line; round a closed one a whole number of them.
