@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include "tools/eval/metrics.hpp"
@@ -43,11 +42,7 @@ FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter:
       if (!without.contains(scan.family)) maker.Add(sum, scan, rows);
     }
     tell(fmt::format("{}: {} rows of {} scans", segmenter::kEvidenceLayouts.at(sum).name, rows.size(), rows.family_of.size()));
-    try {
-      evidence.sums.push_back(FitOne(sum, rows, boosting));
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("{}: {}", segmenter::kEvidenceLayouts.at(sum).name, error.what()));
-    }
+    evidence.sums.push_back(FitOne(sum, rows, boosting));
   }
   evidence.miou = MeanIou(scans, evidence.In(params));
   evidence.without = without;

@@ -39,8 +39,7 @@ struct FittedEvidence {
 /// @param params   of the segmenter; its evidence is not looked at
 /// @param without  families whose scans are not fitted on
 /// @param tell     what is being done, for people
-/// The same scans give the same evidence. Cost: five times that of the method, and that of four fits.
-/// @throws std::invalid_argument where the scans hold nothing to tell apart
+/// The same scans give the same evidence. Cost: six times that of the method, and that of five fits.
 FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter::Params& params, const BoostingParams& boosting,
                            const std::set<std::string>& without, const std::function<void(const std::string&)>& tell);
 
