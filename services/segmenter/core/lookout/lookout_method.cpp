@@ -33,7 +33,9 @@ void LookoutMethod::FindPieces(const Scan& scan, std::span<const Return> returns
   pieces_.Build(grid_, tight_.of_return(), tight_.count());
 }
 
-std::span<const PiecePair> LookoutMethod::FindPairs(std::size_t merge) { return pair_finder_.Find(grid_, pieces_, params_.merges[merge].reach); }
+std::span<const PiecePair> LookoutMethod::FindPairs(std::size_t merge) {
+  return pair_finder_.Find(grid_, pieces_, params_.merges[merge].reach, params_.merges[merge].reaches_behind);
+}
 
 void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
   const Evidence& evidence = params_.evidence[merge];

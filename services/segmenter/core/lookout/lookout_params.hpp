@@ -29,6 +29,7 @@ std::array<Evidence, kNumSums> DefaultEvidences();
 struct MergeParams {
   Reach reach;
   double log_odds = 0.0;
+  bool reaches_behind = false;  // what something nearer hides of a gap does not count for the reach
 };
 
 /// Defaults are those of config/schema/segmenter.proto, which says where they come from.
@@ -36,7 +37,7 @@ struct LookoutParams {
   // Pieces: returns that lie so close that nothing passes between them.
   Reach link{0.3, 0.01};
   // What is beyond doubt first; then the rest, by what the larger pieces look like.
-  std::array<MergeParams, kNumMerges> merges{{{{1.5, 0.04}, 2.0}, {{4.0, 0.12}, 1.0}, {{6.0, 0.12}, 0.0}}};
+  std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
   // What is above this is land, and sure.
   double land_log_odds = 0.0;
   double sure_log_odds = 2.0;

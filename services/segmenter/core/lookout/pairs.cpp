@@ -45,7 +45,8 @@ float Over(double value, double by) { return static_cast<float>(by > 0.0 ? value
 
 }  // namespace
 
-std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
+std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind) {
+  reaches_behind_ = reaches_behind;
   FindContacts(grid, pieces, reach);
   std::ranges::sort(contacts_, [](const Contact& a, const Contact& b) { return a.one < b.one || (a.one == b.one && a.other < b.other); });
   pairs_.resize(contacts_.size());
@@ -83,7 +84,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   for (int step = 1; step <= num_steps + num_hidden && step <= kMostColumnsBeside; ++step) {
     const int column = grid.Wrap(entry.column + direction * step);
     const auto seen = pieces.InColumn(column);
-    if (IsHidden(grid, entry, column)) ++num_hidden;
+    if (reaches_behind_ && IsHidden(grid, entry, column)) ++num_hidden;
     if (std::ranges::any_of(seen, [&](const OutlineEntry& beside) { return beside.piece == entry.piece; })) return;
     const auto widest_m = static_cast<float>(reach_m + num_hidden * across_m);
     for (const OutlineEntry& beside : seen) {

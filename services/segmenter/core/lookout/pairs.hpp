@@ -71,7 +71,9 @@ class PairFinder {
 
   /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other. Sorted by their pieces.
   /// Cost: about proportional to the columns of all pieces. Allocates nothing once it has seen a scan of that size.
-  std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
+  ///
+  /// @param reaches_behind  what something nearer hides of a gap does not count for the reach
+  std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind);
 
  private:
   // Where two pieces come closest.
@@ -94,6 +96,7 @@ class PairFinder {
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
 
   double lidar_above_water_m_;
+  bool reaches_behind_ = false;
   std::vector<Contact> contacts_;
   std::vector<std::int32_t> slots_;  // an open hash table: index into contacts_, or -1
   std::vector<PiecePair> pairs_;
