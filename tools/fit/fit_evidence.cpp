@@ -58,9 +58,9 @@ std::map<std::string, double> MeanIou(std::span<const TrainingScan> scans, const
     for (std::size_t cell = 0; cell < segments.label.size(); ++cell) {
       if (truth.scan.columns.range[cell] != 0) confusion.Add(truth.object[cell], segments.label[cell]);
     }
-    for (const auto& [id, object] : confusion.Match().objects) {
-      if (object.num_returns >= kWholeObject) means[family].Add(object.iou);
-    }
+    eval::Mean iou;
+    for (const auto& [id, object] : confusion.Match().objects) iou.Add(object.iou);
+    if (iou.count > 0) means[family].Add(iou.value());
   }
   std::map<std::string, double> values;
   for (const auto& [family, mean] : means) values[family] = mean.value();

@@ -43,7 +43,7 @@ struct FittedEvidence {
 FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter::Params& params, const BoostingParams& boosting,
                            const std::set<std::string>& without, const std::function<void(const std::string&)>& tell);
 
-/// Mean IoU of the objects of each family with kWholeObject returns or more.
+/// Mean IoU of the objects of a scan, mean over the scans of each family.
 std::map<std::string, double> MeanIou(std::span<const TrainingScan> scans, const segmenter::Params& params);
 
 /// The text of a file of evidence (config/schema/evidence.proto).
