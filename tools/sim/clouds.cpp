@@ -36,22 +36,24 @@ Clouds::Clouds(const Scene& scene, const config::BoatFacts& boat, std::uint64_t 
       random_(seed, kCloudShotStream),
       is_off_(effects_.churn_probability_per_m() <= 0.0 && effects_.plumes_per_minute() <= 0.0 && effects_.fog_probability() <= 0.0) {}
 
-// A heap of foam that begins at the stern, and a sheet of drops at each side of the bow.
-void Clouds::AddChurn(const Placement& placement, double speed_mps, double stern_m, double bow_m, double half_width_m, double phase) {
-  if (speed_mps < kQuietMps) return;
-  const double puff = 0.6 + 0.4 * std::sin(kTwoPi * time_s_ / kChurnPeriodS + phase);
-  const double share = std::min((speed_mps - kQuietMps) / (kFullMps - kQuietMps), 1.0);
+// A heap of foam that begins at the stern, and a sheet of drops at each side of the bow; the own bow has Effects::spray_probability and plumes.
+void Clouds::AddChurn(const Mover& boat) {
+  if (boat.speed_mps < kQuietMps) return;
+  const double puff = 0.6 + 0.4 * std::sin(kTwoPi * time_s_ / kChurnPeriodS + boat.phase_rad);
+  const double share = std::min((boat.speed_mps - kQuietMps) / (kFullMps - kQuietMps), 1.0);
   const double density_per_m = effects_.churn_probability_per_m() * (0.3 + 0.7 * share) * puff;
-  const Vector2d ahead(std::sin(placement.heading_rad), std::cos(placement.heading_rad));
+  const Vector2d ahead(std::sin(boat.placement.heading_rad), std::cos(boat.placement.heading_rad));
   const auto add = [&](double x_m, double y_m, const Vector3d& radii_m, ReturnReason reason) {
-    const Vector2d p_m = placement.ToMap({x_m, y_m});
+    const Vector2d p_m = boat.placement.ToMap({x_m, y_m});
     on_map_.push_back({{p_m.x(), p_m.y(), scene_.sea.HeightM(p_m, time_s_)}, radii_m, ahead, density_per_m, reason});
   };
   const double heap_m = 0.4 + 2.2 * share;
-  add(stern_m - 0.8 * heap_m, 0.0, {heap_m, 0.8 * half_width_m + 0.2, 0.1 + 0.45 * share * puff}, ReturnReason::kWake);
-  const double sheet_m = 0.25 * (bow_m - stern_m);
+  add(boat.stern_m - 0.8 * heap_m, 0.0, {heap_m, 0.8 * boat.half_width_m + 0.2, 0.1 + 0.45 * share * puff}, ReturnReason::kWake);
+  if (boat.is_own) return;
+  const double sheet_m = 0.25 * (boat.bow_m - boat.stern_m);
   for (const double side : {-1.0, 1.0}) {
-    add(bow_m - 0.9 * sheet_m, side * (0.75 * half_width_m + 0.25), {sheet_m, 0.2 + 0.5 * share, 0.1 + 0.5 * share * puff}, ReturnReason::kSpray);
+    const double y_m = side * (0.75 * boat.half_width_m + 0.25);
+    add(boat.bow_m - 0.9 * sheet_m, y_m, {sheet_m, 0.2 + 0.5 * share, 0.1 + 0.5 * share * puff}, ReturnReason::kSpray);
   }
 }
 
@@ -90,13 +92,19 @@ void Clouds::MoveTo(double time_s) {
   if (effects_.plumes_per_minute() > 0.0) AddPlumes();
   if (effects_.churn_probability_per_m() <= 0.0) return;
   const OwnState own = StateAt(scene_.own_motion, reference_point_above_water_m_, time_s);
-  AddChurn({own.position_map_m.head<2>(), own.heading_rad}, own.velocity_map_mps.norm(), own_box_m_.min().x(), own_box_m_.max().x(),
-           own_box_m_.sizes().y() / 2.0, 0.0);
+  AddChurn({{own.position_map_m.head<2>(), own.heading_rad},
+            own.velocity_map_mps.norm(),
+            own_box_m_.min().x(),
+            own_box_m_.max().x(),
+            own_box_m_.sizes().y() / 2.0,
+            true,
+            0.0});
   for (const auto& object : scene_.objects) {
     if (!object.track.is_moving() || !object.is_afloat()) continue;
     const Placement placement = object.track.At(time_s);
     const double speed_mps = (placement.position_map_m - object.track.At(time_s - kStepS).position_map_m).norm() / kStepS;
-    AddChurn(placement, speed_mps, -object.waterline_m.x() / 2.0, object.waterline_m.x() / 2.0, object.waterline_m.y() / 2.0, object.id);
+    const Vector2d half_m = object.waterline_m / 2.0;
+    AddChurn({placement, speed_mps, -half_m.x(), half_m.x(), half_m.y(), false, static_cast<double>(object.id)});
   }
 }
 

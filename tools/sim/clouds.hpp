@@ -31,7 +31,16 @@ class Clouds {
     double density_per_m;     // chance of a drop's return per metre of beam
     ReturnReason reason;
   };
-  void AddChurn(const Placement& placement, double speed_mps, double stern_m, double bow_m, double half_width_m, double phase);
+  struct Mover {
+    Placement placement;
+    double speed_mps;
+    double stern_m;  // along x of its frame
+    double bow_m;
+    double half_width_m;
+    bool is_own;
+    double phase_rad;
+  };
+  void AddChurn(const Mover& boat);
   void AddPlumes();
   std::optional<double> RangeInto(const Cloud& cloud, const Ray& ray, double max_range_m);
   std::optional<double> FogRange(const Ray& ray_map, double max_range_m);

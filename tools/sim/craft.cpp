@@ -82,8 +82,8 @@ void AddHouse(double aft_m, double front_m, double half_y_m, double bottom_m, do
 
 struct Hull {
   HullPlan plan;
-  double rail_m;  // height of the side amidships
-  double floor_m;
+  double rail_m = 0.0;  // height of the side amidships
+  double floor_m = 0.0;
 };
 
 // Flared, higher at the bow; open on top or decked.

@@ -36,9 +36,9 @@ class Edges {
   };
   struct Found {
     Placement placement;
-    std::size_t object;   // beside which it lies, as given to Add
-    double least_gap_m;   // to keep from it
-    double next_along_m;  // of the row, when it may lie here
+    std::size_t object = 0;     // beside which it lies, as given to Add
+    double least_gap_m = 0.0;   // to keep from it
+    double next_along_m = 0.0;  // of the row, when it may lie here
   };
 
   /// A try: whether something else lies there is not looked at.
@@ -52,7 +52,7 @@ class Edges {
 
  private:
   struct Edge {
-    std::size_t object;
+    std::size_t object = 0;
     std::vector<Eigen::Vector2d> points_m;  // the first again at the end of a closed one
     double length_m = 0.0;
   };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "common/core/angles.hpp"
 
@@ -97,8 +96,8 @@ class Gardener {
     const double length_m = random_.Uniform(5.0, 14.0);
     const double width_m = random_.Uniform(4.0, 9.0);
     const double eaves_m = random_.Uniform(2.4, 6.5);
-    const auto corners_m =
-        Box(vertex, inland_m + width_m / 2.0, length_m, width_m, -1.5, eaves_m, Material{random_.Uniform(0.2, 0.7)}, random_.Uniform(-0.5, 0.5));
+    const Material walls{random_.Uniform(0.2, 0.7)};
+    const auto corners_m = Box(vertex, inland_m + width_m / 2.0, length_m, width_m, -1.5, eaves_m, walls, random_.Uniform(-0.5, 0.5));
     const double eaves_map_m = ground_.At(vertex, inland_m + width_m / 2.0).z() + eaves_m;
     const auto at = [](const Vector2d& p_m, double z_m) { return Vector3d(p_m.x(), p_m.y(), z_m); };
     const Vector3d ridge_a_m = at((corners_m[0] + corners_m[3]) / 2.0, eaves_map_m + width_m * 0.4);
@@ -150,8 +149,10 @@ void AddReeds(const Stretch& stretch, Gardener& gardener, Random& random) {
   const double height_m = random.Uniform(1.0, 2.6);
   const int count = gardener.Count(1.0 / (random.Uniform(1.5, 5.0) * stretch.reach_m), kMaxReeds);
   for (int i = 0; i < count; ++i) {
+    const double vertex = gardener.Anywhere();
     const double offset_m = random.Uniform(-stretch.reach_m + 0.1, 0.3);
-    gardener.Post(gardener.Anywhere(), offset_m, random.Uniform(0.012, 0.05), height_m * random.Uniform(0.6, 1.1), kReed);
+    const double radius_m = random.Uniform(0.012, 0.05);
+    gardener.Post(vertex, offset_m, radius_m, height_m * random.Uniform(0.6, 1.1), kReed);
   }
 }
 
@@ -174,16 +175,19 @@ void AddFenders(const Stretch& stretch, const Ground& ground, Gardener& gardener
   }
   const int num_bollards = gardener.Count(random.Uniform(6.0, 20.0));
   for (int i = 0; i < num_bollards; ++i) {
-    gardener.Post(gardener.At((i + 0.5) / num_bollards), 0.5, random.Uniform(0.1, 0.22), random.Uniform(0.3, 0.6), kIron);
+    const double radius_m = random.Uniform(0.1, 0.22);
+    gardener.Post(gardener.At((i + 0.5) / num_bollards), 0.5, radius_m, random.Uniform(0.3, 0.6), kIron);
   }
 }
 
 void AddBoulders(Gardener& gardener, double spacing_m, double from_m, double to_m, double least_m, double most_m, Random& random) {
   const int count = gardener.Count(spacing_m, 200);
   for (int i = 0; i < count; ++i) {
+    const double vertex = gardener.Anywhere();
+    const double inland_m = random.Uniform(from_m, to_m);
     const double radius_m = random.Uniform(least_m, most_m);
-    gardener.Ball(gardener.Anywhere(), random.Uniform(from_m, to_m),
-                  {radius_m, radius_m * random.Uniform(0.6, 1.0), radius_m * random.Uniform(0.5, 0.9)}, 0.1, kStone);
+    const Vector3d radii_m{radius_m, radius_m * random.Uniform(0.6, 1.0), radius_m * random.Uniform(0.5, 0.9)};
+    gardener.Ball(vertex, inland_m, radii_m, 0.1, kStone);
   }
 }
 
@@ -222,22 +226,35 @@ void AddCover(const Stretch& stretch, const Ground& ground, Random& random, std:
       if (chance(0.3)) each(20.0, 0.3, 10.0, bush);
       if (chance(0.4)) each(15.0, 0.0, 15.0, person);
       break;
-    case Scene::WOODS:
-      each(random.Uniform(1.2, 3.0), chance(0.5) ? 0.0 : 2.0, random.Uniform(5.0, 20.0), low_tree);
+    case Scene::WOODS: {
+      // Up to the water, or with a strip before it.
+      const double from_m = chance(0.5) ? 0.0 : 2.0;
+      const double to_m = random.Uniform(5.0, 20.0);
+      each(random.Uniform(1.2, 3.0), from_m, to_m, low_tree);
       each(random.Uniform(3.0, 12.0), 0.0, 3.0, bush);
       break;
+    }
     case Scene::HOUSES: {
       const int count = gardener.Count(random.Uniform(14.0, 35.0));
       for (int i = 0; i < count; ++i) {
         const double vertex = gardener.At((i + random.Uniform(0.2, 0.8)) / count);
         gardener.House(vertex, gardener.Inland(2.0, 14.0, vertex));
       }
-      each(random.Uniform(8.0, 20.0), 0.5, 14.0, chance(0.5) ? std::function<void(double, double)>(tall_tree) : low_tree);
-      if (chance(0.5)) gardener.Fence(stretch.run_m + random.Uniform(0.3, 2.0), random.Uniform(0.8, 1.8));
+      const bool has_tall_trees = chance(0.5);
+      const double spacing_m = random.Uniform(8.0, 20.0);
+      each(spacing_m, 0.5, 14.0,
+           [&](double vertex, double inland_m) { return has_tall_trees ? tall_tree(vertex, inland_m) : low_tree(vertex, inland_m); });
+      if (chance(0.5)) {
+        const double fence_m = stretch.run_m + random.Uniform(0.3, 2.0);
+        gardener.Fence(fence_m, random.Uniform(0.8, 1.8));
+      }
       break;
     }
     case Scene::PROMENADE:
-      if (chance(0.5)) gardener.Fence(stretch.run_m + random.Uniform(0.2, 0.8), random.Uniform(0.9, 1.2));
+      if (chance(0.5)) {
+        const double railing_m = stretch.run_m + random.Uniform(0.2, 0.8);
+        gardener.Fence(railing_m, random.Uniform(0.9, 1.2));
+      }
       each(random.Uniform(12.0, 30.0), 1.0, 3.0, [&](double vertex, double inland_m) { gardener.Post(vertex, inland_m, 0.07, 5.0, kIron); });
       each(random.Uniform(5.0, 25.0), 0.5, 6.0, person);
       if (chance(0.5)) each(random.Uniform(5.0, 12.0), 3.0, 7.0, car);
@@ -246,11 +263,15 @@ void AddCover(const Stretch& stretch, const Ground& ground, Random& random, std:
       break;
     case Scene::SHEDS:
       each(random.Uniform(20.0, 40.0), 6.0, 18.0, [&](double vertex, double inland_m) {
-        gardener.Box(vertex, inland_m, random.Uniform(8.0, 25.0), random.Uniform(6.0, 12.0), -1.0, random.Uniform(3.5, 9.0), kPlaster);
+        const double length_m = random.Uniform(8.0, 25.0);
+        const double width_m = random.Uniform(6.0, 12.0);
+        gardener.Box(vertex, inland_m, length_m, width_m, -1.0, random.Uniform(3.5, 9.0), kPlaster);
       });
       each(random.Uniform(10.0, 30.0), 2.0, 8.0, [&](double vertex, double inland_m) {
-        gardener.Box(vertex, inland_m, random.Uniform(1.5, 6.0), random.Uniform(1.0, 2.5), -0.5, random.Uniform(0.8, 2.6), kIron,
-                     random.Uniform(-0.3, 0.3));
+        const double length_m = random.Uniform(1.5, 6.0);
+        const double width_m = random.Uniform(1.0, 2.5);
+        const double height_m = random.Uniform(0.8, 2.6);
+        gardener.Box(vertex, inland_m, length_m, width_m, -0.5, height_m, kIron, random.Uniform(-0.3, 0.3));
       });
       if (chance(0.5)) each(random.Uniform(8.0, 25.0), 2.0, 7.0, car);
       each(25.0, 0.5, 6.0, person);

@@ -15,8 +15,8 @@ namespace lookout::sim {
 
 /// Seen from above: widest between the middle and the stern, pointed or blunt at the bow; convex, counter-clockwise.
 struct HullPlan {
-  double length_m;
-  double width_m;
+  double length_m = 0.0;
+  double width_m = 0.0;
   double bow_power = 2.0;      // 1.3 = a wedge, 4 = full until short of the bow
   double bow_share = 0.1;      // of the width that the stem has
   double transom_share = 0.8;  // of the width that the stern has; less than 0.3 = a double-ender

@@ -297,6 +297,7 @@ class Drawing {
   void AddEdges(const std::string& name, const SceneObject& object) {
     const auto to_map = [&object](const std::vector<Vector2d>& line_m) {
       std::vector<Vector2d> map_m;
+      map_m.reserve(line_m.size());
       for (const auto& p_m : line_m) map_m.push_back(object.track.start.ToMap(p_m));
       return map_m;
     };
@@ -312,14 +313,14 @@ class Drawing {
   std::optional<Approach> IsInTheWay(const File::Object& file, const SceneObject& object, const std::optional<Edges::Found>& found, bool is_drawn,
                                      std::size_t num_before) const {
     const bool is_in_row = file.has_row();
-    if (const auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
+    if (auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
     if (found && found->least_gap_m > 0.0) {
-      if (const auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
+      if (auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
     }
     // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
     if (is_drawn) {
       const auto skipped = found ? std::optional<std::size_t>(found->object) : std::nullopt;
-      if (const auto near = traffic_.ToOthers(object, file.min_distance_m(), is_in_row ? num_before : traffic_.num_objects(), skipped)) return near;
+      if (auto near = traffic_.ToOthers(object, file.min_distance_m(), is_in_row ? num_before : traffic_.num_objects(), skipped)) return near;
     }
     return traffic_.Overlapping(object);
   }
