@@ -311,7 +311,7 @@ echo "an old file" >evidence.txtpb
 expect_said "evidence.txtpb: exists already"
 expect_old evidence.txtpb
 "$bin/lookout-fit" --config "$config" --scenes marina --seeds 2 --trees 1 --out evidence.txtpb --force >said 2>&1 || fail "exit code $? with --force"
-grep -q merge_second evidence.txtpb || fail "--force wrote nothing"
+grep -q merge_2 evidence.txtpb || fail "--force wrote nothing"
 "$bin/lookout-fit" --config "$config" --scenes marina --first-seed 101 --out other.txtpb >said 2>&1
 [ $? -eq 2 ] || fail "seeds of tables are not refused"
 expect_nothing other.txtpb other.txtpb.partial

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 
 #include "tools/fit/isotonic.hpp"
 
@@ -31,8 +30,9 @@ struct Slope {
 };
 
 std::vector<float> ThresholdsOf(std::vector<float> values, int num_bins) {
-  std::ranges::sort(values);
   std::vector<float> thresholds;
+  if (values.empty()) return thresholds;
+  std::ranges::sort(values);
   for (int i = 1; i < num_bins; ++i) {
     const auto place = values.size() * static_cast<std::size_t>(i) / static_cast<std::size_t>(num_bins);
     const float threshold = Rounded(values[place]);
@@ -107,8 +107,8 @@ class Boosting {
   double PriorLogOdds() const {
     std::array<double, 2> weight{};
     for (const auto row : fitted_) weight[rows_.is_true[row]] += rows_.weight[row];
-    if (weight[0] == 0.0 || weight[1] == 0.0) throw std::invalid_argument("all rows are alike: there is nothing to tell apart");
-    return std::log(weight[1] / weight[0]);
+    // A unit more of each: rows that are all alike are no proof.
+    return std::log((weight[1] + 1.0) / (weight[0] + 1.0));
   }
 
   Tree NextTree(std::vector<double>& gain) {

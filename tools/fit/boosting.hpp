@@ -36,7 +36,7 @@ struct FittedSum {
 /// significant digits, and are rounded before the next tree is fitted.
 ///
 /// Cost: rows x features x trees, about 1 s for a million rows, 20 features and 10 trees. Memory: a byte for each value besides.
-/// @throws std::invalid_argument where all rows are true or all false
+/// Rows that are all true, or all false, give a bias and no tree.
 FittedSum Fit(const Rows& rows, const BoostingParams& params);
 
 /// Three significant digits.

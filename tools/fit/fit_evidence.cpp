@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <stdexcept>
 #include <utility>
 
 #include "tools/eval/metrics.hpp"
@@ -43,11 +42,7 @@ FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter:
       if (!without.contains(scan.family)) maker.Add(sum, scan, rows);
     }
     tell(fmt::format("{}: {} rows of {} scans", segmenter::kEvidenceLayouts.at(sum).name, rows.size(), rows.family_of.size()));
-    try {
-      evidence.sums.push_back(FitOne(sum, rows, boosting));
-    } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(fmt::format("{}: {}", segmenter::kEvidenceLayouts.at(sum).name, error.what()));
-    }
+    evidence.sums.push_back(FitOne(sum, rows, boosting));
   }
   evidence.miou = MeanIou(scans, evidence.In(params));
   evidence.without = without;
@@ -63,9 +58,9 @@ std::map<std::string, double> MeanIou(std::span<const TrainingScan> scans, const
     for (std::size_t cell = 0; cell < segments.label.size(); ++cell) {
       if (truth.scan.columns.range[cell] != 0) confusion.Add(truth.object[cell], segments.label[cell]);
     }
-    for (const auto& [id, object] : confusion.Match().objects) {
-      if (object.num_returns >= kWholeObject) means[family].Add(object.iou);
-    }
+    eval::Mean iou;
+    for (const auto& [id, object] : confusion.Match().objects) iou.Add(object.iou);
+    if (iou.count > 0) means[family].Add(iou.value());
   }
   std::map<std::string, double> values;
   for (const auto& [family, mean] : means) values[family] = mean.value();

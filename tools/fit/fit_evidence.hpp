@@ -39,12 +39,11 @@ struct FittedEvidence {
 /// @param params   of the segmenter; its evidence is not looked at
 /// @param without  families whose scans are not fitted on
 /// @param tell     what is being done, for people
-/// The same scans give the same evidence. Cost: five times that of the method, and that of four fits.
-/// @throws std::invalid_argument where the scans hold nothing to tell apart
+/// The same scans give the same evidence. Cost: six times that of the method, and that of five fits.
 FittedEvidence FitEvidence(std::span<const TrainingScan> scans, const segmenter::Params& params, const BoostingParams& boosting,
                            const std::set<std::string>& without, const std::function<void(const std::string&)>& tell);
 
-/// Mean IoU of the objects of each family with kWholeObject returns or more.
+/// Mean IoU of the objects of a scan, mean over the scans of each family.
 std::map<std::string, double> MeanIou(std::span<const TrainingScan> scans, const segmenter::Params& params);
 
 /// The text of a file of evidence (config/schema/evidence.proto).

@@ -56,10 +56,13 @@ float PairWeight(const PieceTruth& one, const PieceTruth& other) {
   const auto& lesser =
       one.num_returns < other.num_returns || (one.num_returns == other.num_returns && one.num_of_object < other.num_of_object) ? one : other;
   const auto& greater = &lesser == &one ? other : one;
-  const auto whole = [](const PieceTruth& piece) { return static_cast<float>(std::max(piece.num_of_object, kWholeObject)); };
-  // Clutter by itself loses nothing; what takes it in is diluted.
-  const float of = lesser.object == importer::kNoTrueObject ? whole(greater) : whole(lesser);
-  return std::max(kLeastWeight, std::min(1.0F, static_cast<float>(lesser.num_returns) / of));
+  const auto returns = static_cast<float>(lesser.num_returns);
+  const auto whole = [](const PieceTruth& piece) { return static_cast<float>(std::max(piece.num_of_object, kLeastObject)); };
+  const auto is_clutter = [](const PieceTruth& piece) { return piece.object == importer::kNoTrueObject; };
+  const float lost = is_clutter(lesser) ? 0.0F : returns / whole(lesser);
+  const bool is_diluted = one.object != other.object && !is_clutter(greater);
+  const float diluted = is_diluted ? returns / (returns + whole(greater)) : 0.0F;
+  return std::clamp(lost + diluted, kLeastWeight, 1.0F);
 }
 
 void RowMaker::Add(std::size_t sum, const TrainingScan& scan, Rows& rows) {

@@ -28,12 +28,14 @@ struct PieceTruth {
   std::int32_t num_of_object = 0;  // all returns of that object in the scan; of clutter, its own
 };
 
-/// How much a wrong answer costs: the share of its object that the lesser piece is, which is by how much the IoU of that object falls when it is left
-/// alone or given to another; a small piece of a quay counts little, a boat all of whose returns it is counts whole. Objects of fewer than
-/// kWholeObject returns count less.
+/// How much a wrong answer costs, as the fall of IoU of the objects that it touches. Two pieces of one object: the lesser is lost to it, a share of
+/// its returns. Pieces of two: the lesser is lost to its object, and what takes it in is diluted by it. Clutter has nothing to lose. So a small piece
+/// of a quay counts little, and a boat all of whose returns it is counts whole.
 float PairWeight(const PieceTruth& one, const PieceTruth& other);
-inline constexpr int kWholeObject = 5;        // the least object that is scored
-inline constexpr float kLeastWeight = 0.02F;  // drawn: fragments of land are many
+/// Of fewer returns than this no object is said to consist: a single one is half of a thing.
+inline constexpr int kLeastObject = 2;
+/// Chosen by leaving families out, as the form of the weight (DECISIONS.md).
+inline constexpr float kLeastWeight = 0.005F;
 
 /// Rows of land and of things, from groups of returns.
 class RowMaker {

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -101,10 +100,15 @@ TEST(Boosting, StopsWhereAFamilyThatItDoesNotSeeIsBest) {
   EXPECT_LT(sum.trees.size(), 10U);
 }
 
-TEST(Boosting, RefusesRowsThatAreAllAlike) {
+TEST(Boosting, OfRowsThatAreAllAlikeIsABias) {
   auto rows = DrawRows(100, 1);
   std::ranges::fill(rows.is_true, std::uint8_t{1});
-  EXPECT_THROW(Fit(rows, {}), std::invalid_argument);
+  const auto sum = Fit(rows, {});
+  EXPECT_EQ(sum.bias, Rounded(std::log(kTotalWeight + 1.0)));
+  EXPECT_TRUE(sum.trees.empty());
+  Rows none;
+  none.features = rows.features;
+  EXPECT_EQ(Fit(none, {}).bias, 0.0F);
 }
 
 TEST(Rows, WeightsOfEachFamilyAndOfEachOfItsScansAreTheSame) {
