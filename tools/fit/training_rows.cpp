@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tools/eval/outcome.hpp"
+
 namespace lookout::fit {
 namespace {
 
@@ -27,8 +29,7 @@ std::span<const Sign> SignsOf(std::size_t sum) {
 }
 
 // What stands on the ground and is no land: a row of posts or a floating deck may be either.
-bool IsDock(const importer::ScanObject& object) { return object.kind == "dock"; }
-bool IsLand(const importer::ScanObject& object) { return !object.is_in_water; }
+bool IsDock(const importer::ScanObject& object) { return !object.is_in_water && !eval::IsLand(object); }
 
 std::int32_t FamilyNumber(const std::string& family, Rows& rows) {
   const auto found = std::ranges::find(rows.families, family);
@@ -121,7 +122,7 @@ void RowMaker::AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t
     if (sum == segmenter::kLandSum && is_thing) {
       const auto& object = scan.truth.objects.at(truth[i].object);
       if (IsDock(object)) continue;
-      is_true = IsLand(object);
+      is_true = eval::IsLand(object);
     }
     rows.Add(features[i], is_true, 1.0F, scan_number);
   }

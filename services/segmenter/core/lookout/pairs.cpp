@@ -11,6 +11,14 @@ constexpr std::int32_t kFree = -1;
 constexpr int kMostColumnsBeside = 160;
 constexpr float kFacedM = 1.0F;
 constexpr float kNearerM = 0.5F;
+// Pieces of so few returns may be drops of rain or spray, of which there are thousands near the lidar. Two of them are a pair from 10 m on, up to a
+// metre for every 10 m beyond; nearer than that a thing is seen by more returns. One of them and something larger are a pair only where they are
+// near.
+constexpr std::int32_t kFewReturns = 2;
+constexpr Reach kReachOfFew{-1.0, 0.1};
+constexpr Reach kReachToFew{0.5, 0.08};
+// Columns at each end of a gap in which its beams are looked at.
+constexpr int kBeamColumns = 16;
 constexpr std::size_t kLeastSlots = 1024;
 
 // Least distance between what two pieces show in two columns, seen from above, and the returns that it is between.
@@ -41,6 +49,8 @@ bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) {
   return 2 * num_hidden >= end - first;
 }
 
+bool IsFew(const PieceFacts& piece) { return piece.num_returns <= kFewReturns; }
+
 float Over(double value, double by) { return static_cast<float>(by > 0.0 ? value / by : 0.0); }
 
 }  // namespace
@@ -48,7 +58,6 @@ float Over(double value, double by) { return static_cast<float>(by > 0.0 ? value
 std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind) {
   reaches_behind_ = reaches_behind;
   FindContacts(grid, pieces, reach);
-  std::ranges::sort(contacts_, [](const Contact& a, const Contact& b) { return a.one < b.one || (a.one == b.one && a.other < b.other); });
   pairs_.resize(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) Measure(grid, pieces, contacts_[i], pairs_[i]);
   return pairs_;
@@ -62,10 +71,16 @@ void PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, co
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const OutlineEntry& front = seen[i];
       const auto reach_m = static_cast<float>(reach.At(front.far_point.range_m));
+      const auto reach_of_few_m = static_cast<float>(kReachOfFew.At(front.far_point.range_m));
+      const auto reach_to_few_m = static_cast<float>(kReachToFew.At(front.far_point.range_m));
+      const bool is_few = IsFew(pieces[front.piece]);
       for (std::size_t j = i + 1; j < seen.size(); ++j) {
         const OutlineEntry& back = seen[j];
         const float gap_m = std::max(0.0F, back.near_point.range_m - front.far_point.range_m);
         if (gap_m > reach_m) break;
+        const bool is_back_few = IsFew(pieces[back.piece]);
+        if (is_few && is_back_few && gap_m >= reach_of_few_m) continue;
+        if ((is_few || is_back_few) && gap_m > reach_to_few_m) continue;
         Meet(front, front.far_point, back, back.near_point, gap_m * gap_m);
         if (gap_m <= kFacedM) ++At(front.piece, back.piece).num_faced;
       }
@@ -77,23 +92,30 @@ void PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, co
 
 // From where a piece ends in a column, on to what stands beside it.
 void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, const OutlineEntry& entry, int direction) {
-  const auto reach_m = static_cast<float>(reach.At(entry.near_point.range_m));
+  // What is larger looks for what is of few returns, not the other way round.
+  const bool is_few = IsFew(pieces[entry.piece]);
+  const auto reach_m = static_cast<float>(is_few ? std::min(reach.At(entry.near_point.range_m), kReachOfFew.At(entry.near_point.range_m))
+                                                 : reach.At(entry.near_point.range_m));
+  if (reach_m <= 0.0F) return;
   const double across_m = std::max(1e-3, grid.column_step_rad() * entry.near_point.range_m);
   const int num_steps = static_cast<int>(std::min(static_cast<double>(kMostColumnsBeside), std::ceil(reach_m / across_m)));
   int num_hidden = 0;
   for (int step = 1; step <= num_steps + num_hidden && step <= kMostColumnsBeside; ++step) {
     const int column = grid.Wrap(entry.column + direction * step);
     const auto seen = pieces.InColumn(column);
-    if (reaches_behind_ && IsHidden(grid, entry, column)) ++num_hidden;
+    if (reaches_behind_ && !is_few && IsHidden(grid, entry, column)) ++num_hidden;
     if (std::ranges::any_of(seen, [&](const OutlineEntry& beside) { return beside.piece == entry.piece; })) return;
     const auto widest_m = static_cast<float>(reach_m + num_hidden * across_m);
     for (const OutlineEntry& beside : seen) {
       if (beside.near_point.range_m > entry.far_point.range_m + widest_m) break;
       if (beside.far_point.range_m < entry.near_point.range_m - widest_m) continue;
+      const bool is_beside_few = IsFew(pieces[beside.piece]);
+      if (is_few && !is_beside_few) continue;
       const Closest closest = ClosestOf(entry, beside);
       const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
-      const auto limit_m = static_cast<float>(reach.At(least_range_m) + num_hidden * across_m);
-      if (closest.squared_m2 > limit_m * limit_m) continue;
+      double limit_m = reach.At(least_range_m) + num_hidden * across_m;
+      if (is_beside_few) limit_m = std::min(limit_m, (is_few ? kReachOfFew : kReachToFew).At(least_range_m));
+      if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) continue;
       if (closest.one->range_m <= closest.other->range_m) {
         Meet(entry, *closest.one, beside, *closest.other, closest.squared_m2);
       } else {
@@ -173,17 +195,19 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   set(PairFeature::kOverlap, static_cast<double>(SharedColumns(a.arc, b.arc, grid.num_columns())) / lesser_arc);
   set(PairFeature::kFaced, static_cast<double>(contact.num_faced) / lesser_arc);
 
-  // Beams between them: in the columns between, and in the rings of both.
+  // Beams between them: in columns between, and in the rings of the one that shows fewer there; of equals of the front.
   int num_beams = 0;
   int num_through = 0;
   int num_hidden = 0;
   if (columns > 1) {
     const bool is_on = grid.Wrap(front.column + columns) == back.column;
     const int first = is_on ? front.column : back.column;
-    const int from_line = std::min(front.min_ring, back.min_ring) * grid.num_layers();
-    const int end_line = (std::max(front.max_ring, back.max_ring) + 1) * grid.num_layers();
+    const OutlineEntry& lesser = front.max_ring - front.min_ring <= back.max_ring - back.min_ring ? front : back;
+    const int from_line = lesser.min_ring * grid.num_layers();
+    const int end_line = (lesser.max_ring + 1) * grid.num_layers();
     for (int line = from_line; line < end_line; ++line) {
       for (int step = 1; step < columns; ++step) {
+        if (step == kBeamColumns + 1) step = std::max(step, columns - kBeamColumns);
         const float beam_m = grid.RangeAt(line, grid.Wrap(first + step));
         ++num_beams;
         if (std::isinf(beam_m)) continue;

@@ -69,7 +69,7 @@ class PairFinder {
  public:
   explicit PairFinder(double lidar_above_water_m) : lidar_above_water_m_(lidar_above_water_m) {}
 
-  /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other. Sorted by their pieces.
+  /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other.
   /// Cost: about proportional to the columns of all pieces. Allocates nothing once it has seen a scan of that size.
   ///
   /// @param reaches_behind  what something nearer hides of a gap does not count for the reach
