@@ -24,9 +24,9 @@ PieceFacts NoFacts() {
 int SharedColumns(const Arc& one, const Arc& other, int num_columns) {
   int on = other.first - one.first;
   if (on < 0) on += num_columns;
-  if (on < one.num) return std::min(one.num - on, other.num);
-  const int back = num_columns - on;
-  return back < other.num ? std::min(other.num - back, one.num) : 0;
+  // From its begin to the begin of the first, and from there on.
+  const int end = on + other.num;
+  return std::max(0, std::min(one.num, end) - on) + std::max(0, std::min(one.num, end - num_columns));
 }
 
 void PieceTable::Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count) {
@@ -124,25 +124,25 @@ void PieceTable::FindArcs(int num_columns) {
   }
 }
 
+// In each line the circle without the widest gap between its returns there: of a piece all round, too, whatever column the scan begins with.
 void PieceTable::CountBeams(const ScanGrid& grid) {
   spans_.assign(facts_.size(), {});
-  const auto close = [this](std::size_t piece) {
+  const auto close = [this, &grid](std::size_t piece) {
     const Span& span = spans_[piece];
-    if (span.line >= 0) facts_[piece].num_beams += span.last - span.first + 1;
+    const std::int32_t over_seam = span.first + grid.num_columns() - span.last - 1;
+    if (span.line >= 0) facts_[piece].num_beams += grid.num_columns() - std::max(over_seam, span.widest_gap);
   };
   for (int line = 0; line < grid.num_lines(); ++line) {
     for (int column = grid.NextOccupied(line, 0); column < grid.num_columns();
          column = column + 1 < grid.num_columns() ? grid.NextOccupied(line, column + 1) : grid.num_columns()) {
       const auto piece = static_cast<std::size_t>(piece_of_return_[static_cast<std::size_t>(grid.At(line, column))]);
-      const int place = column - facts_[piece].arc.first + (column < facts_[piece].arc.first ? grid.num_columns() : 0);
       Span& span = spans_[piece];
-      if (span.line == line) {
-        span.first = std::min(span.first, place);
-        span.last = std::max(span.last, place);
-      } else {
+      if (span.line != line) {
         close(piece);
-        span = {line, place, place};
+        span = {line, column, column, 0};
       }
+      span.widest_gap = std::max(span.widest_gap, column - span.last - 1);
+      span.last = column;
     }
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) close(piece);

@@ -88,11 +88,12 @@ class PieceTable {
     std::int32_t widest_gap = 0;
     std::int32_t after_widest = 0;
   };
-  // Of a piece in the line that is looked at, counted from the begin of its arc.
+  // Columns of a piece in the line that is looked at.
   struct Span {
     std::int32_t line = -1;
     std::int32_t first = 0;
     std::int32_t last = 0;
+    std::int32_t widest_gap = 0;
   };
 
   void SumReturns(const ScanGrid& grid);

@@ -1,0 +1,198 @@
+#include "services/segmenter/core/lookout/pieces.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "common/core/angles.hpp"
+#include "services/segmenter/core/lookout/piece_features.hpp"
+#include "tests/unit/segmenter/piece_scene.hpp"
+
+namespace lookout::segmenter {
+namespace {
+
+using test::PieceScene;
+
+constexpr double kRoundingM = 0.003;  // ranges are multiples of 2 mm
+const double kStepRad = DegToRad(1.0);
+
+TEST(SharedColumns, AreThoseThatAreInBothArcs) {
+  constexpr int kNum = 12;
+  const auto is_in = [](const Arc& arc, int column) { return (column - arc.first + kNum) % kNum < arc.num; };
+  for (int one_first = 0; one_first < kNum; ++one_first) {
+    for (int other_first = 0; other_first < kNum; ++other_first) {
+      for (int one_num = 1; one_num <= kNum; ++one_num) {
+        for (int other_num = 1; other_num <= kNum; ++other_num) {
+          const Arc one{one_first, one_num};
+          const Arc other{other_first, other_num};
+          int expected = 0;
+          for (int column = 0; column < kNum; ++column) expected += is_in(one, column) && is_in(other, column) ? 1 : 0;
+          ASSERT_EQ(SharedColumns(one, other, kNum), expected) << one_first << "+" << one_num << " and " << other_first << "+" << other_num;
+        }
+      }
+    }
+  }
+}
+
+// Four columns over the seam, and one return above them that is farther.
+TEST(PieceTable, HasTheFactsOfAPieceOverTheSeam) {
+  PieceScene scene;
+  scene.AddRow(0, 358, 4, 1, 10.0);
+  scene.Add(0, 0, 2, 12.0);
+  scene.Build();
+  ASSERT_EQ(scene.pieces.size(), 1);
+  const auto& facts = scene.pieces[0];
+  EXPECT_EQ(facts.num_returns, 5);
+  EXPECT_EQ(facts.num_columns, 4);
+  EXPECT_EQ(facts.num_beams, 5);
+  EXPECT_EQ(facts.min_ring, 1);
+  EXPECT_EQ(facts.max_ring, 2);
+  EXPECT_NEAR(facts.min_range_m, 10.0, kRoundingM);
+  EXPECT_NEAR(facts.max_range_m, 12.0 * std::cos(DegToRad(2.0)), kRoundingM);
+  EXPECT_NEAR(facts.min_height_m, 0.0, kRoundingM);
+  EXPECT_NEAR(facts.max_height_m, 12.0 * std::sin(DegToRad(2.0)), kRoundingM);
+  EXPECT_NEAR(facts.mean_height_m, 12.0 * std::sin(DegToRad(2.0)) / 5.0, kRoundingM);
+  EXPECT_EQ(facts.arc.first, 358);
+  EXPECT_EQ(facts.arc.num, 4);
+  EXPECT_NEAR(facts.width_m, 4.0 * kStepRad * 10.0, kRoundingM);
+}
+
+TEST(PieceTable, CountsBeamsBetweenTheEndsOfEachLine) {
+  PieceScene scene;
+  for (const int column : {-2, 0, 5}) scene.Add(0, column, 1, 10.0);
+  for (const int column : {1, 4}) scene.Add(0, column, 2, 10.0);
+  scene.Build();
+  EXPECT_EQ(scene.pieces[0].num_columns, 5);
+  EXPECT_EQ(scene.pieces[0].num_beams, 8 + 4);
+  EXPECT_EQ(scene.pieces[0].arc.first, 358);
+  EXPECT_EQ(scene.pieces[0].arc.num, 8);
+}
+
+// A wall all round with something on it: nothing depends on the column with which the scan begins.
+TEST(PieceTable, OfAPieceAllRoundDoesNotDependOnWhereTheScanBegins) {
+  const auto direction = [](double azimuth_deg) { return Eigen::Vector2d(std::cos(DegToRad(azimuth_deg)), std::sin(DegToRad(azimuth_deg))); };
+  const double mean_m = 20.0 / 363.0 * (direction(0.0) + direction(10.0) + direction(50.0)).norm();
+  for (int turn = 0; turn < PieceScene::kColumns; ++turn) {
+    PieceScene scene;
+    scene.AddRow(0, 0, PieceScene::kColumns, 1, 20.0);
+    for (const int column : {0, 10, 50}) scene.Add(0, turn + column, 2, 20.0);
+    scene.Build();
+    const auto& facts = scene.pieces[0];
+    ASSERT_EQ(facts.arc.num, PieceScene::kColumns);
+    ASSERT_EQ(facts.num_columns, PieceScene::kColumns);
+    ASSERT_EQ(facts.num_beams, PieceScene::kColumns + 51) << turn;
+    ASSERT_NEAR(facts.length_m, 40.0, 0.01) << turn;
+    ASSERT_NEAR(facts.mean_m.norm(), mean_m, kRoundingM) << turn;
+  }
+}
+
+TEST(PieceTable, FitsTheLineThroughAPiece) {
+  for (const int first : {345, 30, 75, 100, 200}) {
+    for (const double off_m : {0.0, 0.2}) {
+      PieceScene scene(2);  // a degree below and above the horizon
+      // Square to the middle of 30 columns, 10 m off; the upper ring is farther.
+      double least_m = 0.0;
+      double greatest_m = 0.0;
+      for (int i = 0; i < 30; ++i) {
+        const double aside_rad = (i - 14.5) * kStepRad;
+        for (const int ring : {0, 1}) {
+          const double distance_m = 10.0 + (ring == 0 ? -off_m : off_m);
+          scene.Add(0, first + i, ring, distance_m / std::cos(aside_rad) / std::cos(DegToRad(1.0)));
+          least_m = std::min(least_m, distance_m * std::tan(aside_rad));
+          greatest_m = std::max(greatest_m, distance_m * std::tan(aside_rad));
+        }
+      }
+      scene.Build();
+      const auto& facts = scene.pieces[0];
+      const double middle_rad = (first + 15) * kStepRad;
+      EXPECT_NEAR(facts.mean_m.x(), 10.0 * std::cos(middle_rad), kRoundingM) << first;
+      EXPECT_NEAR(facts.mean_m.y(), -10.0 * std::sin(middle_rad), kRoundingM) << first;
+      EXPECT_NEAR(std::abs(facts.direction.dot(Eigen::Vector2d(std::sin(middle_rad), std::cos(middle_rad)))), 1.0, 1e-4) << first;
+      EXPECT_NEAR(facts.off_m, off_m, kRoundingM) << first;
+      EXPECT_NEAR(facts.length_m, greatest_m - least_m, 2.0 * kRoundingM) << first;
+      EXPECT_NEAR(facts.radius_m, std::hypot(greatest_m, off_m), 2.0 * kRoundingM) << first;
+    }
+  }
+}
+
+TEST(PieceTable, OfOneReturnHasNoLength) {
+  PieceScene scene;
+  scene.Add(0, 100, 1, 10.0);
+  scene.Build();
+  EXPECT_EQ(scene.pieces[0].length_m, 0.0);
+  EXPECT_EQ(scene.pieces[0].radius_m, 0.0);
+  EXPECT_EQ(scene.pieces[0].num_beams, 1);
+}
+
+TEST(PieceTable, OutlinesOfAColumnAreSortedByRange) {
+  PieceScene scene(4);
+  scene.Add(0, 7, 0, 20.0);
+  scene.Add(1, 7, 1, 10.0);
+  scene.Add(1, 7, 2, 10.5);
+  scene.Add(2, 7, 3, 15.0);
+  scene.Add(2, 8, 3, 15.0);
+  scene.Build();
+  EXPECT_TRUE(scene.pieces.InColumn(6).empty());
+  const auto seen = scene.pieces.InColumn(7);
+  ASSERT_EQ(seen.size(), 3U);
+  EXPECT_EQ(seen[0].piece, 1);
+  EXPECT_EQ(seen[1].piece, 2);
+  EXPECT_EQ(seen[2].piece, 0);
+  EXPECT_EQ(seen[0].min_ring, 1);
+  EXPECT_EQ(seen[0].max_ring, 2);
+  EXPECT_NEAR(seen[0].near_point.range_m, 10.0, 0.01);
+  EXPECT_NEAR(seen[0].far_point.range_m, 10.5, 0.01);
+  EXPECT_LT(seen[0].min_height_m, 0.0F);
+  EXPECT_GT(seen[0].max_height_m, 0.0F);
+  EXPECT_EQ(scene.returns[static_cast<std::size_t>(seen[0].nearest)].ring, 1);
+  EXPECT_EQ(scene.pieces.InColumn(8).size(), 1U);
+  EXPECT_EQ(scene.pieces.entries().size(), 4U);
+}
+
+float Of(const PieceFeatures& features, PieceFeature feature) { return features[static_cast<std::size_t>(feature)]; }
+
+// A row before another that is 2 m behind, and a drop between them.
+TEST(MeasurePieces, SaysWhatStandsBeforeBehindAndAround) {
+  PieceScene scene;
+  scene.AddRow(0, 10, 4, 1, 10.0);
+  scene.AddRow(1, 12, 6, 2, 12.0);
+  scene.Add(2, 11, 0, 11.0);
+  scene.Build();
+  std::vector<PieceFeatures> features;
+  MeasurePieces(scene.grid, scene.pieces, 1.0, features);
+  ASSERT_EQ(features.size(), 3U);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kBackdrop), 3.0F / 4.0F);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kCovered), 0.0F);
+  EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kBackdrop), 0.0F);
+  EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kCovered), 2.0F / 6.0F);
+  EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kCovered), 1.0F);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kCrowd), 1.0F);
+  EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kCrowd), 0.0F);
+}
+
+TEST(MeasurePieces, SaysHowDenseAndHowHighAPieceIs) {
+  PieceScene scene;
+  scene.AddRow(0, 20, 2, 1, 10.0);
+  scene.AddRow(0, 24, 4, 1, 10.0);
+  scene.AddRow(0, 24, 2, 2, 12.0);
+  scene.Build();
+  std::vector<PieceFeatures> features;
+  MeasurePieces(scene.grid, scene.pieces, 1.5, features);
+  const double top_m = 12.0 * std::sin(DegToRad(2.0));
+  const double depth_m = 12.0 * std::cos(DegToRad(2.0)) - 10.0;
+  EXPECT_NEAR(Of(features[0], PieceFeature::kRange), 10.0, kRoundingM);
+  EXPECT_EQ(Of(features[0], PieceFeature::kReturns), 8.0F);
+  EXPECT_EQ(Of(features[0], PieceFeature::kColumns), 6.0F);
+  EXPECT_EQ(Of(features[0], PieceFeature::kRings), 2.0F);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kWidth), 8.0 * kStepRad * 10.0, kRoundingM);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kDepth), depth_m, kRoundingM);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kTop), 1.5 + top_m, kRoundingM);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kBottom), 1.5, kRoundingM);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kMiddle), 1.5 + top_m / 4.0, kRoundingM);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kSlope), top_m / depth_m, kRoundingM);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kFill), 0.8F);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kBoxFill), 0.5F);
+  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kGaps), 0.25F);
+}
+
+}  // namespace
+}  // namespace lookout::segmenter
