@@ -1,8 +1,8 @@
 #include "services/segmenter/core/lookout/partition.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
-#include <utility>
 
 namespace lookout::segmenter {
 
@@ -29,18 +29,22 @@ void Partition::Push(std::int32_t index, float threshold) {
 }
 
 void Partition::Find(std::int32_t num_pieces, std::span<const EvidencePair> pairs, float threshold) {
+  constexpr std::size_t kLeastSlots = 64;
   edges_.clear();
+  ends_.resize(2 * pairs.size());
+  any_end_.assign(At(num_pieces), kNone);
+  num_ends_.assign(At(num_pieces), 0);
+  edge_slot_.assign(std::max(kLeastSlots, std::bit_ceil(2 * pairs.size())), kNone);
   heap_.clear();
-  if (edges_of_.size() < At(num_pieces)) edges_of_.resize(At(num_pieces));
-  for (auto& edges : edges_of_) edges.clear();
-  edge_to_.assign(At(num_pieces), kNone);
+  heap_.reserve(2 * pairs.size());  // each once, and once more for each that becomes a part of it
   parent_.resize(At(num_pieces));
   std::iota(parent_.begin(), parent_.end(), 0);
   for (const EvidencePair& pair : pairs) {
     const auto index = static_cast<std::int32_t>(edges_.size());
-    edges_.push_back({.one = pair.one, .other = pair.other, .sum = pair.log_odds, .count = 1, .gap_m = pair.gap_m});
-    edges_of_[At(pair.one)].push_back(index);
-    edges_of_[At(pair.other)].push_back(index);
+    edges_.push_back({.group = {pair.one, pair.other}, .sum = pair.log_odds, .count = 1, .gap_m = pair.gap_m});
+    Hang(2 * index, pair.one);
+    Hang(2 * index + 1, pair.other);
+    Enter(index);
     Push(index, threshold);
   }
   while (!heap_.empty()) {
@@ -49,61 +53,108 @@ void Partition::Find(std::int32_t num_pieces, std::span<const EvidencePair> pair
     heap_.pop_back();
     const Edge& edge = edges_[At(best.edge)];
     if (edge.is_gone || edge.version != best.version) continue;
-    const bool is_one_larger = edges_of_[At(edge.one)].size() >= edges_of_[At(edge.other)].size();
-    Merge(is_one_larger ? edge.one : edge.other, is_one_larger ? edge.other : edge.one, threshold);
+    const auto [one, other] = edge.group;
+    const bool is_one_larger = num_ends_[At(one)] >= num_ends_[At(other)];
+    Merge(is_one_larger ? one : other, is_one_larger ? other : one, threshold);
   }
-  group_of_piece_.assign(At(num_pieces), kNone);
+  group_of_piece_.clear();
+  number_of_root_.assign(At(num_pieces), kNone);
   count_ = 0;
-  const auto root_of = [this](std::int32_t piece) {
-    while (parent_[At(piece)] != piece) piece = parent_[At(piece)] = parent_[At(parent_[At(piece)])];
-    return piece;
-  };
-  for (std::int32_t piece = 0; piece < num_pieces; ++piece) edge_to_[At(piece)] = kNone;  // here: number of the root's group
   for (std::int32_t piece = 0; piece < num_pieces; ++piece) {
-    std::int32_t& number = edge_to_[At(root_of(piece))];
+    std::int32_t root = piece;
+    while (parent_[At(root)] != root) root = parent_[At(root)] = parent_[At(parent_[At(root)])];
+    std::int32_t& number = number_of_root_[At(root)];
     if (number == kNone) number = count_++;
-    group_of_piece_[At(piece)] = number;
+    group_of_piece_.push_back(number);
   }
 }
 
 void Partition::Merge(std::int32_t kept, std::int32_t gone, float threshold) {
   parent_[At(gone)] = kept;
-  auto& edges_of_kept = edges_of_[At(kept)];
-  for (const std::int32_t index : edges_of_kept) {
+  while (any_end_[At(gone)] != kNone) {
+    const std::int32_t end = any_end_[At(gone)];
+    const std::int32_t index = end / 2;
     Edge& edge = edges_[At(index)];
-    const std::int32_t neighbour = edge.one == kept ? edge.other : edge.one;
-    if (neighbour == gone) {
-      edge.is_gone = true;
-    } else {
-      edge_to_[At(neighbour)] = index;
-    }
-  }
-  std::erase_if(edges_of_kept, [this](std::int32_t index) { return edges_[At(index)].is_gone; });
-  for (const std::int32_t index : edges_of_[At(gone)]) {
-    Edge& edge = edges_[At(index)];
-    if (edge.is_gone) continue;
-    std::int32_t& end = edge.one == gone ? edge.one : edge.other;
-    const std::int32_t neighbour = edge.one == gone ? edge.other : edge.one;
-    const std::int32_t same = edge_to_[At(neighbour)];
-    if (same == kNone) {
-      end = kept;
-      edges_of_kept.push_back(index);
+    const std::int32_t neighbour = edge.group[At(1 - end % 2)];
+    Leave(index);
+    Take(end);
+    const std::int32_t same = neighbour == kept ? kNone : edge_slot_[SlotOf(kept, neighbour)];
+    if (neighbour != kept && same == kNone) {
+      Hang(end, kept);
+      Enter(index);
       continue;  // its mean is as it was
     }
+    Take(end ^ 1);
+    edge.is_gone = true;
+    if (same == kNone) continue;
     Edge& into = edges_[At(same)];
     into.sum += edge.sum;
     into.count += edge.count;
     into.gap_m = std::min(into.gap_m, edge.gap_m);
     ++into.version;
-    edge.is_gone = true;
-    std::erase(edges_of_[At(neighbour)], index);
     Push(same, threshold);
   }
-  edges_of_[At(gone)].clear();
-  for (const std::int32_t index : edges_of_kept) {
-    const Edge& edge = edges_[At(index)];
-    edge_to_[At(edge.one == kept ? edge.other : edge.one)] = kNone;
+}
+
+void Partition::Hang(std::int32_t end, std::int32_t group) {
+  edges_[At(end / 2)].group[At(end % 2)] = group;
+  ++num_ends_[At(group)];
+  std::int32_t& any = any_end_[At(group)];
+  if (any == kNone) {
+    any = end;
+    ends_[At(end)] = {end, end};
+    return;
   }
+  const std::int32_t last = ends_[At(any)].last;
+  ends_[At(end)] = {last, any};
+  ends_[At(last)].next = end;
+  ends_[At(any)].last = end;
+}
+
+void Partition::Take(std::int32_t end) {
+  const std::int32_t group = edges_[At(end / 2)].group[At(end % 2)];
+  --num_ends_[At(group)];
+  const auto [last, next] = ends_[At(end)];
+  ends_[At(last)].next = next;
+  ends_[At(next)].last = last;
+  if (any_end_[At(group)] == end) any_end_[At(group)] = next == end ? kNone : next;
+}
+
+std::size_t Partition::FirstSlotOf(std::int32_t one, std::int32_t other) const {
+  // Fibonacci hashing, as neighbours have numbers that follow each other.
+  constexpr std::uint64_t kGolden = 0x9E37'79B9'7F4A'7C15U;
+  const std::uint64_t key = static_cast<std::uint64_t>(std::min(one, other)) << 32U | static_cast<std::uint64_t>(std::max(one, other));
+  return static_cast<std::size_t>((key * kGolden) >> 32U) & (edge_slot_.size() - 1);
+}
+
+// Where the edge between two groups is, or a free slot.
+std::size_t Partition::SlotOf(std::int32_t one, std::int32_t other) const {
+  std::size_t slot = FirstSlotOf(one, other);
+  for (; edge_slot_[slot] != kNone; slot = (slot + 1) & (edge_slot_.size() - 1)) {
+    const auto& group = edges_[At(edge_slot_[slot])].group;
+    if ((group[0] == one && group[1] == other) || (group[0] == other && group[1] == one)) break;
+  }
+  return slot;
+}
+
+void Partition::Enter(std::int32_t edge) {
+  const auto [one, other] = edges_[At(edge)].group;
+  edge_slot_[SlotOf(one, other)] = edge;
+}
+
+// What stands behind it and could stand nearer to its first slot moves up, so that no look-up ends too soon.
+void Partition::Leave(std::int32_t edge) {
+  const std::size_t mask = edge_slot_.size() - 1;
+  const auto [one, other] = edges_[At(edge)].group;
+  std::size_t hole = SlotOf(one, other);
+  for (std::size_t slot = (hole + 1) & mask; edge_slot_[slot] != kNone; slot = (slot + 1) & mask) {
+    const auto [a, b] = edges_[At(edge_slot_[slot])].group;
+    const std::size_t first = FirstSlotOf(a, b);
+    if (((slot - first) & mask) < ((slot - hole) & mask)) continue;
+    edge_slot_[hole] = edge_slot_[slot];
+    hole = slot;
+  }
+  edge_slot_[hole] = kNone;
 }
 
 }  // namespace lookout::segmenter

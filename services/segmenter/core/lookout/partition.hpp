@@ -1,6 +1,8 @@
 // From evidence for pairs to groups: greedy contraction with mean linkage.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,7 +22,7 @@ struct EvidencePair {
 class Partition {
  public:
   /// @param pairs  each pair at most once
-  /// Cost: about proportional to the pairs. Allocates nothing once it has seen as many.
+  /// Cost: E log E for E pairs: the group with fewer neighbours moves to the other. Allocates nothing once it has seen as many of both.
   void Find(std::int32_t num_pieces, std::span<const EvidencePair> pairs, float threshold);
 
   /// [pieces] group of each, numbered in the order of their first piece.
@@ -28,9 +30,9 @@ class Partition {
   std::int32_t count() const { return count_; }
 
  private:
+  // Between two groups; its two ends are in the lists of these.
   struct Edge {
-    std::int32_t one = 0;
-    std::int32_t other = 0;
+    std::array<std::int32_t, 2> group{};
     double sum = 0.0;
     std::int32_t count = 0;
     float gap_m = 0.0F;
@@ -38,6 +40,11 @@ class Partition {
     bool is_gone = false;
 
     double mean() const { return sum / count; }
+  };
+  // End of edge i / 2 at its group i % 2, in the ring of the ends at that group.
+  struct End {
+    std::int32_t last = 0;
+    std::int32_t next = 0;
   };
   struct Best {
     double mean;
@@ -49,12 +56,22 @@ class Partition {
   static bool IsWorse(const Best& a, const Best& b);
   void Push(std::int32_t edge, float threshold);
   void Merge(std::int32_t kept, std::int32_t gone, float threshold);
+  void Hang(std::int32_t end, std::int32_t group);
+  void Take(std::int32_t end);
+  // The edges by their groups.
+  std::size_t FirstSlotOf(std::int32_t one, std::int32_t other) const;
+  std::size_t SlotOf(std::int32_t one, std::int32_t other) const;
+  void Enter(std::int32_t edge);
+  void Leave(std::int32_t edge);
 
   std::vector<Edge> edges_;
-  std::vector<std::vector<std::int32_t>> edges_of_;  // [pieces]
+  std::vector<End> ends_;                // [2 edges]
+  std::vector<std::int32_t> any_end_;    // [pieces] an end at the group; -1 = there is none
+  std::vector<std::int32_t> num_ends_;   // [pieces]
+  std::vector<std::int32_t> edge_slot_;  // an open hash table: index into edges_, or -1
   std::vector<Best> heap_;
-  std::vector<std::int32_t> edge_to_;  // [pieces] scratch
-  std::vector<std::int32_t> parent_;   // [pieces]
+  std::vector<std::int32_t> number_of_root_;  // [pieces] scratch
+  std::vector<std::int32_t> parent_;          // [pieces]
   std::vector<std::int32_t> group_of_piece_;
   std::int32_t count_ = 0;
 };
