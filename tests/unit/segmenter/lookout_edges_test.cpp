@@ -1,8 +1,10 @@
 // The lookout method where the circle closes, where a scan is a part of one, and where a lidar is another than the VLP-16.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 
+#include "services/segmenter/core/lookout/partition.hpp"
 #include "tests/unit/segmenter/lookout_stages.hpp"
 #include "tests/unit/wire/counting_new.hpp"
 
@@ -109,7 +111,7 @@ TEST(OtherLidars, WithBeamsOfAColumnAsideOfEachOtherSeeTheSameObjects) {
           beam.azimuth_offset_rad = static_cast<float>(DegToRad(offset_deg * ((ring % 4) * 2 - 3) / 3.0));
         }
         std::vector<Wall> walls;
-        test::AddBoat(walls, 12.0, 4.0, 0.5, 7.0, 2.5, -1.0, 1.5);
+        test::AddBoat(walls, 12.0, 4.0, 1.0, 7.0, 2.5, -1.0, 1.5);
         test::AddBoat(walls, 25.0, -14.0, 0.5, 5.0, 2.0, -1.0, 1.5);
         test::AddBoat(walls, -20.0, 3.0, 0.2, 0.5, 0.5, -1.0, 0.5);
         test::Look(scan, walls, 0.02);
@@ -158,9 +160,9 @@ TEST(BowOn, TheLengthIsFromBowToStern) {
   EXPECT_GT(stages.pieces[0].length_m, 7.0);
 }
 
-// What is small is attached by the gap to the bow, up to 1.2 + 0.03 x 4.8 = 1.34 m; the middle of the boat is farther off.
+// The middle of the boat is farther off than its bow.
 TEST(BowOn, WhatIsBesideTheBowIsOfIt) {
-  for (const auto& [range_m, num_segments] : {std::pair{4.75, 1U}, {4.55, 2U}}) {  // 1.25 m and 1.45 m before the bow
+  for (const auto& [range_m, num_segments] : {std::pair{5.5, 1U}, {2.0, 2U}}) {  // 0.5 m and 4 m before the bow
     auto scan = BowOn();
     for (int step = -4; step <= 4; ++step) SetReturn(scan, 900 + step, 3, range_m / std::cos(DegToRad(9.0)));
     ASSERT_EQ(Stages(scan).pieces.size(), 2);
@@ -168,18 +170,82 @@ TEST(BowOn, WhatIsBesideTheBowIsOfIt) {
   }
 }
 
-// Two quays of 16 m and more, the left one farther off. What is joined goes by the nearer, at 16 m: 3 + 0.08 x 16 = 4.28 m; by the farther, at 20.5
-// m, it would be 4.64 m.
-TEST(Mirrored, TwoQuaysAreAsManyPiecesOfLand) {
-  for (const auto& [farther_m, num_segments] : {std::pair{4.2, 1U}, {4.5, 2U}}) {
-    for (const int is_mirrored : {0, 1}) {
+// Two quays, the left one farther off: one with a step in it, or two that have nothing to do with each other. Which of them in between is for the
+// evidence to say, but for both sides alike.
+TEST(Mirrored, TwoQuaysAreAsManyPieces) {
+  for (const double farther_m : {0.1, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 14.0}) {
+    std::array<std::size_t, 2> num_segments{};
+    for (const std::size_t is_mirrored : {0U, 1U}) {
       auto scan = EmptyScan({});
       const auto at = [is_mirrored](int column) { return is_mirrored != 0 ? 1807 - column : column; };
       for (int column = 300; column < 900; ++column) {
         for (int ring = 6; ring < 10; ++ring) SetReturn(scan, at(column), ring, column < 600 ? 16.0 + farther_m : 16.0);
       }
-      EXPECT_EQ(SegmentScan(scan, {}).segments.size(), num_segments) << farther_m << (is_mirrored != 0 ? " mirrored" : "");
+      num_segments[is_mirrored] = SegmentScan(scan, {}).segments.size();
     }
+    EXPECT_EQ(num_segments[0], num_segments[1]) << farther_m;
+    if (farther_m < 0.5) {
+      EXPECT_EQ(num_segments[0], 1U);
+    } else if (farther_m > 10.0) {
+      EXPECT_EQ(num_segments[0], 2U);
+    }
+  }
+}
+
+// A beach that rises from the water at 20 m by 1 in 10, with a row of trees behind it.
+std::vector<Wall> Beach() {
+  std::vector<Wall> walls;
+  for (int step = 0; step < 12; ++step) walls.push_back({20.0 + 0.5 * step, -25.0, 20.0 + 0.5 * step, 25.0, -1.0, -0.9 + 0.05 * step});
+  walls.push_back({27.0, -25.0, 27.0, 25.0, -0.5, 4.0});
+  return walls;
+}
+
+// A hull of 6 m by 2.2 m with a cabin, 0.9 m and 1.8 m above the water.
+void AddCabinBoat(std::vector<Wall>& walls, double x_m, double y_m, double heading_rad) {
+  test::AddBoat(walls, x_m, y_m, heading_rad, 6.0, 2.2, -1.0, -0.1);
+  test::AddBoat(walls, x_m, y_m, heading_rad, 2.2, 1.6, -0.1, 0.8);
+}
+
+TEST(ClearCases, ABoatAloneIsOneThing) {
+  for (const double range_m : {8.0, 12.0, 25.0, 40.0}) {
+    for (const double heading_rad : {0.6, 1.2, kPi / 2, 2.3}) {
+      std::vector<Wall> walls;
+      AddCabinBoat(walls, range_m, 0.0, heading_rad);
+      const auto segments = SegmentScan(test::See(walls), {});
+      ASSERT_EQ(segments.segments.size(), 1U) << range_m << " m, " << heading_rad;
+      EXPECT_EQ(segments.segments[0].kind, SegmentKind::kObstacle) << range_m << " m, " << heading_rad;
+    }
+  }
+}
+
+TEST(ClearCases, TwoBoatsTenMetresApartAreTwoThings) {
+  for (const double range_m : {8.0, 15.0, 30.0}) {
+    std::vector<Wall> walls;
+    AddCabinBoat(walls, range_m, -7.5, kPi / 4);
+    AddCabinBoat(walls, range_m, 7.5, -kPi / 4);
+    const auto segments = SegmentScan(test::See(walls), {});
+    ASSERT_EQ(segments.segments.size(), 2U) << range_m;
+    for (const auto& one : segments.segments) EXPECT_EQ(one.kind, SegmentKind::kObstacle) << range_m;
+  }
+}
+
+TEST(ClearCases, AShoreOfFortyMetresIsLand) {
+  const auto segments = SegmentScan(test::See({{20.0, -20.0, 20.0, 20.0, -1.0, 4.0}}), {});
+  ASSERT_EQ(segments.segments.size(), 1U);
+  EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand);
+}
+
+TEST(ClearCases, ABoatThreeMetresBeforeABeachIsAThingOfItsOwn) {
+  for (const double y_m : {-10.0, 0.0, 8.0}) {
+    auto walls = Beach();
+    AddCabinBoat(walls, 15.9, y_m, kPi / 2);  // its far side at 17 m
+    const auto scan = test::See(walls);
+    const auto segments = SegmentScan(scan, {});
+    const auto boat = test::SegmentsNear(scan, segments, 15.0, y_m, 2.0);
+    const auto beach = test::SegmentsNear(scan, segments, 27.0, -y_m - 5.0, 3.0);
+    ASSERT_EQ(boat.size(), 1U) << y_m;
+    EXPECT_FALSE(beach.contains(*boat.begin())) << y_m;
+    EXPECT_EQ(SegmentOf(segments, *boat.begin()).kind, SegmentKind::kObstacle) << y_m;
   }
 }
 
@@ -196,18 +262,34 @@ TEST(Memory, NothingIsAllocatedForAScanThatHasBeenSeen) {
   }
 }
 
-// A slope of 128 rings is 38 m long, so it is land, in a single column.
-TEST(LandInFewColumns, IsLand) {
-  for (const int num_columns : {3, 2, 1}) {
-    auto scan = EmptyScan({.num_columns = num_columns, .num_rings = 128, .width_rad = 0.0035 * num_columns});
-    for (int ring = 0; ring < 128; ++ring) {
-      scan.head.rings[static_cast<std::size_t>(ring)].elevation_rad = static_cast<float>(DegToRad(-20.0 + 40.0 * ring / 127.0));
-      for (int column = 0; column < num_columns; ++column) SetReturn(scan, column, ring, 5.0 + 0.3 * ring);
+// With as many pieces and pairs, in other places.
+TEST(Memory, NothingIsAllocatedForAPartitionOfThatSize) {
+  constexpr std::int32_t kPieces = 500;
+  Partition partition;
+  for (const std::int32_t step : {1, 7, 0}) {
+    std::vector<EvidencePair> pairs;
+    pairs.reserve(kPieces);
+    for (std::int32_t piece = 1; piece < kPieces; ++piece) {
+      const std::int32_t other = step == 0 ? 0 : (piece * step + step) % kPieces;  // at last all are neighbours of one
+      pairs.push_back({piece, other == piece ? 0 : other, 1.0F, static_cast<float>(piece)});
     }
-    const auto segments = SegmentScan(scan, {});
-    ASSERT_EQ(segments.segments.size(), 1U) << num_columns;
-    EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand) << num_columns;
+    const auto before = num_allocated_bytes;
+    partition.Find(kPieces, pairs, 0.0F);
+    if (step == 1) continue;
+    EXPECT_EQ(num_allocated_bytes, before) << step;
   }
+}
+
+// A slope of 128 rings that rises from 1.7 m below the lidar at 5 m to 15 m above it at 43 m, over a third of the circle.
+TEST(ASlope, OfManyRingsIsOnePieceOfLand) {
+  auto scan = EmptyScan({.num_columns = 1024, .num_rings = 128});
+  for (int ring = 0; ring < 128; ++ring) {
+    scan.head.rings[static_cast<std::size_t>(ring)].elevation_rad = static_cast<float>(DegToRad(-20.0 + 40.0 * ring / 127.0));
+    for (int column = 300; column < 640; ++column) SetReturn(scan, column, ring, 5.0 + 0.3 * ring);
+  }
+  const auto segments = SegmentScan(scan, {});
+  ASSERT_EQ(segments.segments.size(), 1U);
+  EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand);
 }
 
 }  // namespace

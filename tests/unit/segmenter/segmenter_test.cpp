@@ -204,7 +204,7 @@ Scan SlabsOnAShore(double slab_m, double gap_m, double winding_m) {
 }
 
 // The paper, test 2: a shore at about 20 m is one object. Here it has gaps of 0.8 m, which the search does not bridge. To the lookout method such
-// slabs are boats at their berths: of a shore it asks that no gap shows open water over more than six columns, and that nothing stands out.
+// slabs may be boats at their berths; to it a shore with gaps of 0.3 m is one.
 TEST(PaperExamples, AShoreAtTwentyMetresIsOneObject) {
   const auto scan = SlabsOnAShore(2.2, 0.8, 0.5);
   Params without = AsThePaper();
