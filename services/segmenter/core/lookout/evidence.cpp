@@ -36,6 +36,19 @@ float Evidence::Of(std::span<const float> features) const {
   return sum;
 }
 
+std::array<float, Evidence::kBlock> Evidence::Of(const Block& features) const {
+  std::array<float, kBlock> sums;
+  sums.fill(bias_);
+  for (const auto& tree : trees_) {
+    for (std::size_t one = 0; one < kBlock; ++one) {
+      unsigned leaf = 0;
+      for (std::size_t i = 0; i < kTreeDepth; ++i) leaf |= static_cast<unsigned>(features[one][tree.feature[i]] > tree.above[i]) << i;
+      sums[one] += tree.log_odds[leaf];
+    }
+  }
+  return sums;
+}
+
 void Evidence::Terms(std::span<const float> features, std::span<float> terms) const {
   std::ranges::fill(terms, 0.0F);
   for (const auto& tree : trees_) {

@@ -52,6 +52,11 @@ class Evidence {
   /// @param features  [features of the layout]. Cost: about 1.5 ns a tree
   float Of(std::span<const float> features) const;
 
+  /// The same of a block at once, to the bit. Their sums do not wait for each other: about a quarter of the time.
+  static constexpr std::size_t kBlock = 8;
+  using Block = std::array<const float*, kBlock>;  // each [features of the layout]
+  std::array<float, kBlock> Of(const Block& features) const;
+
   /// What each feature adds to Base(), to answer "why?". The splits of a tree are asked one after the other; what an answer changes in the mean of
   /// the leaves that are still possible is the feature's.
   ///

@@ -40,7 +40,14 @@ std::span<const PiecePair> LookoutMethod::FindPairs(std::size_t merge) {
 void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
   const Evidence& evidence = params_.evidence[merge];
   evidence_.clear();
-  for (const PiecePair& pair : pairs) evidence_.push_back({pair.one, pair.other, evidence.Of(pair.features), pair.gap_m});
+  for (std::size_t first = 0; first < pairs.size(); first += Evidence::kBlock) {
+    const auto some = pairs.subspan(first, std::min(Evidence::kBlock, pairs.size() - first));
+    Evidence::Block block;
+    block.fill(some.front().features.data());
+    std::ranges::transform(some, block.begin(), [](const PiecePair& pair) { return pair.features.data(); });
+    const auto log_odds = evidence.Of(block);
+    for (std::size_t i = 0; i < some.size(); ++i) evidence_.push_back({some[i].one, some[i].other, log_odds[i], some[i].gap_m});
+  }
   partition_.Find(pieces_.size(), evidence_, static_cast<float>(params_.merges[merge].log_odds));
   const auto group_of_piece = partition_.group_of_piece();
   label_.clear();
