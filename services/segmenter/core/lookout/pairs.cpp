@@ -205,7 +205,7 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   pair.gap_m = std::sqrt(contact.squared_gap_m2);
   const OutlineEntry& front = *contact.front;
   const OutlineEntry& back = *contact.back;
-  const auto set = [&pair](PairFeature feature, double value) { pair.features[static_cast<std::size_t>(feature)] = static_cast<float>(value); };
+  const auto set = [&pair](PairFeature feature, double value) { pair.features[static_cast<std::size_t>(feature)] = FeatureOf(value); };
 
   // Where they come closest.
   const double range_m = contact.lesser_range_m;

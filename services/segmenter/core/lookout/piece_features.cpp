@@ -46,7 +46,7 @@ void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_
   }
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces[piece];
-    const auto set = [&](PieceFeature feature, double value) { of(piece, feature) = static_cast<float>(value); };
+    const auto set = [&](PieceFeature feature, double value) { of(piece, feature) = FeatureOf(value); };
     const double depth_m = facts.max_range_m - facts.min_range_m;
     const double height_m = facts.max_height_m - facts.min_height_m;
     const double num_columns = facts.num_columns;
