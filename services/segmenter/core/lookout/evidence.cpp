@@ -6,7 +6,8 @@
 
 namespace lookout::segmenter {
 
-Evidence::Evidence(const NamedSum& sum, const EvidenceLayout& layout) : bias_(sum.bias) {
+Evidence::Evidence(const NamedSum& sum, const EvidenceLayout& layout) : bias_(sum.bias), num_features_(layout.features.size()) {
+  if (num_features_ > kMostFeatures) throw std::invalid_argument("a layout of too many features");
   trees_.reserve(sum.trees.size());
   for (const auto& named : sum.trees) {
     Tree tree;
@@ -34,6 +35,28 @@ float Evidence::Of(std::span<const float> features) const {
     sum += tree.log_odds[leaf];
   }
   return sum;
+}
+
+std::array<float, Evidence::kBlock> Evidence::Of(const Block& features) const {
+  // Feature by feature.
+  std::array<std::array<float, kBlock>, kMostFeatures> values;
+  for (std::size_t f = 0; f < num_features_; ++f) {
+    for (std::size_t one = 0; one < kBlock; ++one) values[f][one] = features[one][f];
+  }
+  std::array<float, kBlock> sums;
+  sums.fill(bias_);
+  for (const auto& tree : trees_) {
+    static_assert(kTreeDepth == 3);
+    const float* const first = values[tree.feature[0]].data();
+    const float* const second = values[tree.feature[1]].data();
+    const float* const third = values[tree.feature[2]].data();
+    std::array<std::int32_t, kBlock> leaf;
+    for (std::size_t one = 0; one < kBlock; ++one) {
+      leaf[one] = (first[one] > tree.above[0] ? 1 : 0) | (second[one] > tree.above[1] ? 2 : 0) | (third[one] > tree.above[2] ? 4 : 0);
+    }
+    for (std::size_t one = 0; one < kBlock; ++one) sums[one] += tree.log_odds[static_cast<std::size_t>(leaf[one])];
+  }
+  return sums;
 }
 
 void Evidence::Terms(std::span<const float> features, std::span<float> terms) const {

@@ -8,6 +8,18 @@ namespace {
 
 constexpr double kLinkedColumns = 2.8;  // LookoutParams::link grows by as many columns of 0.2 degrees
 
+// Hands on all, in order and in blocks; the last block is filled up with the first of its own.
+template <typename One, typename FeaturesOf, typename Take>
+void ForBlocks(std::span<const One> all, FeaturesOf features_of, Take take) {
+  for (std::size_t first = 0; first < all.size(); first += Evidence::kBlock) {
+    const auto some = all.subspan(first, std::min(Evidence::kBlock, all.size() - first));
+    Evidence::Block block;
+    block.fill(features_of(some.front()));
+    std::ranges::transform(some, block.begin(), features_of);
+    take(some, block);
+  }
+}
+
 }  // namespace
 
 std::array<Evidence, kNumSums> DefaultEvidences() {
@@ -40,7 +52,12 @@ std::span<const PiecePair> LookoutMethod::FindPairs(std::size_t merge) {
 void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
   const Evidence& evidence = params_.evidence[merge];
   evidence_.clear();
-  for (const PiecePair& pair : pairs) evidence_.push_back({pair.one, pair.other, evidence.Of(pair.features), pair.gap_m});
+  ForBlocks(
+      pairs, [](const PiecePair& pair) { return pair.features.data(); },
+      [&](std::span<const PiecePair> some, const Evidence::Block& block) {
+        const auto log_odds = evidence.Of(block);
+        for (std::size_t i = 0; i < some.size(); ++i) evidence_.push_back({some[i].one, some[i].other, log_odds[i], some[i].gap_m});
+      });
   partition_.Find(pieces_.size(), evidence_, static_cast<float>(params_.merges[merge].log_odds));
   const auto group_of_piece = partition_.group_of_piece();
   label_.clear();
@@ -57,15 +74,19 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
   groups_.count = pieces_.size();
   groups_.of_return.assign(pieces_.of_returns().begin(), pieces_.of_returns().end());
   facts_.clear();
-  for (std::int32_t group = 0; group < pieces_.size(); ++group) {
-    const PieceFacts& piece = pieces_[group];
-    GroupFacts facts;
-    facts.land_log_odds = params_.evidence[kLandSum].Of(features[static_cast<std::size_t>(group)]);
-    facts.thing_log_odds = params_.evidence[kThingSum].Of(features[static_cast<std::size_t>(group)]);
-    facts.is_land = facts.land_log_odds > params_.land_log_odds;
-    facts.seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num);
-    facts_.push_back(facts);
-  }
+  ForBlocks(
+      features, [](const PieceFeatures& one) { return one.data(); },
+      [&](std::span<const PieceFeatures> some, const Evidence::Block& block) {
+        const auto land_log_odds = params_.evidence[kLandSum].Of(block);
+        const auto thing_log_odds = params_.evidence[kThingSum].Of(block);
+        for (std::size_t i = 0; i < some.size(); ++i) {
+          const PieceFacts& piece = pieces_[static_cast<std::int32_t>(facts_.size())];
+          facts_.push_back({.is_land = land_log_odds[i] > params_.land_log_odds,
+                            .land_log_odds = land_log_odds[i],
+                            .thing_log_odds = thing_log_odds[i],
+                            .seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
+        }
+      });
 }
 
 std::span<const std::int32_t> LookoutMethod::NearestOf(std::int32_t group) {

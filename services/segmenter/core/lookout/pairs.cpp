@@ -17,6 +17,12 @@ constexpr float kNearerM = 0.5F;
 constexpr std::int32_t kFewReturns = 2;
 constexpr Reach kReachOfFew{-1.0, 0.1};
 constexpr Reach kReachToFew{0.5, 0.08};
+// A thing has a few neighbours, a drop in rain or spray has dozens. Where so many have been met in a direction, no further column is looked at: the
+// bound goes by whole columns, so no order decides.
+constexpr int kMostFewBeside = 8;
+constexpr int kMostLargerBeside = 48;
+// The same of what stands behind in one column.
+constexpr int kMostBehind = 16;
 // Columns at each end of a gap in which its beams are looked at.
 constexpr int kBeamColumns = 16;
 constexpr std::size_t kLeastSlots = 1024;
@@ -43,10 +49,10 @@ Closest ClosestOf(const OutlineEntry& one, const OutlineEntry& other) {
 // Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
 bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) {
   int num_hidden = 0;
-  const int first = entry.min_ring * grid.num_layers();
-  const int end = (entry.max_ring + 1) * grid.num_layers();
-  for (int line = first; line < end; ++line) num_hidden += grid.RangeAt(line, column) < entry.near_point.range_m - kNearerM ? 1 : 0;
-  return 2 * num_hidden >= end - first;
+  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) {
+    num_hidden += grid.FarthestOfShot(ring, column) < entry.near_point.range_m - kNearerM ? 1 : 0;
+  }
+  return 2 * num_hidden > entry.max_ring - entry.min_ring;
 }
 
 bool IsFew(const PieceFacts& piece) { return piece.num_returns <= kFewReturns; }
@@ -63,9 +69,20 @@ std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTab
   return pairs_;
 }
 
+void PairFinder::SortByKind(const PieceTable& pieces, int num_columns) {
+  few_.Clear();
+  larger_.Clear();
+  for (int column = 0; column < num_columns; ++column) {
+    for (const OutlineEntry& entry : pieces.InColumn(column)) (IsFew(pieces[entry.piece]) ? few_ : larger_).entries.push_back(&entry);
+    few_.begin_of_column.push_back(few_.entries.size());
+    larger_.begin_of_column.push_back(larger_.entries.size());
+  }
+}
+
 void PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
   contacts_.clear();
   slots_.assign(std::max(kLeastSlots, slots_.size()), kFree);
+  SortByKind(pieces, grid.num_columns());
   for (int column = 0; column < grid.num_columns(); ++column) {
     const auto seen = pieces.InColumn(column);
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -74,54 +91,67 @@ void PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, co
       const auto reach_of_few_m = static_cast<float>(kReachOfFew.At(front.far_point.range_m));
       const auto reach_to_few_m = static_cast<float>(kReachToFew.At(front.far_point.range_m));
       const bool is_few = IsFew(pieces[front.piece]);
-      for (std::size_t j = i + 1; j < seen.size(); ++j) {
+      int num_behind = 0;
+      for (std::size_t j = i + 1; j < seen.size() && num_behind < kMostBehind; ++j) {
         const OutlineEntry& back = seen[j];
         const float gap_m = std::max(0.0F, back.near_point.range_m - front.far_point.range_m);
         if (gap_m > reach_m) break;
         const bool is_back_few = IsFew(pieces[back.piece]);
         if (is_few && is_back_few && gap_m >= reach_of_few_m) continue;
         if ((is_few || is_back_few) && gap_m > reach_to_few_m) continue;
-        Meet(front, front.far_point, back, back.near_point, gap_m * gap_m);
-        if (gap_m <= kFacedM) ++At(front.piece, back.piece).num_faced;
+        Contact& contact = Meet(front, front.far_point, back, back.near_point, gap_m * gap_m);
+        if (gap_m <= kFacedM) ++contact.num_faced;
+        ++num_behind;
       }
-      LookBeside(grid, pieces, reach, front, 1);
-      LookBeside(grid, pieces, reach, front, -1);
+      LookBeside(grid, reach, front, is_few, 1);
+      LookBeside(grid, reach, front, is_few, -1);
     }
   }
 }
 
 // From where a piece ends in a column, on to what stands beside it.
-void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, const OutlineEntry& entry, int direction) {
-  // What is larger looks for what is of few returns, not the other way round.
-  const bool is_few = IsFew(pieces[entry.piece]);
-  const auto reach_m = static_cast<float>(is_few ? std::min(reach.At(entry.near_point.range_m), kReachOfFew.At(entry.near_point.range_m))
-                                                 : reach.At(entry.near_point.range_m));
+void PairFinder::LookBeside(const ScanGrid& grid, const Reach& reach, const OutlineEntry& entry, bool is_few, int direction) {
+  const double near_m = entry.near_point.range_m;
+  const auto reach_m = static_cast<float>(is_few ? std::min(reach.At(near_m), kReachOfFew.At(near_m)) : reach.At(near_m));
   if (reach_m <= 0.0F) return;
-  const double across_m = std::max(1e-3, grid.column_step_rad() * entry.near_point.range_m);
-  const int num_steps = static_cast<int>(std::min(static_cast<double>(kMostColumnsBeside), std::ceil(reach_m / across_m)));
+  const double across_m = std::max(1e-3, grid.column_step_rad() * near_m);
+  const auto columns_of = [across_m](double length_m) {
+    return static_cast<int>(std::min(double{kMostColumnsBeside}, std::ceil(length_m / across_m)));
+  };
+  const int num_steps = columns_of(reach_m);
+  const int num_steps_to_few = is_few ? num_steps : columns_of(kReachToFew.At(entry.far_point.range_m));
   int num_hidden = 0;
+  int num_few = 0;
+  int num_larger = 0;
   for (int step = 1; step <= num_steps + num_hidden && step <= kMostColumnsBeside; ++step) {
     const int column = grid.Wrap(entry.column + direction * step);
-    const auto seen = pieces.InColumn(column);
     if (reaches_behind_ && !is_few && IsHidden(grid, entry, column)) ++num_hidden;
-    if (std::ranges::any_of(seen, [&](const OutlineEntry& beside) { return beside.piece == entry.piece; })) return;
+    const auto of_its_kind = (is_few ? few_ : larger_).InColumn(column);
+    if (std::ranges::any_of(of_its_kind, [&](const OutlineEntry* beside) { return beside->piece == entry.piece; })) return;
     const auto widest_m = static_cast<float>(reach_m + num_hidden * across_m);
-    for (const OutlineEntry& beside : seen) {
-      if (beside.near_point.range_m > entry.far_point.range_m + widest_m) break;
-      if (beside.far_point.range_m < entry.near_point.range_m - widest_m) continue;
-      const bool is_beside_few = IsFew(pieces[beside.piece]);
-      if (is_few && !is_beside_few) continue;
-      const Closest closest = ClosestOf(entry, beside);
-      const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
-      double limit_m = reach.At(least_range_m) + num_hidden * across_m;
-      if (is_beside_few) limit_m = std::min(limit_m, (is_few ? kReachOfFew : kReachToFew).At(least_range_m));
-      if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) continue;
-      if (closest.one->range_m <= closest.other->range_m) {
-        Meet(entry, *closest.one, beside, *closest.other, closest.squared_m2);
-      } else {
-        Meet(beside, *closest.other, entry, *closest.one, closest.squared_m2);
+    const auto look_at = [&](std::span<const OutlineEntry* const> seen, const Reach* narrower) {
+      int num_met = 0;
+      for (const OutlineEntry* beside : seen) {
+        if (beside->near_point.range_m > entry.far_point.range_m + widest_m) break;
+        if (beside->far_point.range_m < entry.near_point.range_m - widest_m) continue;
+        const Closest closest = ClosestOf(entry, *beside);
+        const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
+        double limit_m = reach.At(least_range_m) + num_hidden * across_m;
+        if (narrower != nullptr) limit_m = std::min(limit_m, narrower->At(least_range_m));
+        if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) continue;
+        ++num_met;
+        if (closest.one->range_m <= closest.other->range_m) {
+          Meet(entry, *closest.one, *beside, *closest.other, closest.squared_m2);
+        } else {
+          Meet(*beside, *closest.other, entry, *closest.one, closest.squared_m2);
+        }
       }
-    }
+      return num_met;
+    };
+    // What is larger looks for what is of few returns, not the other way round.
+    if (num_few < kMostFewBeside && step <= num_steps_to_few) num_few += look_at(few_.InColumn(column), is_few ? &kReachOfFew : &kReachToFew);
+    if (!is_few) num_larger += look_at(larger_.InColumn(column), nullptr);
+    if (num_larger >= kMostLargerBeside || (is_few && num_few >= kMostFewBeside)) return;
   }
 }
 
@@ -153,18 +183,20 @@ PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {
   return contacts_.back();
 }
 
-void PairFinder::Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point,
-                      float squared_gap_m2) {
+PairFinder::Contact& PairFinder::Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back,
+                                      const LevelPoint& back_point, float squared_gap_m2) {
   Contact& contact = At(front.piece, back.piece);
   // Of equal gaps the nearest.
   if (contact.front != nullptr &&
-      (squared_gap_m2 > contact.squared_gap_m2 || (squared_gap_m2 == contact.squared_gap_m2 && front_point.range_m >= contact.lesser_range_m)))
-    return;
+      (squared_gap_m2 > contact.squared_gap_m2 || (squared_gap_m2 == contact.squared_gap_m2 && front_point.range_m >= contact.lesser_range_m))) {
+    return contact;
+  }
   contact.squared_gap_m2 = squared_gap_m2;
   contact.lesser_range_m = front_point.range_m;
   contact.greater_range_m = back_point.range_m;
   contact.front = &front;
   contact.back = &back;
+  return contact;
 }
 
 void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const {
@@ -173,7 +205,7 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   pair.gap_m = std::sqrt(contact.squared_gap_m2);
   const OutlineEntry& front = *contact.front;
   const OutlineEntry& back = *contact.back;
-  const auto set = [&pair](PairFeature feature, double value) { pair.features[static_cast<std::size_t>(feature)] = static_cast<float>(value); };
+  const auto set = [&pair](PairFeature feature, double value) { pair.features[static_cast<std::size_t>(feature)] = FeatureOf(value); };
 
   // Where they come closest.
   const double range_m = contact.lesser_range_m;
@@ -203,12 +235,10 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
     const bool is_on = grid.Wrap(front.column + columns) == back.column;
     const int first = is_on ? front.column : back.column;
     const OutlineEntry& lesser = front.max_ring - front.min_ring <= back.max_ring - back.min_ring ? front : back;
-    const int from_line = lesser.min_ring * grid.num_layers();
-    const int end_line = (lesser.max_ring + 1) * grid.num_layers();
-    for (int line = from_line; line < end_line; ++line) {
+    for (int ring = lesser.min_ring; ring <= lesser.max_ring; ++ring) {
       for (int step = 1; step < columns; ++step) {
         if (step == kBeamColumns + 1) step = std::max(step, columns - kBeamColumns);
-        const float beam_m = grid.RangeAt(line, grid.Wrap(first + step));
+        const float beam_m = grid.FarthestOfShot(ring, grid.Wrap(first + step));
         ++num_beams;
         if (std::isinf(beam_m)) continue;
         num_through += beam_m > contact.greater_range_m ? 1 : 0;

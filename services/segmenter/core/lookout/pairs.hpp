@@ -88,15 +88,34 @@ class PairFinder {
     std::int32_t num_faced = 0;
   };
 
+  // Entries by column, the nearest first.
+  struct Columns {
+    std::vector<const OutlineEntry*> entries;
+    std::vector<std::size_t> begin_of_column;
+
+    void Clear() {
+      entries.clear();
+      begin_of_column.assign(1, 0);
+    }
+    std::span<const OutlineEntry* const> InColumn(int column) const {
+      const auto at = static_cast<std::size_t>(column);
+      return std::span(entries).subspan(begin_of_column[at], begin_of_column[at + 1] - begin_of_column[at]);
+    }
+  };
+
+  void SortByKind(const PieceTable& pieces, int num_columns);
   void FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
-  void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, const OutlineEntry& entry, int direction);
+  void LookBeside(const ScanGrid& grid, const Reach& reach, const OutlineEntry& entry, bool is_few, int direction);
   std::size_t SlotOf(std::int32_t one, std::int32_t other) const;
   Contact& At(std::int32_t one, std::int32_t other);
-  void Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point, float squared_gap_m2);
+  Contact& Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point,
+                float squared_gap_m2);
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
 
   double lidar_above_water_m_;
   bool reaches_behind_ = false;
+  Columns few_;     // of pieces of few returns
+  Columns larger_;  // of the others
   std::vector<Contact> contacts_;
   std::vector<std::int32_t> slots_;  // an open hash table: index into contacts_, or -1
   std::vector<PiecePair> pairs_;

@@ -46,7 +46,7 @@ void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_
   }
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces[piece];
-    const auto set = [&](PieceFeature feature, double value) { of(piece, feature) = static_cast<float>(value); };
+    const auto set = [&](PieceFeature feature, double value) { of(piece, feature) = FeatureOf(value); };
     const double depth_m = facts.max_range_m - facts.min_range_m;
     const double height_m = facts.max_height_m - facts.min_height_m;
     const double num_columns = facts.num_columns;
@@ -64,7 +64,7 @@ void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_
     set(PieceFeature::kMiddle, facts.mean_height_m + lidar_above_water_m);
     set(PieceFeature::kSlope, height_m / std::max(depth_m, kLeastDepthM));
     set(PieceFeature::kFill, facts.num_returns / static_cast<double>(std::max(1, facts.num_beams)));
-    set(PieceFeature::kBoxFill, facts.num_returns / (static_cast<double>(facts.arc.num) * num_rings * grid.num_layers()));
+    set(PieceFeature::kBoxFill, facts.num_returns / (static_cast<double>(facts.arc.num) * num_rings));
     set(PieceFeature::kGaps, 1.0 - num_columns / facts.arc.num);
     set(PieceFeature::kBackdrop, of(piece, PieceFeature::kBackdrop) / num_columns);
     set(PieceFeature::kCovered, of(piece, PieceFeature::kCovered) / num_columns);

@@ -26,7 +26,7 @@ enum class PieceFeature : std::uint8_t {
   kMiddle,    // m, mean height
   kSlope,     // rise from bottom to top over the depth, which counts as 0.1 m at least
   kFill,      // returns over beams between its ends
-  kBoxFill,   // returns over the beams of its columns and rings
+  kBoxFill,   // returns over the shots of its columns and rings
   kGaps,      // share of the columns of its arc in which it has no return
   kBackdrop,  // share of its columns in which something stands at most 5 m behind
   kCovered,   // share of its columns in which something stands nearer

@@ -8,6 +8,8 @@ namespace lookout::segmenter {
 
 namespace {
 
+// Less is rounding of coordinates: half of what a VLP-16 resolves.
+constexpr double kLeastLineM = 1e-3;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 PieceFacts NoFacts() {
@@ -157,15 +159,20 @@ void PieceTable::FitLines(const ScanGrid& grid) {
     facts.mean_m = {sums.x_m / count, sums.y_m / count};
     facts.mean_height_m = sums.height_m / count;
     facts.width_m = facts.arc.num * grid.column_step_rad() * facts.min_range_m;
-    if (facts.num_returns == 1) continue;  // a drop: no line, no length
+    // No line goes through one return, or through some above each other: then across the line of sight, which turns as the scene does.
+    const double from_lidar_m = std::sqrt(facts.mean_m.squaredNorm());
+    if (from_lidar_m > 0.0) facts.direction = Eigen::Vector2d(-facts.mean_m.y(), facts.mean_m.x()) / from_lidar_m;
+    if (facts.num_returns == 1) continue;
     const double xx_m2 = sums.xx_m2 / count - facts.mean_m.x() * facts.mean_m.x();
     const double xy_m2 = sums.xy_m2 / count - facts.mean_m.x() * facts.mean_m.y();
     const double yy_m2 = sums.yy_m2 / count - facts.mean_m.y() * facts.mean_m.y();
     const double half_difference_m2 = (xx_m2 - yy_m2) / 2.0;
     const double radius_m2 = std::sqrt(half_difference_m2 * half_difference_m2 + xy_m2 * xy_m2);
-    // Half of the angle whose cosine is half_difference / radius.
-    const double cosine = radius_m2 > 0.0 ? half_difference_m2 / radius_m2 : 1.0;
-    facts.direction = {std::sqrt((1.0 + cosine) / 2.0), std::copysign(std::sqrt(std::max(0.0, 1.0 - cosine) / 2.0), xy_m2)};
+    if (radius_m2 > kLeastLineM * kLeastLineM) {
+      // Half of the angle whose cosine is half_difference / radius.
+      const double cosine = half_difference_m2 / radius_m2;
+      facts.direction = {std::sqrt(std::max(0.0, 1.0 + cosine) / 2.0), std::copysign(std::sqrt(std::max(0.0, 1.0 - cosine) / 2.0), xy_m2)};
+    }
     facts.off_m = std::sqrt(std::max(0.0, (xx_m2 + yy_m2) / 2.0 - radius_m2));
   }
   for (const OutlineEntry& entry : entries_) {

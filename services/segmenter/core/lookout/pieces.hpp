@@ -32,6 +32,13 @@ struct OutlineEntry {
   LevelPoint far_point{};
 };
 
+/// To 2^-10, a millimetre: half of what a VLP-16 resolves, and far above the rounding of coordinates, which changes as the scene turns. So what is
+/// nothing stays nothing: the depth of returns of one range, or two returns off the line through them.
+inline float FeatureOf(double value) {
+  constexpr double kRounder = 1.5 * (std::uint64_t{1} << 42U);  // in a sum with it, 2^-10 is the last place
+  return static_cast<float>((value + kRounder) - kRounder);
+}
+
 struct PieceFacts {
   std::int32_t num_returns = 0;
   std::int32_t num_columns = 0;  // in which it has a return

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -65,6 +66,14 @@ class ScanGrid {
   /// Horizontal range; infinite where there is no return.
   float RangeAt(int line, int column) const {
     return range_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column)];
+  }
+  /// The farthest that a shot met, of its one or two returns; infinite where there is none. A shot whose return is reported twice is as one of one
+  /// return.
+  float FarthestOfShot(int ring, int column) const {
+    if (num_layers_ == 1) return RangeAt(ring, column);
+    const float one_m = RangeAt(ring * num_layers_, column);
+    const float other_m = RangeAt(ring * num_layers_ + 1, column);
+    return std::isinf(one_m) ? other_m : std::isinf(other_m) ? one_m : std::max(one_m, other_m);
   }
   /// The first column from this one on, up to the last, in which a line has a return; num_columns() where there is none.
   int NextOccupied(int line, int column) const;

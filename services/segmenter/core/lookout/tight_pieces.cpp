@@ -60,6 +60,7 @@ void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
     const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
     for (int other_line = line + 1; other_line < end; ++other_line) {
       const bool are_of_one_ring = grid.RingOf(other_line) == ring;
+      if (!are_of_one_ring && grid.NumNear<kLinkAcrossColumns>(other_line, column, point.range_m, widest_m) == 0) continue;
       const int window = are_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
       for (int step = -window; step <= window; ++step) look_at(other_line, grid.Wrap(column + step), are_of_one_ring);
     }
