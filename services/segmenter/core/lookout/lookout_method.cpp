@@ -62,7 +62,7 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
     GroupFacts facts;
     facts.land_log_odds = params_.evidence[kLandSum].Of(features[static_cast<std::size_t>(group)]);
     facts.thing_log_odds = params_.evidence[kThingSum].Of(features[static_cast<std::size_t>(group)]);
-    facts.is_land = facts.land_log_odds > params_.land_log_odds;
+    facts.is_land = ProbabilityOf(facts.land_log_odds) > params_.land_probability;
     facts.seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num);
     facts_.push_back(facts);
   }
