@@ -22,6 +22,9 @@ LookoutParams LookoutOf(const config::Segmenter& message, const std::filesystem:
     std::ranges::copy(LoadEvidence(file.parent_path() / message.evidence(), kEvidenceLayouts), params.evidence.begin());
   }
   params.link = {message.link_m(), message.link_per_range()};
+  params.merges.back().log_odds = message.merge_log_odds();
+  params.land_probability = message.land_probability();
+  params.sure_probability = message.sure_probability();
   return params;
 }
 

@@ -9,5 +9,4 @@ evaluate() { build/release/bin/lookout-eval --config config/catabot --scenes all
 
 evaluate --captures "${LOOKOUT_CAPTURES:-../shared/data/second_world}" --methods all --seeds "${1:-20}" --seconds 1 --test 1,2,3
 evaluate --seeds 4 --seconds 0.6 \
-  --sweep link_m=0.2:0.4:0.1 --sweep join_m=0:0.9:0.3 --sweep attach_m=0:2.4:1.2 --sweep attach_length_m=0.7:2.1:0.7 --sweep over_m=0:6:3 \
-  --sweep land_length_m=10:20:5 --sweep beside_land_m=3:9:3 --sweep post_spacing_m=0:9:3 --sweep behind_land_m=6:18:6
+  --sweep link_m=0.2:0.4:0.1 --sweep merge_log_odds=-2:2:1

@@ -164,6 +164,25 @@ TEST(SegmenterParams, AreTheDefaultsOfTheSchemaWhereNothingIsSet) {
   EXPECT_EQ(params.clustering.e3_distance_m, defaults.clustering.e3_distance_m);
   EXPECT_EQ(params.clustering.e2_max_distance_m, defaults.clustering.e2_max_distance_m);
   EXPECT_EQ(params.min_segment_points, defaults.min_segment_points);
+  EXPECT_EQ(params.lookout.link.at_lidar_m, defaults.lookout.link.at_lidar_m);
+  EXPECT_EQ(params.lookout.link.per_range, defaults.lookout.link.per_range);
+  EXPECT_EQ(params.lookout.merges.back().log_odds, defaults.lookout.merges.back().log_odds);
+  EXPECT_EQ(params.lookout.land_probability, defaults.lookout.land_probability);
+  EXPECT_EQ(params.lookout.sure_probability, defaults.lookout.sure_probability);
+}
+
+TEST(SegmenterParams, OfTheLookoutMethodAreTaken) {
+  const support::TempDir folder;
+  std::filesystem::copy_file(support::kSources / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
+                             std::filesystem::copy_options::overwrite_existing);
+  std::ofstream(folder / "segmenter.txtpb") << "link_m: 0.2 link_per_range: 0.02 merge_log_odds: 1.5 land_probability: 0.7 sure_probability: 0.6\n";
+  const auto params = LoadParams(folder).lookout;
+  EXPECT_EQ(params.link.at_lidar_m, 0.2);
+  EXPECT_EQ(params.link.per_range, 0.02);
+  EXPECT_EQ(params.merges.back().log_odds, 1.5);
+  EXPECT_EQ(params.merges.front().log_odds, LookoutParams().merges.front().log_odds);
+  EXPECT_EQ(params.land_probability, 0.7);
+  EXPECT_EQ(params.sure_probability, 0.6);
 }
 
 TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
@@ -171,6 +190,11 @@ TEST(SegmenterParams, RefuseRelationsThatMakeNoSense) {
   std::filesystem::copy_file(support::kSources / "config" / "catabot" / "boat.txtpb", folder / "boat.txtpb",
                              std::filesystem::copy_options::overwrite_existing);
   const std::map<std::string, std::string> reasons{
+      {"land_length_m: 15", "has no field named \"land_length_m\""},  // of the rules that were before
+      {"join_m: 0.3", "has no field named \"join_m\""},
+      {"land_probability: 1", "land_probability: must be at most 0.999"},
+      {"sure_probability: 0", "sure_probability: must be at least 0.001"},
+      {"merge_log_odds: nan", "merge_log_odds: must be a finite number"},
       {"min_range_m: 20 max_range_m: 20", "max_range_m: must be greater than min_range_m"},
       {"image_columns: 15", "image_columns: must be 0 or at least 16, so that neighbouring pixels look much the same way"}};
   for (const auto& [text, reason] : reasons) {

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/core/elementary.hpp"
+
 namespace lookout::segmenter {
 
 inline constexpr std::size_t kTreeDepth = 3;
@@ -85,6 +87,9 @@ class Evidence {
   std::size_t num_features_ = 0;
   std::vector<Tree> trees_;
 };
+
+/// Of 0 to 1, from the logarithm of its odds.
+inline double ProbabilityOf(float log_odds) { return 1.0 / (1.0 + Exp(-double{log_odds})); }
 
 /// The sums that are compiled in, config/evidence/lookout.txtpb.
 std::span<const NamedSum> DefaultSums();

@@ -59,6 +59,7 @@ class LookoutMethod {
 
   const Groups& groups() const { return groups_; }
   const GroupFacts& FactsOf(std::int32_t group) const { return facts_[static_cast<std::size_t>(group)]; }
+  const PieceFeatures& FeaturesOf(std::int32_t group) const { return features_[static_cast<std::size_t>(group)]; }
   /// The nearest return of that group in each of its columns, from left to right as the lidar sees them. Until the next call.
   std::span<const std::int32_t> NearestOf(std::int32_t group);
 

@@ -28,7 +28,7 @@ std::array<Evidence, kNumSums> DefaultEvidences();
 /// One round of merging: pairs within reach are merged while their mean log odds are above a threshold.
 struct MergeParams {
   Reach reach;
-  double log_odds = 0.0;
+  double log_odds = 0.0;        // 0: more likely one than two
   bool reaches_behind = false;  // what something nearer hides of a gap does not count for the reach
 };
 
@@ -36,11 +36,12 @@ struct MergeParams {
 struct LookoutParams {
   // Pieces: returns that lie so close that nothing passes between them.
   Reach link{0.3, 0.01};
-  // What is beyond doubt first; then the rest, by what the larger pieces look like.
+  // What is beyond doubt first; then the rest, by what the larger pieces look like. Reaches and thresholds belong to the evidence, which is fitted
+  // with them; they were chosen on the families of scenes (DECISIONS.md).
   std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
-  // What is above this is land, and sure.
-  double land_log_odds = 0.0;
-  double sure_log_odds = 2.0;
+  // A group is land, and sure, that is so with a greater probability; a thing is sure that is no clutter with a greater one.
+  double land_probability = 0.5;
+  double sure_probability = 0.88;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();
   /// Of the lidar over the water when the boat floats at rest.
   double lidar_above_water_m = 1.0;
