@@ -67,8 +67,19 @@ TEST(WholeCircle, AlmostClosedIsLinkedAtBothEnds) {
   }
 }
 
-// Its runs close: their first and last returns are neighbours, and say nothing of its length.
+// From the water, 1 m below the lidar, to 2 m above it. Its runs close: their first and last returns are neighbours, and say nothing of its length.
 TEST(WholeCircle, OfAHarbourWallIsLand) {
+  for (const double turn_rad : {0.0, 0.4, 2.0}) {
+    std::vector<Wall> walls;
+    test::AddBoat(walls, 5.0, -3.0, turn_rad, 50.0, 36.0, -1.0, 2.0);  // a rectangle
+    const auto segments = SegmentScan(test::See(walls), {});
+    ASSERT_EQ(segments.segments.size(), 1U) << turn_rad;
+    EXPECT_GT(segments.segments[0].length_m, 49.0F) << turn_rad;
+    EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand) << turn_rad;
+  }
+}
+
+TEST(WholeCircle, OfEqualDistanceIsOneThing) {
   auto scan = EmptyScan({});
   for (int column = 0; column < 1808; ++column) {
     for (int ring = 5; ring < 11; ++ring) SetReturn(scan, column, ring, 20.0);
@@ -76,7 +87,6 @@ TEST(WholeCircle, OfAHarbourWallIsLand) {
   const auto segments = SegmentScan(scan, {});
   ASSERT_EQ(segments.segments.size(), 1U);
   EXPECT_GT(segments.segments[0].length_m, 39.0F);
-  EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand);
 }
 
 // A quarter of a turn, its columns from left to right, with something near that hides the middle of a shore.
@@ -192,7 +202,7 @@ TEST(Mirrored, TwoQuaysAreAsManyPieces) {
   }
 }
 
-// A beach that rises from the water at 20 m by 1 in 10, with a row of trees behind it.
+// 50 m of beach that rises from the water at 20 m by 1 in 10, with a row of trees behind it.
 std::vector<Wall> Beach() {
   std::vector<Wall> walls;
   for (int step = 0; step < 12; ++step) walls.push_back({20.0 + 0.5 * step, -25.0, 20.0 + 0.5 * step, 25.0, -1.0, -0.9 + 0.05 * step});
@@ -230,9 +240,13 @@ TEST(ClearCases, TwoBoatsTenMetresApartAreTwoThings) {
 }
 
 TEST(ClearCases, AShoreOfFortyMetresIsLand) {
-  const auto segments = SegmentScan(test::See({{20.0, -20.0, 20.0, 20.0, -1.0, 4.0}}), {});
-  ASSERT_EQ(segments.segments.size(), 1U);
-  EXPECT_EQ(segments.segments[0].kind, SegmentKind::kLand);
+  const auto scan = test::See(Beach());
+  const auto segments = SegmentScan(scan, {});
+  for (const double y_m : {-15.0, 0.0, 15.0}) {
+    const auto trees = test::SegmentsNear(scan, segments, 27.0, y_m, 3.0);
+    ASSERT_EQ(trees.size(), 1U) << y_m;
+    EXPECT_EQ(SegmentOf(segments, *trees.begin()).kind, SegmentKind::kLand) << y_m;
+  }
 }
 
 TEST(ClearCases, ABoatThreeMetresBeforeABeachIsAThingOfItsOwn) {
