@@ -134,7 +134,7 @@ TEST(SegmentScanLaw, AScanWhoseShotsAllRepeatThemselvesGivesTheSegmentsOfSingleR
       }
       const auto expected = SegmentScan(single, params);
       const auto segments = SegmentScan(dual, params);
-      ASSERT_EQ(segments.segments.size(), expected.segments.size()) << "seed " << seed;
+      ASSERT_EQ(segments.segments.size(), expected.segments.size()) << "seed " << seed << ", method " << static_cast<int>(params.method);
       for (std::size_t i = 0; i < segments.segments.size(); ++i) {
         ASSERT_EQ(segments.segments[i].num_points, expected.segments[i].num_points) << "seed " << seed;
         ASSERT_EQ(segments.segments[i].centroid.x_m, expected.segments[i].centroid.x_m);

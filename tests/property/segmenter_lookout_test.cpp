@@ -230,6 +230,23 @@ TEST(LookoutLaw, WhatCameBeforeChangesNoByte) {
   }
 }
 
+TEST(LookoutLaw, LogOddsOfABlockAreThoseOfEachToTheBit) {
+  const auto evidences = DefaultEvidences();
+  for (std::size_t sum = 0; sum < kNumSums; ++sum) {
+    std::mt19937_64 random(sum);
+    const std::size_t num_features = kEvidenceLayouts[sum].features.size();
+    std::uniform_real_distribution<float> uniform(-2.0F, 30.0F);
+    std::vector<std::vector<float>> features(Evidence::kBlock, std::vector<float>(num_features));
+    Evidence::Block block{};
+    for (std::size_t i = 0; i < features.size(); ++i) {
+      for (float& feature : features[i]) feature = uniform(random);
+      block[i] = features[i].data();
+    }
+    const auto log_odds = evidences[sum].Of(block);
+    for (std::size_t i = 0; i < features.size(); ++i) ASSERT_EQ(log_odds[i], evidences[sum].Of(features[i])) << kEvidenceLayouts[sum].name;
+  }
+}
+
 // A scan of ranges that no water has, and small facts of the head that are valid all the same.
 Scan Garbage(std::mt19937_64& random) {
   const auto pick = [&random](std::initializer_list<int> values) { return *(values.begin() + random() % values.size()); };
