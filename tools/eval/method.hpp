@@ -26,6 +26,8 @@ inline constexpr std::int32_t kNotScored = -1;
 struct Labelling {
   std::vector<std::int32_t> label;  // [cells of the scan] id of a segment from 1; 0 = no return, or in no segment; or kNotScored
   std::vector<bool> is_sure;        // [segments] by id - 1; false = the method itself takes the segment for tentative
+  /// [segments] by id - 1: that the segment is of an object and not clutter, 0 to 1; nullopt = the method states none.
+  std::optional<std::vector<double>> probability = std::nullopt;
   /// Components before they were clustered into segments; nullopt = the method has no such step.
   std::optional<std::int64_t> num_components = std::nullopt;
   /// Stages in their order, as the method measured them; empty when it does not.

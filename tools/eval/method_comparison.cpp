@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "tools/eval/near_land.hpp"
 #include "tools/eval/scoring.hpp"
 
 namespace lookout::eval {
@@ -22,21 +23,23 @@ MethodComparison::MethodComparison(const Methods& methods) : methods_(methods) {
 
 void MethodComparison::Add(const ScanPlace& place, const LabelledScan& truth) {
   auto result = results_.begin();
+  const auto near_land = NearLand(truth, Score::kNearLandM);
   for (const auto& method : methods_) {
     const auto begin = std::chrono::steady_clock::now();
     auto labelling = method->Segment(truth.scan);
     const double time_ms = ToMs(std::chrono::steady_clock::now() - begin - labelling.untimed);
     for (const auto& [stage, stage_time] : labelling.stages) result->stage_ms[stage].push_back(ToMs(stage_time));
     if (method->knows_doubt()) {
-      AddPoint(*result++, place, truth, labelling, time_ms);
+      AddPoint(*result++, place, truth, near_land, labelling, time_ms);
       labelling = SureOnly(std::move(labelling));
     }
-    AddPoint(*result++, place, truth, std::move(labelling), time_ms);
+    AddPoint(*result++, place, truth, near_land, std::move(labelling), time_ms);
   }
 }
 
-void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms) {
-  Score score = ScoreScan(truth, labelling);
+void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, const std::set<std::int32_t>& near_land,
+                                Labelling labelling, double time_ms) {
+  Score score = ScoreScan(truth, labelling, near_land);
   score.time_ms.push_back(time_ms);
   result.by_scene[place.scene].Add(score);
   if (score.iou.count > 0) KeepIfBad(result, place, score.iou.value(), truth, std::move(labelling.label));

@@ -1,6 +1,8 @@
 // Scores of all methods over all scans: how good each is, and how fast.
 #pragma once
 
+#include <cstdint>
+#include <set>
 #include <vector>
 
 #include "tools/eval/method.hpp"
@@ -23,7 +25,8 @@ class MethodComparison {
   const std::vector<MethodResult>& results() const { return results_; }
 
  private:
-  void AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, Labelling labelling, double time_ms);
+  void AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, const std::set<std::int32_t>& near_land, Labelling labelling,
+                double time_ms);
   void KeepIfBad(MethodResult& result, const ScanPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const;
 
   const Methods& methods_;

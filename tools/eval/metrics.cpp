@@ -16,6 +16,7 @@ Confusion::Matches Confusion::Match() const {
   for (const auto& [object_id, count] : object_returns_) matches.objects[object_id].num_returns = count;
   for (const auto& [label, by_object] : returns_by_segment_) {
     auto& segment = matches.segments[label];
+    segment.returns_by_object = by_object;
     for (const auto& [object_id, count] : by_object) segment.num_returns += count;
     for (const auto& [object_id, num_both] : by_object) {
       if (num_both > segment.num_of_majority || (num_both == segment.num_of_majority && segment.majority_object <= 0)) {

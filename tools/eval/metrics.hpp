@@ -44,6 +44,7 @@ class Confusion {
     int majority_object = 0;           // with most of the returns; of equals an object before a stray (0) and the own vessel (-1), then the least id
     std::int64_t num_of_majority = 0;  // returns
     int num_parts = 0;                 // objects of which it holds a tenth or more
+    std::map<int, std::int64_t> returns_by_object;  // 0: of none, -1: of the own vessel
     bool has_object = false;
     bool has_own_vessel = false;
   };

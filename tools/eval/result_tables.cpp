@@ -10,9 +10,11 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "common/io/output_file.hpp"
 #include "tools/eval/against_peers.hpp"
+#include "tools/eval/failure_tables.hpp"
 #include "tools/eval/metrics.hpp"
 
 namespace lookout::eval {
@@ -201,6 +203,7 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
   add("table_3", "Table III: time by stage", Stages(results));
   add("ablation", "Ablation: components before they are clustered, segments, false segments (a scan, mean over scenes), time over all scans",
       OfMethods(results, kAblation, [](const Score& total) { return total.components.count > 0; }));
+  for (auto& table : FailureTablesOf(results)) add(table.name, table.title, std::move(table.table), table.is_printed);
   int number = 0;
   for (const auto& curve : results.curves) {
     add("curve_" + std::to_string(++number), curve.title + ": " + curve.y_label + (curve.note.empty() ? "" : "\n" + curve.note), CurveTable(curve));
@@ -209,9 +212,9 @@ std::vector<NamedTable> TablesOfWorld(const Results& results) {
 }
 
 // Columns that name a row; of tables whose rows name scenes, other worlds stand below (0).
-std::size_t NumKeyColumns(const std::string& table) {
-  if (table == "near_recall" || table == "against_peers") return 0;
-  return table == "table_3" ? 2 : 1;
+std::size_t NumKeyColumns(const NamedTable& table) {
+  if (std::ranges::find(table.table.header(), "scene") != table.table.header().end()) return 0;
+  return table.name == "table_3" ? 2 : 1;
 }
 
 // The table of another world beside ours: the cells of the row with the same keys.
@@ -250,7 +253,7 @@ std::vector<NamedTable> TablesOf(const Results& results) {
     const auto others = TablesOfWorld(world);
     for (auto& table : tables) {
       if (table.name.starts_with("curve_")) continue;  // of scenes of their own
-      const auto num_keys = NumKeyColumns(table.name);
+      const auto num_keys = NumKeyColumns(table);
       const auto other = std::ranges::find(others, table.name, &NamedTable::name);
       if (!world.is_here) {
         table.table.AddColumn(world.world, "not here");

@@ -14,13 +14,16 @@ void AddTo(auto& means, const auto& more) {
 
 void Score::Add(const Score& other) {
   for (const auto mean : {&Score::iou, &Score::water_iou, &Score::segments, &Score::false_segments, &Score::with_segment, &Score::over_segmented,
-                          &Score::under_segmented, &Score::true_positives, &Score::components}) {
+                          &Score::under_segmented, &Score::true_positives, &Score::components, &Score::near_land_found, &Score::land_segments,
+                          &Score::segments_of_land_object}) {
     (this->*mean).Add(other.*mean);
   }
   AddTo(iou_by_kind, other.iou_by_kind);
   AddTo(recall_by_range, other.recall_by_range);
   AddTo(iou_by_range, other.iou_by_range);
   AddTo(near_recall_by_kind, other.near_recall_by_kind);
+  for (const auto& [kind, outcomes] : other.outcomes_by_kind) outcomes_by_kind[kind].Add(outcomes);
+  confidence.Add(other.confidence);
   num_not_scored += other.num_not_scored;
   time_ms.insert(time_ms.end(), other.time_ms.begin(), other.time_ms.end());
 }

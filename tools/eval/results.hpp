@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "tools/eval/confidence.hpp"
 #include "tools/eval/method.hpp"
 #include "tools/eval/metrics.hpp"
+#include "tools/eval/outcome.hpp"
 
 namespace lookout::eval {
 
@@ -30,7 +32,14 @@ struct Score {
   Mean false_segments;                              // a scan: without a return of any object
   /// Objects with at least so many returns in a scan: fewer may be an accident.
   static constexpr std::int64_t kMinReturnsOfThing = 5;
-  Mean with_segment;                // share of object-scans with kMinReturnsOfThing or more: more than half of the returns of some segment are its
+  Mean with_segment;  // share of object-scans with kMinReturnsOfThing or more: more than half of the returns of some segment are its
+  std::map<std::string, Outcomes> outcomes_by_kind;  // of things (not land) with kMinReturnsOfThing or more
+  /// A boat nearer to land than this is at its shore: berths and slips leave 0.3 to 3 m of free water.
+  static constexpr double kNearLandM = 3.0;
+  Mean near_land_found;             // share of things in the water with kMinReturnsOfThing or more, nearer to land: IoU >= 0.5
+  Mean land_segments;               // a scan with a return of land: segments more than half of land
+  Mean segments_of_land_object;     // of the same segments, for each object of land with a return
+  Confidence confidence;            // where the method states probabilities
   Mean over_segmented;              // share of object-scans: two or more segments hold a tenth each
   Mean under_segmented;             // share of segments: hold a tenth each of two or more objects
   Mean true_positives;              // share of returns of objects: in a segment that belongs (by majority) to their object, the paper's TPR

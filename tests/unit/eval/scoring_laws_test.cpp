@@ -157,10 +157,14 @@ TEST(Scoring, AgreesWithAnObviousComputationOnRandomLabels) {
   }
 }
 
+std::vector<double> AsProbabilities(const std::vector<bool>& is_sure) { return {is_sure.begin(), is_sure.end()}; }
+
 TEST(Scoring, ShuffledIdsChangeNothing) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     auto one = RandomCase(seed);
+    one.truth.objects[4].kind = "shore";
+    one.labelling.probability = AsProbabilities(one.labelling.is_sure);
     const auto before = ScoreScan(one.truth, one.labelling);
     const auto before_sure = ScoreScan(one.truth, SureOnly(one.labelling));
     // Ids are dealt anew, with gaps between them.
@@ -177,6 +181,7 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
       if (label > 0) label = new_id[static_cast<std::size_t>(label - 1)];
     }
     one.labelling.is_sure = is_sure;
+    one.labelling.probability = AsProbabilities(is_sure);
     const auto after = ScoreScan(one.truth, one.labelling);
     EXPECT_DOUBLE_EQ(after.iou.sum, before.iou.sum);
     EXPECT_DOUBLE_EQ(ScoreScan(one.truth, SureOnly(one.labelling)).iou.sum, before_sure.iou.sum);
@@ -189,6 +194,9 @@ TEST(Scoring, ShuffledIdsChangeNothing) {
     EXPECT_EQ(after.under_segmented.sum, before.under_segmented.sum);
     EXPECT_EQ(after.true_positives.sum, before.true_positives.sum);
     EXPECT_EQ(after.recall_by_range, before.recall_by_range);
+    EXPECT_EQ(after.outcomes_by_kind, before.outcomes_by_kind);
+    EXPECT_EQ(after.land_segments, before.land_segments);
+    EXPECT_EQ(after.confidence, before.confidence);
   }
 }
 
