@@ -21,6 +21,7 @@
 #include "common/runtime/version.hpp"
 #include "tools/eval/captures.hpp"
 #include "tools/eval/figures.hpp"
+#include "tools/eval/lost_list.hpp"
 #include "tools/eval/method_comparison.hpp"
 #include "tools/eval/methods.hpp"
 #include "tools/eval/paper_tests.hpp"
@@ -28,6 +29,7 @@
 #include "tools/eval/report_page.hpp"
 #include "tools/eval/result_tables.hpp"
 #include "tools/eval/sweep.hpp"
+#include "tools/eval/worst_pictures.hpp"
 #include "tools/import/kitti.hpp"
 #include "tools/import/organise.hpp"
 #include "tools/import/pcd.hpp"
@@ -96,10 +98,43 @@ void AddPoints(const std::vector<std::string>& files, MethodComparison& comparis
   }
 }
 
+// Lists and pictures of what went wrong, of all worlds.
+class Failures {
+ public:
+  explicit Failures(const ComparisonOptions& options) : options_(options), pictures_(options.num_worst) {
+    if (options.lost_file.empty()) return;
+    file_.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
+    list_.emplace(file_->stream());
+  }
+
+  /// @param world  stands before the names of scenes; empty = ours
+  ScoredScanHandler HandlerOf(const std::string& world) {
+    if (!list_ && options_.pictures_folder.empty()) return {};
+    return [this, prefix = world.empty() ? "" : world + ": "](const std::string& method, ScanPlace place, const LabelledScan& truth,
+                                                              const std::vector<std::int32_t>& label, const Score& score) {
+      place.scene = prefix + place.scene;
+      if (list_) list_->Add(method, place, truth, label);
+      if (!options_.pictures_folder.empty()) pictures_.Add(method, place, truth, label, score);
+    };
+  }
+
+  void Write() {
+    if (file_) file_->Commit();
+    if (!options_.pictures_folder.empty()) pictures_.Write(options_.pictures_folder, options_.is_forced);
+  }
+
+ private:
+  const ComparisonOptions& options_;
+  std::optional<io::OutputFile> file_;
+  std::optional<LostList> list_;
+  WorstPictures pictures_;
+};
+
 // What becomes of the scans of one world: scores, and for a scan of each seed (the others look much like it) what the paper's image keeps.
 class World {
  public:
-  World(const segmenter::Params& boat, const Methods& methods) : comparison(methods), projections(boat) {}
+  World(const segmenter::Params& boat, const Methods& methods, ScoredScanHandler on_scored)
+      : comparison(methods, std::move(on_scored)), projections(boat) {}
 
   void Add(const ScanPlace& place, const LabelledScan& truth) {
     comparison.Add(place, truth);
@@ -120,7 +155,7 @@ void Describe(const ComparisonOptions& options, Results& results) {
   results.computer = Computer();
 }
 
-Results RunCaptures(const ComparisonOptions& options) {
+Results RunCaptures(const ComparisonOptions& options, Failures& failures) {
   Results results;
   results.world = kSecondWorld;
   Describe(options, results);
@@ -133,7 +168,7 @@ Results RunCaptures(const ComparisonOptions& options) {
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const auto boat = LoadBoatOfCaptures(options.captures, options.config_folder);
   const auto methods = MakeMethods(boat.segmenter, options.methods);
-  World world(boat.segmenter, methods);
+  World world(boat.segmenter, methods, failures.HandlerOf(kSecondWorld));
   runtime::Progress progress("lookout-eval", stderr);
   for (const auto& files : captures) {
     if (results.scenes.empty() || results.scenes.back() != files.scene) results.scenes.push_back(files.scene);
@@ -154,10 +189,10 @@ Results RunCaptures(const ComparisonOptions& options) {
 }
 
 // Said before a run of minutes, not after it.
-void RefuseIfThere(const std::filesystem::path& folder) {
+void RefuseIfThere(const std::filesystem::path& folder, const char* ending) {
   if (folder.empty() || !std::filesystem::exists(folder)) return;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".csv") throw std::runtime_error(entry.path().string() + ": is there already; --force replaces it");
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() == ending) throw std::runtime_error(entry.path().string() + ": is there already; --force replaces it");
   }
 }
 
@@ -197,10 +232,14 @@ int CompareMethods(const ComparisonOptions& options) {
   const auto methods = MakeMethods(boat.segmenter, options.methods);
 
   io::CatchStopSignals();
-  if (!options.is_forced) RefuseIfThere(options.csv_folder);
+  if (!options.is_forced) {
+    RefuseIfThere(options.csv_folder, ".csv");
+    RefuseIfThere(options.pictures_folder, ".svg");
+  }
   FillBlocksOf(options.block_files, {});  // a block that is wrong stops the run before it begins
   std::optional<io::OutputFile> page;
   if (!options.html_file.empty()) page.emplace(options.html_file, io::OutputOptions{.force = options.is_forced});
+  Failures failures(options);
 
   Results results;
   Describe(options, results);
@@ -211,13 +250,13 @@ int CompareMethods(const ComparisonOptions& options) {
   for (const auto& scene : plan.scenes) results.scenes.push_back(SceneLabel(scene));
   if (!options.points.empty()) results.scenes.push_back(kPointsLabel);
   if (!methods.empty()) {
-    World world(boat.segmenter, methods);
+    World world(boat.segmenter, methods, failures.HandlerOf(""));
     ForEachScan(plan, boat, stderr, [&world](const ScanPlace& place, const LabelledScan& truth) { world.Add(place, truth); });
     AddPoints(options.points, world.comparison);
     world.Finish(results);
   }
   if (!options.captures.empty()) {
-    auto captures = RunCaptures(options);
+    auto captures = RunCaptures(options, failures);
     if (results.scenes.empty() && !captures.is_here) throw std::runtime_error(options.captures.string() + ": is not here");
     // Alone, they are the tables.
     if (results.scenes.empty() && options.tests.empty()) {
@@ -230,6 +269,7 @@ int CompareMethods(const ComparisonOptions& options) {
   for (const auto& sweep : sweeps) results.curves.push_back(RunSweep(sweep, sweep_plan, boat, stderr));
 
   PrintTables(results, std::cout);
+  failures.Write();
   if (!options.csv_folder.empty()) WriteCsv(results, options.csv_folder, options.is_forced);
   if (page) {
     WriteHtml(results, page->stream());

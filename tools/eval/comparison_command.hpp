@@ -1,6 +1,7 @@
 // lookout-eval --config: methods against the truth of simulated scenes, of captures of a second world, or of recordings of others.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -25,6 +26,9 @@ struct ComparisonOptions {
   std::vector<int> tests;            // RunPaperTest
   std::filesystem::path csv_folder;  // empty = none, and so below
   std::filesystem::path html_file;
+  std::filesystem::path lost_file;                 // LostList
+  std::filesystem::path pictures_folder;           // WorstPictures
+  std::size_t num_worst = 30;                      // pictures of each scene and row
   std::vector<std::filesystem::path> block_files;  // in whose marked blocks the figures are written (FillBlocks)
   bool is_forced = false;                          // files that are there are replaced
 };

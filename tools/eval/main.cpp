@@ -65,6 +65,13 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_option("--test", comparison.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
   needs_config(app.add_option("--csv", comparison.csv_folder, "write each table as a CSV file to this folder"));
   needs_config(app.add_option("--html", comparison.html_file, "write the report as one page"));
+  needs_config(app.add_option("--lost", comparison.lost_file, "write each thing that was lost, as a row of a CSV file"));
+  auto* pictures =
+      needs_config(app.add_option("--pictures", comparison.pictures_folder, "draw the worst scans of each method and scene into this folder"));
+  app.add_option("--worst", comparison.num_worst, "pictures of each method and scene")
+      ->check(CLI::Range(1, 1000))
+      ->needs(pictures)
+      ->capture_default_str();
   needs_config(app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written"))
       ->check(CLI::ExistingFile);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));

@@ -14,7 +14,7 @@ double ToMs(std::chrono::nanoseconds duration) { return std::chrono::duration<do
 
 }  // namespace
 
-MethodComparison::MethodComparison(const Methods& methods) : methods_(methods) {
+MethodComparison::MethodComparison(const Methods& methods, ScoredScanHandler on_scored) : methods_(methods), on_scored_(std::move(on_scored)) {
   for (const auto& method : methods) {
     results_.push_back({method->name() + std::string(method->knows_doubt() ? kAllSegments : ""), {}, {}, {}});
     if (method->knows_doubt()) results_.push_back({method->name() + std::string(kSureOnly), {}, {}, {}});
@@ -40,6 +40,7 @@ void MethodComparison::Add(const ScanPlace& place, const LabelledScan& truth) {
 void MethodComparison::AddPoint(MethodResult& result, const ScanPlace& place, const LabelledScan& truth, const std::set<std::int32_t>& near_land,
                                 Labelling labelling, double time_ms) {
   Score score = ScoreScan(truth, labelling, near_land);
+  if (on_scored_) on_scored_(result.method, place, truth, labelling.label, score);
   score.time_ms.push_back(time_ms);
   result.by_scene[place.scene].Add(score);
   if (score.iou.count > 0) KeepIfBad(result, place, score.iou.value(), truth, std::move(labelling.label));

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "tools/eval/method.hpp"
@@ -11,13 +13,18 @@
 
 namespace lookout::eval {
 
+/// Sees a scan with the labels and the score of one row of the tables.
+using ScoredScanHandler = std::function<void(const std::string& method, const ScanPlace& place, const LabelledScan& truth,
+                                             const std::vector<std::int32_t>& label, const Score& score)>;
+
 /// Lets each method label each scan, and keeps the scores: one result for each operating point of a method, so that no row of a table holds figures
 /// of two. A method that knows doubt has two, in this order: all segments, and the sure ones alone.
 /// Everything but the times depends on the scans alone.
 class MethodComparison {
  public:
-  /// @param methods  outlive this
-  explicit MethodComparison(const Methods& methods);
+  /// @param methods    outlive this
+  /// @param on_scored  called for each scan and row; empty = not
+  explicit MethodComparison(const Methods& methods, ScoredScanHandler on_scored = {});
 
   void Add(const ScanPlace& place, const LabelledScan& truth);
 
@@ -30,6 +37,7 @@ class MethodComparison {
   void KeepIfBad(MethodResult& result, const ScanPlace& place, double iou, const LabelledScan& truth, std::vector<std::int32_t> label) const;
 
   const Methods& methods_;
+  ScoredScanHandler on_scored_;
   std::vector<MethodResult> results_;
 };
 

@@ -16,6 +16,7 @@
 #include "tools/eval/metrics.hpp"
 #include "tools/eval/page_template.hpp"
 #include "tools/eval/scoring.hpp"
+#include "tools/eval/spots.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -68,32 +69,6 @@ Json ByRange(const std::map<int, Mean>& bins) {
   return json;
 }
 
-struct Spot {
-  std::int32_t object;
-  std::int32_t segment;
-  double right_m;
-  double forward_m;
-};
-
-// What the method does not look at belongs to no object here.
-std::vector<Spot> SpotsOf(const WorstScan& worst) {
-  const auto& scan = worst.truth.scan;
-  std::vector<Spot> spots;
-  std::size_t cell = 0;
-  for (const float column_azimuth_rad : scan.columns.azimuth_rad) {
-    for (const auto& ring : scan.head.rings) {
-      const double azimuth_rad = double{column_azimuth_rad} + double{ring.azimuth_offset_rad};
-      for (int i = 0; i < scan.head.num_returns; ++i, ++cell) {
-        if (scan.columns.range[cell] == 0) continue;
-        const double distance_m = scan.columns.range[cell] * scan.head.range_unit_m * std::cos(double{ring.elevation_rad});
-        const std::int32_t object = worst.label[cell] == kNotScored ? 0 : std::max(0, worst.truth.object[cell]);
-        spots.push_back({object, std::max(0, worst.label[cell]), distance_m * std::sin(azimuth_rad), distance_m * std::cos(azimuth_rad)});
-      }
-    }
-  }
-  return spots;
-}
-
 // What the objects scored, by bearing, and where the returns of each object in each segment are: on a grid that fits a plan, neighbours forward of
 // each other as one run, so that a page with many scans stays small.
 Json WorstScanOf(const WorstScan& worst) {
@@ -103,7 +78,7 @@ Json WorstScanOf(const WorstScan& worst) {
   const std::size_t num_cells = scan.columns.azimuth_rad.size() * scan.head.rings.size() * static_cast<std::size_t>(scan.head.num_returns);
   if (scan.num_cells() != num_cells || worst.truth.object.size() != num_cells || worst.label.size() != num_cells) return json;
 
-  const auto spots = SpotsOf(worst);
+  const auto spots = SpotsOf(worst.truth, worst.label);
   std::map<std::int32_t, std::pair<double, double>> sums;  // of (right, forward), by object
   std::pair min_m{0.0, 0.0};
   std::pair max_m{0.0, 0.0};

@@ -31,6 +31,7 @@ Methods MakePeers(const segmenter::ReturnFilter& filter) {
 
   add("Euclidean 0.02 m (PCL tutorial)", kTutorial, EuclideanGrouping(0.02));
   add("Euclidean 0.5 m", kAnySize, EuclideanGrouping(0.5));
+  add("Euclidean 1 m", kAnySize, EuclideanGrouping(1.0));
   add("Euclidean 2 m", kAnySize, EuclideanGrouping(2.0));
   add("Euclidean 4 m", kAnySize, EuclideanGrouping(4.0));
   add("Euclidean 2.5 m (tuned)", kAnySize, EuclideanGrouping(2.5));
