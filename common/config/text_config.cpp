@@ -255,8 +255,9 @@ std::string EffectiveText(const Message& message, const std::string& indent) {
 
 std::string EffectiveTextOfFile(const std::filesystem::path& file) {
   const std::string text = ReadConfigFile(file);
-  // All scenes have one schema, whatever their names.
-  const bool is_scene = file.parent_path().filename() == "scenes";
+  // All scenes and families have one schema, whatever their names.
+  const auto folder = file.parent_path().filename();
+  const bool is_scene = folder == "scenes" || folder == "families";
   const std::string schema_file = "config/schema/" + (is_scene ? "scene" : file.stem().string()) + ".proto";
   const auto* descriptor = FindSchema(schema_file);
   if (descriptor == nullptr) throw ConfigError({file.string() + ":1: file: there is no " + schema_file});
