@@ -34,7 +34,7 @@ Outcome OutcomeOfForeign(const Shares& shares) {
 }  // namespace
 
 bool IsLand(const importer::ScanObject& object) {
-  constexpr std::array<std::string_view, 3> kBuiltIntoTheWater{"dock", "pier", "jetty"};
+  constexpr std::array<std::string_view, 4> kBuiltIntoTheWater{"dock", "pier", "jetty", "pontoon"};
   const auto is_part_of_kind = [&object](std::string_view word) { return object.kind.find(word) != std::string::npos; };
   return !object.is_in_water && std::ranges::none_of(kBuiltIntoTheWater, is_part_of_kind);
 }

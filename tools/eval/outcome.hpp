@@ -15,7 +15,8 @@ namespace lookout::eval {
 /// IoU from which an object counts as found.
 inline constexpr double kFoundIou = 0.5;
 
-/// Shores, islands, walls, what grows and stands there: all that is not in the water, but for docks, piers and jetties. All else is a thing.
+/// Shores, islands, walls, what grows and stands there: all that is not in the water, but for docks, piers, jetties and pontoons. All else is a
+/// thing.
 bool IsLand(const importer::ScanObject& object);
 
 enum class Outcome {

@@ -27,9 +27,9 @@ Score ScoreWithLand(const std::vector<Cell>& cells, const std::set<std::int32_t>
   return ScoreScan(one.truth, one.labelling, near_land);
 }
 
-TEST(Land, IsWhatIsNotInTheWaterButForDocksPiersAndJetties) {
+TEST(Land, IsWhatIsNotInTheWaterButForWhatIsBuiltIntoIt) {
   for (const auto* kind : {"shore", "island", "wall", "quay", "cliff", "tree"}) EXPECT_TRUE(IsLand({"", kind, false})) << kind;
-  for (const auto* kind : {"dock", "floating_dock", "pier", "jetty"}) EXPECT_FALSE(IsLand({"", kind, false})) << kind;
+  for (const auto* kind : {"dock", "dock_bays", "pile_pier", "jetty", "pontoon"}) EXPECT_FALSE(IsLand({"", kind, false})) << kind;
   EXPECT_FALSE(IsLand({"", "kayak", true}));
 }
 
