@@ -198,6 +198,8 @@ void CheckScene(const File& scene, SceneFaults& faults) {
       check.RefuseIf(object.has_beside() && object.beside().gap_m().empty(), "beside.gap_m", "must be set");
       if (object.has_opposite()) check_beside(object.opposite(), one_path + ".opposite");
       check.RefuseIf(object.has_opposite() && object.opposite().distance_m().empty(), "opposite.distance_m", "must be set");
+      check.RefuseIf(object.has_opposite() && object.kind() != File::COAST && object.kind() != File::QUAY, "opposite",
+                     "only a coast or a quay has it");
       has_shore = has_shore || object.kind() == File::SHORE;
     };
     const auto& object = scene.object(i);

@@ -187,6 +187,7 @@ class Drawing {
   }
 
   SceneObject DrawBody(const File::Object& file, Random& random) {
+    num_front_ = 0;  // that of land which found no place
     if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
       const bool is_pier = file.kind() == File::PILE_PIER;
       const Size size{Draw(file.length_m(), is_pier ? 30.0 : 80.0, random), Draw(file.width_m(), is_pier ? 3.0 : 8.0, random),
@@ -337,7 +338,13 @@ class Drawing {
       const File::Object file = DrawMember(entry, random);
       const bool is_drawn = IsDrawn(file);
       const std::string name = NameOfObject(file, field, member);
-      if (file.has_beside() && !edges_.Has(file.beside().object())) continue;  // there happens to be none
+      // There happens to be none.
+      if (file.has_beside() && !edges_.Has(file.beside().object())) continue;
+      if (file.has_opposite() && !edges_.Has(file.opposite().object())) continue;
+      if (file.has_on_shore_bearing_deg() && !shore_) continue;
+      if (file.has_opposite() && !lines_.contains(file.opposite().object())) {
+        Stop(field + ".opposite.object", file.opposite().object() + " is no coast and no quay");
+      }
       for (int num_tries = 1;; ++num_tries) {
         SceneObject object = DrawBody(file, random);
         object.name = name;
