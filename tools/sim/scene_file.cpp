@@ -169,6 +169,9 @@ void CheckScene(const File& scene, SceneFaults& faults) {
   }
   Checker own_boat(scene.own_boat(), "own_boat.", faults);
   if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps"}, "the ellipse says it");
+  Checker own_boat_to(scene.own_boat_to(), "own_boat_to.", faults);
+  own_boat_to.Forbid({"east_m", "north_m", "heading_deg", "speed_mps", "turn_rate_degps", "ellipse", "beside"},
+                     "own_boat says it, as a range where it is drawn");
   // Michell, "The highest waves in water", 1893: no wave is higher than about a seventh of its length.
   if (scene.has_sea() && scene.sea().significant_height_m() > scene.sea().wavelength_m() / 7.0) {
     faults.Add("sea.significant_height_m", "must be at most a seventh of wavelength_m, or the waves break");
@@ -204,6 +207,10 @@ void CheckScene(const File& scene, SceneFaults& faults) {
     };
     const auto& object = scene.object(i);
     if (object.one_of().empty()) check_one(object, path);
+    for (int k = 0; k < object.one_of_size(); ++k) {
+      Checker one(object.one_of(k), path + ".one_of[" + std::to_string(k) + "].", faults);
+      one.Forbid({"name", "count", "number", "chance", "one_of"}, "the object around it says it");
+    }
     for (int k = 0; k < object.one_of_size(); ++k) check_one(MergedWith(object, object.one_of(k)), path + ".one_of[" + std::to_string(k) + "]");
     names.insert(object.name());
   }

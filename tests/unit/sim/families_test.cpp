@@ -217,6 +217,14 @@ TEST(Beside, WholeOutlinesCountAlsoBehindLandWithoutAPlace) {
   EXPECT_GT(num_north_and_south(with).second, 0);
 }
 
+// Both were read, and did nothing.
+TEST(FamilyFaults, FieldsWithoutEffectAreRefused) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nown_boat_to { speed_mps: 3 }\n"),
+            "s.txtpb:3: own_boat_to.speed_mps: own_boat says it, as a range where it is drawn");
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { north_m: 20\n one_of { kind: BUOY count: 3 } }\n"),
+            "s.txtpb:4: object[0].one_of[0].count: the object around it says it");
+}
+
 TEST(FamilyFaults, NameTheFieldAndTheLine) {
   EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat { free_by_m: 1 }\nobject { kind: BUOY name: \"a\" east_m: 9 }\n"
                                     "object { kind: COAST opposite { object: \"a\" distance_m: 20 } land { edge: BANK } }\n"),
