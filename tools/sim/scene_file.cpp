@@ -153,6 +153,7 @@ void CheckPath(const File::Object& object, Checker& check) {
   const auto& path = object.path();
   const bool has_waypoints = path.waypoint_size() > 0;
   check.RefuseIf(kind == nullptr || !kind->is_afloat, "path", "a " + NameOf(object.kind()) + " cannot move");
+  check.RefuseIf(object.kind() == File::ANY_BUOY, "path", "some of its kinds stand on the ground; name one that floats");
   check.RefuseIf(path.speed_mps().empty(), "path.speed_mps", "must be set");
   check.RefuseIf(path.has_circle() && has_waypoints, "path.circle", "not with waypoints");
   check.RefuseIf(object.has_row() && has_waypoints, "row", "not with waypoints");
@@ -168,7 +169,7 @@ void CheckScene(const File& scene, SceneFaults& faults) {
     faults.Add("description", "must be one line of printable ASCII");
   }
   Checker own_boat(scene.own_boat(), "own_boat.", faults);
-  if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps"}, "the ellipse says it");
+  if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps", "beside"}, "the ellipse says it");
   Checker own_boat_to(scene.own_boat_to(), "own_boat_to.", faults);
   own_boat_to.Forbid({"east_m", "north_m", "heading_deg", "speed_mps", "turn_rate_degps", "ellipse", "beside"},
                      "own_boat says it, as a range where it is drawn");

@@ -186,7 +186,7 @@ class Drawing {
     throw std::logic_error("a fault was lost");
   }
 
-  SceneObject DrawBody(const File::Object& file, Random& random) {
+  SceneObject DrawBody(const File::Object& file, const std::string& field, Random& random) try {
     num_front_ = 0;  // that of land which found no place
     if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
       const bool is_pier = file.kind() == File::PILE_PIER;
@@ -216,6 +216,8 @@ class Drawing {
     Shore shore = MakeShore(file.land(), land_random_);
     shore_ = ShoreOnMap{Vector2d::Zero(), shore.waterline_m};
     return std::move(shore.object);
+  } catch (const std::length_error& error) {
+    Stop(field + ".land", error.what());
   }
 
   Placement DrawPlace(const File::Object& file, Random& random) {
@@ -346,7 +348,7 @@ class Drawing {
         Stop(field + ".opposite.object", file.opposite().object() + " is no coast and no quay");
       }
       for (int num_tries = 1;; ++num_tries) {
-        SceneObject object = DrawBody(file, random);
+        SceneObject object = DrawBody(file, field, random);
         object.name = name;
         std::optional<Edges::Found> found;
         if (file.has_beside()) {

@@ -225,6 +225,18 @@ TEST(FamilyFaults, FieldsWithoutEffectAreRefused) {
             "s.txtpb:4: object[0].one_of[0].count: the object around it says it");
 }
 
+TEST(FamilyFaults, WhatWouldMoveOnTheGroundOrLieElsewhereIsRefused) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { kind: ANY_BUOY north_m: 20\n path { speed_mps: 1 } }\n"),
+            "s.txtpb:4: object[0].path: some of its kinds stand on the ground; name one that floats");
+}
+
+// It took minutes: 20 bends of 3 km each, tried 200 times.
+TEST(FamilyFaults, ACoastOfTensOfKilometresIsRefusedAtOnce) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat { free_by_m: 1 }\nobject { kind: COAST north_m: 40\n"
+                                    " land { bends: 20 bend_deg: 170 bend_radius_m: 1000 bay_m: 5 edge: BANK } }\n"),
+            "s.txtpb:4: object[0].land: with its bends it is longer than 5 km");
+}
+
 TEST(FamilyFaults, NameTheFieldAndTheLine) {
   EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat { free_by_m: 1 }\nobject { kind: BUOY name: \"a\" east_m: 9 }\n"
                                     "object { kind: COAST opposite { object: \"a\" distance_m: 20 } land { edge: BANK } }\n"),
