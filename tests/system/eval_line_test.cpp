@@ -117,6 +117,18 @@ TEST_F(EvalLine, EvidenceThatKnowsWhatItIsScoredOnIsRefusedBeforeTheRun) {
   EXPECT_NE(Run(unknown).output.find("no such family: nowhere"), std::string::npos);
 }
 
+// A table anywhere below the folder of --csv once was in the way, though nothing is written there.
+TEST_F(EvalLine, TablesInSubfoldersAreNotInTheWay) {
+  fs::create_directories(Path("csv/other"));
+  std::ofstream(Path("csv/other/table_1.csv")) << "mine";
+  const auto result = Run({"--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3", "--csv", Path("csv")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_TRUE(fs::exists(Path("csv/table_1.csv")));
+  fs::create_directories(Path("svg/ours/sparse"));
+  std::ofstream(Path("svg/ours/sparse/01.svg")) << "mine";
+  EXPECT_EQ(Run({"--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3", "--pictures", Path("svg")}).exit_code, 1);
+}
+
 TEST_F(EvalLine, BlocksAreFilledWithTheFiguresOfTheRun) {
   const std::string title = "# Title\n<!-- figures: ";
   const auto fill = [&](const std::string& name) {

@@ -214,11 +214,14 @@ Results RunCaptures(const ComparisonOptions& options, Failures& failures) {
   return results;
 }
 
-// Said before a run of minutes, not after it.
-void RefuseIfThere(const std::filesystem::path& folder, const char* ending) {
+// Said before a run of minutes, not after it. Only where the run writes: files lie in subfolders so deep.
+void RefuseIfThere(const std::filesystem::path& folder, const char* ending, int depth) {
   if (folder.empty() || !std::filesystem::exists(folder)) return;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    if (entry.path().extension() == ending) throw std::runtime_error(entry.path().string() + ": is there already; --force replaces it");
+  const std::filesystem::recursive_directory_iterator end;
+  for (std::filesystem::recursive_directory_iterator entry(folder); entry != end; ++entry) {
+    if (entry.depth() >= depth) entry.disable_recursion_pending();
+    if (entry.depth() != depth || entry->path().extension() != ending) continue;
+    throw std::runtime_error(entry->path().string() + ": is there already; --force replaces it");
   }
 }
 
@@ -266,8 +269,8 @@ int CompareMethods(const ComparisonOptions& options) {
 
   io::CatchStopSignals();
   if (!options.is_forced) {
-    RefuseIfThere(options.csv_folder, ".csv");
-    RefuseIfThere(options.pictures_folder, ".svg");
+    RefuseIfThere(options.csv_folder, ".csv", 0);
+    RefuseIfThere(options.pictures_folder, ".svg", 2);  // METHOD/SCENE
   }
   FillBlocksOf(options.block_files, {});  // a block that is wrong stops the run before it begins
   std::optional<io::OutputFile> page;

@@ -75,7 +75,7 @@ Options ParseOptions(int argc, char** argv) {
   auto* pictures =
       needs_config(app.add_option("--pictures", comparison.pictures_folder, "draw the worst scans of each method and scene into this folder"));
   app.add_option("--worst", comparison.num_worst, "pictures of each method and scene")
-      ->check(CLI::Range(1, 1000))
+      ->check(CLI::Range(1, 100))
       ->needs(pictures)
       ->capture_default_str();
   needs_config(app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written"))

@@ -23,7 +23,7 @@ enum class Outcome {
   kFound,        // IoU >= kFoundIou
   kIntoLand,     // the segment that holds most of it is mostly of land
   kIntoThing,    // mostly of other things
-  kCut,          // mostly its own, but more of the thing is elsewhere than foreign returns are in it
+  kCut,          // mostly its own, and at least as many of its returns are elsewhere as foreign ones are in it
   kWithClutter,  // mostly of no object
   kMissed,       // more of its returns are in no segment than in any one
 };

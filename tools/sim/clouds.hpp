@@ -33,12 +33,12 @@ class Clouds {
   };
   struct Mover {
     Placement placement;
-    double speed_mps;
-    double stern_m;  // along x of its frame
-    double bow_m;
-    double half_width_m;
-    bool is_own;
-    double phase_rad;
+    double speed_mps = 0.0;
+    double stern_m = 0.0;  // along x of its frame
+    double bow_m = 0.0;
+    double half_width_m = 0.0;
+    bool is_own = false;
+    double phase_rad = 0.0;
   };
   void AddChurn(const Mover& boat);
   void AddPlumes();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "common/core/angles.hpp"
 
@@ -15,6 +16,7 @@ constexpr double kRoughStepM = 2.5;  // between vertices of a waterline with bay
 constexpr double kPlainStepM = 8.0;  // and without
 constexpr double kArcStepRad = DegToRad(12.0);
 constexpr int kNumBendTries = 20;
+constexpr double kMostLengthM = 5000.0;    // a longer one hardly fits into a message of the truth, and its bends take minutes to try
 constexpr double kMostBayOfLength = 0.25;  // from one bay to the next: their sides then run at some 60 deg to the shore
 constexpr double kLeastDepthM = 1.0;
 constexpr double kMostBayOfRadius = 0.35;  // of a closed line, which so stays simple
@@ -151,6 +153,7 @@ Line BentLine(const config::Scene::Land& land, double length_m, Random& random) 
   Line line_m;
   for (int i = 0; i < kNumBendTries; ++i) {
     line_m = TryBentLine(land, length_m, random);
+    if (LengthOf(line_m) > kMostLengthM) throw std::length_error("with its bends it is longer than 5 km");
     if (!ComesBack(Resampled(line_m, false, kPlainStepM), kLeastWaterM)) break;
     line_m = {Vector2d::Zero(), Vector2d(length_m, 0.0)};
   }

@@ -14,6 +14,7 @@ struct WaterlineVertex {
 };
 
 /// With bends, their middle at the origin along x. Bends that would bring the line back to itself are left out.
+/// @throws std::length_error for a line of more than 5 km
 Line BentLine(const config::Scene::Land& land, double length_m, Random& random);
 
 /// Round an ellipse.

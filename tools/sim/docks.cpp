@@ -224,7 +224,9 @@ void MakeDockBays(const Size& size, Random& random, SceneObject& dock) {
   const double wall_m = model.Between(0.5, 1.5);
   const double depth_m = model.Given(size.length_m, 4.0, 9.0);
   const double back_m = model.Between(0.6, 2.5);
-  const double width_m = size.width_m > 0.0 ? size.width_m : num_bays * bay_m + (num_bays + 1) * wall_m;
+  constexpr double kLeastBayM = 0.5;
+  const double width_m =
+      size.width_m > 0.0 ? std::max(size.width_m, num_bays * kLeastBayM + (num_bays + 1) * wall_m) : num_bays * bay_m + (num_bays + 1) * wall_m;
   const double step_m = (width_m - wall_m) / num_bays;
   const Deck back{0.0, back_m, -width_m / 2.0, width_m / 2.0};
   AddDeck(back, build, model);

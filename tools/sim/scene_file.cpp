@@ -153,6 +153,7 @@ void CheckPath(const File::Object& object, Checker& check) {
   const auto& path = object.path();
   const bool has_waypoints = path.waypoint_size() > 0;
   check.RefuseIf(kind == nullptr || !kind->is_afloat, "path", "a " + NameOf(object.kind()) + " cannot move");
+  check.RefuseIf(object.kind() == File::ANY_BUOY, "path", "some of its kinds stand on the ground; name one that floats");
   check.RefuseIf(path.speed_mps().empty(), "path.speed_mps", "must be set");
   check.RefuseIf(path.has_circle() && has_waypoints, "path.circle", "not with waypoints");
   check.RefuseIf(object.has_row() && has_waypoints, "row", "not with waypoints");
@@ -168,7 +169,10 @@ void CheckScene(const File& scene, SceneFaults& faults) {
     faults.Add("description", "must be one line of printable ASCII");
   }
   Checker own_boat(scene.own_boat(), "own_boat.", faults);
-  if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps"}, "the ellipse says it");
+  if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps", "beside"}, "the ellipse says it");
+  Checker own_boat_to(scene.own_boat_to(), "own_boat_to.", faults);
+  own_boat_to.Forbid({"east_m", "north_m", "heading_deg", "speed_mps", "turn_rate_degps", "ellipse", "beside"},
+                     "own_boat says it, as a range where it is drawn");
   // Michell, "The highest waves in water", 1893: no wave is higher than about a seventh of its length.
   if (scene.has_sea() && scene.sea().significant_height_m() > scene.sea().wavelength_m() / 7.0) {
     faults.Add("sea.significant_height_m", "must be at most a seventh of wavelength_m, or the waves break");
@@ -198,10 +202,16 @@ void CheckScene(const File& scene, SceneFaults& faults) {
       check.RefuseIf(object.has_beside() && object.beside().gap_m().empty(), "beside.gap_m", "must be set");
       if (object.has_opposite()) check_beside(object.opposite(), one_path + ".opposite");
       check.RefuseIf(object.has_opposite() && object.opposite().distance_m().empty(), "opposite.distance_m", "must be set");
+      check.RefuseIf(object.has_opposite() && object.kind() != File::COAST && object.kind() != File::QUAY, "opposite",
+                     "only a coast or a quay has it");
       has_shore = has_shore || object.kind() == File::SHORE;
     };
     const auto& object = scene.object(i);
     if (object.one_of().empty()) check_one(object, path);
+    for (int k = 0; k < object.one_of_size(); ++k) {
+      Checker one(object.one_of(k), path + ".one_of[" + std::to_string(k) + "].", faults);
+      one.Forbid({"name", "count", "number", "chance", "one_of"}, "the object around it says it");
+    }
     for (int k = 0; k < object.one_of_size(); ++k) check_one(MergedWith(object, object.one_of(k)), path + ".one_of[" + std::to_string(k) + "]");
     names.insert(object.name());
   }

@@ -186,7 +186,8 @@ class Drawing {
     throw std::logic_error("a fault was lost");
   }
 
-  SceneObject DrawBody(const File::Object& file, Random& random) {
+  SceneObject DrawBody(const File::Object& file, const std::string& field, Random& random) try {
+    num_front_ = 0;  // that of land which found no place
     if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
       const bool is_pier = file.kind() == File::PILE_PIER;
       const Size size{Draw(file.length_m(), is_pier ? 30.0 : 80.0, random), Draw(file.width_m(), is_pier ? 3.0 : 8.0, random),
@@ -215,6 +216,8 @@ class Drawing {
     Shore shore = MakeShore(file.land(), land_random_);
     shore_ = ShoreOnMap{Vector2d::Zero(), shore.waterline_m};
     return std::move(shore.object);
+  } catch (const std::length_error& error) {
+    Stop(field + ".land", error.what());
   }
 
   Placement DrawPlace(const File::Object& file, Random& random) {
@@ -337,9 +340,15 @@ class Drawing {
       const File::Object file = DrawMember(entry, random);
       const bool is_drawn = IsDrawn(file);
       const std::string name = NameOfObject(file, field, member);
-      if (file.has_beside() && !edges_.Has(file.beside().object())) continue;  // there happens to be none
+      // There happens to be none.
+      if (file.has_beside() && !edges_.Has(file.beside().object())) continue;
+      if (file.has_opposite() && !edges_.Has(file.opposite().object())) continue;
+      if (file.has_on_shore_bearing_deg() && !shore_) continue;
+      if (file.has_opposite() && !lines_.contains(file.opposite().object())) {
+        Stop(field + ".opposite.object", file.opposite().object() + " is no coast and no quay");
+      }
       for (int num_tries = 1;; ++num_tries) {
-        SceneObject object = DrawBody(file, random);
+        SceneObject object = DrawBody(file, field, random);
         object.name = name;
         std::optional<Edges::Found> found;
         if (file.has_beside()) {

@@ -117,6 +117,7 @@ std::optional<Hit> IntersectSolid(const Cone& cone, const Ray& ray) {
   const double a = direction.squaredNorm() - rate * rate;
   const double b = direction.dot(from_center_m) - start_m * rate;
   const double c = from_center_m.squaredNorm() - start_m * start_m;
+  if (ray.origin_m.z() > cone.bottom_m && ray.origin_m.z() < cone.top_m && c < 0.0) return std::nullopt;
   std::optional<Hit> best;
   const auto consider = [&](double range_m, const Vector3d& normal) {
     if (range_m > 0.0 && (!best || range_m < best->range_m)) best = Hit{range_m, std::abs(normal.normalized().dot(ray.direction))};
@@ -144,6 +145,7 @@ std::optional<Hit> IntersectSolid(const Rod& rod, const Ray& ray) {
   const double length_m = along_m.norm();
   const Vector3d axis = length_m > 0.0 ? Vector3d(along_m / length_m) : Vector3d(Vector3d::UnitZ());
   const Vector3d from_m = ray.origin_m - rod.from_m;
+  if ((from_m - std::clamp(axis.dot(from_m), 0.0, length_m) * axis).squaredNorm() < rod.radius_m * rod.radius_m) return std::nullopt;
   const double axis_rate = axis.dot(ray.direction);
   const Vector3d across = ray.direction - axis_rate * axis;
   const Vector3d from_axis_m = from_m - axis.dot(from_m) * axis;

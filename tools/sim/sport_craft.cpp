@@ -15,6 +15,7 @@ void MakeRowingShell(const Size& size, Random& random, SceneObject& boat) {
   int num_rowers = model.Whole(1, 4);
   if (model.Chance(0.3)) num_rowers *= 2;
   const double length_m = model.Given(size.length_m, 5.0 + 1.4 * num_rowers, 6.5 + 1.5 * num_rowers);
+  num_rowers = std::min(num_rowers, std::max(1, static_cast<int>((length_m - 2.0) / 1.4)));  // of a given length
   const double width_m = model.Given(size.width_m, 0.3, 0.65);
   model.Float(length_m, width_m);
   HullPlan plan{length_m, width_m};

@@ -180,7 +180,70 @@ TEST(DrawnNumbers, LieBetweenBothAndWavesDoNotBreak) {
   EXPECT_EQ(rolls.size(), 20U);
 }
 
+// A dock on a shore that chance had left out ended the process, and so did the other bank of none.
+TEST(Families, LeaveOutWhatLiesAtLandThatChanceLeftOut) {
+  const std::string boat = kBegin + "own_boat { free_by_m: 1 }\n";
+  const Scene dock = ParseScene(boat +
+                                    "object { kind: SHORE chance: 0 land { mean_radius_m: 50 } }\n"
+                                    "object { kind: DOCK on_shore_bearing_deg: 10 }\n",
+                                "s.txtpb", 1);
+  EXPECT_TRUE(dock.objects.empty());
+  const Scene bank = ParseScene(boat +
+                                    "object { kind: COAST name: \"bank\" chance: 0 north_m: 30 heading_deg: 270 land { edge: BANK } }\n"
+                                    "object { kind: COAST opposite { object: \"bank\" distance_m: 60 } land { edge: BANK } }\n",
+                                "s.txtpb", 1);
+  EXPECT_TRUE(bank.objects.empty());
+}
+
+// What came after an island without a place had an edge as long as the island's: a boat could lie beside a part of it alone.
+TEST(Beside, WholeOutlinesCountAlsoBehindLandWithoutAPlace) {
+  const auto text = [](const std::string& island) {
+    return kBegin +
+           "own_boat { free_by_m: 1 north_m: -60 }\nobject { kind: COAST name: \"coast\" north_m: 40 heading_deg: 90 land { edge: BANK } }\n" +
+           "object { " + island + " }\nobject { kind: BUOY name: \"mooring\" width_m: 3 }\n" +
+           "object { kind: KAYAK name: \"at\" number: 20 min_distance_m: 0 beside { object: \"mooring\" gap_m: [1, 60] turned: OUT } }\n";
+  };
+  const auto num_north_and_south = [](const Scene& scene) {
+    std::pair<int, int> count{0, 0};
+    for (const auto& object : scene.objects) {
+      if (object.kind == "kayak") ++(object.track.start.position_map_m.y() > 0.0 ? count.first : count.second);
+    }
+    return count;
+  };
+  const Scene without = ParseScene(text("kind: BUOY chance: 0"), "s.txtpb", 1);
+  const Scene with = ParseScene(text("kind: ISLAND number: 1 north_m: [50, 51] length_m: 8 land { edge: BANK }"), "s.txtpb", 1);
+  ASSERT_EQ(with.objects.size(), without.objects.size());
+  EXPECT_EQ(num_north_and_south(with), num_north_and_south(without));
+  EXPECT_GT(num_north_and_south(with).second, 0);
+}
+
+// Both were read, and did nothing.
+TEST(FamilyFaults, FieldsWithoutEffectAreRefused) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nown_boat_to { speed_mps: 3 }\n"),
+            "s.txtpb:3: own_boat_to.speed_mps: own_boat says it, as a range where it is drawn");
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { north_m: 20\n one_of { kind: BUOY count: 3 } }\n"),
+            "s.txtpb:4: object[0].one_of[0].count: the object around it says it");
+}
+
+TEST(FamilyFaults, WhatWouldMoveOnTheGroundOrLieElsewhereIsRefused) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { kind: ANY_BUOY north_m: 20\n path { speed_mps: 1 } }\n"),
+            "s.txtpb:4: object[0].path: some of its kinds stand on the ground; name one that floats");
+}
+
+// It took minutes: 20 bends of 3 km each, tried 200 times.
+TEST(FamilyFaults, ACoastOfTensOfKilometresIsRefusedAtOnce) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat { free_by_m: 1 }\nobject { kind: COAST north_m: 40\n"
+                                    " land { bends: 20 bend_deg: 170 bend_radius_m: 1000 bay_m: 5 edge: BANK } }\n"),
+            "s.txtpb:4: object[0].land: with its bends it is longer than 5 km");
+}
+
 TEST(FamilyFaults, NameTheFieldAndTheLine) {
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat { free_by_m: 1 }\nobject { kind: BUOY name: \"a\" east_m: 9 }\n"
+                                    "object { kind: COAST opposite { object: \"a\" distance_m: 20 } land { edge: BANK } }\n"),
+            "s.txtpb:4: object[1].opposite.object: a is no coast and no quay");
+  EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat { free_by_m: 1 }\nobject { kind: QUAY name: \"a\" north_m: 30 heading_deg: 270 land { edge: FACE } }\n"
+                                    "object { kind: BUOY opposite { object: \"a\" distance_m: 20 } }\n"),
+            "s.txtpb:4: object[1].opposite: only a coast or a quay has it");
   EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { kind: KAYAK number: 2 beside { object: \"quay\" gap_m: 1 } }\n"),
             "s.txtpb:3: object[0].beside.object: there is no object of this name before it");
   EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { name: \"a\" number: 2\n one_of { weight: 2 } }\n"),

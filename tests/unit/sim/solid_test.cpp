@@ -32,6 +32,9 @@ TEST(Solid, NothingIsMetBesideOverBehindOrFromInside) {
   EXPECT_FALSE(Intersect(Cylinder{{0.0, 0.0}, 2.0, 0.0, 2.0}, kAhead));
   EXPECT_FALSE(Intersect(Ellipsoid{{0.0, 0.0, 1.0}, {2.0, 2.0, 2.0}}, kAhead));
   EXPECT_FALSE(Intersect(Ellipsoid{{-9.0, 0.0, 1.0}, {2.0, 2.0, 2.0}}, kAhead));
+  EXPECT_FALSE(Intersect(Cone{{0.0, 0.0}, 2.0, 1.0, 0.0, 2.0}, kAhead));
+  EXPECT_FALSE(Intersect(Rod{{-1.0, 0.1, 1.0}, {3.0, 0.1, 1.0}, 0.25}, kAhead));
+  EXPECT_FALSE(Intersect(Rod{{0.1, 0.0, 1.0}, {3.0, 0.0, 1.0}, 0.25}, kAhead)) << "from inside of its round end";
 }
 
 TEST(Solid, CylinderGivesItsAngleOfIncidence) {
