@@ -6,7 +6,8 @@ namespace lookout::segmenter {
 
 namespace {
 
-constexpr double kLinkedColumns = 2.8;  // LookoutParams::link grows by as many columns of 0.2 degrees
+constexpr float kClutterLogOdds = -10.0F;  // of what is not judged: 1 in 20 000
+constexpr double kLinkedColumns = 2.8;     // LookoutParams::link grows by as many columns of 0.2 degrees
 
 // Hands on all, in order and in blocks; the last block is filled up with the first of its own.
 template <typename One, typename FeaturesOf, typename Take>
@@ -72,17 +73,26 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
   groups_.count = pieces_.size();
   groups_.of_return.assign(pieces_.of_returns().begin(), pieces_.of_returns().end());
   facts_.clear();
+  judged_.clear();
+  for (std::int32_t group = 0; group < pieces_.size(); ++group) {
+    const PieceFacts& piece = pieces_[group];
+    facts_.push_back({.seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
+    if (IsJudged(pieces_, group)) {
+      judged_.push_back(group);
+    } else {
+      facts_.back().thing_log_odds = kClutterLogOdds;
+    }
+  }
   ForBlocks(
-      features, [](const PieceFeatures& one) { return one.data(); },
-      [&](std::span<const PieceFeatures> some, const Evidence::Block& block) {
+      std::span<const std::int32_t>(judged_), [features](std::int32_t group) { return features[static_cast<std::size_t>(group)].data(); },
+      [&](std::span<const std::int32_t> some, const Evidence::Block& block) {
         const auto land_log_odds = params_.evidence[kLandSum].Of(block);
         const auto thing_log_odds = params_.evidence[kThingSum].Of(block);
         for (std::size_t i = 0; i < some.size(); ++i) {
-          const PieceFacts& piece = pieces_[static_cast<std::int32_t>(facts_.size())];
-          facts_.push_back({.is_land = ProbabilityOf(land_log_odds[i]) > params_.land_probability,
-                            .land_log_odds = land_log_odds[i],
-                            .thing_log_odds = thing_log_odds[i],
-                            .seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
+          GroupFacts& facts = facts_[static_cast<std::size_t>(some[i])];
+          facts.is_land = ProbabilityOf(land_log_odds[i]) > params_.land_probability;
+          facts.land_log_odds = land_log_odds[i];
+          facts.thing_log_odds = thing_log_odds[i];
         }
       });
 }

@@ -30,7 +30,7 @@ void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_
       if (i > 0) ++of(entry.piece, PieceFeature::kCovered);
       const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
       if (has_backdrop) ++of(entry.piece, PieceFeature::kBackdrop);
-      if (pieces[entry.piece].num_returns > kCrowdReturns) continue;
+      if (pieces[entry.piece].num_returns > kCrowdReturns || !IsJudged(pieces, entry.piece)) continue;
       // It is of the crowd about its neighbours: each column of these counts it.
       for (int step = -kCrowdColumns; step <= kCrowdColumns; ++step) {
         const auto beside = pieces.InColumn(grid.Wrap(column + step));

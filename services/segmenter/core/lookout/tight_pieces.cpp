@@ -9,6 +9,9 @@ namespace lookout::segmenter {
 namespace {
 
 constexpr std::size_t kMostLayers = 2;  // returns of a shot
+// More runs are noise: 128 rings of 2048 columns in heavy rain have half as many.
+constexpr std::size_t kMostRuns = 100'000;
+constexpr std::int32_t kLargestLeftOut = 64;  // 2^21 cells in pieces of more are less than kMostPieces
 
 bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool are_of_one_ring, const Reach& link) {
   const auto reach_m = static_cast<float>(link.At(std::min(one.range_m, other.range_m)));
@@ -96,6 +99,11 @@ std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, std
 
 void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
   FindRuns(grid, link);
+  if (sets_.size() <= kMostRuns) LinkRings(grid, link);
+  NumberPieces(grid);
+}
+
+void TightPieces::LinkRings(const ScanGrid& grid, const Reach& link) {
   // Runs that were linked last, by how many lines lie between them: those of the next return will be the same.
   struct Linked {
     std::int32_t own_run = ScanGrid::kNone;
@@ -124,15 +132,38 @@ void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
       if (run != ScanGrid::kNone) last = {own_run, run};
     }
   }
-  number_of_run_.assign(sets_.size(), ScanGrid::kNone);
+}
+
+void TightPieces::NumberPieces(const ScanGrid& grid) {
   of_return_.resize(grid.points().size());
-  count_ = 0;
+  size_of_set_.assign(sets_.size(), 0);
+  std::int32_t num_pieces = 0;
+  num_left_out_ = 0;
   for (std::size_t i = 0; i < of_return_.size(); ++i) {
     const auto index = static_cast<std::int32_t>(i);
-    std::int32_t& number = number_of_run_[static_cast<std::size_t>(sets_.Find(RunAt(grid, grid.LineOf(index), grid.ColumnOf(index))))];
-    if (number == ScanGrid::kNone) number = count_++;
-    of_return_[i] = number;
+    of_return_[i] = sets_.Find(RunAt(grid, grid.LineOf(index), grid.ColumnOf(index)));
+    std::int32_t& size = size_of_set_[static_cast<std::size_t>(of_return_[i])];
+    if (size == 0) ++num_pieces;
+    ++size;
   }
+  std::array<std::int32_t, kLargestLeftOut + 1> num_of_size{};
+  for (const std::int32_t size : size_of_set_) ++num_of_size[static_cast<std::size_t>(std::min(size, kLargestLeftOut))];
+  std::int32_t least_size = 1;
+  for (std::int32_t num = num_pieces; num > kMostPieces && least_size <= kLargestLeftOut; ++least_size) {
+    num -= num_of_size[static_cast<std::size_t>(least_size)];
+  }
+  number_of_set_.assign(sets_.size(), kNone);
+  count_ = 0;
+  for (std::int32_t& piece : of_return_) {
+    const auto set = static_cast<std::size_t>(piece);
+    if (size_of_set_[set] < least_size) {
+      piece = kNone;
+      continue;
+    }
+    if (number_of_set_[set] == kNone) number_of_set_[set] = count_++;
+    piece = number_of_set_[set];
+  }
+  num_left_out_ = num_pieces - count_;
 }
 
 }  // namespace lookout::segmenter

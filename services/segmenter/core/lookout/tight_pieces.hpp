@@ -24,11 +24,18 @@ class TightPieces {
   /// Cost: about proportional to the returns. Allocates nothing once it has seen a scan of that size.
   void Find(const ScanGrid& grid, const Reach& link);
 
-  /// [returns] the piece of each, numbered in the order of their first return.
+  static constexpr std::int32_t kNone = -1;
+  /// As many as labels of 16 bits number. Of a scan that is in more pieces, those of one return are left out; if need be of two, and so on.
+  static constexpr std::int32_t kMostPieces = 32'767;
+
+  /// [returns] the piece of each, numbered in the order of their first return; kNone: it is left out.
   const std::vector<std::int32_t>& of_return() const { return of_return_; }
   std::int32_t count() const { return count_; }
+  std::int32_t num_left_out() const { return num_left_out_; }
 
  private:
+  void LinkRings(const ScanGrid& grid, const Reach& link);
+  void NumberPieces(const ScanGrid& grid);
   void FindRuns(const ScanGrid& grid, const Reach& link);
   std::int32_t LookAlong(const ScanGrid& grid, const Reach& link, std::int32_t index, int line, int first, int last);
   template <int kNum>
@@ -40,9 +47,11 @@ class TightPieces {
   UnionFind sets_;                     // of runs
   std::vector<std::int32_t> by_line_;  // the returns, line by line
   std::vector<std::int32_t> run_at_;   // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
-  std::vector<std::int32_t> number_of_run_;
+  std::vector<std::int32_t> size_of_set_;
+  std::vector<std::int32_t> number_of_set_;
   std::vector<std::int32_t> of_return_;
   std::int32_t count_ = 0;
+  std::int32_t num_left_out_ = 0;
 };
 
 }  // namespace lookout::segmenter
