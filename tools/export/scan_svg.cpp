@@ -294,13 +294,16 @@ std::vector<Vector2d> Corners(const std::vector<float>& x_m, const std::vector<f
   return corners;
 }
 
+// " 43 %"; "" where it is not stated.
+std::string PercentOf(float probability) { return std::isfinite(probability) ? fmt::format(" {:.0f} %", 100.0 * double{probability}) : ""; }
+
 // Of a segment or an obstacle. Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
 template <typename Thing>
 Outline OutlineOf(const Thing& thing, double distance_m, const std::string& place, std::vector<Vector2d> hull, std::vector<Vector2d> waterline) {
   const bool is_tentative = thing.confidence == segment_t::CONFIDENCE_TENTATIVE;
   const bool is_land = thing.kind == segment_t::KIND_LAND;
   // The size says little of what is tentative, or of land.
-  const auto what = is_tentative ? std::string(words::WordOf(words::kConfidence, thing.confidence))
+  const auto what = is_tentative ? std::string(words::WordOf(words::kConfidence, thing.confidence)) + PercentOf(thing.thing_probability)
                     : is_land    ? std::string(words::WordOf(words::kKind, thing.kind))
                                  : fmt::format("{:.1f} x {:.1f} m", thing.length_m, thing.width_m);
   const bool is_line = is_land && !waterline.empty();

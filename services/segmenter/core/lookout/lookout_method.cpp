@@ -81,9 +81,8 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
         const auto thing_log_odds = params_.evidence[kThingSum].Of(block);
         for (std::size_t i = 0; i < some.size(); ++i) {
           const PieceFacts& piece = pieces_[static_cast<std::int32_t>(facts_.size())];
-          facts_.push_back({.is_land = ProbabilityOf(land_log_odds[i]) > params_.land_probability,
-                            .land_log_odds = land_log_odds[i],
-                            .thing_log_odds = thing_log_odds[i],
+          facts_.push_back({.land_probability = ProbabilityOf(land_log_odds[i]),
+                            .thing_probability = ProbabilityOf(thing_log_odds[i]),
                             .seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
         }
       });
