@@ -140,11 +140,12 @@ struct Table {
   std::string_view name;
   std::string_view header;
   bus::Channel channel;
-  bool (*append)(Bytes, std::string&);  // nullptr: returns, which needs two channels
+  bool (*append)(Bytes, std::string&);  // nullptr: returns and merges, which need two channels
 };
 
 constexpr std::array kTables{
     Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason", bus::kLidarScan, nullptr},
+    Table{"merges", "", bus::kLidarScan, nullptr},  // its header has the names of all features: MergesHeader
     Table{"segments",
           "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
           "thing_probability,land_probability",
@@ -234,12 +235,12 @@ std::vector<std::string_view> TableNames() {
 
 std::string_view TableHeader(std::string_view table) {
   const auto* found = FindTable(table);
-  return found == nullptr ? std::string_view() : found->header;
+  return found == nullptr ? std::string_view() : found->name == "merges" ? MergesHeader() : found->header;
 }
 
 std::unique_ptr<Sink> MakeCsvSink(std::string_view table) {
   const auto* found = FindTable(table);
-  if (found == nullptr) return nullptr;
+  if (found == nullptr || found->name == "merges") return nullptr;
   if (found->append == nullptr) return std::make_unique<ReturnsSink>();
   return std::make_unique<MessageSink>(*found);
 }
