@@ -77,6 +77,8 @@ bool IsPlace(const float (&point_m)[3]) {
   return std::ranges::all_of(point_m, [](float value) { return IsWithin(double{value}, kMaxLidarM); });
 }
 
+bool IsProbability(float value) { return std::isnan(value) || IsWithin(value, 0.0F, 1.0F); }  // NaN: the method states none
+
 bool IsLength(double value) { return value >= 0.0 && value <= kMaxLidarM; }
 
 bool CountsAgree(const segment_t& segment) {
@@ -91,7 +93,8 @@ bool AreNumbersGood(const segment_t& segment) {
          IsLength(segment.width_m) && IsWithin(segment.min_z_m, kMaxLidarM) && IsWithin(segment.max_z_m, kMaxLidarM) &&
          segment.min_z_m <= segment.max_z_m && std::isfinite(segment.length_azimuth_rad) && std::isfinite(segment.mean_reflectivity) &&
          IsWithin(segment.box_center_m[0], kMaxLidarM) && IsWithin(segment.box_center_m[1], kMaxLidarM) && segment.min_reflectivity >= 0 &&
-         segment.min_reflectivity <= segment.max_reflectivity && IsWithin(segment.seen_share, 0.0F, 1.0F);
+         segment.min_reflectivity <= segment.max_reflectivity && IsWithin(segment.seen_share, 0.0F, 1.0F) &&
+         IsProbability(segment.thing_probability) && IsProbability(segment.land_probability);
 }
 
 bool AreCodesKnown(const segment_t& segment) {

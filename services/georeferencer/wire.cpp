@@ -63,7 +63,8 @@ Segment ToSegment(const segment_t& message, Utime scan_time) {
   Segment segment;
   segment.time = Utime(microseconds(message.utime_us));
   segment.id = message.id;
-  segment.rating = {static_cast<Confidence>(message.confidence), message.grounds, static_cast<Kind>(message.kind), message.seen_share};
+  segment.rating = {static_cast<Confidence>(message.confidence), message.grounds, static_cast<Kind>(message.kind), message.thing_probability,
+                    message.seen_share};
   segment.num_points = message.num_points;
   segment.centroid_m = ToVector(message.centroid_m);
   segment.nearest_m = ToVector(message.nearest_m);
@@ -121,6 +122,7 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
   message.confidence = static_cast<std::int32_t>(obstacle.rating.confidence);
   message.grounds = obstacle.rating.grounds;
   message.kind = static_cast<std::int32_t>(obstacle.rating.kind);
+  message.thing_probability = obstacle.rating.thing_probability;
   message.seen_share = obstacle.rating.seen_share;
   message.latitude_deg = obstacle.latitude_deg;
   message.longitude_deg = obstacle.longitude_deg;

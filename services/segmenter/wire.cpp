@@ -48,6 +48,8 @@ segment_t ToMessage(const Segment& segment) {
   message.confidence = static_cast<std::int32_t>(segment.confidence);
   message.grounds = segment.grounds;
   message.kind = static_cast<std::int32_t>(segment.kind);
+  message.thing_probability = segment.thing_probability;
+  message.land_probability = segment.land_probability;
   message.num_points = segment.num_points;
   const auto copy = [](const Point& from, float(&to)[3]) {
     to[0] = from.x_m;

@@ -22,6 +22,7 @@ void Check(const obstacles_t& message) {
     if (obstacle.num_waterline_map != (is_ok ? obstacle.num_waterline : 0)) std::abort();
     if (obstacle.confidence != obstacle_t::CONFIDENCE_TENTATIVE && obstacle.confidence != obstacle_t::CONFIDENCE_SURE) std::abort();
     if (!(obstacle.seen_share >= 0.0F && obstacle.seen_share <= 1.0F)) std::abort();
+    if (obstacle.thing_probability < 0.0F || obstacle.thing_probability > 1.0F) std::abort();
     if (is_ok != (obstacle.num_map > 0) || is_ok != std::isfinite(obstacle.latitude_deg)) std::abort();
     if (!std::isfinite(obstacle.range_m) || !(obstacle.bearing_rad >= 0.0F) || !std::isfinite(obstacle.top_above_water_m)) std::abort();
   }

@@ -86,7 +86,8 @@ std::optional<std::string> Difference(const Scan& scan, const Segments& one, con
   for (const auto& segment : one.segments) {
     const auto& same = other.segments.at(static_cast<std::size_t>(forth.at(segment.id) - 1));
     if (segment.num_points != same.num_points || segment.kind != same.kind || segment.grounds != same.grounds ||
-        segment.seen_share != same.seen_share || segment.confidence != same.confidence) {
+        segment.seen_share != same.seen_share || segment.confidence != same.confidence || segment.thing_probability != same.thing_probability ||
+        segment.land_probability != same.land_probability) {
       return "what is said of segment " + std::to_string(segment.id) + " and " + std::to_string(same.id);
     }
   }
@@ -179,6 +180,7 @@ TEST(LookoutLaw, AFarObjectChangesNothingNear) {
         ASSERT_EQ(before.num_points, after.num_points);
         ASSERT_EQ(before.kind, after.kind);
         ASSERT_EQ(before.grounds, after.grounds);
+        ASSERT_EQ(before.land_probability, after.land_probability);
         ASSERT_EQ(before.length_m, after.length_m);
         ASSERT_EQ(before.waterline.size(), after.waterline.size());
       }
@@ -282,6 +284,7 @@ TEST(LookoutLaw, GarbageHasLabelsAndFiniteSegmentsToo) {
     for (const auto& segment : segments.segments) {
       ASSERT_GE(segment.num_points, 1);
       ASSERT_EQ(segment.confidence == Confidence::kSure, segment.grounds == 0);
+      for (const float probability : {segment.thing_probability, segment.land_probability}) ASSERT_TRUE(probability >= 0.0F && probability <= 1.0F);
       ASSERT_GE(segment.seen_share, 0.0F);
       ASSERT_LE(segment.seen_share, 1.0F);
       ASSERT_EQ(segment.waterline.empty(), segment.kind == SegmentKind::kObstacle);

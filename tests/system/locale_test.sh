@@ -45,6 +45,8 @@ outputs() {  # FOLDER
   done
   "$bin/lookout-export" --in replay.lcmlog --table returns --format svg --out returns.svg
   "$bin/lookout-export" --in replay.lcmlog --table returns --format ply --out returns.ply
+  "$bin/lookout-export" --in replay.lcmlog --table merges --config "$config" --out merges.csv
+  "$bin/lookout-export" --in replay.lcmlog --table merges --config "$config" --format svg --out merges.svg
   "$bin/lookout-eval" --in replay.lcmlog --truth truth >eval.txt
   "$bin/lookout-log" info replay.lcmlog >info.txt
   "$bin/lookout-log" slice --in replay.lcmlog --channel POSE --out slice.lcmlog >slice.txt

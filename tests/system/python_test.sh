@@ -33,4 +33,4 @@ if ! $python -c 'import pandas' 2>/dev/null; then
   echo "skipped: the example's lines with pandas, which is not installed (python3-pandas); all others were run"
   exit 0
 fi
-$python "$work/obstacles.py" "$work/day.lcmlog" | tail -n 1 | grep -q "^\[$(wc -l <"$work/table.csv") rows x 10 columns\]" || fail "pandas has another number of rows"
+$python "$work/obstacles.py" "$work/day.lcmlog" | tail -n 1 | grep -q "^\[$(wc -l <"$work/table.csv") rows x 11 columns\]" || fail "pandas has another number of rows"

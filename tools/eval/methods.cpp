@@ -1,7 +1,6 @@
 #include "tools/eval/methods.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -35,8 +34,7 @@ void MeasureStages(const segmenter::Scan& scan, const segmenter::Params& params,
     labelling_of_scan.num_components = method.num_tight_pieces();
     auto& probability = labelling_of_scan.probability.emplace();
     for (std::int32_t i = 0; i < numbering.groups().count; ++i) {
-      const double log_odds = method.FactsOf(numbering.ClusterOf(i)).thing_log_odds;
-      probability.push_back(1.0 / (1.0 + std::exp(-log_odds)));
+      probability.push_back(double{method.FactsOf(numbering.ClusterOf(i)).thing_probability});
     }
   } else {
     segmenter::Groups components;

@@ -41,11 +41,17 @@ inline void AppendCell(const Empty& /*unused*/, std::string& /*unused*/) {}
 /// As CsvText: quoted where it has to be, without control characters, and no formula of a spreadsheet.
 void AppendCell(std::string_view value, std::string& text);
 
-/// Appends a row of integers, texts and the types above.
+/// Appends the first cells of a row: integers, texts and the types above.
 template <typename First, typename... Others>
-void AppendRow(std::string& text, const First& first, const Others&... others) {
+void AppendCells(std::string& text, const First& first, const Others&... others) {
   AppendCell(first, text);
   ((text += ',', AppendCell(others, text)), ...);
+}
+
+/// Appends a row.
+template <typename... Cells>
+void AppendRow(std::string& text, const Cells&... cells) {
+  AppendCells(text, cells...);
   text += '\n';
 }
 

@@ -1,12 +1,15 @@
 #include "tools/export/export.hpp"
 
 #include <algorithm>
+#include <initializer_list>
 #include <memory>
 #include <ostream>
 #include <stdexcept>
 #include <system_error>
 
 #include "common/bus/log_file.hpp"
+#include "common/config/boat.hpp"
+#include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
@@ -26,17 +29,21 @@ struct Tally {
   std::int64_t num_inconsistent = 0;
 };
 
+bool IsOneOf(const std::string& table, std::initializer_list<std::string_view> tables) { return std::ranges::find(tables, table) != tables.end(); }
+
 // @return what is wrong with the request; empty when nothing
 std::string Fault(const Request& request) {
   const auto names = TableNames();
   if (std::ranges::find(names, request.table) == names.end()) return "there is no table " + request.table;
   if (request.format == "ply" && request.table != "returns") return "--format ply is for --table returns only";
-  if (request.format == "svg" && request.table != "returns" && request.table != "obstacles" && request.table != "pose") {
-    return "--format svg is for --table returns, obstacles or pose only";
+  if (request.format == "svg" && !IsOneOf(request.table, {"returns", "merges", "obstacles", "pose"})) {
+    return "--format svg is for --table returns, merges, obstacles or pose only";
   }
   if (request.table == "pose" && request.scan) return "--scan is not for --table pose";
   if (request.format != "csv" && request.format != "ply" && request.format != "svg") return "there is no format " + request.format;
-  if (request.format == "csv" && request.scan) return "--scan is for --format ply or svg";
+  if (request.format == "csv" && request.table != "merges" && request.scan) return "--scan is for --format ply or svg, or --table merges";
+  if (request.all_scans && (request.format != "csv" || request.table != "merges")) return "--scan all is for --table merges only, as csv";
+  if ((request.table == "merges") != request.config.has_value()) return "--config and --table merges go together: scans are segmented again by it";
   for (const auto& input : request.inputs) {
     std::error_code error;
     if (request.output && std::filesystem::equivalent(input, *request.output, error)) return "--out is one of the inputs: " + input.string();
@@ -44,7 +51,20 @@ std::string Fault(const Request& request) {
   return "";
 }
 
+// @throws config::ConfigError
+segmenter::Params MergingParams(const std::filesystem::path& config_folder) {
+  auto params = segmenter::LoadParams(config_folder);
+  if (params.method == segmenter::Method::kLookout) return params;
+  throw config::ConfigError({config::FaultLine(config_folder / "segmenter.txtpb", "method", "PAPER merges no pairs: --table merges is of LOOKOUT")});
+}
+
+// @throws config::ConfigError
 std::unique_ptr<Sink> MakeSink(const Request& request) {
+  if (request.table == "merges") {
+    const auto params = MergingParams(*request.config);
+    if (request.format == "svg") return MakeMergesSvgSink(params, config::LoadBoat(*request.config), request.scan);
+    return MakeMergesSink(params, request.scan, request.all_scans);
+  }
   if (request.format == "ply") return MakePlySink(request.scan);
   if (request.format == "svg" && request.table == "pose") return MakeTrackSvgSink();
   if (request.format == "svg") {
@@ -119,6 +139,9 @@ int Run(const Request& request, std::ostream& errors) {
     return Export(request, errors);
   } catch (const io::BrokenPipe&) {  // no fault: `| head` ends quietly
     return kExitFine;
+  } catch (const config::ConfigError& error) {
+    errors << PrintableLines(error.what()) << '\n';
+    return kExitUsage;
   } catch (const std::exception& error) {
     errors << kProgram << PrintableLines(error.what()) << '\n';
     return kExitFailed;

@@ -13,15 +13,17 @@ namespace lookout::exporter {
 struct Request {
   std::vector<std::filesystem::path> inputs;  // lcm-logs, read in this order as one
   std::string table;
-  std::string format = "csv";                                  // "csv", "ply" (returns), "svg" (returns, obstacles)
+  std::string format = "csv";                                  // "csv", "ply" (returns), "svg" (returns, merges, obstacles, pose)
   std::optional<std::filesystem::path> output = std::nullopt;  // nullopt = standard output
   bool force = false;                                          // an existing output is replaced
-  std::optional<std::int64_t> scan = std::nullopt;             // ply, svg: seq of the scan; nullopt = the last whole one
+  std::optional<std::int64_t> scan = std::nullopt;             // ply, svg, merges: seq of the scan; nullopt = the last whole one
+  bool all_scans = false;                                      // merges as csv: in place of one
+  std::optional<std::filesystem::path> config = std::nullopt;  // merges: the boat's folder, by which scans are segmented again
 };
 
 inline constexpr int kExitFine = 0;
 inline constexpr int kExitFailed = 1;  // an input cannot be read, the output not written, or the log holds nothing of the table's channel
-inline constexpr int kExitUsage = 2;
+inline constexpr int kExitUsage = 2;   // wrong command line or config
 
 /// Ends as failed, without output file, when the program is asked to stop (io::CatchStopSignals).
 ///

@@ -19,20 +19,23 @@ int main(int argc, char** argv) {
   app.add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns and obstacles: a scan; pose: the track)")
+  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns, merges and obstacles: a scan; pose: the track)")
       ->check(CLI::IsMember({"csv", "ply", "svg"}))
       ->capture_default_str();
   app.add_option("--out", request.output,
                  "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");
   app.add_flag("--force", request.force, "replace an existing --out");
-  app.add_option("--scan", scan, "ply and svg: seq of the scan, or \"last\": the last whole one")->capture_default_str();
+  app.add_option("--scan", scan, "ply, svg and table merges: seq of the scan, or \"last\": the last whole one; merges as csv: or \"all\"")
+      ->capture_default_str();
+  app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again");
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
-  app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line.");
+  app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
   try {
     app.parse(argc, argv);
-    if (scan != "last") {
+    request.all_scans = scan == "all";
+    if (scan != "last" && !request.all_scans) {
       std::int64_t seq = 0;
-      if (!CLI::detail::lexical_cast(scan, seq)) throw CLI::ValidationError("--scan", "must be a number or \"last\"");
+      if (!CLI::detail::lexical_cast(scan, seq)) throw CLI::ValidationError("--scan", "must be a number, \"last\" or \"all\"");
       request.scan = seq;
     }
   } catch (const CLI::ParseError& error) {

@@ -17,6 +17,7 @@
 #include "lookout/pose_t.hpp"
 #include "tools/export/boat_of_log.hpp"
 #include "tools/export/colour.hpp"
+#include "tools/export/merge_rounds.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
 #include "tools/export/words.hpp"
@@ -61,6 +62,14 @@ struct Outline {
   }
 };
 
+// Two pieces that were merged, or were not.
+struct Link {
+  std::array<Vector2d, 2> ends;
+  bool is_merged = false;
+  double log_odds = 0.0;
+  std::string why;
+};
+
 std::string Css(const Rgb& colour) { return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue); }
 
 class Picture {
@@ -73,6 +82,7 @@ class Picture {
   std::optional<Eigen::AlignedBox3d> own_vessel_box_m;
   std::vector<Dots> dots;         // in the order of drawing
   std::vector<Outline> outlines;  // by Rank
+  std::vector<Link> links;
 
   // Nearest first, the tentative behind all that are sure: in rain they would else fill the legend. What is not finite counts as farthest, so that
   // the order stays one. @return "3 obstacles, 1 of them tentative"
@@ -99,6 +109,7 @@ class Picture {
     DrawBoat();
     for (const auto& of_colour : dots) DrawDots(of_colour);
     for (const auto& outline : outlines) DrawOutline(outline);
+    for (const auto& link : links) DrawLink(link);
     svg_ += "</g>\n";
     DrawRingNames();
     Add("<path d=\"M{0} {1}l9 22l-9 -6l-9 6Z\" fill=\"#b3261e\"/>\n", kMiddleX, kMiddleY - kRadius - 24.0);
@@ -204,6 +215,13 @@ class Picture {
                              : "1.2");
   }
 
+  // The more certain, the darker; why is said where the pointer rests on it.
+  void DrawLink(const Link& link) {
+    Add("<path d=\"{}\" stroke=\"{}\" stroke-opacity=\"{:.2f}\" stroke-width=\"2\" stroke-linecap=\"round\"><title>{}</title></path>\n",
+        PathOf({link.ends.begin(), link.ends.end()}), link.is_merged ? "#1a7f37" : "#b3261e", std::min(0.9, 0.3 + std::abs(link.log_odds) / 10.0),
+        link.why);
+  }
+
   void DrawRingNames() {
     for (int ring = 1; ring <= num_rings_; ++ring) {
       // Along 120 degrees, where neither the bow nor the arrow above stand.
@@ -294,13 +312,16 @@ std::vector<Vector2d> Corners(const std::vector<float>& x_m, const std::vector<f
   return corners;
 }
 
+// " 43 %"; "" where it is not stated.
+std::string PercentOf(float probability) { return std::isfinite(probability) ? fmt::format(" {:.0f} %", 100.0 * double{probability}) : ""; }
+
 // Of a segment or an obstacle. Land is drawn as its waterline: the hull of a shore covers the water before it, and the boat.
 template <typename Thing>
 Outline OutlineOf(const Thing& thing, double distance_m, const std::string& place, std::vector<Vector2d> hull, std::vector<Vector2d> waterline) {
   const bool is_tentative = thing.confidence == segment_t::CONFIDENCE_TENTATIVE;
   const bool is_land = thing.kind == segment_t::KIND_LAND;
   // The size says little of what is tentative, or of land.
-  const auto what = is_tentative ? std::string(words::WordOf(words::kConfidence, thing.confidence))
+  const auto what = is_tentative ? std::string(words::WordOf(words::kConfidence, thing.confidence)) + PercentOf(thing.thing_probability)
                     : is_land    ? std::string(words::WordOf(words::kKind, thing.kind))
                                  : fmt::format("{:.1f} x {:.1f} m", thing.length_m, thing.width_m);
   const bool is_line = is_land && !waterline.empty();
@@ -309,7 +330,8 @@ Outline OutlineOf(const Thing& thing, double distance_m, const std::string& plac
 
 std::string NorthText(double heading_rad) { return fmt::format("north up, heading {:.1f} deg", RadToDeg(heading_rad)); }
 
-Picture PictureOfReturns(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, std::optional<double> heading_rad) {
+Picture PictureOfReturns(const ScanMessages& scan, const std::vector<MergeLink>& links, const std::optional<config::BoatFacts>& boat,
+                         std::optional<double> heading_rad) {
   const bool is_north_up = boat && heading_rad;
   const double up_rad = is_north_up ? *heading_rad : 0.0;
   const Eigen::Isometry3d T_vessel_lidar = boat ? boat->T_vessel_lidar : Eigen::Isometry3d::Identity();
@@ -340,6 +362,9 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::optional<config::B
       of_colour.legend = fmt::format("{} ({} returns)", name, of_colour.points.size());
     }
     picture.dots.push_back(std::move(of_colour));
+  }
+  for (const auto& link : links) {
+    picture.links.push_back({{to_picture(link.ends_m[0]), to_picture(link.ends_m[1])}, link.is_merged, double{link.log_odds}, link.why});
   }
 
   for (const auto& [part_index, part] : scan.segments) {
@@ -387,9 +412,13 @@ Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config:
 class ScanSvgSink final : public Sink {
  public:
   ScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq) : what_(what), scan_(what, seq) {}
+  // Of the returns, segmented again.
+  ScanSvgSink(const segmenter::Params& params, const config::BoatFacts& boat, std::optional<std::int64_t> seq)
+      : what_(ChosenScan::Of::kReturns), scan_(what_, seq), boat_(boat), recorder_(params) {}
 
   std::vector<bus::Channel> Channels() const override {
     if (what_ == ChosenScan::Of::kObstacles) return {bus::kObstacles, bus::kPose, bus::kRunInfo};
+    if (recorder_) return {bus::kLidarScan, bus::kPose};
     return {bus::kLidarScan, bus::kSegments, bus::kPose, bus::kRunInfo};
   }
 
@@ -401,10 +430,18 @@ class ScanSvgSink final : public Sink {
 
   void Finish(std::string& text) override {
     scan_.Finish();
-    const auto& scan = scan_.chosen();
-    if (!scan) return;
-    const auto heading_rad = headings_.At(scan->utime_us);
-    auto picture = what_ == ChosenScan::Of::kReturns ? PictureOfReturns(*scan, boat_, heading_rad) : PictureOfObstacles(*scan, boat_, heading_rad);
+    if (!scan_.chosen()) return;
+    auto scan = *scan_.chosen();
+    const auto heading_rad = headings_.At(scan.utime_us);
+    std::vector<MergeLink> links;
+    if (recorder_) {
+      auto merged = recorder_->MergeChosen(scan);
+      links = LinksOf(merged, recorder_->evidence(merged.rounds.size() - 1));
+      scan.segments = std::move(merged.segments);
+    }
+    auto picture =
+        what_ == ChosenScan::Of::kReturns ? PictureOfReturns(scan, links, boat_, heading_rad) : PictureOfObstacles(scan, boat_, heading_rad);
+    if (recorder_) picture.subtitles[0] += ", pairs of the last round: green one, red two (rest the pointer on a line)";
     text += picture.Draw();
   }
 
@@ -424,10 +461,15 @@ class ScanSvgSink final : public Sink {
   ChosenScan scan_;
   messages::HeadingHistory headings_;
   std::optional<config::BoatFacts> boat_;
+  std::optional<MergeRecorder> recorder_;
 };
 
 }  // namespace
 
 std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq) { return std::make_unique<ScanSvgSink>(what, seq); }
+
+std::unique_ptr<Sink> MakeMergesSvgSink(const segmenter::Params& params, const config::BoatFacts& boat, std::optional<std::int64_t> seq) {
+  return std::make_unique<ScanSvgSink>(params, boat, seq);
+}
 
 }  // namespace lookout::exporter

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "services/segmenter/params.hpp"
 #include "tools/export/scans.hpp"
 #include "tools/export/sink.hpp"
 
@@ -17,7 +18,7 @@ std::vector<std::string_view> TableNames();
 /// @return the header line of a table without its end; empty when there is no such table
 std::string_view TableHeader(std::string_view table);
 
-/// @return what writes `table` as CSV, without header; nullptr when there is no such table
+/// @return what writes `table` as CSV, without header; nullptr when there is no such table, or it is merges
 std::unique_ptr<Sink> MakeCsvSink(std::string_view table);
 
 /// The labelled cloud of one scan (binary, little-endian), for MeshLab, CloudCompare or Open3D.
@@ -27,6 +28,20 @@ std::unique_ptr<Sink> MakePlySink(std::optional<std::int64_t> seq);
 
 /// One scan from above, 1320 x 1000 pixels: its returns with their segments, or its obstacles. The same text for the same log.
 std::unique_ptr<Sink> MakeScanSvgSink(ChosenScan::Of what, std::optional<std::int64_t> seq);
+
+/// The pairs of pieces that were judged in each round of merging when a scan is segmented again, with what each feature added.
+///
+/// @param params     of method LOOKOUT
+/// @param seq        of the scan; nullopt = the last whole one
+/// @param all_scans  in place of one
+/// Finish throws std::runtime_error where there is no scan of that number.
+std::unique_ptr<Sink> MakeMergesSink(const segmenter::Params& params, std::optional<std::int64_t> seq, bool all_scans);
+std::string_view MergesHeader();
+
+/// One scan from above as MakeScanSvgSink draws it, but segmented again, with the pairs of the last round of merging.
+///
+/// @param params  of method LOOKOUT
+std::unique_ptr<Sink> MakeMergesSvgSink(const segmenter::Params& params, const config::BoatFacts& boat, std::optional<std::int64_t> seq);
 
 /// The track of the boat out of POSE, 1320 x 1000 pixels: north up, one line for each stretch of one status. Places closer than 0.2 m to the last one
 /// are left out, so that a day at anchor stays small. Poses without position break the line.

@@ -30,6 +30,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 Fixed Metres(double value_m) { return {value_m, 4}; }               // 0.1 mm
 Fixed GeodeticDegrees(double angle_deg) { return {angle_deg, 9}; }  // 0.1 mm on the earth
 Fixed Degrees(double angle_rad) { return {RadToDeg(angle_rad), 4}; }
+Fixed Share(double share) { return {share, 4}; }  // or a probability
 
 void AppendReturns(const ScanMessages& scan, std::string& text) {
   for (const auto& [part_index, part] : scan.scans) {
@@ -54,7 +55,8 @@ void Append(const segments_t& message, std::string& text) {
     AppendRow(text, message.utime_us, segment.id, segment.utime_us, segment.num_points, Metres(segment.centroid_m[0]), Metres(segment.centroid_m[1]),
               Metres(segment.centroid_m[2]), Metres(p_nearest_m.norm()), Metres(segment.length_m), Metres(segment.width_m),
               Metres(double{segment.max_z_m} - double{segment.min_z_m}), words::WordOf(words::kConfidence, segment.confidence),
-              words::WordsOf(words::kGround, segment.grounds), words::WordOf(words::kKind, segment.kind), Fixed{segment.seen_share, 4});
+              words::WordsOf(words::kGround, segment.grounds), words::WordOf(words::kKind, segment.kind), Share(segment.seen_share),
+              Share(segment.thing_probability), Share(segment.land_probability));
   }
 }
 
@@ -65,7 +67,7 @@ void Append(const obstacles_t& message, std::string& text) {
               Metres(obstacle.top_above_water_m), Metres(obstacle.position_map_m[0]), Metres(obstacle.position_map_m[1]), Shortest{covariance_m2[0]},
               Shortest{covariance_m2[1]}, Shortest{covariance_m2[2]}, Metres(obstacle.length_m), Metres(obstacle.width_m), obstacle.num_points,
               words::WordOf(words::kObstacleStatus, obstacle.status), words::WordOf(words::kConfidence, obstacle.confidence),
-              words::WordOf(words::kKind, obstacle.kind));
+              words::WordOf(words::kKind, obstacle.kind), Share(obstacle.thing_probability));
   }
 }
 
@@ -138,17 +140,19 @@ struct Table {
   std::string_view name;
   std::string_view header;
   bus::Channel channel;
-  bool (*append)(Bytes, std::string&);  // nullptr: returns, which needs two channels
+  bool (*append)(Bytes, std::string&);  // nullptr: returns and merges, which need two channels
 };
 
 constexpr std::array kTables{
     Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason", bus::kLidarScan, nullptr},
+    Table{"merges", "", bus::kLidarScan, nullptr},  // its header has the names of all features: MergesHeader
     Table{"segments",
-          "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share",
+          "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
+          "thing_probability,land_probability",
           bus::kSegments, AppendMessage<segments_t>},
     Table{"obstacles",
           "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,"
-          "length_m,width_m,num_points,status,confidence,kind",
+          "length_m,width_m,num_points,status,confidence,kind,thing_probability",
           bus::kObstacles, AppendMessage<obstacles_t>},
     Table{"pose", "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status", bus::kPose,
           AppendMessage<pose_t>},
@@ -231,12 +235,12 @@ std::vector<std::string_view> TableNames() {
 
 std::string_view TableHeader(std::string_view table) {
   const auto* found = FindTable(table);
-  return found == nullptr ? std::string_view() : found->header;
+  return found == nullptr ? std::string_view() : found->name == "merges" ? MergesHeader() : found->header;
 }
 
 std::unique_ptr<Sink> MakeCsvSink(std::string_view table) {
   const auto* found = FindTable(table);
-  if (found == nullptr) return nullptr;
+  if (found == nullptr || found->name == "merges") return nullptr;
   if (found->append == nullptr) return std::make_unique<ReturnsSink>();
   return std::make_unique<MessageSink>(*found);
 }

@@ -127,7 +127,7 @@ std::string ObstaclesHeader(const NearestObstacles* obstacles, View view) {
                          ? std::string()
                          : fmt::format("of {}", std::min<std::int64_t>(view.sure_only ? obstacles->num_sure : obstacles->num_obstacles, 999));
   return Fitting({Left(count, 6) + Right("id", 3), Right("range m", 8), Right("rel", 5), Right("true", 5), Right("latitude", 12),
-                  Right("longitude", 13), "  " + Left("size m", 13), " " + Left(view.sure_only ? "sure only" : "confidence", 10)},
+                  Right("longitude", 13), "  " + Left("size m", 13), " " + Left(view.sure_only ? "sure only" : "confidence", 10), Right("thing%", 7)},
                  view.width);
 }
 
@@ -143,6 +143,11 @@ std::string SizeText(const ObstacleLine& line) {
   return fine.size() <= 13 ? fine : text(0);
 }
 
+// Whole per cent, rounded down: 100 is certain. "-" where it is not stated.
+std::string Percent(float probability) {
+  return probability >= 0.0F && probability <= 1.0F ? fmt::format("{:.0f}", std::floor(100.0 * double{probability})) : "-";
+}
+
 Span ObstacleSpan(std::size_t index, const ObstacleLine& line, int width) {
   const bool is_tentative = line.confidence == obstacle_t::CONFIDENCE_TENTATIVE;
   const bool is_land = line.kind == obstacle_t::KIND_LAND;
@@ -150,7 +155,8 @@ Span ObstacleSpan(std::size_t index, const ObstacleLine& line, int width) {
   if (is_land && is_tentative) certainty += " ?";
   return {Fitting({Count(static_cast<std::int64_t>(index) + 1, 3) + " " + Count(line.id, 5), Column(Number(line.range_m, 7, 1)),
                    Right(Degrees(line.bearing_rad), 5), Right(Degrees(line.true_bearing_rad), 5), Column(Number(line.latitude_deg, 11, 6)),
-                   Column(Number(line.longitude_deg, 12, 6)), "  " + Left(SizeText(line), 13), " " + Left(certainty, 10)},
+                   Column(Number(line.longitude_deg, 12, 6)), "  " + Left(SizeText(line), 13), " " + Left(certainty, 10),
+                   Right(Percent(line.thing_probability), 7)},
                   width),
           is_tentative ? Style::kFaint : Style::kPlain};
 }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "common/core/utime.hpp"
@@ -25,7 +26,8 @@ struct Rating {
   Confidence confidence = Confidence::kSure;
   std::int32_t grounds = 0;  // bits of the wire: why it is tentative
   Kind kind = Kind::kObstacle;
-  float seen_share = 1.0F;  // 0 to 1, of the columns from its first to its last
+  float thing_probability = std::numeric_limits<float>::quiet_NaN();  // 0 to 1, that it is no clutter; NaN = not stated
+  float seen_share = 1.0F;                                            // 0 to 1, of the columns from its first to its last
 };
 
 /// What an obstacle has of its segment.

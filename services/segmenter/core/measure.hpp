@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -43,6 +44,9 @@ struct Segment {
   Confidence confidence = Confidence::kSure;
   std::int32_t grounds = 0;  // bits of Ground; 0 where it is sure
   SegmentKind kind = SegmentKind::kObstacle;
+  // 0 to 1; NaN where the method states none, as the paper's.
+  float thing_probability = std::numeric_limits<float>::quiet_NaN();  // that it is no clutter
+  float land_probability = std::numeric_limits<float>::quiet_NaN();
   std::int32_t num_points = 0;
   Point centroid;
   Point nearest;  // return nearest to the sensor; of equals the first

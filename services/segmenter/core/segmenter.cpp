@@ -71,6 +71,14 @@ std::int32_t GroundsOf(const PieceFeatures& features, const Evidence& thing) {
   return grounds;
 }
 
+// The one place that says what is land and what is sure, by the probabilities as they are published.
+void Decide(const LookoutParams& params, Segment& segment) {
+  const bool is_land = double{segment.land_probability} > params.land_probability;
+  const bool is_sure = is_land || double{segment.thing_probability} > params.sure_probability;
+  segment.kind = is_land ? SegmentKind::kLand : SegmentKind::kObstacle;
+  segment.confidence = is_sure ? Confidence::kSure : Confidence::kTentative;
+}
+
 }  // namespace
 
 Segmenter::Segmenter(const Params& params)
@@ -113,12 +121,14 @@ void Segmenter::DescribeSegments(const Scan& scan) {
   for (auto& segment : result_.segments) {
     const std::int32_t root = numbering_.ClusterOf(segment.id - 1);
     const GroupFacts& facts = method_.FactsOf(root);
-    segment.kind = facts.is_land ? SegmentKind::kLand : SegmentKind::kObstacle;
-    const bool is_sure = facts.is_land || ProbabilityOf(facts.thing_log_odds) > params_.lookout.sure_probability;
-    segment.confidence = is_sure ? Confidence::kSure : Confidence::kTentative;
-    segment.grounds = is_sure ? 0 : GroundsOf(method_.FeaturesOf(root), params_.lookout.evidence[kThingSum]);
+    segment.land_probability = facts.land_probability;
+    segment.thing_probability = facts.thing_probability;
     segment.seen_share = facts.seen_share;
-    if (facts.is_land) measurer_.MeasureWaterline(scan, classifier_.result().returns, method_.NearestOf(root), segment);
+    Decide(params_.lookout, segment);
+    if (segment.confidence == Confidence::kTentative) {
+      segment.grounds = GroundsOf(method_.FeaturesOf(root), params_.lookout.evidence[kThingSum]);
+    }
+    if (segment.kind == SegmentKind::kLand) measurer_.MeasureWaterline(scan, classifier_.result().returns, method_.NearestOf(root), segment);
   }
 }
 

@@ -85,6 +85,8 @@ inline segment_t MakeSegment(int id, float x_m) {
   segment.id = id;
   segment.confidence = segment_t::CONFIDENCE_SURE;
   segment.seen_share = 0.75F;
+  segment.thing_probability = 0.9375F;
+  segment.land_probability = 0.0625F;
   segment.num_points = 12;
   segment.centroid_m[0] = x_m + 0.5F;
   segment.centroid_m[1] = -1.25F;

@@ -288,9 +288,9 @@ TEST_F(SvgTest, DrawsTentativeSegmentsLightlyAndLandAsItsWaterline) {
   // Five rings of 2 m make 43 pixels a metre; the lidar stands at 500, 535, and x is up.
   EXPECT_NE(text_.find("d=\"M328.0 191.0L500.0 169.5L672.0 191.0\" fill=\"none\""), std::string::npos) << "open, from left to right";
   EXPECT_NE(text_.find(">8.0 m, land, 12 returns<"), std::string::npos);
-  EXPECT_NE(text_.find(">4.0 m, tentative, 12 returns<"), std::string::npos);
+  EXPECT_NE(text_.find(">4.0 m, tentative 94 %, 12 returns<"), std::string::npos);
   const auto in_legend = [this](const std::string& facts) { return text_.find(">" + facts + "<"); };
-  EXPECT_GT(in_legend("4.0 m, tentative, 12 returns"), in_legend("8.0 m, land, 12 returns")) << "behind what is sure, though nearer";
+  EXPECT_GT(in_legend("4.0 m, tentative 94 %, 12 returns"), in_legend("8.0 m, land, 12 returns")) << "behind what is sure, though nearer";
 }
 
 TEST_F(SvgTest, DrawsTentativeObstaclesLightlyAndLandAsItsWaterline) {

@@ -17,10 +17,11 @@ using TablesTest = ExportTest;
 TEST(TableHeader, IsTheContractWithScriptsOutside) {
   EXPECT_EQ(TableHeader("returns"), "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason");
   EXPECT_EQ(TableHeader("segments"),
-            "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share");
+            "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
+            "thing_probability,land_probability");
   EXPECT_EQ(TableHeader("obstacles"),
             "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,length_m,"
-            "width_m,num_points,status,confidence,kind");
+            "width_m,num_points,status,confidence,kind,thing_probability");
   EXPECT_EQ(TableHeader("pose"), "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status");
 }
 
@@ -112,11 +113,13 @@ TEST_F(TablesTest, SegmentsHaveTheirNearestDistanceAndHeight) {
   segments.segments = {MakeSegment(1, 4.0F), MakeSegment(2, 6.0F)};
   segments.num_segments = 2;
   segments.segments[1].nearest_m[1] = 8.0F;
+  segments.segments[1].thing_probability = segments.segments[1].land_probability = std::numeric_limits<float>::quiet_NaN();
   Add(bus::kSegments, segments);
   ASSERT_EQ(Export("segments"), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1,1700000000000005,12,4.5000,-1.2500,0.1250,4.0000,2.5000,1.0000,1.5000,sure,,obstacle,0.7500");
-  EXPECT_EQ(Rows()[1], "1700000000000000,2,1700000000000005,12,6.5000,-1.2500,0.1250,10.0000,2.5000,1.0000,1.5000,sure,,obstacle,0.7500");
+  EXPECT_EQ(Rows()[0],
+            "1700000000000000,1,1700000000000005,12,4.5000,-1.2500,0.1250,4.0000,2.5000,1.0000,1.5000,sure,,obstacle,0.7500,0.9375,0.0625");
+  EXPECT_EQ(Rows()[1], "1700000000000000,2,1700000000000005,12,6.5000,-1.2500,0.1250,10.0000,2.5000,1.0000,1.5000,sure,,obstacle,0.7500,,");
 }
 
 TEST_F(TablesTest, SegmentsSayTheirConfidenceGroundsAndKindInWords) {
@@ -137,10 +140,10 @@ TEST_F(TablesTest, SegmentsSayTheirConfidenceGroundsAndKindInWords) {
   Add(bus::kSegments, segments);
   ASSERT_EQ(Export("segments"), kExitFine);
   ASSERT_EQ(Rows().size(), 4U);
-  EXPECT_TRUE(Rows()[0].ends_with(",1.5000,tentative,few_returns,obstacle,1.0000")) << Rows()[0];
-  EXPECT_TRUE(Rows()[1].ends_with(",1.5000,tentative,few_returns+scattered+at_surface,obstacle,0.0000")) << Rows()[1];
-  EXPECT_TRUE(Rows()[2].ends_with(",1.5000,sure,,land,0.3333")) << Rows()[2];
-  EXPECT_TRUE(Rows()[3].ends_with(",1.5000,undefined,at_surface+undefined,undefined,")) << Rows()[3];
+  EXPECT_TRUE(Rows()[0].ends_with(",1.5000,tentative,few_returns,obstacle,1.0000,0.9375,0.0625")) << Rows()[0];
+  EXPECT_TRUE(Rows()[1].ends_with(",1.5000,tentative,few_returns+scattered+at_surface,obstacle,0.0000,0.9375,0.0625")) << Rows()[1];
+  EXPECT_TRUE(Rows()[2].ends_with(",1.5000,sure,,land,0.3333,0.9375,0.0625")) << Rows()[2];
+  EXPECT_TRUE(Rows()[3].ends_with(",1.5000,undefined,at_surface+undefined,undefined,,0.9375,0.0625")) << Rows()[3];
 }
 
 TEST_F(TablesTest, ATurnWithoutSegmentsIsAHeaderWithoutRows) {
@@ -170,10 +173,12 @@ TEST_F(TablesTest, ObstaclesLeaveEmptyWhatIsNotKnown) {
   placed.num_points = 42;
   placed.confidence = obstacle_t::CONFIDENCE_SURE;
   placed.kind = obstacle_t::KIND_LAND;
+  placed.thing_probability = 0.375F;
   obstacle_t unplaced = placed;
   unplaced.status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
   unplaced.confidence = obstacle_t::CONFIDENCE_TENTATIVE;
   unplaced.kind = obstacle_t::KIND_OBSTACLE;
+  unplaced.thing_probability = std::numeric_limits<float>::quiet_NaN();
   for (double* value : {&unplaced.latitude_deg, &unplaced.longitude_deg, &unplaced.top_above_water_m, &unplaced.position_map_m[0],
                         &unplaced.position_map_m[1], &unplaced.covariance_m2[0], &unplaced.covariance_m2[1], &unplaced.covariance_m2[2]}) {
     *value = kNaN;
@@ -182,10 +187,10 @@ TEST_F(TablesTest, ObstaclesLeaveEmptyWhatIsNotKnown) {
   Add(bus::kObstacles, message);
   ASSERT_EQ(Export("obstacles"), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_EQ(
-      Rows()[0],
-      "1700000000000000,1700000000000040,7,43.702200000,-72.289500000,2.1250,-12.5000,30.2500,0.04,-0.001,0.0000001,3.5000,1.5000,42,ok,sure,land");
-  EXPECT_EQ(Rows()[1], "1700000000000000,1700000000000040,7,,,,,,,,,3.5000,1.5000,42,vessel_frame_only,tentative,obstacle");
+  EXPECT_EQ(Rows()[0],
+            "1700000000000000,1700000000000040,7,43.702200000,-72.289500000,2.1250,-12.5000,30.2500,0.04,-0.001,0.0000001,3.5000,1.5000,42,ok,sure,"
+            "land,0.3750");
+  EXPECT_EQ(Rows()[1], "1700000000000000,1700000000000040,7,,,,,,,,,3.5000,1.5000,42,vessel_frame_only,tentative,obstacle,");
 }
 
 pose_t MakePose() {

@@ -68,6 +68,8 @@ inline segment_t MakeSegmentMessage(std::int32_t id, std::int64_t offset_us, int
   message.nearest_utime_us = message.utime_us;
   message.id = id;
   message.confidence = segment_t::CONFIDENCE_SURE;
+  message.thing_probability = 0.875F;
+  message.land_probability = 0.125F;
   message.seen_share = 1.0F;
   message.num_points = num_vertices;
   message.centroid_m[0] = message.nearest_m[0] = 10.0F;

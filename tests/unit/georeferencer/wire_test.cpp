@@ -42,6 +42,7 @@ TEST(ToSegmentPart, TakesAWholeMessageOver) {
   message.segments[0].confidence = segment_t::CONFIDENCE_TENTATIVE;
   message.segments[0].grounds = segment_t::GROUND_SCATTERED;
   message.segments[0].seen_share = 0.25F;
+  message.segments[0].thing_probability = 0.375F;
   message.segments[1].waterline_time_us[3] = 99'000;
   const auto result = ToSegmentPart(message, bus::kMaxMessageBytes);
   ASSERT_TRUE(std::holds_alternative<SegmentPart>(result));
@@ -58,6 +59,7 @@ TEST(ToSegmentPart, TakesAWholeMessageOver) {
   EXPECT_EQ(part.segments[0].rating.grounds, segment_t::GROUND_SCATTERED);
   EXPECT_EQ(part.segments[0].rating.kind, Kind::kObstacle);
   EXPECT_EQ(part.segments[0].rating.seen_share, 0.25F);
+  EXPECT_EQ(part.segments[0].rating.thing_probability, 0.375F);
   EXPECT_TRUE(part.segments[0].waterline.empty());
   EXPECT_EQ(part.segments[1].id, 2);
   EXPECT_EQ(part.segments[1].rating.confidence, Confidence::kSure);
@@ -115,6 +117,10 @@ TEST(ToSegmentPart, RefusesEachFaultUnderItsOwnName) {
       {kSegmentsNumber, [](segments_t& m) { m.segments[0].seen_share = -0.01F; }},
       {kSegmentsNumber, [](segments_t& m) { m.segments[0].seen_share = 1.01F; }},
       {kSegmentsNumber, [](segments_t& m) { m.segments[0].seen_share = kNanF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].thing_probability = -0.01F; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].thing_probability = 1.01F; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[0].land_probability = -kInfF; }},
+      {kSegmentsNumber, [](segments_t& m) { m.segments[1].land_probability = 1.01F; }},
       {kSegmentsNumber, [](segments_t& m) { m.segments[1].waterline_x_m[3] = kNanF; }},
       {kSegmentsNumber, [](segments_t& m) { m.segments[1].waterline_y_m[0] = 1e38F; }},
       {kSegmentsCode, [](segments_t& m) { m.segments[0].confidence = 0; }},
@@ -129,6 +135,14 @@ TEST(ToSegmentPart, RefusesEachFaultUnderItsOwnName) {
     auto message = MakeGoodSegments();
     changes[i].second(message);
     EXPECT_EQ(RefusalOf(message), changes[i].first) << "change " << i;
+  }
+}
+
+TEST(ToSegmentPart, AcceptsProbabilitiesThatAreNotStatedAndThoseAtTheEnds) {
+  for (const float probability : {kNanF, 0.0F, 1.0F}) {
+    auto message = MakeGoodSegments();
+    message.segments[0].thing_probability = message.segments[0].land_probability = probability;
+    EXPECT_EQ(RefusalOf(message), "") << probability;
   }
 }
 

@@ -70,6 +70,46 @@ TEST(Confidence, LandIsAThresholdOnItsProbabilityAndSure) {
   EXPECT_EQ(TheOnlyOne(Boat(), params).kind, SegmentKind::kObstacle);
 }
 
+TEST(Confidence, ProbabilitiesAreThoseOfTheSums) {
+  const auto boat = TheOnlyOne(Boat(), With(Always(kLandSum, -std::log(4.0F)), Always(kThingSum, std::log(3.0F))));
+  EXPECT_NEAR(boat.land_probability, 0.2F, 1e-6F);
+  EXPECT_NEAR(boat.thing_probability, 0.75F, 1e-6F);
+  const auto certain = TheOnlyOne(Boat(), With(Always(kLandSum, -1e4F), Always(kThingSum, 1e4F)));
+  EXPECT_EQ(certain.land_probability, 0.0F);
+  EXPECT_EQ(certain.thing_probability, 1.0F);
+}
+
+// What is published decides, to its last bit: who reads SEGMENTS and applies the same threshold gets the same words.
+TEST(Confidence, IsExactlyWhatThePublishedProbabilitiesSay) {
+  for (const float land_log_odds : {-3.0F, -0.4F, 0.1F, 2.0F}) {
+    for (const float thing_log_odds : {-2.0F, 0.3F, 1.9924F, 5.0F}) {
+      auto params = With(Always(kLandSum, land_log_odds), Always(kThingSum, thing_log_odds));
+      const auto published = TheOnlyOne(Boat(), params);
+      const double thing = published.thing_probability;
+      const double land = published.land_probability;
+      for (const double sure_probability : {0.5, 0.88, thing, std::nextafter(thing, 0.0), std::nextafter(thing, 1.0)}) {
+        for (const double land_probability : {0.5, land, std::nextafter(land, 0.0)}) {
+          params.lookout.sure_probability = sure_probability;
+          params.lookout.land_probability = land_probability;
+          const auto segment = TheOnlyOne(Boat(), params);
+          const bool is_land = land > land_probability;
+          ASSERT_EQ(segment.kind == SegmentKind::kLand, is_land);
+          ASSERT_EQ(segment.confidence == Confidence::kSure, is_land || thing > sure_probability) << thing << ' ' << sure_probability;
+        }
+      }
+    }
+  }
+}
+
+TEST(Confidence, ThePapersMethodStatesNoProbability) {
+  Params params;
+  params.method = Method::kPaper;
+  const auto boat = TheOnlyOne(Boat(), params);
+  EXPECT_TRUE(std::isnan(boat.thing_probability));
+  EXPECT_TRUE(std::isnan(boat.land_probability));
+  EXPECT_EQ(boat.confidence, Confidence::kSure);
+}
+
 TEST(Confidence, GroundsAreWhatIsMeasured) {
   const auto params = With(Always(kLandSum, kNo), Always(kThingSum, kNo));
   auto scan = test::EmptyScan({});

@@ -38,7 +38,7 @@ TEST(Evidence, AddsTheBiasAndALeafOfEachTree) {
 TEST(Evidence, IsNotAboveWhatItEquals) { EXPECT_EQ(Make({kGap}).Of(std::array{2.0F, 0.0F, 0.0F}), 0.5F); }
 
 TEST(Evidence, OfNothingIsNothing) {
-  EXPECT_EQ(Evidence().Of({}), 0.0F);
+  EXPECT_EQ(Evidence().Of(std::span<const float>()), 0.0F);
   EXPECT_EQ(Make({NamedTree{{}, {7.0F}}}).Of(std::array{1.0F, 2.0F, 3.0F}), 7.0F);
 }
 

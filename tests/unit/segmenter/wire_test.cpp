@@ -232,6 +232,8 @@ TEST(ToMessages, CarriesEveryFieldOfASegment) {
                                .confidence = Confidence::kTentative,
                                .grounds = Ground::kFewReturns | Ground::kAtSurface,
                                .kind = SegmentKind::kLand,
+                               .thing_probability = 0.25F,
+                               .land_probability = 0.625F,
                                .num_points = 2,
                                .centroid = {1, 2, 3},
                                .nearest = {4, 5, 6},
@@ -256,6 +258,8 @@ TEST(ToMessages, CarriesEveryFieldOfASegment) {
   EXPECT_EQ(message.confidence, segment_t::CONFIDENCE_TENTATIVE);
   EXPECT_EQ(message.grounds, 1 + 4);
   EXPECT_EQ(message.kind, segment_t::KIND_LAND);
+  EXPECT_EQ(message.thing_probability, 0.25F);
+  EXPECT_EQ(message.land_probability, 0.625F);
   EXPECT_EQ(message.num_points, 2);
   EXPECT_EQ(std::vector<float>(message.centroid_m, message.centroid_m + 3), (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(std::vector<float>(message.nearest_m, message.nearest_m + 3), (std::vector<float>{4, 5, 6}));

@@ -366,6 +366,11 @@ public final class SpyTest {
     expect(Palette.ofSegment(1000).equals(new Color(37, 97, 228)), "colour of segment 1000");
   }
 
+  private static void onlyWhatIsCertainIsAHundredPerCent() {
+    expect(Texts.percent(1f).equals("100%") && Texts.percent(0.9999f).equals("99%") && Texts.percent(0f).equals("0%"), "rounded down");
+    expect(Texts.percent(Float.NaN).equals("-"), "a probability that is not stated is a dash");
+  }
+
   public static void main(String[] arguments) throws Exception {
     theSpyFindsThePluginWhichHandlesThreeTypes();
     aReturnIsDrawnWhereItIs();
@@ -377,6 +382,7 @@ public final class SpyTest {
     whatContradictsItselfIsRefused();
     aCountThatCannotBeIsRefusedBeforeItIsTaken();
     coloursAreThoseOfTheExport();
+    onlyWhatIsCertainIsAHundredPerCent();
     System.out.println(num_failures == 0 ? "all passed" : num_failures + " failed");
     System.exit(num_failures == 0 ? 0 : 1);
   }

@@ -37,6 +37,7 @@ inline obstacle_t ObstacleAt(int id, float range_m, float bearing_rad) {
   obstacle.utime_us = 1'000'000;
   obstacle.id = id;
   obstacle.confidence = obstacle_t::CONFIDENCE_SURE;
+  obstacle.thing_probability = 0.97F;
   obstacle.range_m = range_m;
   obstacle.bearing_rad = bearing_rad;
   obstacle.latitude_deg = 43.5;

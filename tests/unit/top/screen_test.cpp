@@ -84,6 +84,21 @@ TEST(Screen, ShowsNineObstaclesWithAllNumbersOnEightyByTwentyFour) {
   EXPECT_TRUE(Has(lines, "POSE             1.0"));
 }
 
+TEST(Screen, AWiderOneHasProbabilitiesTooAndADashForThoseThatAreNotStated) {
+  Board board = BusyBoard();
+  auto obstacles = std::vector{ObstacleAt(1, 4.5F, 0.0F), ObstacleAt(2, 5.5F, 0.0F), ObstacleAt(3, 6.5F, 0.0F), ObstacleAt(4, 7.5F, 0.0F)};
+  obstacles[1].thing_probability = std::numeric_limits<float>::quiet_NaN();
+  obstacles[2].thing_probability = 1.0F;
+  obstacles[3].thing_probability = 0.9999F;
+  Say(board, bus::kObstacles, TurnOf(2, obstacles), 1.95);
+  const auto lines = Lines(DrawScreen(board, "title", At(2.0), {85, 24}));
+  const auto head = std::ranges::find_if(lines, [](const std::string& line) { return line.starts_with("of 4 "); });
+  ASSERT_GE(lines.end() - head, 5);
+  EXPECT_TRUE(head->ends_with("confidence thing%")) << *head;
+  const std::vector<std::string> ends{"   97", "    -", "  100", "   99"};
+  for (std::size_t i = 0; i < ends.size(); ++i) EXPECT_TRUE((head + 1)[static_cast<std::ptrdiff_t>(i)].ends_with(ends[i])) << i;
+}
+
 TEST(Screen, MayLeaveOutWhatIsNotSure) {
   const auto lines = Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 24, true}));
   EXPECT_EQ(lines[14], "of 11  id range m  rel true    latitude    longitude  size m        sure only");

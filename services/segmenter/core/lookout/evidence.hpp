@@ -88,8 +88,8 @@ class Evidence {
   std::vector<Tree> trees_;
 };
 
-/// Of 0 to 1, from the logarithm of its odds.
-inline double ProbabilityOf(float log_odds) { return 1.0 / (1.0 + Exp(-double{log_odds})); }
+/// Of 0 to 1, from the logarithm of its odds, as it is published. The same bits on every processor: Exp is our own, and IEEE 754 rounds the rest.
+inline float ProbabilityOf(float log_odds) { return static_cast<float>(1.0 / (1.0 + Exp(-double{log_odds}))); }
 
 /// The sums that are compiled in, config/evidence/lookout.txtpb.
 std::span<const NamedSum> DefaultSums();

@@ -6,7 +6,6 @@ namespace lookout::segmenter {
 
 namespace {
 
-constexpr float kClutterLogOdds = -10.0F;  // of what is not judged: 1 in 20 000
 constexpr double kLinkedColumns = 2.8;     // LookoutParams::link grows by as many columns of 0.2 degrees
 
 // Hands on all, in order and in blocks; the last block is filled up with the first of its own.
@@ -77,11 +76,7 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
   for (std::int32_t group = 0; group < pieces_.size(); ++group) {
     const PieceFacts& piece = pieces_[group];
     facts_.push_back({.seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
-    if (IsJudged(pieces_, group)) {
-      judged_.push_back(group);
-    } else {
-      facts_.back().thing_log_odds = kClutterLogOdds;
-    }
+    if (IsJudged(pieces_, group)) judged_.push_back(group);
   }
   ForBlocks(
       std::span<const std::int32_t>(judged_), [features](std::int32_t group) { return features[static_cast<std::size_t>(group)].data(); },
@@ -90,9 +85,8 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
         const auto thing_log_odds = params_.evidence[kThingSum].Of(block);
         for (std::size_t i = 0; i < some.size(); ++i) {
           GroupFacts& facts = facts_[static_cast<std::size_t>(some[i])];
-          facts.is_land = ProbabilityOf(land_log_odds[i]) > params_.land_probability;
-          facts.land_log_odds = land_log_odds[i];
-          facts.thing_log_odds = thing_log_odds[i];
+          facts.land_probability = ProbabilityOf(land_log_odds[i]);
+          facts.thing_probability = ProbabilityOf(thing_log_odds[i]);
         }
       });
 }

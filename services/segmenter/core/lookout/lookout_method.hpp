@@ -22,10 +22,9 @@ namespace lookout::segmenter {
 
 /// What is said of a group beside its returns.
 struct GroupFacts {
-  bool is_land = false;
-  float land_log_odds = 0.0F;
-  float thing_log_odds = 0.0F;  // that it is a thing, and not spray, rain, foam or a glint
-  float seen_share = 1.0F;      // of the columns from its first to its last: in the others something nearer hides it, or there is no return
+  float land_probability = 0.0F;
+  float thing_probability = 0.0F;  // that it is a thing, and not spray, rain, foam or a glint
+  float seen_share = 1.0F;         // of the columns from its first to its last: in the others something nearer hides it, or there is no return
 };
 
 /// LookoutParams::link for a lidar whose columns are so far apart: where they are wider than those of a VLP-16, the reach is longer.

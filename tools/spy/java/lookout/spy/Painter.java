@@ -14,7 +14,7 @@ final class Painter {
   private static final int MARGIN = 12;
   private static final int CAPTION = 18;
   private static final int STRIP = 96;  // six pixels for each ring of a VLP-16
-  private static final int SIDE = 330;
+  private static final int SIDE = 374;
 
   private Painter() {}
 
@@ -123,7 +123,7 @@ final class Painter {
     y += line_height;
     g.setFont(new Font(Font.MONOSPACED, Font.PLAIN, 12));
     g.setColor(Palette.FAINT_INK);
-    g.drawString(String.format(Locale.ROOT, "%4s %8s %7s  %-9s %s", "id", "range", "bearing", "", "size m"), side.x + 12, y);
+    g.drawString(String.format(Locale.ROOT, "%4s %8s %7s  %-9s %5s %s", "id", "range", "bearing", "", "thing", "size m"), side.x + 12, y);
     y += line_height;
     int rows = Math.max(0, (side.y + side.height - y - line_height) / line_height);
     if (picture.hasObstacles(now_ms)) {
@@ -133,8 +133,8 @@ final class Painter {
         g.setColor(Palette.ofSegment(obstacle.id));
         g.fillRect(side.x, y - 9, 9, 9);
         g.setColor(obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? Palette.INK : Palette.FAINT_INK);
-        g.drawString(String.format(Locale.ROOT, "%4d %6.1f m %7s  %-9s %.1fx%.1f", obstacle.id, obstacle.range_m, Texts.degrees(obstacle.bearing_rad),
-            Texts.confidence(obstacle), obstacle.length_m, obstacle.width_m), side.x + 12, y);
+        g.drawString(String.format(Locale.ROOT, "%4d %6.1f m %7s  %-9s %5s %.1fx%.1f", obstacle.id, obstacle.range_m, Texts.degrees(obstacle.bearing_rad),
+            Texts.confidence(obstacle), Texts.percent(obstacle.thing_probability), obstacle.length_m, obstacle.width_m), side.x + 12, y);
         y += line_height;
       }
     }

@@ -18,6 +18,11 @@ final class Texts {
     return String.format(Locale.ROOT, "%03d°", Math.floorMod(Math.round(Math.toDegrees(angle_rad)), 360L));
   }
 
+  /** Whole per cent, rounded down: 100 is certain. "-" where it is not stated. */
+  static String percent(float probability) {
+    return probability >= 0f && probability <= 1f ? (int) Math.floor(100.0 * probability) + "%" : "-";
+  }
+
   /** As tools/export/words.hpp. */
   static String confidence(obstacle_t obstacle) {
     String word = obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? "sure" : "tentative";
