@@ -211,8 +211,8 @@ TEST(MeasurePieces, SaysWhatStandsBeforeBehindAndAround) {
   scene.AddRow(1, 12, 6, 2, 12.0);
   scene.Add(2, 11, 0, 11.0);
   scene.Build();
-  std::vector<PieceFeatures> features;
-  MeasurePieces(scene.grid, scene.pieces, 1.0, features);
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(scene.grid, scene.pieces, 1.0);
   ASSERT_EQ(features.size(), 3U);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kBackdrop), 3.0F / 4.0F);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kCovered), 0.0F);
@@ -229,8 +229,8 @@ TEST(MeasurePieces, SaysHowDenseAndHowHighAPieceIs) {
   scene.AddRow(0, 24, 4, 1, 10.0);
   scene.AddRow(0, 24, 2, 2, 12.0);
   scene.Build();
-  std::vector<PieceFeatures> features;
-  MeasurePieces(scene.grid, scene.pieces, 1.5, features);
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(scene.grid, scene.pieces, 1.5);
   const double top_m = 12.0 * std::sin(DegToRad(2.0));
   const double depth_m = 12.0 * std::cos(DegToRad(2.0)) - 10.0;
   EXPECT_NEAR(Of(features[0], PieceFeature::kRange), 10.0, kRoundingM);

@@ -64,7 +64,7 @@ void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
 }
 
 std::span<const PieceFeatures> LookoutMethod::MeasureGroups() {
-  MeasurePieces(grid_, pieces_, params_.lidar_above_water_m, features_);
+  features_ = piece_measurer_.Measure(grid_, pieces_, params_.lidar_above_water_m);
   return features_;
 }
 

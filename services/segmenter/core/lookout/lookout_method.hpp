@@ -72,7 +72,8 @@ class LookoutMethod {
   PairFinder pair_finder_;
   std::vector<EvidencePair> evidence_;
   Partition partition_;
-  std::vector<PieceFeatures> features_;
+  PieceMeasurer piece_measurer_;
+  std::span<const PieceFeatures> features_;  // of its last call
   Groups groups_;
   std::vector<GroupFacts> facts_;
   std::vector<std::int32_t> judged_;  // groups

@@ -68,11 +68,12 @@ Closest ClosestOf(const Shown& one, const Shown& other) {
 }
 
 // Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
-bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) {
+bool IsHidden(const ScanGrid& grid, const PieceTable& pieces, const OutlineEntry& entry, int column) {
+  const float nearer_m = entry.near_point.range_m - kNearerM;
+  const auto seen = pieces.InColumn(column);
+  if (seen.empty() || seen.front().near_point.range_m >= nearer_m) return false;
   int num_hidden = 0;
-  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) {
-    num_hidden += grid.FarthestOfShot(ring, column) < entry.near_point.range_m - kNearerM ? 1 : 0;
-  }
+  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) num_hidden += grid.FarthestOfShot(ring, column) < nearer_m ? 1 : 0;
   return 2 * num_hidden > entry.max_ring - entry.min_ring;
 }
 
@@ -216,7 +217,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
       continue;
     }
     // What is larger looks for what is of few returns, not the other way round.
-    const auto is_hidden = [&](int step) { return IsHidden(grid, entry, grid.Wrap(entry.column + direction * step)); };
+    const auto is_hidden = [&](int step) { return IsHidden(grid, pieces, entry, grid.Wrap(entry.column + direction * step)); };
     const int last_step = std::min(num_steps, most_steps);
     int step = 1;
     if (reaches_behind_) {

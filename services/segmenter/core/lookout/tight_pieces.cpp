@@ -66,6 +66,8 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
     const LevelPoint& point = grid.PointOf(index);
     const int line = grid.LineOf(index);
     const int column = grid.ColumnOf(index);
+    const bool is_of_one_run = column + kLinkColumns < grid.num_columns() && RunAt(grid, line, column + kLinkColumns) == RunAt(grid, line, column);
+    if (is_of_one_run) continue;
     const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
     if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, point.range_m, widest_m, RunAt(grid, line, column))) continue;
     LookAlong(grid, link, index, line, column + 1, column + kLinkColumns);
