@@ -172,6 +172,7 @@ class PairFinder {
   void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from);
   Met MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
                  int most);
+  int MeetIn(std::span<const Shown> column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
   bool MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
   Contact& At(std::int32_t one, std::int32_t other);
   Contact& Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
