@@ -16,7 +16,8 @@ namespace {
 using BlockValues = std::array<std::array<float, Evidence::kBlock>, kMostFeatures>;
 
 #ifdef __x86_64__
-// The leaves of a tree fill a register, from which each of a block takes its own: comparisons, a look-up and a sum in the same order, so the same bits.
+// The leaves of a tree fill a register, from which each of a block takes its own: comparisons, a look-up and a sum in the same order, so the same
+// bits.
 template <typename Tree>
 __attribute__((target("avx2"))) void AddLeavesWithAvx2(std::span<const Tree> trees, const BlockValues& values,
                                                        std::array<float, Evidence::kBlock>& sums) {

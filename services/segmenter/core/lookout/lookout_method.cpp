@@ -6,7 +6,7 @@ namespace lookout::segmenter {
 
 namespace {
 
-constexpr double kLinkedColumns = 2.8;     // LookoutParams::link grows by as many columns of 0.2 degrees
+constexpr double kLinkedColumns = 2.8;  // LookoutParams::link grows by as many columns of 0.2 degrees
 
 // Hands on all, in order and in blocks; the last block is filled up with the first of its own.
 template <typename One, typename FeaturesOf, typename Take>

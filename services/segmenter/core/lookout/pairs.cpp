@@ -45,28 +45,6 @@ constexpr std::size_t kMostShownLarger = 32'768;
 
 Reach Times(double share, const Reach& reach) { return {share * reach.at_lidar_m, share * reach.per_range}; }
 
-// Least distance between what two pieces show in two columns, seen from above, and the returns that it is between.
-struct Closest {
-  float squared_m2;
-  const LevelPoint* one;
-  const LevelPoint* other;
-};
-
-// Without a branch as long as it is not known that it is of use: whether it is, none can guess.
-template <typename Shown>
-float SquaredGap(const Shown& one, const Shown& other) {
-  return std::min({SquaredPlanDistance(one.near, other.near), SquaredPlanDistance(one.near, other.far), SquaredPlanDistance(one.far, other.near),
-                   SquaredPlanDistance(one.far, other.far)});
-}
-
-template <typename Shown>
-Closest ClosestOf(const Shown& one, const Shown& other) {
-  const float squared_m2 = SquaredGap(one, other);
-  if (SquaredPlanDistance(one.near, other.near) == squared_m2) return {squared_m2, &one.near, &other.near};
-  if (SquaredPlanDistance(one.near, other.far) == squared_m2) return {squared_m2, &one.near, &other.far};
-  return {squared_m2, &one.far, SquaredPlanDistance(one.far, other.near) == squared_m2 ? &other.near : &other.far};
-}
-
 // Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
 bool IsHidden(const ScanGrid& grid, const PieceTable& pieces, const OutlineEntry& entry, int column) {
   const float nearer_m = entry.near_point.range_m - kNearerM;
@@ -301,16 +279,25 @@ int PairFinder::MeetIn(std::span<const Shown> column, const Window& window, cons
 }
 
 bool PairFinder::MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower) {
-  if (SquaredGap(from, beside) > window.most_m2) return false;
-  const Closest closest = ClosestOf(from, beside);
-  const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
+  // Least distance of what the two show, seen from above, and between which returns.
+  const float near_near_m2 = SquaredPlanDistance(from.near, beside.near);
+  const float near_far_m2 = SquaredPlanDistance(from.near, beside.far);
+  const float far_near_m2 = SquaredPlanDistance(from.far, beside.near);
+  const float far_far_m2 = SquaredPlanDistance(from.far, beside.far);
+  const float squared_m2 = std::min(std::min(near_near_m2, near_far_m2), std::min(far_near_m2, far_far_m2));
+  if (squared_m2 > window.most_m2) return false;
+  const bool is_near = near_near_m2 == squared_m2 || near_far_m2 == squared_m2;
+  const bool is_beside_near = is_near ? near_near_m2 == squared_m2 : far_near_m2 == squared_m2;
+  const LevelPoint& one = is_near ? from.near : from.far;
+  const LevelPoint& other = is_beside_near ? beside.near : beside.far;
+  const float least_range_m = std::min(one.range_m, other.range_m);
   double limit_m = reach.At(least_range_m) + window.hidden_m;
   if (&narrower != &reach) limit_m = std::min(limit_m, narrower.At(least_range_m));
-  if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) return false;
-  if (closest.one->range_m <= closest.other->range_m) {
-    Meet(from, *closest.one, beside, *closest.other, closest.squared_m2);
+  if (limit_m < 0.0 || squared_m2 > limit_m * limit_m) return false;
+  if (one.range_m <= other.range_m) {
+    Meet(from, one, beside, other, squared_m2);
   } else {
-    Meet(beside, *closest.other, from, *closest.one, closest.squared_m2);
+    Meet(beside, other, from, one, squared_m2);
   }
   return true;
 }

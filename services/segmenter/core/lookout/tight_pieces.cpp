@@ -56,35 +56,33 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
       const bool goes_on = last != ScanGrid::kNone && column - last_column == 1 && AreLinked(grid.PointOf(last), grid.PointOf(index), true, link);
       if (!goes_on) ++num_runs;
       RunAt(grid, line, column) = num_runs - 1;
-      by_line_.push_back(index);
+      by_line_.push_back({line, column, index});
       last = index;
       last_column = column;
     }
   }
   sets_.Reset(static_cast<std::size_t>(num_runs));
-  for (const std::int32_t index : by_line_) {
-    const LevelPoint& point = grid.PointOf(index);
-    const int line = grid.LineOf(index);
-    const int column = grid.ColumnOf(index);
+  for (const Seen& seen : by_line_) {
+    const auto [line, column, index] = seen;
     const bool is_of_one_run = column + kLinkColumns < grid.num_columns() && RunAt(grid, line, column + kLinkColumns) == RunAt(grid, line, column);
     if (is_of_one_run) continue;
-    const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
-    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, point.range_m, widest_m, RunAt(grid, line, column))) continue;
-    LookAlong(grid, link, index, line, column + 1, column + kLinkColumns);
+    const float range_m = grid.RangeAt(line, column);
+    const float widest_m = WidestRange(link.At(range_m), range_m);
+    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, range_m, widest_m, RunAt(grid, line, column))) continue;
+    LookAlong(grid, link, seen, line, column + 1, column + kLinkColumns);
   }
-  for (const std::int32_t index : by_line_) {
-    std::int32_t& run = RunAt(grid, grid.LineOf(index), grid.ColumnOf(index));
+  for (const Seen& seen : by_line_) {
+    std::int32_t& run = RunAt(grid, seen.line, seen.column);
     run = sets_.Find(run);
   }
 }
 
 // Links a return with those of a line in columns [first, last], over the seam, too. @return a run there that is linked with it; kNone = there is none
-std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, std::int32_t index, int line, int first, int last) {
-  const LevelPoint& point = grid.PointOf(index);
-  const int own_line = grid.LineOf(index);
-  const bool are_of_one_ring = grid.RingOf(line) == grid.RingOf(own_line);
+std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, const Seen& from, int line, int first, int last) {
+  const LevelPoint& point = grid.PointOf(from.index);
+  const bool are_of_one_ring = grid.RingOf(line) == grid.RingOf(from.line);
   const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
-  const std::int32_t own_run = RunAt(grid, own_line, grid.ColumnOf(index));
+  const std::int32_t own_run = RunAt(grid, from.line, from.column);
   std::int32_t linked = ScanGrid::kNone;
   for (int step = first; step <= last; ++step) {
     const int column = grid.Wrap(step);
@@ -112,12 +110,11 @@ void TightPieces::LinkRings(const ScanGrid& grid, const Reach& link) {
     std::int32_t run = ScanGrid::kNone;
   };
   std::array<Linked, (kLinkRings + 1) * kMostLayers> linked;
-  for (const std::int32_t index : by_line_) {
-    const LevelPoint& point = grid.PointOf(index);
-    const int line = grid.LineOf(index);
-    const int column = grid.ColumnOf(index);
+  for (const Seen& seen : by_line_) {
+    const auto [line, column, index] = seen;
     const int ring = grid.RingOf(line);
-    const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
+    const float range_m = grid.RangeAt(line, column);
+    const float widest_m = WidestRange(link.At(range_m), range_m);
     const std::int32_t own_run = RunAt(grid, line, column);
     // Each pair once: all of the lines above.
     const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
@@ -127,10 +124,10 @@ void TightPieces::LinkRings(const ScanGrid& grid, const Reach& link) {
       const bool are_of_one_ring = grid.RingOf(other_line) == ring;
       const int window = are_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
       const bool is_other_near = are_of_one_ring
-                                     ? IsOtherNear<2 * kLinkColumns + 1>(grid, other_line, column - window, point.range_m, widest_m, known_run)
-                                     : IsOtherNear<2 * kLinkAcrossColumns + 1>(grid, other_line, column - window, point.range_m, widest_m, known_run);
+                                     ? IsOtherNear<2 * kLinkColumns + 1>(grid, other_line, column - window, range_m, widest_m, known_run)
+                                     : IsOtherNear<2 * kLinkAcrossColumns + 1>(grid, other_line, column - window, range_m, widest_m, known_run);
       if (!is_other_near) continue;
-      const std::int32_t run = LookAlong(grid, link, index, other_line, column - window, column + window);
+      const std::int32_t run = LookAlong(grid, link, seen, other_line, column - window, column + window);
       if (run != ScanGrid::kNone) last = {own_run, run};
     }
   }

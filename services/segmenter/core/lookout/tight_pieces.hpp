@@ -34,19 +34,25 @@ class TightPieces {
   std::int32_t num_left_out() const { return num_left_out_; }
 
  private:
+  struct Seen {
+    std::int32_t line = 0;
+    std::int32_t column = 0;
+    std::int32_t index = 0;  // of the return
+  };
+
   void LinkRings(const ScanGrid& grid, const Reach& link);
   void NumberPieces(const ScanGrid& grid);
   void FindRuns(const ScanGrid& grid, const Reach& link);
-  std::int32_t LookAlong(const ScanGrid& grid, const Reach& link, std::int32_t index, int line, int first, int last);
+  std::int32_t LookAlong(const ScanGrid& grid, const Reach& link, const Seen& from, int line, int first, int last);
   template <int kNum>
   bool IsOtherNear(const ScanGrid& grid, int line, int first, float range_m, float reach_m, std::int32_t known_run) const;
   std::int32_t& RunAt(const ScanGrid& grid, int line, int column) {
     return run_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(grid.num_columns()) + static_cast<std::size_t>(column)];
   }
 
-  UnionFind sets_;                     // of runs
-  std::vector<std::int32_t> by_line_;  // the returns, line by line
-  std::vector<std::int32_t> run_at_;   // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
+  UnionFind sets_;                    // of runs
+  std::vector<Seen> by_line_;         // the returns, line by line
+  std::vector<std::int32_t> run_at_;  // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
   std::vector<std::int32_t> size_of_set_;
   std::vector<std::int32_t> number_of_set_;
   std::vector<std::int32_t> of_return_;
