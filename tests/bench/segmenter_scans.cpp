@@ -78,6 +78,17 @@ Scan LakeScan(int num_rings, int num_columns, int num_drops, bool is_basin) {
   return scan;
 }
 
+// A return on every beam, at any range.
+Scan NoiseScan(int num_rings, int num_columns) {
+  auto scan = EmptyScanOf(num_rings, num_columns);
+  std::mt19937_64 random(kSeed);
+  std::uniform_real_distribution<double> range_m(0.6, 100.0);
+  for (int column = 0; column < num_columns; ++column) {
+    for (int ring = 0; ring < num_rings; ++ring) test::SetReturn(scan, column, ring, range_m(random));
+  }
+  return scan;
+}
+
 std::size_t NumReturns(const Scan& scan) {
   return static_cast<std::size_t>(std::ranges::count_if(scan.columns.range, [](std::uint16_t range) { return range != 0; }));
 }
@@ -152,9 +163,8 @@ int main(int argc, char** argv) {
     std::printf("\n");
   }
 
-  std::printf("\n%-14s %9s %12s %17s\n", "lake", "returns", "ms median", "us a 1000 returns");
-  for (const auto& [num_rings, num_columns] : {std::pair{16, 512}, {16, 1024}, {16, 1808}, {32, 1024}, {64, 1024}, {64, 2048}, {128, 2048}}) {
-    const auto scan = LakeScan(num_rings, num_columns, 0, false);
+  std::printf("\n%-18s %9s %12s %17s\n", "scan", "returns", "ms median", "us a 1000 returns");
+  const auto time = [num_rounds](const std::string& name, const Scan& scan) {
     Segmenter segmenter{Params{}};
     segmenter.Segment(scan);
     std::vector<double> times_ms;
@@ -165,8 +175,12 @@ int main(int argc, char** argv) {
     }
     const double median_ms = Percentile(times_ms, 0.5);
     const auto num_returns = NumReturns(scan);
-    std::printf("%3d x %-8d %9zu %12.3f %17.1f\n", num_rings, num_columns, num_returns, median_ms,
-                1e6 * median_ms / static_cast<double>(num_returns));
+    std::printf("%-18s %9zu %12.3f %17.1f\n", name.c_str(), num_returns, median_ms, 1e6 * median_ms / static_cast<double>(num_returns));
+  };
+  for (const auto& [num_rings, num_columns] : {std::pair{16, 512}, {16, 1024}, {16, 1808}, {32, 1024}, {64, 1024}, {64, 2048}, {128, 2048}}) {
+    time("lake " + std::to_string(num_rings) + " x " + std::to_string(num_columns), LakeScan(num_rings, num_columns, 0, false));
   }
+  time("noise 16 x 1808", NoiseScan(16, 1808));
+  time("noise 128 x 2048", NoiseScan(128, 2048));
   return 0;
 }
