@@ -74,7 +74,7 @@ std::array<float, Evidence::kBlock> Evidence::Of(const Block& features) const {
   for (std::size_t f = 0; f < num_features_; ++f) {
     for (std::size_t one = 0; one < kBlock; ++one) values[f][one] = features[one][f];
   }
-  std::array<float, kBlock> sums;
+  std::array<float, kBlock> sums{};
   sums.fill(bias_);
 #ifdef __x86_64__
   static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
@@ -88,7 +88,7 @@ std::array<float, Evidence::kBlock> Evidence::Of(const Block& features) const {
     const float* const first = values[tree.feature[0]].data();
     const float* const second = values[tree.feature[1]].data();
     const float* const third = values[tree.feature[2]].data();
-    std::array<std::int32_t, kBlock> leaf;
+    std::array<std::int32_t, kBlock> leaf{};
     for (std::size_t one = 0; one < kBlock; ++one) {
       leaf[one] = (first[one] > tree.above[0] ? 1 : 0) | (second[one] > tree.above[1] ? 2 : 0) | (third[one] > tree.above[2] ? 4 : 0);
     }
