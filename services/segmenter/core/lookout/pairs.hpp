@@ -69,10 +69,10 @@ struct PiecePair {
 class PairFinder {
  public:
   /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at what stands behind and beside. Normal scans
-  /// stay below: in heavy rain they take 4700 pairs and 160 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
+  /// stay below: in heavy rain they take 4700 pairs and 250 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
   /// hold.
   static constexpr std::size_t kMostPairs = 5000;
-  static constexpr std::int64_t kMostLooks = 1'500'000;
+  static constexpr std::int64_t kMostLooks = 400'000;
 
   explicit PairFinder(double lidar_above_water_m) : lidar_above_water_m_(lidar_above_water_m) {}
 
@@ -186,6 +186,7 @@ class PairFinder {
   std::vector<std::pair<std::int32_t, std::int32_t>> first_and_last_;  // [pieces] entries
   std::vector<std::size_t> near_;                                      // scratch: what may be within reach
   std::size_t share_ = 0;                                              // of the reach: an index into kShares
+  bool is_counting_ = false;                                           // looks, and nothing else
   std::int64_t num_looks_ = 0;
   std::vector<Contact> contacts_;
   std::vector<std::int32_t> slots_;  // an open hash table: index into contacts_, or -1
