@@ -152,6 +152,7 @@ class Boosting {
     best.gain = 1e-9 * kTotalWeight;
     bool is_found = false;
     for (std::size_t f = 0; f < num_features_; ++f) {
+      if (std::ranges::count(params_.dropped, rows_.features[f].name) > 0) continue;
       const auto num_thresholds = thresholds_[f].size();
       std::vector<double> gain(num_thresholds, 0.0);
       for (const auto& histogram : histograms_) {
@@ -267,6 +268,39 @@ float Rounded(double value) {
 }
 
 FittedSum Fit(const Rows& rows, const BoostingParams& params) { return Boosting(rows, params).Run(); }
+
+Calibration CalibrationOf(const Rows& rows, std::span<const float> log_odds) {
+  constexpr int kSteps = 50;
+  constexpr double kSlack = 1e-6;  // of the Hessian, so that it has an inverse
+  Calibration calibration;
+  const auto num_true = std::ranges::count(rows.is_true, 1);
+  if (num_true == 0 || num_true == std::ssize(rows.is_true)) return calibration;
+  for (int step = 0; step < kSteps; ++step) {
+    std::array<double, 2> gradient{};
+    std::array<double, 3> hessian{kSlack, 0.0, kSlack};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double x = log_odds[i];
+      const double p = 1.0 / (1.0 + std::exp(-(calibration.factor * x + calibration.offset)));
+      const double weight = rows.weight[i] * p * (1.0 - p);
+      gradient[0] += rows.weight[i] * (p - rows.is_true[i]) * x;
+      gradient[1] += rows.weight[i] * (p - rows.is_true[i]);
+      hessian[0] += weight * x * x;
+      hessian[1] += weight * x;
+      hessian[2] += weight;
+    }
+    const double determinant = hessian[0] * hessian[2] - hessian[1] * hessian[1];
+    calibration.factor -= (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant;
+    calibration.offset -= (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant;
+  }
+  return calibration;
+}
+
+void Apply(const Calibration& calibration, FittedSum& sum) {
+  sum.bias = Rounded(calibration.factor * sum.bias + calibration.offset);
+  for (auto& tree : sum.trees) {
+    for (float& leaf : tree.log_odds) leaf = Rounded(calibration.factor * leaf);
+  }
+}
 
 Score ScoreOf(const Rows& rows, std::span<const float> log_odds, int family) {
   std::vector<std::size_t> order;

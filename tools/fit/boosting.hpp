@@ -21,6 +21,8 @@ struct BoostingParams {
   int num_bins = 64;       // thresholds of a feature are so many quantiles of its values
   /// Families whose rows are not fitted: trees are added up to where their loss is least. None: all trees.
   std::vector<std::string> held_out = {};
+  /// Features that no split may ask for: what are they worth?
+  std::vector<std::string> dropped = {};
 };
 
 struct FittedSum {
@@ -38,6 +40,15 @@ struct FittedSum {
 /// Cost: rows x features x trees, about 1 s for a million rows, 20 features and 10 trees. Memory: a byte for each value besides.
 /// Rows that are all true, or all false, give a bias and no tree.
 FittedSum Fit(const Rows& rows, const BoostingParams& params);
+
+/// Platt's scaling (J. Platt, "Probabilistic Outputs for Support Vector Machines", 1999): factor and offset with which log odds of rows that were not
+/// fitted on say best what is true of them. {1, 0} where all are alike.
+struct Calibration {
+  double factor = 1.0;
+  double offset = 0.0;
+};
+Calibration CalibrationOf(const Rows& rows, std::span<const float> log_odds);
+void Apply(const Calibration& calibration, FittedSum& sum);
 
 /// Three significant digits.
 float Rounded(double value);

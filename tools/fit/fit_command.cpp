@@ -42,6 +42,15 @@ void CheckFamilies(const std::string& option, const std::vector<std::string>& na
   }
 }
 
+void CheckFeatures(const std::vector<std::string>& names) {
+  for (const auto& name : names) {
+    const bool is_there = std::ranges::any_of(segmenter::kEvidenceLayouts, [&](const auto& layout) {
+      return std::ranges::find(layout.features, name) != layout.features.end();
+    });
+    if (!is_there) throw std::invalid_argument(fmt::format("--drop-feature {}: no sum has such a feature", name));
+  }
+}
+
 std::vector<TrainingScan> Render(const eval::RunPlan& plan, const eval::Boat& boat) {
   std::vector<TrainingScan> scans;
   eval::ForEachScan(
@@ -70,6 +79,7 @@ int FitScenes(const Options& options) {
   const auto plan = PlanOf(options);
   CheckFamilies("--without", options.without, plan);
   CheckFamilies("--hold-out", options.hold_out, plan);
+  CheckFeatures(options.dropped);
   const auto boat = eval::LoadBoat(options.config_folder);
   io::CatchStopSignals();
   std::optional<io::OutputFile> out;
@@ -79,6 +89,7 @@ int FitScenes(const Options& options) {
   BoostingParams boosting;
   boosting.num_trees = options.num_trees;
   boosting.held_out = options.hold_out;
+  boosting.dropped = options.dropped;
   const auto evidence =
       FitEvidence(scans, boat.segmenter, boosting, std::set(options.without.begin(), options.without.end()), [](const std::string& line) {
         io::ThrowIfStopAsked();

@@ -16,9 +16,33 @@ segmenter::Evidence ToEvidence(const SumReport& report) {
   return {report.fitted.Named(layout.name, layout.features), layout};
 }
 
+// Log odds of a segment must be right on waters that nothing was fitted on: each third of the families is judged by what is fitted on the others.
+Calibration CalibrationByFamilies(std::size_t sum, const Rows& rows, const BoostingParams& boosting) {
+  constexpr std::size_t kNumParts = 3;
+  const auto& layout = segmenter::kEvidenceLayouts.at(sum);
+  std::vector<float> log_odds(rows.size(), 0.0F);
+  for (std::size_t part = 0; part < kNumParts; ++part) {
+    Rows others = rows;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (rows.FamilyOf(i) % kNumParts == part) others.weight[i] = 0.0F;
+    }
+    const segmenter::Evidence of_others(Fit(others, boosting).Named(layout.name, layout.features), layout);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (rows.FamilyOf(i) % kNumParts == part) log_odds[i] = of_others.Of(rows.Of(i));
+    }
+  }
+  return CalibrationOf(rows, log_odds);
+}
+
 SumReport FitOne(std::size_t sum, Rows& rows, const BoostingParams& boosting) {
-  BalanceWeights(rows);
+  const bool is_merge = sum < segmenter::kNumMerges;
+  if (is_merge) {
+    BalanceWeights(rows);
+  } else {
+    WeighAlike(rows);
+  }
   SumReport report{sum, Fit(rows, boosting), rows.families, {}, {}, DigestOf(rows)};
+  if (!is_merge) Apply(CalibrationByFamilies(sum, rows, boosting), report.fitted);
   const auto log_odds = LogOddsOf(rows, ToEvidence(report));
   report.of_all = ScoreOf(rows, log_odds, -1);
   for (std::size_t i = 0; i < rows.families.size(); ++i) report.of_family.push_back(ScoreOf(rows, log_odds, static_cast<int>(i)));

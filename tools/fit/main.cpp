@@ -32,8 +32,9 @@ fit::Options ParseOptions(int argc, char** argv) {
   app.add_option("--seeds", options.num_seeds, "of each scene")->check(CLI::Range(1, 100))->capture_default_str();
   app.add_option("--first-seed", options.first_seed, "the others follow it; seeds above 100 are refused: tables are made on them")
       ->capture_default_str();
-  app.add_option("--seconds", options.seconds, "of each scene and seed")->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  app.add_option("--seconds", options.seconds, "of each scene and seed")->check(CLI::Range(0.2, 3600.0))->capture_default_str();
   app.add_option("--trees", options.num_trees, "of each sum, at most")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--drop-feature", options.dropped, "names of features that no tree may ask for: what they are worth")->delimiter(',');
   app.add_option("--out", options.out, "file to write, NAME.txtpb; without it only the tables are shown");
   app.add_flag("--force", options.is_forced, "replace a file that is there");
   app.set_version_flag("--version", "lookout-fit " + runtime::Version());

@@ -33,6 +33,10 @@ void BalanceWeights(Rows& rows) {
   }
 }
 
+void WeighAlike(Rows& rows) {
+  std::ranges::fill(rows.weight, static_cast<float>(kTotalWeight / static_cast<double>(std::max<std::size_t>(1, rows.size()))));
+}
+
 std::string DigestOf(const Rows& rows) {
   bus::Sha256 digest;
   for (const auto& feature : rows.features) digest.Add(feature.name.data(), feature.name.size());

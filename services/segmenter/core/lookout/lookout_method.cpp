@@ -43,6 +43,7 @@ void LookoutMethod::FindPieces(const Scan& scan, std::span<const Return> returns
   grid_.Fill(scan, returns, R_vessel_lidar_);
   tight_.Find(grid_, LinkFor(params_.link, grid_.column_step_rad()));
   pieces_.Build(grid_, tight_.of_return(), tight_.count());
+  pair_finder_.BeginScan();
 }
 
 std::span<const PiecePair> LookoutMethod::FindPairs(std::size_t merge) {
@@ -59,10 +60,7 @@ void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
         for (std::size_t i = 0; i < some.size(); ++i) evidence_.push_back({some[i].one, some[i].other, log_odds[i], some[i].gap_m});
       });
   partition_.Find(pieces_.size(), evidence_, static_cast<float>(params_.merges[merge].log_odds));
-  const auto group_of_piece = partition_.group_of_piece();
-  label_.clear();
-  for (const std::int32_t piece : pieces_.of_returns()) label_.push_back(group_of_piece[static_cast<std::size_t>(piece)]);
-  pieces_.Build(grid_, label_, partition_.count());
+  pieces_.Merge(grid_, partition_.group_of_piece(), partition_.count());
 }
 
 std::span<const PieceFeatures> LookoutMethod::MeasureGroups() {

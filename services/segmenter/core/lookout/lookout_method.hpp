@@ -71,7 +71,6 @@ class LookoutMethod {
   PairFinder pair_finder_;
   std::vector<EvidencePair> evidence_;
   Partition partition_;
-  std::vector<std::int32_t> label_;
   std::vector<PieceFeatures> features_;
   Groups groups_;
   std::vector<GroupFacts> facts_;

@@ -1,6 +1,7 @@
 #include "services/segmenter/core/lookout/pairs.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace lookout::segmenter {
@@ -11,6 +12,7 @@ constexpr std::int32_t kFree = -1;
 constexpr int kMostColumnsBeside = 160;
 constexpr float kFacedM = 1.0F;
 constexpr float kNearerM = 0.5F;
+constexpr double kRoundedUp = 1.0 + 1e-5;  // more than single precision rounds
 // Pieces of so few returns may be drops of rain or spray, of which there are thousands near the lidar. Two of them are a pair from 10 m on, up to a
 // metre for every 10 m beyond; nearer than that a thing is seen by more returns. One of them and something larger are a pair only where they are
 // near.
@@ -25,7 +27,23 @@ constexpr int kMostLargerBeside = 160;
 constexpr int kMostBehind = 32;
 // Columns at each end of a gap in which its beams are looked at.
 constexpr int kBeamColumns = 16;
-constexpr std::size_t kLeastSlots = 1024;
+// Twice the most pairs and more: with what the last look adds it is not full.
+constexpr std::size_t kSlots = std::bit_ceil(2 * PairFinder::kMostPairs);
+
+// Shares of the reach, tried one after the other until the bounds hold; at last there are no pairs. All of the scan has the same, so that neither
+// order nor the cut of the scan decides.
+struct Share {
+  double of_few;
+  double of_any;
+};
+constexpr std::array<Share, 5> kShares{{{1.0, 1.0}, {0.25, 1.0}, {0.0, 1.0}, {0.0, 0.3}, {0.0, 0.1}}};
+constexpr std::size_t kNoneOfFew = 2;
+// So many columns of all pieces of few returns, and of the others, are beyond the bounds, and need not be tried: 5000 drops have 4000, a canal with
+// trees on both banks has 9000 of the others.
+constexpr std::size_t kMostShownFew = 16'384;
+constexpr std::size_t kMostShownLarger = 65'536;
+
+Reach Times(double share, const Reach& reach) { return {share * reach.at_lidar_m, share * reach.per_range}; }
 
 // Least distance between what two pieces show in two columns, seen from above, and the returns that it is between.
 struct Closest {
@@ -34,15 +52,16 @@ struct Closest {
   const LevelPoint* other;
 };
 
-Closest ClosestOf(const OutlineEntry& one, const OutlineEntry& other) {
-  Closest closest{SquaredPlanDistance(one.near_point, other.near_point), &one.near_point, &other.near_point};
+template <typename Shown>
+Closest ClosestOf(const Shown& one, const Shown& other) {
+  Closest closest{SquaredPlanDistance(one.near, other.near), &one.near, &other.near};
   const auto look_at = [&closest](const LevelPoint& a, const LevelPoint& b) {
     const float squared_m2 = SquaredPlanDistance(a, b);
     if (squared_m2 < closest.squared_m2) closest = {squared_m2, &a, &b};
   };
-  look_at(one.near_point, other.far_point);
-  look_at(one.far_point, other.near_point);
-  look_at(one.far_point, other.far_point);
+  look_at(one.near, other.far);
+  look_at(one.far, other.near);
+  look_at(one.far, other.far);
   return closest;
 }
 
@@ -59,11 +78,27 @@ bool IsFew(const PieceFacts& piece) { return piece.num_returns <= kFewReturns; }
 
 float Over(double value, double by) { return static_cast<float>(by > 0.0 ? value / by : 0.0); }
 
+// Where a pair has its slot, or the first that it may have. Fibonacci hashing: pieces that are neighbours have numbers that follow each other, and
+// must not crowd neighbouring slots.
+std::size_t FirstSlotOf(std::int32_t one, std::int32_t other) {
+  constexpr std::uint64_t kGolden = 0x9E37'79B9'7F4A'7C15U;
+  const std::uint64_t key = static_cast<std::uint64_t>(one) << 32U | static_cast<std::uint64_t>(other);
+  return static_cast<std::size_t>((key * kGolden) >> 32U) & (kSlots - 1);
+}
+
 }  // namespace
 
 std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind) {
   reaches_behind_ = reaches_behind;
-  FindContacts(grid, pieces, reach);
+  SortByKind(pieces, grid.num_columns());
+  contacts_.clear();
+  if (few_.shown.size() > kMostShownFew) share_ = std::max(share_, kNoneOfFew);
+  if (larger_.shown.size() > kMostShownLarger) share_ = kShares.size();
+  for (; share_ < kShares.size(); ++share_) {
+    const auto [of_few, of_any] = kShares[share_];
+    if (FindContacts(grid, pieces, {Times(of_any, reach), Times(of_few, kReachOfFew), Times(of_few, kReachToFew)})) break;
+    contacts_.clear();
+  }
   pairs_.resize(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) Measure(grid, pieces, contacts_[i], pairs_[i]);
   return pairs_;
@@ -73,108 +108,183 @@ void PairFinder::SortByKind(const PieceTable& pieces, int num_columns) {
   few_.Clear();
   larger_.Clear();
   for (int column = 0; column < num_columns; ++column) {
-    for (const OutlineEntry& entry : pieces.InColumn(column)) (IsFew(pieces[entry.piece]) ? few_ : larger_).entries.push_back(&entry);
-    few_.begin_of_column.push_back(few_.entries.size());
-    larger_.begin_of_column.push_back(larger_.entries.size());
+    for (const auto& entry : pieces.InColumn(column)) (IsFew(pieces[entry.piece]) ? few_ : larger_).Add(ShownOf(pieces, entry));
+    few_.EndColumn();
+    larger_.EndColumn();
+  }
+  const auto entries = pieces.entries();
+  steps_.resize(entries.size());
+  first_and_last_.assign(static_cast<std::size_t>(pieces.size()), {-1, -1});
+  const auto set = [&](std::size_t before, std::size_t after, int num_steps) { steps_[before].after = steps_[after].before = num_steps; };
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    auto& [first, last] = first_and_last_[static_cast<std::size_t>(entries[i].piece)];
+    if (first < 0) {
+      first = static_cast<std::int32_t>(i);
+    } else {
+      set(static_cast<std::size_t>(last), i, entries[i].column - entries[static_cast<std::size_t>(last)].column);
+    }
+    last = static_cast<std::int32_t>(i);
+  }
+  for (const auto& [first, last] : first_and_last_) {
+    const auto begin = static_cast<std::size_t>(first);
+    const auto end = static_cast<std::size_t>(last);
+    set(end, begin, entries[begin].column + num_columns - entries[end].column);
   }
 }
 
-void PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach) {
-  contacts_.clear();
-  slots_.assign(std::max(kLeastSlots, slots_.size()), kFree);
-  SortByKind(pieces, grid.num_columns());
+// @return false when there are more looks or pairs than may be: a sum over all of the scan, so that it does not matter where it is noticed
+bool PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches) {
+  slots_.assign(kSlots, kFree);
+  num_looks_ = 0;
   for (int column = 0; column < grid.num_columns(); ++column) {
     const auto seen = pieces.InColumn(column);
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      const OutlineEntry& front = seen[i];
-      const auto reach_m = static_cast<float>(reach.At(front.far_point.range_m));
-      const auto reach_of_few_m = static_cast<float>(kReachOfFew.At(front.far_point.range_m));
-      const auto reach_to_few_m = static_cast<float>(kReachToFew.At(front.far_point.range_m));
-      const bool is_few = IsFew(pieces[front.piece]);
-      int num_behind = 0;
-      for (std::size_t j = i + 1; j < seen.size() && num_behind < kMostBehind; ++j) {
-        const OutlineEntry& back = seen[j];
-        const float gap_m = std::max(0.0F, back.near_point.range_m - front.far_point.range_m);
-        if (gap_m > reach_m) break;
-        const bool is_back_few = IsFew(pieces[back.piece]);
-        if (is_few && is_back_few && gap_m >= reach_of_few_m) continue;
-        if ((is_few || is_back_few) && gap_m > reach_to_few_m) continue;
-        Contact& contact = Meet(front, front.far_point, back, back.near_point, gap_m * gap_m);
-        if (gap_m <= kFacedM) ++contact.num_faced;
-        ++num_behind;
-      }
-      LookBeside(grid, reach, front, is_few, 1);
-      LookBeside(grid, reach, front, is_few, -1);
+      if (num_looks_ > kMostLooks || contacts_.size() > kMostPairs) return false;
+      const Shown from = ShownOf(pieces, seen[i]);
+      const bool is_few = IsFew(pieces[from.piece]);
+      if (is_few && reaches.to_few.per_range <= 0.0) continue;
+      LookBehind(pieces, reaches, seen.subspan(i + 1), from);
+      LookBeside(grid, pieces, reaches, from);
     }
+  }
+  return num_looks_ <= kMostLooks && contacts_.size() <= kMostPairs;
+}
+
+PairFinder::Shown PairFinder::ShownOf(const PieceTable& pieces, const OutlineEntry& entry) {
+  return {entry.near_point, entry.far_point, entry.piece, static_cast<std::int32_t>(&entry - pieces.entries().data()), entry.column};
+}
+
+void PairFinder::LookBehind(const PieceTable& pieces, const Reaches& reaches, std::span<const OutlineEntry> behind, const Shown& front) {
+  const float front_m = front.far.range_m;
+  const auto reach_m = static_cast<float>(reaches.any.At(front_m));
+  const auto reach_of_few_m = static_cast<float>(reaches.of_few.At(front_m));
+  const auto reach_to_few_m = static_cast<float>(reaches.to_few.At(front_m));
+  const bool is_few = IsFew(pieces[front.piece]);
+  int num_behind = 0;
+  for (const OutlineEntry& back : behind) {
+    ++num_looks_;
+    const float gap_m = std::max(0.0F, back.near_point.range_m - front_m);
+    if (gap_m > reach_m || num_behind == kMostBehind) break;
+    const bool is_back_few = IsFew(pieces[back.piece]);
+    if (is_few && is_back_few && gap_m >= reach_of_few_m) continue;
+    if ((is_few || is_back_few) && gap_m > reach_to_few_m) continue;
+    if (is_back_few && reaches.to_few.per_range <= 0.0) continue;
+    Contact& contact = Meet(front, front.far, ShownOf(pieces, back), back.near_point, gap_m * gap_m);
+    if (gap_m <= kFacedM) ++contact.num_faced;
+    ++num_behind;
   }
 }
 
-// From where a piece ends in a column, on to what stands beside it.
-void PairFinder::LookBeside(const ScanGrid& grid, const Reach& reach, const OutlineEntry& entry, bool is_few, int direction) {
-  const double near_m = entry.near_point.range_m;
-  const auto reach_m = static_cast<float>(is_few ? std::min(reach.At(near_m), kReachOfFew.At(near_m)) : reach.At(near_m));
-  if (reach_m <= 0.0F) return;
+// From where a piece ends in a column, on to what stands beside it on both sides.
+void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from) {
+  const Steps& own = steps_[static_cast<std::size_t>(from.entry)];
+  ++num_looks_;
+  if (own.before == 1 && own.after == 1) return;
+  const bool is_few = IsFew(pieces[from.piece]);
+  const double near_m = from.near.range_m;
+  const double far_m = from.far.range_m;
+  const double reach_m = is_few ? std::min(reaches.any.At(near_m), reaches.of_few.At(near_m)) : reaches.any.At(near_m);
+  if (reach_m <= 0.0) return;
   const double across_m = std::max(1e-3, grid.column_step_rad() * near_m);
   const auto columns_of = [across_m](double length_m) {
     return static_cast<int>(std::min(double{kMostColumnsBeside}, std::ceil(length_m / across_m)));
   };
   const int num_steps = columns_of(reach_m);
-  const int num_steps_to_few = is_few ? num_steps : columns_of(kReachToFew.At(entry.far_point.range_m));
-  int num_hidden = 0;
-  int num_few = 0;
-  int num_larger = 0;
-  for (int step = 1; step <= num_steps + num_hidden && step <= kMostColumnsBeside; ++step) {
-    const int column = grid.Wrap(entry.column + direction * step);
-    if (reaches_behind_ && !is_few && IsHidden(grid, entry, column)) ++num_hidden;
-    const auto of_its_kind = (is_few ? few_ : larger_).InColumn(column);
-    if (std::ranges::any_of(of_its_kind, [&](const OutlineEntry* beside) { return beside->piece == entry.piece; })) return;
-    const auto widest_m = static_cast<float>(reach_m + num_hidden * across_m);
-    const auto look_at = [&](std::span<const OutlineEntry* const> seen, const Reach* narrower) {
-      int num_met = 0;
-      for (const OutlineEntry* beside : seen) {
-        if (beside->near_point.range_m > entry.far_point.range_m + widest_m) break;
-        if (beside->far_point.range_m < entry.near_point.range_m - widest_m) continue;
-        const Closest closest = ClosestOf(entry, *beside);
-        const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
-        double limit_m = reach.At(least_range_m) + num_hidden * across_m;
-        if (narrower != nullptr) limit_m = std::min(limit_m, narrower->At(least_range_m));
-        if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) continue;
-        ++num_met;
-        if (closest.one->range_m <= closest.other->range_m) {
-          Meet(entry, *closest.one, *beside, *closest.other, closest.squared_m2);
-        } else {
-          Meet(*beside, *closest.other, entry, *closest.one, closest.squared_m2);
-        }
+  const auto window_of = [&](double hidden_m) {
+    const auto widest_m = static_cast<float>(reach_m + hidden_m);
+    // What is nearer of two is at most as far as this piece.
+    const double most_m = (is_few ? std::min(reaches.any.At(far_m), reaches.of_few.At(far_m)) : reaches.any.At(far_m)) + hidden_m;
+    return Window{from.near.range_m - widest_m, from.far.range_m + widest_m, static_cast<float>(most_m * most_m * kRoundedUp), hidden_m};
+  };
+  const Window window = window_of(0.0);
+  if (is_few) {
+    MeetFew(window, from, std::min(num_steps, own.after - 1), 1, reaches);
+    MeetFew(window, from, std::min(num_steps, own.before - 1), -1, reaches);
+    return;
+  }
+  const OutlineEntry& entry = pieces.entries()[static_cast<std::size_t>(from.entry)];
+  const int num_steps_to_few = columns_of(reaches.to_few.At(far_m));
+  for (const int direction : {1, -1}) {
+    const int most_steps = std::min(kMostColumnsBeside, (direction > 0 ? own.after : own.before) - 1);
+    Window with_hidden = window;
+    int num_hidden = 0;
+    int num_few = 0;
+    int num_larger = 0;
+    for (int step = 1; step <= std::min(num_steps + num_hidden, most_steps) && num_larger < kMostLargerBeside; ++step) {
+      ++num_looks_;
+      const int column = grid.Wrap(entry.column + direction * step);
+      if (reaches_behind_ && IsHidden(grid, entry, column)) with_hidden = window_of(++num_hidden * across_m);
+      // What is larger looks for what is of few returns, not the other way round.
+      if (num_few < kMostFewBeside && step <= num_steps_to_few) {
+        num_few += MeetWithin(with_hidden, from, few_.In(column), reaches.any, reaches.to_few);
       }
-      return num_met;
-    };
-    // What is larger looks for what is of few returns, not the other way round.
-    if (num_few < kMostFewBeside && step <= num_steps_to_few) num_few += look_at(few_.InColumn(column), is_few ? &kReachOfFew : &kReachToFew);
-    if (!is_few) num_larger += look_at(larger_.InColumn(column), nullptr);
-    if (num_larger >= kMostLargerBeside || (is_few && num_few >= kMostFewBeside)) return;
+      num_larger += MeetWithin(with_hidden, from, larger_.In(column), reaches.any, reaches.any);
+    }
   }
 }
 
-std::size_t PairFinder::SlotOf(std::int32_t one, std::int32_t other) const {
-  // Fibonacci hashing: pieces that are neighbours have numbers that follow each other, and must not crowd neighbouring slots.
-  constexpr std::uint64_t kGolden = 0x9E37'79B9'7F4A'7C15U;
-  const std::uint64_t key = static_cast<std::uint64_t>(one) << 32U | static_cast<std::uint64_t>(other);
-  return static_cast<std::size_t>((key * kGolden) >> 32U) & (slots_.size() - 1);
+// The same where it is of few returns, up to so many columns on. There may be thousands of such: first, without a branch, which are near in range.
+void PairFinder::MeetFew(const Window& window, const Shown& from, int num_steps, int direction, const Reaches& reaches) {
+  const int num_columns = few_.num_columns();
+  const int first = direction > 0 ? from.column + 1 : from.column - num_steps;
+  int num_few = 0;
+  // Up to the seam of the circle, and beyond.
+  const auto meet = [&](int begin, int end) {
+    if (begin >= end || num_few >= kMostFewBeside) return;
+    const std::size_t begin_at = few_.begin_of_column[static_cast<std::size_t>(begin)];
+    const std::size_t end_at = few_.begin_of_column[static_cast<std::size_t>(end)];
+    num_looks_ += static_cast<std::int64_t>(end_at - begin_at);
+    near_.resize(std::max(near_.size(), end_at - begin_at));
+    std::size_t num_near = 0;
+    for (std::size_t at = begin_at; at < end_at; ++at) {
+      near_[num_near] = at;
+      num_near += (few_.near_m[at] <= window.farthest_m ? 1U : 0U) & (few_.far_m[at] >= window.nearest_m ? 1U : 0U);
+    }
+    std::int32_t column = -1;
+    for (std::size_t i = 0; i < num_near; ++i) {
+      const Shown& beside = few_.shown[near_[direction > 0 ? i : num_near - 1 - i]];
+      if (beside.column != column && num_few >= kMostFewBeside) return;
+      column = beside.column;
+      num_few += MeetWithin(window, from, std::span(&beside, 1), reaches.any, reaches.of_few);
+    }
+  };
+  const int last = first + num_steps;
+  if (direction > 0) {
+    meet(first, std::min(last, num_columns));
+    meet(0, last - num_columns);
+  } else {
+    meet(std::max(first, 0), last);
+    meet(first + num_columns, num_columns);
+  }
+}
+
+// @return how many of what is shown in a column are within both reaches, of which that to what something hides is longer
+int PairFinder::MeetWithin(const Window& window, const Shown& from, std::span<const Shown> seen, const Reach& reach, const Reach& narrower) {
+  int num_met = 0;
+  for (const Shown& beside : seen) {
+    ++num_looks_;
+    if (beside.near.range_m > window.farthest_m) break;
+    if (beside.far.range_m < window.nearest_m) continue;
+    const Closest closest = ClosestOf(from, beside);
+    if (closest.squared_m2 > window.most_m2) continue;
+    const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
+    double limit_m = reach.At(least_range_m) + window.hidden_m;
+    if (&narrower != &reach) limit_m = std::min(limit_m, narrower.At(least_range_m));
+    if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) continue;
+    ++num_met;
+    if (closest.one->range_m <= closest.other->range_m) {
+      Meet(from, *closest.one, beside, *closest.other, closest.squared_m2);
+    } else {
+      Meet(beside, *closest.other, from, *closest.one, closest.squared_m2);
+    }
+  }
+  return num_met;
 }
 
 PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {
   if (one > other) std::swap(one, other);
-  if (2 * contacts_.size() >= slots_.size()) {
-    slots_.assign(2 * slots_.size(), kFree);
-    for (std::size_t i = 0; i < contacts_.size(); ++i) {
-      std::size_t slot = SlotOf(contacts_[i].one, contacts_[i].other);
-      while (slots_[slot] != kFree) slot = (slot + 1) % slots_.size();
-      slots_[slot] = static_cast<std::int32_t>(i);
-    }
-  }
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = SlotOf(one, other);
-  for (; slots_[slot] != kFree; slot = (slot + 1) & mask) {
+  std::size_t slot = FirstSlotOf(one, other);
+  for (; slots_[slot] != kFree; slot = (slot + 1) % kSlots) {
     Contact& contact = contacts_[static_cast<std::size_t>(slots_[slot])];
     if (contact.one == one && contact.other == other) return contact;
   }
@@ -183,19 +293,19 @@ PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {
   return contacts_.back();
 }
 
-PairFinder::Contact& PairFinder::Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back,
-                                      const LevelPoint& back_point, float squared_gap_m2) {
+PairFinder::Contact& PairFinder::Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point,
+                                      float squared_gap_m2) {
   Contact& contact = At(front.piece, back.piece);
   // Of equal gaps the nearest.
-  if (contact.front != nullptr &&
+  if (contact.front >= 0 &&
       (squared_gap_m2 > contact.squared_gap_m2 || (squared_gap_m2 == contact.squared_gap_m2 && front_point.range_m >= contact.lesser_range_m))) {
     return contact;
   }
   contact.squared_gap_m2 = squared_gap_m2;
   contact.lesser_range_m = front_point.range_m;
   contact.greater_range_m = back_point.range_m;
-  contact.front = &front;
-  contact.back = &back;
+  contact.front = front.entry;
+  contact.back = back.entry;
   return contact;
 }
 
@@ -203,8 +313,8 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   pair.one = contact.one;
   pair.other = contact.other;
   pair.gap_m = std::sqrt(contact.squared_gap_m2);
-  const OutlineEntry& front = *contact.front;
-  const OutlineEntry& back = *contact.back;
+  const OutlineEntry& front = pieces.entries()[static_cast<std::size_t>(contact.front)];
+  const OutlineEntry& back = pieces.entries()[static_cast<std::size_t>(contact.back)];
   const auto set = [&pair](PairFeature feature, double value) { pair.features[static_cast<std::size_t>(feature)] = FeatureOf(value); };
 
   // Where they come closest.

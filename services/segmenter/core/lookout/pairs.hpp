@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "services/segmenter/core/lookout/pieces.hpp"
@@ -67,15 +68,40 @@ struct PiecePair {
 
 class PairFinder {
  public:
+  /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at what stands behind and beside. Normal scans
+  /// stay below: in heavy rain they take 4700 pairs and 160 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
+  /// hold.
+  static constexpr std::size_t kMostPairs = 6000;
+  static constexpr std::int64_t kMostLooks = 1'500'000;
+
   explicit PairFinder(double lidar_above_water_m) : lidar_above_water_m_(lidar_above_water_m) {}
 
+  /// Before the first round of a scan.
+  void BeginScan() { share_ = 0; }
+
   /// Pairs that come within `reach` of each other: in a column one behind the other, or beside each other.
-  /// Cost: about proportional to the columns of all pieces. Allocates nothing once it has seen a scan of that size.
+  /// Cost: about proportional to the columns of all pieces, and bounded. Allocates nothing once it has seen a scan of that size.
   ///
   /// @param reaches_behind  what something nearer hides of a gap does not count for the reach
   std::span<const PiecePair> Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind);
 
  private:
+  // What is within reach: of each other; of each other where both are of few returns; of something larger where one is.
+  struct Reaches {
+    Reach any;
+    Reach of_few;
+    Reach to_few;
+  };
+
+  // An entry of an outline, as far as distances go by it.
+  struct Shown {
+    LevelPoint near;
+    LevelPoint far;
+    std::int32_t piece = 0;
+    std::int32_t entry = 0;  // index into PieceTable::entries()
+    std::int32_t column = 0;
+  };
+
   // Where two pieces come closest.
   struct Contact {
     std::int32_t one = -1;  // below other
@@ -83,39 +109,71 @@ class PairFinder {
     float squared_gap_m2 = 0.0F;
     float lesser_range_m = 0.0F;
     float greater_range_m = 0.0F;
-    const OutlineEntry* front = nullptr;
-    const OutlineEntry* back = nullptr;
+    std::int32_t front = -1;  // index into PieceTable::entries()
+    std::int32_t back = -1;
     std::int32_t num_faced = 0;
   };
 
-  // Entries by column, the nearest first.
+  // Where what stands beside a piece may be within reach.
+  struct Window {
+    float nearest_m;
+    float farthest_m;
+    float most_m2;    // squared gap
+    double hidden_m;  // does not count for the reach
+  };
+
+  // What is shown, by column, the nearest first.
   struct Columns {
-    std::vector<const OutlineEntry*> entries;
+    std::vector<Shown> shown;
+    std::vector<float> near_m;  // ranges of what is shown
+    std::vector<float> far_m;
     std::vector<std::size_t> begin_of_column;
 
     void Clear() {
-      entries.clear();
+      shown.clear();
+      near_m.clear();
+      far_m.clear();
       begin_of_column.assign(1, 0);
     }
-    std::span<const OutlineEntry* const> InColumn(int column) const {
+    void Add(const Shown& one) {
+      shown.push_back(one);
+      near_m.push_back(one.near.range_m);
+      far_m.push_back(one.far.range_m);
+    }
+    void EndColumn() { begin_of_column.push_back(shown.size()); }
+    int num_columns() const { return static_cast<int>(begin_of_column.size()) - 1; }
+    std::span<const Shown> In(int column) const {
       const auto at = static_cast<std::size_t>(column);
-      return std::span(entries).subspan(begin_of_column[at], begin_of_column[at + 1] - begin_of_column[at]);
+      return std::span(shown).subspan(begin_of_column[at], begin_of_column[at + 1] - begin_of_column[at]);
     }
   };
 
+  // Columns to the last and to the next of the same piece; round the circle where there is none between.
+  struct Steps {
+    std::int32_t before = 0;
+    std::int32_t after = 0;
+  };
+
+  static Shown ShownOf(const PieceTable& pieces, const OutlineEntry& entry);
   void SortByKind(const PieceTable& pieces, int num_columns);
-  void FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach);
-  void LookBeside(const ScanGrid& grid, const Reach& reach, const OutlineEntry& entry, bool is_few, int direction);
-  std::size_t SlotOf(std::int32_t one, std::int32_t other) const;
+  bool FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches);
+  void LookBehind(const PieceTable& pieces, const Reaches& reaches, std::span<const OutlineEntry> behind, const Shown& front);
+  void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from);
+  void MeetFew(const Window& window, const Shown& from, int num_steps, int direction, const Reaches& reaches);
+  int MeetWithin(const Window& window, const Shown& from, std::span<const Shown> seen, const Reach& reach, const Reach& narrower);
   Contact& At(std::int32_t one, std::int32_t other);
-  Contact& Meet(const OutlineEntry& front, const LevelPoint& front_point, const OutlineEntry& back, const LevelPoint& back_point,
-                float squared_gap_m2);
+  Contact& Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;
 
   double lidar_above_water_m_;
   bool reaches_behind_ = false;
-  Columns few_;     // of pieces of few returns
-  Columns larger_;  // of the others
+  Columns few_;                                                        // of pieces of few returns
+  Columns larger_;                                                     // of the others
+  std::vector<Steps> steps_;                                           // [entries]
+  std::vector<std::pair<std::int32_t, std::int32_t>> first_and_last_;  // [pieces] entries
+  std::vector<std::size_t> near_;                                      // scratch: what may be within reach
+  std::size_t share_ = 0;                                              // of the reach: an index into kShares
+  std::int64_t num_looks_ = 0;
   std::vector<Contact> contacts_;
   std::vector<std::int32_t> slots_;  // an open hash table: index into contacts_, or -1
   std::vector<PiecePair> pairs_;

@@ -28,17 +28,15 @@ void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const OutlineEntry& entry = seen[i];
       if (i > 0) ++of(entry.piece, PieceFeature::kCovered);
-      const bool has_backdrop = std::any_of(seen.begin() + static_cast<std::ptrdiff_t>(i) + 1, seen.end(), [&entry](const OutlineEntry& behind) {
-        return behind.near_point.range_m - entry.far_point.range_m <= kBackdropM;
-      });
+      const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
       if (has_backdrop) ++of(entry.piece, PieceFeature::kBackdrop);
       if (pieces[entry.piece].num_returns > kCrowdReturns) continue;
       // It is of the crowd about its neighbours: each column of these counts it.
       for (int step = -kCrowdColumns; step <= kCrowdColumns; ++step) {
         const auto beside = pieces.InColumn(grid.Wrap(column + step));
         for (const OutlineEntry& other : beside.first(std::min(beside.size(), kMostInColumn))) {
-          if (other.piece == entry.piece) continue;
-          if (entry.near_point.range_m > other.far_point.range_m + kCrowdM || entry.far_point.range_m < other.near_point.range_m - kCrowdM) continue;
+          if (other.near_point.range_m - kCrowdM > entry.far_point.range_m) break;
+          if (other.piece == entry.piece || other.far_point.range_m + kCrowdM < entry.near_point.range_m) continue;
           ++of(other.piece, PieceFeature::kCrowd);
         }
       }

@@ -36,9 +36,23 @@ void PieceTable::Build(const ScanGrid& grid, std::span<const std::int32_t> piece
   facts_.assign(static_cast<std::size_t>(count), NoFacts());
   SumReturns(grid);
   BuildOutlines(grid);
+  FindRuns(grid);
+  Measure(grid);
+}
+
+void PieceTable::Merge(const ScanGrid& grid, std::span<const std::int32_t> group_of_piece, std::int32_t count) {
+  if (count == size()) return;  // each piece is a group
+  for (std::int32_t& piece : piece_of_return_) piece = group_of_piece[static_cast<std::size_t>(piece)];
+  for (Run& run : runs_) run.piece = group_of_piece[static_cast<std::size_t>(run.piece)];
+  MergeFacts(group_of_piece, count);
+  MergeOutlines(group_of_piece);
+  Measure(grid);
+}
+
+void PieceTable::Measure(const ScanGrid& grid) {
   FindArcs(grid.num_columns());
-  CountBeams(grid);
-  FitLines(grid);
+  CountBeams(grid.num_columns());
+  FitLines(grid.column_step_rad());
 }
 
 void PieceTable::SumReturns(const ScanGrid& grid) {
@@ -66,10 +80,23 @@ void PieceTable::SumReturns(const ScanGrid& grid) {
   }
 }
 
+// The entry of a piece among those that follow each other; nullptr = it has none.
+OutlineEntry* PieceTable::EntryOf(std::int32_t piece, std::size_t first_of_column, std::size_t end) {
+  for (std::size_t at = end; at > first_of_column; --at) {
+    if (entries_[at - 1].piece == piece) return &entries_[at - 1];
+  }
+  return nullptr;
+}
+
+void PieceTable::SortColumn(std::size_t first, std::size_t end) {
+  std::ranges::sort(std::span(entries_).subspan(first, end - first), [](const OutlineEntry& one, const OutlineEntry& other) {
+    return one.near_point.range_m < other.near_point.range_m || (one.near_point.range_m == other.near_point.range_m && one.min_ring < other.min_ring);
+  });
+}
+
 void PieceTable::BuildOutlines(const ScanGrid& grid) {
   entries_.clear();
   begin_of_column_.assign(1, 0);
-  columns_.assign(facts_.size(), {});
   const auto by_column = grid.by_column();
   std::size_t i = 0;
   for (int column = 0; column < grid.num_columns(); ++column) {
@@ -79,45 +106,121 @@ void PieceTable::BuildOutlines(const ScanGrid& grid) {
       const LevelPoint& point = grid.PointOf(index);
       const std::int32_t ring = grid.RingOf(grid.LineOf(index));
       const std::int32_t piece = piece_of_return_[static_cast<std::size_t>(index)];
-      std::size_t at = entries_.size();
-      while (at > first_of_column && entries_[at - 1].piece != piece) --at;
-      if (at == first_of_column) {
-        entries_.push_back({piece, column, index, ring, ring, point.height_m, point.height_m, point, point});
+      OutlineEntry* const entry = EntryOf(piece, first_of_column, entries_.size());
+      if (entry == nullptr) {
+        entries_.push_back({piece, column, index, index, ring, ring, point.height_m, point.height_m, point, point});
         continue;
       }
-      OutlineEntry& entry = entries_[at - 1];
-      if (point.range_m < entry.near_point.range_m) {  // of equals the first
-        entry.nearest = index;
-        entry.near_point = point;
+      if (point.range_m < entry->near_point.range_m) {  // of equals the first
+        entry->nearest = index;
+        entry->near_point = point;
       }
-      if (point.range_m > entry.far_point.range_m) entry.far_point = point;
-      entry.min_ring = std::min(entry.min_ring, ring);
-      entry.max_ring = std::max(entry.max_ring, ring);
-      entry.min_height_m = std::min(entry.min_height_m, point.height_m);
-      entry.max_height_m = std::max(entry.max_height_m, point.height_m);
-    }
-    const auto of_column = std::span(entries_).subspan(first_of_column);
-    std::ranges::sort(of_column, [](const OutlineEntry& one, const OutlineEntry& other) {
-      return one.near_point.range_m < other.near_point.range_m ||
-             (one.near_point.range_m == other.near_point.range_m && one.min_ring < other.min_ring);
-    });
-    for (const OutlineEntry& entry : of_column) {
-      Columns& columns = columns_[static_cast<std::size_t>(entry.piece)];
-      ++facts_[static_cast<std::size_t>(entry.piece)].num_columns;
-      if (columns.first < 0) {
-        columns.first = column;
-      } else if (const std::int32_t gap = column - columns.last - 1; gap > columns.widest_gap) {
-        columns.widest_gap = gap;
-        columns.after_widest = column;
+      if (point.range_m > entry->far_point.range_m) {
+        entry->farthest = index;
+        entry->far_point = point;
       }
-      columns.last = column;
+      entry->min_ring = std::min(entry->min_ring, ring);
+      entry->max_ring = std::max(entry->max_ring, ring);
+      entry->min_height_m = std::min(entry->min_height_m, point.height_m);
+      entry->max_height_m = std::max(entry->max_height_m, point.height_m);
     }
+    SortColumn(first_of_column, entries_.size());
     begin_of_column_.push_back(entries_.size());
   }
 }
 
+void PieceTable::FindRuns(const ScanGrid& grid) {
+  runs_.clear();
+  for (int line = 0; line < grid.num_lines(); ++line) {
+    for (int column = grid.NextOccupied(line, 0); column < grid.num_columns();
+         column = column + 1 < grid.num_columns() ? grid.NextOccupied(line, column + 1) : grid.num_columns()) {
+      const std::int32_t piece = piece_of_return_[static_cast<std::size_t>(grid.At(line, column))];
+      if (!runs_.empty() && runs_.back().line == line && runs_.back().piece == piece && runs_.back().last == column - 1) {
+        runs_.back().last = column;
+      } else {
+        runs_.push_back({line, column, column, piece});
+      }
+    }
+  }
+}
+
+void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::int32_t count) {
+  facts_before_.assign(facts_.begin(), facts_.end());
+  sums_before_.assign(sums_.begin(), sums_.end());
+  facts_.assign(static_cast<std::size_t>(count), NoFacts());
+  sums_.assign(static_cast<std::size_t>(count), {});
+  for (std::size_t piece = 0; piece < group_of_piece.size(); ++piece) {
+    const auto group = static_cast<std::size_t>(group_of_piece[piece]);
+    const PieceFacts& before = facts_before_[piece];
+    PieceFacts& facts = facts_[group];
+    facts.num_returns += before.num_returns;
+    facts.min_range_m = std::min(facts.min_range_m, before.min_range_m);
+    facts.max_range_m = std::max(facts.max_range_m, before.max_range_m);
+    facts.min_height_m = std::min(facts.min_height_m, before.min_height_m);
+    facts.max_height_m = std::max(facts.max_height_m, before.max_height_m);
+    facts.min_ring = std::min(facts.min_ring, before.min_ring);
+    facts.max_ring = std::max(facts.max_ring, before.max_ring);
+    const Sums& of_piece = sums_before_[piece];
+    Sums& sums = sums_[group];
+    sums.x_m += of_piece.x_m;
+    sums.y_m += of_piece.y_m;
+    sums.height_m += of_piece.height_m;
+    sums.xx_m2 += of_piece.xx_m2;
+    sums.xy_m2 += of_piece.xy_m2;
+    sums.yy_m2 += of_piece.yy_m2;
+  }
+}
+
+void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
+  std::size_t num = 0;  // what has been merged stands before what has not
+  std::size_t i = 0;
+  for (std::size_t column = 0; column + 1 < begin_of_column_.size(); ++column) {
+    const std::size_t first_of_column = num;
+    for (; i < begin_of_column_[column + 1]; ++i) {
+      OutlineEntry other = entries_[i];
+      other.piece = group_of_piece[static_cast<std::size_t>(other.piece)];
+      OutlineEntry* const entry = EntryOf(other.piece, first_of_column, num);
+      if (entry == nullptr) {
+        entries_[num++] = other;
+        continue;
+      }
+      // Of equals the first, as in the order of the returns.
+      const float nearer_m = other.near_point.range_m - entry->near_point.range_m;
+      if (nearer_m < 0.0F || (nearer_m == 0.0F && other.nearest < entry->nearest)) {
+        entry->nearest = other.nearest;
+        entry->near_point = other.near_point;
+      }
+      const float farther_m = other.far_point.range_m - entry->far_point.range_m;
+      if (farther_m > 0.0F || (farther_m == 0.0F && other.farthest < entry->farthest)) {
+        entry->farthest = other.farthest;
+        entry->far_point = other.far_point;
+      }
+      entry->min_ring = std::min(entry->min_ring, other.min_ring);
+      entry->max_ring = std::max(entry->max_ring, other.max_ring);
+      entry->min_height_m = std::min(entry->min_height_m, other.min_height_m);
+      entry->max_height_m = std::max(entry->max_height_m, other.max_height_m);
+    }
+    begin_of_column_[column] = first_of_column;
+    SortColumn(first_of_column, num);
+  }
+  begin_of_column_.back() = num;
+  entries_.resize(num);
+}
+
 // The circle without the widest gap between the columns of a piece; of equal gaps that over the seam, else the first.
 void PieceTable::FindArcs(int num_columns) {
+  columns_.assign(facts_.size(), {});
+  for (const OutlineEntry& entry : entries_) {
+    Columns& columns = columns_[static_cast<std::size_t>(entry.piece)];
+    ++facts_[static_cast<std::size_t>(entry.piece)].num_columns;
+    if (columns.first < 0) {
+      columns.first = entry.column;
+    } else if (const std::int32_t gap = entry.column - columns.last - 1; gap > columns.widest_gap) {
+      columns.widest_gap = gap;
+      columns.after_widest = entry.column;
+    }
+    columns.last = entry.column;
+  }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
     const Columns& columns = columns_[piece];
     const std::int32_t over_seam = columns.first + num_columns - columns.last - 1;
@@ -127,30 +230,28 @@ void PieceTable::FindArcs(int num_columns) {
 }
 
 // In each line the circle without the widest gap between its returns there: of a piece all round, too, whatever column the scan begins with.
-void PieceTable::CountBeams(const ScanGrid& grid) {
+void PieceTable::CountBeams(int num_columns) {
   spans_.assign(facts_.size(), {});
-  const auto close = [this, &grid](std::size_t piece) {
+  const auto close = [this, num_columns](std::size_t piece) {
     const Span& span = spans_[piece];
-    const std::int32_t over_seam = span.first + grid.num_columns() - span.last - 1;
-    if (span.line >= 0) facts_[piece].num_beams += grid.num_columns() - std::max(over_seam, span.widest_gap);
+    const std::int32_t over_seam = span.first + num_columns - span.last - 1;
+    if (span.line >= 0) facts_[piece].num_beams += num_columns - std::max(over_seam, span.widest_gap);
   };
-  for (int line = 0; line < grid.num_lines(); ++line) {
-    for (int column = grid.NextOccupied(line, 0); column < grid.num_columns();
-         column = column + 1 < grid.num_columns() ? grid.NextOccupied(line, column + 1) : grid.num_columns()) {
-      const auto piece = static_cast<std::size_t>(piece_of_return_[static_cast<std::size_t>(grid.At(line, column))]);
-      Span& span = spans_[piece];
-      if (span.line != line) {
-        close(piece);
-        span = {line, column, column, 0};
-      }
-      span.widest_gap = std::max(span.widest_gap, column - span.last - 1);
-      span.last = column;
+  for (const Run& run : runs_) {
+    const auto piece = static_cast<std::size_t>(run.piece);
+    Span& span = spans_[piece];
+    if (span.line != run.line) {
+      close(piece);
+      span = {run.line, run.first, run.last, 0};
+      continue;
     }
+    span.widest_gap = std::max(span.widest_gap, run.first - span.last - 1);
+    span.last = run.last;
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) close(piece);
 }
 
-void PieceTable::FitLines(const ScanGrid& grid) {
+void PieceTable::FitLines(double column_step_rad) {
   extents_.assign(facts_.size(), {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0.0});
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
     PieceFacts& facts = facts_[piece];
@@ -158,7 +259,7 @@ void PieceTable::FitLines(const ScanGrid& grid) {
     const double count = facts.num_returns;
     facts.mean_m = {sums.x_m / count, sums.y_m / count};
     facts.mean_height_m = sums.height_m / count;
-    facts.width_m = facts.arc.num * grid.column_step_rad() * facts.min_range_m;
+    facts.width_m = facts.arc.num * column_step_rad * facts.min_range_m;
     // No line goes through one return, or through some above each other: then across the line of sight, which turns as the scene does.
     const double from_lidar_m = std::sqrt(facts.mean_m.squaredNorm());
     if (from_lidar_m > 0.0) facts.direction = Eigen::Vector2d(-facts.mean_m.y(), facts.mean_m.x()) / from_lidar_m;

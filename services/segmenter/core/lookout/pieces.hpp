@@ -24,6 +24,7 @@ struct OutlineEntry {
   std::int32_t piece = 0;
   std::int32_t column = 0;
   std::int32_t nearest = 0;  // index of the return
+  std::int32_t farthest = 0;
   std::int32_t min_ring = 0;
   std::int32_t max_ring = 0;
   float min_height_m = 0.0F;  // over the lidar
@@ -66,6 +67,12 @@ class PieceTable {
   /// Cost: proportional to the returns. Allocates nothing once it has seen a scan of that size.
   void Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count);
 
+  /// What Build would give for the groups in place of the pieces, but for the rounding of sums; from what is known of the pieces.
+  ///
+  /// @param group_of_piece  [size()] 0 to count - 1, in the order of the first piece of each
+  /// Cost: proportional to the columns of all pieces; the returns are but labelled.
+  void Merge(const ScanGrid& grid, std::span<const std::int32_t> group_of_piece, std::int32_t count);
+
   std::int32_t size() const { return static_cast<std::int32_t>(facts_.size()); }
   std::span<const std::int32_t> of_returns() const { return piece_of_return_; }
   const PieceFacts& operator[](std::int32_t piece) const { return facts_[static_cast<std::size_t>(piece)]; }
@@ -95,6 +102,13 @@ class PieceTable {
     std::int32_t widest_gap = 0;
     std::int32_t after_widest = 0;
   };
+  // Returns of a piece in columns [first, last] of a line.
+  struct Run {
+    std::int32_t line = 0;
+    std::int32_t first = 0;
+    std::int32_t last = 0;
+    std::int32_t piece = 0;
+  };
   // Columns of a piece in the line that is looked at.
   struct Span {
     std::int32_t line = -1;
@@ -105,16 +119,26 @@ class PieceTable {
 
   void SumReturns(const ScanGrid& grid);
   void BuildOutlines(const ScanGrid& grid);
+  void FindRuns(const ScanGrid& grid);
+  void MergeFacts(std::span<const std::int32_t> group_of_piece, std::int32_t count);
+  void MergeOutlines(std::span<const std::int32_t> group_of_piece);
+  OutlineEntry* EntryOf(std::int32_t piece, std::size_t first_of_column, std::size_t end);
+  void SortColumn(std::size_t first, std::size_t end);
+  // What follows from sums, outlines and runs.
+  void Measure(const ScanGrid& grid);
   void FindArcs(int num_columns);
-  void CountBeams(const ScanGrid& grid);
-  void FitLines(const ScanGrid& grid);
+  void CountBeams(int num_columns);
+  void FitLines(double column_step_rad);
 
   std::vector<std::int32_t> piece_of_return_;  // [returns]
   std::vector<PieceFacts> facts_;              // [pieces]
   std::vector<OutlineEntry> entries_;          // by column
   std::vector<std::size_t> begin_of_column_;   // [columns + 1]
+  std::vector<Run> runs_;                      // line by line
+  std::vector<Sums> sums_;                     // [pieces]
   // Scratch, [pieces].
-  std::vector<Sums> sums_;
+  std::vector<PieceFacts> facts_before_;
+  std::vector<Sums> sums_before_;
   std::vector<Columns> columns_;
   std::vector<Span> spans_;
   struct Extent {

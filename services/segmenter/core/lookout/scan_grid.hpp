@@ -77,9 +77,11 @@ class ScanGrid {
   }
   /// The first column from this one on, up to the last, in which a line has a return; num_columns() where there is none.
   int NextOccupied(int line, int column) const;
-  /// How many returns of a line lie in columns [column - kWindow, column + kWindow] at a range at most reach_m off.
-  template <int kWindow>
-  int NumNear(int line, int column, float range_m, float reach_m) const;
+  /// [columns]
+  std::span<const float> RangesOf(int line) const {
+    return std::span(range_at_).subspan(static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_),
+                                        static_cast<std::size_t>(num_columns_));
+  }
   const LevelPoint& PointOf(std::int32_t index) const { return points_[static_cast<std::size_t>(index)]; }
   std::span<const LevelPoint> points() const { return points_; }
   /// Column and line of the grid in which a return stands.
@@ -126,20 +128,6 @@ inline int ScanGrid::NextOccupied(int line, int column) const {
     bits = words[word];
   }
   return static_cast<int>(word) * kWordBits + std::countr_zero(bits);
-}
-
-template <int kWindow>
-int ScanGrid::NumNear(int line, int column, float range_m, float reach_m) const {
-  static_assert(2 * kWindow < kMinColumns);
-  int num_near = 0;
-  if (column < kWindow || column + kWindow >= num_columns_) {
-    for (int step = -kWindow; step <= kWindow; ++step) num_near += std::abs(RangeAt(line, Wrap(column + step)) - range_m) <= reach_m ? 1 : 0;
-    return num_near;
-  }
-  const float* range =
-      range_at_.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(num_columns_) + static_cast<std::size_t>(column - kWindow);
-  for (int step = 0; step <= 2 * kWindow; ++step) num_near += std::abs(range[step] - range_m) <= reach_m ? 1 : 0;
-  return num_near;
 }
 
 }  // namespace lookout::segmenter

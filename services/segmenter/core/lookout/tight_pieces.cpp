@@ -1,11 +1,14 @@
 #include "services/segmenter/core/lookout/tight_pieces.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace lookout::segmenter {
 
 namespace {
+
+constexpr std::size_t kMostLayers = 2;  // returns of a shot
 
 bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool are_of_one_ring, const Reach& link) {
   const auto reach_m = static_cast<float>(link.At(std::min(one.range_m, other.range_m)));
@@ -16,10 +19,31 @@ bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool are_of_one_r
 
 }  // namespace
 
-// Neighbours in a line are linked first: most links are found so, and what is of one run needs no further look.
+// Whether a line has in columns [first, last] a return at a range at most reach_m off that is not of a known run.
+template <int kNum>
+bool TightPieces::IsOtherNear(const ScanGrid& grid, int line, int first, float range_m, float reach_m, std::int32_t known_run) const {
+  static_assert(kNum < ScanGrid::kMinColumns);
+  const float* const range = grid.RangesOf(line).data();
+  const std::int32_t* const run = run_at_.data() + static_cast<std::size_t>(line) * static_cast<std::size_t>(grid.num_columns());
+  int num_near = 0;
+  if (first < 0 || first + kNum > grid.num_columns()) {
+    for (int step = 0; step < kNum; ++step) {
+      const int column = grid.Wrap(first + step);
+      num_near += (std::abs(range[column] - range_m) <= reach_m ? 1 : 0) & (run[column] != known_run ? 1 : 0);
+    }
+    return num_near > 0;
+  }
+  for (int column = first; column < first + kNum; ++column) {
+    num_near += (std::abs(range[column] - range_m) <= reach_m ? 1 : 0) & (run[column] != known_run ? 1 : 0);
+  }
+  return num_near > 0;
+}
+
+// Neighbours in a line are linked first, then what is farther apart in it: most links are found so, and what is of one run needs no further look.
 void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
-  run_of_return_.resize(grid.points().size());
-  num_runs_ = 0;
+  by_line_.clear();
+  run_at_.assign(static_cast<std::size_t>(grid.num_lines()) * static_cast<std::size_t>(grid.num_columns()), ScanGrid::kNone);
+  std::int32_t num_runs = 0;
   for (int line = 0; line < grid.num_lines(); ++line) {
     std::int32_t last = ScanGrid::kNone;
     int last_column = 0;
@@ -27,49 +51,85 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
          column = column + 1 < grid.num_columns() ? grid.NextOccupied(line, column + 1) : grid.num_columns()) {
       const std::int32_t index = grid.At(line, column);
       const bool goes_on = last != ScanGrid::kNone && column - last_column == 1 && AreLinked(grid.PointOf(last), grid.PointOf(index), true, link);
-      if (!goes_on) ++num_runs_;
-      run_of_return_[static_cast<std::size_t>(index)] = num_runs_ - 1;
+      if (!goes_on) ++num_runs;
+      RunAt(grid, line, column) = num_runs - 1;
+      by_line_.push_back(index);
       last = index;
       last_column = column;
     }
   }
+  sets_.Reset(static_cast<std::size_t>(num_runs));
+  for (const std::int32_t index : by_line_) {
+    const LevelPoint& point = grid.PointOf(index);
+    const int line = grid.LineOf(index);
+    const int column = grid.ColumnOf(index);
+    const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
+    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, point.range_m, widest_m, RunAt(grid, line, column))) continue;
+    LookAlong(grid, link, index, line, column + 1, column + kLinkColumns);
+  }
+  for (const std::int32_t index : by_line_) {
+    std::int32_t& run = RunAt(grid, grid.LineOf(index), grid.ColumnOf(index));
+    run = sets_.Find(run);
+  }
+}
+
+// Links a return with those of a line in columns [first, last], over the seam, too. @return a run there that is linked with it; kNone = there is none
+std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, std::int32_t index, int line, int first, int last) {
+  const LevelPoint& point = grid.PointOf(index);
+  const int own_line = grid.LineOf(index);
+  const bool are_of_one_ring = grid.RingOf(line) == grid.RingOf(own_line);
+  const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
+  const std::int32_t own_run = RunAt(grid, own_line, grid.ColumnOf(index));
+  std::int32_t linked = ScanGrid::kNone;
+  for (int step = first; step <= last; ++step) {
+    const int column = grid.Wrap(step);
+    if (!(std::abs(grid.RangeAt(line, column) - point.range_m) <= widest_m)) continue;
+    const std::int32_t run = RunAt(grid, line, column);
+    if (run == linked) continue;
+    const bool is_of_set = sets_.Find(run) == sets_.Find(own_run);
+    if (!is_of_set && !AreLinked(point, grid.PointOf(grid.At(line, column)), are_of_one_ring, link)) continue;
+    if (!is_of_set) sets_.Join(own_run, run);
+    linked = run;
+  }
+  return linked;
 }
 
 void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
   FindRuns(grid, link);
-  sets_.Reset(static_cast<std::size_t>(num_runs_));
-  const auto points = grid.points();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto index = static_cast<std::int32_t>(i);
-    const LevelPoint& point = points[i];
+  // Runs that were linked last, by how many lines lie between them: those of the next return will be the same.
+  struct Linked {
+    std::int32_t own_run = ScanGrid::kNone;
+    std::int32_t run = ScanGrid::kNone;
+  };
+  std::array<Linked, (kLinkRings + 1) * kMostLayers> linked;
+  for (const std::int32_t index : by_line_) {
+    const LevelPoint& point = grid.PointOf(index);
     const int line = grid.LineOf(index);
     const int column = grid.ColumnOf(index);
     const int ring = grid.RingOf(line);
     const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
-    std::int32_t run = sets_.Find(run_of_return_[i]);
-    const auto look_at = [&](int other_line, int other_column, bool are_of_one_ring) {
-      if (!(std::abs(grid.RangeAt(other_line, other_column) - point.range_m) <= widest_m)) return;
-      const std::int32_t other = grid.At(other_line, other_column);
-      const std::int32_t other_run = sets_.Find(run_of_return_[static_cast<std::size_t>(other)]);
-      if (other_run == run || !AreLinked(point, grid.PointOf(other), are_of_one_ring, link)) return;
-      sets_.Join(run, other_run);
-      run = std::min(run, other_run);
-    };
-    // Each pair once: on in its own line, and all of the lines above.
-    for (int step = 1; step <= kLinkColumns; ++step) look_at(line, grid.Wrap(column + step), true);
+    const std::int32_t own_run = RunAt(grid, line, column);
+    // Each pair once: all of the lines above.
     const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
     for (int other_line = line + 1; other_line < end; ++other_line) {
+      Linked& last = linked[static_cast<std::size_t>(other_line - line)];
+      const std::int32_t known_run = last.own_run == own_run ? last.run : ScanGrid::kNone;
       const bool are_of_one_ring = grid.RingOf(other_line) == ring;
-      if (!are_of_one_ring && grid.NumNear<kLinkAcrossColumns>(other_line, column, point.range_m, widest_m) == 0) continue;
       const int window = are_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
-      for (int step = -window; step <= window; ++step) look_at(other_line, grid.Wrap(column + step), are_of_one_ring);
+      const bool is_other_near = are_of_one_ring
+                                     ? IsOtherNear<2 * kLinkColumns + 1>(grid, other_line, column - window, point.range_m, widest_m, known_run)
+                                     : IsOtherNear<2 * kLinkAcrossColumns + 1>(grid, other_line, column - window, point.range_m, widest_m, known_run);
+      if (!is_other_near) continue;
+      const std::int32_t run = LookAlong(grid, link, index, other_line, column - window, column + window);
+      if (run != ScanGrid::kNone) last = {own_run, run};
     }
   }
-  number_of_run_.assign(static_cast<std::size_t>(num_runs_), ScanGrid::kNone);
-  of_return_.resize(points.size());
+  number_of_run_.assign(sets_.size(), ScanGrid::kNone);
+  of_return_.resize(grid.points().size());
   count_ = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::int32_t& number = number_of_run_[static_cast<std::size_t>(sets_.Find(run_of_return_[i]))];
+  for (std::size_t i = 0; i < of_return_.size(); ++i) {
+    const auto index = static_cast<std::int32_t>(i);
+    std::int32_t& number = number_of_run_[static_cast<std::size_t>(sets_.Find(RunAt(grid, grid.LineOf(index), grid.ColumnOf(index))))];
     if (number == ScanGrid::kNone) number = count_++;
     of_return_[i] = number;
   }

@@ -30,12 +30,18 @@ class TightPieces {
 
  private:
   void FindRuns(const ScanGrid& grid, const Reach& link);
+  std::int32_t LookAlong(const ScanGrid& grid, const Reach& link, std::int32_t index, int line, int first, int last);
+  template <int kNum>
+  bool IsOtherNear(const ScanGrid& grid, int line, int first, float range_m, float reach_m, std::int32_t known_run) const;
+  std::int32_t& RunAt(const ScanGrid& grid, int line, int column) {
+    return run_at_[static_cast<std::size_t>(line) * static_cast<std::size_t>(grid.num_columns()) + static_cast<std::size_t>(column)];
+  }
 
-  UnionFind sets_;
-  std::vector<std::int32_t> run_of_return_;
+  UnionFind sets_;                     // of runs
+  std::vector<std::int32_t> by_line_;  // the returns, line by line
+  std::vector<std::int32_t> run_at_;   // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
   std::vector<std::int32_t> number_of_run_;
   std::vector<std::int32_t> of_return_;
-  std::int32_t num_runs_ = 0;
   std::int32_t count_ = 0;
 };
 
