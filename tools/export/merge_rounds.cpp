@@ -112,6 +112,7 @@ MergeRound MergeRecorder::MergeOnce(std::size_t round, const std::vector<segment
   result.pieces.resize(static_cast<std::size_t>(method_.pieces().size()));
   method_.Merge(round, pairs);
   for (std::size_t i = 0; i < returns.size(); ++i) {
+    if (result.piece_of_return[i] < 0) continue;  // left out
     auto& piece = result.pieces[static_cast<std::size_t>(result.piece_of_return[i])];
     ++piece.num_returns;
     piece.mean_m += ToVector(returns[i].point).head<2>();
@@ -126,6 +127,7 @@ MergeReasons ReasonsOf(const MergedScan& scan, const MergeRecorder& recorder) {
   const MergeRound& round = scan.rounds.back();
   std::vector<std::vector<Eigen::Vector3d>> returns_m(round.pieces.size());
   for (std::size_t i = 0; i < scan.returns_m.size(); ++i) {
+    if (round.piece_of_return[i] < 0) continue;  // left out
     returns_m[static_cast<std::size_t>(round.piece_of_return[i])].push_back(scan.returns_m[i]);
   }
   MergeReasons reasons;

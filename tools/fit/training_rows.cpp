@@ -86,7 +86,7 @@ std::vector<PieceTruth> RowMaker::TruthOfPieces(const importer::LabelledScan& tr
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const std::int32_t object = std::max(truth.object[static_cast<std::size_t>(returns[i].cell)], importer::kNoTrueObject);
     ++num_of_object[object];
-    ++votes[static_cast<std::size_t>(of_returns[i])][object];
+    if (of_returns[i] >= 0) ++votes[static_cast<std::size_t>(of_returns[i])][object];
   }
   std::vector<PieceTruth> pieces(votes.size());
   for (std::size_t i = 0; i < votes.size(); ++i) {

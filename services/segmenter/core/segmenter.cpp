@@ -102,6 +102,7 @@ const Segments& Segmenter::Segment(const Scan& scan) {
   result_.num_repeats = static_cast<std::int64_t>(classified.repeats.size());
   result_.num_too_small = numbering_.num_too_small();
   result_.num_over_limit = numbering_.num_over_limit();
+  if (params_.method == Method::kLookout) result_.num_over_limit += method_.num_left_out();
   return result_;
 }
 
@@ -136,12 +137,12 @@ void Segmenter::LabelReturns() {
   const auto& classified = classifier_.result();
   const auto& returns = classified.returns;
   const auto& segments = numbering_.groups();
-  const auto& groups = params_.method == Method::kLookout ? method_.groups() : components_;
   auto& label = result_.label;
   label = classified.label;
   for (std::size_t i = 0; i < returns.size(); ++i) {
     const std::int32_t segment = segments.of_return[i];
-    const Reason reason = groups.of_return[i] == Groups::kNone ? Reason::kShadowed : Reason::kTooSmall;
+    const bool is_shadowed = params_.method == Method::kPaper && components_.of_return[i] == Groups::kNone;
+    const Reason reason = is_shadowed ? Reason::kShadowed : Reason::kTooSmall;
     label[static_cast<std::size_t>(returns[i].cell)] = segment == Groups::kNone ? ToLabel(reason) : static_cast<std::int16_t>(segment + 1);
   }
   for (const auto& repeat : classified.repeats) {

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <tuple>
 
 #include "services/segmenter/core/lookout/partition.hpp"
 #include "tests/unit/segmenter/lookout_stages.hpp"
@@ -291,6 +293,70 @@ TEST(Memory, NothingIsAllocatedForAPartitionOfThatSize) {
     partition.Find(kPieces, pairs, 0.0F);
     if (step == 1) continue;
     EXPECT_EQ(num_allocated_bytes, before) << step;
+  }
+}
+
+// A return on so many beams, at any range: no water looks so.
+Scan Noise(const test::Shape& shape, double share, double from_m, double to_m) {
+  auto scan = EmptyScan(shape);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (std::size_t ring = 0; ring < scan.head.rings.size(); ++ring) {
+    scan.head.rings[ring].elevation_rad = static_cast<float>(-0.26 + 0.52 * static_cast<double>(ring) / shape.num_rings);
+  }
+  for (int column = 0; column < shape.num_columns; ++column) {
+    for (int ring = 0; ring < shape.num_rings; ++ring) {
+      if (uniform(random) < share) SetReturn(scan, column, ring, from_m + (to_m - from_m) * uniform(random));
+    }
+  }
+  return scan;
+}
+
+// Without bounds they had millions of pairs: seconds, and gigabytes.
+TEST(Noise, HasNoMorePairsThanMayBe) {
+  for (const auto& [shape, share, from_m, to_m] : {std::tuple{test::Shape{.num_columns = 2048}, 0.33, 0.6, 6.0},
+                                                   {{.num_columns = 2048}, 1.0, 0.6, 100.0},
+                                                   {{.num_columns = 1024, .num_rings = 64}, 0.3, 0.6, 6.0},
+                                                   {{.num_columns = 2048, .num_rings = 128}, 1.0, 0.6, 100.0},
+                                                   {{.num_columns = 2048, .num_rings = 128}, 1.0, 60.0, 100.0}}) {
+    const auto scan = Noise(shape, share, from_m, to_m);
+    LookoutMethod method({}, Eigen::Matrix3d::Identity());
+    method.FindPieces(scan, ClassifyReturns(scan, {}).returns);
+    EXPECT_LE(method.pieces().size(), TightPieces::kMostPieces);
+    for (std::size_t merge = 0; merge < kNumMerges; ++merge) {
+      const auto pairs = method.FindPairs(merge);
+      EXPECT_LE(pairs.size(), PairFinder::kMostPairs) << shape.num_columns << " columns, round " << merge;
+      method.Merge(merge, pairs);
+    }
+  }
+}
+
+// What is of no piece has the label of what is left out, and is counted.
+TEST(Noise, OfMorePiecesThanLabelsLeavesOutTheSmallest) {
+  const auto scan = Noise({.num_columns = 2048, .num_rings = 128}, 1.0, 0.6, 100.0);
+  const auto segments = SegmentScan(scan, {});
+  EXPECT_GT(segments.num_over_limit, 0);
+  EXPECT_LE(segments.segments.size(), 32767U);
+  EXPECT_EQ(std::ranges::count(segments.label, 0), std::ranges::count(scan.columns.range, 0));
+  EXPECT_GT(std::ranges::count(segments.label, ToLabel(Reason::kTooSmall)), 0);
+}
+
+// The same bounds wherever the scan is cut, and in the mirror: another share of the reach would part hundreds of segments. That a single pair of
+// thousands is at its limit to the last bit does not count.
+TEST(Noise, IsCutToItsBoundsAlikeWhereverTheScanBegins) {
+  for (const double share : {0.33, 0.6}) {
+    const auto scan = Noise({.num_columns = 2048}, share, 0.6, 6.0);
+    auto turned = scan;
+    auto mirrored = scan;
+    constexpr std::ptrdiff_t kOn = 700 * 16;
+    std::ranges::rotate(turned.columns.range, turned.columns.range.begin() + kOn);
+    for (std::size_t column = 0; column < 2048; ++column) {
+      std::copy_n(scan.columns.range.begin() + static_cast<std::ptrdiff_t>(16 * column), 16,
+                  mirrored.columns.range.begin() + static_cast<std::ptrdiff_t>(16 * (2047 - column)));
+    }
+    const auto num_segments = static_cast<double>(SegmentScan(scan, {}).segments.size());
+    EXPECT_NEAR(static_cast<double>(SegmentScan(turned, {}).segments.size()), num_segments, 3.0) << share;
+    EXPECT_NEAR(static_cast<double>(SegmentScan(mirrored, {}).segments.size()), num_segments, 3.0) << share;
   }
 }
 

@@ -74,8 +74,8 @@ TEST(PairFinder, SaysWhatTheBeamsBetweenThemMeet) {
   scene.Build();
   const auto pair = FindPair(scene, 0, 1);
   ASSERT_TRUE(pair);
-  EXPECT_NEAR(Of(*pair, PairFeature::kSeenThrough), 1.0 / 3.0, 1e-6);
-  EXPECT_NEAR(Of(*pair, PairFeature::kHidden), 1.0 / 3.0, 1e-6);
+  EXPECT_NEAR(Of(*pair, PairFeature::kSeenThrough), 1.0 / 3.0, kRounding);
+  EXPECT_NEAR(Of(*pair, PairFeature::kHidden), 1.0 / 3.0, kRounding);
   EXPECT_NEAR(Of(*pair, PairFeature::kFreeGap), ChordM(4) * 2.0 / 3.0, kRounding);
 }
 

@@ -1,7 +1,12 @@
 #include "services/segmenter/core/lookout/pieces.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "common/core/angles.hpp"
 #include "services/segmenter/core/lookout/piece_features.hpp"
@@ -148,6 +153,55 @@ TEST(PieceTable, OutlinesOfAColumnAreSortedByRange) {
   EXPECT_EQ(scene.pieces.entries().size(), 4U);
 }
 
+// Eight pieces that wind about each other, two of them over the seam, in three groups and two that stay alone.
+TEST(PieceTable, MergedIsAsBuiltFromTheGroups) {
+  const std::vector<std::int32_t> group_of_piece{0, 1, 0, 2, 3, 1, 2, 4};
+  std::mt19937_64 random(5);
+  PieceScene scene(16);
+  for (std::int32_t piece = 0; piece < 8; ++piece) {
+    const int first = static_cast<int>(350 + random() % 20);
+    for (int column = first; column < first + 12; ++column) {
+      for (int ring = 2 * piece; ring < 2 * piece + 2; ++ring) {
+        if (random() % 4 != 0) scene.Add(piece, column, ring, 10.0 + 0.25 * static_cast<double>(random() % 8));
+      }
+    }
+  }
+  scene.Build();
+  std::vector<std::int32_t> group_of_return;
+  for (const std::int32_t piece : scene.pieces.of_returns()) group_of_return.push_back(group_of_piece.at(static_cast<std::size_t>(piece)));
+  PieceTable merged = scene.pieces;
+  merged.Merge(scene.grid, group_of_piece, 5);
+  PieceTable built;
+  built.Build(scene.grid, group_of_return, 5);
+
+  EXPECT_TRUE(std::ranges::equal(merged.of_returns(), built.of_returns()));
+  ASSERT_EQ(merged.size(), built.size());
+  for (std::int32_t piece = 0; piece < built.size(); ++piece) {
+    const PieceFacts& one = merged[piece];
+    const PieceFacts& other = built[piece];
+    EXPECT_EQ(std::tuple(one.num_returns, one.num_columns, one.num_beams, one.min_ring, one.max_ring, one.arc.first, one.arc.num),
+              std::tuple(other.num_returns, other.num_columns, other.num_beams, other.min_ring, other.max_ring, other.arc.first, other.arc.num));
+    EXPECT_EQ(std::tuple(one.min_range_m, one.max_range_m, one.min_height_m, one.max_height_m, one.width_m),
+              std::tuple(other.min_range_m, other.max_range_m, other.min_height_m, other.max_height_m, other.width_m));
+    for (const auto& [is, expected] : {std::pair{one.length_m, other.length_m},
+                                       {one.off_m, other.off_m},
+                                       {one.radius_m, other.radius_m},
+                                       {one.mean_height_m, other.mean_height_m},
+                                       {one.mean_m.x(), other.mean_m.x()}}) {
+      EXPECT_EQ(FeatureOf(is), FeatureOf(expected)) << piece;
+    }
+  }
+  ASSERT_EQ(merged.entries().size(), built.entries().size());
+  for (std::size_t i = 0; i < built.entries().size(); ++i) {
+    const OutlineEntry& one = merged.entries()[i];
+    const OutlineEntry& other = built.entries()[i];
+    EXPECT_EQ(
+        std::tuple(one.piece, one.column, one.nearest, one.farthest, one.min_ring, one.max_ring, one.min_height_m, one.max_height_m),
+        std::tuple(other.piece, other.column, other.nearest, other.farthest, other.min_ring, other.max_ring, other.min_height_m, other.max_height_m))
+        << i;
+  }
+}
+
 float Of(const PieceFeatures& features, PieceFeature feature) { return features[static_cast<std::size_t>(feature)]; }
 
 // A row before another that is 2 m behind, and a drop between them.
@@ -157,13 +211,13 @@ TEST(MeasurePieces, SaysWhatStandsBeforeBehindAndAround) {
   scene.AddRow(1, 12, 6, 2, 12.0);
   scene.Add(2, 11, 0, 11.0);
   scene.Build();
-  std::vector<PieceFeatures> features;
-  MeasurePieces(scene.grid, scene.pieces, 1.0, features);
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(scene.grid, scene.pieces, 1.0);
   ASSERT_EQ(features.size(), 3U);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kBackdrop), 3.0F / 4.0F);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kCovered), 0.0F);
   EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kBackdrop), 0.0F);
-  EXPECT_FLOAT_EQ(Of(features[1], PieceFeature::kCovered), 2.0F / 6.0F);
+  EXPECT_NEAR(Of(features[1], PieceFeature::kCovered), 2.0 / 6.0, kRoundingM);
   EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kCovered), 1.0F);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kCrowd), 1.0F);
   EXPECT_FLOAT_EQ(Of(features[2], PieceFeature::kCrowd), 0.0F);
@@ -175,8 +229,8 @@ TEST(MeasurePieces, SaysHowDenseAndHowHighAPieceIs) {
   scene.AddRow(0, 24, 4, 1, 10.0);
   scene.AddRow(0, 24, 2, 2, 12.0);
   scene.Build();
-  std::vector<PieceFeatures> features;
-  MeasurePieces(scene.grid, scene.pieces, 1.5, features);
+  PieceMeasurer measurer;
+  const auto features = measurer.Measure(scene.grid, scene.pieces, 1.5);
   const double top_m = 12.0 * std::sin(DegToRad(2.0));
   const double depth_m = 12.0 * std::cos(DegToRad(2.0)) - 10.0;
   EXPECT_NEAR(Of(features[0], PieceFeature::kRange), 10.0, kRoundingM);
@@ -189,7 +243,7 @@ TEST(MeasurePieces, SaysHowDenseAndHowHighAPieceIs) {
   EXPECT_NEAR(Of(features[0], PieceFeature::kBottom), 1.5, kRoundingM);
   EXPECT_NEAR(Of(features[0], PieceFeature::kMiddle), 1.5 + top_m / 4.0, kRoundingM);
   EXPECT_NEAR(Of(features[0], PieceFeature::kSlope), top_m / depth_m, kRoundingM);
-  EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kFill), 0.8F);
+  EXPECT_NEAR(Of(features[0], PieceFeature::kFill), 0.8, kRoundingM);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kBoxFill), 0.5F);
   EXPECT_FLOAT_EQ(Of(features[0], PieceFeature::kGaps), 0.25F);
 }

@@ -64,7 +64,7 @@ void LookoutMethod::Merge(std::size_t merge, std::span<const PiecePair> pairs) {
 }
 
 std::span<const PieceFeatures> LookoutMethod::MeasureGroups() {
-  MeasurePieces(grid_, pieces_, params_.lidar_above_water_m, features_);
+  features_ = piece_measurer_.Measure(grid_, pieces_, params_.lidar_above_water_m);
   return features_;
 }
 
@@ -72,16 +72,21 @@ void LookoutMethod::Judge(std::span<const PieceFeatures> features) {
   groups_.count = pieces_.size();
   groups_.of_return.assign(pieces_.of_returns().begin(), pieces_.of_returns().end());
   facts_.clear();
+  judged_.clear();
+  for (std::int32_t group = 0; group < pieces_.size(); ++group) {
+    const PieceFacts& piece = pieces_[group];
+    facts_.push_back({.seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
+    if (IsJudged(pieces_, group)) judged_.push_back(group);
+  }
   ForBlocks(
-      features, [](const PieceFeatures& one) { return one.data(); },
-      [&](std::span<const PieceFeatures> some, const Evidence::Block& block) {
+      std::span<const std::int32_t>(judged_), [features](std::int32_t group) { return features[static_cast<std::size_t>(group)].data(); },
+      [&](std::span<const std::int32_t> some, const Evidence::Block& block) {
         const auto land_log_odds = params_.evidence[kLandSum].Of(block);
         const auto thing_log_odds = params_.evidence[kThingSum].Of(block);
         for (std::size_t i = 0; i < some.size(); ++i) {
-          const PieceFacts& piece = pieces_[static_cast<std::int32_t>(facts_.size())];
-          facts_.push_back({.land_probability = ProbabilityOf(land_log_odds[i]),
-                            .thing_probability = ProbabilityOf(thing_log_odds[i]),
-                            .seen_share = static_cast<float>(piece.num_columns) / static_cast<float>(piece.arc.num)});
+          GroupFacts& facts = facts_[static_cast<std::size_t>(some[i])];
+          facts.land_probability = ProbabilityOf(land_log_odds[i]);
+          facts.thing_probability = ProbabilityOf(thing_log_odds[i]);
         }
       });
 }

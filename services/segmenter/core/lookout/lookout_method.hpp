@@ -37,7 +37,7 @@ class LookoutMethod {
   LookoutMethod(const LookoutParams& params, const Eigen::Matrix3d& R_vessel_lidar)
       : params_(params), R_vessel_lidar_(R_vessel_lidar), pair_finder_(params.lidar_above_water_m) {}
 
-  /// Groups the returns; each is in one. Results hold until the next call.
+  /// Groups the returns; each is in one, but where a scan is in more than TightPieces::kMostPieces. Results hold until the next call.
   /// Cost: about proportional to the returns and cells. Allocates nothing once it has seen a scan of that size.
   void Group(const Scan& scan, std::span<const Return> returns);
 
@@ -55,6 +55,7 @@ class LookoutMethod {
   const ScanGrid& grid() const { return grid_; }
   const PieceTable& pieces() const { return pieces_; }
   std::int32_t num_tight_pieces() const { return tight_.count(); }
+  std::int32_t num_left_out() const { return tight_.num_left_out(); }
 
   const Groups& groups() const { return groups_; }
   const GroupFacts& FactsOf(std::int32_t group) const { return facts_[static_cast<std::size_t>(group)]; }
@@ -71,9 +72,11 @@ class LookoutMethod {
   PairFinder pair_finder_;
   std::vector<EvidencePair> evidence_;
   Partition partition_;
-  std::vector<PieceFeatures> features_;
+  PieceMeasurer piece_measurer_;
+  std::span<const PieceFeatures> features_;  // of its last call
   Groups groups_;
   std::vector<GroupFacts> facts_;
+  std::vector<std::int32_t> judged_;  // groups
   std::vector<std::int32_t> nearest_;
 };
 

@@ -36,41 +36,22 @@ struct Share {
   double of_few;
   double of_any;
 };
-constexpr std::array<Share, 5> kShares{{{1.0, 1.0}, {0.25, 1.0}, {0.0, 1.0}, {0.0, 0.3}, {0.0, 0.1}}};
-constexpr std::size_t kNoneOfFew = 2;
+constexpr std::array<Share, 4> kShares{{{1.0, 1.0}, {0.0, 1.0}, {0.0, 0.3}, {0.0, 0.1}}};
+constexpr std::size_t kNoneOfFew = 1;
 // So many columns of all pieces of few returns, and of the others, are beyond the bounds, and need not be tried: 5000 drops have 4000, a canal with
 // trees on both banks has 9000 of the others.
 constexpr std::size_t kMostShownFew = 16'384;
-constexpr std::size_t kMostShownLarger = 65'536;
+constexpr std::size_t kMostShownLarger = 32'768;
 
 Reach Times(double share, const Reach& reach) { return {share * reach.at_lidar_m, share * reach.per_range}; }
 
-// Least distance between what two pieces show in two columns, seen from above, and the returns that it is between.
-struct Closest {
-  float squared_m2;
-  const LevelPoint* one;
-  const LevelPoint* other;
-};
-
-template <typename Shown>
-Closest ClosestOf(const Shown& one, const Shown& other) {
-  Closest closest{SquaredPlanDistance(one.near, other.near), &one.near, &other.near};
-  const auto look_at = [&closest](const LevelPoint& a, const LevelPoint& b) {
-    const float squared_m2 = SquaredPlanDistance(a, b);
-    if (squared_m2 < closest.squared_m2) closest = {squared_m2, &a, &b};
-  };
-  look_at(one.near, other.far);
-  look_at(one.far, other.near);
-  look_at(one.far, other.far);
-  return closest;
-}
-
 // Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
-bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) {
+bool IsHidden(const ScanGrid& grid, const PieceTable& pieces, const OutlineEntry& entry, int column) {
+  const float nearer_m = entry.near_point.range_m - kNearerM;
+  const auto seen = pieces.InColumn(column);
+  if (seen.empty() || seen.front().near_point.range_m >= nearer_m) return false;
   int num_hidden = 0;
-  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) {
-    num_hidden += grid.FarthestOfShot(ring, column) < entry.near_point.range_m - kNearerM ? 1 : 0;
-  }
+  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) num_hidden += grid.FarthestOfShot(ring, column) < nearer_m ? 1 : 0;
   return 2 * num_hidden > entry.max_ring - entry.min_ring;
 }
 
@@ -90,10 +71,15 @@ std::size_t FirstSlotOf(std::int32_t one, std::int32_t other) {
 
 std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTable& pieces, const Reach& reach, bool reaches_behind) {
   reaches_behind_ = reaches_behind;
-  SortByKind(pieces, grid.num_columns());
   contacts_.clear();
-  if (few_.shown.size() > kMostShownFew) share_ = std::max(share_, kNoneOfFew);
-  if (larger_.shown.size() > kMostShownLarger) share_ = kShares.size();
+  std::size_t num_few = 0;
+  std::size_t num_larger = 0;
+  for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
+    (IsFew(pieces[piece]) ? num_few : num_larger) += static_cast<std::size_t>(pieces[piece].num_columns);
+  }
+  if (num_few > kMostShownFew) share_ = std::max(share_, kNoneOfFew);
+  if (num_larger > kMostShownLarger) share_ = kShares.size();
+  if (share_ < kShares.size()) SortByKind(pieces, grid.num_columns());
   for (; share_ < kShares.size(); ++share_) {
     const auto [of_few, of_any] = kShares[share_];
     if (FindContacts(grid, pieces, {Times(of_any, reach), Times(of_few, kReachOfFew), Times(of_few, kReachToFew)})) break;
@@ -108,7 +94,10 @@ void PairFinder::SortByKind(const PieceTable& pieces, int num_columns) {
   few_.Clear();
   larger_.Clear();
   for (int column = 0; column < num_columns; ++column) {
-    for (const auto& entry : pieces.InColumn(column)) (IsFew(pieces[entry.piece]) ? few_ : larger_).Add(ShownOf(pieces, entry));
+    for (const auto& entry : pieces.InColumn(column)) {
+      const bool is_few = IsFew(pieces[entry.piece]);
+      if (!is_few || share_ < kNoneOfFew) (is_few ? few_ : larger_).Add(ShownOf(pieces, entry));
+    }
     few_.EndColumn();
     larger_.EndColumn();
   }
@@ -197,88 +186,120 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
     return Window{from.near.range_m - widest_m, from.far.range_m + widest_m, static_cast<float>(most_m * most_m * kRoundedUp), hidden_m};
   };
   const Window window = window_of(0.0);
-  if (is_few) {
-    MeetFew(window, from, std::min(num_steps, own.after - 1), 1, reaches);
-    MeetFew(window, from, std::min(num_steps, own.before - 1), -1, reaches);
-    return;
-  }
   const OutlineEntry& entry = pieces.entries()[static_cast<std::size_t>(from.entry)];
-  const int num_steps_to_few = columns_of(reaches.to_few.At(far_m));
+  const int num_steps_to_few = is_few ? 0 : columns_of(reaches.to_few.At(far_m));
   for (const int direction : {1, -1}) {
     const int most_steps = std::min(kMostColumnsBeside, (direction > 0 ? own.after : own.before) - 1);
+    if (is_few) {
+      MeetBeside(few_, window, from, {1, std::min(num_steps, most_steps), direction}, reaches.any, reaches.of_few, kMostFewBeside);
+      continue;
+    }
+    // What is larger looks for what is of few returns, not the other way round.
+    const auto is_hidden = [&](int step) { return IsHidden(grid, pieces, entry, grid.Wrap(entry.column + direction * step)); };
+    const int last_step = std::min(num_steps, most_steps);
+    int step = 1;
+    if (reaches_behind_) {
+      while (step <= last_step && !is_hidden(step)) ++step;
+    }
+    if (!reaches_behind_ || step > last_step) {
+      const Met larger = MeetBeside(larger_, window, from, {1, last_step, direction}, reaches.any, reaches.any, kMostLargerBeside);
+      MeetBeside(few_, window, from, {1, std::min(num_steps_to_few, larger.last_step), direction}, reaches.any, reaches.to_few, kMostFewBeside);
+      continue;
+    }
+    int num_larger = 0;
+    int num_few = 0;
     Window with_hidden = window;
     int num_hidden = 0;
-    int num_few = 0;
-    int num_larger = 0;
-    for (int step = 1; step <= std::min(num_steps + num_hidden, most_steps) && num_larger < kMostLargerBeside; ++step) {
+    for (step = 1; step <= std::min(num_steps + num_hidden, most_steps) && num_larger < kMostLargerBeside; ++step) {
       ++num_looks_;
       const int column = grid.Wrap(entry.column + direction * step);
-      if (reaches_behind_ && IsHidden(grid, entry, column)) with_hidden = window_of(++num_hidden * across_m);
-      // What is larger looks for what is of few returns, not the other way round.
+      if (is_hidden(step)) with_hidden = window_of(++num_hidden * across_m);
       if (num_few < kMostFewBeside && step <= num_steps_to_few) {
-        num_few += MeetWithin(with_hidden, from, few_.In(column), reaches.any, reaches.to_few);
+        num_few += MeetIn(few_.In(column), with_hidden, from, reaches.any, reaches.to_few);
       }
-      num_larger += MeetWithin(with_hidden, from, larger_.In(column), reaches.any, reaches.any);
+      num_larger += MeetIn(larger_.In(column), with_hidden, from, reaches.any, reaches.any);
     }
   }
 }
 
-// The same where it is of few returns, up to so many columns on. There may be thousands of such: first, without a branch, which are near in range.
-void PairFinder::MeetFew(const Window& window, const Shown& from, int num_steps, int direction, const Reaches& reaches) {
-  const int num_columns = few_.num_columns();
-  const int first = direction > 0 ? from.column + 1 : from.column - num_steps;
-  int num_few = 0;
-  // Up to the seam of the circle, and beyond.
+// Meets what is within both reaches, of which the first is longer by what is hidden, until so many have been met: then no further column is looked
+// at.
+PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach,
+                                       const Reach& narrower, int most) {
+  const int num_columns = columns.num_columns();
+  Met met{0, walk.last_step};
+  if (walk.first_step > walk.last_step) return met;
+  num_looks_ += walk.last_step - walk.first_step + 1;
+  // First, without a branch, which are near in range.
   const auto meet = [&](int begin, int end) {
-    if (begin >= end || num_few >= kMostFewBeside) return;
-    const std::size_t begin_at = few_.begin_of_column[static_cast<std::size_t>(begin)];
-    const std::size_t end_at = few_.begin_of_column[static_cast<std::size_t>(end)];
+    if (begin >= end || met.num >= most) return;
+    const std::size_t begin_at = columns.begin_of_column[static_cast<std::size_t>(begin)];
+    const std::size_t end_at = columns.begin_of_column[static_cast<std::size_t>(end)];
     num_looks_ += static_cast<std::int64_t>(end_at - begin_at);
     near_.resize(std::max(near_.size(), end_at - begin_at));
     std::size_t num_near = 0;
     for (std::size_t at = begin_at; at < end_at; ++at) {
       near_[num_near] = at;
-      num_near += (few_.near_m[at] <= window.farthest_m ? 1U : 0U) & (few_.far_m[at] >= window.nearest_m ? 1U : 0U);
+      num_near += (columns.near_m[at] <= window.farthest_m ? 1U : 0U) & (columns.far_m[at] >= window.nearest_m ? 1U : 0U);
     }
     std::int32_t column = -1;
     for (std::size_t i = 0; i < num_near; ++i) {
-      const Shown& beside = few_.shown[near_[direction > 0 ? i : num_near - 1 - i]];
-      if (beside.column != column && num_few >= kMostFewBeside) return;
+      const Shown& beside = columns.shown[near_[walk.direction > 0 ? i : num_near - 1 - i]];
+      if (met.num >= most && beside.column != column) return;
       column = beside.column;
-      num_few += MeetWithin(window, from, std::span(&beside, 1), reaches.any, reaches.of_few);
+      if (!MeetOne(window, from, beside, reach, narrower) || ++met.num != most) continue;
+      const int steps = walk.direction * (column - from.column);
+      met.last_step = steps > 0 ? steps : steps + num_columns;
     }
   };
-  const int last = first + num_steps;
-  if (direction > 0) {
-    meet(first, std::min(last, num_columns));
-    meet(0, last - num_columns);
+  // Up to the seam of the circle, and beyond.
+  if (walk.direction > 0) {
+    const int first = from.column + walk.first_step;
+    const int last = from.column + walk.last_step;
+    meet(first, std::min(last + 1, num_columns));
+    meet(std::max(first - num_columns, 0), last + 1 - num_columns);
   } else {
-    meet(std::max(first, 0), last);
-    meet(first + num_columns, num_columns);
+    const int first = from.column - walk.last_step;
+    const int last = from.column - walk.first_step;
+    meet(std::max(first, 0), last + 1);
+    meet(first + num_columns, std::min(last + 1 + num_columns, num_columns));
   }
+  return met;
 }
 
-// @return how many of what is shown in a column are within both reaches, of which that to what something hides is longer
-int PairFinder::MeetWithin(const Window& window, const Shown& from, std::span<const Shown> seen, const Reach& reach, const Reach& narrower) {
+// The same of one column, where a branch costs less than going twice through what it shows.
+int PairFinder::MeetIn(std::span<const Shown> column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
   int num_met = 0;
-  for (const Shown& beside : seen) {
+  for (const Shown& beside : column) {
     ++num_looks_;
     if (beside.near.range_m > window.farthest_m) break;
-    if (beside.far.range_m < window.nearest_m) continue;
-    const Closest closest = ClosestOf(from, beside);
-    if (closest.squared_m2 > window.most_m2) continue;
-    const float least_range_m = std::min(closest.one->range_m, closest.other->range_m);
-    double limit_m = reach.At(least_range_m) + window.hidden_m;
-    if (&narrower != &reach) limit_m = std::min(limit_m, narrower.At(least_range_m));
-    if (limit_m < 0.0 || closest.squared_m2 > limit_m * limit_m) continue;
-    ++num_met;
-    if (closest.one->range_m <= closest.other->range_m) {
-      Meet(from, *closest.one, beside, *closest.other, closest.squared_m2);
-    } else {
-      Meet(beside, *closest.other, from, *closest.one, closest.squared_m2);
-    }
+    if (beside.far.range_m >= window.nearest_m && MeetOne(window, from, beside, reach, narrower)) ++num_met;
   }
   return num_met;
+}
+
+bool PairFinder::MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower) {
+  // Least distance of what the two show, seen from above, and between which returns.
+  const float near_near_m2 = SquaredPlanDistance(from.near, beside.near);
+  const float near_far_m2 = SquaredPlanDistance(from.near, beside.far);
+  const float far_near_m2 = SquaredPlanDistance(from.far, beside.near);
+  const float far_far_m2 = SquaredPlanDistance(from.far, beside.far);
+  const float squared_m2 = std::min(std::min(near_near_m2, near_far_m2), std::min(far_near_m2, far_far_m2));
+  if (squared_m2 > window.most_m2) return false;
+  const bool is_near = near_near_m2 == squared_m2 || near_far_m2 == squared_m2;
+  const bool is_beside_near = is_near ? near_near_m2 == squared_m2 : far_near_m2 == squared_m2;
+  const LevelPoint& one = is_near ? from.near : from.far;
+  const LevelPoint& other = is_beside_near ? beside.near : beside.far;
+  const float least_range_m = std::min(one.range_m, other.range_m);
+  double limit_m = reach.At(least_range_m) + window.hidden_m;
+  if (&narrower != &reach) limit_m = std::min(limit_m, narrower.At(least_range_m));
+  if (limit_m < 0.0 || squared_m2 > limit_m * limit_m) return false;
+  if (one.range_m <= other.range_m) {
+    Meet(from, one, beside, other, squared_m2);
+  } else {
+    Meet(beside, other, from, one, squared_m2);
+  }
+  return true;
 }
 
 PairFinder::Contact& PairFinder::At(std::int32_t one, std::int32_t other) {

@@ -71,7 +71,7 @@ class PairFinder {
   /// A scan gives no more pairs in a round, and none are looked for with more looks at columns and at what stands behind and beside. Normal scans
   /// stay below: in heavy rain they take 4700 pairs and 160 000 looks. Beyond, the reach is cut for all of the scan and its later rounds until both
   /// hold.
-  static constexpr std::size_t kMostPairs = 6000;
+  static constexpr std::size_t kMostPairs = 5000;
   static constexpr std::int64_t kMostLooks = 1'500'000;
 
   explicit PairFinder(double lidar_above_water_m) : lidar_above_water_m_(lidar_above_water_m) {}
@@ -122,6 +122,17 @@ class PairFinder {
     double hidden_m;  // does not count for the reach
   };
 
+  // From a column on to those beside it.
+  struct Walk {
+    int first_step;
+    int last_step;
+    int direction;  // 1 or -1
+  };
+  struct Met {
+    int num = 0;
+    int last_step = 0;  // that was looked at
+  };
+
   // What is shown, by column, the nearest first.
   struct Columns {
     std::vector<Shown> shown;
@@ -159,8 +170,10 @@ class PairFinder {
   bool FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches);
   void LookBehind(const PieceTable& pieces, const Reaches& reaches, std::span<const OutlineEntry> behind, const Shown& front);
   void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from);
-  void MeetFew(const Window& window, const Shown& from, int num_steps, int direction, const Reaches& reaches);
-  int MeetWithin(const Window& window, const Shown& from, std::span<const Shown> seen, const Reach& reach, const Reach& narrower);
+  Met MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
+                 int most);
+  int MeetIn(std::span<const Shown> column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
+  bool MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
   Contact& At(std::int32_t one, std::int32_t other);
   Contact& Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
   void Measure(const ScanGrid& grid, const PieceTable& pieces, const Contact& contact, PiecePair& pair) const;

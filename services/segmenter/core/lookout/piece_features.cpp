@@ -18,33 +18,57 @@ constexpr std::size_t kMostInColumn = 24;
 
 }  // namespace
 
-void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m, std::vector<PieceFeatures>& features) {
-  features.assign(static_cast<std::size_t>(pieces.size()), {});
-  const auto of = [&features](std::int32_t piece, PieceFeature feature) -> float& {
-    return features[static_cast<std::size_t>(piece)][static_cast<std::size_t>(feature)];
-  };
+void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
+  near_m_.clear();
+  far_m_.clear();
+  piece_.clear();
+  begin_of_column_.assign(1, 0);
   for (int column = 0; column < grid.num_columns(); ++column) {
     const auto seen = pieces.InColumn(column).first(std::min(pieces.InColumn(column).size(), kMostInColumn));
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const OutlineEntry& entry = seen[i];
-      if (i > 0) ++of(entry.piece, PieceFeature::kCovered);
+      near_m_.push_back(entry.near_point.range_m);
+      far_m_.push_back(entry.far_point.range_m);
+      piece_.push_back(entry.piece);
+      if (i > 0) ++Of(entry.piece, PieceFeature::kCovered);
+      // What stands behind is sorted: the next is the nearest.
       const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
-      if (has_backdrop) ++of(entry.piece, PieceFeature::kBackdrop);
-      if (pieces[entry.piece].num_returns > kCrowdReturns) continue;
-      // It is of the crowd about its neighbours: each column of these counts it.
-      for (int step = -kCrowdColumns; step <= kCrowdColumns; ++step) {
-        const auto beside = pieces.InColumn(grid.Wrap(column + step));
-        for (const OutlineEntry& other : beside.first(std::min(beside.size(), kMostInColumn))) {
-          if (other.near_point.range_m - kCrowdM > entry.far_point.range_m) break;
-          if (other.piece == entry.piece || other.far_point.range_m + kCrowdM < entry.near_point.range_m) continue;
-          ++of(other.piece, PieceFeature::kCrowd);
-        }
-      }
+      if (has_backdrop) ++Of(entry.piece, PieceFeature::kBackdrop);
+    }
+    begin_of_column_.push_back(piece_.size());
+  }
+  crowd_.resize(piece_.size());
+  for (int column = 0; column < grid.num_columns(); ++column) {
+    for (std::size_t at = begin_of_column_[static_cast<std::size_t>(column)]; at < begin_of_column_[static_cast<std::size_t>(column) + 1]; ++at) {
+      if (pieces[piece_[at]].num_returns > kCrowdReturns || !IsJudged(pieces, piece_[at])) continue;
+      // It is of the crowd about its neighbours: each column of these counts it. Over the seam, too.
+      const int first = column - kCrowdColumns;
+      const int end = column + kCrowdColumns + 1;
+      CountInCrowd(at, std::max(first, 0), std::min(end, grid.num_columns()));
+      if (first < 0) CountInCrowd(at, first + grid.num_columns(), grid.num_columns());
+      if (end > grid.num_columns()) CountInCrowd(at, 0, end - grid.num_columns());
     }
   }
+}
+
+void PieceMeasurer::CountInCrowd(std::size_t entry, int first_column, int end_column) {
+  const std::size_t end = begin_of_column_[static_cast<std::size_t>(end_column)];
+  // First, without a branch, which are near.
+  std::size_t num = 0;
+  for (std::size_t at = begin_of_column_[static_cast<std::size_t>(first_column)]; at < end; ++at) {
+    crowd_[num] = piece_[at];
+    num += (near_m_[at] - kCrowdM <= far_m_[entry] ? 1U : 0U) & (far_m_[at] + kCrowdM >= near_m_[entry] ? 1U : 0U) &
+           (piece_[at] != piece_[entry] ? 1U : 0U);
+  }
+  for (std::size_t i = 0; i < num; ++i) ++Of(crowd_[i], PieceFeature::kCrowd);
+}
+
+std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m) {
+  features_.assign(static_cast<std::size_t>(pieces.size()), {});
+  LookAround(grid, pieces);
   for (std::int32_t piece = 0; piece < pieces.size(); ++piece) {
     const PieceFacts& facts = pieces[piece];
-    const auto set = [&](PieceFeature feature, double value) { of(piece, feature) = FeatureOf(value); };
+    const auto set = [&](PieceFeature feature, double value) { Of(piece, feature) = FeatureOf(value); };
     const double depth_m = facts.max_range_m - facts.min_range_m;
     const double height_m = facts.max_height_m - facts.min_height_m;
     const double num_columns = facts.num_columns;
@@ -64,10 +88,11 @@ void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_
     set(PieceFeature::kFill, facts.num_returns / static_cast<double>(std::max(1, facts.num_beams)));
     set(PieceFeature::kBoxFill, facts.num_returns / (static_cast<double>(facts.arc.num) * num_rings));
     set(PieceFeature::kGaps, 1.0 - num_columns / facts.arc.num);
-    set(PieceFeature::kBackdrop, of(piece, PieceFeature::kBackdrop) / num_columns);
-    set(PieceFeature::kCovered, of(piece, PieceFeature::kCovered) / num_columns);
-    set(PieceFeature::kCrowd, of(piece, PieceFeature::kCrowd) / num_columns);
+    set(PieceFeature::kBackdrop, Of(piece, PieceFeature::kBackdrop) / num_columns);
+    set(PieceFeature::kCovered, Of(piece, PieceFeature::kCovered) / num_columns);
+    set(PieceFeature::kCrowd, Of(piece, PieceFeature::kCrowd) / num_columns);
   }
+  return features_;
 }
 
 }  // namespace lookout::segmenter

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -39,8 +40,28 @@ inline constexpr std::array<std::string_view, kNumPieceFeatures> kPieceFeatureNa
     "bottom_m", "middle_m", "slope",   "fill",  "box_fill", "gaps",    "backdrop", "covered", "crowd"};
 using PieceFeatures = std::array<float, kNumPieceFeatures>;
 
-/// @param features  [pieces]
-/// Cost: about proportional to the columns of all pieces.
-void MeasurePieces(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m, std::vector<PieceFeatures>& features);
+/// No water gives so many groups; in heavy rain there are 4000. Where a scan has more, those of one or two returns are clutter, and are not measured.
+inline constexpr std::int32_t kMostJudged = 8192;
+inline bool IsJudged(const PieceTable& pieces, std::int32_t piece) { return pieces.size() <= kMostJudged || pieces[piece].num_returns > 2; }
+
+class PieceMeasurer {
+ public:
+  /// @return [pieces], until the next call
+  /// Cost: about proportional to the columns of all pieces. Allocates nothing once it has seen a scan of that size.
+  std::span<const PieceFeatures> Measure(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m);
+
+ private:
+  float& Of(std::int32_t piece, PieceFeature feature) { return features_[static_cast<std::size_t>(piece)][static_cast<std::size_t>(feature)]; }
+  void LookAround(const ScanGrid& grid, const PieceTable& pieces);
+  void CountInCrowd(std::size_t entry, int first_column, int end_column);
+
+  std::vector<PieceFeatures> features_;
+  // Scratch: the nearest of what is seen, column by column.
+  std::vector<float> near_m_;
+  std::vector<float> far_m_;
+  std::vector<std::int32_t> piece_;
+  std::vector<std::size_t> begin_of_column_;
+  std::vector<std::int32_t> crowd_;
+};
 
 }  // namespace lookout::segmenter

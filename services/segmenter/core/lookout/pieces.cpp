@@ -10,6 +10,7 @@ namespace {
 
 // Less is rounding of coordinates: half of what a VLP-16 resolves.
 constexpr double kLeastLineM = 1e-3;
+constexpr std::int32_t kNoPiece = -1;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 PieceFacts NoFacts() {
@@ -42,7 +43,7 @@ void PieceTable::Build(const ScanGrid& grid, std::span<const std::int32_t> piece
 
 void PieceTable::Merge(const ScanGrid& grid, std::span<const std::int32_t> group_of_piece, std::int32_t count) {
   if (count == size()) return;  // each piece is a group
-  for (std::int32_t& piece : piece_of_return_) piece = group_of_piece[static_cast<std::size_t>(piece)];
+  for (std::int32_t& piece : piece_of_return_) piece = piece == kNoPiece ? kNoPiece : group_of_piece[static_cast<std::size_t>(piece)];
   for (Run& run : runs_) run.piece = group_of_piece[static_cast<std::size_t>(run.piece)];
   MergeFacts(group_of_piece, count);
   MergeOutlines(group_of_piece);
@@ -59,6 +60,7 @@ void PieceTable::SumReturns(const ScanGrid& grid) {
   const auto points = grid.points();
   sums_.assign(facts_.size(), {});
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (piece_of_return_[i] == kNoPiece) continue;
     const LevelPoint& point = points[i];
     const auto piece = static_cast<std::size_t>(piece_of_return_[i]);
     const std::int32_t ring = grid.RingOf(grid.LineOf(static_cast<std::int32_t>(i)));
@@ -106,6 +108,7 @@ void PieceTable::BuildOutlines(const ScanGrid& grid) {
       const LevelPoint& point = grid.PointOf(index);
       const std::int32_t ring = grid.RingOf(grid.LineOf(index));
       const std::int32_t piece = piece_of_return_[static_cast<std::size_t>(index)];
+      if (piece == kNoPiece) continue;
       OutlineEntry* const entry = EntryOf(piece, first_of_column, entries_.size());
       if (entry == nullptr) {
         entries_.push_back({piece, column, index, index, ring, ring, point.height_m, point.height_m, point, point});
@@ -135,6 +138,7 @@ void PieceTable::FindRuns(const ScanGrid& grid) {
     for (int column = grid.NextOccupied(line, 0); column < grid.num_columns();
          column = column + 1 < grid.num_columns() ? grid.NextOccupied(line, column + 1) : grid.num_columns()) {
       const std::int32_t piece = piece_of_return_[static_cast<std::size_t>(grid.At(line, column))];
+      if (piece == kNoPiece) continue;
       if (!runs_.empty() && runs_.back().line == line && runs_.back().piece == piece && runs_.back().last == column - 1) {
         runs_.back().last = column;
       } else {
@@ -144,31 +148,36 @@ void PieceTable::FindRuns(const ScanGrid& grid) {
   }
 }
 
+// In place: a group's number is at most that of its first piece.
 void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::int32_t count) {
-  facts_before_.assign(facts_.begin(), facts_.end());
-  sums_before_.assign(sums_.begin(), sums_.end());
-  facts_.assign(static_cast<std::size_t>(count), NoFacts());
-  sums_.assign(static_cast<std::size_t>(count), {});
+  std::size_t num_groups = 0;
   for (std::size_t piece = 0; piece < group_of_piece.size(); ++piece) {
     const auto group = static_cast<std::size_t>(group_of_piece[piece]);
-    const PieceFacts& before = facts_before_[piece];
+    const PieceFacts other = facts_[piece];
+    const Sums of_other = sums_[piece];
+    if (group == num_groups) {
+      facts_[group] = NoFacts();
+      sums_[group] = {};
+      ++num_groups;
+    }
     PieceFacts& facts = facts_[group];
-    facts.num_returns += before.num_returns;
-    facts.min_range_m = std::min(facts.min_range_m, before.min_range_m);
-    facts.max_range_m = std::max(facts.max_range_m, before.max_range_m);
-    facts.min_height_m = std::min(facts.min_height_m, before.min_height_m);
-    facts.max_height_m = std::max(facts.max_height_m, before.max_height_m);
-    facts.min_ring = std::min(facts.min_ring, before.min_ring);
-    facts.max_ring = std::max(facts.max_ring, before.max_ring);
-    const Sums& of_piece = sums_before_[piece];
+    facts.num_returns += other.num_returns;
+    facts.min_range_m = std::min(facts.min_range_m, other.min_range_m);
+    facts.max_range_m = std::max(facts.max_range_m, other.max_range_m);
+    facts.min_height_m = std::min(facts.min_height_m, other.min_height_m);
+    facts.max_height_m = std::max(facts.max_height_m, other.max_height_m);
+    facts.min_ring = std::min(facts.min_ring, other.min_ring);
+    facts.max_ring = std::max(facts.max_ring, other.max_ring);
     Sums& sums = sums_[group];
-    sums.x_m += of_piece.x_m;
-    sums.y_m += of_piece.y_m;
-    sums.height_m += of_piece.height_m;
-    sums.xx_m2 += of_piece.xx_m2;
-    sums.xy_m2 += of_piece.xy_m2;
-    sums.yy_m2 += of_piece.yy_m2;
+    sums.x_m += of_other.x_m;
+    sums.y_m += of_other.y_m;
+    sums.height_m += of_other.height_m;
+    sums.xx_m2 += of_other.xx_m2;
+    sums.xy_m2 += of_other.xy_m2;
+    sums.yy_m2 += of_other.yy_m2;
   }
+  facts_.resize(static_cast<std::size_t>(count));
+  sums_.resize(static_cast<std::size_t>(count));
 }
 
 void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {

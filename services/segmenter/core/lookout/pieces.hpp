@@ -63,7 +63,7 @@ struct PieceFacts {
 
 class PieceTable {
  public:
-  /// @param piece_of_return  [returns] 0 to count - 1, each with a return at least
+  /// @param piece_of_return  [returns] 0 to count - 1, each with a return at least; -1: of none
   /// Cost: proportional to the returns. Allocates nothing once it has seen a scan of that size.
   void Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count);
 
@@ -137,8 +137,6 @@ class PieceTable {
   std::vector<Run> runs_;                      // line by line
   std::vector<Sums> sums_;                     // [pieces]
   // Scratch, [pieces].
-  std::vector<PieceFacts> facts_before_;
-  std::vector<Sums> sums_before_;
   std::vector<Columns> columns_;
   std::vector<Span> spans_;
   struct Extent {

@@ -9,6 +9,9 @@ namespace lookout::segmenter {
 namespace {
 
 constexpr std::size_t kMostLayers = 2;  // returns of a shot
+// More runs are noise: 128 rings of 2048 columns in heavy rain have half as many.
+constexpr std::size_t kMostRuns = 100'000;
+constexpr std::int32_t kLargestLeftOut = 64;  // 2^21 cells in pieces of more are less than kMostPieces
 
 bool AreLinked(const LevelPoint& one, const LevelPoint& other, bool are_of_one_ring, const Reach& link) {
   const auto reach_m = static_cast<float>(link.At(std::min(one.range_m, other.range_m)));
@@ -53,33 +56,33 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
       const bool goes_on = last != ScanGrid::kNone && column - last_column == 1 && AreLinked(grid.PointOf(last), grid.PointOf(index), true, link);
       if (!goes_on) ++num_runs;
       RunAt(grid, line, column) = num_runs - 1;
-      by_line_.push_back(index);
+      by_line_.push_back({line, column, index});
       last = index;
       last_column = column;
     }
   }
   sets_.Reset(static_cast<std::size_t>(num_runs));
-  for (const std::int32_t index : by_line_) {
-    const LevelPoint& point = grid.PointOf(index);
-    const int line = grid.LineOf(index);
-    const int column = grid.ColumnOf(index);
-    const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
-    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, point.range_m, widest_m, RunAt(grid, line, column))) continue;
-    LookAlong(grid, link, index, line, column + 1, column + kLinkColumns);
+  for (const Seen& seen : by_line_) {
+    const auto [line, column, index] = seen;
+    const bool is_of_one_run = column + kLinkColumns < grid.num_columns() && RunAt(grid, line, column + kLinkColumns) == RunAt(grid, line, column);
+    if (is_of_one_run) continue;
+    const float range_m = grid.RangeAt(line, column);
+    const float widest_m = WidestRange(link.At(range_m), range_m);
+    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, range_m, widest_m, RunAt(grid, line, column))) continue;
+    LookAlong(grid, link, seen, line, column + 1, column + kLinkColumns);
   }
-  for (const std::int32_t index : by_line_) {
-    std::int32_t& run = RunAt(grid, grid.LineOf(index), grid.ColumnOf(index));
+  for (const Seen& seen : by_line_) {
+    std::int32_t& run = RunAt(grid, seen.line, seen.column);
     run = sets_.Find(run);
   }
 }
 
 // Links a return with those of a line in columns [first, last], over the seam, too. @return a run there that is linked with it; kNone = there is none
-std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, std::int32_t index, int line, int first, int last) {
-  const LevelPoint& point = grid.PointOf(index);
-  const int own_line = grid.LineOf(index);
-  const bool are_of_one_ring = grid.RingOf(line) == grid.RingOf(own_line);
+std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, const Seen& from, int line, int first, int last) {
+  const LevelPoint& point = grid.PointOf(from.index);
+  const bool are_of_one_ring = grid.RingOf(line) == grid.RingOf(from.line);
   const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
-  const std::int32_t own_run = RunAt(grid, own_line, grid.ColumnOf(index));
+  const std::int32_t own_run = RunAt(grid, from.line, from.column);
   std::int32_t linked = ScanGrid::kNone;
   for (int step = first; step <= last; ++step) {
     const int column = grid.Wrap(step);
@@ -96,18 +99,22 @@ std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, std
 
 void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
   FindRuns(grid, link);
+  if (sets_.size() <= kMostRuns) LinkRings(grid, link);
+  NumberPieces(grid);
+}
+
+void TightPieces::LinkRings(const ScanGrid& grid, const Reach& link) {
   // Runs that were linked last, by how many lines lie between them: those of the next return will be the same.
   struct Linked {
     std::int32_t own_run = ScanGrid::kNone;
     std::int32_t run = ScanGrid::kNone;
   };
   std::array<Linked, (kLinkRings + 1) * kMostLayers> linked;
-  for (const std::int32_t index : by_line_) {
-    const LevelPoint& point = grid.PointOf(index);
-    const int line = grid.LineOf(index);
-    const int column = grid.ColumnOf(index);
+  for (const Seen& seen : by_line_) {
+    const auto [line, column, index] = seen;
     const int ring = grid.RingOf(line);
-    const float widest_m = WidestRange(link.At(point.range_m), point.range_m);
+    const float range_m = grid.RangeAt(line, column);
+    const float widest_m = WidestRange(link.At(range_m), range_m);
     const std::int32_t own_run = RunAt(grid, line, column);
     // Each pair once: all of the lines above.
     const int end = std::min(grid.num_lines(), (ring + kLinkRings + 1) * grid.num_layers());
@@ -117,22 +124,45 @@ void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
       const bool are_of_one_ring = grid.RingOf(other_line) == ring;
       const int window = are_of_one_ring ? kLinkColumns : kLinkAcrossColumns;
       const bool is_other_near = are_of_one_ring
-                                     ? IsOtherNear<2 * kLinkColumns + 1>(grid, other_line, column - window, point.range_m, widest_m, known_run)
-                                     : IsOtherNear<2 * kLinkAcrossColumns + 1>(grid, other_line, column - window, point.range_m, widest_m, known_run);
+                                     ? IsOtherNear<2 * kLinkColumns + 1>(grid, other_line, column - window, range_m, widest_m, known_run)
+                                     : IsOtherNear<2 * kLinkAcrossColumns + 1>(grid, other_line, column - window, range_m, widest_m, known_run);
       if (!is_other_near) continue;
-      const std::int32_t run = LookAlong(grid, link, index, other_line, column - window, column + window);
+      const std::int32_t run = LookAlong(grid, link, seen, other_line, column - window, column + window);
       if (run != ScanGrid::kNone) last = {own_run, run};
     }
   }
-  number_of_run_.assign(sets_.size(), ScanGrid::kNone);
+}
+
+void TightPieces::NumberPieces(const ScanGrid& grid) {
   of_return_.resize(grid.points().size());
-  count_ = 0;
+  size_of_set_.assign(sets_.size(), 0);
+  std::int32_t num_pieces = 0;
+  num_left_out_ = 0;
   for (std::size_t i = 0; i < of_return_.size(); ++i) {
     const auto index = static_cast<std::int32_t>(i);
-    std::int32_t& number = number_of_run_[static_cast<std::size_t>(sets_.Find(RunAt(grid, grid.LineOf(index), grid.ColumnOf(index))))];
-    if (number == ScanGrid::kNone) number = count_++;
-    of_return_[i] = number;
+    of_return_[i] = sets_.Find(RunAt(grid, grid.LineOf(index), grid.ColumnOf(index)));
+    std::int32_t& size = size_of_set_[static_cast<std::size_t>(of_return_[i])];
+    if (size == 0) ++num_pieces;
+    ++size;
   }
+  std::array<std::int32_t, kLargestLeftOut + 1> num_of_size{};
+  for (const std::int32_t size : size_of_set_) ++num_of_size[static_cast<std::size_t>(std::min(size, kLargestLeftOut))];
+  std::int32_t least_size = 1;
+  for (std::int32_t num = num_pieces; num > kMostPieces && least_size <= kLargestLeftOut; ++least_size) {
+    num -= num_of_size[static_cast<std::size_t>(least_size)];
+  }
+  number_of_set_.assign(sets_.size(), kNone);
+  count_ = 0;
+  for (std::int32_t& piece : of_return_) {
+    const auto set = static_cast<std::size_t>(piece);
+    if (size_of_set_[set] < least_size) {
+      piece = kNone;
+      continue;
+    }
+    if (number_of_set_[set] == kNone) number_of_set_[set] = count_++;
+    piece = number_of_set_[set];
+  }
+  num_left_out_ = num_pieces - count_;
 }
 
 }  // namespace lookout::segmenter
