@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "common/bus/channels.hpp"
@@ -18,8 +19,6 @@ namespace lookout::exporter {
 namespace {
 
 using segmenter::Evidence;
-using segmenter::kNumPairFeatures;
-using segmenter::kPairFeatureNames;
 
 Eigen::Vector3d ToVector(const segmenter::Point& point) { return {point.x_m, point.y_m, point.z_m}; }
 
@@ -33,30 +32,33 @@ std::optional<segmenter::Scan> ToScan(const ScanMessages& messages) {
 }
 
 // "gap_m +1.2, hidden +0.4": at most three, the greatest first.
-std::string Greatest(const std::array<float, kNumPairFeatures>& terms, float sign) {
+std::string Greatest(std::span<const std::string_view> names, std::span<const float> terms, float sign) {
   constexpr std::size_t kMost = 3;
   constexpr float kLeast = 0.05F;  // what would be said as 0.0
-  std::array<std::size_t, kNumPairFeatures> order{};
+  std::vector<std::size_t> order(terms.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t feature) { return sign * terms[feature]; });
   std::string text;
   for (const std::size_t feature : std::span(order).first(kMost)) {
-    if (sign * terms[feature] >= kLeast) text += fmt::format("{}{} {:+.1f}", text.empty() ? "" : ", ", kPairFeatureNames[feature], terms[feature]);
+    if (sign * terms[feature] >= kLeast) text += fmt::format("{}{} {:+.1f}", text.empty() ? "" : ", ", names[feature], terms[feature]);
   }
   return text.empty() ? "nothing" : text;
 }
 
+// "base +0.5; for: gap_m +1.2; against: nothing"
+std::string TermsText(const Evidence& evidence, std::span<const std::string_view> names, std::span<const float> features) {
+  std::vector<float> terms(features.size());
+  evidence.Terms(features, terms);
+  return fmt::format("base {:+.1f}; for: {}; against: {}", evidence.Base(), Greatest(names, terms, 1.0F), Greatest(names, terms, -1.0F));
+}
+
 std::string Why(const MergeRound& round, const MergingPair& pair, const Evidence& evidence) {
-  std::array<float, kNumPairFeatures> terms{};
-  evidence.Terms(pair.features, terms);
   const auto& one = round[pair.one];
   const auto& other = round[pair.other];
   const auto gap_m = pair.features[static_cast<std::size_t>(segmenter::PairFeature::kGap)];
-  return fmt::format(
-      "pieces {} ({} returns, segment {}) and {} ({} returns, segment {}): {}, log odds {:+.1f}, gap {:.2f} m; base {:+.1f}; for: {}; "
-      "against: {}",
-      pair.one, one.num_returns, one.segment_id, pair.other, other.num_returns, other.segment_id, round.IsMerged(pair) ? "one" : "two", pair.log_odds,
-      gap_m, evidence.Base(), Greatest(terms, 1.0F), Greatest(terms, -1.0F));
+  return fmt::format("pieces {} ({} returns, segment {}) and {} ({} returns, segment {}): {}, log odds {:+.1f}, gap {:.2f} m; {}", pair.one,
+                     one.num_returns, one.segment_id, pair.other, other.num_returns, other.segment_id, round.IsMerged(pair) ? "one" : "two",
+                     pair.log_odds, gap_m, TermsText(evidence, segmenter::kPairFeatureNames, pair.features));
 }
 
 // The two returns of two pieces that are closest, seen from above.
@@ -89,6 +91,10 @@ std::optional<MergedScan> MergeRecorder::Merge(const ScanMessages& messages) {
   for (const auto& one : returns) merged.returns_m.push_back(ToVector(one.point));
   method_.FindPieces(*scan, returns);
   for (std::size_t round = 0; round < segmenter::kNumMerges; ++round) merged.rounds[round] = MergeOnce(round, returns, segments.label);
+  const auto features = method_.MeasureGroups();
+  for (const auto& piece : merged.rounds.back().pieces) {
+    if (piece.segment_id > 0) merged.features_of_segment[piece.segment_id] = features[static_cast<std::size_t>(piece.becomes)];
+  }
   return merged;
 }
 
@@ -117,19 +123,29 @@ MergeRound MergeRecorder::MergeOnce(std::size_t round, const std::vector<segment
   return result;
 }
 
-std::vector<MergeLink> LinksOf(const MergedScan& scan, const Evidence& evidence) {
+MergeReasons ReasonsOf(const MergedScan& scan, const MergeRecorder& recorder) {
   const MergeRound& round = scan.rounds.back();
   std::vector<std::vector<Eigen::Vector3d>> returns_m(round.pieces.size());
   for (std::size_t i = 0; i < scan.returns_m.size(); ++i) {
     if (round.piece_of_return[i] < 0) continue;  // left out
     returns_m[static_cast<std::size_t>(round.piece_of_return[i])].push_back(scan.returns_m[i]);
   }
-  std::vector<MergeLink> links;
+  MergeReasons reasons;
   for (const auto& pair : round.pairs) {
-    links.push_back({Closest(returns_m[static_cast<std::size_t>(pair.one)], returns_m[static_cast<std::size_t>(pair.other)]), round.IsMerged(pair),
-                     pair.log_odds, Why(round, pair, evidence)});
+    reasons.links.push_back({Closest(returns_m[static_cast<std::size_t>(pair.one)], returns_m[static_cast<std::size_t>(pair.other)]),
+                             round.IsMerged(pair), pair.log_odds, Why(round, pair, recorder.evidence(scan.rounds.size() - 1))});
   }
-  return links;
+  for (const auto& [part_index, part] : scan.segments) {
+    for (const auto& segment : part.segments) {
+      const auto because = [&scan, &recorder, id = segment.id](std::size_t sum) {
+        return TermsText(recorder.evidence(sum), segmenter::kPieceFeatureNames, scan.features_of_segment.at(id));
+      };
+      reasons.why_of_segment[segment.id] =
+          fmt::format("segment {}: land {:.1f} % ({}), a thing {:.1f} % ({})", segment.id, 100.0 * double{segment.land_probability},
+                      because(segmenter::kLandSum), 100.0 * double{segment.thing_probability}, because(segmenter::kThingSum));
+    }
+  }
+  return reasons;
 }
 
 }  // namespace lookout::exporter

@@ -43,6 +43,7 @@ struct MergedScan {
   std::vector<Eigen::Vector3d> returns_m;  // that were looked at, lidar frame
   std::array<MergeRound, segmenter::kNumMerges> rounds;
   std::map<std::int32_t, segments_t> segments;  // SEGMENTS, by part_index
+  std::map<std::int32_t, segmenter::PieceFeatures> features_of_segment;
 };
 
 /// Segments scans as lookout-segmenter does, and keeps what it decided by.
@@ -56,8 +57,8 @@ class MergeRecorder {
   /// The same of a scan that was asked for. @throws std::runtime_error where there is nothing to return
   MergedScan MergeChosen(const ScanMessages& messages);
 
-  /// The sum of a round.
-  const segmenter::Evidence& evidence(std::size_t round) const { return params_.lookout.evidence[round]; }
+  /// The sum of a round, of segmenter::kLandSum or of kThingSum.
+  const segmenter::Evidence& evidence(std::size_t sum) const { return params_.lookout.evidence[sum]; }
 
  private:
   MergeRound MergeOnce(std::size_t round, const std::vector<segmenter::Return>& returns, const std::vector<std::int16_t>& label);
@@ -68,13 +69,19 @@ class MergeRecorder {
   segmenter::Segmenter segmenter_;
 };
 
-/// What was judged in the last round, to be drawn: a line from piece to piece where they come closest, lidar frame.
+/// A pair of the last round, to be drawn: a line from piece to piece where they come closest, lidar frame.
 struct MergeLink {
   std::array<Eigen::Vector3d, 2> ends_m;
   bool is_merged = false;
   float log_odds = 0.0F;
-  std::string why;  // in words, with what adds most for and against
+  std::string why;
 };
-std::vector<MergeLink> LinksOf(const MergedScan& scan, const segmenter::Evidence& evidence);
+
+/// Why pieces are one or two, and segments land or a thing, in words, with what adds most for and against.
+struct MergeReasons {
+  std::vector<MergeLink> links;
+  std::map<std::int32_t, std::string> why_of_segment;
+};
+MergeReasons ReasonsOf(const MergedScan& scan, const MergeRecorder& recorder);
 
 }  // namespace lookout::exporter

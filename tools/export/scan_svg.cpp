@@ -56,6 +56,7 @@ struct Outline {
   double distance_m = 0.0;        // of its nearest point
   std::string facts;              // stands in the legend
   std::vector<Vector2d> corners;  // one or two are drawn as a point or a line
+  std::string why;                // said where the pointer rests on it
 
   bool IsFinite() const {
     return !corners.empty() && std::ranges::all_of(corners, [](const Vector2d& corner) { return corner.allFinite(); });
@@ -205,6 +206,7 @@ class Picture {
     if (!outline.IsFinite()) return;
     const std::string path = PathOf(outline.corners) + (outline.corners.size() == 1 ? "h0" : outline.is_line ? "" : "Z");
     const std::string colour = Css(ColourOfSegment(outline.id));
+    Add("<g>{}\n", outline.why.empty() ? "" : "<title>" + outline.why + "</title>");
     // A wide stroke around the returns themselves, so that the line does not cover them.
     const std::string fill = outline.is_line ? "none" : colour + "\" fill-opacity=\"" + (outline.is_tentative ? "0.05" : "0.14");
     Add("<path d=\"{}\" fill=\"{}\" stroke=\"{}\" stroke-width=\"9\" stroke-opacity=\"{}\" stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
@@ -213,6 +215,7 @@ class Picture {
         outline.is_tentative ? "0.8\" stroke-dasharray=\"2 3\" stroke-opacity=\"0.6"
         : outline.is_line    ? "2.4"
                              : "1.2");
+    svg_ += "</g>\n";
   }
 
   // The more certain, the darker; why is said where the pointer rests on it.
@@ -325,12 +328,13 @@ Outline OutlineOf(const Thing& thing, double distance_m, const std::string& plac
                     : is_land    ? std::string(words::WordOf(words::kKind, thing.kind))
                                  : fmt::format("{:.1f} x {:.1f} m", thing.length_m, thing.width_m);
   const bool is_line = is_land && !waterline.empty();
-  return {thing.id, is_tentative, is_line, distance_m, fmt::format("{:.1f} m{}, {}", distance_m, place, what), std::move(is_line ? waterline : hull)};
+  return {thing.id, is_tentative, is_line, distance_m, fmt::format("{:.1f} m{}, {}", distance_m, place, what), std::move(is_line ? waterline : hull),
+          ""};
 }
 
 std::string NorthText(double heading_rad) { return fmt::format("north up, heading {:.1f} deg", RadToDeg(heading_rad)); }
 
-Picture PictureOfReturns(const ScanMessages& scan, const std::vector<MergeLink>& links, const std::optional<config::BoatFacts>& boat,
+Picture PictureOfReturns(const ScanMessages& scan, const MergeReasons& reasons, const std::optional<config::BoatFacts>& boat,
                          std::optional<double> heading_rad) {
   const bool is_north_up = boat && heading_rad;
   const double up_rad = is_north_up ? *heading_rad : 0.0;
@@ -363,7 +367,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::vector<MergeLink>&
     }
     picture.dots.push_back(std::move(of_colour));
   }
-  for (const auto& link : links) {
+  for (const auto& link : reasons.links) {
     picture.links.push_back({{to_picture(link.ends_m[0]), to_picture(link.ends_m[1])}, link.is_merged, double{link.log_odds}, link.why});
   }
 
@@ -374,6 +378,7 @@ Picture PictureOfReturns(const ScanMessages& scan, const std::vector<MergeLink>&
                                                               Corners(segment.hull_x_m, segment.hull_y_m, to_corner),
                                                               Corners(segment.waterline_x_m, segment.waterline_y_m, to_corner)));
       outline.facts += fmt::format(", {} returns", segment.num_points);
+      if (const auto why = reasons.why_of_segment.find(segment.id); why != reasons.why_of_segment.end()) outline.why = why->second;
     }
   }
   picture.title = fmt::format("Scan {}: {} returns, {}", scan.seq, num_returns, picture.Rank("segments"));
@@ -433,15 +438,15 @@ class ScanSvgSink final : public Sink {
     if (!scan_.chosen()) return;
     auto scan = *scan_.chosen();
     const auto heading_rad = headings_.At(scan.utime_us);
-    std::vector<MergeLink> links;
+    MergeReasons reasons;
     if (recorder_) {
       auto merged = recorder_->MergeChosen(scan);
-      links = LinksOf(merged, recorder_->evidence(merged.rounds.size() - 1));
+      reasons = ReasonsOf(merged, *recorder_);
       scan.segments = std::move(merged.segments);
     }
     auto picture =
-        what_ == ChosenScan::Of::kReturns ? PictureOfReturns(scan, links, boat_, heading_rad) : PictureOfObstacles(scan, boat_, heading_rad);
-    if (recorder_) picture.subtitles[0] += ", pairs of the last round: green one, red two (rest the pointer on a line)";
+        what_ == ChosenScan::Of::kReturns ? PictureOfReturns(scan, reasons, boat_, heading_rad) : PictureOfObstacles(scan, boat_, heading_rad);
+    if (recorder_) picture.subtitles[0] += ", pairs of the last round: green one, red two (rest the pointer on a line or an outline)";
     text += picture.Draw();
   }
 

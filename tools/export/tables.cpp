@@ -145,7 +145,6 @@ struct Table {
 
 constexpr std::array kTables{
     Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason", bus::kLidarScan, nullptr},
-    Table{"merges", "", bus::kLidarScan, nullptr},  // its header has the names of all features: MergesHeader
     Table{"segments",
           "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
           "thing_probability,land_probability",
@@ -173,7 +172,8 @@ constexpr std::array kTables{
           "utime_us,process,channel,direction,num_messages,num_undecodable,num_lost,rate_hz,queue_depth,queue_limit,handling_p50_us,"
           "handling_p99_us,latency_p50_us,latency_p99_us",
           bus::kHealth, AppendMessage<health_t, AppendTraffic>},
-    Table{"counters", "utime_us,process,name,count", bus::kHealth, AppendMessage<health_t, AppendCounters>}};
+    Table{"counters", "utime_us,process,name,count", bus::kHealth, AppendMessage<health_t, AppendCounters>},
+    Table{"merges", "", bus::kLidarScan, nullptr}};  // its header has the names of all features: MergesHeader
 
 const Table* FindTable(std::string_view name) {
   const auto table = std::ranges::find(kTables, name, &Table::name);

@@ -173,16 +173,22 @@ TEST_F(MergesTest, SaysWhereTheLogWasSegmentedInAnotherWay) {
   EXPECT_NE(errors_.find("SEGMENTS of 1 scans in the log are others than --config gives"), std::string::npos) << errors_;
 }
 
-TEST_F(MergesTest, ThePictureHasALineForEachPairOfTheLastRound) {
-  AddScan(Lake(1), 0);
+TEST_F(MergesTest, ThePictureHasALineForEachPairOfTheLastRoundAndAReasonForEachSegment) {
+  const auto scan = Lake(1);
+  AddScan(scan, 0);
   ASSERT_EQ(ExportMerges(), kExitFine);
   int num_pairs = 0;
   for (const auto& row : Numbers()) num_pairs += row.at("round") == 3.0 ? 1 : 0;
   ASSERT_GT(num_pairs, 0);
   ASSERT_EQ(ExportMerges("svg"), kExitFine) << errors_;
-  int num_lines = 0;
-  for (auto at = text_.find("<title>pieces "); at != std::string::npos; at = text_.find("<title>pieces ", at + 1)) ++num_lines;
-  EXPECT_EQ(num_lines, num_pairs);
+  const auto count = [this](const std::string& part) {
+    int found = 0;
+    for (auto at = text_.find(part); at != std::string::npos; at = text_.find(part, at + 1)) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<title>pieces "), num_pairs);
+  const auto num_segments = segmenter::SegmentScan(scan, segmenter::LoadParams(config_)).segments.size();
+  EXPECT_EQ(static_cast<std::size_t>(count("<title>segment ")), num_segments) << "each says why it is land, and a thing";
   EXPECT_NE(text_.find("pairs of the last round: green one, red two"), std::string::npos);
   EXPECT_NE(text_.find("bow up"), std::string::npos) << "the mounting is that of --config";
 }

@@ -58,8 +58,8 @@ TEST(Confidence, IsAThresholdOnTheProbabilityOfAThing) {
   EXPECT_NE(tentative.grounds, 0);
 }
 
-TEST(Confidence, LandIsAThresholdOnItsProbabilityAndSure) {
-  auto params = With(Always(kLandSum, std::log(3.0F)), Always(kThingSum, kNo));
+TEST(Confidence, LandIsAThresholdOnItsProbability) {
+  auto params = With(Always(kLandSum, std::log(3.0F)), Always(kThingSum, -kNo));
   params.lookout.land_probability = 0.74;
   const auto land = TheOnlyOne(Boat(), params);
   EXPECT_EQ(land.kind, SegmentKind::kLand);
@@ -68,6 +68,14 @@ TEST(Confidence, LandIsAThresholdOnItsProbabilityAndSure) {
   EXPECT_FALSE(land.waterline.empty());
   params.lookout.land_probability = 0.76;
   EXPECT_EQ(TheOnlyOne(Boat(), params).kind, SegmentKind::kObstacle);
+}
+
+// A wide veil of spray has the extent of land.
+TEST(Confidence, LandThatIsLikelierClutterIsTentative) {
+  const auto land = TheOnlyOne(Boat(), With(Always(kLandSum, -kNo), Always(kThingSum, kNo)));
+  EXPECT_EQ(land.kind, SegmentKind::kLand);
+  EXPECT_EQ(land.confidence, Confidence::kTentative);
+  EXPECT_NE(land.grounds, 0);
 }
 
 TEST(Confidence, ProbabilitiesAreThoseOfTheSums) {
@@ -94,7 +102,7 @@ TEST(Confidence, IsExactlyWhatThePublishedProbabilitiesSay) {
           const auto segment = TheOnlyOne(Boat(), params);
           const bool is_land = land > land_probability;
           ASSERT_EQ(segment.kind == SegmentKind::kLand, is_land);
-          ASSERT_EQ(segment.confidence == Confidence::kSure, is_land || thing > sure_probability) << thing << ' ' << sure_probability;
+          ASSERT_EQ(segment.confidence == Confidence::kSure, thing > sure_probability) << thing << ' ' << sure_probability;
         }
       }
     }
