@@ -35,14 +35,13 @@ Calibration CalibrationByFamilies(std::size_t sum, const Rows& rows, const Boost
 }
 
 SumReport FitOne(std::size_t sum, Rows& rows, const BoostingParams& boosting) {
-  const bool is_merge = sum < segmenter::kNumMerges;
-  if (is_merge) {
-    BalanceWeights(rows);
-  } else {
+  if (sum == segmenter::kThingSum) {
     WeighAlike(rows);
+  } else {
+    BalanceWeights(rows);
   }
   SumReport report{sum, Fit(rows, boosting), rows.families, {}, {}, DigestOf(rows)};
-  if (!is_merge) Apply(CalibrationByFamilies(sum, rows, boosting), report.fitted);
+  if (sum >= segmenter::kNumMerges) Apply(CalibrationByFamilies(sum, rows, boosting), report.fitted);
   const auto log_odds = LogOddsOf(rows, ToEvidence(report));
   report.of_all = ScoreOf(rows, log_odds, -1);
   for (std::size_t i = 0; i < rows.families.size(); ++i) report.of_family.push_back(ScoreOf(rows, log_odds, static_cast<int>(i)));

@@ -118,13 +118,13 @@ void RowMaker::AddGroups(std::size_t sum, const TrainingScan& scan, std::int32_t
   const auto features = method_.MeasureGroups();
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const bool is_thing = truth[i].object != importer::kNoTrueObject;
-    bool is_true = is_thing;
-    if (sum == segmenter::kLandSum && is_thing) {
-      const auto& object = scan.truth.objects.at(truth[i].object);
-      if (IsDock(object)) continue;
-      is_true = eval::IsLand(object);
+    if (sum == segmenter::kThingSum) {
+      rows.Add(features[i], is_thing, 1.0F, scan_number);
+      continue;
     }
-    rows.Add(features[i], is_true, 1.0F, scan_number);
+    if (!is_thing) continue;
+    const auto& object = scan.truth.objects.at(truth[i].object);
+    if (!IsDock(object)) rows.Add(features[i], eval::IsLand(object), std::sqrt(static_cast<float>(truth[i].num_returns)), scan_number);
   }
 }
 

@@ -47,7 +47,8 @@ class RowMaker {
   /// Adds the rows of a scan.
   ///
   /// Merging: a row for each pair of pieces, true where both are mostly of one object. Where both are clutter there is none.
-  /// Land: a row for each group, true where it is mostly of land (LandOf); none where it is of a dock, which may be either.
+  /// Land: a row for each group that is mostly of an object, true where that is land (eval::IsLand); none where it is of a dock, which may be either.
+  /// Its weight is the square root of its returns: a shore counts more than its fragments, which look like anything.
   /// Thing: a row for each group, true where it is mostly of an object.
   void Add(std::size_t sum, const TrainingScan& scan, Rows& rows);
 

@@ -73,8 +73,8 @@ std::int32_t GroundsOf(const PieceFeatures& features, const Evidence& thing) {
 
 // The one place that says what is land and what is sure, by the probabilities as they are published.
 void Decide(const LookoutParams& params, Segment& segment) {
-  const bool is_land = double{segment.land_probability} > params.land_probability;
   const bool is_sure = double{segment.thing_probability} > params.sure_probability;
+  const bool is_land = is_sure && double{segment.land_probability} > params.land_probability;
   segment.kind = is_land ? SegmentKind::kLand : SegmentKind::kObstacle;
   segment.confidence = is_sure ? Confidence::kSure : Confidence::kTentative;
 }

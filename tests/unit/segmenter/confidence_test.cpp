@@ -71,11 +71,11 @@ TEST(Confidence, LandIsAThresholdOnItsProbability) {
 }
 
 // A wide veil of spray has the extent of land.
-TEST(Confidence, LandThatIsLikelierClutterIsTentative) {
-  const auto land = TheOnlyOne(Boat(), With(Always(kLandSum, -kNo), Always(kThingSum, kNo)));
-  EXPECT_EQ(land.kind, SegmentKind::kLand);
-  EXPECT_EQ(land.confidence, Confidence::kTentative);
-  EXPECT_NE(land.grounds, 0);
+TEST(Confidence, WhatIsLikelierClutterIsNoLand) {
+  const auto spray = TheOnlyOne(Boat(), With(Always(kLandSum, -kNo), Always(kThingSum, kNo)));
+  EXPECT_EQ(spray.kind, SegmentKind::kObstacle);
+  EXPECT_EQ(spray.confidence, Confidence::kTentative);
+  EXPECT_NE(spray.grounds, 0);
 }
 
 TEST(Confidence, ProbabilitiesAreThoseOfTheSums) {
@@ -100,8 +100,7 @@ TEST(Confidence, IsExactlyWhatThePublishedProbabilitiesSay) {
           params.lookout.sure_probability = sure_probability;
           params.lookout.land_probability = land_probability;
           const auto segment = TheOnlyOne(Boat(), params);
-          const bool is_land = land > land_probability;
-          ASSERT_EQ(segment.kind == SegmentKind::kLand, is_land);
+          ASSERT_EQ(segment.kind == SegmentKind::kLand, thing > sure_probability && land > land_probability);
           ASSERT_EQ(segment.confidence == Confidence::kSure, thing > sure_probability) << thing << ' ' << sure_probability;
         }
       }
