@@ -34,7 +34,7 @@ void BalanceWeights(Rows& rows) {
 }
 
 void WeighAlike(Rows& rows) {
-  std::ranges::fill(rows.weight, static_cast<float>(kTotalWeight / static_cast<double>(std::max<std::size_t>(1, rows.size()))));
+  std::ranges::fill(rows.weight, static_cast<float>(10.0 * kTotalWeight / static_cast<double>(std::max<std::size_t>(1, rows.size()))));
 }
 
 std::string DigestOf(const Rows& rows) {

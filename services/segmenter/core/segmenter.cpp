@@ -14,6 +14,8 @@ constexpr std::int32_t kMaxSegments = std::numeric_limits<std::int16_t>::max();
 constexpr float kEnoughReturns = 4.0F;
 // Foam and spray fill a tenth to a half of the beams between their ends, hulls nearly all.
 constexpr float kSolidFill = 0.6F;
+// One return is never sure: in a single scan a buoy's and a drop's are alike.
+constexpr std::int32_t kLeastSure = 2;
 // From a lidar at 1 m over calm water, beams of 5 degrees and more below the horizon meet it within 11 m; flatter ones glance off. What rises so high
 // over it is more than a ripple.
 constexpr float kSurfaceRangeM = 10.0F;
@@ -73,7 +75,7 @@ std::int32_t GroundsOf(const PieceFeatures& features, const Evidence& thing) {
 
 // The one place that says what is land and what is sure, by the probabilities as they are published.
 void Decide(const LookoutParams& params, Segment& segment) {
-  const bool is_sure = double{segment.thing_probability} > params.sure_probability;
+  const bool is_sure = segment.num_points >= kLeastSure && double{segment.thing_probability} > params.sure_probability;
   const bool is_land = is_sure && double{segment.land_probability} > params.land_probability;
   segment.kind = is_land ? SegmentKind::kLand : SegmentKind::kObstacle;
   segment.confidence = is_sure ? Confidence::kSure : Confidence::kTentative;

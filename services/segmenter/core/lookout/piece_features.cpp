@@ -25,12 +25,14 @@ void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
   begin_of_column_.assign(1, 0);
   for (int column = 0; column < grid.num_columns(); ++column) {
     const auto seen = pieces.InColumn(column).first(std::min(pieces.InColumn(column).size(), kMostInColumn));
+    bool is_covered = false;  // a drop covers nothing
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const OutlineEntry& entry = seen[i];
       near_m_.push_back(entry.near_point.range_m);
       far_m_.push_back(entry.far_point.range_m);
       piece_.push_back(entry.piece);
-      if (i > 0) ++Of(entry.piece, PieceFeature::kCovered);
+      if (is_covered) ++Of(entry.piece, PieceFeature::kCovered);
+      is_covered = is_covered || pieces[entry.piece].num_returns > kCrowdReturns;
       // What stands behind is sorted: the next is the nearest.
       const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
       if (has_backdrop) ++Of(entry.piece, PieceFeature::kBackdrop);

@@ -30,7 +30,7 @@ enum class PieceFeature : std::uint8_t {
   kBoxFill,   // returns over the shots of its columns and rings
   kGaps,      // share of the columns of its arc in which it has no return
   kBackdrop,  // share of its columns in which something stands at most 5 m behind
-  kCovered,   // share of its columns in which something stands nearer
+  kCovered,   // share of its columns in which something of more than two returns stands nearer
   kCrowd,     // pieces of one or two returns within 3 m of range and 8 columns of one of its columns, per column
   kNum
 };
