@@ -1,5 +1,5 @@
 // Obstacles of the whole chain (lidar, segmenter, navigator, georeferencer) against the centres of what was truly seen of them. Seeds:
-// LOOKOUT_OBSTACLE_SEEDS, default 1; the table of services/georeferencer/README.md is printed by
+// LOOKOUT_OBSTACLE_SEEDS, default 3; the table of services/georeferencer/README.md is printed by
 //   LOOKOUT_OBSTACLE_SEEDS=20 build/release/tests/property_georeferencer_obstacles
 #include <unistd.h>
 
@@ -31,7 +31,7 @@ constexpr double kSecondsPerRun = 12.0;
 
 int NumSeeds() {
   const char* text = std::getenv("LOOKOUT_OBSTACLE_SEEDS");
-  return text != nullptr ? std::max(std::atoi(text), 1) : 1;
+  return text != nullptr ? std::max(std::atoi(text), 1) : 3;
 }
 
 double SecondsSinceStart(std::int64_t utime_us) { return static_cast<double>(utime_us - ToUtimeUs(kStart)) * 1e-6; }

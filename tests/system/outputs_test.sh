@@ -33,7 +33,7 @@ trap cleanup EXIT
 num_failed=0
 fail() { echo "FAILED: $name: $*" >&2; sed 's/^/  | /' said >&2; num_failed=$((num_failed + 1)); }
 
-"$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds 2 --pcap in.pcap >said 2>&1 || { cat said; exit 1; }
+"$bin/lookout-sim" --config "$config" --scene canal --seed 1 --seconds 2 --pcap in.pcap >said 2>&1 || { cat said; exit 1; }
 "$bin/lookout-replay" --config "$config" --in in.pcap --out in.lcmlog >said 2>&1 || { cat said; exit 1; }
 sync_time=$(date +%s)
 
@@ -43,7 +43,7 @@ run() {
   shift
   case $name in
     replay) ${exec:-} "$bin/lookout-replay" --config "$config" --in "$input" --out "$out" "$@" ;;
-    sim) ${exec:-} "$bin/lookout-sim" --config "$config" --scene lake --seed 1 --seconds "$seconds" --pcap "$out" "$@" ;;
+    sim) ${exec:-} "$bin/lookout-sim" --config "$config" --scene canal --seed 1 --seconds "$seconds" --pcap "$out" "$@" ;;
     csv) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --out "$out" "$@" ;;
     svg) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --format svg --out "$out" "$@" ;;
     ply) ${exec:-} "$bin/lookout-export" --in "$input" --table returns --format ply --out "$out" "$@" ;;

@@ -78,8 +78,10 @@ TEST(TrainingRows, GroupsAreThingsOrLandByTheirObject) {
   const auto scan = MakeScan("course", 0);
   RowMaker({}).Add(segmenter::kThingSum, scan, things);
   RowMaker({}).Add(segmenter::kLandSum, scan, land);
-  EXPECT_EQ(things.size(), land.size());
   EXPECT_EQ(std::ranges::count(land.is_true, 1), 1);
+  EXPECT_EQ(std::ssize(land.is_true), std::ranges::count(things.is_true, 1)) << "clutter is neither land nor not";
+  const auto wall = std::ranges::find(land.is_true, 1) - land.is_true.begin();
+  EXPECT_EQ(std::ranges::max_element(land.weight) - land.weight.begin(), wall) << "what has most returns counts most";
   EXPECT_GT(std::ranges::count(things.is_true, 1), 1);
   EXPECT_GT(std::ranges::count(things.is_true, 0), 5);
 }
