@@ -24,10 +24,10 @@ class Reader {
       const auto index = static_cast<std::size_t>(layout - layouts_.begin());
       if (layout == layouts_.end()) {
         Add("sum.name", fmt::format("the method asks for no {}", sum.name()), num_sums_);
-        num_features_ += static_cast<std::size_t>(sum.feature_size());
-        for (const auto& tree : sum.tree()) Skip(tree);
+        Skip(sum);
       } else if (is_there[index]) {
         Add("sum.name", fmt::format("{} is there twice", sum.name()), num_sums_);
+        Skip(sum);
       } else {
         is_there[index] = true;
         evidence_[index] = Read(sum, *layout);
@@ -46,14 +46,27 @@ class Reader {
   Evidence Read(const config::Evidence::Sum& sum, const EvidenceLayout& layout) {
     const std::vector<std::string_view> features(sum.feature().begin(), sum.feature().end());
     if (const auto fault = FeatureFault(features, layout); !fault.empty()) {
-      const auto unknown =
-          std::ranges::find_if(features, [&](auto name) { return std::ranges::find(layout.features, name) == layout.features.end(); });
-      Add("sum.feature", fmt::format("{}: {}", layout.name, fault), num_features_ + static_cast<std::size_t>(unknown - features.begin()));
+      const auto reason = fmt::format("{}: {}", layout.name, fault);
+      if (features.empty()) {
+        Add("sum.name", reason, num_sums_);
+      } else {
+        Add("sum.feature", reason, num_features_ + PlaceOfFault(features, layout));
+      }
     }
     num_features_ += features.size();
     std::vector<NamedTree> trees;
     for (const auto& tree : sum.tree()) trees.push_back(Read(tree, layout));
     return faults_.faults().empty() ? Evidence({layout.name, features, sum.bias(), trees}, layout) : Evidence();
+  }
+
+  // Which feature FeatureFault speaks of: one that is unknown, or the second of two; the last where one is lacking.
+  static std::size_t PlaceOfFault(const std::vector<std::string_view>& features, const EvidenceLayout& layout) {
+    const auto wrong = std::ranges::find_if(features, [&](auto name) {
+      return std::ranges::count(features, name) > 1 || std::ranges::find(layout.features, name) == layout.features.end();
+    });
+    if (wrong == features.end()) return features.size() - 1;
+    const auto again = std::find(wrong + 1, features.end(), *wrong);
+    return static_cast<std::size_t>((again == features.end() ? wrong : again) - features.begin());
   }
 
   NamedTree Read(const config::Evidence::Tree& tree, const EvidenceLayout& layout) {
@@ -75,6 +88,11 @@ class Reader {
     }
     Skip(tree);
     return named;
+  }
+
+  void Skip(const config::Evidence::Sum& sum) {
+    num_features_ += static_cast<std::size_t>(sum.feature_size());
+    for (const auto& tree : sum.tree()) Skip(tree);
   }
 
   void Skip(const config::Evidence::Tree& tree) {

@@ -85,16 +85,16 @@ TEST(Evidence, CompiledInIsThatOfTheFile) {
 
 class EvidenceText : public ::testing::Test {
  protected:
-  std::vector<Evidence> Load(const std::string& text) {
+  std::vector<Evidence> Load(const std::string& text, const std::vector<EvidenceLayout>& layouts = {kLayout}) {
     const auto file = std::filesystem::path(::testing::TempDir()) / "evidence.txtpb";
     std::ofstream(file) << text;
-    return LoadEvidence(file, std::array{kLayout});
+    return LoadEvidence(file, layouts);
   }
 
   // The faults, without the name of the file.
-  std::string FaultsOf(const std::string& text) {
+  std::string FaultsOf(const std::string& text, const std::vector<EvidenceLayout>& layouts = {kLayout}) {
     try {
-      Load(text);
+      Load(text, layouts);
     } catch (const config::ConfigError& error) {
       std::string faults;
       for (const auto& fault : error.faults()) faults += fault.substr(fault.find(".txtpb:") + 7) + "\n";
@@ -141,6 +141,25 @@ TEST_F(EvidenceText, WithFaultsIsRefusedWithTheirLines) {
       "12: sum.tree.log_odds: 1 splits make 2 leaves, not 1\n11: sum.tree.split.feature: merge: there is no feature hue\n");
   EXPECT_EQ(FaultsOf(std::string(kHead) + "  tree {\n    log_odds: nan\n  }\n}\n"), "8: sum.tree.log_odds: must be a finite number (is nan)\n");
   EXPECT_EQ(FaultsOf(std::string(kHead) + "}\n" + kHead + "}\n"), "9: sum.name: merge is there twice\n");
+}
+
+TEST_F(EvidenceText, WithAFeatureTwiceOrNoneIsRefusedWithItsLine) {
+  const std::string tree = "  tree {\n    split { feature: \"gap\" above: 2 }\n    log_odds: [1, 2]\n  }\n}\n";
+  const std::string named = "sum {\n  name: \"merge\"\n  bias: 1\n";
+  EXPECT_EQ(FaultsOf(named + "  feature: \"gap\"\n  feature: \"range_m\"\n  feature: \"gap\"\n" + tree), "6: sum.feature: merge: has gap twice\n");
+  EXPECT_EQ(FaultsOf(named + "  feature: \"gap\"\n  feature: \"range_m\"\n" + tree), "5: sum.feature: merge: lacks width_m\n");
+  EXPECT_EQ(FaultsOf(named + tree), "2: sum.name: merge: lacks gap\n");
+}
+
+// What is not read counts where a later fault stands.
+TEST_F(EvidenceText, FaultsBehindASumThatIsThereTwiceHaveTheirLines) {
+  const std::string tree = "  tree {\n    split { feature: \"gap\" above: 2 }\n    log_odds: [1, 2]\n  }\n";
+  const auto faults = FaultsOf(kHead + tree + "}\n" + kHead + tree + "}\nsum {\n  name: \"land\"\n  feature: \"gap\"\n  bias: 1\n  tree {\n" +
+                                   "    split { feature: \"hue\" above: 2 }\n    log_odds: [1]\n  }\n}\n",
+                               {kLayout, {"land", std::span(kFeatures).first(1)}});
+  EXPECT_EQ(faults,
+            "13: sum.name: merge is there twice\n29: sum.tree.log_odds: 1 splits make 2 leaves, not 1\n"
+            "28: sum.tree.split.feature: land: there is no feature hue\n");
 }
 
 }  // namespace
