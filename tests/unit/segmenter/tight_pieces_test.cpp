@@ -135,5 +135,24 @@ TEST(TightPieces, AreThoseOfTheReferenceNumberedByTheirFirstReturn) {
   }
 }
 
+// More returns than runs may be, none beside another, and no noise.
+TEST(TightPieces, OfAWallOfWhichEveryOtherBeamMetNothingAreOne) {
+  constexpr int kFineColumns = 2048;
+  constexpr int kFineRings = 128;
+  auto scan = EmptyScan({.num_columns = kFineColumns, .num_rings = kFineRings});
+  for (int ring = 0; ring < kFineRings; ++ring)
+    scan.head.rings[static_cast<std::size_t>(ring)].elevation_rad = 0.002F * static_cast<float>(ring - 64);
+  for (int column = 0; column < kFineColumns; column += 2) {
+    for (int ring = 0; ring < kFineRings; ++ring) SetReturn(scan, column, ring, 10.0);
+  }
+  const auto returns = ClassifyReturns(scan, {}).returns;
+  ASSERT_GT(returns.size(), 100'000U);
+  ScanGrid grid;
+  grid.Fill(scan, returns, Eigen::Matrix3d::Identity());
+  TightPieces tight;
+  tight.Find(grid, {0.6, 0.0});
+  EXPECT_EQ(tight.count(), 1);
+}
+
 }  // namespace
 }  // namespace lookout::segmenter

@@ -238,11 +238,11 @@ PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& win
   num_looks_ += walk.last_step - walk.first_step + 1;
   // First, without a branch, which are near in range.
   const auto meet = [&](int begin, int end) {
-    if (begin >= end || met.num >= most) return;
+    if (begin >= end) return;
     const std::size_t begin_at = columns.begin_of_column[static_cast<std::size_t>(begin)];
     const std::size_t end_at = columns.begin_of_column[static_cast<std::size_t>(end)];
-    num_looks_ += static_cast<std::int64_t>(end_at - begin_at);
-    if (is_counting_) return;
+    num_looks_ += static_cast<std::int64_t>(end_at - begin_at);  // also where enough have been met: as if there were no seam
+    if (is_counting_ || met.num >= most) return;
     near_.resize(std::max(near_.size(), end_at - begin_at));
     std::size_t num_near = 0;
     for (std::size_t at = begin_at; at < end_at; ++at) {

@@ -9,7 +9,7 @@ namespace lookout::segmenter {
 namespace {
 
 constexpr std::size_t kMostLayers = 2;  // returns of a shot
-// More runs are noise: 128 rings of 2048 columns in heavy rain have half as many.
+// More are noise: 128 rings of 2048 columns in heavy rain have half as many.
 constexpr std::size_t kMostRuns = 100'000;
 constexpr std::int32_t kLargestLeftOut = 64;  // 2^21 cells in pieces of more are less than kMostPieces
 
@@ -75,6 +75,9 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
     std::int32_t& run = RunAt(grid, seen.line, seen.column);
     run = sets_.Find(run);
   }
+  // Not those that neighbours alone make: a scan in which every other beam meets nothing is no noise, and its cut makes some more.
+  num_runs_ = 0;
+  for (std::int32_t run = 0; run < num_runs; ++run) num_runs_ += sets_.Find(run) == run ? 1U : 0U;
 }
 
 // Links a return with those of a line in columns [first, last], over the seam, too. @return a run there that is linked with it; kNone = there is none
@@ -99,7 +102,7 @@ std::int32_t TightPieces::LookAlong(const ScanGrid& grid, const Reach& link, con
 
 void TightPieces::Find(const ScanGrid& grid, const Reach& link) {
   FindRuns(grid, link);
-  if (sets_.size() <= kMostRuns) LinkRings(grid, link);
+  if (num_runs_ <= kMostRuns) LinkRings(grid, link);
   NumberPieces(grid);
 }
 

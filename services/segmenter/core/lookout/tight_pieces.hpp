@@ -51,6 +51,7 @@ class TightPieces {
   }
 
   UnionFind sets_;                    // of runs
+  std::size_t num_runs_ = 0;          // that are not linked in their line
   std::vector<Seen> by_line_;         // the returns, line by line
   std::vector<std::int32_t> run_at_;  // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
   std::vector<std::int32_t> size_of_set_;
