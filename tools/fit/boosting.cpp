@@ -50,6 +50,7 @@ class Boosting {
     for (std::size_t row = 0; row < rows.size(); ++row) {
       const bool is_held = std::ranges::count(params.held_out, rows.families[rows.FamilyOf(row)]) > 0;
       (is_held ? held_ : fitted_).push_back(row);
+      if (is_held) weight_of_held_ += rows.weight[row];
     }
     Bin();
   }
@@ -64,9 +65,9 @@ class Boosting {
       const auto tree = NextTree(sum.gain);
       if (tree.num_splits == 0) break;
       sum.trees.push_back(Named(tree));
-      if (!held_.empty()) sum.held_out_loss.push_back(AddToHeld(tree, held_log_odds));
+      if (weight_of_held_ > 0.0) sum.held_out_loss.push_back(AddToHeld(tree, held_log_odds));
     }
-    if (!held_.empty() && !sum.trees.empty()) {
+    if (!sum.held_out_loss.empty()) {
       const auto best = std::ranges::min_element(sum.held_out_loss);
       sum.trees.resize(static_cast<std::size_t>(best - sum.held_out_loss.begin()) + 1);
     }
@@ -226,7 +227,6 @@ class Boosting {
 
   double AddToHeld(const Tree& tree, std::vector<float>& log_odds) const {
     double loss = 0.0;
-    double weight = 0.0;
     for (std::size_t i = 0; i < held_.size(); ++i) {
       const auto values = rows_.Of(held_[i]);
       std::size_t leaf = 0;
@@ -237,9 +237,8 @@ class Boosting {
       log_odds[i] += tree.log_odds[leaf];
       const double signed_odds = rows_.is_true[held_[i]] != 0 ? log_odds[i] : -log_odds[i];
       loss += rows_.weight[held_[i]] * std::log1p(std::exp(-signed_odds));
-      weight += rows_.weight[held_[i]];
     }
-    return loss / weight;
+    return loss / weight_of_held_;
   }
 
   // Of a leaf that no row reaches.
@@ -248,8 +247,9 @@ class Boosting {
   const Rows& rows_;
   const BoostingParams& params_;
   std::size_t num_features_;
-  std::vector<std::size_t> fitted_;             // rows
-  std::vector<std::size_t> held_;               // rows
+  std::vector<std::size_t> fitted_;  // rows
+  std::vector<std::size_t> held_;    // rows
+  double weight_of_held_ = 0.0;
   std::vector<std::vector<float>> thresholds_;  // [features]
   std::vector<std::size_t> begin_of_feature_;   // [features + 1] in a histogram
   std::vector<std::uint8_t> bins_;              // [fitted x features]
@@ -267,20 +267,37 @@ float Rounded(double value) {
   return std::strtof(text.data(), nullptr);
 }
 
+namespace {
+
+double LossOf(const Rows& rows, std::span<const float> log_odds, const Calibration& calibration) {
+  double loss = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double calibrated = calibration.Of(log_odds[i]);
+    const double against = rows.is_true[i] != 0 ? -calibrated : calibrated;
+    loss += rows.weight[i] * (std::max(against, 0.0) + std::log1p(std::exp(-std::abs(against))));
+  }
+  return loss;
+}
+
+}  // namespace
+
 FittedSum Fit(const Rows& rows, const BoostingParams& params) { return Boosting(rows, params).Run(); }
 
 Calibration CalibrationOf(const Rows& rows, std::span<const float> log_odds) {
   constexpr int kSteps = 50;
-  constexpr double kSlack = 1e-6;  // of the Hessian, so that it has an inverse
-  Calibration calibration;
+  constexpr double kSlack = 1e-6;       // of the Hessian, so that it has an inverse
+  constexpr double kLeastShare = 1e-9;  // of a step: less is rounding
+  Calibration best;
   const auto num_true = std::ranges::count(rows.is_true, 1);
-  if (num_true == 0 || num_true == std::ssize(rows.is_true)) return calibration;
+  if (num_true == 0 || num_true == std::ssize(rows.is_true)) return best;
+  if (const auto [least, most] = std::ranges::minmax(log_odds); least == most) return best;
+  double loss = LossOf(rows, log_odds, best);
   for (int step = 0; step < kSteps; ++step) {
     std::array<double, 2> gradient{};
     std::array<double, 3> hessian{kSlack, 0.0, kSlack};
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double x = log_odds[i];
-      const double p = 1.0 / (1.0 + std::exp(-(calibration.factor * x + calibration.offset)));
+      const double p = 1.0 / (1.0 + std::exp(-best.Of(x)));
       const double weight = rows.weight[i] * p * (1.0 - p);
       gradient[0] += rows.weight[i] * (p - rows.is_true[i]) * x;
       gradient[1] += rows.weight[i] * (p - rows.is_true[i]);
@@ -289,14 +306,25 @@ Calibration CalibrationOf(const Rows& rows, std::span<const float> log_odds) {
       hessian[2] += weight;
     }
     const double determinant = hessian[0] * hessian[2] - hessian[1] * hessian[1];
-    calibration.factor -= (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant;
-    calibration.offset -= (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant;
+    const double factor_step = (hessian[2] * gradient[0] - hessian[1] * gradient[1]) / determinant;
+    const double offset_step = (hessian[0] * gradient[1] - hessian[1] * gradient[0]) / determinant;
+    // Where probabilities are near 0 and 1 a whole step goes too far.
+    bool is_less = false;
+    for (double share = 1.0; !is_less && share >= kLeastShare; share /= 2.0) {
+      const Calibration next{best.factor - share * factor_step, best.offset - share * offset_step};
+      const double next_loss = LossOf(rows, log_odds, next);
+      if (!(next_loss < loss)) continue;
+      is_less = true;
+      best = next;
+      loss = next_loss;
+    }
+    if (!is_less) break;
   }
-  return calibration;
+  return best.factor > 0.0 ? best : Calibration{};
 }
 
 void Apply(const Calibration& calibration, FittedSum& sum) {
-  sum.bias = Rounded(calibration.factor * sum.bias + calibration.offset);
+  sum.bias = Rounded(calibration.Of(sum.bias));
   for (auto& tree : sum.trees) {
     for (float& leaf : tree.log_odds) leaf = Rounded(calibration.factor * leaf);
   }

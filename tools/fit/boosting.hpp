@@ -19,7 +19,7 @@ struct BoostingParams {
   double l2 = 5.0;         // in the unit of weights: kTotalWeight is all rows
   double min_leaf = 2.0;   // sum of weight x p (1 - p) in a leaf; leaves with less add nothing
   int num_bins = 64;       // thresholds of a feature are so many quantiles of its values
-  /// Families whose rows are not fitted: trees are added up to where their loss is least. None: all trees.
+  /// Families whose rows are not fitted: trees are added up to where their loss is least. None, or without weight: all trees.
   std::vector<std::string> held_out = {};
   /// Features that no split may ask for: what are they worth?
   std::vector<std::string> dropped = {};
@@ -42,10 +42,13 @@ struct FittedSum {
 FittedSum Fit(const Rows& rows, const BoostingParams& params);
 
 /// Platt's scaling (J. Platt, "Probabilistic Outputs for Support Vector Machines", 1999): factor and offset with which log odds of rows that were not
-/// fitted on say best what is true of them. {1, 0} where all are alike.
+/// fitted on say best what is true of them. {1, 0} where all rows or all log odds are alike (there was nothing to fit the others on), and where the
+/// best factor would turn more into less.
 struct Calibration {
   double factor = 1.0;
   double offset = 0.0;
+
+  double Of(double log_odds) const { return factor * log_odds + offset; }
 };
 Calibration CalibrationOf(const Rows& rows, std::span<const float> log_odds);
 void Apply(const Calibration& calibration, FittedSum& sum);

@@ -44,9 +44,8 @@ void CheckFamilies(const std::string& option, const std::vector<std::string>& na
 
 void CheckFeatures(const std::vector<std::string>& names) {
   for (const auto& name : names) {
-    const bool is_there = std::ranges::any_of(segmenter::kEvidenceLayouts, [&](const auto& layout) {
-      return std::ranges::find(layout.features, name) != layout.features.end();
-    });
+    const bool is_there = std::ranges::any_of(segmenter::kEvidenceLayouts,
+                                              [&](const auto& layout) { return std::ranges::find(layout.features, name) != layout.features.end(); });
     if (!is_there) throw std::invalid_argument(fmt::format("--drop-feature {}: no sum has such a feature", name));
   }
 }

@@ -19,7 +19,7 @@ struct Options {
   double seconds = 0.5;  // of each scene and seed
   int num_trees = 100;
   std::vector<std::string> dropped;  // features that are not asked for
-  std::filesystem::path out;  // empty: tables alone
+  std::filesystem::path out;         // empty: tables alone
   bool is_forced = false;
 };
 

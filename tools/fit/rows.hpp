@@ -33,8 +33,8 @@ struct Rows {
 /// Scales the weights: each scan of a family counts the same, however many rows it has, each family the same, and all are kTotalWeight.
 void BalanceWeights(Rows& rows);
 
-/// The same weight for each row, and ten times kTotalWeight for all. For probabilities: each segment counts once, as it does on the boat. Ten times, as
-/// most rows are single drops, and what is left must still reach leaves of its own.
+/// The same weight for each row, and ten times kTotalWeight for all. For probabilities: each segment counts once, as it does on the boat. Ten times,
+/// as most rows are single drops, and what is left must still reach leaves of its own.
 void WeighAlike(Rows& rows);
 
 /// Regularisation is in these units: a fit does not change when there are more scans of the same.

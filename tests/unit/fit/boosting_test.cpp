@@ -100,6 +100,42 @@ TEST(Boosting, StopsWhereAFamilyThatItDoesNotSeeIsBest) {
   EXPECT_LT(sum.trees.size(), 10U);
 }
 
+// As in the fits that a calibration is made from: what is held out may be what they leave out.
+TEST(Boosting, RowsWithoutWeightDoNotSayWhenTreesAreEnough) {
+  auto rows = DrawRows(2000, 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (rows.families[rows.FamilyOf(i)] == "canal") rows.weight[i] = 0.0F;
+  }
+  const auto sum = Fit(rows, {.num_trees = 20, .held_out = {"canal"}});
+  EXPECT_EQ(sum.trees.size(), 20U);
+  EXPECT_TRUE(sum.held_out_loss.empty());
+}
+
+TEST(Calibration, MakesLogOddsThoseOfWhatIsTrue) {
+  const auto rows = DrawRows(40'000, 3);
+  std::vector<float> log_odds(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) log_odds[i] = static_cast<float>(4.0 * TrueLogOdds(rows.Of(i)) - 2.0);
+  const auto calibration = CalibrationOf(rows, log_odds);
+  EXPECT_NEAR(calibration.factor, 0.25, 0.01);
+  EXPECT_NEAR(calibration.offset, 0.5, 0.04);
+  FittedSum sum;
+  sum.bias = 2.0F;
+  sum.trees = {segmenter::NamedTree{{{{"gap", 1.0F}}}, {4.0F, -4.0F}}};
+  Apply({0.25, 0.5}, sum);
+  EXPECT_EQ(sum.bias, 1.0F);
+  EXPECT_EQ(sum.trees[0].log_odds[0], 1.0F);
+  EXPECT_EQ(sum.trees[0].log_odds[1], -1.0F);
+}
+
+TEST(Calibration, LeavesWhatSaysNothingOrTheContrary) {
+  const auto rows = DrawRows(2000, 3);
+  std::vector<float> log_odds(rows.size(), 0.0F);
+  const auto is_none = [](const Calibration& calibration) { return calibration.factor == 1.0 && calibration.offset == 0.0; };
+  EXPECT_TRUE(is_none(CalibrationOf(rows, log_odds)));
+  for (std::size_t i = 0; i < rows.size(); ++i) log_odds[i] = static_cast<float>(-TrueLogOdds(rows.Of(i)));
+  EXPECT_TRUE(is_none(CalibrationOf(rows, log_odds)));
+}
+
 TEST(Boosting, OfRowsThatAreAllAlikeIsABias) {
   auto rows = DrawRows(100, 1);
   std::ranges::fill(rows.is_true, std::uint8_t{1});

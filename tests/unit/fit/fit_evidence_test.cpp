@@ -115,6 +115,14 @@ TEST(FitEvidence, DoesNotLookAtWhatIsLeftOut) {
   EXPECT_TRUE(evidence.miou.contains("canal"));
 }
 
+// There is no other family to calibrate on: the share of things must not count twice.
+TEST(FitEvidence, OfOneFamilyHasTheLogOddsOfItsRows) {
+  const auto evidence = FitAll({"canal"});
+  const auto& thing = evidence.sums[segmenter::kThingSum];
+  const double share = thing.of_all.true_share;
+  EXPECT_NEAR(thing.fitted.bias, std::log(share / (1.0 - share)), 0.01);
+}
+
 // The same scans twice: the same text. And the text is read as what was fitted.
 TEST(FitEvidence, ItsTextIsTheSameEachTimeAndReadsBackAsItWas) {
   const auto evidence = FitAll();
