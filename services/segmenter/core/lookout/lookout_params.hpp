@@ -41,7 +41,7 @@ struct LookoutParams {
   std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
   // A group is sure that is no clutter with a greater probability; what is sure is land that is so with a greater one.
   double land_probability = 0.7;
-  double sure_probability = 0.6;
+  double sure_probability = 0.5;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();
   /// Of the lidar over the water when the boat floats at rest.
   double lidar_above_water_m = 1.0;
