@@ -50,7 +50,7 @@ class FaultList {
 ///
 /// @throws ConfigError when it is no regular file (a FIFO or a device would hold the process), is greater than kMaxConfigBytes, or cannot be read
 std::string ReadConfigFile(const std::filesystem::path& file);
-inline constexpr std::size_t kMaxConfigBytes = 4UL * 1024 * 1024;  // the largest of ours has 20 kB
+inline constexpr std::size_t kMaxConfigBytes = 4UL * 1024 * 1024;  // the largest of ours, the evidence, has 0.3 MB
 
 /// Fills `message` from a text file and checks it against the options of its schema (config/schema/options.proto).
 ///

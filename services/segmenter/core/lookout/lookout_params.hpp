@@ -39,7 +39,7 @@ struct LookoutParams {
   // What is beyond doubt first; then the rest, by what the larger pieces look like. Reaches and thresholds belong to the evidence, which is fitted
   // with them; they were chosen on the families of scenes (DECISIONS.md).
   std::array<MergeParams, kNumMerges> merges{{{{1.0, 0.03}, 2.0}, {{2.5, 0.08}, 1.0}, {{6.0, 0.12}, 0.0, true}}};
-  // A group is sure that is no clutter with a greater probability; what is sure is land that is so with a greater one.
+  // A group of two returns or more is sure that is no clutter with a greater probability; what is sure is land that is so with a greater one.
   double land_probability = 0.7;
   double sure_probability = 0.5;
   std::array<Evidence, kNumSums> evidence = DefaultEvidences();

@@ -40,7 +40,7 @@ inline constexpr std::array<std::string_view, kNumPieceFeatures> kPieceFeatureNa
     "bottom_m", "middle_m", "slope",   "fill",  "box_fill", "gaps",    "backdrop", "covered", "crowd"};
 using PieceFeatures = std::array<float, kNumPieceFeatures>;
 
-/// No water gives so many groups; in heavy rain there are 4000. Where a scan has more, those of one or two returns are clutter, and are not measured.
+/// No water gives so many groups; in heavy rain there are 4000. Where a scan has more, those of one or two returns are clutter, whatever is measured.
 inline constexpr std::int32_t kMostJudged = 8192;
 inline bool IsJudged(const PieceTable& pieces, std::int32_t piece) { return pieces.size() <= kMostJudged || pieces[piece].num_returns > 2; }
 
