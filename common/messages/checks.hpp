@@ -36,7 +36,7 @@ inline constexpr Fault kSegmentsTime = "segments_refused_time";      // does not
 inline constexpr Fault kSegmentsParts = "segments_refused_parts";    // part_index, num_parts (above 1000), seq
 inline constexpr Fault kSegmentsCount = "segments_refused_count";    // counts that do not agree
 inline constexpr Fault kSegmentsId = "segments_refused_id";          // ids that do not increase, or are not in the scan
-inline constexpr Fault kSegmentsNumber = "segments_refused_number";  // not finite, beyond 100 km, or a share not in 0 to 1
+inline constexpr Fault kSegmentsNumber = "segments_refused_number";  // not finite, beyond 100 km, or a share or probability not in 0 to 1
 inline constexpr Fault kSegmentsCode = "segments_refused_code";      // a confidence, ground or kind that does not exist
 inline constexpr Fault kSegmentsSize = "segments_refused_size";      // larger than a message may be
 inline constexpr std::array kSegmentsFaults{kSegmentsTime,   kSegmentsParts, kSegmentsCount, kSegmentsId,

@@ -78,6 +78,20 @@ TEST(Confidence, WhatIsLikelierClutterIsNoLand) {
   EXPECT_NE(spray.grounds, 0);
 }
 
+// Whatever the evidence says: in one scan a buoy's single return and a drop are alike.
+TEST(Confidence, OneReturnIsNeverSureNorLand) {
+  auto scan = test::EmptyScan({});
+  test::SetReturn(scan, 100, 8, 20.0);
+  const auto params = With(Always(kLandSum, -kNo), Always(kThingSum, -kNo));
+  const auto one = TheOnlyOne(scan, params);
+  EXPECT_GT(one.thing_probability, 0.99F);
+  EXPECT_EQ(one.confidence, Confidence::kTentative);
+  EXPECT_EQ(one.grounds & kFewReturns, kFewReturns);
+  EXPECT_EQ(one.kind, SegmentKind::kObstacle);
+  test::SetReturn(scan, 101, 8, 20.0);
+  EXPECT_EQ(TheOnlyOne(scan, params).confidence, Confidence::kSure);
+}
+
 TEST(Confidence, ProbabilitiesAreThoseOfTheSums) {
   const auto boat = TheOnlyOne(Boat(), With(Always(kLandSum, -std::log(4.0F)), Always(kThingSum, std::log(3.0F))));
   EXPECT_NEAR(boat.land_probability, 0.2F, 1e-6F);
