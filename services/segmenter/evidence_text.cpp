@@ -12,6 +12,9 @@
 namespace lookout::segmenter {
 namespace {
 
+// More help nobody, and a text of nonsense has thousands.
+constexpr std::size_t kMostFaults = 100;
+
 // Checks the sums in the order of the text, so that the n-th feature of the message is the n-th of the text.
 class Reader {
  public:
@@ -37,6 +40,7 @@ class Reader {
     for (std::size_t i = 0; i < layouts_.size(); ++i) {
       if (!is_there[i]) Add("sum", fmt::format("there is none of the name {}", layouts_[i].name), 0);
     }
+    if (num_faults_ > kMostFaults) faults_.Add(config::FaultLine(file_, "text", fmt::format("and {} faults more", num_faults_ - kMostFaults)));
     faults_.ThrowIfAny();
   }
 
@@ -100,12 +104,16 @@ class Reader {
     ++num_trees_;
   }
 
-  void Add(const std::string& field, const std::string& reason, std::size_t index) { faults_.Add(config::FaultLine(file_, field, reason, index)); }
+  // To find the line of a fault the text is read once more.
+  void Add(const std::string& field, const std::string& reason, std::size_t index) {
+    if (++num_faults_ <= kMostFaults) faults_.Add(config::FaultLine(file_, field, reason, index));
+  }
 
   const std::filesystem::path& file_;
   std::span<const EvidenceLayout> layouts_;
   std::vector<Evidence> evidence_;
   config::FaultList faults_;
+  std::size_t num_faults_ = 0;
   // Of what was read so far.
   std::size_t num_sums_ = 0;
   std::size_t num_trees_ = 0;

@@ -1,5 +1,6 @@
 #include "services/segmenter/core/lookout/evidence.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -149,6 +150,15 @@ TEST_F(EvidenceText, WithAFeatureTwiceOrNoneIsRefusedWithItsLine) {
   EXPECT_EQ(FaultsOf(named + "  feature: \"gap\"\n  feature: \"range_m\"\n  feature: \"gap\"\n" + tree), "6: sum.feature: merge: has gap twice\n");
   EXPECT_EQ(FaultsOf(named + "  feature: \"gap\"\n  feature: \"range_m\"\n" + tree), "5: sum.feature: merge: lacks width_m\n");
   EXPECT_EQ(FaultsOf(named + tree), "2: sum.name: merge: lacks gap\n");
+}
+
+// Else a text of nonsense would hold the process for hours.
+TEST_F(EvidenceText, OfNonsenseTellsAHundredFaults) {
+  std::string text = kHead;
+  for (int i = 0; i < 1000; ++i) text += "  tree { log_odds: [1, 2] }\n";
+  const auto faults = FaultsOf(text + "}\n");
+  EXPECT_EQ(std::ranges::count(faults, '\n'), 101);
+  EXPECT_TRUE(faults.ends_with("1: text: and 900 faults more\n")) << faults.substr(faults.size() - 100);
 }
 
 // What is not read counts where a later fault stands.
