@@ -241,6 +241,18 @@ TEST(ClearCases, TwoBoatsTenMetresApartAreTwoThings) {
   }
 }
 
+// In the scenes of the fit nothing but the own crew, spray and fog is so near.
+TEST(ClearCases, AWallBesideTheBoatIsSure) {
+  for (const double distance_m : {0.9, 1.5, 2.5, 4.0}) {
+    for (const double height_m : {0.8, 2.0}) {
+      std::vector<Wall> walls{{distance_m, -6.0, distance_m, 9.0, -1.0, height_m - 1.0}};
+      const auto segments = SegmentScan(test::See(walls), {});
+      ASSERT_EQ(segments.segments.size(), 1U) << distance_m << ' ' << height_m;
+      EXPECT_EQ(segments.segments[0].confidence, Confidence::kSure) << distance_m << ' ' << height_m;
+    }
+  }
+}
+
 TEST(ClearCases, AShoreOfFortyMetresIsLand) {
   const auto scan = test::See(Beach());
   const auto segments = SegmentScan(scan, {});
