@@ -64,7 +64,7 @@ void Service::OnSegments(const segments_t& message) {
 }
 
 void Service::OnPose(const pose_t& message) {
-  const auto pose = ToPose(message);
+  const auto pose = messages::ToPose(message);
   if (const auto* refusal = std::get_if<Refusal>(&pose)) return poses_refused_.Add(*refusal);
   pose_seen_ = now_;
   newest_pose_status_ = message.status;

@@ -8,6 +8,7 @@
 #include "common/bus/bus.hpp"
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
+#include "common/messages/pose_message.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
@@ -53,7 +54,7 @@ class Service {
   std::optional<Datum> checked_datum_;
   std::string datum_complaint_;
   Counts<messages::kSegmentsFaults> segments_refused_;
-  Counts<kPoseRefusals> poses_refused_;
+  Counts<messages::kPoseFaults> poses_refused_;
   std::int64_t num_split_ = 0;
   std::optional<std::int32_t> newest_pose_status_;  // of pose_t
   // Host time, live only.

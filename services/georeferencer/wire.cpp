@@ -17,15 +17,6 @@ namespace {
 
 using std::chrono::microseconds;
 
-// Bounds of what can be, wide enough for any boat, so that arithmetic inside stays far from overflow.
-constexpr double kMaxMapM = 1.4e7;  // the earth's diameter, and more: a datum may be wrong
-constexpr double kMaxHeightM = 1e5;
-constexpr double kMaxHeaveM = 1e3;
-constexpr double kMaxVariance = 1e12;
-constexpr std::int64_t kPoseGridUs = 20'000;  // pose_t: a multiple of it
-// Rounding of a covariance that went through a filter.
-constexpr double kCovarianceTolerance = 1e-6;
-
 // A scan of so few obstacles fits into one message, however large their outlines and waterlines are.
 constexpr std::size_t kFewSegments = 18;
 constexpr std::size_t kMaxObstacleBytes = kObstacleBytes + (kMaxFootprintVertices + kMaxWaterlineVertices) * kVertexBytes;
@@ -46,8 +37,6 @@ static_assert(static_cast<int>(ObstacleStatus::kPoseTimeout) == obstacle_t::STAT
 static_assert(static_cast<int>(obstacle_t::GROUND_FEW_RETURNS) == segment_t::GROUND_FEW_RETURNS);
 static_assert(static_cast<int>(obstacle_t::GROUND_SCATTERED) == segment_t::GROUND_SCATTERED);
 static_assert(static_cast<int>(obstacle_t::GROUND_AT_SURFACE) == segment_t::GROUND_AT_SURFACE);
-
-bool IsWithin(double value, double bound) { return std::abs(value) <= bound; }  // NaN is not
 
 Eigen::Vector3d ToVector(const float (&point_m)[3]) { return {point_m[0], point_m[1], point_m[2]}; }
 
@@ -78,32 +67,6 @@ Segment ToSegment(const segment_t& message, Utime scan_time) {
   segment.waterline = ToCorners(message.waterline_x_m, message.waterline_y_m, message.waterline_time_us, scan_time);
   return segment;
 }
-
-// Rows of pose_t::covariance that are used: east, north, roll, pitch, heading.
-constexpr std::array<std::size_t, 5> kCovarianceRows{0, 1, 6, 7, 8};
-
-bool IsUnknownOrZero(double value) { return std::isnan(value) || value == 0.0; }
-
-// Symmetric, no variance below 0, no correlation above 1; what belongs to an unknown variance is unknown or 0.
-bool IsCovariance(const double (&covariance)[9][9]) {
-  for (std::size_t i = 0; i < 9; ++i) {
-    const double variance = covariance[i][i];
-    if (!std::isnan(variance) && !(variance >= 0.0 && variance <= kMaxVariance)) return false;
-    for (std::size_t k = 0; k < i; ++k) {
-      const double a = covariance[i][k];
-      const double b = covariance[k][i];
-      const double bound = std::sqrt(variance * covariance[k][k]) * (1.0 + kCovarianceTolerance);
-      if (std::isnan(bound)) {
-        if (!IsUnknownOrZero(a) || !IsUnknownOrZero(b)) return false;
-      } else if (!IsWithin(a, bound) || !IsWithin(b, bound) || !IsWithin(a - b, kCovarianceTolerance * bound)) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
-double OrZero(double value) { return std::isnan(value) ? 0.0 : value; }
 
 // @return their number
 std::int32_t Split(const std::vector<Eigen::Vector2d>& places_m, std::vector<float>& first_m, std::vector<float>& second_m) {
@@ -165,37 +128,6 @@ std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int 
   part.head.num_scan_segments = message.num_turn_segments;
   for (const auto& segment : message.segments) part.segments.push_back(ToSegment(segment, part.head.time));
   return part;
-}
-
-std::variant<Pose, Refusal> ToPose(const pose_t& message) {
-  const auto time = UtimeFromWire(message.utime_us);
-  if (!time || message.utime_us % kPoseGridUs != 0) return kPoseTime;
-  if (message.status < pose_t::STATUS_OK || message.status > pose_t::STATUS_COASTING) return kPoseStatus;
-  Pose pose;
-  pose.time = *time;
-  pose.is_placed = message.status == pose_t::STATUS_OK || message.status == pose_t::STATUS_COASTING;
-  pose.datum = {message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
-  pose.position_map_m = {message.position_map_m[0], message.position_map_m[1], message.position_map_m[2]};
-  pose.heading_rad = message.heading_rad;
-  pose.pitch_rad = OrZero(message.pitch_rad);
-  pose.roll_rad = OrZero(message.roll_rad);
-  pose.heave_m = OrZero(message.heave_m);
-  if (!IsWithin(pose.pitch_rad, kPi) || !IsWithin(pose.roll_rad, kPi) || !IsWithin(pose.heave_m, kMaxHeaveM)) return kPoseNumber;
-  if (pose.is_placed) {
-    const auto& p_m = message.position_map_m;
-    if (!IsWithin(p_m[0], kMaxMapM) || !IsWithin(p_m[1], kMaxMapM) || !IsWithin(p_m[2], kMaxMapM) || !IsWithin(pose.datum.latitude_deg, 90.0) ||
-        !IsWithin(pose.datum.longitude_deg, 180.0) || !IsWithin(OrZero(pose.datum.ellipsoid_height_m), kMaxHeightM) ||
-        !(pose.heading_rad >= 0.0 && pose.heading_rad <= kTwoPi)) {
-      return kPoseNumber;
-    }
-    if (!IsCovariance(message.covariance)) return kPoseCovariance;
-    for (std::size_t i = 0; i < kCovarianceRows.size(); ++i) {
-      for (std::size_t k = 0; k < kCovarianceRows.size(); ++k) {
-        pose.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = message.covariance[kCovarianceRows[i]][kCovarianceRows[k]];
-      }
-    }
-  }
-  return pose;
 }
 
 std::vector<obstacles_t> ToMessages(const ObstaclePart& part, int max_message_bytes) {

@@ -1,28 +1,18 @@
 // Between the messages of georeferencer and its own types.
 #pragma once
 
-#include <array>
 #include <variant>
 #include <vector>
 
 #include "common/messages/checks.hpp"
 #include "lookout/obstacles_t.hpp"
-#include "lookout/pose_t.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/core/placement.hpp"
-#include "services/georeferencer/core/pose.hpp"
 
 namespace lookout::georeferencer {
 
 /// Why a message was refused: the name of a counter; of SEGMENTS one of messages::kSegmentsFaults.
 using Refusal = messages::Fault;
-
-inline constexpr Refusal kPoseTime = "pose_refused_time";              // a time that does not exist, or is not on the grid
-inline constexpr Refusal kPoseStatus = "pose_refused_status";          // a status that does not exist
-inline constexpr Refusal kPoseNumber = "pose_refused_number";          // what the status says is known is not, or is not a place on earth
-inline constexpr Refusal kPoseCovariance = "pose_refused_covariance";  // not a covariance
-
-inline constexpr std::array kPoseRefusals{kPoseTime, kPoseStatus, kPoseNumber, kPoseCovariance};
 
 /// Encoded sizes: obstacles_t without obstacles, obstacle_t without outline and waterline, a corner of them in both frames.
 inline constexpr std::size_t kHeadBytes = 80;
@@ -31,7 +21,6 @@ inline constexpr std::size_t kVertexBytes = 16;
 
 /// The whole message is valid, or it is refused.
 std::variant<SegmentPart, Refusal> ToSegmentPart(const segments_t& message, int max_message_bytes);
-std::variant<Pose, Refusal> ToPose(const pose_t& message);
 
 /// @return OBSTACLES of one SEGMENTS message: one message, or two where the obstacles of the scan may not fit into one each (see README.md);
 ///         part_index and num_parts count them through the scan

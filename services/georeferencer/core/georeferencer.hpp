@@ -12,7 +12,7 @@
 #include "common/core/health.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/core/placement.hpp"
-#include "services/georeferencer/core/pose.hpp"
+#include "common/core/pose.hpp"
 
 namespace lookout::georeferencer {
 

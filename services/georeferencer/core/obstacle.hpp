@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/core/utime.hpp"
-#include "services/georeferencer/core/pose.hpp"
+#include "common/core/pose.hpp"
 
 namespace lookout::georeferencer {
 
@@ -76,10 +76,10 @@ enum class ObstacleStatus : std::int32_t { kOk = 0, kVesselFrameOnly = 1, kPoseT
 /// One obstacle. Members for the map are NaN, footprint_map_m and waterline_map_m are empty, unless status is kOk.
 struct Obstacle : Seen {
   ObstacleStatus status = ObstacleStatus::kVesselFrameOnly;
-  double latitude_deg = kUnknown;
-  double longitude_deg = kUnknown;
-  Eigen::Vector2d position_map_m = Eigen::Vector2d::Constant(kUnknown);
-  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Constant(kUnknown);  // east, north
+  double latitude_deg = kNan;
+  double longitude_deg = kNan;
+  Eigen::Vector2d position_map_m = Eigen::Vector2d::Constant(kNan);
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Constant(kNan);  // east, north
   double top_above_water_m = 0.0;
   Eigen::Vector2d center_vessel_m = Eigen::Vector2d::Zero();
   Eigen::Vector3d nearest_vessel_m = Eigen::Vector3d::Zero();

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "services/georeferencer/core/obstacle.hpp"
-#include "services/georeferencer/core/pose.hpp"
+#include "common/core/pose.hpp"
 
 namespace lookout::georeferencer {
 

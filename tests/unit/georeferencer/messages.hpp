@@ -8,7 +8,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
-#include "services/georeferencer/core/pose.hpp"
+#include "common/core/pose.hpp"
 #include "services/georeferencer/params.hpp"
 
 namespace lookout::georeferencer::test {

@@ -228,7 +228,7 @@ TEST(ToMessages, AtTheBoundsOfWhatIsTakenAllNumbersAreFinite) {
   pose_message.datum_latitude_deg = 90.0;
   pose_message.datum_longitude_deg = 180.0;
   for (int i = 0; i < 9; ++i) pose_message.covariance[i][i] = 1e12;
-  const auto pose = std::get<Pose>(ToPose(pose_message));
+  const auto pose = std::get<Pose>(messages::ToPose(pose_message));
   PoseHistory poses;
   poses.Add(pose);
   const auto part = std::get<SegmentPart>(ToSegmentPart(message, bus::kMaxMessageBytes));

@@ -166,8 +166,8 @@ TEST(PlaceSegment, WithoutAPoseTellsWhatTheVesselSees) {
 TEST(PlaceSegment, WithoutHeadingStillUsesTiltAndHeaveForTheTop) {
   Pose pose = MakePose(0);
   pose.is_placed = false;
-  pose.heading_rad = kUnknown;
-  pose.position_map_m.setConstant(kUnknown);
+  pose.heading_rad = kNan;
+  pose.position_map_m.setConstant(kNan);
   pose.pitch_rad = DegToRad(30.0);  // bow up
   pose.heave_m = 0.25;
   PlacementParams params;
@@ -353,7 +353,7 @@ TEST(PositionCovariance, MountingErrorStartsAtTheLidarNotAtTheReferencePoint) {
 
 TEST(PositionCovariance, IsUnknownWhereThePoseDoesNotKnowItsOwn) {
   Pose pose = MakePose(0);
-  pose.covariance(0, 0) = kUnknown;
+  pose.covariance(0, 0) = kNan;
   EXPECT_TRUE(PositionCovariance({1.0, 0.0, 0.0}, pose, Bare()).hasNaN());
 }
 

@@ -1,4 +1,4 @@
-#include "services/georeferencer/core/pose.hpp"
+#include "common/core/pose.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -121,7 +121,7 @@ TEST(PoseHistory, DatumIsThatOfTheLatestPoseAtOrBeforeTheTime) {
 
 TEST(Datum, EqualsItselfAlsoWithoutHeightAndNothingWhenUnknown) {
   Datum datum = test::kLake;
-  datum.ellipsoid_height_m = kUnknown;
+  datum.ellipsoid_height_m = kNan;
   EXPECT_TRUE(datum.IsSameAs(datum));
   EXPECT_FALSE(datum.IsSameAs(test::kLake));
   EXPECT_FALSE(Datum{}.IsSameAs(Datum{}));

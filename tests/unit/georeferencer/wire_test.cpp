@@ -30,7 +30,7 @@ std::string RefusalOf(const segments_t& message) {
 }
 
 std::string RefusalOf(const pose_t& message) {
-  const auto result = ToPose(message);
+  const auto result = messages::ToPose(message);
   const auto* refusal = std::get_if<Refusal>(&result);
   return refusal == nullptr ? "" : std::string(*refusal);
 }
@@ -160,7 +160,7 @@ TEST(ToPose, TakesAPoseOver) {
   message.roll_rad = -0.2;
   message.heave_m = 0.3;
   message.covariance[1][8] = message.covariance[8][1] = 0.005;
-  const auto result = ToPose(message);
+  const auto result = messages::ToPose(message);
   ASSERT_TRUE(std::holds_alternative<Pose>(result));
   const auto& pose = std::get<Pose>(result);
   EXPECT_EQ(pose.time, At(20'000));
@@ -176,18 +176,18 @@ TEST(ToPose, TakesAPoseOver) {
 
 TEST(ToPose, AcceptsWhatIsHonestlyUnknown) {
   auto message = MakePoseMessage(0);
-  message.datum_ellipsoid_height_m = kUnknown;
-  message.heave_m = kUnknown;
-  for (int i = 0; i < 9; ++i) message.covariance[2][i] = message.covariance[i][2] = kUnknown;
+  message.datum_ellipsoid_height_m = kNan;
+  message.heave_m = kNan;
+  for (int i = 0; i < 9; ++i) message.covariance[2][i] = message.covariance[i][2] = kNan;
   EXPECT_EQ(RefusalOf(message), "");
 
   pose_t unknown{};
   unknown.utime_us = test::kStartUs;
   unknown.status = pose_t::STATUS_UNKNOWN;
-  unknown.heading_rad = unknown.heave_m = unknown.pitch_rad = unknown.roll_rad = kUnknown;
-  unknown.datum_latitude_deg = kUnknown;
-  for (auto& number : unknown.position_map_m) number = kUnknown;
-  const auto result = ToPose(unknown);
+  unknown.heading_rad = unknown.heave_m = unknown.pitch_rad = unknown.roll_rad = kNan;
+  unknown.datum_latitude_deg = kNan;
+  for (auto& number : unknown.position_map_m) number = kNan;
+  const auto result = messages::ToPose(unknown);
   ASSERT_TRUE(std::holds_alternative<Pose>(result));
   EXPECT_FALSE(std::get<Pose>(result).is_placed);
   EXPECT_EQ(std::get<Pose>(result).roll_rad, 0.0);
@@ -196,29 +196,29 @@ TEST(ToPose, AcceptsWhatIsHonestlyUnknown) {
 TEST(ToPose, RefusesEachFaultUnderItsOwnName) {
   using Change = std::function<void(pose_t&)>;
   const std::vector<std::pair<Refusal, Change>> changes{
-      {kPoseTime, [](pose_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
-      {kPoseTime, [](pose_t& m) { m.utime_us += 1; }},
-      {kPoseStatus, [](pose_t& m) { m.status = -1; }},
-      {kPoseStatus, [](pose_t& m) { m.status = 5; }},
-      {kPoseNumber, [](pose_t& m) { m.position_map_m[0] = kUnknown; }},
-      {kPoseNumber, [](pose_t& m) { m.position_map_m[1] = 1e300; }},
-      {kPoseNumber, [](pose_t& m) { m.position_map_m[2] = kInf; }},
-      {kPoseNumber, [](pose_t& m) { m.heading_rad = kUnknown; }},
-      {kPoseNumber, [](pose_t& m) { m.heading_rad = -0.1; }},
-      {kPoseNumber, [](pose_t& m) { m.heading_rad = 1e300; }},
-      {kPoseNumber, [](pose_t& m) { m.pitch_rad = 4.0; }},
-      {kPoseNumber, [](pose_t& m) { m.roll_rad = kInf; }},
-      {kPoseNumber, [](pose_t& m) { m.heave_m = 1e6; }},
-      {kPoseNumber, [](pose_t& m) { m.datum_latitude_deg = 90.1; }},
-      {kPoseNumber, [](pose_t& m) { m.datum_longitude_deg = kUnknown; }},
-      {kPoseNumber, [](pose_t& m) { m.datum_ellipsoid_height_m = 1e300; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[0][0] = -1e-9; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[8][8] = kInf; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[4][4] = 1e300; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[0][1] = 0.001; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[0][1] = m.covariance[1][0] = 0.02; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[0][1] = kUnknown; }},
-      {kPoseCovariance, [](pose_t& m) { m.covariance[0][0] = kUnknown, m.covariance[0][1] = m.covariance[1][0] = 0.1; }},
+      {messages::kPoseTime, [](pose_t& m) { m.utime_us = std::numeric_limits<std::int64_t>::max(); }},
+      {messages::kPoseTime, [](pose_t& m) { m.utime_us += 1; }},
+      {messages::kPoseStatus, [](pose_t& m) { m.status = -1; }},
+      {messages::kPoseStatus, [](pose_t& m) { m.status = 5; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.position_map_m[0] = kNan; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.position_map_m[1] = 1e300; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.position_map_m[2] = kInf; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.heading_rad = kNan; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.heading_rad = -0.1; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.heading_rad = 1e300; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.pitch_rad = 4.0; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.roll_rad = kInf; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.heave_m = 1e6; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.datum_latitude_deg = 90.1; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.datum_longitude_deg = kNan; }},
+      {messages::kPoseNumber, [](pose_t& m) { m.datum_ellipsoid_height_m = 1e300; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[0][0] = -1e-9; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[8][8] = kInf; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[4][4] = 1e300; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[0][1] = 0.001; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[0][1] = m.covariance[1][0] = 0.02; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[0][1] = kNan; }},
+      {messages::kPoseCovariance, [](pose_t& m) { m.covariance[0][0] = kNan, m.covariance[0][1] = m.covariance[1][0] = 0.1; }},
   };
   EXPECT_EQ(RefusalOf(MakePoseMessage(0)), "");
   for (std::size_t i = 0; i < changes.size(); ++i) {

@@ -8,18 +8,18 @@
 #include <limits>
 #include <optional>
 
+#include "common/core/elementary.hpp"
 #include "common/core/geodesy.hpp"
 #include "common/core/utime.hpp"
 
-namespace lookout::georeferencer {
+namespace lookout {
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Geodetic origin of the map frame, WGS84. NaN = not known.
 struct Datum {
-  double latitude_deg = kUnknown;
-  double longitude_deg = kUnknown;
-  double ellipsoid_height_m = kUnknown;
+  double latitude_deg = kNan;
+  double longitude_deg = kNan;
+  double ellipsoid_height_m = kNan;
 
   /// The map frame; a height that is not known counts as 0, which moves no position by more than 1 mm per 60 m of it and kilometre of distance.
   LocalFrame Map() const;
@@ -43,6 +43,7 @@ struct Pose : Place {
   Utime time;
   Datum datum;           // of the map frame
   double heave_m = 0.0;  // reference point above its place on calm water; 0 where not known
+  Eigen::Vector2d velocity_map_mps = Eigen::Vector2d::Constant(kNan);
   // Of east, north (m), roll, pitch, heading (rad), in this order. NaN = not known; not to be used unless placed.
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Zero();
 };
@@ -91,4 +92,4 @@ class PoseHistory {
   std::deque<Pose> poses_;  // increasing in time
 };
 
-}  // namespace lookout::georeferencer
+}  // namespace lookout

@@ -1,11 +1,11 @@
-#include "services/georeferencer/core/pose.hpp"
+#include "common/core/pose.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/core/angles.hpp"
 
-namespace lookout::georeferencer {
+namespace lookout {
 
 namespace {
 
@@ -96,4 +96,4 @@ Datum PoseHistory::DatumAt(Utime time) const {
   return index == 0 ? Datum{} : poses_[index - 1].datum;
 }
 
-}  // namespace lookout::georeferencer
+}  // namespace lookout

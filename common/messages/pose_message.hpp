@@ -1,0 +1,23 @@
+// From POSE to the pose of the vessel, checked.
+#pragma once
+
+#include <array>
+#include <variant>
+
+#include "common/core/pose.hpp"
+#include "common/messages/checks.hpp"
+#include "lookout/pose_t.hpp"
+
+namespace lookout::messages {
+
+inline constexpr Fault kPoseTime = "pose_refused_time";              // a time that does not exist, or is not on the grid
+inline constexpr Fault kPoseStatus = "pose_refused_status";          // a status that does not exist
+inline constexpr Fault kPoseNumber = "pose_refused_number";          // what the status says is known is not, or is not a place on earth
+inline constexpr Fault kPoseCovariance = "pose_refused_covariance";  // not a covariance
+
+inline constexpr std::array kPoseFaults{kPoseTime, kPoseStatus, kPoseNumber, kPoseCovariance};
+
+/// The whole message is valid, or it is refused.
+std::variant<Pose, Fault> ToPose(const pose_t& message);
+
+}  // namespace lookout::messages
