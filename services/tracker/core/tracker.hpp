@@ -1,0 +1,92 @@
+// Follows obstacles over scans: what was seen, what could have been seen, who is who, how it moves, what it will do.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/core/elementary.hpp"
+#include "common/core/health.hpp"
+#include "services/tracker/core/encounter.hpp"
+#include "services/tracker/core/outline.hpp"
+#include "services/tracker/core/scan.hpp"
+
+namespace lookout::tracker {
+
+struct TrackerParams {
+  Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
+  double reference_point_above_water_m = 0.0;
+  double max_range_m = 0.0;                     // of the segmenter: beyond it nothing could have been seen
+  std::vector<Eigen::Vector2d> own_hull_m;      // vessel frame, convex, counter-clockwise
+  EncounterParams encounter;
+  double moving_probability = 0.95;             // above which a track moves
+  double confirm_probability = 0.99;            // existence
+  double end_probability = 0.01;
+};
+
+// Numbers of both are those of the wire.
+enum class TrackStatus : std::int32_t { kTentative = 1, kConfirmed = 2, kCoasting = 3, kLost = 4 };
+enum class TrackKind : std::int32_t { kObstacle = 0, kBuoy = 1, kBoat = 2, kStructure = 3, kUnknown = 4 };
+
+/// One track after a scan, propagated to its end; as in track_t, which says what the members mean.
+struct Track {
+  std::int64_t id = 0;
+  TrackStatus status = TrackStatus::kTentative;
+  TrackKind kind = TrackKind::kUnknown;
+  Utime first;
+  Utime seen;
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();
+  Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+  Eigen::Matrix2d covariance_relative_m2 = Eigen::Matrix2d::Zero();
+  double turn_rate_radps = kNan;
+  double existence_probability = 0.0;
+  double moving_probability = 0.0;
+  Rectangle rectangle;
+  double top_above_water_m = 0.0;
+  double seen_share = 0.0;
+  std::vector<Eigen::Vector2d> outline_m;
+  std::vector<std::int32_t> segment_ids;
+  std::vector<std::int64_t> parents;
+  std::vector<std::int64_t> children;
+  int num_seen = 0;
+  int num_looks = 0;
+  double mean_returns = 0.0;
+  double range_m = 0.0;
+  double bearing_rad = 0.0;
+  ClosestApproach approach;
+  Encounter encounter = Encounter::kNone;
+};
+
+/// What is known after a scan.
+struct Picture {
+  bool is_sight_known = false;
+  std::vector<Track> tracks;  // by id
+  std::vector<std::int32_t> land_segment_ids;
+  std::vector<Eigen::Vector2d> waterline_m;  // every tenth scan, else empty
+  /// Tracks that became part of another in this scan (from, to).
+  std::vector<std::pair<std::int64_t, std::int64_t>> merged;
+};
+
+class Tracker {
+ public:
+  explicit Tracker(const TrackerParams& params);
+  ~Tracker();
+
+  /// Scans in the order of time. One without a pose, in another map frame, after a step of time of more than 10 s or back, or after a jump of the own
+  /// position that its speed does not explain, begins anew; each has its counter.
+  /// Cost and memory: README.md.
+  const Picture& Update(const ScanInput& scan);
+  /// Start mark: everything is forgotten but the next id.
+  void Reset();
+
+  std::vector<Counter> counters() const;
+
+ private:
+  struct Memory;
+  TrackerParams params_;
+  std::unique_ptr<Memory> memory_;
+};
+
+}  // namespace lookout::tracker
