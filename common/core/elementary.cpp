@@ -315,4 +315,28 @@ double Exp(double x) {
   return power * PowerOfTwo(exponent / 2) * PowerOfTwo(exponent - exponent / 2);
 }
 
+double Log(double x) {
+  static constexpr std::array<double, 7> kCoefficients{6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01,
+                                                       2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01,
+                                                       1.479819860511658591e-01};
+  constexpr double kLn2High = 6.93147180369123816490e-01;
+  constexpr double kLn2Low = 1.90821492927058770002e-10;
+  if (std::isnan(x) || x < 0.0) return kNan;
+  if (x == 0.0) return -kInfinity;
+  if (x == kInfinity) return kInfinity;
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);  // exact
+  if (mantissa < std::numbers::sqrt2 / 2.0) {
+    mantissa *= 2.0;
+    --exponent;
+  }
+  // ln(1 + f) = f - f^2 / 2 + s (f^2 / 2 + R(s^2)), with s = f / (2 + f) (Remez).
+  const double f = mantissa - 1.0;
+  const double s = f / (2.0 + f);
+  const double s2 = s * s;
+  const double rest = s2 * Horner(s2, kCoefficients);
+  const double half = 0.5 * f * f;
+  return exponent * kLn2High - ((half - (s * (half + rest) + exponent * kLn2Low)) - f);
+}
+
 }  // namespace lookout

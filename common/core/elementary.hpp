@@ -49,6 +49,9 @@ double Acos(double cosine);
 /// Source: coefficients of Sun's fdlibm (e_exp.c).
 double Exp(double x);
 
+/// Natural logarithm; -infinity of 0, NaN below. Error: below 1 ulp. Source: coefficients of Sun's fdlibm (e_log.c).
+double Log(double x);
+
 /// sqrt(a^2 + b^2), where neither square overflows or vanishes beside the other: magnitudes of 1e-150 to 1e150. Error: below 1.5 ulp.
 inline double Hypot(double a, double b) { return std::sqrt(a * a + b * b); }
 

@@ -254,6 +254,21 @@ TEST(Exp, IsWithinOneUlpDownToTheLeastNumber) {
   EXPECT_EQ(Bits(Exp(-kNan)), Bits(kNan));
 }
 
+TEST(Log, IsWithinOneUlp) {
+  Random random;
+  Worst worst;
+  const auto check = [&](double x) { worst.Take(Log(x), std::log(static_cast<long double>(x)), x); };
+  for (int i = 0; i < 300'000; ++i) check(random.Between(0.5, 2.0));
+  for (int i = 0; i < 300'000; ++i) check(1.0 + 1e-6 * random.Between(-1.0, 1.0));
+  for (int i = 0; i < 300'000; ++i) check(std::ldexp(random.Between(0.5, 1.0), static_cast<int>(random.Between(-1070.0, 1020.0))));
+  EXPECT_LT(worst.error_ulp, 1.0) << "at " << worst.at;
+  EXPECT_EQ(Log(1.0), 0.0);
+  EXPECT_EQ(Log(0.0), -kInfinity);
+  EXPECT_EQ(Log(kInfinity), kInfinity);
+  EXPECT_EQ(Bits(Log(-1.0)), Bits(kNan));
+  EXPECT_EQ(Bits(Log(-kNan)), Bits(kNan));
+}
+
 TEST(Hypot, IsWithinOneAndAHalfUlp) {
   Random random;
   Worst worst;

@@ -1,0 +1,79 @@
+// How one thing moves, and how far it reaches: two motion hypotheses over one outline.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "services/tracker/core/outline.hpp"
+
+namespace lookout::tracker {
+
+/// What of a seen outline lies at the edge of the thing, and not at the edge of what can be seen of it.
+struct Sides {
+  Eigen::Vector2d from_m = Eigen::Vector2d::Zero();  // the lidar, on the map
+  bool is_left_hidden = false;                       // seen from there
+  bool is_right_hidden = false;
+};
+
+/// A thing that stands or moves at constant velocity. The outline is anchored at the position: the hidden far side is what was seen before, or assumed.
+///
+/// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one does
+/// from the predicted position. So more or less of a thing in sight is no motion, and the side that is seen does not draw the centre towards the boat.
+class Body {
+ public:
+  /// @param seen_m  outline, map
+  /// @param noise_m2  covariance of its position relative to the own boat
+  Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m);
+
+  void Predict(double dt_s);
+
+  /// What a seen outline says of the position: its distance from the predicted one, with covariance; large along what it does not show.
+  struct Shift {
+    Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
+  };
+  Shift ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const;
+
+  /// @param grows  false where the seen outline may hold something else too: then it moves nothing but the position
+  void Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows);
+
+  /// All of it, at the predicted position.
+  std::vector<Eigen::Vector2d> Outline() const;
+  double SeenShare() const;
+
+  /// Of the hypothesis that holds: moving where its probability is above the threshold.
+  bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
+  double moving_probability() const { return moving_probability_; }
+  Eigen::Vector2d center_m() const;       // middle of the outline
+  Eigen::Vector2d velocity_mps() const { return moving_.tail<2>(); }
+  Eigen::Matrix4d covariance() const;     // of centre and velocity, relative to the own boat
+  double turn_rate_radps() const { return turn_rate_radps_; }
+
+ private:
+  struct Side {
+    double reach_m = 0.0;
+    double variance_m2 = 0.0;
+    bool is_seen = false;
+  };
+  struct Measured;
+  Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
+  Eigen::Vector2d position_m() const;
+  Eigen::Vector2d middle_m() const;  // of the outline, from the position
+
+  std::array<Side, kDirections> sides_;
+  Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
+  Eigen::Vector4d moving_ = Eigen::Vector4d::Zero();  // position and velocity
+  Eigen::Matrix4d moving_covariance_ = Eigen::Matrix4d::Zero();
+  double log_likelihood_ratio_ = 0.0;  // of moving over standing, of the last seconds
+  double moving_probability_ = 0.0;
+  double turn_rate_radps_ = 0.0;
+  // Jitter of the measured position from scan to scan, by its second differences: steady motion is none.
+  std::array<Eigen::Vector2d, 2> last_measured_{};
+  int num_measured_ = 0;
+  double jitter_m2_ = 0.0;
+};
+
+}  // namespace lookout::tracker

@@ -1,0 +1,67 @@
+// What could have been seen: which beams of a scan would have met a thing, and what became of them.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "services/tracker/core/body.hpp"
+#include "services/tracker/core/scan.hpp"
+
+namespace lookout::tracker {
+
+/// Beams that would have met a thing if it reflected each of them. Numbers are of all beams, estimated from at most 24 columns.
+struct Look {
+  double num_open = 0.0;    // met it, or nothing, or something behind it
+  double num_met = 0.0;     // ended in it
+  double num_hidden = 0.0;  // met something nearer: they say nothing
+};
+
+class Sight {
+ public:
+  /// @param reference_point_above_water_m  of the vessel frame's origin on calm water
+  Sight(const Eigen::Isometry3d& T_vessel_lidar, double reference_point_above_water_m, double max_range_m);
+
+  /// @return false where the scan says nothing: no beams, or no poses
+  bool Begin(const ScanInput& scan);
+
+  /// Of a thing that stands in the water, from the water up to `top_m`, with this outline on the map.
+  Look At(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
+
+  /// Whether something nearer stands before what would be seen next to the ends of a seen outline.
+  Sides SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
+
+  /// The lidar on the map, in the middle of the scan.
+  Eigen::Vector2d from_m() const { return (start_.translation() + 0.5 * (end_.translation() - start_.translation())).head<2>(); }
+
+  /// Returns of one segment on the map, all of the scan in the order of its cells.
+  struct Return {
+    Eigen::Vector2d place_m;
+    std::int16_t label;
+  };
+  std::vector<Return> Returns() const;
+
+ private:
+  struct Span {
+    int first = 0;  // column; may be negative or beyond the last: wrap
+    int count = 0;
+    double near_m = 0.0;  // horizontal, from the lidar
+    double far_m = 0.0;
+  };
+  Span ColumnsOf(std::span<const Eigen::Vector2d> outline_m) const;
+  int ColumnAt(double azimuth_rad) const;
+  Eigen::Isometry3d PoseAt(int column) const;
+
+  Eigen::Isometry3d T_vessel_lidar_;
+  double reference_point_above_water_m_;
+  double max_range_m_;
+  const Sweep* sweep_ = nullptr;
+  Eigen::Isometry3d start_ = Eigen::Isometry3d::Identity();  // T_map_lidar, z over the water
+  Eigen::Isometry3d end_ = Eigen::Isometry3d::Identity();
+  double turn_rad_ = 0.0;                       // of heading, from start to end
+  std::vector<Eigen::Vector2d> ring_;           // cosine and sine of the elevation
+  std::vector<Eigen::Vector2d> column_;         // cosine and sine of the azimuth
+  std::vector<double> unwrapped_rad_;           // azimuth from the first column on, increasing
+};
+
+}  // namespace lookout::tracker
