@@ -14,7 +14,6 @@
 
 namespace lookout {
 
-
 /// Geodetic origin of the map frame, WGS84. NaN = not known.
 struct Datum {
   double latitude_deg = kNan;

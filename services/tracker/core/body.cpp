@@ -14,7 +14,8 @@ namespace {
 // A direction belongs to the near side where it points at the lidar by more than this cosine, to the far side where it points away by as much, and
 // to the left or right end between: two directions of 22.5 deg each.
 constexpr double kSideCosine = 0.3;
-// How well one scan shows a side, and an end: the range's deviation and the roughness of hulls; an end lies between two beams, 0.2 deg apart (3.5 mrad).
+// How well one scan shows a side, and an end: the range's deviation and the roughness of hulls; an end lies between two beams, 0.2 deg apart (3.5
+// mrad).
 constexpr double kNearSdM = 0.04;
 constexpr double kNearSdPerRange = 0.001;
 constexpr double kEndSdM = 0.04;
@@ -39,7 +40,7 @@ constexpr double kGreatestLogOdds = 12.0;
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Of a normal density at `off`, without the factor of 2 pi.
 double LogDensity(const Eigen::Vector2d& off, const Eigen::Matrix2d& covariance) {
@@ -66,7 +67,7 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
   if (distance > 0.0) sight /= distance;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double cosine = directions[i].dot(sight);
-    const bool is_left = Cross(sight, directions[i]) > 0.0;
+    const bool is_left = CrossOf(sight, directions[i]) > 0.0;
     const bool is_end = std::abs(cosine) <= kSideCosine;
     const bool is_hidden = is_left ? sides.is_left_hidden : sides.is_right_hidden;
     const bool is_edge = cosine < -kSideCosine || (is_end && !is_hidden);
@@ -208,9 +209,7 @@ std::vector<Eigen::Vector2d> Body::Outline() const {
   return corners;
 }
 
-double Body::SeenShare() const {
-  return static_cast<double>(std::ranges::count_if(sides_, &Side::is_seen)) / static_cast<double>(kDirections);
-}
+double Body::SeenShare() const { return static_cast<double>(std::ranges::count_if(sides_, &Side::is_seen)) / static_cast<double>(kDirections); }
 
 Eigen::Vector2d Body::middle_m() const {
   constexpr std::size_t kNorth = kDirections / 4;

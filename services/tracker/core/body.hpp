@@ -17,10 +17,12 @@ struct Sides {
   bool is_right_hidden = false;
 };
 
-/// A thing that stands or moves at constant velocity. The outline is anchored at the position: the hidden far side is what was seen before, or assumed.
+/// A thing that stands or moves at constant velocity. The outline is anchored at the position: the hidden far side is what was seen before, or
+/// assumed.
 ///
-/// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one does
-/// from the predicted position. So more or less of a thing in sight is no motion, and the side that is seen does not draw the centre towards the boat.
+/// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one
+/// does from the predicted position. So more or less of a thing in sight is no motion, and the side that is seen does not draw the centre towards the
+/// boat.
 class Body {
  public:
   /// @param seen_m  outline, map
@@ -46,9 +48,9 @@ class Body {
   /// Of the hypothesis that holds: moving where its probability is above the threshold.
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }
-  Eigen::Vector2d center_m() const;       // middle of the outline
+  Eigen::Vector2d center_m() const;  // middle of the outline
   Eigen::Vector2d velocity_mps() const { return moving_.tail<2>(); }
-  Eigen::Matrix4d covariance() const;     // of centre and velocity, relative to the own boat
+  Eigen::Matrix4d covariance() const;  // of centre and velocity, relative to the own boat
   double turn_rate_radps() const { return turn_rate_radps_; }
 
  private:

@@ -19,7 +19,7 @@ struct Seen {
   bool is_land = false;
   double thing_probability = 1.0;  // 0 to 1, that it is no clutter; of a method that states none: 0.9 sure, 0.1 tentative
   int num_returns = 0;
-  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();             // map
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();              // map
   Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();           // east, north
   Eigen::Matrix2d covariance_relative_m2 = Eigen::Matrix2d::Zero();  // without the error of the own position
   double top_above_water_m = 0.0;
@@ -46,7 +46,7 @@ struct ScanInput {
   std::vector<Seen> seen;
   std::optional<Pose> own_at_start;  // at time; nullopt: position or heading was not known
   std::optional<Pose> own;           // at end_time
-  std::optional<Sweep> sweep;  // nullopt: LIDAR_SCAN did not come
+  std::optional<Sweep> sweep;        // nullopt: LIDAR_SCAN did not come
 };
 
 }  // namespace lookout::tracker

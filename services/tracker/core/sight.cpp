@@ -158,8 +158,7 @@ Sides Sight::SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) c
       for (int ring = 0; ring < num_rings; ++ring) {
         const auto& azimuth = column_[static_cast<std::size_t>(column)];
         const auto& elevation = ring_[static_cast<std::size_t>(ring)];
-        const Eigen::Vector3d direction =
-            pose.linear() * Eigen::Vector3d(elevation.x() * azimuth.x(), -elevation.x() * azimuth.y(), elevation.y());
+        const Eigen::Vector3d direction = pose.linear() * Eigen::Vector3d(elevation.x() * azimuth.x(), -elevation.x() * azimuth.y(), elevation.y());
         const double flat = Hypot(direction.x(), direction.y());
         const double z = pose.translation().z() + span.near_m * direction.z() / flat;
         if (z > top_m || z < kAtWaterM) continue;

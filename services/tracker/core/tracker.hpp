@@ -17,11 +17,11 @@ namespace lookout::tracker {
 struct TrackerParams {
   Eigen::Isometry3d T_vessel_lidar = Eigen::Isometry3d::Identity();
   double reference_point_above_water_m = 0.0;
-  double max_range_m = 0.0;                     // of the segmenter: beyond it nothing could have been seen
-  std::vector<Eigen::Vector2d> own_hull_m;      // vessel frame, convex, counter-clockwise
+  double max_range_m = 0.0;                 // of the segmenter: beyond it nothing could have been seen
+  std::vector<Eigen::Vector2d> own_hull_m;  // vessel frame, convex, counter-clockwise
   EncounterParams encounter;
-  double moving_probability = 0.95;             // above which a track moves
-  double confirm_probability = 0.99;            // existence
+  double moving_probability = 0.95;   // above which a track moves
+  double confirm_probability = 0.99;  // existence
   double end_probability = 0.01;
 };
 

@@ -1,0 +1,40 @@
+#include "services/tracker/core/clutter.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/core/angles.hpp"
+#include "common/core/elementary.hpp"
+
+namespace lookout::tracker {
+
+namespace {
+
+constexpr double kMemoryS = 5.0;
+// Where nothing was ever seen: one false segment in 10 s and 10 000 m2.
+constexpr double kLeastDensity = 1e-6;
+
+}  // namespace
+
+std::size_t ClutterMap::IndexOf(const Eigen::Vector2d& place_vessel_m) {
+  const double angle_rad = WrapTo2Pi(Atan2(place_vessel_m.y(), place_vessel_m.x()));
+  const auto sector = std::min(static_cast<std::size_t>(angle_rad / (kTwoPi / kSectors)), kSectors - 1);
+  const auto ring = static_cast<std::size_t>(std::min(place_vessel_m.norm() / kRingM, kRings - 1.0));
+  return ring * kSectors + sector;
+}
+
+void ClutterMap::End(double dt_s) {
+  const double gain = std::clamp(dt_s / kMemoryS, 0.0, 1.0);
+  for (std::size_t i = 0; i < means_.size(); ++i) means_[i] += gain * (counts_[i] - means_[i]);
+}
+
+double ClutterMap::DensityAt(const Eigen::Vector2d& place_vessel_m) const {
+  const std::size_t index = IndexOf(place_vessel_m);
+  const auto ring = static_cast<double>(index / kSectors);
+  const double area_m2 = kPi * kRingM * kRingM * (2.0 * ring + 1.0) / kSectors;
+  return kLeastDensity + means_[index] / area_m2;
+}
+
+double ClutterMap::total() const { return std::accumulate(means_.begin(), means_.end(), 0.0); }
+
+}  // namespace lookout::tracker

@@ -1,0 +1,580 @@
+#include "services/tracker/core/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "common/core/angles.hpp"
+#include "services/tracker/core/assignment.hpp"
+#include "services/tracker/core/clutter.hpp"
+#include "services/tracker/core/followed.hpp"
+#include "services/tracker/core/land.hpp"
+#include "services/tracker/core/sight.hpp"
+
+namespace lookout::tracker {
+
+namespace {
+
+constexpr double kMostGapOfTimeS = 10.0;  // between scans; beyond, everything begins anew
+constexpr double kMostJumpM = 10.0;       // of the own position, beyond what its speed explains
+constexpr std::size_t kLooksKept = 15;
+constexpr double kUnseenEndS = 30.0;  // a confirmed track that could not be seen for so long ends
+constexpr double kCoastingS = 1.0;
+constexpr double kLineageS = 10.0;
+constexpr double kLandShare = 0.6;  // of a segment's returns, where land is remembered
+constexpr double kLandVotes = 0.6;
+constexpr double kLandVoteGain = 0.1;
+constexpr double kInsideMergeS = 3.0;      // two that stand and were never seen apart for so long are one
+constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
+constexpr double kMostDetection = 0.95;
+constexpr double kGreatestExistence = 8.0;
+constexpr double kLeastExistence = -6.0;
+constexpr double kMostCost = 6.0;
+constexpr double kWaterlineRangeM = 150.0;
+constexpr std::size_t kMostWaterline = 2000;
+constexpr std::int64_t kWaterlineEvery = 10;
+
+double RadiusOf(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& middle_m) {
+  double radius = 0.0;
+  for (const auto& corner : outline_m) radius = std::max(radius, (corner - middle_m).norm());
+  return radius;
+}
+
+Eigen::Vector2d MiddleOf(const std::vector<Eigen::Vector2d>& outline_m) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const auto& corner : outline_m) middle += corner / static_cast<double>(outline_m.size());
+  return middle;
+}
+
+}  // namespace
+
+struct Tracker::Memory {
+  explicit Memory(const TrackerParams& params) : sight(params.T_vessel_lidar, params.reference_point_above_water_m, params.max_range_m) {}
+
+  Sight sight;
+  LandMemory land;
+  ClutterMap clutter;
+  std::deque<Followed> tracks;  // by id
+  std::int64_t next_id = 1;
+  std::optional<Utime> time;
+  Datum datum;
+  std::optional<Pose> own;
+  Picture picture;
+  std::int64_t num_restarts_time = 0;
+  std::int64_t num_restarts_datum = 0;
+  std::int64_t num_restarts_jump = 0;
+  std::int64_t num_without_pose = 0;
+  std::int64_t num_confirmed = 0;
+  std::int64_t num_scans = 0;
+};
+
+namespace {
+
+// One scan at work.
+class Step {
+ public:
+  Step(const TrackerParams& params, const ScanInput& scan, Sight& sight, LandMemory& land, ClutterMap& clutter, std::deque<Followed>& tracks,
+       std::int64_t& next_id, double dt_s)
+      : params_(params), scan_(scan), sight_(sight), land_(land), clutter_(clutter), tracks_(tracks), next_id_(next_id), dt_s_(dt_s) {}
+
+  void Run() {
+    Predict();
+    is_sight_known_ = sight_.Begin(scan_);
+    if (!scan_.own) return;
+    FindPlaces();
+    FindLand();
+    Look();
+    clutter_.Begin();
+    AssignBodies();
+    AssignRest();
+    FindInside();
+    Absorb();
+    for (auto& track : tracks_) {
+      if (!track.is_seen_now && !track.is_inside_now) Miss(track);
+    }
+    Begin();
+    clutter_.End(dt_s_);
+    FeedLand();
+    Merge();
+  }
+
+  bool is_sight_known() const { return is_sight_known_; }
+  const std::vector<std::int32_t>& land_ids() const { return land_ids_; }
+  const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
+
+ private:
+  enum class Use { kFree, kLand, kTaken };
+
+  Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const {
+    const Eigen::Vector2d off = place_m - scan_.own->position_map_m.head<2>();
+    const auto [sine, cosine] = SinCosOf(scan_.own->heading_rad);  // forward is (sine, cosine) of east, north
+    return {off.x() * sine + off.y() * cosine, -off.x() * cosine + off.y() * sine};
+  }
+
+  void Predict() {
+    for (auto& track : tracks_) {
+      track.segment_ids.clear();
+      track.is_seen_now = track.is_inside_now = false;
+      track.detection = 0.0;
+      if (!track.body) continue;
+      track.body->Predict(dt_s_);
+      Place(track);
+    }
+  }
+
+  static void Place(Followed& track) {
+    track.outline_m = track.body->Outline();
+    track.middle_m = track.body->center_m();
+    track.radius_m = RadiusOf(track.outline_m, track.middle_m);
+  }
+
+  void FindPlaces() {
+    use_.assign(scan_.seen.size(), Use::kFree);
+    middle_m_.clear();
+    radius_m_.clear();
+    for (const auto& seen : scan_.seen) {
+      middle_m_.push_back(MiddleOf(seen.outline_m));
+      radius_m_.push_back(RadiusOf(seen.outline_m, middle_m_.back()));
+    }
+    places_m_.assign(scan_.seen.size(), {});
+    std::map<std::int32_t, std::size_t> index_of;
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) index_of[scan_.seen[i].segment_id] = i;
+    for (const auto& one : sight_.Returns()) {
+      if (const auto found = index_of.find(one.label); found != index_of.end()) places_m_[found->second].push_back(one.place_m);
+    }
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      const auto& seen = scan_.seen[i];
+      if (!places_m_[i].empty()) continue;
+      places_m_[i] = seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m;
+    }
+  }
+
+  // What the segmenter calls land, and what lies where land is remembered.
+  void FindLand() {
+    land_share_.clear();
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      const auto& seen = scan_.seen[i];
+      land_share_.push_back(land_.Share(places_m_[i]));
+      if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
+    }
+  }
+
+  void Look() {
+    for (auto& track : tracks_) {
+      if (!is_sight_known_) {
+        track.detection = kDetectionUnknown;
+        continue;
+      }
+      const auto look = sight_.At(track.outline_m, track.top_m);
+      const double share = track.beams_met / track.beams_open;
+      // Of so many beams that each would come back with this share; not all of them by themselves.
+      double none = 1.0;
+      for (int i = 0; i < std::min(20, static_cast<int>(look.num_open)); ++i) none *= 1.0 - share;
+      track.detection = std::min(kMostDetection, 1.0 - none);
+    }
+  }
+
+  double CostOf(const Followed& track, std::size_t i) const {
+    const auto& seen = scan_.seen[i];
+    const Eigen::Matrix4d covariance = track.body->covariance();
+    const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
+    const double gate = 0.5 + 2.0 * sd;
+    if ((middle_m_[i] - track.middle_m).norm() > gate + track.radius_m + radius_m_[i]) return kMostCost;
+    const double gap = GapOf(track.outline_m, seen.outline_m).distance_m;
+    if (gap > gate) return kMostCost;
+    const double area_track = std::max(0.1, AreaOf(track.outline_m));
+    const double area_seen = std::max(0.1, AreaOf(seen.outline_m));
+    const auto both = Intersection(track.outline_m, seen.outline_m);
+    const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
+    const double sigma = 0.3 + sd;
+    const double far = (middle_m_[i] - track.middle_m).norm() / (0.5 + track.radius_m);
+    return 0.5 * gap * gap / (sigma * sigma) + (1.0 - overlap) + 0.2 * std::abs(Log(area_seen / area_track)) + 0.3 * std::min(far, 3.0);
+  }
+
+  void AssignBodies() {
+    std::vector<std::size_t> rows;
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      if (tracks_[t].body) rows.push_back(t);
+    }
+    std::vector<Candidate> candidates;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+        // Land takes no part, unless it is the very thing that was seen there before.
+        const bool may_be = use_[i] == Use::kFree || (tracks_[rows[row]].is_confirmed && radius_m_[i] < 2.0 * tracks_[rows[row]].radius_m + 1.0);
+        if (!may_be) continue;
+        const double cost = CostOf(tracks_[rows[row]], i) + (use_[i] == Use::kLand ? 1.0 : 0.0);
+        if (cost < kMostCost) candidates.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(i), cost});
+      }
+    }
+    const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(scan_.seen.size()), candidates, kMostCost);
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (column_of[row] >= 0) Hit(tracks_[rows[row]], static_cast<std::size_t>(column_of[row]));
+    }
+  }
+
+  // What is not yet likely takes the nearest of the rest.
+  void AssignRest() {
+    std::vector<std::size_t> by_east;
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      if (use_[i] == Use::kFree) by_east.push_back(i);
+    }
+    const auto east = [this](std::size_t i) { return middle_m_[i].x(); };
+    std::ranges::sort(by_east, [&](std::size_t a, std::size_t b) { return std::pair(east(a), a) < std::pair(east(b), b); });
+    struct Near {
+      double distance_m;
+      std::size_t track;
+      std::size_t seen;
+    };
+    std::vector<Near> pairs;
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      const auto& track = tracks_[t];
+      if (track.body) continue;
+      const double reach = 0.4 + 3.0 * std::min(0.3, track.UnseenS(scan_.end_time));
+      const double far = reach + track.radius_m + 2.0;
+      auto first = std::ranges::lower_bound(by_east, track.middle_m.x() - far, {}, east);
+      for (; first != by_east.end() && east(*first) <= track.middle_m.x() + far; ++first) {
+        const double distance = (middle_m_[*first] - track.middle_m).norm() - track.radius_m - radius_m_[*first];
+        if (distance < reach) pairs.push_back({std::max(0.0, distance) + 0.01 * (middle_m_[*first] - track.middle_m).norm(), t, *first});
+      }
+    }
+    std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.distance_m, near.track, near.seen); });
+    for (const auto& pair : pairs) {
+      if (tracks_[pair.track].is_seen_now || use_[pair.seen] != Use::kFree) continue;
+      Hit(tracks_[pair.track], pair.seen);
+      clutter_.Add(ToVessel(middle_m_[pair.seen]));
+    }
+  }
+
+  void Hit(Followed& track, std::size_t i) {
+    const auto& seen = scan_.seen[i];
+    const bool was_land = use_[i] == Use::kLand;
+    use_[i] = Use::kTaken;
+    track.is_seen_now = true;
+    track.land_votes += kLandVoteGain * ((was_land ? 1.0 : 0.0) - track.land_votes);
+    if (was_land) land_ids_kept_.push_back(seen.segment_id);
+    const Eigen::Vector2d before_m = track.middle_m;
+    const auto sides = sight_.SidesOf(seen.outline_m, seen.top_above_water_m);
+    const double range_m = (middle_m_[i] - sides.from_m).norm();
+    if (track.body) {
+      // Where another that is known lies in what is seen, this is not the outline of one.
+      const bool grows = !was_land && std::ranges::none_of(tracks_, [&](const Followed& other) {
+        return other.is_confirmed && other.id != track.id && Contains(seen.outline_m, other.middle_m);
+      });
+      track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
+      Place(track);
+    } else {
+      track.outline_m = seen.outline_m;
+      track.middle_m = middle_m_[i];
+      track.radius_m = radius_m_[i];
+    }
+    // Evidence: as dense as its place is known, against clutter there.
+    const double sd = track.body ? 0.3 : 0.5;
+    const double off = (track.middle_m - before_m).norm();
+    const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
+    const double clutter = clutter_.DensityAt(ToVessel(middle_m_[i]));
+    const double detection = std::max(track.detection, 0.1);
+    track.log_odds += Log(1.0 - detection + detection * density / clutter);
+    track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
+    track.sum_thing += Logit(seen.thing_probability);
+    ++track.num_hits;
+    track.sum_returns += seen.num_returns;
+    track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
+    track.seen = track.alone = scan_.end_time;
+    track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
+    track.relative_covariance_m2 = seen.covariance_relative_m2;
+    track.segment_ids.push_back(seen.segment_id);
+    Remember(track, true);
+    if (is_sight_known_) {
+      const auto look = sight_.At(seen.outline_m, seen.top_above_water_m);
+      constexpr double kForgotten = 0.95;
+      track.beams_met = kForgotten * track.beams_met + std::min(look.num_met, look.num_open);
+      track.beams_open = kForgotten * track.beams_open + std::max(look.num_open, 1.0);
+    }
+    if (!track.body && track.Existence() > 0.5) {
+      track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
+      Place(track);
+    }
+    if (track.Existence() > params_.confirm_probability) track.is_confirmed = true;
+  }
+
+  static void Remember(Followed& track, bool is_seen) {
+    track.looks.push_back(is_seen);
+    if (track.looks.size() > kLooksKept) track.looks.pop_front();
+  }
+
+  void Miss(Followed& track) {
+    if (track.detection <= 0.0) return;  // it could not have been seen
+    track.log_odds = std::max(kLeastExistence, track.log_odds + Log(1.0 - track.detection));
+    if (track.detection > 0.5) {
+      Remember(track, false);
+      track.beams_open += 1.0;
+    }
+  }
+
+  // Tracks that lie in what another is seen by: a boat that a dock, a bank or another boat was merged with in this scan.
+  void FindInside() {
+    for (auto& track : tracks_) {
+      if (track.is_seen_now || !track.body) continue;
+      for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+        if (use_[i] == Use::kFree) continue;
+        if ((middle_m_[i] - track.middle_m).norm() > radius_m_[i] + track.radius_m) continue;
+        const auto both = Intersection(scan_.seen[i].outline_m, track.outline_m);
+        const double area = std::max(0.05, AreaOf(track.outline_m));
+        if (both.empty() || AreaOf(both) < 0.5 * area) continue;
+        // Something of what was seen must lie in it.
+        if (std::ranges::none_of(places_m_[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); })) continue;
+        track.is_inside_now = true;
+        track.seen = scan_.end_time;
+        if (use_[i] == Use::kLand) track.land_votes += 0.1 * kLandVoteGain * (1.0 - track.land_votes);
+        track.inside_of = 0;
+        for (const auto& other : tracks_) {
+          if (std::ranges::find(other.segment_ids, scan_.seen[i].segment_id) != other.segment_ids.end()) track.inside_of = other.id;
+        }
+        break;
+      }
+    }
+  }
+
+  // A thing may come in several segments. What lies in the outline of a track, next to the segment that it was seen by, is of it.
+  void Absorb() {
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      if (use_[i] != Use::kFree) continue;
+      for (auto& track : tracks_) {
+        if (!track.is_seen_now || !track.is_confirmed || !track.body) continue;
+        if ((middle_m_[i] - track.middle_m).norm() > track.radius_m) continue;
+        const auto rectangle = RectangleAround(track.outline_m);
+        if (rectangle.width_m > 3.0 || !std::ranges::all_of(scan_.seen[i].outline_m, [&](const auto& corner) {
+              return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < 0.2;
+            }))
+          continue;
+        track.segment_ids.push_back(scan_.seen[i].segment_id);
+        use_[i] = Use::kTaken;
+        break;
+      }
+    }
+  }
+
+  void Begin() {
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      const auto& seen = scan_.seen[i];
+      if (use_[i] != Use::kFree) continue;
+      clutter_.Add(ToVessel(middle_m_[i]));
+      Followed track;
+      track.id = next_id_++;
+      track.first = track.seen = track.alone = scan_.end_time;
+      track.outline_m = seen.outline_m;
+      track.middle_m = track.first_m = middle_m_[i];
+      track.radius_m = radius_m_[i];
+      track.top_m = seen.top_above_water_m;
+      track.sum_thing = Logit(seen.thing_probability);
+      track.num_hits = 1;
+      track.sum_returns = seen.num_returns;
+      track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
+      track.relative_covariance_m2 = seen.covariance_relative_m2;
+      track.segment_ids.push_back(seen.segment_id);
+      Remember(track, true);
+      for (auto& other : tracks_) {
+        if (other.is_confirmed && !other.is_ended && Contains(other.outline_m, track.middle_m)) {
+          track.parents.emplace_back(other.id, scan_.end_time);
+          other.children.emplace_back(track.id, scan_.end_time);
+        }
+      }
+      if (seen.is_sure) {
+        const auto sides = sight_.SidesOf(seen.outline_m, seen.top_above_water_m);
+        track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, (middle_m_[i] - sides.from_m).norm());
+        Place(track);
+      }
+      tracks_.push_back(std::move(track));
+    }
+  }
+
+  void FeedLand() {
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      const auto& seen = scan_.seen[i];
+      if (!seen.is_sure) {
+        if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
+        continue;
+      }
+      if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
+      std::vector<const Followed*> near;
+      for (const auto& track : tracks_) {
+        if (track.is_confirmed && track.land_votes < kLandVotes && (track.middle_m - middle_m_[i]).norm() < track.radius_m + radius_m_[i]) {
+          near.push_back(&track);
+        }
+      }
+      for (const auto& place_m : places_m_[i]) {
+        const bool is_kept = seen.is_land && std::ranges::any_of(near, [&](const Followed* track) { return Contains(track->outline_m, place_m); });
+        if (!is_kept) land_.Add(place_m, seen.is_land);
+      }
+    }
+  }
+
+  // Two that stand, of which one was not seen by itself for long, are one; what most scans call land is land.
+  void Merge() {
+    for (auto& track : tracks_) {
+      if (track.is_ended) continue;
+      if (track.land_votes > kLandVotes) {
+        track.is_ended = true;
+        continue;
+      }
+      if (!track.is_inside_now || track.inside_of == 0 || ToSeconds(scan_.end_time - track.alone) < kInsideMergeS || !track.IsStanding()) continue;
+      const auto other = std::ranges::find(tracks_, track.inside_of, &Followed::id);
+      if (other == tracks_.end() || other->is_ended || !other->IsStanding()) continue;
+      merged_.emplace_back(track.id, other->id);
+      other->parents.emplace_back(track.id, scan_.end_time);
+      track.children.emplace_back(other->id, scan_.end_time);
+      other->is_confirmed = other->is_confirmed || track.is_confirmed;
+      track.is_ended = true;
+    }
+  }
+
+  const TrackerParams& params_;
+  const ScanInput& scan_;
+  Sight& sight_;
+  LandMemory& land_;
+  ClutterMap& clutter_;
+  std::deque<Followed>& tracks_;
+  std::int64_t& next_id_;
+  double dt_s_;
+  bool is_sight_known_ = false;
+  std::vector<Use> use_;                                // [seen]
+  std::vector<Eigen::Vector2d> middle_m_;               // [seen]
+  std::vector<double> radius_m_;                        // [seen]
+  std::vector<double> land_share_;                      // [seen]
+  std::vector<std::vector<Eigen::Vector2d>> places_m_;  // [seen] returns, or corners
+  std::vector<std::int32_t> land_ids_;
+  std::vector<std::int32_t> land_ids_kept_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
+};
+
+TrackKind KindOf(const Track& track, bool is_moving) {
+  constexpr double kBuoyM = 1.5;
+  constexpr double kStructureM = 20.0;
+  if (is_moving) return TrackKind::kBoat;
+  if (track.seen_share < 0.4) return TrackKind::kUnknown;
+  if (track.rectangle.length_m > kStructureM) return TrackKind::kStructure;
+  if (track.rectangle.length_m < kBuoyM) return TrackKind::kBuoy;
+  return TrackKind::kObstacle;
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackerParams& params) : params_(params), memory_(std::make_unique<Memory>(params)) {}
+Tracker::~Tracker() = default;
+
+void Tracker::Reset() {
+  memory_->tracks.clear();
+  memory_->land.Clear();
+  memory_->clutter = {};
+  memory_->time.reset();
+  memory_->own.reset();
+}
+
+const Picture& Tracker::Update(const ScanInput& scan) {
+  Memory& memory = *memory_;
+  if (memory.time) {
+    const double dt_s = ToSeconds(scan.end_time - *memory.time);
+    if (dt_s <= 0.0 || dt_s > kMostGapOfTimeS) {
+      ++memory.num_restarts_time;
+      Reset();
+    } else if (scan.own && memory.own && !scan.datum.IsSameAs(memory.datum)) {
+      ++memory.num_restarts_datum;
+      Reset();
+    } else if (scan.own && memory.own) {
+      const double speed_mps = memory.own->velocity_map_mps.allFinite() ? memory.own->velocity_map_mps.norm() : 0.0;
+      const double way_m = (scan.own->position_map_m - memory.own->position_map_m).head<2>().norm();
+      if (way_m > kMostJumpM + 3.0 * speed_mps * ToSeconds(scan.end_time - memory.own->time)) {
+        ++memory.num_restarts_jump;
+        Reset();
+      }
+    }
+  }
+  const double dt_s = memory.time ? ToSeconds(scan.end_time - *memory.time) : 0.0;
+  memory.time = scan.end_time;
+  if (scan.own) {
+    memory.own = scan.own;
+    memory.datum = scan.datum;
+  } else {
+    ++memory.num_without_pose;
+  }
+  Step step(params_, scan, memory.sight, memory.land, memory.clutter, memory.tracks, memory.next_id, dt_s);
+  step.Run();
+
+  Picture& picture = memory.picture;
+  picture = {};
+  picture.is_sight_known = step.is_sight_known();
+  picture.land_segment_ids = step.land_ids();
+  picture.merged = step.merged();
+  for (auto& track : memory.tracks) {
+    const double unseen_s = track.UnseenS(scan.end_time);
+    const double existence = track.Existence();
+    const double end_s = track.is_confirmed ? kUnseenEndS : 1.0;
+    if (unseen_s > end_s || existence < params_.end_probability || (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
+      track.is_ended = true;
+    if (!track.is_confirmed && !track.body) continue;  // it is nothing yet
+    Track out;
+    out.id = track.id;
+    out.status = track.is_ended           ? TrackStatus::kLost
+                 : !track.is_confirmed    ? TrackStatus::kTentative
+                 : unseen_s <= kCoastingS ? TrackStatus::kConfirmed
+                                          : TrackStatus::kCoasting;
+    if (track.is_ended && !track.is_confirmed) continue;
+    out.first = track.first;
+    out.seen = track.seen;
+    const bool is_moving = track.body && track.body->IsMoving(params_.moving_probability);
+    out.outline_m = track.outline_m;
+    out.rectangle = RectangleAround(out.outline_m);
+    out.position_m = out.rectangle.center_m;
+    if (track.body) {
+      out.covariance = track.body->covariance();
+      out.moving_probability = track.body->moving_probability();
+      out.seen_share = track.body->SeenShare();
+      if (is_moving) out.velocity_mps = track.body->velocity_mps();
+    } else {
+      out.covariance.topLeftCorner<2, 2>() = 0.05 * Eigen::Matrix2d::Identity();
+    }
+    out.covariance_relative_m2 = out.covariance.topLeftCorner<2, 2>() + track.relative_covariance_m2;
+    out.covariance.topLeftCorner<2, 2>() += track.relative_covariance_m2 + track.own_covariance_m2;
+    out.existence_probability = existence;
+    out.top_above_water_m = track.top_m;
+    out.segment_ids = track.segment_ids;
+    std::ranges::sort(out.segment_ids);
+    for (auto* list : {&track.parents, &track.children}) {
+      std::erase_if(*list, [&](const auto& one) { return ToSeconds(scan.end_time - one.second) > kLineageS; });
+    }
+    for (const auto& [id, since] : track.parents) out.parents.push_back(id);
+    for (const auto& [id, since] : track.children) out.children.push_back(id);
+    out.num_looks = static_cast<int>(track.looks.size());
+    out.num_seen = static_cast<int>(std::ranges::count(track.looks, true));
+    out.mean_returns = track.sum_returns / std::max(1, track.num_hits);
+    out.kind = KindOf(out, is_moving);
+    picture.tracks.push_back(std::move(out));
+  }
+  memory.num_confirmed = std::ranges::count_if(memory.tracks, &Followed::is_confirmed);
+  std::erase_if(memory.tracks, [](const Followed& track) { return track.is_ended; });
+  if (scan.own) {
+    memory.land.Forget(scan.own->position_map_m.head<2>());
+    if (memory.num_scans++ % kWaterlineEvery == 0) {
+      picture.waterline_m = memory.land.Waterline(scan.own->position_map_m.head<2>(), kWaterlineRangeM, kMostWaterline);
+    }
+  }
+  return picture;
+}
+
+std::vector<Counter> Tracker::counters() const {
+  const Memory& memory = *memory_;
+  return {{"tracks", static_cast<std::int64_t>(memory.tracks.size())},
+          {"tracks_confirmed", memory.num_confirmed},
+          {"clutter_per_scan", static_cast<std::int64_t>(memory.clutter.total() + 0.5)},
+          {"land_tiles", static_cast<std::int64_t>(memory.land.num_tiles())},
+          {"scans_without_pose", memory.num_without_pose},
+          {"restarts_by_time", memory.num_restarts_time},
+          {"restarts_by_datum", memory.num_restarts_datum},
+          {"restarts_by_jump", memory.num_restarts_jump}};
+}
+
+}  // namespace lookout::tracker
