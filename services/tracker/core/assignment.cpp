@@ -74,8 +74,9 @@ std::vector<std::int32_t> Assign(std::int32_t num_rows, std::int32_t num_columns
   for (const auto& candidate : candidates) {
     if (candidate.cost >= most) continue;
     sorted.push_back(candidate);
-    const auto [low, high] = std::minmax(root(candidate.row), root(num_rows + candidate.column));
-    parent[At(high)] = low;
+    const std::int32_t row_root = root(candidate.row);
+    const std::int32_t column_root = root(num_rows + candidate.column);
+    parent[At(std::max(row_root, column_root))] = std::min(row_root, column_root);
   }
   std::ranges::sort(sorted, {}, [&root](const Candidate& one) { return std::tuple(root(one.row), one.row, one.column, one.cost); });
   for (std::size_t begin = 0; begin < sorted.size();) {

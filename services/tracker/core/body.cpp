@@ -23,8 +23,8 @@ constexpr double kEndSdPerRange = 0.0035;
 // A side whose end was never seen is assumed to be as far behind as half of the width in sight, and that is known to half as much and 0.3 m.
 constexpr double kLeastDepthM = 0.15;
 constexpr double kGreatestAssumedDepthM = 1.5;
-constexpr double kLeastSideSdM = 0.02;
-constexpr double kSideWanderM2PerS = 0.02 * 0.02;      // outlines change as a boat swings
+constexpr double kLeastSideSdM = 0.005;
+constexpr double kSideWanderM2PerS = 0.01 * 0.01;      // outlines change as a boat swings
 constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // what is moored swings, and positions by GNSS wander
 constexpr double kAccelerationMps2 = 0.4;              // standard deviation over a second; small craft
 constexpr double kFirstSpeedMps = 3.0;                 // standard deviation of what is not known
@@ -150,7 +150,17 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
   }
   // The edges are of a few returns: as many directions are worth two.
   const Eigen::Matrix2d covariance = information.inverse();
-  return {covariance * sum, covariance * (0.5 * num_edges) + Eigen::Matrix2d::Identity() * jitter_m2_};
+  Shift shift{covariance * sum, covariance * (0.5 * num_edges) + Eigen::Matrix2d::Identity() * jitter_m2_, 0.0, 0.0};
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    if (measured.kind[i] != Measured::Kind::kEdge) continue;
+    const double left = measured.reach_m[i] - directions[i].dot(position + shift.shift_m) - sides_[i].reach_m;
+    shift.misfit += left * left / (measured.variance_m2[i] + sides_[i].variance_m2 + jitter_m2_) / num_edges;
+  }
+  const Eigen::Matrix2d spread = shift.covariance_m2 + (moving_probability_ > 0.5 ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>())
+                                                                                   : Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>() + standing_m2_));
+  const Eigen::Vector2d off = moving_probability_ > 0.5 ? Eigen::Vector2d(shift.shift_m) : Eigen::Vector2d(shift.shift_m);
+  shift.off = off.dot(spread.inverse() * off);
+  return shift;
 }
 
 void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows) {
@@ -188,16 +198,35 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   if (speed < kLeastSpeedMps || speed < kSpeedSds * speed_sd) moving_probability_ = std::min(moving_probability_, 0.5);
 
   if (!grows) return;
+  // Sides are counted from the position: what it is not known to does not change them, or they would follow a wrong speed.
   const Eigen::Vector2d position = position_m();
+  const Eigen::Matrix2d spread = moving_probability_ > 0.5 ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>()) : standing_m2_;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double off = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
     if (measured.kind[i] != Measured::Kind::kEdge && off <= 0.0) continue;
     const double variance = sides_[i].variance_m2;
-    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_);
+    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_ + directions[i].dot(spread * directions[i]));
     sides_[i].reach_m += gain * off;
     sides_[i].variance_m2 = std::max((1.0 - gain) * variance, kLeastSideSdM * kLeastSideSdM);
     sides_[i].is_seen = true;
   }
+}
+
+void Body::Loosen(double variance_m2) {
+  standing_m2_ += Eigen::Matrix2d::Identity() * variance_m2;
+  moving_covariance_.topLeftCorner<2, 2>() += Eigen::Matrix2d::Identity() * variance_m2;
+  num_measured_ = 0;
+  log_likelihood_ratio_ = std::min(log_likelihood_ratio_, 0.0);
+}
+
+void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) {
+  Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
+  other.moving_.tail<2>() = moving_.tail<2>();
+  other.moving_covariance_.bottomRightCorner<2, 2>() = moving_covariance_.bottomRightCorner<2, 2>();
+  other.log_likelihood_ratio_ = log_likelihood_ratio_;
+  other.moving_probability_ = moving_probability_;
+  other.jitter_m2_ = jitter_m2_;
+  *this = other;
 }
 
 std::vector<Eigen::Vector2d> Body::Outline() const {

@@ -35,6 +35,8 @@ class Body {
   struct Shift {
     Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
+    double off = 0.0;     // squared, in deviations of the predicted position and of the shift itself: 2 in the mean
+    double misfit = 0.0;  // mean square of what is left of each side, in its deviations: 1 in the mean where it is the same thing
   };
   Shift ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const;
 
@@ -46,6 +48,11 @@ class Body {
   double SeenShare() const;
 
   /// Of the hypothesis that holds: moving where its probability is above the threshold.
+  /// All positions may have moved together by so much: the own position became better known.
+  void Loosen(double variance_m2);
+  /// Another outline of the same thing: it keeps its velocity.
+  void Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m);
+
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }
   Eigen::Vector2d center_m() const;  // middle of the outline

@@ -25,15 +25,21 @@ constexpr std::size_t kLooksKept = 15;
 constexpr double kUnseenEndS = 30.0;  // a confirmed track that could not be seen for so long ends
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
+constexpr double kTypicalRangeM = 20.0;      // at which an error of heading counts as one of position
+constexpr double kLeastSettlingM = 0.1;
 constexpr double kLandShare = 0.6;  // of a segment's returns, where land is remembered
 constexpr double kLandVotes = 0.6;
 constexpr double kLandVoteGain = 0.1;
 constexpr double kInsideMergeS = 3.0;      // two that stand and were never seen apart for so long are one
 constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
 constexpr double kMostDetection = 0.95;
-constexpr double kGreatestExistence = 8.0;
+constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
 constexpr double kMostCost = 6.0;
+// A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
+constexpr double kMostOff = 16.0;
+constexpr double kMostMisfit = 9.0;
+constexpr int kMisfitsToRestart = 5;
 constexpr double kWaterlineRangeM = 150.0;
 constexpr std::size_t kMostWaterline = 2000;
 constexpr std::int64_t kWaterlineEvery = 10;
@@ -63,6 +69,7 @@ struct Tracker::Memory {
   std::optional<Utime> time;
   Datum datum;
   std::optional<Pose> own;
+  double own_m2 = 0.0;  // greatest variance of the own place since positions were last taken to have moved together
   Picture picture;
   std::int64_t num_restarts_time = 0;
   std::int64_t num_restarts_datum = 0;
@@ -140,6 +147,9 @@ class Step {
       middle_m_.push_back(MiddleOf(seen.outline_m));
       radius_m_.push_back(RadiusOf(seen.outline_m, middle_m_.back()));
     }
+    sides_.assign(scan_.seen.size(), std::nullopt);
+    ranges_m_.clear();
+    for (const auto& middle_m : middle_m_) ranges_m_.push_back((middle_m - sight_.from_m()).norm());
     places_m_.assign(scan_.seen.size(), {});
     std::map<std::int32_t, std::size_t> index_of;
     for (std::size_t i = 0; i < scan_.seen.size(); ++i) index_of[scan_.seen[i].segment_id] = i;
@@ -190,9 +200,14 @@ class Step {
     const double area_seen = std::max(0.1, AreaOf(seen.outline_m));
     const auto both = Intersection(track.outline_m, seen.outline_m);
     const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
-    const double sigma = 0.3 + sd;
-    const double far = (middle_m_[i] - track.middle_m).norm() / (0.5 + track.radius_m);
-    return 0.5 * gap * gap / (sigma * sigma) + (1.0 - overlap) + 0.2 * std::abs(Log(area_seen / area_track)) + 0.3 * std::min(far, 3.0);
+    const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
+    return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track));
+  }
+
+  // Computed once for a segment, where it is asked for.
+  const Sides& SidesOf(std::size_t i) const {
+    if (!sides_[i]) sides_[i] = sight_.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
+    return *sides_[i];
   }
 
   void AssignBodies() {
@@ -257,14 +272,21 @@ class Step {
     track.land_votes += kLandVoteGain * ((was_land ? 1.0 : 0.0) - track.land_votes);
     if (was_land) land_ids_kept_.push_back(seen.segment_id);
     const Eigen::Vector2d before_m = track.middle_m;
-    const auto sides = sight_.SidesOf(seen.outline_m, seen.top_above_water_m);
-    const double range_m = (middle_m_[i] - sides.from_m).norm();
+    const auto& sides = SidesOf(i);
+    const double range_m = ranges_m_[i];
     if (track.body) {
       // Where another that is known lies in what is seen, this is not the outline of one.
       const bool grows = !was_land && std::ranges::none_of(tracks_, [&](const Followed& other) {
         return other.is_confirmed && other.id != track.id && Contains(seen.outline_m, other.middle_m);
       });
-      track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
+      const auto shift = track.body->ShiftOf(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
+      if (shift.off < kMostOff && shift.misfit < kMostMisfit) {
+        track.num_misfits = 0;
+        track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
+      } else if (++track.num_misfits >= kMisfitsToRestart) {
+        track.num_misfits = 0;
+        track.body->Restart(seen.outline_m, sides, range_m);
+      }
       Place(track);
     } else {
       track.outline_m = seen.outline_m;
@@ -309,10 +331,7 @@ class Step {
   void Miss(Followed& track) {
     if (track.detection <= 0.0) return;  // it could not have been seen
     track.log_odds = std::max(kLeastExistence, track.log_odds + Log(1.0 - track.detection));
-    if (track.detection > 0.5) {
-      Remember(track, false);
-      track.beams_open += 1.0;
-    }
+    if (track.detection > 0.5) Remember(track, false);
   }
 
   // Tracks that lie in what another is seen by: a boat that a dock, a bank or another boat was merged with in this scan.
@@ -384,8 +403,7 @@ class Step {
         }
       }
       if (seen.is_sure) {
-        const auto sides = sight_.SidesOf(seen.outline_m, seen.top_above_water_m);
-        track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, (middle_m_[i] - sides.from_m).norm());
+        track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
         Place(track);
       }
       tracks_.push_back(std::move(track));
@@ -421,9 +439,13 @@ class Step {
         track.is_ended = true;
         continue;
       }
-      if (!track.is_inside_now || track.inside_of == 0 || ToSeconds(scan_.end_time - track.alone) < kInsideMergeS || !track.IsStanding()) continue;
+      if (!track.is_inside_now || track.inside_of == 0) continue;
       const auto other = std::ranges::find(tracks_, track.inside_of, &Followed::id);
-      if (other == tracks_.end() || other->is_ended || !other->IsStanding()) continue;
+      if (other == tracks_.end() || other->is_ended) continue;
+      const double inside_s = ToSeconds(scan_.end_time - track.alone);
+      const auto both = Intersection(other->outline_m, track.outline_m);
+      const bool is_within = !both.empty() && AreaOf(both) > 0.7 * AreaOf(track.outline_m);
+      if (inside_s < (is_within ? 1.0 : kInsideMergeS) || (!is_within && !(track.IsStanding() && other->IsStanding()))) continue;
       merged_.emplace_back(track.id, other->id);
       other->parents.emplace_back(track.id, scan_.end_time);
       track.children.emplace_back(other->id, scan_.end_time);
@@ -444,6 +466,8 @@ class Step {
   std::vector<Use> use_;                                // [seen]
   std::vector<Eigen::Vector2d> middle_m_;               // [seen]
   std::vector<double> radius_m_;                        // [seen]
+  mutable std::vector<std::optional<Sides>> sides_;  // [seen]
+  std::vector<double> ranges_m_;  // [seen] from the lidar
   std::vector<double> land_share_;                      // [seen]
   std::vector<std::vector<Eigen::Vector2d>> places_m_;  // [seen] returns, or corners
   std::vector<std::int32_t> land_ids_;
@@ -501,6 +525,18 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   } else {
     ++memory.num_without_pose;
   }
+  if (scan.own) {
+    // A fix after a gap, or a filter that settles, moves everything at once.
+    const auto& covariance = scan.own->covariance;
+    const double own_m2 = covariance(0, 0) + covariance(1, 1) + covariance(4, 4) * kTypicalRangeM * kTypicalRangeM;
+    if (own_m2 < 0.5 * memory.own_m2 && std::sqrt(memory.own_m2) - std::sqrt(own_m2) > kLeastSettlingM) {
+      for (auto& track : memory.tracks) {
+        if (track.body) track.body->Loosen(memory.own_m2);
+      }
+      memory.own_m2 = own_m2;
+    }
+    if (own_m2 > memory.own_m2) memory.own_m2 = own_m2;
+  }
   Step step(params_, scan, memory.sight, memory.land, memory.clutter, memory.tracks, memory.next_id, dt_s);
   step.Run();
 
@@ -513,7 +549,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
     const double end_s = track.is_confirmed ? kUnseenEndS : 1.0;
-    if (unseen_s > end_s || existence < params_.end_probability || (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
+    if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) || (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
       track.is_ended = true;
     if (!track.is_confirmed && !track.body) continue;  // it is nothing yet
     Track out;
