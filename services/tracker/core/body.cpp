@@ -156,8 +156,9 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
     const double left = measured.reach_m[i] - directions[i].dot(position + shift.shift_m) - sides_[i].reach_m;
     shift.misfit += left * left / (measured.variance_m2[i] + sides_[i].variance_m2 + jitter_m2_) / num_edges;
   }
-  const Eigen::Matrix2d spread = shift.covariance_m2 + (moving_probability_ > 0.5 ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>())
-                                                                                   : Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>() + standing_m2_));
+  const Eigen::Matrix2d spread =
+      shift.covariance_m2 + (moving_probability_ > 0.5 ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>())
+                                                       : Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>() + standing_m2_));
   const Eigen::Vector2d off = moving_probability_ > 0.5 ? Eigen::Vector2d(shift.shift_m) : Eigen::Vector2d(shift.shift_m);
   shift.off = off.dot(spread.inverse() * off);
   return shift;

@@ -27,7 +27,7 @@ struct Followed {
   std::int64_t id = 0;
   Utime first;
   Utime seen;
-  Utime alone;                             // when it was last seen by itself, and not inside of what another is seen by
+  Utime seen_alone;                        // when it was last seen by itself, and not inside of what another is seen by
   std::optional<Body> body;                // from when it is likely; before that, what was seen last stands for it
   std::vector<Eigen::Vector2d> outline_m;  // predicted
   Eigen::Vector2d middle_m = Eigen::Vector2d::Zero();
@@ -52,7 +52,7 @@ struct Followed {
   bool is_ended = false;
   bool is_seen_now = false;
   bool is_inside_now = false;
-  std::int64_t inside_of = 0;
+  bool is_met = false;     // beams ended in it, in this scan
   double detection = 0.0;  // probability, this scan
 
   bool IsStanding() const {

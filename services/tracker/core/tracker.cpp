@@ -17,6 +17,8 @@
 
 namespace lookout::tracker {
 
+using Ids = std::pair<std::int64_t, std::int64_t>;  // the lower first
+
 namespace {
 
 constexpr double kMostGapOfTimeS = 10.0;  // between scans; beyond, everything begins anew
@@ -25,7 +27,7 @@ constexpr std::size_t kLooksKept = 15;
 constexpr double kUnseenEndS = 30.0;  // a confirmed track that could not be seen for so long ends
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
-constexpr double kTypicalRangeM = 20.0;      // at which an error of heading counts as one of position
+constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
 constexpr double kLandShare = 0.6;  // of a segment's returns, where land is remembered
 constexpr double kLandVotes = 0.6;
@@ -64,7 +66,8 @@ struct Tracker::Memory {
   Sight sight;
   LandMemory land;
   ClutterMap clutter;
-  std::deque<Followed> tracks;  // by id
+  std::deque<Followed> tracks;    // by id
+  std::map<Ids, Utime> together;  // since when no scan showed both by themselves
   std::int64_t next_id = 1;
   std::optional<Utime> time;
   Datum datum;
@@ -85,8 +88,16 @@ namespace {
 class Step {
  public:
   Step(const TrackerParams& params, const ScanInput& scan, Sight& sight, LandMemory& land, ClutterMap& clutter, std::deque<Followed>& tracks,
-       std::int64_t& next_id, double dt_s)
-      : params_(params), scan_(scan), sight_(sight), land_(land), clutter_(clutter), tracks_(tracks), next_id_(next_id), dt_s_(dt_s) {}
+       std::map<Ids, Utime>& together, std::int64_t& next_id, double dt_s)
+      : params_(params),
+        scan_(scan),
+        sight_(sight),
+        land_(land),
+        clutter_(clutter),
+        tracks_(tracks),
+        together_(together),
+        next_id_(next_id),
+        dt_s_(dt_s) {}
 
   void Run() {
     Predict();
@@ -183,7 +194,10 @@ class Step {
       const double share = track.beams_met / track.beams_open;
       // Of so many beams that each would come back with this share; not all of them by themselves.
       double none = 1.0;
-      for (int i = 0; i < std::min(20, static_cast<int>(look.num_open)); ++i) none *= 1.0 - share;
+      // What ended in it was something there, if not by itself.
+      const double num_empty = look.num_open - look.num_met;
+      for (int i = 0; i < std::min(20, static_cast<int>(num_empty + 0.5)); ++i) none *= 1.0 - share;
+      track.is_met = look.num_met > 0.5 * look.num_open;
       track.detection = std::min(kMostDetection, 1.0 - none);
     }
   }
@@ -305,7 +319,7 @@ class Step {
     ++track.num_hits;
     track.sum_returns += seen.num_returns;
     track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
-    track.seen = track.alone = scan_.end_time;
+    track.seen = track.seen_alone = scan_.end_time;
     track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
     track.relative_covariance_m2 = seen.covariance_relative_m2;
     track.segment_ids.push_back(seen.segment_id);
@@ -345,14 +359,11 @@ class Step {
         const double area = std::max(0.05, AreaOf(track.outline_m));
         if (both.empty() || AreaOf(both) < 0.5 * area) continue;
         // Something of what was seen must lie in it.
-        if (std::ranges::none_of(places_m_[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); })) continue;
+        if (!track.is_met && std::ranges::none_of(places_m_[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
+          continue;
         track.is_inside_now = true;
         track.seen = scan_.end_time;
         if (use_[i] == Use::kLand) track.land_votes += 0.1 * kLandVoteGain * (1.0 - track.land_votes);
-        track.inside_of = 0;
-        for (const auto& other : tracks_) {
-          if (std::ranges::find(other.segment_ids, scan_.seen[i].segment_id) != other.segment_ids.end()) track.inside_of = other.id;
-        }
         break;
       }
     }
@@ -384,7 +395,7 @@ class Step {
       clutter_.Add(ToVessel(middle_m_[i]));
       Followed track;
       track.id = next_id_++;
-      track.first = track.seen = track.alone = scan_.end_time;
+      track.first = track.seen = track.seen_alone = scan_.end_time;
       track.outline_m = seen.outline_m;
       track.middle_m = track.first_m = middle_m_[i];
       track.radius_m = radius_m_[i];
@@ -431,27 +442,45 @@ class Step {
     }
   }
 
-  // Two that stand, of which one was not seen by itself for long, are one; what most scans call land is land.
+  // Two whose outlines lie on each other are one when no scan shows both by themselves for some time: longer where both are well known, as a boat at
+  // a dock with which it is segmented for a while. What most scans call land is land.
   void Merge() {
-    for (auto& track : tracks_) {
-      if (track.is_ended) continue;
-      if (track.land_votes > kLandVotes) {
-        track.is_ended = true;
-        continue;
+    constexpr double kShortestS = 1.0;
+    constexpr double kLongestS = 10.0;
+    constexpr double kPerHitS = 0.05;
+    std::map<Ids, Utime> still;
+    for (auto one = tracks_.begin(); one != tracks_.end(); ++one) {
+      if (one->land_votes > kLandVotes) one->is_ended = true;
+      if (!one->body || one->is_ended) continue;
+      for (auto other = std::next(one); other != tracks_.end(); ++other) {
+        if (!other->body || other->is_ended || (one->is_seen_now && other->is_seen_now)) continue;
+        if ((one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m) continue;
+        const auto both = Intersection(one->outline_m, other->outline_m);
+        if (both.empty() || AreaOf(both) < 0.5 * std::min(AreaOf(one->outline_m), AreaOf(other->outline_m))) continue;
+        const Ids ids(one->id, other->id);
+        const auto before = together_.find(ids);
+        const Utime since = before == together_.end() ? scan_.end_time : before->second;
+        const double least_s = std::clamp(kPerHitS * std::min(one->num_hits, other->num_hits), kShortestS, kLongestS);
+        if (ToSeconds(scan_.end_time - since) < least_s) {
+          still.emplace(ids, since);
+          continue;
+        }
+        // What was seen last goes on, by the older name.
+        merged_.emplace_back(other->id, one->id);
+        if (other->seen_alone > one->seen_alone) {
+          std::swap(*one, *other);
+          std::swap(one->id, other->id);
+          std::swap(one->parents, other->parents);
+          std::swap(one->children, other->children);
+          std::swap(one->first, other->first);
+        }
+        one->parents.emplace_back(other->id, scan_.end_time);
+        other->children.emplace_back(one->id, scan_.end_time);
+        one->is_confirmed = one->is_confirmed || other->is_confirmed;
+        other->is_ended = true;
       }
-      if (!track.is_inside_now || track.inside_of == 0) continue;
-      const auto other = std::ranges::find(tracks_, track.inside_of, &Followed::id);
-      if (other == tracks_.end() || other->is_ended) continue;
-      const double inside_s = ToSeconds(scan_.end_time - track.alone);
-      const auto both = Intersection(other->outline_m, track.outline_m);
-      const bool is_within = !both.empty() && AreaOf(both) > 0.7 * AreaOf(track.outline_m);
-      if (inside_s < (is_within ? 1.0 : kInsideMergeS) || (!is_within && !(track.IsStanding() && other->IsStanding()))) continue;
-      merged_.emplace_back(track.id, other->id);
-      other->parents.emplace_back(track.id, scan_.end_time);
-      track.children.emplace_back(other->id, scan_.end_time);
-      other->is_confirmed = other->is_confirmed || track.is_confirmed;
-      track.is_ended = true;
     }
+    together_ = std::move(still);
   }
 
   const TrackerParams& params_;
@@ -460,14 +489,15 @@ class Step {
   LandMemory& land_;
   ClutterMap& clutter_;
   std::deque<Followed>& tracks_;
+  std::map<Ids, Utime>& together_;
   std::int64_t& next_id_;
   double dt_s_;
   bool is_sight_known_ = false;
   std::vector<Use> use_;                                // [seen]
   std::vector<Eigen::Vector2d> middle_m_;               // [seen]
   std::vector<double> radius_m_;                        // [seen]
-  mutable std::vector<std::optional<Sides>> sides_;  // [seen]
-  std::vector<double> ranges_m_;  // [seen] from the lidar
+  mutable std::vector<std::optional<Sides>> sides_;     // [seen]
+  std::vector<double> ranges_m_;                        // [seen] from the lidar
   std::vector<double> land_share_;                      // [seen]
   std::vector<std::vector<Eigen::Vector2d>> places_m_;  // [seen] returns, or corners
   std::vector<std::int32_t> land_ids_;
@@ -492,6 +522,7 @@ Tracker::~Tracker() = default;
 
 void Tracker::Reset() {
   memory_->tracks.clear();
+  memory_->together.clear();
   memory_->land.Clear();
   memory_->clutter = {};
   memory_->time.reset();
@@ -537,7 +568,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     }
     if (own_m2 > memory.own_m2) memory.own_m2 = own_m2;
   }
-  Step step(params_, scan, memory.sight, memory.land, memory.clutter, memory.tracks, memory.next_id, dt_s);
+  Step step(params_, scan, memory.sight, memory.land, memory.clutter, memory.tracks, memory.together, memory.next_id, dt_s);
   step.Run();
 
   Picture& picture = memory.picture;
@@ -549,7 +580,8 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
     const double end_s = track.is_confirmed ? kUnseenEndS : 1.0;
-    if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) || (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
+    if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) ||
+        (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
       track.is_ended = true;
     if (!track.is_confirmed && !track.body) continue;  // it is nothing yet
     Track out;
@@ -592,6 +624,8 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   }
   memory.num_confirmed = std::ranges::count_if(memory.tracks, &Followed::is_confirmed);
   std::erase_if(memory.tracks, [](const Followed& track) { return track.is_ended; });
+  std::ranges::sort(memory.tracks, {}, &Followed::id);
+  std::ranges::sort(picture.tracks, {}, &Track::id);
   if (scan.own) {
     memory.land.Forget(scan.own->position_map_m.head<2>());
     if (memory.num_scans++ % kWaterlineEvery == 0) {
