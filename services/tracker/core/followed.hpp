@@ -62,13 +62,14 @@ struct Followed {
   // That it is a thing and no clutter that lasts (crest, foam): what its segments look like, and how long it has lasted in one place.
   double ThingLogOdds() const {
     constexpr double kPerScan = 0.15;
-    constexpr double kPerSecondStanding = 3.0;
+    constexpr double kMostScans = 3.0;
+    constexpr double kPerSecondStanding = 1.5;
     constexpr double kPerSecondMoving = 0.5;
-    constexpr double kGreatest = 6.0;
+    constexpr double kMostForAge = 3.0;
     const double mean = sum_thing / std::max(1, num_hits);
-    const double features = mean > 0.0 ? std::min(mean * (1.0 + kPerScan * (num_hits - 1)), 3.0 * mean) : mean;
     const double age_s = std::max(0.0, ToSeconds(seen - first));
-    return std::min(kGreatest, features + (IsStanding() ? kPerSecondStanding : kPerSecondMoving) * age_s);
+    return mean * std::min(kMostScans, 1.0 + kPerScan * (num_hits - 1)) +
+           std::min(kMostForAge, (IsStanding() ? kPerSecondStanding : kPerSecondMoving) * age_s);
   }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }
   double UnseenS(Utime now) const { return ToSeconds(now - seen); }

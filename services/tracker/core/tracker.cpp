@@ -27,6 +27,8 @@ constexpr std::size_t kLooksKept = 15;
 constexpr double kUnseenEndS = 30.0;  // a confirmed track that could not be seen for so long ends
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
+constexpr double kWidestBoatM = 5.0;         // within a wider outline, as of a dock with berths, another thing may lie
+constexpr double kPartShare = 0.15;
 constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
 constexpr double kLandShare = 0.6;  // of a segment's returns, where land is remembered
@@ -377,7 +379,7 @@ class Step {
         if (!track.is_seen_now || !track.is_confirmed || !track.body) continue;
         if ((middle_m_[i] - track.middle_m).norm() > track.radius_m) continue;
         const auto rectangle = RectangleAround(track.outline_m);
-        if (rectangle.width_m > 3.0 || !std::ranges::all_of(scan_.seen[i].outline_m, [&](const auto& corner) {
+        if (rectangle.width_m > kWidestBoatM || !std::ranges::all_of(scan_.seen[i].outline_m, [&](const auto& corner) {
               return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < 0.2;
             }))
           continue;
@@ -453,10 +455,16 @@ class Step {
       if (one->land_votes > kLandVotes) one->is_ended = true;
       if (!one->body || one->is_ended) continue;
       for (auto other = std::next(one); other != tracks_.end(); ++other) {
-        if (!other->body || other->is_ended || (one->is_seen_now && other->is_seen_now)) continue;
+        if (!other->body || other->is_ended) continue;
         if ((one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m) continue;
         const auto both = Intersection(one->outline_m, other->outline_m);
-        if (both.empty() || AreaOf(both) < 0.5 * std::min(AreaOf(one->outline_m), AreaOf(other->outline_m))) continue;
+        const double smaller = std::min(AreaOf(one->outline_m), AreaOf(other->outline_m));
+        if (both.empty() || AreaOf(both) < 0.5 * smaller) continue;
+        // A mast or an oar in the outline of a boat is of it, also where it is a segment by itself.
+        const Followed& larger = AreaOf(one->outline_m) >= AreaOf(other->outline_m) ? *one : *other;
+        const bool is_part = smaller < kPartShare * AreaOf(larger.outline_m) && AreaOf(both) >= 0.9 * smaller &&
+                             RectangleAround(larger.outline_m).width_m < kWidestBoatM;
+        if (one->is_seen_now && other->is_seen_now && !is_part) continue;
         const Ids ids(one->id, other->id);
         const auto before = together_.find(ids);
         const Utime since = before == together_.end() ? scan_.end_time : before->second;
@@ -467,7 +475,7 @@ class Step {
         }
         // What was seen last goes on, by the older name.
         merged_.emplace_back(other->id, one->id);
-        if (other->seen_alone > one->seen_alone) {
+        if (is_part ? &larger == &*other : other->seen_alone > one->seen_alone) {
           std::swap(*one, *other);
           std::swap(one->id, other->id);
           std::swap(one->parents, other->parents);
