@@ -16,7 +16,7 @@ namespace {
 using Corners = std::span<const Eigen::Vector2d>;
 
 // Below it a relative motion is none: within a look-ahead of 30 s it is 1.5 m.
-constexpr double kStillMps = 0.05;
+constexpr double kHardlyMovesMps = 0.05;
 // A track's velocity is 0 until it moves for sure; this is below any way that steers.
 constexpr double kStandsMps = 0.2;
 // Rule 13: 22.5 deg abaft the beam.
@@ -371,7 +371,7 @@ ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const 
   approach.distance_m = std::max(0.0, distance_m);
   Approach nearest{approach.distance_m, 0.0};
   if (distance_m > 0.0 && velocity_mps.norm() > 0.0) nearest = ApproachOf(difference, velocity_mps, distance_m);
-  const bool is_moving = velocity_mps.norm() >= kStillMps;
+  const bool is_moving = velocity_mps.norm() >= kHardlyMovesMps;
   approach.cpa_m = is_moving ? nearest.distance_m : approach.distance_m;
   approach.tcpa_s = is_moving ? nearest.time_s : 0.0;
   approach.probability = Passage(difference, velocity_mps, covariance, params).Probability(nearest.distance_m);

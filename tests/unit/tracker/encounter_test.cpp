@@ -9,7 +9,7 @@
 namespace lookout::tracker {
 namespace {
 
-constexpr EncounterParams kParams{.limit_m = 5.0, .look_ahead_s = 30.0};
+constexpr EncounterParams kEncounterParams{.limit_m = 5.0, .look_ahead_s = 30.0};
 
 RelativeCovariance Covariance(double position_sd_m, double velocity_sd_mps) {
   RelativeCovariance covariance = RelativeCovariance::Zero();
@@ -26,7 +26,7 @@ Moving Square(const Eigen::Vector2d& center_m, const Eigen::Vector2d& velocity_m
 }
 
 ClosestApproach Of(const Moving& own, const Moving& other, double position_sd_m = 0.1, double velocity_sd_mps = 0.1) {
-  return ClosestApproachOf(own, other, Covariance(position_sd_m, velocity_sd_mps), kParams);
+  return ClosestApproachOf(own, other, Covariance(position_sd_m, velocity_sd_mps), kEncounterParams);
 }
 
 TEST(ClosestApproach, IsHullToHull) {
@@ -119,7 +119,7 @@ Encounter FromCourse(double course_deg, double speed_mps = 3.0) {
   const Eigen::Vector2d velocity_mps = speed_mps * Eigen::Vector2d(std::sin(course_rad), std::cos(course_rad));
   const auto own = Square({0.0, 0.0}, {0.0, 3.0});
   const auto other = Square(Eigen::Vector2d(0.0, 30.0) - 10.0 * velocity_mps, velocity_mps);
-  return EncounterOf(own, 0.0, other, Of(own, other), kParams);
+  return EncounterOf(own, 0.0, other, Of(own, other), kEncounterParams);
 }
 
 TEST(Encounter, IsAsRules13To15Say) {
@@ -138,7 +138,7 @@ TEST(Encounter, IsAsRules13To15Say) {
 
 TEST(Encounter, IsNoneWithoutMotionOrRisk) {
   const auto own = Square({0.0, 0.0}, {0.0, 3.0});
-  const auto none = [&own](const Moving& other) { return EncounterOf(own, 0.0, other, Of(own, other), kParams) == Encounter::kNone; };
+  const auto none = [&own](const Moving& other) { return EncounterOf(own, 0.0, other, Of(own, other), kEncounterParams) == Encounter::kNone; };
   EXPECT_TRUE(none(Square({0.0, 30.0}, {0.0, 0.0}))) << "it stands";
   EXPECT_TRUE(none(Square({0.0, 30.0}, {0.0, 4.0}))) << "they part";
   EXPECT_TRUE(none(Square({0.0, 300.0}, {0.0, -3.0}))) << "too late";
