@@ -110,7 +110,7 @@ class Alerts {
   struct Latch {
     struct Look {
       Utime time;
-      bool says_on;
+      bool says_on = false;
     };
     std::deque<Look> looks;
     bool is_on = false;

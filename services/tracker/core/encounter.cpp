@@ -32,7 +32,8 @@ constexpr double kReach = 4.0;
 
 // Standard normal: density and distribution at z. Source: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 26.2.17. Error: below 1e-7.
 struct NormalAt {
-  explicit NormalAt(double z) {
+  explicit NormalAt(double z) : density(0.0), below(z < 0.0 ? 0.0 : 1.0) {
+    if (std::fabs(z) > 6.0) return;
     density = 0.3989422804014327 * Exp(-0.5 * z * z);
     const double t = 1.0 / (1.0 + 0.2316419 * std::fabs(z));
     const double tail = density * t * (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
@@ -77,13 +78,18 @@ struct Piece {
 struct Spread {
   Eigen::Vector2d mean;
   Eigen::Matrix2d inverse;  // of its covariance
-  double peak;              // of its density
-  double least_sd_m;        // along its axes
-  double greatest_sd_m;
+  double peak = 0.0;        // of its density
+  double least_sd_m = 0.0;  // along its axes
+  double greatest_sd_m = 0.0;
   Eigen::Matrix2d gain;        // velocity by position
   Eigen::Matrix2d remaining;   // covariance of the velocity where the position is known
   Eigen::Matrix2d covariance;  // of the position
 };
+
+// v^T m v of a symmetrical matrix.
+double Quadratic(const Eigen::Matrix2d& m, const Eigen::Vector2d& v) {
+  return m(0, 0) * v.x() * v.x() + 2.0 * m(0, 1) * v.x() * v.y() + m(1, 1) * v.y() * v.y();
+}
 
 double GreatestEigenvalue(const Eigen::Matrix2d& m) {
   return 0.5 * (m(0, 0) + m(1, 1)) + Hypot(0.5 * (m(0, 0) - m(1, 1)), 0.5 * (m(0, 1) + m(1, 0)));
@@ -166,7 +172,7 @@ class Passage {
       const Spread here = At(time_s);
       const double clear_m = std::fabs(DistanceTo(here.mean)) - kReach * here.greatest_sd_m;
       const double rest_s = look_ahead_s_ - time_s;
-      const double rate_ps = std::sqrt(velocity_mps_.dot(here.inverse * velocity_mps_)) + std::sqrt(here.inverse.cwiseProduct(velocity_).sum());
+      const double rate_ps = std::sqrt(Quadratic(here.inverse, velocity_mps_)) + std::sqrt(here.inverse.cwiseProduct(velocity_).sum());
       const double panel_s = std::min(rest_s, kPanel / rate_ps);  // rest_s where nothing moves
       const double skip_s = clear_m / (speed_mps + kReach * speed_sd_mps);
       if (skip_s > panel_s) {
@@ -213,7 +219,7 @@ class Passage {
     const double length_m = along.norm();
     if (length_m == 0.0) return;
     const double outward_mps = normal.dot(velocity_mps_);
-    const double sd_mps = std::sqrt(std::max(0.0, normal.dot(velocity_ * normal)));
+    const double sd_mps = std::sqrt(std::max(0.0, Quadratic(velocity_, normal)));
     // The normals of an arc differ from that of its chord.
     const double turned_mps = stretch > 1.0 ? 0.5 * kGreatestArcRad * (velocity_mps_.norm() + kReach * sd_mps) : 0.0;
     pieces_.push_back({from, along / length_m, length_m, normal, center, stretch, outward_mps <= kReach * sd_mps + turned_mps});
@@ -264,13 +270,16 @@ class Passage {
   double SumOverEdge(const Spread& at, double reach, bool entries_only, const Flow& flow) const {
     double sum = 0.0;
     const auto& inverse = at.inverse;
+    const double farthest_from_mean_m = reach * at.greatest_sd_m;
     for (const auto& piece : pieces_) {
       if (entries_only && !piece.is_entry) continue;
       const Eigen::Vector2d offset = piece.from - at.mean;
-      const Eigen::Vector2d scaled = inverse * piece.along;
+      const double farthest_m = farthest_from_mean_m + piece.length_m;
+      if (offset.squaredNorm() > farthest_m * farthest_m) continue;
+      const Eigen::Vector2d scaled = inverse.col(0) * piece.along.x() + inverse.col(1) * piece.along.y();
       const double per_m2 = piece.along.dot(scaled);
       const double nearest_m = -offset.dot(scaled) / per_m2;
-      const double free = reach * reach - (offset.dot(inverse * offset) - nearest_m * nearest_m * per_m2);
+      const double free = reach * reach - (Quadratic(inverse, offset) - nearest_m * nearest_m * per_m2);
       if (free <= 0.0) continue;
       const double per_m = std::sqrt(per_m2);
       const double half_m = std::sqrt(free) / per_m;
@@ -301,9 +310,9 @@ class Passage {
   // Entries a second.
   double EntriesAt(const Spread& at) const {
     return SumOverEdge(at, kReach, true, [&](const Eigen::Vector2d& offset, const Eigen::Vector2d& normal) {
-      const double density = at.peak * Exp(-0.5 * offset.dot(at.inverse * offset));
-      const double inward_mps = -normal.dot(velocity_mps_ + at.gain * offset);
-      const double variance = normal.dot(at.remaining * normal);
+      const double density = at.peak * Exp(-0.5 * Quadratic(at.inverse, offset));
+      const double inward_mps = -normal.dot(velocity_mps_ + at.gain.col(0) * offset.x() + at.gain.col(1) * offset.y());
+      const double variance = Quadratic(at.remaining, normal);
       if (variance < 1e-12) return density * std::max(0.0, inward_mps);
       const double sd_mps = std::sqrt(variance);
       const NormalAt normal_at(inward_mps / sd_mps);
@@ -321,13 +330,13 @@ class Passage {
       const Eigen::Vector2d scaled = at.inverse * piece.along;
       const double nearest_m = std::clamp(-offset.dot(scaled) / piece.along.dot(scaled), 0.0, piece.length_m);
       const Eigen::Vector2d nearest = offset + nearest_m * piece.along;
-      const double deviations2 = nearest.dot(at.inverse * nearest);
+      const double deviations2 = Quadratic(at.inverse, nearest);
       if (deviations2 >= least) continue;
       least = deviations2;
       normal = piece.normal;
     }
     if (least > kReach * kReach) return is_inside ? 1.0 : 0.0;
-    const Eigen::Vector2d outward = at.covariance * normal / std::sqrt(normal.dot(at.covariance * normal));
+    const Eigen::Vector2d outward = at.covariance * normal / std::sqrt(Quadratic(at.covariance, normal));
     const Eigen::Vector2d along = at.inverse * outward;
     const Eigen::Vector2d across = Eigen::Vector2d(-outward.y(), outward.x()) * kTwoPi * at.peak;
     return SumOverEdge(at, 1.5 * kReach, false, [&](const Eigen::Vector2d& offset, const Eigen::Vector2d& normal_there) {

@@ -40,9 +40,11 @@ struct ClosestApproach {
 ///
 /// Probability: the relative position moves on a straight line, so it enters a convex region at most once. That it is below the limit is then the
 /// probability that it is now, and the mean number of entries later: the flow of probability through the region's edge, integrated over edge and time
-/// (S. O. Rice, "Mathematical Analysis of Random Noise", 1944). Exact for normal deviations; nothing is made linear, so it also holds where the
+/// (S. O. Rice, "Mathematical Analysis of Random Noise", 1944; of vehicles R. Altendorfer and C. Wilkmann, "A new approach to estimate the collision
+/// probability for automotive applications", Automatica 127, 2021). Exact for normal deviations; nothing is made linear, so it also holds where the
 /// relative speed does not stand out from its deviation. Sums over nodes, as many as the deviations ask for, and only where these reach the edge.
-/// Error: below 0.01 of a Monte Carlo run (property test tracker_encounter), mostly below 0.002. Cost: 0.5 us where nothing is in doubt, else README.
+/// Error: below 0.01 of a Monte Carlo run (property test tracker_encounter: at most 0.007 in 1000 states, 0.0003 in the mean). Cost: 1 to 2 us where
+/// nothing is in doubt, 15 to 30 us where the probability is; 0.6 ms for 200 things around a boat that moves through them.
 /// @param covariance  of (other - own); a deviation of position below 5 cm counts as 5 cm
 ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params);
 
