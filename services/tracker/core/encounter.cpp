@@ -173,7 +173,7 @@ class Passage {
       const double clear_m = std::fabs(DistanceTo(here.mean)) - kReach * here.greatest_sd_m;
       const double rest_s = look_ahead_s_ - time_s;
       const double rate_ps = std::sqrt(Quadratic(here.inverse, velocity_mps_)) + std::sqrt(here.inverse.cwiseProduct(velocity_).sum());
-      const double panel_s = std::min(rest_s, kPanel / rate_ps);  // rest_s where nothing moves
+      const double panel_s = std::min(rest_s, std::max(kPanel / rate_ps, look_ahead_s_ / kMostPanels));  // rest_s where nothing moves
       const double skip_s = clear_m / (speed_mps + kReach * speed_sd_mps);
       if (skip_s > panel_s) {
         time_s += skip_s;
@@ -188,8 +188,9 @@ class Passage {
 
  private:
   static constexpr double kCertain = 0.9995;
-  static constexpr double kPanel = 3.0;    // deviations that the mean passes in one panel of time
-  static constexpr double kSpacing = 2.5;  // deviations between nodes along the edge
+  static constexpr double kMostPanels = 2000.0;  // bounds the cost of absurd speeds
+  static constexpr double kPanel = 3.0;          // deviations that pass in one panel of time, of four nodes
+  static constexpr double kSpacing = 2.5;        // deviations along the edge for which three nodes do
 
   Spread At(double time_s) const {
     Spread at;

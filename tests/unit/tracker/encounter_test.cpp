@@ -107,6 +107,27 @@ TEST(ClosestApproach, OfAStandingPairWithPoorVelocityIsNotCertain) {
   EXPECT_LT(approach.probability, 0.5);
 }
 
+// Speeds and deviations that no boat has, hulls without extent, nothing known and everything known: a probability, and in bounded time.
+TEST(ClosestApproach, OfAbsurdStatesIsStillAProbability) {
+  for (const double speed_mps : {0.0, 1e-9, 1.0, 1e3, 1e9}) {
+    for (const double position_sd_m : {0.0, 1e-9, 1.0, 1e6}) {
+      for (const double velocity_sd_mps : {0.0, 1e-9, 1.0, 1e6}) {
+        for (const double distance_m : {0.0, 5.0, 5.0 + 1e-12, 1e7}) {
+          const Moving own{{{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}}, {0.0, 0.0}};
+          for (const auto& direction : {Eigen::Vector2d(-1.0, 0.0), Eigen::Vector2d(0.0, 1.0)}) {
+            const Moving other{{{distance_m, 0.0}, {distance_m + 1.0, 0.0}}, speed_mps * direction};
+            const auto approach = Of(own, other, position_sd_m, velocity_sd_mps);
+            EXPECT_GE(approach.probability, 0.0);
+            EXPECT_LE(approach.probability, 1.0);
+            EXPECT_GE(approach.cpa_m, 0.0);
+            EXPECT_LE(approach.cpa_m, approach.distance_m);
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST(ClosestApproach, BearingDriftsClockwiseWhereItPassesAhead) {
   const auto drift = Of(Square({0.0, 0.0}, {0.0, 0.0}), Square({0.0, 20.0}, {2.0, 0.0})).bearing_drift_radps;
   EXPECT_NEAR(drift, 0.1, 1e-9);
