@@ -123,7 +123,7 @@ std::vector<Outcome> Simulate(const Courses& courses, std::uint64_t seed) {
       picture.tracks.push_back(track);
     }
     const auto time = start + std::chrono::milliseconds(100 * scan);
-    for (const auto& alert : alerts.Update(time, true, ClosestApproachDangers(kLimits.limit_m, picture, own))) {
+    for (const auto& alert : alerts.Update(time, true, ClosestApproachDangers(kLimits.limit_m, picture, false))) {
       if (!alert.Holds()) continue;
       auto& outcome = outcomes[static_cast<std::size_t>(alert.track_id - 1)];
       if (!outcome.raised_s) outcome.raised_s = time_s;

@@ -6,8 +6,10 @@ namespace lookout::tracker {
 
 namespace {
 
-// Half a knot. Above the noise of a receiver's speed (some 0.05 m/s) and the sway of a moored boat, below any way that steers.
+// Half a knot: below any way that steers.
 constexpr double kOwnStillMps = 0.26;
+// Longer than a moored boat sways to one side, shorter than it takes to cast off.
+constexpr double kOwnAverageS = 5.0;
 
 std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_map_m, const Pose& own) {
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
@@ -53,12 +55,22 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   return dangers;
 }
 
-std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, const Pose& own) {
+bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
+  const double step_s = ToSeconds(time - newest_);
+  newest_ = time;
+  if (mean_mps_.hasNaN() || velocity_mps.hasNaN() || step_s < 0.0 || step_s > 1.0) {
+    mean_mps_ = velocity_mps;
+  } else {
+    mean_mps_ += step_s / (kOwnAverageS + step_s) * (velocity_mps - mean_mps_);
+  }
+  return mean_mps_.norm() < kOwnStillMps;  // false where it is NaN
+}
+
+std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, bool is_own_still) {
   std::vector<Danger> dangers;
-  const bool is_still = own.velocity_map_mps.norm() < kOwnStillMps;  // false where it is not known
   for (const auto& track : picture.tracks) {
     if (track.status != TrackStatus::kConfirmed && track.status != TrackStatus::kCoasting) continue;
-    if (is_still && track.velocity_mps.isZero(0.0)) continue;
+    if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
     dangers.push_back({.cause = AlertCause::kClosestApproach,
                        .track_id = track.id,
                        .probability = track.approach.probability,

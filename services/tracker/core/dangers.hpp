@@ -7,6 +7,7 @@
 
 #include "common/core/guard_sector.hpp"
 #include "common/core/pose.hpp"
+#include "common/core/utime.hpp"
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/scan.hpp"
 #include "services/tracker/core/tracker.hpp"
@@ -18,9 +19,22 @@ namespace lookout::tracker {
 /// @param own  placed, at the end of the scan
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const Seen> seen, const Pose& own);
 
-/// Confirmed and coasting tracks. Where the own boat lies still (below half a knot) and the track stands, neither comes nearer to the other: of them
-/// only the guard zone speaks, so a boat in its berth has peace, while one that drifts down on a pile is warned.
+/// Whether the own boat lies still: its velocity over ground, averaged over some seconds, is below half a knot. So sway in the berth and the noise of
+/// the receiver are none, but a drift is.
+class StillWatch {
+ public:
+  /// Scan by scan. A first one, one after more than 1 s or back in time, or after an unknown velocity begins anew.
+  /// @param velocity_mps  NaN: not known, then it does not lie still
+  bool Update(Utime time, const Eigen::Vector2d& velocity_mps);
+
+ private:
+  Eigen::Vector2d mean_mps_ = Eigen::Vector2d::Constant(kNan);
+  Utime newest_;
+};
+
+/// Confirmed and coasting tracks. Where the own boat lies still and the track stands, neither comes nearer to the other: of them only the guard zone
+/// speaks, so a boat in its berth has peace, while one that drifts down on a pile is warned.
 /// @param limit_m  of the closest approach
-std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, const Pose& own);
+std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, bool is_own_still);
 
 }  // namespace lookout::tracker

@@ -1,6 +1,10 @@
 #include "services/tracker/core/dangers.hpp"
 
+#include <chrono>
+#include <cmath>
 #include <gtest/gtest.h>
+#include <random>
+#include <vector>
 
 #include "common/core/angles.hpp"
 
@@ -92,7 +96,7 @@ TEST(ClosestApproachDangers, AreThoseOfConfirmedAndCoastingTracks) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 26.0}, TrackStatus::kCoasting), At(3, {0.0, 6.0}, TrackStatus::kTentative),
                     At(4, {0.0, 6.0}, TrackStatus::kLost)};
-  const auto dangers = ClosestApproachDangers(5.0, picture, Own());
+  const auto dangers = ClosestApproachDangers(5.0, picture, false);
   ASSERT_EQ(dangers.size(), 2U);
   EXPECT_EQ(dangers[0].track_id, 1);
   EXPECT_TRUE(dangers[0].is_inside);
@@ -102,16 +106,56 @@ TEST(ClosestApproachDangers, AreThoseOfConfirmedAndCoastingTracks) {
   EXPECT_FALSE(dangers[1].is_inside);
 }
 
-// A boat in its berth, a metre off the quay: only the guard zone speaks of what stands.
 TEST(ClosestApproachDangers, AreNoneBetweenWhatStandsAndABoatThatLiesStill) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 3.0}), At(2, {0.0, 9.0})};
   picture.tracks[1].velocity_mps = {0.0, -1.0};
-  const auto dangers = ClosestApproachDangers(5.0, picture, Own(0.0, {0.1, -0.1}));
+  const auto dangers = ClosestApproachDangers(5.0, picture, true);
   ASSERT_EQ(dangers.size(), 1U);
   EXPECT_EQ(dangers[0].track_id, 2) << "another that comes is told";
-  EXPECT_EQ(ClosestApproachDangers(5.0, picture, Own(0.0, {0.4, 0.0})).size(), 2U) << "a boat that drifts is not still";
-  EXPECT_EQ(ClosestApproachDangers(5.0, picture, Own(0.0, {kNan, kNan})).size(), 2U) << "nor one of which it is not known";
+  EXPECT_EQ(ClosestApproachDangers(5.0, picture, false).size(), 2U);
+}
+
+constexpr Utime kStart{std::chrono::seconds(1'700'000'000)};
+
+TEST(StillWatch, SeesADriftAndADepartureButNoSway) {
+  StillWatch watch;
+  auto time = kStart;
+  const auto scans = [&](double seconds, const auto& velocity) {
+    bool is_still = false;
+    for (double t_s = 0.0; t_s < seconds; t_s += 0.1) is_still = watch.Update(time += std::chrono::milliseconds(100), velocity(t_s));
+    return is_still;
+  };
+  const auto constant = [](double speed_mps) { return [speed_mps](double) { return Eigen::Vector2d(speed_mps, 0.0); }; };
+  EXPECT_TRUE(scans(10.0, [](double t_s) { return Eigen::Vector2d(0.5 * std::sin(kTwoPi * t_s / 4.0), 0.0); }));
+  EXPECT_FALSE(scans(15.0, constant(0.3)));
+  EXPECT_TRUE(scans(15.0, constant(0.0)));
+  EXPECT_FALSE(scans(3.0, constant(1.0))) << "3 s after casting off";
+  EXPECT_FALSE(scans(1.0, constant(kNan)));
+  EXPECT_TRUE(scans(0.1, constant(0.0))) << "anew";
+}
+
+// One hour in the berth, a metre off the quay, with sway and a noisy receiver: no alert. Then the neighbour comes home.
+TEST(ClosestApproachDangers, LeaveABoatInItsBerthInPeace) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  Picture picture;
+  picture.tracks = {At(1, {3.0, 0.0}), At(2, {0.0, 30.0})};
+  picture.tracks[0].approach.probability = 1.0;
+  picture.tracks[1].approach.probability = 0.0;
+  Alerts alerts({.warning_tcpa_s = 15.0});
+  StillWatch watch;
+  auto time = kStart;
+  for (int scan = 0; scan < 36'000; ++scan) {
+    time += std::chrono::milliseconds(100);
+    const double sway_mps = 0.3 * std::sin(kTwoPi * scan / 45.0);
+    const bool is_still = watch.Update(time, {sway_mps + noise(random), noise(random)});
+    ASSERT_TRUE(alerts.Update(time, true, ClosestApproachDangers(5.0, picture, is_still)).empty()) << scan;
+  }
+  picture.tracks[1].velocity_mps = {0.0, -1.5};
+  picture.tracks[1].approach.probability = 0.9;
+  for (int scan = 0; scan < 3; ++scan) alerts.Update(time += std::chrono::milliseconds(100), true, ClosestApproachDangers(5.0, picture, true));
+  EXPECT_EQ(alerts.alerts().size(), 1U);
 }
 
 }  // namespace
