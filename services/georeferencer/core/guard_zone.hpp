@@ -4,31 +4,11 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "common/core/angles.hpp"
+#include "common/core/guard_sector.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/core/placement.hpp"
 
 namespace lookout::georeferencer {
-
-struct GuardZoneParams {
-  double range_m = 0.0;          // horizontal, from the vessel's origin; 0 = no alarm
-  Sector bearing;                // of the sector, from the bow clockwise
-  bool takes_tentative = false;  // whether a tentative obstacle, which may be spray, raises the alarm too
-};
-
-/// Whether the whole zone lies within a box, seen from above. In the box around the own hull nothing can be seen that is not own boat.
-bool IsInsideBox(const GuardZoneParams& params, const Eigen::AlignedBox3d& box_m);
-
-/// The point of an obstacle's seen outline that is nearest to the boat within a sector.
-struct NearestPoint {
-  double range_m = 0.0;      // horizontal, from the vessel's origin
-  double bearing_rad = 0.0;  // from the bow clockwise, 0 to 2 pi
-};
-
-/// Keeps the nearer of two.
-inline void KeepNearer(std::optional<NearestPoint>& nearest, const std::optional<NearestPoint>& other) {
-  if (other && (!nearest || other->range_m < nearest->range_m)) nearest = other;
-}
 
 /// Along the outline: the footprint, or of land its waterline where there is one. Not only its corners: a long wall is nearest between two.
 ///

@@ -1,8 +1,14 @@
 // Alerts over time: when they come up, how grave they are, who has taken note, and when they end.
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/core/elementary.hpp"
@@ -28,6 +34,8 @@ struct Alert {
   double cpa_m = kNan;
   double tcpa_s = kNan;
   double cpa_probability = kNan;
+
+  bool Holds() const { return state == AlertState::kActive || state == AlertState::kAcknowledged; }
 };
 
 /// What one scan says of one possible alert.
@@ -35,10 +43,11 @@ struct Danger {
   AlertCause cause = AlertCause::kGuardZone;
   std::int64_t track_id = 0;
   double probability = 0.0;  // of a guard zone 1: it is in it
-  double tcpa_s = 0.0;
+  double tcpa_s = 0.0;       // 0: they part, or hardly move
   double distance_m = 0.0;
   double bearing_rad = 0.0;
   double cpa_m = kNan;
+  bool is_inside = false;  // the zone, or nearer than the limit, now
 };
 
 struct Acknowledgement {
@@ -52,28 +61,84 @@ struct AlertParams {
   double raise_probability = 0.5;  // in 3 of the last 5 scans
   double clear_probability = 0.2;  // below it for clear_s
   double clear_s = 3.0;
-  double warning_tcpa_s = 0.0;  // closer in time than this a caution becomes a warning
+  double warning_tcpa_s = 0.0;  // closer in time than this, or inside now, a caution becomes a warning
 };
 
 /// Source of the states: IEC 62923-1 (bridge alert management): active, acknowledged, rectified, normal.
+///
+/// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the last
+/// 5 scans, and must not for clear_s and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts; scans older than 1 s count
+/// neither way; after a gap of more than 1 s, or a step back, clearing begins anew, since nobody looked.
+///
+/// A caution that becomes a warning wants a new acknowledgement. A warning that ends without one stays as rectified until it gets one; a caution does
+/// not. What holds again meanwhile is the same alert, active. Of rectified ones the newest 16 stay.
 class Alerts {
  public:
-  explicit Alerts(const AlertParams& params);
+  static constexpr std::size_t kWindowScans = 5;
+  static constexpr int kScansToRaise = 3;
+  static constexpr int kScansToClear = 5;
+  static constexpr std::chrono::seconds kGreatestAge{1};
+  static constexpr std::size_t kMostRectified = 16;
+  static constexpr std::chrono::seconds kTakeOver{5};
+  static constexpr double kTakeOverM = 5.0;  // what comes at 5 m/s (10 kn) goes so far until its new track is confirmed and its alert raised
 
-  /// One whole scan (or one that lost something: then what it does not show clears nothing).
-  /// @param gone  tracks that ended, or were merged into another: (from, to), to 0 where it ended. An alert goes with the track
-  /// @return what changed nothing too, gravest first: warnings before cautions, active before acknowledged, then by tcpa, distance, id
+  explicit Alerts(const AlertParams& params) : params_(params) {}
+
+  /// One scan. Call Acknowledge and Rename of that scan before.
+  /// @param is_whole  no part and no packet of it was lost
+  /// @param dangers   what is not among them has a probability of 0
+  /// @return also what did not change, the gravest first: what holds, warnings, active ones, then by tcpa, distance, id. A cleared alert is told once
   const std::vector<Alert>& Update(Utime time, bool is_whole, const std::vector<Danger>& dangers);
-  /// @return false where there is no such alert, or it does not want one
-  bool Acknowledge(const Acknowledgement& acknowledgement, Utime time);
-  void Rename(std::int64_t from_track, std::int64_t to_track);
 
+  /// @return false where there is no such alert, of this id and raised at this time, or it wants none
+  bool Acknowledge(const Acknowledgement& acknowledgement, Utime time);
+
+  /// A track became part of another: its alerts go with it. Where the other has one of the same cause, the older one stays, as grave as the graver
+  /// and active unless both were acknowledged; the other is cleared. (A track that ended needs no call: no danger comes of it any more.)
+  void Rename(std::int64_t from_track, std::int64_t to_track, Utime time);
+
+  /// Everything is forgotten but the next id: tracks get new ids. What comes up again has to be acknowledged anew, unless it was before: of the same
+  /// cause, not graver, within 5 m of where it was seen from the boat, and within 5 s of the first scan after.
+  /// @param before  alerts until now: alerts(), or those of the last ALERTS of a process that was started anew
+  void Reset(std::vector<Alert> before = {});
+
+  /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return alerts_; }
 
  private:
-  struct Memory;
+  // On and off with hysteresis.
+  struct Latch {
+    struct Look {
+      Utime time;
+      bool says_on = false;
+    };
+    std::deque<Look> looks;
+    bool is_on = false;
+    std::optional<Utime> off_since;
+    int num_off = 0;
+
+    void Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s);
+    void ForgetLooks();
+  };
+  struct Entry {
+    Latch raised;
+    Latch warning;
+    std::optional<Alert> alert;
+  };
+  using Key = std::pair<AlertCause, std::int64_t>;  // and track
+
+  void Advance(Entry& entry, const Key& key, Utime time);
+  bool WasAcknowledged(const Alert& alert);
+  void ClearOldestRectified(Utime time);
+
   AlertParams params_;
+  std::map<Key, Entry> entries_;
+  std::vector<Alert> ended_;  // to be told in the next Update
   std::vector<Alert> alerts_;
+  std::optional<Utime> newest_;
+  std::vector<Alert> acknowledged_before_;  // a reset
+  std::optional<Utime> first_after_;        // it
+  std::int64_t next_id_ = 1;
 };
 
 }  // namespace lookout::tracker

@@ -30,23 +30,29 @@ enum class Encounter : std::int32_t { kNone = 0, kHeadOn = 1, kCrossingGiveWay =
 struct ClosestApproach {
   double distance_m = 0.0;            // hull to hull, now; 0 where they overlap
   double cpa_m = 0.0;                 // hull to hull; that of now where they part, or hardly move against each other
-  double tcpa_s = 0.0;                // 0 where they part
+  double tcpa_s = 0.0;                // when it is reached first; 0 where they part, or hardly move against each other
   double probability = 0.0;           // that the least distance within look_ahead_s is below limit_m
-  double bearing_drift_radps = kNan;  // of the true bearing from own to other, clockwise; NaN where they overlap
+  double bearing_drift_radps = kNan;  // of the true bearing from the middle of own to that of other, clockwise; NaN where they overlap
 };
 
 /// Both keep course and speed, and do not turn. The hulls are convex, so their difference (Minkowski) is one polygon, and the closest approach is
 /// that of a point to it.
 ///
-/// Probability: in closed form. The path of the relative position is known across the relative velocity with a normal deviation (position and
-/// velocity propagated to the time of the closest approach); where the relative speed does not stand out from its deviation, it is that of a normal
-/// spread that grows from the distance now. Error: below 0.01 of a Monte Carlo run (property test tracker_encounter).
-/// @param covariance  of (other - own)
+/// Probability: the relative position moves on a straight line, so it enters a convex region at most once. That it is below the limit is then the
+/// probability that it is now, and the mean number of entries later: the flow of probability through the region's edge, integrated over edge and time
+/// (S. O. Rice, "Mathematical Analysis of Random Noise", 1944; of vehicles R. Altendorfer and C. Wilkmann, "A new approach to estimate the collision
+/// probability for automotive applications", Automatica 127, 2021). Exact for normal deviations; nothing is made linear, so it also holds where the
+/// relative speed does not stand out from its deviation. Sums over nodes, as many as the deviations ask for, and only where these reach the edge.
+/// Error: below 0.01 of a Monte Carlo run (property test tracker_encounter: at most 0.007 in 1000 states, 0.0003 in the mean). Cost: 1 to 2 us where
+/// nothing is in doubt, 15 to 30 us where the probability is; 0.6 ms for 200 things around a boat that moves through them.
+/// @param covariance  of (other - own); a deviation of position below 5 cm counts as 5 cm
 ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params);
 
-/// Rules 13 to 15: overtaking from more than 22.5 deg abaft the beam of the one that is overtaken; head-on on nearly reciprocal courses; else
-/// crossing, where what is to starboard of the own boat has the right of way. NONE where the other stands, where both part, or beyond look_ahead_s.
-/// @param own_course_rad  from north, clockwise: heading where it stands
+/// Rules 13 to 15: overtaking from more than 22.5 deg abaft the beam of the one that is overtaken; head-on on courses that are reciprocal to 22.5 deg
+/// (rule 14 gives no number); else crossing, where what is to starboard of the own boat has the right of way. NONE where the other stands, where both
+/// part, beyond look_ahead_s, and where the probability says without doubt that it passes far off.
+/// Of each scan alone: rule 13 d, that who overtakes stays so until past and clear, is for whoever knows the scan before.
+/// @param own_heading_rad  from north, clockwise
 Encounter EncounterOf(const Moving& own, double own_heading_rad, const Moving& other, const ClosestApproach& approach, const EncounterParams& params);
 
 }  // namespace lookout::tracker

@@ -18,8 +18,6 @@ constexpr double kRoundingM = 1e-9;
 // Corners nearer than this are one: no lidar tells them apart.
 constexpr double kOneCornerM = 1e-6;
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // What lies not farther than `offset_m` along `normal`, a unit vector.
 struct HalfPlane {
   Eigen::Vector2d normal;

@@ -12,6 +12,9 @@
 
 namespace lookout::tracker {
 
+/// Positive where b is counter-clockwise of a.
+inline double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
 /// Directions of a compass: 0 = east, counter-clockwise, 22.5 deg apart.
 inline constexpr std::size_t kDirections = 16;
 using Directions = std::array<Eigen::Vector2d, kDirections>;

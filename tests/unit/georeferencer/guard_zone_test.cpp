@@ -18,31 +18,6 @@ VesselOutline MakeOutline(const std::vector<Eigen::Vector2d>& footprint_m) {
   return outline;
 }
 
-TEST(NearestWithin, TellsStarboardFromPort) {
-  const auto starboard = NearestWithin(Sector{}, MakeOutline({{0.0, -4.0}}));
-  ASSERT_TRUE(starboard);
-  EXPECT_NEAR(starboard->range_m, 4.0, 1e-12);
-  EXPECT_NEAR(RadToDeg(starboard->bearing_rad), 90.0, 1e-9);
-  EXPECT_NEAR(RadToDeg(NearestWithin(Sector{}, MakeOutline({{0.0, 4.0}}))->bearing_rad), 270.0, 1e-9);
-}
-
-TEST(NearestWithin, LiesBetweenTheCornersOfAWall) {
-  const auto nearest = NearestWithin(kAhead, MakeOutline({{5.0, -50.0}, {6.0, -50.0}, {6.0, 50.0}, {5.0, 50.0}}));
-  ASSERT_TRUE(nearest);
-  EXPECT_NEAR(nearest->range_m, 5.0, 1e-12);
-  EXPECT_NEAR(WrapToPi(nearest->bearing_rad), 0.0, 1e-9);
-}
-
-// A quay along the starboard side, from abeam to far ahead: what of it is ahead begins where the sector's side cuts it.
-TEST(NearestWithin, IsCutAtTheSidesOfTheSector) {
-  auto quay = MakeOutline({{0.0, -3.0}, {100.0, -3.0}});
-  const auto nearest = NearestWithin(kAhead, quay);
-  ASSERT_TRUE(nearest);
-  EXPECT_NEAR(RadToDeg(nearest->bearing_rad), 60.0, 1e-9);
-  EXPECT_NEAR(nearest->range_m, 3.0 / std::sin(DegToRad(60.0)), 1e-9);
-  EXPECT_FALSE(NearestWithin(kAhead, MakeOutline({{-10.0, -3.0}, {0.0, -3.0}})));
-}
-
 // The footprint of a bay is closed behind the boat; its water's edge is not.
 TEST(NearestWithin, OfLandTakesTheWaterlineAlone) {
   auto bay = MakeOutline({{30.0, 0.0}, {-1.0, 20.0}, {-1.0, -20.0}});
@@ -81,29 +56,6 @@ TEST(NearestInZone, IsMeasuredFromTheReferencePointOfTheBoat) {
   const auto nearest = NearestInZone({.range_m = 10.0, .bearing = {}}, MakePart(3.0, 0.0), T_vessel_lidar);
   ASSERT_TRUE(nearest);
   EXPECT_NEAR(nearest->range_m, std::hypot(2.0, 3.0), 1e-12);
-}
-
-bool IsInside(double from_deg, double width_deg, double range_m) {
-  const Eigen::AlignedBox3d box_m{Eigen::Vector3d(-1.0, -2.0, -1.0), Eigen::Vector3d(14.0, 3.0, 2.0)};
-  return IsInsideBox({.range_m = range_m, .bearing = {WrapTo2Pi(DegToRad(from_deg)), DegToRad(width_deg)}}, box_m);
-}
-
-TEST(GuardZoneInsideTheHull, IsFoundByTheSidesOfTheBoxThatTheSectorReaches) {
-  EXPECT_TRUE(IsInside(355.0, 10.0, 14.0));
-  EXPECT_FALSE(IsInside(355.0, 10.0, 14.01));
-  EXPECT_TRUE(IsInside(300.0, 120.0, 2.3)) << "2.0 m to starboard at 60 degrees";
-  EXPECT_FALSE(IsInside(300.0, 120.0, 2.4));
-  EXPECT_TRUE(IsInside(0.0, 360.0, 1.0));
-  EXPECT_FALSE(IsInside(0.0, 360.0, 1.1)) << "1.0 m aft";
-  EXPECT_TRUE(IsInside(80.0, 20.0, 2.0));
-  EXPECT_FALSE(IsInside(80.0, 20.0, 2.1)) << "2.0 m to starboard";
-  EXPECT_TRUE(IsInside(260.0, 20.0, 3.0));
-  EXPECT_FALSE(IsInside(260.0, 20.0, 3.1)) << "3.0 m to port";
-}
-
-TEST(GuardZoneInsideTheHull, IsNotFoundWhereTheReferencePointIsOutside) {
-  const Eigen::AlignedBox3d box_m{Eigen::Vector3d(1.0, -2.0, -1.0), Eigen::Vector3d(14.0, 3.0, 2.0)};
-  EXPECT_FALSE(IsInsideBox({.range_m = 5.0, .bearing = {0.0, 0.1}}, box_m));
 }
 
 }  // namespace

@@ -23,8 +23,6 @@ Polygon2d Moved(Polygon2d polygon, const Eigen::Vector2d& by_m) {
   return polygon;
 }
 
-double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // A convex polygon of 1 to 16 corners: on an ellipse, in the order of their angles.
 Polygon2d RandomPolygon(std::mt19937_64& random) {
   std::uniform_real_distribution<double> share(0.0, 1.0);

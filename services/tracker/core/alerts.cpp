@@ -1,0 +1,207 @@
+#include "services/tracker/core/alerts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace lookout::tracker {
+
+namespace {
+
+void SetState(Alert& alert, AlertState state, Utime time) {
+  if (alert.state != state) alert.changed = time;
+  alert.state = state;
+}
+
+void SetLevel(Alert& alert, AlertLevel level, Utime time) {
+  if (alert.level == level) return;
+  alert.level = level;
+  alert.changed = time;
+}
+
+bool IsGraver(const Alert& a, const Alert& b) {
+  const auto number = [](double value) { return std::isnan(value) ? std::numeric_limits<double>::infinity() : value; };
+  const auto rank = [&number](const Alert& alert) {
+    return std::tuple(!alert.Holds(), alert.level != AlertLevel::kWarning, alert.state, number(alert.tcpa_s), number(alert.distance_m), alert.id);
+  };
+  return rank(a) < rank(b);
+}
+
+}  // namespace
+
+void Alerts::Latch::Update(Utime time, bool is_whole, bool says_on, bool says_off, double clear_s) {
+  std::erase_if(looks, [time](const Look& look) { return time - look.time > kGreatestAge; });
+  if (is_whole || says_on) looks.push_back({time, says_on});
+  if (looks.size() > kWindowScans) looks.pop_front();
+  if (!is_on) {
+    is_on = std::ranges::count_if(looks, &Look::says_on) >= kScansToRaise;
+    off_since.reset();
+    num_off = 0;
+  } else if (!says_off) {
+    off_since.reset();
+    num_off = 0;
+  } else if (is_whole) {
+    if (!off_since) off_since = time;
+    ++num_off;
+    if (num_off >= kScansToClear && ToSeconds(time - *off_since) >= clear_s) {
+      is_on = false;
+      looks.clear();
+    }
+  }
+}
+
+void Alerts::Latch::ForgetLooks() {
+  looks.clear();
+  off_since.reset();
+  num_off = 0;
+}
+
+const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::vector<Danger>& dangers) {
+  if (newest_ && std::chrono::abs(time - *newest_) > kGreatestAge) {
+    for (auto& [key, entry] : entries_) {
+      entry.raised.ForgetLooks();
+      entry.warning.ForgetLooks();
+    }
+  }
+  newest_ = time;
+  if (!first_after_) first_after_ = time;
+  if (std::chrono::abs(time - *first_after_) > kTakeOver) acknowledged_before_.clear();
+
+  std::map<Key, const Danger*> of_key;
+  for (const auto& danger : dangers) {
+    const Key key{danger.cause, danger.track_id};
+    auto& known = of_key[key];
+    if (known == nullptr || danger.probability > known->probability) known = &danger;
+    if (danger.probability >= params_.raise_probability) entries_.try_emplace(key);
+  }
+  for (auto& [key, entry] : entries_) {
+    const auto found = of_key.find(key);
+    const Danger* danger = found == of_key.end() ? nullptr : found->second;
+    const double probability = danger == nullptr ? 0.0 : danger->probability;
+    const bool is_grave = danger != nullptr && (danger->is_inside || (danger->tcpa_s > 0.0 && danger->tcpa_s < params_.warning_tcpa_s));
+    const bool says_on = probability >= params_.raise_probability;
+    const bool says_off = !(probability >= params_.clear_probability);
+    entry.raised.Update(time, is_whole, says_on, says_off, params_.clear_s);
+    entry.warning.Update(time, is_whole, says_on && is_grave, says_off || !is_grave, params_.clear_s);
+    Advance(entry, key, time);
+    if (entry.alert && entry.alert->Holds() && danger != nullptr) {
+      entry.alert->distance_m = danger->distance_m;
+      entry.alert->bearing_rad = danger->bearing_rad;
+      entry.alert->cpa_m = danger->cpa_m;
+      entry.alert->tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
+      entry.alert->cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
+      if (entry.alert->raised == time && WasAcknowledged(*entry.alert)) SetState(*entry.alert, AlertState::kAcknowledged, time);
+    }
+  }
+  ClearOldestRectified(time);
+
+  alerts_.clear();
+  alerts_.swap(ended_);
+  std::erase_if(entries_, [this](const auto& item) {
+    const auto& [key, entry] = item;
+    if (entry.alert) alerts_.push_back(*entry.alert);
+    return entry.alert ? entry.alert->state == AlertState::kCleared : std::ranges::none_of(entry.raised.looks, &Latch::Look::says_on);
+  });
+  std::sort(alerts_.begin(), alerts_.end(), IsGraver);
+  return alerts_;
+}
+
+void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
+  const auto level = entry.warning.is_on ? AlertLevel::kWarning : AlertLevel::kCaution;
+  if (!entry.alert) {
+    if (!entry.raised.is_on) return;
+    entry.alert = Alert{.id = next_id_++, .cause = key.first, .level = level, .track_id = key.second, .raised = time, .changed = time};
+    return;
+  }
+  auto& alert = *entry.alert;
+  if (alert.state == AlertState::kCleared) return;
+  if (!entry.raised.is_on) {
+    const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning;
+    SetState(alert, wants_note ? AlertState::kRectified : AlertState::kCleared, time);
+    return;
+  }
+  const bool rises = level > alert.level;
+  SetLevel(alert, level, time);
+  if (rises || alert.state == AlertState::kRectified) SetState(alert, AlertState::kActive, time);
+}
+
+bool Alerts::WasAcknowledged(const Alert& alert) {
+  const auto place = [](const Alert& of) -> std::pair<double, double> {
+    const auto [sine, cosine] = SinCosOf(of.bearing_rad);
+    return {of.distance_m * cosine, of.distance_m * sine};
+  };
+  const auto is_same = [&](const Alert& before) {
+    const auto [ahead_m, aside_m] = place(alert);
+    const auto [ahead_before_m, aside_before_m] = place(before);
+    return before.cause == alert.cause && before.level >= alert.level && Hypot(ahead_m - ahead_before_m, aside_m - aside_before_m) <= kTakeOverM;
+  };
+  const auto found = std::ranges::find_if(acknowledged_before_, is_same);
+  if (found == acknowledged_before_.end()) return false;
+  acknowledged_before_.erase(found);
+  return true;
+}
+
+void Alerts::ClearOldestRectified(Utime time) {
+  std::vector<Alert*> rectified;
+  for (auto& [key, entry] : entries_) {
+    if (entry.alert && entry.alert->state == AlertState::kRectified) rectified.push_back(&*entry.alert);
+  }
+  if (rectified.size() <= kMostRectified) return;
+  std::ranges::sort(rectified, {}, [](const Alert* alert) { return std::pair(alert->changed, alert->id); });
+  for (std::size_t i = 0; i + kMostRectified < rectified.size(); ++i) SetState(*rectified[i], AlertState::kCleared, time);
+}
+
+bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
+  for (auto& [key, entry] : entries_) {
+    if (!entry.alert || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
+    if (entry.alert->state == AlertState::kActive) {
+      SetState(*entry.alert, AlertState::kAcknowledged, time);
+    } else if (entry.alert->state == AlertState::kRectified) {
+      SetState(*entry.alert, AlertState::kCleared, time);
+    } else {
+      return false;
+    }
+    return true;
+  }
+  return false;
+}
+
+void Alerts::Rename(std::int64_t from_track, std::int64_t to_track, Utime time) {
+  if (from_track == to_track) return;
+  for (const auto cause : {AlertCause::kGuardZone, AlertCause::kClosestApproach}) {
+    auto moved = entries_.extract(Key{cause, from_track});
+    if (!moved) continue;
+    moved.key().second = to_track;
+    if (moved.mapped().alert) moved.mapped().alert->track_id = to_track;
+    const auto placed = entries_.insert(std::move(moved));
+    if (placed.inserted) continue;
+    auto& stays = placed.position->second;
+    auto& goes = placed.node.mapped();
+    if (!goes.alert) continue;
+    if (!stays.alert || goes.alert->id < stays.alert->id) std::swap(stays, goes);
+    if (!goes.alert) continue;
+    if (goes.alert->Holds()) {
+      const bool is_open = goes.alert->state == AlertState::kActive || stays.alert->state != AlertState::kAcknowledged;
+      SetState(*stays.alert, is_open ? AlertState::kActive : AlertState::kAcknowledged, time);
+      SetLevel(*stays.alert, std::max(stays.alert->level, goes.alert->level), time);
+      if (goes.raised.is_on) stays.raised.is_on = true;
+      if (goes.warning.is_on) stays.warning.is_on = true;
+    }
+    SetState(*goes.alert, AlertState::kCleared, time);
+    ended_.push_back(*goes.alert);
+  }
+}
+
+void Alerts::Reset(std::vector<Alert> before) {
+  std::erase_if(before, [](const Alert& alert) { return alert.state != AlertState::kAcknowledged; });
+  acknowledged_before_ = std::move(before);
+  first_after_.reset();
+  entries_.clear();
+  ended_.clear();
+  alerts_.clear();
+  newest_.reset();
+}
+
+}  // namespace lookout::tracker

@@ -1,0 +1,162 @@
+#include "services/tracker/core/dangers.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::tracker {
+namespace {
+
+Pose Own(double heading_deg = 0.0, const Eigen::Vector2d& velocity_mps = {0.0, 2.0}) {
+  Pose own;
+  own.is_placed = true;
+  own.position_map_m = {100.0, 50.0, 0.0};
+  own.heading_rad = DegToRad(heading_deg);
+  own.velocity_map_mps = velocity_mps;
+  return own;
+}
+
+Track At(std::int64_t id, const Eigen::Vector2d& from_own_m, TrackStatus status = TrackStatus::kConfirmed) {
+  Track track;
+  track.id = id;
+  track.status = status;
+  const Eigen::Vector2d center = Eigen::Vector2d(100.0, 50.0) + from_own_m;
+  track.outline_m = {center + Eigen::Vector2d(-0.5, -0.5), center + Eigen::Vector2d(0.5, -0.5), center + Eigen::Vector2d(0.5, 0.5),
+                     center + Eigen::Vector2d(-0.5, 0.5)};
+  track.approach = {.distance_m = from_own_m.norm() - 2.0, .cpa_m = 1.0, .tcpa_s = 9.0, .probability = 0.8};
+  return track;
+}
+
+Seen Land(std::int32_t id, const std::vector<Eigen::Vector2d>& waterline_from_own_m) {
+  Seen land;
+  land.segment_id = id;
+  land.is_land = true;
+  for (const auto& point : waterline_from_own_m) land.waterline_m.emplace_back(point + Eigen::Vector2d(100.0, 50.0));
+  return land;
+}
+
+constexpr GuardZoneParams kZone{.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+
+TEST(GuardZoneDangers, AreNearAndInTheSector) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 12.0}), At(3, {0.0, -6.0}), At(4, {6.0, 4.5})};
+  const auto dangers = GuardZoneDangers(kZone, picture, {}, Own());
+  ASSERT_EQ(dangers.size(), 2U);
+  EXPECT_EQ(dangers[0].track_id, 1);
+  EXPECT_NEAR(dangers[0].distance_m, 5.5, 1e-9);
+  EXPECT_NEAR(WrapToPi(dangers[0].bearing_rad), 0.0, 1e-9);
+  EXPECT_TRUE(dangers[0].is_inside);
+  EXPECT_EQ(dangers[0].probability, 1.0);
+  EXPECT_EQ(dangers[1].track_id, 4);
+}
+
+TEST(GuardZoneDangers, TurnWithTheBoat) {
+  Picture picture;
+  picture.tracks = {At(1, {6.0, 0.0})};  // to the east
+  EXPECT_TRUE(GuardZoneDangers(kZone, picture, {}, Own(0.0)).empty());
+  const auto dangers = GuardZoneDangers(kZone, picture, {}, Own(80.0));
+  ASSERT_EQ(dangers.size(), 1U);
+  EXPECT_GT(WrapToPi(dangers[0].bearing_rad), 0.0) << "to starboard of the bow";
+  EXPECT_EQ(GuardZoneDangers(kZone, picture, {}, Own(100.0)).size(), 1U);
+  EXPECT_TRUE(GuardZoneDangers(kZone, picture, {}, Own(180.0)).empty());
+}
+
+TEST(GuardZoneDangers, AreTentativeOnlyWhereTheZoneTakesThem) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 6.0}, TrackStatus::kTentative), At(2, {0.0, 6.0}, TrackStatus::kLost), At(3, {0.0, 6.0}, TrackStatus::kCoasting)};
+  EXPECT_EQ(GuardZoneDangers(kZone, picture, {}, Own()).size(), 1U);
+  auto all = kZone;
+  all.takes_tentative = true;
+  EXPECT_EQ(GuardZoneDangers(all, picture, {}, Own()).size(), 2U);
+}
+
+TEST(GuardZoneDangers, OfLandAreOne) {
+  Picture picture;
+  auto remembered = Land(8, {{-20.0, 7.0}, {20.0, 7.0}});
+  remembered.is_land = false;
+  picture.land_segment_ids = {8};
+  const std::vector<Seen> seen{Land(7, {{-20.0, 9.0}, {20.0, 9.0}}), remembered, Land(9, {{-20.0, -3.0}, {20.0, -3.0}})};
+  const auto dangers = GuardZoneDangers(kZone, picture, seen, Own());
+  ASSERT_EQ(dangers.size(), 1U);
+  EXPECT_EQ(dangers[0].track_id, 0);
+  EXPECT_NEAR(dangers[0].distance_m, 7.0, 1e-9) << "between its corners; what is astern is not in the sector";
+}
+
+TEST(GuardZoneDangers, AreNoneWithoutAZone) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 1.0})};
+  EXPECT_TRUE(GuardZoneDangers({}, picture, {}, Own()).empty());
+}
+
+TEST(ClosestApproachDangers, AreThoseOfConfirmedAndCoastingTracks) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 6.0}), At(2, {0.0, 26.0}, TrackStatus::kCoasting), At(3, {0.0, 6.0}, TrackStatus::kTentative),
+                    At(4, {0.0, 6.0}, TrackStatus::kLost)};
+  const auto dangers = ClosestApproachDangers(5.0, picture, false);
+  ASSERT_EQ(dangers.size(), 2U);
+  EXPECT_EQ(dangers[0].track_id, 1);
+  EXPECT_TRUE(dangers[0].is_inside);
+  EXPECT_EQ(dangers[0].probability, 0.8);
+  EXPECT_EQ(dangers[0].tcpa_s, 9.0);
+  EXPECT_EQ(dangers[1].track_id, 2);
+  EXPECT_FALSE(dangers[1].is_inside);
+}
+
+TEST(ClosestApproachDangers, AreNoneBetweenWhatStandsAndABoatThatLiesStill) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 3.0}), At(2, {0.0, 9.0})};
+  picture.tracks[1].velocity_mps = {0.0, -1.0};
+  const auto dangers = ClosestApproachDangers(5.0, picture, true);
+  ASSERT_EQ(dangers.size(), 1U);
+  EXPECT_EQ(dangers[0].track_id, 2) << "another that comes is told";
+  EXPECT_EQ(ClosestApproachDangers(5.0, picture, false).size(), 2U);
+}
+
+constexpr Utime kStart{std::chrono::seconds(1'700'000'000)};
+
+TEST(StillWatch, SeesADriftAndADepartureButNoSway) {
+  StillWatch watch;
+  auto time = kStart;
+  const auto scans = [&](double seconds, const auto& velocity) {
+    bool is_still = false;
+    for (double t_s = 0.0; t_s < seconds; t_s += 0.1) is_still = watch.Update(time += std::chrono::milliseconds(100), velocity(t_s));
+    return is_still;
+  };
+  const auto constant = [](double speed_mps) { return [speed_mps](double) { return Eigen::Vector2d(speed_mps, 0.0); }; };
+  EXPECT_TRUE(scans(10.0, [](double t_s) { return Eigen::Vector2d(0.5 * std::sin(kTwoPi * t_s / 4.0), 0.0); }));
+  EXPECT_FALSE(scans(15.0, constant(0.3)));
+  EXPECT_TRUE(scans(15.0, constant(0.0)));
+  EXPECT_FALSE(scans(3.0, constant(1.0))) << "3 s after casting off";
+  EXPECT_FALSE(scans(1.0, constant(kNan)));
+  EXPECT_TRUE(scans(0.1, constant(0.0))) << "anew";
+}
+
+// One hour in the berth, a metre off the quay, with sway and a noisy receiver: no alert. Then the neighbour comes home.
+TEST(ClosestApproachDangers, LeaveABoatInItsBerthInPeace) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0.0, 0.1);
+  Picture picture;
+  picture.tracks = {At(1, {3.0, 0.0}), At(2, {0.0, 30.0})};
+  picture.tracks[0].approach.probability = 1.0;
+  picture.tracks[1].approach.probability = 0.0;
+  Alerts alerts({.warning_tcpa_s = 15.0});
+  StillWatch watch;
+  auto time = kStart;
+  for (int scan = 0; scan < 36'000; ++scan) {
+    time += std::chrono::milliseconds(100);
+    const double sway_mps = 0.3 * std::sin(kTwoPi * scan / 45.0);
+    const bool is_still = watch.Update(time, {sway_mps + noise(random), noise(random)});
+    ASSERT_TRUE(alerts.Update(time, true, ClosestApproachDangers(5.0, picture, is_still)).empty()) << scan;
+  }
+  picture.tracks[1].velocity_mps = {0.0, -1.5};
+  picture.tracks[1].approach.probability = 0.9;
+  for (int scan = 0; scan < 3; ++scan) alerts.Update(time += std::chrono::milliseconds(100), true, ClosestApproachDangers(5.0, picture, true));
+  EXPECT_EQ(alerts.alerts().size(), 1U);
+}
+
+}  // namespace
+}  // namespace lookout::tracker
