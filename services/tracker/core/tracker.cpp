@@ -27,7 +27,7 @@ constexpr std::size_t kLooksKept = 15;
 constexpr double kUnseenEndS = 30.0;  // a confirmed track that could not be seen for so long ends
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
-constexpr double kWidestBoatM = 5.0;         // within a wider outline, as of a dock with berths, another thing may lie
+constexpr double kWidestBoatM = 5.0;  // within a wider outline, as of a dock with berths, another thing may lie
 constexpr double kPartShare = 0.15;
 constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
@@ -523,6 +523,34 @@ TrackKind KindOf(const Track& track, bool is_moving) {
   return TrackKind::kObstacle;
 }
 
+// Of a track as it is published: where it lies from the own boat, and what it will do.
+void Encountered(Track& track, const Pose& own, const TrackerParams& params) {
+  constexpr double kStandingMps = 0.05;     // deviation of what stands: a mooring lets it swing
+  constexpr double kOwnVelocityMps = 0.15;  // deviation of the own velocity, where POSE is placed
+  const auto [sine, cosine] = SinCosOf(own.heading_rad);
+  const Eigen::Vector2d forward(sine, cosine);
+  const Eigen::Vector2d port(-cosine, sine);
+  const Eigen::Vector2d place_m = own.position_map_m.head<2>();
+  Moving self;
+  for (const auto& corner : params.own_hull_m) self.hull_m.emplace_back(place_m + corner.x() * forward + corner.y() * port);
+  if (self.hull_m.empty()) self.hull_m.push_back(place_m);
+  if (own.velocity_map_mps.allFinite()) self.velocity_mps = own.velocity_map_mps;
+  const Moving other{track.outline_m, track.velocity_mps};
+  RelativeCovariance covariance = RelativeCovariance::Zero();
+  covariance.topLeftCorner<2, 2>() = track.covariance_relative_m2;
+  covariance.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * (kOwnVelocityMps * kOwnVelocityMps);
+  if (track.velocity_mps.isZero(0.0)) {
+    covariance.bottomRightCorner<2, 2>() += Eigen::Matrix2d::Identity() * (kStandingMps * kStandingMps);
+  } else {
+    covariance.bottomRightCorner<2, 2>() += track.covariance.bottomRightCorner<2, 2>();
+  }
+  track.approach = ClosestApproachOf(self, other, covariance, params.encounter);
+  track.encounter = EncounterOf(self, own.heading_rad, other, track.approach, params.encounter);
+  track.range_m = GapOf(track.outline_m, std::array{place_m}).distance_m;
+  const Eigen::Vector2d off = track.position_m - place_m;
+  track.bearing_rad = WrapTo2Pi(Atan2(off.dot(-port), off.dot(forward)));
+}
+
 }  // namespace
 
 Tracker::Tracker(const TrackerParams& params) : params_(params), memory_(std::make_unique<Memory>(params)) {}
@@ -628,6 +656,8 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.num_seen = static_cast<int>(std::ranges::count(track.looks, true));
     out.mean_returns = track.sum_returns / std::max(1, track.num_hits);
     out.kind = KindOf(out, is_moving);
+    if (track.body && is_moving) out.turn_rate_radps = kNan;  // one scan after another tells the course, not yet how it changes
+    if (scan.own) Encountered(out, *scan.own, params_);
     picture.tracks.push_back(std::move(out));
   }
   memory.num_confirmed = std::ranges::count_if(memory.tracks, &Followed::is_confirmed);
