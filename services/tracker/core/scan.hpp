@@ -44,7 +44,8 @@ struct ScanInput {
   std::int32_t flags = 0;
   Datum datum;
   std::vector<Seen> seen;
-  std::optional<Pose> own;     // at end_time; nullopt: position or heading was not known
+  std::optional<Pose> own_at_start;  // at time; nullopt: position or heading was not known
+  std::optional<Pose> own;           // at end_time
   std::optional<Sweep> sweep;  // nullopt: LIDAR_SCAN did not come
 };
 
