@@ -89,6 +89,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     track.range_m = from_own_m.norm();
     track.bearing_rad = WrapTo2Pi(Atan2(from_own_m.x(), from_own_m.y()) - scan.own->heading_rad);
     track.approach.distance_m = track.approach.cpa_m = track.range_m;
+    track.approach.probability = track.range_m < 30.0 ? 1.0 : 0.0;
   }
   return picture;
 }
