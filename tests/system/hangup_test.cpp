@@ -166,8 +166,8 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
   EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
 }
 
-TEST_F(HangupTest, SegmenterAndGeoreferencerCheckANewConfigAndKeepTheOldOne) {
-  for (const std::string name : {"segmenter", "georeferencer"}) {
+TEST_F(HangupTest, SegmenterGeoreferencerAndTrackerCheckANewConfigAndKeepTheOldOne) {
+  for (const std::string name : {"segmenter", "georeferencer", "tracker"}) {
     const auto file = folder_ / (name + ".txtpb");
     fs::copy_file(kDemoConfig / (name + ".txtpb"), file, fs::copy_options::overwrite_existing);
     child_ = std::make_unique<Child>(std::vector<std::string>{Bin(name), "--config", folder_.string()}, OutputFile());

@@ -13,7 +13,7 @@ namespace {
 void Add(const alerts_t& message, std::optional<tracker::ScanKey>& begin, tracker::Script& script) {
   const auto time = UtimeFromWire(message.utime_us);
   const auto begin_time = UtimeFromWire(message.begin_utime_us);
-  if (message.is_watch || !time || !begin_time) return;
+  if (message.is_watch || !time || !begin_time) return;  // of the watch: by the host's clock
   const tracker::ScanKey key{*time, message.seq};
   const tracker::ScanKey begin_of_this{*begin_time, message.begin_seq};
   if (begin != begin_of_this) {
