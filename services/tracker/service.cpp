@@ -164,8 +164,6 @@ void Service::Use(const GatheredScan& scan) {
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
 
-  num_tracks_ = static_cast<std::int64_t>(picture.tracks.size());
-  num_confirmed_ = std::ranges::count(picture.tracks, TrackStatus::kConfirmed, &Track::status);
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
 }
 
@@ -215,11 +213,9 @@ void Service::SendWatch() {
 
 HealthReport Service::Report() const {
   HealthReport report;
-  report.counters = {{"tracks", num_tracks_}, {"tracks_confirmed", num_confirmed_}, {"alerts", num_alerts_}};
+  if (memory_) report.counters = memory_->tracker.counters();
+  report.counters.push_back({"alerts", num_alerts_});
   for (const auto& counter : gatherer_.counters()) report.counters.push_back(counter);
-  if (memory_) {
-    for (const auto& counter : memory_->tracker.counters()) report.counters.push_back(counter);
-  }
   auto counts = counts_;
   const auto add_parts = [&counts](const auto& assembler) {
     counts["parts_duplicate"] += assembler.counts().duplicate_parts;

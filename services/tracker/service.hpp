@@ -85,8 +85,6 @@ class Service {
   std::deque<Acknowledgement> acknowledgements_;
   std::optional<std::int64_t> pose_seq_;
   std::optional<ScanLabel> label_;  // of the last scan
-  std::int64_t num_tracks_ = 0;
-  std::int64_t num_confirmed_ = 0;
   std::int64_t num_alerts_ = 0;
   Counts<kCountNames> counts_;
   Counts<messages::kObstaclesFaults> obstacles_refused_;

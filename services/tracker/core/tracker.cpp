@@ -94,7 +94,12 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   return picture;
 }
 
-std::vector<Counter> Tracker::counters() const { return {{"tracker_resets", memory_->num_resets}}; }
+std::vector<Counter> Tracker::counters() const {
+  const auto& tracks = memory_->picture.tracks;
+  return {{"tracks", std::ssize(tracks)},
+          {"tracks_confirmed", std::ranges::count(tracks, TrackStatus::kConfirmed, &Track::status)},
+          {"tracker_resets", memory_->num_resets}};
+}
 
 Alerts::Alerts(const AlertParams& params) : params_(params) {}
 
