@@ -83,7 +83,7 @@ sed 's/^    ServiceRow{"recorder"/    ServiceRow{"fuser", "obstacles of two lida
 grep -qxF 'start order: recorder;fuser;tracker;georeferencer;navigator;segmenter;vlp16' <(units) || { units; fail "the start order with a row more"; }
 grep -qxF 'Description=Lookout fuser: obstacles of two lidars' "$work/units/lookout-fuser.service" || fail "a row more has no unit"
 grep -qxF 'WatchdogSec=12s' "$work/units/lookout-fuser.service" || fail "the watchdog of a row more"
-grep -q 'After=.* lookout-fuser.service$' "$work/units/lookout-georeferencer.service" || fail "a row more is not started before what it reads from"
+grep -q 'After=.* lookout-fuser.service' "$work/units/lookout-georeferencer.service" || fail "a row more is not started before what it reads from"
 grep -q 'Wants=.* lookout-fuser.service ' "$work/units/lookout.target" || fail "a row more is not in the target"
 sed -i 's/"obstacles of two lidars", 12/"obstacles of two lidars", 12.5/' "$work/services.hpp"
 if units >"$work/refused.txt"; then fail "a wrong row is accepted"; fi
