@@ -41,12 +41,13 @@ Service::Service(bus::Bus& bus, const Params& params, Given given)
 void Service::OnObstacles(const obstacles_t& message) {
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return obstacles_refused_.Add(*fault);
   obstacles_seen_ = now_;
+  if (message.num_parts == 1 && obstacles_parts_.is_empty()) return AddObstacles({&message, 1});
   const auto ended = obstacles_parts_.Add(message);
   if (!ended.incomplete.empty()) AddObstacles(ended.incomplete);
   if (!ended.whole.empty()) AddObstacles(ended.whole);
 }
 
-void Service::AddObstacles(const std::vector<obstacles_t>& parts) {
+void Service::AddObstacles(std::span<const obstacles_t> parts) {
   LeftOut left_out;
   auto obstacles = ToObstacles(parts, left_out);
   if (!obstacles) {
@@ -61,12 +62,13 @@ void Service::AddObstacles(const std::vector<obstacles_t>& parts) {
 void Service::OnBeams(const lidar_scan_t& message) {
   if (!given_.sources.has_beams) return;
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return beams_refused_.Add(*fault);
+  if (message.num_parts == 1 && beams_parts_.is_empty()) return AddBeams({&message, 1}, true);
   const auto ended = beams_parts_.Add(message);
   if (!ended.incomplete.empty()) AddBeams(ended.incomplete, false);
   if (!ended.whole.empty()) AddBeams(ended.whole, true);
 }
 
-void Service::AddBeams(const std::vector<lidar_scan_t>& parts, bool is_whole) {
+void Service::AddBeams(std::span<const lidar_scan_t> parts, bool is_whole) {
   std::optional<ScanBeams> beams;
   if (is_whole) beams = ToBeams(parts);
   if (!beams) {
@@ -83,12 +85,13 @@ void Service::OnLabels(const segments_t& message) {
   const bool is_fitting = messages::IsWellFormed(message);
   if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return labels_refused_.Add(*fault);
   if (!is_fitting) return labels_refused_.Add(messages::kSegmentsCount);
+  if (message.num_parts == 1 && labels_parts_.is_empty()) return AddLabels({&message, 1}, true);
   const auto ended = labels_parts_.Add(message);
   if (!ended.incomplete.empty()) AddLabels(ended.incomplete, false);
   if (!ended.whole.empty()) AddLabels(ended.whole, true);
 }
 
-void Service::AddLabels(const std::vector<segments_t>& parts, bool is_whole) {
+void Service::AddLabels(std::span<const segments_t> parts, bool is_whole) {
   std::optional<ScanLabels> labels;
   if (is_whole) labels = ToLabels(parts);
   if (!labels) {

@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -59,9 +60,9 @@ class Service {
   void OnPose(const pose_t& message);
   void OnAcknowledgement(const alert_ack_t& message);
 
-  void AddObstacles(const std::vector<obstacles_t>& parts);
-  void AddBeams(const std::vector<lidar_scan_t>& parts, bool is_whole);
-  void AddLabels(const std::vector<segments_t>& parts, bool is_whole);
+  void AddObstacles(std::span<const obstacles_t> parts);
+  void AddBeams(std::span<const lidar_scan_t> parts, bool is_whole);
+  void AddLabels(std::span<const segments_t> parts, bool is_whole);
 
   void Use(std::vector<GatheredScan> scans);
   void Use(const GatheredScan& scan);

@@ -178,7 +178,7 @@ void CopyLabel(const ScanLabel& scan, Message& message) {
 
 }  // namespace
 
-std::optional<ScanObstacles> ToObstacles(const std::vector<obstacles_t>& parts, LeftOut& left_out) {
+std::optional<ScanObstacles> ToObstacles(std::span<const obstacles_t> parts, LeftOut& left_out) {
   const auto& head = parts.front();
   ScanObstacles scan;
   scan.key = KeyOf(head);
@@ -204,7 +204,7 @@ std::optional<ScanObstacles> ToObstacles(const std::vector<obstacles_t>& parts, 
   return scan;
 }
 
-std::optional<ScanBeams> ToBeams(const std::vector<lidar_scan_t>& parts) {
+std::optional<ScanBeams> ToBeams(std::span<const lidar_scan_t> parts) {
   const auto& head = parts.front();
   ScanBeams scan;
   scan.key = KeyOf(head);
@@ -236,7 +236,7 @@ std::optional<ScanBeams> ToBeams(const std::vector<lidar_scan_t>& parts) {
   return scan;
 }
 
-std::optional<ScanLabels> ToLabels(const std::vector<segments_t>& parts) {
+std::optional<ScanLabels> ToLabels(std::span<const segments_t> parts) {
   const auto& head = parts.front();
   ScanLabels scan;
   scan.key = KeyOf(head);

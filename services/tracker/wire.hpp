@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,9 @@ struct LeftOut {
 
 /// Of one scan, from parts that FaultOf accepts; by part_index, one at least.
 /// @return nullopt where the parts contradict each other: ids that do not increase, columns that do not fit
-std::optional<ScanObstacles> ToObstacles(const std::vector<obstacles_t>& parts, LeftOut& left_out);
-std::optional<ScanBeams> ToBeams(const std::vector<lidar_scan_t>& parts);
-std::optional<ScanLabels> ToLabels(const std::vector<segments_t>& parts);
+std::optional<ScanObstacles> ToObstacles(std::span<const obstacles_t> parts, LeftOut& left_out);
+std::optional<ScanBeams> ToBeams(std::span<const lidar_scan_t> parts);
+std::optional<ScanLabels> ToLabels(std::span<const segments_t> parts);
 
 /// Which scan a message is of.
 template <typename Message>

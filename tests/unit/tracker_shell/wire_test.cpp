@@ -24,7 +24,7 @@ TEST(ToObstacles, MergesPartsAndKeepsWhatTheTrackerNeeds) {
   land.num_waterline = land.num_waterline_map = 2;
   land.waterline_east_m = land.waterline_north_m = land.waterline_vessel_x_m = land.waterline_vessel_y_m = {7.0F, 8.0F};
   LeftOut left_out;
-  const auto scan = ToObstacles({first, second}, left_out);
+  const auto scan = ToObstacles(std::vector{first, second}, left_out);
   ASSERT_TRUE(scan);
   EXPECT_TRUE(scan->is_whole);
   EXPECT_EQ(scan->key.seq, 7);
@@ -44,9 +44,9 @@ TEST(ToObstacles, MergesPartsAndKeepsWhatTheTrackerNeeds) {
   EXPECT_FALSE(scan->outlines[0].is_line);
   EXPECT_TRUE(scan->outlines[1].is_line);
 
-  EXPECT_FALSE(ToObstacles({second}, left_out)->is_whole);
+  EXPECT_FALSE(ToObstacles(std::vector{second}, left_out)->is_whole);
   second.obstacles[0].id = 1;
-  EXPECT_FALSE(ToObstacles({first, second}, left_out)) << "one segment twice";
+  EXPECT_FALSE(ToObstacles(std::vector{first, second}, left_out)) << "one segment twice";
 }
 
 TEST(ToBeams, TakesTheNearestReturnOfEachShotAndItsTime) {
@@ -60,7 +60,7 @@ TEST(ToBeams, TakesTheNearestReturnOfEachShotAndItsTime) {
   scan.range[1] = 500;
   scan.range[2] = static_cast<std::int16_t>(60'000);  // an unsigned count
   scan.range[5] = 250;
-  const auto beams = ToBeams({scan});
+  const auto beams = ToBeams(std::vector{scan});
   ASSERT_TRUE(beams);
   EXPECT_EQ(beams->sweep.azimuth_rad.size(), 10U);
   EXPECT_EQ(ToUtimeUs(beams->sweep.time[2]), test::kStartUs + 19'800);
@@ -76,12 +76,12 @@ TEST(ToBeams, TakesTheNearestReturnOfEachShotAndItsTime) {
 
 TEST(ToBeams, RefusesColumnsThatDoNotFit) {
   auto scan = test::MakeScan(0, 3);
-  EXPECT_TRUE(ToBeams({scan}));
+  EXPECT_TRUE(ToBeams(std::vector{scan}));
   scan.first_column = 1;
-  EXPECT_FALSE(ToBeams({scan}));
+  EXPECT_FALSE(ToBeams(std::vector{scan}));
   scan = test::MakeScan(0, 3);
   scan.num_turn_columns = 11;
-  EXPECT_FALSE(ToBeams({scan}));
+  EXPECT_FALSE(ToBeams(std::vector{scan}));
 }
 
 TEST(ToLabels, SkipsPartsWithoutColumns) {
@@ -90,10 +90,10 @@ TEST(ToLabels, SkipsPartsWithoutColumns) {
   further.part_index = 1;
   further.first_column = further.num_columns = further.num_cells = 0;
   further.label.clear();
-  ASSERT_TRUE(ToLabels({labels, further}));
-  EXPECT_EQ(ToLabels({labels, further})->label.size(), 20U);
+  ASSERT_TRUE(ToLabels(std::vector{labels, further}));
+  EXPECT_EQ(ToLabels(std::vector{labels, further})->label.size(), 20U);
   labels.first_column = 2;
-  EXPECT_FALSE(ToLabels({labels}));
+  EXPECT_FALSE(ToLabels(std::vector{labels}));
 }
 
 TEST(TracksMessage, TurnsAnglesOfTheMapIntoBearings) {
