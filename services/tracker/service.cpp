@@ -148,7 +148,8 @@ void Service::Use(const GatheredScan& scan) {
   if (!memory_) {
     memory_ = std::make_unique<Memory>(params_);
     memory_->begin = scan.key();
-  } else if (scan.is_anew) {
+  } else if (scan.is_anew && memory_->picture != nullptr) {
+    memory_->kept.Keep(label_->end_time, label_->datum, memory_->alerts.alerts(), memory_->picture->tracks);
     memory_->tracker.Reset();
   }
   const auto& input = scan.input;
@@ -158,6 +159,9 @@ void Service::Use(const GatheredScan& scan) {
   const Picture& picture = memory_->tracker.Update(input);
   for (const auto& [from, to] : picture.merged) memory_->alerts.Rename(from, to);
   const auto acknowledged = TakeAcknowledgements(scan.key(), input.end_time);
+  for (const auto& kept : memory_->kept.Take(input.end_time, input.datum, memory_->alerts.alerts(), picture.tracks)) {
+    memory_->alerts.Acknowledge(kept, input.end_time);
+  }
   const auto& alerts = memory_->alerts.Update(input.end_time, is_whole, DangersOf(picture));
 
   const double own_up_m = input.own ? input.own->position_map_m.z() : label_ ? label_->own_up_m : 0.0;
@@ -167,6 +171,7 @@ void Service::Use(const GatheredScan& scan) {
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
 
+  memory_->picture = &picture;
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
 }
 

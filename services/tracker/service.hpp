@@ -14,6 +14,7 @@
 #include "common/core/utime.hpp"
 #include "common/messages/part_assembler.hpp"
 #include "common/messages/pose_message.hpp"
+#include "services/tracker/core/kept_acknowledgements.hpp"
 #include "services/tracker/core/script.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/watch.hpp"
@@ -51,6 +52,8 @@ class Service {
     explicit Memory(const Params& params) : tracker(params.tracker), alerts(params.alerts) {}
     Tracker tracker;
     Alerts alerts;
+    KeptAcknowledgements kept;
+    const Picture* picture = nullptr;  // of the last scan: the tracker's own
     ScanKey begin;
   };
 

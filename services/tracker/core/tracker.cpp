@@ -121,6 +121,7 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool /*is_whole*/, const st
       found->cause = danger.cause;
       found->track_id = danger.track_id;
       found->raised = found->changed = time;
+      found->level = AlertLevel::kWarning;
     }
     found->distance_m = danger.distance_m;
     found->bearing_rad = danger.bearing_rad;

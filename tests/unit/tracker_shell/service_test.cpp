@@ -359,6 +359,51 @@ TEST_F(TrackerService, DropsAcknowledgementsOfNoAlertAndOfAnotherRun) {
   EXPECT_EQ(Count("acks_dropped"), 50);
 }
 
+// Lidar begins anew: the buoy ahead gets another track and another alert, of which nobody has to take note again.
+TEST_F(TrackerService, TakesAnAcknowledgementOverWhereTheLidarBeginsAnew) {
+  // At 3 m/s towards a thing that stands 60 m ahead.
+  const auto send_scan = [&](int number, std::int64_t seq) {
+    const auto offset_us = test::kScanUs * number;
+    for (auto pose_us = offset_us; pose_us < offset_us + test::kScanUs; pose_us += 20'000) {
+      auto pose = test::MakePose(pose_us, pose_us / 20'000);
+      pose.position_map_m[1] = 3e-6 * static_cast<double>(pose_us);
+      pose.velocity_map_mps[1] = 3.0;
+      Send(bus::kPose, pose);
+    }
+    SendSight(number, seq);
+    Send(bus::kObstacles, test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, 60.0})}));
+  };
+  const auto active = [&]() -> std::optional<alert_t> {
+    if (alerts_.empty()) return std::nullopt;
+    const auto found = std::ranges::find(alerts_.back().alerts, static_cast<std::int32_t>(alert_t::STATE_ACTIVE), &alert_t::state);
+    return found == alerts_.back().alerts.end() ? std::nullopt : std::optional(*found);
+  };
+  int number = 0;
+  // A warning, so that the next is no graver.
+  while (number < 170 && !(active() && active()->level == alert_t::LEVEL_WARNING)) send_scan(number, number), ++number;
+  if (!active()) GTEST_FAIL() << "no alert";
+  const auto before = *active();
+  alert_ack_t acknowledgement{};
+  acknowledgement.source = "page";
+  acknowledgement.alert_id = before.id;
+  acknowledgement.alert_raised_utime_us = before.raised_utime_us;
+  Send(bus::kAlertAck, acknowledgement);
+  for (int i = 0; i < 5; ++i, ++number) send_scan(number, number);
+  EXPECT_FALSE(active());
+
+  int num_active = 0;
+  for (int seq = 0; seq < 20; ++seq, ++number) {
+    send_scan(number, seq);
+    num_active += active() ? 1 : 0;
+  }
+  EXPECT_EQ(Count("runs_begun"), 1);
+  const auto& last = alerts_.back().alerts;
+  const auto again = std::ranges::find_if(last, [&before](const alert_t& alert) { return alert.track_id != before.track_id; });
+  ASSERT_NE(again, last.end()) << "what still holds is raised again within 2 s";
+  EXPECT_EQ(again->state, alert_t::STATE_ACKNOWLEDGED);
+  EXPECT_LE(num_active, 2);
+}
+
 TEST_F(TrackerService, NeverDiesOfBytes) {
   std::mt19937 random(1);
   const std::vector<std::pair<const bus::Channel*, std::vector<std::uint8_t>>> good{{&bus::kObstacles, bus::Encode(Obstacles(1, 1))},
