@@ -68,6 +68,7 @@ live_config=$work/config
 cp -r "$config" "$live_config"
 # A busy computer may hold POSE up. What is sent without waiting for it is outside what a replay gives again, and here that is looked at.
 sed -i 's/^pose_timeout_s: .*/pose_timeout_s: 10/' "$live_config/georeferencer.txtpb"
+echo 'wait_timeout_s: 10' >>"$live_config/tracker.txtpb"
 if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
   sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
@@ -90,7 +91,7 @@ trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 # Those that take before those that give: nobody misses a first message.
-for service in recorder georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+for service in recorder tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
 lidar=${live_pids[vlp16]}
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"

@@ -126,6 +126,7 @@ class StreamReceiver {
   StreamReceiver(Bus& bus, const Channel& channel, Handler handler)
       : bus_(bus),
         is_guarded_(IsGuarded(channel)),
+        is_numbered_(!HasSeveralPublishers(channel)),
         guard_(channel),
         handler_(std::move(handler)),
         traffic_(bus.input_traffic()[std::string(channel.name)]) {}  // a map: references stay valid
@@ -137,7 +138,7 @@ class StreamReceiver {
       return;
     }
     if (!is_guarded_ || !bus_.is_guarded()) {
-      CountLost(*message);
+      if (is_numbered_) CountLost(*message);
       handler_(*message);
       return;
     }
@@ -202,6 +203,7 @@ class StreamReceiver {
 
   Bus& bus_;
   bool is_guarded_;
+  bool is_numbered_;  // by one publisher
   StreamGuard guard_;
   SequenceWatch sequence_;  // of a bus that is not guarded
   Handler handler_;

@@ -9,7 +9,7 @@ namespace lookout::bus {
 struct Channel {
   std::string_view name;
   std::string_view type;       // struct of package lookout
-  std::string_view publisher;  // the one process that sends it; "all" for HEALTH
+  std::string_view publisher;  // the one process that sends it; "all" for HEALTH, "several" for what more than one of them may send
   double max_rate_hz;          // messages per second, greatest expected
   int queue_depth;             // messages that a subscriber holds before the newest is dropped
   bool is_raw;                 // input from which all else can be computed again
@@ -27,13 +27,20 @@ inline constexpr Channel kGnssFix{"GNSS_FIX", "gnss_fix_t", "navigator", 40, 80,
 inline constexpr Channel kAttitude{"ATTITUDE", "attitude_t", "navigator", 100, 200, false, true};
 inline constexpr Channel kPose{"POSE", "pose_t", "navigator", 50, 1000, false, true};  // 0.1 s to 10 s come at once
 inline constexpr Channel kObstacles{"OBSTACLES", "obstacles_t", "georeferencer", 80, 160, false, true};
+inline constexpr Channel kTracks{"TRACKS", "tracks_t", "tracker", 80, 160, false, true};
+inline constexpr Channel kAlerts{"ALERTS", "alerts_t", "tracker", 22, 44, false, true};  // one a scan, and two a second where nobody looks
+// Page, plotter and others: whoever shows alerts. ALERTS say with which scan one was taken.
+inline constexpr Channel kAlertAck{"ALERT_ACK", "alert_ack_t", "several", 10, 40, true, true};
 inline constexpr Channel kHealth{"HEALTH", "health_t", "all", 10, 40, false, false};
 inline constexpr Channel kRunInfo{"RUN_INFO", "run_info_t", "recorder", 1, 10, false, false};
 // Of a simulation: stands in its own log, never on a boat's bus.
 inline constexpr Channel kSimTruth{"SIM_TRUTH", "sim_truth_t", "sim", 80, 160, false, false};
 
-inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw,  kGnssFix,
-                                      kAttitude,     kPose,      kObstacles,  kHealth,    kRunInfo,  kSimTruth};
+inline constexpr std::array kChannels{kLidarPackets, kLidarScan, kLidarClock, kLidarNmea, kSegments, kNavRaw, kGnssFix, kAttitude,
+                                      kPose,         kObstacles, kTracks,     kAlerts,    kAlertAck, kHealth, kRunInfo, kSimTruth};
+
+/// Whether more than one process may send it: then its messages carry no numbers of one stream.
+constexpr bool HasSeveralPublishers(const Channel& channel) { return channel.publisher == "all" || channel.publisher == "several"; }
 
 /// Greatest size of an encoded message. Measured with LCM 1.3.1: about 120 kB pass with the kernel's default buffers, 212 kB vanish.
 inline constexpr int kMaxMessageBytes = 120'000;

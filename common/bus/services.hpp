@@ -27,6 +27,13 @@ inline constexpr std::array kServices{
     ServiceRow{"segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
     ServiceRow{"navigator", "position and attitude of the vessel", 10, "serial", "new config, new run", "filter, latest measurements", {&kLidarNmea}},
     ServiceRow{"georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans, alarm", {&kSegments, &kPose}},
+    ServiceRow{"tracker",
+               "tracks, closest approach and alerts",
+               10,
+               "network",
+               "checks the config",
+               "tracks, land, alerts, poses, waiting scans",
+               {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck}},
     ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 /// The input from which replay computes the service's other outputs, if it publishes one: it holds all that the service consumed.

@@ -72,8 +72,10 @@ std::uint64_t DigestOf(Bytes bytes) {
 std::optional<StreamPlace> PlaceOf(const Channel& channel, Bytes bytes) {
   const auto header = ReadHeader(bytes);
   if (!header || !IsOfType(channel, header->fingerprint)) return std::nullopt;
-  const bool has_parts = channel.type == kLidarScan.type || channel.type == kSegments.type || channel.type == kObstacles.type;
-  return StreamPlace{.seq = header->seq, .part_index = has_parts ? -1 : 0, .num_parts = 1, .utime_us = header->utime_us, .digest = DigestOf(bytes)};
+  const bool is_one_a_seq = channel.type != kLidarScan.type && channel.type != kSegments.type && channel.type != kObstacles.type &&
+                            channel.type != kTracks.type && channel.type != kAlerts.type;
+  return StreamPlace{
+      .seq = header->seq, .part_index = is_one_a_seq ? 0 : -1, .num_parts = 1, .utime_us = header->utime_us, .digest = DigestOf(bytes)};
 }
 
 StreamGuard::Decision StreamGuard::Next(const StreamPlace& place, Time now, std::int64_t mark) {

@@ -15,7 +15,7 @@ namespace lookout::bus {
 /// Where a message stands in the stream of its publisher.
 struct StreamPlace {
   std::int64_t seq = 0;
-  std::int64_t part_index = 0;  // parts of one scan share `seq` and `utime_us`; -1 = not known, the message was not decoded
+  std::int64_t part_index = 0;  // parts of one scan share `seq` and `utime_us`; -1 = not known, or none: such messages may share them
   std::int64_t num_parts = 1;
   std::int64_t utime_us = 0;
   std::uint64_t digest = 0;  // of all its bytes
@@ -36,18 +36,20 @@ StreamPlace PlaceOf(const T& message, Bytes bytes) {
   if constexpr (requires { message.part_index; }) {
     place.part_index = message.part_index;
     place.num_parts = message.num_parts;
+  } else if constexpr (requires { message.is_watch; }) {
+    place.part_index = -1;  // without a scan ALERTS repeat the last number
   }
   return place;
 }
 
 /// Whether the channel has one publisher, that numbers its messages: not HEALTH, whose publishers number for themselves, and not what tells of the
-/// machine or of a simulation.
-constexpr bool IsGuarded(const Channel& channel) { return channel.is_replayed; }
+/// machine or of a simulation; and not ALERT_ACK.
+constexpr bool IsGuarded(const Channel& channel) { return channel.is_replayed && !HasSeveralPublishers(channel); }
 
 /// Whether each message of its publisher was measured after the one before: not where several sensors share a channel, or a time.
 constexpr bool HasRisingTimes(const Channel& channel) {
   return channel.name == kPose.name || channel.name == kLidarScan.name || channel.name == kLidarClock.name || channel.name == kSegments.name ||
-         channel.name == kObstacles.name;
+         channel.name == kObstacles.name || channel.name == kTracks.name;
 }
 
 /// Keeps the stream first heard. A message that cannot follow in it is held: it belongs to a second publisher when the kept stream goes on, and to

@@ -26,6 +26,7 @@
 #include "config/schema/recorder.pb.h"
 #include "config/schema/scene.pb.h"
 #include "config/schema/segmenter.pb.h"
+#include "config/schema/tracker.pb.h"
 #include "config/schema/vlp16.pb.h"
 
 namespace lookout::config {
@@ -49,8 +50,9 @@ std::string NumberText(double value) {
 
 // The message of a schema file. Naming the descriptors here also makes the linker keep them.
 const Descriptor* FindSchema(const std::string& schema_file) {
-  for (const auto* descriptor : {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(),
-                                 Georeferencer::descriptor(), Recorder::descriptor(), Scene::descriptor(), Evidence::descriptor()}) {
+  for (const auto* descriptor :
+       {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(), Georeferencer::descriptor(), Tracker::descriptor(),
+        Recorder::descriptor(), Scene::descriptor(), Evidence::descriptor()}) {
     if (descriptor->file()->name() == schema_file) return descriptor;
   }
   return nullptr;

@@ -78,6 +78,7 @@ std::optional<Pose> PoseHistory::At(Utime time) const {
   pose.time = time;
   pose.datum = a.datum;
   pose.heave_m = Between(a.heave_m, b.heave_m, share);
+  pose.velocity_map_mps = a.velocity_map_mps + share * (b.velocity_map_mps - a.velocity_map_mps);
   pose.covariance = a.covariance + share * (b.covariance - a.covariance);
   return pose;
 }

@@ -22,6 +22,11 @@ constexpr double kMaxRangeUnitM = 1.0;
 constexpr double kMaxLidarM = 1e5;
 constexpr std::chrono::seconds kMaxScan(60);
 constexpr std::int32_t kMaxParts = 1000;
+constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
+// A place on the map: the diameter of the earth, and more.
+constexpr double kMaxPlaceM = 1.5e7;
+constexpr double kMaxVarianceM2 = 1e12;
+constexpr std::size_t kMaxSourceBytes = 64;
 constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND_FEW_RETURNS) |
                                      static_cast<std::int32_t>(segment_t::GROUND_SCATTERED) | static_cast<std::int32_t>(segment_t::GROUND_AT_SURFACE);
 
@@ -124,6 +129,56 @@ std::optional<Fault> FaultOf(const segment_t& segment, Utime scan_time, Utime sc
   return FaultOf(segment.waterline_x_m, segment.waterline_y_m, segment.waterline_time_us, scan_end - scan_time);
 }
 
+// Of east-east, east-north, north-north.
+bool IsCovariance(const double (&covariance_m2)[3]) {
+  constexpr double kRounding = 1.0 + 1e-6;
+  const auto& [ee, en, nn] = covariance_m2;
+  if (std::isnan(ee) && std::isnan(en) && std::isnan(nn)) return true;
+  return ee >= 0.0 && ee <= kMaxVarianceM2 && nn >= 0.0 && nn <= kMaxVarianceM2 && std::abs(en) <= kRounding * std::sqrt(ee * nn);
+}
+
+bool AreWithin(const std::vector<float>& values, double bound) {
+  return std::ranges::all_of(values, [bound](float value) { return IsWithin(double{value}, bound); });
+}
+
+bool CountsAgree(const obstacle_t& obstacle) {
+  const auto have = [](std::int32_t number, const std::vector<float>& first, const std::vector<float>& second) {
+    return number == std::ssize(first) && number == std::ssize(second);
+  };
+  const bool is_placed = obstacle.status == obstacle_t::STATUS_OK;
+  return obstacle.num_points > 0 && obstacle.num_footprint > 0 &&
+         have(obstacle.num_footprint, obstacle.footprint_vessel_x_m, obstacle.footprint_vessel_y_m) &&
+         have(obstacle.num_map, obstacle.footprint_east_m, obstacle.footprint_north_m) &&
+         have(obstacle.num_waterline, obstacle.waterline_vessel_x_m, obstacle.waterline_vessel_y_m) &&
+         have(obstacle.num_waterline_map, obstacle.waterline_east_m, obstacle.waterline_north_m) &&
+         obstacle.num_map == (is_placed ? obstacle.num_footprint : 0) && obstacle.num_waterline_map == (is_placed ? obstacle.num_waterline : 0);
+}
+
+bool AreNumbersGood(const obstacle_t& obstacle) {
+  const bool is_placed = obstacle.status == obstacle_t::STATUS_OK;
+  if (is_placed && !(IsWithin(obstacle.latitude_deg, 90.0) && IsWithin(obstacle.longitude_deg, 180.0) &&
+                     IsWithin(obstacle.position_map_m[0], kMaxPlaceM) && IsWithin(obstacle.position_map_m[1], kMaxPlaceM))) {
+    return false;
+  }
+  return IsWithin(obstacle.top_above_water_m, kMaxLidarM) && IsWithin(double{obstacle.center_vessel_m[0]}, kMaxLidarM) &&
+         IsWithin(double{obstacle.center_vessel_m[1]}, kMaxLidarM) && IsPlace(obstacle.nearest_vessel_m) && IsLength(obstacle.range_m) &&
+         IsWithin(obstacle.bearing_rad, 0.0F, static_cast<float>(kTwoPi)) && IsLength(obstacle.length_m) && IsLength(obstacle.width_m) &&
+         IsLength(obstacle.height_m) && IsWithin(obstacle.seen_share, 0.0F, 1.0F) && IsProbability(obstacle.thing_probability) &&
+         AreWithin(obstacle.footprint_vessel_x_m, kMaxLidarM) && AreWithin(obstacle.footprint_vessel_y_m, kMaxLidarM) &&
+         AreWithin(obstacle.waterline_vessel_x_m, kMaxLidarM) && AreWithin(obstacle.waterline_vessel_y_m, kMaxLidarM) &&
+         AreWithin(obstacle.footprint_east_m, kMaxPlaceM) && AreWithin(obstacle.footprint_north_m, kMaxPlaceM) &&
+         AreWithin(obstacle.waterline_east_m, kMaxPlaceM) && AreWithin(obstacle.waterline_north_m, kMaxPlaceM);
+}
+
+bool AreCodesKnown(const obstacle_t& obstacle) {
+  return obstacle.status >= obstacle_t::STATUS_OK && obstacle.status <= obstacle_t::STATUS_POSE_TIMEOUT &&
+         (obstacle.confidence == obstacle_t::CONFIDENCE_TENTATIVE || obstacle.confidence == obstacle_t::CONFIDENCE_SURE) &&
+         (obstacle.kind == obstacle_t::KIND_OBSTACLE || obstacle.kind == obstacle_t::KIND_LAND) && obstacle.grounds >= 0 &&
+         obstacle.grounds <= kAllGrounds;
+}
+
+bool IsSameNumber(double one, double other) { return one == other || (std::isnan(one) && std::isnan(other)); }
+
 }  // namespace
 
 bool IsWellFormed(const lidar_scan_t& message) { return HasPlace(message) && HasCells(message); }
@@ -131,11 +186,12 @@ bool IsWellFormed(const lidar_scan_t& message) { return HasPlace(message) && Has
 bool IsWellFormed(const segments_t& message) { return HasPlace(message) && HasCells(message); }
 
 bool IsWellFormed(const obstacles_t& message) {
-  constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
   return HasPlace(message) && message.num_parts <= kMaxObstaclesParts && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
            return obstacle.num_map == 0 || obstacle.num_map == obstacle.num_footprint;
          });
 }
+
+bool IsWellFormed(const tracks_t& message) { return HasPlace(message) && message.num_parts <= kMaxParts; }
 
 std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes) {
   const auto time = UtimeFromWire(message.utime_us);
@@ -168,6 +224,48 @@ std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes) {
     if (const auto fault = FaultOf(segment, *time, *end_time)) return fault;
   }
   return std::nullopt;
+}
+
+std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes) {
+  const auto time = UtimeFromWire(message.utime_us);
+  const auto end_time = UtimeFromWire(message.end_utime_us);
+  if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxScan) return kObstaclesTime;
+  if (message.seq < 0 || message.raw_seq < 0 || message.num_parts > kMaxObstaclesParts || !HasPlace(message)) return kObstaclesParts;
+  if (message.num_obstacles != std::ssize(message.obstacles)) return kObstaclesCount;
+  if (!std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) { return AreCodesKnown(obstacle); })) return kObstaclesCode;
+  if (!std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) { return CountsAgree(obstacle); })) return kObstaclesCount;
+  if (message.getEncodedSize() > max_message_bytes) return kObstaclesSize;
+  const bool has_datum =
+      IsWithin(message.datum_latitude_deg, 90.0) && IsWithin(message.datum_longitude_deg, 180.0) && !std::isinf(message.datum_ellipsoid_height_m);
+  std::int32_t last_id = 0;
+  for (const auto& obstacle : message.obstacles) {
+    if (obstacle.id <= last_id) return kObstaclesId;
+    last_id = obstacle.id;
+    const auto obstacle_time = UtimeFromWire(obstacle.utime_us);
+    if (!obstacle_time || *obstacle_time < *time || *obstacle_time > *end_time) return kObstaclesTime;
+    if (!AreNumbersGood(obstacle) || (obstacle.status == obstacle_t::STATUS_OK && !has_datum)) return kObstaclesNumber;
+    if (!IsCovariance(obstacle.covariance_m2) || !IsCovariance(obstacle.covariance_relative_m2)) return kObstaclesCovariance;
+  }
+  return std::nullopt;
+}
+
+std::optional<Fault> FaultOf(const alert_ack_t& message) {
+  if (!UtimeFromWire(message.utime_us) || !UtimeFromWire(message.alert_raised_utime_us)) return kAckTime;
+  if (message.alert_id == 0) return kAckId;
+  if (message.source.size() > kMaxSourceBytes) return kAckSource;
+  return std::nullopt;
+}
+
+bool AgreeAboutScan(const segments_t& one, const segments_t& other) {
+  return one.end_utime_us == other.end_utime_us && one.num_parts == other.num_parts && one.num_rings == other.num_rings &&
+         one.num_returns == other.num_returns;
+}
+
+bool AgreeAboutScan(const obstacles_t& one, const obstacles_t& other) {
+  return one.end_utime_us == other.end_utime_us && one.raw_seq == other.raw_seq && one.scan_flags == other.scan_flags &&
+         one.num_parts == other.num_parts && IsSameNumber(one.datum_latitude_deg, other.datum_latitude_deg) &&
+         IsSameNumber(one.datum_longitude_deg, other.datum_longitude_deg) &&
+         IsSameNumber(one.datum_ellipsoid_height_m, other.datum_ellipsoid_height_m);
 }
 
 bool AgreeAboutScan(const lidar_scan_t& one, const lidar_scan_t& other) {

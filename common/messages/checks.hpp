@@ -1,5 +1,5 @@
-// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES. A service computes from what FaultOf accepts; a tool, which shows also what a
-// service refuses, asks IsWellFormed.
+// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, and of ALERT_ACK. A service computes from what FaultOf accepts;
+// a tool, which shows also what a service refuses, asks IsWellFormed.
 #pragma once
 
 #include <array>
@@ -8,9 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "lookout/alert_ack_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "lookout/tracks_t.hpp"
 
 namespace lookout::messages {
 
@@ -19,6 +21,7 @@ namespace lookout::messages {
 bool IsWellFormed(const lidar_scan_t& message);
 bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);
+bool IsWellFormed(const tracks_t& message);
 
 /// What is wrong with a message: the name of the counter of its refusals.
 using Fault = std::string_view;
@@ -42,6 +45,22 @@ inline constexpr Fault kSegmentsSize = "segments_refused_size";      // larger t
 inline constexpr std::array kSegmentsFaults{kSegmentsTime,   kSegmentsParts, kSegmentsCount, kSegmentsId,
                                             kSegmentsNumber, kSegmentsCode,  kSegmentsSize};
 
+inline constexpr Fault kObstaclesTime = "obstacles_refused_time";      // does not exist, lies outside of its scan, or the scan is longer than 60 s
+inline constexpr Fault kObstaclesParts = "obstacles_refused_parts";    // part_index, num_parts (above 2000), seq
+inline constexpr Fault kObstaclesCount = "obstacles_refused_count";    // counts that do not agree; no corner
+inline constexpr Fault kObstaclesId = "obstacles_refused_id";          // ids that do not increase
+inline constexpr Fault kObstaclesNumber = "obstacles_refused_number";  // what the status says is known is not, or is no place, share or probability
+inline constexpr Fault kObstaclesCovariance = "obstacles_refused_covariance";  // not a covariance; one that is not known is none
+inline constexpr Fault kObstaclesCode = "obstacles_refused_code";              // a status, confidence, ground or kind that does not exist
+inline constexpr Fault kObstaclesSize = "obstacles_refused_size";              // larger than a message may be
+inline constexpr std::array kObstaclesFaults{kObstaclesTime,   kObstaclesParts,      kObstaclesCount, kObstaclesId,
+                                             kObstaclesNumber, kObstaclesCovariance, kObstaclesCode,  kObstaclesSize};
+
+inline constexpr Fault kAckTime = "acks_refused_time";      // of it or of its alert: does not exist
+inline constexpr Fault kAckId = "acks_refused_id";          // 0: no alert has it
+inline constexpr Fault kAckSource = "acks_refused_source";  // more than 64 bytes
+inline constexpr std::array kAckFaults{kAckTime, kAckId, kAckSource};
+
 /// Bounds of a scan: 65 536 columns and 2^21 cells are more than any scan of a known lidar has (128 rings x 2 returns x 4096 columns make 2^20).
 inline constexpr int kMaxRings = 128;
 inline constexpr int kMaxReturns = 2;
@@ -51,6 +70,8 @@ inline constexpr std::int64_t kMaxScanCells = std::int64_t{1} << 21;
 /// @return the first fault of a message; nullopt where there is none
 std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes);
 std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes);
+std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes);
+std::optional<Fault> FaultOf(const alert_ack_t& message);
 
 /// The count of an array, as a message says it.
 template <typename T>
@@ -60,6 +81,8 @@ std::int32_t CountOf(const std::vector<T>& values) {
 
 /// Whether two parts of one scan say the same of the whole of it.
 bool AgreeAboutScan(const lidar_scan_t& one, const lidar_scan_t& other);
+bool AgreeAboutScan(const segments_t& one, const segments_t& other);
+bool AgreeAboutScan(const obstacles_t& one, const obstacles_t& other);
 
 /// Whether a scan does not begin or does not end at the cut: flags of lidar_scan_t.
 bool IsCut(std::int32_t scan_flags);

@@ -58,6 +58,9 @@ class PartAssembler {
     return ended;
   }
 
+  /// Whether no part waits for others: then a scan of one part is whole by itself, and need not be copied to here.
+  bool is_empty() const { return parts_.empty(); }
+
   const Counts& counts() const { return counts_; }
 
  private:

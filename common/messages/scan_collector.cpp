@@ -11,7 +11,7 @@ bool ScanCollector::Add(Message message, std::map<std::int32_t, Message> ScanMes
     return scan.utime_us == message.utime_us && scan.seq == message.seq && !(scan.*parts).contains(message.part_index);
   });
   const auto index = static_cast<std::size_t>(lacking - waiting_.begin());
-  if (lacking == waiting_.end()) waiting_.push_back({message.utime_us, message.seq, {}, {}, {}});
+  if (lacking == waiting_.end()) waiting_.push_back({message.utime_us, message.seq, {}, {}, {}, {}});
   auto& scan = waiting_[index];
   const auto part_index = message.part_index;
   (scan.*parts).emplace(part_index, std::move(message));
@@ -26,6 +26,7 @@ bool ScanCollector::Add(Message message, std::map<std::int32_t, Message> ScanMes
 template bool ScanCollector::Add(lidar_scan_t, std::map<std::int32_t, lidar_scan_t> ScanMessages::*);
 template bool ScanCollector::Add(segments_t, std::map<std::int32_t, segments_t> ScanMessages::*);
 template bool ScanCollector::Add(obstacles_t, std::map<std::int32_t, obstacles_t> ScanMessages::*);
+template bool ScanCollector::Add(tracks_t, std::map<std::int32_t, tracks_t> ScanMessages::*);
 
 void ScanCollector::HandOn(std::size_t index) {
   const auto last = waiting_.begin() + static_cast<std::ptrdiff_t>(index);

@@ -19,6 +19,7 @@ struct ScanMessages {
   std::map<std::int32_t, lidar_scan_t> scans;
   std::map<std::int32_t, segments_t> segments;
   std::map<std::int32_t, obstacles_t> obstacles;
+  std::map<std::int32_t, tracks_t> tracks;
 };
 
 template <typename Message>
@@ -44,6 +45,7 @@ class ScanCollector {
   bool Add(lidar_scan_t message) { return Add(std::move(message), &ScanMessages::scans); }
   bool Add(segments_t message) { return Add(std::move(message), &ScanMessages::segments); }
   bool Add(obstacles_t message) { return Add(std::move(message), &ScanMessages::obstacles); }
+  bool Add(tracks_t message) { return Add(std::move(message), &ScanMessages::tracks); }
 
   /// End of the input: what waits is handed on.
   void Finish() {

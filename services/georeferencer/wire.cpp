@@ -91,9 +91,13 @@ obstacle_t ToMessage(const Obstacle& obstacle) {
   message.longitude_deg = obstacle.longitude_deg;
   message.position_map_m[0] = obstacle.position_map_m.x();
   message.position_map_m[1] = obstacle.position_map_m.y();
-  message.covariance_m2[0] = Canonical(obstacle.covariance_m2(0, 0));
-  message.covariance_m2[1] = Canonical(obstacle.covariance_m2(0, 1));
-  message.covariance_m2[2] = Canonical(obstacle.covariance_m2(1, 1));
+  const auto copy_upper = [](const Eigen::Matrix2d& from_m2, double(&to_m2)[3]) {
+    to_m2[0] = Canonical(from_m2(0, 0));
+    to_m2[1] = Canonical(from_m2(0, 1));
+    to_m2[2] = Canonical(from_m2(1, 1));
+  };
+  copy_upper(obstacle.covariance_m2, message.covariance_m2);
+  copy_upper(obstacle.covariance_relative_m2, message.covariance_relative_m2);
   message.top_above_water_m = obstacle.top_above_water_m;
   for (int i = 0; i < 2; ++i) message.center_vessel_m[i] = static_cast<float>(obstacle.center_vessel_m[i]);
   for (int i = 0; i < 3; ++i) message.nearest_vessel_m[i] = static_cast<float>(obstacle.nearest_vessel_m[i]);

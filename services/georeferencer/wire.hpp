@@ -16,7 +16,7 @@ using Refusal = messages::Fault;
 
 /// Encoded sizes: obstacles_t without obstacles, obstacle_t without outline and waterline, a corner of them in both frames.
 inline constexpr std::size_t kHeadBytes = 80;
-inline constexpr std::size_t kObstacleBytes = 164;
+inline constexpr std::size_t kObstacleBytes = 188;
 inline constexpr std::size_t kVertexBytes = 16;
 
 /// The whole message is valid, or it is refused.

@@ -9,6 +9,7 @@
 #include "config/schema/navigator.pb.h"
 #include "config/schema/recorder.pb.h"
 #include "config/schema/segmenter.pb.h"
+#include "config/schema/tracker.pb.h"
 #include "config/schema/vlp16.pb.h"
 
 namespace {
@@ -30,6 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text(reinterpret_cast<const char*>(data), size);
   ParseAs<lookout::config::Boat>(text);
   ParseAs<lookout::config::Georeferencer>(text);
+  ParseAs<lookout::config::Tracker>(text);
   ParseAs<lookout::config::Navigator>(text);
   ParseAs<lookout::config::Recorder>(text);
   ParseAs<lookout::config::Segmenter>(text);

@@ -21,7 +21,13 @@ constexpr int kNumDraws = 20'000;
 
 Matrix2d Drawn(const Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params, std::mt19937& random) {
   std::normal_distribution<double> normal;
-  const Covariance root = pose.covariance.llt().matrixL();
+  // A position that is known has no variance: of the rest alone there is a root.
+  Covariance root = Covariance::Zero();
+  if (pose.covariance(0, 0) > 0.0) {
+    root = pose.covariance.llt().matrixL();
+  } else {
+    root.bottomRightCorner<3, 3>() = pose.covariance.bottomRightCorner<3, 3>().llt().matrixL();
+  }
   const Vector3d p_lidar_m = params.T_vessel_lidar.inverse() * p_vessel_m;
   std::vector<Vector2d> positions;
   Vector2d mean = Vector2d::Zero();
@@ -80,6 +86,15 @@ TEST(GeoreferencerCovariance, AgreesWithAMonteCarloRunWithin5Percent) {
     const double error = (covariance - expected).norm() / expected.norm();
     EXPECT_LT(error, 0.05) << "seed " << seed << "\n" << covariance << "\nagainst\n" << expected;
     worst = std::max(worst, error);
+
+    // Relative to the boat: drawn with a position that is known.
+    const Matrix2d relative = RelativeCovariance(p_vessel_m, pose, params);
+    pose.covariance.topRows<2>().setZero();
+    pose.covariance.leftCols<2>().setZero();
+    const Matrix2d expected_relative = Drawn(p_vessel_m, pose, params, random);
+    EXPECT_LT((relative - expected_relative).norm(), 0.05 * expected_relative.norm()) << "seed " << seed << "\n"
+                                                                                      << relative << "\nagainst\n"
+                                                                                      << expected_relative;
   }
   std::printf("worst relative error %.3f\n", worst);
 }

@@ -59,15 +59,16 @@ TEST_F(Doctor, SeesASimulatedBoatByItselfAndThroughItsProcesses) {
     if (message.num_obstacles > 0 && message.obstacles[0].status == obstacle_t::STATUS_OK) ++num_placed;
   });
   lcm.HandleOnce(milliseconds(0));  // joins LCM's group
-  for (const auto& service : {"recorder", "georeferencer", "segmenter", "navigator", "vlp16"}) Start(service);
+  for (const auto& service : {"recorder", "tracker", "georeferencer", "segmenter", "navigator", "vlp16"}) Start(service);
   const auto deadline = std::chrono::steady_clock::now() + seconds(20);
   while (num_placed < 3 && std::chrono::steady_clock::now() < deadline) lcm.HandleOnce(milliseconds(50));
   ASSERT_GE(num_placed, 3);
   const auto through_processes = Ask();
   ExpectNoFault(through_processes);
-  for (const auto& text : {" lidar      VLP-16, strongest return", "clock      the lidar is locked to PPS", "ok       gnss       RTK, fixed",
-                           "ok       heading", "(heard on the bus)", "process    vlp16 (pid ", "process    segmenter (pid ",
-                           "process    navigator (pid ", "process    georeferencer (pid ", "process    recorder (pid ", " obstacles  "}) {
+  for (const auto& text :
+       {" lidar      VLP-16, strongest return", "clock      the lidar is locked to PPS", "ok       gnss       RTK, fixed", "ok       heading",
+        "(heard on the bus)", "process    vlp16 (pid ", "process    segmenter (pid ", "process    navigator (pid ", "process    georeferencer (pid ",
+        "process    tracker (pid ", "process    recorder (pid ", " obstacles  "}) {
     EXPECT_TRUE(Has(through_processes, text)) << text << " is missing in\n" << through_processes.output;
   }
 

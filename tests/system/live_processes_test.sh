@@ -24,13 +24,14 @@ fail() { echo "FAILED: $*" >&2; tail -n 30 "$work"/*.out >&2 || true; exit 1; }
 cp -r "$source_folder/config/demo" "$work/config"
 # What is given up for lack of POSE on a busy computer stands outside of what a replay equals.
 sed -i 's/^pose_timeout_s: .*/pose_timeout_s: 20/' "$work/config/georeferencer.txtpb"
+echo 'wait_timeout_s: 20' >>"$work/config/tracker.txtpb"
 grep -q '^pose_timeout_s: 20$' "$work/config/georeferencer.txtpb" || fail "the config has no pose_timeout_s"
 cd "$work"  # the recorder's logs/ is made here
 simulate() { "$bin/lookout-sim" --config config --scene lake --seed 1 --seconds 3 --udp 127.0.0.1 >sim.out || fail "the simulator"; }
 
 case $by in
   demo)
-    for service in recorder georeferencer segmenter navigator vlp16; do start "$service" config "$service.out"; done
+    for service in recorder tracker georeferencer segmenter navigator vlp16; do start "$service" config "$service.out"; done
     simulate
     stop_all
     ;;
@@ -58,7 +59,7 @@ logs=(logs/*.lcmlog)
 "$bin/lookout-log" info "${logs[0]}" >info.out
 grep -q '^begins .*with a start mark: LIDAR_PACKETS, NAV_RAW$' info.out || fail "no start mark: $(cat info.out)"
 grep -q '^ends .*with an end mark: LIDAR_PACKETS, NAV_RAW$' info.out || fail "no end mark: $(cat info.out)"
-for channel in LIDAR_PACKETS LIDAR_SCAN SEGMENTS NAV_RAW POSE OBSTACLES; do
+for channel in LIDAR_PACKETS LIDAR_SCAN SEGMENTS NAV_RAW POSE OBSTACLES TRACKS ALERTS; do
   grep -q "^$channel " info.out || fail "the log holds no $channel"
 done
 "$bin/lookout-diff" "${logs[0]}" again.lcmlog || fail "the log differs from its replay"

@@ -50,7 +50,7 @@ class Live : public LiveTest {
 
   // Sources end first, so that what they send at their end still finds its takers.
   void StopAll() {
-    for (const auto& service : {"vlp16", "navigator", "segmenter", "georeferencer", "recorder"}) {
+    for (const auto& service : {"vlp16", "navigator", "segmenter", "georeferencer", "tracker", "recorder"}) {
       std::this_thread::sleep_for(milliseconds(300));
       EXPECT_EQ(children_[service]->Terminate().value_or(-1), 0) << service << ": " << children_[service]->Output();
     }
@@ -175,6 +175,8 @@ TEST_F(Live, CorruptMessagesOnEveryChannelAreCountedAndNothingDies) {
   EXPECT_EQ(undecodable("georeferencer", "SEGMENTS"), 22);
   EXPECT_EQ(undecodable("georeferencer", "POSE"), 20);
   EXPECT_EQ(undecodable("navigator", "LIDAR_NMEA"), 20);
+  EXPECT_EQ(undecodable("tracker", "OBSTACLES"), 20);
+  EXPECT_EQ(undecodable("tracker", "ALERT_ACK"), 20);
   EXPECT_GE(live.at("OBSTACLES").size(), 15U);
 }
 

@@ -148,7 +148,7 @@ class Replay : public ::testing::Test {
     std::map<int, int> histogram;
     std::string line;
     std::getline(in, line);
-    EXPECT_EQ(line, "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason");
+    EXPECT_EQ(line, "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id");
     while (std::getline(in, line)) {
       std::istringstream row(line);
       std::string field;
@@ -178,9 +178,10 @@ TEST_F(Replay, FromAnyLevelGivesTheSameBytes) {
   MakeDay();
   const auto day = PayloadsByChannel("day");
   const std::vector<std::pair<std::vector<std::string>, std::set<std::string>>> parts{
-      {{"--from", "LIDAR_SCAN"}, {"LIDAR_SCAN", "NAV_RAW", "SEGMENTS", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES"}},
-      {{"--from", "SEGMENTS", "--from", "POSE"}, {"SEGMENTS", "POSE", "OBSTACLES"}},
-      {{"--from", "POSE"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "POSE", "OBSTACLES"}},
+      {{"--from", "LIDAR_SCAN"}, {"LIDAR_SCAN", "NAV_RAW", "SEGMENTS", "GNSS_FIX", "ATTITUDE", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      {{"--from", "SEGMENTS", "--from", "POSE"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      {{"--from", "OBSTACLES"}, {"LIDAR_SCAN", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
+      {{"--from", "POSE"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA", "SEGMENTS", "POSE", "OBSTACLES", "TRACKS", "ALERTS"}},
       {{"--only", "vlp16"}, {"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"}},
       {{"--only", "segmenter"}, {"LIDAR_SCAN", "SEGMENTS"}},
       {{"--only", "navigator"}, {"NAV_RAW", "GNSS_FIX", "ATTITUDE", "POSE"}},

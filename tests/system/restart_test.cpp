@@ -49,7 +49,7 @@ class Watch {
         pids_[message->process].insert(message->pid);
       }
     });
-    for (const auto* channel : {&bus::kLidarScan, &bus::kSegments, &bus::kPose, &bus::kObstacles}) {
+    for (const auto* channel : {&bus::kLidarScan, &bus::kSegments, &bus::kPose, &bus::kObstacles, &bus::kAlerts}) {
       bus_.SubscribeRaw(*channel, [](std::string_view, Bytes) {});
     }
   }
@@ -77,11 +77,9 @@ class Watch {
 
 // The channel by which a process shows that it works again; the recorder shows it by a log.
 const bus::Channel& OutputOf(const std::string& process) {
-  static const std::map<std::string, const bus::Channel*> kOutputs{{"recorder", &bus::kObstacles},
-                                                                   {"georeferencer", &bus::kObstacles},
-                                                                   {"segmenter", &bus::kSegments},
-                                                                   {"navigator", &bus::kPose},
-                                                                   {"vlp16", &bus::kLidarScan}};
+  static const std::map<std::string, const bus::Channel*> kOutputs{{"recorder", &bus::kObstacles},      {"tracker", &bus::kAlerts},
+                                                                   {"georeferencer", &bus::kObstacles}, {"segmenter", &bus::kSegments},
+                                                                   {"navigator", &bus::kPose},          {"vlp16", &bus::kLidarScan}};
   return *kOutputs.at(process);
 }
 

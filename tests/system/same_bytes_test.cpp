@@ -74,7 +74,7 @@ class SameBytes : public ::testing::Test {
     const auto run = RunProgram(command, Path("replay.out"));
     fs::remove(Path("out.lcmlog"));
     std::string digests = "exit code " + std::to_string(run.exit_code) + "\n";
-    for (const std::string channel : {"LIDAR_", "SEGMENTS ", "NAV_RAW ", "GNSS_FIX ", "ATTITUDE ", "POSE ", "OBSTACLES "}) {
+    for (const std::string channel : {"LIDAR_", "SEGMENTS ", "NAV_RAW ", "GNSS_FIX ", "ATTITUDE ", "POSE ", "OBSTACLES ", "TRACKS ", "ALERTS "}) {
       digests += Lines(run.output, channel);
     }
     return digests;
@@ -110,6 +110,7 @@ TEST_F(SameBytes, OfSimulatedScenesByBothMethodsWhateverTheProcessor) {
       const std::string digests = ExpectSameDigests(config, Path(scene + ".pcap"));
       EXPECT_EQ(digests.rfind("exit code 0\n", 0), 0U) << digests;
       EXPECT_NE(digests.find("OBSTACLES "), std::string::npos) << digests;
+      EXPECT_NE(digests.find("TRACKS "), std::string::npos) << digests;
     }
   }
 }

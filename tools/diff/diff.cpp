@@ -16,6 +16,7 @@
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
 #include "tools/log/time_text.hpp"
+#include "tools/log/watch_alerts.hpp"
 
 namespace lookout::diff {
 
@@ -42,6 +43,10 @@ struct ChannelResult {
 struct IndexedLog {
   explicit IndexedLog(const std::filesystem::path& file) : reader(file) {
     for (std::int64_t number = 0; const auto event = reader.Next(); ++number) {
+      if (log::IsWatchAlert(event->channel, event->bytes)) {
+        ++num_watch_alerts;
+        continue;
+      }
       const auto size = static_cast<std::int64_t>(bus::kLogEventHeaderBytes + event->channel.size() + event->bytes.size());
       places[event->channel].push_back(reader.position_bytes() - size);
       marks.Add(event->time, event->channel, event->bytes);
@@ -65,6 +70,7 @@ struct IndexedLog {
   log::Publishers publishers;
   std::optional<Utime> first_time;
   std::int64_t num_damaged = 0;
+  std::int64_t num_watch_alerts = 0;
 };
 
 // They tell of the machine, not of the water; LCM_SELF_TEST is what LCM sends to itself when it opens UDP multicast.
@@ -266,6 +272,8 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
     if (!interleavings.empty()) out << log::kOutsideProof << "\n";
   }
   if (!left_out.empty()) out << fmt::format("left out: {}\n", fmt::join(left_out, ", "));
+  const auto num_watch_alerts = a.num_watch_alerts + b.num_watch_alerts;
+  if (num_watch_alerts > 0) out << fmt::format("left out: {} of ALERTS, which came without a scan\n", num_watch_alerts);
   if (num_different == 0) {
     out << fmt::format("equal: {} channels, {} messages\n", channels.size(), num_messages);
     return kExitEqual;

@@ -26,6 +26,7 @@
 #include "services/georeferencer/params.hpp"
 #include "services/recorder/params.hpp"
 #include "services/segmenter/params.hpp"
+#include "services/tracker/params.hpp"
 #include "services/vlp16/sources.hpp"
 
 namespace lookout::doctor {
@@ -122,6 +123,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   check("segmenter.txtpb", [&] { segmenter::LoadParams(config_folder); });
   check("navigator.txtpb", [&] { seen.navigation = navigator::LoadParams(config_folder); });
   check("georeferencer.txtpb", [&] { georeferencer::LoadParams(config_folder); });
+  check("tracker.txtpb", [&] { tracker::LoadParams(config_folder); });
   check("recorder.txtpb", [&] {
     const auto params = recorder::LoadParams(config_folder);
     seen.log_folder = params.log_folder;

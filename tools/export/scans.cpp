@@ -35,6 +35,8 @@ bool IsWhole(const ScanMessages& scan, ChosenScan::Of channels) {
 
 bool IsLabelled(const ScanMessages& scan) { return messages::HasAllParts(scan.scans) && messages::HasAllParts(scan.segments); }
 
+bool IsTracked(const ScanMessages& scan) { return IsLabelled(scan) && messages::HasAllParts(scan.tracks); }
+
 messages::ScanCollector MakeCollector(messages::ScanCollector::Predicate is_complete, messages::ScanCollector::Handler on_scan) {
   // 6.4 s of scans at 300 rpm, some megabytes: more than the segmenter is ever behind, and less than the ten seconds of POSE that a picture keeps.
   constexpr std::size_t kMaxWaiting = 32;
@@ -44,6 +46,7 @@ messages::ScanCollector MakeCollector(messages::ScanCollector::Predicate is_comp
 Taken AddTo(messages::ScanCollector& collector, std::string_view channel, Bytes bytes) {
   if (channel == bus::kLidarScan.name) return Add<lidar_scan_t>(collector, bytes);
   if (channel == bus::kSegments.name) return Add<segments_t>(collector, bytes);
+  if (channel == bus::kTracks.name) return Add<tracks_t>(collector, bytes);
   return Add<obstacles_t>(collector, bytes);
 }
 

@@ -15,11 +15,13 @@ using messages::ScanMessages;
 
 /// Whether LIDAR_SCAN and SEGMENTS of a scan are whole.
 bool IsLabelled(const ScanMessages& scan);
+/// And TRACKS.
+bool IsTracked(const ScanMessages& scan);
 
 /// Collects scans in the order of the log; each waits until `is_complete`, or a later one is, or too many wait.
 messages::ScanCollector MakeCollector(messages::ScanCollector::Predicate is_complete, messages::ScanCollector::Handler on_scan);
 
-/// Adds a message of LIDAR_SCAN, SEGMENTS or OBSTACLES.
+/// Adds a message of LIDAR_SCAN, SEGMENTS, OBSTACLES or TRACKS.
 Taken AddTo(messages::ScanCollector& collector, std::string_view channel, Bytes bytes);
 
 /// @return the labels of a part of a scan; nullptr where the log holds none

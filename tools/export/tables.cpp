@@ -3,10 +3,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 
 #include "common/bus/decode.hpp"
 #include "common/core/angles.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
@@ -15,6 +17,7 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tools/export/csv.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
@@ -32,18 +35,34 @@ Fixed GeodeticDegrees(double angle_deg) { return {angle_deg, 9}; }  // 0.1 mm on
 Fixed Degrees(double angle_rad) { return {RadToDeg(angle_rad), 4}; }
 Fixed Share(double share) { return {share, 4}; }  // or a probability
 
+// By segment, of one scan: its track, or 0 where it is land by what is remembered.
+std::map<std::int32_t, std::int64_t> TracksOfSegments(const ScanMessages& scan) {
+  std::map<std::int32_t, std::int64_t> tracks;
+  for (const auto& [part_index, part] : scan.tracks) {
+    for (const auto& track : part.tracks) {
+      for (const auto segment_id : track.segment_ids) tracks[segment_id] = track.id;
+    }
+    for (const auto segment_id : part.land_segment_ids) tracks[segment_id] = 0;
+  }
+  return tracks;
+}
+
 void AppendReturns(const ScanMessages& scan, std::string& text) {
+  const auto tracks = TracksOfSegments(scan);
   for (const auto& [part_index, part] : scan.scans) {
     ForEachReturn(part, LabelsOf(scan, part), [&, &columns = part](const Return& one) {
-      const auto append = [&](const auto& label, const auto& reason) {
+      const auto append = [&](const auto& label, const auto& reason, const auto& track_id) {
         // The wire counts ranges in 2 mm.
         AppendRow(text, columns.utime_us, one.utime_us, one.ring, one.return_index, Direction{one.azimuth_rad}, Fixed{one.range_m, 3},
-                  Metres(one.p_lidar_m.x()), Metres(one.p_lidar_m.y()), Metres(one.p_lidar_m.z()), one.reflectivity, label, reason);
+                  Metres(one.p_lidar_m.x()), Metres(one.p_lidar_m.y()), Metres(one.p_lidar_m.z()), one.reflectivity, label, reason, track_id);
       };
-      if (one.has_label) {
-        append(one.label, one.reason);
+      const auto track = one.has_label && one.label > 0 ? tracks.find(one.label) : tracks.end();
+      if (track != tracks.end()) {
+        append(one.label, one.reason, track->second);
+      } else if (one.has_label) {
+        append(one.label, one.reason, Empty{});
       } else {
-        append(Empty{}, Empty{});
+        append(Empty{}, Empty{}, Empty{});
       }
     });
   }
@@ -68,6 +87,29 @@ void Append(const obstacles_t& message, std::string& text) {
               Shortest{covariance_m2[1]}, Shortest{covariance_m2[2]}, Metres(obstacle.length_m), Metres(obstacle.width_m), obstacle.num_points,
               words::WordOf(words::kObstacleStatus, obstacle.status), words::WordOf(words::kConfidence, obstacle.confidence),
               words::WordOf(words::kKind, obstacle.kind), Share(obstacle.thing_probability));
+  }
+}
+
+void Append(const tracks_t& message, std::string& text) {
+  for (const auto& track : message.tracks) {
+    const auto& covariance = track.covariance;
+    AppendRow(text, message.end_utime_us, track.id, GeodeticDegrees(track.latitude_deg), GeodeticDegrees(track.longitude_deg),
+              Metres(track.speed_mps), Direction{track.course_rad}, Metres(track.cpa_m), Fixed{track.tcpa_s, 2},
+              words::WordOf(words::kTrackStatus, track.status), words::WordOf(words::kTrackKind, track.kind), message.utime_us, track.first_utime_us,
+              track.seen_utime_us, Metres(track.position_map_m[0]), Metres(track.position_map_m[1]), Shortest{covariance[0][0]},
+              Shortest{covariance[0][1]}, Shortest{covariance[1][1]}, Metres(track.velocity_map_mps[0]), Metres(track.velocity_map_mps[1]),
+              Share(track.existence_probability), Share(track.moving_probability), Metres(track.length_m), Metres(track.width_m),
+              Degrees(track.length_bearing_rad), Metres(track.top_above_water_m), Share(track.seen_share), track.num_seen, track.num_looks,
+              Fixed{track.mean_returns, 1}, Metres(track.range_m), Direction{track.bearing_rad}, Metres(track.distance_m),
+              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps));
+  }
+}
+
+void Append(const alerts_t& message, std::string& text) {
+  for (const auto& alert : message.alerts) {
+    AppendRow(text, message.end_utime_us, alert.id, words::WordOf(words::kAlertCause, alert.cause), words::WordOf(words::kAlertLevel, alert.level),
+              words::WordOf(words::kAlertState, alert.state), alert.track_id, alert.raised_utime_us, alert.changed_utime_us, Metres(alert.distance_m),
+              Direction{alert.bearing_rad}, Metres(alert.cpa_m), Fixed{alert.tcpa_s, 2}, Share(alert.cpa_probability), alert.text);
   }
 }
 
@@ -144,7 +186,8 @@ struct Table {
 };
 
 constexpr std::array kTables{
-    Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason", bus::kLidarScan, nullptr},
+    Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id", bus::kLidarScan,
+          nullptr},
     Table{"segments",
           "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
           "thing_probability,land_probability",
@@ -153,6 +196,16 @@ constexpr std::array kTables{
           "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,"
           "length_m,width_m,num_points,status,confidence,kind,thing_probability",
           bus::kObstacles, AppendMessage<obstacles_t>},
+    Table{"tracks",
+          "utime_us,track_id,latitude_deg,longitude_deg,speed_mps,course_deg,cpa_m,tcpa_s,status,kind,scan_utime_us,first_utime_us,seen_utime_us,"
+          "east_m,"
+          "north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,velocity_east_mps,velocity_north_mps,existence_probability,moving_probability,length_m,width_m,"
+          "length_bearing_deg,top_above_water_m,seen_share,num_seen,num_looks,mean_returns,range_m,bearing_deg,distance_m,cpa_probability,encounter,"
+          "bearing_drift_degps",
+          bus::kTracks, AppendMessage<tracks_t>},
+    Table{"alerts",
+          "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text",
+          bus::kAlerts, AppendMessage<alerts_t>},
     Table{"pose", "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status", bus::kPose,
           AppendMessage<pose_t>},
     Table{"clock",
@@ -196,7 +249,7 @@ class MessageSink final : public Sink {
 
 class ReturnsSink final : public Sink {
  public:
-  std::vector<bus::Channel> Channels() const override { return {bus::kLidarScan, bus::kSegments}; }
+  std::vector<bus::Channel> Channels() const override { return {bus::kLidarScan, bus::kSegments, bus::kTracks}; }
 
   Taken Take(std::string_view channel, Bytes bytes, std::string& text) override {
     target_ = &text;
@@ -221,7 +274,7 @@ class ReturnsSink final : public Sink {
 
   std::string* target_ = nullptr;  // of the call in progress
   std::int64_t num_orphans_ = 0;
-  messages::ScanCollector collector_ = MakeCollector(IsLabelled, [this](const ScanMessages& scan) { Append(scan); });
+  messages::ScanCollector collector_ = MakeCollector(IsTracked, [this](const ScanMessages& scan) { Append(scan); });
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "lookout/alert_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
@@ -13,6 +14,7 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/segment_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "lookout/track_t.hpp"
 
 namespace lookout::words {
 
@@ -37,6 +39,28 @@ inline constexpr std::array kGround{Word{segment_t::GROUND_FEW_RETURNS, "few_ret
                                     Word{segment_t::GROUND_AT_SURFACE, "at_surface"}};
 
 inline constexpr std::array kKind{Word{segment_t::KIND_OBSTACLE, "obstacle"}, Word{segment_t::KIND_LAND, "land"}};
+
+inline constexpr std::array kTrackStatus{Word{track_t::STATUS_TENTATIVE, "tentative"}, Word{track_t::STATUS_CONFIRMED, "confirmed"},
+                                         Word{track_t::STATUS_COASTING, "coasting"}, Word{track_t::STATUS_LOST, "lost"}};
+
+inline constexpr std::array kTrackKind{Word{track_t::KIND_OBSTACLE, "obstacle"}, Word{track_t::KIND_BUOY, "buoy"}, Word{track_t::KIND_BOAT, "boat"},
+                                       Word{track_t::KIND_STRUCTURE, "structure"}, Word{track_t::KIND_UNKNOWN, "unknown"}};
+
+/// As in COLREGs rules 13 to 15.
+inline constexpr std::array kEncounter{Word{track_t::ENCOUNTER_NONE, "none"},
+                                       Word{track_t::ENCOUNTER_HEAD_ON, "head_on"},
+                                       Word{track_t::ENCOUNTER_CROSSING_GIVE_WAY, "crossing_give_way"},
+                                       Word{track_t::ENCOUNTER_CROSSING_STAND_ON, "crossing_stand_on"},
+                                       Word{track_t::ENCOUNTER_OVERTAKING, "overtaking"},
+                                       Word{track_t::ENCOUNTER_OVERTAKEN, "overtaken"}};
+
+inline constexpr std::array kAlertCause{Word{alert_t::CAUSE_GUARD_ZONE, "guard_zone"}, Word{alert_t::CAUSE_CLOSEST_APPROACH, "closest_approach"},
+                                        Word{alert_t::CAUSE_WATCH, "watch"}};
+
+inline constexpr std::array kAlertLevel{Word{alert_t::LEVEL_CAUTION, "caution"}, Word{alert_t::LEVEL_WARNING, "warning"}};
+
+inline constexpr std::array kAlertState{Word{alert_t::STATE_ACTIVE, "active"}, Word{alert_t::STATE_ACKNOWLEDGED, "acknowledged"},
+                                        Word{alert_t::STATE_RECTIFIED, "rectified"}, Word{alert_t::STATE_CLEARED, "cleared"}};
 
 inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose_t::STATUS_NO_HEADING, "no_heading"},
                                         Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"},

@@ -44,8 +44,8 @@ void Timed(std::chrono::nanoseconds& total, Call call) {
 
 // They subscribe as they are made; the sink subscribes last, so that it sees a message after the services did.
 struct Chain::Running {
-  Running(bus::MemoryBus& memory_bus, const std::filesystem::path& config_folder, bool reads_raw, const StageFactory& factory)
-      : service(factory.service), bus(memory_bus), stage(factory.make(bus, config_folder, reads_raw)) {}
+  Running(bus::MemoryBus& memory_bus, const std::filesystem::path& config_folder, const StageInput& input, const StageFactory& factory)
+      : service(factory.service), bus(memory_bus), stage(factory.make(bus, config_folder, input)) {}
 
   std::string service;
   StageBus bus;
@@ -66,7 +66,7 @@ Chain::Chain(const std::filesystem::path& config_folder, const Plan& plan, Sink 
     const auto& factory = *std::ranges::find(factories, service, &StageFactory::service);
     const bool reads_raw = std::ranges::any_of(
         bus::kChannels, [&](const bus::Channel& channel) { return channel.is_raw && channel.publisher == service && plan.Reads(channel.name); });
-    running_.push_back(std::make_unique<Running>(bus_, config_folder, reads_raw, factory));
+    running_.push_back(std::make_unique<Running>(bus_, config_folder, StageInput{reads_raw, plan}, factory));
   }
   bus_.SubscribeAll([this](std::string_view channel, Bytes bytes) {
     auto digest = digests_.find(channel);

@@ -17,6 +17,7 @@
 #include "common/io/stop_signal.hpp"
 #include "services/navigator/io/text_log_reader.hpp"
 #include "services/vlp16/io/capture_reader.hpp"
+#include "tools/replay/live_run.hpp"
 
 namespace lookout::replay {
 
@@ -217,6 +218,7 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
   inspection.is_logs = num_logs != 0;
   try {
     inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
+    if (inspection.is_logs && inspection.plan.Runs(bus::kAlerts.publisher)) inspection.plan.script = ReadScript(files);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(files.front().string() + ": " + error.what());
   }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "tools/replay/stage.hpp"
 
@@ -13,9 +14,12 @@ namespace {
 
 bool Holds(const std::vector<std::string>& names, std::string_view name) { return std::ranges::find(names, name) != names.end(); }
 
+bool IsFromSeveral(const bus::Channel* channel) { return channel != nullptr && bus::HasSeveralPublishers(*channel); }
+
+// Without what several may send, and nobody must.
 std::vector<const bus::Channel*> Inputs(const bus::ServiceRow& service) {
   std::vector<const bus::Channel*> inputs(service.inputs.begin(), service.inputs.end());
-  std::erase(inputs, nullptr);
+  std::erase_if(inputs, [](const auto* channel) { return channel == nullptr || IsFromSeveral(channel); });
   return inputs;
 }
 
@@ -81,6 +85,7 @@ void AddUnmet(const Request& request, const ChannelSet& present, const ServiceRo
   std::vector<const bus::Channel*> unmet;
   for (const auto& service : services) {
     if (!plan.Runs(service.name)) continue;
+    std::ranges::copy_if(service.inputs, std::back_inserter(unmet), IsFromSeveral);
     if (ReadsRaw(service, request, present)) {
       unmet.push_back(bus::RawOutput(service));
       continue;
@@ -115,6 +120,7 @@ std::vector<std::string> FedServices(const Plan& plan, const ChannelSet& present
 
 bool Plan::Runs(std::string_view service) const { return Holds(services, service); }
 bool Plan::Reads(std::string_view channel) const { return Holds(read, channel); }
+bool Plan::Gives(const bus::Channel& channel) const { return Runs(channel.publisher) || (Reads(channel.name) && !Holds(absent, channel.name)); }
 
 const ServiceRows& ReplayedServices() {
   static const ServiceRows kRows = [] {
@@ -146,7 +152,9 @@ ChannelSet Candidates(const Request& request, const ServiceRows& services) {
   Plan plan = Running(request, services);
   const auto all = FromNames(services);
   AddUnmet(request, {all.begin(), all.end()}, services, plan);
-  return {plan.read.begin(), plan.read.end()};
+  ChannelSet candidates(plan.read.begin(), plan.read.end());
+  std::erase_if(candidates, [](const auto& name) { return IsFromSeveral(bus::FindChannel(name)); });
+  return candidates;
 }
 
 Plan MakeLogPlan(const Request& request, const ChannelSet& present, const ServiceRows& services) {
@@ -162,6 +170,9 @@ Plan MakeLogPlan(const Request& request, const ChannelSet& present, const Servic
   if (fed.empty()) {
     throw std::runtime_error(
         fmt::format("the input holds none of {}: nothing can be computed again", fmt::join(Candidates(request, services), ", ")));
+  }
+  for (const auto& name : plan.read) {
+    if (!present.contains(name) && !IsFromSeveral(bus::FindChannel(name))) plan.absent.push_back(name);
   }
   return plan;
 }

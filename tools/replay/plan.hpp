@@ -1,6 +1,7 @@
 // Which services run in a replay, and which channels they read from the logs: derived from the service table and the channel table.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "common/bus/services.hpp"
+#include "services/tracker/core/script.hpp"
 
 namespace lookout::replay {
 
@@ -20,7 +22,8 @@ const ServiceRows& ReplayedServices();
 /// Their names.
 std::vector<std::string> ServiceNames(const ServiceRows& services = ReplayedServices());
 
-/// Channels at which a replay can begin: inputs and raw outputs of these services, in the order of the channel table.
+/// Channels at which a replay can begin: inputs and raw outputs of these services, in the order of the channel table. Not ALERT_ACK: it is read
+/// wherever it is.
 std::vector<std::string> FromNames(const ServiceRows& services = ReplayedServices());
 
 /// What the command line asks for.
@@ -39,12 +42,17 @@ class RequestError : public std::invalid_argument {
 struct Plan {
   std::vector<std::string> services = ServiceNames();  // that run, in the order of the data
   std::vector<std::string> read = {};                  // channels that come out of the logs, in the order of the channel table
+  std::vector<std::string> absent = {};                // of these, what the logs do not hold
+  std::optional<tracker::Script> script = {};          // what the tracker did live, where the logs tell
 
   bool Runs(std::string_view service) const;
   bool Reads(std::string_view channel) const;
+  /// Whether messages of a channel can come: a service that runs publishes it, or the logs hold it.
+  bool Gives(const bus::Channel& channel) const;
 };
 
-/// Channels that a replay of logs could read for this request: when all of them are known to be there, no more need be looked for.
+/// Channels that a replay of logs could read for this request, but for ALERT_ACK, on which no plan depends: when all of them are known to be there,
+/// no more need be looked for.
 ///
 /// @throws RequestError when parts of the request contradict each other or name what is not there
 ChannelSet Candidates(const Request& request, const ServiceRows& services = ReplayedServices());

@@ -6,6 +6,8 @@
 #include "services/navigator/service.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/segmenter/service.hpp"
+#include "services/tracker/params.hpp"
+#include "services/tracker/service.hpp"
 #include "services/vlp16/params.hpp"
 #include "services/vlp16/service.hpp"
 #include "services/vlp16/sources.hpp"
@@ -18,8 +20,8 @@ namespace fs = std::filesystem;
 
 class Vlp16Stage final : public Stage {
  public:
-  Vlp16Stage(bus::Bus& bus, const fs::path& config_folder, bool reads_raw)
-      : params_(Load(config_folder, reads_raw ? vlp16::Input::kLog : vlp16::Input::kOutside)), service_(bus, params_) {}
+  Vlp16Stage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
+      : params_(Load(config_folder, input.reads_raw ? vlp16::Input::kLog : vlp16::Input::kOutside)), service_(bus, params_) {}
 
   void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
   bool OnDatagram(const Datagram& datagram) override {
@@ -44,7 +46,7 @@ class Vlp16Stage final : public Stage {
 
 class SegmenterStage final : public Stage {
  public:
-  SegmenterStage(bus::Bus& bus, const fs::path& config_folder, bool /*reads_raw*/) : service_(bus, segmenter::LoadParams(config_folder)) {}
+  SegmenterStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& /*input*/) : service_(bus, segmenter::LoadParams(config_folder)) {}
 
   HealthReport Report() const override { return service_.Report(); }
 
@@ -54,7 +56,8 @@ class SegmenterStage final : public Stage {
 
 class NavigatorStage final : public Stage {
  public:
-  NavigatorStage(bus::Bus& bus, const fs::path& config_folder, bool reads_raw) : params_(Load(config_folder, reads_raw)), service_(bus, params_) {}
+  NavigatorStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
+      : params_(Load(config_folder, input.reads_raw)), service_(bus, params_) {}
 
   void AdvanceTo(Utime time) override { service_.AdvanceTo(time); }
   bool OnDatagram(const Datagram& datagram) override {
@@ -88,7 +91,7 @@ class NavigatorStage final : public Stage {
 
 class GeoreferencerStage final : public Stage {
  public:
-  GeoreferencerStage(bus::Bus& bus, const fs::path& config_folder, bool /*reads_raw*/)
+  GeoreferencerStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& /*input*/)
       : bus_(bus), service_(bus, georeferencer::LoadParams(config_folder)) {}
 
   void Finish(Utime /*time*/) override { service_.Finish(); }
@@ -105,9 +108,28 @@ class GeoreferencerStage final : public Stage {
   georeferencer::Service service_;
 };
 
+class TrackerStage final : public Stage {
+ public:
+  TrackerStage(bus::Bus& bus, const fs::path& config_folder, const StageInput& input)
+      : service_(bus, tracker::LoadParams(config_folder),
+                 {.sources = {.has_beams = input.plan.Gives(bus::kLidarScan), .has_labels = input.plan.Gives(bus::kSegments)},
+                  .script = input.plan.script}) {}
+
+  void Finish(Utime /*time*/) override { service_.Finish(); }
+  // It reads no marks. Where the run was cut, scans that wait are left out.
+  std::int64_t FinishLogs(Utime /*time*/, bool is_whole) override {
+    if (is_whole) service_.Finish();
+    return 0;
+  }
+  HealthReport Report() const override { return service_.Report(); }
+
+ private:
+  tracker::Service service_;
+};
+
 template <typename S>
-std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, bool reads_raw) {
-  return std::make_unique<S>(bus, config_folder, reads_raw);
+std::unique_ptr<Stage> Make(bus::Bus& bus, const fs::path& config_folder, const StageInput& input) {
+  return std::make_unique<S>(bus, config_folder, input);
 }
 
 }  // namespace
@@ -117,7 +139,8 @@ const std::vector<StageFactory>& StageFactories() {
       {"vlp16", [](const fs::path& folder) { vlp16::LoadParams(folder); }, Make<Vlp16Stage>},
       {"segmenter", [](const fs::path& folder) { segmenter::LoadParams(folder); }, Make<SegmenterStage>},
       {"navigator", [](const fs::path& folder) { navigator::LoadParams(folder); }, Make<NavigatorStage>},
-      {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>}};
+      {"georeferencer", [](const fs::path& folder) { georeferencer::LoadParams(folder); }, Make<GeoreferencerStage>},
+      {"tracker", [](const fs::path& folder) { tracker::LoadParams(folder); }, Make<TrackerStage>}};
   return kFactories;
 }
 

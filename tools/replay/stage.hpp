@@ -12,6 +12,7 @@
 #include "common/core/health.hpp"
 #include "common/core/utime.hpp"
 #include "services/vlp16/core/sender_lock.hpp"
+#include "tools/replay/plan.hpp"
 
 namespace lookout::replay {
 
@@ -57,13 +58,18 @@ class Stage {
   std::int64_t num_measured_ = 0;
 };
 
+/// What a stage is told beforehand.
+struct StageInput {
+  bool reads_raw = false;  // its input is the raw channel that it publishes live
+  const Plan& plan;
+};
+
 struct StageFactory {
   std::string_view service;  // of the service table
   /// @throws config::ConfigError
   void (*check_config)(const std::filesystem::path& config_folder);
-  /// @param reads_raw  its input is the raw channel that it publishes live
   /// @throws config::ConfigError
-  std::unique_ptr<Stage> (*make)(bus::Bus& bus, const std::filesystem::path& config_folder, bool reads_raw);
+  std::unique_ptr<Stage> (*make)(bus::Bus& bus, const std::filesystem::path& config_folder, const StageInput& input);
 };
 
 /// Of every service that replay can run.

@@ -25,6 +25,8 @@ constexpr seconds kSilence(3);
 constexpr seconds kRunInfoSilence(25);
 // OBSTACLES come with every scan: what is older says nothing about the water of now.
 constexpr seconds kObstaclesAge(2);
+// ALERTS come with every scan, and where none comes twice a second: who shows them says when they do not.
+constexpr seconds kAlertsAge(1);
 
 template <typename T>
 std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
@@ -152,7 +154,7 @@ void Board::Take(std::string_view channel, Bytes bytes, TimePoint now) {
       if (T::getTypeName() != entry->type) return;
       const auto message = bus::Decode<T>(bytes);
       is_good = message && Note(*message, now);
-      if (is_good) traffic.num_lost += NumLostBefore(*message, traffic.sequence);
+      if (is_good && !bus::HasSeveralPublishers(*entry)) traffic.num_lost += NumLostBefore(*message, traffic.sequence);
     }
   });
   if (!is_good) ++traffic.num_bad;
@@ -168,12 +170,58 @@ bool Board::Note(const T& message, TimePoint now) {
     nearest_.Take(message);
     own_.pose = message;
     own_.pose_time = now;
+  } else if constexpr (std::is_same_v<T, tracks_t>) {
+    if (!messages::IsWellFormed(message)) return false;
+    const auto ended = tracks_parts_.Add(message);
+    if (!ended.whole.empty()) KeepTracks(ended.whole, now);
+    MarkAlerts();
+  } else if constexpr (std::is_same_v<T, alerts_t>) {
+    alerts_ = message;
+    alerts_time_ = now;
+    MarkAlerts();
   } else if constexpr (std::is_same_v<T, gnss_fix_t>) {
     own_.fix_quality = message.quality;
     own_.num_satellites = message.num_satellites;
     own_.fix_time = now;
   }
   return true;
+}
+
+void Board::KeepTracks(const std::vector<tracks_t>& parts, TimePoint now) {
+  TrackPicture picture;
+  picture.time = now;
+  for (const auto& part : parts) {
+    for (const auto& track : part.tracks) {
+      if (track.status != track_t::STATUS_CONFIRMED && track.status != track_t::STATUS_COASTING) continue;
+      TrackLine line{track};
+      line.outline_east_m = line.outline_north_m = {};
+      picture.lines.push_back(std::move(line));
+    }
+  }
+  picture.num_tracks = static_cast<std::int64_t>(picture.lines.size());
+  std::ranges::sort(picture.lines, [](const TrackLine& a, const TrackLine& b) {
+    const auto key = [](const TrackLine& line) {
+      return std::tuple(!std::isfinite(line.range_m), std::isfinite(line.range_m) ? line.range_m : 0.0F, line.id);
+    };
+    return key(a) < key(b);
+  });
+  picture.lines.resize(std::min(picture.lines.size(), TrackPicture::kMaxLines));
+  std::ranges::sort(picture.lines, {}, &TrackLine::id);
+  tracks_ = std::move(picture);
+}
+
+// Of the alerts of a track the gravest; alerts come sorted.
+void Board::MarkAlerts() {
+  if (!tracks_ || !alerts_) return;
+  for (auto& line : tracks_->lines) {
+    line.alert_level = 0;
+    for (const auto& alert : alerts_->alerts) {
+      const bool holds = alert.state == alert_t::STATE_ACTIVE || alert.state == alert_t::STATE_ACKNOWLEDGED;
+      if (!holds || alert.track_id != line.id || alert.level <= line.alert_level) continue;
+      line.alert_level = alert.level;
+      line.is_acknowledged = alert.state == alert_t::STATE_ACKNOWLEDGED;
+    }
+  }
 }
 
 bool Board::HasRoomFor(std::string_view process) const {
@@ -305,6 +353,22 @@ std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
 const NearestObstacles* Board::Obstacles(TimePoint now) const {
   const auto& newest = nearest_.newest();
   return newest && now - newest->time <= kObstaclesAge ? &*newest : nullptr;
+}
+
+const TrackPicture* Board::Tracks(TimePoint now) const { return tracks_ && now - tracks_->time <= kObstaclesAge ? &*tracks_ : nullptr; }
+
+std::vector<std::string> Board::AlertLines(TimePoint now) const {
+  std::vector<std::string> lines;
+  if (!alerts_) return lines;
+  if (now - alerts_time_ > kAlertsAge) {
+    lines.push_back(fmt::format("NO LOOK-OUT: no ALERTS for {:.0f} s", std::chrono::duration<double>(now - alerts_time_).count()));
+    return lines;
+  }
+  for (const auto& alert : alerts_->alerts) {
+    if (alert.state != alert_t::STATE_ACTIVE || lines.size() == kMaxAlertLines) continue;
+    lines.push_back((alert.level == alert_t::LEVEL_WARNING ? "WARNING: " : "CAUTION: ") + alert.text);
+  }
+  return lines;
 }
 
 }  // namespace lookout::top

@@ -15,8 +15,10 @@
 #include "common/core/bytes.hpp"
 #include "common/messages/heading_history.hpp"
 #include "common/messages/part_assembler.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/pose_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tools/top/rate_meter.hpp"
 
 namespace lookout::top {
@@ -93,6 +95,21 @@ class Nearest {
   std::optional<NearestObstacles> newest_;
 };
 
+/// A track without its outline, and its gravest alert.
+struct TrackLine : track_t {
+  std::int32_t alert_level = 0;  // as in alert_t; 0: none
+  bool is_acknowledged = false;
+};
+
+/// What the tracker says of the newest scan that came whole.
+struct TrackPicture {
+  std::vector<TrackLine> lines;  // confirmed and coasting ones, at most kMaxLines, the nearest; by id, so that rows keep their place
+  std::int64_t num_tracks = 0;   // confirmed and coasting
+  TimePoint time;                // when its last message came
+
+  static constexpr std::size_t kMaxLines = 50;
+};
+
 /// The alarm of the guard zone, out of HEALTH.
 struct Alarm {
   bool is_active = false;
@@ -123,6 +140,14 @@ class Board {
 
   /// @return nullptr when OBSTACLES never came, or for more than 2 s
   const NearestObstacles* Obstacles(TimePoint now) const;
+
+  /// @return nullptr when TRACKS never came, or for more than 2 s
+  const TrackPicture* Tracks(TimePoint now) const;
+
+  /// Alerts that nobody has acknowledged, the gravest first, and that nobody looks: ALERTS came, and for more than 1 s no more. "WARNING: ...",
+  /// "CAUTION: ...", "NO LOOK-OUT: ...". At most kMaxAlertLines.
+  std::vector<std::string> AlertLines(TimePoint now) const;
+  static constexpr std::size_t kMaxAlertLines = 4;
 
   /// Messages on channels beyond kMaxChannels.
   std::int64_t num_unlisted() const { return num_unlisted_; }
@@ -157,6 +182,8 @@ class Board {
 
   template <typename T>
   bool Note(const T& message, TimePoint now);
+  void KeepTracks(const std::vector<tracks_t>& parts, TimePoint now);
+  void MarkAlerts();
   bool HasRoomFor(std::string_view process) const;
   void TakeHealth(Traffic& traffic, Bytes bytes, TimePoint now);
   bool IsReplaced(const ProcessKey& key, const ProcessState& process) const;
@@ -168,6 +195,10 @@ class Board {
   std::map<ProcessKey, ProcessState> processes_;
   std::string first_host_;
   Nearest nearest_;
+  messages::PartAssembler<tracks_t> tracks_parts_;
+  std::optional<TrackPicture> tracks_;
+  std::optional<alerts_t> alerts_;
+  TimePoint alerts_time_;
   std::int64_t num_unlisted_ = 0;
   std::int64_t num_unlisted_health_ = 0;
   OwnShip own_;

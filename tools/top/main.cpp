@@ -31,6 +31,7 @@ struct Options {
   bool once = false;
   double once_s = 3.0;  // the last three of HEALTH, thirty scans
   bool sure_only = false;
+  bool shows_obstacles = false;
   std::string lcm_url;
 };
 
@@ -40,6 +41,7 @@ Options ParseOptions(int argc, char** argv) {
                "lookout-top");
   app.add_flag("--once", options.once, "listen for --seconds, print one screen as text, exit");
   app.add_option("--seconds", options.once_s, "how long --once listens (1 to 3600)")->check(CLI::Range(1.0, 3600.0))->capture_default_str();
+  app.add_flag("--obstacles", options.shows_obstacles, "obstacles of the latest scan, also where there is a tracker");
   app.add_flag("--sure", options.sure_only, "only obstacles that the segmenter is sure of");
   app.add_option("--lcm-url", options.lcm_url, "LCM address (else the environment's LCM_DEFAULT_URL, else this computer only)");
   app.set_version_flag("--version", "lookout-top " + lookout::runtime::Version());
@@ -121,7 +123,8 @@ void PrintOnce(const Options& options) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now());
     if (!listener.Wait(signals, false, std::max(left, std::chrono::milliseconds(0)))) return;
   }
-  const auto rows = lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(), {.sure_only = options.sure_only});
+  const auto rows = lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(),
+                                             {.sure_only = options.sure_only, .has_tracks = !options.shows_obstacles});
   fmt::print("{}", lookout::top::PlainText(rows));
 }
 
@@ -131,6 +134,7 @@ void Watch(const Options& options) {
   Listener listener(options.lcm_url);
   lookout::top::Terminal terminal;
   bool sure_only = options.sure_only;
+  bool has_tracks = !options.shows_obstacles;
   auto next_frame = Clock::now();
   while (true) {
     bool is_changed = false;
@@ -138,11 +142,12 @@ void Watch(const Options& options) {
       if (key == 'q' || key == 'Q') return;
       if (key == 'c') listener.Reset();
       if (key == 's') sure_only = !sure_only;
+      if (key == 't') has_tracks = !has_tracks;
       is_changed = true;
     }
     if (is_changed || Clock::now() >= next_frame) {
-      terminal.Show(
-          lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(), {terminal.width(), terminal.height(), sure_only}));
+      terminal.Show(lookout::top::DrawScreen(listener.board(), Title(options.lcm_url), Clock::now(),
+                                             {terminal.width(), terminal.height(), sure_only, has_tracks}));
       next_frame = Clock::now() + kFramePeriod;
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(next_frame - Clock::now());

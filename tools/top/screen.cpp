@@ -32,7 +32,7 @@ constexpr std::size_t kTextObstacles = 10;
 // POSE comes every 20 ms, fixes once a second at least.
 constexpr std::chrono::seconds kOwnShipAge(3);
 constexpr double kLeastCourseSpeedMps = 0.3;
-constexpr const char* kKeys = "q quit  s sure only/all  c count anew";
+constexpr const char* kKeys = "q quit  t tracks  s sure  c count anew";
 constexpr std::array kHeadingSource{words::Word{pose_t::HEADING_HDT, "hdt"}, words::Word{pose_t::HEADING_PASHR, "pashr"},
                                     words::Word{pose_t::HEADING_COURSE, "course"}};
 
@@ -176,6 +176,39 @@ std::vector<Span> ObstacleRows(const NearestObstacles* obstacles, View view) {
   return rows;
 }
 
+// One cell per column, as in TrackSpan.
+std::string TracksHeader(const TrackPicture& tracks, View view) {
+  return Fitting({Left(fmt::format("of {}", std::min<std::int64_t>(tracks.num_tracks, 999)), 6) + Right("track", 6), "  " + Left("kind", 9),
+                  Right("range m", 8), Right("rel", 5), Right("course", 7), Right("m/s", 6), Right("CPA m", 7), Right("TCPA s", 7),
+                  "  " + Left("alert", 9), " " + Left("status", 9), Right("seen", 6)},
+                 view.width);
+}
+
+Span TrackSpan(std::size_t index, const TrackLine& line, int width) {
+  std::string alert(line.alert_level == 0 ? "-" : words::WordOf(words::kAlertLevel, line.alert_level));
+  if (line.alert_level != 0 && line.is_acknowledged) alert = "(" + alert + ")";
+  const bool is_coasting = line.status == track_t::STATUS_COASTING;
+  return {
+      Fitting({Count(static_cast<std::int64_t>(index) + 1, 3) + " " + Count(line.id, 8), "  " + Left(words::WordOf(words::kTrackKind, line.kind), 9),
+               Column(Number(line.range_m, 7, 1)), Right(Degrees(line.bearing_rad), 5), Right(Degrees(line.course_rad), 7),
+               Column(Number(line.speed_mps, 5, 1)), Column(Number(line.cpa_m, 6, 1)), Column(Number(line.tcpa_s, 6, 0)), "  " + Left(alert, 9),
+               " " + Left(words::WordOf(words::kTrackStatus, line.status), 9),
+               Right(fmt::format("{}/{}", std::clamp(line.num_seen, 0, 99), std::clamp(line.num_looks, 0, 99)), 6)},
+              width),
+      line.alert_level == alert_t::LEVEL_WARNING ? Style::kFault
+      : line.alert_level != 0                    ? Style::kWarning
+      : is_coasting                              ? Style::kFaint
+                                                 : Style::kPlain};
+}
+
+std::vector<Span> TrackRows(const TrackPicture& tracks, View view) {
+  std::vector<Span> rows;
+  const std::size_t most = view.height > 0 ? tracks.lines.size() : kTextObstacles;
+  for (std::size_t i = 0; i < std::min(tracks.lines.size(), most); ++i) rows.push_back(TrackSpan(i, tracks.lines[i], view.width));
+  if (rows.empty()) rows.push_back({"no track", Style::kPlain});
+  return rows;
+}
+
 // A row for each thing; what is too long ends in "..".
 std::vector<std::string> AlarmLines(const Alarm& alarm, int width) {
   std::vector<std::string> lines;
@@ -233,9 +266,11 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
   const auto channels = ChannelRows(board, now, std::min(view.width, kChannelsWidth));
   auto processes = is_wide ? ProcessRows(board, now, processes_width) : std::vector<Span>{};
   const auto* nearest = board.Obstacles(now);
-  const auto obstacles = ObstacleRows(nearest, view);
+  const auto* tracks = view.has_tracks ? board.Tracks(now) : nullptr;
+  const auto obstacles = tracks != nullptr ? TrackRows(*tracks, view) : ObstacleRows(nearest, view);
   const auto alarm = board.NearestAlarm(now);
-  const auto alarm_lines = alarm && alarm->is_active ? AlarmLines(*alarm, view.width) : std::vector<std::string>{};
+  auto alarm_lines = alarm && alarm->is_active ? AlarmLines(*alarm, view.width) : std::vector<std::string>{};
+  for (const auto& line : board.AlertLines(now)) alarm_lines.push_back(view.width < 3 ? line : Wrapped(Printable(line), view.width, 1).front());
 
   Plan plan;
   plan.table_rows = static_cast<int>(std::max(channels.size(), processes.size()));
@@ -272,7 +307,7 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
     }
     rows.push_back(std::move(row));
   }
-  rows.push_back({{Left(ObstaclesHeader(nearest, view), view.width), Style::kHeader}});
+  rows.push_back({{Left(tracks != nullptr ? TracksHeader(*tracks, view) : ObstaclesHeader(nearest, view), view.width), Style::kHeader}});
   for (std::size_t i = 0; i < static_cast<std::size_t>(plan.obstacle_rows); ++i) rows.push_back({obstacles[i]});
 
   if (plan.has_keys) rows.push_back({{kKeys, Style::kFaint}});

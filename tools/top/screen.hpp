@@ -20,12 +20,13 @@ struct View {
   int width = 80;
   int height = 0;          // 0 = as many rows as it takes
   bool sure_only = false;  // obstacles that the segmenter is sure of; else all
+  bool has_tracks = true;  // tracks in place of obstacles, where there is a tracker
 };
 
-/// The alarm of the guard zone stands on top while there is one, then the own ship. Below are channels (left) and processes (right), then the nearest
-/// obstacles: ten in text, as many as there is room for on a terminal. Keys stand in the free corner below the processes, or last. Where rows are
-/// scarce obstacles beyond the tenth go first, then the title, the ninth and tenth obstacle, the head of the tables, the farthest obstacles but
-/// three, and the last channels. Columns that do not fit whole are left out.
+/// The alarm of the guard zone and alerts that nobody has acknowledged stand on top while there are any, then the own ship. Below are channels (left)
+/// and processes (right), then tracks or the nearest obstacles: ten in text, as many as there is room for on a terminal. Keys stand in the free
+/// corner below the processes, or last. Where rows are scarce obstacles beyond the tenth go first, then the title, the ninth and tenth obstacle, the
+/// head of the tables, the farthest obstacles but three, and the last channels. Columns that do not fit whole are left out.
 ///
 /// @param title  printable; time, bus, version
 /// @return at most view.height rows of at most view.width letters

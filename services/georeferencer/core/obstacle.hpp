@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "common/core/utime.hpp"
 #include "common/core/pose.hpp"
+#include "common/core/utime.hpp"
 
 namespace lookout::georeferencer {
 
@@ -79,7 +79,8 @@ struct Obstacle : Seen {
   double latitude_deg = kNan;
   double longitude_deg = kNan;
   Eigen::Vector2d position_map_m = Eigen::Vector2d::Constant(kNan);
-  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Constant(kNan);  // east, north
+  Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Constant(kNan);           // east, north
+  Eigen::Matrix2d covariance_relative_m2 = Eigen::Matrix2d::Constant(kNan);  // the same without the error of the own position
   double top_above_water_m = 0.0;
   Eigen::Vector2d center_vessel_m = Eigen::Vector2d::Zero();
   Eigen::Vector3d nearest_vessel_m = Eigen::Vector3d::Zero();

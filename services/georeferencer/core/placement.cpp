@@ -113,7 +113,9 @@ void PlaceOnEarth(const Segment& segment, const std::vector<Vector3d>& outline_m
   obstacle.status = ObstacleStatus::kOk;
   obstacle.position_map_m = center_map_m.head<2>();
   obstacle.center_vessel_m = center_vessel_m.head<2>();
-  obstacle.covariance_m2 = PositionCovariance(center_vessel_m, pose, params) + HeightCovariance(segment, pose, params);
+  const Matrix2d by_height_m2 = HeightCovariance(segment, pose, params);
+  obstacle.covariance_m2 = PositionCovariance(center_vessel_m, pose, params) + by_height_m2;
+  obstacle.covariance_relative_m2 = RelativeCovariance(center_vessel_m, pose, params) + by_height_m2;
   obstacle.footprint_map_m = SeenFromAbove(outline_map_m);
 }
 
@@ -186,6 +188,13 @@ Matrix2d PositionCovariance(const Vector3d& p_vessel_m, const Pose& pose, const 
   covariance_m2 += params.azimuth_sd_rad * params.azimuth_sd_rad * (across_m * across_m.transpose()).topLeftCorner<2, 2>();
   if (beam_m2 > 0.0) covariance_m2 += params.range_sd_m * params.range_sd_m / beam_m2 * along_m2;
   return covariance_m2;
+}
+
+Matrix2d RelativeCovariance(const Vector3d& p_vessel_m, const Pose& pose, const PlacementParams& params) {
+  Pose known = pose;
+  known.covariance.topRows<2>().setZero();
+  known.covariance.leftCols<2>().setZero();
+  return PositionCovariance(p_vessel_m, known, params);
 }
 
 Obstacle PlaceSegment(const Segment& segment, const PoseHistory& poses, const Datum& datum, bool has_timed_out, const PlacementParams& params) {

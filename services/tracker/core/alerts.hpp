@@ -55,6 +55,9 @@ struct Acknowledgement {
   std::string source;
   std::int64_t alert_id = 0;
   Utime raised;
+  std::int64_t seq = 0;  // of its message
+
+  friend bool operator==(const Acknowledgement&, const Acknowledgement&) = default;
 };
 
 struct AlertParams {

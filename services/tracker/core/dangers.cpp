@@ -55,6 +55,18 @@ std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Pictur
   return dangers;
 }
 
+std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, std::span<const VesselOutline> outlines) {
+  if (params.range_m <= 0.0) return {};
+  std::optional<NearestPoint> nearest;
+  for (const auto& outline : outlines) {
+    if (!outline.is_sure && !params.takes_tentative) continue;
+    const auto point = NearestWithin(params.bearing, outline.corners_m, !outline.is_line);
+    if (point && point->range_m <= params.range_m) KeepNearer(nearest, point);
+  }
+  if (!nearest) return {};
+  return {InZone(0, *nearest)};
+}
+
 bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
   const double step_s = ToSeconds(time - newest_);
   newest_ = time;

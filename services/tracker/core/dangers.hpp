@@ -9,6 +9,7 @@
 #include "common/core/pose.hpp"
 #include "common/core/utime.hpp"
 #include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/gatherer.hpp"
 #include "services/tracker/core/scan.hpp"
 #include "services/tracker/core/tracker.hpp"
 
@@ -18,6 +19,9 @@ namespace lookout::tracker {
 /// this scan, along the waterline where there is one, else the outline.
 /// @param own  placed, at the end of the scan
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const Seen> seen, const Pose& own);
+
+/// The same of what the vessel sees, where its own place is not known: one danger, the nearest, of track 0.
+std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, std::span<const VesselOutline> outlines);
 
 /// Whether the own boat lies still: its velocity over ground, averaged over some seconds, is below half a knot. So sway in the berth and the noise of
 /// the receiver are none, but a drift is.

@@ -7,6 +7,8 @@
 
 #include "common/bus/lcm_bus.hpp"
 #include "common/bus/memory_bus.hpp"
+#include "lookout/alert_ack_t.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/lidar_nmea_t.hpp"
 
 namespace lookout::bus {
@@ -85,6 +87,56 @@ TEST_F(GuardedSubscribe, KeepsThePublisherThatItHeardFirst) {
   EXPECT_EQ(taken_, (std::vector<std::string>{"a70", "a71", "a72", "a73", "a74"}));
   EXPECT_EQ(Traffic().num_refused, 4);  // the last is held: a may have ended
   EXPECT_TRUE(Traffic().second_heard);
+}
+
+// Page and plotter both send acknowledgements, and each counts from 0.
+TEST_F(GuardedSubscribe, TakesAllPublishersOfAcknowledgements) {
+  std::vector<std::string> sources;
+  Subscribe<alert_ack_t>(bus_, kAlertAck,
+                         [&sources](const alert_ack_t& message) { sources.push_back(message.source + std::to_string(message.seq)); });
+  for (int i = 0; i < 3; ++i) {
+    alert_ack_t message{};
+    message.utime_us = 1'000'000 * i;
+    message.seq = i;
+    for (const auto* source : {"page", "plotter"}) {
+      message.source = source;
+      Publish(bus_, kAlertAck, message);
+      message.seq += 100;
+    }
+  }
+  HandleAll(bus_);
+  EXPECT_EQ(sources, (std::vector<std::string>{"page0", "plotter100", "page1", "plotter101", "page2", "plotter102"}));
+  EXPECT_EQ(bus_.input_traffic().at("ALERT_ACK").num_lost, 0);
+}
+
+// Where no scan comes, ALERTS go out all the same, with the number of the last scan.
+TEST_F(GuardedSubscribe, TakesAlertsThatRepeatTheNumberOfTheLastScan) {
+  std::vector<std::string> texts;
+  Subscribe<alerts_t>(bus_, kAlerts, [&texts](const alerts_t& message) {
+    texts.push_back(std::to_string(message.seq) + (message.is_watch ? " " + message.alerts.at(0).text : ""));
+  });
+  alerts_t message{};
+  const auto send = [&](std::chrono::milliseconds pause) {
+    Pass(pause);
+    Publish(bus_, kAlerts, message);
+    HandleAll(bus_);
+  };
+  for (message.seq = 0; message.seq < 3; ++message.seq, message.utime_us += 100'000) send(std::chrono::milliseconds(100));
+  --message.seq;
+  message.utime_us -= 100'000;
+  message.is_watch = true;
+  message.num_alerts = 1;
+  message.alerts.resize(1);
+  for (const auto* text : {"0.5 s", "1.0 s"}) {
+    message.alerts[0].text = text;
+    send(std::chrono::milliseconds(500));
+  }
+  message.is_watch = false;
+  message.seq = 9;
+  message.utime_us += 700'000;
+  send(std::chrono::milliseconds(100));
+  EXPECT_EQ(texts, (std::vector<std::string>{"0", "1", "2", "2 0.5 s", "2 1.0 s", "9"}));
+  EXPECT_EQ(bus_.input_traffic().at("ALERTS").num_refused, 0);
 }
 
 TEST_F(GuardedSubscribe, HandsOutARestartInItsOrderAlsoWhenNothingFurtherComes) {

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "lookout/alerts_t.hpp"
 #include "tests/unit/log/small_log.hpp"
 
 namespace lookout::diff {
@@ -28,6 +29,17 @@ TEST_F(Diff, EqualLogsAreEqualWhateverTheirTimesOrderOfChannelsAndRunInfo) {
   EXPECT_TRUE(Said("equal: 2 channels, 3 messages\n")) << out_.str();
   EXPECT_TRUE(Said("left out: RUN_INFO\n"));
   EXPECT_EQ(Compare({}, {}), kExitEqual);
+}
+
+// They come by the host's clock: a live run has them, its replay has not.
+TEST_F(Diff, AlertsThatComeWithoutAScanAreNotCompared) {
+  alerts_t message{};
+  const auto scan = Event(start_, "ALERTS", bus::Encode(message));
+  message.is_watch = true;
+  const auto watch = Event(start_, "ALERTS", bus::Encode(message));
+  EXPECT_EQ(Compare({scan, watch, watch}, {scan}), kExitEqual) << out_.str();
+  EXPECT_TRUE(Said("left out: 2 of ALERTS, which came without a scan\n")) << out_.str();
+  EXPECT_EQ(Compare({scan, watch}, {}), kExitDifferent);
 }
 
 TEST_F(Diff, TellsTheFirstDifferenceByChannelTimeAndField) {

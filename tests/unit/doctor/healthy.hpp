@@ -92,7 +92,7 @@ inline Observations Healthy() {
   pose.heading_rad = 1.0;
   navigation.pose = pose;
 
-  for (const auto* name : {"vlp16", "segmenter", "navigator", "georeferencer", "recorder"}) seen.processes[name].push_back(Running(name));
+  for (const auto* name : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "recorder"}) seen.processes[name].push_back(Running(name));
   seen.obstacles = {50, 500, 500, 0};
   seen.disk.folder = "/logs";
   seen.disk.free_bytes = 500'000'000'000;

@@ -107,7 +107,7 @@ TEST_F(ExportTest, ReadsSeveralLogsAsOneAlsoAcrossTheLabelsOfAScan) {
   Add(bus::kSegments, MakeSegments(MakeScan(0, 1), 5));
   EXPECT_EQ(Export(Request{.inputs = {first, log_}, .table = "returns", .output = folder_ / "out"}), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_TRUE(Rows()[0].ends_with(",5,"));
+  EXPECT_TRUE(Rows()[0].ends_with(",5,,"));
 }
 
 TEST_F(ExportTest, EndsWithoutAFileWhenItIsStopped) {
@@ -422,6 +422,12 @@ TEST(Words, StandInTheReadmeOfTheWire) {
   expect_listed(words::kConfidence);
   expect_listed(words::kGround);
   expect_listed(words::kKind);
+  expect_listed(words::kTrackStatus);
+  expect_listed(words::kTrackKind);
+  expect_listed(words::kEncounter);
+  expect_listed(words::kAlertCause);
+  expect_listed(words::kAlertLevel);
+  expect_listed(words::kAlertState);
   expect_listed(words::kPoseStatus);
   expect_listed(words::kTimeSource);
   expect_listed(words::kClockState);

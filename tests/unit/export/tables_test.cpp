@@ -2,10 +2,12 @@
 #include <limits>
 
 #include "common/core/angles.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_clock_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tests/unit/export/export_logs.hpp"
 #include "tools/export/sinks.hpp"
 
@@ -15,13 +17,16 @@ namespace {
 using TablesTest = ExportTest;
 
 TEST(TableHeader, IsTheContractWithScriptsOutside) {
-  EXPECT_EQ(TableHeader("returns"), "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason");
+  EXPECT_EQ(TableHeader("returns"), "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id");
   EXPECT_EQ(TableHeader("segments"),
             "scan_utime_us,segment_id,utime_us,num_points,x_m,y_m,z_m,nearest_m,length_m,width_m,height_m,confidence,grounds,kind,seen_share,"
             "thing_probability,land_probability");
   EXPECT_EQ(TableHeader("obstacles"),
             "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,length_m,"
             "width_m,num_points,status,confidence,kind,thing_probability");
+  EXPECT_TRUE(TableHeader("tracks").starts_with("utime_us,track_id,latitude_deg,longitude_deg,speed_mps,course_deg,cpa_m,tcpa_s,status,kind,"));
+  EXPECT_EQ(TableHeader("alerts"),
+            "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text");
   EXPECT_EQ(TableHeader("pose"), "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status");
 }
 
@@ -33,19 +38,106 @@ TEST_F(TablesTest, ReturnsComeByColumnThenRingWithTheTimeOfTheirLaser) {
   Add(bus::kSegments, segments);
   ASSERT_EQ(Export("returns"), kExitFine) << errors_;
   EXPECT_EQ(text_,
-            "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason\n"
-            "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,3,\n"
-            "1700000000000000,1700000000000002,1,0,0.0000,10.000,10.0000,0.0000,0.0000,7,0,own_vessel\n"
-            "1700000000000000,1700000000000055,0,0,90.0000,10.000,0.0000,-9.6593,-2.5882,7,0,too_small\n"
-            "1700000000000000,1700000000000058,1,0,90.0000,10.000,0.0000,-10.0000,0.0000,7,1,\n");
+            "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id\n"
+            "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,3,,\n"
+            "1700000000000000,1700000000000002,1,0,0.0000,10.000,10.0000,0.0000,0.0000,7,0,own_vessel,\n"
+            "1700000000000000,1700000000000055,0,0,90.0000,10.000,0.0000,-9.6593,-2.5882,7,0,too_small,\n"
+            "1700000000000000,1700000000000058,1,0,90.0000,10.000,0.0000,-10.0000,0.0000,7,1,,\n");
   EXPECT_EQ(errors_, "");
+}
+
+// Land has the id 0, by what is remembered.
+TEST_F(TablesTest, ReturnsNameTheTrackOfTheirSegment) {
+  for (int seq = 0; seq < 2; ++seq) {
+    const auto scan = MakeScan(seq);
+    auto segments = MakeSegments(scan);
+    segments.label = {1, 2, 3, 0};
+    Add(bus::kLidarScan, scan);
+    Add(bus::kSegments, segments);
+    tracks_t tracks{};
+    tracks.utime_us = scan.utime_us;
+    tracks.seq = seq;
+    tracks.num_parts = 1;
+    tracks.num_tracks = 1;
+    tracks.tracks.resize(1);
+    tracks.tracks[0].id = 17;
+    tracks.tracks[0].num_segments = 1;
+    tracks.tracks[0].segment_ids = {2};
+    tracks.num_land_segments = 1;
+    tracks.land_segment_ids = {3};
+    Add(bus::kTracks, tracks);
+  }
+  ASSERT_EQ(Export("returns"), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 8U);
+  for (const std::size_t first : {0U, 4U}) {
+    EXPECT_TRUE(Rows()[first].ends_with(",7,1,,")) << Rows()[first];
+    EXPECT_TRUE(Rows()[first + 1].ends_with(",7,2,,17")) << Rows()[first + 1];
+    EXPECT_TRUE(Rows()[first + 2].ends_with(",7,3,,0")) << Rows()[first + 2];
+    EXPECT_TRUE(Rows()[first + 3].ends_with(",7,0,,")) << Rows()[first + 3];
+  }
+}
+
+TEST_F(TablesTest, TracksHaveARowForEachTrackAndScan) {
+  tracks_t message{};
+  message.utime_us = kStartUs;
+  message.end_utime_us = kStartUs + 99'999;
+  message.num_parts = 1;
+  message.num_tracks = 2;
+  message.tracks.resize(2);
+  auto& track = message.tracks[0];
+  track.id = 17;
+  track.status = track_t::STATUS_CONFIRMED;
+  track.kind = track_t::KIND_BOAT;
+  track.latitude_deg = 43.7;
+  track.longitude_deg = -72.3;
+  track.speed_mps = 2.0F;
+  track.course_rad = static_cast<float>(kPi / 2.0);
+  track.cpa_m = 3.5F;
+  track.tcpa_s = 21.0F;
+  track.encounter = track_t::ENCOUNTER_HEAD_ON;
+  message.tracks[1].id = 18;
+  message.tracks[1].status = track_t::STATUS_LOST;
+  message.tracks[1].course_rad = std::numeric_limits<float>::quiet_NaN();
+  Add(bus::kTracks, message);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_TRUE(Rows()[0].starts_with("1700000000099999,17,43.700000000,-72.300000000,2.0000,90.0000,3.5000,21.00,confirmed,boat,1700000000000000,"))
+      << Rows()[0];
+  EXPECT_NE(Rows()[0].find(",head_on,"), std::string::npos);
+  EXPECT_TRUE(Rows()[1].starts_with("1700000000099999,18,0.000000000,0.000000000,0.0000,,0.0000,0.00,lost,obstacle,")) << Rows()[1];
+}
+
+TEST_F(TablesTest, AlertsHaveTheirWordsAndTheirText) {
+  alerts_t message{};
+  message.end_utime_us = kStartUs;
+  message.num_alerts = 1;
+  message.alerts.resize(1);
+  message.alerts[0] = {.id = 3,
+                       .cause = alert_t::CAUSE_CLOSEST_APPROACH,
+                       .level = alert_t::LEVEL_WARNING,
+                       .state = alert_t::STATE_ACTIVE,
+                       .track_id = 17,
+                       .raised_utime_us = kStartUs - 5,
+                       .changed_utime_us = kStartUs - 4,
+                       .distance_m = 20.0F,
+                       .bearing_rad = 0.0F,
+                       .cpa_m = 3.0F,
+                       .tcpa_s = 21.0F,
+                       .cpa_probability = 0.75F,
+                       .text = "boat 17: closest approach 3 m in 21 s, 0 deg to starboard"};
+  Add(bus::kAlerts, message);
+  ASSERT_EQ(Export("alerts"), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 1U);
+  EXPECT_EQ(Rows()[0],
+            "1700000000000000,3,closest_approach,warning,active,17,1699999999999995,1699999999999996,20.0000,0.0000,3.0000,21.00,0.7500,"
+            "\"boat 17: closest approach 3 m in 21 s, 0 deg to starboard\"");
 }
 
 TEST_F(TablesTest, ReturnsOfALogWithoutSegmentsHaveNeitherLabelNorReason) {
   Add(bus::kLidarScan, MakeScan(0, 1));
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000000,0,0,0.0000,10.000,9.6593,0.0000,-2.5882,7,,,");
 }
 
 TEST_F(TablesTest, CellsWithoutReturnHaveNoRow) {
@@ -55,7 +147,7 @@ TEST_F(TablesTest, CellsWithoutReturnHaveNoRow) {
   Add(bus::kLidarScan, scan);
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 1U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000002,1,0,0.0000,0.002,0.0020,0.0000,0.0000,0,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,1700000000000002,1,0,0.0000,0.002,0.0020,0.0000,0.0000,0,,,");
 }
 
 TEST_F(TablesTest, RangeIsAnUnsignedCountPrintedToTheLastMillimetre) {
@@ -89,8 +181,8 @@ TEST_F(TablesTest, ReturnsKnowBothReturnsOfAFiringAzimuthOffsetsAndOrigins) {
   Add(bus::kLidarScan, scan);
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 2U);
-  EXPECT_EQ(Rows()[0], "1700000000000000,1699999999999997,1,0,270.0000,2.000,0.0000,2.0000,0.5000,1,,");
-  EXPECT_EQ(Rows()[1], "1700000000000000,1699999999999997,1,1,270.0000,1.000,0.0000,1.0000,0.5000,255,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,1699999999999997,1,0,270.0000,2.000,0.0000,2.0000,0.5000,1,,,");
+  EXPECT_EQ(Rows()[1], "1700000000000000,1699999999999997,1,1,270.0000,1.000,0.0000,1.0000,0.5000,255,,,");
 }
 
 TEST_F(TablesTest, ReturnsOfAPartAreLabelledByThatPart) {
@@ -104,8 +196,8 @@ TEST_F(TablesTest, ReturnsOfAPartAreLabelledByThatPart) {
   Add(bus::kSegments, MakeSegments(second, 2));
   ASSERT_EQ(Export("returns"), kExitFine);
   ASSERT_EQ(Rows().size(), 4U);
-  EXPECT_TRUE(Rows()[1].ends_with(",7,1,"));
-  EXPECT_TRUE(Rows()[2].ends_with(",7,2,"));
+  EXPECT_TRUE(Rows()[1].ends_with(",7,1,,"));
+  EXPECT_TRUE(Rows()[2].ends_with(",7,2,,"));
 }
 
 TEST_F(TablesTest, SegmentsHaveTheirNearestDistanceAndHeight) {

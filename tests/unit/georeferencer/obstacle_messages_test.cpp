@@ -236,7 +236,7 @@ TEST(ToMessages, AtTheBoundsOfWhatIsTakenAllNumbersAreFinite) {
   const auto obstacle = ToMessages(placed, bus::kMaxMessageBytes)[0].obstacles[0];
   EXPECT_EQ(obstacle.status, obstacle_t::STATUS_OK);
   for (const double number : {obstacle.latitude_deg, obstacle.longitude_deg, obstacle.position_map_m[0], obstacle.covariance_m2[0],
-                              obstacle.covariance_m2[1], obstacle.top_above_water_m}) {
+                              obstacle.covariance_m2[1], obstacle.covariance_relative_m2[2], obstacle.top_above_water_m}) {
     EXPECT_TRUE(std::isfinite(number));
   }
   EXPECT_TRUE(std::isfinite(obstacle.footprint_north_m[2]));

@@ -155,7 +155,7 @@ TEST(PlaceSegment, WithoutAPoseTellsWhatTheVesselSees) {
   const auto obstacle = PlaceSegment(MakePoint(10'000, 3.0, -4.0, 0.5), PoseHistory{}, Datum{}, false, params);
   EXPECT_EQ(obstacle.status, ObstacleStatus::kVesselFrameOnly);
   EXPECT_TRUE(std::isnan(obstacle.latitude_deg) && std::isnan(obstacle.longitude_deg));
-  EXPECT_TRUE(obstacle.position_map_m.hasNaN() && obstacle.covariance_m2.hasNaN());
+  EXPECT_TRUE(obstacle.position_map_m.hasNaN() && obstacle.covariance_m2.hasNaN() && obstacle.covariance_relative_m2.hasNaN());
   EXPECT_TRUE(obstacle.footprint_map_m.empty());
   EXPECT_NEAR(obstacle.range_m, 5.0, 1e-12);
   EXPECT_NEAR(RadToDeg(obstacle.bearing_rad), RadToDeg(std::atan2(4.0, 3.0)), 1e-9);
@@ -300,6 +300,18 @@ TEST(ThinnedLine, KeepsLinesUpToTheLimitAndBothEndsOfLongerOnes) {
 TEST(Thinned, OfACircleOf100MetresLeavesNoPointFartherThan25Millimetres) {
   // Sagitta of a chord over 1/140 of the circle.
   EXPECT_LT(100.0 * (1.0 - std::cos(kPi / static_cast<double>(kMaxFootprintVertices))), 0.0255);
+}
+
+TEST(RelativeCovariance, LeavesOutTheErrorOfTheOwnPosition) {
+  Pose pose = MakePose(0);
+  pose.covariance(4, 4) = 0.01 * 0.01;
+  const auto relative = RelativeCovariance({100.0, 0.0, 0.0}, pose, Bare());
+  EXPECT_NEAR(relative(0, 0), 1.0, 1e-9);
+  // 2 m of GNSS, and a heading that knows of it: neither moves the obstacle against the boat.
+  pose.covariance(0, 0) = pose.covariance(1, 1) = 4.0;
+  pose.covariance(0, 4) = pose.covariance(4, 0) = 0.01;
+  EXPECT_EQ(RelativeCovariance({100.0, 0.0, 0.0}, pose, Bare()), relative);
+  EXPECT_GT(PositionCovariance({100.0, 0.0, 0.0}, pose, Bare())(0, 0), 6.0);
 }
 
 TEST(PositionCovariance, HeadingErrorWorksAcrossTheLeverOnly) {

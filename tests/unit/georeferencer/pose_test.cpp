@@ -51,12 +51,15 @@ TEST(PoseHistory, BetweenTwoPosesIsLinear) {
   b.pitch_rad = -0.2;
   b.heave_m = 1.0;
   b.covariance(0, 0) = 8.0;
+  a.velocity_map_mps = {0.0, 1.0};
+  b.velocity_map_mps = {2.0, 1.0};
   poses.Add(a);
   poses.Add(b);
   const auto pose = poses.At(At(5'000));
   ASSERT_TRUE(pose);
   EXPECT_TRUE(pose->is_placed);
   EXPECT_EQ(pose->time, At(5'000));
+  EXPECT_NEAR((pose->velocity_map_mps - Eigen::Vector2d(0.5, 1.0)).norm(), 0.0, 1e-12);
   EXPECT_NEAR(pose->position_map_m.x(), 1.0, 1e-12);
   EXPECT_NEAR(pose->position_map_m.y(), -2.0, 1e-12);
   EXPECT_NEAR(pose->position_map_m.z(), 0.5, 1e-12);

@@ -11,16 +11,16 @@
 namespace lookout::replay {
 namespace {
 
-constexpr bus::Channel kTracks{"TRACKS", "pose_t", "tracker", 50, 100, false, true};
+constexpr bus::Channel kFused{"FUSED", "pose_t", "fuser", 50, 100, false, true};
 
 // With several inputs, and a state: the number of poses so far.
-class TrackerStage final : public Stage {
+class FuserStage final : public Stage {
  public:
-  TrackerStage(bus::Bus& bus, const std::filesystem::path& /*config_folder*/, bool reads_raw) : reads_raw_(reads_raw) {
+  FuserStage(bus::Bus& bus, const std::filesystem::path& /*config_folder*/, const StageInput& input) : reads_raw_(input.reads_raw) {
     bus::Subscribe<pose_t>(bus, bus::kPose, [this, &bus](const pose_t& pose) {
-      pose_t track = pose;
-      track.seq = 1000 + num_poses_++;
-      bus::Publish(bus, kTracks, track);
+      pose_t fused = pose;
+      fused.seq = 1000 + num_poses_++;
+      bus::Publish(bus, kFused, fused);
     });
   }
   void Finish(Utime /*time*/) override { is_finished_ = true; }
@@ -32,54 +32,54 @@ class TrackerStage final : public Stage {
   std::int64_t num_poses_ = 0;
 };
 
-// Tracker, and the plotter that reads what it publishes.
-ServiceRows WithTracker() {
+// Fuser, and the plotter that reads what it publishes.
+ServiceRows WithFuser() {
   ServiceRows rows = ReplayedServices();
   rows.push_back(
-      {"tracker", "tracks", 10, "network", "checks the config", "tracks", {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}});
-  rows.push_back({"plotter", "pictures", 10, "network", "checks the config", "none", {&kTracks}});
+      {"fuser", "fused poses", 10, "network", "checks the config", "poses", {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}});
+  rows.push_back({"plotter", "pictures", 10, "network", "checks the config", "none", {&kFused}});
   return rows;
 }
 
-const ChannelSet kDayWithTracks{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "TRACKS"};
+const ChannelSet kDayWithFused{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "FUSED"};
 
-std::string PlanWithTracker(const Request& request) { return InWords(MakeLogPlan(request, kDayWithTracks, WithTracker())); }
+std::string PlanWithFuser(const Request& request) { return InWords(MakeLogPlan(request, kDayWithFused, WithFuser())); }
 
 TEST(MadeUpService, IsPlannedByItsRow) {
-  EXPECT_EQ(PlanWithTracker({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, plotter\nread: LIDAR_PACKETS, NAV_RAW\n");
-  EXPECT_EQ(PlanWithTracker({.only = {"tracker"}}), "ran: tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanWithTracker({.from = {"POSE"}, .only = {"tracker", "segmenter", "vlp16"}}),
-            "ran: vlp16, segmenter, tracker\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanWithTracker({.from = {"OBSTACLES"}}), "ran: tracker, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanWithTracker({.from = {"TRACKS"}}), "ran: plotter\nread: TRACKS\n");
-  EXPECT_THROW(PlanWithTracker({.from = {"TRACKS"}, .only = {"georeferencer"}}), RequestError);
-  EXPECT_EQ(InWords(MakeCapturePlan({}, WithTracker())), "ran: vlp16, segmenter, navigator, georeferencer, tracker, plotter\nread: datagrams\n");
-  EXPECT_THROW(MakeCapturePlan({.only = {"tracker"}}, WithTracker()), RequestError);
+  EXPECT_EQ(PlanWithFuser({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, plotter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK\n");
+  EXPECT_EQ(PlanWithFuser({.only = {"fuser"}}), "ran: fuser\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"POSE"}, .only = {"fuser", "segmenter", "vlp16"}}),
+            "ran: vlp16, segmenter, fuser\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"OBSTACLES"}}), "ran: tracker, fuser, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"FUSED"}}), "ran: tracker, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, FUSED\n");
+  EXPECT_THROW(PlanWithFuser({.from = {"FUSED"}, .only = {"georeferencer"}}), RequestError);
+  EXPECT_EQ(InWords(MakeCapturePlan({}, WithFuser())), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, plotter\nread: datagrams\n");
+  EXPECT_THROW(MakeCapturePlan({.only = {"fuser"}}, WithFuser()), RequestError);
 }
 
 TEST(MadeUpService, IsListed) {
-  EXPECT_EQ(ServiceNames(WithTracker()), (std::vector<std::string>{"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "plotter"}));
-  EXPECT_EQ(FromNames(), (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE"}));
-  EXPECT_EQ(FromNames(WithTracker()),
-            (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "TRACKS"}));
+  EXPECT_EQ(ServiceNames(WithFuser()), (std::vector<std::string>{"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "fuser", "plotter"}));
+  EXPECT_EQ(FromNames(), (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES"}));
+  EXPECT_EQ(FromNames(WithFuser()),
+            (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "FUSED"}));
 }
 
 TEST(MadeUpService, RunsBehindWhatItReads) {
   auto factories = StageFactories();
-  factories.push_back({"tracker", [](const std::filesystem::path&) {},
-                       [](bus::Bus& bus, const std::filesystem::path& folder, bool reads_raw) -> std::unique_ptr<Stage> {
-                         return std::make_unique<TrackerStage>(bus, folder, reads_raw);
+  factories.push_back({"fuser", [](const std::filesystem::path&) {},
+                       [](bus::Bus& bus, const std::filesystem::path& folder, const StageInput& input) -> std::unique_ptr<Stage> {
+                         return std::make_unique<FuserStage>(bus, folder, input);
                        }});
-  Plan plan = MakeCapturePlan({.only = {"navigator", "tracker"}}, WithTracker());
-  EXPECT_EQ(plan.services, (std::vector<std::string>{"navigator", "tracker"}));
+  Plan plan = MakeCapturePlan({.only = {"navigator", "fuser"}}, WithFuser());
+  EXPECT_EQ(plan.services, (std::vector<std::string>{"navigator", "fuser"}));
   std::int64_t num_poses = 0;
-  std::int64_t num_tracks = 0;
+  std::int64_t num_fused = 0;
   Chain chain(
       support::kDemoConfig, plan,
       [&](Utime, std::string_view channel, Bytes bytes) {
         num_poses += channel == "POSE" ? 1 : 0;
-        if (channel == "TRACKS") {
-          EXPECT_EQ(bus::Decode<pose_t>(bytes).value().seq, 1000 + num_tracks++);
+        if (channel == "FUSED") {
+          EXPECT_EQ(bus::Decode<pose_t>(bytes).value().seq, 1000 + num_fused++);
         }
       },
       factories);
@@ -91,12 +91,12 @@ TEST(MadeUpService, RunsBehindWhatItReads) {
   chain.Finish();
 
   ASSERT_GT(num_poses, 0);
-  EXPECT_EQ(chain.digests().at("TRACKS").count, num_poses);
-  EXPECT_EQ(chain.StageTimes().at(1).first, "tracker");
+  EXPECT_EQ(chain.digests().at("FUSED").count, num_poses);
+  EXPECT_EQ(chain.StageTimes().at(1).first, "fuser");
   const auto counters = chain.Counters();
-  EXPECT_NE(std::ranges::find(counters, std::pair<std::string, std::int64_t>("tracker.poses", num_poses)), counters.end());
-  EXPECT_NE(std::ranges::find(counters, std::pair<std::string, std::int64_t>("tracker.finished", 1)), counters.end());
-  EXPECT_EQ(std::ranges::find(counters, std::pair<std::string, std::int64_t>("tracker.raw", 1)), counters.end());
+  EXPECT_NE(std::ranges::find(counters, std::pair<std::string, std::int64_t>("fuser.poses", num_poses)), counters.end());
+  EXPECT_NE(std::ranges::find(counters, std::pair<std::string, std::int64_t>("fuser.finished", 1)), counters.end());
+  EXPECT_EQ(std::ranges::find(counters, std::pair<std::string, std::int64_t>("fuser.raw", 1)), counters.end());
 }
 
 // What a boat computes from its measurements replay computes too.

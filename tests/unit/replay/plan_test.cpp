@@ -11,7 +11,7 @@ const ChannelSet kDay{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_CLOCK", "LIDAR_NMEA"
 std::string PlanOf(const Request& request, const ChannelSet& present = kDay) { return InWords(MakeLogPlan(request, present)); }
 
 TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
-  EXPECT_EQ(PlanOf({}), "ran: vlp16, segmenter, navigator, georeferencer\nread: LIDAR_PACKETS, NAV_RAW\n");
+  EXPECT_EQ(PlanOf({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK\n");
   const auto plan = MakeLogPlan({}, kDay);
   EXPECT_TRUE(plan.Reads("LIDAR_PACKETS"));
   EXPECT_TRUE(plan.Reads("NAV_RAW"));
@@ -20,21 +20,22 @@ TEST(ReplayPlan, OfALogBeginsAtTheRawChannels) {
 
 TEST(ReplayPlan, WithoutNavRawTakesTheSentencesOfTheLidar) {
   const auto plan = MakeLogPlan({}, {"LIDAR_PACKETS"});
-  EXPECT_EQ(InWords(plan), "ran: vlp16, segmenter, navigator, georeferencer\nread: LIDAR_PACKETS\n");
+  EXPECT_EQ(InWords(plan), "ran: vlp16, segmenter, navigator, georeferencer, tracker\nread: LIDAR_PACKETS, ALERT_ACK\n");
   EXPECT_FALSE(plan.Reads("NAV_RAW"));
 }
 
 TEST(ReplayPlan, FromAChannelStopsWhatGivesItAndWhatIsBefore) {
-  EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}}), "ran: segmenter, navigator, georeferencer\nread: LIDAR_SCAN, NAV_RAW\n");
-  EXPECT_EQ(PlanOf({.from = {"SEGMENTS"}}), "ran: navigator, georeferencer\nread: SEGMENTS, NAV_RAW\n");
-  EXPECT_EQ(PlanOf({.from = {"POSE"}}), "ran: vlp16, segmenter, georeferencer\nread: LIDAR_PACKETS, POSE\n");
-  EXPECT_EQ(PlanOf({.from = {"SEGMENTS", "POSE"}}), "ran: georeferencer\nread: SEGMENTS, POSE\n");
+  EXPECT_EQ(PlanOf({.from = {"LIDAR_SCAN"}}), "ran: segmenter, navigator, georeferencer, tracker\nread: LIDAR_SCAN, NAV_RAW, ALERT_ACK\n");
+  EXPECT_EQ(PlanOf({.from = {"SEGMENTS"}}), "ran: navigator, georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, NAV_RAW, ALERT_ACK\n");
+  EXPECT_EQ(PlanOf({.from = {"POSE"}}), "ran: vlp16, segmenter, georeferencer, tracker\nread: LIDAR_PACKETS, POSE, ALERT_ACK\n");
+  EXPECT_EQ(PlanOf({.from = {"SEGMENTS", "POSE"}}), "ran: georeferencer, tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, ALERT_ACK\n");
+  EXPECT_EQ(PlanOf({.from = {"OBSTACLES"}}), "ran: tracker\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK\n");
   EXPECT_EQ(PlanOf({.from = {"LIDAR_PACKETS", "NAV_RAW"}}), PlanOf({}));
 }
 
 TEST(ReplayPlan, FromLidarNmeaLeavesNavRawAside) {
   const auto plan = MakeLogPlan({.from = {"LIDAR_NMEA"}}, kDay);
-  EXPECT_EQ(InWords(plan), "ran: segmenter, navigator, georeferencer\nread: LIDAR_SCAN, LIDAR_NMEA\n");
+  EXPECT_EQ(InWords(plan), "ran: segmenter, navigator, georeferencer, tracker\nread: LIDAR_SCAN, LIDAR_NMEA, ALERT_ACK\n");
   EXPECT_FALSE(plan.Reads("NAV_RAW"));
 }
 
@@ -53,7 +54,8 @@ TEST(ReplayPlan, RefusesWhatContradictsItself) {
   EXPECT_THROW(MakeLogPlan({.from = {"POSE"}, .only = {"segmenter"}}, kDay), RequestError);
   EXPECT_THROW(MakeLogPlan({.from = {"LIDAR_PACKETS", "LIDAR_SCAN"}}, kDay), RequestError);
   EXPECT_THROW(MakeLogPlan({.from = {"NAV_RAW", "LIDAR_NMEA"}}, kDay), RequestError);
-  EXPECT_THROW(MakeLogPlan({.from = {"OBSTACLES"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"TRACKS"}}, kDay), RequestError);
+  EXPECT_THROW(MakeLogPlan({.from = {"ALERT_ACK"}}, kDay), RequestError);
   EXPECT_THROW(MakeLogPlan({.only = {"recorder"}}, kDay), RequestError);
   EXPECT_THROW(Candidates({.from = {"POSE"}, .only = {"segmenter"}}), RequestError);
 }
@@ -66,6 +68,16 @@ TEST(ReplayPlan, RefusesALogThatLacksWhatIsAskedFor) {
   EXPECT_NO_THROW(MakeLogPlan({.only = {"georeferencer"}}, {"SEGMENTS"}));  // obstacles in the vessel frame
 }
 
+// Of obstacles that another program made, nobody knows what could have been seen.
+TEST(ReplayPlan, FromObstaclesKnowsWhatTheLogLacks) {
+  const auto plan = MakeLogPlan({.from = {"OBSTACLES"}}, {"OBSTACLES", "POSE"});
+  EXPECT_EQ(plan.absent, (std::vector<std::string>{"LIDAR_SCAN", "SEGMENTS"}));
+  EXPECT_TRUE(plan.Gives(bus::kPose));
+  EXPECT_FALSE(plan.Gives(bus::kLidarScan));
+  EXPECT_TRUE(MakeLogPlan({.from = {"OBSTACLES"}}, kDay).absent.empty());
+  EXPECT_TRUE(MakeLogPlan({}, kDay).Gives(bus::kLidarScan));
+}
+
 TEST(ReplayPlan, NeedsNoMoreThanItsCandidates) {
   EXPECT_EQ(Candidates({}), (ChannelSet{"LIDAR_PACKETS", "NAV_RAW"}));
   EXPECT_EQ(Candidates({.only = {"segmenter"}}), (ChannelSet{"LIDAR_SCAN"}));
@@ -73,7 +85,7 @@ TEST(ReplayPlan, NeedsNoMoreThanItsCandidates) {
 }
 
 TEST(ReplayPlan, OfACaptureHasNoMessagesToRead) {
-  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: vlp16, segmenter, navigator, georeferencer\nread: datagrams\n");
+  EXPECT_EQ(InWords(MakeCapturePlan({})), "ran: vlp16, segmenter, navigator, georeferencer, tracker\nread: datagrams\n");
   EXPECT_EQ(InWords(MakeCapturePlan({.only = {"navigator"}})), "ran: navigator\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.from = {"LIDAR_PACKETS"}}), RequestError);
   EXPECT_THROW(MakeCapturePlan({.only = {"segmenter"}}), RequestError);

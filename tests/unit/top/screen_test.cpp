@@ -8,18 +8,21 @@
 #include "common/core/angles.hpp"
 #include "common/core/geodesy.hpp"
 #include "common/core/printable.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tests/unit/top/bus_talk.hpp"
 #include "tools/top/format.hpp"
 
 namespace lookout::top {
 namespace {
 
-// All channels of a boat, five processes and twelve obstacles, after two seconds.
+// All channels of a boat without a tracker, five processes and twelve obstacles, after two seconds.
 Board BusyBoard() {
   Board board(kStart);
   for (const auto& channel : bus::kChannels) {
-    if (channel.name != "SIM_TRUTH" && channel.name != "HEALTH") board.Take(channel.name, {}, At(1.9));
+    const bool is_of_tracker = channel.publisher == "tracker" || channel.publisher == "several";
+    if (channel.name != "SIM_TRUTH" && channel.name != "HEALTH" && !is_of_tracker) board.Take(channel.name, {}, At(1.9));
   }
   pose_t pose = PoseAt(1'000'000, DegToRad(90.0));
   pose.heading_source = pose_t::HEADING_HDT;
@@ -56,6 +59,50 @@ Board AlarmedBoard() {
   return board;
 }
 
+track_t TrackAt(std::int64_t id, float range_m, std::int32_t status = track_t::STATUS_CONFIRMED) {
+  track_t track{};
+  track.id = id;
+  track.status = status;
+  track.kind = track_t::KIND_BOAT;
+  track.range_m = range_m;
+  track.bearing_rad = static_cast<float>(DegToRad(40.0));
+  track.course_rad = static_cast<float>(DegToRad(270.0));
+  track.speed_mps = 2.5F;
+  track.cpa_m = 3.0F;
+  track.tcpa_s = 21.0F;
+  track.num_seen = 14;
+  track.num_looks = 15;
+  return track;
+}
+
+// The same boat with a tracker.
+Board TrackedBoard(const std::vector<track_t>& tracks, double second = 1.95) {
+  Board board = BusyBoard();
+  tracks_t message{};
+  message.num_parts = 1;
+  message.tracks = tracks;
+  message.num_tracks = static_cast<std::int32_t>(tracks.size());
+  Say(board, bus::kTracks, message, second);
+  alerts_t alerts{};
+  for (const bool is_active : {true, false}) {
+    alert_t alert{};
+    alert.id = 1 + std::ssize(alerts.alerts);
+    alert.track_id = 17;
+    alert.level = alert_t::LEVEL_WARNING;
+    alert.state = alert_t::STATE_ACTIVE;
+    if (!is_active) {
+      alert.track_id = 9;
+      alert.level = alert_t::LEVEL_CAUTION;
+      alert.state = alert_t::STATE_ACKNOWLEDGED;
+    }
+    alert.text = "boat " + std::to_string(alert.track_id) + ": closest approach 3 m in 21 s";
+    alerts.alerts.push_back(alert);
+  }
+  alerts.num_alerts = 2;
+  Say(board, bus::kAlerts, alerts, second);
+  return board;
+}
+
 std::vector<std::string> Lines(const std::vector<Row>& rows) {
   std::vector<std::string> lines;
   std::istringstream text(PlainText(rows));
@@ -78,7 +125,7 @@ TEST(Screen, ShowsNineObstaclesWithAllNumbersOnEightyByTwentyFour) {
   EXPECT_EQ(lines[16], "  2     2     5.5  030  120   43.500000   -72.250000  6.0x2.5x1.5   tentative");
   EXPECT_EQ(lines[17], "  3     3     6.5  060  150   43.500000   -72.250000  6.0x2.5x1.5   land");
   EXPECT_EQ(lines[23], "  9     9    12.5  240  330   43.500000   -72.250000  6.0x2.5x1.5   sure");
-  EXPECT_TRUE(Has(lines, "q quit  s sure only/all  c count anew"));
+  EXPECT_TRUE(Has(lines, "q quit  t tracks  s sure  c count anew"));
   EXPECT_TRUE(Has(lines, "navigator     degraded 12.5   14     -"));
   EXPECT_TRUE(Has(lines, " no heading: neither HDT nor PASHR for"));
   EXPECT_TRUE(Has(lines, "POSE             1.0"));
@@ -147,6 +194,35 @@ TEST(Screen, FitsAnySize) {
   }
 }
 
+// By their ids, so that a row stays where it is while boats pass each other.
+TEST(Screen, ShowsTracksInPlaceOfObstaclesWhereThereIsATracker) {
+  auto still = TrackAt(23, 8.0F, track_t::STATUS_COASTING);
+  still.course_rad = std::numeric_limits<float>::quiet_NaN();
+  still.speed_mps = 0.0F;
+  const auto board = TrackedBoard({TrackAt(9, 50.0F), TrackAt(17, 20.0F), TrackAt(20, 10.0F, track_t::STATUS_TENTATIVE), still});
+  const auto rows = DrawScreen(board, "title", At(2.0), {90, 40});
+  const auto lines = Lines(rows);
+  EXPECT_EQ(lines[0], "WARNING: boat 17: closest approach 3 m in 21 s") << "the other is acknowledged";
+  EXPECT_EQ(rows[0][0].style, Style::kAlarm);
+  const auto head = std::ranges::find_if(lines, [](const std::string& line) { return line.starts_with("of 3 "); });
+  ASSERT_GE(lines.end() - head, 4);
+  EXPECT_EQ(head[0], "of 3   track  kind      range m  rel course   m/s  CPA m TCPA s  alert     status     seen");
+  EXPECT_EQ(head[1], "  1        9  boat         50.0  040    270   2.5    3.0     21  (caution) confirmed 14/15");
+  EXPECT_EQ(head[2], "  2       17  boat         20.0  040    270   2.5    3.0     21  warning   confirmed 14/15");
+  EXPECT_EQ(head[3], "  3       23  boat          8.0  040      -   0.0    3.0     21  -         coasting  14/15");
+  EXPECT_TRUE(Has(Lines(DrawScreen(board, "title", At(2.0), {80, 40})), "  2       17  boat         20.0  040    270   2.5    3.0     21  warning"));
+  const auto obstacles = Lines(DrawScreen(board, "title", At(2.0), {.width = 80, .height = 40, .has_tracks = false}));
+  EXPECT_TRUE(Has(obstacles, "  1     1     4.5  000  090"));
+}
+
+TEST(Screen, SaysNoLookOutWhenAlertsAreOlderThanASecond) {
+  const auto board = TrackedBoard({TrackAt(9, 50.0F)}, 1.0);
+  EXPECT_FALSE(Has(Lines(DrawScreen(board, "title", At(1.9), {80, 40})), "NO LOOK-OUT"));
+  const auto lines = Lines(DrawScreen(board, "title", At(4.2), {80, 40}));
+  EXPECT_EQ(lines[0], "NO LOOK-OUT: no ALERTS for 3 s");
+  EXPECT_FALSE(Has(lines, "WARNING"));
+}
+
 TEST(Screen, TellsTheOwnShip) {
   const auto wide = Lines(DrawScreen(BusyBoard(), "title", At(2.0), {120, 40}));
   EXPECT_EQ(wide[1], "own 43.629590 -72.149989  heading 090 hdt  1.2 m/s  pose ok  fix rtk_fixed  course 090  14 satellites");
@@ -189,7 +265,7 @@ TEST(Screen, ShowsMoreObstaclesWhereThereIsRoom) {
 
 TEST(Screen, ShowsTheKeysAtAnyWidthWhereThereIsRoom) {
   for (const int width : {40, 79, 80, 120, 200}) {
-    EXPECT_TRUE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {width, 40})), "q quit  s sure only/all  c count anew")) << width;
+    EXPECT_TRUE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {width, 40})), "q quit  t tracks  s sure  c count anew")) << width;
   }
   EXPECT_FALSE(Has(Lines(DrawScreen(BusyBoard(), "title", At(2.0), {80, 0})), "q quit")) << "nobody presses keys at --once";
 }

@@ -18,7 +18,8 @@ namespace lookout {
 namespace {
 
 // An element takes at least one byte on the wire, so a count buys at most as many elements as there are bytes; the largest in memory is this.
-constexpr std::size_t kLargestElementBytes = std::max({sizeof(obstacle_t), sizeof(segment_t), sizeof(health_channel_t), sizeof(std::string)});
+constexpr std::size_t kLargestElementBytes =
+    std::max({sizeof(obstacle_t), sizeof(segment_t), sizeof(track_t), sizeof(health_channel_t), sizeof(std::string)});
 
 // Decodes from a heap block of exactly the bytes' size, so that a sanitizer sees each read beyond it.
 template <typename T>

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "lookout/alert_ack_t.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
@@ -17,6 +19,7 @@
 #include "lookout/run_info_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "lookout/sim_truth_t.hpp"
+#include "lookout/tracks_t.hpp"
 
 namespace lookout {
 
@@ -97,6 +100,34 @@ inline void Fill(obstacles_t& m) {
   }
 }
 
+inline void Fill(tracks_t& m) {
+  m.num_tracks = 2;
+  m.tracks.resize(2);
+  for (auto& track : m.tracks) {
+    track.num_outline = 2;
+    track.outline_east_m = track.outline_north_m = {1.0F, 2.0F};
+    track.num_segments = 1;
+    track.segment_ids = {3};
+    track.num_parents = track.num_children = 1;
+    track.parents = track.children = {4};
+  }
+  m.num_land_segments = 2;
+  m.land_segment_ids = {1, 2};
+  m.num_waterline = 2;
+  m.waterline_east_m = m.waterline_north_m = {1.0F, 2.0F};
+}
+
+inline void Fill(alert_ack_t& m) { m.source = "page"; }
+
+inline void Fill(alerts_t& m) {
+  m.num_alerts = 2;
+  m.alerts.resize(2);
+  m.alerts[0].text = "boat 17: closest approach 3 m in 21 s";
+  m.num_acknowledged = 1;
+  m.acknowledged.resize(1);
+  Fill(m.acknowledged[0]);
+}
+
 inline void Fill(health_t& m) {
   m.process = "vlp16";
   m.host = "boat";
@@ -148,6 +179,9 @@ void ForEachFilledMessage(Use use) {
   fill_and_use(attitude_t{});
   fill_and_use(pose_t{});
   fill_and_use(obstacles_t{});
+  fill_and_use(tracks_t{});
+  fill_and_use(alerts_t{});
+  fill_and_use(alert_ack_t{});
   fill_and_use(health_t{});
   fill_and_use(run_info_t{});
   fill_and_use(sim_truth_t{});

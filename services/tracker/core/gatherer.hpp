@@ -1,0 +1,167 @@
+// Brings together what several channels say of one scan, and waits for what is still to come.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <compare>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/core/health.hpp"
+#include "common/core/pose.hpp"
+#include "common/core/utime.hpp"
+#include "services/tracker/core/scan.hpp"
+
+namespace lookout::tracker {
+
+/// Which scan: all that is computed of it carries both.
+struct ScanKey {
+  Utime time;  // first firing
+  std::int64_t seq = 0;
+
+  friend auto operator<=>(const ScanKey&, const ScanKey&) = default;
+};
+
+/// Outline of an obstacle as the vessel sees it. That is known also where its place on the earth is not.
+struct VesselOutline {
+  std::int32_t segment_id = 0;
+  bool is_sure = true;
+  bool is_land = false;
+  bool is_line = false;                    // an open line: the waterline of land
+  std::vector<Eigen::Vector2d> corners_m;  // at least one
+};
+
+/// OBSTACLES of one scan.
+struct ScanObstacles {
+  ScanKey key;
+  Utime end_time;
+  std::int64_t raw_seq = 0;
+  std::int32_t flags = 0;
+  bool is_whole = true;  // all parts came
+  Datum datum;
+  std::vector<Seen> seen;               // those with a place on the earth and a covariance
+  std::vector<VesselOutline> outlines;  // of all
+};
+
+/// LIDAR_SCAN of one scan.
+struct ScanBeams {
+  ScanKey key;
+  bool is_whole = true;
+  Sweep sweep;  // its labels are not known yet
+  int num_returns = 1;
+  std::vector<std::uint8_t> nearest;  // [columns x rings] which return of the shot range_m is
+};
+
+/// SEGMENTS of one scan: the labels.
+struct ScanLabels {
+  ScanKey key;
+  bool is_whole = true;
+  int num_returns = 1;
+  std::vector<std::int16_t> label;  // [columns x rings x returns]
+};
+
+/// A scan with all that came of it.
+struct GatheredScan {
+  ScanInput input;
+  std::int64_t raw_seq = 0;
+  bool is_anew = false;  // lidar or navigator began anew: nothing of before holds
+  std::vector<VesselOutline> outlines;
+
+  ScanKey key() const { return {input.time, input.seq}; }
+};
+
+/// A scan goes on, in the order of OBSTACLES, once POSE has reached its last shot and LIDAR_SCAN and SEGMENTS have come or cannot come any more,
+/// since a later scan of theirs has. What goes on depends on the order within each channel, not on how they interleave, as long as host time is kept
+/// out (AdvanceTo is not called), time does not go back, and the channels are ahead of each other by less than kMaxWaiting scans and
+/// PoseHistory::kLength.
+///
+/// It begins with the first scan of which it has heard all: every part of every channel, and POSE since before its first shot. Another one that
+/// listens since long gives the same from that scan on.
+class Gatherer {
+ public:
+  /// Scans that wait: at 10 a second 6 s; 20 MB of a VLP-16.
+  static constexpr std::size_t kMaxWaiting = 64;
+
+  struct Sources {
+    bool has_beams = true;   // whether LIDAR_SCAN will come at all
+    bool has_labels = true;  // SEGMENTS
+  };
+
+  /// @param timeout  live only: how long a scan waits, by the host's clock
+  Gatherer(const Sources& sources, std::chrono::microseconds timeout) : sources_(sources), timeout_(timeout) {}
+
+  /// Each of these returns what can go on now.
+  std::vector<GatheredScan> Add(ScanObstacles obstacles);
+  std::vector<GatheredScan> Add(ScanBeams beams);
+  std::vector<GatheredScan> Add(ScanLabels labels);
+  /// @param is_new_run  navigator began anew with this one
+  std::vector<GatheredScan> Add(const Pose& pose, bool is_new_run);
+
+  /// Live only: what has waited too long goes on with what is there.
+  std::vector<GatheredScan> AdvanceTo(Utime host_time);
+
+  /// End of input.
+  std::vector<GatheredScan> Finish();
+
+  std::int64_t num_waiting() const { return static_cast<std::int64_t>(waiting_.size()); }
+  bool has_pose() const { return poses_.newest() != nullptr; }
+  std::vector<Counter> counters() const;
+  /// Host time at which a wait was given up last.
+  std::optional<Utime> last_timeout() const { return last_timeout_; }
+
+ private:
+  enum class Arrival { kToCome, kHere, kNever };
+
+  // The scans of one channel that nothing has used yet, in their order.
+  template <typename Part>
+  class Stream {
+   public:
+    void Add(Part part);
+    Arrival Of(const ScanKey& key) const;
+    // What came of this scan, if it is whole; nothing that came before is of use any more.
+    std::optional<Part> Take(const ScanKey& key);
+
+   private:
+    std::deque<Part> parts_;
+    std::optional<ScanKey> newest_;
+  };
+
+  struct Waiting {
+    ScanObstacles obstacles;
+    bool is_anew = false;
+    std::optional<Utime> arrival;  // host time, where there is one
+  };
+
+  bool IsReady(const ScanObstacles& obstacles) const;
+  bool CanBegin(const ScanObstacles& obstacles) const;
+  void ReleaseReady(std::vector<GatheredScan>& released);
+  void ReleaseFront(bool is_given_up, std::vector<GatheredScan>& released);
+  std::optional<Sweep> SweepOf(const ScanKey& key);
+  std::optional<Pose> PoseAt(Utime time, const Datum& datum) const;
+
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"scans_released", "scans_doubled", "scans_late", "scans_timed_out", "scans_overflowed", "scans_flushed",
+                                       "scans_before_begin", "scans_waiting", "scans_without_sight", "scans_without_pose", "scans_incomplete",
+                                       "labels_inconsistent", "runs_begun", "poses_taken", "poses_duplicate", "pose_restarts"});
+
+  Sources sources_;
+  std::chrono::microseconds timeout_;
+  PoseHistory poses_;
+  std::optional<Utime> oldest_pose_;   // since when POSE is heard
+  std::deque<Utime> navigator_began_;  // anew, and no scan has come to it yet
+  Stream<ScanBeams> beams_;
+  Stream<ScanLabels> labels_;
+  std::deque<Waiting> waiting_;
+  std::optional<ScanKey> newest_;  // of OBSTACLES
+  bool has_begun_ = false;
+  bool is_anew_ = false;  // what has not been told to a scan yet
+  std::optional<Utime> host_time_;
+  std::optional<Utime> last_timeout_;
+  Counts<kCountNames> counts_;
+};
+
+}  // namespace lookout::tracker

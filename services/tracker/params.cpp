@@ -1,0 +1,76 @@
+#include "services/tracker/params.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/config/boat.hpp"
+#include "common/config/text_config.hpp"
+#include "common/core/angles.hpp"
+#include "config/schema/segmenter.pb.h"
+#include "config/schema/tracker.pb.h"
+
+namespace lookout::tracker {
+
+namespace {
+
+// The hull in the middle of the box of own returns, no larger than it; the whole box where the size of the hull is not set.
+std::vector<Eigen::Vector2d> OwnHull(const config::BoatFacts& boat) {
+  const Eigen::Vector2d center_m = boat.own_vessel_box_m.center().head<2>();
+  Eigen::Vector2d half_m = boat.own_vessel_box_m.sizes().head<2>() / 2.0;
+  if (boat.hull_m) half_m = half_m.cwiseMin(Eigen::Vector2d(boat.hull_m->length_m, boat.hull_m->beam_m) / 2.0);
+  const Eigen::Vector2d mirrored_m(half_m.x(), -half_m.y());
+  return {center_m - half_m, center_m + mirrored_m, center_m + half_m, center_m - mirrored_m};
+}
+
+GuardZoneParams ToGuardZone(const config::GuardZone& zone) {
+  constexpr double kWholeCircleDeg = 360.0;
+  const double width_deg = zone.to_bearing_deg() - zone.from_bearing_deg();
+  return {.range_m = zone.range_m(),
+          .bearing = {WrapTo2Pi(DegToRad(zone.from_bearing_deg())), std::abs(width_deg) >= kWholeCircleDeg ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))},
+          .takes_tentative = zone.takes_tentative()};
+}
+
+}  // namespace
+
+Params LoadParams(const std::filesystem::path& config_folder) {
+  const auto file = config_folder / "tracker.txtpb";
+  config::FaultList faults;
+  const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
+  const auto segmenter = faults.Take([&] { return config::Load<config::Segmenter>(config_folder, "segmenter.txtpb"); });
+  const auto message = faults.Take([&] { return config::Load<config::Tracker>(config_folder, "tracker.txtpb"); });
+  if (message && message->clear_probability() > message->raise_probability()) {
+    faults.Add(config::FaultLine(file, "clear_probability", "must not be above raise_probability"));
+  }
+  if (message && message->end_probability() >= message->confirm_probability()) {
+    faults.Add(config::FaultLine(file, "end_probability", "must be below confirm_probability"));
+  }
+  if (message && message->has_guard_zone() && message->guard_zone().to_bearing_deg() == message->guard_zone().from_bearing_deg()) {
+    faults.Add(config::FaultLine(file, "guard_zone.to_bearing_deg", "must differ from from_bearing_deg"));
+  }
+  faults.ThrowIfAny();
+
+  Params params;
+  if (message->has_guard_zone()) {
+    params.guard_zone = ToGuardZone(message->guard_zone());
+    if (IsInsideBox(params.guard_zone, boat->own_vessel_box_m)) {
+      faults.Add(config::FaultLine(file, "guard_zone.range_m", "the zone lies wholly inside own_vessel of boat.txtpb: nothing can be seen there"));
+      faults.ThrowIfAny();
+    }
+  }
+  params.tracker.T_vessel_lidar = boat->T_vessel_lidar;
+  params.tracker.reference_point_above_water_m = boat->reference_point_above_water_m;
+  params.tracker.max_range_m = segmenter->max_range_m();
+  params.tracker.own_hull_m = OwnHull(*boat);
+  params.tracker.encounter = {message->cpa_limit_m(), message->look_ahead_s()};
+  params.tracker.moving_probability = message->moving_probability();
+  params.tracker.confirm_probability = message->confirm_probability();
+  params.tracker.end_probability = message->end_probability();
+  params.alerts.raise_probability = message->raise_probability();
+  params.alerts.clear_probability = message->clear_probability();
+  params.alerts.clear_s = message->clear_s();
+  params.alerts.warning_tcpa_s = message->warning_tcpa_s();
+  params.wait_timeout = std::chrono::round<std::chrono::microseconds>(std::chrono::duration<double>(message->wait_timeout_s()));
+  return params;
+}
+
+}  // namespace lookout::tracker

@@ -1,0 +1,251 @@
+#include "services/tracker/service.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+namespace lookout::tracker {
+
+namespace {
+
+// Acknowledgements that wait for a scan: people do not press buttons more often.
+constexpr std::size_t kMaxAcknowledgements = 100;
+// HEALTH names a silence that lasts this long, and a time-out for as long.
+constexpr std::chrono::seconds kSilence(2);
+
+// Without an own pose nobody knows how near anything will come; what is in the guard zone shows all the same, though not whose track it is.
+std::vector<Danger> DangersOf(const Params& params, const GatheredScan& scan, const Picture& picture, bool is_own_still) {
+  if (!scan.input.own) return GuardZoneDangers(params.guard_zone, scan.outlines);
+  auto dangers = GuardZoneDangers(params.guard_zone, picture, scan.input.seen, *scan.input.own);
+  std::ranges::copy(ClosestApproachDangers(params.tracker.encounter.limit_m, picture, is_own_still), std::back_inserter(dangers));
+  return dangers;
+}
+
+}  // namespace
+
+Service::Service(bus::Bus& bus, const Params& params, Given given)
+    : bus_(bus), params_(params), given_(std::move(given)), gatherer_(given_.sources, params.wait_timeout) {
+  bus::Subscribe<lidar_scan_t>(bus_, bus::kLidarScan, [this](const lidar_scan_t& message) { OnBeams(message); });
+  bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnLabels(message); });
+  bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
+  bus::Subscribe<obstacles_t>(bus_, bus::kObstacles, [this](const obstacles_t& message) { OnObstacles(message); });
+  bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& message) { OnAcknowledgement(message); });
+}
+
+void Service::OnObstacles(const obstacles_t& message) {
+  if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return obstacles_refused_.Add(*fault);
+  obstacles_seen_ = now_;
+  if (message.num_parts == 1 && obstacles_parts_.is_empty()) return AddObstacles({&message, 1});
+  const auto ended = obstacles_parts_.Add(message);
+  if (!ended.incomplete.empty()) AddObstacles(ended.incomplete);
+  if (!ended.whole.empty()) AddObstacles(ended.whole);
+}
+
+void Service::AddObstacles(std::span<const obstacles_t> parts) {
+  LeftOut left_out;
+  auto obstacles = ToObstacles(parts, left_out);
+  if (!obstacles) {
+    ++counts_["obstacles_inconsistent"];
+    return;
+  }
+  counts_["obstacles_not_placed"] += left_out.num_not_placed;
+  counts_["obstacles_without_covariance"] += left_out.num_without_covariance;
+  Use(gatherer_.Add(std::move(*obstacles)));
+}
+
+void Service::OnBeams(const lidar_scan_t& message) {
+  if (!given_.sources.has_beams) return;
+  if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return beams_refused_.Add(*fault);
+  if (message.num_parts == 1 && beams_parts_.is_empty()) return AddBeams({&message, 1}, true);
+  const auto ended = beams_parts_.Add(message);
+  if (!ended.incomplete.empty()) AddBeams(ended.incomplete, false);
+  if (!ended.whole.empty()) AddBeams(ended.whole, true);
+}
+
+void Service::AddBeams(std::span<const lidar_scan_t> parts, bool is_whole) {
+  std::optional<ScanBeams> beams;
+  if (is_whole) beams = ToBeams(parts);
+  if (!beams) {
+    if (is_whole) ++counts_["beams_inconsistent"];
+    beams.emplace();
+    beams->key = KeyOf(parts.front());
+    beams->is_whole = false;
+  }
+  Use(gatherer_.Add(std::move(*beams)));
+}
+
+void Service::OnLabels(const segments_t& message) {
+  if (!given_.sources.has_labels) return;
+  const bool is_fitting = messages::IsWellFormed(message);
+  if (const auto fault = messages::FaultOf(message, bus::kMaxMessageBytes)) return labels_refused_.Add(*fault);
+  if (!is_fitting) return labels_refused_.Add(messages::kSegmentsCount);
+  if (message.num_parts == 1 && labels_parts_.is_empty()) return AddLabels({&message, 1}, true);
+  const auto ended = labels_parts_.Add(message);
+  if (!ended.incomplete.empty()) AddLabels(ended.incomplete, false);
+  if (!ended.whole.empty()) AddLabels(ended.whole, true);
+}
+
+void Service::AddLabels(std::span<const segments_t> parts, bool is_whole) {
+  std::optional<ScanLabels> labels;
+  if (is_whole) labels = ToLabels(parts);
+  if (!labels) {
+    labels.emplace();
+    labels->key = KeyOf(parts.front());
+    labels->is_whole = false;
+  }
+  Use(gatherer_.Add(std::move(*labels)));
+}
+
+void Service::OnPose(const pose_t& message) {
+  const auto pose = messages::ToPose(message);
+  if (const auto* fault = std::get_if<messages::Fault>(&pose)) return poses_refused_.Add(*fault);
+  const bool is_new_run = pose_seq_ && message.seq < *pose_seq_;
+  pose_seq_ = message.seq;
+  Use(gatherer_.Add(std::get<Pose>(pose), is_new_run));
+}
+
+void Service::OnAcknowledgement(const alert_ack_t& message) {
+  if (const auto fault = messages::FaultOf(message)) return acknowledgements_refused_.Add(*fault);
+  if (given_.script) return;  // it says when each was taken
+  const auto acknowledgement = ToAcknowledgement(message);
+  if (acknowledgement.alert_id < 0) {
+    counts_.Add(watch_.Acknowledge(acknowledgement) ? "acks_taken" : "acks_of_no_alert");
+  } else if (acknowledgements_.size() >= kMaxAcknowledgements) {
+    ++counts_["acks_dropped"];
+  } else {
+    acknowledgements_.push_back(acknowledgement);
+  }
+}
+
+void Service::AdvanceTo(Utime host_time) {
+  now_ = host_time;
+  // Waiting begins with the first call, or again where the host's clock was set back.
+  obstacles_seen_ = std::min(obstacles_seen_.value_or(host_time), host_time);
+  Use(gatherer_.AdvanceTo(host_time));
+  watch_.AdvanceTo(host_time);
+  if (watch_.TakeTurn()) SendWatch();
+}
+
+bool Service::TakeWatchChange() { return std::exchange(reported_failing_, watch_.is_failing()) != watch_.is_failing(); }
+
+void Service::Finish() { Use(gatherer_.Finish()); }
+
+void Service::Use(std::vector<GatheredScan> scans) {
+  for (const auto& scan : scans) Use(scan);
+}
+
+void Service::Use(const GatheredScan& scan) {
+  if (!FollowScript(scan.key())) {
+    ++counts_["scans_not_of_the_live_run"];
+    return;
+  }
+  if (!memory_) {
+    memory_ = std::make_unique<Memory>(params_);
+    memory_->begin = scan.key();
+  } else if (scan.is_anew && memory_->picture != nullptr) {
+    memory_->kept.Keep(label_->end_time, label_->datum, memory_->alerts.alerts(), memory_->picture->tracks);
+    memory_->tracker.Reset();
+  }
+  const auto& input = scan.input;
+  const bool is_whole = input.flags == 0;
+  if (is_whole) watch_.NoteScan();
+
+  const Picture& picture = memory_->tracker.Update(input);
+  for (const auto& [from, to] : picture.merged) memory_->alerts.Rename(from, to, input.end_time);
+  const auto acknowledged = TakeAcknowledgements(scan.key(), input.end_time);
+  for (const auto& kept : memory_->kept.Take(input.end_time, input.datum, memory_->alerts.alerts(), picture.tracks)) {
+    memory_->alerts.Acknowledge(kept, input.end_time);
+  }
+  const bool is_own_still = memory_->still.Update(input.end_time, input.own ? input.own->velocity_map_mps : Eigen::Vector2d::Constant(kNan));
+  const auto& alerts = memory_->alerts.Update(input.end_time, is_whole, DangersOf(params_, scan, picture, is_own_still));
+
+  const double own_up_m = input.own ? input.own->position_map_m.z() : label_ ? label_->own_up_m : 0.0;
+  label_ = {scan.key(), memory_->begin, input.end_time, scan.raw_seq, input.flags, input.datum, own_up_m};
+  for (const auto& message : ToMessages(*label_, picture, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kTracks, message);
+  const auto message = ToMessage(*label_, alerts, acknowledged, picture, bus::kMaxMessageBytes);
+  counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
+  bus::Publish(bus_, bus::kAlerts, message);
+
+  memory_->picture = &picture;
+  num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
+}
+
+// @return whether the live run used this scan too, as far as is known
+bool Service::FollowScript(const ScanKey& key) {
+  if (!given_.script) return true;
+  const auto& runs = given_.script->runs;
+  while (next_run_ < runs.size() && runs[next_run_].first.time <= key.time) {
+    memory_ = std::make_unique<Memory>(params_);
+    memory_->begin = runs[next_run_].first;
+    ++next_run_;
+  }
+  if (next_run_ == 0) return false;  // before the first
+  // Between the end of one process and the begin of the next.
+  return next_run_ == runs.size() || key.time <= runs[next_run_ - 1].last.time;
+}
+
+std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanKey& key, Utime time) {
+  if (given_.script) {
+    const auto found = given_.script->acknowledged.find(key);
+    if (found != given_.script->acknowledged.end()) acknowledgements_.assign(found->second.begin(), found->second.end());
+  }
+  std::vector<Acknowledgement> taken;
+  for (const auto& acknowledgement : std::exchange(acknowledgements_, {})) {
+    if (memory_->alerts.Acknowledge(acknowledgement, time)) {
+      ++counts_["acks_taken"];
+      taken.push_back(acknowledgement);
+    } else {
+      ++counts_["acks_of_no_alert"];
+    }
+  }
+  return taken;
+}
+
+// With the number of the last scan, and the alerts as they were.
+void Service::SendWatch() {
+  if (!label_ || !memory_) return;
+  auto message = ToMessage(*label_, memory_->alerts.alerts(), {}, {}, bus::kMaxMessageBytes / 2);
+  auto alert = ToMessage(*watch_.alert(), std::nullopt);
+  alert.text =
+      alert.state == alert_t::STATE_CLEARED ? "look-out again" : fmt::format("no look-out: no whole scan for {:.1f} s", ToSeconds(watch_.unseen()));
+  message.is_watch = true;
+  message.alerts.insert(message.alerts.begin(), std::move(alert));
+  message.num_alerts = messages::CountOf(message.alerts);
+  bus::Publish(bus_, bus::kAlerts, message);
+}
+
+HealthReport Service::Report() const {
+  HealthReport report;
+  if (memory_) report.counters = memory_->tracker.counters();
+  report.counters.push_back({"alerts", num_alerts_});
+  for (const auto& counter : gatherer_.counters()) report.counters.push_back(counter);
+  auto counts = counts_;
+  const auto add_parts = [&counts](const auto& assembler) {
+    counts["parts_duplicate"] += assembler.counts().duplicate_parts;
+    counts["parts_inconsistent"] += assembler.counts().inconsistent_parts;
+  };
+  add_parts(obstacles_parts_);
+  add_parts(beams_parts_);
+  add_parts(labels_parts_);
+  counts.AppendTo(report.counters);
+  report.counters.push_back({"times_unwatched", watch_.num_failures()});
+  obstacles_refused_.AppendTo(report.counters);
+  beams_refused_.AppendTo(report.counters);
+  labels_refused_.AppendTo(report.counters);
+  poses_refused_.AppendTo(report.counters);
+  acknowledgements_refused_.AppendTo(report.counters);
+
+  if (watch_.is_failing()) report.Degrade(fmt::format("no look-out: no whole scan for {:.1f} s", ToSeconds(watch_.unseen())));
+  if (now_ && *now_ - obstacles_seen_.value_or(*now_) >= kSilence) {
+    report.Degrade(fmt::format("no OBSTACLES for {} s", std::chrono::floor<std::chrono::seconds>(*now_ - *obstacles_seen_).count()));
+  }
+  if (now_ && gatherer_.last_timeout() && *now_ - *gatherer_.last_timeout() < kSilence) {
+    report.Degrade("LIDAR_SCAN, SEGMENTS or POSE do not come with OBSTACLES: nothing is held against a track that is not seen");
+  }
+  return report;
+}
+
+}  // namespace lookout::tracker

@@ -1,0 +1,108 @@
+// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS and ALERTS out.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "common/messages/part_assembler.hpp"
+#include "common/messages/pose_message.hpp"
+#include "services/tracker/core/dangers.hpp"
+#include "services/tracker/core/kept_acknowledgements.hpp"
+#include "services/tracker/core/script.hpp"
+#include "services/tracker/params.hpp"
+#include "services/tracker/watch.hpp"
+#include "services/tracker/wire.hpp"
+
+namespace lookout::tracker {
+
+/// What is known of the input beforehand. Live: nothing.
+struct Given {
+  Gatherer::Sources sources = {};
+  std::optional<Script> script = {};  // of the live run that is replayed, where its log holds ALERTS
+};
+
+class Service {
+ public:
+  Service(bus::Bus& bus, const Params& params, Given given = {});
+
+  /// Live only: host time has come so far. Ten times a second or more.
+  void AdvanceTo(Utime host_time);
+
+  /// End of input: what waits is used as it is.
+  void Finish();
+
+  /// Scans that wait for POSE, LIDAR_SCAN or SEGMENTS.
+  std::int64_t num_waiting() const { return gatherer_.num_waiting(); }
+
+  /// Live only: whether somebody looks has changed since the call before. That is worth a HEALTH message at once.
+  bool TakeWatchChange();
+
+  HealthReport Report() const;
+
+ private:
+  // Tracks and alerts, from the begin of a process.
+  struct Memory {
+    explicit Memory(const Params& params) : tracker(params.tracker), alerts(params.alerts) {}
+    Tracker tracker;
+    Alerts alerts;
+    StillWatch still;
+    KeptAcknowledgements kept;
+    const Picture* picture = nullptr;  // of the last scan: the tracker's own
+    ScanKey begin;
+  };
+
+  void OnObstacles(const obstacles_t& message);
+  void OnBeams(const lidar_scan_t& message);
+  void OnLabels(const segments_t& message);
+  void OnPose(const pose_t& message);
+  void OnAcknowledgement(const alert_ack_t& message);
+
+  void AddObstacles(std::span<const obstacles_t> parts);
+  void AddBeams(std::span<const lidar_scan_t> parts, bool is_whole);
+  void AddLabels(std::span<const segments_t> parts, bool is_whole);
+
+  void Use(std::vector<GatheredScan> scans);
+  void Use(const GatheredScan& scan);
+  bool FollowScript(const ScanKey& key);
+  std::vector<Acknowledgement> TakeAcknowledgements(const ScanKey& key, Utime time);
+  void SendWatch();
+
+  static constexpr auto kCountNames = std::to_array<std::string_view>(
+      {"obstacles_not_placed", "obstacles_without_covariance", "obstacles_inconsistent", "beams_inconsistent", "parts_duplicate",
+       "parts_inconsistent", "scans_not_of_the_live_run", "acks_taken", "acks_of_no_alert", "acks_dropped", "alerts_untold"});
+
+  bus::Bus& bus_;
+  Params params_;
+  Given given_;
+  Gatherer gatherer_;
+  messages::PartAssembler<obstacles_t> obstacles_parts_;
+  messages::PartAssembler<lidar_scan_t> beams_parts_;
+  messages::PartAssembler<segments_t> labels_parts_;
+  std::unique_ptr<Memory> memory_;  // nullptr until the first scan
+  std::size_t next_run_ = 0;        // of the script
+  std::deque<Acknowledgement> acknowledgements_;
+  std::optional<std::int64_t> pose_seq_;
+  std::optional<ScanLabel> label_;  // of the last scan
+  std::int64_t num_alerts_ = 0;
+  Counts<kCountNames> counts_;
+  Counts<messages::kObstaclesFaults> obstacles_refused_;
+  Counts<messages::kScanFaults> beams_refused_;
+  Counts<messages::kSegmentsFaults> labels_refused_;
+  Counts<messages::kPoseFaults> poses_refused_;
+  Counts<messages::kAckFaults> acknowledgements_refused_;
+  // Host time, live only.
+  Watch watch_;
+  bool reported_failing_ = false;
+  std::optional<Utime> now_;
+  std::optional<Utime> obstacles_seen_;  // when the last valid ones came, or waiting began
+};
+
+}  // namespace lookout::tracker

@@ -1,0 +1,125 @@
+// Messages of a boat on a lake, for the tests of the tracker: scans of 0.1 s, ten columns of two rings.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "lookout/alert_ack_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/segments_t.hpp"
+#include "services/tracker/params.hpp"
+
+namespace lookout::tracker::test {
+
+inline constexpr std::int64_t kStartUs = 1'800'000'000'000'000;  // a multiple of 20 ms
+inline constexpr std::int64_t kScanUs = 100'000;
+inline constexpr std::int64_t kLastShotUs = 99'000;  // of a scan
+inline constexpr std::int32_t kNumColumns = 10;
+inline constexpr std::int32_t kNumRings = 2;
+
+/// A boat of 2 m x 1 m that wants 5 m of room.
+inline Params MakeParams() {
+  Params params;
+  params.tracker.max_range_m = 120.0;
+  params.tracker.own_hull_m = {{-1.0, -0.5}, {1.0, -0.5}, {1.0, 0.5}, {-1.0, 0.5}};
+  params.tracker.encounter = {.limit_m = 5.0, .look_ahead_s = 30.0};
+  params.alerts.warning_tcpa_s = 15.0;
+  return params;
+}
+
+/// @param position_m  on the map: east, north
+inline obstacle_t MakeObstacle(std::int32_t id, std::int64_t utime_us, std::pair<double, double> position_m) {
+  obstacle_t obstacle{};
+  obstacle.id = id;
+  obstacle.utime_us = utime_us;
+  obstacle.confidence = obstacle_t::CONFIDENCE_SURE;
+  obstacle.thing_probability = 0.95F;
+  obstacle.latitude_deg = 43.7;
+  obstacle.longitude_deg = -72.3;
+  obstacle.position_map_m[0] = position_m.first;
+  obstacle.position_map_m[1] = position_m.second;
+  obstacle.covariance_m2[0] = obstacle.covariance_m2[2] = 1.0;
+  obstacle.covariance_relative_m2[0] = obstacle.covariance_relative_m2[2] = 0.01;
+  obstacle.range_m = 10.0F;
+  obstacle.num_points = 5;
+  const auto east_m = static_cast<float>(position_m.first);
+  const auto north_m = static_cast<float>(position_m.second);
+  obstacle.num_footprint = obstacle.num_map = 3;
+  obstacle.footprint_east_m = obstacle.footprint_vessel_x_m = {east_m, east_m + 0.5F, east_m};
+  obstacle.footprint_north_m = obstacle.footprint_vessel_y_m = {north_m, north_m, north_m + 0.5F};
+  return obstacle;
+}
+
+inline obstacles_t MakeObstacles(std::int64_t offset_us, std::int64_t seq, std::vector<obstacle_t> obstacles) {
+  obstacles_t message{};
+  message.utime_us = kStartUs + offset_us;
+  message.seq = seq;
+  message.raw_seq = seq;
+  message.end_utime_us = message.utime_us + kLastShotUs;
+  message.num_parts = 1;
+  message.datum_latitude_deg = 43.7;
+  message.datum_longitude_deg = -72.3;
+  message.datum_ellipsoid_height_m = 100.0;
+  message.obstacles = std::move(obstacles);
+  message.num_obstacles = static_cast<std::int32_t>(message.obstacles.size());
+  return message;
+}
+
+inline lidar_scan_t MakeScan(std::int64_t offset_us, std::int64_t seq) {
+  lidar_scan_t message{};
+  message.utime_us = kStartUs + offset_us;
+  message.seq = seq;
+  message.raw_seq = seq;
+  message.end_utime_us = message.utime_us + kLastShotUs;
+  message.num_parts = 1;
+  message.range_unit_m = 0.002;
+  message.num_rings = kNumRings;
+  message.elevation_rad = {-0.1F, 0.1F};
+  message.azimuth_offset_rad = message.origin_height_m = {0.0F, 0.0F};
+  message.time_offset_ns = {0, 2304};
+  message.num_returns = 1;
+  message.return_kind = {lidar_scan_t::RETURN_STRONGEST};
+  message.num_turn_columns = message.num_columns = kNumColumns;
+  message.num_cells = kNumColumns * kNumRings;
+  for (int column = 0; column < kNumColumns; ++column) {
+    message.azimuth_rad.push_back(0.6F * static_cast<float>(column));
+    message.time_ns.push_back(9'900'000 * column);
+    for (int ring = 0; ring < kNumRings; ++ring) {
+      message.range.push_back(static_cast<std::int16_t>(1000 * (column + 1) + ring));
+      message.reflectivity.push_back(7);
+    }
+  }
+  return message;
+}
+
+inline segments_t MakeSegments(std::int64_t offset_us, std::int64_t seq) {
+  segments_t message{};
+  message.utime_us = kStartUs + offset_us;
+  message.seq = seq;
+  message.raw_seq = seq;
+  message.end_utime_us = message.utime_us + kLastShotUs;
+  message.num_parts = 1;
+  message.num_rings = kNumRings;
+  message.num_returns = 1;
+  message.num_columns = kNumColumns;
+  message.num_cells = kNumColumns * kNumRings;
+  for (int cell = 0; cell < message.num_cells; ++cell) message.label.push_back(static_cast<std::int16_t>(cell));
+  return message;
+}
+
+/// @param offset_us  a multiple of 20 ms
+inline pose_t MakePose(std::int64_t offset_us, std::int64_t seq) {
+  pose_t message{};
+  message.utime_us = kStartUs + offset_us;
+  message.seq = seq;
+  message.datum_latitude_deg = message.latitude_deg = 43.7;
+  message.datum_longitude_deg = message.longitude_deg = -72.3;
+  message.datum_ellipsoid_height_m = message.ellipsoid_height_m = 100.0;
+  for (int i = 0; i < 9; ++i) message.covariance[i][i] = 0.01;
+  return message;
+}
+
+}  // namespace lookout::tracker::test

@@ -1,0 +1,166 @@
+#include "services/tracker/wire.hpp"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "common/bus/channels.hpp"
+#include "common/core/angles.hpp"
+#include "services/tracker/alert_text.hpp"
+#include "tests/unit/tracker_shell/messages.hpp"
+
+namespace lookout::tracker {
+namespace {
+
+TEST(ToObstacles, MergesPartsAndKeepsWhatTheTrackerNeeds) {
+  auto first = test::MakeObstacles(0, 7, {test::MakeObstacle(1, test::kStartUs + 10, {3.0, 4.0})});
+  auto second = test::MakeObstacles(0, 7, {test::MakeObstacle(5, test::kStartUs + 20, {-3.0, 4.0})});
+  first.num_parts = second.num_parts = 2;
+  second.part_index = 1;
+  auto& land = second.obstacles[0];
+  land.kind = obstacle_t::KIND_LAND;
+  land.confidence = obstacle_t::CONFIDENCE_TENTATIVE;
+  land.thing_probability = std::numeric_limits<float>::quiet_NaN();
+  land.num_waterline = land.num_waterline_map = 2;
+  land.waterline_east_m = land.waterline_north_m = land.waterline_vessel_x_m = land.waterline_vessel_y_m = {7.0F, 8.0F};
+  LeftOut left_out;
+  const auto scan = ToObstacles(std::vector{first, second}, left_out);
+  ASSERT_TRUE(scan);
+  EXPECT_TRUE(scan->is_whole);
+  EXPECT_EQ(scan->key.seq, 7);
+  EXPECT_EQ(ToUtimeUs(scan->end_time), test::kStartUs + test::kLastShotUs);
+  ASSERT_EQ(scan->seen.size(), 2U);
+  EXPECT_EQ(scan->seen[0].segment_id, 1);
+  EXPECT_EQ(scan->seen[0].num_returns, 5);
+  EXPECT_NEAR(scan->seen[0].thing_probability, 0.95, 1e-6);
+  EXPECT_EQ(scan->seen[0].position_m, Eigen::Vector2d(3.0, 4.0));
+  EXPECT_EQ(scan->seen[0].covariance_relative_m2, 0.01 * Eigen::Matrix2d::Identity());
+  EXPECT_EQ(scan->seen[0].outline_m.size(), 3U);
+  EXPECT_TRUE(scan->seen[1].is_land);
+  EXPECT_FALSE(scan->seen[1].is_sure);
+  EXPECT_EQ(scan->seen[1].thing_probability, 0.1) << "of a method that states none";
+  EXPECT_EQ(scan->seen[1].waterline_m, (std::vector<Eigen::Vector2d>{{7.0, 7.0}, {8.0, 8.0}}));
+  ASSERT_EQ(scan->outlines.size(), 2U);
+  EXPECT_FALSE(scan->outlines[0].is_line);
+  EXPECT_TRUE(scan->outlines[1].is_line);
+
+  EXPECT_FALSE(ToObstacles(std::vector{second}, left_out)->is_whole);
+  second.obstacles[0].id = 1;
+  EXPECT_FALSE(ToObstacles(std::vector{first, second}, left_out)) << "one segment twice";
+}
+
+TEST(ToBeams, TakesTheNearestReturnOfEachShotAndItsTime) {
+  auto scan = test::MakeScan(0, 3);
+  scan.num_returns = 2;
+  scan.return_kind = {lidar_scan_t::RETURN_LAST, lidar_scan_t::RETURN_STRONGEST};
+  scan.num_cells = 2 * test::kNumColumns * test::kNumRings;
+  scan.range.assign(static_cast<std::size_t>(scan.num_cells), 0);
+  scan.reflectivity.assign(static_cast<std::size_t>(scan.num_cells), 0);
+  scan.range[0] = 1000;
+  scan.range[1] = 500;
+  scan.range[2] = static_cast<std::int16_t>(60'000);  // an unsigned count
+  scan.range[5] = 250;
+  const auto beams = ToBeams(std::vector{scan});
+  ASSERT_TRUE(beams);
+  EXPECT_EQ(beams->sweep.azimuth_rad.size(), 10U);
+  EXPECT_EQ(ToUtimeUs(beams->sweep.time[2]), test::kStartUs + 19'800);
+  ASSERT_EQ(beams->sweep.range_m.size(), 20U);
+  EXPECT_FLOAT_EQ(beams->sweep.range_m[0], 1.0F);
+  EXPECT_FLOAT_EQ(beams->sweep.range_m[1], 120.0F);
+  EXPECT_FLOAT_EQ(beams->sweep.range_m[2], 0.5F);
+  EXPECT_EQ(beams->sweep.range_m[3], 0.0F);
+  EXPECT_EQ(beams->nearest[0], 1);
+  EXPECT_EQ(beams->nearest[1], 0);
+  EXPECT_EQ(beams->nearest[2], 1);
+}
+
+TEST(ToBeams, RefusesColumnsThatDoNotFit) {
+  auto scan = test::MakeScan(0, 3);
+  EXPECT_TRUE(ToBeams(std::vector{scan}));
+  scan.first_column = 1;
+  EXPECT_FALSE(ToBeams(std::vector{scan}));
+  scan = test::MakeScan(0, 3);
+  scan.num_turn_columns = 11;
+  EXPECT_FALSE(ToBeams(std::vector{scan}));
+}
+
+TEST(ToLabels, SkipsPartsWithoutColumns) {
+  auto labels = test::MakeSegments(0, 3);
+  auto further = labels;
+  further.part_index = 1;
+  further.first_column = further.num_columns = further.num_cells = 0;
+  further.label.clear();
+  ASSERT_TRUE(ToLabels(std::vector{labels, further}));
+  EXPECT_EQ(ToLabels(std::vector{labels, further})->label.size(), 20U);
+  labels.first_column = 2;
+  EXPECT_FALSE(ToLabels(std::vector{labels}));
+}
+
+TEST(TracksMessage, TurnsAnglesOfTheMapIntoBearings) {
+  Picture picture;
+  Track& track = picture.tracks.emplace_back();
+  track.id = 17;
+  track.position_m = {1000.0, 0.0};
+  track.velocity_mps = {-3.0, 0.0};  // to the west
+  track.covariance = Eigen::Matrix4d::Identity();
+  track.covariance(0, 1) = track.covariance(1, 0) = 0.25;
+  track.covariance_relative_m2 << 0.5, 0.1, 0.1, 0.25;
+  track.rectangle.length_angle_rad = DegToRad(170.0);  // from east, counter-clockwise: 280, or 100 deg from north
+  track.bearing_rad = kTwoPi - 1e-12;                  // as a float 2 pi and more
+  const ScanLabel label{.key = {}, .begin = {}, .end_time = {}, .raw_seq = 1, .flags = 0, .datum = {43.7, -72.3, 100.0}, .own_up_m = -0.08};
+  const auto messages = ToMessages(label, picture, bus::kMaxMessageBytes);
+  ASSERT_EQ(messages.size(), 1U);
+  const auto& message = messages[0].tracks.at(0);
+  EXPECT_NEAR(message.longitude_deg, -72.3 + 1000.0 / (111'320.0 * std::cos(DegToRad(43.7))), 1e-4);
+  EXPECT_FLOAT_EQ(message.speed_mps, 3.0F);
+  EXPECT_NEAR(message.course_rad, 1.5 * kPi, 1e-6);
+  EXPECT_NEAR(RadToDeg(message.length_bearing_rad), 100.0, 1e-4);
+  EXPECT_EQ(message.covariance[0][1], 0.25);
+  EXPECT_EQ(message.covariance_relative_m2[2], 0.25);
+  EXPECT_TRUE(std::isnan(message.turn_rate_radps));
+  EXPECT_EQ(message.bearing_rad, 0.0F);
+  EXPECT_TRUE(std::isnan(message.bearing_drift_radps));
+
+  picture.tracks[0].velocity_mps.setZero();
+  EXPECT_TRUE(std::isnan(ToMessages(label, picture, bus::kMaxMessageBytes)[0].tracks[0].course_rad)) << "what stands has no course";
+}
+
+TEST(AlertsMessage, GoesBackToTheAcknowledgementItCameFrom) {
+  alert_ack_t message{};
+  message.utime_us = 5;
+  message.seq = 6;
+  message.source = "plotter";
+  message.alert_id = 7;
+  message.alert_raised_utime_us = 8;
+  const auto again = ToMessage(ToAcknowledgement(message));
+  EXPECT_EQ(std::tie(again.utime_us, again.seq, again.source, again.alert_id, again.alert_raised_utime_us),
+            std::tie(message.utime_us, message.seq, message.source, message.alert_id, message.alert_raised_utime_us));
+}
+
+TEST(AlertsMessage, LeavesOutTheLeastGraveWhereItIsFull) {
+  std::vector<Alert> alerts(2000);
+  for (std::size_t i = 0; i < alerts.size(); ++i) alerts[i].id = static_cast<std::int64_t>(i) + 1;
+  const auto message = ToMessage(ScanLabel{}, alerts, {}, {}, bus::kMaxMessageBytes);
+  EXPECT_LE(message.getEncodedSize(), bus::kMaxMessageBytes);
+  ASSERT_GT(message.num_alerts, 100);
+  EXPECT_LT(message.num_alerts, 2000);
+  EXPECT_EQ(message.alerts[0].id, 1);
+}
+
+TEST(AlertText, SaysWhoHowNearAndFromWhere) {
+  Alert alert;
+  alert.cause = AlertCause::kClosestApproach;
+  alert.track_id = 17;
+  alert.cpa_m = 3.2;
+  alert.tcpa_s = 20.6;
+  alert.bearing_rad = DegToRad(40.0);
+  EXPECT_EQ(TextOf(alert, TrackKind::kBoat), "boat 17: closest approach 3 m in 21 s, 40 deg to starboard");
+  alert.cause = AlertCause::kGuardZone;
+  alert.track_id = 0;
+  alert.distance_m = 7.31;
+  alert.bearing_rad = DegToRad(348.0);
+  EXPECT_EQ(TextOf(alert, std::nullopt), "land in the guard zone: 7.3 m, 12 deg to port");
+}
+
+}  // namespace
+}  // namespace lookout::tracker

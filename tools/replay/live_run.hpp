@@ -1,0 +1,18 @@
+// What the logs tell of the live run of the tracker.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "services/tracker/core/script.hpp"
+
+namespace lookout::replay {
+
+/// Reads ALERTS, and of all else no more than the head.
+///
+/// @return at which scans its processes began and ended, and with which an acknowledgement was taken; nullopt where the logs hold no ALERTS
+/// @throws std::runtime_error when a log cannot be read; io::Stopped
+std::optional<tracker::Script> ReadScript(const std::vector<std::filesystem::path>& logs);
+
+}  // namespace lookout::replay
