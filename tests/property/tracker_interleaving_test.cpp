@@ -90,7 +90,7 @@ struct Outputs {
 // Of one way in which the inputs come: at each step the next message of a channel that is drawn by these shares.
 Outputs OutputsOf(const Inputs& inputs, const std::array<double, 4>& shares, std::mt19937& random) {
   bus::MemoryBus bus;
-  Service service(bus, Params{});
+  Service service(bus, test::MakeParams());
   Outputs outputs;
   bus.SubscribeRaw(bus::kTracks, [&](std::string_view, Bytes bytes) { outputs.tracks.emplace_back(bytes.begin(), bytes.end()); });
   bus.SubscribeRaw(bus::kAlerts, [&](std::string_view, Bytes bytes) { outputs.alerts.emplace_back(bytes.begin(), bytes.end()); });

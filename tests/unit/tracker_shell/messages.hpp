@@ -10,6 +10,7 @@
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
+#include "services/tracker/params.hpp"
 
 namespace lookout::tracker::test {
 
@@ -18,6 +19,16 @@ inline constexpr std::int64_t kScanUs = 100'000;
 inline constexpr std::int64_t kLastShotUs = 99'000;  // of a scan
 inline constexpr std::int32_t kNumColumns = 10;
 inline constexpr std::int32_t kNumRings = 2;
+
+/// A boat of 2 m x 1 m that wants 5 m of room.
+inline Params MakeParams() {
+  Params params;
+  params.tracker.max_range_m = 120.0;
+  params.tracker.own_hull_m = {{-1.0, -0.5}, {1.0, -0.5}, {1.0, 0.5}, {-1.0, 0.5}};
+  params.tracker.encounter = {.limit_m = 5.0, .look_ahead_s = 30.0};
+  params.alerts.warning_tcpa_s = 15.0;
+  return params;
+}
 
 /// @param position_m  on the map: east, north
 inline obstacle_t MakeObstacle(std::int32_t id, std::int64_t utime_us, std::pair<double, double> position_m) {

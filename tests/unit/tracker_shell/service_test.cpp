@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 class TrackerService : public ::testing::Test {
  protected:
   bus::MemoryBus bus_;
-  Service service_{bus_, Params{}};
+  Service service_{bus_, test::MakeParams()};
   std::vector<tracks_t> tracks_;
   std::vector<alerts_t> alerts_;
 
@@ -252,7 +252,7 @@ TEST_F(TrackerService, SplitsTracksThatDoNotFitIntoOneMessage) {
 // Of obstacles from elsewhere.
 TEST(TrackerServiceWithoutALidar, UsesEachScanAsSoonAsPoseIsThere) {
   bus::MemoryBus bus;
-  const Service service(bus, Params{}, Given{.sources = {.has_beams = false, .has_labels = false}, .script = {}});
+  const Service service(bus, test::MakeParams(), Given{.sources = {.has_beams = false, .has_labels = false}, .script = {}});
   int num_unknown = 0;
   bus::Subscribe<tracks_t>(bus, bus::kTracks, [&](const tracks_t& message) { num_unknown += message.sight == tracks_t::SIGHT_UNKNOWN ? 1 : 0; });
   for (int i = 0; i < 30; ++i) bus::Publish(bus, bus::kPose, test::MakePose(20'000 * i, i));
