@@ -25,6 +25,7 @@ constexpr std::int32_t kMaxParts = 1000;
 constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
 // A place on the map: the diameter of the earth, and more.
 constexpr double kMaxPlaceM = 1.5e7;
+constexpr double kMaxDatumHeightM = 1e5;
 constexpr double kMaxVarianceM2 = 1e12;
 constexpr std::size_t kMaxSourceBytes = 64;
 constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND_FEW_RETURNS) |
@@ -235,8 +236,9 @@ std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes) 
   if (!std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) { return AreCodesKnown(obstacle); })) return kObstaclesCode;
   if (!std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) { return CountsAgree(obstacle); })) return kObstaclesCount;
   if (message.getEncodedSize() > max_message_bytes) return kObstaclesSize;
-  const bool has_datum =
-      IsWithin(message.datum_latitude_deg, 90.0) && IsWithin(message.datum_longitude_deg, 180.0) && !std::isinf(message.datum_ellipsoid_height_m);
+  const bool has_height = std::isnan(message.datum_ellipsoid_height_m) || IsWithin(message.datum_ellipsoid_height_m, kMaxDatumHeightM);
+  const bool has_datum = IsWithin(message.datum_latitude_deg, 90.0) && IsWithin(message.datum_longitude_deg, 180.0) && has_height;
+  if (!has_datum && !std::isnan(message.datum_latitude_deg)) return kObstaclesNumber;
   std::int32_t last_id = 0;
   for (const auto& obstacle : message.obstacles) {
     if (obstacle.id <= last_id) return kObstaclesId;

@@ -410,6 +410,7 @@ int main(int argc, char** argv) try {
   WritePairsOfMessages(Folder(root / "fuzz_message_diff"));
   WriteScans(Folder(root / "fuzz_segmenter"));
   WritePatches(Folder(root / "fuzz_georeferencer"));
+  WritePatches(Folder(root / "fuzz_tracker"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
   WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
   return 0;

@@ -86,6 +86,7 @@ TEST(ObstaclesCheck, RefusesByTheRightCounter) {
       {kObstaclesNumber, [](auto&, auto& obstacle) { obstacle.thing_probability = 1.5F; }},
       {kObstaclesNumber, [](auto&, auto& obstacle) { obstacle.top_above_water_m = kUnknown; }},
       {kObstaclesNumber, [](auto& scan, auto&) { scan.datum_longitude_deg = kUnknown; }},
+      {kObstaclesNumber, [](auto& scan, auto&) { scan.datum_ellipsoid_height_m = 1e300; }},
       {kObstaclesCovariance, [](auto&, auto& obstacle) { obstacle.covariance_m2[0] = -1.0; }},
       {kObstaclesCovariance, [](auto&, auto& obstacle) { obstacle.covariance_relative_m2[1] = 0.2; }},
       {kObstaclesCovariance, [](auto&, auto& obstacle) { obstacle.covariance_relative_m2[2] = kUnknown; }},
