@@ -133,7 +133,7 @@ bool Service::TakeWatchChange() { return std::exchange(reported_failing_, watch_
 
 void Service::Finish() { Use(gatherer_.Finish()); }
 
-void Service::Use(std::vector<GatheredScan> scans) {
+void Service::Use(const std::vector<GatheredScan>& scans) {
   for (const auto& scan : scans) Use(scan);
 }
 

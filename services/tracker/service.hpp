@@ -69,7 +69,7 @@ class Service {
   void AddBeams(std::span<const lidar_scan_t> parts, bool is_whole);
   void AddLabels(std::span<const segments_t> parts, bool is_whole);
 
-  void Use(std::vector<GatheredScan> scans);
+  void Use(const std::vector<GatheredScan>& scans);
   void Use(const GatheredScan& scan);
   bool FollowScript(const ScanKey& key);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanKey& key, Utime time);

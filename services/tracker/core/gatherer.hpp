@@ -3,11 +3,11 @@
 
 #include <array>
 #include <chrono>
-#include <compare>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,7 +23,8 @@ struct ScanKey {
   Utime time;  // first firing
   std::int64_t seq = 0;
 
-  friend auto operator<=>(const ScanKey&, const ScanKey&) = default;
+  friend bool operator==(const ScanKey&, const ScanKey&) = default;
+  friend bool operator<(const ScanKey& one, const ScanKey& other) { return std::tie(one.time, one.seq) < std::tie(other.time, other.seq); }
 };
 
 /// Outline of an obstacle as the vessel sees it. That is known also where its place on the earth is not.
