@@ -57,20 +57,6 @@ std::string Computer() {
 
 constexpr const char* kFamilies = "families";
 
-RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
-  const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
-  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
-  for (const auto& scene : options.scenes) {
-    if (scene != "all" && scene != kFamilies) {
-      plan.scenes.push_back(scene);
-      continue;
-    }
-    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
-    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
-  }
-  return plan;
-}
-
 std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
   std::set<std::string> families;
   for (const auto& known : sim::ListFamilies(options.config_folder)) families.insert(known.name);
@@ -240,6 +226,20 @@ void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::ve
 }
 
 }  // namespace
+
+RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
+  const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
+  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
+  for (const auto& scene : options.scenes) {
+    if (scene != "all" && scene != kFamilies) {
+      plan.scenes.push_back(scene);
+      continue;
+    }
+    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
+    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
+  }
+  return plan;
+}
 
 int CompareMethods(const ComparisonOptions& options) {
   const auto boat = LoadBoat(options.config_folder);

@@ -13,16 +13,19 @@
 #include "common/runtime/version.hpp"
 #include "tools/eval/comparison_command.hpp"
 #include "tools/eval/log_command.hpp"
+#include "tools/eval/track_command.hpp"
 
 namespace {
 
 using namespace lookout;
 
 constexpr int kExitUsage = 2;
+constexpr double kSecondsOfTracks = 20.0;  // of each scene and seed
 
 struct Options {
   eval::LogOptions log;
   eval::ComparisonOptions comparison;
+  bool has_tracks = false;  // trackers on runs, in place of methods on scans
 };
 
 // Exits here for --help, --version and wrong lines.
@@ -64,7 +67,8 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_option("--first-seed", comparison.first_seed,
                               "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
   needs_config(app.add_flag("--tuning", comparison.is_tuning, "methods on seeds of tuning; no file is written"));
-  needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  auto* seconds = needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed (with --tracks 20)"));
+  seconds->check(CLI::Range(0.3, 3600.0))->capture_default_str();
   needs_config(app.add_option("--methods", comparison.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
   needs_config(app.add_option("--sweep", comparison.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
@@ -81,6 +85,10 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written"))
       ->check(CLI::ExistingFile);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
+  auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
+  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--lost", "--pictures", "--blocks"}) {
+    tracks->excludes(app.get_option(other));
+  }
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
@@ -90,6 +98,7 @@ Options ParseOptions(int argc, char** argv) {
       if (!has_scans && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
       if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
       if (!has_scans && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
       if (comparison.methods.empty() &&
           ((comparison.sweeps.empty() && comparison.tests.empty()) || !comparison.points.empty() || !comparison.captures.empty()))
         comparison.methods = {"all"};
@@ -100,11 +109,18 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
+int EvaluateTracks(const eval::ComparisonOptions& options) {
+  const auto use = options.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
+  return eval::EvaluateTracks(
+      {options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder, options.is_forced});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
-  return options.log.log_file.empty() ? eval::CompareMethods(options.comparison) : eval::EvaluateLog(options.log);
+  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;
