@@ -13,6 +13,7 @@
 #include "common/runtime/version.hpp"
 #include "tools/eval/comparison_command.hpp"
 #include "tools/eval/log_command.hpp"
+#include "tools/eval/track_autoferry.hpp"
 #include "tools/eval/track_command.hpp"
 
 namespace {
@@ -25,7 +26,8 @@ constexpr double kSecondsOfTracks = 20.0;  // of each scene and seed
 struct Options {
   eval::LogOptions log;
   eval::ComparisonOptions comparison;
-  bool has_tracks = false;  // trackers on runs, in place of methods on scans
+  std::string autoferry_folder;  // empty = none
+  bool has_tracks = false;       // trackers on runs, in place of methods on scans
 };
 
 // Exits here for --help, --version and wrong lines.
@@ -63,6 +65,8 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   needs_config(app.add_option("--captures", comparison.captures,
                               "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
+  auto* autoferry = needs_config(app.add_option("--autoferry", options.autoferry_folder, "trackers on the Autoferry data set: folder of its files"))
+                        ->check(CLI::ExistingDirectory);
   needs_config(app.add_option("--seeds", comparison.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
   needs_config(app.add_option("--first-seed", comparison.first_seed,
                               "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
@@ -88,14 +92,17 @@ Options ParseOptions(int argc, char** argv) {
   auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
   for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--lost", "--pictures", "--blocks"}) {
     tracks->excludes(app.get_option(other));
+    autoferry->excludes(app.get_option(other));
   }
+  for (const char* other : {"--scenes", "--captures", "--tracks", "--csv"}) autoferry->excludes(app.get_option(other));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
     if (log.log_file.empty() && comparison.config_folder.empty()) throw CLI::RequiredError("one of --in LOG, --config DIR");
     if (!comparison.config_folder.empty()) {
       const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
-      if (!has_scans && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
+      if (!has_scans && comparison.tests.empty() && options.autoferry_folder.empty())
+        throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test, --autoferry");
       if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
       if (!has_scans && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
       if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
@@ -120,6 +127,7 @@ int EvaluateTracks(const eval::ComparisonOptions& options) {
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
   if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  if (!options.autoferry_folder.empty()) return eval::EvaluateAutoferry(options.comparison.config_folder, options.autoferry_folder);
   return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
