@@ -26,6 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kSwitchRange = 2;
+static_assert(kFerryRangesM.at(kSwitchRange) == kSwitchRangeM);
+
 using Places = std::map<int, Eigen::Vector2d>;  // by target
 
 Places TruthAt(const importer::FerryTruth& truth, std::int64_t utime_us) {
@@ -146,8 +149,9 @@ std::vector<Scenario> ListScenarios(const fs::path& folder) {
 Table::Row RowOf(const std::string& scenario, const std::string& tracker, std::size_t num_scans, const FerryScores& scores) {
   Table::Row row{scenario, tracker, Number(static_cast<std::int64_t>(num_scans))};
   for (const auto& gospa : scores.gospa) row.push_back(Number(gospa.Rms(), 1));
-  const auto& to_100_m = scores.gospa[2];
-  for (const double part_m : {to_100_m.LocalisationRms(), to_100_m.MissedRms(), to_100_m.FalseRms()}) row.push_back(Number(part_m, 1));
+  for (std::size_t i = 0; i < kSwitchRange + 1; ++i) row.push_back(Number(scores.with_boat.at(i).Rms(), 1));
+  const auto& near = scores.with_boat.at(kSwitchRange);
+  for (const double part_m : {near.LocalisationRms(), near.MissedRms(), near.FalseRms()}) row.push_back(Number(part_m, 1));
   row.push_back(Number(scores.num_switches));
   return row;
 }
@@ -156,10 +160,12 @@ Table::Row RowOf(const std::string& scenario, const std::string& tracker, std::s
 
 FerryScores::FerryScores() {
   for (auto& one : gospa) one.num_scans = 0;
+  for (auto& one : with_boat) one.num_scans = 0;
 }
 
 void FerryScores::Add(const FerryScores& other) {
   for (std::size_t i = 0; i < gospa.size(); ++i) gospa.at(i).Add(other.gospa.at(i));
+  for (std::size_t i = 0; i < with_boat.size(); ++i) with_boat.at(i).Add(other.with_boat.at(i));
   num_switches += other.num_switches;
 }
 
@@ -179,11 +185,13 @@ FerryScores ScoreFerry(const std::vector<importer::FerryScan>& scans, const impo
       for (const auto& track : tracks[n]) {
         if (track.IsReported() && is_within(track.position_m, kFerryRangesM.at(i))) estimates_m.push_back(track.position_m);
       }
-      scores.gospa.at(i).Add(GospaOf(truths_m, estimates_m));
+      const auto gospa = GospaOf(truths_m, estimates_m);
+      scores.gospa.at(i).Add(gospa);
+      if (!truths_m.empty()) scores.with_boat.at(i).Add(gospa);
     }
     Places near_m;
     for (const auto& [target, place_m] : places_m) {
-      if (is_within(place_m, kSwitchRangeM)) near_m[target] = place_m;
+      if (is_within(place_m, kFerryRangesM.at(kSwitchRange))) near_m[target] = place_m;
     }
     std::vector<const TrackState*> reported;
     for (const auto& track : tracks[n]) {
@@ -215,7 +223,7 @@ std::vector<FerryTracks> TrackFerry(const fs::path& config_folder, const std::ve
 int EvaluateAutoferry(const fs::path& config_folder, const fs::path& folder) {
   constexpr int kLastInOpenWater = 9;
   io::CatchStopSignals();
-  Table table({"scenario", "tracker", "scans", "GOSPA_50m", "GOSPA_75m", "GOSPA_100m", "GOSPA_all", "localisation_100m", "missed_100m", "false_100m",
+  Table table({"scenario", "tracker", "scans", "50m", "75m", "100m", "all", "boat_50m", "boat_75m", "boat_100m", "localisation", "missed", "false",
                "switches_100m"});
   struct Sum {
     std::size_t num_scans = 0;
@@ -246,7 +254,8 @@ int EvaluateAutoferry(const fs::path& config_folder, const fs::path& folder) {
       if (sum != sums.end()) table.Add(RowOf(group, tracker, sum->second.num_scans, sum->second.scores));
     }
   }
-  std::cout << "Autoferry: GOSPA (c 20 m, p 2, alpha 2), root of the mean square over the scans, m\n";
+  std::cout << "Autoferry: GOSPA (c 20 m, p 2, alpha 2), root of the mean square, m: within a range over all scans; boat: over the scans with a boat "
+               "within it, parts of that within 100 m\n";
   table.Print(std::cout);
   return EXIT_SUCCESS;
 }

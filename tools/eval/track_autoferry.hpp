@@ -21,7 +21,9 @@ inline constexpr std::array<double, 4> kFerryRangesM{50.0, 75.0, 100.0, std::num
 inline constexpr double kSwitchRangeM = 100.0;
 
 struct FerryScores {
-  std::array<Gospa, kFerryRangesM.size()> gospa;  // as kFerryRangesM
+  std::array<Gospa, kFerryRangesM.size()> gospa;  // as kFerryRangesM; over all scans
+  /// Over the scans in which a boat truly is within the range. One that is far off in most scans says little of a tracker near by.
+  std::array<Gospa, kFerryRangesM.size()> with_boat;
   std::int64_t num_switches = 0;
 
   FerryScores();

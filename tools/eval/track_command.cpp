@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <iostream>
+#include <memory>
 #include <stdexcept>
 
 #include "common/io/output_file.hpp"
@@ -111,16 +112,22 @@ int EvaluateTracks(const TrackOptions& options) {
   if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--tracks needs --scenes or --captures");
   replay::CheckConfig(options.config_folder);
   io::CatchStopSignals();
+  // Outputs before all work.
+  std::vector<std::unique_ptr<io::OutputFile>> files;
+  if (!options.csv_folder.empty()) {
+    fs::create_directories(options.csv_folder);
+    for (const auto& table : TablesOf(std::vector<TrackRow>{})) {
+      files.push_back(std::make_unique<io::OutputFile>(options.csv_folder / (table.name + ".csv"), io::OutputOptions{.force = options.is_forced}));
+    }
+  }
   std::vector<TrackRow> rows;
   AddWorld(RunScenes(options), "all scenes", rows);
   if (!options.captures.empty()) AddWorld(RunCaptures(options), "second world: all", rows);
   PrintTables(rows, std::cout);
-  if (options.csv_folder.empty()) return EXIT_SUCCESS;
-  for (const auto& [name, title, table, is_printed] : TablesOf(rows)) {
-    fs::create_directories(options.csv_folder);
-    io::OutputFile file(options.csv_folder / (name + ".csv"), {.force = options.is_forced});
-    table.PrintCsv(file.stream());
-    file.Commit();
+  const auto tables = TablesOf(rows);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    tables[i].table.PrintCsv(files[i]->stream());
+    files[i]->Commit();
   }
   return EXIT_SUCCESS;
 }

@@ -45,6 +45,21 @@ TEST(ScoreFerry, RangesAndSwitchesAreAsWorkedOutByHand) {
   EXPECT_EQ(scores.gospa[2].num_missed, kNumScans);  // the one at 90 m
   EXPECT_NEAR(scores.gospa[2].Rms(), std::sqrt(9.0 + 200.0), 0.01);
   EXPECT_EQ(scores.num_switches, 1);
+  EXPECT_EQ(scores.with_boat[0].num_scans, kNumScans);
+}
+
+TEST(ScoreFerry, ScansWithoutABoatWithinTheRangeCountApart) {
+  Passing passing;
+  for (auto& [utime_us, place_m] : passing.truth[1]) {
+    if (utime_us > 1'005'000'000) place_m = {60.0, 0.0};
+  }
+  for (auto& tracks : passing.tracks) tracks.clear();
+  const auto scores = ScoreFerry(passing.scans, passing.truth, passing.tracks);
+  EXPECT_GT(scores.with_boat[0].num_scans, 5);
+  EXPECT_LT(scores.with_boat[0].num_scans, 15);
+  EXPECT_EQ(scores.gospa[0].num_scans, kNumScans);
+  EXPECT_NEAR(scores.with_boat[0].Rms(), std::sqrt(200.0), 1e-9);
+  EXPECT_LT(scores.gospa[0].Rms(), scores.with_boat[0].Rms());
 }
 
 TEST(ScoreFerry, TentativeTracksDoNotCount) {
@@ -77,7 +92,7 @@ TEST(TrackFerry, RealDetectionsOfOpenWater) {
       if (said.tracker == "nearest neighbour") sum.Add(ScoreFerry(scans, truth, said.tracks));
     }
   }
-  EXPECT_LT(sum.gospa[0].Rms(), 1.5 * 7.4);
+  EXPECT_LT(sum.with_boat[0].Rms(), 1.5 * 7.4);
   EXPECT_GT(sum.gospa[0].Rms(), 1.0);
 }
 
