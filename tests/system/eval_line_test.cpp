@@ -88,6 +88,10 @@ TEST_F(EvalLine, AutoferryNeedsAFolderOfScenarios) {
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_NE(result.output.find("open water"), std::string::npos) << result.output;
   EXPECT_EQ(Run({"--autoferry", Path("ferry"), "--scenes", "sparse"}).exit_code, 2);
+  EXPECT_EQ(RunProgram({Bin("eval"), "--autoferry", Path("ferry")}, Path("out")).exit_code, 0) << "no boat of ours is needed";
+  WriteFile(Path("page.md"), "<!-- figures: autoferry -->\n<!-- end -->\n");
+  EXPECT_EQ(RunProgram({Bin("eval"), "--autoferry", Path("ferry"), "--blocks", Path("page.md")}, Path("out")).exit_code, 0);
+  EXPECT_NE(ReadFile(Path("page.md")).find("| open water | nearest neighbour | 2 |"), std::string::npos) << ReadFile(Path("page.md"));
 }
 
 TEST_F(EvalLine, SeedsOfTuningCanBeLookedAtWithoutMakingATable) {

@@ -1,15 +1,12 @@
 #include "tools/eval/comparison_command.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -211,20 +208,6 @@ void RefuseIfThere(const std::filesystem::path& folder, const char* ending, int 
   }
 }
 
-void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures) {
-  for (const auto& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
-    const auto filled = FillBlocks(text, figures, file.string());
-    if (filled == text) continue;
-    io::OutputFile out(file, {.force = true});
-    out.Write(filled);
-    out.Commit();
-    std::cerr << file.string() << ": figures filled in\n";
-  }
-}
-
 }  // namespace
 
 RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
@@ -310,8 +293,7 @@ int CompareMethods(const ComparisonOptions& options) {
     WriteHtml(results, page->stream());
     page->Commit();
   }
-  const auto today = fmt::format("{:%F}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(results, today));
+  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(results, Today()));
   return EXIT_SUCCESS;
 }
 

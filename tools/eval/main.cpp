@@ -65,7 +65,8 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   needs_config(app.add_option("--captures", comparison.captures,
                               "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
-  auto* autoferry = needs_config(app.add_option("--autoferry", options.autoferry_folder, "trackers on the Autoferry data set: folder of its files"))
+  auto* autoferry = app.add_option("--autoferry", options.autoferry_folder,
+                                   "trackers on the Autoferry data set: folder of its files (--config: of the boat's tracker)")
                         ->check(CLI::ExistingDirectory);
   needs_config(app.add_option("--seeds", comparison.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
   needs_config(app.add_option("--first-seed", comparison.first_seed,
@@ -86,19 +87,21 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::Range(1, 100))
       ->needs(pictures)
       ->capture_default_str();
-  needs_config(app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written"))
-      ->check(CLI::ExistingFile);
+  app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written")
+      ->check(CLI::ExistingFile)
+      ->excludes(in);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
   auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
-  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--lost", "--pictures", "--blocks"}) {
+  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--lost", "--pictures"}) {
     tracks->excludes(app.get_option(other));
     autoferry->excludes(app.get_option(other));
   }
-  for (const char* other : {"--scenes", "--captures", "--tracks", "--csv"}) autoferry->excludes(app.get_option(other));
+  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--csv"}) autoferry->excludes(app.get_option(other));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
-    if (log.log_file.empty() && comparison.config_folder.empty()) throw CLI::RequiredError("one of --in LOG, --config DIR");
+    if (log.log_file.empty() && comparison.config_folder.empty() && options.autoferry_folder.empty())
+      throw CLI::RequiredError("one of --in LOG, --config DIR, --autoferry DIR");
     if (!comparison.config_folder.empty()) {
       const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
       if (!has_scans && comparison.tests.empty() && options.autoferry_folder.empty())
@@ -118,8 +121,8 @@ Options ParseOptions(int argc, char** argv) {
 
 int EvaluateTracks(const eval::ComparisonOptions& options) {
   const auto use = options.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
-  return eval::EvaluateTracks(
-      {options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder, options.is_forced});
+  return eval::EvaluateTracks({options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder,
+                               options.is_forced, options.block_files});
 }
 
 }  // namespace
@@ -127,7 +130,9 @@ int EvaluateTracks(const eval::ComparisonOptions& options) {
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
   if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
-  if (!options.autoferry_folder.empty()) return eval::EvaluateAutoferry(options.comparison.config_folder, options.autoferry_folder);
+  if (!options.autoferry_folder.empty()) {
+    return eval::EvaluateAutoferry({options.autoferry_folder, options.comparison.config_folder, options.comparison.block_files});
+  }
   return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';

@@ -15,10 +15,14 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/version.hpp"
+#include "tools/eval/figures.hpp"
 #include "tools/eval/track_assignment.hpp"
 #include "tools/eval/track_command.hpp"
 #include "tools/eval/track_run.hpp"
+#include "tools/eval/track_sources.hpp"
 #include "tools/replay/chain.hpp"
 
 namespace lookout::eval {
@@ -156,6 +160,29 @@ Table::Row RowOf(const std::string& scenario, const std::string& tracker, std::s
   return row;
 }
 
+// What a tracker must know of its boat: milliAmpere is 5 m long and 2.8 m wide; where its lidar is does not matter to detections. All else is as the
+// schemas have it.
+class FerryConfig {
+ public:
+  FerryConfig() {
+    Write("boat.txtpb",
+          "name: \"ferry\"\nlidar { x_m: 0 y_m: 0 z_m: 2 roll_deg: 0 pitch_deg: 0 yaw_deg: 0 }\ngnss_antenna { x_m: 0 y_m: 0 z_m: 2 }\n"
+          "reference_point_above_water_m: 0.5\nhull_length_m: 5\nhull_beam_m: 2.8\n"
+          "own_vessel { min_x_m: -2.5 max_x_m: 2.5 min_y_m: -1.4 max_y_m: 1.4 min_z_m: -1 max_z_m: 3 }\n");
+    for (const auto* defaults : {"segmenter.txtpb", "tracker.txtpb"}) Write(defaults, "# defaults\n");
+  }
+  const fs::path& path() const { return folder_.path(); }
+
+ private:
+  void Write(const char* name, std::string_view text) const {
+    io::OutputFile file(folder_.path() / name);
+    file.Write(text);
+    file.Commit();
+  }
+
+  TempFolder folder_;
+};
+
 }  // namespace
 
 FerryScores::FerryScores() {
@@ -220,9 +247,13 @@ std::vector<FerryTracks> TrackFerry(const fs::path& config_folder, const std::ve
   return result;
 }
 
-int EvaluateAutoferry(const fs::path& config_folder, const fs::path& folder) {
+int EvaluateAutoferry(const FerryOptions& options) {
   constexpr int kLastInOpenWater = 9;
   io::CatchStopSignals();
+  FillBlocksOf(options.block_files, {});  // a block that is wrong stops the run before it begins
+  std::optional<FerryConfig> ferry;
+  if (options.config_folder.empty()) ferry.emplace();
+  const auto& config_folder = ferry ? ferry->path() : options.config_folder;
   Table table({"scenario", "tracker", "scans", "50m", "75m", "100m", "all", "boat_50m", "boat_75m", "boat_100m", "localisation", "missed", "false",
                "switches_100m"});
   struct Sum {
@@ -232,7 +263,7 @@ int EvaluateAutoferry(const fs::path& config_folder, const fs::path& folder) {
   std::vector<std::string> trackers;
   std::map<std::pair<std::string, std::string>, Sum> sums;  // by group and tracker
   const std::vector<std::string> groups{"open water", "channel", "all"};
-  for (const auto& scenario : ListScenarios(folder)) {
+  for (const auto& scenario : ListScenarios(options.folder)) {
     io::ThrowIfStopAsked();
     const auto scans = importer::ReadFerryScans(scenario.scans);
     const auto truth = importer::ReadFerryTruth(scenario.truth);
@@ -254,9 +285,15 @@ int EvaluateAutoferry(const fs::path& config_folder, const fs::path& folder) {
       if (sum != sums.end()) table.Add(RowOf(group, tracker, sum->second.num_scans, sum->second.scores));
     }
   }
-  std::cout << "Autoferry: GOSPA (c 20 m, p 2, alpha 2), root of the mean square, m: within a range over all scans; boat: over the scans with a boat "
-               "within it, parts of that within 100 m\n";
+  const std::string title =
+      "Autoferry: GOSPA (c 20 m, p 2, alpha 2), root of the mean square, m: within a range over all scans; boat: over the scans with a boat within "
+      "it, parts "
+      "of that within 100 m";
+  std::cout << title << '\n';
   table.Print(std::cout);
+  if (options.block_files.empty()) return EXIT_SUCCESS;
+  const auto measured = fmt::format("Measured {} by `./dev figures`, version {}.", Today(), runtime::Version());
+  FillBlocksOf(options.block_files, {{"autoferry", {title + ".", measured}, table}});
   return EXIT_SUCCESS;
 }
 

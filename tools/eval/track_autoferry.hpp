@@ -45,8 +45,14 @@ struct FerryTracks {
 std::vector<FerryTracks> TrackFerry(const std::filesystem::path& config_folder, const std::vector<importer::FerryScan>& scans,
                                     MultiObjectTrackers trackers);
 
+struct FerryOptions {
+  std::filesystem::path folder;                    // of the scenarios
+  std::filesystem::path config_folder;             // of the boat's own tracker; empty: the ferry's own hull, and defaults
+  std::vector<std::filesystem::path> block_files;  // in whose marked blocks the table is written (FillBlocks)
+};
+
 /// Prints the table of all scenarios in a folder. Scenarios up to 9 are in open water, the others in the channel. @return exit code
 /// @throws std::runtime_error for files, and where there is none; config::ConfigError
-int EvaluateAutoferry(const std::filesystem::path& config_folder, const std::filesystem::path& folder);
+int EvaluateAutoferry(const FerryOptions& options);
 
 }  // namespace lookout::eval

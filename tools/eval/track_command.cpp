@@ -10,7 +10,9 @@
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
+#include "common/runtime/version.hpp"
 #include "tools/eval/baselines/nearest_neighbour.hpp"
+#include "tools/eval/figures.hpp"
 #include "tools/eval/track_run.hpp"
 #include "tools/eval/track_sources.hpp"
 #include "tools/eval/track_tables.hpp"
@@ -97,6 +99,16 @@ void AddWorld(const std::vector<TrackRow>& runs, const std::string& name, std::v
   AddTo(rows, std::move(all));
 }
 
+std::vector<ReadmeFigure> FiguresOf(const TrackOptions& options, bool has_captures, const std::vector<NamedTable>& tables) {
+  const auto& plan = options.plan;
+  const auto scope = fmt::format("Own simulator: {} scenes, {} seeds each from {} on, {:.0f} s a seed. The second world: {}.", plan.scenes.size(),
+                                 plan.num_seeds, plan.first_seed, plan.seconds, has_captures ? "all of its captures" : "not here");
+  const auto measured = fmt::format("Measured {} by `./dev figures`, version {}.", Today(), runtime::Version());
+  std::vector<ReadmeFigure> figures;
+  for (const auto& [name, title, table, is_printed] : tables) figures.push_back({name, {title + ".", measured, scope}, table});
+  return figures;
+}
+
 }  // namespace
 
 MultiObjectTrackers MakeTrackers() {
@@ -107,12 +119,14 @@ MultiObjectTrackers MakeTrackers() {
 
 int EvaluateTracks(const TrackOptions& options) {
   if (!options.plan.scenes.empty()) options.plan.CheckSeeds(options.is_tuning ? SeedUse::kTuning : SeedUse::kTables);
-  if (options.is_tuning && !options.csv_folder.empty())
-    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv");
+  if (options.is_tuning && !(options.csv_folder.empty() && options.block_files.empty())) {
+    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv and --blocks");
+  }
   if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--tracks needs --scenes or --captures");
   replay::CheckConfig(options.config_folder);
   io::CatchStopSignals();
   // Outputs before all work.
+  FillBlocksOf(options.block_files, {});
   std::vector<std::unique_ptr<io::OutputFile>> files;
   if (!options.csv_folder.empty()) {
     fs::create_directories(options.csv_folder);
@@ -122,13 +136,16 @@ int EvaluateTracks(const TrackOptions& options) {
   }
   std::vector<TrackRow> rows;
   AddWorld(RunScenes(options), "all scenes", rows);
-  if (!options.captures.empty()) AddWorld(RunCaptures(options), "second world: all", rows);
+  const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
+  if (has_captures) AddWorld(RunCaptures(options), "second world: all", rows);
+  if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
   PrintTables(rows, std::cout);
   const auto tables = TablesOf(rows);
   for (std::size_t i = 0; i < files.size(); ++i) {
     tables[i].table.PrintCsv(files[i]->stream());
     files[i]->Commit();
   }
+  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(options, has_captures, tables));
   return EXIT_SUCCESS;
 }
 

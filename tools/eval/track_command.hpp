@@ -14,11 +14,12 @@ namespace lookout::eval {
 
 struct TrackOptions {
   std::filesystem::path config_folder;
-  RunPlan plan;                      // scenes may be none
-  bool is_tuning = false;            // seeds of tuning
-  std::filesystem::path captures;    // empty = none
-  std::filesystem::path csv_folder;  // empty = none
-  bool is_forced = false;            // files that are there are replaced
+  RunPlan plan;                                    // scenes may be none
+  bool is_tuning = false;                          // seeds of tuning
+  std::filesystem::path captures;                  // empty = none
+  std::filesystem::path csv_folder;                // empty = none
+  bool is_forced = false;                          // files that are there are replaced
+  std::vector<std::filesystem::path> block_files;  // in whose marked blocks the tables are written (FillBlocks)
 };
 
 /// What stands beside the boat's own tracker in each table. A further tracker is a further line here.

@@ -345,9 +345,15 @@ void ScoreApproaches(const History& history, TrackScores& scores) {
 
 }  // namespace
 
-double TrackScores::Mota() const { return 1.0 - static_cast<double>(num_missed + num_false + num_switches) / static_cast<double>(num_expected); }
+double TrackScores::Mota() const {
+  if (num_expected == 0) return std::numeric_limits<double>::quiet_NaN();
+  return 1.0 - static_cast<double>(num_missed + num_false + num_switches) / static_cast<double>(num_expected);
+}
 
-double TrackScores::Idf1() const { return 2.0 * static_cast<double>(num_id_true) / static_cast<double>(num_expected + num_id_tracked); }
+double TrackScores::Idf1() const {
+  if (num_expected == 0) return std::numeric_limits<double>::quiet_NaN();
+  return 2.0 * static_cast<double>(num_id_true) / static_cast<double>(num_expected + num_id_tracked);
+}
 
 double TrackScores::FalseTracksPerMinute() const { return static_cast<double>(num_false_tracks) / (seconds / 60.0); }
 

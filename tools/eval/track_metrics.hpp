@@ -62,6 +62,7 @@ struct TrackScores {
   std::int64_t num_crossings = 0;
   std::int64_t num_crossings_untracked = 0;
 
+  /// Both 0 to 1 (MOTA also below 0); NaN where nothing had to be tracked.
   double Mota() const;
   double Idf1() const;
   double FalseTracksPerMinute() const;

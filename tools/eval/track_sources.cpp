@@ -203,17 +203,20 @@ void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth
   if (reader.num_damaged() > 0) throw std::runtime_error(files.capture.string() + ": damaged: " + reader.damage());
 }
 
-ConfigOfCaptures::ConfigOfCaptures(const fs::path& captures, const fs::path& config_folder) {
+TempFolder::TempFolder() {
   auto place = (fs::temp_directory_path() / "lookout_eval_XXXXXX").string();
   if (mkdtemp(place.data()) == nullptr) throw std::runtime_error("no temporary folder " + place);
   path_ = place;
-  fs::copy(config_folder, path_, fs::copy_options::recursive);
-  if (fs::exists(captures / "boat.txtpb")) fs::copy_file(captures / "boat.txtpb", path_ / "boat.txtpb", fs::copy_options::overwrite_existing);
 }
 
-ConfigOfCaptures::~ConfigOfCaptures() {
+TempFolder::~TempFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
+}
+
+ConfigOfCaptures::ConfigOfCaptures(const fs::path& captures, const fs::path& config_folder) {
+  fs::copy(config_folder, path(), fs::copy_options::recursive);
+  if (fs::exists(captures / "boat.txtpb")) fs::copy_file(captures / "boat.txtpb", path() / "boat.txtpb", fs::copy_options::overwrite_existing);
 }
 
 }  // namespace lookout::eval

@@ -33,18 +33,29 @@ inline constexpr std::int64_t kCaptureToleranceUs = 3;
 /// @throws std::runtime_error "file:line: reason"
 void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);
 
+/// A new, empty folder that goes with all that is in it.
+class TempFolder {
+ public:
+  /// @throws std::runtime_error
+  TempFolder();
+  ~TempFolder();
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 /// A config folder with the boat of the captures in place of its own: as long as this lives.
 class ConfigOfCaptures {
  public:
   /// Copies config_folder, and boat.txtpb of the captures over it where there is one. @throws std::filesystem::filesystem_error
   ConfigOfCaptures(const std::filesystem::path& captures, const std::filesystem::path& config_folder);
-  ~ConfigOfCaptures();
-  ConfigOfCaptures(const ConfigOfCaptures&) = delete;
-  ConfigOfCaptures& operator=(const ConfigOfCaptures&) = delete;
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return folder_.path(); }
 
  private:
-  std::filesystem::path path_;
+  TempFolder folder_;
 };
 
 }  // namespace lookout::eval

@@ -35,11 +35,11 @@ TEST(TrackMetrics, PerfectTracksScoreFull) {
 
 TEST(TrackMetrics, NobodyThereIsNoScore) {
   Case run;
-  run.Add({}, {});
+  run.Add({}, {TrackAt(1, {0.0, 0.0})});
   const auto scores = run.Score();
   EXPECT_TRUE(std::isnan(scores.Mota()));
   EXPECT_TRUE(std::isnan(scores.Idf1()));
-  EXPECT_EQ(scores.gospa.Rms(), 0.0);
+  EXPECT_EQ(scores.num_false_tracks, 1);
 }
 
 // Numbers worked out by hand: 50 scans with one thing; 5 without its track, and 45 in which its id changes once, after 25.
