@@ -229,7 +229,8 @@ FerryScores ScoreFerry(const std::vector<importer::FerryScan>& scans, const impo
   return scores;
 }
 
-std::vector<FerryTracks> TrackFerry(const fs::path& config_folder, const std::vector<importer::FerryScan>& scans, MultiObjectTrackers trackers) {
+std::vector<FerryTracks> TrackFerry(const fs::path& config_folder, const std::vector<importer::FerryScan>& scans,
+                                    const MultiObjectTrackers& trackers) {
   std::vector<FerryTracks> result;
   if (auto own = OwnTracks(config_folder, scans)) result.push_back(*std::move(own));
   const auto obstacles = importer::ToObstacles(scans);

@@ -43,7 +43,7 @@ struct FerryTracks {
 };
 /// @param config_folder  of the boat's own tracker
 std::vector<FerryTracks> TrackFerry(const std::filesystem::path& config_folder, const std::vector<importer::FerryScan>& scans,
-                                    MultiObjectTrackers trackers);
+                                    const MultiObjectTrackers& trackers);
 
 struct FerryOptions {
   std::filesystem::path folder;                    // of the scenarios

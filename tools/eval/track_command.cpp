@@ -105,6 +105,7 @@ std::vector<ReadmeFigure> FiguresOf(const TrackOptions& options, bool has_captur
                                  plan.num_seeds, plan.first_seed, plan.seconds, has_captures ? "all of its captures" : "not here");
   const auto measured = fmt::format("Measured {} by `./dev figures`, version {}.", Today(), runtime::Version());
   std::vector<ReadmeFigure> figures;
+  figures.reserve(tables.size());
   for (const auto& [name, title, table, is_printed] : tables) figures.push_back({name, {title + ".", measured, scope}, table});
   return figures;
 }

@@ -73,7 +73,7 @@ class TrackRun {
   };
   // What waits for TRACKS.
   struct Waiting {
-    std::size_t index;  // of the scan; not set for one that is not scored
+    std::size_t index = 0;  // of the scan
     std::vector<LabelledReturn> returns;
     LabelScores own_labels;  // without those of tracks
     std::vector<tracks_t> parts;
