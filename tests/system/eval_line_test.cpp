@@ -57,13 +57,14 @@ TEST_F(EvalLine, EachTakesItsOwnSeedsWhereNoneAreNamed) {
 TEST_F(EvalLine, TracksHaveTheirOwnTablesAndSeeds) {
   const std::vector<std::string> line{"--tracks", "--scenes", "sparse", "--seeds", "1", "--seconds", "1"};
   auto with_files = line;
-  with_files.insert(with_files.end(), {"--csv", Path("csv")});
+  with_files.insert(with_files.end(), {"--csv", Path("csv"), "--lost", Path("lost.csv")});
   const auto result = Run(with_files);
   EXPECT_EQ(result.exit_code, 0) << result.output;
   for (const auto* text : {"MOTA_%", "confirmed_median_s", "standing_mps", "tracks_land_one_%", "nearest neighbour", "all scenes"}) {
     EXPECT_NE(result.output.find(text), std::string::npos) << text;
   }
   EXPECT_TRUE(fs::exists(Path("csv") + "/tracks_identities.csv"));
+  EXPECT_NE(ReadFile(Path("lost.csv")).find("sparse,101,nearest neighbour,"), std::string::npos);
   EXPECT_EQ(Run(with_files).exit_code, 1) << "tables were replaced unasked";
   auto of_tuning = line;
   of_tuning.insert(of_tuning.end(), {"--first-seed", "1"});

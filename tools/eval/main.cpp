@@ -80,7 +80,8 @@ Options ParseOptions(int argc, char** argv) {
   needs_config(app.add_option("--test", comparison.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
   needs_config(app.add_option("--csv", comparison.csv_folder, "write each table as a CSV file to this folder"));
   needs_config(app.add_option("--html", comparison.html_file, "write the report as one page"));
-  needs_config(app.add_option("--lost", comparison.lost_file, "write each thing that was lost, as a row of a CSV file"));
+  needs_config(app.add_option("--lost", comparison.lost_file,
+                              "write each thing that was lost (with --tracks: missed, false, switch of each scan), as a row of a CSV file"));
   auto* pictures =
       needs_config(app.add_option("--pictures", comparison.pictures_folder, "draw the worst scans of each method and scene into this folder"));
   app.add_option("--worst", comparison.num_worst, "pictures of each method and scene")
@@ -92,11 +93,11 @@ Options ParseOptions(int argc, char** argv) {
       ->excludes(in);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
   auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
-  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--lost", "--pictures"}) {
+  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--pictures"}) {
     tracks->excludes(app.get_option(other));
     autoferry->excludes(app.get_option(other));
   }
-  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--csv"}) autoferry->excludes(app.get_option(other));
+  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--csv", "--lost"}) autoferry->excludes(app.get_option(other));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
@@ -122,7 +123,7 @@ Options ParseOptions(int argc, char** argv) {
 int EvaluateTracks(const eval::ComparisonOptions& options) {
   const auto use = options.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
   return eval::EvaluateTracks({options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder,
-                               options.is_forced, options.block_files});
+                               options.lost_file, options.is_forced, options.block_files});
 }
 
 }  // namespace

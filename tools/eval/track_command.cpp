@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <ostream>
 #include <stdexcept>
+#include <utility>
 
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
@@ -51,11 +55,24 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
   return rows;
 }
 
+// Of one run.
+void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Truth& truth, std::ostream& out) {
+  constexpr std::array<std::string_view, 3> kNames{"missed", "false", "switch"};
+  for (const auto& [scene, row] : rows) {
+    for (const auto& event : row.scores.events) {
+      const auto& name = event.thing == 0 ? std::string() : truth.objects().at(event.thing).name;
+      out << fmt::format("{},{},{},{},{},{},{},{},{:.2f},{:.2f}\n", scene, seed, row.tracker, event.utime_us,
+                         kNames.at(static_cast<std::size_t>(event.what)), name, event.num_returns, event.track, event.position_m.x(),
+                         event.position_m.y());
+    }
+  }
+}
+
 void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
   runs.insert(runs.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
 }
 
-std::vector<TrackRow> RunScenes(const TrackOptions& options) {
+std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* events) {
   std::vector<TrackRow> runs;
   runtime::Progress progress("lookout-eval", stderr);
   const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
@@ -67,15 +84,17 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options) {
       progress.Update(static_cast<double>(runs.size()) / static_cast<double>(MakeTrackers().size()) / num_runs,
                       [&] { return fmt::format("{}, seed {}", scene, seed); });
       Truth truth(1);
-      AddTo(runs, ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
-              SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
-            }));
+      auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
+        SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
+      });
+      if (events != nullptr) WriteEvents(rows, seed, truth, *events);
+      AddTo(runs, std::move(rows));
     }
   }
   return runs;
 }
 
-std::vector<TrackRow> RunCaptures(const TrackOptions& options) {
+std::vector<TrackRow> RunCaptures(const TrackOptions& options, std::ostream* events) {
   const auto captures = ListCaptures(options.captures);
   if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
   const ConfigOfCaptures config(options.captures, options.config_folder);
@@ -84,8 +103,10 @@ std::vector<TrackRow> RunCaptures(const TrackOptions& options) {
   for (const auto& files : captures) {
     std::cerr << fmt::format("lookout-eval: {}\n", files.capture.filename().string());
     Truth truth(kCaptureToleranceUs);
-    AddTo(runs, ScoreRun(config.path(), "second world: " + files.scene, truth,
-                         [&](const DatagramHandler& on_datagram) { ReadRun(files, boat, truth, on_datagram); }));
+    auto rows = ScoreRun(config.path(), "second world: " + files.scene, truth,
+                         [&](const DatagramHandler& on_datagram) { ReadRun(files, boat, truth, on_datagram); });
+    if (events != nullptr) WriteEvents(rows, files.seed, truth, *events);
+    AddTo(runs, std::move(rows));
   }
   return runs;
 }
@@ -135,11 +156,18 @@ int EvaluateTracks(const TrackOptions& options) {
       files.push_back(std::make_unique<io::OutputFile>(options.csv_folder / (table.name + ".csv"), io::OutputOptions{.force = options.is_forced}));
     }
   }
+  std::optional<io::OutputFile> lost;
+  if (!options.lost_file.empty()) {
+    lost.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
+    lost->Write("scene,seed,tracker,utime_us,event,thing,num_returns,track_id,east_m,north_m\n");
+  }
+  std::ostream* const events = lost ? &lost->stream() : nullptr;
   std::vector<TrackRow> rows;
-  AddWorld(RunScenes(options), "all scenes", rows);
+  AddWorld(RunScenes(options, events), "all scenes", rows);
   const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
-  if (has_captures) AddWorld(RunCaptures(options), "second world: all", rows);
+  if (has_captures) AddWorld(RunCaptures(options, events), "second world: all", rows);
   if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
+  if (lost) lost->Commit();
   PrintTables(rows, std::cout);
   const auto tables = TablesOf(rows);
   for (std::size_t i = 0; i < files.size(); ++i) {

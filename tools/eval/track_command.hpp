@@ -18,6 +18,7 @@ struct TrackOptions {
   bool is_tuning = false;                          // seeds of tuning
   std::filesystem::path captures;                  // empty = none
   std::filesystem::path csv_folder;                // empty = none
+  std::filesystem::path lost_file;                 // what costs MOTA, a row of CSV for each scan and thing or track; empty = none
   bool is_forced = false;                          // files that are there are replaced
   std::vector<std::filesystem::path> block_files;  // in whose marked blocks the tables are written (FillBlocks)
 };

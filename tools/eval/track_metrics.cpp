@@ -161,10 +161,14 @@ void ScoreClear(std::span<const TrueScan> truth, std::span<const std::vector<Tra
       const auto track = run[n].track_of.find(thing.id);
       if (track == run[n].track_of.end()) {
         ++scores.num_missed;
+        scores.events.push_back({TrackEvent::What::kMissed, truth[n].utime_us, thing.id, thing.num_returns, 0, thing.position_m});
         continue;
       }
       const auto [before, is_first] = last.try_emplace(thing.id, track->second->id);
-      if (!is_first && before->second != track->second->id) ++scores.num_switches;
+      if (!is_first && before->second != track->second->id) {
+        ++scores.num_switches;
+        scores.events.push_back({TrackEvent::What::kSwitch, truth[n].utime_us, thing.id, thing.num_returns, track->second->id, thing.position_m});
+      }
       before->second = track->second->id;
     }
     std::vector<Eigen::Vector2d> estimates_m;
@@ -172,7 +176,9 @@ void ScoreClear(std::span<const TrueScan> truth, std::span<const std::vector<Tra
       const auto verdict = run[n].verdict_of.find(track.id);
       if (verdict == run[n].verdict_of.end() || verdict->second == Verdict::kLeftOut) continue;
       estimates_m.push_back(track.position_m);
-      if (verdict->second == Verdict::kFalse) ++scores.num_false;
+      if (verdict->second != Verdict::kFalse) continue;
+      ++scores.num_false;
+      scores.events.push_back({TrackEvent::What::kFalse, truth[n].utime_us, 0, 0, track.id, track.position_m});
     }
     scores.gospa.Add(GospaOf(truths_m, estimates_m));
   }

@@ -19,6 +19,17 @@ inline constexpr double kTrackGateM = 2.0;
 /// Returns from which on a thing in the water must be tracked; one with fewer may be, and counts neither way.
 inline constexpr int kMinReturnsOfExpected = 5;
 
+/// What costs MOTA in a scan, for people who look for the reason.
+struct TrackEvent {
+  enum class What { kMissed, kFalse, kSwitch };
+  What what = What::kMissed;
+  std::int64_t utime_us = 0;
+  int thing = 0;                                         // 0 = none
+  int num_returns = 0;                                   // of the thing
+  std::int64_t track = 0;                                // 0 = none
+  Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  // of the thing; of a false track
+};
+
 /// Figures of one run, or of several (Add).
 struct TrackScores {
   std::int64_t num_runs = 0;
@@ -61,6 +72,8 @@ struct TrackScores {
   Mean tcpa_error_s;
   std::int64_t num_crossings = 0;
   std::int64_t num_crossings_untracked = 0;
+
+  std::vector<TrackEvent> events;  // in the order of time; Add leaves those of the other out
 
   /// Both 0 to 1 (MOTA also below 0); NaN where nothing had to be tracked.
   double Mota() const;

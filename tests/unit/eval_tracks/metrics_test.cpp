@@ -56,6 +56,11 @@ TEST(TrackMetrics, MissesAndASwitchCostWhatTheDefinitionsSay) {
   EXPECT_EQ(scores.num_switches, 1);
   EXPECT_EQ(scores.num_runs_without_switch, 0);
   EXPECT_DOUBLE_EQ(scores.Mota(), 1.0 - 6.0 / 50.0);
+  ASSERT_EQ(scores.events.size(), 6U);
+  EXPECT_EQ(scores.events.front().what, TrackEvent::What::kMissed);
+  EXPECT_EQ(scores.events.back().what, TrackEvent::What::kSwitch);
+  EXPECT_EQ(scores.events.back().utime_us, 30 * kScanUs);
+  EXPECT_EQ(scores.events.back().track, 2);
   EXPECT_DOUBLE_EQ(scores.Idf1(), 2.0 * 25.0 / (50.0 + 45.0));
   EXPECT_DOUBLE_EQ(scores.confirmed_s[0].Median(), 0.5);
   EXPECT_DOUBLE_EQ(scores.position_nees.value(), 0.25 / 2.0);
