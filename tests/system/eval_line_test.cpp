@@ -54,6 +54,47 @@ TEST_F(EvalLine, EachTakesItsOwnSeedsWhereNoneAreNamed) {
   EXPECT_NE(page.find(R"("last_seed":"101")"), std::string::npos);
 }
 
+TEST_F(EvalLine, TracksHaveTheirOwnTablesAndSeeds) {
+  const std::vector<std::string> line{"--tracks", "--scenes", "sparse", "--seeds", "1", "--seconds", "1"};
+  auto with_files = line;
+  with_files.insert(with_files.end(), {"--csv", Path("csv"), "--lost", Path("lost.csv")});
+  const auto result = Run(with_files);
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  for (const auto* text : {"MOTA_%", "confirmed_median_s", "standing_mps", "tracks_land_one_%", "nearest neighbour", "all scenes"}) {
+    EXPECT_NE(result.output.find(text), std::string::npos) << text;
+  }
+  EXPECT_TRUE(fs::exists(Path("csv") + "/tracks_identities.csv"));
+  EXPECT_NE(ReadFile(Path("lost.csv")).find("sparse,101,nearest neighbour,"), std::string::npos);
+  EXPECT_EQ(Run(with_files).exit_code, 1) << "tables were replaced unasked";
+  auto of_tuning = line;
+  of_tuning.insert(of_tuning.end(), {"--first-seed", "1"});
+  EXPECT_EQ(Run(of_tuning).exit_code, 2);
+  of_tuning.push_back("--tuning");
+  EXPECT_EQ(Run(of_tuning).exit_code, 0);
+  EXPECT_EQ(Run({"--tracks"}).exit_code, 2);
+  auto with_methods = line;
+  with_methods.insert(with_methods.end(), {"--methods", "ours"});
+  EXPECT_EQ(Run(with_methods).exit_code, 2);
+}
+
+TEST_F(EvalLine, AutoferryNeedsAFolderOfScenarios) {
+  EXPECT_EQ(Run({"--autoferry", Path("none")}).exit_code, 2);
+  fs::create_directory(Path("ferry"));
+  EXPECT_EQ(Run({"--autoferry", Path("ferry")}).exit_code, 1);
+  WriteFile(Path("ferry") + "/scenario7_lidar_detections.json",
+            R"([{"ownshipPosition":[0,0],"time":1,"measurement":[10,0]},{"ownshipPosition":[0,0],"time":1.5,"measurement":[10,0]}])");
+  EXPECT_EQ(Run({"--autoferry", Path("ferry")}).exit_code, 1) << "without its truth";
+  WriteFile(Path("ferry") + "/scenario7_ground_truth.json", R"([[{"targetID":1,"position":[10,0,0],"time":1.25}]])");
+  const auto result = Run({"--autoferry", Path("ferry")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("open water"), std::string::npos) << result.output;
+  EXPECT_EQ(Run({"--autoferry", Path("ferry"), "--scenes", "sparse"}).exit_code, 2);
+  EXPECT_EQ(RunProgram({Bin("eval"), "--autoferry", Path("ferry")}, Path("out")).exit_code, 0) << "no boat of ours is needed";
+  WriteFile(Path("page.md"), "<!-- figures: autoferry -->\n<!-- end -->\n");
+  EXPECT_EQ(RunProgram({Bin("eval"), "--autoferry", Path("ferry"), "--blocks", Path("page.md")}, Path("out")).exit_code, 0);
+  EXPECT_NE(ReadFile(Path("page.md")).find("| open water | nearest neighbour | 2 |"), std::string::npos) << ReadFile(Path("page.md"));
+}
+
 TEST_F(EvalLine, SeedsOfTuningCanBeLookedAtWithoutMakingATable) {
   const std::vector<std::string> line{"--tuning", "--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3"};
   EXPECT_EQ(Run(line).exit_code, 0);

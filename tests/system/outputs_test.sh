@@ -316,5 +316,29 @@ grep -q merge_2 evidence.txtpb || fail "--force wrote nothing"
 [ $? -eq 2 ] || fail "seeds of tables are not refused"
 expect_nothing other.txtpb other.txtpb.partial
 
+# A log out of a recording of others.
+name=import
+echo '[{"ownshipPosition":[0,0],"time":1,"measurement":[5,5]},{"ownshipPosition":[1,0],"time":2,"measurement":[]}]' >ferry.json
+import() { "$bin/lookout-import" --config "$config" --in ferry.json --out "$@" >said 2>&1; }
+echo "an old file" >ferry.lcmlog
+import ferry.lcmlog && fail "replaced its log unasked"
+expect_said "ferry.lcmlog: exists already"
+expect_old ferry.lcmlog
+import ferry.lcmlog --force || fail "exit code $? with --force"
+"$bin/lookout-log" info ferry.lcmlog >said 2>&1 || fail "its log cannot be read"
+expect_said OBSTACLES
+import ferry.json --force && fail "wrote over its input"
+import disk/none/out.lcmlog && fail "wrote into a folder that is not there"
+(
+  ulimit -f 4
+  import small.lcmlog
+)
+[ $? -eq 1 ] || fail "exit code is not 1 with a limit on the size of files"
+expect_nothing small.lcmlog small.lcmlog.partial
+echo '[{"ownshipPosition":[0,0],"time":1,"measurement":[5]}]' >ferry.json
+import bad.lcmlog && fail "read a measurement of one number"
+expect_said "ferry.json"
+expect_nothing bad.lcmlog bad.lcmlog.partial
+
 [ "$num_failed" -eq 0 ] || { echo "$num_failed expectations failed" >&2; exit 1; }
 echo "all outputs: whole or none, in $(($(date +%s) - sync_time)) s; full disk: ${LOOKOUT_SMALL_DISK}"

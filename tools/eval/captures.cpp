@@ -41,29 +41,6 @@ fs::path Beside(const fs::path& capture, const std::string& ending) {
   return capture.parent_path() / (name.substr(0, name.size() - kCaptureEnding.size()) + ending);
 }
 
-// A capture, unpacked into memory that has the name of a file, as libpcap asks for one.
-class UnpackedCapture {
- public:
-  explicit UnpackedCapture(const fs::path& file) : memory_(fdopen(memfd_create("capture", MFD_CLOEXEC), "wb"), &std::fclose) {
-    if (!memory_) throw std::runtime_error(file.string() + ": cannot be unpacked: no memory file");
-    importer::XzFile packed(file, kMaxCaptureBytes);
-    std::vector<std::uint8_t> block(std::size_t{1} << 16);
-    try {
-      while (const std::size_t size = packed.Read(block)) {
-        if (std::fwrite(block.data(), 1, size, memory_.get()) != size) throw std::runtime_error("cannot be unpacked: out of memory");
-      }
-      if (std::fflush(memory_.get()) != 0) throw std::runtime_error("cannot be unpacked: out of memory");
-    } catch (const std::runtime_error& error) {
-      throw std::runtime_error(file.string() + ": " + error.what());
-    }
-  }
-
-  fs::path path() const { return "/proc/self/fd/" + std::to_string(fileno(memory_.get())); }
-
- private:
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> memory_;
-};
-
 struct TrueReturn {
   std::int64_t utime_us = 0;
   int return_index = 0;
@@ -145,21 +122,6 @@ bool IsInWater(const std::string& type) {
   return !kOnTheGround.contains(type);
 }
 
-std::map<std::int32_t, ScanObject> ReadObjects(const fs::path& file) {
-  constexpr std::size_t kMaxObjects = 100'000;
-  importer::CsvFile csv(file, {"object_id", "type"});
-  std::map<std::int32_t, ScanObject> objects;
-  while (csv.Next()) {
-    const auto id = static_cast<std::int32_t>(csv.WholeNumber(0, 1, std::numeric_limits<std::int32_t>::max()));
-    const std::string type(csv.Text(1));
-    if (type.empty()) csv.Refuse("type: empty");
-    const auto [known, is_new] = objects.try_emplace(id, ScanObject{type + "_" + std::to_string(id), type, IsInWater(type)});
-    if (objects.size() > kMaxObjects) csv.Refuse("more than " + std::to_string(kMaxObjects) + " objects");
-    if (!is_new && known->second.kind != type) csv.Refuse("object " + std::to_string(id) + " was of type " + known->second.kind + " before");
-  }
-  return objects;
-}
-
 // Gives a scan its truth.
 void Join(const CaptureWithTruth& files, TruthFile& truth, LabelledScan& labelled, CaptureReport& report) {
   auto& scan = labelled.scan;
@@ -197,6 +159,37 @@ void Join(const CaptureWithTruth& files, TruthFile& truth, LabelledScan& labelle
 }
 
 }  // namespace
+
+UnpackedCapture::UnpackedCapture(const fs::path& file) : memory_(fdopen(memfd_create("capture", MFD_CLOEXEC), "wb"), &std::fclose) {
+  if (!memory_) throw std::runtime_error(file.string() + ": cannot be unpacked: no memory file");
+  importer::XzFile packed(file, kMaxCaptureBytes);
+  std::vector<std::uint8_t> block(std::size_t{1} << 16);
+  try {
+    while (const std::size_t size = packed.Read(block)) {
+      if (std::fwrite(block.data(), 1, size, memory_.get()) != size) throw std::runtime_error("cannot be unpacked: out of memory");
+    }
+    if (std::fflush(memory_.get()) != 0) throw std::runtime_error("cannot be unpacked: out of memory");
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(file.string() + ": " + error.what());
+  }
+}
+
+fs::path UnpackedCapture::path() const { return "/proc/self/fd/" + std::to_string(fileno(memory_.get())); }
+
+std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& files) {
+  constexpr std::size_t kMaxObjects = 100'000;
+  importer::CsvFile csv(files.objects, {"object_id", "type"});
+  std::map<std::int32_t, ScanObject> objects;
+  while (csv.Next()) {
+    const auto id = static_cast<std::int32_t>(csv.WholeNumber(0, 1, std::numeric_limits<std::int32_t>::max()));
+    const std::string type(csv.Text(1));
+    if (type.empty()) csv.Refuse("type: empty");
+    const auto [known, is_new] = objects.try_emplace(id, ScanObject{type + "_" + std::to_string(id), type, IsInWater(type)});
+    if (objects.size() > kMaxObjects) csv.Refuse("more than " + std::to_string(kMaxObjects) + " objects");
+    if (!is_new && known->second.kind != type) csv.Refuse("object " + std::to_string(id) + " was of type " + known->second.kind + " before");
+  }
+  return objects;
+}
 
 std::vector<CaptureWithTruth> ListCaptures(const fs::path& folder) {
   static const std::regex kName(R"((.+)-(\d+)\.pcap\.xz)");
@@ -238,7 +231,7 @@ Boat LoadBoatOfCaptures(const fs::path& folder, const fs::path& config_folder) {
 CaptureReport ReadCapture(const CaptureWithTruth& files, const Boat& boat, const ScanHandler& on_scan) {
   CaptureReport report;
   LabelledScan labelled;
-  labelled.objects = ReadObjects(files.objects);
+  labelled.objects = ReadObjectsOfCapture(files);
   TruthFile truth(files.truth);
 
   // What labels a scan has does not depend on its clock; the truth is of the sensor's.

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -46,6 +49,21 @@ inline constexpr double kMaxUnmatchedShare = 0.001;
 
 /// A return and its truth are of one ring, within this time, and of one range in steps of 2 mm.
 inline constexpr std::chrono::microseconds kMatchTolerance{3};
+
+/// A capture, unpacked into memory that has the name of a file, as libpcap asks for one.
+class UnpackedCapture {
+ public:
+  /// @throws std::runtime_error "file: reason"
+  explicit UnpackedCapture(const std::filesystem::path& file);
+
+  std::filesystem::path path() const;
+
+ private:
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> memory_;
+};
+
+/// Objects of a capture by id, called by their type and id. @throws std::runtime_error "file:line: reason"
+std::map<std::int32_t, ScanObject> ReadObjectsOfCapture(const CaptureWithTruth& files);
 
 /// Decodes a capture as lookout-vlp16 does and hands on each whole scan with its truth. Times are those of the sensor's clock.
 ///

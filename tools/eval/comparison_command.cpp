@@ -1,15 +1,12 @@
 #include "tools/eval/comparison_command.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <set>
@@ -56,20 +53,6 @@ std::string Computer() {
 }
 
 constexpr const char* kFamilies = "families";
-
-RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
-  const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
-  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
-  for (const auto& scene : options.scenes) {
-    if (scene != "all" && scene != kFamilies) {
-      plan.scenes.push_back(scene);
-      continue;
-    }
-    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
-    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
-  }
-  return plan;
-}
 
 std::set<std::string> LeftOutOf(const ComparisonOptions& options) {
   std::set<std::string> families;
@@ -225,21 +208,21 @@ void RefuseIfThere(const std::filesystem::path& folder, const char* ending, int 
   }
 }
 
-void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures) {
-  for (const auto& file : files) {
-    std::ifstream in(file, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
-    const auto filled = FillBlocks(text, figures, file.string());
-    if (filled == text) continue;
-    io::OutputFile out(file, {.force = true});
-    out.Write(filled);
-    out.Commit();
-    std::cerr << file.string() << ": figures filled in\n";
-  }
-}
-
 }  // namespace
+
+RunPlan PlanOf(const ComparisonOptions& options, SeedUse use) {
+  const auto first_seed = use == SeedUse::kTuning ? kFirstTuningSeed : kFirstTableSeed;
+  RunPlan plan{{}, options.first_seed.value_or(first_seed), options.num_seeds, options.seconds};
+  for (const auto& scene : options.scenes) {
+    if (scene != "all" && scene != kFamilies) {
+      plan.scenes.push_back(scene);
+      continue;
+    }
+    const auto known_scenes = scene == kFamilies ? sim::ListFamilies(options.config_folder) : sim::ListScenes(options.config_folder);
+    for (const auto& known : known_scenes) plan.scenes.push_back(known.name);
+  }
+  return plan;
+}
 
 int CompareMethods(const ComparisonOptions& options) {
   const auto boat = LoadBoat(options.config_folder);
@@ -310,8 +293,7 @@ int CompareMethods(const ComparisonOptions& options) {
     WriteHtml(results, page->stream());
     page->Commit();
   }
-  const auto today = fmt::format("{:%F}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
-  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(results, today));
+  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(results, Today()));
   return EXIT_SUCCESS;
 }
 

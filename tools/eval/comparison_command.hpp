@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/eval/run_plan.hpp"
+
 namespace lookout::eval {
 
 struct ComparisonOptions {
@@ -35,6 +37,10 @@ struct ComparisonOptions {
   std::vector<std::filesystem::path> block_files;  // in whose marked blocks the figures are written (FillBlocks)
   bool is_forced = false;                          // files that are there are replaced
 };
+
+/// Scenes, seeds and length that are asked for; "all" and "families" are spelt out, and where no first seed is asked for, it is the first of the
+/// range.
+RunPlan PlanOf(const ComparisonOptions& options, SeedUse use);
 
 /// Prints tables to stdout and progress to stderr, and writes the files that are asked for. @return exit code
 /// Methods and tests of the paper take seeds of tables, sweeps those of tuning; the other range is refused (run_plan.hpp).

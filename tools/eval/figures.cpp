@@ -1,13 +1,19 @@
 #include "tools/eval/figures.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 
+#include "common/io/output_file.hpp"
 #include "tools/eval/result_tables.hpp"
 
 namespace lookout::eval {
@@ -18,8 +24,10 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 12> kFigureNames{"main",  "times",         "miou",    "false",    "with-segment", "kinds",
-                                                        "peers", "against-peers", "table-2", "ablation", "sweeps",       "tests"};
+constexpr std::array<std::string_view, 17> kFigureNames{
+    "main",     "times",    "miou",   "false", "with-segment",      "kinds",        "peers",         "against-peers",
+    "table-2",  "ablation", "sweeps", "tests", "tracks_identities", "tracks_times", "tracks_states", "tracks_labels",
+    "autoferry"};
 
 // In headings of columns a world stands before what it is a world of.
 std::string HeadingOf(const Results& world, const std::string& text) { return world.world.empty() ? text : world.world + ": " + text; }
@@ -244,6 +252,22 @@ std::string FillBlocks(std::string_view text, const std::vector<ReadmeFigure>& f
   }
   if (begin_line > 0) refuse(begin_line, "this block of figures has no end");
   return filled;
+}
+
+std::string Today() { return fmt::format("{:%F}", fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()))); }
+
+void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures) {
+  for (const auto& file : files) {
+    std::ifstream in(file, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+    const auto filled = FillBlocks(text, figures, file.string());
+    if (filled == text) continue;
+    io::OutputFile out(file, {.force = true});
+    out.Write(filled);
+    out.Commit();
+    std::cerr << file.string() << ": figures filled in\n";
+  }
 }
 
 }  // namespace lookout::eval

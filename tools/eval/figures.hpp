@@ -1,6 +1,7 @@
 // Figures that README files show: made by a comparison of methods and put into marked blocks.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,5 +28,11 @@ std::vector<ReadmeFigure> FiguresOf(const Results& results, const std::string& d
 /// @param file  name of the text, for errors
 /// @throws std::runtime_error "file:line: reason" for a block without end, an end without block, or a name that no figure has
 std::string FillBlocks(std::string_view text, const std::vector<ReadmeFigure>& figures, const std::string& file);
+
+/// The same of files, and says so. @throws as FillBlocks, and for files that cannot be read or written
+void FillBlocksOf(const std::vector<std::filesystem::path>& files, const std::vector<ReadmeFigure>& figures);
+
+/// Of now, for captions: "2026-11-22", UTC.
+std::string Today();
 
 }  // namespace lookout::eval

@@ -4,12 +4,17 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
 #include "tools/eval/report.hpp"
+#include "tools/eval/track_command.hpp"
+#include "tools/eval/track_run.hpp"
+#include "tools/eval/track_tables.hpp"
 #include "tools/export/boat_of_log.hpp"
 #include "tools/export/scans.hpp"
 
@@ -32,6 +37,8 @@ bool Take(const bus::LogEvent& event, auto& taker) {
 int EvaluateLog(const LogOptions& options) {
   std::unique_ptr<Truth> truth;
   if (!options.truth_folder.empty()) truth = std::make_unique<Truth>(options.truth_folder);
+  std::optional<TrackRun> tracks;
+  if (truth) tracks.emplace(*truth, MakeTrackers(), TrackRun::Returns::kKept);
   Evaluation evaluation(truth.get(), options.min_num_returns);
   if (!options.true_boat_folder.empty()) evaluation.SetMounting(config::LoadBoat(options.true_boat_folder).T_vessel_lidar);
   Machine machine;
@@ -64,6 +71,8 @@ int EvaluateLog(const LogOptions& options) {
     } else if (truth && channel == bus::kPose.name) {
       is_taken = Take<pose_t>(*event, evaluation);
     }
+    // What it cannot decode of the channels above is counted there.
+    if (tracks && !tracks->Add(channel, event->bytes) && channel == kTracksChannel) is_taken = false;
     if (!is_taken) ++num_unusable;
   }
   collector.Finish();
@@ -77,6 +86,12 @@ int EvaluateLog(const LogOptions& options) {
     PrintAccuracy(std::cout, evaluation);
     PrintSeen(std::cout, evaluation);
     PrintSegmentation(std::cout, evaluation, options.min_num_returns);
+  }
+  if (tracks) {
+    tracks->Finish();
+    std::vector<TrackRow> rows;
+    for (auto& row : tracks->Rows()) rows.push_back({"log", std::move(row)});
+    if (tracks->has_own_tracks()) PrintTables(rows, std::cout);
   }
   PrintMachine(std::cout, machine);
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";

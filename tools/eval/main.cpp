@@ -13,16 +13,21 @@
 #include "common/runtime/version.hpp"
 #include "tools/eval/comparison_command.hpp"
 #include "tools/eval/log_command.hpp"
+#include "tools/eval/track_autoferry.hpp"
+#include "tools/eval/track_command.hpp"
 
 namespace {
 
 using namespace lookout;
 
 constexpr int kExitUsage = 2;
+constexpr double kSecondsOfTracks = 20.0;  // of each scene and seed
 
 struct Options {
   eval::LogOptions log;
   eval::ComparisonOptions comparison;
+  std::string autoferry_folder;  // empty = none
+  bool has_tracks = false;       // trackers on runs, in place of methods on scans
 };
 
 // Exits here for --help, --version and wrong lines.
@@ -60,36 +65,51 @@ Options ParseOptions(int argc, char** argv) {
       ->check(CLI::ExistingFile);
   needs_config(app.add_option("--captures", comparison.captures,
                               "folder of captures with truth: NAME-SEED.pcap.xz, .truth.csv.xz, .objects.csv.xz, boat.txtpb"));
+  auto* autoferry = app.add_option("--autoferry", options.autoferry_folder,
+                                   "trackers on the Autoferry data set: folder of its files (--config: of the boat's tracker)")
+                        ->check(CLI::ExistingDirectory);
   needs_config(app.add_option("--seeds", comparison.num_seeds, "of each scene"))->check(CLI::Range(1, 100'000))->capture_default_str();
   needs_config(app.add_option("--first-seed", comparison.first_seed,
                               "the others follow it (default: 101 for methods and tests, 1 for --sweep and --tuning; the other range is refused)"));
   needs_config(app.add_flag("--tuning", comparison.is_tuning, "methods on seeds of tuning; no file is written"));
-  needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed"))->check(CLI::Range(0.3, 3600.0))->capture_default_str();
+  auto* seconds = needs_config(app.add_option("--seconds", comparison.seconds, "of each scene and seed (with --tracks 20)"));
+  seconds->check(CLI::Range(0.3, 3600.0))->capture_default_str();
   needs_config(app.add_option("--methods", comparison.methods, "all, ours, paper, peers, or names; without --sweep and --test the default is all"))
       ->delimiter(',');
   needs_config(app.add_option("--sweep", comparison.sweeps, "FIELD=FROM:TO:STEP, a number of the segmenter's config (e1, e2, e3 for short)"));
   needs_config(app.add_option("--test", comparison.tests, "tests of the paper: 1, 2, 3"))->delimiter(',')->check(CLI::Range(1, 3));
   needs_config(app.add_option("--csv", comparison.csv_folder, "write each table as a CSV file to this folder"));
   needs_config(app.add_option("--html", comparison.html_file, "write the report as one page"));
-  needs_config(app.add_option("--lost", comparison.lost_file, "write each thing that was lost, as a row of a CSV file"));
+  needs_config(app.add_option("--lost", comparison.lost_file,
+                              "write each thing that was lost (with --tracks: missed, false, switch of each scan), as a row of a CSV file"));
   auto* pictures =
       needs_config(app.add_option("--pictures", comparison.pictures_folder, "draw the worst scans of each method and scene into this folder"));
   app.add_option("--worst", comparison.num_worst, "pictures of each method and scene")
       ->check(CLI::Range(1, 100))
       ->needs(pictures)
       ->capture_default_str();
-  needs_config(app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written"))
-      ->check(CLI::ExistingFile);
+  app.add_option("--blocks", comparison.block_files, "README files in whose marked blocks the figures are written")
+      ->check(CLI::ExistingFile)
+      ->excludes(in);
   needs_config(app.add_flag("--force", comparison.is_forced, "replace files that are there"));
+  auto* tracks = needs_config(app.add_flag("--tracks", options.has_tracks, "trackers on runs of all services, in place of methods on scans"));
+  for (const char* other : {"--methods", "--sweep", "--test", "--points", "--leave-out", "--html", "--pictures"}) {
+    tracks->excludes(app.get_option(other));
+    autoferry->excludes(app.get_option(other));
+  }
+  for (const char* other : {"--in", "--scenes", "--captures", "--tracks", "--csv", "--lost"}) autoferry->excludes(app.get_option(other));
   app.set_version_flag("--version", "lookout-eval " + runtime::Version());
   try {
     app.parse(argc, argv);
-    if (log.log_file.empty() && comparison.config_folder.empty()) throw CLI::RequiredError("one of --in LOG, --config DIR");
+    if (log.log_file.empty() && comparison.config_folder.empty() && options.autoferry_folder.empty())
+      throw CLI::RequiredError("one of --in LOG, --config DIR, --autoferry DIR");
     if (!comparison.config_folder.empty()) {
       const bool has_scans = !comparison.scenes.empty() || !comparison.points.empty() || !comparison.captures.empty();
-      if (!has_scans && comparison.tests.empty()) throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test");
+      if (!has_scans && comparison.tests.empty() && options.autoferry_folder.empty())
+        throw CLI::RequiredError("with --config, one of --scenes, --captures, --points, --test, --autoferry");
       if (comparison.scenes.empty() && !comparison.sweeps.empty()) throw CLI::RequiredError("--scenes, for --sweep");
       if (!has_scans && !comparison.methods.empty()) throw CLI::RequiredError("--scenes, --captures or --points, for --methods");
+      if (options.has_tracks && seconds->count() == 0) comparison.seconds = kSecondsOfTracks;
       if (comparison.methods.empty() &&
           ((comparison.sweeps.empty() && comparison.tests.empty()) || !comparison.points.empty() || !comparison.captures.empty()))
         comparison.methods = {"all"};
@@ -100,11 +120,21 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
+int EvaluateTracks(const eval::ComparisonOptions& options) {
+  const auto use = options.is_tuning ? eval::SeedUse::kTuning : eval::SeedUse::kTables;
+  return eval::EvaluateTracks({options.config_folder, eval::PlanOf(options, use), options.is_tuning, options.captures, options.csv_folder,
+                               options.lost_file, options.is_forced, options.block_files});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
   const auto options = ParseOptions(argc, argv);
-  return options.log.log_file.empty() ? eval::CompareMethods(options.comparison) : eval::EvaluateLog(options.log);
+  if (!options.log.log_file.empty()) return eval::EvaluateLog(options.log);
+  if (!options.autoferry_folder.empty()) {
+    return eval::EvaluateAutoferry({options.autoferry_folder, options.comparison.config_folder, options.comparison.block_files});
+  }
+  return options.has_tracks ? EvaluateTracks(options.comparison) : eval::CompareMethods(options.comparison);
 } catch (const std::invalid_argument& error) {
   std::cerr << "lookout-eval: " << lookout::PrintableLines(error.what()) << '\n';
   return kExitUsage;

@@ -8,6 +8,11 @@
 #include "tools/import/csv_file.hpp"
 
 namespace lookout::eval {
+namespace {
+
+std::tuple<std::int64_t, int, int> OrderOf(const Truth::Return& made) { return {made.utime_us, made.ring, made.return_index}; }
+
+}  // namespace
 
 OutlineDistance DistanceToOutline(const Eigen::Vector2d& p_m, const Polygon& outline_m) {
   double nearest_m2 = std::numeric_limits<double>::infinity();
@@ -51,8 +56,11 @@ Truth::Truth(const std::filesystem::path& folder) {
   constexpr auto kMaxId = std::numeric_limits<int>::max();
   const auto whole = [](const importer::CsvFile& file, std::size_t column) { return static_cast<int>(file.WholeNumber(column, kMinId, kMaxId)); };
 
-  importer::CsvFile objects(folder / "objects.csv", {"object_id", "name", "kind", "is_moving"});
-  while (objects.Next()) objects_[whole(objects, 0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), whole(objects, 3) != 0};
+  importer::CsvFile objects(folder / "objects.csv", {"object_id", "name", "kind", "is_moving"}, {"is_in_water"});
+  while (objects.Next()) {
+    const bool is_in_water = objects.Has(4) && whole(objects, 4) != 0;
+    objects_[whole(objects, 0)] = {std::string(objects.Text(1)), std::string(objects.Text(2)), whole(objects, 3) != 0, is_in_water};
+  }
 
   importer::CsvFile outlines(folder / "outlines.csv", {"object_id", "utime_us", "latitude_deg", "longitude_deg"});
   while (outlines.Next()) {
@@ -71,12 +79,21 @@ Truth::Truth(const std::filesystem::path& folder) {
     if (has_places) made.p_lidar_m = Eigen::Vector3d(returns.Number(4), returns.Number(5), returns.Number(6)).cast<float>();
     returns_.push_back(made);
   }
-  std::ranges::sort(returns_, {}, [](const Return& made) { return std::tuple(made.utime_us, made.ring, made.return_index); });
+  std::ranges::sort(returns_, {}, OrderOf);
+}
+
+void Truth::AddReturns(std::vector<Return> returns) {
+  std::ranges::sort(returns, {}, OrderOf);
+  returns_.insert(returns_.end(), returns.begin(), returns.end());
+}
+
+void Truth::ForgetReturnsBefore(std::int64_t utime_us) {
+  while (!returns_.empty() && returns_.front().utime_us < utime_us) returns_.pop_front();
 }
 
 const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_index) const {
-  for (auto made = std::ranges::lower_bound(returns_, utime_us - 1, {}, &Return::utime_us); made != returns_.end() && made->utime_us <= utime_us + 1;
-       ++made) {
+  for (auto made = std::ranges::lower_bound(returns_, utime_us - tolerance_us_, {}, &Return::utime_us);
+       made != returns_.end() && made->utime_us <= utime_us + tolerance_us_; ++made) {
     if (made->ring == ring && made->return_index == return_index) return &*made;
   }
   return nullptr;

@@ -4,10 +4,12 @@
 #include <Eigen/Core>
 #include <GeographicLib/LocalCartesian.hpp>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lookout::eval {
@@ -26,6 +28,7 @@ struct TruthObject {
   std::string name;
   std::string kind;
   bool is_moving = false;
+  bool is_in_water = false;  // a boat, swimmer, buoy or marker; false also where the files do not say it
 };
 
 struct TruthPose {
@@ -54,10 +57,16 @@ class Outlines {
   std::map<int, std::map<std::int64_t, Polygon>> by_object_;
 };
 
+/// Out of the folder of a simulation, or put together in memory.
 class Truth {
  public:
   /// @throws std::runtime_error "file:line: reason"
   explicit Truth(const std::filesystem::path& folder);
+
+  /// Holds nothing yet. @param tolerance_us  by which times of one return may differ
+  explicit Truth(std::int64_t tolerance_us) : tolerance_us_(tolerance_us) {}
+  void AddObject(int id, TruthObject object) { objects_[id] = std::move(object); }
+  void AddOutline(int object_id, std::int64_t utime_us, std::vector<Geodetic> outline) { outlines_[object_id][utime_us] = std::move(outline); }
 
   const std::map<int, TruthObject>& objects() const { return objects_; }
   const std::map<std::int64_t, TruthPose>& poses() const { return poses_; }
@@ -71,6 +80,10 @@ class Truth {
     Eigen::Vector3f p_lidar_m;
   };
 
+  /// @param returns  some microseconds of them, in any order; those of later calls are later
+  void AddReturns(std::vector<Return> returns);
+  void ForgetReturnsBefore(std::int64_t utime_us);
+
   /// @return a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullptr = not in the truth
   const Return* Find(std::int64_t utime_us, int ring, int return_index) const;
 
@@ -80,7 +93,8 @@ class Truth {
   std::map<int, TruthObject> objects_;
   std::map<int, std::map<std::int64_t, std::vector<Geodetic>>> outlines_;
   std::map<std::int64_t, TruthPose> poses_;
-  std::vector<Return> returns_;  // by time
+  std::deque<Return> returns_;  // by time
+  std::int64_t tolerance_us_ = 1;
 };
 
 }  // namespace lookout::eval

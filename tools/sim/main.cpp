@@ -18,8 +18,6 @@
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/progress.hpp"
-#include "config/schema/navigator.pb.h"
-#include "config/schema/vlp16.pb.h"
 #include "tools/sim/faulty_network.hpp"
 #include "tools/sim/options.hpp"
 #include "tools/sim/scene_file.hpp"
@@ -63,16 +61,7 @@ void Pace(sim::FaultyNetwork& network, sim::UdpSink& sink, Utime start, double s
 }
 
 sim::SimulationParams ToParams(const sim::Options& options) {
-  const auto vlp16 = config::Load<config::Vlp16>(options.config_folder, "vlp16.txtpb");
-  const auto navigator = config::Load<config::Navigator>(options.config_folder, "navigator.txtpb");
-  auto params = options.simulation;
-  params.lidar.use_vertical_origin_offsets = vlp16.use_vertical_origin_offsets();
-  params.navigation.nmea_port = navigator.nmea_port();
-  params.navigation.position_port = vlp16.position_port();
-  params.navigation.heading_offset_deg = navigator.heading_offset_deg();
-  params.navigation.pitch_offset_deg = navigator.pitch_offset_deg();
-  params.navigation.roll_offset_deg = navigator.roll_offset_deg();
-  params.data_port = vlp16.data_port();
+  auto params = sim::ParamsOfConfig(options.config_folder, options.simulation);
   params.start = options.udp_host.empty() ? Utime(std::chrono::microseconds(options.start_utime_us)) : runtime::HostNow();
   params.duration = std::chrono::microseconds(std::llround(options.seconds * 1e6));
   return params;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "common/config/text_config.hpp"
+#include "config/schema/navigator.pb.h"
+#include "config/schema/vlp16.pb.h"
 #include "services/vlp16/core/packet_format.hpp"
 
 namespace lookout::sim {
@@ -17,6 +20,19 @@ constexpr std::chrono::microseconds kDataLatency = 120us;
 constexpr double kDataJitterUs = 60.0;
 
 }  // namespace
+
+SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, SimulationParams params) {
+  const auto vlp16 = config::Load<config::Vlp16>(config_folder, "vlp16.txtpb");
+  const auto navigator = config::Load<config::Navigator>(config_folder, "navigator.txtpb");
+  params.lidar.use_vertical_origin_offsets = vlp16.use_vertical_origin_offsets();
+  params.navigation.nmea_port = navigator.nmea_port();
+  params.navigation.position_port = vlp16.position_port();
+  params.navigation.heading_offset_deg = navigator.heading_offset_deg();
+  params.navigation.pitch_offset_deg = navigator.pitch_offset_deg();
+  params.navigation.roll_offset_deg = navigator.roll_offset_deg();
+  params.data_port = vlp16.data_port();
+  return params;
+}
 
 Simulation::Simulation(const Scene& scene, const config::BoatFacts& boat, const SimulationParams& params, TruthWriter* truth)
     : params_(params),
@@ -40,6 +56,7 @@ void Simulation::Fill() {
       if (is_sent) truth_->AddPacket(packet);
       truth_->AdvanceTo(packet.end_time);
     }
+    if (params_.on_packet && is_sent && !has_ended) params_.on_packet(packet);
     // Past the end one that is not sent is as good as one that is: it is not given to anybody.
     if (is_sent || has_ended) lidar_datagram_ = Datagram{arrival, params_.data_port, {packet.payload.begin(), packet.payload.end()}};
   }

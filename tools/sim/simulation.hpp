@@ -1,6 +1,8 @@
 // Lidar, receiver and attitude sensor of the simulated boat, in one order of arrival.
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "common/config/boat.hpp"
@@ -20,8 +22,12 @@ struct SimulationParams {
   Utime start;
   std::chrono::microseconds duration{0};
   std::uint64_t seed = 1;
-  std::vector<TimedFault> faults;  // those of sensors; those of the network are FaultyNetwork's
+  std::vector<TimedFault> faults;                          // those of sensors; those of the network are FaultyNetwork's
+  std::function<void(const LidarPacket&)> on_packet = {};  // of each packet that is sent, before its datagram is given
 };
+
+/// What of them the config folder of the boat says: ports, and how sensors are set. @throws config::ConfigError
+SimulationParams ParamsOfConfig(const std::filesystem::path& config_folder, SimulationParams params = {});
 
 class Simulation {
  public:

@@ -1,0 +1,126 @@
+// Assignment and GOSPA, by hand, against each other, and against scipy's.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "tests/support/files.hpp"
+#include "tools/eval/track_assignment.hpp"
+#include "tools/eval/track_gospa.hpp"
+
+namespace lookout::eval {
+namespace {
+
+using Eigen::Vector2d;
+using Points = std::vector<Vector2d>;
+
+double CostOf(const Eigen::MatrixXd& cost, const std::vector<int>& columns) {
+  double sum = 0.0;
+  for (std::size_t row = 0; row < columns.size(); ++row) sum += columns[row] < 0 ? 0.0 : cost(static_cast<Eigen::Index>(row), columns[row]);
+  return sum;
+}
+
+// Every permutation.
+double LeastCost(const Eigen::MatrixXd& matrix) {
+  const Eigen::MatrixXd cost = matrix.rows() <= matrix.cols() ? matrix : Eigen::MatrixXd(matrix.transpose());
+  std::vector<int> columns(static_cast<std::size_t>(cost.cols()));
+  std::iota(columns.begin(), columns.end(), 0);
+  double least = 1e300;
+  do {
+    least = std::min(least, CostOf(cost, {columns.begin(), columns.begin() + cost.rows()}));
+  } while (std::next_permutation(columns.begin(), columns.end()));
+  return least;
+}
+
+TEST(CheapestAssignment, IsTheCheapestOfAll) {
+  constexpr unsigned kSeed = 3;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> value(-10.0, 10.0);
+  for (int rows = 1; rows <= 5; ++rows) {
+    for (int columns = 1; columns <= 6; ++columns) {
+      for (int i = 0; i < 10; ++i) {
+        const Eigen::MatrixXd cost = Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return value(random); });
+        const auto assigned = CheapestAssignment(cost);
+        EXPECT_NEAR(CostOf(cost, assigned), LeastCost(cost), 1e-9) << cost;
+        EXPECT_EQ(std::ranges::count_if(assigned, [](int column) { return column >= 0; }), std::min(rows, columns));
+      }
+    }
+  }
+}
+
+TEST(CheapestAssignment, OfNothing) {
+  EXPECT_TRUE(CheapestAssignment(Eigen::MatrixXd(0, 3)).empty());
+  EXPECT_EQ(CheapestAssignment(Eigen::MatrixXd(2, 0)), (std::vector<int>{-1, -1}));
+}
+
+TEST(Gospa, ByHand) {
+  // One pair 3 m apart, a truth alone, an estimate beyond the cut-off of it: 9 + 2 x 200.
+  const auto gospa = GospaOf(Points{{0.0, 0.0}, {100.0, 0.0}}, Points{{3.0, 0.0}, {100.0, 30.0}});
+  EXPECT_DOUBLE_EQ(gospa.localisation_m2, 9.0);
+  EXPECT_EQ(gospa.num_missed, 1);
+  EXPECT_EQ(gospa.num_false, 1);
+  EXPECT_DOUBLE_EQ(gospa.Rms(), std::sqrt(9.0 + 400.0));
+  EXPECT_DOUBLE_EQ(gospa.LocalisationRms(), 3.0);
+  EXPECT_DOUBLE_EQ(gospa.MissedRms(), std::sqrt(200.0));
+  EXPECT_DOUBLE_EQ(gospa.FalseRms(), std::sqrt(200.0));
+}
+
+TEST(Gospa, ScansAddInSquares) {
+  Gospa sum{.num_scans = 0};
+  sum.Add(GospaOf(Points{{0.0, 0.0}}, Points{{4.0, 0.0}}));
+  sum.Add(GospaOf(Points{}, Points{}));
+  EXPECT_DOUBLE_EQ(sum.Rms(), std::sqrt(16.0 / 2.0));
+}
+
+TEST(Gospa, IsSymmetricButForNames) {
+  const Points some_m{{0.0, 0.0}, {5.0, 5.0}, {70.0, 0.0}};
+  const Points others_m{{1.0, 1.0}, {6.0, 4.0}};
+  const auto there = GospaOf(some_m, others_m);
+  const auto back = GospaOf(others_m, some_m);
+  EXPECT_DOUBLE_EQ(there.Rms(), back.Rms());
+  EXPECT_EQ(there.num_missed, back.num_false);
+}
+
+// The same by somebody else's assignment: tests/unit/eval_tracks/gospa_by_scipy.py reads sets and our results, and says where it differs.
+TEST(Gospa, AgreesWithScipy) {
+  const std::string python = std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3";  // Debian's, which has Debian's scipy
+  if (std::system((python + " -c 'import scipy.optimize' 2>/dev/null").c_str()) != 0) {
+    GTEST_SKIP() << "python3-scipy is not installed (./dev setup slow)";
+  }
+  constexpr unsigned kSeed = 11;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> place_m(0.0, 60.0);
+  std::uniform_int_distribution<int> count(0, 12);
+  std::string text;
+  for (int i = 0; i < 300; ++i) {
+    const auto make = [&](char name) {
+      Points points_m(static_cast<std::size_t>(count(random)));
+      text += name;
+      for (auto& p_m : points_m) {
+        p_m = {place_m(random), place_m(random)};
+        text += fmt::format(" {:.17g} {:.17g}", p_m.x(), p_m.y());
+      }
+      text += '\n';
+      return points_m;
+    };
+    const auto truths_m = make('x');
+    const auto estimates_m = make('y');
+    const auto gospa = GospaOf(truths_m, estimates_m);
+    text += fmt::format("g {:.17g} {:.17g} {} {}\n", gospa.Rms(), gospa.localisation_m2, gospa.num_missed, gospa.num_false);
+  }
+  const support::TempDir folder;
+  const auto file = folder.path() / "sets.txt";
+  support::WriteFile(file, text);
+  const auto script = support::kSources / "tests/unit/eval_tracks/gospa_by_scipy.py";
+  EXPECT_EQ(std::system((python + " " + script.string() + " " + file.string()).c_str()), 0);
+}
+
+}  // namespace
+}  // namespace lookout::eval

@@ -1,0 +1,253 @@
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "tests/unit/eval_tracks/track_cases.hpp"
+#include "tools/eval/track_metrics.hpp"
+
+namespace lookout::eval {
+namespace {
+
+using Eigen::Vector2d;
+
+constexpr int kNumScans = 50;
+
+TEST(TrackMetrics, PerfectTracksScoreFull) {
+  Case run;
+  for (int n = 0; n < kNumScans; ++n) {
+    run.Add({ThingAt(1, {0.0, 0.0}), ThingAt(2, {0.2 * n, 10.0}, 20, {2.0, 0.0})}, {TrackAt(7, {0.0, 0.0}), TrackAt(9, {0.2 * n, 10.0}, {2.0, 0.0})});
+  }
+  const auto scores = run.Score();
+  EXPECT_DOUBLE_EQ(scores.Mota(), 1.0);
+  EXPECT_DOUBLE_EQ(scores.Idf1(), 1.0);
+  EXPECT_EQ(scores.num_expected, 2 * kNumScans);
+  EXPECT_EQ(scores.num_switches, 0);
+  EXPECT_EQ(scores.num_runs_without_switch, 1);
+  EXPECT_DOUBLE_EQ(scores.seconds, 5.0);
+  EXPECT_DOUBLE_EQ(scores.FalseTracksPerMinute(), 0.0);
+  EXPECT_DOUBLE_EQ(scores.gospa.Rms(), 0.0);
+  EXPECT_DOUBLE_EQ(scores.position_nees.value(), 0.0);
+  EXPECT_EQ(scores.num_standing, 1);
+  EXPECT_EQ(scores.num_called_moving, 0);
+  EXPECT_EQ(scores.speed_error_mps.count(), 20U);  // of 50 scans those from 3 s on
+  EXPECT_DOUBLE_EQ(scores.course_error_deg.Max(), 0.0);
+  EXPECT_DOUBLE_EQ(scores.confirmed_s[0].Max(), 0.0);
+}
+
+TEST(TrackMetrics, NobodyThereIsNoScore) {
+  Case run;
+  run.Add({}, {TrackAt(1, {0.0, 0.0})});
+  const auto scores = run.Score();
+  EXPECT_TRUE(std::isnan(scores.Mota()));
+  EXPECT_TRUE(std::isnan(scores.Idf1()));
+  EXPECT_EQ(scores.num_false_tracks, 1);
+}
+
+// Numbers worked out by hand: 50 scans with one thing; 5 without its track, and 45 in which its id changes once, after 25.
+TEST(TrackMetrics, MissesAndASwitchCostWhatTheDefinitionsSay) {
+  Case run;
+  for (int n = 0; n < kNumScans; ++n) {
+    std::vector<TrackState> tracks;
+    if (n >= 5) tracks.push_back(TrackAt(n < 30 ? 1 : 2, {0.5, 0.0}));
+    run.Add({ThingAt(1, {0.0, 0.0})}, tracks);
+  }
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.num_missed, 5);
+  EXPECT_EQ(scores.num_false, 0);
+  EXPECT_EQ(scores.num_switches, 1);
+  EXPECT_EQ(scores.num_runs_without_switch, 0);
+  EXPECT_DOUBLE_EQ(scores.Mota(), 1.0 - 6.0 / 50.0);
+  ASSERT_EQ(scores.events.size(), 6U);
+  EXPECT_EQ(scores.events.front().what, TrackEvent::What::kMissed);
+  EXPECT_EQ(scores.events.back().what, TrackEvent::What::kSwitch);
+  EXPECT_EQ(scores.events.back().utime_us, 30 * kScanUs);
+  EXPECT_EQ(scores.events.back().track, 2);
+  EXPECT_DOUBLE_EQ(scores.Idf1(), 2.0 * 25.0 / (50.0 + 45.0));
+  EXPECT_DOUBLE_EQ(scores.confirmed_s[0].Median(), 0.5);
+  EXPECT_DOUBLE_EQ(scores.position_nees.value(), 0.25 / 2.0);
+}
+
+TEST(TrackMetrics, ASecondTrackOfAThingIsFalse) {
+  Case run;
+  for (int n = 0; n < 10; ++n) run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {0.0, 0.0}), TrackAt(2, {1.0, 0.0})});
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.num_false, 10);
+  EXPECT_EQ(scores.num_false_tracks, 1);
+  EXPECT_DOUBLE_EQ(scores.FalseTracksPerMinute(), 60.0);
+  EXPECT_DOUBLE_EQ(scores.Mota(), 0.0);
+}
+
+TEST(TrackMetrics, TentativeAndLostTracksDoNotCount) {
+  Case run;
+  auto tentative = TrackAt(1, {50.0, 0.0});
+  tentative.status = TrackStatus::kTentative;
+  auto lost = TrackAt(2, {60.0, 0.0});
+  lost.status = TrackStatus::kLost;
+  run.Add({}, {tentative, lost});
+  EXPECT_EQ(run.Score().num_false, 0);
+}
+
+TEST(TrackMetrics, WhatNeedNotBeTrackedCountsNeitherWay) {
+  Case run;
+  auto dock = ThingAt(2, {20.0, 0.0});
+  dock.is_in_water = false;
+  auto shore = ThingAt(3, {40.0, 0.0});
+  shore.is_in_water = false;
+  shore.is_land = true;
+  // A buoy of 2 returns, a dock with two tracks, a shore with one; and another dock of which there is none.
+  auto other_dock = ThingAt(4, {60.0, 0.0});
+  other_dock.is_in_water = false;
+  run.Add({ThingAt(1, {0.0, 0.0}, 2), dock, shore, other_dock},
+          {TrackAt(1, {0.0, 0.0}), TrackAt(2, {20.0, 0.5}), TrackAt(3, {20.0, -0.5}), TrackAt(4, {42.5, 0.0})});
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.num_expected, 0);
+  EXPECT_EQ(scores.num_false, 0);
+  EXPECT_EQ(scores.num_id_tracked, 0);
+  EXPECT_EQ(scores.num_false_tracks, 0);
+}
+
+TEST(TrackMetrics, TheTrackOfADockIsNoHitOfTheBoatBesideIt) {
+  Case run;
+  auto dock = ThingAt(2, {0.0, 0.0});
+  dock.is_in_water = false;
+  run.Add({ThingAt(1, {3.0, 0.0}), dock}, {TrackAt(1, {0.0, 0.0})});  // 1 m from the boat
+  EXPECT_EQ(run.Score().num_missed, 1);
+}
+
+TEST(TrackMetrics, TheGateIsBetweenHulls) {
+  for (const double gap_m : {1.9, 2.1}) {
+    Case run;
+    run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {2.0 + gap_m, 0.0})});
+    EXPECT_EQ(run.Score().num_missed, gap_m < kTrackGateM ? 0 : 1) << gap_m;
+    EXPECT_EQ(run.Score().num_false, gap_m < kTrackGateM ? 0 : 1) << gap_m;
+  }
+}
+
+// CLEAR MOT: a pair stays while it may, though another is nearer now.
+TEST(TrackMetrics, APairStaysWithinTheGate) {
+  Case run;
+  run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {0.0, 0.0})});
+  run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {3.0, 0.0}), TrackAt(2, {0.0, 0.0})});
+  run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {9.0, 0.0}), TrackAt(2, {0.0, 0.0})});
+  EXPECT_EQ(run.Score().num_switches, 1);
+}
+
+TEST(TrackMetrics, WhoIsWhoIsOptimalAndNotGreedy) {
+  Case run;
+  // The nearest pair of all is track 1 and thing 2; then thing 1 would be left with nobody.
+  run.Add({ThingAt(1, {0.0, 0.0}), ThingAt(2, {6.0, 0.0})}, {TrackAt(1, {3.1, 0.0}), TrackAt(2, {9.5, 0.0})});
+  EXPECT_EQ(run.Score().num_missed, 0);
+}
+
+TEST(TrackMetrics, ConfirmationCountsFromTheFirstReturnAndByHowMuchIsSeen) {
+  Case run;
+  for (int n = 0; n < kNumScans; ++n) {
+    std::vector<TrackState> tracks;
+    if (n >= 8) tracks.push_back(TrackAt(1, {0.0, 0.0}));
+    if (n >= 25) tracks.push_back(TrackAt(2, {20.0, 0.0}));
+    run.Add({ThingAt(1, {0.0, 0.0}, n < 3 ? 0 : 9), ThingAt(2, {20.0, 0.0}, 1), ThingAt(3, {40.0, 0.0}, 2), ThingAt(4, {60.0, 0.0}, 0)}, tracks);
+  }
+  const auto scores = run.Score();
+  ASSERT_EQ(scores.confirmed_s[0].count(), 1U);
+  EXPECT_DOUBLE_EQ(scores.confirmed_s[0].Max(), 0.5);
+  ASSERT_EQ(scores.confirmed_s[1].count(), 2U);
+  EXPECT_DOUBLE_EQ(scores.confirmed_s[1].Median(), 2.5);
+  EXPECT_TRUE(std::isinf(scores.confirmed_s[1].Max()));  // never
+}
+
+TEST(TrackMetrics, FoundAgainWithTheSameIdOrNot) {
+  for (const bool is_same : {true, false}) {
+    Case run;
+    for (int n = 0; n < kNumScans; ++n) {
+      const bool is_hidden = n >= 10 && n < 30;
+      std::vector<TrackState> tracks;
+      if (!is_hidden) tracks.push_back(TrackAt(n < 30 || is_same ? 1 : 2, {0.0, 0.0}));
+      run.Add({ThingAt(1, {0.0, 0.0}, is_hidden ? 0 : 20)}, tracks);
+    }
+    const auto scores = run.Score();
+    EXPECT_EQ(scores.num_hidden, 1);
+    EXPECT_EQ(scores.num_found_again, is_same ? 1 : 0);
+    EXPECT_EQ(scores.num_switches, is_same ? 0 : 1);
+    EXPECT_EQ(scores.num_missed, 0);  // what is hidden need not be tracked
+  }
+}
+
+TEST(TrackMetrics, StandingThingsAndWhatIsSaidOfThem) {
+  Case run;
+  for (int n = 0; n < 10; ++n)
+    run.Add({ThingAt(1, {0.0, 0.0}), ThingAt(2, {9.0, 0.0})}, {TrackAt(1, {0.0, 0.0}, {0.3, 0.4}), TrackAt(2, {9.0, 0.0})});
+  const auto scores = run.Score();
+  EXPECT_DOUBLE_EQ(scores.standing_speed_mps.value(), 0.25);
+  EXPECT_EQ(scores.num_standing, 2);
+  EXPECT_EQ(scores.num_called_moving, 1);
+}
+
+TEST(TrackMetrics, ErrorsOfSpeedCourseAndCentreAfterThreeSeconds) {
+  Case run;
+  for (int n = 0; n < kNumScans; ++n) {
+    const Vector2d center_m(0.0, 0.2 * n);
+    auto boat = ThingAt(1, center_m, 20, {0.0, 2.0});
+    boat.outline_m = SquareAt(center_m, 4.0);
+    const Vector2d stated_mps = n < 30 ? Vector2d(9.0, 9.0) : Vector2d(2.5 * std::sin(0.1), 2.5 * std::cos(0.1));
+    run.Add({boat}, {TrackAt(1, center_m + Vector2d(0.0, 0.3), stated_mps)});
+  }
+  const auto scores = run.Score();
+  EXPECT_NEAR(scores.speed_error_mps.Max(), 0.5, 1e-9);
+  EXPECT_NEAR(scores.course_error_deg.Max(), 0.1 * 180.0 / 3.14159265, 1e-6);
+  EXPECT_NEAR(scores.center_error_m.Max(), 0.3, 1e-9);
+  EXPECT_DOUBLE_EQ(scores.called_standing.value(), 0.0);
+}
+
+TEST(TrackMetrics, ApproachIsComparedTenSecondsBefore) {
+  Case run;
+  for (int n = 0; n < 30; ++n) {
+    // The boat comes from the east at 4 m/s, 20 m north of the own one; gaps of hulls: 18 m, and it is abeam when centres are.
+    const Vector2d center_m(48.0 - 0.4 * n, 20.0);
+    run.Add({ThingAt(1, center_m, 20, {-4.0, 0.0})}, {TrackAt(1, center_m, {-4.0, 0.4})});
+    run.truth.back().own = TrueBoat{SquareAt({0.0, 0.0}), {0.0, 0.0}};
+  }
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.num_crossings, 1);
+  EXPECT_EQ(scores.num_crossings_untracked, 0);
+  // The stated path leads 0.4 m/s x 10 s farther off at the corner that passes.
+  EXPECT_GT(scores.cpa_error_m.value(), 3.0);
+  EXPECT_LT(scores.cpa_error_m.value(), 4.5);
+  EXPECT_LT(scores.tcpa_error_s.value(), 1.0);
+}
+
+TEST(TrackMetrics, StatedApproachCounts) {
+  Case run;
+  for (int n = 0; n < 30; ++n) {
+    const Vector2d center_m(48.0 - 0.4 * n, 20.0);
+    auto track = TrackAt(1, center_m, {-4.0, 0.0});
+    track.cpa_m = 16.0;
+    track.tcpa_s = 8.0;
+    run.Add({ThingAt(1, center_m, 20, {-4.0, 0.0})}, {track});
+    run.truth.back().own = TrueBoat{SquareAt({0.0, 0.0}), {0.0, 0.0}};
+  }
+  EXPECT_NEAR(run.Score().cpa_error_m.value(), 2.0, 1e-3);
+}
+
+TEST(TrackMetrics, WhatIsNoCovarianceIsCounted) {
+  Case run;
+  auto track = TrackAt(1, {0.0, 0.0});
+  track.covariance.setZero();
+  run.Add({ThingAt(1, {0.0, 0.0})}, {track});
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.num_bad_covariances, 1);
+  EXPECT_EQ(scores.position_nees.count, 0);
+}
+
+TEST(TrackMetrics, RunsAddUp) {
+  Case run;
+  for (int n = 0; n < 10; ++n) run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {0.0, 0.0}), TrackAt(2, {30.0, 0.0})});
+  auto twice = run.Score();
+  twice.Add(run.Score());
+  EXPECT_DOUBLE_EQ(twice.Mota(), run.Score().Mota());
+  EXPECT_DOUBLE_EQ(twice.Idf1(), run.Score().Idf1());
+  EXPECT_DOUBLE_EQ(twice.gospa.Rms(), run.Score().gospa.Rms());
+  EXPECT_DOUBLE_EQ(twice.FalseTracksPerMinute(), run.Score().FalseTracksPerMinute());
+  EXPECT_EQ(twice.num_runs, 2);
+}
+
+}  // namespace
+}  // namespace lookout::eval

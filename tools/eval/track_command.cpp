@@ -1,0 +1,181 @@
+#include "tools/eval/track_command.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <utility>
+
+#include "common/io/output_file.hpp"
+#include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
+#include "common/runtime/version.hpp"
+#include "tools/eval/baselines/nearest_neighbour.hpp"
+#include "tools/eval/figures.hpp"
+#include "tools/eval/track_run.hpp"
+#include "tools/eval/track_sources.hpp"
+#include "tools/eval/track_tables.hpp"
+#include "tools/replay/chain.hpp"
+#include "tools/sim/scene_file.hpp"
+
+namespace lookout::eval {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the returns of the chain's scans, at least so many are in the truth: else the two do not belong together.
+constexpr double kLeastJoined = 0.99;
+
+// One run: `feed` is called with the handler of its datagrams.
+template <typename Feed>
+std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const Feed& feed) {
+  std::optional<TrackRun> run;
+  replay::Chain chain(config_folder, {}, [&](Utime, std::string_view channel, Bytes bytes) {
+    if (!run->Add(channel, bytes)) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
+  });
+  feed([&](const replay::Datagram& datagram) {
+    io::ThrowIfStopAsked();
+    if (!run) run.emplace(truth, MakeTrackers(), TrackRun::Returns::kForgotten);  // the truth knows its objects now
+    chain.OnDatagram(datagram);
+  });
+  if (!run) throw std::runtime_error(scene + ": no datagram");
+  chain.Finish();
+  run->Finish();
+  if (run->num_scans() == 0) throw std::runtime_error(scene + ": no whole scan with a known position");
+  if (!(run->JoinedShare() >= kLeastJoined)) {
+    throw std::runtime_error(fmt::format("{}: only {:.1f} % of the returns are in the truth", scene, 100.0 * run->JoinedShare()));
+  }
+  std::vector<TrackRow> rows;
+  for (auto& row : run->Rows()) rows.push_back({scene, std::move(row)});
+  return rows;
+}
+
+// Of one run.
+void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Truth& truth, std::ostream& out) {
+  constexpr std::array<std::string_view, 3> kNames{"missed", "false", "switch"};
+  for (const auto& [scene, row] : rows) {
+    for (const auto& event : row.scores.events) {
+      const auto& name = event.thing == 0 ? std::string() : truth.objects().at(event.thing).name;
+      out << fmt::format("{},{},{},{},{},{},{},{},{:.2f},{:.2f}\n", scene, seed, row.tracker, event.utime_us,
+                         kNames.at(static_cast<std::size_t>(event.what)), name, event.num_returns, event.track, event.position_m.x(),
+                         event.position_m.y());
+    }
+  }
+}
+
+void AddTo(std::vector<TrackRow>& runs, std::vector<TrackRow> rows) {
+  runs.insert(runs.end(), std::make_move_iterator(rows.begin()), std::make_move_iterator(rows.end()));
+}
+
+std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* events) {
+  std::vector<TrackRow> runs;
+  runtime::Progress progress("lookout-eval", stderr);
+  const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
+  for (const auto& name : options.plan.scenes) {
+    const auto file = sim::FindScene(name, options.config_folder);
+    const auto scene = SceneLabel(name);
+    for (int k = 0; k < options.plan.num_seeds; ++k) {
+      const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
+      progress.Update(static_cast<double>(runs.size()) / static_cast<double>(MakeTrackers().size()) / num_runs,
+                      [&] { return fmt::format("{}, seed {}", scene, seed); });
+      Truth truth(1);
+      auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
+        SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
+      });
+      if (events != nullptr) WriteEvents(rows, seed, truth, *events);
+      AddTo(runs, std::move(rows));
+    }
+  }
+  return runs;
+}
+
+std::vector<TrackRow> RunCaptures(const TrackOptions& options, std::ostream* events) {
+  const auto captures = ListCaptures(options.captures);
+  if (captures.empty()) throw std::runtime_error(options.captures.string() + ": holds no capture (NAME-SEED.pcap.xz)");
+  const ConfigOfCaptures config(options.captures, options.config_folder);
+  const auto boat = config::LoadBoat(config.path());
+  std::vector<TrackRow> runs;
+  for (const auto& files : captures) {
+    std::cerr << fmt::format("lookout-eval: {}\n", files.capture.filename().string());
+    Truth truth(kCaptureToleranceUs);
+    auto rows = ScoreRun(config.path(), "second world: " + files.scene, truth,
+                         [&](const DatagramHandler& on_datagram) { ReadRun(files, boat, truth, on_datagram); });
+    if (events != nullptr) WriteEvents(rows, files.seed, truth, *events);
+    AddTo(runs, std::move(rows));
+  }
+  return runs;
+}
+
+// Rows by scene, and one over all of a world.
+void AddWorld(const std::vector<TrackRow>& runs, const std::string& name, std::vector<TrackRow>& rows) {
+  if (runs.empty()) return;
+  auto by_scene = AddUp(runs);
+  auto all = OverAll(by_scene, name);
+  AddTo(rows, std::move(by_scene));
+  AddTo(rows, std::move(all));
+}
+
+std::vector<ReadmeFigure> FiguresOf(const TrackOptions& options, bool has_captures, const std::vector<NamedTable>& tables) {
+  const auto& plan = options.plan;
+  const auto scope = fmt::format("Own simulator: {} scenes, {} seeds each from {} on, {:.0f} s a seed. The second world: {}.", plan.scenes.size(),
+                                 plan.num_seeds, plan.first_seed, plan.seconds, has_captures ? "all of its captures" : "not here");
+  const auto measured = fmt::format("Measured {} by `./dev figures`, version {}.", Today(), runtime::Version());
+  std::vector<ReadmeFigure> figures;
+  figures.reserve(tables.size());
+  for (const auto& [name, title, table, is_printed] : tables) figures.push_back({name, {title + ".", measured, scope}, table});
+  return figures;
+}
+
+}  // namespace
+
+MultiObjectTrackers MakeTrackers() {
+  MultiObjectTrackers trackers;
+  trackers.push_back(std::make_unique<NearestNeighbour>());
+  return trackers;
+}
+
+int EvaluateTracks(const TrackOptions& options) {
+  if (!options.plan.scenes.empty()) options.plan.CheckSeeds(options.is_tuning ? SeedUse::kTuning : SeedUse::kTables);
+  if (options.is_tuning && !(options.csv_folder.empty() && options.block_files.empty())) {
+    throw std::invalid_argument("--tuning: no table is written of seeds of tuning: leave out --csv and --blocks");
+  }
+  if (options.plan.scenes.empty() && options.captures.empty()) throw std::invalid_argument("--tracks needs --scenes or --captures");
+  replay::CheckConfig(options.config_folder);
+  io::CatchStopSignals();
+  // Outputs before all work.
+  FillBlocksOf(options.block_files, {});
+  std::vector<std::unique_ptr<io::OutputFile>> files;
+  if (!options.csv_folder.empty()) {
+    fs::create_directories(options.csv_folder);
+    for (const auto& table : TablesOf(std::vector<TrackRow>{})) {
+      files.push_back(std::make_unique<io::OutputFile>(options.csv_folder / (table.name + ".csv"), io::OutputOptions{.force = options.is_forced}));
+    }
+  }
+  std::optional<io::OutputFile> lost;
+  if (!options.lost_file.empty()) {
+    lost.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
+    lost->Write("scene,seed,tracker,utime_us,event,thing,num_returns,track_id,east_m,north_m\n");
+  }
+  std::ostream* const events = lost ? &lost->stream() : nullptr;
+  std::vector<TrackRow> rows;
+  AddWorld(RunScenes(options, events), "all scenes", rows);
+  const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
+  if (has_captures) AddWorld(RunCaptures(options, events), "second world: all", rows);
+  if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
+  if (lost) lost->Commit();
+  PrintTables(rows, std::cout);
+  const auto tables = TablesOf(rows);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    tables[i].table.PrintCsv(files[i]->stream());
+    files[i]->Commit();
+  }
+  if (!options.block_files.empty()) FillBlocksOf(options.block_files, FiguresOf(options, has_captures, tables));
+  return EXIT_SUCCESS;
+}
+
+}  // namespace lookout::eval

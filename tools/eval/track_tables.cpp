@@ -1,0 +1,134 @@
+#include "tools/eval/track_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lookout::eval {
+namespace {
+
+constexpr double kSecondsOfSwitches = 20.0;
+
+double Percent(double share) { return 100.0 * share; }
+
+double ShareOf(std::int64_t part, std::int64_t all) {
+  return all > 0 ? static_cast<double>(part) / static_cast<double>(all) : std::numeric_limits<double>::quiet_NaN();
+}
+
+// "never" where the time is infinite.
+std::string Percentile(const Summary& summary, int percent, int decimals) {
+  if (summary.count() == 0) return "-";
+  const double value = summary.Percentile(percent);
+  return std::isinf(value) ? "never" : Number(value, decimals);
+}
+
+std::string Count(std::size_t count) { return Number(static_cast<std::int64_t>(count)); }
+
+void Add(TrackRun::Row& sum, const TrackRun::Row& row) {
+  sum.scores.Add(row.scores);
+  sum.labels.segments.Add(row.labels.segments);
+  sum.labels.segments_land_one.Add(row.labels.segments_land_one);
+  sum.labels.tracks_land_one.Add(row.labels.tracks_land_one);
+}
+
+// A scene counts as one, however many scans it has.
+void AddValue(Mean& sum, const Mean& of_scene) {
+  if (of_scene.count > 0) sum.Add(of_scene.value());
+}
+
+NamedTable Identities(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "runs", "minutes", "MOTA_%", "IDF1_%", "missed_%", "false_%", "switches_20s", "no_switch_%", "false_tracks_min",
+               "GOSPA_m", "localisation_m", "missed_m", "false_m"});
+  for (const auto& [scene, row] : rows) {
+    const auto& scores = row.scores;
+    const auto& gospa = scores.gospa;
+    table.Add({scene, row.tracker, Number(scores.num_runs), Number(scores.seconds / 60.0, 2), Number(Percent(scores.Mota()), 1),
+               Number(Percent(scores.Idf1()), 1), Number(Percent(ShareOf(scores.num_missed, scores.num_expected)), 1),
+               Number(Percent(ShareOf(scores.num_false, scores.num_expected)), 1),
+               Number(static_cast<double>(scores.num_switches) * kSecondsOfSwitches / scores.seconds, 2),
+               Number(Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs)), 0), Number(scores.FalseTracksPerMinute(), 1),
+               Number(gospa.Rms(), 2), Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2), Number(gospa.FalseRms(), 2)});
+  }
+  return {"tracks_identities", "tracks: who is who (things in the water with 5 returns or more)", std::move(table)};
+}
+
+NamedTable Times(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "things_5+", "confirmed_median_s", "confirmed_95_s", "things_1-4", "confirmed_median_s", "confirmed_95_s",
+               "hidden", "found_again_%"});
+  for (const auto& [scene, row] : rows) {
+    const auto& [many, few] = row.scores.confirmed_s;
+    table.Add({scene, row.tracker, Count(many.count()), Percentile(many, 50, 2), Percentile(many, 95, 2), Count(few.count()), Percentile(few, 50, 2),
+               Percentile(few, 95, 2), Number(row.scores.num_hidden),
+               Number(Percent(ShareOf(row.scores.num_found_again, row.scores.num_hidden)), 0)});
+  }
+  return {"tracks_times", "tracks: from the first return to the first track, and found again after 1 to 10 s", std::move(table)};
+}
+
+NamedTable States(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "standing", "standing_mps", "called_moving", "moving_scans", "speed_95_mps", "course_95_deg", "called_standing_%",
+               "centre_median_m", "ANEES_position", "ANEES_velocity", "bad_covariances", "crossings", "untracked", "cpa_m", "tcpa_s"});
+  for (const auto& [scene, row] : rows) {
+    const auto& scores = row.scores;
+    table.Add({scene, row.tracker, Number(scores.num_standing), Number(scores.standing_speed_mps.value(), 3), Number(scores.num_called_moving),
+               Count(scores.speed_error_mps.count()), Percentile(scores.speed_error_mps, 95, 2), Percentile(scores.course_error_deg, 95, 1),
+               Number(Percent(scores.called_standing.value()), 1), Percentile(scores.center_error_m, 50, 2), Number(scores.position_nees.value(), 2),
+               Number(scores.velocity_nees.value(), 2), Number(scores.num_bad_covariances), Number(scores.num_crossings),
+               Number(scores.num_crossings_untracked), Number(scores.cpa_error_m.value(), 2), Number(scores.tcpa_error_s.value(), 2)});
+  }
+  return {"tracks_states", "tracks: where things are and how they move", std::move(table)};
+}
+
+NamedTable Labels(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "scans (all: scenes)", "segments_%", "segments_land_one_%", "tracks_land_one_%", "gain"});
+  for (const auto& [scene, row] : rows) {
+    const auto& labels = row.labels;
+    if (labels.segments.count == 0) continue;
+    table.Add({scene, row.tracker, Number(labels.segments.count), Number(Percent(labels.segments.value()), 1),
+               Number(Percent(labels.segments_land_one.value()), 1), Number(Percent(labels.tracks_land_one.value()), 1),
+               Number(Percent(labels.tracks_land_one.value() - labels.segments_land_one.value()), 1)});
+  }
+  return {"tracks_labels", "labels of returns: mIoU of SEGMENTS and of TRACKS", std::move(table)};
+}
+
+}  // namespace
+
+std::vector<TrackRow> AddUp(const std::vector<TrackRow>& runs) {
+  std::vector<TrackRow> rows;
+  for (const auto& run : runs) {
+    const auto same = std::ranges::find_if(rows, [&](const TrackRow& row) { return row.scene == run.scene && row.row.tracker == run.row.tracker; });
+    if (same == rows.end()) {
+      rows.push_back(run);
+    } else {
+      Add(same->row, run.row);
+    }
+  }
+  return rows;
+}
+
+std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::string& name) {
+  std::vector<TrackRow> all;
+  for (const auto& [scene, row] : rows) {
+    auto same = std::ranges::find_if(all, [&row = row](const TrackRow& one) { return one.row.tracker == row.tracker; });
+    if (same == all.end()) same = all.insert(all.end(), {name, {row.tracker, {}, {}}});
+    same->row.scores.Add(row.scores);
+    AddValue(same->row.labels.segments, row.labels.segments);
+    AddValue(same->row.labels.segments_land_one, row.labels.segments_land_one);
+    AddValue(same->row.labels.tracks_land_one, row.labels.tracks_land_one);
+  }
+  return all;
+}
+
+std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows) { return {Identities(rows), Times(rows), States(rows), Labels(rows)}; }
+
+void PrintTables(const std::vector<TrackRow>& rows, std::ostream& out) {
+  for (const auto& [name, title, table, is_printed] : TablesOf(rows)) {
+    if (table.empty()) continue;
+    out << title << '\n';
+    table.Print(out);
+    out << '\n';
+  }
+}
+
+}  // namespace lookout::eval
