@@ -21,7 +21,9 @@ constexpr std::size_t kKnee = 3;
 constexpr std::size_t kRim = 4;
 constexpr double kWallFootM = -1.0;  // of walls, below the water
 
-bool IsUpright(config::Scene::Edge edge) { return edge == config::Scene::FACE || edge == config::Scene::FENDERED; }
+bool IsUpright(config::Scene::Edge edge) {
+  return edge == config::Scene::FACE || edge == config::Scene::FENDERED || edge == config::Scene::SHEET_PILES;
+}
 
 // Ranges of the sizes of edges: drawn, from what is common at lakes and harbours.
 Stretch DrawStretch(const Land& land, double wall_top_m, double depth_m, Random& random) {
@@ -63,10 +65,11 @@ Stretch DrawStretch(const Land& land, double wall_top_m, double depth_m, Random&
       break;
     case Scene::FACE:
     case Scene::FENDERED:
+    case Scene::SHEET_PILES:
       stretch.top_m = wall_top_m;
       stretch.run_m = 0.0;
       stretch.hill_slope *= 0.2;
-      stretch.reach_m = stretch.edge == Scene::FENDERED ? 0.35 : 0.0;
+      stretch.reach_m = stretch.edge == Scene::FENDERED ? 0.35 : stretch.edge == Scene::SHEET_PILES ? kSheetPileReachM : 0.0;
       break;
   }
   if (stretch.cover == Scene::WOODS && !IsUpright(stretch.edge)) stretch.reach_m = std::max(stretch.reach_m, 1.5);  // boughs

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/schema/scene.pb.h"
@@ -11,7 +12,13 @@
 
 namespace lookout::sim {
 
-/// @return the scene with each number of own_boat_to, sea_to and effects_to drawn between that of own_boat, sea and effects and it
+/// @return the scene with its own boat and objects as in one of its layouts, drawn by weight: objects of others have the chance 0
+config::Scene WithDrawnLayout(const config::Scene& scene, std::uint64_t seed);
+
+/// @return own_boat with what the layout says of it
+config::Scene::OwnBoat OwnBoatIn(const config::Scene::Layout& layout, const config::Scene::OwnBoat& own_boat);
+
+/// @return the scene with each number of own_boat_to, sea_to and effects_to (of several one) drawn between that of own_boat, sea and effects and it
 config::Scene WithDrawnNumbers(const config::Scene& scene, std::uint64_t seed);
 
 /// @return one of `one_of`, drawn by weight, with what the object says besides; the object itself where it has no one_of
@@ -19,6 +26,10 @@ config::Scene::Object DrawMember(const config::Scene::Object& object, Random& ra
 
 /// Each of `one_of` with what the object says besides; the object itself where it has none.
 config::Scene::Object MergedWith(const config::Scene::Object& object, const config::Scene::Object& one);
+
+/// By which things lie beside the own boat, or abeam of it, where it is placed before them.
+inline constexpr std::string_view kOwnBoatName = "own_boat";
+inline constexpr std::string_view kOwnSidesName = "own_sides";
 
 /// Edges of things at which others may lie. All in the map.
 class Edges {

@@ -27,13 +27,16 @@ using File = config::Scene;
 constexpr std::uint64_t kSceneStream = 1;  // the own boat's waves and the land
 constexpr std::uint64_t kSeaStream = 101;
 constexpr std::uint64_t kOwnBoatStream = 102;
+constexpr std::uint64_t kRedrawStream = 200;        // and the next ones
 constexpr std::uint64_t kFirstObjectStream = 1000;  // and one for each object of the file
 
 constexpr double kOwnBoatClearanceM = 1.5;
 // M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
 const std::vector<Vector2d> kOwnOutline = Rectangle(-1.2, 1.2, -0.7, 0.7);
 constexpr int kMaxTries = 200;      // for an object to find a place
-constexpr int kMaxOwnTries = 3000;  // for the own boat, when it is placed last
+constexpr int kMaxOwnTries = 3000;  // for the own boat of a family
+constexpr int kMaxLayouts = 10;     // of a family, until the own boat has a place
+constexpr std::size_t kOwnBoatEdge = static_cast<std::size_t>(-1);
 
 // One message of the truth holds all objects and the own boat: below bus::kMaxMessageBytes (120 kB) with 400 bytes for its head and the own boat.
 constexpr std::size_t kMaxBytesOfObjects = 119'600;
@@ -127,19 +130,31 @@ std::uint64_t SeedOf(const File& file, std::uint64_t seed) {
 class Drawing {
  public:
   Drawing(const File& file, std::uint64_t seed, SceneFaults& faults)
-      : file_(WithDrawnNumbers(file, SeedOf(file, seed))),
-        seed_(SeedOf(file, seed)),
+      : file_(WithDrawnNumbers(file, seed)),
+        seed_(seed),
         faults_(faults),
         land_random_(seed_, kSceneStream),
         own_boat_random_(seed_, kOwnBoatStream),
         traffic_(file.lasts_s()) {}
 
-  Scene Run() {
+  // @return nullopt when a family's own boat has no place; why says no_place
+  std::optional<Scene> Run() {
     DrawWithoutObjects();
-    for (int i = 0; i < file_.object_size(); ++i) AddObjects(file_.object(i), i);
-    if (file_.own_boat().has_free_by_m()) PlaceOwnBoat();
+    const auto& own_boat = file_.own_boat();
+    bool is_to_place = own_boat.has_free_by_m();
+    for (int i = 0; i < file_.object_size(); ++i) {
+      if (is_to_place && own_boat.has_before() && file_.object(i).name() == own_boat.before()) {
+        if (!PlaceOwnBoat()) return std::nullopt;
+        is_to_place = false;
+        LetThingsLieBesideOwnBoat();
+      }
+      AddObjects(file_.object(i), i);
+    }
+    if (is_to_place && !PlaceOwnBoat()) return std::nullopt;
     return std::move(scene_);
   }
+
+  const std::string& no_place() const { return no_place_; }
 
  private:
   struct ShoreOnMap {
@@ -157,8 +172,8 @@ class Drawing {
     scene_.sea = Sea::Draw(file_.sea(), sea_random);
   }
 
-  // Where it keeps clear of everything.
-  void PlaceOwnBoat() {
+  // Where it keeps clear of everything there is. @return whether there is such a place
+  bool PlaceOwnBoat() {
     const auto& boat = file_.own_boat();
     std::optional<Approach> too_near;
     for (int num_tries = 0; num_tries < kMaxOwnTries; ++num_tries) {
@@ -174,10 +189,23 @@ class Drawing {
       too_near = traffic_.OfOwnBoat(motion, boat.free_by_m());
       if (too_near) continue;
       scene_.own_motion = motion;
-      return;
+      return true;
     }
     const std::string at_last = too_near ? fmt::format(": at the last it comes to {:.2f} m of {}", too_near->distance_m, too_near->name) : "";
-    Stop("own_boat", fmt::format("no place in {} tries{}", kMaxOwnTries, at_last));
+    no_place_ = fmt::format("no place in {} tries{}", kMaxOwnTries, at_last);
+    return false;
+  }
+
+  void LetThingsLieBesideOwnBoat() {
+    const OwnState start = StateAt(scene_.own_motion, 0.0, 0.0);
+    const Placement placement{start.position_map_m.head<2>(), start.heading_rad};
+    std::vector<Vector2d> edge_m;
+    for (const auto& p_m : kOwnOutline) edge_m.push_back(placement.ToMap(p_m));
+    // Starboard and port, from corner to corner of the outline, which begins at the stern to starboard.
+    edges_.Add(std::string(kOwnSidesName), kOwnBoatEdge, {edge_m[0], edge_m[1]}, false);
+    edges_.Add(std::string(kOwnSidesName), kOwnBoatEdge, {edge_m[2], edge_m[3]}, false);
+    edges_.Add(std::string(kOwnBoatName), kOwnBoatEdge, edge_m, true);
+    traffic_.SetOwnBoat(scene_.own_motion);
   }
 
   [[noreturn]] void Stop(const std::string& field, const std::string& reason) {
@@ -316,8 +344,8 @@ class Drawing {
   std::optional<Approach> IsInTheWay(const File::Object& file, const SceneObject& object, const std::optional<Edges::Found>& found, bool is_drawn,
                                      std::size_t num_before) const {
     const bool is_in_row = file.has_row();
-    if (auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
-    if (found && found->least_gap_m > 0.0) {
+    if (auto near = traffic_.ToOwnBoat(object, file_.own_boat().has_free_by_m() ? file_.own_boat().free_by_m() : kOwnBoatClearanceM)) return near;
+    if (found && found->least_gap_m > 0.0 && found->object != kOwnBoatEdge) {
       if (auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
     }
     // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
@@ -366,7 +394,7 @@ class Drawing {
           if (bytes_in_truth_ > kMaxBytesOfObjects) Stop(field, "too many objects, or too long an outline: all must fit into one message of 120 kB");
           AddEdges(entry.name(), object);
           if (found) row.along_m = found->next_along_m;
-          traffic_.Add(object);
+          traffic_.Add(object, file.is_passed_under());
           scene_.objects.push_back(std::move(object));
           break;
         }
@@ -394,12 +422,23 @@ class Drawing {
   Line line_m_;                        // of the body drawn last
   std::size_t num_front_ = 0;          // of it; 0: its whole outline
   std::size_t bytes_in_truth_ = 0;
+  std::string no_place_;
   std::map<File::Kind, int> num_unnamed_;
   std::set<std::string> names_;
 };
 
 }  // namespace
 
-Scene DrawScene(const File& scene, std::uint64_t seed, SceneFaults& faults) { return Drawing(scene, seed, faults).Run(); }
+Scene DrawScene(const File& scene, std::uint64_t seed, SceneFaults& faults) {
+  const std::uint64_t first_seed = SeedOf(scene, seed);
+  const File of_layout = WithDrawnLayout(scene, first_seed);  // once: those in which a place is hard to find come as often as they should
+  for (std::uint64_t i = 0;; ++i) {
+    Drawing drawing(of_layout, i == 0 ? first_seed : Random(first_seed, kRedrawStream + i).Next(), faults);
+    if (auto drawn = drawing.Run()) return std::move(*drawn);
+    if (i + 1 < kMaxLayouts) continue;
+    faults.Add("own_boat", fmt::format("seed {}: {}, in the last of {} layouts", seed, drawing.no_place(), kMaxLayouts));
+    faults.ThrowIfAny();
+  }
+}
 
 }  // namespace lookout::sim
