@@ -175,7 +175,7 @@ void AddEndFace(const Ground& ground, std::size_t vertex, const Material& materi
 }
 
 Coast MakeLandAlong(std::string_view kind, const Land& land, const Line& line_m, bool is_closed, Random& random) {
-  Coast coast{SceneObject{0, "", std::string(kind), Track{}, {}, {}}, line_m, 0};
+  Coast coast{SceneObject{0, "", std::string(kind), Track{}, {}, {}}, line_m};
   Ground ground;
   ground.vertices = WithBays(line_m, is_closed, land, random);
   const auto& vertices = ground.vertices;
@@ -215,6 +215,7 @@ Coast MakeLandAlong(std::string_view kind, const Land& land, const Line& line_m,
     // Where two stretches meet both count.
     const double reach_m = std::max(stretches[stretch_of[i]].reach_m, stretches[stretch_of[i > 0 ? i - 1 : 0]].reach_m);
     outline_m.emplace_back(vertices[i].place_m - reach_m * vertices[i].inland);
+    coast.reach_m.push_back(reach_m);
   }
   coast.num_front = outline_m.size();
   for (std::size_t i = vertices.size(); !is_closed && i-- > 0;) {

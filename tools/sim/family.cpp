@@ -112,9 +112,10 @@ File::Object DrawMember(const File::Object& object, Random& random) {
   return MergedWith(object, object.one_of(DrawByWeight(object.one_of(), random)));
 }
 
-void Edges::Add(const std::string& name, std::size_t object, std::vector<Vector2d> edge_m, bool is_closed) {
-  Edge edge{object, std::move(edge_m)};
+void Edges::Add(const std::string& name, std::size_t object, std::vector<Vector2d> edge_m, bool is_closed, std::vector<double> reach_m) {
+  Edge edge{object, std::move(edge_m), std::move(reach_m)};
   if (is_closed) edge.points_m.push_back(edge.points_m.front());
+  if (is_closed && !edge.reach_m.empty()) edge.reach_m.push_back(edge.reach_m.front());
   for (std::size_t i = 0; i + 1 < edge.points_m.size(); ++i) edge.length_m += (edge.points_m[i + 1] - edge.points_m[i]).norm();
   edges_[name].push_back(std::move(edge));
 }
@@ -166,7 +167,9 @@ std::optional<Edges::Found> Edges::Draw(const File::Beside& beside, const std::v
   placement.position_map_m = edge.points_m[segment] + (row.along_m - before_m + shift_m) * along + (gap_m - nearest_m) * out;
   const double next_m = row.along_m + last_m - first_m + (is_row ? DrawOf(beside.row_gap_m(), random) : 0.0);
   row.along_m += kRowRetryM;
-  return Found{placement, edge.object, 0.8 * beside.gap_m(0), next_m};
+  const bool is_built_out = turned == File::OUT && gap_m == 0.0 && !edge.reach_m.empty();
+  const double to_land_m = is_built_out ? std::max(edge.reach_m[segment], edge.reach_m[segment + 1]) : 0.0;
+  return Found{placement, edge.object, 0.8 * beside.gap_m(0), next_m, to_land_m};
 }
 
 }  // namespace lookout::sim

@@ -36,7 +36,8 @@ class Edges {
  public:
   /// @param name  of the object in the file: its members share it
   /// @param edge_m  water on its starboard side
-  void Add(const std::string& name, std::size_t object, std::vector<Eigen::Vector2d> edge_m, bool is_closed);
+  /// @param reach_m  of its points: how far they lie before the waterline; empty: on it
+  void Add(const std::string& name, std::size_t object, std::vector<Eigen::Vector2d> edge_m, bool is_closed, std::vector<double> reach_m = {});
 
   bool Has(const std::string& name) const { return edges_.contains(name); }
 
@@ -50,6 +51,7 @@ class Edges {
     std::size_t object = 0;     // beside which it lies, as given to Add
     double least_gap_m = 0.0;   // to keep from it
     double next_along_m = 0.0;  // of the row, when it may lie here
+    double to_land_m = 0.0;     // of what begins at the edge and runs out from it: how far the waterline lies behind that, at most
   };
 
   /// A try: whether something else lies there is not looked at.
@@ -65,6 +67,7 @@ class Edges {
   struct Edge {
     std::size_t object = 0;
     std::vector<Eigen::Vector2d> points_m;  // the first again at the end of a closed one
+    std::vector<double> reach_m;            // of each, or none
     double length_m = 0.0;
   };
   std::map<std::string, std::vector<Edge>> edges_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -94,6 +95,12 @@ OwnMotion DrawOwnMotion(const File::OwnBoat& boat, Random& random, Random& waves
 
 bool IsLand(File::Kind kind) {
   return kind == File::SHORE || kind == File::ISLAND || kind == File::COAST || kind == File::QUAY || kind == File::BREAKWATER;
+}
+
+// From its landward end on.
+bool IsBuiltOut(File::Kind kind) {
+  constexpr std::array kKinds{File::DOCK, File::PIER, File::JETTY, File::PONTOON, File::DOCK_BAYS, File::ANY_DOCK, File::PILE_PIER, File::BRIDGE};
+  return std::ranges::find(kKinds, kind) != kKinds.end();
 }
 
 // Of land with edges. A quay is a wall with fenders, a breakwater boulders, where nothing else is said.
@@ -216,6 +223,7 @@ class Drawing {
 
   SceneObject DrawBody(const File::Object& file, const std::string& field, Random& random) try {
     num_front_ = 0;  // that of land which found no place
+    reach_m_.clear();
     if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
       const bool is_pier = file.kind() == File::PILE_PIER;
       const Size size{Draw(file.length_m(), is_pier ? 30.0 : 80.0, random), Draw(file.width_m(), is_pier ? 3.0 : 8.0, random),
@@ -228,6 +236,7 @@ class Drawing {
       Coast coast = MakeLand(file, file.has_opposite() ? &along_m : nullptr, random);
       line_m_ = coast.line_m;
       num_front_ = coast.num_front;
+      reach_m_ = std::move(coast.reach_m);
       return std::move(coast.object);
     }
     const KindOfObject* kind = FindKind(file.kind());
@@ -335,7 +344,7 @@ class Drawing {
     const bool is_open = num_front_ > 0 && num_front_ < object.outline_m.size();
     const auto front_m = is_open ? std::vector<Vector2d>(object.outline_m.begin(), object.outline_m.begin() + static_cast<std::ptrdiff_t>(num_front_))
                                  : object.outline_m;
-    edges_.Add(name, scene_.objects.size(), to_map(front_m), !is_open);
+    edges_.Add(name, scene_.objects.size(), to_map(front_m), !is_open, std::exchange(reach_m_, {}));
     if (is_open) lines_[name] = to_map(line_m_);
     num_front_ = 0;
   }
@@ -395,6 +404,9 @@ class Drawing {
           AddEdges(entry.name(), object);
           if (found) row.along_m = found->next_along_m;
           traffic_.Add(object, file.is_passed_under());
+          // It would end at the border of the reeds. Nothing else lies there: all keep clear of the outline of the land.
+          constexpr double kIntoLandM = 0.5;
+          if (found && found->to_land_m > 0.0 && IsBuiltOut(file.kind())) ProlongToLand(found->to_land_m + kIntoLandM, object);
           scene_.objects.push_back(std::move(object));
           break;
         }
@@ -421,6 +433,7 @@ class Drawing {
   std::map<std::string, Line> lines_;  // of coasts, in the map
   Line line_m_;                        // of the body drawn last
   std::size_t num_front_ = 0;          // of it; 0: its whole outline
+  std::vector<double> reach_m_;        // of these vertices
   std::size_t bytes_in_truth_ = 0;
   std::string no_place_;
   std::map<File::Kind, int> num_unnamed_;

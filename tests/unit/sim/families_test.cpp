@@ -1,4 +1,5 @@
 // The families of the source tree, and what makes a scene one.
+#include <algorithm>
 #include <chrono>
 #include <gtest/gtest.h>
 #include <map>
@@ -176,6 +177,30 @@ TEST(Beside, ARowKeepsItsGapsAndEachMemberItsPartner) {
       "s", 5);
   ASSERT_EQ(pairs.objects.size(), 7U) << "a kayak for each ball";
   for (std::size_t i = 1; i <= 3; ++i) EXPECT_NEAR(DistanceM(OnMap(pairs.objects[i]), OnMap(pairs.objects[i + 3])), 1.0, 0.05);
+}
+
+// They ended at the border of the reeds, up to 4 m before the bank.
+TEST(Beside, DocksReachTheLandBehindReeds) {
+  for (const std::string dock : {"JETTY", "PONTOON", "DOCK_BAYS", "DOCK", "PIER", "PILE_PIER"}) {
+    const Scene scene = ParseScene(kBegin +
+                                       "own_boat { free_by_m: 1 north_m: -90 }\n"
+                                       "object { kind: COAST name: \"bank\" length_m: 120 heading_deg: 90 land { edge: REEDS } }\n"
+                                       "object { name: \"dock\" kind: " +
+                                       dock + " number: 1 beside { object: \"bank\" gap_m: 0 turned: OUT } }\n",
+                                   "s.txtpb", 3);
+    ASSERT_EQ(scene.objects.size(), 2U) << dock;
+    const auto& object = scene.objects[1];
+    double end_m = -90.0;
+    for (const auto& p_m : OnMap(object)) end_m = std::max(end_m, p_m.y());
+    EXPECT_GE(end_m, 0.4) << dock << ": the waterline is at 0";
+    EXPECT_LE(end_m, 5.0) << dock;
+    // Its parts with it.
+    for (const double along_m : {-0.3, 0.3}) {
+      const Ray down{{along_m, 0.0, 20.0}, -Eigen::Vector3d::UnitZ()};
+      EXPECT_TRUE(std::ranges::any_of(object.parts, [&](const Part& part) { return Intersect(part.solid, down).has_value(); }))
+          << dock << ' ' << along_m;
+    }
+  }
 }
 
 TEST(Opposite, BanksRunAtTheirDistance) {
