@@ -207,6 +207,7 @@ class Drawing {
     const OwnState start = StateAt(scene_.own_motion, 0.0, 0.0);
     const Placement placement{start.position_map_m.head<2>(), start.heading_rad};
     std::vector<Vector2d> edge_m;
+    edge_m.reserve(kOwnOutline.size());
     for (const auto& p_m : kOwnOutline) edge_m.push_back(placement.ToMap(p_m));
     // Starboard and port, from corner to corner of the outline, which begins at the stern to starboard.
     edges_.Add(std::string(kOwnSidesName), kOwnBoatEdge, {edge_m[0], edge_m[1]}, false);
