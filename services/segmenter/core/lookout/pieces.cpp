@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace lookout::segmenter {
 
@@ -216,7 +217,8 @@ void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
   entries_.resize(num);
 }
 
-// The circle without the widest gap between the columns of a piece; of equal gaps that over the seam, else the first.
+// The circle without the widest gap between the columns of a piece. Of equal gaps it is the one whose ends are farther off, as it would be wherever
+// the scan began and in the mirror. Where these are equal too, to the bit, the first: of a ring that looks the same all round, no rule could tell.
 void PieceTable::FindArcs(int num_columns) {
   columns_.assign(facts_.size(), {});
   for (const OutlineEntry& entry : entries_) {
@@ -224,18 +226,25 @@ void PieceTable::FindArcs(int num_columns) {
     ++facts_[static_cast<std::size_t>(entry.piece)].num_columns;
     if (columns.first < 0) {
       columns.first = entry.column;
-    } else if (const std::int32_t gap = entry.column - columns.last - 1; gap > columns.widest_gap) {
-      columns.widest_gap = gap;
-      columns.after_widest = entry.column;
+      columns.first_m = entry.near_point.range_m;
+    } else {
+      WidenGap(columns, entry.column, entry.column, entry.near_point.range_m);
     }
     columns.last = entry.column;
+    columns.last_m = entry.near_point.range_m;
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    const Columns& columns = columns_[piece];
-    const std::int32_t over_seam = columns.first + num_columns - columns.last - 1;
-    const bool is_seam_widest = over_seam >= columns.widest_gap;
-    facts_[piece].arc = {is_seam_widest ? columns.first : columns.after_widest, num_columns - std::max(over_seam, columns.widest_gap)};
+    Columns& columns = columns_[piece];
+    WidenGap(columns, columns.first + num_columns, columns.first, columns.first_m);  // over the seam
+    facts_[piece].arc = {columns.widest.after, num_columns - columns.widest.num};
   }
+}
+
+// @param column  that of `after`, counted on over the seam
+void PieceTable::WidenGap(Columns& columns, std::int32_t column, std::int32_t after, float range_m) {
+  Gap& widest = columns.widest;
+  const Gap gap{column - columns.last - 1, std::min(columns.last_m, range_m), std::max(columns.last_m, range_m), after};
+  if (std::tie(gap.num, gap.nearer_end_m, gap.farther_end_m) > std::tie(widest.num, widest.nearer_end_m, widest.farther_end_m)) widest = gap;
 }
 
 // In each line the circle without the widest gap between its returns there: of a piece all round, too, whatever column the scan begins with.

@@ -95,12 +95,20 @@ class PieceTable {
     double xy_m2 = 0.0;
     double yy_m2 = 0.0;
   };
+  // Empty columns between two that follow each other in a piece.
+  struct Gap {
+    std::int32_t num = -1;
+    float nearer_end_m = 0.0F;  // ranges of what is nearest in the two
+    float farther_end_m = 0.0F;
+    std::int32_t after = 0;  // the column that ends it
+  };
   // The widest gap between the columns of a piece, as far as they have been looked at.
   struct Columns {
     std::int32_t first = -1;
     std::int32_t last = 0;
-    std::int32_t widest_gap = 0;
-    std::int32_t after_widest = 0;
+    float first_m = 0.0F;
+    float last_m = 0.0F;
+    Gap widest;
   };
   // Returns of a piece in columns [first, last] of a line.
   struct Run {
@@ -127,6 +135,7 @@ class PieceTable {
   // What follows from sums, outlines and runs.
   void Measure(const ScanGrid& grid);
   void FindArcs(int num_columns);
+  static void WidenGap(Columns& columns, std::int32_t column, std::int32_t after, float range_m);
   void CountBeams(int num_columns);
   void FitLines(double column_step_rad);
 
