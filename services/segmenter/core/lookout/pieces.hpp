@@ -104,6 +104,7 @@ class PieceTable {
   };
   // The widest gap between the columns of a piece, as far as they have been looked at.
   struct Columns {
+    std::int32_t num = 0;
     std::int32_t first = -1;
     std::int32_t last = 0;
     float first_m = 0.0F;
@@ -132,7 +133,7 @@ class PieceTable {
   void MergeOutlines(std::span<const std::int32_t> group_of_piece);
   OutlineEntry* EntryOf(std::int32_t piece, std::size_t first_of_column, std::size_t end);
   void SortColumn(std::size_t first, std::size_t end);
-  // What follows from sums, outlines and runs.
+  // What follows from sums, outlines and runs, of the pieces that are new.
   void Measure(const ScanGrid& grid);
   void FindArcs(int num_columns);
   static void WidenGap(Columns& columns, std::int32_t column, std::int32_t after, float range_m);
@@ -141,6 +142,7 @@ class PieceTable {
 
   std::vector<std::int32_t> piece_of_return_;  // [returns]
   std::vector<PieceFacts> facts_;              // [pieces]
+  std::vector<bool> is_new_;                   // [pieces] since the last round
   std::vector<OutlineEntry> entries_;          // by column
   std::vector<std::size_t> begin_of_column_;   // [columns + 1]
   std::vector<Run> runs_;                      // line by line
