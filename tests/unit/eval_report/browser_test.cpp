@@ -327,6 +327,20 @@ TEST(Reliability, DotsAndBarsAreWhereTheNumbersOfTheTableSay) {
   for (const auto* count : {"2", "100", "1"}) EXPECT_TRUE(HasLabel(section, count)) << count;
 }
 
+TEST(Reliability, OfScenesIsFoldedAway) {
+  auto results = MadeUpResults();
+  auto& scenes = results.methods[0].by_scene;
+  scenes["rain"].confidence.segments = {{300, {900, 30, 270.0}}};
+  scenes["rain"].confidence.num_scans = 4;
+  const auto section = SectionOf(PageOf(results), "reliability");
+  EXPECT_EQ(CountOf(section, "<figure"), 3);
+  const auto folded = section.substr(section.find("<summary>By scene</summary>"));
+  EXPECT_EQ(CountOf(folded, "<figure"), 2);
+  EXPECT_TRUE(Holds(folded, "<figcaption>rain</figcaption>"));
+  EXPECT_TRUE(HasLabel(folded, "900"));
+  EXPECT_TRUE(Holds(folded, "<th scope=\"row\">0.8 to 0.9</th><td>100</td>"));
+}
+
 TEST(Reliability, WithoutSegmentsIsDrawnWithoutNan) {
   auto results = MadeUpResults();
   auto& confidence = results.methods[0].by_scene["dense"].confidence;

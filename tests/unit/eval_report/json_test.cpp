@@ -116,7 +116,7 @@ TEST(Json, BinsOfRangeHoldTheirMiddleAndNearRecallIsByMethod) {
 
 TEST(Json, HoldsBinsOfStatedProbability) {
   const auto methods = Parsed(MadeUpResults())["worlds"][0]["methods"];
-  const auto& bins = methods[0]["reliability"];
+  const auto& bins = methods[0]["total"]["reliability"];
   ASSERT_EQ(bins.size(), 10U);
   ExpectNear(bins[8]["from"], 0.8);
   ExpectNear(bins[8]["to"], 0.9);
@@ -126,7 +126,9 @@ TEST(Json, HoldsBinsOfStatedProbability) {
   EXPECT_EQ(bins[3]["num_segments"], 0);
   EXPECT_TRUE(bins[3]["stated"].is_null());
   EXPECT_TRUE(bins[3]["observed"].is_null());
-  EXPECT_TRUE(methods[1]["reliability"].empty()) << "it states no probability";
+  EXPECT_EQ(methods[0]["scenes"][0]["reliability"], bins);
+  EXPECT_TRUE(methods[0]["scenes"][2]["reliability"].empty()) << "nothing is known of that scene";
+  EXPECT_TRUE(methods[1]["total"]["reliability"].empty()) << "it states no probability";
 }
 
 TEST(Json, CountsWhatBecameOfThingsByKind) {

@@ -175,18 +175,23 @@ function thingsLost({ methods }) {
   return [
     table("Things of 5 returns or more with an IoU below 0.5, by what became of them, over all scenes", ["method", ...LOSS_HEADINGS],
       known.map((method) => [nameCell(method), ...lossCells(sum(method.outcomes))])),
-    ...known.filter(({ reliability }) => reliability.length).map(({ name, outcomes }) =>
+    ...known.filter(({ total }) => total.reliability.length).map(({ name, outcomes }) =>
       table(`${name}: by kind`, ["kind", ...LOSS_HEADINGS], outcomes.map((row) => [row.kind, ...lossCells(row)]))),
   ];
 }
 
+// Scenes differ in how much clutter they have: one of rain outweighs all others in the total.
 function reliability() {
-  const diagrams = inEachWorld(({ methods }) => methods.filter((method) => method.reliability.length)
-    .map((method) => reliabilityDiagram(method.name, method.reliability)));
+  const ofScenes = ({ scenes }, names) => {
+    const known = scenes.map((score, i) => [names[i], score?.reliability ?? []]).filter(([, bins]) => bins.length);
+    return known.length < 2 ? [] : [e("details", {}, e("summary", {}, "By scene"), ...known.map(([name, bins]) => reliabilityDiagram(name, bins)))];
+  };
+  const diagrams = inEachWorld(({ methods, scenes }) => methods.filter(({ total }) => total.reliability.length)
+    .flatMap((method) => [reliabilityDiagram(`${method.name}, all scenes`, method.total.reliability), ...ofScenes(method, scenes)]));
   return !diagrams.length ? [] : [
-    note("Over all scenes. A dot is the mean of the probabilities that the segments of a bin state, against the share of them most of whose returns are of " +
-      "an object. On the broken line both are the same; below it the method is surer than it should be. Bars, on a logarithmic axis: how many segments a " +
-      "bin holds. What is left out of a fit is judged by evidence that does not know its scene."),
+    note("A dot is the mean of the probabilities that the segments of a bin state, against the share of them most of whose returns are of an object. On the " +
+      "broken line both are the same; below it the method is surer than it should be. Bars, on a logarithmic axis: how many segments a bin holds. What is " +
+      "left out of a fit is judged by evidence that does not know its scene."),
     ...diagrams];
 }
 

@@ -135,7 +135,7 @@ export function reliabilityDiagram(title, bins) {
   });
   const counts = svg("chart", `${title}: segments a bin`, {
     ...frame, height: 136, marginTop: 16, marginBottom: 46, x, y: { type: "symlog", domain: [0, most] },
-    marks: [Plot.axisX({ ...axis, ...ends, label: "probability stated by a segment" }),
+    marks: [Plot.axisX({ ...axis, ...ends, label: "probability stated by a segment", labelOffset: 36 }),
       Plot.axisY({ ...axis, label: "segments", ticks: [] }),
       Plot.rectY(known, { x1: "from", x2: "to", y: "num_segments", inset: 2, fill: colourOf(1) }),
       Plot.ruleY([0], { stroke: "var(--faint)" }),
