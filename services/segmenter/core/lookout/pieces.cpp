@@ -36,7 +36,7 @@ int SharedColumns(const Arc& one, const Arc& other, int num_columns) {
 void PieceTable::Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count) {
   piece_of_return_.assign(piece_of_return.begin(), piece_of_return.end());
   facts_.assign(static_cast<std::size_t>(count), NoFacts());
-  is_new_.assign(facts_.size(), true);
+  is_new_.assign(facts_.size(), 1);
   SumReturns(grid);
   BuildOutlines(grid);
   FindRuns(grid);
@@ -152,7 +152,7 @@ void PieceTable::FindRuns(const ScanGrid& grid) {
 
 // In place: a group's number is at most that of its first piece.
 void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::int32_t count) {
-  is_new_.assign(static_cast<std::size_t>(count), false);
+  is_new_.assign(static_cast<std::size_t>(count), 0);
   std::size_t num_groups = 0;
   for (std::size_t piece = 0; piece < group_of_piece.size(); ++piece) {
     const auto group = static_cast<std::size_t>(group_of_piece[piece]);
@@ -162,7 +162,7 @@ void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::i
       ++num_groups;
       continue;
     }
-    is_new_[group] = true;
+    is_new_[group] = 1;
     PieceFacts& facts = facts_[group];
     const PieceFacts& other = facts_[piece];
     facts.num_returns += other.num_returns;
@@ -194,7 +194,7 @@ void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
     for (; i < begin_of_column_[column + 1]; ++i) {
       OutlineEntry other = entries_[i];
       other.piece = group_of_piece[static_cast<std::size_t>(other.piece)];
-      const bool is_new = is_new_[static_cast<std::size_t>(other.piece)];
+      const bool is_new = is_new_[static_cast<std::size_t>(other.piece)] != 0;
       has_new = has_new || is_new;
       OutlineEntry* const entry = is_new ? EntryOf(other.piece, first_of_column, num) : nullptr;
       if (entry == nullptr) {
@@ -230,7 +230,7 @@ void PieceTable::FindArcs(int num_columns) {
   columns_.assign(facts_.size(), {});
   for (const OutlineEntry& entry : entries_) {
     const auto piece = static_cast<std::size_t>(entry.piece);
-    if (!is_new_[piece]) continue;
+    if (is_new_[piece] == 0) continue;
     Columns& columns = columns_[piece];
     ++columns.num;
     if (columns.first < 0) {
@@ -243,7 +243,7 @@ void PieceTable::FindArcs(int num_columns) {
     columns.last_m = entry.near_point.range_m;
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    if (!is_new_[piece]) continue;
+    if (is_new_[piece] == 0) continue;
     Columns& columns = columns_[piece];
     WidenGap(columns, columns.first + num_columns, columns.first, columns.first_m);  // over the seam
     facts_[piece].num_columns = columns.num;
@@ -262,7 +262,7 @@ void PieceTable::WidenGap(Columns& columns, std::int32_t column, std::int32_t af
 void PieceTable::CountBeams(int num_columns) {
   spans_.assign(facts_.size(), {});
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    if (is_new_[piece]) facts_[piece].num_beams = 0;
+    if (is_new_[piece] != 0) facts_[piece].num_beams = 0;
   }
   const auto close = [this, num_columns](std::size_t piece) {
     const Span& span = spans_[piece];
@@ -271,7 +271,7 @@ void PieceTable::CountBeams(int num_columns) {
   };
   for (const Run& run : runs_) {
     const auto piece = static_cast<std::size_t>(run.piece);
-    if (!is_new_[piece]) continue;
+    if (is_new_[piece] == 0) continue;
     Span& span = spans_[piece];
     if (span.line != run.line) {
       close(piece);
@@ -287,7 +287,7 @@ void PieceTable::CountBeams(int num_columns) {
 void PieceTable::FitLines(double column_step_rad) {
   extents_.assign(facts_.size(), {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0.0});
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    if (!is_new_[piece]) continue;
+    if (is_new_[piece] == 0) continue;
     PieceFacts& facts = facts_[piece];
     const Sums& sums = sums_[piece];
     const double count = facts.num_returns;
@@ -314,7 +314,7 @@ void PieceTable::FitLines(double column_step_rad) {
   for (const OutlineEntry& entry : entries_) {
     const auto piece = static_cast<std::size_t>(entry.piece);
     const PieceFacts& facts = facts_[piece];
-    if (!is_new_[piece] || facts.num_returns == 1) continue;
+    if (is_new_[piece] == 0 || facts.num_returns == 1) continue;
     Extent& extent = extents_[piece];
     for (const LevelPoint* point : {&entry.near_point, &entry.far_point}) {
       const Eigen::Vector2d from_mean_m = Eigen::Vector2d(point->x_m, point->y_m) - facts.mean_m;
@@ -325,7 +325,7 @@ void PieceTable::FitLines(double column_step_rad) {
     }
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    if (!is_new_[piece] || facts_[piece].num_returns == 1) continue;
+    if (is_new_[piece] == 0 || facts_[piece].num_returns == 1) continue;
     facts_[piece].length_m = extents_[piece].greatest_m - extents_[piece].least_m;
     facts_[piece].radius_m = std::sqrt(extents_[piece].radius_m2);
   }

@@ -142,7 +142,7 @@ class PieceTable {
 
   std::vector<std::int32_t> piece_of_return_;  // [returns]
   std::vector<PieceFacts> facts_;              // [pieces]
-  std::vector<bool> is_new_;                   // [pieces] since the last round
+  std::vector<std::uint8_t> is_new_;           // [pieces] 1: built or merged since the last round, and to be measured
   std::vector<OutlineEntry> entries_;          // by column
   std::vector<std::size_t> begin_of_column_;   // [columns + 1]
   std::vector<Run> runs_;                      // line by line
