@@ -72,6 +72,7 @@ cp -r "$source_folder/config/demo" "$odd/config"
 for locale in C "${locales[-1]}"; do
   export LC_ALL=$locale
   rm -rf "$odd/logs"
+  : >"$work/up.txt"  # what the one before printed must not stand for what this one will
   (cd "$odd" && exec bin/lookout-up --config config --log printed) >"$work/up.txt" 2>&1 &
   up_pid=$!
   for _ in $(seq 300); do

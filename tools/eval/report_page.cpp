@@ -54,8 +54,22 @@ Json TimesOf(const std::vector<double>& time_ms) {
   return {{"median", summary.Median()}, {"p99", summary.Percentile(99)}, {"mean", mean_ms}, {"sd", deviations.Rms()}};
 }
 
+Json ReliabilityJsonOf(const Confidence& confidence) {
+  Json json = Json::array();
+  const auto bins = ReliabilityOf(confidence);
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    const auto num_bins = static_cast<double>(bins.size());
+    json.push_back({{"from", static_cast<double>(i) / num_bins},
+                    {"to", static_cast<double>(i + 1) / num_bins},
+                    {"num_segments", bins[i].count},
+                    {"stated", bins[i].stated},
+                    {"observed", bins[i].observed}});
+  }
+  return json;
+}
+
 Json FiguresOf(const Score& score) {
-  Json json{{"num_scans", score.num_scans()}, {"time_ms", TimesOf(score.time_ms)}};
+  Json json{{"num_scans", score.num_scans()}, {"time_ms", TimesOf(score.time_ms)}, {"reliability", ReliabilityJsonOf(score.confidence)}};
   for (const auto& figure : kFigures) json[figure.name] = figure.unit * (score.*figure.mean).value();
   return json;
 }
@@ -125,6 +139,16 @@ Json WorstScanOf(const WorstScan& worst) {
   return json;
 }
 
+Json OutcomesOf(const std::map<std::string, Outcomes>& outcomes_by_kind) {
+  Json rows = Json::array();
+  for (const auto& [kind, outcomes] : outcomes_by_kind) {
+    Json row{{"kind", PrintableLines(kind)}};
+    for (std::size_t i = 0; i < kOutcomeNames.size(); ++i) row[std::string(kOutcomeNames[i])] = outcomes.count[i];
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 // Columns of scenes and kinds are those of the world.
 Json MethodOf(const Results& world, const MethodResult& method, const std::set<std::string>& kinds) {
   Score total = Total(method);
@@ -139,6 +163,7 @@ Json MethodOf(const Results& world, const MethodResult& method, const std::set<s
   for (const auto& kind : kinds) json["kinds_iou_percent"].push_back(100.0 * total.iou_by_kind[kind].value());
   json["iou_by_range"] = ByRange(total.iou_by_range);
   json["recall_by_range"] = ByRange(total.recall_by_range);
+  json["outcomes"] = OutcomesOf(total.outcomes_by_kind);
   json["stages"] = Json::array();
   for (const auto& [stage, time_ms] : method.stage_ms) json["stages"].push_back({{"name", stage}, {"time_ms", TimesOf(time_ms)}});
   json["worst"] = Json::array();

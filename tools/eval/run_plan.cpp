@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "common/config/text_config.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "tools/sim/scene_file.hpp"
@@ -27,13 +28,31 @@ void RunPlan::CheckSeeds(SeedUse use) const {
 
 std::string SceneLabel(const std::string& name_or_path) { return std::filesystem::path(name_or_path).stem().string(); }
 
-void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
-                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan, const std::string& program) {
+namespace {
+
+// A layout that a seed cannot draw is told before hours are spent on the others.
+std::vector<std::filesystem::path> CheckedFiles(const RunPlan& plan, const Boat& boat, std::FILE* progress, const std::string& program) {
+  runtime::Progress shown(program, progress);
   std::vector<std::filesystem::path> files;
+  config::FaultList faults;
   for (const auto& scene : plan.scenes) {
     files.push_back(sim::FindScene(scene, boat.config_folder));
-    sim::LoadScene(files.back(), plan.first_seed);
+    for (int k = 0; k < plan.num_seeds; ++k) {
+      io::ThrowIfStopAsked();
+      faults.Try([&] { sim::LoadScene(files.back(), plan.first_seed + static_cast<std::uint64_t>(k)); });
+      const double done = static_cast<double>(files.size()) - 1.0 + static_cast<double>(k) / plan.num_seeds;
+      shown.Update(done / static_cast<double>(plan.scenes.size()), [] { return "checking the layouts"; });
+    }
   }
+  faults.ThrowIfAny();
+  return files;
+}
+
+}  // namespace
+
+void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
+                 const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan, const std::string& program) {
+  const auto files = CheckedFiles(plan, boat, progress, program);
   runtime::Progress shown(program, progress);
   const auto num_runs = static_cast<double>(files.size()) * plan.num_seeds;
   for (std::size_t i = 0; i < files.size(); ++i) {

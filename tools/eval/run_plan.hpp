@@ -43,7 +43,8 @@ std::string SceneLabel(const std::string& name_or_path);
 ///
 /// @param progress  for people (runtime::Progress); nullptr: silent
 /// @param program   whose lines they are
-/// @throws config::ConfigError for a scene that is wrong; all are loaded with their first seed before the first is rendered
+/// @throws config::ConfigError for scenes that are wrong, with the faults of all: each is laid out with each of its seeds before the first is
+/// rendered
 void ForEachScan(const RunPlan& plan, const Boat& boat, std::FILE* progress,
                  const std::function<void(const ScanPlace&, const LabelledScan&)>& on_scan, const std::string& program = "lookout-eval");
 

@@ -20,6 +20,8 @@ constexpr std::int64_t kMaxBracketUs = 100'000;
 constexpr std::int64_t kMaxScanUs = 250'000;
 // So many objects tell a shift of all from the noise of one.
 constexpr std::size_t kMinObjects = 3;
+// A kayak on a wave shows five returns, the paddler's head, and in the next scan sixty, with the hull below: their centres are of different outlines.
+constexpr int kMostTimesReturns = 2;
 // As georeferencer: below it an outline counts as a line.
 constexpr double kMinAreaRatio = 1e-4;
 
@@ -58,6 +60,10 @@ Vector2d Center(const std::vector<Vector2d>& hull) {
   }
   if (doubled_area_m2 <= 2.0 * kMinAreaRatio * extent_m2) return origin + sum / static_cast<double>(hull.size());
   return origin + weighted / (3.0 * doubled_area_m2);
+}
+
+bool IsSeenAlike(const SeenObstacle& before, const SeenObstacle& after) {
+  return std::max(before.num_points, after.num_points) <= kMostTimesReturns * std::min(before.num_points, after.num_points);
 }
 
 }  // namespace
@@ -118,7 +124,7 @@ SeenSummary Summarise(std::span<const SeenObstacle> obstacles, const std::functi
     Summary sd_m;
     for (const auto& [object_id, before] : scan->second) {
       const auto after = next.find(object_id);
-      if (after == next.end()) continue;
+      if (after == next.end() || !IsSeenAlike(*before, *after->second)) continue;
       east_m.Add(after->second->error_m.x() - before->error_m.x());
       north_m.Add(after->second->error_m.y() - before->error_m.y());
       sd_m.Add(before->sd_m());

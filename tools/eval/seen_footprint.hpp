@@ -70,7 +70,8 @@ struct SeenSummary {
   Mean nees;        // per degree of freedom
   Mean in_ellipse;  // share, 0 to 1
   // From one scan to the next: how far the errors of all objects moved together (median over three objects or more, each by its obstacle with most
-  // returns, so that an outline which changes its shape does not count), and that over the median of the deviations stated before.
+  // returns, and none that has less than half of its returns in one of the two: the centre of a hull and that of the head above it are not the same
+  // point), and that over the median of the deviations stated before.
   Summary jump_m;
   Summary jump_sds;
 };

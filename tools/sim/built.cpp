@@ -74,4 +74,13 @@ SceneObject MakeBridge(const Size& size, Random& random) {
   return bridge;
 }
 
+void ProlongToLand(double by_m, SceneObject& dock) {
+  Part root = dock.parts.front();
+  for (auto& p_m : std::get<Prism>(root.solid).footprint_m) p_m.x() = p_m.x() > 0.0 ? 0.0 : -by_m;
+  dock.parts.push_back(std::move(root));
+  for (auto& p_m : dock.outline_m) {
+    if (p_m.x() <= 0.0) p_m.x() = -by_m;
+  }
+}
+
 }  // namespace lookout::sim

@@ -14,4 +14,7 @@ SceneObject MakePilePier(const Size& size, Random& random);
 /// A deck on massive piers. The origin as of a pier.
 SceneObject MakeBridge(const Size& size, Random& random);
 
+/// Prolongs the deck of a dock, pier or bridge, its first part, beyond its landward end.
+void ProlongToLand(double by_m, SceneObject& dock);
+
 }  // namespace lookout::sim

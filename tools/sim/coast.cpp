@@ -21,7 +21,9 @@ constexpr std::size_t kKnee = 3;
 constexpr std::size_t kRim = 4;
 constexpr double kWallFootM = -1.0;  // of walls, below the water
 
-bool IsUpright(config::Scene::Edge edge) { return edge == config::Scene::FACE || edge == config::Scene::FENDERED; }
+bool IsUpright(config::Scene::Edge edge) {
+  return edge == config::Scene::FACE || edge == config::Scene::FENDERED || edge == config::Scene::SHEET_PILES;
+}
 
 // Ranges of the sizes of edges: drawn, from what is common at lakes and harbours.
 Stretch DrawStretch(const Land& land, double wall_top_m, double depth_m, Random& random) {
@@ -63,10 +65,11 @@ Stretch DrawStretch(const Land& land, double wall_top_m, double depth_m, Random&
       break;
     case Scene::FACE:
     case Scene::FENDERED:
+    case Scene::SHEET_PILES:
       stretch.top_m = wall_top_m;
       stretch.run_m = 0.0;
       stretch.hill_slope *= 0.2;
-      stretch.reach_m = stretch.edge == Scene::FENDERED ? 0.35 : 0.0;
+      stretch.reach_m = stretch.edge == Scene::FENDERED ? 0.35 : stretch.edge == Scene::SHEET_PILES ? kSheetPileReachM : 0.0;
       break;
   }
   if (stretch.cover == Scene::WOODS && !IsUpright(stretch.edge)) stretch.reach_m = std::max(stretch.reach_m, 1.5);  // boughs
@@ -172,7 +175,7 @@ void AddEndFace(const Ground& ground, std::size_t vertex, const Material& materi
 }
 
 Coast MakeLandAlong(std::string_view kind, const Land& land, const Line& line_m, bool is_closed, Random& random) {
-  Coast coast{SceneObject{0, "", std::string(kind), Track{}, {}, {}}, line_m, 0};
+  Coast coast{SceneObject{0, "", std::string(kind), Track{}, {}, {}}, line_m};
   Ground ground;
   ground.vertices = WithBays(line_m, is_closed, land, random);
   const auto& vertices = ground.vertices;
@@ -212,6 +215,7 @@ Coast MakeLandAlong(std::string_view kind, const Land& land, const Line& line_m,
     // Where two stretches meet both count.
     const double reach_m = std::max(stretches[stretch_of[i]].reach_m, stretches[stretch_of[i > 0 ? i - 1 : 0]].reach_m);
     outline_m.emplace_back(vertices[i].place_m - reach_m * vertices[i].inland);
+    coast.reach_m.push_back(reach_m);
   }
   coast.num_front = outline_m.size();
   for (std::size_t i = vertices.size(); !is_closed && i-- > 0;) {

@@ -17,6 +17,7 @@ using google::protobuf::Message;
 using File = config::Scene;
 
 constexpr std::uint64_t kNumbersStream = 103;
+constexpr std::uint64_t kLayoutStream = 104;
 constexpr double kRowRetryM = 0.7;  // further along after a place in a row was not free
 
 // Numbers that may also be ranges are left to those who draw them.
@@ -44,6 +45,17 @@ void ClearListsOf(const Message& one, Message& merged) {
   }
 }
 
+// @return number of one of them, by weight
+template <typename Weighted>
+int DrawByWeight(const google::protobuf::RepeatedPtrField<Weighted>& all, Random& random) {
+  double sum = 0.0;
+  for (const auto& one : all) sum += one.weight();
+  double rest = random.Uniform(0.0, sum);
+  int drawn = 0;
+  while (drawn + 1 < all.size() && rest >= all[drawn].weight()) rest -= all[drawn++].weight();
+  return drawn;
+}
+
 double DrawOf(const google::protobuf::RepeatedField<double>& numbers, Random& random) {
   return numbers.size() == 1 ? numbers[0] : random.Uniform(numbers[0], numbers[1]);
 }
@@ -61,7 +73,29 @@ File WithDrawnNumbers(const File& scene, std::uint64_t seed) {
     DrawBetween(scene.sea_to(), random, sea);
     sea.set_wavelength_m(std::max(sea.wavelength_m(), kLeastLengthOfHeight * sea.significant_height_m()));
   }
-  if (scene.has_effects_to()) DrawBetween(scene.effects_to(), random, *drawn.mutable_effects());
+  const int num_effects = scene.effects_to_size();
+  const int effects = num_effects > 1 ? static_cast<int>(random.Uniform() * num_effects) : 0;
+  if (num_effects > 0) DrawBetween(scene.effects_to(effects), random, *drawn.mutable_effects());
+  return drawn;
+}
+
+File::OwnBoat OwnBoatIn(const File::Layout& layout, const File::OwnBoat& own_boat) {
+  File::OwnBoat merged = own_boat;
+  ClearListsOf(layout.own_boat(), merged);
+  merged.MergeFrom(layout.own_boat());
+  return merged;
+}
+
+File WithDrawnLayout(const File& scene, std::uint64_t seed) {
+  if (scene.layout().empty()) return scene;
+  Random random(seed, kLayoutStream);
+  const auto& layout = scene.layout(DrawByWeight(scene.layout(), random));
+  File drawn = scene;
+  *drawn.mutable_own_boat() = OwnBoatIn(layout, scene.own_boat());
+  for (auto& object : *drawn.mutable_object()) {
+    const auto& names = object.layout();
+    if (!names.empty() && std::ranges::find(names, layout.name()) == names.end()) object.set_chance(0.0);
+  }
   return drawn;
 }
 
@@ -75,17 +109,13 @@ File::Object MergedWith(const File::Object& object, const File::Object& one) {
 
 File::Object DrawMember(const File::Object& object, Random& random) {
   if (object.one_of().empty()) return object;
-  double sum = 0.0;
-  for (const auto& one : object.one_of()) sum += one.weight();
-  double rest = random.Uniform(0.0, sum);
-  int drawn = 0;
-  while (drawn + 1 < object.one_of_size() && rest >= object.one_of(drawn).weight()) rest -= object.one_of(drawn++).weight();
-  return MergedWith(object, object.one_of(drawn));
+  return MergedWith(object, object.one_of(DrawByWeight(object.one_of(), random)));
 }
 
-void Edges::Add(const std::string& name, std::size_t object, std::vector<Vector2d> edge_m, bool is_closed) {
-  Edge edge{object, std::move(edge_m)};
+void Edges::Add(const std::string& name, std::size_t object, std::vector<Vector2d> edge_m, bool is_closed, std::vector<double> reach_m) {
+  Edge edge{object, std::move(edge_m), std::move(reach_m)};
   if (is_closed) edge.points_m.push_back(edge.points_m.front());
+  if (is_closed && !edge.reach_m.empty()) edge.reach_m.push_back(edge.reach_m.front());
   for (std::size_t i = 0; i + 1 < edge.points_m.size(); ++i) edge.length_m += (edge.points_m[i + 1] - edge.points_m[i]).norm();
   edges_[name].push_back(std::move(edge));
 }
@@ -137,7 +167,9 @@ std::optional<Edges::Found> Edges::Draw(const File::Beside& beside, const std::v
   placement.position_map_m = edge.points_m[segment] + (row.along_m - before_m + shift_m) * along + (gap_m - nearest_m) * out;
   const double next_m = row.along_m + last_m - first_m + (is_row ? DrawOf(beside.row_gap_m(), random) : 0.0);
   row.along_m += kRowRetryM;
-  return Found{placement, edge.object, 0.8 * beside.gap_m(0), next_m};
+  const bool is_built_out = turned == File::OUT && gap_m == 0.0 && !edge.reach_m.empty();
+  const double to_land_m = is_built_out ? std::max(edge.reach_m[segment], edge.reach_m[segment + 1]) : 0.0;
+  return Found{placement, edge.object, 0.8 * beside.gap_m(0), next_m, to_land_m};
 }
 
 }  // namespace lookout::sim

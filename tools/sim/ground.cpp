@@ -27,6 +27,7 @@ constexpr Material kClothes{0.4};
 // Sizes in this file are drawn from what is common ashore. So many parts at most, as a scene's time goes with them.
 constexpr int kMaxReeds = 220;
 constexpr int kMaxTrees = 90;
+constexpr int kMaxFolds = 120;
 constexpr double kBuriedM = 0.5;  // what stands on a slope begins below the ground
 
 // Places things on one stretch.
@@ -156,8 +157,9 @@ void AddReeds(const Stretch& stretch, Gardener& gardener, Random& random) {
   }
 }
 
-void AddFenders(const Stretch& stretch, const Ground& ground, Gardener& gardener, Random& random, std::vector<Part>& parts) {
-  const auto at_wall = [&](double vertex, double before_m) -> Vector2d { return ground.At(vertex, -before_m).head<2>(); };
+// @param out_m  by how much what they hang on stands out of the waterline
+void AddFenders(const Stretch& stretch, const Ground& ground, double out_m, Gardener& gardener, Random& random, std::vector<Part>& parts) {
+  const auto at_wall = [&](double vertex, double before_m) -> Vector2d { return ground.At(vertex, -before_m - out_m).head<2>(); };
   const double fender_radius_m = random.Uniform(0.08, 0.17);
   const double fender_bottom_m = random.Uniform(0.1, 0.5) * stretch.top_m;
   const int num_fenders = gardener.Count(random.Uniform(2.0, 12.0), 60);
@@ -180,6 +182,23 @@ void AddFenders(const Stretch& stretch, const Ground& ground, Gardener& gardener
   }
 }
 
+// Folds that stand out and hollows between them, to below the top. Pairs of Z and U profiles are 1 to 1.5 m wide and 0.2 to 0.5 m deep.
+//
+// @return by how much they stand out
+double AddSheetPiles(const Stretch& stretch, const Ground& ground, Gardener& gardener, Random& random) {
+  const double deep_m = random.Uniform(0.15, 0.35);
+  const double out_share = random.Uniform(0.35, 0.6);
+  const int num_folds = gardener.Count(random.Uniform(1.0, 1.5), kMaxFolds);
+  const double fold_m = out_share * stretch.length_m / std::max(num_folds, 1);
+  const double beam_m = random.Uniform(0.0, 0.4);  // above them
+  for (int i = 0; i < num_folds; ++i) {
+    const double vertex = gardener.At((i + 0.5) / num_folds);
+    const double foot_m = ground.At(vertex, -deep_m / 2.0).z();
+    gardener.Box(vertex, -deep_m / 2.0, fold_m, deep_m, 0.0, stretch.top_m - beam_m - foot_m, kIron);
+  }
+  return deep_m;
+}
+
 void AddBoulders(Gardener& gardener, double spacing_m, double from_m, double to_m, double least_m, double most_m, Random& random) {
   const int count = gardener.Count(spacing_m, 200);
   for (int i = 0; i < count; ++i) {
@@ -197,7 +216,11 @@ void AddEdge(const Stretch& stretch, const Ground& ground, Random& random, std::
   using config::Scene;
   Gardener gardener(stretch, ground, random, parts);
   if (stretch.edge == Scene::REEDS) AddReeds(stretch, gardener, random);
-  if (stretch.edge == Scene::FENDERED) AddFenders(stretch, ground, gardener, random, parts);
+  if (stretch.edge == Scene::FENDERED) AddFenders(stretch, ground, 0.0, gardener, random, parts);
+  if (stretch.edge == Scene::SHEET_PILES) {
+    const double deep_m = AddSheetPiles(stretch, ground, gardener, random);
+    AddFenders(stretch, ground, deep_m, gardener, random, parts);
+  }
   if (stretch.edge == Scene::RIPRAP) AddBoulders(gardener, random.Uniform(0.6, 1.2), -0.2, stretch.run_m, 0.25, 0.8, random);
 }
 

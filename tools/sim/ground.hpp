@@ -38,6 +38,9 @@ struct Ground {
   Eigen::Vector2d DirectionAt(double vertex) const;
 };
 
+/// How far folds and fenders of a wall of sheet piles stand out of the waterline.
+inline constexpr double kSheetPileReachM = 0.7;
+
 /// Adds what stands in the water before a stretch and on its edge.
 void AddEdge(const Stretch& stretch, const Ground& ground, Random& random, std::vector<Part>& parts);
 

@@ -109,6 +109,7 @@ void CheckNameAndSize(const File::Object& object, Checker& check) {
   const auto is_allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
   check.RefuseIf(object.has_name() && (object.name().empty() || !std::ranges::all_of(object.name(), is_allowed)), "name",
                  "must consist of lower case letters, digits and _ (is \"" + object.name() + "\")");
+  check.RefuseIf(object.name() == kOwnBoatName || object.name() == kOwnSidesName, "name", "is that of the own boat");
   if (HasFreeSizes(object)) return;
   const KindOfObject* kind = FindKind(object.kind());
   const Size usual = kind == nullptr ? Size{} : kind->usual;
@@ -168,8 +169,6 @@ void CheckScene(const File& scene, SceneFaults& faults) {
   if (scene.description().empty() || !std::ranges::all_of(scene.description(), is_printable)) {
     faults.Add("description", "must be one line of printable ASCII");
   }
-  Checker own_boat(scene.own_boat(), "own_boat.", faults);
-  if (scene.own_boat().has_ellipse()) own_boat.Forbid({"heading_deg", "speed_mps", "turn_rate_degps", "beside"}, "the ellipse says it");
   Checker own_boat_to(scene.own_boat_to(), "own_boat_to.", faults);
   own_boat_to.Forbid({"east_m", "north_m", "heading_deg", "speed_mps", "turn_rate_degps", "ellipse", "beside"},
                      "own_boat says it, as a range where it is drawn");
@@ -181,12 +180,27 @@ void CheckScene(const File& scene, SceneFaults& faults) {
   const auto check_beside = [&names, &faults](const auto& place, const std::string& path) {
     if (!names.contains(place.object())) faults.Add(path + ".object", "there is no object of this name before it");
   };
-  if (scene.own_boat().has_beside()) {
-    for (const auto& object : scene.object()) names.insert(object.name());
-    check_beside(scene.own_boat().beside(), "own_boat.beside");
-    own_boat.RefuseIf(scene.own_boat().beside().gap_m().empty(), "beside.gap_m", "must be set");
-    own_boat.RefuseIf(!scene.own_boat().has_free_by_m(), "beside", "only with free_by_m");
+  const auto check_own_boat = [&](const File::OwnBoat& own_boat, const std::string& path) {
+    Checker check(own_boat, path + ".", faults);
+    if (own_boat.has_ellipse()) check.Forbid({"heading_deg", "speed_mps", "turn_rate_degps", "beside"}, "the ellipse says it");
+    if (!own_boat.has_free_by_m()) check.Forbid({"beside", "before"}, "only with free_by_m");
+    const auto& objects = scene.object();
+    const auto before = std::ranges::find(objects, own_boat.before(), &File::Object::name);
+    check.RefuseIf(own_boat.has_before() && before == objects.end(), "before", "there is no object of this name");
+    if (!own_boat.has_beside()) return;
+    for (auto object = objects.begin(); object != (own_boat.has_before() ? before : objects.end()); ++object) names.insert(object->name());
+    check_beside(own_boat.beside(), path + ".beside");
+    check.RefuseIf(own_boat.beside().gap_m().empty(), "beside.gap_m", "must be set");
     names.clear();
+  };
+  check_own_boat(scene.own_boat(), "own_boat");
+  std::set<std::string> layouts;
+  for (int i = 0; i < scene.layout_size(); ++i) {
+    const auto& layout = scene.layout(i);
+    const std::string path = "layout[" + std::to_string(i) + "]";
+    if (!layouts.insert(layout.name()).second) faults.Add(path + ".name", "there are two layouts of the name " + layout.name());
+    Checker(layout.own_boat(), path + ".own_boat.", faults).Forbid({"free_by_m", "before"}, "own_boat says it");
+    check_own_boat(OwnBoatIn(layout, scene.own_boat()), path + ".own_boat");
   }
   bool has_shore = false;
   for (int i = 0; i < scene.object_size(); ++i) {
@@ -198,6 +212,8 @@ void CheckScene(const File& scene, SceneFaults& faults) {
       CheckLand(object, check);
       CheckPlace(object, has_shore, check);
       CheckPath(object, check);
+      check.RefuseIf(object.is_passed_under() && object.kind() != File::PILE_PIER && object.kind() != File::BRIDGE, "is_passed_under",
+                     "only a pier on piles or a bridge has it");
       if (object.has_beside()) check_beside(object.beside(), one_path + ".beside");
       check.RefuseIf(object.has_beside() && object.beside().gap_m().empty(), "beside.gap_m", "must be set");
       if (object.has_opposite()) check_beside(object.opposite(), one_path + ".opposite");
@@ -207,10 +223,17 @@ void CheckScene(const File& scene, SceneFaults& faults) {
       has_shore = has_shore || object.kind() == File::SHORE;
     };
     const auto& object = scene.object(i);
+    if (scene.own_boat().has_before() && object.name() == scene.own_boat().before()) {
+      names.insert({std::string(kOwnBoatName), std::string(kOwnSidesName)});
+    }
+    for (int k = 0; k < object.layout_size(); ++k) {
+      const std::string layout_path = path + ".layout[" + std::to_string(k) + "]";
+      if (!layouts.contains(object.layout(k))) faults.Add(layout_path, "there is no layout of the name " + object.layout(k));
+    }
     if (object.one_of().empty()) check_one(object, path);
     for (int k = 0; k < object.one_of_size(); ++k) {
       Checker one(object.one_of(k), path + ".one_of[" + std::to_string(k) + "].", faults);
-      one.Forbid({"name", "count", "number", "chance", "one_of"}, "the object around it says it");
+      one.Forbid({"name", "count", "number", "chance", "one_of", "layout"}, "the object around it says it");
     }
     for (int k = 0; k < object.one_of_size(); ++k) check_one(MergedWith(object, object.one_of(k)), path + ".one_of[" + std::to_string(k) + "]");
     names.insert(object.name());

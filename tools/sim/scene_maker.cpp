@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -27,13 +28,16 @@ using File = config::Scene;
 constexpr std::uint64_t kSceneStream = 1;  // the own boat's waves and the land
 constexpr std::uint64_t kSeaStream = 101;
 constexpr std::uint64_t kOwnBoatStream = 102;
+constexpr std::uint64_t kRedrawStream = 200;        // and the next ones
 constexpr std::uint64_t kFirstObjectStream = 1000;  // and one for each object of the file
 
 constexpr double kOwnBoatClearanceM = 1.5;
 // M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
 const std::vector<Vector2d> kOwnOutline = Rectangle(-1.2, 1.2, -0.7, 0.7);
 constexpr int kMaxTries = 200;      // for an object to find a place
-constexpr int kMaxOwnTries = 3000;  // for the own boat, when it is placed last
+constexpr int kMaxOwnTries = 3000;  // for the own boat of a family
+constexpr int kMaxLayouts = 10;     // of a family, until the own boat has a place
+constexpr std::size_t kOwnBoatEdge = static_cast<std::size_t>(-1);
 
 // One message of the truth holds all objects and the own boat: below bus::kMaxMessageBytes (120 kB) with 400 bytes for its head and the own boat.
 constexpr std::size_t kMaxBytesOfObjects = 119'600;
@@ -93,6 +97,12 @@ bool IsLand(File::Kind kind) {
   return kind == File::SHORE || kind == File::ISLAND || kind == File::COAST || kind == File::QUAY || kind == File::BREAKWATER;
 }
 
+// From its landward end on.
+bool IsBuiltOut(File::Kind kind) {
+  constexpr std::array kKinds{File::DOCK, File::PIER, File::JETTY, File::PONTOON, File::DOCK_BAYS, File::ANY_DOCK, File::PILE_PIER, File::BRIDGE};
+  return std::ranges::find(kKinds, kind) != kKinds.end();
+}
+
 // Of land with edges. A quay is a wall with fenders, a breakwater boulders, where nothing else is said.
 Coast MakeLand(const File::Object& file, const Line* along_m, Random& random) {
   const bool is_closed = file.kind() == File::ISLAND || file.kind() == File::BREAKWATER;
@@ -127,19 +137,31 @@ std::uint64_t SeedOf(const File& file, std::uint64_t seed) {
 class Drawing {
  public:
   Drawing(const File& file, std::uint64_t seed, SceneFaults& faults)
-      : file_(WithDrawnNumbers(file, SeedOf(file, seed))),
-        seed_(SeedOf(file, seed)),
+      : file_(WithDrawnNumbers(file, seed)),
+        seed_(seed),
         faults_(faults),
         land_random_(seed_, kSceneStream),
         own_boat_random_(seed_, kOwnBoatStream),
         traffic_(file.lasts_s()) {}
 
-  Scene Run() {
+  // @return nullopt when a family's own boat has no place; why says no_place
+  std::optional<Scene> Run() {
     DrawWithoutObjects();
-    for (int i = 0; i < file_.object_size(); ++i) AddObjects(file_.object(i), i);
-    if (file_.own_boat().has_free_by_m()) PlaceOwnBoat();
+    const auto& own_boat = file_.own_boat();
+    bool is_to_place = own_boat.has_free_by_m();
+    for (int i = 0; i < file_.object_size(); ++i) {
+      if (is_to_place && own_boat.has_before() && file_.object(i).name() == own_boat.before()) {
+        if (!PlaceOwnBoat()) return std::nullopt;
+        is_to_place = false;
+        LetThingsLieBesideOwnBoat();
+      }
+      AddObjects(file_.object(i), i);
+    }
+    if (is_to_place && !PlaceOwnBoat()) return std::nullopt;
     return std::move(scene_);
   }
+
+  const std::string& no_place() const { return no_place_; }
 
  private:
   struct ShoreOnMap {
@@ -157,8 +179,8 @@ class Drawing {
     scene_.sea = Sea::Draw(file_.sea(), sea_random);
   }
 
-  // Where it keeps clear of everything.
-  void PlaceOwnBoat() {
+  // Where it keeps clear of everything there is. @return whether there is such a place
+  bool PlaceOwnBoat() {
     const auto& boat = file_.own_boat();
     std::optional<Approach> too_near;
     for (int num_tries = 0; num_tries < kMaxOwnTries; ++num_tries) {
@@ -174,10 +196,24 @@ class Drawing {
       too_near = traffic_.OfOwnBoat(motion, boat.free_by_m());
       if (too_near) continue;
       scene_.own_motion = motion;
-      return;
+      return true;
     }
     const std::string at_last = too_near ? fmt::format(": at the last it comes to {:.2f} m of {}", too_near->distance_m, too_near->name) : "";
-    Stop("own_boat", fmt::format("no place in {} tries{}", kMaxOwnTries, at_last));
+    no_place_ = fmt::format("no place in {} tries{}", kMaxOwnTries, at_last);
+    return false;
+  }
+
+  void LetThingsLieBesideOwnBoat() {
+    const OwnState start = StateAt(scene_.own_motion, 0.0, 0.0);
+    const Placement placement{start.position_map_m.head<2>(), start.heading_rad};
+    std::vector<Vector2d> edge_m;
+    edge_m.reserve(kOwnOutline.size());
+    for (const auto& p_m : kOwnOutline) edge_m.push_back(placement.ToMap(p_m));
+    // Starboard and port, from corner to corner of the outline, which begins at the stern to starboard.
+    edges_.Add(std::string(kOwnSidesName), kOwnBoatEdge, {edge_m[0], edge_m[1]}, false);
+    edges_.Add(std::string(kOwnSidesName), kOwnBoatEdge, {edge_m[2], edge_m[3]}, false);
+    edges_.Add(std::string(kOwnBoatName), kOwnBoatEdge, edge_m, true);
+    traffic_.SetOwnBoat(scene_.own_motion);
   }
 
   [[noreturn]] void Stop(const std::string& field, const std::string& reason) {
@@ -188,6 +224,7 @@ class Drawing {
 
   SceneObject DrawBody(const File::Object& file, const std::string& field, Random& random) try {
     num_front_ = 0;  // that of land which found no place
+    reach_m_.clear();
     if (file.kind() == File::PILE_PIER || file.kind() == File::BRIDGE) {
       const bool is_pier = file.kind() == File::PILE_PIER;
       const Size size{Draw(file.length_m(), is_pier ? 30.0 : 80.0, random), Draw(file.width_m(), is_pier ? 3.0 : 8.0, random),
@@ -200,6 +237,7 @@ class Drawing {
       Coast coast = MakeLand(file, file.has_opposite() ? &along_m : nullptr, random);
       line_m_ = coast.line_m;
       num_front_ = coast.num_front;
+      reach_m_ = std::move(coast.reach_m);
       return std::move(coast.object);
     }
     const KindOfObject* kind = FindKind(file.kind());
@@ -307,7 +345,7 @@ class Drawing {
     const bool is_open = num_front_ > 0 && num_front_ < object.outline_m.size();
     const auto front_m = is_open ? std::vector<Vector2d>(object.outline_m.begin(), object.outline_m.begin() + static_cast<std::ptrdiff_t>(num_front_))
                                  : object.outline_m;
-    edges_.Add(name, scene_.objects.size(), to_map(front_m), !is_open);
+    edges_.Add(name, scene_.objects.size(), to_map(front_m), !is_open, std::exchange(reach_m_, {}));
     if (is_open) lines_[name] = to_map(line_m_);
     num_front_ = 0;
   }
@@ -316,8 +354,8 @@ class Drawing {
   std::optional<Approach> IsInTheWay(const File::Object& file, const SceneObject& object, const std::optional<Edges::Found>& found, bool is_drawn,
                                      std::size_t num_before) const {
     const bool is_in_row = file.has_row();
-    if (auto near = traffic_.ToOwnBoat(object, kOwnBoatClearanceM)) return near;
-    if (found && found->least_gap_m > 0.0) {
+    if (auto near = traffic_.ToOwnBoat(object, file_.own_boat().has_free_by_m() ? file_.own_boat().free_by_m() : kOwnBoatClearanceM)) return near;
+    if (found && found->least_gap_m > 0.0 && found->object != kOwnBoatEdge) {
       if (auto near = traffic_.ToOne(object, found->least_gap_m, found->object)) return near;
     }
     // Neighbours in a row are as near as its gaps say, and exact places as near as they are written; but no two hulls are in one place.
@@ -366,7 +404,10 @@ class Drawing {
           if (bytes_in_truth_ > kMaxBytesOfObjects) Stop(field, "too many objects, or too long an outline: all must fit into one message of 120 kB");
           AddEdges(entry.name(), object);
           if (found) row.along_m = found->next_along_m;
-          traffic_.Add(object);
+          traffic_.Add(object, file.is_passed_under());
+          // It would end at the border of the reeds. Nothing else lies there: all keep clear of the outline of the land.
+          constexpr double kIntoLandM = 0.5;
+          if (found && found->to_land_m > 0.0 && IsBuiltOut(file.kind())) ProlongToLand(found->to_land_m + kIntoLandM, object);
           scene_.objects.push_back(std::move(object));
           break;
         }
@@ -393,13 +434,25 @@ class Drawing {
   std::map<std::string, Line> lines_;  // of coasts, in the map
   Line line_m_;                        // of the body drawn last
   std::size_t num_front_ = 0;          // of it; 0: its whole outline
+  std::vector<double> reach_m_;        // of these vertices
   std::size_t bytes_in_truth_ = 0;
+  std::string no_place_;
   std::map<File::Kind, int> num_unnamed_;
   std::set<std::string> names_;
 };
 
 }  // namespace
 
-Scene DrawScene(const File& scene, std::uint64_t seed, SceneFaults& faults) { return Drawing(scene, seed, faults).Run(); }
+Scene DrawScene(const File& scene, std::uint64_t seed, SceneFaults& faults) {
+  const std::uint64_t first_seed = SeedOf(scene, seed);
+  const File of_layout = WithDrawnLayout(scene, first_seed);  // once: those in which a place is hard to find come as often as they should
+  for (std::uint64_t i = 0;; ++i) {
+    Drawing drawing(of_layout, i == 0 ? first_seed : Random(first_seed, kRedrawStream + i).Next(), faults);
+    if (auto drawn = drawing.Run()) return std::move(*drawn);
+    if (i + 1 < kMaxLayouts) continue;
+    faults.Add("own_boat", fmt::format("seed {}: {}, in the last of {} layouts", seed, drawing.no_place(), kMaxLayouts));
+    faults.ThrowIfAny();
+  }
+}
 
 }  // namespace lookout::sim

@@ -16,6 +16,7 @@ constexpr double kStepS = 0.2;
 // M. Jeong, A. Quattrini Li, IROS 2021: Catabot, 2.4 m x 1.4 m.
 constexpr double kOwnHalfLengthM = 1.2;
 constexpr double kOwnHalfWidthM = 0.7;
+constexpr double kHeadroomM = 2.5;  // a man who stands on its deck, and a little more
 
 double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -128,7 +129,23 @@ double Traffic::NearestM(const Mover& a, const Mover& b, double limit_m) const {
   return nearest_m;
 }
 
-void Traffic::Add(const SceneObject& object) { others_.push_back(ToMover(object)); }
+void Traffic::Add(const SceneObject& object, bool is_passed_under) {
+  others_.push_back(ToMover(object));
+  if (!is_passed_under) return obstacles_.push_back(others_.back());
+  for (const auto& part : object.parts) {
+    const Bounds bounds = BoundsOf(part.solid);
+    if (bounds.low_m >= kHeadroomM) continue;
+    Vector2d min_m = bounds.points_m.front();
+    Vector2d max_m = min_m;
+    for (const auto& p_m : bounds.points_m) {
+      min_m = min_m.cwiseMin(p_m);
+      max_m = max_m.cwiseMax(p_m);
+    }
+    SceneObject low = object;
+    low.outline_m = Rectangle(min_m.x() - bounds.radius_m, max_m.x() + bounds.radius_m, min_m.y() - bounds.radius_m, max_m.y() + bounds.radius_m);
+    obstacles_.push_back(ToMover(low));
+  }
+}
 
 std::optional<Approach> Traffic::ToOwnBoat(const SceneObject& object, double limit_m) const {
   if (!own_boat_) return std::nullopt;
@@ -156,7 +173,7 @@ std::optional<Approach> Traffic::ToOne(const SceneObject& object, double limit_m
 
 std::optional<Approach> Traffic::OfOwnBoat(const OwnMotion& own_motion, double limit_m) const {
   const Mover own_boat = ToMover(own_motion);
-  for (const auto& other : others_) {
+  for (const auto& other : obstacles_) {
     const double distance_m = NearestM(own_boat, other, limit_m);
     if (distance_m < limit_m) return Approach{distance_m, other.name, limit_m};
   }

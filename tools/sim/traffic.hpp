@@ -35,7 +35,9 @@ class Traffic {
   void SetOwnBoat(const OwnMotion& own_motion);
 
   /// From now on it is in the way of others.
-  void Add(const SceneObject& object);
+  ///
+  /// @param is_passed_under  the own boat keeps clear of those of its parts alone that reach lower than 2.5 m above the water
+  void Add(const SceneObject& object, bool is_passed_under = false);
 
   /// @return how near it comes to the own boat when that is less than `limit_m`
   std::optional<Approach> ToOwnBoat(const SceneObject& object, double limit_m) const;
@@ -77,6 +79,7 @@ class Traffic {
   int num_samples_;
   std::optional<Mover> own_boat_;
   std::vector<Mover> others_;
+  std::vector<Mover> obstacles_;  // of the own boat: the others, or what they stand on
 };
 
 }  // namespace lookout::sim

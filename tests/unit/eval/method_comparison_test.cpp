@@ -406,6 +406,26 @@ TEST(Seeds, BeyondTheGreatestNumberAreRefused) {
   EXPECT_THROW(CheckSeeds(SeedUse::kTuning, kGreatest, 3), std::invalid_argument);
 }
 
+// Only the first seed was: a later one ended a run of an hour.
+TEST(Seeds, AreAllCheckedBeforeTheFirstIsRendered) {
+  const support::TempDir folder;
+  const auto scene = folder / "ends.txtpb";
+  support::WriteFile(scene, "description: \"ends\"\nown_boat {}\nobject { kind: BUOY name: \"in_the_way\" chance: 0.2 }\n");
+  RunPlan plan = SmallPlan(scene.string());
+  while (plan.first_seed < 100) {
+    try {
+      ForEachScan(plan, Catabot(), nullptr, [](const ScanPlace&, const LabelledScan&) {});
+      break;
+    } catch (const config::ConfigError&) {
+      ++plan.first_seed;
+    }
+  }
+  plan.num_seeds = 50;
+  int num_scans = 0;
+  EXPECT_THROW(ForEachScan(plan, Catabot(), nullptr, [&num_scans](const ScanPlace&, const LabelledScan&) { ++num_scans; }), config::ConfigError);
+  EXPECT_EQ(num_scans, 0) << "from seed " << plan.first_seed << " on, which is right";
+}
+
 TEST(ResultTables, EmptyResultsGiveNoTable) { EXPECT_TRUE(TablesOf(Results{}).empty()); }
 
 TEST(ResultTables, OursIsHeldAgainstTheBestPeers) {

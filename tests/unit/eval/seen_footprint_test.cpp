@@ -106,5 +106,19 @@ TEST(Summarise, AJumpIsWhatAllObjectsMakeTogether) {
   EXPECT_NEAR(summary.jump_sds.Max(), 0.3 / std::sqrt(0.02), 1e-9);
 }
 
+// Two kayaks came out of a wave in one scan, heads first and then hulls: of five objects seen, that looked like a jump of all.
+TEST(Summarise, AnObjectOfWhichMoreIsSeenIsNoPartOfAJump) {
+  std::vector<SeenObstacle> seen;
+  for (const int object_id : {1, 2, 3, 4, 5}) seen.push_back(At(0, object_id, 0.0));
+  for (const int object_id : {1, 2, 3, 4, 5}) seen.push_back(At(1, object_id, object_id <= 3 ? 0.01 * object_id : 0.5));
+  seen[3].num_points = 4;
+  seen[4].num_points = 21;
+  const auto summary = Summarise(seen, [](const SeenObstacle&) { return true; });
+  ASSERT_EQ(summary.jump_m.count(), 1U);
+  EXPECT_NEAR(summary.jump_m.Max(), 0.02, 1e-12);
+  seen[2].num_points = 30;  // two are left
+  EXPECT_EQ(Summarise(seen, [](const SeenObstacle&) { return true; }).jump_m.count(), 0U);
+}
+
 }  // namespace
 }  // namespace lookout::eval

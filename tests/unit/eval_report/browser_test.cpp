@@ -1,5 +1,6 @@
 // The page as a browser shows it.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <limits>
@@ -94,8 +95,8 @@ TEST(Page, HasItsSectionsAndALinkToEach) {
     EXPECT_NE(SectionOf(page, id), "") << id;
     ++num_links;
   }
-  EXPECT_EQ(num_links, 12);
-  EXPECT_EQ(CountOf(page, "<section "), 12);
+  EXPECT_EQ(num_links, 14);
+  EXPECT_EQ(CountOf(page, "<section "), 14);
   EXPECT_FALSE(Holds(page, "NaN"));
   EXPECT_TRUE(Holds(SectionOf(page, "run"), "lookout-eval --scenes 'dense' &lt;&amp;&gt;"));
   EXPECT_TRUE(Holds(SectionOf(page, "run"), "3 a scene (5 to 7), 2.0 s each"));
@@ -109,13 +110,14 @@ TEST(Page, HostileTextStaysText) {
   results.command = results.version = results.computer = results.scenes[1] = results.methods[1].method = hostile;
   results.methods[0].stage_ms[hostile] = {1.0};
   results.methods[0].worst[0].scene = hostile;
+  results.methods[0].by_scene["dense"].outcomes_by_kind[hostile].count = {1, 1, 0, 0, 0, 0};
   results.methods[0].worst[0].truth.objects[1] = {hostile, hostile, true};
   results.curves[0].title = results.curves[0].note = results.curves[0].lines[0].name = hostile;
   results.other_worlds = {MadeUpResults()};
   results.other_worlds[0].world = hostile;
   results.other_worlds[0].notes = {hostile};
   const auto page = PageOf(results);
-  EXPECT_EQ(CountOf(page, "<section "), 12);
+  EXPECT_EQ(CountOf(page, "<section "), 14);
   EXPECT_FALSE(Holds(page, "<script"));
   EXPECT_FALSE(Holds(page, "<img"));
   EXPECT_GT(CountOf(page, "&lt;/script&gt;&lt;script&gt;"), 20);
@@ -278,6 +280,84 @@ TEST(Page, NumbersAreRoundedAsInTheTables) {
   EXPECT_TRUE(Holds(figure, "<th scope=\"row\">0.12</th><td>0.38</td>"));
   EXPECT_TRUE(Holds(figure, "<th scope=\"row\">1.00</th><td>1.00</td>"));
   EXPECT_TRUE(Holds(figure, "<th scope=\"row\">2.00</th><td>-2.67</td>"));
+}
+
+// Of the markup from a label on: an attribute of each of the elements within the group of that label.
+std::vector<double> NumbersOf(const std::string& figure, const std::string& label, const std::string& attribute) {
+  std::vector<double> numbers;
+  const auto begin = figure.find("<g aria-label=\"" + label + "\"");
+  if (begin == std::string::npos) return numbers;
+  const auto group = figure.substr(begin, figure.find("</g>", begin) - begin);
+  const auto name = " " + attribute + "=\"";
+  for (auto at = group.find(name, group.find('>')); at != std::string::npos; at = group.find(name, at + 1)) {
+    numbers.push_back(std::stod(group.substr(at + name.size())));
+  }
+  return numbers;
+}
+
+TEST(Reliability, DotsAndBarsAreWhereTheNumbersOfTheTableSay) {
+  const auto section = SectionOf(PageOf(MadeUpResults()), "reliability");
+  EXPECT_EQ(CountOf(section, "<figure"), 1) << "the others state no probability";
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">0.0 to 0.1</th><td>2</td><td>0.050</td><td>0.000</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">0.3 to 0.4</th><td>0</td><td>-</td><td>-</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">0.8 to 0.9</th><td>100</td><td>0.850</td><td>0.800</td>"));
+  EXPECT_TRUE(Holds(section, "<th scope=\"row\">0.9 to 1.0</th><td>1</td><td>1.000</td><td>1.000</td>"));
+
+  // The line from (0, 0) to (1, 1) is the scale.
+  const auto diagonal = section.substr(section.find(" d=\"M", section.find("<g aria-label=\"line\"")) + 4);
+  double left = 0.0;
+  double bottom = 0.0;
+  double right = 0.0;
+  double top = 0.0;
+  ASSERT_EQ(std::sscanf(diagonal.c_str(), "M%lf,%lfL%lf,%lf", &left, &bottom, &right, &top), 4) << diagonal.substr(0, 80);
+  const auto x = NumbersOf(section, "dot", "cx");
+  const auto y = NumbersOf(section, "dot", "cy");
+  const std::vector<std::pair<double, double>> expected{{0.05, 0.0}, {0.85, 0.8}, {1.0, 1.0}};
+  ASSERT_EQ(x.size(), expected.size()) << "an empty bin has no dot";
+  ASSERT_EQ(y.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR((x[i] - left) / (right - left), expected[i].first, 1e-3);
+    EXPECT_NEAR((y[i] - bottom) / (top - bottom), expected[i].second, 1e-3);
+  }
+
+  const auto heights = NumbersOf(section, "rect", "height");
+  ASSERT_EQ(heights.size(), 3U) << "an empty bin has no bar";
+  EXPECT_NEAR((heights[0] + 4.0) / (heights[1] + 4.0), std::log1p(2.0) / std::log1p(100.0), 0.01) << "4 pixels are the space around a bar";
+  EXPECT_NEAR((heights[2] + 4.0) / (heights[1] + 4.0), std::log1p(1.0) / std::log1p(100.0), 0.01);
+  for (const auto* count : {"2", "100", "1"}) EXPECT_TRUE(HasLabel(section, count)) << count;
+}
+
+TEST(Reliability, OfScenesIsFoldedAway) {
+  auto results = MadeUpResults();
+  auto& scenes = results.methods[0].by_scene;
+  scenes["rain"].confidence.segments = {{300, {900, 30, 270.0}}};
+  scenes["rain"].confidence.num_scans = 4;
+  const auto section = SectionOf(PageOf(results), "reliability");
+  EXPECT_EQ(CountOf(section, "<figure"), 3);
+  const auto folded = section.substr(section.find("<summary>By scene</summary>"));
+  EXPECT_EQ(CountOf(folded, "<figure"), 2);
+  EXPECT_TRUE(Holds(folded, "<figcaption>rain</figcaption>"));
+  EXPECT_TRUE(HasLabel(folded, "900"));
+  EXPECT_TRUE(Holds(folded, "<th scope=\"row\">0.8 to 0.9</th><td>100</td>"));
+}
+
+TEST(Reliability, WithoutSegmentsIsDrawnWithoutNan) {
+  auto results = MadeUpResults();
+  auto& confidence = results.methods[0].by_scene["dense"].confidence;
+  confidence.segments.clear();
+  const auto empty = SectionOf(PageOf(results), "reliability");
+  EXPECT_FALSE(Holds(empty, "NaN"));
+  EXPECT_FALSE(Holds(empty, "Infinity"));
+  EXPECT_TRUE(NumbersOf(empty, "dot", "cx").empty());
+  EXPECT_TRUE(NumbersOf(empty, "rect", "height").empty());
+  confidence.num_scans = 0;
+  EXPECT_EQ(SectionOf(PageOf(results), "reliability"), "") << "no method states a probability";
+}
+
+TEST(Page, SaysWhatBecameOfThingsThatWereLost) {
+  const auto section = SectionOf(PageOf(MadeUpResults()), "lost");
+  EXPECT_TRUE(Holds(section, "ours</th><td>18</td><td>33.33</td><td>5.56</td><td>5.56</td><td>22.22</td><td>0.00</td><td>0.00</td>"));
+  EXPECT_TRUE(Holds(section, "dock</th><td>10</td><td>50.00</td><td>10.00</td><td>0.00</td><td>40.00</td><td>0.00</td><td>0.00</td>"));
 }
 
 TEST(Lines, AxesHaveRoundNumbersAroundThePoints) {

@@ -114,6 +114,29 @@ TEST(Json, BinsOfRangeHoldTheirMiddleAndNearRecallIsByMethod) {
   EXPECT_EQ(row["percent"], (json{75.0, 75.0, 75.0}));
 }
 
+TEST(Json, HoldsBinsOfStatedProbability) {
+  const auto methods = Parsed(MadeUpResults())["worlds"][0]["methods"];
+  const auto& bins = methods[0]["total"]["reliability"];
+  ASSERT_EQ(bins.size(), 10U);
+  ExpectNear(bins[8]["from"], 0.8);
+  ExpectNear(bins[8]["to"], 0.9);
+  EXPECT_EQ(bins[8]["num_segments"], 100);
+  ExpectNear(bins[8]["stated"], 0.85);
+  ExpectNear(bins[8]["observed"], 0.8);
+  EXPECT_EQ(bins[3]["num_segments"], 0);
+  EXPECT_TRUE(bins[3]["stated"].is_null());
+  EXPECT_TRUE(bins[3]["observed"].is_null());
+  EXPECT_EQ(methods[0]["scenes"][0]["reliability"], bins);
+  EXPECT_TRUE(methods[0]["scenes"][2]["reliability"].empty()) << "nothing is known of that scene";
+  EXPECT_TRUE(methods[1]["total"]["reliability"].empty()) << "it states no probability";
+}
+
+TEST(Json, CountsWhatBecameOfThingsByKind) {
+  const auto rows = Parsed(MadeUpResults())["worlds"][0]["methods"][0]["outcomes"];
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[1], (json{{"kind", "dock"}, {"found", 5}, {"into_land", 1}, {"into_thing", 0}, {"cut", 4}, {"with_clutter", 0}, {"missed", 0}}));
+}
+
 TEST(Json, OurErrorIsAShareOfTheBestPeers) {
   auto results = MadeUpResults();
   EXPECT_TRUE(Parsed(results)["worlds"][0]["against_peers"].empty()) << "there is none";

@@ -80,6 +80,12 @@ inline Results MadeUpResults() {
   results.methods[1].by_scene["rain"].components = {4, 461 * 4};
   results.methods[1].by_scene["open<water>"].components = {4, 462 * 4};
   results.methods[0].stage_ms = {{"cluster", {0.25, 0.5}}, {"project", {0.125, 0.125}}, {"zeal", {0.1}}};
+  // Two segments of 0.05 and none of an object; a hundred of 0.85, and 80 are; one of 1, and it is. The other bins are empty.
+  auto& ours = results.methods[0].by_scene["dense"];
+  ours.confidence.segments = {{50, {2, 0, 0.1}}, {850, {100, 80, 85.0}}, {1000, {1, 1, 1.0}}};
+  ours.confidence.num_scans = 4;
+  ours.outcomes_by_kind["buoy"].count = {7, 0, 1, 0, 0, 0};
+  ours.outcomes_by_kind["dock"].count = {5, 1, 0, 4, 0, 0};
   results.methods[0].worst = {MadeUpScan({1, 1, 1, 2, 0, 0, -1}, {1, 1, 2, 0, 3, 0, 0})};
   results.curves = {{"Test <1>", "distance, m", "segments", {{"e1 = 0.95", {{1.0, 2.0}, {2.0, 3.25}}}}, "own & sure from 6.3 m"}};
   results.projections = {{512, 0.902, 1563.0, 5580.0, 0.079, std::numeric_limits<double>::quiet_NaN()}};

@@ -90,6 +90,22 @@ TEST(PieceTable, OfAPieceAllRoundDoesNotDependOnWhereTheScanBegins) {
   }
 }
 
+// The seam of the scan decided which of two equal gaps is left out.
+TEST(PieceTable, TheArcOfAPieceWithTwoEqualGapsDoesNotDependOnWhereTheScanBegins) {
+  constexpr int kHalf = PieceScene::kColumns / 2;
+  constexpr int kNum = kHalf - 20;
+  for (int turn = 0; turn < PieceScene::kColumns; ++turn) {
+    PieceScene scene;
+    for (const int first : {turn, turn + kHalf}) scene.AddRow(0, first, kNum, 1, 20.0);
+    scene.Add(0, turn + kNum - 1, 2, 15.0);
+    scene.Add(0, turn + kHalf + kNum - 1, 2, 18.0);
+    scene.Build();
+    const Arc& arc = scene.pieces[0].arc;
+    ASSERT_EQ(arc.num, kHalf + kNum);
+    ASSERT_EQ(arc.first, turn) << "the gap between 18 and 20 m is left out, not that between 15 and 20 m";
+  }
+}
+
 TEST(PieceTable, FitsTheLineThroughAPiece) {
   for (const int first : {345, 30, 75, 100, 200}) {
     for (const double off_m : {0.0, 0.2}) {

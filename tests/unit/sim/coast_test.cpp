@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/text_config.hpp"
+#include "tools/sim/ground.hpp"
 #include "tools/sim/traffic.hpp"
 
 namespace lookout::sim {
@@ -36,6 +37,32 @@ TEST(Coast, AFaceStandsUprightToItsHeight) {
   EXPECT_EQ(coast.object.kind, "quay");
   EXPECT_TRUE(Contains(coast.object.outline_m, {0.3, 5.0}));
   EXPECT_FALSE(Contains(coast.object.outline_m, {0.3, -0.5}));
+}
+
+TEST(Coast, SheetPilesStandInFoldsWithinTheOutline) {
+  constexpr double kLevelM = 0.7;
+  Random random(1, 1);
+  const Coast coast = MakeCoast("quay", LandOf("edge: SHEET_PILES edge_height_m: 2 hill_slope: 0 stretch_m: 100"), 60.0, random);
+  int num_folds = 0;
+  int num_hollows = 0;
+  for (double x_m = -25.0; x_m < 25.0; x_m += 0.05) {
+    double nearest_m = 1e3;
+    for (const auto& part : coast.object.parts) {
+      if (std::holds_alternative<Cylinder>(part.solid)) continue;  // fenders and ladders
+      const auto hit = Intersect(part.solid, {Vector3d(x_m, -20.0, kLevelM), Vector3d::UnitY()});
+      if (hit) nearest_m = std::min(nearest_m, hit->range_m);
+    }
+    ASSERT_LE(nearest_m, 20.001) << x_m;
+    EXPECT_TRUE(nearest_m > 19.999 || (nearest_m > 19.6 && nearest_m < 19.9)) << nearest_m;
+    ++(nearest_m > 19.999 ? num_hollows : num_folds);
+  }
+  EXPECT_GT(num_folds, 250);
+  EXPECT_GT(num_hollows, 250);
+  for (const auto& part : coast.object.parts) {
+    const auto* post = std::get_if<Cylinder>(&part.solid);
+    if (post == nullptr) continue;
+    EXPECT_GT(post->center_m.y() - post->radius_m, -kSheetPileReachM - 1e-6);
+  }
 }
 
 TEST(Coast, ABeachRisesAsItsSlopeSays) {

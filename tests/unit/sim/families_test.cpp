@@ -1,4 +1,5 @@
 // The families of the source tree, and what makes a scene one.
+#include <algorithm>
 #include <chrono>
 #include <gtest/gtest.h>
 #include <map>
@@ -83,9 +84,54 @@ TEST_P(Family, KeepsTheOwnBoatFreeOfEverything) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Scene scene = Make(seed);
     for (const auto& object : scene.objects) {
-      EXPECT_GT(DistanceM(OwnOutline(scene, 0.0), OnMap(object)), 0.5) << object.name << ", seed " << seed;
+      if (GetParam() == "alongside" && (object.kind == "pier" || object.kind == "bridge")) continue;  // one may lie below its deck
+      EXPECT_GT(DistanceM(OwnOutline(scene, 0.0), OnMap(object)), GetParam() == "alongside" ? 0.34 : 0.5) << object.name << ", seed " << seed;
     }
   }
+}
+
+// Another boat's way led over its only place, or too near to it.
+TEST(Families, AreLaidOutAnewWhereTheOwnBoatHasNoPlace) {
+  const auto file = support::kSources / "config/scenes/families/wide_water.txtpb";
+  std::set<std::string> layouts;
+  for (const std::uint64_t seed : {83U, 126U, 131U, 200U}) {
+    Scene scene;
+    ASSERT_NO_THROW(scene = LoadScene(file, seed)) << seed;
+    for (const auto& object : scene.objects) EXPECT_GT(DistanceM(OwnOutline(scene, 0.0), OnMap(object)), 2.99) << seed;
+    EXPECT_EQ(LayoutOf(scene), LayoutOf(LoadScene(file, seed))) << seed;
+    layouts.insert(LayoutOf(scene));
+  }
+  EXPECT_GE(layouts.size(), 2U);
+}
+
+// Nothing lay within 3 m of the own boat in any other family.
+TEST(Alongside, HasThingsNearTheOwnBoatInMostLayoutsAndNoneInIt) {
+  constexpr int kNumSeeds = 40;
+  int num_near = 0;
+  int num_between = 0;
+  int num_moving = 0;
+  for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
+    const Scene scene = LoadScene(support::kSources / "config/scenes/families/alongside.txtpb", seed);
+    int num_things = 0;
+    for (const auto& object : scene.objects) {
+      // One passes below decks, which are not in the way.
+      if (object.kind == "pier" || object.kind == "bridge") continue;
+      for (const double time_s : {0.0, 3.0, 6.0}) {
+        Outline outline_m;
+        for (const auto& p_m : object.outline_m) outline_m.push_back(object.track.At(time_s).ToMap(p_m));
+        const double distance_m = DistanceM(OwnOutline(scene, time_s), outline_m);
+        EXPECT_GE(distance_m, 0.34) << object.name << ", seed " << seed << " at " << time_s << " s";
+        if (time_s == 0.0 && distance_m < 3.0) ++num_things;
+      }
+    }
+    num_near += num_things > 0 ? 1 : 0;
+    num_between += num_things > 1 ? 1 : 0;
+    num_moving += scene.own_motion.track.speed_mps > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(num_near, kNumSeeds * 3 / 4);
+  EXPECT_GE(num_between, kNumSeeds / 4);
+  EXPECT_GE(num_moving, kNumSeeds / 5);
+  EXPECT_LE(num_moving, kNumSeeds * 4 / 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Family, testing::ValuesIn(FamilyNames()), [](const auto& family) { return family.param; });
@@ -133,6 +179,30 @@ TEST(Beside, ARowKeepsItsGapsAndEachMemberItsPartner) {
   for (std::size_t i = 1; i <= 3; ++i) EXPECT_NEAR(DistanceM(OnMap(pairs.objects[i]), OnMap(pairs.objects[i + 3])), 1.0, 0.05);
 }
 
+// They ended at the border of the reeds, up to 4 m before the bank.
+TEST(Beside, DocksReachTheLandBehindReeds) {
+  for (const std::string dock : {"JETTY", "PONTOON", "DOCK_BAYS", "DOCK", "PIER", "PILE_PIER"}) {
+    const Scene scene = ParseScene(kBegin +
+                                       "own_boat { free_by_m: 1 north_m: -90 }\n"
+                                       "object { kind: COAST name: \"bank\" length_m: 120 heading_deg: 90 land { edge: REEDS } }\n"
+                                       "object { name: \"dock\" kind: " +
+                                       dock + " number: 1 beside { object: \"bank\" gap_m: 0 turned: OUT } }\n",
+                                   "s.txtpb", 3);
+    ASSERT_EQ(scene.objects.size(), 2U) << dock;
+    const auto& object = scene.objects[1];
+    double end_m = -90.0;
+    for (const auto& p_m : OnMap(object)) end_m = std::max(end_m, p_m.y());
+    EXPECT_GE(end_m, 0.4) << dock << ": the waterline is at 0";
+    EXPECT_LE(end_m, 5.0) << dock;
+    // Its parts with it.
+    for (const double along_m : {-0.3, 0.3}) {
+      const Ray down{{along_m, 0.0, 20.0}, -Eigen::Vector3d::UnitZ()};
+      EXPECT_TRUE(std::ranges::any_of(object.parts, [&](const Part& part) { return Intersect(part.solid, down).has_value(); }))
+          << dock << ' ' << along_m;
+    }
+  }
+}
+
 TEST(Opposite, BanksRunAtTheirDistance) {
   const Scene scene = ParseScene(kFreeBoat +
                                      "object { kind: QUAY name: \"quay\" length_m: 150 heading_deg: 90\n"
@@ -141,6 +211,68 @@ TEST(Opposite, BanksRunAtTheirDistance) {
                                  "s", 2);
   ASSERT_EQ(scene.objects.size(), 2U);
   EXPECT_NEAR(DistanceM(OnMap(scene.objects[0]), OnMap(scene.objects[1])), 20.0, 0.6);
+}
+
+TEST(Layouts, OneIsDrawnWithItsOwnBoatAndItsObjectsAlone) {
+  const std::string text =
+      kBegin +
+      "own_boat { free_by_m: 1 speed_mps: [1, 2] }\nlayout { name: \"a\" weight: 3 own_boat { speed_mps: 0 north_m: 10 } }\nlayout { name: \"b\" }\n"
+      "object { kind: BUOY name: \"of_a\" layout: \"a\" east_m: 20 }\nobject { kind: BUOY name: \"of_b\" layout: \"b\" east_m: 20 }\n"
+      "object { kind: BUOY name: \"of_both\" layout: \"a\" layout: \"b\" east_m: 30 }\nobject { kind: BUOY name: \"always\" east_m: -30 }\n";
+  int num_a = 0;
+  constexpr int kNumSeeds = 200;
+  for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
+    const Scene scene = ParseScene(text, "s.txtpb", seed);
+    ASSERT_EQ(scene.objects.size(), 3U);
+    const bool is_a = scene.objects[0].name == "of_a";
+    num_a += is_a ? 1 : 0;
+    EXPECT_EQ(is_a, scene.own_motion.track.speed_mps == 0.0);
+    EXPECT_EQ(scene.own_motion.track.start.position_map_m.y(), is_a ? 10.0 : 0.0);
+  }
+  EXPECT_NEAR(num_a, 0.75 * kNumSeeds, 25);
+}
+
+TEST(OwnBoat, ThingsLieBesideItWhenItComesBeforeThem) {
+  const std::string text =
+      kBegin +
+      "own_boat { free_by_m: 0.4 before: \"next\" heading_deg: [0, 360] speed_mps: 0 }\n"
+      "object { kind: BUOY name: \"far\" east_m: 40 }\n"
+      "object { kind: KAYAK name: \"next\" number: 2 min_distance_m: 0.3 beside { object: \"own_sides\" gap_m: [0.5, 1] turned: ALONG } }\n"
+      "object { kind: BUOY name: \"round\" number: 3 min_distance_m: 0.3 beside { object: \"own_boat\" gap_m: [2, 4] } }\n";
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Scene scene = ParseScene(text, "s.txtpb", seed);
+    const Outline own_m = OwnOutline(scene, 0.0);
+    ASSERT_EQ(scene.objects.size(), 6U) << seed;
+    for (std::size_t i = 1; i < 6; ++i) {
+      const double distance_m = DistanceM(own_m, OnMap(scene.objects[i]));
+      EXPECT_GE(distance_m, i < 3 ? 0.49 : 1.99) << scene.objects[i].name << ", seed " << seed;
+      EXPECT_LE(distance_m, i < 3 ? 1.01 : 4.5) << scene.objects[i].name << ", seed " << seed;
+    }
+    for (const std::size_t i : {1U, 2U}) {
+      EXPECT_NEAR(std::sin(scene.objects[i].track.start.heading_rad - scene.own_motion.track.start.heading_rad), 0.0, 1e-6) << "parallel";
+    }
+  }
+}
+
+TEST(OwnBoat, LiesBelowADeckAlone) {
+  const auto text = [](const std::string& pier) {
+    return kBegin +
+           "own_boat { free_by_m: 0.3 east_m: [-1, 1] north_m: [6, 14] heading_deg: [0, 360] }\n"
+           "object { kind: PILE_PIER name: \"pier\" length_m: 20 width_m: 8 " +
+           pier + " }\n";
+  };
+  const Scene scene = ParseScene(text("height_m: 4 is_passed_under: true"), "s.txtpb", 2);
+  const Outline own_m = OwnOutline(scene, 0.0);
+  EXPECT_EQ(DistanceM(own_m, OnMap(scene.objects[0])), 0.0);
+  for (const auto& part : scene.objects[0].parts) {
+    const auto* pile = std::get_if<Cylinder>(&part.solid);
+    if (pile == nullptr || pile->bottom_m > 0.0) continue;
+    const Vector2d at_m = scene.objects[0].track.start.ToMap(pile->center_m);
+    EXPECT_GE(DistanceM(own_m, {at_m, at_m, at_m}), pile->radius_m + 0.29);
+  }
+  for (const auto& low : {"height_m: 4", "height_m: 2 is_passed_under: true"}) {
+    EXPECT_THROW(ParseScene(text(low), "s.txtpb", 2), config::ConfigError) << low;
+  }
 }
 
 TEST(OneOf, DrawsByWeightAndAListOfOneReplacesThatOfTheObject) {
@@ -223,6 +355,33 @@ TEST(FamilyFaults, FieldsWithoutEffectAreRefused) {
             "s.txtpb:3: own_boat_to.speed_mps: own_boat says it, as a range where it is drawn");
   EXPECT_EQ(FaultsOfFamily(kBegin + "own_boat {}\nobject { north_m: 20\n one_of { kind: BUOY count: 3 } }\n"),
             "s.txtpb:4: object[0].one_of[0].count: the object around it says it");
+}
+
+TEST(DrawnNumbers, AreThoseOfOneOfSeveralEffects) {
+  config::Scene scene;
+  config::ParseText("description: 'x' own_boat {}\neffects_to { rain_probability_per_m: 0.01 }\neffects_to { crest_probability: 0.1 }", "s", scene);
+  int num_rain = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const auto effects = WithDrawnNumbers(scene, seed).effects();
+    EXPECT_NE(effects.rain_probability_per_m() > 0.0, effects.crest_probability() > 0.0);
+    num_rain += effects.rain_probability_per_m() > 0.0 ? 1 : 0;
+  }
+  EXPECT_NEAR(num_rain, 50, 20);
+}
+
+TEST(FamilyFaults, LayoutsAndWhatComesBeforeTheOwnBoatAreChecked) {
+  const std::string boat = kBegin + "own_boat { free_by_m: 1 before: \"b\" }\n";
+  EXPECT_EQ(FaultsOfFamily(boat + "object { kind: BUOY name: \"a\" beside { object: \"own_boat\" gap_m: 1 } }\nobject { kind: BUOY name: \"b\" }\n"),
+            "s.txtpb:3: object[0].beside.object: there is no object of this name before it");
+  EXPECT_EQ(FaultsOfFamily(boat + "object { kind: BUOY name: \"a\" }\n"), "s.txtpb:2: own_boat.before: there is no object of this name");
+  EXPECT_EQ(FaultsOfFamily(boat + "object { kind: BUOY name: \"b\" layout: \"x\" }\n"),
+            "s.txtpb:3: object[0].layout[0]: there is no layout of the name x");
+  EXPECT_EQ(FaultsOfFamily(boat + "layout { name: \"x\" own_boat { free_by_m: 2 } }\nobject { kind: BUOY name: \"b\" }\n"),
+            "s.txtpb:3: layout[0].own_boat.free_by_m: own_boat says it");
+  EXPECT_EQ(FaultsOfFamily(boat + "object { kind: BUOY name: \"b\" is_passed_under: true }\n"),
+            "s.txtpb:3: object[0].is_passed_under: only a pier on piles or a bridge has it");
+  EXPECT_EQ(FaultsOfFamily(boat + "object { kind: BUOY name: \"b\" }\nobject { kind: BUOY name: \"own_boat\" }\n"),
+            "s.txtpb:4: object[1].name: is that of the own boat");
 }
 
 TEST(FamilyFaults, WhatWouldMoveOnTheGroundOrLieElsewhereIsRefused) {

@@ -1,5 +1,5 @@
 // The page: sections of tables and plots from the JSON in it. Its fields are described in README.md. Every text becomes a text node, never markup.
-import { barChart, e, lineChart, NUM_COLOURS, number, plan, table } from "./parts.mjs";
+import { barChart, e, lineChart, NUM_COLOURS, number, plan, reliabilityDiagram, table } from "./parts.mjs";
 
 const results = JSON.parse(document.getElementById("results").textContent);
 const [own] = results.worlds;
@@ -156,6 +156,45 @@ const segmentCounts = () => !own.methods.length ? [] : [
         .map((figure) => number(method.total[figure], 1))]))),
 ];
 
+// By name in the JSON, as in the tables.
+const LOSSES = [["into_land", "into land"], ["into_thing", "into another thing"], ["cut", "cut"], ["with_clutter", "with clutter"], ["missed", "missed"]];
+const OUTCOMES = ["found", ...LOSSES.map(([name]) => name)];
+const numThings = (outcomes) => OUTCOMES.reduce((sum, name) => sum + outcomes[name], 0);
+const lossCells = (outcomes) => {
+  const count = numThings(outcomes);
+  const percent = (lost) => number((100 * lost) / count, 2);
+  return [String(count), percent(count - outcomes.found), ...LOSSES.map(([name]) => percent(outcomes[name]))];
+};
+const LOSS_HEADINGS = ["things", "lost, %", ...LOSSES.map(([, words]) => `${words}, %`)];
+
+// Of all methods together, and by kind for those that state a probability: ours.
+function thingsLost({ methods }) {
+  const known = methods.filter(({ outcomes }) => outcomes.length);
+  if (!known.length) return [];
+  const sum = (rows) => Object.fromEntries(OUTCOMES.map((name) => [name, rows.reduce((total, row) => total + row[name], 0)]));
+  return [
+    table("Things of 5 returns or more with an IoU below 0.5, by what became of them, over all scenes", ["method", ...LOSS_HEADINGS],
+      known.map((method) => [nameCell(method), ...lossCells(sum(method.outcomes))])),
+    ...known.filter(({ total }) => total.reliability.length).map(({ name, outcomes }) =>
+      table(`${name}: by kind`, ["kind", ...LOSS_HEADINGS], outcomes.map((row) => [row.kind, ...lossCells(row)]))),
+  ];
+}
+
+// Scenes differ in how much clutter they have: one of rain outweighs all others in the total.
+function reliability() {
+  const ofScenes = ({ scenes }, names) => {
+    const known = scenes.map((score, i) => [names[i], score?.reliability ?? []]).filter(([, bins]) => bins.length);
+    return known.length < 2 ? [] : [e("details", {}, e("summary", {}, "By scene"), ...known.map(([name, bins]) => reliabilityDiagram(name, bins)))];
+  };
+  const diagrams = inEachWorld(({ methods, scenes }) => methods.filter(({ total }) => total.reliability.length)
+    .flatMap((method) => [reliabilityDiagram(`${method.name}, all scenes`, method.total.reliability), ...ofScenes(method, scenes)]));
+  return !diagrams.length ? [] : [
+    note("A dot is the mean of the probabilities that the segments of a bin state, against the share of them most of whose returns are of an object. On the " +
+      "broken line both are the same; below it the method is surer than it should be. Bars, on a logarithmic axis: how many segments a bin holds. What is " +
+      "left out of a fit is judged by evidence that does not know its scene."),
+    ...diagrams];
+}
+
 // A chart that can be read, and below it the numbers of all.
 function figureByRange(world, bins, title, yLabel) {
   const best = bestMethods(world, NUM_COLOURS - 1);
@@ -256,6 +295,8 @@ const DEFINITIONS = [
   ["over-segmented", "An object of which two or more segments hold a tenth each."],
   ["under-segmenting", "A segment that holds a tenth each of two or more objects."],
   ["true positives", "The share of the objects' returns that are in a segment of which their object has most returns."],
+  ["thing lost", "An object that is not land, of 5 returns or more in a scan, with an IoU below 0.5. Into land, into another thing, with clutter: the segment " +
+    "that holds most of it is mostly of that. Cut: mostly its own, and more of it is elsewhere. Missed: more of it is in no segment than in any one."],
   ["recall at IoU 0.5", "The share of object-scans whose IoU is 0.5 or more, by the range of the object's nearest return, in bins of 10 m."],
   ["component", "Of methods that search first and cluster then: what the search gave."],
   ["time", "Of labelling one scan, on one core, without rendering, decoding and scoring. The 99th percentile is of the nearest rank."],
@@ -269,6 +310,8 @@ const sections = [
   ["table-1", "Table I: methods and scenes", tableOne()],
   ["water", "Objects in the water, and kinds", waterAndKinds()],
   ["segments", "False, cut and merged segments", segmentCounts()],
+  ["lost", "Things lost", inEachWorld(thingsLost)],
+  ["reliability", "Are stated probabilities true?", reliability()],
   ["range", "By range", inEachWorld(byRange)],
   ["table-2", "Table II: projections", inEachWorld(tableTwo)],
   ["table-3", "Table III: time by stage", inEachWorld(tableThree)],

@@ -114,6 +114,41 @@ export function barChart(title, xLabel, series, groups, decimals) {
   }), ...(series.length > 1 ? [legend(series, (i) => [Plot.rect([0], { x1: 2, x2: 28, y1: 1, y2: 11, fill: colourOf(i) })])] : [])]);
 }
 
+const share = (value) => number(value, 3);
+
+/** Bins [{from, to, num_segments, stated, observed}]: what was stated of a bin and how often it came true, beside the line on which both are the same;
+ *  below it how many a bin holds; the numbers folded away. An empty bin has no dot and no bar, and breaks the line. */
+export function reliabilityDiagram(title, bins) {
+  const known = bins.filter(({ num_segments }) => num_segments > 0);
+  const most = Math.max(1, ...known.map(({ num_segments }) => num_segments));
+  const frame = { width: 420, marginLeft: 52, marginRight: 12 };
+  const x = { domain: [0, 1] };
+  const ends = { ticks: [0, 0.2, 0.4, 0.6, 0.8, 1], tickSize: 0 };
+  const spots = bins.map(({ stated, observed }) => [stated ?? NaN, observed ?? NaN]);
+  const chart = svg("chart", title, {
+    ...frame, height: 380, marginTop: 10, marginBottom: 22, x, y: { domain: [0, 1] },
+    marks: [Plot.gridY({ ...grid, ...ends }), Plot.gridX({ ...grid, ...ends }), Plot.axisX({ ...axis, ...ends, label: null }),
+      Plot.axisY({ ...axis, ...ends, label: "share of them that are of an object" }),
+      Plot.line([[0, 0], [1, 1]], { stroke: "var(--faint)", strokeDasharray: "5 4" }),
+      Plot.line(spots, { stroke: colourOf(0), strokeWidth: 2, strokeLinejoin: "round" }),
+      Plot.dot(spots, { r: 4.5, fill: colourOf(0), stroke: "var(--ground)" })],
+  });
+  const counts = svg("chart", `${title}: segments a bin`, {
+    ...frame, height: 136, marginTop: 16, marginBottom: 46, x, y: { type: "symlog", domain: [0, most] },
+    marks: [Plot.axisX({ ...axis, ...ends, label: "probability stated by a segment", labelOffset: 36 }),
+      Plot.axisY({ ...axis, label: "segments", ticks: [] }),
+      Plot.rectY(known, { x1: "from", x2: "to", y: "num_segments", inset: 2, fill: colourOf(1) }),
+      Plot.ruleY([0], { stroke: "var(--faint)" }),
+      Plot.text(known, { x: ({ from, to }) => (from + to) / 2, y: "num_segments", text: ({ num_segments }) => String(num_segments), dy: -7, fontSize: 10,
+        fill: "var(--text)" })],
+  });
+  const result = figure(title, [chart, counts, e("details", {}, e("summary", {}, "Numbers"),
+    table("", ["probability", "segments", "stated, mean", "observed"], bins.map(({ from, to, num_segments, stated, observed }) =>
+      [`${number(from, 1)} to ${number(to, 1)}`, String(num_segments), share(stated), share(observed)])))]);
+  result.className = "reliability";
+  return result;
+}
+
 // Groups of returns as one: [[[right, forward], [right, end]]] in metres, and how many.
 const merge = (groups) => ({ runs: groups.flatMap(({ runs }) => runs), count: groups.reduce((sum, group) => sum + group.count, 0) });
 

@@ -16,23 +16,31 @@ namespace {
 using BlockValues = std::array<std::array<float, Evidence::kBlock>, kMostFeatures>;
 
 #ifdef __x86_64__
-// The leaves of a tree fill a register, from which each of a block takes its own: comparisons, a look-up and a sum in the same order, so the same
-// bits.
+// The leaves of a tree fill a register, from which each of half a block takes its own: comparisons, a look-up and a sum in the same order, so the
+// same bits. The sums of the two halves do not wait for each other.
 template <typename Tree>
 __attribute__((target("avx2"))) void AddLeavesWithAvx2(std::span<const Tree> trees, const BlockValues& values,
                                                        std::array<float, Evidence::kBlock>& sums) {
-  static_assert(Evidence::kBlock == 8 && kTreeLeaves == 8 && kTreeDepth == 3);
-  __m256 sum = _mm256_loadu_ps(sums.data());
+  constexpr std::size_t kHalf = 8;
+  static_assert(Evidence::kBlock == 2 * kHalf && kTreeLeaves == 8 && kTreeDepth == 3);
+  __m256 sum[2] = {_mm256_loadu_ps(sums.data()), _mm256_loadu_ps(sums.data() + kHalf)};
   for (const Tree& tree : trees) {
-    const __m256 first = _mm256_cmp_ps(_mm256_loadu_ps(values[tree.feature[0]].data()), _mm256_set1_ps(tree.above[0]), _CMP_GT_OQ);
-    const __m256 second = _mm256_cmp_ps(_mm256_loadu_ps(values[tree.feature[1]].data()), _mm256_set1_ps(tree.above[1]), _CMP_GT_OQ);
-    const __m256 third = _mm256_cmp_ps(_mm256_loadu_ps(values[tree.feature[2]].data()), _mm256_set1_ps(tree.above[2]), _CMP_GT_OQ);
-    const __m256i leaf = _mm256_or_si256(_mm256_and_si256(_mm256_castps_si256(first), _mm256_set1_epi32(1)),
-                                         _mm256_or_si256(_mm256_and_si256(_mm256_castps_si256(second), _mm256_set1_epi32(2)),
-                                                         _mm256_and_si256(_mm256_castps_si256(third), _mm256_set1_epi32(4))));
-    sum = _mm256_add_ps(sum, _mm256_permutevar8x32_ps(_mm256_loadu_ps(tree.log_odds.data()), leaf));
+    const float* const value[kTreeDepth] = {values[tree.feature[0]].data(), values[tree.feature[1]].data(), values[tree.feature[2]].data()};
+    const __m256 above[kTreeDepth] = {_mm256_set1_ps(tree.above[0]), _mm256_set1_ps(tree.above[1]), _mm256_set1_ps(tree.above[2])};
+    const __m256 leaves = _mm256_loadu_ps(tree.log_odds.data());
+#pragma GCC unroll 2
+    for (std::size_t half = 0; half < 2; ++half) {
+      const __m256 first = _mm256_cmp_ps(_mm256_loadu_ps(value[0] + half * kHalf), above[0], _CMP_GT_OQ);
+      const __m256 second = _mm256_cmp_ps(_mm256_loadu_ps(value[1] + half * kHalf), above[1], _CMP_GT_OQ);
+      const __m256 third = _mm256_cmp_ps(_mm256_loadu_ps(value[2] + half * kHalf), above[2], _CMP_GT_OQ);
+      const __m256i leaf = _mm256_or_si256(_mm256_and_si256(_mm256_castps_si256(first), _mm256_set1_epi32(1)),
+                                           _mm256_or_si256(_mm256_and_si256(_mm256_castps_si256(second), _mm256_set1_epi32(2)),
+                                                           _mm256_and_si256(_mm256_castps_si256(third), _mm256_set1_epi32(4))));
+      sum[half] = _mm256_add_ps(sum[half], _mm256_permutevar8x32_ps(leaves, leaf));
+    }
   }
-  _mm256_storeu_ps(sums.data(), sum);
+  _mm256_storeu_ps(sums.data(), sum[0]);
+  _mm256_storeu_ps(sums.data() + kHalf, sum[1]);
 }
 #endif
 

@@ -56,7 +56,7 @@ class Evidence {
   float Of(std::span<const float> features) const;
 
   /// The same of a block at once, to the bit. Their answers are vectors, and their sums do not wait for each other: a fraction of the time.
-  static constexpr std::size_t kBlock = 8;
+  static constexpr std::size_t kBlock = 16;
   using Block = std::array<const float*, kBlock>;  // each [features of the layout]
   std::array<float, kBlock> Of(const Block& features) const;
 

@@ -95,9 +95,9 @@ std::span<const std::int32_t> LookoutMethod::NearestOf(std::int32_t group) {
   nearest_.clear();
   const Arc arc = pieces_[group].arc;
   for (int step = 0; step < arc.num; ++step) {
-    for (const OutlineEntry& entry : pieces_.InColumn(grid_.Wrap(arc.first + step))) {
-      if (entry.piece == group) nearest_.push_back(entry.nearest);
-    }
+    const auto seen = pieces_.InColumn(grid_.Wrap(arc.first + step));
+    const auto entry = std::ranges::find(seen, group, &OutlineEntry::piece);  // there is one at most
+    if (entry != seen.end()) nearest_.push_back(entry->nearest);
   }
   return nearest_;
 }

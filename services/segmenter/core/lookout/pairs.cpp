@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace lookout::segmenter {
 
 namespace {
 
 constexpr std::int32_t kFree = -1;
+constexpr float kNothingM = std::numeric_limits<float>::infinity();
 constexpr int kMostColumnsBeside = 160;
 constexpr float kFacedM = 1.0F;
 constexpr float kNearerM = 0.5F;
@@ -45,16 +47,6 @@ constexpr std::size_t kMostShownLarger = 32'768;
 constexpr std::size_t kLeastCounted = 6144;  // more than heavy rain shows
 
 Reach Times(double share, const Reach& reach) { return {share * reach.at_lidar_m, share * reach.per_range}; }
-
-// Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
-bool IsHidden(const ScanGrid& grid, const PieceTable& pieces, const OutlineEntry& entry, int column) {
-  const float nearer_m = entry.near_point.range_m - kNearerM;
-  const auto seen = pieces.InColumn(column);
-  if (seen.empty() || seen.front().near_point.range_m >= nearer_m) return false;
-  int num_hidden = 0;
-  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) num_hidden += grid.FarthestOfShot(ring, column) < nearer_m ? 1 : 0;
-  return 2 * num_hidden > entry.max_ring - entry.min_ring;
-}
 
 bool IsFew(const PieceFacts& piece) { return piece.num_returns <= kFewReturns; }
 
@@ -94,10 +86,16 @@ std::span<const PiecePair> PairFinder::Find(const ScanGrid& grid, const PieceTab
 void PairFinder::SortByKind(const PieceTable& pieces, int num_columns) {
   few_.Clear();
   larger_.Clear();
+  shown_.clear();
+  nearest_m_.clear();
   for (int column = 0; column < num_columns; ++column) {
-    for (const auto& entry : pieces.InColumn(column)) {
+    const auto seen = pieces.InColumn(column);
+    nearest_m_.push_back(seen.empty() ? kNothingM : seen.front().near_point.range_m);
+    for (const auto& entry : seen) {
       const bool is_few = IsFew(pieces[entry.piece]);
-      if (!is_few || share_ < kNoneOfFew) (is_few ? few_ : larger_).Add(ShownOf(pieces, entry));
+      shown_.push_back({entry.near_point, entry.far_point, entry.piece, static_cast<std::int32_t>(shown_.size()), column, is_few,
+                        entry.nearest == entry.farthest});
+      if (!is_few || share_ < kNoneOfFew) (is_few ? few_ : larger_).Add(shown_.back());
     }
     few_.EndColumn();
     larger_.EndColumn();
@@ -127,15 +125,17 @@ void PairFinder::SortByKind(const PieceTable& pieces, int num_columns) {
 bool PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches) {
   slots_.assign(kSlots, kFree);
   for (const bool is_counting : {true, false}) {
-    if (is_counting && few_.shown.size() + larger_.shown.size() <= kLeastCounted) continue;
+    if (is_counting && few_.entry.size() + larger_.entry.size() <= kLeastCounted) continue;
     is_counting_ = is_counting;
     num_looks_ = 0;
+    std::size_t end = 0;
     for (int column = 0; column < grid.num_columns(); ++column) {
-      const auto seen = pieces.InColumn(column);
-      for (std::size_t i = 0; i < seen.size(); ++i) {
-        if (IsFew(pieces[seen[i].piece]) && reaches.to_few.per_range <= 0.0) continue;
-        const Shown from = ShownOf(pieces, seen[i]);
-        LookBehind(pieces, reaches, seen.subspan(i + 1), from);
+      std::size_t at = end;
+      end += pieces.InColumn(column).size();
+      for (; at < end; ++at) {
+        const Shown& from = shown_[at];
+        if (from.is_few && reaches.to_few.per_range <= 0.0) continue;
+        LookBehind(reaches, from, std::span<const Shown>(shown_).subspan(at + 1, end - at - 1));
         LookBeside(grid, pieces, reaches, from);
         if (num_looks_ > kMostLooks || contacts_.size() > kMostPairs) return false;
       }
@@ -144,30 +144,33 @@ bool PairFinder::FindContacts(const ScanGrid& grid, const PieceTable& pieces, co
   return true;
 }
 
-PairFinder::Shown PairFinder::ShownOf(const PieceTable& pieces, const OutlineEntry& entry) {
-  return {entry.near_point, entry.far_point, entry.piece, static_cast<std::int32_t>(&entry - pieces.entries().data()), entry.column};
-}
-
-void PairFinder::LookBehind(const PieceTable& pieces, const Reaches& reaches, std::span<const OutlineEntry> behind, const Shown& front) {
+void PairFinder::LookBehind(const Reaches& reaches, const Shown& front, std::span<const Shown> behind) {
+  num_looks_ += static_cast<std::int64_t>(behind.size());
+  if (is_counting_ || behind.empty()) return;
   const float front_m = front.far.range_m;
   const auto reach_m = static_cast<float>(reaches.any.At(front_m));
   const auto reach_of_few_m = static_cast<float>(reaches.of_few.At(front_m));
   const auto reach_to_few_m = static_cast<float>(reaches.to_few.At(front_m));
-  const bool is_few = IsFew(pieces[front.piece]);
   int num_behind = 0;
-  num_looks_ += static_cast<std::int64_t>(behind.size());
-  if (is_counting_) return;
-  for (const OutlineEntry& back : behind) {
-    const float gap_m = std::max(0.0F, back.near_point.range_m - front_m);
+  for (const Shown& back : behind) {
+    const float gap_m = std::max(0.0F, back.near.range_m - front_m);
     if (gap_m > reach_m || num_behind == kMostBehind) break;
-    const bool is_back_few = IsFew(pieces[back.piece]);
-    if (is_few && is_back_few && gap_m >= reach_of_few_m) continue;
-    if ((is_few || is_back_few) && gap_m > reach_to_few_m) continue;
-    if (is_back_few && reaches.to_few.per_range <= 0.0) continue;
-    Contact& contact = Meet(front, front.far, ShownOf(pieces, back), back.near_point, gap_m * gap_m);
+    if (front.is_few && back.is_few && gap_m >= reach_of_few_m) continue;
+    if ((front.is_few || back.is_few) && gap_m > reach_to_few_m) continue;
+    if (back.is_few && reaches.to_few.per_range <= 0.0) continue;
+    Contact& contact = Meet(front, front.far, back, back.near, gap_m * gap_m);
     if (gap_m <= kFacedM) ++contact.num_faced;
     ++num_behind;
   }
+}
+
+// Whether something nearer hides half or more of the beams that would meet a piece here, were it as it is in the column of this entry.
+bool PairFinder::IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) const {
+  const float nearer_m = entry.near_point.range_m - kNearerM;
+  if (nearest_m_[static_cast<std::size_t>(column)] >= nearer_m) return false;
+  int num_hidden = 0;
+  for (int ring = entry.min_ring; ring <= entry.max_ring; ++ring) num_hidden += grid.FarthestOfShot(ring, column) < nearer_m ? 1 : 0;
+  return 2 * num_hidden > entry.max_ring - entry.min_ring;
 }
 
 // From where a piece ends in a column, on to what stands beside it on both sides.
@@ -175,7 +178,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
   const Steps& own = steps_[static_cast<std::size_t>(from.entry)];
   ++num_looks_;
   if (own.before == 1 && own.after == 1) return;
-  const bool is_few = IsFew(pieces[from.piece]);
+  const bool is_few = from.is_few;
   const double near_m = from.near.range_m;
   const double far_m = from.far.range_m;
   const double reach_m = is_few ? std::min(reaches.any.At(near_m), reaches.of_few.At(near_m)) : reaches.any.At(near_m);
@@ -201,7 +204,7 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
       continue;
     }
     // What is larger looks for what is of few returns, not the other way round.
-    const auto is_hidden = [&](int step) { return IsHidden(grid, pieces, entry, grid.Wrap(entry.column + direction * step)); };
+    const auto is_hidden = [&](int step) { return IsHidden(grid, entry, grid.Wrap(entry.column + direction * step)); };
     const int last_step = std::min(num_steps, most_steps);
     int step = 1;
     if (reaches_behind_ && !is_counting_) {
@@ -221,9 +224,9 @@ void PairFinder::LookBeside(const ScanGrid& grid, const PieceTable& pieces, cons
       const int column = grid.Wrap(entry.column + direction * step);
       if (is_hidden(step)) with_hidden = window_of(++num_hidden * across_m);
       if (num_few < kMostFewBeside && step <= num_steps_to_few) {
-        num_few += MeetIn(few_.In(column), with_hidden, from, reaches.any, reaches.to_few);
+        num_few += MeetIn(few_, column, with_hidden, from, reaches.any, reaches.to_few);
       }
-      num_larger += MeetIn(larger_.In(column), with_hidden, from, reaches.any, reaches.any);
+      num_larger += MeetIn(larger_, column, with_hidden, from, reaches.any, reaches.any);
     }
   }
 }
@@ -246,12 +249,12 @@ PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& win
     near_.resize(std::max(near_.size(), end_at - begin_at));
     std::size_t num_near = 0;
     for (std::size_t at = begin_at; at < end_at; ++at) {
-      near_[num_near] = at;
+      near_[num_near] = columns.entry[at];
       num_near += (columns.near_m[at] <= window.farthest_m ? 1U : 0U) & (columns.far_m[at] >= window.nearest_m ? 1U : 0U);
     }
     std::int32_t column = -1;
     for (std::size_t i = 0; i < num_near; ++i) {
-      const Shown& beside = columns.shown[near_[walk.direction > 0 ? i : num_near - 1 - i]];
+      const Shown& beside = shown_[static_cast<std::size_t>(near_[walk.direction > 0 ? i : num_near - 1 - i])];
       if (met.num >= most && beside.column != column) return;
       column = beside.column;
       if (!MeetOne(window, from, beside, reach, narrower) || ++met.num != most) continue;
@@ -275,36 +278,42 @@ PairFinder::Met PairFinder::MeetBeside(const Columns& columns, const Window& win
 }
 
 // The same of one column, where a branch costs less than going twice through what it shows.
-int PairFinder::MeetIn(std::span<const Shown> column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
+int PairFinder::MeetIn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower) {
   int num_met = 0;
-  for (const Shown& beside : column) {
+  const std::size_t end = columns.begin_of_column[static_cast<std::size_t>(column) + 1];
+  for (std::size_t at = columns.begin_of_column[static_cast<std::size_t>(column)]; at < end; ++at) {
     ++num_looks_;
-    if (beside.near.range_m > window.farthest_m) break;
-    if (beside.far.range_m >= window.nearest_m && MeetOne(window, from, beside, reach, narrower)) ++num_met;
+    if (columns.near_m[at] > window.farthest_m) break;
+    const Shown& beside = shown_[static_cast<std::size_t>(columns.entry[at])];
+    if (columns.far_m[at] >= window.nearest_m && MeetOne(window, from, beside, reach, narrower)) ++num_met;
   }
   return num_met;
 }
 
 bool PairFinder::MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower) {
   // Least distance of what the two show, seen from above, and between which returns.
-  const float near_near_m2 = SquaredPlanDistance(from.near, beside.near);
-  const float near_far_m2 = SquaredPlanDistance(from.near, beside.far);
-  const float far_near_m2 = SquaredPlanDistance(from.far, beside.near);
-  const float far_far_m2 = SquaredPlanDistance(from.far, beside.far);
-  const float squared_m2 = std::min(std::min(near_near_m2, near_far_m2), std::min(far_near_m2, far_far_m2));
+  float squared_m2 = SquaredPlanDistance(from.near, beside.near);
+  const LevelPoint* one = &from.near;
+  const LevelPoint* other = &beside.near;
+  const auto compare = [&](const LevelPoint& a, const LevelPoint& b) {
+    const float other_m2 = SquaredPlanDistance(a, b);
+    if (other_m2 >= squared_m2) return;
+    squared_m2 = other_m2;
+    one = &a;
+    other = &b;
+  };
+  if (!beside.is_point) compare(from.near, beside.far);
+  if (!from.is_point) compare(from.far, beside.near);
+  if (!from.is_point && !beside.is_point) compare(from.far, beside.far);
   if (squared_m2 > window.most_m2) return false;
-  const bool is_near = near_near_m2 == squared_m2 || near_far_m2 == squared_m2;
-  const bool is_beside_near = is_near ? near_near_m2 == squared_m2 : far_near_m2 == squared_m2;
-  const LevelPoint& one = is_near ? from.near : from.far;
-  const LevelPoint& other = is_beside_near ? beside.near : beside.far;
-  const float least_range_m = std::min(one.range_m, other.range_m);
+  const float least_range_m = std::min(one->range_m, other->range_m);
   double limit_m = reach.At(least_range_m) + window.hidden_m;
   if (&narrower != &reach) limit_m = std::min(limit_m, narrower.At(least_range_m));
   if (limit_m < 0.0 || squared_m2 > limit_m * limit_m) return false;
-  if (one.range_m <= other.range_m) {
-    Meet(from, one, beside, other, squared_m2);
+  if (one->range_m <= other->range_m) {
+    Meet(from, *one, beside, *other, squared_m2);
   } else {
-    Meet(beside, other, from, one, squared_m2);
+    Meet(beside, *other, from, *one, squared_m2);
   }
   return true;
 }
@@ -370,17 +379,20 @@ void PairFinder::Measure(const ScanGrid& grid, const PieceTable& pieces, const C
   int num_through = 0;
   int num_hidden = 0;
   if (columns > 1) {
-    const bool is_on = grid.Wrap(front.column + columns) == back.column;
-    const int first = is_on ? front.column : back.column;
+    const int begin = grid.Wrap(front.column + columns) == back.column ? front.column : back.column;
     const OutlineEntry& lesser = front.max_ring - front.min_ring <= back.max_ring - back.min_ring ? front : back;
+    const int num_first = std::min(columns - 1, kBeamColumns);
+    const int num_last = std::min(columns - 1 - num_first, kBeamColumns);
     for (int ring = lesser.min_ring; ring <= lesser.max_ring; ++ring) {
-      for (int step = 1; step < columns; ++step) {
-        if (step == kBeamColumns + 1) step = std::max(step, columns - kBeamColumns);
-        const float beam_m = grid.FarthestOfShot(ring, grid.Wrap(first + step));
-        ++num_beams;
-        if (std::isinf(beam_m)) continue;
-        num_through += beam_m > contact.greater_range_m ? 1 : 0;
-        num_hidden += beam_m < contact.lesser_range_m ? 1 : 0;
+      for (const auto& [first, num] : {std::pair{begin + 1, num_first}, std::pair{begin + columns - num_last, num_last}}) {
+        int column = grid.Wrap(first);
+        for (int i = 0; i < num; ++i) {
+          const float beam_m = grid.FarthestOfShot(ring, column);
+          num_through += (beam_m > contact.greater_range_m ? 1 : 0) & (beam_m < kNothingM ? 1 : 0);
+          num_hidden += beam_m < contact.lesser_range_m ? 1 : 0;
+          column = grid.Wrap(column + 1);
+        }
+        num_beams += num;
       }
     }
   }

@@ -100,6 +100,8 @@ class PairFinder {
     std::int32_t piece = 0;
     std::int32_t entry = 0;  // index into PieceTable::entries()
     std::int32_t column = 0;
+    bool is_few = false;    // of a piece of few returns
+    bool is_point = false;  // near and far are one return
   };
 
   // Where two pieces come closest.
@@ -133,30 +135,26 @@ class PairFinder {
     int last_step = 0;  // that was looked at
   };
 
-  // What is shown, by column, the nearest first.
+  // Entries of one kind, by column, the nearest first.
   struct Columns {
-    std::vector<Shown> shown;
-    std::vector<float> near_m;  // ranges of what is shown
+    std::vector<std::int32_t> entry;
+    std::vector<float> near_m;  // their ranges
     std::vector<float> far_m;
     std::vector<std::size_t> begin_of_column;
 
     void Clear() {
-      shown.clear();
+      entry.clear();
       near_m.clear();
       far_m.clear();
       begin_of_column.assign(1, 0);
     }
     void Add(const Shown& one) {
-      shown.push_back(one);
+      entry.push_back(one.entry);
       near_m.push_back(one.near.range_m);
       far_m.push_back(one.far.range_m);
     }
-    void EndColumn() { begin_of_column.push_back(shown.size()); }
+    void EndColumn() { begin_of_column.push_back(entry.size()); }
     int num_columns() const { return static_cast<int>(begin_of_column.size()) - 1; }
-    std::span<const Shown> In(int column) const {
-      const auto at = static_cast<std::size_t>(column);
-      return std::span(shown).subspan(begin_of_column[at], begin_of_column[at + 1] - begin_of_column[at]);
-    }
   };
 
   // Columns to the last and to the next of the same piece; round the circle where there is none between.
@@ -165,14 +163,14 @@ class PairFinder {
     std::int32_t after = 0;
   };
 
-  static Shown ShownOf(const PieceTable& pieces, const OutlineEntry& entry);
   void SortByKind(const PieceTable& pieces, int num_columns);
   bool FindContacts(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches);
-  void LookBehind(const PieceTable& pieces, const Reaches& reaches, std::span<const OutlineEntry> behind, const Shown& front);
+  void LookBehind(const Reaches& reaches, const Shown& front, std::span<const Shown> behind);
+  bool IsHidden(const ScanGrid& grid, const OutlineEntry& entry, int column) const;
   void LookBeside(const ScanGrid& grid, const PieceTable& pieces, const Reaches& reaches, const Shown& from);
   Met MeetBeside(const Columns& columns, const Window& window, const Shown& from, const Walk& walk, const Reach& reach, const Reach& narrower,
                  int most);
-  int MeetIn(std::span<const Shown> column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
+  int MeetIn(const Columns& columns, int column, const Window& window, const Shown& from, const Reach& reach, const Reach& narrower);
   bool MeetOne(const Window& window, const Shown& from, const Shown& beside, const Reach& reach, const Reach& narrower);
   Contact& At(std::int32_t one, std::int32_t other);
   Contact& Meet(const Shown& front, const LevelPoint& front_point, const Shown& back, const LevelPoint& back_point, float squared_gap_m2);
@@ -180,11 +178,13 @@ class PairFinder {
 
   double lidar_above_water_m_;
   bool reaches_behind_ = false;
+  std::vector<Shown> shown_;                                           // [entries]
+  std::vector<float> nearest_m_;                                       // [columns] range of the nearest that is shown
   Columns few_;                                                        // of pieces of few returns
   Columns larger_;                                                     // of the others
   std::vector<Steps> steps_;                                           // [entries]
   std::vector<std::pair<std::int32_t, std::int32_t>> first_and_last_;  // [pieces] entries
-  std::vector<std::size_t> near_;                                      // scratch: what may be within reach
+  std::vector<std::int32_t> near_;                                     // scratch: entries that may be within reach
   std::size_t share_ = 0;                                              // of the reach: an index into kShares
   bool is_counting_ = false;                                           // looks, and nothing else
   std::int64_t num_looks_ = 0;

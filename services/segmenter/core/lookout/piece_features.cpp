@@ -16,53 +16,54 @@ constexpr double kLeastDepthM = 0.1;
 // A column has entries of a few pieces; where it has very many, as in spray before the lens, the nearest of these say enough.
 constexpr std::size_t kMostInColumn = 24;
 
+std::span<const OutlineEntry> SeenIn(const PieceTable& pieces, int column) {
+  const auto seen = pieces.InColumn(column);
+  return seen.first(std::min(seen.size(), kMostInColumn));
+}
+
 }  // namespace
 
 void PieceMeasurer::LookAround(const ScanGrid& grid, const PieceTable& pieces) {
-  near_m_.clear();
-  far_m_.clear();
-  piece_.clear();
-  begin_of_column_.assign(1, 0);
+  few_.Clear();
   for (int column = 0; column < grid.num_columns(); ++column) {
-    const auto seen = pieces.InColumn(column).first(std::min(pieces.InColumn(column).size(), kMostInColumn));
+    const auto seen = SeenIn(pieces, column);
     bool is_covered = false;  // a drop covers nothing
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const OutlineEntry& entry = seen[i];
-      near_m_.push_back(entry.near_point.range_m);
-      far_m_.push_back(entry.far_point.range_m);
-      piece_.push_back(entry.piece);
+      const bool is_few = pieces[entry.piece].num_returns <= kCrowdReturns;
+      if (is_few && IsJudged(pieces, entry.piece)) few_.Add(entry);
       if (is_covered) ++Of(entry.piece, PieceFeature::kCovered);
-      is_covered = is_covered || pieces[entry.piece].num_returns > kCrowdReturns;
+      is_covered = is_covered || !is_few;
       // What stands behind is sorted: the next is the nearest.
       const bool has_backdrop = i + 1 < seen.size() && seen[i + 1].near_point.range_m - entry.far_point.range_m <= kBackdropM;
       if (has_backdrop) ++Of(entry.piece, PieceFeature::kBackdrop);
     }
-    begin_of_column_.push_back(piece_.size());
+    few_.begin_of_column.push_back(few_.piece.size());
   }
-  crowd_.resize(piece_.size());
+  if (few_.piece.empty()) return;
   for (int column = 0; column < grid.num_columns(); ++column) {
-    for (std::size_t at = begin_of_column_[static_cast<std::size_t>(column)]; at < begin_of_column_[static_cast<std::size_t>(column) + 1]; ++at) {
-      if (pieces[piece_[at]].num_returns > kCrowdReturns || !IsJudged(pieces, piece_[at])) continue;
-      // It is of the crowd about its neighbours: each column of these counts it. Over the seam, too.
-      const int first = column - kCrowdColumns;
-      const int end = column + kCrowdColumns + 1;
-      CountInCrowd(at, std::max(first, 0), std::min(end, grid.num_columns()));
-      if (first < 0) CountInCrowd(at, first + grid.num_columns(), grid.num_columns());
-      if (end > grid.num_columns()) CountInCrowd(at, 0, end - grid.num_columns());
+    // Over the seam, too.
+    const int first = column - kCrowdColumns;
+    const int end = column + kCrowdColumns + 1;
+    for (const OutlineEntry& entry : SeenIn(pieces, column)) {
+      int crowd = few_.NumAbout(entry, std::max(first, 0), std::min(end, grid.num_columns()));
+      if (first < 0) crowd += few_.NumAbout(entry, first + grid.num_columns(), grid.num_columns());
+      if (end > grid.num_columns()) crowd += few_.NumAbout(entry, 0, end - grid.num_columns());
+      Of(entry.piece, PieceFeature::kCrowd) += static_cast<float>(crowd);
     }
   }
 }
 
-void PieceMeasurer::CountInCrowd(std::size_t entry, int first_column, int end_column) {
-  const std::size_t end = begin_of_column_[static_cast<std::size_t>(end_column)];
-  // First, without a branch, which are near.
-  std::size_t num = 0;
-  for (std::size_t at = begin_of_column_[static_cast<std::size_t>(first_column)]; at < end; ++at) {
-    crowd_[num] = piece_[at];
-    num += (near_m_[at] - kCrowdM <= far_m_[entry] ? 1U : 0U) & (far_m_[at] + kCrowdM >= near_m_[entry] ? 1U : 0U) &
-           (piece_[at] != piece_[entry] ? 1U : 0U);
+int PieceMeasurer::Few::NumAbout(const OutlineEntry& entry, int first_column, int end_column) const {
+  const std::size_t begin = begin_of_column[static_cast<std::size_t>(first_column)];
+  const std::size_t end = begin_of_column[static_cast<std::size_t>(end_column)];
+  const float nearest_m = entry.near_point.range_m - kCrowdM;
+  const float farthest_m = entry.far_point.range_m + kCrowdM;
+  int num = 0;
+  for (std::size_t at = begin; at < end; ++at) {
+    num += (far_m[at] >= nearest_m ? 1 : 0) & (near_m[at] <= farthest_m ? 1 : 0) & (piece[at] != entry.piece ? 1 : 0);
   }
-  for (std::size_t i = 0; i < num; ++i) ++Of(crowd_[i], PieceFeature::kCrowd);
+  return num;
 }
 
 std::span<const PieceFeatures> PieceMeasurer::Measure(const ScanGrid& grid, const PieceTable& pieces, double lidar_above_water_m) {

@@ -53,15 +53,31 @@ class PieceMeasurer {
  private:
   float& Of(std::int32_t piece, PieceFeature feature) { return features_[static_cast<std::size_t>(piece)][static_cast<std::size_t>(feature)]; }
   void LookAround(const ScanGrid& grid, const PieceTable& pieces);
-  void CountInCrowd(std::size_t entry, int first_column, int end_column);
+
+  // What is seen of pieces of few returns, column by column.
+  struct Few {
+    std::vector<float> near_m;
+    std::vector<float> far_m;
+    std::vector<std::int32_t> piece;
+    std::vector<std::size_t> begin_of_column;
+
+    void Clear() {
+      near_m.clear();
+      far_m.clear();
+      piece.clear();
+      begin_of_column.assign(1, 0);
+    }
+    void Add(const OutlineEntry& entry) {
+      near_m.push_back(entry.near_point.range_m);
+      far_m.push_back(entry.far_point.range_m);
+      piece.push_back(entry.piece);
+    }
+    // Of other pieces, in columns from first to before end, and about as far off.
+    int NumAbout(const OutlineEntry& entry, int first_column, int end_column) const;
+  };
 
   std::vector<PieceFeatures> features_;
-  // Scratch: the nearest of what is seen, column by column.
-  std::vector<float> near_m_;
-  std::vector<float> far_m_;
-  std::vector<std::int32_t> piece_;
-  std::vector<std::size_t> begin_of_column_;
-  std::vector<std::int32_t> crowd_;
+  Few few_;
 };
 
 }  // namespace lookout::segmenter

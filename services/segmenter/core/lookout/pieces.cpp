@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace lookout::segmenter {
 
@@ -35,6 +36,7 @@ int SharedColumns(const Arc& one, const Arc& other, int num_columns) {
 void PieceTable::Build(const ScanGrid& grid, std::span<const std::int32_t> piece_of_return, std::int32_t count) {
   piece_of_return_.assign(piece_of_return.begin(), piece_of_return.end());
   facts_.assign(static_cast<std::size_t>(count), NoFacts());
+  is_new_.assign(facts_.size(), 1);
   SumReturns(grid);
   BuildOutlines(grid);
   FindRuns(grid);
@@ -150,17 +152,19 @@ void PieceTable::FindRuns(const ScanGrid& grid) {
 
 // In place: a group's number is at most that of its first piece.
 void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::int32_t count) {
+  is_new_.assign(static_cast<std::size_t>(count), 0);
   std::size_t num_groups = 0;
   for (std::size_t piece = 0; piece < group_of_piece.size(); ++piece) {
     const auto group = static_cast<std::size_t>(group_of_piece[piece]);
-    const PieceFacts other = facts_[piece];
-    const Sums of_other = sums_[piece];
     if (group == num_groups) {
-      facts_[group] = NoFacts();
-      sums_[group] = {};
+      facts_[group] = facts_[piece];
+      sums_[group] = sums_[piece];
       ++num_groups;
+      continue;
     }
+    is_new_[group] = 1;
     PieceFacts& facts = facts_[group];
+    const PieceFacts& other = facts_[piece];
     facts.num_returns += other.num_returns;
     facts.min_range_m = std::min(facts.min_range_m, other.min_range_m);
     facts.max_range_m = std::max(facts.max_range_m, other.max_range_m);
@@ -169,6 +173,7 @@ void PieceTable::MergeFacts(std::span<const std::int32_t> group_of_piece, std::i
     facts.min_ring = std::min(facts.min_ring, other.min_ring);
     facts.max_ring = std::max(facts.max_ring, other.max_ring);
     Sums& sums = sums_[group];
+    const Sums& of_other = sums_[piece];
     sums.x_m += of_other.x_m;
     sums.y_m += of_other.y_m;
     sums.height_m += of_other.height_m;
@@ -185,10 +190,13 @@ void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
   std::size_t i = 0;
   for (std::size_t column = 0; column + 1 < begin_of_column_.size(); ++column) {
     const std::size_t first_of_column = num;
+    bool has_new = false;
     for (; i < begin_of_column_[column + 1]; ++i) {
       OutlineEntry other = entries_[i];
       other.piece = group_of_piece[static_cast<std::size_t>(other.piece)];
-      OutlineEntry* const entry = EntryOf(other.piece, first_of_column, num);
+      const bool is_new = is_new_[static_cast<std::size_t>(other.piece)] != 0;
+      has_new = has_new || is_new;
+      OutlineEntry* const entry = is_new ? EntryOf(other.piece, first_of_column, num) : nullptr;
       if (entry == nullptr) {
         entries_[num++] = other;
         continue;
@@ -210,37 +218,52 @@ void PieceTable::MergeOutlines(std::span<const std::int32_t> group_of_piece) {
       entry->max_height_m = std::max(entry->max_height_m, other.max_height_m);
     }
     begin_of_column_[column] = first_of_column;
-    SortColumn(first_of_column, num);
+    if (has_new) SortColumn(first_of_column, num);
   }
   begin_of_column_.back() = num;
   entries_.resize(num);
 }
 
-// The circle without the widest gap between the columns of a piece; of equal gaps that over the seam, else the first.
+// The circle without the widest gap between the columns of a piece. Of equal gaps it is the one whose ends are farther off, as it would be wherever
+// the scan began and in the mirror. Where these are equal too, to the bit, the first: of a ring that looks the same all round, no rule could tell.
 void PieceTable::FindArcs(int num_columns) {
   columns_.assign(facts_.size(), {});
   for (const OutlineEntry& entry : entries_) {
-    Columns& columns = columns_[static_cast<std::size_t>(entry.piece)];
-    ++facts_[static_cast<std::size_t>(entry.piece)].num_columns;
+    const auto piece = static_cast<std::size_t>(entry.piece);
+    if (is_new_[piece] == 0) continue;
+    Columns& columns = columns_[piece];
+    ++columns.num;
     if (columns.first < 0) {
       columns.first = entry.column;
-    } else if (const std::int32_t gap = entry.column - columns.last - 1; gap > columns.widest_gap) {
-      columns.widest_gap = gap;
-      columns.after_widest = entry.column;
+      columns.first_m = entry.near_point.range_m;
+    } else {
+      WidenGap(columns, entry.column, entry.column, entry.near_point.range_m);
     }
     columns.last = entry.column;
+    columns.last_m = entry.near_point.range_m;
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    const Columns& columns = columns_[piece];
-    const std::int32_t over_seam = columns.first + num_columns - columns.last - 1;
-    const bool is_seam_widest = over_seam >= columns.widest_gap;
-    facts_[piece].arc = {is_seam_widest ? columns.first : columns.after_widest, num_columns - std::max(over_seam, columns.widest_gap)};
+    if (is_new_[piece] == 0) continue;
+    Columns& columns = columns_[piece];
+    WidenGap(columns, columns.first + num_columns, columns.first, columns.first_m);  // over the seam
+    facts_[piece].num_columns = columns.num;
+    facts_[piece].arc = {columns.widest.after, num_columns - columns.widest.num};
   }
+}
+
+// @param column  that of `after`, counted on over the seam
+void PieceTable::WidenGap(Columns& columns, std::int32_t column, std::int32_t after, float range_m) {
+  Gap& widest = columns.widest;
+  const Gap gap{column - columns.last - 1, std::min(columns.last_m, range_m), std::max(columns.last_m, range_m), after};
+  if (std::tie(gap.num, gap.nearer_end_m, gap.farther_end_m) > std::tie(widest.num, widest.nearer_end_m, widest.farther_end_m)) widest = gap;
 }
 
 // In each line the circle without the widest gap between its returns there: of a piece all round, too, whatever column the scan begins with.
 void PieceTable::CountBeams(int num_columns) {
   spans_.assign(facts_.size(), {});
+  for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
+    if (is_new_[piece] != 0) facts_[piece].num_beams = 0;
+  }
   const auto close = [this, num_columns](std::size_t piece) {
     const Span& span = spans_[piece];
     const std::int32_t over_seam = span.first + num_columns - span.last - 1;
@@ -248,6 +271,7 @@ void PieceTable::CountBeams(int num_columns) {
   };
   for (const Run& run : runs_) {
     const auto piece = static_cast<std::size_t>(run.piece);
+    if (is_new_[piece] == 0) continue;
     Span& span = spans_[piece];
     if (span.line != run.line) {
       close(piece);
@@ -263,6 +287,7 @@ void PieceTable::CountBeams(int num_columns) {
 void PieceTable::FitLines(double column_step_rad) {
   extents_.assign(facts_.size(), {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(), 0.0});
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
+    if (is_new_[piece] == 0) continue;
     PieceFacts& facts = facts_[piece];
     const Sums& sums = sums_[piece];
     const double count = facts.num_returns;
@@ -271,6 +296,7 @@ void PieceTable::FitLines(double column_step_rad) {
     facts.width_m = facts.arc.num * column_step_rad * facts.min_range_m;
     // No line goes through one return, or through some above each other: then across the line of sight, which turns as the scene does.
     const double from_lidar_m = std::sqrt(facts.mean_m.squaredNorm());
+    facts.direction = Eigen::Vector2d::UnitX();
     if (from_lidar_m > 0.0) facts.direction = Eigen::Vector2d(-facts.mean_m.y(), facts.mean_m.x()) / from_lidar_m;
     if (facts.num_returns == 1) continue;
     const double xx_m2 = sums.xx_m2 / count - facts.mean_m.x() * facts.mean_m.x();
@@ -288,7 +314,7 @@ void PieceTable::FitLines(double column_step_rad) {
   for (const OutlineEntry& entry : entries_) {
     const auto piece = static_cast<std::size_t>(entry.piece);
     const PieceFacts& facts = facts_[piece];
-    if (facts.num_returns == 1) continue;
+    if (is_new_[piece] == 0 || facts.num_returns == 1) continue;
     Extent& extent = extents_[piece];
     for (const LevelPoint* point : {&entry.near_point, &entry.far_point}) {
       const Eigen::Vector2d from_mean_m = Eigen::Vector2d(point->x_m, point->y_m) - facts.mean_m;
@@ -299,7 +325,7 @@ void PieceTable::FitLines(double column_step_rad) {
     }
   }
   for (std::size_t piece = 0; piece < facts_.size(); ++piece) {
-    if (facts_[piece].num_returns == 1) continue;
+    if (is_new_[piece] == 0 || facts_[piece].num_returns == 1) continue;
     facts_[piece].length_m = extents_[piece].greatest_m - extents_[piece].least_m;
     facts_[piece].radius_m = std::sqrt(extents_[piece].radius_m2);
   }

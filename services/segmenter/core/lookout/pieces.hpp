@@ -95,12 +95,21 @@ class PieceTable {
     double xy_m2 = 0.0;
     double yy_m2 = 0.0;
   };
+  // Empty columns between two that follow each other in a piece.
+  struct Gap {
+    std::int32_t num = -1;
+    float nearer_end_m = 0.0F;  // ranges of what is nearest in the two
+    float farther_end_m = 0.0F;
+    std::int32_t after = 0;  // the column that ends it
+  };
   // The widest gap between the columns of a piece, as far as they have been looked at.
   struct Columns {
+    std::int32_t num = 0;
     std::int32_t first = -1;
     std::int32_t last = 0;
-    std::int32_t widest_gap = 0;
-    std::int32_t after_widest = 0;
+    float first_m = 0.0F;
+    float last_m = 0.0F;
+    Gap widest;
   };
   // Returns of a piece in columns [first, last] of a line.
   struct Run {
@@ -124,14 +133,16 @@ class PieceTable {
   void MergeOutlines(std::span<const std::int32_t> group_of_piece);
   OutlineEntry* EntryOf(std::int32_t piece, std::size_t first_of_column, std::size_t end);
   void SortColumn(std::size_t first, std::size_t end);
-  // What follows from sums, outlines and runs.
+  // What follows from sums, outlines and runs, of the pieces that are new.
   void Measure(const ScanGrid& grid);
   void FindArcs(int num_columns);
+  static void WidenGap(Columns& columns, std::int32_t column, std::int32_t after, float range_m);
   void CountBeams(int num_columns);
   void FitLines(double column_step_rad);
 
   std::vector<std::int32_t> piece_of_return_;  // [returns]
   std::vector<PieceFacts> facts_;              // [pieces]
+  std::vector<std::uint8_t> is_new_;           // [pieces] 1: built or merged since the last round, and to be measured
   std::vector<OutlineEntry> entries_;          // by column
   std::vector<std::size_t> begin_of_column_;   // [columns + 1]
   std::vector<Run> runs_;                      // line by line

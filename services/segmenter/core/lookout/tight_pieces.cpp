@@ -62,22 +62,40 @@ void TightPieces::FindRuns(const ScanGrid& grid, const Reach& link) {
     }
   }
   sets_.Reset(static_cast<std::size_t>(num_runs));
-  for (const Seen& seen : by_line_) {
+  const auto look = [&](const Seen& seen) {
     const auto [line, column, index] = seen;
-    const bool is_of_one_run = column + kLinkColumns < grid.num_columns() && RunAt(grid, line, column + kLinkColumns) == RunAt(grid, line, column);
-    if (is_of_one_run) continue;
     const float range_m = grid.RangeAt(line, column);
     const float widest_m = WidestRange(link.At(range_m), range_m);
-    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, range_m, widest_m, RunAt(grid, line, column))) continue;
+    if (!IsOtherNear<kLinkColumns>(grid, line, column + 1, range_m, widest_m, RunAt(grid, line, column))) return;
     LookAlong(grid, link, seen, line, column + 1, column + kLinkColumns);
+  };
+  const auto is_run_at = [&](const Seen& seen, int columns_on) {
+    const int column = seen.column + columns_on;
+    return column < grid.num_columns() && RunAt(grid, seen.line, column) == RunAt(grid, seen.line, seen.column);
+  };
+  // The ends of runs first: where a drop parts a wall they link it, and for the others nothing is left but the drop.
+  before_end_.clear();
+  for (const Seen& seen : by_line_) {
+    if (is_run_at(seen, kLinkColumns)) continue;
+    if (is_run_at(seen, 1)) {
+      before_end_.push_back(seen);
+    } else {
+      look(seen);
+    }
   }
+  NameRunsBySet(grid);
+  for (const Seen& seen : before_end_) look(seen);
+  NameRunsBySet(grid);
+  // Not those that neighbours alone make: a scan in which every other beam meets nothing is no noise, and its cut makes some more.
+  num_runs_ = 0;
+  for (std::int32_t run = 0; run < num_runs; ++run) num_runs_ += sets_.Find(run) == run ? 1U : 0U;
+}
+
+void TightPieces::NameRunsBySet(const ScanGrid& grid) {
   for (const Seen& seen : by_line_) {
     std::int32_t& run = RunAt(grid, seen.line, seen.column);
     run = sets_.Find(run);
   }
-  // Not those that neighbours alone make: a scan in which every other beam meets nothing is no noise, and its cut makes some more.
-  num_runs_ = 0;
-  for (std::int32_t run = 0; run < num_runs; ++run) num_runs_ += sets_.Find(run) == run ? 1U : 0U;
 }
 
 // Links a return with those of a line in columns [first, last], over the seam, too. @return a run there that is linked with it; kNone = there is none

@@ -43,6 +43,7 @@ class TightPieces {
   void LinkRings(const ScanGrid& grid, const Reach& link);
   void NumberPieces(const ScanGrid& grid);
   void FindRuns(const ScanGrid& grid, const Reach& link);
+  void NameRunsBySet(const ScanGrid& grid);
   std::int32_t LookAlong(const ScanGrid& grid, const Reach& link, const Seen& from, int line, int first, int last);
   template <int kNum>
   bool IsOtherNear(const ScanGrid& grid, int line, int first, float range_m, float reach_m, std::int32_t known_run) const;
@@ -53,6 +54,7 @@ class TightPieces {
   UnionFind sets_;                    // of runs
   std::size_t num_runs_ = 0;          // that are not linked in their line
   std::vector<Seen> by_line_;         // the returns, line by line
+  std::vector<Seen> before_end_;      // scratch: returns near the end of what neighbours make
   std::vector<std::int32_t> run_at_;  // [lines x columns] what is linked in a line; ScanGrid::kNone = no return
   std::vector<std::int32_t> size_of_set_;
   std::vector<std::int32_t> number_of_set_;
