@@ -23,6 +23,7 @@ constexpr double kEndSdPerRange = 0.0035;
 // A side whose end was never seen is assumed to be as far behind as half of the width in sight, and that is known to half as much and 0.3 m.
 constexpr double kLeastDepthM = 0.15;
 constexpr double kGreatestAssumedDepthM = 1.5;
+constexpr double kWidestBeamM = 4.0;
 constexpr double kLeastSideSdM = 0.005;
 constexpr double kSideWanderM2PerS = 0.01 * 0.01;      // outlines change as a boat swings
 constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // what is moored swings, and positions by GNSS wander
@@ -30,6 +31,7 @@ constexpr double kAccelerationMps2 = 0.4;              // standard deviation ove
 constexpr double kFirstSpeedMps = 3.0;                 // standard deviation of what is not known
 constexpr double kFirstJitterM2 = 0.05 * 0.05;
 constexpr double kLeastJitterM2 = 0.015 * 0.015;
+constexpr double kMostJitterM2 = 4.0;
 constexpr double kJitterGain = 0.1;
 // Evidence of motion is that of some 3 s, and half of it as the measurements of two scans are not independent.
 constexpr double kMotionMemoryS = 3.0;
@@ -41,6 +43,16 @@ constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// What a place is uncertain by from scan to scan. The errors of mounting and heading, which turn all of it about the boat, stay as they are
+// meanwhile: of the covariance only what is more than theirs, about a degree, is noise.
+Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m) {
+  constexpr double kTurnedRad = 0.015;
+  const double turned_m = kTurnedRad * range_m;
+  Eigen::Matrix2d noise = covariance_m2;
+  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * noise.trace()));
+  return kept * noise;
+}
 
 // Of a normal density at `off`, without the factor of 2 pi.
 double LogDensity(const Eigen::Vector2d& off, const Eigen::Matrix2d& covariance) {
@@ -78,7 +90,7 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
   return measured;
 }
 
-Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& /*noise_m2*/, double range_m) {
+Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) {
   const auto& directions = CompassDirections();
   const Measured measured = Measure(seen_m, sides, range_m);
   Eigen::Vector2d sight = Eigen::Vector2d::Zero();
@@ -102,12 +114,12 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
       sides_[i] = {seen_reach, measured.variance_m2[i], true};
     } else {
       const double assumed = 0.5 * depth * std::abs(directions[i].dot(sight)) + 0.5 * width * std::abs(directions[i].dot(across));
-      const double sd = 0.5 * depth + 0.3;
+      const double sd = 0.3 + 0.5 * depth + 0.5 * std::min(width, kWidestBeamM);  // a boat seen from astern is much longer
       sides_[i] = {std::max(seen_reach, assumed), sd * sd, false};
     }
   }
   // The position is where the sides are counted from: it is known, the sides are not.
-  standing_m2_ = Eigen::Matrix2d::Identity() * kLeastJitterM2;
+  standing_m2_ = Eigen::Matrix2d::Identity() * kLeastJitterM2 + NoiseOf(noise_m2, range_m);
   moving_ << middle, Eigen::Vector2d::Zero();
   moving_covariance_.setZero();
   moving_covariance_.topLeftCorner<2, 2>() = standing_m2_;
@@ -134,7 +146,7 @@ void Body::Predict(double dt_s) {
 
 Eigen::Vector2d Body::position_m() const { return moving_probability_ > 0.5 ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
 
-Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& /*noise_m2*/, double range_m) const {
+Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const auto& directions = CompassDirections();
   const Measured measured = Measure(seen_m, sides, range_m);
   const Eigen::Vector2d position = position_m();
@@ -150,7 +162,7 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
   }
   // The edges are of a few returns: as many directions are worth two.
   const Eigen::Matrix2d covariance = information.inverse();
-  Shift shift{covariance * sum, covariance * (0.5 * num_edges) + Eigen::Matrix2d::Identity() * jitter_m2_, 0.0, 0.0};
+  Shift shift{covariance * sum, covariance * (0.5 * num_edges) + Eigen::Matrix2d::Identity() * jitter_m2_ + NoiseOf(noise_m2, range_m), 0.0, 0.0};
   for (std::size_t i = 0; i < kDirections; ++i) {
     if (measured.kind[i] != Measured::Kind::kEdge) continue;
     const double left = measured.reach_m[i] - directions[i].dot(position + shift.shift_m) - sides_[i].reach_m;
@@ -172,7 +184,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
 
   if (num_measured_ >= 2) {
     const double bend_m2 = (measured_m - 2.0 * last_measured_[0] + last_measured_[1]).squaredNorm() / 12.0;
-    jitter_m2_ = std::max(kLeastJitterM2, jitter_m2_ + kJitterGain * (std::min(bend_m2, 1.0) - jitter_m2_));
+    jitter_m2_ = std::max(kLeastJitterM2, jitter_m2_ + kJitterGain * (std::min(bend_m2, kMostJitterM2) - jitter_m2_));
   }
   last_measured_ = {measured_m, last_measured_[0]};
   num_measured_ = std::min(num_measured_ + 1, 2);

@@ -62,13 +62,14 @@ struct Followed {
   // That it is a thing and no clutter that lasts (crest, foam): what its segments look like, and how long it has lasted in one place.
   double ThingLogOdds() const {
     constexpr double kPerScan = 0.15;
-    constexpr double kMostScans = 3.0;
+    constexpr double kMostFor = 3.0;      // what looks like a thing, seen often
+    constexpr double kMostAgainst = 1.5;  // what looks like clutter: drops and buoys of one return do
     constexpr double kPerSecondStanding = 1.5;
     constexpr double kPerSecondMoving = 0.5;
-    constexpr double kMostForAge = 3.0;
+    constexpr double kMostForAge = 8.0;
     const double mean = sum_thing / std::max(1, num_hits);
     const double age_s = std::max(0.0, ToSeconds(seen - first));
-    return mean * std::min(kMostScans, 1.0 + kPerScan * (num_hits - 1)) +
+    return mean * std::min(mean > 0.0 ? kMostFor : kMostAgainst, 1.0 + kPerScan * (num_hits - 1)) +
            std::min(kMostForAge, (IsStanding() ? kPerSecondStanding : kPerSecondMoving) * age_s);
   }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }

@@ -47,10 +47,16 @@ bool LandMemory::IsLand(const Eigen::Vector2d& place_m) const {
   return false;
 }
 
-double LandMemory::Share(std::span<const Eigen::Vector2d> places_m) const {
+double LandMemory::Share(std::span<const Eigen::Vector2d> places_m, std::size_t most) const {
   if (places_m.empty() || tiles_.empty()) return 0.0;
-  const auto num_land = std::ranges::count_if(places_m, [this](const Eigen::Vector2d& place_m) { return IsLand(place_m); });
-  return static_cast<double>(num_land) / static_cast<double>(places_m.size());
+  const std::size_t step = 1 + places_m.size() / most;
+  std::size_t num_asked = 0;
+  std::size_t num_land = 0;
+  for (std::size_t i = 0; i < places_m.size(); i += step) {
+    ++num_asked;
+    if (IsLand(places_m[i])) ++num_land;
+  }
+  return static_cast<double>(num_land) / static_cast<double>(num_asked);
 }
 
 std::vector<Eigen::Vector2d> LandMemory::Waterline(const Eigen::Vector2d& near_m, double range_m, std::size_t most) const {

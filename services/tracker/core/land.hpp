@@ -22,8 +22,8 @@ class LandMemory {
   void Add(const Eigen::Vector2d& place_m, bool is_land);
   /// Whether land is remembered there, or in a cell beside it.
   bool IsLand(const Eigen::Vector2d& place_m) const;
-  /// Share of some places that are land.
-  double Share(std::span<const Eigen::Vector2d> places_m) const;
+  /// Share of some places that are land; of more than `most` every so many is asked for.
+  double Share(std::span<const Eigen::Vector2d> places_m, std::size_t most) const;
 
   /// Cells of land with a neighbour that is none, at most `range_m` from a place, nearest first, at most `most`.
   std::vector<Eigen::Vector2d> Waterline(const Eigen::Vector2d& near_m, double range_m, std::size_t most) const;

@@ -31,7 +31,9 @@ constexpr double kWidestBoatM = 5.0;  // within a wider outline, as of a dock wi
 constexpr double kPartShare = 0.15;
 constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
-constexpr double kLandShare = 0.6;  // of a segment's returns, where land is remembered
+constexpr double kLandShare = 0.6;           // of a segment's returns, where land is remembered
+constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
+constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
 constexpr double kLandVotes = 0.6;
 constexpr double kLandVoteGain = 0.1;
 constexpr double kInsideMergeS = 3.0;      // two that stand and were never seen apart for so long are one
@@ -181,7 +183,7 @@ class Step {
     land_share_.clear();
     for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
       const auto& seen = scan_.seen[i];
-      land_share_.push_back(land_.Share(places_m_[i]));
+      land_share_.push_back(land_.Share(places_m_[i], kMostLandPlaces));
       if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
     }
   }
@@ -264,7 +266,8 @@ class Step {
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
       const auto& track = tracks_[t];
       if (track.body) continue;
-      const double reach = 0.4 + 3.0 * std::min(0.3, track.UnseenS(scan_.end_time));
+      const double sd = std::sqrt(0.5 * track.relative_covariance_m2.trace());
+      const double reach = 0.4 + std::min(3.0 * std::max(0.0, sd - 0.3), 6.0) + 3.0 * std::min(std::max(0.3, dt_s_), track.UnseenS(scan_.end_time));
       const double far = reach + track.radius_m + 2.0;
       auto first = std::ranges::lower_bound(by_east, track.middle_m.x() - far, {}, east);
       for (; first != by_east.end() && east(*first) <= track.middle_m.x() + far; ++first) {
@@ -310,7 +313,7 @@ class Step {
       track.radius_m = radius_m_[i];
     }
     // Evidence: as dense as its place is known, against clutter there.
-    const double sd = track.body ? 0.3 : 0.5;
+    const double sd = std::max(track.body ? 0.3 : 0.5, std::sqrt(0.5 * seen.covariance_relative_m2.trace()));
     const double off = (track.middle_m - before_m).norm();
     const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
     const double clutter = clutter_.DensityAt(ToVessel(middle_m_[i]));
@@ -437,7 +440,9 @@ class Step {
           near.push_back(&track);
         }
       }
-      for (const auto& place_m : places_m_[i]) {
+      const std::size_t step = 1 + places_m_[i].size() / kMostFed;
+      for (std::size_t k = 0; k < places_m_[i].size(); k += step) {
+        const auto& place_m = places_m_[i][k];
         const bool is_kept = seen.is_land && std::ranges::any_of(near, [&](const Followed* track) { return Contains(track->outline_m, place_m); });
         if (!is_kept) land_.Add(place_m, seen.is_land);
       }
