@@ -52,8 +52,9 @@ struct Followed {
   bool is_ended = false;
   bool is_seen_now = false;
   bool is_inside_now = false;
-  bool is_met = false;     // beams ended in it, in this scan
-  double detection = 0.0;  // probability, this scan
+  std::int64_t inside_of = 0;  // the track that was seen by the segment in which this one lies; 0: land
+  bool is_met = false;         // beams ended in it, in this scan
+  double detection = 0.0;      // probability, this scan
 
   bool IsStanding() const {
     if (body && num_hits >= 5) return body->moving_probability() < 0.5;

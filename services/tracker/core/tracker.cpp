@@ -369,6 +369,11 @@ class Step {
         track.is_inside_now = true;
         track.seen = scan_.end_time;
         if (use_[i] == Use::kLand) track.land_votes += 0.1 * kLandVoteGain * (1.0 - track.land_votes);
+        track.inside_of = 0;
+        for (const auto& other : tracks_) {
+          if (other.is_seen_now && std::ranges::find(other.segment_ids, scan_.seen[i].segment_id) != other.segment_ids.end())
+            track.inside_of = other.id;
+        }
         break;
       }
     }
@@ -461,10 +466,11 @@ class Step {
       if (!one->body || one->is_ended) continue;
       for (auto other = std::next(one); other != tracks_.end(); ++other) {
         if (!other->body || other->is_ended) continue;
-        if ((one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m) continue;
+        const bool is_inside = (one->is_inside_now && one->inside_of == other->id) || (other->is_inside_now && other->inside_of == one->id);
+        if (!is_inside && (one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m) continue;
         const auto both = Intersection(one->outline_m, other->outline_m);
         const double smaller = std::min(AreaOf(one->outline_m), AreaOf(other->outline_m));
-        if (both.empty() || AreaOf(both) < 0.5 * smaller) continue;
+        if (!is_inside && (both.empty() || AreaOf(both) < 0.5 * smaller)) continue;
         // A mast or an oar in the outline of a boat is of it, also where it is a segment by itself.
         const Followed& larger = AreaOf(one->outline_m) >= AreaOf(other->outline_m) ? *one : *other;
         const bool is_part = smaller < kPartShare * AreaOf(larger.outline_m) && AreaOf(both) >= 0.9 * smaller &&
