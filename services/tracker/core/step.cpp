@@ -1,0 +1,440 @@
+#include "services/tracker/core/step.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "common/core/angles.hpp"
+#include "services/tracker/core/assignment.hpp"
+
+namespace lookout::tracker {
+
+namespace {
+
+constexpr std::size_t kLooksKept = 15;
+constexpr double kWidestBoatM = 5.0;  // within a wider outline, as of a dock with berths, another thing may lie
+constexpr double kPartShare = 0.15;
+constexpr double kLandShare = 0.6;           // of a segment's returns, where land is remembered
+constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
+constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
+constexpr double kLandVotes = 0.6;
+constexpr double kLandVoteGain = 0.1;
+constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
+constexpr double kMostDetection = 0.95;
+constexpr double kGreatestExistence = 6.0;
+constexpr double kLeastExistence = -6.0;
+constexpr double kMostCost = 6.0;
+// A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
+constexpr double kMostOff = 16.0;
+constexpr double kMostMisfit = 9.0;
+constexpr int kMisfitsToRestart = 5;
+
+double RadiusOf(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& middle_m) {
+  double radius = 0.0;
+  for (const auto& corner : outline_m) radius = std::max(radius, (corner - middle_m).norm());
+  return radius;
+}
+
+Eigen::Vector2d MiddleOf(const std::vector<Eigen::Vector2d>& outline_m) {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const auto& corner : outline_m) middle += corner / static_cast<double>(outline_m.size());
+  return middle;
+}
+
+}  // namespace
+
+void Step::Run() {
+  Predict();
+  is_sight_known_ = known_.sight.Begin(scan_);
+  if (!scan_.own) return;
+  FindPlaces();
+  FindLand();
+  Look();
+  known_.clutter.Begin();
+  AssignBodies();
+  AssignRest();
+  FindInside();
+  Absorb();
+  for (auto& track : known_.tracks) {
+    if (!track.is_seen_now && !track.is_inside_now) Miss(track);
+  }
+  Begin();
+  known_.clutter.End(dt_s_);
+  FeedLand();
+  Merge();
+}
+
+Eigen::Vector2d Step::ToVessel(const Eigen::Vector2d& place_m) const {
+  const Eigen::Vector2d off = place_m - scan_.own->position_map_m.head<2>();
+  const auto [sine, cosine] = SinCosOf(scan_.own->heading_rad);  // forward is (sine, cosine) of east, north
+  return {off.x() * sine + off.y() * cosine, -off.x() * cosine + off.y() * sine};
+}
+
+void Step::Predict() {
+  for (auto& track : known_.tracks) {
+    track.segment_ids.clear();
+    track.is_seen_now = track.is_inside_now = false;
+    track.detection = 0.0;
+    if (!track.body) continue;
+    track.body->Predict(dt_s_);
+    Place(track);
+  }
+}
+
+void Step::Place(Followed& track) {
+  track.outline_m = track.body->Outline();
+  track.middle_m = track.body->center_m();
+  track.radius_m = RadiusOf(track.outline_m, track.middle_m);
+}
+
+void Step::FindPlaces() {
+  use_.assign(scan_.seen.size(), Use::kFree);
+  middle_m_.clear();
+  radius_m_.clear();
+  for (const auto& seen : scan_.seen) {
+    middle_m_.push_back(MiddleOf(seen.outline_m));
+    radius_m_.push_back(RadiusOf(seen.outline_m, middle_m_.back()));
+  }
+  sides_.assign(scan_.seen.size(), std::nullopt);
+  ranges_m_.clear();
+  for (const auto& middle_m : middle_m_) ranges_m_.push_back((middle_m - known_.sight.from_m()).norm());
+  places_m_.assign(scan_.seen.size(), {});
+  std::map<std::int32_t, std::size_t> index_of;
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) index_of[scan_.seen[i].segment_id] = i;
+  for (const auto& one : known_.sight.Returns()) {
+    if (const auto found = index_of.find(one.label); found != index_of.end()) places_m_[found->second].push_back(one.place_m);
+  }
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    const auto& seen = scan_.seen[i];
+    if (!places_m_[i].empty()) continue;
+    places_m_[i] = seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m;
+  }
+}
+
+// What the segmenter calls land, and what lies where land is remembered.
+void Step::FindLand() {
+  land_share_.clear();
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    const auto& seen = scan_.seen[i];
+    land_share_.push_back(known_.land.Share(places_m_[i], kMostLandPlaces));
+    if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
+  }
+}
+
+void Step::Look() {
+  for (auto& track : known_.tracks) {
+    if (!is_sight_known_) {
+      track.detection = kDetectionUnknown;
+      continue;
+    }
+    const auto look = known_.sight.At(track.outline_m, track.top_m);
+    const double share = track.beams_met / track.beams_open;
+    // Of so many beams that each would come back with this share; not all of them by themselves.
+    double none = 1.0;
+    // What ended in it was something there, if not by itself.
+    const double num_empty = look.num_open - look.num_met;
+    for (int i = 0; i < std::min(20, static_cast<int>(num_empty + 0.5)); ++i) none *= 1.0 - share;
+    track.is_met = look.num_met > 0.5 * look.num_open;
+    track.detection = std::min(kMostDetection, 1.0 - none);
+  }
+}
+
+double Step::CostOf(const Followed& track, std::size_t i) const {
+  const auto& seen = scan_.seen[i];
+  const Eigen::Matrix4d covariance = track.body->covariance();
+  const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
+  const double gate = 0.5 + 2.0 * sd;
+  if ((middle_m_[i] - track.middle_m).norm() > gate + track.radius_m + radius_m_[i]) return kMostCost;
+  const double gap = GapOf(track.outline_m, seen.outline_m).distance_m;
+  if (gap > gate) return kMostCost;
+  const double area_track = std::max(0.1, AreaOf(track.outline_m));
+  const double area_seen = std::max(0.1, AreaOf(seen.outline_m));
+  const auto both = Intersection(track.outline_m, seen.outline_m);
+  const double overlap = both.empty() ? 0.0 : std::min(1.0, std::max(AreaOf(both), 0.1) / std::min(area_track, area_seen));
+  const auto shift = track.body->ShiftOf(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
+  return 0.1 * std::min(shift.off, 30.0) + 0.1 * std::min(shift.misfit, 20.0) + (1.0 - overlap) + 0.1 * std::abs(Log(area_seen / area_track));
+}
+
+// Computed once for a segment, where it is asked for.
+const Sides& Step::SidesOf(std::size_t i) const {
+  if (!sides_[i]) sides_[i] = known_.sight.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
+  return *sides_[i];
+}
+
+void Step::AssignBodies() {
+  std::vector<std::size_t> rows;
+  for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
+    if (known_.tracks[t].body) rows.push_back(t);
+  }
+  std::vector<Candidate> candidates;
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      // Land takes no part, unless it is the very thing that was seen there before.
+      const bool may_be =
+          use_[i] == Use::kFree || (known_.tracks[rows[row]].is_confirmed && radius_m_[i] < 2.0 * known_.tracks[rows[row]].radius_m + 1.0);
+      if (!may_be) continue;
+      const double cost = CostOf(known_.tracks[rows[row]], i) + (use_[i] == Use::kLand ? 1.0 : 0.0);
+      if (cost < kMostCost) candidates.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(i), cost});
+    }
+  }
+  const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(scan_.seen.size()), candidates, kMostCost);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (column_of[row] >= 0) Hit(known_.tracks[rows[row]], static_cast<std::size_t>(column_of[row]));
+  }
+}
+
+// What is not yet likely takes the nearest of the rest.
+void Step::AssignRest() {
+  std::vector<std::size_t> by_east;
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    if (use_[i] == Use::kFree) by_east.push_back(i);
+  }
+  const auto east = [this](std::size_t i) { return middle_m_[i].x(); };
+  std::ranges::sort(by_east, [&](std::size_t a, std::size_t b) { return std::pair(east(a), a) < std::pair(east(b), b); });
+  struct Near {
+    double distance_m;
+    std::size_t track;
+    std::size_t seen;
+  };
+  std::vector<Near> pairs;
+  for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
+    const auto& track = known_.tracks[t];
+    if (track.body) continue;
+    const double sd = std::sqrt(0.5 * track.relative_covariance_m2.trace());
+    const double reach = 0.4 + std::min(3.0 * std::max(0.0, sd - 0.3), 6.0) + 3.0 * std::min(std::max(0.3, dt_s_), track.UnseenS(scan_.end_time));
+    const double far = reach + track.radius_m + 2.0;
+    auto first = std::ranges::lower_bound(by_east, track.middle_m.x() - far, {}, east);
+    for (; first != by_east.end() && east(*first) <= track.middle_m.x() + far; ++first) {
+      const double distance = (middle_m_[*first] - track.middle_m).norm() - track.radius_m - radius_m_[*first];
+      if (distance < reach) pairs.push_back({std::max(0.0, distance) + 0.01 * (middle_m_[*first] - track.middle_m).norm(), t, *first});
+    }
+  }
+  std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.distance_m, near.track, near.seen); });
+  for (const auto& pair : pairs) {
+    if (known_.tracks[pair.track].is_seen_now || use_[pair.seen] != Use::kFree) continue;
+    Hit(known_.tracks[pair.track], pair.seen);
+    known_.clutter.Add(ToVessel(middle_m_[pair.seen]));
+  }
+}
+
+void Step::Hit(Followed& track, std::size_t i) {
+  const auto& seen = scan_.seen[i];
+  const bool was_land = use_[i] == Use::kLand;
+  use_[i] = Use::kTaken;
+  track.is_seen_now = true;
+  track.land_votes += kLandVoteGain * ((was_land ? 1.0 : 0.0) - track.land_votes);
+  if (was_land) land_ids_kept_.push_back(seen.segment_id);
+  const Eigen::Vector2d before_m = track.middle_m;
+  const auto& sides = SidesOf(i);
+  const double range_m = ranges_m_[i];
+  if (track.body) {
+    // Where another that is known lies in what is seen, this is not the outline of one.
+    const bool grows = !was_land && std::ranges::none_of(known_.tracks, [&](const Followed& other) {
+      return other.is_confirmed && other.id != track.id && Contains(seen.outline_m, other.middle_m);
+    });
+    const auto shift = track.body->ShiftOf(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
+    if (shift.off < kMostOff && shift.misfit < kMostMisfit) {
+      track.num_misfits = 0;
+      track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
+    } else if (++track.num_misfits >= kMisfitsToRestart) {
+      track.num_misfits = 0;
+      track.body->Restart(seen.outline_m, sides, range_m);
+    }
+    Place(track);
+  } else {
+    track.outline_m = seen.outline_m;
+    track.middle_m = middle_m_[i];
+    track.radius_m = radius_m_[i];
+  }
+  // Evidence: as dense as its place is known, against clutter there.
+  const double sd = std::max(track.body ? 0.3 : 0.5, std::sqrt(0.5 * seen.covariance_relative_m2.trace()));
+  const double off = (track.middle_m - before_m).norm();
+  const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
+  const double clutter = known_.clutter.DensityAt(ToVessel(middle_m_[i]));
+  const double detection = std::max(track.detection, 0.1);
+  track.log_odds += Log(1.0 - detection + detection * density / clutter);
+  track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
+  track.sum_thing += Logit(seen.thing_probability);
+  ++track.num_hits;
+  track.sum_returns += seen.num_returns;
+  track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
+  track.seen = track.seen_alone = scan_.end_time;
+  track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
+  track.relative_covariance_m2 = seen.covariance_relative_m2;
+  track.segment_ids.push_back(seen.segment_id);
+  Remember(track, true);
+  if (is_sight_known_) {
+    const auto look = known_.sight.At(seen.outline_m, seen.top_above_water_m);
+    constexpr double kForgotten = 0.95;
+    track.beams_met = kForgotten * track.beams_met + std::min(look.num_met, look.num_open);
+    track.beams_open = kForgotten * track.beams_open + std::max(look.num_open, 1.0);
+  }
+  if (!track.body && track.Existence() > 0.5) {
+    track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
+    Place(track);
+  }
+  if (track.Existence() > params_.confirm_probability) track.is_confirmed = true;
+}
+
+void Step::Remember(Followed& track, bool is_seen) {
+  track.looks.push_back(is_seen);
+  if (track.looks.size() > kLooksKept) track.looks.pop_front();
+}
+
+void Step::Miss(Followed& track) {
+  if (track.detection <= 0.0) return;  // it could not have been seen
+  track.log_odds = std::max(kLeastExistence, track.log_odds + Log(1.0 - track.detection));
+  if (track.detection > 0.5) Remember(track, false);
+}
+
+// Tracks that lie in what another is seen by: a boat that a dock, a bank or another boat was merged with in this scan.
+void Step::FindInside() {
+  for (auto& track : known_.tracks) {
+    if (track.is_seen_now || !track.body) continue;
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      if (use_[i] == Use::kFree) continue;
+      if ((middle_m_[i] - track.middle_m).norm() > radius_m_[i] + track.radius_m) continue;
+      const auto both = Intersection(scan_.seen[i].outline_m, track.outline_m);
+      const double area = std::max(0.05, AreaOf(track.outline_m));
+      if (both.empty() || AreaOf(both) < 0.5 * area) continue;
+      // Something of what was seen must lie in it.
+      if (!track.is_met && std::ranges::none_of(places_m_[i], [&](const Eigen::Vector2d& place_m) { return Contains(track.outline_m, place_m); }))
+        continue;
+      track.is_inside_now = true;
+      track.seen = scan_.end_time;
+      if (use_[i] == Use::kLand) track.land_votes += 0.1 * kLandVoteGain * (1.0 - track.land_votes);
+      track.inside_of = 0;
+      for (const auto& other : known_.tracks) {
+        if (other.is_seen_now && std::ranges::find(other.segment_ids, scan_.seen[i].segment_id) != other.segment_ids.end())
+          track.inside_of = other.id;
+      }
+      break;
+    }
+  }
+}
+
+// A thing may come in several segments. What lies in the outline of a track, next to the segment that it was seen by, is of it.
+void Step::Absorb() {
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    if (use_[i] != Use::kFree) continue;
+    for (auto& track : known_.tracks) {
+      if (!track.is_seen_now || !track.is_confirmed || !track.body) continue;
+      if ((middle_m_[i] - track.middle_m).norm() > track.radius_m) continue;
+      const auto rectangle = RectangleAround(track.outline_m);
+      if (rectangle.width_m > kWidestBoatM || !std::ranges::all_of(scan_.seen[i].outline_m, [&](const auto& corner) {
+            return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < 0.2;
+          }))
+        continue;
+      track.segment_ids.push_back(scan_.seen[i].segment_id);
+      use_[i] = Use::kTaken;
+      break;
+    }
+  }
+}
+
+void Step::Begin() {
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    const auto& seen = scan_.seen[i];
+    if (use_[i] != Use::kFree) continue;
+    known_.clutter.Add(ToVessel(middle_m_[i]));
+    Followed track;
+    track.id = known_.next_id++;
+    track.first = track.seen = track.seen_alone = scan_.end_time;
+    track.outline_m = seen.outline_m;
+    track.middle_m = track.first_m = middle_m_[i];
+    track.radius_m = radius_m_[i];
+    track.top_m = seen.top_above_water_m;
+    track.sum_thing = Logit(seen.thing_probability);
+    track.num_hits = 1;
+    track.sum_returns = seen.num_returns;
+    track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
+    track.relative_covariance_m2 = seen.covariance_relative_m2;
+    track.segment_ids.push_back(seen.segment_id);
+    Remember(track, true);
+    for (auto& other : known_.tracks) {
+      if (other.is_confirmed && !other.is_ended && Contains(other.outline_m, track.middle_m)) {
+        track.parents.emplace_back(other.id, scan_.end_time);
+        other.children.emplace_back(track.id, scan_.end_time);
+      }
+    }
+    if (seen.is_sure) {
+      track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
+      Place(track);
+    }
+    known_.tracks.push_back(std::move(track));
+  }
+}
+
+void Step::FeedLand() {
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    const auto& seen = scan_.seen[i];
+    if (!seen.is_sure) {
+      if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
+      continue;
+    }
+    if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
+    std::vector<const Followed*> near;
+    for (const auto& track : known_.tracks) {
+      if (track.is_confirmed && track.land_votes < kLandVotes && (track.middle_m - middle_m_[i]).norm() < track.radius_m + radius_m_[i]) {
+        near.push_back(&track);
+      }
+    }
+    const std::size_t step = 1 + places_m_[i].size() / kMostFed;
+    for (std::size_t k = 0; k < places_m_[i].size(); k += step) {
+      const auto& place_m = places_m_[i][k];
+      const bool is_kept = seen.is_land && std::ranges::any_of(near, [&](const Followed* track) { return Contains(track->outline_m, place_m); });
+      if (!is_kept) known_.land.Add(place_m, seen.is_land);
+    }
+  }
+}
+
+// Two whose outlines lie on each other are one when no scan shows both by themselves for some time: longer where both are well known, as a boat at
+// a dock with which it is segmented for a while. What most scans call land is land.
+void Step::Merge() {
+  constexpr double kShortestS = 1.0;
+  constexpr double kLongestS = 10.0;
+  constexpr double kPerHitS = 0.05;
+  std::map<Ids, Utime> still;
+  for (auto one = known_.tracks.begin(); one != known_.tracks.end(); ++one) {
+    if (one->land_votes > kLandVotes) one->is_ended = true;
+    if (!one->body || one->is_ended) continue;
+    for (auto other = std::next(one); other != known_.tracks.end(); ++other) {
+      if (!other->body || other->is_ended) continue;
+      const bool is_inside = (one->is_inside_now && one->inside_of == other->id) || (other->is_inside_now && other->inside_of == one->id);
+      if (!is_inside && (one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m) continue;
+      const auto both = Intersection(one->outline_m, other->outline_m);
+      const double smaller = std::min(AreaOf(one->outline_m), AreaOf(other->outline_m));
+      if (!is_inside && (both.empty() || AreaOf(both) < 0.5 * smaller)) continue;
+      // A mast or an oar in the outline of a boat is of it, also where it is a segment by itself.
+      const Followed& larger = AreaOf(one->outline_m) >= AreaOf(other->outline_m) ? *one : *other;
+      const bool is_part = smaller < kPartShare * AreaOf(larger.outline_m) && AreaOf(both) >= 0.9 * smaller &&
+                           RectangleAround(larger.outline_m).width_m < kWidestBoatM;
+      if (one->is_seen_now && other->is_seen_now && !is_part) continue;
+      const Ids ids(one->id, other->id);
+      const auto before = known_.together.find(ids);
+      const Utime since = before == known_.together.end() ? scan_.end_time : before->second;
+      const double least_s = std::clamp(kPerHitS * std::min(one->num_hits, other->num_hits), kShortestS, kLongestS);
+      if (ToSeconds(scan_.end_time - since) < least_s) {
+        still.emplace(ids, since);
+        continue;
+      }
+      // What was seen last goes on, by the older name.
+      merged_.emplace_back(other->id, one->id);
+      if (is_part ? &larger == &*other : other->seen_alone > one->seen_alone) {
+        std::swap(*one, *other);
+        std::swap(one->id, other->id);
+        std::swap(one->parents, other->parents);
+        std::swap(one->children, other->children);
+        std::swap(one->first, other->first);
+      }
+      one->parents.emplace_back(other->id, scan_.end_time);
+      other->children.emplace_back(one->id, scan_.end_time);
+      one->is_confirmed = one->is_confirmed || other->is_confirmed;
+      other->is_ended = true;
+    }
+  }
+  known_.together = std::move(still);
+}
+
+}  // namespace lookout::tracker

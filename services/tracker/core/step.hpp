@@ -1,0 +1,81 @@
+// One scan at work: what it changes of what is known.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "services/tracker/core/clutter.hpp"
+#include "services/tracker/core/followed.hpp"
+#include "services/tracker/core/land.hpp"
+#include "services/tracker/core/sight.hpp"
+#include "services/tracker/core/tracker.hpp"
+
+namespace lookout::tracker {
+
+using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
+
+/// What is known between scans.
+struct Known {
+  Sight sight;
+  LandMemory land = {};
+  ClutterMap clutter = {};
+  std::deque<Followed> tracks = {};    // by id
+  std::map<Ids, Utime> together = {};  // since when no scan showed both by themselves
+  std::int64_t next_id = 1;
+};
+
+/// Run it once; what it found is then to be asked for.
+class Step {
+ public:
+  Step(const TrackerParams& params, const ScanInput& scan, Known& known, double dt_s) : params_(params), scan_(scan), known_(known), dt_s_(dt_s) {}
+
+  void Run();
+
+  bool is_sight_known() const { return is_sight_known_; }
+  const std::vector<std::int32_t>& land_ids() const { return land_ids_; }
+  const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
+
+ private:
+  enum class Use { kFree, kLand, kTaken };
+  Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const;
+  void Predict();
+  static void Place(Followed& track);
+  void FindPlaces();
+  void FindLand();
+  void Look();
+  double CostOf(const Followed& track, std::size_t i) const;
+  const Sides& SidesOf(std::size_t i) const;
+  void AssignBodies();
+  void AssignRest();
+  void Hit(Followed& track, std::size_t i);
+  static void Remember(Followed& track, bool is_seen);
+  void Miss(Followed& track);
+  void FindInside();
+  void Absorb();
+  void Begin();
+  void FeedLand();
+  void Merge();
+
+  const TrackerParams& params_;
+  const ScanInput& scan_;
+  Known& known_;
+  double dt_s_;
+  bool is_sight_known_ = false;
+  std::vector<Use> use_;                                // [seen]
+  std::vector<Eigen::Vector2d> middle_m_;               // [seen]
+  std::vector<double> radius_m_;                        // [seen]
+  mutable std::vector<std::optional<Sides>> sides_;     // [seen]
+  std::vector<double> ranges_m_;                        // [seen] from the lidar
+  std::vector<double> land_share_;                      // [seen]
+  std::vector<std::vector<Eigen::Vector2d>> places_m_;  // [seen] returns, or corners
+  std::vector<std::int32_t> land_ids_;
+  std::vector<std::int32_t> land_ids_kept_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> merged_;
+};
+
+}  // namespace lookout::tracker
