@@ -232,6 +232,12 @@ void Body::Loosen(double variance_m2) {
   log_likelihood_ratio_ = std::min(log_likelihood_ratio_, 0.0);
 }
 
+void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
+  const auto& directions = CompassDirections();
+  const Support support = SupportOf(outline_m);
+  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m = std::max(sides_[i].reach_m, support[i] - directions[i].dot(position_m()));
+}
+
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) {
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
   other.moving_.tail<2>() = moving_.tail<2>();

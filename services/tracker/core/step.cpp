@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kLooksKept = 15;
 constexpr double kWidestBoatM = 5.0;  // within a wider outline, as of a dock with berths, another thing may lie
 constexpr double kPartShare = 0.15;
+constexpr double kPartBesideShare = 0.05;
+constexpr double kPartGapM = 0.5;
 constexpr double kLandShare = 0.6;           // of a segment's returns, where land is remembered
 constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
 constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
@@ -402,14 +404,19 @@ void Step::Merge() {
     for (auto other = std::next(one); other != known_.tracks.end(); ++other) {
       if (!other->body || other->is_ended) continue;
       const bool is_inside = (one->is_inside_now && one->inside_of == other->id) || (other->is_inside_now && other->inside_of == one->id);
-      if (!is_inside && (one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m) continue;
+      if (!is_inside && (one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m + kPartGapM) continue;
+      const double area = AreaOf(one->outline_m);
+      const double other_area = AreaOf(other->outline_m);
+      const double smaller = std::min(area, other_area);
+      const Followed& larger = area >= other_area ? *one : *other;
       const auto both = Intersection(one->outline_m, other->outline_m);
-      const double smaller = std::min(AreaOf(one->outline_m), AreaOf(other->outline_m));
-      if (!is_inside && (both.empty() || AreaOf(both) < 0.5 * smaller)) continue;
-      // A mast or an oar in the outline of a boat is of it, also where it is a segment by itself.
-      const Followed& larger = AreaOf(one->outline_m) >= AreaOf(other->outline_m) ? *one : *other;
-      const bool is_part = smaller < kPartShare * AreaOf(larger.outline_m) && AreaOf(both) >= 0.9 * smaller &&
-                           RectangleAround(larger.outline_m).width_m < kWidestBoatM;
+      // A mast, an oar or a rail in the outline of a boat, or beside it, is of it, also where it is a segment by itself.
+      const bool is_small = smaller < kPartShare * AreaOf(larger.outline_m) && RectangleAround(larger.outline_m).width_m < kWidestBoatM;
+      const bool is_within = !both.empty() && AreaOf(both) >= 0.9 * smaller;
+      const bool is_beside = one->IsStanding() && other->IsStanding() && GapOf(one->outline_m, other->outline_m).distance_m < kPartGapM &&
+                             smaller < kPartBesideShare * AreaOf(larger.outline_m);
+      const bool is_part = is_small && (is_within || is_beside);
+      if (!is_inside && !is_part && (both.empty() || AreaOf(both) < 0.5 * smaller)) continue;
       if (one->is_seen_now && other->is_seen_now && !is_part) continue;
       const Ids ids(one->id, other->id);
       const auto before = known_.together.find(ids);
@@ -431,6 +438,10 @@ void Step::Merge() {
       one->parents.emplace_back(other->id, scan_.end_time);
       other->children.emplace_back(one->id, scan_.end_time);
       one->is_confirmed = one->is_confirmed || other->is_confirmed;
+      if (is_part) {
+        one->body->Include(other->outline_m);
+        Place(*one);
+      }
       other->is_ended = true;
     }
   }
