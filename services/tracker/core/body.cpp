@@ -144,7 +144,7 @@ void Body::Predict(double dt_s) {
   log_likelihood_ratio_ *= std::max(0.0, 1.0 - dt_s / kMotionMemoryS);
 }
 
-Eigen::Vector2d Body::position_m() const { return moving_probability_ > 0.5 ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
+Eigen::Vector2d Body::position_m() const { return prefers_moving_ ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
 
 Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const auto& directions = CompassDirections();
@@ -168,10 +168,9 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
     const double left = measured.reach_m[i] - directions[i].dot(position + shift.shift_m) - sides_[i].reach_m;
     shift.misfit += left * left / (measured.variance_m2[i] + sides_[i].variance_m2 + jitter_m2_) / num_edges;
   }
-  const Eigen::Matrix2d spread =
-      shift.covariance_m2 + (moving_probability_ > 0.5 ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>())
-                                                       : Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>() + standing_m2_));
-  const Eigen::Vector2d off = moving_probability_ > 0.5 ? Eigen::Vector2d(shift.shift_m) : Eigen::Vector2d(shift.shift_m);
+  Eigen::Matrix2d spread = shift.covariance_m2 + moving_covariance_.topLeftCorner<2, 2>();
+  if (!prefers_moving_) spread += standing_m2_;
+  const Eigen::Vector2d& off = shift.shift_m;
   shift.off = off.dot(spread.inverse() * off);
   return shift;
 }
@@ -204,6 +203,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   moving_covariance_ -= gain_moving * spread_moving * gain_moving.transpose();
   moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
 
+  prefers_moving_ = log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0;
   moving_probability_ = 1.0 / (1.0 + Exp(-(log_likelihood_ratio_ + kMovingPriorLogOdds)));
   const Eigen::Vector2d velocity = velocity_mps();
   const double speed = velocity.norm();
@@ -213,7 +213,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   if (!grows) return;
   // Sides are counted from the position: what it is not known to does not change them, or they would follow a wrong speed.
   const Eigen::Vector2d position = position_m();
-  const Eigen::Matrix2d spread = moving_probability_ > 0.5 ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>()) : standing_m2_;
+  const Eigen::Matrix2d spread = prefers_moving_ ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>()) : standing_m2_;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double off = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
     if (measured.kind[i] != Measured::Kind::kEdge && off <= 0.0) continue;
@@ -244,6 +244,7 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   other.moving_covariance_.bottomRightCorner<2, 2>() = moving_covariance_.bottomRightCorner<2, 2>();
   other.log_likelihood_ratio_ = log_likelihood_ratio_;
   other.moving_probability_ = moving_probability_;
+  other.prefers_moving_ = prefers_moving_;
   other.jitter_m2_ = jitter_m2_;
   *this = other;
 }
@@ -269,7 +270,7 @@ Eigen::Vector2d Body::center_m() const { return position_m() + middle_m(); }
 Eigen::Matrix4d Body::covariance() const {
   constexpr std::size_t kNorth = kDirections / 4;
   Eigen::Matrix4d covariance = moving_covariance_;
-  if (moving_probability_ <= 0.5) covariance.topLeftCorner<2, 2>() = standing_m2_;
+  if (!prefers_moving_) covariance.topLeftCorner<2, 2>() = standing_m2_;
   covariance(0, 0) += 0.25 * (sides_[0].variance_m2 + sides_[Opposite(0)].variance_m2);
   covariance(1, 1) += 0.25 * (sides_[kNorth].variance_m2 + sides_[Opposite(kNorth)].variance_m2);
   return covariance;

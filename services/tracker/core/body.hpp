@@ -79,7 +79,8 @@ class Body {
   Eigen::Vector4d moving_ = Eigen::Vector4d::Zero();  // position and velocity
   Eigen::Matrix4d moving_covariance_ = Eigen::Matrix4d::Zero();
   double log_likelihood_ratio_ = 0.0;  // of moving over standing, of the last seconds
-  double moving_probability_ = 0.0;
+  double moving_probability_ = 0.0;  // below one half where the speed does not stand out
+  bool prefers_moving_ = false;      // which of the two says where it is
   double turn_rate_radps_ = 0.0;
   // Jitter of the measured position from scan to scan, by its second differences: steady motion is none.
   std::array<Eigen::Vector2d, 2> last_measured_{};
