@@ -400,6 +400,9 @@ void Step::Merge() {
   std::map<Ids, Utime> still;
   for (auto one = known_.tracks.begin(); one != known_.tracks.end(); ++one) {
     if (one->land_votes > kLandVotes) one->is_ended = true;
+    // What was not seen by itself for as long as that, and lies in land, is land.
+    const double alone_s = ToSeconds(scan_.end_time - one->seen_alone);
+    if (one->is_inside_now && one->inside_of == 0 && alone_s > std::clamp(kPerHitS * one->num_hits, kShortestS, kLongestS)) one->is_ended = true;
     if (!one->body || one->is_ended) continue;
     for (auto other = std::next(one); other != known_.tracks.end(); ++other) {
       if (!other->body || other->is_ended) continue;
