@@ -146,7 +146,8 @@ double Step::CostOf(const Followed& track, std::size_t i) const {
   const auto& seen = scan_.seen[i];
   const Eigen::Matrix4d covariance = track.body->covariance();
   const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
-  const double gate = 0.5 + 2.0 * sd;
+  const double noise = std::sqrt(0.5 * seen.covariance_relative_m2.trace());
+  const double gate = 0.5 + 2.0 * sd + std::min(3.0 * std::max(0.0, noise - 0.3), 6.0);
   if ((middle_m_[i] - track.middle_m).norm() > gate + track.radius_m + radius_m_[i]) return kMostCost;
   const double gap = GapOf(track.outline_m, seen.outline_m).distance_m;
   if (gap > gate) return kMostCost;
