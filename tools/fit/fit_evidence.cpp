@@ -35,7 +35,7 @@ Calibration CalibrationByFamilies(std::size_t sum, const Rows& rows, const Boost
 }
 
 SumReport FitOne(std::size_t sum, Rows& rows, BoostingParams boosting) {
-  // In the scenes the own crew and gear alone are within 3 m. A quay that the boat lies at must not become clutter by that.
+  // In most scenes the own crew and gear alone are within 3 m. A quay that the boat lies at must not become clutter by that (DECISIONS).
   if (sum == segmenter::kThingSum) boosting.dropped.emplace_back("range_m");
   if (sum == segmenter::kThingSum) {
     WeighAlike(rows);
