@@ -93,7 +93,7 @@ Tracker::~Tracker() = default;
 
 void Tracker::Reset() {
   memory_->known.tracks.clear();
-  memory_->known.together.clear();
+  memory_->known.together_s.clear();
   memory_->known.land.Clear();
   memory_->known.clutter = {};
   memory_->time.reset();
@@ -159,7 +159,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.id = track.id;
     out.status = track.is_ended           ? TrackStatus::kLost
                  : !track.is_confirmed    ? TrackStatus::kTentative
-                 : unseen_s <= kCoastingS ? TrackStatus::kConfirmed
+                 : unseen_s <= kCoastingS && existence >= 0.5 ? TrackStatus::kConfirmed
                                           : TrackStatus::kCoasting;
     if (track.is_ended && !track.is_confirmed) continue;
     out.first = track.first;
