@@ -93,7 +93,7 @@ Tracker::~Tracker() = default;
 
 void Tracker::Reset() {
   memory_->known.tracks.clear();
-  memory_->known.together.clear();
+  memory_->known.together_s.clear();
   memory_->known.land.Clear();
   memory_->known.clutter = {};
   memory_->time.reset();
@@ -159,7 +159,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.id = track.id;
     out.status = track.is_ended           ? TrackStatus::kLost
                  : !track.is_confirmed    ? TrackStatus::kTentative
-                 : unseen_s <= kCoastingS ? TrackStatus::kConfirmed
+                 : unseen_s <= kCoastingS && existence >= 0.5 ? TrackStatus::kConfirmed
                                           : TrackStatus::kCoasting;
     if (track.is_ended && !track.is_confirmed) continue;
     out.first = track.first;
@@ -191,7 +191,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.num_seen = static_cast<int>(std::ranges::count(track.looks, true));
     out.mean_returns = track.sum_returns / std::max(1, track.num_hits);
     out.kind = KindOf(out, is_moving);
-    if (track.body && is_moving) out.turn_rate_radps = kNan;  // one scan after another tells the course, not yet how it changes
+    if (track.body && is_moving) out.turn_rate_radps = track.body->turn_rate_radps();
     if (scan.own) Encountered(out, *scan.own, params_);
     picture.tracks.push_back(std::move(out));
   }
