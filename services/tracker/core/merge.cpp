@@ -22,12 +22,14 @@ bool IsMoving(const Followed& track) { return track.body && track.body->IsMoving
 
 // Whether the lesser of two could be a part of the other: it lies in it, or is a mast, an oar or a bow beside it.
 bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) {
-  constexpr double kWithinShare = 0.8;
-  constexpr double kBesideM = 1.0;
-  constexpr double kPieceM = 1.2;
+  constexpr double kWithinShare = 0.4;
+  constexpr double kBeamShare = 0.6;  // of a ship's length, its hidden side assumed
+  constexpr double kBesideM = 1.5;
+  constexpr double kPieceM = 2.0;
   constexpr double kPieceShare = 0.15;
   constexpr double kSameVelocityMps = 0.7;
-  if (RectangleAround(larger.outline_m).width_m > kWidestBoatM) return false;
+  const auto around = RectangleAround(larger.outline_m);
+  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m)) return false;
   const double area = AreaOf(lesser.outline_m);
   if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
   const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;

@@ -191,7 +191,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.num_seen = static_cast<int>(std::ranges::count(track.looks, true));
     out.mean_returns = track.sum_returns / std::max(1, track.num_hits);
     out.kind = KindOf(out, is_moving);
-    if (track.body && is_moving) out.turn_rate_radps = kNan;  // one scan after another tells the course, not yet how it changes
+    if (track.body && is_moving) out.turn_rate_radps = track.body->turn_rate_radps();
     if (scan.own) Encountered(out, *scan.own, params_);
     picture.tracks.push_back(std::move(out));
   }
