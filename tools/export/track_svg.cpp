@@ -80,6 +80,9 @@ std::string Escaped(std::string_view text) {
   return escaped;
 }
 
+// "1 track", "3 tracks"
+std::string Number(std::size_t number, std::string_view noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
+
 // One track of the tracker, as long as it was confirmed.
 struct Followed {
   std::vector<Eigen::Vector2d> places_m;   // of its centre
@@ -224,7 +227,10 @@ class TrackSvgSink : public Sink {
       for (const auto& place_m : places_m) points += fmt::format("{}{:.1f},{:.1f}", points.empty() ? "" : " ", x(place_m), y(place_m));
       return points;
     };
-    if (has_tracks_) DrawTracks(x, y, points_of, text);
+    if (has_tracks_) {
+      text += "<style>text{paint-order:stroke;stroke:#ffffff;stroke-width:3px}</style>\n";
+      DrawTracks(x, y, points_of, text);
+    }
     for (const auto& stretch : stretches_) {
       std::string points = points_of(stretch.places_m);
       // A stretch of one place is seen as a dot.
@@ -289,8 +295,8 @@ class TrackSvgSink : public Sink {
   // A ring where the boat was when each came up, and the first of them in words.
   void DrawAlerts(const auto& x, const auto& y, int line_y, std::string& text) const {
     const auto num_moved = std::ranges::count_if(followed_, [](const auto& item) { return item.second.has_moved; });
-    text += fmt::format("<text x=\"20\" y=\"{}\">{} tracks of the tracker, {} of them moved; {} alerts{}</text>\n", line_y, followed_.size(),
-                        num_moved, warned_.size(), warned_.empty() ? "" : ", each where the boat was when it came up:");
+    text += fmt::format("<text x=\"20\" y=\"{}\">{} of the tracker, {} moved; {}{}</text>\n", line_y, Number(followed_.size(), "track"), num_moved,
+                        Number(warned_.size(), "alert"), warned_.empty() ? "" : ", each where the boat was when it came up:");
     for (std::size_t i = 0; i < warned_.size(); ++i) {
       const auto& [place_m, is_warning, time_s, words] = warned_[i];
       const auto line = fmt::format("{:.1f} s, {}: {}", time_s, is_warning ? "warning" : "caution", Escaped(words));

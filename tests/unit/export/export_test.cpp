@@ -434,7 +434,7 @@ TEST_F(ExportTest, DrawsWhatTheTrackerMadeOfTheWholeLog) {
   EXPECT_EQ(count("<polygon "), 2);
   EXPECT_EQ(count("<polyline stroke-width=\"1.5\""), 1) << "only what has moved has a way";
   EXPECT_EQ(count("h2v2h-2z"), 1) << "land that came three times is drawn once";
-  EXPECT_EQ(count(">2 tracks of the tracker, 1 of them moved; 1 alerts, each where"), 1) << text_;
+  EXPECT_EQ(count(">2 tracks of the tracker, 1 moved; 1 alert, each where"), 1) << text_;
   EXPECT_EQ(count("r=\"7\""), 1);
   EXPECT_EQ(count(">0.2 s, warning: boat 7 &lt;in> the guard zone</text>"), 1) << text_;
   EXPECT_EQ(count("stroke=\"#0072B2\" points="), 1) << "the own track";
