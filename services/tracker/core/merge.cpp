@@ -36,19 +36,6 @@ bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2
 
 }  // namespace
 
-// What most scans call land is land, and what lies in land and was not seen by itself for long.
-void Step::EndLand() {
-  constexpr double kLandVotes = 0.6;
-  constexpr double kShortestS = 1.0;
-  constexpr double kLongestS = 10.0;
-  constexpr double kPerHitS = 0.05;
-  for (auto& track : known_.tracks) {
-    if (track.land_votes > kLandVotes) track.is_ended = true;
-    const double alone_s = ToSeconds(scan_.end_time - track.seen_alone);
-    if (track.is_inside_now && track.inside_of == 0 && alone_s > std::clamp(kPerHitS * track.num_hits, kShortestS, kLongestS)) track.is_ended = true;
-  }
-}
-
 // A part of a known thing becomes no track of its own at once.
 bool Step::IsSuspect(const Followed& track) const {
   constexpr double kLongestS = 3.0;
