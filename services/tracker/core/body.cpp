@@ -328,6 +328,18 @@ void Body::Loosen(double variance_m2) {
   log_likelihood_ratio_ = std::min(log_likelihood_ratio_, 0.0);
 }
 
+void Body::Fade(double dt_s) {
+  constexpr double kFadeS = 1.0;
+  if (!prefers_moving_) return;
+  moving_.tail<2>() *= std::max(0.0, 1.0 - dt_s / kFadeS);
+  if (velocity_mps().norm() >= kLeastSpeedMps) return;
+  standing_ = moving_.head<2>();
+  standing_m2_ = moving_covariance_.topLeftCorner<2, 2>();
+  log_likelihood_ratio_ = 0.0;
+  moving_probability_ = 0.0;
+  prefers_moving_ = false;
+}
+
 void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
   const auto& directions = CompassDirections();
   const Support support = SupportOf(outline_m);

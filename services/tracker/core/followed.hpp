@@ -46,6 +46,7 @@ struct Followed {
   double top_m = 0.0;
   double sum_returns = 0.0;
   double land_votes = 0.0;
+  int num_moving = 0;  // scans in which it moved for sure
   int num_misfits = 0;  // scans in a row whose outline was another
   std::deque<bool> looks;
   std::vector<std::int32_t> segment_ids;
