@@ -295,9 +295,12 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   Decide(measured_m, shift.covariance_m2 + times * staying_m2, dt_s);
 
   if (!grows) return;
-  // From where this outline places it: what all sides have in common is motion, or an error of the place.
+  // From where this outline places it: what all sides have in common is motion, or an error of the place. What has stood for long is placed best by
+  // where it stands.
+  const bool stands = !prefers_moving_ && age_s_ > kFirstOutlineS;
+  const Eigen::Vector2d placed_m = stands ? standing_ : measured_m;
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double off = measured.reach_m[i] - directions[i].dot(measured_m) - sides_[i].reach_m;
+    const double off = measured.reach_m[i] - directions[i].dot(placed_m) - sides_[i].reach_m;
     if (measured.kind[i] != Measured::Kind::kEdge && off <= 0.0) continue;
     const double variance = sides_[i].variance_m2;
     const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_);
