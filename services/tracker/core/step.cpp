@@ -41,6 +41,12 @@ Eigen::Vector2d MiddleOf(const std::vector<Eigen::Vector2d>& outline_m) {
   return middle;
 }
 
+// Cheap, before a polygon is asked: rounding counts for it.
+bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, double radius_m) {
+  constexpr double kOfRoundingM = 1e-6;
+  return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
+}
+
 }  // namespace
 
 void Step::Run() {
@@ -140,6 +146,8 @@ void Step::Look() {
 }
 
 double Step::CostOf(const Followed& track, std::size_t i) const {
+  constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
+  if ((middle_m_[i] - track.middle_m).norm() > kWidestGateM + track.radius_m + radius_m_[i]) return kMostCost;
   const auto& seen = scan_.seen[i];
   const Eigen::Matrix4d covariance = track.body->covariance();
   const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
@@ -192,7 +200,8 @@ void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
   if (track.is_confirmed && use_[i] == Use::kAssigned && RectangleAround(track.outline_m).width_m < kWidestBoatM) {
     for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
-      if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM) continue;
+      if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
+        continue;
       if (std::ranges::all_of(scan_.seen[k].outline_m, [&](const auto& corner) {
             return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < kPieceBesideM;
           }))
@@ -263,7 +272,8 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   if (track.body) {
     // Where another that is known lies in what is seen, this is not the outline of one.
     const bool grows = !was_land && std::ranges::none_of(known_.tracks, [&](const Followed& other) {
-      return other.is_confirmed && other.id != track.id && Contains(seen.outline_m, other.middle_m);
+      return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, middle_m_[i], radius_m_[i]) &&
+             Contains(seen.outline_m, other.middle_m);
     });
     const auto shift = track.body->ShiftOf(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     if (shift.off < kMostOff && shift.misfit < kMostMisfit) {
@@ -348,6 +358,10 @@ void Step::FindInside() {
 }
 
 void Step::Begin() {
+  std::vector<Followed*> confirmed;
+  for (auto& track : known_.tracks) {
+    if (track.is_confirmed && !track.is_ended) confirmed.push_back(&track);
+  }
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     if (use_[i] != Use::kFree) continue;
@@ -365,10 +379,10 @@ void Step::Begin() {
     track.relative_covariance_m2 = seen.covariance_relative_m2;
     track.segment_ids.push_back(seen.segment_id);
     Remember(track, true);
-    for (auto& other : known_.tracks) {
-      if (other.is_confirmed && !other.is_ended && Contains(other.outline_m, track.middle_m)) {
-        track.parents.emplace_back(other.id, scan_.end_time);
-        other.children.emplace_back(track.id, scan_.end_time);
+    for (auto* other : confirmed) {
+      if (IsWithin(track.middle_m, other->middle_m, other->radius_m) && Contains(other->outline_m, track.middle_m)) {
+        track.parents.emplace_back(other->id, scan_.end_time);
+        other->children.emplace_back(track.id, scan_.end_time);
       }
     }
     if (seen.is_sure) {
