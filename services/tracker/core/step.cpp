@@ -13,10 +13,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kLooksKept = 15;
-constexpr double kWidestBoatM = 5.0;  // within a wider outline, as of a dock with berths, another thing may lie
-constexpr double kPartShare = 0.15;
-constexpr double kPartBesideShare = 0.05;
-constexpr double kPartGapM = 0.5;
+constexpr double kPieceBesideM = 0.3;        // beyond the outline of the thing that it is a piece of
 constexpr double kLandShare = 0.6;           // of a segment's returns, where land is remembered
 constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
 constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
@@ -44,6 +41,12 @@ Eigen::Vector2d MiddleOf(const std::vector<Eigen::Vector2d>& outline_m) {
   return middle;
 }
 
+// Cheap, before a polygon is asked: rounding counts for it.
+bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, double radius_m) {
+  constexpr double kOfRoundingM = 1e-6;
+  return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
+}
+
 }  // namespace
 
 void Step::Run() {
@@ -57,13 +60,13 @@ void Step::Run() {
   AssignBodies();
   AssignRest();
   FindInside();
-  Absorb();
   for (auto& track : known_.tracks) {
     if (!track.is_seen_now && !track.is_inside_now) Miss(track);
   }
   Begin();
   known_.clutter.End(dt_s_);
   FeedLand();
+  EndLand();
   Merge();
 }
 
@@ -143,6 +146,8 @@ void Step::Look() {
 }
 
 double Step::CostOf(const Followed& track, std::size_t i) const {
+  constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
+  if ((middle_m_[i] - track.middle_m).norm() > kWidestGateM + track.radius_m + radius_m_[i]) return kMostCost;
   const auto& seen = scan_.seen[i];
   const Eigen::Matrix4d covariance = track.body->covariance();
   const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
@@ -182,9 +187,44 @@ void Step::AssignBodies() {
     }
   }
   const auto column_of = Assign(static_cast<std::int32_t>(rows.size()), static_cast<std::int32_t>(scan_.seen.size()), candidates, kMostCost);
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (column_of[row] >= 0) Hit(known_.tracks[rows[row]], static_cast<std::size_t>(column_of[row]));
+  for (const auto column : column_of) {
+    if (column >= 0 && use_[static_cast<std::size_t>(column)] == Use::kFree) use_[static_cast<std::size_t>(column)] = Use::kAssigned;
   }
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    if (column_of[row] >= 0) HitWhole(known_.tracks[rows[row]], static_cast<std::size_t>(column_of[row]));
+  }
+}
+
+// A thing may come in several segments. What nothing else is known by, and lies in the outline of a track, is of it.
+void Step::HitWhole(Followed& track, std::size_t i) {
+  std::vector<std::size_t> others;
+  if (track.is_confirmed && use_[i] == Use::kAssigned && RectangleAround(track.outline_m).width_m < kWidestBoatM) {
+    for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
+      if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
+        continue;
+      if (std::ranges::all_of(scan_.seen[k].outline_m, [&](const auto& corner) {
+            return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < kPieceBesideM;
+          }))
+        others.push_back(k);
+    }
+  }
+  if (others.empty()) {
+    Hit(track, i, scan_.seen[i], SidesOf(i));
+    return;
+  }
+  Seen whole = scan_.seen[i];
+  for (const auto k : others) {
+    const auto& piece = scan_.seen[k];
+    use_[k] = Use::kTaken;
+    whole.outline_m.insert(whole.outline_m.end(), piece.outline_m.begin(), piece.outline_m.end());
+    whole.num_returns += piece.num_returns;
+    whole.top_above_water_m = std::max(whole.top_above_water_m, piece.top_above_water_m);
+    track.segment_ids.push_back(piece.segment_id);
+  }
+  for (auto& corner : whole.outline_m) corner -= track.middle_m;
+  whole.outline_m = Polygon(SupportOf(whole.outline_m));
+  for (auto& corner : whole.outline_m) corner += track.middle_m;
+  Hit(track, i, whole, known_.sight.SidesOf(whole.outline_m, whole.top_above_water_m));
 }
 
 // What is not yet likely takes the nearest of the rest.
@@ -216,25 +256,24 @@ void Step::AssignRest() {
   std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.distance_m, near.track, near.seen); });
   for (const auto& pair : pairs) {
     if (known_.tracks[pair.track].is_seen_now || use_[pair.seen] != Use::kFree) continue;
-    Hit(known_.tracks[pair.track], pair.seen);
+    Hit(known_.tracks[pair.track], pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen));
     known_.clutter.Add(ToVessel(middle_m_[pair.seen]));
   }
 }
 
-void Step::Hit(Followed& track, std::size_t i) {
-  const auto& seen = scan_.seen[i];
+void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides) {
   const bool was_land = use_[i] == Use::kLand;
   use_[i] = Use::kTaken;
   track.is_seen_now = true;
   track.land_votes += kLandVoteGain * ((was_land ? 1.0 : 0.0) - track.land_votes);
   if (was_land) land_ids_kept_.push_back(seen.segment_id);
   const Eigen::Vector2d before_m = track.middle_m;
-  const auto& sides = SidesOf(i);
   const double range_m = ranges_m_[i];
   if (track.body) {
     // Where another that is known lies in what is seen, this is not the outline of one.
     const bool grows = !was_land && std::ranges::none_of(known_.tracks, [&](const Followed& other) {
-      return other.is_confirmed && other.id != track.id && Contains(seen.outline_m, other.middle_m);
+      return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, middle_m_[i], radius_m_[i]) &&
+             Contains(seen.outline_m, other.middle_m);
     });
     const auto shift = track.body->ShiftOf(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     if (shift.off < kMostOff && shift.misfit < kMostMisfit) {
@@ -258,8 +297,9 @@ void Step::Hit(Followed& track, std::size_t i) {
   const double detection = std::max(track.detection, 0.1);
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
-  track.sum_thing += Logit(seen.thing_probability);
-  ++track.num_hits;
+  const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
+  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm());
+  track.seen_m = middle_m;
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
   track.seen = track.seen_alone = scan_.end_time;
@@ -277,7 +317,7 @@ void Step::Hit(Followed& track, std::size_t i) {
     track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     Place(track);
   }
-  if (track.Existence() > params_.confirm_probability) track.is_confirmed = true;
+  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track)) track.is_confirmed = true;
 }
 
 void Step::Remember(Followed& track, bool is_seen) {
@@ -317,26 +357,11 @@ void Step::FindInside() {
   }
 }
 
-// A thing may come in several segments. What lies in the outline of a track, next to the segment that it was seen by, is of it.
-void Step::Absorb() {
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    if (use_[i] != Use::kFree) continue;
-    for (auto& track : known_.tracks) {
-      if (!track.is_seen_now || !track.is_confirmed || !track.body) continue;
-      if ((middle_m_[i] - track.middle_m).norm() > track.radius_m) continue;
-      const auto rectangle = RectangleAround(track.outline_m);
-      if (rectangle.width_m > kWidestBoatM || !std::ranges::all_of(scan_.seen[i].outline_m, [&](const auto& corner) {
-            return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < 0.2;
-          }))
-        continue;
-      track.segment_ids.push_back(scan_.seen[i].segment_id);
-      use_[i] = Use::kTaken;
-      break;
-    }
-  }
-}
-
 void Step::Begin() {
+  std::vector<Followed*> confirmed;
+  for (auto& track : known_.tracks) {
+    if (track.is_confirmed && !track.is_ended) confirmed.push_back(&track);
+  }
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     if (use_[i] != Use::kFree) continue;
@@ -345,20 +370,19 @@ void Step::Begin() {
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
-    track.middle_m = track.first_m = middle_m_[i];
+    track.middle_m = track.seen_m = middle_m_[i];
     track.radius_m = radius_m_[i];
     track.top_m = seen.top_above_water_m;
-    track.sum_thing = Logit(seen.thing_probability);
-    track.num_hits = 1;
+    track.AddLook(Logit(seen.thing_probability), 0.0);
     track.sum_returns = seen.num_returns;
     track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
     track.relative_covariance_m2 = seen.covariance_relative_m2;
     track.segment_ids.push_back(seen.segment_id);
     Remember(track, true);
-    for (auto& other : known_.tracks) {
-      if (other.is_confirmed && !other.is_ended && Contains(other.outline_m, track.middle_m)) {
-        track.parents.emplace_back(other.id, scan_.end_time);
-        other.children.emplace_back(track.id, scan_.end_time);
+    for (auto* other : confirmed) {
+      if (IsWithin(track.middle_m, other->middle_m, other->radius_m) && Contains(other->outline_m, track.middle_m)) {
+        track.parents.emplace_back(other->id, scan_.end_time);
+        other->children.emplace_back(track.id, scan_.end_time);
       }
     }
     if (seen.is_sure) {
@@ -390,66 +414,6 @@ void Step::FeedLand() {
       if (!is_kept) known_.land.Add(place_m, seen.is_land);
     }
   }
-}
-
-// Two whose outlines lie on each other are one when no scan shows both by themselves for some time: longer where both are well known, as a boat at
-// a dock with which it is segmented for a while. What most scans call land is land.
-void Step::Merge() {
-  constexpr double kShortestS = 1.0;
-  constexpr double kLongestS = 10.0;
-  constexpr double kPerHitS = 0.05;
-  std::map<Ids, Utime> still;
-  for (auto one = known_.tracks.begin(); one != known_.tracks.end(); ++one) {
-    if (one->land_votes > kLandVotes) one->is_ended = true;
-    // What was not seen by itself for as long as that, and lies in land, is land.
-    const double alone_s = ToSeconds(scan_.end_time - one->seen_alone);
-    if (one->is_inside_now && one->inside_of == 0 && alone_s > std::clamp(kPerHitS * one->num_hits, kShortestS, kLongestS)) one->is_ended = true;
-    if (!one->body || one->is_ended) continue;
-    for (auto other = std::next(one); other != known_.tracks.end(); ++other) {
-      if (!other->body || other->is_ended) continue;
-      const bool is_inside = (one->is_inside_now && one->inside_of == other->id) || (other->is_inside_now && other->inside_of == one->id);
-      if (!is_inside && (one->middle_m - other->middle_m).norm() > one->radius_m + other->radius_m + kPartGapM) continue;
-      const double area = AreaOf(one->outline_m);
-      const double other_area = AreaOf(other->outline_m);
-      const double smaller = std::min(area, other_area);
-      const Followed& larger = area >= other_area ? *one : *other;
-      const auto both = Intersection(one->outline_m, other->outline_m);
-      // A mast, an oar or a rail in the outline of a boat, or beside it, is of it, also where it is a segment by itself.
-      const bool is_small = smaller < kPartShare * AreaOf(larger.outline_m) && RectangleAround(larger.outline_m).width_m < kWidestBoatM;
-      const bool is_within = !both.empty() && AreaOf(both) >= 0.9 * smaller;
-      const bool is_beside = one->IsStanding() && other->IsStanding() && GapOf(one->outline_m, other->outline_m).distance_m < kPartGapM &&
-                             smaller < kPartBesideShare * AreaOf(larger.outline_m);
-      const bool is_part = is_small && (is_within || is_beside);
-      if (!is_inside && !is_part && (both.empty() || AreaOf(both) < 0.5 * smaller)) continue;
-      if (one->is_seen_now && other->is_seen_now && !is_part) continue;
-      const Ids ids(one->id, other->id);
-      const auto before = known_.together.find(ids);
-      const Utime since = before == known_.together.end() ? scan_.end_time : before->second;
-      const double least_s = std::clamp(kPerHitS * std::min(one->num_hits, other->num_hits), kShortestS, kLongestS);
-      if (ToSeconds(scan_.end_time - since) < least_s) {
-        still.emplace(ids, since);
-        continue;
-      }
-      // What was seen last goes on, by the older name.
-      merged_.emplace_back(other->id, one->id);
-      if (is_part ? &larger == &*other : other->seen_alone > one->seen_alone) {
-        std::swap(*one, *other);
-        std::swap(one->id, other->id);
-        std::swap(one->parents, other->parents);
-        std::swap(one->children, other->children);
-        std::swap(one->first, other->first);
-      }
-      one->parents.emplace_back(other->id, scan_.end_time);
-      other->children.emplace_back(one->id, scan_.end_time);
-      one->is_confirmed = one->is_confirmed || other->is_confirmed;
-      if (is_part) {
-        one->body->Include(other->outline_m);
-        Place(*one);
-      }
-      other->is_ended = true;
-    }
-  }
-  known_.together = std::move(still);
 }
 
 }  // namespace lookout::tracker

@@ -17,6 +17,8 @@
 
 namespace lookout::tracker {
 
+inline constexpr double kWidestBoatM = 6.0;  // within a wider outline, as of a dock with berths, another thing may lie
+
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
 
 /// What is known between scans.
@@ -25,7 +27,7 @@ struct Known {
   LandMemory land = {};
   ClutterMap clutter = {};
   std::deque<Followed> tracks = {};    // by id
-  std::map<Ids, Utime> together = {};  // since when no scan showed both by themselves
+  std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
 };
 
@@ -41,7 +43,7 @@ class Step {
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
 
  private:
-  enum class Use { kFree, kLand, kTaken };
+  enum class Use { kFree, kLand, kAssigned, kTaken };
   Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const;
   void Predict();
   static void Place(Followed& track);
@@ -52,14 +54,20 @@ class Step {
   const Sides& SidesOf(std::size_t i) const;
   void AssignBodies();
   void AssignRest();
-  void Hit(Followed& track, std::size_t i);
+  void HitWhole(Followed& track, std::size_t i);
+  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
   void FindInside();
-  void Absorb();
   void Begin();
   void FeedLand();
+  void EndLand();
   void Merge();
+  bool Touch(const Followed& one, const Followed& other) const;
+  bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
+  bool IsSuspect(const Followed& track) const;
+  double OneForS(const Followed& one, const Followed& other) const;
+  void Join(Followed& one, Followed& other, bool is_part);
 
   const TrackerParams& params_;
   const ScanInput& scan_;

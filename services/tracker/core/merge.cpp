@@ -1,0 +1,154 @@
+// Which tracks are one thing: a part of this file's rules each names what a person would say for it.
+#include <algorithm>
+#include <cmath>
+
+#include "services/tracker/core/step.hpp"
+
+namespace lookout::tracker {
+
+namespace {
+
+constexpr double kNear = 2.0;  // m, between the outlines of what may be one
+constexpr double kNeverS = 0.0;
+
+double SpeedBetween(const Followed& one, const Followed& other) {
+  const auto velocity = [](const Followed& track) {
+    return track.body && track.body->IsMoving(0.5) ? track.body->velocity_mps() : Eigen::Vector2d(Eigen::Vector2d::Zero());
+  };
+  return (velocity(one) - velocity(other)).norm();
+}
+
+bool IsMoving(const Followed& track) { return track.body && track.body->IsMoving(0.95); }
+
+}  // namespace
+
+// What most scans call land is land, and what lies in land and was not seen by itself for long.
+void Step::EndLand() {
+  constexpr double kLandVotes = 0.6;
+  constexpr double kShortestS = 1.0;
+  constexpr double kLongestS = 10.0;
+  constexpr double kPerHitS = 0.05;
+  for (auto& track : known_.tracks) {
+    if (track.land_votes > kLandVotes) track.is_ended = true;
+    const double alone_s = ToSeconds(scan_.end_time - track.seen_alone);
+    if (track.is_inside_now && track.inside_of == 0 && alone_s > std::clamp(kPerHitS * track.num_hits, kShortestS, kLongestS)) track.is_ended = true;
+  }
+}
+
+// Whether returns of both lie next to each other, in this scan.
+bool Step::Touch(const Followed& one, const Followed& other) const {
+  constexpr double kTouchM = 0.5;
+  constexpr std::size_t kMostPlaces = 200;
+  const auto places = [this](const Followed& track) {
+    std::vector<Eigen::Vector2d> found;
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      if (std::ranges::find(track.segment_ids, scan_.seen[i].segment_id) == track.segment_ids.end()) continue;
+      const std::size_t step = 1 + places_m_[i].size() / kMostPlaces;
+      for (std::size_t k = 0; k < places_m_[i].size(); k += step) found.push_back(places_m_[i][k]);
+    }
+    return found;
+  };
+  const auto theirs = places(other);
+  return std::ranges::any_of(places(one), [&](const auto& mine) {
+    return std::ranges::any_of(theirs, [&](const auto& their) { return (mine - their).squaredNorm() < kTouchM * kTouchM; });
+  });
+}
+
+// Whether the lesser of two could be a part of the other: it lies in it, or is a mast, an oar or a bow beside it.
+bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const {
+  constexpr double kWithinShare = 0.4;
+  constexpr double kBeamShare = 0.6;  // of a ship's length, its hidden side assumed
+  constexpr double kBesideM = 1.5;
+  constexpr double kPieceM = 2.0;
+  constexpr double kPieceShare = 0.15;
+  constexpr double kSameVelocityMps = 0.7;
+  const auto around = RectangleAround(larger.outline_m);
+  const double area = AreaOf(lesser.outline_m);
+  const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
+  // Within the outline of what may be a dock with berths, only what touches it.
+  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m)) return is_piece && Touch(larger, lesser);
+  if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
+  return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kBesideM && SpeedBetween(larger, lesser) < kSameVelocityMps;
+}
+
+// A part of a known thing becomes no track of its own at once.
+bool Step::IsSuspect(const Followed& track) const {
+  constexpr double kLongestS = 3.0;
+  if (ToSeconds(scan_.end_time - track.first) > kLongestS) return false;
+  const double area = AreaOf(track.outline_m);
+  return std::ranges::any_of(known_.tracks, [&](const Followed& other) {
+    if (!other.is_confirmed || other.is_ended || other.id == track.id) return false;
+    if ((other.middle_m - track.middle_m).norm() > other.radius_m + track.radius_m + kNear || AreaOf(other.outline_m) < area) return false;
+    const auto both = Intersection(other.outline_m, track.outline_m);
+    return IsLikePart(other, track, both.empty() ? 0.0 : std::max(1e-9, AreaOf(both)));
+  });
+}
+
+// For how long two must look like one until they are taken for one; 0: they do not, in this scan.
+double Step::OneForS(const Followed& one, const Followed& other) const {
+  constexpr double kShortestS = 0.5;
+  constexpr double kLongestS = 10.0;
+  constexpr double kPerHitS = 0.05;
+  constexpr double kPartS = 1.5;
+  constexpr double kSameVelocityMps = 0.7;
+  const bool is_inside = (one.is_inside_now && one.inside_of == other.id) || (other.is_inside_now && other.inside_of == one.id);
+  if (!is_inside && (one.middle_m - other.middle_m).norm() > one.radius_m + other.radius_m + kNear) return kNeverS;
+  const double area = AreaOf(one.outline_m);
+  const double other_area = AreaOf(other.outline_m);
+  const Followed& larger = area >= other_area ? one : other;
+  const Followed& lesser = area >= other_area ? other : one;
+  const auto both = Intersection(one.outline_m, other.outline_m);
+  const double shared_m2 = both.empty() ? 0.0 : std::max(1e-9, AreaOf(both));
+  // Longer where both are well known, as a boat at a dock with which it is segmented for a while.
+  if ((is_inside || (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area))) && !(one.is_seen_now && other.is_seen_now)) {
+    return std::clamp(kPerHitS * std::min(one.num_hits, other.num_hits), kShortestS, kLongestS);
+  }
+  if (IsLikePart(larger, lesser, shared_m2)) return kPartS;
+  const bool is_moving_together = IsMoving(one) && IsMoving(other) && SpeedBetween(one, other) < kSameVelocityMps;
+  return is_moving_together && GapOf(one.outline_m, other.outline_m).distance_m < kNear ? kPartS : kNeverS;
+}
+
+// The second becomes one with the first, by the older name.
+void Step::Join(Followed& one, Followed& other, bool is_part) {
+  merged_.emplace_back(other.id, one.id);
+  if (is_part ? AreaOf(other.outline_m) > AreaOf(one.outline_m) : other.seen_alone > one.seen_alone) {
+    std::swap(one, other);
+    std::swap(one.id, other.id);
+    std::swap(one.parents, other.parents);
+    std::swap(one.children, other.children);
+    std::swap(one.first, other.first);
+  }
+  one.parents.emplace_back(other.id, scan_.end_time);
+  other.children.emplace_back(one.id, scan_.end_time);
+  one.is_confirmed = one.is_confirmed || other.is_confirmed;
+  if (is_part) {
+    one.body->Include(other.outline_m);
+    Place(one);
+  }
+  other.is_ended = true;
+}
+
+// Two that look like one for some time are one. What speaks against it in between takes as long away.
+void Step::Merge() {
+  std::map<Ids, double> still_s;
+  for (auto one = known_.tracks.begin(); one != known_.tracks.end(); ++one) {
+    if (!one->body || one->is_ended) continue;
+    for (auto other = std::next(one); other != known_.tracks.end(); ++other) {
+      if (!other->body || other->is_ended) continue;
+      const Ids ids(one->id, other->id);
+      const auto before = known_.together_s.find(ids);
+      const double least_s = OneForS(*one, *other);
+      const double change_s = least_s > kNeverS ? dt_s_ : -dt_s_;
+      const double for_s = (before == known_.together_s.end() ? 0.0 : before->second) + change_s;
+      if (for_s <= 0.0) continue;
+      if (least_s <= kNeverS || for_s < least_s) {
+        still_s.emplace(ids, for_s);
+        continue;
+      }
+      Join(*one, *other, one->is_seen_now && other->is_seen_now);
+    }
+  }
+  known_.together_s = std::move(still_s);
+}
+
+}  // namespace lookout::tracker
