@@ -66,20 +66,23 @@ Run Simulate(const std::string& scene_text, int seed, double seconds, const std:
   const auto params = tracker::LoadParams(config);
   const auto scene = sim::ParseScene(scene_text, "zone.txtpb", static_cast<std::uint64_t>(seed));
   Run run;
-  bool was_in_zone = false;
-  std::deque<bool> window;  // of the tracker's scans
+  std::deque<bool> window;  // which of the last scans are with
   const auto take = [&](std::string_view channel, Bytes bytes) {
     if (channel == bus::kObstacles.name) {
       const auto message = bus::Decode<obstacles_t>(bytes).value();
       tracker::LeftOut left_out;
       const auto obstacles = tracker::ToObstacles({&message, 1}, left_out);
       const bool is_in_zone = !GuardZoneDangers(params.guard_zone, {}, obstacles.value().outlines, std::nullopt).empty();
-      if (message.part_index == 0) ++run.num_scans;
-      run.num_scans_with += is_in_zone ? 1 : 0;
-      run.num_single_scan_alarms += is_in_zone && !was_in_zone ? 1 : 0;
-      was_in_zone = is_in_zone;
-      window.push_back(is_in_zone);
-      if (window.size() > 5) window.pop_front();
+      if (message.part_index == 0) {
+        ++run.num_scans;
+        window.push_back(false);
+        if (window.size() > 5) window.pop_front();
+      }
+      if (is_in_zone && !window.back()) {
+        ++run.num_scans_with;
+        run.num_single_scan_alarms += window.size() < 2 || !window[window.size() - 2] ? 1 : 0;
+        window.back() = true;
+      }
       if (is_in_zone && !run.first_seen_us) run.first_seen_us = message.end_utime_us;
     } else if (channel == bus::kAlerts.name) {
       const auto message = bus::Decode<alerts_t>(bytes).value();

@@ -309,7 +309,7 @@ TEST_F(AlertsTest, OfTheZoneComeUpAsSoonAsNoOtherOfItHolds) {
   for (int i = 0; i < 40; ++i) {
     const auto& alerts = Scan({Zone(id++)});
     ASSERT_TRUE(std::ranges::any_of(alerts, &Alert::Holds)) << i;
-    if (i < 29) ASSERT_EQ(alerts.size(), 1U) << "one is enough";
+    ASSERT_TRUE(i >= 29 || alerts.size() == 1U) << "one is enough";
   }
 }
 

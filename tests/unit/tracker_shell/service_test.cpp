@@ -95,7 +95,7 @@ TEST_F(TrackerService, ReportsEachCounterOnceAndHowMuchItFollows) {
   SendPoses(0, 1'000'000);
   for (int i = 0; i < 8; ++i) SendScan(i, i);
   std::set<std::string> names;
-  for (const auto& counter : service_.Report().counters) EXPECT_TRUE(names.insert(counter.name).second) << counter.name;
+  for (const auto& counter : service_.Report().counters) EXPECT_TRUE(names.emplace(counter.name).second) << counter.name;
   for (const auto* name : {"tracks", "tracks_confirmed", "clutter_per_scan", "alerts"}) EXPECT_TRUE(names.contains(name)) << name;
   EXPECT_EQ(Count("tracks"), 1);
 }
