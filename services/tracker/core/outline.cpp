@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
@@ -83,6 +84,7 @@ double Contradiction(const Support& support) {
 // The half-planes whose intersection is the polygon: those of its edges, and of the rectangle around it, which ends a line or a needle.
 std::vector<HalfPlane> SidesOf(Corners polygon) {
   std::vector<HalfPlane> sides;
+  sides.reserve(4 + polygon.size());
   for (std::size_t direction = 0; direction < kDirections; direction += kDirections / 4) {
     const auto& normal = CompassDirections()[direction];
     double reach_m = -std::numeric_limits<double>::infinity();
@@ -97,6 +99,19 @@ std::vector<HalfPlane> SidesOf(Corners polygon) {
     sides.push_back({normal, normal.dot(polygon[i])});
   }
   return sides;
+}
+
+// Whether their rectangles have a gap: then clipping leaves nothing, and need not be done.
+bool AreApart(Corners first, Corners second) {
+  constexpr double kGapM = 1e-6;  // far above rounding
+  const auto rectangle = [](Corners polygon) {
+    std::pair bounds(polygon.front(), polygon.front());
+    for (const auto& corner : polygon) bounds = {bounds.first.cwiseMin(corner), bounds.second.cwiseMax(corner)};
+    return bounds;
+  };
+  const auto [first_least, first_most] = rectangle(first);
+  const auto [second_least, second_most] = rectangle(second);
+  return ((first_least - second_most).array() > kGapM).any() || ((second_least - first_most).array() > kGapM).any();
 }
 
 // A corner of the difference of two polygons, and the corners of both that it comes from.
@@ -232,9 +247,27 @@ Rectangle RectangleAround(std::span<const Eigen::Vector2d> polygon) {
   return best;
 }
 
+// As by SidesOf, without keeping them: most points lie outside of the rectangle already.
 bool Contains(std::span<const Eigen::Vector2d> polygon, const Eigen::Vector2d& point_m) {
-  const auto sides = SidesOf(polygon);
-  return std::ranges::all_of(sides, [&](const HalfPlane& side) { return side.normal.dot(point_m) - side.offset_m <= kRoundingM; });
+  bool is_west_of_one = false;
+  bool is_east_of_one = false;
+  bool is_south_of_one = false;
+  bool is_north_of_one = false;
+  for (const auto& corner : polygon) {
+    is_west_of_one |= point_m.x() - corner.x() <= kRoundingM;
+    is_east_of_one |= corner.x() - point_m.x() <= kRoundingM;
+    is_south_of_one |= point_m.y() - corner.y() <= kRoundingM;
+    is_north_of_one |= corner.y() - point_m.y() <= kRoundingM;
+  }
+  if (!(is_west_of_one && is_east_of_one && is_south_of_one && is_north_of_one)) return false;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d along = polygon[i + 1 < polygon.size() ? i + 1 : 0] - polygon[i];
+    const double length_m = along.norm();
+    if (length_m == 0.0) continue;
+    const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()) / length_m;
+    if (normal.dot(point_m) - normal.dot(polygon[i]) > kRoundingM) return false;
+  }
+  return true;
 }
 
 std::vector<Eigen::Vector2d> DifferenceOf(std::span<const Eigen::Vector2d> first, std::span<const Eigen::Vector2d> second) {
@@ -272,7 +305,7 @@ double AreaOf(std::span<const Eigen::Vector2d> polygon) {
 }
 
 std::vector<Eigen::Vector2d> Intersection(std::span<const Eigen::Vector2d> first, std::span<const Eigen::Vector2d> second) {
-  if (first.empty() || second.empty()) return {};
+  if (first.empty() || second.empty() || AreApart(first, second)) return {};
   std::vector<Eigen::Vector2d> polygon(first.begin(), first.end());
   std::vector<Eigen::Vector2d> scratch;
   for (const auto& side : SidesOf(second)) Clip(side, polygon, scratch);

@@ -13,7 +13,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kLooksKept = 15;
-constexpr double kPieceBesideM = 0.3;        // beyond the outline of the thing that it is a piece of
+constexpr double kPieceBesideM = 0.3;      // beyond the outline of the thing that it is a piece of
 constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
@@ -34,6 +34,12 @@ Eigen::Vector2d MiddleOf(const std::vector<Eigen::Vector2d>& outline_m) {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const auto& corner : outline_m) middle += corner / static_cast<double>(outline_m.size());
   return middle;
+}
+
+// Cheap, before a polygon is asked: rounding counts for it.
+bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, double radius_m) {
+  constexpr double kOfRoundingM = 1e-6;
+  return (place_m - middle_m).norm() <= radius_m + kOfRoundingM;
 }
 
 }  // namespace
@@ -129,6 +135,8 @@ void Step::Look() {
 }
 
 double Step::CostOf(const Followed& track, std::size_t i) const {
+  constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
+  if ((middle_m_[i] - track.middle_m).norm() > kWidestGateM + track.radius_m + radius_m_[i]) return kMostCost;
   const auto& seen = scan_.seen[i];
   const Eigen::Matrix4d covariance = track.body->covariance();
   const double sd = std::min(3.0, std::sqrt(std::max(covariance(0, 0), covariance(1, 1))));
@@ -181,7 +189,8 @@ void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
   if (track.is_confirmed && use_[i] == Use::kAssigned && RectangleAround(track.outline_m).width_m < kWidestBoatM) {
     for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
-      if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM) continue;
+      if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
+        continue;
       if (std::ranges::all_of(scan_.seen[k].outline_m, [&](const auto& corner) {
             return Contains(track.outline_m, corner) || GapOf(track.outline_m, std::array{corner}).distance_m < kPieceBesideM;
           }))
@@ -252,7 +261,8 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   if (track.body) {
     // Where another that is known lies in what is seen, this is not the outline of one.
     const bool grows = !was_land && std::ranges::none_of(known_.tracks, [&](const Followed& other) {
-      return other.is_confirmed && other.id != track.id && Contains(seen.outline_m, other.middle_m);
+      return other.is_confirmed && other.id != track.id && IsWithin(other.middle_m, middle_m_[i], radius_m_[i]) &&
+             Contains(seen.outline_m, other.middle_m);
     });
     const auto shift = track.body->ShiftOf(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     if (shift.off < kMostOff && shift.misfit < kMostMisfit) {
@@ -276,8 +286,9 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const double detection = std::max(track.detection, 0.1);
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
-  track.sum_thing += Logit(seen.thing_probability);
-  ++track.num_hits;
+  const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
+  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm());
+  track.seen_m = middle_m;
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
   track.seen = track.seen_alone = scan_.end_time;
@@ -295,7 +306,8 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
     track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     Place(track);
   }
-  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i)) track.is_confirmed = true;
+  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
+    track.is_confirmed = true;
 }
 
 void Step::Remember(Followed& track, bool is_seen) {
@@ -336,6 +348,10 @@ void Step::FindInside() {
 }
 
 void Step::Begin() {
+  std::vector<Followed*> confirmed;
+  for (auto& track : known_.tracks) {
+    if (track.is_confirmed && !track.is_ended) confirmed.push_back(&track);
+  }
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     if (use_[i] != Use::kFree) continue;
@@ -344,20 +360,19 @@ void Step::Begin() {
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
-    track.middle_m = track.first_m = middle_m_[i];
+    track.middle_m = track.seen_m = track.first_m = middle_m_[i];
     track.radius_m = radius_m_[i];
     track.top_m = seen.top_above_water_m;
-    track.sum_thing = Logit(seen.thing_probability);
-    track.num_hits = 1;
+    track.AddLook(Logit(seen.thing_probability), 0.0);
     track.sum_returns = seen.num_returns;
     track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
     track.relative_covariance_m2 = seen.covariance_relative_m2;
     track.segment_ids.push_back(seen.segment_id);
     Remember(track, true);
-    for (auto& other : known_.tracks) {
-      if (other.is_confirmed && !other.is_ended && Contains(other.outline_m, track.middle_m)) {
-        track.parents.emplace_back(other.id, scan_.end_time);
-        other.children.emplace_back(track.id, scan_.end_time);
+    for (auto* other : confirmed) {
+      if (IsWithin(track.middle_m, other->middle_m, other->radius_m) && Contains(other->outline_m, track.middle_m)) {
+        track.parents.emplace_back(other->id, scan_.end_time);
+        other->children.emplace_back(track.id, scan_.end_time);
       }
     }
     if (seen.is_sure) {

@@ -28,7 +28,7 @@ struct Known {
   LandMemory land = {};
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
-  std::deque<Followed> tracks = {};    // by id
+  std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
 };
@@ -69,6 +69,8 @@ class Step {
   void FeedLand();
   void EndLand();
   void Merge();
+  bool Touch(const Followed& one, const Followed& other) const;
+  bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
   bool IsSuspect(const Followed& track) const;
   double OneForS(const Followed& one, const Followed& other) const;
   void Join(Followed& one, Followed& other, bool is_part);
