@@ -31,8 +31,8 @@ std::set<int> LandOf(const messages::ScanMessages& scan) {
   return land;
 }
 
-// Tracks merge segments and split off land; a segment that no track explains keeps its own label. So these differ from the labels of SEGMENTS only where
-// the tracker says something of its own.
+// Tracks merge segments and split off land; a segment that no track explains keeps its own label. So these differ from the labels of SEGMENTS only
+// where the tracker says something of its own.
 std::map<int, int> LabelsOf(const std::vector<TrackState>& tracks, const std::set<int>& land) {
   std::map<int, int> labels;
   int label = kFirstLabel;

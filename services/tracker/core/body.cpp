@@ -385,7 +385,7 @@ void Body::Loosen(double variance_m2) {
 void Body::Fade(double dt_s) {
   constexpr double kFadeS = 1.0;
   if (!prefers_moving_) return;
-  moving_.tail<2>() *= std::max(0.0, 1.0 - dt_s / kFadeS);
+  moving_.tail<3>() *= std::max(0.0, 1.0 - dt_s / kFadeS);
   if (velocity_mps().norm() >= kLeastSpeedMps) return;
   standing_ = moving_.head<2>();
   standing_m2_ = moving_covariance_.topLeftCorner<2, 2>();

@@ -14,11 +14,12 @@
 
 namespace lookout::tracker {
 
-/// Cells of half a metre that hold evidence of land: more with each scan that sees land there, less with each that sees something else, and less where
-/// beams pass below the height of what was there. So one scan that takes a boat for land does not make it land, nor one that takes a bank for a boat
-/// a boat; and what left leaves no land behind.
+/// Cells of half a metre that hold evidence of land: more with each scan that sees land there, less with each that sees something else, and less
+/// where beams pass below the height of what was there. So one scan that takes a boat for land does not make it land, nor one that takes a bank for a
+/// boat a boat; and what left leaves no land behind.
 ///
-/// Memory: 2 kB for each tile of 16 m x 16 m, at most kMostTiles and those that one scan adds (8 MB); beyond, the farthest from the boat are forgotten.
+/// Memory: 2 kB for each tile of 16 m x 16 m, at most kMostTiles and those that one scan adds (8 MB); beyond, the farthest from the boat are
+/// forgotten.
 class LandMemory {
  public:
   static constexpr double kCellM = 0.5;
@@ -29,7 +30,8 @@ class LandMemory {
   /// One segment of one scan: each cell counts once, however many returns lie in it.
   /// @param tops_m  [places] heights over the water; empty where they are not known: then the cells do not become free by being looked through
   void Add(std::span<const Eigen::Vector2d> places_m, std::span<const double> tops_m, Said said);
-  /// Beams that passed where land is remembered. At most kMostLooked cells a scan, one tile after the other: each is asked for within a second or two.
+  /// Beams that passed where land is remembered. At most kMostLooked cells a scan, one tile after the other: each is asked for within a second or
+  /// two.
   void LookThrough(const Sight& sight);
 
   /// Whether land is remembered there, or in a cell beside it.
@@ -50,7 +52,7 @@ class LandMemory {
   struct Tile {
     std::array<std::int8_t, static_cast<std::size_t>(kTileCells) * kTileCells> evidence{};
     std::array<std::uint8_t, static_cast<std::size_t>(kTileCells) * kTileCells> top_dm{};  // over the water; 0: not known
-    int num_land = 0;                                                                     // cells
+    int num_land = 0;                                                                      // cells
   };
   using Cell = std::pair<std::int32_t, std::int32_t>;
 

@@ -12,9 +12,9 @@ constexpr double kPieceUnseenS = 1.5;
 constexpr double kAnchorS = 30.0;  // the own position wanders
 constexpr std::size_t kMostPlaces = 24;
 constexpr double kBeforeM = 1.5;
-constexpr double kReachM = 1.0;         // of a place that was free, and is not now
+constexpr double kReachM = 1.0;  // of a place that was free, and is not now
 constexpr double kPieceMoving = 0.95;
-constexpr double kPieceSpeedMps = 0.3;
+constexpr double kPieceSpeedMps = 0.2;
 constexpr double kLeastWayM = 1.0;
 constexpr int kLeastPlaces = 3;
 constexpr double kAboveM = 0.1;  // a beam as high as that return would meet it
@@ -64,7 +64,7 @@ void LandPieces::Anchor(Piece& piece, const Seen& seen, const Eigen::Vector2d& f
 }
 
 bool LandPieces::HasMoved(const Piece& piece, const Seen& seen, const Sight& sight) {
-  if (!piece.body.IsMoving(kPieceMoving) || piece.body.velocity_mps().norm() < kPieceSpeedMps) return false;
+  if (piece.body.velocity_mps().norm() < kPieceSpeedMps) return false;
   if ((piece.body.center_m() - piece.first_m).norm() < kLeastWayM) return false;
   const auto is_now_at = [&seen](const Eigen::Vector2d& place_m, double reach_m) {
     return std::ranges::any_of(seen.places_m, [&](const Eigen::Vector2d& one) { return (one - place_m).norm() < reach_m; });
@@ -82,6 +82,8 @@ bool LandPieces::HasMoved(const Piece& piece, const Seen& seen, const Sight& sig
     }
   }
   if (num_left >= kLeastPlaces && num_left >= kLeastShare * (num_left + num_kept)) return true;
+  // At a slant a wall is near to what lies before it: the other proof counts for what moves by itself only.
+  if (!piece.body.IsMoving(kPieceMoving)) return false;
   int num_come = 0;
   int num_free = 0;
   for (const auto& before_m : piece.free_m) {
@@ -123,7 +125,7 @@ std::vector<LandPieces::Proven> LandPieces::Update(std::span<const Seen> seen, c
     piece.seen = time;
     ++piece.num_hits;
     piece.radius_m = one.radius_m;
-        piece.body.Update(one.outline_m, one.sides, one.noise_m2, one.range_m, true);
+    piece.body.Update(one.outline_m, one.sides, one.noise_m2, one.range_m, true);
     seems_moving[pair.seen] = piece.body.moving_probability() > 0.5;
     piece.num_proofs = HasMoved(piece, one, sight) ? piece.num_proofs + 1 : 0;
     if (piece.num_proofs >= kProofs) {

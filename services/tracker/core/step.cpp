@@ -13,7 +13,7 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kLooksKept = 15;
-constexpr double kPieceBesideM = 0.3;        // beyond the outline of the thing that it is a piece of
+constexpr double kPieceBesideM = 0.3;      // beyond the outline of the thing that it is a piece of
 constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
@@ -310,7 +310,8 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
     track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     Place(track);
   }
-  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i)) track.is_confirmed = true;
+  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
+    track.is_confirmed = true;
 }
 
 void Step::Remember(Followed& track, bool is_seen) {
@@ -363,7 +364,7 @@ void Step::Begin() {
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
-    track.middle_m = track.seen_m = middle_m_[i];
+    track.middle_m = track.seen_m = track.first_m = middle_m_[i];
     track.radius_m = radius_m_[i];
     track.top_m = seen.top_above_water_m;
     track.AddLook(Logit(seen.thing_probability), 0.0);

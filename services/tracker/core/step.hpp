@@ -28,7 +28,7 @@ struct Known {
   LandMemory land = {};
   LandPieces land_pieces = {};
   ClutterMap clutter = {};
-  std::deque<Followed> tracks = {};    // by id
+  std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
 };

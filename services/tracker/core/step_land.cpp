@@ -11,15 +11,16 @@ constexpr double kLandShare = 0.6;           // of a segment's returns, where la
 constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
 constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
 constexpr double kLandVotes = 0.6;
-constexpr double kLandVoteGain = 0.1;         // the last second counts of what is hardly known,
+constexpr double kLandVoteGain = 0.1;        // the last second counts of what is hardly known,
 constexpr double kLandVoteGainKnown = 0.03;  // and the last 3 s of what has long been
 constexpr double kKnownHits = 100.0;
 constexpr int kLeastVotes = 5;
 constexpr double kMovesProbability = 0.95;
-constexpr int kMovesFor = 20;     // scans, and
+constexpr int kMovesFor = 20;      // scans, and
 constexpr double kMovedByM = 2.0;  // since it was seen first: what went so far is no land
 constexpr std::size_t kLeastPieceReturns = 8;
-constexpr int kPieceExistence = 6;
+constexpr double kPieceExistence = 6.0;  // log odds
+constexpr double kPieceThing = 0.9;
 
 bool HasMoved(const Followed& track) { return track.num_moving >= kMovesFor && (track.middle_m - track.first_m).norm() > kMovedByM; }
 
@@ -61,7 +62,8 @@ void Step::FollowLandPieces() {
     if (use_[i] != Use::kLand || !seen.is_sure || radius_m_[i] > LandPieces::kGreatestRadiusM || places_m_[i].size() < kLeastPieceReturns) continue;
     if (std::ranges::any_of(known_.tracks, [&](const Followed& track) { return track.is_confirmed && Contains(track.outline_m, middle_m_[i]); }))
       continue;
-    pieces.push_back({i, seen.outline_m, places_m_[i], heights_m_[i], middle_m_[i], radius_m_[i], ranges_m_[i], seen.covariance_relative_m2, SidesOf(i)});
+    pieces.push_back(
+        {i, seen.outline_m, places_m_[i], heights_m_[i], middle_m_[i], radius_m_[i], ranges_m_[i], seen.covariance_relative_m2, SidesOf(i)});
   }
   std::vector<bool> seems_moving;
   for (auto& proven : known_.land_pieces.Update(pieces, known_.sight, scan_.end_time, seems_moving)) {
@@ -76,6 +78,8 @@ void Step::FollowLandPieces() {
     track.top_m = seen.top_above_water_m;
     track.log_odds = kPieceExistence;
     track.num_hits = proven.num_hits;
+    track.mean_thing = Logit(kPieceThing);
+    track.seen_m = track.middle_m;
     track.num_moving = kMovesFor;
     track.is_confirmed = true;
     known_.tracks.push_back(std::move(track));
@@ -142,7 +146,8 @@ void Step::FeedLand() {
       fed_m.push_back(place_m);
       if (!heights_m_[i].empty()) tops_m.push_back(heights_m_[i][k]);
     }
-    const bool is_known = std::ranges::any_of(near, [&](const Followed* track) { return std::ranges::find(track->segment_ids, seen.segment_id) != track->segment_ids.end(); });
+    const bool is_known = std::ranges::any_of(
+        near, [&](const Followed* track) { return std::ranges::find(track->segment_ids, seen.segment_id) != track->segment_ids.end(); });
     known_.land.Add(fed_m, tops_m, seen.is_land ? LandMemory::Said::kLand : is_known ? LandMemory::Said::kThing : LandMemory::Said::kMaybeThing);
   }
   known_.land.LookThrough(known_.sight);

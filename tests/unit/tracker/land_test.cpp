@@ -186,8 +186,12 @@ TEST(LandInTracker, BargeThatLeavesAQuayBecomesATrackAndLeavesNoLand) {
     const double way_m = std::max(0.0, kScanS * (scan - kLeaves));
     auto walls = kQuayWalls;
     for (const auto& wall : Box({5.0 + way_m, 17.0}, 16.0, 4.0, 2.5, kBoat)) walls.push_back(wall);
-    const auto input =
-        Look(scan, {0.0, 0.0}, walls, [](int thing, const Eigen::Vector2d&) { return Called{thing, true}; }, random);
+    const auto input = Look(
+        scan, {0.0, 0.0}, walls,
+        [](int thing, const Eigen::Vector2d&) {
+          return Called{thing, true};
+        },
+        random);
     const auto& picture = tracker.Update(input);
     for (const auto& track : picture.tracks) {
       if (!IsReported(track)) continue;
