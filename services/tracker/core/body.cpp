@@ -80,9 +80,8 @@ double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x(
 Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m) {
   constexpr double kTurnedRad = 0.015;
   const double turned_m = kTurnedRad * range_m;
-  Eigen::Matrix2d noise = covariance_m2;
-  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * noise.trace()));
-  return kept * noise;
+  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * covariance_m2.trace()));
+  return kept * covariance_m2;
 }
 
 // Of a normal density at `off`, without the factor of 2 pi.
