@@ -19,6 +19,7 @@ constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
 constexpr double kMostCost = 6.0;
+constexpr double kLongestScanS = 0.2;
 // A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
 constexpr double kMostOff = 16.0;
 constexpr double kMostMisfit = 9.0;
@@ -155,7 +156,10 @@ double Step::CostOf(const Followed& track, std::size_t i) const {
 
 // Computed once for a segment, where it is asked for.
 const Sides& Step::SidesOf(std::size_t i) const {
-  if (!sides_[i]) sides_[i] = known_.sight.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
+  if (!sides_[i]) {
+    sides_[i] = known_.sight.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
+    sides_[i]->before_s = std::clamp(ToSeconds(scan_.end_time - scan_.seen[i].time), 0.0, kLongestScanS);
+  }
   return *sides_[i];
 }
 
