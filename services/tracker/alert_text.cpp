@@ -31,10 +31,16 @@ std::string_view KindText(std::optional<TrackKind> kind) {
   }
 }
 
+std::string WhoText(std::int64_t track_id, std::optional<TrackKind> kind) {
+  if (track_id == kLandTrack) return "land";
+  if (track_id == kUnnamed) return "obstacle";
+  return fmt::format("{} {}", KindText(kind), track_id);
+}
+
 }  // namespace
 
 std::string TextOf(const Alert& alert, std::optional<TrackKind> kind) {
-  const auto who = alert.track_id == 0 ? std::string("land") : fmt::format("{} {}", KindText(kind), alert.track_id);
+  const auto who = WhoText(alert.track_id, kind);
   switch (alert.cause) {
     case AlertCause::kGuardZone:
       return fmt::format("{} in the guard zone: {:.1f} m{}", who, alert.distance_m, BearingText(alert.bearing_rad));

@@ -16,11 +16,12 @@ constexpr std::size_t kMaxAcknowledgements = 100;
 // HEALTH names a silence that lasts this long, and a time-out for as long.
 constexpr std::chrono::seconds kSilence(2);
 
-// Without an own pose nobody knows how near anything will come; what is in the guard zone shows all the same, though not whose track it is.
+// Without an own pose nobody knows how near anything will come; what is in the guard zone shows all the same.
 std::vector<Danger> DangersOf(const Params& params, const GatheredScan& scan, const Picture& picture, bool is_own_still) {
-  if (!scan.input.own) return GuardZoneDangers(params.guard_zone, scan.outlines);
-  auto dangers = GuardZoneDangers(params.guard_zone, picture, scan.input.seen, *scan.input.own);
-  std::ranges::copy(ClosestApproachDangers(params.tracker.encounter.limit_m, picture, is_own_still), std::back_inserter(dangers));
+  auto dangers = GuardZoneDangers(params.guard_zone, picture, scan.outlines, scan.input.own);
+  if (scan.input.own) {
+    std::ranges::copy(ClosestApproachDangers(params.tracker.encounter.limit_m, picture, is_own_still), std::back_inserter(dangers));
+  }
   return dangers;
 }
 
@@ -161,7 +162,7 @@ void Service::Use(const GatheredScan& scan) {
   }
   const auto& input = scan.input;
   const bool is_whole = input.flags == 0;
-  if (is_whole) watch_.NoteScan();
+  watch_.NoteScan(input.time, is_whole);
   is_placed_ = input.own.has_value();
 
   const Picture& picture = memory_->tracker.Update(input);
@@ -241,8 +242,7 @@ void Service::SendWatch() {
   if (!label_ || !memory_) return;
   auto message = ToMessage(*label_, memory_->alerts.alerts(), {}, {}, bus::kMaxMessageBytes / 2);
   auto alert = ToMessage(*watch_.alert(), std::nullopt);
-  alert.text =
-      alert.state == alert_t::STATE_CLEARED ? "look-out again" : fmt::format("no look-out: no whole scan for {:.1f} s", ToSeconds(watch_.unseen()));
+  alert.text = alert.state == alert_t::STATE_CLEARED ? "look-out again" : "no look-out: " + watch_.Complaint();
   message.is_watch = true;
   message.alerts.insert(message.alerts.begin(), std::move(alert));
   message.num_alerts = messages::CountOf(message.alerts);
@@ -270,7 +270,7 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
   acknowledgements_refused_.AppendTo(report.counters);
 
-  if (watch_.is_failing()) report.Degrade(fmt::format("no look-out: no whole scan for {:.1f} s", ToSeconds(watch_.unseen())));
+  if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
   if (now_ && *now_ - obstacles_seen_.value_or(*now_) >= kSilence) {
     report.Degrade(fmt::format("no OBSTACLES for {} s", std::chrono::floor<std::chrono::seconds>(*now_ - *obstacles_seen_).count()));

@@ -1,6 +1,30 @@
 #include "services/tracker/watch.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace lookout::tracker {
+
+void Watch::NoteScan(Utime scan_time, bool is_whole) {
+  if (!last_good_) last_good_ = time_.passed();
+  if (!is_whole) return;
+  last_whole_ = time_.passed();
+  std::erase_if(whole_, [scan_time](Utime other) { return std::chrono::abs(scan_time - other) > kWithin; });
+  whole_.push_back(scan_time);
+  if (whole_.size() < kScans) return;
+  whole_.erase(whole_.begin(), whole_.end() - kScans);
+  last_good_ = time_.passed();
+  has_looked_ = true;
+}
+
+std::string Watch::Complaint() const {
+  if (!host_time_ || (has_looked_ && !is_failing())) return {};
+  if (!last_whole_) return "no whole scan yet";
+  const auto unseen = time_.passed() - *last_whole_;
+  if (unseen >= kLongest) return fmt::format("no whole scan for {:.1f} s", ToSeconds(unseen));
+  return fmt::format("less than {} whole scans within {:.1f} s", kScans, ToSeconds(kWithin));
+}
 
 void Watch::AdvanceTo(Utime host_time) {
   time_.Advance(host_time);
@@ -36,7 +60,7 @@ bool Watch::Acknowledge(const Acknowledgement& acknowledgement) {
   if (!alert_ || alert_->id != acknowledgement.alert_id || alert_->raised != acknowledgement.raised || alert_->state != AlertState::kActive)
     return false;
   alert_->state = AlertState::kAcknowledged;
-  alert_->changed = host_time_;
+  alert_->changed = *host_time_;
   sent_.reset();
   return true;
 }

@@ -91,6 +91,7 @@ VesselOutline ToOutline(const obstacle_t& message) {
   outline.is_line = message.num_waterline > 0;
   outline.corners_m = outline.is_line ? ToCorners(message.waterline_vessel_x_m, message.waterline_vessel_y_m)
                                       : ToCorners(message.footprint_vessel_x_m, message.footprint_vessel_y_m);
+  outline.nearest_m = {message.nearest_vessel_m[0], message.nearest_vessel_m[1]};
   return outline;
 }
 
@@ -325,7 +326,7 @@ alert_t ToMessage(const Alert& alert, std::optional<TrackKind> kind) {
   message.cause = static_cast<std::int32_t>(alert.cause);
   message.level = static_cast<std::int32_t>(alert.level);
   message.state = static_cast<std::int32_t>(alert.state);
-  message.track_id = alert.track_id;
+  message.track_id = std::max(alert.track_id, std::int64_t{0});
   message.raised_utime_us = ToUtimeUs(alert.raised);
   message.changed_utime_us = ToUtimeUs(alert.changed);
   message.distance_m = ToFloat(alert.distance_m);

@@ -95,7 +95,7 @@ const std::vector<Rule>& Rules() {
       // Opens what params name.
       {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
       // A part of the service that knows the host's time, as the core must not.
-      {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core"}},
+      {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core", "fmt"}},
       // What the recorder's method gives is files: its service drives its own io.

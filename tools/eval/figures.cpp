@@ -24,10 +24,25 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 17> kFigureNames{
-    "main",     "times",    "miou",   "false", "with-segment",      "kinds",        "peers",         "against-peers",
-    "table-2",  "ablation", "sweeps", "tests", "tracks_identities", "tracks_times", "tracks_states", "tracks_labels",
-    "autoferry"};
+constexpr std::array<std::string_view, 19> kFigureNames{"main",
+                                                        "times",
+                                                        "miou",
+                                                        "false",
+                                                        "with-segment",
+                                                        "kinds",
+                                                        "peers",
+                                                        "against-peers",
+                                                        "table-2",
+                                                        "ablation",
+                                                        "sweeps",
+                                                        "tests",
+                                                        "tracks_identities",
+                                                        "tracks_times",
+                                                        "tracks_states",
+                                                        "tracks_labels",
+                                                        "autoferry",
+                                                        "tracks_targets",
+                                                        "tracks_approaches"};
 
 // In headings of columns a world stands before what it is a world of.
 std::string HeadingOf(const Results& world, const std::string& text) { return world.world.empty() ? text : world.world + ": " + text; }

@@ -91,7 +91,7 @@ int EvaluateLog(const LogOptions& options) {
     tracks->Finish();
     std::vector<TrackRow> rows;
     for (auto& row : tracks->Rows()) rows.push_back({"log", std::move(row)});
-    if (tracks->has_own_tracks()) PrintTables(rows, std::cout);
+    if (tracks->has_own_tracks()) PrintTables(TablesOf(rows), std::cout);
   }
   PrintMachine(std::cout, machine);
   if (num_unusable > 0) std::cout << num_unusable << " messages of the log could not be used\n";

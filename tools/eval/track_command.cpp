@@ -11,15 +11,18 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/config/text_config.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
+#include "config/schema/tracker.pb.h"
 #include "tools/eval/baselines/nearest_neighbour.hpp"
 #include "tools/eval/figures.hpp"
 #include "tools/eval/track_run.hpp"
 #include "tools/eval/track_sources.hpp"
 #include "tools/eval/track_tables.hpp"
+#include "tools/eval/track_targets.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -31,16 +34,22 @@ namespace fs = std::filesystem;
 // Of the returns of the chain's scans, at least so many are in the truth: else the two do not belong together.
 constexpr double kLeastJoined = 0.99;
 
+ApproachLimits LimitsOf(const fs::path& config_folder) {
+  const auto tracker = config::Load<config::Tracker>(config_folder, "tracker.txtpb");
+  return {tracker.cpa_limit_m(), tracker.look_ahead_s()};
+}
+
 // One run: `feed` is called with the handler of its datagrams.
 template <typename Feed>
 std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string& scene, Truth& truth, const Feed& feed) {
+  const auto limits = LimitsOf(config_folder);
   std::optional<TrackRun> run;
   replay::Chain chain(config_folder, {}, [&](Utime, std::string_view channel, Bytes bytes) {
     if (!run->Add(channel, bytes)) throw std::runtime_error(scene + ": a message on " + std::string(channel) + " cannot be used");
   });
   feed([&](const replay::Datagram& datagram) {
     io::ThrowIfStopAsked();
-    if (!run) run.emplace(truth, MakeTrackers(), TrackRun::Returns::kForgotten);  // the truth knows its objects now
+    if (!run) run.emplace(truth, MakeTrackers(), TrackRun::Returns::kForgotten, limits);  // the truth knows its objects now
     chain.OnDatagram(datagram);
   });
   if (!run) throw std::runtime_error(scene + ": no datagram");
@@ -57,13 +66,14 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
 
 // Of one run.
 void WriteEvents(const std::vector<TrackRow>& rows, std::uint64_t seed, const Truth& truth, std::ostream& out) {
-  constexpr std::array<std::string_view, 3> kNames{"missed", "false", "switch"};
+  constexpr std::array<std::string_view, 4> kNames{"missed", "false", "switch", "moving"};
   for (const auto& [scene, row] : rows) {
     for (const auto& event : row.scores.events) {
-      const auto& name = event.thing == 0 ? std::string() : truth.objects().at(event.thing).name;
-      out << fmt::format("{},{},{},{},{},{},{},{},{:.2f},{:.2f}\n", scene, seed, row.tracker, event.utime_us,
-                         kNames.at(static_cast<std::size_t>(event.what)), name, event.num_returns, event.track, event.position_m.x(),
-                         event.position_m.y());
+      const auto name_of = [&truth](std::int64_t thing) { return thing == 0 ? std::string() : truth.objects().at(static_cast<int>(thing)).name; };
+      const auto nearest = event.what == TrackEvent::What::kFalse ? name_of(event.nearest) : std::to_string(event.nearest);
+      out << fmt::format("{},{},{},{},{},{},{},{},{:.2f},{:.2f},{},{:.2f},{:.2f}\n", scene, seed, row.tracker, event.utime_us,
+                         kNames.at(static_cast<std::size_t>(event.what)), name_of(event.thing), event.num_returns, event.track, event.position_m.x(),
+                         event.position_m.y(), nearest, event.nearest_gap_m, event.speed_mps);
     }
   }
 }
@@ -76,13 +86,13 @@ std::vector<TrackRow> RunScenes(const TrackOptions& options, std::ostream* event
   std::vector<TrackRow> runs;
   runtime::Progress progress("lookout-eval", stderr);
   const auto num_runs = static_cast<double>(options.plan.scenes.size()) * options.plan.num_seeds;
+  double num_done = 0.0;
   for (const auto& name : options.plan.scenes) {
     const auto file = sim::FindScene(name, options.config_folder);
     const auto scene = SceneLabel(name);
     for (int k = 0; k < options.plan.num_seeds; ++k) {
       const auto seed = options.plan.first_seed + static_cast<std::uint64_t>(k);
-      progress.Update(static_cast<double>(runs.size()) / static_cast<double>(MakeTrackers().size()) / num_runs,
-                      [&] { return fmt::format("{}, seed {}", scene, seed); });
+      progress.Update(num_done++ / num_runs, [&] { return fmt::format("{}, seed {}", scene, seed); });
       Truth truth(1);
       auto rows = ScoreRun(options.config_folder, scene, truth, [&](const DatagramHandler& on_datagram) {
         SimulateRun(options.config_folder, file, seed, options.plan.seconds, truth, on_datagram);
@@ -111,13 +121,16 @@ std::vector<TrackRow> RunCaptures(const TrackOptions& options, std::ostream* eve
   return runs;
 }
 
-// Rows by scene, and one over all of a world.
-void AddWorld(const std::vector<TrackRow>& runs, const std::string& name, std::vector<TrackRow>& rows) {
-  if (runs.empty()) return;
-  auto by_scene = AddUp(runs);
-  auto all = OverAll(by_scene, name);
-  AddTo(rows, std::move(by_scene));
-  AddTo(rows, std::move(all));
+// Targets first, then the scenes, and behind those of a world one row over all of them.
+std::vector<NamedTable> AllTablesOf(const std::vector<TrackWorld>& worlds) {
+  std::vector<TrackRow> rows;
+  for (const auto& world : worlds) {
+    AddTo(rows, world.scenes);
+    AddTo(rows, OverAll(world.scenes, world.name + ": all"));
+  }
+  std::vector<NamedTable> tables{TargetTable(worlds, "lookout", "nearest neighbour")};
+  for (auto& table : TablesOf(rows)) tables.push_back(std::move(table));
+  return tables;
 }
 
 std::vector<ReadmeFigure> FiguresOf(const TrackOptions& options, bool has_captures, const std::vector<NamedTable>& tables) {
@@ -152,24 +165,27 @@ int EvaluateTracks(const TrackOptions& options) {
   std::vector<std::unique_ptr<io::OutputFile>> files;
   if (!options.csv_folder.empty()) {
     fs::create_directories(options.csv_folder);
-    for (const auto& table : TablesOf(std::vector<TrackRow>{})) {
+    for (const auto& table : AllTablesOf({})) {
       files.push_back(std::make_unique<io::OutputFile>(options.csv_folder / (table.name + ".csv"), io::OutputOptions{.force = options.is_forced}));
     }
   }
   std::optional<io::OutputFile> lost;
   if (!options.lost_file.empty()) {
     lost.emplace(options.lost_file, io::OutputOptions{.force = options.is_forced});
-    lost->Write("scene,seed,tracker,utime_us,event,thing,num_returns,track_id,east_m,north_m\n");
+    lost->Write("scene,seed,tracker,utime_us,event,thing,num_returns,track_id,east_m,north_m,nearest,gap_m,speed_mps\n");
   }
   std::ostream* const events = lost ? &lost->stream() : nullptr;
-  std::vector<TrackRow> rows;
-  AddWorld(RunScenes(options, events), "all scenes", rows);
+  std::vector<TrackWorld> worlds;
+  const auto add_world = [&worlds](const std::string& name, const std::vector<TrackRow>& runs) {
+    if (!runs.empty()) worlds.push_back({name, AddUp(runs)});
+  };
+  add_world("own scenes", RunScenes(options, events));
   const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
-  if (has_captures) AddWorld(RunCaptures(options, events), "second world: all", rows);
+  if (has_captures) add_world("second world", RunCaptures(options, events));
   if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
   if (lost) lost->Commit();
-  PrintTables(rows, std::cout);
-  const auto tables = TablesOf(rows);
+  const auto tables = AllTablesOf(worlds);
+  PrintTables(tables, std::cout);
   for (std::size_t i = 0; i < files.size(); ++i) {
     tables[i].table.PrintCsv(files[i]->stream());
     files[i]->Commit();

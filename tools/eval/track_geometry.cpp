@@ -115,6 +115,10 @@ Approach ApproachOf(const Polygon& own_m, const Vector2d& own_mps, const Polygon
   return {0.0, touching_s};
 }
 
+double GapAfter(double seconds, const Polygon& own_m, const Vector2d& own_mps, const Polygon& other_m, const Vector2d& other_mps) {
+  return HullGap(ConvexHullOf(own_m), Moved(ConvexHullOf(other_m), (other_mps - own_mps) * seconds));
+}
+
 Vector2d CenterOf(const Polygon& outline_m) {
   const auto hull_m = ConvexHullOf(outline_m);
   if (hull_m.size() < 3) return BoxOf(hull_m).center();

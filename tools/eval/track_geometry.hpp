@@ -24,6 +24,8 @@ struct Approach {
 /// Found by halving intervals: the gap of two convex sets that move straight is a convex function of time. Error: below 1 mm, 1 ms.
 Approach ApproachOf(const Polygon& own_m, const Eigen::Vector2d& own_mps, const Polygon& other_m, const Eigen::Vector2d& other_mps);
 inline constexpr double kMaxLookAheadS = 600.0;
+/// Gap of the convex hulls then, where both keep course and speed.
+double GapAfter(double seconds, const Polygon& own_m, const Eigen::Vector2d& own_mps, const Polygon& other_m, const Eigen::Vector2d& other_mps);
 
 /// Centre of the rectangle of least area around a polygon.
 Eigen::Vector2d CenterOf(const Polygon& outline_m);

@@ -9,25 +9,46 @@
 
 #include "tools/eval/metrics.hpp"
 #include "tools/eval/track_gospa.hpp"
+#include "tools/eval/track_matching.hpp"
 #include "tools/eval/track_scan.hpp"
 
 namespace lookout::eval {
 
-/// A track may belong to a thing no farther than this, hull to hull. Outlines of what is seen from one side and of what is true overlap but for
-/// errors of position, so that IoU says little of small things: a buoy of 0.5 m that is 0.5 m off has none.
-inline constexpr double kTrackGateM = 2.0;
-/// Returns from which on a thing in the water must be tracked; one with fewer may be, and counts neither way.
-inline constexpr int kMinReturnsOfExpected = 5;
+/// When another boat is too near: as the boat's tracker is told (cpa_limit_m and look_ahead_s of tracker.txtpb; these are its defaults).
+struct ApproachLimits {
+  double limit_m = 5.0;  // hull to hull
+  double look_ahead_s = 30.0;
+};
 
-/// What costs MOTA in a scan, for people who look for the reason.
+/// What is wrong in a scan, for people who look for the reason: what costs MOTA, and what stands and is said to move.
 struct TrackEvent {
-  enum class What { kMissed, kFalse, kSwitch };
+  enum class What { kMissed, kFalse, kSwitch, kMoving };
   What what = What::kMissed;
   std::int64_t utime_us = 0;
   int thing = 0;                                         // 0 = none
   int num_returns = 0;                                   // of the thing
   std::int64_t track = 0;                                // 0 = none
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  // of the thing; of a false track
+  // Of a false track the thing, of what was missed the track (of any status) whose hull is nearest, and the gap; of a switch the track before; 0 =
+  // none.
+  std::int64_t nearest = 0;
+  double nearest_gap_m = 0.0;
+  double speed_mps = 0.0;  // as the track says
+};
+
+/// Probabilities, and whether it came so, in ten bins.
+struct Calibration {
+  struct Bin {
+    Mean stated;
+    Mean came_true;
+  };
+  std::array<Bin, 10> bins;
+
+  void Add(double probability, bool came_true);
+  void Add(const Calibration& other);
+  std::int64_t count() const;
+  /// Expected calibration error: |mean stated - share that came true|, over the bins by their counts. NaN without any.
+  double Error() const;
 };
 
 /// Figures of one run, or of several (Add).
@@ -43,8 +64,9 @@ struct TrackScores {
   std::int64_t num_runs_without_switch = 0;
   // E. Ristani et al., "Performance measures and a data set for multi-target, multi-camera tracking", ECCV Workshops 2016.
   std::int64_t num_id_true = 0;
-  std::int64_t num_id_tracked = 0;    // reported, and not left out
-  std::int64_t num_false_tracks = 0;  // ids that are false in most of the scans in which they are reported
+  std::int64_t num_id_tracked = 0;     // reported, and not left out
+  std::int64_t num_false_tracks = 0;   // ids that are false in most of the scans in which they are reported
+  std::int64_t num_double_tracks = 0;  // of these, those that lie on a thing that has another track
   Gospa gospa{.num_scans = 0};
 
   // From the first return to the first scan with a reported track: [0] of 5 returns or more a scan (median), [1] of 1 to 4. Infinite: never.
@@ -56,6 +78,7 @@ struct TrackScores {
   // Squared error over the stated covariance, per degree of freedom; 1 = as stated. Velocity: of tracks that move.
   Mean position_nees;
   Mean velocity_nees;
+  std::int64_t num_things_with_covariance = 0;
   std::int64_t num_bad_covariances = 0;  // not positive definite
 
   Mean standing_speed_mps;  // things that stand all the run, land apart
@@ -65,13 +88,22 @@ struct TrackScores {
   Summary speed_error_mps;
   Summary course_error_deg;
   Mean called_standing;
-  Summary center_error_m;  // of things in the water of 3 m or more, 3 s after their first track: lidar sees but a side of them
+  // Of things in the water of 3 m or more, 3 s after their first track, of which lidar had before it, in scans with 5 returns or more until now, no
+  // more than half of the directions in which their outline lies around their centre.
+  Summary center_error_m;
 
   // Of what moves and comes nearer, at the scan in which the true TCPA falls below 10 s: both truly keep course and speed from there.
   Mean cpa_error_m;
   Mean tcpa_error_s;
   std::int64_t num_crossings = 0;
   std::int64_t num_crossings_untracked = 0;
+  // Of all that comes nearer, at 1 m/s or more, 3 s after its first track; truly, both keep course and speed.
+  Calibration calibration;
+
+  // Alerts. A pass: a thing in the water comes nearer than the limit, at 1 m/s or more, 10 s after it was seen with 5 returns or later.
+  std::int64_t num_alerts = 0;  // that came up, of any cause
+  Summary warned_ahead_s;       // of each pass, from the first alert of an approach to when it is nearest; minus infinity: none came
+  Summary warned_after_s;       // from when it is farther than the limit again to when the alert is over
 
   std::vector<TrackEvent> events;  // in the order of time; Add leaves those of the other out
 
@@ -84,10 +116,10 @@ struct TrackScores {
 
 /// @param truth   scans of a run in the order of time
 /// @param tracks  [scans] what the tracker said after each
-/// Who belongs to whom in a scan: pairs of the scan before stay while they are within the gate (CLEAR MOT); the others are assigned so that as many
-/// as can have a partner, and the gaps between hulls, and then the distances of centres, are least in sum. Things that need not be tracked (fewer
-/// returns, docks, piers) take part, since a track that is nearer to one of them is not a hit of another. A track that is left counts as false,
-/// unless it is within the gate of such a thing or of land. Cost: things x tracks x corners per scan.
-TrackScores ScoreTracks(std::span<const TrueScan> truth, std::span<const std::vector<TrackState>> tracks);
+/// @param alerts  [scans] the same; empty: it has none
+/// Matcher says who belongs to whom in a scan. A track that is left counts as false, unless it is within the gate of what is there and need not be
+/// tracked: what has fewer returns or is hidden, docks, piers, land.
+TrackScores ScoreTracks(std::span<const TrueScan> truth, std::span<const std::vector<TrackState>> tracks,
+                        std::span<const std::vector<StatedAlert>> alerts = {}, const ApproachLimits& limits = {});
 
 }  // namespace lookout::eval

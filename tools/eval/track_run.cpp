@@ -73,12 +73,14 @@ TrackState ToTrackState(const track_t& track) {
   state.segment_ids = track.segment_ids;
   state.cpa_m = static_cast<double>(track.cpa_m);
   state.tcpa_s = static_cast<double>(track.tcpa_s);
+  state.cpa_probability = static_cast<double>(track.cpa_probability);
   return state;
 }
 
-TrackRun::TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns)
+TrackRun::TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits)
     : truth_(truth),
       used_returns_(returns),
+      limits_(limits),
       objects_(ObjectsOf(truth)),
       trackers_(std::move(trackers)),
       collector_([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
@@ -86,8 +88,11 @@ TrackRun::TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns)
                  [this](const messages::ScanMessages& scan) {
                    if (messages::HasAllParts(scan.obstacles)) OnScan(scan);
                  }) {
-  for (const auto& tracker : trackers_) said_.push_back({tracker->name(), {}, {}});
+  for (const auto& tracker : trackers_) said_.push_back({tracker->name(), {}, {}, {}});
   own_.tracker = "lookout";
+  const bool has_structures = std::ranges::any_of(objects_, [](const auto& object) { return object.first > 0 && !object.second.is_in_water; });
+  own_.labels.has_structures = has_structures;
+  for (auto& said : said_) said.labels.has_structures = has_structures;
 }
 
 bool TrackRun::Add(std::string_view channel, Bytes bytes) {
@@ -95,6 +100,10 @@ bool TrackRun::Add(std::string_view channel, Bytes bytes) {
   if (channel == bus::kLidarScan.name) return take(bus::Decode<lidar_scan_t>(bytes));
   if (channel == bus::kSegments.name) return take(bus::Decode<segments_t>(bytes));
   if (channel == bus::kObstacles.name) return take(bus::Decode<obstacles_t>(bytes));
+  if (channel == bus::kAlerts.name) {
+    const auto message = bus::Decode<alerts_t>(bytes);
+    return message && OnAlerts(*message);
+  }
   if (channel != kTracksChannel) return true;
   const auto message = bus::Decode<tracks_t>(bytes);
   return message && OnTracks(*message);
@@ -175,6 +184,8 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
     said.tracks.push_back(std::move(tracks[i]));
   }
   own_.tracks.emplace_back();
+  own_.alerts.emplace_back();
+  scan_at_[scan.utime_us] = waiting.index;
   own_.labels.segments.Add(waiting.own_labels.segments);
   own_.labels.segments_land_one.Add(waiting.own_labels.segments_land_one);
   waiting_[scan.utime_us] = std::move(waiting);
@@ -193,6 +204,16 @@ bool TrackRun::OnTracks(const tracks_t& message) {
   return true;
 }
 
+bool TrackRun::OnAlerts(const alerts_t& message) {
+  const auto scan = scan_at_.find(message.utime_us);
+  if (scan == scan_at_.end() || message.is_watch) return true;
+  for (const auto& alert : message.alerts) {
+    const bool holds = alert.state == alert_t::STATE_ACTIVE || alert.state == alert_t::STATE_ACKNOWLEDGED;
+    own_.alerts[scan->second].push_back({alert.id, alert.track_id, alert.cause == alert_t::CAUSE_CLOSEST_APPROACH, holds});
+  }
+  return true;
+}
+
 void TrackRun::TakeTracks(const Waiting& waiting) {
   auto& tracks = own_.tracks[waiting.index];
   std::set<int> land;
@@ -207,8 +228,8 @@ void TrackRun::TakeTracks(const Waiting& waiting) {
 
 std::vector<TrackRun::Row> TrackRun::Rows() const {
   std::vector<Row> rows;
-  if (has_own_) rows.push_back({own_.tracker, ScoreTracks(truth_scans_, own_.tracks), own_.labels});
-  for (const auto& said : said_) rows.push_back({said.tracker, ScoreTracks(truth_scans_, said.tracks), said.labels});
+  if (has_own_) rows.push_back({own_.tracker, ScoreTracks(truth_scans_, own_.tracks, own_.alerts, limits_), own_.labels});
+  for (const auto& said : said_) rows.push_back({said.tracker, ScoreTracks(truth_scans_, said.tracks, {}, limits_), said.labels});
   return rows;
 }
 

@@ -14,6 +14,7 @@
 
 #include "common/core/bytes.hpp"
 #include "common/messages/scan_collector.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tools/eval/multi_object_tracker.hpp"
 #include "tools/eval/track_metrics.hpp"
@@ -29,10 +30,11 @@ TrackState ToTrackState(const track_t& track);
 
 /// IoU of labels, a mean over the objects of each scan, and of these the mean: land is one object, and one label, where it says so.
 struct LabelScores {
-  Mean segments;           // labels of SEGMENTS against the objects of the truth
-  Mean segments_land_one;  // land is one object, and segments that SEGMENTS call land have one label
-  Mean tracks_land_one;    // the same with the id of the track that explains a segment as its label, and of land what the tracker calls so; what no
-                           // track explains is in none
+  bool has_structures = false;  // docks, piers, land
+  Mean segments;                // labels of SEGMENTS against the objects of the truth
+  Mean segments_land_one;       // land is one object, and segments that SEGMENTS call land have one label
+  Mean tracks_land_one;  // the same with the id of the track that explains a segment as its label, and of land what the tracker calls so; what no
+                         // track explains is in none
 };
 
 class TrackRun {
@@ -42,9 +44,9 @@ class TrackRun {
   /// @param truth     outlives this
   /// @param trackers  fed with OBSTACLES; each has a row of its own
   /// @param returns   what becomes of returns of the truth that were used
-  TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns);
+  TrackRun(Truth& truth, MultiObjectTrackers trackers, Returns returns, const ApproachLimits& limits = {});
 
-  /// LIDAR_SCAN, SEGMENTS, OBSTACLES and TRACKS; others are left out. @return false where the message cannot be used
+  /// LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS and ALERTS; others are left out. @return false where the message cannot be used
   bool Add(std::string_view channel, Bytes bytes);
   void Finish();
 
@@ -70,6 +72,7 @@ class TrackRun {
     std::string tracker;
     std::vector<std::vector<TrackState>> tracks;  // by scan
     LabelScores labels;
+    std::vector<std::vector<StatedAlert>> alerts;  // by scan
   };
   // What waits for TRACKS.
   struct Waiting {
@@ -81,6 +84,7 @@ class TrackRun {
 
   void OnScan(const messages::ScanMessages& scan);
   bool OnTracks(const tracks_t& message);
+  bool OnAlerts(const alerts_t& message);
   void TakeTracks(const Waiting& waiting);
   std::vector<LabelledReturn> Join(const messages::ScanMessages& scan);
   // Mean over the objects; nullopt without one.
@@ -88,6 +92,7 @@ class TrackRun {
 
   Truth& truth_;
   Returns used_returns_;
+  ApproachLimits limits_;
   std::map<std::int32_t, importer::ScanObject> objects_;
   MultiObjectTrackers trackers_;
   messages::ScanCollector collector_;
@@ -97,7 +102,8 @@ class TrackRun {
   std::vector<Said> said_;  // of trackers_
   Said own_;                // of TRACKS
   bool has_own_ = false;
-  std::map<std::int64_t, Waiting> waiting_;  // by utime_us of the scan
+  std::map<std::int64_t, std::size_t> scan_at_;  // by utime_us of the scan
+  std::map<std::int64_t, Waiting> waiting_;      // by utime_us of the scan
   std::int64_t num_returns_ = 0;
   std::int64_t num_joined_ = 0;
 };

@@ -50,9 +50,19 @@ struct TrackState {
   /// Closest approach to the own boat, hull to hull; NaN = it states none.
   double cpa_m = std::numeric_limits<double>::quiet_NaN();
   double tcpa_s = std::numeric_limits<double>::quiet_NaN();
+  /// That it is below the limit within the look-ahead (ApproachLimits).
+  double cpa_probability = std::numeric_limits<double>::quiet_NaN();
 
   /// Told to people as being there.
   bool IsReported() const { return status == TrackStatus::kConfirmed || status == TrackStatus::kCoasting; }
+};
+
+/// An alert at the end of a scan.
+struct StatedAlert {
+  std::int64_t id = 0;
+  std::int64_t track_id = 0;    // 0 = of none
+  bool is_of_approach = false;  // else of a guard zone
+  bool holds = false;           // active or acknowledged: not over
 };
 
 }  // namespace lookout::eval

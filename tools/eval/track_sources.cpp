@@ -46,9 +46,13 @@ Polygon OutlineAt(const Eigen::Vector2d& position_m, double heading_rad, const P
   return placed_m;
 }
 
-Polygon BoxOf(const config::BoatFacts& boat) {
-  const auto& box_m = boat.own_vessel_box_m;
-  return sim::Rectangle(box_m.min().x(), box_m.max().x(), box_m.min().y(), box_m.max().y());
+// As lookout-tracker has it: the hull in the middle of the box of own returns, no larger than it; the whole box where the size of the hull is not
+// set.
+Polygon HullOf(const config::BoatFacts& boat) {
+  const auto center_m = boat.own_vessel_box_m.center();
+  Eigen::Vector2d half_m = boat.own_vessel_box_m.sizes().head<2>() / 2.0;
+  if (boat.hull_m) half_m = half_m.cwiseMin(Eigen::Vector2d(boat.hull_m->length_m, boat.hull_m->beam_m) / 2.0);
+  return sim::Rectangle(center_m.x() - half_m.x(), center_m.x() + half_m.x(), center_m.y() - half_m.y(), center_m.y() + half_m.y());
 }
 
 // From one period before the run to one behind it, so that velocities have both sides.
@@ -67,7 +71,7 @@ void AddOutlines(const sim::Scene& scene, const config::BoatFacts& boat, double 
     const double time_s = 1e-6 * static_cast<double>(i * kOutlinePeriodUs);
     const std::int64_t utime_us = ToUtimeUs(kStart) + i * kOutlinePeriodUs;
     const auto own = sim::StateAt(scene.own_motion, boat.reference_point_above_water_m, time_s);
-    truth.AddOutline(sim::kOwnVessel, utime_us, OnEarth(map, OutlineAt(own.position_map_m.head<2>(), own.heading_rad, BoxOf(boat))));
+    truth.AddOutline(sim::kOwnVessel, utime_us, OnEarth(map, OutlineAt(own.position_map_m.head<2>(), own.heading_rad, HullOf(boat))));
     for (const auto& object : scene.objects) {
       if (!object.track.is_moving()) continue;
       const auto place = object.track.At(time_s);
@@ -153,7 +157,7 @@ void ReadOwnRows(const CaptureWithTruth& files, const config::BoatFacts& boat, T
   while (csv.Next()) {
     const auto map = MapAt(csv.Number(1), csv.Number(2));
     truth.AddOutline(importer::kOwnVesselObject, csv.WholeNumber(0, 0, kMaxTime),
-                     OnEarth(map, OutlineAt(Eigen::Vector2d::Zero(), DegToRad(csv.Number(3)), BoxOf(boat))));
+                     OnEarth(map, OutlineAt(Eigen::Vector2d::Zero(), DegToRad(csv.Number(3)), HullOf(boat))));
   }
 }
 

@@ -28,7 +28,7 @@ inline constexpr std::int64_t kCaptureToleranceUs = 3;
 /// Reads a capture, and NAME-SEED.objects.csv.xz, .shapes.csv.xz, .ego.csv.xz and .truth.csv.xz beside it.
 ///
 /// An object of the shapes has their outline, any other a rectangle of its length and width; between two scans, of whose middle the objects are, it
-/// moves straight. The own boat is `own_vessel_box_m` at the place and heading of .ego.
+/// moves straight. The own boat is its hull at the place and heading of .ego.
 /// @param truth  empty, of tolerance kCaptureToleranceUs; all of it is read before the first datagram
 /// @throws std::runtime_error "file:line: reason"
 void ReadRun(const CaptureWithTruth& files, const config::BoatFacts& boat, Truth& truth, const DatagramHandler& on_datagram);

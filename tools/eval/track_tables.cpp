@@ -26,8 +26,19 @@ std::string Percentile(const Summary& summary, int percent, int decimals) {
 
 std::string Count(std::size_t count) { return Number(static_cast<std::int64_t>(count)); }
 
+// In which ANEES lies in 95 of 100 cases where covariances are as stated: chi squared with two degrees of freedom for each thing, since errors of one
+// thing hardly change from scan to scan. By E. B. Wilson and M. M. Hilferty, "The distribution of chi-square", PNAS 17 (1931).
+std::string BandOf(std::int64_t num_things) {
+  if (num_things == 0) return "-";
+  constexpr double kTwoSided95 = 1.96;
+  const double variance = 2.0 / (9.0 * 2.0 * static_cast<double>(num_things));
+  const auto at = [&](double deviations) { return std::pow(1.0 - variance + deviations * std::sqrt(variance), 3.0); };
+  return fmt::format("{}-{}", Number(std::max(at(-kTwoSided95), 0.0), 2), Number(at(kTwoSided95), 2));
+}
+
 void Add(TrackRun::Row& sum, const TrackRun::Row& row) {
   sum.scores.Add(row.scores);
+  sum.labels.has_structures = sum.labels.has_structures || row.labels.has_structures;
   sum.labels.segments.Add(row.labels.segments);
   sum.labels.segments_land_one.Add(row.labels.segments_land_one);
   sum.labels.tracks_land_one.Add(row.labels.tracks_land_one);
@@ -40,7 +51,7 @@ void AddValue(Mean& sum, const Mean& of_scene) {
 
 NamedTable Identities(const std::vector<TrackRow>& rows) {
   Table table({"scene", "tracker", "runs", "minutes", "MOTA_%", "IDF1_%", "missed_%", "false_%", "switches_20s", "no_switch_%", "false_tracks_min",
-               "GOSPA_m", "localisation_m", "missed_m", "false_m"});
+               "doubles_min", "GOSPA_m", "localisation_m", "missed_m", "false_m"});
   for (const auto& [scene, row] : rows) {
     const auto& scores = row.scores;
     const auto& gospa = scores.gospa;
@@ -49,7 +60,8 @@ NamedTable Identities(const std::vector<TrackRow>& rows) {
                Number(Percent(ShareOf(scores.num_false, scores.num_expected)), 1),
                Number(static_cast<double>(scores.num_switches) * kSecondsOfSwitches / scores.seconds, 2),
                Number(Percent(ShareOf(scores.num_runs_without_switch, scores.num_runs)), 0), Number(scores.FalseTracksPerMinute(), 1),
-               Number(gospa.Rms(), 2), Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2), Number(gospa.FalseRms(), 2)});
+               Number(static_cast<double>(scores.num_double_tracks) * 60.0 / scores.seconds, 1), Number(gospa.Rms(), 2),
+               Number(gospa.LocalisationRms(), 2), Number(gospa.MissedRms(), 2), Number(gospa.FalseRms(), 2)});
   }
   return {"tracks_identities", "tracks: who is who (things in the water with 5 returns or more)", std::move(table)};
 }
@@ -68,16 +80,35 @@ NamedTable Times(const std::vector<TrackRow>& rows) {
 
 NamedTable States(const std::vector<TrackRow>& rows) {
   Table table({"scene", "tracker", "standing", "standing_mps", "called_moving", "moving_scans", "speed_95_mps", "course_95_deg", "called_standing_%",
-               "centre_median_m", "ANEES_position", "ANEES_velocity", "bad_covariances", "crossings", "untracked", "cpa_m", "tcpa_s"});
+               "centre_median_m", "ANEES_position", "band_95", "ANEES_velocity", "bad_covariances"});
   for (const auto& [scene, row] : rows) {
     const auto& scores = row.scores;
     table.Add({scene, row.tracker, Number(scores.num_standing), Number(scores.standing_speed_mps.value(), 3), Number(scores.num_called_moving),
                Count(scores.speed_error_mps.count()), Percentile(scores.speed_error_mps, 95, 2), Percentile(scores.course_error_deg, 95, 1),
                Number(Percent(scores.called_standing.value()), 1), Percentile(scores.center_error_m, 50, 2), Number(scores.position_nees.value(), 2),
-               Number(scores.velocity_nees.value(), 2), Number(scores.num_bad_covariances), Number(scores.num_crossings),
-               Number(scores.num_crossings_untracked), Number(scores.cpa_error_m.value(), 2), Number(scores.tcpa_error_s.value(), 2)});
+               BandOf(scores.num_things_with_covariance), Number(scores.velocity_nees.value(), 2), Number(scores.num_bad_covariances)});
   }
   return {"tracks_states", "tracks: where things are and how they move", std::move(table)};
+}
+
+// Least and greatest; "never": no alert came.
+std::string Extreme(const Summary& summary, int percent) {
+  if (summary.count() == 0) return "-";
+  const double value = summary.Percentile(percent);
+  return std::isinf(value) ? "never" : Number(value, 1);
+}
+
+NamedTable Approaches(const std::vector<TrackRow>& rows) {
+  Table table({"scene", "tracker", "crossings", "untracked", "cpa_m", "tcpa_s", "probabilities", "calibration", "passes", "warned_ahead_least_s",
+               "warned_after_most_s", "alerts"});
+  for (const auto& [scene, row] : rows) {
+    const auto& scores = row.scores;
+    table.Add({scene, row.tracker, Number(scores.num_crossings), Number(scores.num_crossings_untracked), Number(scores.cpa_error_m.value(), 2),
+               Number(scores.tcpa_error_s.value(), 2), Number(scores.calibration.count()), Number(scores.calibration.Error(), 3),
+               Count(scores.warned_ahead_s.count()), Extreme(scores.warned_ahead_s, 0), Extreme(scores.warned_after_s, 100),
+               Number(scores.num_alerts)});
+  }
+  return {"tracks_approaches", "tracks: closest approach, and what was warned of", std::move(table)};
 }
 
 NamedTable Labels(const std::vector<TrackRow>& rows) {
@@ -120,10 +151,12 @@ std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::stri
   return all;
 }
 
-std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows) { return {Identities(rows), Times(rows), States(rows), Labels(rows)}; }
+std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows) {
+  return {Identities(rows), Times(rows), States(rows), Approaches(rows), Labels(rows)};
+}
 
-void PrintTables(const std::vector<TrackRow>& rows, std::ostream& out) {
-  for (const auto& [name, title, table, is_printed] : TablesOf(rows)) {
+void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out) {
+  for (const auto& [name, title, table, is_printed] : tables) {
     if (table.empty()) continue;
     out << title << '\n';
     table.Print(out);

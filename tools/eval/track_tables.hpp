@@ -24,6 +24,6 @@ std::vector<TrackRow> OverAll(const std::vector<TrackRow>& rows, const std::stri
 std::vector<NamedTable> TablesOf(const std::vector<TrackRow>& rows);
 
 /// Those that are not empty, each under its title.
-void PrintTables(const std::vector<TrackRow>& rows, std::ostream& out);
+void PrintTables(const std::vector<NamedTable>& tables, std::ostream& out);
 
 }  // namespace lookout::eval

@@ -45,6 +45,7 @@ std::vector<ObstaclePart> Georeferencer::AddPose(const Pose& pose) {
     }
   }
   ++counts_["poses_taken"];
+  pose_arrival_ = host_time_;
   poses_.Add(pose);
   ReleaseReady(released);
   return released;
@@ -57,7 +58,10 @@ std::vector<ObstaclePart> Georeferencer::AdvanceTo(Utime host_time) {
     // What came before host time was known, or before the host's clock was set back, begins to wait now.
     waiting.arrival = std::min(waiting.arrival.value_or(host_time), host_time);
   }
-  while (!waiting_.empty() && host_time - *waiting_.front().arrival > pose_timeout_) {
+  pose_arrival_ = std::min(pose_arrival_.value_or(host_time), host_time);
+  // Where the navigator is gone, each scan would wait in vain.
+  const bool is_silent = host_time - *pose_arrival_ > 2 * pose_timeout_;
+  while (!waiting_.empty() && (is_silent || host_time - *waiting_.front().arrival > pose_timeout_)) {
     ++counts_["parts_timed_out"];
     last_timeout_ = host_time;
     ReleaseFront(true, released);

@@ -30,8 +30,8 @@ class Georeferencer {
   std::vector<ObstaclePart> AddSegments(SegmentPart part);
   std::vector<ObstaclePart> AddPose(const Pose& pose);
 
-  /// Live only. What has waited for longer than the time-out by the host's clock is released; a part has arrived at the host time of the call
-  /// before it came.
+  /// Live only. What has waited for longer than the time-out by the host's clock is released, and everything while POSE has not come for twice that
+  /// long; a part, or a pose, has arrived at the host time of the call before it came.
   std::vector<ObstaclePart> AdvanceTo(Utime host_time);
 
   /// End of input: what waits is released, with the poses that are there.
@@ -61,6 +61,7 @@ class Georeferencer {
   PoseHistory poses_;
   std::deque<Waiting> waiting_;
   std::optional<Utime> host_time_;
+  std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
   std::optional<Utime> last_timeout_;
   Counts<kCountNames> counts_;
 };

@@ -78,23 +78,11 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
   }
   for (auto& [key, entry] : entries_) {
     const auto found = of_key.find(key);
-    const Danger* danger = found == of_key.end() ? nullptr : found->second;
-    const double probability = danger == nullptr ? 0.0 : danger->probability;
-    const bool is_grave = danger != nullptr && (danger->is_inside || (danger->tcpa_s > 0.0 && danger->tcpa_s < params_.warning_tcpa_s));
-    const bool says_on = probability >= params_.raise_probability;
-    const bool says_off = !(probability >= params_.clear_probability);
-    entry.raised.Update(time, is_whole, says_on, says_off, params_.clear_s);
-    entry.warning.Update(time, is_whole, says_on && is_grave, says_off || !is_grave, params_.clear_s);
-    Advance(entry, key, time);
-    if (entry.alert && entry.alert->Holds() && danger != nullptr) {
-      entry.alert->distance_m = danger->distance_m;
-      entry.alert->bearing_rad = danger->bearing_rad;
-      entry.alert->cpa_m = danger->cpa_m;
-      entry.alert->tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
-      entry.alert->cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
-      if (entry.alert->raised == time && WasAcknowledged(*entry.alert)) SetState(*entry.alert, AlertState::kAcknowledged, time);
-    }
+    if (key != kUnnamedKey) Update(entry, key, time, is_whole, found == of_key.end() ? nullptr : found->second);
   }
+  const Danger* unnamed = FindUnnamed(of_key);
+  if (unnamed != nullptr) entries_.try_emplace(kUnnamedKey);
+  if (const auto found = entries_.find(kUnnamedKey); found != entries_.end()) Update(found->second, kUnnamedKey, time, is_whole, unnamed);
   ClearOldestRectified(time);
 
   alerts_.clear();
@@ -108,6 +96,48 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
   return alerts_;
 }
 
+void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, const Danger* danger) {
+  const double probability = danger == nullptr ? 0.0 : danger->probability;
+  const bool is_grave = danger != nullptr && (danger->is_inside || (danger->tcpa_s > 0.0 && danger->tcpa_s < params_.warning_tcpa_s));
+  const bool says_on = probability >= params_.raise_probability;
+  const bool says_off = !(probability >= params_.clear_probability);
+  entry.raised.Update(time, is_whole, says_on, says_off, params_.clear_s);
+  entry.warning.Update(time, is_whole, says_on && is_grave, says_off || !is_grave, params_.clear_s);
+  Advance(entry, key, time);
+  if (!entry.alert || !entry.alert->Holds() || danger == nullptr) return;
+  auto& alert = *entry.alert;
+  alert.distance_m = danger->distance_m;
+  alert.bearing_rad = danger->bearing_rad;
+  alert.cpa_m = danger->cpa_m;
+  alert.tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
+  alert.cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
+  if (alert.raised == time && WasAcknowledged(alert)) SetState(alert, AlertState::kAcknowledged, time);
+}
+
+// The nearest in the guard zone that has no alert which holds. Call it once the others are up to date.
+const Danger* Alerts::FindUnnamed(const std::map<Key, const Danger*>& dangers) const {
+  const Danger* nearest = nullptr;
+  for (const auto& [key, danger] : dangers) {
+    if (key.first != AlertCause::kGuardZone) continue;
+    const auto entry = entries_.find(key);
+    const bool holds = key != kUnnamedKey && entry != entries_.end() && entry->second.alert && entry->second.alert->Holds();
+    if (!holds && (nearest == nullptr || danger->distance_m < nearest->distance_m)) nearest = danger;
+  }
+  const bool is_told = std::ranges::any_of(entries_, [](const auto& item) {
+    const auto& [key, entry] = item;
+    return key.first == AlertCause::kGuardZone && key != kUnnamedKey && entry.alert && entry.alert->state == AlertState::kActive;
+  });
+  return is_told ? nullptr : nearest;
+}
+
+// Whether an alert of something in the guard zone holds that has a name.
+bool Alerts::HasHeldZone() const {
+  return std::ranges::any_of(entries_, [](const auto& item) {
+    const auto& [key, entry] = item;
+    return key.first == AlertCause::kGuardZone && key != kUnnamedKey && entry.alert && entry.alert->Holds();
+  });
+}
+
 void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
   const auto level = entry.warning.is_on ? AlertLevel::kWarning : AlertLevel::kCaution;
   if (!entry.alert) {
@@ -118,7 +148,9 @@ void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
   auto& alert = *entry.alert;
   if (alert.state == AlertState::kCleared) return;
   if (!entry.raised.is_on) {
-    const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning;
+    // What is named by now has an alert of its own.
+    const bool is_named = key == kUnnamedKey && HasHeldZone();
+    const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning && !is_named;
     SetState(alert, wants_note ? AlertState::kRectified : AlertState::kCleared, time);
     return;
   }

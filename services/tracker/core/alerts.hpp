@@ -21,12 +21,16 @@ enum class AlertCause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWa
 enum class AlertLevel : std::int32_t { kCaution = 1, kWarning = 2 };
 enum class AlertState : std::int32_t { kActive = 1, kAcknowledged = 2, kRectified = 3, kCleared = 4 };
 
+// As the track of an alert or a danger: land; and what is in the guard zone and is no track yet, or has no place on the map.
+inline constexpr std::int64_t kLandTrack = 0;
+inline constexpr std::int64_t kUnnamed = -1;
+
 struct Alert {
   std::int64_t id = 0;
   AlertCause cause = AlertCause::kGuardZone;
   AlertLevel level = AlertLevel::kCaution;
   AlertState state = AlertState::kActive;
-  std::int64_t track_id = 0;  // 0: land, or none
+  std::int64_t track_id = kLandTrack;
   Utime raised;
   Utime changed;
   double distance_m = kNan;
@@ -41,7 +45,7 @@ struct Alert {
 /// What one scan says of one possible alert.
 struct Danger {
   AlertCause cause = AlertCause::kGuardZone;
-  std::int64_t track_id = 0;
+  std::int64_t track_id = kLandTrack;
   double probability = 0.0;  // of a guard zone 1: it is in it
   double tcpa_s = 0.0;       // 0: they part, or hardly move
   double distance_m = 0.0;
@@ -72,6 +76,9 @@ struct AlertParams {
 /// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the last
 /// 5 scans, and must not for clear_s and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts; scans older than 1 s count
 /// neither way; after a gap of more than 1 s, or a step back, clearing begins anew, since nobody looked.
+///
+/// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
+/// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
 ///
 /// A caution that becomes a warning wants a new acknowledgement. A warning that ends without one stays as rectified until it gets one; a caution does
 /// not. What holds again meanwhile is the same alert, active. Of rectified ones the newest 16 stay.
@@ -129,7 +136,11 @@ class Alerts {
     std::optional<Alert> alert;
   };
   using Key = std::pair<AlertCause, std::int64_t>;  // and track
+  static constexpr Key kUnnamedKey{AlertCause::kGuardZone, kUnnamed};
 
+  void Update(Entry& entry, const Key& key, Utime time, bool is_whole, const Danger* danger);
+  const Danger* FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
+  bool HasHeldZone() const;
   void Advance(Entry& entry, const Key& key, Utime time);
   bool WasAcknowledged(const Alert& alert);
   void ClearOldestRectified(Utime time);

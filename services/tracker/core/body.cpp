@@ -20,27 +20,46 @@ constexpr double kNearSdM = 0.04;
 constexpr double kNearSdPerRange = 0.001;
 constexpr double kEndSdM = 0.04;
 constexpr double kEndSdPerRange = 0.0035;
-// A side whose end was never seen is assumed to be as far behind as half of the width in sight, and that is known to half as much and 0.3 m.
+// What of a thing is seen changes with waves, aspect and beams that just meet it, over about a second: by so much, and by a share of its size.
+constexpr double kOutlineSdM = 0.05;
+constexpr double kOutlineSdPerSize = 0.04;
+constexpr double kGreatestOutlineSizeM = 10.0;
+constexpr double kOutlineS = 0.5;
+// At first it is not known what of it is seen: so many times that, less and less over some seconds.
+constexpr double kFirstOutline = 3.0;
+constexpr double kFirstOutlineS = 2.0;
+// A far side that was never seen is assumed as far behind as what is seen is wide: round things are, and a boat is as often seen from an end as from
+// its side. Beyond a boat's beam it is rather seen from its side.
 constexpr double kLeastDepthM = 0.15;
-constexpr double kGreatestAssumedDepthM = 1.5;
+constexpr double kGreatestAssumedDepthM = 2.0;
+constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
+constexpr double kLongestAssumedM = 12.0;
 constexpr double kWidestBeamM = 4.0;
 constexpr double kLeastSideSdM = 0.005;
 constexpr double kSideWanderM2PerS = 0.01 * 0.01;      // outlines change as a boat swings
 constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // what is moored swings, and positions by GNSS wander
-constexpr double kAccelerationMps2 = 0.4;              // standard deviation over a second; small craft
-constexpr double kFirstSpeedMps = 3.0;                 // standard deviation of what is not known
+constexpr double kAccelerationMps2 = 0.12;             // standard deviation over a second, of one that keeps its speed
+constexpr double kManoeuvreMps2 = 0.8;                 // of one that does not; small craft
+constexpr double kManoeuvreSds = 3.0;                  // of the mean of a second, from where it is expected
+constexpr double kManoeuvreS = 1.0;
+// Turn rates: small boats turn by up to 20 deg/s, for some seconds.
+constexpr double kTurnRateRadps = 0.1;
+constexpr double kTurnS = 5.0;
+constexpr double kTurnKnownRadps = 0.05;  // greatest standard deviation of a rate that is published
+constexpr double kTurnKnownAfterS = 3.0;
+constexpr double kFirstSpeedMps = 3.0;  // standard deviation of what is not known
 constexpr double kFirstJitterM2 = 0.05 * 0.05;
 constexpr double kLeastJitterM2 = 0.015 * 0.015;
 constexpr double kMostJitterM2 = 4.0;
 constexpr double kJitterGain = 0.1;
-// Evidence of motion is that of some 3 s, and half of it as the measurements of two scans are not independent.
+// Evidence of motion is that of some 3 s.
 constexpr double kMotionMemoryS = 3.0;
-constexpr double kMotionWeight = 0.5;
 constexpr double kMovingPriorLogOdds = -2.0;
 constexpr double kGreatestLogOdds = 12.0;
-// Motion must stand out by itself.
+// Motion must stand out by itself, and goes on while it does half as much.
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
+constexpr double kSpeedSdsOn = 1.5;
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -66,6 +85,7 @@ struct Body::Measured {
   std::array<double, kDirections> reach_m{};  // from the origin of the map
   std::array<double, kDirections> variance_m2{};
   std::array<Kind, kDirections> kind{};
+  Eigen::Vector2d sight = Eigen::Vector2d::Zero();
 };
 
 Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const {
@@ -87,6 +107,7 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
     measured.variance_m2[i] = sd * sd;
     measured.kind[i] = is_edge ? Measured::Kind::kEdge : Measured::Kind::kAtLeast;
   }
+  measured.sight = sight;
   return measured;
 }
 
@@ -105,7 +126,7 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
     most = most.cwiseMax(place);
   }
   const double width = most.y() - least.y();
-  const double depth = std::max(most.x() - least.x(), std::clamp(0.5 * width, kLeastDepthM, kGreatestAssumedDepthM));
+  const double depth = std::max(most.x() - least.x(), std::clamp(width, kLeastDepthM, kGreatestAssumedDepthM));
   const Eigen::Vector2d middle = (least.x() + 0.5 * depth) * sight + 0.5 * (least.y() + most.y()) * across;
   standing_ = middle;
   for (std::size_t i = 0; i < kDirections; ++i) {
@@ -120,19 +141,34 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
   }
   // The position is where the sides are counted from: it is known, the sides are not.
   standing_m2_ = Eigen::Matrix2d::Identity() * kLeastJitterM2 + NoiseOf(noise_m2, range_m);
-  moving_ << middle, Eigen::Vector2d::Zero();
+  moving_ << middle, Eigen::Vector2d::Zero(), 0.0;
   moving_covariance_.setZero();
   moving_covariance_.topLeftCorner<2, 2>() = standing_m2_;
-  moving_covariance_.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * kFirstSpeedMps * kFirstSpeedMps;
+  moving_covariance_.block<2, 2>(2, 2) = Eigen::Matrix2d::Identity() * kFirstSpeedMps * kFirstSpeedMps;
+  moving_covariance_(4, 4) = kTurnRateRadps * kTurnRateRadps;
   jitter_m2_ = kFirstJitterM2;
 }
 
 void Body::Predict(double dt_s) {
   standing_m2_ += Eigen::Matrix2d::Identity() * (kStandingWanderM2PerS * dt_s);
-  Eigen::Matrix4d step = Eigen::Matrix4d::Identity();
-  step.topRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * dt_s;
-  moving_ = step * moving_;
-  moving_covariance_ = step * moving_covariance_ * step.transpose();
+  // A coordinated turn, whose rate dies away.
+  const Eigen::Vector2d velocity = velocity_mps();
+  const auto [sine, cosine] = SinCosOf(moving_[4] * dt_s);
+  Eigen::Matrix2d turn;
+  turn << cosine, -sine, sine, cosine;
+  const Eigen::Vector2d turned = turn * velocity;
+  const Eigen::Vector2d across(-turned.y(), turned.x());
+  const double kept = std::max(0.0, 1.0 - dt_s / kTurnS);
+  MotionCovariance step = MotionCovariance::Identity();
+  step.block<2, 2>(0, 2) = 0.5 * dt_s * (Eigen::Matrix2d::Identity() + turn);
+  step.block<2, 2>(2, 2) = turn;
+  step.block<2, 1>(0, 4) = 0.5 * dt_s * dt_s * across;
+  step.block<2, 1>(2, 4) = dt_s * across;
+  step(4, 4) = kept;
+  moving_.head<2>() += 0.5 * dt_s * (velocity + turned);
+  moving_.segment<2>(2) = turned;
+  moving_[4] *= kept;
+  moving_covariance_ = (step * moving_covariance_ * step.transpose()).eval();
   const double q = kAccelerationMps2 * kAccelerationMps2;
   for (int i = 0; i < 2; ++i) {
     moving_covariance_(i, i) += q * dt_s * dt_s * dt_s / 3.0;
@@ -140,15 +176,21 @@ void Body::Predict(double dt_s) {
     moving_covariance_(i + 2, i) += q * dt_s * dt_s / 2.0;
     moving_covariance_(i + 2, i + 2) += q * dt_s;
   }
+  moving_covariance_(4, 4) += (1.0 - kept * kept) * kTurnRateRadps * kTurnRateRadps;
   for (auto& side : sides_) side.variance_m2 += kSideWanderM2PerS * dt_s;
   log_likelihood_ratio_ *= std::max(0.0, 1.0 - dt_s / kMotionMemoryS);
+  since_update_s_ += dt_s;
+  age_s_ += dt_s;
 }
 
 Eigen::Vector2d Body::position_m() const { return prefers_moving_ ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
 
 Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const {
+  return ShiftOf(Measure(seen_m, sides, range_m), noise_m2, range_m);
+}
+
+Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const auto& directions = CompassDirections();
-  const Measured measured = Measure(seen_m, sides, range_m);
   const Eigen::Vector2d position = position_m();
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -175,11 +217,20 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
   return shift;
 }
 
+double Body::outline_sd_m() const {
+  double size_m = 0.0;
+  for (std::size_t i = 0; i < kDirections / 2; ++i) size_m = std::max(size_m, sides_[i].reach_m + sides_[Opposite(i)].reach_m);
+  const double first = 1.0 + (kFirstOutline - 1.0) * std::max(0.0, 1.0 - age_s_ / kFirstOutlineS);
+  return first * (kOutlineSdM + kOutlineSdPerSize * std::min(size_m, kGreatestOutlineSizeM));
+}
+
 void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows) {
   const auto& directions = CompassDirections();
   const Measured measured = Measure(seen_m, sides, range_m);
-  const Shift shift = ShiftOf(seen_m, sides, noise_m2, range_m);
+  const Shift shift = ShiftOf(measured, noise_m2, range_m);
   const Eigen::Vector2d measured_m = position_m() + shift.shift_m;
+  const double dt_s = std::max(since_update_s_, 0.01);
+  since_update_s_ = 0.0;
 
   if (num_measured_ >= 2) {
     const double bend_m2 = (measured_m - 2.0 * last_measured_[0] + last_measured_[1]).squaredNorm() / 12.0;
@@ -188,27 +239,9 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   last_measured_ = {measured_m, last_measured_[0]};
   num_measured_ = std::min(num_measured_ + 1, 2);
 
-  const Eigen::Vector2d off_standing = measured_m - standing_;
-  const Eigen::Vector2d off_moving = measured_m - moving_.head<2>();
-  const Eigen::Matrix2d spread_standing = standing_m2_ + shift.covariance_m2;
-  const Eigen::Matrix2d spread_moving = moving_covariance_.topLeftCorner<2, 2>() + shift.covariance_m2;
-  log_likelihood_ratio_ += kMotionWeight * (LogDensity(off_moving, spread_moving) - LogDensity(off_standing, spread_standing));
-  log_likelihood_ratio_ = std::clamp(log_likelihood_ratio_, -kGreatestLogOdds, kGreatestLogOdds);
-
-  const Eigen::Matrix2d gain_standing = standing_m2_ * spread_standing.inverse();
-  standing_ += gain_standing * off_standing;
-  standing_m2_ = (Eigen::Matrix2d::Identity() - gain_standing) * standing_m2_;
-  const Eigen::Matrix<double, 4, 2> gain_moving = moving_covariance_.leftCols<2>() * spread_moving.inverse();
-  moving_ += gain_moving * off_moving;
-  moving_covariance_ -= gain_moving * spread_moving * gain_moving.transpose();
-  moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
-
-  prefers_moving_ = log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0;
-  moving_probability_ = 1.0 / (1.0 + Exp(-(log_likelihood_ratio_ + kMovingPriorLogOdds)));
-  const Eigen::Vector2d velocity = velocity_mps();
-  const double speed = velocity.norm();
-  const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(moving_covariance_.bottomRightCorner<2, 2>() * velocity)) / speed : 0.0;
-  if (speed < kLeastSpeedMps || speed < kSpeedSds * speed_sd) moving_probability_ = std::min(moving_probability_, 0.5);
+  // An error that stays for a while counts once for that while: as noise of each scan it is as much greater.
+  const double outline_m2 = outline_sd_m() * outline_sd_m() * std::max(1.0, shift.misfit) * std::max(1.0, 2.0 * kOutlineS / dt_s);
+  Decide(measured_m, shift.covariance_m2 + Eigen::Matrix2d::Identity() * outline_m2, dt_s);
 
   if (!grows) return;
   // Sides are counted from the position: what it is not known to does not change them, or they would follow a wrong speed.
@@ -220,8 +253,71 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
     const double variance = sides_[i].variance_m2;
     const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_ + directions[i].dot(spread * directions[i]));
     sides_[i].reach_m += gain * off;
+    if (measured.kind[i] != Measured::Kind::kEdge) continue;
     sides_[i].variance_m2 = std::max((1.0 - gain) * variance, kLeastSideSdM * kLeastSideSdM);
     sides_[i].is_seen = true;
+  }
+  if (prefers_moving_ && stands_out_) AssumeBy(measured);
+}
+
+void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s) {
+  const Eigen::Vector2d off_standing = measured_m - standing_;
+  const Eigen::Vector2d off_moving = measured_m - moving_.head<2>();
+  const Eigen::Matrix2d spread_standing = standing_m2_ + covariance_m2;
+  const Eigen::Matrix2d spread_moving = moving_covariance_.topLeftCorner<2, 2>() + covariance_m2;
+  log_likelihood_ratio_ += LogDensity(off_moving, spread_moving) - LogDensity(off_standing, spread_standing);
+  log_likelihood_ratio_ = std::clamp(log_likelihood_ratio_, -kGreatestLogOdds, kGreatestLogOdds);
+
+  const Eigen::Matrix2d gain_standing = standing_m2_ * spread_standing.inverse();
+  standing_ += gain_standing * off_standing;
+  standing_m2_ = (Eigen::Matrix2d::Identity() - gain_standing) * standing_m2_;
+
+  // One that stays to one side of where it is expected manoeuvres.
+  const double gain_mean = std::min(1.0, dt_s / kManoeuvreS);
+  mean_off_m_ += gain_mean * (off_moving - mean_off_m_);
+  const double off = mean_off_m_.dot(spread_moving.inverse() * mean_off_m_) / gain_mean;
+  if (off > kManoeuvreSds * kManoeuvreSds) {
+    moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kManoeuvreMps2 * kManoeuvreMps2 * dt_s);
+  }
+  const Eigen::Matrix<double, 5, 2> gain_moving = moving_covariance_.leftCols<2>() * spread_moving.inverse();
+  moving_ += gain_moving * off_moving;
+  moving_covariance_ -= gain_moving * spread_moving * gain_moving.transpose();
+  moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
+
+  prefers_moving_ = log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0;
+  moving_probability_ = 1.0 / (1.0 + Exp(-(log_likelihood_ratio_ + kMovingPriorLogOdds)));
+  const Eigen::Vector2d velocity = velocity_mps();
+  const double speed = velocity.norm();
+  const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(moving_covariance_.block<2, 2>(2, 2) * velocity)) / speed : 0.0;
+  stands_out_ = speed > kLeastSpeedMps && speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd;
+  if (!stands_out_) moving_probability_ = std::min(moving_probability_, 0.5);
+  moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
+}
+
+// The hidden side of a boat under way: its length lies along its course, and what is seen across says how long it is.
+void Body::AssumeBy(const Measured& measured) {
+  const Eigen::Vector2d& sight = measured.sight;
+  const Eigen::Vector2d course = velocity_mps().normalized();
+  const Eigen::Vector2d across(-sight.y(), sight.x());
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  double nearest = least;
+  for (const auto& corner : Outline()) {
+    least = std::min(least, across.dot(corner));
+    most = std::max(most, across.dot(corner));
+    nearest = std::min(nearest, sight.dot(corner));
+  }
+  const double cosine = std::abs(course.dot(sight));
+  const double sine = std::abs(course.dot(across));
+  const double length_m = std::min((most - least) / (sine + cosine / kBoatLengthPerBeam), kLongestAssumedM);
+  const double depth_m = length_m * (cosine + sine / kBoatLengthPerBeam);
+  const Eigen::Vector2d middle = (nearest + 0.5 * depth_m) * sight + 0.5 * (least + most) * across - position_m();
+  const Eigen::Vector2d beam(-course.y(), course.x());
+  const auto& directions = CompassDirections();
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    if (sides_[i].is_seen) continue;
+    const double reach = 0.5 * length_m * (std::abs(directions[i].dot(course)) + std::abs(directions[i].dot(beam)) / kBoatLengthPerBeam);
+    sides_[i].reach_m = std::max(directions[i].dot(middle) + reach, measured.reach_m[i] - directions[i].dot(position_m()));
   }
 }
 
@@ -240,11 +336,13 @@ void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
 
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) {
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
-  other.moving_.tail<2>() = moving_.tail<2>();
-  other.moving_covariance_.bottomRightCorner<2, 2>() = moving_covariance_.bottomRightCorner<2, 2>();
+  other.moving_.tail<3>() = moving_.tail<3>();
+  other.moving_covariance_.bottomRightCorner<3, 3>() = moving_covariance_.bottomRightCorner<3, 3>();
   other.log_likelihood_ratio_ = log_likelihood_ratio_;
   other.moving_probability_ = moving_probability_;
   other.prefers_moving_ = prefers_moving_;
+  other.stands_out_ = stands_out_;
+  other.moved_s_ = moved_s_;
   other.jitter_m2_ = jitter_m2_;
   *this = other;
 }
@@ -269,11 +367,16 @@ Eigen::Vector2d Body::center_m() const { return position_m() + middle_m(); }
 
 Eigen::Matrix4d Body::covariance() const {
   constexpr std::size_t kNorth = kDirections / 4;
-  Eigen::Matrix4d covariance = moving_covariance_;
+  Eigen::Matrix4d covariance = moving_covariance_.topLeftCorner<4, 4>();
   if (!prefers_moving_) covariance.topLeftCorner<2, 2>() = standing_m2_;
   covariance(0, 0) += 0.25 * (sides_[0].variance_m2 + sides_[Opposite(0)].variance_m2);
   covariance(1, 1) += 0.25 * (sides_[kNorth].variance_m2 + sides_[Opposite(kNorth)].variance_m2);
   return covariance;
+}
+
+double Body::turn_rate_radps() const {
+  const bool is_known = moved_s_ >= kTurnKnownAfterS && moving_covariance_(4, 4) < kTurnKnownRadps * kTurnKnownRadps;
+  return is_known ? -moving_[4] : kNan;
 }
 
 }  // namespace lookout::tracker

@@ -17,12 +17,13 @@ struct Sides {
   bool is_right_hidden = false;
 };
 
-/// A thing that stands or moves at constant velocity. The outline is anchored at the position: the hidden far side is what was seen before, or
-/// assumed.
+/// A thing that stands, or moves and turns. The outline is anchored at the position: the hidden far side is what was seen before, or assumed.
 ///
 /// A measurement is compared side by side: how far the seen outline reaches in each direction from which it is seen, against how far the known one
 /// does from the predicted position. So more or less of a thing in sight is no motion, and the side that is seen does not draw the centre towards the
-/// boat.
+/// boat. Where the sides do not agree, it counts the less.
+///
+/// What is seen of a thing changes over seconds, not from scan to scan: errors of the outline are taken as such, for the covariance to be honest.
 class Body {
  public:
   /// @param seen_m  outline, map
@@ -58,11 +59,14 @@ class Body {
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }
   Eigen::Vector2d center_m() const;  // middle of the outline
-  Eigen::Vector2d velocity_mps() const { return moving_.tail<2>(); }
+  Eigen::Vector2d velocity_mps() const { return moving_.segment<2>(2); }
   Eigen::Matrix4d covariance() const;  // of centre and velocity, relative to the own boat
-  double turn_rate_radps() const { return turn_rate_radps_; }
+  /// Clockwise; NaN where it is not known: of what has not moved for long, or too slowly.
+  double turn_rate_radps() const;
 
  private:
+  using Motion = Eigen::Matrix<double, 5, 1>;  // position, velocity, turn rate counter-clockwise
+  using MotionCovariance = Eigen::Matrix<double, 5, 5>;
   struct Side {
     double reach_m = 0.0;
     double variance_m2 = 0.0;
@@ -70,18 +74,26 @@ class Body {
   };
   struct Measured;
   Measured Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const;
+  Shift ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
   Eigen::Vector2d position_m() const;
   Eigen::Vector2d middle_m() const;  // of the outline, from the position
+  double outline_sd_m() const;
+  void Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s);
+  void AssumeBy(const Measured& measured);
 
   std::array<Side, kDirections> sides_;
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
-  Eigen::Vector4d moving_ = Eigen::Vector4d::Zero();  // position and velocity
-  Eigen::Matrix4d moving_covariance_ = Eigen::Matrix4d::Zero();
+  Motion moving_ = Motion::Zero();
+  MotionCovariance moving_covariance_ = MotionCovariance::Zero();
   double log_likelihood_ratio_ = 0.0;  // of moving over standing, of the last seconds
-  double moving_probability_ = 0.0;  // below one half where the speed does not stand out
-  bool prefers_moving_ = false;      // which of the two says where it is
-  double turn_rate_radps_ = 0.0;
+  double moving_probability_ = 0.0;    // below one half where the speed does not stand out
+  bool prefers_moving_ = false;        // which of the two says where it is
+  bool stands_out_ = false;            // the speed, from its deviation
+  double moved_s_ = 0.0;               // for how long without a break
+  double since_update_s_ = 0.0;
+  double age_s_ = 0.0;                                    // since the outline was first seen
+  Eigen::Vector2d mean_off_m_ = Eigen::Vector2d::Zero();  // of the moving one, of the last second
   // Jitter of the measured position from scan to scan, by its second differences: steady motion is none.
   std::array<Eigen::Vector2d, 2> last_measured_{};
   int num_measured_ = 0;

@@ -1,6 +1,7 @@
 #include "services/tracker/core/dangers.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace lookout::tracker {
 
@@ -21,6 +22,8 @@ std::vector<Eigen::Vector2d> InVessel(std::span<const Eigen::Vector2d> corners_m
   return corners_m;
 }
 
+bool IsConfirmed(const Track& track) { return track.status == TrackStatus::kConfirmed || track.status == TrackStatus::kCoasting; }
+
 Danger InZone(std::int64_t track_id, const NearestPoint& point) {
   return {.cause = AlertCause::kGuardZone,
           .track_id = track_id,
@@ -32,39 +35,40 @@ Danger InZone(std::int64_t track_id, const NearestPoint& point) {
 
 }  // namespace
 
-std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const Seen> seen, const Pose& own) {
-  std::vector<Danger> dangers;
-  if (params.range_m <= 0.0) return dangers;
-  const auto nearest_in_zone = [&](std::span<const Eigen::Vector2d> corners_map_m, bool is_closed) {
-    auto nearest = NearestWithin(params.bearing, InVessel(corners_map_m, own), is_closed);
-    if (nearest && nearest->range_m > params.range_m) nearest.reset();
-    return nearest;
+std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
+                                     const std::optional<Pose>& own) {
+  if (params.range_m <= 0.0) return {};
+  std::map<std::int64_t, std::optional<NearestPoint>> nearest;  // of each track, land and what has no name
+  const auto add = [&](std::int64_t track_id, std::span<const Eigen::Vector2d> corners_m, bool is_closed) {
+    const auto point = NearestWithin(params.bearing, corners_m, is_closed);
+    if (point && point->range_m <= params.range_m) KeepNearer(nearest[track_id], point);
   };
-  std::optional<NearestPoint> land;
-  for (const auto& thing : seen) {
-    if (!thing.is_land && std::ranges::count(picture.land_segment_ids, thing.segment_id) == 0) continue;
-    if (!thing.is_sure && !params.takes_tentative) continue;
-    const bool has_waterline = !thing.waterline_m.empty();
-    KeepNearer(land, nearest_in_zone(has_waterline ? thing.waterline_m : thing.outline_m, !has_waterline));
-  }
-  if (land) dangers.push_back(InZone(0, *land));
+
+  std::map<std::int32_t, const Track*> track_of;
   for (const auto& track : picture.tracks) {
-    if (track.status == TrackStatus::kLost || (track.status == TrackStatus::kTentative && !params.takes_tentative)) continue;
-    if (const auto nearest = nearest_in_zone(track.outline_m, true)) dangers.push_back(InZone(track.id, *nearest));
+    for (const auto id : track.segment_ids) track_of.emplace(id, &track);
+  }
+  for (const auto& outline : outlines) {
+    const auto found = track_of.find(outline.segment_id);
+    const Track* track = found == track_of.end() ? nullptr : found->second;
+    if (!outline.is_sure && !params.takes_tentative && (track == nullptr || !IsConfirmed(*track))) continue;
+    const bool is_land = outline.is_land || std::ranges::count(picture.land_segment_ids, outline.segment_id) > 0;
+    const auto track_id = track != nullptr ? track->id : is_land ? kLandTrack : kUnnamed;
+    if (!outline.nearest_m.hasNaN()) add(track_id, {&outline.nearest_m, 1}, false);
+    add(track_id, outline.corners_m, !outline.is_line);
+  }
+  if (own) {
+    for (const auto& track : picture.tracks) {
+      if (IsConfirmed(track) || (track.status == TrackStatus::kTentative && params.takes_tentative))
+        add(track.id, InVessel(track.outline_m, *own), true);
+    }
+  }
+
+  std::vector<Danger> dangers;
+  for (const auto& [track_id, point] : nearest) {
+    if (point) dangers.push_back(InZone(track_id, *point));
   }
   return dangers;
-}
-
-std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, std::span<const VesselOutline> outlines) {
-  if (params.range_m <= 0.0) return {};
-  std::optional<NearestPoint> nearest;
-  for (const auto& outline : outlines) {
-    if (!outline.is_sure && !params.takes_tentative) continue;
-    const auto point = NearestWithin(params.bearing, outline.corners_m, !outline.is_line);
-    if (point && point->range_m <= params.range_m) KeepNearer(nearest, point);
-  }
-  if (!nearest) return {};
-  return {InZone(0, *nearest)};
 }
 
 bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
@@ -81,7 +85,7 @@ bool StillWatch::Update(Utime time, const Eigen::Vector2d& velocity_mps) {
 std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, bool is_own_still) {
   std::vector<Danger> dangers;
   for (const auto& track : picture.tracks) {
-    if (track.status != TrackStatus::kConfirmed && track.status != TrackStatus::kCoasting) continue;
+    if (!IsConfirmed(track)) continue;
     if (is_own_still && track.velocity_mps.isZero(0.0)) continue;
     dangers.push_back({.cause = AlertCause::kClosestApproach,
                        .track_id = track.id,

@@ -15,13 +15,13 @@
 
 namespace lookout::tracker {
 
-/// Tracks (tentative ones where the zone takes them) and land (one danger, of track 0) within sector and range. Land is what its segments show in
-/// this scan, along the waterline where there is one, else the outline.
+/// What is within sector and range, one danger for each track and one for land. Each obstacle of the scan that is sure, or of a confirmed track,
+/// counts from its first scan on (tentative ones where the zone takes them), as the vessel sees it: along the waterline of land where there is one,
+/// else the outline. So it needs no pose. It is of the track that it was assigned to, of kLandTrack, or of kUnnamed. Confirmed tracks count beyond
+/// what is seen of them now, where the own pose is known.
 /// @param own  placed, at the end of the scan
-std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const Seen> seen, const Pose& own);
-
-/// The same of what the vessel sees, where its own place is not known: one danger, the nearest, of track 0.
-std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, std::span<const VesselOutline> outlines);
+std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
+                                     const std::optional<Pose>& own);
 
 /// Whether the own boat lies still: its velocity over ground, averaged over some seconds, is below half a knot. So sway in the berth and the noise of
 /// the receiver are none, but a drift is.

@@ -119,6 +119,7 @@ std::vector<GatheredScan> Gatherer::Add(const Pose& pose, bool is_new_run) {
   }
   if (!oldest_pose_) oldest_pose_ = pose.time;
   ++counts_["poses_taken"];
+  pose_arrival_ = host_time_;
   if (is_new_run) navigator_began_.push_back(pose.time);
   poses_.Add(pose);
   ReleaseReady(released);
@@ -132,7 +133,13 @@ std::vector<GatheredScan> Gatherer::AdvanceTo(Utime host_time) {
     // What came before host time was known, or before the host's clock was set back, begins to wait now.
     waiting.arrival = std::min(waiting.arrival.value_or(host_time), host_time);
   }
-  while (!waiting_.empty() && host_time - *waiting_.front().arrival > timeout_) {
+  pose_arrival_ = std::min(pose_arrival_.value_or(host_time), host_time);
+  // Where the navigator is gone, each scan would wait in vain.
+  const bool is_silent = host_time - *pose_arrival_ > timeout_;
+  const auto is_given_up = [&](const Waiting& front) {
+    return host_time - *front.arrival > timeout_ || (is_silent && HasSight(front.obstacles));
+  };
+  while (!waiting_.empty() && is_given_up(waiting_.front())) {
     ++counts_["scans_timed_out"];
     last_timeout_ = host_time;
     ReleaseFront(true, released);
@@ -151,11 +158,15 @@ std::vector<GatheredScan> Gatherer::Finish() {
 }
 
 bool Gatherer::IsReady(const ScanObstacles& obstacles) const {
+  return poses_.newest() != nullptr && poses_.newest()->time >= obstacles.end_time && HasSight(obstacles);
+}
+
+// Whether LIDAR_SCAN and SEGMENTS of the scan have come, or will not.
+bool Gatherer::HasSight(const ScanObstacles& obstacles) const {
   const auto waits_for = [&obstacles](bool will_come, const auto& stream) {
     return will_come && obstacles.is_whole && stream.Of(obstacles.key) == Arrival::kToCome;
   };
-  return poses_.newest() != nullptr && poses_.newest()->time >= obstacles.end_time && !waits_for(sources_.has_beams, beams_) &&
-         !waits_for(sources_.has_labels, labels_);
+  return !waits_for(sources_.has_beams, beams_) && !waits_for(sources_.has_labels, labels_);
 }
 
 bool Gatherer::CanBegin(const ScanObstacles& obstacles) const {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/elementary.hpp"
 #include "common/core/health.hpp"
 #include "common/core/pose.hpp"
 #include "common/core/utime.hpp"
@@ -32,8 +33,9 @@ struct VesselOutline {
   std::int32_t segment_id = 0;
   bool is_sure = true;
   bool is_land = false;
-  bool is_line = false;                    // an open line: the waterline of land
-  std::vector<Eigen::Vector2d> corners_m;  // at least one
+  bool is_line = false;                                         // an open line: the waterline of land
+  std::vector<Eigen::Vector2d> corners_m;                       // at least one
+  Eigen::Vector2d nearest_m = Eigen::Vector2d::Constant(kNan);  // the nearest return
 };
 
 /// OBSTACLES of one scan.
@@ -102,7 +104,7 @@ class Gatherer {
   /// @param is_new_run  navigator began anew with this one
   std::vector<GatheredScan> Add(const Pose& pose, bool is_new_run);
 
-  /// Live only: what has waited too long goes on with what is there.
+  /// Live only: what has waited too long goes on with what is there, and what waits for POSE alone while that has not come for so long.
   std::vector<GatheredScan> AdvanceTo(Utime host_time);
 
   /// End of input.
@@ -138,6 +140,7 @@ class Gatherer {
   };
 
   bool IsReady(const ScanObstacles& obstacles) const;
+  bool HasSight(const ScanObstacles& obstacles) const;
   bool CanBegin(const ScanObstacles& obstacles) const;
   void ReleaseReady(std::vector<GatheredScan>& released);
   void ReleaseFront(bool is_given_up, std::vector<GatheredScan>& released);
@@ -161,6 +164,7 @@ class Gatherer {
   bool has_begun_ = false;
   bool is_anew_ = false;  // what has not been told to a scan yet
   std::optional<Utime> host_time_;
+  std::optional<Utime> pose_arrival_;  // host time of the last, or from when on it is known
   std::optional<Utime> last_timeout_;
   Counts<kCountNames> counts_;
 };

@@ -19,7 +19,8 @@ void KeptAcknowledgements::Keep(Utime time, const Datum& datum, std::span<const 
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kAcknowledged) continue;
     Kept kept{time, alert.cause, alert.level, std::nullopt, Eigen::Vector2d::Zero()};
-    if (alert.track_id != 0) {
+    if (alert.track_id == kUnnamed) continue;  // nobody knows what it was
+    if (alert.track_id != kLandTrack) {
       const auto* track = FindTrack(tracks, alert.track_id);
       if (track == nullptr) continue;
       kept.position_m = track->position_m;
@@ -38,7 +39,7 @@ std::vector<Acknowledgement> KeptAcknowledgements::Take(Utime time, const Datum&
     const auto* track = FindTrack(tracks, alert.track_id);
     const auto same = std::ranges::find_if(kept_, [&](const Kept& kept) {
       if (alert.cause != kept.cause || alert.level > kept.level || alert.raised <= kept.time) return false;
-      if (alert.track_id == 0 || track == nullptr) return alert.track_id == 0 && !kept.position_m;
+      if (alert.track_id == kLandTrack || track == nullptr) return alert.track_id == kLandTrack && !kept.position_m;
       if (!kept.position_m) return false;
       const Eigen::Vector2d expected_m = *kept.position_m + ToSeconds(time - kept.time) * kept.velocity_mps;
       return (track->position_m - expected_m).norm() <= kSamePlaceM;

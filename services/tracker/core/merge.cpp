@@ -20,20 +20,6 @@ double SpeedBetween(const Followed& one, const Followed& other) {
 
 bool IsMoving(const Followed& track) { return track.body && track.body->IsMoving(0.95); }
 
-// Whether the lesser of two could be a part of the other: it lies in it, or is a mast, an oar or a bow beside it.
-bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) {
-  constexpr double kWithinShare = 0.8;
-  constexpr double kBesideM = 1.0;
-  constexpr double kPieceM = 1.2;
-  constexpr double kPieceShare = 0.15;
-  constexpr double kSameVelocityMps = 0.7;
-  if (RectangleAround(larger.outline_m).width_m > kWidestBoatM) return false;
-  const double area = AreaOf(lesser.outline_m);
-  if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
-  const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
-  return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kBesideM && SpeedBetween(larger, lesser) < kSameVelocityMps;
-}
-
 }  // namespace
 
 // What most scans call land is land, and what lies in land and was not seen by itself for long.
@@ -47,6 +33,42 @@ void Step::EndLand() {
     const double alone_s = ToSeconds(scan_.end_time - track.seen_alone);
     if (track.is_inside_now && track.inside_of == 0 && alone_s > std::clamp(kPerHitS * track.num_hits, kShortestS, kLongestS)) track.is_ended = true;
   }
+}
+
+// Whether returns of both lie next to each other, in this scan.
+bool Step::Touch(const Followed& one, const Followed& other) const {
+  constexpr double kTouchM = 0.5;
+  constexpr std::size_t kMostPlaces = 200;
+  const auto places = [this](const Followed& track) {
+    std::vector<Eigen::Vector2d> found;
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      if (std::ranges::find(track.segment_ids, scan_.seen[i].segment_id) == track.segment_ids.end()) continue;
+      const std::size_t step = 1 + places_m_[i].size() / kMostPlaces;
+      for (std::size_t k = 0; k < places_m_[i].size(); k += step) found.push_back(places_m_[i][k]);
+    }
+    return found;
+  };
+  const auto theirs = places(other);
+  return std::ranges::any_of(places(one), [&](const auto& mine) {
+    return std::ranges::any_of(theirs, [&](const auto& their) { return (mine - their).squaredNorm() < kTouchM * kTouchM; });
+  });
+}
+
+// Whether the lesser of two could be a part of the other: it lies in it, or is a mast, an oar or a bow beside it.
+bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const {
+  constexpr double kWithinShare = 0.4;
+  constexpr double kBeamShare = 0.6;  // of a ship's length, its hidden side assumed
+  constexpr double kBesideM = 1.5;
+  constexpr double kPieceM = 2.0;
+  constexpr double kPieceShare = 0.15;
+  constexpr double kSameVelocityMps = 0.7;
+  const auto around = RectangleAround(larger.outline_m);
+  const double area = AreaOf(lesser.outline_m);
+  const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
+  // Within the outline of what may be a dock with berths, only what touches it.
+  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m)) return is_piece && Touch(larger, lesser);
+  if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
+  return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kBesideM && SpeedBetween(larger, lesser) < kSameVelocityMps;
 }
 
 // A part of a known thing becomes no track of its own at once.

@@ -297,8 +297,9 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const double detection = std::max(track.detection, 0.1);
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
-  track.sum_thing += Logit(seen.thing_probability);
-  ++track.num_hits;
+  const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
+  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm());
+  track.seen_m = middle_m;
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
   track.seen = track.seen_alone = scan_.end_time;
@@ -369,11 +370,10 @@ void Step::Begin() {
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
-    track.middle_m = track.first_m = middle_m_[i];
+    track.middle_m = track.seen_m = middle_m_[i];
     track.radius_m = radius_m_[i];
     track.top_m = seen.top_above_water_m;
-    track.sum_thing = Logit(seen.thing_probability);
-    track.num_hits = 1;
+    track.AddLook(Logit(seen.thing_probability), 0.0);
     track.sum_returns = seen.num_returns;
     track.own_covariance_m2 = seen.covariance_m2 - seen.covariance_relative_m2;
     track.relative_covariance_m2 = seen.covariance_relative_m2;

@@ -63,6 +63,8 @@ class Step {
   void FeedLand();
   void EndLand();
   void Merge();
+  bool Touch(const Followed& one, const Followed& other) const;
+  bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
   bool IsSuspect(const Followed& track) const;
   double OneForS(const Followed& one, const Followed& other) const;
   void Join(Followed& one, Followed& other, bool is_part);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kMostGapOfTimeS = 10.0;  // between scans; beyond, everything begins anew
 constexpr double kMostJumpM = 10.0;       // of the own position, beyond what its speed explains
-constexpr double kUnseenEndS = 30.0;      // a confirmed track that could not be seen for so long ends
+constexpr double kUnseenEndS = 30.0;      // a confirmed track that could not be seen for so long ends; sooner where it was not followed for as long
+constexpr double kLeastUnseenEndS = 2.0;
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
 constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
@@ -150,7 +151,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   for (auto& track : memory.known.tracks) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
-    const double end_s = track.is_confirmed ? kUnseenEndS : 1.0;
+    const double end_s = track.is_confirmed ? std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS) : 1.0;
     if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) ||
         (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
       track.is_ended = true;
@@ -191,7 +192,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.num_seen = static_cast<int>(std::ranges::count(track.looks, true));
     out.mean_returns = track.sum_returns / std::max(1, track.num_hits);
     out.kind = KindOf(out, is_moving);
-    if (track.body && is_moving) out.turn_rate_radps = kNan;  // one scan after another tells the course, not yet how it changes
+    if (track.body && is_moving) out.turn_rate_radps = track.body->turn_rate_radps();
     if (scan.own) Encountered(out, *scan.own, params_);
     picture.tracks.push_back(std::move(out));
   }

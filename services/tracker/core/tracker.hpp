@@ -21,7 +21,7 @@ struct TrackerParams {
   std::vector<Eigen::Vector2d> own_hull_m;  // vessel frame, convex, counter-clockwise
   EncounterParams encounter;
   double moving_probability = 0.95;   // above which a track moves
-  double confirm_probability = 0.99;  // existence
+  double confirm_probability = 0.95;  // existence
   double end_probability = 0.01;
 };
 

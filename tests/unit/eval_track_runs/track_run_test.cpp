@@ -12,6 +12,7 @@
 #include "tools/eval/baselines/nearest_neighbour.hpp"
 #include "tools/eval/track_sources.hpp"
 #include "tools/eval/track_tables.hpp"
+#include "tools/eval/track_targets.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -160,9 +161,44 @@ TEST(TrackTables, RowsOfOneSceneAddUpAndAllStandLast) {
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all[0].row.scores.num_runs, 3);
   const auto tables = TablesOf(rows);
-  ASSERT_EQ(tables.size(), 4U);
+  ASSERT_EQ(tables.size(), 5U);
   EXPECT_EQ(tables[0].table.rows().size(), 3U);
-  EXPECT_TRUE(tables[3].table.empty());  // no scan had labels
+  EXPECT_TRUE(tables.back().table.empty());  // no scan had labels
+}
+
+// A scene on which `tracker` found all but some of 1000 things, and the labels gain so much.
+TrackRow RowWith(const std::string& scene, const std::string& tracker, std::int64_t num_missed, double gain, bool has_structures) {
+  TrackRow row{scene, {tracker, {}, {}}};
+  row.row.scores.num_runs = 1;
+  row.row.scores.seconds = 60.0;
+  row.row.scores.num_expected = 1000;
+  row.row.scores.num_missed = num_missed;
+  row.row.labels.has_structures = has_structures;
+  row.row.labels.segments_land_one.Add(0.9);
+  row.row.labels.tracks_land_one.Add(0.9 + gain);
+  return row;
+}
+
+// The cells behind "world" and "what" of a target.
+Table::Row CellsOf(const Table& table, const std::string& what) {
+  for (const auto& row : table.rows()) {
+    if (row[1] == what) return {row.begin() + 2, row.end()};
+  }
+  return {};
+}
+
+TEST(TargetTable, SaysOfEachTargetWhetherItIsReachedAndWhereLeast) {
+  const TrackWorld world{"w",
+                         {RowWith("lake", "a", 10, 0.01, true), RowWith("marina", "a", 30, -0.002, false), RowWith("waves", "a", 60, 0.02, true),
+                          RowWith("lake", "b", 500, 0.0, true)}};
+  const auto table = TargetTable({world}, "a", "b").table;
+  EXPECT_EQ(CellsOf(table, "MOTA, %"), (Table::Row{">= 97.0", "98.0", "yes", "97.0 marina", "50.0"}));
+  EXPECT_EQ(CellsOf(table, "MOTA in waves and rain, %"), (Table::Row{">= 95.0", "94.0", "MISSED", "94.0 waves", "-"}));
+  EXPECT_EQ(CellsOf(table, "false tracks a minute, clear"), (Table::Row{"<= 0.10", "0.00", "yes", "0.00 lake", "0.00"}));
+  // Of scenes with structures the least gain, above 0; of all at least -0.3.
+  EXPECT_EQ(CellsOf(table, "the same, all scenes"), (Table::Row{">= -0.3", "-0.2", "yes", "-0.2 marina", "0.0"}));
+  EXPECT_EQ(CellsOf(table, "mIoU of labels over that of SEGMENTS, docks, piers or land, least")[2], "yes");
+  EXPECT_TRUE(CellsOf(table, "CPA 10 s before, mean, m").empty());  // no scene shows it
 }
 
 }  // namespace

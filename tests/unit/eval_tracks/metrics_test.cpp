@@ -179,6 +179,9 @@ TEST(TrackMetrics, StandingThingsAndWhatIsSaidOfThem) {
   EXPECT_DOUBLE_EQ(scores.standing_speed_mps.value(), 0.25);
   EXPECT_EQ(scores.num_standing, 2);
   EXPECT_EQ(scores.num_called_moving, 1);
+  ASSERT_EQ(scores.events.size(), 10U);
+  EXPECT_EQ(scores.events.front().what, TrackEvent::What::kMoving);
+  EXPECT_DOUBLE_EQ(scores.events.front().speed_mps, 0.5);
 }
 
 TEST(TrackMetrics, ErrorsOfSpeedCourseAndCentreAfterThreeSeconds) {
@@ -235,6 +238,74 @@ TEST(TrackMetrics, WhatIsNoCovarianceIsCounted) {
   const auto scores = run.Score();
   EXPECT_EQ(scores.num_bad_covariances, 1);
   EXPECT_EQ(scores.position_nees.count, 0);
+}
+
+TEST(TrackMetrics, AFalseTrackIsOneOnNothingOrADouble) {
+  Case run;
+  for (int n = 0; n < 10; ++n) run.Add({ThingAt(1, {0.0, 0.0})}, {TrackAt(1, {0.0, 0.0}), TrackAt(2, {1.0, 0.0}), TrackAt(3, {30.0, 0.0})});
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.num_false_tracks, 2);
+  EXPECT_EQ(scores.num_double_tracks, 1);
+  ASSERT_EQ(scores.events.size(), 20U);
+  EXPECT_EQ(scores.events[1].nearest, 1);
+  EXPECT_DOUBLE_EQ(scores.events[1].nearest_gap_m, 28.0);
+}
+
+// The own boat passes a moored one of 8 m x 2 m: one side of it, then its end, then the other side.
+TEST(TrackMetrics, TheCentreCountsWhileNoMoreThanHalfWasSeen) {
+  Case run;
+  auto boat = ThingAt(1, {0.0, 0.0});
+  boat.outline_m = {{-4.0, -1.0}, {4.0, -1.0}, {4.0, 1.0}, {-4.0, 1.0}};
+  for (int n = 0; n < 100; ++n) {
+    run.Add({boat}, {TrackAt(1, {n < 60 ? 0.3 : 0.1, 0.0})});
+    const Vector2d own_m = n < 50 ? Vector2d(0.0, -20.0) : n < 80 ? Vector2d(20.0, -10.0) : Vector2d(20.0, 10.0);
+    run.truth.back().own = TrueBoat{SquareAt(own_m), {0.0, 0.0}};
+  }
+  const auto scores = run.Score();
+  EXPECT_EQ(scores.center_error_m.count(), 50U);  // from 3 s on, until the third side shows
+  EXPECT_DOUBLE_EQ(scores.center_error_m.Median(), 0.3);
+}
+
+TEST(Calibration, IsTheDifferenceOfWhatWasStatedAndWhatCame) {
+  Calibration calibration;
+  EXPECT_TRUE(std::isnan(calibration.Error()));
+  for (int n = 0; n < 10; ++n) calibration.Add(0.45, n < 4);
+  for (int n = 0; n < 10; ++n) calibration.Add(1.0, n < 9);
+  EXPECT_NEAR(calibration.Error(), (0.05 + 0.1) / 2.0, 1e-12);
+  Calibration twice = calibration;
+  twice.Add(calibration);
+  EXPECT_EQ(twice.count(), 40);
+  EXPECT_NEAR(twice.Error(), calibration.Error(), 1e-12);
+}
+
+// A boat comes from the east at 4 m/s and passes 2 m north of the own one after 15 s; the alert holds from `from` to `to`.
+TrackScores ScoreOfPass(double from_s, double to_s) {
+  Case run;
+  std::vector<std::vector<StatedAlert>> alerts;
+  for (int n = 0; n < 250; ++n) {
+    const double time_s = 0.1 * n;
+    const Vector2d center_m(60.0 - 4.0 * time_s, 4.0);
+    auto track = TrackAt(7, center_m, {-4.0, 0.0});
+    track.cpa_probability = 1.0;
+    run.Add({ThingAt(1, center_m, 20, {-4.0, 0.0})}, {track});
+    run.truth.back().own = TrueBoat{SquareAt({0.0, 0.0}), {0.0, 0.0}};
+    alerts.emplace_back();
+    if (time_s >= from_s && time_s < to_s) alerts.back().push_back({1, 7, true, true});
+  }
+  return ScoreTracks(run.truth, run.tracks, alerts);
+}
+
+TEST(TrackMetrics, WarningsAreTimedByThePass) {
+  const auto scores = ScoreOfPass(5.0, 18.0);
+  EXPECT_EQ(scores.num_alerts, 1);
+  ASSERT_EQ(scores.warned_ahead_s.count(), 1U);
+  // Nearest as soon as the hulls are abreast, half a second before the centres are.
+  EXPECT_NEAR(scores.warned_ahead_s.Max(), 9.5, 0.11);
+  // Farther than 5 m when the hulls are sqrt(25 - 4) m apart along the course: 1.65 s after the centres were abreast.
+  EXPECT_NEAR(scores.warned_after_s.Max(), 18.0 - 16.65, 0.21);
+  EXPECT_NEAR(static_cast<double>(scores.calibration.count()), 115.0, 1.0);  // 3 s after the first track until they are abreast
+  EXPECT_TRUE(std::isinf(ScoreOfPass(30.0, 31.0).warned_ahead_s.Max()));
+  EXPECT_DOUBLE_EQ(ScoreOfPass(30.0, 31.0).warned_after_s.Max(), 0.0);
 }
 
 TEST(TrackMetrics, RunsAddUp) {

@@ -120,6 +120,22 @@ TEST(Georeferencer, WhatArrivedLaterWaitsLonger) {
   EXPECT_EQ(georeferencer.AdvanceTo(At(900'000)).size(), 1U);
 }
 
+// Who looks out without a navigator should not see everything half a second late.
+TEST(Georeferencer, WaitsInVainForASecondOnlyWherePoseIsSilent) {
+  auto georeferencer = Make();
+  georeferencer.AdvanceTo(At(0));
+  AddPoses(georeferencer, 0, 80'000);
+  georeferencer.AdvanceTo(At(950'000));
+  georeferencer.AddSegments(Turn(100'000, 0));
+  EXPECT_TRUE(georeferencer.AdvanceTo(At(1'000'000)).empty());
+  EXPECT_EQ(georeferencer.AdvanceTo(At(1'010'000)).size(), 1U);
+  georeferencer.AddSegments(Turn(200'000, 1));
+  EXPECT_EQ(georeferencer.AdvanceTo(At(1'020'000)).size(), 1U);
+  AddPoses(georeferencer, 1'000'000, 1'000'000);
+  georeferencer.AddSegments(Turn(1'000'000, 2));
+  EXPECT_TRUE(georeferencer.AdvanceTo(At(1'500'000)).empty()) << "it is back";
+}
+
 TEST(Georeferencer, AHostClockThatIsSetBackDoesNotMakeItWaitForever) {
   auto georeferencer = Make();
   georeferencer.AdvanceTo(At(3'600'000'000));

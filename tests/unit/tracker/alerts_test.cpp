@@ -271,6 +271,48 @@ TEST_F(AlertsTest, AreTwoForOneTrackInTheZoneAndOnItsWay) {
   EXPECT_TRUE(std::isnan(alerts_.alerts()[0].cpa_probability));
 }
 
+// Now this track, now that one, now none: something is in the zone in 3 of 5 scans.
+TEST_F(AlertsTest, ComeUpForTheZoneWhateverItsThingsAreCalled) {
+  Scan({Zone(7)});
+  Scan({Zone(kUnnamed)});
+  EXPECT_TRUE(alerts_.alerts().empty());
+  Scan({Zone(8, 6.0), Zone(kLandTrack, 9.0)});
+  EXPECT_EQ(Only().track_id, kUnnamed);
+  EXPECT_EQ(Only().level, AlertLevel::kWarning);
+  EXPECT_EQ(Only().distance_m, 6.0) << "the nearest";
+}
+
+TEST_F(AlertsTest, AreOneForAThingThatIsNamedFromTheFirst) {
+  for (int i = 0; i < 10; ++i) {
+    const auto& alerts = Scan({Zone(7)});
+    ASSERT_EQ(alerts.size(), i < 2 ? 0U : 1U) << i;
+  }
+  EXPECT_EQ(Only().track_id, 7);
+}
+
+TEST_F(AlertsTest, OfTheZoneHaveNothingToSayOfWhatIsNamedMeanwhile) {
+  Scans(3, {Zone(kUnnamed)});
+  Scans(3, {Zone(7)});
+  ASSERT_EQ(alerts_.alerts().size(), 2U);
+  Scans(30, {Zone(7)});
+  ASSERT_EQ(alerts_.alerts().size(), 2U);
+  EXPECT_EQ(alerts_.alerts()[1].state, AlertState::kCleared) << "and not rectified: the other one is to be acknowledged";
+  Scan({Zone(7)});
+  EXPECT_EQ(Only().track_id, 7);
+}
+
+// Who has taken note of the pile beside the boat is told of what comes, also where nobody can follow it.
+TEST_F(AlertsTest, AreRaisedBesideAnAcknowledgedOneByWhatHasNoName) {
+  Scans(3, {Zone(7)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scan({Zone(7), Zone(11)});
+  Scan({Zone(7), Zone(12)});
+  Scan({Zone(7), Zone(13)});
+  ASSERT_EQ(alerts_.alerts().size(), 2U);
+  EXPECT_EQ(alerts_.alerts()[0].track_id, kUnnamed);
+  EXPECT_EQ(alerts_.alerts()[0].state, AlertState::kActive);
+}
+
 TEST_F(AlertsTest, StandTheGravestFirst) {
   Scans(3, {Cpa(9, 0.9, 10.0)});
   Acknowledge(Only());

@@ -31,11 +31,21 @@ Track At(std::int64_t id, const Eigen::Vector2d& from_own_m, TrackStatus status 
   return track;
 }
 
-Seen Land(std::int32_t id, const std::vector<Eigen::Vector2d>& waterline_from_own_m) {
-  Seen land;
+// A square of 1 m with its nearest return, so far ahead of the vessel.
+VesselOutline Ahead(std::int32_t id, double distance_m, bool is_sure = true) {
+  VesselOutline outline;
+  outline.segment_id = id;
+  outline.is_sure = is_sure;
+  outline.corners_m = {{distance_m, -0.5}, {distance_m + 1.0, -0.5}, {distance_m + 1.0, 0.5}, {distance_m, 0.5}};
+  outline.nearest_m = {distance_m, 0.0};
+  return outline;
+}
+
+VesselOutline Land(std::int32_t id, const std::vector<Eigen::Vector2d>& waterline_vessel_m) {
+  VesselOutline land;
   land.segment_id = id;
-  land.is_land = true;
-  for (const auto& point : waterline_from_own_m) land.waterline_m.emplace_back(point + Eigen::Vector2d(100.0, 50.0));
+  land.is_land = land.is_line = true;
+  land.corners_m = waterline_vessel_m;
   return land;
 }
 
@@ -76,20 +86,53 @@ TEST(GuardZoneDangers, AreTentativeOnlyWhereTheZoneTakesThem) {
 
 TEST(GuardZoneDangers, OfLandAreOne) {
   Picture picture;
-  auto remembered = Land(8, {{-20.0, 7.0}, {20.0, 7.0}});
+  auto remembered = Land(8, {{7.0, -20.0}, {7.0, 20.0}});
   remembered.is_land = false;
   picture.land_segment_ids = {8};
-  const std::vector<Seen> seen{Land(7, {{-20.0, 9.0}, {20.0, 9.0}}), remembered, Land(9, {{-20.0, -3.0}, {20.0, -3.0}})};
-  const auto dangers = GuardZoneDangers(kZone, picture, seen, Own());
+  const std::vector<VesselOutline> outlines{Land(7, {{9.0, -20.0}, {9.0, 20.0}}), remembered, Land(9, {{-3.0, -20.0}, {-3.0, 20.0}})};
+  const auto dangers = GuardZoneDangers(kZone, picture, outlines, Own());
   ASSERT_EQ(dangers.size(), 1U);
-  EXPECT_EQ(dangers[0].track_id, 0);
+  EXPECT_EQ(dangers[0].track_id, kLandTrack);
   EXPECT_NEAR(dangers[0].distance_m, 7.0, 1e-9) << "between its corners; what is astern is not in the sector";
+}
+
+// What is sure counts from the first scan that shows it, whatever the tracker makes of it.
+TEST(GuardZoneDangers, AreOfWhatIsSeenBeforeItIsConfirmed) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 30.0}, TrackStatus::kTentative), At(2, {0.0, 30.0})};
+  picture.tracks[0].segment_ids = {4};
+  picture.tracks[1].segment_ids = {5};
+  const std::vector<VesselOutline> outlines{Ahead(4, 8.0), Ahead(5, 7.0, false), Ahead(6, 6.0), Ahead(7, 5.0, false), Ahead(8, 11.0)};
+  const auto dangers = GuardZoneDangers(kZone, picture, outlines, Own());
+  ASSERT_EQ(dangers.size(), 3U);
+  EXPECT_EQ(dangers[0].track_id, kUnnamed) << "of no track";
+  EXPECT_NEAR(dangers[0].distance_m, 6.0, 1e-9);
+  EXPECT_EQ(dangers[1].track_id, 1);
+  EXPECT_NEAR(dangers[1].distance_m, 8.0, 1e-9) << "where it is seen, not where the track is";
+  EXPECT_EQ(dangers[2].track_id, 2) << "tentative in this scan, but confirmed by others";
+}
+
+TEST(GuardZoneDangers, AreFoundWithoutAPose) {
+  Picture picture;
+  picture.tracks = {At(1, {0.0, 6.0})};  // where that is from the vessel nobody knows
+  const auto dangers =
+      GuardZoneDangers(kZone, picture, std::vector{Ahead(4, 8.0), Ahead(5, 9.5), Land(6, {{7.0, -20.0}, {7.0, 20.0}})}, std::nullopt);
+  ASSERT_EQ(dangers.size(), 2U);
+  EXPECT_EQ(dangers[0].track_id, kUnnamed);
+  EXPECT_NEAR(dangers[0].distance_m, 8.0, 1e-9) << "the nearest";
+  EXPECT_EQ(dangers[1].track_id, kLandTrack);
+}
+
+TEST(GuardZoneDangers, AreAsNearAsTheNearestReturn) {
+  auto outline = Ahead(4, 8.0);
+  outline.nearest_m = {3.0, 0.0};
+  EXPECT_NEAR(GuardZoneDangers(kZone, {}, std::vector{outline}, Own()).at(0).distance_m, 3.0, 1e-9);
 }
 
 TEST(GuardZoneDangers, AreNoneWithoutAZone) {
   Picture picture;
   picture.tracks = {At(1, {0.0, 1.0})};
-  EXPECT_TRUE(GuardZoneDangers({}, picture, {}, Own()).empty());
+  EXPECT_TRUE(GuardZoneDangers({}, picture, std::vector{Ahead(4, 1.0)}, Own()).empty());
 }
 
 TEST(ClosestApproachDangers, AreThoseOfConfirmedAndCoastingTracks) {

@@ -47,6 +47,8 @@ inline obstacle_t MakeObstacle(std::int32_t id, std::int64_t utime_us, std::pair
   obstacle.num_points = 5;
   const auto east_m = static_cast<float>(position_m.first);
   const auto north_m = static_cast<float>(position_m.second);
+  obstacle.nearest_vessel_m[0] = east_m;
+  obstacle.nearest_vessel_m[1] = north_m;
   obstacle.num_footprint = obstacle.num_map = 3;
   obstacle.footprint_east_m = obstacle.footprint_vessel_x_m = {east_m, east_m + 0.5F, east_m};
   obstacle.footprint_north_m = obstacle.footprint_vessel_y_m = {north_m, north_m, north_m + 0.5F};

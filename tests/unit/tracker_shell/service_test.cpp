@@ -289,12 +289,14 @@ TEST_F(TrackerService, SaysWhenNobodyLooksAndTakesNoteOfIt) {
   };
   pass(2000);
   EXPECT_TRUE(alerts_.empty()) << "before the first scan there is nothing to repeat";
+  EXPECT_NE(service_.Report().reason.find("no look-out: no whole scan yet"), std::string::npos) << service_.Report().reason;
   for (int i = 0; i < 5; ++i) {
     SendScan(i, i);
     pass(100);
   }
   const auto before = alerts_.size();
   EXPECT_EQ(before, 5U);
+  EXPECT_EQ(service_.Report().reason.find("no look-out"), std::string::npos);
   EXPECT_FALSE(service_.TakeWatchChange());
   pass(1500);
   EXPECT_TRUE(service_.TakeWatchChange());
@@ -325,7 +327,14 @@ TEST_F(TrackerService, SaysWhenNobodyLooksAndTakesNoteOfIt) {
   Send(bus::kObstacles, holed);
   pass(100);
   EXPECT_FALSE(service_.TakeWatchChange());
-  SendScan(31, 31);
+  // Nor are two: an alert takes three.
+  for (int i = 31; i < 33; ++i) {
+    SendScan(i, i);
+    pass(20);
+    EXPECT_FALSE(service_.TakeWatchChange());
+  }
+  EXPECT_NE(service_.Report().reason.find("no look-out: less than 3 whole scans within 1.0 s"), std::string::npos) << service_.Report().reason;
+  SendScan(33, 33);
   pass(20);
   EXPECT_TRUE(service_.TakeWatchChange());
   EXPECT_TRUE(alerts_.back().is_watch);
@@ -339,6 +348,42 @@ TEST_F(TrackerService, SaysWhenNobodyLooksAndTakesNoteOfIt) {
     EXPECT_TRUE(std::ranges::none_of(message.alerts, [](const alert_t& alert) { return alert.cause == alert_t::CAUSE_WATCH; }))
         << "the proof knows no clock";
   }
+}
+
+// The navigator is gone: obstacles come in the vessel frame only, 8 m ahead, and nothing waits.
+TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
+  auto params = test::MakeParams();
+  params.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+  bus::MemoryBus bus;
+  Service service(bus, params);
+  std::vector<alerts_t> alerts;
+  bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) { alerts.push_back(message); });
+  const auto handle_all = [&bus] {
+    while (bus.HandleOnce()) {
+    }
+  };
+  service.AdvanceTo(Host(milliseconds(0)));
+  service.AdvanceTo(Host(milliseconds(1000)));
+  for (int i = 0; i < 50; ++i) {
+    service.AdvanceTo(Host(milliseconds(1000 + 100 * i)));
+    bus::Publish(bus, bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
+    bus::Publish(bus, bus::kSegments, test::MakeSegments(test::kScanUs * i, i));
+    auto obstacle = test::MakeObstacle(1, test::kStartUs + test::kScanUs * i, {i < 5 ? 8.0 : 30.0, 0.0});
+    obstacle.status = obstacle_t::STATUS_POSE_TIMEOUT;
+    obstacle.num_map = 0;
+    obstacle.footprint_east_m.clear();
+    obstacle.footprint_north_m.clear();
+    bus::Publish(bus, bus::kObstacles, test::MakeObstacles(test::kScanUs * i, i, {obstacle}));
+    handle_all();
+    service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
+    handle_all();
+    ASSERT_EQ(alerts.size(), static_cast<std::size_t>(i) + 1) << "without delay";
+    ASSERT_EQ(alerts.back().num_alerts, i < 2 ? 0 : 1) << i;
+  }
+  EXPECT_EQ(alerts.at(2).alerts[0].text, "obstacle in the guard zone: 8.0 m, 0 deg to starboard");
+  EXPECT_EQ(alerts.at(2).alerts[0].level, alert_t::LEVEL_WARNING);
+  EXPECT_EQ(alerts.at(2).alerts[0].track_id, 0);
+  EXPECT_EQ(alerts.back().alerts[0].state, alert_t::STATE_RECTIFIED) << "nobody took note";
 }
 
 TEST_F(TrackerService, DropsAcknowledgementsOfNoAlertAndOfAnotherRun) {

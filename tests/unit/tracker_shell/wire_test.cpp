@@ -160,6 +160,9 @@ TEST(AlertText, SaysWhoHowNearAndFromWhere) {
   alert.distance_m = 7.31;
   alert.bearing_rad = DegToRad(348.0);
   EXPECT_EQ(TextOf(alert, std::nullopt), "land in the guard zone: 7.3 m, 12 deg to port");
+  alert.track_id = kUnnamed;
+  EXPECT_EQ(TextOf(alert, std::nullopt), "obstacle in the guard zone: 7.3 m, 12 deg to port");
+  EXPECT_EQ(ToMessage(alert, std::nullopt).track_id, 0);
 }
 
 }  // namespace
