@@ -97,7 +97,6 @@ const std::vector<Rule>& Rules() {
       // A part of the service that knows the host's time, as the core must not.
       {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core", "fmt"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},
