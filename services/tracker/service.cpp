@@ -162,12 +162,8 @@ void Service::Use(const GatheredScan& scan) {
   }
   const auto& input = scan.input;
   const bool is_whole = input.flags == 0;
-<<<<<<< HEAD
   watch_.NoteScan(input.time, is_whole);
-=======
-  if (is_whole) watch_.NoteScan();
   is_placed_ = input.own.has_value();
->>>>>>> live
 
   const Picture& picture = memory_->tracker.Update(input);
   for (const auto& [from, to] : picture.merged) memory_->alerts.Rename(from, to, input.end_time);
@@ -274,12 +270,8 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
   acknowledgements_refused_.AppendTo(report.counters);
 
-<<<<<<< HEAD
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
-=======
-  if (watch_.is_failing()) report.Degrade(fmt::format("no look-out: no whole scan for {:.1f} s", ToSeconds(watch_.unseen())));
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
->>>>>>> live
   if (now_ && *now_ - obstacles_seen_.value_or(*now_) >= kSilence) {
     report.Degrade(fmt::format("no OBSTACLES for {} s", std::chrono::floor<std::chrono::seconds>(*now_ - *obstacles_seen_).count()));
   }

@@ -276,7 +276,7 @@ TEST_P(ProofOfARestart, IsReplayedSo) {
 INSTANTIATE_TEST_SUITE_P(Tracker, ProofOfARestart,
                          ::testing::Values(std::pair("tracker", SIGKILL), std::pair("tracker", SIGTERM), std::pair("vlp16", SIGKILL),
                                            std::pair("navigator", SIGKILL)),
-                         [](const auto& info) { return info.param.first + (info.param.second == SIGKILL ? "Killed" : "Terminated"); });
+                         [](const auto& test) { return test.param.first + (test.param.second == SIGKILL ? "Killed" : "Terminated"); });
 
 }  // namespace
 }  // namespace lookout::system_test
