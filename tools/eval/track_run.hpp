@@ -31,7 +31,6 @@ TrackState ToTrackState(const track_t& track);
 /// IoU of labels, a mean over the objects of each scan, and of these the mean: land is one object, and one label, where it says so.
 struct LabelScores {
   bool has_structures = false;  // docks, piers, land
-  bool has_structures = false;  // docks, piers, land
   Mean segments;                // labels of SEGMENTS against the objects of the truth
   Mean segments_land_one;       // land is one object, and segments that SEGMENTS call land have one label
   Mean tracks_land_one;         // the same with the id of the track that explains a segment as its label, and of land what the tracker calls so; a
