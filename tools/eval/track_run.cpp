@@ -31,6 +31,13 @@ std::set<int> LandOf(const messages::ScanMessages& scan) {
   return land;
 }
 
+// At the beginning of a run the pose comes in mid-scan, and obstacles before that moment have no place.
+bool IsPlacedAsAWhole(const messages::ScanMessages& scan) {
+  return std::ranges::all_of(scan.obstacles, [](const auto& part) {
+    return std::ranges::all_of(part.second.obstacles, [](const auto& obstacle) { return obstacle.status == obstacle_t::STATUS_OK; });
+  });
+}
+
 // Tracks merge segments and split off land; a segment that no track explains keeps its own label. So these differ from the labels of SEGMENTS only
 // where the tracker says something of its own.
 std::map<int, int> LabelsOf(const std::vector<TrackState>& tracks, const std::set<int>& land) {
@@ -162,7 +169,7 @@ void TrackRun::OnScan(const messages::ScanMessages& scan) {
   for (const auto& tracker : trackers_) tracks.push_back(tracker->Update(scan));
   const MapOrigin origin{head.datum_latitude_deg, head.datum_longitude_deg, head.datum_ellipsoid_height_m};
   const bool is_placed = std::ranges::all_of(origin, [](double value) { return std::isfinite(value); });
-  if (!is_placed || messages::IsCut(head.scan_flags)) return;
+  if (!is_placed || messages::IsCut(head.scan_flags) || (truth_scans_.empty() && !IsPlacedAsAWhole(scan))) return;
   if (!track_truth_ || origin != origin_) {
     origin_ = origin;
     track_truth_ = std::make_unique<TrackTruth>(truth_, origin);

@@ -55,7 +55,8 @@ class TrackRun {
     TrackScores scores;
     LabelScores labels;
   };
-  /// Of the trackers, and the boat's own first where TRACKS came. Whole scans on the map count, and a scan without TRACKS has no tracks.
+  /// Of the trackers, and the boat's own first where TRACKS came. Whole scans on the map count, from the first that has all its
+  /// obstacles there, and a scan without TRACKS has no tracks.
   std::vector<Row> Rows() const;
 
   std::int64_t num_scans() const { return static_cast<std::int64_t>(truth_scans_.size()); }

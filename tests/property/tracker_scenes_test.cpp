@@ -1,0 +1,62 @@
+// Whole runs, from the packets of the sensors to the alerts: Imazu's encounters, and a boat in its berth.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <optional>
+#include <string>
+
+#include "tests/support/files.hpp"
+#include "tools/eval/track_run.hpp"
+#include "tools/eval/track_sources.hpp"
+#include "tools/replay/chain.hpp"
+
+namespace lookout::eval {
+namespace {
+
+constexpr std::uint64_t kSeed = 101;
+
+TrackScores ScoresOf(const std::string& scene, double seconds) {
+  Truth truth(1);
+  std::optional<TrackRun> run;
+  replay::Chain chain(support::kCatabotConfig, {}, [&](Utime, std::string_view channel, Bytes bytes) { EXPECT_TRUE(run->Add(channel, bytes)); });
+  const auto file = support::kSources / "config/scenes/encounters" / (scene + ".txtpb");
+  SimulateRun(support::kCatabotConfig, file, kSeed, seconds, truth, [&](const replay::Datagram& datagram) {
+    if (!run) run.emplace(truth, MultiObjectTrackers{}, TrackRun::Returns::kForgotten);
+    chain.OnDatagram(datagram);
+  });
+  chain.Finish();
+  run->Finish();
+  EXPECT_TRUE(run->has_own_tracks());
+  return run->Rows().front().scores;
+}
+
+int NumberOf(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
+// Others that pass within the limit, as the scene files say.
+std::size_t NumOthers(int problem) {
+  constexpr int kLastWithOne = 4;
+  constexpr int kLastWithTwo = 11;
+  return problem <= kLastWithOne ? 1 : problem <= kLastWithTwo ? 2 : 3;
+}
+
+// ./dev test slow runs all of them.
+TEST(ImazuScenes, AreWarnedOfEightSecondsAheadAndSilentAfterPassing) {
+  constexpr double kSeconds = 85.0;  // they are nearest after 35 to 70 s
+  const int num_problems = NumberOf("LOOKOUT_IMAZU_PROBLEMS", 1);
+  for (int problem = 1; problem <= num_problems; ++problem) {
+    const auto scores = ScoresOf(fmt::format("imazu_{:02}", problem), kSeconds);
+    ASSERT_EQ(scores.warned_ahead_s.count(), NumOthers(problem)) << "problem " << problem;
+    std::printf("problem %d: warned %.1f s ahead or earlier, silent %.1f s after passing or earlier\n", problem, scores.warned_ahead_s.Percentile(0),
+                scores.warned_after_s.Max());
+    EXPECT_GE(scores.warned_ahead_s.Percentile(0), 8.0) << "problem " << problem;
+    EXPECT_LE(scores.warned_after_s.Max(), 5.0) << "problem " << problem;
+  }
+}
+
+}  // namespace
+}  // namespace lookout::eval
