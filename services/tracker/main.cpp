@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "common/runtime/service_main.hpp"
+#include "services/tracker/handover.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/service.hpp"
 
@@ -11,13 +12,15 @@ namespace {
 constexpr std::chrono::milliseconds kTick(10);
 
 void Run(lookout::runtime::Process& process, const lookout::tracker::Params& params) {
-  lookout::tracker::Service service(process.bus(), params);
+  auto handover = lookout::tracker::Handover::FromEnvironment();
+  lookout::tracker::Service service(process.bus(), params, {.before = handover.Read(), .leave = [&handover](const auto& alerts, const auto& tracks) {
+                                                              handover.Write(alerts, tracks);
+                                                            }});
   process.Every(kTick, [&] {
     service.AdvanceTo(lookout::runtime::HostNow());
     if (service.TakeWatchChange()) process.ReportNow();
   });
   process.Run([&service] { return service.Report(); });
-  service.Finish();
 }
 
 }  // namespace

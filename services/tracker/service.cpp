@@ -54,6 +54,7 @@ void Service::AddObstacles(std::span<const obstacles_t> parts) {
   }
   counts_["obstacles_not_placed"] += left_out.num_not_placed;
   counts_["obstacles_without_covariance"] += left_out.num_without_covariance;
+  counts_["obstacles_over_limit"] += left_out.num_over_limit;
   Use(gatherer_.Add(std::move(*obstacles)));
 }
 
@@ -132,7 +133,15 @@ void Service::AdvanceTo(Utime host_time) {
 
 bool Service::TakeWatchChange() { return std::exchange(reported_failing_, watch_.is_failing()) != watch_.is_failing(); }
 
-void Service::Finish() { Use(gatherer_.Finish()); }
+void Service::Finish() {
+  for (const auto& scan : gatherer_.Finish()) {
+    if (given_.script && given_.script->stretches.back().last < scan.key()) {
+      ++counts_["scans_not_of_the_live_run"];  // its process was stopped while this one waited
+    } else {
+      Use(scan);
+    }
+  }
+}
 
 void Service::Use(const std::vector<GatheredScan>& scans) {
   for (const auto& scan : scans) Use(scan);
@@ -146,20 +155,23 @@ void Service::Use(const GatheredScan& scan) {
   if (!memory_) {
     memory_ = std::make_unique<Memory>(params_);
     memory_->begin = scan.key();
+    if (given_.before) memory_->kept.Keep(given_.before->time, given_.before->datum, given_.before->alerts, given_.before->tracks);
   } else if (scan.is_anew && memory_->picture != nullptr) {
     memory_->kept.Keep(label_->end_time, label_->datum, memory_->alerts.alerts(), memory_->picture->tracks);
     memory_->tracker.Reset();
   }
   const auto& input = scan.input;
   const bool is_whole = input.flags == 0;
+<<<<<<< HEAD
   watch_.NoteScan(input.time, is_whole);
+=======
+  if (is_whole) watch_.NoteScan();
+  is_placed_ = input.own.has_value();
+>>>>>>> live
 
   const Picture& picture = memory_->tracker.Update(input);
   for (const auto& [from, to] : picture.merged) memory_->alerts.Rename(from, to, input.end_time);
-  const auto acknowledged = TakeAcknowledgements(scan.key(), input.end_time);
-  for (const auto& kept : memory_->kept.Take(input.end_time, input.datum, memory_->alerts.alerts(), picture.tracks)) {
-    memory_->alerts.Acknowledge(kept, input.end_time);
-  }
+  const auto acknowledged = TakeAcknowledgements(input, picture);
   const bool is_own_still = memory_->still.Update(input.end_time, input.own ? input.own->velocity_map_mps : Eigen::Vector2d::Constant(kNan));
   const auto& alerts = memory_->alerts.Update(input.end_time, is_whole, DangersOf(params_, scan, picture, is_own_still));
 
@@ -169,6 +181,7 @@ void Service::Use(const GatheredScan& scan) {
   const auto message = ToMessage(*label_, alerts, acknowledged, picture, bus::kMaxMessageBytes);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
+  Leave(message, picture);
 
   memory_->picture = &picture;
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
@@ -177,25 +190,37 @@ void Service::Use(const GatheredScan& scan) {
 // @return whether the live run used this scan too, as far as is known
 bool Service::FollowScript(const ScanKey& key) {
   if (!given_.script) return true;
-  const auto& runs = given_.script->runs;
-  while (next_run_ < runs.size() && runs[next_run_].first.time <= key.time) {
+  const auto& stretches = given_.script->stretches;
+  const auto is_reached = [&](std::size_t i) {
+    if (key == stretches[i].first) return true;
+    // Where it begins in the past of the one before, with its very first scan alone.
+    const bool is_later = i == 0 || stretches[i - 1].last < stretches[i].first;
+    return is_later && stretches[i].first < key;
+  };
+  for (; next_stretch_ < stretches.size() && is_reached(next_stretch_); ++next_stretch_) {
+    const auto& begin = stretches[next_stretch_].begin;
+    if (memory_ && memory_->begin == begin) continue;
     memory_ = std::make_unique<Memory>(params_);
-    memory_->begin = runs[next_run_].first;
-    ++next_run_;
+    memory_->begin = begin;
   }
-  if (next_run_ == 0) return false;  // before the first
-  // Between the end of one process and the begin of the next.
-  return next_run_ == runs.size() || key.time <= runs[next_run_ - 1].last.time;
+  if (next_stretch_ == 0) return false;  // before the first
+  // Else between the end of one process and the begin of the next.
+  const auto& now = stretches[next_stretch_ - 1];
+  return next_stretch_ == stretches.size() || stretches[next_stretch_].begin == now.begin || !(key < now.first || now.last < key);
 }
 
-std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanKey& key, Utime time) {
+// Of people, and such as people gave before the lidar, the navigator or this process began anew. A script has both.
+std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanInput& input, const Picture& picture) {
   if (given_.script) {
-    const auto found = given_.script->acknowledged.find(key);
+    const auto found = given_.script->acknowledged.find({input.time, input.seq});
     if (found != given_.script->acknowledged.end()) acknowledgements_.assign(found->second.begin(), found->second.end());
+  } else {
+    const auto kept = memory_->kept.Take(input.end_time, input.datum, memory_->alerts.alerts(), picture.tracks);
+    acknowledgements_.insert(acknowledgements_.end(), kept.begin(), kept.end());
   }
   std::vector<Acknowledgement> taken;
   for (const auto& acknowledgement : std::exchange(acknowledgements_, {})) {
-    if (memory_->alerts.Acknowledge(acknowledgement, time)) {
+    if (memory_->alerts.Acknowledge(acknowledgement, input.end_time)) {
       ++counts_["acks_taken"];
       taken.push_back(acknowledgement);
     } else {
@@ -203,6 +228,17 @@ std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanKey& key, U
     }
   }
   return taken;
+}
+
+// Live only: for the process that is started when this one is gone.
+void Service::Leave(const alerts_t& message, const Picture& picture) const {
+  if (!given_.leave) return;
+  Picture some;
+  std::ranges::copy_if(picture.tracks, std::back_inserter(some.tracks), [&message](const Track& track) {
+    return std::ranges::any_of(message.alerts,
+                               [&track](const alert_t& alert) { return alert.track_id == track.id && alert.state == alert_t::STATE_ACKNOWLEDGED; });
+  });
+  given_.leave(message, ToMessages(*label_, some, bus::kMaxMessageBytes).front());
 }
 
 // With the number of the last scan, and the alerts as they were.
@@ -238,7 +274,12 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
   acknowledgements_refused_.AppendTo(report.counters);
 
+<<<<<<< HEAD
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
+=======
+  if (watch_.is_failing()) report.Degrade(fmt::format("no look-out: no whole scan for {:.1f} s", ToSeconds(watch_.unseen())));
+  if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
+>>>>>>> live
   if (now_ && *now_ - obstacles_seen_.value_or(*now_) >= kSilence) {
     report.Degrade(fmt::format("no OBSTACLES for {} s", std::chrono::floor<std::chrono::seconds>(*now_ - *obstacles_seen_).count()));
   }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@
 #include "services/tracker/core/dangers.hpp"
 #include "services/tracker/core/kept_acknowledgements.hpp"
 #include "services/tracker/core/script.hpp"
+#include "services/tracker/handover.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/watch.hpp"
 #include "services/tracker/wire.hpp"
@@ -26,7 +28,9 @@ namespace lookout::tracker {
 /// What is known of the input beforehand. Live: nothing.
 struct Given {
   Gatherer::Sources sources = {};
-  std::optional<Script> script = {};  // of the live run that is replayed, where its log holds ALERTS
+  std::optional<Script> script = {};                                 // of the live run that is replayed, where its log holds ALERTS
+  std::optional<Legacy> before = {};                                 // live: of the process before
+  std::function<void(const alerts_t&, const tracks_t&)> leave = {};  // live: after each scan, for the process behind
 };
 
 class Service {
@@ -36,7 +40,8 @@ class Service {
   /// Live only: host time has come so far. Ten times a second or more.
   void AdvanceTo(Utime host_time);
 
-  /// End of input: what waits is used as it is.
+  /// End of input: what waits is used as it is; where a live run is replayed, as far as that used it. A live process that is stopped does not call
+  /// it: what it would make of half a scan no replay, which hears the rest of it, could know.
   void Finish();
 
   /// Scans that wait for POSE, LIDAR_SCAN or SEGMENTS.
@@ -72,12 +77,13 @@ class Service {
   void Use(const std::vector<GatheredScan>& scans);
   void Use(const GatheredScan& scan);
   bool FollowScript(const ScanKey& key);
-  std::vector<Acknowledgement> TakeAcknowledgements(const ScanKey& key, Utime time);
+  std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);
+  void Leave(const alerts_t& message, const Picture& picture) const;
   void SendWatch();
 
   static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"obstacles_not_placed", "obstacles_without_covariance", "obstacles_inconsistent", "beams_inconsistent", "parts_duplicate",
-       "parts_inconsistent", "scans_not_of_the_live_run", "acks_taken", "acks_of_no_alert", "acks_dropped", "alerts_untold"});
+      {"obstacles_not_placed", "obstacles_without_covariance", "obstacles_over_limit", "obstacles_inconsistent", "beams_inconsistent",
+       "parts_duplicate", "parts_inconsistent", "scans_not_of_the_live_run", "acks_taken", "acks_of_no_alert", "acks_dropped", "alerts_untold"});
 
   bus::Bus& bus_;
   Params params_;
@@ -87,10 +93,11 @@ class Service {
   messages::PartAssembler<lidar_scan_t> beams_parts_;
   messages::PartAssembler<segments_t> labels_parts_;
   std::unique_ptr<Memory> memory_;  // nullptr until the first scan
-  std::size_t next_run_ = 0;        // of the script
+  std::size_t next_stretch_ = 0;    // of the script
   std::deque<Acknowledgement> acknowledgements_;
   std::optional<std::int64_t> pose_seq_;
   std::optional<ScanLabel> label_;  // of the last scan
+  bool is_placed_ = true;           // in the last scan
   std::int64_t num_alerts_ = 0;
   Counts<kCountNames> counts_;
   Counts<messages::kObstaclesFaults> obstacles_refused_;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "common/core/angles.hpp"
@@ -189,6 +191,7 @@ std::optional<ScanObstacles> ToObstacles(std::span<const obstacles_t> parts, Lef
   scan.is_whole = std::cmp_equal(parts.size(), head.num_parts);
   scan.datum = {head.datum_latitude_deg, head.datum_longitude_deg, head.datum_ellipsoid_height_m};
   std::int32_t last_id = 0;
+  std::vector<float> ranges_m;  // [scan.seen]
   for (const auto& part : parts) {
     for (const auto& obstacle : part.obstacles) {
       if (std::exchange(last_id, obstacle.id) >= obstacle.id) return std::nullopt;
@@ -199,8 +202,20 @@ std::optional<ScanObstacles> ToObstacles(std::span<const obstacles_t> parts, Lef
         ++left_out.num_without_covariance;
       } else {
         scan.seen.push_back(ToSeen(obstacle));
+        ranges_m.push_back(obstacle.range_m);
       }
     }
+  }
+  if (std::cmp_greater(scan.seen.size(), kMostObstacles)) {
+    left_out.num_over_limit += std::ssize(scan.seen) - kMostObstacles;
+    std::vector<std::size_t> order(scan.seen.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::sort(order, {}, [&](std::size_t i) { return std::tuple(!scan.seen[i].is_sure, ranges_m[i], i); });
+    order.resize(kMostObstacles);
+    std::ranges::sort(order);
+    std::vector<Seen> nearest;
+    for (const auto i : order) nearest.push_back(std::move(scan.seen[i]));
+    scan.seen = std::move(nearest);
   }
   return scan;
 }

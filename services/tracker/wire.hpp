@@ -23,7 +23,11 @@ namespace lookout::tracker {
 struct LeftOut {
   std::int64_t num_not_placed = 0;          // in the vessel frame only
   std::int64_t num_without_covariance = 0;  // not known
+  std::int64_t num_over_limit = 0;          // beyond kMostObstacles
 };
+
+/// Obstacles of a scan that are tracked; of more the tentative ones are left out first, then the farthest. A VLP-16 in heavy rain gives some 2000.
+inline constexpr int kMostObstacles = 4000;
 
 /// Of one scan, from parts that FaultOf accepts; by part_index, one at least.
 /// @return nullopt where the parts contradict each other: ids that do not increase, columns that do not fit

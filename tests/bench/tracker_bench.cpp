@@ -1,9 +1,9 @@
 // The tracker's time for one scan of a VLP-16, the segmenter's of the same scan beside it, and its memory over hours.
 // Scenes (argument): 0 some 30 obstacles, 1 some 200, 2 the 30 in rain: some 1500 tentative ones that each scan shows elsewhere.
-#include <benchmark/benchmark.h>
 #include <malloc.h>
 
 #include <algorithm>
+#include <benchmark/benchmark.h>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -207,7 +207,8 @@ void Hours(benchmark::State& state) {
       for (int i = 0; i < 50; ++i) add(uniform(-20.0, 20.0), north_m + uniform(-20.0, 20.0), 0.05, false);
       auto& bank = add(50.0, north_m, 20.0, true);
       bank.is_land = true;
-      for (double off_m = -30.0; off_m <= 30.0; off_m += 0.5) bank.waterline_m.emplace_back(40.0 + std::sin(0.1 * (north_m + off_m)), north_m + off_m);
+      for (double off_m = -30.0; off_m <= 30.0; off_m += 0.5)
+        bank.waterline_m.emplace_back(40.0 + std::sin(0.1 * (north_m + off_m)), north_m + off_m);
       tracker.Update(input);
       if ((number + 1) % 100 == 0) most_kb = std::max(most_kb, kilobytes());
       if (number + 1 == kScansAnHour) state.counters["kb_after_1_h"] = kilobytes();

@@ -1,4 +1,5 @@
-// What the tracker reads with any bytes of it changed: refused or tracked, and what is tracked is sound.
+// What the tracker reads with any bytes of it changed, lost, doubled, late or of long ago: refused or tracked, and what is tracked is sound.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -17,6 +18,10 @@ using namespace lookout;
 constexpr std::size_t kFingerprintBytes = 8;
 constexpr std::size_t kPatchBytes = 4;  // place (2), value, and which message
 constexpr int kNumScans = 12;
+constexpr std::size_t kMostMessages = 200;
+// Places from here on say what becomes of the message instead.
+constexpr std::size_t kFirstFate = 0xFFF0;
+enum class Fate { kLost = 0, kDoubled = 1, kLast = 2, kFirst = 3 };
 
 bool IsShare(float value) { return value >= 0.0F && value <= 1.0F; }
 
@@ -70,8 +75,29 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   add(bus::kAlertAck, alert_ack_t{});
   for (std::size_t i = 0; i + kPatchBytes <= size; i += kPatchBytes) {
-    auto& message = messages[data[i + 3] % messages.size()].second;
+    const std::size_t which = data[i + 3] % messages.size();
+    auto& message = messages[which].second;
     const std::size_t place = data[i] | static_cast<std::size_t>(data[i + 1]) << 8;
+    if (place >= kFirstFate && messages.size() > 2 && messages.size() < kMostMessages) {
+      const auto at = messages.begin() + static_cast<std::ptrdiff_t>(which);
+      switch (static_cast<Fate>(place - kFirstFate)) {
+        case Fate::kLost:
+          messages.erase(at);
+          break;
+        case Fate::kDoubled:
+          messages.insert(at, std::pair(*at));
+          break;
+        case Fate::kLast:
+          std::rotate(at, at + 1, messages.end());
+          break;
+        case Fate::kFirst:
+          std::rotate(messages.begin(), at, at + 1);
+          break;
+        default:
+          break;
+      }
+      continue;
+    }
     message[kFingerprintBytes + place % (message.size() - kFingerprintBytes)] = data[i + 2];
   }
   for (const auto& [channel, bytes] : messages) bus.Publish(*channel, bytes);

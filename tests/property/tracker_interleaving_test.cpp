@@ -25,6 +25,9 @@ struct Stream {
   }
 };
 
+constexpr double kJumpM = 10'000.0;
+constexpr int kJumpPose = 100;  // the last before the jump
+
 struct Inputs {
   Stream beams{&bus::kLidarScan};
   Stream labels{&bus::kSegments};
@@ -32,8 +35,8 @@ struct Inputs {
   Stream obstacles{&bus::kObstacles};
 };
 
-// Six seconds with all that happens: scans that a channel lost whole or in part, scans that came twice, poses that know nothing, gaps, lidar and
-// navigator that begin anew, another datum.
+// Six seconds with all that happens: scans that a channel lost whole or in part, scans that came twice, beams and labels of other scans, obstacles
+// that nobody could place, poses that know nothing, gaps, lidar and navigator that begin anew, a position that jumps by 10 km, another datum.
 Inputs MakeInputs(std::mt19937& random) {
   const auto chance = [&random](double share) { return std::uniform_real_distribution<double>(0.0, 1.0)(random) < share; };
   Inputs inputs;
@@ -43,6 +46,7 @@ Inputs MakeInputs(std::mt19937& random) {
     if (chance(0.01)) i += 20;  // navigator was silent
     auto pose = test::MakePose(20'000 * i, pose_seq);
     pose.position_map_m[0] = 0.1 * i;
+    if (i > kJumpPose) pose.position_map_m[1] = kJumpM;
     if (chance(0.02)) pose.status = pose_t::STATUS_NO_HEADING;
     if (i > 250) pose.datum_longitude_deg += 1.0;
     inputs.poses.Add(pose);
@@ -55,13 +59,21 @@ Inputs MakeInputs(std::mt19937& random) {
       auto beams = test::MakeScan(offset_us, seq);
       if (chance(0.1)) beams.num_parts = 2;  // of which the other is lost
       if (beams.num_parts == 2) beams.num_turn_columns = 2 * beams.num_columns;
+      if (chance(0.05)) ++beams.seq;
       inputs.beams.Add(beams);
     }
-    if (!chance(0.05)) inputs.labels.Add(test::MakeSegments(offset_us, seq));
+    if (!chance(0.05)) inputs.labels.Add(test::MakeSegments(chance(0.05) ? offset_us + 1 : offset_us, seq));
     if (chance(0.05)) continue;
     std::vector<obstacle_t> obstacles;
     for (int i = 0; i < 4; ++i) {
       obstacles.push_back(test::MakeObstacle(i + 1, test::kStartUs + offset_us + 10'000 * i, {20.0 * i + 0.1 * scan, 30.0}));
+      auto& obstacle = obstacles.back();
+      if (5 * scan > kJumpPose) obstacle.position_map_m[1] += kJumpM;
+      if (!chance(0.05)) continue;
+      obstacle.status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
+      obstacle.num_map = 0;
+      obstacle.footprint_east_m.clear();
+      obstacle.footprint_north_m.clear();
     }
     auto whole = test::MakeObstacles(offset_us, seq, obstacles);
     if (scan > 50) whole.datum_longitude_deg += 1.0;

@@ -12,6 +12,8 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/bus/lcm_bus.hpp"
@@ -152,9 +154,11 @@ class Proof : public LiveTest {
     return StopAndRead();
   }
 
-  // The tracker is killed in mid-run, and started again.
-  Payloads RunWithARestart(const std::string& run) {
+  // A process is ended by a signal in mid-run, and started again. Nobody gives up a wait for it: what does lies outside of the promise.
+  Payloads RunWithARestart(const std::string& run, const std::string& victim, int signal) {
     EnterRun(run, false);
+    WriteFile("config/tracker.txtpb", ReadFile("config/tracker.txtpb") + "wait_timeout_s: 20\n");
+    ReplaceIn("config/georeferencer.txtpb", "pose_timeout_s: 0.5", "pose_timeout_s: 20");
     Start({"recorder", "tracker", "georeferencer", "segmenter"});
     Start({"navigator", "vlp16"});
     Child sim(
@@ -162,12 +166,14 @@ class Proof : public LiveTest {
         "sim.out");
     const auto half = 5 * (DataSeconds() + 2);
     EXPECT_TRUE(HandleUntil([&] { return counts_["ALERTS"] >= half; })) << sim.Output();
-    children_["tracker"]->Signal(SIGKILL);
-    children_["tracker"]->Wait(seconds(5));
-    const auto num_obstacles = counts_["OBSTACLES"];
-    HandleUntil([&] { return counts_["OBSTACLES"] >= num_obstacles + 3; });
+    children_[victim]->Signal(signal);
+    children_[victim]->Wait(seconds(5));
+    if (victim == "tracker") {
+      const auto num_obstacles = counts_["OBSTACLES"];
+      HandleUntil([&] { return counts_["OBSTACLES"] >= num_obstacles + 3; });
+    }
     heard_.clear();
-    Start({"tracker"});
+    Start({victim});
     EXPECT_TRUE(HandleUntil([&sim] { return !sim.IsRunning(); })) << sim.Output();
     return StopAndRead();
   }
@@ -228,19 +234,49 @@ TEST_F(Proof, WhatRanLiveComputesAgainToTheSameBytes) {
   }
 }
 
+// At how many scans a process of the tracker began.
+std::size_t NumBegins(const Payloads& log) {
+  std::set<std::int64_t> begins;
+  for (const auto& bytes : log.at("TRACKS")) begins.insert(bus::Decode<tracks_t>(bytes).value().begin_utime_us);
+  return begins.size();
+}
+
+// The last that the tracker said of a counter.
+std::int64_t CounterOfTracker(const Payloads& log, std::string_view name) {
+  std::int64_t count = -1;
+  for (const auto& bytes : log.at("HEALTH")) {
+    const auto message = bus::Decode<health_t>(bytes).value();
+    if (message.process != "tracker") continue;
+    const auto found = std::ranges::find(message.counters, name, &health_counter_t::name);
+    if (found != message.counters.end()) count = found->count;
+  }
+  return count;
+}
+
 // Where its process begins anew the tracker knows nothing of before, and its ids begin anew; the replay does so at the same scan.
-TEST_F(Proof, ATrackerThatIsRestartedInMidRunIsReplayedSo) {
-  const auto live = WithoutLoss([this](const std::string& attempt) { return RunWithARestart("restart-" + attempt); },
+class ProofOfARestart : public Proof, public ::testing::WithParamInterface<std::pair<std::string, int>> {};
+
+TEST_P(ProofOfARestart, IsReplayedSo) {
+  const auto& [victim, signal] = GetParam();
+  const auto live = WithoutLoss([&, &who = victim, by = signal](const std::string& attempt) { return RunWithARestart(attempt, who, by); },
                                 {"recorder lost TRACKS", "recorder lost ALERTS"});  // that nobody sent
   ASSERT_FALSE(HasFailure());
-  std::set<std::int64_t> begins;
-  for (const auto& bytes : live.at("TRACKS")) begins.insert(bus::Decode<tracks_t>(bytes).value().begin_utime_us);
-  EXPECT_EQ(begins.size(), 2U);
-  EXPECT_LT(Count(live, "ALERTS"), Count(live, "LIDAR_CLOCK") - 3) << "nobody was there for some scans";
+  if (victim == "tracker") {
+    EXPECT_EQ(NumBegins(live), 2U);
+    EXPECT_LT(Count(live, "ALERTS"), Count(live, "LIDAR_CLOCK") - 3) << "nobody was there for some scans";
+  } else {
+    EXPECT_EQ(NumBegins(live), 1U);
+    EXPECT_EQ(CounterOfTracker(live, "runs_begun"), 1);
+  }
   const auto replay = RunProgram({Bin("replay"), "--config", "config", "--in", log_.string(), "--out", "again"}, "replay.out");
   ASSERT_EQ(replay.exit_code, 0) << replay.output;
   ExpectSameMessages(live, ReadLog("again"));
 }
+
+INSTANTIATE_TEST_SUITE_P(Tracker, ProofOfARestart,
+                         ::testing::Values(std::pair("tracker", SIGKILL), std::pair("tracker", SIGTERM), std::pair("vlp16", SIGKILL),
+                                           std::pair("navigator", SIGKILL)),
+                         [](const auto& info) { return info.param.first + (info.param.second == SIGKILL ? "Killed" : "Terminated"); });
 
 }  // namespace
 }  // namespace lookout::system_test

@@ -15,6 +15,15 @@ constexpr std::int64_t kOvertakenScans = 50;
 // Scans that lie so far ahead of a POSE that goes back in time are of the run before.
 constexpr std::chrono::seconds kOtherRun(10);
 
+// Whether the position jumped within a scan: between the two nobody knows where the boat was.
+bool HasJumped(const Pose& start, const Pose& end) {
+  constexpr double kMostJumpM = 10.0;  // beyond what its speed explains
+  constexpr double kMostOfSpeed = 3.0;
+  const double speed_mps = start.velocity_map_mps.allFinite() ? start.velocity_map_mps.norm() : 0.0;
+  const double way_m = (end.position_map_m - start.position_map_m).head<2>().norm();
+  return !(way_m <= kMostJumpM + kMostOfSpeed * speed_mps * ToSeconds(end.time - start.time));
+}
+
 }  // namespace
 
 template <typename Part>
@@ -199,6 +208,10 @@ void Gatherer::ReleaseFront(bool is_given_up, std::vector<GatheredScan>& release
   input.seen = std::move(obstacles.seen);
   input.own_at_start = PoseAt(input.time, input.datum);
   input.own = PoseAt(input.end_time, input.datum);
+  if (input.own_at_start && input.own && HasJumped(*input.own_at_start, *input.own)) {
+    ++counts_["scans_with_jump"];
+    input.own.reset();
+  }
   input.sweep = SweepOf(obstacles.key);
   // What stands in a part that is lost would count as not seen.
   if (!obstacles.is_whole) input.sweep.reset();

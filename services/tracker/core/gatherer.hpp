@@ -149,8 +149,8 @@ class Gatherer {
 
   static constexpr auto kCountNames =
       std::to_array<std::string_view>({"scans_released", "scans_doubled", "scans_late", "scans_timed_out", "scans_overflowed", "scans_flushed",
-                                       "scans_before_begin", "scans_waiting", "scans_without_sight", "scans_without_pose", "scans_incomplete",
-                                       "labels_inconsistent", "runs_begun", "poses_taken", "poses_duplicate", "pose_restarts"});
+                                       "scans_before_begin", "scans_waiting", "scans_without_sight", "scans_without_pose", "scans_with_jump",
+                                       "scans_incomplete", "labels_inconsistent", "runs_begun", "poses_taken", "poses_duplicate", "pose_restarts"});
 
   Sources sources_;
   std::chrono::microseconds timeout_;

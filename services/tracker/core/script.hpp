@@ -10,12 +10,13 @@
 namespace lookout::tracker {
 
 struct Script {
-  /// Of one process, from its start to its end.
-  struct Run {
+  /// Scans that one process used while time went on. A process has another stretch where time goes back.
+  struct Stretch {
+    ScanKey begin;  // at which the process began
     ScanKey first;
     ScanKey last;  // that is known
   };
-  std::vector<Run> runs;  // in their order; at least one
+  std::vector<Stretch> stretches;  // in their order; at least one
   /// Taken with a scan, in their order.
   std::map<ScanKey, std::vector<Acknowledgement>> acknowledged;
 };

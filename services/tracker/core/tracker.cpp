@@ -95,6 +95,7 @@ void Tracker::Reset() {
   memory_->known.tracks.clear();
   memory_->known.together_s.clear();
   memory_->known.land.Clear();
+  memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
   memory_->time.reset();
   memory_->own.reset();

@@ -1,6 +1,7 @@
 // The tracker, live and replayed: acknowledgements that a person gave, and a process that was restarted in mid-run.
 #include "tools/replay/live_run.hpp"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <map>
 #include <memory>
@@ -34,9 +35,13 @@ class LiveRun : public ::testing::Test {
 
   // One process of the tracker.
   struct Process {
+    explicit Process(tracker::Handover& handover)
+        : service(bus, tracker::LoadParams(support::kDemoConfig),
+                  {.before = handover.Read(), .leave = [&handover](const auto& alerts, const auto& tracks) { handover.Write(alerts, tracks); }}) {}
     bus::MemoryBus bus;
-    tracker::Service service{bus, tracker::LoadParams(support::kDemoConfig)};
+    tracker::Service service;
   };
+  tracker::Handover handover_{folder_.path()};
   std::unique_ptr<Process> process_;
   std::optional<alert_t> active_;  // in the latest ALERTS
 
@@ -45,7 +50,7 @@ class LiveRun : public ::testing::Test {
     writer_.Write(time_, channel, bytes);
   }
   void Start() {
-    process_ = std::make_unique<Process>();
+    process_ = std::make_unique<Process>(handover_);
     for (const auto* channel : {&bus::kTracks, &bus::kAlerts}) {
       process_->bus.SubscribeRaw(*channel, [this](std::string_view name, Bytes bytes) {
         live_[std::string(name)].emplace_back(bytes.begin(), bytes.end());
@@ -58,12 +63,6 @@ class LiveRun : public ::testing::Test {
         if (alert.state == alert_t::STATE_ACTIVE) active_ = alert;
       }
     });
-  }
-  // As at SIGTERM, after all others have ended.
-  void End() {
-    process_->service.Finish();
-    while (process_->bus.HandleOnce()) {
-    }
   }
   template <typename Message>
   void Deliver(const bus::Channel& channel, const Message& message) {
@@ -78,7 +77,13 @@ class LiveRun : public ::testing::Test {
     Deliver(channel, message);
   }
   // At 3 m/s towards a thing that stands 60 m ahead.
-  void SendScan(int number) {
+  void SendScan(int number) { SendScan(number, number); }
+  void SendScan(int number, std::int64_t seq) {
+    SendPoses(number);
+    SendSight(number, seq);
+    SendObstacles(number, seq);
+  }
+  void SendPoses(int number) {
     const auto offset_us = test::kScanUs * number;
     for (auto pose_us = offset_us; pose_us < offset_us + test::kScanUs; pose_us += 20'000) {
       auto pose = test::MakePose(pose_us, pose_us / 20'000);
@@ -86,10 +91,42 @@ class LiveRun : public ::testing::Test {
       pose.velocity_map_mps[1] = 3.0;
       Send(bus::kPose, pose);
     }
-    Send(bus::kLidarScan, test::MakeScan(offset_us, number));
-    Send(bus::kSegments, test::MakeSegments(offset_us, number));
-    Send(bus::kObstacles, test::MakeObstacles(offset_us, number, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, 60.0})}));
   }
+  void SendSight(int number, std::int64_t seq) {
+    Send(bus::kLidarScan, test::MakeScan(test::kScanUs * number, seq));
+    Send(bus::kSegments, test::MakeSegments(test::kScanUs * number, seq));
+  }
+  void SendObstacles(int number, std::int64_t seq) {
+    const auto offset_us = test::kScanUs * number;
+    Send(bus::kObstacles, test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, 60.0})}));
+  }
+  // Sails on until the alert of the thing ahead is a warning, and acknowledges it.
+  // @return the number of the next scan; 0: there was none
+  int AcknowledgeTheWarning() {
+    for (int number = 0; number < 170; ++number) {
+      SendScan(number);
+      if (!active_ || active_->level != alert_t::LEVEL_WARNING) continue;
+      alert_ack_t message{};
+      message.source = "page";
+      message.alert_id = active_->id;
+      message.alert_raised_utime_us = active_->raised_utime_us;
+      Send(bus::kAlertAck, message);
+      SendScan(number + 1);
+      return number + 2;
+    }
+    return 0;
+  }
+  // How many scans of a process say that an alert is not acknowledged.
+  int NumActive(std::int64_t begin_seq) const {
+    int number = 0;
+    for (const auto& bytes : live_.at("ALERTS")) {
+      const auto message = bus::Decode<alerts_t>(bytes).value();
+      if (message.begin_seq != begin_seq) continue;
+      number += std::ranges::any_of(message.alerts, [](const alert_t& alert) { return alert.state == alert_t::STATE_ACTIVE; }) ? 1 : 0;
+    }
+    return number;
+  }
+  alerts_t LastAlerts() const { return bus::Decode<alerts_t>(live_.at("ALERTS").back()).value(); }
 
   Messages Replay() {
     writer_.Flush();
@@ -105,7 +142,6 @@ class LiveRun : public ::testing::Test {
     return messages;
   }
   void ExpectReplayEqualsLive() {
-    End();
     const auto messages = Replay();
     for (const auto* name : {"TRACKS", "ALERTS"}) {
       ASSERT_TRUE(messages.contains(name)) << name;
@@ -168,6 +204,105 @@ TEST_F(LiveRun, WithoutAlertsInTheLogTakesAcknowledgementsAsTheyCome) {
   const auto messages = Replay();
   EXPECT_EQ(messages.at("TRACKS").size(), 60U);
   EXPECT_EQ(messages.at("ALERTS").size(), 60U);
+}
+
+// What people took note of they need not take note of again.
+TEST_F(LiveRun, TakesAcknowledgementsOverFromTheProcessThatWasKilled) {
+  Start();
+  int number = AcknowledgeTheWarning();
+  ASSERT_GT(number, 0) << "no warning came up";
+  process_.reset();  // killed
+  const int gone = number + 10;
+  for (; number < gone; ++number) SendScan(number);
+  Start();
+  const int begin = number;
+  for (; number < begin + 10; ++number) SendScan(number);
+  ASSERT_GE(LastAlerts().begin_seq, begin);
+  ASSERT_EQ(LastAlerts().num_alerts, 1) << "what still holds is raised again within 1 s";
+  EXPECT_EQ(LastAlerts().alerts[0].state, alert_t::STATE_ACKNOWLEDGED);
+  EXPECT_LE(NumActive(LastAlerts().begin_seq), 1);
+  ExpectReplayEqualsLive();
+}
+
+TEST_F(LiveRun, TakesNoAcknowledgementOverFromLongAgo) {
+  Start();
+  int number = AcknowledgeTheWarning();
+  ASSERT_GT(number, 0);
+  process_.reset();
+  // It lies still, for longer than they are kept: then people want to be told.
+  const auto gone_for = std::chrono::duration_cast<std::chrono::milliseconds>(tracker::KeptAcknowledgements::kKeptFor).count() / 100 + 5;
+  auto before = handover_.Read();
+  ASSERT_TRUE(before);
+  before->time -= std::chrono::milliseconds(100 * gone_for);
+  tracker::KeptAcknowledgements kept;
+  kept.Keep(before->time, before->datum, before->alerts, before->tracks);
+  auto alert = before->alerts.at(0);
+  alert.state = tracker::AlertState::kActive;
+  alert.raised = before->time + std::chrono::milliseconds(100 * gone_for);
+  EXPECT_TRUE(kept.Take(alert.raised, before->datum, std::vector{alert}, before->tracks).empty());
+  kept.Keep(before->time, before->datum, before->alerts, before->tracks);
+  EXPECT_EQ(kept.Take(alert.raised - std::chrono::seconds(2), before->datum, std::vector{alert}, before->tracks).size(), 1U);
+}
+
+TEST_F(LiveRun, LeavesNothingBehindWithoutAnAcknowledgedAlert) {
+  support::WriteFile(folder_ / "alerts.lcmlog", "what is no log");
+  Start();
+  for (int i = 0; i < 5; ++i) SendScan(i);
+  EXPECT_FALSE(fs::exists(folder_ / "alerts.lcmlog"));
+  EXPECT_EQ(live_.at("ALERTS").size(), 4U);
+}
+
+// The lidar, too, may begin anew; the tracker raises again what holds, and its replay does so with the same scans.
+TEST_F(LiveRun, TakesAcknowledgementsOverWhereTheLidarBeganAnew) {
+  Start();
+  int number = AcknowledgeTheWarning();
+  ASSERT_GT(number, 0);
+  for (int seq = 0; seq < 20; ++seq, ++number) SendScan(number, seq);
+  bool is_told = false;
+  for (const auto& bytes : live_.at("ALERTS")) {
+    const auto message = bus::Decode<alerts_t>(bytes).value();
+    is_told |= std::ranges::any_of(message.acknowledged, [](const alert_ack_t& one) { return one.source == "tracker"; });
+  }
+  EXPECT_TRUE(is_told);
+  ExpectReplayEqualsLive();
+}
+
+// At SIGTERM a scan waits for its POSE, which comes later and is recorded. What the tracker would make of it without, no replay could know.
+TEST_F(LiveRun, StoppedWhileAScanWaitsLeavesItToNobody) {
+  Start();
+  for (int i = 0; i < 20; ++i) SendScan(i);
+  SendSight(20, 20);
+  SendObstacles(20, 20);
+  ASSERT_GE(process_->service.num_waiting(), 1);
+  process_.reset();
+  SendPoses(20);
+  SendPoses(21);
+  for (int i = 22; i < 25; ++i) SendScan(i);
+  Start();
+  for (int i = 25; i < 40; ++i) SendScan(i);
+  ExpectReplayEqualsLive();
+}
+
+// The last scan of the run waits for a POSE that never comes.
+TEST_F(LiveRun, AtTheEndLeavesOutWhatTheLiveRunLeftOut) {
+  Start();
+  for (int i = 0; i < 20; ++i) SendScan(i);
+  SendSight(20, 20);
+  SendObstacles(20, 20);
+  ExpectReplayEqualsLive();
+}
+
+// A computer without a clock of its own: time goes back when the first fix comes, then the tracker is killed.
+TEST_F(LiveRun, FollowsARunInWhichTimeWentBack) {
+  Start();
+  for (int i = 3000; i < 3040; ++i) SendScan(i);
+  for (int i = 0; i < 30; ++i) SendScan(i);
+  process_.reset();
+  for (int i = 30; i < 40; ++i) SendScan(i);
+  Start();
+  for (int i = 40; i < 60; ++i) SendScan(i);
+  EXPECT_GT(live_.at("TRACKS").size(), 80U);
+  ExpectReplayEqualsLive();
 }
 
 // OBSTACLES and POSE from elsewhere, and no more.

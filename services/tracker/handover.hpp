@@ -1,0 +1,51 @@
+// What one process of the tracker leaves to the next: its last ALERTS, and TRACKS of those that were acknowledged.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "common/core/pose.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/alerts_t.hpp"
+#include "lookout/tracks_t.hpp"
+#include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/tracker.hpp"
+
+namespace lookout::tracker {
+
+/// For KeptAcknowledgements.
+struct Legacy {
+  Utime time;  // end of its last scan
+  Datum datum;
+  std::vector<Alert> alerts;
+  std::vector<Track> tracks;  // their places and velocities
+};
+
+/// @param tracks  those of the alerts
+/// @return nullopt where they are not well-formed, or not of one scan
+std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks);
+
+/// A file that a process killed at any time leaves behind whole: an lcm-log of one ALERTS and one TRACKS. It stands where who starts the process
+/// keeps things from one start to the next, $RUNTIME_DIRECTORY (systemd, lookout-up); without one nothing is left and nothing found.
+class Handover {
+ public:
+  explicit Handover(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// Of this process.
+  static Handover FromEnvironment();
+
+  /// Of the process before; nullopt where there is none, or its file is damaged.
+  std::optional<Legacy> Read() const;
+
+  /// After each scan. Only acknowledged alerts are worth keeping: without any, the file is removed. A disk that is full is none of a look-out's
+  /// troubles: then nothing is left.
+  void Write(const alerts_t& alerts, const tracks_t& tracks);
+
+ private:
+  std::filesystem::path File() const { return folder_ / "alerts.lcmlog"; }
+
+  std::filesystem::path folder_;  // empty: none
+  bool is_written_ = true;        // maybe, by the process before
+};
+
+}  // namespace lookout::tracker
