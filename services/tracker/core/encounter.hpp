@@ -51,7 +51,7 @@ ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const 
 /// Rules 13 to 15: overtaking from more than 22.5 deg abaft the beam of the one that is overtaken; head-on on courses that are reciprocal to 22.5 deg
 /// (rule 14 gives no number); else crossing, where what is to starboard of the own boat has the right of way. NONE where the other stands, where both
 /// part, beyond look_ahead_s, and where the probability says without doubt that it passes far off.
-/// Of each scan alone: rule 13 d, that who overtakes stays so until past and clear, is for whoever knows the scan before.
+/// Of each scan alone: rule 13 d, that who overtakes stays so until past and clear, is kept by Tracker.
 /// @param own_heading_rad  from north, clockwise
 Encounter EncounterOf(const Moving& own, double own_heading_rad, const Moving& other, const ClosestApproach& approach, const EncounterParams& params);
 

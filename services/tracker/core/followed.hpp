@@ -12,6 +12,7 @@
 #include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
 #include "services/tracker/core/body.hpp"
+#include "services/tracker/core/encounter.hpp"
 
 namespace lookout::tracker {
 
@@ -57,9 +58,10 @@ struct Followed {
   bool is_ended = false;
   bool is_seen_now = false;
   bool is_inside_now = false;
-  std::int64_t inside_of = 0;  // the track that was seen by the segment in which this one lies; 0: land
-  bool is_met = false;         // beams ended in it, in this scan
-  double detection = 0.0;      // probability, this scan
+  std::int64_t inside_of = 0;               // the track that was seen by the segment in which this one lies; 0: land
+  bool is_met = false;                      // beams ended in it, in this scan
+  double detection = 0.0;                   // probability, this scan
+  Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
   // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
   // or moves. Logistic regression on tracks of 14 scenes of the simulator with crests, foam, rain and fog (seeds 21 and 22).

@@ -136,9 +136,7 @@ std::vector<GatheredScan> Gatherer::AdvanceTo(Utime host_time) {
   pose_arrival_ = std::min(pose_arrival_.value_or(host_time), host_time);
   // Where the navigator is gone, each scan would wait in vain.
   const bool is_silent = host_time - *pose_arrival_ > timeout_;
-  const auto is_given_up = [&](const Waiting& front) {
-    return host_time - *front.arrival > timeout_ || (is_silent && HasSight(front.obstacles));
-  };
+  const auto is_given_up = [&](const Waiting& front) { return host_time - *front.arrival > timeout_ || (is_silent && HasSight(front.obstacles)); };
   while (!waiting_.empty() && is_given_up(waiting_.front())) {
     ++counts_["scans_timed_out"];
     last_timeout_ = host_time;

@@ -86,6 +86,13 @@ void Encountered(Track& track, const Pose& own, const TrackerParams& params) {
   track.bearing_rad = WrapTo2Pi(Atan2(off.dot(-port), off.dot(forward)));
 }
 
+// Rule 13 d: no later change of bearing makes a crossing out of it.
+Encounter StillOvertaking(Encounter before, const Track& track) {
+  if (track.approach.tcpa_s <= 0.0) return Encounter::kNone;
+  if (before != Encounter::kNone) return before;
+  return track.encounter == Encounter::kOvertaking || track.encounter == Encounter::kOvertaken ? track.encounter : Encounter::kNone;
+}
+
 }  // namespace
 
 Tracker::Tracker(const TrackerParams& params) : params_(params), memory_(std::make_unique<Memory>(params)) {}
@@ -156,10 +163,10 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     if (!track.is_confirmed && !track.body) continue;  // it is nothing yet
     Track out;
     out.id = track.id;
-    out.status = track.is_ended           ? TrackStatus::kLost
-                 : !track.is_confirmed    ? TrackStatus::kTentative
+    out.status = track.is_ended                               ? TrackStatus::kLost
+                 : !track.is_confirmed                        ? TrackStatus::kTentative
                  : unseen_s <= kCoastingS && existence >= 0.5 ? TrackStatus::kConfirmed
-                                          : TrackStatus::kCoasting;
+                                                              : TrackStatus::kCoasting;
     if (track.is_ended && !track.is_confirmed) continue;
     out.first = track.first;
     out.seen = track.seen;
@@ -191,7 +198,11 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.mean_returns = track.sum_returns / std::max(1, track.num_hits);
     out.kind = KindOf(out, is_moving);
     if (track.body && is_moving) out.turn_rate_radps = track.body->turn_rate_radps();
-    if (scan.own) Encountered(out, *scan.own, params_);
+    if (scan.own) {
+      Encountered(out, *scan.own, params_);
+      track.overtaking = StillOvertaking(track.overtaking, out);
+      if (out.encounter != Encounter::kNone && track.overtaking != Encounter::kNone) out.encounter = track.overtaking;
+    }
     picture.tracks.push_back(std::move(out));
   }
   memory.num_confirmed = std::ranges::count_if(memory.known.tracks, &Followed::is_confirmed);

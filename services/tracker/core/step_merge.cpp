@@ -1,4 +1,4 @@
-// Which tracks are one thing: a part of this file's rules each names what a person would say for it.
+// Which tracks are one thing.
 #include <algorithm>
 #include <cmath>
 

@@ -1,0 +1,210 @@
+#include "services/tracker/core/tracker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <gtest/gtest.h>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "common/core/angles.hpp"
+
+namespace lookout::tracker {
+namespace {
+
+constexpr double kScanS = 0.1;
+constexpr std::chrono::microseconds kBegin{1'700'000'000'000'000};
+
+struct Thing {
+  Eigen::Vector2d middle_m;
+  double length_m = 2.0;  // east
+  double width_m = 1.0;   // north
+  double thing_probability = 0.95;
+};
+
+// Scans of obstacles from elsewhere: what could have been seen is not known.
+class Sea {
+ public:
+  explicit Sea(const TrackerParams& params = {}) : tracker_(params) {}
+
+  const Picture& Scan(const std::vector<Thing>& things, const Eigen::Vector2d& own_m = Eigen::Vector2d::Zero(),
+                      const Eigen::Vector2d& own_mps = Eigen::Vector2d::Zero()) {
+    ScanInput input;
+    input.seq = num_scans_;
+    input.time = Utime(kBegin + std::chrono::milliseconds(100 * num_scans_++));
+    input.end_time = input.time + std::chrono::milliseconds(100);
+    input.datum = {60.0, 20.0, 0.0};
+    Pose pose;
+    pose.is_placed = true;
+    pose.time = input.end_time;
+    pose.datum = input.datum;
+    pose.position_map_m << own_m, 0.0;
+    pose.velocity_map_mps << own_mps, 0.0;
+    input.own = input.own_at_start = pose;
+    int id = 1;
+    for (const auto& thing : things) {
+      Seen seen;
+      seen.segment_id = id++;
+      seen.time = input.time;
+      seen.thing_probability = thing.thing_probability;
+      seen.is_sure = thing.thing_probability >= 0.5;
+      seen.num_returns = 10;
+      seen.position_m = thing.middle_m;
+      seen.covariance_m2 = seen.covariance_relative_m2 = Eigen::Matrix2d::Identity() * 0.0025;
+      seen.top_above_water_m = 1.0;
+      const Eigen::Vector2d half(0.5 * thing.length_m, 0.5 * thing.width_m);
+      seen.outline_m = {thing.middle_m - half, thing.middle_m + Eigen::Vector2d(half.x(), -half.y()), thing.middle_m + half,
+                        thing.middle_m + Eigen::Vector2d(-half.x(), half.y())};
+      input.seen.push_back(seen);
+    }
+    return tracker_.Update(input);
+  }
+
+ private:
+  Tracker tracker_;
+  int num_scans_ = 0;
+};
+
+std::vector<const Track*> Confirmed(const Picture& picture) {
+  std::vector<const Track*> found;
+  for (const auto& track : picture.tracks) {
+    if (track.status == TrackStatus::kConfirmed) found.push_back(&track);
+  }
+  return found;
+}
+
+TEST(Tracks, OfABuoyThatLooksLittleLikeAThingAreConfirmedSinceItStaysWhereItIs) {
+  Sea sea;
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise_m(0.0, 0.03);
+  std::set<std::int64_t> ids;
+  double confirmed_s = -1.0;
+  for (int scan = 0; scan < 60; ++scan) {
+    const auto& picture = sea.Scan({{{20.0 + noise_m(random), 5.0 + noise_m(random)}, 0.2, 0.1, 0.25}});
+    const auto confirmed = Confirmed(picture);
+    if (!confirmed.empty() && confirmed_s < 0.0) confirmed_s = kScanS * scan;
+    for (const auto* track : confirmed) ids.insert(track->id);
+  }
+  EXPECT_GE(confirmed_s, 0.2);
+  EXPECT_LE(confirmed_s, 3.0);
+  EXPECT_EQ(ids.size(), 1U);
+}
+
+TEST(Tracks, OfDropsAreNotConfirmed) {
+  Sea sea;
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> place_m(-12.0, 12.0);
+  for (int scan = 0; scan < 300; ++scan) {
+    std::vector<Thing> drops;
+    for (int i = 0; i < 40; ++i) drops.push_back({{place_m(random), place_m(random)}, 0.02, 0.02, 0.03});
+    EXPECT_TRUE(Confirmed(sea.Scan(drops)).empty()) << "scan " << scan;
+  }
+}
+
+TEST(Tracks, OfACrestThatRunsAndLooksLikeClutterAreNotConfirmed) {
+  Sea sea;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> noise_m(0.0, 0.4);
+  for (int scan = 0; scan < 30; ++scan) {
+    const double way_m = 2.5 * kScanS * scan;
+    EXPECT_TRUE(Confirmed(sea.Scan({{{-10.0 + way_m + noise_m(random), 8.0 + noise_m(random)}, 2.0, 0.5, 0.06}})).empty()) << "scan " << scan;
+  }
+}
+
+TEST(Tracks, OfABoatAndItsMastBecomeOne) {
+  Sea sea;
+  for (int scan = 0; scan < 60; ++scan) {
+    const auto& picture = sea.Scan({{{15.0, 0.0}, 6.0, 2.0}, {{15.5, 1.6}, 0.3, 0.3}});
+    if (scan < 5) continue;
+    ASSERT_EQ(Confirmed(picture).size(), 1U) << "scan " << scan;
+    if (scan > 40) EXPECT_EQ(Confirmed(picture).front()->segment_ids, (std::vector<std::int32_t>{1, 2}));
+  }
+}
+
+TEST(Tracks, OfTwoPartsThatMoveTogetherBecomeOneOfTheOlderName) {
+  Sea sea;
+  std::int64_t id = 0;
+  for (int scan = 0; scan < 100; ++scan) {
+    const double way_m = 2.0 * kScanS * scan;
+    std::vector<Thing> parts{{{30.0 - way_m, 10.0}, 3.0, 1.0}};
+    if (scan > 3) parts.push_back({{34.0 - way_m, 10.0}, 2.5, 1.0});
+    const auto confirmed = Confirmed(sea.Scan(parts));
+    if (scan == 3) {
+      ASSERT_EQ(confirmed.size(), 1U);
+      id = confirmed.front()->id;
+    }
+    if (scan < 60) continue;
+    ASSERT_EQ(confirmed.size(), 1U) << "scan " << scan;
+    EXPECT_EQ(confirmed.front()->id, id);
+    EXPECT_NEAR(confirmed.front()->velocity_mps.x(), -2.0, 0.1);
+  }
+}
+
+TEST(Tracks, OfTwoBoatsSideBySideStayTwo) {
+  Sea sea;
+  for (int scan = 0; scan < 300; ++scan) {
+    const auto& picture = sea.Scan({{{15.0, 0.0}, 6.0, 2.0}, {{15.0, 3.0}, 6.0, 2.0}});
+    if (scan > 3) EXPECT_EQ(Confirmed(picture).size(), 2U) << "scan " << scan;
+  }
+}
+
+TEST(Tracks, OfBoatsThatPartKeepTheirIds) {
+  Sea sea;
+  std::set<std::int64_t> ids;
+  for (int scan = 0; scan < 150; ++scan) {
+    const double way_m = 1.0 * kScanS * scan;
+    for (const auto* track : Confirmed(sea.Scan({{{15.0 - way_m, 0.0}, 4.0, 1.5}, {{15.0 + way_m, 4.0}, 4.0, 1.5}}))) ids.insert(track->id);
+  }
+  EXPECT_EQ(ids.size(), 2U);
+}
+
+TEST(Tracks, OfWhatIsGoneEndAndTheirIdsAreNotUsedAgain) {
+  Sea sea;
+  for (int scan = 0; scan < 20; ++scan) sea.Scan({{{15.0, 0.0}}});
+  const auto id = Confirmed(sea.Scan({{{15.0, 0.0}}})).front()->id;
+  bool is_lost = false;
+  for (int scan = 0; scan < 40; ++scan) {
+    const auto& picture = sea.Scan({});
+    is_lost =
+        is_lost || std::ranges::any_of(picture.tracks, [&](const Track& track) { return track.id == id && track.status == TrackStatus::kLost; });
+    if (scan == 39) EXPECT_TRUE(picture.tracks.empty());
+  }
+  EXPECT_TRUE(is_lost);
+  for (int scan = 0; scan < 20; ++scan) {
+    for (const auto& track : sea.Scan({{{15.0, 0.0}}}).tracks) EXPECT_GT(track.id, id);
+  }
+}
+
+TEST(Tracks, DoNotOutliveAJumpOfThePosition) {
+  Sea sea;
+  for (int scan = 0; scan < 20; ++scan) sea.Scan({{{15.0, 0.0}}});
+  const auto id = Confirmed(sea.Scan({{{15.0, 0.0}}})).front()->id;
+  const Eigen::Vector2d jump_m(10'000.0, 0.0);
+  for (int scan = 0; scan < 20; ++scan) {
+    for (const auto& track : sea.Scan({{jump_m + Eigen::Vector2d(15.0, 0.0)}}, jump_m).tracks) {
+      EXPECT_GT(track.id, id);
+      EXPECT_TRUE(track.velocity_mps.isZero(0.0));
+    }
+  }
+}
+
+// Rule 13 d: who comes up from abaft the beam stays the one that overtakes while the bearing changes.
+TEST(Tracks, OfWhoOvertakesStaySoUntilPastAndClear) {
+  TrackerParams params;
+  params.encounter = {50.0, 60.0};
+  Sea sea(params);
+  std::set<Encounter> seen;
+  Encounter last = Encounter::kNone;
+  for (int scan = 0; scan < 400; ++scan) {
+    const double time_s = kScanS * scan;
+    const auto confirmed = Confirmed(sea.Scan({{{4.0, -40.0 + 5.0 * time_s}, 2.0, 4.0}}, {0.0, 2.0 * time_s}, {0.0, 2.0}));
+    if (confirmed.empty() || confirmed.front()->velocity_mps.isZero(0.0)) continue;
+    last = confirmed.front()->encounter;
+    seen.insert(last);
+  }
+  EXPECT_EQ(last, Encounter::kNone);
+  EXPECT_EQ(seen, (std::set{Encounter::kNone, Encounter::kOvertaken}));
+}
+
+}  // namespace
+}  // namespace lookout::tracker
