@@ -48,6 +48,37 @@ count_obstacles() {  # LOG
     }'
 }
 
+# What the tracker made of a log: tracks (confirmed ones), the nearest approach that was foretold, and alerts.
+describe_tracks() {  # LOG
+  "$bin/lookout-export" --in "$1" --table tracks | LC_ALL=C awk -F, '
+    NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
+    $column["status"] != "confirmed" && $column["status"] != "coasting" { next }
+    {
+      id = $column["track_id"]
+      tracks[id] = 1
+      if ($column["utime_us"] != last) { last = $column["utime_us"]; num_now = 0 }
+      ++num_now
+      if ($column["speed_mps"] > 0) moving[id] = 1
+      if ($column["tcpa_s"] > 0 && (least_id == "" || $column["cpa_m"] < least)) {
+        least = $column["cpa_m"] + 0; least_id = id; kind = $column["kind"]; tcpa = $column["tcpa_s"]
+      }
+    }
+    END {
+      for (id in tracks) ++num_tracks
+      for (id in moving) ++num_moving
+      printf "%d tracks (%d in the last scan), %d of them moving", num_tracks, num_now, num_moving
+      if (least_id != "") printf "; least closest approach foretold: %.1f m in %.0f s, of %s %s", least, tcpa, kind, least_id
+      print ""
+    }'
+  "$bin/lookout-export" --in "$1" --table alerts | LC_ALL=C awk -F, '
+    NR == 1 { for (i = 1; i <= NF; ++i) column[$i] = i; next }
+    { id = $column["alert_id"]; if (id > 0) { level[id] = $column["level"] == "warning" || level[id] == "warning" ? "warning" : "caution"; cause[id] = $column["cause"] } }
+    END {
+      for (id in level) { ++num; ++of[level[id]]; if (cause[id] == "guard_zone") ++num_zone }
+      printf "alerts: %d (warnings: %d, cautions: %d; %d of the guard zone)\n", num, of["warning"], of["caution"], num_zone
+    }'
+}
+
 rm -rf "$work"
 mkdir -p "$work" logs
 
@@ -129,6 +160,7 @@ cat "$work/top.out"
 say "what was recorded (missing: messages lost on their way)"
 "$bin/lookout-log" info "$log"
 count_obstacles "$log"
+describe_tracks "$log"
 
 say "the recording computed again from its raw channels, and compared, byte by byte"
 "$bin/lookout-replay" --config "$live_config" --in "$log" --out "$work/again.lcmlog" >/dev/null 2>"$work/again.out" || { cat "$work/again.out" >&2; exit 1; }
@@ -137,6 +169,9 @@ is_equal=1
 
 picture=${log%.lcmlog}.svg
 "$bin/lookout-export" --in "$log" --table returns --format svg --out "$picture"
+# A capture of another day has no place on the earth, live.
+voyage=${log%.lcmlog}_tracks.svg
+"$bin/lookout-export" --in "$log" --table tracks --format svg --out "$voyage" 2>"$work/voyage.out" || voyage=''
 
 route_hint=''
 [ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] || route_hint=$'\n          first, as root, for what plays or watches: ip route add 239.255.76.0/24 dev lo'
@@ -145,9 +180,9 @@ cat <<TEXT
 log       $log
           play it:      lcm-logplayer $log
           again:        $bin/lookout-replay --config $config --in $log --out again.lcmlog
-          tables:       $bin/lookout-export --in $log --table obstacles
+          tables:       $bin/lookout-export --in $log --table obstacles (tracks, alerts, ...)
           watch it:     $bin/lookout-top in a terminal, then lcm-logplayer in another$route_hint
-picture   $picture
+picture   $picture${voyage:+ (one scan), $voyage (the whole log: tracks, land, alerts)}
           open it in a browser, or: xdg-open $picture
 more      ./dev build makes the rest: lookout-eval (obstacles against the simulator's truth), lookout-spy (the bus on a display), lookout-doctor
 TEXT

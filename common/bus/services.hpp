@@ -26,7 +26,7 @@ inline constexpr std::array kServices{
     ServiceRow{"vlp16", "scans of the lidar", 10, "network", "new config, new run", "scan under way, sensor's clock, sender", {}},
     ServiceRow{"segmenter", "obstacles in the lidar's scans", 10, "network", "checks the config", "none", {&kLidarScan}},
     ServiceRow{"navigator", "position and attitude of the vessel", 10, "serial", "new config, new run", "filter, latest measurements", {&kLidarNmea}},
-    ServiceRow{"georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans, alarm", {&kSegments, &kPose}},
+    ServiceRow{"georeferencer", "obstacles on the earth", 10, "network", "checks the config", "poses, waiting scans", {&kSegments, &kPose}},
     ServiceRow{"tracker",
                "tracks, closest approach and alerts",
                10,

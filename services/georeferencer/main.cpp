@@ -12,10 +12,7 @@ constexpr std::chrono::milliseconds kTick(10);
 
 void Run(lookout::runtime::Process& process, const lookout::georeferencer::Params& params) {
   lookout::georeferencer::Service service(process.bus(), params);
-  process.Every(kTick, [&] {
-    service.AdvanceTo(lookout::runtime::HostNow());
-    if (service.TakeAlarmChange()) process.ReportNow();
-  });
+  process.Every(kTick, [&service] { service.AdvanceTo(lookout::runtime::HostNow()); });
   process.Run([&service] { return service.Report(); });
   service.Finish();
 }

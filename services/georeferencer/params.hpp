@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "services/georeferencer/core/guard_zone.hpp"
 #include "services/georeferencer/core/placement.hpp"
 
 namespace lookout::georeferencer {
@@ -13,7 +12,6 @@ namespace lookout::georeferencer {
 struct Params {
   PlacementParams placement;
   std::chrono::microseconds pose_timeout{0};
-  GuardZoneParams guard_zone{};
   std::optional<GeodeticPlace> datum = std::nullopt;  // of boat.txtpb; nullopt: that of POSE is the first fix, whatever it is
 };
 

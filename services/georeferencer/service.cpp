@@ -18,13 +18,6 @@ namespace {
 // POSE comes 50 times a second, SEGMENTS once a scan: HEALTH names a silence that lasts this long, and a time-out for as long.
 constexpr std::chrono::seconds kSilence(2);
 
-// "obstacle within 10.0 m: 7.3 m, 12 deg to starboard"
-std::string AlarmText(const NearestPoint& nearest, double guard_range_m) {
-  const double bearing_deg = RadToDeg(WrapToPi(nearest.bearing_rad));
-  return fmt::format("obstacle within {:.1f} m: {:.1f} m, {:.0f} deg to {}", guard_range_m, nearest.range_m, std::abs(bearing_deg),
-                     bearing_deg < 0.0 ? "port" : "starboard");
-}
-
 // What the status of POSE means for obstacles; empty where it is OK.
 std::string_view PoseText(std::int32_t pose_status) {
   switch (pose_status) {
@@ -43,13 +36,7 @@ std::string_view PoseText(std::int32_t pose_status) {
 
 }  // namespace
 
-Service::Service(bus::Bus& bus, const Params& params)
-    : bus_(bus),
-      georeferencer_(params.placement, params.pose_timeout),
-      guard_zone_(params.guard_zone),
-      T_vessel_lidar_(params.placement.T_vessel_lidar),
-      datum_(params.datum) {
-  if (guard_zone_.range_m > 0.0) alarm_.emplace();
+Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), georeferencer_(params.placement, params.pose_timeout), datum_(params.datum) {
   bus::Subscribe<segments_t>(bus_, bus::kSegments, [this](const segments_t& message) { OnSegments(message); });
   bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
 }
@@ -58,9 +45,7 @@ void Service::OnSegments(const segments_t& message) {
   auto part = ToSegmentPart(message, bus::kMaxMessageBytes);
   if (const auto* refusal = std::get_if<Refusal>(&part)) return segments_refused_.Add(*refusal);
   segments_seen_ = now_;
-  auto& segments = std::get<SegmentPart>(part);
-  if (alarm_) alarm_->Add(segments.head, NearestInZone(guard_zone_, segments, T_vessel_lidar_));
-  Publish(georeferencer_.AddSegments(std::move(segments)));
+  Publish(georeferencer_.AddSegments(std::get<SegmentPart>(std::move(part))));
 }
 
 void Service::OnPose(const pose_t& message) {
@@ -85,13 +70,7 @@ void Service::AdvanceTo(Utime host_time) {
   now_ = host_time;
   // Waiting begins with the first call, or again where the host's clock was set back.
   for (auto* seen : {&pose_seen_, &segments_seen_}) *seen = std::min(seen->value_or(host_time), host_time);
-  if (alarm_) alarm_->AdvanceTo(host_time);
   Publish(georeferencer_.AdvanceTo(host_time));
-}
-
-bool Service::TakeAlarmChange() {
-  if (!alarm_) return false;
-  return std::exchange(reported_alarm_, alarm_->state()) != alarm_->state();
 }
 
 void Service::Finish() { Publish(georeferencer_.Finish()); }
@@ -112,12 +91,6 @@ HealthReport Service::Report() const {
   poses_refused_.AppendTo(report.counters);
 
   const auto silence = [this](std::optional<Utime> seen) { return now_ && seen ? *now_ - *seen : std::chrono::microseconds(0); };
-  // The alarm comes first: HEALTH is read from its beginning.
-  if (alarm_) {
-    if (const auto nearest = alarm_->nearest()) report.Degrade(AlarmText(*nearest, guard_zone_.range_m));
-    if (alarm_->is_unwatched()) report.Degrade(alarm_->UnwatchedText());
-    for (const auto& counter : alarm_->counters()) report.counters.push_back(counter);
-  }
   if (silence(segments_seen_) >= kSilence)
     report.Degrade(fmt::format("no SEGMENTS for {} s", std::chrono::floor<std::chrono::seconds>(silence(segments_seen_)).count()));
   if (silence(pose_seen_) >= kSilence) {

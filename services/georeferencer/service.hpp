@@ -12,8 +12,6 @@
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
-#include "services/georeferencer/core/guard_zone.hpp"
-#include "services/georeferencer/guard_alarm.hpp"
 #include "services/georeferencer/params.hpp"
 #include "services/georeferencer/wire.hpp"
 
@@ -32,10 +30,6 @@ class Service {
   /// Messages of SEGMENTS that wait for POSE.
   std::int64_t num_waiting() const { return georeferencer_.num_waiting(); }
 
-  /// Live only: whether the alarm came up, was cleared, or the guard zone came to be watched or unwatched, since the call before. Such a change is
-  /// worth a HEALTH message at once: it may be over before the next.
-  bool TakeAlarmChange();
-
   HealthReport Report() const;
 
  private:
@@ -46,10 +40,6 @@ class Service {
 
   bus::Bus& bus_;
   Georeferencer georeferencer_;
-  GuardZoneParams guard_zone_;
-  Eigen::Isometry3d T_vessel_lidar_;
-  std::optional<GuardAlarm> alarm_;  // where a guard zone is configured
-  GuardAlarm::State reported_alarm_;
   std::optional<GeodeticPlace> datum_;  // of boat.txtpb
   std::optional<Datum> checked_datum_;
   std::string datum_complaint_;

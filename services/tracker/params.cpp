@@ -1,7 +1,10 @@
 #include "services/tracker/params.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
@@ -20,6 +23,13 @@ std::vector<Eigen::Vector2d> OwnHull(const config::BoatFacts& boat) {
   if (boat.hull_m) half_m = half_m.cwiseMin(Eigen::Vector2d(boat.hull_m->length_m, boat.hull_m->beam_m) / 2.0);
   const Eigen::Vector2d mirrored_m(half_m.x(), -half_m.y());
   return {center_m - half_m, center_m + mirrored_m, center_m + half_m, center_m - mirrored_m};
+}
+
+std::string InsideHullText(const GuardZoneParams& zone, const Eigen::AlignedBox3d& own_vessel_box_m) {
+  return fmt::format(
+      "the zone of {:.1f} m lies wholly inside own_vessel of boat.txtpb, which reaches {:.1f} m forward, {:.1f} m aft, {:.1f} m to port "
+      "and {:.1f} m to starboard: returns in there are own boat, so nothing can raise an alert",
+      zone.range_m, own_vessel_box_m.max().x(), -own_vessel_box_m.min().x(), own_vessel_box_m.max().y(), -own_vessel_box_m.min().y());
 }
 
 GuardZoneParams ToGuardZone(const config::GuardZone& zone) {
@@ -53,7 +63,7 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   if (message->has_guard_zone()) {
     params.guard_zone = ToGuardZone(message->guard_zone());
     if (IsInsideBox(params.guard_zone, boat->own_vessel_box_m)) {
-      faults.Add(config::FaultLine(file, "guard_zone.range_m", "the zone lies wholly inside own_vessel of boat.txtpb: nothing can be seen there"));
+      faults.Add(config::FaultLine(file, "guard_zone.range_m", InsideHullText(params.guard_zone, boat->own_vessel_box_m)));
       faults.ThrowIfAny();
     }
   }

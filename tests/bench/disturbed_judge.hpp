@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/bus/services.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/health_t.hpp"
 #include "tests/bench/truth_beside.hpp"
 
@@ -28,7 +29,7 @@ inline constexpr double kOutlineM = 0.5;
 // The guard zone of this run, all round, and what must be within it for certain to be missed.
 inline constexpr double kZoneM = 10.0;
 inline constexpr double kSurelyInZoneM = 8.5;
-// HEALTH that says OK when something has been in the zone for so long is a silent alarm.
+// ALERTS without one of the zone, and no word that nobody looks, when something has been in the zone for so long, are a silent alarm.
 inline constexpr milliseconds kAlarmDelay{2000};
 inline constexpr seconds kMostUntilBack{10};
 // Memory of a life of six minutes or more: from the fourth minute to its last.
@@ -68,7 +69,7 @@ struct Figures {
   double worst_m = 0.0;                                              // corner from the truth
   double worst_excess_m = -std::numeric_limits<double>::infinity();  // over what is tolerated
   std::map<std::string, std::int64_t> wrong_by_disturbance;
-  std::int64_t num_health_in_zone = 0;
+  std::int64_t num_alerts_in_zone = 0;
   std::int64_t num_told = 0;
   std::int64_t num_silent = 0;
   std::int64_t num_alarms_without = 0;
@@ -125,7 +126,15 @@ class DisturbedJudge {
     if (truth_ == nullptr) return;
     ++figures_.num_reports[health.process];
     figures_.num_degraded[health.process] += health.state == health_t::STATE_OK ? 0 : 1;
-    if (health.process == "georeferencer") JudgeAlarm(health);
+  }
+
+  void OnAlerts(const alerts_t& message) {
+    if (message.is_watch) {
+      is_unwatched_ = std::ranges::any_of(message.alerts, [](const alert_t& alert) {
+        return alert.cause == alert_t::CAUSE_WATCH && alert.state != alert_t::STATE_CLEARED;
+      });
+    }
+    if (truth_ != nullptr) JudgeAlarm(message);
   }
 
   void OnObstacles(const obstacles_t& message) {
@@ -175,7 +184,7 @@ class DisturbedJudge {
     std::printf(
         "minute %d: %lld scans, %lld sure obstacles judged, %lld wrong, worst %.2f m; %lld of %lld reports in the zone silent; %zu unexpected ends\n",
         minute, static_cast<long long>(figures_.num_scans), static_cast<long long>(figures_.num_judged), static_cast<long long>(figures_.num_wrong),
-        figures_.worst_m, static_cast<long long>(figures_.num_silent), static_cast<long long>(figures_.num_health_in_zone),
+        figures_.worst_m, static_cast<long long>(figures_.num_silent), static_cast<long long>(figures_.num_alerts_in_zone),
         figures_.unexpected_ends.size());
     std::fflush(stdout);
   }
@@ -218,8 +227,8 @@ class DisturbedJudge {
                 static_cast<long long>(figures_.num_unplaced));
     std::printf("farthest from the truth %.2f m; worst beyond %.0f stated deviations and %.1f m: %+.2f m\n", figures_.worst_m, kMaxDeviations,
                 kOutlineM, figures_.worst_excess_m);
-    std::printf("alarm: %lld reports of georeferencer with something surely in the zone for %.1f s, %lld told; alarms with nothing there: %lld\n",
-                static_cast<long long>(figures_.num_health_in_zone), ToSeconds(kAlarmDelay), static_cast<long long>(figures_.num_told),
+    std::printf("alarm: %lld messages of ALERTS with something surely in the zone for %.1f s, %lld told; alarms with nothing there: %lld\n",
+                static_cast<long long>(figures_.num_alerts_in_zone), ToSeconds(kAlarmDelay), static_cast<long long>(figures_.num_told),
                 static_cast<long long>(figures_.num_alarms_without));
     for (const auto& end : figures_.unexpected_ends) std::printf("ended by itself: %s\n", end.c_str());
     for (const auto& late : figures_.not_back) std::printf("late: %s\n", late.c_str());
@@ -238,7 +247,7 @@ class DisturbedJudge {
       std::printf("growth of memory is not judged: no process lived for %.0f s\n", kLeastLifeS);
     }
     // A run in which nothing was judged proves nothing.
-    const bool is_enough = figures_.num_judged > 10 * num_seconds && figures_.num_health_in_zone * 20 > num_seconds;
+    const bool is_enough = figures_.num_judged > 10 * num_seconds && figures_.num_alerts_in_zone * 20 > num_seconds;
     if (!is_enough) std::printf("MISSED: too little was judged\n");
     return is_good && is_enough;
   }
@@ -283,8 +292,8 @@ class DisturbedJudge {
     memory.clear();
   }
 
-  void JudgeAlarm(const health_t& health) {
-    const Utime time(std::chrono::microseconds(health.utime_us));
+  void JudgeAlarm(const alerts_t& message) {
+    const Utime time(std::chrono::microseconds(message.end_utime_us));
     bool is_in_zone = true;
     bool is_near = false;
     for (auto before = milliseconds(0); before <= kAlarmDelay; before += milliseconds(100)) {
@@ -292,11 +301,15 @@ class DisturbedJudge {
       is_in_zone = is_in_zone && nearest_m < kSurelyInZoneM;
       is_near = is_near || nearest_m < kZoneM + 1.0;
     }
-    const bool is_told = health.state != health_t::STATE_OK;
-    const bool is_alarm = health.reason.find("obstacle within") != std::string::npos;
+    const bool is_alarm = std::ranges::any_of(message.alerts, [](const alert_t& alert) {
+      return alert.cause == alert_t::CAUSE_GUARD_ZONE && (alert.state == alert_t::STATE_ACTIVE || alert.state == alert_t::STATE_ACKNOWLEDGED);
+    });
+    // A process that has just begun says in HEALTH that nobody looks yet.
+    const bool is_starting = time - Utime(std::chrono::microseconds(message.begin_utime_us)) < kAlarmDelay;
+    const bool is_told = is_alarm || is_unwatched_ || is_starting;
     if (is_alarm && !is_near) ++figures_.num_alarms_without;
     if (!is_in_zone) return;
-    ++figures_.num_health_in_zone;
+    ++figures_.num_alerts_in_zone;
     figures_.num_told += is_told ? 1 : 0;
     if (is_told) return;
     ++figures_.num_silent;
@@ -329,6 +342,7 @@ class DisturbedJudge {
     double late_megabytes;
   };
 
+  bool is_unwatched_ = false;  // by the last word of the watch
   const TruthBeside* truth_ = nullptr;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_sample_{};

@@ -97,7 +97,8 @@ class DisturbedRun {
     fs::create_directories(folder_);
     const auto demo = support::kDemoConfig;
     fs::copy(demo, folder_ / "config");
-    std::ofstream(folder_ / "config/georeferencer.txtpb") << "pose_timeout_s: 0.5\nmounting_sd_deg: 0\nguard_zone { range_m: " << kZoneM << " }\n";
+    std::ofstream(folder_ / "config/georeferencer.txtpb") << "pose_timeout_s: 0.5\nmounting_sd_deg: 0\n";
+    std::ofstream(folder_ / "config/tracker.txtpb") << "guard_zone { range_m: " << kZoneM << " }\n";
     // Another boat, 41 km to the north, with ports of its own.
     fs::copy(demo, folder_ / "other");
     std::ofstream(folder_ / "other/boat.txtpb", std::ios::app) << "\ndatum { latitude_deg: 44.0 longitude_deg: -72.15 ellipsoid_height_m: 201 }\n";
@@ -257,6 +258,8 @@ class DisturbedRun {
   void OnMessage(const std::string& channel, Bytes bytes) {
     if (channel == bus::kHealth.name) {
       if (const auto health = bus::Decode<health_t>(bytes)) judge_.OnHealth(*health);
+    } else if (channel == bus::kAlerts.name) {
+      if (const auto alerts = bus::Decode<alerts_t>(bytes)) judge_.OnAlerts(*alerts);
     } else if (channel == bus::kObstacles.name) {
       if (const auto obstacles = bus::Decode<obstacles_t>(bytes)) judge_.OnObstacles(*obstacles);
     }

@@ -99,7 +99,6 @@ const std::vector<Rule>& Rules() {
       // A file that one process leaves to the next.
       {"services/tracker/handover\\..pp", {"common/core", "common/io", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
-      {"services/georeferencer/guard_alarm\\..pp", {"common/core", "common/messages", "OWN", "OWN/core", "fmt"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/bus/lcm_bus.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "tests/support/child.hpp"
@@ -24,7 +25,7 @@ using std::chrono::seconds;
 
 const std::string kProgram = Bin("top");
 
-// A bus with an alarm, an obstacle 4.5 m ahead, and rubbish on every channel.
+// A bus with an alert, an obstacle 4.5 m ahead, and rubbish on every channel.
 class Talk {
  public:
   Talk() : thread_([this] { Run(); }) {}
@@ -41,22 +42,24 @@ class Talk {
     std::mt19937 random(1);
     health_t health{};
     health.process = "georeferencer";
-    health.reason = "obstacle within 10.0 m: 4.5 m, 12 deg to port";
-    health.num_counters = 2;
-    health.counters.resize(2);
-    health.counters[0].name = "alarm_active";
-    health.counters[0].count = 1;
-    health.counters[1].name = "nearest_cm";
-    health.counters[1].count = 450;
+    alerts_t alerts{};
+    alerts.num_alerts = 1;
+    alerts.alerts.resize(1);
+    alerts.alerts[0].id = 1;
+    alerts.alerts[0].cause = alert_t::CAUSE_GUARD_ZONE;
+    alerts.alerts[0].level = alert_t::LEVEL_WARNING;
+    alerts.alerts[0].state = alert_t::STATE_ACTIVE;
+    alerts.alerts[0].text = "obstacle in the guard zone: 4.5 m, 12 deg to port";
     obstacles_t obstacles{};
     obstacles.num_parts = 1;
     obstacles.num_obstacles = 1;
     obstacles.obstacles.resize(1);
     obstacles.obstacles[0].id = 7;
     obstacles.obstacles[0].range_m = 4.5F;
-    for (; !is_stopping_; ++health.seq, ++obstacles.seq) {
+    for (; !is_stopping_; ++health.seq, ++obstacles.seq, ++alerts.seq) {
       bus::Publish(lcm, bus::kHealth, health);
       bus::Publish(lcm, bus::kObstacles, obstacles);
+      bus::Publish(lcm, bus::kAlerts, alerts);
       for (const auto& channel : bus::kChannels) {
         std::vector<std::uint8_t> rubbish(random() % 100);
         for (auto& byte : rubbish) byte = static_cast<std::uint8_t>(random());
@@ -152,7 +155,7 @@ TEST(Top, OncePrintsTheBusAsText) {
   const TempDir folder;
   const auto result = RunProgram({kProgram, "--once", "--seconds", "2"}, (folder / "out").string());
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_EQ(result.output.rfind("ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port\n", 0), 0U) << result.output;
+  EXPECT_EQ(result.output.rfind("WARNING: obstacle in the guard zone: 4.5 m, 12 deg to port\n", 0), 0U) << result.output;
   EXPECT_NE(result.output.find("\nLIDAR_SCAN "), std::string::npos) << result.output;
   EXPECT_NE(result.output.find(" georeferencer ok "), std::string::npos) << result.output;
   EXPECT_NE(result.output.find("  1     7     4.5  000"), std::string::npos) << result.output;
@@ -177,7 +180,7 @@ TEST(Top, TakesANewSizeAndEndsOnQ) {
   OnTerminal top("xterm");
   EXPECT_TRUE(top.Shows("12 deg to port"));
   EXPECT_TRUE(top.Shows("4.5  000"));
-  // Narrower and lower: drawn anew, the alarm still on top.
+  // Narrower and lower: drawn anew, the alert still on top.
   top.Resize(10, 60);
   EXPECT_TRUE(top.Shows("12 deg to port"));
   top.Press('s');

@@ -70,7 +70,7 @@ Findings CheckMounting(const ConfigSeen& config);
 /// Free space for logs.
 Findings CheckDisk(const DiskSeen& disk);
 
-/// HEALTH of each process; the guard zone; obstacles.
+/// HEALTH of each process; obstacles; whether there is a look-out, and what it warns of.
 Findings CheckProcesses(const Observations& seen);
 
 /// All of the above, in the order in which one depends on the other.

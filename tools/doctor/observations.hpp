@@ -12,6 +12,7 @@
 #include "common/config/boat.hpp"
 #include "common/core/utime.hpp"
 #include "common/io/network.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/attitude_t.hpp"
 #include "lookout/gnss_fix_t.hpp"
 #include "lookout/health_t.hpp"
@@ -115,6 +116,16 @@ struct ObstaclesSeen {
   std::int64_t num_timeouts = 0;
 };
 
+/// TRACKS and ALERTS that were heard.
+struct LookOutSeen {
+  std::int64_t num_scans = 0;
+  std::int64_t num_tracks = 0;  // confirmed and coasting ones of the last scan
+  std::int64_t num_moving = 0;  // of them
+  Utime tracks_heard{};         // the last
+  std::optional<alerts_t> alerts;
+  Utime alerts_heard{};
+};
+
 struct DiskSeen {
   std::string other_host;        // where the recorder runs, when that is not here: its disk cannot be seen from here
   std::filesystem::path folder;  // absolute; empty = not known
@@ -135,6 +146,7 @@ struct Observations {
   NavigationSeen navigation;
   std::map<std::string, std::vector<ProcessSeen>> processes;  // by name
   ObstaclesSeen obstacles;
+  LookOutSeen look_out;
   DiskSeen disk;
   Utime end{};  // host time at which watching ended
   double watched_s = 0.0;

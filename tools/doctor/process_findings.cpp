@@ -1,4 +1,4 @@
-// HEALTH of the processes, the guard zone, and obstacles.
+// HEALTH of the processes, obstacles, and the look-out.
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -16,13 +16,13 @@ namespace lookout::doctor {
 namespace {
 
 constexpr const char* kProcessSubject = "process";
-constexpr const char* kGuardZoneSubject = "guard zone";
 constexpr const char* kObstaclesSubject = "obstacles";
+constexpr const char* kLookOutSubject = "look-out";
 
-// Its HEALTH has the alarm.
-constexpr std::string_view kAlarmProcess = "georeferencer";
 // HEALTH comes once a second: two may be lost.
 constexpr double kHealthSilenceS = 3.5;
+// ALERTS come with every scan, and twice a second where none comes.
+constexpr double kLookOutSilenceS = 1.0;
 
 bool IsAlive(const ProcessSeen& process, Utime end) { return ToSeconds(end - process.heard_last) <= kHealthSilenceS; }
 
@@ -75,26 +75,6 @@ Finding Missing(const std::string& name, bool was_heard) {
                "start lookout-" + name + "; its last lines (journalctl -u lookout-" + name + ") say why it ended");
 }
 
-// Of georeferencer, where it has a guard zone.
-Findings CheckGuardZone(const health_t& health) {
-  const auto count = [&health](const char* name) {
-    const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
-    return found == health.counters.end() ? -1 : found->count;
-  };
-  if (count("alarm_active") < 0) return {};
-  if (count("zone_unwatched") > 0) {
-    return {Fault(kGuardZoneSubject, "the guard zone is not watched: no alarm can be raised now",
-                  "whole scans must come: the lidar and process lines above; keep a look-out by eye meanwhile")};
-  }
-  const std::string words = "the guard zone is watched, " + std::to_string(count("alarms")) + " alarms and " +
-                            std::to_string(count("zone_times_unwatched")) + " times unwatched since the start";
-  if (count("alarm_active") > 0) {
-    return {Warning(kGuardZoneSubject, words + "; something is in it now, " + Fixed(0.01 * static_cast<double>(count("nearest_cm")), 1) + " m off",
-                    "if it is the own boat or spray: correct own_vessel in boat.txtpb, guard_zone in georeferencer.txtpb")};
-  }
-  return {Ok(kGuardZoneSubject, words)};
-}
-
 Findings CheckObstacles(const Observations& seen) {
   const auto& obstacles = seen.obstacles;
   if (obstacles.num_scans == 0) {
@@ -114,6 +94,34 @@ Findings CheckObstacles(const Observations& seen) {
                     "the gnss and heading lines above")};
   }
   return {Ok(kObstaclesSubject, words + (obstacles.num_obstacles > 0 ? ", all placed on the earth" : ""))};
+}
+
+Findings CheckLookOut(const Observations& seen) {
+  const auto& look_out = seen.look_out;
+  const std::string cure = "the process and lidar lines above; keep a look-out by eye meanwhile";
+  if (!look_out.alerts && look_out.num_scans == 0) {
+    if (seen.obstacles.num_scans == 0) return {};  // nothing to make it of
+    return {Fault(kLookOutSubject, "no look-out: OBSTACLES come, but no TRACKS and ALERTS: nothing will warn you", cure)};
+  }
+  const double alerts_age_s = ToSeconds(seen.end - look_out.alerts_heard);
+  const double tracks_age_s = ToSeconds(seen.end - look_out.tracks_heard);
+  if (!look_out.alerts || alerts_age_s > kLookOutSilenceS) {
+    return {Fault(kLookOutSubject, "no look-out: no ALERTS" + (look_out.alerts ? " for " + Fixed(alerts_age_s, 1) + " s" : ""), cure)};
+  }
+  const auto is_active = [](const alert_t& alert) { return alert.state == alert_t::STATE_ACTIVE; };
+  for (const auto& alert : look_out.alerts->alerts) {
+    if (alert.cause == alert_t::CAUSE_WATCH && alert.state != alert_t::STATE_CLEARED) return {Fault(kLookOutSubject, alert.text, cure)};
+  }
+  if (look_out.num_scans == 0 || tracks_age_s > kLookOutSilenceS) {
+    return {Fault(kLookOutSubject, "ALERTS come, but no TRACKS" + (look_out.num_scans > 0 ? " for " + Fixed(tracks_age_s, 1) + " s" : ""), cure)};
+  }
+  const std::string words = Fixed(static_cast<double>(look_out.num_scans) / seen.watched_s, 1) + " scans/s, " + Count(look_out.num_tracks, "track") +
+                            ", " + std::to_string(look_out.num_moving) + " moving";
+  const auto& alerts = look_out.alerts->alerts;
+  const auto num_active = std::ranges::count_if(alerts, is_active);
+  if (num_active == 0) return {Ok(kLookOutSubject, words + ", no alert")};
+  return {Warning(kLookOutSubject, words + "; " + Count(num_active, "alert") + ", the gravest: " + std::ranges::find_if(alerts, is_active)->text,
+                  "look there; if it is the own boat or spray: correct own_vessel in boat.txtpb, guard_zone in tracker.txtpb")};
 }
 
 }  // namespace
@@ -144,7 +152,6 @@ Findings CheckProcesses(const Observations& seen) {
     }
     for (const auto* process : alive) {
       findings.push_back(CheckProcess(name, *process));
-      if (name == kAlarmProcess) std::ranges::copy(CheckGuardZone(process->last), std::back_inserter(findings));
     }
     if (alive.size() > 1) {
       findings.push_back(Fault(kProcessSubject, name + " runs " + std::to_string(alive.size()) + " times on one bus: a channel has one publisher",
@@ -152,6 +159,7 @@ Findings CheckProcesses(const Observations& seen) {
     }
   }
   for (auto& finding : CheckObstacles(seen)) findings.push_back(std::move(finding));
+  for (auto& finding : CheckLookOut(seen)) findings.push_back(std::move(finding));
   return findings;
 }
 

@@ -19,6 +19,7 @@
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "services/navigator/service.hpp"
 #include "services/navigator/sources.hpp"
 #include "services/vlp16/service.hpp"
@@ -245,6 +246,21 @@ void Notes::ListenToProcesses(bus::Bus& bus) {
       obstacles.num_placed += obstacle.status == obstacle_t::STATUS_OK ? 1 : 0;
       obstacles.num_timeouts += obstacle.status == obstacle_t::STATUS_POSE_TIMEOUT ? 1 : 0;
     }
+  });
+  bus::Subscribe<tracks_t>(bus, bus::kTracks, [this](const tracks_t& message) {
+    auto& look_out = seen_.look_out;
+    if (message.part_index == 0) look_out.num_tracks = look_out.num_moving = 0;
+    for (const auto& track : message.tracks) {
+      if (track.status != track_t::STATUS_CONFIRMED && track.status != track_t::STATUS_COASTING) continue;
+      ++look_out.num_tracks;
+      look_out.num_moving += track.speed_mps > 0.0F ? 1 : 0;
+    }
+    if (message.part_index == message.num_parts - 1) ++look_out.num_scans;
+    look_out.tracks_heard = clock_();
+  });
+  bus::Subscribe<alerts_t>(bus, bus::kAlerts, [this](const alerts_t& message) {
+    seen_.look_out.alerts = message;
+    seen_.look_out.alerts_heard = clock_();
   });
   bus.SubscribeAll([this](std::string_view channel, Bytes bytes) {
     num_log_bytes_ += kEventHeaderBytes + static_cast<std::int64_t>(channel.size() + bytes.size());

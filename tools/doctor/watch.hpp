@@ -21,7 +21,7 @@ class Notes {
   /// Subscribes what the lidar and the navigation say.
   void ListenTo(bus::Bus& bus, Via via);
 
-  /// Subscribes what only a live bus has: HEALTH, OBSTACLES, and the size of all.
+  /// Subscribes what only a live bus has: HEALTH, OBSTACLES, TRACKS, ALERTS, and the size of all.
   void ListenToProcesses(bus::Bus& bus);
 
   /// As a recorder would have written it.
@@ -37,7 +37,7 @@ class Notes {
   std::int64_t num_log_bytes_ = 0;
 };
 
-/// Fills lidar, navigation, processes, obstacles, the rate of the disk, end and watched_s of `seen`. Sends nothing on the bus.
+/// Fills lidar, navigation, processes, obstacles, look-out, the rate of the disk, end and watched_s of `seen`. Sends nothing on the bus.
 ///
 /// @param seen  config and bus are read already
 void Watch(Observations& seen, std::chrono::milliseconds duration);

@@ -31,7 +31,8 @@ std::set<int> LandOf(const messages::ScanMessages& scan) {
   return land;
 }
 
-// Segment to label; what is not there is in none.
+// Tracks merge segments and split off land; a segment that no track explains keeps its own label. So these differ from the labels of SEGMENTS only
+// where the tracker says something of its own.
 std::map<int, int> LabelsOf(const std::vector<TrackState>& tracks, const std::set<int>& land) {
   std::map<int, int> labels;
   int label = kFirstLabel;
@@ -45,9 +46,11 @@ std::map<int, int> LabelsOf(const std::vector<TrackState>& tracks, const std::se
 }
 
 std::function<int(int)> Lookup(const std::map<int, int>& labels) {
-  return [&labels](int segment) {
+  int last = kFirstLabel;
+  for (const auto& [segment, label] : labels) last = std::max(last, label);
+  return [&labels, last](int segment) {
     const auto label = labels.find(segment);
-    return label == labels.end() ? 0 : label->second;
+    return label == labels.end() ? last + segment : label->second;
   };
 }
 

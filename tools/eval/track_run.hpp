@@ -33,8 +33,8 @@ struct LabelScores {
   bool has_structures = false;  // docks, piers, land
   Mean segments;                // labels of SEGMENTS against the objects of the truth
   Mean segments_land_one;       // land is one object, and segments that SEGMENTS call land have one label
-  Mean tracks_land_one;  // the same with the id of the track that explains a segment as its label, and of land what the tracker calls so; what no
-                         // track explains is in none
+  Mean tracks_land_one;         // the same with the id of the track that explains a segment as its label, and of land what the tracker calls so; a
+                                // segment that no track explains keeps its own label
 };
 
 class TrackRun {

@@ -36,10 +36,10 @@ std::string Fault(const Request& request) {
   const auto names = TableNames();
   if (std::ranges::find(names, request.table) == names.end()) return "there is no table " + request.table;
   if (request.format == "ply" && request.table != "returns") return "--format ply is for --table returns only";
-  if (request.format == "svg" && !IsOneOf(request.table, {"returns", "merges", "obstacles", "pose"})) {
-    return "--format svg is for --table returns, merges, obstacles or pose only";
+  if (request.format == "svg" && !IsOneOf(request.table, {"returns", "merges", "obstacles", "pose", "tracks"})) {
+    return "--format svg is for --table returns, merges, obstacles, pose or tracks only";
   }
-  if (request.table == "pose" && request.scan) return "--scan is not for --table pose";
+  if (IsOneOf(request.table, {"pose", "tracks"}) && request.scan) return "--scan is not for --table " + request.table;
   if (request.format != "csv" && request.format != "ply" && request.format != "svg") return "there is no format " + request.format;
   if (request.format == "csv" && request.table != "merges" && request.scan) return "--scan is for --format ply or svg, or --table merges";
   if (request.all_scans && (request.format != "csv" || request.table != "merges")) return "--scan all is for --table merges only, as csv";
@@ -66,7 +66,7 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
     return MakeMergesSink(params, request.scan, request.all_scans);
   }
   if (request.format == "ply") return MakePlySink(request.scan);
-  if (request.format == "svg" && request.table == "pose") return MakeTrackSvgSink();
+  if (request.format == "svg" && IsOneOf(request.table, {"pose", "tracks"})) return MakeTrackSvgSink(request.table == "tracks");
   if (request.format == "svg") {
     return MakeScanSvgSink(request.table == "returns" ? ChosenScan::Of::kReturns : ChosenScan::Of::kObstacles, request.scan);
   }
@@ -119,7 +119,7 @@ int Export(const Request& request, std::ostream& errors) {
   Tell(errors, *sink, tallies);
   if (tallies.front().num_taken == 0) throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name));
   if (request.format != "csv" && text.empty()) {  // nothing is written before the end there
-    if (request.table == "pose") throw std::runtime_error("no pose knows its position");
+    if (IsOneOf(request.table, {"pose", "tracks"})) throw std::runtime_error("no pose knows its position");
     throw std::runtime_error(request.scan ? "the input holds no scan " + std::to_string(*request.scan) : "the input holds no scan");
   }
   output.Write(text);

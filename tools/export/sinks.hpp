@@ -45,6 +45,9 @@ std::unique_ptr<Sink> MakeMergesSvgSink(const segmenter::Params& params, const c
 
 /// The track of the boat out of POSE, 1320 x 1000 pixels: north up, one line for each stretch of one status. Places closer than 0.2 m to the last one
 /// are left out, so that a day at anchor stays small. Poses without position break the line.
-std::unique_ptr<Sink> MakeTrackSvgSink();
+///
+/// @param has_tracks  also what the tracker made of the log: the confirmed tracks, with the way of what has moved; land that it remembered; where the
+///                    boat was when each alert came up
+std::unique_ptr<Sink> MakeTrackSvgSink(bool has_tracks);
 
 }  // namespace lookout::exporter

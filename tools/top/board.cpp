@@ -27,6 +27,7 @@ constexpr seconds kRunInfoSilence(25);
 constexpr seconds kObstaclesAge(2);
 // ALERTS come with every scan, and where none comes twice a second: who shows them says when they do not.
 constexpr seconds kAlertsAge(1);
+constexpr std::string_view kTracker = "tracker";
 
 template <typename T>
 std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
@@ -37,31 +38,11 @@ std::int64_t NumLostBefore(const T& message, bus::SequenceWatch& sequence) {
   }
 }
 
-const health_counter_t* FindCounter(const health_t& health, std::string_view name) {
-  const auto found = std::ranges::find(health.counters, name, &health_counter_t::name);
-  return found == health.counters.end() ? nullptr : &*found;
-}
-
 // In the order of the data flow.
 std::size_t PlaceInSuite(std::string_view process) {
   return static_cast<std::size_t>(std::ranges::find(bus::kServices, process, &bus::ServiceRow::name) - bus::kServices.begin());
 }
 bool IsOfSuite(std::string_view process) { return PlaceInSuite(process) < bus::kServices.size(); }
-
-// Reasons are joined by "; ": the pieces about the alarm say how near and where, or that nobody looks. Without one, counters have at least the
-// distance.
-std::string AlarmReason(const health_t& health) {
-  std::string words;
-  for (const std::string_view piece : {"obstacle within ", "guard zone not watched"}) {
-    const auto start = health.reason.find(piece);
-    if (start != std::string::npos) words += (words.empty() ? "" : "; ") + health.reason.substr(start, health.reason.find(';', start) - start);
-  }
-  if (!words.empty()) return words;
-  const auto* unwatched = FindCounter(health, "zone_unwatched");
-  if (unwatched != nullptr && unwatched->count != 0) return "guard zone not watched";
-  const auto* nearest = FindCounter(health, "nearest_cm");
-  return nearest == nullptr ? "obstacle near" : fmt::format("obstacle near: {:.1f} m", 0.01 * static_cast<double>(nearest->count));
-}
 
 std::int64_t GreatestLatencyUs(const health_t& health) {
   std::int64_t greatest_us = -1;
@@ -329,27 +310,6 @@ std::vector<ProcessLine> Board::Processes(TimePoint now) const {
   return lines;
 }
 
-std::optional<Alarm> Board::NearestAlarm(TimePoint now) const {
-  std::optional<Alarm> newest;
-  for (const auto& [key, process] : processes_) {
-    if (IsReplaced(key, process)) continue;
-    const auto* active = FindCounter(process.health, "alarm_active");
-    if (active == nullptr) continue;
-    Alarm alarm;
-    alarm.is_active = active->count != 0;
-    alarm.text = AlarmReason(process.health);
-    alarm.age = now - process.last;
-    // Who says nothing any more cannot raise an alarm.
-    if (!alarm.is_active && alarm.age > kSilence) {
-      alarm.is_active = true;
-      alarm.text = "guard zone not watched: no HEALTH of " + key.name;
-    }
-    // Where several processes have one, an alarm counts before none, then the newer.
-    if (!newest || std::pair(alarm.is_active, -alarm.age) > std::pair(newest->is_active, -newest->age)) newest = alarm;
-  }
-  return newest;
-}
-
 const NearestObstacles* Board::Obstacles(TimePoint now) const {
   const auto& newest = nearest_.newest();
   return newest && now - newest->time <= kObstaclesAge ? &*newest : nullptr;
@@ -359,14 +319,17 @@ const TrackPicture* Board::Tracks(TimePoint now) const { return tracks_ && now -
 
 std::vector<std::string> Board::AlertLines(TimePoint now) const {
   std::vector<std::string> lines;
-  if (!alerts_) return lines;
-  if (now - alerts_time_ > kAlertsAge) {
-    lines.push_back(fmt::format("NO LOOK-OUT: no ALERTS for {:.0f} s", std::chrono::duration<double>(now - alerts_time_).count()));
+  if (!alerts_) {
+    const auto is_tracker = [](const auto& entry) { return entry.first.name == kTracker; };
+    if (std::ranges::any_of(processes_, is_tracker)) lines.emplace_back("NO LOOK-OUT: no ALERTS yet");
     return lines;
   }
+  const bool is_old = now - alerts_time_ > kAlertsAge;
+  if (is_old) lines.push_back(fmt::format("NO LOOK-OUT: no ALERTS for {:.0f} s", std::chrono::duration<double>(now - alerts_time_).count()));
   for (const auto& alert : alerts_->alerts) {
     if (alert.state != alert_t::STATE_ACTIVE || lines.size() == kMaxAlertLines) continue;
-    lines.push_back((alert.level == alert_t::LEVEL_WARNING ? "WARNING: " : "CAUTION: ") + alert.text);
+    // What stood when they ended is no less near since.
+    lines.push_back((is_old ? "before that: " : alert.level == alert_t::LEVEL_WARNING ? "WARNING: " : "CAUTION: ") + alert.text);
   }
   return lines;
 }

@@ -110,13 +110,6 @@ struct TrackPicture {
   static constexpr std::size_t kMaxLines = 50;
 };
 
-/// The alarm of the guard zone, out of HEALTH.
-struct Alarm {
-  bool is_active = false;
-  std::string text;                 // what is near, or that nobody looks, in the words of HEALTH
-  std::chrono::nanoseconds age{0};  // of the report
-};
-
 class Board {
  public:
   /// @param start  since when it listens
@@ -133,9 +126,6 @@ class Board {
   /// as kMaxStrangers at most.
   std::vector<ProcessLine> Processes(TimePoint now) const;
 
-  /// @return nullopt when no process has a guard zone
-  std::optional<Alarm> NearestAlarm(TimePoint now) const;
-
   const OwnShip& own() const { return own_; }
 
   /// @return nullptr when OBSTACLES never came, or for more than 2 s
@@ -144,8 +134,8 @@ class Board {
   /// @return nullptr when TRACKS never came, or for more than 2 s
   const TrackPicture* Tracks(TimePoint now) const;
 
-  /// Alerts that nobody has acknowledged, the gravest first, and that nobody looks: ALERTS came, and for more than 1 s no more. "WARNING: ...",
-  /// "CAUTION: ...", "NO LOOK-OUT: ...". At most kMaxAlertLines.
+  /// Alerts that nobody has acknowledged, the gravest first. "WARNING: ...", "CAUTION: ...". At most kMaxAlertLines. Or "NO LOOK-OUT: ...": a tracker
+  /// was heard, and ALERTS do not come yet, or for more than 1 s no more; then what was active.
   std::vector<std::string> AlertLines(TimePoint now) const;
   static constexpr std::size_t kMaxAlertLines = 4;
 

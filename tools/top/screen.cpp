@@ -209,21 +209,6 @@ std::vector<Span> TrackRows(const TrackPicture& tracks, View view) {
   return rows;
 }
 
-// A row for each thing; what is too long ends in "..".
-std::vector<std::string> AlarmLines(const Alarm& alarm, int width) {
-  std::vector<std::string> lines;
-  std::string_view text = alarm.text;
-  while (!text.empty()) {
-    const auto end = text.find("; ");
-    auto line = "ALARM: " + Printable(text.substr(0, end));
-    // HEALTH comes once a second.
-    if (Seconds(alarm.age) > 3.0) line += fmt::format(" ({:.0f} s ago, silent since)", Seconds(alarm.age));
-    lines.push_back(width < 3 ? line : Wrapped(line, width, 1).front());
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 2);
-  }
-  return lines;
-}
-
 void Cut(Row& row, int width) {
   std::size_t left = static_cast<std::size_t>(std::max(width, 0));
   for (auto& span : row) {
@@ -268,8 +253,7 @@ std::vector<Row> DrawScreen(const Board& board, const std::string& title, TimePo
   const auto* nearest = board.Obstacles(now);
   const auto* tracks = view.has_tracks ? board.Tracks(now) : nullptr;
   const auto obstacles = tracks != nullptr ? TrackRows(*tracks, view) : ObstacleRows(nearest, view);
-  const auto alarm = board.NearestAlarm(now);
-  auto alarm_lines = alarm && alarm->is_active ? AlarmLines(*alarm, view.width) : std::vector<std::string>{};
+  std::vector<std::string> alarm_lines;
   for (const auto& line : board.AlertLines(now)) alarm_lines.push_back(view.width < 3 ? line : Wrapped(Printable(line), view.width, 1).front());
 
   Plan plan;

@@ -23,7 +23,7 @@ struct View {
   bool has_tracks = true;  // tracks in place of obstacles, where there is a tracker
 };
 
-/// The alarm of the guard zone and alerts that nobody has acknowledged stand on top while there are any, then the own ship. Below are channels (left)
+/// Alerts that nobody has acknowledged, and that nobody looks, stand on top while there are any, then the own ship. Below are channels (left)
 /// and processes (right), then tracks or the nearest obstacles: ten in text, as many as there is room for on a terminal. Keys stand in the free
 /// corner below the processes, or last. Where rows are scarce obstacles beyond the tenth go first, then the title, the ninth and tenth obstacle, the
 /// head of the tables, the farthest obstacles but three, and the last channels. Columns that do not fit whole are left out.

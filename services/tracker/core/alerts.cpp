@@ -123,24 +123,22 @@ const Danger* Alerts::FindUnnamed(const std::map<Key, const Danger*>& dangers) c
     const bool holds = key != kUnnamedKey && entry != entries_.end() && entry->second.alert && entry->second.alert->Holds();
     if (!holds && (nearest == nullptr || danger->distance_m < nearest->distance_m)) nearest = danger;
   }
-  const bool is_told = std::ranges::any_of(entries_, [](const auto& item) {
-    const auto& [key, entry] = item;
-    return key.first == AlertCause::kGuardZone && key != kUnnamedKey && entry.alert && entry.alert->state == AlertState::kActive;
-  });
-  return is_told ? nullptr : nearest;
+  return nearest;
 }
 
-// Whether an alert of something in the guard zone holds that has a name.
-bool Alerts::HasHeldZone() const {
-  return std::ranges::any_of(entries_, [](const auto& item) {
+// Whether an alert of something in the guard zone that has a name is so.
+bool Alerts::HasNamedInZone(bool (*is_so)(const Alert&)) const {
+  return std::ranges::any_of(entries_, [is_so](const auto& item) {
     const auto& [key, entry] = item;
-    return key.first == AlertCause::kGuardZone && key != kUnnamedKey && entry.alert && entry.alert->Holds();
+    return key.first == AlertCause::kGuardZone && key != kUnnamedKey && entry.alert && is_so(*entry.alert);
   });
 }
 
 void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
   const auto level = entry.warning.is_on ? AlertLevel::kWarning : AlertLevel::kCaution;
   if (!entry.alert) {
+    // Somebody is being told of the zone anyway. The looks stay: it comes up as soon as nobody is.
+    if (key == kUnnamedKey && HasNamedInZone([](const Alert& alert) { return alert.state == AlertState::kActive; })) entry.raised.is_on = false;
     if (!entry.raised.is_on) return;
     entry.alert = Alert{.id = next_id_++, .cause = key.first, .level = level, .track_id = key.second, .raised = time, .changed = time};
     return;
@@ -149,7 +147,7 @@ void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
   if (alert.state == AlertState::kCleared) return;
   if (!entry.raised.is_on) {
     // What is named by now has an alert of its own.
-    const bool is_named = key == kUnnamedKey && HasHeldZone();
+    const bool is_named = key == kUnnamedKey && HasNamedInZone([](const Alert& other) { return other.Holds(); });
     const bool wants_note = alert.state != AlertState::kAcknowledged && alert.level == AlertLevel::kWarning && !is_named;
     SetState(alert, wants_note ? AlertState::kRectified : AlertState::kCleared, time);
     return;

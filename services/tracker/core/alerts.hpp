@@ -140,7 +140,7 @@ class Alerts {
 
   void Update(Entry& entry, const Key& key, Utime time, bool is_whole, const Danger* danger);
   const Danger* FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
-  bool HasHeldZone() const;
+  bool HasNamedInZone(bool (*is_so)(const Alert&)) const;
   void Advance(Entry& entry, const Key& key, Utime time);
   bool WasAcknowledged(const Alert& alert);
   void ClearOldestRectified(Utime time);

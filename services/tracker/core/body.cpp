@@ -22,11 +22,12 @@ constexpr double kEndSdM = 0.04;
 constexpr double kEndSdPerRange = 0.0035;
 // What of a thing is seen changes with waves, aspect and beams that just meet it, over about a second: by so much, and by a share of its size.
 constexpr double kOutlineSdM = 0.05;
-constexpr double kOutlineSdPerSize = 0.04;
+constexpr double kOutlineSdPerSize = 0.03;
 constexpr double kGreatestOutlineSizeM = 10.0;
 constexpr double kOutlineS = 0.5;
+constexpr double kHeadingSdRad = 0.0035;  // 0.2 deg, of a compass with two antennas; it changes as the boat turns
 // At first it is not known what of it is seen: so many times that, less and less over some seconds.
-constexpr double kFirstOutline = 3.0;
+constexpr double kFirstOutline = 1.5;
 constexpr double kFirstOutlineS = 2.0;
 // A far side that was never seen is assumed as far behind as what is seen is wide: round things are, and a boat is as often seen from an end as from
 // its side. Beyond a boat's beam it is rather seen from its side.
@@ -34,7 +35,16 @@ constexpr double kLeastDepthM = 0.15;
 constexpr double kGreatestAssumedDepthM = 2.0;
 constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
 constexpr double kLongestAssumedM = 12.0;
-constexpr double kWidestBeamM = 4.0;
+constexpr double kWidestBeamM = 3.0;
+constexpr double kFarSdM = 0.2;
+constexpr double kFarSdPerWidth = 0.5;
+// What of a thing can be seen is not all of it, however long it is looked at: what overhangs, lies low or does not reflect.
+constexpr double kNeverSeenSdM = 0.05;
+constexpr double kNeverSeenSdPerSize = 0.06;
+// More of it comes into sight at first: by so much and by a share of its size, in the time since then; as if it moved.
+constexpr double kShownSdM = 0.1;
+constexpr double kShownSdPerSize = 0.1;
+constexpr double kLeastAgeS = 0.3;
 constexpr double kLeastSideSdM = 0.005;
 constexpr double kSideWanderM2PerS = 0.01 * 0.01;      // outlines change as a boat swings
 constexpr double kStandingWanderM2PerS = 0.03 * 0.03;  // what is moored swings, and positions by GNSS wander
@@ -44,10 +54,11 @@ constexpr double kManoeuvreSds = 3.0;                  // of the mean of a secon
 constexpr double kManoeuvreS = 1.0;
 // Turn rates: small boats turn by up to 20 deg/s, for some seconds.
 constexpr double kTurnRateRadps = 0.1;
-constexpr double kTurnS = 5.0;
-constexpr double kTurnKnownRadps = 0.05;  // greatest standard deviation of a rate that is published
+constexpr double kTurnS = 10.0;
+constexpr double kTurnKnownRadps = 0.07;  // greatest standard deviation of a rate that is published
 constexpr double kTurnKnownAfterS = 3.0;
-constexpr double kFirstSpeedMps = 3.0;  // standard deviation of what is not known
+constexpr double kTurnsAfterS = 1.0;
+constexpr double kFirstSpeedMps = 5.0;  // standard deviation of what is not known
 constexpr double kFirstJitterM2 = 0.05 * 0.05;
 constexpr double kLeastJitterM2 = 0.015 * 0.015;
 constexpr double kMostJitterM2 = 4.0;
@@ -60,6 +71,7 @@ constexpr double kGreatestLogOdds = 12.0;
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
+constexpr double kMovesAfterS = 0.6;
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -68,9 +80,8 @@ double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x(
 Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m) {
   constexpr double kTurnedRad = 0.015;
   const double turned_m = kTurnedRad * range_m;
-  Eigen::Matrix2d noise = covariance_m2;
-  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * noise.trace()));
-  return kept * noise;
+  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * covariance_m2.trace()));
+  return kept * covariance_m2;
 }
 
 // Of a normal density at `off`, without the factor of 2 pi.
@@ -89,9 +100,12 @@ struct Body::Measured {
 };
 
 Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const {
-  const auto& directions = CompassDirections();
+  const auto directions = SideDirections();
   Measured measured;
-  measured.reach_m = SupportOf(seen_m);
+  measured.reach_m = SupportFrom(seen_m);
+  if (prefers_moving_) {
+    for (std::size_t i = 0; i < kDirections; ++i) measured.reach_m[i] += directions[i].dot(velocity_mps()) * sides.before_s;
+  }
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const auto& corner : seen_m) middle += corner / static_cast<double>(seen_m.size());
   Eigen::Vector2d sight = middle - sides.from_m;
@@ -112,7 +126,7 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
 }
 
 Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) {
-  const auto& directions = CompassDirections();
+  const auto directions = SideDirections();
   const Measured measured = Measure(seen_m, sides, range_m);
   Eigen::Vector2d sight = Eigen::Vector2d::Zero();
   for (const auto& corner : seen_m) sight += (corner - sides.from_m) / static_cast<double>(seen_m.size());
@@ -135,7 +149,7 @@ Body::Body(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const
       sides_[i] = {seen_reach, measured.variance_m2[i], true};
     } else {
       const double assumed = 0.5 * depth * std::abs(directions[i].dot(sight)) + 0.5 * width * std::abs(directions[i].dot(across));
-      const double sd = 0.3 + 0.5 * depth + 0.5 * std::min(width, kWidestBeamM);  // a boat seen from astern is much longer
+      const double sd = kFarSdM + kFarSdPerWidth * std::min(width, kWidestBeamM);  // a boat seen from astern is much longer
       sides_[i] = {std::max(seen_reach, assumed), sd * sd, false};
     }
   }
@@ -156,6 +170,7 @@ void Body::Predict(double dt_s) {
   const auto [sine, cosine] = SinCosOf(moving_[4] * dt_s);
   Eigen::Matrix2d turn;
   turn << cosine, -sine, sine, cosine;
+  if (moved_s_ >= kTurnsAfterS) turned_ = (turn * turned_).eval();
   const Eigen::Vector2d turned = turn * velocity;
   const Eigen::Vector2d across(-turned.y(), turned.x());
   const double kept = std::max(0.0, 1.0 - dt_s / kTurnS);
@@ -183,6 +198,28 @@ void Body::Predict(double dt_s) {
   age_s_ += dt_s;
 }
 
+Directions Body::SideDirections() const {
+  Directions directions = CompassDirections();
+  for (auto& direction : directions) direction = turned_ * direction;
+  return directions;
+}
+
+Support Body::SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const {
+  std::vector<Eigen::Vector2d> turned_back = corners_m;
+  for (auto& corner : turned_back) corner = turned_.transpose() * corner;
+  return SupportOf(turned_back);
+}
+
+// The position to the middle of the outline: what turns does so about it.
+void Body::Center() {
+  const auto directions = SideDirections();
+  const Eigen::Vector2d middle = middle_m();
+  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m -= directions[i].dot(middle);
+  standing_ += middle;
+  moving_.head<2>() += middle;
+  for (auto& measured : last_measured_) measured += middle;
+}
+
 Eigen::Vector2d Body::position_m() const { return prefers_moving_ ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
 
 Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const {
@@ -190,7 +227,7 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
 }
 
 Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const {
-  const auto& directions = CompassDirections();
+  const auto directions = SideDirections();
   const Eigen::Vector2d position = position_m();
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -217,15 +254,24 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
   return shift;
 }
 
-double Body::outline_sd_m() const {
+double Body::size_m() const {
   double size_m = 0.0;
   for (std::size_t i = 0; i < kDirections / 2; ++i) size_m = std::max(size_m, sides_[i].reach_m + sides_[Opposite(i)].reach_m);
+  return std::min(size_m, kGreatestOutlineSizeM);
+}
+
+Eigen::Matrix2d Body::velocity_covariance() const {
+  const double shown_mps = (kShownSdM + kShownSdPerSize * size_m()) / std::max(age_s_, kLeastAgeS);
+  return moving_covariance_.block<2, 2>(2, 2) + Eigen::Matrix2d::Identity() * shown_mps * shown_mps;
+}
+
+double Body::outline_sd_m() const {
   const double first = 1.0 + (kFirstOutline - 1.0) * std::max(0.0, 1.0 - age_s_ / kFirstOutlineS);
-  return first * (kOutlineSdM + kOutlineSdPerSize * std::min(size_m, kGreatestOutlineSizeM));
+  return first * (kOutlineSdM + kOutlineSdPerSize * size_m());
 }
 
 void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m, bool grows) {
-  const auto& directions = CompassDirections();
+  const auto directions = SideDirections();
   const Measured measured = Measure(seen_m, sides, range_m);
   const Shift shift = ShiftOf(measured, noise_m2, range_m);
   const Eigen::Vector2d measured_m = position_m() + shift.shift_m;
@@ -240,24 +286,31 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   num_measured_ = std::min(num_measured_ + 1, 2);
 
   // An error that stays for a while counts once for that while: as noise of each scan it is as much greater.
-  const double outline_m2 = outline_sd_m() * outline_sd_m() * std::max(1.0, shift.misfit) * std::max(1.0, 2.0 * kOutlineS / dt_s);
-  Decide(measured_m, shift.covariance_m2 + Eigen::Matrix2d::Identity() * outline_m2, dt_s);
+  const Eigen::Vector2d across(-measured.sight.y(), measured.sight.x());
+  const double outline_m = outline_sd_m();
+  const double heading_m = kHeadingSdRad * range_m;
+  const Eigen::Matrix2d staying_m2 = Eigen::Matrix2d::Identity() * (outline_m * outline_m) + heading_m * heading_m * across * across.transpose();
+  const double times = std::max(1.0, shift.misfit) * std::max(1.0, 2.0 * kOutlineS / dt_s);
+  Decide(measured_m, shift.covariance_m2 + times * staying_m2, dt_s);
 
   if (!grows) return;
-  // Sides are counted from the position: what it is not known to does not change them, or they would follow a wrong speed.
-  const Eigen::Vector2d position = position_m();
-  const Eigen::Matrix2d spread = prefers_moving_ ? Eigen::Matrix2d(moving_covariance_.topLeftCorner<2, 2>()) : standing_m2_;
+  // From where this outline places it: what all sides have in common is motion, or an error of the place. What has stood for long is placed best by
+  // where it stands.
+  const bool stands = !prefers_moving_ && age_s_ > kFirstOutlineS;
+  const Eigen::Vector2d placed_m = stands ? standing_ : measured_m;
   for (std::size_t i = 0; i < kDirections; ++i) {
-    const double off = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
+    const double off = measured.reach_m[i] - directions[i].dot(placed_m) - sides_[i].reach_m;
     if (measured.kind[i] != Measured::Kind::kEdge && off <= 0.0) continue;
     const double variance = sides_[i].variance_m2;
-    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_ + directions[i].dot(spread * directions[i]));
+    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_);
     sides_[i].reach_m += gain * off;
     if (measured.kind[i] != Measured::Kind::kEdge) continue;
     sides_[i].variance_m2 = std::max((1.0 - gain) * variance, kLeastSideSdM * kLeastSideSdM);
     sides_[i].is_seen = true;
   }
-  if (prefers_moving_ && stands_out_) AssumeBy(measured);
+  if (!prefers_moving_ || !stands_out_) return;
+  AssumeBy(measured);
+  Center();
 }
 
 void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s) {
@@ -288,10 +341,10 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   moving_probability_ = 1.0 / (1.0 + Exp(-(log_likelihood_ratio_ + kMovingPriorLogOdds)));
   const Eigen::Vector2d velocity = velocity_mps();
   const double speed = velocity.norm();
-  const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(moving_covariance_.block<2, 2>(2, 2) * velocity)) / speed : 0.0;
+  const double speed_sd = speed > 0.0 ? std::sqrt(velocity.dot(velocity_covariance() * velocity)) / speed : 0.0;
   stands_out_ = speed > kLeastSpeedMps && speed > (stands_out_ ? kSpeedSdsOn : kSpeedSds) * speed_sd;
-  if (!stands_out_) moving_probability_ = std::min(moving_probability_, 0.5);
   moved_s_ = stands_out_ && prefers_moving_ ? moved_s_ + dt_s : 0.0;
+  if (moved_s_ < kMovesAfterS) moving_probability_ = std::min(moving_probability_, 0.5);
 }
 
 // The hidden side of a boat under way: its length lies along its course, and what is seen across says how long it is.
@@ -313,7 +366,7 @@ void Body::AssumeBy(const Measured& measured) {
   const double depth_m = length_m * (cosine + sine / kBoatLengthPerBeam);
   const Eigen::Vector2d middle = (nearest + 0.5 * depth_m) * sight + 0.5 * (least + most) * across - position_m();
   const Eigen::Vector2d beam(-course.y(), course.x());
-  const auto& directions = CompassDirections();
+  const auto directions = SideDirections();
   for (std::size_t i = 0; i < kDirections; ++i) {
     if (sides_[i].is_seen) continue;
     const double reach = 0.5 * length_m * (std::abs(directions[i].dot(course)) + std::abs(directions[i].dot(beam)) / kBoatLengthPerBeam);
@@ -328,9 +381,21 @@ void Body::Loosen(double variance_m2) {
   log_likelihood_ratio_ = std::min(log_likelihood_ratio_, 0.0);
 }
 
+void Body::Fade(double dt_s) {
+  constexpr double kFadeS = 1.0;
+  if (!prefers_moving_) return;
+  moving_.tail<3>() *= std::max(0.0, 1.0 - dt_s / kFadeS);
+  if (velocity_mps().norm() >= kLeastSpeedMps) return;
+  standing_ = moving_.head<2>();
+  standing_m2_ = moving_covariance_.topLeftCorner<2, 2>();
+  log_likelihood_ratio_ = 0.0;
+  moving_probability_ = 0.0;
+  prefers_moving_ = false;
+}
+
 void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
-  const auto& directions = CompassDirections();
-  const Support support = SupportOf(outline_m);
+  const auto directions = SideDirections();
+  const Support support = SupportFrom(outline_m);
   for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m = std::max(sides_[i].reach_m, support[i] - directions[i].dot(position_m()));
 }
 
@@ -343,6 +408,7 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   other.prefers_moving_ = prefers_moving_;
   other.stands_out_ = stands_out_;
   other.moved_s_ = moved_s_;
+  if (stands_out_) other.age_s_ = age_s_;
   other.jitter_m2_ = jitter_m2_;
   *this = other;
 }
@@ -352,7 +418,7 @@ std::vector<Eigen::Vector2d> Body::Outline() const {
   for (std::size_t i = 0; i < kDirections; ++i) support[i] = sides_[i].reach_m;
   auto corners = Polygon(support);
   const Eigen::Vector2d position = position_m();
-  for (auto& corner : corners) corner += position;
+  for (auto& corner : corners) corner = turned_ * corner + position;
   return corners;
 }
 
@@ -360,7 +426,8 @@ double Body::SeenShare() const { return static_cast<double>(std::ranges::count_i
 
 Eigen::Vector2d Body::middle_m() const {
   constexpr std::size_t kNorth = kDirections / 4;
-  return {0.5 * (sides_[0].reach_m - sides_[Opposite(0)].reach_m), 0.5 * (sides_[kNorth].reach_m - sides_[Opposite(kNorth)].reach_m)};
+  return turned_ *
+         Eigen::Vector2d(0.5 * (sides_[0].reach_m - sides_[Opposite(0)].reach_m), 0.5 * (sides_[kNorth].reach_m - sides_[Opposite(kNorth)].reach_m));
 }
 
 Eigen::Vector2d Body::center_m() const { return position_m() + middle_m(); }
@@ -369,8 +436,12 @@ Eigen::Matrix4d Body::covariance() const {
   constexpr std::size_t kNorth = kDirections / 4;
   Eigen::Matrix4d covariance = moving_covariance_.topLeftCorner<4, 4>();
   if (!prefers_moving_) covariance.topLeftCorner<2, 2>() = standing_m2_;
-  covariance(0, 0) += 0.25 * (sides_[0].variance_m2 + sides_[Opposite(0)].variance_m2);
-  covariance(1, 1) += 0.25 * (sides_[kNorth].variance_m2 + sides_[Opposite(kNorth)].variance_m2);
+  const Eigen::Vector2d middle_m2(0.25 * (sides_[0].variance_m2 + sides_[Opposite(0)].variance_m2),
+                                  0.25 * (sides_[kNorth].variance_m2 + sides_[Opposite(kNorth)].variance_m2));
+  covariance.bottomRightCorner<2, 2>() = velocity_covariance();
+  const double never_seen_m = kNeverSeenSdM + kNeverSeenSdPerSize * size_m();
+  covariance.topLeftCorner<2, 2>() += Eigen::Matrix2d::Identity() * (never_seen_m * never_seen_m);
+  covariance.topLeftCorner<2, 2>() += turned_ * middle_m2.asDiagonal() * turned_.transpose();
   return covariance;
 }
 

@@ -15,6 +15,7 @@ struct Sides {
   Eigen::Vector2d from_m = Eigen::Vector2d::Zero();  // the lidar, on the map
   bool is_left_hidden = false;                       // seen from there
   bool is_right_hidden = false;
+  double before_s = 0.0;  // the state's time, by so much: what moves was not yet where it is
 };
 
 /// A thing that stands, or moves and turns. The outline is anchored at the position: the hidden far side is what was seen before, or assumed.
@@ -51,6 +52,8 @@ class Body {
   /// Of the hypothesis that holds: moving where its probability is above the threshold.
   /// All positions may have moved together by so much: the own position became better known.
   void Loosen(double variance_m2);
+  /// It was seen together with land only: where it comes to rest is not seen, so what is known of its velocity fades.
+  void Fade(double dt_s);
   /// What lies beside it is of it, too.
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
   /// Another outline of the same thing: it keeps its velocity.
@@ -77,11 +80,17 @@ class Body {
   Shift ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const;
   Eigen::Vector2d position_m() const;
   Eigen::Vector2d middle_m() const;  // of the outline, from the position
+  Directions SideDirections() const;
+  Support SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const;  // from the origin of the map
+  void Center();
+  double size_m() const;
   double outline_sd_m() const;
+  Eigen::Matrix2d velocity_covariance() const;
   void Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s);
   void AssumeBy(const Measured& measured);
 
   std::array<Side, kDirections> sides_;
+  Eigen::Matrix2d turned_ = Eigen::Matrix2d::Identity();  // of the sides' directions, from those of the compass: a boat that turns takes them along
   Eigen::Vector2d standing_ = Eigen::Vector2d::Zero();
   Eigen::Matrix2d standing_m2_ = Eigen::Matrix2d::Zero();
   Motion moving_ = Motion::Zero();

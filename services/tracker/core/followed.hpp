@@ -23,7 +23,7 @@ inline double Sigmoid(double log_odds) { return 1.0 / (1.0 + Exp(-log_odds)); }
 
 inline constexpr double kBirthLogOdds = -2.0;
 inline constexpr double kFirstStepM2 = 0.3 * 0.3;  // before there was one
-inline constexpr int kMostHits = 30;                // that count, the last ones most
+inline constexpr int kMostHits = 30;               // that count, the last ones most
 
 struct Followed {
   std::int64_t id = 0;
@@ -46,7 +46,9 @@ struct Followed {
   double top_m = 0.0;
   double sum_returns = 0.0;
   double land_votes = 0.0;
-  int num_misfits = 0;  // scans in a row whose outline was another
+  int num_moving = 0;                                 // scans in which it moved for sure
+  Eigen::Vector2d first_m = Eigen::Vector2d::Zero();  // middle, when it was seen first
+  int num_misfits = 0;                                // scans in a row whose outline was another
   std::deque<bool> looks;
   std::vector<std::int32_t> segment_ids;
   std::vector<std::pair<std::int64_t, Utime>> parents;

@@ -3,44 +3,67 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "services/tracker/core/sight.hpp"
+
 namespace lookout::tracker {
 
-/// Cells of half a metre that hold evidence of land: more with each return of a segment that is land, less with each of one that is not. So one scan
-/// that takes a boat for land does not make it land, nor one that takes a bank for a boat a boat. Memory: 1 kB for each tile of 16 m x 16 m, at most
-/// kMostTiles; beyond, the farthest from the boat are forgotten.
+/// Cells of half a metre that hold evidence of land: more with each scan that sees land there, less with each that sees something else, and less
+/// where beams pass below the height of what was there. So one scan that takes a boat for land does not make it land, nor one that takes a bank for a
+/// boat a boat; and what left leaves no land behind.
+///
+/// Memory: 2 kB for each tile of 16 m x 16 m, at most kMostTiles and those that one scan adds (8 MB); beyond, the farthest from the boat are
+/// forgotten.
 class LandMemory {
  public:
   static constexpr double kCellM = 0.5;
   static constexpr std::size_t kMostTiles = 4096;
 
-  void Add(const Eigen::Vector2d& place_m, bool is_land);
+  enum class Said { kLand, kThing, kMaybeThing };
+
+  /// One segment of one scan: each cell counts once, however many returns lie in it.
+  /// @param tops_m  [places] heights over the water; empty where they are not known: then the cells do not become free by being looked through
+  void Add(std::span<const Eigen::Vector2d> places_m, std::span<const double> tops_m, Said said);
+  /// Beams that passed where land is remembered. At most kMostLooked cells a scan, one tile after the other: each is asked for within a second or
+  /// two.
+  void LookThrough(const Sight& sight);
+
   /// Whether land is remembered there, or in a cell beside it.
   bool IsLand(const Eigen::Vector2d& place_m) const;
   /// Share of some places that are land; of more than `most` every so many is asked for.
   double Share(std::span<const Eigen::Vector2d> places_m, std::size_t most) const;
 
-  /// Cells of land with a neighbour that is none, at most `range_m` from a place, nearest first, at most `most`.
+  /// Cells of land with free cells before them, seen from a place, at most `range_m` from it, nearest first, at most `most`.
   std::vector<Eigen::Vector2d> Waterline(const Eigen::Vector2d& near_m, double range_m, std::size_t most) const;
 
   void Forget(const Eigen::Vector2d& own_m);
-  void Clear() { tiles_.clear(); }
+  void Clear() { *this = {}; }
   std::size_t num_tiles() const { return tiles_.size(); }
 
  private:
   static constexpr int kTileCells = 32;
-  using Tile = std::array<std::int8_t, static_cast<std::size_t>(kTileCells) * kTileCells>;
+  static constexpr std::size_t kMostLooked = 300;
+  struct Tile {
+    std::array<std::int8_t, static_cast<std::size_t>(kTileCells) * kTileCells> evidence{};
+    std::array<std::uint8_t, static_cast<std::size_t>(kTileCells) * kTileCells> top_dm{};  // over the water; 0: not known
+    int num_land = 0;                                                                      // cells
+  };
   using Cell = std::pair<std::int32_t, std::int32_t>;
 
   static Cell CellOf(const Eigen::Vector2d& place_m);
-  int EvidenceAt(Cell cell) const;
+  static Eigen::Vector2d MiddleOf(Cell cell) { return {(cell.first + 0.5) * kCellM, (cell.second + 0.5) * kCellM}; }
+  static std::size_t IndexOf(Cell cell) { return static_cast<std::size_t>((cell.second & 31) * kTileCells + (cell.first & 31)); }
+  static void Change(Tile& tile, std::size_t index, int by);
+  bool IsLandCell(Cell cell) const;
 
   std::map<Cell, Tile> tiles_;  // by the tile's number east, north
+  Cell looked_{};               // the tile that was looked through last
 };
 
 }  // namespace lookout::tracker

@@ -22,19 +22,6 @@ bool IsMoving(const Followed& track) { return track.body && track.body->IsMoving
 
 }  // namespace
 
-// What most scans call land is land, and what lies in land and was not seen by itself for long.
-void Step::EndLand() {
-  constexpr double kLandVotes = 0.6;
-  constexpr double kShortestS = 1.0;
-  constexpr double kLongestS = 10.0;
-  constexpr double kPerHitS = 0.05;
-  for (auto& track : known_.tracks) {
-    if (track.land_votes > kLandVotes) track.is_ended = true;
-    const double alone_s = ToSeconds(scan_.end_time - track.seen_alone);
-    if (track.is_inside_now && track.inside_of == 0 && alone_s > std::clamp(kPerHitS * track.num_hits, kShortestS, kLongestS)) track.is_ended = true;
-  }
-}
-
 // Whether returns of both lie next to each other, in this scan.
 bool Step::Touch(const Followed& one, const Followed& other) const {
   constexpr double kTouchM = 0.5;

@@ -136,6 +136,46 @@ Look Sight::At(std::span<const Eigen::Vector2d> outline_m, double top_m) const {
   return {all * look.num_open, all * look.num_met, all * look.num_hidden};
 }
 
+bool Sight::Reaches(const Eigen::Vector2d& corner_m, double side_m) const {
+  const Eigen::Vector2d beside = (from_m() - corner_m).cwiseMax(0.0).cwiseMin(side_m) + corner_m;
+  return sweep_ != nullptr && (beside - from_m()).norm() < max_range_m_;
+}
+
+bool Sight::IsFree(const Eigen::Vector2d& place_m, double top_m) const {
+  // What was there reached so far behind the place at most, where a beam passes it on a slant or the place is off.
+  constexpr double kBehindM = 1.5;
+  constexpr double kMostBesideRad = 0.01;
+  if (sweep_ == nullptr) return false;
+  const int num_columns = static_cast<int>(column_.size());
+  const int num_rings = static_cast<int>(ring_.size());
+  const auto azimuth_of = [&place_m](const Eigen::Isometry3d& pose) {
+    const Eigen::Vector3d offset(place_m.x() - pose.translation().x(), place_m.y() - pose.translation().y(), -kMiddleShare * pose.translation().z());
+    const Eigen::Vector3d place = pose.linear().transpose() * offset;
+    return Atan2(-place.y(), place.x());
+  };
+  int column = std::min(ColumnAt(azimuth_of(PoseAt(num_columns / 2))), num_columns - 1);
+  const Eigen::Isometry3d pose = PoseAt(column);
+  const double azimuth_rad = azimuth_of(pose);
+  column = std::min(ColumnAt(azimuth_rad), num_columns - 1);
+  if (std::abs(WrapToPi(azimuth_rad - unwrapped_rad_[static_cast<std::size_t>(column)])) > kMostBesideRad) return false;  // lost packets
+  const auto& azimuth = column_[static_cast<std::size_t>(column)];
+  const double distance_m = (place_m - pose.translation().head<2>()).norm();
+  if (distance_m > max_range_m_) return false;
+  int num_passed = 0;
+  for (int ring = 0; ring < num_rings; ++ring) {
+    const auto& elevation = ring_[static_cast<std::size_t>(ring)];
+    const Eigen::Vector3d direction = pose.linear() * Eigen::Vector3d(elevation.x() * azimuth.x(), -elevation.x() * azimuth.y(), elevation.y());
+    const double flat = Hypot(direction.x(), direction.y());
+    const double z = pose.translation().z() + distance_m * direction.z() / flat;
+    if (z > top_m || z < -kAtWaterM) continue;
+    const double range_m = flat * sweep_->range_m[static_cast<std::size_t>(column * num_rings + ring)];
+    if (range_m > 0.0 && range_m < distance_m - kBesideM) continue;  // hidden
+    if (range_m > 0.0 && range_m < distance_m + kBehindM) return false;
+    ++num_passed;
+  }
+  return num_passed > 0;
+}
+
 Sides Sight::SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) const {
   Sides sides;
   sides.from_m = from_m();
@@ -188,7 +228,7 @@ std::vector<Sight::Return> Sight::Returns() const {
       const double range_m = sweep_->range_m[cell];
       const Eigen::Vector3d place = pose * Eigen::Vector3d(range_m * ring_[ring].x() * column_[column].x(),
                                                            -range_m * ring_[ring].x() * column_[column].y(), range_m * ring_[ring].y());
-      returns.push_back({place.head<2>(), sweep_->label[cell]});
+      returns.push_back({place.head<2>(), place.z(), sweep_->label[cell]});
     }
   }
   return returns;

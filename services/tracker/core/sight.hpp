@@ -31,12 +31,18 @@ class Sight {
   /// Whether something nearer stands before what would be seen next to the ends of a seen outline.
   Sides SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) const;
 
+  /// Whether a square on the map, from its lower left corner, is within reach of the beams.
+  bool Reaches(const Eigen::Vector2d& corner_m, double side_m) const;
+  /// Whether beams passed a place, above the water and below `top_m`, and none of these ended at it: what they met is far behind, or nothing.
+  bool IsFree(const Eigen::Vector2d& place_m, double top_m) const;
+
   /// The lidar on the map, in the middle of the scan.
   Eigen::Vector2d from_m() const { return (start_.translation() + 0.5 * (end_.translation() - start_.translation())).head<2>(); }
 
   /// Returns of one segment on the map, all of the scan in the order of its cells.
   struct Return {
     Eigen::Vector2d place_m;
+    double height_m;  // over the water
     std::int16_t label;
   };
   std::vector<Return> Returns() const;

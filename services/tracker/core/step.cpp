@@ -13,17 +13,13 @@ namespace lookout::tracker {
 namespace {
 
 constexpr std::size_t kLooksKept = 15;
-constexpr double kPieceBesideM = 0.3;        // beyond the outline of the thing that it is a piece of
-constexpr double kLandShare = 0.6;           // of a segment's returns, where land is remembered
-constexpr std::size_t kMostLandPlaces = 40;  // of a segment that are asked for
-constexpr std::size_t kMostFed = 400;        // of a segment that are remembered, a scan
-constexpr double kLandVotes = 0.6;
-constexpr double kLandVoteGain = 0.1;
+constexpr double kPieceBesideM = 0.3;      // beyond the outline of the thing that it is a piece of
 constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have been seen
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
 constexpr double kMostCost = 6.0;
+constexpr double kLongestScanS = 0.2;
 // A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
 constexpr double kMostOff = 16.0;
 constexpr double kMostMisfit = 9.0;
@@ -107,23 +103,17 @@ void Step::FindPlaces() {
   places_m_.assign(scan_.seen.size(), {});
   std::map<std::int32_t, std::size_t> index_of;
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) index_of[scan_.seen[i].segment_id] = i;
+  heights_m_.assign(scan_.seen.size(), {});
   for (const auto& one : known_.sight.Returns()) {
-    if (const auto found = index_of.find(one.label); found != index_of.end()) places_m_[found->second].push_back(one.place_m);
+    const auto found = index_of.find(one.label);
+    if (found == index_of.end()) continue;
+    places_m_[found->second].push_back(one.place_m);
+    heights_m_[found->second].push_back(one.height_m);
   }
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     if (!places_m_[i].empty()) continue;
     places_m_[i] = seen.waterline_m.empty() ? seen.outline_m : seen.waterline_m;
-  }
-}
-
-// What the segmenter calls land, and what lies where land is remembered.
-void Step::FindLand() {
-  land_share_.clear();
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const auto& seen = scan_.seen[i];
-    land_share_.push_back(known_.land.Share(places_m_[i], kMostLandPlaces));
-    if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
   }
 }
 
@@ -166,7 +156,10 @@ double Step::CostOf(const Followed& track, std::size_t i) const {
 
 // Computed once for a segment, where it is asked for.
 const Sides& Step::SidesOf(std::size_t i) const {
-  if (!sides_[i]) sides_[i] = known_.sight.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
+  if (!sides_[i]) {
+    sides_[i] = known_.sight.SidesOf(scan_.seen[i].outline_m, scan_.seen[i].top_above_water_m);
+    sides_[i]->before_s = std::clamp(ToSeconds(scan_.end_time - scan_.seen[i].time), 0.0, kLongestScanS);
+  }
   return *sides_[i];
 }
 
@@ -265,7 +258,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const bool was_land = use_[i] == Use::kLand;
   use_[i] = Use::kTaken;
   track.is_seen_now = true;
-  track.land_votes += kLandVoteGain * ((was_land ? 1.0 : 0.0) - track.land_votes);
+  VoteLand(track, was_land);
   if (was_land) land_ids_kept_.push_back(seen.segment_id);
   const Eigen::Vector2d before_m = track.middle_m;
   const double range_m = ranges_m_[i];
@@ -317,7 +310,8 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
     track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     Place(track);
   }
-  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track)) track.is_confirmed = true;
+  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
+    track.is_confirmed = true;
 }
 
 void Step::Remember(Followed& track, bool is_seen) {
@@ -346,12 +340,12 @@ void Step::FindInside() {
         continue;
       track.is_inside_now = true;
       track.seen = scan_.end_time;
-      if (use_[i] == Use::kLand) track.land_votes += 0.1 * kLandVoteGain * (1.0 - track.land_votes);
       track.inside_of = 0;
       for (const auto& other : known_.tracks) {
         if (other.is_seen_now && std::ranges::find(other.segment_ids, scan_.seen[i].segment_id) != other.segment_ids.end())
           track.inside_of = other.id;
       }
+      if (track.inside_of == 0) track.body->Fade(dt_s_);
       break;
     }
   }
@@ -370,7 +364,7 @@ void Step::Begin() {
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
-    track.middle_m = track.seen_m = middle_m_[i];
+    track.middle_m = track.seen_m = track.first_m = middle_m_[i];
     track.radius_m = radius_m_[i];
     track.top_m = seen.top_above_water_m;
     track.AddLook(Logit(seen.thing_probability), 0.0);
@@ -390,29 +384,6 @@ void Step::Begin() {
       Place(track);
     }
     known_.tracks.push_back(std::move(track));
-  }
-}
-
-void Step::FeedLand() {
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const auto& seen = scan_.seen[i];
-    if (!seen.is_sure) {
-      if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
-      continue;
-    }
-    if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
-    std::vector<const Followed*> near;
-    for (const auto& track : known_.tracks) {
-      if (track.is_confirmed && track.land_votes < kLandVotes && (track.middle_m - middle_m_[i]).norm() < track.radius_m + radius_m_[i]) {
-        near.push_back(&track);
-      }
-    }
-    const std::size_t step = 1 + places_m_[i].size() / kMostFed;
-    for (std::size_t k = 0; k < places_m_[i].size(); k += step) {
-      const auto& place_m = places_m_[i][k];
-      const bool is_kept = seen.is_land && std::ranges::any_of(near, [&](const Followed* track) { return Contains(track->outline_m, place_m); });
-      if (!is_kept) known_.land.Add(place_m, seen.is_land);
-    }
   }
 }
 

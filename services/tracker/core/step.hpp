@@ -12,6 +12,7 @@
 #include "services/tracker/core/clutter.hpp"
 #include "services/tracker/core/followed.hpp"
 #include "services/tracker/core/land.hpp"
+#include "services/tracker/core/land_pieces.hpp"
 #include "services/tracker/core/sight.hpp"
 #include "services/tracker/core/tracker.hpp"
 
@@ -25,8 +26,9 @@ using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower 
 struct Known {
   Sight sight;
   LandMemory land = {};
+  LandPieces land_pieces = {};
   ClutterMap clutter = {};
-  std::deque<Followed> tracks = {};    // by id
+  std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
 };
@@ -49,6 +51,10 @@ class Step {
   static void Place(Followed& track);
   void FindPlaces();
   void FindLand();
+  void FollowLandPieces();
+  static void VoteLand(Followed& track, bool was_land);
+  bool IsLand(const Followed& track) const;
+  bool IsPerhapsLand(const Followed& track, std::size_t i) const;
   void Look();
   double CostOf(const Followed& track, std::size_t i) const;
   const Sides& SidesOf(std::size_t i) const;
@@ -81,6 +87,8 @@ class Step {
   std::vector<double> ranges_m_;                        // [seen] from the lidar
   std::vector<double> land_share_;                      // [seen]
   std::vector<std::vector<Eigen::Vector2d>> places_m_;  // [seen] returns, or corners
+  std::vector<std::vector<double>> heights_m_;          // [seen] of the returns, over the water; empty where these are not known
+  std::vector<bool> seems_moving_;                      // [seen] land that may be none: it is not remembered
   std::vector<std::int32_t> land_ids_;
   std::vector<std::int32_t> land_ids_kept_;
   std::vector<std::pair<std::int64_t, std::int64_t>> merged_;

@@ -42,7 +42,6 @@ struct Tracker::Memory {
   std::int64_t num_restarts_time = 0;
   std::int64_t num_restarts_datum = 0;
   std::int64_t num_restarts_jump = 0;
-  std::int64_t num_without_pose = 0;
   std::int64_t num_confirmed = 0;
   std::int64_t num_scans = 0;
 };
@@ -96,6 +95,7 @@ void Tracker::Reset() {
   memory_->known.tracks.clear();
   memory_->known.together_s.clear();
   memory_->known.land.Clear();
+  memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
   memory_->time.reset();
   memory_->own.reset();
@@ -125,8 +125,6 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   if (scan.own) {
     memory.own = scan.own;
     memory.datum = scan.datum;
-  } else {
-    ++memory.num_without_pose;
   }
   if (scan.own) {
     // A fix after a gap, or a filter that settles, moves everything at once.
@@ -215,7 +213,6 @@ std::vector<Counter> Tracker::counters() const {
           {"tracks_confirmed", memory.num_confirmed},
           {"clutter_per_scan", static_cast<std::int64_t>(memory.known.clutter.total() + 0.5)},
           {"land_tiles", static_cast<std::int64_t>(memory.known.land.num_tiles())},
-          {"scans_without_pose", memory.num_without_pose},
           {"restarts_by_time", memory.num_restarts_time},
           {"restarts_by_datum", memory.num_restarts_datum},
           {"restarts_by_jump", memory.num_restarts_jump}};

@@ -16,24 +16,38 @@ TEST(Doctor, FindsNothingOnAHealthyBoat) {
   }
 }
 
-TEST(DoctorGuardZone, SaysThatNobodyLooks) {
-  auto seen = Healthy();
-  EXPECT_EQ(About(CheckProcesses(seen), "guard zone").text, "") << "none is configured";
-  auto& counters = seen.processes["georeferencer"][0].last.counters;
-  const auto set = [&counters](const std::vector<std::pair<std::string, std::int64_t>>& values) {
-    counters.clear();
-    for (const auto& [name, count] : values) {
-      counters.emplace_back();
-      counters.back().name = name;
-      counters.back().count = count;
-    }
-  };
-  set({{"alarm_active", 0}, {"alarms", 3}, {"zone_unwatched", 0}, {"zone_times_unwatched", 2}});
-  EXPECT_SAYS(About(CheckProcesses(seen), "guard zone"), kOk, "is watched, 3 alarms and 2 times unwatched");
-  set({{"alarm_active", 1}, {"alarms", 3}, {"zone_unwatched", 1}, {"zone_times_unwatched", 2}});
-  EXPECT_SAYS(About(CheckProcesses(seen), "guard zone"), kFault, "not watched: no alarm can be raised now");
-  set({{"alarm_active", 1}, {"alarms", 3}, {"nearest_cm", 730}, {"zone_unwatched", 0}, {"zone_times_unwatched", 2}});
-  EXPECT_SAYS(About(CheckProcesses(seen), "guard zone"), kWarning, "something is in it now, 7.3 m off");
+TEST(DoctorLookOut, SaysThatNobodyLooks) {
+  const auto seen = Healthy();
+  const auto says = [](const Observations& one) { return About(CheckProcesses(one), "look-out"); };
+  EXPECT_SAYS(says(seen), kOk, "10.0 scans/s, 12 tracks, 3 moving, no alert");
+
+  auto without = seen;
+  without.look_out = {};
+  EXPECT_SAYS(says(without), kFault, "no look-out: OBSTACLES come, but no TRACKS and ALERTS");
+  without.obstacles = {};
+  EXPECT_EQ(says(without).text, "") << "nothing runs";
+
+  auto silent = seen;
+  silent.look_out.alerts_heard = seen.end - std::chrono::milliseconds(1300);
+  EXPECT_SAYS(says(silent), kFault, "no look-out: no ALERTS for 1.3 s");
+  silent = seen;
+  silent.look_out.tracks_heard = seen.end - std::chrono::milliseconds(1300);
+  EXPECT_SAYS(says(silent), kFault, "ALERTS come, but no TRACKS for 1.3 s");
+
+  auto warned = seen;
+  alert_t alert{};
+  alert.cause = alert_t::CAUSE_WATCH;
+  alert.state = alert_t::STATE_ACKNOWLEDGED;
+  alert.text = "no look-out: no whole scan for 3.2 s";
+  warned.look_out.alerts->alerts = {alert};
+  EXPECT_SAYS(says(warned), kFault, "no look-out: no whole scan for 3.2 s");
+  alert.cause = alert_t::CAUSE_GUARD_ZONE;
+  alert.text = "boat 17 in the guard zone: 7.3 m, 12 deg to port";
+  warned.look_out.alerts->alerts = {alert};
+  EXPECT_SAYS(says(warned), kOk, "no alert");  // it is acknowledged
+  alert.state = alert_t::STATE_ACTIVE;
+  warned.look_out.alerts->alerts = {alert};
+  EXPECT_SAYS(says(warned), kWarning, "1 alert, the gravest: boat 17 in the guard zone: 7.3 m, 12 deg to port");
 }
 
 TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {

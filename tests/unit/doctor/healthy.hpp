@@ -94,6 +94,7 @@ inline Observations Healthy() {
 
   for (const auto* name : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "recorder"}) seen.processes[name].push_back(Running(name));
   seen.obstacles = {50, 500, 500, 0};
+  seen.look_out = {50, 12, 3, seen.end, alerts_t{}, seen.end};
   seen.disk.folder = "/logs";
   seen.disk.free_bytes = 500'000'000'000;
   return seen;

@@ -11,7 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "common/io/stop_signal.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/run_info_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tests/support/file_log.hpp"
 #include "tests/support/files.hpp"
 #include "tests/unit/export/export_logs.hpp"
@@ -378,6 +380,65 @@ TEST_F(ExportTest, DrawsTheTrackWithALineForEachStretchOfOneStatus) {
   EXPECT_NE(text.find("stroke=\"#0072B2\" points=\"1100.0,940.0 1100.0,940.0\""), std::string::npos) << text;
   EXPECT_NE(text.find(">200 m; begins at 0.000000, 179.999900<"), std::string::npos) << text;
   EXPECT_EQ(text.find("no heading"), std::string::npos);
+}
+
+// One that goes, one that stands, one that was never confirmed; land; an alert that is told in two scans.
+TEST_F(ExportTest, DrawsWhatTheTrackerMadeOfTheWholeLog) {
+  for (int i = 0; i < 3; ++i) {
+    Add(bus::kPose, PoseAt(5 * i, 0.0009 * i, 0.0));
+    tracks_t tracks{};
+    tracks.utime_us = kStartUs + 100'000 * i;
+    tracks.end_utime_us = tracks.utime_us + 99'000;
+    tracks.num_parts = 1;
+    for (const std::int64_t id : {7, 8, 9}) {
+      track_t track{};
+      track.id = id;
+      track.status = id == 9 ? static_cast<std::int32_t>(track_t::STATUS_TENTATIVE) : static_cast<std::int32_t>(track_t::STATUS_CONFIRMED);
+      track.position_map_m[0] = id == 7 ? 20.0 * i : -40.0;
+      track.position_map_m[1] = 10.0 * static_cast<double>(id);
+      track.speed_mps = id == 7 ? 2.0F : 0.0F;
+      track.num_outline = 3;
+      track.outline_east_m = {0.0F, 1.0F, 0.0F};
+      track.outline_north_m = {0.0F, 0.0F, 1.0F};
+      tracks.tracks.push_back(track);
+    }
+    tracks.num_tracks = tracks.num_scan_tracks = 3;
+    tracks.num_waterline = 1;
+    tracks.waterline_east_m = {30.0F};
+    tracks.waterline_north_m = {100.0F};
+    Add(bus::kTracks, tracks);
+    alerts_t alerts{};
+    alerts.utime_us = tracks.utime_us;
+    alerts.end_utime_us = tracks.end_utime_us;
+    if (i > 0) {
+      alert_t alert{};
+      alert.id = 1;
+      alert.raised_utime_us = 5;
+      alert.level = alert_t::LEVEL_WARNING;
+      alert.state = alert_t::STATE_ACTIVE;
+      alert.text = "boat 7 <in> the guard zone";
+      alerts.alerts = {alert};
+      alerts.num_alerts = 1;
+    }
+    Add(bus::kAlerts, alerts);
+  }
+  ASSERT_EQ(Export("tracks", "svg"), kExitFine) << errors_;
+  const auto count = [this](const std::string& piece) {
+    int num = 0;
+    for (auto at = text_.find(piece); at != std::string::npos; at = text_.find(piece, at + 1)) ++num;
+    return num;
+  };
+  EXPECT_EQ(count("<title>track 7<"), 1);
+  EXPECT_EQ(count("<title>track 8<"), 1);
+  EXPECT_EQ(count("<title>track 9<"), 0) << "it may have been clutter";
+  EXPECT_EQ(count("<polygon "), 2);
+  EXPECT_EQ(count("<polyline stroke-width=\"1.5\""), 1) << "only what has moved has a way";
+  EXPECT_EQ(count("h2v2h-2z"), 1) << "land that came three times is drawn once";
+  EXPECT_EQ(count(">2 tracks of the tracker, 1 moved; 1 alert, each where"), 1) << text_;
+  EXPECT_EQ(count("r=\"7\""), 1);
+  EXPECT_EQ(count(">0.2 s, warning: boat 7 &lt;in> the guard zone</text>"), 1) << text_;
+  EXPECT_EQ(count("stroke=\"#0072B2\" points="), 1) << "the own track";
+  EXPECT_EQ(Export("tracks", "svg", 3), kExitUsage);
 }
 
 TEST_F(ExportTest, OfPosesWithoutPositionDrawsNoTrack) {

@@ -7,6 +7,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/messages/pose_message.hpp"
 #include "common/core/angles.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
 #include "services/georeferencer/wire.hpp"

@@ -14,12 +14,16 @@ import lcm.lcm.LCMDataInputStream;
 import lcm.lcm.LCMDataOutputStream;
 import lcm.lcm.LCMEncodable;
 import lcm.spy.SpyPlugin;
+import lookout.alert_t;
+import lookout.alerts_t;
 import lookout.lidar_scan_t;
 import lookout.obstacle_t;
 import lookout.obstacles_t;
 import lookout.pose_t;
 import lookout.segment_t;
 import lookout.segments_t;
+import lookout.track_t;
+import lookout.tracks_t;
 
 /** The plugin without a display: what it handles, what it draws where, and that no message ends it. Exit code 1 and a line for each failure. */
 public final class SpyTest {
@@ -128,6 +132,74 @@ public final class SpyTest {
     return message;
   }
 
+  // At 300 m east and 200 m north, heading east.
+  private static pose_t poseOf(long utime_us) {
+    pose_t pose = new pose_t();
+    pose.utime_us = utime_us;
+    pose.heading_rad = 0.5 * Math.PI;
+    pose.position_map_m[0] = 300.0;
+    pose.position_map_m[1] = 200.0;
+    pose.heading_source = 0;
+    return pose;
+  }
+
+  // 4 m x 2 m, so far from the boat of poseOf, with 1 m/s to the north.
+  private static track_t trackOf(long id, double ahead_m, double port_m) {
+    track_t track = new track_t();
+    track.id = id;
+    track.status = track_t.STATUS_CONFIRMED;
+    track.position_map_m[0] = 300.0 + ahead_m;
+    track.position_map_m[1] = 200.0 + port_m;
+    track.velocity_map_mps[1] = 1.0;
+    track.speed_mps = 1f;
+    track.num_outline = 4;
+    float east_m = (float) track.position_map_m[0];
+    float north_m = (float) track.position_map_m[1];
+    track.outline_east_m = new float[] {east_m - 2f, east_m + 2f, east_m + 2f, east_m - 2f};
+    track.outline_north_m = new float[] {north_m - 1f, north_m - 1f, north_m + 1f, north_m + 1f};
+    track.segment_ids = new int[0];
+    track.parents = new long[0];
+    track.children = new long[0];
+    return track;
+  }
+
+  private static tracks_t tracksOf(long utime_us, track_t... tracks) {
+    tracks_t message = new tracks_t();
+    message.utime_us = utime_us - 100;
+    message.end_utime_us = utime_us;
+    message.num_parts = 1;
+    message.num_tracks = message.num_scan_tracks = tracks.length;
+    message.tracks = tracks;
+    message.land_segment_ids = new int[0];
+    message.num_waterline = 1;
+    message.waterline_east_m = new float[] {280f};
+    message.waterline_north_m = new float[] {200f};
+    return message;
+  }
+
+  private static alerts_t alertsOf(long track_id) {
+    alert_t alert = new alert_t();
+    alert.cause = alert_t.CAUSE_CLOSEST_APPROACH;
+    alert.level = alert_t.LEVEL_WARNING;
+    alert.state = alert_t.STATE_ACTIVE;
+    alert.track_id = track_id;
+    alert.text = "boat: closest approach 3 m in 21 s";
+    alerts_t message = new alerts_t();
+    message.num_alerts = 1;
+    message.alerts = new alert_t[] {alert};
+    message.acknowledged = new lookout.alert_ack_t[0];
+    return message;
+  }
+
+  private static boolean has(BufferedImage image, Point2D near, Color colour) {
+    for (int x = (int) near.getX() - 2; x <= near.getX() + 2; ++x) {
+      for (int y = (int) near.getY() - 2; y <= near.getY() + 2; ++y) {
+        if (new Color(image.getRGB(x, y)).equals(colour)) return true;
+      }
+    }
+    return false;
+  }
+
   private static byte[] encoded(LCMEncodable message) throws Exception {
     LCMDataOutputStream bytes = new LCMDataOutputStream();
     message.encode(bytes);
@@ -146,7 +218,7 @@ public final class SpyTest {
     return MapView.toScreen(layout.map, RADIUS_M).transform(new Point2D.Double(x_m, y_m), null);
   }
 
-  private static void theSpyFindsThePluginWhichHandlesThreeTypes() {
+  private static void theSpyFindsThePluginWhichHandlesItsTypes() {
     List<String> found = new ArrayList<>();
     lcm.util.ClassDiscoverer.findClasses((jar, type) -> {
       if (List.of(type.getInterfaces()).contains(SpyPlugin.class)) found.add(type.getName());
@@ -156,6 +228,8 @@ public final class SpyTest {
     expect(plugin.canHandle(lidar_scan_t.LCM_FINGERPRINT), "handles lidar_scan_t");
     expect(plugin.canHandle(segments_t.LCM_FINGERPRINT), "handles segments_t");
     expect(plugin.canHandle(obstacles_t.LCM_FINGERPRINT), "handles obstacles_t");
+    expect(plugin.canHandle(tracks_t.LCM_FINGERPRINT), "handles tracks_t");
+    expect(plugin.canHandle(alerts_t.LCM_FINGERPRINT), "handles alerts_t");
     expect(!plugin.canHandle(pose_t.LCM_FINGERPRINT), "leaves pose_t to the spy");
     // So the spy asks for the name first.
     expect("Range image and map".equals(plugin.getAction(null, null).getValue(javax.swing.Action.NAME)), "the action has a name");
@@ -201,6 +275,33 @@ public final class SpyTest {
     BufferedImage later = painted(scans, WIDTH, HEIGHT, NOW_MS + 2001);
     expect(new Color(later.getRGB((int) Math.floor(x), (int) Math.floor(y - 4))).getRed() > 128, "after 2 s the ring is gone");
     expectColour(later, layout.map.getCenterX() - 80, layout.map.y + 12, Palette.ALERT, "and the picture says that it is old");
+  }
+
+  private static void tracksAreDrawnFromTheMap() {
+    Scans scans = new Scans();
+    scans.add(poseOf(1_000_000));
+    scans.add(tracksOf(1_000_000, trackOf(7, 30.0, 0.0), trackOf(8, -20.0, 15.0)), NOW_MS);
+    scans.add(alertsOf(7), NOW_MS);
+    Painter.Layout layout = new Painter.Layout(WIDTH, HEIGHT);
+    BufferedImage image = painted(scans, WIDTH, HEIGHT, NOW_MS);
+    expect(has(image, onMap(layout, 28.0, 0.5), Palette.ALERT), "the near side of track 7, which has a warning, is ahead");
+    expect(has(image, onMap(layout, 30.0, 9.9), Palette.ALERT), "its vector goes 10 m to port in 10 s");
+    expect(has(image, onMap(layout, -18.0, 14.5), Palette.TRACK), "track 8 is astern to port");
+    expect(has(image, onMap(layout, -20.0, 0.0), Palette.WATERLINE), "land is astern");
+    expect(has(image, new Point2D.Double(layout.map.x + 8, layout.map.getMaxY() - 10), Palette.ALERT), "the alert stands below");
+    BufferedImage silent = painted(scans, WIDTH, HEIGHT, NOW_MS + 1500);
+    expect(has(silent, onMap(layout, -18.0, 14.5), Palette.TRACK), "tracks stay for 2 s");
+    expect(has(silent, new Point2D.Double(layout.map.x + 8, layout.map.getMaxY() - 10), Palette.ALERT), "that nobody looks stands below");
+    expect(!has(painted(scans, WIDTH, HEIGHT, NOW_MS + 2500), onMap(layout, -18.0, 14.5), Palette.TRACK), "then they go");
+
+    tracks_t elsewhere = tracksOf(2_000_000, trackOf(7, 30.0, 0.0));
+    elsewhere.datum_latitude_deg = 1.0;
+    scans.add(elsewhere, NOW_MS);
+    expect(!has(painted(scans, WIDTH, HEIGHT, NOW_MS), onMap(layout, 28.0, 0.5), Palette.ALERT), "of another map nothing is drawn");
+    tracks_t half = tracksOf(3_000_000, trackOf(9, 10.0, 0.0));
+    half.num_parts = 2;
+    scans.add(half, NOW_MS);
+    expect(scans.picture().lookOut().tracks().get(0).id == 7, "half a scan is not drawn");
   }
 
   private static void theMountingIsNotGuessed() {
@@ -283,9 +384,11 @@ public final class SpyTest {
 
   private static void noMessageEndsIt() throws Exception {
     Random random = new Random(1);
-    String[] channels = {"LIDAR_SCAN", "SEGMENTS", "OBSTACLES"};
-    byte[][] good = {encoded(scanOf(1)), encoded(segmentsOf(1)), encoded(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f)))};
+    String[] channels = {"LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS"};
+    byte[][] good = {encoded(scanOf(1)), encoded(segmentsOf(1)), encoded(obstaclesOf(1, obstacleOf(3, 20f, 0f), obstacleOf(4, 0f, 10f))),
+        encoded(tracksOf(1_000_000, trackOf(7, 30.0, 0.0))), encoded(alertsOf(7))};
     Scans scans = new Scans();
+    scans.add(poseOf(1_000_000));
     for (int i = 0; i < channels.length; ++i) Feed.decode(scans, channels[i], new LCMDataInputStream(good[i]), NOW_MS);
     expect(scans.num_refused() == 0 && scans.picture().scan() != null && scans.picture().obstacles().size() == 2, "the good ones are taken");
     long num_cut = 0;
@@ -372,9 +475,10 @@ public final class SpyTest {
   }
 
   public static void main(String[] arguments) throws Exception {
-    theSpyFindsThePluginWhichHandlesThreeTypes();
+    theSpyFindsThePluginWhichHandlesItsTypes();
     aReturnIsDrawnWhereItIs();
     obstaclesGiveTheBowAndTheirMarks();
+    tracksAreDrawnFromTheMap();
     theMountingIsNotGuessed();
     scansAreDrawnWhole();
     sharedCasesCompleteTheirScans();

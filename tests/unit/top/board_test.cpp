@@ -7,6 +7,7 @@
 #include <random>
 
 #include "common/core/angles.hpp"
+#include "lookout/alerts_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "tests/unit/top/bus_talk.hpp"
 
@@ -125,7 +126,7 @@ TEST(Board, NeverDiesOfBytesAndCountsThem) {
     for (int k = 0; k < 4; ++k) spoiled[8 + random() % (spoiled.size() - 8)] = static_cast<std::uint8_t>(random());
     board.Take(i % 2 == 0 ? "OBSTACLES" : "HEALTH", spoiled, At(0.001 * i));
     board.Obstacles(At(0.001 * i));
-    board.NearestAlarm(At(0.001 * i));
+    board.AlertLines(At(0.001 * i));
   }
   const auto channels = board.Channels(At(2.0));
   ASSERT_EQ(channels.size(), bus::kChannels.size());
@@ -247,54 +248,16 @@ TEST(Board, KeepsTheProcessesOfTheSuiteAboveInventedNames) {
   EXPECT_LE(processes.size(), 16U);
 }
 
-TEST(Board, TakesTheAlarmOutOfHealth) {
+// A tracker that is up and has no scan yet sends no ALERTS; one that was stopped leaves the last word it had said.
+TEST(Board, SaysThatNobodyLooksWhereATrackerIsAndNoAlertsCome) {
   Board board(kStart);
-  Say(board, bus::kHealth, HealthOf("georeferencer", 0), 0.1);
-  EXPECT_FALSE(board.NearestAlarm(At(0.2)));
-  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "no POSE for 3 s; obstacle within 10.0 m: 7.3 m, 12 deg to port; another");
-  AddCounter(health, "alarm_active", 1);
-  AddCounter(health, "nearest_cm", 731);
-  Say(board, bus::kHealth, health, 1.1);
-  const auto alarm = board.NearestAlarm(At(1.6));
-  ASSERT_TRUE(alarm);
-  EXPECT_TRUE(alarm->is_active);
-  EXPECT_EQ(alarm->text, "obstacle within 10.0 m: 7.3 m, 12 deg to port");
-  health.counters[0].count = 0;
-  Say(board, bus::kHealth, health, 2.1);
-  EXPECT_FALSE(board.NearestAlarm(At(2.2))->is_active);
-  health.counters[0].count = 1;
-  health.reason = "";
-  Say(board, bus::kHealth, health, 3.1);
-  EXPECT_EQ(board.NearestAlarm(At(3.2))->text, "obstacle near: 7.3 m");
-}
-
-TEST(Board, TellsThatTheGuardZoneIsNotWatched) {
-  Board board(kStart);
-  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED,
-                         "obstacle within 10.0 m: 7.3 m, 12 deg to port; guard zone not watched: no whole scan for 3.2 s; no SEGMENTS for 3 s");
-  AddCounter(health, "alarm_active", 1);
-  AddCounter(health, "zone_unwatched", 1);
-  Say(board, bus::kHealth, health, 1.1);
-  EXPECT_EQ(board.NearestAlarm(At(1.2))->text, "obstacle within 10.0 m: 7.3 m, 12 deg to port; guard zone not watched: no whole scan for 3.2 s");
-  health.reason = "";
-  Say(board, bus::kHealth, health, 2.1);
-  EXPECT_EQ(board.NearestAlarm(At(2.2))->text, "guard zone not watched");
-}
-
-// A georeferencer that was stopped left the last word it had said: no alarm.
-TEST(Board, WhoWatchesTheGuardZoneAndFallsSilentIsAnAlarm) {
-  Board board(kStart);
-  auto health = HealthOf("georeferencer", 1);
-  AddCounter(health, "alarm_active", 0);
-  Say(board, bus::kHealth, health, 1.1);
-  EXPECT_FALSE(board.NearestAlarm(At(4.0))->is_active);
-  const auto alarm = board.NearestAlarm(At(4.2));
-  EXPECT_TRUE(alarm->is_active);
-  EXPECT_EQ(alarm->text, "guard zone not watched: no HEALTH of georeferencer");
-  // Another has taken its place.
-  health.pid += 1;
-  Say(board, bus::kHealth, health, 5.0);
-  EXPECT_FALSE(board.NearestAlarm(At(5.1))->is_active);
+  Say(board, bus::kHealth, HealthOf("georeferencer", 1), 0.5);
+  EXPECT_TRUE(board.AlertLines(At(1.0)).empty()) << "a boat without a tracker";
+  Say(board, bus::kHealth, HealthOf("tracker", 1, health_t::STATE_DEGRADED, "no look-out: no whole scan yet"), 1.0);
+  EXPECT_EQ(board.AlertLines(At(1.1)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS yet"});
+  Say(board, bus::kAlerts, alerts_t{}, 2.0);
+  EXPECT_TRUE(board.AlertLines(At(2.9)).empty());
+  EXPECT_EQ(board.AlertLines(At(4.0)), std::vector<std::string>{"NO LOOK-OUT: no ALERTS for 2 s"});
 }
 
 TEST(Board, TellsTheGreatestLatencyOfDataOnly) {

@@ -52,10 +52,20 @@ Board BusyBoard() {
 
 Board AlarmedBoard() {
   Board board = BusyBoard();
-  auto health = HealthOf("georeferencer", 1, health_t::STATE_DEGRADED, "obstacle within 10.0 m: 4.5 m, 12 deg to port");
-  AddCounter(health, "alarm_active", 1);
-  AddCounter(health, "nearest_cm", 450);
-  Say(board, bus::kHealth, health, 1.95);
+  alerts_t alerts{};
+  for (const auto* text :
+       {"boat 17 in the guard zone: 4.5 m, 12 deg to port", "boat 18: closest approach 3 m in 21 s, from where it is hard to see, 120 deg to port"}) {
+    alert_t alert{};
+    alert.id = 1 + std::ssize(alerts.alerts);
+    alert.cause = alert_t::CAUSE_GUARD_ZONE;
+    alert.level = alert_t::LEVEL_WARNING;
+    if (!alerts.alerts.empty()) alert.level = alert_t::LEVEL_CAUTION;
+    alert.state = alert_t::STATE_ACTIVE;
+    alert.text = text;
+    alerts.alerts.push_back(alert);
+  }
+  alerts.num_alerts = 2;
+  Say(board, bus::kAlerts, alerts, 1.95);
   return board;
 }
 
@@ -158,29 +168,23 @@ TEST(Screen, AlarmStandsOnTopInReverse) {
     const auto rows = DrawScreen(AlarmedBoard(), "title", At(2.0), {80, height});
     ASSERT_FALSE(rows.empty());
     EXPECT_EQ(rows[0][0].style, Style::kAlarm);
-    EXPECT_EQ(Lines(rows)[0], "ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port") << height;
+    EXPECT_EQ(Lines(rows)[0], "WARNING: boat 17 in the guard zone: 4.5 m, 12 deg to port") << height;
   }
-  EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(2.0), {80, 24})), "  8     8    11.5"));  // eight have room beside it
   const auto calm = DrawScreen(BusyBoard(), "title", At(2.0), {80, 24});
-  EXPECT_FALSE(Has(Lines(calm), "ALARM"));
+  EXPECT_FALSE(Has(Lines(calm), "WARNING"));
 }
 
-TEST(Screen, AnAlarmOfAProcessThatFellSilentStaysAndSaysSo) {
-  EXPECT_TRUE(Has(Lines(DrawScreen(AlarmedBoard(), "title", At(10.0), {80, 24})), "4.5 m, 12 deg to port (8 s ago, silent since)"));
+TEST(Screen, AnAlertStaysWhereTheTrackerFellSilentAndSaysSo) {
+  const auto lines = Lines(DrawScreen(AlarmedBoard(), "title", At(10.0), {80, 24}));
+  EXPECT_EQ(lines[0], "NO LOOK-OUT: no ALERTS for 8 s");
+  EXPECT_EQ(lines[1], "before that: boat 17 in the guard zone: 4.5 m, 12 deg to port");
 }
 
-TEST(Screen, TellsOfEachAlarmInARowOfItsOwn) {
-  Board board = AlarmedBoard();
-  auto health =
-      HealthOf("georeferencer", 2, health_t::STATE_DEGRADED,
-               "obstacle within 10.0 m: 4.5 m, 12 deg to port; guard zone not watched: no whole scan for 3.2 s, 31 that were not whole: lost "
-               "packets or a second sender, see HEALTH of vlp16 and segmenter; no SEGMENTS for 3 s");
-  AddCounter(health, "alarm_active", 1);
-  Say(board, bus::kHealth, health, 1.96);
-  const auto lines = Lines(DrawScreen(board, "title", At(2.0), {80, 24}));
+TEST(Screen, TellsOfEachAlertInARowOfItsOwn) {
+  const auto lines = Lines(DrawScreen(AlarmedBoard(), "title", At(2.0), {80, 24}));
   ASSERT_EQ(lines.size(), 24U);
-  EXPECT_EQ(lines[0], "ALARM: obstacle within 10.0 m: 4.5 m, 12 deg to port");
-  EXPECT_EQ(lines[1], "ALARM: guard zone not watched: no whole scan for 3.2 s, 31 that were not whole..");
+  EXPECT_EQ(lines[0], "WARNING: boat 17 in the guard zone: 4.5 m, 12 deg to port");
+  EXPECT_EQ(lines[1], "CAUTION: boat 18: closest approach 3 m in 21 s, from where it is hard to see,..");
   EXPECT_EQ(lines[2].substr(0, 4), "own ");
 }
 

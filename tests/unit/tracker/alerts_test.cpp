@@ -1,5 +1,6 @@
 #include "services/tracker/core/alerts.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -299,6 +300,17 @@ TEST_F(AlertsTest, OfTheZoneHaveNothingToSayOfWhatIsNamedMeanwhile) {
   EXPECT_EQ(alerts_.alerts()[1].state, AlertState::kCleared) << "and not rectified: the other one is to be acknowledged";
   Scan({Zone(7)});
   EXPECT_EQ(Only().track_id, 7);
+}
+
+// What has an alert goes, and another thing, which is called otherwise in each scan, was there all the time.
+TEST_F(AlertsTest, OfTheZoneComeUpAsSoonAsNoOtherOfItHolds) {
+  Scans(3, {Zone(7)});
+  std::int64_t id = 100;
+  for (int i = 0; i < 40; ++i) {
+    const auto& alerts = Scan({Zone(id++)});
+    ASSERT_TRUE(std::ranges::any_of(alerts, &Alert::Holds)) << i;
+    ASSERT_TRUE(i >= 29 || alerts.size() == 1U) << "one is enough";
+  }
 }
 
 // Who has taken note of the pile beside the boat is told of what comes, also where nobody can follow it.

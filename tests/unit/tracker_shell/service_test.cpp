@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,15 @@ TEST_F(TrackerService, SendsTracksAndAlertsOfEachScan) {
   EXPECT_NEAR(last.tracks[0].position_map_m[1], 20.0, 1.0);
   EXPECT_NEAR(last.tracks[0].latitude_deg, 43.7 + 20.0 / 111'110.0, 1e-5);
   EXPECT_EQ(last.tracks[0].segment_ids, (std::vector<std::int32_t>{1}));
+}
+
+TEST_F(TrackerService, ReportsEachCounterOnceAndHowMuchItFollows) {
+  SendPoses(0, 1'000'000);
+  for (int i = 0; i < 8; ++i) SendScan(i, i);
+  std::set<std::string> names;
+  for (const auto& counter : service_.Report().counters) EXPECT_TRUE(names.emplace(counter.name).second) << counter.name;
+  for (const auto* name : {"tracks", "tracks_confirmed", "clutter_per_scan", "alerts"}) EXPECT_TRUE(names.contains(name)) << name;
+  EXPECT_EQ(Count("tracks"), 1);
 }
 
 TEST_F(TrackerService, WaitsForPoseForTheBeamsAndForTheLabels) {

@@ -15,14 +15,18 @@ import java.awt.geom.Path2D;
 import java.awt.geom.Point2D;
 import java.util.ArrayList;
 import java.util.List;
+import lookout.alert_t;
 import lookout.obstacle_t;
 import lookout.segment_t;
+import lookout.track_t;
 
 /** The scan from above, bow up, the vessel in the middle, with rings of range. */
 final class MapView {
   private static final int MAX_LABELS = 24;
   private static final int MAX_TENTATIVE_MARKS = 40;
   private static final Color LABEL_BACKGROUND = new Color(255, 255, 255, 150);
+  /** How far ahead the vector of a track reaches. */
+  static final double VECTOR_S = 10.0;
   private static final double[] RING_STEPS_M = {1, 2, 5, 10, 20, 50, 100};
 
   private final Graphics2D g;
@@ -50,7 +54,8 @@ final class MapView {
     view.grid();
     view.returns();
     view.outlines();
-    if (picture.hasObstacles(now_ms)) view.obstacles();
+    if (picture.lookOut().hasTracks(now_ms)) view.lookOut();
+    else if (picture.hasObstacles(now_ms)) view.obstacles();
     view.vessel();
     view.north();
     g.setClip(clip);
@@ -162,6 +167,71 @@ final class MapView {
     g.setStroke(new BasicStroke(1.2f));
     circle(new Point2D.Double(x, y), 12);
     g.drawString("N", (float) (x - 0.5 * metrics.stringWidth("N")), (float) (y + 0.37 * metrics.getAscent()));
+  }
+
+  // Land that is remembered, outlines of tracks, and where they will be in VECTOR_S; a number beside each, that of a moving one with its speed.
+  private void lookOut() {
+    LookOut lookOut = picture.lookOut();
+    if (lookOut.own() == null) return;
+    AffineTransform mapToScreen = new AffineTransform(vesselToScreen);
+    mapToScreen.concatenate(lookOut.toVessel());
+    g.setColor(Palette.WATERLINE);
+    for (float[] place : lookOut.waterline()) {
+      Point2D at = at(mapToScreen, place[0], place[1]);
+      g.fillRect((int) Math.round(at.getX()) - 1, (int) Math.round(at.getY()) - 1, 3, 3);
+    }
+    List<Rectangle> taken = new ArrayList<>();
+    taken.add(new Rectangle((int) area.getCenterX() - 8, (int) area.getCenterY() - 12, 16, 22));
+    for (track_t track : lookOut.tracks()) {
+      Point2D middle = at(mapToScreen, track.position_map_m[0], track.position_map_m[1]);
+      int level = lookOut.levelOf(track.id);
+      g.setColor(level == alert_t.LEVEL_WARNING ? Palette.ALERT : level == alert_t.LEVEL_CAUTION ? Palette.CAUTION : Palette.TRACK);
+      boolean isCoasting = track.status == track_t.STATUS_COASTING;
+      g.setStroke(isCoasting ? new BasicStroke(1.6f, BasicStroke.CAP_BUTT, BasicStroke.JOIN_BEVEL, 1f, new float[] {5f, 4f}, 0f) : new BasicStroke(1.6f));
+      outline(track, mapToScreen);
+      if (track.speed_mps > 0f) vector(middle, at(mapToScreen, track.position_map_m[0] + VECTOR_S * track.velocity_map_mps[0],
+          track.position_map_m[1] + VECTOR_S * track.velocity_map_mps[1]));
+      label(Texts.track(track), middle, taken);
+    }
+  }
+
+  private void outline(track_t track, AffineTransform mapToScreen) {
+    if (track.num_outline < 2) {
+      circle(at(mapToScreen, track.position_map_m[0], track.position_map_m[1]), 3);
+      return;
+    }
+    Path2D path = new Path2D.Double();
+    for (int i = 0; i < track.num_outline; ++i) {
+      Point2D corner = at(mapToScreen, track.outline_east_m[i], track.outline_north_m[i]);
+      if (i == 0) path.moveTo(corner.getX(), corner.getY());
+      else path.lineTo(corner.getX(), corner.getY());
+    }
+    path.closePath();
+    g.draw(path);
+  }
+
+  private void vector(Point2D from, Point2D to) {
+    g.setStroke(new BasicStroke(2f));
+    g.draw(new Line2D.Double(from, to));
+    double direction_rad = Math.atan2(to.getY() - from.getY(), to.getX() - from.getX());
+    for (double side_rad : new double[] {2.6, -2.6}) {
+      double angle_rad = direction_rad + side_rad;
+      g.draw(new Line2D.Double(to.getX(), to.getY(), to.getX() + 8 * Math.cos(angle_rad), to.getY() + 8 * Math.sin(angle_rad)));
+    }
+  }
+
+  // In the colour that is set; a text that would lie on another is left out.
+  private void label(String text, Point2D place, List<Rectangle> taken) {
+    Color colour = g.getColor();
+    FontMetrics metrics = g.getFontMetrics();
+    Rectangle box = new Rectangle((int) place.getX() + 7, (int) place.getY() - metrics.getAscent() / 2 - 2, metrics.stringWidth(text) + 4,
+        metrics.getAscent() + 3);
+    if (taken.size() > MAX_LABELS || taken.stream().anyMatch(box::intersects) || !area.intersects(box)) return;
+    g.setColor(LABEL_BACKGROUND);
+    g.fill(box);
+    g.setColor(colour);
+    g.drawString(text, box.x + 2, box.y + metrics.getAscent());
+    taken.add(box);
   }
 
   // Tentative marks below sure ones, in rain the nearest only; then numbers beside the nearest, the sure ones first. A text that would lie on another

@@ -5,9 +5,13 @@ import java.awt.Font;
 import java.awt.Graphics2D;
 import java.awt.Rectangle;
 import java.awt.RenderingHints;
+import java.util.ArrayList;
 import java.util.Comparator;
+import java.util.List;
 import java.util.Locale;
+import lookout.alert_t;
 import lookout.obstacle_t;
+import lookout.track_t;
 
 /** Everything in its place: two range images on top, the map below, beside it the legend and the list of obstacles. No state, no clock. */
 final class Painter {
@@ -15,6 +19,7 @@ final class Painter {
   private static final int CAPTION = 18;
   private static final int STRIP = 96;  // six pixels for each ring of a VLP-16
   private static final int SIDE = 374;
+  private static final int MAX_ALERTS = 4;
 
   private Painter() {}
 
@@ -58,6 +63,7 @@ final class Painter {
     g.draw(layout.map);
     if (layout.side.width > 0) side(g, layout.side, picture, now_ms, num_refused);
     banner(g, layout.map, picture, now_ms);
+    alerts(g, layout.map, picture.lookOut(), now_ms);
   }
 
   private static void caption(Graphics2D g, Rectangle area, String text) {
@@ -113,9 +119,38 @@ final class Painter {
       g.drawString((String) entry[1], side.x + 18, y);
       y += line_height;
     }
-    g.drawString("\u25cb obstacle: id, range, bearing; \"?\" tentative", side.x, y);
-    y += line_height + 8;
+    boolean hasTracks = picture.lookOut().hasTracks(now_ms);
+    if (hasTracks) {
+      Object[][] marks = {{Palette.TRACK, String.format(Locale.ROOT, "a track; dashed: not seen now; its way of %.0f s", MapView.VECTOR_S)},
+          {Palette.CAUTION, "with a caution"}, {Palette.ALERT, "with a warning"}, {Palette.WATERLINE, "land that is remembered"}};
+      for (Object[] entry : marks) {
+        g.setColor((Color) entry[0]);
+        g.drawRect(side.x, y - 9, 9, 9);
+        g.setColor(Palette.INK);
+        g.drawString((String) entry[1], side.x + 18, y);
+        y += line_height;
+      }
+      y += 8;
+    } else {
+      g.drawString("\u25cb obstacle: id, range, bearing; \"?\" tentative", side.x, y);
+      y += line_height + 8;
+    }
 
+    if (hasTracks) {
+      trackRows(g, side, y, picture.lookOut());
+    } else {
+      obstacleRows(g, side, y, picture, now_ms);
+    }
+    if (num_refused > 0) {
+      g.setFont(new Font(Font.SANS_SERIF, Font.PLAIN, 12));
+      g.setColor(Palette.ALERT);
+      g.drawString(num_refused + " messages refused", side.x, side.y + side.height);
+    }
+  }
+
+  private static void obstacleRows(Graphics2D g, Rectangle side, int top, Picture picture, long now_ms) {
+    int line_height = 17;
+    int y = top;
     long num_sure = picture.obstacles().stream().filter(obstacle -> obstacle.confidence == obstacle_t.CONFIDENCE_SURE).count();
     g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 12));
     String count = picture.obstacles().size() + ", " + num_sure + " of them sure";
@@ -138,9 +173,53 @@ final class Painter {
         y += line_height;
       }
     }
-    if (num_refused > 0) {
-      g.setColor(Palette.ALERT);
-      g.drawString(num_refused + " messages refused", side.x, side.y + side.height);
+  }
+
+  // At the lower edge of the map, the gravest on top.
+  private static void alerts(Graphics2D g, Rectangle map, LookOut lookOut, long now_ms) {
+    List<String> lines = new ArrayList<>();
+    List<Color> colours = new ArrayList<>();
+    if (lookOut.isSilent(now_ms)) {
+      lines.add(String.format(Locale.ROOT, "NO LOOK-OUT: no ALERTS for %.0f s", (now_ms - lookOut.alertsTime_ms()) / 1000.0));
+      colours.add(Palette.ALERT);
+    } else {
+      for (alert_t alert : lookOut.alerts()) {
+        if (alert.state != alert_t.STATE_ACTIVE || lines.size() == MAX_ALERTS) continue;
+        lines.add(Texts.alert(alert));
+        colours.add(alert.level == alert_t.LEVEL_WARNING ? Palette.ALERT : Palette.CAUTION);
+      }
+    }
+    g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 13));
+    int y = map.y + map.height - 24 * lines.size() - 4;
+    for (int i = 0; i < lines.size(); ++i, y += 24) {
+      g.setColor(colours.get(i));
+      g.fillRect(map.x + 6, y, Math.min(map.width - 12, g.getFontMetrics().stringWidth(lines.get(i)) + 16), 21);
+      g.setColor(Color.WHITE);
+      g.drawString(lines.get(i), map.x + 14, y + 15);
+    }
+  }
+
+  // Numbers of each track, the nearest first.
+  private static void trackRows(Graphics2D g, Rectangle side, int top, LookOut lookOut) {
+    int line_height = 17;
+    int y = top;
+    g.setFont(new Font(Font.SANS_SERIF, Font.BOLD, 12));
+    long num_moving = lookOut.tracks().stream().filter(track -> track.speed_mps > 0f).count();
+    g.drawString("TRACKS: " + lookOut.tracks().size() + ", " + num_moving + " of them moving", side.x, y);
+    y += line_height;
+    g.setFont(new Font(Font.MONOSPACED, Font.PLAIN, 12));
+    g.setColor(Palette.FAINT_INK);
+    g.drawString(String.format(Locale.ROOT, "%5s %7s %7s %6s %5s %5s %5s", "id", "range", "bearing", "course", "m/s", "CPA m", "TCPA"), side.x, y);
+    y += line_height;
+    int rows = Math.max(0, (side.y + side.height - y - line_height) / line_height);
+    Comparator<track_t> nearest = Comparator.<track_t>comparingDouble(track -> track.range_m).thenComparingLong(track -> track.id);
+    for (track_t track : lookOut.tracks().stream().sorted(nearest).limit(rows).toList()) {
+      int level = lookOut.levelOf(track.id);
+      g.setColor(level == alert_t.LEVEL_WARNING ? Palette.ALERT : level == alert_t.LEVEL_CAUTION ? Palette.CAUTION : Palette.INK);
+      String course = track.speed_mps > 0f ? Texts.degrees(track.course_rad) : "-";
+      g.drawString(String.format(Locale.ROOT, "%5d %5.1f m %7s %6s %5.1f %5.1f %5.0f", track.id, track.range_m, Texts.degrees(track.bearing_rad), course,
+          track.speed_mps, track.cpa_m, track.tcpa_s), side.x, y);
+      y += line_height;
     }
   }
 

@@ -9,6 +9,10 @@ final class Palette {
   static final Color FAINT_INK = new Color(120, 130, 144);
   static final Color GRID = new Color(222, 227, 233);
   static final Color ALERT = new Color(190, 20, 20);
+  static final Color CAUTION = new Color(200, 110, 0);
+  static final Color TRACK = new Color(20, 70, 170);
+  /** Land that the tracker remembers, where free water meets it. */
+  static final Color WATERLINE = new Color(120, 92, 40);
   /** No return. */
   static final Color NOTHING = new Color(244, 246, 249);
   static final Color OWN_VESSEL = new Color(200, 148, 96);

@@ -12,9 +12,15 @@ import lookout.obstacle_t;
  * @param heading_rad from true north, clockwise; NaN = not known
  * @param scanTime_ms host time of the last scan; 0 = none yet
  * @param obstaclesTime_ms of the last obstacles
+ * @param lookOut what the tracker says
  */
-record Picture(Scan scan, List<obstacle_t> obstacles, Mounting mounting, double heading_rad, long scanTime_ms, long obstaclesTime_ms) {
-  static final Picture EMPTY = new Picture(null, List.of(), null, Double.NaN, 0, 0);
+record Picture(Scan scan, List<obstacle_t> obstacles, Mounting mounting, double heading_rad, long scanTime_ms, long obstaclesTime_ms,
+    LookOut lookOut) {
+  static final Picture EMPTY = new Picture(null, List.of(), null, Double.NaN, 0, 0, LookOut.NONE);
+
+  Picture with(LookOut newer) {
+    return new Picture(scan, obstacles, mounting, heading_rad, scanTime_ms, obstaclesTime_ms, newer);
+  }
 
   /** What is older says nothing about the water of now. */
   static final long MAX_AGE_MS = 2000;

@@ -6,11 +6,13 @@ import java.util.Iterator;
 import java.util.LinkedHashMap;
 import java.util.List;
 import java.util.TreeMap;
+import lookout.alerts_t;
 import lookout.lidar_scan_t;
 import lookout.obstacle_t;
 import lookout.obstacles_t;
 import lookout.pose_t;
 import lookout.segments_t;
+import lookout.tracks_t;
 
 /** Merges the messages of scans, which come in parts. What contradicts itself is refused and counted; nothing throws. Not for several threads. */
 final class Scans {
@@ -45,6 +47,7 @@ final class Scans {
   private record Key(long utime_us, long seq) {}
 
   private final LinkedHashMap<Key, Messages> waiting = new LinkedHashMap<>();
+  private final Tracks tracks = new Tracks();
   private Picture picture = Picture.EMPTY;
   private long num_refused = 0;
 
@@ -103,12 +106,27 @@ final class Scans {
     // The mounting does not change: one that was good stays until the next good one.
     Mounting estimate = messages.hasSegments() ? Mounting.estimate(Scan.segmentsOf(messages.segments.values()), obstacles) : null;
     Mounting mounting = estimate == null ? picture.mounting() : estimate;
-    picture = new Picture(picture.scan(), List.copyOf(obstacles), mounting, picture.heading_rad(), picture.scanTime_ms(), now_ms);
+    picture = new Picture(picture.scan(), List.copyOf(obstacles), mounting, picture.heading_rad(), picture.scanTime_ms(), now_ms, picture.lookOut());
   }
 
   void add(pose_t pose) {
-    picture = new Picture(
-        picture.scan(), picture.obstacles(), picture.mounting(), pose.heading_rad, picture.scanTime_ms(), picture.obstaclesTime_ms());
+    tracks.add(pose);
+    picture = new Picture(picture.scan(), picture.obstacles(), picture.mounting(), pose.heading_rad, picture.scanTime_ms(), picture.obstaclesTime_ms(),
+        picture.lookOut());
+  }
+
+  void add(tracks_t part, long now_ms) {
+    if (!isPart(part.part_index, part.num_parts)) {
+      refuse();
+      return;
+    }
+    tracks.add(part, now_ms);
+    picture = picture.with(tracks.lookOut());
+  }
+
+  void add(alerts_t message, long now_ms) {
+    tracks.add(message, now_ms);
+    picture = picture.with(tracks.lookOut());
   }
 
   private Messages messagesOf(Key key) {
@@ -143,7 +161,7 @@ final class Scans {
     messages.isDrawn = true;
     boolean isLabelled = messages.hasSegments() && messages.segments.size() >= messages.scan.size();
     Scan scan = new Scan(List.copyOf(messages.scan.values()), isLabelled ? List.copyOf(messages.segments.values()) : null);
-    picture = new Picture(scan, picture.obstacles(), picture.mounting(), picture.heading_rad(), now_ms, picture.obstaclesTime_ms());
+    picture = new Picture(scan, picture.obstacles(), picture.mounting(), picture.heading_rad(), now_ms, picture.obstaclesTime_ms(), picture.lookOut());
   }
 
   private static boolean isPart(int part_index, int num_parts) {

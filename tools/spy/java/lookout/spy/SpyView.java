@@ -6,6 +6,7 @@ import java.awt.event.ActionEvent;
 import java.awt.event.WindowAdapter;
 import java.awt.event.WindowEvent;
 import java.io.IOException;
+import java.util.stream.Stream;
 import javax.swing.AbstractAction;
 import javax.swing.Action;
 import javax.swing.JDesktopPane;
@@ -14,11 +15,15 @@ import javax.swing.JOptionPane;
 import javax.swing.SwingUtilities;
 import lcm.spy.ChannelData;
 import lcm.spy.SpyPlugin;
+import lookout.alerts_t;
 import lookout.lidar_scan_t;
 import lookout.obstacles_t;
 import lookout.segments_t;
+import lookout.tracks_t;
 
-/** Plugin of lcm-spy, which finds it on its class path: a double click on LIDAR_SCAN, SEGMENTS or OBSTACLES opens the picture of all three. */
+/**
+ * Plugin of lcm-spy, which finds it on its class path: a double click on LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS or ALERTS opens the picture
+ * of all. */
 public final class SpyView implements SpyPlugin {
   /** "true": the picture opens at the start, without a click. */
   private static final String OPEN_AT_START = "lookout.spy.view";
@@ -36,7 +41,8 @@ public final class SpyView implements SpyPlugin {
 
   @Override
   public boolean canHandle(long fingerprint) {
-    return fingerprint == lidar_scan_t.LCM_FINGERPRINT || fingerprint == segments_t.LCM_FINGERPRINT || fingerprint == obstacles_t.LCM_FINGERPRINT;
+    return Stream.of(lidar_scan_t.LCM_FINGERPRINT, segments_t.LCM_FINGERPRINT, obstacles_t.LCM_FINGERPRINT, tracks_t.LCM_FINGERPRINT,
+        alerts_t.LCM_FINGERPRINT).anyMatch(handled -> handled == fingerprint);
   }
 
   /** @param desktop of a window that the spy has just made; null where it only asks for the name of the action */

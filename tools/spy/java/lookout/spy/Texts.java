@@ -1,7 +1,9 @@
 package lookout.spy;
 
 import java.util.Locale;
+import lookout.alert_t;
 import lookout.obstacle_t;
+import lookout.track_t;
 
 /** Numbers in words for people. The locale of the computer has no say. */
 final class Texts {
@@ -11,6 +13,16 @@ final class Texts {
   static String obstacle(obstacle_t obstacle) {
     return String.format(Locale.ROOT, "%d%s %.1f m %s", obstacle.id, obstacle.confidence == obstacle_t.CONFIDENCE_SURE ? ":" : "?", obstacle.range_m,
         degrees(obstacle.bearing_rad));
+  }
+
+  /** "17 2.5 m/s", a standing one "17". */
+  static String track(track_t track) {
+    return track.speed_mps > 0f ? String.format(Locale.ROOT, "%d %.1f m/s", track.id, track.speed_mps) : Long.toString(track.id);
+  }
+
+  /** "WARNING: ..." */
+  static String alert(alert_t alert) {
+    return (alert.level == alert_t.LEVEL_WARNING ? "WARNING: " : "CAUTION: ") + alert.text;
   }
 
   /** Whole degrees of the circle, three digits. */
