@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
+#include <stdexcept>
+#include <string>
 #include <string_view>
 #include <system_error>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/io/output_file.hpp"
 #include "common/messages/checks.hpp"
 
 namespace lookout::tracker {
@@ -71,12 +73,14 @@ void Handover::Write(const alerts_t& alerts, const tracks_t& tracks) {
   const auto time = UtimeFromWire(alerts.end_utime_us).value_or(Utime{});
   bus::AppendLogEvent(log, 0, time, bus::kAlerts.name, bus::Encode(alerts));
   bus::AppendLogEvent(log, 1, time, bus::kTracks.name, bus::Encode(tracks));
-  const auto partial = folder_ / "alerts.lcmlog.partial";
-  std::ofstream out(partial, std::ios::binary | std::ios::trunc);
-  out.write(reinterpret_cast<const char*>(log.data()), static_cast<std::streamsize>(log.size()));
-  out.close();
-  if (out) fs::rename(partial, File(), failure);
   is_written_ = true;
+  try {
+    io::OutputFile out(File(), {.force = true, .inputs = {}, .tell = [](const std::string&) {}});
+    out.Write(log);
+    out.Commit();
+  } catch (const std::runtime_error&) {
+    return;  // nothing is left, then
+  }
 }
 
 }  // namespace lookout::tracker
