@@ -44,7 +44,7 @@ count_obstacles() {  # LOG
     { ++num; turns[$column["scan_utime_us"]] = 1; if ($column["status"] == "ok") ++num_placed; if ($column["confidence"] == "sure") ++num_sure }
     END {
       for (turn in turns) ++num_turns
-      printf "%d obstacles in %d turns, %d of them sure, %d placed on the earth\n", num, num_turns, num_sure, num_placed
+      printf "%d obstacles in %d scans, %d of them sure, %d placed on the earth\n", num, num_turns, num_sure, num_placed
     }'
 }
 

@@ -21,7 +21,7 @@ using segmenter::test::Wall;
 constexpr std::uint64_t kSeed = 20261123;
 constexpr std::chrono::milliseconds kScanPeriod(100);
 // Drops and noise come again after so many scans: longer than what is not confirmed lives.
-constexpr int kNumScans = 24;
+constexpr int kNumScans = 12;
 constexpr Datum kDatum{43.7, -72.3, 100.0};
 constexpr double kLidarAboveWaterM = 1.0;
 constexpr double kNoiseM2 = 0.01;

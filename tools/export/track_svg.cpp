@@ -70,12 +70,13 @@ double RoundLength(double length_m) {
 std::string Escaped(std::string_view text) {
   std::string escaped;
   for (const char c : text) {
-    if (c == '<' || c == '&')
-      escaped += c == '<' ? "&lt;" : "&amp;";
-    else if (c >= ' ' && c <= '~')
-      escaped += c;
-    else
-      escaped += '?';
+    if (c == '<') {
+      escaped += "&lt;";
+    } else if (c == '&') {
+      escaped += "&amp;";
+    } else {
+      escaped += c >= ' ' && c <= '~' ? c : '?';
+    }
   }
   return escaped;
 }

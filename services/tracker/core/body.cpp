@@ -27,7 +27,7 @@ constexpr double kGreatestOutlineSizeM = 10.0;
 constexpr double kOutlineS = 0.5;
 constexpr double kHeadingSdRad = 0.0035;  // 0.2 deg, of a compass with two antennas; it changes as the boat turns
 // At first it is not known what of it is seen: so many times that, less and less over some seconds.
-constexpr double kFirstOutline = 3.0;
+constexpr double kFirstOutline = 1.5;
 constexpr double kFirstOutlineS = 2.0;
 // A far side that was never seen is assumed as far behind as what is seen is wide: round things are, and a boat is as often seen from an end as from
 // its side. Beyond a boat's beam it is rather seen from its side.
@@ -58,7 +58,7 @@ constexpr double kTurnS = 10.0;
 constexpr double kTurnKnownRadps = 0.07;  // greatest standard deviation of a rate that is published
 constexpr double kTurnKnownAfterS = 3.0;
 constexpr double kTurnsAfterS = 1.0;
-constexpr double kFirstSpeedMps = 3.0;  // standard deviation of what is not known
+constexpr double kFirstSpeedMps = 5.0;  // standard deviation of what is not known
 constexpr double kFirstJitterM2 = 0.05 * 0.05;
 constexpr double kLeastJitterM2 = 0.015 * 0.015;
 constexpr double kMostJitterM2 = 4.0;
@@ -80,9 +80,8 @@ double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x(
 Eigen::Matrix2d NoiseOf(const Eigen::Matrix2d& covariance_m2, double range_m) {
   constexpr double kTurnedRad = 0.015;
   const double turned_m = kTurnedRad * range_m;
-  Eigen::Matrix2d noise = covariance_m2;
-  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * noise.trace()));
-  return kept * noise;
+  const double kept = std::max(0.0, 1.0 - turned_m * turned_m / std::max(1e-9, 0.5 * covariance_m2.trace()));
+  return kept * covariance_m2;
 }
 
 // Of a normal density at `off`, without the factor of 2 pi.

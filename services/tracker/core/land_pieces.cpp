@@ -14,12 +14,12 @@ constexpr std::size_t kMostPlaces = 24;
 constexpr double kBeforeM = 1.5;
 constexpr double kReachM = 1.0;  // of a place that was free, and is not now
 constexpr double kPieceMoving = 0.95;
-constexpr double kPieceSpeedMps = 0.2;
+constexpr double kPieceSpeedMps = 0.3;
 constexpr double kLeastWayM = 1.0;
-constexpr int kLeastPlaces = 3;
+constexpr int kLeastPlaces = 4;
 constexpr double kAboveM = 0.1;  // a beam as high as that return would meet it
 constexpr double kLeastShare = 0.7;
-constexpr int kProofs = 3;  // scans in a row
+constexpr int kProofs = 5;  // scans in a row
 constexpr double kGateM = 1.5;
 constexpr double kMostRadiusRatio = 1.6;
 
