@@ -50,7 +50,8 @@ TEST(ImazuScenes, AreWarnedOfEightSecondsAheadAndSilentAfterPassing) {
   const int num_problems = NumberOf("LOOKOUT_IMAZU_PROBLEMS", 1);
   for (int problem = 1; problem <= num_problems; ++problem) {
     const auto scores = ScoresOf(fmt::format("imazu_{:02}", problem), kSeconds);
-    ASSERT_EQ(scores.warned_ahead_s.count(), NumOthers(problem)) << "problem " << problem;
+    EXPECT_EQ(scores.warned_ahead_s.count(), NumOthers(problem)) << "problem " << problem;
+    if (scores.warned_ahead_s.count() == 0) continue;
     std::printf("problem %d: warned %.1f s ahead or earlier, silent %.1f s after passing or earlier\n", problem, scores.warned_ahead_s.Percentile(0),
                 scores.warned_after_s.Max());
     EXPECT_GE(scores.warned_ahead_s.Percentile(0), 8.0) << "problem " << problem;

@@ -24,7 +24,7 @@ using Row = Table::Row;
 constexpr std::string_view kBlockBegin = "<!-- figures: ";
 constexpr std::string_view kBlockNameEnd = " -->";
 constexpr std::string_view kBlockEnd = "<!-- end -->";
-constexpr std::array<std::string_view, 19> kFigureNames{"main",
+constexpr std::array<std::string_view, 20> kFigureNames{"main",
                                                         "times",
                                                         "miou",
                                                         "false",
@@ -41,6 +41,7 @@ constexpr std::array<std::string_view, 19> kFigureNames{"main",
                                                         "tracks_states",
                                                         "tracks_labels",
                                                         "autoferry",
+                                                        "autoferry_targets",
                                                         "tracks_targets",
                                                         "tracks_approaches"};
 

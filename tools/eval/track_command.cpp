@@ -126,7 +126,7 @@ std::vector<NamedTable> AllTablesOf(const std::vector<TrackWorld>& worlds) {
   std::vector<TrackRow> rows;
   for (const auto& world : worlds) {
     AddTo(rows, world.scenes);
-    AddTo(rows, OverAll(world.scenes, world.name + ": all"));
+    AddTo(rows, OverAll(world.scenes, world.over_all));
   }
   std::vector<NamedTable> tables{TargetTable(worlds, "lookout", "nearest neighbour")};
   for (auto& table : TablesOf(rows)) tables.push_back(std::move(table));
@@ -176,12 +176,12 @@ int EvaluateTracks(const TrackOptions& options) {
   }
   std::ostream* const events = lost ? &lost->stream() : nullptr;
   std::vector<TrackWorld> worlds;
-  const auto add_world = [&worlds](const std::string& name, const std::vector<TrackRow>& runs) {
-    if (!runs.empty()) worlds.push_back({name, AddUp(runs)});
+  const auto add_world = [&worlds](const std::string& name, const std::vector<TrackRow>& runs, const std::string& over_all) {
+    if (!runs.empty()) worlds.push_back({name, AddUp(runs), over_all});
   };
-  add_world("own scenes", RunScenes(options, events));
+  add_world("own scenes", RunScenes(options, events), "all scenes");
   const bool has_captures = !options.captures.empty() && fs::exists(options.captures);
-  if (has_captures) add_world("second world", RunCaptures(options, events));
+  if (has_captures) add_world("second world", RunCaptures(options, events), "second world: all");
   if (!options.captures.empty() && !has_captures) std::cerr << "lookout-eval: " << options.captures.string() << " is not here\n";
   if (lost) lost->Commit();
   const auto tables = AllTablesOf(worlds);

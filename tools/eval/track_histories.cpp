@@ -27,6 +27,7 @@ constexpr double kFoundAgainS = 1.0;
 constexpr double kWarningS = 10.0;
 constexpr double kTcpaStepS = 1.0;         // a TCPA that falls by more from one scan to the next does so by a turn
 constexpr double kLeastApproachMps = 1.0;  // slower, TCPA says little
+constexpr double kLeastPassMps = 0.3;      // slower, two keep company
 // What never had a track counts where it was there for twice the time in which 95 % should have one (1 s, 4 s).
 constexpr std::array<double, 2> kLeastSeenS{1.0, 4.0};
 
@@ -265,7 +266,7 @@ void ScoreWarnings(const History& history, const ApproachLimits& limits, TrackSc
     const auto& nearest = moments[pass.nearest];
     const std::size_t searched_from = from;
     from = pass.end;
-    if ((nearest.thing->velocity_mps - nearest.scan->own->velocity_mps).norm() < kLeastApproachMps) continue;
+    if ((nearest.thing->velocity_mps - nearest.scan->own->velocity_mps).norm() < kLeastPassMps) continue;
     if (seen == moments.end() || SecondsBetween(seen->utime_us, nearest.utime_us) < kWarningS) continue;
     std::size_t first = searched_from;
     while (first < pass.nearest && !is_warned(moments[first])) ++first;

@@ -100,7 +100,7 @@ struct TrackScores {
   // Of all that comes nearer, at 1 m/s or more, 3 s after its first track; truly, both keep course and speed.
   Calibration calibration;
 
-  // Alerts. A pass: a thing in the water comes nearer than the limit, at 1 m/s or more, 10 s after it was seen with 5 returns or later.
+  // Alerts. A pass: a thing in the water comes nearer than the limit, at 0.3 m/s or more, 10 s after it was seen with 5 returns or later.
   std::int64_t num_alerts = 0;  // that came up, of any cause
   Summary warned_ahead_s;       // of each pass, from the first alert of an approach to when it is nearest; minus infinity: none came
   Summary warned_after_s;       // from when it is farther than the limit again to when the alert is over

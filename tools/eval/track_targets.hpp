@@ -13,6 +13,7 @@ namespace lookout::eval {
 struct TrackWorld {
   std::string name;
   std::vector<TrackRow> scenes;  // one row of each scene and tracker (AddUp)
+  std::string over_all;          // what the row over all of them is called
 };
 
 /// A row for each target and world: what `tracker` has, whether that reaches the target, the scene that is farthest from it, and what `other` has.

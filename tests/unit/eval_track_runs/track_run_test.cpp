@@ -190,7 +190,8 @@ Table::Row CellsOf(const Table& table, const std::string& what) {
 TEST(TargetTable, SaysOfEachTargetWhetherItIsReachedAndWhereLeast) {
   const TrackWorld world{"w",
                          {RowWith("lake", "a", 10, 0.01, true), RowWith("marina", "a", 30, -0.002, false), RowWith("waves", "a", 60, 0.02, true),
-                          RowWith("lake", "b", 500, 0.0, true)}};
+                          RowWith("lake", "b", 500, 0.0, true)},
+                         "all"};
   const auto table = TargetTable({world}, "a", "b").table;
   EXPECT_EQ(CellsOf(table, "MOTA, %"), (Table::Row{">= 97.0", "98.0", "yes", "97.0 marina", "50.0"}));
   EXPECT_EQ(CellsOf(table, "MOTA in waves and rain, %"), (Table::Row{">= 95.0", "94.0", "MISSED", "94.0 waves", "-"}));
