@@ -39,7 +39,7 @@ class Sea {
     pose.time = input.end_time;
     pose.datum = input.datum;
     pose.position_map_m << own_m, 0.0;
-    pose.velocity_map_mps << own_mps, 0.0;
+    pose.velocity_map_mps = own_mps;
     input.own = input.own_at_start = pose;
     int id = 1;
     for (const auto& thing : things) {
