@@ -205,7 +205,7 @@ void Hours(benchmark::State& state) {
         }
       }
       for (int i = 0; i < 50; ++i) add(uniform(-20.0, 20.0), north_m + uniform(-20.0, 20.0), 0.05, false);
-      auto& bank = add(50.0, north_m, 20.0, true);
+      auto& bank = add(72.0, north_m, 60.0, true);
       bank.is_land = true;
       for (double off_m = -30.0; off_m <= 30.0; off_m += 0.5)
         bank.waterline_m.emplace_back(40.0 + std::sin(0.1 * (north_m + off_m)), north_m + off_m);
