@@ -170,6 +170,10 @@ void ScoreMotion(const History& history, TrackScores& scores) {
     if (SecondsBetween(*first_us, utime_us) < kSettledS) continue;
     const bool is_half_seen = !scan->own || seen.IsHalf(thing->outline_m, thing->position_m);
     ScoreErrors(*thing, *track, is_half_seen, scores);
+    if (thing->velocity_mps.norm() >= kMovingMps && !track->is_moving) {
+      scores.events.push_back(
+          {TrackEvent::What::kStanding, utime_us, thing->id, thing->num_returns, track->id, track->position_m, 0, 0.0, thing->velocity_mps.norm()});
+    }
   }
   if (scores.position_nees.count > num_covariances) ++scores.num_things_with_covariance;
   if (!is_standing || !first_us) return;

@@ -20,9 +20,10 @@ struct ApproachLimits {
   double look_ahead_s = 30.0;
 };
 
-/// What is wrong in a scan, for people who look for the reason: what costs MOTA, and what stands and is said to move.
+/// What is wrong in a scan, for people who look for the reason: what costs MOTA, and what stands and is said to move, or moves
+/// and is said to stand.
 struct TrackEvent {
-  enum class What { kMissed, kFalse, kSwitch, kMoving };
+  enum class What { kMissed, kFalse, kSwitch, kMoving, kStanding };
   What what = What::kMissed;
   std::int64_t utime_us = 0;
   int thing = 0;                                         // 0 = none
@@ -33,7 +34,7 @@ struct TrackEvent {
   // none.
   std::int64_t nearest = 0;
   double nearest_gap_m = 0.0;
-  double speed_mps = 0.0;  // as the track says
+  double speed_mps = 0.0;  // as the track says; of what is said to stand, the true one
 };
 
 /// Probabilities, and whether it came so, in ten bins.
