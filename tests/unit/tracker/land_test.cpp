@@ -15,7 +15,7 @@
 #include "services/tracker/core/outline.hpp"
 #include "services/tracker/core/tracker.hpp"
 
-namespace lookout::tracker {
+namespace lookout::tracker::coast {
 namespace {
 
 constexpr double kLidarM = 1.5;  // over the water
@@ -268,4 +268,4 @@ TEST(LandMemory, StaysBelowItsBoundAlongAHundredKilometresOfCoast) {
 }
 
 }  // namespace
-}  // namespace lookout::tracker
+}  // namespace lookout::tracker::coast
