@@ -130,9 +130,8 @@ class DisturbedJudge {
 
   void OnAlerts(const alerts_t& message) {
     if (message.is_watch) {
-      is_unwatched_ = std::ranges::any_of(message.alerts, [](const alert_t& alert) {
-        return alert.cause == alert_t::CAUSE_WATCH && alert.state != alert_t::STATE_CLEARED;
-      });
+      is_unwatched_ = std::ranges::any_of(
+          message.alerts, [](const alert_t& alert) { return alert.cause == alert_t::CAUSE_WATCH && alert.state != alert_t::STATE_CLEARED; });
     }
     if (truth_ != nullptr) JudgeAlarm(message);
   }

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "common/core/health.hpp"
+#include "common/core/pose.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
 #include "services/georeferencer/core/placement.hpp"
-#include "common/core/pose.hpp"
 
 namespace lookout::georeferencer {
 

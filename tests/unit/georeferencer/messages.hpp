@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "common/core/pose.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "services/georeferencer/core/obstacle.hpp"
-#include "common/core/pose.hpp"
 #include "services/georeferencer/params.hpp"
 
 namespace lookout::georeferencer::test {

@@ -7,8 +7,8 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
-#include "common/messages/pose_message.hpp"
 #include "common/core/angles.hpp"
+#include "common/messages/pose_message.hpp"
 #include "services/georeferencer/core/georeferencer.hpp"
 #include "services/georeferencer/wire.hpp"
 #include "tests/unit/georeferencer/messages.hpp"
