@@ -214,6 +214,7 @@ std::optional<ScanObstacles> ToObstacles(std::span<const obstacles_t> parts, Lef
     order.resize(kMostObstacles);
     std::ranges::sort(order);
     std::vector<Seen> nearest;
+    nearest.reserve(order.size());
     for (const auto i : order) nearest.push_back(std::move(scan.seen[i]));
     scan.seen = std::move(nearest);
   }

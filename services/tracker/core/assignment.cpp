@@ -93,7 +93,7 @@ std::vector<std::int32_t> Assign(std::int32_t num_rows, std::int32_t num_columns
     }
     for (auto* list : {&rows, &columns}) {
       std::ranges::sort(*list);
-      list->erase(std::ranges::unique(*list).begin(), list->end());
+      list->erase(std::unique(list->begin(), list->end()), list->end());
     }
     if (rows.size() + columns.size() > kMostExact) {
       std::vector<Candidate> by_cost(some.begin(), some.end());

@@ -72,6 +72,7 @@ constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 1.2;
+constexpr double kJumpMps = 1.0;  // of what is elsewhere than it was expected: deviation of its velocity
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -403,7 +404,8 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
   other.moving_.tail<3>() = moving_.tail<3>();
   other.moving_covariance_.bottomRightCorner<3, 3>() = moving_covariance_.bottomRightCorner<3, 3>();
-  other.log_likelihood_ratio_ = log_likelihood_ratio_;
+  other.moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kJumpMps * kJumpMps);
+  other.log_likelihood_ratio_ = std::max(log_likelihood_ratio_, 0.0);
   other.moving_probability_ = moving_probability_;
   other.prefers_moving_ = prefers_moving_;
   other.stands_out_ = stands_out_;

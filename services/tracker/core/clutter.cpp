@@ -30,7 +30,8 @@ void ClutterMap::End(double dt_s) {
 
 double ClutterMap::DensityAt(const Eigen::Vector2d& place_vessel_m) const {
   const std::size_t index = IndexOf(place_vessel_m);
-  const auto ring = static_cast<double>(index / kSectors);
+  const std::size_t ring_index = index / kSectors;
+  const auto ring = static_cast<double>(ring_index);
   const double area_m2 = kPi * kRingM * kRingM * (2.0 * ring + 1.0) / kSectors;
   return kLeastDensity + means_[index] / area_m2;
 }

@@ -68,7 +68,7 @@ void LandMemory::LookThrough(const Sight& sight) {
     if (tile.num_land == 0 || !sight.Reaches(corner_m, kTileCells * kCellM)) continue;
     for (int north = 0; north < kTileCells; ++north) {
       for (int east = 0; east < kTileCells; ++east) {
-        const auto index = static_cast<std::size_t>(north * kTileCells + east);
+        const auto index = IndexOf(east, north);
         if (tile.evidence[index] < kIsLand) continue;
         const double top_m = 0.1 * tile.top_dm[index];
         if (top_m < kLeastTopM) continue;
@@ -115,7 +115,7 @@ std::vector<Eigen::Vector2d> LandMemory::Waterline(const Eigen::Vector2d& near_m
     if (tile.num_land == 0 || (corner_m - near_m).norm() > range_m + 2.0 * kTileCells * kCellM) continue;
     for (int north = 0; north < kTileCells; ++north) {
       for (int east = 0; east < kTileCells; ++east) {
-        if (tile.evidence[static_cast<std::size_t>(north * kTileCells + east)] < kIsLand) continue;
+        if (tile.evidence[IndexOf(east, north)] < kIsLand) continue;
         const Cell cell{number.first * kTileCells + east, number.second * kTileCells + north};
         const Eigen::Vector2d place_m = MiddleOf(cell);
         const double range = (place_m - near_m).norm();

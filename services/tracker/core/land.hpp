@@ -58,7 +58,10 @@ class LandMemory {
 
   static Cell CellOf(const Eigen::Vector2d& place_m);
   static Eigen::Vector2d MiddleOf(Cell cell) { return {(cell.first + 0.5) * kCellM, (cell.second + 0.5) * kCellM}; }
-  static std::size_t IndexOf(Cell cell) { return static_cast<std::size_t>((cell.second & 31) * kTileCells + (cell.first & 31)); }
+  static std::size_t IndexOf(std::int32_t east, std::int32_t north) {
+    return static_cast<std::size_t>(north) * kTileCells + static_cast<std::size_t>(east);
+  }
+  static std::size_t IndexOf(Cell cell) { return IndexOf(cell.first & 31, cell.second & 31); }
   static void Change(Tile& tile, std::size_t index, int by);
   bool IsLandCell(Cell cell) const;
 

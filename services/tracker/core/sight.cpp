@@ -71,7 +71,7 @@ int Sight::ColumnAt(double azimuth_rad) const {
 Sight::Span Sight::ColumnsOf(std::span<const Eigen::Vector2d> outline_m) const {
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const auto& corner : outline_m) middle += corner / static_cast<double>(outline_m.size());
-  const auto azimuth_of = [this](const Eigen::Vector2d& place_m, const Eigen::Isometry3d& pose) {
+  const auto azimuth_of = [](const Eigen::Vector2d& place_m, const Eigen::Isometry3d& pose) {
     const Eigen::Vector3d offset(place_m.x() - pose.translation().x(), place_m.y() - pose.translation().y(), -kMiddleShare * pose.translation().z());
     const Eigen::Vector3d place = pose.linear().transpose() * offset;
     return Atan2(-place.y(), place.x());
@@ -123,7 +123,8 @@ Look Sight::At(std::span<const Eigen::Vector2d> outline_m, double top_m) const {
       const double near_z = pose.translation().z() + span.near_m * rise;
       const double far_z = pose.translation().z() + span.far_m * rise;
       if (std::min(near_z, far_z) > top_m || std::max(near_z, far_z) < kAtWaterM) continue;
-      const double range_m = flat * sweep_->range_m[static_cast<std::size_t>(column * num_rings + ring)];
+      const double range_m =
+          flat * sweep_->range_m[static_cast<std::size_t>(column) * static_cast<std::size_t>(num_rings) + static_cast<std::size_t>(ring)];
       if (range_m > 0.0 && range_m < span.near_m - kBesideM) {
         look.num_hidden += 1.0;
         continue;
@@ -168,7 +169,8 @@ bool Sight::IsFree(const Eigen::Vector2d& place_m, double top_m) const {
     const double flat = Hypot(direction.x(), direction.y());
     const double z = pose.translation().z() + distance_m * direction.z() / flat;
     if (z > top_m || z < -kAtWaterM) continue;
-    const double range_m = flat * sweep_->range_m[static_cast<std::size_t>(column * num_rings + ring)];
+    const double range_m =
+        flat * sweep_->range_m[static_cast<std::size_t>(column) * static_cast<std::size_t>(num_rings) + static_cast<std::size_t>(ring)];
     if (range_m > 0.0 && range_m < distance_m - kBesideM) continue;  // hidden
     if (range_m > 0.0 && range_m < distance_m + kBehindM) return false;
     ++num_passed;
@@ -202,7 +204,8 @@ Sides Sight::SidesOf(std::span<const Eigen::Vector2d> outline_m, double top_m) c
         const double flat = Hypot(direction.x(), direction.y());
         const double z = pose.translation().z() + span.near_m * direction.z() / flat;
         if (z > top_m || z < kAtWaterM) continue;
-        const double range_m = flat * sweep_->range_m[static_cast<std::size_t>(column * num_rings + ring)];
+        const double range_m =
+            flat * sweep_->range_m[static_cast<std::size_t>(column) * static_cast<std::size_t>(num_rings) + static_cast<std::size_t>(ring)];
         if (range_m > 0.0 && range_m < span.near_m - kBesideM) return true;
       }
     }

@@ -64,7 +64,6 @@ class Sight {
   const Sweep* sweep_ = nullptr;
   Eigen::Isometry3d start_ = Eigen::Isometry3d::Identity();  // T_map_lidar, z over the water
   Eigen::Isometry3d end_ = Eigen::Isometry3d::Identity();
-  double turn_rad_ = 0.0;                // of heading, from start to end
   std::vector<Eigen::Vector2d> ring_;    // cosine and sine of the elevation
   std::vector<Eigen::Vector2d> column_;  // cosine and sine of the azimuth
   std::vector<double> unwrapped_rad_;    // azimuth from the first column on, increasing

@@ -54,6 +54,7 @@ void Step::Run() {
   Look();
   known_.clutter.Begin();
   AssignBodies();
+  AssignLost();
   AssignRest();
   FindInside();
   for (auto& track : known_.tracks) {
@@ -129,7 +130,7 @@ void Step::Look() {
     double none = 1.0;
     // What ended in it was something there, if not by itself.
     const double num_empty = look.num_open - look.num_met;
-    for (int i = 0; i < std::min(20, static_cast<int>(num_empty + 0.5)); ++i) none *= 1.0 - share;
+    for (int i = 0; i < std::min(20, static_cast<int>(std::lround(num_empty))); ++i) none *= 1.0 - share;
     track.is_met = look.num_met > 0.5 * look.num_open;
     track.detection = std::min(kMostDetection, 1.0 - none);
   }
@@ -218,6 +219,42 @@ void Step::HitWhole(Followed& track, std::size_t i) {
   whole.outline_m = Polygon(SupportOf(whole.outline_m));
   for (auto& corner : whole.outline_m) corner += track.middle_m;
   Hit(track, i, whole, known_.sight.SidesOf(whole.outline_m, whole.top_above_water_m));
+}
+
+// What should have been seen where it was and was not, and what is new beside it: the same, which moved otherwise than was thought.
+void Step::AssignLost() {
+  constexpr double kLostReachM = 1.5;
+  constexpr double kFasterMps = 3.0;
+  constexpr double kMostReachM = 4.0;
+  constexpr double kMostTimesLarger = 8.0;
+  struct Near {
+    double gap_m;
+    std::size_t track;
+    std::size_t seen;
+  };
+  std::vector<Near> pairs;
+  for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
+    const auto& track = known_.tracks[t];
+    if (!track.body || !track.is_confirmed || track.is_seen_now || track.is_met || track.mean_thing < 0.0 || track.detection < kDetectionUnknown)
+      continue;
+    const double reach_m = std::min(kMostReachM, kLostReachM + kFasterMps * track.UnseenS(scan_.end_time));
+    const double area_m2 = std::max(0.1, AreaOf(track.outline_m));
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      if (use_[i] != Use::kFree || !scan_.seen[i].is_sure) continue;
+      if ((middle_m_[i] - track.middle_m).norm() > reach_m + track.radius_m + radius_m_[i]) continue;
+      const double times = std::max(0.1, AreaOf(scan_.seen[i].outline_m)) / area_m2;
+      if (times > kMostTimesLarger || times < 1.0 / kMostTimesLarger) continue;
+      const double gap_m = GapOf(track.outline_m, scan_.seen[i].outline_m).distance_m;
+      if (gap_m < reach_m) pairs.push_back({gap_m, t, i});
+    }
+  }
+  std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.gap_m, near.track, near.seen); });
+  for (const auto& pair : pairs) {
+    auto& track = known_.tracks[pair.track];
+    if (track.is_seen_now || use_[pair.seen] != Use::kFree) continue;
+    track.num_misfits = kMisfitsToRestart;
+    Hit(track, pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen));
+  }
 }
 
 // What is not yet likely takes the nearest of the rest.

@@ -59,6 +59,7 @@ class Step {
   double CostOf(const Followed& track, std::size_t i) const;
   const Sides& SidesOf(std::size_t i) const;
   void AssignBodies();
+  void AssignLost();
   void AssignRest();
   void HitWhole(Followed& track, std::size_t i);
   void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);

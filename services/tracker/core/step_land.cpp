@@ -111,13 +111,13 @@ bool Step::IsLand(const Followed& track) const {
 // A segment beside what is called land may be cut off it by chance: it must be seen for longer until it is a thing.
 bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
   constexpr int kSeenFor = 10;  // scans
-  constexpr double kBesideM = 1.0;
+  constexpr double kBesideLandM = 1.0;
   if (track.num_hits >= kSeenFor) return false;
   for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
     const auto& other = scan_.seen[k];
     if (!other.is_land || !other.is_sure) continue;
-    if ((middle_m_[k] - middle_m_[i]).norm() > radius_m_[k] + radius_m_[i] + kBesideM) continue;
-    if (GapOf(other.outline_m, scan_.seen[i].outline_m).distance_m < kBesideM) return true;
+    if ((middle_m_[k] - middle_m_[i]).norm() > radius_m_[k] + radius_m_[i] + kBesideLandM) continue;
+    if (GapOf(other.outline_m, scan_.seen[i].outline_m).distance_m < kBesideLandM) return true;
   }
   return known_.land.Share(scan_.seen[i].outline_m, kMostLandPlaces) > 0.0;
 }

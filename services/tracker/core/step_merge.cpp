@@ -25,12 +25,12 @@ bool IsMoving(const Followed& track) { return track.body && track.body->IsMoving
 // Whether returns of both lie next to each other, in this scan.
 bool Step::Touch(const Followed& one, const Followed& other) const {
   constexpr double kTouchM = 0.5;
-  constexpr std::size_t kMostPlaces = 200;
+  constexpr std::size_t kMostTouching = 200;
   const auto places = [this](const Followed& track) {
     std::vector<Eigen::Vector2d> found;
     for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
       if (std::ranges::find(track.segment_ids, scan_.seen[i].segment_id) == track.segment_ids.end()) continue;
-      const std::size_t step = 1 + places_m_[i].size() / kMostPlaces;
+      const std::size_t step = 1 + places_m_[i].size() / kMostTouching;
       for (std::size_t k = 0; k < places_m_[i].size(); k += step) found.push_back(places_m_[i][k]);
     }
     return found;
@@ -45,7 +45,7 @@ bool Step::Touch(const Followed& one, const Followed& other) const {
 bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const {
   constexpr double kWithinShare = 0.4;
   constexpr double kBeamShare = 0.6;  // of a ship's length, its hidden side assumed
-  constexpr double kBesideM = 1.5;
+  constexpr double kPieceGapM = 1.5;
   constexpr double kPieceM = 2.0;
   constexpr double kPieceShare = 0.15;
   constexpr double kSameVelocityMps = 0.7;
@@ -55,7 +55,7 @@ bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double sha
   // Within the outline of what may be a dock with berths, only what touches it.
   if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m)) return is_piece && Touch(larger, lesser);
   if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
-  return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kBesideM && SpeedBetween(larger, lesser) < kSameVelocityMps;
+  return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kPieceGapM && SpeedBetween(larger, lesser) < kSameVelocityMps;
 }
 
 // A part of a known thing becomes no track of its own at once.
