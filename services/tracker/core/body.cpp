@@ -71,7 +71,7 @@ constexpr double kGreatestLogOdds = 12.0;
 constexpr double kLeastSpeedMps = 0.2;
 constexpr double kSpeedSds = 3.0;
 constexpr double kSpeedSdsOn = 1.5;
-constexpr double kMovesAfterS = 1.2;
+constexpr double kMovesAfterS = 0.6;
 constexpr double kJumpMps = 1.0;  // of what is elsewhere than it was expected: deviation of its velocity
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
