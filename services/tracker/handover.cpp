@@ -1,11 +1,13 @@
 #include "services/tracker/handover.hpp"
 
-#include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
@@ -16,6 +18,14 @@
 namespace lookout::tracker {
 
 namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kKeptFor = 10s;  // as of KeptAcknowledgements
+constexpr auto kRewriteAfter = 1s;
+
+}  // namespace
 
 std::optional<Legacy> ToLegacy(const alerts_t& alerts, const tracks_t& tracks) {
   const auto time = UtimeFromWire(alerts.end_utime_us);
@@ -49,7 +59,7 @@ Handover Handover::FromEnvironment() {
   return Handover(folder);
 }
 
-std::optional<Legacy> Handover::Read() const {
+std::optional<Legacy> Handover::Read() try {
   if (folder_.empty() || !fs::is_regular_file(File())) return std::nullopt;
   std::optional<alerts_t> alerts;
   std::optional<tracks_t> tracks;
@@ -58,22 +68,35 @@ std::optional<Legacy> Handover::Read() const {
     if (event->channel == bus::kAlerts.name) alerts = bus::Decode<alerts_t>(event->bytes);
     if (event->channel == bus::kTracks.name) tracks = bus::Decode<tracks_t>(event->bytes);
   }
-  return alerts && tracks ? ToLegacy(*alerts, *tracks) : std::nullopt;
+  auto legacy = alerts && tracks ? ToLegacy(*alerts, *tracks) : std::nullopt;
+  if (legacy) keep_until_ = legacy->time + kKeptFor;
+  return legacy;
+} catch (const std::runtime_error&) {
+  return std::nullopt;  // it is a comfort, and no reason not to look out
 }
 
 void Handover::Write(const alerts_t& alerts, const tracks_t& tracks) {
   if (folder_.empty()) return;
-  std::error_code failure;
-  if (std::ranges::none_of(alerts.alerts, [](const alert_t& alert) { return alert.state == alert_t::STATE_ACKNOWLEDGED; })) {
+  const auto time = UtimeFromWire(alerts.end_utime_us).value_or(Utime{});
+  std::vector<std::int64_t> ids;
+  for (const auto& alert : alerts.alerts) {
+    if (alert.state == alert_t::STATE_ACKNOWLEDGED) ids.push_back(alert.id);
+  }
+  if (ids.empty()) {
+    if (keep_until_ && time < *keep_until_) return;
+    std::error_code failure;
     if (is_written_) fs::remove(File(), failure);
     is_written_ = false;
+    written_.reset();
     return;
   }
+  if (written_ && ids == written_ids_ && time >= *written_ && time < *written_ + kRewriteAfter) return;
   std::vector<std::uint8_t> log;
-  const auto time = UtimeFromWire(alerts.end_utime_us).value_or(Utime{});
   bus::AppendLogEvent(log, 0, time, bus::kAlerts.name, bus::Encode(alerts));
   bus::AppendLogEvent(log, 1, time, bus::kTracks.name, bus::Encode(tracks));
   is_written_ = true;
+  written_ = time;
+  written_ids_ = std::move(ids);
   try {
     io::OutputFile out(File(), {.force = true, .inputs = {}, .tell = [](const std::string&) {}});
     out.Write(log);

@@ -1,6 +1,7 @@
 // What one process of the tracker leaves to the next: its last ALERTS, and TRACKS of those that were acknowledged.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -35,10 +36,11 @@ class Handover {
   static Handover FromEnvironment();
 
   /// Of the process before; nullopt where there is none, or its file is damaged.
-  std::optional<Legacy> Read() const;
+  std::optional<Legacy> Read();
 
-  /// After each scan. Only acknowledged alerts are worth keeping: without any, the file is removed. A disk that is full is none of a look-out's
-  /// troubles: then nothing is left.
+  /// After each scan. Only acknowledged alerts are worth keeping: without any, the file is removed, but not before what was read from it had time to
+  /// be raised again. Written when other alerts are acknowledged, else once a second: each time waits for the disk. A disk that is full is none of a
+  /// look-out's troubles: then nothing is left.
   void Write(const alerts_t& alerts, const tracks_t& tracks);
 
  private:
@@ -46,6 +48,9 @@ class Handover {
 
   std::filesystem::path folder_;  // empty: none
   bool is_written_ = true;        // maybe, by the process before
+  std::optional<Utime> keep_until_;
+  std::optional<Utime> written_;
+  std::vector<std::int64_t> written_ids_;
 };
 
 }  // namespace lookout::tracker

@@ -240,7 +240,9 @@ void Service::Leave(const alerts_t& message, const Picture& picture) const {
 // With the number of the last scan, and the alerts as they were.
 void Service::SendWatch() {
   if (!label_ || !memory_) return;
-  auto message = ToMessage(*label_, memory_->alerts.alerts(), {}, {}, bus::kMaxMessageBytes / 2);
+  auto alerts = memory_->alerts.alerts();
+  std::erase_if(alerts, [](const Alert& one) { return one.state == AlertState::kCleared; });  // that was told once
+  auto message = ToMessage(*label_, alerts, {}, memory_->picture != nullptr ? *memory_->picture : Picture{}, bus::kMaxMessageBytes / 2);
   auto alert = ToMessage(*watch_.alert(), std::nullopt);
   alert.text = alert.state == alert_t::STATE_CLEARED ? "look-out again" : "no look-out: " + watch_.Complaint();
   message.is_watch = true;

@@ -56,6 +56,7 @@ struct Followed {
   std::vector<std::pair<std::int64_t, Utime>> children;
   bool is_confirmed = false;
   bool is_ended = false;
+  bool is_proven = false;  // it left a place where land had been thought: no land
   bool is_seen_now = false;
   bool is_inside_now = false;
   std::int64_t inside_of = 0;               // the track that was seen by the segment in which this one lies; 0: land
@@ -79,6 +80,13 @@ struct Followed {
   }
   double Existence() const { return Sigmoid(log_odds) * Sigmoid(ThingLogOdds()); }
   double UnseenS(Utime now) const { return ToSeconds(now - seen); }
+
+  // Who it came of, or what became of it: the newest of many.
+  static void Relate(std::vector<std::pair<std::int64_t, Utime>>& relatives, std::int64_t other, Utime time) {
+    constexpr std::size_t kMostRelatives = 100;
+    if (relatives.size() == kMostRelatives) relatives.erase(relatives.begin());
+    relatives.emplace_back(other, time);
+  }
 };
 
 }  // namespace lookout::tracker

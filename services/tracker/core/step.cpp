@@ -48,6 +48,7 @@ bool IsWithin(const Eigen::Vector2d& place_m, const Eigen::Vector2d& middle_m, d
 void Step::Run() {
   Predict();
   is_sight_known_ = known_.sight.Begin(scan_);
+  known_.had_sight = known_.had_sight || is_sight_known_;
   if (!scan_.own) return;
   FindPlaces();
   FindLand();
@@ -74,6 +75,7 @@ Eigen::Vector2d Step::ToVessel(const Eigen::Vector2d& place_m) const {
 }
 
 void Step::Predict() {
+  known_.land_pieces.Predict(dt_s_);
   for (auto& track : known_.tracks) {
     track.segment_ids.clear();
     track.is_seen_now = track.is_inside_now = false;
@@ -120,6 +122,7 @@ void Step::FindPlaces() {
 
 void Step::Look() {
   for (auto& track : known_.tracks) {
+    track.is_met = false;
     if (!is_sight_known_) {
       track.detection = kDetectionUnknown;
       continue;
@@ -218,11 +221,14 @@ void Step::HitWhole(Followed& track, std::size_t i) {
   for (auto& corner : whole.outline_m) corner -= track.middle_m;
   whole.outline_m = Polygon(SupportOf(whole.outline_m));
   for (auto& corner : whole.outline_m) corner += track.middle_m;
-  Hit(track, i, whole, known_.sight.SidesOf(whole.outline_m, whole.top_above_water_m));
+  auto sides = known_.sight.SidesOf(whole.outline_m, whole.top_above_water_m);
+  sides.before_s = SidesOf(i).before_s;
+  Hit(track, i, whole, sides);
 }
 
 // What should have been seen where it was and was not, and what is new beside it: the same, which moved otherwise than was thought.
 void Step::AssignLost() {
+  if (!is_sight_known_ && known_.had_sight) return;
   constexpr double kLostReachM = 1.5;
   constexpr double kFasterMps = 3.0;
   constexpr double kMostReachM = 4.0;
@@ -328,7 +334,9 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
-  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm());
+  // Of what is known for sure, a way behind something else is no unsteadiness.
+  const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
+  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm() / scans);
   track.seen_m = middle_m;
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
@@ -357,7 +365,8 @@ void Step::Remember(Followed& track, bool is_seen) {
 }
 
 void Step::Miss(Followed& track) {
-  if (track.detection <= 0.0) return;  // it could not have been seen
+  if (track.detection <= 0.0) return;                                      // it could not have been seen
+  if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // what was looked through is lost: nobody knows
   track.log_odds = std::max(kLeastExistence, track.log_odds + Log(1.0 - track.detection));
   if (track.detection > 0.5) Remember(track, false);
 }
@@ -412,8 +421,8 @@ void Step::Begin() {
     Remember(track, true);
     for (auto* other : confirmed) {
       if (IsWithin(track.middle_m, other->middle_m, other->radius_m) && Contains(other->outline_m, track.middle_m)) {
-        track.parents.emplace_back(other->id, scan_.end_time);
-        other->children.emplace_back(track.id, scan_.end_time);
+        Followed::Relate(track.parents, other->id, scan_.end_time);
+        Followed::Relate(other->children, track.id, scan_.end_time);
       }
     }
     if (seen.is_sure) {

@@ -31,6 +31,7 @@ struct Known {
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
+  bool had_sight = false;  // ever: without beams at all, misses count by themselves
 };
 
 /// Run it once; what it found is then to be asked for.

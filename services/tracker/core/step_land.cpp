@@ -22,7 +22,9 @@ constexpr std::size_t kLeastPieceReturns = 8;
 constexpr double kPieceExistence = 6.0;  // log odds
 constexpr double kPieceThing = 0.9;
 
-bool HasMoved(const Followed& track) { return track.num_moving >= kMovesFor && (track.middle_m - track.first_m).norm() > kMovedByM; }
+bool HasMoved(const Followed& track) {
+  return track.is_proven || (track.num_moving >= kMovesFor && (track.middle_m - track.first_m).norm() > kMovedByM);
+}
 
 // As a thing: what comes and goes is what a bank or a pier is cut into.
 bool IsKnown(const Followed& track) {
@@ -55,7 +57,6 @@ void Step::FindLand() {
 
 void Step::FollowLandPieces() {
   seems_moving_.assign(scan_.seen.size(), false);
-  known_.land_pieces.Predict(dt_s_);
   std::vector<LandPieces::Seen> pieces;
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
@@ -81,7 +82,7 @@ void Step::FollowLandPieces() {
     track.mean_thing = Logit(kPieceThing);
     track.seen_m = track.middle_m;
     track.num_moving = kMovesFor;
-    track.is_confirmed = true;
+    track.is_confirmed = track.is_proven = true;
     known_.tracks.push_back(std::move(track));
   }
   for (std::size_t k = 0; k < pieces.size(); ++k) seems_moving_[pieces[k].index] = seems_moving[k];

@@ -88,7 +88,8 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   const double shared_m2 = both.empty() ? 0.0 : std::max(1e-9, AreaOf(both));
   // Longer where both are well known, as a boat at a dock with which it is segmented for a while.
   if ((is_inside || (!both.empty() && shared_m2 >= 0.5 * std::min(area, other_area))) && !(one.is_seen_now && other.is_seen_now)) {
-    return std::clamp(kPerHitS * std::min(one.num_hits, other.num_hits), kShortestS, kLongestS);
+    const int num_hits = one.is_confirmed == other.is_confirmed ? std::min(one.num_hits, other.num_hits) : (one.is_confirmed ? one : other).num_hits;
+    return std::clamp(kPerHitS * num_hits, kShortestS, kLongestS);
   }
   if (IsLikePart(larger, lesser, shared_m2)) return kPartS;
   const bool is_moving_together = IsMoving(one) && IsMoving(other) && SpeedBetween(one, other) < kSameVelocityMps;
@@ -98,17 +99,18 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
 // The second becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other, bool is_part) {
   merged_.emplace_back(other.id, one.id);
-  if (is_part ? AreaOf(other.outline_m) > AreaOf(one.outline_m) : other.seen_alone > one.seen_alone) {
+  // What is confirmed is not replaced by what is not.
+  const bool is_other_better = is_part ? AreaOf(other.outline_m) > AreaOf(one.outline_m) : other.seen_alone > one.seen_alone;
+  if (one.is_confirmed == other.is_confirmed ? is_other_better : other.is_confirmed) {
     std::swap(one, other);
     std::swap(one.id, other.id);
     std::swap(one.parents, other.parents);
     std::swap(one.children, other.children);
     std::swap(one.first, other.first);
   }
-  one.parents.emplace_back(other.id, scan_.end_time);
-  other.children.emplace_back(one.id, scan_.end_time);
-  one.is_confirmed = one.is_confirmed || other.is_confirmed;
-  if (is_part) {
+  Followed::Relate(one.parents, other.id, scan_.end_time);
+  Followed::Relate(other.children, one.id, scan_.end_time);
+  if (is_part && other.Existence() > 0.5) {
     one.body->Include(other.outline_m);
     Place(one);
   }

@@ -106,6 +106,7 @@ void Tracker::Reset() {
   memory_->known.clutter = {};
   memory_->time.reset();
   memory_->own.reset();
+  memory_->own_m2 = 0.0;
 }
 
 const Picture& Tracker::Update(const ScanInput& scan) {
