@@ -165,7 +165,8 @@ class Proof : public LiveTest {
         {Bin("sim"), "--config", "config", "--scene", "lake", "--seed", "3", "--seconds", std::to_string(DataSeconds() + 2), "--udp", "127.0.0.1"},
         "sim.out");
     const auto half = 5 * (DataSeconds() + 2);
-    EXPECT_TRUE(HandleUntil([&] { return counts_["ALERTS"] >= half; })) << sim.Output();
+    const seconds longest(2 * DataSeconds() + 30);
+    EXPECT_TRUE(HandleUntil([&] { return counts_["ALERTS"] >= half; }, longest)) << sim.Output();
     children_[victim]->Signal(signal);
     children_[victim]->Wait(seconds(5));
     if (victim == "tracker") {
@@ -174,7 +175,10 @@ class Proof : public LiveTest {
     }
     heard_.clear();
     Start({victim});
-    EXPECT_TRUE(HandleUntil([&sim] { return !sim.IsRunning(); })) << sim.Output();
+    EXPECT_TRUE(HandleUntil([&sim] { return !sim.IsRunning(); }, longest)) << sim.Output();
+    // What waited for the new process is worked through, and its HEALTH, one a second, tells of it.
+    const auto until = std::chrono::steady_clock::now() + seconds(3);
+    HandleUntil([&until] { return std::chrono::steady_clock::now() >= until; });
     return StopAndRead();
   }
 
