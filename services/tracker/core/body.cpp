@@ -74,6 +74,11 @@ constexpr double kSpeedSdsOn = 1.5;
 constexpr double kMovesAfterS = 0.6;
 constexpr double kJumpMps = 1.0;  // of what is elsewhere than it was expected: deviation of its velocity
 
+// Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
+constexpr double kPartSds = 2.0;
+constexpr double kPartShare = 0.15;
+constexpr double kPartsForS = 3.0;  // after so long what was seen in that time is all of it
+
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // What a place is uncertain by from scan to scan. The errors of mounting and heading, which turn all of it about the boat, stay as they are
@@ -98,6 +103,11 @@ struct Body::Measured {
   std::array<double, kDirections> variance_m2{};
   std::array<Kind, kDirections> kind{};
   Eigen::Vector2d sight = Eigen::Vector2d::Zero();
+  // Less of it is seen than is known, from end to end, by so much; 0: all of it is.
+  double short_m = 0.0;
+
+  // Whether it says where a side lies. A part lies in the outline: it says so much only where it reaches beyond.
+  bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
 };
 
 Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const {
@@ -123,6 +133,14 @@ Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const S
     measured.kind[i] = is_edge ? Measured::Kind::kEdge : Measured::Kind::kAtLeast;
   }
   measured.sight = sight;
+  for (std::size_t i = 0; i < kDirections / 2; ++i) {
+    const std::size_t j = Opposite(i);
+    if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge || !sides_[i].is_seen || !sides_[j].is_seen) continue;
+    const double known_m = sides_[i].reach_m + sides_[j].reach_m;
+    const double sd_m = std::sqrt(measured.variance_m2[i] + measured.variance_m2[j] + sides_[i].variance_m2 + sides_[j].variance_m2);
+    const double short_m = known_m - measured.reach_m[i] - measured.reach_m[j];
+    if (short_m > kPartSds * sd_m + kPartShare * known_m) measured.short_m = std::max(measured.short_m, short_m);
+  }
   return measured;
 }
 
@@ -233,21 +251,37 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int num_edges = 0;
+  if (measured.short_m > 0.0) {
+    // A part is somewhere in it, and for the while it is seen there.
+    constexpr double kTimes = 10.0;
+    const double weight = 1.0 / (kTimes * 0.25 * measured.short_m * measured.short_m);
+    information = weight * Eigen::Matrix2d::Identity();
+    for (std::size_t i = 0; i < kDirections; ++i) {
+      const std::size_t j = Opposite(i);
+      if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge) continue;
+      const double off_m = 0.5 * ((measured.reach_m[i] - sides_[i].reach_m) - (measured.reach_m[j] - sides_[j].reach_m)) - directions[i].dot(position);
+      sum += 0.5 * weight * off_m * directions[i];
+    }
+  }
   for (std::size_t i = 0; i < kDirections; ++i) {
-    if (measured.kind[i] != Measured::Kind::kEdge) continue;
+    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
+    if (!measured.Tells(i, beyond_m)) continue;
     const double weight = 1.0 / (measured.variance_m2[i] + sides_[i].variance_m2);
     information += weight * directions[i] * directions[i].transpose();
-    sum += weight * (measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m) * directions[i];
+    sum += weight * beyond_m * directions[i];
     ++num_edges;
   }
   // The edges are of a few returns: as many directions are worth two.
   const Eigen::Matrix2d covariance = information.inverse();
-  Shift shift{covariance * sum, covariance * (0.5 * num_edges) + Eigen::Matrix2d::Identity() * jitter_m2_ + NoiseOf(noise_m2, range_m), 0.0, 0.0};
+  const double times = std::max(1.0, 0.5 * num_edges);
+  Shift shift{covariance * sum, covariance * times + Eigen::Matrix2d::Identity() * jitter_m2_ + NoiseOf(noise_m2, range_m), 0.0, 0.0};
   for (std::size_t i = 0; i < kDirections; ++i) {
-    if (measured.kind[i] != Measured::Kind::kEdge) continue;
-    const double left = measured.reach_m[i] - directions[i].dot(position + shift.shift_m) - sides_[i].reach_m;
+    const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
+    if (!measured.Tells(i, beyond_m)) continue;
+    const double left = beyond_m - directions[i].dot(shift.shift_m);
     shift.misfit += left * left / (measured.variance_m2[i] + sides_[i].variance_m2 + jitter_m2_) / num_edges;
   }
+  shift.is_part = measured.short_m > 0.0;
   Eigen::Matrix2d spread = shift.covariance_m2 + moving_covariance_.topLeftCorner<2, 2>();
   if (!prefers_moving_) spread += standing_m2_;
   const Eigen::Vector2d& off = shift.shift_m;
@@ -279,6 +313,7 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   const double dt_s = std::max(since_update_s_, 0.01);
   since_update_s_ = 0.0;
 
+  if (measured.short_m > 0.0) num_measured_ = 0;
   if (num_measured_ >= 2) {
     const double bend_m2 = (measured_m - 2.0 * last_measured_[0] + last_measured_[1]).squaredNorm() / 12.0;
     jitter_m2_ = std::max(kLeastJitterM2, jitter_m2_ + kJitterGain * (std::min(bend_m2, kMostJitterM2) - jitter_m2_));
@@ -295,6 +330,11 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   Decide(measured_m, shift.covariance_m2 + times * staying_m2, dt_s);
 
   if (!grows) return;
+  if (measured.short_m > 0.0) {
+    TakePart(measured, dt_s);
+    return;
+  }
+  parts_s_ = 0.0;
   // From where this outline places it: what all sides have in common is motion, or an error of the place. What has stood for long is placed best by
   // where it stands.
   const bool stands = !prefers_moving_ && age_s_ > kFirstOutlineS;
@@ -312,6 +352,23 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   if (!prefers_moving_ || !stands_out_) return;
   AssumeBy(measured);
   Center();
+}
+
+// What lies beyond the outline is of it, too. Where only parts are seen for long, what was seen of it is all.
+void Body::TakePart(const Measured& measured, double dt_s) {
+  const auto directions = SideDirections();
+  if (parts_s_ == 0.0) parts_reach_m_.fill(-std::numeric_limits<double>::infinity());
+  parts_s_ += dt_s;
+  const bool is_all = parts_s_ > kPartsForS;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double reach_m = measured.reach_m[i] - directions[i].dot(position_m());
+    parts_reach_m_[i] = std::max(parts_reach_m_[i], reach_m);
+    const double variance = sides_[i].variance_m2;
+    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_);
+    sides_[i].reach_m += gain * std::max(0.0, reach_m - sides_[i].reach_m);
+    if (is_all && measured.kind[i] == Measured::Kind::kEdge) sides_[i].reach_m = std::min(sides_[i].reach_m, parts_reach_m_[i]);
+  }
+  if (is_all) parts_s_ = 0.0;
 }
 
 void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s) {
@@ -401,6 +458,15 @@ void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
 }
 
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) {
+  const Measured measured = Measure(seen_m, sides, range_m);
+  if (measured.short_m > 0.0) {
+    const Eigen::Vector2d shift_m = ShiftOf(measured, Eigen::Matrix2d::Zero(), range_m).shift_m;
+    standing_ += shift_m;
+    moving_.head<2>() += shift_m;
+    moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kJumpMps * kJumpMps);
+    num_measured_ = 0;
+    return;
+  }
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
   other.moving_.tail<3>() = moving_.tail<3>();
   other.moving_covariance_.bottomRightCorner<3, 3>() = moving_covariance_.bottomRightCorner<3, 3>();

@@ -41,6 +41,8 @@ struct Followed {
   double mean_thing = 0.0;                                           // of the log odds of its segments that they are no clutter
   double mean_step_m2 = kFirstStepM2;                                // squared, from where it was expected to where it was seen
   Eigen::Vector2d seen_m = Eigen::Vector2d::Zero();                  // middle of what was seen last
+  double seen_radius_m = 0.0;
+  double first_radius_m = 0.0;
   int num_hits = 0;
   double beams_met = 1.0;  // of those that could have: with one of two as what is known before
   double beams_open = 2.0;

@@ -18,6 +18,8 @@ constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
+constexpr double kMissS = 0.4;
+constexpr double kMissHits = 30.0;
 constexpr double kMostCost = 6.0;
 constexpr double kLongestScanS = 0.2;
 // A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
@@ -338,6 +340,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
   track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm() / scans);
   track.seen_m = middle_m;
+  track.seen_radius_m = radius_m_[i];
   track.sum_returns += seen.num_returns;
   track.top_m = std::max(seen.top_above_water_m, track.top_m + 0.05 * (seen.top_above_water_m - track.top_m));
   track.seen = track.seen_alone = scan_.end_time;
@@ -367,7 +370,11 @@ void Step::Remember(Followed& track, bool is_seen) {
 void Step::Miss(Followed& track) {
   if (track.detection <= 0.0) return;                                      // it could not have been seen
   if (!is_sight_known_ && known_.had_sight && track.is_confirmed) return;  // what was looked through is lost: nobody knows
-  track.log_odds = std::max(kLeastExistence, track.log_odds + Log(1.0 - track.detection));
+  // What hides a known thing for a scan (a wave, a roll of the boat) hides it for a while.
+  const bool is_moving = track.body && track.body->IsMoving(0.5);
+  const double known = is_moving ? 0.0 : std::min(1.0, track.num_hits / kMissHits);
+  const double weight = 1.0 - known * (1.0 - std::min(1.0, dt_s_ / kMissS));
+  track.log_odds = std::max(kLeastExistence, track.log_odds + weight * Log(1.0 - track.detection));
   if (track.detection > 0.5) Remember(track, false);
 }
 
@@ -411,7 +418,7 @@ void Step::Begin() {
     track.first = track.seen = track.seen_alone = scan_.end_time;
     track.outline_m = seen.outline_m;
     track.middle_m = track.seen_m = track.first_m = middle_m_[i];
-    track.radius_m = radius_m_[i];
+    track.radius_m = track.seen_radius_m = track.first_radius_m = radius_m_[i];
     track.top_m = seen.top_above_water_m;
     track.AddLook(Logit(seen.thing_probability), 0.0);
     track.sum_returns = seen.num_returns;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kNear = 2.0;  // m, between the outlines of what may be one
 constexpr double kNeverS = 0.0;
+constexpr double kFoundS = 0.3;
 
 double SpeedBetween(const Followed& one, const Followed& other) {
   const auto velocity = [](const Followed& track) {
@@ -71,6 +72,25 @@ bool Step::IsSuspect(const Followed& track) const {
   });
 }
 
+// Whether the first, known and lost although it should have been seen, is the second, which came up beside where it was seen last.
+bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
+  constexpr double kLostProbability = 0.3;
+  constexpr double kBeforeS = 1.5;
+  constexpr double kBesideM = 1.5;
+  constexpr double kFasterMps = 5.0;
+  constexpr double kMostTimesLarger = 8.0;
+  constexpr double kMostReachM = 4.0;
+  constexpr double kMostRadiusM = 3.0;
+  if (!lost.is_confirmed || lost.is_seen_now || lost.is_inside_now || lost.detection < kLostProbability || !found.is_seen_now || !found.body) return false;
+  const double after_s = ToSeconds(found.first - lost.seen);
+  if (after_s < -kBeforeS || lost.num_hits < found.num_hits) return false;
+  const double reach_m = std::min(kMostReachM, kBesideM + kFasterMps * std::abs(after_s)) + std::min(kMostRadiusM, lost.seen_radius_m) +
+                         std::min(kMostRadiusM, found.first_radius_m);
+  if ((found.first_m - lost.seen_m).norm() > reach_m) return false;
+  const double times = std::max(0.1, AreaOf(found.outline_m)) / std::max(0.1, AreaOf(lost.outline_m));
+  return times < kMostTimesLarger && times > 1.0 / kMostTimesLarger;
+}
+
 // For how long two must look like one until they are taken for one; 0: they do not, in this scan.
 double Step::OneForS(const Followed& one, const Followed& other) const {
   constexpr double kShortestS = 0.5;
@@ -78,6 +98,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   constexpr double kPerHitS = 0.05;
   constexpr double kPartS = 1.5;
   constexpr double kSameVelocityMps = 0.7;
+  if (IsFoundAgain(one, other)) return kFoundS;
   const bool is_inside = (one.is_inside_now && one.inside_of == other.id) || (other.is_inside_now && other.inside_of == one.id);
   if (!is_inside && (one.middle_m - other.middle_m).norm() > one.radius_m + other.radius_m + kNear) return kNeverS;
   const double area = AreaOf(one.outline_m);
