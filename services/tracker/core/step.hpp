@@ -74,6 +74,7 @@ class Step {
   bool Touch(const Followed& one, const Followed& other) const;
   bool IsLikePart(const Followed& larger, const Followed& lesser, double shared_m2) const;
   bool IsSuspect(const Followed& track) const;
+  static bool AreOneBoat(const Followed& one, const Followed& other);
   bool IsFoundAgain(const Followed& lost, const Followed& found) const;
   double OneForS(const Followed& one, const Followed& other) const;
   void Join(Followed& one, Followed& other, bool is_part);

@@ -11,6 +11,7 @@ namespace {
 constexpr double kNear = 2.0;  // m, between the outlines of what may be one
 constexpr double kNeverS = 0.0;
 constexpr double kFoundS = 0.3;
+constexpr double kSeenS = 0.35;  // a moment ago
 
 double SpeedBetween(const Followed& one, const Followed& other) {
   const auto velocity = [](const Followed& track) {
@@ -59,14 +60,30 @@ bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double sha
   return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kPieceGapM && SpeedBetween(larger, lesser) < kSameVelocityMps;
 }
 
+// Whether both together have the shape of a boat, and no more than a gap between them that a boat has in its middle.
+bool Step::AreOneBoat(const Followed& one, const Followed& other) {
+  constexpr double kLongestBoatM = 12.0;
+  constexpr double kBroadestBoatM = 4.0;
+  std::vector<Eigen::Vector2d> corners_m = one.outline_m;
+  corners_m.insert(corners_m.end(), other.outline_m.begin(), other.outline_m.end());
+  for (auto& corner : corners_m) corner -= one.middle_m;
+  const auto around = RectangleAround(Polygon(SupportOf(corners_m)));
+  return around.length_m < kLongestBoatM && around.width_m < kBroadestBoatM && GapOf(one.outline_m, other.outline_m).distance_m < kNear;
+}
+
 // A part of a known thing becomes no track of its own at once.
 bool Step::IsSuspect(const Followed& track) const {
+  constexpr double kShortestS = 1.0;
   constexpr double kLongestS = 3.0;
-  if (ToSeconds(scan_.end_time - track.first) > kLongestS) return false;
+  constexpr double kAsNewS = 1.0;
+  const double since_s = ToSeconds(scan_.end_time - track.first);
+  if (since_s > kLongestS) return false;
   const double area = AreaOf(track.outline_m);
   return std::ranges::any_of(known_.tracks, [&](const Followed& other) {
     if (!other.is_confirmed || other.is_ended || other.id == track.id) return false;
     if ((other.middle_m - track.middle_m).norm() > other.radius_m + track.radius_m + kNear || AreaOf(other.outline_m) < area) return false;
+    const bool is_as_new = ToSeconds(track.first - other.first) < kAsNewS;
+    if (other.UnseenS(scan_.end_time) < kSeenS && since_s < (is_as_new ? kShortestS : kLongestS) && AreOneBoat(other, track)) return true;
     const auto both = Intersection(other.outline_m, track.outline_m);
     return IsLikePart(other, track, both.empty() ? 0.0 : std::max(1e-9, AreaOf(both)));
   });
