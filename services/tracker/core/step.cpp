@@ -55,6 +55,7 @@ void Step::Run() {
   FindPlaces();
   FindLand();
   Look();
+  FindCommonStep();
   known_.clutter.Begin();
   AssignBodies();
   AssignLost();
@@ -139,6 +140,35 @@ void Step::Look() {
     track.is_met = look.num_met > 0.5 * look.num_open;
     track.detection = std::min(kMostDetection, 1.0 - none);
   }
+}
+
+// From scan to scan all may step together: the own position and heading settle. Half of them step by less and half by more.
+void Step::FindCommonStep() {
+  constexpr double kReachM = 1.5;
+  constexpr std::size_t kLeast = 5;
+  std::vector<double> east;
+  std::vector<double> north;
+  for (const auto& track : known_.tracks) {
+    if (track.UnseenS(scan_.end_time) > 1.5 * dt_s_) continue;
+    double least_m = kReachM;
+    Eigen::Vector2d step_m = Eigen::Vector2d::Zero();
+    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+      const Eigen::Vector2d off_m = middle_m_[i] - track.seen_m;
+      if (!scan_.seen[i].is_sure || off_m.norm() >= least_m) continue;
+      least_m = off_m.norm();
+      step_m = off_m;
+    }
+    if (least_m == kReachM) continue;
+    east.push_back(step_m.x());
+    north.push_back(step_m.y());
+  }
+  if (east.size() < kLeast) return;
+  const auto median = [](std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return *middle;
+  };
+  common_step_m_ = {median(east), median(north)};
 }
 
 double Step::CostOf(const Followed& track, std::size_t i) const {
@@ -338,7 +368,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
   // Of what is known for sure, a way behind something else is no unsteadiness.
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
-  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m).norm() / scans);
+  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m - common_step_m_).norm() / scans);
   track.seen_m = middle_m;
   track.seen_radius_m = radius_m_[i];
   track.sum_returns += seen.num_returns;

@@ -57,6 +57,7 @@ class Step {
   bool IsLand(const Followed& track) const;
   bool IsPerhapsLand(const Followed& track, std::size_t i) const;
   void Look();
+  void FindCommonStep();
   double CostOf(const Followed& track, std::size_t i) const;
   const Sides& SidesOf(std::size_t i) const;
   void AssignBodies();
@@ -84,6 +85,7 @@ class Step {
   Known& known_;
   double dt_s_;
   bool is_sight_known_ = false;
+  Eigen::Vector2d common_step_m_ = Eigen::Vector2d::Zero();
   std::vector<Use> use_;                                // [seen]
   std::vector<Eigen::Vector2d> middle_m_;               // [seen]
   std::vector<double> radius_m_;                        // [seen]

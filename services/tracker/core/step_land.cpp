@@ -118,7 +118,12 @@ bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
     const auto& other = scan_.seen[k];
     if (!other.is_land || !other.is_sure) continue;
     if ((middle_m_[k] - middle_m_[i]).norm() > radius_m_[k] + radius_m_[i] + kBesideLandM) continue;
-    if (GapOf(other.outline_m, scan_.seen[i].outline_m).distance_m < kBesideLandM) return true;
+    if (GapOf(other.outline_m, scan_.seen[i].outline_m).distance_m >= kBesideLandM) continue;
+    // Not the hull of a bay: its shore.
+    if (heights_m_[k].empty() || std::ranges::any_of(places_m_[k], [&](const Eigen::Vector2d& place_m) {
+          return (place_m - middle_m_[i]).squaredNorm() < (radius_m_[i] + kBesideLandM) * (radius_m_[i] + kBesideLandM);
+        }))
+      return true;
   }
   return known_.land.Share(scan_.seen[i].outline_m, kMostLandPlaces) > 0.0;
 }
