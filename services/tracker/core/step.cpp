@@ -465,6 +465,7 @@ void Step::Begin() {
     if (seen.is_sure) {
       track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
       Place(track);
+      track.is_confirmed = seen.num_returns >= 20 && seen.thing_probability > 0.98 && !IsPerhapsLand(track, i) && std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && other.id != track.id && (other.middle_m - track.middle_m).norm() < 5.0 + other.radius_m + track.radius_m;});
     }
     known_.tracks.push_back(std::move(track));
   }
