@@ -439,6 +439,12 @@ void Body::Loosen(double variance_m2) {
   log_likelihood_ratio_ = std::min(log_likelihood_ratio_, 0.0);
 }
 
+void Body::Translate(const Eigen::Vector2d& by_m) {
+  standing_ += by_m;
+  moving_.head<2>() += by_m;
+  for (auto& measured : last_measured_) measured += by_m;
+}
+
 void Body::Fade(double dt_s) {
   constexpr double kFadeS = 1.0;
   if (!prefers_moving_) return;

@@ -54,6 +54,8 @@ class Body {
   /// Of the hypothesis that holds: moving where its probability is above the threshold.
   /// All positions may have moved together by so much: the own position became better known.
   void Loosen(double variance_m2);
+  /// The map was elsewhere by so much.
+  void Translate(const Eigen::Vector2d& by_m);
   /// It was seen together with land only: where it comes to rest is not seen, so what is known of its velocity fades.
   void Fade(double dt_s);
   /// What lies beside it is of it, too.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "services/tracker/core/assignment.hpp"
@@ -53,6 +54,8 @@ void Step::Run() {
   known_.had_sight = known_.had_sight || is_sight_known_;
   if (!scan_.own) return;
   FindPlaces();
+  LeaveOutdated();
+  Settle();
   FindLand();
   Look();
   FindCommonStep();
@@ -139,6 +142,64 @@ void Step::Look() {
     for (int i = 0; i < std::min(20, static_cast<int>(std::lround(num_empty))); ++i) none *= 1.0 - share;
     track.is_met = look.num_met > 0.5 * look.num_open;
     track.detection = std::min(kMostDetection, 1.0 - none);
+  }
+}
+
+// What was placed earlier in the scan, by an own position that became much better known within it.
+void Step::LeaveOutdated() {
+  constexpr double kTimes = 4.0;
+  constexpr double kLeastM2 = 0.3 * 0.3;
+  const double own_m2 = scan_.own->covariance(0, 0) + scan_.own->covariance(1, 1);
+  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    const double placed_m2 = (scan_.seen[i].covariance_m2 - scan_.seen[i].covariance_relative_m2).trace();
+    if (placed_m2 > kTimes * own_m2 + kLeastM2) use_[i] = Use::kLeftOut;
+  }
+}
+
+// The own position became much better known: all that was placed by the old one moves, to where most of it is seen now.
+void Step::Settle() {
+  constexpr double kSds = 3.0;
+  constexpr double kSameM = 0.5;
+  constexpr double kLooseM = 0.2;
+  constexpr std::size_t kMost = 100;  // tracks, and segments
+  const double sd_m = std::exchange(known_.settled_sd_m, 0.0);
+  if (sd_m == 0.0) return;
+  std::vector<Eigen::Vector2d> from_m;
+  std::vector<Eigen::Vector2d> to_m;
+  for (const auto& track : known_.tracks) {
+    if (track.body && from_m.size() < kMost) from_m.push_back(track.seen_m);
+  }
+  for (std::size_t i = 0; i < scan_.seen.size() && to_m.size() < kMost; ++i) {
+    if (use_[i] == Use::kFree && scan_.seen[i].is_sure && !scan_.seen[i].is_land) to_m.push_back(middle_m_[i]);
+  }
+  // Of those that the shift brings to what is seen: how many, and where they come to lie in the mean.
+  const auto brought_by = [&](const Eigen::Vector2d& shift_m) {
+    std::pair<int, Eigen::Vector2d> brought(0, Eigen::Vector2d::Zero());
+    for (const auto& from : from_m) {
+      const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - from - shift_m).squaredNorm(); });
+      if (nearest == to_m.end() || (*nearest - from - shift_m).norm() > kSameM) continue;
+      ++brought.first;
+      brought.second += *nearest - from;
+    }
+    if (brought.first > 0) brought.second /= brought.first;
+    return brought;
+  };
+  auto best = brought_by(Eigen::Vector2d::Zero());
+  for (const auto& from : from_m) {
+    for (const auto& to : to_m) {
+      if ((to - from).norm() > kSds * sd_m) continue;
+      if (const auto brought = brought_by(to - from); brought.first > best.first) best = brought;
+    }
+  }
+  for (auto& track : known_.tracks) {
+    track.seen_m += best.second;
+    track.first_m += best.second;
+    track.middle_m += best.second;
+    for (auto& corner : track.outline_m) corner += best.second;
+    if (!track.body) continue;
+    track.body->Translate(best.second);
+    track.body->Loosen(best.first > 0 ? kLooseM * kLooseM : sd_m * sd_m);
+    Place(track);
   }
 }
 

@@ -31,6 +31,7 @@ struct Known {
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
+  double settled_sd_m = 0.0;  // of the own position before, where it became much better known with this scan
   bool had_sight = false;  // ever: without beams at all, misses count by themselves
 };
 
@@ -46,7 +47,7 @@ class Step {
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
 
  private:
-  enum class Use { kFree, kLand, kAssigned, kTaken };
+  enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
   Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const;
   void Predict();
   static void Place(Followed& track);
@@ -57,6 +58,8 @@ class Step {
   bool IsLand(const Followed& track) const;
   bool IsPerhapsLand(const Followed& track, std::size_t i) const;
   void Look();
+  void LeaveOutdated();
+  void Settle();
   void FindCommonStep();
   double CostOf(const Followed& track, std::size_t i) const;
   const Sides& SidesOf(std::size_t i) const;

@@ -41,6 +41,7 @@ void Step::FindLand() {
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     land_share_.push_back(known_.land.Share(places_m_[i], kMostLandPlaces));
+    if (use_[i] == Use::kLeftOut) continue;
     if ((seen.is_land && seen.is_sure) || land_share_.back() >= kLandShare) use_[i] = Use::kLand;
   }
   FollowLandPieces();
@@ -138,7 +139,7 @@ void Step::FeedLand() {
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);
-    if (!seen.is_sure || seems_moving_[i]) continue;
+    if (use_[i] == Use::kLeftOut || !seen.is_sure || seems_moving_[i]) continue;
     std::vector<const Followed*> near;
     for (const auto& track : known_.tracks) {
       if (IsKnown(track) && !IsLand(track) && (track.middle_m - middle_m_[i]).norm() < track.radius_m + radius_m_[i]) near.push_back(&track);

@@ -139,9 +139,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     const auto& covariance = scan.own->covariance;
     const double own_m2 = covariance(0, 0) + covariance(1, 1) + covariance(4, 4) * kTypicalRangeM * kTypicalRangeM;
     if (own_m2 < 0.5 * memory.own_m2 && std::sqrt(memory.own_m2) - std::sqrt(own_m2) > kLeastSettlingM) {
-      for (auto& track : memory.known.tracks) {
-        if (track.body) track.body->Loosen(memory.own_m2);
-      }
+      memory.known.settled_sd_m = std::sqrt(memory.own_m2);
       memory.own_m2 = own_m2;
     }
     if (own_m2 > memory.own_m2) memory.own_m2 = own_m2;
