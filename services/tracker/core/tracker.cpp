@@ -19,6 +19,8 @@ constexpr double kMostGapOfTimeS = 10.0;  // between scans; beyond, everything b
 constexpr double kMostJumpM = 10.0;       // of the own position, beyond what its speed explains
 constexpr double kUnseenEndS = 30.0;      // a confirmed track that could not be seen for so long ends; sooner where it was not followed for as long
 constexpr double kLeastUnseenEndS = 2.0;
+constexpr int kHardlyKnownHits = 5;
+constexpr double kHardlyKnownEndS = 0.7;
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
 constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
@@ -155,7 +157,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   for (auto& track : memory.known.tracks) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
-    const double end_s = track.is_confirmed ? std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS) : 1.0;
+    const double end_s = track.is_confirmed ? (track.num_hits < kHardlyKnownHits ? kHardlyKnownEndS : std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS)) : 1.0;
     if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) ||
         (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
       track.is_ended = true;
