@@ -449,7 +449,11 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
     track.body.emplace(seen.outline_m, sides, seen.covariance_relative_m2, range_m);
     Place(track);
   }
-  if (!track.is_confirmed && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
+  // A crest lives for about a second.
+  constexpr double kCrestThing = 2.0;
+  constexpr double kCrestS = 1.0;
+  const bool is_perhaps_crest = track.mean_thing < kCrestThing && ToSeconds(scan_.end_time - track.first) < kCrestS;
+  if (!track.is_confirmed && !is_perhaps_crest && track.Existence() > params_.confirm_probability && !IsSuspect(track) && !IsPerhapsLand(track, i))
     track.is_confirmed = true;
 }
 
