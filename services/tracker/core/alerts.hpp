@@ -89,8 +89,6 @@ class Alerts {
   static constexpr int kScansToClear = 5;
   static constexpr std::chrono::seconds kGreatestAge{1};
   static constexpr std::size_t kMostRectified = 16;
-  static constexpr std::chrono::seconds kTakeOver{5};
-  static constexpr double kTakeOverM = 5.0;  // what comes at 5 m/s (10 kn) goes so far until its new track is confirmed and its alert raised
 
   explicit Alerts(const AlertParams& params) : params_(params) {}
 
@@ -106,11 +104,6 @@ class Alerts {
   /// A track became part of another: its alerts go with it. Where the other has one of the same cause, the older one stays, as grave as the graver
   /// and active unless both were acknowledged; the other is cleared. (A track that ended needs no call: no danger comes of it any more.)
   void Rename(std::int64_t from_track, std::int64_t to_track, Utime time);
-
-  /// Everything is forgotten but the next id: tracks get new ids. What comes up again has to be acknowledged anew, unless it was before: of the same
-  /// cause, not graver, within 5 m of where it was seen from the boat, and within 5 s of the first scan after.
-  /// @param before  alerts until now: alerts(), or those of the last ALERTS of a process that was started anew
-  void Reset(std::vector<Alert> before = {});
 
   /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return alerts_; }
@@ -142,7 +135,6 @@ class Alerts {
   const Danger* FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
   bool HasNamedInZone(bool (*is_so)(const Alert&)) const;
   void Advance(Entry& entry, const Key& key, Utime time);
-  bool WasAcknowledged(const Alert& alert);
   void ClearOldestRectified(Utime time);
 
   AlertParams params_;
@@ -150,8 +142,6 @@ class Alerts {
   std::vector<Alert> ended_;  // to be told in the next Update
   std::vector<Alert> alerts_;
   std::optional<Utime> newest_;
-  std::vector<Alert> acknowledged_before_;  // a reset
-  std::optional<Utime> first_after_;        // it
   std::int64_t next_id_ = 1;
 };
 
