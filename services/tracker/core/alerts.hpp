@@ -55,11 +55,11 @@ struct Danger {
 };
 
 struct Acknowledgement {
-  Utime time;  // host time of who sent it
+  Utime time;  // host time of who sent it; of the tracker itself (KeptAcknowledgements) the end of the scan
   std::string source;
   std::int64_t alert_id = 0;
   Utime raised;
-  std::int64_t seq = 0;  // of its message
+  std::int64_t seq = 0;  // of its message; of the tracker itself 0
 
   friend bool operator==(const Acknowledgement&, const Acknowledgement&) = default;
 };
@@ -75,13 +75,17 @@ struct AlertParams {
 ///
 /// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the last
 /// 5 scans, and must not for clear_s and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts; scans older than 1 s count
-/// neither way; after a gap of more than 1 s, or a step back, clearing begins anew, since nobody looked.
+/// neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
 ///
 /// A caution that becomes a warning wants a new acknowledgement. A warning that ends without one stays as rectified until it gets one; a caution does
-/// not. What holds again meanwhile is the same alert, active. Of rectified ones the newest 16 stay.
+/// not, nor one of kUnnamed where something in the zone has an alert of its own. What holds again meanwhile is the same alert, active. Of rectified
+/// ones the newest 16 stay.
+///
+/// Where tracks are forgotten their alerts end by themselves, since no danger comes of them any more; KeptAcknowledgements knows what people took
+/// note of.
 class Alerts {
  public:
   static constexpr std::size_t kWindowScans = 5;
