@@ -21,8 +21,6 @@ constexpr double kMaxRangeUnitM = 1.0;
 // Wide enough for any lidar, so that arithmetic stays far from overflow.
 constexpr double kMaxLidarM = 1e5;
 constexpr std::chrono::seconds kMaxScan(60);
-constexpr std::int32_t kMaxParts = 1000;
-constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
 // A place on the map: the diameter of the earth, and more.
 constexpr double kMaxPlaceM = 1.5e7;
 constexpr double kMaxDatumHeightM = 1e5;
@@ -32,8 +30,18 @@ constexpr std::int32_t kAllGrounds = static_cast<std::int32_t>(segment_t::GROUND
                                      static_cast<std::int32_t>(segment_t::GROUND_SCATTERED) | static_cast<std::int32_t>(segment_t::GROUND_AT_SURFACE);
 
 template <typename Message>
+constexpr std::int32_t kMaxPartsOf = kMaxParts;
+template <>
+constexpr std::int32_t kMaxPartsOf<obstacles_t> = kMaxObstaclesParts;
+
+template <typename Message>
+bool IsPartGood(const Message& message) {
+  return message.part_index >= 0 && message.part_index < message.num_parts && message.num_parts <= kMaxPartsOf<Message>;
+}
+
+template <typename Message>
 bool HasPlace(const Message& message) {
-  return UtimeFromWire(message.utime_us) && message.part_index >= 0 && message.part_index < message.num_parts;
+  return UtimeFromWire(message.utime_us) && IsPartGood(message);
 }
 
 // The generated decoder has checked that no count is negative and none exceeds the bytes; two of them may be multiplied.
@@ -74,7 +82,7 @@ bool AreBeamsGood(const lidar_scan_t& message) {
 
 // A scan without columns is one part without columns; else no part is empty.
 bool IsPartOfScan(const lidar_scan_t& message) {
-  if (message.seq < 0 || message.part_index < 0 || message.part_index >= message.num_parts) return false;
+  if (message.seq < 0 || !IsPartGood(message)) return false;
   if (message.num_parts > std::max(1, message.num_turn_columns) || (message.num_columns == 0 && message.num_turn_columns > 0)) return false;
   return message.first_column >= 0 && std::int64_t{message.first_column} + message.num_columns <= message.num_turn_columns;
 }
@@ -187,12 +195,12 @@ bool IsWellFormed(const lidar_scan_t& message) { return HasPlace(message) && Has
 bool IsWellFormed(const segments_t& message) { return HasPlace(message) && HasCells(message); }
 
 bool IsWellFormed(const obstacles_t& message) {
-  return HasPlace(message) && message.num_parts <= kMaxObstaclesParts && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
+  return HasPlace(message) && std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) {
            return obstacle.num_map == 0 || obstacle.num_map == obstacle.num_footprint;
          });
 }
 
-bool IsWellFormed(const tracks_t& message) { return HasPlace(message) && message.num_parts <= kMaxParts; }
+bool IsWellFormed(const tracks_t& message) { return HasPlace(message); }
 
 std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes) {
   const auto time = UtimeFromWire(message.utime_us);
@@ -214,7 +222,7 @@ std::optional<Fault> FaultOf(const segments_t& message, int max_message_bytes) {
   const auto time = UtimeFromWire(message.utime_us);
   const auto end_time = UtimeFromWire(message.end_utime_us);
   if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxScan) return kSegmentsTime;
-  if (message.seq < 0 || message.raw_seq < 0 || message.num_parts > kMaxParts || !HasPlace(message)) return kSegmentsParts;
+  if (message.seq < 0 || message.raw_seq < 0 || !HasPlace(message)) return kSegmentsParts;
   if (message.num_segments > message.num_turn_segments || message.num_segments != std::ssize(message.segments)) return kSegmentsCount;
   if (!std::ranges::all_of(message.segments, [](const segment_t& segment) { return CountsAgree(segment); })) return kSegmentsCount;
   if (message.getEncodedSize() > max_message_bytes) return kSegmentsSize;
@@ -231,7 +239,7 @@ std::optional<Fault> FaultOf(const obstacles_t& message, int max_message_bytes) 
   const auto time = UtimeFromWire(message.utime_us);
   const auto end_time = UtimeFromWire(message.end_utime_us);
   if (!time || !end_time || *end_time < *time || *end_time - *time > kMaxScan) return kObstaclesTime;
-  if (message.seq < 0 || message.raw_seq < 0 || message.num_parts > kMaxObstaclesParts || !HasPlace(message)) return kObstaclesParts;
+  if (message.seq < 0 || message.raw_seq < 0 || !HasPlace(message)) return kObstaclesParts;
   if (message.num_obstacles != std::ssize(message.obstacles)) return kObstaclesCount;
   if (!std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) { return AreCodesKnown(obstacle); })) return kObstaclesCode;
   if (!std::ranges::all_of(message.obstacles, [](const obstacle_t& obstacle) { return CountsAgree(obstacle); })) return kObstaclesCount;

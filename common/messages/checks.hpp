@@ -16,8 +16,8 @@
 
 namespace lookout::messages {
 
-/// Whether the time exists, part_index lies below num_parts, and the counts agree, so that every array may be read by them; of
-/// OBSTACLES also that no more than 2000 parts are announced, so that who waits for them needs no memory without end.
+/// Whether the time exists, part_index lies below num_parts, no more parts than kMax... are announced, and the counts agree, so that every array may
+/// be read by them.
 bool IsWellFormed(const lidar_scan_t& message);
 bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);
@@ -31,7 +31,7 @@ inline constexpr Fault kScanCounts = "refused_counts";         // counts do not 
 inline constexpr Fault kScanSize = "refused_size";             // more rings, returns, columns or cells than kMax..., or too large a message
 inline constexpr Fault kScanBeams = "refused_beams";           // angles or height of a ring not finite or out of range, or not from the lowest up
 inline constexpr Fault kScanRangeUnit = "refused_range_unit";  // not above 0, above 1 m, or not finite
-inline constexpr Fault kScanPart = "refused_part";             // no such part, or columns outside of the scan
+inline constexpr Fault kScanPart = "refused_part";             // no such part, num_parts above 1000, or columns outside of the scan
 inline constexpr Fault kScanAzimuth = "refused_azimuth";       // of a column, not in [0, 2 pi]
 inline constexpr std::array kScanFaults{kScanTime, kScanCounts, kScanSize, kScanBeams, kScanRangeUnit, kScanPart, kScanAzimuth};
 
@@ -66,6 +66,10 @@ inline constexpr int kMaxRings = 128;
 inline constexpr int kMaxReturns = 2;
 inline constexpr int kMaxScanColumns = 65'536;
 inline constexpr std::int64_t kMaxScanCells = std::int64_t{1} << 21;
+
+/// Bounds of num_parts, so that who waits for parts needs no memory without end. A scan of kMaxScanCells takes less than 100 messages.
+inline constexpr std::int32_t kMaxParts = 1000;                    // LIDAR_SCAN, SEGMENTS, TRACKS
+inline constexpr std::int32_t kMaxObstaclesParts = 2 * kMaxParts;  // georeferencer makes at most two out of one of SEGMENTS
 
 /// @return the first fault of a message; nullopt where there is none
 std::optional<Fault> FaultOf(const lidar_scan_t& message, int max_message_bytes);

@@ -66,8 +66,6 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
     }
   }
   newest_ = time;
-  if (!first_after_) first_after_ = time;
-  if (std::chrono::abs(time - *first_after_) > kTakeOver) acknowledged_before_.clear();
 
   std::map<Key, const Danger*> of_key;
   for (const auto& danger : dangers) {
@@ -111,7 +109,6 @@ void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, con
   alert.cpa_m = danger->cpa_m;
   alert.tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
   alert.cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
-  if (alert.raised == time && WasAcknowledged(alert)) SetState(alert, AlertState::kAcknowledged, time);
 }
 
 // The nearest in the guard zone that has no alert which holds. Call it once the others are up to date.
@@ -155,22 +152,6 @@ void Alerts::Advance(Entry& entry, const Key& key, Utime time) {
   const bool rises = level > alert.level;
   SetLevel(alert, level, time);
   if (rises || alert.state == AlertState::kRectified) SetState(alert, AlertState::kActive, time);
-}
-
-bool Alerts::WasAcknowledged(const Alert& alert) {
-  const auto place = [](const Alert& of) -> std::pair<double, double> {
-    const auto [sine, cosine] = SinCosOf(of.bearing_rad);
-    return {of.distance_m * cosine, of.distance_m * sine};
-  };
-  const auto is_same = [&](const Alert& before) {
-    const auto [ahead_m, aside_m] = place(alert);
-    const auto [ahead_before_m, aside_before_m] = place(before);
-    return before.cause == alert.cause && before.level >= alert.level && Hypot(ahead_m - ahead_before_m, aside_m - aside_before_m) <= kTakeOverM;
-  };
-  const auto found = std::ranges::find_if(acknowledged_before_, is_same);
-  if (found == acknowledged_before_.end()) return false;
-  acknowledged_before_.erase(found);
-  return true;
 }
 
 void Alerts::ClearOldestRectified(Utime time) {
@@ -222,16 +203,6 @@ void Alerts::Rename(std::int64_t from_track, std::int64_t to_track, Utime time) 
     SetState(*goes.alert, AlertState::kCleared, time);
     ended_.push_back(*goes.alert);
   }
-}
-
-void Alerts::Reset(std::vector<Alert> before) {
-  std::erase_if(before, [](const Alert& alert) { return alert.state != AlertState::kAcknowledged; });
-  acknowledged_before_ = std::move(before);
-  first_after_.reset();
-  entries_.clear();
-  ended_.clear();
-  alerts_.clear();
-  newest_.reset();
 }
 
 }  // namespace lookout::tracker

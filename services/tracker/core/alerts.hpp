@@ -55,11 +55,11 @@ struct Danger {
 };
 
 struct Acknowledgement {
-  Utime time;  // host time of who sent it
+  Utime time;  // host time of who sent it; of the tracker itself (KeptAcknowledgements) the end of the scan
   std::string source;
   std::int64_t alert_id = 0;
   Utime raised;
-  std::int64_t seq = 0;  // of its message
+  std::int64_t seq = 0;  // of its message; of the tracker itself 0
 
   friend bool operator==(const Acknowledgement&, const Acknowledgement&) = default;
 };
@@ -75,13 +75,17 @@ struct AlertParams {
 ///
 /// Time goes by the message time of scans. On and off have hysteresis, and so has the level: what says "on" or "warning" must do so in 3 of the last
 /// 5 scans, and must not for clear_s and 5 whole scans. A scan that is not whole clears nothing, but what it shows counts; scans older than 1 s count
-/// neither way; after a gap of more than 1 s, or a step back, clearing begins anew, since nobody looked.
+/// neither way; after a gap or a step back of more than 1 s clearing begins anew, since nobody looked.
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
 ///
 /// A caution that becomes a warning wants a new acknowledgement. A warning that ends without one stays as rectified until it gets one; a caution does
-/// not. What holds again meanwhile is the same alert, active. Of rectified ones the newest 16 stay.
+/// not, nor one of kUnnamed where something in the zone has an alert of its own. What holds again meanwhile is the same alert, active. Of rectified
+/// ones the newest 16 stay.
+///
+/// Where tracks are forgotten their alerts end by themselves, since no danger comes of them any more; KeptAcknowledgements knows what people took
+/// note of.
 class Alerts {
  public:
   static constexpr std::size_t kWindowScans = 5;
@@ -89,8 +93,6 @@ class Alerts {
   static constexpr int kScansToClear = 5;
   static constexpr std::chrono::seconds kGreatestAge{1};
   static constexpr std::size_t kMostRectified = 16;
-  static constexpr std::chrono::seconds kTakeOver{5};
-  static constexpr double kTakeOverM = 5.0;  // what comes at 5 m/s (10 kn) goes so far until its new track is confirmed and its alert raised
 
   explicit Alerts(const AlertParams& params) : params_(params) {}
 
@@ -106,11 +108,6 @@ class Alerts {
   /// A track became part of another: its alerts go with it. Where the other has one of the same cause, the older one stays, as grave as the graver
   /// and active unless both were acknowledged; the other is cleared. (A track that ended needs no call: no danger comes of it any more.)
   void Rename(std::int64_t from_track, std::int64_t to_track, Utime time);
-
-  /// Everything is forgotten but the next id: tracks get new ids. What comes up again has to be acknowledged anew, unless it was before: of the same
-  /// cause, not graver, within 5 m of where it was seen from the boat, and within 5 s of the first scan after.
-  /// @param before  alerts until now: alerts(), or those of the last ALERTS of a process that was started anew
-  void Reset(std::vector<Alert> before = {});
 
   /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return alerts_; }
@@ -142,7 +139,6 @@ class Alerts {
   const Danger* FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
   bool HasNamedInZone(bool (*is_so)(const Alert&)) const;
   void Advance(Entry& entry, const Key& key, Utime time);
-  bool WasAcknowledged(const Alert& alert);
   void ClearOldestRectified(Utime time);
 
   AlertParams params_;
@@ -150,8 +146,6 @@ class Alerts {
   std::vector<Alert> ended_;  // to be told in the next Update
   std::vector<Alert> alerts_;
   std::optional<Utime> newest_;
-  std::vector<Alert> acknowledged_before_;  // a reset
-  std::optional<Utime> first_after_;        // it
   std::int64_t next_id_ = 1;
 };
 

@@ -1,6 +1,8 @@
 #include "services/tracker/core/kept_acknowledgements.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace lookout::tracker {
 
@@ -13,12 +15,14 @@ const Track* FindTrack(std::span<const Track> tracks, std::int64_t id) {
 
 }  // namespace
 
+Eigen::Vector2d KeptAcknowledgements::Kept::ExpectedAt(Utime at) const { return position_m.value() + ToSeconds(at - time) * velocity_mps; }
+
 void KeptAcknowledgements::Keep(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks) {
-  datum_ = datum;
-  kept_.clear();
+  Forget(time);
+  auto older = std::exchange(kept_, {});
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kAcknowledged) continue;
-    Kept kept{time, alert.cause, alert.level, std::nullopt, Eigen::Vector2d::Zero()};
+    Kept kept{time, datum, alert.cause, alert.level, std::nullopt, Eigen::Vector2d::Zero()};
     if (alert.track_id == kUnnamed) continue;  // nobody knows what it was
     if (alert.track_id != kLandTrack) {
       const auto* track = FindTrack(tracks, alert.track_id);
@@ -26,23 +30,40 @@ void KeptAcknowledgements::Keep(Utime time, const Datum& datum, std::span<const 
       kept.position_m = track->position_m;
       kept.velocity_mps = track->velocity_mps;
     }
+    if (const auto same = FindSame(older, kept); same != older.end()) older.erase(same);
     kept_.push_back(kept);
   }
+  std::ranges::move(older, std::back_inserter(kept_));
+}
+
+void KeptAcknowledgements::Forget(Utime time) {
+  std::erase_if(kept_, [time](const Kept& kept) { return time < kept.time || time - kept.time > kKeptFor; });
+}
+
+std::vector<KeptAcknowledgements::Kept>::iterator KeptAcknowledgements::FindSame(std::vector<Kept>& older, const Kept& kept) {
+  auto same = older.end();
+  double least_m = kSamePlaceM;
+  for (auto one = older.begin(); one != older.end(); ++one) {
+    if (one->cause != kept.cause || one->position_m.has_value() != kept.position_m.has_value() || !one->datum.IsSameAs(kept.datum)) continue;
+    const double distance_m = kept.position_m ? (*kept.position_m - one->ExpectedAt(kept.time)).norm() : 0.0;
+    if (distance_m > least_m) continue;
+    same = one;
+    least_m = distance_m;
+  }
+  return same;
 }
 
 std::vector<Acknowledgement> KeptAcknowledgements::Take(Utime time, const Datum& datum, std::span<const Alert> alerts,
                                                         std::span<const Track> tracks) {
-  std::erase_if(kept_, [&](const Kept& kept) { return time < kept.time || time - kept.time > kKeptFor || !datum.IsSameAs(datum_); });
+  Forget(time);
   std::vector<Acknowledgement> taken;
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kActive) continue;
     const auto* track = FindTrack(tracks, alert.track_id);
     const auto same = std::ranges::find_if(kept_, [&](const Kept& kept) {
-      if (alert.cause != kept.cause || alert.level > kept.level || alert.raised <= kept.time) return false;
+      if (alert.cause != kept.cause || alert.level > kept.level || alert.raised <= kept.time || !datum.IsSameAs(kept.datum)) return false;
       if (alert.track_id == kLandTrack || track == nullptr) return alert.track_id == kLandTrack && !kept.position_m;
-      if (!kept.position_m) return false;
-      const Eigen::Vector2d expected_m = *kept.position_m + ToSeconds(time - kept.time) * kept.velocity_mps;
-      return (track->position_m - expected_m).norm() <= kSamePlaceM;
+      return kept.position_m && (track->position_m - kept.ExpectedAt(time)).norm() <= kSamePlaceM;
     });
     if (same == kept_.end()) continue;
     taken.push_back({time, "tracker", alert.id, alert.raised});

@@ -14,30 +14,39 @@
 
 namespace lookout::tracker {
 
-/// When lidar or navigator begin anew, tracks get other ids, and what still holds is raised again. Nobody should have to take note of the same buoy
-/// twice: an alert of the same cause, no graver, of a track that stands where the old one was, is acknowledged too.
+/// When lidar, navigator or the process begin anew, tracks get other ids, and what still holds is raised again. Nobody should have to take note of
+/// the same buoy twice: an alert of the same cause, no graver, of a track that stands where the old one would be by now, is acknowledged too; and one
+/// of land where one of land was.
 class KeptAcknowledgements {
  public:
   /// Sources: a track is confirmed again within 2 s and its alert comes up within one more; what is 5 m off may be another boat.
   static constexpr std::chrono::seconds kKeptFor{10};
   static constexpr double kSamePlaceM = 5.0;
 
-  /// Before the tracks are forgotten.
+  /// Before the tracks are forgotten; or at the begin, what the process before left. What was kept before stays: it may not have been raised again
+  /// yet. What is kept of the same thing, the nearest, is replaced.
   void Keep(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
-  /// After a scan: acknowledgements for the alerts that came up since. Each that is kept counts once.
+  /// With a scan: acknowledgements for the alerts that came up since. Each that is kept counts once, and on the map of its datum alone.
   std::vector<Acknowledgement> Take(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks);
 
  private:
   struct Kept {
     Utime time;  // when it was kept
+    Datum datum;
     AlertCause cause;
     AlertLevel level;
-    std::optional<Eigen::Vector2d> position_m;  // map; nullopt: of land
+    std::optional<Eigen::Vector2d> position_m;  // map of the datum; nullopt: of land
     Eigen::Vector2d velocity_mps;
+
+    // Precondition: not of land.
+    Eigen::Vector2d ExpectedAt(Utime at) const;
   };
+
+  void Forget(Utime time);
+  static std::vector<Kept>::iterator FindSame(std::vector<Kept>& older, const Kept& kept);
+
   std::vector<Kept> kept_;
-  Datum datum_;
 };
 
 }  // namespace lookout::tracker

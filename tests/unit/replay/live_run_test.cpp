@@ -126,6 +126,22 @@ class LiveRun : public ::testing::Test {
     }
     return number;
   }
+  // What another tracker, which began with scan 8, has of the same scan: whatever is active it was told to take note of.
+  void RecordOfSecondTracker(alerts_t message) {
+    message.begin_seq = 8;
+    message.begin_utime_us = test::kStartUs + 8 * test::kScanUs;
+    message.acknowledged.clear();
+    for (const auto& alert : message.alerts) {
+      if (alert.state != alert_t::STATE_ACTIVE) continue;
+      auto& acknowledgement = message.acknowledged.emplace_back();
+      acknowledgement = {};
+      acknowledgement.source = "second";
+      acknowledgement.alert_id = alert.id;
+      acknowledgement.alert_raised_utime_us = alert.raised_utime_us;
+    }
+    message.num_acknowledged = static_cast<std::int32_t>(message.acknowledged.size());
+    Record(bus::kAlerts.name, bus::Encode(message));
+  }
   alerts_t LastAlerts() const { return bus::Decode<alerts_t>(live_.at("ALERTS").back()).value(); }
 
   Messages Replay() {
@@ -281,6 +297,70 @@ TEST_F(LiveRun, StoppedWhileAScanWaitsLeavesItToNobody) {
   Start();
   for (int i = 25; i < 40; ++i) SendScan(i);
   ExpectReplayEqualsLive();
+}
+
+// The ALERTS of a second tracker lie between those of the first, which goes on. From the first of them on, replay left out all scans.
+TEST_F(LiveRun, IsNotTornByASecondTracker) {
+  Start();
+  bool is_heard = true;
+  bus::Subscribe<alerts_t>(process_->bus, bus::kAlerts, [&](const alerts_t& message) {
+    if (is_heard && message.seq >= 20 && message.seq % 3 == 0) RecordOfSecondTracker(message);
+  });
+  int number = AcknowledgeTheWarning();
+  ASSERT_GT(number, 0) << "no warning came up";
+  is_heard = false;
+  for (const int end = number + 10; number < end; ++number) SendScan(number);
+  EXPECT_EQ(LastAlerts().alerts.at(0).state, alert_t::STATE_ACKNOWLEDGED);
+  ExpectReplayEqualsLive();
+}
+
+TEST_F(LiveRun, BeginsAnewWhereTheFirstProcessWasRestartedBesideASecondTracker) {
+  const auto hear_second = [this](int number) {
+    if (number % 20 == 10) RecordOfSecondTracker(LastAlerts());
+  };
+  Start();
+  for (int i = 0; i < 40; ++i) SendScan(i), hear_second(i);
+  process_.reset();  // killed
+  for (int i = 40; i < 55; ++i) SendScan(i), hear_second(i);
+  Start();
+  for (int i = 55; i < 120; ++i) SendScan(i), hear_second(i);
+  EXPECT_GE(LastAlerts().begin_seq, 55);
+  ExpectReplayEqualsLive();
+}
+
+// Neither lies within the other: the last of the log is the one that goes on, from its first ALERTS on.
+TEST_F(LiveRun, OfTwoTrackersThatOverlapFollowsTheOneThatGoesOn) {
+  const auto record = [this](std::int64_t begin_seq, std::int64_t seq) {
+    alerts_t message{};
+    message.begin_seq = begin_seq;
+    message.begin_utime_us = test::kStartUs + test::kScanUs * begin_seq;
+    message.seq = seq;
+    message.utime_us = test::kStartUs + test::kScanUs * seq;
+    alert_ack_t acknowledgement{};
+    acknowledgement.alert_id = begin_seq + 1;
+    message.acknowledged = {acknowledgement};
+    message.num_acknowledged = 1;
+    Record(bus::kAlerts.name, bus::Encode(message));
+  };
+  for (const int seq : {0, 1, 2, 3}) record(0, seq);
+  record(2, 3);  // a third, for a moment
+  record(0, 4);
+  for (const int seq : {5, 6, 7}) record(5, seq), record(0, seq);
+  for (const int seq : {8, 9}) record(5, seq);
+  writer_.Flush();
+  support::WriteFile(log_, std::string(bytes_.begin(), bytes_.end()));
+  const auto script = ReadScript({log_}).value();
+  const auto key = [](std::int64_t seq) { return tracker::ScanKey{Utime(std::chrono::microseconds(test::kStartUs + test::kScanUs * seq)), seq}; };
+  ASSERT_EQ(script.stretches.size(), 2U);
+  EXPECT_TRUE(script.stretches[0].begin == key(0));
+  EXPECT_TRUE(script.stretches[0].last == key(4));
+  EXPECT_TRUE(script.stretches[1].begin == key(5));
+  EXPECT_TRUE(script.stretches[1].last == key(9));
+  ASSERT_EQ(script.acknowledged.size(), 10U);
+  for (const auto& [scan, acknowledgements] : script.acknowledged) {
+    ASSERT_EQ(acknowledgements.size(), 1U) << scan.seq;
+    EXPECT_EQ(acknowledgements[0].alert_id, scan.seq < 5 ? 1 : 6) << scan.seq;
+  }
 }
 
 // The last scan of the run waits for a POSE that never comes.

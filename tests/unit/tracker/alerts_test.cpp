@@ -334,32 +334,5 @@ TEST_F(AlertsTest, StandTheGravestFirst) {
   EXPECT_EQ(tracks, (std::vector<std::int64_t>{5, 3, 9, 2, 1}));
 }
 
-TEST_F(AlertsTest, NeverUseAnIdTwiceAcrossAReset) {
-  Scans(3, {Cpa(7, 0.9)});
-  alerts_.Reset();
-  EXPECT_TRUE(Scan({}).empty());
-  Scans(3, {Cpa(7, 0.9)});
-  EXPECT_EQ(Only().id, 2);
-}
-
-TEST_F(AlertsTest, StayAcknowledgedAcrossAResetWhereTheSameComesUpAgain) {
-  Scans(3, {Cpa(7, 0.9, 25.0, 40.0), Cpa(8, 0.9, 25.0, 60.0)});
-  Acknowledge(alerts_.alerts()[0]);
-  Acknowledge(alerts_.alerts()[1]);
-  Scan({Cpa(7, 0.9, 25.0, 40.0), Cpa(8, 0.9, 25.0, 60.0)});
-  const auto before = alerts_.alerts();
-  alerts_.Reset(before);
-  const std::vector<Danger> again{Cpa(1, 0.9, 24.0, 38.0), Cpa(2, 0.9, 10.0, 57.0), Cpa(3, 0.9, 25.0, 80.0)};
-  Scans(3, again);
-  ASSERT_EQ(alerts_.alerts().size(), 3U);
-  for (const auto& alert : alerts_.alerts()) {
-    EXPECT_EQ(alert.state, alert.track_id == 1 ? AlertState::kAcknowledged : AlertState::kActive) << alert.track_id << ": 2 is graver now, 3 is new";
-  }
-  alerts_.Reset(before);
-  Scans(60, {});
-  Scans(3, again);
-  for (const auto& alert : alerts_.alerts()) EXPECT_EQ(alert.state, AlertState::kActive) << "too late";
-}
-
 }  // namespace
 }  // namespace lookout::tracker

@@ -1,7 +1,6 @@
 #include "services/tracker/core/land.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -14,6 +13,7 @@
 #include "common/core/angles.hpp"
 #include "services/tracker/core/outline.hpp"
 #include "services/tracker/core/tracker.hpp"
+#include "tests/unit/tracker/scans.hpp"
 
 namespace lookout::tracker::coast {
 namespace {
@@ -21,8 +21,6 @@ namespace {
 constexpr double kLidarM = 1.5;  // over the water
 constexpr int kRings = 16;
 constexpr int kColumns = 900;
-constexpr double kScanS = 0.1;
-constexpr std::chrono::microseconds kBegin{1'700'000'000'000'000};
 
 // A wall that stands in the water, seen from above.
 struct Wall {
@@ -60,19 +58,7 @@ using Segmenter = std::function<Called(int thing, const Eigen::Vector2d& place_m
 
 // What a lidar on a boat that heads north sees of walls, and what the segmenter makes of it.
 ScanInput Look(int scan, const Eigen::Vector2d& own_m, const std::vector<Wall>& walls, const Segmenter& segmenter, std::mt19937_64& random) {
-  ScanInput input;
-  input.seq = scan;
-  input.time = Utime(kBegin + std::chrono::milliseconds(100 * scan));
-  input.end_time = input.time + std::chrono::milliseconds(100);
-  input.datum = {60.0, 20.0, 0.0};
-  Pose pose;
-  pose.is_placed = true;
-  pose.time = input.end_time;
-  pose.datum = input.datum;
-  pose.position_map_m << own_m, 0.0;
-  pose.velocity_map_mps.setZero();
-  input.own = pose;
-  input.own_at_start = pose;
+  ScanInput input = test::MakeScan(scan, own_m);
   Sweep sweep;
   for (int ring = 0; ring < kRings; ++ring) {
     sweep.elevation_rad.push_back(static_cast<float>((-15.0 + 2.0 * ring) * kPi / 180.0));
@@ -183,7 +169,7 @@ TEST(LandInTracker, BargeThatLeavesAQuayBecomesATrackAndLeavesNoLand) {
   std::set<std::int64_t> ids;
   std::vector<Eigen::Vector2d> waterline_m;
   for (int scan = 0; scan < 500; ++scan) {
-    const double way_m = std::max(0.0, kScanS * (scan - kLeaves));
+    const double way_m = std::max(0.0, test::kScanS * (scan - kLeaves));
     auto walls = kQuayWalls;
     for (const auto& wall : Box({5.0 + way_m, 17.0}, 16.0, 4.0, 2.5, kBoat)) walls.push_back(wall);
     const auto input = Look(
@@ -218,7 +204,7 @@ TEST(LandInTracker, BoatThatComesAlongsideKeepsItsId) {
   std::set<std::int64_t> ids;
   int num_reported = 0;
   for (int scan = 0; scan < kArrives + 600; ++scan) {
-    const double to_go_m = 1.0 * kScanS * std::max(0, kArrives - scan);
+    const double to_go_m = 1.0 * test::kScanS * std::max(0, kArrives - scan);
     auto walls = kQuayWalls;
     for (const auto& wall : Box({-5.0 - 0.8 * to_go_m, 18.5 - 0.6 * to_go_m}, 7.0, 2.4, 1.4, kBoat)) walls.push_back(wall);
     // Once it lies there it is one segment with the quay.

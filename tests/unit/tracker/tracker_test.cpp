@@ -1,19 +1,16 @@
 #include "services/tracker/core/tracker.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "common/core/angles.hpp"
+#include "tests/unit/tracker/scans.hpp"
 
 namespace lookout::tracker::sea {
 namespace {
-
-constexpr double kScanS = 0.1;
-constexpr std::chrono::microseconds kBegin{1'700'000'000'000'000};
 
 struct Thing {
   Eigen::Vector2d middle_m;
@@ -29,18 +26,7 @@ class Sea {
 
   const Picture& Scan(const std::vector<Thing>& things, const Eigen::Vector2d& own_m = Eigen::Vector2d::Zero(),
                       const Eigen::Vector2d& own_mps = Eigen::Vector2d::Zero()) {
-    ScanInput input;
-    input.seq = num_scans_;
-    input.time = Utime(kBegin + std::chrono::milliseconds(100 * num_scans_++));
-    input.end_time = input.time + std::chrono::milliseconds(100);
-    input.datum = {60.0, 20.0, 0.0};
-    Pose pose;
-    pose.is_placed = true;
-    pose.time = input.end_time;
-    pose.datum = input.datum;
-    pose.position_map_m << own_m, 0.0;
-    pose.velocity_map_mps = own_mps;
-    input.own = input.own_at_start = pose;
+    ScanInput input = test::MakeScan(num_scans_++, own_m, own_mps);
     int id = 1;
     for (const auto& thing : things) {
       Seen seen;
@@ -82,7 +68,7 @@ TEST(Tracks, OfABuoyThatLooksLittleLikeAThingAreConfirmedSinceItStaysWhereItIs) 
   for (int scan = 0; scan < 60; ++scan) {
     const auto& picture = sea.Scan({{{20.0 + noise_m(random), 5.0 + noise_m(random)}, 0.2, 0.1, 0.25}});
     const auto confirmed = Confirmed(picture);
-    if (!confirmed.empty() && confirmed_s < 0.0) confirmed_s = kScanS * scan;
+    if (!confirmed.empty() && confirmed_s < 0.0) confirmed_s = test::kScanS * scan;
     for (const auto* track : confirmed) ids.insert(track->id);
   }
   EXPECT_GE(confirmed_s, 0.2);
@@ -106,7 +92,7 @@ TEST(Tracks, OfACrestThatRunsAndLooksLikeClutterAreNotConfirmed) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise_m(0.0, 0.4);
   for (int scan = 0; scan < 30; ++scan) {
-    const double way_m = 2.5 * kScanS * scan;
+    const double way_m = 2.5 * test::kScanS * scan;
     EXPECT_TRUE(Confirmed(sea.Scan({{{-10.0 + way_m + noise_m(random), 8.0 + noise_m(random)}, 2.0, 0.5, 0.06}})).empty()) << "scan " << scan;
   }
 }
@@ -126,7 +112,7 @@ TEST(Tracks, OfTwoPartsThatMoveTogetherBecomeOneOfTheOlderName) {
   Sea sea;
   std::int64_t id = 0;
   for (int scan = 0; scan < 100; ++scan) {
-    const double way_m = 2.0 * kScanS * scan;
+    const double way_m = 2.0 * test::kScanS * scan;
     std::vector<Thing> parts{{{30.0 - way_m, 10.0}, 3.0, 1.0}};
     if (scan > 3) parts.push_back({{34.0 - way_m, 10.0}, 2.5, 1.0});
     const auto confirmed = Confirmed(sea.Scan(parts));
@@ -154,7 +140,7 @@ TEST(Tracks, OfBoatsThatPartKeepTheirIds) {
   Sea sea;
   std::set<std::int64_t> ids;
   for (int scan = 0; scan < 150; ++scan) {
-    const double way_m = 1.0 * kScanS * scan;
+    const double way_m = 1.0 * test::kScanS * scan;
     for (const auto* track : Confirmed(sea.Scan({{{15.0 - way_m, 0.0}, 4.0, 1.5}, {{15.0 + way_m, 4.0}, 4.0, 1.5}}))) ids.insert(track->id);
   }
   EXPECT_EQ(ids.size(), 2U);
@@ -200,7 +186,7 @@ TEST(Tracks, OfWhoOvertakesStaySoUntilPastAndClear) {
   std::set<Encounter> seen;
   Encounter last = Encounter::kNone;
   for (int scan = 0; scan < 400; ++scan) {
-    const double time_s = kScanS * scan;
+    const double time_s = test::kScanS * scan;
     const auto confirmed = Confirmed(sea.Scan({{{4.0, -40.0 + 5.0 * time_s}, 2.0, 4.0}}, {0.0, 2.0 * time_s}, {0.0, 2.0}));
     if (confirmed.empty() || confirmed.front()->velocity_mps.isZero(0.0)) continue;
     last = confirmed.front()->encounter;

@@ -17,27 +17,13 @@
 #include "common/bus/memory_bus.hpp"
 #include "services/tracker/service.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
+#include "tests/unit/tracker_shell/service_fixture.hpp"
 
 namespace lookout::tracker {
 namespace {
 
-class TrackerBadInput : public ::testing::Test {
+class TrackerBadInput : public test::ServiceFixture {
  protected:
-  bus::MemoryBus bus_;
-  Service service_{bus_, test::MakeParams()};
-  std::vector<tracks_t> tracks_;
-  std::vector<alerts_t> alerts_;
-
-  void SetUp() override {
-    bus::Subscribe<tracks_t>(bus_, bus::kTracks, [this](const tracks_t& message) { tracks_.push_back(message); });
-    bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) { alerts_.push_back(message); });
-  }
-  template <typename Message>
-  void Send(const bus::Channel& channel, const Message& message) {
-    bus::Publish(bus_, channel, message);
-    while (bus_.HandleOnce()) {
-    }
-  }
   // The boat at a place that does not move, its poses from a scan's begin to the next.
   void SendPoses(int number, double north_m = 0.0, std::int32_t status = pose_t::STATUS_OK) {
     for (int i = 0; i < 5; ++i) {
@@ -47,10 +33,6 @@ class TrackerBadInput : public ::testing::Test {
       Send(bus::kPose, pose);
     }
   }
-  void SendSight(int number) {
-    Send(bus::kLidarScan, test::MakeScan(test::kScanUs * number, number));
-    Send(bus::kSegments, test::MakeSegments(test::kScanUs * number, number));
-  }
   // A thing 20 m to the north of a place, and one 30 m to the east of it.
   static obstacles_t Obstacles(int number, double north_m = 0.0) {
     const auto offset_us = test::kScanUs * number;
@@ -58,25 +40,10 @@ class TrackerBadInput : public ::testing::Test {
                                {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {0.0, north_m + 20.0}),
                                 test::MakeObstacle(2, test::kStartUs + offset_us + 60'000, {30.0, north_m})});
   }
-  static obstacles_t InTheVesselFrame(obstacles_t message) {
-    for (auto& obstacle : message.obstacles) {
-      obstacle.status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
-      obstacle.num_map = 0;
-      obstacle.footprint_east_m.clear();
-      obstacle.footprint_north_m.clear();
-    }
-    return message;
-  }
   void SendScan(int number, double north_m = 0.0) {
     SendPoses(number, north_m);
-    SendSight(number);
+    SendSight(number, number);
     Send(bus::kObstacles, Obstacles(number, north_m));
-  }
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : service_.Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
   }
   // Each track lies where something stands, and stands itself.
   void ExpectRightTracks(std::size_t first_message, const std::vector<double>& norths_m) const {
@@ -177,8 +144,8 @@ TEST_F(TrackerBadInput, WithoutAHeadingTracksCoastAndEnd) {
   constexpr int kNumScans = 320;
   for (int i = 20; i < 20 + kNumScans; ++i) {
     SendPoses(i, 0.0, pose_t::STATUS_NO_HEADING);
-    SendSight(i);
-    Send(bus::kObstacles, InTheVesselFrame(Obstacles(i)));
+    SendSight(i, i);
+    Send(bus::kObstacles, test::InTheVesselFrame(Obstacles(i)));
     if (i == 40) {
       EXPECT_NE(service_.Report().reason.find("no position or heading"), std::string::npos) << service_.Report().reason;
     }
@@ -214,7 +181,7 @@ TEST_F(TrackerBadInput, AnotherDatumBeginsAnew) {
   for (int i = 0; i < 10; ++i) SendScan(i);
   for (int i = 10; i < 30; ++i) {
     SendPoses(i);
-    SendSight(i);
+    SendSight(i, i);
     auto message = Obstacles(i);
     message.datum_longitude_deg += 0.5;
     Send(bus::kObstacles, message);
@@ -325,8 +292,7 @@ TEST_F(TrackerBadInput, HostileNumbersMakeNoUnsoundTrack) {
         put(spoiled, place, counts[random() % counts.size()], 4);
     }
     for (const auto& [channel, bytes] : messages) bus_.Publish(*channel, bytes);
-    while (bus_.HandleOnce()) {
-    }
+    HandleAll();
     if (HasFailure()) FAIL() << "scan " << i;
   }
   EXPECT_GT(tracks_.size(), 2500U);
@@ -343,7 +309,7 @@ TEST_F(TrackerBadInput, FortyThousandObstaclesAScanTakeBoundedTime) {
   const auto start = std::chrono::steady_clock::now();
   for (int i = 0; i < kNumScans; ++i) {
     SendPoses(i);
-    SendSight(i);
+    SendSight(i, i);
     std::mt19937 random(static_cast<std::uint32_t>(i));
     for (int part = 0; part < kNumObstacles / kOfAPart; ++part) {
       std::vector<obstacle_t> obstacles;

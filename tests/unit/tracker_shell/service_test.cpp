@@ -10,32 +10,15 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/memory_bus.hpp"
 #include "tests/unit/tracker_shell/messages.hpp"
+#include "tests/unit/tracker_shell/service_fixture.hpp"
 
 namespace lookout::tracker {
 namespace {
 
 using std::chrono::milliseconds;
 
-class TrackerService : public ::testing::Test {
+class TrackerService : public test::ServiceFixture {
  protected:
-  bus::MemoryBus bus_;
-  Service service_{bus_, test::MakeParams()};
-  std::vector<tracks_t> tracks_;
-  std::vector<alerts_t> alerts_;
-
-  void SetUp() override {
-    bus::Subscribe<tracks_t>(bus_, bus::kTracks, [this](const tracks_t& message) { tracks_.push_back(message); });
-    bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) { alerts_.push_back(message); });
-  }
-  void HandleAll() {
-    while (bus_.HandleOnce()) {
-    }
-  }
-  template <typename Message>
-  void Send(const bus::Channel& channel, const Message& message) {
-    bus::Publish(bus_, channel, message);
-    HandleAll();
-  }
   // A boat that lies still.
   void SendPoses(std::int64_t first_us, std::int64_t last_us, std::int64_t first_seq = 0) {
     for (auto offset_us = first_us; offset_us <= last_us; offset_us += 20'000) Send(bus::kPose, test::MakePose(offset_us, first_seq++));
@@ -45,19 +28,9 @@ class TrackerService : public ::testing::Test {
     const auto offset_us = test::kScanUs * number;
     return test::MakeObstacles(offset_us, seq, {test::MakeObstacle(1, test::kStartUs + offset_us + 50'000, {east_m, 20.0})});
   }
-  void SendSight(std::int64_t number, std::int64_t seq) {
-    Send(bus::kLidarScan, test::MakeScan(test::kScanUs * number, seq));
-    Send(bus::kSegments, test::MakeSegments(test::kScanUs * number, seq));
-  }
   void SendScan(std::int64_t number, std::int64_t seq) {
     SendSight(number, seq);
     Send(bus::kObstacles, Obstacles(number, seq));
-  }
-  std::int64_t Count(std::string_view name) const {
-    for (const auto& counter : service_.Report().counters) {
-      if (counter.name == name) return counter.count;
-    }
-    return -1;
   }
 };
 
@@ -209,12 +182,7 @@ TEST_F(TrackerService, TracksNothingWithoutAPlaceOrACovariance) {
   SendPoses(0, 1'000'000);
   for (int i = 0; i < 5; ++i) {
     SendSight(i, i);
-    auto message = Obstacles(i, i);
-    auto& placed_nowhere = message.obstacles[0];
-    placed_nowhere.status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
-    placed_nowhere.num_map = 0;
-    placed_nowhere.footprint_east_m.clear();
-    placed_nowhere.footprint_north_m.clear();
+    auto message = test::InTheVesselFrame(Obstacles(i, i));
     message.obstacles.push_back(test::MakeObstacle(2, message.utime_us, {50.0, 50.0}));
     for (auto& number : message.obstacles[1].covariance_relative_m2) number = kNan;
     message.num_obstacles = 2;
@@ -378,12 +346,9 @@ TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
     service.AdvanceTo(Host(milliseconds(1000 + 100 * i)));
     bus::Publish(bus, bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
     bus::Publish(bus, bus::kSegments, test::MakeSegments(test::kScanUs * i, i));
-    auto obstacle = test::MakeObstacle(1, test::kStartUs + test::kScanUs * i, {i < 5 ? 8.0 : 30.0, 0.0});
-    obstacle.status = obstacle_t::STATUS_POSE_TIMEOUT;
-    obstacle.num_map = 0;
-    obstacle.footprint_east_m.clear();
-    obstacle.footprint_north_m.clear();
-    bus::Publish(bus, bus::kObstacles, test::MakeObstacles(test::kScanUs * i, i, {obstacle}));
+    const auto obstacle = test::MakeObstacle(1, test::kStartUs + test::kScanUs * i, {i < 5 ? 8.0 : 30.0, 0.0});
+    const auto message = test::MakeObstacles(test::kScanUs * i, i, {obstacle});
+    bus::Publish(bus, bus::kObstacles, test::InTheVesselFrame(message, obstacle_t::STATUS_POSE_TIMEOUT));
     handle_all();
     service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
     handle_all();
