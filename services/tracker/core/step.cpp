@@ -26,7 +26,7 @@ constexpr double kLongestScanS = 0.2;
 // A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
 constexpr double kMostOff = 16.0;
 constexpr double kMostMisfit = 9.0;
-constexpr int kMisfitsToRestart = 5;
+constexpr int kMisfitsToRestart = 3;
 
 double RadiusOf(const std::vector<Eigen::Vector2d>& outline_m, const Eigen::Vector2d& middle_m) {
   double radius = 0.0;
