@@ -463,20 +463,22 @@ void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
   for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m = std::max(sides_[i].reach_m, support[i] - directions[i].dot(position_m()));
 }
 
-void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) {
+void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
+  // What is known to move shows another part of itself, unless it was not where it should be.
+  const double jump_mps = has_jumped || !stands_out_ ? kJumpMps : 0.0;
   const Measured measured = Measure(seen_m, sides, range_m);
   if (measured.short_m > 0.0) {
     const Eigen::Vector2d shift_m = ShiftOf(measured, Eigen::Matrix2d::Zero(), range_m).shift_m;
     standing_ += shift_m;
     moving_.head<2>() += shift_m;
-    moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kJumpMps * kJumpMps);
+    moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
     num_measured_ = 0;
     return;
   }
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
   other.moving_.tail<3>() = moving_.tail<3>();
   other.moving_covariance_.bottomRightCorner<3, 3>() = moving_covariance_.bottomRightCorner<3, 3>();
-  other.moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (kJumpMps * kJumpMps);
+  other.moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
   other.log_likelihood_ratio_ = std::max(log_likelihood_ratio_, 0.0);
   other.moving_probability_ = moving_probability_;
   other.prefers_moving_ = prefers_moving_;

@@ -61,7 +61,7 @@ class Body {
   /// What lies beside it is of it, too.
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
   /// Another outline of the same thing: it keeps its velocity.
-  void Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m);
+  void Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
 
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }

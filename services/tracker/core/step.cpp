@@ -352,7 +352,7 @@ void Step::AssignLost() {
     auto& track = known_.tracks[pair.track];
     if (track.is_seen_now || use_[pair.seen] != Use::kFree) continue;
     track.num_misfits = kMisfitsToRestart;
-    Hit(track, pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen));
+    Hit(track, pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen), true);
   }
 }
 
@@ -390,7 +390,7 @@ void Step::AssignRest() {
   }
 }
 
-void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides) {
+void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost) {
   const bool was_land = use_[i] == Use::kLand;
   use_[i] = Use::kTaken;
   track.is_seen_now = true;
@@ -410,7 +410,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
       track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
     } else if (++track.num_misfits >= kMisfitsToRestart) {
       track.num_misfits = 0;
-      track.body->Restart(seen.outline_m, sides, range_m);
+      track.body->Restart(seen.outline_m, sides, range_m, is_lost);
     }
     Place(track);
   } else {

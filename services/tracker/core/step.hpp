@@ -67,7 +67,7 @@ class Step {
   void AssignLost();
   void AssignRest();
   void HitWhole(Followed& track, std::size_t i);
-  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides);
+  void Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost = false);
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
   void FindInside();
