@@ -465,7 +465,7 @@ void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
 
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
   // What is known to move shows another part of itself, unless it was not where it should be.
-  const double jump_mps = has_jumped || !stands_out_ ? kJumpMps : 0.0;
+  const double jump_mps = has_jumped || !prefers_moving_ ? kJumpMps : 0.0;
   const Measured measured = Measure(seen_m, sides, range_m);
   if (measured.short_m > 0.0) {
     const Eigen::Vector2d shift_m = ShiftOf(measured, Eigen::Matrix2d::Zero(), range_m).shift_m;
@@ -484,7 +484,7 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   other.prefers_moving_ = prefers_moving_;
   other.stands_out_ = stands_out_;
   other.moved_s_ = moved_s_;
-  if (stands_out_) other.age_s_ = age_s_;
+  if (prefers_moving_) other.age_s_ = age_s_;
   other.jitter_m2_ = jitter_m2_;
   *this = other;
 }
