@@ -253,7 +253,7 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
   int num_edges = 0;
   if (measured.short_m > 0.0) {
     // A part is somewhere in it, and for the while it is seen there.
-    constexpr double kTimes = 10.0;
+    constexpr double kTimes = 2.0;
     const double weight = 1.0 / (kTimes * 0.25 * measured.short_m * measured.short_m);
     information = weight * Eigen::Matrix2d::Identity();
     for (std::size_t i = 0; i < kDirections; ++i) {
