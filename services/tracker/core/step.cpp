@@ -288,7 +288,8 @@ void Step::AssignBodies() {
 // A thing may come in several segments. What nothing else is known by, and lies in the outline of a track, is of it.
 void Step::HitWhole(Followed& track, std::size_t i) {
   std::vector<std::size_t> others;
-  if (track.is_confirmed && use_[i] == Use::kAssigned && RectangleAround(track.outline_m).width_m < kWidestBoatM) {
+  const auto around = RectangleAround(track.outline_m);
+  if (track.is_confirmed && use_[i] == Use::kAssigned && around.width_m < kWidestBoatM && around.length_m < kLongestWholeM) {
     for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
       if (use_[k] != Use::kFree || scan_.seen[k].thing_probability < 0.5 || (middle_m_[k] - track.middle_m).norm() > track.radius_m + kPieceBesideM)
         continue;

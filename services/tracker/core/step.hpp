@@ -18,6 +18,7 @@
 
 namespace lookout::tracker {
 
+inline constexpr double kLongestWholeM = 15.0;  // and
 inline constexpr double kWidestBoatM = 6.0;  // within a wider outline, as of a dock with berths, another thing may lie
 
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first

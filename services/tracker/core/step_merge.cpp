@@ -55,7 +55,7 @@ bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double sha
   const double area = AreaOf(lesser.outline_m);
   const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
   // Within the outline of what may be a dock with berths, only what touches it.
-  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m)) return is_piece && Touch(larger, lesser);
+  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m) || around.length_m > kLongestWholeM) return is_piece && Touch(larger, lesser);
   if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
   return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kPieceGapM && SpeedBetween(larger, lesser) < kSameVelocityMps;
 }
