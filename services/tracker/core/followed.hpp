@@ -24,7 +24,8 @@ inline double Sigmoid(double log_odds) { return 1.0 / (1.0 + Exp(-log_odds)); }
 
 inline constexpr double kBirthLogOdds = -2.0;
 inline constexpr double kFirstStepM2 = 0.3 * 0.3;  // before there was one
-inline constexpr int kMostHits = 30;               // that count, the last ones most
+inline constexpr int kMostHits = 30;  // that count in a mean, the last ones most
+inline constexpr int kMostLooks = 60;  // that speak for it
 
 struct Followed {
   std::int64_t id = 0;
@@ -70,7 +71,7 @@ struct Followed {
   // or moves. Logistic regression on tracks of 14 scenes of the simulator with crests, foam, rain and fog (seeds 21 and 22).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
-    const double often = Log(std::min(num_hits, kMostHits));
+    const double often = Log(std::min(num_hits, kMostLooks));
     const double unsteady = Log(std::sqrt(mean_step_m2) + kLeastStepM);
     return -0.86 + std::clamp(mean_thing, -4.0, 4.0) * (0.90 + 0.31 * often) + 0.77 * often - unsteady * (0.39 + 0.53 * often);
   }
