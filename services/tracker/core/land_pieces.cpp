@@ -19,7 +19,7 @@ constexpr double kLeastWayM = 1.0;
 constexpr int kLeastPlaces = 4;
 constexpr double kAboveM = 0.1;  // a beam as high as that return would meet it
 constexpr double kLeastShare = 0.7;
-constexpr int kProofs = 5;  // scans in a row
+constexpr int kProofs = 8;  // scans in a row
 constexpr double kGateM = 1.5;
 constexpr double kMostRadiusRatio = 1.6;
 
@@ -63,7 +63,7 @@ void LandPieces::Anchor(Piece& piece, const Seen& seen, const Eigen::Vector2d& f
   }
 }
 
-bool LandPieces::HasMoved(const Piece& piece, const Seen& seen, const Sight& sight) {
+bool LandPieces::HasMoved(const Piece& piece, const Seen& seen, bool is_whole, const Sight& sight) {
   if (piece.body.velocity_mps().norm() < kPieceSpeedMps) return false;
   if ((piece.body.center_m() - piece.first_m).norm() < kLeastWayM) return false;
   const auto is_now_at = [&seen](const Eigen::Vector2d& place_m, double reach_m) {
@@ -82,8 +82,8 @@ bool LandPieces::HasMoved(const Piece& piece, const Seen& seen, const Sight& sig
     }
   }
   if (num_left >= kLeastPlaces && num_left >= kLeastShare * (num_left + num_kept)) return true;
-  // At a slant a wall is near to what lies before it: the other proof counts for what moves by itself only.
-  if (!piece.body.IsMoving(kPieceMoving)) return false;
+  // At a slant a wall is near to what lies before it: the other proof counts for what moves by itself only, and as a whole.
+  if (!is_whole || !piece.body.IsMoving(kPieceMoving)) return false;
   int num_come = 0;
   int num_free = 0;
   for (const auto& before_m : piece.free_m) {
@@ -125,9 +125,10 @@ std::vector<LandPieces::Proven> LandPieces::Update(std::span<const Seen> seen, c
     piece.seen = time;
     ++piece.num_hits;
     piece.radius_m = one.radius_m;
+    const bool is_whole = !piece.body.ShiftOf(one.outline_m, one.sides, one.noise_m2, one.range_m).is_part;
     piece.body.Update(one.outline_m, one.sides, one.noise_m2, one.range_m, true);
-    seems_moving[pair.seen] = piece.body.moving_probability() > 0.5;
-    piece.num_proofs = HasMoved(piece, one, sight) ? piece.num_proofs + 1 : 0;
+    piece.num_proofs = HasMoved(piece, one, is_whole, sight) ? piece.num_proofs + 1 : 0;
+    seems_moving[pair.seen] = piece.num_proofs > 0;
     if (piece.num_proofs >= kProofs) {
       proven.push_back({one.index, piece.first, piece.num_hits, piece.first_m, piece.body});
       is_proven[pair.piece] = true;

@@ -65,7 +65,7 @@ class LandPieces {
   };
 
   static void Anchor(Piece& piece, const Seen& seen, const Eigen::Vector2d& from_m, Utime time);
-  static bool HasMoved(const Piece& piece, const Seen& seen, const Sight& sight);
+  static bool HasMoved(const Piece& piece, const Seen& seen, bool is_whole, const Sight& sight);
 
   std::deque<Piece> pieces_;  // by age
 };

@@ -145,14 +145,15 @@ void Step::Look() {
   }
 }
 
-// What was placed earlier in the scan, by an own position that became much better known within it.
+// The own position may become much better known within a scan: what was placed before that is left out.
 void Step::LeaveOutdated() {
   constexpr double kTimes = 4.0;
   constexpr double kLeastM2 = 0.3 * 0.3;
-  const double own_m2 = scan_.own->covariance(0, 0) + scan_.own->covariance(1, 1);
+  const auto own_m2 = [](const Seen& seen) { return (seen.covariance_m2 - seen.covariance_relative_m2).trace(); };
+  if (scan_.seen.empty()) return;
+  const double least_m2 = own_m2(*std::ranges::min_element(scan_.seen, {}, own_m2));
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    const double placed_m2 = (scan_.seen[i].covariance_m2 - scan_.seen[i].covariance_relative_m2).trace();
-    if (placed_m2 > kTimes * own_m2 + kLeastM2) use_[i] = Use::kLeftOut;
+    if (own_m2(scan_.seen[i]) > kTimes * least_m2 + kLeastM2) use_[i] = Use::kLeftOut;
   }
 }
 

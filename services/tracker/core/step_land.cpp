@@ -114,6 +114,7 @@ bool Step::IsLand(const Followed& track) const {
 bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
   constexpr int kSeenFor = 10;  // scans
   constexpr double kBesideLandM = 1.0;
+  constexpr double kBesideShoreM = 2.0;
   if (track.num_hits >= kSeenFor) return false;
   for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
     const auto& other = scan_.seen[k];
@@ -122,7 +123,7 @@ bool Step::IsPerhapsLand(const Followed& track, std::size_t i) const {
     if (GapOf(other.outline_m, scan_.seen[i].outline_m).distance_m >= kBesideLandM) continue;
     // Not the hull of a bay: its shore.
     if (heights_m_[k].empty() || std::ranges::any_of(places_m_[k], [&](const Eigen::Vector2d& place_m) {
-          return (place_m - middle_m_[i]).squaredNorm() < (radius_m_[i] + kBesideLandM) * (radius_m_[i] + kBesideLandM);
+          return (place_m - middle_m_[i]).norm() < radius_m_[i] + kBesideShoreM;
         }))
       return true;
   }
