@@ -6,6 +6,7 @@
 
 #include "common/core/angles.hpp"
 #include "common/core/elementary.hpp"
+#include "services/tracker/core/body_measured.hpp"
 
 namespace lookout::tracker {
 
@@ -23,7 +24,6 @@ constexpr double kEndSdPerRange = 0.0035;
 // What of a thing is seen changes with waves, aspect and beams that just meet it, over about a second: by so much, and by a share of its size.
 constexpr double kOutlineSdM = 0.05;
 constexpr double kOutlineSdPerSize = 0.03;
-constexpr double kGreatestOutlineSizeM = 10.0;
 constexpr double kOutlineS = 0.5;
 constexpr double kHeadingSdRad = 0.0035;  // 0.2 deg, of a compass with two antennas; it changes as the boat turns
 // At first it is not known what of it is seen: so many times that, less and less over some seconds.
@@ -33,8 +33,6 @@ constexpr double kFirstOutlineS = 2.0;
 // its side. Beyond a boat's beam it is rather seen from its side.
 constexpr double kLeastDepthM = 0.15;
 constexpr double kGreatestAssumedDepthM = 2.0;
-constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
-constexpr double kLongestAssumedM = 12.0;
 constexpr double kWidestBeamM = 3.0;
 constexpr double kFarSdM = 0.2;
 constexpr double kFarSdPerWidth = 0.5;
@@ -77,7 +75,6 @@ constexpr double kJumpMps = 1.0;  // of what is elsewhere than it was expected: 
 // Where less than all is seen, it is a part: by so many deviations, and by a share of the size.
 constexpr double kPartSds = 2.0;
 constexpr double kPartShare = 0.15;
-constexpr double kPartsForS = 3.0;  // after so long what was seen in that time is all of it
 
 double CrossOf(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -96,19 +93,6 @@ double LogDensity(const Eigen::Vector2d& off, const Eigen::Matrix2d& covariance)
 }
 
 }  // namespace
-
-struct Body::Measured {
-  enum class Kind { kNone, kEdge, kAtLeast };
-  std::array<double, kDirections> reach_m{};  // from the origin of the map
-  std::array<double, kDirections> variance_m2{};
-  std::array<Kind, kDirections> kind{};
-  Eigen::Vector2d sight = Eigen::Vector2d::Zero();
-  // Less of it is seen than is known, from end to end, by so much; 0: all of it is.
-  double short_m = 0.0;
-
-  // Whether it says where a side lies. A part lies in the outline: it says so much only where it reaches beyond.
-  bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
-};
 
 Body::Measured Body::Measure(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m) const {
   const auto directions = SideDirections();
@@ -217,28 +201,6 @@ void Body::Predict(double dt_s) {
   age_s_ += dt_s;
 }
 
-Directions Body::SideDirections() const {
-  Directions directions = CompassDirections();
-  for (auto& direction : directions) direction = turned_ * direction;
-  return directions;
-}
-
-Support Body::SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const {
-  std::vector<Eigen::Vector2d> turned_back = corners_m;
-  for (auto& corner : turned_back) corner = turned_.transpose() * corner;
-  return SupportOf(turned_back);
-}
-
-// The position to the middle of the outline: what turns does so about it.
-void Body::Center() {
-  const auto directions = SideDirections();
-  const Eigen::Vector2d middle = middle_m();
-  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m -= directions[i].dot(middle);
-  standing_ += middle;
-  moving_.head<2>() += middle;
-  for (auto& measured : last_measured_) measured += middle;
-}
-
 Eigen::Vector2d Body::position_m() const { return prefers_moving_ ? Eigen::Vector2d(moving_.head<2>()) : standing_; }
 
 Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const {
@@ -248,7 +210,8 @@ Body::Shift Body::ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Side
 Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise_m2, double range_m) const {
   const auto directions = SideDirections();
   const Eigen::Vector2d position = position_m();
-  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  constexpr double kNothing = 1e-6;  // 1/m2, where no side is an edge
+  Eigen::Matrix2d information = kNothing * Eigen::Matrix2d::Identity();
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   int num_edges = 0;
   if (measured.short_m > 0.0) {
@@ -259,7 +222,8 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
     for (std::size_t i = 0; i < kDirections; ++i) {
       const std::size_t j = Opposite(i);
       if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge) continue;
-      const double off_m = 0.5 * ((measured.reach_m[i] - sides_[i].reach_m) - (measured.reach_m[j] - sides_[j].reach_m)) - directions[i].dot(position);
+      const double off_m =
+          0.5 * ((measured.reach_m[i] - sides_[i].reach_m) - (measured.reach_m[j] - sides_[j].reach_m)) - directions[i].dot(position);
       sum += 0.5 * weight * off_m * directions[i];
     }
   }
@@ -287,12 +251,6 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
   const Eigen::Vector2d& off = shift.shift_m;
   shift.off = off.dot(spread.inverse() * off);
   return shift;
-}
-
-double Body::size_m() const {
-  double size_m = 0.0;
-  for (std::size_t i = 0; i < kDirections / 2; ++i) size_m = std::max(size_m, sides_[i].reach_m + sides_[Opposite(i)].reach_m);
-  return std::min(size_m, kGreatestOutlineSizeM);
 }
 
 Eigen::Matrix2d Body::velocity_covariance() const {
@@ -354,23 +312,6 @@ void Body::Update(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides
   Center();
 }
 
-// What lies beyond the outline is of it, too. Where only parts are seen for long, what was seen of it is all.
-void Body::TakePart(const Measured& measured, double dt_s) {
-  const auto directions = SideDirections();
-  if (parts_s_ == 0.0) parts_reach_m_.fill(-std::numeric_limits<double>::infinity());
-  parts_s_ += dt_s;
-  const bool is_all = parts_s_ > kPartsForS;
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    const double reach_m = measured.reach_m[i] - directions[i].dot(position_m());
-    parts_reach_m_[i] = std::max(parts_reach_m_[i], reach_m);
-    const double variance = sides_[i].variance_m2;
-    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_);
-    sides_[i].reach_m += gain * std::max(0.0, reach_m - sides_[i].reach_m);
-    if (is_all && measured.kind[i] == Measured::Kind::kEdge) sides_[i].reach_m = std::min(sides_[i].reach_m, parts_reach_m_[i]);
-  }
-  if (is_all) parts_s_ = 0.0;
-}
-
 void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s) {
   const Eigen::Vector2d off_standing = measured_m - standing_;
   const Eigen::Vector2d off_moving = measured_m - moving_.head<2>();
@@ -405,33 +346,6 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   if (moved_s_ < kMovesAfterS) moving_probability_ = std::min(moving_probability_, 0.5);
 }
 
-// The hidden side of a boat under way: its length lies along its course, and what is seen across says how long it is.
-void Body::AssumeBy(const Measured& measured) {
-  const Eigen::Vector2d& sight = measured.sight;
-  const Eigen::Vector2d course = velocity_mps().normalized();
-  const Eigen::Vector2d across(-sight.y(), sight.x());
-  double least = std::numeric_limits<double>::infinity();
-  double most = -least;
-  double nearest = least;
-  for (const auto& corner : Outline()) {
-    least = std::min(least, across.dot(corner));
-    most = std::max(most, across.dot(corner));
-    nearest = std::min(nearest, sight.dot(corner));
-  }
-  const double cosine = std::abs(course.dot(sight));
-  const double sine = std::abs(course.dot(across));
-  const double length_m = std::min((most - least) / (sine + cosine / kBoatLengthPerBeam), kLongestAssumedM);
-  const double depth_m = length_m * (cosine + sine / kBoatLengthPerBeam);
-  const Eigen::Vector2d middle = (nearest + 0.5 * depth_m) * sight + 0.5 * (least + most) * across - position_m();
-  const Eigen::Vector2d beam(-course.y(), course.x());
-  const auto directions = SideDirections();
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    if (sides_[i].is_seen) continue;
-    const double reach = 0.5 * length_m * (std::abs(directions[i].dot(course)) + std::abs(directions[i].dot(beam)) / kBoatLengthPerBeam);
-    sides_[i].reach_m = std::max(directions[i].dot(middle) + reach, measured.reach_m[i] - directions[i].dot(position_m()));
-  }
-}
-
 void Body::Loosen(double variance_m2) {
   standing_m2_ += Eigen::Matrix2d::Identity() * variance_m2;
   moving_covariance_.topLeftCorner<2, 2>() += Eigen::Matrix2d::Identity() * variance_m2;
@@ -455,12 +369,6 @@ void Body::Fade(double dt_s) {
   log_likelihood_ratio_ = 0.0;
   moving_probability_ = 0.0;
   prefers_moving_ = false;
-}
-
-void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
-  const auto directions = SideDirections();
-  const Support support = SupportFrom(outline_m);
-  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m = std::max(sides_[i].reach_m, support[i] - directions[i].dot(position_m()));
 }
 
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
@@ -487,23 +395,6 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
   if (prefers_moving_) other.age_s_ = age_s_;
   other.jitter_m2_ = jitter_m2_;
   *this = other;
-}
-
-std::vector<Eigen::Vector2d> Body::Outline() const {
-  Support support;
-  for (std::size_t i = 0; i < kDirections; ++i) support[i] = sides_[i].reach_m;
-  auto corners = Polygon(support);
-  const Eigen::Vector2d position = position_m();
-  for (auto& corner : corners) corner = turned_ * corner + position;
-  return corners;
-}
-
-double Body::SeenShare() const { return static_cast<double>(std::ranges::count_if(sides_, &Side::is_seen)) / static_cast<double>(kDirections); }
-
-Eigen::Vector2d Body::middle_m() const {
-  constexpr std::size_t kNorth = kDirections / 4;
-  return turned_ *
-         Eigen::Vector2d(0.5 * (sides_[0].reach_m - sides_[Opposite(0)].reach_m), 0.5 * (sides_[kNorth].reach_m - sides_[Opposite(kNorth)].reach_m));
 }
 
 Eigen::Vector2d Body::center_m() const { return position_m() + middle_m(); }

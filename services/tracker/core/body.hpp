@@ -37,9 +37,9 @@ class Body {
   struct Shift {
     Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();
     Eigen::Matrix2d covariance_m2 = Eigen::Matrix2d::Zero();
-    double off = 0.0;     // squared, in deviations of the predicted position and of the shift itself: 2 in the mean
+    double off = 0.0;  // squared, in deviations of the predicted position and of the shift itself: 2 in the mean
 
-    double misfit = 0.0;  // mean square of what is left of each side, in its deviations: 1 in the mean where it is the same thing
+    double misfit = 0.0;   // mean square of what is left of each side, in its deviations: 1 in the mean where it is the same thing
     bool is_part = false;  // less of it is seen than is known
   };
   Shift ShiftOf(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, const Eigen::Matrix2d& noise_m2, double range_m) const;
@@ -106,8 +106,8 @@ class Body {
   bool stands_out_ = false;            // the speed, from its deviation
   double moved_s_ = 0.0;               // for how long without a break
   double since_update_s_ = 0.0;
-  double parts_s_ = 0.0;                            // for how long only parts were seen
-  std::array<double, kDirections> parts_reach_m_{};  // of these, from the position
+  double parts_s_ = 0.0;                                  // for how long only parts were seen
+  std::array<double, kDirections> parts_reach_m_{};       // of these, from the position
   double age_s_ = 0.0;                                    // since the outline was first seen
   Eigen::Vector2d mean_off_m_ = Eigen::Vector2d::Zero();  // of the moving one, of the last second
   // Jitter of the measured position from scan to scan, by its second differences: steady motion is none.

@@ -24,8 +24,8 @@ inline double Sigmoid(double log_odds) { return 1.0 / (1.0 + Exp(-log_odds)); }
 
 inline constexpr double kBirthLogOdds = -2.0;
 inline constexpr double kFirstStepM2 = 0.3 * 0.3;  // before there was one
-inline constexpr int kMostHits = 30;  // that count in a mean, the last ones most
-inline constexpr int kMostLooks = 60;  // that speak for it
+inline constexpr int kMostHits = 30;               // that count in a mean, the last ones most
+inline constexpr int kMostLooks = 60;              // that speak for it
 
 struct Followed {
   std::int64_t id = 0;
@@ -42,8 +42,8 @@ struct Followed {
   double mean_thing = 0.0;                                           // of the log odds of its segments that they are no clutter
   double mean_step_m2 = kFirstStepM2;                                // squared, from where it was expected to where it was seen
   Eigen::Vector2d seen_m = Eigen::Vector2d::Zero();                  // middle of what was seen last
-  double seen_radius_m = 0.0;
-  double first_radius_m = 0.0;
+  double seen_radius_m = 0.0;                                        // of it
+  double first_radius_m = 0.0;                                       // of what was seen first
   int num_hits = 0;
   double beams_met = 1.0;  // of those that could have: with one of two as what is known before
   double beams_open = 2.0;
@@ -68,7 +68,7 @@ struct Followed {
   Encounter overtaking = Encounter::kNone;  // one overtakes the other, until they are past and clear
 
   // That it is a thing and no clutter that lasts (crest, foam, drops): what its segments look like, how often it was seen, and how steadily it stands
-  // or moves. Logistic regression on tracks of 14 scenes of the simulator with crests, foam, rain and fog (seeds 21 and 22).
+  // or moves. Fitted: logistic regression (DECISIONS.md).
   double ThingLogOdds() const {
     constexpr double kLeastStepM = 0.05;
     const double often = Log(std::min(num_hits, kMostLooks));

@@ -19,7 +19,7 @@ constexpr double kDetectionUnknown = 0.5;  // where nobody knows what could have
 constexpr double kMostDetection = 0.95;
 constexpr double kGreatestExistence = 6.0;
 constexpr double kLeastExistence = -6.0;
-constexpr double kMissS = 0.4;
+constexpr double kMissS = 0.4;  // for how long a known thing is hidden at a time
 constexpr double kMissHits = 30.0;
 constexpr double kMostCost = 6.0;
 constexpr double kLongestScanS = 0.2;
@@ -145,94 +145,6 @@ void Step::Look() {
   }
 }
 
-// The own position may become much better known within a scan: what was placed before that is left out.
-void Step::LeaveOutdated() {
-  constexpr double kTimes = 4.0;
-  constexpr double kLeastM2 = 0.3 * 0.3;
-  const auto own_m2 = [](const Seen& seen) { return (seen.covariance_m2 - seen.covariance_relative_m2).trace(); };
-  if (scan_.seen.empty()) return;
-  const double least_m2 = own_m2(*std::ranges::min_element(scan_.seen, {}, own_m2));
-  for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    if (own_m2(scan_.seen[i]) > kTimes * least_m2 + kLeastM2) use_[i] = Use::kLeftOut;
-  }
-}
-
-// The own position became much better known: all that was placed by the old one moves, to where most of it is seen now.
-void Step::Settle() {
-  constexpr double kSds = 3.0;
-  constexpr double kSameM = 0.5;
-  constexpr double kLooseM = 0.2;
-  constexpr std::size_t kMost = 100;  // tracks, and segments
-  const double sd_m = std::exchange(known_.settled_sd_m, 0.0);
-  if (sd_m == 0.0) return;
-  std::vector<Eigen::Vector2d> from_m;
-  std::vector<Eigen::Vector2d> to_m;
-  for (const auto& track : known_.tracks) {
-    if (track.body && from_m.size() < kMost) from_m.push_back(track.seen_m);
-  }
-  for (std::size_t i = 0; i < scan_.seen.size() && to_m.size() < kMost; ++i) {
-    if (use_[i] == Use::kFree && scan_.seen[i].is_sure && !scan_.seen[i].is_land) to_m.push_back(middle_m_[i]);
-  }
-  // Of those that the shift brings to what is seen: how many, and where they come to lie in the mean.
-  const auto brought_by = [&](const Eigen::Vector2d& shift_m) {
-    std::pair<int, Eigen::Vector2d> brought(0, Eigen::Vector2d::Zero());
-    for (const auto& from : from_m) {
-      const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - from - shift_m).squaredNorm(); });
-      if (nearest == to_m.end() || (*nearest - from - shift_m).norm() > kSameM) continue;
-      ++brought.first;
-      brought.second += *nearest - from;
-    }
-    if (brought.first > 0) brought.second /= brought.first;
-    return brought;
-  };
-  auto best = brought_by(Eigen::Vector2d::Zero());
-  for (const auto& from : from_m) {
-    for (const auto& to : to_m) {
-      if ((to - from).norm() > kSds * sd_m) continue;
-      if (const auto brought = brought_by(to - from); brought.first > best.first) best = brought;
-    }
-  }
-  for (auto& track : known_.tracks) {
-    track.seen_m += best.second;
-    track.first_m += best.second;
-    track.middle_m += best.second;
-    for (auto& corner : track.outline_m) corner += best.second;
-    if (!track.body) continue;
-    track.body->Translate(best.second);
-    track.body->Loosen(best.first > 0 ? kLooseM * kLooseM : sd_m * sd_m);
-    Place(track);
-  }
-}
-
-// From scan to scan all may step together: the own position and heading settle. Half of them step by less and half by more.
-void Step::FindCommonStep() {
-  constexpr double kReachM = 1.5;
-  constexpr std::size_t kLeast = 5;
-  std::vector<double> east;
-  std::vector<double> north;
-  for (const auto& track : known_.tracks) {
-    if (track.UnseenS(scan_.end_time) > 1.5 * dt_s_) continue;
-    double least_m = kReachM;
-    Eigen::Vector2d step_m = Eigen::Vector2d::Zero();
-    for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-      const Eigen::Vector2d off_m = middle_m_[i] - track.seen_m;
-      if (!scan_.seen[i].is_sure || off_m.norm() >= least_m) continue;
-      least_m = off_m.norm();
-      step_m = off_m;
-    }
-    if (least_m == kReachM) continue;
-    east.push_back(step_m.x());
-    north.push_back(step_m.y());
-  }
-  if (east.size() < kLeast) return;
-  const auto median = [](std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-  };
-  common_step_m_ = {median(east), median(north)};
-}
-
 double Step::CostOf(const Followed& track, std::size_t i) const {
   constexpr double kWidestGateM = 12.5;  // of what follows; most pairs are farther apart
   if ((middle_m_[i] - track.middle_m).norm() > kWidestGateM + track.radius_m + radius_m_[i]) return kMostCost;
@@ -321,6 +233,15 @@ void Step::HitWhole(Followed& track, std::size_t i) {
   Hit(track, i, whole, sides);
 }
 
+// The nearest pairs first, each track and each segment once; ties by the lower track, then the lower segment.
+template <typename Take>
+void Step::TakeNearest(std::vector<Near>& pairs, const Take& take) {
+  std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.distance_m, near.track, near.seen); });
+  for (const auto& pair : pairs) {
+    if (!known_.tracks[pair.track].is_seen_now && use_[pair.seen] == Use::kFree) take(pair);
+  }
+}
+
 // What should have been seen where it was and was not, and what is new beside it: the same, which moved otherwise than was thought.
 void Step::AssignLost() {
   if (!is_sight_known_ && known_.had_sight) return;
@@ -328,11 +249,6 @@ void Step::AssignLost() {
   constexpr double kFasterMps = 3.0;
   constexpr double kMostReachM = 4.0;
   constexpr double kMostTimesLarger = 8.0;
-  struct Near {
-    double gap_m;
-    std::size_t track;
-    std::size_t seen;
-  };
   std::vector<Near> pairs;
   for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
     const auto& track = known_.tracks[t];
@@ -349,13 +265,11 @@ void Step::AssignLost() {
       if (gap_m < reach_m) pairs.push_back({gap_m, t, i});
     }
   }
-  std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.gap_m, near.track, near.seen); });
-  for (const auto& pair : pairs) {
+  TakeNearest(pairs, [&](const Near& pair) {
     auto& track = known_.tracks[pair.track];
-    if (track.is_seen_now || use_[pair.seen] != Use::kFree) continue;
     track.num_misfits = kMisfitsToRestart;
     Hit(track, pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen), true);
-  }
+  });
 }
 
 // What is not yet likely takes the nearest of the rest.
@@ -366,11 +280,6 @@ void Step::AssignRest() {
   }
   const auto east = [this](std::size_t i) { return middle_m_[i].x(); };
   std::ranges::sort(by_east, [&](std::size_t a, std::size_t b) { return std::pair(east(a), a) < std::pair(east(b), b); });
-  struct Near {
-    double distance_m;
-    std::size_t track;
-    std::size_t seen;
-  };
   std::vector<Near> pairs;
   for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
     const auto& track = known_.tracks[t];
@@ -384,12 +293,10 @@ void Step::AssignRest() {
       if (distance < reach) pairs.push_back({std::max(0.0, distance) + 0.01 * (middle_m_[*first] - track.middle_m).norm(), t, *first});
     }
   }
-  std::ranges::sort(pairs, {}, [](const Near& near) { return std::tuple(near.distance_m, near.track, near.seen); });
-  for (const auto& pair : pairs) {
-    if (known_.tracks[pair.track].is_seen_now || use_[pair.seen] != Use::kFree) continue;
+  TakeNearest(pairs, [&](const Near& pair) {
     Hit(known_.tracks[pair.track], pair.seen, scan_.seen[pair.seen], SidesOf(pair.seen));
     known_.clutter.Add(ToVessel(middle_m_[pair.seen]));
-  }
+  });
 }
 
 void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& sides, bool is_lost) {
@@ -501,6 +408,22 @@ void Step::FindInside() {
   }
 }
 
+// A thing beyond doubt that stands by itself, so that it can be no part of another.
+bool Step::IsClear(std::size_t i) const {
+  constexpr int kLeastReturns = 20;
+  constexpr double kLeastThing = 0.98;
+  constexpr double kAloneM = 5.0;
+  const auto& seen = scan_.seen[i];
+  if (seen.num_returns < kLeastReturns || seen.thing_probability < kLeastThing) return false;
+  const auto is_near = [&](const Eigen::Vector2d& other_m, double radius_m) {
+    return (other_m - middle_m_[i]).norm() < kAloneM + radius_m + radius_m_[i];
+  };
+  for (std::size_t k = 0; k < scan_.seen.size(); ++k) {
+    if (k != i && scan_.seen[k].is_sure && !scan_.seen[k].is_land && is_near(middle_m_[k], radius_m_[k])) return false;
+  }
+  return std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && is_near(other.middle_m, other.radius_m); });
+}
+
 void Step::Begin() {
   std::vector<Followed*> confirmed;
   for (auto& track : known_.tracks) {
@@ -532,7 +455,7 @@ void Step::Begin() {
     if (seen.is_sure) {
       track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
       Place(track);
-      track.is_confirmed = seen.num_returns >= 20 && seen.thing_probability > 0.98 && !IsPerhapsLand(track, i) && std::ranges::none_of(known_.tracks, [&](const Followed& other) { return other.body && other.id != track.id && (other.middle_m - track.middle_m).norm() < 5.0 + other.radius_m + track.radius_m;});
+      track.is_confirmed = IsClear(i) && !IsPerhapsLand(track, i);
     }
     known_.tracks.push_back(std::move(track));
   }

@@ -18,8 +18,9 @@
 
 namespace lookout::tracker {
 
-inline constexpr double kLongestWholeM = 15.0;  // and
-inline constexpr double kWidestBoatM = 6.0;  // within a wider outline, as of a dock with berths, another thing may lie
+// Within a longer or wider outline, as of a dock with berths, another thing may lie.
+inline constexpr double kLongestWholeM = 15.0;
+inline constexpr double kWidestBoatM = 6.0;
 
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
 
@@ -33,7 +34,7 @@ struct Known {
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
   double settled_sd_m = 0.0;  // of the own position before, where it became much better known with this scan
-  bool had_sight = false;  // ever: without beams at all, misses count by themselves
+  bool had_sight = false;     // ever: without beams at all, misses count by themselves
 };
 
 /// Run it once; what it found is then to be asked for.
@@ -48,6 +49,11 @@ class Step {
   const std::vector<std::pair<std::int64_t, std::int64_t>>& merged() const { return merged_; }
 
  private:
+  struct Near {
+    double distance_m;
+    std::size_t track;
+    std::size_t seen;
+  };
   enum class Use { kFree, kLand, kAssigned, kTaken, kLeftOut };
   Eigen::Vector2d ToVessel(const Eigen::Vector2d& place_m) const;
   void Predict();
@@ -65,6 +71,8 @@ class Step {
   double CostOf(const Followed& track, std::size_t i) const;
   const Sides& SidesOf(std::size_t i) const;
   void AssignBodies();
+  template <typename Take>
+  void TakeNearest(std::vector<Near>& pairs, const Take& take);
   void AssignLost();
   void AssignRest();
   void HitWhole(Followed& track, std::size_t i);
@@ -72,6 +80,7 @@ class Step {
   static void Remember(Followed& track, bool is_seen);
   void Miss(Followed& track);
   void FindInside();
+  bool IsClear(std::size_t i) const;
   void Begin();
   void FeedLand();
   void EndLand();
@@ -82,7 +91,7 @@ class Step {
   static bool AreOneBoat(const Followed& one, const Followed& other);
   bool IsFoundAgain(const Followed& lost, const Followed& found) const;
   double OneForS(const Followed& one, const Followed& other) const;
-  void Join(Followed& one, Followed& other, bool is_part);
+  void Join(Followed& one, Followed& other);
 
   const TrackerParams& params_;
   const ScanInput& scan_;

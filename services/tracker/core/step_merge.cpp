@@ -55,7 +55,8 @@ bool Step::IsLikePart(const Followed& larger, const Followed& lesser, double sha
   const double area = AreaOf(lesser.outline_m);
   const bool is_piece = area < kPieceShare * AreaOf(larger.outline_m) && RectangleAround(lesser.outline_m).length_m < kPieceM;
   // Within the outline of what may be a dock with berths, only what touches it.
-  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m) || around.length_m > kLongestWholeM) return is_piece && Touch(larger, lesser);
+  if (around.width_m > std::max(kWidestBoatM, kBeamShare * around.length_m) || around.length_m > kLongestWholeM)
+    return is_piece && Touch(larger, lesser);
   if (shared_m2 > 0.0 && shared_m2 >= kWithinShare * area) return true;
   return is_piece && GapOf(larger.outline_m, lesser.outline_m).distance_m < kPieceGapM && SpeedBetween(larger, lesser) < kSameVelocityMps;
 }
@@ -98,7 +99,8 @@ bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   constexpr double kMostTimesLarger = 8.0;
   constexpr double kMostReachM = 4.0;
   constexpr double kMostRadiusM = 3.0;
-  if (!lost.is_confirmed || lost.is_seen_now || lost.is_inside_now || lost.detection < kLostProbability || !found.is_seen_now || !found.body) return false;
+  if (!lost.is_confirmed || lost.is_seen_now || lost.is_inside_now || lost.detection < kLostProbability || !found.is_seen_now || !found.body)
+    return false;
   const double after_s = ToSeconds(found.first - lost.seen);
   if (after_s < -kBeforeS || lost.num_hits < found.num_hits) return false;
   const double reach_m = std::min(kMostReachM, kBesideM + kFasterMps * std::abs(after_s)) + std::min(kMostRadiusM, lost.seen_radius_m) +
@@ -135,16 +137,19 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
 }
 
 // The second becomes one with the first, by the older name.
-void Step::Join(Followed& one, Followed& other, bool is_part) {
+void Step::Join(Followed& one, Followed& other) {
   merged_.emplace_back(other.id, one.id);
-  // What is confirmed is not replaced by what is not.
+  const bool is_part = one.is_seen_now && other.is_seen_now;
+  const bool is_found = IsFoundAgain(one, other);
+  // What is confirmed is not replaced by what is not, unless it is lost.
   const bool is_other_better = is_part ? AreaOf(other.outline_m) > AreaOf(one.outline_m) : other.seen_alone > one.seen_alone;
-  if (one.is_confirmed == other.is_confirmed ? is_other_better : other.is_confirmed) {
+  if ((is_found && other.is_confirmed) || (one.is_confirmed == other.is_confirmed ? is_other_better : other.is_confirmed)) {
     std::swap(one, other);
     std::swap(one.id, other.id);
     std::swap(one.parents, other.parents);
     std::swap(one.children, other.children);
     std::swap(one.first, other.first);
+    one.is_confirmed = one.is_confirmed || other.is_confirmed;
   }
   Followed::Relate(one.parents, other.id, scan_.end_time);
   Followed::Relate(other.children, one.id, scan_.end_time);
@@ -172,7 +177,7 @@ void Step::Merge() {
         still_s.emplace(ids, for_s);
         continue;
       }
-      Join(*one, *other, one->is_seen_now && other->is_seen_now);
+      Join(*one, *other);
     }
   }
   known_.together_s = std::move(still_s);

@@ -157,7 +157,10 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   for (auto& track : memory.known.tracks) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
-    const double end_s = track.is_confirmed ? (track.num_hits < kHardlyKnownHits ? kHardlyKnownEndS : std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS)) : 1.0;
+    const double end_s =
+        track.is_confirmed
+            ? (track.num_hits < kHardlyKnownHits ? kHardlyKnownEndS : std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS))
+            : 1.0;
     if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) ||
         (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
       track.is_ended = true;

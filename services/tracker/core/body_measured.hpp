@@ -1,0 +1,24 @@
+// What a scan says of a body: for the files of Body alone.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "services/tracker/core/body.hpp"
+
+namespace lookout::tracker {
+
+struct Body::Measured {
+  enum class Kind { kNone, kEdge, kAtLeast };
+  std::array<double, kDirections> reach_m{};  // from the origin of the map
+  std::array<double, kDirections> variance_m2{};
+  std::array<Kind, kDirections> kind{};
+  Eigen::Vector2d sight = Eigen::Vector2d::Zero();
+  // Less of it is seen than is known, from end to end, by so much; 0: all of it is.
+  double short_m = 0.0;
+
+  // Whether it says where a side lies. A part lies in the outline: it says so much only where it reaches beyond.
+  bool Tells(std::size_t i, double beyond_m) const { return short_m > 0.0 ? beyond_m > 0.0 : kind[i] == Kind::kEdge; }
+};
+
+}  // namespace lookout::tracker

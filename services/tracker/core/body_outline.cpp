@@ -1,0 +1,115 @@
+// How far a body reaches.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "services/tracker/core/body.hpp"
+#include "services/tracker/core/body_measured.hpp"
+
+namespace lookout::tracker {
+
+namespace {
+
+constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
+constexpr double kLongestAssumedM = 12.0;
+constexpr double kPartsForS = 3.0;  // after so long what was seen in that time is all of it
+constexpr double kGreatestOutlineSizeM = 10.0;
+
+}  // namespace
+
+Directions Body::SideDirections() const {
+  Directions directions = CompassDirections();
+  for (auto& direction : directions) direction = turned_ * direction;
+  return directions;
+}
+
+Support Body::SupportFrom(const std::vector<Eigen::Vector2d>& corners_m) const {
+  std::vector<Eigen::Vector2d> turned_back = corners_m;
+  for (auto& corner : turned_back) corner = turned_.transpose() * corner;
+  return SupportOf(turned_back);
+}
+
+// The position to the middle of the outline: what turns does so about it.
+void Body::Center() {
+  const auto directions = SideDirections();
+  const Eigen::Vector2d middle = middle_m();
+  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m -= directions[i].dot(middle);
+  standing_ += middle;
+  moving_.head<2>() += middle;
+  for (auto& measured : last_measured_) measured += middle;
+}
+
+double Body::size_m() const {
+  double size_m = 0.0;
+  for (std::size_t i = 0; i < kDirections / 2; ++i) size_m = std::max(size_m, sides_[i].reach_m + sides_[Opposite(i)].reach_m);
+  return std::min(size_m, kGreatestOutlineSizeM);
+}
+
+// What lies beyond the outline is of it, too. Where only parts are seen for long, what was seen of it is all.
+void Body::TakePart(const Measured& measured, double dt_s) {
+  const auto directions = SideDirections();
+  if (parts_s_ == 0.0) parts_reach_m_.fill(-std::numeric_limits<double>::infinity());
+  parts_s_ += dt_s;
+  const bool is_all = parts_s_ > kPartsForS;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    const double reach_m = measured.reach_m[i] - directions[i].dot(position_m());
+    parts_reach_m_[i] = std::max(parts_reach_m_[i], reach_m);
+    const double variance = sides_[i].variance_m2;
+    const double gain = variance / (variance + measured.variance_m2[i] + jitter_m2_);
+    sides_[i].reach_m += gain * std::max(0.0, reach_m - sides_[i].reach_m);
+    if (is_all && measured.kind[i] == Measured::Kind::kEdge) sides_[i].reach_m = std::min(sides_[i].reach_m, parts_reach_m_[i]);
+  }
+  if (is_all) parts_s_ = 0.0;
+}
+
+// The hidden side of a boat under way: its length lies along its course, and what is seen across says how long it is.
+void Body::AssumeBy(const Measured& measured) {
+  const Eigen::Vector2d& sight = measured.sight;
+  const Eigen::Vector2d course = velocity_mps().normalized();
+  const Eigen::Vector2d across(-sight.y(), sight.x());
+  double least = std::numeric_limits<double>::infinity();
+  double most = -least;
+  double nearest = least;
+  for (const auto& corner : Outline()) {
+    least = std::min(least, across.dot(corner));
+    most = std::max(most, across.dot(corner));
+    nearest = std::min(nearest, sight.dot(corner));
+  }
+  const double cosine = std::abs(course.dot(sight));
+  const double sine = std::abs(course.dot(across));
+  const double length_m = std::min((most - least) / (sine + cosine / kBoatLengthPerBeam), kLongestAssumedM);
+  const double depth_m = length_m * (cosine + sine / kBoatLengthPerBeam);
+  const Eigen::Vector2d middle = (nearest + 0.5 * depth_m) * sight + 0.5 * (least + most) * across - position_m();
+  const Eigen::Vector2d beam(-course.y(), course.x());
+  const auto directions = SideDirections();
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    if (sides_[i].is_seen) continue;
+    const double reach = 0.5 * length_m * (std::abs(directions[i].dot(course)) + std::abs(directions[i].dot(beam)) / kBoatLengthPerBeam);
+    sides_[i].reach_m = std::max(directions[i].dot(middle) + reach, measured.reach_m[i] - directions[i].dot(position_m()));
+  }
+}
+
+void Body::Include(const std::vector<Eigen::Vector2d>& outline_m) {
+  const auto directions = SideDirections();
+  const Support support = SupportFrom(outline_m);
+  for (std::size_t i = 0; i < kDirections; ++i) sides_[i].reach_m = std::max(sides_[i].reach_m, support[i] - directions[i].dot(position_m()));
+}
+
+std::vector<Eigen::Vector2d> Body::Outline() const {
+  Support support;
+  for (std::size_t i = 0; i < kDirections; ++i) support[i] = sides_[i].reach_m;
+  auto corners = Polygon(support);
+  const Eigen::Vector2d position = position_m();
+  for (auto& corner : corners) corner = turned_ * corner + position;
+  return corners;
+}
+
+double Body::SeenShare() const { return static_cast<double>(std::ranges::count_if(sides_, &Side::is_seen)) / static_cast<double>(kDirections); }
+
+Eigen::Vector2d Body::middle_m() const {
+  constexpr std::size_t kNorth = kDirections / 4;
+  return turned_ *
+         Eigen::Vector2d(0.5 * (sides_[0].reach_m - sides_[Opposite(0)].reach_m), 0.5 * (sides_[kNorth].reach_m - sides_[Opposite(kNorth)].reach_m));
+}
+
+}  // namespace lookout::tracker
