@@ -23,6 +23,7 @@ inline double Logit(double probability) {
 inline double Sigmoid(double log_odds) { return 1.0 / (1.0 + Exp(-log_odds)); }
 
 inline constexpr double kBirthLogOdds = -2.0;
+inline constexpr double kClearLogOdds = 2.0;       // of what is beyond doubt at first sight
 inline constexpr double kFirstStepM2 = 0.3 * 0.3;  // before there was one
 inline constexpr int kMostHits = 30;               // that count in a mean, the last ones most
 inline constexpr int kMostLooks = 60;              // that speak for it

@@ -433,6 +433,10 @@ void Step::Begin() {
     const auto& seen = scan_.seen[i];
     if (use_[i] != Use::kFree) continue;
     known_.clutter.Add(ToVessel(middle_m_[i]));
+    if (known_.tracks.size() >= kMostTracks) {
+      ++known_.num_over_limit;
+      continue;
+    }
     Followed track;
     track.id = known_.next_id++;
     track.first = track.seen = track.seen_alone = scan_.end_time;
@@ -455,7 +459,10 @@ void Step::Begin() {
     if (seen.is_sure) {
       track.body.emplace(seen.outline_m, SidesOf(i), seen.covariance_relative_m2, ranges_m_[i]);
       Place(track);
-      track.is_confirmed = IsClear(i) && !IsPerhapsLand(track, i);
+      if (IsClear(i) && !IsPerhapsLand(track, i)) {
+        track.is_confirmed = true;
+        track.log_odds = kClearLogOdds;
+      }
     }
     known_.tracks.push_back(std::move(track));
   }

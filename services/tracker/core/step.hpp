@@ -22,6 +22,8 @@ namespace lookout::tracker {
 inline constexpr double kLongestWholeM = 15.0;
 inline constexpr double kWidestBoatM = 6.0;
 
+inline constexpr std::size_t kMostTracks = 8000;  // 20 MB; rain has 1500
+
 using Ids = std::pair<std::int64_t, std::int64_t>;  // of two tracks, the lower first
 
 /// What is known between scans.
@@ -33,8 +35,9 @@ struct Known {
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
-  double settled_sd_m = 0.0;  // of the own position before, where it became much better known with this scan
-  bool had_sight = false;     // ever: without beams at all, misses count by themselves
+  std::int64_t num_over_limit = 0;  // segments that became no track
+  double settled_sd_m = 0.0;        // of the own position before, where it became much better known with this scan
+  bool had_sight = false;           // ever: without beams at all, misses count by themselves
 };
 
 /// Run it once; what it found is then to be asked for.

@@ -227,6 +227,7 @@ std::vector<Counter> Tracker::counters() const {
   return {{"tracks", static_cast<std::int64_t>(memory.known.tracks.size())},
           {"tracks_confirmed", memory.num_confirmed},
           {"clutter_per_scan", std::llround(memory.known.clutter.total())},
+          {"tracks_over_limit", memory.known.num_over_limit},
           {"land_tiles", static_cast<std::int64_t>(memory.known.land.num_tiles())},
           {"restarts_by_time", memory.num_restarts_time},
           {"restarts_by_datum", memory.num_restarts_datum},

@@ -104,6 +104,29 @@ TEST(Body, ThatComesIntoSightSlowlyStands) {
   EXPECT_NEAR(body.center_m().y(), 0.0, 0.2);
 }
 
+// Only the stern is seen for a while, behind a wave or another boat: nothing has moved, and the bow is still there. If it stays so, the stern is all.
+TEST(Body, OfWhichAPartIsSeenStands) {
+  std::mt19937_64 random(5);
+  const Eigen::Vector2d from_m = Eigen::Vector2d::Zero();
+  const Eigen::Matrix2d noise_m2 = Eigen::Matrix2d::Identity() * 1e-4;
+  const Box boat{.middle_m = {0.0, 20.0}, .length_m = 6.0};
+  const Box stern{.middle_m = {-2.5, 20.0}, .length_m = 1.0};
+  Body body(boat.SeenFrom(from_m), {.from_m = from_m}, noise_m2, 20.0);
+  const auto length_of = [](const Body& of) { return RectangleAround(of.Outline()).length_m; };
+  const auto look = [&](const Box& box) {
+    body.Predict(kScanS);
+    body.Update(Shaken(box.SeenFrom(from_m), 0.02, random), {.from_m = from_m}, noise_m2, 20.0, true);
+    EXPECT_FALSE(body.IsMoving(kMoving));
+  };
+  for (int scan = 0; scan < 40; ++scan) look(boat);
+  const Eigen::Vector2d center_m = body.center_m();
+  for (int scan = 0; scan < 20; ++scan) look(stern);
+  EXPECT_GT(length_of(body), 5.0);
+  EXPECT_LT((body.center_m() - center_m).norm(), 1.0);
+  for (int scan = 0; scan < 60; ++scan) look(stern);
+  EXPECT_LT(length_of(body), 3.0);
+}
+
 TEST(Body, ThatPassesByKeepsItsCentre) {
   std::mt19937_64 random(3);
   Box box{{-25.0, 12.0}, 0.0};

@@ -17,6 +17,7 @@ struct Thing {
   double length_m = 2.0;  // east
   double width_m = 1.0;   // north
   double thing_probability = 0.95;
+  int num_returns = 10;
 };
 
 // Scans of obstacles from elsewhere: what could have been seen is not known.
@@ -27,6 +28,7 @@ class Sea {
   const Picture& Scan(const std::vector<Thing>& things, const Eigen::Vector2d& own_m = Eigen::Vector2d::Zero(),
                       const Eigen::Vector2d& own_mps = Eigen::Vector2d::Zero()) {
     ScanInput input = test::MakeScan(num_scans_++, own_m, own_mps);
+    input.own->covariance(0, 0) = input.own->covariance(1, 1) = own_sd_m * own_sd_m;
     int id = 1;
     for (const auto& thing : things) {
       Seen seen;
@@ -34,9 +36,10 @@ class Sea {
       seen.time = input.time;
       seen.thing_probability = thing.thing_probability;
       seen.is_sure = thing.thing_probability >= 0.5;
-      seen.num_returns = 10;
+      seen.num_returns = thing.num_returns;
       seen.position_m = thing.middle_m;
-      seen.covariance_m2 = seen.covariance_relative_m2 = Eigen::Matrix2d::Identity() * 0.0025;
+      seen.covariance_relative_m2 = Eigen::Matrix2d::Identity() * 0.0025;
+      seen.covariance_m2 = seen.covariance_relative_m2 + Eigen::Matrix2d::Identity() * own_sd_m * own_sd_m;
       seen.top_above_water_m = 1.0;
       const Eigen::Vector2d half(0.5 * thing.length_m, 0.5 * thing.width_m);
       seen.outline_m = {thing.middle_m - half, thing.middle_m + Eigen::Vector2d(half.x(), -half.y()), thing.middle_m + half,
@@ -45,6 +48,8 @@ class Sea {
     }
     return tracker_.Update(input);
   }
+
+  double own_sd_m = 0.0;  // of the own position, in the scans to come
 
  private:
   Tracker tracker_;
@@ -74,6 +79,66 @@ TEST(Tracks, OfABuoyThatLooksLittleLikeAThingAreConfirmedSinceItStaysWhereItIs) 
   EXPECT_GE(confirmed_s, 0.2);
   EXPECT_LE(confirmed_s, 3.0);
   EXPECT_EQ(ids.size(), 1U);
+}
+
+TEST(Tracks, OfAClearThingByItselfAreConfirmedAtOnce) {
+  const Thing clear{{20.0, 5.0}, 4.0, 2.0, 0.99, 40};
+  EXPECT_EQ(Confirmed(Sea().Scan({clear})).size(), 1U);
+  // It could be a part of the other.
+  const Thing beside{{23.5, 5.0}, 2.0, 2.0, 0.99, 40};
+  EXPECT_TRUE(Confirmed(Sea().Scan({clear, beside})).empty());
+  const Thing small{{20.0, 5.0}, 0.5, 0.5, 0.99, 5};
+  EXPECT_TRUE(Confirmed(Sea().Scan({small})).empty());
+}
+
+TEST(Tracks, OfACrestAreNotConfirmed) {
+  for (int length = 1; length <= 8; ++length) {
+    Sea sea;
+    for (int scan = 0; scan < 30; ++scan) {
+      const Thing crest{{12.0 + 0.08 * scan, -4.0}, 1.0, 0.5, scan % 2 == 0 ? 0.9 : 0.7, 20};
+      const auto& picture = sea.Scan(scan < length ? std::vector{crest} : std::vector<Thing>{});
+      EXPECT_TRUE(Confirmed(picture).empty()) << "of " << length << " scans, in scan " << scan;
+    }
+  }
+}
+
+// A buoy goes down in a trough, or the boat rolls.
+TEST(Tracks, OfWhatWasLongSeenOutlastTwoSecondsWithoutIt) {
+  Sea sea;
+  const std::vector<Thing> buoy{{{20.0, 5.0}, 0.5, 0.5, 0.95, 6}};
+  for (int scan = 0; scan < 40; ++scan) sea.Scan(buoy);
+  const auto before = Confirmed(sea.Scan(buoy));
+  ASSERT_EQ(before.size(), 1U);
+  const auto id = before.front()->id;
+  for (int scan = 0; scan < 20; ++scan) sea.Scan({});
+  const auto after = Confirmed(sea.Scan(buoy));
+  ASSERT_EQ(after.size(), 1U);
+  EXPECT_EQ(after.front()->id, id);
+}
+
+// The first fix is metres off, and the next one is not.
+TEST(Tracks, MoveAlongWhenTheOwnPositionSettles) {
+  Sea sea;
+  std::vector<Thing> things;
+  for (int i = 0; i < 6; ++i) things.push_back({{8.0 * i - 20.0, 15.0 + 3.0 * (i % 3)}, 1.0, 1.0, 0.95, 10});
+  auto shifted = things;
+  for (auto& thing : shifted) thing.middle_m += Eigen::Vector2d(2.2, -1.7);
+  sea.own_sd_m = 2.0;
+  sea.Scan(shifted);
+  std::set<std::int64_t> ids;
+  for (const auto& track : sea.Scan(shifted).tracks) ids.insert(track.id);
+  ASSERT_EQ(ids.size(), things.size());
+  sea.own_sd_m = 0.05;
+  for (int scan = 0; scan < 30; ++scan) {
+    const auto& picture = sea.Scan(things);
+    EXPECT_EQ(picture.tracks.size(), things.size()) << "scan " << scan;
+    for (const auto& track : picture.tracks) {
+      EXPECT_TRUE(ids.contains(track.id)) << "scan " << scan << ", track " << track.id;
+      EXPECT_TRUE(track.velocity_mps.isZero(0.0)) << "scan " << scan << ", track " << track.id;
+      const auto nearest = std::ranges::min(things, {}, [&](const Thing& thing) { return (thing.middle_m - track.position_m).norm(); });
+      EXPECT_LT((nearest.middle_m - track.position_m).norm(), 0.5) << "scan " << scan << ", track " << track.id;
+    }
+  }
 }
 
 TEST(Tracks, OfDropsAreNotConfirmed) {
