@@ -219,13 +219,17 @@ Body::Shift Body::ShiftOf(const Measured& measured, const Eigen::Matrix2d& noise
     constexpr double kTimes = 2.0;
     const double weight = 1.0 / (kTimes * 0.25 * measured.short_m * measured.short_m);
     information = weight * Eigen::Matrix2d::Identity();
+    Eigen::Vector2d off = Eigen::Vector2d::Zero();
+    int num_pairs = 0;
     for (std::size_t i = 0; i < kDirections; ++i) {
       const std::size_t j = Opposite(i);
       if (measured.kind[i] != Measured::Kind::kEdge || measured.kind[j] != Measured::Kind::kEdge) continue;
       const double off_m =
           0.5 * ((measured.reach_m[i] - sides_[i].reach_m) - (measured.reach_m[j] - sides_[j].reach_m)) - directions[i].dot(position);
-      sum += 0.5 * weight * off_m * directions[i];
+      off += off_m * directions[i];
+      ++num_pairs;
     }
+    sum = weight / num_pairs * off;
   }
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double beyond_m = measured.reach_m[i] - directions[i].dot(position) - sides_[i].reach_m;
@@ -336,6 +340,7 @@ void Body::Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& cova
   moving_covariance_ -= gain_moving * spread_moving * gain_moving.transpose();
   moving_covariance_ = (0.5 * (moving_covariance_ + moving_covariance_.transpose())).eval();
 
+  if (prefers_moving_ != (log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0)) parts_s_ = 0.0;  // they are counted from another place
   prefers_moving_ = log_likelihood_ratio_ + kMovingPriorLogOdds > 0.0;
   moving_probability_ = 1.0 / (1.0 + Exp(-(log_likelihood_ratio_ + kMovingPriorLogOdds)));
   const Eigen::Vector2d velocity = velocity_mps();
@@ -381,6 +386,7 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
     moving_.head<2>() += shift_m;
     moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
     num_measured_ = 0;
+    parts_s_ = since_update_s_ = 0.0;
     return;
   }
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);

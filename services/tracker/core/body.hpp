@@ -51,7 +51,6 @@ class Body {
   std::vector<Eigen::Vector2d> Outline() const;
   double SeenShare() const;
 
-  /// Of the hypothesis that holds: moving where its probability is above the threshold.
   /// All positions may have moved together by so much: the own position became better known.
   void Loosen(double variance_m2);
   /// The map was elsewhere by so much.
@@ -61,8 +60,10 @@ class Body {
   /// What lies beside it is of it, too.
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
   /// Another outline of the same thing: it keeps its velocity.
+  /// @param has_jumped  it was not where it should be: its velocity is less sure, too
   void Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
 
+  /// Of the hypothesis that holds: moving where its probability is above the threshold.
   bool IsMoving(double threshold) const { return moving_probability_ > threshold; }
   double moving_probability() const { return moving_probability_; }
   Eigen::Vector2d center_m() const;  // middle of the outline

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kBoatLengthPerBeam = 2.7;  // small craft: 2.3 to 3.5
 constexpr double kLongestAssumedM = 12.0;
+constexpr double kLongestStepS = 0.2;
 constexpr double kPartsForS = 3.0;  // after so long what was seen in that time is all of it
 constexpr double kGreatestOutlineSizeM = 10.0;
 
@@ -49,7 +50,7 @@ double Body::size_m() const {
 void Body::TakePart(const Measured& measured, double dt_s) {
   const auto directions = SideDirections();
   if (parts_s_ == 0.0) parts_reach_m_.fill(-std::numeric_limits<double>::infinity());
-  parts_s_ += dt_s;
+  parts_s_ += std::min(dt_s, kLongestStepS);
   const bool is_all = parts_s_ > kPartsForS;
   for (std::size_t i = 0; i < kDirections; ++i) {
     const double reach_m = measured.reach_m[i] - directions[i].dot(position_m());

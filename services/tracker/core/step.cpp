@@ -22,6 +22,7 @@ constexpr double kLeastExistence = -6.0;
 constexpr double kMissS = 0.4;  // for how long a known thing is hidden at a time
 constexpr double kMissHits = 30.0;
 constexpr double kMostCost = 6.0;
+constexpr double kMostTimesLarger = 8.0;  // in area, of the same thing seen otherwise
 constexpr double kLongestScanS = 0.2;
 // A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
 constexpr double kMostOff = 16.0;
@@ -65,7 +66,7 @@ void Step::Run() {
   AssignRest();
   FindInside();
   for (auto& track : known_.tracks) {
-    if (!track.is_seen_now && !track.is_inside_now) Miss(track);
+    if (!track.is_seen_now && !track.is_inside_now && !has_left_out_) Miss(track);
   }
   Begin();
   known_.clutter.End(dt_s_);
@@ -182,8 +183,8 @@ void Step::AssignBodies() {
   for (std::size_t row = 0; row < rows.size(); ++row) {
     for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
       // Land takes no part, unless it is the very thing that was seen there before.
-      const bool may_be =
-          use_[i] == Use::kFree || (known_.tracks[rows[row]].is_confirmed && radius_m_[i] < 2.0 * known_.tracks[rows[row]].radius_m + 1.0);
+      const bool may_be = use_[i] == Use::kFree || (use_[i] == Use::kLand && known_.tracks[rows[row]].is_confirmed &&
+                                                    radius_m_[i] < 2.0 * known_.tracks[rows[row]].radius_m + 1.0);
       if (!may_be) continue;
       const double cost = CostOf(known_.tracks[rows[row]], i) + (use_[i] == Use::kLand ? 1.0 : 0.0);
       if (cost < kMostCost) candidates.push_back({static_cast<std::int32_t>(row), static_cast<std::int32_t>(i), cost});
@@ -248,7 +249,6 @@ void Step::AssignLost() {
   constexpr double kLostReachM = 1.5;
   constexpr double kFasterMps = 3.0;
   constexpr double kMostReachM = 4.0;
-  constexpr double kMostTimesLarger = 8.0;
   std::vector<Near> pairs;
   for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
     const auto& track = known_.tracks[t];
@@ -319,7 +319,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
       track.body->Update(seen.outline_m, sides, seen.covariance_relative_m2, range_m, grows);
     } else if (++track.num_misfits >= kMisfitsToRestart) {
       track.num_misfits = 0;
-      track.body->Restart(seen.outline_m, sides, range_m, is_lost);
+      track.body->Restart(seen.outline_m, sides, range_m, is_lost || (shift.off >= kMostOff && !shift.is_part));
     }
     Place(track);
   } else {
@@ -338,7 +338,9 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
   // Of what is known for sure, a way behind something else is no unsteadiness.
   const double scans = track.is_confirmed ? std::max(1.0, ToSeconds(scan_.end_time - track.seen) / std::max(dt_s_, 0.01)) : 1.0;
-  track.AddLook(Logit(seen.thing_probability), (middle_m - track.seen_m - common_step_m_).norm() / scans);
+  const Eigen::Vector2d way_m = middle_m - track.seen_m;
+  const double step_m = std::min(way_m.norm(), (way_m - common_step_m_).norm());
+  track.AddLook(Logit(seen.thing_probability), step_m / scans);
   track.seen_m = middle_m;
   track.seen_radius_m = radius_m_[i];
   track.sum_returns += seen.num_returns;
@@ -387,7 +389,7 @@ void Step::FindInside() {
   for (auto& track : known_.tracks) {
     if (track.is_seen_now || !track.body) continue;
     for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-      if (use_[i] == Use::kFree) continue;
+      if (use_[i] == Use::kFree || use_[i] == Use::kLeftOut) continue;
       if ((middle_m_[i] - track.middle_m).norm() > radius_m_[i] + track.radius_m) continue;
       const auto both = Intersection(scan_.seen[i].outline_m, track.outline_m);
       const double area = std::max(0.05, AreaOf(track.outline_m));
@@ -429,9 +431,14 @@ void Step::Begin() {
   for (auto& track : known_.tracks) {
     if (track.is_confirmed && !track.is_ended) confirmed.push_back(&track);
   }
+  // Where there are too many, what is sure comes first.
+  std::vector<std::size_t> order;
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
+    if (use_[i] == Use::kFree) order.push_back(i);
+  }
+  std::ranges::stable_partition(order, [this](std::size_t i) { return scan_.seen[i].is_sure; });
+  for (const std::size_t i : order) {
     const auto& seen = scan_.seen[i];
-    if (use_[i] != Use::kFree) continue;
     known_.clutter.Add(ToVessel(middle_m_[i]));
     if (known_.tracks.size() >= kMostTracks) {
       ++known_.num_over_limit;

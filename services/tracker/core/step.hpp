@@ -35,6 +35,7 @@ struct Known {
   std::deque<Followed> tracks = {};       // by id
   std::map<Ids, double> together_s = {};  // for how long two looked like one
   std::int64_t next_id = 1;
+  std::int64_t num_outdated = 0;    // segments placed by an own position that became much better known in the scan
   std::int64_t num_over_limit = 0;  // segments that became no track
   double settled_sd_m = 0.0;        // of the own position before, where it became much better known with this scan
   bool had_sight = false;           // ever: without beams at all, misses count by themselves
@@ -101,6 +102,7 @@ class Step {
   Known& known_;
   double dt_s_;
   bool is_sight_known_ = false;
+  bool has_left_out_ = false;  // segments, since they are outdated
   Eigen::Vector2d common_step_m_ = Eigen::Vector2d::Zero();
   std::vector<Use> use_;                                // [seen]
   std::vector<Eigen::Vector2d> middle_m_;               // [seen]

@@ -8,10 +8,11 @@ namespace lookout::tracker {
 
 namespace {
 
-constexpr double kNear = 2.0;  // m, between the outlines of what may be one
+constexpr double kNearM = 2.0;  // m, between the outlines of what may be one
 constexpr double kNeverS = 0.0;
 constexpr double kFoundS = 0.3;
-constexpr double kSeenS = 0.35;  // a moment ago
+constexpr double kMissedS = 0.15;  // more than once
+constexpr double kSeenS = 0.35;    // a moment ago
 
 double SpeedBetween(const Followed& one, const Followed& other) {
   const auto velocity = [](const Followed& track) {
@@ -69,7 +70,7 @@ bool Step::AreOneBoat(const Followed& one, const Followed& other) {
   corners_m.insert(corners_m.end(), other.outline_m.begin(), other.outline_m.end());
   for (auto& corner : corners_m) corner -= one.middle_m;
   const auto around = RectangleAround(Polygon(SupportOf(corners_m)));
-  return around.length_m < kLongestBoatM && around.width_m < kBroadestBoatM && GapOf(one.outline_m, other.outline_m).distance_m < kNear;
+  return around.length_m < kLongestBoatM && around.width_m < kBroadestBoatM && GapOf(one.outline_m, other.outline_m).distance_m < kNearM;
 }
 
 // A part of a known thing becomes no track of its own at once.
@@ -77,14 +78,17 @@ bool Step::IsSuspect(const Followed& track) const {
   constexpr double kShortestS = 1.0;
   constexpr double kLongestS = 3.0;
   constexpr double kAsNewS = 1.0;
+  constexpr double kSameVelocityMps = 0.7;
   const double since_s = ToSeconds(scan_.end_time - track.first);
   if (since_s > kLongestS) return false;
   const double area = AreaOf(track.outline_m);
   return std::ranges::any_of(known_.tracks, [&](const Followed& other) {
     if (!other.is_confirmed || other.is_ended || other.id == track.id) return false;
-    if ((other.middle_m - track.middle_m).norm() > other.radius_m + track.radius_m + kNear || AreaOf(other.outline_m) < area) return false;
+    if ((other.middle_m - track.middle_m).norm() > other.radius_m + track.radius_m + kNearM || AreaOf(other.outline_m) < area) return false;
     const bool is_as_new = ToSeconds(track.first - other.first) < kAsNewS;
-    if (other.UnseenS(scan_.end_time) < kSeenS && since_s < (is_as_new ? kShortestS : kLongestS) && AreOneBoat(other, track)) return true;
+    if (other.UnseenS(scan_.end_time) < kSeenS && since_s < (is_as_new ? kShortestS : kLongestS) &&
+        (!track.body->IsMoving(0.5) || SpeedBetween(other, track) < kSameVelocityMps) && AreOneBoat(other, track))
+      return true;
     const auto both = Intersection(other.outline_m, track.outline_m);
     return IsLikePart(other, track, both.empty() ? 0.0 : std::max(1e-9, AreaOf(both)));
   });
@@ -94,15 +98,16 @@ bool Step::IsSuspect(const Followed& track) const {
 bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   constexpr double kLostProbability = 0.3;
   constexpr double kBeforeS = 1.5;
+  constexpr double kLatestS = 2.0;
   constexpr double kBesideM = 1.5;
   constexpr double kFasterMps = 5.0;
   constexpr double kMostTimesLarger = 8.0;
   constexpr double kMostReachM = 4.0;
   constexpr double kMostRadiusM = 3.0;
-  if (!lost.is_confirmed || lost.is_seen_now || lost.is_inside_now || lost.detection < kLostProbability || !found.is_seen_now || !found.body)
-    return false;
+  if (!lost.is_confirmed || lost.is_seen_now || lost.is_inside_now || lost.detection < kLostProbability) return false;
+  if (!found.is_confirmed || !found.is_seen_now || !found.body || lost.UnseenS(scan_.end_time) < kMissedS) return false;
   const double after_s = ToSeconds(found.first - lost.seen);
-  if (after_s < -kBeforeS || lost.num_hits < found.num_hits) return false;
+  if (after_s < -kBeforeS || after_s > kLatestS || lost.num_hits < found.num_hits) return false;
   const double reach_m = std::min(kMostReachM, kBesideM + kFasterMps * std::abs(after_s)) + std::min(kMostRadiusM, lost.seen_radius_m) +
                          std::min(kMostRadiusM, found.first_radius_m);
   if ((found.first_m - lost.seen_m).norm() > reach_m) return false;
@@ -119,7 +124,7 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   constexpr double kSameVelocityMps = 0.7;
   if (IsFoundAgain(one, other)) return kFoundS;
   const bool is_inside = (one.is_inside_now && one.inside_of == other.id) || (other.is_inside_now && other.inside_of == one.id);
-  if (!is_inside && (one.middle_m - other.middle_m).norm() > one.radius_m + other.radius_m + kNear) return kNeverS;
+  if (!is_inside && (one.middle_m - other.middle_m).norm() > one.radius_m + other.radius_m + kNearM) return kNeverS;
   const double area = AreaOf(one.outline_m);
   const double other_area = AreaOf(other.outline_m);
   const Followed& larger = area >= other_area ? one : other;
@@ -133,24 +138,26 @@ double Step::OneForS(const Followed& one, const Followed& other) const {
   }
   if (IsLikePart(larger, lesser, shared_m2)) return kPartS;
   const bool is_moving_together = IsMoving(one) && IsMoving(other) && SpeedBetween(one, other) < kSameVelocityMps;
-  return is_moving_together && GapOf(one.outline_m, other.outline_m).distance_m < kNear ? kPartS : kNeverS;
+  return is_moving_together && GapOf(one.outline_m, other.outline_m).distance_m < kNearM ? kPartS : kNeverS;
 }
 
 // The second becomes one with the first, by the older name.
 void Step::Join(Followed& one, Followed& other) {
   merged_.emplace_back(other.id, one.id);
   const bool is_part = one.is_seen_now && other.is_seen_now;
-  const bool is_found = IsFoundAgain(one, other);
-  // What is confirmed is not replaced by what is not, unless it is lost.
-  const bool is_other_better = is_part ? AreaOf(other.outline_m) > AreaOf(one.outline_m) : other.seen_alone > one.seen_alone;
-  if ((is_found && other.is_confirmed) || (one.is_confirmed == other.is_confirmed ? is_other_better : other.is_confirmed)) {
+  // What is confirmed is not replaced by what is not.
+  const bool is_larger = AreaOf(other.outline_m) > AreaOf(one.outline_m);
+  const bool is_part_better = IsMoving(one) == IsMoving(other) ? is_larger : IsMoving(other);
+  const bool is_other_better = is_part ? is_part_better : other.seen_alone > one.seen_alone;
+  if (one.is_confirmed == other.is_confirmed ? is_other_better : other.is_confirmed) {
     std::swap(one, other);
     std::swap(one.id, other.id);
     std::swap(one.parents, other.parents);
     std::swap(one.children, other.children);
     std::swap(one.first, other.first);
-    one.is_confirmed = one.is_confirmed || other.is_confirmed;
   }
+  one.is_proven = one.is_proven || other.is_proven;
+  if (one.overtaking == Encounter::kNone) one.overtaking = other.overtaking;
   Followed::Relate(one.parents, other.id, scan_.end_time);
   Followed::Relate(other.children, one.id, scan_.end_time);
   if (is_part && other.Existence() > 0.5) {

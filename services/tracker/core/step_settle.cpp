@@ -7,42 +7,51 @@
 
 namespace lookout::tracker {
 
-// The own position may become much better known within a scan: what was placed before that is left out.
+// What was placed earlier in the scan, where the own position became much better known within it.
 void Step::LeaveOutdated() {
   constexpr double kTimes = 4.0;
   constexpr double kLeastM2 = 0.3 * 0.3;
-  const auto own_m2 = [](const Seen& seen) { return (seen.covariance_m2 - seen.covariance_relative_m2).trace(); };
-  if (scan_.seen.empty()) return;
-  const double least_m2 = own_m2(*std::ranges::min_element(scan_.seen, {}, own_m2));
+  const auto own_m2 = [](const Pose& pose) { return std::max(0.0, pose.covariance(0, 0) + pose.covariance(1, 1)); };
+  const double limit_m2 = kTimes * own_m2(*scan_.own) + kLeastM2;
+  if (scan_.own_at_start && own_m2(*scan_.own_at_start) <= limit_m2) return;
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
-    if (own_m2(scan_.seen[i]) > kTimes * least_m2 + kLeastM2) use_[i] = Use::kLeftOut;
+    if ((scan_.seen[i].covariance_m2 - scan_.seen[i].covariance_relative_m2).trace() <= limit_m2) continue;
+    use_[i] = Use::kLeftOut;
+    has_left_out_ = true;
+    ++known_.num_outdated;
   }
 }
 
-// The own position became much better known: all that was placed by the old one moves, to where most of it is seen now.
+// The own position became much better known: tracks move to where most of them are seen now. Where too few agree, each may be anywhere near.
 void Step::Settle() {
   constexpr double kSds = 3.0;
   constexpr double kSameM = 0.5;
   constexpr double kLooseM = 0.2;
-  constexpr std::size_t kMost = 40;  // tracks, and segments: their square pairs are tried
+  constexpr double kFarM = 1.0;
+  constexpr int kLeast = 2;
+  constexpr std::size_t kMost = 40;  // tracks, and segments: each pair is tried on all
   const double sd_m = std::exchange(known_.settled_sd_m, 0.0);
   if (sd_m == 0.0) return;
   std::vector<Eigen::Vector2d> from_m;
   std::vector<Eigen::Vector2d> to_m;
   for (const auto& track : known_.tracks) {
-    if (track.body && from_m.size() < kMost) from_m.push_back(track.seen_m);
+    if (track.body && track.UnseenS(scan_.end_time) < 1.5 * dt_s_ && from_m.size() < kMost) from_m.push_back(track.seen_m);
   }
   for (std::size_t i = 0; i < scan_.seen.size() && to_m.size() < kMost; ++i) {
     if (use_[i] == Use::kFree && scan_.seen[i].is_sure && !scan_.seen[i].is_land) to_m.push_back(middle_m_[i]);
   }
-  // Of those that the shift brings to what is seen: how many, and where they come to lie in the mean.
+  const auto nearest_to = [&](const Eigen::Vector2d& place_m) {
+    const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - place_m).squaredNorm(); });
+    return nearest == to_m.end() || (*nearest - place_m).norm() > kSameM ? nullptr : &*nearest;
+  };
+  // Of those that a shift brings to what is seen: how many, and by how much in the mean.
   const auto brought_by = [&](const Eigen::Vector2d& shift_m) {
     std::pair<int, Eigen::Vector2d> brought(0, Eigen::Vector2d::Zero());
     for (const auto& from : from_m) {
-      const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - from - shift_m).squaredNorm(); });
-      if (nearest == to_m.end() || (*nearest - from - shift_m).norm() > kSameM) continue;
+      const auto* to = nearest_to(from + shift_m);
+      if (to == nullptr) continue;
       ++brought.first;
-      brought.second += *nearest - from;
+      brought.second += *to - from;
     }
     if (brought.first > 0) brought.second /= brought.first;
     return brought;
@@ -54,19 +63,22 @@ void Step::Settle() {
       if (const auto brought = brought_by(to - from); brought.first > best.first) best = brought;
     }
   }
+  const bool is_sure = best.first >= kLeast && 2 * static_cast<std::size_t>(best.first) >= from_m.size();
+  const Eigen::Vector2d shift_m = is_sure ? best.second : Eigen::Vector2d::Zero();
+  if (shift_m.norm() > kFarM) known_.land_pieces.Clear();
   for (auto& track : known_.tracks) {
-    track.seen_m += best.second;
-    track.first_m += best.second;
-    track.middle_m += best.second;
-    for (auto& corner : track.outline_m) corner += best.second;
+    track.seen_m += shift_m;
+    track.first_m += shift_m;
+    track.middle_m += shift_m;
+    for (auto& corner : track.outline_m) corner += shift_m;
     if (!track.body) continue;
-    track.body->Translate(best.second);
-    track.body->Loosen(best.first > 0 ? kLooseM * kLooseM : sd_m * sd_m);
+    track.body->Translate(shift_m);
+    track.body->Loosen(is_sure && nearest_to(track.seen_m) != nullptr ? kLooseM * kLooseM : sd_m * sd_m);
     Place(track);
   }
 }
 
-// From scan to scan all may step together: the own position and heading settle. Half of them step by less and half by more.
+// From scan to scan all that stands may step together: the own position and heading settle. Half of it steps by less and half by more.
 void Step::FindCommonStep() {
   constexpr double kReachM = 1.5;
   constexpr std::size_t kLeast = 5;
@@ -77,9 +89,10 @@ void Step::FindCommonStep() {
   }
   std::vector<double> east;
   std::vector<double> north;
+  std::size_t num_asked = 0;
   for (const auto& track : known_.tracks) {
-    if (east.size() == kMost) break;
-    if (!track.body || track.UnseenS(scan_.end_time) > 1.5 * dt_s_) continue;
+    if (!track.is_confirmed || !track.body || track.body->IsMoving(0.5) || track.UnseenS(scan_.end_time) > 1.5 * dt_s_) continue;
+    if (++num_asked > kMost) break;
     const auto nearest = std::ranges::min_element(to_m, {}, [&](const auto& to) { return (to - track.seen_m).squaredNorm(); });
     if (nearest == to_m.end() || (*nearest - track.seen_m).norm() >= kReachM) continue;
     east.push_back(nearest->x() - track.seen_m.x());

@@ -20,12 +20,12 @@ constexpr double kMostJumpM = 10.0;       // of the own position, beyond what it
 constexpr double kUnseenEndS = 30.0;      // a confirmed track that could not be seen for so long ends; sooner where it was not followed for as long
 constexpr double kLeastUnseenEndS = 2.0;
 constexpr int kHardlyKnownHits = 5;
+constexpr double kTentativeEndS = 1.0;
 constexpr double kHardlyKnownEndS = 0.7;
 constexpr double kCoastingS = 1.0;
 constexpr double kLineageS = 10.0;
 constexpr double kTypicalRangeM = 20.0;  // at which an error of heading counts as one of position
 constexpr double kLeastSettlingM = 0.1;
-// A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
 constexpr double kWaterlineRangeM = 150.0;
 constexpr std::size_t kMostWaterline = 2000;
 constexpr std::int64_t kWaterlineEvery = 10;
@@ -157,10 +157,9 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   for (auto& track : memory.known.tracks) {
     const double unseen_s = track.UnseenS(scan.end_time);
     const double existence = track.Existence();
-    const double end_s =
-        track.is_confirmed
-            ? (track.num_hits < kHardlyKnownHits ? kHardlyKnownEndS : std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS))
-            : 1.0;
+    const bool is_hardly_known = track.num_hits < kHardlyKnownHits;
+    const double known_s = std::clamp(ToSeconds(track.seen - track.first), kLeastUnseenEndS, kUnseenEndS);
+    const double end_s = !track.is_confirmed ? kTentativeEndS : is_hardly_known ? kHardlyKnownEndS : known_s;
     if (unseen_s > end_s || existence < (track.is_confirmed ? 0.05 : params_.end_probability) ||
         (!track.is_confirmed && track.log_odds < kBirthLogOdds - 1.0))
       track.is_ended = true;
@@ -227,6 +226,7 @@ std::vector<Counter> Tracker::counters() const {
   return {{"tracks", static_cast<std::int64_t>(memory.known.tracks.size())},
           {"tracks_confirmed", memory.num_confirmed},
           {"clutter_per_scan", std::llround(memory.known.clutter.total())},
+          {"obstacles_outdated", memory.known.num_outdated},
           {"tracks_over_limit", memory.known.num_over_limit},
           {"land_tiles", static_cast<std::int64_t>(memory.known.land.num_tiles())},
           {"restarts_by_time", memory.num_restarts_time},
