@@ -376,6 +376,27 @@ void Body::Fade(double dt_s) {
   prefers_moving_ = false;
 }
 
+void Body::MoveAs(const Body& before) { MoveAs(before, kJumpMps); }
+
+void Body::MoveAs(const Body& before, double jump_mps) {
+  moving_.tail<3>() = before.moving_.tail<3>();
+  moving_covariance_.bottomRightCorner<3, 3>() = before.moving_covariance_.bottomRightCorner<3, 3>();
+  moving_covariance_.block<2, 3>(0, 2).setZero();
+  moving_covariance_.block<3, 2>(2, 0).setZero();
+  moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
+  if (before.prefers_moving_ && !prefers_moving_) {
+    moving_.head<2>() = standing_;
+    parts_s_ = 0.0;
+  }
+  log_likelihood_ratio_ = std::max(before.log_likelihood_ratio_, 0.0);
+  moving_probability_ = before.moving_probability_;
+  prefers_moving_ = before.prefers_moving_;
+  stands_out_ = before.stands_out_;
+  moved_s_ = before.moved_s_;
+  if (prefers_moving_) age_s_ = before.age_s_;
+  jitter_m2_ = before.jitter_m2_;
+}
+
 void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped) {
   // What is known to move shows another part of itself, unless it was not where it should be.
   const double jump_mps = has_jumped || !prefers_moving_ ? kJumpMps : 0.0;
@@ -390,16 +411,7 @@ void Body::Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& side
     return;
   }
   Body other(seen_m, sides, Eigen::Matrix2d::Zero(), range_m);
-  other.moving_.tail<3>() = moving_.tail<3>();
-  other.moving_covariance_.bottomRightCorner<3, 3>() = moving_covariance_.bottomRightCorner<3, 3>();
-  other.moving_covariance_.block<2, 2>(2, 2) += Eigen::Matrix2d::Identity() * (jump_mps * jump_mps);
-  other.log_likelihood_ratio_ = std::max(log_likelihood_ratio_, 0.0);
-  other.moving_probability_ = moving_probability_;
-  other.prefers_moving_ = prefers_moving_;
-  other.stands_out_ = stands_out_;
-  other.moved_s_ = moved_s_;
-  if (prefers_moving_) other.age_s_ = age_s_;
-  other.jitter_m2_ = jitter_m2_;
+  other.MoveAs(*this, jump_mps);
   *this = other;
 }
 

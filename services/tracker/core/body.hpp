@@ -59,6 +59,8 @@ class Body {
   void Fade(double dt_s);
   /// What lies beside it is of it, too.
   void Include(const std::vector<Eigen::Vector2d>& outline_m);
+  /// It is what was followed as another before: where and how large it is stays, how it moves is taken from there, less sure.
+  void MoveAs(const Body& before);
   /// Another outline of the same thing: it keeps its velocity.
   /// @param has_jumped  it was not where it should be: its velocity is less sure, too
   void Restart(const std::vector<Eigen::Vector2d>& seen_m, const Sides& sides, double range_m, bool has_jumped);
@@ -92,6 +94,7 @@ class Body {
   double outline_sd_m() const;
   Eigen::Matrix2d velocity_covariance() const;
   void Decide(const Eigen::Vector2d& measured_m, const Eigen::Matrix2d& covariance_m2, double dt_s);
+  void MoveAs(const Body& before, double jump_mps);
   void AssumeBy(const Measured& measured);
   void TakePart(const Measured& measured, double dt_s);
 

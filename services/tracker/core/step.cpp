@@ -333,7 +333,9 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
   const double clutter = known_.clutter.DensityAt(ToVessel(middle_m_[i]));
   const double detection = std::max(track.detection, 0.1);
-  track.log_odds += Log(1.0 - detection + detection * density / clutter);
+  const double gain = Log(1.0 - detection + detection * density / clutter);
+  // Of what is known, another outline in another place is no absence.
+  track.log_odds += track.is_confirmed ? std::max(0.0, gain) : gain;
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
   // Of what is known for sure, a way behind something else is no unsteadiness.

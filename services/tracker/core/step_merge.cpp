@@ -150,6 +150,7 @@ void Step::Join(Followed& one, Followed& other) {
   const bool is_part_better = IsMoving(one) == IsMoving(other) ? is_larger : IsMoving(other);
   const bool is_other_better = is_part ? is_part_better : other.seen_alone > one.seen_alone;
   if (one.is_confirmed == other.is_confirmed ? is_other_better : other.is_confirmed) {
+    if (!is_part && IsMoving(one) && !IsMoving(other)) other.body->MoveAs(*one.body);
     std::swap(one, other);
     std::swap(one.id, other.id);
     std::swap(one.parents, other.parents);
