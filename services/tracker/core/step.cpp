@@ -22,7 +22,6 @@ constexpr double kLeastExistence = -6.0;
 constexpr double kMissS = 0.4;  // for how long a known thing is hidden at a time
 constexpr double kMissHits = 30.0;
 constexpr double kMostCost = 6.0;
-constexpr double kMostTimesLarger = 8.0;  // in area, of the same thing seen otherwise
 constexpr double kLongestScanS = 0.2;
 // A seen outline that is farther off, or fits worse, is that of something else too, or of a part: it moves nothing. After so many it is the new one.
 constexpr double kMostOff = 16.0;
@@ -249,6 +248,7 @@ void Step::AssignLost() {
   constexpr double kLostReachM = 1.5;
   constexpr double kFasterMps = 3.0;
   constexpr double kMostReachM = 4.0;
+  constexpr double kMostTimesLarger = 8.0;  // in area
   std::vector<Near> pairs;
   for (std::size_t t = 0; t < known_.tracks.size(); ++t) {
     const auto& track = known_.tracks[t];
@@ -333,9 +333,7 @@ void Step::Hit(Followed& track, std::size_t i, const Seen& seen, const Sides& si
   const double density = Exp(-0.5 * std::min(off * off / (sd * sd), 50.0)) / (kTwoPi * sd * sd);
   const double clutter = known_.clutter.DensityAt(ToVessel(middle_m_[i]));
   const double detection = std::max(track.detection, 0.1);
-  const double gain = Log(1.0 - detection + detection * density / clutter);
-  // Of what is known, another outline in another place is no absence.
-  track.log_odds += track.is_confirmed ? std::max(0.0, gain) : gain;
+  track.log_odds += Log(1.0 - detection + detection * density / clutter);
   track.log_odds = std::clamp(track.log_odds, kLeastExistence, kGreatestExistence);
   const Eigen::Vector2d middle_m = MiddleOf(seen.outline_m);
   // Of what is known for sure, a way behind something else is no unsteadiness.
@@ -438,7 +436,7 @@ void Step::Begin() {
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     if (use_[i] == Use::kFree) order.push_back(i);
   }
-  std::ranges::stable_partition(order, [this](std::size_t i) { return scan_.seen[i].is_sure; });
+  std::stable_partition(order.begin(), order.end(), [this](std::size_t i) { return scan_.seen[i].is_sure; });
   for (const std::size_t i : order) {
     const auto& seen = scan_.seen[i];
     known_.clutter.Add(ToVessel(middle_m_[i]));

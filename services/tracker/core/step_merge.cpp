@@ -99,7 +99,7 @@ bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   constexpr double kLostProbability = 0.3;
   constexpr double kBeforeS = 1.5;
   constexpr double kLatestS = 2.0;
-  constexpr double kBesideM = 1.5;
+  constexpr double kFoundBesideM = 1.5;
   constexpr double kFasterMps = 5.0;
   constexpr double kMostTimesLarger = 8.0;
   constexpr double kMostReachM = 4.0;
@@ -108,7 +108,7 @@ bool Step::IsFoundAgain(const Followed& lost, const Followed& found) const {
   if (!found.is_confirmed || !found.is_seen_now || !found.body || lost.UnseenS(scan_.end_time) < kMissedS) return false;
   const double after_s = ToSeconds(found.first - lost.seen);
   if (after_s < -kBeforeS || after_s > kLatestS || lost.num_hits < found.num_hits) return false;
-  const double reach_m = std::min(kMostReachM, kBesideM + kFasterMps * std::abs(after_s)) + std::min(kMostRadiusM, lost.seen_radius_m) +
+  const double reach_m = std::min(kMostReachM, kFoundBesideM + kFasterMps * std::abs(after_s)) + std::min(kMostRadiusM, lost.seen_radius_m) +
                          std::min(kMostRadiusM, found.first_radius_m);
   if ((found.first_m - lost.seen_m).norm() > reach_m) return false;
   const double times = std::max(0.1, AreaOf(found.outline_m)) / std::max(0.1, AreaOf(lost.outline_m));
