@@ -31,7 +31,7 @@ struct Destination {
 struct OutputParams {
   std::string name;
   Format format = Format::kNmea0183;
-  Destination destination;
+  Destination destination = {};
   bool sends_own_ship = true;
   SentTargets targets = SentTargets::kTtm;
   SentAlerts alerts = SentAlerts::kNone;
@@ -47,7 +47,7 @@ struct Params {
   std::chrono::microseconds target_period{2'500'000};
   std::chrono::microseconds own_ship_period{1'000'000};
   std::chrono::microseconds number_quarantine{60'000'000};
-  std::vector<OutputParams> outputs;
+  std::vector<OutputParams> outputs = {};
 };
 
 /// @param config_folder  the boat's folder, holding boat.txtpb and plotter.txtpb; without the latter there are no outputs

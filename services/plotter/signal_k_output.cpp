@@ -28,7 +28,22 @@ void SignalKOutput::EndTargets(const Told& told) {
 }
 
 void SignalKOutput::SendNotices(const Told& told) {
-  for (const auto& due : notices_.Take(told.notices, told.passed)) SendSurely(NoticeDelta(due.notice, told.host_time));
+  for (const auto& [notice, revision] : notices_.Take(told.notices, told.passed)) {
+    const auto key = KeyOf(notice);
+    const auto [raised, is_new] = raised_.try_emplace(key, Raised{NoticeWord(notice), notice});
+    const Notice& last = raised->second.notice;
+    const bool is_raised_again = !is_new && notice.state == NoticeState::kActive &&
+                                 (last.state == NoticeState::kAcknowledged || notice.level > last.level || notice.raised != last.raised);
+    if (is_raised_again) {
+      auto ended = last;
+      ended.state = NoticeState::kCleared;
+      SendSurely(NoticeDelta(ended, raised->second.word, told.host_time));
+      raised->second.word = NoticeWord(notice);
+    }
+    raised->second.notice = notice;
+    SendSurely(NoticeDelta(notice, raised->second.word, told.host_time));
+    if (notice.state == NoticeState::kCleared) raised_.erase(raised);
+  }
 }
 
 void SignalKOutput::SendAnew() {
@@ -42,8 +57,15 @@ std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const 
   if (read.is_wrong) CountRefused();
   std::vector<std::int64_t> keys;
   for (const auto& notice : told.notices) {
-    const bool is_open = notice.state == NoticeState::kActive || notice.state == NoticeState::kRectified;
-    if (notice.id != 0 && is_open && std::ranges::find(read.words, NoticeWord(notice)) != read.words.end()) keys.push_back(KeyOf(notice));
+    const auto raised = raised_.find(KeyOf(notice));
+    // What was told as acknowledged or as over went out without sound, and comes back so.
+    if (notice.id == 0 || raised == raised_.end() || raised->second.notice.state != notice.state) continue;
+    const bool is_active = notice.state == NoticeState::kActive;
+    if (!is_active && notice.state != NoticeState::kRectified) continue;
+    const bool is_acknowledged = std::ranges::any_of(read.echoes, [&](const NoticeEcho& echo) {
+      return echo.word == raised->second.word && (echo.is_acknowledged || (is_active && echo.is_quiet));
+    });
+    if (is_acknowledged) keys.push_back(raised->first);
   }
   return keys;
 }

@@ -1,6 +1,8 @@
 // Signal K for one receiver.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <string>
 
 #include "services/plotter/core/notice_schedule.hpp"
@@ -27,6 +29,12 @@ class SignalKOutput : public Output {
   std::string boat_;
   TargetSchedule targets_{kTargetPeriod};
   NoticeSchedule notices_;
+  // Notices that were told, by KeyOf, as they were last.
+  struct Raised {
+    std::string word;
+    Notice notice;
+  };
+  std::map<std::int64_t, Raised> raised_;
 };
 
 }  // namespace lookout::plotter

@@ -30,7 +30,12 @@ class Payload {
     const double greatest = Greatest(8 * num_bytes - 1);
     Put(Count(value, unit, -greatest, greatest), num_bytes, greatest);
   }
-  void Angle(double angle_rad) { Unsigned(std::isfinite(angle_rad) ? WrapTo2Pi(angle_rad) : kNan, 1e-4, 2); }
+  // 0 to 62831: what rounds to the whole circle is 0.
+  void Angle(double angle_rad) {
+    constexpr double kUnitRad = 1e-4;
+    const double count = std::isfinite(angle_rad) ? std::nearbyint(WrapTo2Pi(angle_rad) / kUnitRad) : kNan;
+    Unsigned(count * kUnitRad > kTwoPi ? 0.0 : count, 1.0, 2);
+  }
   // STRING_LAU: length with itself and the encoding, 1 for ASCII, text.
   void Text(std::string_view text) {
     U8(static_cast<std::uint8_t>(text.size() + 2));

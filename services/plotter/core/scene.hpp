@@ -18,8 +18,8 @@ struct Position {
 
 /// The own ship at an instant. NaN = not known.
 struct OwnShip {
-  Utime time;
-  Position position;          // of the reference point
+  Utime time = {};
+  Position position = {};     // of the reference point
   double heading_rad = kNan;  // from true north, clockwise
   double speed_mps = kNan;    // over ground
   double course_rad = kNan;   // from true north, clockwise

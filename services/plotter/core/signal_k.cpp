@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "common/core/printable.hpp"
 
@@ -96,30 +98,33 @@ std::string_view CauseWord(Cause cause) {
   }
 }
 
-bool IsAcknowledged(const Json& value) {
-  if (!value.is_object()) return false;
-  const auto state = value.find("state");
-  if (state == value.end() || !state->is_string() || *state == "normal" || *state == "nominal") return false;
-  if (const auto status = value.find("status"); status != value.end() && status->is_object()) {
-    const auto acknowledged = status->find("acknowledged");
-    return acknowledged != status->end() && acknowledged->is_boolean() && acknowledged->get<bool>();
-  }
-  const auto method = value.find("method");
-  return method != value.end() && method->is_array() && method->empty();
+bool IsTrue(const Json& object, const char* name) {
+  const auto member = object.find(name);
+  return member != object.end() && member->is_boolean() && member->get<bool>();
 }
 
-void ReadUpdate(const Json& update, std::vector<std::string>& words) {
-  if (!update.is_object()) return;
-  const auto values = update.find("values");
-  if (values == update.end() || !values->is_array()) return;
-  for (const auto& one : *values) {
-    if (!one.is_object()) continue;
-    const auto path = one.find("path");
-    const auto value = one.find("value");
-    if (path == one.end() || value == one.end() || !path->is_string() || !IsAcknowledged(*value)) continue;
-    const auto& text = path->get_ref<const std::string&>();
-    if (text.starts_with(kNotifications)) words.push_back(text.substr(kNotifications.size()));
-  }
+bool HasSound(const Json& value) {
+  const auto method = value.find("method");
+  return method != value.end() && method->is_array() && std::ranges::find(*method, Json("sound")) != method->end();
+}
+
+// nullopt: it is no notification of ours.
+std::optional<NoticeEcho> ToEcho(const Json& one) {
+  if (!one.is_object()) return std::nullopt;
+  const auto path = one.find("path");
+  const auto value = one.find("value");
+  if (path == one.end() || value == one.end() || !path->is_string() || !value->is_object()) return std::nullopt;
+  const auto& text = path->get_ref<const std::string&>();
+  const auto state = value->find("state");
+  if (!text.starts_with(kNotifications) || state == value->end()) return std::nullopt;
+  NoticeEcho echo{.word = text.substr(kNotifications.size())};
+  const auto status = value->find("status");
+  const bool has_status = status != value->end() && status->is_object();
+  echo.is_acknowledged = has_status && IsTrue(*status, "acknowledged");
+  const bool is_silenced = has_status && IsTrue(*status, "silenced");
+  const bool is_loud = *state == "alarm" || *state == "warn";
+  echo.is_quiet = !is_silenced && (*state == "normal" || (is_loud && !HasSound(*value)));
+  return echo;
 }
 
 }  // namespace
@@ -164,13 +169,12 @@ std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime 
 }
 
 std::string NoticeWord(const Notice& notice) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(notice.raised).time_since_epoch().count();
-  return fmt::format("{}{}at{}", CauseWord(notice.cause), std::abs(notice.id), seconds);
+  return fmt::format("{}{}at{}", CauseWord(notice.cause), std::abs(notice.id), ToUtimeUs(notice.changed));
 }
 
-std::string NoticeDelta(const Notice& notice, Utime time) {
+std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time) {
   Delta delta("vessels.self", time);
-  delta.Add(std::string(kNotifications) + NoticeWord(notice),
+  delta.Add(fmt::format("{}{}", kNotifications, word),
             {{"state", StateOf(notice)}, {"method", MethodsOf(notice)}, {"message", PrintableLines(notice.text)}});
   return delta.Text();
 }
@@ -181,8 +185,8 @@ std::string NoticeSubscription() {
   return subscription.dump() + "\n";
 }
 
-AcknowledgedWords ReadDelta(std::string_view text) {
-  AcknowledgedWords read;
+ReadEchoes ReadDelta(std::string_view text) {
+  ReadEchoes read;
   const auto message = Json::parse(text, nullptr, false);
   read.is_wrong = !message.is_object();
   if (read.is_wrong) return read;
@@ -190,7 +194,14 @@ AcknowledgedWords ReadDelta(std::string_view text) {
   if (updates == message.end()) return read;
   read.is_wrong = !updates->is_array();
   if (read.is_wrong) return read;
-  for (const auto& update : *updates) ReadUpdate(update, read.words);
+  for (const auto& update : *updates) {
+    if (!update.is_object()) continue;
+    const auto values = update.find("values");
+    if (values == update.end() || !values->is_array()) continue;
+    for (const auto& one : *values) {
+      if (auto echo = ToEcho(one)) read.echoes.push_back(*std::move(echo));
+    }
+  }
   return read;
 }
 

@@ -24,20 +24,30 @@ std::string TargetDelta(std::string_view boat, const Target& target, Utime time)
 std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime time);
 
 /// notifications.lookout.<word>: warn for a caution, alarm for a warning; visual alone once it is acknowledged; alert for what is over and was not
-/// acknowledged; normal when it is over. The word is of this alert alone: a server remembers by path that one was acknowledged.
-std::string NoticeDelta(const Notice& notice, Utime time);
+/// acknowledged; normal when it is over.
+std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time);
+
+/// Names one raising of an alert. A server remembers by path that one was acknowledged: whoever is told of a new one under an old path hears nothing.
 std::string NoticeWord(const Notice& notice);
 
 /// What asks a server to send notifications back.
 std::string NoticeSubscription();
 
-struct AcknowledgedWords {
-  bool is_wrong = false;           // no JSON, or no delta
-  std::vector<std::string> words;  // NoticeWord
+/// What a server says of a notification now.
+struct NoticeEcho {
+  std::string word;
+  bool is_acknowledged = false;  // by its notifications API
+  /// It is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. What was sent without sound
+  /// comes back so, too.
+  bool is_quiet = false;
 };
 
-/// Notices that a delta from a server says to be acknowledged: by its notifications API (value.status.acknowledged), or in older ones by taking all
-/// methods away. The server's own greeting and answers say none.
-AcknowledgedWords ReadDelta(std::string_view text);
+struct ReadEchoes {
+  bool is_wrong = false;  // no JSON, or no delta
+  std::vector<NoticeEcho> echoes;
+};
+
+/// A text from a server: a delta; or its greeting or an answer, which hold none.
+ReadEchoes ReadDelta(std::string_view text);
 
 }  // namespace lookout::plotter
