@@ -47,6 +47,7 @@ std::string KindOf(const std::string& include) {
                                                                           {"config/schema/", "config types"},
                                                                           {"lcm/", "lcm"},
                                                                           {"google/", "protobuf"},
+                                                                          {"boost/", "boost"},
                                                                           {"pcap/", "pcap"},
                                                                           {"pcap.h", "pcap"},
                                                                           {"spdlog/", "spdlog"},
@@ -87,6 +88,7 @@ const std::vector<Rule>& Rules() {
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
+      {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       // It knows what an address is.
