@@ -118,6 +118,7 @@ void Service::TellNotices() {
 void Service::OnPose(const pose_t& message) {
   if (const auto pose = messages::ToPose(message); const auto* refusal = std::get_if<Fault>(&pose)) return poses_refused_.Add(*refusal);
   own_ = ToOwnShip(message);
+  has_pose_ = true;
   pose_seen_ = passed_.passed();
   if (own_told_ && passed_.passed() - *own_told_ < params_.own_ship_period) return;
   own_told_ = passed_.passed();
@@ -134,7 +135,7 @@ std::optional<Notice> Service::OwnNotice() const {
     notice.cause = Cause::kWatch;
     notice.level = Level::kWarning;
     notice.text = "no look-out: the tracker is silent";
-  } else if (!IsFresh(pose_seen_) || !own_.is_placed()) {
+  } else if (!IsFresh(pose_seen_) || (has_pose_ && !own_.is_placed())) {
     notice.cause = Cause::kPosition;
     notice.level = Level::kCaution;
     notice.text = "no own position: targets are not shown";
@@ -222,7 +223,7 @@ HealthReport Service::Report() const {
   if (!IsFresh(tracks_seen_)) report.Degrade(silent(tracks_seen_, "TRACKS") + ": no targets are sent");
   if (!IsFresh(pose_seen_)) {
     report.Degrade(silent(pose_seen_, "POSE") + ": neither own ship nor targets are sent");
-  } else if (!own_.is_placed()) {
+  } else if (has_pose_ && !own_.is_placed()) {
     report.Degrade("the own position is not known: no targets are sent");
   } else if (IsFresh(tracks_seen_) && std::chrono::abs(own_.time - tracks_time_) > kMostApart) {
     report.Degrade("POSE and TRACKS are not of one time: no targets are sent");

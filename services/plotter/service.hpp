@@ -61,6 +61,7 @@ class Service {
   messages::PartAssembler<tracks_t> parts_;
   TargetNumbers numbers_;
   OwnShip own_;
+  bool has_pose_ = false;
   std::vector<Target> tracks_;   // of the last TRACKS, by id
   std::vector<Target> targets_;  // of them: those that are told, as of now
   Utime tracks_time_;            // to which they are propagated

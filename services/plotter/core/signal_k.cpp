@@ -30,17 +30,17 @@ std::string TimeText(Utime time) {
 }
 
 // null where it is not known. To a digit that is below what the sensors tell, so that texts stay short.
-Json Number(double value, double digit) {
+Json Number(double value, double per_unit) {
   if (!std::isfinite(value)) return nullptr;
-  return std::nearbyint(value / digit) / (1.0 / digit);
+  return std::nearbyint(value * per_unit) / per_unit;
 }
 
-Json Angle(double angle_rad) { return Number(angle_rad, 1e-5); }
-Json Length(double length_m) { return Number(length_m, 1e-2); }
+Json Angle(double angle_rad) { return Number(angle_rad, 1e5); }
+Json Length(double length_m) { return Number(length_m, 1e2); }
 
 Json PositionJson(const Position& position) {
   if (!std::isfinite(position.latitude_deg) || !std::isfinite(position.longitude_deg)) return nullptr;
-  return {{"latitude", Number(position.latitude_deg, 1e-9)}, {"longitude", Number(position.longitude_deg, 1e-9)}};  // 0.1 mm
+  return {{"latitude", Number(position.latitude_deg, 1e9)}, {"longitude", Number(position.longitude_deg, 1e9)}};  // 0.1 mm
 }
 
 class Delta {
@@ -145,7 +145,7 @@ std::string OwnShipDelta(const OwnShip& own) {
   delta.Add("navigation.position", PositionJson(own.position));
   delta.Add("navigation.headingTrue", Angle(own.heading_rad));
   delta.Add("navigation.courseOverGroundTrue", Angle(own.course_rad));
-  delta.Add("navigation.speedOverGround", Number(own.speed_mps, 1e-3));
+  delta.Add("navigation.speedOverGround", Number(own.speed_mps, 1e3));
   return delta.Text();
 }
 
@@ -154,7 +154,7 @@ std::string TargetDelta(std::string_view boat, const Target& target, Utime time)
   delta.Add("", {{"name", target.name}});
   delta.Add("navigation.position", PositionJson(target.position));
   delta.Add("navigation.courseOverGroundTrue", Angle(target.course_rad));
-  delta.Add("navigation.speedOverGround", Number(target.speed_mps, 1e-3));
+  delta.Add("navigation.speedOverGround", Number(target.speed_mps, 1e3));
   delta.Add("navigation.closestApproach", {{"distance", Length(target.cpa_m)}, {"timeTo", Length(target.tcpa_s)}});
   delta.Add("design.length", {{"overall", Length(target.length_m)}});
   delta.Add("design.beam", Length(target.width_m));

@@ -55,7 +55,7 @@ inline constexpr std::int64_t kStartUs = 1'782'901'200'000'000;
 
 class ServiceFixture : public ::testing::Test {
  protected:
-  bus::MemoryBus bus_;
+  std::unique_ptr<bus::MemoryBus> bus_;  // a service leaves its bus only with it
   Params params_{.boat = "gannet"};
   KeepingLink* nmea_ = nullptr;
   KeepingLink* signal_k_ = nullptr;
@@ -70,9 +70,12 @@ class ServiceFixture : public ::testing::Test {
   std::int64_t begin_us_ = kStartUs;
   std::int32_t pose_status_ = pose_t::STATUS_OK;
 
-  void SetUp() override {
-    bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& message) { acknowledged_.push_back(message); });
-    Start();
+  void SetUp() override { Start(); }
+
+  void NewBus() {
+    service_.reset();
+    bus_ = std::make_unique<bus::MemoryBus>();
+    bus::Subscribe<alert_ack_t>(*bus_, bus::kAlertAck, [this](const alert_ack_t& message) { acknowledged_.push_back(message); });
   }
 
   void Start() {
@@ -89,13 +92,14 @@ class ServiceFixture : public ::testing::Test {
                                                       std::move(signal_k), params_.boat));
     outputs.push_back(
         std::make_unique<N2kOutput>(OutputParams{.name = "n2k", .format = Format::kN2kActisense}, std::move(n2k), params_.target_period));
-    service_ = std::make_unique<Service>(bus_, params_, std::move(outputs));
+    NewBus();
+    service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
     service_->AdvanceTo(Now());
   }
 
   Utime Now() const { return Utime(std::chrono::microseconds(host_us_)); }
   void HandleAll() {
-    while (bus_.HandleOnce()) {
+    while (bus_->HandleOnce()) {
     }
   }
   void Clear() {
@@ -124,7 +128,7 @@ class ServiceFixture : public ::testing::Test {
     pose.heading_rad = 0.5;
     pose.velocity_map_mps[0] = 2.0;
     if (pose_status_ == pose_t::STATUS_UNKNOWN) pose.latitude_deg = pose.longitude_deg = pose.heading_rad = kNan;
-    bus::Publish(bus_, bus::kPose, pose);
+    bus::Publish(*bus_, bus::kPose, pose);
     HandleAll();
   }
 
@@ -142,9 +146,23 @@ class ServiceFixture : public ::testing::Test {
     message.num_scan_tracks = message.num_tracks;
     return message;
   }
+  // In parts, as the tracker does.
   void SendTracks(const tracks_t& message) {
-    bus::Publish(bus_, bus::kTracks, message);
-    HandleAll();
+    constexpr std::size_t kMostTracks = 300;
+    const auto num_parts = std::max<std::size_t>(1, (message.tracks.size() + kMostTracks - 1) / kMostTracks);
+    for (std::size_t i = 0; i < num_parts; ++i) {
+      auto part = message;
+      if (num_parts > 1) {
+        const auto end = std::min(message.tracks.size(), (i + 1) * kMostTracks);
+        part.tracks = {message.tracks.begin() + static_cast<std::ptrdiff_t>(i * kMostTracks),
+                       message.tracks.begin() + static_cast<std::ptrdiff_t>(end)};
+        part.num_tracks = static_cast<std::int32_t>(part.tracks.size());
+        part.part_index = static_cast<std::int32_t>(i);
+        part.num_parts = static_cast<std::int32_t>(num_parts);
+      }
+      bus::Publish(*bus_, bus::kTracks, part);
+      HandleAll();
+    }
   }
   void SendAlerts() {
     alerts_t message{};
@@ -153,7 +171,7 @@ class ServiceFixture : public ::testing::Test {
     message.end_utime_us = host_us_;
     message.alerts = alerts_;
     message.num_alerts = static_cast<std::int32_t>(alerts_.size());
-    bus::Publish(bus_, bus::kAlerts, message);
+    bus::Publish(*bus_, bus::kAlerts, message);
     HandleAll();
   }
 

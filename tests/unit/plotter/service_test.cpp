@@ -54,7 +54,7 @@ TEST_F(PlotterService, TellsALostTargetOnce) {
   tracks_[0].status = track_t::STATUS_LOST;
   Run(100'000);
   tracks_.erase(tracks_.begin());
-  Run(9'000'000);
+  Run(8'000'000);
   EXPECT_EQ(nmea_->With(",L,").size(), 1U);
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
   EXPECT_EQ(nmea_->With("RATTM,01,").size(), 3U);
@@ -285,7 +285,8 @@ TEST_F(PlotterService, TakesNoAcknowledgementWhereConfigDoesNot) {
   auto link = std::make_unique<test::KeepingLink>();
   link->received = {Ack("IIACK,003")};
   outputs.push_back(std::make_unique<NmeaOutput>(OutputParams{.name = "nmea"}, std::move(link), params_.target_period));
-  service_ = std::make_unique<Service>(bus_, params_, std::move(outputs));
+  NewBus();
+  service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
   alerts_ = {MakeAlert(3)};
   Run(300'000);
   EXPECT_TRUE(acknowledged_.empty());
@@ -357,7 +358,8 @@ TEST_F(PlotterService, NamesAnOutputThatIsAtFault) {
 }
 
 TEST_F(PlotterService, KeepsQuietWithoutOutputs) {
-  service_ = std::make_unique<Service>(bus_, params_, std::vector<std::unique_ptr<Output>>());
+  NewBus();
+  service_ = std::make_unique<Service>(*bus_, params_, std::vector<std::unique_ptr<Output>>());
   Wait(10'000'000);
   EXPECT_EQ(service_->Report().state, HealthState::kOk);
 }

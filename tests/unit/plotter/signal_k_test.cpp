@@ -17,7 +17,8 @@ using test::MakeTarget;
 json Values(const std::string& delta) {
   EXPECT_EQ(delta.find('\n'), delta.size() - 1);  // a line
   json values;
-  for (const auto& one : json::parse(delta)["updates"][0]["values"]) values[one["path"].get<std::string>()] = one["value"];
+  const auto message = json::parse(delta);
+  for (const auto& one : message["updates"][0]["values"]) values[one["path"].get<std::string>()] = one["value"];
   return values;
 }
 
