@@ -11,6 +11,7 @@ namespace lookout::plotter {
 
 namespace {
 
+// `name`: of its counters, which so have none of the names of the service's.
 std::unique_ptr<Link> Open(const std::string& name, const Destination& to, Links& links) {
   switch (to.kind) {
     case Destination::Kind::kUdp:
@@ -43,7 +44,7 @@ std::vector<std::unique_ptr<Output>> OpenOutputs(const Params& params, Links& li
   std::vector<std::unique_ptr<Output>> outputs;
   for (const auto& output : params.outputs) {
     try {
-      outputs.push_back(MakeOutput(params, output, Open(output.name, output.destination, links)));
+      outputs.push_back(MakeOutput(params, output, Open("output_" + output.name, output.destination, links)));
     } catch (const std::runtime_error& error) {
       throw std::runtime_error("output '" + output.name + "': " + error.what());
     }
