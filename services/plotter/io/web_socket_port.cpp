@@ -53,9 +53,8 @@ class WebSocketConnection final : public Connection, public std::enable_shared_f
   tcp::socket& socket() { return beast::get_lowest_layer(stream_).socket(); }
 
   void ShakeHands() {
-    // Tick() ends what takes too long to open.
-    stream_.set_option(
-        websocket::stream_base::timeout{.handshake_timeout = websocket::stream_base::none(), .idle_timeout = kMaxSilence, .keep_alive_pings = true});
+    // Of the whole opening Tick() keeps the time; this one is for a server that says that it ends, and does not.
+    stream_.set_option(websocket::stream_base::timeout{.handshake_timeout = kMaxOpening, .idle_timeout = kMaxSilence, .keep_alive_pings = true});
     stream_.set_option(websocket::stream_base::decorator([token = token_](websocket::request_type& request) {
       request.set(http::field::user_agent, "lookout");
       if (!token.empty()) request.set(http::field::authorization, "Bearer " + token);
@@ -72,6 +71,7 @@ class WebSocketConnection final : public Connection, public std::enable_shared_f
   }
 
   std::string RefusalOf(beast::error_code why) const {
+    if (why == beast::error::timeout) return "does not answer";
     if (why != websocket::error::upgrade_declined) return "is no WebSocket: " + why.message();
     std::string text = "refuses with status " + std::to_string(answer_.result_int());
     if (answer_.result() == http::status::unauthorized || answer_.result() == http::status::forbidden) {
@@ -82,10 +82,16 @@ class WebSocketConnection final : public Connection, public std::enable_shared_f
     return text;
   }
 
+  std::string ReasonOf(beast::error_code why) const {
+    // However the connection then goes: the server has said that it ends it.
+    if (why == websocket::error::closed || stream_.reason()) return "ended the connection";
+    return why == beast::error::timeout ? "does not answer any more" : why.message();
+  }
+
   void Read() {
     stream_.async_read_some(bytes_, kMaxTextBytes, [self = shared_from_this()](beast::error_code why, std::size_t) {
       if (self->state() == State::kClosed) return;
-      if (why) return self->Close(why == websocket::error::closed ? "ended the connection" : why.message());
+      if (why) return self->Close(self->ReasonOf(why));
       self->Take();
       self->Read();
     });
@@ -115,7 +121,7 @@ class WebSocketConnection final : public Connection, public std::enable_shared_f
   void SendOn() {
     stream_.async_write(boost::asio::buffer(queue_.front()), [self = shared_from_this()](beast::error_code why, std::size_t) {
       if (self->state() == State::kClosed) return;
-      if (why) return self->Close(why.message());
+      if (why) return self->Close(self->ReasonOf(why));
       self->num_queued_bytes_ -= self->queue_.front().size() + kMaxFrameHeadBytes;
       self->queue_.pop_front();
       if (!self->queue_.empty() && !self->is_late()) self->SendOn();
