@@ -92,7 +92,8 @@ class ObstacleMapSink final : public Sink {
                                       {"obstacle_id", std::int64_t{obstacle.id}},
                                       {"confidence", std::string(words::WordOf(words::kConfidence, obstacle.confidence))},
                                       {"kind", std::string(words::WordOf(words::kKind, obstacle.kind))}};
-      if (outline) append(obstacle.kind == obstacle_t::KIND_LAND ? "waterline" : "outline", *outline, few);
+      // An outline of one return is the point.
+      if (outline && outline->kind != Geometry::Kind::kPoint) append(obstacle.kind == obstacle_t::KIND_LAND ? "waterline" : "outline", *outline, few);
       if (auto ellipse = EllipseOf(obstacle, *map)) append("ellipse", std::move(*ellipse), few);
     }
   }

@@ -286,7 +286,8 @@ class TrackMapSink final : public Sink {
     const std::vector<Property> few{{"track_id", track.id},
                                     {"status", std::string(words::WordOf(words::kTrackStatus, track.status))},
                                     {"kind", std::string(words::WordOf(words::kTrackKind, track.kind))}};
-    if (auto outline = OutlineOf(track, map)) write("outline", std::move(*outline), few);
+    auto outline = OutlineOf(track, map);
+    if (outline && outline->kind != Geometry::Kind::kPoint) write("outline", std::move(*outline), few);
     if (auto ellipse = EllipseOf(track, map)) write("ellipse", std::move(*ellipse), few);
     if (followed.has_moved && !scans_.is_one) WriteTrail("way", name, followed.trail.Finish(), few, text);
   }
