@@ -14,10 +14,10 @@
 namespace {
 
 // @throws CLI::ValidationError
-std::optional<std::int64_t> UtimeOf(const std::string& option, const std::string& text) {
-  if (text.empty()) return std::nullopt;
+std::optional<std::int64_t> UtimeOf(const CLI::Option& option, const std::string& text) {
+  if (option.count() == 0) return std::nullopt;
   const auto utime_us = lookout::exporter::ParseUtimeUs(text);
-  if (!utime_us) throw CLI::ValidationError(option, "must be microseconds since 1970, or UTC as 2026-07-01T10:00:00Z");
+  if (!utime_us) throw CLI::ValidationError(option.get_name(), "must be microseconds since 1970, or UTC as 2026-07-01T10:00:00Z");
   return utime_us;
 }
 
@@ -47,9 +47,11 @@ int main(int argc, char** argv) {
                                      "ply, svg and table merges: seq of the scan, or \"last\": the last whole one; merges as csv: or \"all\"; "
                                      "maps: without it the whole log")
                           ->capture_default_str();
-  app.add_option("--from", from, "csv and maps: what was measured at this time or later: microseconds since 1970, or UTC as 2026-07-01T10:00:00Z");
-  app.add_option("--to", to, "the same; the first time that is not in it");
-  app.add_option("--near", near, "csv and maps of obstacles, tracks and pose: LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
+  auto* from_option = app.add_option(
+      "--from", from, "csv and maps: what was measured at this time or later: microseconds since 1970, or UTC as 2026-07-01T10:00:00Z");
+  auto* to_option = app.add_option("--to", to, "the same; the first time that is not in it");
+  auto* near_option =
+      app.add_option("--near", near, "csv and maps of obstacles, tracks and pose: LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
   app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again");
   app.set_version_flag("--version", "lookout-export " + lookout::runtime::Version());
   app.footer("Exit code: 0 fine; 1 an input cannot be read or holds nothing of that table; 2 wrong command line or config.");
@@ -62,8 +64,8 @@ int main(int argc, char** argv) {
       request.scan = seq;
     }
     request.is_last_scan = scan == "last" && scan_option->count() > 0;
-    request.span = {UtimeOf("--from", from), UtimeOf("--to", to)};
-    if (!near.empty()) {
+    request.span = {UtimeOf(*from_option, from), UtimeOf(*to_option, to)};
+    if (near_option->count() > 0) {
       request.near = exporter::ParseCircle(near);
       if (!request.near)
         throw CLI::ValidationError("--near", "must be LATITUDE,LONGITUDE,RADIUS: degrees from -90 to 90 and -180 to 180, metres above 0");

@@ -10,6 +10,9 @@ namespace {
 // No boat gets so far from its datum in a run; further out the curve of the earth is not followed any more.
 constexpr double kFarthestM = 1e6;
 
+// Not so of what is not a number.
+bool IsWithinReach(const Eigen::Vector2d& place_m) { return std::abs(place_m.x()) < kFarthestM && std::abs(place_m.y()) < kFarthestM; }
+
 template <typename Message>
 std::optional<MapOfDatum> MapOfMessage(const Message& message) {
   const GeodeticPlace datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
@@ -23,7 +26,7 @@ std::optional<Geometry> PolygonOrNone(const std::vector<MapPlace>& places) {
 }
 
 std::optional<Geometry> Ellipse(const MapOfDatum& map, const Eigen::Vector2d& center_m, const Eigen::Vector3d& covariance_m2) {
-  if (!(center_m.cwiseAbs().maxCoeff() < kFarthestM)) return std::nullopt;
+  if (!IsWithinReach(center_m)) return std::nullopt;
   return PolygonOrNone(map.Ellipse(center_m, covariance_m2));
 }
 
@@ -42,7 +45,7 @@ std::vector<Eigen::Vector2d> CornersOf(const std::vector<float>& east_m, const s
   corners_m.reserve(east_m.size());
   for (std::size_t i = 0; i < east_m.size(); ++i) {
     corners_m.emplace_back(east_m[i], north_m[i]);
-    if (!(std::abs(corners_m.back().x()) < kFarthestM) || !(std::abs(corners_m.back().y()) < kFarthestM)) return {};
+    if (!IsWithinReach(corners_m.back())) return {};
   }
   return corners_m;
 }
