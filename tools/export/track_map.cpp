@@ -233,12 +233,12 @@ class TrackMapSink final : public Sink {
     return Taken::kOk;
   }
 
-  void Write(Feature feature, std::string& text) {
+  void Write(const Feature& feature, std::string& text) {
     ++num_written_;
     writer_->Append(feature, text);
   }
 
-  void WriteTrail(const std::string& what, const std::string& name, const std::vector<Trail::Piece>& pieces, std::vector<Property> properties,
+  void WriteTrail(const std::string& what, const std::string& name, const std::vector<Trail::Piece>& pieces, const std::vector<Property>& properties,
                   std::string& text) {
     for (const auto& piece : pieces) {
       auto all = properties;

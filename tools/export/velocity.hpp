@@ -13,7 +13,7 @@ namespace lookout {
 /// they are, the course is off by a degree 100 km away and more near the poles, and far away the speed too. Where place or datum are not known, as it
 /// is.
 inline Eigen::Vector3d Velocity3dHere(const pose_t& pose) {
-  const Eigen::Vector3d velocity_map_mps(pose.velocity_map_mps[0], pose.velocity_map_mps[1], pose.velocity_map_mps[2]);
+  Eigen::Vector3d velocity_map_mps(pose.velocity_map_mps[0], pose.velocity_map_mps[1], pose.velocity_map_mps[2]);
   const auto or_zero = [](double value) { return std::isfinite(value) ? value : 0.0; };
   if (!std::isfinite(pose.latitude_deg) || !std::isfinite(pose.longitude_deg) || !std::isfinite(pose.datum_latitude_deg) ||
       !std::isfinite(pose.datum_longitude_deg)) {
