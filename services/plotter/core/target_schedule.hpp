@@ -1,0 +1,44 @@
+// When each target is due on one output, and which have ended there.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "services/plotter/core/scene.hpp"
+
+namespace lookout::plotter {
+
+/// Time is host time passed, as of PassedTime.
+class TargetSchedule {
+ public:
+  /// What was sent of a target last.
+  struct Sent {
+    Target target;
+    int number = -1;                                // -1: it had none
+    std::optional<std::chrono::microseconds> time;  // nullopt: it is to be sent anew
+  };
+
+  explicit TargetSchedule(std::chrono::microseconds period) : period_(period) {}
+
+  /// Those that are new, or were sent a period ago: the dangerous first, in the order of `targets`; then those that have waited longest, so that an
+  /// output with little room gets round all of them.
+  std::vector<const Target*> Due(std::span<const Target> targets, std::chrono::microseconds now) const;
+
+  void NoteSent(const Target& target, int number, std::chrono::microseconds now);
+
+  /// Those that were sent and are there no more, by id: each is told once.
+  std::vector<Sent> TakeEnded(std::span<const Target> targets);
+
+  /// A new receiver knows of none: all are due. What has ended is still told.
+  void SendAnew();
+
+ private:
+  std::chrono::microseconds period_;
+  std::map<std::int64_t, Sent> sent_;  // by the target's id
+};
+
+}  // namespace lookout::plotter
