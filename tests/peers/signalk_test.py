@@ -1,0 +1,249 @@
+"""Deltas of lookout-plotter in signalk-server: by each way in, as REST and WebSocket show them; an alert, and its acknowledgement on the way back."""
+import base64
+import calendar
+import hashlib
+import hmac
+import json
+import os
+import re
+import time
+import urllib.error
+import urllib.request
+
+from plotter import Trial, check, distance_m, main
+
+PLACE = (54.123456, -10.654321)
+SECONDS = 14
+SERVER = 'http://127.0.0.1:3000'
+TARGETS = {1, 2, 17, 18, 19, 20, 123456}
+ALERT_S = 2.0  # when the feed raises it
+MOST_LATE_S = 2.0
+MOST_M = 0.01
+CLOCKS_S = 0.1  # the feed keeps to the clock that nobody sets, and the truth to the host's
+KEY = 'a key of this trial alone ' * 4
+
+# name: the output, whether the server wants a token, whether acknowledgements come back this way
+WAYS = {
+    'udp': ('udp { address: "127.0.0.1" port: 20220 }', False, False),
+    'tcp server': ('tcp_server { bind_address: "127.0.0.1" port: 20221 }', True, False),
+    'tcp client': ('tcp_client { address: "127.0.0.1" port: 8375 } takes_acknowledgements: true', False, True),
+    'websocket': ('websocket { address: "127.0.0.1" port: 3000 token_file: "token" } takes_acknowledgements: true', True, True),
+}
+
+
+def token_of(payload):
+    """A JSON Web Token, as the server's own signalk-generate-token makes it."""
+    def encode(data):
+        return base64.urlsafe_b64encode(data).rstrip(b'=')
+    head = encode(json.dumps({'alg': 'HS256', 'typ': 'JWT'}).encode()) + b'.' + encode(json.dumps(payload).encode())
+    return (head + b'.' + encode(hmac.new(KEY.encode(), head, hashlib.sha256).digest())).decode()
+
+
+def write_json(file, value):
+    with open(file, 'w', encoding='utf-8') as out:
+        json.dump(value, out)
+    os.chmod(file, 0o600)
+
+
+def configure_server(folder, is_secured):
+    """Two ways in besides its own; nothing that looks for others or for the network."""
+    def way_in(name, options):
+        return {'id': name, 'enabled': True, 'pipeElements': [
+            {'type': 'providers/simple', 'options': {'logging': False, 'type': 'SignalK', 'subOptions': options}}]}
+    os.mkdir(folder)
+    off = ('plugins', 'wasm', 'appstore', 'webapps', 'playground', 'mfd_webapp', 'nmea-tcp', 'logfiles')
+    settings = {'interfaces': {name: False for name in off}, 'port': 3000, 'ssl': False, 'mdns': False, 'wsCompression': False,
+                'accessLogging': False, 'pruneContextsMinutes': 1,
+                'pipedProviders': [way_in('udp', {'type': 'udp', 'port': '20220'}),
+                                   way_in('tcp', {'type': 'tcp', 'host': '127.0.0.1', 'port': '20221'})]}
+    if is_secured:
+        settings['security'] = {'strategy': './tokensecurity'}
+    write_json(os.path.join(folder, 'settings.json'), settings)
+    write_json(os.path.join(folder, 'security.json'), {
+        'users': [{'username': 'skipper', 'type': 'admin', 'password': ''}],
+        'devices': [{'clientId': 'lookout', 'permissions': 'readwrite', 'description': 'lookout', 'config': ''}],
+        'secretKey': KEY, 'allow_readonly': False, 'expiration': 'NEVER', 'allowDeviceAccessRequests': False, 'allowNewUserRegistration': False,
+        'acls': []})
+    write_json(os.path.join(folder, 'baseDeltas.json'), [{'context': 'vessels.self', 'updates': [{'values': [
+        {'path': '', 'value': {'name': 'trial', 'uuid': 'urn:mrn:signalk:uuid:c0d79334-4e25-4245-8892-54e8ccc8021d'}}]}]}])
+
+
+def ask(path, method='GET'):
+    """@return what it answers; None where there is nothing"""
+    request = urllib.request.Request(SERVER + path, method=method, headers={'Authorization': 'Bearer ' + token_of({'id': 'skipper'})})
+    try:
+        with urllib.request.urlopen(request, timeout=5) as answer:
+            return json.loads(answer.read())
+    except urllib.error.HTTPError as error:
+        check(error.code == 404, '%s: %s' % (path, error))
+        return None
+    except (urllib.error.URLError, ConnectionError):
+        return None
+
+
+def wait_until(is_so, seconds, what):
+    deadline = time.monotonic() + seconds
+    while not is_so():
+        check(time.monotonic() < deadline, 'not within %d s: %s' % (seconds, what))
+        time.sleep(0.1)
+
+
+def utime_us_of(text):
+    match = re.fullmatch(r'(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d)\.(\d{3})Z', text)
+    check(match, 'no time of Signal K: %s' % text)
+    return (calendar.timegm(time.strptime(match[1], '%Y-%m-%dT%H:%M:%S')) * 1000 + int(match[2])) * 1000
+
+
+def id_of(context):
+    return int(context.rsplit('-', 1)[1])
+
+
+class Seen:
+    """When each target was there first and gone first, and notifications; by REST or by WebSocket. Times of the host, s."""
+
+    def __init__(self, way):
+        self.way = way
+        self.came, self.went = {}, {}
+        self.positions = []  # (id or None of the own ship, time of the delta, latitude and longitude)
+        self.notifications = []  # (time, value)
+
+    def take_position(self, target_id, time_s, utc, value):
+        if value is None:
+            if target_id is not None:
+                self.went.setdefault(target_id, time_s)
+            return
+        self.positions.append((target_id, utime_us_of(utc), (value['latitude'], value['longitude'])))
+        if target_id is not None:
+            check(target_id not in self.went, '%s: target %d is there again' % (self.way, target_id))
+            self.came.setdefault(target_id, time_s)
+
+    def check(self, truth):
+        """@return the latest that one came, s, and the largest error of a position, m"""
+        rows = sorted(truth.items())
+        check(set(self.came) == TARGETS, '%s: targets %s' % (self.way, sorted(self.came)))
+        latest_s = 0.0
+        for target_id, time_s in self.came.items():
+            first_us = min(utime_us for utime_us, row in rows if str(target_id) in row['targets'])
+            latest_s = max(latest_s, time_s - first_us * 1e-6)
+            check(-CLOCKS_S < time_s - first_us * 1e-6 < MOST_LATE_S, '%s: target %d came after %.2f s' % (self.way, target_id, time_s - first_us * 1e-6))
+        check(set(self.went) == TARGETS, '%s: gone are %s' % (self.way, sorted(self.went)))
+        for target_id, time_s in self.went.items():
+            last_us = max(utime_us for utime_us, row in rows if str(target_id) in row['targets'])
+            # Those of the end: after a second of silence.
+            check(-CLOCKS_S < time_s - last_us * 1e-6 < MOST_LATE_S, '%s: target %d went after %.2f s' % (self.way, target_id, time_s - last_us * 1e-6))
+        largest_m = 0.0
+        for target_id, utime_us, place in self.positions:
+            check(utime_us in truth, '%s: a time at which no POSE was: %d' % (self.way, utime_us))
+            there = truth[utime_us]['own'] if target_id is None else truth[utime_us]['targets'].get(str(target_id))
+            check(there is not None, '%s: target %s was not there' % (self.way, target_id))
+            largest_m = max(largest_m, distance_m(place, (there['latitude_deg'], there['longitude_deg'])))
+        check(largest_m < MOST_M, '%s: %.4f m from the truth' % (self.way, largest_m))
+        check(sum(target_id is None for target_id, _, _ in self.positions) >= 5, '%s: the own ship is not there' % self.way)
+        return latest_s, largest_m
+
+
+def look(seen):
+    """By REST, once."""
+    time_s = time.time()
+    for context, target in (ask('/signalk/v1/api/targets') or {}).items():
+        position = target['navigation']['position']
+        check(context.startswith('lidar:') and '.' not in context, context)
+        seen.take_position(id_of(context), time_s, position['timestamp'], position['value'])
+    own = ask('/signalk/v1/api/vessels/self/navigation/position')
+    if own:
+        seen.take_position(None, time_s, own['timestamp'], own['value'])
+    for name, one in (ask('/signalk/v2/api/notifications') or {}).items():
+        if one['path'].startswith('notifications.lookout.closestApproach'):
+            seen.notifications.append((time_s, dict(one['value'], id=name)))
+
+
+def read_stream(text):
+    """What the WebSocket's client noted."""
+    seen = Seen('WebSocket')
+    for line in text.splitlines():
+        note = json.loads(line)
+        message, time_s = note['message'], note['time_s']
+        for update in message.get('updates', []):
+            for value in update.get('values', []):
+                if value['path'] == 'navigation.position':
+                    target_id = id_of(message['context']) if message['context'].startswith('targets.') else None
+                    seen.take_position(target_id, time_s, update['timestamp'], value['value'])
+                if value['path'].startswith('notifications.lookout.closestApproach'):
+                    seen.notifications.append((time_s, value['value']))
+    return seen
+
+
+def check_notifications(seen, acknowledged_s):
+    states = [value['state'] for _, value in seen.notifications]
+    check(states and states[0] == 'alarm' and states[-1] == 'normal', '%s: states %s' % (seen.way, states))
+    first, last = seen.notifications[0][1], seen.notifications[-1][1]
+    check(sorted(first['method']) == ['sound', 'visual'] and last['method'] == [], '%s: %s' % (seen.way, (first, last)))
+    check('closest approach 2.5 m in 19 s' in first['message'] and '"Nu*$' in first['message'], '%s: %s' % (seen.way, first))
+    if acknowledged_s is not None:
+        loud = [value for time_s, value in seen.notifications if time_s > acknowledged_s + 1.0 and 'sound' in value['method']]
+        check(not loud, '%s: sounds after it was acknowledged: %s' % (seen.way, loud))
+
+
+def run_way(name):
+    destination, is_secured, comes_back = WAYS[name]
+    with Trial('output { name: "signalk" format: SIGNALK %s }' % destination) as trial:
+        npm = os.path.join(trial.build, 'peers/npm')
+        with open(os.path.join(trial.config, 'token'), 'w', encoding='utf-8') as file:
+            file.write(token_of({'device': 'lookout'}) + '\n')
+        os.chmod(os.path.join(trial.config, 'token'), 0o600)
+        folder = os.path.join(trial.folder, 'server')
+        configure_server(folder, is_secured)
+        environment = dict(os.environ, SIGNALK_NODE_CONFIG_DIR=folder, HOME=folder, NODE_NO_WARNINGS='1')
+        server = trial.start('server', ['node', os.path.join(npm, 'node_modules/signalk-server/bin/signalk-server')], env=environment)
+        wait_until(lambda: ask('/signalk') is not None or server.poll() is not None, 60, 'signalk-server answers')
+        check(server.poll() is None, 'signalk-server ended')
+        stream = trial.start('stream', ['node', os.path.join(trial.source, 'tests/peers/stream.cjs'), npm,
+                                        'ws://127.0.0.1:3000/signalk/v1/stream?subscribe=none', token_of({'id': 'skipper'})])
+        plotter = trial.start_plotter()
+        time.sleep(6.0 if name == 'tcp server' else 1.0)  # the server looks for ours every few seconds
+        feed = trial.start_feed(SECONDS, PLACE)
+        rest = Seen('REST')
+        silenced_s, acknowledged_s = None, None
+        end = time.monotonic() + SECONDS + 5.0
+        while time.monotonic() < end:
+            look(rest)
+            # Somebody makes it quiet, which is no acknowledgement, and acknowledges it later.
+            if rest.notifications and silenced_s is None:
+                silenced_s = time.time()
+                ask('/signalk/v2/api/notifications/%s/silence' % rest.notifications[-1][1]['id'], 'POST')
+            if silenced_s is not None and acknowledged_s is None and time.time() > silenced_s + 1.5:
+                acknowledged_s = time.time()
+                ask('/signalk/v2/api/notifications/%s/acknowledge' % rest.notifications[-1][1]['id'], 'POST')
+            time.sleep(0.1)
+        check(feed.wait(30) == 0, 'plotter_feed: exit code %s' % feed.returncode)
+        check(stream.poll() is None and server.poll() is None, 'the client or the server ended')
+        trial.end_plotter(plotter)
+        truth = trial.truth()
+        by_stream = read_stream(trial.output('stream'))
+        figures = [seen.check(truth) for seen in (rest, by_stream)]
+        for seen in (rest, by_stream):
+            check_notifications(seen, acknowledged_s)
+        start_us = min(truth)
+        alert_s = rest.notifications[0][0] - start_us * 1e-6 - ALERT_S
+        check(-CLOCKS_S < alert_s < MOST_LATE_S, 'the alert came after %.2f s' % alert_s)
+        acknowledgements = trial.acknowledgements()
+        if comes_back:
+            check(len(acknowledgements) == 1, 'ALERT_ACK: %s' % acknowledgements)
+            ack = acknowledgements[0]
+            check(ack['is_right'] and ack['source'] == 'plotter', str(ack))
+            after_s = ack['utime_us'] * 1e-6 - acknowledged_s
+            check(-CLOCKS_S < after_s < MOST_LATE_S, 'ALERT_ACK after %.2f s' % after_s)
+        else:
+            check(not acknowledgements, 'ALERT_ACK: %s' % acknowledgements)
+        print('%s: targets come within %.2f s (REST), %.2f s (WebSocket); %.4f m from the truth%s' %
+              (name, figures[0][0], figures[1][0], max(figure[1] for figure in figures),
+               '; ALERT_ACK after %.2f s' % after_s if comes_back else ''))
+
+
+def run():
+    for name in WAYS:
+        run_way(name)
+
+
+if __name__ == '__main__':
+    main(run)
