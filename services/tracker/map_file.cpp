@@ -62,11 +62,11 @@ std::string FeatureOf(const MapThing& thing) {
   return fmt::format(
       R"({{"type":"Feature","geometry":{},"properties":{{"type":"thing","kind":"{}","latitude_deg":{},"longitude_deg":{},"deviation_m":{},)"
       R"("length_m":{},"width_m":{},"length_bearing_deg":{},"top_above_water_m":{},"first_seen":"{}","last_seen":"{}","gone":{},"gone_since":{},)"
-      R"("days":{},"scans":{},"scans_by_day":{{{}}}}}}})",
+      R"("days":{},"known":{},"scans":{},"scans_by_day":{{{}}}}}}})",
       GeometryOf(thing), kind->second, Fixed(thing.latitude_deg, 9), Fixed(thing.longitude_deg, 9), Fixed(thing.deviation_m, 3),
       Fixed(thing.length_m, 3), Fixed(thing.width_m, 3), bearing_deg, Fixed(thing.top_above_water_m, 3), MapTimeText(thing.first),
       MapTimeText(thing.seen), thing.gone ? "true" : "false", thing.gone ? '"' + MapTimeText(*thing.gone) + '"' : "null", thing.days.size(),
-      num_scans, scans_by_day);
+      std::cmp_greater_equal(thing.days.size(), kKnownDays), num_scans, scans_by_day);
 }
 
 std::string FeatureOf(const MapLand& land) {
@@ -297,7 +297,7 @@ std::string MapText(const OwnMap& map) {
 }
 
 OwnMap ParseMap(std::string_view text) {
-  if (text.size() > kMaxMapBytes) throw MapFileError("has more than 16 MB");
+  if (text.size() > kMaxMapBytes) throw MapFileError("has more than 32 MB");
   const auto root = ToJson(text);
   if (!root.is_object() || root.value("type", json()) != "FeatureCollection" || root.value("lookout_map", json()) != 1) {
     throw MapFileError("is no map of lookout-export: a FeatureCollection with \"lookout_map\": 1");
@@ -328,7 +328,7 @@ OwnMap ParseMap(std::string_view text) {
 OwnMap ReadMapFile(const std::filesystem::path& file) try {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw MapFileError("is no file that can be read");
-  if (std::filesystem::file_size(file, error) > kMaxMapBytes || error) throw MapFileError("has more than 16 MB");
+  if (std::filesystem::file_size(file, error) > kMaxMapBytes || error) throw MapFileError("has more than 32 MB");
   std::ifstream input(file, std::ios::binary);
   std::string text(kMaxMapBytes + 1, '\0');
   input.read(text.data(), static_cast<std::streamsize>(text.size()));

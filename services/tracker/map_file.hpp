@@ -16,7 +16,7 @@ class MapFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-inline constexpr std::size_t kMaxMapBytes = 16UL * 1024 * 1024;
+inline constexpr std::size_t kMaxMapBytes = 32UL * 1024 * 1024;
 
 /// A FeatureCollection with "lookout_map": 1. A thing is a Polygon (LineString, Point where it has no area), land a MultiPoint: middles of cells
 /// of earth_grid. README.md has the properties.

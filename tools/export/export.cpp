@@ -13,6 +13,7 @@
 #include "common/core/printable.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "tools/export/map_table.hpp"
 #include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
@@ -40,7 +41,9 @@ std::string Fault(const Request& request) {
     return "--format svg is for --table returns, merges, obstacles, pose or tracks only";
   }
   if (IsOneOf(request.table, {"pose", "tracks"}) && request.scan) return "--scan is not for --table " + request.table;
-  if (request.format != "csv" && request.format != "ply" && request.format != "svg") return "there is no format " + request.format;
+  if ((request.format == "geojson") != (request.table == "map" && request.format != "csv"))
+    return "--table map is csv or geojson, and geojson is of it only";
+  if (!IsOneOf(request.format, {"csv", "ply", "svg", "geojson"})) return "there is no format " + request.format;
   if (request.format == "csv" && request.table != "merges" && request.scan) return "--scan is for --format ply or svg, or --table merges";
   if (request.all_scans && (request.format != "csv" || request.table != "merges")) return "--scan all is for --table merges only, as csv";
   if ((request.table == "merges") != request.config.has_value()) return "--config and --table merges go together: scans are segmented again by it";
@@ -65,6 +68,7 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
     if (request.format == "svg") return MakeMergesSvgSink(params, config::LoadBoat(*request.config), request.scan);
     return MakeMergesSink(params, request.scan, request.all_scans);
   }
+  if (request.format == "geojson") return MakeMapSink(true);
   if (request.format == "ply") return MakePlySink(request.scan);
   if (request.format == "svg" && IsOneOf(request.table, {"pose", "tracks"})) return MakeTrackSvgSink(request.table == "tracks");
   if (request.format == "svg") {

@@ -19,8 +19,9 @@ int main(int argc, char** argv) {
   app.add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   const auto names = exporter::TableNames();
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
-  app.add_option("--format", request.format, "csv; ply (table returns); svg (tables returns, merges and obstacles: a scan; pose: the track)")
-      ->check(CLI::IsMember({"csv", "ply", "svg"}))
+  app.add_option("--format", request.format,
+                 "csv; ply (table returns); svg (tables returns, merges and obstacles: a scan; pose: the track); geojson (table map)")
+      ->check(CLI::IsMember({"csv", "ply", "svg", "geojson"}))
       ->capture_default_str();
   app.add_option("--out", request.output,
                  "file to write, as FILE.partial until it is whole; one that exists is refused; without it: standard output");

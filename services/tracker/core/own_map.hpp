@@ -17,7 +17,7 @@ namespace lookout::tracker {
 /// Bounds of a map: what is beyond is refused in a file, and left out of what is kept.
 inline constexpr std::size_t kMostMapThings = 4000;
 inline constexpr std::size_t kMostMapTiles = 40'000;
-inline constexpr std::size_t kMostMapCells = 600'000;
+inline constexpr std::size_t kMostMapCells = 400'000;
 inline constexpr std::size_t kMostMapDays = 100;  // of a thing or a tile: the newest
 inline constexpr std::int32_t kMostDayScans = 10'000'000;
 inline constexpr std::size_t kMostMapOutline = 64;
