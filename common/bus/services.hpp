@@ -32,7 +32,7 @@ inline constexpr std::array kServices{
                10,
                "network",
                "checks the config",
-               "tracks, land, alerts, poses, waiting scans",
+               "tracks, land, what stands, alerts, poses, waiting scans",
                {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck}},
     ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "common/bus/channels.hpp"
+
 namespace lookout::tracker {
 
 void MapTelling::Tell(const ScanLabel& label, std::int32_t source, const OwnMap& map, std::optional<Utime> land_begin, int least_parts) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <utility>
 
 #include "services/tracker/core/script.hpp"
 #include "services/tracker/core/tracker.hpp"

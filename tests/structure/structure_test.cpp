@@ -53,6 +53,7 @@ std::string KindOf(const std::string& include) {
                                                                           {"fmt/", "fmt"},
                                                                           {"CLI/", "cli"},
                                                                           {"openssl/", "openssl"},
+                                                                          {"nlohmann/", "nlohmann-json"},
                                                                           {"systemd/", "systemd"},
                                                                           {"Eigen/", "eigen"},
                                                                           {"GeographicLib/", "geographiclib"},
@@ -99,6 +100,9 @@ const std::vector<Rule>& Rules() {
       // A file that one process leaves to the next.
       {"services/tracker/handover\\..pp", {"common/core", "common/io", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
+      // MAP, and the file that it may begin with.
+      {"services/tracker/map_(wire|telling)\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
+      {"services/tracker/map_file\\..pp", {"common/core", "OWN", "OWN/core", "fmt", "nlohmann-json"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},
