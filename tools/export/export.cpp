@@ -14,6 +14,7 @@
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "tools/export/map_sinks.hpp"
+#include "tools/export/map_table.hpp"
 #include "tools/export/sinks.hpp"
 
 namespace lookout::exporter {
@@ -53,11 +54,13 @@ std::string Fault(const Request& request) {
   if (request.format == "svg" && !IsOneOf(request.table, {"returns", "merges", "obstacles", "pose", "tracks"})) {
     return "--format svg is for --table returns, merges, obstacles, pose or tracks only";
   }
-  if (IsMap(request) && !IsOneOf(request.table, {"obstacles", "tracks", "pose"})) {
-    return "--format " + request.format + " is for --table obstacles, tracks or pose only";
+  const bool is_own_map = request.table == "map";
+  if (is_own_map && !IsOneOf(request.format, {"csv", "geojson"})) return "--table map is csv or geojson only";
+  if (IsMap(request) && !is_own_map && !IsOneOf(request.table, {"obstacles", "tracks", "pose"})) {
+    return "--format " + request.format + " is for --table obstacles, tracks or pose only" + (request.format == "geojson" ? ", or map" : "");
   }
   const bool has_scan = request.scan || (IsMap(request) && request.is_last_scan);
-  if ((request.table == "pose" || (request.table == "tracks" && !IsMap(request))) && has_scan) {
+  if ((request.table == "pose" || is_own_map || (request.table == "tracks" && !IsMap(request))) && has_scan) {
     return "--scan is not for --table " + request.table + (request.table == "tracks" ? " as " + request.format : "");
   }
   if (!IsOneOf(request.format, {"csv", "ply", "svg"}) && !IsMap(request)) return "there is no format " + request.format;
@@ -86,6 +89,7 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
     if (request.format == "svg") return MakeMergesSvgSink(params, config::LoadBoat(*request.config), request.scan);
     return MakeMergesSink(params, request.scan, request.all_scans);
   }
+  if (request.table == "map" && request.format == "geojson") return MakeMapSink(true);
   if (IsMap(request)) {
     const Scans scans{request.scan || request.is_last_scan, request.scan};
     if (request.table == "obstacles") return MakeObstacleMapSink(MakeMapWriter(request.format), request.near, scans);

@@ -22,6 +22,7 @@
 #include "lookout/tracks_t.hpp"
 #include "tools/export/csv.hpp"
 #include "tools/export/map_geometry.hpp"
+#include "tools/export/map_table.hpp"
 #include "tools/export/outlines.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
@@ -112,7 +113,7 @@ void Append(const tracks_t& message, const Near* near, std::string& text) {
               Share(track.existence_probability), Share(track.moving_probability), Metres(track.length_m), Metres(track.width_m),
               Degrees(track.length_bearing_rad), Metres(track.top_above_water_m), Share(track.seen_share), track.num_seen, track.num_looks,
               Fixed{track.mean_returns, 1}, Metres(track.range_m), Direction{track.bearing_rad}, Metres(track.distance_m),
-              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps));
+              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps), track.known_days);
   }
 }
 
@@ -207,10 +208,10 @@ struct Table {
   std::string_view name;
   std::string_view header;
   bus::Channel channel;
-  bool (*append)(Bytes, const Near*, std::string&);  // nullptr: returns and merges, which need two channels
+  bool (*append)(Bytes, const Near*, std::string&);  // nullptr: returns, map and merges, which need two channels or all of the log
 };
 
-constexpr std::array kTables{
+const std::array kTables{
     Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id", bus::kLidarScan,
           nullptr},
     Table{"segments",
@@ -226,7 +227,7 @@ constexpr std::array kTables{
           "east_m,"
           "north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,velocity_east_mps,velocity_north_mps,existence_probability,moving_probability,length_m,width_m,"
           "length_bearing_deg,top_above_water_m,seen_share,num_seen,num_looks,mean_returns,range_m,bearing_deg,distance_m,cpa_probability,encounter,"
-          "bearing_drift_degps",
+          "bearing_drift_degps,known_days",
           bus::kTracks, AppendPlaced<tracks_t>},
     Table{"alerts",
           "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text",
@@ -254,6 +255,7 @@ constexpr std::array kTables{
           "handling_p99_us,latency_p50_us,latency_p99_us",
           bus::kHealth, AppendMessage<health_t, AppendTraffic>},
     Table{"counters", "utime_us,process,name,count", bus::kHealth, AppendMessage<health_t, AppendCounters>},
+    Table{"map", MapHeader(), bus::kMap, nullptr},
     Table{"merges", "", bus::kLidarScan, nullptr}};  // its header has the names of all features: MergesHeader
 
 const Table* FindTable(std::string_view name) {
@@ -334,6 +336,7 @@ std::string_view TableHeader(std::string_view table) {
 std::unique_ptr<Sink> MakeCsvSink(std::string_view table, const std::optional<Circle>& near) {
   const auto* found = FindTable(table);
   if (found == nullptr || found->name == "merges") return nullptr;
+  if (found->name == "map") return MakeMapSink(false);
   if (found->append == nullptr) return std::make_unique<ReturnsSink>();
   return std::make_unique<MessageSink>(*found, near);
 }
