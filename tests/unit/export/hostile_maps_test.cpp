@@ -163,7 +163,7 @@ TEST_F(HostileMapTest, IsWholeWhateverTheNumbers) {
   Request request{.inputs = {log_}, .table = "tracks", .format = "geojson", .output = folder_ / "out", .force = true};
   request.near = Circle{{10.0, 20.0, 0.0}, 8e6};
   ASSERT_EQ(Export(request), kExitFine) << errors_;
-  EXPECT_NO_THROW(nlohmann::json::parse(text_));
+  EXPECT_TRUE(nlohmann::json::accept(text_));
 }
 
 }  // namespace
