@@ -216,13 +216,13 @@ HealthReport Service::Report() const {
   if (outputs_.empty()) return report;
 
   if (!now_) return report;
-  const auto silent = [this](std::optional<std::chrono::microseconds> seen, std::string_view channel) {
-    return fmt::format("no {} for {} s", channel, std::chrono::floor<std::chrono::seconds>(passed_.passed() - seen.value_or(0us)).count());
+  const auto silence_s = [this](std::optional<std::chrono::microseconds> seen) {
+    return std::chrono::floor<std::chrono::seconds>(passed_.passed() - seen.value_or(0us)).count();
   };
-  if (!IsFresh(alerts_seen_)) report.Degrade(silent(alerts_seen_, "ALERTS") + ": no look-out, no targets are sent");
-  if (!IsFresh(tracks_seen_)) report.Degrade(silent(tracks_seen_, "TRACKS") + ": no targets are sent");
+  if (!IsFresh(alerts_seen_)) report.Degrade(fmt::format("no ALERTS for {} s: no look-out, no targets are sent", silence_s(alerts_seen_)));
+  if (!IsFresh(tracks_seen_)) report.Degrade(fmt::format("no TRACKS for {} s: no targets are sent", silence_s(tracks_seen_)));
   if (!IsFresh(pose_seen_)) {
-    report.Degrade(silent(pose_seen_, "POSE") + ": neither own ship nor targets are sent");
+    report.Degrade(fmt::format("no POSE for {} s: neither own ship nor targets are sent", silence_s(pose_seen_)));
   } else if (has_pose_ && !own_.is_placed()) {
     report.Degrade("the own position is not known: no targets are sent");
   } else if (IsFresh(tracks_seen_) && std::chrono::abs(own_.time - tracks_time_) > kMostApart) {

@@ -1,9 +1,8 @@
 #include "services/plotter/wire.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "common/core/angles.hpp"
 #include "common/core/pose.hpp"
@@ -63,7 +62,7 @@ double CourseOf(const Eigen::Vector2d& velocity_mps) {
 Target ToTarget(const track_t& track, const Datum& datum) {
   Target target;
   target.id = track.id;
-  target.name = fmt::format("{} {}", KindText(track.kind), track.id);
+  target.name = std::string(KindText(track.kind)) + " " + std::to_string(track.id);
   target.state = StateOf(track.status);
   target.first = UtimeFromWire(track.first_utime_us).value_or(Utime());
   target.position = {track.latitude_deg, track.longitude_deg};

@@ -393,6 +393,15 @@ void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
   }
 }
 
+// What comes back to the plotter.
+void WriteAnswers(const Folder& folder) {
+  folder.Write("ack", std::string("$IIACK,003*55"));
+  folder.Write("acn", std::string("IIACN,102031.00,LKO,10002,3,A,C"));
+  folder.Write("hello", std::string(R"({"name":"signalk-server","version":"2.23.0","self":"vessels.urn:1"})"));
+  folder.Write("delta", std::string(R"({"context":"vessels.self","updates":[{"values":[{"path":"notifications.lookout.x","value":)"
+                                    R"({"state":"alarm","method":[],"status":{"silenced":true,"acknowledged":true}}}]}]})"));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -405,6 +414,7 @@ int main(int argc, char** argv) try {
   WriteDataPackets(data_packets);
   WritePositionPackets(Folder(root / "fuzz_position_packet"), data_packets);
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
+  WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteCaptures(Folder(root / "fuzz_capture"));
   WriteMessages(Folder(root / "fuzz_message"));
   WritePairsOfMessages(Folder(root / "fuzz_message_diff"));

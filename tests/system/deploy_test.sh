@@ -87,7 +87,7 @@ grep -q 'After=.* lookout-fuser.service' "$work/units/lookout-georeferencer.serv
 grep -q 'Wants=.* lookout-fuser.service ' "$work/units/lookout.target" || fail "a row more is not in the target"
 sed -i 's/"obstacles of two lidars", 12/"obstacles of two lidars", 12.5/' "$work/services.hpp"
 if units >"$work/refused.txt"; then fail "a wrong row is accepted"; fi
-grep -q '6 of 7 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
+grep -q '7 of 8 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
 
 up=$build_folder/bin/lookout-up
 config=$work/config

@@ -3,7 +3,7 @@
 namespace lookout::plotter {
 
 void Connection::Send(std::string_view message) {
-  if (!is_open() || is_late_) {
+  if (!is_open()) {
     ++traffic_->num_dropped;
     return;
   }

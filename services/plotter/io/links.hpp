@@ -49,8 +49,8 @@ struct WebSocketOptions {
 /// Opens links and does their work.
 ///
 /// What fails at the other side (a server that is down, a device that is unplugged, a network without a route) is a fault() of its link, which tries
-/// again until it is mended. A receiver that has not got a message after kMaxWait is cut off, as it would get old targets as new ones; what waited
-/// for it is dropped. A stream carries whole messages only, but for its last one.
+/// again until it is mended. A receiver that has not got a message after 2 s is cut off, as it would get old targets as new ones; what waited for it
+/// is dropped. A stream carries whole messages only, but for its last one.
 ///
 /// Counters of each link, behind `name`: _sent (messages that a receiver's computer has confirmed; over UDP: handed to the network), _dropped (the
 /// receiver was too slow, or was lost), _unsent (nobody was there, or the network refused it), _openings; of those that also receive: _received,

@@ -28,9 +28,10 @@ class TcpServerPort final : public Port {
     if (!error) acceptor_.bind(endpoint, error);
     if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
     if (!error) acceptor_.non_blocking(true, error);
-    if (error)
-      throw std::runtime_error("output " + options.name + ": cannot listen at " + PlaceOf(options.bind_address, options.port) + ": " +
-                               error.message());
+    if (error) {
+      const auto place = PlaceOf(options.bind_address, options.port);
+      throw std::runtime_error("output " + options.name + ": cannot listen at " + place + ": " + error.message());
+    }
   }
 
   ~TcpServerPort() override {

@@ -423,6 +423,7 @@ TEST(DoctorProcesses, TellsEachState) {
 TEST(DoctorProcesses, MissesThePlotterOnlyWhereItHasOutputs) {
   auto seen = Healthy();
   seen.processes.erase("plotter");
+  seen.config.has_plotter_outputs = true;
   EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "plotter is not heard, others are");
   seen.config.has_plotter_outputs = false;
   EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
