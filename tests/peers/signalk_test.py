@@ -143,12 +143,14 @@ class Seen:
         for target_id, time_s in self.came.items():
             first_us = min(utime_us for utime_us, row in rows if str(target_id) in row['targets'])
             latest_s = max(latest_s, time_s - first_us * 1e-6)
-            check(-CLOCKS_S < time_s - first_us * 1e-6 < MOST_LATE_S, '%s: target %d came after %.2f s' % (self.way, target_id, time_s - first_us * 1e-6))
+            after_s = time_s - first_us * 1e-6
+            check(-CLOCKS_S < after_s < MOST_LATE_S, '%s: target %d came after %.2f s' % (self.way, target_id, after_s))
         check(set(self.went) == TARGETS, '%s: gone are %s' % (self.way, sorted(self.went)))
         for target_id, time_s in self.went.items():
             last_us = max(utime_us for utime_us, row in rows if str(target_id) in row['targets'])
             # Those of the end: after a second of silence.
-            check(-CLOCKS_S < time_s - last_us * 1e-6 < MOST_LATE_S, '%s: target %d went after %.2f s' % (self.way, target_id, time_s - last_us * 1e-6))
+            after_s = time_s - last_us * 1e-6
+            check(-CLOCKS_S < after_s < MOST_LATE_S, '%s: target %d went after %.2f s' % (self.way, target_id, after_s))
         largest_m = 0.0
         for target_id, utime_us, place in self.positions:
             check(utime_us in truth, '%s: a time at which no POSE was: %d' % (self.way, utime_us))
