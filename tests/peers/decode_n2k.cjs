@@ -1,5 +1,5 @@
-// Each line of the standard input as canboatjs understands it: a line of JSON for each whole message, with the number of its (last) line. Of a message
-// in one line (Actisense) its bytes, too, and those that canboatjs makes of the decoded values.
+// Each line of the standard input as canboatjs understands it: a line of JSON for each whole message, with the number of its (last) line.
+// Of a message in one line (Actisense) its bytes, too, and those that canboatjs makes of the decoded values.
 'use strict'
 const { FromPgn, toPgn } = require(process.argv[2] + '/node_modules/@canboat/canboatjs')
 const parser = new FromPgn({ returnNulls: true })

@@ -45,17 +45,23 @@ def write_json(file, value):
     os.chmod(file, 0o600)
 
 
-def configure_server(folder, is_secured):
-    """Two ways in besides its own; nothing that looks for others or for the network."""
-    def way_in(name, options):
+def configure(trial, is_secured):
+    """The server, with ways in besides its own and nothing that looks for others or for the network; and the token for lookout-plotter."""
+    def way_in(name, kind, options):
         return {'id': name, 'enabled': True, 'pipeElements': [
-            {'type': 'providers/simple', 'options': {'logging': False, 'type': 'SignalK', 'subOptions': options}}]}
+            {'type': 'providers/simple', 'options': {'logging': False, 'type': kind, 'subOptions': options}}]}
+    with open(os.path.join(trial.config, 'token'), 'w', encoding='utf-8') as file:
+        file.write(token_of({'device': 'lookout'}) + '\n')
+    os.chmod(os.path.join(trial.config, 'token'), 0o600)
+    folder = os.path.join(trial.folder, 'server')
     os.mkdir(folder)
     off = ('plugins', 'wasm', 'appstore', 'webapps', 'playground', 'mfd_webapp', 'nmea-tcp', 'logfiles')
     settings = {'interfaces': {name: False for name in off}, 'port': 3000, 'ssl': False, 'mdns': False, 'wsCompression': False,
                 'accessLogging': False, 'pruneContextsMinutes': 1,
-                'pipedProviders': [way_in('udp', {'type': 'udp', 'port': '20220'}),
-                                   way_in('tcp', {'type': 'tcp', 'host': '127.0.0.1', 'port': '20221'})]}
+                'pipedProviders': [way_in('udp', 'SignalK', {'type': 'udp', 'port': '20220'}),
+                                   way_in('tcp', 'SignalK', {'type': 'tcp', 'host': '127.0.0.1', 'port': '20221'}),
+                                   way_in('sentences', 'NMEA0183', {'type': 'udp', 'port': '20222'}),
+                                   way_in('yden', 'NMEA2000', {'type': 'ydwg02-udp-canboatjs', 'port': '20223'})]}
     if is_secured:
         settings['security'] = {'strategy': './tokensecurity'}
     write_json(os.path.join(folder, 'settings.json'), settings)
@@ -68,9 +74,11 @@ def configure_server(folder, is_secured):
         {'path': '', 'value': {'name': 'trial', 'uuid': 'urn:mrn:signalk:uuid:c0d79334-4e25-4245-8892-54e8ccc8021d'}}]}]}])
 
 
-def ask(path, method='GET'):
+def ask(path, method='GET', body=None):
     """@return what it answers; None where there is nothing"""
-    request = urllib.request.Request(SERVER + path, method=method, headers={'Authorization': 'Bearer ' + token_of({'id': 'skipper'})})
+    headers = {'Authorization': 'Bearer ' + token_of({'id': 'skipper'}), 'Content-Type': 'application/json'}
+    data = None if body is None else json.dumps(body).encode()
+    request = urllib.request.Request(SERVER + path, data=data, method=method, headers=headers)
     try:
         with urllib.request.urlopen(request, timeout=5) as answer:
             return json.loads(answer.read())
@@ -86,6 +94,16 @@ def wait_until(is_so, seconds, what):
     while not is_so():
         check(time.monotonic() < deadline, 'not within %d s: %s' % (seconds, what))
         time.sleep(0.1)
+
+
+def start_server(trial):
+    folder = os.path.join(trial.folder, 'server')
+    environment = dict(os.environ, SIGNALK_NODE_CONFIG_DIR=folder, HOME=folder, NODE_NO_WARNINGS='1')
+    program = os.path.join(trial.build, 'peers/npm/node_modules/signalk-server/bin/signalk-server')
+    server = trial.start('server', ['node', program], env=environment)
+    wait_until(lambda: ask('/signalk') is not None or server.poll() is not None, 60, 'signalk-server answers')
+    check(server.poll() is None, 'signalk-server ended')
+    return server
 
 
 def utime_us_of(text):
@@ -125,12 +143,14 @@ class Seen:
         for target_id, time_s in self.came.items():
             first_us = min(utime_us for utime_us, row in rows if str(target_id) in row['targets'])
             latest_s = max(latest_s, time_s - first_us * 1e-6)
-            check(-CLOCKS_S < time_s - first_us * 1e-6 < MOST_LATE_S, '%s: target %d came after %.2f s' % (self.way, target_id, time_s - first_us * 1e-6))
+            after_s = time_s - first_us * 1e-6
+            check(-CLOCKS_S < after_s < MOST_LATE_S, '%s: target %d came after %.2f s' % (self.way, target_id, after_s))
         check(set(self.went) == TARGETS, '%s: gone are %s' % (self.way, sorted(self.went)))
         for target_id, time_s in self.went.items():
             last_us = max(utime_us for utime_us, row in rows if str(target_id) in row['targets'])
             # Those of the end: after a second of silence.
-            check(-CLOCKS_S < time_s - last_us * 1e-6 < MOST_LATE_S, '%s: target %d went after %.2f s' % (self.way, target_id, time_s - last_us * 1e-6))
+            after_s = time_s - last_us * 1e-6
+            check(-CLOCKS_S < after_s < MOST_LATE_S, '%s: target %d went after %.2f s' % (self.way, target_id, after_s))
         largest_m = 0.0
         for target_id, utime_us, place in self.positions:
             check(utime_us in truth, '%s: a time at which no POSE was: %d' % (self.way, utime_us))
@@ -154,7 +174,7 @@ def look(seen):
         seen.take_position(None, time_s, own['timestamp'], own['value'])
     for name, one in (ask('/signalk/v2/api/notifications') or {}).items():
         if one['path'].startswith('notifications.lookout.closestApproach'):
-            seen.notifications.append((time_s, dict(one['value'], id=name)))
+            seen.notifications.append((time_s, dict(one['value'], id=name, path=one['path'])))
 
 
 def read_stream(text):
@@ -187,16 +207,9 @@ def check_notifications(seen, acknowledged_s):
 def run_way(name):
     destination, is_secured, comes_back = WAYS[name]
     with Trial('output { name: "signalk" format: SIGNALK %s }' % destination) as trial:
+        configure(trial, is_secured)
+        server = start_server(trial)
         npm = os.path.join(trial.build, 'peers/npm')
-        with open(os.path.join(trial.config, 'token'), 'w', encoding='utf-8') as file:
-            file.write(token_of({'device': 'lookout'}) + '\n')
-        os.chmod(os.path.join(trial.config, 'token'), 0o600)
-        folder = os.path.join(trial.folder, 'server')
-        configure_server(folder, is_secured)
-        environment = dict(os.environ, SIGNALK_NODE_CONFIG_DIR=folder, HOME=folder, NODE_NO_WARNINGS='1')
-        server = trial.start('server', ['node', os.path.join(npm, 'node_modules/signalk-server/bin/signalk-server')], env=environment)
-        wait_until(lambda: ask('/signalk') is not None or server.poll() is not None, 60, 'signalk-server answers')
-        check(server.poll() is None, 'signalk-server ended')
         stream = trial.start('stream', ['node', os.path.join(trial.source, 'tests/peers/stream.cjs'), npm,
                                         'ws://127.0.0.1:3000/signalk/v1/stream?subscribe=none', token_of({'id': 'skipper'})])
         plotter = trial.start_plotter()
@@ -240,9 +253,71 @@ def run_way(name):
                '; ALERT_ACK after %.2f s' % after_s if comes_back else ''))
 
 
+def is_shown(target_id):
+    targets = ask('/signalk/v1/api/targets') or {}
+    return any(id_of(context) == target_id and target['navigation']['position']['value'] for context, target in targets.items())
+
+
+def run_restart():
+    """The server ends and begins anew: it is told all again, and an acknowledgement comes back."""
+    with Trial('output { name: "signalk" format: SIGNALK %s }' % WAYS['websocket'][0]) as trial:
+        configure(trial, True)
+        server = start_server(trial)
+        plotter = trial.start_plotter()
+        feed = trial.start_feed(30, PLACE)
+        wait_until(lambda: is_shown(17), 10, 'target 17')
+        server.kill()
+        server.wait()
+        time.sleep(2.0)
+        start_server(trial)
+        check(not is_shown(17), 'the server remembers what it should not')
+        # Within 5 s it is looked for again, and a moving target is told every 2.5 s.
+        wait_until(lambda: is_shown(17), 8, 'target 17 after the restart')
+        seen = Seen('REST')
+
+        def is_alert_shown():
+            look(seen)
+            return bool(seen.notifications)
+        wait_until(is_alert_shown, 3, 'the alert after the restart')
+        # As displays do that do not know the server's notifications API.
+        path = seen.notifications[-1][1]['path'].replace('.', '/')
+        ask('/signalk/v1/api/vessels/self/%s/method' % path, 'PUT', {'value': ['visual']})
+        wait_until(trial.acknowledgements, 3, 'ALERT_ACK after the restart')
+        check(feed.poll() is None, 'plotter_feed ended too early')
+        feed.terminate()
+        trial.end_plotter(plotter)
+        print('restart: targets and the alert are told again, and ALERT_ACK comes')
+
+
+def run_other_inputs():
+    """The own ship, by the server's readers of NMEA 0183 and NMEA 2000."""
+    with Trial('''
+output { name: "sentences" format: NMEA0183 udp { address: "127.0.0.1" port: 20222 } alerts: ALF }
+output { name: "yden" format: N2K_YDEN udp { address: "127.0.0.1" port: 20223 } }''') as trial:
+        configure(trial, False)
+        start_server(trial)
+        plotter = trial.start_plotter()
+        feed = trial.start_feed(8, PLACE)
+        told = {}  # by source: positions
+        while feed.poll() is None:
+            position = ask('/signalk/v1/api/vessels/self/navigation/position')
+            by_source = {} if position is None else position.get('values') or {position['$source']: position}
+            for source, one in by_source.items():
+                told.setdefault(source.split('.')[0], []).append((one['value']['latitude'], one['value']['longitude']))
+            time.sleep(0.1)
+        trial.end_plotter(plotter)
+        places = [(row['own']['latitude_deg'], row['own']['longitude_deg']) for row in trial.truth().values()]
+        check(set(told) == {'sentences', 'yden'}, 'sources %s' % sorted(told))
+        errors_m = {source: max(min(distance_m(one, place) for place in places) for one in set(ones)) for source, ones in told.items()}
+        check(max(errors_m.values()) < 0.02, 'from the truth, m: %s' % errors_m)
+        print('other inputs: from the truth, m: %s' % {source: round(error_m, 4) for source, error_m in errors_m.items()})
+
+
 def run():
     for name in WAYS:
         run_way(name)
+    run_restart()
+    run_other_inputs()
 
 
 if __name__ == '__main__':
