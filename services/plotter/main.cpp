@@ -1,5 +1,6 @@
 // The plotter process: TRACKS, ALERTS and POSE in; NMEA 0183, Signal K and NMEA 2000 out; ALERT_ACK out.
 #include <chrono>
+#include <thread>
 
 #include "common/runtime/service_main.hpp"
 #include "services/plotter/outputs.hpp"
@@ -19,6 +20,13 @@ void Run(lookout::runtime::Process& process, const lookout::plotter::Params& par
     links.Poll();
   });
   process.Run([&service] { return service.Report(); });
+  service.Finish();
+  // What was sent last is given a moment to go out.
+  constexpr int kLastPolls = 20;
+  for (int i = 0; i < kLastPolls; ++i) {
+    links.Poll();
+    std::this_thread::sleep_for(kTick);
+  }
 }
 
 }  // namespace

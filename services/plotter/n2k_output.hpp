@@ -16,7 +16,7 @@ class N2kOutput : public Output {
   void SendOwnShip(const Told& told) override;
   void SendTargets(const Told& told) override;
   void SendNotices(const Told& /*told*/) override {}  // NMEA 2000's alerts want an answering device on the network
-  void SendAnew() override { targets_.SendAnew(); }
+  void SendAnew() override { targets_.Forget(); }
 
   std::string Text(const N2kMessage& message, Utime time);
 

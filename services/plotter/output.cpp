@@ -1,14 +1,23 @@
 #include "services/plotter/output.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace lookout::plotter {
 
 // Where nobody listens nothing is made; who comes is told all.
-bool Output::IsOpen() {
-  if (!link_->is_open()) return false;
+bool Output::IsOpen(std::chrono::microseconds passed) {
+  if (!link_->is_open()) {
+    link_->NoteUnsent();
+    return false;
+  }
   if (num_openings_ != link_->num_openings()) {
     num_openings_ = link_->num_openings();
+    owes_anew_ = true;
+  }
+  if (owes_anew_ && (!anew_ || passed - *anew_ >= kAnewPeriod)) {
+    owes_anew_ = false;
+    anew_ = passed;
     waiting_.clear();
     SendAnew();
   }
@@ -17,30 +26,39 @@ bool Output::IsOpen() {
 }
 
 void Output::TellOwnShip(const Told& told) {
-  if (IsOpen()) SendOwnShip(told);
+  if (IsOpen(told.passed)) SendOwnShip(told);
 }
 
 void Output::TellTargets(const Told& told) {
-  if (IsOpen()) SendTargets(told);
+  if (IsOpen(told.passed)) SendTargets(told);
 }
 
 void Output::StopTargets(const Told& told) {
-  if (IsOpen()) EndTargets(told);
+  if (link_->is_open() && IsOpen(told.passed)) EndTargets(told);
 }
 
 void Output::TellNotices(const Told& told) {
-  if (IsOpen()) SendNotices(told);
+  if (link_->is_open() && IsOpen(told.passed)) SendNotices(told);
+}
+
+void Output::Finish(const Told& told) {
+  if (link_->is_open() && IsOpen(told.passed)) FinishTargets(told);
 }
 
 void Output::SendWaiting() {
-  while (!waiting_.empty() && link_->room_bytes() >= waiting_.front().size()) {
-    link_->Send(waiting_.front());
+  while (!waiting_.empty() && link_->room_bytes() >= waiting_.front().message.size()) {
+    link_->Send(waiting_.front().message);
     waiting_.pop_front();
   }
 }
 
-void Output::SendSurely(std::string message) {
-  waiting_.push_back(std::move(message));
+void Output::SendSurely(std::string message, const std::string& subject) {
+  const auto same = subject.empty() ? waiting_.end() : std::ranges::find(waiting_, subject, &WaitingMessage::subject);
+  if (same != waiting_.end()) {
+    same->message = std::move(message);
+  } else {
+    waiting_.push_back({subject, std::move(message)});
+  }
   SendWaiting();
   if (waiting_.size() <= kMostWaiting) return;
   waiting_.pop_front();
@@ -54,13 +72,13 @@ bool Output::Send(const std::string& message) {
 }
 
 std::vector<std::int64_t> Output::TakeAcknowledged(const Told& told) {
-  constexpr int kMostMessages = 64;  // a flood holds nobody up
+  constexpr int kMostMessages = 8;  // a flood holds nobody up
   std::vector<std::int64_t> keys;
   for (int i = 0; i < kMostMessages; ++i) {
     const auto message = link_->Receive();
     if (!message) break;
-    if (!params_.takes_acknowledgements) continue;
-    for (const auto key : Read(*message, told)) keys.push_back(key);
+    const auto acknowledged = Read(*message, told);
+    if (params_.takes_acknowledgements) keys.insert(keys.end(), acknowledged.begin(), acknowledged.end());
   }
   return keys;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -41,8 +42,10 @@ class Output {
   void TellOwnShip(const Told& told);
   /// After each TRACKS, while targets may be told: those that are due, and once those that are there no more.
   void TellTargets(const Told& told);
-  /// They may be told no more: what they are is not known.
+  /// They may be told no more: what they are is not known. To be called until they may be told again.
   void StopTargets(const Told& told);
+  /// The process ends in order: targets are ended, notices stay.
+  void Finish(const Told& told);
   /// Ten times a second or more: those that are due.
   void TellNotices(const Told& told);
 
@@ -58,21 +61,25 @@ class Output {
   virtual void SendOwnShip(const Told& told) = 0;
   virtual void SendTargets(const Told& told) = 0;
   virtual void EndTargets(const Told& /*told*/) {}
+  virtual void FinishTargets(const Told& told) { EndTargets(told); }
   virtual void SendNotices(const Told& told) = 0;
   /// To a receiver that knows nothing yet.
   virtual void SendAnew() = 0;
-  /// @return keys of notices that `message` acknowledges
+  /// Of what came back, whether or not acknowledgements are taken. @return keys of notices that `message` acknowledges
   virtual std::vector<std::int64_t> Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
 
   /// @return false where the link has no room now, or what must not be lost waits: it is to be tried again
   bool Send(const std::string& message);
   /// What must not be lost: it waits for room. Beyond kMostWaiting the oldest is dropped and counted.
-  void SendSurely(std::string message);
-  static constexpr std::size_t kMostWaiting = 300;
+  ///
+  /// @param subject  what waits of it is replaced; empty: of none
+  void SendSurely(std::string message, const std::string& subject = {});
+  static constexpr std::size_t kMostWaiting = 2000;
+  std::size_t room_bytes() const { return link_->room_bytes(); }
   void CountRefused() { ++num_refused_; }
 
  private:
-  bool IsOpen();
+  bool IsOpen(std::chrono::microseconds passed);
   void SendWaiting();
 
   OutputParams params_;
@@ -80,7 +87,15 @@ class Output {
   std::int64_t num_openings_ = 0;
   std::int64_t num_refused_ = 0;
   std::int64_t num_dropped_ = 0;
-  std::deque<std::string> waiting_;
+  struct WaitingMessage {
+    std::string subject;
+    std::string message;
+  };
+  std::deque<WaitingMessage> waiting_;
+  // Somebody who connects again and again must not make everything be sent again and again.
+  static constexpr std::chrono::seconds kAnewPeriod{2};
+  bool owes_anew_ = false;
+  std::optional<std::chrono::microseconds> anew_;
 };
 
 }  // namespace lookout::plotter

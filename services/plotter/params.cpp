@@ -14,6 +14,7 @@
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/io/network.hpp"
+#include "config/schema/navigator.pb.h"
 #include "config/schema/plotter.pb.h"
 
 namespace lookout::plotter {
@@ -62,7 +63,13 @@ SentAlerts ToSentAlerts(config::PlotterOutput::Alerts alerts) {
 // Reads the outputs and collects their faults, each at the line where its output begins.
 class OutputsReader {
  public:
-  OutputsReader(fs::path folder, const config::Plotter& message) : folder_(std::move(folder)), message_(message) {}
+  OutputsReader(fs::path folder, const config::Plotter& message) : folder_(std::move(folder)), message_(message) {
+    try {
+      navigator_ = config::Load<config::Navigator>(folder_, "navigator.txtpb");
+    } catch (const config::ConfigError&) {  // the navigator tells of it
+      navigator_.Clear();
+    }
+  }
 
   /// @throws config::ConfigError
   std::vector<OutputParams> Read() {
@@ -77,6 +84,33 @@ class OutputsReader {
     if (is_fine) return;
     faults_.push_back(
         config::FaultLine(folder_ / kFile, "output", "'" + message_.output(index_).name() + "': " + reason, static_cast<std::size_t>(index_)));
+  }
+
+  // What the navigator would read of it: a position of ours that comes back to us as one that was measured would hide that none is.
+  void CheckAgainstNavigator(const OutputParams& params) {
+    const auto& to = params.destination;
+    const auto is_same_device = [&to](const config::NavigationInput& input) {
+      std::error_code error;
+      return input.has_serial() && fs::weakly_canonical(input.serial().device(), error) == fs::weakly_canonical(to.device, error);
+    };
+    const auto& inputs = navigator_.input();
+    if (to.kind == Destination::Kind::kSerial) {
+      Require(std::ranges::none_of(inputs, is_same_device),
+              "serial port " + to.device.string() + " is an input of navigator.txtpb: one process has a port");
+    }
+    if (!params.sends_own_ship) return;
+    const std::string cure = ": the own position would come back as one that was measured; another port, or sends_own_ship: false";
+    if (to.kind == Destination::Kind::kUdp && params.format == Format::kNmea0183) {
+      const bool is_read = (navigator_.has_bind_address() && navigator_.nmea_port() == to.port) ||
+                           std::ranges::any_of(inputs, [&to](const auto& input) { return input.has_udp() && input.udp().port() == to.port; });
+      Require(!is_read || !io::ReachesThisComputer(to.address), fmt::format("lookout-navigator reads UDP port {} of this computer", to.port) + cure);
+    }
+    if (to.kind == Destination::Kind::kTcpServer && params.format == Format::kNmea0183) {
+      const auto is_read = [&to](const config::NavigationInput& input) {
+        return input.has_tcp() && input.tcp().port() == to.port && io::ReachesThisComputer(input.tcp().address());
+      };
+      Require(std::ranges::none_of(inputs, is_read), fmt::format("lookout-navigator reads TCP port {} of this computer", to.port) + cure);
+    }
   }
 
   OutputParams ReadOutput(const config::PlotterOutput& output) {
@@ -97,6 +131,7 @@ class OutputsReader {
     Require(num_kinds == 1, fmt::format("must have one of udp, tcp_server, tcp_client, serial and websocket, and has {}", num_kinds));
     if (num_kinds == 1) params.destination = ReadDestination(output);
     CheckFormat(output, params);
+    if (num_kinds == 1) CheckAgainstNavigator(params);
     return params;
   }
 
@@ -106,6 +141,8 @@ class OutputsReader {
     Require(!output.has_serial() || is_nmea, "a serial port carries format NMEA0183 only");
     Require(!params.takes_acknowledgements || !output.has_udp(), "nothing comes back over udp: takes_acknowledgements must be false");
     Require(!params.takes_acknowledgements || is_nmea || params.format == Format::kSignalK, "NMEA 2000 brings no acknowledgements back");
+    Require(!params.takes_acknowledgements || !is_nmea || params.alerts != SentAlerts::kNone,
+            "takes_acknowledgements wants alerts: ALR (acknowledged by ACK) or ALF (by ACN)");
     if (is_nmea) {
       Require(IsTalker(params.target_talker), "target_talker must be two capital letters");
       Require(IsTalker(params.own_ship_talker), "own_ship_talker must be two capital letters");
@@ -188,6 +225,7 @@ class OutputsReader {
 
   fs::path folder_;
   const config::Plotter& message_;
+  config::Navigator navigator_;
   std::vector<std::string> faults_;
   std::set<std::string> names_;
   std::set<std::pair<std::string, int>> ports_;

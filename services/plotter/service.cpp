@@ -51,6 +51,7 @@ void Service::OnTracks(const tracks_t& message) {
 void Service::UseTracks(std::span<const tracks_t> parts) {
   std::vector<Target> tracks;
   std::optional<Utime> begin;
+  Utime time;
   for (const auto& message : parts) {
     auto part = std::get<TracksPart>(ToTracksPart(message));
     const bool is_behind = tracks.empty() || part.targets.empty() || tracks.back().id < part.targets.front().id;
@@ -59,9 +60,11 @@ void Service::UseTracks(std::span<const tracks_t> parts) {
       return;
     }
     begin = part.begin;
-    tracks_time_ = part.time;
+    time = part.time;
     std::ranges::move(part.targets, std::back_inserter(tracks));
   }
+  // The same again says nothing of now.
+  if (time == tracks_time_ && begin == begin_) return;
   tracks_seen_ = passed_.passed();
   if (begin_ && begin != begin_) {
     // Another process of the tracker: its ids are of other things.
@@ -71,6 +74,7 @@ void Service::UseTracks(std::span<const tracks_t> parts) {
     for (const auto& output : outputs_) output->TellTargets(ToldNow());
   }
   begin_ = begin;
+  tracks_time_ = time;
   tracks_ = std::move(tracks);
   if (!MayTellTargets()) return;
   are_told_ = true;
@@ -89,6 +93,7 @@ void Service::ComposeTargets() {
     if (track.state == TargetState::kLost || (track.state == TargetState::kAcquiring && !params_.takes_tentative)) continue;
     Target& target = targets.emplace_back(track);
     target.position = Propagated(track.position, track.velocity_east_mps, track.velocity_north_mps, ahead_s);
+    if (target.tcpa_s > 0.0) target.tcpa_s = std::max(0.0, target.tcpa_s - ahead_s);
     if (const auto level = levels.find(track.id); level != levels.end() && track.id != 0) target.level = level->second;
   }
   std::set<std::int64_t> ids;
@@ -117,7 +122,9 @@ void Service::TellNotices() {
 
 void Service::OnPose(const pose_t& message) {
   if (const auto pose = messages::ToPose(message); const auto* refusal = std::get_if<Fault>(&pose)) return poses_refused_.Add(*refusal);
-  own_ = ToOwnShip(message);
+  const auto own = ToOwnShip(message);
+  if (has_pose_ && own.time == own_.time) return;  // the same again says nothing of now
+  own_ = own;
   has_pose_ = true;
   pose_seen_ = passed_.passed();
   if (own_told_ && passed_.passed() - *own_told_ < params_.own_ship_period) return;
@@ -158,6 +165,8 @@ void Service::StopTargets() {
 }
 
 void Service::AdvanceTo(Utime host_time) {
+  // This process, or the computer, stood still: what came before is of then.
+  if (now_ && host_time - *now_ > kFresh) tracks_seen_ = alerts_seen_ = pose_seen_ = passed_.passed() - kFresh;
   now_ = host_time;
   const bool is_first = passed_.passed() == 0us;
   passed_.Advance(host_time);
@@ -168,8 +177,11 @@ void Service::AdvanceTo(Utime host_time) {
   const bool is_watched = IsFresh(alerts_seen_);
   if (was_watched_ && !is_watched) ++counts_["times_unwatched"];
   was_watched_ = is_watched;
-  if (are_told_ && !MayTellTargets()) StopTargets();
-  if (!notices_told_ || passed_.passed() - *notices_told_ >= kNoticePeriod) TellNotices();
+  if (!notices_told_ || passed_.passed() - *notices_told_ >= kNoticePeriod) {
+    TellNotices();
+    // Again and again: an output that is closed now learns it when it is opened.
+    if (!MayTellTargets()) StopTargets();
+  }
   TakeAcknowledgements();
 }
 
@@ -190,6 +202,10 @@ void Service::Acknowledge(std::int64_t key) {
   if (!acknowledged_.emplace(key, passed_.passed()).second) return;
   bus::Publish(bus_, bus::kAlertAck, ToMessage(*notice, *now_, ack_seq_++));
   ++counts_["acks_sent"];
+}
+
+void Service::Finish() {
+  for (const auto& output : outputs_) output->Finish(ToldNow());
 }
 
 HealthReport Service::Report() const {

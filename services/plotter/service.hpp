@@ -33,6 +33,9 @@ class Service {
   /// Host time has come so far. Ten times a second or more.
   void AdvanceTo(Utime host_time);
 
+  /// The process ends in order: targets are told as ended, so that they do not stand where nobody sends them.
+  void Finish();
+
   HealthReport Report() const;
 
  private:

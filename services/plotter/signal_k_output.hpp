@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 
 #include "services/plotter/core/notice_schedule.hpp"
+#include "services/plotter/core/signal_k.hpp"
 #include "services/plotter/core/target_schedule.hpp"
 #include "services/plotter/output.hpp"
 
@@ -26,15 +28,20 @@ class SignalKOutput : public Output {
   void SendAnew() override;
   std::vector<std::int64_t> Read(const std::string& message, const Told& told) override;
 
+  void EndLeftover(const NoticeEcho& echo, const Told& told);
+
   std::string boat_;
   TargetSchedule targets_{kTargetPeriod};
   NoticeSchedule notices_;
-  // Notices that were told, by KeyOf, as they were last.
+  // Notices that were told, as they were last.
   struct Raised {
     std::string word;
     Notice notice;
   };
-  std::map<std::int64_t, Raised> raised_;
+  static constexpr std::size_t kMostRaised = 1000;
+  std::map<RaisedKey, Raised> raised_;
+  std::set<std::string> ended_words_;  // of processes before this one
+  bool was_placed_ = false;
 };
 
 }  // namespace lookout::plotter

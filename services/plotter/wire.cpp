@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <set>
 #include <string>
 
 #include "common/core/angles.hpp"
@@ -16,6 +18,7 @@ constexpr double kMostSpeedMps = 1000.0;
 constexpr double kMostLengthM = 1e5;
 constexpr double kMostTcpaS = 1e6;
 constexpr std::size_t kMostTextBytes = 1000;
+constexpr std::int64_t kMostAlertId = 1'000'000'000'000'000;
 
 bool IsWithin(double value, double min, double max) { return value >= min && value <= max; }  // NaN is not
 bool IsWithinOrUnknown(double value, double min, double max) { return std::isnan(value) || IsWithin(value, min, max); }
@@ -103,6 +106,7 @@ std::variant<TracksPart, Fault> ToTracksPart(const tracks_t& message) {
 
 std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
   std::vector<Notice> notices;
+  std::set<std::int64_t> ids;
   for (const auto& alert : message.alerts) {
     const auto raised = UtimeFromWire(alert.raised_utime_us);
     const auto changed = UtimeFromWire(alert.changed_utime_us);
@@ -110,7 +114,8 @@ std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
     const bool are_codes_good = alert.cause >= alert_t::CAUSE_GUARD_ZONE && alert.cause <= alert_t::CAUSE_WATCH &&
                                 alert.level >= alert_t::LEVEL_CAUTION && alert.level <= alert_t::LEVEL_WARNING &&
                                 alert.state >= alert_t::STATE_ACTIVE && alert.state <= alert_t::STATE_CLEARED;
-    if (!are_codes_good || alert.id == 0) return kAlertsCode;
+    if (!are_codes_good) return kAlertsCode;
+    if (alert.id == 0 || std::abs(alert.id / 2) > kMostAlertId || !ids.insert(alert.id).second) return kAlertsId;
     if (alert.text.size() > kMostTextBytes) return kAlertsText;
     notices.push_back({.id = alert.id,
                        .cause = static_cast<Cause>(alert.cause),
@@ -127,6 +132,7 @@ std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
 OwnShip ToOwnShip(const pose_t& message) {
   OwnShip own;
   own.time = Utime(std::chrono::microseconds(message.utime_us));
+  own.is_estimated = message.status == pose_t::STATUS_COASTING;
   const bool has_position = message.status != pose_t::STATUS_NO_POSITION && message.status != pose_t::STATUS_UNKNOWN;
   const bool has_heading = message.status != pose_t::STATUS_NO_HEADING && message.status != pose_t::STATUS_UNKNOWN;
   if (has_heading && std::isfinite(message.heading_rad)) own.heading_rad = WrapTo2Pi(message.heading_rad);

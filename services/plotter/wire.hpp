@@ -28,7 +28,8 @@ inline constexpr std::array kTracksFaults{kTracksTime, kTracksParts, kTracksNumb
 inline constexpr Fault kAlertsTime = "alerts_refused_time";  // of it or of an alert: does not exist
 inline constexpr Fault kAlertsCode = "alerts_refused_code";  // a cause, level or state that does not exist
 inline constexpr Fault kAlertsText = "alerts_refused_text";  // more than 1000 bytes
-inline constexpr std::array kAlertsFaults{kAlertsTime, kAlertsCode, kAlertsText};
+inline constexpr Fault kAlertsId = "alerts_refused_id";      // 0, out of bounds, or twice
+inline constexpr std::array kAlertsFaults{kAlertsTime, kAlertsCode, kAlertsText, kAlertsId};
 
 /// One part of TRACKS.
 struct TracksPart {

@@ -138,14 +138,14 @@ TEST_F(Plotter, ToldToStopStopsAndSaysWhy) {
   Receiver tcp(SOCK_STREAM);
   ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RATTM,") >= 1; })) << tcp.Read();
   scene_.has_alerts = false;
-  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), ",000,A,V,no look-out") == 1; })) << tcp.Read();
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), ",998,A,V,no look-out") == 1; })) << tcp.Read();
   tcp.Clear();
   Until([] { return false; }, seconds(4));
   EXPECT_EQ(NumOf(tcp.Read(), "$RATTM,"), 0) << tcp.Read();
   EXPECT_GE(NumOf(tcp.Read(), "$IIRMC,"), 2);
   scene_.has_alerts = true;
   ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RATTM,") >= 1; })) << tcp.Read();
-  EXPECT_EQ(NumOf(tcp.Read(), ",000,V,A,"), 1) << tcp.Read();
+  EXPECT_EQ(NumOf(tcp.Read(), ",998,V,A,"), 1) << tcp.Read();
 }
 
 TEST_F(Plotter, LetsAlertsBeAcknowledged) {

@@ -95,8 +95,8 @@ std::string NameWithin(const std::string& name, std::size_t max_bytes) {
 
 int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause); }
 
-// 1 to 999999; the watch's ids run from -1 down.
-std::int64_t InstanceOf(const Notice& notice) { return (std::abs(notice.id) - 1) % kMostInstance + 1; }
+// 1 to 999999; the watch's ids run from -1 down, and of the plotter's own there is one of a cause.
+std::int64_t InstanceOf(const Notice& notice) { return notice.id == 0 ? 1 : (std::abs(notice.id) - 1) % kMostInstance + 1; }
 
 std::string_view TitleOf(Cause cause) {
   switch (cause) {
@@ -104,6 +104,8 @@ std::string_view TitleOf(Cause cause) {
       return "GUARD ZONE";
     case Cause::kClosestApproach:
       return "CLOSE APPROACH";
+    case Cause::kPosition:
+      return "NO OWN POSITION";
     default:
       return "NO LOOK-OUT";
   }
@@ -141,18 +143,19 @@ std::string FieldText(std::string_view text, std::size_t max_bytes) {
 
 std::string Rmc(std::string_view talker, const OwnShip& own) {
   if (!own.is_placed()) return Sentence(fmt::format("{}RMC,{},V,,,,,,,{},,,N", talker, TimeOfDay(own.time), Date(own.time)));
-  return Sentence(fmt::format("{}RMC,{},A,{},{},{},{},,,A", talker, TimeOfDay(own.time), PositionFields(own.position),
-                              Speed(own.speed_mps, Unit::kNauticalMiles), Degrees(own.course_rad), Date(own.time)));
+  return Sentence(fmt::format("{}RMC,{},{},{},{},{},{},,,{}", talker, TimeOfDay(own.time), own.is_estimated ? 'V' : 'A', PositionFields(own.position),
+                              Speed(own.speed_mps, Unit::kNauticalMiles), Degrees(own.course_rad), Date(own.time), own.is_estimated ? 'E' : 'A'));
 }
 
 std::optional<std::string> Hdt(std::string_view talker, const OwnShip& own) {
-  if (!std::isfinite(own.heading_rad)) return std::nullopt;
+  if (!std::isfinite(own.heading_rad) || own.is_estimated) return std::nullopt;
   return Sentence(fmt::format("{}HDT,{},T", talker, Degrees(own.heading_rad)));
 }
 
 std::string Osd(std::string_view talker, const OwnShip& own, Unit unit) {
-  return Sentence(fmt::format("{}OSD,{},{},{},P,{},P,,,{}", talker, Degrees(own.heading_rad), std::isfinite(own.heading_rad) ? 'A' : 'V',
-                              Degrees(own.course_rad), Speed(own.speed_mps, unit), LetterOf(unit)));
+  return Sentence(fmt::format("{}OSD,{},{},{},P,{},P,,,{}", talker, Degrees(own.heading_rad),
+                              std::isfinite(own.heading_rad) && !own.is_estimated ? 'A' : 'V', Degrees(own.course_rad), Speed(own.speed_mps, unit),
+                              LetterOf(unit)));
 }
 
 std::string Ttm(std::string_view talker, const OwnShip& own, const Target& target, int number, Unit unit) {
@@ -176,8 +179,11 @@ std::string Tll(std::string_view talker, const Target& target, int number, Utime
 }
 
 int AlarmNumber(const Notice& notice) {
-  constexpr std::int64_t kMost = 999;
-  return notice.id <= 0 ? 0 : static_cast<int>((notice.id - 1) % kMost + 1);
+  constexpr std::int64_t kMost = 997;
+  constexpr int kOwnWatch = 998;
+  constexpr int kOwnPosition = 999;
+  if (notice.id == 0) return notice.cause == Cause::kPosition ? kOwnPosition : kOwnWatch;
+  return notice.id < 0 ? 0 : static_cast<int>((notice.id - 1) % kMost + 1);
 }
 
 std::string Alr(std::string_view talker, const Notice& notice, Utime time) {

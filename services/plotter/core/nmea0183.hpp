@@ -24,9 +24,9 @@ std::string Sentence(std::string_view body);
 /// A text as a field: what is reserved in a sentence ($ * , ! \ ^ ~), a control character or no ASCII becomes a space.
 std::string FieldText(std::string_view text, std::size_t max_bytes);
 
-/// Position, speed and course. Without a position or a speed it is void (V), with empty fields.
+/// Position, speed and course. Without a position it is void (V), with empty fields; where that is estimated it is void, too, with mode E.
 std::string Rmc(std::string_view talker, const OwnShip& own);
-/// True heading. nullopt while it is not known.
+/// True heading. nullopt while it is not known, or estimated.
 std::optional<std::string> Hdt(std::string_view talker, const OwnShip& own);
 /// Own ship data that belong to TTM: heading, course and speed over ground (reference P: a positioning system).
 std::string Osd(std::string_view talker, const OwnShip& own, Unit unit);
@@ -40,7 +40,7 @@ std::string Ttm(std::string_view talker, const OwnShip& own, const Target& targe
 /// Target latitude and longitude.
 std::string Tll(std::string_view talker, const Target& target, int number, Utime time);
 
-/// Number of an alert in ALR and ACK, 001 to 999; of the watch 000.
+/// Number of an alert in ALR and ACK: 001 to 997; 000 is the tracker's watch, 998 that of the plotter, 999 that there is no position.
 int AlarmNumber(const Notice& notice);
 /// Alarm: threshold exceeded (A) while it holds, acknowledged (A) or not (V).
 std::string Alr(std::string_view talker, const Notice& notice, Utime time);

@@ -23,6 +23,7 @@ struct OwnShip {
   double heading_rad = kNan;  // from true north, clockwise
   double speed_mps = kNan;    // over ground
   double course_rad = kNan;   // from true north, clockwise
+  bool is_estimated = false;  // position or heading is only propagated: nothing has come for about a second
 
   bool is_placed() const { return !std::isnan(position.latitude_deg) && !std::isnan(position.longitude_deg); }
 };

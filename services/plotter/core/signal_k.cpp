@@ -16,7 +16,10 @@ namespace lookout::plotter {
 namespace {
 
 using Json = nlohmann::ordered_json;  // members in the order in which they are written here
+using ReadJson = nlohmann::json;      // in which a member is found at once, however many there are
 
+// A delta of one notification has some 500 bytes.
+constexpr std::size_t kMostTextBytes = 16'384;
 constexpr std::string_view kNotifications = "notifications.lookout.";
 
 std::string TimeText(Utime time) {
@@ -98,18 +101,18 @@ std::string_view CauseWord(Cause cause) {
   }
 }
 
-bool IsTrue(const Json& object, const char* name) {
+bool IsTrue(const ReadJson& object, const char* name) {
   const auto member = object.find(name);
   return member != object.end() && member->is_boolean() && member->get<bool>();
 }
 
-bool HasSound(const Json& value) {
+bool HasSound(const ReadJson& value) {
   const auto method = value.find("method");
-  return method != value.end() && method->is_array() && std::ranges::find(*method, Json("sound")) != method->end();
+  return method != value.end() && method->is_array() && std::ranges::find(*method, ReadJson("sound")) != method->end();
 }
 
 // nullopt: it is no notification of ours.
-std::optional<NoticeEcho> ToEcho(const Json& one) {
+std::optional<NoticeEcho> ToEcho(const ReadJson& one) {
   if (!one.is_object()) return std::nullopt;
   const auto path = one.find("path");
   const auto value = one.find("value");
@@ -122,6 +125,7 @@ std::optional<NoticeEcho> ToEcho(const Json& one) {
   const bool has_status = status != value->end() && status->is_object();
   echo.is_acknowledged = has_status && IsTrue(*status, "acknowledged");
   const bool is_silenced = has_status && IsTrue(*status, "silenced");
+  echo.is_raised = *state != "normal" && *state != "nominal";
   const bool is_loud = *state == "alarm" || *state == "warn";
   echo.is_quiet = !is_silenced && (*state == "normal" || (is_loud && !HasSound(*value)));
   return echo;
@@ -187,7 +191,7 @@ std::string NoticeSubscription() {
 
 ReadEchoes ReadDelta(std::string_view text) {
   ReadEchoes read;
-  const auto message = Json::parse(text, nullptr, false);
+  const auto message = text.size() <= kMostTextBytes ? ReadJson::parse(text, nullptr, false) : ReadJson();
   read.is_wrong = !message.is_object();
   if (read.is_wrong) return read;
   const auto updates = message.find("updates");

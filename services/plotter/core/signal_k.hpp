@@ -36,6 +36,7 @@ std::string NoticeSubscription();
 /// What a server says of a notification now.
 struct NoticeEcho {
   std::string word;
+  bool is_raised = false;        // it is not normal
   bool is_acknowledged = false;  // by its notifications API
   /// It is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. What was sent without sound
   /// comes back so, too.

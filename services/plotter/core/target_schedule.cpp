@@ -1,29 +1,33 @@
 #include "services/plotter/core/target_schedule.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 
 namespace lookout::plotter {
 
 std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, std::chrono::microseconds now) const {
-  using Time = std::optional<std::chrono::microseconds>;
-  std::vector<std::pair<Time, const Target*>> due;
+  constexpr int kDangerousWeight = 4;
+  constexpr std::chrono::microseconds kNewAndDangerous = std::chrono::microseconds::max();
+  std::vector<std::pair<std::chrono::microseconds, const Target*>> due;
   for (const auto& target : targets) {
     const auto found = sent_.find(target.id);
-    const Time last = found == sent_.end() ? std::nullopt : found->second.time;
+    const auto last = found == sent_.end() ? std::nullopt : found->second.time;
     if (last && now - *last < period_) continue;
-    due.emplace_back(IsDangerous(target) ? std::nullopt : last, &target);
+    const bool is_dangerous = IsDangerous(target);
+    // What is new has waited for as long as four periods.
+    const auto waited = last ? now - *last : kDangerousWeight * period_;
+    due.emplace_back(!is_dangerous ? waited : last ? kDangerousWeight * waited : kNewAndDangerous, &target);
   }
-  // nullopt is before every time.
-  std::ranges::stable_sort(due, {}, [](const auto& one) { return std::pair(!IsDangerous(*one.second), one.first); });
+  std::ranges::stable_sort(due, std::greater(), &std::pair<std::chrono::microseconds, const Target*>::first);
   std::vector<const Target*> ordered;
   for (const auto& one : due) ordered.push_back(one.second);
   return ordered;
 }
 
-void TargetSchedule::NoteSent(const Target& target, int number, std::chrono::microseconds now) {
-  sent_.insert_or_assign(target.id, Sent{target, number, now});
+void TargetSchedule::NoteSent(const Target& target, Utime target_time, int number, std::chrono::microseconds now) {
+  sent_.insert_or_assign(target.id, Sent{target, target_time, number, now});
 }
 
 std::vector<TargetSchedule::Sent> TargetSchedule::TakeEnded(std::span<const Target> targets) {
@@ -44,6 +48,14 @@ std::vector<TargetSchedule::Sent> TargetSchedule::TakeEnded(std::span<const Targ
 
 void TargetSchedule::SendAnew() {
   for (auto& [id, sent] : sent_) sent.time.reset();
+}
+
+Target EndedAt(const TargetSchedule::Sent& ended, Utime time) {
+  constexpr double kMostS = 5.0;
+  auto target = ended.target;
+  const double ahead_s = std::clamp(ToSeconds(time - ended.target_time), 0.0, kMostS);
+  target.position = Propagated(target.position, target.velocity_east_mps, target.velocity_north_mps, ahead_s);
+  return target;
 }
 
 }  // namespace lookout::plotter

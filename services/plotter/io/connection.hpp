@@ -35,6 +35,12 @@ class Connection {
 
   void Tick(SteadyTime now);
 
+  /// What Send may be given now.
+  std::size_t room_bytes() const {
+    const auto num_queued = num_queued_bytes();
+    return is_open() && num_queued < kOfferedBytes ? kOfferedBytes - num_queued : 0;
+  }
+
   /// What waits is dropped, in the kernel too. Nothing of this connection happens any more.
   void Close(const std::string& reason);
 

@@ -24,8 +24,12 @@ class Link {
   /// What came in, whole: lines without CR LF of a stream, datagrams, texts of a WebSocket. At most a bounded number waits; the rest is counted.
   virtual std::optional<std::string> Receive() { return std::nullopt; }
 
-  /// Bytes that may be sent now without falling behind: of a serial port by its speed. Never negative; a socket's is "many".
+  /// Bytes that may be sent now without falling behind: of a serial port by its speed; of a connection what its buffer here still takes, of several
+  /// clients that of the quickest; over UDP what a receiver's buffer takes at once.
   virtual std::size_t room_bytes() const = 0;
+
+  /// Counts a message that was not made since nobody could be sent to.
+  virtual void NoteUnsent() {}
 
   /// Whether anybody can be sent to.
   virtual bool is_open() const = 0;

@@ -26,8 +26,8 @@ inline constexpr std::chrono::seconds kMaxWait{2};
 inline constexpr std::size_t kMaxWaitingBytes = std::size_t{256} * 1024;
 /// That wait for Receive(), of one link.
 inline constexpr std::size_t kMaxReceived = 64;
-/// What room_bytes() says of a socket.
-inline constexpr std::size_t kManyBytes = std::size_t{1} << 30;
+/// Of that, what room_bytes() offers.
+inline constexpr std::size_t kOfferedBytes = kMaxWaitingBytes - std::size_t{64} * 1024;
 
 /// What went through a link, and what came in. Its connections share it, and may outlive the link.
 struct Traffic {
@@ -79,7 +79,7 @@ class Port : public Link {
     traffic_->received.pop_front();
     return message;
   }
-  std::size_t room_bytes() const override { return kManyBytes; }
+  void NoteUnsent() override { ++traffic_->num_unsent; }
   std::int64_t num_openings() const override { return traffic_->num_openings; }
 
  protected:

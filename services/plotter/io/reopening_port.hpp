@@ -25,6 +25,7 @@ class ReopeningPort : public Port {
   void Send(std::string_view message) override;
   void Tick(SteadyTime now) override;
   bool is_open() const override { return is_open_ && connection_->is_open(); }
+  std::size_t room_bytes() const override { return is_open() ? connection_->room_bytes() : 0; }
   std::string fault() const override { return fault_; }
   std::vector<Counter> counters() const override;
 

@@ -53,6 +53,12 @@ class TcpServerPort final : public Port {
   bool is_open() const override {
     return std::ranges::any_of(clients_, [](const auto& client) { return client->is_open(); });
   }
+  // A client that does not read must not hold up the others: what it has no room for cuts it off.
+  std::size_t room_bytes() const override {
+    std::size_t room = 0;
+    for (const auto& client : clients_) room = std::max(room, client->room_bytes());
+    return room;
+  }
   std::string fault() const override { return fault_; }
   std::vector<Counter> counters() const override {
     return names_.With({traffic_->num_sent, traffic_->num_dropped, traffic_->num_unsent, traffic_->num_received, traffic_->num_refused,

@@ -33,6 +33,14 @@ TEST(PlotterNmea, SaysThatThePositionIsNotKnown) {
   EXPECT_FALSE(Hdt("II", own).has_value());
 }
 
+TEST(PlotterNmea, SaysThatThePositionIsOnlyEstimated) {
+  auto own = MakeOwnShip();
+  own.is_estimated = true;
+  EXPECT_EQ(Line(Rmc("II", own)), "$IIRMC,102030.45,V,5318.000000,N,00606.000000,W,3.89,90.00,010726,,,E");
+  EXPECT_FALSE(Hdt("II", own).has_value());
+  EXPECT_EQ(Line(Osd("RA", own, Unit::kKilometres)), "$RAOSD,45.00,V,90.00,P,7.20,P,,,K");
+}
+
 TEST(PlotterNmea, SaysATargetByRangeAndBearing) {
   const auto sentence = Ttm("RA", MakeOwnShip(), MakeTarget(), 5, Unit::kKilometres);
   EXPECT_EQ(Line(sentence), "$RATTM,05,0.1000,45.00,T,3.60,180.00,T,0.0125,0.550,K,boat 17,T,,102030.45,A");
@@ -163,11 +171,17 @@ TEST(PlotterNmea, ReadsWhichAlertIsAcknowledged) {
   EXPECT_EQ(ReadLine("\x01\x02{}", acknowledged), LineKind::kWrong);
 }
 
-TEST(PlotterNmea, NumbersAlertsFrom1To999AndTheWatch0) {
+TEST(PlotterNmea, NumbersAlertsFrom1To997AndKeepsThreeForItsOwn) {
   EXPECT_EQ(AlarmNumber(MakeNotice(1)), 1);
-  EXPECT_EQ(AlarmNumber(MakeNotice(999)), 999);
-  EXPECT_EQ(AlarmNumber(MakeNotice(1000)), 1);
+  EXPECT_EQ(AlarmNumber(MakeNotice(997)), 997);
+  EXPECT_EQ(AlarmNumber(MakeNotice(998)), 1);
   EXPECT_EQ(AlarmNumber(MakeNotice(-5)), 0);
+  auto own = MakeNotice(0);
+  own.cause = Cause::kWatch;
+  EXPECT_EQ(AlarmNumber(own), 998);
+  own.cause = Cause::kPosition;
+  EXPECT_EQ(AlarmNumber(own), 999);
+  EXPECT_NE(Alf("RA", own, test::kTime, 0, 1).find(",10004,1,1,0,NO OWN POSITION*"), std::string::npos);
 }
 
 }  // namespace

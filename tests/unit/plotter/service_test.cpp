@@ -27,6 +27,7 @@ TEST_F(PlotterService, SendsANewTargetWithItsTracks) {
   Run(1'000'000);
   Clear();
   tracks_ = {MakeTrack(17)};
+  Wait(20'000);
   SendTracks(Tracks());
   EXPECT_EQ(nmea_->With("RATTM").size(), 1U);
   EXPECT_EQ(signal_k_->With("targets.").size(), 1U);
@@ -84,7 +85,7 @@ TEST_F(PlotterService, StopsWhenNobodyLooks) {
   }
   EXPECT_EQ(nmea_->With("TTM").size(), 0U);
   EXPECT_EQ(nmea_->With("RAALR").size(), 1U);
-  EXPECT_EQ(nmea_->With(",000,A,V,no look-out").size(), 1U);
+  EXPECT_EQ(nmea_->With(",998,A,V,no look-out").size(), 1U);
   const auto words = signal_k_->With("no look-out");
   ASSERT_EQ(words.size(), 1U);
   EXPECT_NE(words[0].find("\"alarm\""), std::string::npos);
@@ -96,7 +97,7 @@ TEST_F(PlotterService, StopsWhenNobodyLooks) {
   Clear();
   Run(200'000);
   EXPECT_EQ(nmea_->With("TTM").size(), 1U);
-  EXPECT_EQ(nmea_->With(",000,V,A,").size(), 1U);
+  EXPECT_EQ(nmea_->With(",998,V,A,").size(), 1U);
   EXPECT_EQ(signal_k_->With("\"normal\"").size(), 1U);
   EXPECT_EQ(service_->Report().state, HealthState::kOk) << service_->Report().reason;
 }
@@ -171,7 +172,7 @@ TEST_F(PlotterService, EndsTheTargetsOfATrackerThatWasRestarted) {
 TEST_F(PlotterService, SendsAllToANewReceiver) {
   tracks_ = {MakeTrack(17)};
   alerts_ = {MakeAlert(3)};
-  Run(1'000'000);
+  Run(3'000'000);
   Clear();
   ++nmea_->openings;
   ++signal_k_->openings;
@@ -187,7 +188,7 @@ TEST_F(PlotterService, GetsRoundAllTargetsWhereThereIsLittleRoom) {
   alerts_ = {MakeAlert(3)};  // of track 17
   std::set<std::string> numbers;
   int num_dangerous = 0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 250; ++i) {
     nmea_->room = std::min<std::size_t>(nmea_->room + 48, 240);  // 4800 baud
     Run(100'000);
     for (const auto& line : nmea_->With("RATTM")) {
@@ -197,7 +198,7 @@ TEST_F(PlotterService, GetsRoundAllTargetsWhereThereIsLittleRoom) {
     Clear();
   }
   EXPECT_EQ(numbers.size(), 60U);
-  EXPECT_GE(num_dangerous, 7);  // every 2.5 s of 20 s
+  EXPECT_GE(num_dangerous, 8);  // of 10 in 25 s
 }
 
 TEST_F(PlotterService, KeepsAlertsForWhenThereIsRoom) {
@@ -215,6 +216,116 @@ std::string Ack(const std::string& body) {
   auto sentence = Sentence(body);
   sentence.resize(sentence.size() - 2);
   return sentence;
+}
+
+TEST_F(PlotterService, HasRoomForTargetsBesideManyAlerts) {
+  tracks_ = {MakeTrack(17)};
+  for (int id = 1; id <= 60; ++id) alerts_.push_back(MakeAlert(id));
+  std::set<std::string> told;
+  int num_targets = 0;
+  int num_own = 0;
+  for (int i = 0; i < 600; ++i) {
+    nmea_->room = std::min<std::size_t>(nmea_->room + 48, 256);  // 4800 baud
+    Run(100'000);
+    for (const auto& line : nmea_->With("RAALR")) told.insert(line.substr(17, 3));
+    num_targets += static_cast<int>(nmea_->With("RATTM").size());
+    num_own += static_cast<int>(nmea_->With("IIRMC").size());
+    Clear();
+  }
+  EXPECT_EQ(told.size(), 60U);
+  EXPECT_GE(num_targets, 15);  // of 24 in a minute
+  EXPECT_GE(num_own, 30);
+}
+
+TEST_F(PlotterService, SaysThatThePositionIsOnlyPropagated) {
+  tracks_ = {MakeTrack(17)};
+  Run(1'000'000);
+  Clear();
+  pose_status_ = pose_t::STATUS_COASTING;
+  Run(3'000'000);
+  EXPECT_FALSE(nmea_->With("RMC").empty());
+  EXPECT_EQ(nmea_->With("RMC").size(), nmea_->With(",,,E*").size());
+  EXPECT_TRUE(nmea_->With("HDT").empty());
+  EXPECT_TRUE(signal_k_->With("headingTrue").empty());
+  EXPECT_FALSE(nmea_->With("TTM").empty());
+}
+
+// The boat may have other sources of its position.
+TEST_F(PlotterService, TakesItsPositionInSignalKBackOnce) {
+  Run(2'000'000);
+  Clear();
+  pose_status_ = pose_t::STATUS_UNKNOWN;
+  Run(5'000'000);
+  EXPECT_EQ(signal_k_->With("headingTrue").size(), 1U);
+}
+
+TEST_F(PlotterService, EndsTargetsOfAServerThatWasAwayWhenTheLookOutFailed) {
+  tracks_ = {MakeTrack(17)};
+  Run(1'000'000);
+  signal_k_->is_there = false;
+  Wait(5'000'000);  // nobody looks
+  Clear();
+  signal_k_->is_there = true;
+  ++signal_k_->openings;
+  Wait(500'000);
+  ASSERT_EQ(signal_k_->With("gannet-17").size(), 1U);
+  EXPECT_NE(signal_k_->With("gannet-17")[0].find(R"("navigation.position","value":null)"), std::string::npos);
+}
+
+TEST_F(PlotterService, TellsNoTargetThatEndedWhileNobodyListened) {
+  tracks_ = {MakeTrack(17)};
+  Run(1'000'000);
+  nmea_->is_there = false;
+  tracks_.clear();
+  Run(90'000'000);
+  tracks_ = {MakeTrack(18)};
+  Clear();
+  nmea_->is_there = true;
+  ++nmea_->openings;
+  Run(1'000'000);
+  EXPECT_TRUE(nmea_->With(",L,").empty());
+  EXPECT_EQ(nmea_->With("RATTM").size(), 1U);
+}
+
+TEST_F(PlotterService, SendsAllAnewAtMostEveryTwoSeconds) {
+  tracks_ = {MakeTrack(17)};
+  Run(1'000'000);
+  Clear();
+  for (int i = 0; i < 40; ++i) {
+    ++nmea_->openings;
+    Run(100'000);
+  }
+  EXPECT_LE(nmea_->With("RATTM").size(), 4U);
+}
+
+TEST_F(PlotterService, TakesNothingForNewThatWasHeldUp) {
+  tracks_ = {MakeTrack(17)};
+  Run(3'000'000);
+  host_us_ += 20'000'000;  // the process was stopped
+  service_->AdvanceTo(Now());
+  Wait(200'000);
+  EXPECT_NE(service_->Report().reason.find("no ALERTS for 1 s"), std::string::npos) << service_->Report().reason;
+  Clear();
+  // The same POSE and TRACKS again are not of now either.
+  const auto tracks = Tracks();
+  SendPose();
+  SendAlerts();
+  SendTracks(tracks);
+  EXPECT_EQ(nmea_->With("TTM").size(), 1U);
+  Wait(1'500'000);
+  SendTracks(tracks);
+  SendAlerts();
+  EXPECT_NE(service_->Report().reason.find("no TRACKS for 1 s"), std::string::npos) << service_->Report().reason;
+}
+
+TEST_F(PlotterService, EndsTargetsWhenItEndsInOrder) {
+  tracks_ = {MakeTrack(17)};
+  Run(1'000'000);
+  Clear();
+  service_->Finish();
+  EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
+  EXPECT_EQ(nmea_->With(",L,").size(), 1U);
+  EXPECT_EQ(signal_k_->With("gannet-17").size(), 1U);
 }
 
 TEST_F(PlotterService, PassesAcknowledgementsOn) {
@@ -280,6 +391,35 @@ TEST_F(PlotterService, RaisesWhatGrewGraverUnderAnotherPath) {
   EXPECT_TRUE(acknowledged_.empty());
 }
 
+// What comes back from "over, not acknowledged" is told anew: an acknowledgement of what was over is none of it.
+TEST_F(PlotterService, RaisesWhatComesBackUnderAnotherPath) {
+  alerts_ = {MakeAlert(3)};
+  Run(300'000);
+  const auto first = signal_k_->With("closestApproach3").at(0);
+  alerts_[0].state = alert_t::STATE_RECTIFIED;
+  alerts_[0].changed_utime_us += 1'000'000;
+  Run(300'000);
+  alerts_[0].state = alert_t::STATE_ACTIVE;
+  alerts_[0].changed_utime_us += 1'000'000;
+  Run(300'000);
+  signal_k_->received = {AcknowledgedDelta(first)};
+  Wait(100'000);
+  EXPECT_TRUE(acknowledged_.empty());
+}
+
+// A server keeps what a process told that was killed.
+TEST_F(PlotterService, EndsAlarmsOfAProcessBefore) {
+  Run(300'000);
+  Clear();
+  const std::string left =
+      R"({"context":"vessels.urn:1","updates":[{"values":[{"path":"notifications.lookout.guardZone9at1","value":{"state":"alarm","method":["sound"]}}]}]})";
+  signal_k_->received = {left, left};
+  Wait(200'000);
+  const auto sent = signal_k_->With("guardZone9at1");
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_NE(sent[0].find("\"normal\""), std::string::npos);
+}
+
 TEST_F(PlotterService, TakesNoAcknowledgementWhereConfigDoesNot) {
   std::vector<std::unique_ptr<Output>> outputs;
   auto link = std::make_unique<test::KeepingLink>();
@@ -316,6 +456,11 @@ TEST_F(PlotterService, RefusesWhatCannotBe) {
   alerts_[0].state = 7;
   SendAlerts();
   EXPECT_EQ(Count("alerts_refused_code"), 1);
+  alerts_ = {MakeAlert(3), MakeAlert(3)};
+  SendAlerts();
+  alerts_ = {MakeAlert(INT64_MIN)};
+  SendAlerts();
+  EXPECT_EQ(Count("alerts_refused_id"), 2);
 }
 
 TEST_F(PlotterService, WaitsForAllPartsOfTracks) {
@@ -323,6 +468,7 @@ TEST_F(PlotterService, WaitsForAllPartsOfTracks) {
   Run(300'000);
   Clear();
   tracks_ = {MakeTrack(17), MakeTrack(18)};
+  Wait(20'000);
   auto first = Tracks();
   auto second = first;
   first.num_parts = second.num_parts = 2;
