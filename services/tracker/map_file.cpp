@@ -253,8 +253,7 @@ void AddLand(const Feature& feature, std::size_t most_cells, std::vector<MapLand
   }
   for (auto& [tile, indexes] : cells) {
     std::ranges::sort(indexes);
-    const auto rest = std::ranges::unique(indexes);
-    indexes.erase(rest.begin(), rest.end());
+    indexes.erase(std::unique(indexes.begin(), indexes.end()), indexes.end());
     each.tile = tile;
     each.cells = std::move(indexes);
     land.push_back(each);

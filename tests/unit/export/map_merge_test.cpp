@@ -216,7 +216,9 @@ TEST(MapMerge, TakesWhatStandsInTheLastTracks) {
   auto last = TracksAt(0, 90.0, 10.2, 0.0);
   last.tracks.push_back(TracksAt(0, 90.0, 60.0, 0.0).tracks[0]);
   last.tracks.push_back(TracksAt(0, 90.0, 80.0, 1.0).tracks[0]);  // it moves
-  last.num_tracks = 3;
+  last.tracks.push_back(TracksAt(0, 90.0, 100.0, 0.0).tracks[0]);
+  last.tracks.back().outline_east_m[0] = std::numeric_limits<float>::quiet_NaN();  // it is nowhere
+  last.num_tracks = 4;
   EXPECT_TRUE(merge.Add(last));
   const auto map = merge.Merged();
   ASSERT_EQ(map.things.size(), 2U);
