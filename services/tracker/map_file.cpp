@@ -266,6 +266,8 @@ json ToJson(std::string_view text) {
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     throw MapFileError(fmt::format("line {}: is no JSON", 1 + std::count(text.begin(), end, '\n')));
+  } catch (const json::exception&) {  // it names no line
+    throw MapFileError("holds a number that is too large");
   }
 }
 

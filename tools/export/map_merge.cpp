@@ -111,17 +111,17 @@ bool MapMerge::Add(const tracks_t& message) {
   if (*time > process.tracks_time) process.tracked.clear();
   process.tracks_time = *time;
   for (const auto& track : message.tracks) {
-    if (CanBeThing(track)) process.tracked.push_back(ToThing(track));
+    if (CanBeThing(track)) process.tracked.insert_or_assign(track.id, ToThing(track));
   }
   return true;
 }
 
-// What stands in the last TRACKS is a thing that was told, seen since, or a new one. Parts that came twice are things that were told.
+// What stands in the last TRACKS is a thing that was told, seen since, or a new one.
 void MapMerge::AddTracked(Process& process) {
   const auto last_id = [](const auto& things) { return things.empty() ? 0 : things.rbegin()->first; };
   auto next_id = std::max(last_id(process.given), last_id(process.kept)) + 1;
   std::vector<std::pair<std::int64_t, MapThing>> seen;
-  for (const auto& tracked : process.tracked) {
+  for (const auto& [track_id, tracked] : process.tracked) {
     if (process.kept_time && tracked.seen <= *process.kept_time) continue;
     std::optional<std::pair<double, std::int64_t>> nearest;
     const auto look_at = [&](std::int64_t id, const MapThing& thing) {

@@ -215,8 +215,11 @@ TEST(MapMerge, TakesWhatStandsInTheLastTracks) {
   EXPECT_TRUE(merge.Add(TracksAt(0, 70.0, 40.0, 0.0)));  // not the last
   auto last = TracksAt(0, 90.0, 10.2, 0.0);
   last.tracks.push_back(TracksAt(0, 90.0, 60.0, 0.0).tracks[0]);
+  last.tracks.back().id = 78;
   last.tracks.push_back(TracksAt(0, 90.0, 80.0, 1.0).tracks[0]);  // it moves
+  last.tracks.back().id = 79;
   last.tracks.push_back(TracksAt(0, 90.0, 100.0, 0.0).tracks[0]);
+  last.tracks.back().id = 80;
   last.tracks.back().outline_east_m[0] = std::numeric_limits<float>::quiet_NaN();  // it is nowhere
   last.num_tracks = 4;
   EXPECT_TRUE(merge.Add(last));
@@ -225,6 +228,16 @@ TEST(MapMerge, TakesWhatStandsInTheLastTracks) {
   const auto old = std::ranges::find(map.things, std::vector<DayScans>{{kDay, 5}}, &MapThing::days);
   ASSERT_NE(old, map.things.end()) << "seen again, by how many scans more is not known";
   EXPECT_EQ(ToUtimeUs(old->seen), last.utime_us);
+}
+
+// With each copy of a log its last TRACKS came again.
+TEST(MapMerge, CountsTheLastTracksOfALogThatIsThereTwiceOnce) {
+  MapMerge merge;
+  for (int copy = 0; copy < 2; ++copy) {
+    EXPECT_TRUE(merge.Add(Kept(0, 1, {})));
+    EXPECT_TRUE(merge.Add(TracksAt(0, 90.0, 40.0, 0.0)));
+  }
+  EXPECT_EQ(merge.Merged().things.size(), 1U);
 }
 
 TEST(MapMerge, LeavesOutMessagesThatAreNone) {
