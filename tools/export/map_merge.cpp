@@ -121,7 +121,8 @@ void MapMerge::AddTracked(Process& process) {
   const auto last_id = [](const auto& things) { return things.empty() ? 0 : things.rbegin()->first; };
   auto next_id = std::max(last_id(process.given), last_id(process.kept)) + 1;
   std::vector<std::pair<std::int64_t, MapThing>> seen;
-  for (const auto& [track_id, tracked] : process.tracked) {
+  for (const auto& entry : process.tracked) {
+    const MapThing& tracked = entry.second;
     if (process.kept_time && tracked.seen <= *process.kept_time) continue;
     std::optional<std::pair<double, std::int64_t>> nearest;
     const auto look_at = [&](std::int64_t id, const MapThing& thing) {
