@@ -45,6 +45,9 @@ outputs() {  # FOLDER
   done
   "$bin/lookout-export" --in replay.lcmlog --table returns --format svg --out returns.svg
   "$bin/lookout-export" --in replay.lcmlog --table returns --format ply --out returns.ply
+  for table in obstacles tracks pose; do
+    for format in geojson kml gpx; do "$bin/lookout-export" --in replay.lcmlog --table $table --format $format --out "$table.$format"; done
+  done
   "$bin/lookout-export" --in replay.lcmlog --table merges --config "$config" --out merges.csv
   "$bin/lookout-export" --in replay.lcmlog --table merges --config "$config" --format svg --out merges.svg
   "$bin/lookout-eval" --in replay.lcmlog --truth truth >eval.txt

@@ -1,17 +1,14 @@
 #include "tools/export/geojson.hpp"
 
-#include <cstddef>
+#include <type_traits>
 #include <variant>
 
 #include "common/core/printable.hpp"
-#include "common/core/utime.hpp"
-#include "tools/log/time_text.hpp"
+#include "tools/export/map_text.hpp"
 
 namespace lookout::exporter {
 
 namespace {
-
-std::string TimeOf(std::int64_t utime_us) { return log::TimeText(Utime(std::chrono::microseconds(utime_us))); }
 
 // "[a,b,...]" of what `append` makes of each.
 template <typename Range, typename AppendOne>
@@ -37,7 +34,7 @@ void AppendPositions(const std::vector<MapPlace>& places, std::string& json) {
 }
 
 void AppendTimes(const Geometry& geometry, std::string& json) {
-  const auto append_one = [&](std::int64_t utime_us) { AppendJsonString(TimeOf(utime_us), json); };
+  const auto append_one = [&](std::int64_t utime_us) { AppendJsonString(IsoTime(utime_us), json); };
   if (geometry.utimes_us.size() == 1) {
     AppendList(geometry.utimes_us.front(), json, append_one);
   } else {
@@ -61,8 +58,8 @@ class GeoJsonWriter final : public MapWriter {
       AppendJsonValue(value, text);
     };
     add("name", feature.name);
-    if (feature.utime_us) add("time", TimeOf(*feature.utime_us));
-    if (feature.end_utime_us) add("end_time", TimeOf(*feature.end_utime_us));
+    if (feature.utime_us) add("time", IsoTime(*feature.utime_us));
+    if (feature.end_utime_us) add("end_time", IsoTime(*feature.end_utime_us));
     for (const auto& [name, value] : feature.properties) add(name, value);
     if (feature.geometry.HasTimes()) {
       text += ",\"coordTimes\":";

@@ -222,7 +222,7 @@ Geometry PolygonAround(std::span<const MapPlace> corners) {
   if (closed.size() > 2) {
     // A walk that begins on the meridian would cross it once only.
     const auto begin = std::ranges::find_if(closed, [](const MapPlace& place) { return std::abs(place.longitude_ndeg) != kHalfCircle; });
-    if (begin != closed.end()) std::ranges::rotate(closed, begin);
+    if (begin != closed.end()) std::rotate(closed.begin(), begin, closed.end());
     closed.push_back(closed.front());
     Geometry polygon{Geometry::Kind::kPolygon, {}, {}};
     auto walked = Walk(closed);
@@ -345,6 +345,7 @@ bool Near::Holds(const MapPlace& place) const { return From(place).norm() <= rad
 bool Near::Holds(const Geometry& geometry) const {
   for (const auto& part : geometry.parts) {
     std::vector<Eigen::Vector3d> places_m;
+    places_m.reserve(part.size());
     for (const auto& place : part) places_m.push_back(From(place));
     if (geometry.kind == Geometry::Kind::kPoint || geometry.kind == Geometry::Kind::kPoints) {
       if (std::ranges::any_of(places_m, [&](const auto& place_m) { return place_m.norm() <= radius_m_; })) return true;

@@ -1,5 +1,6 @@
 #include "tools/export/map_geometry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -86,12 +87,12 @@ TEST(Polygon, ThatOnlyTouchesTheMeridianIsNotCut) {
   for (const double side_deg : {180.0, -180.0}) {
     for (std::size_t first = 0; first < 3; ++first) {
       std::vector corners{Place(179.0, 0.0), Place(side_deg, 0.5), Place(179.0, 1.0)};
-      std::ranges::rotate(corners, corners.begin() + static_cast<std::ptrdiff_t>(first));
+      std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
       const auto east = PolygonAround(corners);
       ASSERT_EQ(east.parts.size(), 1U) << side_deg << " " << first;
       EXPECT_DOUBLE_EQ(AreaDeg2(east.parts[0]), 0.5);
       std::vector western{Place(-179.0, 0.0), Place(side_deg, 0.0), Place(side_deg, 1.0)};
-      std::ranges::rotate(western, western.begin() + static_cast<std::ptrdiff_t>(first));
+      std::rotate(western.begin(), western.begin() + static_cast<std::ptrdiff_t>(first), western.end());
       const auto west = PolygonAround(western);
       ASSERT_EQ(west.parts.size(), 1U) << side_deg << " " << first;
       EXPECT_DOUBLE_EQ(AreaDeg2(west.parts[0]), 0.5);

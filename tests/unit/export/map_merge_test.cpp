@@ -279,6 +279,9 @@ TEST_F(MapTable, SaysWhatALogLacksAndWhatIsNoFormatOfIt) {
   EXPECT_NE(errors_.find("holds no MAP"), std::string::npos) << errors_;
   EXPECT_EQ(Export("map", "svg"), kExitUsage);
   EXPECT_EQ(Export("map", "ply"), kExitUsage);
+  EXPECT_EQ(Export("map", "kml"), kExitUsage);
+  EXPECT_EQ(Export("map", "geojson", 7), kExitUsage) << errors_;
+  EXPECT_EQ(Export(Request{.inputs = {log_}, .table = "map", .format = "geojson", .output = folder_ / "out", .span = {7, std::nullopt}}), kExitUsage);
 }
 
 }  // namespace
