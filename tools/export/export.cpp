@@ -55,13 +55,13 @@ std::string Fault(const Request& request) {
   if (request.format == "svg" && !IsOneOf(request.table, {"returns", "merges", "obstacles", "pose", "tracks"})) {
     return "--format svg is for --table returns, merges, obstacles, pose or tracks only";
   }
-  if (request.table == "map" && !IsOneOf(request.format, {"csv", "geojson"})) return "--table map is written as csv or geojson only";
-  if (IsMap(request) && !IsOneOf(request.table, {"obstacles", "tracks", "pose", "map"})) {
-    return "--format " + request.format + " is for --table obstacles, tracks" +
-           (request.format == "geojson" ? ", pose or map only" : " or pose only");
+  const bool is_own_map = request.table == "map";
+  if (is_own_map && !IsOneOf(request.format, {"csv", "geojson"})) return "--table map is csv or geojson only";
+  if (IsMap(request) && !is_own_map && !IsOneOf(request.table, {"obstacles", "tracks", "pose"})) {
+    return "--format " + request.format + " is for --table obstacles, tracks or pose only" + (request.format == "geojson" ? ", or map" : "");
   }
   const bool has_scan = request.scan || (IsMap(request) && request.is_last_scan);
-  if ((IsOneOf(request.table, {"pose", "map"}) || (request.table == "tracks" && !IsMap(request))) && has_scan) {
+  if ((request.table == "pose" || is_own_map || (request.table == "tracks" && !IsMap(request))) && has_scan) {
     return "--scan is not for --table " + request.table + (request.table == "tracks" ? " as " + request.format : "");
   }
   if (!IsOneOf(request.format, {"csv", "ply", "svg"}) && !IsMap(request)) return "there is no format " + request.format;

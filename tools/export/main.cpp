@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
   app.add_option("--table", request.table, "what to export")->required()->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
   app.add_option("--format", request.format,
                  "csv; ply (table returns); svg (tables returns, merges and obstacles: a scan; pose and tracks: the track); maps: geojson, kml, gpx "
-                 "(tables obstacles, tracks, pose; geojson: map)")
+                 "(tables obstacles, tracks, pose); geojson (table map)")
       ->check(CLI::IsMember({"csv", "ply", "svg", "geojson", "kml", "gpx"}))
       ->capture_default_str();
   app.add_option("--out", request.output,

@@ -109,7 +109,7 @@ TEST_F(SelectionTest, SaysWhatIsWrong) {
   EXPECT_NE(errors_.find("--near is for --table obstacles, tracks or pose only"), std::string::npos) << errors_;
   for (const auto* format : {"geojson", "kml", "gpx"}) {
     EXPECT_EQ(Export("returns", format), kExitUsage);
-    EXPECT_NE(errors_.find("is for --table obstacles, tracks"), std::string::npos) << errors_;
+    EXPECT_NE(errors_.find("is for --table obstacles, tracks or pose only"), std::string::npos) << errors_;
     EXPECT_EQ(Export("pose", format, 3), kExitUsage);
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
