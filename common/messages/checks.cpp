@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 #include "common/core/angles.hpp"
@@ -207,7 +208,9 @@ bool IsGood(const map_thing_t& thing) {
 }
 
 bool IsGood(const map_land_t& land) {
-  return UtimeFromWire(land.seen_utime_us) && AreDays(land.day) && land.cell.size() <= 1024 &&
+  constexpr std::int32_t kMostTile = 3'000'000;  // of 16 m, or once round the earth
+  return std::abs(std::int64_t{land.tile_east}) <= kMostTile && std::abs(std::int64_t{land.tile_north}) <= kMostTile &&
+         UtimeFromWire(land.seen_utime_us) && AreDays(land.day) && land.cell.size() <= 1024 &&
          std::ranges::adjacent_find(land.cell, std::greater_equal()) == land.cell.end() &&
          (land.cell.empty() || (land.cell.front() >= 0 && land.cell.back() < 1024));
 }

@@ -253,8 +253,7 @@ void AddLand(const Feature& feature, std::size_t most_cells, std::vector<MapLand
   }
   for (auto& [tile, indexes] : cells) {
     std::ranges::sort(indexes);
-    const auto rest = std::ranges::unique(indexes);
-    indexes.erase(rest.begin(), rest.end());
+    indexes.erase(std::unique(indexes.begin(), indexes.end()), indexes.end());
     each.tile = tile;
     each.cells = std::move(indexes);
     land.push_back(each);
@@ -267,6 +266,8 @@ json ToJson(std::string_view text) {
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     throw MapFileError(fmt::format("line {}: is no JSON", 1 + std::count(text.begin(), end, '\n')));
+  } catch (const json::exception&) {  // it names no line
+    throw MapFileError("holds a number that is too large");
   }
 }
 

@@ -38,6 +38,7 @@ bool IsMap(const Request& request) { return IsOneOf(request.format, {"geojson", 
 // @return what is wrong with the choice of a part of the log; empty when nothing
 std::string SelectionFault(const Request& request) {
   const bool is_csv_or_map = request.format == "csv" || IsMap(request);
+  if (!request.span.IsAll() && request.table == "map") return "--from and --to are not for --table map: it is of whole logs";
   if (!request.span.IsAll() && !is_csv_or_map) return "--from and --to are not for --format " + request.format;
   if (request.span.from_us && request.span.to_us && *request.span.from_us >= *request.span.to_us) return "--from is not before --to";
   if (request.near && !(is_csv_or_map && IsOneOf(request.table, {"obstacles", "tracks", "pose"}))) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "services/tracker/core/land.hpp"
 #include "services/tracker/map_wire.hpp"
 
 namespace lookout::exporter {
@@ -55,7 +56,9 @@ bool CanBeThing(const track_t& track) {
          is_within(track.length_m, 0.0, kMostM) && is_within(track.width_m, 0.0, kMostM) && is_within(track.length_bearing_rad, 0.0, 4.0) &&
          is_within(track.top_above_water_m, -kMostM, kMostM) && is_within(track.covariance[0][0], 0.0, 100.0) &&
          is_within(track.covariance[1][1], 0.0, 100.0) && is_within(track.covariance[0][1], -100.0, 100.0) && !track.outline_east_m.empty() &&
-         track.outline_east_m.size() == track.outline_north_m.size() && track.outline_east_m.size() <= tracker::kMostMapOutline;
+         track.outline_east_m.size() == track.outline_north_m.size() && track.outline_east_m.size() <= tracker::kMostMapOutline &&
+         std::ranges::all_of(track.outline_east_m, [&](float east_m) { return std::abs(east_m - track.position_map_m[0]) <= kMostM; }) &&
+         std::ranges::all_of(track.outline_north_m, [&](float north_m) { return std::abs(north_m - track.position_map_m[1]) <= kMostM; });
 }
 
 double ApartM(const MapThing& one, const MapThing& other) {
@@ -108,17 +111,18 @@ bool MapMerge::Add(const tracks_t& message) {
   if (*time > process.tracks_time) process.tracked.clear();
   process.tracks_time = *time;
   for (const auto& track : message.tracks) {
-    if (CanBeThing(track)) process.tracked.push_back(ToThing(track));
+    if (CanBeThing(track)) process.tracked.insert_or_assign(track.id, ToThing(track));
   }
   return true;
 }
 
-// What stands in the last TRACKS is a thing that was told, seen since, or a new one. Parts that came twice are things that were told.
+// What stands in the last TRACKS is a thing that was told, seen since, or a new one.
 void MapMerge::AddTracked(Process& process) {
   const auto last_id = [](const auto& things) { return things.empty() ? 0 : things.rbegin()->first; };
   auto next_id = std::max(last_id(process.given), last_id(process.kept)) + 1;
   std::vector<std::pair<std::int64_t, MapThing>> seen;
-  for (const auto& tracked : process.tracked) {
+  for (const auto& entry : process.tracked) {
+    const MapThing& tracked = entry.second;
     if (process.kept_time && tracked.seen <= *process.kept_time) continue;
     std::optional<std::pair<double, std::int64_t>> nearest;
     const auto look_at = [&](std::int64_t id, const MapThing& thing) {
@@ -246,6 +250,7 @@ std::vector<MapThing> MapMerge::Things() {
 
 std::vector<MapLand> MapMerge::Land() {
   namespace grid = tracker::earth_grid;
+  constexpr double kCellM = tracker::LandMemory::kCellM;
   std::map<grid::Cell, CellDays> cells;
   const auto add = [&cells](const grid::Cell& cell, const MapLand& land) {
     auto& [days, seen] = cells[cell];
@@ -261,9 +266,10 @@ std::vector<MapLand> MapMerge::Land() {
       const auto& [land, datum, water_up_m] = told.what;
       if (!map || !map->first.IsSameAs(datum)) map.emplace(datum, datum.Map());
       for (const auto index : land.cells) {
-        const double east_m = 0.5 * (land.tile.east * 32.0 + index % tracker::kTileCells + 0.5);
-        const double north_m = 0.5 * (land.tile.north * 32.0 + index / tracker::kTileCells + 0.5);
-        const auto place = map->second.Reverse({east_m, north_m, water_up_m});
+        const std::int32_t east = land.tile.east * tracker::kTileCells + index % tracker::kTileCells;
+        const std::int32_t north = land.tile.north * tracker::kTileCells + index / tracker::kTileCells;
+        const Eigen::Vector3d middle_m(kCellM * (east + 0.5), kCellM * (north + 0.5), water_up_m);
+        const auto place = map->second.Reverse(middle_m);
         add(grid::CellAt(place.latitude_deg, place.longitude_deg), land);
       }
     }

@@ -55,7 +55,7 @@ class MapMerge {
     std::map<std::pair<Utime, tracker::MapTile>, Told<PlacedLand>> land;  // by the begin of its memory, and tile
     std::optional<Utime> kept_time;                                       // end of the scan of the last KEPT
     Utime tracks_time;
-    std::vector<tracker::MapThing> tracked;  // that stand in the last TRACKS
+    std::map<std::int64_t, tracker::MapThing> tracked;  // that stand in the last TRACKS, by track
   };
   // What one process says of one thing.
   struct Account {

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "common/core/geodesy.hpp"
@@ -36,7 +36,7 @@ struct DayScans {
   std::int32_t day = 0;
   std::int32_t num_scans = 0;
 
-  friend auto operator<=>(const DayScans&, const DayScans&) = default;
+  friend bool operator==(const DayScans&, const DayScans&) = default;
 };
 
 /// As in map_thing_t, which says what the members mean.
@@ -65,7 +65,8 @@ struct MapTile {
   std::int32_t east = 0;
   std::int32_t north = 0;
 
-  friend auto operator<=>(const MapTile&, const MapTile&) = default;
+  friend bool operator==(const MapTile&, const MapTile&) = default;
+  friend bool operator<(const MapTile& one, const MapTile& other) { return std::tie(one.east, one.north) < std::tie(other.east, other.north); }
 };
 inline constexpr std::int32_t kTileCells = 32;
 inline constexpr std::int32_t kCellsOfTile = kTileCells * kTileCells;
@@ -97,7 +98,8 @@ struct Cell {
   MapTile tile;
   std::int16_t index = 0;  // in the tile
 
-  friend auto operator<=>(const Cell&, const Cell&) = default;
+  friend bool operator==(const Cell&, const Cell&) = default;
+  friend bool operator<(const Cell& one, const Cell& other) { return std::tie(one.tile, one.index) < std::tie(other.tile, other.index); }
 };
 
 /// @param latitude_deg  -90 to 90

@@ -32,6 +32,11 @@ double DeviationOf(const Track& track) {
   return std::sqrt(std::max(0.0, half_trace + Hypot(half_difference, track.covariance(0, 1))));
 }
 
+// Numbers that a map may hold.
+bool CanBeKept(const Track& track) {
+  return DeviationOf(track) <= kMostDeviationM && track.rectangle.length_m <= kMostMapThingM && std::abs(track.top_above_water_m) <= kMostMapThingM;
+}
+
 }  // namespace
 
 void StandingThings::Give(const std::vector<MapThing>& things) {
@@ -133,8 +138,8 @@ void StandingThings::Match(const ScanInput& scan, const std::vector<Track>& trac
   }
   for (const auto& track : tracks) {
     if (!Stands(track) || thing_of_.contains(track.id) || ToSeconds(track.seen - track.first) < kStandsForS) continue;
-    if (DeviationOf(track) > kMostDeviationM || track.rectangle.length_m > kMostMapThingM) continue;
-    if (things_.size() >= kMostMapThings) {
+    if (!CanBeKept(track)) continue;
+    if (std::ssize(things_) - num_given_ >= static_cast<std::int64_t>(kMostMapThings)) {
       ++num_over_limit_;
       continue;
     }
@@ -156,7 +161,7 @@ void StandingThings::Measure(const ScanInput& scan, const std::vector<Track>& tr
   for (const auto& [id, i] : thing_of_) {
     const auto track = std::ranges::lower_bound(tracks, id, {}, &Track::id);
     auto& thing = things_[i];
-    if (!Stands(*track) || thing.now.state != MapThing::State::kSeen || DeviationOf(*track) > kMostDeviationM) continue;
+    if (!Stands(*track) || thing.now.state != MapThing::State::kSeen || !CanBeKept(*track)) continue;
     auto& now = thing.now;
     const auto place = map.Reverse({track->position_m.x(), track->position_m.y(), scan.own->position_map_m.z()});
     now.latitude_deg = place.latitude_deg;

@@ -18,8 +18,9 @@ namespace lookout::tracker {
 /// writes Track::known_days, which nothing else reads.
 ///
 /// Once a second of message time: a confirmed track that stands is the thing nearest to it, within SamePlaceM of both deviations and of about its
-/// length; one that has stood for 10 s where no thing is becomes one, while there are fewer than kMostMapThings. A thing in reach without a track is
-/// gone when in 20 such seconds beams passed through all of it, 100 beams together, and nothing was hit; what is hit there begins the count anew.
+/// length; one that has stood for 10 s where no thing is becomes one, while there are fewer than kMostMapThings beside those given. A thing in reach
+/// without a track is gone when in 20 such seconds beams passed through all of it, 100 beams together, and nothing was hit; what is hit there begins
+/// the count anew.
 class StandingThings {
  public:
   /// What a file says, maybe nothing: once. Until then Update does nothing.

@@ -215,14 +215,29 @@ TEST(MapMerge, TakesWhatStandsInTheLastTracks) {
   EXPECT_TRUE(merge.Add(TracksAt(0, 70.0, 40.0, 0.0)));  // not the last
   auto last = TracksAt(0, 90.0, 10.2, 0.0);
   last.tracks.push_back(TracksAt(0, 90.0, 60.0, 0.0).tracks[0]);
+  last.tracks.back().id = 78;
   last.tracks.push_back(TracksAt(0, 90.0, 80.0, 1.0).tracks[0]);  // it moves
-  last.num_tracks = 3;
+  last.tracks.back().id = 79;
+  last.tracks.push_back(TracksAt(0, 90.0, 100.0, 0.0).tracks[0]);
+  last.tracks.back().id = 80;
+  last.tracks.back().outline_east_m[0] = std::numeric_limits<float>::quiet_NaN();  // it is nowhere
+  last.num_tracks = 4;
   EXPECT_TRUE(merge.Add(last));
   const auto map = merge.Merged();
   ASSERT_EQ(map.things.size(), 2U);
   const auto old = std::ranges::find(map.things, std::vector<DayScans>{{kDay, 5}}, &MapThing::days);
   ASSERT_NE(old, map.things.end()) << "seen again, by how many scans more is not known";
   EXPECT_EQ(ToUtimeUs(old->seen), last.utime_us);
+}
+
+// With each copy of a log its last TRACKS came again.
+TEST(MapMerge, CountsTheLastTracksOfALogThatIsThereTwiceOnce) {
+  MapMerge merge;
+  for (int copy = 0; copy < 2; ++copy) {
+    EXPECT_TRUE(merge.Add(Kept(0, 1, {})));
+    EXPECT_TRUE(merge.Add(TracksAt(0, 90.0, 40.0, 0.0)));
+  }
+  EXPECT_EQ(merge.Merged().things.size(), 1U);
 }
 
 TEST(MapMerge, LeavesOutMessagesThatAreNone) {
@@ -264,6 +279,9 @@ TEST_F(MapTable, SaysWhatALogLacksAndWhatIsNoFormatOfIt) {
   EXPECT_NE(errors_.find("holds no MAP"), std::string::npos) << errors_;
   EXPECT_EQ(Export("map", "svg"), kExitUsage);
   EXPECT_EQ(Export("map", "ply"), kExitUsage);
+  EXPECT_EQ(Export("map", "kml"), kExitUsage);
+  EXPECT_EQ(Export("map", "geojson", 7), kExitUsage) << errors_;
+  EXPECT_EQ(Export(Request{.inputs = {log_}, .table = "map", .format = "geojson", .output = folder_ / "out", .span = {7, std::nullopt}}), kExitUsage);
 }
 
 }  // namespace

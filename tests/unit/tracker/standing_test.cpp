@@ -124,7 +124,9 @@ TEST(Standing, IsNotWhatMovesOrIsTentativeOrWhoseThereIsNoPlace) {
   tentative.status = TrackStatus::kTentative;
   auto anywhere = Sea::Standing(3, {40.0, 5.0});
   anywhere.covariance(0, 0) = 200.0;
-  sea.Scans(150, {moving, tentative, anywhere});
+  auto endless = Sea::Standing(4, {50.0, 5.0});
+  endless.top_above_water_m = 5000.0;
+  sea.Scans(150, {moving, tentative, anywhere, endless});
   EXPECT_TRUE(sea.things.TakeChanged().empty());
 }
 

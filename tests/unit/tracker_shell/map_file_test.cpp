@@ -103,6 +103,8 @@ TEST(MapFile, SaysWhatIsWrongWithIt) {
   EXPECT_EQ(FaultOf(With(R"("deviation_m":0.250,)", "")), "feature 1: deviation_m: is missing");
   EXPECT_NE(FaultOf(With(R"("latitude_deg":43.630123457)", R"("latitude_deg":91)")).find("feature 1: latitude_deg"), std::string::npos);
   EXPECT_NE(FaultOf(With(R"("latitude_deg":43.630123457)", R"("latitude_deg":43.7)")).find("farther than 1 km"), std::string::npos);
+  // The library has an exception of its own for it.
+  EXPECT_EQ(FaultOf(With(R"("deviation_m":0.250)", R"("deviation_m":1e999)")), "holds a number that is too large");
   EXPECT_NE(FaultOf(With("2023-11-17T", "2023-02-30T")).find("feature 1: last_seen: must be a time"), std::string::npos);
   EXPECT_NE(FaultOf(With("2023-11-14T", "2024-11-14T")).find("is before first_seen"), std::string::npos);
   EXPECT_NE(FaultOf(With(R"("2023-11-14":7)", R"("2023-11-14":-7)")).find("scans_by_day"), std::string::npos);

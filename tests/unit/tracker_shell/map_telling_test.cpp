@@ -1,6 +1,9 @@
 // MAP of the service: what it says of what was given, when it is kept, and that nothing else depends on it.
+#include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/bus/decode.hpp"
@@ -203,6 +206,15 @@ TEST(MapMessages, AreRefusedWhereTheyCannotBe) {
   EXPECT_TRUE(is_refused([](map_t& map) { map.land[0].cell = {1024}; }));
   EXPECT_TRUE(is_refused([](map_t& map) { map.land[0].cell = {7, 6}; }));
   EXPECT_TRUE(is_refused([](map_t& map) { map.land[0].tile_north = -1; }));
+  const auto is_refused_as_kept = [&is_refused](std::int32_t tile) {
+    return is_refused([tile](map_t& map) {
+      map.source = map_t::SOURCE_KEPT;
+      map.land[0].tile_east = map.land[0].tile_north = tile;
+    });
+  };
+  EXPECT_FALSE(is_refused_as_kept(-5));
+  EXPECT_TRUE(is_refused_as_kept(std::numeric_limits<std::int32_t>::min()));
+  EXPECT_TRUE(is_refused_as_kept(std::numeric_limits<std::int32_t>::max()));
 }
 
 }  // namespace
