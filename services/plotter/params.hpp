@@ -18,14 +18,14 @@ enum class SentAlerts { kNone, kAlr, kAlf };
 struct Destination {
   enum class Kind { kUdp, kTcpServer, kTcpClient, kSerial, kWebSocket };
   Kind kind = Kind::kUdp;
-  std::string address;  // numeric
+  std::string address = {};  // numeric
   int port = 0;
-  std::string interface;         // UDP
-  int max_clients = 0;           // TCP server
-  std::filesystem::path device;  // serial
+  std::string interface = {};         // UDP
+  int max_clients = 0;                // TCP server
+  std::filesystem::path device = {};  // serial
   int baud = 0;
-  std::string path;  // WebSocket
-  std::string token;
+  std::string path = {};  // WebSocket
+  std::string token = {};
 };
 
 struct OutputParams {

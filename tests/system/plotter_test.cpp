@@ -29,16 +29,17 @@ using std::chrono::seconds;
 
 constexpr int kTcpPort = 10111;
 constexpr int kUdpPort = 10112;
+constexpr int kSignalKPort = 10113;
 
 // Reads what comes over a socket, when asked.
 class Receiver {
  public:
-  explicit Receiver(int type, int receive_buffer_bytes = 0) : socket_(socket(AF_INET, type | SOCK_NONBLOCK, 0)) {
+  explicit Receiver(int type, int receive_buffer_bytes = 0, int tcp_port = kTcpPort) : socket_(socket(AF_INET, type | SOCK_NONBLOCK, 0)) {
     if (receive_buffer_bytes > 0) setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof(receive_buffer_bytes));
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    address.sin_port = htons(type == SOCK_STREAM ? kTcpPort : kUdpPort);
+    address.sin_port = htons(type == SOCK_STREAM ? tcp_port : kUdpPort);
     const auto* generic = reinterpret_cast<const sockaddr*>(&address);
     if (type == SOCK_STREAM) {
       connect(socket_, generic, sizeof(address));
@@ -77,6 +78,7 @@ class Plotter : public ::testing::Test {
     std::ofstream(folder_ / "config/plotter.txtpb")
         << "output { name: 'tcp' format: NMEA0183 alerts: ALR takes_acknowledgements: true tcp_server { bind_address: '127.0.0.1' port: " << kTcpPort
         << " } }\noutput { name: 'udp' format: SIGNALK udp { address: '127.0.0.1' port: " << kUdpPort << " } }\n"
+        << "output { name: 'sk' format: SIGNALK tcp_server { bind_address: '127.0.0.1' port: " << kSignalKPort << " } }\n"
         << "output { name: 'gone' format: N2K_YDEN tcp_client { address: '127.0.0.1' port: 9 } }\n";
     bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { health_ = bus::Decode<health_t>(bytes).value(); });
     bus_.SubscribeRaw(bus::kAlertAck, [this](std::string_view, Bytes bytes) { acknowledged_.push_back(bus::Decode<alert_ack_t>(bytes).value()); });
@@ -173,6 +175,30 @@ TEST_F(Plotter, DropsAClientThatDoesNotReadAndNoOther) {
   EXPECT_EQ(Count("output_tcp_clients"), 1);
   reader.Clear();
   ASSERT_TRUE(Until([&] { return NumOf(reader.Read(), "$RATTM,") >= 160; })) << reader.Read();
+}
+
+// More bytes than a connection or a receiver's buffer takes at once.
+TEST_F(Plotter, SendsFiveHundredTargetsToWhoReads) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Receiver tcp(SOCK_STREAM, 0, kSignalKPort);
+  Receiver udp(SOCK_DGRAM);
+  scene_.num_tracks = 500;
+  const auto has_all = [](const std::string& text) {
+    for (int id = 1; id <= 500; ++id) {
+      if (text.find("\"targets.lidar:demo-" + std::to_string(id) + "\"") == std::string::npos) return false;
+    }
+    return true;
+  };
+  const auto end = Clock::now() + seconds(4);
+  Until([&] {
+    tcp.Read();
+    udp.Read();
+    return Clock::now() > end;
+  });
+  EXPECT_TRUE(has_all(tcp.Read()));
+  EXPECT_TRUE(has_all(udp.Read()));
+  EXPECT_EQ(Count("output_sk_dropped"), 0);
+  EXPECT_EQ(Count("output_sk_clients"), 1);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace lookout::plotter {
 
-std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, std::chrono::microseconds now) const {
+std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, std::chrono::microseconds now) {
   constexpr int kDangerousWeight = 4;
   constexpr std::chrono::microseconds kNewAndDangerous = std::chrono::microseconds::max();
   std::vector<std::pair<std::chrono::microseconds, const Target*>> due;
@@ -16,8 +16,8 @@ std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, 
     const auto last = found == sent_.end() ? std::nullopt : found->second.time;
     if (last && now - *last < period_) continue;
     const bool is_dangerous = IsDangerous(target);
-    // What is new has waited for as long as four periods.
-    const auto waited = last ? now - *last : kDangerousWeight * period_;
+    // What is new counts as if it had waited for four periods before.
+    const auto waited = last ? now - *last : now - new_.try_emplace(target.id, now).first->second + kDangerousWeight * period_;
     due.emplace_back(!is_dangerous ? waited : last ? kDangerousWeight * waited : kNewAndDangerous, &target);
   }
   std::ranges::stable_sort(due, std::greater(), &std::pair<std::chrono::microseconds, const Target*>::first);
@@ -27,12 +27,14 @@ std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, 
 }
 
 void TargetSchedule::NoteSent(const Target& target, Utime target_time, int number, std::chrono::microseconds now) {
+  new_.erase(target.id);
   sent_.insert_or_assign(target.id, Sent{target, target_time, number, now});
 }
 
 std::vector<TargetSchedule::Sent> TargetSchedule::TakeEnded(std::span<const Target> targets) {
   std::set<std::int64_t> ids;
   for (const auto& target : targets) ids.insert(target.id);
+  std::erase_if(new_, [&ids](const auto& one) { return !ids.contains(one.first); });
   std::vector<Sent> ended;
   for (auto sent = sent_.begin(); sent != sent_.end();) {
     if (ids.contains(sent->first)) {

@@ -28,7 +28,7 @@ class TargetSchedule {
 
   /// Those that are new, or were sent a period ago: the dangerous that are new first, in the order of `targets`; then by how long they have waited,
   /// where a second of the dangerous counts as four, so that an output with little room gets round all of them.
-  std::vector<const Target*> Due(std::span<const Target> targets, std::chrono::microseconds now) const;
+  std::vector<const Target*> Due(std::span<const Target> targets, std::chrono::microseconds now);
 
   void NoteSent(const Target& target, Utime target_time, int number, std::chrono::microseconds now);
 
@@ -42,7 +42,8 @@ class TargetSchedule {
 
  private:
   std::chrono::microseconds period_;
-  std::map<std::int64_t, Sent> sent_;  // by the target's id
+  std::map<std::int64_t, Sent> sent_;                      // by the target's id
+  std::map<std::int64_t, std::chrono::microseconds> new_;  // not yet sent: since when
 };
 
 /// A target that has ended, where it would be at `time`: at most some seconds after it was sent.

@@ -88,8 +88,10 @@ class ServiceFixture : public ::testing::Test {
     std::vector<std::unique_ptr<Output>> outputs;
     outputs.push_back(std::make_unique<NmeaOutput>(OutputParams{.name = "nmea", .alerts = SentAlerts::kAlr, .takes_acknowledgements = true},
                                                    std::move(nmea), params_.target_period));
-    outputs.push_back(std::make_unique<SignalKOutput>(OutputParams{.name = "signalk", .format = Format::kSignalK, .takes_acknowledgements = true},
-                                                      std::move(signal_k), params_.boat));
+    outputs.push_back(std::make_unique<SignalKOutput>(
+        OutputParams{
+            .name = "signalk", .format = Format::kSignalK, .destination = {.kind = Destination::Kind::kWebSocket}, .takes_acknowledgements = true},
+        std::move(signal_k), params_.boat));
     outputs.push_back(
         std::make_unique<N2kOutput>(OutputParams{.name = "n2k", .format = Format::kN2kActisense}, std::move(n2k), params_.target_period));
     NewBus();
