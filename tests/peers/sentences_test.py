@@ -219,12 +219,16 @@ def run_at(place, seconds):
         plotter = trial.start_plotter()
         trial.run_feed(seconds, place)
         time.sleep(1.5)
+        end_s = time.time()
         trial.end_plotter(plotter)
         truth = truth_by_time_of_day(trial.truth())
         errors, counts = [], []
         for receiver, kind in zip(receivers, ('TTM', 'TTM', 'TLL')):
-            lines = receiver.lines()
+            lines = [one for one in receiver.lines() if one[0] < end_s]
             check(lines, 'nothing came')
+            # Who ends in order leaves no target standing.
+            last = [line for time_s, line in receiver.lines() if time_s >= end_s and line[3:6] == kind]
+            check(last and all(',L,' in line for line in last), 'told at the end: %s' % last)
             output = Output(truth)
             for (time_s, line), by_go in zip(lines, read_by_go(trial.build, [line for _, line in lines])):
                 check_form(line)

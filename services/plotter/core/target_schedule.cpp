@@ -22,6 +22,7 @@ std::vector<const Target*> TargetSchedule::Due(std::span<const Target> targets, 
   }
   std::ranges::stable_sort(due, std::greater(), &std::pair<std::chrono::microseconds, const Target*>::first);
   std::vector<const Target*> ordered;
+  ordered.reserve(due.size());
   for (const auto& one : due) ordered.push_back(one.second);
   return ordered;
 }
