@@ -100,6 +100,14 @@ cp -r "$config" "$live_config"
 # A busy computer may hold POSE up. What is sent without waiting for it is outside what a replay gives again, and here that is looked at.
 sed -i 's/^pose_timeout_s: .*/pose_timeout_s: 10/' "$live_config/georeferencer.txtpb"
 echo 'wait_timeout_s: 10' >>"$live_config/tracker.txtpb"
+# A port that nobody has, for a chart plotter.
+plotter_port=''
+for port in $(seq 10111 10130); do
+  (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null && continue
+  plotter_port=$port
+  printf 'output { name: "demo" format: NMEA0183 tcp_server { bind_address: "127.0.0.1" port: %s } }\n' "$port" >>"$live_config/plotter.txtpb"
+  break
+done
 if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
   sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
@@ -122,7 +130,7 @@ trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 # Those that take before those that give: nobody misses a first message.
-for service in recorder tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+for service in recorder plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
 lidar=${live_pids[vlp16]}
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
@@ -138,6 +146,8 @@ fi
 sleep 2
 "$bin/lookout-top" --once --seconds 3 >"$work/top.out" 2>&1 &
 watcher=$!
+# And what a chart plotter is sent then; it ends with the plotter's process.
+[ -z "$plotter_port" ] || (exec 3<>"/dev/tcp/127.0.0.1/$plotter_port" && cat <&3 >"$work/plotter.nmea") 2>/dev/null &
 if [ -n "$capture" ]; then
   for _ in $(seq 600); do kill -0 "$lidar" 2>/dev/null || break; sleep 0.1; done
   grep -q 'critical' "$work/vlp16.out" && { cat "$work/vlp16.out" >&2; exit 1; }
@@ -157,6 +167,10 @@ if [ -z "$log" ] || [ ! -s "$log" ]; then
 fi
 say "the live run as lookout-top saw it, in the middle"
 cat "$work/top.out"
+if [ -s "$work/plotter.nmea" ]; then
+  say "what a chart plotter on TCP port $plotter_port was sent ($(wc -l <"$work/plotter.nmea") sentences; services/plotter/README.md), the last of each kind"
+  awk -F, '{ last[substr($1, 4)] = $0 } END { for (kind in last) print last[kind] }' "$work/plotter.nmea" | sort
+fi
 say "what was recorded (missing: messages lost on their way)"
 "$bin/lookout-log" info "$log"
 count_obstacles "$log"

@@ -32,8 +32,15 @@ inline constexpr std::array kServices{
                10,
                "network",
                "checks the config",
-               "tracks, land, alerts, poses, waiting scans",
+               "tracks, land, what stands, alerts, poses, waiting scans",
                {&kObstacles, &kSegments, &kLidarScan, &kPose, &kAlertAck}},
+    ServiceRow{"plotter",
+               "targets and alerts for chart plotters, Signal K and NMEA 2000",
+               10,
+               "serial",
+               "checks the config",
+               "target numbers, what was told to whom",
+               {&kTracks, &kAlerts, &kPose}},
     ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 /// The input from which replay computes the service's other outputs, if it publishes one: it holds all that the service consumed.

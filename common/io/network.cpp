@@ -1,6 +1,7 @@
 #include "common/io/network.hpp"
 
 #include <arpa/inet.h>
+#include <ifaddrs.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -44,6 +45,31 @@ std::string ToText(const IpAddress& address) {
   const bool is_ipv4 = address.is_ipv4();
   const auto* bytes = address.bytes.data() + (is_ipv4 ? kMappedPrefix.size() : 0);
   return inet_ntop(is_ipv4 ? AF_INET : AF_INET6, bytes, text.data(), text.size()) != nullptr ? text.data() : "";
+}
+
+bool ReachesThisComputer(const std::string& text) {
+  const auto address = ParseIpAddress(text);
+  if (!address) return false;
+  constexpr int kIpv4Loopback = 127;  // RFC 1122: 127.0.0.0/8
+  const bool is_loopback = address->is_ipv4() ? address->bytes[kMappedPrefix.size()] == kIpv4Loopback : text == "::1";
+  if (is_loopback || address->is_multicast() || address->is_any() || text.ends_with(".255")) return true;
+  const auto is_it = [&address](const sockaddr* other) {
+    if (other == nullptr) return false;
+    std::array<char, INET6_ADDRSTRLEN> name{};
+    const bool is_ipv4 = other->sa_family == AF_INET;
+    if (!is_ipv4 && other->sa_family != AF_INET6) return false;
+    const void* bytes = is_ipv4 ? static_cast<const void*>(&reinterpret_cast<const sockaddr_in*>(other)->sin_addr)
+                                : static_cast<const void*>(&reinterpret_cast<const sockaddr_in6*>(other)->sin6_addr);
+    return inet_ntop(other->sa_family, bytes, name.data(), name.size()) != nullptr && ParseIpAddress(name.data()) == address;
+  };
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return false;
+  bool reaches = false;
+  for (const auto* item = list; item != nullptr; item = item->ifa_next) {
+    reaches |= is_it(item->ifa_addr) || ((item->ifa_flags & IFF_BROADCAST) != 0 && is_it(item->ifa_broadaddr));
+  }
+  freeifaddrs(list);
+  return reaches;
 }
 
 bool IsInterfaceUp(const std::string& interface) {

@@ -27,6 +27,11 @@ std::optional<IpAddress> ParseIpAddress(const std::string& text);
 /// The one text that the system writes for it: IPv4 where it is mapped.
 std::string ToText(const IpAddress& address);
 
+/// Whether a datagram to that address comes to this computer as well: loopback, a multicast group, one of its own addresses, a network's broadcast.
+///
+/// @param text  numeric; anything else does not
+bool ReachesThisComputer(const std::string& text);
+
 bool IsInterfaceUp(const std::string& interface);
 
 /// For errors: that it is not there, which ones there are, and what to do when it comes late at boot.

@@ -1,5 +1,5 @@
-// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, and of ALERT_ACK. A service computes from what FaultOf accepts;
-// a tool, which shows also what a service refuses, asks IsWellFormed.
+// Checks of the messages of a scan: LIDAR_SCAN, SEGMENTS, OBSTACLES, TRACKS, ALERTS, MAP, and of ALERT_ACK. A service computes from what FaultOf
+// accepts; a tool, which shows also what a service refuses, asks IsWellFormed.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
+#include "lookout/map_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/segments_t.hpp"
 #include "lookout/tracks_t.hpp"
@@ -22,6 +23,8 @@ bool IsWellFormed(const lidar_scan_t& message);
 bool IsWellFormed(const segments_t& message);
 bool IsWellFormed(const obstacles_t& message);
 bool IsWellFormed(const tracks_t& message);
+/// Also whether its numbers are finite and in their bounds: what is read of a log's map is used as a file's is.
+bool IsWellFormed(const map_t& message);
 
 /// What is wrong with a message: the name of the counter of its refusals.
 using Fault = std::string_view;

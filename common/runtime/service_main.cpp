@@ -12,6 +12,7 @@
 #include <iostream>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
+#include <vector>
 
 #include "common/bus/lcm_url.hpp"
 #include "common/config/text_config.hpp"
@@ -62,7 +63,9 @@ struct Checked {
 Checked CheckConfig(const ServiceProgram<AnyParams>& program, const std::filesystem::path& config_folder) {
   config::FaultList faults;
   const auto params = faults.Take([&] { return program.load(config_folder); });
-  const auto text = faults.Take([&] { return EffectiveConfig(config_folder, {"boat.txtpb", program.name + ".txtpb"}); });
+  std::vector<std::string> files{"boat.txtpb", program.name + ".txtpb"};
+  if (program.config_may_be_absent && !std::filesystem::exists(config_folder / files.back())) files.pop_back();
+  const auto text = faults.Take([&] { return EffectiveConfig(config_folder, files); });
   faults.ThrowIfAny();
   return {*params, *text};
 }

@@ -1,4 +1,4 @@
-// The tracker process: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS and ALERTS out.
+// The tracker process: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS, ALERTS and MAP out.
 #include <chrono>
 
 #include "common/runtime/service_main.hpp"
@@ -26,9 +26,10 @@ void Run(lookout::runtime::Process& process, const lookout::tracker::Params& par
 }  // namespace
 
 int main(int argc, char** argv) {
-  return lookout::runtime::ServiceMain<lookout::tracker::Params>(argc, argv,
-                                                                 {.name = "tracker",
-                                                                  .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS and ALERTS out",
-                                                                  .load = lookout::tracker::LoadParams,
-                                                                  .run = Run});
+  return lookout::runtime::ServiceMain<lookout::tracker::Params>(
+      argc, argv,
+      {.name = "tracker",
+       .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS, ALERTS and MAP out",
+       .load = [](const auto& folder) { return lookout::tracker::LoadParams(folder); },
+       .run = Run});
 }

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
+#include "services/tracker/map_file.hpp"
 
 namespace lookout::tracker {
 
@@ -42,7 +44,7 @@ GuardZoneParams ToGuardZone(const config::GuardZone& zone) {
 
 }  // namespace
 
-Params LoadParams(const std::filesystem::path& config_folder) {
+Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) {
   const auto file = config_folder / "tracker.txtpb";
   config::FaultList faults;
   const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
@@ -57,9 +59,18 @@ Params LoadParams(const std::filesystem::path& config_folder) {
   if (message && message->has_guard_zone() && message->guard_zone().to_bearing_deg() == message->guard_zone().from_bearing_deg()) {
     faults.Add(config::FaultLine(file, "guard_zone.to_bearing_deg", "must differ from from_bearing_deg"));
   }
+  std::shared_ptr<const OwnMap> map;
+  if (message && message->has_map() && map_file == MapFile::kRead) {
+    try {
+      map = std::make_shared<const OwnMap>(ReadMapFile(config_folder / message->map()));
+    } catch (const MapFileError& error) {
+      faults.Add(config::FaultLine(file, "map", error.what()));
+    }
+  }
   faults.ThrowIfAny();
 
   Params params;
+  params.map = std::move(map);
   if (message->has_guard_zone()) {
     params.guard_zone = ToGuardZone(message->guard_zone());
     if (IsInsideBox(params.guard_zone, boat->own_vessel_box_m)) {

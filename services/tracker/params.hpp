@@ -3,9 +3,11 @@
 
 #include <chrono>
 #include <filesystem>
+#include <memory>
 
 #include "common/core/guard_sector.hpp"
 #include "services/tracker/core/alerts.hpp"
+#include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/tracker.hpp"
 
 namespace lookout::tracker {
@@ -15,10 +17,14 @@ struct Params {
   AlertParams alerts;
   GuardZoneParams guard_zone = {};
   std::chrono::microseconds wait_timeout{500'000};  // live only
+  std::shared_ptr<const OwnMap> map = {};           // what the file of `map` holds; nullptr: none is named, or it was not to be read
 };
 
+/// Whether the file of `map` is read. A replay takes what the log says was given.
+enum class MapFile { kRead, kLeave };
+
 /// @param config_folder  the boat's folder, holding boat.txtpb, segmenter.txtpb and tracker.txtpb
-/// @throws config::ConfigError
-Params LoadParams(const std::filesystem::path& config_folder);
+/// @throws config::ConfigError, also of a map that cannot be used
+Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file = MapFile::kRead);
 
 }  // namespace lookout::tracker

@@ -153,8 +153,7 @@ void Service::Use(const GatheredScan& scan) {
     return;
   }
   if (!memory_) {
-    memory_ = std::make_unique<Memory>(params_);
-    memory_->begin = scan.key();
+    Begin(scan.key());
     if (given_.before) memory_->kept.Keep(given_.before->time, given_.before->datum, given_.before->alerts, given_.before->tracks);
   } else if (scan.is_anew && memory_->picture != nullptr) {
     memory_->kept.Keep(label_->end_time, label_->datum, memory_->alerts.alerts(), memory_->picture->tracks);
@@ -177,10 +176,24 @@ void Service::Use(const GatheredScan& scan) {
   const auto message = ToMessage(*label_, alerts, acknowledged, picture, bus::kMaxMessageBytes);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
+  if (const auto map = memory_->map.Next(*label_, is_placed_, memory_->tracker)) bus::Publish(bus_, bus::kMap, *map);
   Leave(message, picture);
 
   memory_->picture = &picture;
   num_alerts_ = std::ranges::count_if(alerts, [](const Alert& alert) { return alert.state != AlertState::kCleared; });
+}
+
+// With the map that its config names; a script says what the live process was given.
+void Service::Begin(const ScanKey& begin) {
+  GivenMap given;
+  if (given_.script) {
+    const auto found = given_.script->given.find(begin);
+    if (found != given_.script->given.end()) given = found->second;
+  } else if (params_.map) {
+    given.map = *params_.map;
+  }
+  memory_ = std::make_unique<Memory>(params_, std::move(given));
+  memory_->begin = begin;
 }
 
 // @return whether the live run used this scan too, as far as is known
@@ -196,8 +209,7 @@ bool Service::FollowScript(const ScanKey& key) {
   for (; next_stretch_ < stretches.size() && is_reached(next_stretch_); ++next_stretch_) {
     const auto& begin = stretches[next_stretch_].begin;
     if (memory_ && memory_->begin == begin) continue;
-    memory_ = std::make_unique<Memory>(params_);
-    memory_->begin = begin;
+    Begin(begin);
   }
   if (next_stretch_ == 0) return false;  // before the first
   // Else between the end of one process and the begin of the next.

@@ -1,4 +1,4 @@
-// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS and ALERTS out.
+// The tracker process without its clock: OBSTACLES, SEGMENTS, LIDAR_SCAN, POSE and ALERT_ACK in, TRACKS, ALERTS and MAP out.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/bus/bus.hpp"
@@ -19,6 +20,7 @@
 #include "services/tracker/core/kept_acknowledgements.hpp"
 #include "services/tracker/core/script.hpp"
 #include "services/tracker/handover.hpp"
+#include "services/tracker/map_telling.hpp"
 #include "services/tracker/params.hpp"
 #include "services/tracker/watch.hpp"
 #include "services/tracker/wire.hpp"
@@ -55,11 +57,12 @@ class Service {
  private:
   // Tracks and alerts, from the begin of a process.
   struct Memory {
-    explicit Memory(const Params& params) : tracker(params.tracker), alerts(params.alerts) {}
+    Memory(const Params& params, GivenMap given) : tracker(params.tracker), alerts(params.alerts), map(std::move(given)) {}
     Tracker tracker;
     Alerts alerts;
     StillWatch still;
     KeptAcknowledgements kept;
+    MapTelling map;
     const Picture* picture = nullptr;  // of the last scan: the tracker's own
     ScanKey begin;
   };
@@ -77,6 +80,7 @@ class Service {
   void Use(const std::vector<GatheredScan>& scans);
   void Use(const GatheredScan& scan);
   bool FollowScript(const ScanKey& key);
+  void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);
   void Leave(const alerts_t& message, const Picture& picture) const;
   void SendWatch();

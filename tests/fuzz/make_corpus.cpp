@@ -384,6 +384,22 @@ void WritePointFiles(const Folder& folder) {
   folder.Write("kitti", points + labels);
 }
 
+void WriteMaps(const Folder& folder) {
+  const std::string head = R"({"type":"FeatureCollection","lookout_map":1,"features":[)";
+  const std::string thing =
+      R"({"type":"Feature","geometry":{"type":"Polygon","coordinates":[[[-72.15,43.63],[-72.1499,43.63],[-72.15,43.6301],[-72.15,43.63]]]},)"
+      R"("properties":{"type":"thing","kind":"buoy","latitude_deg":43.63,"longitude_deg":-72.15,"deviation_m":0.3,"length_m":2,"width_m":1,)"
+      R"("length_bearing_deg":45,"top_above_water_m":1.5,"first_seen":"2026-06-16T14:10:00Z","last_seen":"2026-06-18T14:12:29Z",)"
+      R"("gone_since":"2026-06-19T08:00:00Z","scans_by_day":{"2026-06-16":7,"2026-06-18":9}}})";
+  const std::string land =
+      R"({"type":"Feature","geometry":{"type":"MultiPoint","coordinates":[[-72.15,43.63],[-72.1501,43.63]]},"properties":{"type":"land",)"
+      R"("last_seen":"2026-06-18T14:12:29Z","seen_on":["2026-06-16","2026-06-18"]}})";
+  folder.Write("empty", head + "]}");
+  folder.Write("thing", head + thing + "]}");
+  folder.Write("land", head + land + "]}");
+  folder.Write("both", head + thing + "," + land + "]}");
+}
+
 void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(boats)) {
     if (entry.path().extension() != ".txtpb") continue;
@@ -391,6 +407,15 @@ void WriteConfigs(const Folder& folder, const std::filesystem::path& boats) {
     const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
     folder.Write(entry.path().parent_path().filename().string() + "_" + entry.path().filename().string(), text);
   }
+}
+
+// What comes back to the plotter.
+void WriteAnswers(const Folder& folder) {
+  folder.Write("ack", std::string("$IIACK,003*55"));
+  folder.Write("acn", std::string("IIACN,102031.00,LKO,10002,3,A,C"));
+  folder.Write("hello", std::string(R"({"name":"signalk-server","version":"2.23.0","self":"vessels.urn:1"})"));
+  folder.Write("delta", std::string(R"({"context":"vessels.self","updates":[{"values":[{"path":"notifications.lookout.x","value":)"
+                                    R"({"state":"alarm","method":[],"status":{"silenced":true,"acknowledged":true}}}]}]})"));
 }
 
 }  // namespace
@@ -405,6 +430,7 @@ int main(int argc, char** argv) try {
   WriteDataPackets(data_packets);
   WritePositionPackets(Folder(root / "fuzz_position_packet"), data_packets);
   WriteSentences(Folder(root / "fuzz_nmea_sentence"));
+  WriteAnswers(Folder(root / "fuzz_plotter"));
   WriteCaptures(Folder(root / "fuzz_capture"));
   WriteMessages(Folder(root / "fuzz_message"));
   WritePairsOfMessages(Folder(root / "fuzz_message_diff"));
@@ -412,6 +438,7 @@ int main(int argc, char** argv) try {
   WritePatches(Folder(root / "fuzz_georeferencer"));
   WritePatches(Folder(root / "fuzz_tracker"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
+  WriteMaps(Folder(root / "fuzz_map_file"));
   WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
   return 0;
 } catch (const std::exception& error) {

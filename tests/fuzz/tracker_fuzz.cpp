@@ -39,6 +39,10 @@ void CheckTracks(const tracks_t& message) {
   }
 }
 
+void CheckMap(const map_t& message) {
+  if (!messages::IsWellFormed(message)) std::abort();
+}
+
 void CheckAlerts(const alerts_t& message) {
   for (const auto& alert : message.alerts) {
     if (alert.state < alert_t::STATE_ACTIVE || alert.state > alert_t::STATE_CLEARED || alert.id == 0) std::abort();
@@ -53,6 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   tracker::Service service(bus, test::MakeParams());
   bus::Subscribe<tracks_t>(bus, bus::kTracks, CheckTracks);
   bus::Subscribe<alerts_t>(bus, bus::kAlerts, CheckAlerts);
+  bus::Subscribe<map_t>(bus, bus::kMap, CheckMap);
   std::vector<std::pair<const bus::Channel*, std::vector<std::uint8_t>>> messages;
   const auto add = [&messages](const bus::Channel& channel, const auto& message) { messages.emplace_back(&channel, bus::Encode(message)); };
   for (int scan = 0; scan < kNumScans; ++scan) {

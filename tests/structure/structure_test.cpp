@@ -47,12 +47,14 @@ std::string KindOf(const std::string& include) {
                                                                           {"config/schema/", "config types"},
                                                                           {"lcm/", "lcm"},
                                                                           {"google/", "protobuf"},
+                                                                          {"boost/", "boost"},
                                                                           {"pcap/", "pcap"},
                                                                           {"pcap.h", "pcap"},
                                                                           {"spdlog/", "spdlog"},
                                                                           {"fmt/", "fmt"},
                                                                           {"CLI/", "cli"},
                                                                           {"openssl/", "openssl"},
+                                                                          {"nlohmann/", "nlohmann-json"},
                                                                           {"systemd/", "systemd"},
                                                                           {"Eigen/", "eigen"},
                                                                           {"GeographicLib/", "geographiclib"},
@@ -86,7 +88,10 @@ const std::vector<Rule>& Rules() {
       {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
       {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
+      // What it makes is text.
+      {"services/plotter/core/.*", {"common/core", "OWN/core", "fmt", "nlohmann-json"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
+      {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
       {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
       // It knows what an address is.
@@ -99,6 +104,11 @@ const std::vector<Rule>& Rules() {
       // A file that one process leaves to the next.
       {"services/tracker/handover\\..pp", {"common/core", "common/io", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
+      // One language each, over a link.
+      {"services/plotter/([a-z0-9_]+_)?outputs?\\..pp", {"common/core", "OWN", "OWN/core", "OWN/io"}},
+      // MAP, and the file that it may begin with.
+      {"services/tracker/map_(wire|telling)\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
+      {"services/tracker/map_file\\..pp", {"common/core", "OWN", "OWN/core", "fmt", "nlohmann-json"}},
       // What the recorder's method gives is files: its service drives its own io.
       {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
       {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},

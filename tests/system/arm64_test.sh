@@ -8,7 +8,7 @@ source_folder=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
 recordings=$source_folder/../shared/data/vlp16
 suite=bookworm
 libraries=(libc6-dev liblcm-dev libpcap-dev libgps-dev libncurses-dev libsystemd-dev libeigen3-dev libgeographiclib-dev libprotobuf-dev libspdlog-dev
-  libfmt-dev libcli11-dev libssl-dev)
+  libfmt-dev libcli11-dev libssl-dev nlohmann-json3-dev libboost-dev)
 
 make_tree() {  # FOLDER
   local tree=$1 include package link target

@@ -166,8 +166,8 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
   EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
 }
 
-TEST_F(HangupTest, SegmenterGeoreferencerAndTrackerCheckANewConfigAndKeepTheOldOne) {
-  for (const std::string name : {"segmenter", "georeferencer", "tracker"}) {
+TEST_F(HangupTest, ThoseWithoutSourcesCheckANewConfigAndKeepTheOldOne) {
+  for (const std::string name : {"segmenter", "georeferencer", "tracker", "plotter"}) {
     const auto file = folder_ / (name + ".txtpb");
     fs::copy_file(kDemoConfig / "segmenter.txtpb", folder_ / "segmenter.txtpb", fs::copy_options::overwrite_existing);  // which the tracker reads too
     fs::copy_file(kDemoConfig / (name + ".txtpb"), file, fs::copy_options::overwrite_existing);

@@ -45,6 +45,9 @@ outputs() {  # FOLDER
   done
   "$bin/lookout-export" --in replay.lcmlog --table returns --format svg --out returns.svg
   "$bin/lookout-export" --in replay.lcmlog --table returns --format ply --out returns.ply
+  for table in obstacles tracks pose; do
+    for format in geojson kml gpx; do "$bin/lookout-export" --in replay.lcmlog --table $table --format $format --out "$table.$format"; done
+  done
   "$bin/lookout-export" --in replay.lcmlog --table merges --config "$config" --out merges.csv
   "$bin/lookout-export" --in replay.lcmlog --table merges --config "$config" --format svg --out merges.svg
   "$bin/lookout-eval" --in replay.lcmlog --truth truth >eval.txt
@@ -64,7 +67,7 @@ for file in returns.csv eval.txt info.txt replay.txt check.txt; do [ -s "$work/C
 # Live: programs, config and logs in the odd folder.
 mkdir "$odd/bin" "$odd/libexec"
 cp -r "$2/libexec/lookout" "$odd/libexec/"
-for name in recorder tracker georeferencer segmenter navigator vlp16; do
+for name in recorder plotter tracker georeferencer segmenter navigator vlp16; do
   ln "$bin/lookout-$name" "$odd/bin/" 2>/dev/null || cp "$bin/lookout-$name" "$odd/bin/"
 done
 cp "$bin/lookout-up" "$odd/bin/"

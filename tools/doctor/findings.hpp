@@ -72,6 +72,8 @@ Findings CheckDisk(const DiskSeen& disk);
 
 /// HEALTH of each process; obstacles; whether there is a look-out, and what it warns of.
 Findings CheckProcesses(const Observations& seen);
+/// Of each output of the plotter: whether those to whom it sends take it.
+Findings CheckPlotter(const Observations& seen);
 
 /// All of the above, in the order in which one depends on the other.
 Findings CheckAll(const Observations& seen);

@@ -24,6 +24,7 @@
 #include "common/config/text_config.hpp"
 #include "common/runtime/process.hpp"
 #include "services/georeferencer/params.hpp"
+#include "services/plotter/params.hpp"
 #include "services/recorder/params.hpp"
 #include "services/segmenter/params.hpp"
 #include "services/tracker/params.hpp"
@@ -124,6 +125,10 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   check("navigator.txtpb", [&] { seen.navigation = navigator::LoadParams(config_folder); });
   check("georeferencer.txtpb", [&] { georeferencer::LoadParams(config_folder); });
   check("tracker.txtpb", [&] { tracker::LoadParams(config_folder); });
+  seen.has_plotter_outputs = false;
+  if (fs::exists(config_folder / "plotter.txtpb")) {
+    check("plotter.txtpb", [&] { seen.has_plotter_outputs = !plotter::LoadParams(config_folder).outputs.empty(); });
+  }
   check("recorder.txtpb", [&] {
     const auto params = recorder::LoadParams(config_folder);
     seen.log_folder = params.log_folder;

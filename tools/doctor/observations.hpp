@@ -31,6 +31,7 @@ struct ConfigSeen {
   std::optional<navigator::Params> navigation;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
   std::int64_t log_reserve_bytes = 0;               // which the recorder leaves free
+  bool has_plotter_outputs = true;                  // without one lookout-plotter need not run
 };
 
 /// The bus, before anything is heard on it.

@@ -146,6 +146,7 @@ Findings CheckProcesses(const Observations& seen) {
         if (IsAlive(process, seen.end)) alive.push_back(&process);
       }
     }
+    if (alive.empty() && name == "plotter" && !seen.config.has_plotter_outputs) continue;
     if (alive.empty()) {
       findings.push_back(Missing(name, found != seen.processes.end()));
       continue;
@@ -165,8 +166,9 @@ Findings CheckProcesses(const Observations& seen) {
 
 Findings CheckAll(const Observations& seen) {
   Findings all;
-  for (const auto& part : {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen),
-                           CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config), CheckDisk(seen.disk), CheckProcesses(seen)}) {
+  for (const auto& part :
+       {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen), CheckClocks(seen),
+        CheckNavigation(seen), CheckMounting(seen.config), CheckDisk(seen.disk), CheckProcesses(seen), CheckPlotter(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

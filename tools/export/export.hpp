@@ -1,4 +1,4 @@
-// From logs to a table, a cloud or a picture.
+// From logs to a table, a map, a cloud or a picture.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,23 @@
 #include <string>
 #include <vector>
 
+#include "tools/export/selection.hpp"
+
 namespace lookout::exporter {
 
 struct Request {
   std::vector<std::filesystem::path> inputs;  // lcm-logs, read in this order as one
   std::string table;
-  std::string format = "csv";                                  // "csv", "ply" (returns), "svg" (returns, merges, obstacles, pose)
+  // "csv"; "ply" (returns); "svg" (returns, merges, obstacles, pose, tracks); "geojson", "kml", "gpx" (obstacles, tracks, pose)
+  std::string format = "csv";
   std::optional<std::filesystem::path> output = std::nullopt;  // nullopt = standard output
   bool force = false;                                          // an existing output is replaced
-  std::optional<std::int64_t> scan = std::nullopt;             // ply, svg, merges: seq of the scan; nullopt = the last whole one
+  std::optional<std::int64_t> scan = std::nullopt;             // seq of the scan; nullopt = the last whole one (maps: all)
+  bool is_last_scan = false;                                   // maps: the last whole one
   bool all_scans = false;                                      // merges as csv: in place of one
   std::optional<std::filesystem::path> config = std::nullopt;  // merges: the boat's folder, by which scans are segmented again
+  Span span = {};                                              // csv and maps: what was measured within
+  std::optional<Circle> near = std::nullopt;                   // csv and maps of obstacles, tracks, pose: what lies within
 };
 
 inline constexpr int kExitFine = 0;

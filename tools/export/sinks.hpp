@@ -1,4 +1,4 @@
-// What lookout-export writes: tables as CSV, a cloud as PLY, pictures as SVG.
+// What lookout-export writes: tables as CSV, a cloud as PLY, pictures as SVG. Maps: map_sinks.hpp.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 
 #include "services/segmenter/params.hpp"
 #include "tools/export/scans.hpp"
+#include "tools/export/selection.hpp"
 #include "tools/export/sink.hpp"
 
 namespace lookout::exporter {
@@ -18,8 +19,11 @@ std::vector<std::string_view> TableNames();
 /// @return the header line of a table without its end; empty when there is no such table
 std::string_view TableHeader(std::string_view table);
 
+/// @param near  of obstacles, tracks and pose: rows of what lies outside are left out, also of what has no place; Finish throws std::runtime_error
+/// when
+///              none is left
 /// @return what writes `table` as CSV, without header; nullptr when there is no such table, or it is merges
-std::unique_ptr<Sink> MakeCsvSink(std::string_view table);
+std::unique_ptr<Sink> MakeCsvSink(std::string_view table, const std::optional<Circle>& near);
 
 /// The labelled cloud of one scan (binary, little-endian), for MeshLab, CloudCompare or Open3D.
 ///

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "common/bus/decode.hpp"
@@ -19,6 +21,9 @@
 #include "lookout/segments_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "tools/export/csv.hpp"
+#include "tools/export/map_geometry.hpp"
+#include "tools/export/map_table.hpp"
+#include "tools/export/outlines.hpp"
 #include "tools/export/returns.hpp"
 #include "tools/export/sinks.hpp"
 #include "tools/export/velocity.hpp"
@@ -79,19 +84,26 @@ void Append(const segments_t& message, std::string& text) {
   }
 }
 
-void Append(const obstacles_t& message, std::string& text) {
+void Append(const obstacles_t& message, const Near* near, std::string& text) {
+  const auto map = MapOf(message);
   for (const auto& obstacle : message.obstacles) {
+    const auto outline = map ? OutlineOf(obstacle, *map) : std::nullopt;
+    const auto place = PlaceOf(obstacle.latitude_deg, obstacle.longitude_deg);
+    if (near != nullptr && !(place && near->Holds(*place)) && !(outline && near->Holds(*outline))) continue;
     const auto& covariance_m2 = obstacle.covariance_m2;
     AppendRow(text, message.utime_us, obstacle.utime_us, obstacle.id, GeodeticDegrees(obstacle.latitude_deg), GeodeticDegrees(obstacle.longitude_deg),
               Metres(obstacle.top_above_water_m), Metres(obstacle.position_map_m[0]), Metres(obstacle.position_map_m[1]), Shortest{covariance_m2[0]},
               Shortest{covariance_m2[1]}, Shortest{covariance_m2[2]}, Metres(obstacle.length_m), Metres(obstacle.width_m), obstacle.num_points,
               words::WordOf(words::kObstacleStatus, obstacle.status), words::WordOf(words::kConfidence, obstacle.confidence),
-              words::WordOf(words::kKind, obstacle.kind), Share(obstacle.thing_probability));
+              words::WordOf(words::kKind, obstacle.kind), Share(obstacle.thing_probability), Metres(obstacle.range_m),
+              Direction{obstacle.bearing_rad}, Metres(obstacle.height_m), outline ? Wkt(*outline) : std::string());
   }
 }
 
-void Append(const tracks_t& message, std::string& text) {
+void Append(const tracks_t& message, const Near* near, std::string& text) {
   for (const auto& track : message.tracks) {
+    const auto place = PlaceOf(track.latitude_deg, track.longitude_deg);
+    if (near != nullptr && !(place && near->Holds(*place))) continue;
     const auto& covariance = track.covariance;
     AppendRow(text, message.end_utime_us, track.id, GeodeticDegrees(track.latitude_deg), GeodeticDegrees(track.longitude_deg),
               Metres(track.speed_mps), Direction{track.course_rad}, Metres(track.cpa_m), Fixed{track.tcpa_s, 2},
@@ -101,7 +113,7 @@ void Append(const tracks_t& message, std::string& text) {
               Share(track.existence_probability), Share(track.moving_probability), Metres(track.length_m), Metres(track.width_m),
               Degrees(track.length_bearing_rad), Metres(track.top_above_water_m), Share(track.seen_share), track.num_seen, track.num_looks,
               Fixed{track.mean_returns, 1}, Metres(track.range_m), Direction{track.bearing_rad}, Metres(track.distance_m),
-              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps));
+              Share(track.cpa_probability), words::WordOf(words::kEncounter, track.encounter), Degrees(track.bearing_drift_radps), track.known_days);
   }
 }
 
@@ -113,21 +125,26 @@ void Append(const alerts_t& message, std::string& text) {
   }
 }
 
-void Append(const pose_t& pose, std::string& text) {
+void Append(const pose_t& pose, const Near* near, std::string& text) {
+  const auto place = PlaceOf(pose.latitude_deg, pose.longitude_deg);
+  if (near != nullptr && !(place && near->Holds(*place))) return;
   constexpr int kVelocityRow = 3;  // of pose_t::covariance: velocity east, then north
   // Chi-square of two degrees of freedom that chance exceeds in one of 20 cases (Abramowitz and Stegun, table 26.8).
   constexpr double kChiSquare95 = 5.99;
-  const Eigen::Vector2d velocity_mps = VelocityHere(pose);
-  const double speed_mps = velocity_mps.norm();
+  const Eigen::Vector3d velocity_mps = Velocity3dHere(pose);
+  const double speed_mps = velocity_mps.head<2>().norm();
   // A boat at rest has no course: the direction of a speed that may be 0 is noise.
   const double variance_mps2 = std::max(pose.covariance[kVelocityRow][kVelocityRow], pose.covariance[kVelocityRow + 1][kVelocityRow + 1]);
   const bool is_at_rest = speed_mps == 0.0 || speed_mps * speed_mps < kChiSquare95 * variance_mps2;
   const double course_rad = is_at_rest ? kUnknown : std::atan2(velocity_mps.x(), velocity_mps.y());
+  const auto covariance = [&pose](int row, int column) { return Shortest{pose.covariance[row][column]}; };
   // Without attitude roll and pitch are 0 on the wire.
   AppendRow(text, pose.utime_us, GeodeticDegrees(pose.latitude_deg), GeodeticDegrees(pose.longitude_deg), Metres(pose.ellipsoid_height_m),
             Direction{pose.heading_rad}, Degrees(pose.has_attitude ? pose.roll_rad : kUnknown),
             Degrees(pose.has_attitude ? pose.pitch_rad : kUnknown), Metres(speed_mps), Direction{course_rad},
-            words::WordOf(words::kPoseStatus, pose.status));
+            words::WordOf(words::kPoseStatus, pose.status), Metres(velocity_mps.x()), Metres(velocity_mps.y()), Metres(velocity_mps.z()),
+            covariance(0, 0), covariance(0, 1), covariance(1, 1), covariance(2, 2), covariance(3, 3), covariance(3, 4), covariance(4, 4),
+            covariance(5, 5), covariance(6, 6), covariance(7, 7), covariance(8, 8));
 }
 
 void Append(const lidar_clock_t& clock, std::string& text) {
@@ -171,10 +188,19 @@ void AppendCounters(const health_t& health, std::string& text) {
 
 // A table whose rows come out of single messages of one channel.
 template <typename Message, void (*AppendRows)(const Message&, std::string&) = Append>
-bool AppendMessage(Bytes bytes, std::string& text) {
+bool AppendMessage(Bytes bytes, const Near* /*near*/, std::string& text) {
   const auto message = bus::Decode<Message>(bytes);
   if (!message) return false;
   AppendRows(*message, text);
+  return true;
+}
+
+// The same of what has a place.
+template <typename Message>
+bool AppendPlaced(Bytes bytes, const Near* near, std::string& text) {
+  const auto message = bus::Decode<Message>(bytes);
+  if (!message) return false;
+  Append(*message, near, text);
   return true;
 }
 
@@ -182,10 +208,10 @@ struct Table {
   std::string_view name;
   std::string_view header;
   bus::Channel channel;
-  bool (*append)(Bytes, std::string&);  // nullptr: returns and merges, which need two channels
+  bool (*append)(Bytes, const Near*, std::string&);  // nullptr: returns, map and merges, which need two channels or all of the log
 };
 
-constexpr std::array kTables{
+const std::array kTables{
     Table{"returns", "scan_utime_us,utime_us,ring,return_index,azimuth_deg,range_m,x_m,y_m,z_m,reflectivity,label,reason,track_id", bus::kLidarScan,
           nullptr},
     Table{"segments",
@@ -194,20 +220,23 @@ constexpr std::array kTables{
           bus::kSegments, AppendMessage<segments_t>},
     Table{"obstacles",
           "scan_utime_us,utime_us,obstacle_id,latitude_deg,longitude_deg,top_above_water_m,east_m,north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,"
-          "length_m,width_m,num_points,status,confidence,kind,thing_probability",
-          bus::kObstacles, AppendMessage<obstacles_t>},
+          "length_m,width_m,num_points,status,confidence,kind,thing_probability,range_m,bearing_deg,height_m,outline_wkt",
+          bus::kObstacles, AppendPlaced<obstacles_t>},
     Table{"tracks",
           "utime_us,track_id,latitude_deg,longitude_deg,speed_mps,course_deg,cpa_m,tcpa_s,status,kind,scan_utime_us,first_utime_us,seen_utime_us,"
           "east_m,"
           "north_m,cov_ee_m2,cov_en_m2,cov_nn_m2,velocity_east_mps,velocity_north_mps,existence_probability,moving_probability,length_m,width_m,"
           "length_bearing_deg,top_above_water_m,seen_share,num_seen,num_looks,mean_returns,range_m,bearing_deg,distance_m,cpa_probability,encounter,"
-          "bearing_drift_degps",
-          bus::kTracks, AppendMessage<tracks_t>},
+          "bearing_drift_degps,known_days",
+          bus::kTracks, AppendPlaced<tracks_t>},
     Table{"alerts",
           "utime_us,alert_id,cause,level,state,track_id,raised_utime_us,changed_utime_us,distance_m,bearing_deg,cpa_m,tcpa_s,cpa_probability,text",
           bus::kAlerts, AppendMessage<alerts_t>},
-    Table{"pose", "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status", bus::kPose,
-          AppendMessage<pose_t>},
+    Table{"pose",
+          "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status,velocity_east_mps,"
+          "velocity_north_mps,velocity_up_mps,cov_ee_m2,cov_en_m2,cov_nn_m2,cov_uu_m2,velocity_cov_ee_m2ps2,velocity_cov_en_m2ps2,"
+          "velocity_cov_nn_m2ps2,velocity_cov_uu_m2ps2,roll_var_rad2,pitch_var_rad2,heading_var_rad2",
+          bus::kPose, AppendPlaced<pose_t>},
     Table{"clock",
           "utime_us,seq,time_source,state,pps,rmc_age_us,offset_s,drift_ppm,rotation_rpm,num_packets,num_lost_packets,num_duplicate_packets,"
           "num_reordered_packets",
@@ -226,6 +255,7 @@ constexpr std::array kTables{
           "handling_p99_us,latency_p50_us,latency_p99_us",
           bus::kHealth, AppendMessage<health_t, AppendTraffic>},
     Table{"counters", "utime_us,process,name,count", bus::kHealth, AppendMessage<health_t, AppendCounters>},
+    Table{"map", MapHeader(), bus::kMap, nullptr},
     Table{"merges", "", bus::kLidarScan, nullptr}};  // its header has the names of all features: MergesHeader
 
 const Table* FindTable(std::string_view name) {
@@ -235,16 +265,28 @@ const Table* FindTable(std::string_view name) {
 
 class MessageSink final : public Sink {
  public:
-  explicit MessageSink(const Table& table) : table_(table) {}
+  MessageSink(const Table& table, const std::optional<Circle>& circle) : table_(table), circle_(circle) {
+    if (circle) near_.emplace(circle->place, circle->radius_m);
+  }
 
   std::vector<bus::Channel> Channels() const override { return {table_.channel}; }
 
-  Taken Take(std::string_view, Bytes bytes, std::string& text) override { return table_.append(bytes, text) ? Taken::kOk : Taken::kUndecodable; }
+  Taken Take(std::string_view, Bytes bytes, std::string& text) override {
+    const auto num_before = text.size();
+    const bool is_taken = table_.append(bytes, near_ ? &*near_ : nullptr, text);
+    has_rows_ |= text.size() > num_before;
+    return is_taken ? Taken::kOk : Taken::kUndecodable;
+  }
 
-  void Finish(std::string&) override {}
+  void Finish(std::string&) override {
+    if (circle_ && !has_rows_) throw std::runtime_error("nothing lies " + TextOf(*circle_));
+  }
 
  private:
   const Table& table_;
+  std::optional<Circle> circle_;
+  std::optional<Near> near_;
+  bool has_rows_ = false;
 };
 
 class ReturnsSink final : public Sink {
@@ -291,11 +333,12 @@ std::string_view TableHeader(std::string_view table) {
   return found == nullptr ? std::string_view() : found->name == "merges" ? MergesHeader() : found->header;
 }
 
-std::unique_ptr<Sink> MakeCsvSink(std::string_view table) {
+std::unique_ptr<Sink> MakeCsvSink(std::string_view table, const std::optional<Circle>& near) {
   const auto* found = FindTable(table);
   if (found == nullptr || found->name == "merges") return nullptr;
+  if (found->name == "map") return MakeMapSink(false);
   if (found->append == nullptr) return std::make_unique<ReturnsSink>();
-  return std::make_unique<MessageSink>(*found);
+  return std::make_unique<MessageSink>(*found, near);
 }
 
 }  // namespace lookout::exporter

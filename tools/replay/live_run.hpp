@@ -9,9 +9,10 @@
 
 namespace lookout::replay {
 
-/// Reads ALERTS, and of all else no more than the head. ALERTS of a second tracker, between two of the process that goes on, are left out.
+/// Reads ALERTS and MAP, and of all else no more than the head. ALERTS of a second tracker, between two of the process that goes on, are left out.
 ///
-/// @return at which scans its processes began and ended, and with which an acknowledgement was taken; nullopt where the logs hold no ALERTS
+/// @return at which scans its processes began and ended, with which an acknowledgement was taken, and which map each was given; nullopt where the
+/// logs hold no ALERTS
 /// @throws std::runtime_error when a log cannot be read; io::Stopped
 std::optional<tracker::Script> ReadScript(const std::vector<std::filesystem::path>& logs);
 

@@ -1,77 +1,14 @@
 #include "services/navigator/io/serial_port.hpp"
 
 #include <fcntl.h>
-#include <sys/ioctl.h>
-#include <termios.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
-#include <utility>
+#include "common/io/serial_device.hpp"
 
 namespace lookout::navigator {
-
-namespace {
-
-constexpr std::array<std::pair<int, speed_t>, 14> kSpeeds{{{1200, B1200},
-                                                           {2400, B2400},
-                                                           {4800, B4800},
-                                                           {9600, B9600},
-                                                           {19200, B19200},
-                                                           {38400, B38400},
-                                                           {57600, B57600},
-                                                           {115200, B115200},
-                                                           {230400, B230400},
-                                                           {460800, B460800},
-                                                           {921600, B921600},
-                                                           {1000000, B1000000},
-                                                           {2000000, B2000000},
-                                                           {4000000, B4000000}}};
-
-// @return what went wrong; empty = nothing
-std::string MakeRaw(int descriptor, int baud) {
-  const auto speed = std::ranges::find(kSpeeds, baud, &std::pair<int, speed_t>::first);
-  if (speed == kSpeeds.end()) return std::to_string(baud) + " baud is none that serial ports have";
-  termios settings{};
-  if (tcgetattr(descriptor, &settings) < 0) return std::string("is no serial port (") + std::strerror(errno) + ")";
-  cfmakeraw(&settings);
-  settings.c_cflag &= ~static_cast<tcflag_t>(CSIZE | PARENB | CSTOPB | CRTSCTS);
-  settings.c_cflag |= CS8 | CREAD | CLOCAL;
-  settings.c_iflag &= ~static_cast<tcflag_t>(IXOFF | IXANY);
-  settings.c_cc[VMIN] = 1;
-  settings.c_cc[VTIME] = 0;
-  if (cfsetispeed(&settings, speed->second) < 0 || cfsetospeed(&settings, speed->second) < 0 || tcsetattr(descriptor, TCSANOW, &settings) < 0) {
-    return std::string("refuses its settings (") + std::strerror(errno) + ")";
-  }
-  // tcsetattr is content when it could set anything at all.
-  termios in_force{};
-  if (tcgetattr(descriptor, &in_force) < 0 || cfgetispeed(&in_force) != speed->second) return "does not take " + std::to_string(baud) + " baud";
-  return {};
-}
-
-}  // namespace
 
 SerialPort::SerialPort(const std::string& name, const std::filesystem::path& device, int baud)
     : StreamSource(name, "serial port " + device.string()), device_(device), baud_(baud) {}
 
-int SerialPort::Open(std::string& fault) {
-  const int descriptor = open(device_.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0) {
-    fault = std::strerror(errno);
-    if (errno == EACCES) fault += " (is this user in the group dialout?)";
-    return kNone;
-  }
-  fault = MakeRaw(descriptor, baud_);
-  // Two readers would take the bytes from each other.
-  if (fault.empty() && ioctl(descriptor, TIOCEXCL) < 0) fault = std::string("cannot be had alone (") + std::strerror(errno) + ")";
-  if (fault.empty()) {
-    tcflush(descriptor, TCIFLUSH);  // what waited there is of unknown age
-    return descriptor;
-  }
-  close(descriptor);
-  return kNone;
-}
+int SerialPort::Open(std::string& fault) { return io::OpenSerialDevice(device_, baud_, O_RDONLY, fault); }
 
 }  // namespace lookout::navigator

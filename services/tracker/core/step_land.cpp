@@ -137,6 +137,7 @@ void Step::EndLand() {
 }
 
 void Step::FeedLand() {
+  known_.land.AdvanceTo(scan_.end_time);
   for (std::size_t i = 0; i < scan_.seen.size(); ++i) {
     const auto& seen = scan_.seen[i];
     if (use_[i] == Use::kLand) land_ids_.push_back(seen.segment_id);

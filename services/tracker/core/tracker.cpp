@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "common/core/angles.hpp"
+#include "services/tracker/core/own_map.hpp"
+#include "services/tracker/core/standing.hpp"
 #include "services/tracker/core/step.hpp"
 
 namespace lookout::tracker {
@@ -36,6 +38,7 @@ struct Tracker::Memory {
   explicit Memory(const TrackerParams& params) : known{Sight(params.T_vessel_lidar, params.reference_point_above_water_m, params.max_range_m)} {}
 
   Known known;
+  StandingThings standing = {};
   std::optional<Utime> time;
   Datum datum;
   std::optional<Pose> own;
@@ -106,6 +109,7 @@ void Tracker::Reset() {
   memory_->known.land.Clear();
   memory_->known.land_pieces.Clear();
   memory_->known.clutter = {};
+  memory_->standing.ForgetTracks();
   memory_->time.reset();
   memory_->own.reset();
   memory_->own_m2 = 0.0;
@@ -212,6 +216,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   std::erase_if(memory.known.tracks, [](const Followed& track) { return track.is_ended; });
   std::ranges::sort(memory.known.tracks, {}, &Followed::id);
   std::ranges::sort(picture.tracks, {}, &Track::id);
+  memory.standing.Update(scan, step.is_sight_known() ? &memory.known.sight : nullptr, params_.max_range_m, picture.tracks);
   if (scan.own) {
     memory.known.land.Forget(scan.own->position_map_m.head<2>());
     if (memory.num_scans++ % kWaterlineEvery == 0) {
@@ -220,6 +225,12 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   }
   return picture;
 }
+
+void Tracker::GiveMap(const OwnMap& map) { memory_->standing.Give(map.things); }
+
+OwnMap Tracker::TakeMap() { return {.things = memory_->standing.TakeChanged(), .land = memory_->known.land.TakeChanged()}; }
+
+std::optional<Utime> Tracker::land_begin() const { return memory_->known.land.begin(); }
 
 std::vector<Counter> Tracker::counters() const {
   const Memory& memory = *memory_;
@@ -231,7 +242,11 @@ std::vector<Counter> Tracker::counters() const {
           {"land_tiles", static_cast<std::int64_t>(memory.known.land.num_tiles())},
           {"restarts_by_time", memory.num_restarts_time},
           {"restarts_by_datum", memory.num_restarts_datum},
-          {"restarts_by_jump", memory.num_restarts_jump}};
+          {"restarts_by_jump", memory.num_restarts_jump},
+          {"map_things_given", memory.standing.num_given()},
+          {"map_things_known", memory.standing.num_known_seen()},
+          {"map_things_gone", memory.standing.num_gone()},
+          {"map_things_over_limit", memory.standing.num_over_limit()}};
 }
 
 }  // namespace lookout::tracker

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/core/elementary.hpp"
@@ -57,6 +59,7 @@ struct Track {
   double bearing_rad = 0.0;
   ClosestApproach approach;
   Encounter encounter = Encounter::kNone;
+  std::int32_t known_days = 0;  // as the given map says; 0: not known
 };
 
 /// What is known after a scan.
@@ -69,6 +72,8 @@ struct Picture {
   std::vector<std::pair<std::int64_t, std::int64_t>> merged;
 };
 
+struct OwnMap;
+
 class Tracker {
  public:
   explicit Tracker(const TrackerParams& params);
@@ -80,6 +85,14 @@ class Tracker {
   const Picture& Update(const ScanInput& scan);
   /// Start mark: everything is forgotten but the next id.
   void Reset();
+
+  /// The map of days before, maybe an empty one: once. Until then no map is kept. Tracks say where a thing of it is (known_days); nothing else
+  /// depends on it, and its land is not remembered as land.
+  void GiveMap(const OwnMap& map);
+  /// What has changed of the map since the last call: things that stand and land, as map_t of KEPT says.
+  OwnMap TakeMap();
+  /// Since when land is remembered; nullopt: nothing yet.
+  std::optional<Utime> land_begin() const;
 
   std::vector<Counter> counters() const;
 

@@ -420,6 +420,40 @@ TEST(DoctorProcesses, TellsEachState) {
   EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "the bus cannot be opened");
 }
 
+TEST(DoctorProcesses, MissesThePlotterOnlyWhereItHasOutputs) {
+  auto seen = Healthy();
+  seen.processes.erase("plotter");
+  seen.config.has_plotter_outputs = true;
+  EXPECT_SAYS(About(CheckProcesses(seen), "process"), kFault, "plotter is not heard, others are");
+  seen.config.has_plotter_outputs = false;
+  EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
+}
+
+TEST(DoctorPlotter, NamesAnOutputThatDoesNotTakeOurData) {
+  auto seen = Healthy();
+  EXPECT_TRUE(CheckPlotter(seen).empty());
+  auto& plotter = seen.processes["plotter"].front();
+  const auto say = [&](const std::string& name, std::int64_t before, std::int64_t now) {
+    for (auto* health : {&plotter.first, &plotter.last}) {
+      health_counter_t counter{};
+      counter.name = name;
+      counter.count = health == &plotter.first ? before : now;
+      health->counters.insert(health->counters.begin(), counter);
+      health->num_counters = static_cast<std::int32_t>(health->counters.size());
+    }
+  };
+  say("acks_sent", 0, 7);
+  EXPECT_TRUE(CheckPlotter(seen).empty());
+  say("output_tablet_sent", 100, 180);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kOk, "output 'tablet' sends, 80 messages taken");
+  say("output_tablet_unsent", 5, 6);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'tablet' takes nothing: 1 message not sent");
+  say("output_tablet_dropped", 3, 33);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'tablet' is too slow: 30 messages dropped");
+  say("output_tablet_clients", 0, 0);
+  EXPECT_SAYS(About(CheckPlotter(seen), "plotter"), kWarning, "output 'tablet' waits: nobody is connected");
+}
+
 TEST(DoctorProcesses, SeesTwoOfAKindButNotARestart) {
   auto seen = Healthy();
   seen.processes["vlp16"].push_back(Running("vlp16", 8));

@@ -32,12 +32,12 @@ class FuserStage final : public Stage {
   std::int64_t num_poses_ = 0;
 };
 
-// Fuser, and the plotter that reads what it publishes.
+// Fuser, and the painter that reads what it publishes.
 ServiceRows WithFuser() {
   ServiceRows rows = ReplayedServices();
   rows.push_back(
       {"fuser", "fused poses", 10, "network", "checks the config", "poses", {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}});
-  rows.push_back({"plotter", "pictures", 10, "network", "checks the config", "none", {&kFused}});
+  rows.push_back({"painter", "pictures", 10, "network", "checks the config", "none", {&kFused}});
   return rows;
 }
 
@@ -46,19 +46,19 @@ const ChannelSet kDayWithFused{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEG
 std::string PlanWithFuser(const Request& request) { return InWords(MakeLogPlan(request, kDayWithFused, WithFuser())); }
 
 TEST(MadeUpService, IsPlannedByItsRow) {
-  EXPECT_EQ(PlanWithFuser({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, plotter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK\n");
+  EXPECT_EQ(PlanWithFuser({}), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: LIDAR_PACKETS, NAV_RAW, ALERT_ACK\n");
   EXPECT_EQ(PlanWithFuser({.only = {"fuser"}}), "ran: fuser\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES\n");
   EXPECT_EQ(PlanWithFuser({.from = {"POSE"}, .only = {"fuser", "segmenter", "vlp16"}}),
             "ran: vlp16, segmenter, fuser\nread: LIDAR_PACKETS, POSE, OBSTACLES\n");
-  EXPECT_EQ(PlanWithFuser({.from = {"OBSTACLES"}}), "ran: tracker, fuser, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK\n");
-  EXPECT_EQ(PlanWithFuser({.from = {"FUSED"}}), "ran: tracker, plotter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, FUSED\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"OBSTACLES"}}), "ran: tracker, fuser, painter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK\n");
+  EXPECT_EQ(PlanWithFuser({.from = {"FUSED"}}), "ran: tracker, painter\nread: LIDAR_SCAN, SEGMENTS, POSE, OBSTACLES, ALERT_ACK, FUSED\n");
   EXPECT_THROW(PlanWithFuser({.from = {"FUSED"}, .only = {"georeferencer"}}), RequestError);
-  EXPECT_EQ(InWords(MakeCapturePlan({}, WithFuser())), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, plotter\nread: datagrams\n");
+  EXPECT_EQ(InWords(MakeCapturePlan({}, WithFuser())), "ran: vlp16, segmenter, navigator, georeferencer, tracker, fuser, painter\nread: datagrams\n");
   EXPECT_THROW(MakeCapturePlan({.only = {"fuser"}}, WithFuser()), RequestError);
 }
 
 TEST(MadeUpService, IsListed) {
-  EXPECT_EQ(ServiceNames(WithFuser()), (std::vector<std::string>{"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "fuser", "plotter"}));
+  EXPECT_EQ(ServiceNames(WithFuser()), (std::vector<std::string>{"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "fuser", "painter"}));
   EXPECT_EQ(FromNames(), (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES"}));
   EXPECT_EQ(FromNames(WithFuser()),
             (std::vector<std::string>{"LIDAR_PACKETS", "LIDAR_SCAN", "LIDAR_NMEA", "SEGMENTS", "NAV_RAW", "POSE", "OBSTACLES", "FUSED"}));

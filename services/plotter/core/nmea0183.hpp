@@ -1,0 +1,69 @@
+// Sentences of NMEA 0183 for the own ship, targets and alerts. Each ends with CR LF and has at most 82 characters, as the standard has it, whatever
+// the texts in it are.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/plotter/core/scene.hpp"
+
+namespace lookout::plotter {
+
+enum class Unit { kKilometres, kNauticalMiles };  // K: km and km/h; N: nautical miles and knots
+
+inline constexpr std::size_t kMaxSentenceBytes = 82;
+
+/// "$" body "*" checksum CR LF.
+///
+/// @param body  "RATTM,05,..." without characters that a sentence cannot hold: FieldText
+std::string Sentence(std::string_view body);
+
+/// A text as a field: what is reserved in a sentence ($ * , ! \ ^ ~), a control character or no ASCII becomes a space.
+std::string FieldText(std::string_view text, std::size_t max_bytes);
+
+/// Position, speed and course. Without a position it is void (V), with empty fields; where that is estimated it is void, too, with mode E.
+std::string Rmc(std::string_view talker, const OwnShip& own);
+/// True heading. nullopt while it is not known, or estimated.
+std::optional<std::string> Hdt(std::string_view talker, const OwnShip& own);
+/// Own ship data that belong to TTM: heading, course and speed over ground (reference P: a positioning system).
+std::string Osd(std::string_view talker, const OwnShip& own, Unit unit);
+
+/// Tracked target: range in `unit` with 4 decimals and true bearing from the own ship's reference point to the target's centre, speed, true course,
+/// closest approach hull to hull, minutes to it.
+///
+/// @param number  0 to 99
+/// Precondition: own.is_placed(); `target` is propagated to own.time.
+std::string Ttm(std::string_view talker, const OwnShip& own, const Target& target, int number, Unit unit);
+/// Target latitude and longitude.
+std::string Tll(std::string_view talker, const Target& target, int number, Utime time);
+
+/// Number of an alert in ALR and ACK: 001 to 997; 000 is the tracker's watch, 998 that of the plotter, 999 that there is no position.
+int AlarmNumber(const Notice& notice);
+/// Alarm: threshold exceeded (A) while it holds, acknowledged (A) or not (V).
+std::string Alr(std::string_view talker, const Notice& notice, Utime time);
+/// Alert: two sentences, the title and the text.
+///
+/// @param sequence  0 to 9, one more for each alert that is sent
+/// @param revision  1 to 99, one more with each change of the alert
+std::string Alf(std::string_view talker, const Notice& notice, Utime time, int sequence, int revision);
+
+/// Which alert is meant by a line that acknowledges: by number (ACK) or by identifier and instance (ACN).
+struct AcknowledgedNumber {
+  bool is_alarm_number = false;  // ACK
+  std::int64_t number = 0;       // AlarmNumber, or the instance
+  int identifier = 0;            // of ACN
+};
+
+enum class LineKind { kAcknowledgement, kOther, kWrong };
+
+/// @param line  without CR LF
+/// @return kWrong: no sentence, or an ACK or ACN that cannot be read
+LineKind ReadLine(std::string_view line, AcknowledgedNumber& acknowledged);
+
+/// Whether that line meant this alert.
+bool Means(const AcknowledgedNumber& acknowledged, const Notice& notice);
+
+}  // namespace lookout::plotter

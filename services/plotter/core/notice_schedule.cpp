@@ -1,0 +1,98 @@
+#include "services/plotter/core/notice_schedule.hpp"
+
+#include <limits>
+#include <set>
+
+namespace lookout::plotter {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kMostRevision = 99;
+// After it was told as cleared.
+constexpr int kRepeats = 2;
+constexpr auto kRepeatAfter = 3s;
+
+bool HasChanged(const Notice& one, const Notice& other) { return one.level != other.level || one.state != other.state; }
+
+int Next(int revision) { return revision % kMostRevision + 1; }
+
+}  // namespace
+
+std::int64_t KeyOf(const Notice& notice) {
+  return notice.id != 0 ? notice.id : std::numeric_limits<std::int64_t>::min() + static_cast<std::int64_t>(notice.cause);
+}
+
+RaisedKey RaisedKeyOf(const Notice& notice) { return {KeyOf(notice), notice.raised}; }
+
+std::string SubjectOf(const Notice& notice) { return std::to_string(KeyOf(notice)) + " " + std::to_string(ToUtimeUs(notice.raised)); }
+
+void NoticeSchedule::End(Sent sent, std::chrono::microseconds now, std::vector<Due>& due) {
+  sent.notice.state = NoticeState::kCleared;
+  sent.revision = Next(sent.revision);
+  sent.next = now + kRepeatAfter;
+  due.push_back({sent.notice, sent.revision, false});
+  ended_.push_back({std::move(sent), now, 0});
+  if (ended_.size() > kMostEnded) ended_.erase(ended_.begin());
+}
+
+void NoticeSchedule::RepeatEnded(std::chrono::microseconds now, std::vector<Due>& due) {
+  std::erase_if(ended_, [now](const Ended& one) { return now - one.ended >= kEndedFor; });
+  for (auto& one : ended_) {
+    if (one.num_repeats >= kRepeats || now < one.sent.next) continue;
+    ++one.num_repeats;
+    due.push_back({one.sent.notice, one.sent.revision, one.sent.next != 0s});
+    one.sent.next = now + kRepeatAfter;
+  }
+}
+
+std::vector<NoticeSchedule::Due> NoticeSchedule::Take(std::span<const Notice> notices, std::chrono::microseconds now) {
+  std::vector<Due> due;
+  std::set<RaisedKey> keys;
+  for (const auto& notice : notices) {
+    const auto key = RaisedKeyOf(notice);
+    keys.insert(key);
+    if (notice.is_old) continue;
+    const auto found = sent_.find(key);
+    if (found == sent_.end()) {
+      if (notice.state == NoticeState::kCleared) continue;  // nobody was told of it, or it was told already
+      due.push_back({notice, 1, false});
+      sent_.emplace(key, Sent{notice, 1, now + kPeriod});
+      continue;
+    }
+    Sent& sent = found->second;
+    const bool has_changed = HasChanged(sent.notice, notice);
+    if (!has_changed && now < sent.next) continue;
+    sent.notice = notice;
+    if (notice.state == NoticeState::kCleared) {
+      End(std::move(sent), now, due);
+      sent_.erase(found);
+      continue;
+    }
+    if (has_changed) sent.revision = Next(sent.revision);
+    const bool is_repeat = !has_changed && sent.next != 0s;
+    sent.next = now + kPeriod;
+    due.push_back({notice, sent.revision, is_repeat});
+  }
+  for (auto sent = sent_.begin(); sent != sent_.end();) {
+    if (keys.contains(sent->first)) {
+      ++sent;
+      continue;
+    }
+    End(std::move(sent->second), now, due);
+    sent = sent_.erase(sent);
+  }
+  RepeatEnded(now, due);
+  return due;
+}
+
+void NoticeSchedule::SendAnew() {
+  for (auto& [key, sent] : sent_) sent.next = {};
+  for (auto& one : ended_) {
+    one.sent.next = {};
+    one.num_repeats = kRepeats - 1;
+  }
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,64 @@
+// Which alerts are to be told on one output.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/plotter/core/scene.hpp"
+
+namespace lookout::plotter {
+
+/// What names a notice as long as it lives: the id of the alert; one of its own for each that is the plotter's own.
+std::int64_t KeyOf(const Notice& notice);
+
+/// One raising of it: a tracker that began anew gives the same ids to other alerts.
+using RaisedKey = std::pair<std::int64_t, Utime>;
+RaisedKey RaisedKeyOf(const Notice& notice);
+/// The same as a text.
+std::string SubjectOf(const Notice& notice);
+
+/// A notice is due when it is new, when its level or its state has changed, and every kPeriod while it is not cleared. One that is there no more is
+/// told as cleared; what is old (is_old) is left as it was told. That one is cleared is told twice more, and to each new receiver for kEndedFor:
+/// else one lost message leaves an alarm standing. Time is host time passed.
+class NoticeSchedule {
+ public:
+  static constexpr std::chrono::seconds kPeriod{10};
+  static constexpr std::chrono::minutes kEndedFor{10};
+  static constexpr std::size_t kMostEnded = 200;
+
+  struct Due {
+    Notice notice;
+    int revision = 1;        // 1 to 99: goes up with each change
+    bool is_repeat = false;  // of what was told before: it can wait
+  };
+
+  /// @param notices  all that are there now
+  std::vector<Due> Take(std::span<const Notice> notices, std::chrono::microseconds now);
+
+  /// A new receiver knows of none.
+  void SendAnew();
+
+ private:
+  struct Sent {
+    Notice notice;
+    int revision = 1;
+    std::chrono::microseconds next{0};  // when it is told again
+  };
+  struct Ended {
+    Sent sent;
+    std::chrono::microseconds ended{0};
+    int num_repeats = 0;
+  };
+  void End(Sent sent, std::chrono::microseconds now, std::vector<Due>& due);
+  void RepeatEnded(std::chrono::microseconds now, std::vector<Due>& due);
+
+  std::map<RaisedKey, Sent> sent_;
+  std::vector<Ended> ended_;  // the oldest first
+};
+
+}  // namespace lookout::plotter

@@ -1,0 +1,92 @@
+// What the plotter tells of: the own ship, targets, alerts.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/core/elementary.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::plotter {
+
+/// Latitude and longitude, WGS84.
+struct Position {
+  double latitude_deg = kNan;
+  double longitude_deg = kNan;  // [-180, 180]
+};
+
+/// The own ship at an instant. NaN = not known.
+struct OwnShip {
+  Utime time = {};
+  Position position = {};     // of the reference point
+  double heading_rad = kNan;  // from true north, clockwise
+  double speed_mps = kNan;    // over ground
+  double course_rad = kNan;   // from true north, clockwise
+  bool is_estimated = false;  // position or heading is only propagated: nothing has come for about a second
+
+  bool is_placed() const { return !std::isnan(position.latitude_deg) && !std::isnan(position.longitude_deg); }
+};
+
+enum class TargetState { kAcquiring, kTracking, kLost };
+
+// Numbers of both are those of alert_t.
+enum class Level : std::int32_t { kNone = 0, kCaution = 1, kWarning = 2 };
+enum class NoticeState : std::int32_t { kActive = 1, kAcknowledged = 2, kRectified = 3, kCleared = 4 };
+enum class Cause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3, kPosition = 4 };  // the last: the plotter's own
+
+/// One track, as it is to be shown.
+struct Target {
+  std::int64_t id = 0;  // of its track
+  std::string name;     // "boat 17": printable ASCII
+  TargetState state = TargetState::kTracking;
+  Utime first;  // seen
+  Position position;
+  double velocity_east_mps = 0.0;  // 0 while it stands
+  double velocity_north_mps = 0.0;
+  double speed_mps = 0.0;
+  double course_rad = kNan;  // NaN while it stands
+  double length_m = kNan;    // along length_bearing_rad
+  double width_m = kNan;
+  double length_bearing_rad = kNan;  // from true north, clockwise, 0 to pi
+  double distance_m = kNan;          // hull to hull, now
+  double cpa_m = kNan;               // hull to hull
+  double tcpa_s = kNan;              // 0 where it opens
+  double cpa_probability = kNan;     // that it passes below the limit
+  Level level = Level::kNone;        // of its gravest alert that holds
+};
+
+/// One alert, as it is to be shown.
+struct Notice {
+  std::int64_t id = 0;  // of the alert; below 0: of the watch; 0: the plotter's own, which nobody acknowledges
+  Cause cause = Cause::kWatch;
+  Level level = Level::kWarning;
+  NoticeState state = NoticeState::kActive;
+  std::int64_t track_id = 0;  // 0: of none
+  Utime raised;
+  Utime changed;
+  std::string text;
+  bool is_old = false;  // nobody knows whether it still holds: it is neither told again nor cleared
+
+  bool operator==(const Notice&) const = default;
+};
+
+/// Whether one is to be shown before another: what has an alert, the graver first; then what comes too near, the sooner first; then the nearer; then
+/// the lower id.
+bool IsMoreDangerous(const Target& one, const Target& other);
+
+/// Whether it has an alert, or is likely to pass below the limit.
+bool IsDangerous(const Target& target);
+
+/// The position after a time, at an unchanged velocity. Error: below 1 mm for a few seconds, beside a pole too.
+Position Propagated(const Position& position, double velocity_east_mps, double velocity_north_mps, double duration_s);
+
+struct RangeAndBearing {
+  double range_m = 0.0;
+  double bearing_rad = 0.0;  // from true north at `from`, clockwise, 0 to 2 pi
+};
+
+/// Along the plane that touches the earth at `from`: short by 1 mm in 1 km.
+RangeAndBearing RangeAndBearingOf(const Position& from, const Position& to);
+
+}  // namespace lookout::plotter

@@ -1,0 +1,54 @@
+// Signal K deltas (specification 1.7 and its targets): one JSON text each, on one line that ends with LF. Units are those of Signal K: rad, m, m/s,
+// s.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/plotter/core/scene.hpp"
+
+namespace lookout::plotter {
+
+/// Part of a target's context: letters, digits, - and _; what else the name of a boat has becomes _.
+std::string BoatWord(std::string_view boat);
+
+/// navigation.* of vessels.self. What is not known is null, so that nothing old stays.
+std::string OwnShipDelta(const OwnShip& own);
+
+/// targets.lidar:<boat>-<id>: position, course, speed, size, closest approach (hull to hull).
+/// @param boat  BoatWord
+std::string TargetDelta(std::string_view boat, const Target& target, Utime time);
+/// Its end: position, course, speed and closest approach are null.
+std::string TargetEndDelta(std::string_view boat, std::int64_t target_id, Utime time);
+
+/// notifications.lookout.<word>: warn for a caution, alarm for a warning; visual alone once it is acknowledged; alert for what is over and was not
+/// acknowledged; normal when it is over.
+std::string NoticeDelta(const Notice& notice, std::string_view word, Utime time);
+
+/// Names one raising of an alert. A server remembers by path that one was acknowledged: whoever is told of a new one under an old path hears nothing.
+std::string NoticeWord(const Notice& notice);
+
+/// What asks a server to send notifications back.
+std::string NoticeSubscription();
+
+/// What a server says of a notification now.
+struct NoticeEcho {
+  std::string word;
+  bool is_raised = false;        // it is not normal
+  bool is_acknowledged = false;  // by its notifications API
+  /// It is an alarm or a warning without sound, or was set to normal, and not by that API: as older displays acknowledge. What was sent without sound
+  /// comes back so, too.
+  bool is_quiet = false;
+};
+
+struct ReadEchoes {
+  bool is_wrong = false;  // no JSON, or no delta
+  std::vector<NoticeEcho> echoes;
+};
+
+/// A text from a server: a delta; or its greeting or an answer, which hold none.
+ReadEchoes ReadDelta(std::string_view text);
+
+}  // namespace lookout::plotter

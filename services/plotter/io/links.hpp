@@ -1,0 +1,82 @@
+// The ways out of this computer that a config can name, and the loop that drives them: no thread, no waiting.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "services/plotter/io/link.hpp"
+
+namespace lookout::plotter {
+
+class Loop;
+
+// Of each: `name` is the output's, before the names of its counters; addresses are numeric, IPv4 or IPv6; ports are 1 to 65535.
+
+struct UdpOptions {
+  std::string name;
+  std::string address;  // of one computer, a network's broadcast address, a multicast group (which is sent no further than the own network)
+  int port = 0;
+  std::string interface {};  // by which it is sent; empty = as the routes say
+};
+
+struct TcpServerOptions {
+  std::string name;
+  std::string bind_address;
+  int port = 0;
+  int max_clients = 8;  // more are closed at once
+};
+
+struct TcpClientOptions {
+  std::string name;
+  std::string address;
+  int port = 0;
+};
+
+struct SerialOptions {
+  std::string name;
+  std::string device;
+  int baud = 0;
+};
+
+struct WebSocketOptions {
+  std::string name;
+  std::string address;
+  int port = 0;
+  std::string path;     // with the query
+  std::string token{};  // sent as "Authorization: Bearer TOKEN"; empty = none
+};
+
+/// Opens links and does their work.
+///
+/// What fails at the other side (a server that is down, a device that is unplugged, a network without a route) is a fault() of its link, which tries
+/// again until it is mended. A receiver that has not got a message after 2 s is cut off, as it would get old targets as new ones; what waited for it
+/// is dropped. A stream carries whole messages only, but for its last one.
+///
+/// Counters of each link, behind `name`: _sent (messages that a receiver's computer has confirmed; over UDP: handed to the network), _dropped (the
+/// receiver was too slow, or was lost), _unsent (nobody was there, or the network refused it), _openings; of those that also receive: _received,
+/// _refused (too long, no text, or more than could wait); of a server: _clients (now), _clients_dropped (too slow), _clients_refused (too many).
+class Links {
+ public:
+  Links();
+  ~Links();
+  Links(const Links&) = delete;
+  Links& operator=(const Links&) = delete;
+
+  /// @throws std::runtime_error when the address is not numeric
+  std::unique_ptr<Link> Udp(const UdpOptions& options);
+  /// @throws std::runtime_error when the address is not numeric or not one of this computer, or the port is in use
+  std::unique_ptr<Link> TcpServer(const TcpServerOptions& options);
+  /// @throws std::runtime_error when the address is not numeric
+  std::unique_ptr<Link> TcpClient(const TcpClientOptions& options);
+  std::unique_ptr<Link> Serial(const SerialOptions& options);
+  /// @throws std::runtime_error when the address is not numeric, or path or token hold what cannot stand in a request (blanks, line ends)
+  std::unique_ptr<Link> WebSocket(const WebSocketOptions& options);
+
+  /// Sends what waits, receives what has come, opens what is closed. To be called every 5 to 10 ms, and after a number of Send calls. Never waits.
+  void Poll();
+
+ private:
+  std::shared_ptr<Loop> loop_;
+};
+
+}  // namespace lookout::plotter

@@ -1,0 +1,90 @@
+#include <fcntl.h>
+#include <sys/ioctl.h>
+#include <termios.h>
+
+#include <algorithm>
+#include <boost/asio/posix/stream_descriptor.hpp>
+
+#include "common/io/serial_device.hpp"
+#include "services/plotter/io/ports.hpp"
+#include "services/plotter/io/reopening_port.hpp"
+#include "services/plotter/io/stream_connection.hpp"
+
+namespace lookout::plotter {
+
+namespace {
+
+using boost::asio::posix::stream_descriptor;
+
+class SerialConnection final : public StreamConnection<stream_descriptor> {
+ public:
+  using StreamConnection::StreamConnection;
+
+  std::size_t num_waiting() { return num_waiting_bytes(); }
+
+ private:
+  void OnEnd() override { Close("was unplugged"); }
+  // Closing waits for what the port has not sent, for seconds.
+  void PrepareClose() override { tcflush(stream().native_handle(), TCOFLUSH); }
+};
+
+class SerialPort final : public ReopeningPort {
+ public:
+  SerialPort(std::shared_ptr<Loop> loop, const SerialOptions& options)
+      : ReopeningPort(std::move(loop), options.name, "serial port " + options.device, std::chrono::seconds(1)),
+        device_(options.device),
+        baud_(options.baud),
+        max_room_bytes_(std::max(kMaxLineBytes, static_cast<double>(options.baud) / kBitsPerByte / 2)) {}
+
+  // What the line cannot carry would only make all that follows late.
+  void Send(std::string_view message) override {
+    if (is_open() && message.size() > room_bytes()) {
+      ++traffic_->num_dropped;
+      return;
+    }
+    room_bytes_ -= is_open() ? static_cast<double>(message.size()) : 0.0;
+    ReopeningPort::Send(message);
+  }
+
+  void Tick(SteadyTime now) override {
+    const double elapsed_s = std::chrono::duration<double>(now - last_tick_).count();
+    room_bytes_ = std::min(max_room_bytes_, room_bytes_ + elapsed_s * baud_ / kBitsPerByte);
+    last_tick_ = now;
+    ReopeningPort::Tick(now);
+  }
+
+  std::size_t room_bytes() const override {
+    if (!is_open()) return 0;
+    // By its speed, and, where the port itself is slower, by what it has not sent.
+    const double room = std::min(room_bytes_, max_room_bytes_ - static_cast<double>(serial_->num_waiting()));
+    return static_cast<std::size_t>(std::max(room, 0.0));
+  }
+
+ private:
+  static constexpr double kBitsPerByte = 10;  // 8N1: a start bit, 8 data bits, a stop bit
+  // Room for half a second; at the lowest speeds for the longest line (of NMEA 2000; of NMEA 0183 it has 82 bytes).
+  static constexpr double kMaxLineBytes = 256;
+
+  std::shared_ptr<Connection> Open(std::string& fault) override {
+    const int descriptor = io::OpenSerialDevice(device_, baud_, O_RDWR, fault);
+    if (descriptor < 0) return nullptr;
+    serial_ = std::make_shared<SerialConnection>(stream_descriptor(context(), descriptor), traffic_);
+    serial_->Start();
+    return serial_;
+  }
+
+  std::string device_;
+  int baud_;
+  double max_room_bytes_;
+  double room_bytes_ = 0;
+  SteadyTime last_tick_ = std::chrono::steady_clock::now();
+  std::shared_ptr<SerialConnection> serial_;
+};
+
+}  // namespace
+
+std::unique_ptr<Port> MakeSerialPort(std::shared_ptr<Loop> loop, const SerialOptions& options) {
+  return std::make_unique<SerialPort>(std::move(loop), options);
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
+#include <stdexcept>
+
+#include "services/plotter/io/ports.hpp"
+#include "services/plotter/io/tcp.hpp"
+
+namespace lookout::plotter {
+
+namespace {
+
+using boost::asio::ip::tcp;
+
+class TcpServerPort final : public Port {
+ public:
+  TcpServerPort(std::shared_ptr<Loop> loop, const TcpServerOptions& options)
+      : Port(std::move(loop)),
+        place_("TCP server at " + PlaceOf(options.bind_address, options.port)),
+        max_clients_(static_cast<std::size_t>(options.max_clients)),
+        names_(options.name, {"sent", "dropped", "unsent", "received", "refused", "openings", "clients", "clients_dropped", "clients_refused"}),
+        acceptor_(context()) {
+    const tcp::endpoint endpoint(ParseAddress(options.name, options.bind_address), static_cast<std::uint16_t>(options.port));
+    boost::system::error_code error;
+    acceptor_.open(endpoint.protocol(), error);
+    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
+    if (!error && endpoint.address().is_v6()) acceptor_.set_option(boost::asio::ip::v6_only(true), error);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(boost::asio::socket_base::max_listen_connections, error);
+    if (!error) acceptor_.non_blocking(true, error);
+    if (error) {
+      const auto place = PlaceOf(options.bind_address, options.port);
+      throw std::runtime_error("output " + options.name + ": cannot listen at " + place + ": " + error.message());
+    }
+  }
+
+  ~TcpServerPort() override {
+    for (const auto& client : clients_) client->Close("");
+  }
+
+  void Send(std::string_view message) override {
+    if (clients_.empty()) ++traffic_->num_unsent;
+    for (const auto& client : clients_) client->Send(message);
+  }
+
+  void Tick(SteadyTime now) override {
+    Accept();
+    for (const auto& client : clients_) client->Tick(now);
+    num_dropped_ += std::erase_if(clients_, [](const auto& client) { return client->state() == Connection::State::kClosed && client->is_late(); });
+    std::erase_if(clients_, [](const auto& client) { return client->state() == Connection::State::kClosed; });
+  }
+
+  bool is_open() const override {
+    return std::ranges::any_of(clients_, [](const auto& client) { return client->is_open(); });
+  }
+  // A client that does not read must not hold up the others: what it has no room for cuts it off.
+  std::size_t room_bytes() const override {
+    std::size_t room = 0;
+    for (const auto& client : clients_) room = std::max(room, client->room_bytes());
+    return room;
+  }
+  std::string fault() const override { return fault_; }
+  std::vector<Counter> counters() const override {
+    return names_.With({traffic_->num_sent, traffic_->num_dropped, traffic_->num_unsent, traffic_->num_received, traffic_->num_refused,
+                        traffic_->num_openings, static_cast<std::int64_t>(clients_.size()), static_cast<std::int64_t>(num_dropped_), num_refused_});
+  }
+
+ private:
+  // Somebody who connects again and again must not keep the process here.
+  static constexpr int kMaxAcceptedAtOnce = 16;
+
+  void Accept() {
+    for (int i = 0; i < kMaxAcceptedAtOnce; ++i) {
+      tcp::socket socket(context());
+      boost::system::error_code error;
+      acceptor_.accept(socket, error);
+      if (error == boost::asio::error::would_block) return fault_.clear();
+      if (error) {
+        fault_ = place_ + ": " + error.message();  // this process may have no descriptor left: it comes again
+        return;
+      }
+      if (clients_.size() >= max_clients_) {
+        ++num_refused_;
+        continue;
+      }
+      clients_.push_back(std::make_shared<TcpConnection>(std::move(socket), TcpConnection::Made::kByClient, traffic_));
+      clients_.back()->Start();
+      ++traffic_->num_openings;
+    }
+  }
+
+  std::string place_;
+  std::size_t max_clients_;
+  CounterNames names_;
+  tcp::acceptor acceptor_;
+  std::vector<std::shared_ptr<TcpConnection>> clients_;
+  std::size_t num_dropped_ = 0;
+  std::int64_t num_refused_ = 0;
+  std::string fault_;
+};
+
+}  // namespace
+
+std::unique_ptr<Port> MakeTcpServerPort(std::shared_ptr<Loop> loop, const TcpServerOptions& options) {
+  return std::make_unique<TcpServerPort>(std::move(loop), options);
+}
+
+}  // namespace lookout::plotter

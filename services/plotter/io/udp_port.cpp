@@ -1,0 +1,144 @@
+#include <linux/errqueue.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/multicast.hpp>
+#include <boost/asio/ip/udp.hpp>
+
+#include "common/io/network.hpp"
+#include "services/plotter/io/ports.hpp"
+#include "services/plotter/io/tcp.hpp"
+
+namespace lookout::plotter {
+
+namespace {
+
+using boost::asio::ip::udp;
+
+class UdpPort final : public Port {
+ public:
+  UdpPort(std::shared_ptr<Loop> loop, const UdpOptions& options)
+      : Port(std::move(loop)),
+        destination_(ParseAddress(options.name, options.address), static_cast<std::uint16_t>(options.port)),
+        interface_(options.interface),
+        place_("UDP to " + PlaceOf(options.address, options.port)),
+        names_(options.name, {"sent", "unsent", "openings"}),
+        socket_(context()) {
+    Open(std::chrono::steady_clock::now());
+  }
+
+  void Send(std::string_view message) override {
+    if (!socket_.is_open()) {
+      ++traffic_->num_unsent;
+      return;
+    }
+    room_bytes_ -= std::min(room_bytes_, message.size());
+    const auto now = std::chrono::steady_clock::now();
+    boost::system::error_code error;
+    socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
+    if (error) {
+      // It may be what came of a message before: then this one was not tried yet.
+      Fail(error.message(), now);
+      ForgetErrors();
+      socket_.send_to(boost::asio::buffer(message), destination_, 0, error);
+    }
+    if (!error) {
+      ++traffic_->num_sent;
+      return;
+    }
+    ++traffic_->num_unsent;
+    Fail(error.message(), now);
+    // An interface that comes again is another one to the kernel.
+    if (error == boost::system::errc::no_such_device || error == boost::system::errc::no_such_device_or_address) Close();
+  }
+
+  void Tick(SteadyTime now) override {
+    const auto elapsed = std::chrono::duration_cast<std::chrono::milliseconds>(now - last_tick_);
+    room_bytes_ = std::min(kMaxAtOnceBytes, room_bytes_ + static_cast<std::size_t>(elapsed.count()) * kBytesPerMs);
+    last_tick_ += elapsed;
+    if (!socket_.is_open()) {
+      if (now - last_attempt_ >= kPause) Open(now);
+    } else if (!fault_.empty() && now - last_failure_ > kFaultHold) {
+      fault_.clear();
+    }
+  }
+
+  bool is_open() const override { return socket_.is_open(); }
+  std::size_t room_bytes() const override { return room_bytes_; }
+  std::string fault() const override { return fault_; }
+  std::vector<Counter> counters() const override { return names_.With({traffic_->num_sent, traffic_->num_unsent, traffic_->num_openings}); }
+
+ private:
+  static constexpr std::chrono::seconds kPause{1};
+  // A network tells of what it does not deliver after one message and stays silent after the next.
+  static constexpr std::chrono::seconds kFaultHold{5};
+  // A receiver's buffer holds 212 kB as Debian has it, which count some 1.3 kB for a datagram of half a kB: of a greater burst the end is lost, and
+  // with the same order each time always the same.
+  static constexpr std::size_t kMaxAtOnceBytes = 50'000;
+  static constexpr std::size_t kBytesPerMs = 1'000;
+
+  void Open(SteadyTime now) {
+    last_attempt_ = now;
+    if (!interface_.empty() && if_nametoindex(interface_.c_str()) == 0) return Fail(io::NoInterfaceText(interface_), now);
+    boost::system::error_code error;
+    socket_.open(destination_.protocol(), error);
+    if (error) return Fail(error.message(), now);
+    socket_.non_blocking(true, error);
+    socket_.set_option(boost::asio::socket_base::broadcast(true), error);
+    if (destination_.address().is_multicast()) socket_.set_option(boost::asio::ip::multicast::hops(1), error);
+    const int yes = 1;  // without a connection the kernel tells of "port unreachable" only to who asks for it
+    const bool is_v4 = destination_.address().is_v4();
+    setsockopt(socket_.native_handle(), is_v4 ? IPPROTO_IP : IPPROTO_IPV6, is_v4 ? IP_RECVERR : IPV6_RECVERR, &yes, sizeof yes);
+    if (!interface_.empty() &&
+        setsockopt(socket_.native_handle(), SOL_SOCKET, SO_BINDTODEVICE, interface_.c_str(), static_cast<socklen_t>(interface_.size())) < 0) {
+      const boost::system::error_code why(errno, boost::system::system_category());
+      Close();
+      return Fail("not by interface " + interface_ + ": " + why.message(), now);
+    }
+    fault_.clear();
+    ++traffic_->num_openings;
+  }
+
+  void Close() {
+    boost::system::error_code ignored;
+    socket_.close(ignored);
+  }
+
+  void Fail(const std::string& why, SteadyTime now) {
+    fault_ = place_ + ": " + why;
+    last_failure_ = now;
+  }
+
+  void ForgetErrors() {
+    std::array<char, 256> about{};
+    for (int i = 0; i < 100; ++i) {
+      msghdr message{};
+      message.msg_control = about.data();
+      message.msg_controllen = about.size();
+      if (recvmsg(socket_.native_handle(), &message, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) return;
+    }
+  }
+
+  udp::endpoint destination_;
+  std::string interface_;
+  std::string place_;
+  CounterNames names_;
+  std::size_t room_bytes_ = kMaxAtOnceBytes;
+  SteadyTime last_tick_ = std::chrono::steady_clock::now();
+  udp::socket socket_;
+  SteadyTime last_attempt_{};
+  SteadyTime last_failure_{};
+  std::string fault_;
+};
+
+}  // namespace
+
+std::unique_ptr<Port> MakeUdpPort(std::shared_ptr<Loop> loop, const UdpOptions& options) {
+  return std::make_unique<UdpPort>(std::move(loop), options);
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,42 @@
+// The plotter process: TRACKS, ALERTS and POSE in; NMEA 0183, Signal K and NMEA 2000 out; ALERT_ACK out.
+#include <chrono>
+#include <thread>
+
+#include "common/runtime/service_main.hpp"
+#include "services/plotter/outputs.hpp"
+#include "services/plotter/params.hpp"
+#include "services/plotter/service.hpp"
+
+namespace {
+
+constexpr std::chrono::milliseconds kTick(5);
+
+void Run(lookout::runtime::Process& process, const lookout::plotter::Params& params) {
+  lookout::plotter::Links links;
+  lookout::plotter::Service service(process.bus(), params, lookout::plotter::OpenOutputs(params, links));
+  process.Every(kTick, [&] {
+    links.Poll();
+    service.AdvanceTo(lookout::runtime::HostNow());
+    links.Poll();
+  });
+  process.Run([&service] { return service.Report(); });
+  service.Finish();
+  // What was sent last is given a moment to go out.
+  constexpr int kLastPolls = 20;
+  for (int i = 0; i < kLastPolls; ++i) {
+    links.Poll();
+    std::this_thread::sleep_for(kTick);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return lookout::runtime::ServiceMain<lookout::plotter::Params>(argc, argv,
+                                                                 {.name = "plotter",
+                                                                  .purpose = "TRACKS, ALERTS and POSE in, NMEA 0183, Signal K and NMEA 2000 out",
+                                                                  .config_may_be_absent = true,
+                                                                  .load = lookout::plotter::LoadParams,
+                                                                  .run = Run,
+                                                                  .remarks = lookout::plotter::InWords});
+}

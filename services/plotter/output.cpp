@@ -1,0 +1,86 @@
+#include "services/plotter/output.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace lookout::plotter {
+
+// Where nobody listens nothing is made; who comes is told all.
+bool Output::IsOpen(std::chrono::microseconds passed) {
+  if (!link_->is_open()) {
+    link_->NoteUnsent();
+    return false;
+  }
+  if (num_openings_ != link_->num_openings()) {
+    num_openings_ = link_->num_openings();
+    owes_anew_ = true;
+  }
+  if (owes_anew_ && (!anew_ || passed - *anew_ >= kAnewPeriod)) {
+    owes_anew_ = false;
+    anew_ = passed;
+    waiting_.clear();
+    SendAnew();
+  }
+  SendWaiting();
+  return true;
+}
+
+void Output::TellOwnShip(const Told& told) {
+  if (IsOpen(told.passed)) SendOwnShip(told);
+}
+
+void Output::TellTargets(const Told& told) {
+  if (IsOpen(told.passed)) SendTargets(told);
+}
+
+void Output::StopTargets(const Told& told) {
+  if (link_->is_open() && IsOpen(told.passed)) EndTargets(told);
+}
+
+void Output::TellNotices(const Told& told) {
+  if (link_->is_open() && IsOpen(told.passed)) SendNotices(told);
+}
+
+void Output::Finish(const Told& told) {
+  if (link_->is_open() && IsOpen(told.passed)) FinishTargets(told);
+}
+
+void Output::SendWaiting() {
+  while (!waiting_.empty() && link_->room_bytes() >= waiting_.front().message.size()) {
+    link_->Send(waiting_.front().message);
+    waiting_.pop_front();
+  }
+}
+
+void Output::SendSurely(std::string message, const std::string& subject) {
+  const auto same = subject.empty() ? waiting_.end() : std::ranges::find(waiting_, subject, &WaitingMessage::subject);
+  if (same != waiting_.end()) {
+    same->message = std::move(message);
+  } else {
+    waiting_.push_back({subject, std::move(message)});
+  }
+  SendWaiting();
+  if (waiting_.size() <= kMostWaiting) return;
+  waiting_.pop_front();
+  ++num_dropped_;
+}
+
+bool Output::Send(const std::string& message) {
+  if (!waiting_.empty() || link_->room_bytes() < message.size()) return false;
+  link_->Send(message);
+  return true;
+}
+
+std::vector<std::int64_t> Output::TakeAcknowledged(const Told& told) {
+  constexpr int kMostMessages = 8;  // a flood holds nobody up
+  std::vector<std::int64_t> keys;
+  for (int i = 0; i < kMostMessages; ++i) {
+    const auto message = link_->Receive();
+    if (!message) break;
+    const auto acknowledged = Read(*message, told);
+    if (params_.takes_acknowledgements) keys.insert(keys.end(), acknowledged.begin(), acknowledged.end());
+  }
+  return keys;
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,101 @@
+// One receiver: what it is told, in its language, over its link.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "services/plotter/core/scene.hpp"
+#include "services/plotter/core/target_numbers.hpp"
+#include "services/plotter/io/link.hpp"
+#include "services/plotter/params.hpp"
+
+namespace lookout::plotter {
+
+/// What is known now. Views into the service.
+struct Told {
+  std::chrono::microseconds passed{0};  // host time, as of PassedTime
+  const OwnShip& own;
+  std::span<const Target> targets;  // the most dangerous first, propagated to own.time
+  const TargetNumbers& numbers;
+  std::span<const Notice> notices;
+  Utime host_time;
+};
+
+class Output {
+ public:
+  Output(OutputParams params, std::unique_ptr<Link> link) : params_(std::move(params)), link_(std::move(link)) {}
+  virtual ~Output() = default;
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  const OutputParams& params() const { return params_; }
+  const Link& link() const { return *link_; }
+
+  /// Once each own_ship_period, while POSE comes: told.own may say that the position is not known.
+  void TellOwnShip(const Told& told);
+  /// After each TRACKS, while targets may be told: those that are due, and once those that are there no more.
+  void TellTargets(const Told& told);
+  /// They may be told no more: what they are is not known. To be called until they may be told again.
+  void StopTargets(const Told& told);
+  /// The process ends in order: targets are ended, notices stay.
+  void Finish(const Told& told);
+  /// Ten times a second or more: those that are due.
+  void TellNotices(const Told& told);
+
+  /// Of what came back since the last call: notices that somebody acknowledges, by KeyOf.
+  std::vector<std::int64_t> TakeAcknowledged(const Told& told);
+
+  /// Lines that could not be read.
+  std::int64_t num_refused() const { return num_refused_; }
+  /// Of what must not be lost: what was, since the link took less than came.
+  std::int64_t num_dropped() const { return num_dropped_; }
+
+ protected:
+  virtual void SendOwnShip(const Told& told) = 0;
+  virtual void SendTargets(const Told& told) = 0;
+  virtual void EndTargets(const Told& /*told*/) {}
+  virtual void FinishTargets(const Told& told) { EndTargets(told); }
+  virtual void SendNotices(const Told& told) = 0;
+  /// To a receiver that knows nothing yet.
+  virtual void SendAnew() = 0;
+  /// Of what came back, whether or not acknowledgements are taken. @return keys of notices that `message` acknowledges
+  virtual std::vector<std::int64_t> Read(const std::string& /*message*/, const Told& /*told*/) { return {}; }
+
+  /// @return false where the link has no room now, or what must not be lost waits: it is to be tried again
+  bool Send(const std::string& message);
+  /// What must not be lost: it waits for room. Beyond kMostWaiting the oldest is dropped and counted.
+  ///
+  /// @param subject  what waits of it is replaced; empty: of none
+  void SendSurely(std::string message, const std::string& subject = {});
+  static constexpr std::size_t kMostWaiting = 2000;
+  std::size_t room_bytes() const { return link_->room_bytes(); }
+  void CountRefused() { ++num_refused_; }
+
+ private:
+  bool IsOpen(std::chrono::microseconds passed);
+  void SendWaiting();
+
+  OutputParams params_;
+  std::unique_ptr<Link> link_;
+  std::int64_t num_openings_ = 0;
+  std::int64_t num_refused_ = 0;
+  std::int64_t num_dropped_ = 0;
+  struct WaitingMessage {
+    std::string subject;
+    std::string message;
+  };
+  std::deque<WaitingMessage> waiting_;
+  // Somebody who connects again and again must not make everything be sent again and again.
+  static constexpr std::chrono::seconds kAnewPeriod{2};
+  bool owes_anew_ = false;
+  std::optional<std::chrono::microseconds> anew_;
+};
+
+}  // namespace lookout::plotter

@@ -1,0 +1,55 @@
+#include "services/plotter/outputs.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "services/plotter/n2k_output.hpp"
+#include "services/plotter/nmea_output.hpp"
+#include "services/plotter/signal_k_output.hpp"
+
+namespace lookout::plotter {
+
+namespace {
+
+// `name`: of its counters, which so have none of the names of the service's.
+std::unique_ptr<Link> Open(const std::string& name, const Destination& to, Links& links) {
+  switch (to.kind) {
+    case Destination::Kind::kUdp:
+      return links.Udp({.name = name, .address = to.address, .port = to.port, .interface = to.interface});
+    case Destination::Kind::kTcpServer:
+      return links.TcpServer({.name = name, .bind_address = to.address, .port = to.port, .max_clients = to.max_clients});
+    case Destination::Kind::kTcpClient:
+      return links.TcpClient({.name = name, .address = to.address, .port = to.port});
+    case Destination::Kind::kSerial:
+      return links.Serial({.name = name, .device = to.device.string(), .baud = to.baud});
+    default:
+      return links.WebSocket({.name = name, .address = to.address, .port = to.port, .path = to.path, .token = to.token});
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Output> MakeOutput(const Params& params, const OutputParams& output, std::unique_ptr<Link> link) {
+  switch (output.format) {
+    case Format::kNmea0183:
+      return std::make_unique<NmeaOutput>(output, std::move(link), params.target_period);
+    case Format::kSignalK:
+      return std::make_unique<SignalKOutput>(output, std::move(link), params.boat);
+    default:
+      return std::make_unique<N2kOutput>(output, std::move(link), params.target_period);
+  }
+}
+
+std::vector<std::unique_ptr<Output>> OpenOutputs(const Params& params, Links& links) {
+  std::vector<std::unique_ptr<Output>> outputs;
+  for (const auto& output : params.outputs) {
+    try {
+      outputs.push_back(MakeOutput(params, output, Open("output_" + output.name, output.destination, links)));
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error("output '" + output.name + "': " + error.what());
+    }
+  }
+  return outputs;
+}
+
+}  // namespace lookout::plotter

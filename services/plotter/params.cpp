@@ -1,0 +1,299 @@
+#include "services/plotter/params.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "common/config/boat.hpp"
+#include "common/config/text_config.hpp"
+#include "common/io/network.hpp"
+#include "config/schema/navigator.pb.h"
+#include "config/schema/plotter.pb.h"
+
+namespace lookout::plotter {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kFile = "plotter.txtpb";
+
+std::chrono::microseconds ToMicroseconds(double duration_s) { return std::chrono::microseconds(std::llround(duration_s * 1e6)); }
+
+bool IsName(const std::string& name) {
+  constexpr std::size_t kMostBytes = 32;
+  return !name.empty() && name.size() <= kMostBytes &&
+         std::ranges::all_of(name, [](char letter) { return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9'); });
+}
+
+bool IsTalker(const std::string& talker) {
+  return talker.size() == 2 && std::ranges::all_of(talker, [](char letter) { return letter >= 'A' && letter <= 'Z'; });
+}
+
+Format ToFormat(config::PlotterOutput::Format format) {
+  switch (format) {
+    case config::PlotterOutput::SIGNALK:
+      return Format::kSignalK;
+    case config::PlotterOutput::N2K_ACTISENSE:
+      return Format::kN2kActisense;
+    case config::PlotterOutput::N2K_YDEN:
+      return Format::kN2kYden;
+    default:
+      return Format::kNmea0183;
+  }
+}
+
+SentTargets ToSentTargets(config::PlotterOutput::Targets targets) {
+  if (targets == config::PlotterOutput::TLL) return SentTargets::kTll;
+  return targets == config::PlotterOutput::TTM ? SentTargets::kTtm : SentTargets::kNone;
+}
+
+SentAlerts ToSentAlerts(config::PlotterOutput::Alerts alerts) {
+  if (alerts == config::PlotterOutput::ALR) return SentAlerts::kAlr;
+  return alerts == config::PlotterOutput::ALF ? SentAlerts::kAlf : SentAlerts::kNone;
+}
+
+// Reads the outputs and collects their faults, each at the line where its output begins.
+class OutputsReader {
+ public:
+  OutputsReader(fs::path folder, const config::Plotter& message) : folder_(std::move(folder)), message_(message) {
+    try {
+      navigator_ = config::Load<config::Navigator>(folder_, "navigator.txtpb");
+    } catch (const config::ConfigError&) {  // the navigator tells of it
+      navigator_.Clear();
+    }
+  }
+
+  /// @throws config::ConfigError
+  std::vector<OutputParams> Read() {
+    std::vector<OutputParams> outputs;
+    for (index_ = 0; index_ < message_.output_size(); ++index_) outputs.push_back(ReadOutput(message_.output(index_)));
+    if (!faults_.empty()) throw config::ConfigError(faults_);
+    return outputs;
+  }
+
+ private:
+  void Require(bool is_fine, const std::string& reason) {
+    if (is_fine) return;
+    faults_.push_back(
+        config::FaultLine(folder_ / kFile, "output", "'" + message_.output(index_).name() + "': " + reason, static_cast<std::size_t>(index_)));
+  }
+
+  // What the navigator would read of it: a position of ours that comes back to us as one that was measured would hide that none is.
+  void CheckAgainstNavigator(const OutputParams& params) {
+    const auto& to = params.destination;
+    const auto is_same_device = [&to](const config::NavigationInput& input) {
+      std::error_code error;
+      return input.has_serial() && fs::weakly_canonical(input.serial().device(), error) == fs::weakly_canonical(to.device, error);
+    };
+    const auto& inputs = navigator_.input();
+    if (to.kind == Destination::Kind::kSerial) {
+      Require(std::ranges::none_of(inputs, is_same_device),
+              "serial port " + to.device.string() + " is an input of navigator.txtpb: one process has a port");
+    }
+    if (!params.sends_own_ship) return;
+    const std::string cure = ": the own position would come back as one that was measured; another port, or sends_own_ship: false";
+    if (to.kind == Destination::Kind::kUdp && params.format == Format::kNmea0183) {
+      const bool is_read = (navigator_.has_bind_address() && navigator_.nmea_port() == to.port) ||
+                           std::ranges::any_of(inputs, [&to](const auto& input) { return input.has_udp() && input.udp().port() == to.port; });
+      Require(!is_read || !io::ReachesThisComputer(to.address), fmt::format("lookout-navigator reads UDP port {} of this computer", to.port) + cure);
+    }
+    if (to.kind == Destination::Kind::kTcpServer && params.format == Format::kNmea0183) {
+      const auto is_read = [&to](const config::NavigationInput& input) {
+        return input.has_tcp() && input.tcp().port() == to.port && io::ReachesThisComputer(input.tcp().address());
+      };
+      Require(std::ranges::none_of(inputs, is_read), fmt::format("lookout-navigator reads TCP port {} of this computer", to.port) + cure);
+    }
+  }
+
+  OutputParams ReadOutput(const config::PlotterOutput& output) {
+    Require(IsName(output.name()), "name must be 1 to 32 characters of a to z and 0 to 9");
+    Require(names_.insert(output.name()).second, "the name stands twice");
+    OutputParams params;
+    params.name = output.name();
+    params.format = ToFormat(output.format());
+    params.sends_own_ship = output.sends_own_ship();
+    params.targets = ToSentTargets(output.targets());
+    params.alerts = ToSentAlerts(output.alerts());
+    params.unit = output.unit() == config::PlotterOutput::NAUTICAL_MILES ? Unit::kNauticalMiles : Unit::kKilometres;
+    params.target_talker = output.target_talker();
+    params.own_ship_talker = output.own_ship_talker();
+    params.takes_acknowledgements = output.takes_acknowledgements();
+    const int num_kinds = static_cast<int>(output.has_udp()) + static_cast<int>(output.has_tcp_server()) + static_cast<int>(output.has_tcp_client()) +
+                          static_cast<int>(output.has_serial()) + static_cast<int>(output.has_websocket());
+    Require(num_kinds == 1, fmt::format("must have one of udp, tcp_server, tcp_client, serial and websocket, and has {}", num_kinds));
+    if (num_kinds == 1) params.destination = ReadDestination(output);
+    CheckFormat(output, params);
+    if (num_kinds == 1) CheckAgainstNavigator(params);
+    return params;
+  }
+
+  void CheckFormat(const config::PlotterOutput& output, const OutputParams& params) {
+    const bool is_nmea = params.format == Format::kNmea0183;
+    Require(!output.has_websocket() || params.format == Format::kSignalK, "a websocket carries format SIGNALK only");
+    Require(!output.has_serial() || is_nmea, "a serial port carries format NMEA0183 only");
+    Require(!params.takes_acknowledgements || !output.has_udp(), "nothing comes back over udp: takes_acknowledgements must be false");
+    Require(!params.takes_acknowledgements || is_nmea || params.format == Format::kSignalK, "NMEA 2000 brings no acknowledgements back");
+    Require(!params.takes_acknowledgements || !is_nmea || params.alerts != SentAlerts::kNone,
+            "takes_acknowledgements wants alerts: ALR (acknowledged by ACK) or ALF (by ACN)");
+    if (is_nmea) {
+      Require(IsTalker(params.target_talker), "target_talker must be two capital letters");
+      Require(IsTalker(params.own_ship_talker), "own_ship_talker must be two capital letters");
+    } else {
+      Require(!output.has_targets() && !output.has_alerts() && !output.has_unit() && !output.has_target_talker() && !output.has_own_ship_talker(),
+              "targets, alerts, unit and talkers are of format NMEA0183 only");
+    }
+  }
+
+  std::string ReadAddress(const std::string& address) {
+    Require(io::ParseIpAddress(address).has_value(), "address '" + address + "' is no numeric address");
+    return address;
+  }
+
+  Destination ReadDestination(const config::PlotterOutput& output) {
+    Destination destination;
+    if (output.has_udp()) {
+      destination.kind = Destination::Kind::kUdp;
+      destination.address = ReadAddress(output.udp().address());
+      destination.port = output.udp().port();
+      destination.interface = output.udp().interface();
+      const auto address = io::ParseIpAddress(destination.address);
+      Require(!address || !address->is_any(), "udp.address must be of a receiver, a broadcast or a group: " + destination.address + " is none");
+    } else if (output.has_tcp_server()) {
+      destination.kind = Destination::Kind::kTcpServer;
+      destination.address = ReadAddress(output.tcp_server().bind_address());
+      destination.port = output.tcp_server().port();
+      destination.max_clients = output.tcp_server().max_clients();
+      Require(ports_.insert({destination.address, destination.port}).second,
+              fmt::format("port {} of {} belongs to an output before it", destination.port, destination.address));
+    } else if (output.has_tcp_client()) {
+      destination.kind = Destination::Kind::kTcpClient;
+      destination.address = ReadAddress(output.tcp_client().address());
+      destination.port = output.tcp_client().port();
+    } else if (output.has_serial()) {
+      destination.kind = Destination::Kind::kSerial;
+      destination.device = output.serial().device();
+      destination.baud = output.serial().baud();
+      // What termios of Linux has names for, from 1200 on.
+      static const std::set<int> kBauds{1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 921600, 1000000, 2000000, 4000000};
+      Require(destination.device.is_absolute(), "serial.device must be the whole path of a device, as /dev/ttyUSB0");
+      Require(kBauds.contains(destination.baud),
+              fmt::format("serial.baud {} is none that serial ports have (4800, 9600, 38400, 115200 ...)", destination.baud));
+      std::error_code error;
+      Require(devices_.insert(fs::weakly_canonical(destination.device, error)).second, "the serial port belongs to an output before it");
+    } else {
+      destination.kind = Destination::Kind::kWebSocket;
+      destination.address = ReadAddress(output.websocket().address());
+      destination.port = output.websocket().port();
+      destination.path = output.websocket().path();
+      const bool is_path = destination.path.starts_with('/') &&
+                           std::ranges::all_of(destination.path, [](unsigned char letter) { return letter > ' ' && letter < 127; });
+      Require(is_path, "websocket.path must begin with / and hold no space: '" + destination.path + "'");
+      if (output.websocket().has_token_file()) destination.token = ReadToken(folder_ / output.websocket().token_file());
+    }
+    return destination;
+  }
+
+  // Whoever has the token may write to the server: a file that all may read is refused.
+  std::string ReadToken(const fs::path& file) {
+    constexpr std::size_t kMostBytes = 4096;
+    const auto quoted = "websocket.token_file '" + file.string() + "' ";
+    std::error_code error;
+    const auto status = fs::status(file, error);
+    if (!fs::is_regular_file(status)) {
+      Require(false, quoted + "is no file");
+      return {};
+    }
+    const bool is_private = (status.permissions() & (fs::perms::others_read | fs::perms::others_write | fs::perms::group_write)) == fs::perms::none;
+    Require(is_private, quoted + "can be read by everybody: chmod 640");
+    std::string token;
+    std::ifstream stream(file);
+    std::getline(stream, token);
+    if (token.ends_with('\r')) token.pop_back();
+    const bool is_token =
+        !token.empty() && token.size() <= kMostBytes && std::ranges::all_of(token, [](unsigned char letter) { return letter > ' ' && letter < 127; });
+    Require(is_token, quoted + "must begin with a line that is the token: printable ASCII without spaces");
+    return token;
+  }
+
+  fs::path folder_;
+  const config::Plotter& message_;
+  config::Navigator navigator_;
+  std::vector<std::string> faults_;
+  std::set<std::string> names_;
+  std::set<std::pair<std::string, int>> ports_;
+  std::set<fs::path> devices_;
+  int index_ = 0;
+};
+
+std::string InWords(const Destination& to) {
+  switch (to.kind) {
+    case Destination::Kind::kUdp:
+      return fmt::format("UDP to {} port {}{}", to.address, to.port, to.interface.empty() ? "" : " by " + to.interface);
+    case Destination::Kind::kTcpServer:
+      return fmt::format("TCP to at most {} that connect to {} port {}", to.max_clients, to.address, to.port);
+    case Destination::Kind::kTcpClient:
+      return fmt::format("TCP to {} port {}", to.address, to.port);
+    case Destination::Kind::kSerial:
+      return fmt::format("serial port {} at {} baud", to.device.string(), to.baud);
+    default:
+      return fmt::format("WebSocket ws://{}:{}{} {}", to.address, to.port, to.path, to.token.empty() ? "without a token" : "with a token");
+  }
+}
+
+std::string InWords(const OutputParams& output) {
+  switch (output.format) {
+    case Format::kSignalK:
+      return "Signal K";
+    case Format::kN2kActisense:
+      return "NMEA 2000 as Actisense text";
+    case Format::kN2kYden:
+      return "NMEA 2000 as YDEN text";
+    default:
+      break;
+  }
+  std::string words = "NMEA 0183";
+  if (output.targets != SentTargets::kNone) words += output.targets == SentTargets::kTtm ? " OSD TTM" : " TLL";
+  if (output.sends_own_ship) words += " RMC HDT";
+  if (output.alerts != SentAlerts::kNone) words += output.alerts == SentAlerts::kAlr ? " ALR" : " ALF";
+  return words;
+}
+
+}  // namespace
+
+Params LoadParams(const fs::path& config_folder) {
+  config::FaultList faults;
+  const auto boat = faults.Take([&] { return config::LoadBoat(config_folder); });
+  Params params;
+  std::error_code error;
+  if (fs::exists(config_folder / kFile, error)) {
+    const auto message = faults.Take([&] { return config::Load<config::Plotter>(config_folder, std::string(kFile)); });
+    const auto outputs = faults.Take([&] { return message ? OutputsReader(config_folder, *message).Read() : std::vector<OutputParams>(); });
+    faults.ThrowIfAny();
+    params.takes_tentative = message->takes_tentative();
+    params.target_period = ToMicroseconds(message->target_period_s());
+    params.own_ship_period = ToMicroseconds(message->own_ship_period_s());
+    params.number_quarantine = ToMicroseconds(message->number_quarantine_s());
+    params.outputs = *outputs;
+  }
+  faults.ThrowIfAny();
+  params.boat = boat->name;
+  return params;
+}
+
+std::string InWords(const Params& params) {
+  if (params.outputs.empty()) return "# plotter.txtpb: no output: nothing is sent\n";
+  std::string text;
+  for (const auto& output : params.outputs)
+    text += fmt::format("# plotter.txtpb: output '{}': {}, {}\n", output.name, InWords(output), InWords(output.destination));
+  return text;
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,60 @@
+// Config of the plotter process (boat.txtpb, plotter.txtpb) as checked values.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "services/plotter/core/nmea0183.hpp"
+
+namespace lookout::plotter {
+
+enum class Format { kNmea0183, kSignalK, kN2kActisense, kN2kYden };
+enum class SentTargets { kTtm, kTll, kNone };
+enum class SentAlerts { kNone, kAlr, kAlf };
+
+/// Where an output goes. What a kind does not use is empty.
+struct Destination {
+  enum class Kind { kUdp, kTcpServer, kTcpClient, kSerial, kWebSocket };
+  Kind kind = Kind::kUdp;
+  std::string address = {};  // numeric
+  int port = 0;
+  std::string interface = {};         // UDP
+  int max_clients = 0;                // TCP server
+  std::filesystem::path device = {};  // serial
+  int baud = 0;
+  std::string path = {};  // WebSocket
+  std::string token = {};
+};
+
+struct OutputParams {
+  std::string name;
+  Format format = Format::kNmea0183;
+  Destination destination = {};
+  bool sends_own_ship = true;
+  SentTargets targets = SentTargets::kTtm;
+  SentAlerts alerts = SentAlerts::kNone;
+  Unit unit = Unit::kKilometres;
+  std::string target_talker = "RA";
+  std::string own_ship_talker = "II";
+  bool takes_acknowledgements = false;
+};
+
+struct Params {
+  std::string boat;  // its name, as in boat.txtpb
+  bool takes_tentative = false;
+  std::chrono::microseconds target_period{2'500'000};
+  std::chrono::microseconds own_ship_period{1'000'000};
+  std::chrono::microseconds number_quarantine{60'000'000};
+  std::vector<OutputParams> outputs = {};
+};
+
+/// @param config_folder  the boat's folder, holding boat.txtpb and plotter.txtpb; without the latter there are no outputs
+/// @throws config::ConfigError
+Params LoadParams(const std::filesystem::path& config_folder);
+
+/// What --check prints besides the values: what each output sends, and to where.
+std::string InWords(const Params& params);
+
+}  // namespace lookout::plotter

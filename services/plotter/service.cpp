@@ -1,0 +1,254 @@
+#include "services/plotter/service.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+#include <variant>
+
+namespace lookout::plotter {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// Between POSE and TRACKS: farther apart they are not of one time.
+constexpr auto kMostApart = 2s;
+// An acknowledgement that was sent takes effect with the next scan: the same one again is none.
+constexpr auto kAcknowledgedFor = 1s;
+constexpr auto kNoticePeriod = 100ms;
+
+bool Holds(const Notice& notice) { return notice.state == NoticeState::kActive || notice.state == NoticeState::kAcknowledged; }
+
+}  // namespace
+
+Service::Service(bus::Bus& bus, const Params& params, std::vector<std::unique_ptr<Output>> outputs)
+    : bus_(bus), params_(params), outputs_(std::move(outputs)), numbers_(params.number_quarantine) {
+  bus::Subscribe<tracks_t>(bus_, bus::kTracks, [this](const tracks_t& message) { OnTracks(message); });
+  bus::Subscribe<alerts_t>(bus_, bus::kAlerts, [this](const alerts_t& message) { OnAlerts(message); });
+  bus::Subscribe<pose_t>(bus_, bus::kPose, [this](const pose_t& message) { OnPose(message); });
+}
+
+bool Service::IsFresh(std::optional<std::chrono::microseconds> seen) const { return seen && passed_.passed() - *seen < kFresh; }
+
+bool Service::MayTellTargets() const {
+  return IsFresh(alerts_seen_) && IsFresh(tracks_seen_) && IsFresh(pose_seen_) && own_.is_placed() &&
+         std::chrono::abs(own_.time - tracks_time_) <= kMostApart;
+}
+
+Told Service::ToldNow() const { return {passed_.passed(), own_, targets_, numbers_, notices_, now_.value_or(Utime())}; }
+
+void Service::OnTracks(const tracks_t& message) {
+  if (const auto part = ToTracksPart(message); const auto* refusal = std::get_if<Fault>(&part)) return tracks_refused_.Add(*refusal);
+  if (message.num_parts == 1 && parts_.is_empty()) return UseTracks({&message, 1});
+  const auto ended = parts_.Add(message);
+  if (!ended.incomplete.empty()) ++counts_["tracks_incomplete"];
+  if (!ended.whole.empty()) UseTracks(ended.whole);
+}
+
+void Service::UseTracks(std::span<const tracks_t> parts) {
+  std::vector<Target> tracks;
+  std::optional<Utime> begin;
+  Utime time;
+  for (const auto& message : parts) {
+    auto part = std::get<TracksPart>(ToTracksPart(message));
+    const bool is_behind = tracks.empty() || part.targets.empty() || tracks.back().id < part.targets.front().id;
+    if (!is_behind || (begin && *begin != part.begin)) {
+      ++counts_["tracks_inconsistent"];
+      return;
+    }
+    begin = part.begin;
+    time = part.time;
+    std::ranges::move(part.targets, std::back_inserter(tracks));
+  }
+  // The same again says nothing of now.
+  if (time == tracks_time_ && begin == begin_) return;
+  tracks_seen_ = passed_.passed();
+  if (begin_ && begin != begin_) {
+    // Another process of the tracker: its ids are of other things.
+    ++counts_["runs_begun"];
+    tracks_.clear();
+    ComposeTargets();
+    for (const auto& output : outputs_) output->TellTargets(ToldNow());
+  }
+  begin_ = begin;
+  tracks_time_ = time;
+  tracks_ = std::move(tracks);
+  if (!MayTellTargets()) return;
+  are_told_ = true;
+  ComposeTargets();
+  for (const auto& output : outputs_) output->TellTargets(ToldNow());
+}
+
+void Service::ComposeTargets() {
+  std::map<std::int64_t, Level> levels;
+  for (const auto& notice : alerts_) {
+    if (Holds(notice)) levels[notice.track_id] = std::max(levels[notice.track_id], notice.level);
+  }
+  std::vector<Target> targets;
+  const double ahead_s = ToSeconds(own_.time - tracks_time_);
+  for (const auto& track : tracks_) {
+    if (track.state == TargetState::kLost || (track.state == TargetState::kAcquiring && !params_.takes_tentative)) continue;
+    Target& target = targets.emplace_back(track);
+    target.position = Propagated(track.position, track.velocity_east_mps, track.velocity_north_mps, ahead_s);
+    if (target.tcpa_s > 0.0) target.tcpa_s = std::max(0.0, target.tcpa_s - ahead_s);
+    if (const auto level = levels.find(track.id); level != levels.end() && track.id != 0) target.level = level->second;
+  }
+  std::set<std::int64_t> ids;
+  for (const auto& target : targets) ids.insert(target.id);
+  for (const auto& before : targets_) {
+    if (!ids.contains(before.id)) numbers_.Release(before.id, passed_.passed());
+  }
+  std::ranges::sort(targets, IsMoreDangerous);
+  targets_ = std::move(targets);
+  numbers_.Assign(targets_, passed_.passed());
+}
+
+void Service::OnAlerts(const alerts_t& message) {
+  auto notices = ToNotices(message);
+  if (const auto* refusal = std::get_if<Fault>(&notices)) return alerts_refused_.Add(*refusal);
+  alerts_seen_ = passed_.passed();
+  alerts_ = std::get<std::vector<Notice>>(std::move(notices));
+  TellNotices();
+}
+
+void Service::TellNotices() {
+  notices_told_ = passed_.passed();
+  ComposeNotices();
+  for (const auto& output : outputs_) output->TellNotices(ToldNow());
+}
+
+void Service::OnPose(const pose_t& message) {
+  if (const auto pose = messages::ToPose(message); const auto* refusal = std::get_if<Fault>(&pose)) return poses_refused_.Add(*refusal);
+  const auto own = ToOwnShip(message);
+  if (has_pose_ && own.time == own_.time) return;  // the same again says nothing of now
+  own_ = own;
+  has_pose_ = true;
+  pose_seen_ = passed_.passed();
+  if (own_told_ && passed_.passed() - *own_told_ < params_.own_ship_period) return;
+  own_told_ = passed_.passed();
+  for (const auto& output : outputs_) output->TellOwnShip(ToldNow());
+}
+
+// The plotter's own. As long as it holds it was raised when it was.
+std::optional<Notice> Service::OwnNotice() const {
+  if (!now_) return std::nullopt;
+  Notice notice;
+  notice.raised = *now_;
+  notice.changed = *now_;
+  if (!IsFresh(alerts_seen_)) {
+    notice.cause = Cause::kWatch;
+    notice.level = Level::kWarning;
+    notice.text = "no look-out: the tracker is silent";
+  } else if (!IsFresh(pose_seen_) || (has_pose_ && !own_.is_placed())) {
+    notice.cause = Cause::kPosition;
+    notice.level = Level::kCaution;
+    notice.text = "no own position: targets are not shown";
+  } else {
+    return std::nullopt;
+  }
+  return own_notice_ && own_notice_->cause == notice.cause ? own_notice_ : notice;
+}
+
+void Service::ComposeNotices() {
+  own_notice_ = OwnNotice();
+  notices_ = alerts_;
+  for (auto& notice : notices_) notice.is_old = !IsFresh(alerts_seen_);
+  if (own_notice_) notices_.push_back(*own_notice_);
+}
+
+void Service::StopTargets() {
+  are_told_ = false;
+  for (const auto& output : outputs_) output->StopTargets(ToldNow());
+}
+
+void Service::AdvanceTo(Utime host_time) {
+  // This process, or the computer, stood still: what came before is of then.
+  if (now_ && host_time - *now_ > kFresh) tracks_seen_ = alerts_seen_ = pose_seen_ = passed_.passed() - kFresh;
+  now_ = host_time;
+  const bool is_first = passed_.passed() == 0us;
+  passed_.Advance(host_time);
+  // Waiting begins with the first call.
+  if (is_first) {
+    for (auto* seen : {&tracks_seen_, &alerts_seen_, &pose_seen_}) *seen = seen->value_or(passed_.passed());
+  }
+  const bool is_watched = IsFresh(alerts_seen_);
+  if (was_watched_ && !is_watched) ++counts_["times_unwatched"];
+  was_watched_ = is_watched;
+  if (!notices_told_ || passed_.passed() - *notices_told_ >= kNoticePeriod) {
+    TellNotices();
+    // Again and again: an output that is closed now learns it when it is opened.
+    if (!MayTellTargets()) StopTargets();
+  }
+  TakeAcknowledgements();
+}
+
+void Service::TakeAcknowledgements() {
+  std::erase_if(acknowledged_, [this](const auto& one) { return passed_.passed() - one.second >= kAcknowledgedFor; });
+  for (const auto& output : outputs_) {
+    for (const auto key : output->TakeAcknowledged(ToldNow())) Acknowledge(key);
+  }
+}
+
+void Service::Acknowledge(std::int64_t key) {
+  const auto notice = std::ranges::find_if(alerts_, [key](const Notice& one) { return one.id == key; });
+  const bool is_wanted = notice != alerts_.end() && (notice->state == NoticeState::kActive || notice->state == NoticeState::kRectified);
+  if (!is_wanted || !now_) {
+    ++counts_["acks_of_no_alert"];
+    return;
+  }
+  if (!acknowledged_.emplace(key, passed_.passed()).second) return;
+  bus::Publish(bus_, bus::kAlertAck, ToMessage(*notice, *now_, ack_seq_++));
+  ++counts_["acks_sent"];
+}
+
+void Service::Finish() {
+  for (const auto& output : outputs_) output->Finish(ToldNow());
+}
+
+HealthReport Service::Report() const {
+  HealthReport report;
+  report.counters = {{"targets", static_cast<std::int64_t>(targets_.size())},
+                     {"targets_told", are_told_ ? 1 : 0},
+                     {"numbers_used", numbers_.num_used()},
+                     {"targets_without_number", numbers_.num_without()},
+                     {"number_overflows", numbers_.num_overflows()}};
+  counts_.AppendTo(report.counters);
+  tracks_refused_.AppendTo(report.counters);
+  alerts_refused_.AppendTo(report.counters);
+  poses_refused_.AppendTo(report.counters);
+  std::int64_t num_refused = 0;
+  std::int64_t num_dropped = 0;
+  for (const auto& output : outputs_) {
+    const auto counters = output->link().counters();
+    report.counters.insert(report.counters.end(), counters.begin(), counters.end());
+    num_refused += output->num_refused();
+    num_dropped += output->num_dropped();
+  }
+  report.counters.push_back({"lines_refused", num_refused});
+  report.counters.push_back({"lines_dropped", num_dropped});
+  if (outputs_.empty()) return report;
+
+  if (!now_) return report;
+  const auto silence_s = [this](std::optional<std::chrono::microseconds> seen) {
+    return std::chrono::floor<std::chrono::seconds>(passed_.passed() - seen.value_or(0us)).count();
+  };
+  if (!IsFresh(alerts_seen_)) report.Degrade(fmt::format("no ALERTS for {} s: no look-out, no targets are sent", silence_s(alerts_seen_)));
+  if (!IsFresh(tracks_seen_)) report.Degrade(fmt::format("no TRACKS for {} s: no targets are sent", silence_s(tracks_seen_)));
+  if (!IsFresh(pose_seen_)) {
+    report.Degrade(fmt::format("no POSE for {} s: neither own ship nor targets are sent", silence_s(pose_seen_)));
+  } else if (has_pose_ && !own_.is_placed()) {
+    report.Degrade("the own position is not known: no targets are sent");
+  } else if (IsFresh(tracks_seen_) && std::chrono::abs(own_.time - tracks_time_) > kMostApart) {
+    report.Degrade("POSE and TRACKS are not of one time: no targets are sent");
+  }
+  if (numbers_.num_without() > 0) report.Degrade(fmt::format("{} targets without a number: 00 to 99 are used up", numbers_.num_without()));
+  for (const auto& output : outputs_) {
+    if (const auto fault = output->link().fault(); !fault.empty()) report.Degrade(fmt::format("output '{}': {}", output->params().name, fault));
+  }
+  return report;
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,87 @@
+#include "services/plotter/signal_k_output.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace lookout::plotter {
+
+SignalKOutput::SignalKOutput(const OutputParams& params, std::unique_ptr<Link> link, const std::string& boat)
+    : Output(params, std::move(link)), boat_(BoatWord(boat)) {}
+
+// The boat may have other sources of its position: one null where ours is not known any more, and then nothing.
+void SignalKOutput::SendOwnShip(const Told& told) {
+  if (!params().sends_own_ship || told.own.is_estimated) return;
+  if (!told.own.is_placed() && !was_placed_) return;
+  if (Send(OwnShipDelta(told.own))) was_placed_ = told.own.is_placed();
+}
+
+void SignalKOutput::SendTargets(const Told& told) {
+  for (const auto& ended : targets_.TakeEnded(told.targets)) SendSurely(TargetEndDelta(boat_, ended.target.id, told.own.time));
+  for (const auto* target : targets_.Due(told.targets, told.passed)) {
+    if (!Send(TargetDelta(boat_, *target, told.own.time))) return;
+    targets_.NoteSent(*target, told.own.time, -1, told.passed);
+  }
+}
+
+// A server shows the last values until it is told otherwise.
+void SignalKOutput::EndTargets(const Told& told) {
+  for (const auto& ended : targets_.TakeEnded({})) SendSurely(TargetEndDelta(boat_, ended.target.id, told.own.time));
+}
+
+void SignalKOutput::SendNotices(const Told& told) {
+  for (const auto& [notice, revision, is_repeat] : notices_.Take(told.notices, told.passed)) {
+    const auto key = RaisedKeyOf(notice);
+    const auto [raised, is_new] = raised_.try_emplace(key, Raised{NoticeWord(notice), notice});
+    const Notice& last = raised->second.notice;
+    if (!is_new && notice.state == NoticeState::kActive && (last.state != NoticeState::kActive || notice.level > last.level)) {
+      auto ended = last;
+      ended.state = NoticeState::kCleared;
+      SendSurely(NoticeDelta(ended, raised->second.word, told.host_time), raised->second.word);
+      raised->second.word = NoticeWord(notice);
+    }
+    raised->second.notice = notice;
+    SendSurely(NoticeDelta(notice, raised->second.word, told.host_time), raised->second.word);
+  }
+  // What ended is told again for a while, under its own word.
+  if (raised_.size() > kMostRaised) std::erase_if(raised_, [](const auto& one) { return one.second.notice.state == NoticeState::kCleared; });
+}
+
+void SignalKOutput::SendAnew() {
+  targets_.SendAnew();
+  notices_.SendAnew();
+  ended_words_.clear();
+  // Where something comes back.
+  const auto kind = params().destination.kind;
+  if (kind == Destination::Kind::kWebSocket || kind == Destination::Kind::kTcpClient) SendSurely(NoticeSubscription());
+}
+
+// A server keeps what a process before this one told.
+void SignalKOutput::EndLeftover(const NoticeEcho& echo, const Told& told) {
+  const bool is_known = std::ranges::any_of(raised_, [&echo](const auto& one) { return one.second.word == echo.word; });
+  if (is_known || !echo.is_raised || ended_words_.size() >= kMostRaised || !ended_words_.insert(echo.word).second) return;
+  Notice ended;
+  ended.state = NoticeState::kCleared;
+  ended.text = "told by a process that has ended";
+  SendSurely(NoticeDelta(ended, echo.word, told.host_time), echo.word);
+}
+
+std::vector<std::int64_t> SignalKOutput::Read(const std::string& message, const Told& told) {
+  const auto read = ReadDelta(message);
+  if (read.is_wrong) CountRefused();
+  for (const auto& echo : read.echoes) EndLeftover(echo, told);
+  std::vector<std::int64_t> keys;
+  for (const auto& notice : told.notices) {
+    const auto raised = raised_.find(RaisedKeyOf(notice));
+    // What was told as acknowledged or as over went out without sound, and comes back so.
+    if (notice.id == 0 || raised == raised_.end() || raised->second.notice.state != notice.state) continue;
+    const bool is_active = notice.state == NoticeState::kActive;
+    if (!is_active && notice.state != NoticeState::kRectified) continue;
+    const bool is_acknowledged = std::ranges::any_of(read.echoes, [&](const NoticeEcho& echo) {
+      return echo.word == raised->second.word && (echo.is_acknowledged || (is_active && echo.is_quiet));
+    });
+    if (is_acknowledged) keys.push_back(KeyOf(notice));
+  }
+  return keys;
+}
+
+}  // namespace lookout::plotter

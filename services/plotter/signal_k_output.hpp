@@ -1,0 +1,47 @@
+// Signal K for one receiver.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+
+#include "services/plotter/core/notice_schedule.hpp"
+#include "services/plotter/core/signal_k.hpp"
+#include "services/plotter/core/target_schedule.hpp"
+#include "services/plotter/output.hpp"
+
+namespace lookout::plotter {
+
+class SignalKOutput : public Output {
+ public:
+  /// Also of what stands still: who shows targets drops what comes no more.
+  static constexpr std::chrono::seconds kTargetPeriod{1};
+
+  SignalKOutput(const OutputParams& params, std::unique_ptr<Link> link, const std::string& boat);
+
+ private:
+  void SendOwnShip(const Told& told) override;
+  void SendTargets(const Told& told) override;
+  void EndTargets(const Told& told) override;
+  void SendNotices(const Told& told) override;
+  void SendAnew() override;
+  std::vector<std::int64_t> Read(const std::string& message, const Told& told) override;
+
+  void EndLeftover(const NoticeEcho& echo, const Told& told);
+
+  std::string boat_;
+  TargetSchedule targets_{kTargetPeriod};
+  NoticeSchedule notices_;
+  // Notices that were told, as they were last.
+  struct Raised {
+    std::string word;
+    Notice notice;
+  };
+  static constexpr std::size_t kMostRaised = 1000;
+  std::map<RaisedKey, Raised> raised_;
+  std::set<std::string> ended_words_;  // of processes before this one
+  bool was_placed_ = false;
+};
+
+}  // namespace lookout::plotter

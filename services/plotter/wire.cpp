@@ -1,0 +1,161 @@
+#include "services/plotter/wire.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <string>
+
+#include "common/core/angles.hpp"
+#include "common/core/pose.hpp"
+
+namespace lookout::plotter {
+
+namespace {
+
+// Bounds of what can be, far beyond what any lidar sees.
+constexpr double kMostSpeedMps = 1000.0;
+constexpr double kMostLengthM = 1e5;
+constexpr double kMostTcpaS = 1e6;
+constexpr std::size_t kMostTextBytes = 1000;
+constexpr std::int64_t kMostAlertId = 1'000'000'000'000'000;
+
+bool IsWithin(double value, double min, double max) { return value >= min && value <= max; }  // NaN is not
+bool IsWithinOrUnknown(double value, double min, double max) { return std::isnan(value) || IsWithin(value, min, max); }
+
+bool IsOnEarth(double latitude_deg, double longitude_deg) { return IsWithin(latitude_deg, -90.0, 90.0) && IsWithin(longitude_deg, -180.0, 180.0); }
+
+bool AreNumbersGood(const track_t& track) {
+  return IsOnEarth(track.latitude_deg, track.longitude_deg) && IsWithin(track.velocity_map_mps[0], -kMostSpeedMps, kMostSpeedMps) &&
+         IsWithin(track.velocity_map_mps[1], -kMostSpeedMps, kMostSpeedMps) && IsWithinOrUnknown(track.length_m, 0.0, kMostLengthM) &&
+         IsWithinOrUnknown(track.width_m, 0.0, kMostLengthM) && IsWithinOrUnknown(track.length_bearing_rad, -kTwoPi, 2.0 * kTwoPi) &&
+         IsWithinOrUnknown(track.distance_m, 0.0, kMostLengthM) && IsWithinOrUnknown(track.cpa_m, 0.0, kMostLengthM) &&
+         IsWithinOrUnknown(track.tcpa_s, -kMostTcpaS, kMostTcpaS) && IsWithinOrUnknown(track.cpa_probability, 0.0, 1.0);
+}
+
+std::string_view KindText(std::int32_t kind) {
+  switch (kind) {
+    case track_t::KIND_BUOY:
+      return "buoy";
+    case track_t::KIND_BOAT:
+      return "boat";
+    case track_t::KIND_STRUCTURE:
+      return "structure";
+    default:
+      return "obstacle";
+  }
+}
+
+TargetState StateOf(std::int32_t status) {
+  if (status == track_t::STATUS_TENTATIVE) return TargetState::kAcquiring;
+  return status == track_t::STATUS_LOST ? TargetState::kLost : TargetState::kTracking;
+}
+
+// Axes of the map frame are those at the datum.
+Eigen::Vector2d VelocityAt(const Position& position, const Datum& datum, const Eigen::Vector3d& velocity_map_mps) {
+  if (velocity_map_mps.isZero(0.0) || !IsOnEarth(datum.latitude_deg, datum.longitude_deg)) return velocity_map_mps.head<2>();
+  const LocalFrame here({position.latitude_deg, position.longitude_deg, 0.0});
+  return (here.TransformFrom(datum.Map()).linear() * velocity_map_mps).head<2>();
+}
+
+double CourseOf(const Eigen::Vector2d& velocity_mps) {
+  return velocity_mps.isZero(0.0) ? kNan : WrapTo2Pi(Atan2(velocity_mps.x(), velocity_mps.y()));
+}
+
+Target ToTarget(const track_t& track, const Datum& datum) {
+  Target target;
+  target.id = track.id;
+  target.name = std::string(KindText(track.kind)) + " " + std::to_string(track.id);
+  target.state = StateOf(track.status);
+  target.first = UtimeFromWire(track.first_utime_us).value_or(Utime());
+  target.position = {track.latitude_deg, track.longitude_deg};
+  const auto velocity_mps = VelocityAt(target.position, datum, {track.velocity_map_mps[0], track.velocity_map_mps[1], 0.0});
+  target.velocity_east_mps = velocity_mps.x();
+  target.velocity_north_mps = velocity_mps.y();
+  target.speed_mps = Hypot(velocity_mps.x(), velocity_mps.y());
+  target.course_rad = CourseOf(velocity_mps);
+  target.length_m = track.length_m;
+  target.width_m = track.width_m;
+  target.length_bearing_rad = track.length_bearing_rad;
+  target.distance_m = track.distance_m;
+  target.cpa_m = track.cpa_m;
+  target.tcpa_s = track.tcpa_s;
+  target.cpa_probability = track.cpa_probability;
+  return target;
+}
+
+}  // namespace
+
+std::variant<TracksPart, Fault> ToTracksPart(const tracks_t& message) {
+  const auto time = UtimeFromWire(message.end_utime_us);
+  const auto begin = UtimeFromWire(message.begin_utime_us);
+  if (!UtimeFromWire(message.utime_us) || !time || !begin) return kTracksTime;
+  if (!messages::IsWellFormed(message) || message.num_parts > messages::kMaxParts) return kTracksParts;
+  TracksPart part{*time, *begin, {}};
+  const Datum datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
+  std::int64_t last_id = 0;
+  for (const auto& track : message.tracks) {
+    if (track.id <= last_id) return kTracksId;
+    last_id = track.id;
+    if (track.status < track_t::STATUS_TENTATIVE || track.status > track_t::STATUS_LOST) return kTracksCode;
+    if (!AreNumbersGood(track)) return kTracksNumber;
+    part.targets.push_back(ToTarget(track, datum));
+  }
+  return part;
+}
+
+std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
+  std::vector<Notice> notices;
+  std::set<std::int64_t> ids;
+  for (const auto& alert : message.alerts) {
+    const auto raised = UtimeFromWire(alert.raised_utime_us);
+    const auto changed = UtimeFromWire(alert.changed_utime_us);
+    if (!raised || !changed) return kAlertsTime;
+    const bool are_codes_good = alert.cause >= alert_t::CAUSE_GUARD_ZONE && alert.cause <= alert_t::CAUSE_WATCH &&
+                                alert.level >= alert_t::LEVEL_CAUTION && alert.level <= alert_t::LEVEL_WARNING &&
+                                alert.state >= alert_t::STATE_ACTIVE && alert.state <= alert_t::STATE_CLEARED;
+    if (!are_codes_good) return kAlertsCode;
+    if (alert.id == 0 || std::abs(alert.id / 2) > kMostAlertId || !ids.insert(alert.id).second) return kAlertsId;
+    if (alert.text.size() > kMostTextBytes) return kAlertsText;
+    notices.push_back({.id = alert.id,
+                       .cause = static_cast<Cause>(alert.cause),
+                       .level = static_cast<Level>(alert.level),
+                       .state = static_cast<NoticeState>(alert.state),
+                       .track_id = alert.track_id,
+                       .raised = *raised,
+                       .changed = *changed,
+                       .text = alert.text});
+  }
+  return notices;
+}
+
+OwnShip ToOwnShip(const pose_t& message) {
+  OwnShip own;
+  own.time = Utime(std::chrono::microseconds(message.utime_us));
+  own.is_estimated = message.status == pose_t::STATUS_COASTING;
+  const bool has_position = message.status != pose_t::STATUS_NO_POSITION && message.status != pose_t::STATUS_UNKNOWN;
+  const bool has_heading = message.status != pose_t::STATUS_NO_HEADING && message.status != pose_t::STATUS_UNKNOWN;
+  if (has_heading && std::isfinite(message.heading_rad)) own.heading_rad = WrapTo2Pi(message.heading_rad);
+  if (!has_position || !IsOnEarth(message.latitude_deg, message.longitude_deg)) return own;
+  own.position = {message.latitude_deg, message.longitude_deg};
+  const auto& velocity = message.velocity_map_mps;
+  const bool has_velocity = std::ranges::all_of(velocity, [](double part) { return IsWithin(part, -kMostSpeedMps, kMostSpeedMps); });
+  if (!has_velocity) return own;
+  const Datum datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
+  const auto velocity_mps = VelocityAt(own.position, datum, {velocity[0], velocity[1], velocity[2]});
+  own.speed_mps = Hypot(velocity_mps.x(), velocity_mps.y());
+  own.course_rad = CourseOf(velocity_mps);
+  return own;
+}
+
+alert_ack_t ToMessage(const Notice& notice, Utime host_time, std::int64_t seq) {
+  alert_ack_t message{};
+  message.utime_us = ToUtimeUs(host_time);
+  message.seq = seq;
+  message.source = "plotter";
+  message.alert_id = notice.id;
+  message.alert_raised_utime_us = ToUtimeUs(notice.raised);
+  return message;
+}
+
+}  // namespace lookout::plotter

@@ -1,0 +1,205 @@
+// lookout-plotter on a live bus, with receivers on loopback: what they get, what a slow one costs, and what is told when nobody looks.
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "common/bus/lcm_bus.hpp"
+#include "lookout/alert_ack_t.hpp"
+#include "lookout/health_t.hpp"
+#include "services/plotter/core/nmea0183.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/plotter_scene.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+using namespace support;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr int kTcpPort = 10111;
+constexpr int kUdpPort = 10112;
+constexpr int kSignalKPort = 10113;
+
+// Reads what comes over a socket, when asked.
+class Receiver {
+ public:
+  explicit Receiver(int type, int receive_buffer_bytes = 0, int tcp_port = kTcpPort) : socket_(socket(AF_INET, type | SOCK_NONBLOCK, 0)) {
+    if (receive_buffer_bytes > 0) setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof(receive_buffer_bytes));
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port = htons(type == SOCK_STREAM ? tcp_port : kUdpPort);
+    const auto* generic = reinterpret_cast<const sockaddr*>(&address);
+    if (type == SOCK_STREAM) {
+      connect(socket_, generic, sizeof(address));
+    } else {
+      EXPECT_EQ(bind(socket_, generic, sizeof(address)), 0);
+    }
+  }
+  ~Receiver() { close(socket_); }
+  Receiver(const Receiver&) = delete;
+  Receiver& operator=(const Receiver&) = delete;
+
+  const std::string& Read() {
+    char buffer[65536];
+    for (ssize_t num_bytes = 0; (num_bytes = recv(socket_, buffer, sizeof(buffer), 0)) > 0;)
+      text_.append(buffer, static_cast<std::size_t>(num_bytes));
+    return text_;
+  }
+  void Clear() { text_.clear(); }
+  void Write(const std::string& text) { EXPECT_EQ(send(socket_, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size())); }
+
+ private:
+  int socket_;
+  std::string text_;
+};
+
+std::int64_t NumOf(const std::string& text, const std::string& piece) {
+  std::int64_t number = 0;
+  for (auto place = text.find(piece); place != std::string::npos; place = text.find(piece, place + 1)) ++number;
+  return number;
+}
+
+class Plotter : public ::testing::Test {
+ protected:
+  Plotter() : bus_(bus::DefaultLcmUrl()), scene_(bus_) {
+    std::filesystem::copy(kDemoConfig, folder_ / "config");
+    std::ofstream(folder_ / "config/plotter.txtpb")
+        << "output { name: 'tcp' format: NMEA0183 alerts: ALR takes_acknowledgements: true tcp_server { bind_address: '127.0.0.1' port: " << kTcpPort
+        << " } }\noutput { name: 'udp' format: SIGNALK udp { address: '127.0.0.1' port: " << kUdpPort << " } }\n"
+        << "output { name: 'sk' format: SIGNALK tcp_server { bind_address: '127.0.0.1' port: " << kSignalKPort << " } }\n"
+        << "output { name: 'gone' format: N2K_YDEN tcp_client { address: '127.0.0.1' port: 9 } }\n";
+    bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { health_ = bus::Decode<health_t>(bytes).value(); });
+    bus_.SubscribeRaw(bus::kAlertAck, [this](std::string_view, Bytes bytes) { acknowledged_.push_back(bus::Decode<alert_ack_t>(bytes).value()); });
+    child_ = std::make_unique<Child>(std::vector<std::string>{Bin("plotter"), "--config", (folder_ / "config").string()}, (folder_ / "out").string());
+  }
+
+  // A scan every 100 ms, until it is so.
+  template <typename Condition>
+  bool Until(const Condition& is_so, seconds longest = seconds(30)) {
+    const auto deadline = Clock::now() + longest;
+    auto next_scan = Clock::now();
+    while (Clock::now() < deadline) {
+      if (Clock::now() >= next_scan) {
+        next_scan += milliseconds(100);
+        scene_.SendScan();
+      }
+      bus_.HandleOnce(milliseconds(5));
+      if (is_so()) return true;
+    }
+    return false;
+  }
+  bool Runs() {
+    return Until([this] { return health_.pid != 0; });
+  }
+  std::int64_t Count(const std::string& name) const {
+    for (const auto& counter : health_.counters) {
+      if (counter.name == name) return counter.count;
+    }
+    return -1;
+  }
+
+  TempDir folder_;
+  bus::LcmBus bus_;
+  PlotterScene scene_;
+  health_t health_{};
+  std::vector<alert_ack_t> acknowledged_;
+  std::unique_ptr<Child> child_;
+};
+
+TEST_F(Plotter, SendsToEachReceiverInItsLanguage) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Receiver tcp(SOCK_STREAM);
+  Receiver udp(SOCK_DGRAM);
+  scene_.num_tracks = 3;
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RATTM,02,") >= 2; })) << tcp.Read() << child_->Output();
+  EXPECT_GE(NumOf(tcp.Read(), "$IIRMC,"), 2);
+  EXPECT_EQ(NumOf(tcp.Read(), "\r\n"), NumOf(tcp.Read(), "$"));
+  ASSERT_TRUE(Until([&] { return NumOf(udp.Read(), "\"targets.lidar:demo-3\"") >= 2; })) << udp.Read();
+  // What nobody takes is told, by name.
+  ASSERT_TRUE(Until([&] { return health_.reason.find("output 'gone': ") != std::string::npos; })) << health_.reason;
+
+  scene_.num_tracks = 2;
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), ",L,") == 1; })) << tcp.Read();
+  EXPECT_EQ(child_->Terminate(), 0) << child_->Output();
+}
+
+TEST_F(Plotter, ToldToStopStopsAndSaysWhy) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Receiver tcp(SOCK_STREAM);
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RATTM,") >= 1; })) << tcp.Read();
+  scene_.has_alerts = false;
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), ",998,A,V,no look-out") == 1; })) << tcp.Read();
+  tcp.Clear();
+  Until([] { return false; }, seconds(4));
+  EXPECT_EQ(NumOf(tcp.Read(), "$RATTM,"), 0) << tcp.Read();
+  EXPECT_GE(NumOf(tcp.Read(), "$IIRMC,"), 2);
+  scene_.has_alerts = true;
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RATTM,") >= 1; })) << tcp.Read();
+  EXPECT_EQ(NumOf(tcp.Read(), ",998,V,A,"), 1) << tcp.Read();
+}
+
+TEST_F(Plotter, LetsAlertsBeAcknowledged) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Receiver tcp(SOCK_STREAM);
+  scene_.alerts = {PlotterScene::MakeAlert(41, 1)};
+  ASSERT_TRUE(Until([&] { return NumOf(tcp.Read(), "$RAALR,") >= 1; })) << tcp.Read();
+  tcp.Write("garbage\r\n\x01\x02\r\n" + plotter::Sentence("IIACK,041"));
+  ASSERT_TRUE(Until([&] { return !acknowledged_.empty(); })) << child_->Output();
+  EXPECT_EQ(acknowledged_.front().alert_id, 41);
+  EXPECT_EQ(acknowledged_.front().source, "plotter");
+}
+
+// One client never reads, while 200 targets are sent; the other gets all.
+TEST_F(Plotter, DropsAClientThatDoesNotReadAndNoOther) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Receiver reader(SOCK_STREAM);
+  const Receiver stuck(SOCK_STREAM, 2048);
+  scene_.num_tracks = 200;
+  const auto is_dropped = [&] {
+    reader.Read();
+    return Count("output_tcp_clients_dropped") == 1;
+  };
+  ASSERT_TRUE(Until(is_dropped, seconds(60))) << health_.reason;
+  EXPECT_EQ(Count("output_tcp_clients"), 1);
+  reader.Clear();
+  ASSERT_TRUE(Until([&] { return NumOf(reader.Read(), "$RATTM,") >= 160; })) << reader.Read();
+}
+
+// More bytes than a connection or a receiver's buffer takes at once.
+TEST_F(Plotter, SendsFiveHundredTargetsToWhoReads) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Receiver tcp(SOCK_STREAM, 0, kSignalKPort);
+  Receiver udp(SOCK_DGRAM);
+  scene_.num_tracks = 500;
+  const auto has_all = [](const std::string& text) {
+    for (int id = 1; id <= 500; ++id) {
+      if (text.find("\"targets.lidar:demo-" + std::to_string(id) + "\"") == std::string::npos) return false;
+    }
+    return true;
+  };
+  const auto end = Clock::now() + seconds(4);
+  Until([&] {
+    tcp.Read();
+    udp.Read();
+    return Clock::now() > end;
+  });
+  EXPECT_TRUE(has_all(tcp.Read()));
+  EXPECT_TRUE(has_all(udp.Read()));
+  EXPECT_EQ(Count("output_sk_dropped"), 0);
+  EXPECT_EQ(Count("output_sk_clients"), 1);
+}
+
+}  // namespace
+}  // namespace lookout::system_test

@@ -1,0 +1,119 @@
+#include "tools/export/selection.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/export/export_logs.hpp"
+
+namespace lookout::exporter {
+namespace {
+
+using SelectionTest = ExportTest;
+
+TEST(Circle, IsLatitudeLongitudeAndRadius) {
+  const auto circle = ParseCircle("43.7022,-72.2895,150.5");
+  ASSERT_TRUE(circle);
+  EXPECT_EQ(circle->place.latitude_deg, 43.7022);
+  EXPECT_EQ(circle->place.longitude_deg, -72.2895);
+  EXPECT_EQ(circle->radius_m, 150.5);
+  EXPECT_EQ(TextOf(*circle), "within 150.5 m of 43.7022, -72.2895");
+  for (const auto* wrong :
+       {"", "1,2", "1,2,3,4", "1,2,", "1,2,3m", " 1,2,3", "91,2,3", "1,181,3", "1,2,0", "1,2,-3", "nan,2,3", "1,2,inf", "1;2;3"}) {
+    EXPECT_FALSE(ParseCircle(wrong)) << wrong;
+  }
+}
+
+TEST(Time, IsACountOfMicrosecondsOrUtc) {
+  EXPECT_EQ(ParseUtimeUs("1700000000000000"), kStartUs);
+  EXPECT_EQ(ParseUtimeUs("2023-11-14T22:13:20Z"), kStartUs);
+  EXPECT_EQ(ParseUtimeUs("2023-11-14T22:13:20.25Z"), kStartUs + 250'000);
+  for (const auto* wrong : {"", "12.5", "yesterday", "2023-11-14", "2023-11-14T22:13:20", "2023-13-14T22:13:20Z", "99999999999999999", "1e15"}) {
+    EXPECT_FALSE(ParseUtimeUs(wrong)) << wrong;
+  }
+}
+
+pose_t PoseWithPlace(std::int64_t utime_us, double latitude_deg, double longitude_deg) {
+  pose_t pose{};
+  pose.utime_us = utime_us;
+  pose.latitude_deg = latitude_deg;
+  pose.longitude_deg = longitude_deg;
+  return pose;
+}
+
+TEST_F(SelectionTest, SpanIsHalfOpenForTablesToo) {
+  for (int i = 0; i < 5; ++i) Add(bus::kPose, PoseWithPlace(kStartUs + i * 20'000, 10.0, 20.0));
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out", .force = true};
+  request.span = {kStartUs + 20'000, kStartUs + 60'000};
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 2U);
+  EXPECT_TRUE(Rows()[0].starts_with(std::to_string(kStartUs + 20'000) + ","));
+  request.span = {kStartUs + 80'000, std::nullopt};
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 1U);
+  request.span = {std::nullopt, kStartUs};
+  std::filesystem::remove(folder_ / "out");
+  EXPECT_EQ(Export(request), kExitFailed);
+  EXPECT_NE(errors_.find("holds no POSE before 2023-11-14T22:13:20.000000Z"), std::string::npos) << errors_;
+  EXPECT_EQ(text_, "");
+}
+
+TEST_F(SelectionTest, CircleLeavesOutRowsThatLieOutsideOrNowhere) {
+  Add(bus::kPose, PoseWithPlace(kStartUs, 10.0, 180.0));
+  Add(bus::kPose, PoseWithPlace(kStartUs + 20'000, 10.0, -179.9995));  // 55 m
+  Add(bus::kPose, PoseWithPlace(kStartUs + 40'000, 10.0, -179.9985));
+  Add(bus::kPose, PoseWithPlace(kStartUs + 60'000, kNaN, kNaN));
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out", .force = true};
+  request.near = ParseCircle("10,180,100");
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 2U);
+  request.near = ParseCircle("11,180,100");
+  std::filesystem::remove(folder_ / "out");
+  EXPECT_EQ(Export(request), kExitFailed);
+  EXPECT_NE(errors_.find("nothing lies within 100 m of 11, 180"), std::string::npos) << errors_;
+  EXPECT_EQ(text_, "");
+}
+
+// A quay is near where its end is, though its middle is not.
+TEST_F(SelectionTest, CircleHoldsAnObstacleOfWhichAPartLiesInside) {
+  obstacles_t message{};
+  message.utime_us = kStartUs;
+  message.num_obstacles = 1;
+  message.obstacles.resize(1);
+  auto& quay = message.obstacles[0];
+  quay.id = 3;
+  quay.num_map = 4;
+  quay.footprint_east_m = {0.0F, 200.0F, 200.0F, 0.0F};
+  quay.footprint_north_m = {0.0F, 0.0F, 2.0F, 2.0F};
+  quay.num_footprint = 4;
+  quay.footprint_vessel_x_m = quay.footprint_vessel_y_m = {0.0F, 0.0F, 0.0F, 0.0F};
+  quay.longitude_deg = 0.0009;  // 100 m
+  Add(bus::kObstacles, message);
+  Request request{.inputs = {log_}, .table = "obstacles", .output = folder_ / "out", .force = true};
+  request.near = ParseCircle("0,0.0018,5");
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  ASSERT_EQ(Rows().size(), 1U);
+  EXPECT_NE(Rows()[0].find(",\"POLYGON((0.000000000 0.000000000,0.001796631 0.000000000,"), std::string::npos) << Rows()[0];
+}
+
+TEST_F(SelectionTest, SaysWhatIsWrong) {
+  Add(bus::kPose, PoseWithPlace(kStartUs, 10.0, 20.0));
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out"};
+  request.span = {kStartUs, kStartUs};
+  EXPECT_EQ(Export(request), kExitUsage);
+  EXPECT_NE(errors_.find("--from is not before --to"), std::string::npos) << errors_;
+  request.span = {kStartUs, std::nullopt};
+  request.format = "svg";
+  EXPECT_EQ(Export(request), kExitUsage);
+  EXPECT_NE(errors_.find("--from and --to are not for --format svg"), std::string::npos) << errors_;
+  request = {.inputs = {log_}, .table = "alerts", .output = folder_ / "out", .near = ParseCircle("1,2,3")};
+  EXPECT_EQ(Export(request), kExitUsage);
+  EXPECT_NE(errors_.find("--near is for --table obstacles, tracks or pose only"), std::string::npos) << errors_;
+  for (const auto* format : {"geojson", "kml", "gpx"}) {
+    EXPECT_EQ(Export("returns", format), kExitUsage);
+    EXPECT_NE(errors_.find("is for --table obstacles, tracks or pose only"), std::string::npos) << errors_;
+    EXPECT_EQ(Export("pose", format, 3), kExitUsage);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
+}  // namespace
+}  // namespace lookout::exporter

@@ -1,0 +1,229 @@
+// The plotter's service on a bus of its own, with links that keep what was sent.
+#pragma once
+
+#include <deque>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/memory_bus.hpp"
+#include "services/plotter/n2k_output.hpp"
+#include "services/plotter/nmea_output.hpp"
+#include "services/plotter/service.hpp"
+#include "services/plotter/signal_k_output.hpp"
+
+namespace lookout::plotter::test {
+
+class KeepingLink : public Link {
+ public:
+  std::vector<std::string> sent;
+  std::deque<std::string> received;
+  std::size_t room = 1'000'000;
+  bool is_there = true;
+  std::int64_t openings = 1;
+  std::string wrong;
+
+  void Send(std::string_view message) override {
+    EXPECT_LE(message.size(), room);
+    room -= std::min(room, message.size());
+    sent.emplace_back(message);
+  }
+  std::optional<std::string> Receive() override {
+    if (received.empty()) return std::nullopt;
+    auto message = received.front();
+    received.pop_front();
+    return message;
+  }
+  std::size_t room_bytes() const override { return room; }
+  bool is_open() const override { return is_there; }
+  std::int64_t num_openings() const override { return openings; }
+  std::string fault() const override { return wrong; }
+  std::vector<Counter> counters() const override { return {}; }
+
+  /// Those that hold `text`; of what was sent since the last Clear.
+  std::vector<std::string> With(std::string_view text) const {
+    std::vector<std::string> found;
+    for (const auto& message : sent) {
+      if (message.find(text) != std::string::npos) found.push_back(message);
+    }
+    return found;
+  }
+};
+
+inline constexpr std::int64_t kStartUs = 1'782'901'200'000'000;
+
+class ServiceFixture : public ::testing::Test {
+ protected:
+  std::unique_ptr<bus::MemoryBus> bus_;  // a service leaves its bus only with it
+  Params params_{.boat = "gannet"};
+  KeepingLink* nmea_ = nullptr;
+  KeepingLink* signal_k_ = nullptr;
+  KeepingLink* n2k_ = nullptr;
+  std::unique_ptr<Service> service_;
+  std::vector<alert_ack_t> acknowledged_;
+  std::int64_t host_us_ = kStartUs;
+  std::int64_t pose_seq_ = 0;
+  std::int64_t scan_seq_ = 0;
+  std::vector<track_t> tracks_{};
+  std::vector<alert_t> alerts_{};
+  std::int64_t begin_us_ = kStartUs;
+  std::int32_t pose_status_ = pose_t::STATUS_OK;
+
+  void SetUp() override { Start(); }
+
+  void NewBus() {
+    service_.reset();
+    bus_ = std::make_unique<bus::MemoryBus>();
+    bus::Subscribe<alert_ack_t>(*bus_, bus::kAlertAck, [this](const alert_ack_t& message) { acknowledged_.push_back(message); });
+  }
+
+  void Start() {
+    auto nmea = std::make_unique<KeepingLink>();
+    auto signal_k = std::make_unique<KeepingLink>();
+    auto n2k = std::make_unique<KeepingLink>();
+    nmea_ = nmea.get();
+    signal_k_ = signal_k.get();
+    n2k_ = n2k.get();
+    std::vector<std::unique_ptr<Output>> outputs;
+    outputs.push_back(std::make_unique<NmeaOutput>(OutputParams{.name = "nmea", .alerts = SentAlerts::kAlr, .takes_acknowledgements = true},
+                                                   std::move(nmea), params_.target_period));
+    outputs.push_back(std::make_unique<SignalKOutput>(
+        OutputParams{
+            .name = "signalk", .format = Format::kSignalK, .destination = {.kind = Destination::Kind::kWebSocket}, .takes_acknowledgements = true},
+        std::move(signal_k), params_.boat));
+    outputs.push_back(
+        std::make_unique<N2kOutput>(OutputParams{.name = "n2k", .format = Format::kN2kActisense}, std::move(n2k), params_.target_period));
+    NewBus();
+    service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
+    service_->AdvanceTo(Now());
+  }
+
+  Utime Now() const { return Utime(std::chrono::microseconds(host_us_)); }
+  void HandleAll() {
+    while (bus_->HandleOnce()) {
+    }
+  }
+  void Clear() {
+    for (auto* link : {nmea_, signal_k_, n2k_}) link->sent.clear();
+  }
+
+  // Only host time passes.
+  void Wait(std::int64_t duration_us) {
+    for (const auto end_us = host_us_ + duration_us; host_us_ < end_us;) {
+      host_us_ += 20'000;
+      service_->AdvanceTo(Now());
+      HandleAll();
+    }
+  }
+
+  void SendPose() {
+    pose_t pose{};
+    pose.utime_us = host_us_ / 20'000 * 20'000;
+    pose.seq = pose_seq_++;
+    pose.status = pose_status_;
+    pose.datum_latitude_deg = 53.3;
+    pose.datum_longitude_deg = -6.1;
+    pose.datum_ellipsoid_height_m = 0.0;
+    pose.latitude_deg = 53.3;
+    pose.longitude_deg = -6.1;
+    pose.heading_rad = 0.5;
+    pose.velocity_map_mps[0] = 2.0;
+    if (pose_status_ == pose_t::STATUS_UNKNOWN) pose.latitude_deg = pose.longitude_deg = pose.heading_rad = kNan;
+    bus::Publish(*bus_, bus::kPose, pose);
+    HandleAll();
+  }
+
+  tracks_t Tracks() {
+    tracks_t message{};
+    message.utime_us = host_us_ - 100'000;
+    message.seq = scan_seq_;
+    message.end_utime_us = host_us_;
+    message.num_parts = 1;
+    message.begin_utime_us = begin_us_;
+    message.datum_latitude_deg = 53.3;
+    message.datum_longitude_deg = -6.1;
+    message.tracks = tracks_;
+    message.num_tracks = static_cast<std::int32_t>(tracks_.size());
+    message.num_scan_tracks = message.num_tracks;
+    return message;
+  }
+  // In parts, as the tracker does.
+  void SendTracks(const tracks_t& message) {
+    constexpr std::size_t kMostTracks = 300;
+    const auto num_parts = std::max<std::size_t>(1, (message.tracks.size() + kMostTracks - 1) / kMostTracks);
+    for (std::size_t i = 0; i < num_parts; ++i) {
+      auto part = message;
+      if (num_parts > 1) {
+        const auto end = std::min(message.tracks.size(), (i + 1) * kMostTracks);
+        part.tracks = {message.tracks.begin() + static_cast<std::ptrdiff_t>(i * kMostTracks),
+                       message.tracks.begin() + static_cast<std::ptrdiff_t>(end)};
+        part.num_tracks = static_cast<std::int32_t>(part.tracks.size());
+        part.part_index = static_cast<std::int32_t>(i);
+        part.num_parts = static_cast<std::int32_t>(num_parts);
+      }
+      bus::Publish(*bus_, bus::kTracks, part);
+      HandleAll();
+    }
+  }
+  void SendAlerts() {
+    alerts_t message{};
+    message.utime_us = host_us_ - 100'000;
+    message.seq = scan_seq_;
+    message.end_utime_us = host_us_;
+    message.alerts = alerts_;
+    message.num_alerts = static_cast<std::int32_t>(alerts_.size());
+    bus::Publish(*bus_, bus::kAlerts, message);
+    HandleAll();
+  }
+
+  // Everything comes, ten times a second.
+  void Run(std::int64_t duration_us) {
+    for (const auto end_us = host_us_ + duration_us; host_us_ < end_us;) {
+      Wait(100'000);
+      SendPose();
+      SendTracks(Tracks());
+      SendAlerts();
+      ++scan_seq_;
+      Wait(0);
+    }
+  }
+
+  static track_t MakeTrack(std::int64_t id, std::int32_t status = track_t::STATUS_CONFIRMED) {
+    track_t track{};
+    track.id = id;
+    track.status = status;
+    track.kind = track_t::KIND_BOAT;
+    track.first_utime_us = kStartUs;
+    track.seen_utime_us = kStartUs;
+    track.latitude_deg = 53.3009;
+    track.longitude_deg = -6.1;
+    track.length_m = 6.0F;
+    track.width_m = 2.0F;
+    track.distance_m = 97.0F;
+    track.cpa_m = 40.0F;
+    track.tcpa_s = 0.0F;
+    return track;
+  }
+  static alert_t MakeAlert(std::int64_t id, std::int32_t state = alert_t::STATE_ACTIVE) {
+    alert_t alert{};
+    alert.id = id;
+    alert.cause = alert_t::CAUSE_CLOSEST_APPROACH;
+    alert.level = alert_t::LEVEL_WARNING;
+    alert.state = state;
+    alert.track_id = 17;
+    alert.raised_utime_us = kStartUs;
+    alert.changed_utime_us = kStartUs;
+    alert.text = "boat 17: closest approach 3 m in 21 s";
+    return alert;
+  }
+
+  std::int64_t Count(std::string_view name) const {
+    for (const auto& counter : service_->Report().counters) {
+      if (counter.name == name) return counter.count;
+    }
+    return -1;
+  }
+};
+
+}  // namespace lookout::plotter::test

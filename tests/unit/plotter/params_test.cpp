@@ -1,0 +1,97 @@
+#include "services/plotter/params.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "common/config/text_config.hpp"
+#include "tests/support/files.hpp"
+
+namespace lookout::plotter {
+namespace {
+
+namespace fs = std::filesystem;
+
+class PlotterParams : public ::testing::Test {
+ protected:
+  PlotterParams() { fs::copy(support::kDemoConfig, folder_ / "config"); }
+
+  Params Load(const std::string& text) {
+    std::ofstream(folder_ / "config/plotter.txtpb") << text;
+    return LoadParams(folder_ / "config");
+  }
+  // All faults, or nothing.
+  std::string FaultOf(const std::string& output) {
+    try {
+      Load("output { name: 'x' format: NMEA0183 " + output + " }\n");
+      return {};
+    } catch (const config::ConfigError& error) {
+      return error.what();
+    }
+  }
+  bool Says(const std::string& output, const std::string& words) {
+    const auto fault = FaultOf(output);
+    EXPECT_NE(fault.find(words), std::string::npos) << output << ": " << fault;
+    return fault.find("plotter.txtpb:1: output: 'x': ") != std::string::npos;
+  }
+
+  support::TempDir folder_;
+};
+
+TEST_F(PlotterParams, HaveNoOutputsWithoutAFile) {
+  fs::remove(folder_ / "config/plotter.txtpb");
+  const auto params = LoadParams(folder_ / "config");
+  EXPECT_TRUE(params.outputs.empty());
+  EXPECT_EQ(params.boat, "demo");
+  EXPECT_EQ(InWords(params), "# plotter.txtpb: no output: nothing is sent\n");
+}
+
+TEST_F(PlotterParams, SayWhatGoesWhere) {
+  EXPECT_EQ(InWords(Load("output { name: 'a' format: NMEA0183 tcp_server { bind_address: '127.0.0.1' port: 10111 } alerts: ALF }\n"
+                         "output { name: 'b' format: SIGNALK websocket { address: '::1' } sends_own_ship: false }\n")),
+            "# plotter.txtpb: output 'a': NMEA 0183 OSD TTM RMC HDT ALF, TCP to at most 8 that connect to 127.0.0.1 port 10111\n"
+            "# plotter.txtpb: output 'b': Signal K, WebSocket ws://::1:3000/signalk/v1/stream?subscribe=none without a token\n");
+}
+
+TEST_F(PlotterParams, RefuseWhatCannotBe) {
+  EXPECT_TRUE(Says("", "must have one of udp, tcp_server, tcp_client, serial and websocket, and has 0"));
+  EXPECT_TRUE(Says("udp { address: 'tablet' port: 2000 }", "'tablet' is no numeric address"));
+  EXPECT_TRUE(Says("udp { address: '0.0.0.0' port: 2000 }", "must be of a receiver"));
+  EXPECT_TRUE(Says("websocket { address: '127.0.0.1' }", "a websocket carries format SIGNALK only"));
+  EXPECT_TRUE(Says("serial { device: 'ttyUSB0' baud: 4800 }", "the whole path"));
+  EXPECT_TRUE(Says("serial { device: '/dev/ttyUSB0' baud: 4801 }", "none that serial ports have"));
+  EXPECT_TRUE(Says("udp { address: '10.0.0.1' port: 2000 } target_talker: 'RAD'", "two capital letters"));
+  EXPECT_TRUE(Says("udp { address: '10.0.0.1' port: 2000 } alerts: ALR takes_acknowledgements: true", "nothing comes back over udp"));
+  EXPECT_TRUE(Says("tcp_client { address: '10.0.0.1' port: 2000 } takes_acknowledgements: true", "wants alerts"));
+  EXPECT_NE(FaultOf("udp { address: '10.0.0.1' port: 0 }").find("port"), std::string::npos);
+}
+
+// A position of ours that comes back as one that was measured would hide that none is.
+TEST_F(PlotterParams, RefuseToFeedTheOwnNavigator) {
+  for (const auto* address : {"127.0.0.1", "192.168.1.255", "239.1.2.3", "255.255.255.255"}) {
+    const std::string udp = std::string("udp { address: '") + address + "' port: 10110 }";
+    EXPECT_TRUE(Says(udp, "lookout-navigator reads UDP port 10110 of this computer")) << address;
+    EXPECT_EQ(FaultOf(udp + " sends_own_ship: false"), "") << address;
+  }
+  EXPECT_EQ(FaultOf("udp { address: '192.0.2.7' port: 10110 }"), "");
+  EXPECT_EQ(FaultOf("udp { address: '127.0.0.1' port: 10112 }"), "");
+  std::ofstream(folder_ / "config/navigator.txtpb", std::ios::app)
+      << "input { name: 'gps' serial { device: '/dev/ttyUSB7' baud: 4800 } }\ninput { name: 'mux' tcp { address: '127.0.0.1' port: 2001 } }\n";
+  EXPECT_TRUE(Says("serial { device: '/dev/../dev/ttyUSB7' baud: 38400 }", "is an input of navigator.txtpb"));
+  EXPECT_TRUE(Says("tcp_server { bind_address: '0.0.0.0' port: 2001 }", "lookout-navigator reads TCP port 2001 of this computer"));
+}
+
+TEST_F(PlotterParams, ReadATokenThatNotEverybodyMay) {
+  const std::string output = "output { name: 'x' format: SIGNALK websocket { address: '127.0.0.1' token_file: 'token' } }\n";
+  EXPECT_THROW(Load(output), config::ConfigError);
+  std::ofstream(folder_ / "config/token") << "abc.def\r\nmore\n";
+  fs::permissions(folder_ / "config/token", fs::perms::owner_read | fs::perms::group_read);
+  EXPECT_EQ(Load(output).outputs.at(0).destination.token, "abc.def");
+  EXPECT_EQ(InWords(Load(output)).find("abc"), std::string::npos);
+  fs::permissions(folder_ / "config/token", fs::perms::others_read, fs::perm_options::add);
+  EXPECT_THROW(Load(output), config::ConfigError);
+}
+
+}  // namespace
+}  // namespace lookout::plotter

@@ -1,0 +1,169 @@
+// A serial port as it is: slow, unplugged, plugged in again as another device.
+#include <pty.h>
+#include <termios.h>
+
+#include <filesystem>
+
+#include "tests/support/files.hpp"
+#include "tests/unit/plotter_io/links_test.hpp"
+
+namespace lookout::plotter {
+namespace {
+
+// The cable of a pseudo terminal, and the device at its other end.
+struct Pty {
+  int cable = -1;
+  std::string device;
+
+  Pty() {
+    int end = -1;
+    char name[64] = {};
+    if (openpty(&cable, &end, name, nullptr, nullptr) == 0) close(end);
+    device = name;
+  }
+  ~Pty() { Unplug(); }
+  Pty(const Pty&) = delete;
+  Pty& operator=(const Pty&) = delete;
+  void Unplug() {
+    if (cable >= 0) close(cable);
+    cable = -1;
+  }
+  void Write(const std::string& text) const { EXPECT_EQ(write(cable, text.data(), text.size()), static_cast<ssize_t>(text.size())); }
+  std::string Read() const {
+    std::string text;
+    char bytes[4096];
+    for (pollfd waiting{cable, POLLIN, 0}; poll(&waiting, 1, 0) > 0 && (waiting.revents & POLLIN) != 0;) {
+      const auto size = read(cable, bytes, sizeof bytes);
+      if (size <= 0) break;
+      text.append(bytes, static_cast<std::size_t>(size));
+    }
+    return text;
+  }
+};
+
+class SerialLinkTest : public LinksTest {
+ protected:
+  SerialLinkTest() { std::filesystem::create_directories(folder_); }
+  // What udev does when an adapter is plugged in: the same name, another device.
+  void PlugIn(const Pty& pty) const {
+    std::filesystem::remove(path_);
+    std::filesystem::create_symlink(pty.device, path_);
+  }
+  void Open(int baud) { link_ = links_.Serial({.name = "radio", .device = path_.string(), .baud = baud}); }
+  bool IsOpen() const { return link_->is_open(); }
+  std::int64_t Of(const std::string& ending) const { return Count(*link_, "radio_" + ending); }
+
+  support::TempDir folder_;
+  std::filesystem::path path_ = folder_ / "radio";
+  std::unique_ptr<Link> link_;
+};
+
+TEST_F(SerialLinkTest, SendsRawBytesAndReceivesLines) {
+  const Pty pty;
+  PlugIn(pty);
+  Open(38400);
+  ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() > 100; })) << link_->fault();
+  // A terminal that is not raw would make CR LF of LF, and obey 0x03 and 0x13.
+  const std::string text = "$A\x03\x13\r\n$B\n";
+  link_->Send(text);
+  EXPECT_TRUE(Until([&] { return Of("sent") == 1; }));
+  EXPECT_EQ(pty.Read(), text);
+  pty.Write("$RAACK,001*00\r\n$half");
+  ASSERT_TRUE(Until([&] { return Of("received") == 1; }));
+  EXPECT_EQ(link_->Receive(), "$RAACK,001*00");
+  termios settings{};
+  ASSERT_EQ(tcgetattr(pty.cable, &settings), 0);
+  EXPECT_EQ(cfgetospeed(&settings), B38400);
+  EXPECT_EQ(settings.c_cflag & (CSIZE | PARENB | CSTOPB), static_cast<tcflag_t>(CS8));
+}
+
+TEST_F(SerialLinkTest, OpensAgainAfterItWasUnplugged) {
+  auto first = std::make_unique<Pty>();
+  PlugIn(*first);
+  Open(4800);
+  ASSERT_TRUE(Until([&] { return IsOpen(); })) << link_->fault();
+  first->Unplug();
+  std::filesystem::remove(path_);
+  ASSERT_TRUE(Until([&] { return !IsOpen(); }));
+  EXPECT_TRUE(Holds(link_->fault(), path_.string())) << link_->fault();
+  EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "No such file"); })) << link_->fault();
+  EXPECT_EQ(link_->room_bytes(), 0U);
+  link_->Send("$old\r\n");
+  EXPECT_EQ(Of("unsent"), 1);
+  const Pty second;
+  PlugIn(second);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() >= 6; })) << link_->fault();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 1500ms);
+  EXPECT_EQ(link_->num_openings(), 2);
+  link_->Send("$new\r\n");
+  EXPECT_TRUE(Until([&] { return Of("sent") == 1; }));
+  EXPECT_EQ(second.Read(), "$new\r\n");
+}
+
+TEST_F(SerialLinkTest, HasRoomForWhatItsSpeedCarries) {
+  const Pty pty;
+  PlugIn(pty);
+  Open(9600);  // 960 bytes/s
+  ASSERT_TRUE(Until([&] { return IsOpen(); }));
+  const std::string line = std::string(48, 'a') + "\r\n";
+  const auto begin = std::chrono::steady_clock::now();
+  int num_bytes = 0;
+  Until(
+      [&] {
+        while (link_->room_bytes() >= line.size()) {
+          link_->Send(line);
+          num_bytes += static_cast<int>(line.size());
+        }
+        pty.Read();
+        return false;
+      },
+      2s);
+  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_GT(num_bytes, 960 * elapsed_s - 200);
+  EXPECT_LT(num_bytes, 960 * (elapsed_s + 0.6));
+  EXPECT_EQ(Of("dropped"), 0);
+}
+
+TEST_F(SerialLinkTest, DropsWhatItHasNoRoomFor) {
+  const Pty pty;
+  PlugIn(pty);
+  Open(4800);
+  ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() >= 80; }));
+  for (int i = 0; i < 100; ++i) link_->Send(std::string(78, 'a') + "\r\n");
+  EXPECT_TRUE(Until([&] { return Of("sent") + Of("dropped") == 100; }));
+  EXPECT_LE(pty.Read().size(), 256U);
+  // Never more than half a second of it, however long nothing was sent.
+  PollFor(1s);
+  EXPECT_LE(link_->room_bytes(), 256U);
+  EXPECT_GT(link_->room_bytes(), 200U);
+}
+
+// A pseudo terminal holds some kB: a port that sends nothing on, as one whose adapter hangs.
+TEST_F(SerialLinkTest, OpensAgainWhenThePortSendsNothingOn) {
+  const Pty pty;
+  PlugIn(pty);
+  Open(921600);
+  ASSERT_TRUE(Until([&] { return IsOpen() && link_->room_bytes() > 40'000; }));
+  link_->Send(std::string(40'000, 'a'));
+  EXPECT_LT(link_->room_bytes(), 40'000U);
+  ASSERT_TRUE(Until([&] { return !IsOpen(); }));
+  EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "is too slow"); }));
+  EXPECT_EQ(Of("dropped"), 1);
+  EXPECT_TRUE(Until([&] { return IsOpen(); }));
+}
+
+TEST_F(SerialLinkTest, SaysWhyItCannotBeOpened) {
+  Open(4800);
+  EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "No such file"); })) << link_->fault();
+  std::filesystem::create_directory(path_);
+  EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "Is a directory"); })) << link_->fault();
+  std::filesystem::remove(path_);
+  const Pty pty;
+  PlugIn(pty);
+  Open(4801);
+  EXPECT_TRUE(Until([&] { return Holds(link_->fault(), "4801 baud is none"); })) << link_->fault();
+}
+
+}  // namespace
+}  // namespace lookout::plotter

@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <string_view>
+
+#include "tools/export/features.hpp"
+#include "tools/export/map_text.hpp"
+
+namespace lookout::exporter {
+
+namespace {
+
+// Colours are alpha, blue, green, red; of Okabe and Ito, for readers who confuse red and green.
+struct KmlStyle {
+  std::string_view what;
+  std::string_view line;
+  int width;
+  std::string_view area;
+  double label_scale;
+};
+constexpr std::array kKmlStyles{KmlStyle{"own_track", "ffb27200", 3, "00000000", 0.8}, KmlStyle{"own_place", "ffb27200", 3, "00000000", 0.8},
+                                KmlStyle{"obstacle", "ff005ed5", 1, "00000000", 0.0},  KmlStyle{"track", "ff739e00", 1, "00000000", 0.8},
+                                KmlStyle{"outline", "ff005ed5", 2, "40005ed5", 0.0},   KmlStyle{"ellipse", "c0808080", 1, "00000000", 0.0},
+                                KmlStyle{"way", "ff739e00", 2, "00000000", 0.0},       KmlStyle{"waterline", "ff7aa0b8", 3, "00000000", 0.0},
+                                KmlStyle{"alert", "ff0000c0", 2, "00000000", 0.8}};
+
+class KmlWriter final : public MapWriter {
+ public:
+  void Begin(std::string& text) override {
+    text +=
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<kml xmlns=\"http://www.opengis.net/kml/2.2\" xmlns:gx=\"http://www.google.com/kml/ext/2.2\">\n<Document>\n<name>Lookout</name>\n";
+    for (const auto& [what, line, width, area, label_scale] : kKmlStyles) {
+      fmt::format_to(std::back_inserter(text),
+                     "<Style id=\"{}\"><IconStyle><color>{}</color><scale>0.5</scale></IconStyle><LabelStyle><scale>{:.1f}</scale></LabelStyle>"
+                     "<LineStyle><color>{}</color><width>{}</width></LineStyle><PolyStyle><color>{}</color></PolyStyle></Style>\n",
+                     what, line, label_scale, line, width, area);
+    }
+  }
+
+  bool Append(const Feature& feature, std::string& text) override {
+    fmt::format_to(std::back_inserter(text), "<Placemark><name>{}</name>", XmlText(feature.name));
+    AppendTime(feature, text);
+    fmt::format_to(std::back_inserter(text), "<styleUrl>#{0}</styleUrl><ExtendedData><Data name=\"what\"><value>{0}</value></Data>",
+                   XmlText(feature.what));
+    for (const auto& [name, value] : feature.properties) {
+      const auto words = TextOf(value);
+      if (words.empty()) continue;
+      fmt::format_to(std::back_inserter(text), "<Data name=\"{}\"><value>{}</value></Data>", XmlText(name), XmlText(words));
+    }
+    text += "</ExtendedData>";
+    feature.geometry.HasTimes() ? AppendTracks(feature.geometry, text) : AppendGeometry(feature.geometry, text);
+    text += "</Placemark>\n";
+    return true;
+  }
+
+  void End(std::string& text) override { text += "</Document>\n</kml>\n"; }
+
+ private:
+  // A line with times has them by itself.
+  static void AppendTime(const Feature& feature, std::string& text) {
+    if (!feature.utime_us || feature.geometry.HasTimes()) return;
+    if (feature.end_utime_us) {
+      fmt::format_to(std::back_inserter(text), "<TimeSpan><begin>{}</begin><end>{}</end></TimeSpan>", IsoTime(*feature.utime_us),
+                     IsoTime(*feature.end_utime_us));
+    } else {
+      fmt::format_to(std::back_inserter(text), "<TimeStamp><when>{}</when></TimeStamp>", IsoTime(*feature.utime_us));
+    }
+  }
+
+  static void AppendTracks(const Geometry& geometry, std::string& text) {
+    const bool is_one = geometry.parts.size() == 1;
+    if (!is_one) text += "<gx:MultiTrack><gx:interpolate>0</gx:interpolate>";
+    for (std::size_t i = 0; i < geometry.parts.size(); ++i) {
+      text += "<gx:Track><altitudeMode>clampToGround</altitudeMode>";
+      for (const auto utime_us : geometry.utimes_us[i]) fmt::format_to(std::back_inserter(text), "<when>{}</when>", IsoTime(utime_us));
+      for (const auto& place : geometry.parts[i]) {
+        text += "<gx:coord>";
+        AppendPlace(place, ' ', text);
+        text += " 0</gx:coord>";
+      }
+      text += "</gx:Track>";
+    }
+    if (!is_one) text += "</gx:MultiTrack>";
+  }
+
+  static void AppendCoordinates(const MapPlace* begin, const MapPlace* end, std::string& text) {
+    text += "<coordinates>";
+    for (const auto* place = begin; place != end; ++place) {
+      if (place != begin) text += ' ';
+      AppendPlace(*place, ',', text);
+    }
+    text += "</coordinates>";
+  }
+
+  static void AppendGeometry(const Geometry& geometry, std::string& text) {
+    const bool is_points = geometry.kind == Geometry::Kind::kPoint || geometry.kind == Geometry::Kind::kPoints;
+    const bool is_one = geometry.parts.size() == 1 && geometry.kind != Geometry::Kind::kPoints;
+    if (!is_one) text += "<MultiGeometry>";
+    for (const auto& part : geometry.parts) {
+      if (is_points) {
+        for (const auto& place : part) {
+          text += "<Point>";
+          AppendCoordinates(&place, &place + 1, text);
+          text += "</Point>";
+        }
+        continue;
+      }
+      const bool is_line = geometry.kind == Geometry::Kind::kLine;
+      text += is_line ? "<LineString><tessellate>1</tessellate>" : "<Polygon><outerBoundaryIs><LinearRing>";
+      AppendCoordinates(part.data(), part.data() + part.size(), text);
+      text += is_line ? "</LineString>" : "</LinearRing></outerBoundaryIs></Polygon>";
+    }
+    if (!is_one) text += "</MultiGeometry>";
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<MapWriter> MakeKmlWriter() { return std::make_unique<KmlWriter>(); }
+
+}  // namespace lookout::exporter

@@ -1,0 +1,47 @@
+// Which part of a log is exported: a time, and what lies near a place.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/core/bytes.hpp"
+#include "common/core/geodesy.hpp"
+
+namespace lookout::exporter {
+
+/// What lies within `radius_m` (above 0) of a place.
+struct Circle {
+  GeodeticPlace place;
+  double radius_m = 0.0;
+};
+
+/// "LATITUDE,LONGITUDE,RADIUS" in degrees, degrees and metres, decimals with a point.
+///
+/// @return nullopt where it is not that, the latitude is beyond 90, the longitude beyond 180, or the radius is not above 0
+std::optional<Circle> ParseCircle(std::string_view text);
+
+/// @param text  microseconds since 1970 UTC, or UTC as "2026-07-01T10:00:00Z" with up to six decimals of the second
+/// @return nullopt where it is neither, or out of the bounds of Utime
+std::optional<std::int64_t> ParseUtimeUs(std::string_view text);
+
+/// Times of measurement, half open.
+struct Span {
+  std::optional<std::int64_t> from_us = std::nullopt;
+  std::optional<std::int64_t> to_us = std::nullopt;  // the first that is not in it
+
+  bool IsAll() const { return !from_us && !to_us; }
+
+  /// @param message  of any type of the bus: each begins with its time (of what belongs to a scan: its first shot). One that is too short to have one
+  ///                 is held, so that it is counted as undecodable.
+  bool Holds(Bytes message) const;
+};
+
+/// "between 2026-07-01T10:00:00.000000Z and ...", for messages
+std::string TextOf(const Span& span);
+
+/// "within 100 m of 43.7022, -72.2895", for messages
+std::string TextOf(const Circle& circle);
+
+}  // namespace lookout::exporter
