@@ -197,13 +197,15 @@ bool AreDays(const std::vector<std::int32_t>& days) {
 
 bool IsGood(const map_thing_t& thing) {
   constexpr auto kMost = static_cast<float>(kMaxMapThingM);
-  return thing.id > 0 && thing.kind >= track_t::KIND_OBSTACLE && thing.kind <= track_t::KIND_UNKNOWN && thing.state >= map_thing_t::STATE_UNSEEN &&
-         thing.state <= map_thing_t::STATE_GONE && IsWithin(thing.latitude_deg, 90.0) && IsWithin(thing.longitude_deg, 180.0) &&
-         IsWithin(thing.deviation_m, 0.0F, kMost) && IsWithin(thing.length_m, 0.0F, kMost) && IsWithin(thing.width_m, 0.0F, kMost) &&
-         IsWithin(thing.length_bearing_rad, 0.0F, static_cast<float>(kPi)) && IsWithin(thing.top_above_water_m, -kMost, kMost) &&
-         UtimeFromWire(thing.first_utime_us) && UtimeFromWire(thing.seen_utime_us) && UtimeFromWire(thing.gone_utime_us) && AreDays(thing.day) &&
-         thing.day.size() == thing.num_day_scans.size() && std::ranges::all_of(thing.num_day_scans, [](std::int32_t num) { return num >= 0; }) &&
-         !thing.outline_east_m.empty() && thing.outline_east_m.size() <= 64 && thing.outline_east_m.size() == thing.outline_north_m.size() &&
+  constexpr std::int64_t kMostMapThingId = 1'000'000'000'000;  // those of a year, and room to count on
+  return thing.id > 0 && thing.id <= kMostMapThingId && thing.kind >= track_t::KIND_OBSTACLE && thing.kind <= track_t::KIND_UNKNOWN &&
+         thing.state >= map_thing_t::STATE_UNSEEN && thing.state <= map_thing_t::STATE_GONE && IsWithin(thing.latitude_deg, 90.0) &&
+         IsWithin(thing.longitude_deg, 180.0) && IsWithin(thing.deviation_m, 0.0F, kMost) && IsWithin(thing.length_m, 0.0F, kMost) &&
+         IsWithin(thing.width_m, 0.0F, kMost) && IsWithin(thing.length_bearing_rad, 0.0F, static_cast<float>(kPi)) &&
+         IsWithin(thing.top_above_water_m, -kMost, kMost) && UtimeFromWire(thing.first_utime_us) && UtimeFromWire(thing.seen_utime_us) &&
+         UtimeFromWire(thing.gone_utime_us) && AreDays(thing.day) && thing.day.size() == thing.num_day_scans.size() &&
+         std::ranges::all_of(thing.num_day_scans, [](std::int32_t num) { return num >= 0; }) && !thing.outline_east_m.empty() &&
+         thing.outline_east_m.size() <= 64 && thing.outline_east_m.size() == thing.outline_north_m.size() &&
          AreWithin(thing.outline_east_m, kMaxMapThingM) && AreWithin(thing.outline_north_m, kMaxMapThingM);
 }
 

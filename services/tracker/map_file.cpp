@@ -230,9 +230,10 @@ MapThing ToThing(const Feature& feature, std::int64_t id) {
   }
 
   const LocalFrame here({thing.latitude_deg, thing.longitude_deg, 0.0});
+  constexpr double kMostCornerM = 1.5 * kMostMapThingM;  // each of east and north is at most that on the wire
   for (const auto& corner : feature.Outline()) {
     const Eigen::Vector2d corner_m = here.Forward(corner).head<2>();
-    if (!(corner_m.norm() <= kMostMapThingM)) feature.Refuse("coordinates", "lie farther than 1 km from latitude_deg and longitude_deg");
+    if (!(corner_m.norm() <= kMostCornerM)) feature.Refuse("coordinates", "lie farther than 1.5 km from latitude_deg and longitude_deg");
     thing.outline_m.push_back(corner_m);
   }
   return thing;
@@ -261,8 +262,17 @@ void AddLand(const Feature& feature, std::size_t most_cells, std::vector<MapLand
 }
 
 json ToJson(std::string_view text) {
+  // Else a file of brackets takes a hundred times its size.
+  constexpr int kMostDepth = 12;
+  constexpr std::size_t kMostValues = 4'000'000;
+  std::size_t num_values = 0;
+  const auto check = [&](int depth, json::parse_event_t event, const json& /*parsed*/) {
+    if (event != json::parse_event_t::key && event != json::parse_event_t::object_end && event != json::parse_event_t::array_end) ++num_values;
+    if (depth > kMostDepth || num_values > kMostValues) throw MapFileError("is nested too deep, or holds too many values");
+    return true;
+  };
   try {
-    return json::parse(text);
+    return json::parse(text, check);
   } catch (const json::parse_error& error) {
     const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
     throw MapFileError(fmt::format("line {}: is no JSON", 1 + std::count(text.begin(), end, '\n')));

@@ -36,7 +36,11 @@ map_thing_t ToMessage(const MapThing& thing) {
     message.num_day_scans.push_back(day.num_scans);
   }
   message.num_days = messages::CountOf(message.day);
-  for (const auto& corner_m : thing.outline_m) {
+  // Of more corners than a map has, each second, third ...: of a convex outline a little less.
+  constexpr std::size_t kMostCorners = 64;
+  const auto step = (thing.outline_m.size() + kMostCorners - 1) / kMostCorners;
+  for (std::size_t i = 0; i < thing.outline_m.size(); i += step) {
+    const auto& corner_m = thing.outline_m[i];
     message.outline_east_m.push_back(static_cast<float>(corner_m.x()));
     message.outline_north_m.push_back(static_cast<float>(corner_m.y()));
   }

@@ -16,7 +16,9 @@ std::string Attributes(const MapPlace& place) {
   std::string longitude_and_latitude;
   AppendPlace(place, ' ', longitude_and_latitude);
   const auto blank = longitude_and_latitude.find(' ');
-  return fmt::format("lat=\"{}\" lon=\"{}\"", longitude_and_latitude.substr(blank + 1), longitude_and_latitude.substr(0, blank));
+  const auto longitude = longitude_and_latitude.substr(0, blank);
+  // GPX has no longitude of 180: it goes from -180 to what is below.
+  return fmt::format("lat=\"{}\" lon=\"{}\"", longitude_and_latitude.substr(blank + 1), longitude == "180.000000000" ? "179.999999999" : longitude);
 }
 
 // "status ok, length_m 3.5000"

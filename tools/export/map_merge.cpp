@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "services/tracker/core/land.hpp"
+#include "services/tracker/map_file.hpp"
 #include "services/tracker/map_wire.hpp"
 
 namespace lookout::exporter {
@@ -81,23 +82,26 @@ bool IsOlder(const MapThing& one, const MapThing& other) {
 bool MapMerge::Add(const map_t& message) {
   auto map = tracker::ToOwnMap(message);
   if (!map) return false;
-  const Utime time = *UtimeFromWire(message.utime_us);
   auto& process = processes_[{*UtimeFromWire(message.begin_utime_us), message.begin_seq}];
   if (message.source == map_t::SOURCE_GIVEN) {
     for (auto& thing : map->things) process.given.insert_or_assign(thing.id, std::move(thing));
     std::ranges::move(map->land, std::back_inserter(process.given_land));
     return true;
   }
-  process.kept_time = std::max(process.kept_time.value_or(time), *UtimeFromWire(message.end_utime_us));
+  // In the order in which the process told it, whatever its clock did.
+  if (message.seq >= process.kept_seq) {
+    process.kept_seq = message.seq;
+    process.kept_time = *UtimeFromWire(message.end_utime_us);
+  }
   for (auto& thing : map->things) {
     auto& told = process.kept[thing.id];
-    if (told.what.id == 0 || told.time <= time) told = {time, std::move(thing)};
+    if (told.what.id == 0 || told.seq <= message.seq) told = {message.seq, std::move(thing)};
   }
   const Datum datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
   if (!std::isfinite(datum.latitude_deg) || !std::isfinite(datum.longitude_deg)) return true;
   for (auto& land : map->land) {
     auto& told = process.land[{*UtimeFromWire(message.land_begin_utime_us), land.tile}];
-    if (told.what.land.days.empty() || told.time <= time) told = {time, {std::move(land), datum, message.water_up_m}};
+    if (told.what.land.days.empty() || told.seq <= message.seq) told = {message.seq, {std::move(land), datum, message.water_up_m}};
   }
   return true;
 }
@@ -303,7 +307,18 @@ std::vector<MapLand> MapMerge::Land() {
 
 tracker::OwnMap MapMerge::Merged() {
   num_things_left_out_ = num_cells_left_out_ = 0;
-  return {.things = Things(), .land = Land()};
+  tracker::OwnMap map{.things = Things(), .land = Land()};
+  for (auto& thing : map.things) thing.first = std::min(thing.first, thing.seen);
+  // A file that is larger is refused: then the oldest land is left out, a tenth at a time.
+  while (tracker::MapText(map).size() > tracker::kMaxMapBytes && !map.land.empty()) {
+    std::ranges::stable_sort(map.land, std::ranges::greater(), &MapLand::seen);
+    for (auto i = std::max<std::size_t>(1, map.land.size() / 10); i > 0; --i) {
+      num_cells_left_out_ += std::ssize(map.land.back().cells);
+      map.land.pop_back();
+    }
+    std::ranges::stable_sort(map.land, {}, [](const MapLand& one) { return std::tie(one.tile, one.days); });
+  }
+  return map;
 }
 
 }  // namespace lookout::exporter

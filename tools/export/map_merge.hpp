@@ -39,7 +39,7 @@ class MapMerge {
   // A thing or a tile as it was told last.
   template <typename T>
   struct Told {
-    Utime time;
+    std::int64_t seq = -1;  // of its message
     T what;
   };
   struct PlacedLand {
@@ -53,6 +53,7 @@ class MapMerge {
     std::vector<tracker::MapLand> given_land;
     std::map<std::int64_t, Told<tracker::MapThing>> kept;
     std::map<std::pair<Utime, tracker::MapTile>, Told<PlacedLand>> land;  // by the begin of its memory, and tile
+    std::int64_t kept_seq = -1;                                           // of the last KEPT
     std::optional<Utime> kept_time;                                       // end of the scan of the last KEPT
     Utime tracks_time;
     std::map<std::int64_t, tracker::MapThing> tracked;  // that stand in the last TRACKS, by track

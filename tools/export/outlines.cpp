@@ -15,7 +15,9 @@ bool IsWithinReach(const Eigen::Vector2d& place_m) { return std::abs(place_m.x()
 
 template <typename Message>
 std::optional<MapOfDatum> MapOfMessage(const Message& message) {
-  const GeodeticPlace datum{message.datum_latitude_deg, message.datum_longitude_deg, message.datum_ellipsoid_height_m};
+  // As Datum::Map: a height that is not known counts as 0.
+  const double height_m = std::isfinite(message.datum_ellipsoid_height_m) ? message.datum_ellipsoid_height_m : 0.0;
+  const GeodeticPlace datum{message.datum_latitude_deg, message.datum_longitude_deg, height_m};
   if (!PlaceOf(datum.latitude_deg, datum.longitude_deg) || !(std::abs(datum.ellipsoid_height_m) < kFarthestM)) return std::nullopt;
   return MapOfDatum(datum);
 }

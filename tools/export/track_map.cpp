@@ -26,6 +26,7 @@ namespace {
 // Of a sphere that stands for the earth where only steps are measured.
 constexpr double kMetresPerNanodeg = 111'195e-9;
 constexpr double kShortestStepM = 0.5;
+constexpr std::int64_t kLongestGapUs = 10'000'000;
 constexpr std::int64_t kLongestPauseUs = 10'000'000;
 
 double DistanceM(const MapPlace& a, const MapPlace& b) {
@@ -45,6 +46,9 @@ class Trail {
 
   // A piece of another status begins where the last one ends.
   void Add(const MapPlace& place, std::int64_t utime_us, std::string_view status = {}) {
+    // Nobody knows the way through a gap, or from one log to the next.
+    if (last_utime_us_ && (utime_us < *last_utime_us_ || utime_us - *last_utime_us_ > kLongestGapUs)) Break();
+    last_utime_us_ = utime_us;
     if (pieces_.empty() || is_broken_) {
       Keep();
       pieces_.push_back({std::string(status), {}, {}});
@@ -79,6 +83,7 @@ class Trail {
 
   std::vector<Piece> pieces_;
   std::optional<std::pair<MapPlace, std::int64_t>> latest_;  // not in the piece yet
+  std::optional<std::int64_t> last_utime_us_;                // of the last place that came
   bool is_broken_ = false;
 };
 
@@ -187,7 +192,8 @@ class TrackMapSink final : public Sink {
     const bool is_wanted = BeginScan(*tracks);
     if (is_done_) return Taken::kOk;
     if (!MapOf(*tracks)) return tracks->tracks.empty() ? Taken::kOk : Taken::kInconsistent;
-    const GeodeticPlace datum{tracks->datum_latitude_deg, tracks->datum_longitude_deg, tracks->datum_ellipsoid_height_m};
+    const double height_m = std::isfinite(tracks->datum_ellipsoid_height_m) ? tracks->datum_ellipsoid_height_m : 0.0;  // as MapOf
+    const GeodeticPlace datum{tracks->datum_latitude_deg, tracks->datum_longitude_deg, height_m};
     if (tracks->num_waterline > 0) {
       if (scans_.is_one) waterline_.Clear();
       waterline_.Add(datum, CornersOf(tracks->waterline_east_m, tracks->waterline_north_m));

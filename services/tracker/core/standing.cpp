@@ -85,7 +85,7 @@ void StandingThings::NoteSeen(const ScanInput& scan, std::vector<Track>& tracks)
     const auto found = thing_of_.find(track.id);
     if (found == thing_of_.end()) continue;
     auto& thing = things_[found->second];
-    if (Stands(track) && thing.given && std::cmp_greater_equal(thing.given->days.size(), kKnownDays)) {
+    if (Stands(track) && thing.given && !thing.given->gone && std::cmp_greater_equal(thing.given->days.size(), kKnownDays)) {
       track.known_days = static_cast<std::int32_t>(thing.given->days.size());
     }
     if (track.segment_ids.empty() || !Stands(track)) continue;
@@ -94,7 +94,9 @@ void StandingThings::NoteSeen(const ScanInput& scan, std::vector<Track>& tracks)
       thing.now.state = MapThing::State::kSeen;
       thing.now.gone.reset();
     }
-    thing.now.seen = scan.end_time;
+    // A clock that was set back makes no thing that was seen before it was seen first.
+    thing.now.first = std::min(thing.now.first, scan.end_time);
+    thing.now.seen = std::max(thing.now.seen, scan.end_time);
     AddScans({DayOf(scan.end_time), 1}, thing.now.days);
     thing.is_changed = true;
     thing.num_looks = 0;
