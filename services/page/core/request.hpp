@@ -1,0 +1,61 @@
+// What a browser may ask for over its WebSocket (PROTOCOL.md).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "common/core/utime.hpp"
+
+namespace lookout::page {
+
+using ChannelIndex = std::uint16_t;  // into ChannelNames()
+
+struct Watch {
+  std::vector<ChannelIndex> channels;
+};
+struct Got {
+  std::uint64_t num_frames = 0;
+};
+/// One of the two times is set.
+struct At {
+  std::uint32_t id = 0;
+  int source = 0;
+  std::optional<Utime> time;       // of the log
+  std::optional<Utime> scan_time;  // of measurement
+  int num_scans_on = 0;            // of a step: so many scans further
+  std::vector<ChannelIndex> channels;
+};
+struct Range {
+  std::uint32_t id = 0;
+  int source = 0;
+  ChannelIndex channel = 0;
+  Utime from;
+  Utime to;
+  int max_messages = 0;  // 1 to kMaxRangeMessages
+};
+struct StripRequest {
+  std::uint32_t id = 0;
+  int source = 0;
+  Utime from;
+  Utime to;
+  int num_buckets = 0;  // 1 to kMaxBuckets
+};
+using Request = std::variant<Watch, Got, At, Range, StripRequest>;
+
+inline constexpr std::size_t kMaxRequestBytes = 4096;
+inline constexpr int kMaxRangeMessages = 5000;
+inline constexpr int kMaxBuckets = 4000;
+inline constexpr int kMaxSources = 4;
+
+/// Names of the channels that a page may show, in the order of their indices: those of the channel table.
+const std::vector<std::string_view>& ChannelNames();
+
+/// @param reason  set when nothing is returned: what is wrong, for the client and the log
+/// @return nullopt when the text is no request; never throws
+std::optional<Request> ParseRequest(std::string_view text, std::string& reason);
+
+}  // namespace lookout::page
