@@ -25,12 +25,6 @@ struct Asset {
   Bytes gzip_bytes;
 };
 
-/// An acknowledgement that a browser with a valid token has sent.
-struct Acknowledgement {
-  std::int64_t alert_id = 0;
-  Utime raised;
-};
-
 struct ServerOptions {
   std::string bind_address = "127.0.0.1";  // numeric
   int port = 0;                            // 0: any
