@@ -235,8 +235,8 @@ void Publish(Bus& bus, const Channel& channel, const T& message) {
 }
 
 /// Calls `handler` for each message on `channel` that decodes to T; the others are counted. Gaps in seq are counted. On a bus that is guarded those
-/// of a second publisher are refused and counted, and a new start of the publisher is handed out up to a second late. A handler that takes Bytes as well
-/// gets the message as it was on the bus, too.
+/// of a second publisher are refused and counted, and a new start of the publisher is handed out up to a second late. A handler that takes Bytes as
+/// well gets the message as it was on the bus, too.
 template <typename T, typename Handler>
 void Subscribe(Bus& bus, const Channel& channel, Handler handler) {
   auto receiver = std::make_shared<StreamReceiver<T, Handler>>(bus, channel, std::move(handler));
