@@ -29,6 +29,7 @@ find_package(Protobuf QUIET)
 find_package(spdlog QUIET)
 find_package(OpenSSL QUIET COMPONENTS Crypto)
 find_package(nlohmann_json QUIET)
+find_package(ZLIB QUIET)
 find_package(Threads REQUIRED)
 
 lookout_need(LCM_INCLUDE_DIR liblcm-dev)
@@ -51,6 +52,7 @@ lookout_need(Protobuf_PROTOC_EXECUTABLE protobuf-compiler)
 lookout_need(spdlog_FOUND libspdlog-dev)
 lookout_need(OpenSSL_FOUND libssl-dev)
 lookout_need(nlohmann_json_FOUND nlohmann-json3-dev)
+lookout_need(ZLIB_FOUND zlib1g-dev)
 
 # The plugin of lcm-spy, the peers and the page of lookout-eval, tests and benchmarks.
 if(LOOKOUT_COMPONENTS STREQUAL "all")

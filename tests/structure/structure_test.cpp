@@ -90,6 +90,9 @@ const std::vector<Rule>& Rules() {
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       // What it makes is text.
       {"services/plotter/core/.*", {"common/core", "OWN/core", "fmt", "nlohmann-json"}},
+      // What a browser says and is told is JSON, and names channels.
+      {"services/page/core/.*", {"common/core", "common/bus", "OWN/core", "nlohmann-json"}},
+      {"services/page/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
