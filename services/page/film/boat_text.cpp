@@ -24,32 +24,28 @@ std::string BoatText(const config::Boat& boat, const config::Tracker& tracker) {
   nlohmann::json zones = nlohmann::json::array();
   if (tracker.has_guard_zone()) {
     const auto& zone = tracker.guard_zone();
-    zones.push_back({{"name", "guard zone"},
-                     {"range_m", zone.range_m()},
-                     {"from_deg", zone.from_bearing_deg()},
-                     {"to_deg", zone.to_bearing_deg()}});
+    zones.push_back({{"name", "guard zone"}, {"range_m", zone.range_m()}, {"from_deg", zone.from_bearing_deg()}, {"to_deg", zone.to_bearing_deg()}});
   }
-  const nlohmann::json json{
-      {"name", boat.name()},
-      {"hull_length_m", number_or_null(boat.has_hull_length_m(), boat.hull_length_m())},
-      {"hull_beam_m", number_or_null(boat.has_hull_beam_m(), boat.hull_beam_m())},
-      {"reference_point_above_water_m", boat.reference_point_above_water_m()},
-      {"lidar",
-       {{"x_m", lidar.x_m()},
-        {"y_m", lidar.y_m()},
-        {"z_m", lidar.z_m()},
-        {"roll_deg", lidar.roll_deg()},
-        {"pitch_deg", lidar.pitch_deg()},
-        {"yaw_deg", lidar.yaw_deg()}}},
-      {"own_vessel",
-       {{"min_x_m", own.min_x_m()},
-        {"max_x_m", own.max_x_m()},
-        {"min_y_m", own.min_y_m()},
-        {"max_y_m", own.max_y_m()},
-        {"min_z_m", own.min_z_m()},
-        {"max_z_m", own.max_z_m()}}},
-      {"guard_zones", zones},
-      {"cpa_limit_m", tracker.cpa_limit_m()}};
+  const nlohmann::json json{{"name", boat.name()},
+                            {"hull_length_m", number_or_null(boat.has_hull_length_m(), boat.hull_length_m())},
+                            {"hull_beam_m", number_or_null(boat.has_hull_beam_m(), boat.hull_beam_m())},
+                            {"reference_point_above_water_m", boat.reference_point_above_water_m()},
+                            {"lidar",
+                             {{"x_m", lidar.x_m()},
+                              {"y_m", lidar.y_m()},
+                              {"z_m", lidar.z_m()},
+                              {"roll_deg", lidar.roll_deg()},
+                              {"pitch_deg", lidar.pitch_deg()},
+                              {"yaw_deg", lidar.yaw_deg()}}},
+                            {"own_vessel",
+                             {{"min_x_m", own.min_x_m()},
+                              {"max_x_m", own.max_x_m()},
+                              {"min_y_m", own.min_y_m()},
+                              {"max_y_m", own.max_y_m()},
+                              {"min_z_m", own.min_z_m()},
+                              {"max_z_m", own.max_z_m()}}},
+                            {"guard_zones", zones},
+                            {"cpa_limit_m", tracker.cpa_limit_m()}};
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 

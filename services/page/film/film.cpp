@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <deque>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -47,7 +48,8 @@ struct Film::Implementation {
       if (logs.empty()) continue;
       auto& source = sources.emplace_back();
       source.logs = logs;
-      source.facts = {.id = static_cast<int>(sources.size()) - 1, .name = NameOf(logs), .is_growing = false, .is_indexed = false, .boat_text = "null"};
+      source.facts = {
+          .id = static_cast<int>(sources.size()) - 1, .name = NameOf(logs), .is_growing = false, .is_indexed = false, .boat_text = "null"};
       for (const auto& log : logs) source.sizes_bytes.push_back(bus::LogReader(log).size_bytes());  // throws where there is none
     }
     thread = std::thread([this] { MakeIndices(); });
@@ -125,7 +127,7 @@ struct Film::Implementation {
   FilmOptions options;
   mutable std::mutex mutex;  // of the sources' recordings and facts
   std::condition_variable done;
-  std::vector<Source> sources;
+  std::deque<Source> sources;
   bool is_done = false;
   std::atomic<bool> is_stopping = false;
   std::thread thread;

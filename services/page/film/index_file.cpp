@@ -134,7 +134,7 @@ LogPart TakePart(In& in, std::int64_t log_bytes) {
   for (auto& process : part.processes) process = in.TakeText(bus::kMaxLogChannelBytes);
   part.entries.resize(in.TakeCount(kEntryBytes));
   std::int64_t end_bytes = 0;
-  Utime last(std::chrono::microseconds(kMinUtimeUs));
+  auto last = Utime::min();
   for (auto& entry : part.entries) {
     entry.time = in.TakeTime();
     entry.utime_us = in.Take<std::int64_t>();
@@ -192,7 +192,8 @@ LogIdentity IdentityOf(const fs::path& log) {
   struct stat state {};
   std::ifstream in(log, std::ios::binary);
   if (stat(log.c_str(), &state) != 0 || !S_ISREG(state.st_mode) || !in) throw std::runtime_error(log.string() + ": cannot be read");
-  LogIdentity identity{.size_bytes = state.st_size, .modified_ns = std::int64_t{state.st_mtim.tv_sec} * 1'000'000'000 + state.st_mtim.tv_nsec, .digest = {}};
+  LogIdentity identity{
+      .size_bytes = state.st_size, .modified_ns = std::int64_t{state.st_mtim.tv_sec} * 1'000'000'000 + state.st_mtim.tv_nsec, .digest = {}};
   bus::Sha256 digest;
   std::vector<char> bytes(kEndBytes);
   for (const auto offset : {std::int64_t{0}, std::max<std::int64_t>(0, identity.size_bytes - kEndBytes)}) {

@@ -1,7 +1,8 @@
 #include "services/page/film/log_indexer.hpp"
 
-#include <algorithm>
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "common/bus/decode.hpp"
 #include "common/bus/schema.hpp"
@@ -28,10 +29,10 @@ constexpr std::size_t kNumTracksOffset = 96;  // of TRACKS: num_scan_tracks
 constexpr std::size_t kHeadBytes = 104;
 
 constexpr microseconds kMaxScan = std::chrono::seconds(60);
-constexpr microseconds kDisorder = std::chrono::seconds(1);     // of events that several threads wrote: no clock was set
-constexpr microseconds kPause = std::chrono::seconds(10);       // told as a gap
+constexpr microseconds kDisorder = std::chrono::seconds(1);      // of events that several threads wrote: no clock was set
+constexpr microseconds kPause = std::chrono::seconds(10);        // told as a gap
 constexpr microseconds kDoubtfulJump = std::chrono::minutes(1);  // is believed only if the next event agrees
-constexpr microseconds kHealthHolds = std::chrono::seconds(3);  // reports come once a second
+constexpr microseconds kHealthHolds = std::chrono::seconds(3);   // reports come once a second
 constexpr std::size_t kMaxAlerts = 4096;
 
 std::int64_t ReadI32(Bytes bytes, std::size_t offset) {
@@ -91,8 +92,8 @@ std::string_view StateWord(std::int32_t state) {
 }  // namespace
 
 bool HasEntries(std::string_view channel) {
-  return bus::FindChannel(channel) != nullptr && channel != bus::kLidarPackets.name && channel != bus::kNavRaw.name && channel != bus::kLidarNmea.name &&
-         channel != bus::kSimTruth.name;
+  return bus::FindChannel(channel) != nullptr && channel != bus::kLidarPackets.name && channel != bus::kNavRaw.name &&
+         channel != bus::kLidarNmea.name && channel != bus::kSimTruth.name;
 }
 
 LogIndexer::LogIndexer(const std::filesystem::path& file, bool is_growing) : is_growing_(is_growing), reader_(file) {}
@@ -129,8 +130,8 @@ Utime LogIndexer::FilmTime(bus::LogEventView& event, LogPart& part) {
   }
   if (time + kDisorder < *last_) {
     shift_ += *last_ - time;
-    Tell(*last_, FilmEventKind::kGap, 1, fmt::format("the host's clock was set back by {}: what follows is shown so much later", Seconds(*last_ - time)),
-         part);
+    Tell(*last_, FilmEventKind::kGap, 1,
+         fmt::format("the host's clock was set back by {}: what follows is shown so much later", Seconds(*last_ - time)), part);
   } else if (time - *last_ > kPause) {
     bool is_believed = true;
     if (time - *last_ > kDoubtfulJump) {

@@ -20,8 +20,8 @@ namespace lookout::page {
 /// Whether messages of the channel get an entry: a page shows them. Raw channels and the simulator's truth get none; their losses are counted.
 bool HasEntries(std::string_view channel);
 
-/// Of large messages only the heads are read. Times of events never go back: where the host's clock was set back, what follows is told as so much later,
-/// and a "gap" says so. A message that is of another type than its channel's, or is none, gets no entry.
+/// Of large messages only the heads are read. Times of events never go back: where the host's clock was set back, what follows is told as so much
+/// later, and a "gap" says so. A message that is of another type than its channel's, or is none, gets no entry.
 class LogIndexer {
  public:
   /// @param is_growing  an event at the end that is not whole is waited for; else it is damage
@@ -71,8 +71,8 @@ class LogIndexer {
   std::array<bool, bus::kChannels.size()> is_refusal_told_{};
   std::optional<SecondCell> cell_;
   std::vector<std::string> processes_;
-  std::vector<Report> reports_;                       // by process
-  std::vector<bus::SequenceWatch> process_sequences_;  // by process
+  std::vector<Report> reports_;                                                 // by process
+  std::vector<bus::SequenceWatch> process_sequences_;                           // by process
   std::map<std::pair<std::int64_t, std::int64_t>, std::int32_t> alert_levels_;  // told, by id and raised_utime_us
   std::size_t num_events_ = 0;
   std::int64_t num_refused_ = 0;

@@ -13,7 +13,7 @@ namespace {
 using std::chrono::microseconds;
 
 constexpr std::chrono::minutes kSameBus(1);
-constexpr std::chrono::seconds kPause(10);  // between two logs: told
+constexpr std::chrono::seconds kPauseOfLogs(10);  // between two logs: told
 
 }  // namespace
 
@@ -43,7 +43,7 @@ void Recording::Append(std::uint16_t number, const LogPart& part, Overlap overla
         told.events.push_back({timeline_.end(), FilmEventKind::kGap, 1,
                                fmt::format("a log begins that is {:.1f} s before the end of the one before: shown {} s later", ToSeconds(lead),
                                            std::chrono::duration_cast<std::chrono::seconds>(log.shift).count())});
-      } else if (-lead > kPause) {
+      } else if (-lead > kPauseOfLogs) {
         told.events.push_back({part.entries.front().time, FilmEventKind::kGap, 1, fmt::format("no log for {:.1f} s before this", ToSeconds(-lead))});
       }
       timeline_.Append(told, number, microseconds(0), Utime(microseconds(kMinUtimeUs)));

@@ -13,7 +13,7 @@ using std::chrono::seconds;
 // Messages of one scan come within this time; what has its time later is of another run.
 constexpr seconds kScanSpread(5);
 constexpr std::size_t kOpenScans = 16;
-constexpr seconds kRecent(5);        // HEALTH and what else has no scan
+constexpr seconds kRecent(5);           // HEALTH and what else has no scan
 constexpr std::size_t kMaxBack = 2000;  // messages of ALERTS and MAP that are looked through
 
 bool Is(ChannelIndex channel, const bus::Channel& of) { return bus::kChannels[channel].name == of.name; }
@@ -45,13 +45,8 @@ void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shif
     const Utime time = entry.time + shift;
     if (time < from) continue;
     const bool is_health = Is(entry.channel, bus::kHealth);
-    const Place place{time,
-                      entry.utime_us,
-                      entry.offset_bytes,
-                      entry.size_bytes,
-                      entry.duration_us,
-                      is_health ? processes.at(entry.part) : entry.part,
-                      file};
+    const Place place{
+        time, entry.utime_us, entry.offset_bytes, entry.size_bytes, entry.duration_us, is_health ? processes.at(entry.part) : entry.part, file};
     channels_[entry.channel].push_back(place);
     if (MakesScans(entry.channel)) NoteScan(place);
     end_ = begin_ ? std::max(end_, time) : time;
