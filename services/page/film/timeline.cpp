@@ -143,13 +143,15 @@ std::vector<Place> Timeline::OfChannel(ChannelIndex channel, const Moment& momen
     return found;
   }
   if (Is(channel, bus::kAlerts)) {
-    // One a scan, and what the watch said after it, which tells its scan too: the last counts.
+    // One a scan, after its TRACKS, and what the watch said later, which names the last scan, too: of what there was by then the last counts.
+    const auto is_of_scan = [&](const Place& place) { return place.utime_us == scan->utime_us; };
     if (scan == nullptr) return {};
-    auto place = FirstAfter(places, std::max(moment.time, scan->last));
-    for (std::size_t i = 0; i < kMaxBack && place != places.begin(); ++i) {
-      --place;
-      if (place->utime_us == scan->utime_us) return {*place};
-      if (place->time + kScanSpread < scan->first) break;
+    auto place = after;
+    for (std::size_t i = 0; i < kMaxBack && place != places.begin() && std::prev(place)->time >= scan->first; ++i) {
+      if (is_of_scan(*--place)) return {*place};
+    }
+    for (place = after; place != places.end() && place->time - scan->last <= kScanSpread; ++place) {
+      if (is_of_scan(*place)) return {*place};
     }
     return {};
   }
