@@ -130,7 +130,7 @@ trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 # Those that take before those that give: nobody misses a first message.
-for service in recorder plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+for service in recorder page plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
 lidar=${live_pids[vlp16]}
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
