@@ -93,6 +93,10 @@ const std::vector<Rule>& Rules() {
       // What a browser says and is told is JSON, and names channels.
       {"services/page/core/.*", {"common/core", "common/bus", "OWN/core", "nlohmann-json"}},
       {"services/page/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost"}},
+      // Logs as an index, and the boat out of the config in RUN_INFO.
+      {"services/page/film/boat_text\\..pp", {"common/config", "common/messages", "OWN/film", "config types", "nlohmann-json"}},
+      {"services/page/film/.*",
+       {"common/core", "common/bus", "common/messages", "common/io", "OWN/core", "OWN/film", "wire types", "fmt", "nlohmann-json"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},

@@ -1,0 +1,58 @@
+// Where views stand: one at a time on a phone, two beside each other where there is room; alerts above, the time line below.
+import type { State, View } from "./state.js";
+import { texts } from "./texts/index.js";
+
+export type ViewName = keyof typeof texts.views;
+
+export class Layout {
+  private main: ViewName = "around";
+  private side: ViewName = "lists";
+  private readonly buttons = new Map<ViewName, HTMLButtonElement>();
+  private readonly panes: { main: HTMLElement; side: HTMLElement };
+  private readonly wide = matchMedia("(min-width: 900px)");
+
+  constructor(private readonly state: State, private readonly views: Map<ViewName, View>, top: HTMLElement[], bottom: HTMLElement[]) {
+    const make = (tag: string, name: string) => {
+      const element = document.createElement(tag);
+      element.className = name;
+      return element;
+    };
+    this.panes = { main: make("section", "pane main"), side: make("section", "pane side") };
+    const tabs = make("nav", "tabs");
+    tabs.setAttribute("aria-label", texts.title);
+    for (const name of views.keys()) {
+      const button = document.createElement("button");
+      button.textContent = texts.views[name];
+      button.dataset["view"] = name;
+      button.onclick = () => { this.show(name); };
+      this.buttons.set(name, button);
+      tabs.append(button);
+    }
+    const panes = make("main", "panes");
+    panes.append(this.panes.main, this.panes.side);
+    document.body.append(...top, tabs, panes, ...bottom);
+    this.wide.onchange = () => { this.place(); };
+    const palette = () => { document.documentElement.dataset["palette"] = this.state.settings.get("palette"); };
+    this.state.on(["settings"], palette);
+    palette();
+    this.place();
+  }
+
+  show(name: ViewName): void {
+    if (this.wide.matches && (name === "lists" || name === "plots")) this.side = name;
+    else this.main = name;
+    this.place();
+  }
+
+  private place(): void {
+    const shown = this.wide.matches ? [this.main, this.side] : [this.main];
+    for (const [name, view] of this.views) {
+      const pane = name === this.main ? this.panes.main : this.wide.matches && name === this.side ? this.panes.side : null;
+      if (pane !== null && view.element.parentElement !== pane) pane.append(view.element);
+      view.element.hidden = pane === null;
+      view.setVisible(pane !== null);
+      this.buttons.get(name)?.setAttribute("aria-pressed", String(shown.includes(name)));
+    }
+    this.panes.side.hidden = !this.wide.matches;
+  }
+}

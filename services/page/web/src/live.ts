@@ -1,0 +1,57 @@
+// The live loop: messages become a picture, at most once a frame of the screen.
+import type { Frame, Hello } from "./link.js";
+import { Assembler, kPictureChannels } from "./picture.js";
+import type { State } from "./state.js";
+
+export class Live {
+  private assembler = new Assembler();
+  private isNew = false;
+  private last_ms = -Infinity;  // performance.now() when a scan, or where there is none anything, came last
+  private latency_s = 0;        // of the newest scan, from its end to its reception by the server
+
+  constructor(private readonly state: State) {
+    const draw = () => {
+      this.turn();
+      requestAnimationFrame(draw);
+    };
+    requestAnimationFrame(draw);
+    setInterval(() => { this.tellAge(); }, 250);
+  }
+
+  begin(hello: Hello): void {
+    // What was before the connection was lost is not mixed with what comes after it.
+    this.assembler = new Assembler();
+    this.assembler.boat = hello.sources[0]?.boat ?? null;
+    if (this.state.showing.kind === "live" && hello.mode === "live") this.state.link?.watch(kPictureChannels);
+  }
+  setBoat(): void { this.assembler.boat = this.state.sources[0]?.boat ?? null; }
+
+  take(frame: Frame): void {
+    if (this.assembler.take(frame)) {
+      this.isNew = true;
+      this.last_ms = performance.now();
+    }
+  }
+
+  private turn(): void {
+    if (this.isNew && this.state.showing.kind === "live") {
+      this.isNew = false;
+      this.state.picture = this.assembler.picture();
+      const { picture } = this.state;
+      const received_us = picture.times_us.get("TRACKS") ?? picture.times_us.get("LIDAR_SCAN");
+      // A clock of the sensor's own may be off by more: then the age is since reception.
+      const late_s = received_us === undefined ? 0 : (received_us - picture.end_utime_us) / 1e6;
+      this.latency_s = late_s > 0 && late_s < 10 ? late_s : 0;
+      this.state.age_s = this.latency_s;
+      this.state.tell("picture");
+    }
+    this.state.link?.confirm();
+  }
+
+  private tellAge(): void {
+    if (this.state.showing.kind !== "live") return;
+    const age_s = this.state.picture === null ? 0 : this.latency_s + (performance.now() - this.last_ms) / 1000;
+    this.state.age_s = age_s;
+    this.state.tell("age");
+  }
+}

@@ -1,0 +1,49 @@
+// Entry: connection, state, views, layout.
+import { Layout, type ViewName } from "./layout.js";
+import { Link } from "./link.js";
+import { Live } from "./live.js";
+import { State, type View } from "./state.js";
+
+// A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
+function takeToken(): string {
+  const kKey = "lookout.token";
+  const given = /^#token=([\w-]+)$/.exec(location.hash)?.[1];
+  try {
+    if (given !== undefined) {
+      localStorage.setItem(kKey, given);
+      history.replaceState(null, "", location.pathname);
+    }
+    return localStorage.getItem(kKey) ?? "";
+  } catch {
+    return given ?? "";
+  }
+}
+
+const state = new State();
+state.token = takeToken();
+const live = new Live(state);
+state.link = new Link({
+  onHello: (hello) => {
+    state.hello = hello;
+    state.sources = hello.sources;
+    state.indexing.clear();
+    state.connection = { state: "open", since_ms: performance.now() };
+    live.begin(hello);
+    state.tell("connection");
+    state.tell("sources");
+  },
+  onSources: (sources) => { state.sources = sources; live.setBoat(); state.tell("sources"); },
+  onIndexing: (source, share) => {
+    if (share >= 1) state.indexing.delete(source); else state.indexing.set(source, share);
+    state.tell("sources");
+  },
+  onLive: (frame) => { live.take(frame); },
+  onLost: () => {
+    if (state.connection.state !== "lost") state.connection = { state: "lost", since_ms: performance.now() };
+    state.tell("connection");
+  },
+});
+
+const views = new Map<ViewName, View>();
+new Layout(state, views, [], []);
+state.link.open();

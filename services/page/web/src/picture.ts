@@ -1,0 +1,287 @@
+// What views show: messages of one moment, joined and brought into frames that can be drawn. Nothing here knows the DOM.
+import * as wire from "./messages/generated.js";
+import type { BoatFacts, Frame } from "./link.js";
+import { Refused } from "./messages/reader.js";
+
+/** Channels that a picture is made of. */
+export const kPictureChannels = ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "LIDAR_CLOCK", "GNSS_FIX", "HEALTH", "RUN_INFO", "MAP"];
+
+/** Returns of a scan that measured something, as arrays with one number (or three) per return. */
+export interface Returns {
+  count: number;
+  /** x, y, z in the frame `level`: x forward along the heading at the end of the scan, y port, z up from the water; each placed by the attitude at its time. */
+  level_m: Float32Array;
+  range_m: Float32Array;
+  reflectivity: Uint8Array;
+  /** As in SEGMENTS: above 0 the segment, below 0 minus the reason, 0 where SEGMENTS did not come. */
+  label: Int16Array;
+  /** Place in the range image. */
+  column: Uint16Array;
+  ring: Uint8Array;
+  return_index: Uint8Array;
+}
+
+/** One scan with all that was said of it. A part that did not come is empty. */
+export interface Picture {
+  /** First firing of the scan; of a picture without scan the time of its newest message. Microseconds since 1970 UTC. */
+  utime_us: number;
+  end_utime_us: number;
+  boat: BoatFacts | null;
+  scan: wire.LidarScan[];
+  returns: Returns | null;
+  segments: wire.Segment[];
+  obstacles: wire.Obstacle[];
+  /** Status LOST left in: it is told once. */
+  tracks: wire.Track[];
+  track_by_id: ReadonlyMap<number, wire.Track>;
+  /** Track of a segment of this scan. */
+  track_of_segment: ReadonlyMap<number, wire.Track>;
+  /** Segments that are land, by what is remembered or by the scan. */
+  land_segments: ReadonlySet<number>;
+  /** Remembered edge of land, map frame: east, north, east, north ... */
+  waterline_map_m: Float32Array;
+  alerts: wire.Alert[];
+  /** Alert of a track, the gravest. */
+  alert_of_track: ReadonlyMap<number, wire.Alert>;
+  /** Of the end of the scan, or the newest. */
+  pose: wire.Pose | null;
+  /** Own position in the map frame at the end of the scan; NaN = not known. */
+  own_east_m: number;
+  own_north_m: number;
+  /** From true north clockwise, at the end of the scan; NaN = not known. */
+  heading_rad: number;
+  clock: wire.LidarClock | null;
+  fix: wire.GnssFix | null;
+  health: wire.Health[];
+  run_info: wire.RunInfo | null;
+  map_things: wire.MapThing[];
+  /** When each channel last came, by the clock of whoever received it (server or log), by name. */
+  times_us: ReadonlyMap<string, number>;
+}
+
+interface Parted { utime_us: number; part_index: number; num_parts: number }
+
+// The parts of the newest message of a channel, and those of the one before until they are whole.
+class Parts<T extends Parted> {
+  whole: T[] = [];
+  private coming: T[] = [];
+  take(message: T): boolean {
+    if (this.coming[0] !== undefined && this.coming[0].utime_us !== message.utime_us) this.coming = [];
+    if (!this.coming.some((part) => part.part_index === message.part_index)) this.coming.push(message);
+    if (this.coming.length < message.num_parts) return false;
+    this.whole = this.coming.sort((a, b) => a.part_index - b.part_index);
+    this.coming = [];
+    return true;
+  }
+}
+
+const kPosesKept = 64;
+
+/** Takes messages in any order, and makes a picture of what is newest. */
+export class Assembler {
+  private readonly scan = new Parts<wire.LidarScan>();
+  private readonly scans: wire.LidarScan[][] = [];  // whole, the newest last: TRACKS come later than the scan
+  private readonly segments = new Parts<wire.Segments>();
+  private readonly obstacles = new Parts<wire.Obstacles>();
+  private readonly tracks = new Parts<wire.Tracks>();
+  private waterline = new Float32Array();
+  private alerts: wire.Alerts | null = null;
+  private readonly poses: wire.Pose[] = [];
+  private clock: wire.LidarClock | null = null;
+  private fix: wire.GnssFix | null = null;
+  private readonly health = new Map<string, { health: wire.Health; utime_us: number }>();
+  private run_info: wire.RunInfo | null = null;
+  private readonly mapThings = new Map<number, wire.MapThing>();
+  private mapBegin = 0;
+  private readonly times = new Map<string, number>();
+  /** Messages that could not be read, by channel. */
+  readonly refused = new Map<string, number>();
+  boat: BoatFacts | null = null;
+
+  /** @returns whether there is something new to draw: a scan, tracks, alerts or obstacles that are whole */
+  take(frame: Frame): boolean {
+    try {
+      const isNew = this.takeMessage(frame);
+      this.times.set(frame.channel, frame.utime_us);
+      return isNew;
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      this.refused.set(frame.channel, (this.refused.get(frame.channel) ?? 0) + 1);
+      return false;
+    }
+  }
+
+  private takeMessage({ channel, utime_us, bytes }: Frame): boolean {
+    switch (channel) {
+      case "LIDAR_SCAN":
+        if (!this.scan.take(wire.LidarScan.decode(bytes))) return false;
+        this.scans.push(this.scan.whole);
+        if (this.scans.length > 3) this.scans.shift();
+        return true;
+      case "SEGMENTS": return this.segments.take(wire.Segments.decode(bytes));
+      case "OBSTACLES": return this.obstacles.take(wire.Obstacles.decode(bytes));
+      case "TRACKS": {
+        if (!this.tracks.take(wire.Tracks.decode(bytes))) return false;
+        const first = this.tracks.whole[0]!;
+        if (first.num_waterline > 0) this.waterline = interleaved(first.waterline_east_m, first.waterline_north_m);
+        return true;
+      }
+      case "ALERTS": this.alerts = wire.Alerts.decode(bytes); return true;
+      case "POSE":
+        this.poses.push(wire.Pose.decode(bytes));
+        this.poses.sort((a, b) => a.utime_us - b.utime_us);
+        if (this.poses.length > kPosesKept) this.poses.shift();
+        return false;
+      case "LIDAR_CLOCK": this.clock = wire.LidarClock.decode(bytes); return false;
+      case "GNSS_FIX": this.fix = wire.GnssFix.decode(bytes); return false;
+      case "HEALTH": {
+        const health = wire.Health.decode(bytes);
+        this.health.set(`${health.process}@${health.host}`, { health, utime_us });
+        return false;
+      }
+      case "RUN_INFO": this.run_info = wire.RunInfo.decode(bytes); return false;
+      case "MAP": {
+        const map = wire.Map.decode(bytes);
+        if (map.begin_utime_us !== this.mapBegin) this.mapThings.clear();
+        this.mapBegin = map.begin_utime_us;
+        for (const thing of map.things) this.mapThings.set(thing.id, thing);
+        return false;
+      }
+      default: return false;
+    }
+  }
+
+  picture(): Picture {
+    const tracksParts = this.tracks.whole, segmentParts = this.segments.whole;
+    // The scan whose segments and tracks are there; where nobody segments, the newest.
+    const scan = this.scans.findLast((parts) => parts[0]!.utime_us === segmentParts[0]?.utime_us) ?? this.scans.at(-1) ?? [];
+    const first = scan[0];
+    const tracks = tracksParts.flatMap((part) => part.tracks);
+    const isOfScan = segmentParts[0]?.utime_us === first?.utime_us;
+    const segments = isOfScan ? segmentParts.flatMap((part) => part.segments) : [];
+    const track_of_segment = new Map<number, wire.Track>();
+    const land_segments = new Set<number>();
+    if (tracksParts[0] !== undefined && tracksParts[0].utime_us === segmentParts[0]?.utime_us) {
+      for (const track of tracks) for (const id of track.segment_ids) track_of_segment.set(id, track);
+      for (const id of tracksParts[0].land_segment_ids) land_segments.add(id);
+    }
+    for (const segment of segments) if (segment.kind === wire.Segment.KIND_LAND && !track_of_segment.has(segment.id)) land_segments.add(segment.id);
+    const alert_of_track = new Map<number, wire.Alert>();
+    const alerts = this.alerts?.alerts ?? [];
+    for (const alert of alerts) if (alert.track_id > 0 && !alert_of_track.has(alert.track_id)) alert_of_track.set(alert.track_id, alert);
+    const end_utime_us = first?.end_utime_us ?? tracksParts[0]?.end_utime_us ?? this.alerts?.end_utime_us ?? this.poses.at(-1)?.utime_us ?? 0;
+    const pose = this.poses.findLast((candidate) => candidate.utime_us <= end_utime_us) ?? this.poses.at(-1) ?? null;
+    const motion = motionOf(this.poses, pose);
+    const after_s = pose === null ? 0 : Math.min(0.5, Math.max(-0.5, (end_utime_us - pose.utime_us) / 1e6));
+    const newest = Math.max(0, ...this.times.values());
+    return {
+      utime_us: first?.utime_us ?? tracksParts[0]?.utime_us ?? newest, end_utime_us, boat: this.boat, scan,
+      returns: scan.length === 0 ? null : toReturns(scan, isOfScan ? segmentParts : [], this.boat, pose, motion.turn_radps),
+      segments, obstacles: this.obstacles.whole.flatMap((part) => part.obstacles), tracks,
+      track_by_id: new Map(tracks.map((track) => [track.id, track])), track_of_segment, land_segments, waterline_map_m: this.waterline,
+      alerts, alert_of_track, pose,
+      own_east_m: pose === null ? NaN : pose.position_map_m[0]! + after_s * (pose.velocity_map_mps[0]! || 0),
+      own_north_m: pose === null ? NaN : pose.position_map_m[1]! + after_s * (pose.velocity_map_mps[1]! || 0),
+      heading_rad: pose === null ? NaN : pose.heading_rad + after_s * motion.turn_radps,
+      clock: this.clock, fix: this.fix,
+      health: [...this.health.values()].filter((entry) => newest - entry.utime_us < 10e6).map((entry) => entry.health)
+        .sort((a, b) => (a.process < b.process ? -1 : 1)),
+      run_info: this.run_info, map_things: [...this.mapThings.values()], times_us: new Map(this.times),
+    };
+  }
+}
+
+function interleaved(east: Float32Array, north: Float32Array): Float32Array<ArrayBuffer> {
+  const both = new Float32Array(2 * east.length);
+  for (let i = 0; i < east.length; ++i) { both[2 * i] = east[i]!; both[2 * i + 1] = north[i]!; }
+  return both;
+}
+
+/** Difference of two angles, -pi to pi. */
+export function angleBetween(to_rad: number, from_rad: number): number {
+  const turn = (to_rad - from_rad) % (2 * Math.PI);
+  return turn > Math.PI ? turn - 2 * Math.PI : turn < -Math.PI ? turn + 2 * Math.PI : turn;
+}
+
+function motionOf(poses: wire.Pose[], pose: wire.Pose | null): { turn_radps: number } {
+  const before = pose === null ? undefined : poses.findLast((candidate) => candidate.utime_us < pose.utime_us - 15_000);
+  if (pose === null || before === undefined || pose.utime_us - before.utime_us > 500_000) return { turn_radps: 0 };
+  const turn = angleBetween(pose.heading_rad, before.heading_rad) / ((pose.utime_us - before.utime_us) / 1e6);
+  return { turn_radps: Number.isFinite(turn) ? turn : 0 };
+}
+
+// Where each return lies, by the mounting of the lidar and the attitude: roll positive starboard down, pitch positive bow up.
+function toReturns(scan: wire.LidarScan[], labels: wire.Segments[], boat: BoatFacts | null, pose: wire.Pose | null, turn_radps: number): Returns {
+  let room = 0;
+  for (const part of scan) for (const range of part.range) if (range !== 0) ++room;
+  const returns: Returns = {
+    count: 0, level_m: new Float32Array(3 * room), range_m: new Float32Array(room), reflectivity: new Uint8Array(room),
+    label: new Int16Array(room), column: new Uint16Array(room), ring: new Uint8Array(room), return_index: new Uint8Array(room),
+  };
+  const mounting = boat?.lidar ?? { x_m: 0, y_m: 0, z_m: 0, roll_deg: 0, pitch_deg: 0, yaw_deg: 0 };
+  const degree = Math.PI / 180;
+  const R_vessel_lidar = rotation(mounting.yaw_deg * degree, mounting.pitch_deg * degree, mounting.roll_deg * degree);
+  // Attitude: pitch bow up is a negative turn about y (port); roll starboard down a positive one about x.
+  const R_level_vessel = rotation(0, pose?.has_attitude ? -pose.pitch_rad : 0, pose?.has_attitude ? pose.roll_rad : 0);
+  const R = product(R_level_vessel, R_vessel_lidar);
+  const lever = apply(R_level_vessel, [mounting.x_m, mounting.y_m, mounting.z_m]);
+  const up = (boat?.reference_point_above_water_m ?? 0) + (pose !== null && Number.isFinite(pose.heave_m) ? pose.heave_m : 0);
+  let speed_x = 0, speed_y = 0;
+  if (pose !== null && Number.isFinite(pose.velocity_map_mps[0]!) && Number.isFinite(pose.heading_rad)) {
+    const sin = Math.sin(pose.heading_rad), cos = Math.cos(pose.heading_rad);
+    speed_x = pose.velocity_map_mps[0]! * sin + pose.velocity_map_mps[1]! * cos;
+    speed_y = -pose.velocity_map_mps[0]! * cos + pose.velocity_map_mps[1]! * sin;
+  }
+  const end_us = scan[0]!.end_utime_us;
+  for (const part of scan) {
+    const label = labels.find((candidate) => candidate.first_column === part.first_column && candidate.num_columns === part.num_columns)?.label;
+    const cosElevation = part.elevation_rad.map(Math.cos), sinElevation = part.elevation_rad.map(Math.sin);
+    const perColumn = part.num_rings * part.num_returns;
+    // -1 where the return of a pair is the same echo told twice: kept, they lie on each other.
+    for (let column = 0; column < part.num_columns; ++column) {
+      const before_s = (end_us - part.utime_us) / 1e6 - part.time_ns[column]! / 1e9;
+      const turned = -before_s * turn_radps;  // heading at the time of the shot less that at the end, clockwise
+      const cosTurn = Math.cos(turned), sinTurn = Math.sin(turned);
+      for (let cell = 0; cell < perColumn; ++cell) {
+        const index = column * perColumn + cell;
+        const counts = part.range[index]! & 0xffff;
+        if (counts === 0) continue;
+        const ring = Math.floor(cell / part.num_returns);
+        const range = counts * part.range_unit_m;
+        const azimuth = part.azimuth_rad[column]! + part.azimuth_offset_rad[ring]!;
+        const flat = range * cosElevation[ring]!;
+        const x = flat * Math.cos(azimuth), y = -flat * Math.sin(azimuth), z = range * sinElevation[ring]! + part.origin_height_m[ring]!;
+        const lx = R[0]! * x + R[1]! * y + R[2]! * z + lever[0]!, ly = R[3]! * x + R[4]! * y + R[5]! * z + lever[1]!;
+        const lz = R[6]! * x + R[7]! * y + R[8]! * z + lever[2]!;
+        const i = returns.count++;
+        // A heading that was more to the right then turns the vector clockwise: y is to port.
+        returns.level_m[3 * i] = cosTurn * lx + sinTurn * ly - before_s * speed_x;
+        returns.level_m[3 * i + 1] = -sinTurn * lx + cosTurn * ly - before_s * speed_y;
+        returns.level_m[3 * i + 2] = lz + up;
+        returns.range_m[i] = range;
+        returns.reflectivity[i] = part.reflectivity[index]!;
+        returns.label[i] = label?.[index] ?? 0;
+        returns.column[i] = part.first_column + column;
+        returns.ring[i] = ring;
+        returns.return_index[i] = cell % part.num_returns;
+      }
+    }
+  }
+  return returns;
+}
+
+/** Rotation matrix Rz(yaw) Ry(pitch) Rx(roll), row by row; radians, right-handed. */
+export function rotation(yaw: number, pitch: number, roll: number): Float64Array {
+  const cy = Math.cos(yaw), sy = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch), cr = Math.cos(roll), sr = Math.sin(roll);
+  return Float64Array.of(cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr, sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr, -sp, cp * sr, cp * cr);
+}
+function product(a: Float64Array, b: Float64Array): Float64Array {
+  const c = new Float64Array(9);
+  for (let row = 0; row < 3; ++row) {
+    for (let column = 0; column < 3; ++column) for (let k = 0; k < 3; ++k) c[3 * row + column]! += a[3 * row + k]! * b[3 * k + column]!;
+  }
+  return c;
+}
+function apply(a: Float64Array, v: [number, number, number]): [number, number, number] {
+  return [0, 3, 6].map((row) => a[row]! * v[0] + a[row + 1]! * v[1] + a[row + 2]! * v[2]) as [number, number, number];
+}
