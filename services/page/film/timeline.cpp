@@ -180,12 +180,19 @@ std::vector<Place> Timeline::OfPose(const Places& places, const Moment& moment) 
   const Scan* const scan = moment.scan ? &scans_[*moment.scan] : nullptr;
   const auto after = FirstAfter(places, moment.time);
   if (scan == nullptr) return after == places.begin() ? std::vector<Place>() : std::vector<Place>{*std::prev(after)};
-  const Place* best = nullptr;
+  // From the last that is not after the first firing on: returns are placed by the attitude at their time.
+  std::vector<Place> found;
+  std::int64_t begin_utime_us = INT64_MIN;
   for (auto place = FirstAt(places, scan->first - 2 * kScanSpread); place != places.end() && place->time <= scan->last + kScanSpread; ++place) {
-    if (place->utime_us > scan->end_utime_us || (best != nullptr && place->utime_us < best->utime_us)) continue;
-    best = &*place;
+    if (place->utime_us > scan->end_utime_us) continue;
+    found.push_back(*place);
+    if (place->utime_us <= scan->utime_us) begin_utime_us = std::max(begin_utime_us, place->utime_us);
   }
-  return best == nullptr ? std::vector<Place>() : std::vector<Place>{*best};
+  std::erase_if(found, [&](const Place& place) { return place.utime_us < begin_utime_us; });
+  std::ranges::stable_sort(found, {}, &Place::utime_us);
+  const auto again = std::ranges::unique(found, {}, &Place::utime_us);
+  found.erase(again.begin(), again.end());
+  return found;
 }
 
 std::vector<Place> Timeline::Of(const Range& request, std::int64_t max_bytes) const {
