@@ -34,7 +34,7 @@ bool IsOneGroup(ChannelIndex channel, const Place& one, const Place& other) {
 
 }  // namespace
 
-void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shift, Utime from) {
+void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shift) {
   std::vector<std::uint16_t> processes;
   for (const auto& process : part.processes) {
     auto found = std::ranges::find(processes_, process);
@@ -42,21 +42,18 @@ void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shif
     processes.push_back(static_cast<std::uint16_t>(found - processes_.begin()));
   }
   for (const auto& entry : part.entries) {
-    const Utime time = entry.time + shift;
-    if (time < from) continue;
+    const Utime time = begin_ ? std::max(end_, entry.time + shift) : entry.time + shift;
     const bool is_health = Is(entry.channel, bus::kHealth);
     const Place place{
         time, entry.utime_us, entry.offset_bytes, entry.size_bytes, entry.duration_us, is_health ? processes.at(entry.part) : entry.part, file};
     channels_[entry.channel].push_back(place);
     if (MakesScans(entry.channel)) NoteScan(place);
-    end_ = begin_ ? std::max(end_, time) : time;
+    end_ = time;
     if (!begin_) begin_ = time;
   }
   const auto shift_s = std::chrono::floor<seconds>(shift).count();
-  const auto from_s = std::chrono::floor<seconds>(from).time_since_epoch().count();
   for (auto cell : part.cells) {
     cell.second += shift_s;
-    if (cell.second < from_s) continue;
     if (!cells_.empty() && cells_.back().second >= cell.second) {
       cells_.back().Add(cell);
     } else {
@@ -65,7 +62,6 @@ void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shif
   }
   for (auto event : part.events) {
     event.time += shift;
-    if (event.time < from) continue;
     events_.insert(std::ranges::upper_bound(events_, event.time, {}, &FilmEvent::time), event);
   }
 }
