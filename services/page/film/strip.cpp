@@ -79,8 +79,4 @@ std::string StripText(const Timeline& timeline, const StripRequest& request) {
   return Text(json);
 }
 
-std::string RefusedText(std::uint32_t id, std::string_view reason) {
-  return Text({{"type", "refused"}, {"id", id}, {"reason", std::string(reason)}});
-}
-
 }  // namespace lookout::page
