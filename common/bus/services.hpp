@@ -18,8 +18,8 @@ struct ServiceRow {
   std::string_view needs;   // logs: writes to /var/lib/lookout; serial: opens serial ports; network: nothing else
   std::string_view hangup;  // what SIGHUP (systemctl reload) does
   std::string_view state;   // what it remembers from message to message, and loses when it restarts
-  std::array<const Channel*, 16>
-      inputs{};  // nullptr: no more. The recorder reads every channel; HEALTH and RUN_INFO, which tell of processes, are left out
+  // nullptr: no more. The recorder reads every channel. HEALTH and RUN_INFO tell of processes, and are in no row.
+  std::array<const Channel*, 16> inputs{};
 };
 
 // Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
