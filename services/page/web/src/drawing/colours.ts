@@ -88,18 +88,21 @@ export const kHeightEnds_m = [-0.5, 5] as const;
 export const kReflectivityEnds = [0, 150] as const;
 
 interface Key { picture: Picture; theme: Theme; colour_by: SettingValues["colour_by"]; track: number | null; segment: number | null; chosen: number | null }
-let cached: { key: Key; colours: Uint8Array } | null = null;
+let cached: { key: Key; colours: ReturnColours } | null = null;
+
+/** `version` is another object whenever the bytes are others. */
+export interface ReturnColours { bytes: Uint8Array; version: object }
 
 /** Red, green, blue, opacity of each return of the picture, by what the user has chosen; made once for all views. */
-export function returnColours(state: State, picture: Picture): Uint8Array {
+export function returnColours(state: State, picture: Picture): ReturnColours {
   const key: Key = { picture, theme: currentTheme(), colour_by: state.settings.get("colour_by"), track: state.marked.track, segment: state.marked.segment, chosen: state.chosen };
   if (cached !== null && (Object.keys(key) as (keyof Key)[]).every((name) => cached!.key[name] === key[name])) return cached.colours;
   // A picture's array is used again for the next of about its size: 10 of them a second otherwise.
-  const room = 4 * (picture.returns?.count ?? 0);
-  const colours = cached !== null && cached.colours.length >= room && cached.colours.length < 4 * room + 4096 ? cached.colours : new Uint8Array(room + (room >> 2));
-  fillColours(picture, key, colours);
-  cached = { key, colours };
-  return colours;
+  const room = 4 * (picture.returns?.count ?? 0), last = cached?.colours.bytes;
+  const bytes = last !== undefined && last.length >= room && last.length < 4 * room + 4096 ? last : new Uint8Array(room + (room >> 2));
+  fillColours(picture, key, bytes);
+  cached = { key, colours: { bytes, version: key } };
+  return cached.colours;
 }
 
 /** The same, into `out`: pure. */
