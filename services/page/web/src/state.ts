@@ -34,6 +34,8 @@ export class State {
   marked: Marked = { track: null, segment: null };
   /** Chosen by a click or in a list; stays until another is. */
   chosen: number | null = null;
+  /** Shows the moment of a recording at a time; the player of recordings sets it. */
+  seek: (utime_us: number) => void = () => undefined;
   readonly settings = new Settings(() => { this.tell("settings"); });
   /** Of this page; empty: it may not acknowledge. */
   token = "";

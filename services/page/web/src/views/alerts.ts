@@ -1,5 +1,5 @@
 // The alerts above every view: what holds now, the gravest first, with a button to acknowledge. A screen reader hears each once.
-import type * as wire from "../messages/generated.js";
+import * as wire from "../messages/generated.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { acknowledge } from "./acknowledge.js";
@@ -13,10 +13,10 @@ const kShown = 3;             // on a phone they must leave room for the picture
 const kTextEvery_ms = 1000;   // numbers in a text change with each scan: nobody reads ten a second
 const kPatience_ms = 4000;    // until the look-out says that it took an acknowledgement
 
-export function levelWord(alert: wire.Alert): string {
+export function levelWord(alert: Pick<wire.Alert, "level" | "state">): string {
   switch (gravityOf(alert)) {
-    case "warning": return alert.state === 3 ? words.warningOver : words.warning;
-    case "caution": return alert.state === 3 ? words.cautionOver : words.caution;
+    case "warning": return alert.state === wire.Alert.STATE_RECTIFIED ? words.warningOver : words.warning;
+    case "caution": return alert.state === wire.Alert.STATE_RECTIFIED ? words.cautionOver : words.caution;
     default: return words.acknowledged;
   }
 }

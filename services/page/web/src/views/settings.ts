@@ -99,8 +99,8 @@ export interface KeyActions { showView(index: number): void; focusAlert(): void 
 
 export function listenToKeys(state: State, sheet: SettingsSheet, actions: KeyActions): void {
   addEventListener("keydown", (event) => {
-    const target = event.target as HTMLElement | null;
-    if (event.ctrlKey || event.altKey || event.metaKey || event.defaultPrevented || target?.closest("input, select, textarea, dialog") != null) return;
+    const isElsewhere = event.target instanceof Element && event.target.closest("input, select, textarea, dialog") !== null;
+    if (event.ctrlKey || event.altKey || event.metaKey || event.defaultPrevented || isElsewhere) return;
     const { settings } = state;
     switch (event.key) {
       case "?": sheet.open(true); break;
