@@ -9,7 +9,8 @@ import { Shape } from "./shapes.js";
 import { patternOf, type Sounder } from "./sound.js";
 
 const words = texts.panels.alerts;
-const kShown = 3;             // on a phone they must leave room for the picture
+// How many are shown before somebody asks for more: they must leave room for the picture.
+const kShownWide = 3, kShownTablet = 2, kShownPhone = 1;
 const kTextEvery_ms = 1000;   // numbers in a text change with each scan: nobody reads ten a second
 const kPatience_ms = 4000;    // until the look-out says that it took an acknowledgement
 
@@ -83,6 +84,8 @@ export class AlertBar {
   private readonly now = make("div", "for-readers");    // assertive
   private readonly later = make("div", "for-readers");  // polite
   private readonly announcer = new Announcer();
+  private readonly wide = matchMedia("(min-width: 900px)");
+  private readonly phone = matchMedia("(max-width: 599px), (max-height: 599px)");
   private showsAll = false;
   private seen: readonly wire.Alert[] | null = null;
 
@@ -111,6 +114,7 @@ export class AlertBar {
     const now_ms = performance.now();
     for (const id of this.rows.keys()) if (!alerts.some((alert) => alert.id === id)) this.rows.delete(id);
     const places: HTMLElement[] = [];
+    const numShown = this.phone.matches ? kShownPhone : this.wide.matches ? kShownWide : kShownTablet;
     alerts.forEach((alert, index) => {
       let row = this.rows.get(alert.id);
       if (row === undefined) {
@@ -118,13 +122,15 @@ export class AlertBar {
         this.rows.set(alert.id, row);
       }
       row.update(alert, isLive, now_ms);
-      if (this.showsAll || index < kShown) places.push(row.element);
+      if (this.showsAll || index < numShown) places.push(row.element);
     });
     // Where a button has the keyboard nothing is moved, or the keyboard would be lost.
     if (!this.list.contains(document.activeElement) || places.length !== this.list.children.length) placeChildren(this.list, places);
-    const numHidden = alerts.length - kShown;
+    const numHidden = alerts.length - numShown;
     this.more.hidden = numHidden <= 0;
     setText(this.more, this.showsAll ? words.fewer : words.more(numHidden));
+    const gravest = alerts.slice(numShown).map(gravityOf);
+    setAttribute(this.more, "data-gravity", gravest.includes("warning") ? "warning" : gravest.includes("caution") ? "caution" : null);
     setAttribute(this.more, "aria-expanded", String(this.showsAll));
     this.sounder.want(isLive && state.connection.state === "open" ? patternOf(alerts) : null);
     if (isLive && state.picture !== null && state.picture.alerts !== this.seen) {

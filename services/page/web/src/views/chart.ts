@@ -32,6 +32,21 @@ export function valueText(value: number | null | undefined, unit: string): strin
   return unit === "" ? text : unit.startsWith("°") ? `${text}${unit}` : `${text} ${unit}`;
 }
 
+/** A line that passes through north is broken there, and does not run down the whole chart. */
+export function broken(times: number[], degrees: (number | null)[]): [number[], (number | null)[]] {
+  const brokenTimes: number[] = [], values: (number | null)[] = [];
+  degrees.forEach((value, index) => {
+    const before = degrees[index - 1] ?? null;
+    if (value !== null && before !== null && Math.abs(value - before) > 180) {
+      brokenTimes.push((times[index - 1]! + times[index]!) / 2);
+      values.push(null);
+    }
+    brokenTimes.push(times[index]!);
+    values.push(value);
+  });
+  return [brokenTimes, values];
+}
+
 export interface ChartActions { remove(path: Path): void; seek(time_s: number): void }
 
 export class Chart {
@@ -79,7 +94,7 @@ export class Chart {
         { ...axis(), size: 64, space: 28, values: (_, splits) => splits.map((split) => valueText(Number(split.toPrecision(6)), this.unit)) },
       ],
       series: [{}, ...paths.map((_, index) => ({
-        stroke: () => this.colour(strokeOf(index).colour), width: 2, dash: strokeOf(index).dash, points: { show: false }, spanGaps: true,
+        stroke: () => this.colour(strokeOf(index).colour), width: 2, dash: strokeOf(index).dash, points: { show: false },
       }))],
       hooks: {
         setCursor: [(plot) => { this.tell(plot.cursor.idx ?? null); }],
@@ -100,7 +115,8 @@ export class Chart {
     const tables = this.paths.map((path, index) => {
       const { times, values } = rings.get(path)?.thinned(from_s, to_s, buckets) ?? { times: [], values: [] };
       const factor = this.factors[index]!;
-      return [times, values.map((value) => (value === null ? null : value * factor))] as uPlot.AlignedData;
+      const shown = values.map((value) => (value === null ? null : value * factor));
+      return (this.unit === "°" ? broken(times, shown) : [times, shown]) as uPlot.AlignedData;
     });
     this.plot.batch(() => {
       this.plot.setData(tables.length === 1 ? tables[0]! : uPlot.join(tables), false);
