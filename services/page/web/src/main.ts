@@ -1,4 +1,5 @@
 // Entry: connection, state, views, layout.
+import { Film } from "./film.js";
 import { Layout, type ViewName } from "./layout.js";
 import { Link } from "./link.js";
 import { Live } from "./live.js";
@@ -9,6 +10,7 @@ import { Lists } from "./views/lists.js";
 import { Plots } from "./views/plots.js";
 import { listenToKeys, SettingsSheet } from "./views/settings.js";
 import { Sounder, WakeLock } from "./views/sound.js";
+import { Timeline } from "./views/timeline.js";
 
 // A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
 function takeToken(): string {
@@ -28,6 +30,7 @@ function takeToken(): string {
 const state = new State();
 state.token = takeToken();
 const live = new Live(state);
+const film = new Film(state, live);
 state.link = new Link({
   onHello: (hello) => {
     state.hello = hello;
@@ -37,13 +40,17 @@ state.link = new Link({
     live.begin(hello);
     state.tell("connection");
     state.tell("sources");
+    film.begin();
   },
   onSources: (sources) => { state.sources = sources; live.setBoat(); state.tell("sources"); },
   onIndexing: (source, share) => {
     if (share >= 1) state.indexing.delete(source); else state.indexing.set(source, share);
     state.tell("sources");
   },
-  onLive: (frame) => { live.take(frame); },
+  onLive: (frame) => {
+    if (state.showing.kind === "live") live.take(frame);
+    film.take(frame);
+  },
   onLost: () => {
     if (state.connection.state !== "lost") state.connection = { state: "lost", since_ms: performance.now() };
     state.tell("connection");
@@ -53,11 +60,11 @@ state.link = new Link({
 const sounder = new Sounder(state);
 new WakeLock(state);
 const settings = new SettingsSheet(state, sounder);
-const alerts = new AlertBar(state, sounder);
+const alerts = new AlertBar(state, sounder, film);
 const views = new Map<ViewName, View>();
 views.set("lists", new Lists(state));
 views.set("plots", new Plots(state));
-const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [settings.element]);
+const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [new Timeline(state, film).element, settings.element]);
 listenToKeys(state, settings, {
   showView: (index) => {
     const name = [...views.keys()][index];

@@ -11,6 +11,7 @@ import { patternOf, type Sounder } from "./sound.js";
 const words = texts.panels.alerts;
 // How many are shown before somebody asks for more: they must leave room for the picture.
 const kShownWide = 3, kShownTablet = 2, kShownPhone = 1;
+const kStill_ms = 400;        // a button that has just come to its place takes no touch: it was meant for the one before
 const kTextEvery_ms = 1000;   // numbers in a text change with each scan: nobody reads ten a second
 const kPatience_ms = 4000;    // until the look-out says that it took an acknowledgement
 
@@ -32,6 +33,8 @@ class Row {
   private text_ms = -Infinity;
   private sent_ms: number | null = null;
   private isSending = false;
+  private place = -1;
+  private placed_ms = -Infinity;
 
   constructor(private readonly state: State, private alert: wire.Alert) {
     const show = button("", () => { if (this.alert.track_id > 0) state.choose(this.alert.track_id); }, "words");
@@ -64,8 +67,14 @@ class Row {
     }
   }
 
+  /** @param place in the list, from 0 */
+  setPlace(place: number, now_ms: number): void {
+    if (this.place >= 0 && place !== this.place) this.placed_ms = now_ms;
+    this.place = place;
+  }
+
   private async send(): Promise<void> {
-    if (this.isSending) return;
+    if (this.isSending || performance.now() - this.placed_ms < kStill_ms) return;
     this.isSending = true;
     this.acknowledge.disabled = true;
     const refused = await acknowledge(this.state, this.alert);
@@ -89,7 +98,8 @@ export class AlertBar {
   private showsAll = false;
   private seen: readonly wire.Alert[] | null = null;
 
-  constructor(private readonly state: State, private readonly sounder: Sounder) {
+  /** @param behind where alerts of now stand while a recording is shown */
+  constructor(private readonly state: State, private readonly sounder: Sounder, private readonly behind: { readonly liveAlerts: readonly wire.Alert[] }) {
     this.element.setAttribute("aria-label", words.name);
     this.now.setAttribute("role", "alert");
     this.later.setAttribute("role", "status");
@@ -122,6 +132,7 @@ export class AlertBar {
         this.rows.set(alert.id, row);
       }
       row.update(alert, isLive, now_ms);
+      row.setPlace(index, now_ms);
       if (this.showsAll || index < numShown) places.push(row.element);
     });
     // Where a button has the keyboard nothing is moved, or the keyboard would be lost.
@@ -132,10 +143,12 @@ export class AlertBar {
     const gravest = alerts.slice(numShown).map(gravityOf);
     setAttribute(this.more, "data-gravity", gravest.includes("warning") ? "warning" : gravest.includes("caution") ? "caution" : null);
     setAttribute(this.more, "aria-expanded", String(this.showsAll));
-    this.sounder.want(isLive && state.connection.state === "open" ? patternOf(alerts) : null);
-    if (isLive && state.picture !== null && state.picture.alerts !== this.seen) {
-      this.seen = state.picture.alerts;
-      this.announce(state.picture.alerts);
+    // Alerts of now sound, and are told to a screen reader, also while somebody looks back. Those of a log never.
+    const ofNow = state.hello?.mode === "log" ? [] : isLive ? state.picture?.alerts ?? [] : this.behind.liveAlerts;
+    this.sounder.want(state.connection.state === "open" ? patternOf(ofNow) : null);
+    if (state.hello?.mode !== "log" && ofNow !== this.seen) {
+      this.seen = ofNow;
+      this.announce(ofNow);
     }
   }
 

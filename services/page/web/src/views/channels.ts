@@ -5,7 +5,7 @@ import { make, placeChildren, setAttribute, setText } from "./dom.js";
 import { type ChannelRow, channelsOf } from "./traffic.js";
 
 const words = texts.panels.channels;
-const kColumns = ["rate", "lost", "refused", "p50", "p99", "queue", "from"] as const;
+const kColumns = ["rate", "lost", "refused", "p50", "p99", "queue"] as const;
 const kLess: readonly string[] = ["refused", "p50", "queue"];  // what a phone leaves out
 const kEvery_ms = 500;
 const kLosing_ms = 5000;  // how long a loss is marked
@@ -14,23 +14,29 @@ const latency = (latency_us: number) => (latency_us < 0 ? "–" : texts.panels.h
 
 class Row {
   readonly element = make("tr");
-  private readonly name = make("td");
+  private readonly name = make("span");
+  private readonly from = make("small");
   private readonly cells = kColumns.map((column) => make("td", kLess.includes(column) ? "less" : ""));
   private num_lost = -1;
   private lost_ms = -Infinity;
 
-  constructor() { this.element.append(this.name, ...this.cells); }
+  constructor() {
+    const cell = make("td");
+    cell.append(this.name, this.from);
+    this.element.append(cell, ...this.cells);
+  }
 
   update(row: ChannelRow, now_ms: number): void {
     if (this.num_lost >= 0 && row.num_lost > this.num_lost) this.lost_ms = now_ms;
     this.num_lost = row.num_lost;
     const isLosing = now_ms - this.lost_ms < kLosing_ms;
     setText(this.name, row.channel);
+    setText(this.from, row.publishers.join(", "));
     setAttribute(this.name, "title", row.readers.length === 0 ? null : words.readers(row.readers.join(", ")));
     const values = [
       words.hertz(row.rate_hz.toFixed(row.rate_hz < 99.95 ? 1 : 0)), isLosing ? words.losing(String(row.num_lost)) : String(row.num_lost),
       String(row.num_refused), latency(row.latency_p50_us), latency(row.latency_p99_us),
-      row.queue_depth < 0 ? "–" : words.queue(row.queue_depth, row.queue_limit), row.publishers.join(", ") || "–",
+      row.queue_depth < 0 ? "–" : words.queue(row.queue_depth, row.queue_limit),
     ];
     values.forEach((value, index) => { setText(this.cells[index]!, value); });
     this.cells[1]!.classList.toggle("losing", isLosing);

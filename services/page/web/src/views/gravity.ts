@@ -8,11 +8,14 @@ export function gravityOf(alert: Pick<wire.Alert, "level" | "state">): Gravity {
   return alert.level >= wire.Alert.LEVEL_WARNING ? "warning" : "caution";
 }
 
-// Active before over before acknowledged; then warnings before cautions; then what comes first, then what came first.
+const kSoon_s = 30;
+
+// Active before over before acknowledged; warnings before cautions; what comes within half a minute; what was raised last. Nothing of it changes with
+// each scan: a button that moved would be touched for another.
 function urgency(alert: wire.Alert): [number, number, number, number] {
   const states = [wire.Alert.STATE_ACTIVE, wire.Alert.STATE_RECTIFIED, wire.Alert.STATE_ACKNOWLEDGED] as readonly number[];
   const state = states.indexOf(alert.state);
-  return [state < 0 ? states.length : state, -alert.level, last(alert.tcpa_s), alert.raised_utime_us];
+  return [state < 0 ? states.length : state, -alert.level, alert.tcpa_s <= kSoon_s ? 0 : 1, -alert.raised_utime_us];
 }
 
 export function byGravity(alerts: readonly wire.Alert[]): wire.Alert[] {

@@ -3,7 +3,7 @@ import * as wire from "../messages/generated.js";
 import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
-import { duration, length } from "../units.js";
+import { duration } from "../units.js";
 import { Facts, make, setAttribute, setText } from "./dom.js";
 import { type Gravity, Shape } from "./shapes.js";
 import { place } from "./track_detail.js";
@@ -13,6 +13,7 @@ const kEvery_ms = 500;
 const kDegree = Math.PI / 180;
 const kOld_s = 3;
 
+function deviationText(metres: number): string { return Number.isFinite(metres) ? metres < 1 ? `${(100 * metres).toFixed(0)} cm` : `${metres.toFixed(1)} m` : "–"; }
 function signed(value: number, decimals: number): string { return Number.isFinite(value) ? `${value > 0 ? "+" : ""}${value.toFixed(decimals)}` : "–"; }
 
 export function gravityOfClock(state: number): Gravity {
@@ -58,7 +59,6 @@ export class Sensors implements View {
   constructor(private readonly state: State) {
     this.element.append(this.pose.element, this.fix.element, this.clock.element);
     state.on(["picture"], () => { if (performance.now() - this.drawn_ms >= kEvery_ms || state.showing.kind === "recorded") this.draw(); });
-    state.on(["settings"], () => { this.draw(); });
   }
 
   setVisible(isVisible: boolean): void {
@@ -84,7 +84,7 @@ export class Sensors implements View {
     this.pose.tell(age_s > kOld_s ? "warning" : gravityOfPose(pose.status), words.poseStates[pose.status] ?? "");
     facts.set(names.age, texts.panels.health.ago(duration(age_s)));
     facts.set(names.place, place(pose.latitude_deg, pose.longitude_deg));
-    facts.set(names.deviation, length(this.state.settings, Math.max(deviation(0), deviation(1))));
+    facts.set(names.deviation, deviationText(Math.max(deviation(0), deviation(1))));
     facts.set(names.heading, words.headings[pose.heading_source] ?? "");
     facts.set(names.headingDeviation, Number.isFinite(deviation(8)) ? `${(deviation(8) / kDegree).toFixed(1)}°` : "–");
     facts.set(names.attitude, pose.has_attitude
@@ -98,7 +98,7 @@ export class Sensors implements View {
     facts.set(names.age, texts.panels.health.ago(duration(age_s)));
     facts.set(names.satellites, fix.num_satellites < 0 ? "–" : String(fix.num_satellites));
     facts.set(names.hdop, Number.isFinite(fix.hdop) ? fix.hdop.toFixed(1) : "–");
-    facts.set(names.deviation, length(this.state.settings, fix.horizontal_sd_m));
+    facts.set(names.deviation, deviationText(fix.horizontal_sd_m));
     facts.set(names.receiver, `${fix.source} (${fix.sentence_type})`);
   }
 
