@@ -24,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kBeingIndexed = "the index is being built";
+constexpr double kToldStep = 0.005;
 constexpr const char* kNoSource = "no such source";
 
 std::string NameOf(const std::vector<fs::path>& logs) {
@@ -52,6 +53,7 @@ struct Film::Implementation {
           .id = static_cast<int>(sources.size()) - 1, .name = NameOf(logs), .is_growing = false, .is_indexed = false, .boat_text = "null"};
       for (const auto& log : logs) source.sizes_bytes.push_back(bus::LogReader(log).size_bytes());  // throws where there is none
     }
+    UpdateSourcesText();
     thread = std::thread([this] { MakeIndices(); });
   }
 
@@ -68,8 +70,9 @@ struct Film::Implementation {
       std::int64_t total_bytes = 1;
       for (const auto size : source.sizes_bytes) total_bytes += size;
       std::int64_t done_bytes = 0;
+      double share_told = 0.0;
       for (std::size_t i = 0; i < source.logs.size() && !is_stopping; ++i) {
-        LoadOne(source, source.logs[i], done_bytes, total_bytes, parts);
+        LoadOne(source, source.logs[i], done_bytes, total_bytes, share_told, parts);
         done_bytes += source.sizes_bytes[i];
       }
       if (is_stopping) break;
@@ -82,11 +85,11 @@ struct Film::Implementation {
     done.notify_all();
   }
 
-  void LoadOne(const Source& source, const fs::path& log, std::int64_t done_bytes, std::int64_t total_bytes,
+  void LoadOne(const Source& source, const fs::path& log, std::int64_t done_bytes, std::int64_t total_bytes, double& share_told,
                std::vector<std::pair<fs::path, LogPart>>& parts) try {
     const auto progress = [&](std::int64_t position_bytes) {
-      const auto share = static_cast<double>(done_bytes + position_bytes) / static_cast<double>(total_bytes);
-      if (options.on_indexing) options.on_indexing(source.facts.id, std::min(share, 1.0));
+      const auto share = std::min(1.0, static_cast<double>(done_bytes + position_bytes) / static_cast<double>(total_bytes));
+      if (options.on_indexing && share - share_told >= kToldStep) options.on_indexing(source.facts.id, share_told = share);
       return !is_stopping;
     };
     if (auto part = LoadIndex(log, options.writes_index, progress, options.tell)) parts.emplace_back(log, std::move(*part));
@@ -100,13 +103,22 @@ struct Film::Implementation {
     const std::scoped_lock lock(mutex);
     for (auto& [log, part] : parts) {
       try {
-        source.recording.Append(source.recording.AddLog(log), std::exchange(part, {}), Recording::Overlap::kShow);
+        source.recording.Append(source.recording.AddLog(log), std::exchange(part, {}));
       } catch (const std::exception& error) {
         if (options.tell) options.tell(log.string() + " is left out: " + error.what());
       }
     }
     if (const auto info = bus::Decode<run_info_t>(source.recording.RunInfo())) source.facts.boat_text = BoatTextOf(*info);
     source.facts.is_indexed = true;
+    UpdateSourcesText();
+  }
+
+  // The mutex is held, or nobody else is there yet.
+  void UpdateSourcesText() {
+    std::vector<std::pair<SourceFacts, const Timeline*>> shown;
+    for (const auto& source : sources) shown.emplace_back(source.facts, &source.recording.timeline());
+    const std::scoped_lock lock(text_mutex);
+    sources_text = SourcesTextOf(shown);
   }
 
   // Of a request; empty where it can be answered. The mutex is held.
@@ -129,6 +141,8 @@ struct Film::Implementation {
   std::condition_variable done;
   std::deque<Source> sources;
   bool is_done = false;
+  std::mutex text_mutex;  // never held while a disk is read
+  std::string sources_text;
   std::atomic<bool> is_stopping = false;
   std::thread thread;
 };
@@ -138,10 +152,8 @@ Film::Film(FilmOptions options) : implementation_(std::make_unique<Implementatio
 Film::~Film() = default;
 
 std::string Film::SourcesText() {
-  const std::scoped_lock lock(implementation_->mutex);
-  std::vector<std::pair<SourceFacts, const Timeline*>> sources;
-  for (const auto& source : implementation_->sources) sources.emplace_back(source.facts, &source.recording.timeline());
-  return SourcesTextOf(sources);
+  const std::scoped_lock lock(implementation_->text_mutex);
+  return implementation_->sources_text;
 }
 
 Answer Film::Find(const At& request) { return implementation_->Find(request); }

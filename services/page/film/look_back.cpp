@@ -45,6 +45,7 @@ std::vector<fs::path> LogsIn(const fs::path& folder) {
 
 struct LookBack::Implementation {
   explicit Implementation(LookBackOptions some_options) : options(std::move(some_options)), spool(options.spool_folder) {
+    UpdateSourcesText();
     thread = std::thread([this] { Run(); });
   }
 
@@ -73,6 +74,7 @@ struct LookBack::Implementation {
         if (!is_asked) OnPeriod();
         if (is_following) Follow();
         Trim();
+        UpdateSourcesText();
       } catch (const std::exception& error) {
         Tell(error.what());
       }
@@ -86,9 +88,11 @@ struct LookBack::Implementation {
     if (retry_periods > 0) --retry_periods;
     if (++num_periods % kPeriodsOfALook != 0) return;
     if (options.recorder_folder) LookAtRecorder();
-    const std::scoped_lock lock(mutex);
-    const auto& timeline = recording.timeline();
-    const auto end = timeline.is_empty() ? std::nullopt : std::optional(timeline.end());
+    std::optional<Utime> end;
+    {
+      const std::scoped_lock lock(mutex);
+      if (!recording.timeline().is_empty()) end = recording.timeline().end();
+    }
     if (std::exchange(end_told, end) != end && options.on_sources) options.on_sources();
   }
 
@@ -99,7 +103,7 @@ struct LookBack::Implementation {
         Tell("the spool of the last minutes is not written: " + spool.fault());
         retry_periods = kRetryPeriods;
       }
-      const std::scoped_lock lock(mutex);
+      const std::scoped_lock lock(status_mutex);
       status.num_lost += static_cast<std::int64_t>(messages.size());
       status.fault = spool.fault();
       return;
@@ -113,7 +117,7 @@ struct LookBack::Implementation {
       spool_file = spool.file();
     }
     ReadOn(*spool_indexer, spool_number);
-    const std::scoped_lock lock(mutex);
+    const std::scoped_lock lock(status_mutex);
     status.num_spooled += static_cast<std::int64_t>(messages.size());
     status.num_spooled_bytes += num_bytes;
     status.fault.clear();
@@ -126,7 +130,7 @@ struct LookBack::Implementation {
       LogPart part;
       goes_on = indexer.Read(kFollowedBytes, part);
       const std::scoped_lock lock(mutex);
-      recording.Append(number, part, Recording::Overlap::kSkip);
+      recording.Append(number, part);
       if (!recording.timeline().is_empty()) recording.DropBefore(recording.timeline().end() - options.span);
     }
   }
@@ -156,18 +160,15 @@ struct LookBack::Implementation {
     spool.Clear();
     spool_indexer.reset();
     spool_file.clear();
+    is_following = true;
     const std::scoped_lock lock(mutex);
     recording = Recording();  // the recorder's log holds what the spool held
-    is_following = true;
-    status.is_following = true;
   }
 
   // What was read stays; the spool goes on.
   void StopFollowing() {
     followed.reset();
     is_following = false;
-    const std::scoped_lock lock(mutex);
-    status.is_following = false;
   }
 
   void Follow() {
@@ -208,6 +209,17 @@ struct LookBack::Implementation {
     recording.DropBefore(from);
   }
 
+  void UpdateSourcesText() {
+    const SourceFacts facts{.id = 0, .name = "live", .is_growing = true, .is_indexed = true, .boat_text = options.boat_text};
+    std::string text;
+    {
+      const std::scoped_lock lock(mutex);
+      text = SourcesTextOf({{facts, &recording.timeline()}});
+    }
+    const std::scoped_lock lock(status_mutex);
+    sources_text = std::move(text);
+  }
+
   void Tell(const std::string& line) const {
     if (options.tell) options.tell(line);
   }
@@ -238,7 +250,10 @@ struct LookBack::Implementation {
   // Of what is recorded. Held while a disk is read, never while one is written or a log is looked through.
   mutable std::mutex mutex;
   Recording recording;
+
+  mutable std::mutex status_mutex;  // of what stands here; never held while a disk is used
   LookBackStatus status;
+  std::string sources_text = "[]";
 
   // Of the thread alone.
   Spool spool;
@@ -282,18 +297,18 @@ LookBackStatus LookBack::Status() const {
   auto& in = *implementation_;
   LookBackStatus status;
   {
-    const std::scoped_lock lock(in.mutex);
+    const std::scoped_lock lock(in.status_mutex);
     status = in.status;
   }
+  status.is_following = in.is_following;
   const std::scoped_lock lock(in.queue_mutex);
   status.num_lost += in.num_lost_queue;
   return status;
 }
 
 std::string LookBack::SourcesText() {
-  const std::scoped_lock lock(implementation_->mutex);
-  const SourceFacts facts{.id = 0, .name = "live", .is_growing = true, .is_indexed = true, .boat_text = implementation_->options.boat_text};
-  return SourcesTextOf({{facts, &implementation_->recording.timeline()}});
+  const std::scoped_lock lock(implementation_->status_mutex);
+  return implementation_->sources_text;
 }
 
 Answer LookBack::Find(const At& request) { return implementation_->Find(request); }

@@ -12,8 +12,8 @@ namespace {
 
 using std::chrono::microseconds;
 
-constexpr std::chrono::minutes kSameBus(1);
-constexpr std::chrono::seconds kPauseOfLogs(10);  // between two logs: told
+constexpr std::chrono::seconds kDisorderOfLogs(1);  // of events that several threads wrote: no clock was set
+constexpr std::chrono::seconds kPauseOfLogs(10);    // between two logs: told
 
 }  // namespace
 
@@ -29,27 +29,24 @@ std::uint16_t Recording::AddLog(const std::filesystem::path& log) {
   return number;
 }
 
-void Recording::Append(std::uint16_t number, const LogPart& part, Overlap overlap) {
+void Recording::Append(std::uint16_t number, const LogPart& part) {
   auto& log = logs_.at(number);
   if (!log.is_begun && !part.entries.empty()) {
     log.is_begun = true;
-    if (!timeline_.is_empty()) {
-      const auto lead = timeline_.end() - part.entries.front().time;
-      LogPart told;
-      if (lead > microseconds(0) && overlap == Overlap::kSkip && lead <= kSameBus) {
-        log.from = timeline_.end();
-      } else if (lead > microseconds(0)) {
-        log.shift = std::chrono::ceil<std::chrono::seconds>(lead);  // whole: cells are seconds
-        told.events.push_back({timeline_.end(), FilmEventKind::kGap, 1,
-                               fmt::format("a log begins that is {:.1f} s before the end of the one before: shown {} s later", ToSeconds(lead),
-                                           std::chrono::duration_cast<std::chrono::seconds>(log.shift).count())});
-      } else if (-lead > kPauseOfLogs) {
-        told.events.push_back({part.entries.front().time, FilmEventKind::kGap, 1, fmt::format("no log for {:.1f} s before this", ToSeconds(-lead))});
-      }
-      timeline_.Append(told, number, microseconds(0), Utime(microseconds(kMinUtimeUs)));
+    const auto begin = part.entries.front().time;
+    const auto lead = timeline_.is_empty() ? microseconds(0) : timeline_.end() - begin;
+    LogPart told;
+    if (lead > kDisorderOfLogs) {
+      log.shift = std::chrono::ceil<std::chrono::seconds>(lead);  // whole: cells are seconds
+      told.events.push_back({timeline_.end(), FilmEventKind::kGap, 1,
+                             fmt::format("a log begins {:.1f} s before the end of the one before: shown {} s later", ToSeconds(lead),
+                                         std::chrono::duration_cast<std::chrono::seconds>(log.shift).count())});
+    } else if (-lead > kPauseOfLogs) {
+      told.events.push_back({begin, FilmEventKind::kGap, 1, fmt::format("no log for {:.1f} s before this", ToSeconds(-lead))});
     }
+    timeline_.Append(told, number, microseconds(0));
   }
-  timeline_.Append(part, number, log.shift, log.from);
+  timeline_.Append(part, number, log.shift);
   if (!part.entries.empty()) log.last = part.entries.back().time + log.shift;
 }
 

@@ -18,18 +18,12 @@ inline constexpr std::int64_t kMaxAnswerBytes = std::int64_t{16} * 1024 * 1024; 
 
 class Recording {
  public:
-  /// What is said of a log that begins before the one before it ends.
-  enum class Overlap {
-    kShow,  // it is shown after it, and an event says by how much
-    kSkip   // what both hold is left out, up to a minute: the same bus, written by two
-  };
-
   /// Opens a log, which stands behind all that were added before.
   /// @return its number. @throws std::runtime_error when it cannot be opened, or there were 65 535
   std::uint16_t AddLog(const std::filesystem::path& log);
 
-  /// What the log holds, or holds further.
-  void Append(std::uint16_t log, const LogPart& part, Overlap overlap);
+  /// What the log holds, or holds further. A log that begins before the one before ends is shown behind it, and an event says by how much.
+  void Append(std::uint16_t log, const LogPart& part);
 
   /// Forgets what was before, and closes logs of which nothing is left, but for the last.
   void DropBefore(Utime time);
@@ -50,7 +44,6 @@ class Recording {
     std::unique_ptr<bus::LogReader> reader;
     bool is_begun = false;
     std::chrono::microseconds shift{0};
-    Utime from{std::chrono::microseconds(kMinUtimeUs)};
     Utime last{std::chrono::microseconds(kMinUtimeUs)};
   };
 

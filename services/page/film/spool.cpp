@@ -1,7 +1,11 @@
 #include "services/page/film/spool.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "common/bus/log_file.hpp"
@@ -21,6 +25,15 @@ bool IsOurs(const fs::path& file) {
   return name.starts_with(kPrefix) && name.ends_with(kEnding);
 }
 
+// Its writer locks it.
+bool IsBeingWritten(const fs::path& file) {
+  const int descriptor = open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool is_locked = flock(descriptor, LOCK_SH | LOCK_NB) != 0;
+  close(descriptor);
+  return is_locked;
+}
+
 }  // namespace
 
 Spool::Spool(fs::path folder) : folder_(std::move(folder)) {
@@ -31,7 +44,9 @@ Spool::Spool(fs::path folder) : folder_(std::move(folder)) {
   for (const auto& entry : fs::directory_iterator(folder_, error)) {
     if (IsOurs(entry.path()) && entry.is_regular_file(error) && !entry.is_symlink(error)) left.push_back(entry.path());
   }
-  for (const auto& file : left) fs::remove(file, error);
+  for (const auto& file : left) {
+    if (!IsBeingWritten(file)) fs::remove(file, error);
+  }
 }
 
 void Spool::Begin(Utime time) {

@@ -34,7 +34,7 @@ bool IsOneGroup(ChannelIndex channel, const Place& one, const Place& other) {
 
 }  // namespace
 
-void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shift, Utime from) {
+void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shift) {
   std::vector<std::uint16_t> processes;
   for (const auto& process : part.processes) {
     auto found = std::ranges::find(processes_, process);
@@ -42,21 +42,18 @@ void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shif
     processes.push_back(static_cast<std::uint16_t>(found - processes_.begin()));
   }
   for (const auto& entry : part.entries) {
-    const Utime time = entry.time + shift;
-    if (time < from) continue;
+    const Utime time = begin_ ? std::max(end_, entry.time + shift) : entry.time + shift;
     const bool is_health = Is(entry.channel, bus::kHealth);
     const Place place{
         time, entry.utime_us, entry.offset_bytes, entry.size_bytes, entry.duration_us, is_health ? processes.at(entry.part) : entry.part, file};
     channels_[entry.channel].push_back(place);
     if (MakesScans(entry.channel)) NoteScan(place);
-    end_ = begin_ ? std::max(end_, time) : time;
+    end_ = time;
     if (!begin_) begin_ = time;
   }
   const auto shift_s = std::chrono::floor<seconds>(shift).count();
-  const auto from_s = std::chrono::floor<seconds>(from).time_since_epoch().count();
   for (auto cell : part.cells) {
     cell.second += shift_s;
-    if (cell.second < from_s) continue;
     if (!cells_.empty() && cells_.back().second >= cell.second) {
       cells_.back().Add(cell);
     } else {
@@ -65,7 +62,6 @@ void Timeline::Append(const LogPart& part, std::uint16_t file, microseconds shif
   }
   for (auto event : part.events) {
     event.time += shift;
-    if (event.time < from) continue;
     events_.insert(std::ranges::upper_bound(events_, event.time, {}, &FilmEvent::time), event);
   }
 }
@@ -184,12 +180,19 @@ std::vector<Place> Timeline::OfPose(const Places& places, const Moment& moment) 
   const Scan* const scan = moment.scan ? &scans_[*moment.scan] : nullptr;
   const auto after = FirstAfter(places, moment.time);
   if (scan == nullptr) return after == places.begin() ? std::vector<Place>() : std::vector<Place>{*std::prev(after)};
-  const Place* best = nullptr;
+  // From the last that is not after the first firing on: returns are placed by the attitude at their time.
+  std::vector<Place> found;
+  std::int64_t begin_utime_us = INT64_MIN;
   for (auto place = FirstAt(places, scan->first - 2 * kScanSpread); place != places.end() && place->time <= scan->last + kScanSpread; ++place) {
-    if (place->utime_us > scan->end_utime_us || (best != nullptr && place->utime_us < best->utime_us)) continue;
-    best = &*place;
+    if (place->utime_us > scan->end_utime_us) continue;
+    found.push_back(*place);
+    if (place->utime_us <= scan->utime_us) begin_utime_us = std::max(begin_utime_us, place->utime_us);
   }
-  return best == nullptr ? std::vector<Place>() : std::vector<Place>{*best};
+  std::erase_if(found, [&](const Place& place) { return place.utime_us < begin_utime_us; });
+  std::ranges::stable_sort(found, {}, &Place::utime_us);
+  const auto again = std::ranges::unique(found, {}, &Place::utime_us);
+  found.erase(again.begin(), again.end());
+  return found;
 }
 
 std::vector<Place> Timeline::Of(const Range& request, std::int64_t max_bytes) const {

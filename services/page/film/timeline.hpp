@@ -45,10 +45,9 @@ struct PlacesOfChannel {
 
 class Timeline {
  public:
-  /// What comes next; times at or after those before.
-  /// @param shift  added to its times
-  /// @param from   entries before are left out, shifted
-  void Append(const LogPart& part, std::uint16_t file, std::chrono::microseconds shift, Utime from);
+  /// What comes next. A time before the end is brought to the end: few, and by little.
+  /// @param shift  added to its times; whole seconds
+  void Append(const LogPart& part, std::uint16_t file, std::chrono::microseconds shift);
 
   /// Forgets what was before.
   void DropBefore(Utime time);
