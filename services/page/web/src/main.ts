@@ -5,6 +5,10 @@ import { Link } from "./link.js";
 import { Live } from "./live.js";
 import { State, type View } from "./state.js";
 import { Timeline } from "./views/timeline.js";
+import { AroundView } from "./views/around.js";
+import { CloudView } from "./views/cloud.js";
+import { MapView } from "./views/map.js";
+import { RangeImageView } from "./views/range_image.js";
 
 // A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
 function takeToken(): string {
@@ -52,5 +56,9 @@ state.link = new Link({
 });
 
 const views = new Map<ViewName, View>();
+views.set("around", new AroundView(state));
+views.set("map", new MapView(state));
+views.set("range_image", new RangeImageView(state));
+views.set("cloud", new CloudView(state));
 new Layout(state, views, [], [new Timeline(state, film).element]);
 state.link.open();
