@@ -4,6 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "services/page/core/replies.hpp"
+
 namespace lookout::page {
 
 namespace {

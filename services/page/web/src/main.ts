@@ -1,8 +1,20 @@
 // Entry: connection, state, views, layout.
+import { Film } from "./film.js";
 import { Layout, type ViewName } from "./layout.js";
 import { Link } from "./link.js";
 import { Live } from "./live.js";
 import { State, type View } from "./state.js";
+import { AlertBar } from "./views/alerts.js";
+import { Banner } from "./views/banner.js";
+import { Lists } from "./views/lists.js";
+import { Plots } from "./views/plots.js";
+import { listenToKeys, SettingsSheet } from "./views/settings.js";
+import { Sounder, WakeLock } from "./views/sound.js";
+import { Timeline } from "./views/timeline.js";
+import { AroundView } from "./views/around.js";
+import { CloudView } from "./views/cloud.js";
+import { MapView } from "./views/map.js";
+import { RangeImageView } from "./views/range_image.js";
 
 // A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
 function takeToken(): string {
@@ -22,6 +34,7 @@ function takeToken(): string {
 const state = new State();
 state.token = takeToken();
 const live = new Live(state);
+const film = new Film(state, live);
 state.link = new Link({
   onHello: (hello) => {
     state.hello = hello;
@@ -31,19 +44,40 @@ state.link = new Link({
     live.begin(hello);
     state.tell("connection");
     state.tell("sources");
+    film.begin();
   },
   onSources: (sources) => { state.sources = sources; live.setBoat(); state.tell("sources"); },
   onIndexing: (source, share) => {
     if (share >= 1) state.indexing.delete(source); else state.indexing.set(source, share);
     state.tell("sources");
   },
-  onLive: (frame) => { live.take(frame); },
+  onLive: (frame) => {
+    if (state.showing.kind === "live") live.take(frame);
+    film.take(frame);
+  },
   onLost: () => {
     if (state.connection.state !== "lost") state.connection = { state: "lost", since_ms: performance.now() };
     state.tell("connection");
   },
 });
 
+const sounder = new Sounder(state);
+new WakeLock(state);
+const settings = new SettingsSheet(state, sounder);
+const alerts = new AlertBar(state, sounder, film);
 const views = new Map<ViewName, View>();
-new Layout(state, views, [], []);
+views.set("around", new AroundView(state));
+views.set("map", new MapView(state));
+views.set("range_image", new RangeImageView(state));
+views.set("cloud", new CloudView(state));
+views.set("lists", new Lists(state));
+views.set("plots", new Plots(state));
+const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [new Timeline(state, film).element, settings.element]);
+listenToKeys(state, settings, {
+  showView: (index) => {
+    const name = [...views.keys()][index];
+    if (name !== undefined) layout.show(name);
+  },
+  focusAlert: () => { alerts.focus(); },
+});
 state.link.open();
