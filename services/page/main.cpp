@@ -6,6 +6,7 @@
 #include <memory>
 #include <spdlog/spdlog.h>
 
+#include "common/config/text_config.hpp"
 #include "common/runtime/service_main.hpp"
 #include "common/runtime/version.hpp"
 #include "services/page/announcement.hpp"
@@ -30,7 +31,15 @@ struct Config {
   std::string boat_text;
 };
 
-Config Load(const std::filesystem::path& config_folder) { return {page::LoadParams(config_folder), page::BoatTextOfFolder(config_folder)}; }
+Config Load(const std::filesystem::path& config_folder) {
+  Config config{page::LoadParams(config_folder), "null"};
+  try {
+    config.boat_text = page::BoatTextOfFolder(config_folder);
+  } catch (const lookout::config::ConfigError&) {  // the tracker tells of it; the picture goes without guard zones
+    config.boat_text = "null";
+  }
+  return config;
+}
 
 // Tells what is lacking and goes on: a page without a map is better than none.
 template <typename Open>

@@ -21,14 +21,8 @@ constexpr int kMostTileBytes = 1'000'000;
 // Steps of SQLite's machine for one answer: a file may hold a view that never ends.
 constexpr int kMostSteps = 20'000'000;
 
-struct CloseDatabase {
-  void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
-};
-struct EndStatement {
-  void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
-};
-using Database = std::unique_ptr<sqlite3, CloseDatabase>;
-using Statement = std::unique_ptr<sqlite3_stmt, EndStatement>;
+using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
+using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
 // Characters that mean something in an SQLite URI are escaped.
 std::string ToUri(const std::string& path) {
@@ -79,8 +73,8 @@ std::array<double, 4> BoundsOf(const std::string& text) {
 
 struct Tiles::Implementation {
   std::string name;  // of the file, for errors
-  Database database;
-  Statement find;
+  Database database{nullptr, sqlite3_close_v2};
+  Statement find{nullptr, sqlite3_finalize};
   std::string text;
   int num_steps = 0;
 
@@ -91,7 +85,7 @@ struct Tiles::Implementation {
     if (sqlite3_prepare_v2(database.get(), sql, -1, &statement, nullptr) != SQLITE_OK) {
       Refuse(std::string("is no MBTiles file, or damaged: ") + sqlite3_errmsg(database.get()));
     }
-    return Statement(statement);
+    return {statement, sqlite3_finalize};
   }
 
   // One that takes too long is ended, as a damaged one is.

@@ -170,6 +170,7 @@ std::optional<Request> Read(Reader& reader, RequestFault& fault) {
 const std::vector<std::string_view>& ChannelNames() {
   static const auto kNames = [] {
     std::vector<std::string_view> names;
+    names.reserve(bus::kChannels.size());
     for (const auto& channel : bus::kChannels) names.push_back(channel.name);
     return names;
   }();
