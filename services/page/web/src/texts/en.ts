@@ -15,6 +15,7 @@ export const en = {
     north: "N",
     kinds: ["thing", "buoy", "boat", "structure", "unknown"],
     name: (kind: number, id: number): string => `${en.drawing.kinds[kind] ?? "thing"} ${id}`,
+    plain: (kind: number, id: number, range: string): string => `${kind === 0 || kind === 4 ? "" : `${en.drawing.kinds[kind] ?? ""} `}${id} · ${range}`,
     approach: (distance: string, time: string) => `${distance} in ${time}`,
     around: (numTracks: number, nearest: string) => `Picture around the boat: ${numTracks} tracks${nearest === "" ? "" : `, the nearest is ${nearest}`}`,
     map: (position: string) => `Map, own boat at ${position}`,
