@@ -25,22 +25,16 @@ struct Asset {
   Bytes gzip_bytes;
 };
 
-/// An acknowledgement that a browser with a valid token has sent.
-struct Acknowledgement {
-  std::int64_t alert_id = 0;
-  Utime raised;
-};
-
 struct ServerOptions {
-  std::string bind_address = "127.0.0.1";  // numeric
-  int port = 0;                            // 0: any
+  std::string bind_address = "127.0.0.1";    // numeric
+  int port = 0;                              // 0: any
   std::vector<std::string> host_names = {};  // that `Host` may name besides the address bound to, localhost and 127.0.0.1; without port
-  int max_clients = 16;                    // WebSockets
+  int max_clients = 16;                      // WebSockets
   int max_connections = 64;
-  std::string token = {};                  // empty: nobody acknowledges
+  std::string token = {};  // empty: nobody acknowledges
   bool is_log = false;
   std::string version = {};
-  std::string host = {};                   // name of this computer, for hello
+  std::string host = {};  // name of this computer, for hello
 };
 
 /// The tile as it stands in the file, and its type; nullopt: there is none.
@@ -52,9 +46,9 @@ struct Tile {
 /// What the server asks of the rest. Called on its threads: Acknowledge on the server's, the others on the one that reads disks.
 struct ServerParts {
   std::vector<Asset> assets = {};
-  std::shared_ptr<Recordings> recordings = {};                          // may be none
-  std::function<std::string()> tiles_text = {};                        // tiles.json; none: no map
-  std::function<std::optional<Tile>(int z, int x, int y)> tile = {};   // none: no map
+  std::shared_ptr<Recordings> recordings = {};                        // may be none
+  std::function<std::string()> tiles_text = {};                       // tiles.json; none: no map
+  std::function<std::optional<Tile>(int z, int x, int y)> tile = {};  // none: no map
   std::function<void(const Acknowledgement&)> acknowledge = {};
 };
 

@@ -1,12 +1,11 @@
-// Builds the page into the folder that is named: node build.mjs FOLDER [LCM_FILES]. Run where node_modules is.
+// Builds the page into the folder that is named: node build.mjs FOLDER. Run where node_modules is; LCM_TYPES names the folder of the wire types.
 import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { execFileSync } from "node:child_process";
 import { join } from "node:path";
 import { build } from "esbuild";
 
 const folder = process.argv[2];
-const types = process.argv[3] ?? "../../../lcmtypes";
-execFileSync(process.execPath, ["generate_messages.mjs", types, "src/messages/generated.ts"], { stdio: "inherit" });
+execFileSync(process.execPath, ["generate_messages.mjs"], { stdio: "inherit" });
 
 rmSync(folder, { recursive: true, force: true });
 mkdirSync(folder, { recursive: true });

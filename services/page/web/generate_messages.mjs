@@ -1,8 +1,9 @@
-// Makes TypeScript types and decoders of the wire types: node generate_messages.mjs FOLDER_OF_LCM_FILES OUTPUT
+// Makes TypeScript types and decoders of the wire types, src/messages/generated.ts. LCM_TYPES names the folder of the .lcm files.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
-const [folder, output] = process.argv.slice(2);
+const folder = process.env.LCM_TYPES ?? "../../../lcmtypes";
+const output = "src/messages/generated.ts";
 
 // Of a primitive type: what reads one, what reads an array, its type and that of its array.
 const primitives = {

@@ -1,7 +1,6 @@
 #include "services/plotter/service.hpp"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "services/plotter/core/nmea0183.hpp"
 #include "tests/unit/plotter/fixture.hpp"
@@ -212,12 +211,6 @@ TEST_F(PlotterService, KeepsAlertsForWhenThereIsRoom) {
   EXPECT_TRUE(nmea_->sent.front().starts_with("$RAALR")) << nmea_->sent.front();
 }
 
-std::string Ack(const std::string& body) {
-  auto sentence = Sentence(body);
-  sentence.resize(sentence.size() - 2);
-  return sentence;
-}
-
 TEST_F(PlotterService, HasRoomForTargetsBesideManyAlerts) {
   tracks_ = {MakeTrack(17)};
   for (int id = 1; id <= 60; ++id) alerts_.push_back(MakeAlert(id));
@@ -326,111 +319,6 @@ TEST_F(PlotterService, EndsTargetsWhenItEndsInOrder) {
   EXPECT_EQ(nmea_->With("RATTM,00,").size(), 1U);
   EXPECT_EQ(nmea_->With(",L,").size(), 1U);
   EXPECT_EQ(signal_k_->With("gannet-17").size(), 1U);
-}
-
-TEST_F(PlotterService, PassesAcknowledgementsOn) {
-  alerts_ = {MakeAlert(3), MakeAlert(4, alert_t::STATE_ACKNOWLEDGED)};
-  Run(300'000);
-  nmea_->received = {Ack("IIACK,003"), Ack("IIACK,003"), Ack("IIACK,004"), Ack("IIACK,077"), "garbage", Ack("GPGGA,1")};
-  Wait(100'000);
-  ASSERT_EQ(acknowledged_.size(), 1U);
-  EXPECT_EQ(acknowledged_[0].alert_id, 3);
-  EXPECT_EQ(acknowledged_[0].alert_raised_utime_us, test::kStartUs);
-  EXPECT_EQ(acknowledged_[0].source, "plotter");
-  EXPECT_EQ(Count("acks_sent"), 1);
-  EXPECT_EQ(Count("acks_of_no_alert"), 1);
-  EXPECT_EQ(Count("lines_refused"), 1);
-}
-
-// As signalk-server 2.23 says that somebody has acknowledged what it was sent.
-std::string AcknowledgedDelta(const std::string& sent) {
-  auto delta = nlohmann::json::parse(sent);
-  delta["context"] = "vessels.urn:mrn:signalk:uuid:1";
-  auto& value = delta["updates"][0]["values"][0]["value"];
-  value["method"] = nlohmann::json::array();
-  value["status"] = {{"silenced", true}, {"acknowledged", true}};
-  return delta.dump();
-}
-
-TEST_F(PlotterService, PassesAcknowledgementsOfSignalKOn) {
-  alerts_ = {MakeAlert(3)};
-  Run(300'000);
-  const auto sent = signal_k_->With("closestApproach3").at(0);
-  signal_k_->received = {sent};  // our own, come back
-  Wait(100'000);
-  EXPECT_TRUE(acknowledged_.empty());
-  signal_k_->received = {AcknowledgedDelta(sent)};
-  Wait(100'000);
-  ASSERT_EQ(acknowledged_.size(), 1U);
-  EXPECT_EQ(acknowledged_[0].alert_id, 3);
-}
-
-// A server remembers by path what was acknowledged: what grows graver then must have another.
-TEST_F(PlotterService, RaisesWhatGrewGraverUnderAnotherPath) {
-  alerts_ = {MakeAlert(3)};
-  alerts_[0].level = alert_t::LEVEL_CAUTION;
-  Run(300'000);
-  const auto first = signal_k_->With("closestApproach3").at(0);
-  alerts_[0].state = alert_t::STATE_ACKNOWLEDGED;
-  alerts_[0].changed_utime_us += 1'000'000;
-  Run(300'000);
-  Clear();
-  alerts_[0].state = alert_t::STATE_ACTIVE;
-  alerts_[0].level = alert_t::LEVEL_WARNING;
-  alerts_[0].changed_utime_us += 1'000'000;
-  Run(300'000);
-  const auto sent = signal_k_->With("closestApproach3");
-  ASSERT_EQ(sent.size(), 2U);
-  const auto path_of = [](const std::string& text) { return nlohmann::json::parse(text)["updates"][0]["values"][0]["path"].get<std::string>(); };
-  EXPECT_EQ(path_of(sent[0]), path_of(first));
-  EXPECT_NE(sent[0].find("\"normal\""), std::string::npos);
-  EXPECT_NE(path_of(sent[1]), path_of(first));
-  EXPECT_NE(sent[1].find("\"alarm\""), std::string::npos);
-  signal_k_->received = {AcknowledgedDelta(first)};  // late, of the caution
-  Wait(100'000);
-  EXPECT_TRUE(acknowledged_.empty());
-}
-
-// What comes back from "over, not acknowledged" is told anew: an acknowledgement of what was over is none of it.
-TEST_F(PlotterService, RaisesWhatComesBackUnderAnotherPath) {
-  alerts_ = {MakeAlert(3)};
-  Run(300'000);
-  const auto first = signal_k_->With("closestApproach3").at(0);
-  alerts_[0].state = alert_t::STATE_RECTIFIED;
-  alerts_[0].changed_utime_us += 1'000'000;
-  Run(300'000);
-  alerts_[0].state = alert_t::STATE_ACTIVE;
-  alerts_[0].changed_utime_us += 1'000'000;
-  Run(300'000);
-  signal_k_->received = {AcknowledgedDelta(first)};
-  Wait(100'000);
-  EXPECT_TRUE(acknowledged_.empty());
-}
-
-// A server keeps what a process told that was killed.
-TEST_F(PlotterService, EndsAlarmsOfAProcessBefore) {
-  Run(300'000);
-  Clear();
-  const std::string left =
-      R"({"context":"vessels.urn:1","updates":[{"values":[{"path":"notifications.lookout.guardZone9at1","value":{"state":"alarm","method":["sound"]}}]}]})";
-  signal_k_->received = {left, left};
-  Wait(200'000);
-  const auto sent = signal_k_->With("guardZone9at1");
-  ASSERT_EQ(sent.size(), 1U);
-  EXPECT_NE(sent[0].find("\"normal\""), std::string::npos);
-}
-
-TEST_F(PlotterService, TakesNoAcknowledgementWhereConfigDoesNot) {
-  std::vector<std::unique_ptr<Output>> outputs;
-  auto link = std::make_unique<test::KeepingLink>();
-  link->received = {Ack("IIACK,003")};
-  outputs.push_back(std::make_unique<NmeaOutput>(OutputParams{.name = "nmea"}, std::move(link), params_.target_period));
-  NewBus();
-  service_ = std::make_unique<Service>(*bus_, params_, std::move(outputs));
-  alerts_ = {MakeAlert(3)};
-  Run(300'000);
-  EXPECT_TRUE(acknowledged_.empty());
-  EXPECT_EQ(Count("acks_sent"), 0);
 }
 
 TEST_F(PlotterService, RefusesWhatCannotBe) {

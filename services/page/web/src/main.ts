@@ -1,4 +1,5 @@
 // Entry: connection, state, views, layout.
+import { Film } from "./film.js";
 import { Layout, type ViewName } from "./layout.js";
 import { Link } from "./link.js";
 import { Live } from "./live.js";
@@ -7,6 +8,7 @@ import { AroundView } from "./views/around.js";
 import { CloudView } from "./views/cloud.js";
 import { MapView } from "./views/map.js";
 import { RangeImageView } from "./views/range_image.js";
+import { Timeline } from "./views/timeline.js";
 
 // A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
 function takeToken(): string {
@@ -26,6 +28,7 @@ function takeToken(): string {
 const state = new State();
 state.token = takeToken();
 const live = new Live(state);
+const film = new Film(state, live);
 state.link = new Link({
   onHello: (hello) => {
     state.hello = hello;
@@ -35,13 +38,17 @@ state.link = new Link({
     live.begin(hello);
     state.tell("connection");
     state.tell("sources");
+    film.begin();
   },
   onSources: (sources) => { state.sources = sources; live.setBoat(); state.tell("sources"); },
   onIndexing: (source, share) => {
     if (share >= 1) state.indexing.delete(source); else state.indexing.set(source, share);
     state.tell("sources");
   },
-  onLive: (frame) => { live.take(frame); },
+  onLive: (frame) => {
+    if (state.showing.kind === "live") live.take(frame);
+    film.take(frame);
+  },
   onLost: () => {
     if (state.connection.state !== "lost") state.connection = { state: "lost", since_ms: performance.now() };
     state.tell("connection");
@@ -53,5 +60,5 @@ views.set("around", new AroundView(state));
 views.set("map", new MapView(state));
 views.set("range_image", new RangeImageView(state));
 views.set("cloud", new CloudView(state));
-new Layout(state, views, [], []);
+new Layout(state, views, [], [new Timeline(state, film).element]);
 state.link.open();

@@ -34,13 +34,19 @@ export class State {
   marked: Marked = { track: null, segment: null };
   /** Chosen by a click or in a list; stays until another is. */
   chosen: number | null = null;
-  readonly settings = new Settings(() => { this.tell("settings"); });
+  readonly settings: Settings;
   /** Of this page; empty: it may not acknowledge. */
   token = "";
 
   private readonly watchers = new Map<Topic, Set<() => void>>();
 
-  constructor(public link: Link | null = null) {}
+  /** @param settings those of another state, to be shared with it; none: own ones */
+  constructor(public link: Link | null = null, settings: Settings | null = null) {
+    this.settings = settings ?? new Settings(() => { this.tell("settings"); });
+  }
+
+  /** Shows the moment of the recordings at a time of the log; the player sets it. */
+  seek: (utime_us: number) => void = () => undefined;
 
   on(topics: Topic[], watcher: () => void): void {
     for (const topic of topics) {
