@@ -56,6 +56,8 @@ export function paintTracks(scene: Scene): void {
   const gravest = shown.at(-1)?.track;
   for (const { track, alert } of shown) paintTrack(scene, track, alert, track === gravest || track.id === state.chosen);
   for (const { track, alert } of shown.reverse()) {
+    const half = kLeast_px / 2, x = plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y = plane.y(track.position_map_m[0]!, track.position_map_m[1]!);
+    scene.taken.push({ x: x - half, y: y - half, width: kLeast_px, height: kLeast_px });
     const isOn = state.marked.track === track.id || state.chosen === track.id;
     if (track.status === Track.STATUS_TENTATIVE && alert === undefined && !isOn) continue;
     const radius_px = Math.max(kLeast_px, Math.min(30, track.width_m * plane.px_per_m / 2));
@@ -63,7 +65,7 @@ export function paintTracks(scene: Scene): void {
     // Many stand about: of them the number and the range in one line is enough.
     const isPlain = !isRaised && !isOn && !moves, name = texts.drawing.name(track.kind, track.id);
     const label = {
-      x_px: plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y_px: plane.y(track.position_map_m[0]!, track.position_map_m[1]!), radius_px,
+      x_px: x, y_px: y, radius_px,
       lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
       colour: theme.css[isRaised || isOn ? trackColour(track, alert) : isPlain ? "muted" : "text"], isBoxed: isRaised || isOn,
     };

@@ -98,7 +98,7 @@ export abstract class PlanView implements View {
     context.clearRect(0, 0, width_px, height_px);
     let scene: Scene | null = null;
     if (picture !== null) {
-      scene = { context, plane: this.plane, picture, own: ownPlace(picture), theme, state: this.state, trails: this.trails, labels: [] };
+      scene = { context, plane: this.plane, picture, own: ownPlace(picture), theme, state: this.state, trails: this.trails, labels: [], taken: [] };
       if (!this.place(picture, scene)) scene = null;
     }
     this.scene = scene;
@@ -126,7 +126,8 @@ export abstract class PlanView implements View {
   }
   private paintScene(scene: Scene): void {
     const { context } = scene, { width_px, height_px } = this.stage;
-    const taken = [{ x: 0, y: height_px - 44, width: 150, height: 44 }, { x: width_px - 60, y: height_px - 56 * 6, width: 60, height: 56 * 6 }];
+    const { taken } = scene;
+    taken.push({ x: 0, y: height_px - 44, width: 150, height: 44 }, { x: width_px - 60, y: height_px - 56 * 6, width: 60, height: 56 * 6 });
     if (this.hasRings) taken.push(...paintRings(scene));
     paintGuardZones(scene);
     paintKnownThings(scene);
