@@ -8,6 +8,7 @@ import { lookAt, perspective, product, project } from "../src/drawing/matrix.js"
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt, zoomFor } from "../src/drawing/mercator.js";
 import { ringStep } from "../src/drawing/own_boat.js";
 import { isInside, pickReturn, pickTrack } from "../src/drawing/pick.js";
+import { plot } from "../src/drawing/plain_points.js";
 import { distanceToLine, niceStep, Plane } from "../src/drawing/plane.js";
 import { ellipseOf } from "../src/drawing/tracks.js";
 import { columnTurns } from "../src/views/range_image.js";
@@ -180,4 +181,14 @@ test("the bow is in the middle of the range image, whatever way the lidar is mou
   near(turns[1]!, 0.25, 1e-6);
   near(turns[2]!, -0.25, 1e-6);
   assert.ok(Number.isNaN(turns[3]!));
+});
+test("plotted points lie where the matrix puts them, and the nearer one is in front", () => {
+  const words = new Uint32Array(100), none = new Float32Array(), one = Float32Array.of(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1);
+  const points = { places: Float32Array.of(0.05, 0.05, 0, -2, 0, 0, 0.05, 0.05, 0), colours: Uint8Array.of(1, 2, 3, 255, 9, 9, 9, 255, 4, 4, 4, 0), count: 3 };
+  plot(one, points, 1, words, none, 10, 10);
+  assert.deepEqual([...words.entries()].filter(([, word]) => word !== 0), [[45, 0xff030201]]);
+  const m = perspective(0.9, 1, 1, 100), depth = new Float32Array(100).fill(Infinity);
+  words.fill(0);
+  plot(m, { places: Float32Array.of(0, 0, -5, 0, 0, -9, 0, 0, 5), colours: Uint8Array.of(1, 0, 0, 255, 2, 0, 0, 255, 3, 0, 0, 255), count: 3 }, 1, words, depth, 10, 10);
+  assert.deepEqual([...words].filter((word) => word !== 0), [0xff000001]);
 });

@@ -21,7 +21,6 @@ export const en = {
     map: (position: string) => `Map, own boat at ${position}`,
     range_image: "Range image of the scan: directions from port over the bow to starboard, lasers above each other",
     cloud: "Returns of the scan in three dimensions",
-    no_webgl: "This browser does not show single returns: it has no WebGL2.",
     restoring: "The graphics were lost. They come back by themselves.",
     zoom_in: "Nearer", zoom_out: "Further", centre: "Own boat in the middle", measure: "Measure distance and bearing", orientation_north: "North is up. Change to bow up",
     orientation_head: "The bow is up. Change to north up", reset: "First view again", colour: (by: string) => `Colour of returns: ${by}. Change`,

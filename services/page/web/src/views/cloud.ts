@@ -86,7 +86,7 @@ export class CloudView implements View {
   private paint(): void {
     const { context, width_px, height_px } = this.stage, { picture } = this.state, theme = currentTheme();
     context.clearRect(0, 0, width_px, height_px);
-    const lost = this.points.works ? "" : this.points.canvas.getContext("webgl2") === null ? texts.drawing.no_webgl : texts.drawing.restoring;
+    const lost = this.points.works ? "" : texts.drawing.restoring;
     this.stage.setNote(picture === null ? texts.nothingYet : lost !== "" ? lost : picture.returns === null ? texts.drawing.no_scan : "");
     if (picture === null) return;
     const matrix = this.matrix(), own = ownPlace(picture), labels: Label[] = [];

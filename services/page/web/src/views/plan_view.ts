@@ -105,7 +105,7 @@ export abstract class PlanView implements View {
     this.paintGround?.(context, theme, scene);
     this.paintReturns(scene);
     if (scene !== null) this.paintScene(scene);
-    const lost = this.points.works || !this.state.settings.get("shows_returns") ? "" : this.points.canvas.getContext("webgl2") === null ? texts.drawing.no_webgl : texts.drawing.restoring;
+    const lost = this.points.works || !this.state.settings.get("shows_returns") ? "" : texts.drawing.restoring;
     this.stage.setNote([picture === null ? texts.nothingYet : this.noteFor(scene), lost, this.measure.hint].filter((part) => part !== "").join(" · "));
     if (scene !== null && performance.now() - this.described_ms > kDescribe_ms) {
       this.described_ms = performance.now();
