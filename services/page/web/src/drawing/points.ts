@@ -54,6 +54,18 @@ class Buffers {
   }
 }
 
+let known: boolean | null = null;
+/** Whether WebGL2 is drawn by a graphics processor, not by a program that stands in for one. */
+function hasGraphicsProcessor(): boolean {
+  if (known !== null) return known;
+  const gl = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
+  const info = gl?.getExtension("WEBGL_debug_renderer_info") ?? null;
+  const name = gl === null || info === null ? "" : String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  known = gl !== null && !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return known;
+}
+
 const kNothing: Drawn = { places: new Float32Array(), colours: new Uint8Array(), count: 0 };
 
 /** A canvas of points and lines. */
@@ -71,7 +83,7 @@ export class Points {
 
   constructor(private readonly hasDepth: boolean) {
     this.canvas.setAttribute("aria-hidden", "true");
-    this.gl = this.canvas.getContext("webgl2", { antialias: false, depth: hasDepth, alpha: true, powerPreference: "low-power", failIfMajorPerformanceCaveat: true });
+    this.gl = hasGraphicsProcessor() ? this.canvas.getContext("webgl2", { antialias: false, depth: hasDepth, alpha: true, powerPreference: "low-power" }) : null;
     this.plain = this.gl === null ? new PlainPoints(this.canvas, hasDepth) : null;
     this.prepare();
     this.canvas.addEventListener("webglcontextlost", (event) => {

@@ -159,9 +159,13 @@ export class CloudView implements View {
       const cx = forward(track.position_map_m[0]!, track.position_map_m[1]!), cy = port(track.position_map_m[0]!, track.position_map_m[1]!);
       const place = this.toScreen(matrix, cx, cy, top);
       const isRaised = name === "warning" || name === "caution";
-      if (place !== null) tops.push({ x_px: place[0], y_px: place[1], radius_px: 4, lines: [`${texts.drawing.name(track.kind, track.id)}  ${length(this.state.settings, track.range_m)}`], colour: theme.css[isRaised || isOn ? name : "text"], isBoxed: isRaised || isOn });
+      if (place !== null) tops.push({ x_px: place[0], y_px: place[1], radius_px: 4, lines: [this.labelOf(track, isRaised || isOn || name === "moving")], colour: theme.css[isRaised || isOn ? name : name === "moving" ? "text" : "muted"], isBoxed: isRaised || isOn });
     }
     labels.unshift(...tops);
+  }
+  private labelOf(track: Track, isNamed: boolean): string {
+    const range = length(this.state.settings, track.range_m);
+    return isNamed ? `${texts.drawing.name(track.kind, track.id)}  ${range}` : texts.drawing.plain(track.kind, track.id, range);
   }
   private isShown(picture: Picture, track: Track): boolean {
     return track.status !== 4 && (track.status !== 1 || this.state.settings.get("shows_tentative") || picture.alert_of_track.has(track.id));
