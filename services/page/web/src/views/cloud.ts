@@ -159,7 +159,11 @@ export class CloudView implements View {
       const cx = forward(track.position_map_m[0]!, track.position_map_m[1]!), cy = port(track.position_map_m[0]!, track.position_map_m[1]!);
       const place = this.toScreen(matrix, cx, cy, top);
       const isRaised = name === "warning" || name === "caution";
-      if (place !== null) tops.push({ x_px: place[0], y_px: place[1], radius_px: 4, lines: [this.labelOf(track, isRaised || isOn || name === "moving")], colour: theme.css[isRaised || isOn ? name : name === "moving" ? "text" : "muted"], isBoxed: isRaised || isOn });
+      if (place === null) continue;
+      tops.push({
+        x_px: place[0], y_px: place[1], radius_px: 4, lines: [this.labelOf(track, isRaised || isOn || name === "moving")],
+        colour: theme.css[isRaised || isOn ? name : name === "moving" ? "text" : "muted"], isBoxed: isRaised || isOn,
+      });
     }
     labels.unshift(...tops);
   }
