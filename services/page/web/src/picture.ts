@@ -76,6 +76,7 @@ class Parts<T extends Parted> {
 }
 
 const kPosesKept = 64;
+const kNoParts: wire.Segments[] = [];
 
 /** Takes messages in any order, and makes a picture of what is newest. */
 export class Assembler {
@@ -97,6 +98,7 @@ export class Assembler {
   /** Messages that could not be read, by channel. */
   readonly refused = new Map<string, number>();
   boat: BoatFacts | null = null;
+  private kept: { scan: wire.LidarScan[]; labels: wire.Segments[]; pose: wire.Pose | null; boat: BoatFacts | null; returns: Returns } | null = null;
 
   /** @returns whether there is something new to draw: a scan, tracks, alerts or obstacles that are whole */
   take(frame: Frame): boolean {
@@ -151,6 +153,15 @@ export class Assembler {
     }
   }
 
+  // Tracks, obstacles and alerts of a scan come one after the other: its returns stay the same array.
+  private returnsOf(scan: wire.LidarScan[], labels: wire.Segments[], pose: wire.Pose | null, turn_radps: number): Returns {
+    const { kept } = this;
+    if (kept !== null && kept.scan === scan && kept.labels === labels && kept.pose === pose && kept.boat === this.boat) return kept.returns;
+    const returns = toReturns(scan, labels, this.boat, pose, turn_radps);
+    this.kept = { scan, labels, pose, boat: this.boat, returns };
+    return returns;
+  }
+
   picture(): Picture {
     const tracksParts = this.tracks.whole, segmentParts = this.segments.whole;
     // The scan whose segments and tracks are there; where nobody segments, the newest.
@@ -176,7 +187,7 @@ export class Assembler {
     const newest = Math.max(0, ...this.times.values());
     return {
       utime_us: first?.utime_us ?? tracksParts[0]?.utime_us ?? newest, end_utime_us, boat: this.boat, scan,
-      returns: scan.length === 0 ? null : toReturns(scan, isOfScan ? segmentParts : [], this.boat, pose, motion.turn_radps),
+      returns: scan.length === 0 ? null : this.returnsOf(scan, isOfScan ? segmentParts : kNoParts, pose, motion.turn_radps),
       segments, obstacles: this.obstacles.whole.flatMap((part) => part.obstacles), tracks,
       track_by_id: new Map(tracks.map((track) => [track.id, track])), track_of_segment, land_segments, waterline_map_m: this.waterline,
       alerts, alert_of_track, pose,

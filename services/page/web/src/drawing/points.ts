@@ -1,4 +1,6 @@
 // Returns and lines drawn by WebGL2: one call for all returns, one for all lines. What was lost with the context is made again.
+// Without a graphics processor they are plotted.
+import { PlainPoints, type Drawn } from "./plain_points.js";
 
 const kVertex = `#version 300 es
 uniform mat4 matrix;
@@ -52,18 +54,37 @@ class Buffers {
   }
 }
 
-/** A canvas of points and lines. Where the browser has no WebGL2, `works` is false and it draws nothing. */
+let known: boolean | null = null;
+/** Whether WebGL2 is drawn by a graphics processor, not by a program that stands in for one. */
+function hasGraphicsProcessor(): boolean {
+  if (known !== null) return known;
+  const gl = document.createElement("canvas").getContext("webgl2", { failIfMajorPerformanceCaveat: true });
+  const info = gl?.getExtension("WEBGL_debug_renderer_info") ?? null;
+  const name = gl === null || info === null ? "" : String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  known = gl !== null && !/swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return known;
+}
+
+const kNothing: Drawn = { places: new Float32Array(), colours: new Uint8Array(), count: 0 };
+
+/** A canvas of points and lines. */
 export class Points {
   readonly canvas = document.createElement("canvas");
   /** To draw all again: the context came back. */
   onRestored: () => void = () => undefined;
   private readonly gl: WebGL2RenderingContext | null;
+  private readonly plain: PlainPoints | null;
   private parts: { program: WebGLProgram; matrix: WebGLUniformLocation | null; size: WebGLUniformLocation | null; points: Buffers; lines: Buffers } | null = null;
   private shown: { places: Float32Array | null; colours: unknown } = { places: null, colours: null };
+  private points = kNothing;
+  private lines = kNothing;
+  private drawn: { version: unknown; places: Float32Array | null; matrix: Float32Array; size_px: number; width: number; height: number } | null = null;
 
   constructor(private readonly hasDepth: boolean) {
     this.canvas.setAttribute("aria-hidden", "true");
-    this.gl = this.canvas.getContext("webgl2", { antialias: false, depth: hasDepth, alpha: true, powerPreference: "low-power" });
+    this.gl = hasGraphicsProcessor() ? this.canvas.getContext("webgl2", { antialias: false, depth: hasDepth, alpha: true, powerPreference: "low-power" }) : null;
+    this.plain = this.gl === null ? new PlainPoints(this.canvas, hasDepth) : null;
     this.prepare();
     this.canvas.addEventListener("webglcontextlost", (event) => {
       event.preventDefault();
@@ -74,12 +95,13 @@ export class Points {
       this.onRestored();
     });
   }
-  /** False where there is no WebGL2, or its context is lost. */
-  get works(): boolean { return this.parts !== null; }
+  /** False while the context of WebGL is lost: nothing is drawn. */
+  get works(): boolean { return this.parts !== null || this.plain !== null; }
 
   private prepare(): void {
     const gl = this.gl;
     this.shown = { places: null, colours: null };
+    this.drawn = null;
     this.parts = null;
     if (gl === null || gl.isContextLost()) return;
     const program = gl.createProgram();
@@ -100,25 +122,35 @@ export class Points {
     };
   }
 
-  /** Points of the next `draw`: x, y, z of each, and four bytes of colour. An array that is the same as before is not sent again; `version` says whether colours are. */
+  /** Points of the next `draw`. An array that is the same as before is not sent again; `version` says whether colours are. */
   setPoints(places: Float32Array, colours: Uint8Array, count: number, version: unknown): void {
+    this.points = { places, colours, count };
     const buffers = this.parts?.points;
-    if (buffers === undefined || this.gl === null) return;
-    if (this.shown.places !== places) buffers.setPlaces(places, count);
-    if (this.shown.places !== places || this.shown.colours !== version) buffers.setColours(colours, count);
+    if (buffers !== undefined) {
+      if (this.shown.places !== places) buffers.setPlaces(places, count);
+      if (this.shown.places !== places || this.shown.colours !== version) buffers.setColours(colours, count);
+      buffers.count = count;
+    }
     this.shown = { places, colours: version };
-    buffers.count = count;
   }
   clearPoints(): void {
+    this.points = kNothing;
     if (this.parts !== null) this.parts.points.count = 0;
     this.shown = { places: null, colours: null };
   }
   /** Lines from each even point to the next. */
   setLines(places: Float32Array, colours: Uint8Array, count: number): void {
+    this.lines = { places, colours, count };
     this.parts?.lines.setPlaces(places, count);
     this.parts?.lines.setColours(colours, count);
   }
   draw(matrix: Float32Array, size_px: number): void {
+    const { width, height } = this.canvas, { places, colours: version } = this.shown, last = this.drawn;
+    // The same points at the same place, as after a message that changed only tracks, stand on the canvas already.
+    if (last !== null && this.lines.count === 0 && last.places === places && last.version === version && last.size_px === size_px && last.width === width && last.height === height &&
+        last.matrix.every((value, i) => value === matrix[i])) return;
+    this.drawn = { places, version, size_px, width, height, matrix };
+    this.plain?.draw(matrix, this.points, this.lines, size_px);
     const gl = this.gl;
     if (this.parts === null || gl === null) return;
     const { program, points, lines } = this.parts;

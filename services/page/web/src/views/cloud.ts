@@ -54,9 +54,9 @@ export class CloudView implements View {
       onClick: (x, y) => { this.choose(x, y); },
       onHover: () => undefined,
     });
-    this.stage.button(texts.drawing.zoom_in, "+", () => { this.zoom(1.4); });
-    this.stage.button(texts.drawing.zoom_out, "−", () => { this.zoom(1 / 1.4); });
-    this.stage.button(texts.drawing.reset, "⌖", () => { this.eye = { ...kFirst }; });
+    this.stage.button(texts.drawing.zoom_in, "nearer", () => { this.zoom(1.4); });
+    this.stage.button(texts.drawing.zoom_out, "further", () => { this.zoom(1 / 1.4); });
+    this.stage.button(texts.drawing.reset, "centre", () => { this.eye = { ...kFirst }; });
     const turn = (around: number, above: number) => () => { this.orbit(around, above); };
     this.stage.keys({
       "+": () => { this.zoom(1.2); }, "-": () => { this.zoom(1 / 1.2); }, Home: () => { this.eye = { ...kFirst }; },
@@ -86,7 +86,7 @@ export class CloudView implements View {
   private paint(): void {
     const { context, width_px, height_px } = this.stage, { picture } = this.state, theme = currentTheme();
     context.clearRect(0, 0, width_px, height_px);
-    const lost = this.points.works ? "" : this.points.canvas.getContext("webgl2") === null ? texts.drawing.no_webgl : texts.drawing.restoring;
+    const lost = this.points.works ? "" : texts.drawing.restoring;
     this.stage.setNote(picture === null ? texts.nothingYet : lost !== "" ? lost : picture.returns === null ? texts.drawing.no_scan : "");
     if (picture === null) return;
     const matrix = this.matrix(), own = ownPlace(picture), labels: Label[] = [];
@@ -159,9 +159,17 @@ export class CloudView implements View {
       const cx = forward(track.position_map_m[0]!, track.position_map_m[1]!), cy = port(track.position_map_m[0]!, track.position_map_m[1]!);
       const place = this.toScreen(matrix, cx, cy, top);
       const isRaised = name === "warning" || name === "caution";
-      if (place !== null) tops.push({ x_px: place[0], y_px: place[1], radius_px: 4, lines: [`${texts.drawing.name(track.kind, track.id)}  ${length(this.state.settings, track.range_m)}`], colour: theme.css[isRaised || isOn ? name : "text"], isBoxed: isRaised || isOn });
+      if (place === null) continue;
+      tops.push({
+        x_px: place[0], y_px: place[1], radius_px: 4, lines: [this.labelOf(track, isRaised || isOn || name === "moving")],
+        colour: theme.css[isRaised || isOn ? name : name === "moving" ? "text" : "muted"], isBoxed: isRaised || isOn,
+      });
     }
     labels.unshift(...tops);
+  }
+  private labelOf(track: Track, isNamed: boolean): string {
+    const range = length(this.state.settings, track.range_m);
+    return isNamed ? `${texts.drawing.name(track.kind, track.id)}  ${range}` : texts.drawing.plain(track.kind, track.id, range);
   }
   private isShown(picture: Picture, track: Track): boolean {
     return track.status !== 4 && (track.status !== 1 || this.state.settings.get("shows_tentative") || picture.alert_of_track.has(track.id));
