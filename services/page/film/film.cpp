@@ -11,6 +11,7 @@
 
 #include "common/bus/decode.hpp"
 #include "lookout/run_info_t.hpp"
+#include "services/page/core/replies.hpp"
 #include "services/page/film/boat_text.hpp"
 #include "services/page/film/index_file.hpp"
 #include "services/page/film/recording.hpp"

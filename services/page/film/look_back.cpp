@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/bus/channels.hpp"
+#include "services/page/core/replies.hpp"
 #include "services/page/film/log_indexer.hpp"
 #include "services/page/film/recording.hpp"
 #include "services/page/film/source_text.hpp"

@@ -4,6 +4,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include "services/page/core/replies.hpp"
+
 namespace lookout::page {
 
 namespace {
@@ -77,10 +79,6 @@ std::string StripText(const Timeline& timeline, const StripRequest& request) {
     json["health"].push_back(bucket.health);
   }
   return Text(json);
-}
-
-std::string RefusedText(std::uint32_t id, std::string_view reason) {
-  return Text({{"type", "refused"}, {"id", id}, {"reason", std::string(reason)}});
 }
 
 }  // namespace lookout::page

@@ -13,7 +13,4 @@ inline constexpr std::size_t kMaxStripEvents = 2000;
 /// JSON text of a `strip` (PROTOCOL.md). Buckets shorter than a second show what was in their second; losses stand in the first of them.
 std::string StripText(const Timeline& timeline, const StripRequest& request);
 
-/// JSON text of `refused`.
-std::string RefusedText(std::uint32_t id, std::string_view reason);
-
 }  // namespace lookout::page

@@ -15,7 +15,7 @@ const kSoon_s = 30;
 function urgency(alert: wire.Alert): [number, number, number, number] {
   const states = [wire.Alert.STATE_ACTIVE, wire.Alert.STATE_RECTIFIED, wire.Alert.STATE_ACKNOWLEDGED] as readonly number[];
   const state = states.indexOf(alert.state);
-  return [state < 0 ? states.length : state, -alert.level, alert.tcpa_s <= kSoon_s ? 0 : 1, -alert.raised_utime_us];
+  return [state < 0 ? states.length : state, -alert.level, alert.tcpa_s > kSoon_s ? 1 : 0, -alert.raised_utime_us];
 }
 
 export function byGravity(alerts: readonly wire.Alert[]): wire.Alert[] {
