@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import { texts } from "../texts/index.js";
 import { timeOfDay } from "../units.js";
+import { broken } from "./broken.js";
 import { button, make, setText } from "./dom.js";
 import { svg } from "./shapes.js";
 import { type Path, type Ring, unitOf } from "./series.js";
@@ -30,21 +31,6 @@ export function valueText(value: number | null | undefined, unit: string): strin
   const magnitude = Math.abs(value);
   const text = Number.isInteger(value) ? String(value) : value.toFixed(magnitude >= 100 ? 0 : magnitude >= 10 ? 1 : magnitude >= 1 ? 2 : 3);
   return unit === "" ? text : unit.startsWith("°") ? `${text}${unit}` : `${text} ${unit}`;
-}
-
-/** A line that passes through north is broken there, and does not run down the whole chart. */
-export function broken(times: number[], degrees: (number | null)[]): [number[], (number | null)[]] {
-  const brokenTimes: number[] = [], values: (number | null)[] = [];
-  degrees.forEach((value, index) => {
-    const before = degrees[index - 1] ?? null;
-    if (value !== null && before !== null && Math.abs(value - before) > 180) {
-      brokenTimes.push((times[index - 1]! + times[index]!) / 2);
-      values.push(null);
-    }
-    brokenTimes.push(times[index]!);
-    values.push(value);
-  });
-  return [brokenTimes, values];
 }
 
 export interface ChartActions { remove(path: Path): void; seek(time_s: number): void }

@@ -71,3 +71,11 @@ export class Announcer {
     return { now, later };
   }
 }
+
+export type Pattern = "caution" | "warning";
+/** The sound that belongs to what holds and nobody has acknowledged. */
+export function patternOf(alerts: readonly Pick<wire.Alert, "level" | "state">[]): Pattern | null {
+  const active = alerts.filter((alert) => alert.state === wire.Alert.STATE_ACTIVE);
+  if (active.length === 0) return null;
+  return active.some((alert) => alert.level >= wire.Alert.LEVEL_WARNING) ? "warning" : "caution";
+}
