@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Health, Pose, Track } from "../src/messages/generated.js";
 import type { Picture } from "../src/picture.js";
-import { broken } from "../src/views/broken.js";
+import { onCircle, unwrapped } from "../src/views/circle.js";
 import { chartOf, pathsOf, Ring, unitOf, valueIn } from "../src/views/series.js";
 
 const channel = (name: string, is_input: boolean, rate_hz: number) => ({
@@ -60,7 +60,9 @@ test("thinning keeps the spike of one message, and gaps", () => {
   assert.deepEqual(times, [...times].sort((a, b) => a - b));
 });
 
-test("a heading that passes north breaks its line", () => {
-  assert.deepEqual(broken([1, 2, 3], [359, 1, 2]), [[1, 1.5, 2, 3], [359, null, 1, 2]]);
-  assert.deepEqual(broken([1, 2], [10, 100]), [[1, 2], [10, 100]]);
+test("a heading that passes north goes on, and ends where it is", () => {
+  assert.deepEqual(unwrapped([359, 1, null, 2]), [-1, 1, null, 2]);
+  assert.deepEqual(unwrapped([2, 359, 358]), [362, 359, 358]);
+  assert.deepEqual(unwrapped([10, 100, 190, 280, 10]), [-350, -260, -170, -80, 10]);
+  assert.deepEqual([-1, 362, 360].map(onCircle), [359, 2, 0]);
 });

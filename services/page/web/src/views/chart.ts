@@ -2,10 +2,10 @@
 import uPlot from "uplot";
 import { texts } from "../texts/index.js";
 import { timeOfDay } from "../units.js";
-import { broken } from "./broken.js";
+import { onCircle, unwrapped } from "./circle.js";
 import { button, make, setText } from "./dom.js";
 import { svg } from "./shapes.js";
-import { type Path, type Ring, unitOf } from "./series.js";
+import { isOnCircle, type Path, type Ring, unitOf } from "./series.js";
 
 const words = texts.panels.plots;
 const kHeight_px = 150;
@@ -42,12 +42,14 @@ export class Chart {
   private readonly strokes: SVGLineElement[] = [];
   private readonly unit: string;
   private readonly factors: number[];
+  private readonly isCircle: boolean;
   private shown_s = NaN;
   private colours = new Map<string, string>();
 
   constructor(readonly paths: readonly Path[], width_px: number, actions: ChartActions) {
     this.unit = unitOf(paths[0]!).unit;
     this.factors = paths.map((path) => unitOf(path).factor);
+    this.isCircle = paths.every(isOnCircle);
     this.readColours();
     const legend = make("div", "legend");
     paths.forEach((path, index) => {
@@ -77,7 +79,7 @@ export class Chart {
       tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1000), "Etc/UTC"),
       axes: [
         { ...axis(), space: 80, size: 28, values: (_, splits) => splits.map((split) => timeOfDay(split * 1e6)) },
-        { ...axis(), size: 64, space: 28, values: (_, splits) => splits.map((split) => valueText(Number(split.toPrecision(6)), this.unit)) },
+        { ...axis(), size: 64, space: 28, values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))) },
       ],
       series: [{}, ...paths.map((_, index) => ({
         stroke: () => this.colour(strokeOf(index).colour), width: 2, dash: strokeOf(index).dash, points: { show: false },
@@ -102,7 +104,7 @@ export class Chart {
       const { times, values } = rings.get(path)?.thinned(from_s, to_s, buckets) ?? { times: [], values: [] };
       const factor = this.factors[index]!;
       const shown = values.map((value) => (value === null ? null : value * factor));
-      return (this.unit === "°" ? broken(times, shown) : [times, shown]) as uPlot.AlignedData;
+      return [times, this.isCircle ? unwrapped(shown) : shown] as uPlot.AlignedData;
     });
     this.plot.batch(() => {
       this.plot.setData(tables.length === 1 ? tables[0]! : uPlot.join(tables), false);
@@ -129,8 +131,12 @@ export class Chart {
       let at = index ?? values.length - 1;
       // Times of other numbers stand between: the one before holds.
       while (at > 0 && (values[at] === undefined || values[at] === null)) --at;
-      setText(this.values[series]!, valueText(values[at], this.unit));
+      setText(this.values[series]!, this.word(values[at]));
     });
+  }
+
+  private word(value: number | null | undefined): string {
+    return valueText(this.isCircle && value !== null && value !== undefined ? onCircle(value) : value, this.unit);
   }
 
   private drawNow(plot: uPlot): void {
