@@ -9,6 +9,7 @@ import { isOnCircle, type Path, type Ring, unitOf } from "./series.js";
 
 const words = texts.panels.plots;
 const kHeight_px = 150;
+const kDegreeSteps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360, 720];
 const kSync = "plots";
 // Lines are told apart by dashes as well: in the night there is one colour.
 const kStrokes: { colour: string; dash: number[] }[] = [
@@ -79,7 +80,7 @@ export class Chart {
       tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1000), "Etc/UTC"),
       axes: [
         { ...axis(), space: 80, size: 28, values: (_, splits) => splits.map((split) => timeOfDay(split * 1e6)) },
-        { ...axis(), size: 64, space: 28, values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))) },
+        { ...axis(), size: 64, space: 28, ...(this.isCircle ? { incrs: kDegreeSteps } : {}), values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))) },
       ],
       series: [{}, ...paths.map((_, index) => ({
         stroke: () => this.colour(strokeOf(index).colour), width: 2, dash: strokeOf(index).dash, points: { show: false },
@@ -124,8 +125,9 @@ export class Chart {
   }
   destroy(): void { this.plot.destroy(); }
 
-  // Values below the cursor; without a cursor the last.
-  private tell(index: number | null): void {
+  // Values below the cursor; without a cursor those of the moment that is shown, else the last.
+  private tell(pointed: number | null): void {
+    const index = pointed ?? (Number.isFinite(this.shown_s) && this.plot.data[0].length > 0 ? this.plot.valToIdx(this.shown_s) : null);
     this.paths.forEach((_, series) => {
       const values = this.plot.data[series + 1]!;
       let at = index ?? values.length - 1;

@@ -12,6 +12,7 @@ const words = texts.panels.tracks;
 const kColumns = ["bearing", "range", "course", "speed", "cpa", "tcpa", "rests"] as const;
 const kCapped = 40;             // rows that are shown before somebody asks for all
 const kEvery_ms = 400;          // numbers that change faster are not read
+const kEveryOfAll_ms = 1000;    // where all of many are shown
 const kStatuses = ["", "tentative", "confirmed", "coasting", "lost"];
 
 class Row {
@@ -87,7 +88,7 @@ export class Tracks implements View {
     table.onpointerenter = () => { this.isPointedAt = true; };
     table.onpointerleave = () => { this.isPointedAt = false; state.mark({}); };
     table.onkeydown = (event) => { this.onKey(event); };
-    state.on(["picture"], () => { if (performance.now() - this.drawn_ms >= kEvery_ms || state.showing.kind === "recorded") this.draw(); });
+    state.on(["picture"], () => { if (performance.now() - this.drawn_ms >= (this.rows.size > kCapped ? kEveryOfAll_ms : kEvery_ms) || state.showing.kind === "recorded") this.draw(); });
     state.on(["settings", "showing"], () => { this.draw(); });
     state.on(["marked"], () => { this.drawMarks(); });
   }
