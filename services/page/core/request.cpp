@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::int64_t kMaxScansOn = 1'000'000;
+static_assert(bus::kChannels.size() <= kMaxChannels);
 
 std::optional<ChannelIndex> FindIndex(std::string_view name) {
   const auto& names = ChannelNames();

@@ -50,6 +50,7 @@ inline constexpr std::size_t kMaxRequestBytes = 4096;
 inline constexpr int kMaxRangeMessages = 5000;
 inline constexpr int kMaxBuckets = 4000;
 inline constexpr int kMaxSources = 4;
+inline constexpr std::size_t kMaxChannels = 64;
 
 /// Names of the channels that a page may show, in the order of their indices: those of the channel table.
 const std::vector<std::string_view>& ChannelNames();

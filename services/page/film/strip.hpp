@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "services/page/core/replies.hpp"
 #include "services/page/core/request.hpp"
 #include "services/page/film/timeline.hpp"
 
@@ -10,7 +11,8 @@ namespace lookout::page {
 
 inline constexpr std::size_t kMaxStripEvents = 2000;
 
-/// JSON text of a `strip` (PROTOCOL.md). Buckets shorter than a second show what was in their second; losses stand in the first of them.
+/// JSON text of a `strip`, or of `refused` (PROTOCOL.md). Buckets shorter than a second show what was in their second; losses stand in the first of
+/// them.
 std::string StripText(const Timeline& timeline, const StripRequest& request);
 
 }  // namespace lookout::page

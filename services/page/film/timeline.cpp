@@ -190,8 +190,8 @@ std::vector<Place> Timeline::OfPose(const Places& places, const Moment& moment) 
   }
   std::erase_if(found, [&](const Place& place) { return place.utime_us < begin_utime_us; });
   std::ranges::stable_sort(found, {}, &Place::utime_us);
-  const auto again = std::ranges::unique(found, {}, &Place::utime_us);
-  found.erase(again.begin(), again.end());
+  const auto is_again = [](const Place& one, const Place& other) { return one.utime_us == other.utime_us; };
+  found.erase(std::unique(found.begin(), found.end(), is_again), found.end());
   return found;
 }
 

@@ -158,7 +158,7 @@ Client::Found Client::Find(Recordings& recordings, const Question& question) try
     return found;
   }
   const auto* at = std::get_if<At>(&question);
-  const auto answer = at != nullptr ? recordings.Find(*at) : recordings.Find(std::get<Range>(question));
+  auto answer = at != nullptr ? recordings.Find(*at) : recordings.Find(std::get<Range>(question));
   const int source = at != nullptr ? at->source : std::get<Range>(question).source;
   const auto id = IdOf(question);
   for (const auto& message : answer.messages) found.num_bytes += kFrameHeadBytes + message.bytes.size();
@@ -167,9 +167,10 @@ Client::Found Client::Find(Recordings& recordings, const Question& question) try
     found.text = RefusedText(id, answer.refusal.empty() ? "too much: ask for a shorter time or fewer messages" : answer.refusal);
     return found;
   }
-  for (const auto& message : answer.messages) {
+  for (auto& message : answer.messages) {
     const FrameHead head{static_cast<std::uint8_t>(source), message.channel, id, message.time};
     found.frames.push_back(std::make_shared<const std::vector<std::uint8_t>>(ToFrame(head, message.bytes)));
+    message.bytes = {};  // not all of it twice
   }
   found.text = AnswerText(id, source, answer, found.frames.size());
   return found;

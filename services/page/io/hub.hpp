@@ -23,8 +23,6 @@ class Client;
 
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-inline constexpr std::size_t kMaxChannels = 64;
-
 struct Hub {
   Hub(ServerOptions server_options, ServerParts server_parts)
       : options(std::move(server_options)), parts(std::move(server_parts)), assets(parts.assets), counts(std::make_shared<Counts>()) {}

@@ -52,7 +52,13 @@ struct ServerParts {
   std::function<void(const Acknowledgement&)> acknowledge = {};
 };
 
-/// Counts since the start, by name, for HEALTH: clients, requests, refusals by reason, frames sent and replaced.
+/// Counts by name, for HEALTH; one that is 0 may be missing.
+/// Now: clients (WebSockets), connections. Since the start:
+/// requests (by HTTP), openings (of WebSockets), answers (out of recordings), acknowledgements, frames_sent, frames_replaced (a newer one came before
+/// there was room), frames_dropped (the server's own thread did not keep up); refused_host (421), refused_origin (403), refused_token (401),
+/// refused_full (503), refused_request (other refusals), connections_refused (too many), requests_late and answers_late (cut off), client_faults
+/// (what a WebSocket should not have said), clients_silent (let go); accept_faults (no descriptor was left, say), faults (of the server: an
+/// exception, a map that cannot be read).
 using ServerCounts = std::map<std::string, std::int64_t, std::less<>>;
 
 class Server {

@@ -42,7 +42,7 @@ TEST(DoctorConfig, NamesEachWrongFileOnce) {
   const auto seen = ReadConfig(folder);
   std::map<std::string, std::string> first_fault;
   for (const auto& [file, faults] : seen.files) first_fault[file] = faults.empty() ? "" : faults.front();
-  EXPECT_EQ(first_fault.size(), 9U);
+  EXPECT_EQ(first_fault.size(), 10U);
   EXPECT_NE(first_fault["boat.txtpb"].find("boat.txtpb:1: lidar"), std::string::npos) << first_fault["boat.txtpb"];
   EXPECT_NE(first_fault["vlp16.txtpb"].find("vlp16.txtpb:2: bind_address: 'nowhere' is no numeric address"), std::string::npos);
   EXPECT_NE(first_fault["segmenter.txtpb"].find("cannot be read"), std::string::npos);

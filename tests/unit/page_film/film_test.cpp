@@ -158,6 +158,19 @@ TEST_F(OfFilm, ShowsALogThatOverlapsAnotherBehindItAndTellsIt) {
   EXPECT_EQ(strip["events"][0]["kind"], "gap");
 }
 
+// The recorder begins a log each hour: shifting what follows by a second each time would let the clock of the page drift.
+TEST_F(OfFilm, DoesNotShiftALogThatBeginsAMomentBeforeTheEndOfTheOneBefore) {
+  WriteScans(a_, 0, 20);
+  {
+    SceneLog log(b_);
+    log->shift_us = -105'000;  // before the end of the other, by 5 ms
+    for (int seq = 20; seq < 40; ++seq) log->Scan(seq);
+  }
+  const auto film = Open({a_, b_});
+  EXPECT_EQ(ToUtimeUs(film->Find(AtScan(UtimeOf(39), {kScanChannel})).time), WholeAt(39) - 105'000);
+  EXPECT_TRUE(StripOf(*film, kBeginUs, kBeginUs + 20'000'000, 10)["events"].empty());
+}
+
 TEST_F(OfFilm, ShowsAnotherLogBesideIt) {
   WriteScans(a_, 0, 20);
   WriteScans(b_, 3, 8);

@@ -107,6 +107,16 @@ TEST_F(OfLookBack, RemovesItsSpoolAndWhatAKilledProcessLeft) {
   EXPECT_TRUE(fs::exists(options_.spool_folder / "somebody's.txt"));
 }
 
+// Two pages that were given the same folder: neither takes the other's files away.
+TEST_F(OfLookBack, LeavesTheSpoolOfAnotherProcessAlone) {
+  LookBack other(options_);
+  Send(other, 0, 5);
+  other.Flush();
+  LookBack back(options_);
+  EXPECT_EQ(NumFiles(), 1U);
+  EXPECT_EQ(other.Find(AtScan(kBeginUs, {kScanChannel})).messages.size(), 2U);
+}
+
 TEST_F(OfLookBack, CountsWhatDoesNotFitIntoTheQueue) {
   options_.queue_bytes = 100'000;
   LookBack back(options_);

@@ -1,4 +1,5 @@
 // What the server answers by HTTP, and whom it does not.
+#include <sys/resource.h>
 #include <zlib.h>
 
 #include <atomic>
@@ -230,6 +231,11 @@ TEST_F(PageHttp, AHalfRequestIsClosedAfterAWhileAndHoldsNobodyUp) {
 }
 
 TEST_F(PageHttp, AThousandConnectionsLeaveRoomOnceTheyAreGone) {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_max < 2000) GTEST_SKIP() << "skipped: the system lets a process open " << limit.rlim_max << " files";
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
   {
     std::vector<Peer> peers;
     for (int i = 0; i < 1000; ++i) peers.push_back(Connect());
@@ -240,6 +246,21 @@ TEST_F(PageHttp, AThousandConnectionsLeaveRoomOnceTheyAreGone) {
   }
   EXPECT_TRUE(Until([&] { return CountOf(*server_, "connections") == 0; }));
   EXPECT_TRUE(IsStatus(Get("/"), 200));
+}
+
+// The listener must not stop, nor turn round as fast as it can.
+TEST_F(PageHttp, WhereNoDescriptorIsLeftOthersAreAcceptedLater) {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  const int next = dup(0);
+  close(next);
+  const rlimit narrow{static_cast<rlim_t>(next) + 1, limit.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &narrow);
+  auto peer = Connect();  // has the last one
+  EXPECT_TRUE(Until([&] { return CountOf(*server_, "accept_faults") >= 2; }));
+  EXPECT_LT(CountOf(*server_, "accept_faults"), 10);
+  setrlimit(RLIMIT_NOFILE, &limit);
+  EXPECT_TRUE(IsStatus(peer.Get("/"), 200));
 }
 
 TEST_F(PageHttp, AnAddressInUseIsSaid) {

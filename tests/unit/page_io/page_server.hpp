@@ -23,7 +23,8 @@ class FakeRecordings : public Recordings {
     if (!answer.refusal.empty()) return answer;
     answer.time = request.time.value_or(Utime{});
     for (std::int64_t i = 0; i < ToUtimeUs(answer.time); ++i)
-      answer.messages.push_back({IndexOf("TRACKS"), Utime(std::chrono::microseconds(i)), std::vector<std::uint8_t>(ToUtimeUs(answer.time) > 1000 ? 1000 : 10, 'r')});
+      answer.messages.push_back(
+          {IndexOf("TRACKS"), Utime(std::chrono::microseconds(i)), std::vector<std::uint8_t>(ToUtimeUs(answer.time) > 1000 ? 1000 : 10, 'r')});
     return answer;
   }
   Answer Find(const Range& request) override {
