@@ -80,7 +80,10 @@ export class Chart {
       tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1000), "Etc/UTC"),
       axes: [
         { ...axis(), space: 80, size: 28, values: (_, splits) => splits.map((split) => timeOfDay(split * 1e6)) },
-        { ...axis(), size: 64, space: 28, ...(this.isCircle ? { incrs: kDegreeSteps } : {}), values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))) },
+        {
+          ...axis(), size: 64, space: 28, ...(this.isCircle ? { incrs: kDegreeSteps } : {}),
+          values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))),
+        },
       ],
       series: [{}, ...paths.map((_, index) => ({
         stroke: () => this.colour(strokeOf(index).colour), width: 2, dash: strokeOf(index).dash, points: { show: false },
@@ -152,6 +155,7 @@ export class Chart {
   private colour(name: string): string { return this.colours.get(name) ?? "gray"; }
   private readColours(): void {
     const style = getComputedStyle(document.documentElement);
-    this.colours = new Map(["--accent", "--text", "--caution", "--ok", "--muted", "--line"].map((name) => [name, style.getPropertyValue(name).trim() || "gray"]));
+    const names = ["--accent", "--text", "--caution", "--ok", "--muted", "--line"];
+    this.colours = new Map(names.map((name) => [name, style.getPropertyValue(name).trim() || "gray"]));
   }
 }

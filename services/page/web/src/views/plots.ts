@@ -6,7 +6,7 @@ import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { Chart } from "./chart.js";
 import { Chooser } from "./chooser.js";
-import { button, make, placeChildren } from "./dom.js";
+import { button, make, Pace, placeChildren } from "./dom.js";
 
 const words = texts.panels.plots;
 const kEvery_ms = 250;
@@ -32,7 +32,7 @@ export class Plots implements View {
   private paths: Path[];
   private minutes: number;
   private isVisible = false;
-  private drawn_ms = -Infinity;
+  private readonly pace = new Pace(() => { this.draw(); }, () => kEvery_ms);
   private asked = "";
   private chosen: number | null = null;
 
@@ -90,7 +90,7 @@ export class Plots implements View {
     if (!this.isRecorded) {
       for (const [path, ring] of this.rings) ring.push(timeIn(picture, path) / 1e6, valueIn(picture, path, this.state.chosen));
     }
-    if (performance.now() - this.drawn_ms >= kEvery_ms) this.draw();
+    if (this.isVisible) this.pace.ask();
   }
 
   private bounds(): { from_s: number; to_s: number; now_s: number } {
@@ -114,7 +114,6 @@ export class Plots implements View {
 
   private draw(): void {
     if (!this.isVisible) return;
-    this.drawn_ms = performance.now();
     if (this.isRecorded) void this.fetch();
     const { from_s, to_s, now_s } = this.bounds();
     if (to_s > from_s) for (const chart of this.charts.values()) chart.draw(this.rings, from_s, to_s, now_s);
@@ -203,7 +202,8 @@ export class Plots implements View {
   }
 
   private keep(): void {
-    try { localStorage.setItem(kKey, JSON.stringify({ paths: this.paths, minutes: this.minutes } satisfies Kept)); } catch { /* a browser that keeps nothing */ }
+    const kept: Kept = { paths: this.paths, minutes: this.minutes };
+    try { localStorage.setItem(kKey, JSON.stringify(kept)); } catch { /* a browser that keeps nothing */ }
   }
 }
 
