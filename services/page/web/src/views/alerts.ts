@@ -4,9 +4,9 @@ import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { acknowledge } from "./acknowledge.js";
 import { button, make, placeChildren, setAttribute, setText } from "./dom.js";
-import { Announcer, byGravity, gravityOf } from "./gravity.js";
+import { Announcer, byGravity, gravityOf, patternOf } from "./gravity.js";
 import { Shape } from "./shapes.js";
-import { patternOf, type Sounder } from "./sound.js";
+import type { Sounder } from "./sound.js";
 
 const words = texts.panels.alerts;
 // How many are shown before somebody asks for more: they must leave room for the picture.

@@ -3,7 +3,7 @@ import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bearing, date, speed, timeOfDay } from "../units.js";
 import { button, make, placeChildren, setAttribute, setText } from "./dom.js";
-import { judge } from "./lookout.js";
+import { assess } from "./lookout.js";
 import type { SettingsSheet } from "./settings.js";
 import { icon, Shape } from "./shapes.js";
 import type { Sounder } from "./sound.js";
@@ -72,7 +72,7 @@ export class Banner {
       this.alerts_ms = now_ms;
     }
     if (state.connection.state === "lost") this.wasLost = true;
-    const verdict = judge({
+    const verdict = assess({
       isRecorded, connection: state.connection.state, connection_s: (now_ms - state.connection.since_ms) / 1000, wasLost: this.wasLost,
       hasPicture: picture !== null, age_s: state.age_s, alerts_s: (now_ms - this.alerts_ms) / 1000,
     });

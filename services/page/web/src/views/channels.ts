@@ -1,7 +1,7 @@
 // Each channel: how fast, how late, what is lost on it, refused, waiting.
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
-import { make, placeChildren, setAttribute, setText } from "./dom.js";
+import { make, Pace, placeChildren, setAttribute, setText } from "./dom.js";
 import { type ChannelRow, channelsOf } from "./traffic.js";
 
 const words = texts.panels.channels;
@@ -50,7 +50,7 @@ export class Channels implements View {
   private readonly empty = make("p", "empty", texts.panels.health.none);
   private readonly rows = new Map<string, Row>();
   private isVisible = false;
-  private drawn_ms = -Infinity;
+  private readonly pace = new Pace(() => { this.draw(); }, () => kEvery_ms);
 
   constructor(private readonly state: State) {
     const table = make("table", "plain-table"), head = make("thead"), names = make("tr");
@@ -63,7 +63,7 @@ export class Channels implements View {
     table.append(head, this.body);
     table.setAttribute("aria-label", texts.panels.lists.channels);
     this.element.append(table, this.empty);
-    state.on(["picture"], () => { if (performance.now() - this.drawn_ms >= kEvery_ms || state.showing.kind === "recorded") this.draw(); });
+    state.on(["picture"], () => { if (this.isVisible) this.pace.ask(); });
   }
 
   setVisible(isVisible: boolean): void {
@@ -73,7 +73,7 @@ export class Channels implements View {
 
   private draw(): void {
     if (!this.isVisible) return;
-    const now_ms = this.drawn_ms = performance.now();
+    const now_ms = performance.now();
     const channels = channelsOf(this.state.picture?.health ?? []);
     this.empty.hidden = channels.length > 0;
     placeChildren(this.body, channels.map((channel) => {

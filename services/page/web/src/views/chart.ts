@@ -2,12 +2,14 @@
 import uPlot from "uplot";
 import { texts } from "../texts/index.js";
 import { timeOfDay } from "../units.js";
+import { onCircle, unwrapped } from "./circle.js";
 import { button, make, setText } from "./dom.js";
 import { svg } from "./shapes.js";
-import { type Path, type Ring, unitOf } from "./series.js";
+import { isOnCircle, type Path, type Ring, unitOf } from "./series.js";
 
 const words = texts.panels.plots;
 const kHeight_px = 150;
+const kDegreeSteps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 45, 90, 180, 360, 720];
 const kSync = "plots";
 // Lines are told apart by dashes as well: in the night there is one colour.
 const kStrokes: { colour: string; dash: number[] }[] = [
@@ -32,21 +34,6 @@ export function valueText(value: number | null | undefined, unit: string): strin
   return unit === "" ? text : unit.startsWith("°") ? `${text}${unit}` : `${text} ${unit}`;
 }
 
-/** A line that passes through north is broken there, and does not run down the whole chart. */
-export function broken(times: number[], degrees: (number | null)[]): [number[], (number | null)[]] {
-  const brokenTimes: number[] = [], values: (number | null)[] = [];
-  degrees.forEach((value, index) => {
-    const before = degrees[index - 1] ?? null;
-    if (value !== null && before !== null && Math.abs(value - before) > 180) {
-      brokenTimes.push((times[index - 1]! + times[index]!) / 2);
-      values.push(null);
-    }
-    brokenTimes.push(times[index]!);
-    values.push(value);
-  });
-  return [brokenTimes, values];
-}
-
 export interface ChartActions { remove(path: Path): void; seek(time_s: number): void }
 
 export class Chart {
@@ -56,12 +43,14 @@ export class Chart {
   private readonly strokes: SVGLineElement[] = [];
   private readonly unit: string;
   private readonly factors: number[];
+  private readonly isCircle: boolean;
   private shown_s = NaN;
   private colours = new Map<string, string>();
 
   constructor(readonly paths: readonly Path[], width_px: number, actions: ChartActions) {
     this.unit = unitOf(paths[0]!).unit;
     this.factors = paths.map((path) => unitOf(path).factor);
+    this.isCircle = paths.every(isOnCircle);
     this.readColours();
     const legend = make("div", "legend");
     paths.forEach((path, index) => {
@@ -91,7 +80,10 @@ export class Chart {
       tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1000), "Etc/UTC"),
       axes: [
         { ...axis(), space: 80, size: 28, values: (_, splits) => splits.map((split) => timeOfDay(split * 1e6)) },
-        { ...axis(), size: 64, space: 28, values: (_, splits) => splits.map((split) => valueText(Number(split.toPrecision(6)), this.unit)) },
+        {
+          ...axis(), size: 64, space: 28, ...(this.isCircle ? { incrs: kDegreeSteps } : {}),
+          values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))),
+        },
       ],
       series: [{}, ...paths.map((_, index) => ({
         stroke: () => this.colour(strokeOf(index).colour), width: 2, dash: strokeOf(index).dash, points: { show: false },
@@ -116,7 +108,7 @@ export class Chart {
       const { times, values } = rings.get(path)?.thinned(from_s, to_s, buckets) ?? { times: [], values: [] };
       const factor = this.factors[index]!;
       const shown = values.map((value) => (value === null ? null : value * factor));
-      return (this.unit === "°" ? broken(times, shown) : [times, shown]) as uPlot.AlignedData;
+      return [times, this.isCircle ? unwrapped(shown) : shown] as uPlot.AlignedData;
     });
     this.plot.batch(() => {
       this.plot.setData(tables.length === 1 ? tables[0]! : uPlot.join(tables), false);
@@ -136,15 +128,20 @@ export class Chart {
   }
   destroy(): void { this.plot.destroy(); }
 
-  // Values below the cursor; without a cursor the last.
-  private tell(index: number | null): void {
+  // Values below the cursor; without a cursor those of the moment that is shown, else the last.
+  private tell(pointed: number | null): void {
+    const index = pointed ?? (Number.isFinite(this.shown_s) && this.plot.data[0].length > 0 ? this.plot.valToIdx(this.shown_s) : null);
     this.paths.forEach((_, series) => {
       const values = this.plot.data[series + 1]!;
       let at = index ?? values.length - 1;
       // Times of other numbers stand between: the one before holds.
       while (at > 0 && (values[at] === undefined || values[at] === null)) --at;
-      setText(this.values[series]!, valueText(values[at], this.unit));
+      setText(this.values[series]!, this.word(values[at]));
     });
+  }
+
+  private word(value: number | null | undefined): string {
+    return valueText(this.isCircle && value !== null && value !== undefined ? onCircle(value) : value, this.unit);
   }
 
   private drawNow(plot: uPlot): void {
@@ -158,6 +155,7 @@ export class Chart {
   private colour(name: string): string { return this.colours.get(name) ?? "gray"; }
   private readColours(): void {
     const style = getComputedStyle(document.documentElement);
-    this.colours = new Map(["--accent", "--text", "--caution", "--ok", "--muted", "--line"].map((name) => [name, style.getPropertyValue(name).trim() || "gray"]));
+    const names = ["--accent", "--text", "--caution", "--ok", "--muted", "--line"];
+    this.colours = new Map(names.map((name) => [name, style.getPropertyValue(name).trim() || "gray"]));
   }
 }

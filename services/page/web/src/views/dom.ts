@@ -26,6 +26,26 @@ export function setAttribute(element: Element, name: string, value: string | nul
   else element.setAttribute(name, value);
 }
 
+/** Draws at most so often; what was asked for meanwhile is drawn when the time has come, so that the last is always seen. */
+export class Pace {
+  private drawn_ms = -Infinity;
+  private timer: number | undefined;
+
+  constructor(private readonly draw: () => void, private readonly every_ms: () => number) {}
+
+  ask(): void {
+    const wait_ms = this.drawn_ms + this.every_ms() - performance.now();
+    if (wait_ms <= 0) this.now();
+    else this.timer ??= setTimeout(() => { this.now(); }, wait_ms);
+  }
+  now(): void {
+    clearTimeout(this.timer);
+    this.timer = undefined;
+    this.drawn_ms = performance.now();
+    this.draw();
+  }
+}
+
 /** Names with values, kept and changed in place. */
 export class Facts {
   readonly element = make("dl", "facts");

@@ -15,7 +15,7 @@ const kSoon_s = 30;
 function urgency(alert: wire.Alert): [number, number, number, number] {
   const states = [wire.Alert.STATE_ACTIVE, wire.Alert.STATE_RECTIFIED, wire.Alert.STATE_ACKNOWLEDGED] as readonly number[];
   const state = states.indexOf(alert.state);
-  return [state < 0 ? states.length : state, -alert.level, alert.tcpa_s <= kSoon_s ? 0 : 1, -alert.raised_utime_us];
+  return [state < 0 ? states.length : state, -alert.level, alert.tcpa_s > kSoon_s ? 1 : 0, -alert.raised_utime_us];
 }
 
 export function byGravity(alerts: readonly wire.Alert[]): wire.Alert[] {
@@ -70,4 +70,12 @@ export class Announcer {
     for (const id of this.told.keys()) if (!present.has(id)) this.told.delete(id);
     return { now, later };
   }
+}
+
+export type Pattern = "caution" | "warning";
+/** The sound that belongs to what holds and nobody has acknowledged. */
+export function patternOf(alerts: readonly Pick<wire.Alert, "level" | "state">[]): Pattern | null {
+  const active = alerts.filter((alert) => alert.state === wire.Alert.STATE_ACTIVE);
+  if (active.length === 0) return null;
+  return active.some((alert) => alert.level >= wire.Alert.LEVEL_WARNING) ? "warning" : "caution";
 }

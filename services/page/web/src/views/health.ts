@@ -3,7 +3,7 @@ import type * as wire from "../messages/generated.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bytes, duration } from "../units.js";
-import { Facts, make, placeChildren, setAttribute, setText } from "./dom.js";
+import { Facts, make, Pace, placeChildren, setAttribute, setText } from "./dom.js";
 import { Shape } from "./shapes.js";
 import { gravityOfProcess, kSilent_s, Roll } from "./traffic.js";
 
@@ -73,14 +73,13 @@ export class Processes implements View {
   private readonly empty = make("p", "empty", words.none);
   private readonly roll = new Roll();
   private isVisible = false;
-  private drawn_ms = -Infinity;
+  private readonly pace = new Pace(() => { this.draw(); }, () => kEvery_ms);
 
   constructor(private readonly state: State) {
     this.element.append(this.empty, this.list);
     state.on(["picture", "age"], () => {
-      const now_ms = performance.now();
-      if (state.showing.kind === "live" && state.hello?.mode !== "log") this.roll.take(state.picture?.health ?? [], now_ms);
-      if (now_ms - this.drawn_ms >= kEvery_ms || state.showing.kind === "recorded") this.draw();
+      if (state.showing.kind === "live" && state.hello?.mode !== "log") this.roll.take(state.picture?.health ?? [], performance.now());
+      if (this.isVisible) this.pace.ask();
     });
     state.on(["showing"], () => { this.draw(); });
     let host = "";
@@ -98,10 +97,9 @@ export class Processes implements View {
   private draw(): void {
     if (!this.isVisible) return;
     const { picture, showing, hello } = this.state;
-    this.drawn_ms = performance.now();
     const isLive = showing.kind === "live" && hello?.mode !== "log";
     // Of a log: against the time that is shown.
-    const listed = isLive ? this.roll.list(this.drawn_ms)
+    const listed = isLive ? this.roll.list(performance.now())
       : (picture?.health ?? []).map((health) => ({ health, age_s: Math.max(0, (picture!.end_utime_us - health.utime_us) / 1e6) }));
     this.empty.hidden = listed.length > 0;
     const shown = listed.map(({ health, age_s }) => {

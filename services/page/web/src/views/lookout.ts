@@ -23,7 +23,7 @@ export interface Known {
 export interface Verdict { level: Gravity; text: string; mode: "live" | "old" | "lost" | "recorded" | "none" }
 
 /** @returns what is to be said; an empty text where all is well */
-export function judge(known: Known): Verdict {
+export function assess(known: Known): Verdict {
   if (known.connection === "lost") return { level: "warning", text: texts.lost(Math.floor(known.connection_s)), mode: "lost" };
   if (known.isRecorded) return { level: "quiet", text: "", mode: "recorded" };
   if (known.connection === "opening") return { level: "quiet", text: texts.connecting, mode: "none" };

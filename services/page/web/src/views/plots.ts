@@ -1,11 +1,12 @@
 // Numbers over time, chosen from all that messages hold: live the last minutes, of a recording what stood around the moment that is shown.
 import { channelOf, chartOf, type Path, Ring, timeIn, valueIn, valueInBytes } from "./series.js";
+import type { Frame } from "../link.js";
 import { Refused } from "../messages/reader.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { Chart } from "./chart.js";
 import { Chooser } from "./chooser.js";
-import { button, make, placeChildren } from "./dom.js";
+import { button, make, Pace, placeChildren } from "./dom.js";
 
 const words = texts.panels.plots;
 const kEvery_ms = 250;
@@ -31,7 +32,7 @@ export class Plots implements View {
   private paths: Path[];
   private minutes: number;
   private isVisible = false;
-  private drawn_ms = -Infinity;
+  private readonly pace = new Pace(() => { this.draw(); }, () => kEvery_ms);
   private asked = "";
   private chosen: number | null = null;
 
@@ -74,6 +75,7 @@ export class Plots implements View {
   setVisible(isVisible: boolean): void {
     this.isVisible = isVisible;
     if (isVisible) {
+      for (const chart of this.charts.values()) chart.recolour();
       void this.fetch();
       this.draw();
     }
@@ -88,12 +90,13 @@ export class Plots implements View {
     if (!this.isRecorded) {
       for (const [path, ring] of this.rings) ring.push(timeIn(picture, path) / 1e6, valueIn(picture, path, this.state.chosen));
     }
-    if (performance.now() - this.drawn_ms >= kEvery_ms) this.draw();
+    if (this.isVisible) this.pace.ask();
   }
 
   private bounds(): { from_s: number; to_s: number; now_s: number } {
     const { state } = this;
-    const now_s = (state.picture?.end_utime_us ?? 0) / 1e6;
+    const now_us = state.showing.kind === "recorded" ? state.showing.utime_us : Math.max(0, ...state.picture?.times_us.values() ?? []);
+    const now_s = now_us / 1e6;
     const length_s = 60 * this.minutes;
     if (!this.isRecorded) return { from_s: now_s - (length_s === 0 ? 600 : length_s), to_s: now_s, now_s: NaN };
     const source = this.source();
@@ -111,7 +114,6 @@ export class Plots implements View {
 
   private draw(): void {
     if (!this.isVisible) return;
-    this.drawn_ms = performance.now();
     if (this.isRecorded) void this.fetch();
     const { from_s, to_s, now_s } = this.bounds();
     if (to_s > from_s) for (const chart of this.charts.values()) chart.draw(this.rings, from_s, to_s, now_s);
@@ -133,7 +135,7 @@ export class Plots implements View {
         const { frames } = await state.link.range(source.id, channel, Math.round(1e6 * from_s), Math.round(1e6 * to_s),
           kMaxMessages.get(channel) ?? kMaxOfOthers);
         if (this.asked !== asked) return;
-        for (const path of paths) this.fill(path, frames.map(({ bytes }) => bytes));
+        for (const path of paths) this.fill(path, frames);
       } catch {
         // Refused, or no connection: live it goes on with what comes; a recording is asked again when something changes.
         if (this.isRecorded && this.asked === asked) this.asked = "";
@@ -143,23 +145,22 @@ export class Plots implements View {
     this.draw();
   }
 
-  private fill(path: Path, messages: Uint8Array[]): void {
+  private fill(path: Path, frames: readonly Frame[]): void {
     const ring = this.rings.get(path);
     if (ring === undefined) return;
     const before = Array.from({ length: ring.count }, (_, index) => [ring.time(index), ring.value(index)] as const);
-    const found = new Map<number, number>();
-    for (const bytes of messages) {
+    const found = new Map<number, { came_us: number; value: number }>();
+    for (const { bytes, utime_us: came_us } of frames) {
       try {
         const { utime_us, value } = valueInBytes(path, bytes, this.state.chosen);
         // Of a message in parts, one part holds the track; of HEALTH, one process the number.
-        if (path.startsWith("HEALTH/") ? !Number.isNaN(value) : !(Number.isNaN(value) && found.has(utime_us))) found.set(utime_us, value);
+        if (path.startsWith("HEALTH/") ? !Number.isNaN(value) : !(Number.isNaN(value) && found.has(utime_us))) found.set(utime_us, { came_us, value });
       } catch (error) {
         if (!(error instanceof Refused)) throw error;
       }
     }
-    const times = [...found.keys()].sort((a, b) => a - b);
     ring.clear();
-    for (const utime_us of times) ring.push(utime_us / 1e6, found.get(utime_us)!);
+    for (const { came_us, value } of [...found.values()].sort((a, b) => a.came_us - b.came_us)) ring.push(came_us / 1e6, value);
     if (!this.isRecorded) for (const [time_s, value] of before) ring.push(time_s, value);
   }
 
@@ -201,7 +202,8 @@ export class Plots implements View {
   }
 
   private keep(): void {
-    try { localStorage.setItem(kKey, JSON.stringify({ paths: this.paths, minutes: this.minutes } satisfies Kept)); } catch { /* a browser that keeps nothing */ }
+    const kept: Kept = { paths: this.paths, minutes: this.minutes };
+    try { localStorage.setItem(kKey, JSON.stringify(kept)); } catch { /* a browser that keeps nothing */ }
   }
 }
 

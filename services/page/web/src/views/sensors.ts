@@ -4,7 +4,7 @@ import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { duration } from "../units.js";
-import { Facts, make, setAttribute, setText } from "./dom.js";
+import { Facts, make, Pace, setAttribute, setText } from "./dom.js";
 import { type Gravity, Shape } from "./shapes.js";
 import { place } from "./track_detail.js";
 
@@ -13,7 +13,10 @@ const kEvery_ms = 500;
 const kDegree = Math.PI / 180;
 const kOld_s = 3;
 
-function deviationText(metres: number): string { return Number.isFinite(metres) ? metres < 1 ? `${(100 * metres).toFixed(0)} cm` : `${metres.toFixed(1)} m` : "–"; }
+function deviationText(metres: number): string {
+  if (!Number.isFinite(metres)) return "–";
+  return metres < 1 ? `${(100 * metres).toFixed(0)} cm` : `${metres.toFixed(1)} m`;
+}
 function signed(value: number, decimals: number): string { return Number.isFinite(value) ? `${value > 0 ? "+" : ""}${value.toFixed(decimals)}` : "–"; }
 
 export function gravityOfClock(state: number): Gravity {
@@ -54,11 +57,11 @@ export class Sensors implements View {
   private readonly fix = new Card(words.gnss);
   private readonly clock = new Card(words.lidar);
   private isVisible = false;
-  private drawn_ms = -Infinity;
+  private readonly pace = new Pace(() => { this.draw(); }, () => kEvery_ms);
 
   constructor(private readonly state: State) {
     this.element.append(this.pose.element, this.fix.element, this.clock.element);
-    state.on(["picture"], () => { if (performance.now() - this.drawn_ms >= kEvery_ms || state.showing.kind === "recorded") this.draw(); });
+    state.on(["picture"], () => { if (this.isVisible) this.pace.ask(); });
   }
 
   setVisible(isVisible: boolean): void {
@@ -69,7 +72,6 @@ export class Sensors implements View {
   private draw(): void {
     const { picture } = this.state;
     if (!this.isVisible || picture === null) return;
-    this.drawn_ms = performance.now();
     const newest_us = Math.max(...picture.times_us.values());
     const age = (channel: string) => (newest_us - (picture.times_us.get(channel) ?? NaN)) / 1e6;
     this.drawPose(picture, age("POSE"));

@@ -114,17 +114,8 @@ function of(message: { utime_us: number }, field: string): { utime_us: number; v
   return { utime_us: message.utime_us, value: read(message, field) };
 }
 
-/** Time of the measurement of a path in a picture, us since 1970 UTC. */
-export function timeIn(picture: Picture, path: Path): number {
-  const [head, process] = path.split("/");
-  switch (head) {
-    case "POSE": return picture.pose?.utime_us ?? NaN;
-    case "LIDAR_CLOCK": return picture.clock?.utime_us ?? NaN;
-    case "GNSS_FIX": return picture.fix?.utime_us ?? NaN;
-    case "HEALTH": return picture.health.find((candidate) => candidate.process === process)?.utime_us ?? NaN;
-    default: return picture.end_utime_us;
-  }
-}
+/** When the message of a path came, by the clock of whoever received it: that of the time line, and one clock for all channels. */
+export function timeIn(picture: Picture, path: Path): number { return picture.times_us.get(channelOf(path)) ?? NaN; }
 
 // One member without walking through all of them: this is done with each picture.
 function read(message: object, field: string): number {
@@ -165,6 +156,9 @@ export function unitOf(path: Path): { factor: number; unit: string } {
   const known = /_(m2|m|s|hz|deg|rpm|ppm|ns)$/.exec(name)?.[1];
   return { factor: 1, unit: known === undefined ? "" : { m2: "m²", hz: "Hz", deg: "°", rpm: "/min" }[known] ?? known };
 }
+
+/** Whether a number is a direction, 0 after 360 degrees. */
+export function isOnCircle(path: Path): boolean { return /(heading|course|bearing|azimuth)(_\w+)?_rad$/.test(path); }
 
 /** Numbers of like name and unit stand in one chart. */
 export function chartOf(path: Path): string {

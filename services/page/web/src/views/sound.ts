@@ -1,20 +1,12 @@
 // Sounds of alerts, and a screen that stays on. Both only where the browser and the user allow it.
-import * as wire from "../messages/generated.js";
 import type { State } from "../state.js";
+import type { Pattern } from "./gravity.js";
 
-export type Pattern = "caution" | "warning";
 // Tones: frequency in Hz, begin and length in s. Warning: three pairs, high. Caution: two, low. They repeat until all is acknowledged.
 const kTones: Record<Pattern, { repeat_s: number; tones: readonly (readonly [number, number, number])[] }> = {
   warning: { repeat_s: 2, tones: [0, 0.3, 0.6].flatMap((begin) => [[988, begin, 0.11], [1319, begin + 0.12, 0.14]] as const) },
   caution: { repeat_s: 6, tones: [[587, 0, 0.22], [494, 0.28, 0.3]] },
 };
-
-/** The sound that belongs to what holds and nobody has acknowledged. */
-export function patternOf(alerts: readonly Pick<wire.Alert, "level" | "state">[]): Pattern | null {
-  const active = alerts.filter((alert) => alert.state === wire.Alert.STATE_ACTIVE);
-  if (active.length === 0) return null;
-  return active.some((alert) => alert.level >= wire.Alert.LEVEL_WARNING) ? "warning" : "caution";
-}
 
 export class Sounder {
   private context: AudioContext | null = null;

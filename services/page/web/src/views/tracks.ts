@@ -2,7 +2,7 @@
 import * as wire from "../messages/generated.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
-import { button, make, placeChildren, setAttribute, setText } from "./dom.js";
+import { button, make, Pace, placeChildren, setAttribute, setText } from "./dom.js";
 import { byDanger, gravityOf, keepOrder } from "./gravity.js";
 import { Shape } from "./shapes.js";
 import { TrackDetail } from "./track_detail.js";
@@ -12,6 +12,7 @@ const words = texts.panels.tracks;
 const kColumns = ["bearing", "range", "course", "speed", "cpa", "tcpa", "rests"] as const;
 const kCapped = 40;             // rows that are shown before somebody asks for all
 const kEvery_ms = 400;          // numbers that change faster are not read
+const kEveryOfAll_ms = 1000;    // where all of many are shown
 const kStatuses = ["", "tentative", "confirmed", "coasting", "lost"];
 
 class Row {
@@ -69,7 +70,7 @@ export class Tracks implements View {
   private isVisible = false;
   private isPointedAt = false;
   private showsAll = false;
-  private drawn_ms = -Infinity;
+  private readonly pace = new Pace(() => { this.draw(); }, () => (this.rows.size > kCapped ? kEveryOfAll_ms : kEvery_ms));
 
   constructor(private readonly state: State) {
     const table = make("table", "plain-table track-table"), head = make("thead"), names = make("tr");
@@ -87,7 +88,7 @@ export class Tracks implements View {
     table.onpointerenter = () => { this.isPointedAt = true; };
     table.onpointerleave = () => { this.isPointedAt = false; state.mark({}); };
     table.onkeydown = (event) => { this.onKey(event); };
-    state.on(["picture"], () => { if (performance.now() - this.drawn_ms >= kEvery_ms || state.showing.kind === "recorded") this.draw(); });
+    state.on(["picture"], () => { if (this.isVisible) this.pace.ask(); });
     state.on(["settings", "showing"], () => { this.draw(); });
     state.on(["marked"], () => { this.drawMarks(); });
   }
@@ -100,7 +101,6 @@ export class Tracks implements View {
 
   private draw(): void {
     if (!this.isVisible) return;
-    this.drawn_ms = performance.now();
     const { picture, settings } = this.state;
     let tracks = byDanger(picture?.tracks ?? [], picture?.alert_of_track ?? new Map<number, wire.Alert>(), settings.get("shows_tentative"));
     // Rows keep their places while somebody points at them: nobody chooses a wrong one.

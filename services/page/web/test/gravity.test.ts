@@ -1,0 +1,61 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { Alert, Track } from "../src/messages/generated.js";
+import { Announcer, byDanger, byGravity, gravityOf, keepOrder, patternOf } from "../src/views/gravity.js";
+
+function alert(id: number, change: Partial<Alert> = {}): Alert {
+  return {
+    id, cause: Alert.CAUSE_CLOSEST_APPROACH, level: Alert.LEVEL_CAUTION, state: Alert.STATE_ACTIVE, track_id: id, raised_utime_us: id, changed_utime_us: id,
+    distance_m: 10, bearing_rad: 0, cpa_m: 3, tcpa_s: 20, cpa_probability: 0.5, text: `boat ${id}`, ...change,
+  };
+}
+function track(id: number, change: Partial<Track> = {}): Track {
+  return { id, status: Track.STATUS_CONFIRMED, cpa_probability: 0, tcpa_s: 0, range_m: 10 * id, ...change } as Track;
+}
+const ids = (items: { id: number }[]) => items.map(({ id }) => id);
+
+test("warnings that hold come first, acknowledged ones last, cleared ones not at all", () => {
+  const list = [
+    alert(1, { state: Alert.STATE_ACKNOWLEDGED, level: Alert.LEVEL_WARNING }), alert(2), alert(3, { level: Alert.LEVEL_WARNING }),
+    alert(4, { state: Alert.STATE_RECTIFIED, level: Alert.LEVEL_WARNING }), alert(5, { state: Alert.STATE_CLEARED }),
+  ];
+  assert.deepEqual(ids(byGravity(list)), [3, 2, 4, 1]);
+  assert.deepEqual(list.map(gravityOf), ["quiet", "caution", "warning", "warning", "quiet"]);
+});
+
+test("alerts do not change places while their times run down", () => {
+  const at = (a_s: number, b_s: number) => ids(byGravity([alert(1, { tcpa_s: a_s }), alert(2, { tcpa_s: b_s })]));
+  assert.deepEqual(at(9, 8), at(6, 7));
+  assert.deepEqual(at(50, 20), [2, 1]);
+  assert.deepEqual(ids(byGravity([alert(1, { tcpa_s: NaN }), alert(2, { tcpa_s: 60 })])), [1, 2]);
+});
+
+test("tracks stand by alert, probability, time, range", () => {
+  const tracks = [
+    track(1), track(2, { cpa_probability: 0.9, tcpa_s: 40 }), track(3, { cpa_probability: 0.9, tcpa_s: 10 }), track(4, { range_m: NaN }),
+    track(5, { status: Track.STATUS_TENTATIVE }), track(6, { status: Track.STATUS_LOST }), track(7, { status: Track.STATUS_TENTATIVE }),
+  ];
+  const alerts = new Map([[7, alert(7)]]);
+  assert.deepEqual(ids(byDanger(tracks, alerts, false)), [7, 3, 2, 1, 4]);
+  assert.deepEqual(ids(byDanger(tracks, alerts, true)), [7, 3, 2, 1, 5, 4]);
+});
+
+test("rows keep their places while somebody points at them", () => {
+  assert.deepEqual(ids(keepOrder([3, 1, 2], [{ id: 4 }, { id: 2 }, { id: 3 }])), [3, 2, 4]);
+});
+
+test("a screen reader hears an alert once, and again when it grows graver", () => {
+  const announcer = new Announcer();
+  assert.deepEqual(ids(announcer.take([alert(1)]).now), [1]);
+  for (let scan = 0; scan < 10; ++scan) assert.deepEqual(announcer.take([alert(1, { text: `in ${scan} s` })]), { now: [], later: [] });
+  assert.deepEqual(ids(announcer.take([alert(1, { level: Alert.LEVEL_WARNING })]).now), [1]);
+  assert.deepEqual(ids(announcer.take([alert(1, { level: Alert.LEVEL_WARNING, state: Alert.STATE_ACKNOWLEDGED })]).later), [1]);
+  assert.deepEqual(ids(announcer.take([alert(1, { level: Alert.LEVEL_WARNING })]).now), [1]);
+});
+
+test("only what holds and is not acknowledged sounds", () => {
+  assert.equal(patternOf([]), null);
+  assert.equal(patternOf([alert(1, { state: Alert.STATE_ACKNOWLEDGED }), alert(2, { state: Alert.STATE_RECTIFIED })]), null);
+  assert.equal(patternOf([alert(1)]), "caution");
+  assert.equal(patternOf([alert(1), alert(2, { level: Alert.LEVEL_WARNING })]), "warning");
+});

@@ -1,0 +1,63 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { Health, Track } from "../src/messages/generated.js";
+import { channelsOf, gravityOfProcess, Roll } from "../src/views/traffic.js";
+import { relative, restsOn, situation } from "../src/views/track_words.js";
+import { place } from "../src/views/track_detail.js";
+
+const kDegree = Math.PI / 180;
+const traffic = (channel: string, is_input: boolean, change: object) => ({
+  channel, is_input, num_messages: 0, num_undecodable: 0, num_lost: 0, rate_hz: 10, queue_depth: -1, queue_limit: 0, latency_p50_us: -1, latency_p99_us: -1, ...change,
+});
+const health = (process: string, channels: object[], seq = 0) => ({ process, host: "boat", seq, utime_us: seq, channels }) as unknown as Health;
+
+test("a channel is what its publisher and its readers tell together", () => {
+  const rows = channelsOf([
+    health("tracker", [traffic("SEGMENTS", true, { num_lost: 2, rate_hz: 8, queue_depth: 1, queue_limit: 30 })]),
+    health("segmenter", [traffic("SEGMENTS", false, { latency_p99_us: 5000 })]),
+    health("recorder", [traffic("SEGMENTS", true, { num_lost: 3, num_undecodable: 1, queue_depth: 9, queue_limit: 20 }), traffic("POSE", true, { rate_hz: 50 })]),
+  ]);
+  assert.deepEqual(rows.map(({ channel }) => channel), ["POSE", "SEGMENTS"]);
+  const [pose, segments] = rows;
+  assert.deepEqual(segments, {
+    channel: "SEGMENTS", publishers: ["segmenter"], readers: ["tracker", "recorder"], rate_hz: 10, num_lost: 5, num_refused: 1, latency_p50_us: -1,
+    latency_p99_us: 5000, queue_depth: 9, queue_limit: 20,
+  });
+  assert.equal(pose!.rate_hz, 50);
+});
+
+test("a process that went silent stays on the roll, with its age", () => {
+  const roll = new Roll();
+  roll.take([health("vlp16", [], 1), health("tracker", [], 1)], 0);
+  roll.take([health("vlp16", [], 1), health("tracker", [], 2)], 8000);
+  assert.deepEqual(roll.list(9000).map(({ health: { process }, age_s }) => [process, age_s]), [["tracker", 1], ["vlp16", 9]]);
+  assert.deepEqual(roll.list(700_000), []);
+});
+
+test("what is silent is a warning, whatever it said last", () => {
+  assert.equal(gravityOfProcess(Health.STATE_OK, 1), "ok");
+  assert.equal(gravityOfProcess(Health.STATE_OK, 5), "warning");
+  assert.equal(gravityOfProcess(Health.STATE_DEGRADED, 1), "caution");
+});
+
+test("bearings from the bow are said as a helmsman says them", () => {
+  assert.equal(relative(35 * kDegree), "35° stbd");
+  assert.equal(relative(325 * kDegree), "35° port");
+  assert.equal(relative(-35 * kDegree), "35° port");
+  assert.equal(relative(359.7 * kDegree), "ahead");
+  assert.equal(relative(Math.PI), "astern");
+  assert.equal(relative(NaN), "–");
+});
+
+test("what a track rests on, and its situation", () => {
+  assert.equal(restsOn({ num_seen: 14, num_looks: 15, mean_returns: 2 }), "14 of 15 scans, 2 returns");
+  assert.equal(restsOn({ num_seen: 3, num_looks: 4, mean_returns: 1.5 }), "3 of 4 scans, 1.5 returns");
+  assert.equal(situation({ status: Track.STATUS_COASTING, encounter: Track.ENCOUNTER_CROSSING_GIVE_WAY }), "crossing: give way, not seen now");
+  assert.equal(situation({ status: Track.STATUS_CONFIRMED, encounter: Track.ENCOUNTER_NONE }), "");
+});
+
+test("a place is written as on a chart", () => {
+  assert.equal(place(43.62982, -72.15), "43°37.789′N 072°09.000′W");
+  assert.equal(place(-0.9999999, 179.99999), "01°00.000′S 179°59.999′E");
+  assert.equal(place(NaN, 3), "–");
+});
