@@ -2,6 +2,9 @@
 # The demo: simulate (or take a capture), replay, run all processes live and record them, replay the recording and compare. Called by
 # ./dev demo [CAPTURE].
 set -euo pipefail
+stay=''
+if [ "${1:-}" = --stay ]; then stay=1; shift; fi
+if [ -n "$stay" ] && [ $# -gt 0 ]; then echo "--stay is for the simulated boat, without a capture" >&2; exit 2; fi
 capture=${1:+$(realpath -m -- "$1")}
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -11,6 +14,7 @@ work=build/demo
 scene=lake
 seed=1
 seconds=10
+# --stay: the simulated boat and the page go on until Ctrl-C.
 
 # shellcheck source=tools/live_processes.sh
 . tools/live_processes.sh
@@ -31,7 +35,7 @@ if [ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] && ! ip route get 239.255.76.67 >/dev/nu
   if "${isolated[@]}" true 2>/dev/null; then
     export LOOKOUT_DEMO_NAMESPACE=1
     exec "${isolated[@]}" bash -c 'ip link set lo up && ip link set lo multicast on && ip route add 239.255.76.0/24 dev lo && exec "$0" "$@"' \
-      "$PWD/tools/demo.sh" ${capture:+"$capture"}
+      "$PWD/tools/demo.sh" ${stay:+--stay} ${capture:+"$capture"}
   fi
   echo "LCM needs a multicast route and there is none. As root: ip route add 239.255.76.0/24 dev lo" >&2
   exit 1
@@ -108,6 +112,12 @@ for port in $(seq 10111 10130); do
   printf 'output { name: "demo" format: NMEA0183 tcp_server { bind_address: "127.0.0.1" port: %s } }\n' "$port" >>"$live_config/plotter.txtpb"
   break
 done
+# And one for the page; its secret and its last minutes lie in the demo's folder.
+for port in $(seq 7668 7690); do
+  (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null && continue
+  printf 'port: %s\ntoken_file: "../page-token"\nlook_back_folder: "../look-back"\n' "$port" >>"$live_config/page.txtpb"
+  break
+done
 if [ -n "$capture" ]; then
   # The lidar's process reads the capture at the speed at which it was recorded.
   sed -i 's/^source: UDP/source: CAPTURE/' "$live_config/vlp16.txtpb"
@@ -130,7 +140,7 @@ trap cleanup EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 # Those that take before those that give: nobody misses a first message.
-for service in recorder plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+for service in recorder page plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
 lidar=${live_pids[vlp16]}
 if [ -n "$capture" ]; then
   echo "vlp16 plays $capture (at most 60 s of it)"
@@ -195,6 +205,7 @@ log       $log
           play it:      lcm-logplayer $log
           again:        $bin/lookout-replay --config $config --in $log --out again.lcmlog
           tables:       $bin/lookout-export --in $log --table obstacles (tracks, alerts, ...)
+          in a browser: $bin/lookout-page --log $log
           watch it:     $bin/lookout-top in a terminal, then lcm-logplayer in another$route_hint
 picture   $picture${voyage:+ (one scan), $voyage (the whole log: tracks, land, alerts)}
           open it in a browser, or: xdg-open $picture
@@ -204,3 +215,17 @@ if [ -z "$is_equal" ]; then
   echo "the recording and its replay differ: see above" >&2
   exit 1
 fi
+[ -n "$stay" ] || exit 0
+
+say "the boat goes on, live: open the page in a browser; Ctrl-C ends it"
+trap cleanup EXIT
+trap 'exit 0' INT TERM
+for service in recorder page plotter tracker georeferencer segmenter navigator vlp16; do start "$service" "$live_config" "$work/$service.out"; done
+"$bin/lookout-page" --link --config "$live_config"
+[ -z "${LOOKOUT_DEMO_NAMESPACE:-}" ] || echo "But this demo runs in a network of its own, which no browser reaches. As root: ip route add 239.255.76.0/24 dev lo; then again." >&2
+while :; do
+  "$bin/lookout-sim" --config "$live_config" --scene "$scene" --seed "$seed" --seconds 600 --udp 127.0.0.1 &
+  simulator=$!
+  wait "$simulator"
+  seed=$((seed + 1))
+done

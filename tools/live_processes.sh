@@ -26,7 +26,7 @@ start() {
 # recorder, which ends last, has it all.
 stop_all() {
   local name i
-  for name in vlp16 navigator segmenter georeferencer tracker plotter recorder; do
+  for name in vlp16 navigator segmenter georeferencer tracker plotter page recorder; do
     [ -n "${live_pids[$name]:-}" ] || continue
     kill -TERM "${live_pids[$name]}" 2>/dev/null || true
     for ((i = 0; i < 240; ++i)); do

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -139,7 +140,7 @@ class StreamReceiver {
     }
     if (!is_guarded_ || !bus_.is_guarded()) {
       if (is_numbered_) CountLost(*message);
-      handler_(*message);
+      HandOut(*message, bytes);
       return;
     }
     const auto now = bus_.GuardNow();
@@ -149,7 +150,7 @@ class StreamReceiver {
     if (decision.held == StreamGuard::Held::kRefuse) ClearHeld();
     if (decision.act == StreamGuard::Act::kHold) Hold(std::move(*message), bytes.size(), now);
     NoteRefused(now);
-    if (decision.act == StreamGuard::Act::kTake) handler_(*message);
+    if (decision.act == StreamGuard::Act::kTake) HandOut(*message, bytes);
   }
 
   void Release(bool is_end) {
@@ -171,6 +172,15 @@ class StreamReceiver {
     std::size_t num_bytes;
   };
 
+  static constexpr bool kWantsBytes = std::is_invocable_v<Handler, const T&, Bytes>;
+
+  void HandOut(const T& message, Bytes bytes) {
+    if constexpr (kWantsBytes) {
+      handler_(message, bytes);
+    } else {
+      handler_(message);
+    }
+  }
   void CountLost(const T& message) {
     if constexpr (requires { message.part_index; }) {
       traffic_.num_lost += sequence_.NumLostBefore(message.seq, message.part_index, message.num_parts);
@@ -190,7 +200,13 @@ class StreamReceiver {
   void HandleHeld() {
     const auto held = std::move(held_);
     ClearHeld();
-    for (const auto& entry : held) handler_(entry.message);
+    for (const auto& entry : held) {
+      if constexpr (kWantsBytes) {
+        HandOut(entry.message, Encode(entry.message));
+      } else {
+        handler_(entry.message);
+      }
+    }
   }
   void ClearHeld() {
     held_.clear();
@@ -219,7 +235,8 @@ void Publish(Bus& bus, const Channel& channel, const T& message) {
 }
 
 /// Calls `handler` for each message on `channel` that decodes to T; the others are counted. Gaps in seq are counted. On a bus that is guarded those
-/// of a second publisher are refused and counted, and a new start of the publisher is handed out up to a second late.
+/// of a second publisher are refused and counted, and a new start of the publisher is handed out up to a second late. A handler that takes Bytes as
+/// well gets the message as it was on the bus, too.
 template <typename T, typename Handler>
 void Subscribe(Bus& bus, const Channel& channel, Handler handler) {
   auto receiver = std::make_shared<StreamReceiver<T, Handler>>(bus, channel, std::move(handler));

@@ -1,6 +1,7 @@
 #include "common/bus/log_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@ constexpr auto kMaxDataBytes = static_cast<std::int64_t>(kMaxLogDataBytes);
 // Read or written at once: system calls cost more than the copy. A scan's messages are larger: those that nobody wants are passed over.
 constexpr std::size_t kReadBytes = 64 * 1024;
 constexpr std::size_t kJumpBytes = 4 * 1024;
+constexpr std::size_t kWorthAJumpBytes = 16 * 1024;
 constexpr std::size_t kWriteBytes = 16 * 1024;
 
 std::uint64_t ReadBigEndian(Bytes bytes, std::size_t offset, std::size_t size) {
@@ -33,6 +35,8 @@ std::int64_t ReadI32(Bytes bytes, std::size_t offset) { return static_cast<std::
 }  // namespace
 
 struct LogReader::Implementation {
+  using NumWanted = std::function<std::size_t(std::string_view channel)>;
+
   ~Implementation() {
     if (descriptor >= 0) close(descriptor);
   }
@@ -43,7 +47,8 @@ struct LogReader::Implementation {
   // A stretch of the file: events follow each other, and what stands behind an event is looked at twice.
   std::vector<std::uint8_t> block;
   std::int64_t block_offset = 0;
-  std::string channel;  // of the event that was given last
+  std::string channel;             // of the event that was given last
+  std::vector<std::uint8_t> kept;  // its beginning, where what follows it was passed over
   std::function<void()> on_search;
 
   // @param least_bytes  to be read if any are
@@ -70,7 +75,7 @@ struct LogReader::Implementation {
   }
 
   // The event that begins at `start`, and `position` behind it; nullopt when there is no whole one.
-  std::optional<LogEventView> EventAt(std::int64_t start, const std::function<bool(std::string_view channel)>& is_wanted) {
+  std::optional<LogEventView> EventAt(std::int64_t start, const NumWanted& num_wanted) {
     const Bytes header = View(start, kLogEventHeaderBytes);
     if (header.size() < kLogEventHeaderBytes || ReadBigEndian(header, 0, 4) != kLogSyncWord) return std::nullopt;
     const auto time = UtimeFromWire(static_cast<std::int64_t>(ReadBigEndian(header, 12, 8)));
@@ -85,13 +90,37 @@ struct LogReader::Implementation {
     const Bytes head = View(start, head_size);
     if (head.size() < head_size) return std::nullopt;
     channel.assign(head.begin() + kLogEventHeaderBytes, head.end());  // what stands behind the event may be another stretch
-    const bool has_data = is_wanted(channel);
-    if (has_data) View(start, size + sizeof(kLogSyncWord));  // one stretch for all
-    if (!IsWhole(start, end, has_data ? kReadBytes : kJumpBytes)) return std::nullopt;
-    const Bytes whole = has_data ? View(start, size) : Bytes();
-    if (has_data && whole.size() < size) return std::nullopt;
+    const std::size_t given_size = std::min(num_wanted(channel), static_cast<std::size_t>(data_size));
+    const bool is_jump = size - head_size - given_size >= kWorthAJumpBytes;
+    const bool is_whole_given = given_size > 0 && !is_jump;
+    if (is_whole_given) View(start, size + sizeof(kLogSyncWord));  // one stretch for all
+    if (given_size > 0 && is_jump) {
+      const Bytes given = View(start, head_size + given_size);
+      if (given.size() < head_size + given_size) return std::nullopt;
+      kept.assign(given.begin() + static_cast<std::ptrdiff_t>(head_size), given.end());  // the stretch at the end may be another
+    }
+    if (!IsWhole(start, end, is_whole_given ? kReadBytes : kJumpBytes)) return std::nullopt;
+    Bytes data;
+    if (is_whole_given) {
+      const Bytes whole = View(start, head_size + given_size);
+      if (whole.size() < head_size + given_size) return std::nullopt;
+      data = whole.subspan(head_size);
+    } else if (given_size > 0) {
+      data = kept;
+    }
     position = end;
-    return LogEventView{*time, channel, has_data ? whole.subspan(head_size) : Bytes()};
+    return LogEventView{*time, channel, data, start, static_cast<std::size_t>(data_size)};
+  }
+
+  // Whether an event begins at `start` and the file ends before it does.
+  bool IsUnfinishedAt(std::int64_t start) {
+    const Bytes header = View(start, kLogEventHeaderBytes);
+    if (header.size() < kLogEventHeaderBytes) return header.size() < 4 || ReadBigEndian(header, 0, 4) == kLogSyncWord;
+    const std::int64_t channel_size = ReadI32(header, 20);
+    const std::int64_t data_size = ReadI32(header, 24);
+    if (ReadBigEndian(header, 0, 4) != kLogSyncWord || channel_size <= 0 || channel_size > kMaxChannelBytes) return false;
+    if (data_size < 0 || data_size > kMaxDataBytes) return false;
+    return start + static_cast<std::int64_t>(kLogEventHeaderBytes) + channel_size + data_size > size_bytes;
   }
 
   // Whether the event from `start` to `end` is one event. A damaged length that fits in the file would swallow events behind it: then no
@@ -133,6 +162,11 @@ std::int64_t LogReader::position_bytes() const { return implementation_->positio
 
 std::int64_t LogReader::size_bytes() const { return implementation_->size_bytes; }
 
+void LogReader::UpdateSize() {
+  struct stat state {};
+  if (fstat(implementation_->descriptor, &state) == 0) implementation_->size_bytes = state.st_size;
+}
+
 void LogReader::Seek(std::int64_t position_bytes) { implementation_->position = position_bytes; }
 
 std::optional<LogEvent> LogReader::Next() {
@@ -142,15 +176,25 @@ std::optional<LogEvent> LogReader::Next() {
 }
 
 std::optional<LogEventView> LogReader::NextView(const std::function<bool(std::string_view channel)>& is_wanted) {
+  return NextHead([&is_wanted](std::string_view channel) { return is_wanted(channel) ? kMaxLogDataBytes : 0; });
+}
+
+std::optional<LogEventView> LogReader::NextHead(const std::function<std::size_t(std::string_view channel)>& num_wanted) {
   auto& in = *implementation_;
   bool is_resynchronising = false;
   while (in.position < in.size_bytes) {
-    if (const auto event = in.EventAt(in.position, is_wanted)) return event;
+    if (const auto event = in.EventAt(in.position, num_wanted)) return event;
     if (!is_resynchronising) ++num_damaged_;
     is_resynchronising = true;
     in.position = in.FindSync(in.position + 1);
   }
   return std::nullopt;
+}
+
+std::optional<LogEventView> LogReader::NextHeadSoFar(const std::function<std::size_t(std::string_view channel)>& num_wanted) {
+  auto& in = *implementation_;
+  if (in.IsUnfinishedAt(in.position)) return std::nullopt;
+  return NextHead(num_wanted);
 }
 
 void AppendLogEvent(std::vector<std::uint8_t>& log, std::int64_t number, Utime time, std::string_view channel, Bytes bytes) {

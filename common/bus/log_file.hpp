@@ -38,6 +38,8 @@ struct LogEventView {
   Utime time;
   std::string_view channel;
   Bytes bytes;
+  std::int64_t position_bytes = 0;  // of the event in the file
+  std::size_t num_data_bytes = 0;   // of the whole message; `bytes` may be its beginning
 };
 
 class LogReader {
@@ -55,12 +57,23 @@ class LogReader {
   /// The same without a copy. Of events on a channel that is not wanted the bytes are not read: they come without.
   std::optional<LogEventView> NextView(const std::function<bool(std::string_view channel)>& is_wanted);
 
+  /// The same, and of an event only the beginning is read.
+  /// @param num_wanted  how many of an event's bytes are wanted, by its channel
+  std::optional<LogEventView> NextHead(const std::function<std::size_t(std::string_view channel)>& num_wanted);
+
+  /// For a log that is being written.
+  /// @return the next event; nullopt where the file ends, or ends in an event that is not whole yet: that is no damage, and is asked for again
+  std::optional<LogEventView> NextHeadSoFar(const std::function<std::size_t(std::string_view channel)>& num_wanted);
+
   /// Damaged stretches, and a torn event at the end.
   std::int64_t num_damaged() const { return num_damaged_; }
 
   /// Where in the file the next event is looked for: behind the last one. Between two events bytes that belong to none are damage.
   std::int64_t position_bytes() const;
   std::int64_t size_bytes() const;
+
+  /// Looks how long the file is now: it may have grown.
+  void UpdateSize();
 
   /// Goes on at a place that position_bytes() gave in front of an event.
   void Seek(std::int64_t position_bytes);

@@ -18,7 +18,7 @@ struct ServiceRow {
   std::string_view needs;   // logs: writes to /var/lib/lookout; serial: opens serial ports; network: nothing else
   std::string_view hangup;  // what SIGHUP (systemctl reload) does
   std::string_view state;   // what it remembers from message to message, and loses when it restarts
-  std::array<const Channel*, 8> inputs{};  // nullptr: no more. The recorder reads every channel
+  std::array<const Channel*, 16> inputs{};  // nullptr: no more. The recorder reads every channel
 };
 
 // Readers stand behind the publishers of what they read. A boat starts them in the reverse order, so that no reader misses a first message.
@@ -41,6 +41,14 @@ inline constexpr std::array kServices{
                "checks the config",
                "target numbers, what was told to whom",
                {&kTracks, &kAlerts, &kPose}},
+    ServiceRow{"page",
+               "the look-out in a browser",
+               10,
+               "logs",
+               "checks the config",
+               "who watches, the last minutes where no recorder runs",
+               {&kLidarScan, &kLidarClock, &kSegments, &kGnssFix, &kAttitude, &kPose, &kObstacles, &kTracks, &kAlerts, &kMap, &kAlertAck, &kHealth,
+                &kRunInfo}},
     ServiceRow{"recorder", "every channel into a log", 60, "logs", "new log", "queue of what is not yet written", {}}};
 
 /// The input from which replay computes the service's other outputs, if it publishes one: it holds all that the service consumed.

@@ -23,6 +23,7 @@
 #include "config/schema/georeferencer.pb.h"
 #include "config/schema/navigator.pb.h"
 #include "config/schema/options.pb.h"
+#include "config/schema/page.pb.h"
 #include "config/schema/plotter.pb.h"
 #include "config/schema/recorder.pb.h"
 #include "config/schema/scene.pb.h"
@@ -53,7 +54,7 @@ std::string NumberText(double value) {
 const Descriptor* FindSchema(const std::string& schema_file) {
   for (const auto* descriptor :
        {Boat::descriptor(), Vlp16::descriptor(), Segmenter::descriptor(), Navigator::descriptor(), Georeferencer::descriptor(), Tracker::descriptor(),
-        Plotter::descriptor(), Recorder::descriptor(), Scene::descriptor(), Evidence::descriptor()}) {
+        Plotter::descriptor(), Page::descriptor(), Recorder::descriptor(), Scene::descriptor(), Evidence::descriptor()}) {
     if (descriptor->file()->name() == schema_file) return descriptor;
   }
   return nullptr;

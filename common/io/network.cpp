@@ -72,6 +72,31 @@ bool ReachesThisComputer(const std::string& text) {
   return reaches;
 }
 
+std::vector<IpAddress> OwnAddresses() {
+  std::vector<IpAddress> addresses;
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) return addresses;
+  for (const auto* item = list; item != nullptr; item = item->ifa_next) {
+    if (item->ifa_addr == nullptr || (item->ifa_flags & IFF_UP) == 0) continue;
+    std::array<char, INET6_ADDRSTRLEN> text{};
+    if (item->ifa_addr->sa_family == AF_INET) {
+      inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(item->ifa_addr)->sin_addr, text.data(), text.size());
+    } else if (item->ifa_addr->sa_family == AF_INET6) {
+      inet_ntop(AF_INET6, &reinterpret_cast<const sockaddr_in6*>(item->ifa_addr)->sin6_addr, text.data(), text.size());
+    }
+    const auto address = ParseIpAddress(text.data());
+    if (address && std::ranges::find(addresses, *address) == addresses.end()) addresses.push_back(*address);
+  }
+  freeifaddrs(list);
+  return addresses;
+}
+
+bool IsLoopback(const IpAddress& address) {
+  constexpr int kLoopbackNet = 127;
+  if (address.is_ipv4()) return address.bytes[kMappedPrefix.size()] == kLoopbackNet;
+  return address == ParseIpAddress("::1");
+}
+
 bool IsInterfaceUp(const std::string& interface) {
   const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (descriptor < 0) return false;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/core/utime.hpp"
 
@@ -31,6 +32,12 @@ std::string ToText(const IpAddress& address);
 ///
 /// @param text  numeric; anything else does not
 bool ReachesThisComputer(const std::string& text);
+
+/// Addresses of this computer's interfaces that are up, loopback among them, each once.
+std::vector<IpAddress> OwnAddresses();
+
+/// Of this computer alone: 127.0.0.0/8 or ::1.
+bool IsLoopback(const IpAddress& address);
 
 bool IsInterfaceUp(const std::string& interface);
 

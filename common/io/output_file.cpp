@@ -363,6 +363,8 @@ void OutputFile::Write(std::string_view text) { implementation_->Add(text.data()
 
 std::ostream& OutputFile::stream() { return implementation_->stream; }
 
+void OutputFile::Flush() { implementation_->WriteOut(); }
+
 int OutputFile::descriptor() const { return implementation_->descriptor; }
 
 void OutputFile::Prepare() { implementation_->Prepare(); }

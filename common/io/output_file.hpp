@@ -47,6 +47,9 @@ class OutputFile {
   /// The same as a stream, which throws what Write throws. The stream formats as the "C" locale does.
   std::ostream& stream();
 
+  /// Hands to the kernel what was written: who reads FILE.partial finds it. @throws as Write
+  void Flush();
+
   /// For a library that writes by itself. Nothing may be written by the above then.
   int descriptor() const;
 

@@ -418,6 +418,23 @@ void WriteAnswers(const Folder& folder) {
                                     R"({"state":"alarm","method":[],"status":{"silenced":true,"acknowledged":true}}}]}]})"));
 }
 
+// What a browser asks the page's server for, and headers of its requests.
+void WritePageRequests(const Folder& folder) {
+  folder.Write("watch", std::string(R"({"op":"watch","channels":["LIDAR_SCAN","TRACKS"]})"));
+  folder.Write("got", std::string(R"({"op":"got","frames":12})"));
+  folder.Write("at", std::string(R"({"op":"at","id":7,"source":1,"utime_us":1781618400000000,"channels":["TRACKS"]})"));
+  folder.Write("scan", std::string(R"({"op":"at","id":7,"source":1,"scan_utime_us":1781618400000000,"channels":[]})"));
+  folder.Write("step", std::string(R"({"op":"step","id":8,"source":0,"utime_us":1781618400000000,"scans":-1,"channels":["POSE"]})"));
+  folder.Write("range", std::string(R"({"op":"range","id":9,"source":0,"channel":"POSE","from_utime_us":1,"to_utime_us":2,"max_messages":500})"));
+  folder.Write("strip", std::string(R"({"op":"strip","id":9,"source":0,"from_utime_us":1,"to_utime_us":2,"buckets":800})"));
+  folder.Write("acknowledgement", std::string(R"({"alert_id":7,"raised_utime_us":1781618400000000})"));
+  folder.Write("host", std::string("[::1]:8080"));
+  folder.Write("origin", std::string("http://localhost:8080"));
+  folder.Write("token", std::string("Bearer token"));
+  folder.Write("tile", std::string("/tiles/12/2200/1500"));
+  folder.Write("encoding", std::string("gzip;q=0.5, deflate, br;q=0"));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -439,6 +456,7 @@ int main(int argc, char** argv) try {
   WritePatches(Folder(root / "fuzz_tracker"));
   WritePointFiles(Folder(root / "fuzz_point_file"));
   WriteMaps(Folder(root / "fuzz_map_file"));
+  WritePageRequests(Folder(root / "fuzz_page_request"));
   WriteConfigs(Folder(root / "fuzz_config"), argv[2]);
   return 0;
 } catch (const std::exception& error) {

@@ -55,6 +55,8 @@ std::string KindOf(const std::string& include) {
                                                                           {"CLI/", "cli"},
                                                                           {"openssl/", "openssl"},
                                                                           {"nlohmann/", "nlohmann-json"},
+                                                                          {"sqlite3.h", "sqlite"},
+                                                                          {"qrencode.h", "qrencode"},
                                                                           {"systemd/", "systemd"},
                                                                           {"Eigen/", "eigen"},
                                                                           {"GeographicLib/", "geographiclib"},
@@ -90,6 +92,13 @@ const std::vector<Rule>& Rules() {
       {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
       // What it makes is text.
       {"services/plotter/core/.*", {"common/core", "OWN/core", "fmt", "nlohmann-json"}},
+      // What a browser says and is told is JSON, and names channels.
+      {"services/page/core/.*", {"common/core", "common/bus", "OWN/core", "nlohmann-json"}},
+      {"services/page/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost"}},
+      // Logs as an index, and the boat out of the config in RUN_INFO.
+      {"services/page/film/boat_text\\..pp", {"common/config", "common/messages", "OWN/film", "config types", "nlohmann-json"}},
+      {"services/page/film/.*",
+       {"common/core", "common/bus", "common/messages", "common/io", "OWN/core", "OWN/film", "wire types", "fmt", "nlohmann-json"}},
       {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
       {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
       {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
@@ -106,6 +115,15 @@ const std::vector<Rule>& Rules() {
       {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
       // One language each, over a link.
       {"services/plotter/([a-z0-9_]+_)?outputs?\\..pp", {"common/core", "OWN", "OWN/core", "OWN/io"}},
+      // The page: messages to browsers go by its own server.
+      {"services/page/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "OWN/io", "wire types"}},
+      {"services/page/tiles\\..pp", {"common/core", "OWN", "OWN/io", "fmt", "nlohmann-json", "sqlite"}},
+      {"services/page/token\\..pp", {"common/core", "common/io", "OWN", "fmt"}},
+      {"services/page/announcement\\..pp", {"common/core", "OWN", "fmt", "qrencode"}},
+      {"services/page/(assets|server_link)\\.hpp", {"common/core", "OWN/io"}},
+      {"services/page/(main|film_mode)\\..pp",
+       {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "OWN/film", "spdlog", "fmt",
+        "cli"}},
       // MAP, and the file that it may begin with.
       {"services/tracker/map_(wire|telling)\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
       {"services/tracker/map_file\\..pp", {"common/core", "OWN", "OWN/core", "fmt", "nlohmann-json"}},

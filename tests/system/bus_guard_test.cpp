@@ -189,7 +189,7 @@ TEST_F(BusGuard, ADatagramBeforeTheFirstMessageEndsNoProcessEither) {
   int num_dead = 0;
   constexpr int kRounds = 5;
   for (int round = 0; round < kRounds; ++round) {
-    for (const std::string service : {"segmenter", "georeferencer", "tracker", "plotter", "recorder"}) {
+    for (const std::string service : {"segmenter", "georeferencer", "tracker", "plotter", "page", "recorder"}) {
       Start(service);
       const auto& child = children_[service];
       WaitUntil([&] { return !child->IsRunning() || child->Output().find("starts, version") != std::string::npos; });

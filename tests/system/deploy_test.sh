@@ -80,14 +80,14 @@ message("start order: ${start_order}")
 TEXT
 units() { cmake -DSOURCE="$source_folder" -DWORK="$work" -P "$work/units.cmake" 2>&1; }
 sed 's/^    ServiceRow{"recorder"/    ServiceRow{"fuser", "obstacles of two lidars", 12,\n               "network", "none", "none", {\&kObstacles}},\n&/' "$source_folder/common/bus/services.hpp" >"$work/services.hpp"
-grep -qxF 'start order: recorder;fuser;plotter;tracker;georeferencer;navigator;segmenter;vlp16' <(units) || { units; fail "the start order with a row more"; }
+grep -qxF 'start order: recorder;fuser;page;plotter;tracker;georeferencer;navigator;segmenter;vlp16' <(units) || { units; fail "the start order with a row more"; }
 grep -qxF 'Description=Lookout fuser: obstacles of two lidars' "$work/units/lookout-fuser.service" || fail "a row more has no unit"
 grep -qxF 'WatchdogSec=12s' "$work/units/lookout-fuser.service" || fail "the watchdog of a row more"
 grep -q 'After=.* lookout-fuser.service' "$work/units/lookout-georeferencer.service" || fail "a row more is not started before what it reads from"
 grep -q 'Wants=.* lookout-fuser.service ' "$work/units/lookout.target" || fail "a row more is not in the target"
 sed -i 's/"obstacles of two lidars", 12/"obstacles of two lidars", 12.5/' "$work/services.hpp"
 if units >"$work/refused.txt"; then fail "a wrong row is accepted"; fi
-grep -q '7 of 8 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
+grep -q '8 of 9 rows' "$work/refused.txt" || { cat "$work/refused.txt"; fail "a wrong row is not told"; }
 
 up=$build_folder/bin/lookout-up
 config=$work/config
@@ -95,7 +95,7 @@ cp -r "$source_folder/config/demo" "$config"
 "$up" --help >/dev/null || fail "--help"
 "$up" --version | grep -q '^lookout-up [0-9]' || fail "--version"
 "$up" --config "$config" --check >"$work/check.txt" || fail "--check of the demo"
-for name in recorder plotter tracker georeferencer segmenter navigator vlp16; do
+for name in recorder page plotter tracker georeferencer segmenter navigator vlp16; do
   grep -q "^# lookout-$name\$" "$work/check.txt" || fail "--check does not tell of $name"
 done
 code=0; "$up" 2>/dev/null || code=$?; [ "$code" -eq 2 ] || fail "no --config: exit code $code"

@@ -167,7 +167,7 @@ TEST_F(HangupTest, AHangupWithAWrongConfigGoesOnAndWithARightOneStartsAgain) {
 }
 
 TEST_F(HangupTest, ThoseWithoutSourcesCheckANewConfigAndKeepTheOldOne) {
-  for (const std::string name : {"segmenter", "georeferencer", "tracker", "plotter"}) {
+  for (const std::string name : {"segmenter", "georeferencer", "tracker", "plotter", "page"}) {
     const auto file = folder_ / (name + ".txtpb");
     fs::copy_file(kDemoConfig / "segmenter.txtpb", folder_ / "segmenter.txtpb", fs::copy_options::overwrite_existing);  // which the tracker reads too
     fs::copy_file(kDemoConfig / (name + ".txtpb"), file, fs::copy_options::overwrite_existing);

@@ -106,7 +106,7 @@ TEST_F(HostileText, OfAConfigReachesNoTerminalAsAnEscapeSequence) {
 TEST_F(HostileText, AsAConfigThatIsAFifoIsRefused) {
   fs::remove(folder_ / "config/boat.txtpb");
   ASSERT_EQ(mkfifo(Path("config/boat.txtpb").c_str(), 0600), 0);
-  for (const char* program : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "plotter", "recorder", "replay", "doctor"}) {
+  for (const char* program : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "plotter", "page", "recorder", "replay", "doctor"}) {
     const auto result = Run(program, {"--config", Path("config"), "--check"});
     EXPECT_EQ(result.exit_code, 2) << program << result.output;
     EXPECT_NE(result.output.find("boat.txtpb:1: file: is no regular file"), std::string::npos) << program << result.output;

@@ -27,6 +27,7 @@ fi
 # A test that is killed leaves its folder to a later one: what is two days old is of no test that still runs.
 find "${TMPDIR:-/tmp}" -maxdepth 1 -user "$(id -u)" -name 'lookout_test.*' -mtime +1 -exec rm -rf {} + 2>/dev/null || true
 TMPDIR=$(mktemp -d -t lookout_test.XXXXXX)
-export TMPDIR
+# The state of processes (the page's token) is of this test too.
+export TMPDIR XDG_STATE_HOME="$TMPDIR/state"
 # No exec: the first process of a namespace gets no SIGINT and no SIGABRT, which a test must.
-exec "${isolated[@]}" bash -c "$prepare"' && "$@"; code=$?; rmdir --ignore-fail-on-non-empty "$TMPDIR"; exit $code' bash "$@"
+exec "${isolated[@]}" bash -c "$prepare"' && "$@"; code=$?; rm -rf "$XDG_STATE_HOME"; rmdir --ignore-fail-on-non-empty "$TMPDIR"; exit $code' bash "$@"

@@ -75,11 +75,11 @@ class Watch {
   std::map<std::string, std::set<std::int32_t>> pids_;
 };
 
-// The channel by which a process shows that it works again; the recorder shows it by a log, and the plotter by its HEALTH alone.
+// The channel by which a process shows that it works again; the recorder shows it by a log, page and plotter by their HEALTH alone.
 const bus::Channel& OutputOf(const std::string& process) {
   static const std::map<std::string, const bus::Channel*> kOutputs{
-      {"recorder", &bus::kObstacles}, {"plotter", &bus::kHealth}, {"tracker", &bus::kAlerts}, {"georeferencer", &bus::kObstacles},
-      {"segmenter", &bus::kSegments}, {"navigator", &bus::kPose}, {"vlp16", &bus::kLidarScan}};
+      {"recorder", &bus::kObstacles},      {"page", &bus::kHealth},        {"plotter", &bus::kHealth}, {"tracker", &bus::kAlerts},
+      {"georeferencer", &bus::kObstacles}, {"segmenter", &bus::kSegments}, {"navigator", &bus::kPose}, {"vlp16", &bus::kLidarScan}};
   return *kOutputs.at(process);
 }
 

@@ -75,6 +75,9 @@ Findings CheckProcesses(const Observations& seen);
 /// Of each output of the plotter: whether those to whom it sends take it.
 Findings CheckPlotter(const Observations& seen);
 
+/// Who sees the page, whether it has its port, its token, its map and room for the last minutes.
+Findings CheckPage(const Observations& seen);
+
 /// All of the above, in the order in which one depends on the other.
 Findings CheckAll(const Observations& seen);
 

@@ -13,7 +13,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -24,6 +26,9 @@
 #include "common/config/text_config.hpp"
 #include "common/runtime/process.hpp"
 #include "services/georeferencer/params.hpp"
+#include "services/page/params.hpp"
+#include "services/page/tiles.hpp"
+#include "services/page/token.hpp"
 #include "services/plotter/params.hpp"
 #include "services/recorder/params.hpp"
 #include "services/segmenter/params.hpp"
@@ -128,6 +133,11 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   seen.has_plotter_outputs = false;
   if (fs::exists(config_folder / "plotter.txtpb")) {
     check("plotter.txtpb", [&] { seen.has_plotter_outputs = !plotter::LoadParams(config_folder).outputs.empty(); });
+  }
+  if (fs::exists(config_folder / "page.txtpb")) {
+    check("page.txtpb", [&] { seen.page = page::LoadParams(config_folder); });
+  } else {
+    config::FaultList().Try([&] { seen.page = page::LoadParams(config_folder); });
   }
   check("recorder.txtpb", [&] {
     const auto params = recorder::LoadParams(config_folder);
@@ -275,6 +285,58 @@ PortSeen ReadPort(const BusSeen& bus) {
 bool IsHostClockSet() {
   timex state{};  // modes 0: only asks
   return adjtimex(&state) != TIME_ERROR;
+}
+
+namespace {
+
+// Whether nobody else could listen there now.
+bool IsTaken(const std::string& bind_address, int port) {
+  const auto address = io::ParseIpAddress(bind_address);
+  if (!address) return false;
+  const bool is_v6 = bind_address.find(':') != std::string::npos;
+  const int descriptor = socket(is_v6 ? AF_INET6 : AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  sockaddr_in v4{};
+  v4.sin_family = AF_INET;
+  v4.sin_port = htons(static_cast<std::uint16_t>(port));
+  inet_pton(AF_INET, bind_address.c_str(), &v4.sin_addr);
+  sockaddr_in6 v6{};
+  v6.sin6_family = AF_INET6;
+  v6.sin6_port = v4.sin_port;
+  inet_pton(AF_INET6, bind_address.c_str(), &v6.sin6_addr);
+  const int result = is_v6 ? bind(descriptor, reinterpret_cast<const sockaddr*>(&v6), sizeof v6)
+                           : bind(descriptor, reinterpret_cast<const sockaddr*>(&v4), sizeof v4);
+  const bool is_taken = result != 0 && errno == EADDRINUSE;
+  close(descriptor);
+  return is_taken;
+}
+
+std::string FaultOf(const std::function<void()>& open) {
+  try {
+    open();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+PageSeen ReadPage(const ConfigSeen& config) {
+  PageSeen seen;
+  if (!config.page) return seen;
+  const auto& params = *config.page;
+  seen.is_port_taken = IsTaken(params.bind_address, params.port);
+  std::error_code error;
+  // The one in the state folder is that of the process's user: another one is looked at in vain.
+  if (params.allows_acknowledgements && fs::exists(params.token_file, error)) seen.token_fault = FaultOf([&] { page::ReadToken(params.token_file); });
+  if (!params.map_file.empty()) seen.map_fault = FaultOf([&] { const page::Tiles tiles(params.map_file); });
+  if (!params.spool_folder.empty()) {
+    const auto space = fs::space(Existing(params.spool_folder), error);
+    if (!error) seen.free_bytes = static_cast<std::int64_t>(space.available);
+  }
+  return seen;
 }
 
 DiskSeen ReadDisk(const Observations& seen) {

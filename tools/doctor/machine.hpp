@@ -46,6 +46,9 @@ std::vector<InterfaceSeen> ReadInterfaces();
 /// Whether something steers this computer's clock (the kernel's state, as NTP and PPS set it).
 bool IsHostClockSet();
 
+/// What the page needs: its port, its token's file, its map, room.
+PageSeen ReadPage(const ConfigSeen& config);
+
 /// Of the log folder; the rate stays as it is in `seen`. A recorder that runs shows where a relative folder is.
 DiskSeen ReadDisk(const Observations& seen);
 

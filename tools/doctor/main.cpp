@@ -61,6 +61,7 @@ lookout::doctor::Observations Observe(const Options& options) {
   seen.interfaces = doctor::ReadInterfaces();
   seen.is_host_clock_set = doctor::IsHostClockSet();
   seen.disk = doctor::ReadDisk(seen);
+  seen.page = lookout::doctor::ReadPage(seen.config);
   return seen;
 }
 

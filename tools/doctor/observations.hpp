@@ -19,6 +19,7 @@
 #include "lookout/lidar_clock_t.hpp"
 #include "lookout/pose_t.hpp"
 #include "services/navigator/params.hpp"
+#include "services/page/params.hpp"
 #include "services/vlp16/params.hpp"
 
 namespace lookout::doctor {
@@ -32,6 +33,7 @@ struct ConfigSeen {
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
   std::int64_t log_reserve_bytes = 0;               // which the recorder leaves free
   bool has_plotter_outputs = true;                  // without one lookout-plotter need not run
+  std::optional<page::Params> page;
 };
 
 /// The bus, before anything is heard on it.
@@ -127,6 +129,14 @@ struct LookOutSeen {
   Utime alerts_heard{};
 };
 
+/// What the page needs of this computer, as far as this user may look.
+struct PageSeen {
+  bool is_port_taken = false;    // by anybody; ours while the page runs here
+  std::string token_fault;       // empty: it is right, or will be made
+  std::string map_fault;         // empty: it is right, or there is none
+  std::int64_t free_bytes = -1;  // where the last minutes are kept; -1 = not known
+};
+
 struct DiskSeen {
   std::string other_host;        // where the recorder runs, when that is not here: its disk cannot be seen from here
   std::filesystem::path folder;  // absolute; empty = not known
@@ -149,6 +159,7 @@ struct Observations {
   ObstaclesSeen obstacles;
   LookOutSeen look_out;
   DiskSeen disk;
+  PageSeen page;
   Utime end{};  // host time at which watching ended
   double watched_s = 0.0;
 

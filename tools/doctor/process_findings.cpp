@@ -168,7 +168,7 @@ Findings CheckAll(const Observations& seen) {
   Findings all;
   for (const auto& part :
        {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen), CheckClocks(seen),
-        CheckNavigation(seen), CheckMounting(seen.config), CheckDisk(seen.disk), CheckProcesses(seen), CheckPlotter(seen)}) {
+        CheckNavigation(seen), CheckMounting(seen.config), CheckDisk(seen.disk), CheckProcesses(seen), CheckPlotter(seen), CheckPage(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -50,12 +50,29 @@ inline constexpr std::size_t kMaxRequestBytes = 4096;
 inline constexpr int kMaxRangeMessages = 5000;
 inline constexpr int kMaxBuckets = 4000;
 inline constexpr int kMaxSources = 4;
+inline constexpr std::size_t kMaxChannels = 64;
 
 /// Names of the channels that a page may show, in the order of their indices: those of the channel table.
 const std::vector<std::string_view>& ChannelNames();
 
-/// @param reason  set when nothing is returned: what is wrong, for the client and the log
+/// What is wrong with a text that is no request.
+struct RequestFault {
+  std::uint32_t id = 0;  // 0: it had none
+  std::string reason;
+};
+
+/// @param fault  set when nothing is returned
 /// @return nullopt when the text is no request; never throws
-std::optional<Request> ParseRequest(std::string_view text, std::string& reason);
+std::optional<Request> ParseRequest(std::string_view text, RequestFault& fault);
+
+/// An acknowledgement that a browser with a valid token has sent.
+struct Acknowledgement {
+  std::int64_t alert_id = 0;  // not 0; below 0: of the watch
+  Utime raised;
+};
+
+/// The body of POST /acknowledge.
+/// @return nullopt when the text is none; never throws
+std::optional<Acknowledgement> ParseAcknowledgement(std::string_view text);
 
 }  // namespace lookout::page

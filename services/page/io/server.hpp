@@ -25,22 +25,16 @@ struct Asset {
   Bytes gzip_bytes;
 };
 
-/// An acknowledgement that a browser with a valid token has sent.
-struct Acknowledgement {
-  std::int64_t alert_id = 0;
-  Utime raised;
-};
-
 struct ServerOptions {
-  std::string bind_address = "127.0.0.1";  // numeric
-  int port = 0;                            // 0: any
+  std::string bind_address = "127.0.0.1";    // numeric
+  int port = 0;                              // 0: any
   std::vector<std::string> host_names = {};  // that `Host` may name besides the address bound to, localhost and 127.0.0.1; without port
-  int max_clients = 16;                    // WebSockets
+  int max_clients = 16;                      // WebSockets
   int max_connections = 64;
-  std::string token = {};                  // empty: nobody acknowledges
+  std::string token = {};  // empty: nobody acknowledges
   bool is_log = false;
   std::string version = {};
-  std::string host = {};                   // name of this computer, for hello
+  std::string host = {};  // name of this computer, for hello
 };
 
 /// The tile as it stands in the file, and its type; nullopt: there is none.
@@ -52,13 +46,19 @@ struct Tile {
 /// What the server asks of the rest. Called on its threads: Acknowledge on the server's, the others on the one that reads disks.
 struct ServerParts {
   std::vector<Asset> assets = {};
-  std::shared_ptr<Recordings> recordings = {};                          // may be none
-  std::function<std::string()> tiles_text = {};                        // tiles.json; none: no map
-  std::function<std::optional<Tile>(int z, int x, int y)> tile = {};   // none: no map
+  std::shared_ptr<Recordings> recordings = {};                        // may be none
+  std::function<std::string()> tiles_text = {};                       // tiles.json; none: no map
+  std::function<std::optional<Tile>(int z, int x, int y)> tile = {};  // none: no map
   std::function<void(const Acknowledgement&)> acknowledge = {};
 };
 
-/// Counts since the start, by name, for HEALTH: clients, requests, refusals by reason, frames sent and replaced.
+/// Counts by name, for HEALTH; one that is 0 may be missing.
+/// Now: clients (WebSockets), connections. Since the start:
+/// requests (by HTTP), openings (of WebSockets), answers (out of recordings), acknowledgements, frames_sent, frames_replaced (a newer one came before
+/// there was room), frames_dropped (the server's own thread did not keep up); refused_host (421), refused_origin (403), refused_token (401),
+/// refused_full (503), refused_request (other refusals), connections_refused (too many), requests_late and answers_late (cut off), client_faults
+/// (what a WebSocket should not have said), clients_silent (let go); accept_faults (no descriptor was left, say), faults (of the server: an
+/// exception, a map that cannot be read).
 using ServerCounts = std::map<std::string, std::int64_t, std::less<>>;
 
 class Server {

@@ -184,5 +184,50 @@ TEST_F(LogFile, OfLcmsOwnToolsCanBeRead) {
   EXPECT_EQ(reader.num_damaged(), 0);
 }
 
+TEST_F(LogFile, GivesTheBeginningOfWhatIsLarge) {
+  {
+    support::FileLog writer(file_);
+    for (int i = 0; i < 20; ++i) {
+      std::vector<std::uint8_t> bytes(static_cast<std::size_t>(i) * 9'000, 7);
+      if (!bytes.empty()) bytes[0] = static_cast<std::uint8_t>(i);
+      writer.Write(Utime(std::chrono::microseconds(i)), "CHANNEL", bytes);
+    }
+  }
+  LogReader reader(file_);
+  for (std::size_t i = 0; i < 20; ++i) {
+    const auto place = reader.position_bytes();
+    const auto event = reader.NextHead([](std::string_view) { return 16; });
+    ASSERT_TRUE(event);
+    EXPECT_EQ(event->position_bytes, place);
+    EXPECT_EQ(event->num_data_bytes, i * 9'000);
+    ASSERT_EQ(event->bytes.size(), i == 0 ? 0U : 16U);
+    if (i > 0) {
+      EXPECT_EQ(event->bytes[0], i);
+    }
+  }
+  EXPECT_FALSE(reader.NextHead([](std::string_view) { return 16; }));
+  EXPECT_EQ(reader.num_damaged(), 0);
+}
+
+// An event of which the writer has written a part is no damage: the rest comes.
+TEST_F(LogFile, WaitsForTheRestOfAnEventOfALogThatGrows) {
+  WriteThree();
+  const auto content = Content();
+  const auto all = [](std::string_view) { return kMaxLogDataBytes; };
+  SetContent("");
+  LogReader reader(file_);
+  int num_events = 0;
+  for (std::size_t size = 0; size <= content.size(); ++size) {
+    std::ofstream(file_, std::ios::binary | std::ios::in).write(content.data(), static_cast<std::streamsize>(size));
+    reader.UpdateSize();
+    while (const auto event = reader.NextHeadSoFar(all)) {
+      EXPECT_EQ(event->bytes[0], num_events++);
+      EXPECT_EQ(size, static_cast<std::size_t>(num_events) * kEventBytes);
+    }
+  }
+  EXPECT_EQ(num_events, 3);
+  EXPECT_EQ(reader.num_damaged(), 0);
+}
+
 }  // namespace
 }  // namespace lookout::bus

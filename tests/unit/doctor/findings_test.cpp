@@ -429,6 +429,32 @@ TEST(DoctorProcesses, MissesThePlotterOnlyWhereItHasOutputs) {
   EXPECT_EQ(About(CheckProcesses(seen), "process").grade, kOk);
 }
 
+TEST(DoctorPage, SaysWhoSeesThePicture) {
+  auto seen = Healthy();
+  EXPECT_TRUE(CheckPage(seen).empty());
+  seen.config.page = page::Params{};
+  seen.page.is_port_taken = true;
+  EXPECT_SAYS(About(CheckPage(seen), "page"), kOk, "http://localhost:7668/, for browsers of this computer alone");
+  seen.config.page->bind_address = "0.0.0.0";
+  EXPECT_SAYS(About(CheckPage(seen), "page"), kOk, "for everybody in each network of this computer");
+}
+
+TEST(DoctorPage, NamesWhatItLacks) {
+  auto seen = Healthy();
+  seen.config.page = page::Params{};
+  seen.config.page->spool_max_bytes = 2'000'000'000;
+  seen.page.token_fault = "token file 'x' is not private: chmod 640";
+  seen.page.map_fault = "map file 'x' holds vector tiles";
+  seen.page.free_bytes = 100'000'000;
+  const auto said = About(CheckPage(seen), "page");
+  EXPECT_SAYS(said, kWarning, "token file 'x' is not private");
+  EXPECT_SAYS(said, kWarning, "holds vector tiles");
+  EXPECT_SAYS(said, kWarning, "0.1 GB free for the last minutes, up to 2.0 GB are wanted");
+  seen.processes.erase("page");
+  seen.page.is_port_taken = true;
+  EXPECT_SAYS(About(CheckPage(seen), "page"), kFault, "TCP port 7668 is taken by another program");
+}
+
 TEST(DoctorPlotter, NamesAnOutputThatDoesNotTakeOurData) {
   auto seen = Healthy();
   EXPECT_TRUE(CheckPlotter(seen).empty());

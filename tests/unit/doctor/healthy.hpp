@@ -92,7 +92,7 @@ inline Observations Healthy() {
   pose.heading_rad = 1.0;
   navigation.pose = pose;
 
-  for (const auto* name : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "plotter", "recorder"})
+  for (const auto* name : {"vlp16", "segmenter", "navigator", "georeferencer", "tracker", "plotter", "page", "recorder"})
     seen.processes[name].push_back(Running(name));
   seen.obstacles = {50, 500, 500, 0};
   seen.look_out = {50, 12, 3, seen.end, alerts_t{}, seen.end};

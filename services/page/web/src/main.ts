@@ -4,7 +4,17 @@ import { Layout, type ViewName } from "./layout.js";
 import { Link } from "./link.js";
 import { Live } from "./live.js";
 import { State, type View } from "./state.js";
+import { AlertBar } from "./views/alerts.js";
+import { Banner } from "./views/banner.js";
+import { Lists } from "./views/lists.js";
+import { Plots } from "./views/plots.js";
+import { listenToKeys, SettingsSheet } from "./views/settings.js";
+import { Sounder, WakeLock } from "./views/sound.js";
 import { Timeline } from "./views/timeline.js";
+import { AroundView } from "./views/around.js";
+import { CloudView } from "./views/cloud.js";
+import { MapView } from "./views/map.js";
+import { RangeImageView } from "./views/range_image.js";
 
 // A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
 function takeToken(): string {
@@ -51,6 +61,23 @@ state.link = new Link({
   },
 });
 
+const sounder = new Sounder(state);
+new WakeLock(state);
+const settings = new SettingsSheet(state, sounder);
+const alerts = new AlertBar(state, sounder, film);
 const views = new Map<ViewName, View>();
-new Layout(state, views, [], [new Timeline(state, film).element]);
+views.set("around", new AroundView(state));
+views.set("map", new MapView(state));
+views.set("range_image", new RangeImageView(state));
+views.set("cloud", new CloudView(state));
+views.set("lists", new Lists(state));
+views.set("plots", new Plots(state));
+const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [new Timeline(state, film).element, settings.element]);
+listenToKeys(state, settings, {
+  showView: (index) => {
+    const name = [...views.keys()][index];
+    if (name !== undefined) layout.show(name);
+  },
+  focusAlert: () => { alerts.focus(); },
+});
 state.link.open();

@@ -1,0 +1,27 @@
+// What a page draws of the own boat: `boat` of a source (PROTOCOL.md).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace lookout {
+class run_info_t;
+}
+
+namespace lookout::config {
+class Boat;
+class Tracker;
+}  // namespace lookout::config
+
+namespace lookout::page {
+
+/// @return JSON text
+std::string BoatText(const config::Boat& boat, const config::Tracker& tracker);
+
+/// Of boat.txtpb and tracker.txtpb in a folder. @throws config::ConfigError
+std::string BoatTextOfFolder(const std::filesystem::path& folder);
+
+/// Of the texts in RUN_INFO; "null" where one is missing or was written for another schema.
+std::string BoatTextOf(const run_info_t& info);
+
+}  // namespace lookout::page

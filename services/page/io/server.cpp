@@ -1,0 +1,204 @@
+#include "services/page/io/server.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "services/page/core/frame.hpp"
+#include "services/page/io/client.hpp"
+#include "services/page/io/connection.hpp"
+#include "services/page/io/hub.hpp"
+
+namespace lookout::page {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+constexpr std::chrono::milliseconds kPauseAfterFault{100};
+constexpr std::chrono::seconds kTickPeriod{1};
+constexpr std::chrono::milliseconds kMaxEnding{700};
+constexpr int kSendBufferBytes = 256 * 1024;
+constexpr std::size_t kMaxPublishedBytes = std::size_t{32} * 1024 * 1024;  // that the server's thread has not seen yet
+
+}  // namespace
+
+struct Server::Implementation {
+  Implementation(ServerOptions options, ServerParts parts) : hub(std::move(options), std::move(parts)) {
+    Listen();
+    if (hub.parts.recordings) hub.sources = hub.parts.recordings->SourcesText();
+    Accept();
+    Tick();
+    thread = std::thread([this] { Run(); });
+  }
+
+  ~Implementation() {
+    asio::post(hub.context, [this] { End(); });
+    thread.join();
+    hub.disk.stop();
+    hub.disk.join();
+    hub.clients.clear();
+  }
+
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  void Listen() {
+    const auto& options = hub.options;
+    try {
+      const tcp::endpoint endpoint(asio::ip::make_address(options.bind_address), static_cast<std::uint16_t>(options.port));
+      acceptor.open(endpoint.protocol());
+      acceptor.set_option(tcp::acceptor::reuse_address(true));
+      acceptor.bind(endpoint);
+      acceptor.listen();
+    } catch (const boost::system::system_error& error) {
+      throw std::runtime_error("the page cannot be served on " + options.bind_address + " port " + std::to_string(options.port) + ": " +
+                               error.code().message());
+    }
+    port = acceptor.local_endpoint().port();
+    const bool is_v6 = acceptor.local_endpoint().address().is_v6();
+    hub.own_hosts.port = port;
+    hub.own_hosts.names = {"localhost", "127.0.0.1", "[::1]", is_v6 ? "[" + options.bind_address + "]" : options.bind_address};
+    hub.own_hosts.names.insert(hub.own_hosts.names.end(), options.host_names.begin(), options.host_names.end());
+  }
+
+  void Run() {
+    while (true) {
+      try {
+        hub.context.run();
+        return;
+      } catch (...) {
+        // Of one connection, which ends by it; most likely there was no memory.
+        hub.counts->Add("faults");
+      }
+    }
+  }
+
+  void Accept() {
+    acceptor.async_accept([this](error_code error, tcp::socket socket) {
+      if (hub.is_ending) return;
+      if (error) {
+        // No descriptor is left, say: others will close some.
+        hub.counts->Add("accept_faults");
+        accept_pause.expires_after(kPauseAfterFault);
+        accept_pause.async_wait([this](error_code) {
+          if (!hub.is_ending) Accept();
+        });
+        return;
+      }
+      Accept();
+      Welcome(std::move(socket));
+    });
+  }
+
+  void Welcome(tcp::socket socket) {
+    if (hub.counts->Of("connections") >= hub.options.max_connections) {
+      hub.counts->Add("connections_refused");
+      return;
+    }
+    error_code ignored;
+    socket.set_option(tcp::no_delay(true), ignored);
+    socket.set_option(asio::socket_base::keep_alive(true), ignored);
+    socket.set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
+    std::make_shared<Connection>(hub, std::move(socket))->Start();
+  }
+
+  // What a client does may take it off the list.
+  template <class Function>
+  void ForEachClient(Function&& function) {
+    const std::vector<std::shared_ptr<Client>> clients(hub.clients.begin(), hub.clients.end());
+    for (const auto& client : clients) function(*client);
+  }
+
+  void Tick() {
+    tick.expires_after(kTickPeriod);
+    tick.async_wait([this](error_code) {
+      if (hub.is_ending) return;
+      Tick();
+      const auto now = std::chrono::steady_clock::now();
+      ForEachClient([&](Client& client) { client.Tick(now); });
+      if (are_sources_new.exchange(false)) ReadSources();
+    });
+  }
+
+  void ReadSources() {
+    asio::post(hub.disk, [this] {
+      try {
+        asio::post(hub.context, [this, text = hub.parts.recordings->SourcesText()]() mutable {
+          hub.sources = std::move(text);
+          ForEachClient([](Client& client) { client.TellSources(); });
+        });
+      } catch (const std::exception&) {
+        hub.counts->Add("faults");
+      }
+    });
+  }
+
+  void End() {
+    hub.is_ending = true;
+    error_code ignored;
+    acceptor.close(ignored);
+    accept_pause.cancel();
+    ForEachClient([](Client& client) { client.Close(boost::beast::websocket::close_code::going_away, "the server ends"); });
+    end_since = std::chrono::steady_clock::now();
+    AwaitEnd();
+  }
+
+  // Until all clients have heard of it, or for long enough.
+  void AwaitEnd() {
+    if (hub.clients.empty() || std::chrono::steady_clock::now() - end_since > kMaxEnding) return hub.context.stop();
+    tick.expires_after(std::chrono::milliseconds(10));
+    tick.async_wait([this](error_code) { AwaitEnd(); });
+  }
+
+  Hub hub;
+  tcp::acceptor acceptor{hub.context};
+  asio::steady_timer accept_pause{hub.context};
+  asio::steady_timer tick{hub.context};
+  SteadyTime end_since{};
+  int port = 0;
+  std::atomic<bool> are_sources_new = false;
+  std::atomic<std::size_t> num_published_bytes = 0;
+  std::thread thread;
+};
+
+Server::Server(ServerOptions options, ServerParts parts) : implementation_(std::make_unique<Implementation>(std::move(options), std::move(parts))) {}
+
+Server::~Server() = default;
+
+int Server::port() const { return implementation_->port; }
+
+bool Server::IsWatched(ChannelIndex channel) const { return channel < kMaxChannels && implementation_->hub.num_watching[channel] > 0; }
+
+void Server::Publish(ChannelIndex channel, std::string_view slot, std::int64_t group, int part, Utime time, Bytes message) {
+  if (!IsWatched(channel)) return;
+  auto& server = *implementation_;
+  const auto num_bytes = kFrameHeadBytes + message.size();
+  if (server.num_published_bytes + num_bytes > kMaxPublishedBytes) return server.hub.counts->Add("frames_dropped");
+  server.num_published_bytes += num_bytes;
+  auto frame = std::make_shared<const std::vector<std::uint8_t>>(ToFrame({kLiveSource, channel, 0, time}, message));
+  asio::post(server.hub.context, [&server, channel, slot = std::string(slot), group, part, num_bytes, frame = std::move(frame)] {
+    server.num_published_bytes -= num_bytes;
+    server.ForEachClient([&](Client& client) { client.Offer(channel, slot, group, part, frame); });
+  });
+}
+
+void Server::TellSources() {
+  if (implementation_->hub.parts.recordings) implementation_->are_sources_new = true;
+}
+
+void Server::TellIndexing(int source, double share) {
+  auto& server = *implementation_;
+  asio::post(server.hub.context, [&server, source, share] { server.ForEachClient([&](Client& client) { client.TellIndexing(source, share); }); });
+}
+
+ServerCounts Server::Counts() const { return implementation_->hub.counts->All(); }
+
+}  // namespace lookout::page

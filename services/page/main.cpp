@@ -1,0 +1,160 @@
+// The page process: all that a look-out shows, to browsers; ALERT_ACK out. With --log: logs instead of a bus.
+#include <unistd.h>
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <spdlog/spdlog.h>
+
+#include "common/config/text_config.hpp"
+#include "common/runtime/service_main.hpp"
+#include "common/runtime/version.hpp"
+#include "services/page/announcement.hpp"
+#include "services/page/assets.hpp"
+#include "services/page/film/boat_text.hpp"
+#include "services/page/film/look_back.hpp"
+#include "services/page/film_mode.hpp"
+#include "services/page/params.hpp"
+#include "services/page/server_link.hpp"
+#include "services/page/service.hpp"
+#include "services/page/tiles.hpp"
+#include "services/page/token.hpp"
+
+namespace {
+
+namespace page = lookout::page;
+
+constexpr std::chrono::milliseconds kTick(20);
+
+struct Config {
+  page::Params params;
+  std::string boat_text;
+};
+
+Config Load(const std::filesystem::path& config_folder) {
+  Config config{page::LoadParams(config_folder), "null"};
+  try {
+    config.boat_text = page::BoatTextOfFolder(config_folder);
+  } catch (const lookout::config::ConfigError&) {  // the tracker tells of it; the picture goes without guard zones
+    config.boat_text = "null";
+  }
+  return config;
+}
+
+// Tells what is lacking and goes on: a page without a map is better than none.
+template <typename Open>
+auto OpenOrTell(std::string& fault, const Open& open) -> decltype(open()) {
+  try {
+    return open();
+  } catch (const std::exception& error) {
+    fault = error.what();
+    spdlog::warn("{}", fault);
+    return {};
+  }
+}
+
+struct Faults {
+  std::string token;
+  std::string map;
+  std::string look_back;
+};
+
+page::LookBackOptions LookBackOptionsOf(const Config& config, std::function<void()> on_sources) {
+  page::LookBackOptions options;
+  options.spool_folder = config.params.spool_folder.empty() ? page::StateFolder() / "look-back" : config.params.spool_folder;
+  options.recorder_folder = config.params.recorder_folder;
+  options.span = config.params.look_back;
+  options.max_bytes = config.params.spool_max_bytes;
+  options.boat_text = config.boat_text;
+  options.on_sources = std::move(on_sources);
+  options.tell = [](const std::string& line) { spdlog::info("{}", line); };
+  return options;
+}
+
+void Announce(const page::Params& params, int port, const std::string& token) {
+  const auto own = page::AddressOnThisComputer(params.bind_address, port);
+  const auto others = page::AddressesForOthers(params.bind_address, port);
+  spdlog::info("the page is at {}, for {}", own, page::WhoSees(params.bind_address));
+  for (const auto& address : others) spdlog::info("the page is at {}", address);
+  // The link holds the secret: it goes to a person, never into a journal.
+  if (isatty(STDOUT_FILENO) == 1) std::cout << page::LinkText(own, others, token) << std::flush;
+}
+
+void AddTo(lookout::HealthReport& report, const Faults& faults, const page::LookBack* look_back) {
+  if (!faults.token.empty()) report.Degrade("nobody can acknowledge: " + faults.token);
+  if (!faults.map.empty()) report.Degrade("no map: " + faults.map);
+  if (!faults.look_back.empty()) report.Degrade("no look back: " + faults.look_back);
+  if (look_back == nullptr) return;
+  const auto status = look_back->Status();
+  if (!status.fault.empty()) report.Degrade("no look back: " + status.fault);
+  report.counters.push_back({"look_back_follows_recorder", status.is_following ? 1 : 0});
+  report.counters.push_back({"look_back_messages", status.num_spooled});
+  report.counters.push_back({"look_back_bytes", status.num_spooled_bytes});
+  report.counters.push_back({"look_back_lost", status.num_lost});
+}
+
+void Run(lookout::runtime::Process& process, const Config& config) {
+  using lookout::runtime::HostNow;
+  const auto& params = config.params;
+  Faults faults;
+  page::AcknowledgementQueue acknowledgements;
+  page::ServerOptions options{.bind_address = params.bind_address,
+                              .port = params.port,
+                              .host_names = params.host_names,
+                              .max_clients = params.max_clients,
+                              .version = lookout::runtime::Version(),
+                              .host = lookout::runtime::HostName()};
+  options.host_names.push_back(lookout::runtime::HostName());
+  options.host_names.push_back(lookout::runtime::HostName() + ".local");
+  if (params.allows_acknowledgements) {
+    options.token = OpenOrTell(
+        faults.token, [&] { return page::ReadOrMakeToken(params.token_file.empty() ? page::StateFolder() / page::kTokenFile : params.token_file); });
+  }
+  page::ServerParts parts;
+  parts.assets = page::Assets();
+  parts.acknowledge = [&acknowledgements](const page::Acknowledgement& acknowledgement) { acknowledgements.Push(acknowledgement); };
+  if (!params.map_file.empty()) {
+    if (const auto tiles = OpenOrTell(faults.map, [&] { return std::make_shared<page::Tiles>(params.map_file); })) {
+      parts.tiles_text = [tiles] { return tiles->text(); };
+      parts.tile = [tiles](int z, int x, int y) { return tiles->Find(z, x, y); };
+    }
+  }
+  page::ServerLink link;
+  std::shared_ptr<page::LookBack> look_back;
+  if (params.look_back.count() > 0) {
+    look_back = OpenOrTell(faults.look_back, [&] {
+      return std::make_shared<page::LookBack>(LookBackOptionsOf(config, [&link] { link.With([](page::Server& server) { server.TellSources(); }); }));
+    });
+    parts.recordings = look_back;
+  }
+  const auto token = options.token;
+  page::Server server(std::move(options), std::move(parts));
+  const page::ServerLink::Holder holder(link, server);
+  page::ServiceParts service_parts{.server = server, .acknowledgements = acknowledgements, .now = HostNow};
+  service_parts.add_to_report = [&](lookout::HealthReport& report) { AddTo(report, faults, look_back.get()); };
+  if (look_back) {
+    service_parts.keep = [look_back](lookout::Utime time, std::string_view channel, lookout::Bytes message) {
+      look_back->Append(time, channel, message);
+    };
+  }
+  page::Service service(process.bus(), std::move(service_parts));
+  Announce(params, server.port(), token);
+  process.Every(kTick, [&service] { service.AdvanceTo(HostNow()); });
+  process.Run([&service] { return service.Report(); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (page::IsFilmMode(argc, argv)) return page::RunFilm(argc, argv);
+  if (page::IsLinkMode(argc, argv)) return page::RunLink(argc, argv);
+  return lookout::runtime::ServiceMain<Config>(
+      argc, argv,
+      {.name = "page",
+       .purpose = "The look-out in a browser, live. With --log FILE...: that of logs; with --link --config DIR: the link to it, for a tablet. "
+                  "Each has a --help of its own",
+       .config_may_be_absent = true,
+       .load = Load,
+       .run = Run,
+       .remarks = [](const Config& config) { return page::InWords(config.params); }});
+}

@@ -1,0 +1,83 @@
+// The page process without its clock and its sockets: messages of the bus to browsers that watch them and to the last minutes; acknowledgements back.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/core/health.hpp"
+#include "common/core/utime.hpp"
+#include "lookout/alerts_t.hpp"
+#include "services/page/io/server.hpp"
+
+namespace lookout::page {
+
+/// Acknowledgements on their way from the server's thread to that of the bus.
+class AcknowledgementQueue {
+ public:
+  /// Any thread. One of more than kMost that wait is dropped and counted.
+  void Push(const Acknowledgement& acknowledgement);
+  std::vector<Acknowledgement> TakeAll();
+  std::int64_t num_dropped() const;
+
+  static constexpr std::size_t kMost = 100;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Acknowledgement> waiting_;
+  std::int64_t num_dropped_ = 0;
+};
+
+/// What the service is given besides its bus.
+struct ServiceParts {
+  Server& server;
+  AcknowledgementQueue& acknowledgements;
+  std::function<Utime()> now;                                                          // host time
+  std::function<void(Utime time, std::string_view channel, Bytes message)> keep = {};  // for the last minutes; none: they are not kept
+  std::function<void(HealthReport& report)> add_to_report = {};                        // what else is to be told
+};
+
+/// It subscribes all that a page shows: not the raw channels, LIDAR_NMEA and SIM_TRUTH. What does not decode, or is of a second publisher, is shown
+/// to nobody. An acknowledgement counts while ALERTS came within kFresh of host time and hold that alert, active or rectified.
+class Service {
+ public:
+  static constexpr std::chrono::seconds kFresh{1};
+
+  Service(bus::Bus& bus, ServiceParts parts);
+
+  /// Ten times a second or more.
+  void AdvanceTo(Utime host_time);
+
+  HealthReport Report();
+
+ private:
+  using AlertKey = std::pair<std::int64_t, std::int64_t>;  // id, raised_utime_us
+
+  template <typename T>
+  void Forward(const bus::Channel& channel);
+  void OnAlerts(const alerts_t& message, Utime time);
+  void Acknowledge(const Acknowledgement& acknowledgement, Utime host_time);
+
+  static constexpr auto kCountNames = std::to_array<std::string_view>({"acks_sent", "acks_of_no_alert", "acks_repeated"});
+
+  bus::Bus& bus_;
+  ServiceParts parts_;
+  std::set<AlertKey> alerts_;         // of the last ALERTS: those that an acknowledgement is wanted for
+  std::optional<Utime> alerts_time_;  // of their reception
+  std::map<AlertKey, Utime> acknowledged_;
+  std::int64_t ack_seq_ = 0;
+  Counts<kCountNames> counts_;
+  ServerCounts server_counts_;  // the names in a report are of it
+};
+
+}  // namespace lookout::page

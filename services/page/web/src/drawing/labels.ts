@@ -1,0 +1,72 @@
+// Labels that do not cover each other: those that matter most are placed first, and what has no room stays away.
+import type { Theme } from "./colours.js";
+
+export interface Label {
+  x_px: number;
+  y_px: number;
+  /** Free of the label: radius of what it belongs to. */
+  radius_px: number;
+  lines: string[];
+  colour: string;
+  /** In a box of its own colour: what must be read. */
+  isBoxed: boolean;
+}
+interface Box { x: number; y: number; width: number; height: number }
+
+const kLine_px = 15;
+export const kFont = "600 13px system-ui, sans-serif";
+
+const widths = new Map<string, number>();
+function widthOf(context: CanvasRenderingContext2D, text: string): number {
+  let sum = 0;
+  for (const character of text) {
+    let width = widths.get(character);
+    if (width === undefined) widths.set(character, width = context.measureText(character).width);
+    sum += width;
+  }
+  return sum;
+}
+
+/** Draws labels in their order, at most `most`. `taken` holds boxes that nothing may cover, and gets those that were drawn. */
+export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], theme: Theme, size: { width_px: number; height_px: number }, most: number, taken: Box[]): void {
+  context.font = kFont;
+  context.textBaseline = "middle";
+  context.textAlign = "left";
+  context.lineJoin = "round";
+  let numDrawn = 0;
+  for (const label of labels) {
+    if (numDrawn >= most) return;
+    const width = Math.max(...label.lines.map((line) => widthOf(context, line))) + 10, height = kLine_px * label.lines.length + 4;
+    const box = placeFor(label, width, height, size, taken);
+    if (box === null) continue;
+    ++numDrawn;
+    taken.push(box);
+    if (label.isBoxed) {
+      context.fillStyle = label.colour;
+      context.beginPath();
+      context.roundRect(box.x, box.y, width, height, 4);
+      context.fill();
+      context.fillStyle = theme.css.panel;
+    } else {
+      context.strokeStyle = theme.css.water;
+      context.lineWidth = 3.5;
+      context.fillStyle = label.colour;
+    }
+    label.lines.forEach((line, index) => {
+      const x = box.x + 5, y = box.y + 2 + kLine_px * (index + 0.5);
+      if (!label.isBoxed) context.strokeText(line, x, y);
+      context.fillText(line, x, y);
+    });
+  }
+}
+
+/** The first of four places around it (right, left, above, below) that is free and on the screen; null: none. */
+export function placeFor(label: Pick<Label, "x_px" | "y_px" | "radius_px">, width: number, height: number, size: { width_px: number; height_px: number }, taken: readonly Box[]): Box | null {
+  const { x_px: x, y_px: y } = label, gap = label.radius_px + 6;
+  const places = [[x + gap, y - height / 2], [x - gap - width, y - height / 2], [x - width / 2, y - gap - height], [x - width / 2, y + gap]] as const;
+  for (const [left, top] of places) {
+    if (left < 2 || top < 2 || left + width > size.width_px - 2 || top + height > size.height_px - 2) continue;
+    if (taken.every((other) => left + width < other.x || other.x + other.width < left || top + height < other.y || other.y + other.height < top)) return { x: left, y: top, width, height };
+  }
+  return null;
+}

@@ -1,0 +1,158 @@
+// The own boat, and what is measured from it: rings, guard zones, heading and way.
+import { texts } from "../texts/index.js";
+import { length } from "../units.js";
+import { kFont } from "./labels.js";
+import { niceStep } from "./plane.js";
+import { boatX, boatY, type Scene } from "./scene.js";
+
+const kMetresPerMile = 1852;
+const kRing_px = 84;
+const kVector_s = 30;
+
+/** Distance of two rings, m: a round number of the unit that is chosen. */
+export function ringStep(px_per_m: number, inMiles: boolean): number {
+  const least_m = kRing_px / px_per_m;
+  return inMiles && least_m >= 0.1 * kMetresPerMile ? niceStep(least_m / kMetresPerMile) * kMetresPerMile : niceStep(least_m);
+}
+
+/** Rings around the own boat, with their distances, and a tick each 30 degrees on the outermost that is whole. */
+export function paintRings(scene: Scene): void {
+  const { context, plane, own, theme, state } = scene;
+  const x = plane.x(own.east_m, own.north_m), y = plane.y(own.east_m, own.north_m);
+  const step_m = ringStep(plane.px_per_m, state.settings.get("length_unit") === "NM");
+  const farthest_px = Math.hypot(Math.max(x, plane.width_px - x), Math.max(y, plane.height_px - y));
+  if (farthest_px > 60 * kRing_px) return;
+  const numRings = Math.min(40, Math.ceil(farthest_px / (step_m * plane.px_per_m)));
+  context.strokeStyle = theme.css.line;
+  context.lineWidth = 1;
+  context.beginPath();
+  for (let k = 1; k <= numRings; ++k) {
+    const radius = k * step_m * plane.px_per_m;
+    context.moveTo(x + radius, y);
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+  }
+  const inner = step_m * plane.px_per_m * 0.92;
+  for (let degrees = 0; degrees < 360; degrees += 30) {
+    const angle = degrees * Math.PI / 180 - plane.up, sin = Math.sin(angle), cos = -Math.cos(angle), outer = inner / 0.92;
+    context.moveTo(x + inner * sin, y + inner * cos);
+    context.lineTo(x + outer * sin, y + outer * cos);
+  }
+  context.stroke();
+  context.font = kFont;
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.lineJoin = "round";
+  context.strokeStyle = theme.css.water;
+  context.lineWidth = 4;
+  context.fillStyle = theme.css.muted;
+  for (let k = 1; k <= numRings; ++k) {
+    const at = y + k * step_m * plane.px_per_m;
+    if (at > plane.height_px - 12 || at < 12) continue;
+    const text = length(state.settings, k * step_m).replace(".0 ", " ");
+    context.strokeText(text, x, at);
+    context.fillText(text, x, at);
+  }
+  if (!own.isOnMap) return;
+  const edge = inner / 0.92 + 12, nx = x - edge * Math.sin(plane.up), ny = y - edge * Math.cos(plane.up);
+  context.strokeText(texts.drawing.north, nx, ny);
+  context.fillStyle = theme.css.text;
+  context.fillText(texts.drawing.north, nx, ny);
+}
+
+/** Sectors in which anything raises an alert; filled where one is raised now. */
+export function paintGuardZones(scene: Scene): void {
+  const { context, plane, own, theme, picture } = scene;
+  const x = plane.x(own.east_m, own.north_m), y = plane.y(own.east_m, own.north_m);
+  const isRaised = picture.alerts.some((alert) => alert.cause === 1 && alert.state <= 2);
+  for (const zone of picture.boat?.guard_zones ?? []) {
+    const turn = own.heading_rad - plane.up - Math.PI / 2;
+    const from = zone.from_deg * Math.PI / 180 + turn;
+    const sweep = ((zone.to_deg - zone.from_deg) % 360 + 360) % 360 || 360;
+    const to = from + sweep * Math.PI / 180;
+    context.beginPath();
+    if (sweep < 360) context.moveTo(x, y);
+    context.arc(x, y, zone.range_m * plane.px_per_m, from, to);
+    if (sweep < 360) context.closePath();
+    context.fillStyle = isRaised ? theme.css.warning : theme.css.accent;
+    context.globalAlpha = isRaised ? 0.14 : 0.05;
+    context.fill();
+    context.globalAlpha = isRaised ? 1 : 0.55;
+    context.strokeStyle = isRaised ? theme.css.warning : theme.css.accent;
+    context.lineWidth = isRaised ? 2 : 1.2;
+    context.setLineDash([6, 4]);
+    context.stroke();
+    context.setLineDash([]);
+    context.globalAlpha = 1;
+  }
+}
+
+/** The hull in its true size, or a mark where that is too small to be seen; line of heading, vector of the next 30 s. */
+export function paintOwnBoat(scene: Scene): void {
+  const { context, plane, own, theme, picture } = scene;
+  const box = picture.boat?.own_vessel ?? { min_x_m: -1.5, max_x_m: 1.5, min_y_m: -0.7, max_y_m: 0.7 };
+  const hull_m = picture.boat?.hull_length_m ?? box.max_x_m - box.min_x_m, beam_m = picture.boat?.hull_beam_m ?? box.max_y_m - box.min_y_m;
+  const middle = (box.max_x_m + box.min_x_m) / 2, side = (box.max_y_m + box.min_y_m) / 2;
+  // Never smaller than can be seen.
+  const grow = Math.max(1, 18 / (hull_m * plane.px_per_m));
+  const l = hull_m / 2 * grow, b = beam_m / 2 * Math.min(grow, Math.max(1, 9 / (beam_m * plane.px_per_m)));
+  const x = (fx: number, fy: number) => boatX(scene, middle + fx, side + fy), y = (fx: number, fy: number) => boatY(scene, middle + fx, side + fy);
+
+  context.strokeStyle = theme.css.own;
+  context.globalAlpha = 0.5;
+  context.lineWidth = 1.2;
+  context.beginPath();
+  context.moveTo(x(l, 0), y(l, 0));
+  const far = 2 * Math.hypot(plane.width_px, plane.height_px) / plane.px_per_m;
+  context.lineTo(x(far, 0), y(far, 0));
+  context.stroke();
+  context.globalAlpha = 1;
+
+  const velocity = picture.pose?.velocity_map_mps;
+  if (own.isOnMap && velocity !== undefined && Math.hypot(velocity[0]!, velocity[1]!) > 0.3) {
+    context.lineWidth = 2.5;
+    context.beginPath();
+    context.moveTo(plane.x(own.east_m, own.north_m), plane.y(own.east_m, own.north_m));
+    const east = own.east_m + kVector_s * velocity[0]!, north = own.north_m + kVector_s * velocity[1]!;
+    context.lineTo(plane.x(east, north), plane.y(east, north));
+    context.stroke();
+  }
+  context.beginPath();
+  context.moveTo(x(l, 0), y(l, 0));
+  context.bezierCurveTo(x(0.75 * l, b * 0.55), y(0.75 * l, b * 0.55), x(0.5 * l, b), y(0.5 * l, b), x(0, b), y(0, b));
+  context.lineTo(x(-l, 0.85 * b), y(-l, 0.85 * b));
+  context.lineTo(x(-l, -0.85 * b), y(-l, -0.85 * b));
+  context.lineTo(x(0, -b), y(0, -b));
+  context.bezierCurveTo(x(0.5 * l, -b), y(0.5 * l, -b), x(0.75 * l, -b * 0.55), y(0.75 * l, -b * 0.55), x(l, 0), y(l, 0));
+  context.closePath();
+  context.fillStyle = theme.css.panel;
+  context.fill();
+  context.lineWidth = 2;
+  context.strokeStyle = theme.css.own;
+  context.lineJoin = "round";
+  context.stroke();
+}
+
+/** A length on the screen as a bar, in a corner. */
+export function paintScale({ context, plane, theme, state }: Scene, x_px: number, y_px: number): void {
+  const step_m = ringStep(plane.px_per_m, state.settings.get("length_unit") === "NM"), width = step_m * plane.px_per_m;
+  context.lineJoin = "round";
+  for (const [colour, line] of [[theme.css.water, 5], [theme.css.text, 2]] as const) {
+    context.strokeStyle = colour;
+    context.lineWidth = line;
+    context.beginPath();
+    context.moveTo(x_px, y_px - 6);
+    context.lineTo(x_px, y_px);
+    context.lineTo(x_px + width, y_px);
+    context.lineTo(x_px + width, y_px - 6);
+    context.stroke();
+  }
+  context.font = kFont;
+  context.textAlign = "center";
+  context.textBaseline = "bottom";
+  context.strokeStyle = theme.css.water;
+  context.lineWidth = 4;
+  context.fillStyle = theme.css.text;
+  const text = length(state.settings, step_m).replace(".0 ", " ");
+  context.strokeText(text, x_px + width / 2, y_px - 4);
+  context.fillText(text, x_px + width / 2, y_px - 4);
+}

@@ -1,0 +1,131 @@
+// What every drawn view stands on: canvases of the right size, buttons for the thumb, the word that the picture is old, and one drawing a frame of the screen.
+import type { State } from "../state.js";
+import { texts } from "../texts/index.js";
+import { duration } from "../units.js";
+import { listen, type Gestures } from "./gestures.js";
+
+const kOld_s = 1;
+const kMostPixelsPerPixel = 2;  // finer screens cost more than the eye has of it
+
+/** Whether what is shown is too old to be looked at as now. */
+export function isOld(state: State): boolean {
+  return state.showing.kind === "live" && state.picture !== null && state.age_s > kOld_s;
+}
+
+/** An element of the page with a class and, where it is given, a text. */
+export function make<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, name: string, text = ""): HTMLElementTagNameMap[Tag] {
+  const element = document.createElement(tag);
+  element.className = name;
+  if (text !== "") element.textContent = text;
+  return element;
+}
+
+export class Stage {
+  readonly element: HTMLElement;
+  readonly plan = document.createElement("canvas");
+  readonly context: CanvasRenderingContext2D;
+  /** In pixels of the style sheet. */
+  width_px = 1;
+  height_px = 1;
+  scale = 1;
+  private readonly tools = make("div", "drawing-tools");
+  private readonly old = make("p", "drawing-old");
+  private readonly note = make("p", "drawing-note");
+  private readonly tip = make("p", "drawing-tip");
+  private isVisible = false;
+  private isAsked = false;
+  private said = "";
+
+  /** @param below canvases under that of the plan, the lowest first */
+  constructor(private readonly state: State, name: string, private readonly below: HTMLCanvasElement[], private readonly paint: () => void, gestures: Gestures) {
+    this.element = make("div", `drawing ${name}`);
+    this.context = this.plan.getContext("2d")!;
+    this.plan.tabIndex = 0;
+    this.plan.setAttribute("role", "img");
+    for (const hidden of [this.old, this.tip]) hidden.setAttribute("aria-hidden", "true");
+    for (const element of [this.old, this.note, this.tip]) element.hidden = true;
+    this.element.append(...below, this.plan, this.note, this.old, this.tip, this.tools);
+    new ResizeObserver(() => { this.fit(); }).observe(this.element);
+    listen(this.plan, gestures);
+    state.on(["picture", "marked", "settings", "showing", "connection"], () => { this.ask(); });
+    state.on(["age", "picture"], () => { this.tellAge(); });
+  }
+
+  setVisible(isVisible: boolean): void {
+    this.isVisible = isVisible;
+    if (isVisible) { this.fit(); this.tellAge(); this.ask(); }
+  }
+  /** Draws with the next frame of the screen, however often it is asked for. */
+  ask(): void {
+    if (this.isAsked || !this.isVisible) return;
+    this.isAsked = true;
+    requestAnimationFrame(() => {
+      this.isAsked = false;
+      if (!this.isVisible || this.width_px < 2 || this.height_px < 2) return;
+      this.context.setTransform(this.scale, 0, 0, this.scale, 0, 0);
+      this.paint();
+    });
+  }
+
+  button(label: string, sign: string, onClick: () => void): HTMLButtonElement {
+    const button = make("button", "drawing-button", sign);
+    button.type = "button";
+    button.title = label;
+    button.setAttribute("aria-label", label);
+    button.onclick = () => { onClick(); this.ask(); };
+    this.tools.append(button);
+    return button;
+  }
+  /** Keys of the canvas; what is known is kept from the browser. */
+  keys(known: Record<string, () => void>): void {
+    this.plan.addEventListener("keydown", (event) => {
+      const action = event.ctrlKey || event.altKey || event.metaKey ? undefined : known[event.key];
+      if (action === undefined) return;
+      event.preventDefault();
+      action();
+      this.ask();
+    });
+  }
+  /** What the picture shows, for those who do not see it. */
+  describe(text: string): void {
+    if (text !== this.said) this.plan.setAttribute("aria-label", this.said = text);
+  }
+  /** A word about the picture as a whole; empty: none. */
+  setNote(text: string): void { setText(this.note, text); }
+  /** A word beside the pointer; empty: none. */
+  setTip(text: string, x_px = 0, y_px = 0): void {
+    setText(this.tip, text);
+    if (text === "") return;
+    const isRight = x_px > this.width_px / 2, isLow = y_px > this.height_px / 2;
+    this.tip.style.left = isRight ? "auto" : `${x_px + 16}px`;
+    this.tip.style.right = isRight ? `${this.width_px - x_px + 16}px` : "auto";
+    this.tip.style.top = isLow ? "auto" : `${y_px + 16}px`;
+    this.tip.style.bottom = isLow ? `${this.height_px - y_px + 16}px` : "auto";
+  }
+
+  private tellAge(): void {
+    if (!this.isVisible) return;
+    const old = isOld(this.state);
+    this.element.classList.toggle("old", old);
+    setText(this.old, old ? texts.stale(duration(Math.floor(this.state.age_s)).replace(".0 ", " ")) : "");
+  }
+  private fit(): void {
+    const { clientWidth, clientHeight } = this.element;
+    const scale = Math.min(kMostPixelsPerPixel, devicePixelRatio || 1);
+    if (clientWidth < 2 || clientHeight < 2) return;
+    this.width_px = clientWidth;
+    this.height_px = clientHeight;
+    this.scale = scale;
+    for (const canvas of [...this.below, this.plan]) {
+      const width = Math.round(clientWidth * scale), height = Math.round(clientHeight * scale);
+      if (canvas.width !== width) canvas.width = width;
+      if (canvas.height !== height) canvas.height = height;
+    }
+    this.ask();
+  }
+}
+
+function setText(element: HTMLElement, text: string): void {
+  if (element.textContent !== text) element.textContent = text;
+  if (element.hidden !== (text === "")) element.hidden = text === "";
+}

@@ -1,0 +1,117 @@
+// lookout-page on a live bus: its files, live frames, who may ask, and an acknowledgement that reaches the bus.
+#include <chrono>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+
+#include "common/bus/lcm_bus.hpp"
+#include "lookout/alert_ack_t.hpp"
+#include "lookout/health_t.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/page_browser.hpp"
+#include "tests/support/plotter_scene.hpp"
+
+namespace lookout::system_test {
+namespace {
+
+using namespace support;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr int kPort = 7668;
+const std::string kToken = "0123456789abcdef0123456789abcdef";
+
+class Page : public ::testing::Test {
+ protected:
+  Page() : bus_(bus::DefaultLcmUrl()), scene_(bus_), browser_(kPort) {
+    std::filesystem::copy(kDemoConfig, folder_ / "config");
+    std::ofstream(folder_ / "config/page.txtpb") << "token_file: 'token' look_back_folder: 'spool'\n";
+    std::ofstream(folder_ / "config/token") << kToken << "\n";
+    std::filesystem::permissions(folder_ / "config/token", std::filesystem::perms::owner_read);
+    bus_.SubscribeRaw(bus::kHealth, [this](std::string_view, Bytes bytes) { health_ = bus::Decode<health_t>(bytes).value(); });
+    bus_.SubscribeRaw(bus::kAlertAck, [this](std::string_view, Bytes bytes) { acknowledged_.push_back(bus::Decode<alert_ack_t>(bytes).value()); });
+    child_ = std::make_unique<Child>(std::vector<std::string>{Bin("page"), "--config", (folder_ / "config").string()}, (folder_ / "out").string());
+  }
+
+  // A scan every 100 ms, until it is so.
+  template <typename Condition>
+  bool Until(const Condition& is_so, seconds longest = seconds(30)) {
+    const auto deadline = Clock::now() + longest;
+    auto next_scan = Clock::now();
+    while (Clock::now() < deadline) {
+      if (Clock::now() >= next_scan) {
+        next_scan += milliseconds(100);
+        scene_.SendScan();
+      }
+      bus_.HandleOnce(milliseconds(5));
+      if (is_so()) return true;
+    }
+    return false;
+  }
+  bool Runs() {
+    return Until([this] { return health_.pid != 0; });
+  }
+
+  TempDir folder_;
+  bus::LcmBus bus_;
+  PlotterScene scene_;
+  PageBrowser browser_;
+  health_t health_{};
+  std::vector<alert_ack_t> acknowledged_;
+  std::unique_ptr<Child> child_;
+};
+
+TEST_F(Page, ServesItsFilesToWhoAsksForIt) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  const auto front = browser_.Ask("GET", "/");
+  EXPECT_EQ(front.status, 200);
+  EXPECT_NE(front.body.find("<!doctype html>"), std::string::npos) << front.body.substr(0, 200);
+  EXPECT_NE(front.policy.find("default-src 'none'"), std::string::npos) << front.policy;
+  EXPECT_EQ(browser_.Ask("GET", "/page.js").status, 200);
+  EXPECT_EQ(browser_.Ask("GET", "/tiles.json").status, 404);
+  EXPECT_EQ(browser_.Ask("GET", "/../../etc/passwd").status, 404);
+  EXPECT_EQ(browser_.Ask("GET", "/", "", "evil.example:7668").status, 421);
+  EXPECT_EQ(browser_.Ask("GET", "/", "", "", "http://evil.example").status, 403);
+  EXPECT_EQ(child_->Output().find(kToken), std::string::npos) << "the token stands in the journal";
+  EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
+}
+
+TEST_F(Page, ShowsTheBusAndCarriesAnAcknowledgementBack) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  scene_.alerts = {PlotterScene::MakeAlert(41, 1)};
+  PageTab tab(kPort);
+  EXPECT_NE(tab.Read().bytes.find("\"may_acknowledge\":true"), std::string::npos);
+  tab.Say(R"({"op":"watch","channels":["ALERTS"]})");
+  Until([] { return false; }, seconds(1));
+  auto frame = tab.Read();
+  while (frame.is_text) frame = tab.Read();
+  ASSERT_GT(frame.bytes.size(), 16U);
+  const auto* begin = reinterpret_cast<const std::uint8_t*>(frame.bytes.data());
+  const auto alerts = bus::Decode<alerts_t>({begin + 16, frame.bytes.size() - 16});
+  ASSERT_TRUE(alerts);
+  ASSERT_EQ(alerts->num_alerts, 1);
+  const std::string body =
+      "{\"alert_id\":" + std::to_string(alerts->alerts[0].id) + ",\"raised_utime_us\":" + std::to_string(alerts->alerts[0].raised_utime_us) + "}";
+  EXPECT_EQ(browser_.Ask("POST", "/acknowledge", body, "", browser_.Origin()).status, 401);
+  EXPECT_EQ(browser_.Ask("POST", "/acknowledge", body, "", browser_.Origin(), "0123456789abcdef0123456789abcdee").status, 401);
+  EXPECT_EQ(browser_.Ask("POST", "/acknowledge", body, "", "", kToken).status, 403);
+  EXPECT_EQ(browser_.Ask("POST", "/acknowledge", "{}", "", browser_.Origin(), kToken).status, 400);
+  EXPECT_EQ(browser_.Ask("POST", "/acknowledge", body, "", browser_.Origin(), kToken).status, 202);
+  EXPECT_TRUE(Until([this] { return !acknowledged_.empty(); })) << child_->Output();
+  ASSERT_EQ(acknowledged_.size(), 1U);
+  EXPECT_EQ(acknowledged_[0].source, "page");
+  EXPECT_EQ(acknowledged_[0].alert_id, alerts->alerts[0].id);
+  EXPECT_EQ(child_->Terminate().value_or(-1), 0) << child_->Output();
+}
+
+TEST_F(Page, EndsWithAReasonWhereItsPortIsTaken) {
+  ASSERT_TRUE(Runs()) << child_->Output();
+  Child second(std::vector<std::string>{Bin("page"), "--config", (folder_ / "config").string()}, (folder_ / "second").string());
+  EXPECT_EQ(second.Wait(milliseconds(10'000)).value_or(-1), 1);
+  EXPECT_NE(second.Output().find("7668"), std::string::npos) << second.Output();
+}
+
+}  // namespace
+}  // namespace lookout::system_test

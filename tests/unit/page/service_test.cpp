@@ -1,0 +1,173 @@
+#include "services/page/service.hpp"
+
+#include <chrono>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/bus/memory_bus.hpp"
+#include "lookout/alert_ack_t.hpp"
+#include "lookout/health_t.hpp"
+#include "lookout/tracks_t.hpp"
+#include "services/page/assets.hpp"
+#include "tests/support/page_browser.hpp"
+
+namespace lookout::page {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::int64_t kStartUs = 1'782'901'200'000'000;
+
+class PageService : public ::testing::Test {
+ protected:
+  PageService() {
+    ServerParts parts;
+    parts.assets = Assets();
+    parts.acknowledge = [this](const Acknowledgement& acknowledgement) { queue_.Push(acknowledgement); };
+    server_ = std::make_unique<Server>(ServerOptions{.token = kToken}, std::move(parts));
+    ServiceParts service_parts{.server = *server_, .acknowledgements = queue_, .now = [this] { return now_; }};
+    service_parts.keep = [this](Utime, std::string_view channel, Bytes message) {
+      kept_.emplace_back(channel);
+      num_kept_bytes_ += message.size();
+    };
+    service_ = std::make_unique<Service>(bus_, std::move(service_parts));
+    bus::Subscribe<alert_ack_t>(bus_, bus::kAlertAck, [this](const alert_ack_t& message) { sent_.push_back(message); });
+  }
+
+  void Drain() {
+    while (bus_.HandleOnce()) {
+    }
+  }
+  void SendAlert(std::int32_t state) {
+    alerts_t message{};
+    message.utime_us = ToUtimeUs(now_);
+    alert_t alert{};
+    alert.id = 7;
+    alert.raised_utime_us = kStartUs;
+    alert.cause = alert_t::CAUSE_GUARD_ZONE;
+    alert.level = alert_t::LEVEL_WARNING;
+    alert.state = state;
+    message.num_alerts = 1;
+    message.alerts = {alert};
+    bus::Publish(bus_, bus::kAlerts, message);
+    Drain();
+  }
+  void Acknowledge(std::int64_t id, std::int64_t raised_us = kStartUs) {
+    queue_.Push({id, Utime(std::chrono::microseconds(raised_us))});
+    service_->AdvanceTo(now_);
+    Drain();
+  }
+  std::int64_t Count(std::string_view name) {
+    const auto report = service_->Report();
+    for (const auto& counter : report.counters) {
+      if (counter.name == name) return counter.count;
+    }
+    return -1;
+  }
+
+  static constexpr const char* kToken = "0123456789abcdef";
+  bus::MemoryBus bus_;
+  Utime now_{std::chrono::microseconds(kStartUs)};
+  AcknowledgementQueue queue_;
+  std::unique_ptr<Server> server_;
+  std::unique_ptr<Service> service_;
+  std::vector<std::string> kept_;
+  std::size_t num_kept_bytes_ = 0;
+  std::vector<alert_ack_t> sent_;
+};
+
+TEST_F(PageService, AcknowledgesAnAlertThatStands) {
+  SendAlert(alert_t::STATE_ACTIVE);
+  Acknowledge(7);
+  ASSERT_EQ(sent_.size(), 1U);
+  EXPECT_EQ(sent_[0].source, "page");
+  EXPECT_EQ(sent_[0].seq, 0);
+  EXPECT_EQ(sent_[0].alert_id, 7);
+  EXPECT_EQ(sent_[0].alert_raised_utime_us, kStartUs);
+  EXPECT_EQ(sent_[0].utime_us, kStartUs);
+  EXPECT_EQ(Count("acks_sent"), 1);
+}
+
+TEST_F(PageService, AcknowledgesOnceUntilTheAnswerIsDue) {
+  SendAlert(alert_t::STATE_RECTIFIED);
+  Acknowledge(7);
+  Acknowledge(7);
+  EXPECT_EQ(sent_.size(), 1U);
+  EXPECT_EQ(Count("acks_repeated"), 1);
+  now_ += 1s;
+  SendAlert(alert_t::STATE_RECTIFIED);
+  Acknowledge(7);
+  ASSERT_EQ(sent_.size(), 2U);
+  EXPECT_EQ(sent_[1].seq, 1);
+}
+
+TEST_F(PageService, AcknowledgesNothingElse) {
+  Acknowledge(7);  // no ALERTS yet
+  SendAlert(alert_t::STATE_ACKNOWLEDGED);
+  Acknowledge(7);
+  SendAlert(alert_t::STATE_ACTIVE);
+  Acknowledge(8);
+  Acknowledge(7, kStartUs + 1);  // of another run
+  now_ += 1s;                    // nobody looks any more
+  Acknowledge(7);
+  EXPECT_TRUE(sent_.empty());
+  EXPECT_EQ(Count("acks_of_no_alert"), 5);
+}
+
+TEST_F(PageService, DropsAcknowledgementsOfWhoSendsThemByTheHundred) {
+  for (int i = 0; i < 150; ++i) queue_.Push({1, now_});
+  EXPECT_EQ(queue_.TakeAll().size(), AcknowledgementQueue::kMost);
+  EXPECT_EQ(Count("acks_dropped"), 50);
+}
+
+TEST_F(PageService, SendsTheVeryBytesToWhoWatches) {
+  support::PageTab tab(server_->port());
+  EXPECT_NE(tab.Read().bytes.find("\"hello\""), std::string::npos);
+  tab.Say(R"({"op":"watch","channels":["TRACKS"]})");
+  ChannelIndex index = 0;
+  while (ChannelNames()[index] != "TRACKS") ++index;
+  for (int i = 0; i < 500 && !server_->IsWatched(index); ++i) std::this_thread::sleep_for(10ms);
+  ASSERT_TRUE(server_->IsWatched(index));
+  tracks_t message{};
+  message.utime_us = kStartUs;
+  message.num_parts = 1;
+  health_t health{};
+  health.process = "tracker";
+  bus::Publish(bus_, bus::kHealth, health);
+  bus::Publish(bus_, bus::kTracks, message);
+  Drain();
+  const auto frame = tab.Read();
+  const auto bytes = bus::Encode(message);
+  ASSERT_FALSE(frame.is_text);
+  EXPECT_EQ(frame.bytes.substr(kFrameHeadBytes), std::string(bytes.begin(), bytes.end()));
+  EXPECT_EQ(frame.bytes[2], static_cast<char>(index));
+}
+
+TEST_F(PageService, KeepsEachMessageForTheLastMinutesButNoneThatDoesNotDecode) {
+  tracks_t message{};
+  message.num_parts = 1;
+  bus::Publish(bus_, bus::kTracks, message);
+  bus_.Publish(bus::kTracks, {1, 2, 3});
+  Drain();
+  EXPECT_EQ(kept_, std::vector<std::string>{"TRACKS"});
+  EXPECT_EQ(num_kept_bytes_, bus::Encode(message).size());
+  EXPECT_EQ(bus_.input_traffic()[std::string("TRACKS")].num_undecodable, 1);
+}
+
+TEST(PageAssets, HoldThePage) {
+  std::vector<std::string> paths;
+  for (const auto& asset : Assets()) {
+    paths.emplace_back(asset.path);
+    ASSERT_GT(asset.gzip_bytes.size(), 20U) << asset.path;
+    EXPECT_EQ(asset.gzip_bytes[0], 0x1F);
+    EXPECT_EQ(asset.gzip_bytes[1], 0x8B);
+    for (std::size_t i = 4; i < 8; ++i) EXPECT_EQ(asset.gzip_bytes[i], 0) << "the time of compression";
+  }
+  for (const auto* path : {"/", "/page.js", "/page.css", "/icon.svg"}) EXPECT_NE(std::ranges::find(paths, path), paths.end()) << path;
+}
+
+}  // namespace
+}  // namespace lookout::page

@@ -1,0 +1,175 @@
+#include "services/page/film/look_back.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/unit/page_film/scene.hpp"
+
+namespace lookout::page {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OfLookBack : public ::testing::Test {
+ protected:
+  OfLookBack() { options_.spool_folder = folder_ / "spool"; }
+
+  struct Feed {
+    LookBack& back;
+    void operator()(Utime time, std::string_view channel, Bytes bytes) const { back.Append(time, channel, bytes); }
+  };
+  static void Send(LookBack& back, std::int64_t first, std::int64_t end, std::int64_t shift_us = 0) {
+    Feed feed{back};
+    SceneWriter<Feed> writer(feed);
+    writer.shift_us = shift_us;
+    for (auto seq = first; seq < end; ++seq) writer.Scan(seq);
+  }
+  std::size_t NumFiles() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(options_.spool_folder), fs::directory_iterator()));
+  }
+  static bool WaitUntil(const std::function<bool()>& holds) {
+    for (int i = 0; i < 1000; ++i) {
+      if (holds()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return false;
+  }
+
+  support::TempDir folder_;
+  LookBackOptions options_;
+};
+
+TEST_F(OfLookBack, GivesWhatWasOnTheBus) {
+  LookBack back(options_);
+  EXPECT_FALSE(back.Find(AtTime(kBeginUs, {kScanChannel})).refusal.empty());  // nothing yet
+  Send(back, 0, 50);
+  back.Flush();
+  const auto answer = back.Find(AtScan(kBeginUs + 20 * kScanUs, {kScanChannel, kTracksChannel}));
+  EXPECT_EQ(answer.num_scans, 50);
+  EXPECT_EQ(UtimesOf(answer, bus::kLidarScan).size(), 2U);
+  EXPECT_EQ(UtimesOf(answer, bus::kTracks), std::vector{kBeginUs + 20 * kScanUs});
+  EXPECT_EQ(back.Status().num_spooled, 250);
+  EXPECT_EQ(back.Status().num_lost, 0);
+  const auto source = nlohmann::json::parse(back.SourcesText())[0];
+  EXPECT_EQ(source["is_growing"], true);
+  EXPECT_EQ(source["num_scans"], 50);
+}
+
+TEST_F(OfLookBack, KeepsWhatAPageShows) {
+  EXPECT_TRUE(LookBack::IsKept("LIDAR_SCAN"));
+  EXPECT_TRUE(LookBack::IsKept("HEALTH"));
+  EXPECT_FALSE(LookBack::IsKept("LIDAR_PACKETS"));
+  EXPECT_FALSE(LookBack::IsKept("NAV_RAW"));
+  EXPECT_FALSE(LookBack::IsKept("LIDAR_NMEA"));
+  EXPECT_FALSE(LookBack::IsKept("NOBODY_KNOWS"));
+}
+
+TEST_F(OfLookBack, ForgetsWhatIsOlderThanItsSpan) {
+  options_.span = std::chrono::seconds(120);
+  LookBack back(options_);
+  for (std::int64_t minute = 0; minute < 6; ++minute) {
+    Send(back, minute * 600, minute * 600 + 20);
+    back.Flush();
+  }
+  EXPECT_LE(NumFiles(), 4U);
+  const auto source = nlohmann::json::parse(back.SourcesText())[0];
+  EXPECT_EQ(source["end_utime_us"].get<std::int64_t>() - source["begin_utime_us"].get<std::int64_t>(), 120'000'000);
+  EXPECT_EQ(source["num_scans"], 40);  // of the minutes 4 and 5, and none of 3, but for what lies within 120 s
+  EXPECT_EQ(back.Find(AtScan(kBeginUs + 2405 * kScanUs, {kScanChannel})).messages.size(), 2U);
+}
+
+TEST_F(OfLookBack, HoldsTheSpoolWithinItsBytes) {
+  options_.max_bytes = 2'000'000;
+  LookBack back(options_);
+  for (std::int64_t seq = 0; seq < 400; seq += 5) {  // 16 MB
+    Send(back, seq, seq + 5);
+    back.Flush();
+  }
+  std::uintmax_t num_bytes = 0;
+  for (const auto& entry : fs::directory_iterator(options_.spool_folder)) num_bytes += entry.file_size();
+  EXPECT_LT(num_bytes, 2'300'000U);
+  EXPECT_GT(num_bytes, 1'000'000U);
+  EXPECT_EQ(UtimesOf(back.Find(AtScan(kBeginUs + 399 * kScanUs, {kScanChannel})), bus::kLidarScan).size(), 2U);
+}
+
+TEST_F(OfLookBack, RemovesItsSpoolAndWhatAKilledProcessLeft) {
+  fs::create_directory(options_.spool_folder);
+  support::WriteFile(options_.spool_folder / "look-back-000003.lcmlog.partial", "old");
+  support::WriteFile(options_.spool_folder / "somebody's.txt", "stays");
+  {
+    LookBack back(options_);
+    Send(back, 0, 5);
+    back.Flush();
+    EXPECT_EQ(NumFiles(), 2U);
+  }
+  EXPECT_EQ(NumFiles(), 1U);
+  EXPECT_TRUE(fs::exists(options_.spool_folder / "somebody's.txt"));
+}
+
+TEST_F(OfLookBack, CountsWhatDoesNotFitIntoTheQueue) {
+  options_.queue_bytes = 100'000;
+  LookBack back(options_);
+  Send(back, 0, 200);
+  back.Flush();
+  const auto status = back.Status();
+  EXPECT_GT(status.num_lost, 0);
+  EXPECT_EQ(status.num_lost + status.num_spooled, 1000);
+}
+
+TEST_F(OfLookBack, GoesOnWhenItsFolderIsTakenAway) {
+  LookBack back(options_);
+  fs::remove_all(options_.spool_folder);
+  Send(back, 0, 5);
+  back.Flush();
+  EXPECT_FALSE(back.Status().fault.empty());
+  EXPECT_EQ(back.Status().num_lost, 25);
+}
+
+TEST_F(OfLookBack, ShowsLaterWhatAClockThatWasSetBackGave) {
+  LookBack back(options_);
+  Send(back, 0, 10);
+  back.Flush();
+  Send(back, 10, 20, -3'600'000'000);
+  back.Flush();
+  EXPECT_EQ(back.Find(AtScan(kBeginUs + 15 * kScanUs, {kScanChannel})).num_scans, 20);
+  EXPECT_EQ(UtimesOf(back.Find(AtScan(kBeginUs + 15 * kScanUs, {kScanChannel})), bus::kLidarScan).size(), 2U);
+}
+
+// Nothing is written twice.
+TEST_F(OfLookBack, FollowsTheLogThatTheRecorderWritesAndSpoolsWhenItStops) {
+  options_.recorder_folder = folder_ / "logs";
+  fs::create_directory(*options_.recorder_folder);
+  WriteScans(*options_.recorder_folder / "20260101T000000Z.lcmlog", 0, 10);
+  LookBack back(options_);
+  auto log = std::make_unique<SceneLog>(*options_.recorder_folder / "20260101T000001Z.lcmlog");
+  std::int64_t seq = 10;
+  const auto record = [&] {
+    (*log)->Scan(seq++);
+    log->Flush();
+  };
+  ASSERT_TRUE(WaitUntil([&] {
+    record();
+    return back.Status().is_following;
+  }));
+  Send(back, 5000, 5010);  // on the bus, too: the recorder has it
+  back.Flush();
+  EXPECT_EQ(back.Status().num_spooled, 0);
+  EXPECT_EQ(NumFiles(), 0U);
+  const auto first = back.Find(AtScan(kBeginUs, {kScanChannel}));
+  EXPECT_EQ(ToUtimeUs(first.scan_time), kBeginUs);
+  EXPECT_EQ(first.num_scans, seq);
+  // The next log of the recorder.
+  log = std::make_unique<SceneLog>(*options_.recorder_folder / "20260101T000002Z.lcmlog");
+  record();
+  back.Flush();
+  EXPECT_EQ(back.Find(AtScan(kBeginUs, {kScanChannel})).num_scans, seq);
+  ASSERT_TRUE(WaitUntil([&] { return !back.Status().is_following; }));
+  Send(back, seq, seq + 10);
+  back.Flush();
+  EXPECT_EQ(back.Find(AtScan(kBeginUs, {kScanChannel})).num_scans, seq + 10);
+  EXPECT_EQ(back.Status().num_spooled, 50);
+}
+
+}  // namespace
+}  // namespace lookout::page
