@@ -4,6 +4,10 @@ import { Layout, type ViewName } from "./layout.js";
 import { Link } from "./link.js";
 import { Live } from "./live.js";
 import { State, type View } from "./state.js";
+import { AroundView } from "./views/around.js";
+import { CloudView } from "./views/cloud.js";
+import { MapView } from "./views/map.js";
+import { RangeImageView } from "./views/range_image.js";
 import { AlertBar } from "./views/alerts.js";
 import { Banner } from "./views/banner.js";
 import { Lists } from "./views/lists.js";
@@ -11,10 +15,6 @@ import { Plots } from "./views/plots.js";
 import { listenToKeys, SettingsSheet } from "./views/settings.js";
 import { Sounder, WakeLock } from "./views/sound.js";
 import { Timeline } from "./views/timeline.js";
-import { AroundView } from "./views/around.js";
-import { CloudView } from "./views/cloud.js";
-import { MapView } from "./views/map.js";
-import { RangeImageView } from "./views/range_image.js";
 
 // A link with #token=... gives this browser the right to acknowledge; it does not stay in the address.
 function takeToken(): string {

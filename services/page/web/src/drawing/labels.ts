@@ -11,7 +11,8 @@ export interface Label {
   /** In a box of its own colour: what must be read. */
   isBoxed: boolean;
 }
-interface Box { x: number; y: number; width: number; height: number }
+/** Of the screen, pixels. */
+export interface Box { x: number; y: number; width: number; height: number }
 
 const kLine_px = 15;
 export const kFont = "600 13px system-ui, sans-serif";

@@ -1,7 +1,7 @@
 // The own boat, and what is measured from it: rings, guard zones, heading and way.
 import { texts } from "../texts/index.js";
 import { length } from "../units.js";
-import { kFont } from "./labels.js";
+import { kFont, type Box } from "./labels.js";
 import { niceStep } from "./plane.js";
 import { boatX, boatY, type Scene } from "./scene.js";
 
@@ -15,13 +15,14 @@ export function ringStep(px_per_m: number, inMiles: boolean): number {
   return inMiles && least_m >= 0.1 * kMetresPerMile ? niceStep(least_m / kMetresPerMile) * kMetresPerMile : niceStep(least_m);
 }
 
-/** Rings around the own boat, with their distances, and a tick each 30 degrees on the outermost that is whole. */
-export function paintRings(scene: Scene): void {
+/** Rings around the own boat, with their distances, and a tick each 30 degrees on the first. @returns boxes of its words */
+export function paintRings(scene: Scene): Box[] {
   const { context, plane, own, theme, state } = scene;
   const x = plane.x(own.east_m, own.north_m), y = plane.y(own.east_m, own.north_m);
   const step_m = ringStep(plane.px_per_m, state.settings.get("length_unit") === "NM");
   const farthest_px = Math.hypot(Math.max(x, plane.width_px - x), Math.max(y, plane.height_px - y));
-  if (farthest_px > 60 * kRing_px) return;
+  const boxes: Box[] = [];
+  if (farthest_px > 60 * kRing_px) return boxes;
   const numRings = Math.min(40, Math.ceil(farthest_px / (step_m * plane.px_per_m)));
   context.strokeStyle = theme.css.line;
   context.lineWidth = 1;
@@ -51,12 +52,15 @@ export function paintRings(scene: Scene): void {
     const text = length(state.settings, k * step_m).replace(".0 ", " ");
     context.strokeText(text, x, at);
     context.fillText(text, x, at);
+    boxes.push({ x: x - 24, y: at - 8, width: 48, height: 16 });
   }
-  if (!own.isOnMap) return;
+  if (!own.isOnMap) return boxes;
   const edge = inner / 0.92 + 12, nx = x - edge * Math.sin(plane.up), ny = y - edge * Math.cos(plane.up);
   context.strokeText(texts.drawing.north, nx, ny);
   context.fillStyle = theme.css.text;
   context.fillText(texts.drawing.north, nx, ny);
+  boxes.push({ x: nx - 8, y: ny - 8, width: 16, height: 16 });
+  return boxes;
 }
 
 /** Sectors in which anything raises an alert; filled where one is raised now. */

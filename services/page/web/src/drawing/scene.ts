@@ -2,7 +2,7 @@
 import type { Picture } from "../picture.js";
 import type { State } from "../state.js";
 import type { Theme } from "./colours.js";
-import type { Label } from "./labels.js";
+import type { Box, Label } from "./labels.js";
 import type { Plane } from "./plane.js";
 import type { Trails } from "./trails.js";
 
@@ -24,6 +24,8 @@ export interface Scene {
   state: State;
   trails: Trails;
   labels: Label[];
+  /** What labels may not cover. */
+  taken: Box[];
 }
 
 /** Metres of the boat (x forward, y port) as pixels. */

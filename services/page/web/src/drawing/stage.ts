@@ -12,6 +12,24 @@ export function isOld(state: State): boolean {
   return state.showing.kind === "live" && state.picture !== null && state.age_s > kOld_s;
 }
 
+// Strokes on 24 by 24.
+const kIcons = {
+  nearer: "M12 5v14M5 12h14", further: "M5 12h14", centre: "M12 3v5M12 16v5M3 12h5M16 12h5M12 7a5 5 0 1 0 .01 0M12 11.9v.2", measure: "M4 16.5 16.5 4 20 7.5 7.5 20zM8 12.5l2 2M11 9.5l2.5 2.5M14 6.5l2 2",
+  colours: "M12 4a8 8 0 1 0 .01 0M12 4v16M12 8h5.8M12 12h8M12 16h5.8", head: "M12 3 18.5 20 12 16 5.5 20z", north: "M7 19V5l10 14V5",
+} as const;
+export type Icon = keyof typeof kIcons;
+const kSvg = "http://www.w3.org/2000/svg";
+/** A sign of a button; its words stand in the label of the button. */
+export function icon(name: Icon): SVGSVGElement {
+  const svg = document.createElementNS(kSvg, "svg"), path = document.createElementNS(kSvg, "path");
+  svg.setAttribute("viewBox", "0 0 24 24");
+  svg.setAttribute("aria-hidden", "true");
+  svg.classList.add("drawing-icon");
+  path.setAttribute("d", kIcons[name]);
+  svg.append(path);
+  return svg;
+}
+
 /** An element of the page with a class and, where it is given, a text. */
 export function make<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, name: string, text = ""): HTMLElementTagNameMap[Tag] {
   const element = document.createElement(tag);
@@ -67,8 +85,9 @@ export class Stage {
     });
   }
 
-  button(label: string, sign: string, onClick: () => void): HTMLButtonElement {
-    const button = make("button", "drawing-button", sign);
+  button(label: string, sign: Icon, onClick: () => void): HTMLButtonElement {
+    const button = make("button", "drawing-button");
+    button.append(icon(sign));
     button.type = "button";
     button.title = label;
     button.setAttribute("aria-label", label);

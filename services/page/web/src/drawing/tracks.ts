@@ -53,23 +53,27 @@ export function paintTracks(scene: Scene): void {
     paintBody(scene, track, undefined, theme.css.muted);
   }
   context.globalAlpha = 1;
-  for (const { track, alert } of shown) paintTrack(scene, track, alert);
+  const gravest = shown.at(-1)?.track;
+  for (const { track, alert } of shown) paintTrack(scene, track, alert, track === gravest || track.id === state.chosen);
   for (const { track, alert } of shown.reverse()) {
+    const half = kLeast_px / 2, x = plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y = plane.y(track.position_map_m[0]!, track.position_map_m[1]!);
+    scene.taken.push({ x: x - half, y: y - half, width: kLeast_px, height: kLeast_px });
     const isOn = state.marked.track === track.id || state.chosen === track.id;
     if (track.status === Track.STATUS_TENTATIVE && alert === undefined && !isOn) continue;
     const radius_px = Math.max(kLeast_px, Math.min(30, track.width_m * plane.px_per_m / 2));
-    const name = texts.drawing.name(track.kind, track.id);
-    const moves = track.speed_mps > 0.3 ? `  ${speed(state.settings, track.speed_mps)}` : "";
-    const isRaised = alert !== undefined && alert.state !== 4;
+    const isRaised = alert !== undefined && alert.state !== 4, moves = track.speed_mps > 0.3, range = length(state.settings, track.range_m);
+    // Many stand about: of them the number and the range in one line is enough.
+    const isPlain = !isRaised && !isOn && !moves, name = texts.drawing.name(track.kind, track.id);
     const label = {
-      x_px: plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y_px: plane.y(track.position_map_m[0]!, track.position_map_m[1]!), radius_px,
-      lines: [name, `${length(state.settings, track.range_m)}${moves}`], colour: theme.css[isRaised || isOn ? trackColour(track, alert) : "text"], isBoxed: isRaised || isOn,
+      x_px: x, y_px: y, radius_px,
+      lines: isPlain ? [texts.drawing.plain(track.kind, track.id, range)] : [name, moves ? `${range}  ${speed(state.settings, track.speed_mps)}` : range],
+      colour: theme.css[isRaised || isOn ? trackColour(track, alert) : isPlain ? "muted" : "text"], isBoxed: isRaised || isOn,
     };
     if (isOn) scene.labels.unshift(label); else scene.labels.push(label);
   }
 }
 
-function paintTrack(scene: Scene, track: Track, alert: Alert | undefined): void {
+function paintTrack(scene: Scene, track: Track, alert: Alert | undefined, isNamed: boolean): void {
   const { context, plane, picture, state, theme } = scene;
   const colour = theme.css[trackColour(track, alert)];
   const x = plane.x(track.position_map_m[0]!, track.position_map_m[1]!), y = plane.y(track.position_map_m[0]!, track.position_map_m[1]!);
@@ -106,7 +110,7 @@ function paintTrack(scene: Scene, track: Track, alert: Alert | undefined): void 
     if (isRaised && alert.level >= 2) { context.moveTo(x + radius + 5, y); context.arc(x, y, radius + 5, 0, 2 * Math.PI); }
     context.stroke();
   }
-  if ((isRaised || state.chosen === track.id) && track.tcpa_s > 0 && track.tcpa_s < 900 && picture.pose !== null) paintApproach(scene, track, colour);
+  if ((isRaised || state.chosen === track.id) && track.tcpa_s > 0 && track.tcpa_s < 900 && picture.pose !== null) paintApproach(scene, track, colour, isNamed);
 }
 
 // Its outline, softly filled; what would be too small to be seen is a mark that says its kind.
@@ -160,8 +164,8 @@ function paintEllipse({ context, plane }: Scene, track: Track, colour: string): 
   context.globalAlpha = 1;
 }
 
-// Where both will be at the closest approach, and the line between.
-function paintApproach(scene: Scene, track: Track, colour: string): void {
+// Where both will be at the closest approach, and the line between; in words for the gravest alone.
+function paintApproach(scene: Scene, track: Track, colour: string, isNamed: boolean): void {
   const { context, plane, own, picture, state, theme } = scene;
   const t = track.tcpa_s, velocity = picture.pose!.velocity_map_mps;
   const own_east = own.east_m + t * (velocity[0]! || 0), own_north = own.north_m + t * (velocity[1]! || 0);
@@ -188,5 +192,5 @@ function paintApproach(scene: Scene, track: Track, colour: string): void {
     context.arc(x, y, 4.5, 0, 2 * Math.PI);
     context.fill();
   }
-  scene.labels.unshift({ x_px: (x1 + x2) / 2, y_px: (y1 + y2) / 2, radius_px: 8, lines: [texts.drawing.approach(length(state.settings, track.cpa_m), duration(t))], colour, isBoxed: false });
+  if (isNamed) scene.labels.unshift({ x_px: (x1 + x2) / 2, y_px: (y1 + y2) / 2, radius_px: 8, lines: [texts.drawing.approach(length(state.settings, track.cpa_m), duration(t))], colour, isBoxed: false });
 }

@@ -1,5 +1,6 @@
 // The picture around the boat: north up or bow up, the own boat always where it was put.
-import type { Scene } from "../drawing/scene.js";
+import { type Scene } from "../drawing/scene.js";
+import { icon } from "../drawing/stage.js";
 import type { Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
@@ -18,7 +19,7 @@ export class AroundView extends PlanView {
 
   constructor(state: State) {
     super(state, "around");
-    this.orientation = this.stage.button("", "N", () => { this.turn(); });
+    this.orientation = this.stage.button("", "north", () => { this.turn(); });
     state.on(["settings"], () => { this.nameOrientation(); });
     this.nameOrientation();
   }
@@ -55,7 +56,7 @@ export class AroundView extends PlanView {
   private nameOrientation(): void {
     const isHeadUp = this.state.settings.get("orientation") === "head", button = this.orientation;
     const label = isHeadUp ? texts.drawing.orientation_head : texts.drawing.orientation_north;
-    button.textContent = isHeadUp ? "▲" : "N";
+    button.replaceChildren(icon(isHeadUp ? "head" : "north"));
     button.title = label;
     button.setAttribute("aria-label", label);
   }

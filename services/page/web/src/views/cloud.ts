@@ -54,9 +54,9 @@ export class CloudView implements View {
       onClick: (x, y) => { this.choose(x, y); },
       onHover: () => undefined,
     });
-    this.stage.button(texts.drawing.zoom_in, "+", () => { this.zoom(1.4); });
-    this.stage.button(texts.drawing.zoom_out, "−", () => { this.zoom(1 / 1.4); });
-    this.stage.button(texts.drawing.reset, "⌖", () => { this.eye = { ...kFirst }; });
+    this.stage.button(texts.drawing.zoom_in, "nearer", () => { this.zoom(1.4); });
+    this.stage.button(texts.drawing.zoom_out, "further", () => { this.zoom(1 / 1.4); });
+    this.stage.button(texts.drawing.reset, "centre", () => { this.eye = { ...kFirst }; });
     const turn = (around: number, above: number) => () => { this.orbit(around, above); };
     this.stage.keys({
       "+": () => { this.zoom(1.2); }, "-": () => { this.zoom(1 / 1.2); }, Home: () => { this.eye = { ...kFirst }; },

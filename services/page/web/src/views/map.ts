@@ -9,7 +9,7 @@ import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { PlanView } from "./plan_view.js";
 
-const kFirst_px_per_m = 2;
+const kFirstReach_m = 60;
 const kMost_px_per_m = 80;
 const kGrid_px = 130;
 
@@ -24,6 +24,7 @@ export class MapView extends PlanView {
 
   constructor(state: State) {
     super(state, "map");
+    this.hasRings = false;
     this.tiles.onCame = () => { this.stage.ask(); };
   }
 
@@ -36,7 +37,7 @@ export class MapView extends PlanView {
     const x = mercatorX(pose.longitude_deg), y = mercatorY(pose.latitude_deg), width_m = widthAt(pose.latitude_deg);
     if (!this.isFitted) {
       this.isFitted = true;
-      this.world_px = kFirst_px_per_m * width_m;
+      this.world_px = Math.min(plane.width_px, plane.height_px) / 2 / kFirstReach_m * width_m;
     }
     this.world_px = Math.min(this.world_px, kMost_px_per_m * width_m);
     if (this.follows) { this.x = x; this.y = y; }
@@ -101,6 +102,7 @@ export class MapView extends PlanView {
     context.textAlign = "left";
     for (let k = Math.ceil(west / step); k * step <= east; ++k) context.fillText(position(k * step, false, decimals), screenX(k * step) + 4, 4);
     context.textBaseline = "bottom";
+    if (this.tiles.file === null) context.fillText(texts.drawing.no_tiles, 170, height_px - 12);
     for (let k = Math.ceil(south / step); k * step <= north; ++k) if (screenY(k * step) < height_px - 60) context.fillText(position(k * step, true, decimals), 4, screenY(k * step) - 3);
   }
   private paintOwnWay(context: CanvasRenderingContext2D, theme: Theme): void {
@@ -129,5 +131,5 @@ export class MapView extends PlanView {
   protected describe({ picture }: Scene): string {
     return texts.drawing.map(`${position(picture.pose?.latitude_deg ?? NaN, true)}, ${position(picture.pose?.longitude_deg ?? NaN, false)}`);
   }
-  protected noteFor(scene: Scene | null): string { return scene === null ? texts.drawing.no_place : this.tiles.file === null ? texts.drawing.no_tiles : ""; }
+  protected noteFor(scene: Scene | null): string { return scene === null ? texts.drawing.no_place : ""; }
 }

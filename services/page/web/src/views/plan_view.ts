@@ -25,6 +25,7 @@ export abstract class PlanView implements View {
   protected readonly trails: Trails;
   protected readonly points = new Points(false);
   protected scene: Scene | null = null;
+  protected hasRings = true;
   private readonly measure = new Measure();
   private readonly measureButton: HTMLButtonElement;
   private isVisible = false;
@@ -44,12 +45,12 @@ export abstract class PlanView implements View {
     });
     const middle = () => [this.stage.width_px * this.plane.anchor_x, this.stage.height_px * this.plane.anchor_y] as const;
     const nearer = (factor: number) => () => { this.zoom(factor, ...middle()); };
-    this.stage.button(texts.drawing.zoom_in, "+", nearer(1.5));
-    this.stage.button(texts.drawing.zoom_out, "−", nearer(1 / 1.5));
-    this.stage.button(texts.drawing.centre, "⌖", () => { this.centre(); });
-    this.measureButton = this.stage.button(texts.drawing.measure, "⟷", () => { this.toggleMeasure(); });
+    this.stage.button(texts.drawing.zoom_in, "nearer", nearer(1.5));
+    this.stage.button(texts.drawing.zoom_out, "further", nearer(1 / 1.5));
+    this.stage.button(texts.drawing.centre, "centre", () => { this.centre(); });
+    this.measureButton = this.stage.button(texts.drawing.measure, "measure", () => { this.toggleMeasure(); });
     this.measureButton.setAttribute("aria-pressed", "false");
-    const colour = this.stage.button("", "◐", () => {
+    const colour = this.stage.button("", "colours", () => {
       const choices = state.settings.choices("colour_by");
       state.settings.set("colour_by", choices[(choices.indexOf(state.settings.get("colour_by")) + 1) % choices.length]!);
     });
@@ -97,7 +98,7 @@ export abstract class PlanView implements View {
     context.clearRect(0, 0, width_px, height_px);
     let scene: Scene | null = null;
     if (picture !== null) {
-      scene = { context, plane: this.plane, picture, own: ownPlace(picture), theme, state: this.state, trails: this.trails, labels: [] };
+      scene = { context, plane: this.plane, picture, own: ownPlace(picture), theme, state: this.state, trails: this.trails, labels: [], taken: [] };
       if (!this.place(picture, scene)) scene = null;
     }
     this.scene = scene;
@@ -125,7 +126,9 @@ export abstract class PlanView implements View {
   }
   private paintScene(scene: Scene): void {
     const { context } = scene, { width_px, height_px } = this.stage;
-    paintRings(scene);
+    const { taken } = scene;
+    taken.push({ x: 0, y: height_px - 44, width: 150, height: 44 }, { x: width_px - 60, y: height_px - 56 * 6, width: 60, height: 56 * 6 });
+    if (this.hasRings) taken.push(...paintRings(scene));
     paintGuardZones(scene);
     paintKnownThings(scene);
     paintLand(scene);
@@ -136,7 +139,6 @@ export abstract class PlanView implements View {
       paintTracks(scene);
     } else paintOwnBoat(scene);
     this.measure.paint(scene, (from, to) => this.between(from, to));
-    const taken = [{ x: 0, y: height_px - 44, width: 150, height: 44 }, { x: width_px - 60, y: height_px - 56 * 6, width: 60, height: 56 * 6 }];
     const x = scene.plane.x(scene.own.east_m, scene.own.north_m), y = scene.plane.y(scene.own.east_m, scene.own.north_m);
     taken.push({ x: x - 10, y: y - 14, width: 20, height: 28 });
     drawLabels(context, scene.labels, scene.theme, this.stage, width_px < 500 ? 8 : 24, taken);

@@ -8,7 +8,7 @@ import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bearing } from "../units.js";
 
-const kAxis_px = 26, kGap_px = 26, kMostRing_px = 14;
+const kAxis_px = 26, kGap_px = 26, kMostRing_px = 24;
 const kMostZoom = 24;
 
 interface Strip { top_px: number; height_px: number; kind: number }
@@ -48,9 +48,9 @@ export class RangeImageView implements View {
         this.point();
       },
     });
-    this.stage.button(texts.drawing.zoom_in, "+", () => { this.zoom(1.6, this.stage.width_px / 2); });
-    this.stage.button(texts.drawing.zoom_out, "−", () => { this.zoom(1 / 1.6, this.stage.width_px / 2); });
-    this.stage.button(texts.drawing.reset, "⌖", () => { this.reset(); });
+    this.stage.button(texts.drawing.zoom_in, "nearer", () => { this.zoom(1.6, this.stage.width_px / 2); });
+    this.stage.button(texts.drawing.zoom_out, "further", () => { this.zoom(1 / 1.6, this.stage.width_px / 2); });
+    this.stage.button(texts.drawing.reset, "centre", () => { this.reset(); });
     this.stage.keys({
       "+": () => { this.zoom(1.25, this.stage.width_px / 2); }, "-": () => { this.zoom(0.8, this.stage.width_px / 2); }, Home: () => { this.reset(); },
       ArrowLeft: () => { this.pan(-0.1 * this.span); }, ArrowRight: () => { this.pan(0.1 * this.span); },
