@@ -5,6 +5,7 @@ import { Link } from "./link.js";
 import { Live } from "./live.js";
 import { State, type View } from "./state.js";
 import { AroundView } from "./views/around.js";
+import { CompareView } from "./views/compare.js";
 import { CloudView } from "./views/cloud.js";
 import { MapView } from "./views/map.js";
 import { RangeImageView } from "./views/range_image.js";
@@ -72,6 +73,7 @@ views.set("range_image", new RangeImageView(state));
 views.set("cloud", new CloudView(state));
 views.set("lists", new Lists(state));
 views.set("plots", new Plots(state));
+views.set("compare", new CompareView(state, film));
 const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [new Timeline(state, film).element, settings.element]);
 listenToKeys(state, settings, {
   showView: (index) => {
