@@ -28,7 +28,7 @@ async function seek(page, text) {
 }
 async function opened(options) {
   const page = await openPage(browser, film.url, options);
-  await page.waitForFunction(() => document.querySelector(".film_clock")?.textContent !== "", null, { timeout: 10_000 });
+  await page.waitForFunction(() => (document.querySelector(".film_clock")?.textContent ?? "") !== "", null, { timeout: 10_000 });
   return page;
 }
 const seconds = (clock) => { const [, h, m, s] = /(\d+):(\d+):([\d.]+) UTC/.exec(clock); return 3600 * h + 60 * m + Number(s); };
@@ -153,6 +153,6 @@ test("the page says that its server is gone, and comes back by itself", async ()
   await page.keyboard.press(".");
   await page.waitForFunction((old) => document.querySelector(".film_clock").textContent !== old, shown, { timeout: 5000 });
   await page.reload();
-  await page.waitForFunction(() => document.querySelector(".film_clock")?.textContent !== "", null, { timeout: 10_000 });
+  await page.waitForFunction(() => (document.querySelector(".film_clock")?.textContent ?? "") !== "", null, { timeout: 10_000 });
   await page.context().close();
 });

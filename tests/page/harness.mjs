@@ -39,6 +39,7 @@ export async function openPage(browser, url, { width = 1440, height = 900, palet
   const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: 1, reducedMotion: "reduce", locale: "en-GB", timezoneId: "UTC" });
   await context.addInitScript((kept) => { localStorage.setItem("lookout.settings", kept); }, JSON.stringify({ palette, ...settings }));
   const page = await context.newPage();
+  page.setDefaultTimeout(8000);
   page.asked = [];
   page.errors = [];
   page.on("request", (asked) => { page.asked.push(asked.url()); });

@@ -222,7 +222,7 @@ export const en = {
     lost: (count: number) => (count === 1 ? "1 message lost" : `${count} messages lost`),
   },
   compare: {
-    hint: "This view shows two recordings of one journey beside each other. Start it with both: lookout-page --log first.lcmlog --log second.lcmlog",
+    hint: "This view shows two recordings of one journey beside each other. Start it with both: lookout-page --log first.lcmlog --beside second.lcmlog",
     next: "To the next scan that differs",
     searching: (count: number) => `Stop: ${count} scans alike`,
     noMore: "No scan further on differs.",

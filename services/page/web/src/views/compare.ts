@@ -73,8 +73,8 @@ function element<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, name: string
 
 export class CompareView implements View {
   readonly element = element("div", "view compare");
-  private readonly sides = [0, 1].map(() => new State(null, this.state.settings));
-  private readonly views = this.sides.map((side) => new ComparedView(side));
+  private readonly sides: State[];
+  private readonly views: ComparedView[];
   private readonly names = [element("h2", "compare_name"), element("h2", "compare_name")];
   private readonly summary = element("p", "compare_summary");
   private readonly table = element("table", "compare_table");
@@ -86,6 +86,8 @@ export class CompareView implements View {
   private shown: { first: Picture | null; second: Picture | null } = { first: null, second: null };
 
   constructor(private readonly state: State, private readonly film: Film) {
+    this.sides = [0, 1].map(() => new State(null, state.settings));
+    this.views = this.sides.map((side) => new ComparedView(side));
     const [left, right] = this.views as [ComparedView, ComparedView];
     left.beside = right;
     right.beside = left;
