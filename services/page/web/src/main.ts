@@ -44,8 +44,8 @@ state.link = new Link({
     state.connection = { state: "open", since_ms: performance.now() };
     live.begin(hello);
     state.tell("connection");
-    state.tell("sources");
     film.begin();
+    state.tell("sources");
   },
   onSources: (sources) => { state.sources = sources; live.setBoat(); state.tell("sources"); },
   onIndexing: (source, share) => {
