@@ -49,6 +49,7 @@ export class Film {
 
   constructor(private readonly state: State, private readonly live: Live, private readonly now_ms: () => number = () => performance.now()) {
     state.seek = (utime_us) => { this.seek(utime_us); };
+    state.on(["sources"], () => { if (state.showing.kind === "live" && state.hello?.mode === "log" && !this.isAsking) this.begin(); });
     const draw = () => {
       this.turn();
       requestAnimationFrame(draw);
@@ -64,8 +65,9 @@ export class Film {
     const { showing, hello } = this.state;
     if (showing.kind === "recorded") this.seek(showing.utime_us, this.isPlaying);
     else if (hello?.mode === "log") {
+      // Before its index is built a recording has no times; they come with `sources`.
       const first = lineOf(this.state.sources)[0];
-      if (first !== undefined) this.seek(first.begin_utime_us);
+      if (first !== undefined && first.num_scans > 0 && this.wanted === null) this.seek(first.begin_utime_us);
     }
   }
 
@@ -87,8 +89,9 @@ export class Film {
   seek(utime_us: number, keepsPlaying = false): void {
     if (this.state.sources.length === 0) return;
     if (!keepsPlaying) this.isPlaying = false;
-    this.setBase(utime_us);
-    this.want({ kind: "at", utime_us });
+    const whole_us = Math.round(utime_us);
+    this.setBase(whole_us);
+    this.want({ kind: "at", utime_us: whole_us });
   }
   /** So many scans on; negative: back. It pauses. */
   step(scans: number): void {
@@ -283,7 +286,7 @@ export class Film {
     }
     // Near enough: the next scan. Too far behind: the one that is due by the time it comes.
     const isBehind = due_us - head.utime_us > kBehind_scans * period_us;
-    const answer = isBehind ? link.at(head.source, { utime_us: Math.min(due_us, source.end_utime_us) }, kPictureChannels)
+    const answer = isBehind ? link.at(head.source, { utime_us: Math.round(Math.min(due_us, source.end_utime_us)) }, kPictureChannels)
       : link.step(head.source, head.utime_us, 1, kPictureChannels);
     this.receive(answer, (moment) => {
       if (!this.isPlaying || this.wanted !== null) return;

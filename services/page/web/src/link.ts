@@ -127,7 +127,7 @@ export class Link {
   /** Frames that were handled are confirmed together: the server sends on when it has room. To be called once a picture. */
   confirm(): void {
     if (this.numConfirmed === this.numFrames) return;
-    this.send({ op: "got", frames: this.numFrames - this.numConfirmed });
+    this.send({ op: "got", frames: this.numFrames });  // of this connection by now, in all
     this.numConfirmed = this.numFrames;
   }
 

@@ -8,6 +8,7 @@ import { AlertBar } from "./views/alerts.js";
 import { AroundView } from "./views/around.js";
 import { Banner } from "./views/banner.js";
 import { CloudView } from "./views/cloud.js";
+import { CompareView } from "./views/compare.js";
 import { Lists } from "./views/lists.js";
 import { MapView } from "./views/map.js";
 import { Plots } from "./views/plots.js";
@@ -43,8 +44,8 @@ state.link = new Link({
     state.connection = { state: "open", since_ms: performance.now() };
     live.begin(hello);
     state.tell("connection");
-    state.tell("sources");
     film.begin();
+    state.tell("sources");
   },
   onSources: (sources) => { state.sources = sources; live.setBoat(); state.tell("sources"); },
   onIndexing: (source, share) => {
@@ -72,6 +73,7 @@ views.set("range_image", new RangeImageView(state));
 views.set("cloud", new CloudView(state));
 views.set("lists", new Lists(state));
 views.set("plots", new Plots(state));
+views.set("compare", new CompareView(state, film));
 const layout = new Layout(state, views, [new Banner(state, sounder, settings).element, alerts.element], [new Timeline(state, film).element, settings.element]);
 listenToKeys(state, settings, {
   showView: (index) => {

@@ -220,5 +220,22 @@ export const en = {
     failed: "a process has failed",
     lost: (count: number) => (count === 1 ? "1 message lost" : `${count} messages lost`),
   },
+  compare: {
+    hint: "This view shows two recordings of one journey beside each other. Start it with both: lookout-page --log first.lcmlog --beside second.lcmlog",
+    next: "To the next scan that differs",
+    searching: (count: number) => `Stop: ${count} scans alike`,
+    noMore: "No scan further on differs.",
+    nothing: "No scan to compare yet.",
+    noScan: "The second recording does not hold this scan.",
+    same: (count: number) => `Both say the same of all ${count} returns.`,
+    returns: (count: number, all: number, percent: string) => `${count} of ${all} returns (${percent} %) are told differently.`,
+    table: "What differs",
+    first: "First",
+    second: "Second",
+    segments: "Segments that the other lacks",
+    track: { only: "Only one has the track", kind: "Other kind", speed: "Other speed", approach: "Other closest approach" },
+    alert: "Alert that the other lacks",
+    approach: (distance: string) => `closest ${distance}`,
+  },
 };
 export type Texts = typeof en;

@@ -70,7 +70,7 @@ export class Strips {
 
   /** Asks for what the span lacks, one span at a time. To be called when it changed, and now and then. */
   update(span: Span, width_px: number, now_ms: number): void {
-    const line = lineOf(this.state.sources).filter((source) => !this.state.indexing.has(source.id));
+    const line = lineOf(this.state.sources).filter((source) => !this.state.indexing.has(source.id) && source.num_scans > 0);
     const whole = wholeSpan(line);
     if (whole === null || this.isAsking || this.state.link === null || this.state.connection.state !== "open") return;
     const isGrowing = line.some((source) => source.is_growing);

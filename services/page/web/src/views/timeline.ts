@@ -4,19 +4,20 @@ import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { date, timeOfDay } from "../units.js";
 import { type JumpKind, kJumpKinds, moved, nextEvent, type Span, Strips, wholeSpan, zoomed } from "./strip.js";
+import { type Sign, sign } from "./signs.js";
 import { describe, drawStrip } from "./timeline_canvas.js";
 import { parseTime } from "./time_text.js";
 
 const kFollows_share = 0.9;  // a playing moment beyond this share of the span moves the span
 const kTap_px = 4;
 
-function button(name: string, label: string, sign: string, onClick: () => void): HTMLButtonElement {
+function button(name: string, label: string, shown: Sign | null, onClick: () => void): HTMLButtonElement {
   const element = document.createElement("button");
   element.type = "button";
   element.className = `film_button ${name}`;
   element.setAttribute("aria-label", label);
   element.title = label;
-  element.textContent = sign;
+  if (shown !== null) element.append(sign(shown));
   element.onclick = onClick;
   return element;
 }
@@ -42,7 +43,7 @@ export class Timeline {
   private readonly tip = box("film_tip");
   private readonly clock = document.createElement("output");
   private readonly note = box("film_note");
-  private readonly liveAlerts = button("film_alerts", texts.film.backToLive, "", () => { this.film.goLive(); });
+  private readonly liveAlerts = button("film_alerts", texts.film.backToLive, null, () => { this.film.goLive(); });
   private readonly playButton: HTMLButtonElement;
   private readonly liveButton: HTMLButtonElement;
   private readonly recordedControls: HTMLElement[];
@@ -59,10 +60,11 @@ export class Timeline {
 
   constructor(private readonly state: State, private readonly film: Film) {
     this.strips = new Strips(state, () => { this.isDirty = true; });
-    this.element.className = "film";
+    this.element.className = "film timeline";
     this.element.setAttribute("aria-label", texts.film.name);
-    this.playButton = button("play", texts.film.play, "▶", () => { this.togglePlay(); });
-    this.liveButton = button("live", texts.film.backToLive, texts.live, () => { this.film.goLive(); });
+    this.playButton = button("play", texts.film.play, "play", () => { this.togglePlay(); });
+    this.liveButton = button("live", texts.film.backToLive, null, () => { this.film.goLive(); });
+    this.liveButton.textContent = texts.live;
     this.rate.value = String(film.rate);
     this.rate.onchange = () => { film.setRate(Number(this.rate.value)); };
     this.time.type = "text";
@@ -71,20 +73,19 @@ export class Timeline {
     this.time.setAttribute("aria-label", texts.film.time);
     this.time.onchange = () => { this.takeTime(); };
     this.clock.className = "film_clock";
-    const stepBack = button("back", texts.film.stepBack, "◂", () => { film.step(-1); });
-    const stepOn = button("on", texts.film.stepOn, "▸", () => { film.step(1); });
-    const before = button("before", texts.film.before, "⏮", () => { this.jump(-1); });
-    const after = button("after", texts.film.after, "⏭", () => { this.jump(1); });
-    const zoomIn = button("nearer", texts.film.zoomIn, "+", () => { this.zoom(0.5); });
-    const zoomOut = button("farther", texts.film.zoomOut, "−", () => { this.zoom(2); });
-    const whole = button("whole", texts.film.whole, "↔", () => { this.span = null; this.isDirty = true; });
+    const stepBack = button("back", texts.film.stepBack, "back", () => { film.step(-1); });
+    const stepOn = button("on", texts.film.stepOn, "on", () => { film.step(1); });
+    const before = button("before", texts.film.before, "before", () => { this.jump(-1); });
+    const after = button("after", texts.film.after, "after", () => { this.jump(1); });
+    const zoomIn = button("nearer", texts.film.zoomIn, "nearer", () => { this.zoom(0.5); });
+    const zoomOut = button("farther", texts.film.zoomOut, "farther", () => { this.zoom(2); });
+    const whole = button("whole", texts.film.whole, "whole", () => { this.span = null; this.isDirty = true; });
     this.recordedControls = [this.playButton, stepBack, stepOn, this.rate];
     this.note.setAttribute("role", "status");
     this.element.append(
       box("film_line", this.note, this.liveAlerts),
       box("film_controls", this.liveButton, before, stepBack, this.playButton, stepOn, after, this.rate, this.kind, this.clock, this.time, box("film_zoom", zoomOut, whole, zoomIn)),
-      this.slider);
-    this.slider.append(this.tip);
+      this.slider, this.tip);
     this.tip.hidden = true;
     this.slider.tabIndex = 0;
     this.slider.setAttribute("role", "slider");
@@ -258,7 +259,7 @@ export class Timeline {
     this.liveButton.hidden = !isLive;
     this.liveButton.setAttribute("aria-pressed", String(!isRecorded));
     for (const control of this.recordedControls) (control as HTMLButtonElement).disabled = !isRecorded && control !== this.recordedControls[1];
-    this.playButton.textContent = film.isPlaying ? "⏸" : "▶";
+    this.playButton.replaceChildren(sign(film.isPlaying ? "pause" : "play"));
     this.playButton.setAttribute("aria-label", film.isPlaying ? texts.film.pause : texts.film.play);
     this.rate.value = String(film.rate);
     const worst = Math.max(0, ...film.liveAlerts.map((alert) => alert.level));

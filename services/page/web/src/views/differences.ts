@@ -1,0 +1,107 @@
+// What two pictures of the same scan say differently. Nothing here knows the DOM.
+import { Track } from "../messages/generated.js";
+import type { Picture } from "../picture.js";
+
+export interface TrackDifference { first: Track | null; second: Track | null; what: "only" | "kind" | "speed" | "approach" }
+export interface Differences {
+  /** Whether both hold the same scan, return for return; otherwise all else is empty. */
+  isSameScan: boolean;
+  numReturns: number;
+  /** Returns of which one says that they are of a segment and the other does not, or that lie in segments that do not go together. */
+  otherReturns: Uint32Array;
+  segmentsOnlyInFirst: number[];
+  segmentsOnlyInSecond: number[];
+  tracks: TrackDifference[];
+  /** Alerts that the other lacks, in words. */
+  alertsOnlyInFirst: string[];
+  alertsOnlyInSecond: string[];
+}
+
+const kSameSegment_share = 0.5;  // of the returns of both together
+const kSameTrack_m = 2;
+const kOtherSpeed_mps = 0.5;
+const kOtherApproach_m = 2;
+
+/** Segments that go together: those with more than half of their returns in common. */
+function pairSegments(first: Int16Array, second: Int16Array): Map<number, number> {
+  const sizes = [new Map<number, number>(), new Map<number, number>()], common = new Map<number, number>();
+  const add = (counts: Map<number, number>, key: number) => { counts.set(key, (counts.get(key) ?? 0) + 1); };
+  for (let i = 0; i < first.length; ++i) {
+    const a = first[i]!, b = second[i]!;
+    if (a > 0) add(sizes[0]!, a);
+    if (b > 0) add(sizes[1]!, b);
+    if (a > 0 && b > 0) add(common, a * 65536 + b);
+  }
+  const pairs = new Map<number, number>();
+  for (const [key, count] of common) {
+    const a = Math.floor(key / 65536), b = key % 65536;
+    if (count > kSameSegment_share * (sizes[0]!.get(a)! + sizes[1]!.get(b)! - count)) pairs.set(a, b);
+  }
+  return pairs;
+}
+
+function isTold(track: Track): boolean { return track.status === Track.STATUS_CONFIRMED || track.status === Track.STATUS_COASTING; }
+
+function pairTracks(first: Picture, second: Picture, segments: ReadonlyMap<number, number>): Map<Track, Track> {
+  const pairs = new Map<Track, Track>(), taken = new Set<number>();
+  const take = (a: Track, b: Track | undefined) => {
+    if (b === undefined || taken.has(b.id) || !isTold(b)) return;
+    pairs.set(a, b);
+    taken.add(b.id);
+  };
+  const told = first.tracks.filter(isTold);
+  for (const track of told) {
+    for (const id of track.segment_ids) {
+      const other = segments.get(id);
+      if (!pairs.has(track) && other !== undefined) take(track, second.track_of_segment.get(other));
+    }
+  }
+  // The nearest pairs first, so that the order of ids plays no part.
+  const near: { a: Track; b: Track; distance_m: number }[] = [];
+  for (const a of told) {
+    if (pairs.has(a)) continue;
+    for (const b of second.tracks) {
+      const distance_m = Math.hypot(a.position_map_m[0]! - b.position_map_m[0]!, a.position_map_m[1]! - b.position_map_m[1]!);
+      if (distance_m < kSameTrack_m) near.push({ a, b, distance_m });
+    }
+  }
+  for (const { a, b } of near.sort((one, other) => one.distance_m - other.distance_m)) if (!pairs.has(a)) take(a, b);
+  return pairs;
+}
+
+export function compare(first: Picture, second: Picture): Differences {
+  const none = { numReturns: 0, otherReturns: new Uint32Array(), segmentsOnlyInFirst: [], segmentsOnlyInSecond: [], tracks: [], alertsOnlyInFirst: [], alertsOnlyInSecond: [] };
+  const a = first.returns, b = second.returns;
+  if (first.utime_us !== second.utime_us || a === null || b === null || a.count !== b.count) return { isSameScan: false, ...none };
+  const segments = pairSegments(a.label, b.label);
+  const other = new Uint32Array(a.count);
+  let numOther = 0;
+  for (let i = 0; i < a.count; ++i) {
+    const one = a.label[i]!, two = b.label[i]!;
+    if (one > 0 ? segments.get(one) !== two : two > 0) other[numOther++] = i;
+  }
+  const paired = new Set(segments.values());
+  const tracks: TrackDifference[] = [];
+  const pairs = pairTracks(first, second, segments), seconds = new Set([...pairs.values()].map((track) => track.id));
+  for (const track of first.tracks) {
+    if (!isTold(track)) continue;
+    const same = pairs.get(track);
+    if (same === undefined) tracks.push({ first: track, second: null, what: "only" });
+    else if (same.kind !== track.kind) tracks.push({ first: track, second: same, what: "kind" });
+    else if (Math.abs(same.speed_mps - track.speed_mps) >= kOtherSpeed_mps) tracks.push({ first: track, second: same, what: "speed" });
+    else if (Math.abs(same.cpa_m - track.cpa_m) >= kOtherApproach_m && Math.max(same.tcpa_s, track.tcpa_s) > 0) tracks.push({ first: track, second: same, what: "approach" });
+  }
+  for (const track of second.tracks) if (isTold(track) && !seconds.has(track.id)) tracks.push({ first: null, second: track, what: "only" });
+  // An alert is the same when its cause is, and its track goes together with the other's.
+  const partner = new Map([...pairs].map(([one, two]) => [one.id, two.id]));
+  const has = (picture: Picture, cause: number, track: number) => picture.alerts.some((alert) => alert.cause === cause && alert.track_id === track);
+  const back = new Map([...partner].map(([one, two]) => [two, one]));
+  return {
+    isSameScan: true, numReturns: a.count, otherReturns: other.slice(0, numOther),
+    segmentsOnlyInFirst: first.segments.map((segment) => segment.id).filter((id) => !segments.has(id)),
+    segmentsOnlyInSecond: second.segments.map((segment) => segment.id).filter((id) => !paired.has(id)),
+    tracks,
+    alertsOnlyInFirst: first.alerts.filter((alert) => !has(second, alert.cause, partner.get(alert.track_id) ?? (alert.track_id === 0 ? 0 : -1))).map((alert) => alert.text),
+    alertsOnlyInSecond: second.alerts.filter((alert) => !has(first, alert.cause, back.get(alert.track_id) ?? (alert.track_id === 0 ? 0 : -1))).map((alert) => alert.text),
+  };
+}

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# One trial of the page in chromium, in a network namespace of its own: nothing outside of this computer can be reached.
+#   page_test.sh film|live|pictures|figures SOURCE_FOLDER BUILD_FOLDER [MORE]
+# Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
+set -euo pipefail
+trial=$1
+source_folder=$2
+build=$3
+shift 3
+here=$source_folder/tests/page
+skip() { echo "skipped: $*"; exit 77; }
+
+command -v npm >/dev/null || skip "npm is not installed"
+[ -x /usr/bin/chromium ] || skip "chromium is not installed"
+folder=$build/page_tests
+if ! cmp -s "$here/package-lock.json" "$folder/installed"; then
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  cp "$here/package.json" "$here/package-lock.json" "$here/.npmrc" "$folder"
+  if ! (cd "$folder" && npm ci --no-audit --no-fund >npm.log 2>&1); then
+    grep -Eq 'ENOTFOUND|ECONNREFUSED|ETIMEDOUT|EAI_AGAIN' "$folder/npm.log" && skip "no network for npm"
+    cat "$folder/npm.log"
+    exit 1
+  fi
+  cp "$here/package-lock.json" "$folder/installed"
+fi
+# Modules are looked for beside the file that asks for them.
+cp "$here"/*.mjs "$folder"
+export LOOKOUT_SOURCE=$source_folder LOOKOUT_BIN=$build/bin
+# The same log each time: the same bytes out of the same seed.
+log=$folder/crossing.lcmlog
+if [ ! -f "$log" ]; then
+  "$build/bin/lookout-sim" --config "$source_folder/config/demo" --scene crossing --seed 1 --seconds 30 --pcap "$folder/crossing.pcap" --truth "$folder/truth" >/dev/null
+  "$build/bin/lookout-replay" --config "$source_folder/config/demo" --in "$folder/crossing.pcap" --out "$log" >/dev/null
+fi
+export LOOKOUT_LOG=$log
+case $trial in
+  film) command=(node --test --test-concurrency=1 "$folder/film.test.mjs") ;;
+  live) command=("$here/live.sh" "$source_folder" "$build/bin" "$folder") ;;
+  pictures | figures) command=(node "$folder/$trial.mjs" "$@") ;;
+  *) echo "unknown trial: $trial" >&2; exit 2 ;;
+esac
+exec "$source_folder/tests/system/in_namespace.sh" route "${command[@]}"
