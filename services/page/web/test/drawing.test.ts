@@ -2,7 +2,7 @@
 // Node's own types are not among the packages of the page: esbuild bundles this file, and tsc does not check it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fillColours, luminance, parseColour, rampColour, distinctColour, type Theme } from "../src/drawing/colours.js";
+import { fillColours, luminance, parseColour, rampColour, distinctColour, standingOut, type Theme } from "../src/drawing/colours.js";
 import { placeFor } from "../src/drawing/labels.js";
 import { lookAt, perspective, product, project } from "../src/drawing/matrix.js";
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt, zoomFor } from "../src/drawing/mercator.js";
@@ -191,4 +191,9 @@ test("plotted points lie where the matrix puts them, and the nearer one is in fr
   words.fill(0);
   plot(m, { places: Float32Array.of(0, 0, -5, 0, 0, -9, 0, 0, 5), colours: Uint8Array.of(1, 0, 0, 255, 2, 0, 0, 255, 3, 0, 0, 255), count: 3 }, 1, words, depth, 10, 10);
   assert.deepEqual([...words].filter((word) => word !== 0), [0xff000001]);
+});
+test("land stands out from the water in every palette", () => {
+  assert.deepEqual(standingOut([90, 60, 0], [255, 255, 255], [0, 0, 0]), [90, 60, 0]);
+  const mixed = standingOut([230, 220, 160], [255, 255, 255], [0, 0, 0]);
+  assert.ok(1.05 / (luminance(mixed) + 0.05) >= 3);
 });

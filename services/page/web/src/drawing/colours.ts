@@ -46,6 +46,9 @@ export function currentTheme(): Theme {
     if (parsed !== null) css[name] = given;
     rgb[name] = parsed ?? parseColour(kDefaults[name])!;
   }
+  // Land is drawn as lines and single cells here, not as a ground: it must stand out from the water.
+  rgb.land = standingOut(rgb.land, rgb.water, rgb.text);
+  css.land = `rgb(${rgb.land.join(" ")})`;
   theme = { palette, isNight: palette === "night", isDark: luminance(rgb.water) < 0.2, css, rgb };
   return theme;
 }
@@ -53,6 +56,16 @@ export function currentTheme(): Theme {
 export function luminance(rgb: Rgb): number {
   const [r, g, b] = rgb.map((value) => (value <= 10 ? value / 255 / 12.92 : ((value / 255 + 0.055) / 1.055) ** 2.4)) as unknown as Rgb;
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
+/** A colour mixed with that of the text until its contrast with the ground is 3. */
+export function standingOut(colour: Rgb, ground: Rgb, text: Rgb): Rgb {
+  for (let share = 0; share < 1; share += 0.1) {
+    const mixed = [0, 1, 2].map((k) => Math.round(colour[k]! * (1 - share) + text[k]! * share)) as unknown as Rgb;
+    const a = luminance(mixed), b = luminance(ground);
+    if ((Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05) >= 3) return mixed;
+  }
+  return text;
 }
 
 /** Colour of a track by what it means to the helmsman; the same in every view. */
