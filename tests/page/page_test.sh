@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One trial of the page in chromium, in a network namespace of its own: nothing outside of this computer can be reached.
-#   page_test.sh film|live|pictures|figures SOURCE_FOLDER BUILD_FOLDER [MORE]
+#   page_test.sh film SOURCE_FOLDER BUILD_FOLDER
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
 trial=$1
@@ -36,8 +36,6 @@ fi
 export LOOKOUT_LOG=$log
 case $trial in
   film) command=(node --test --test-concurrency=1 "$folder/film.test.mjs") ;;
-  live) command=("$here/live.sh" "$source_folder" "$build/bin" "$folder") ;;
-  pictures | figures) command=(node "$folder/$trial.mjs" "$@") ;;
   *) echo "unknown trial: $trial" >&2; exit 2 ;;
 esac
 exec "$source_folder/tests/system/in_namespace.sh" route "${command[@]}"
