@@ -222,7 +222,9 @@ export class Film {
     state.picture = this.toPicture(this.assembler, head.source, frames);
     state.tell("showing");
     state.tell("picture");
-    if (!isNext && !this.isPlaying && this.wanted === null) void this.prime(head);
+    if (this.isPlaying || this.wanted !== null) return;
+    if (head.scan_index < 0 && head.num_scans > 0) this.want({ kind: "step", scans: 1 });  // before the first scan there is nothing to see
+    else if (!isNext) void this.prime(head);
   }
 
   // What a moment alone does not hold: the remembered land, and how the boat turned just before.
