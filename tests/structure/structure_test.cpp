@@ -387,7 +387,8 @@ std::vector<fs::path> Pages() {
   }
   for (const auto& folder : {"config", "deploy", "lcmtypes", "logs", "services", "tests", "tools"}) {
     for (const auto& entry : fs::recursive_directory_iterator(kSources / folder)) {
-      if (entry.path().extension() == ".md") pages.push_back(entry.path());
+      const bool is_ours = entry.path().string().find("/node_modules/") == std::string::npos;
+      if (is_ours && entry.path().extension() == ".md") pages.push_back(entry.path());
     }
   }
   std::ranges::sort(pages);
