@@ -116,7 +116,7 @@ struct Tiles::Implementation {
     std::map<std::string, std::string, std::less<>> metadata;
     const auto statement = Prepare("SELECT name, value FROM metadata");
     int result = SQLITE_DONE;
-    while (metadata.size() < kMostRows && (result = Step(statement.get())) == SQLITE_ROW) {
+    for (std::size_t row = 0; row < kMostRows && (result = Step(statement.get())) == SQLITE_ROW; ++row) {
       metadata.emplace(Column(statement.get(), 0), Column(statement.get(), 1));
     }
     if (result != SQLITE_DONE && result != SQLITE_ROW) Refuse(std::string("is damaged: ") + sqlite3_errmsg(database.get()));

@@ -8,7 +8,7 @@ void Slots::Put(ChannelIndex channel, std::string_view slot_name, std::int64_t g
   const Key key(channel, slot_name);
   auto found = slots_.find(key);
   if (found == slots_.end()) {
-    if (slots_.size() >= kMaxSlots) {
+    if (slots_.size() >= kMaxSlots && !ForgetAnIdleOne()) {
       ++num_dropped_;
       return;
     }
@@ -72,6 +72,13 @@ void Slots::KeepOnly(const std::vector<ChannelIndex>& channels) {
     Forget(slot->second.next);
     slot = slots_.erase(slot);
   }
+}
+
+bool Slots::ForgetAnIdleOne() {
+  const auto idle = std::ranges::find_if(slots_, [](const auto& item) { return !item.second.is_ready(); });
+  if (idle == slots_.end()) return false;
+  slots_.erase(idle);
+  return true;
 }
 
 void Slots::Forget(Parts& parts) {

@@ -54,6 +54,8 @@ class Slots {
   };
 
   void Forget(Parts& parts);
+  // Of a process that has ended, say. @return false when all wait to be sent
+  bool ForgetAnIdleOne();
 
   std::map<Key, Slot> slots_;
   std::deque<Key> ready_;  // each slot that is_ready, once

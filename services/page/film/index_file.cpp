@@ -65,9 +65,9 @@ class In {
     return {bytes.begin(), bytes.end()};
   }
   // A count of what takes `least_bytes` each: no more than there can be.
-  std::size_t TakeCount(std::size_t least_bytes) {
+  std::size_t TakeCount(std::size_t least_bytes, std::size_t max_count = SIZE_MAX) {
     const auto count = Take<std::uint64_t>();
-    if (count > bytes_.size() / least_bytes) throw Fault();
+    if (count > bytes_.size() / least_bytes || count > max_count) throw Fault();
     return count;
   }
   Utime TakeTime() {
@@ -129,8 +129,7 @@ void PutPart(Out& out, const LogPart& part) {
 
 LogPart TakePart(In& in, std::int64_t log_bytes) {
   LogPart part;
-  part.processes.resize(in.TakeCount(4));
-  if (part.processes.size() > kMaxFilmProcesses) throw Fault();
+  part.processes.resize(in.TakeCount(4, kMaxFilmProcesses));
   for (auto& process : part.processes) process = in.TakeText(bus::kMaxLogChannelBytes);
   part.entries.resize(in.TakeCount(kEntryBytes));
   std::int64_t end_bytes = 0;
@@ -162,7 +161,7 @@ LogPart TakePart(In& in, std::int64_t log_bytes) {
     if (cell.alert_level < 0 || cell.alert_level > 2 || cell.health < -1 || cell.health > 2) throw Fault();
     second = cell.second;
   }
-  part.events.resize(in.TakeCount(14));
+  part.events.resize(in.TakeCount(14, kMaxFilmEvents));
   for (auto& event : part.events) {
     event.time = in.TakeTime();
     const auto kind = in.Take<std::uint8_t>();

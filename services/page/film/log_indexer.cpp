@@ -34,6 +34,7 @@ constexpr microseconds kPause = std::chrono::seconds(10);        // told as a ga
 constexpr microseconds kDoubtfulJump = std::chrono::minutes(1);  // is believed only if the next event agrees
 constexpr microseconds kHealthHolds = std::chrono::seconds(3);   // reports come once a second
 constexpr std::size_t kMaxAlerts = 4096;
+constexpr Utime kLatest{microseconds(kMaxUtimeUs)};  // a clock that is set on and back again and again goes no further
 
 std::int64_t ReadI32(Bytes bytes, std::size_t offset) {
   std::uint32_t value = 0;
@@ -123,7 +124,7 @@ bool LogIndexer::Read(std::int64_t max_bytes, LogPart& part) {
 
 // May look at the next event: then `event` shows copies.
 Utime LogIndexer::FilmTime(bus::LogEventView& event, LogPart& part) {
-  Utime time = event.time + shift_;
+  Utime time = std::min(event.time + shift_, kLatest);
   if (!last_) {
     last_ = time;
     return time;

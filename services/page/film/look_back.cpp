@@ -76,8 +76,9 @@ struct LookBack::Implementation {
         if (is_following) Follow();
         Trim();
         UpdateSourcesText();
+        SetFault({});
       } catch (const std::exception& error) {
-        Tell(error.what());
+        SetFault(error.what());
       }
       lock.lock();
       num_flushes_done = num_wanted;
@@ -162,6 +163,10 @@ struct LookBack::Implementation {
     spool_indexer.reset();
     spool_file.clear();
     is_following = true;
+    {
+      const std::scoped_lock lock(status_mutex);
+      status.fault.clear();  // the spool is not needed any more
+    }
     const std::scoped_lock lock(mutex);
     recording = Recording();  // the recorder's log holds what the spool held
   }
@@ -172,15 +177,26 @@ struct LookBack::Implementation {
     is_following = false;
   }
 
+  // The first of those to follow. One that cannot be opened (it was removed meanwhile, or is not for us to read) is left out.
+  bool OpenNext() try {
+    followed.emplace(to_follow.front(), true);
+    followed_file = to_follow.front();
+    const std::scoped_lock lock(mutex);
+    followed_number = recording.AddLog(followed_file);
+    return true;
+  } catch (const std::exception& error) {
+    Tell(to_follow.front().string() + " is not followed: " + error.what());
+    followed.reset();
+    to_follow.erase(to_follow.begin());
+    return false;
+  }
+
   void Follow() {
     while (!is_stopping) {
       std::error_code error;
       if (!followed) {
         if (to_follow.empty()) return StopFollowing();
-        followed.emplace(to_follow.front(), true);
-        followed_file = to_follow.front();
-        const std::scoped_lock lock(mutex);
-        followed_number = recording.AddLog(followed_file);
+        if (!OpenNext()) continue;
       }
       const auto size = fs::file_size(followed_file, error);
       if (error || std::cmp_less(size, followed->position_bytes())) {
@@ -221,6 +237,16 @@ struct LookBack::Implementation {
     sources_text = std::move(text);
   }
 
+  // Of a whole turn of the thread: told when it changes.
+  void SetFault(const std::string& fault) {
+    {
+      const std::scoped_lock lock(status_mutex);
+      if (fault == turn_fault) return;
+      turn_fault = fault;
+    }
+    if (!fault.empty()) Tell(fault);
+  }
+
   void Tell(const std::string& line) const {
     if (options.tell) options.tell(line);
   }
@@ -254,6 +280,7 @@ struct LookBack::Implementation {
 
   mutable std::mutex status_mutex;  // of what stands here; never held while a disk is used
   LookBackStatus status;
+  std::string turn_fault;
   std::string sources_text = "[]";
 
   // Of the thread alone.
@@ -300,6 +327,7 @@ LookBackStatus LookBack::Status() const {
   {
     const std::scoped_lock lock(in.status_mutex);
     status = in.status;
+    if (status.fault.empty()) status.fault = in.turn_fault;
   }
   status.is_following = in.is_following;
   const std::scoped_lock lock(in.queue_mutex);

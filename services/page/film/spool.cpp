@@ -50,9 +50,13 @@ Spool::Spool(fs::path folder) : folder_(std::move(folder)) {
 }
 
 void Spool::Begin(Utime time) {
-  const auto name = folder_ / fmt::format("{}{:06}.lcmlog", kPrefix, num_files_begun_++);
-  File file{.partial = name, .out = nullptr, .first = time, .last = time};
-  file.partial += ".partial";
+  const auto name_of = [this](std::int64_t number) { return folder_ / fmt::format("{}{:06}.lcmlog", kPrefix, number); };
+  const auto partial_of = [&](std::int64_t number) { return name_of(number) += ".partial"; };
+  // Another process may have been given the same folder.
+  while (IsBeingWritten(partial_of(num_files_begun_))) ++num_files_begun_;
+  const auto number = num_files_begun_++;
+  const auto name = name_of(number);
+  File file{.partial = partial_of(number), .out = nullptr, .first = time, .last = time};
   file.out = std::make_unique<io::OutputFile>(name, io::OutputOptions{.force = true, .inputs = {}, .tell = [](const std::string&) {}});
   files_.push_back(std::move(file));
   is_open_ = true;
@@ -78,6 +82,8 @@ bool Spool::Write(const std::vector<SpooledMessage>& messages, std::int64_t max_
     return true;
   } catch (const std::exception& error) {
     is_open_ = false;  // it may end in a torn event
+    // On a full disk a file can be begun, and each attempt would leave an empty one and its descriptor behind.
+    if (!files_.empty() && files_.back().num_bytes == 0) files_.pop_back();
     fault_ = error.what();
     return false;
   }

@@ -102,6 +102,17 @@ TEST_F(TilesTest, OfADamagedFileAreNotThere) {
   EXPECT_NE(FaultOf(file), "");
 }
 
+// Rows of one name are counted, too: a view of them need not end.
+TEST_F(TilesTest, HaveNoMoreThanAThousandRowsOfMetadata) {
+  const auto file = Make(
+      "CREATE TABLE tiles (zoom_level integer, tile_column integer, tile_row integer, tile_data blob);"
+      "CREATE VIEW metadata AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n LIMIT 2000) "
+      "SELECT CASE i WHEN 1500 THEN 'name' ELSE 'other' END AS name, 'late' AS value FROM n;"
+      "INSERT INTO tiles VALUES (0, 0, 0, " +
+      std::string(kPngA) + ");");
+  EXPECT_EQ(nlohmann::json::parse(Tiles(file).text())["name"], "");
+}
+
 // A view without end used the disk's thread for ever.
 TEST_F(TilesTest, OfAViewWithoutEndAreGivenUp) {
   ExpectFault(Make("CREATE TABLE metadata (name text, value text);"

@@ -89,6 +89,8 @@ TEST_F(IndexFile, RefusesPlacesThatTheLogCannotHave) {
   EXPECT_TRUE(is_refused([](LogPart& part) { part.entries.front().channel = IndexOfChannel(bus::kLidarPackets); }));
   EXPECT_TRUE(is_refused([](LogPart& part) { part.entries.front().channel = IndexOfChannel(bus::kHealth); }));
   EXPECT_TRUE(is_refused([](LogPart& part) { part.cells.front().alert_level = 9; }));
+  EXPECT_TRUE(is_refused([](LogPart& part) { part.processes.resize(kMaxFilmProcesses + 1); }));
+  EXPECT_TRUE(is_refused([](LogPart& part) { part.events.resize(kMaxFilmEvents + 1); }));
 }
 
 TEST_F(IndexFile, StaysInMemoryWhereNothingCanBeWritten) {

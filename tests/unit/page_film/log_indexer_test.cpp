@@ -118,6 +118,22 @@ TEST_F(Indexer, ShowsLaterWhatAClockThatWasSetBackWrote) {
   EXPECT_NE(TextsOf(part, FilmEventKind::kGap)[0].find("set back"), std::string::npos);
 }
 
+// Each time that it is set back adds to the shift of what follows.
+TEST_F(Indexer, StaysWithinTheYearsOfAUtimeWhereTheClockGoesToAndFro) {
+  {
+    SceneLog log(log_);
+    for (int seq = 0; seq < 8; ++seq) {
+      log->shift_us = seq % 2 == 0 ? 0 : 5'400'000'000'000'000;
+      log->Scan(seq);
+    }
+  }
+  const auto part = Whole();
+  ASSERT_EQ(part.entries.size(), 40U);
+  EXPECT_LE(ToUtimeUs(part.entries.back().time), kMaxUtimeUs);
+  EXPECT_TRUE(std::ranges::is_sorted(part.entries, {}, &LogEntry::time));
+  EXPECT_TRUE(std::ranges::all_of(part.events, [](const FilmEvent& event) { return ToUtimeUs(event.time) <= kMaxUtimeUs; }));
+}
+
 // One wrong time would put all that follows a century on.
 TEST_F(Indexer, DoesNotBelieveATimeThatTheNextEventDenies) {
   {

@@ -1,5 +1,6 @@
 #include "services/page/film/look_back.hpp"
 
+#include <atomic>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -115,6 +116,10 @@ TEST_F(OfLookBack, LeavesTheSpoolOfAnotherProcessAlone) {
   LookBack back(options_);
   EXPECT_EQ(NumFiles(), 1U);
   EXPECT_EQ(other.Find(AtScan(kBeginUs, {kScanChannel})).messages.size(), 2U);
+  Send(back, 0, 5);
+  back.Flush();
+  EXPECT_EQ(back.Status().num_lost, 0) << back.Status().fault;
+  EXPECT_EQ(NumFiles(), 2U);
 }
 
 TEST_F(OfLookBack, CountsWhatDoesNotFitIntoTheQueue) {
@@ -179,6 +184,52 @@ TEST_F(OfLookBack, FollowsTheLogThatTheRecorderWritesAndSpoolsWhenItStops) {
   back.Flush();
   EXPECT_EQ(back.Find(AtScan(kBeginUs, {kScanChannel})).num_scans, seq + 10);
   EXPECT_EQ(back.Status().num_spooled, 50);
+}
+
+TEST_F(OfLookBack, HasNoFaultOfItsSpoolWhileItFollowsTheRecorder) {
+  options_.recorder_folder = folder_ / "logs";
+  fs::create_directory(*options_.recorder_folder);
+  LookBack back(options_);
+  fs::remove_all(options_.spool_folder);
+  Send(back, 0, 5);
+  back.Flush();
+  EXPECT_FALSE(back.Status().fault.empty());
+  SceneLog log(*options_.recorder_folder / "20260101T000001Z.lcmlog");
+  std::int64_t seq = 5;
+  ASSERT_TRUE(WaitUntil([&] {
+    log->Scan(seq++);
+    log.Flush();
+    return back.Status().is_following;
+  }));
+  back.Flush();
+  EXPECT_EQ(back.Status().fault, "");
+}
+
+// One that is removed, by hand or to make room, between its being seen and its being opened.
+TEST_F(OfLookBack, FollowsTheOtherLogsWhereOneIsTakenAway) {
+  options_.recorder_folder = folder_ / "logs";
+  fs::create_directory(*options_.recorder_folder);
+  const auto old = *options_.recorder_folder / "20260101T000000Z.lcmlog";
+  WriteScans(old, 0, 10);
+  std::atomic<LookBack*> there = nullptr;
+  options_.on_sources = [&] {
+    if (auto* back = there.load(); back != nullptr && back->Status().is_following) fs::remove(old);
+  };
+  LookBack back(options_);
+  there = &back;
+  Send(back, 100, 105);
+  back.Flush();
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the sources of the spool are told, so that there is something to be told anew
+  SceneLog log(*options_.recorder_folder / "20260101T000001Z.lcmlog");
+  std::int64_t seq = 10;
+  ASSERT_TRUE(WaitUntil([&] {
+    log->Scan(seq++);
+    log.Flush();
+    return back.Status().is_following;
+  }));
+  back.Flush();
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_EQ(back.Find(AtScan(kBeginUs + 10 * kScanUs, {kScanChannel})).num_scans, seq - 10);
 }
 
 }  // namespace
