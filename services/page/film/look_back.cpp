@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -116,6 +117,7 @@ struct LookBack::Implementation {
       spool_indexer.emplace(spool.file(), true);
       const std::scoped_lock lock(mutex);
       spool_number = recording.AddLog(spool.file());
+      spool_numbers[spool.file()] = spool_number;
       spool_file = spool.file();
     }
     ReadOn(*spool_indexer, spool_number);
@@ -162,6 +164,7 @@ struct LookBack::Implementation {
     spool.Clear();
     spool_indexer.reset();
     spool_file.clear();
+    spool_numbers.clear();
     is_following = true;
     {
       const std::scoped_lock lock(status_mutex);
@@ -218,10 +221,16 @@ struct LookBack::Implementation {
     const std::scoped_lock lock(mutex);
     if (recording.timeline().is_empty()) return;
     auto from = recording.timeline().end() - options.span;
-    while (spool.num_files() > 1 && (spool.num_bytes() > options.max_bytes || spool.OldestEnd() < from)) {
+    while (spool.num_files() > 1) {
       const bool is_too_large = spool.num_bytes() > options.max_bytes;
-      const auto last = spool.DropOldest();
-      if (is_too_large) from = std::max(from, last + std::chrono::microseconds(1));
+      // As it is shown: where the host's clock was set back, that is later than it was written. While the recording has a file open, its bytes stay
+      // on the disk.
+      const auto number = spool_numbers.find(spool.oldest_file());
+      const auto last = number == spool_numbers.end() ? std::nullopt : recording.LastOf(number->second);
+      if (!is_too_large && last && *last >= from) break;
+      if (is_too_large && last) from = std::max(from, *last + std::chrono::microseconds(1));
+      if (number != spool_numbers.end()) spool_numbers.erase(number);
+      spool.DropOldest();
     }
     recording.DropBefore(from);
   }
@@ -287,6 +296,7 @@ struct LookBack::Implementation {
   Spool spool;
   fs::path spool_file;
   std::uint16_t spool_number = 0;
+  std::map<fs::path, std::uint16_t> spool_numbers;  // of the spool's files in the recording
   std::optional<LogIndexer> spool_indexer;
   std::vector<fs::path> to_follow;  // the first is followed
   std::optional<LogIndexer> followed;

@@ -59,6 +59,11 @@ void Recording::DropBefore(Utime time) {
   }
 }
 
+std::optional<Utime> Recording::LastOf(std::uint16_t number) const {
+  const auto log = logs_.find(number);
+  return log == logs_.end() || !log->second.is_begun ? std::nullopt : std::optional(log->second.last);
+}
+
 bool Recording::Read(ChannelIndex channel, const Place& place, std::vector<std::uint8_t>& bytes) {
   const auto log = logs_.find(place.file);
   if (log == logs_.end()) return false;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/bus/log_file.hpp"
@@ -27,6 +28,9 @@ class Recording {
 
   /// Forgets what was before, and closes logs of which nothing is left, but for the last.
   void DropBefore(Utime time);
+
+  /// The time of what the log holds last, as it is shown; nullopt: it was closed, or holds nothing yet.
+  std::optional<Utime> LastOf(std::uint16_t log) const;
 
   const Timeline& timeline() const { return timeline_; }
 

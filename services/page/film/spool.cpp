@@ -5,7 +5,6 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "common/bus/log_file.hpp"
@@ -56,7 +55,7 @@ void Spool::Begin(Utime time) {
   while (IsBeingWritten(partial_of(num_files_begun_))) ++num_files_begun_;
   const auto number = num_files_begun_++;
   const auto name = name_of(number);
-  File file{.partial = partial_of(number), .out = nullptr, .first = time, .last = time};
+  File file{.partial = partial_of(number), .out = nullptr, .first = time};
   file.out = std::make_unique<io::OutputFile>(name, io::OutputOptions{.force = true, .inputs = {}, .tell = [](const std::string&) {}});
   files_.push_back(std::move(file));
   is_open_ = true;
@@ -73,7 +72,6 @@ bool Spool::Write(const std::vector<SpooledMessage>& messages, std::int64_t max_
     std::vector<std::uint8_t> block;
     for (const auto& message : messages) {
       bus::AppendLogEvent(block, file.num_events++, message.time, message.channel, message.bytes);
-      file.last = std::max(file.last, message.time);
     }
     file.out->Write(block);
     file.out->Flush();
@@ -97,11 +95,9 @@ std::int64_t Spool::num_bytes() const {
   return sum;
 }
 
-Utime Spool::DropOldest() {
-  const auto last = files_.front().last;
+void Spool::DropOldest() {
   files_.pop_front();
   is_open_ = is_open_ && !files_.empty();
-  return last;
 }
 
 void Spool::Clear() {

@@ -40,11 +40,9 @@ class Spool {
   std::size_t num_files() const { return files_.size(); }
   const std::string& fault() const { return fault_; }
 
-  /// Removes the oldest file. Precondition: there is one.
-  /// @return the time of its last event
-  Utime DropOldest();
-  /// Precondition: there is one.
-  Utime OldestEnd() const { return files_.front().last; }
+  /// Precondition of these: there is one.
+  const std::filesystem::path& oldest_file() const { return files_.front().partial; }
+  void DropOldest();
 
   void Clear();
 
@@ -53,7 +51,6 @@ class Spool {
     std::filesystem::path partial;
     std::unique_ptr<io::OutputFile> out;
     Utime first;
-    Utime last;
     std::int64_t num_events = 0;
     std::int64_t num_bytes = 0;
   };

@@ -151,6 +151,19 @@ TEST_F(OfLookBack, ShowsLaterWhatAClockThatWasSetBackGave) {
   EXPECT_EQ(UtimesOf(back.Find(AtScan(kBeginUs + 15 * kScanUs, {kScanChannel})), bus::kLidarScan).size(), 2U);
 }
 
+// They were removed at once, but stayed on the disk as long as they were shown, and nobody counted them.
+TEST_F(OfLookBack, KeepsTheFilesThatItShowsWhereTheClockWasSetBack) {
+  options_.span = std::chrono::seconds(10);
+  options_.max_bytes = 20'000'000;  // in files of 2 MB, or 5 s
+  LookBack back(options_);
+  for (std::int64_t seq = 0; seq < 300; seq += 10) {
+    Send(back, seq, seq + 10, seq < 50 ? 0 : -3'600'000'000);
+    back.Flush();
+  }
+  EXPECT_GE(NumFiles(), 3U);
+  EXPECT_LE(NumFiles(), 4U);
+}
+
 // Nothing is written twice.
 TEST_F(OfLookBack, FollowsTheLogThatTheRecorderWritesAndSpoolsWhenItStops) {
   options_.recorder_folder = folder_ / "logs";
