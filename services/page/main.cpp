@@ -6,7 +6,6 @@
 #include <memory>
 #include <spdlog/spdlog.h>
 
-#include "common/config/text_config.hpp"
 #include "common/runtime/service_main.hpp"
 #include "common/runtime/version.hpp"
 #include "services/page/announcement.hpp"
@@ -31,14 +30,10 @@ struct Config {
   std::string boat_text;
 };
 
+// A faulty boat.txtpb or tracker.txtpb is refused, as the other processes refuse it; without them the picture goes without guard zones.
 Config Load(const std::filesystem::path& config_folder) {
-  Config config{page::LoadParams(config_folder), "null"};
-  try {
-    config.boat_text = page::BoatTextOfFolder(config_folder);
-  } catch (const lookout::config::ConfigError&) {  // the tracker tells of it; the picture goes without guard zones
-    config.boat_text = "null";
-  }
-  return config;
+  const bool has_boat = exists(symlink_status(config_folder / "boat.txtpb")) && exists(symlink_status(config_folder / "tracker.txtpb"));
+  return {page::LoadParams(config_folder), has_boat ? page::BoatTextOfFolder(config_folder) : "null"};
 }
 
 // Tells what is lacking and goes on: a page without a map is better than none.

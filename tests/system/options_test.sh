@@ -15,6 +15,8 @@ for program in "$bin"/lookout-*; do
   help=$("$program" --help 2>&1)
   # lookout-log has commands with options of their own.
   for command in $(sed -n '/^Subcommands:/,/^$/s/^  \([a-z]*\) .*/\1/p' <<<"$help"); do help+=$'\n'$("$program" "$command" --help 2>&1); done
+  # The page has modes with options of their own.
+  for mode in $(grep -oE -- 'With --log|with --link' <<<"$help" | grep -oE -- '--[a-z]+'); do help+=$'\n'$("$program" "$mode" . --help 2>&1); done
   options_of[$name]=" $(grep -oE -- '(^|[ ,[])--[a-z][a-z0-9-]*' <<<"$help" | grep -oE -- '--[a-z0-9-]+' | sort -u | tr '\n' ' ') "
 done
 [ ${#options_of[@]} -ge 14 ] || fault "only ${#options_of[@]} programs in $bin"

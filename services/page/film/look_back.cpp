@@ -246,7 +246,7 @@ struct LookBack::Implementation {
     sources_text = std::move(text);
   }
 
-  // Of a whole turn of the thread: told when it changes.
+  // Of what the thread does: told when it changes.
   void SetFault(const std::string& fault) {
     {
       const std::scoped_lock lock(status_mutex);
