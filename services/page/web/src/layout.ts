@@ -1,4 +1,5 @@
 // Where views stand: one at a time on a phone, two beside each other where there is room; alerts above, the time line below.
+import { lineOf } from "./film.js";
 import type { State, View } from "./state.js";
 import { texts } from "./texts/index.js";
 
@@ -35,13 +36,24 @@ export class Layout {
     const palette = () => { document.documentElement.dataset["palette"] = this.state.settings.get("palette"); };
     this.state.on(["settings"], palette);
     palette();
+    this.state.on(["sources"], () => { this.offerComparing(); });
+    this.offerComparing();
     this.place();
   }
 
   show(name: ViewName): void {
+    if (this.buttons.get(name)?.hidden === true) return;
     if (this.wide.matches && (name === "lists" || name === "plots")) this.side = name;
     else this.main = name;
     this.place();
+  }
+
+  // Where there is no second recording beside the first, there is nothing to compare.
+  private offerComparing(): void {
+    const { sources } = this.state;
+    const isOffered = lineOf(sources).length < sources.length;
+    this.buttons.get("compare")!.hidden = !isOffered;
+    if (!isOffered && this.main === "compare") this.show("around");
   }
 
   private place(): void {

@@ -78,7 +78,7 @@ export class Banner {
     });
     setAttribute(this.mode, "data-mode", verdict.mode);
     setText(this.mode, words.modes[verdict.mode]);
-    const utime_us = picture?.end_utime_us ?? NaN;
+    const utime_us = state.showing.kind === "recorded" ? state.showing.utime_us : picture?.end_utime_us ?? NaN;
     setText(this.clock, utime_us > 0 ? `${isRecorded ? `${date(utime_us)} ` : ""}${timeOfDay(utime_us)} UTC` : "");
     setText(this.heading, bearing(picture?.heading_rad ?? NaN));
     const velocity = picture?.pose?.velocity_map_mps;
