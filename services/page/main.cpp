@@ -28,12 +28,16 @@ constexpr std::chrono::milliseconds kTick(20);
 struct Config {
   page::Params params;
   std::string boat_text;
+  std::string boat_fault;  // why the picture has no guard zone; empty: it has that of tracker.txtpb
 };
 
-// A faulty boat.txtpb or tracker.txtpb is refused, as the other processes refuse it; without them the picture goes without guard zones.
+// A faulty boat.txtpb is refused, as the other processes refuse it. With a faulty tracker.txtpb the page still starts: somebody
+// must say that no tracker runs.
 Config Load(const std::filesystem::path& config_folder) {
-  const bool has_boat = exists(symlink_status(config_folder / "boat.txtpb")) && exists(symlink_status(config_folder / "tracker.txtpb"));
-  return {page::LoadParams(config_folder), has_boat ? page::BoatTextOfFolder(config_folder) : "null"};
+  Config config;
+  config.params = page::LoadParams(config_folder);
+  config.boat_text = page::BoatTextOfFolder(config_folder, config.boat_fault);
+  return config;
 }
 
 // Tells what is lacking and goes on: a page without a map is better than none.
@@ -52,6 +56,7 @@ struct Faults {
   std::string token;
   std::string map;
   std::string look_back;
+  std::string boat;
 };
 
 page::LookBackOptions LookBackOptionsOf(const Config& config, std::function<void()> on_sources) {
@@ -79,6 +84,7 @@ void AddTo(lookout::HealthReport& report, const Faults& faults, const page::Look
   if (!faults.token.empty()) report.Degrade("nobody can acknowledge: " + faults.token);
   if (!faults.map.empty()) report.Degrade("no map: " + faults.map);
   if (!faults.look_back.empty()) report.Degrade("no look back: " + faults.look_back);
+  if (!faults.boat.empty()) report.Degrade("no guard zone is drawn: " + faults.boat);
   if (look_back == nullptr) return;
   const auto status = look_back->Status();
   if (!status.fault.empty()) report.Degrade("no look back: " + status.fault);
@@ -92,6 +98,7 @@ void Run(lookout::runtime::Process& process, const Config& config) {
   using lookout::runtime::HostNow;
   const auto& params = config.params;
   Faults faults;
+  faults.boat = config.boat_fault;
   page::AcknowledgementQueue acknowledgements;
   page::ServerOptions options{.bind_address = params.bind_address,
                               .port = params.port,

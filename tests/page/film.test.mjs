@@ -149,7 +149,7 @@ test("the page says that its server is gone, and comes back by itself", async ()
   await stop(film);
   await page.waitForFunction(() => /no connection/i.test(document.body.innerText), null, { timeout: 10_000 });
   film = await startFilm(undefined, port);
-  await page.waitForFunction(() => !/no connection to/i.test(document.body.innerText), null, { timeout: 15_000 });
+  await page.waitForFunction(() => !/no connection/i.test(document.body.innerText), null, { timeout: 15_000 });
   await page.keyboard.press(".");
   await page.waitForFunction((old) => document.querySelector(".film_clock").textContent !== old, shown, { timeout: 5000 });
   await page.reload();

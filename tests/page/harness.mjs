@@ -5,20 +5,25 @@ import { request } from "node:http";
 import { chromium } from "playwright-core";
 
 export const bin = process.env.LOOKOUT_BIN, log = process.env.LOOKOUT_LOG, source = process.env.LOOKOUT_SOURCE;
-const kStart_ms = 20_000;
+const kStart_ms = 20_000, kKept_chars = 100_000;
 
-/** Starts lookout-page with a log; the port is any that is free, unless it is given. */
-export async function startFilm(files = [log], port = 0, more = []) {
-  const child = spawn(`${bin}/lookout-page`, ["--log", ...files, ...(port > 0 ? ["--port", String(port)] : []), ...more], { stdio: ["ignore", "pipe", "pipe"] });
+/** Starts a program, and waits until it prints what is expected (null: nothing). */
+export async function startProgram(program, words, expected, options = {}) {
+  const child = spawn(program, words, { stdio: ["ignore", "pipe", "pipe"], ...options });
   let printed = "";
-  for (const stream of [child.stdout, child.stderr]) stream.on("data", (bytes) => { printed += bytes; });
+  for (const stream of [child.stdout, child.stderr]) stream.on("data", (bytes) => { printed = (printed + bytes).slice(-kKept_chars); });
   const until = Date.now() + kStart_ms;
   for (;;) {
-    const found = /http:\/\/[\w.]+:(\d+)/.exec(printed);
-    if (found) return { child, port: Number(found[1]), url: `http://127.0.0.1:${found[1]}/`, printed: () => printed };
-    if (child.exitCode !== null || Date.now() > until) throw new Error(`lookout-page did not start: ${printed}`);
+    const found = expected?.exec(printed);
+    if (found || expected === null) return { child, found, printed: () => printed };
+    if (child.exitCode !== null || Date.now() > until) throw new Error(`${program} did not start: ${printed}`);
     await wait(50);
   }
+}
+/** Starts lookout-page with a log; the port is any that is free, unless it is given. */
+export async function startFilm(files = [log], port = 0, more = []) {
+  const { child, found } = await startProgram(`${bin}/lookout-page`, ["--log", ...files, ...(port > 0 ? ["--port", String(port)] : []), ...more], /http:\/\/[\w.]+:(\d+)/);
+  return { child, port: Number(found[1]), url: `http://127.0.0.1:${found[1]}/` };
 }
 export async function stop({ child }) {
   if (child.exitCode !== null || child.signalCode !== null) return;
@@ -43,7 +48,12 @@ export async function openPage(browser, url, { width = 1440, height = 900, palet
   page.asked = [];
   page.errors = [];
   page.on("request", (asked) => { page.asked.push(asked.url()); });
-  page.on("websocket", (socket) => { page.asked.push(socket.url()); });
+  let numFrames = 0;
+  page.numFrames = () => numFrames;
+  page.on("websocket", (socket) => {
+    page.asked.push(socket.url());
+    socket.on("framereceived", ({ payload }) => { if (typeof payload !== "string") ++numFrames; });
+  });
   page.on("pageerror", (error) => { page.errors.push(String(error)); });
   page.on("console", (message) => { if (message.type() === "error") page.errors.push(message.text()); });
   await page.goto(url);

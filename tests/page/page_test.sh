@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One trial of the page in chromium, in a network namespace of its own: nothing outside of this computer can be reached.
-#   page_test.sh film SOURCE_FOLDER BUILD_FOLDER
+#   page_test.sh film|live SOURCE_FOLDER BUILD_FOLDER
 #   page_test.sh pictures SOURCE_FOLDER BUILD_FOLDER   those of services/page/README.md (./dev pictures)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
@@ -37,6 +37,7 @@ fi
 export LOOKOUT_LOG=$log
 case $trial in
   pictures) command=(node "$folder/pictures.mjs") ;;
+  live) command=(node --test --test-concurrency=1 "$folder/live.test.mjs") ;;
   film) command=(node --test --test-concurrency=1 "$folder/film.test.mjs") ;;
   *) echo "unknown trial: $trial" >&2; exit 2 ;;
 esac

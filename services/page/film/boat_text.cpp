@@ -49,8 +49,16 @@ std::string BoatText(const config::Boat& boat, const config::Tracker& tracker) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string BoatTextOfFolder(const std::filesystem::path& folder) {
-  return BoatText(config::Load<config::Boat>(folder, kBoatFile), config::Load<config::Tracker>(folder, kTrackerFile));
+std::string BoatTextOfFolder(const std::filesystem::path& folder, std::string& fault) {
+  if (!exists(symlink_status(folder / kBoatFile))) return "null";
+  const auto boat = config::Load<config::Boat>(folder, kBoatFile);
+  config::Tracker tracker;
+  try {
+    if (exists(symlink_status(folder / kTrackerFile))) tracker = config::Load<config::Tracker>(folder, kTrackerFile);
+  } catch (const config::ConfigError& error) {
+    fault = error.what();
+  }
+  return BoatText(boat, tracker);
 }
 
 std::string BoatTextOf(const run_info_t& info) try {

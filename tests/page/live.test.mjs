@@ -1,0 +1,180 @@
+// The live look-out in chromium: a crossing on the simulated boat, its alerts, who may acknowledge, and what the page says when something fails.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { connect } from "node:net";
+import { cpSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { after, before, test } from "node:test";
+import { accessibleTexts, ask, bin, openPage, socketHeaders, source, startBrowser, startProgram, stop, wait } from "./harness.mjs";
+
+const kServices = ["recorder", "page", "tracker", "georeferencer", "segmenter", "navigator", "vlp16"];
+const kPort = 7668;  // of a network namespace of its own
+const kUrl = `http://127.0.0.1:${kPort}/`;
+
+const folder = mkdtempSync(`${tmpdir()}/page_live.`), config = `${folder}/config`;
+const services = new Map();
+let sim = null, browser, token;
+
+const start = async (name) => {
+  services.set(name, await startProgram(`${bin}/lookout-${name}`, ["--config", config], /: starts, version /, { cwd: folder }));
+};
+const sail = async (seconds) => {
+  sim = await startProgram(`${bin}/lookout-sim`, ["--config", config, "--scene", "crossing", "--seed", "1", "--seconds", String(seconds), "--udp", "127.0.0.1"], null);
+};
+
+before(async () => {
+  cpSync(`${source}/config/demo`, config, { recursive: true });
+  writeFileSync(`${config}/page.txtpb`, `port: ${kPort}\ntoken_file: "../token"\nlook_back_folder: "../look-back"\n`, { flag: "a" });
+  for (const name of kServices) await start(name);
+  token = readFileSync(`${folder}/token`, "utf8").trim();
+  browser = await startBrowser();
+});
+after(async () => {
+  await browser?.close();
+  if (sim !== null) await stop(sim);
+  for (const name of [...kServices].reverse()) if (services.has(name)) await stop(services.get(name));
+  rmSync(folder, { recursive: true });
+});
+
+const open = async (options = {}, hash = "") => openPage(browser, kUrl + hash, options);
+const mode = (page) => page.getAttribute(".mode", "data-mode");
+const isMode = (page, wanted, timeout = 15_000) => page.waitForFunction((is) => document.querySelector(".mode")?.getAttribute("data-mode") === is, wanted, { timeout });
+/** Messages that come to a page in so many ms. */
+async function framesIn(page, ms) {
+  const before = page.numFrames();
+  await wait(ms);
+  return page.numFrames() - before;
+}
+
+test("before anything came the page says so, and that nobody keeps a look-out is no secret", async () => {
+  const page = await open();
+  await page.waitForFunction(() => /Nothing came yet|No look-out/.test(document.body.innerText), null, { timeout: 15_000 });
+  assert.notEqual(await mode(page), "live");
+  await page.context().close();
+});
+
+test("an alert is raised, seen and heard of by screen readers, refused without the token, acknowledged with it, and cleared", async () => {
+  await sail(120);
+  const stranger = await open();
+  await isMode(stranger, "live");
+  await stranger.waitForSelector(".alerts li.alert[data-gravity=warning]", { timeout: 40_000 });
+  const texts = await accessibleTexts(stranger);
+  assert.ok(texts.some(({ role, name }) => role === "button" && /^Acknowledge: .*(closest approach|guard zone)/.test(name)), "no button of the alert in the accessibility tree");
+  assert.ok(texts.some(({ name }) => /^(WARNING|CAUTION): /.test(name)), "screen readers are not told");
+  // Without the token the page says why nothing happens, and the server refuses whoever asks it past the page.
+  await wait(600);
+  await stranger.click(".alerts li.alert[data-gravity=warning] button.acknowledge");
+  await stranger.waitForFunction(() => /Not allowed: open this page by the link/.test(document.querySelector(".alerts").innerText));
+  const own = { Host: `127.0.0.1:${kPort}`, Origin: `http://127.0.0.1:${kPort}`, "Content-Type": "application/json" };
+  const body = JSON.stringify({ alert_id: 1, raised_utime_us: 1 });
+  assert.equal((await ask(kPort, { method: "POST", path: "/acknowledge", headers: own, body })).status, 401);
+  assert.equal((await ask(kPort, { method: "POST", path: "/acknowledge", headers: { ...own, Authorization: `Bearer ${"0".repeat(token.length)}` }, body })).status, 401);
+
+  const helmsman = await open({}, `#token=${token}`);
+  assert.equal(new URL(helmsman.url()).hash, "", "the token stays in the address");
+  await helmsman.waitForSelector(".alerts li.alert[data-gravity=warning] button.acknowledge", { timeout: 20_000 });
+  await wait(600);
+  const row = await helmsman.$(".alerts li.alert[data-gravity=warning]");
+  const name = /^.*?(closest approach|guard zone)/.exec(await row.$eval(".text", (text) => text.textContent))[0];
+  await (await row.$("button.acknowledge")).click();
+  // Its warning is over, for everybody.
+  const isQuiet = (name) => ![...document.querySelectorAll(".alerts li.alert")].some((row) => row.dataset.gravity === "warning" && row.querySelector(".text").textContent.startsWith(name));
+  await helmsman.waitForFunction(isQuiet, name, { timeout: 8000 });
+  await stranger.waitForFunction(isQuiet, name, { timeout: 8000 });
+  // And when the vessel has passed, it is gone.
+  await helmsman.waitForFunction((name) => ![...document.querySelectorAll(".alerts li.alert .text")].some((text) => text.textContent.startsWith(name)), name, { timeout: 90_000 });
+  for (const page of [stranger, helmsman]) {
+    assert.deepEqual(page.errors.filter((error) => !/401|404/.test(error)), []);
+    await page.context().close();
+  }
+});
+
+test("one window that stands still costs the others nothing", async () => {
+  const page = await open();
+  await isMode(page, "live");
+  await wait(1000);
+  const alone = await framesIn(page, 4000);
+  // A client that asks for everything, and is then stopped.
+  const client = spawn(process.execPath, ["-e", `
+    const socket = require("node:net").connect(${kPort}, "127.0.0.1", () => socket.write(${JSON.stringify(`GET /socket HTTP/1.1\r\n${Object.entries(socketHeaders(kPort)).map((entry) => entry.join(": ")).join("\r\n")}\r\n\r\n`)}));
+    const text = JSON.stringify({ op: "watch", channels: ["LIDAR_SCAN", "SEGMENTS", "OBSTACLES", "TRACKS", "ALERTS", "POSE", "HEALTH"] });
+    socket.once("data", () => { socket.write(Buffer.concat([Buffer.from([0x81, 0x80 | text.length, 0, 0, 0, 0]), Buffer.from(text)])); console.log("watches"); });
+    socket.on("data", () => undefined);
+  `], { stdio: ["ignore", "pipe", "inherit"] });
+  await new Promise((settle) => { client.stdout.once("data", settle); });
+  await wait(1000);
+  client.kill("SIGSTOP");
+  const beside = await framesIn(page, 4000);
+  client.kill("SIGKILL");
+  assert.ok(alone >= 40, `${alone} messages in 4 s`);
+  assert.ok(beside > 0.8 * alone, `${beside} messages in 4 s beside a stopped client, ${alone} without`);
+  await page.context().close();
+});
+
+test("the last minutes are looked back at, and left again", async () => {
+  const page = await open();
+  await isMode(page, "live");
+  await page.waitForFunction(() => !document.querySelector(".film").hidden, null, { timeout: 15_000 });
+  await page.keyboard.press(",");
+  await isMode(page, "recorded");
+  await page.waitForFunction(() => /not at now/.test(document.body.innerText));
+  const clock = await page.textContent(".film_clock");
+  await page.keyboard.press(",");
+  await page.waitForFunction((old) => document.querySelector(".film_clock").textContent !== old, clock);
+  await page.keyboard.press("l");
+  await isMode(page, "live");
+  await page.context().close();
+});
+
+test("the page process is killed and started again: the window says so, and comes back by itself", async () => {
+  const page = await open();
+  await isMode(page, "live");
+  services.get("page").child.kill("SIGKILL");
+  await isMode(page, "lost");
+  await page.waitForFunction(() => /No connection to the boat/.test(document.body.innerText), null, { timeout: 10_000 });
+  await start("page");
+  await isMode(page, "live", 20_000);
+  await page.reload();
+  await isMode(page, "live", 20_000);
+  assert.ok(await framesIn(page, 2000) > 10);
+  await page.context().close();
+});
+
+test("more windows than may be are told so", async () => {
+  const sockets = [];
+  const upgraded = () => new Promise((settle) => {
+    const socket = connect(kPort, "127.0.0.1", () => { socket.write(`GET /socket HTTP/1.1\r\n${Object.entries(socketHeaders(kPort)).map((entry) => entry.join(": ")).join("\r\n")}\r\n\r\n`); });
+    socket.once("data", (bytes) => { settle(/HTTP\/1.1 (\d+)/.exec(bytes.toString("latin1"))?.[1]); });
+    socket.on("error", () => { settle("error"); });
+    sockets.push(socket);
+  });
+  const answers = [];
+  for (let i = 0; i < 18; ++i) answers.push(await upgraded());
+  for (const socket of sockets) socket.destroy();
+  assert.deepEqual(answers, [...Array(16).fill("101"), "503", "503"]);
+});
+
+test("the lidar is stopped: the page says how old its picture is, and never shows it as live", async () => {
+  const page = await open();
+  await isMode(page, "live", 30_000);
+  await stop(sim);
+  await isMode(page, "old", 4000);
+  await page.waitForFunction(() => /The picture is .* old/.test(document.body.innerText), null, { timeout: 4000 });
+  const before = await page.textContent(".banner");
+  await wait(2500);
+  assert.notEqual(await page.textContent(".banner"), before, "its age stands still");
+  assert.equal(await mode(page), "old");
+  await page.context().close();
+});
+
+test("what was acknowledged stands in the recorder's log", async () => {
+  for (const name of [...kServices].reverse()) {
+    await stop(services.get(name));
+    services.delete(name);
+  }
+  const [log] = readdirSync(`${folder}/logs`).filter((name) => name.endsWith(".lcmlog"));
+  const table = execFileSync(`${bin}/lookout-export`, ["--in", `${folder}/logs/${log}`, "--table", "alerts"], { encoding: "utf8", maxBuffer: 1e9 }).split("\n").map((line) => line.split(","));
+  const state = table[0].indexOf("state");
+  const states = new Set(table.slice(1).map((row) => row[state]));
+  for (const wanted of ["active", "acknowledged"]) assert.ok(states.has(wanted), `no alert is ${wanted}: ${[...states]}`);
+});
