@@ -39,6 +39,9 @@ after(async () => {
 const open = async (options = {}, hash = "") => openPage(browser, kUrl + hash, options);
 const mode = (page) => page.getAttribute(".mode", "data-mode");
 const isMode = (page, wanted, timeout = 15_000) => page.waitForFunction((is) => document.querySelector(".mode")?.getAttribute("data-mode") === is, wanted, { timeout });
+async function until(what, timeout_ms, isTrue) {
+  for (const end = Date.now() + timeout_ms; !await isTrue(); await wait(500)) assert.ok(Date.now() < end, what);
+}
 /** Messages that come to a page in so many ms. */
 async function framesIn(page, ms) {
   const before = page.numFrames();
@@ -72,17 +75,27 @@ test("an alert is raised, seen and heard of by screen readers, refused without t
 
   const helmsman = await open({}, `#token=${token}`);
   assert.equal(new URL(helmsman.url()).hash, "", "the token stays in the address");
-  await helmsman.waitForSelector(".alerts li.alert[data-gravity=warning] button.acknowledge", { timeout: 20_000 });
-  await wait(600);
-  const row = await helmsman.$(".alerts li.alert[data-gravity=warning]");
-  const name = /^.*?(closest approach|guard zone)/.exec(await row.$eval(".text", (text) => text.textContent))[0];
-  await (await row.$("button.acknowledge")).click();
-  // Its warning is over, for everybody.
-  const isQuiet = (name) => ![...document.querySelectorAll(".alerts li.alert")].some((row) => row.dataset.gravity === "warning" && row.querySelector(".text").textContent.startsWith(name));
-  await helmsman.waitForFunction(isQuiet, name, { timeout: 8000 });
-  await stranger.waitForFunction(isQuiet, name, { timeout: 8000 });
-  // And when the vessel has passed, it is gone.
-  await helmsman.waitForFunction((name) => ![...document.querySelectorAll(".alerts li.alert .text")].some((text) => text.textContent.startsWith(name)), name, { timeout: 90_000 });
+  // One that holds still: what is over is cleared at once when it is acknowledged.
+  const active = '.alerts li.alert[data-gravity=warning]:has(.level:text-is("WARNING")) .text';
+  await helmsman.waitForSelector(active, { timeout: 60_000 });
+  const text = await helmsman.textContent(active);
+  const name = /^.*?(closest approach|guard zone)/.exec(text)[0];
+  const rowsOf = (page) => page.$$eval(".alerts li.alert", (rows) => rows.map((row) => ({ gravity: row.dataset.gravity, text: row.querySelector(".text").textContent })));
+  const isLoud = async (page) => (await rowsOf(page)).some((row) => row.gravity !== "quiet" && row.text.startsWith(name));
+  // Pressed again where the row has just moved: a touch that was meant for another counts for nothing.
+  await until(`${name} is not acknowledged`, 10_000, async () => {
+    if (!await isLoud(helmsman)) return true;
+    const row = await helmsman.$(`.alerts li.alert:has(.text:text("${name}")) button.acknowledge:visible`);
+    await row?.click({ timeout: 1000 }).catch(() => undefined);
+    return false;
+  });
+  await until("another window does not know of it", 5000, async () => !await isLoud(stranger));
+  // And when it has passed, it is gone. Acknowledged ones stand last.
+  await until(`${name} is not cleared`, 90_000, async () => {
+    const more = await helmsman.$(".alerts .more[aria-expanded=false]:visible");
+    await more?.click({ timeout: 1000 }).catch(() => undefined);
+    return !(await rowsOf(helmsman)).some((row) => row.text.startsWith(name));
+  });
   for (const page of [stranger, helmsman]) {
     assert.deepEqual(page.errors.filter((error) => !/401|404/.test(error)), []);
     await page.context().close();
@@ -141,6 +154,7 @@ test("the page process is killed and started again: the window says so, and come
 });
 
 test("more windows than may be are told so", async () => {
+  await wait(3000);  // until the windows of before are gone
   const sockets = [];
   const upgraded = () => new Promise((settle) => {
     const socket = connect(kPort, "127.0.0.1", () => { socket.write(`GET /socket HTTP/1.1\r\n${Object.entries(socketHeaders(kPort)).map((entry) => entry.join(": ")).join("\r\n")}\r\n\r\n`); });
