@@ -49,7 +49,10 @@ export class Film {
 
   constructor(private readonly state: State, private readonly live: Live, private readonly now_ms: () => number = () => performance.now()) {
     state.seek = (utime_us) => { this.seek(utime_us); };
-    state.on(["sources"], () => { if (state.showing.kind === "live" && state.hello?.mode === "log" && !this.isAsking) this.begin(); });
+    // What was refused while an index was built is asked again when it may be there.
+    state.on(["sources"], () => {
+      if (state.hello?.mode === "log" && !this.isAsking && (state.showing.kind === "live" || this.refusal !== "")) this.begin();
+    });
     const draw = () => {
       this.turn();
       requestAnimationFrame(draw);
