@@ -67,6 +67,13 @@ test("alerts are jumped to, and screen readers are told of them", async () => {
   await page.context().close();
 });
 
+test("plots show the numbers of the log", async () => {
+  const page = await opened();
+  await page.click("[data-view=plots]");
+  await page.waitForFunction(() => /POSE: heading\s*\d/.test(document.querySelector(".pane.side").innerText), null, { timeout: 10_000 });
+  await page.context().close();
+});
+
 test("nothing is asked of another computer", async () => {
   const page = await opened();
   for (const tab of await page.$$(".tabs button:visible")) { await tab.click(); await wait(200); }

@@ -72,6 +72,8 @@ export interface LinkEvents {
 
 /** Why a request was not answered. */
 export class RequestRefused extends Error {}
+/** Reason of what was not sent, or not answered any more. */
+export const kNoConnection = "no connection";
 
 interface Pending { settle(value: Answer | Strip): void; fail(error: RequestRefused): void; frames: Frame[] }
 
@@ -97,7 +99,7 @@ export class Link {
     };
     socket.onclose = () => {
       this.socket = null;
-      for (const request of this.pending.values()) request.fail(new RequestRefused("connection lost"));
+      for (const request of this.pending.values()) request.fail(new RequestRefused(kNoConnection));
       this.pending.clear();
       this.events.onLost();
       setTimeout(() => { this.open(); }, this.wait_ms);
@@ -133,7 +135,7 @@ export class Link {
 
   private ask(request: Record<string, unknown>): Promise<Answer | Strip> {
     return new Promise((settle, fail) => {
-      if (this.socket?.readyState !== WebSocket.OPEN) { fail(new RequestRefused("no connection")); return; }
+      if (this.socket?.readyState !== WebSocket.OPEN) { fail(new RequestRefused(kNoConnection)); return; }
       const id = this.nextId++;
       this.pending.set(id, { settle, fail, frames: [] });
       this.send({ ...request, id });

@@ -72,7 +72,7 @@ export class Trails {
 
   // The minute before the moment that is shown. Where the server has none, or another moment is shown by then, nothing is added.
   private async ask(source: number): Promise<void> {
-    if (this.isAsking || this.state.link === null) return;
+    if (this.isAsking || this.state.link === null || this.last_us <= 0) return;
     this.isAsking = true;
     const until_us = this.last_us;
     try {

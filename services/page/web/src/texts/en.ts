@@ -1,7 +1,7 @@
 // Every text of the page, in English. A translation is a second file of this shape.
 export const en = {
   title: "Lookout",
-  views: { around: "Around", map: "Map", range_image: "Range image", cloud: "3-D", lists: "Lists", plots: "Plots", compare: "Compare" },
+  views: { around: "Around", map: "Map", range_image: "Range image", cloud: "3-D", lists: "Lists", plots: "Plots", compare: "Two logs" },
   connecting: "Connecting …",
   lost: (seconds: number) => `No connection to the boat for ${seconds} s. Trying again.`,
   back: "The connection is back.",

@@ -1,6 +1,6 @@
 // Numbers over time, chosen from all that messages hold: live the last minutes, of a recording what stood around the moment that is shown.
 import { channelOf, chartOf, type Path, Ring, timeIn, valueIn, valueInBytes } from "./series.js";
-import type { Frame } from "../link.js";
+import { type Frame, kNoConnection, RequestRefused } from "../link.js";
 import { Refused } from "../messages/reader.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
@@ -14,7 +14,7 @@ const kRoom = 6200;             // ten minutes of ten a second
 const kMaxSeries = 12;
 const kMinutes = [1, 2, 5, 10];
 // Of a range: more than a chart is wide; of HEALTH each process's, ten minutes of them; fewer of TRACKS, which are large.
-const kMaxMessages = new Map([["HEALTH", 6000], ["TRACKS", 400]]);
+const kMaxMessages = new Map([["HEALTH", 5000], ["TRACKS", 400]]);
 const kMaxOfOthers = 1500;
 const kKey = "lookout.plots";
 const kFirst: Path[] = ["POSE/heading_rad", "PAGE/num_tracks", "HEALTH/tracker/cpu_fraction", "HEALTH/segmenter/cpu_fraction"];
@@ -136,13 +136,15 @@ export class Plots implements View {
           kMaxMessages.get(channel) ?? kMaxOfOthers);
         if (this.asked !== asked) return;
         for (const path of paths) this.fill(path, frames);
-      } catch {
-        // Refused, or no connection: live it goes on with what comes; a recording is asked again when something changes.
+        this.draw();
+      } catch (error) {
+        if (!(error instanceof RequestRefused)) throw error;
+        // Without a connection live goes on with what comes, and a recording is asked again when something changes. What is refused is not there.
+        if (error.message !== kNoConnection) continue;
         if (this.isRecorded && this.asked === asked) this.asked = "";
         return;
       }
     }
-    this.draw();
   }
 
   private fill(path: Path, frames: readonly Frame[]): void {
