@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # One trial of the page in chromium, in a network namespace of its own: nothing outside of this computer can be reached.
 #   page_test.sh film|live SOURCE_FOLDER BUILD_FOLDER
+#   page_test.sh figures SOURCE_FOLDER BUILD_FOLDER [SECONDS]   (./dev bench page)
 #   page_test.sh pictures SOURCE_FOLDER BUILD_FOLDER   those of services/page/README.md (./dev pictures)
 # Packages of npm are installed into the build folder, as package-lock.json has them: without the network the trial is skipped.
 set -euo pipefail
@@ -37,6 +38,14 @@ fi
 export LOOKOUT_LOG=$log
 case $trial in
   pictures) command=(node "$folder/pictures.mjs") ;;
+  figures)
+    export LOOKOUT_LOAD=$build/bench/load_page LOOKOUT_DUAL_LOG=$folder/dual.lcmlog
+    if [ ! -f "$LOOKOUT_DUAL_LOG" ]; then
+      "$build/bin/lookout-sim" --config "$source_folder/config/demo" --scene marina --seed 1 --seconds 12 --return-mode dual --pcap "$folder/dual.pcap" >/dev/null
+      "$build/bin/lookout-replay" --config "$source_folder/config/demo" --in "$folder/dual.pcap" --out "$LOOKOUT_DUAL_LOG" >/dev/null
+    fi
+    command=(node "$folder/figures.mjs" "$@")
+    ;;
   live) command=(node --test --test-concurrency=1 "$folder/live.test.mjs") ;;
   film) command=(node --test --test-concurrency=1 "$folder/film.test.mjs") ;;
   *) echo "unknown trial: $trial" >&2; exit 2 ;;
