@@ -31,5 +31,19 @@ TEST(IpAddress, KnowsThatItIsNone) {
   for (const char* text : {"0.0.0.1", "::1", "127.0.0.1", "255.255.255.255"}) EXPECT_FALSE(ParseIpAddress(text)->is_any()) << text;
 }
 
+TEST(IpAddress, KnowsWhatLeadsToThisComputerAlone) {
+  for (const char* text : {"127.0.0.1", "127.9.9.9", "::1", "::ffff:127.0.0.1"}) EXPECT_TRUE(IsLoopback(*ParseIpAddress(text))) << text;
+  for (const char* text : {"0.0.0.0", "10.0.0.7", "128.0.0.1", "::", "fe80::1"}) EXPECT_FALSE(IsLoopback(*ParseIpAddress(text))) << text;
+}
+
+TEST(OwnAddresses, AreEachToldOnceAndNoneIsTheAddressOfAll) {
+  const auto addresses = OwnAddresses();
+  if (addresses.empty()) GTEST_SKIP() << "no interface is up";
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    EXPECT_FALSE(addresses[i].is_any());
+    EXPECT_EQ(std::count(addresses.begin(), addresses.end(), addresses[i]), 1) << ToText(addresses[i]);
+  }
+}
+
 }  // namespace
 }  // namespace lookout::io

@@ -60,6 +60,23 @@ TEST_F(OfFilm, GivesTheLastScanThatWasWholeByATime) {
   EXPECT_EQ(UtimesOf(answer, bus::kTracks), std::vector<std::int64_t>());  // was not asked for
 }
 
+TEST_F(OfFilm, GivesEachPoseOfAScan) {
+  {
+    SceneLog log(a_);
+    for (std::int64_t seq = 0; seq < 5; ++seq) {
+      for (const std::int64_t later_us : {30'000, 70'000}) {
+        pose_t pose{};
+        pose.utime_us = UtimeOf(seq) + later_us;
+        log->Put(UtimeOf(seq) + 90'000, bus::kPose, pose);
+      }
+      log->Scan(seq);
+    }
+  }
+  const auto film = Open({a_});
+  const auto answer = film->Find(AtTime(WholeAt(2), {kPoseChannel}));
+  EXPECT_EQ(UtimesOf(answer, bus::kPose), (std::vector{UtimeOf(2), UtimeOf(2) + 30'000, UtimeOf(2) + 70'000}));
+}
+
 TEST_F(OfFilm, GivesTheScanNearestToATimeOfMeasurement) {
   WriteScans(a_, 0, 10);
   const auto film = Open({a_});
