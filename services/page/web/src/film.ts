@@ -25,6 +25,12 @@ export function sourceAt(line: readonly Source[], utime_us: number): Source | un
   return line.findLast((source) => source.begin_utime_us <= utime_us) ?? line[0];
 }
 
+/** How long before a time of the log the scan of a picture was received, s: in a gap of the log it is the last one before. 0 where it has none. */
+export function ageInLog(picture: Pick<Picture, "times_us">, utime_us: number): number {
+  const received_us = picture.times_us.get("LIDAR_SCAN") ?? picture.times_us.get("TRACKS");
+  return received_us === undefined ? 0 : Math.max(0, (utime_us - received_us) / 1e6);
+}
+
 type Wanted = { kind: "at"; utime_us: number } | { kind: "step"; scans: number };
 interface Moment { head: AnswerHead; frames: Frame[]; beside: Answer | null }
 
@@ -220,9 +226,9 @@ export class Film {
     this.head = head;
     this.shownFrames = frames;
     state.showing = { kind: "recorded", source: head.source, utime_us: head.utime_us, scan_index: head.scan_index, num_scans: head.num_scans };
-    state.age_s = 0;
     state.beside = beside === null ? null : this.toPicture(new Assembler(), beside.head.source, beside.frames);
     state.picture = this.toPicture(this.assembler, head.source, frames);
+    state.age_s = ageInLog(state.picture, head.utime_us);
     state.tell("showing");
     state.tell("picture");
     if (this.isPlaying || this.wanted !== null) return;

@@ -29,7 +29,7 @@ export class State {
   picture: Picture | null = null;
   /** Of a second recording beside the first, at the same scan. */
   beside: Picture | null = null;
-  /** Of the picture: how long ago it was measured and came, s; 0 of a recorded one. */
+  /** Of the picture: how long ago it was measured and came, s; of a recorded one how long before the time that is shown it came. */
   age_s = 0;
   marked: Marked = { track: null, segment: null };
   /** Chosen by a click or in a list; stays until another is. */

@@ -60,6 +60,17 @@ test("thinning keeps the spike of one message, and gaps", () => {
   assert.deepEqual(times, [...times].sort((a, b) => a - b));
 });
 
+test("a line ends where nothing came for long, also where it is thinned", () => {
+  for (const buckets of [20, 1000]) {
+    const ring = new Ring(1000);
+    for (let i = 0; i < 600; ++i) ring.push(i < 300 ? 0.1 * i : 0.1 * i + 17, i % 7);
+    const { times, values } = ring.thinned(0, 100, buckets);
+    const inside = times.map((time, index) => ({ time, value: values[index] })).filter(({ time }) => time > 29.9005 && time < 47);
+    assert.deepEqual(inside.map(({ value }) => value), [null, null], `${buckets} buckets`);
+    assert.deepEqual(times, [...times].sort((a, b) => a - b));
+  }
+});
+
 test("a heading that passes north goes on, and ends where it is", () => {
   assert.deepEqual(unwrapped([359, 1, null, 2]), [-1, 1, null, 2]);
   assert.deepEqual(unwrapped([2, 359, 358]), [362, 359, 358]);

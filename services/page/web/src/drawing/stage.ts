@@ -7,10 +7,8 @@ import { listen, type Gestures } from "./gestures.js";
 const kOld_s = 1;
 const kMostPixelsPerPixel = 2;  // finer screens cost more than the eye has of it
 
-/** Whether what is shown is too old to be looked at as now. */
-export function isOld(state: State): boolean {
-  return state.showing.kind === "live" && state.picture !== null && state.age_s > kOld_s;
-}
+/** Whether what is shown is too old to be looked at as now, or as the time of the log that is shown. */
+export function isOld(state: State): boolean { return state.picture !== null && state.age_s > kOld_s; }
 
 // Strokes on 24 by 24.
 const kIcons = {
@@ -69,7 +67,7 @@ export class Stage {
     new ResizeObserver(() => { this.fit(); }).observe(this.element);
     listen(this.plan, gestures);
     state.on(["picture", "marked", "settings", "showing", "connection"], () => { this.ask(); });
-    state.on(["age", "picture"], () => { this.tellAge(); });
+    state.on(["age", "picture", "showing"], () => { this.tellAge(); });
   }
 
   setVisible(isVisible: boolean): void {
@@ -129,7 +127,7 @@ export class Stage {
     if (!this.isVisible) return;
     const old = isOld(this.state);
     this.element.classList.toggle("old", old);
-    setText(this.old, old ? texts.stale(duration(Math.floor(this.state.age_s)).replace(".0 ", " ")) : "");
+    setText(this.old, !old ? "" : (this.state.showing.kind === "live" ? texts.stale : texts.gap)(duration(Math.floor(this.state.age_s)).replace(".0 ", " ")));
   }
   private fit(): void {
     const { clientWidth, clientHeight } = this.element;

@@ -6,6 +6,7 @@ export const en = {
   lost: (seconds: number) => `No connection to the boat for ${seconds} s. Trying again.`,
   back: "The connection is back.",
   stale: (seconds: string) => `The picture is ${seconds} old`,
+  gap: (seconds: string) => `No scan at this time: the picture is ${seconds} older`,
   nothingYet: "Nothing came yet. Are lookout-vlp16 and the other processes running?",
   live: "LIVE",
   recorded: "RECORDED",

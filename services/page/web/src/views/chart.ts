@@ -134,8 +134,8 @@ export class Chart {
     this.paths.forEach((_, series) => {
       const values = this.plot.data[series + 1]!;
       let at = index ?? values.length - 1;
-      // Times of other numbers stand between: the one before holds.
-      while (at > 0 && (values[at] === undefined || values[at] === null)) --at;
+      // Times of other numbers stand between: the one before holds. Where it has none itself, there is none.
+      while (at > 0 && values[at] === undefined) --at;
       setText(this.values[series]!, this.word(values[at]));
     });
   }

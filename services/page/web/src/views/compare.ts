@@ -151,6 +151,7 @@ export class CompareView implements View {
     for (const [index, side] of this.sides.entries()) {
       side.picture = index === 0 ? first : second;
       side.showing = this.state.showing;
+      side.age_s = this.state.age_s;
       this.mark(this.views[index]!, side.picture, differences, index);
       side.tell("picture");
       this.views[index]!.redraw();

@@ -166,6 +166,8 @@ export function chartOf(path: Path): string {
   return `${name.split(".").at(-1)!} ${unitOf(path).unit}`;
 }
 
+const kGap_s = 3, kGap_steps = 8, kBeside_s = 1e-3;
+
 /** The last numbers of one path, in the order of their times; bounded. */
 export class Ring {
   private readonly times: Float64Array;
@@ -198,7 +200,16 @@ export class Ring {
     while (first < this.count && this.time(first) < from_s) ++first;
     let last = first;
     while (last < this.count && this.time(last) <= to_s) ++last;
+    // Where nothing came for long the line ends: it does not lead over what is not known.
+    const gap_s = Math.max(kGap_s, kGap_steps * (this.count > 1 ? (this.time(this.count - 1) - this.time(0)) / (this.count - 1) : 0));
+    let pushed = -1;
     const push = (index: number) => {
+      for (let i = pushed + 1; pushed >= 0 && i <= index; ++i) {
+        if (this.time(i) - this.time(i - 1) <= gap_s) continue;
+        times.push(this.time(i - 1) + kBeside_s, this.time(i) - kBeside_s);
+        values.push(null, null);
+      }
+      pushed = index;
       times.push(this.time(index));
       values.push(Number.isFinite(this.value(index)) ? this.value(index) : null);
     };

@@ -11,6 +11,7 @@ const kBuckets_px = 3;             // width of a bucket on the screen
 const kMostBuckets = 1000;
 const kAgain_ms = 2000;            // a recording that grows is asked for again
 const kSame_us = 1000;
+const kGap_us = 2_000_000;
 
 /** From the begin of the first to the end of the last recording; null: there are none. */
 export function wholeSpan(line: readonly Source[]): Span | null {
@@ -31,6 +32,20 @@ export function moved(span: Span, whole: Span, by_us: number): Span {
   const length = Math.min(span.to_utime_us - span.from_utime_us, whole.to_utime_us - whole.from_utime_us);
   const from = Math.min(Math.max(span.from_utime_us + by_us, whole.from_utime_us), whole.to_utime_us - length);
   return { from_utime_us: from, to_utime_us: from + length };
+}
+
+/** Where a strip holds nothing of tracks and processes for 2 s and longer, in the order of time: files of one recording that do not follow each other. */
+export function gapsOf({ begin_utime_us, bucket_us, num_tracks, health, num_lost, alert_level }: Strip): Span[] {
+  const gaps: Span[] = [];
+  const isEmpty = (i: number) => num_tracks[i]! < 0 && health[i]! < 0 && num_lost[i] === 0 && alert_level[i] === 0;
+  for (let i = 0; i < num_tracks.length;) {
+    let end = i;
+    while (end < num_tracks.length && isEmpty(end)) ++end;
+    // A log without TRACKS and HEALTH says nothing of where it has gaps.
+    if ((end - i) * bucket_us >= kGap_us && end - i < num_tracks.length) gaps.push({ from_utime_us: begin_utime_us + i * bucket_us, to_utime_us: begin_utime_us + end * bucket_us });
+    i = end + 1;
+  }
+  return gaps;
 }
 
 /** The event of a kind that is next after (or before) a time by more than 50 ms; those of gaps and ends go with the starts. */

@@ -2,7 +2,7 @@
 import type { Source, Strip } from "../link.js";
 import { texts } from "../texts/index.js";
 import { timeOfDay } from "../units.js";
-import type { Span } from "./strip.js";
+import { gapsOf, type Span } from "./strip.js";
 
 export interface Drawn {
   span: Span;
@@ -48,6 +48,8 @@ export function drawStrip(canvas: HTMLCanvasElement, { span, strips, sources, sh
         draw(from, Math.max(1, to - from + 0.5), values[i]!);
       }
     };
+    context.fillStyle = colour("--panel");
+    for (const gap of gapsOf(strip)) context.fillRect(toX(gap.from_utime_us), kTop_px, toX(gap.to_utime_us) - toX(gap.from_utime_us), bottom - kTop_px);
     context.fillStyle = colour("--track");
     context.globalAlpha = 0.45;
     bars(strip.num_tracks, (x, w, value) => { const tall = value / most * hills; context.fillRect(x, bottom - tall, w, tall); });
@@ -115,7 +117,7 @@ function drawTimes(context: CanvasRenderingContext2D, span: Span, width: number,
 /** What the strips say of a time, in words. */
 export function describe(strips: readonly Strip[], utime_us: number): string[] {
   const strip = strips.findLast((candidate) => utime_us >= candidate.begin_utime_us && utime_us <= candidate.begin_utime_us + candidate.bucket_us * candidate.num_tracks.length);
-  if (strip === undefined) return [texts.film.nothingRecorded];
+  if (strip === undefined || gapsOf(strip).some((gap) => utime_us >= gap.from_utime_us && utime_us < gap.to_utime_us)) return [texts.film.nothingRecorded];
   const bucket = Math.min(strip.num_tracks.length - 1, Math.floor((utime_us - strip.begin_utime_us) / strip.bucket_us));
   const said: string[] = [];
   const tracks = strip.num_tracks[bucket]!, level = strip.alert_level[bucket]!, health = strip.health[bucket]!, lost = strip.num_lost[bucket]!;
