@@ -170,7 +170,9 @@ class Proof : public LiveTest {
     children_[victim]->Signal(signal);
     children_[victim]->Wait(seconds(5));
     // What was sent while it still ran waits in the socket: only scans without ALERTS are those at which nobody was there.
-    if (victim == "tracker") EXPECT_TRUE(HandleUntil([&] { return counts_["OBSTACLES"] >= counts_["ALERTS"] + 5; }));
+    if (victim == "tracker") {
+      EXPECT_TRUE(HandleUntil([&] { return counts_["OBSTACLES"] >= counts_["ALERTS"] + 5; }));
+    }
     heard_.clear();
     Start({victim});
     EXPECT_TRUE(HandleUntil([&sim] { return !sim.IsRunning(); }, longest)) << sim.Output();
