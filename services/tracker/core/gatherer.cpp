@@ -102,6 +102,8 @@ std::vector<GatheredScan> Gatherer::Add(const Pose& pose, bool is_new_run) {
   std::vector<GatheredScan> released;
   if (const Pose* newest = poses_.newest()) {
     if (pose.time == newest->time) {
+      // A navigator that began anew within a period of POSE sends the last time of the one before once more.
+      if (is_new_run) navigator_began_.push_back(pose.time);
       ++counts_["poses_duplicate"];
       return released;
     }
