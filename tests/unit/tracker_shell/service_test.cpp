@@ -165,6 +165,19 @@ TEST_F(TrackerService, ForgetsItsTracksWhenTheNavigatorBeginsAnew) {
   EXPECT_EQ(Count("runs_begun"), 1);
 }
 
+// A process that was killed and is back within a period of POSE sends the last time of the one before once more.
+TEST_F(TrackerService, ForgetsItsTracksWhenTheNavigatorBeginsAnewAtTheTimeOfTheLastPose) {
+  SendPoses(0, 580'000, 200);
+  for (int i = 0; i < 5; ++i) SendScan(i, i);
+  const auto id = tracks_.back().tracks.at(0).id;
+  SendPoses(580'000, 3'000'000);
+  for (int i = 5; i < 15; ++i) SendScan(i, i);
+  EXPECT_EQ(tracks_.size(), 15U);
+  EXPECT_GT(tracks_.back().tracks.at(0).id, id);
+  EXPECT_EQ(Count("poses_duplicate"), 1);
+  EXPECT_EQ(Count("runs_begun"), 1);
+}
+
 TEST_F(TrackerService, GoesOnInThePast) {
   SendPoses(10'000'000, 11'000'000, 500);
   for (int i = 100; i < 105; ++i) SendScan(i, i);
