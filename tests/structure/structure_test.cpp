@@ -1,4 +1,4 @@
-// The house rules that a compiler does not check: who may include whom, and pages that must agree with the code.
+// The house rules that a compiler does not check: what code may do, and pages that must agree with it.
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -10,153 +10,16 @@
 #include <vector>
 
 #include "common/bus/services.hpp"
+#include "tests/structure/sources.hpp"
 #include "tests/support/files.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
 
+using lookout::structure_test::SourcesBelow;
 using lookout::support::kSources;
 using lookout::support::ReadFile;
-
-std::vector<fs::path> SourcesBelow(const fs::path& folder) {
-  std::vector<fs::path> files;
-  if (!fs::exists(folder)) return files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const auto ending = entry.path().extension();
-    if (entry.is_regular_file() && (ending == ".cpp" || ending == ".hpp")) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
-std::vector<std::string> Includes(const fs::path& file) {
-  static const std::regex kInclude(R"re(^\s*#include\s*[<"]([^>"]+)[>"])re");
-  std::vector<std::string> includes;
-  std::istringstream text(ReadFile(file));
-  for (std::string line; std::getline(text, line);) {
-    std::smatch match;
-    if (std::regex_search(line, match, kInclude)) includes.push_back(match[1]);
-  }
-  return includes;
-}
-
-// What an include is: the module of ours, the library, or "std".
-std::string KindOf(const std::string& include) {
-  static const std::vector<std::pair<std::string, std::string>> kPrefixes{{"lookout/", "wire types"},
-                                                                          {"config/schema/", "config types"},
-                                                                          {"lcm/", "lcm"},
-                                                                          {"google/", "protobuf"},
-                                                                          {"boost/", "boost"},
-                                                                          {"pcap/", "pcap"},
-                                                                          {"pcap.h", "pcap"},
-                                                                          {"spdlog/", "spdlog"},
-                                                                          {"fmt/", "fmt"},
-                                                                          {"CLI/", "cli"},
-                                                                          {"openssl/", "openssl"},
-                                                                          {"nlohmann/", "nlohmann-json"},
-                                                                          {"sqlite3.h", "sqlite"},
-                                                                          {"qrencode.h", "qrencode"},
-                                                                          {"systemd/", "systemd"},
-                                                                          {"Eigen/", "eigen"},
-                                                                          {"GeographicLib/", "geographiclib"},
-                                                                          {"sys/socket", "socket"},
-                                                                          {"netinet/", "socket"},
-                                                                          {"arpa/", "socket"}};
-  for (const auto& [prefix, kind] : kPrefixes) {
-    if (include.rfind(prefix, 0) == 0) return kind;
-  }
-  if (include.rfind("common/", 0) == 0) return include.substr(0, include.find('/', 7));
-  // Folders within a core are parts of it.
-  static const std::regex kCore("services/[^/]+/core/");
-  if (std::smatch core; std::regex_search(include, core, kCore, std::regex_constants::match_continuous))
-    return include.substr(0, static_cast<std::size_t>(core.length()) - 1);
-  if (include.rfind("services/", 0) == 0 || include.rfind("tools/", 0) == 0) return include.substr(0, include.rfind('/'));
-  return "std";
-}
-
-// A module and the kinds that its files may include besides std and Eigen. "OWN" stands for the service's folder.
-struct Rule {
-  std::string module;  // regular expression of the path below the root
-  std::vector<std::string> allowed;
-};
-
-const std::vector<Rule>& Rules() {
-  static const std::vector<Rule> kRules{
-      {"common/core/.*", {"common/core"}},
-      {"common/io/.*", {"common/core", "common/io", "socket"}},
-      {"common/bus/.*", {"common/core", "common/bus", "lcm", "openssl", "socket"}},
-      {"common/messages/.*", {"common/core", "common/messages", "wire types"}},
-      {"common/config/.*", {"common/core", "common/config", "config types", "protobuf", "fmt"}},
-      {"common/runtime/.*", {"common/core", "common/bus", "common/config", "common/io", "common/runtime", "wire types", "spdlog", "cli", "systemd"}},
-      {"services/navigator/core/.*", {"common/core", "OWN/core", "OWN/core/filter"}},
-      // What it makes is text.
-      {"services/plotter/core/.*", {"common/core", "OWN/core", "fmt", "nlohmann-json"}},
-      // What a browser says and is told is JSON, and names channels.
-      {"services/page/core/.*", {"common/core", "common/bus", "OWN/core", "nlohmann-json"}},
-      {"services/page/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost"}},
-      // Logs as an index, and the boat out of the config in RUN_INFO.
-      {"services/page/film/boat_text\\..pp", {"common/config", "common/messages", "OWN/film", "config types", "nlohmann-json"}},
-      {"services/page/film/.*",
-       {"common/core", "common/bus", "common/messages", "common/io", "OWN/core", "OWN/film", "wire types", "fmt", "nlohmann-json"}},
-      {"services/[^/]+/core/.*", {"common/core", "OWN/core"}},
-      {"services/plotter/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "boost", "socket"}},
-      {"services/[^/]+/io/.*", {"common/core", "common/io", "OWN/core", "OWN/io", "pcap", "socket"}},
-      {"services/[^/]+/wire\\..pp", {"common/core", "OWN/core", "OWN", "wire types", "common/bus", "common/messages"}},
-      // It knows what an address is.
-      {"services/[^/]+/(params(_text)?|evidence_text)\\..pp",
-       {"common/core", "common/config", "common/io", "OWN/core", "OWN", "config types", "fmt"}},
-      // Opens what params name.
-      {"services/[^/]+/sources\\..pp", {"common/core", "common/config", "common/io", "common/runtime", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
-      // A part of the service that knows the host's time, as the core must not.
-      {"services/tracker/watch\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
-      // A file that one process leaves to the next.
-      {"services/tracker/handover\\..pp", {"common/core", "common/io", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
-      {"services/tracker/alert_text\\..pp", {"common/core", "OWN", "OWN/core", "fmt"}},
-      // One language each, over a link.
-      {"services/plotter/([a-z0-9_]+_)?outputs?\\..pp", {"common/core", "OWN", "OWN/core", "OWN/io"}},
-      // The page: messages to browsers go by its own server.
-      {"services/page/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/core", "OWN/io", "wire types"}},
-      {"services/page/tiles\\..pp", {"common/core", "OWN", "OWN/io", "fmt", "nlohmann-json", "sqlite"}},
-      {"services/page/token\\..pp", {"common/core", "common/io", "OWN", "fmt"}},
-      {"services/page/announcement\\..pp", {"common/core", "OWN", "fmt", "qrencode"}},
-      {"services/page/(assets|server_link)\\.hpp", {"common/core", "OWN/io"}},
-      {"services/page/(main|film_mode)\\..pp",
-       {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "OWN/film", "spdlog", "fmt",
-        "cli"}},
-      // MAP, and the file that it may begin with.
-      {"services/tracker/map_(wire|telling)\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types"}},
-      {"services/tracker/map_file\\..pp", {"common/core", "OWN", "OWN/core", "fmt", "nlohmann-json"}},
-      // What the recorder's method gives is files: its service drives its own io.
-      {"services/recorder/service\\..pp", {"common/core", "common/bus", "OWN", "OWN/io", "wire types"}},
-      {"services/[^/]+/service\\..pp", {"common/core", "common/bus", "common/messages", "OWN", "OWN/core", "wire types", "fmt"}},
-      {"services/[^/]+/main\\.cpp",
-       {"common/core", "common/bus", "common/config", "common/runtime", "common/io", "OWN", "OWN/core", "OWN/io", "spdlog", "fmt"}},
-  };
-  return kRules;
-}
-
-TEST(Structure, ModulesIncludeOnlyWhatTheyMay) {
-  int num_checked = 0;
-  for (const auto& folder : {"common", "services"}) {
-    for (const auto& file : SourcesBelow(kSources / folder)) {
-      const std::string path = fs::relative(file, kSources).string();
-      const auto rule = std::ranges::find_if(Rules(), [&](const Rule& candidate) { return std::regex_match(path, std::regex(candidate.module)); });
-      ASSERT_NE(rule, Rules().end()) << path << " is in no module that the rules name";
-      const std::string own = path.substr(0, path.find('/', path.find('/') + 1));
-      for (const auto& include : Includes(file)) {
-        const std::string kind = KindOf(include);
-        const bool is_allowed = kind == "std" || kind == "eigen" || std::ranges::any_of(rule->allowed, [&](std::string allowed) {
-                                  if (allowed.rfind("OWN", 0) == 0) allowed.replace(0, 3, own);
-                                  return allowed == kind;
-                                });
-        EXPECT_TRUE(is_allowed) << path << " may not include " << include << " (" << kind << ")";
-        ++num_checked;
-      }
-    }
-  }
-  EXPECT_GT(num_checked, 100);
-}
 
 // A file that is written in another way can overwrite a recording, or stand half written under its name.
 TEST(Structure, OutputsAreWrittenByOneClass) {

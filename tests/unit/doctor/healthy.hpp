@@ -15,6 +15,10 @@
 
 namespace lookout::doctor::test {
 
+inline constexpr auto kOk = Grade::kOk;
+inline constexpr auto kWarning = Grade::kWarning;
+inline constexpr auto kFault = Grade::kFault;
+
 inline const Utime kEnd{std::chrono::microseconds(1'700'000'000'000'000)};
 inline std::int64_t Ago(double seconds) { return ToUtimeUs(kEnd) - std::llround(seconds * 1e6); }
 

@@ -154,29 +154,23 @@ TEST_F(TrackerService, ForgetsItsTracksButNotTheirIdsWhenTheLidarBeginsAnew) {
   EXPECT_EQ(Count("runs_begun"), 1);
 }
 
-TEST_F(TrackerService, ForgetsItsTracksWhenTheNavigatorBeginsAnew) {
-  SendPoses(0, 580'000, 200);
+// By the time of its first pose: that behind the last of the one before, or, of a process that is back within a period of POSE, that one once more.
+class ANavigatorThatBeginsAnew : public TrackerService, public ::testing::WithParamInterface<std::int64_t> {};
+
+TEST_P(ANavigatorThatBeginsAnew, MakesTheTrackerForgetItsTracks) {
+  const auto last_us = 580'000;
+  SendPoses(0, last_us, 200);
   for (int i = 0; i < 5; ++i) SendScan(i, i);
   const auto id = tracks_.back().tracks.at(0).id;
-  SendPoses(600'000, 3'000'000);
+  SendPoses(GetParam(), 3'000'000);
   for (int i = 5; i < 15; ++i) SendScan(i, i);
   EXPECT_EQ(tracks_.size(), 15U);
   EXPECT_GT(tracks_.back().tracks.at(0).id, id);
+  EXPECT_EQ(Count("poses_duplicate"), GetParam() == last_us ? 1 : 0);
   EXPECT_EQ(Count("runs_begun"), 1);
 }
 
-// A process that was killed and is back within a period of POSE sends the last time of the one before once more.
-TEST_F(TrackerService, ForgetsItsTracksWhenTheNavigatorBeginsAnewAtTheTimeOfTheLastPose) {
-  SendPoses(0, 580'000, 200);
-  for (int i = 0; i < 5; ++i) SendScan(i, i);
-  const auto id = tracks_.back().tracks.at(0).id;
-  SendPoses(580'000, 3'000'000);
-  for (int i = 5; i < 15; ++i) SendScan(i, i);
-  EXPECT_EQ(tracks_.size(), 15U);
-  EXPECT_GT(tracks_.back().tracks.at(0).id, id);
-  EXPECT_EQ(Count("poses_duplicate"), 1);
-  EXPECT_EQ(Count("runs_begun"), 1);
-}
+INSTANTIATE_TEST_SUITE_P(TrackerService, ANavigatorThatBeginsAnew, ::testing::Values(600'000, 580'000));
 
 TEST_F(TrackerService, GoesOnInThePast) {
   SendPoses(10'000'000, 11'000'000, 500);
