@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -78,9 +79,11 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
     const auto found = of_key.find(key);
     if (key != kUnnamedKey) Update(entry, key, time, is_whole, found == of_key.end() ? nullptr : found->second);
   }
-  const Danger* unnamed = FindUnnamed(of_key);
-  if (unnamed != nullptr) entries_.try_emplace(kUnnamedKey);
-  if (const auto found = entries_.find(kUnnamedKey); found != entries_.end()) Update(found->second, kUnnamedKey, time, is_whole, unnamed);
+  const auto unnamed = FindUnnamed(of_key);
+  if (unnamed) entries_.try_emplace(kUnnamedKey);
+  if (const auto found = entries_.find(kUnnamedKey); found != entries_.end()) {
+    Update(found->second, kUnnamedKey, time, is_whole, unnamed ? &*unnamed : nullptr);
+  }
   ClearOldestRectified(time);
 
   alerts_.clear();
@@ -109,18 +112,40 @@ void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, con
   alert.cpa_m = danger->cpa_m;
   alert.tcpa_s = danger->cause == AlertCause::kClosestApproach ? danger->tcpa_s : kNan;
   alert.cpa_probability = danger->cause == AlertCause::kClosestApproach ? probability : kNan;
+  if (key.second <= kLandTrack) UpdatePlaces(entry, time, is_whole, *danger);
 }
 
-// The nearest in the guard zone that has no alert which holds. Call it once the others are up to date.
-const Danger* Alerts::FindUnnamed(const std::map<Key, const Danger*>& dangers) const {
-  const Danger* nearest = nullptr;
+// Precondition: the alert holds.
+void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const {
+  entry.places = danger.places;
+  if (!entry.told) return;
+  auto& alert = *entry.alert;
+  const auto untold = entry.told->Untold(time, danger.places);
+  entry.untold.Update(time, is_whole, untold.has_value(), !untold, params_.clear_s);
+  if (alert.state == AlertState::kAcknowledged && entry.untold.is_on) {
+    SetState(alert, AlertState::kActive, time);
+    entry.untold = {};
+  }
+  if (alert.state == AlertState::kActive && untold) {
+    alert.distance_m = untold->range_m;
+    alert.bearing_rad = untold->bearing_rad;
+  }
+}
+
+// All in the guard zone that has no alert which holds. Call it once the others are up to date.
+std::optional<Danger> Alerts::FindUnnamed(const std::map<Key, const Danger*>& dangers) const {
+  std::optional<Danger> all;
   for (const auto& [key, danger] : dangers) {
     if (key.first != AlertCause::kGuardZone) continue;
     const auto entry = entries_.find(key);
     const bool holds = key != kUnnamedKey && entry != entries_.end() && entry->second.alert && entry->second.alert->Holds();
-    if (!holds && (nearest == nullptr || danger->distance_m < nearest->distance_m)) nearest = danger;
+    if (holds) continue;
+    auto places = danger->places;
+    if (all) std::ranges::copy(all->places, std::back_inserter(places));
+    if (!all || danger->distance_m < all->distance_m) all = *danger;
+    all->places = std::move(places);
   }
-  return nearest;
+  return all;
 }
 
 // Whether an alert of something in the guard zone that has a name is so.
@@ -169,6 +194,11 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
     if (!entry.alert || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
     if (entry.alert->state == AlertState::kActive) {
       SetState(*entry.alert, AlertState::kAcknowledged, time);
+      if (key.second <= kLandTrack) {
+        if (!entry.told) entry.told.emplace(key.second == kLandTrack ? ToldPlaces::Kind::kLand : ToldPlaces::Kind::kThings);
+        entry.told->Tell(time, entry.places);
+        entry.untold = {};
+      }
     } else if (entry.alert->state == AlertState::kRectified) {
       SetState(*entry.alert, AlertState::kCleared, time);
     } else {

@@ -13,6 +13,7 @@
 
 #include "common/core/elementary.hpp"
 #include "common/core/utime.hpp"
+#include "services/tracker/core/told_places.hpp"
 
 namespace lookout::tracker {
 
@@ -51,7 +52,8 @@ struct Danger {
   double distance_m = 0.0;
   double bearing_rad = 0.0;
   double cpa_m = kNan;
-  bool is_inside = false;  // the zone, or nearer than the limit, now
+  bool is_inside = false;                // the zone, or nearer than the limit, now
+  std::vector<DangerPlace> places = {};  // in the guard zone; of land and of what has no track, at least one: so far an acknowledgement goes
 };
 
 struct Acknowledgement {
@@ -79,6 +81,9 @@ struct AlertParams {
 ///
 /// Nothing is in the guard zone unnoticed because it is named now so, now otherwise: what is in it and has no alert that holds counts for the alert
 /// of kUnnamed too, unless another of that cause is active anyway. So where 3 of the last 5 scans show anything in the zone, some alert of it holds.
+///
+/// No track names land, nor what is of kUnnamed: many things share one alert of these. So there an acknowledgement is one of places (ToldPlaces):
+/// where 3 of the last 5 scans show a place that was not told, or that came much nearer, the alert is active again and tells of that place.
 ///
 /// A caution that becomes a warning wants a new acknowledgement. A warning that ends without one stays as rectified until it gets one; a caution does
 /// not, nor one of kUnnamed where something in the zone has an alert of its own. What holds again meanwhile is the same alert, active. Of rectified
@@ -131,12 +136,17 @@ class Alerts {
     Latch raised;
     Latch warning;
     std::optional<Alert> alert;
+    // Of land and of kUnnamed alone.
+    std::vector<DangerPlace> places;  // in the last scan that showed any
+    std::optional<ToldPlaces> told;   // acknowledged
+    Latch untold;                     // scans that showed a place that is not
   };
   using Key = std::pair<AlertCause, std::int64_t>;  // and track
   static constexpr Key kUnnamedKey{AlertCause::kGuardZone, kUnnamed};
 
   void Update(Entry& entry, const Key& key, Utime time, bool is_whole, const Danger* danger);
-  const Danger* FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
+  void UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const;
+  std::optional<Danger> FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
   bool HasNamedInZone(bool (*is_so)(const Alert&)) const;
   void Advance(Entry& entry, const Key& key, Utime time);
   void ClearOldestRectified(Utime time);

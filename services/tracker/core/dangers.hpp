@@ -18,7 +18,8 @@ namespace lookout::tracker {
 /// What is within sector and range, one danger for each track and one for land. Each obstacle of the scan that is sure, or of a confirmed track,
 /// counts from its first scan on (tentative ones where the zone takes them), as the vessel sees it: along the waterline of land where there is one,
 /// else the outline. So it needs no pose. It is of the track that it was assigned to, of kLandTrack, or of kUnnamed. Confirmed tracks count beyond
-/// what is seen of them now, where the own pose is known.
+/// what is seen of them now, where the own pose is known. Its places: of land the nearest in each bin of bearing, of all else the nearest point of
+/// each obstacle.
 /// @param own  placed, at the end of the scan
 std::vector<Danger> GuardZoneDangers(const GuardZoneParams& params, const Picture& picture, std::span<const VesselOutline> outlines,
                                      const std::optional<Pose>& own);
@@ -36,8 +37,8 @@ class StillWatch {
   Utime newest_;
 };
 
-/// Confirmed and coasting tracks. Where the own boat lies still and the track stands, neither comes nearer to the other: of them only the guard zone
-/// speaks, so a boat in its berth has peace, while one that drifts down on a pile is warned.
+/// Confirmed and coasting tracks, and land on the boat's way. Where the own boat lies still and the track stands, neither comes nearer to the other:
+/// of them only the guard zone speaks, so a boat in its berth has peace, while one that drifts down on a pile is warned.
 /// @param limit_m  of the closest approach
 std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& picture, bool is_own_still);
 

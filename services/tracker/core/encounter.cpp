@@ -7,7 +7,9 @@
 #include <limits>
 
 #include "common/core/angles.hpp"
+#include "services/tracker/core/normal.hpp"
 #include "services/tracker/core/outline.hpp"
+#include "services/tracker/core/turning.hpp"
 
 namespace lookout::tracker {
 
@@ -29,19 +31,6 @@ constexpr double kDoubt = 0.05;
 constexpr double kLeastSdM = 0.05;
 // Beyond so many deviations there is nothing: 6e-5 of a normal distribution.
 constexpr double kReach = 4.0;
-
-// Standard normal: density and distribution at z. Source: M. Abramowitz, I. Stegun, "Handbook of Mathematical Functions", 26.2.17. Error: below 1e-7.
-struct NormalAt {
-  explicit NormalAt(double z) : density(0.0), below(z < 0.0 ? 0.0 : 1.0) {
-    if (std::fabs(z) > 6.0) return;
-    density = 0.3989422804014327 * Exp(-0.5 * z * z);
-    const double t = 1.0 / (1.0 + 0.2316419 * std::fabs(z));
-    const double tail = density * t * (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
-    below = z < 0.0 ? tail : 1.0 - tail;
-  }
-  double density;
-  double below;
-};
 
 // A node between 0 and 1, and its weight.
 struct Node {
@@ -374,6 +363,7 @@ double CourseOf(const Eigen::Vector2d& direction) { return Atan2(direction.x(), 
 }  // namespace
 
 ClosestApproach ClosestApproachOf(const Moving& own, const Moving& other, const RelativeCovariance& covariance, const EncounterParams& params) {
+  if (own.turn_rate_radps != 0.0 || other.turn_rate_radps != 0.0) return ApproachInTurns(own, other, covariance, params);
   const auto difference = DifferenceOf(own.hull_m, other.hull_m);  // by what the other must be moved for both to touch
   const Eigen::Vector2d velocity_mps = other.velocity_mps - own.velocity_mps;
   const double distance_m = SignedDistance(difference, Eigen::Vector2d::Zero());

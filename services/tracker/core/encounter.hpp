@@ -14,6 +14,7 @@ namespace lookout::tracker {
 struct Moving {
   std::vector<Eigen::Vector2d> hull_m;  // convex, counter-clockwise, at least one corner
   Eigen::Vector2d velocity_mps = Eigen::Vector2d::Zero();
+  double turn_rate_radps = 0.0;  // clockwise; 0: it goes straight on
 };
 
 /// Position and velocity of the one relative to the other: east, north, and their rates.
@@ -35,8 +36,8 @@ struct ClosestApproach {
   double bearing_drift_radps = kNan;  // of the true bearing from the middle of own to that of other, clockwise; NaN where they overlap
 };
 
-/// Both keep course and speed, and do not turn. The hulls are convex, so their difference (Minkowski) is one polygon, and the closest approach is
-/// that of a point to it.
+/// Both keep course and speed; where one turns, ApproachInTurns has the answer. The hulls are convex, so their difference (Minkowski) is one polygon,
+/// and the closest approach is that of a point to it.
 ///
 /// Probability: the relative position moves on a straight line, so it enters a convex region at most once. That it is below the limit is then the
 /// probability that it is now, and the mean number of entries later: the flow of probability through the region's edge, integrated over edge and time

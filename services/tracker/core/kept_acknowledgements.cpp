@@ -1,8 +1,11 @@
 #include "services/tracker/core/kept_acknowledgements.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
+
+#include "common/core/angles.hpp"
 
 namespace lookout::tracker {
 
@@ -17,12 +20,18 @@ const Track* FindTrack(std::span<const Track> tracks, std::int64_t id) {
 
 Eigen::Vector2d KeptAcknowledgements::Kept::ExpectedAt(Utime at) const { return position_m.value() + ToSeconds(at - time) * velocity_mps; }
 
+// False where a distance or bearing is not known.
+bool KeptAcknowledgements::Kept::IsSameLand(const Alert& alert) const {
+  constexpr double kSameSideRad = DegToRad(60.0);
+  return alert.distance_m >= 0.5 * distance_m && std::fabs(WrapToPi(alert.bearing_rad - bearing_rad)) <= kSameSideRad;
+}
+
 void KeptAcknowledgements::Keep(Utime time, const Datum& datum, std::span<const Alert> alerts, std::span<const Track> tracks) {
   Forget(time);
   auto older = std::exchange(kept_, {});
   for (const auto& alert : alerts) {
     if (alert.state != AlertState::kAcknowledged) continue;
-    Kept kept{time, datum, alert.cause, alert.level, std::nullopt, Eigen::Vector2d::Zero()};
+    Kept kept{time, datum, alert.cause, alert.level, std::nullopt, Eigen::Vector2d::Zero(), alert.distance_m, alert.bearing_rad};
     if (alert.track_id == kUnnamed) continue;  // nobody knows what it was
     if (alert.track_id != kLandTrack) {
       const auto* track = FindTrack(tracks, alert.track_id);
@@ -62,7 +71,7 @@ std::vector<Acknowledgement> KeptAcknowledgements::Take(Utime time, const Datum&
     const auto* track = FindTrack(tracks, alert.track_id);
     const auto same = std::ranges::find_if(kept_, [&](const Kept& kept) {
       if (alert.cause != kept.cause || alert.level > kept.level || alert.raised <= kept.time || !datum.IsSameAs(kept.datum)) return false;
-      if (alert.track_id == kLandTrack || track == nullptr) return alert.track_id == kLandTrack && !kept.position_m;
+      if (alert.track_id == kLandTrack || track == nullptr) return alert.track_id == kLandTrack && !kept.position_m && kept.IsSameLand(alert);
       return kept.position_m && (track->position_m - kept.ExpectedAt(time)).norm() <= kSamePlaceM;
     });
     if (same == kept_.end()) continue;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/core/elementary.hpp"
 #include "common/core/pose.hpp"
 #include "common/core/utime.hpp"
 #include "services/tracker/core/alerts.hpp"
@@ -16,7 +17,7 @@ namespace lookout::tracker {
 
 /// When lidar, navigator or the process begin anew, tracks get other ids, and what still holds is raised again. Nobody should have to take note of
 /// the same buoy twice: an alert of the same cause, no graver, of a track that stands where the old one would be by now, is acknowledged too; and one
-/// of land where one of land was.
+/// of land where one of land was, on that side of the boat (60 deg) and no nearer than half as far.
 class KeptAcknowledgements {
  public:
   /// Sources: a track is confirmed again within 2 s and its alert comes up within one more; what is 5 m off may be another boat.
@@ -38,7 +39,10 @@ class KeptAcknowledgements {
     AlertLevel level;
     std::optional<Eigen::Vector2d> position_m;  // map of the datum; nullopt: of land
     Eigen::Vector2d velocity_mps;
+    double distance_m = kNan;  // of land, as the alert told it
+    double bearing_rad = kNan;
 
+    bool IsSameLand(const Alert& alert) const;
     // Precondition: not of land.
     Eigen::Vector2d ExpectedAt(Utime at) const;
   };

@@ -12,6 +12,7 @@
 #include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/standing.hpp"
 #include "services/tracker/core/step.hpp"
+#include "services/tracker/core/turning.hpp"
 
 namespace lookout::tracker {
 
@@ -42,7 +43,9 @@ struct Tracker::Memory {
   std::optional<Utime> time;
   Datum datum;
   std::optional<Pose> own;
-  double own_m2 = 0.0;  // greatest variance of the own place since positions were last taken to have moved together
+  TurnWatch turn;
+  std::vector<Eigen::Vector2d> shore_m;  // remembered land with water before it
+  double own_m2 = 0.0;                   // greatest variance of the own place since positions were last taken to have moved together
   Picture picture;
   std::int64_t num_restarts_time = 0;
   std::int64_t num_restarts_datum = 0;
@@ -63,10 +66,10 @@ TrackKind KindOf(const Track& track, bool is_moving) {
   return TrackKind::kObstacle;
 }
 
-// Of a track as it is published: where it lies from the own boat, and what it will do.
-void Encountered(Track& track, const Pose& own, const TrackerParams& params) {
-  constexpr double kStandingMps = 0.05;     // deviation of what stands: a mooring lets it swing
-  constexpr double kOwnVelocityMps = 0.15;  // deviation of the own velocity, where POSE is placed
+constexpr double kOwnVelocitySdMps = 0.15;  // where POSE is placed
+
+// The own boat, as closest approach sees it.
+Moving SelfOf(const Pose& own, double turn_rate_radps, const TrackerParams& params) {
   const auto [sine, cosine] = SinCosOf(own.heading_rad);
   const Eigen::Vector2d forward(sine, cosine);
   const Eigen::Vector2d port(-cosine, sine);
@@ -75,10 +78,23 @@ void Encountered(Track& track, const Pose& own, const TrackerParams& params) {
   for (const auto& corner : params.own_hull_m) self.hull_m.emplace_back(place_m + corner.x() * forward + corner.y() * port);
   if (self.hull_m.empty()) self.hull_m.push_back(place_m);
   if (own.velocity_map_mps.allFinite()) self.velocity_mps = own.velocity_map_mps;
-  const Moving other{track.outline_m, track.velocity_mps};
+  self.turn_rate_radps = turn_rate_radps;
+  return self;
+}
+
+// Of a track as it is published: where it lies from the own boat, and what it will do.
+void Encountered(Track& track, const Pose& own, const Moving& self, const TrackerParams& params) {
+  constexpr double kStandingMps = 0.05;                 // deviation of what stands: a mooring lets it swing
+  constexpr double kTurnsForSureRadps = DegToRad(8.0);  // two deviations of a turn rate that is published
+  const auto [sine, cosine] = SinCosOf(own.heading_rad);
+  const Eigen::Vector2d forward(sine, cosine);
+  const Eigen::Vector2d port(-cosine, sine);
+  const Eigen::Vector2d place_m = own.position_map_m.head<2>();
+  Moving other{track.outline_m, track.velocity_mps};
+  if (std::fabs(track.turn_rate_radps) > kTurnsForSureRadps) other.turn_rate_radps = track.turn_rate_radps;
   RelativeCovariance covariance = RelativeCovariance::Zero();
   covariance.topLeftCorner<2, 2>() = track.covariance_relative_m2;
-  covariance.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * (kOwnVelocityMps * kOwnVelocityMps);
+  covariance.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * (kOwnVelocitySdMps * kOwnVelocitySdMps);
   if (track.velocity_mps.isZero(0.0)) {
     covariance.bottomRightCorner<2, 2>() += Eigen::Matrix2d::Identity() * (kStandingMps * kStandingMps);
   } else {
@@ -112,6 +128,8 @@ void Tracker::Reset() {
   memory_->standing.ForgetTracks();
   memory_->time.reset();
   memory_->own.reset();
+  memory_->turn.Reset();
+  memory_->shore_m.clear();
   memory_->own_m2 = 0.0;
 }
 
@@ -152,6 +170,11 @@ const Picture& Tracker::Update(const ScanInput& scan) {
   }
   Step step(params_, scan, memory.known, dt_s);
   step.Run();
+  std::optional<Moving> self;
+  if (scan.own) {
+    const double turn_rate_radps = memory.turn.Update(scan.end_time, scan.own->heading_rad, scan.own->velocity_map_mps);
+    self = SelfOf(*scan.own, turn_rate_radps, params_);
+  }
 
   Picture& picture = memory.picture;
   picture = {};
@@ -206,7 +229,7 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     out.kind = KindOf(out, is_moving);
     if (track.body && is_moving) out.turn_rate_radps = track.body->turn_rate_radps();
     if (scan.own) {
-      Encountered(out, *scan.own, params_);
+      Encountered(out, *scan.own, *self, params_);
       track.overtaking = StillOvertaking(track.overtaking, out);
       if (out.encounter != Encounter::kNone && track.overtaking != Encounter::kNone) out.encounter = track.overtaking;
     }
@@ -221,6 +244,10 @@ const Picture& Tracker::Update(const ScanInput& scan) {
     memory.known.land.Forget(scan.own->position_map_m.head<2>());
     if (memory.num_scans++ % kWaterlineEvery == 0) {
       picture.waterline_m = memory.known.land.Waterline(scan.own->position_map_m.head<2>(), kWaterlineRangeM, kMostWaterline);
+      memory.shore_m = picture.waterline_m;
+    }
+    if (!self->velocity_mps.isZero(0.0)) {
+      picture.land_approach = ApproachToLand(*scan.own, *self, memory.shore_m, params_.encounter, kOwnVelocitySdMps);
     }
   }
   return picture;

@@ -11,6 +11,7 @@
 #include "common/core/elementary.hpp"
 #include "common/core/health.hpp"
 #include "services/tracker/core/encounter.hpp"
+#include "services/tracker/core/land_approach.hpp"
 #include "services/tracker/core/outline.hpp"
 #include "services/tracker/core/scan.hpp"
 
@@ -67,7 +68,8 @@ struct Picture {
   bool is_sight_known = false;
   std::vector<Track> tracks;  // by id
   std::vector<std::int32_t> land_segment_ids;
-  std::vector<Eigen::Vector2d> waterline_m;  // every tenth scan, else empty
+  std::vector<Eigen::Vector2d> waterline_m;   // every tenth scan, else empty
+  std::optional<LandApproach> land_approach;  // nullopt: the own boat hardly moves, its pose is not known, or no land is near its way
   /// Tracks that became part of another in this scan (from, to).
   std::vector<std::pair<std::int64_t, std::int64_t>> merged;
 };

@@ -4,6 +4,10 @@
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <utility>
+#include <vector>
+
+#include "common/core/angles.hpp"
 
 namespace lookout::tracker {
 namespace {
@@ -22,6 +26,32 @@ Danger Cpa(std::int64_t track_id, double probability, double tcpa_s = 25.0, doub
 
 Danger Zone(std::int64_t track_id, double distance_m = 8.0) {
   return {.cause = AlertCause::kGuardZone, .track_id = track_id, .probability = 1.0, .distance_m = distance_m, .is_inside = true};
+}
+
+DangerPlace At(double bearing_deg, double range_m) { return {range_m, WrapTo2Pi(DegToRad(bearing_deg))}; }
+
+// The nearest is what is told.
+Danger Of(std::int64_t track_id, std::vector<DangerPlace> places) {
+  const auto nearest = *std::ranges::min_element(places, {}, &DangerPlace::range_m);
+  auto danger = Zone(track_id, nearest.range_m);
+  danger.bearing_rad = nearest.bearing_rad;
+  danger.places = std::move(places);
+  return danger;
+}
+
+// A straight shore as the guard zone tells it: a place every 5 deg, as far as 10 m.
+std::vector<DangerPlace> Shore(double bearing_deg, double range_m) {
+  std::vector<DangerPlace> places;
+  for (double aside_deg = -85.0; aside_deg <= 85.0; aside_deg += 5.0) {
+    const double at_m = range_m / std::cos(DegToRad(aside_deg));
+    if (at_m <= 10.0) places.push_back(At(bearing_deg + aside_deg, at_m));
+  }
+  return places;
+}
+
+std::vector<DangerPlace> Both(std::vector<DangerPlace> one, const std::vector<DangerPlace>& other) {
+  one.insert(one.end(), other.begin(), other.end());
+  return one;
 }
 
 // Scans at 10 Hz.
@@ -332,6 +362,126 @@ TEST_F(AlertsTest, StandTheGravestFirst) {
   std::vector<std::int64_t> tracks;
   for (const auto& alert : alerts_.alerts()) tracks.push_back(alert.track_id);
   EXPECT_EQ(tracks, (std::vector<std::int64_t>{5, 3, 9, 2, 1}));
+}
+
+// A quay to port was acknowledged, and the boat drove at a wall ahead: 19 s in the zone, down to 2.7 m, and nothing rang.
+TEST_F(AlertsTest, OfAQuayThatWasAcknowledgedDoNotHideAWallAhead) {
+  Scans(3, {Of(kLandTrack, Shore(-90.0, 5.0))});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(600, {Of(kLandTrack, Shore(-90.0, 5.0))});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged) << "it stays beside the boat";
+  double ahead_m = 9.9;
+  Scan({Of(kLandTrack, Both(Shore(-90.0, 5.0), Shore(0.0, ahead_m -= 0.1)))});
+  Scan({Of(kLandTrack, Both(Shore(-90.0, 5.0), Shore(0.0, ahead_m -= 0.1)))});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged);
+  Scan({Of(kLandTrack, Both(Shore(-90.0, 5.0), Shore(0.0, ahead_m -= 0.1)))});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+  EXPECT_EQ(Only().id, 1);
+  EXPECT_EQ(Only().changed, time_);
+  EXPECT_NEAR(Only().distance_m, ahead_m, 1e-9) << "it tells of what rings, not of the quay, which is nearer";
+  EXPECT_NEAR(WrapToPi(Only().bearing_rad), 0.0, 1e-9);
+}
+
+TEST_F(AlertsTest, OfLandRingAgainWhenItComesNearerThanHalfOfWhatWasTold) {
+  Scans(3, {Of(kLandTrack, Shore(-90.0, 8.0))});
+  EXPECT_TRUE(Acknowledge(Only()));
+  for (double range_m = 8.0; range_m > 4.05; range_m -= 0.05) {
+    Scan({Of(kLandTrack, Shore(-90.0, range_m))});
+    ASSERT_EQ(Only().state, AlertState::kAcknowledged) << range_m;
+  }
+  Scans(3, {Of(kLandTrack, Shore(-90.0, 3.9))});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(100, {Of(kLandTrack, Shore(-90.0, 2.5))});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged) << "3.9 m were told";
+}
+
+// In the berth: 0.5 m of sway more or less are no news.
+TEST_F(AlertsTest, OfTheQuayBesideABerthStayAcknowledgedInTheSway) {
+  Scans(3, {Of(kLandTrack, Shore(90.0, 0.8))});
+  EXPECT_TRUE(Acknowledge(Only()));
+  for (int i = 0; i < 600; ++i) {
+    Scan({Of(kLandTrack, Shore(90.0 + 5.0 * std::sin(0.2 * i), 0.8 + 0.45 * std::sin(0.15 * i)))});
+    ASSERT_EQ(Only().state, AlertState::kAcknowledged) << i;
+  }
+}
+
+TEST_F(AlertsTest, OfLandOnTheOtherSideRing) {
+  Scans(3, {Of(kLandTrack, Shore(-90.0, 6.0))});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(3, {Of(kLandTrack, Shore(90.0, 6.0))});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
+// The land of a bearing went, other land came there much later: that was never told.
+TEST_F(AlertsTest, OfLandThatComesToABearingWhereTheOldHasLongGoneRing) {
+  Scans(3, {Of(kLandTrack, Both(Shore(0.0, 9.0), Shore(180.0, 6.0)))});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(20, {Of(kLandTrack, Shore(180.0, 6.0))});
+  Scans(5, {Of(kLandTrack, Both(Shore(0.0, 9.0), Shore(180.0, 6.0)))});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged) << "2 s without it: the same land";
+  Scans(40, {Of(kLandTrack, Shore(180.0, 6.0))});
+  Scans(3, {Of(kLandTrack, Both(Shore(0.0, 9.0), Shore(180.0, 6.0)))});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
+// On the map a pier head is the same one while the boat goes past it.
+TEST_F(AlertsTest, OfAPierHeadThatTheBoatPassesStayAcknowledged) {
+  const auto pier = [](double ahead_m) {
+    DangerPlace place{std::hypot(ahead_m, 6.0), WrapTo2Pi(std::atan2(6.0, ahead_m))};
+    place.position_map_m = Eigen::Vector2d(106.0, 200.0);
+    return Of(kLandTrack, {place});
+  };
+  Scans(3, {pier(7.5)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  for (double ahead_m = 7.5; ahead_m > -7.5; ahead_m -= 0.1) {
+    Scan({pier(ahead_m)});
+    ASSERT_EQ(Only().state, AlertState::kAcknowledged) << ahead_m;
+  }
+}
+
+// The place is that of the quay alongside; the boat has turned its bow to it.
+TEST_F(AlertsTest, OfLandThatTheBoatTurnsToRing) {
+  const auto quay = [](double bearing_deg) {
+    auto place = At(bearing_deg, 6.0);
+    place.position_map_m = Eigen::Vector2d(106.0, 200.0);
+    return Of(kLandTrack, {place});
+  };
+  Scans(3, {quay(-90.0)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  for (double bearing_deg = -90.0; bearing_deg < -31.0; bearing_deg += 2.0) {
+    Scan({quay(bearing_deg)});
+    ASSERT_EQ(Only().state, AlertState::kAcknowledged) << bearing_deg;
+  }
+  Scans(3, {quay(-20.0)});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
+// Without position or heading nothing has a track. A buoy was acknowledged, then a motor boat crossed 8 m ahead for 30 scans: silence.
+TEST_F(AlertsTest, OfABuoyWithoutATrackDoNotHideABoatThatCrosses) {
+  Scans(3, {Of(kUnnamed, {At(40.0, 6.0)})});
+  EXPECT_TRUE(Acknowledge(Only()));
+  for (int i = 0; i < 300; ++i) {
+    Scan({Of(kUnnamed, {At(40.0 + 10.0 * std::sin(0.1 * i), 6.0)})});
+    ASSERT_EQ(Only().state, AlertState::kAcknowledged) << "it is followed";
+  }
+  for (double bearing_deg = -59.0; bearing_deg < 59.0; bearing_deg += 4.0) Scan({Of(kUnnamed, {At(40.0, 6.0), At(bearing_deg, 8.0)})});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+  EXPECT_NEAR(Only().distance_m, 8.0, 1e-9) << "it tells of the boat";
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(5, {Of(kUnnamed, {At(40.0, 6.0), At(-30.0, 9.0)})});
+  EXPECT_EQ(Only().state, AlertState::kActive) << "the next one";
+}
+
+TEST_F(AlertsTest, OfAThingWithoutATrackRingAgainWhenItComesMuchNearer) {
+  Scans(3, {Of(kUnnamed, {At(0.0, 9.0)})});
+  EXPECT_TRUE(Acknowledge(Only()));
+  for (double range_m = 9.0; range_m > 4.6; range_m -= 0.2) {
+    Scan({Of(kUnnamed, {At(0.0, range_m)})});
+    ASSERT_EQ(Only().state, AlertState::kAcknowledged) << range_m;
+  }
+  Scans(3, {Of(kUnnamed, {At(0.0, 4.3)})});
+  EXPECT_EQ(Only().state, AlertState::kActive);
 }
 
 }  // namespace

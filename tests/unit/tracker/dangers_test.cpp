@@ -1,5 +1,6 @@
 #include "services/tracker/core/dangers.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -94,6 +95,39 @@ TEST(GuardZoneDangers, OfLandAreOne) {
   ASSERT_EQ(dangers.size(), 1U);
   EXPECT_EQ(dangers[0].track_id, kLandTrack);
   EXPECT_NEAR(dangers[0].distance_m, 7.0, 1e-9) << "between its corners; what is astern is not in the sector";
+}
+
+// Of land an acknowledgement covers places: the nearest of each bearing, on the map where the own pose is known.
+TEST(GuardZoneDangers, OfLandTellTheNearestOfEachBearing) {
+  const std::vector<VesselOutline> outlines{Land(7, {{6.0, -20.0}, {6.0, 20.0}}), Land(8, {{3.0, 5.0}, {3.0, 20.0}})};
+  const auto dangers = GuardZoneDangers(kZone, {}, outlines, Own(90.0));
+  ASSERT_EQ(dangers.size(), 1U);
+  const auto& places = dangers[0].places;
+  // As far as 53 deg to both sides the wall is within 10 m; from 60 deg to port on the sector ends.
+  ASSERT_GT(places.size(), 20U);
+  double least_m = 100.0;
+  for (const auto& place : places) {
+    const double bearing_rad = WrapToPi(place.bearing_rad);
+    EXPECT_LE(std::fabs(bearing_rad), DegToRad(60.0));
+    EXPECT_LE(place.range_m, 10.0);
+    const bool is_wall = std::fabs(place.range_m * std::cos(bearing_rad) - 6.0) < 1e-9;
+    const bool is_shore = std::fabs(place.range_m * std::cos(bearing_rad) - 3.0) < 1e-9 && bearing_rad < DegToRad(-55.0);
+    EXPECT_TRUE(is_wall || is_shore) << bearing_rad;
+    // The bow points east: ahead of the boat at (100, 50).
+    EXPECT_NEAR(place.position_map_m.x(), 100.0 + place.range_m * std::cos(bearing_rad), 1e-6);
+    EXPECT_NEAR(place.position_map_m.y(), 50.0 - place.range_m * std::sin(bearing_rad), 1e-6);
+    least_m = std::min(least_m, place.range_m);
+  }
+  EXPECT_NEAR(least_m, dangers[0].distance_m, 1e-9);
+}
+
+TEST(GuardZoneDangers, OfWhatHasNoTrackTellEachThing) {
+  const auto dangers = GuardZoneDangers(kZone, {}, std::vector{Ahead(4, 8.0), Ahead(5, 9.5), Ahead(6, 12.0)}, std::nullopt);
+  ASSERT_EQ(dangers.size(), 1U);
+  ASSERT_EQ(dangers[0].places.size(), 2U);
+  EXPECT_NEAR(dangers[0].places[0].range_m, 8.0, 1e-9);
+  EXPECT_NEAR(dangers[0].places[1].range_m, 9.5, 1e-9);
+  EXPECT_TRUE(dangers[0].places[0].position_map_m.hasNaN());
 }
 
 // What is sure counts from the first scan that shows it, whatever the tracker makes of it.

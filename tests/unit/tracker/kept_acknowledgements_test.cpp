@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "common/core/angles.hpp"
+
 namespace lookout::tracker::kept {
 namespace {
 
@@ -26,6 +28,12 @@ class KeptAcknowledgementsTest : public ::testing::Test {
   // Of the guard zone, raised now.
   Alert Of(std::int64_t track_id, AlertState state, AlertLevel level = AlertLevel::kWarning) const {
     return {.id = 100 + track_id, .level = level, .state = state, .track_id = track_id, .raised = time_, .changed = time_};
+  }
+  Alert OfLand(AlertState state, double distance_m = 8.0, double bearing_deg = 0.0) const {
+    auto alert = Of(kLandTrack, state);
+    alert.distance_m = distance_m;
+    alert.bearing_rad = WrapTo2Pi(DegToRad(bearing_deg));
+    return alert;
   }
   // Before tracks are forgotten, all of which had an alert that was acknowledged.
   void Keep(const std::vector<Track>& tracks, const Datum& datum = kHere, AlertLevel level = AlertLevel::kWarning) {
@@ -81,15 +89,28 @@ TEST_F(KeptAcknowledgementsTest, OfAnotherMapAcknowledgeNothingThere) {
 }
 
 TEST_F(KeptAcknowledgementsTest, OfLandCountForLandAlone) {
-  kept_.Keep(time_, kHere, std::vector{Of(kLandTrack, AlertState::kAcknowledged), Of(kUnnamed, AlertState::kAcknowledged)}, {});
+  kept_.Keep(time_, kHere, std::vector{OfLand(AlertState::kAcknowledged), Of(kUnnamed, AlertState::kAcknowledged)}, {});
   time_ += seconds(1);
-  kept_.Keep(time_, kHere, std::vector{Of(kLandTrack, AlertState::kAcknowledged)}, {});
+  kept_.Keep(time_, kHere, std::vector{OfLand(AlertState::kAcknowledged)}, {});
   time_ += seconds(1);
   EXPECT_EQ(Take({TrackAt(8, 0.0)}), 0U);
-  const std::vector land{Of(kLandTrack, AlertState::kActive)};
+  const std::vector land{OfLand(AlertState::kActive)};
   EXPECT_TRUE(kept_.Take(time_, kThere, land, {}).empty());
   EXPECT_EQ(kept_.Take(time_, kHere, land, {}).size(), 1U);
   EXPECT_TRUE(kept_.Take(time_, kHere, land, {}).empty()) << "the second replaced the first";
+}
+
+// The quay to port was acknowledged, the process began anew before a wall ahead: that nobody had been told of.
+TEST_F(KeptAcknowledgementsTest, OfLandAreOfItsSideAndDistance) {
+  kept_.Keep(time_, kHere, std::vector{OfLand(AlertState::kAcknowledged, 6.0, -90.0)}, {});
+  time_ += seconds(1);
+  const auto is_taken = [this](double distance_m, double bearing_deg) {
+    return !kept_.Take(time_, kHere, std::vector{OfLand(AlertState::kActive, distance_m, bearing_deg)}, {}).empty();
+  };
+  EXPECT_FALSE(is_taken(6.0, 0.0));
+  EXPECT_FALSE(is_taken(2.9, -90.0));
+  EXPECT_FALSE(is_taken(kNan, -90.0));
+  EXPECT_TRUE(is_taken(5.0, -70.0));
 }
 
 TEST_F(KeptAcknowledgementsTest, OfTheSameThingReplaceTheOlder) {

@@ -368,6 +368,47 @@ TEST(TrackerServiceWithAGuardZone, WarnsWithoutPose) {
   EXPECT_EQ(alerts.back().alerts[0].state, alert_t::STATE_RECTIFIED) << "nobody took note";
 }
 
+// Without position or heading all that is in the zone shares one alert: a buoy was acknowledged, a motor boat crossed 8 m ahead, and nothing rang.
+TEST(TrackerServiceWithAGuardZone, RingsWithoutPoseForABoatBesideABuoyThatWasAcknowledged) {
+  auto params = test::MakeParams();
+  params.guard_zone = {.range_m = 10.0, .bearing = {DegToRad(300.0), DegToRad(120.0)}};
+  bus::MemoryBus bus;
+  Service service(bus, params);
+  std::vector<alerts_t> alerts;
+  bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) { alerts.push_back(message); });
+  const auto send = [&](int i, const std::vector<std::pair<double, double>>& places_m) {
+    service.AdvanceTo(Host(milliseconds(1000 + 100 * i)));
+    bus::Publish(bus, bus::kLidarScan, test::MakeScan(test::kScanUs * i, i));
+    bus::Publish(bus, bus::kSegments, test::MakeSegments(test::kScanUs * i, i));
+    std::vector<obstacle_t> obstacles;
+    for (const auto& place_m : places_m) {
+      const auto id = static_cast<std::int32_t>(obstacles.size()) + 1;
+      obstacles.push_back(test::MakeObstacle(id, test::kStartUs + test::kScanUs * i, place_m));
+    }
+    bus::Publish(bus, bus::kObstacles, test::InTheVesselFrame(test::MakeObstacles(test::kScanUs * i, i, obstacles)));
+    while (bus.HandleOnce()) {
+    }
+    service.AdvanceTo(Host(milliseconds(1010 + 100 * i)));
+    while (bus.HandleOnce()) {
+    }
+  };
+  const std::pair<double, double> buoy_m{5.0, -4.0};
+  service.AdvanceTo(Host(milliseconds(0)));
+  for (int i = 0; i < 10; ++i) send(i, {buoy_m});
+  ASSERT_EQ(alerts.back().num_alerts, 1);
+  alert_ack_t acknowledgement{};
+  acknowledgement.source = "page";
+  acknowledgement.alert_id = alerts.back().alerts[0].id;
+  acknowledgement.alert_raised_utime_us = alerts.back().alerts[0].raised_utime_us;
+  bus::Publish(bus, bus::kAlertAck, acknowledgement);
+  for (int i = 10; i < 40; ++i) send(i, {buoy_m});
+  ASSERT_EQ(alerts.back().alerts.at(0).state, alert_t::STATE_ACKNOWLEDGED);
+  for (int i = 40; i < 43; ++i) send(i, {buoy_m, {8.0, 4.0 - 0.5 * (i - 40)}});
+  ASSERT_EQ(alerts.back().num_alerts, 1);
+  EXPECT_EQ(alerts.back().alerts[0].state, alert_t::STATE_ACTIVE) << "in the third scan that shows the boat";
+  EXPECT_EQ(alerts.back().alerts[0].text, "obstacle in the guard zone: 8.5 m, 21 deg to port") << "it tells of the boat, not of the buoy";
+}
+
 TEST_F(TrackerService, DropsAcknowledgementsOfNoAlertAndOfAnotherRun) {
   SendPoses(0, 1'000'000);
   SendScan(0, 0);
