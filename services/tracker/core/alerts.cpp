@@ -11,6 +11,9 @@ namespace lookout::tracker {
 
 namespace {
 
+// A shore has 72. Of more things the nearest count: in a downpour they are compared one by one.
+constexpr std::size_t kMostPlaces = 200;
+
 void SetState(Alert& alert, AlertState state, Utime time) {
   if (alert.state != state) alert.changed = time;
   alert.state = state;
@@ -118,9 +121,13 @@ void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, con
 // Precondition: the alert holds.
 void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const {
   entry.places = danger.places;
+  if (entry.places.size() > kMostPlaces) {
+    std::ranges::stable_sort(entry.places, {}, &DangerPlace::range_m);
+    entry.places.resize(kMostPlaces);
+  }
   if (!entry.told) return;
   auto& alert = *entry.alert;
-  const auto untold = entry.told->Untold(time, danger.places);
+  const auto untold = entry.told->Untold(time, entry.places);
   entry.untold.Update(time, is_whole, untold.has_value(), !untold, params_.clear_s);
   if (alert.state == AlertState::kAcknowledged && entry.untold.is_on) {
     SetState(alert, AlertState::kActive, time);

@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kOver{1000};
 constexpr std::chrono::milliseconds kLeastOver{800};
+// The end of a turn shows in the heading first.
+constexpr std::chrono::milliseconds kLately{400};
 // Over a second headings of a filter err by 0.3 deg; the wander of a helmsman who holds a course is below 2 deg/s.
 constexpr double kTurnsRadps = DegToRad(3.0);
 constexpr double kLeastSpeedMps = 0.5;
@@ -75,12 +77,14 @@ double TurnWatch::Update(Utime time, double heading_rad, const Eigen::Vector2d& 
   const auto& before = looks_.front();
   const auto& now = looks_.back();
   if (now.time - before.time < kLeastOver || std::isnan(before.course_rad) || std::isnan(now.course_rad)) return 0.0;
-  const double over_s = ToSeconds(now.time - before.time);
-  const double of_heading_radps = WrapToPi(now.heading_rad - before.heading_rad) / over_s;
-  const double of_course_radps = WrapToPi(now.course_rad - before.course_rad) / over_s;
-  if (of_heading_radps * of_course_radps <= 0.0) return 0.0;
-  const double rate_radps = std::fabs(of_heading_radps) < std::fabs(of_course_radps) ? of_heading_radps : of_course_radps;
-  return std::fabs(rate_radps) < kTurnsRadps ? 0.0 : rate_radps;
+  const auto lately = std::ranges::find_if(looks_, [&now](const Look& look) { return now.time - look.time <= kLately; });
+  const auto rate = [&now](const Look& since, double Look::*angle_rad) {
+    return now.time > since.time ? WrapToPi(now.*angle_rad - since.*angle_rad) / ToSeconds(now.time - since.time) : 0.0;
+  };
+  const std::array rates_radps{rate(before, &Look::heading_rad), rate(before, &Look::course_rad), rate(*lately, &Look::heading_rad)};
+  const auto least = *std::ranges::min_element(rates_radps, {}, [](double radps) { return std::fabs(radps); });
+  const bool is_one_way = std::ranges::all_of(rates_radps, [least](double radps) { return radps * least > 0.0; });
+  return is_one_way && std::fabs(least) >= kTurnsRadps ? least : 0.0;
 }
 
 Moving AfterTurn(const Moving& moving, double time_s) {

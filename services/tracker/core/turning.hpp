@@ -13,7 +13,7 @@ namespace lookout::tracker {
 class TurnWatch {
  public:
   /// Scan by scan. Over the last second, and only where heading and course over ground turn the same way: a boat that yaws in waves goes straight on,
-  /// and one that turns on the spot goes nowhere. Of both rates the lesser counts.
+  /// and one that turns on the spot goes nowhere. The end of a turn shows in the heading of the last 0.4 s. Of these rates the least counts.
   /// A gap of more than 1 s, or time that goes back, begins anew.
   /// @param heading_rad   from north, clockwise
   /// @param velocity_mps  over ground, east and north; NaN: not known

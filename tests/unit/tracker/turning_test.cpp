@@ -119,6 +119,14 @@ TEST_F(TurnWatchTest, KnowsATurnAfterASecondAlsoOverNorth) {
   EXPECT_NEAR(rate_degps, -20.0, 0.5);
 }
 
+TEST_F(TurnWatchTest, KnowsTheEndOfATurnWithinHalfASecond) {
+  for (int i = 0; i < 20; ++i) Scan(2.0 * i, 2.0 * i);
+  EXPECT_GT(Scan(40.0, 40.0), 10.0);
+  double rate_degps = 0.0;
+  for (int i = 0; i < 4; ++i) rate_degps = Scan(40.0, 40.0);
+  EXPECT_EQ(rate_degps, 0.0);
+}
+
 TEST_F(TurnWatchTest, TakesYawInWavesForNoTurn) {
   for (int i = 0; i < 200; ++i) EXPECT_EQ(Scan(90.0 + 6.0 * std::sin(0.15 * i), 90.0 + 0.5 * std::sin(0.9 * i)), 0.0);
 }
