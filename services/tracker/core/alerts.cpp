@@ -12,7 +12,7 @@ namespace lookout::tracker {
 namespace {
 
 // A shore has 72. Of more things the nearest count: in a downpour they are compared one by one.
-constexpr std::size_t kMostPlaces = 200;
+constexpr std::size_t kMostToldPlaces = 200;
 
 void SetState(Alert& alert, AlertState state, Utime time) {
   if (alert.state != state) alert.changed = time;
@@ -121,9 +121,9 @@ void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, con
 // Precondition: the alert holds.
 void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const {
   entry.places = danger.places;
-  if (entry.places.size() > kMostPlaces) {
+  if (entry.places.size() > kMostToldPlaces) {
     std::ranges::stable_sort(entry.places, {}, &DangerPlace::range_m);
-    entry.places.resize(kMostPlaces);
+    entry.places.resize(kMostToldPlaces);
   }
   if (!entry.told) return;
   auto& alert = *entry.alert;
