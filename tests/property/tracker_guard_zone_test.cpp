@@ -16,9 +16,11 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/bus/memory_bus.hpp"
 #include "common/config/boat.hpp"
 #include "services/tracker/core/dangers.hpp"
 #include "services/tracker/params.hpp"
+#include "services/tracker/service.hpp"
 #include "services/tracker/wire.hpp"
 #include "tests/support/files.hpp"
 #include "tools/replay/chain.hpp"
@@ -163,6 +165,67 @@ TEST(GuardZoneOfTheChain, IsNeverSilentWhereThreeOfFiveScansShowAnything) {
     EXPECT_GT(run.num_three_of_five, 20);
     EXPECT_EQ(run.num_silent, 0);
   }
+}
+
+// Along the shore of a round cove, which lies 11 m to port at first and ahead later.
+const std::string kCove = R"(description: "A cove: the shore alongside goes round to ahead"
+own_boat { east_m: -9.5 north_m: -3 heading_deg: 0 speed_mps: 0.8 }
+lasts_s: 21
+object { kind: SHORE name: "shore" land { mean_radius_m: 20 roughness_m: 0.3 from_bearing_deg: 225 width_deg: 180 } }
+)";
+
+// A quay to port was acknowledged, and the boat drove at the wall ahead: 19 s in the zone, down to 2.7 m, and nothing rang.
+TEST(GuardZoneOfTheChain, RingsAheadOfAShoreThatWasAcknowledgedAlongside) {
+  auto params = tracker::LoadParams(kDemo);
+  params.guard_zone = {.range_m = 14.0, .bearing = {}};
+  bus::MemoryBus bus;
+  tracker::Service service(bus, params);
+  std::int64_t num_acknowledged = 0;
+  std::int64_t num_near = 0;
+  std::int64_t num_near_silent = 0;
+  double least_m = 100.0;
+  bus::Subscribe<alerts_t>(bus, bus::kAlerts, [&](const alerts_t& message) {
+    // All that is told in the first 5 s is acknowledged.
+    const bool is_early = message.utime_us < kStart.time_since_epoch().count() + 5'000'000;
+    bool is_ringing = false;
+    double nearest_m = 100.0;
+    for (const auto& alert : message.alerts) {
+      if (alert.cause != alert_t::CAUSE_GUARD_ZONE || alert.state > alert_t::STATE_ACKNOWLEDGED) continue;
+      nearest_m = std::min(nearest_m, static_cast<double>(alert.distance_m));
+      is_ringing = is_ringing || alert.state == alert_t::STATE_ACTIVE;
+      if (!is_early || alert.state != alert_t::STATE_ACTIVE) continue;
+      alert_ack_t acknowledgement{};
+      acknowledgement.source = "page";
+      acknowledgement.alert_id = alert.id;
+      acknowledgement.alert_raised_utime_us = alert.raised_utime_us;
+      bus::Publish(bus, bus::kAlertAck, acknowledgement);
+      ++num_acknowledged;
+    }
+    least_m = std::min(least_m, nearest_m);
+    if (nearest_m > 5.4) return;  // less than half of what was told
+    ++num_near;
+    num_near_silent += is_ringing ? 0 : 1;
+  });
+  sim::SimulationParams simulated;
+  simulated.start = kStart;
+  simulated.duration = std::chrono::seconds(21);
+  simulated.seed = 931;
+  const auto scene = sim::ParseScene(kCove, "cove.txtpb", 931);
+  const auto boat = config::LoadBoat(kDemo);
+  sim::Simulation simulation(scene, boat, simulated, nullptr);
+  replay::Chain chain(kDemo, {}, [&](Utime, std::string_view channel, Bytes bytes) {
+    for (const auto* input : {&bus::kObstacles, &bus::kSegments, &bus::kLidarScan, &bus::kPose}) {
+      if (channel == input->name) bus.Publish(*input, {bytes.begin(), bytes.end()});
+    }
+    while (bus.HandleOnce()) {
+    }
+  });
+  while (const auto datagram = simulation.Next()) chain.OnDatagram({datagram->time, datagram->port, datagram->payload});
+  EXPECT_GT(num_acknowledged, 0);
+  EXPECT_LT(least_m, 5.4) << "else this tries nothing";
+  EXPECT_GT(num_near, 5);
+  EXPECT_EQ(num_near_silent, 0);
+  std::printf("cove: %ld acknowledged, nearest %.1f m, of %ld scans below 5.4 m %ld silent\n", num_acknowledged, least_m, num_near, num_near_silent);
 }
 
 }  // namespace
