@@ -25,6 +25,11 @@ export function sourceAt(line: readonly Source[], utime_us: number): Source | un
   return line.findLast((source) => source.begin_utime_us <= utime_us) ?? line[0];
 }
 
+/** Where the seconds of a log are counted from; NaN live, where there is no begin. */
+export function beginOf({ hello, sources }: Pick<State, "hello" | "sources">): number {
+  return hello?.mode === "log" ? lineOf(sources)[0]?.begin_utime_us ?? NaN : NaN;
+}
+
 /** How long before a time of the log the scan of a picture was received, s: in a gap of the log it is the last one before. 0 where it has none. */
 export function ageInLog(picture: Pick<Picture, "times_us">, utime_us: number): number {
   const received_us = picture.times_us.get("LIDAR_SCAN") ?? picture.times_us.get("TRACKS");
@@ -66,7 +71,7 @@ export class Film {
     requestAnimationFrame(draw);
   }
 
-  /** To be called on each `hello`: a log begins with its first moment; a moment that was shown before is fetched again. */
+  /** To be called on each `hello`: a log opens where there is something to see; a moment that was shown before is fetched again. */
   begin(): void {
     this.isAsking = false;
     ++this.generation;
@@ -76,7 +81,7 @@ export class Film {
     else if (hello?.mode === "log") {
       // Before its index is built a recording has no times; they come with `sources`.
       const first = lineOf(this.state.sources)[0];
-      if (first !== undefined && first.num_scans > 0 && this.wanted === null) this.seek(first.begin_utime_us);
+      if (first !== undefined && first.num_scans > 0 && this.wanted === null) this.seek(first.opens_utime_us ?? first.begin_utime_us);
     }
   }
 
