@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { Health, Pose, Track } from "../src/messages/generated.js";
-import { channelsOf, gravityOfProcess, Roll } from "../src/views/traffic.js";
+import { channelsOf, faultOfPage, gravityOfProcess, Roll } from "../src/views/traffic.js";
 import { relative, restsOn, situation } from "../src/views/track_words.js";
 import { isOnlyCourse, lacking } from "../src/picture.js";
 import { gravityOfPose } from "../src/views/sensors.js";
@@ -74,4 +74,13 @@ test("a heading that is only the course over ground is told as such, and is a ca
   assert.equal(gravityOfPose(pose(Pose.HEADING_NONE, Pose.STATUS_UNKNOWN)), "warning");
   assert.deepEqual([Pose.STATUS_OK, Pose.STATUS_COASTING, Pose.STATUS_NO_HEADING, Pose.STATUS_NO_POSITION, Pose.STATUS_UNKNOWN].map((status) => lacking(pose(0, status))), [null, null, "heading", "position", "position"]);
   assert.equal(lacking(null), "position");
+});
+
+// The page stopped keeping the last minutes, and only its own HEALTH, deep in a list, said so.
+test("why the page keeps no last minutes is told in the words of its HEALTH", () => {
+  const health = (process: string, state: number, reason: string) => ({ process, state, reason });
+  const reason = "no look back: /data/spool: 1.0 GB of the disk are free, and 2.0 GB are reserved for the recorder";
+  assert.equal(faultOfPage([health("tracker", Health.STATE_DEGRADED, "no POSE"), health("page", Health.STATE_DEGRADED, reason)]), reason);
+  assert.equal(faultOfPage([health("tracker", Health.STATE_FAILED, "no POSE"), health("page", Health.STATE_OK, "")]), "");
+  assert.equal(faultOfPage([]), "");
 });

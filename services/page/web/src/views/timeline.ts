@@ -7,6 +7,7 @@ import { type JumpKind, kJumpKinds, moved, nextEvent, type Span, Strips, wholeSp
 import { type Sign, sign } from "./signs.js";
 import { describe, drawStrip } from "./timeline_canvas.js";
 import { parseTime } from "./time_text.js";
+import { faultOfPage } from "./traffic.js";
 
 const kFollows_share = 0.9;  // a playing moment beyond this share of the span moves the span
 const kTap_px = 4;
@@ -138,8 +139,7 @@ export class Timeline {
   }
   // Why the last minutes are not kept (no room on the disk), or what else the page's own process lacks.
   private takeFault(): void {
-    const health = this.state.hello?.mode === "live" ? this.state.picture?.health.find(({ process }) => process === "page") : undefined;
-    const fault = health === undefined || health.reason === "" ? "" : texts.film.fault(health.reason);
+    const reason = this.state.hello?.mode === "live" ? faultOfPage(this.state.picture?.health ?? []) : "", fault = reason === "" ? "" : texts.film.fault(reason);
     if (fault === this.fault) return;
     this.fault = fault;
     this.update();
