@@ -49,11 +49,12 @@ test("a log opens at its first moment, steps by scans, jumps to a time and plays
   assert.ok(Date.now() - began < 2000, `seeking took ${Date.now() - began} ms`);
   assert.ok(Math.abs(seconds(await clockOf(page)) - first - 12) < 0.4, await clockOf(page));
   await page.selectOption(".film_rate", "5");
+  const started = Date.now();
   await page.keyboard.press(" ");
   await wait(2000);
   await page.keyboard.press(" ");
-  const played = seconds(await clockOf(page)) - first - 12;
-  assert.ok(played > 5 && played < 13, `played ${played} s of the log in 2 s at 5 times`);
+  const took_s = (Date.now() - started) / 1000, played = seconds(await clockOf(page)) - first - 12;
+  assert.ok(played > 5 && played < 5 * took_s + 3, `played ${played} s of the log in ${took_s} s at 5 times`);
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
@@ -179,6 +180,25 @@ test("of a log nobody asks whether the tracker runs: no position at this time", 
     await page.context().close();
     await stop(other);
   }
+});
+
+// A log opened on its first scan, which has neither POSE nor tracks.
+test("a log opens where its server says that there is something to see", async () => {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
+  const page = await context.newPage();
+  await page.routeWebSocket(/\/socket$/, (socket) => {
+    const server = socket.connectToServer();
+    server.onMessage((message) => {
+      if (typeof message !== "string" || !/"sources":/.test(message)) { socket.send(message); return; }
+      const told = JSON.parse(message);
+      for (const source of told.sources) source.opens_utime_us = source.begin_utime_us + 4_000_000;
+      socket.send(JSON.stringify(told));
+    });
+  });
+  await page.goto(film.url);
+  await page.waitForFunction(() => / \+4\.0 s$/.test(document.querySelector(".film_clock")?.textContent ?? ""), null, { timeout: 10_000 });
+  await page.waitForFunction(() => /HDG\s*\d{3}°/.test(document.querySelector(".head .own").innerText));
+  await context.close();
 });
 
 // An alert of the tracker, put into ALERTS on their way to the browser: lcmtypes/alert_t.lcm.

@@ -48,6 +48,11 @@ test("an alert that the other lacks matters, one that is over does not", () => {
   assert.deepEqual(differing(picture(ten, [track(1)], [alert(1, { state: Alert.STATE_CLEARED })]), picture(ten, [track(1)])), []);
   assert.equal(differing(picture(ten, [track(1)], [alert(1)]), picture(ten, [track(1)], [alert(1, { state: Alert.STATE_CLEARED })])).length, 1);
 });
+test("an alert of a tentative track is the same alert as that of a confirmed one", () => {
+  const tentative = track(1, { id: 9, status: Track.STATUS_TENTATIVE });
+  assert.deepEqual(differing(picture(ten, [track(1)], [alert(1)]), picture(ten, [tentative], [alert(9)])), []);
+  assert.deepEqual(differing(picture(ten, [track(1)]), picture(ten, [tentative])), ["only 1 –"]);
+});
 test("a scan that one lacks is a difference", () => { assert.deepEqual(differing(picture(ten), picture([1])), ["scan"]); });
 
 test("a difference that lasts is met once, one that comes back after two seconds again", () => {

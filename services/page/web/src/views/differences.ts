@@ -43,16 +43,21 @@ function pairSegments(first: Int16Array, second: Int16Array): Map<number, number
   return pairs;
 }
 
-function isTold(track: Track): boolean { return track.status === Track.STATUS_CONFIRMED || track.status === Track.STATUS_COASTING; }
+/** Tracks that a helmsman is told of: confirmed, or with an alert. */
+function toldOf({ tracks, alerts }: Picture): Track[] {
+  const raised = new Set(alerts.filter(isAlertTold).map((alert) => alert.track_id));
+  return tracks.filter((track) => track.status === Track.STATUS_CONFIRMED || track.status === Track.STATUS_COASTING || raised.has(track.id));
+}
+function isAlertTold(alert: Alert): boolean { return alert.state !== Alert.STATE_CLEARED; }
 
 function pairTracks(first: Picture, second: Picture, segments: ReadonlyMap<number, number>): Map<Track, Track> {
   const pairs = new Map<Track, Track>(), taken = new Set<number>();
+  const told = toldOf(first), others = new Set(toldOf(second));
   const take = (a: Track, b: Track | undefined) => {
-    if (b === undefined || taken.has(b.id) || !isTold(b)) return;
+    if (b === undefined || taken.has(b.id) || !others.has(b)) return;
     pairs.set(a, b);
     taken.add(b.id);
   };
-  const told = first.tracks.filter(isTold);
   for (const track of told) {
     for (const id of track.segment_ids) {
       const other = segments.get(id);
@@ -63,7 +68,7 @@ function pairTracks(first: Picture, second: Picture, segments: ReadonlyMap<numbe
   const near: { a: Track; b: Track; distance_m: number }[] = [];
   for (const a of told) {
     if (pairs.has(a)) continue;
-    for (const b of second.tracks) {
+    for (const b of others) {
       const distance_m = Math.hypot(a.position_map_m[0]! - b.position_map_m[0]!, a.position_map_m[1]! - b.position_map_m[1]!);
       if (distance_m < kSameTrack_m) near.push({ a, b, distance_m });
     }
@@ -77,7 +82,6 @@ function apart_m(one: Track, other: Track): number {
   const [east, north] = offset(one.latitude_deg, one.longitude_deg, other.latitude_deg, other.longitude_deg);
   return Math.hypot(east, north);
 }
-function isAlertTold(alert: Alert): boolean { return alert.state !== Alert.STATE_CLEARED; }
 
 /** What two pictures of the same scan say of its returns, tracks and alerts. */
 export function compare(first: Picture, second: Picture, moved_m: number): Differences {
@@ -99,8 +103,7 @@ export function compareLabels(first: Picture, second: Picture, a: Int16Array | n
   const paired = new Set(segments.values());
   const tracks: TrackDifference[] = [];
   const pairs = pairTracks(first, second, segments), seconds = new Set([...pairs.values()].map((track) => track.id));
-  for (const track of first.tracks) {
-    if (!isTold(track)) continue;
+  for (const track of toldOf(first)) {
     const same = pairs.get(track);
     if (same === undefined) tracks.push({ first: track, second: null, what: "only" });
     else if (same.kind !== track.kind) tracks.push({ first: track, second: same, what: "kind" });
@@ -108,7 +111,7 @@ export function compareLabels(first: Picture, second: Picture, a: Int16Array | n
     else if (Math.abs(same.speed_mps - track.speed_mps) >= kOtherSpeed_mps) tracks.push({ first: track, second: same, what: "speed" });
     else if (Math.abs(same.cpa_m - track.cpa_m) >= kOtherApproach_m && Math.max(same.tcpa_s, track.tcpa_s) > 0) tracks.push({ first: track, second: same, what: "approach" });
   }
-  for (const track of second.tracks) if (isTold(track) && !seconds.has(track.id)) tracks.push({ first: null, second: track, what: "only" });
+  for (const track of toldOf(second)) if (!seconds.has(track.id)) tracks.push({ first: null, second: track, what: "only" });
   // An alert is the same when its cause is, and its track goes together with the other's.
   const partner = new Map([...pairs].map(([one, two]) => [one.id, two.id]));
   const has = (picture: Picture, cause: number, track: number) => picture.alerts.some((alert) => alert.cause === cause && alert.track_id === track && isAlertTold(alert));
