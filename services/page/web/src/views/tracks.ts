@@ -135,6 +135,7 @@ export class Tracks implements View {
     const hasTracks = picture?.times_us.has("TRACKS") === true, lacks = lacking(picture?.pose ?? null);
     if (hasTracks) return lacks === null ? words.none : words.lacks[lacks];
     if (!isRecorded) return words.notYet;
+    if (picture === null) return "";
     const source = sources.find((candidate) => showing.kind === "recorded" && candidate.id === showing.source);
     if (source?.has_tracks === false) return source.has_pose === false ? words.logWithoutPosition : words.logWithoutTracks;
     return lacks === null ? words.noneAtThisTime : words.lacks[lacks];
