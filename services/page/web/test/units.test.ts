@@ -1,7 +1,8 @@
 // Numbers and times as they stand in the page.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { beginOf } from "../src/film.js";
+import { beginOf, whyNothing } from "../src/film.js";
+import { texts } from "../src/texts/index.js";
 import { duration, sinceBegin, timeText } from "../src/units.js";
 
 const begin = Date.UTC(2026, 6, 14, 14, 3, 20) * 1000;
@@ -23,6 +24,15 @@ test("a log counts from its first recording, what is live from nowhere", () => {
   assert.equal(beginOf({ hello: { mode: "log" } as never, sources }), 5);
   assert.ok(Number.isNaN(beginOf({ hello: { mode: "live" } as never, sources })));
   assert.ok(Number.isNaN(beginOf({ hello: null, sources: [] })));
+});
+// A log that was still being read asked whether the lidar's process runs.
+test("of a log without a picture nobody asks whether processes run", () => {
+  const log = { mode: "log" } as never, source = (is_indexed: boolean, num_scans: number) => ({ is_indexed, num_scans }) as never;
+  assert.equal(whyNothing({ hello: log, sources: [source(false, 0)] }), texts.reading);
+  assert.equal(whyNothing({ hello: log, sources: [source(true, 0)] }), texts.noScans);
+  assert.equal(whyNothing({ hello: log, sources: [source(true, 7)] }), texts.reading);
+  assert.equal(whyNothing({ hello: { mode: "live" } as never, sources: [] }), texts.nothingYet);
+  assert.equal(whyNothing({ hello: null, sources: [] }), "");
 });
 // "1:40" was taken for a time of day.
 test("a duration is not like a time of day", () => {

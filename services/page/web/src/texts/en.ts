@@ -8,6 +8,8 @@ export const en = {
   stale: (seconds: string) => `The picture is ${seconds} old`,
   gap: (seconds: string) => `No scan at this time: the picture is ${seconds} older`,
   nothingYet: "Nothing came yet. Are lookout-vlp16 and the other processes running?",
+  reading: "Reading the log …",
+  noScans: "This log holds no scan.",
   live: "LIVE",
   recorded: "RECORDED",
   indexing: (percent: number) => `Reading the log: ${percent} %`,

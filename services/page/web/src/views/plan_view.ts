@@ -13,6 +13,7 @@ import { Stage } from "../drawing/stage.js";
 import { isShown, paintTracks, paintTrails } from "../drawing/tracks.js";
 import { Trails } from "../drawing/trails.js";
 import { describeReturn } from "../drawing/words.js";
+import { whyNothing } from "../film.js";
 import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
@@ -99,7 +100,7 @@ export abstract class PlanView implements View {
     this.paintReturns(scene);
     if (scene !== null) this.paintScene(scene);
     const lost = this.points.works || !this.state.settings.get("shows_returns") ? "" : texts.drawing.restoring;
-    this.stage.setNote([picture === null ? texts.nothingYet : this.noteFor(scene), lost, this.measure.hint].filter((part) => part !== "").join(" · "));
+    this.stage.setNote([picture === null ? whyNothing(this.state) : this.noteFor(scene), lost, this.measure.hint].filter((part) => part !== "").join(" · "));
     if (scene !== null && performance.now() - this.described_ms > kDescribe_ms) {
       this.described_ms = performance.now();
       this.stage.describe(this.describe(scene));

@@ -4,6 +4,7 @@ import { kFont } from "../drawing/labels.js";
 import { kLegendHeight_px, kLegendName_px, paintLegend } from "../drawing/legend.js";
 import { isOld, Stage } from "../drawing/stage.js";
 import { describeReturn } from "../drawing/words.js";
+import { whyNothing } from "../film.js";
 import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
@@ -79,7 +80,7 @@ export class RangeImageView implements View {
     context.clearRect(0, 0, width_px, height_px);
     const first = picture?.scan[0];
     this.strips = [];
-    this.stage.setNote(picture === null ? texts.nothingYet : first === undefined ? texts.drawing.no_scan : "");
+    this.stage.setNote(picture === null ? whyNothing(this.state) : first === undefined ? texts.drawing.no_scan : "");
     if (picture === null || picture.returns === null || first === undefined) return;
     this.numRings = first.num_rings;
     const colour_by = this.state.settings.get("image_colour_by"), legend_px = rampOf(colour_by) === undefined ? 0 : kLegendHeight_px;

@@ -1,4 +1,5 @@
 // The list of tracks, the most dangerous first: a table where there is room, cards on a phone; below it the chosen one in full.
+import { whyNothing } from "../film.js";
 import * as wire from "../messages/generated.js";
 import { lacking } from "../picture.js";
 import type { State, View } from "../state.js";
@@ -92,7 +93,7 @@ export class Tracks implements View {
     table.onpointerleave = () => { this.isPointedAt = false; state.mark({}); };
     table.onkeydown = (event) => { this.onKey(event); };
     state.on(["picture"], () => { if (this.isVisible) this.pace.ask(); });
-    state.on(["settings", "showing"], () => { this.draw(); });
+    state.on(["settings", "showing", "connection", "sources"], () => { this.draw(); });
     state.on(["marked"], () => { this.drawMarks(); });
   }
 
@@ -134,8 +135,8 @@ export class Tracks implements View {
     const isRecorded = showing.kind === "recorded" || hello?.mode === "log";
     const hasTracks = picture?.times_us.has("TRACKS") === true, lacks = lacking(picture?.pose ?? null);
     if (hasTracks) return lacks === null ? words.none : words.lacks[lacks];
+    if (picture === null && (isRecorded || hello === null)) return whyNothing(this.state);
     if (!isRecorded) return words.notYet;
-    if (picture === null) return "";
     const source = sources.find((candidate) => showing.kind === "recorded" && candidate.id === showing.source);
     if (source?.has_tracks === false) return source.has_pose === false ? words.logWithoutPosition : words.logWithoutTracks;
     return lacks === null ? words.noneAtThisTime : words.lacks[lacks];
