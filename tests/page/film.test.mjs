@@ -37,9 +37,10 @@ async function opened(options) {
 }
 const seconds = (clock) => { const [, h, m, s] = /(\d+):(\d+):([\d.]+) UTC/.exec(clock); return 3600 * h + 60 * m + Number(s); };
 
-test("a log opens at its first moment, steps by scans, jumps to a time and plays", async () => {
+test("a log opens, steps by scans, jumps to a time and plays", async () => {
   const page = await opened();
   const opening = await clockOf(page), first = seconds(opening);
+  const since = async () => Number(/\+([\d.]+) s$/.exec(await clockOf(page))[1]);
   await page.keyboard.press(".");
   await page.waitForFunction((old) => document.querySelector(".film_clock").textContent !== old, opening);
   const second = seconds(await clockOf(page));
@@ -47,13 +48,13 @@ test("a log opens at its first moment, steps by scans, jumps to a time and plays
   const began = Date.now();
   await seek(page, "+12");
   assert.ok(Date.now() - began < 2000, `seeking took ${Date.now() - began} ms`);
-  assert.ok(Math.abs(seconds(await clockOf(page)) - first - 12) < 0.4, await clockOf(page));
+  assert.equal(await since(), 12);
   await page.selectOption(".film_rate", "5");
   const started = Date.now();
   await page.keyboard.press(" ");
   await wait(2000);
   await page.keyboard.press(" ");
-  const took_s = (Date.now() - started) / 1000, played = seconds(await clockOf(page)) - first - 12;
+  const took_s = (Date.now() - started) / 1000, played = await since() - 12;
   assert.ok(played > 5 && played < 5 * took_s + 3, `played ${played} s of the log in ${took_s} s at 5 times`);
   assert.deepEqual(page.errors, []);
   await page.context().close();
