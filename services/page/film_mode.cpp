@@ -70,6 +70,7 @@ int Show(const FilmRequest& request) {
                  .host = runtime::HostName()},
                 std::move(parts));
   const ServerLink::Holder holder(link, server);
+  server.TellSources();  // of an index that became whole before the link was there, nobody was told
   std::cout << LinkText(AddressOnThisComputer(request.bind_address, server.port()), AddressesForOthers(request.bind_address, server.port()), "")
             << "Ctrl-C ends it.\n"
             << std::flush;

@@ -102,6 +102,23 @@ test("an alert is raised, seen and heard of by screen readers, refused without t
   }
 });
 
+// HEALTH has as many publishers as there are processes: their names in one line pushed the rates out of the pane.
+test("the rate of each channel is in sight, however many publish it", async () => {
+  for (const [width, height] of [[1440, 900], [920, 800], [360, 740]]) {
+    const page = await open({ width, height });
+    await isMode(page, "live");
+    await page.click("[data-view=lists]");
+    await page.click("#list-tab-channels");
+    await page.waitForFunction(() => /HEALTH[\s\S]*tracker[\s\S]*Hz/.test(document.querySelector(".channels").innerText));
+    const { most, right } = await page.$eval(".channels", (list) => ({
+      right: list.getBoundingClientRect().right,
+      most: Math.max(...[...list.querySelectorAll("td, th")].filter((cell) => cell.checkVisibility()).map((cell) => cell.getBoundingClientRect().right)),
+    }));
+    assert.ok(most <= right + 0.5, `${width} px: ${most} px in a pane that ends at ${right} px`);
+    await page.context().close();
+  }
+});
+
 test("one window that stands still costs the others nothing", async () => {
   const page = await open();
   await isMode(page, "live");

@@ -36,6 +36,25 @@ if [ ! -f "$log" ]; then
   "$build/bin/lookout-replay" --config "$source_folder/config/demo" --in "$folder/crossing.pcap" --out "$log" >/dev/null
 fi
 export LOOKOUT_LOG=$log
+# The same journey under another config, of a boat without a compass, and of one without a position.
+replayed() {  # NAME CONFIG CAPTURE
+  [ -f "$folder/$1.lcmlog" ] || "$build/bin/lookout-replay" --config "$2" --in "$3" --out "$folder/$1.lcmlog" >/dev/null
+}
+config_of() {  # NAME: a copy of the demo's
+  rm -rf "$folder/config_$1"
+  cp -r "$source_folder/config/demo" "$folder/config_$1"
+}
+if [ "$trial" = film ]; then
+  config_of other
+  echo 'max_range_m: 60' >>"$folder/config_other/segmenter.txtpb"
+  sed -i 's/range_m: 10/range_m: 16/' "$folder/config_other/tracker.txtpb"
+  replayed other "$folder/config_other" "$folder/crossing.pcap"
+  [ -f "$folder/course.pcap" ] || "$build/bin/lookout-sim" --config "$source_folder/config/demo" --scene crossing --seed 1 --seconds 8 --no-heading --pcap "$folder/course.pcap" >/dev/null
+  replayed course "$source_folder/config/demo" "$folder/course.pcap"
+  config_of nowhere
+  sed -i 's/use_lidar_nmea: true/use_lidar_nmea: false nmea_port: 9999/' "$folder/config_nowhere/navigator.txtpb"
+  replayed nowhere "$folder/config_nowhere" "$folder/crossing.pcap"
+fi
 case $trial in
   pictures) command=(node "$folder/pictures.mjs") ;;
   figures)

@@ -140,9 +140,11 @@ void Connection::Serve(std::string_view path) {
 
 void Connection::ServeFromDisk(std::string_view path) {
   TileAddress address;
-  const bool is_list = path == "/tiles.json" && hub_.parts.tiles_text;
+  const bool is_list = path == "/tiles.json";
   const bool is_tile = ParseTilePath(path, address) && hub_.parts.tile;
   if (!is_list && !is_tile) return Refuse(http::status::not_found, "there is no such map", "refused_request");
+  // What a chart lacks is no fault: a 404 would stand as one in the browser's console, for each tile.
+  if (is_list && !hub_.parts.tiles_text) return Send(http::status::no_content, {}, kAskAgain);
   stream_.expires_never();
   asio::post(hub_.disk, [self = shared_from_this(), address, is_list]() mutable {
     auto& hub = self->hub_;
@@ -159,7 +161,7 @@ void Connection::ServeFromDisk(std::string_view path) {
     }
     asio::post(hub.context, [self = std::move(self), tile = std::move(tile), is_fault, is_list]() mutable {
       if (is_fault) return self->Refuse(http::status::internal_server_error, "the map cannot be read", "faults");
-      if (!tile || (is_list && tile->bytes.empty())) return self->Refuse(http::status::not_found, "there is no such tile", {});
+      if (!tile || tile->bytes.empty()) return self->Send(http::status::no_content, {}, kAskAgain);
       self->reason_ = std::move(tile->content_type);
       auto owner = std::make_shared<const std::vector<std::uint8_t>>(std::move(tile->bytes));
       const Bytes bytes = *owner;
@@ -204,7 +206,7 @@ void Connection::Send(http::status status, Content content, std::string_view cac
   const auto host = Header(http::field::host);
   for (const auto& [name, value] : SecurityHeaders(IsOwnHost(host, own_hosts_) ? host : "localhost")) response.set(view(name), value);
   response.set(http::field::cache_control, view(cache_control));
-  response.set(http::field::content_type, view(content_.type));
+  if (status != http::status::no_content) response.set(http::field::content_type, view(content_.type));
   if (!content_.tag.empty()) {
     response.set(http::field::etag, content_.tag);
     response.set(http::field::vary, "Accept-Encoding");
@@ -215,7 +217,7 @@ void Connection::Send(http::status status, Content content, std::string_view cac
   if (status == http::status::upgrade_required) response.set(http::field::upgrade, "websocket");
   if (status == http::status::service_unavailable) response.set(http::field::retry_after, "5");
   response.keep_alive(request_.keep_alive() && !hub_.is_ending);
-  if (status != http::status::not_modified) response.content_length(content_.bytes.size());
+  if (status != http::status::not_modified && status != http::status::no_content) response.content_length(content_.bytes.size());
   response.body() = {content_.bytes.data(), content_.bytes.size()};
   Write();
 }

@@ -36,11 +36,11 @@ class PageHttp : public ::testing::Test {
  protected:
   PageHttp() { Restart({}); }
 
-  void Restart(ServerOptions options) {
+  void Restart(ServerOptions options, bool has_map = true) {
     options.token = "secret";
     ServerParts parts;
     parts.assets = {{"/", "text/html; charset=utf-8", page_}};
-    parts.tiles_text = [] { return std::string(R"({"name":"chart"})"); };
+    if (has_map) parts.tiles_text = [] { return std::string(R"({"name":"chart"})"); };
     parts.tile = [](int z, int x, int y) -> std::optional<Tile> {
       if (z != 3) return std::nullopt;
       if (x == 7) throw std::runtime_error("the disk is broken");
@@ -180,10 +180,24 @@ TEST_F(PageHttp, TilesComeFromTheDisk) {
   EXPECT_TRUE(IsStatus(tile, 200));
   EXPECT_EQ(Value(tile, "Content-Type"), "image/png");
   EXPECT_EQ(Body(tile), "\x01\x02");
-  EXPECT_TRUE(IsStatus(Get("/tiles/4/1/2"), 404));
+  // A chart that lacks a tile is no fault: each 404 would stand as one in the browser's console.
+  const auto lacking = Get("/tiles/4/1/2");
+  EXPECT_TRUE(IsStatus(lacking, 204));
+  EXPECT_EQ(Body(lacking), "");
+  EXPECT_EQ(Value(lacking, "Content-Length"), "");
   EXPECT_TRUE(IsStatus(Get("/tiles/3/1/8"), 404));
   EXPECT_TRUE(IsStatus(Get("/tiles/3/7/2"), 500));
   EXPECT_TRUE(IsStatus(Get("/"), 200)) << "goes on";
+}
+
+TEST_F(PageHttp, APageWithoutAMapIsNoFault) {
+  // A boat without chart tiles had a red line in the console of each browser that showed the map.
+  Restart({}, false);
+  auto peer = Connect();
+  const auto answer = peer.Get("/tiles.json");
+  EXPECT_TRUE(IsStatus(answer, 204)) << answer;
+  EXPECT_EQ(Value(answer, "Content-Length"), "") << "RFC 9110, 8.6: none in a 204";
+  EXPECT_TRUE(IsStatus(peer.Get("/"), 200)) << "the connection goes on with the next request";
 }
 
 TEST_F(PageHttp, OtherPathsAndMethodsAreRefused) {

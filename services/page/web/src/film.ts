@@ -5,6 +5,7 @@ import { Alert, Alerts } from "./messages/generated.js";
 import { Refused } from "./messages/reader.js";
 import { Assembler, kPictureChannels, type Picture } from "./picture.js";
 import type { State } from "./state.js";
+import { texts } from "./texts/index.js";
 
 export const kRates = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
 const kLongestWait_ms = 1000;      // for the next scan while it plays: longer gaps of a log are skipped
@@ -23,6 +24,18 @@ export function lineOf(sources: readonly Source[]): Source[] {
 /** The recording of a line that holds a time, or else the last before it, or else the first. */
 export function sourceAt(line: readonly Source[], utime_us: number): Source | undefined {
   return line.findLast((source) => source.begin_utime_us <= utime_us) ?? line[0];
+}
+
+/** Where the seconds of a log are counted from; NaN live, where there is no begin. */
+export function beginOf({ hello, sources }: Pick<State, "hello" | "sources">): number {
+  return hello?.mode === "log" ? lineOf(sources)[0]?.begin_utime_us ?? NaN : NaN;
+}
+
+/** Why there is no picture, in words: live nothing came; of a log it is being read, or it holds no scan. Empty: nobody knows yet. */
+export function whyNothing({ hello, sources }: Pick<State, "hello" | "sources">): string {
+  if (hello === null) return "";
+  if (hello.mode === "live") return texts.nothingYet;
+  return sources.length > 0 && sources.every((source) => source.is_indexed && source.num_scans === 0) ? texts.noScans : texts.reading;
 }
 
 /** How long before a time of the log the scan of a picture was received, s: in a gap of the log it is the last one before. 0 where it has none. */
@@ -66,7 +79,7 @@ export class Film {
     requestAnimationFrame(draw);
   }
 
-  /** To be called on each `hello`: a log begins with its first moment; a moment that was shown before is fetched again. */
+  /** To be called on each `hello`: a log opens where there is something to see; a moment that was shown before is fetched again. */
   begin(): void {
     this.isAsking = false;
     ++this.generation;
@@ -76,7 +89,7 @@ export class Film {
     else if (hello?.mode === "log") {
       // Before its index is built a recording has no times; they come with `sources`.
       const first = lineOf(this.state.sources)[0];
-      if (first !== undefined && first.num_scans > 0 && this.wanted === null) this.seek(first.begin_utime_us);
+      if (first !== undefined && first.num_scans > 0 && this.wanted === null) this.seek(first.opens_utime_us ?? first.begin_utime_us);
     }
   }
 

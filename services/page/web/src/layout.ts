@@ -43,8 +43,10 @@ export class Layout {
 
   show(name: ViewName): void {
     if (this.buttons.get(name)?.hidden === true) return;
-    if (this.wide.matches && (name === "lists" || name === "plots")) this.side = name;
-    else this.main = name;
+    if (this.wide.matches && (name === "lists" || name === "plots")) {
+      this.side = name;
+      if (this.main === "compare") this.main = "around";
+    } else this.main = name;
     this.place();
   }
 
@@ -57,14 +59,18 @@ export class Layout {
   }
 
   private place(): void {
-    const shown = this.wide.matches ? [this.main, this.side] : [this.main];
+    // Two logs beside each other need the whole width.
+    const hasSide = this.wide.matches && this.main !== "compare", shown = hasSide ? [this.main, this.side] : [this.main];
+    // Before views are told that they are seen: they measure their place then.
+    this.panes.side.hidden = !hasSide;
     for (const [name, view] of this.views) {
-      const pane = name === this.main ? this.panes.main : this.wide.matches && name === this.side ? this.panes.side : null;
+      const pane = name === this.main ? this.panes.main : hasSide && name === this.side ? this.panes.side : null;
       if (pane !== null && view.element.parentElement !== pane) pane.append(view.element);
       view.element.hidden = pane === null;
       view.setVisible(pane !== null);
       this.buttons.get(name)?.setAttribute("aria-pressed", String(shown.includes(name)));
     }
-    this.panes.side.hidden = !this.wide.matches;
+    this.panes.main.setAttribute("aria-label", texts.views[this.main]);
+    this.panes.side.setAttribute("aria-label", texts.views[this.side]);
   }
 }

@@ -24,6 +24,11 @@ export interface Source {
   end_utime_us: number;
   num_scans: number;
   is_growing: boolean;
+  is_indexed: boolean;
+  /** Where a page opens it: the first scan with POSE and TRACKS. */
+  opens_utime_us?: number;
+  has_pose?: boolean;
+  has_tracks?: boolean;
   boat: BoatFacts | null;
 }
 export interface Hello {

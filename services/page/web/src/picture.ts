@@ -208,6 +208,14 @@ function interleaved(east: Float32Array, north: Float32Array): Float32Array<Arra
   return both;
 }
 
+/** Whether the heading is only the course over ground: neither a compass nor an attitude sensor tells one. */
+export function isOnlyCourse(pose: Pick<wire.Pose, "heading_source"> | null | undefined): boolean { return pose?.heading_source === wire.Pose.HEADING_COURSE; }
+/** What is not known of where the boat is and where its bow points: without both there are no tracks. */
+export function lacking(pose: Pick<wire.Pose, "status"> | null): "position" | "heading" | null {
+  if (pose?.status === wire.Pose.STATUS_OK || pose?.status === wire.Pose.STATUS_COASTING) return null;
+  return pose?.status === wire.Pose.STATUS_NO_HEADING ? "heading" : "position";
+}
+
 /** Difference of two angles, -pi to pi. */
 export function angleBetween(to_rad: number, from_rad: number): number {
   const turn = (to_rad - from_rad) % (2 * Math.PI);

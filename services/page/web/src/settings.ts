@@ -5,7 +5,12 @@ export interface SettingValues {
   length_unit: "m" | "NM";
   speed_unit: "kn" | "mps" | "kmh";
   orientation: "north" | "head";
-  colour_by: "segment" | "track" | "height" | "reflectivity";
+  colour_by: "segment" | "track" | "height" | "reflectivity" | "range";
+  /** Of the range image, which has a look of its own. */
+  image_colour_by: SettingValues["colour_by"];
+  /** Two logs: share of the returns that are told differently, and how far apart a track is, from which on a scan differs; 0: never. */
+  differs_share: number;
+  differs_moved_m: number;
   sound: boolean;
   shows_tentative: boolean;
   shows_returns: boolean;
@@ -13,12 +18,13 @@ export interface SettingValues {
   shows_ellipses: boolean;
 }
 export const kDefaults: SettingValues = {
-  palette: "day", length_unit: "m", speed_unit: "kn", orientation: "head", colour_by: "track", sound: false,
+  palette: "day", length_unit: "m", speed_unit: "kn", orientation: "head", colour_by: "track", image_colour_by: "range", differs_share: 0.05, differs_moved_m: 2, sound: false,
   shows_tentative: false, shows_returns: true, shows_trails: true, shows_ellipses: false,
 };
+const kColours = ["segment", "track", "height", "reflectivity", "range"] as const;
 const kChoices: { [Name in keyof SettingValues]: readonly SettingValues[Name][] } = {
   palette: ["day", "dusk", "night", "sun"], length_unit: ["m", "NM"], speed_unit: ["kn", "mps", "kmh"], orientation: ["north", "head"],
-  colour_by: ["segment", "track", "height", "reflectivity"], sound: [false, true], shows_tentative: [false, true], shows_returns: [false, true],
+  colour_by: kColours, image_colour_by: kColours, differs_share: [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 0], differs_moved_m: [0.5, 1, 2, 5, 10, 0], sound: [false, true], shows_tentative: [false, true], shows_returns: [false, true],
   shows_trails: [false, true], shows_ellipses: [false, true],
 };
 const kKey = "lookout.settings";

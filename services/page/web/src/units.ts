@@ -26,14 +26,27 @@ export function bearing(radians: number): string {
 export function duration(seconds: number): string {
   if (!Number.isFinite(seconds)) return kUnknown;
   if (seconds < 10) return `${seconds.toFixed(1)} s`;
-  if (seconds < 100) return `${seconds.toFixed(0)} s`;
-  const whole = Math.round(seconds);
-  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+  if (seconds < 99.5) return `${seconds.toFixed(0)} s`;
+  // Not "1:40": that would look like a time of day.
+  const whole = Math.round(seconds), minutes = Math.floor(whole / 60);
+  return minutes < 60 ? `${minutes} min ${whole % 60} s` : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
-/** Time of day, UTC. */
+/** Time of day, UTC, as it stands on an axis. */
 export function timeOfDay(utime_us: number, decimals = 0): string {
   if (!Number.isFinite(utime_us)) return kUnknown;
   return new Date(utime_us / 1000).toISOString().slice(11, decimals > 0 ? 20 + decimals : 19);
+}
+/** Seconds from the begin of a log, as the field for a time takes them: "+90.5 s". */
+export function sinceBegin(utime_us: number, begin_utime_us: number, decimals = 1): string {
+  const seconds = Number(((utime_us - begin_utime_us) / 1e6).toFixed(decimals));
+  return Number.isFinite(seconds) ? `${seconds < 0 ? "−" : "+"}${Math.abs(seconds).toFixed(decimals)} s` : "";
+}
+/** A time as it stands everywhere: "14:03:20.5 UTC +90.5 s"; @param begin_utime_us of the log, NaN where there is none (live) */
+export function timeText(utime_us: number, begin_utime_us: number, decimals = 1): string {
+  if (!Number.isFinite(utime_us)) return kUnknown;
+  const step_us = 10 ** (6 - decimals), rounded = Math.round(utime_us / step_us) * step_us;
+  const since = sinceBegin(utime_us, begin_utime_us, decimals);
+  return `${timeOfDay(rounded, decimals)} UTC${since === "" ? "" : ` ${since}`}`;
 }
 export function date(utime_us: number): string { return new Date(utime_us / 1000).toISOString().slice(0, 10); }
 export function bytes(count: number): string {

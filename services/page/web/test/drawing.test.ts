@@ -2,7 +2,8 @@
 // Node's own types are not among the packages of the page: esbuild bundles this file, and tsc does not check it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fillColours, luminance, parseColour, rampColour, distinctColour, standingOut, type Theme } from "../src/drawing/colours.js";
+import { fillColours, kRamps, luminance, parseColour, rampColour, distinctColour, rampOf, standingOut, type Theme } from "../src/drawing/colours.js";
+import { blindSectors } from "../src/drawing/blind.js";
 import { placeFor } from "../src/drawing/labels.js";
 import { lookAt, perspective, product, project } from "../src/drawing/matrix.js";
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt, zoomFor } from "../src/drawing/mercator.js";
@@ -119,6 +120,33 @@ test("returns have the colour of their track, what it is raised for first", () =
   assert.deepEqual([0, 4, 8, 12].map((at) => out[at]), [5, 3, 7, 8]);
   assert.ok(out[19]! > 0 && out[19]! < 255);
   assert.equal(out[23], 0);
+});
+// The range image had the colours of tracks: how far a thing is could not be seen in it.
+test("by range what is near has the colour that warns, and each doubling is as far apart", () => {
+  const out = new Uint8Array(16), given = picture([1, 1, 1, 1], {}) as { returns: { range_m: Float32Array } };
+  given.returns.range_m = Float32Array.of(0.5, 1, 100, 400);
+  fillColours(given as never, { theme, colour_by: "range", track: null, segment: null, chosen: null }, out);
+  assert.deepEqual([...out.slice(0, 3)], [...rampColour(1, false, false)]);
+  assert.deepEqual([...out.slice(4, 7)], [...rampColour(1, false, false)]);
+  assert.deepEqual([...out.slice(8, 11)], [...rampColour(0, false, false)]);
+  assert.deepEqual([...out.slice(12, 15)], [...rampColour(0, false, false)]);
+  const { range } = kRamps;
+  near(range.share(2) - range.share(4), range.share(20) - range.share(40), 1e-9);
+  assert.equal(rampOf("track"), undefined);
+  for (const by of ["range", "height", "reflectivity"] as const) for (const tick of rampOf(by)!.ticks) assert.ok(rampOf(by)!.share(tick) >= -1e-9 && rampOf(by)!.share(tick) <= 1 + 1e-9, `${by} ${tick}`);
+});
+const unseen = (text: string, change: object = {}) => ({ cause: 3, id: 5, state: 1, text: `no look-out in part of the guard zone: ${text}`, ...change });
+test("where nobody looks is read out of the alert that says so", () => {
+  assert.deepEqual(blindSectors([unseen("300 to 60 deg, from 5.0 m on (beyond max_range_m of the segmenter)")]), [{ from_deg: 300, to_deg: 60, near_m: 5, far_m: Infinity }]);
+  assert.deepEqual(blindSectors([unseen("300 to 60 deg, up to 10.0 m (nearer than min_range_m of the segmenter)")]), [{ from_deg: 300, to_deg: 60, near_m: 0, far_m: 10 }]);
+  assert.deepEqual(blindSectors([unseen("320 to 352 deg (the own boat hides it); 10 to 20 deg, 4.0 to 6.5 m (the own boat hides it); and 2 more")]),
+    [{ from_deg: 320, to_deg: 352, near_m: 0, far_m: Infinity }, { from_deg: 10, to_deg: 20, near_m: 4, far_m: 6.5 }]);
+  assert.deepEqual(blindSectors([unseen("all round (the lidar does not fire there)")]), [{ from_deg: 0, to_deg: 360, near_m: 0, far_m: Infinity }]);
+});
+test("the watch, what is over, and other alerts say nothing of where nobody looks", () => {
+  const text = "270 to 90 deg (the lidar does not fire there)";
+  assert.equal(blindSectors([unseen(text, { state: 2 })]).length, 1, "also while it is acknowledged");
+  assert.deepEqual(blindSectors([unseen(text, { id: -1 }), unseen(text, { state: 4 }), unseen(text, { cause: 1 })]), []);
 });
 test("what is marked is marked whatever the colours are by", () => {
   const out = new Uint8Array(8);

@@ -1,8 +1,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { Health, Track } from "../src/messages/generated.js";
-import { channelsOf, gravityOfProcess, Roll } from "../src/views/traffic.js";
+import { Health, Pose, Track } from "../src/messages/generated.js";
+import { channelsOf, faultOfPage, gravityOfProcess, Roll } from "../src/views/traffic.js";
 import { relative, restsOn, situation } from "../src/views/track_words.js";
+import { isOnlyCourse, lacking } from "../src/picture.js";
+import { gravityOfPose } from "../src/views/sensors.js";
 import { place } from "../src/views/track_detail.js";
 
 const kDegree = Math.PI / 180;
@@ -60,4 +62,25 @@ test("a place is written as on a chart", () => {
   assert.equal(place(43.62982, -72.15), "43°37.789′N 072°09.000′W");
   assert.equal(place(-0.9999999, 179.99999), "01°00.000′S 179°59.999′E");
   assert.equal(place(NaN, 3), "–");
+});
+
+// "HDG 000" was the course over ground of a boat without a compass, and looked like a compass.
+test("a heading that is only the course over ground is told as such, and is a caution", () => {
+  const pose = (heading_source: number, status: number = Pose.STATUS_OK) => ({ heading_source, status });
+  assert.deepEqual([Pose.HEADING_NONE, Pose.HEADING_HDT, Pose.HEADING_PASHR, Pose.HEADING_COURSE].map((source) => isOnlyCourse(pose(source))), [false, false, false, true]);
+  assert.equal(isOnlyCourse(null), false);
+  assert.equal(gravityOfPose(pose(Pose.HEADING_HDT)), "ok");
+  assert.equal(gravityOfPose(pose(Pose.HEADING_COURSE)), "caution");
+  assert.equal(gravityOfPose(pose(Pose.HEADING_NONE, Pose.STATUS_UNKNOWN)), "warning");
+  assert.deepEqual([Pose.STATUS_OK, Pose.STATUS_COASTING, Pose.STATUS_NO_HEADING, Pose.STATUS_NO_POSITION, Pose.STATUS_UNKNOWN].map((status) => lacking(pose(0, status))), [null, null, "heading", "position", "position"]);
+  assert.equal(lacking(null), "position");
+});
+
+// The page stopped keeping the last minutes, and only its own HEALTH, deep in a list, said so.
+test("why the page keeps no last minutes is told in the words of its HEALTH", () => {
+  const health = (process: string, state: number, reason: string) => ({ process, state, reason });
+  const reason = "no look back: /data/spool: 1.0 GB of the disk are free, and 2.0 GB are reserved for the recorder";
+  assert.equal(faultOfPage([health("tracker", Health.STATE_DEGRADED, "no POSE"), health("page", Health.STATE_DEGRADED, reason)]), reason);
+  assert.equal(faultOfPage([health("tracker", Health.STATE_FAILED, "no POSE"), health("page", Health.STATE_OK, "")]), "");
+  assert.equal(faultOfPage([]), "");
 });

@@ -5,6 +5,7 @@ import { ageInLog, lineOf, sourceAt } from "../src/film.js";
 import type { Source, Strip, StripEvent } from "../src/link.js";
 import { gapsOf, moved, nextEvent, wholeSpan, zoomed } from "../src/views/strip.js";
 import { parseTime } from "../src/views/time_text.js";
+import { sinceBegin, timeText } from "../src/units.js";
 import { describe } from "../src/views/timeline_canvas.js";
 
 const source = (id: number, begin_s: number, end_s: number) => ({ id, begin_utime_us: begin_s * 1e6, end_utime_us: end_s * 1e6 }) as unknown as Source;
@@ -82,6 +83,17 @@ test("times are read as they are typed", () => {
   assert.equal(parseTime("2026-07-14T23:59:30Z", begin, end), begin + 30e6);
   assert.equal(parseTime("+90", begin, end), begin + 90e6);
   assert.equal(parseTime("+1.5 s", begin, end), begin + 1.5e6);
+  assert.equal(parseTime("90", begin, end), begin + 90e6);
+  assert.equal(parseTime("+1:30", begin, end), begin + 90e6);
+  assert.equal(parseTime("+0:01:30.5", begin, end), begin + 90.5e6);
+  assert.equal(parseTime(String(begin + 7), begin, end), begin + 7);
+});
+test("a time is read as the page itself writes it", () => {
+  for (const at_us of [begin, begin + 12.3e6, begin + 90e6]) {
+    assert.equal(parseTime(timeText(at_us, begin), begin, end), at_us);
+    assert.equal(parseTime(`2026-07-1${at_us < begin + 60e6 ? 4 : 5} ${timeText(at_us, begin)}`, begin, end), at_us);
+    assert.equal(parseTime(sinceBegin(at_us, begin), begin, end), at_us);
+  }
 });
 test("within a second of an end it is the end; else what lies outside is no time", () => {
   assert.equal(parseTime("23:58:59.5", begin, end), begin);

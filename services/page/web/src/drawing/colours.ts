@@ -10,6 +10,7 @@ const kDefaults = {
   bg: "#eef3f6", panel: "#ffffff", text: "#10212b", muted: "#5d7280", line: "#c3d0d8", accent: "#0a66c2", water: "#dfeaf1", land: "#a08a5f", own: "#10212b",
   track: "#1f6f8b", moving: "#0a66c2", tentative: "#93a4ae", caution: "#b26a00", warning: "#c8102e", ok: "#1b7f4b", returns: "#4a6572",
 };
+export type ColourBy = SettingValues["colour_by"];
 export type ColourName = keyof typeof kDefaults;
 export type Rgb = readonly [number, number, number];
 /** Colours of one palette: as text for a canvas, and as numbers from 0 to 255. */
@@ -96,19 +97,28 @@ export function rampColour(share: number, isNight: boolean, isDark: boolean): Rg
   const at = Math.min(1, Math.max(0, share)) * (stops.length - 1), index = Math.min(stops.length - 2, Math.floor(at)), rest = at - index;
   return [0, 1, 2].map((k) => Math.round(stops[index]![k]! * (1 - rest) + stops[index + 1]![k]! * rest)) as unknown as Rgb;
 }
-/** Ends of the ramps: height above the water, m; reflectivity, device units. */
-export const kHeightEnds_m = [-0.5, 5] as const;
-export const kReflectivityEnds = [0, 150] as const;
+/** What colours of a ramp stand for: where its ends are, and which values are named on its legend. */
+export interface Ramp { share(value: number): number; ticks: readonly number[] }
+const linear = (low: number, high: number, ticks: readonly number[]): Ramp => ({ share: (value) => (value - low) / (high - low), ticks });
+const kNearest_m = 1, kFarthest_m = 100;
+/** Of the height above the water, m; of the reflectivity, device units; of the range, m: what is near has the colour that warns, and each doubling is as wide. */
+export const kRamps = {
+  height: linear(-0.5, 5, [0, 1, 2, 3, 4, 5]),
+  reflectivity: linear(0, 150, [0, 50, 100, 150]),
+  range: { share: (range_m: number) => 1 - Math.log(range_m / kNearest_m) / Math.log(kFarthest_m / kNearest_m), ticks: [1, 2, 5, 10, 20, 50, 100] },
+} as const satisfies Record<string, Ramp>;
+/** The ramp by which returns are coloured; undefined: they are coloured by what they belong to. */
+export function rampOf(colour_by: ColourBy): Ramp | undefined { return Object.hasOwn(kRamps, colour_by) ? kRamps[colour_by as keyof typeof kRamps] : undefined; }
 
-interface Key { picture: Picture; theme: Theme; colour_by: SettingValues["colour_by"]; track: number | null; segment: number | null; chosen: number | null }
+interface Key { picture: Picture; theme: Theme; colour_by: ColourBy; track: number | null; segment: number | null; chosen: number | null }
 let cached: { key: Key; colours: ReturnColours } | null = null;
 
 /** `version` is another object whenever the bytes are others. */
 export interface ReturnColours { bytes: Uint8Array; version: object }
 
-/** Red, green, blue, opacity of each return of the picture, by what the user has chosen; made once for all views. */
-export function returnColours(state: State, picture: Picture): ReturnColours {
-  const key: Key = { picture, theme: currentTheme(), colour_by: state.settings.get("colour_by"), track: state.marked.track, segment: state.marked.segment, chosen: state.chosen };
+/** Red, green, blue, opacity of each return of the picture, by what the user has chosen; made once for all views that show the same. */
+export function returnColours(state: State, picture: Picture, colour_by: ColourBy = state.settings.get("colour_by")): ReturnColours {
+  const key: Key = { picture, theme: currentTheme(), colour_by, track: state.marked.track, segment: state.marked.segment, chosen: state.chosen };
   if (cached !== null && (Object.keys(key) as (keyof Key)[]).every((name) => cached!.key[name] === key[name])) return cached.colours;
   // A picture's array is used again for the next of about its size: 10 of them a second otherwise.
   const room = 4 * (picture.returns?.count ?? 0), last = cached?.colours.bytes;
@@ -130,17 +140,14 @@ export function fillColours(picture: Picture, { theme, colour_by, track, segment
     if (owner !== undefined) return theme.rgb[trackColour(owner, picture.alert_of_track.get(owner.id))];
     return label > 0 && picture.land_segments.has(label) ? theme.rgb.land : theme.rgb.returns;
   };
-  const byNumber = colour_by === "height" || colour_by === "reflectivity";
-  const ramp: Rgb[] = [];
-  if (byNumber) for (let i = 0; i < 256; ++i) ramp.push(rampColour(i / 255, theme.isNight, theme.isDark));
+  const scale = rampOf(colour_by), ramp: Rgb[] = [];
+  if (scale !== undefined) for (let i = 0; i < 256; ++i) ramp.push(rampColour(i / 255, theme.isNight, theme.isDark));
   for (let i = 0; i < returns.count; ++i) {
     const label = returns.label[i]!;
     let colour = perLabel.get(label);
     if (colour === undefined) perLabel.set(label, colour = ofLabel(label));
-    if (byNumber && colour !== theme.rgb.text) {
-      const ends = colour_by === "height" ? kHeightEnds_m : kReflectivityEnds;
-      const value = colour_by === "height" ? returns.level_m[3 * i + 2]! : returns.reflectivity[i]!;
-      const share = (value - ends[0]) / (ends[1] - ends[0]);
+    if (scale !== undefined && colour !== theme.rgb.text) {
+      const share = scale.share(colour_by === "height" ? returns.level_m[3 * i + 2]! : colour_by === "range" ? returns.range_m[i]! : returns.reflectivity[i]!);
       colour = ramp[share <= 0 ? 0 : share >= 1 ? 255 : Math.round(255 * share)]!;
     }
     out[4 * i] = colour[0];

@@ -1,6 +1,8 @@
 // The own boat, and what is measured from it: rings, guard zones, heading and way.
+import { isOnlyCourse } from "../picture.js";
 import { texts } from "../texts/index.js";
 import { length } from "../units.js";
+import { blindSectors } from "./blind.js";
 import { kFont, type Box } from "./labels.js";
 import { niceStep } from "./plane.js";
 import { boatX, boatY, type Scene } from "./scene.js";
@@ -8,6 +10,7 @@ import { boatX, boatY, type Scene } from "./scene.js";
 const kMetresPerMile = 1852;
 const kRing_px = 84;
 const kVector_s = 30;
+const kHatch_px = 9;
 
 /** Distance of two rings, m: a round number of the unit that is chosen. */
 export function ringStep(px_per_m: number, inMiles: boolean): number {
@@ -88,6 +91,38 @@ export function paintGuardZones(scene: Scene): void {
     context.setLineDash([]);
     context.globalAlpha = 1;
   }
+  paintBlindSectors(scene);
+}
+
+// Where nobody looks: hatched, so that it is seen in every palette.
+function paintBlindSectors(scene: Scene): void {
+  const { context, plane, own, theme, picture } = scene;
+  const sectors = blindSectors(picture.alerts), zone = picture.boat?.guard_zones[0];
+  if (sectors.length === 0 || zone === undefined) return;
+  const x = plane.x(own.east_m, own.north_m), y = plane.y(own.east_m, own.north_m), turn = own.heading_rad - plane.up - Math.PI / 2;
+  context.save();
+  context.beginPath();
+  for (const { from_deg, to_deg, near_m, far_m } of sectors) {
+    const from = from_deg * Math.PI / 180 + turn, to = from + (((to_deg - from_deg) % 360 + 360) % 360 || 360) * Math.PI / 180;
+    const far = Math.min(far_m, zone.range_m) * plane.px_per_m, near = Math.min(near_m * plane.px_per_m, far);
+    context.moveTo(x + near * Math.cos(from), y + near * Math.sin(from));
+    context.arc(x, y, far, from, to);
+    context.arc(x, y, near, to, from, true);
+    context.closePath();
+  }
+  context.strokeStyle = theme.css.caution;
+  context.lineWidth = 2;
+  context.stroke();
+  context.clip();
+  const reach = zone.range_m * plane.px_per_m, most = Math.min(reach, Math.hypot(plane.width_px, plane.height_px));
+  context.lineWidth = 1.5;
+  context.beginPath();
+  for (let d = -2 * most; d <= 2 * most; d += kHatch_px) {
+    context.moveTo(x + d - most, y - most);
+    context.lineTo(x + d + most, y + most);
+  }
+  context.stroke();
+  context.restore();
 }
 
 /** The hull in its true size, or a mark where that is too small to be seen; line of heading, vector of the next 30 s. */
@@ -108,7 +143,10 @@ export function paintOwnBoat(scene: Scene): void {
   context.moveTo(x(l, 0), y(l, 0));
   const far = 2 * Math.hypot(plane.width_px, plane.height_px) / plane.px_per_m;
   context.lineTo(x(far, 0), y(far, 0));
+  // Dashed where it is only the course over ground: the bow may point elsewhere.
+  if (isOnlyCourse(picture.pose)) context.setLineDash([10, 8]);
   context.stroke();
+  context.setLineDash([]);
   context.globalAlpha = 1;
 
   const velocity = picture.pose?.velocity_map_mps;

@@ -66,7 +66,7 @@ export class Stage {
     this.element.append(...below, this.plan, this.note, this.old, this.tip, this.tools);
     new ResizeObserver(() => { this.fit(); }).observe(this.element);
     listen(this.plan, gestures);
-    state.on(["picture", "marked", "settings", "showing", "connection"], () => { this.ask(); });
+    state.on(["picture", "marked", "settings", "showing", "connection", "sources"], () => { this.ask(); });
     state.on(["age", "picture", "showing"], () => { this.tellAge(); });
   }
 

@@ -11,6 +11,8 @@ const kParents = 6;
 export class Tiles {
   /** Null: there are none, as far as is known. */
   file: TileFile | null = null;
+  /** Whether it is known that there are none. */
+  isAbsent = false;
   /** To draw again: a tile came. */
   onCame: () => void = () => undefined;
   private readonly tiles = new Map<string, Tile>();
@@ -24,7 +26,9 @@ export class Tiles {
     this.isAsked = true;
     try {
       const answer = await fetch("/tiles.json");
-      if (!answer.ok) return;
+      this.isAbsent = answer.status === 204;
+      this.onCame();
+      if (answer.status !== 200) return;
       const file = await answer.json() as TileFile;
       if (Number.isInteger(file.min_zoom) && Number.isInteger(file.max_zoom) && file.max_zoom < 30) this.file = file;
       this.onCame();

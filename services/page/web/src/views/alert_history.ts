@@ -1,8 +1,9 @@
 // The alerts that there were, the newest first: since the page was opened, or of a whole log.
+import { beginOf } from "../film.js";
 import * as wire from "../messages/generated.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
-import { timeOfDay } from "../units.js";
+import { timeText } from "../units.js";
 import { button, make, placeChildren, setAttribute, setText } from "./dom.js";
 import { gravityOf } from "./gravity.js";
 import { Shape } from "./shapes.js";
@@ -61,6 +62,7 @@ export class AlertHistory implements View {
     if (!this.isVisible) return;
     const { state, isLog } = this;
     if (isLog) void this.ask();
+    const begin_utime_us = beginOf(state);
     const entries = isLog ? this.ofLog ?? [] : this.history.list();
     this.empty.hidden = entries.length > 0;
     setText(this.empty, isLog ? words.noneRecorded : words.none);
@@ -70,7 +72,7 @@ export class AlertHistory implements View {
       const gravity = gravityOf(alert);
       setAttribute(item, "data-gravity", gravity);
       const text = make("span", "text", isLog ? entry.text : `${levelWord(alert)}: ${entry.text}`);
-      const time = make("time", "", timeOfDay(entry.utime_us));
+      const time = make("time", "", timeText(entry.utime_us, begin_utime_us));
       item.append(new Shape(gravity).element, time, text);
       if (isLog) {
         const jump = button("", () => { state.seek(entry.utime_us); }, "plain");

@@ -1,7 +1,7 @@
 // The picture around the boat: north up or bow up, the own boat always where it was put.
 import { type Scene } from "../drawing/scene.js";
 import { icon } from "../drawing/stage.js";
-import type { Picture } from "../picture.js";
+import { lacking, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { length } from "../units.js";
@@ -65,5 +65,5 @@ export class AroundView extends PlanView {
     const tracks = picture.tracks.filter((track) => track.status === 2 || track.status === 3).sort((a, b) => a.range_m - b.range_m), nearest = tracks[0];
     return texts.drawing.around(tracks.length, nearest === undefined ? "" : `${texts.drawing.name(nearest.kind, nearest.id)}, ${length(this.state.settings, nearest.range_m)}`);
   }
-  protected noteFor(scene: Scene | null): string { return scene?.own.isOnMap === false ? texts.noPosition : ""; }
+  protected noteFor(scene: Scene | null): string { return scene?.own.isOnMap === false ? texts.lacks[lacking(scene.picture.pose) ?? "position"] : ""; }
 }

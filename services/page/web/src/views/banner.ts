@@ -1,7 +1,9 @@
 // The head of the page: live or not, time, own course and speed, sound, settings; below it one line when the picture may not be believed.
+import { beginOf } from "../film.js";
+import { isOnlyCourse, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
-import { bearing, date, speed, timeOfDay } from "../units.js";
+import { bearing, date, speed, timeText } from "../units.js";
 import { button, make, placeChildren, setAttribute, setText } from "./dom.js";
 import { assess } from "./lookout.js";
 import type { SettingsSheet } from "./settings.js";
@@ -15,7 +17,9 @@ export class Banner {
   readonly element = make("header");
   private readonly mode = make("span", "mode");
   private readonly clock = make("span", "clock");
+  private readonly headingName = make("dt", "", words.heading);
   private readonly heading = make("dd");
+  private readonly headingNote = make("dd", "note");
   private readonly ground = make("dd");
   private readonly sound: HTMLButtonElement;
   private readonly line = make("div", "banner");
@@ -30,12 +34,11 @@ export class Banner {
 
   constructor(private readonly state: State, private readonly sounder: Sounder, settings: SettingsSheet) {
     const head = make("div", "head");
-    const own = make("dl", "own");
-    for (const [name, value] of [[words.heading, this.heading], [words.speed, this.ground]] as const) {
-      const pair = make("div");
-      pair.append(make("dt", "", name), value);
-      own.append(pair);
-    }
+    const own = make("dl", "own"), heading = make("div"), ground = make("div"), state_and_time = make("div", "now");
+    heading.append(this.headingName, this.heading, this.headingNote);
+    ground.append(make("dt", "", words.speed), this.ground);
+    own.append(heading, ground);
+    state_and_time.append(this.mode, this.clock);
     const buttons = make("div", "buttons");
     this.sound = button("", () => { state.settings.set("sound", !state.settings.get("sound")); }, "plain");
     const open = button("", () => { settings.open(); }, "plain");
@@ -43,7 +46,7 @@ export class Banner {
     open.setAttribute("aria-label", texts.panels.settings.title);
     open.title = texts.panels.settings.title;
     buttons.append(this.sound, open);
-    head.append(this.mode, this.clock, own, buttons);
+    head.append(make("h1", "for-readers", texts.title), state_and_time, own, buttons);
     this.line.append(this.shape.element, this.text);
     this.spoken.setAttribute("role", "alert");
     this.element.append(head, this.line, this.spoken);
@@ -79,8 +82,8 @@ export class Banner {
     setAttribute(this.mode, "data-mode", verdict.mode);
     setText(this.mode, words.modes[verdict.mode]);
     const utime_us = state.showing.kind === "recorded" ? state.showing.utime_us : picture?.end_utime_us ?? NaN;
-    setText(this.clock, utime_us > 0 ? `${isRecorded ? `${date(utime_us)} ` : ""}${timeOfDay(utime_us)} UTC` : "");
-    setText(this.heading, bearing(picture?.heading_rad ?? NaN));
+    setText(this.clock, utime_us > 0 ? isRecorded ? `${date(utime_us)} ${timeText(utime_us, beginOf(state))}` : timeText(utime_us, NaN, 0) : "");
+    this.tellHeading(picture);
     const velocity = picture?.pose?.velocity_map_mps;
     setText(this.ground, speed(state.settings, velocity === undefined ? NaN : Math.hypot(velocity[0]!, velocity[1]!)));
     this.line.hidden = verdict.text === "";
@@ -97,6 +100,15 @@ export class Banner {
     }
     this.updateSound();
     this.beDeaf(verdict.level === "warning" && !isRecorded, now_ms);
+  }
+
+  // Course over ground in place of a compass is no heading: wind and current turn the bow away from it.
+  private tellHeading(picture: Picture | null): void {
+    const isCourse = isOnlyCourse(picture?.pose);
+    setText(this.headingName, isCourse ? words.course : words.heading);
+    setText(this.heading, bearing(picture?.heading_rad ?? NaN));
+    setText(this.headingNote, isCourse ? words.noCompass : "");
+    setAttribute(this.headingName, "title", isCourse ? words.courseHint : null);
   }
 
   // A look-out that hears nothing raises no alert: the page itself makes the sound, once.

@@ -6,23 +6,29 @@ import { type ChannelRow, channelsOf } from "./traffic.js";
 
 const words = texts.panels.channels;
 const kColumns = ["rate", "lost", "refused", "p50", "p99", "queue"] as const;
-const kLess: readonly string[] = ["refused", "p50", "queue"];  // what a phone leaves out
+const kLess: readonly string[] = ["refused", "p50", "queue"];  // what a narrow pane has no columns for
 const kEvery_ms = 500;
 const kLosing_ms = 5000;  // how long a loss is marked
 
 const latency = (latency_us: number) => (latency_us < 0 ? "–" : texts.panels.health.milliseconds((latency_us / 1000).toFixed(latency_us < 10_000 ? 1 : 0)));
 
+// Beside its name a channel says what is not as it should be, and its latency.
+function isTold(column: (typeof kColumns)[number], row: ChannelRow): boolean {
+  return column === "refused" ? row.num_refused > 0 : column === "queue" ? row.queue_depth > 0 : row.latency_p50_us >= 0;
+}
+
 class Row {
   readonly element = make("tr");
   private readonly name = make("span");
   private readonly from = make("small");
+  private readonly lesser = make("small", "lesser");  // what a narrow pane has no columns for
   private readonly cells = kColumns.map((column) => make("td", kLess.includes(column) ? "less" : ""));
   private num_lost = -1;
   private lost_ms = -Infinity;
 
   constructor() {
     const cell = make("td");
-    cell.append(this.name, this.from);
+    cell.append(this.name, this.from, this.lesser);
     this.element.append(cell, ...this.cells);
   }
 
@@ -38,6 +44,7 @@ class Row {
       String(row.num_refused), latency(row.latency_p50_us), latency(row.latency_p99_us),
       row.queue_depth < 0 ? "–" : words.queue(row.queue_depth, row.queue_limit),
     ];
+    setText(this.lesser, kColumns.flatMap((column, index) => (kLess.includes(column) && isTold(column, row) ? [`${words.columns[column]} ${values[index]!}`] : [])).join(" · "));
     values.forEach((value, index) => { setText(this.cells[index]!, value); });
     this.cells[1]!.classList.toggle("losing", isLosing);
     this.cells[2]!.classList.toggle("losing", row.num_refused > 0);

@@ -1,7 +1,7 @@
 // One chart of numbers of like name and unit, by uPlot. Its cursor moves with those of the other charts.
 import uPlot from "uplot";
 import { texts } from "../texts/index.js";
-import { timeOfDay } from "../units.js";
+import { sinceBegin, timeOfDay } from "../units.js";
 import { onCircle, unwrapped } from "./circle.js";
 import { button, make, setText } from "./dom.js";
 import { svg } from "./shapes.js";
@@ -45,6 +45,7 @@ export class Chart {
   private readonly factors: number[];
   private readonly isCircle: boolean;
   private shown_s = NaN;
+  private begin_s = NaN;
   private colours = new Map<string, string>();
 
   constructor(readonly paths: readonly Path[], width_px: number, actions: ChartActions) {
@@ -79,7 +80,7 @@ export class Chart {
       scales: { x: { time: true } },
       tzDate: (seconds) => uPlot.tzDate(new Date(seconds * 1000), "Etc/UTC"),
       axes: [
-        { ...axis(), space: 80, size: 28, values: (_, splits) => splits.map((split) => timeOfDay(split * 1e6)) },
+        { ...axis(), space: 80, size: () => (Number.isFinite(this.begin_s) ? 42 : 28), values: (_, splits) => splits.map((split) => `${timeOfDay(split * 1e6)}\n${sinceBegin(split * 1e6, this.begin_s * 1e6, 0)}`.trim()) },
         {
           ...axis(), size: 64, space: 28, ...(this.isCircle ? { incrs: kDegreeSteps } : {}),
           values: (_, splits) => splits.map((split) => this.word(Number(split.toPrecision(6)))),
@@ -100,8 +101,9 @@ export class Chart {
     this.recolour();
   }
 
-  /** @param now_s the moment that is shown, marked by a line; NaN: none */
-  draw(rings: ReadonlyMap<Path, Ring>, from_s: number, to_s: number, now_s: number): void {
+  /** @param now_s the moment that is shown, marked by a line; NaN: none. @param begin_s where seconds are counted from; NaN: nowhere */
+  draw(rings: ReadonlyMap<Path, Ring>, from_s: number, to_s: number, now_s: number, begin_s: number): void {
+    this.begin_s = begin_s;
     this.shown_s = now_s;
     const buckets = Math.max(100, Math.min(600, Math.floor(this.plot.width / 2)));
     const tables = this.paths.map((path, index) => {

@@ -7,6 +7,7 @@ import { ringStep } from "../drawing/own_boat.js";
 import { ownPlace, type OwnPlace } from "../drawing/scene.js";
 import { Stage } from "../drawing/stage.js";
 import { danger } from "../drawing/tracks.js";
+import { whyNothing } from "../film.js";
 import type { Track } from "../messages/generated.js";
 import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
@@ -87,7 +88,7 @@ export class CloudView implements View {
     const { context, width_px, height_px } = this.stage, { picture } = this.state, theme = currentTheme();
     context.clearRect(0, 0, width_px, height_px);
     const lost = this.points.works ? "" : texts.drawing.restoring;
-    this.stage.setNote(picture === null ? texts.nothingYet : lost !== "" ? lost : picture.returns === null ? texts.drawing.no_scan : "");
+    this.stage.setNote(picture === null ? whyNothing(this.state) : lost !== "" ? lost : picture.returns === null ? texts.drawing.no_scan : "");
     if (picture === null) return;
     const matrix = this.matrix(), own = ownPlace(picture), labels: Label[] = [];
     this.lines.begin();

@@ -1,25 +1,34 @@
 // Two recordings of the same journey beside each other, at the same scan: what one says and the other does not is marked and listed.
 import type { Scene } from "../drawing/scene.js";
 import type { Theme } from "../drawing/colours.js";
-import { type Film, lineOf } from "../film.js";
-import { type Frame, RequestRefused } from "../link.js";
-import type { Track } from "../messages/generated.js";
-import { Assembler, kPictureChannels, type Picture } from "../picture.js";
+import { beginOf, type Film, lineOf } from "../film.js";
+import { type Answer, type Frame, RequestRefused } from "../link.js";
+import { Segments, type Track } from "../messages/generated.js";
+import { Assembler, type Picture } from "../picture.js";
 import { State, type View } from "../state.js";
 import { texts } from "../texts/index.js";
-import { bearing, length, speed } from "../units.js";
+import { bearing, length, sinceBegin, speed } from "../units.js";
 import { AroundView } from "./around.js";
-import { compare, type Differences } from "./differences.js";
+import { Beginnings, compare, compareLabels, type Differences, type Limits, mattering, nameOfAlert, nameOfTrack } from "./differences.js";
+import { button, make, setAttribute, setText } from "./dom.js";
 
-const kMostSearched = 600;   // scans, for the next one that differs
+const kToldEvery = 10;
+const kSearched = ["SEGMENTS", "TRACKS", "ALERTS"];   // what is asked for of the scans that are searched
 
 /** The picture around the boat with marks, which moves with the one beside it. */
 class ComparedView extends AroundView {
   beside: ComparedView | null = null;
+  /** Whose scale is also this one's; null: it has its own. */
+  leader: ComparedView | null = null;
   /** Places in the level frame, m: x forward, y port; one pair after the other. */
   marks: Float32Array = new Float32Array();
   segmentMarks: { x_m: number; y_m: number; radius_m: number }[] = [];
 
+  protected override place(picture: Picture, scene: Scene): boolean {
+    const isPlaced = super.place(picture, scene);
+    if (this.leader !== null && this.leader.scene !== null) this.plane.px_per_m = this.leader.plane.px_per_m;
+    return isPlaced;
+  }
   protected override pan(dx_px: number, dy_px: number): void {
     super.pan(dx_px, dy_px);
     this.beside?.follow(() => { this.beside?.panAlone(dx_px, dy_px); }, this.plane.px_per_m);
@@ -64,25 +73,31 @@ class ComparedView extends AroundView {
   };
 }
 
-function element<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, name: string, text = ""): HTMLElementTagNameMap[Tag] {
-  const made = document.createElement(tag);
-  made.className = name;
-  if (text !== "") made.textContent = text;
-  return made;
+// Labels of all returns of a scan, column by column; null where it has no SEGMENTS.
+function labelsOf(frames: readonly Frame[]): Int16Array | null {
+  const parts = frames.filter(({ channel }) => channel === "SEGMENTS").map(({ bytes }) => Segments.decode(bytes)).sort((a, b) => a.first_column - b.first_column);
+  if (parts.length === 0) return null;
+  const labels = new Int16Array(parts.reduce((sum, part) => sum + part.label.length, 0));
+  let at = 0;
+  for (const { label } of parts) { labels.set(label, at); at += label.length; }
+  return labels;
 }
 
 export class CompareView implements View {
-  readonly element = element("div", "view compare");
+  readonly element = make("div", "view compare");
   private readonly sides: State[];
   private readonly views: ComparedView[];
-  private readonly names = [element("h2", "compare_name"), element("h2", "compare_name")];
-  private readonly summary = element("p", "compare_summary");
-  private readonly table = element("table", "compare_table");
+  private readonly names = [make("h2", "compare_name"), make("h2", "compare_name")];
+  private readonly summary = make("p", "compare_summary");
+  private readonly table = make("table", "compare_table");
   private readonly search: HTMLButtonElement;
-  private readonly body = element("div", "compare_body");
-  private readonly hint = element("p", "compare_hint", texts.compare.hint);
+  private readonly body = make("div", "compare_body");
+  private readonly hint = make("p", "compare_hint", texts.compare.hint);
+  private readonly flips: HTMLButtonElement[];
   private isVisible = false;
   private isSearching = false;
+  /** What was found to begin at the scan that is shown: its rows are marked. */
+  private found: { utime_us: number; names: ReadonlySet<string> } = { utime_us: NaN, names: new Set() };
   private shown: { first: Picture | null; second: Picture | null } = { first: null, second: null };
 
   constructor(private readonly state: State, private readonly film: Film) {
@@ -91,28 +106,42 @@ export class CompareView implements View {
     const [left, right] = this.views as [ComparedView, ComparedView];
     left.beside = right;
     right.beside = left;
-    this.search = element("button", "compare_next", texts.compare.next);
-    this.search.type = "button";
-    this.search.onclick = () => { if (this.isSearching) this.isSearching = false; else void this.searchOn(); };
+    right.leader = left;
+    this.search = button(texts.compare.next, () => { if (this.isSearching) this.isSearching = false; else void this.searchOn(); }, "compare_next");
     this.summary.setAttribute("role", "status");
+    const limits = make("div", "compare_limits");
+    limits.append(this.limit("differs_share", texts.compare.limits.share, texts.compare.percentOfReturns), this.limit("differs_moved_m", texts.compare.limits.moved, (metres) => length(state.settings, metres)));
+    // On a phone one side is seen at a time.
+    const flip = make("div", "compare_flip");
+    this.flips = [0, 1].map((index) => button("", () => { show(index); }));
+    const show = (index: number) => {
+      this.body.dataset["side"] = String(index);
+      for (const [each, one] of this.flips.entries()) setAttribute(one, "aria-pressed", String(each === index));
+    };
+    flip.append(...this.flips);
+    show(0);
     this.table.setAttribute("aria-label", texts.compare.table);
     const panes = this.views.map((view, index) => {
-      const pane = element("section", "compare_side");
+      const pane = make("section", "compare_side");
       pane.append(this.names[index]!, view.element);
       return pane;
     });
-    const drawn = element("div", "compare_sides"), told = element("div", "compare_told"), head = element("div", "compare_head");
+    const drawn = make("div", "compare_sides"), told = make("div", "compare_told"), head = make("div", "compare_head");
     drawn.append(...panes);
-    head.append(this.summary, this.search);
+    head.append(this.summary, this.search, limits);
     told.append(head, this.table);
-    this.body.append(drawn, told);
+    this.body.append(flip, drawn, told);
     this.element.append(this.hint, this.body);
     for (const [index, side] of this.sides.entries()) {
       // What is pointed at here is pointed at in the whole page; ids of the second recording are its own.
       if (index === 0) side.on(["marked"], () => { state.mark(side.marked); });
     }
     state.on(["marked"], () => { this.sides[0]!.mark(state.marked); });
-    state.on(["settings"], () => { for (const side of this.sides) side.tell("settings"); });
+    state.on(["settings"], () => {
+      for (const side of this.sides) side.tell("settings");
+      this.shown = { first: null, second: null };
+      this.update();
+    });
     state.on(["sources"], () => { this.choose(); });
     state.on(["picture", "showing"], () => { this.update(); });
     this.choose();
@@ -126,6 +155,19 @@ export class CompareView implements View {
     this.update();
   }
 
+  // From where on a difference is worth a stop.
+  private limit(name: "differs_share" | "differs_moved_m", label: string, textOf: (value: number) => string): HTMLElement {
+    const { settings } = this.state, choice = make("select"), labelled = make("label", "muted", `${label} `);
+    for (const value of settings.choices(name)) choice.add(new Option(value === 0 ? texts.compare.never : textOf(value), String(value)));
+    const draw = () => { choice.value = String(settings.get(name)); };
+    choice.onchange = () => { settings.set(name, Number(choice.value)); };
+    this.state.on(["settings"], draw);
+    draw();
+    labelled.append(choice);
+    return labelled;
+  }
+  private get limits(): Limits { return { share: this.state.settings.get("differs_share"), moved_m: this.state.settings.get("differs_moved_m") }; }
+
   /** The recording that runs beside the first of the line; undefined: there is none. */
   private get other(): number | undefined {
     const line = lineOf(this.state.sources).map((source) => source.id);
@@ -138,8 +180,10 @@ export class CompareView implements View {
       this.body.hidden = other === undefined;
       for (const view of this.views) view.setVisible(this.isVisible && other !== undefined);
     }
-    this.names[0]!.textContent = name(lineOf(this.state.sources)[0]?.id);
-    this.names[1]!.textContent = name(other);
+    for (const [index, id] of [lineOf(this.state.sources)[0]?.id, other].entries()) {
+      setText(this.names[index]!, name(id));
+      setText(this.flips[index]!, name(id));
+    }
     this.film.setBeside(this.isVisible && other !== undefined ? other : null);
   }
 
@@ -147,7 +191,7 @@ export class CompareView implements View {
     const first = this.state.picture, second = this.state.beside;
     if (!this.isVisible || this.body.hidden || (first === this.shown.first && second === this.shown.second)) return;
     this.shown = { first, second };
-    const differences = first === null || second === null ? null : compare(first, second);
+    const differences = first === null || second === null ? null : compare(first, second, this.limits.moved_m);
     for (const [index, side] of this.sides.entries()) {
       side.picture = index === 0 ? first : second;
       side.showing = this.state.showing;
@@ -184,24 +228,30 @@ export class CompareView implements View {
 
   private tell(differences: Differences | null): void {
     const { compare: words } = texts;
-    const rows: [string, string, string][] = [];
-    if (differences === null) this.summary.textContent = words.nothing;
-    else if (!differences.isSameScan) this.summary.textContent = words.noScan;
+    const rows: { name: string; cells: [string, string, string] }[] = [];
+    if (differences === null) setText(this.summary, words.nothing);
+    else if (!differences.isSameScan) setText(this.summary, words.noScan);
     else {
       const { otherReturns, numReturns, segmentsOnlyInFirst, segmentsOnlyInSecond } = differences;
       const share = numReturns === 0 ? 0 : 100 * otherReturns.length / numReturns;
-      this.summary.textContent = isSame(differences) ? words.same(numReturns) : words.returns(otherReturns.length, numReturns, share.toFixed(share < 10 ? 1 : 0));
-      if (segmentsOnlyInFirst.length + segmentsOnlyInSecond.length > 0) rows.push([words.segments, String(segmentsOnlyInFirst.length), String(segmentsOnlyInSecond.length)]);
-      for (const { first, second, what } of differences.tracks) rows.push([words.track[what], this.track(first), this.track(second)]);
-      for (const text of differences.alertsOnlyInFirst) rows.push([words.alert, text, "–"]);
-      for (const text of differences.alertsOnlyInSecond) rows.push([words.alert, "–", text]);
+      setText(this.summary, isSame(differences) ? words.same(numReturns) : words.returns(otherReturns.length, numReturns, share.toFixed(share < 10 ? 1 : 0)));
+      for (const alert of differences.alertsOnlyInFirst) rows.push({ name: nameOfAlert(alert, "first"), cells: [words.alert, alert.text, "–"] });
+      for (const alert of differences.alertsOnlyInSecond) rows.push({ name: nameOfAlert(alert, "second"), cells: [words.alert, "–", alert.text] });
+      for (const difference of differences.tracks) {
+        const { first, second, what } = difference;
+        rows.push({ name: nameOfTrack(difference), cells: [words.track[what], this.track(first), this.track(second)] });
+      }
+      if (segmentsOnlyInFirst.length + segmentsOnlyInSecond.length > 0) rows.push({ name: "", cells: [words.segments, String(segmentsOnlyInFirst.length), String(segmentsOnlyInSecond.length)] });
     }
-    const row = (cells: readonly string[], tag: "td" | "th") => {
-      const line = document.createElement("tr");
-      line.append(...cells.map((text) => element(tag, "", text)));
+    const isFound = this.found.utime_us === this.state.picture?.utime_us;
+    this.summary.classList.toggle("begins", isFound && (this.found.names.has("returns") || this.found.names.has("scan")));
+    const row = (cells: readonly string[], tag: "td" | "th", begins = false) => {
+      const line = make("tr", begins ? "begins" : "");
+      line.append(...cells.map((text) => make(tag, "", text)));
+      if (begins) line.title = words.begins;
       return line;
     };
-    this.table.replaceChildren(row(["", words.first, words.second], "th"), ...rows.map((cells) => row(cells, "td")));
+    this.table.replaceChildren(row(["", words.first, words.second], "th"), ...rows.map(({ name, cells }) => row(cells, "td", isFound && this.found.names.has(name))));
     this.table.hidden = rows.length === 0;
   }
   private track(track: Track | null): string {
@@ -211,38 +261,47 @@ export class CompareView implements View {
       track.tcpa_s > 0 ? texts.compare.approach(length(settings, track.cpa_m)) : ""].filter((part) => part !== "").join(", ");
   }
 
-  // The next scan of which segments, tracks or alerts differ.
+  // The next scan at which a difference that matters begins: one that lasts is met once.
   private async searchOn(): Promise<void> {
-    const { link, showing } = this.state, other = this.other;
+    const { link, showing } = this.state, other = this.other, { limits } = this;
     if (link === null || showing.kind !== "recorded" || other === undefined) return;
     this.film.pause();
     this.isSearching = true;
+    const begin_utime_us = beginOf(this.state), beginnings = new Beginnings();
     let at_us = showing.utime_us, numSearched = 0;
-    const picture = (frames: Frame[], source: number) => {
-      const assembler = new Assembler();
-      assembler.boat = this.state.sources.find((candidate) => candidate.id === source)?.boat ?? null;
-      for (const frame of frames) assembler.take(frame);
-      return assembler.picture();
+    const differencesOf = async (answer: Answer) => {
+      const beside = await link.at(other, { scan_utime_us: answer.head.scan_utime_us }, kSearched);
+      return compareLabels(pictureOf(answer.frames), pictureOf(beside.frames), labelsOf(answer.frames), labelsOf(beside.frames), limits.moved_m);
     };
     try {
-      while (this.isSearching && numSearched < kMostSearched) {
-        const { head, frames } = await link.step(showing.source, at_us, 1, kPictureChannels);
-        if (head.utime_us <= at_us) { this.summary.textContent = texts.compare.noMore; break; }
-        const beside = await link.at(other, { scan_utime_us: head.scan_utime_us }, kPictureChannels);
-        at_us = head.utime_us;
-        const differences = compare(picture(frames, head.source), picture(beside.frames, other));
-        if (!differences.isSameScan || !isAlike(differences)) { this.film.seek(at_us); break; }
-        this.search.textContent = texts.compare.searching(++numSearched);
+      // What the scan that is shown says already is nothing new.
+      beginnings.take(mattering(await differencesOf(await link.at(showing.source, { utime_us: at_us }, kSearched)), limits));
+      while (this.isSearching) {
+        const answer = await link.step(showing.source, at_us, 1, kSearched);
+        if (answer.head.utime_us <= at_us) { this.end(texts.compare.noMore); break; }
+        at_us = answer.head.utime_us;
+        const names = beginnings.take(mattering(await differencesOf(answer), limits));
+        if (names.length > 0) {
+          this.found = { utime_us: answer.head.scan_utime_us, names: new Set(names) };
+          this.film.seek(at_us);
+          break;
+        }
+        if (++numSearched % kToldEvery === 0) setText(this.search, texts.compare.searching(sinceBegin(at_us, begin_utime_us)));
       }
-      if (numSearched === kMostSearched) this.film.seek(at_us);
     } catch (error) {
       if (!(error instanceof RequestRefused)) throw error;
     }
     this.isSearching = false;
-    this.search.textContent = texts.compare.next;
+    setText(this.search, texts.compare.next);
   }
+  private end(text: string): void { setText(this.summary, text); }
 }
 
+function pictureOf(frames: readonly Frame[]): Picture {
+  const assembler = new Assembler();
+  for (const frame of frames) assembler.take(frame);
+  return assembler.picture();
+}
 function isAlike({ segmentsOnlyInFirst, segmentsOnlyInSecond, tracks, alertsOnlyInFirst, alertsOnlyInSecond }: Differences): boolean {
   return segmentsOnlyInFirst.length + segmentsOnlyInSecond.length + tracks.length + alertsOnlyInFirst.length + alertsOnlyInSecond.length === 0;
 }

@@ -51,11 +51,11 @@ export class Facts {
   readonly element = make("dl", "facts");
   private readonly values = new Map<string, { row: HTMLElement; value: HTMLElement }>();
 
-  /** A value of null hides its row. */
-  set(name: string, value: string | null): void {
+  /** A value of null hides its row; a long one has the room of two. */
+  set(name: string, value: string | null, isLong = false): void {
     let found = this.values.get(name);
     if (found === undefined) {
-      found = { row: make("div"), value: make("dd") };
+      found = { row: make("div", isLong ? "long" : ""), value: make("dd") };
       found.row.append(make("dt", "", name), found.value);
       this.values.set(name, found);
       this.element.append(found.row);

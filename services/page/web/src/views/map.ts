@@ -4,7 +4,7 @@ import { kFont } from "../drawing/labels.js";
 import { gridStep, latitudeOf, longitudeOf, mercatorX, mercatorY, offset, position, widthAt } from "../drawing/mercator.js";
 import type { Scene } from "../drawing/scene.js";
 import { Tiles } from "../drawing/tiles.js";
-import type { Picture } from "../picture.js";
+import { lacking, type Picture } from "../picture.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
 import { PlanView } from "./plan_view.js";
@@ -12,6 +12,7 @@ import { PlanView } from "./plan_view.js";
 const kFirstReach_m = 60;
 const kMost_px_per_m = 80;
 const kGrid_px = 130;
+const kNoTiles_px = 24;
 
 export class MapView extends PlanView {
   private readonly tiles = new Tiles();
@@ -101,9 +102,10 @@ export class MapView extends PlanView {
     context.textBaseline = "top";
     context.textAlign = "left";
     for (let k = Math.ceil(west / step); k * step <= east; ++k) context.fillText(position(k * step, false, decimals), screenX(k * step) + 4, 4);
+    // Below the longitudes: at the foot are the scale and the legend of colours.
+    if (this.tiles.isAbsent) context.fillText(texts.drawing.no_tiles, 4, kNoTiles_px);
     context.textBaseline = "bottom";
-    if (this.tiles.file === null) context.fillText(texts.drawing.no_tiles, 170, height_px - 12);
-    for (let k = Math.ceil(south / step); k * step <= north; ++k) if (screenY(k * step) < height_px - 60) context.fillText(position(k * step, true, decimals), 4, screenY(k * step) - 3);
+    for (let k = Math.ceil(south / step); k * step <= north; ++k) if (screenY(k * step) < height_px - 124 && screenY(k * step) > kNoTiles_px + 34) context.fillText(position(k * step, true, decimals), 4, screenY(k * step) - 3);
   }
   private paintOwnWay(context: CanvasRenderingContext2D, theme: Theme): void {
     const { own_deg } = this.trails;
@@ -131,5 +133,5 @@ export class MapView extends PlanView {
   protected describe({ picture }: Scene): string {
     return texts.drawing.map(`${position(picture.pose?.latitude_deg ?? NaN, true)}, ${position(picture.pose?.longitude_deg ?? NaN, false)}`);
   }
-  protected noteFor(scene: Scene | null): string { return scene === null ? texts.drawing.no_place : ""; }
+  protected noteFor(scene: Scene | null): string { return scene === null ? texts.drawing.no_place[lacking(this.state.picture?.pose ?? null) ?? "position"] : ""; }
 }

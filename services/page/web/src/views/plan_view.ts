@@ -1,7 +1,8 @@
 // What `around` and `map` share: returns below, the scene above, pointing, measuring.
-import { kHeightEnds_m, kReflectivityEnds, currentTheme, rampColour, returnColours, type Theme } from "../drawing/colours.js";
-import { drawLabels, kFont } from "../drawing/labels.js";
+import { currentTheme, returnColours, type Theme } from "../drawing/colours.js";
+import { drawLabels } from "../drawing/labels.js";
 import { paintKnownThings, paintLand, paintObstacles } from "../drawing/land.js";
+import { paintLegend } from "../drawing/legend.js";
 import { isOnOwn, Measure } from "../drawing/measure.js";
 import { paintGuardZones, paintOwnBoat, paintRings, paintScale } from "../drawing/own_boat.js";
 import { pickReturn, pickTrack } from "../drawing/pick.js";
@@ -12,12 +13,15 @@ import { Stage } from "../drawing/stage.js";
 import { isShown, paintTracks, paintTrails } from "../drawing/tracks.js";
 import { Trails } from "../drawing/trails.js";
 import { describeReturn } from "../drawing/words.js";
+import { whyNothing } from "../film.js";
 import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
+import { colourButton } from "./colour_button.js";
 
 const kMouse_px = 14, kFinger_px = 28, kReturn_px = 8;
 const kDescribe_ms = 3000;
+const kLegend_px = 180;
 
 export abstract class PlanView implements View {
   protected readonly plane = new Plane();
@@ -50,17 +54,7 @@ export abstract class PlanView implements View {
     this.stage.button(texts.drawing.centre, "centre", () => { this.centre(); });
     this.measureButton = this.stage.button(texts.drawing.measure, "measure", () => { this.toggleMeasure(); });
     this.measureButton.setAttribute("aria-pressed", "false");
-    const colour = this.stage.button("", "colours", () => {
-      const choices = state.settings.choices("colour_by");
-      state.settings.set("colour_by", choices[(choices.indexOf(state.settings.get("colour_by")) + 1) % choices.length]!);
-    });
-    const nameColour = () => {
-      const label = texts.drawing.colour(texts.drawing.colours[state.settings.get("colour_by")]);
-      colour.title = label;
-      colour.setAttribute("aria-label", label);
-    };
-    nameColour();
-    state.on(["settings"], nameColour);
+    colourButton(this.stage, state, "colour_by");
     const step = (dx: number, dy: number) => () => { this.pan(dx, dy); };
     this.stage.keys({
       "+": nearer(1.25), "=": nearer(1.25), "-": nearer(0.8), Home: () => { this.centre(); }, "0": () => { this.centre(); }, m: () => { this.toggleMeasure(); },
@@ -106,7 +100,7 @@ export abstract class PlanView implements View {
     this.paintReturns(scene);
     if (scene !== null) this.paintScene(scene);
     const lost = this.points.works || !this.state.settings.get("shows_returns") ? "" : texts.drawing.restoring;
-    this.stage.setNote([picture === null ? texts.nothingYet : this.noteFor(scene), lost, this.measure.hint].filter((part) => part !== "").join(" · "));
+    this.stage.setNote([picture === null ? whyNothing(this.state) : this.noteFor(scene), lost, this.measure.hint].filter((part) => part !== "").join(" · "));
     if (scene !== null && performance.now() - this.described_ms > kDescribe_ms) {
       this.described_ms = performance.now();
       this.stage.describe(this.describe(scene));
@@ -145,29 +139,14 @@ export abstract class PlanView implements View {
     paintScale(scene, 14, height_px - 14);
     this.paintLegend(scene);
   }
-  // What the colours of a ramp mean.
   private paintLegend({ context, theme }: Scene): void {
-    const by = this.state.settings.get("colour_by");
-    if (by !== "height" && by !== "reflectivity") return;
-    const ends = by === "height" ? kHeightEnds_m : kReflectivityEnds, y = this.stage.height_px - 62, width = 130;
-    for (let x = 0; x < width; x += 2) {
-      context.fillStyle = `rgb(${rampColour(x / width, theme.isNight, theme.isDark).join(" ")})`;
-      context.fillRect(14 + x, y, 2, 8);
-    }
-    context.font = kFont;
-    context.textBaseline = "bottom";
-    context.textAlign = "left";
-    context.strokeStyle = theme.css.water;
-    context.lineWidth = 4;
-    context.fillStyle = theme.css.text;
-    const text = by === "height" ? `${ends[0]} … ${ends[1]} m  ${texts.drawing.height}` : `${ends[0]} … ${ends[1]}  ${texts.drawing.colours.reflectivity}`;
-    context.strokeText(text, 14, y - 4);
-    context.fillText(text, 14, y - 4);
+    paintLegend(context, theme, this.state.settings.get("colour_by"), { x_px: 14, y_px: this.stage.height_px - 80, width_px: kLegend_px, ground: theme.css.water });
   }
 
   private toggleMeasure(): void {
     this.measure.toggle();
     this.measureButton.setAttribute("aria-pressed", String(this.measure.isOn));
+    this.stage.setTip("");
   }
   private click(x: number, y: number, reach: number): void {
     const { scene } = this;
@@ -196,6 +175,7 @@ export abstract class PlanView implements View {
     const index = this.state.settings.get("shows_returns") ? pickReturn(this.plane, picture, own.east_m, own.north_m, own.heading_rad, x, y, kReturn_px) : -1;
     const label = index < 0 ? 0 : picture.returns!.label[index]!;
     this.state.mark({ track: track?.id ?? picture.track_of_segment.get(label)?.id ?? null, segment: label > 0 ? label : null });
-    this.stage.setTip(index < 0 ? "" : describeReturn(this.state, picture, index), x, y);
+    // While it is measured, the words about a return would lie over the distance.
+    this.stage.setTip(index < 0 || this.measure.isOn ? "" : describeReturn(this.state, picture, index), x, y);
   }
 }

@@ -1,4 +1,5 @@
 // Numbers over time, chosen from all that messages hold: live the last minutes, of a recording what stood around the moment that is shown.
+import { beginOf } from "../film.js";
 import { channelOf, chartOf, type Path, Ring, timeIn, valueIn, valueInBytes } from "./series.js";
 import { type Frame, kNoConnection, RequestRefused } from "../link.js";
 import { Refused } from "../messages/reader.js";
@@ -116,7 +117,7 @@ export class Plots implements View {
     if (!this.isVisible) return;
     if (this.isRecorded) void this.fetch();
     const { from_s, to_s, now_s } = this.bounds();
-    if (to_s > from_s) for (const chart of this.charts.values()) chart.draw(this.rings, from_s, to_s, now_s);
+    if (to_s > from_s) for (const chart of this.charts.values()) chart.draw(this.rings, from_s, to_s, now_s, beginOf(this.state) / 1e6);
   }
 
   // Of a recording, or of what the server still has of the minutes before: one range for each channel.

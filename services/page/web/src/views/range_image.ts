@@ -1,14 +1,17 @@
 // The scan as the lidar has it: directions beside each other with the bow in the middle, lasers above each other; a strip for each return of a laser shot.
-import { currentTheme, returnColours, type Theme } from "../drawing/colours.js";
+import { currentTheme, rampOf, returnColours, type Theme } from "../drawing/colours.js";
 import { kFont } from "../drawing/labels.js";
+import { kLegendHeight_px, kLegendName_px, paintLegend } from "../drawing/legend.js";
 import { isOld, Stage } from "../drawing/stage.js";
 import { describeReturn } from "../drawing/words.js";
+import { whyNothing } from "../film.js";
 import type { Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { bearing } from "../units.js";
+import { colourButton } from "./colour_button.js";
 
-const kAxis_px = 26, kGap_px = 26, kMostRing_px = 24;
+const kAxis_px = 26, kGap_px = 26, kMostRing_px = 24, kLegend_px = 320, kElevation_px = 34;
 const kMostZoom = 24;
 
 interface Strip { top_px: number; height_px: number; kind: number }
@@ -51,6 +54,7 @@ export class RangeImageView implements View {
     this.stage.button(texts.drawing.zoom_in, "nearer", () => { this.zoom(1.6, this.stage.width_px / 2); });
     this.stage.button(texts.drawing.zoom_out, "further", () => { this.zoom(1 / 1.6, this.stage.width_px / 2); });
     this.stage.button(texts.drawing.reset, "centre", () => { this.reset(); });
+    colourButton(this.stage, state, "image_colour_by");
     this.stage.keys({
       "+": () => { this.zoom(1.25, this.stage.width_px / 2); }, "-": () => { this.zoom(0.8, this.stage.width_px / 2); }, Home: () => { this.reset(); },
       ArrowLeft: () => { this.pan(-0.1 * this.span); }, ArrowRight: () => { this.pan(0.1 * this.span); },
@@ -76,10 +80,11 @@ export class RangeImageView implements View {
     context.clearRect(0, 0, width_px, height_px);
     const first = picture?.scan[0];
     this.strips = [];
-    this.stage.setNote(picture === null ? texts.nothingYet : first === undefined ? texts.drawing.no_scan : "");
+    this.stage.setNote(picture === null ? whyNothing(this.state) : first === undefined ? texts.drawing.no_scan : "");
     if (picture === null || picture.returns === null || first === undefined) return;
     this.numRings = first.num_rings;
-    const numStrips = first.num_returns, room = (height_px - kAxis_px) / numStrips - kGap_px;
+    const colour_by = this.state.settings.get("image_colour_by"), legend_px = rampOf(colour_by) === undefined ? 0 : kLegendHeight_px;
+    const numStrips = first.num_returns, room = (height_px - kAxis_px - legend_px) / numStrips - kGap_px;
     const strip_px = Math.max(this.numRings, Math.min(kMostRing_px * this.numRings, room));
     for (let k = 0; k < numStrips; ++k) this.strips.push({ top_px: kGap_px + k * (strip_px + kGap_px), height_px: strip_px, kind: first.return_kind[k] ?? 1 });
     this.fill(picture, theme, numStrips);
@@ -93,6 +98,9 @@ export class RangeImageView implements View {
       context.fillText(texts.drawing.return_kinds[strip.kind] ?? "", 8, strip.top_px - 4);
     }
     this.paintAxis(context, theme);
+    for (const strip of this.strips) this.paintElevations(context, theme, strip, first.elevation_rad);
+    const last = this.strips.at(-1)!;
+    paintLegend(context, theme, colour_by, { x_px: 14, y_px: last.top_px + last.height_px + kAxis_px + kLegendName_px, width_px: Math.min(kLegend_px, width_px - 96), ground: theme.css.water });
     if (this.hover !== null) this.point();
   }
 
@@ -113,7 +121,7 @@ export class RangeImageView implements View {
     owner.fill(-1);
     const [r, g, b] = theme.rgb.panel;
     words.fill(0xff000000 | (b << 16) | (g << 8) | r);
-    const { bytes } = returnColours(this.state, picture);
+    const { bytes } = returnColours(this.state, picture, this.state.settings.get("image_colour_by"));
     // When columns are wider than a pixel, each fills all of its pixels.
     const wide = Math.max(1, Math.ceil(width / this.span / Math.max(1, numColumns)));
     for (let i = 0; i < returns.count; ++i) {
@@ -153,6 +161,22 @@ export class RangeImageView implements View {
     context.globalAlpha = 0.6;
     context.stroke();
     context.globalAlpha = 1;
+  }
+
+  // How far up the lasers look, the lowest first in the message: as many as there is room for, with the horizon.
+  private paintElevations(context: CanvasRenderingContext2D, theme: Theme, strip: Strip, elevation_rad: ArrayLike<number>): void {
+    const ring_px = strip.height_px / this.numRings, every = Math.max(1, Math.ceil(kElevation_px / ring_px));
+    context.textAlign = "left";
+    context.textBaseline = "middle";
+    context.lineJoin = "round";
+    context.strokeStyle = theme.css.panel;
+    context.lineWidth = 4;
+    context.fillStyle = theme.css.muted;
+    for (let ring = 0; ring < this.numRings; ring += every) {
+      const y = strip.top_px + (this.numRings - ring - 0.5) * ring_px, text = texts.drawing.elevation((elevation_rad[ring]! * 180 / Math.PI).toFixed(0).replace("-", "−"));
+      context.strokeText(text, 6, y);
+      context.fillText(text, 6, y);
+    }
   }
 
   // The return under a pixel of the screen, or the nearest within some pixels beside it; -1: none.

@@ -1,6 +1,6 @@
 // The sensors in words: the lidar's clock, the GNSS receiver, and what is known of the own position and heading.
 import * as wire from "../messages/generated.js";
-import type { Picture } from "../picture.js";
+import { isOnlyCourse, lacking, type Picture } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { duration } from "../units.js";
@@ -29,8 +29,9 @@ export function gravityOfClock(state: number): Gravity {
 export function gravityOfFix(quality: number): Gravity {
   return quality === wire.GnssFix.QUALITY_NONE ? "warning" : quality === wire.GnssFix.QUALITY_DEAD_RECKONING ? "caution" : "ok";
 }
-export function gravityOfPose(status: number): Gravity {
-  return status === wire.Pose.STATUS_OK ? "ok" : status === wire.Pose.STATUS_UNKNOWN ? "warning" : "caution";
+export function gravityOfPose(pose: Pick<wire.Pose, "status" | "heading_source">): Gravity {
+  if (pose.status === wire.Pose.STATUS_OK) return isOnlyCourse(pose) ? "caution" : "ok";
+  return pose.status === wire.Pose.STATUS_UNKNOWN ? "warning" : "caution";
 }
 
 class Card {
@@ -83,7 +84,7 @@ export class Sensors implements View {
     if (pose === null) return;
     const { facts } = this.pose, names = words.facts;
     const deviation = (index: number) => Math.sqrt(pose.covariance[index]?.[index] ?? NaN);
-    this.pose.tell(age_s > kOld_s ? "warning" : gravityOfPose(pose.status), words.poseStates[pose.status] ?? "");
+    this.pose.tell(age_s > kOld_s ? "warning" : gravityOfPose(pose), lacking(pose) === null && isOnlyCourse(pose) ? words.onlyCourse : words.poseStates[pose.status] ?? "");
     facts.set(names.age, texts.panels.health.ago(duration(age_s)));
     facts.set(names.place, place(pose.latitude_deg, pose.longitude_deg));
     facts.set(names.deviation, deviationText(Math.max(deviation(0), deviation(1))));

@@ -16,7 +16,7 @@ const kGap_us = 2_000_000;
 /** From the begin of the first to the end of the last recording; null: there are none. */
 export function wholeSpan(line: readonly Source[]): Span | null {
   const first = line[0], last = line.at(-1);
-  if (first === undefined || last === undefined) return null;
+  if (first === undefined || last === undefined || last.end_utime_us <= 0) return null;  // 0: nothing is known yet
   return { from_utime_us: first.begin_utime_us, to_utime_us: Math.max(last.end_utime_us, first.begin_utime_us + 1_000_000) };
 }
 

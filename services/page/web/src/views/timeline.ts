@@ -1,12 +1,13 @@
 // The time line: what happened when, where the shown moment lies, and the player's buttons.
-import { type Film, kRates, lineOf, sourceAt } from "../film.js";
+import { beginOf, type Film, kRates, lineOf, sourceAt } from "../film.js";
 import type { State } from "../state.js";
 import { texts } from "../texts/index.js";
-import { date, timeOfDay } from "../units.js";
+import { date, timeText } from "../units.js";
 import { type JumpKind, kJumpKinds, moved, nextEvent, type Span, Strips, wholeSpan, zoomed } from "./strip.js";
 import { type Sign, sign } from "./signs.js";
 import { describe, drawStrip } from "./timeline_canvas.js";
 import { parseTime } from "./time_text.js";
+import { faultOfPage } from "./traffic.js";
 
 const kFollows_share = 0.9;  // a playing moment beyond this share of the span moves the span
 const kTap_px = 4;
@@ -57,6 +58,7 @@ export class Timeline {
   private readonly pointers = new Map<number, { x: number; began: number }>();
   private hasPinched = false;
   private sourcesKey = "";
+  private fault = "";   // of the last minutes, as the page's own HEALTH has it
 
   constructor(private readonly state: State, private readonly film: Film) {
     this.strips = new Strips(state, () => { this.isDirty = true; });
@@ -92,6 +94,7 @@ export class Timeline {
     this.slider.setAttribute("aria-label", texts.film.slider);
     this.listen();
     state.on(["showing", "sources", "connection", "settings"], () => { this.update(); });
+    state.on(["picture"], () => { this.takeFault(); });
     new ResizeObserver(() => { this.isDirty = true; }).observe(this.slider);
     const draw = () => {
       this.draw();
@@ -110,6 +113,8 @@ export class Timeline {
     return showing.kind === "recorded" ? showing.utime_us : this.whole?.to_utime_us ?? NaN;
   }
 
+  private text(utime_us: number): string { return timeText(utime_us, beginOf(this.state)); }
+
   private togglePlay(): void {
     if (this.film.isPlaying) this.film.pause(); else this.film.play();
   }
@@ -117,7 +122,7 @@ export class Timeline {
     const event = nextEvent(this.strips.events, this.kind.value as JumpKind, this.shown_utime_us, direction);
     if (event === undefined) { this.say(texts.film.noSuchEvent(texts.film.kinds[this.kind.value as JumpKind])); return; }
     this.film.seek(event.utime_us);
-    this.say(`${timeOfDay(event.utime_us, 1)} ${event.text}`);
+    this.say(`${this.text(event.utime_us)}: ${event.text}`);
     if (this.span !== null && this.whole !== null) {
       const half = (this.span.to_utime_us - this.span.from_utime_us) / 2;
       if (event.utime_us < this.span.from_utime_us || event.utime_us > this.span.to_utime_us) this.span = moved(this.span, this.whole, event.utime_us - this.span.from_utime_us - half);
@@ -127,10 +132,17 @@ export class Timeline {
     const whole = this.whole;
     if (whole === null || this.time.value.trim() === "") return;
     const utime_us = parseTime(this.time.value, whole.from_utime_us, whole.to_utime_us);
-    if (utime_us === null) { this.say(texts.film.badTime(timeOfDay(whole.from_utime_us), timeOfDay(whole.to_utime_us))); return; }
+    if (utime_us === null) { this.say(texts.film.badTime(this.text(whole.from_utime_us), this.text(whole.to_utime_us))); return; }
     this.time.value = "";
     this.say("");
     this.film.seek(utime_us);
+  }
+  // Why the last minutes are not kept (no room on the disk), or what else the page's own process lacks.
+  private takeFault(): void {
+    const reason = this.state.hello?.mode === "live" ? faultOfPage(this.state.picture?.health ?? []) : "", fault = reason === "" ? "" : texts.film.fault(reason);
+    if (fault === this.fault) return;
+    this.fault = fault;
+    this.update();
   }
   private zoom(factor: number): void {
     const { whole, shownSpan } = this;
@@ -254,7 +266,7 @@ export class Timeline {
       this.strips.clear();
     }
     const isRecorded = state.showing.kind === "recorded", isLive = state.hello?.mode === "live";
-    this.element.hidden = state.sources.length === 0;
+    this.element.hidden = state.sources.length === 0 && this.fault === "";
     this.element.dataset["showing"] = state.showing.kind;
     this.liveButton.hidden = !isLive;
     this.liveButton.setAttribute("aria-pressed", String(!isRecorded));
@@ -267,12 +279,13 @@ export class Timeline {
     this.liveAlerts.dataset["level"] = String(worst);
     this.liveAlerts.textContent = texts.film.liveAlerts(film.liveAlerts.length, film.liveAlerts[0]?.text ?? "");
     const shares = [...state.indexing.values()];
-    const note = shares.length > 0 ? texts.indexing(Math.floor(100 * Math.min(...shares))) : film.refusal !== "" ? texts.film.refused(film.refusal) : this.said;
-    this.note.textContent = isRecorded && isLive ? `${texts.film.notNow(timeOfDay(this.shown_utime_us))} ${note}` : note;
+    const note = shares.length > 0 ? texts.indexing(Math.floor(100 * Math.min(...shares))) : film.refusal !== "" ? texts.film.refused(film.refusal) : this.said !== "" ? this.said : this.fault;
+    this.note.textContent = isRecorded && isLive ? `${texts.film.notNow(this.text(this.shown_utime_us))} ${note}` : note;
+    this.note.classList.toggle("fault", note !== "" && note === this.fault);
     this.note.parentElement!.hidden = this.note.textContent === "" && this.liveAlerts.hidden;
     const { showing } = state;
     if (showing.kind === "recorded") {
-      this.clock.textContent = `${date(showing.utime_us)} ${timeOfDay(showing.utime_us, 1)} UTC`;
+      this.clock.textContent = `${date(showing.utime_us)} ${this.text(showing.utime_us)}`;
       this.clock.title = texts.film.scan(showing.scan_index + 1, showing.num_scans);
       this.follow(showing.utime_us);
     } else this.clock.textContent = "";
@@ -296,19 +309,19 @@ export class Timeline {
     this.isDirty = false;
     const shown_utime_us = this.shown_utime_us, strips = this.strips.of(span);
     const sources = lineOf(this.state.sources);
-    drawStrip(this.canvas, { span, strips, sources, shown_utime_us, isLive: this.state.showing.kind === "live", pointed_px: this.pointed_px });
+    drawStrip(this.canvas, { span, strips, sources, shown_utime_us, begin_utime_us: beginOf(this.state), isLive: this.state.showing.kind === "live", pointed_px: this.pointed_px });
     const { slider } = this;
     slider.setAttribute("aria-valuemin", "0");
     slider.setAttribute("aria-valuemax", String(Math.round((whole.to_utime_us - whole.from_utime_us) / 1e6)));
     slider.setAttribute("aria-valuenow", String(Math.round((shown_utime_us - whole.from_utime_us) / 1e6)));
-    slider.setAttribute("aria-valuetext", `${timeOfDay(shown_utime_us)} UTC, ${describe(strips, shown_utime_us).join(", ")}`);
+    slider.setAttribute("aria-valuetext", `${this.text(shown_utime_us)}, ${describe(strips, shown_utime_us).join(", ")}`);
     this.tip.hidden = this.pointed_px === null;
     if (this.pointed_px === null) return;
     const utime_us = this.timeAt(this.pointed_px);
     const near_us = 6 / Math.max(1, slider.clientWidth) * (span.to_utime_us - span.from_utime_us);
     const event = this.strips.events.filter((candidate) => Math.abs(candidate.utime_us - utime_us) < near_us).sort((a, b) => b.level - a.level)[0];
     const source = sources.length > 1 ? sourceAt(sources, utime_us)?.name : undefined;
-    this.tip.textContent = [`${timeOfDay(utime_us, 1)} UTC`, event?.text, ...describe(strips, utime_us), source].filter((text) => text !== undefined && text !== "").join(" · ");
+    this.tip.textContent = [this.text(utime_us), event?.text, ...describe(strips, utime_us), source].filter((text) => text !== undefined && text !== "").join(" · ");
     const left = Math.min(Math.max(0, this.pointed_px - this.tip.offsetWidth / 2), Math.max(0, slider.clientWidth - this.tip.offsetWidth));
     this.tip.style.transform = `translateX(${left}px)`;
   }

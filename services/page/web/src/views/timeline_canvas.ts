@@ -1,7 +1,7 @@
 // Draws the time line: a row of alerts, one of HEALTH and losses, the number of tracks as hills, times below, and where the shown moment lies.
 import type { Source, Strip } from "../link.js";
 import { texts } from "../texts/index.js";
-import { timeOfDay } from "../units.js";
+import { sinceBegin, timeOfDay } from "../units.js";
 import { gapsOf, type Span } from "./strip.js";
 
 export interface Drawn {
@@ -9,16 +9,18 @@ export interface Drawn {
   strips: readonly Strip[];
   sources: readonly Source[];
   shown_utime_us: number;
+  /** Where seconds are counted from; NaN: nowhere. */
+  begin_utime_us: number;
   isLive: boolean;
   pointed_px: number | null;
 }
 
 const kAlertRow_px = 10, kHealthRow_px = 5, kTimes_px = 16, kTop_px = 8;
 const kSteps_s = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 43200, 86400];
-const kLabel_px = 76;
+const kLabel_px = 132, kShortLabel_px = 76;
 
 /** Draws anew; reads the colours of the palette from the canvas' style. */
-export function drawStrip(canvas: HTMLCanvasElement, { span, strips, sources, shown_utime_us, isLive, pointed_px }: Drawn): void {
+export function drawStrip(canvas: HTMLCanvasElement, { span, strips, sources, shown_utime_us, begin_utime_us, isLive, pointed_px }: Drawn): void {
   const width = canvas.clientWidth, height = canvas.clientHeight, ratio = devicePixelRatio || 1;
   if (width === 0 || height === 0) return;
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -83,7 +85,7 @@ export function drawStrip(canvas: HTMLCanvasElement, { span, strips, sources, sh
     context.stroke();
     context.setLineDash([]);
   }
-  drawTimes(context, span, width, height, toX, colour);
+  drawTimes(context, span, begin_utime_us, width, height, toX, colour);
   if (pointed_px !== null) {
     context.fillStyle = colour("--muted");
     context.fillRect(Math.round(pointed_px), kTop_px, 1, bottom - kTop_px);
@@ -100,15 +102,15 @@ export function drawStrip(canvas: HTMLCanvasElement, { span, strips, sources, sh
   }
 }
 
-function drawTimes(context: CanvasRenderingContext2D, span: Span, width: number, height: number, toX: (utime_us: number) => number, colour: (name: string) => string): void {
+function drawTimes(context: CanvasRenderingContext2D, span: Span, begin_utime_us: number, width: number, height: number, toX: (utime_us: number) => number, colour: (name: string) => string): void {
   const length_s = (span.to_utime_us - span.from_utime_us) / 1e6;
-  const step_s = kSteps_s.find((candidate) => candidate / length_s * width >= kLabel_px) ?? 86400;
+  const step_s = kSteps_s.find((candidate) => candidate / length_s * width >= (Number.isFinite(begin_utime_us) ? kLabel_px : kShortLabel_px)) ?? 86400;
   const step_us = step_s * 1e6;
   context.font = "12px system-ui, sans-serif";
   context.textBaseline = "alphabetic";
   context.fillStyle = colour("--muted");
   for (let utime_us = Math.ceil(span.from_utime_us / step_us) * step_us; utime_us <= span.to_utime_us; utime_us += step_us) {
-    const x = toX(utime_us), text = timeOfDay(utime_us, step_s < 1 ? 1 : 0), textWidth = context.measureText(text).width;
+    const x = toX(utime_us), decimals = step_s < 1 ? 1 : 0, text = `${timeOfDay(utime_us, decimals)} ${sinceBegin(utime_us, begin_utime_us, decimals)}`.trim(), textWidth = context.measureText(text).width;
     context.fillRect(Math.round(x), height - kTimes_px, 1, 4);
     if (x - textWidth / 2 >= 0 && x + textWidth / 2 <= width) context.fillText(text, x - textWidth / 2, height - 2);
   }

@@ -54,7 +54,7 @@ export class TrackDetail {
     facts.set(columns.tcpa, values.tcpa);
     facts.set(names.close, words.percent(track.cpa_probability || 0));
     facts.set(names.distance, length(settings, track.distance_m));
-    facts.set(columns.rests, values.rests);
+    facts.set(columns.rests, values.rests, true);
     facts.set(names.exists, words.percent(track.existence_probability));
     facts.set(names.moves, words.percent(track.moving_probability));
     facts.set(names.size, `${track.length_m.toFixed(1)} × ${track.width_m.toFixed(1)} m`);
@@ -64,7 +64,7 @@ export class TrackDetail {
     facts.set(names.drift, Number.isFinite(track.bearing_drift_radps) ? words.perSecond((track.bearing_drift_radps * 180 / Math.PI).toFixed(1)) : null);
     facts.set(names.first, texts.panels.health.ago(duration(Math.max(0, (picture.end_utime_us - track.first_utime_us) / 1e6))));
     facts.set(names.seen, texts.panels.health.ago(duration(Math.max(0, (picture.end_utime_us - track.seen_utime_us) / 1e6))));
-    facts.set(names.place, place(track.latitude_deg, track.longitude_deg));
+    facts.set(names.place, place(track.latitude_deg, track.longitude_deg), true);
     facts.set(names.known, track.known_days > 0 ? words.days(track.known_days) : null);
   }
 }

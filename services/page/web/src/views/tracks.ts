@@ -1,5 +1,7 @@
 // The list of tracks, the most dangerous first: a table where there is room, cards on a phone; below it the chosen one in full.
+import { whyNothing } from "../film.js";
 import * as wire from "../messages/generated.js";
+import { lacking } from "../picture.js";
 import type { State, View } from "../state.js";
 import { texts } from "../texts/index.js";
 import { button, make, Pace, placeChildren, setAttribute, setText } from "./dom.js";
@@ -84,12 +86,14 @@ export class Tracks implements View {
     table.setAttribute("aria-label", texts.panels.lists.tracks);
     this.all = button("", () => { this.showsAll = true; this.draw(); }, "show-all");
     this.detail = new TrackDetail(state);
-    this.element.append(table, this.empty, this.all, this.detail.element);
+    const list = make("div", "track-list");
+    list.append(table, this.empty, this.all);
+    this.element.append(list, this.detail.element);
     table.onpointerenter = () => { this.isPointedAt = true; };
     table.onpointerleave = () => { this.isPointedAt = false; state.mark({}); };
     table.onkeydown = (event) => { this.onKey(event); };
     state.on(["picture"], () => { if (this.isVisible) this.pace.ask(); });
-    state.on(["settings", "showing"], () => { this.draw(); });
+    state.on(["settings", "showing", "connection", "sources"], () => { this.draw(); });
     state.on(["marked"], () => { this.drawMarks(); });
   }
 
@@ -121,8 +125,21 @@ export class Tracks implements View {
     this.all.hidden = shown.length === tracks.length;
     setText(this.all, words.showAll(tracks.length));
     this.empty.hidden = tracks.length > 0;
-    setText(this.empty, picture?.times_us.has("TRACKS") === true ? words.none : words.notYet);
+    setText(this.empty, this.whyNone());
     this.drawMarks();
+  }
+
+  // Without a position there are no tracks, and of a log nobody asks whether the tracker runs.
+  private whyNone(): string {
+    const { picture, showing, hello, sources } = this.state;
+    const isRecorded = showing.kind === "recorded" || hello?.mode === "log";
+    const hasTracks = picture?.times_us.has("TRACKS") === true, lacks = lacking(picture?.pose ?? null);
+    if (hasTracks) return lacks === null ? words.none : words.lacks[lacks];
+    if (picture === null && (isRecorded || hello === null)) return whyNothing(this.state);
+    if (!isRecorded) return words.notYet;
+    const source = sources.find((candidate) => showing.kind === "recorded" && candidate.id === showing.source);
+    if (source?.has_tracks === false) return source.has_pose === false ? words.logWithoutPosition : words.logWithoutTracks;
+    return lacks === null ? words.noneAtThisTime : words.lacks[lacks];
   }
 
   private drawMarks(): void {

@@ -50,6 +50,12 @@ export function channelsOf(health: readonly wire.Health[]): ChannelRow[] {
   return [...rows.values()].sort((a, b) => (a.channel < b.channel ? -1 : 1));
 }
 
+/** Why the page's own process is not well, as its HEALTH has it: the last minutes cannot be kept, say. Empty: it is well. */
+export function faultOfPage(health: readonly Pick<wire.Health, "process" | "state" | "reason">[]): string {
+  const own = health.find(({ process }) => process === "page");
+  return own === undefined || own.state === wire.Health.STATE_OK ? "" : own.reason;
+}
+
 export const kSilent_s = 3.5;  // HEALTH comes once a second
 
 export function gravityOfProcess(state: number, age_s: number): Gravity {
