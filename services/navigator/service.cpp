@@ -115,8 +115,10 @@ HealthReport Service::Report() const {
   const auto add = [&report](const std::string& reason) { report.Degrade(reason, ", "); };
   const auto& filter = navigator_.filter();
   if (!filter.stopped().empty()) add(filter.stopped());
+  if (!filter.doubted().empty()) add(filter.doubted());
   if (!filter.last_fix_arrival()) add("no position fix yet");
   if (!pose || (pose->heading_source == HeadingSource::kNone && !filter.has_had_heading())) add("no heading");
+  if (pose && pose->heading_source == HeadingSource::kCourse) add("heading is only the course over ground: no compass or attitude sensor");
   if (!filter.datum_complaint().empty()) add(filter.datum_complaint());
   if (const auto off = navigator_.host_minus_utc(); off != std::chrono::microseconds(0)) {
     add("clock of this computer is off UTC by " + InSeconds(off));

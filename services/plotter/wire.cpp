@@ -135,7 +135,9 @@ OwnShip ToOwnShip(const pose_t& message) {
   own.is_estimated = message.status == pose_t::STATUS_COASTING;
   const bool has_position = message.status != pose_t::STATUS_NO_POSITION && message.status != pose_t::STATUS_UNKNOWN;
   const bool has_heading = message.status != pose_t::STATUS_NO_HEADING && message.status != pose_t::STATUS_UNKNOWN;
-  if (has_heading && std::isfinite(message.heading_rad)) own.heading_rad = WrapTo2Pi(message.heading_rad);
+  // Course over ground that stands in for a heading is told as course only: a chart program would take it for a compass.
+  const bool is_course = message.heading_source == pose_t::HEADING_COURSE;
+  if (has_heading && !is_course && std::isfinite(message.heading_rad)) own.heading_rad = WrapTo2Pi(message.heading_rad);
   if (!has_position || !IsOnEarth(message.latitude_deg, message.longitude_deg)) return own;
   own.position = {message.latitude_deg, message.longitude_deg};
   const auto& velocity = message.velocity_map_mps;

@@ -332,12 +332,20 @@ Outline OutlineOf(const Thing& thing, double distance_m, const std::string& plac
           ""};
 }
 
-std::string NorthText(double heading_rad) { return fmt::format("north up, heading {:.1f} deg", RadToDeg(heading_rad)); }
+// Of POSE at the time of the scan.
+struct SeenHeading {
+  double heading_rad = 0.0;
+  bool is_course = false;  // over ground: there is no compass
+};
+
+std::string NorthText(const SeenHeading& heading) {
+  return fmt::format("north up, {} {:.1f} deg", heading.is_course ? "no compass: course" : "heading", RadToDeg(heading.heading_rad));
+}
 
 Picture PictureOfReturns(const ScanMessages& scan, const MergeReasons& reasons, const std::optional<config::BoatFacts>& boat,
-                         std::optional<double> heading_rad) {
-  const bool is_north_up = boat && heading_rad;
-  const double up_rad = is_north_up ? *heading_rad : 0.0;
+                         const std::optional<SeenHeading>& heading) {
+  const bool is_north_up = boat && heading;
+  const double up_rad = is_north_up ? heading->heading_rad : 0.0;
   const Eigen::Isometry3d T_vessel_lidar = boat ? boat->T_vessel_lidar : Eigen::Isometry3d::Identity();
   const auto to_picture = [&](const Vector3d& p_lidar_m) { return SeenFromAbove((T_vessel_lidar * p_lidar_m).head<2>(), up_rad); };
 
@@ -382,17 +390,17 @@ Picture PictureOfReturns(const ScanMessages& scan, const MergeReasons& reasons, 
     }
   }
   picture.title = fmt::format("Scan {}: {} returns, {}", scan.seq, num_returns, picture.Rank("segments"));
-  picture.subtitles = {UtcText(scan.utime_us), is_north_up ? NorthText(up_rad)
+  picture.subtitles = {UtcText(scan.utime_us), is_north_up ? NorthText(*heading)
                                                : boat      ? "bow up: no heading in the log"
                                                            : "lidar frame: no config of the boat in the log"};
   picture.outlines_title = "segments, nearest first, tentative last";
   return picture;
 }
 
-Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, std::optional<double> heading_rad) {
+Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config::BoatFacts>& boat, const std::optional<SeenHeading>& heading) {
   Picture picture;
-  picture.up = heading_rad ? "N" : "bow";
-  picture.bow_rad = heading_rad.value_or(0.0);
+  picture.up = heading ? "N" : "bow";
+  picture.bow_rad = heading ? heading->heading_rad : 0.0;
   if (boat) picture.own_vessel_box_m = boat->own_vessel_box_m;
   const auto to_corner = [&picture](const Vector2d& p_m) { return SeenFromAbove(p_m, *picture.bow_rad); };
   std::map<int, int> num_by_status;
@@ -409,7 +417,7 @@ Picture PictureOfObstacles(const ScanMessages& scan, const std::optional<config:
     statuses += fmt::format("{}{} {}", statuses.empty() ? ", status: " : ", ", count, words::WordOf(words::kObstacleStatus, status));
   }
   picture.title = fmt::format("Scan {}: {}", scan.seq, picture.Rank("obstacles"));
-  picture.subtitles = {UtcText(scan.utime_us) + statuses, heading_rad ? NorthText(*heading_rad) : "bow up: no heading in the log"};
+  picture.subtitles = {UtcText(scan.utime_us) + statuses, heading ? NorthText(*heading) : "bow up: no heading in the log"};
   picture.outlines_title = "nearest first, tentative last; bearing from the bow";
   return picture;
 }
@@ -437,15 +445,15 @@ class ScanSvgSink final : public Sink {
     scan_.Finish();
     if (!scan_.chosen()) return;
     auto scan = *scan_.chosen();
-    const auto heading_rad = headings_.At(scan.utime_us);
+    std::optional<SeenHeading> heading;
+    if (const auto heading_rad = headings_.At(scan.utime_us)) heading = {*heading_rad, is_course_};
     MergeReasons reasons;
     if (recorder_) {
       auto merged = recorder_->MergeChosen(scan);
       reasons = ReasonsOf(merged, *recorder_);
       scan.segments = std::move(merged.segments);
     }
-    auto picture =
-        what_ == ChosenScan::Of::kReturns ? PictureOfReturns(scan, reasons, boat_, heading_rad) : PictureOfObstacles(scan, boat_, heading_rad);
+    auto picture = what_ == ChosenScan::Of::kReturns ? PictureOfReturns(scan, reasons, boat_, heading) : PictureOfObstacles(scan, boat_, heading);
     if (recorder_) picture.subtitles[0] += ", pairs of the last round: green one, red two (rest the pointer on a line or an outline)";
     text += picture.Draw();
   }
@@ -458,13 +466,17 @@ class ScanSvgSink final : public Sink {
     // Poses that come long after the scan must not replace those of its time.
     constexpr std::int64_t kSpanUs = 10'000'000;
     const auto scan_utime_us = scan_.utime_us();
-    if (scan_utime_us == 0 || std::abs(pose->utime_us - scan_utime_us) <= kSpanUs) headings_.Add(pose->utime_us, pose->heading_rad);
+    if (scan_utime_us == 0 || std::abs(pose->utime_us - scan_utime_us) <= kSpanUs) {
+      headings_.Add(pose->utime_us, pose->heading_rad);
+      if (pose->heading_source != pose_t::HEADING_NONE) is_course_ = pose->heading_source == pose_t::HEADING_COURSE;
+    }
     return Taken::kOk;
   }
 
   ChosenScan::Of what_;
   ChosenScan scan_;
   messages::HeadingHistory headings_;
+  bool is_course_ = false;
   std::optional<config::BoatFacts> boat_;
   std::optional<MergeRecorder> recorder_;
 };

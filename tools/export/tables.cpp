@@ -144,7 +144,7 @@ void Append(const pose_t& pose, const Near* near, std::string& text) {
             Degrees(pose.has_attitude ? pose.pitch_rad : kUnknown), Metres(speed_mps), Direction{course_rad},
             words::WordOf(words::kPoseStatus, pose.status), Metres(velocity_mps.x()), Metres(velocity_mps.y()), Metres(velocity_mps.z()),
             covariance(0, 0), covariance(0, 1), covariance(1, 1), covariance(2, 2), covariance(3, 3), covariance(3, 4), covariance(4, 4),
-            covariance(5, 5), covariance(6, 6), covariance(7, 7), covariance(8, 8));
+            covariance(5, 5), covariance(6, 6), covariance(7, 7), covariance(8, 8), words::WordOf(words::kHeadingSource, pose.heading_source));
 }
 
 void Append(const lidar_clock_t& clock, std::string& text) {
@@ -235,7 +235,7 @@ const std::array kTables{
     Table{"pose",
           "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status,velocity_east_mps,"
           "velocity_north_mps,velocity_up_mps,cov_ee_m2,cov_en_m2,cov_nn_m2,cov_uu_m2,velocity_cov_ee_m2ps2,velocity_cov_en_m2ps2,"
-          "velocity_cov_nn_m2ps2,velocity_cov_uu_m2ps2,roll_var_rad2,pitch_var_rad2,heading_var_rad2",
+          "velocity_cov_nn_m2ps2,velocity_cov_uu_m2ps2,roll_var_rad2,pitch_var_rad2,heading_var_rad2,heading_source",
           bus::kPose, AppendPlaced<pose_t>},
     Table{"clock",
           "utime_us,seq,time_source,state,pps,rmc_age_us,offset_s,drift_ppm,rotation_rpm,num_packets,num_lost_packets,num_duplicate_packets,"

@@ -66,6 +66,10 @@ inline constexpr std::array kPoseStatus{Word{pose_t::STATUS_OK, "ok"}, Word{pose
                                         Word{pose_t::STATUS_NO_POSITION, "no_position"}, Word{pose_t::STATUS_UNKNOWN, "unknown"},
                                         Word{pose_t::STATUS_COASTING, "coasting"}};
 
+/// What POSE has its heading from: a compass, an attitude sensor, or only the course over ground.
+inline constexpr std::array kHeadingSource{Word{pose_t::HEADING_NONE, "none"}, Word{pose_t::HEADING_HDT, "hdt"}, Word{pose_t::HEADING_PASHR, "pashr"},
+                                           Word{pose_t::HEADING_COURSE, "course"}};
+
 inline constexpr std::array kTimeSource{Word{lidar_clock_t::TIME_HOST, "host"}, Word{lidar_clock_t::TIME_SENSOR, "sensor"}};
 
 inline constexpr std::array kClockState{

@@ -33,8 +33,6 @@ constexpr std::size_t kTextObstacles = 10;
 constexpr std::chrono::seconds kOwnShipAge(3);
 constexpr double kLeastCourseSpeedMps = 0.3;
 constexpr const char* kKeys = "q quit  t tracks  s sure  c count anew";
-constexpr std::array kHeadingSource{words::Word{pose_t::HEADING_HDT, "hdt"}, words::Word{pose_t::HEADING_PASHR, "pashr"},
-                                    words::Word{pose_t::HEADING_COURSE, "course"}};
 
 double Seconds(std::chrono::nanoseconds duration) { return std::chrono::duration<double>(duration).count(); }
 
@@ -106,8 +104,11 @@ Span OwnShipSpan(const OwnShip& own, TimePoint now, int width) {
   const auto degrees = [](double value) { return " " + (std::abs(value) <= 360.0 ? fmt::format("{:.6f}", value) : "-"); };
   const bool has_position = std::isfinite(pose.latitude_deg) && std::isfinite(pose.longitude_deg);
   cells.push_back(has_position ? degrees(pose.latitude_deg) + degrees(pose.longitude_deg) : " without position");
-  cells.push_back("  heading " + Degrees(pose.heading_rad));
-  if (pose.heading_source != pose_t::HEADING_NONE) cells.push_back(" " + std::string(words::WordOf(kHeadingSource, pose.heading_source)));
+  // The course that stands in for a heading must not look like a compass.
+  const bool is_course = pose.heading_source == pose_t::HEADING_COURSE;
+  cells.push_back((is_course ? "  course " : "  heading ") + Degrees(pose.heading_rad));
+  const bool has_source = pose.heading_source != pose_t::HEADING_NONE;
+  if (has_source) cells.push_back(is_course ? " no compass" : " " + std::string(words::WordOf(words::kHeadingSource, pose.heading_source)));
   const auto velocity_mps = VelocityHere(pose);
   const double speed_mps = velocity_mps.norm();
   cells.push_back("  " + (speed_mps < 1000.0 ? fmt::format("{:.1f}", speed_mps) : std::string("-")) + " m/s");
@@ -117,7 +118,7 @@ Span OwnShipSpan(const OwnShip& own, TimePoint now, int width) {
   const bool has_course = speed_mps >= kLeastCourseSpeedMps && speed_mps < 1000.0;
   cells.push_back("  course " + (has_course ? Degrees(std::atan2(velocity_mps.x(), velocity_mps.y())) : std::string("-")));
   if (has_fix && own.num_satellites >= 0 && own.num_satellites < 1000) cells.push_back(fmt::format("  {} satellites", own.num_satellites));
-  const bool is_well = pose.status == pose_t::STATUS_OK && has_fix && *own.fix_quality != gnss_fix_t::QUALITY_NONE;
+  const bool is_well = pose.status == pose_t::STATUS_OK && !is_course && has_fix && *own.fix_quality != gnss_fix_t::QUALITY_NONE;
   return {Fitting(cells, width), is_pose_old ? Style::kFault : is_well ? Style::kPlain : Style::kWarning};
 }
 

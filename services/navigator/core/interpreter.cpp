@@ -20,6 +20,9 @@ constexpr std::chrono::milliseconds kMinScaleStep(100);
 // Receivers send GST with each epoch, or once in some.
 constexpr std::chrono::seconds kMaxAccuracyAge(5);
 
+// VTG of a receiver that says 0 N 0 E is no more worth than that; it comes with each epoch.
+constexpr std::chrono::seconds kMaxNullAge(2);
+
 // By SentenceFault.
 constexpr std::array kFaultCounts{"", "no_checksum", "bad_checksum", "bad_field", "implausible_value"};
 
@@ -34,6 +37,13 @@ double Or(double value, double otherwise) { return std::isnan(value) ? otherwise
 // A boat at rest has no course: what a receiver says there is the direction of its noise. Twice velocity_sd_mps of navigator.proto.
 constexpr double kRestMps = 0.2;
 double CourseOf(double speed_mps, double course_rad) { return speed_mps < kRestMps ? kNan : course_rad; }
+
+// What receivers say that have no place yet, or have lost it, whatever their status. As precise as a sentence says a place, and a boat that is there
+// misses a fix.
+bool IsNull(const GeodeticPlace& place) {
+  constexpr double kMetreDeg = 1e-5;
+  return std::abs(place.latitude_deg) < kMetreDeg && std::abs(place.longitude_deg) < kMetreDeg;
+}
 
 // A lidar repeats the last sentence of a receiver that has gone: an old one is not used until it changes.
 bool IsStale(Utime arrival, const ParseResult& parsed) {
@@ -87,6 +97,9 @@ void Interpreter::Reset() {
     source.clock = {};
     source.epoch.reset();
     source.accuracy.reset();
+    source.time_zone = {};
+    source.standing_utc = {};
+    source.null_fix.reset();
     source.declination_rad = kNan;
     source.arrivals = {};
     source.told_by = {};
@@ -135,14 +148,22 @@ Reading Interpreter::Read(const Item& item) {
   return reading;
 }
 
+// Tells the date to the sentences that have none.
+void Interpreter::ReadDate(const Item& item, Source& source, const Sentence& zda) {
+  if (!zda.date || !zda.time_of_day) return;
+  const auto when = TimeOfMeasurement(item.time - clock_.host_minus_utc(), zda.time_of_day, zda.date, params_.max_sentence_latency);
+  if (when.is_date_refused) ++counts_["date_unusable"];
+  source.time_zone.Know(item.time, zda);
+  clock_.OnDate(source.clock, item.time, when.is_date_refused ? when.time : *zda.date + *zda.time_of_day);
+}
+
 Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sentence& sentence) {
   switch (sentence.type) {
     case SentenceType::kOther:
       ++counts_["other_sentence"];
       return {};
     case SentenceType::kZda:
-      // Tells the date to the sentences that have none.
-      if (sentence.date && sentence.time_of_day) clock_.OnDate(source.clock, item.time, *sentence.date + *sentence.time_of_day);
+      ReadDate(item, source, sentence);
       return {};
     case SentenceType::kGst:
       // Of an old epoch or not: deviations change slowly.
@@ -179,6 +200,17 @@ std::optional<MeasurementTime> Interpreter::WhenArrived(const Item& item, Source
 // nullopt: the source's time runs backwards, or is not known.
 std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& source, const Sentence& sentence, bool is_measured) {
   if (!sentence.time_of_day) return WhenArrived(item, source, sentence.type);
+  if (source.time_zone.IsLocal(item.time, sentence)) {
+    ++counts_["local_time"];
+    // Behind the fix of its epoch it is of the same instant.
+    const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= UtcClock::kBurst;
+    return is_of_epoch ? source.epoch->fix.when : WhenArrived(item, source, sentence.type);
+  }
+  source.time_zone.Know(item.time, sentence);
+  if (sentence.position && is_measured && source.standing_utc.Stands(item.time, sentence)) {
+    ++counts_["standing_utc"];
+    return WhenArrived(item, source, sentence.type);
+  }
   const auto when = clock_.OfSentence(source.clock, item.time, *sentence.time_of_day, sentence.date, source.params.latency, is_measured);
   if (!when) {
     ++counts_["time_backwards"];
@@ -230,12 +262,22 @@ void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
   fix.horizontal_sd_m = fix.position ? Or(fix.horizontal_sd_m, HorizontalSdM(fix.quality, fix.hdop, params_.position_sd_m)) : kNan;
 }
 
-Reading Interpreter::ReadFix(const Item& item, Source& source, const Sentence& sentence) {
+Reading Interpreter::ReadFix(const Item& item, Source& source, const Sentence& said) {
+  const bool is_vectornav = said.type == SentenceType::kVnIns;
+  Sentence sentence = said;
+  if (said.position && IsNull(*said.position)) {
+    ++counts_["null_fix"];
+    source.null_fix = item.time;
+    sentence.position.reset();
+    // VectorNav's knows time and attitude before its place.
+    if (!is_vectornav) static_cast<FixValues&>(sentence) = {};
+  } else if (said.position) {
+    source.null_fix.reset();
+  }
   const bool is_measured = IsMeasured(sentence.quality);
   const auto when = When(item, source, sentence, is_measured);
   if (!when) return {};
   if (is_measured) source.declination_rad = Or(sentence.declination_rad, source.declination_rad);
-  const bool is_vectornav = sentence.type == SentenceType::kVnIns;
   Reading reading;
   auto& fix = reading.fix.emplace(GnssFix{static_cast<const FixValues&>(sentence), *when, item.source, sentence.name});
   if (!is_vectornav) fix.course_rad = CourseOf(fix.speed_mps, fix.course_rad);
@@ -246,6 +288,7 @@ Reading Interpreter::ReadFix(const Item& item, Source& source, const Sentence& s
 
 Reading Interpreter::ReadVelocity(const Item& item, Source& source, const Sentence& vtg) {
   // Behind the fix of its epoch it is of the same instant; it has no time of its own.
+  if (source.null_fix && item.time - *source.null_fix <= kMaxNullAge) return {};  // a receiver without a place has no speed
   const bool is_of_epoch = source.epoch && item.time - source.epoch->fix.when.arrival <= UtcClock::kBurst;
   // What RMC says of the same instant is the same measurement.
   if (is_of_epoch && !std::isnan(source.epoch->fix.speed_mps)) return {};

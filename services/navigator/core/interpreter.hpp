@@ -13,6 +13,8 @@
 #include "services/navigator/core/arrivals.hpp"
 #include "services/navigator/core/item.hpp"
 #include "services/navigator/core/measurement.hpp"
+#include "services/navigator/core/standing_utc.hpp"
+#include "services/navigator/core/time_zone.hpp"
 #include "services/navigator/core/utc_clock.hpp"
 
 namespace lookout::navigator {
@@ -99,6 +101,9 @@ class Interpreter {
     SourceClock clock;
     std::optional<Epoch> epoch;
     std::optional<Accuracy> accuracy;
+    TimeZoneCheck time_zone;
+    StandingUtc standing_utc;
+    std::optional<Utime> null_fix;  // arrival of the last sentence at 0 N 0 E
     double declination_rad = kNan;  // out of RMC
     std::array<Arrivals, kNumSentenceTypes> arrivals;
     bool is_in_time = true;  // of the sentence that is read
@@ -109,6 +114,7 @@ class Interpreter {
   Source& SourceOf(const std::string& name);
   bool IsRepeated(const Item& item);
 
+  void ReadDate(const Item& item, Source& source, const Sentence& zda);
   Reading ReadUnderstood(const Item& item, Source& source, const Sentence& sentence);
   Reading ReadFix(const Item& item, Source& source, const Sentence& sentence);
   Reading ReadVelocity(const Item& item, Source& source, const Sentence& sentence);
@@ -126,9 +132,10 @@ class Interpreter {
   std::string last_lidar_sentence_;
   std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"understood_sentence", "other_sentence", "repeated_sentence", "outside_role", "no_checksum", "bad_checksum", "bad_field", "implausible_value",
-       "sentence_time_unusable", "time_backwards", "queued_sentence", "date_unusable", "stale_lidar_sentence", "no_deviation", "no_declination"});
+  static constexpr auto kCountNames =
+      std::to_array<std::string_view>({"understood_sentence", "other_sentence", "repeated_sentence", "outside_role", "no_checksum", "bad_checksum",
+                                       "bad_field", "implausible_value", "null_fix", "sentence_time_unusable", "time_backwards", "local_time",
+                                       "standing_utc", "queued_sentence", "date_unusable", "stale_lidar_sentence", "no_deviation", "no_declination"});
   Counts<kCountNames> counts_;
 };
 

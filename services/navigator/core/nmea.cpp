@@ -339,10 +339,7 @@ void ReadVnIns(FieldReader& fields, Sentence& sentence) {
   if (mode == kNotTracking || (status & kFaultBits) != 0) return;
   sentence.quality = mode == kGnssLost ? FixQuality::kDeadReckoning : FixQuality::kGnss;
   sentence.heading_rad = yaw_rad;
-  // Before it has a position the sensor says 0, 0.
-  if (!std::isnan(latitude_deg + longitude_deg) && (latitude_deg != 0.0 || longitude_deg != 0.0)) {
-    sentence.position = GeodeticPlace{latitude_deg, longitude_deg};
-  }
+  if (!std::isnan(latitude_deg + longitude_deg)) sentence.position = GeodeticPlace{latitude_deg, longitude_deg};
   sentence.direct_ellipsoid_height_m = height_m;
   sentence.horizontal_sd_m = sentence.vertical_sd_m = KnownSd(position_sd_m);
   sentence.speed_mps = Hypot(velocity_ned_mps.x(), velocity_ned_mps.y());

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/nmea.hpp"
@@ -15,18 +17,13 @@ using std::chrono::sys_days;
 
 constexpr microseconds kDay = std::chrono::days(1);
 
-struct SaidTime {
-  std::optional<microseconds> of_day;
-  std::optional<sys_days> date;
-};
-
-// A damaged sentence tells no time: a wrong one would move all that follow.
-SaidTime TimeIn(const std::string& line) {
+// nullopt: no right sentence. A damaged one tells no time: a wrong time would move all that follow.
+std::optional<Sentence> SentenceIn(const std::string& line) {
   const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
-  if (lines.lines.empty()) return {};
+  if (lines.lines.empty()) return std::nullopt;
   const auto parsed = ParseSentence(lines.lines.front(), false);
-  if (parsed.fault != SentenceFault::kNone) return {};
-  return {parsed.sentence.time_of_day, parsed.sentence.date};
+  if (parsed.fault != SentenceFault::kNone) return std::nullopt;
+  return parsed.sentence;
 }
 
 bool IsLineEnd(char letter) { return letter == '\n' || letter == '\r'; }
@@ -43,6 +40,15 @@ bool IsAddress(std::string_view address) {
 
 // From one time of day to the next a day has gone by.
 bool IsOverMidnight(microseconds from, microseconds to) { return from - to > kDay / 2; }
+
+// The log was written all the while. Of several talkers on one line a time may come a little late.
+bool GoesOn(microseconds from, microseconds to) {
+  const auto step = to - from + (IsOverMidnight(from, to) ? kDay : microseconds(0));
+  return step >= -TextLogReader::kMaxLate && step <= TextLogReader::kMostPause;
+}
+
+// GPS counts weeks in 10 bits: a second receiver whose count wrapped.
+bool IsRollover(std::chrono::days step) { return step % std::chrono::duration_cast<std::chrono::days>(WeekRollovers(1)) == std::chrono::days(0); }
 
 }  // namespace
 
@@ -68,25 +74,115 @@ bool IsTextLog(const std::filesystem::path& file) {
 
 TextLogReader::TextLogReader(const std::filesystem::path& file, std::optional<sys_days> day) : in_(file, std::ios::binary) {
   if (!in_) throw std::runtime_error(file.string() + ": cannot be read");
-  std::optional<microseconds> first;
-  std::optional<microseconds> before;
-  std::chrono::days num_midnights{0};
-  if (day) day_ = *day;
-  while (!has_date_ && ReadLine()) {
-    const auto said = TimeIn(line_);
-    if (!said.of_day) continue;
-    if (!first) first = said.of_day;
-    if (before && IsOverMidnight(*before, *said.of_day)) ++num_midnights;
-    before = said.of_day;
-    if (!said.date) continue;
-    day_ = *said.date - num_midnights;
-    has_date_ = true;
-  }
+  const auto first = FindFirstTime(day);
   if (!first) throw std::runtime_error(file.string() + ": no sentence in it tells a time");
-  last_ = day_ + *first;
+  last_ = *first;
   in_.clear();
   in_.seekg(0);
   position_ = 0;
+}
+
+// The first date may be the one that is wrong: of the first ones that which most agree with. And the first time may be that of a zone.
+std::optional<Utime> TextLogReader::FindFirstTime(std::optional<sys_days> day) {
+  struct Vote {
+    sys_days day;  // of the first time
+    int count = 0;
+  };
+  std::vector<Vote> votes;
+  std::optional<Sentence> first;
+  std::optional<microseconds> before;
+  std::chrono::days num_midnights{0};
+  for (int num_dates = 0; num_dates < kDatesCompared && ReadLine();) {
+    const auto said = TimeOfLine();
+    if (!said) continue;
+    const auto of_day = *said->time_of_day;
+    // Where the log pauses, another day may begin.
+    if (num_dates > 0 && !GoesOn(*before, of_day)) break;
+    if (!first || (!GoesOn(*before, of_day) && time_zone_.IsLocal(Utime(of_day), *first))) {
+      first = said;
+      num_midnights = {};
+    } else if (IsOverMidnight(*before, of_day)) {
+      ++num_midnights;
+    }
+    before = of_day;
+    if (!said->date) continue;
+    ++num_dates;
+    const auto vote = std::ranges::find(votes, *said->date - num_midnights, &Vote::day);
+    if (vote == votes.end()) {
+      votes.push_back({*said->date - num_midnights, 1});
+    } else {
+      ++vote->count;
+    }
+  }
+  has_date_ = !votes.empty();
+  if (has_date_) {
+    day_ = std::ranges::max_element(votes, {}, &Vote::count)->day;  // the first of equal ones
+  } else if (day) {
+    day_ = *day;
+  }
+  if (!first) return std::nullopt;
+  time_zone_ = {};
+  said_of_day_ = *first->time_of_day;
+  time_zone_.Know(Utime(said_of_day_), *first);
+  return day_ + *first->time_of_day;
+}
+
+// Of the line in line_, where it tells a time that is not of another zone.
+std::optional<Sentence> TextLogReader::TimeOfLine() {
+  auto sentence = SentenceIn(line_);
+  if (!sentence || !sentence->time_of_day || time_zone_.IsLocal(Utime(said_of_day_), *sentence)) return std::nullopt;
+  said_of_day_ = *sentence->time_of_day;
+  time_zone_.Know(Utime(said_of_day_), *sentence);
+  return sentence;
+}
+
+// Whether the time of the sentence in line_ is rather that after a pause of whole quarter hours: the sentences that say more of time do not go on
+// behind it as before it.
+bool TextLogReader::IsPause() {
+  constexpr int kMostLines = 200;
+  bool goes_on = false;
+  LookAhead([&, num_lines = 0]() mutable {
+    const auto sentence = SentenceIn(line_);
+    if (!sentence || !time_zone_.SaysAsMuch(*sentence)) return ++num_lines < kMostLines;
+    goes_on = GoesOn(said_of_day_, *sentence->time_of_day);
+    return false;
+  });
+  return !goes_on;
+}
+
+// Of a date in line_, which is after day_.
+bool TextLogReader::IsStepRight(sys_days date, microseconds of_day) {
+  if (IsRollover(date - day_)) return true;
+  int num_dates = 1;
+  int num_right = 1;
+  LookAhead([&, expected = date, before = of_day]() mutable {
+    const auto said = TimeOfLine();
+    if (!said) return true;
+    if (!GoesOn(before, *said->time_of_day)) return false;
+    if (IsOverMidnight(before, *said->time_of_day)) expected += std::chrono::days(1);
+    before = *said->time_of_day;
+    if (!said->date) return true;
+    num_right += *said->date == expected ? 1 : 0;
+    return ++num_dates < kDatesCompared;
+  });
+  // Where the log goes on without a pause the day does not step, unless all that follows says so.
+  const bool is_pause = !of_day_ || !GoesOn(*of_day_, of_day);
+  return 2 * num_right >= num_dates && (is_pause || num_dates == kDatesCompared);
+}
+
+void TextLogReader::LookAhead(const std::function<bool()>& look) {
+  const auto position = position_;
+  const auto time_zone = time_zone_;
+  const auto said_of_day = said_of_day_;
+  auto line = std::move(line_);
+  while (ReadLine() && look()) {
+  }
+  line_ = std::move(line);
+  said_of_day_ = said_of_day;
+  time_zone_ = time_zone;
+  position_ = position;
+  in_.clear();
+  in_.seekg(position);
 }
 
 // Sets line_ to the next that is not empty.
@@ -107,20 +203,26 @@ bool TextLogReader::ReadLine() {
 
 std::optional<TextLogReader::Line> TextLogReader::Next() {
   if (!ReadLine()) return std::nullopt;
-  const auto said = TimeIn(line_);
-  // Just after midnight one of the day before may still come.
-  const auto of_yesterday = said.of_day ? Utime(day_ - std::chrono::days(1) + *said.of_day) : Utime{};
-  const bool is_late = of_day_ && of_yesterday <= last_ && last_ - of_yesterday <= kMaxLate;
-  if (said.of_day && !is_late) {
-    if (of_day_ && IsOverMidnight(*of_day_, *said.of_day)) day_ += std::chrono::days(1);
-    // Forward only: of two receivers that tell different years (a week number that wrapped) the later one counts, and the log does not leap to and
-    // fro.
-    if (said.date && *said.date > day_) day_ = *said.date;
-    of_day_ = said.of_day;
-    const Utime time = day_ + *said.of_day;
-    if (time >= last_ || last_ - time > kMaxLate) last_ = time;
+  const auto sentence = SentenceIn(line_);
+  if (!has_other_zone_ && sentence && time_zone_.IsLocal(Utime(said_of_day_), *sentence)) {
+    has_other_zone_ = !IsPause();
+    if (!has_other_zone_) time_zone_ = {};
   }
+  if (const auto said = TimeOfLine()) UseTime(*said->time_of_day, said->date);
   return Line{last_, {reinterpret_cast<const std::uint8_t*>(line_.data()), line_.size()}};
+}
+
+void TextLogReader::UseTime(microseconds of_day, std::optional<sys_days> date) {
+  // Just after midnight one of the day before may still come.
+  const auto of_yesterday = Utime(day_ - std::chrono::days(1) + of_day);
+  if (of_day_ && of_yesterday <= last_ && last_ - of_yesterday <= kMaxLate) return;
+  if (of_day_ && IsOverMidnight(*of_day_, of_day)) day_ += std::chrono::days(1);
+  // Forward only: of two receivers that tell different years (a week number that wrapped) the later one counts, and the log does not leap to and
+  // fro.
+  if (date && *date > day_ && IsStepRight(*date, of_day)) day_ = *date;
+  of_day_ = of_day;
+  const Utime time = day_ + of_day;
+  if (time >= last_ || last_ - time > kMaxLate) last_ = time;
 }
 
 }  // namespace lookout::navigator

@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "services/navigator/core/time_zone.hpp"
 
 namespace lookout::navigator {
 
@@ -26,7 +28,12 @@ class TextLogReader {
   /// of the one before. What runs back further begins anew.
   static constexpr std::chrono::seconds kMaxLate{10};
 
-  /// Reads the file once as far as its first date.
+  /// A date that is a step from those before it counts where the dates behind it agree: of so many at least half. The one that is wrong is left out.
+  static constexpr int kDatesCompared = 16;
+  /// Between two sentences farther apart the log was not written.
+  static constexpr std::chrono::minutes kMostPause{10};
+
+  /// Reads the file once as far as its first dates.
   ///
   /// @param day  of the first time in the file, for a file in which no sentence tells a date
   /// @throws std::runtime_error when it cannot be read, or no sentence in it tells a time
@@ -50,11 +57,21 @@ class TextLogReader {
 
  private:
   bool ReadLine();
+  std::optional<Sentence> TimeOfLine();
+  void UseTime(std::chrono::microseconds of_day, std::optional<std::chrono::sys_days> date);
+  std::optional<Utime> FindFirstTime(std::optional<std::chrono::sys_days> day);
+  // Reads on, line by line, while `look` returns true, and then goes back to where it was.
+  void LookAhead(const std::function<bool()>& look);
+  bool IsPause();
+  bool IsStepRight(std::chrono::sys_days date, std::chrono::microseconds of_day);
 
   std::ifstream in_;
   std::string line_;
   std::int64_t position_ = 0;
   bool has_date_ = false;
+  TimeZoneCheck time_zone_;
+  bool has_other_zone_ = false;                      // some of its sentences tell local time
+  std::chrono::microseconds said_of_day_{0};         // the last that was no local time
   std::chrono::sys_days day_{};                      // of the last time
   std::optional<std::chrono::microseconds> of_day_;  // the last time of day
   Utime last_{};

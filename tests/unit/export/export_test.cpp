@@ -180,9 +180,10 @@ class SvgTest : public ExportTest {
     further.num_segments = 1;
     Add(bus::kSegments, further);
   }
-  void AddHeading(double heading_rad, std::int64_t utime_us = kStartUs) {
+  void AddHeading(double heading_rad, std::int64_t utime_us = kStartUs, std::int32_t source = pose_t::HEADING_HDT) {
     pose_t pose{};
     pose.utime_us = utime_us;
+    pose.heading_source = source;
     pose.heading_rad = heading_rad;
     Add(bus::kPose, pose);
   }
@@ -216,6 +217,15 @@ TEST_F(SvgTest, TurnsTheBowUpWithTheConfigOfTheBoatAndNorthUpWithAHeading) {
   ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
   EXPECT_NE(text_.find(">N<"), std::string::npos);
   EXPECT_NE(text_.find("heading 57.3 deg"), std::string::npos);
+}
+
+// A heading that is only the course over ground looked like that of a compass.
+TEST_F(SvgTest, SaysThatNorthIsUpByTheCourse) {
+  AddBoat();
+  AddScan();
+  AddHeading(1.0, kStartUs, pose_t::HEADING_COURSE);
+  ASSERT_EQ(Export("returns", "svg"), kExitFine) << errors_;
+  EXPECT_NE(text_.find("north up, no compass: course 57.3 deg"), std::string::npos);
 }
 
 TEST_F(SvgTest, KnowsTheHeadingAlsoWithoutSegmentsAtThreeHundredRpm) {
@@ -486,6 +496,7 @@ TEST(Words, StandInTheReadmeOfTheWire) {
   expect_listed(words::kTrackStatus);
   expect_listed(words::kTrackKind);
   expect_listed(words::kEncounter);
+  expect_listed(words::kHeadingSource);
   expect_listed(words::kAlertCause);
   expect_listed(words::kAlertLevel);
   expect_listed(words::kAlertState);

@@ -30,7 +30,7 @@ TEST(TableHeader, IsTheContractWithScriptsOutside) {
   EXPECT_EQ(TableHeader("pose"),
             "utime_us,latitude_deg,longitude_deg,ellipsoid_height_m,heading_deg,roll_deg,pitch_deg,speed_mps,course_deg,status,velocity_east_mps,"
             "velocity_north_mps,velocity_up_mps,cov_ee_m2,cov_en_m2,cov_nn_m2,cov_uu_m2,velocity_cov_ee_m2ps2,velocity_cov_en_m2ps2,"
-            "velocity_cov_nn_m2ps2,velocity_cov_uu_m2ps2,roll_var_rad2,pitch_var_rad2,heading_var_rad2");
+            "velocity_cov_nn_m2ps2,velocity_cov_uu_m2ps2,roll_var_rad2,pitch_var_rad2,heading_var_rad2,heading_source");
 }
 
 TEST_F(TablesTest, ReturnsComeByColumnThenRingWithTheTimeOfTheirLaser) {
@@ -309,8 +309,9 @@ pose_t MakePose() {
 TEST_F(TablesTest, PoseGivesSpeedAndCourseOverGround) {
   Add(bus::kPose, MakePose());
   ASSERT_EQ(Export("pose"), kExitFine);
-  EXPECT_EQ(Rows()[0],
-            "1700000000000000,1.000000000,2.000000000,3.0000,90.0000,-1.5000,2.2500,5.0000,323.1301,ok,-3.0000,4.0000,0.0000,0,0,0,0,0,0,0,0,0,0,0");
+  EXPECT_EQ(
+      Rows()[0],
+      "1700000000000000,1.000000000,2.000000000,3.0000,90.0000,-1.5000,2.2500,5.0000,323.1301,ok,-3.0000,4.0000,0.0000,0,0,0,0,0,0,0,0,0,0,0,none");
 }
 
 TEST_F(TablesTest, PoseGivesTheDiagonalOfItsCovarianceAndWhatGoesTogether) {
@@ -320,7 +321,16 @@ TEST_F(TablesTest, PoseGivesTheDiagonalOfItsCovarianceAndWhatGoesTogether) {
   pose.covariance[3][4] = pose.covariance[4][3] = -0.25;
   Add(bus::kPose, pose);
   ASSERT_EQ(Export("pose"), kExitFine);
-  EXPECT_TRUE(Rows()[0].ends_with(",1,0.5,2,3,4,-0.25,5,6,7,8,9")) << Rows()[0];
+  EXPECT_TRUE(Rows()[0].ends_with(",1,0.5,2,3,4,-0.25,5,6,7,8,9,none")) << Rows()[0];
+}
+
+// A heading that is only the course over ground looked like that of a compass.
+TEST_F(TablesTest, PoseSaysWhatItsHeadingIsFrom) {
+  auto pose = MakePose();
+  pose.heading_source = pose_t::HEADING_COURSE;
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("pose"), kExitFine);
+  EXPECT_TRUE(Rows()[0].ends_with(",course")) << Rows()[0];
 }
 
 TEST_F(TablesTest, PoseWithoutAttitudeHasNoRollAndPitchThoughTheWireHoldsZeros) {
@@ -333,7 +343,7 @@ TEST_F(TablesTest, PoseWithoutAttitudeHasNoRollAndPitchThoughTheWireHoldsZeros) 
   for (auto& row : pose.covariance) std::ranges::fill(row, kNaN);
   Add(bus::kPose, pose);
   ASSERT_EQ(Export("pose"), kExitFine);
-  EXPECT_EQ(Rows()[0], "1700000000000000,,,,,,,,,unknown,,,,,,,,,,,,,,");
+  EXPECT_EQ(Rows()[0], "1700000000000000,,,,,,,,,unknown,,,,,,,,,,,,,,,none");
 }
 
 TEST_F(TablesTest, ABoatAtRestHasASpeedButNoCourse) {

@@ -289,5 +289,48 @@ TEST(Service, SaysWhyItIsDegraded) {
   EXPECT_EQ(rig.service.Report().reason, "no position fix for 5 s, no heading for 4 s");
 }
 
+// A heading that is only the course over ground looked like a compass.
+TEST(Service, SaysThatTheHeadingIsOnlyTheCourse) {
+  Rig rig(TestParams(kFromSources));
+  rig.service.AdvanceTo(NoonPlus(0));
+  rig.Datagram(0.1, RmcLine(NoonPlus(0.0), 43.63, -72.15, 3.0, 10.0));
+  rig.service.AdvanceTo(NoonPlus(0.2));
+  rig.Drain();
+  EXPECT_EQ(rig.Messages<pose_t>(bus::kPose).back().heading_source, pose_t::HEADING_COURSE);
+  EXPECT_EQ(rig.service.Report().state, HealthState::kDegraded);
+  EXPECT_EQ(rig.service.Report().reason, "heading is only the course over ground: no compass or attitude sensor");
+  rig.Datagram(0.2, HdtLine(1.0));
+  rig.service.AdvanceTo(NoonPlus(0.3));
+  EXPECT_EQ(rig.service.Report().reason, "");
+}
+
+TEST(Service, SaysWhichFixesNoBoatCanHaveReached) {
+  Rig rig(TestParams(kFromSources));
+  rig.service.AdvanceTo(NoonPlus(0));
+  for (int i = 0; i < 20; ++i) rig.Datagram(i + 0.1, RmcLine(NoonPlus(i), 43.63, -72.15, 0.0, 10.0) + "\r\n" + HdtLine(1.0));
+  rig.Datagram(20.1, RmcLine(NoonPlus(20.0), 43.63, 7.2, 0.0, 10.0) + "\r\n" + HdtLine(1.0));
+  rig.service.AdvanceTo(NoonPlus(20.2));
+  EXPECT_EQ(
+      rig.service.Report().reason,
+      "fixes of input 'udp' are 5904 km from the last that was believed, 1 s before: no boat gets so far; not used, unless they stay there for 19 s");
+  EXPECT_EQ(rig.Count("unreachable_fix"), 1);
+}
+
+// Stamps and dates behind January 2038.
+TEST(Service, GoesOnIn2039) {
+  Rig rig(TestParams(kFromSources));
+  const auto start = std::chrono::sys_days(std::chrono::year(2039) / 1 / 1) + std::chrono::hours(10);
+  for (int i = 0; i < 5; ++i) {
+    const Utime time = start + std::chrono::seconds(i);
+    rig.service.OnDatagram(time + std::chrono::milliseconds(200), ToBytes(RmcLine(time, 54.5, 10.2, 0.0, 90.0) + "\r\n" + HdtLine(90.0)));
+    rig.Drain();
+  }
+  const auto pose = rig.Messages<pose_t>(bus::kPose).back();
+  EXPECT_EQ(pose.utime_us, ToUtimeUs(start) + 4'200'000);
+  EXPECT_EQ(pose.status, pose_t::STATUS_OK);
+  EXPECT_EQ(rig.Messages<gnss_fix_t>(bus::kGnssFix).back().utime_us, ToUtimeUs(start) + 4'000'000);
+  EXPECT_EQ(rig.Count("date_unusable"), 0);
+}
+
 }  // namespace
 }  // namespace lookout::navigator

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,98 @@ TEST_F(TextLog, TakesDatesForwardOnly) {
   Write(Rmc("120000.000", "030414") + Rmc("120001.000", "180894") + Rmc("120002.000", "030414") + Rmc("080000.000", "050414"));
   const Utime start = kDay + 12h;
   EXPECT_EQ(Times(), (std::vector<Utime>{start, start + 1s, start + 2s, kDay + 48h + 8h}));
+}
+
+// One RMC of a log had the date of the next day, with a right checksum: all behind it were a day late.
+class WrongDate : public TextLog {
+ protected:
+  // One a second from noon, `dates` in their order, and then those of the day.
+  void Expect(int num_lines, const std::map<int, std::string>& wrong, bool is_zda = false) {
+    std::string text;
+    std::vector<Utime> expected;
+    for (int i = 0; i < num_lines; ++i) {
+      const auto time = "12" + std::to_string(100 + i / 60).substr(1) + std::to_string(100 + i % 60).substr(1);
+      const auto date = wrong.contains(i) ? wrong.at(i) : "030414";
+      const auto zda = "$GPZDA," + time + "," + date.substr(0, 2) + "," + date.substr(2, 2) + ",20" + date.substr(4) + ",00,00\n";
+      text += is_zda ? zda : Rmc(time, date);
+      expected.push_back(kDay + 12h + std::chrono::seconds(i));
+    }
+    Write(text);
+    EXPECT_EQ(Times(), expected);
+  }
+};
+
+TEST_F(WrongDate, OfOneSentenceIsLeftOut) {
+  for (const std::string date : {"040414", "020414", "030415", "030413", "030514", "230414", "030464"}) {
+    SCOPED_TRACE(date);
+    for (const int index : {0, 1, 12, 28, 29}) {
+      SCOPED_TRACE(index);
+      Expect(30, {{index, date}});
+      Expect(30, {{index, date}}, true);
+    }
+  }
+}
+
+TEST_F(WrongDate, OfSomeInARowIsLeftOut) {
+  Expect(30, {{12, "040414"}, {13, "040414"}});
+  Expect(30, {{0, "040414"}, {1, "040414"}, {2, "040414"}});
+  Expect(30, {{0, "030413"}, {1, "030413"}});
+  Expect(60, {{12, "040414"}, {13, "050414"}, {14, "040415"}, {15, "040414"}, {40, "040414"}});
+}
+
+TEST_F(WrongDate, BesideARightOneOfTheSameSecondIsLeftOut) {
+  std::string text;
+  for (int i = 10; i < 40; ++i) {
+    const auto time = "1200" + std::to_string(i);
+    text += "$GPZDA," + time + ",03,04,2014,00,00\n" + Rmc(time, i == 20 ? "040414" : "030414") + Gga(time);
+  }
+  Write(text);
+  EXPECT_EQ(Times().back(), Utime(kDay + 12h + 39s));
+}
+
+TEST_F(TextLog, GoesToTheNextDayWhereTheLogPaused) {
+  std::string text = Rmc("120000.000", "030414") + Rmc("120001.000", "030414");
+  for (int i = 10; i < 40; ++i) text += Rmc("1500" + std::to_string(i), "070414");
+  Write(text);
+  const auto times = Times();
+  EXPECT_EQ(times[1], Utime(kDay + 12h + 1s));
+  EXPECT_EQ(times[2], Utime(kDay + std::chrono::days(4) + 15h + 10s)) << "the first behind the pause too";
+}
+
+TEST_F(TextLog, TakesTheDateOfAReceiverThatHasFoundIt) {
+  std::string text;
+  for (int i = 10; i < 40; ++i) text += Rmc("1200" + std::to_string(i), "060180");
+  for (int i = 10; i < 40; ++i) text += Rmc("1201" + std::to_string(i), "030414");
+  Write(text);
+  EXPECT_EQ(Times()[30], Utime(kDay + 12h + 1min + 10s));
+}
+
+TEST_F(TextLog, GoesOnBehindJanuary2038) {
+  Write(Rmc("235959.000", "180138") + Rmc("000000.000", "190138") + Rmc("031408.000", "190138") + Rmc("100000.000", "010139"));
+  const sys_days day = std::chrono::year(2038) / 1 / 19;
+  EXPECT_EQ(Times(), (std::vector<Utime>{day - 1s, day, day + 3h + 14min + 8s, sys_days(std::chrono::year(2039) / 1 / 1) + 10h}));
+}
+
+// GLL in local time beside RMC in UTC: the log leapt to and fro, and began anew at each GLL.
+TEST_F(TextLog, PassesOverLocalTimes) {
+  const auto gll = [](const std::string& time) { return "$GPGLL,5222.3215,N,00454.5778,E," + time + ",A\n"; };
+  for (const std::string hour : {"14", "10", "02", "22"}) {
+    SCOPED_TRACE(hour);
+    for (const bool is_gll_first : {false, true}) {
+      std::string text;
+      std::vector<Utime> expected;
+      for (int i = 10; i < 40; ++i) {
+        const auto second = "00" + std::to_string(i);
+        const auto local = gll(hour + second + ".020");
+        text += is_gll_first ? local + Rmc("12" + second, "030414") : Rmc("12" + second, "030414") + local;
+        const Utime time = kDay + 12h + std::chrono::seconds(i);
+        const Utime before = i == 10 ? time : time - 1s;
+        expected.insert(expected.end(), {is_gll_first ? before : time, time});
+      }
+      Write(text);
+      EXPECT_EQ(Times(), expected) << is_gll_first;
+    }
+  }
 }
 
 TEST_F(TextLog, BeginsAnewWhereItRunsBack) {

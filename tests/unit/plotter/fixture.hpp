@@ -69,6 +69,7 @@ class ServiceFixture : public ::testing::Test {
   std::vector<alert_t> alerts_{};
   std::int64_t begin_us_ = kStartUs;
   std::int32_t pose_status_ = pose_t::STATUS_OK;
+  std::int32_t heading_source_ = pose_t::HEADING_HDT;
 
   void SetUp() override { Start(); }
 
@@ -122,6 +123,7 @@ class ServiceFixture : public ::testing::Test {
     pose.utime_us = host_us_ / 20'000 * 20'000;
     pose.seq = pose_seq_++;
     pose.status = pose_status_;
+    pose.heading_source = heading_source_;
     pose.datum_latitude_deg = 53.3;
     pose.datum_longitude_deg = -6.1;
     pose.datum_ellipsoid_height_m = 0.0;

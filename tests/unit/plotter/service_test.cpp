@@ -243,6 +243,17 @@ TEST_F(PlotterService, SaysThatThePositionIsOnlyPropagated) {
   EXPECT_FALSE(nmea_->With("TTM").empty());
 }
 
+// Course over ground that stood in for a heading went out as HDT, as if a compass said it.
+TEST_F(PlotterService, TellsNoHeadingThatIsOnlyTheCourse) {
+  heading_source_ = pose_t::HEADING_COURSE;
+  tracks_ = {MakeTrack(17)};
+  Run(3'000'000);
+  EXPECT_TRUE(nmea_->With("HDT").empty());
+  for (const auto& own : signal_k_->With("headingTrue")) EXPECT_NE(own.find(R"("navigation.headingTrue","value":null)"), std::string::npos) << own;
+  EXPECT_FALSE(nmea_->With("RMC").empty());
+  EXPECT_FALSE(nmea_->With("TTM").empty());
+}
+
 // The boat may have other sources of its position.
 TEST_F(PlotterService, TakesItsPositionInSignalKBackOnce) {
   Run(2'000'000);

@@ -244,6 +244,22 @@ TEST(Screen, TellsTheOwnShip) {
   EXPECT_EQ(DrawScreen(board, "title", At(1.1), {80, 0})[1][0].style, Style::kWarning);
 }
 
+// A heading that is only the course over ground looked like that of a compass, and the line was not yellow.
+TEST(Screen, TellsACourseFromAHeading) {
+  Board board = BusyBoard();
+  pose_t pose = PoseAt(1'000'000, DegToRad(90.0));
+  pose.heading_source = pose_t::HEADING_COURSE;
+  pose.latitude_deg = 43.629590;
+  pose.longitude_deg = -72.149989;
+  pose.datum_latitude_deg = 43.6;
+  pose.datum_longitude_deg = -72.1;
+  pose.velocity_map_mps[0] = 1.2;
+  Say(board, bus::kPose, pose, 1.95);
+  const auto rows = DrawScreen(board, "title", At(2.0), {80, 24});
+  EXPECT_EQ(Lines(rows)[0], "own 43.629590 -72.149989  course 090 no compass  1.2 m/s  pose ok  fix rtk_fixed");
+  EXPECT_EQ(rows[0][0].style, Style::kWarning);
+}
+
 // At a datum with swapped latitude and longitude it said 4.8 m/s and 333 deg of a boat that goes 5 m/s due east.
 TEST(Screen, SpeedAndCourseAreThoseWhereTheBoatIs) {
   Board board(kStart);

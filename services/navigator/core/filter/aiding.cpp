@@ -201,7 +201,7 @@ Innovation<2> HorizontalOf(const FixMeasurement& fix, const FilterParams& params
 }
 
 void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, State& state, GateCounts& counts) {
-  const bool is_accepted = state.aiding.has_position && !fix.begins_time_scale && Update(HorizontalOf(fix, params, state), false, state, counts);
+  const bool is_accepted = state.aiding.has_position && !fix.begins_anew && Update(HorizontalOf(fix, params, state), false, state, counts);
   if (!is_accepted && state.aiding.has_position) {
     Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();
     residual_m.head<2>() = HorizontalOf(fix, params, state).residual;
@@ -211,7 +211,7 @@ void ApplyHorizontal(const FixMeasurement& fix, const FilterParams& params, Stat
     const auto fault =
         AddRefusal(residual_m, sd_m, AgreesWithLast(fix, state), state.time, max_refusal, kMaxAgreeingRefusal, state.aiding.fix_refusals);
     state.aiding.fix_refusals.last_place = fix.antenna;
-    if (!fix.begins_time_scale && !fault) return;
+    if (!fix.begins_anew && !fault) return;
     ++counts.num_renewed;
     ForgetPlace(state);
     if (fault.is_led_away && state.aiding.is_strapdown) RefuseImu(params.tilt_sd_rad, state);

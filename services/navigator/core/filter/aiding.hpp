@@ -25,8 +25,8 @@ struct VelocityMeasurement {
 struct FixMeasurement {
   std::string source;
   bool is_gga = false;
-  bool begins_time_scale = false;  // as in GnssFix: it alone decides the place
-  GeodeticPlace antenna;           // where the height is not said, that of the datum
+  bool begins_anew = false;  // it alone decides the place: begins_time_scale of GnssFix, or the first at a new place (believed_place.hpp)
+  GeodeticPlace antenna;     // where the height is not said, that of the datum
   bool has_height = false;
   double horizontal_sd_m = 0.0;  // per axis
   double vertical_sd_m = 0.0;

@@ -170,6 +170,29 @@ void PoseFilter::SetDatum(const GeodeticPlace& datum) {
   map_.emplace(datum);
 }
 
+void PoseFilter::MoveDatum(Utime time, const GeodeticPlace& antenna) {
+  if (params_.datum) {
+    datum_complaint_ = DatumComplaint(*params_.datum, antenna, "the new place of the fixes");
+  } else {
+    next_datum_ = {time, antenna};
+  }
+}
+
+// "fixes of input 'udp' are 6120 km from the last that was believed, 3 s before: no boat gets so far; not used, unless they stay there for 57 s"
+void PoseFilter::NameDoubted(Utime time) {
+  constexpr double kNamedS = 5.0;
+  doubted_.clear();
+  const auto& held = believed_place_.held();
+  if (!held || std::abs(filter::SecondsBetween(held->time, time)) > kNamedS) return;
+  constexpr double kMetresPerKm = 1e3;
+  const bool is_far = held->distance_m >= 10.0 * kMetresPerKm;
+  const auto distance =
+      is_far ? std::to_string(std::llround(held->distance_m / kMetresPerKm)) + " km" : std::to_string(std::llround(held->distance_m)) + " m";
+  doubted_ = "fixes of input '" + doubted_source_ + "' are " + distance + " from the last that was believed, " +
+             std::to_string(std::llround(held->since_s)) + " s before: no boat gets so far; not used, unless they stay there for " +
+             std::to_string(std::llround(held->rest_s)) + " s";
+}
+
 bool PoseFilter::Insert(Utime time, const Measurement& measurement) {
   if (base_ && time < base_->time) return false;
   // Behind all of its time, but attitude before position: the attitude turns the lever arm.
@@ -221,16 +244,31 @@ void PoseFilter::Add(const GnssFix& fix) {
   const bool has_height = !std::isnan(ellipsoid_height_m);
   GeodeticPlace antenna = *fix.position;
   if (has_height) antenna.ellipsoid_height_m = ellipsoid_height_m;
+  const double white_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
+  const double age_s = PossibleAgeS(fix.when);
+  const double horizontal_sd_m = Hypot(white_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
+  const auto verdict = believed_place_.Judge(fix.when.time, antenna, horizontal_sd_m);
+  if (verdict == BelievedPlace::Verdict::kHeld) {
+    ++counts_["unreachable_fix"];
+    doubted_source_ = fix.source;
+    return;
+  }
+  const bool begins_place = verdict == BelievedPlace::Verdict::kNewPlace;
+  if (begins_place) {
+    ++counts_["new_place"];
+    MoveDatum(fix.when.time, antenna);
+  }
   if (!datum_) SetDatum(antenna);
-  if (!has_height) antenna.ellipsoid_height_m = datum_->ellipsoid_height_m;
+  if (!has_height) antenna.ellipsoid_height_m = next_datum_ ? next_datum_->datum.ellipsoid_height_m : datum_->ellipsoid_height_m;
   if (!last_fix_arrival_ && params_.datum) datum_complaint_ = DatumComplaint(*datum_, antenna, "the first fix");
 
-  filter::FixMeasurement measurement{
-      .source = fix.source, .is_gga = fix.is_gga(), .begins_time_scale = fix.begins_time_scale, .antenna = antenna, .has_height = has_height};
-  measurement.horizontal_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
-  measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * measurement.horizontal_sd_m;
-  const double age_s = PossibleAgeS(fix.when);
-  measurement.horizontal_sd_m = Hypot(measurement.horizontal_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
+  filter::FixMeasurement measurement{.source = fix.source,
+                                     .is_gga = fix.is_gga(),
+                                     .begins_anew = fix.begins_time_scale || begins_place,
+                                     .antenna = antenna,
+                                     .has_height = has_height};
+  measurement.horizontal_sd_m = horizontal_sd_m;
+  measurement.vertical_sd_m = fix.vertical_sd_m > 0.0 ? std::max(fix.vertical_sd_m, kMinSdM) : kVerticalFactor * white_sd_m;
   if (!std::isnan(fix.speed_mps)) {
     const double sd_mps = Hypot(SdOr(fix.velocity_sd_mps, params_.velocity_sd_mps), age_s * kUnknownAccelerationMps2);
     measurement.velocity = ToVelocity(fix.speed_mps, fix.course_rad, sd_mps, true);
@@ -244,7 +282,7 @@ void PoseFilter::Add(const GnssFix& fix) {
     if (takes_velocity) same_epoch->velocity = measurement.velocity;
     if (takes_position) {
       measurement.velocity = same_epoch->velocity;
-      measurement.begins_time_scale = measurement.begins_time_scale || same_epoch->begins_time_scale;
+      measurement.begins_anew = measurement.begins_anew || same_epoch->begins_anew;
       *same_epoch = measurement;
     }
     Touch(index);
@@ -323,12 +361,17 @@ void PoseFilter::ProcessUntil(Utime time) {
 }
 
 Pose PoseFilter::At(Utime time) {
+  if (next_datum_ && next_datum_->time <= time) {
+    SetDatum(next_datum_->datum);
+    next_datum_.reset();
+  }
   ProcessUntil(time);
   State state = num_processed_ > 0 || base_ ? StateBefore(num_processed_) : filter::FreshState(time, params_.unmeasured_tilt_sd_rad);
   Propagate(SampleFor(num_processed_, time), time, params_, state);
   state.time = time;
   DropOld();
   stopped_ = StoppedInputs(state);
+  NameDoubted(time);
   return ToPose(state, datum_, map_ ? &*map_ : nullptr, params_);
 }
 

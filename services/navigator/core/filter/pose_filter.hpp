@@ -13,6 +13,7 @@
 #include "common/core/geodesy.hpp"
 #include "common/core/health.hpp"
 #include "services/navigator/core/filter/aiding.hpp"
+#include "services/navigator/core/filter/believed_place.hpp"
 #include "services/navigator/core/filter/motion.hpp"
 #include "services/navigator/core/filter/params.hpp"
 #include "services/navigator/core/filter/state.hpp"
@@ -21,8 +22,9 @@
 namespace lookout::navigator {
 
 /// Measurements that were not used, or only against what was known: README.md has the meaning of each.
-inline constexpr auto kFilterCountNames = std::to_array<std::string_view>(
-    {"unusable_fix", "late_fix", "late_attitude", "late_imu", "unusable_imu", "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude"});
+inline constexpr auto kFilterCountNames =
+    std::to_array<std::string_view>({"unusable_fix", "unreachable_fix", "new_place", "late_fix", "late_attitude", "late_imu", "unusable_imu",
+                                     "gated_fix", "gated_attitude", "renewed_position", "renewed_attitude"});
 using FilterCounts = Counts<kFilterCountNames>;
 
 /// An error-state Kalman filter that is run again from the instant of a late measurement: the pose of a time depends on the
@@ -65,6 +67,9 @@ class PoseFilter {
   /// A datum out of config that is far from the first fix, in words (common/core/datum_check.hpp); empty = none.
   const std::string& datum_complaint() const { return datum_complaint_; }
 
+  /// Fixes that are held at the time of the last pose since no boat can have got there (believed_place.hpp), in words; empty = none.
+  const std::string& doubted() const { return doubted_; }
+
   /// What has stopped at the time of the last pose, in words: "no position fix for 3 s", ...; empty = nothing.
   const std::string& stopped() const { return stopped_; }
 
@@ -78,6 +83,9 @@ class PoseFilter {
   };
 
   void SetDatum(const GeodeticPlace& datum);
+  // The map frame begins anew at `time`: all before was elsewhere.
+  void MoveDatum(Utime time, const GeodeticPlace& antenna);
+  void NameDoubted(Utime time);
   // False: older than all that is kept.
   bool Insert(Utime time, const Measurement& measurement);
   void Touch(std::size_t index);
@@ -93,6 +101,14 @@ class PoseFilter {
   FilterParams params_;
   std::optional<GeodeticPlace> datum_;
   std::optional<LocalFrame> map_;
+  // In force from the time of the first fix at a new place on.
+  struct NextDatum {
+    Utime time;
+    GeodeticPlace datum;
+  };
+  std::optional<NextDatum> next_datum_;
+  BelievedPlace believed_place_;
+  std::string doubted_source_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;
   std::optional<filter::State> base_;     // before events_
@@ -105,6 +121,7 @@ class PoseFilter {
   std::int64_t num_nis_degrees_ = 0;
   std::string stopped_;
   std::string datum_complaint_;
+  std::string doubted_;
   bool has_had_heading_ = false;
 };
 

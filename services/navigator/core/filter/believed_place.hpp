@@ -1,0 +1,67 @@
+// Whether a boat can have got to where a fix says it is.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/core/geodesy.hpp"
+#include "common/core/utime.hpp"
+
+namespace lookout::navigator {
+
+/// A fix is believed where a boat can have got there since the last one that was believed; the first one is. Farther off the receiver is wrong: its
+/// last place of yesterday, that of its almanac, a digit that was changed. Or those before it were. So fixes that are out of reach are held until
+/// they have agreed with each other, and none came that is within reach, for as long as those before them did: at least kLeastHold, at most
+/// kMostHold. Then the boat is there.
+///
+/// Depends on times of measurements and on places alone.
+class BelievedPlace {
+ public:
+  /// No boat has gone faster: the world water speed record (Spirit of Australia, 1978).
+  static constexpr double kMostSpeedMps = 142.0;
+  /// How far a boat gets in the time by which measurements are off that have none of their own.
+  static constexpr double kSlackM = 50.0;
+  /// Of the deviations of both fixes, each per axis.
+  static constexpr double kSlackInSds = 7.0;
+  static constexpr std::chrono::seconds kLeastHold{10};
+  static constexpr std::chrono::seconds kMostHold{60};
+  /// Fixes out of reach by which a new place is told, at least.
+  static constexpr int kLeastFixes = 4;
+
+  enum class Verdict {
+    kBelieved,
+    kHeld,      // out of reach
+    kNewPlace,  // out of reach for so long that it is believed
+  };
+
+  Verdict Judge(Utime time, const GeodeticPlace& place, double sd_m);
+
+  /// Of the fix that was held last, until one is believed.
+  struct Held {
+    Utime time;
+    double distance_m = 0.0;  // from the last that was believed
+    double since_s = 0.0;     // after that
+    double rest_s = 0.0;      // for which it would have to stay until it is believed
+  };
+  const std::optional<Held>& held() const { return held_; }
+
+ private:
+  // Fixes each of which was within reach of the one before it.
+  struct Run {
+    Utime first;
+    Utime last;
+    GeodeticPlace place;  // of the last, on the ellipsoid
+    double sd_m = 0.0;
+    std::int64_t count = 0;
+  };
+
+  static double DistanceM(const Run& run, const GeodeticPlace& place);
+  static bool IsWithinReach(const Run& run, Utime time, const GeodeticPlace& place, double sd_m);
+  static void Add(Utime time, const GeodeticPlace& place, double sd_m, Run& run);
+
+  std::optional<Run> believed_;
+  std::optional<Run> doubted_;
+  std::optional<Held> held_;
+};
+
+}  // namespace lookout::navigator
