@@ -151,6 +151,10 @@ Reading Interpreter::Read(const Item& item) {
 // Tells the date to the sentences that have none.
 void Interpreter::ReadDate(const Item& item, Source& source, const Sentence& zda) {
   if (!zda.date || !zda.time_of_day) return;
+  if (source.time_zone.IsLocal(item.time, zda)) {
+    ++counts_["local_time"];
+    return;
+  }
   const auto when = TimeOfMeasurement(item.time - clock_.host_minus_utc(), zda.time_of_day, zda.date, params_.max_sentence_latency);
   if (when.is_date_refused) ++counts_["date_unusable"];
   source.time_zone.Know(item.time, zda);
@@ -222,7 +226,7 @@ std::optional<MeasurementTime> Interpreter::When(const Item& item, Source& sourc
 
 // Sentences of one instant of one receiver are one fix: each gets what those before it said.
 void Interpreter::CompleteFix(Source& source, GnssFix& fix) {
-  if (fix.position && !fix.when.is_from_sentence) ++counts_["sentence_time_unusable"];
+  if (fix.position && fix.when.has_sentence_utc && !fix.when.is_from_sentence) ++counts_["sentence_time_unusable"];
   const bool is_gga = fix.is_gga();
   const auto is_of_epoch = [&fix](const Epoch& epoch) {
     return epoch.fix.when.utc == fix.when.utc && epoch.fix.when.num_leaps == fix.when.num_leaps;

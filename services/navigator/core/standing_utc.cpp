@@ -13,7 +13,8 @@ bool StandingUtc::Stands(Utime arrival, const Sentence& sentence) {
   const bool moves = said->place.latitude_deg != sentence.position->latitude_deg || said->place.longitude_deg != sentence.position->longitude_deg;
   said->place = *sentence.position;
   const auto stand = arrival - said->since;
-  if (stand < kLeastStand) return false;
+  const bool has_stood = longest_stand_ > std::chrono::microseconds(0);
+  if (stand < (has_stood ? kLeastStandAgain : kLeastStand)) return false;
   if (moves) longest_stand_ = std::max<std::chrono::microseconds>(longest_stand_, stand);
   return moves || stand <= longest_stand_;
 }

@@ -19,6 +19,8 @@ class StandingUtc {
   /// So long after the first of a UTC its place counts as another. A receiver that says more than one place of one UTC within a second leaves parts
   /// of a second out.
   static constexpr std::chrono::milliseconds kLeastStand{1500};
+  /// Once one has stood so.
+  static constexpr std::chrono::milliseconds kLeastStandAgain{700};
 
   /// Of one input.
   ///

@@ -10,17 +10,16 @@
 namespace lookout::navigator {
 
 /// Chart programs put the time of their computer into GLL, which may be local, while RMC passes through with its UTC. Zones differ from UTC by whole
-/// quarter hours. The sentence that says more of time is right: one with a date before GGA and GNS, and those before the rest.
+/// quarter hours. The sentence that says more of time is right: one with date and place (RMC) before ZDA, that before GGA and GNS, and those before
+/// the rest.
 class TimeZoneCheck {
  public:
   /// How far the computer's clock of such a program may be off, beside the quarter hours.
   static constexpr std::chrono::seconds kMostOff{30};
-  /// So many in a row without one that says more: nothing is known of that any more.
-  static constexpr int kMostRefused = 100;
 
   /// @param now  arrival of the sentence, or another time that goes on as they come
   /// @return whether its time of day is off by whole quarter hours from one that says more: it is not to be used
-  bool IsLocal(Utime now, const Sentence& sentence);
+  bool IsLocal(Utime now, const Sentence& sentence) const;
 
   /// Whether the sentence tells a time, and no less of it than that by which others are refused.
   bool SaysAsMuch(const Sentence& sentence) const;
@@ -35,7 +34,6 @@ class TimeZoneCheck {
     std::chrono::microseconds time_of_day{0};
   };
   std::optional<Known> known_;
-  int num_refused_ = 0;  // since then
 };
 
 }  // namespace lookout::navigator

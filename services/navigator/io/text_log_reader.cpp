@@ -93,7 +93,7 @@ std::optional<Utime> TextLogReader::FindFirstTime(std::optional<sys_days> day) {
   std::optional<microseconds> before;
   std::chrono::days num_midnights{0};
   for (int num_dates = 0; num_dates < kDatesCompared && ReadLine();) {
-    const auto said = TimeOfLine();
+    const auto said = WithTime(SentenceIn(line_));
     if (!said) continue;
     const auto of_day = *said->time_of_day;
     // Where the log pauses, another day may begin.
@@ -127,9 +127,8 @@ std::optional<Utime> TextLogReader::FindFirstTime(std::optional<sys_days> day) {
   return day_ + *first->time_of_day;
 }
 
-// Of the line in line_, where it tells a time that is not of another zone.
-std::optional<Sentence> TextLogReader::TimeOfLine() {
-  auto sentence = SentenceIn(line_);
+// Itself, where it tells a time that is not of another zone.
+std::optional<Sentence> TextLogReader::WithTime(const std::optional<Sentence>& sentence) {
   if (!sentence || !sentence->time_of_day || time_zone_.IsLocal(Utime(said_of_day_), *sentence)) return std::nullopt;
   said_of_day_ = *sentence->time_of_day;
   time_zone_.Know(Utime(said_of_day_), *sentence);
@@ -156,7 +155,7 @@ bool TextLogReader::IsStepRight(sys_days date, microseconds of_day) {
   int num_dates = 1;
   int num_right = 1;
   LookAhead([&, expected = date, before = of_day]() mutable {
-    const auto said = TimeOfLine();
+    const auto said = WithTime(SentenceIn(line_));
     if (!said) return true;
     if (!GoesOn(before, *said->time_of_day)) return false;
     if (IsOverMidnight(before, *said->time_of_day)) expected += std::chrono::days(1);
@@ -208,7 +207,14 @@ std::optional<TextLogReader::Line> TextLogReader::Next() {
     has_other_zone_ = !IsPause();
     if (!has_other_zone_) time_zone_ = {};
   }
-  if (const auto said = TimeOfLine()) UseTime(*said->time_of_day, said->date);
+  if (const auto said = WithTime(sentence)) {
+    UseTime(*said->time_of_day, said->date);
+    num_local_ = 0;
+  } else if (sentence && sentence->time_of_day && ++num_local_ == kMostLocal) {
+    // What said more of time has ended.
+    time_zone_ = {};
+    has_other_zone_ = false;
+  }
   return Line{last_, {reinterpret_cast<const std::uint8_t*>(line_.data()), line_.size()}};
 }
 

@@ -30,6 +30,8 @@ class TextLogReader {
 
   /// A date that is a step from those before it counts where the dates behind it agree: of so many at least half. The one that is wrong is left out.
   static constexpr int kDatesCompared = 16;
+  /// So many local times in a row, and nothing that says more of time: then they count.
+  static constexpr int kMostLocal = 100;
   /// Between two sentences farther apart the log was not written.
   static constexpr std::chrono::minutes kMostPause{10};
 
@@ -57,7 +59,7 @@ class TextLogReader {
 
  private:
   bool ReadLine();
-  std::optional<Sentence> TimeOfLine();
+  std::optional<Sentence> WithTime(const std::optional<Sentence>& sentence);
   void UseTime(std::chrono::microseconds of_day, std::optional<std::chrono::sys_days> date);
   std::optional<Utime> FindFirstTime(std::optional<std::chrono::sys_days> day);
   // Reads on, line by line, while `look` returns true, and then goes back to where it was.
@@ -70,6 +72,7 @@ class TextLogReader {
   std::int64_t position_ = 0;
   bool has_date_ = false;
   TimeZoneCheck time_zone_;
+  int num_local_ = 0;                                // in a row
   bool has_other_zone_ = false;                      // some of its sentences tell local time
   std::chrono::microseconds said_of_day_{0};         // the last that was no local time
   std::chrono::sys_days day_{};                      // of the last time

@@ -183,6 +183,21 @@ TEST_F(Reach, OfTwoReceiversThatDisagreeTheFirstIsUsedAndTheOtherNamed) {
   EXPECT_NEAR(last_.latitude_deg, kLatitudeDeg + 3e5 / kMetresPerDeg, 1e-4);
 }
 
+// An RMC of which only the latitude is wrong, each second, beside a GGA that is right.
+TEST_F(Reach, GgaDecidesThePlaceOfItsEpoch) {
+  for (double time_s = 0.0; time_s < 20.0; time_s += 1.0) {
+    filter_.Add(HeadingSample(time_s, 90.0));
+    filter_.Add(FixAt(time_s, 1e5, 0.0));
+    auto gga = FixAt(time_s, 0.0, 0.0);
+    gga.sentence_type = "GGA";
+    filter_.Add(gga);
+    last_ = filter_.At(NoonPlus(time_s + 0.5));
+    EXPECT_NEAR(last_.latitude_deg, kLatitudeDeg, 1e-5) << time_s;
+    EXPECT_EQ(last_.status, PoseStatus::kOk) << time_s;
+    EXPECT_NEAR(last_.datum.latitude_deg, kLatitudeDeg, 1e-5);
+  }
+}
+
 TEST_F(Reach, ABoatOnATrailerComesBackAtOnce) {
   Sail(0.0, 100.0);
   Sail(4.0 * 3600.0, 4.0 * 3600.0 + 5.0, 200'000.0);

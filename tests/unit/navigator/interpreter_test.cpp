@@ -457,6 +457,16 @@ TEST_F(InterpreterTest, KnowsUtcByGgaBesideGllWhereNothingTellsADate) {
   EXPECT_EQ(Count("time_backwards"), 0);
 }
 
+TEST_F(InterpreterTest, RefusesZdaInLocalTimeBesideRmc) {
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(Read(i + 0.2, RmcLine(NoonPlus(i), 50.0, 8.0, 2.0, 30.0)).fix->when.time, NoonPlus(i));
+    Read(i + 0.3, Line("GPZDA," + TimeOfDay(NoonPlus(i + 7200)) + ",01,06,2026,-02,00"));
+    EXPECT_EQ(Read(i + 0.4, GgaLine(NoonPlus(i), 50.0, 8.0, 1, 0.8, 3.0, 40.0)).fix->when.time, NoonPlus(i));
+  }
+  EXPECT_EQ(Count("local_time"), 20);
+  EXPECT_EQ(Count("date_unusable"), 0);
+}
+
 TEST_F(InterpreterTest, TimesOfOneZoneOverMidnightAreOfOneZone) {
   for (int i = 43'190; i < 43'210; ++i) {
     Read(i + 0.2, RmcLine(NoonPlus(i), 50.0, 8.0, 2.0, 30.0));
@@ -479,6 +489,16 @@ TEST_F(InterpreterTest, APlaceThatMovesOnUnderAStandingUtcIsOfItsArrival) {
     EXPECT_NEAR(rmc->position->latitude_deg, latitude_deg, 1e-9);
   }
   EXPECT_EQ(Count("standing_utc"), 32);
+}
+
+TEST_F(InterpreterTest, EachPlaceOfASecondCountsOnceAUtcHasStood) {
+  int num_arrivals = 0;
+  for (int i = 0; i < 30; ++i) {
+    const auto fix = Read(i + 0.2, RmcLine(NoonPlus(i / 5 * 5), 50.0 + 1e-5 * i, 8.0, 1.0, 0.0)).fix;
+    num_arrivals += fix->when.time == NoonPlus(i + 0.2) ? 1 : 0;
+  }
+  EXPECT_EQ(num_arrivals, 3 + 5 * 4) << "all but the first of each UTC, and the second of the first";
+  EXPECT_EQ(Count("sentence_time_unusable"), 0);
 }
 
 // A receiver that has gone is repeated, and its place is as old as its UTC says.

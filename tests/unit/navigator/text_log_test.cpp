@@ -161,6 +161,17 @@ TEST_F(TextLog, PassesOverLocalTimes) {
   }
 }
 
+TEST_F(TextLog, TakesLocalTimesWhereNothingElseIsLeft) {
+  std::string text;
+  for (int i = 10; i < 20; ++i)
+    text += Rmc("1200" + std::to_string(i), "030414") + "$GPGLL,5222.3215,N,00454.5778,E,1400" + std::to_string(i) + ",A\n";
+  for (int i = 100; i < 300; ++i) {
+    text += "$GPGLL,5222.3215,N,00454.5778,E,14" + std::to_string(100 + i / 60).substr(1) + std::to_string(100 + i % 60).substr(1) + ",A\n";
+  }
+  Write(text);
+  EXPECT_EQ(Times().back(), Utime(kDay + 14h + 299s));
+}
+
 TEST_F(TextLog, BeginsAnewWhereItRunsBack) {
   Write(Rmc("120000.000", "030414") + Gga("110000.000"));
   EXPECT_EQ(Times(), (std::vector<Utime>{kDay + 12h, kDay + 11h}));

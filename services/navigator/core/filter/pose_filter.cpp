@@ -170,6 +170,20 @@ void PoseFilter::SetDatum(const GeodeticPlace& datum) {
   map_.emplace(datum);
 }
 
+// GGA decides the place of its epoch: where it is out of reach of the RMC before it, RMC was wrong.
+BelievedPlace::Verdict PoseFilter::Judge(const GnssFix& fix, const GeodeticPlace& antenna, double sd_m) {
+  const BelievedPlace before = believed_place_;
+  auto verdict = believed_place_.Judge(fix.when.time, antenna, sd_m);
+  const bool decides = fix.is_gga() && last_believed_ && last_believed_->source == fix.source && last_believed_->time == fix.when.time;
+  if (verdict == BelievedPlace::Verdict::kHeld && decides) {
+    believed_place_ = last_believed_->before;
+    verdict = believed_place_.Judge(fix.when.time, antenna, sd_m);
+    if (verdict == BelievedPlace::Verdict::kBelieved && last_believed_->gave_datum) MoveDatum(fix.when.time, antenna);
+  }
+  if (verdict != BelievedPlace::Verdict::kHeld && !fix.is_gga()) last_believed_ = {fix.source, fix.when.time, before, !datum_};
+  return verdict;
+}
+
 void PoseFilter::MoveDatum(Utime time, const GeodeticPlace& antenna) {
   if (params_.datum) {
     datum_complaint_ = DatumComplaint(*params_.datum, antenna, "the new place of the fixes");
@@ -247,7 +261,7 @@ void PoseFilter::Add(const GnssFix& fix) {
   const double white_sd_m = std::max(fix.horizontal_sd_m, kMinSdM);
   const double age_s = PossibleAgeS(fix.when);
   const double horizontal_sd_m = Hypot(white_sd_m, age_s * (std::isnan(fix.speed_mps) ? kUnknownSpeedMps : fix.speed_mps));
-  const auto verdict = believed_place_.Judge(fix.when.time, antenna, horizontal_sd_m);
+  const auto verdict = Judge(fix, antenna, horizontal_sd_m);
   if (verdict == BelievedPlace::Verdict::kHeld) {
     ++counts_["unreachable_fix"];
     doubted_source_ = fix.source;

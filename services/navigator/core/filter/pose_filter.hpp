@@ -85,6 +85,7 @@ class PoseFilter {
   void SetDatum(const GeodeticPlace& datum);
   // The map frame begins anew at `time`: all before was elsewhere.
   void MoveDatum(Utime time, const GeodeticPlace& antenna);
+  BelievedPlace::Verdict Judge(const GnssFix& fix, const GeodeticPlace& antenna, double sd_m);
   void NameDoubted(Utime time);
   // False: older than all that is kept.
   bool Insert(Utime time, const Measurement& measurement);
@@ -108,6 +109,14 @@ class PoseFilter {
   };
   std::optional<NextDatum> next_datum_;
   BelievedPlace believed_place_;
+  // The last fix but GGA that was believed, and what was believed before it.
+  struct Believed {
+    std::string source;
+    Utime time;
+    BelievedPlace before;
+    bool gave_datum = false;
+  };
+  std::optional<Believed> last_believed_;
   std::string doubted_source_;
   std::deque<Event> events_;  // by time; of one time attitude before position
   std::size_t num_processed_ = 0;
