@@ -10,8 +10,7 @@ bool StandingUtc::Stands(Utime arrival, const Sentence& sentence) {
     said = Said{*sentence.time_of_day, arrival, *sentence.position};
     return false;
   }
-  const bool moves = said->place.latitude_deg != sentence.position->latitude_deg || said->place.longitude_deg != sentence.position->longitude_deg;
-  said->place = *sentence.position;
+  const bool moves = LocalFrame(OnEllipsoid(said->place)).Forward(OnEllipsoid(*sentence.position)).norm() > kLeastMoveM;
   const auto stand = arrival - said->since;
   const bool has_stood = longest_stand_ > std::chrono::microseconds(0);
   if (stand < (has_stood ? kLeastStandAgain : kLeastStand)) return false;

@@ -22,6 +22,9 @@ class StandingUtc {
   /// Once one has stood so.
   static constexpr std::chrono::milliseconds kLeastStandAgain{700};
 
+  /// A place is another from so far on: the same one is told with 3 to 8 digits of a minute, which are up to 1 m apart.
+  static constexpr double kLeastMoveM = 1.0;
+
   /// Of one input.
   ///
   /// @param sentence  with a time of day and a position
@@ -32,7 +35,7 @@ class StandingUtc {
   struct Said {
     std::chrono::microseconds time_of_day{0};
     Utime since;          // arrival of the first of this time
-    GeodeticPlace place;  // of the last
+    GeodeticPlace place;  // of that
   };
   std::array<std::optional<Said>, kNumSentenceTypes> said_;
   std::chrono::microseconds longest_stand_{0};  // under which a place moved on

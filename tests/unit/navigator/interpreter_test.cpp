@@ -491,6 +491,16 @@ TEST_F(InterpreterTest, APlaceThatMovesOnUnderAStandingUtcIsOfItsArrival) {
   EXPECT_EQ(Count("standing_utc"), 32);
 }
 
+// A plotter tells the fixes of a slow receiver again, later and with fewer digits.
+TEST_F(InterpreterTest, APlaceThatIsToldAgainWithFewerDigitsIsOld) {
+  for (int i = 0; i < 20; i += 2) {
+    Read(i + 0.2, RmcLine(NoonPlus(i), 50.0 + 1e-5 * i, 8.0, 1.0, 0.0));
+    const auto again = Read(i + 1.8, RmcLine(NoonPlus(i), 50.0 + 1e-5 * i + 4e-6, 8.0, 1.0, 0.0)).fix;
+    EXPECT_EQ(again->when.time, NoonPlus(i));
+  }
+  EXPECT_EQ(Count("standing_utc"), 0);
+}
+
 TEST_F(InterpreterTest, EachPlaceOfASecondCountsOnceAUtcHasStood) {
   int num_arrivals = 0;
   for (int i = 0; i < 30; ++i) {
