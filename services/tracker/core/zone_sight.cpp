@@ -20,8 +20,8 @@ constexpr double kHeightStepM = 0.25;
 constexpr double kHullMarginM = 1.0;  // as of RemarksOnBoat: fenders, an engine, a bowsprit
 // A gap that is interrupted for so many bearings is one.
 constexpr std::size_t kMostBetween = 1;
-// Columns look so far to each side: a scan of 250 leaves no degree out.
-constexpr double kBesideDeg = 0.4;
+// A column looks half way to the next, so that a scan of few columns leaves no degree out; what is farther apart is a gap.
+constexpr double kMostApartDeg = 1.5;
 // Below that of every track, of land and of what has no name.
 constexpr std::int64_t kFirstTrackId = -1'000'000;
 
@@ -279,19 +279,21 @@ void ZoneSight::Trace(const Sweep& sweep) {
     return box_m.contains(params_.T_vessel_lidar * Eigen::Vector3d(range_m * BeamDirection(azimuth_rad, sweep.elevation_rad[ring])));
   };
   constexpr double kDegreesOfRad = 180.0 / kPi;
-  for (std::size_t column = 0; column < sweep.azimuth_rad.size(); ++column) {
+  const std::size_t num_columns = sweep.azimuth_rad.size();
+  const auto column_rad = [&sweep, num_columns](std::size_t column) { return static_cast<double>(sweep.azimuth_rad[column % num_columns]); };
+  const auto apart_deg = [&](std::size_t one, std::size_t other) { return kDegreesOfRad * std::abs(WrapToPi(column_rad(other) - column_rad(one))); };
+  for (std::size_t column = 0; column < num_columns; ++column) {
+    const double beside_deg = 0.5 * std::min({apart_deg(column, column + 1), apart_deg(column + num_columns - 1, column), kMostApartDeg});
     for (std::size_t ring = 0; ring < num_rings; ++ring) {
       const double range_m = sweep.range_m[column * num_rings + ring];
       const bool is_stopped = range_m > 0.0 && range_m <= own_reach_m && is_own(column, ring, range_m);
       const float reach_m = is_stopped ? static_cast<float>(range_m) : kFree;
-      const double azimuth_deg =
-          kDegreesOfRad * (static_cast<double>(sweep.azimuth_rad[column]) + static_cast<double>(sweep.azimuth_offset_rad[ring]));
+      const double azimuth_deg = kDegreesOfRad * (column_rad(column) + static_cast<double>(sweep.azimuth_offset_rad[ring]));
       const double whole_deg = std::floor(azimuth_deg);
-      const double rest_deg = azimuth_deg - whole_deg;
       const auto index = static_cast<std::int64_t>(whole_deg);
       see(index, ring, reach_m);
-      if (rest_deg < kBesideDeg) see(index - 1, ring, reach_m);
-      if (rest_deg >= 1.0 - kBesideDeg) see(index + 1, ring, reach_m);
+      if (azimuth_deg - whole_deg < beside_deg) see(index - 1, ring, reach_m);
+      if (azimuth_deg - whole_deg > 1.0 - beside_deg) see(index + 1, ring, reach_m);
     }
   }
 }
