@@ -46,6 +46,41 @@ TEST(DoctorLookOut, SaysThatNobodyLooks) {
   EXPECT_SAYS(says(warned), kWarning, "1 alert, the gravest: boat 17 in the guard zone: 7.3 m, 12 deg to port");
 }
 
+TEST(DoctorLookOut, SaysThatAPartOfTheGuardZoneIsNotLookedInto) {
+  auto seen = Healthy();
+  alert_t alert{};
+  alert.id = 3;
+  alert.cause = alert_t::CAUSE_WATCH;
+  alert.state = alert_t::STATE_ACKNOWLEDGED;
+  alert.text = "no look-out in part of the guard zone: 320 to 40 deg (the lidar does not fire there)";
+  seen.look_out.alerts->alerts = {alert};
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, alert.text);
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "12 tracks, 3 moving, no alert");
+  alert_t boat{};
+  boat.id = 4;
+  boat.cause = alert_t::CAUSE_GUARD_ZONE;
+  boat.state = alert_t::STATE_ACTIVE;
+  boat.text = "boat 17 in the guard zone: 7.3 m, 12 deg to port";
+  seen.look_out.alerts->alerts = {boat, alert};
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "1 alert, the gravest: boat 17");
+}
+
+TEST(DoctorGuardZone, SaysWhatTheLidarCannotLookInto) {
+  auto config = Healthy().config;
+  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kOk, "can look into all of the guard zone of 10.0 m");
+  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kOk, "things of 0.5 m above the water are seen from 4.0 m on");
+  config.tracker->zone_sight.max_range_m = 5.0;
+  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kWarning,
+              "no look-out in part of the guard zone: 300 to 60 deg, from 5.0 m on (beyond max_range_m of the segmenter)");
+  config.tracker->zone_sight.max_range_m = 120.0;
+  config.tracker->zone_sight.T_vessel_lidar.translation().z() = 3.0;
+  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kWarning, "nothing as low as 0.5 m above the water is seen");
+  config.tracker->guard_zone.range_m = 0.0;
+  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kOk, "there is none");
+  config.tracker.reset();
+  EXPECT_TRUE(CheckGuardZone(config).empty());
+}
+
 TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
   BusSeen bus = Healthy().bus;
   EXPECT_SAYS(About(CheckBus(bus), "route"), kOk, "nothing leaves this computer");
