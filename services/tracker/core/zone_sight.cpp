@@ -174,14 +174,19 @@ UnseenPart ZoneGrid::ToPart(Unseen reason, std::size_t first, std::size_t count,
   part.bearing.width_rad = static_cast<double>(count) * bearing_step_rad_;
   std::size_t nearest = kNumRanges;
   std::size_t farthest = 0;
+  // Of most bearings: where the lidar is not at the reference point, a few at the sides differ.
+  std::size_t num_begin = 0;
+  std::size_t num_end = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto& run = runs[(first + i) % num_bearings_];
     if (!run) continue;
     nearest = std::min(nearest, run->first);
     farthest = std::max(farthest, run->last);
-    part.begins_with_zone &= run->begins;
-    part.ends_with_zone &= run->ends;
+    num_begin += run->begins ? 1 : 0;
+    num_end += run->ends ? 1 : 0;
   }
+  part.begins_with_zone = 2 * num_begin >= count;
+  part.ends_with_zone = 2 * num_end >= count;
   part.from_m = static_cast<double>(nearest) * range_step_m_;
   part.to_m = static_cast<double>(farthest + 1) * range_step_m_;
   const bool is_wide = part.bearing.width_rad >= ZoneSight::kLeastWidthRad - 1e-9 && part.bearing.width_rad * part.to_m >= ZoneSight::kLeastWidthM;

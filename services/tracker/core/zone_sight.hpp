@@ -31,8 +31,8 @@ struct UnseenPart {
   Sector bearing;       // from the bow clockwise
   double from_m = 0.0;  // from the vessel's origin
   double to_m = 0.0;
-  bool begins_with_zone = true;  // nothing of the zone is nearer and seen
-  bool ends_with_zone = true;    // nothing of the zone is farther and seen
+  bool begins_with_zone = true;  // in most of its bearings nothing of the zone is nearer and seen
+  bool ends_with_zone = true;    // the same, farther
   bool is_wide = false;          // worth an alert: kLeastWidthRad and kLeastWidthM, or all of the zone's bearings
 };
 
