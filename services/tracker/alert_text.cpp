@@ -41,7 +41,7 @@ std::string WhoText(std::int64_t track_id, std::optional<TrackKind> kind) {
 std::string_view ReasonText(Unseen why) {
   switch (why) {
     case Unseen::kHeight:
-      return "no beam passes within 2 m above the water";
+      return "no beam passes within 1 m above the water";
     case Unseen::kNearerThanMin:
       return "nearer than min_range_m of the segmenter";
     case Unseen::kBeyondMax:

@@ -77,7 +77,7 @@ TEST_F(ZoneSightOfTheChain, SaysWhereTheLidarDoesNotFire) {
   support::WriteFile(config_ / "tracker.txtpb", kAllRound);
   told = Simulate("open_water", config_, astern, 5.0);
   EXPECT_EQ(told.ids.size(), 1U);
-  EXPECT_NE(told.Text().find("part of the guard zone: 266 to 83 deg (the lidar does not fire there)"), std::string::npos) << told.Text();
+  EXPECT_NE(told.Text().find("part of the guard zone: 266 to 84 deg (the lidar does not fire there)"), std::string::npos) << told.Text();
 }
 
 TEST_F(ZoneSightOfTheChain, IsSilentWhereTheLidarLooksAllRound) {

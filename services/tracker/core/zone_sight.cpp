@@ -58,8 +58,6 @@ Seat SeatOf(const Eigen::Isometry3d& T_lidar_vessel, const Eigen::Vector3d& p_ve
 
 std::size_t AzimuthIndex(double azimuth_rad) { return static_cast<std::size_t>(RadToDeg(WrapTo2Pi(azimuth_rad))) % kNumAzimuths; }
 
-bool IsAtLidar(Unseen why) { return why == Unseen::kHeight || why == Unseen::kHidden; }
-
 }  // namespace
 
 // The rings, seen from the vessel.
@@ -155,13 +153,16 @@ std::optional<ZoneGrid::Run> ZoneGrid::RunOf(std::size_t bearing, Unseen reason,
     run->last = k;
   }
   if (!run) return run;
+  bool is_last = true;
   for (std::size_t k = 0; k < kNumRanges; ++k) {
-    if (!cells_[first_cell + k].is_zone || why[first_cell + k] != Unseen::kNo) continue;
+    if (!cells_[first_cell + k].is_zone) continue;
+    if (k > run->last) is_last = false;
+    if (why[first_cell + k] != Unseen::kNo) continue;
     if (k < run->first) run->begins = false;
     if (k > run->last) run->ends = false;
   }
-  // What lies below the lowest beam, or below those that pass over the own deck, was seen before it came so near.
-  if (IsAtLidar(reason) && !run->ends) return std::nullopt;
+  // What lies below the lowest beam, or below those that pass over the own deck, was seen before it came so near, or is not for another reason.
+  if ((reason == Unseen::kHeight && !is_last) || (reason == Unseen::kHidden && !run->ends)) return std::nullopt;
   const double depth_m = static_cast<double>(run->last - run->first + 1) * range_step_m_;
   if ((!run->begins || !run->ends) && depth_m < ZoneSight::kLeastDepthM) return std::nullopt;
   return run;

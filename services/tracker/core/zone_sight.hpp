@@ -111,8 +111,8 @@ class ZoneGrid {
 /// 3 of 5 scans. So packets that are lost, and who walks past the lidar, are told only where they last.
 class ZoneSight {
  public:
-  /// A motor boat's cabin, a person who stands in a dinghy.
-  static constexpr double kPostM = 2.0;
+  /// A person in a kayak or a dinghy.
+  static constexpr double kPostM = 1.0;
   /// A gap of 5 deg is 0.9 m wide at the edge of a zone of 10 m: a kayak fits into it with its paddler. What stays on one bearing comes nearer unseen
   /// in it until it is wider than the gap. Narrower ones (a mast) are counted, and raise no alert: they would do so for ever.
   static constexpr double kLeastWidthRad = DegToRad(5.0);

@@ -104,8 +104,8 @@ TEST(ZoneByConfig, NeedsABeamNearTheWater) {
   auto params = MakeParams();
   params.T_vessel_lidar.translation().z() = 6.0;
   EXPECT_EQ(ByConfig(params), "300 to 60 why 1") << "at 10 m the lowest beam is 3.3 m above the water";
-  params.T_vessel_lidar.translation().z() = 4.0;
-  EXPECT_EQ(ByConfig(params), "") << "at 10 m it is 1.3 m above it";
+  params.T_vessel_lidar.translation().z() = 3.5;
+  EXPECT_EQ(ByConfig(params), "") << "at 10 m it is 0.8 m above it";
   params.T_vessel_lidar = TransformVesselSensor({.p_vessel_m = {0.0, 0.0, kHeightM}, .pitch_rad = DegToRad(30.0)});
   EXPECT_NE(ByConfig(params).find("why 1 from"), std::string::npos) << ByConfig(params);
 }
