@@ -259,7 +259,7 @@ void Service::LookAtZone(const ScanInput& input, std::vector<Danger>& dangers) {
 void Service::TellOfZone(alerts_t& message) const {
   for (auto& alert : message.alerts) {
     if (alert.cause != alert_t::CAUSE_WATCH) continue;
-    const bool is_over = alert.state == alert_t::STATE_CLEARED && memory_->zone_sight.parts().empty();
+    const bool is_over = alert.state >= alert_t::STATE_RECTIFIED && memory_->zone_sight.parts().empty();
     alert.text = is_over ? "look-out in all of the guard zone again" : memory_->zone_text;
   }
 }

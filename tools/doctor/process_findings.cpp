@@ -112,7 +112,7 @@ Findings CheckLookOut(const Observations& seen) {
   const auto find_watch = [&look_out](bool is_of_zone) {
     const auto& alerts = look_out.alerts->alerts;
     const auto found = std::ranges::find_if(alerts, [is_of_zone](const alert_t& alert) {
-      return alert.cause == alert_t::CAUSE_WATCH && (alert.id > 0) == is_of_zone && alert.state != alert_t::STATE_CLEARED;
+      return alert.cause == alert_t::CAUSE_WATCH && (alert.id > 0) == is_of_zone && alert.state <= alert_t::STATE_ACKNOWLEDGED;
     });
     return found == alerts.end() ? nullptr : &*found;
   };

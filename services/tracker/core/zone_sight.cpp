@@ -268,7 +268,7 @@ void ZoneSight::Trace(const Sweep& sweep) {
   const std::size_t num_rings = sweep.elevation_rad.size();
   reach_m_.assign(kNumAzimuths * num_rings, -1.0F);
   const auto see = [this, num_rings](std::int64_t azimuth_deg, std::size_t ring, float range_m) {
-    const auto wrapped = static_cast<std::size_t>((azimuth_deg + std::int64_t{kNumAzimuths}) % std::int64_t{kNumAzimuths});
+    const auto wrapped = static_cast<std::size_t>((azimuth_deg + 2 * std::int64_t{kNumAzimuths}) % std::int64_t{kNumAzimuths});
     auto& reach_m = reach_m_[wrapped * num_rings + ring];
     reach_m = std::max(reach_m, range_m);
   };

@@ -255,6 +255,22 @@ TEST_F(TheZone, IsNothingWithoutARangeOrBeams) {
   EXPECT_FALSE(sight.danger());
 }
 
+// Offsets of a whole circle are valid: azimuths wrap.
+TEST_F(TheZone, TakesAzimuthsBeyondTheCircle) {
+  for (const float offset_rad : {-6.283F, 6.283F}) {
+    ZoneSight sight(MakeParams(0.0, 360.0));
+    for (int i = 0; i < 50; ++i) {
+      Sweep sweep;
+      sweep.elevation_rad = Elevations();
+      sweep.azimuth_offset_rad.assign(sweep.elevation_rad.size(), offset_rad);
+      for (int column = 0; column <= 360; ++column) sweep.azimuth_rad.push_back(static_cast<float>(DegToRad(column)));
+      sweep.range_m.assign(sweep.azimuth_rad.size() * sweep.elevation_rad.size(), 0.0F);
+      sight.Update(time_ += std::chrono::milliseconds(100), sweep);
+    }
+    EXPECT_EQ(InWords(sight.parts()), "");
+  }
+}
+
 // Time that goes back or stands still between scans gives nothing away.
 TEST_F(TheZone, TakesItsTimeFromScansAlone) {
   ZoneSight sight(MakeParams());

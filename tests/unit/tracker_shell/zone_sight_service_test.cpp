@@ -98,6 +98,15 @@ TEST_F(TrackerServiceZone, SaysWhichPartNobodyLooksInto) {
   EXPECT_EQ(service_.Report().reason.find("look-out"), std::string::npos) << service_.Report().reason;
 }
 
+// As with every warning of which nobody took note; but it says that it is over.
+TEST_F(TrackerServiceZone, SaysThatItIsOverWhereNobodyTookNote) {
+  Scans(40, 90.0, 270.0);
+  Scans(80, 0.0, 360.0);
+  EXPECT_EQ(Told().state, alert_t::STATE_RECTIFIED);
+  EXPECT_EQ(Told().text, "look-out in all of the guard zone again");
+  EXPECT_EQ(service_.Report().reason.find("look-out"), std::string::npos) << service_.Report().reason;
+}
+
 // What was acknowledged hides no other part.
 TEST_F(TrackerServiceZone, RaisesAnewWhatWasNotTold) {
   Scans(35, 20.3, 359.5);
