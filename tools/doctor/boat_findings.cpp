@@ -93,10 +93,17 @@ Findings CheckMounting(const ConfigSeen& config) {
   return findings;
 }
 
-Findings CheckGuardZone(const ConfigSeen& config) {
+Findings CheckGuardZone(const Observations& seen) {
+  const auto& config = seen.config;
   if (!config.tracker) return {};  // the config's lines of the file say why
   if (config.tracker->guard_zone.range_m <= 0.0) {
     return {Ok(kGuardZoneSubject, "there is none in tracker.txtpb: only closest approach raises alerts")};
+  }
+  if (!seen.zone_unseen.empty()) {
+    return {Warning(
+        kGuardZoneSubject, seen.zone_unseen,
+        "the field of view on the lidar's own web page; guard_zone in tracker.txtpb; ranges and field of view in segmenter.txtpb; what stands "
+        "before the lidar or sticks to it; keep a look-out by eye there")};
   }
   Findings findings;
   for (const auto& remark : tracker::RemarksOnZone(*config.tracker)) {

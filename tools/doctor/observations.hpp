@@ -160,6 +160,7 @@ struct Observations {
   std::map<std::string, std::vector<ProcessSeen>> processes;  // by name
   ObstaclesSeen obstacles;
   LookOutSeen look_out;
+  std::string zone_unseen;  // by the scans: into which part of the guard zone nobody looks, in words; empty = none, or no scans
   DiskSeen disk;
   PageSeen page;
   Utime end{};  // host time at which watching ended

@@ -125,10 +125,7 @@ Findings CheckLookOut(const Observations& seen) {
   const auto& alerts = look_out.alerts->alerts;
   Findings findings;
   if (const auto* zone = find_watch(true)) {
-    findings.push_back(
-        Warning(kLookOutSubject, zone->text,
-                "the zone line above; the field of view on the lidar's own web page; what stands before the lidar or sticks to it; keep a "
-                "look-out by eye there"));
+    findings.push_back(Warning(kLookOutSubject, zone->text, "the zone line above; keep a look-out by eye there"));
   }
   const auto num_active = std::ranges::count_if(alerts, is_active);
   if (num_active == 0) {
@@ -184,7 +181,7 @@ Findings CheckProcesses(const Observations& seen) {
 Findings CheckAll(const Observations& seen) {
   Findings all;
   for (const auto& part : {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen),
-                           CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config), CheckGuardZone(seen.config), CheckDisk(seen.disk),
+                           CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config), CheckGuardZone(seen), CheckDisk(seen.disk),
                            CheckProcesses(seen), CheckPlotter(seen), CheckPage(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }

@@ -1,5 +1,7 @@
 // Judgements of lookout-doctor on the look-out, network, sensors and boat: ok, warning and fault.
+#include "common/bus/memory_bus.hpp"
 #include "tests/unit/doctor/healthy.hpp"
+#include "tests/unit/tracker_shell/messages.hpp"
 #include "tools/doctor/watch.hpp"
 
 namespace lookout::doctor::test {
@@ -66,19 +68,34 @@ TEST(DoctorLookOut, SaysThatAPartOfTheGuardZoneIsNotLookedInto) {
 }
 
 TEST(DoctorGuardZone, SaysWhatTheLidarCannotLookInto) {
-  auto config = Healthy().config;
-  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kOk, "can look into all of the guard zone of 10.0 m");
-  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kOk, "things of 0.5 m above the water are seen from 4.0 m on");
-  config.tracker->zone_sight.max_range_m = 5.0;
-  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kWarning,
+  auto seen = Healthy();
+  auto& tracker = seen.config.tracker;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "can look into all of the guard zone of 10.0 m");
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "things of 0.5 m above the water are seen from 4.0 m on");
+  tracker->zone_sight.max_range_m = 5.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning,
               "no look-out in part of the guard zone: 300 to 60 deg, from 5.0 m on (beyond max_range_m of the segmenter)");
-  config.tracker->zone_sight.max_range_m = 120.0;
-  config.tracker->zone_sight.T_vessel_lidar.translation().z() = 3.0;
-  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kWarning, "nothing as low as 0.5 m above the water is seen");
-  config.tracker->guard_zone.range_m = 0.0;
-  EXPECT_SAYS(About(CheckGuardZone(config), "zone"), kOk, "there is none");
-  config.tracker.reset();
-  EXPECT_TRUE(CheckGuardZone(config).empty());
+  tracker->zone_sight.max_range_m = 120.0;
+  tracker->zone_sight.T_vessel_lidar.translation().z() = 3.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "nothing as low as 0.5 m above the water is seen");
+  tracker->guard_zone.range_m = 0.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "there is none");
+  tracker.reset();
+  EXPECT_TRUE(CheckGuardZone(seen).empty());
+}
+
+// No config knows the field of view that is set on the lidar's own page; its scans tell, also where no process runs.
+TEST(DoctorGuardZone, SaysWhereTheLidarDoesNotFire) {
+  auto seen = Healthy();
+  Notes notes(seen, [] { return kEnd; });
+  bus::MemoryBus bus;
+  notes.ListenTo(bus, Via::kItself);
+  for (int i = 0; i < 40; ++i) {
+    bus::Publish(bus, bus::kLidarScan, tracker::test::MakeSweep(tracker::test::kScanUs * i, i, 90.0, 270.0));
+    while (bus.HandleOnce()) {
+    }
+  }
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "no look-out in the whole guard zone: 300 to 60 deg (the lidar does not fire there)");
 }
 
 TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {
