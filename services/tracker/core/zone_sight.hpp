@@ -84,10 +84,10 @@ class ZoneGrid {
 
  private:
   struct Candidate {
-    std::size_t ring;
-    double azimuth_rad;
-    double range_m;
-    Eigen::Vector3d p_vessel_m;
+    std::size_t ring = 0;
+    double azimuth_rad = 0.0;
+    double range_m = 0.0;
+    Eigen::Vector3d p_vessel_m = Eigen::Vector3d::Zero();
   };
   struct Run;
   struct Beams;
