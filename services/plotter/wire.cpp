@@ -33,6 +33,11 @@ bool AreNumbersGood(const track_t& track) {
          IsWithinOrUnknown(track.tcpa_s, -kMostTcpaS, kMostTcpaS) && IsWithinOrUnknown(track.cpa_probability, 0.0, 1.0);
 }
 
+// Ids of the watch run from -1 down.
+Cause CauseOf(const alert_t& alert) {
+  return alert.cause == alert_t::CAUSE_WATCH && alert.id > 0 ? Cause::kPartUnseen : static_cast<Cause>(alert.cause);
+}
+
 std::string_view KindText(std::int32_t kind) {
   switch (kind) {
     case track_t::KIND_BUOY:
@@ -118,7 +123,7 @@ std::variant<std::vector<Notice>, Fault> ToNotices(const alerts_t& message) {
     if (alert.id == 0 || std::abs(alert.id / 2) > kMostAlertId || !ids.insert(alert.id).second) return kAlertsId;
     if (alert.text.size() > kMostTextBytes) return kAlertsText;
     notices.push_back({.id = alert.id,
-                       .cause = static_cast<Cause>(alert.cause),
+                       .cause = CauseOf(alert),
                        .level = static_cast<Level>(alert.level),
                        .state = static_cast<NoticeState>(alert.state),
                        .track_id = alert.track_id,

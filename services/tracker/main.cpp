@@ -4,6 +4,7 @@
 #include "common/runtime/service_main.hpp"
 #include "services/tracker/handover.hpp"
 #include "services/tracker/params.hpp"
+#include "services/tracker/params_text.hpp"
 #include "services/tracker/service.hpp"
 
 namespace {
@@ -31,5 +32,6 @@ int main(int argc, char** argv) {
       {.name = "tracker",
        .purpose = "OBSTACLES, SEGMENTS, LIDAR_SCAN and POSE in, TRACKS, ALERTS and MAP out",
        .load = [](const auto& folder) { return lookout::tracker::LoadParams(folder); },
-       .run = Run});
+       .run = Run,
+       .remarks = lookout::tracker::ZoneRemarksAsComments});
 }

@@ -12,6 +12,7 @@
 #include "common/core/angles.hpp"
 #include "config/schema/segmenter.pb.h"
 #include "config/schema/tracker.pb.h"
+#include "config/schema/vlp16.pb.h"
 #include "services/tracker/map_file.hpp"
 
 namespace lookout::tracker {
@@ -40,6 +41,35 @@ GuardZoneParams ToGuardZone(const config::GuardZone& zone) {
   return {.range_m = zone.range_m(),
           .bearing = {WrapTo2Pi(DegToRad(zone.from_bearing_deg())), std::abs(width_deg) >= kWholeCircleDeg ? kTwoPi : WrapTo2Pi(DegToRad(width_deg))},
           .takes_tentative = zone.takes_tentative()};
+}
+
+// Of the lidar that vlp16.txtpb names. Where there is none, or it is wrong, those of a VLP-16: they serve for words alone.
+std::vector<float> ExpectedElevations(const std::filesystem::path& config_folder) {
+  constexpr int kNumBeams = 16;
+  double most_deg = 15.0;  // VLP-16 User Manual 63-9243 Rev E; Puck Hi-Res 63-9318
+  config::FaultList untold;
+  untold.Try([&] {
+    const auto lidar = config::Load<config::Vlp16>(config_folder, "vlp16.txtpb");
+    if (lidar.model() == config::Vlp16::MODEL_PUCK_HI_RES) most_deg = 10.0;
+  });
+  std::vector<float> elevation_rad;
+  for (int i = 0; i < kNumBeams; ++i) elevation_rad.push_back(static_cast<float>(DegToRad(most_deg * (2.0 * i / (kNumBeams - 1) - 1.0))));
+  return elevation_rad;
+}
+
+ZoneSightParams ToZoneSight(const GuardZoneParams& zone, const config::BoatFacts& boat, const config::Segmenter& segmenter) {
+  constexpr double kWholeCircleDeg = 360.0;
+  ZoneSightParams params;
+  params.zone = zone;
+  params.T_vessel_lidar = boat.T_vessel_lidar;
+  params.reference_point_above_water_m = boat.reference_point_above_water_m;
+  params.min_range_m = segmenter.min_range_m();
+  params.max_range_m = segmenter.max_range_m();
+  if (segmenter.field_of_view_width_deg() < kWholeCircleDeg)
+    params.field_of_view = {DegToRad(segmenter.field_of_view_start_deg()), DegToRad(segmenter.field_of_view_width_deg())};
+  params.own_vessel_box_m = boat.own_vessel_box_m;
+  for (const auto& corner : OwnHull(boat)) params.own_hull_m.extend(corner);
+  return params;
 }
 
 }  // namespace
@@ -78,6 +108,8 @@ Params LoadParams(const std::filesystem::path& config_folder, MapFile map_file) 
       faults.ThrowIfAny();
     }
   }
+  params.zone_sight = ToZoneSight(params.guard_zone, *boat, *segmenter);
+  params.zone_sight.expected_elevation_rad = ExpectedElevations(config_folder);
   params.tracker.T_vessel_lidar = boat->T_vessel_lidar;
   params.tracker.reference_point_above_water_m = boat->reference_point_above_water_m;
   params.tracker.max_range_m = segmenter->max_range_m();

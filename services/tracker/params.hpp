@@ -1,4 +1,4 @@
-// Config of the tracker process (boat.txtpb, tracker.txtpb, and the range of segmenter.txtpb) as checked values.
+// Config of the tracker process (boat.txtpb, tracker.txtpb, and ranges and field of view of segmenter.txtpb) as checked values.
 #pragma once
 
 #include <chrono>
@@ -9,6 +9,7 @@
 #include "services/tracker/core/alerts.hpp"
 #include "services/tracker/core/own_map.hpp"
 #include "services/tracker/core/tracker.hpp"
+#include "services/tracker/core/zone_sight.hpp"
 
 namespace lookout::tracker {
 
@@ -16,6 +17,7 @@ struct Params {
   TrackerParams tracker;
   AlertParams alerts;
   GuardZoneParams guard_zone = {};
+  ZoneSightParams zone_sight = {};
   std::chrono::microseconds wait_timeout{500'000};  // live only
   std::shared_ptr<const OwnMap> map = {};           // what the file of `map` holds; nullptr: none is named, or it was not to be read
 };

@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "services/tracker/alert_text.hpp"
+
 namespace lookout::tracker {
 
 namespace {
@@ -15,6 +17,8 @@ namespace {
 constexpr std::size_t kMaxAcknowledgements = 100;
 // HEALTH names a silence that lasts this long, and a time-out for as long.
 constexpr std::chrono::seconds kSilence(2);
+// Room in ALERTS for the words on the guard zone.
+constexpr int kZoneTextBytes = 4096;
 
 // Without an own pose nobody knows how near anything will come; what is in the guard zone shows all the same.
 std::vector<Danger> DangersOf(const Params& params, const GatheredScan& scan, const Picture& picture, bool is_own_still) {
@@ -168,12 +172,15 @@ void Service::Use(const GatheredScan& scan) {
   for (const auto& [from, to] : picture.merged) memory_->alerts.Rename(from, to, input.end_time);
   const auto acknowledged = TakeAcknowledgements(input, picture);
   const bool is_own_still = memory_->still.Update(input.end_time, input.own ? input.own->velocity_map_mps : Eigen::Vector2d::Constant(kNan));
-  const auto& alerts = memory_->alerts.Update(input.end_time, is_whole, DangersOf(params_, scan, picture, is_own_still));
+  auto dangers = DangersOf(params_, scan, picture, is_own_still);
+  LookAtZone(input, dangers);
+  const auto& alerts = memory_->alerts.Update(input.end_time, is_whole, dangers);
 
   const double own_up_m = input.own ? input.own->position_map_m.z() : label_ ? label_->own_up_m : 0.0;
   label_ = {scan.key(), memory_->begin, input.end_time, scan.raw_seq, input.flags, input.datum, own_up_m};
   for (const auto& message : ToMessages(*label_, picture, bus::kMaxMessageBytes)) bus::Publish(bus_, bus::kTracks, message);
-  const auto message = ToMessage(*label_, alerts, acknowledged, picture, bus::kMaxMessageBytes);
+  auto message = ToMessage(*label_, alerts, acknowledged, picture, bus::kMaxMessageBytes - kZoneTextBytes);
+  TellOfZone(message);
   counts_["alerts_untold"] += static_cast<std::int64_t>(alerts.size()) - message.num_alerts;
   bus::Publish(bus_, bus::kAlerts, message);
   if (const auto map = memory_->map.Next(*label_, is_placed_, memory_->tracker)) bus::Publish(bus_, bus::kMap, *map);
@@ -238,6 +245,25 @@ std::vector<Acknowledgement> Service::TakeAcknowledgements(const ScanInput& inpu
   return taken;
 }
 
+// What of the guard zone nobody looks into is an alert like another: decided by the scans, so that a replay gives the same.
+void Service::LookAtZone(const ScanInput& input, std::vector<Danger>& dangers) {
+  auto& zone_sight = memory_->zone_sight;
+  if (input.sweep) zone_sight.Update(input.end_time, *input.sweep);
+  if (const auto danger = zone_sight.danger()) {
+    dangers.push_back(*danger);
+    memory_->zone_text = TextOf(zone_sight.parts(), zone_sight.is_whole());
+  }
+}
+
+// Its words, which no alert holds.
+void Service::TellOfZone(alerts_t& message) const {
+  for (auto& alert : message.alerts) {
+    if (alert.cause != alert_t::CAUSE_WATCH) continue;
+    const bool is_over = alert.state >= alert_t::STATE_RECTIFIED && memory_->zone_sight.parts().empty();
+    alert.text = is_over ? "look-out in all of the guard zone again" : memory_->zone_text;
+  }
+}
+
 // Live only: for the process that is started when this one is gone.
 void Service::Leave(const alerts_t& message, const Picture& picture) const {
   if (!given_.leave) return;
@@ -255,6 +281,7 @@ void Service::SendWatch() {
   auto alerts = memory_->alerts.alerts();
   std::erase_if(alerts, [](const Alert& one) { return one.state == AlertState::kCleared; });  // that was told once
   auto message = ToMessage(*label_, alerts, {}, memory_->picture != nullptr ? *memory_->picture : Picture{}, bus::kMaxMessageBytes / 2);
+  TellOfZone(message);
   auto alert = ToMessage(*watch_.alert(), std::nullopt);
   alert.text = alert.state == alert_t::STATE_CLEARED ? "look-out again" : "no look-out: " + watch_.Complaint();
   message.is_watch = true;
@@ -278,6 +305,7 @@ HealthReport Service::Report() const {
   add_parts(labels_parts_);
   counts.AppendTo(report.counters);
   report.counters.push_back({"times_unwatched", watch_.num_failures()});
+  report.counters.push_back({"guard_zone_unseen_deg", memory_ ? memory_->zone_sight.unseen_deg() : 0});
   obstacles_refused_.AppendTo(report.counters);
   beams_refused_.AppendTo(report.counters);
   labels_refused_.AppendTo(report.counters);
@@ -285,6 +313,7 @@ HealthReport Service::Report() const {
   acknowledgements_refused_.AppendTo(report.counters);
 
   if (const auto complaint = watch_.Complaint(); !complaint.empty()) report.Degrade("no look-out: " + complaint);
+  if (memory_ && !memory_->zone_sight.parts().empty()) report.Degrade(memory_->zone_text);
   if (!is_placed_) report.Degrade("no position or heading: what is seen is not tracked");
   if (now_ && *now_ - obstacles_seen_.value_or(*now_) >= kSilence) {
     report.Degrade(fmt::format("no OBSTACLES for {} s", std::chrono::floor<std::chrono::seconds>(*now_ - *obstacles_seen_).count()));

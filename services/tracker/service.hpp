@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "services/tracker/core/dangers.hpp"
 #include "services/tracker/core/kept_acknowledgements.hpp"
 #include "services/tracker/core/script.hpp"
+#include "services/tracker/core/zone_sight.hpp"
 #include "services/tracker/handover.hpp"
 #include "services/tracker/map_telling.hpp"
 #include "services/tracker/params.hpp"
@@ -57,9 +59,12 @@ class Service {
  private:
   // Tracks and alerts, from the begin of a process.
   struct Memory {
-    Memory(const Params& params, GivenMap given) : tracker(params.tracker), alerts(params.alerts), map(std::move(given)) {}
+    Memory(const Params& params, GivenMap given)
+        : tracker(params.tracker), alerts(params.alerts), zone_sight(params.zone_sight), map(std::move(given)) {}
     Tracker tracker;
     Alerts alerts;
+    ZoneSight zone_sight;
+    std::string zone_text;  // of the last part of the guard zone that nobody looked into
     StillWatch still;
     KeptAcknowledgements kept;
     MapTelling map;
@@ -82,6 +87,8 @@ class Service {
   bool FollowScript(const ScanKey& key);
   void Begin(const ScanKey& begin);
   std::vector<Acknowledgement> TakeAcknowledgements(const ScanInput& input, const Picture& picture);
+  void LookAtZone(const ScanInput& input, std::vector<Danger>& dangers);
+  void TellOfZone(alerts_t& message) const;
   void Leave(const alerts_t& message, const Picture& picture) const;
   void SendWatch();
 

@@ -54,7 +54,11 @@ void CheckAlerts(const alerts_t& message) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   namespace test = tracker::test;
   bus::MemoryBus bus;
-  tracker::Service service(bus, test::MakeParams());
+  auto params = test::MakeParams();
+  params.guard_zone = {.range_m = 10.0};
+  params.zone_sight.zone = params.guard_zone;
+  params.zone_sight.own_vessel_box_m = {Eigen::Vector3d(-1.0, -0.5, -1.0), Eigen::Vector3d(1.0, 0.5, 2.0)};
+  tracker::Service service(bus, params);
   bus::Subscribe<tracks_t>(bus, bus::kTracks, CheckTracks);
   bus::Subscribe<alerts_t>(bus, bus::kAlerts, CheckAlerts);
   bus::Subscribe<map_t>(bus, bus::kMap, CheckMap);

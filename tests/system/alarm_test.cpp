@@ -34,8 +34,9 @@ class Alarm : public ::testing::Test {
   // The obstacle is 8 m ahead; nobody knows where that is on the earth.
   void SendScan(bool has_obstacle) {
     const std::int64_t offset_us = messages::kScanUs * seq_;
-    bus::Publish(bus_, bus::kLidarScan, messages::MakeScan(offset_us, seq_));
-    bus::Publish(bus_, bus::kSegments, messages::MakeSegments(offset_us, seq_));
+    const auto sweep = messages::MakeSweep(offset_us, seq_, fires_from_deg_, fires_to_deg_);
+    bus::Publish(bus_, bus::kLidarScan, sweep);
+    bus::Publish(bus_, bus::kSegments, messages::MakeNoSegments(sweep));
     auto obstacle = messages::MakeObstacle(1, messages::kStartUs + offset_us, {8.0, 0.0});
     obstacle.status = obstacle_t::STATUS_POSE_TIMEOUT;
     obstacle.num_map = 0;
@@ -75,6 +76,8 @@ class Alarm : public ::testing::Test {
   Clock::time_point alerts_time_;
   Clock::time_point sent_;
   std::int64_t seq_ = 0;
+  double fires_from_deg_ = 0.0;
+  double fires_to_deg_ = 360.0;
 };
 
 TEST_F(Alarm, IsToldAtOnceAndThatNobodyLooks) {
@@ -98,6 +101,21 @@ TEST_F(Alarm, IsToldAtOnceAndThatNobodyLooks) {
   EXPECT_TRUE(IsTold(alert_t::CAUSE_GUARD_ZONE)) << "an alert that stands does not end because nobody looks";
   ASSERT_TRUE(Until([this] { return IsReported("no look-out: no whole scan for "); }, false));
   EXPECT_LE(reports_.size() - num_reports, 3U) << "at once, and not with the next second but one";
+  EXPECT_EQ(child.Terminate(), 0);
+}
+
+// The field of view is set on the lidar's own page to 90 to 270 deg, and the zone is ahead: nobody said so.
+TEST_F(Alarm, SaysThatNobodyLooksIntoTheGuardZone) {
+  fires_from_deg_ = 90.0;
+  fires_to_deg_ = 270.0;
+  const TempDir temp_dir;
+  Child child({Bin("tracker"), "--config", kDemoConfig.string()}, (temp_dir / "out").string());
+  ASSERT_TRUE(Until([this] { return IsTold(alert_t::CAUSE_WATCH); }, true)) << child.Output();
+  EXPECT_FALSE(alerts_.back().is_watch) << "with a scan";
+  EXPECT_GT(alerts_.back().alerts.at(0).id, 0);
+  EXPECT_EQ(alerts_.back().alerts.at(0).text, "no look-out in the whole guard zone: 300 to 60 deg (the lidar does not fire there)");
+  ASSERT_TRUE(Until([this] { return IsReported("no look-out in the whole guard zone: 300 to 60 deg (the lidar does not fire there)"); }, true));
+  EXPECT_EQ(reports_.back().state, health_t::STATE_DEGRADED);
   EXPECT_EQ(child.Terminate(), 0);
 }
 

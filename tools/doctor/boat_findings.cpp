@@ -1,4 +1,4 @@
-// Mounting and disk.
+// Mounting, guard zone and disk.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +7,7 @@
 
 #include "common/config/boat.hpp"
 #include "common/core/angles.hpp"
+#include "services/tracker/params_text.hpp"
 #include "services/vlp16/core/model.hpp"
 #include "tools/doctor/findings.hpp"
 
@@ -15,6 +16,7 @@ namespace lookout::doctor {
 namespace {
 
 constexpr const char* kMountingSubject = "mounting";
+constexpr const char* kGuardZoneSubject = "zone";
 constexpr const char* kDiskSubject = "disk";
 
 // Half the height of the VLP-16's field of view: leaning more, one side sees only sky or only water.
@@ -87,6 +89,25 @@ Findings CheckMounting(const ConfigSeen& config) {
         Ok(kMountingSubject, fmt::format("with the boat level on calm water the lowest beam meets the water {} m from the lidar: what lies below "
                                          "that beam is not seen",
                                          Fixed(height_m / std::tan(-lowest_rad), 1))));
+  }
+  return findings;
+}
+
+Findings CheckGuardZone(const Observations& seen) {
+  const auto& config = seen.config;
+  if (!config.tracker) return {};  // the config's lines of the file say why
+  if (config.tracker->guard_zone.range_m <= 0.0) {
+    return {Ok(kGuardZoneSubject, "there is none in tracker.txtpb: only closest approach raises alerts")};
+  }
+  if (!seen.zone_unseen.empty()) {
+    return {Warning(
+        kGuardZoneSubject, seen.zone_unseen,
+        "the field of view on the lidar's own web page; guard_zone in tracker.txtpb; ranges and field of view in segmenter.txtpb; what stands "
+        "before the lidar or sticks to it; keep a look-out by eye there")};
+  }
+  Findings findings;
+  for (const auto& remark : tracker::RemarksOnZone(*config.tracker)) {
+    findings.push_back({remark.cure.empty() ? Grade::kOk : Grade::kWarning, kGuardZoneSubject, remark.words, remark.cure});
   }
   return findings;
 }

@@ -67,6 +67,9 @@ Findings CheckNavigation(const Observations& seen);
 /// Where lidar and antenna are and where the lidar looks, so that who stands on the boat sees a wrong sign.
 Findings CheckMounting(const ConfigSeen& config);
 
+/// Whether the lidar can look into all of the guard zone, by the config, and does, by the scans.
+Findings CheckGuardZone(const Observations& seen);
+
 /// Free space for logs.
 Findings CheckDisk(const DiskSeen& disk);
 

@@ -129,7 +129,7 @@ ConfigSeen ReadConfig(const fs::path& config_folder) {
   check("segmenter.txtpb", [&] { segmenter::LoadParams(config_folder); });
   check("navigator.txtpb", [&] { seen.navigation = navigator::LoadParams(config_folder); });
   check("georeferencer.txtpb", [&] { georeferencer::LoadParams(config_folder); });
-  check("tracker.txtpb", [&] { tracker::LoadParams(config_folder); });
+  check("tracker.txtpb", [&] { seen.tracker = tracker::LoadParams(config_folder); });
   seen.has_plotter_outputs = false;
   if (fs::exists(config_folder / "plotter.txtpb")) {
     check("plotter.txtpb", [&] { seen.has_plotter_outputs = !plotter::LoadParams(config_folder).outputs.empty(); });

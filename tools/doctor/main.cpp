@@ -13,6 +13,7 @@
 #include "common/runtime/process.hpp"
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
+#include "services/tracker/params_text.hpp"
 #include "tools/doctor/findings.hpp"
 #include "tools/doctor/machine.hpp"
 #include "tools/doctor/watch.hpp"
@@ -78,7 +79,8 @@ int main(int argc, char** argv) {
         for (const auto& fault : lines) faults.Add(fault);
       }
       faults.ThrowIfAny();
-      std::cout << lookout::runtime::EffectiveConfig(options.config_folder);
+      std::cout << lookout::runtime::EffectiveConfig(options.config_folder)
+                << lookout::tracker::ZoneRemarksAsComments(lookout::tracker::LoadParams(options.config_folder));
       return;
     }
     const auto findings = lookout::doctor::CheckAll(Observe(options));

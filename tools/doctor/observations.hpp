@@ -20,6 +20,7 @@
 #include "lookout/pose_t.hpp"
 #include "services/navigator/params.hpp"
 #include "services/page/params.hpp"
+#include "services/tracker/params.hpp"
 #include "services/vlp16/params.hpp"
 
 namespace lookout::doctor {
@@ -30,6 +31,7 @@ struct ConfigSeen {
   std::optional<config::BoatFacts> boat;
   std::optional<vlp16::Params> lidar;
   std::optional<navigator::Params> navigation;
+  std::optional<tracker::Params> tracker;
   std::optional<std::filesystem::path> log_folder;  // as the recorder's config says: may be relative
   std::int64_t log_reserve_bytes = 0;               // which the recorder leaves free
   bool has_plotter_outputs = true;                  // without one lookout-plotter need not run
@@ -158,6 +160,7 @@ struct Observations {
   std::map<std::string, std::vector<ProcessSeen>> processes;  // by name
   ObstaclesSeen obstacles;
   LookOutSeen look_out;
+  std::string zone_unseen;  // by the scans: into which part of the guard zone nobody looks, in words; empty = none, or no scans
   DiskSeen disk;
   PageSeen page;
   Utime end{};  // host time at which watching ended

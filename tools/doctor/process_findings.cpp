@@ -108,20 +108,34 @@ Findings CheckLookOut(const Observations& seen) {
   if (!look_out.alerts || alerts_age_s > kLookOutSilenceS) {
     return {Fault(kLookOutSubject, "no look-out: no ALERTS" + (look_out.alerts ? " for " + Fixed(alerts_age_s, 1) + " s" : ""), cure)};
   }
-  const auto is_active = [](const alert_t& alert) { return alert.state == alert_t::STATE_ACTIVE; };
-  for (const auto& alert : look_out.alerts->alerts) {
-    if (alert.cause == alert_t::CAUSE_WATCH && alert.state != alert_t::STATE_CLEARED) return {Fault(kLookOutSubject, alert.text, cure)};
-  }
+  const auto is_active = [](const alert_t& alert) { return alert.state == alert_t::STATE_ACTIVE && alert.cause != alert_t::CAUSE_WATCH; };
+  const auto find_watch = [&look_out](bool is_of_zone) {
+    const auto& alerts = look_out.alerts->alerts;
+    const auto found = std::ranges::find_if(alerts, [is_of_zone](const alert_t& alert) {
+      return alert.cause == alert_t::CAUSE_WATCH && (alert.id > 0) == is_of_zone && alert.state <= alert_t::STATE_ACKNOWLEDGED;
+    });
+    return found == alerts.end() ? nullptr : &*found;
+  };
+  if (const auto* nobody = find_watch(false)) return {Fault(kLookOutSubject, nobody->text, cure)};
   if (look_out.num_scans == 0 || tracks_age_s > kLookOutSilenceS) {
     return {Fault(kLookOutSubject, "ALERTS come, but no TRACKS" + (look_out.num_scans > 0 ? " for " + Fixed(tracks_age_s, 1) + " s" : ""), cure)};
   }
   const std::string words = Fixed(static_cast<double>(look_out.num_scans) / seen.watched_s, 1) + " scans/s, " + Count(look_out.num_tracks, "track") +
                             ", " + std::to_string(look_out.num_moving) + " moving";
   const auto& alerts = look_out.alerts->alerts;
+  Findings findings;
+  if (const auto* zone = find_watch(true)) {
+    findings.push_back(Warning(kLookOutSubject, zone->text, "the zone line above; keep a look-out by eye there"));
+  }
   const auto num_active = std::ranges::count_if(alerts, is_active);
-  if (num_active == 0) return {Ok(kLookOutSubject, words + ", no alert")};
-  return {Warning(kLookOutSubject, words + "; " + Count(num_active, "alert") + ", the gravest: " + std::ranges::find_if(alerts, is_active)->text,
-                  "look there; if it is the own boat or spray: correct own_vessel in boat.txtpb, guard_zone in tracker.txtpb")};
+  if (num_active == 0) {
+    findings.push_back(Ok(kLookOutSubject, words + ", no alert"));
+    return findings;
+  }
+  findings.push_back(Warning(kLookOutSubject,
+                             words + "; " + Count(num_active, "alert") + ", the gravest: " + std::ranges::find_if(alerts, is_active)->text,
+                             "look there; if it is the own boat or spray: correct own_vessel in boat.txtpb, guard_zone in tracker.txtpb"));
+  return findings;
 }
 
 }  // namespace
@@ -166,9 +180,9 @@ Findings CheckProcesses(const Observations& seen) {
 
 Findings CheckAll(const Observations& seen) {
   Findings all;
-  for (const auto& part :
-       {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen), CheckClocks(seen),
-        CheckNavigation(seen), CheckMounting(seen.config), CheckDisk(seen.disk), CheckProcesses(seen), CheckPlotter(seen), CheckPage(seen)}) {
+  for (const auto& part : {CheckConfig(seen.config), CheckBus(seen.bus), CheckPort(seen), CheckBuffers(seen.buffers), CheckLidar(seen),
+                           CheckClocks(seen), CheckNavigation(seen), CheckMounting(seen.config), CheckGuardZone(seen), CheckDisk(seen.disk),
+                           CheckProcesses(seen), CheckPlotter(seen), CheckPage(seen)}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

@@ -16,12 +16,13 @@
 #include "common/io/source.hpp"
 #include "common/io/udp_receiver.hpp"
 #include "common/runtime/process.hpp"
-#include "lookout/lidar_scan_t.hpp"
 #include "lookout/nav_raw_t.hpp"
 #include "lookout/obstacles_t.hpp"
 #include "lookout/tracks_t.hpp"
 #include "services/navigator/service.hpp"
 #include "services/navigator/sources.hpp"
+#include "services/tracker/alert_text.hpp"
+#include "services/tracker/wire.hpp"
 #include "services/vlp16/service.hpp"
 #include "services/vlp16/sources.hpp"
 
@@ -220,11 +221,7 @@ void Notes::ListenTo(bus::Bus& bus, Via via) {
     if (!seen_.lidar.first_clock) seen_.lidar.first_clock = message;
     seen_.lidar.last_clock = message;
   });
-  bus::Subscribe<lidar_scan_t>(bus, bus::kLidarScan, [this](const lidar_scan_t& message) {
-    seen_.lidar.model = message.model;
-    seen_.lidar.num_returns = message.num_returns;
-    if (!message.return_kind.empty()) seen_.lidar.return_kind = message.return_kind.front();
-  });
+  bus::Subscribe<lidar_scan_t>(bus, bus::kLidarScan, [this](const lidar_scan_t& message) { OnScan(message); });
   bus::Subscribe<nav_raw_t>(bus, bus::kNavRaw, [this, via](const nav_raw_t& message) {
     seen_.navigation.via = via;
     if (message.kind == nav_raw_t::KIND_SENTENCE || message.kind == nav_raw_t::KIND_IMU) ++seen_.navigation.num_by_source[message.source];
@@ -280,6 +277,25 @@ void Notes::OnPackets(const lidar_packets_t& message, Via via) {
     ++lidar.num_packets;
     lidar.heard_last = clock_();
   }
+}
+
+void Notes::OnScan(const lidar_scan_t& message) {
+  seen_.lidar.model = message.model;
+  seen_.lidar.num_returns = message.num_returns;
+  if (!message.return_kind.empty()) seen_.lidar.return_kind = message.return_kind.front();
+  if (!seen_.config.tracker || messages::FaultOf(message, bus::kMaxMessageBytes)) return;
+  if (message.num_parts == 1 && scan_parts_.is_empty()) return LookAtZone({&message, 1});
+  LookAtZone(scan_parts_.Add(message).whole);
+}
+
+// Scans that lack a part say nothing here.
+void Notes::LookAtZone(std::span<const lidar_scan_t> parts) {
+  if (parts.empty()) return;
+  const auto beams = tracker::ToBeams(parts);
+  if (!beams) return;
+  if (!zone_sight_) zone_sight_.emplace(seen_.config.tracker->zone_sight);
+  zone_sight_->Update(beams->key.time, beams->sweep);
+  seen_.zone_unseen = zone_sight_->parts().empty() ? "" : tracker::TextOf(zone_sight_->parts(), zone_sight_->is_whole());
 }
 
 // A receiver tells one epoch in several sentences, maybe to several inputs, and not each tells how many satellites there are.

@@ -3,10 +3,15 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
+#include <span>
 
 #include "common/bus/bus.hpp"
+#include "common/messages/part_assembler.hpp"
 #include "lookout/health_t.hpp"
 #include "lookout/lidar_packets_t.hpp"
+#include "lookout/lidar_scan_t.hpp"
+#include "services/tracker/core/zone_sight.hpp"
 #include "tools/doctor/observations.hpp"
 
 namespace lookout::doctor {
@@ -29,12 +34,16 @@ class Notes {
 
  private:
   void OnPackets(const lidar_packets_t& message, Via via);
+  void OnScan(const lidar_scan_t& message);
+  void LookAtZone(std::span<const lidar_scan_t> parts);
   void OnFix(const gnss_fix_t& message);
   void OnHealth(const health_t& message);
 
   Observations& seen_;
   std::function<Utime()> clock_;
   std::int64_t num_log_bytes_ = 0;
+  messages::PartAssembler<lidar_scan_t> scan_parts_;
+  std::optional<tracker::ZoneSight> zone_sight_;
 };
 
 /// Fills lidar, navigation, processes, obstacles, look-out, the rate of the disk, end and watched_s of `seen`. Sends nothing on the bus.

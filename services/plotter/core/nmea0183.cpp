@@ -106,6 +106,8 @@ std::string_view TitleOf(Cause cause) {
       return "CLOSE APPROACH";
     case Cause::kPosition:
       return "NO OWN POSITION";
+    case Cause::kPartUnseen:
+      return "LOOK-OUT GAP";
     default:
       return "NO LOOK-OUT";
   }

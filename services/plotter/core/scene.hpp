@@ -33,7 +33,8 @@ enum class TargetState { kAcquiring, kTracking, kLost };
 // Numbers of both are those of alert_t.
 enum class Level : std::int32_t { kNone = 0, kCaution = 1, kWarning = 2 };
 enum class NoticeState : std::int32_t { kActive = 1, kAcknowledged = 2, kRectified = 3, kCleared = 4 };
-enum class Cause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3, kPosition = 4 };  // the last: the plotter's own
+// kPosition is the plotter's own; kPartUnseen is of WATCH, too: nobody looks into a part of the guard zone.
+enum class Cause : std::int32_t { kGuardZone = 1, kClosestApproach = 2, kWatch = 3, kPosition = 4, kPartUnseen = 5 };
 
 /// One track, as it is to be shown.
 struct Target {

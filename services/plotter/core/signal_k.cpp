@@ -96,6 +96,8 @@ std::string_view CauseWord(Cause cause) {
       return "closestApproach";
     case Cause::kPosition:
       return "noPosition";
+    case Cause::kPartUnseen:
+      return "lookoutGap";
     default:
       return "noLookout";
   }

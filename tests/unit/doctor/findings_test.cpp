@@ -1,5 +1,7 @@
 // Judgements of lookout-doctor on the look-out, network, sensors and boat: ok, warning and fault.
+#include "common/bus/memory_bus.hpp"
 #include "tests/unit/doctor/healthy.hpp"
+#include "tests/unit/tracker_shell/messages.hpp"
 #include "tools/doctor/watch.hpp"
 
 namespace lookout::doctor::test {
@@ -44,6 +46,56 @@ TEST(DoctorLookOut, SaysThatNobodyLooks) {
   alert.state = alert_t::STATE_ACTIVE;
   warned.look_out.alerts->alerts = {alert};
   EXPECT_SAYS(says(warned), kWarning, "1 alert, the gravest: boat 17 in the guard zone: 7.3 m, 12 deg to port");
+}
+
+TEST(DoctorLookOut, SaysThatAPartOfTheGuardZoneIsNotLookedInto) {
+  auto seen = Healthy();
+  alert_t alert{};
+  alert.id = 3;
+  alert.cause = alert_t::CAUSE_WATCH;
+  alert.state = alert_t::STATE_ACKNOWLEDGED;
+  alert.text = "no look-out in part of the guard zone: 320 to 40 deg (the lidar does not fire there)";
+  seen.look_out.alerts->alerts = {alert};
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, alert.text);
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "12 tracks, 3 moving, no alert");
+  alert_t boat{};
+  boat.id = 4;
+  boat.cause = alert_t::CAUSE_GUARD_ZONE;
+  boat.state = alert_t::STATE_ACTIVE;
+  boat.text = "boat 17 in the guard zone: 7.3 m, 12 deg to port";
+  seen.look_out.alerts->alerts = {boat, alert};
+  EXPECT_SAYS(About(CheckProcesses(seen), "look-out"), kWarning, "1 alert, the gravest: boat 17");
+}
+
+TEST(DoctorGuardZone, SaysWhatTheLidarCannotLookInto) {
+  auto seen = Healthy();
+  auto& tracker = seen.config.tracker;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "can look into all of the guard zone of 10.0 m");
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "things of 0.5 m above the water are seen from 4.0 m on");
+  tracker->zone_sight.max_range_m = 5.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning,
+              "no look-out in part of the guard zone: 300 to 60 deg, from 5.0 m on (beyond max_range_m of the segmenter)");
+  tracker->zone_sight.max_range_m = 120.0;
+  tracker->zone_sight.T_vessel_lidar.translation().z() = 3.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "nothing as low as 0.5 m above the water is seen");
+  tracker->guard_zone.range_m = 0.0;
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kOk, "there is none");
+  tracker.reset();
+  EXPECT_TRUE(CheckGuardZone(seen).empty());
+}
+
+// No config knows the field of view that is set on the lidar's own page; its scans tell, also where no process runs.
+TEST(DoctorGuardZone, SaysWhereTheLidarDoesNotFire) {
+  auto seen = Healthy();
+  Notes notes(seen, [] { return kEnd; });
+  bus::MemoryBus bus;
+  notes.ListenTo(bus, Via::kItself);
+  for (int i = 0; i < 40; ++i) {
+    bus::Publish(bus, bus::kLidarScan, tracker::test::MakeSweep(tracker::test::kScanUs * i, i, 90.0, 270.0));
+    while (bus.HandleOnce()) {
+    }
+  }
+  EXPECT_SAYS(About(CheckGuardZone(seen), "zone"), kWarning, "no look-out in the whole guard zone: 300 to 60 deg (the lidar does not fire there)");
 }
 
 TEST(DoctorBus, NeedsARouteThatFitsTheTimeToLive) {

@@ -182,6 +182,9 @@ TEST(PlotterNmea, NumbersAlertsFrom1To997AndKeepsThreeForItsOwn) {
   own.cause = Cause::kPosition;
   EXPECT_EQ(AlarmNumber(own), 999);
   EXPECT_NE(Alf("RA", own, test::kTime, 0, 1).find(",10004,1,1,0,NO OWN POSITION*"), std::string::npos);
+  auto gap = MakeNotice(5);
+  gap.cause = Cause::kPartUnseen;
+  EXPECT_NE(Alf("RA", gap, test::kTime, 0, 1).find(",10005,5,1,0,LOOK-OUT GAP*"), std::string::npos);
 }
 
 }  // namespace

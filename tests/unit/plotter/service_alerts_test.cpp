@@ -95,6 +95,17 @@ TEST_F(PlotterAlerts, RaisesWhatComesBackUnderAnotherPath) {
   EXPECT_TRUE(acknowledged_.empty());
 }
 
+// The watch's alerts by the clock have ids below 0: by its absolute value one of them had the name of that of the guard zone.
+TEST_F(PlotterAlerts, TellsThatAPartIsNotLookedIntoApartFromThatNobodyLooks) {
+  alerts_ = {MakeAlert(3), MakeAlert(-3)};
+  for (auto& alert : alerts_) alert.cause = alert_t::CAUSE_WATCH;
+  alerts_[0].text = "no look-out in part of the guard zone: 270 to 90 deg (the lidar does not fire there)";
+  Run(300'000);
+  ASSERT_FALSE(signal_k_->With("lookoutGap3at").empty());
+  EXPECT_NE(signal_k_->With("lookoutGap3at")[0].find("270 to 90 deg"), std::string::npos);
+  EXPECT_FALSE(signal_k_->With("noLookout3at").empty());
+}
+
 // A server keeps what a process told that was killed.
 TEST_F(PlotterAlerts, EndsAlarmsOfAProcessBefore) {
   Run(300'000);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/core/angles.hpp"
 #include "lookout/alert_ack_t.hpp"
 #include "lookout/lidar_scan_t.hpp"
 #include "lookout/obstacles_t.hpp"
@@ -94,6 +95,38 @@ inline lidar_scan_t MakeScan(std::int64_t offset_us, std::int64_t seq) {
       message.reflectivity.push_back(7);
     }
   }
+  return message;
+}
+
+/// Over empty water, a column each half degree from one azimuth clockwise to another: what a lidar sends whose field of view is set so.
+inline lidar_scan_t MakeSweep(std::int64_t offset_us, std::int64_t seq, double from_deg = 0.0, double to_deg = 360.0) {
+  auto message = MakeScan(offset_us, seq);
+  message.azimuth_rad.clear();
+  message.time_ns.clear();
+  for (double azimuth_deg = from_deg; azimuth_deg < to_deg; azimuth_deg += 0.5) {
+    message.azimuth_rad.push_back(static_cast<float>(DegToRad(azimuth_deg)));
+    message.time_ns.push_back(static_cast<std::int32_t>(2.75e5 * azimuth_deg));
+  }
+  message.num_turn_columns = message.num_columns = static_cast<std::int32_t>(message.azimuth_rad.size());
+  message.num_cells = message.num_columns * kNumRings;
+  message.range.assign(static_cast<std::size_t>(message.num_cells), 0);
+  message.reflectivity.assign(static_cast<std::size_t>(message.num_cells), 0);
+  return message;
+}
+
+/// Of a scan in which nothing came back.
+inline segments_t MakeNoSegments(const lidar_scan_t& scan) {
+  segments_t message{};
+  message.utime_us = scan.utime_us;
+  message.seq = scan.seq;
+  message.raw_seq = scan.raw_seq;
+  message.end_utime_us = scan.end_utime_us;
+  message.num_parts = 1;
+  message.num_rings = scan.num_rings;
+  message.num_returns = 1;
+  message.num_columns = scan.num_columns;
+  message.num_cells = scan.num_cells;
+  message.label.assign(static_cast<std::size_t>(scan.num_cells), 0);
   return message;
 }
 

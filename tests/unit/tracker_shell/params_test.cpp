@@ -7,6 +7,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/core/angles.hpp"
+#include "services/tracker/params_text.hpp"
 #include "tests/support/files.hpp"
 
 namespace lookout::tracker {
@@ -42,6 +43,40 @@ TEST(TrackerParams, RefuseAGuardZoneInsideTheOwnHull) {
       << fault;
   EXPECT_EQ(load("range_m: 1.3"), "") << "all round it reaches out to the sides";
   EXPECT_EQ(load("range_m: 1.5 from_bearing_deg: 330 to_bearing_deg: 30"), "");
+}
+
+// What --check says of the zone, beside the values. A config that cuts the zone away was taken without a word.
+TEST(ZoneInWords, SaysWhatNobodyLooksInto) {
+  const support::TempDir folder;
+  const auto says = [&folder](const std::string& tracker, const std::string& segmenter, const std::string& vlp16 = "") {
+    std::filesystem::copy_file(support::kCatabotConfig / "boat.txtpb", folder / "boat.txtpb", std::filesystem::copy_options::overwrite_existing);
+    std::ofstream(folder / "segmenter.txtpb") << segmenter << "\n";
+    std::ofstream(folder / "tracker.txtpb") << tracker << "\n";
+    if (!vlp16.empty()) std::ofstream(folder / "vlp16.txtpb") << vlp16 << "\n";
+    return ZoneRemarksAsComments(LoadParams(folder));
+  };
+  const std::string ahead = "guard_zone { range_m: 10 from_bearing_deg: 300 to_bearing_deg: 60 }";
+  const std::string ok =
+      "# tracker.txtpb: by the config the lidar can look into all of the guard zone of 10.0 m; what the lidar itself is set to, and what stands "
+      "before "
+      "it, its scans tell\n";
+  EXPECT_EQ(says("", ""), "");
+  EXPECT_EQ(says(ahead, ""),
+            ok + "# tracker.txtpb: in the guard zone things of 0.5 m above the water are seen from 1.5 m on, with the boat level: nearer "
+                 "they are below the lowest beam\n");
+  const auto holds = [&](const std::string& segmenter, const std::string& words) {
+    const auto text = says(ahead, segmenter);
+    EXPECT_EQ(text.rfind("# tracker.txtpb: warning: " + words + "; look at guard_zone in tracker.txtpb; ", 0), 0U) << text;
+  };
+  holds("min_range_m: 20", "no look-out in the whole guard zone: 300 to 60 deg (nearer than min_range_m of the segmenter)");
+  holds("max_range_m: 5", "no look-out in part of the guard zone: 300 to 60 deg, from 5.0 m on (beyond max_range_m of the segmenter)");
+  holds("field_of_view_start_deg: 90 field_of_view_width_deg: 180",
+        "no look-out in the whole guard zone: 300 to 60 deg (outside of the segmenter's field of view)");
+  holds("field_of_view_start_deg: 0 field_of_view_width_deg: 300",
+        "no look-out in part of the guard zone: 300 to 0 deg (outside of the segmenter's field of view)");
+  EXPECT_NE(says(ahead, "", "source: UDP model: MODEL_PUCK_HI_RES cut_azimuth_deg: 0 bind_address: '0.0.0.0'").find("from 2.5 m on"),
+            std::string::npos)
+      << "10 deg down instead of 15";
 }
 
 }  // namespace
