@@ -50,8 +50,8 @@ class ToldPlaces {
  private:
   struct Told {
     DangerPlace last;  // of land: as it was told; of a thing: where it was seen last
-    double told_range_m;
-    double told_bearing_rad;
+    double told_range_m = 0.0;
+    double told_bearing_rad = 0.0;
     Utime seen;          // of land: when land was last at that place
     Utime bearing_seen;  // of land: when land was last on that bearing
   };
