@@ -163,6 +163,7 @@ void Service::Use(const GatheredScan& scan) {
     memory_->kept.Keep(label_->end_time, label_->datum, memory_->alerts.alerts(), memory_->picture->tracks);
     memory_->tracker.Reset();
   }
+  if (label_ && (scan.is_anew || !scan.input.datum.IsSameAs(label_->datum))) memory_->alerts.ForgetMap();
   const auto& input = scan.input;
   const bool is_whole = input.flags == 0;
   watch_.NoteScan(input.time, is_whole);

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <ranges>
 #include <tuple>
 #include <utility>
+
+#include "common/core/angles.hpp"
 
 namespace lookout::tracker {
 
@@ -13,6 +16,9 @@ namespace {
 
 // A shore has 72. Of more things the nearest count: in a downpour they are compared one by one.
 constexpr std::size_t kMostToldPlaces = 200;
+// Less than it takes to read an alert and to press a button.
+constexpr std::chrono::milliseconds kToldAfter{1000};
+constexpr double kKeptSideRad = DegToRad(60.0);
 
 void SetState(Alert& alert, AlertState state, Utime time) {
   if (alert.state != state) alert.changed = time;
@@ -67,6 +73,7 @@ const std::vector<Alert>& Alerts::Update(Utime time, bool is_whole, const std::v
     for (auto& [key, entry] : entries_) {
       entry.raised.ForgetLooks();
       entry.warning.ForgetLooks();
+      entry.untold.ForgetLooks();
     }
   }
   newest_ = time;
@@ -120,15 +127,22 @@ void Alerts::Update(Entry& entry, const Key& key, Utime time, bool is_whole, con
 
 // Precondition: the alert holds.
 void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const {
-  entry.places = danger.places;
-  if (entry.places.size() > kMostToldPlaces) {
-    std::ranges::stable_sort(entry.places, {}, &DangerPlace::range_m);
-    entry.places.resize(kMostToldPlaces);
+  auto places = danger.places;
+  if (places.size() > kMostToldPlaces) {
+    std::ranges::stable_sort(places, {}, &DangerPlace::range_m);
+    places.resize(kMostToldPlaces);
   }
-  if (!entry.told) return;
   auto& alert = *entry.alert;
-  const auto untold = entry.told->Untold(time, entry.places);
-  entry.untold.Update(time, is_whole, untold.has_value(), !untold, params_.clear_s);
+  std::optional<DangerPlace> untold;
+  if (entry.told) {
+    untold = entry.told->Untold(time, places);
+    entry.untold.Update(time, is_whole, untold.has_value(), !untold, params_.clear_s);
+  }
+  if (!places.empty()) {
+    // The first one is older than a second, if there is one.
+    while (entry.shown.size() > 1 && std::chrono::abs(time - entry.shown[1].time) >= kToldAfter) entry.shown.pop_front();
+    entry.shown.push_back({time, std::move(places)});
+  }
   if (alert.state == AlertState::kAcknowledged && entry.untold.is_on) {
     SetState(alert, AlertState::kActive, time);
     entry.untold = {};
@@ -141,17 +155,19 @@ void Alerts::UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger&
 
 // All in the guard zone that has no alert which holds. Call it once the others are up to date.
 std::optional<Danger> Alerts::FindUnnamed(const std::map<Key, const Danger*>& dangers) const {
-  std::optional<Danger> all;
+  const Danger* nearest = nullptr;
+  std::vector<DangerPlace> places;
   for (const auto& [key, danger] : dangers) {
     if (key.first != AlertCause::kGuardZone) continue;
     const auto entry = entries_.find(key);
     const bool holds = key != kUnnamedKey && entry != entries_.end() && entry->second.alert && entry->second.alert->Holds();
     if (holds) continue;
-    auto places = danger->places;
-    if (all) std::ranges::copy(all->places, std::back_inserter(places));
-    if (!all || danger->distance_m < all->distance_m) all = *danger;
-    all->places = std::move(places);
+    std::ranges::copy(danger->places, std::back_inserter(places));
+    if (nearest == nullptr || danger->distance_m < nearest->distance_m) nearest = danger;
   }
+  if (nearest == nullptr) return std::nullopt;
+  auto all = *nearest;
+  all.places = std::move(places);
   return all;
 }
 
@@ -201,11 +217,7 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
     if (!entry.alert || entry.alert->id != acknowledgement.alert_id || entry.alert->raised != acknowledgement.raised) continue;
     if (entry.alert->state == AlertState::kActive) {
       SetState(*entry.alert, AlertState::kAcknowledged, time);
-      if (key.second <= kLandTrack) {
-        if (!entry.told) entry.told.emplace(key.second == kLandTrack ? ToldPlaces::Kind::kLand : ToldPlaces::Kind::kThings);
-        entry.told->Tell(time, entry.places);
-        entry.untold = {};
-      }
+      if (key.second <= kLandTrack) TellPlaces(entry, key, acknowledgement);
     } else if (entry.alert->state == AlertState::kRectified) {
       SetState(*entry.alert, AlertState::kCleared, time);
     } else {
@@ -214,6 +226,30 @@ bool Alerts::Acknowledge(const Acknowledgement& acknowledgement, Utime time) {
     return true;
   }
   return false;
+}
+
+// What was shown a second ago, followed since: what came up between is not acknowledged. What the tracker itself acknowledges for a person (see
+// KeptAcknowledgements) is on the side of the boat where it was told.
+void Alerts::TellPlaces(Entry& entry, const Key& key, const Acknowledgement& acknowledgement) {
+  if (!entry.told) entry.told.emplace(key.second == kLandTrack ? ToldPlaces::Kind::kLand : ToldPlaces::Kind::kThings);
+  entry.untold = {};
+  if (entry.shown.empty()) return;
+  auto [shown_at, places] = entry.shown.front();
+  if (acknowledgement.seq == 0 && acknowledgement.source == "tracker") {
+    std::erase_if(places,
+                  [&entry](const DangerPlace& place) { return std::fabs(WrapToPi(place.bearing_rad - entry.alert->bearing_rad)) > kKeptSideRad; });
+  }
+  entry.told->Tell(shown_at, places);
+  for (const auto& later : entry.shown | std::views::drop(1)) entry.told->Untold(later.time, later.places);
+}
+
+void Alerts::ForgetMap() {
+  for (auto& [key, entry] : entries_) {
+    if (entry.told) entry.told->ForgetMap();
+    for (auto& shown : entry.shown) {
+      for (auto& place : shown.places) place.position_map_m.setConstant(kNan);
+    }
+  }
 }
 
 void Alerts::Rename(std::int64_t from_track, std::int64_t to_track, Utime time) {

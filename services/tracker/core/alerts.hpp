@@ -114,6 +114,9 @@ class Alerts {
   /// and active unless both were acknowledged; the other is cleared. (A track that ended needs no call: no danger comes of it any more.)
   void Rename(std::int64_t from_track, std::int64_t to_track, Utime time);
 
+  /// The map has another datum, or began anew.
+  void ForgetMap();
+
   /// As returned by the last Update.
   const std::vector<Alert>& alerts() const { return alerts_; }
 
@@ -137,15 +140,21 @@ class Alerts {
     Latch warning;
     std::optional<Alert> alert;
     // Of land and of kUnnamed alone.
-    std::vector<DangerPlace> places;  // in the last scan that showed any
-    std::optional<ToldPlaces> told;   // acknowledged
-    Latch untold;                     // scans that showed a place that is not
+    // The scans of the last second that showed any: an acknowledgement is of what a person can have seen.
+    struct Shown {
+      Utime time;
+      std::vector<DangerPlace> places;
+    };
+    std::deque<Shown> shown;
+    std::optional<ToldPlaces> told;  // acknowledged
+    Latch untold;                    // scans that showed a place that is not
   };
   using Key = std::pair<AlertCause, std::int64_t>;  // and track
   static constexpr Key kUnnamedKey{AlertCause::kGuardZone, kUnnamed};
 
   void Update(Entry& entry, const Key& key, Utime time, bool is_whole, const Danger* danger);
   void UpdatePlaces(Entry& entry, Utime time, bool is_whole, const Danger& danger) const;
+  static void TellPlaces(Entry& entry, const Key& key, const Acknowledgement& acknowledgement);
   std::optional<Danger> FindUnnamed(const std::map<Key, const Danger*>& dangers) const;
   bool HasNamedInZone(bool (*is_so)(const Alert&)) const;
   void Advance(Entry& entry, const Key& key, Utime time);

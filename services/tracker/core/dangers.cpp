@@ -176,7 +176,7 @@ std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& pictur
                        .is_inside = track.approach.distance_m < limit_m});
   }
   if (picture.land_approach && !is_own_still) {
-    const auto& [approach, bearing_rad, places] = *picture.land_approach;
+    const auto& [approach, land_limit_m, bearing_rad, places] = *picture.land_approach;
     dangers.push_back({.cause = AlertCause::kClosestApproach,
                        .track_id = kLandTrack,
                        .probability = approach.probability,
@@ -184,6 +184,7 @@ std::vector<Danger> ClosestApproachDangers(double limit_m, const Picture& pictur
                        .distance_m = approach.distance_m,
                        .bearing_rad = bearing_rad,
                        .cpa_m = approach.cpa_m,
+                       .is_inside = approach.distance_m < land_limit_m,
                        .places = places});
   }
   return dangers;

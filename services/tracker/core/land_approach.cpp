@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "common/core/angles.hpp"
 #include "services/tracker/core/land.hpp"
+#include "services/tracker/core/outline.hpp"
 #include "services/tracker/core/turning.hpp"
 
 namespace lookout::tracker {
@@ -21,6 +23,9 @@ constexpr double kLandSdM = 0.5 * LandMemory::kCellM;
 constexpr double kLikely = 0.5;
 // A boat that holds its distance to a quay comes no nearer than that.
 constexpr double kMuchNearer = 0.5;
+constexpr double kLeastLimitM = 0.5;
+// Land is no row of points: what lies so near to a place is one face with it.
+constexpr double kFaceM = 1.5;
 constexpr int kArcSteps = 4;
 
 // The way of the boat, straight on after the median of its turn.
@@ -49,6 +54,14 @@ double Distance2(const std::vector<Eigen::Vector2d>& way_m, const Eigen::Vector2
   return least_m2;
 }
 
+// The land about a place, convex.
+std::vector<Eigen::Vector2d> FaceAt(std::span<const Eigen::Vector2d> shore_m, const Eigen::Vector2d& place_m) {
+  std::vector<Eigen::Vector2d> face_m;
+  std::ranges::copy_if(shore_m, std::back_inserter(face_m),
+                       [&place_m](const Eigen::Vector2d& other_m) { return (other_m - place_m).squaredNorm() <= kFaceM * kFaceM; });
+  return Polygon(SupportOf(face_m));
+}
+
 // The sooner one of two that are likely, else the likelier one.
 bool IsGraver(const ClosestApproach& one, const ClosestApproach& other) {
   if (one.probability >= kLikely && other.probability >= kLikely) {
@@ -68,37 +81,46 @@ std::optional<LandApproach> ApproachToLand(const Pose& own, const Moving& self, 
   // Beyond it the probability is below one half, however the way errs.
   const double aside_m = hull_m + params.limit_m + velocity_sd_mps * params.look_ahead_s;
   struct NearWay {
-    double distance2_m2 = std::numeric_limits<double>::infinity();
+    double least_m2 = std::numeric_limits<double>::infinity();
     Eigen::Vector2d place_m;
     double bearing_rad = 0.0;
+
+    void Keep(double measure_m2, const Eigen::Vector2d& other_m, double other_rad) {
+      if (measure_m2 < least_m2) *this = {measure_m2, other_m, other_rad};
+    }
   };
-  std::array<NearWay, kBins> candidates;
-  double nearest2_m2 = std::numeric_limits<double>::infinity();
+  // Of each bearing the place nearest to the way, and of those on the way the nearest to the boat: behind a pier head may lie a wall.
+  std::array<std::array<NearWay, 2>, kBins> candidates;
+  NearWay nearest;
+  const double on_way_m2 = (hull_m + params.limit_m) * (hull_m + params.limit_m);
   for (const auto& place_m : shore_m) {
-    nearest2_m2 = std::min(nearest2_m2, (place_m - here_m).squaredNorm());
-    const double distance2_m2 = Distance2(way_m, place_m);
-    if (distance2_m2 > aside_m * aside_m) continue;
     const Eigen::Vector2d off = place_m - here_m;
+    nearest.Keep(off.squaredNorm(), place_m, 0.0);
+    const double to_way_m2 = Distance2(way_m, place_m);
+    if (to_way_m2 > aside_m * aside_m) continue;
     const double bearing_rad = WrapTo2Pi(Atan2(off.x(), off.y()) - own.heading_rad);
-    auto& candidate = candidates.at(std::min(static_cast<std::size_t>(bearing_rad / kTwoPi * kBins), kBins - 1));
-    if (distance2_m2 < candidate.distance2_m2) candidate = {distance2_m2, place_m, bearing_rad};
+    auto& [to_way, on_way] = candidates.at(std::min(static_cast<std::size_t>(bearing_rad / kTwoPi * kBins), kBins - 1));
+    to_way.Keep(to_way_m2, place_m, bearing_rad);
+    if (to_way_m2 <= on_way_m2) on_way.Keep(off.squaredNorm(), place_m, bearing_rad);
   }
+  if (!std::isfinite(nearest.least_m2)) return std::nullopt;
 
   RelativeCovariance covariance = RelativeCovariance::Identity() * (kLandSdM * kLandSdM);
   covariance.bottomRightCorner<2, 2>() = Eigen::Matrix2d::Identity() * (velocity_sd_mps * velocity_sd_mps);
-  const double nearest_m = std::max(0.0, std::sqrt(nearest2_m2) - hull_m);
-  const EncounterParams limits{std::min(params.limit_m, kMuchNearer * nearest_m), params.look_ahead_s};
+  const double nearest_m = GapOf(self.hull_m, std::array{nearest.place_m}).distance_m;
+  const EncounterParams limits{std::min(params.limit_m, std::max(kLeastLimitM, kMuchNearer * nearest_m)), params.look_ahead_s};
   std::optional<LandApproach> land;
-  for (const auto& candidate : candidates) {
-    if (!std::isfinite(candidate.distance2_m2)) continue;
-    const Moving place{{candidate.place_m}};
-    const auto approach = ClosestApproachOf(self, place, covariance, limits);
-    if (!land || IsGraver(approach, land->approach)) {
-      auto places = land ? std::move(land->places) : std::vector<DangerPlace>{};
-      land = LandApproach{approach, candidate.bearing_rad, std::move(places)};
+  for (const auto& of_bearing : candidates) {
+    for (const auto& candidate : of_bearing) {
+      if (!std::isfinite(candidate.least_m2)) continue;
+      const auto approach = ClosestApproachOf(self, {FaceAt(shore_m, candidate.place_m)}, covariance, limits);
+      if (!land || IsGraver(approach, land->approach)) {
+        auto places = land ? std::move(land->places) : std::vector<DangerPlace>{};
+        land = LandApproach{approach, limits.limit_m, candidate.bearing_rad, std::move(places)};
+      }
+      if (approach.probability < kLikely) continue;
+      land->places.push_back({(candidate.place_m - here_m).norm(), candidate.bearing_rad, candidate.place_m});
     }
-    if (approach.probability < kLikely) continue;
-    land->places.push_back({(candidate.place_m - here_m).norm(), candidate.bearing_rad, candidate.place_m});
   }
   return land;
 }

@@ -13,6 +13,7 @@ namespace {
 
 // Below it a distance that halves is the sway of a boat in its berth.
 constexpr double kLeastNearerM = 0.5;
+constexpr double kDrawnBack = 2.0;
 constexpr double kOtherSideRad = DegToRad(60.0);
 // How far apart two points may be to be one place: cells of land and errors of the pose, and the step from one bearing bin to the next.
 constexpr double kSamePlaceM = 2.0;
@@ -21,15 +22,14 @@ constexpr double kSamePlacePerRange = 0.1;
 constexpr double kNextRad = DegToRad(10.0);
 constexpr double kRoughM = 0.2;
 constexpr double kRoughPerRange = 0.02;
-// A thing without a track: 1 m for its outline that changes, and 10 m/s against the own boat. After a second it may be another thing.
-constexpr double kFollowedM = 1.0;
-constexpr double kFollowedMps = 10.0;
-constexpr double kFollowedMostS = 0.5;
+// A thing without a track, from one scan to the next: its outline changes by a metre, and it goes by at most 10 m/s.
+constexpr double kFollowedM = 2.0;
 // Land that has left a bearing or a place for so long is new when it comes back: alerts are cleared after 3 s (clear_s), and a boat that yaws comes
 // back sooner than 10 s.
 constexpr std::chrono::seconds kBearingKeptFor{3};
 constexpr std::chrono::seconds kPlaceKeptFor{10};
-constexpr std::chrono::seconds kThingKeptFor{3};
+// A thing that was not seen for so long may be another one: to ring again is the safe error.
+constexpr std::chrono::seconds kThingKeptFor{1};
 // 72 bins of land and some acknowledgements of it; beyond, the oldest are forgotten, which rings.
 constexpr std::size_t kMostTold = 1000;
 
@@ -49,6 +49,16 @@ bool IsWithin(Utime time, Utime since, std::chrono::microseconds longest) { retu
 
 bool IsMuchNearer(double range_m, double told_m) { return range_m < 0.5 * told_m && told_m - range_m > kLeastNearerM; }
 
+// Land forward of the beam that is to count as more of what was told elsewhere: a quay that goes on ahead keeps its offset to one side of the bow,
+// a wall across the bow does not.
+bool IsAsFarAside(const DangerPlace& place, double told_bearing_rad, double told_range_m) {
+  const auto [sine, cosine] = SinCosOf(place.bearing_rad);
+  if (cosine <= 0.0) return true;
+  const double told_aside_m = told_range_m * SinCosOf(told_bearing_rad).sin;
+  const double aside_m = place.range_m * sine;
+  return aside_m * told_aside_m >= 0.0 && std::fabs(aside_m) >= 0.5 * std::fabs(told_aside_m);
+}
+
 bool IsOnAnotherSide(double bearing_rad, double told_rad) {
   return std::fabs(WrapToPi(bearing_rad)) < 0.5 * kPi && std::fabs(WrapToPi(bearing_rad - told_rad)) > kOtherSideRad;
 }
@@ -60,6 +70,10 @@ void ToldPlaces::Tell(Utime time, std::span<const DangerPlace> places) {
   if (kind_ == Kind::kThings) told_.clear();
   for (const auto& place : places) told_.push_back({place, place.range_m, place.bearing_rad, time, time});
   if (told_.size() > kMostTold) told_.erase(told_.begin(), told_.end() - static_cast<std::ptrdiff_t>(kMostTold));
+}
+
+void ToldPlaces::ForgetMap() {
+  for (auto& told : told_) told.last.position_map_m.setConstant(kNan);
 }
 
 std::optional<DangerPlace> ToldPlaces::Untold(Utime time, std::span<const DangerPlace> places) {
@@ -99,6 +113,8 @@ void ToldPlaces::FindTold(Utime time, std::span<const DangerPlace> places, std::
         const bool has_changed = matches[by_bearing[next]] == Match::kChanged;
         const double rough_m = has_changed ? 0.0 : kRoughM + kRoughPerRange * place.range_m;
         if (place.range_m < farthest_m - rough_m) break;
+        const auto& before = places[by_bearing[at]];
+        if (!IsAsFarAside(place, before.bearing_rad, before.range_m)) break;
         is_told[by_bearing[next]] = true;
       }
     }
@@ -117,8 +133,13 @@ ToldPlaces::Match ToldPlaces::MatchLand(Utime time, const DangerPlace& place) {
       add(!IsMuchNearer(place.range_m, told.told_range_m) && !IsOnAnotherSide(place.bearing_rad, told.told_bearing_rad));
     }
     if (IsWithin(time, told.bearing_seen, kBearingKeptFor) && std::fabs(WrapToPi(place.bearing_rad - told.told_bearing_rad)) <= kBesideRad) {
-      told.bearing_seen = time;
-      add(!IsMuchNearer(place.range_m, told.told_range_m));
+      if (IsMuchNearer(place.range_m, told.told_range_m)) {
+        add(false);
+      } else if (IsAsFarAside(place, told.told_bearing_rad, told.told_range_m)) {
+        add(true);
+        // Land that has drawn back to twice the distance is other land, or wants to be told anew when it comes back.
+        if (place.range_m <= kDrawnBack * told.told_range_m) told.bearing_seen = time;
+      }
     }
   }
   return match;
@@ -134,10 +155,9 @@ void ToldPlaces::FollowThings(Utime time, std::span<const DangerPlace> places, s
   };
   std::vector<Pair> pairs;
   for (std::size_t k = 0; k < told_.size(); ++k) {
-    const double unseen_s = std::min(std::fabs(ToSeconds(time - told_[k].seen)), kFollowedMostS);
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double distance_m = DistanceOf(told_[k].last, places[i]);
-      if (distance_m <= kFollowedM + kFollowedMps * unseen_s) pairs.push_back({distance_m, k, i});
+      if (distance_m <= kFollowedM) pairs.push_back({distance_m, k, i});
     }
   }
   std::ranges::sort(pairs, {}, [](const Pair& pair) { return std::tuple(pair.distance_m, pair.told, pair.place); });

@@ -24,8 +24,9 @@ struct DangerPlace {
 ///
 /// - *Land* is covered where the place on the map is one that was told; since a quay goes on beside a boat that sails along it, where land was told
 /// on
-///   the same bearing from the bow and has been there since; and where it goes on from covered land without coming nearer, as the rest of a quay
-///   does.
+///   the same bearing from the bow and has been there since, at most twice as far; and where it goes on from covered land without coming nearer, as
+///   the rest of a quay does. Forward of the beam the last two hold only for land at least half as far aside of the bow: a wall across the bow is
+///   none.
 /// - *A thing without a track* is followed from scan to scan, to the nearest place: on the map, or from the vessel where the pose is not known.
 ///
 /// A covered place rings anew (is untold) when it comes nearer than half of the distance that was told, or, forward of the beam, more than 60 degrees
@@ -42,6 +43,9 @@ class ToldPlaces {
 
   /// The acknowledgement: all of these are told.
   void Tell(Utime time, std::span<const DangerPlace> places);
+
+  /// The map has another datum: positions of before are those of other places.
+  void ForgetMap();
 
   /// One scan.
   /// @return the nearest place that is untold; nullopt: none. Before the first Tell every place is untold

@@ -28,7 +28,8 @@ constexpr double kMeanRestRad = DegToRad(60.0);
 constexpr std::array kEnds{0.10536, 0.35667, 0.69315, 1.20397, 2.30259};
 constexpr std::size_t kMedian = 2;
 constexpr double kStepRad = DegToRad(10.0);
-constexpr double kStepS = 0.5;
+constexpr double kLongestStepS = 0.5;
+constexpr double kShortestStepS = 0.1;
 constexpr double kLeastSdM = 0.05;
 
 Eigen::Vector2d Middle(const std::vector<Eigen::Vector2d>& corners_m) {
@@ -118,12 +119,13 @@ ClosestApproach ApproachInTurns(const Moving& own, const Moving& other, const Re
   const double sd_m = GreatestSdM(After(covariance, params.look_ahead_s));
   if (middles_m - radii_m - speeds_mps * params.look_ahead_s > params.limit_m + 4.0 * sd_m) return approach;  // out of reach, whatever the turn
 
+  const double most_step_s = std::min(std::clamp(params.limit_m / speeds_mps, kShortestStepS, kLongestStepS), kStepRad / rate_radps);
   Nearest nearest{approach.distance_m, 0.0, GreatestSdM(covariance)};  // on the arc so far
   double time_s = 0.0;
   double sum = 0.0;
   for (std::size_t i = 0; i < kEnds.size(); ++i) {
     const double end_s = std::min(params.look_ahead_s, kEnds[i] * kMeanRestRad / rate_radps);
-    const int num_steps = std::max(1, static_cast<int>(std::ceil((end_s - time_s) / std::min(kStepS, kStepRad / rate_radps))));
+    const int num_steps = std::max(1, static_cast<int>(std::ceil((end_s - time_s) / most_step_s)));
     const double step_s = (end_s - time_s) / num_steps;
     for (int k = 1; k <= num_steps; ++k) {
       const double at_s = k == num_steps ? end_s : time_s + k * step_s;

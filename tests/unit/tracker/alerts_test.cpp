@@ -382,6 +382,80 @@ TEST_F(AlertsTest, OfAQuayThatWasAcknowledgedDoNotHideAWallAhead) {
   EXPECT_NEAR(WrapToPi(Only().bearing_rad), 0.0, 1e-9);
 }
 
+// A quay to port, and where it ends a wall across the bow, as the guard zone tells them.
+std::vector<DangerPlace> Corner(double aside_m, double ahead_m) {
+  std::vector<DangerPlace> places;
+  for (double bearing_deg = -177.5; bearing_deg < 180.0; bearing_deg += 5.0) {
+    const double sine = std::sin(DegToRad(bearing_deg));
+    const double cosine = std::cos(DegToRad(bearing_deg));
+    double range_m = 100.0;
+    if (sine < 0.0 && aside_m / -sine * cosine <= ahead_m) range_m = aside_m / -sine;
+    if (cosine > 0.0 && -ahead_m * sine / cosine <= aside_m) range_m = std::min(range_m, ahead_m / cosine);
+    if (range_m <= 10.0) places.push_back(At(bearing_deg, range_m));
+  }
+  return places;
+}
+
+// The quay runs on to near the bow, so its far end lies beside the wall.
+TEST_F(AlertsTest, OfAQuayCloseAlongsideDoNotHideTheWallAtItsEnd) {
+  for (const double aside_m : {0.8, 1.2, 2.0, 3.0, 5.0}) {
+    time_ += std::chrono::seconds(100);
+    alerts_ = Alerts(kAlertParams);
+    Scans(20, {Of(kLandTrack, Corner(aside_m, 30.0))});
+    EXPECT_TRUE(Acknowledge(Only()));
+    Scan({Of(kLandTrack, Corner(aside_m, 30.0))});
+    double ahead_m = 30.0;
+    for (; ahead_m > 1.0 && Only().state != AlertState::kActive; ahead_m -= 0.1) Scan({Of(kLandTrack, Corner(aside_m, ahead_m))});
+    EXPECT_GT(ahead_m, 9.0) << aside_m;
+    EXPECT_LT(ahead_m, 10.0) << aside_m;
+  }
+}
+
+// A bank of a canal is other land than the quay of the berth, though there was land on that side all the time.
+TEST_F(AlertsTest, OfABerthSayNothingOfTheBankMilesAway) {
+  Scans(20, {Of(kLandTrack, Shore(-90.0, 0.8))});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(29, {Of(kLandTrack, Shore(-90.0, 6.0))});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged);
+  Scans(10, {Of(kLandTrack, Shore(-90.0, 6.0))});
+  EXPECT_EQ(Only().state, AlertState::kActive) << "it was told at 0.8 m";
+}
+
+// A boat came into the zone while somebody read of the buoy and pressed the button.
+TEST_F(AlertsTest, AreAcknowledgedForWhatWasThereASecondAgo) {
+  Scans(20, {Of(kUnnamed, {At(40.0, 6.0)})});
+  Scans(3, {Of(kUnnamed, {At(40.0, 6.0), At(-30.0, 9.5)})});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(3, {Of(kUnnamed, {At(40.0, 6.0), At(-30.0, 9.4)})});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+  EXPECT_NEAR(Only().distance_m, 9.4, 1e-9);
+}
+
+// The buoy leaves the sector, another thing comes in near there.
+TEST_F(AlertsTest, OfAThingThatHasGoneSayNothingOfTheNext) {
+  Scans(20, {Of(kUnnamed, {At(55.0, 8.0), At(-50.0, 9.0)})});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(11, {Of(kUnnamed, {At(-50.0, 9.0)})});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged);
+  Scans(3, {Of(kUnnamed, {At(40.0, 9.0), At(-50.0, 9.0)})});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
+TEST_F(AlertsTest, OfAnotherMapKnowNoPlaceOfThisOne) {
+  const auto pier = [](double bearing_deg) {
+    auto place = At(bearing_deg, 8.0);
+    place.position_map_m = Eigen::Vector2d(6.0, 5.0);
+    return Of(kLandTrack, {place});
+  };
+  Scans(20, {pier(50.0)});
+  EXPECT_TRUE(Acknowledge(Only()));
+  Scans(5, {pier(30.0)});
+  EXPECT_EQ(Only().state, AlertState::kAcknowledged);
+  alerts_.ForgetMap();
+  Scans(3, {pier(30.0)});
+  EXPECT_EQ(Only().state, AlertState::kActive);
+}
+
 TEST_F(AlertsTest, OfLandRingAgainWhenItComesNearerThanHalfOfWhatWasTold) {
   Scans(3, {Of(kLandTrack, Shore(-90.0, 8.0))});
   EXPECT_TRUE(Acknowledge(Only()));
@@ -396,12 +470,24 @@ TEST_F(AlertsTest, OfLandRingAgainWhenItComesNearerThanHalfOfWhatWasTold) {
   EXPECT_EQ(Only().state, AlertState::kAcknowledged) << "3.9 m were told";
 }
 
-// In the berth: 0.5 m of sway more or less are no news.
+// In the berth half a metre of sway and some degrees of yaw are no news.
 TEST_F(AlertsTest, OfTheQuayBesideABerthStayAcknowledgedInTheSway) {
-  Scans(3, {Of(kLandTrack, Shore(90.0, 0.8))});
+  // The quay goes north, 0.8 m east of the berth.
+  const auto quay = [](double own_east_m, double heading_deg) {
+    std::vector<DangerPlace> places;
+    for (double bearing_deg = -177.5; bearing_deg < 180.0; bearing_deg += 5.0) {
+      const double course_rad = DegToRad(heading_deg + bearing_deg);
+      const double range_m = (0.8 - own_east_m) / std::sin(course_rad);
+      if (range_m < 0.0 || range_m > 10.0) continue;
+      places.push_back(At(bearing_deg, range_m));
+      places.back().position_map_m = Eigen::Vector2d(0.8, range_m * std::cos(course_rad));
+    }
+    return Of(kLandTrack, places);
+  };
+  Scans(20, {quay(0.0, 0.0)});
   EXPECT_TRUE(Acknowledge(Only()));
   for (int i = 0; i < 600; ++i) {
-    Scan({Of(kLandTrack, Shore(90.0 + 5.0 * std::sin(0.2 * i), 0.8 + 0.45 * std::sin(0.15 * i)))});
+    Scan({quay(0.45 * std::sin(0.15 * i), 5.0 * std::sin(0.2 * i))});
     ASSERT_EQ(Only().state, AlertState::kAcknowledged) << i;
   }
 }
