@@ -40,7 +40,16 @@ int ToInt(std::string_view digits) {
   return value;
 }
 
+// Some receivers fill a field with spaces to its width: "3.890, 90.0,".
+std::string_view WithoutSpacesAround(std::string_view text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+// Behind the digits there may be blanks.
 bool IsChecksumOf(std::string_view digits, std::string_view body) {
+  while (!digits.empty() && (digits.back() == ' ' || digits.back() == '\t')) digits.remove_suffix(1);
   if (digits.size() != 2) return false;
   unsigned stated = 0;
   const auto* const end = digits.data() + digits.size();
@@ -66,7 +75,7 @@ FrameResult Frame(std::string_view line, bool requires_checksum) {
   while (!body.empty()) {
     body.remove_prefix(1);  // the comma
     const auto end = std::min(body.find(','), body.size());
-    result.sentence.fields.push_back(body.substr(0, end));
+    result.sentence.fields.push_back(WithoutSpacesAround(body.substr(0, end)));
     body.remove_prefix(end);
   }
   return result;
@@ -172,19 +181,34 @@ std::optional<std::chrono::sys_days> FieldReader::Checked(int day, int month, in
   return std::chrono::sys_days(date);
 }
 
-// Degrees in a fixed number of digits, then minutes.
-double FieldReader::Angle(std::size_t index, std::size_t num_degree_digits, double max_deg) {
+// The last two digits before the point are minutes, what stands before them is degrees, padded or not: 01012.000, 1012.000, 0.840 and .840.
+double FieldReader::Angle(std::size_t index, double max_deg) {
+  constexpr std::size_t kMinuteDigits = 2;
+  constexpr std::size_t kMaxDigits = 9;
   const auto text = Text(index);
-  if (text.substr(0, text.find('.')).size() != num_degree_digits + 2 || !IsUnsignedNumber(text)) return Fail(SentenceFault::kBadField, kNan);
+  const auto num_digits = text.substr(0, text.find('.')).size();
+  if (num_digits > kMaxDigits || !IsUnsignedNumber(text)) return Fail(SentenceFault::kBadField, kNan);
+  const auto num_degree_digits = num_digits - std::min(num_digits, kMinuteDigits);
   const double minutes = ToDouble(text.substr(num_degree_digits));
   const double angle_deg = ToInt(text.substr(0, num_degree_digits)) + minutes / 60.0;
   if (minutes >= 60.0 || angle_deg > max_deg) return Fail(SentenceFault::kImplausible, kNan);
   return angle_deg;
 }
 
+// A place in degrees and their fraction (54.5,N,10.2,E), as some programs write it by mistake, would be read as minutes, and lie elsewhere. It has at
+// most two digits before the point of its latitude and three of its longitude. So has, not padded, a place within a degree of the equator and ten of
+// Greenwich: that one is refused with it.
+bool FieldReader::MayBeInDegrees(std::size_t index) {
+  constexpr std::size_t kMaxLatitudeDigits = 2;
+  constexpr std::size_t kMaxLongitudeDigits = 3;
+  const auto num_digits = [this](std::size_t field) { return Text(field).substr(0, Text(field).find('.')).size(); };
+  return num_digits(index) <= kMaxLatitudeDigits && num_digits(index + 2) <= kMaxLongitudeDigits;
+}
+
 std::optional<GeodeticPlace> FieldReader::Position(std::size_t index) {
   if (IsEmpty(index) && IsEmpty(index + 1) && IsEmpty(index + 2) && IsEmpty(index + 3)) return std::nullopt;
-  GeodeticPlace position{Angle(index, 2, 90.0), Angle(index + 2, 3, 180.0)};
+  if (MayBeInDegrees(index)) return Fail(SentenceFault::kBadField, std::nullopt);
+  GeodeticPlace position{Angle(index, 90.0), Angle(index + 2, 180.0)};
   const char latitude_letter = Letter(index + 1, "NS");
   const char longitude_letter = Letter(index + 3, "EW");
   if (latitude_letter == '\0' || longitude_letter == '\0') return Fail(SentenceFault::kBadField, std::nullopt);

@@ -18,7 +18,7 @@ namespace lookout {
 enum class SentenceFault {
   kNone,
   kNoChecksum,   // no * in the line
-  kBadChecksum,  // what stands behind the * is not the exclusive or of what stands before, in two hexadecimal digits
+  kBadChecksum,  // what stands behind the * is not the exclusive or of what stands before, in two hexadecimal digits (and blanks)
   kBadField,     // a field is missing or does not have its form
   kImplausible,  // a value is out of its range
 };
@@ -26,7 +26,7 @@ enum class SentenceFault {
 /// A line whose checksum is right. Views into the line.
 struct FramedSentence {
   std::string_view address;              // talker and type: "GPRMC", "PASHR", "04HDM"
-  std::vector<std::string_view> fields;  // behind the address; empty = not said
+  std::vector<std::string_view> fields;  // behind the address, without spaces around; empty = not said
 };
 
 struct FrameResult {
@@ -86,12 +86,13 @@ class FieldReader {
   /// Day, month and year (of four digits, or two as above), each a field: all there or all empty.
   std::optional<std::chrono::sys_days> Date(std::size_t day_index, std::size_t month_index, std::size_t year_index);
 
-  /// ddmm[.m...],N|S,dddmm[.m...],E|W: four fields, all there or all empty. The height stays 0.
+  /// ddmm[.m...],N|S,dddmm[.m...],E|W: four fields, all there or all empty; degrees padded with zeros to any width, or not. The height stays 0.
   std::optional<GeodeticPlace> Position(std::size_t index);
 
  private:
   std::optional<std::chrono::sys_days> Checked(int day, int month, int year);
-  double Angle(std::size_t index, std::size_t num_degree_digits, double max_deg);
+  double Angle(std::size_t index, double max_deg);
+  bool MayBeInDegrees(std::size_t index);
 
   std::span<const std::string_view> fields_;
   SentenceFault fault_ = SentenceFault::kNone;

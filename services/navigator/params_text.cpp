@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "common/core/angles.hpp"
 #include "common/core/datum_check.hpp"
 #include "common/core/elementary.hpp"
+#include "common/io/text_file.hpp"
 #include "services/navigator/core/lines.hpp"
 #include "services/navigator/core/nmea.hpp"
 #include "services/navigator/params.hpp"
@@ -48,20 +49,21 @@ std::string RoleInWords(Role role) {
 }
 
 // The first position in what a text log begins with; a live input has none before it is opened.
-std::optional<GeodeticPlace> FirstPosition(const std::filesystem::path& file) {
+std::optional<GeodeticPlace> FirstPosition(const std::filesystem::path& file) try {
   constexpr std::size_t kMaxBytes = 1'000'000;
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
-  std::ifstream in(file, std::ios::binary);
-  std::string text(kMaxBytes, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
+  io::TextFile in(file);
+  std::string text;
+  for (char letter = 0; text.size() < kMaxBytes && in.Get(letter);) text += letter;
   const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   for (const auto& line : lines.lines) {
     const auto [fault, sentence] = ParseSentence(line);
     if (fault == SentenceFault::kNone && sentence.position && IsMeasured(sentence.quality)) return sentence.position;
   }
   return std::nullopt;
+} catch (const std::runtime_error&) {
+  return std::nullopt;  // it cannot be read, as will be said when it is opened
 }
 
 // Before the first fix nothing can be said of a datum, but against the positions of text logs.

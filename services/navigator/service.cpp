@@ -1,5 +1,6 @@
 #include "services/navigator/service.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 
@@ -28,7 +29,12 @@ Service::Service(bus::Bus& bus, const Params& params) : bus_(bus), params_(param
   }
 }
 
-void Service::OnDatagram(Utime arrival, Bytes payload, const std::string& source) { OnLines(arrival, SplitDatagram(payload), source); }
+void Service::OnDatagram(Utime arrival, Bytes payload, const std::string& source, const std::string& sender) {
+  if (sender.empty()) return OnLines(arrival, SplitDatagram(payload), source);
+  const auto settings = std::ranges::find(params_.navigator.sources, source, &SourceParams::name);
+  const bool requires_checksum = settings == params_.navigator.sources.end() || settings->requires_checksum;
+  OnLines(arrival, joiners_[source].Add(arrival, payload, sender, requires_checksum), source);
+}
 
 void Service::OnStream(Utime arrival, Bytes bytes, const std::string& source) { OnLines(arrival, assemblers_[source].Add(bytes), source); }
 
@@ -43,6 +49,7 @@ void Service::OnLines(Utime arrival, const DatagramLines& lines, const std::stri
   counts_["no_start"] += lines.num_no_start;
   counts_["too_long"] += lines.num_too_long;
   counts_["not_printable"] += lines.num_not_printable;
+  counts_["cut_off"] += lines.num_cut_off;
   PublishAndConsume(sequencer_.OnLines(arrival, lines.lines, source));
 }
 
@@ -53,12 +60,18 @@ void Service::AdvanceTo(Utime host_time) {
     return;
   }
   PublishAndConsume(sequencer_.AdvanceTo(host_time));
+  for (auto& [source, joiner] : joiners_) {
+    if (!joiner.is_empty()) OnLines(host_time, joiner.AdvanceTo(host_time), source);
+  }
 }
 
 void Service::Finish(Utime host_time) {
   if (params_.reads_nav_raw) {
     PublishOutput(navigator_.Flush());
   } else if (IsUsable(host_time)) {
+    for (auto& [source, joiner] : joiners_) {
+      if (!joiner.is_empty()) OnLines(host_time, joiner.Finish(), source);
+    }
     PublishAndConsume(sequencer_.Finish(host_time));
   } else {
     ++counts_["bad_host_time"];

@@ -25,10 +25,11 @@ class Service {
  public:
   Service(bus::Bus& bus, const Params& params);
 
-  /// NMEA 0183 from outside, some whole lines. Each line is published as NAV_RAW, and then exactly that is consumed. Not for who reads NAV_RAW.
+  /// NMEA 0183 from outside. Each line is published as NAV_RAW, and then exactly that is consumed. Not for who reads NAV_RAW.
   ///
   /// @param source  IsSourceName
-  void OnDatagram(Utime arrival, Bytes payload, const std::string& source = kUdpSource);
+  /// @param sender  address and port: lines may be cut over datagrams of one sender. Empty: the lines of each datagram are whole
+  void OnDatagram(Utime arrival, Bytes payload, const std::string& source = kUdpSource, const std::string& sender = {});
 
   /// The same out of a stream, in pieces of any size.
   void OnStream(Utime arrival, Bytes bytes, const std::string& source);
@@ -58,6 +59,7 @@ class Service {
   bus::Bus& bus_;
   Params params_;
   std::map<std::string, LineAssembler> assemblers_;  // by source
+  std::map<std::string, DatagramJoiner> joiners_;    // by source
   ItemSequencer sequencer_;
   Navigator navigator_;
   std::int64_t raw_seq_ = 0;  // of the item that is being consumed
@@ -65,8 +67,8 @@ class Service {
   std::int64_t attitude_seq_ = 0;
   std::int64_t pose_seq_ = 0;
 
-  static constexpr auto kCountNames = std::to_array<std::string_view>(
-      {"no_start", "too_long", "not_printable", "bad_host_time", "lidar_nmea_bad", kRawTime, kRawKind, kRawText, kRawImu, "nav_raw_backwards"});
+  static constexpr auto kCountNames = std::to_array<std::string_view>({"no_start", "too_long", "not_printable", "cut_off", "bad_host_time",
+                                                                       "lidar_nmea_bad", kRawTime, kRawKind, kRawText, kRawImu, "nav_raw_backwards"});
   Counts<kCountNames> counts_;
 };
 

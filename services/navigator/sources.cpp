@@ -51,7 +51,9 @@ class TextLogSource final : public runtime::SourceReader {
 
   bool Read() override {
     player_.Play(runtime::SteadyNow(), taker_);
-    return !player_.is_finished();
+    if (!player_.is_finished()) return true;
+    if (const auto fault = player_.fault(); !fault.empty()) spdlog::warn("{}: played as far as it can be read", fault);
+    return false;
   }
   Utime Now() const override { return player_.time(); }
   std::string fault() const override { return fault_; }
@@ -87,7 +89,7 @@ void Pass(const std::string& name, const io::Source::Piece& piece, Service& serv
     case io::Source::Kind::kBreak:
       return service.OnStreamEnd(name);
     case io::Source::Kind::kDatagram:
-      return service.OnDatagram(piece.host_time, piece.bytes, name);
+      return service.OnDatagram(piece.host_time, piece.bytes, name, piece.source_address + " " + std::to_string(piece.source_port));
     case io::Source::Kind::kStream:
       return service.OnStream(piece.host_time, piece.bytes, name);
   }

@@ -200,6 +200,11 @@ void WriteSentences(const Folder& folder) {
                                                                {"zda", Line("GPZDA,120000.00,01,06,2026,00,00")},
                                                                {"ais", "!AIVDM,1,1,,B,177KQJ5000G?tO`K>RA1wUbN0TKH,0*5C"},
                                                                {"no_checksum", "$GPHDT,12.5,T"},
+                                                               {"not_padded", Line("BMGLL,5430.0000,N,1012.0000,E,,A,D")},
+                                                               {"spaces", Line("IIXDR,A, 2.5,D,PTCH ,A,-1.0 ,D,ROLL") + " \t"},
+                                                               {"glued", gga + hdt + rmc + vtg},
+                                                               {"csv", "timestamp,type,id,message\n2026-08-29T10:00:00.5Z,NMEA0183,,\"" + hdt + "\""},
+                                                               {"csv_without_quotes", "2026-08-29T10:00:00+02:00,AIS," + hdt + ",x"},
                                                                {"empty_fields", Line("GPRMC,,,,,,,,,,,,")}};
   std::string all;
   for (const auto& [name, line] : lines) {

@@ -108,13 +108,16 @@ class Feeder {
     if (!reader.has_date() && !day) {
       Warn("{}: no sentence tells a date; its times are taken as those of 1970-01-01, give --date", file.string());
     }
-    if (reader.has_date() && day) Warn("{}: its sentences tell a date; --date is not used", file.string());
+    if (reader.has_date() && day) Warn("{}: its {} tell a date; --date is not used", file.string(), reader.is_csv() ? "rows" : "sentences");
     while (const auto line = reader.Next()) {
       CheckOrder(file, line->time);
       ++summary_.num_events;
       chain_.OnTextLine(line->time, line->bytes);
       Show(reader.position());
     }
+    if (!reader.fault().empty()) Warn("{}: {}; read as far as it goes", file.string(), reader.fault());
+    Count(summary_.refused, "text_log.other_rows", reader.num_other_rows());
+    Count(summary_.refused, "text_log.rows_without_time", reader.num_rows_without_time());
   }
 
   void FeedCapture(const fs::path& file) {

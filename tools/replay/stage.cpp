@@ -64,7 +64,7 @@ class NavigatorStage final : public Stage {
     const auto source = params_.source_of_port.find(datagram.port);
     if (source == params_.source_of_port.end()) return false;
     ++num_measured_;
-    service_.OnDatagram(datagram.host_time, datagram.payload, source->second);
+    service_.OnDatagram(datagram.host_time, datagram.payload, source->second, datagram.sender.address + " " + std::to_string(datagram.sender.port));
     return true;
   }
   void OnTextLine(Utime time, Bytes line) override {

@@ -165,6 +165,7 @@ Reading Interpreter::ReadUnderstood(const Item& item, Source& source, const Sent
   switch (sentence.type) {
     case SentenceType::kOther:
       ++counts_["other_sentence"];
+      if (sentence.name == "XDR") ++counts_["xdr_not_used"];
       return {};
     case SentenceType::kZda:
       ReadDate(item, source, sentence);
@@ -314,7 +315,10 @@ Reading Interpreter::ReadAttitude(const Item& item, Source& source, const Senten
   const bool may_be_empty = sentence.imu || sentence.type == SentenceType::kPashr || sentence.type == SentenceType::kPsatHpr;
   const bool is_empty = std::isnan(sentence.heading_rad) && std::isnan(sentence.pitch_rad) && std::isnan(sentence.roll_rad);
   // A compass that has lost its heading still sends the sentence, empty.
-  if (is_empty && !may_be_empty) return {};
+  if (is_empty && !may_be_empty) {
+    ++counts_["empty_attitude"];
+    return {};
+  }
   double heading_rad = sentence.heading_rad;
   if (sentence.type == SentenceType::kMagnetic) {
     const double deviation_rad = Or(sentence.deviation_rad, source.params.deviation_rad.value_or(kNan));

@@ -133,9 +133,10 @@ class Interpreter {
   std::optional<std::chrono::microseconds> time_scale_;  // that of the last fix: POSE less UTC
 
   static constexpr auto kCountNames =
-      std::to_array<std::string_view>({"understood_sentence", "other_sentence", "repeated_sentence", "outside_role", "no_checksum", "bad_checksum",
-                                       "bad_field", "implausible_value", "null_fix", "sentence_time_unusable", "time_backwards", "local_time",
-                                       "standing_utc", "queued_sentence", "date_unusable", "stale_lidar_sentence", "no_deviation", "no_declination"});
+      std::to_array<std::string_view>({"understood_sentence",  "other_sentence", "repeated_sentence", "outside_role",    "no_checksum",
+                                       "bad_checksum",         "bad_field",      "implausible_value", "null_fix",        "sentence_time_unusable",
+                                       "time_backwards",       "local_time",     "standing_utc",      "queued_sentence", "date_unusable",
+                                       "stale_lidar_sentence", "no_deviation",   "no_declination",    "empty_attitude",  "xdr_not_used"});
   Counts<kCountNames> counts_;
 };
 

@@ -22,8 +22,11 @@ constexpr double kMpsPerKmh = 1.0 / 3.6;
 constexpr double kMaxSpeedMps = 100.0;   // of receivers on boats: 194 knots
 constexpr double kMinHeightM = -1000.0;  // the Dead Sea lies at -430 m
 constexpr double kMaxHeightM = 20'000.0;
-constexpr double kMaxSdM = 1e6;                 // receivers without a fix send great deviations
-constexpr double kMaxHdop = 100.0;              // receivers send 99.99 for "no fix"
+constexpr double kMaxSdM = 1e6;     // receivers without a fix send great deviations
+constexpr double kMaxHdop = 100.0;  // receivers send 99.99 for "no fix"
+// Fifty satellites evenly over the sky, more than are ever in view, have sqrt(6 / 50) = 0.35: two thirds of the squares of their directions are
+// horizontal, half of that along each axis. Receivers and gateways send 0, 0.01 and the like where they know none.
+constexpr double kMinHdop = 0.35;
 constexpr double kMaxGeoidSeparationM = 150.0;  // EGM2008: -107 m to +86 m
 constexpr double kMaxHeaveM = 50.0;
 constexpr int kMaxSatellites = 99;
@@ -54,6 +57,11 @@ void RequireField(FieldReader& fields, std::size_t index) { fields.Text(index); 
 
 // Zero means unknown.
 double KnownSd(double sd) { return sd > 0.0 ? sd : kNan; }
+
+double Hdop(FieldReader& fields, std::size_t index) {
+  const double hdop = fields.Number(index, 0.0, kMaxHdop);
+  return hdop >= kMinHdop ? hdop : kNan;
+}
 
 // RMC: time,status,latitude,N,longitude,E,knots,course,date,variation,E[,mode[,navigational status]]
 void ReadRmc(FieldReader& fields, Sentence& sentence) {
@@ -103,7 +111,7 @@ void ReadGga(FieldReader& fields, Sentence& sentence) {
   const int quality = fields.Count(5, kNovatelSbas);
   sentence.quality = quality == kNovatelSbas ? FixQuality::kDifferential : static_cast<FixQuality>(std::max(quality, 0));
   sentence.num_satellites = fields.Count(6, kMaxSatellites);
-  sentence.hdop = fields.Number(7, 0.0, kMaxHdop);
+  sentence.hdop = Hdop(fields, 7);
   if (fields.size() < kNumFields) {
     sentence.msl_height_m = NumberWithUnitOrNan(fields, 8, kMinHeightM, kMaxHeightM);
     sentence.geoid_separation_m = NumberWithUnitOrNan(fields, 10, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
@@ -132,7 +140,7 @@ void ReadGns(FieldReader& fields, Sentence& sentence) {
   sentence.position = fields.Position(1);
   sentence.quality = QualityOfModes(fields, 5);
   sentence.num_satellites = fields.Count(6, kMaxSatellites);
-  sentence.hdop = fields.Number(7, 0.0, kMaxHdop);
+  sentence.hdop = Hdop(fields, 7);
   sentence.msl_height_m = fields.Number(8, kMinHeightM, kMaxHeightM);
   sentence.geoid_separation_m = fields.Number(9, -kMaxGeoidSeparationM, kMaxGeoidSeparationM);
   RequireField(fields, 11);
@@ -140,6 +148,7 @@ void ReadGns(FieldReader& fields, Sentence& sentence) {
 
 std::string UpperName(std::string_view name) {
   std::string upper(name.substr(0, name.find('#')));
+  while (upper.ends_with(' ')) upper.pop_back();
   for (char& letter : upper) {
     if (letter >= 'a' && letter <= 'z') letter = static_cast<char>(letter - 'a' + 'A');
   }

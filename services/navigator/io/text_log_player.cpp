@@ -22,7 +22,12 @@ std::chrono::microseconds PauseBetween(Utime from, Utime to) {
 TextLogPlayer::TextLogPlayer(const std::vector<Log>& logs, double speed) : speed_(speed) {
   readings_.reserve(logs.size());
   for (const auto& log : logs) {
-    readings_.push_back({.log = log, .reader = TextLogReader(log.file, log.day), .line = {}, .counter = log.name + "_lines"});
+    readings_.push_back({.log = log,
+                         .reader = TextLogReader(log.file, log.day),
+                         .line = {},
+                         .counter = log.name + "_lines",
+                         .other_rows_counter = log.name + "_other_rows",
+                         .without_time_counter = log.name + "_rows_without_time"});
     readings_.back().line = readings_.back().reader.Next();
   }
   FindNext();
@@ -72,8 +77,21 @@ std::vector<std::string> TextLogPlayer::dateless() const {
 
 std::vector<Counter> TextLogPlayer::counters() const {
   std::vector<Counter> counters;
-  for (const auto& reading : readings_) counters.push_back({reading.counter, reading.num_lines});
+  for (const auto& reading : readings_) {
+    counters.push_back({reading.counter, reading.num_lines});
+    if (!reading.reader.is_csv()) continue;
+    counters.push_back({reading.other_rows_counter, reading.reader.num_other_rows()});
+    counters.push_back({reading.without_time_counter, reading.reader.num_rows_without_time()});
+  }
   return counters;
+}
+
+std::string TextLogPlayer::fault() const {
+  std::string fault;
+  for (const auto& reading : readings_) {
+    if (!reading.reader.fault().empty()) fault += (fault.empty() ? "" : "; ") + reading.log.file.string() + ": " + reading.reader.fault();
+  }
+  return fault;
 }
 
 }  // namespace lookout::navigator

@@ -51,6 +51,9 @@ class TextLogPlayer {
   /// Logs in which no sentence holds a date, and for which the config has none.
   std::vector<std::string> dateless() const;
 
+  /// Why a log was not read to its end (what gzip packed is cut short); empty: all were, as far as they are played.
+  std::string fault() const;
+
   std::vector<Counter> counters() const;
 
  private:
@@ -59,6 +62,8 @@ class TextLogPlayer {
     TextLogReader reader;
     std::optional<TextLogReader::Line> line;  // read, and not played yet
     std::string counter;
+    std::string other_rows_counter;
+    std::string without_time_counter;
     std::int64_t num_lines = 0;
   };
   void FindNext();

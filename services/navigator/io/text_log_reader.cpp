@@ -1,7 +1,9 @@
 #include "services/navigator/io/text_log_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,10 @@ using std::chrono::sys_days;
 
 constexpr microseconds kDay = std::chrono::days(1);
 
+// What captures and lcm-logs begin with: gzip may have packed them.
+constexpr std::array<std::string_view, 6> kOtherMagics{"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D",
+                                                       "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A", "\xED\xA1\xDA\x01"};
+
 // nullopt: no right sentence. A damaged one tells no time: a wrong time would move all that follow.
 std::optional<Sentence> SentenceIn(const std::string& line) {
   const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
@@ -29,14 +35,6 @@ std::optional<Sentence> SentenceIn(const std::string& line) {
 bool IsLineEnd(char letter) { return letter == '\n' || letter == '\r'; }
 
 bool IsText(char letter) { return IsLineEnd(letter) || letter == '\t' || (letter >= 0x20 && letter < 0x7F); }
-
-// Talker and type: GPRMC, PASHR, 04HDM.
-bool IsAddress(std::string_view address) {
-  constexpr std::size_t kMinLetters = 3;
-  constexpr std::size_t kMaxLetters = 10;
-  return address.size() >= kMinLetters && address.size() <= kMaxLetters &&
-         std::ranges::all_of(address, [](char letter) { return (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9'); });
-}
 
 // From one time of day to the next a day has gone by.
 bool IsOverMidnight(microseconds from, microseconds to) { return from - to > kDay / 2; }
@@ -53,33 +51,46 @@ bool IsRollover(std::chrono::days step) { return step % std::chrono::duration_ca
 }  // namespace
 
 bool IsTextLog(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error(file.string() + ": cannot be read");
+  io::TextFile in(file);
   constexpr std::size_t kLooked = 1024UL * 1024;
-  // A file system that lost its power leaves blocks of zeros.
-  while (in.peek() == 0) in.get();
-  std::string start(kLooked, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
+  std::string start;
+  for (char letter = 0; start.size() < kLooked && in.Get(letter);) {
+    // A file system that lost its power leaves blocks of zeros.
+    if (!start.empty() || letter != 0) start += letter;
+  }
+  if (std::ranges::any_of(kOtherMagics, [&start](std::string_view magic) { return start.starts_with(magic); })) return false;
   // Of ten bytes: less than this is another kind of file, in which a $ may stand anywhere.
   constexpr std::ptrdiff_t kMinTextOfTen = 9;
   const bool is_text = 10 * std::ranges::count_if(start, IsText) >= kMinTextOfTen * static_cast<std::ptrdiff_t>(start.size());
   const auto lines = SplitDatagram({reinterpret_cast<const std::uint8_t*>(start.data()), start.size()});
-  return std::ranges::any_of(lines.lines, [is_text](const std::string& line) {
-    const auto comma = line.find(',');
-    const bool begins_as_one = comma != std::string::npos && IsAddress(std::string_view(line).substr(1, comma - 1));
-    return begins_as_one && (is_text || Frame(line).fault == SentenceFault::kNone);
-  });
+  const bool holds_sentence = std::ranges::any_of(
+      lines.lines, [is_text](const std::string& line) { return BeginsAsSentence(line) && (is_text || Frame(line).fault == SentenceFault::kNone); });
+  return holds_sentence || (is_text && TextLogReader::IsCsvRecording(file));
 }
 
-TextLogReader::TextLogReader(const std::filesystem::path& file, std::optional<sys_days> day) : in_(file, std::ios::binary) {
-  if (!in_) throw std::runtime_error(file.string() + ": cannot be read");
-  const auto first = FindFirstTime(day);
-  if (!first) throw std::runtime_error(file.string() + ": no sentence in it tells a time");
-  last_ = *first;
-  in_.clear();
-  in_.seekg(0);
-  position_ = 0;
+bool TextLogReader::IsCsvRecording(const std::filesystem::path& file) {
+  TextLogReader reader(file, Opened{});
+  return reader.is_csv();
+}
+
+TextLogReader::TextLogReader(const std::filesystem::path& file, Opened /*only*/) : in_(file) { FindColumns(); }
+
+TextLogReader::TextLogReader(const std::filesystem::path& file, std::optional<sys_days> day) : TextLogReader(file, Opened{}) {
+  if (columns_ && !FindFirstRow(file)) columns_.reset();
+  if (!columns_) {
+    const auto first = FindFirstTime(day);
+    if (!first) throw std::runtime_error(file.string() + ": no sentence in it tells a time");
+    last_ = *first;
+  }
+  in_.Seek(0);
+}
+
+// The head of a CSV recording is its first line, but for notes.
+void TextLogReader::FindColumns() {
+  while (ReadLine() && line_.front() == '#') {
+  }
+  columns_ = FindCsvColumns(line_);
+  in_.Seek(0);
 }
 
 // The first date may be the one that is wrong: of the first ones that which most agree with. And the first time may be that of a zone.
@@ -170,7 +181,7 @@ bool TextLogReader::IsStepRight(sys_days date, microseconds of_day) {
 }
 
 void TextLogReader::LookAhead(const std::function<bool()>& look) {
-  const auto position = position_;
+  const auto position = in_.position();
   const auto time_zone = time_zone_;
   const auto said_of_day = said_of_day_;
   auto line = std::move(line_);
@@ -179,28 +190,72 @@ void TextLogReader::LookAhead(const std::function<bool()>& look) {
   line_ = std::move(line);
   said_of_day_ = said_of_day;
   time_zone_ = time_zone;
-  position_ = position;
-  in_.clear();
-  in_.seekg(position);
+  in_.Seek(position);
+}
+
+// False: no row with a sentence has a time that can be read, so that the sentences have to tell it.
+bool TextLogReader::FindFirstRow(const std::filesystem::path& file) {
+  bool has_sentence = false;
+  while (!has_date_ && ReadRow()) {
+    has_sentence = has_sentence || row_.is_sentence;
+    has_date_ = row_.is_sentence && row_.time;
+  }
+  if (!has_sentence) {
+    throw std::runtime_error(file.string() +
+                             ": is a CSV recording, and no row in it holds a sentence of NMEA 0183; rows of NMEA 2000 and Signal K are not read");
+  }
+  if (has_date_) last_ = *row_.time;
+  in_.Seek(0);
+  return has_date_;
 }
 
 // Sets line_ to the next that is not empty.
 bool TextLogReader::ReadLine() {
   line_.clear();
-  for (char letter = 0; in_.get(letter);) {
-    ++position_;
-    if (!IsLineEnd(letter)) {
-      // No sentence is so long: what goes is binary, and a sentence may stand behind it.
-      if (line_.size() == kMaxLineBytes) line_.erase(0, kMaxLineBytes / 2);
-      line_ += letter;
-    } else if (!line_.empty()) {
+  for (char letter = 0; in_.Get(letter);) {
+    if (IsLineEnd(letter)) {
+      if (line_.empty()) continue;
       return true;
     }
+    if ((letter == '$' || letter == '!') && !columns_ && EndsInChecksum(line_)) {
+      in_.Back();
+      return true;
+    }
+    // No sentence is so long: what goes is binary, and a sentence may stand behind it.
+    if (line_.size() == kMaxLineBytes && !columns_) line_.erase(0, kMaxLineBytes / 2);
+    if (line_.size() < kMaxLineBytes) line_ += letter;
   }
   return !line_.empty();
 }
 
+// Sets row_ to the next that holds something.
+bool TextLogReader::ReadRow() {
+  while (ReadLine()) {
+    if (line_.front() == '#') continue;
+    row_ = ReadCsvRow(line_, *columns_);
+    if (row_.time || row_.is_sentence) return true;
+    // Of recordings that were put one behind the other.
+    if (const auto columns = FindCsvColumns(line_)) columns_ = columns;
+  }
+  return false;
+}
+
+std::optional<TextLogReader::Line> TextLogReader::NextRow() {
+  while (ReadRow()) {
+    if (!row_.is_sentence) {
+      ++num_other_rows_;
+      continue;
+    }
+    if (!row_.time) ++num_rows_without_time_;
+    const auto time = row_.time.value_or(last_);
+    if (time >= last_ || last_ - time > kMaxLate) last_ = time;
+    return Line{last_, {reinterpret_cast<const std::uint8_t*>(row_.message.data()), row_.message.size()}};
+  }
+  return std::nullopt;
+}
+
 std::optional<TextLogReader::Line> TextLogReader::Next() {
+  if (columns_) return NextRow();
   if (!ReadLine()) return std::nullopt;
   const auto sentence = SentenceIn(line_);
   if (!has_other_zone_ && sentence && time_zone_.IsLocal(Utime(said_of_day_), *sentence)) {

@@ -1,24 +1,27 @@
-// Text logs of NMEA 0183 sentences: a line each, as receivers and plotters write them. The times are those that the sentences say.
+// Text logs of NMEA 0183 sentences: a line each, as receivers and plotters write them, with the times that the sentences say; or a row of CSV each,
+// with the times of the rows. As they are, packed by gzip, or in UTF-16.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
+#include "common/io/text_file.hpp"
+#include "services/navigator/core/csv_recording.hpp"
 #include "services/navigator/core/time_zone.hpp"
 
 namespace lookout::navigator {
 
 /// Whether a file is a text log: in its first MB, behind zero bytes at its start, stands a sentence whose checksum is right; or it is text, but for
-/// one byte in ten at most, with something that begins as a sentence does.
+/// one byte in ten at most, with something that begins as a sentence does; or it begins with the head of a CSV recording.
 ///
 /// What stands between the sentences does not matter: a byte order mark, notes in any coding, tag blocks, binary messages of the receiver.
+/// What gzip packed is a text log if it is one when it is unpacked, but never where it begins as a capture or an lcm-log.
 /// @throws std::runtime_error when it cannot be read
 bool IsTextLog(const std::filesystem::path& file);
 
@@ -38,27 +41,44 @@ class TextLogReader {
   /// Reads the file once as far as its first dates.
   ///
   /// @param day  of the first time in the file, for a file in which no sentence tells a date
-  /// @throws std::runtime_error when it cannot be read, or no sentence in it tells a time
+  /// @throws std::runtime_error when it cannot be read, or no sentence (of a CSV recording: no row with a sentence) in it tells a time
   explicit TextLogReader(const std::filesystem::path& file, std::optional<std::chrono::sys_days> day = {});
 
+  /// Whether the file begins with the head of a CSV recording, or a row of one. @throws std::runtime_error when it cannot be read
+  static bool IsCsvRecording(const std::filesystem::path& file);
+
   struct Line {
-    Utime time;   // UTC of the sentence; where it says none, of the one before it; of the first ones, the first that is said
-    Bytes bytes;  // without its end; until the next call
+    Utime time;   // UTC of the sentence, or of its row; where it says none, of the one before it; of the first ones, the first that is said
+    Bytes bytes;  // without its end, of a row the message; until the next call
   };
 
-  /// @return the next line that is not empty, whatever it holds; nullopt at the end. CR, LF or both end a line; of one that is longer than
-  ///         kMaxLineBytes only the last part is returned.
+  /// @return the next line that is not empty, whatever it holds; nullopt at the end. CR, LF or both end a line, and a checksum with another sentence
+  ///         behind it; of one that is longer than kMaxLineBytes only the last part is returned. Of a CSV recording: the next row with a sentence.
   std::optional<Line> Next();
   static constexpr std::size_t kMaxLineBytes = 4096;
 
-  /// No sentence of the file holds a date: the times are those of the given day, or of 1970-01-01.
+  /// The file is a CSV recording whose rows tell the time.
+  bool is_csv() const { return columns_.has_value(); }
+
+  /// Rows of a CSV recording that were left out: NMEA 2000, Signal K; and rows without a time, which have that of the row before.
+  std::int64_t num_other_rows() const { return num_other_rows_; }
+  std::int64_t num_rows_without_time() const { return num_rows_without_time_; }
+
+  /// Why reading ended before the end of the file (what gzip packed is cut short); empty: it did not.
+  const std::string& fault() const { return in_.fault(); }
+
+  /// False: no sentence of the file holds a date; the times are those of the given day, or of 1970-01-01.
   bool has_date() const { return has_date_; }
 
   /// Bytes read so far.
-  std::int64_t position() const { return position_; }
+  std::int64_t position() const { return in_.position_bytes(); }
 
  private:
+  struct Opened {};
+  TextLogReader(const std::filesystem::path& file, Opened only);
   bool ReadLine();
+  void FindColumns();
+  bool ReadRow();
   std::optional<Sentence> WithTime(const std::optional<Sentence>& sentence);
   void UseTime(std::chrono::microseconds of_day, std::optional<std::chrono::sys_days> date);
   std::optional<Utime> FindFirstTime(std::optional<std::chrono::sys_days> day);
@@ -66,10 +86,15 @@ class TextLogReader {
   void LookAhead(const std::function<bool()>& look);
   bool IsPause();
   bool IsStepRight(std::chrono::sys_days date, std::chrono::microseconds of_day);
+  bool FindFirstRow(const std::filesystem::path& file);
+  std::optional<Line> NextRow();
 
-  std::ifstream in_;
+  io::TextFile in_;
   std::string line_;
-  std::int64_t position_ = 0;
+  std::optional<CsvColumns> columns_;
+  CsvRow row_;
+  std::int64_t num_other_rows_ = 0;
+  std::int64_t num_rows_without_time_ = 0;
   bool has_date_ = false;
   TimeZoneCheck time_zone_;
   int num_local_ = 0;                                // in a row

@@ -1,6 +1,7 @@
 #include "services/vlp16/core/position_packet.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "common/core/sentence.hpp"
 #include "services/vlp16/core/packet_format.hpp"
@@ -53,8 +54,12 @@ PositionPacketResult ParsePositionPacket(Bytes payload) {
   result.packet.telemetry = ToTelemetry(payload);
 
   const auto text = payload.subspan(kSentenceOffset);
-  const auto end = std::ranges::find_if_not(text, IsPrintable);
-  const bool has_end = end != text.end() && (*end == '\r' || *end == '\n' || *end == '\0');
+  auto end = std::ranges::find_if_not(text, IsPrintable);
+  // Some receivers send blanks behind the checksum.
+  const auto is_blank = [](std::uint8_t byte) { return byte == ' ' || byte == '\t'; };
+  const auto stop = std::find_if_not(end, text.end(), is_blank);
+  const bool has_end = stop != text.end() && (*stop == '\r' || *stop == '\n' || *stop == '\0');
+  while (end != text.begin() && is_blank(*std::prev(end))) --end;
   if (!has_end || (end != text.begin() && text.front() != '$')) {
     result.fault = PositionFault::kSentence;
     return result;

@@ -377,6 +377,28 @@ TEST_F(InterpreterTest, ReadsTheCompassOfTrueNorth) {
   EXPECT_EQ(Count("implausible_value") + Count("bad_field"), 2);
 }
 
+// Both were read, and then nothing: no counter moved.
+TEST_F(InterpreterTest, CountsAttitudesThatSayNothing) {
+  Read(0.0, Line("IIXDR,A, ,D,PTCH,A,,D,ROLL"));
+  Read(0.1, Line("HEHDT,,T"));
+  EXPECT_EQ(Count("empty_attitude"), 2);
+  for (const char* xdr : {"IIXDR,A,2.5,D,RUDDER", "IIXDR, , , , ", "IIXDR,,,,", "IIXDR,A,2.5,D,", "IIXDR"}) Read(0.2, Line(xdr));
+  EXPECT_EQ(Count("xdr_not_used"), 5);
+}
+
+// It was counted as one whose UTC is too far from the arrival: look at the host's clock.
+TEST_F(InterpreterTest, UsesAPositionWithoutATimeAtItsArrival) {
+  const auto fix = Read(0.5, Line("BMGLL,5430.0000,N,1012.0000,E,,A,D")).fix;
+  ASSERT_TRUE(fix && fix->position);
+  EXPECT_EQ(fix->when.time, NoonPlus(0.5));
+  EXPECT_EQ(fix->when.utc, NoonPlus(0.5));
+  EXPECT_EQ(Count("sentence_time_unusable"), 0);
+}
+
+TEST_F(InterpreterTest, CountsAnHdopThatNoSkyGivesAsOne) {
+  EXPECT_DOUBLE_EQ(Read(0.1, GgaLine(NoonPlus(0), 50.0, 8.0, 1, 0.01, 100.0, 47.0)).fix->horizontal_sd_m, 2.5);
+}
+
 // 0 N 0 E with a valid status was a fix: POSE was ok, 6100 km from the boat.
 TEST_F(InterpreterTest, TakesNoFixAtZeroNorthZeroEast) {
   int num_null = 0;

@@ -318,8 +318,11 @@ INSTANTIATE_TEST_SUITE_P(Position, RefusedSentence,
                                            Refused{"GPGGA,000000,0060.0,N,00000.0,E,1,,,,,,,,", kImplausible},   //
                                            Refused{"GPGGA,000000,0000.0,N,18000.1,E,1,,,,,,,,", kImplausible},   //
                                            Refused{"GPGGA,000000,0000.0,N,00060.0,E,1,,,,,,,,", kImplausible},   //
-                                           Refused{"GPGGA,000000,000.0,N,00000.0,E,1,,,,,,,,", kBadField},       //
-                                           Refused{"GPGGA,000000,0000.0,N,0000.0,E,1,,,,,,,,", kBadField},       //
+                                           Refused{"GPGGA,000000,060.0,N,00000.0,E,1,,,,,,,,", kImplausible},    //
+                                           Refused{"GPGGA,000000,0000.0,N,18100.0,E,1,,,,,,,,", kImplausible},   //
+                                           Refused{"GPGGA,000000,0000000100.0,N,0.0,E,1,,,,,,,,", kBadField},    //
+                                           Refused{"GPGGA,000000,0000.0,N,.,E,1,,,,,,,,", kBadField},            //
+                                           Refused{"GPGGA,000000,54 30.0,N,00000.0,E,1,,,,,,,,", kBadField},     // a space within
                                            Refused{"GPGGA,000000,-000.0,N,00000.0,E,1,,,,,,,,", kBadField},      //
                                            Refused{"GPGGA,000000,0000.0,E,00000.0,N,1,,,,,,,,", kBadField},      //
                                            Refused{"GPGGA,000000,0000.0,,00000.0,E,1,,,,,,,,", kBadField},       // half a position
@@ -387,6 +390,56 @@ TEST(Position, ReachesThePolesAndTheDateLine) {
   const auto rmc = Parsed(SentenceType::kRmc, Line("GPRMC,000000,A,9000.0000,S,18000.0000,W,0.0,0.0,010126,,,A"));
   EXPECT_EQ(rmc.position->latitude_deg, -90.0);
   EXPECT_EQ(rmc.position->longitude_deg, -180.0);
+}
+
+// Of plotters, gateways and hobby programs: all were refused as bad_field.
+TEST(Position, HasDegreesPaddedToAnyWidthOrNot) {
+  const auto place = [](const std::string& latitude, const std::string& longitude) {
+    return *Parsed(SentenceType::kGll, Line("GPGLL," + latitude + ",N," + longitude + ",E,000000,A")).position;
+  };
+  for (const char* longitude : {"01012.000", "1012.000", "001012.000", "0001012", "1012"}) {
+    EXPECT_DOUBLE_EQ(place("5430.000", longitude).longitude_deg, 10.2) << longitude;
+  }
+  for (const char* longitude : {"00000.840", "0.840000", ".84", "00.84", "000.840"}) {
+    EXPECT_DOUBLE_EQ(place("5042.000", longitude).longitude_deg, 0.014) << longitude;
+  }
+  for (const char* latitude : {"5430.0", "05430.0", "005430.0"}) EXPECT_DOUBLE_EQ(place(latitude, "01012.0").latitude_deg, 54.5) << latitude;
+  for (const char* latitude : {"0130.0", "130.0", "00130.0"}) EXPECT_DOUBLE_EQ(place(latitude, "10312.0").latitude_deg, 1.5) << latitude;
+  EXPECT_DOUBLE_EQ(place("30.0", "10312.0").latitude_deg, 0.5);
+}
+
+// 54.5 N 10.2 E would be taken for 0 deg 54.5 min N 0 deg 10.2 min E.
+TEST(Position, InDegreesAndTheirFractionIsRefused) {
+  for (const char* place : {"54.5,N,10.2,E", "54.5000000,N,010.2,E", "4.5,S,102.5,W", "0.5,N,.2,W"}) {
+    EXPECT_EQ(FaultOf("GPGLL," + std::string(place) + ",000000,A"), SentenceFault::kBadField) << place;
+  }
+}
+
+// A plotter fills courses below 100 with a space: bad_field, and no fix.
+TEST(Fields, MayBeFilledWithSpaces) {
+  const auto rmc = Parsed(SentenceType::kRmc, Line("GNRMC,100000.00 ,A , 5430.0000000,N,01012.0000000 ,E,3.890, 90.0, 290826,  ,E,A "));
+  EXPECT_NEAR(rmc.course_rad, DegToRad(90.0), 1e-12);
+  EXPECT_DOUBLE_EQ(rmc.position->latitude_deg, 54.5);
+  EXPECT_TRUE(std::isnan(rmc.declination_rad)) << "nothing but spaces is nothing";
+  EXPECT_NEAR(Parsed(SentenceType::kHdt, Line("HEHDT,   9.0, T")).heading_rad, DegToRad(9.0), 1e-12);
+  EXPECT_EQ(FaultOf("HEHDT,9 .0,T"), SentenceFault::kBadField) << "within a number it is damage";
+}
+
+// A gateway writes 0.01 where it knows none: the fix was good to 0.025 m.
+TEST(Gga, BelowTheHdopOfAnySkyHasNone) {
+  const auto hdop = [](const std::string& text) {
+    return Parsed(SentenceType::kGga, Line("GPGGA,000000,5430.0,N,01012.0,E,1,10," + text + ",1.0,M,1.0,M,,")).hdop;
+  };
+  for (const char* text : {"0", "0.0", "0.01", "0.1", "0.34"}) EXPECT_TRUE(std::isnan(hdop(text))) << text;
+  EXPECT_DOUBLE_EQ(hdop("0.4"), 0.4) << "receivers of four systems";
+  EXPECT_TRUE(std::isnan(Parsed(SentenceType::kGns, Line("GNGNS,000000,5430.0,N,01012.0,E,AA,10,0.01,1.0,1.0,,")).hdop));
+}
+
+// With spaces around its words such a sentence was one of other types, and nobody was told.
+TEST(Xdr, MayBeFilledWithSpaces) {
+  const auto xdr = Parsed(SentenceType::kXdr, Line("IIXDR, A , 2.5,D , PTCH,A,-1.0 ,D,ROLL #2 "));
+  EXPECT_NEAR(xdr.pitch_rad, DegToRad(2.5), 1e-12);
+  EXPECT_NEAR(xdr.roll_rad, DegToRad(-1.0), 1e-12);
 }
 
 }  // namespace

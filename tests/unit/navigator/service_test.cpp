@@ -126,6 +126,38 @@ TEST(Service, PutsLinesWithWrongChecksumsIntoTheRawLogToo) {
   EXPECT_EQ(rig.Count("no_start"), 1);
 }
 
+// Without a sender each datagram stands for itself, as the lines of a text log do.
+TEST(Service, JoinsLinesThatASenderCutsOverDatagrams) {
+  Rig rig(TestParams(kFromSources));
+  const auto add = [&rig](double time_s, const std::string& text, const std::string& sender) {
+    rig.service.AdvanceTo(NoonPlus(time_s));
+    rig.service.OnDatagram(NoonPlus(time_s), ToBytes(text), kUdpSource, sender);
+    rig.Drain();
+  };
+  const auto line = HdtLine(10.0);
+  add(0.01, line.substr(0, 5), "10.0.0.1 4000");
+  add(0.02, line.substr(0, 8), "10.0.0.1 4001");
+  add(0.03, line.substr(5), "10.0.0.1 4000");
+  add(0.04, line.substr(8), "10.0.0.1 4001");
+  EXPECT_EQ(rig.Count("understood_sentence"), 2);
+  add(0.05, line.substr(0, 5), "10.0.0.1 4000");
+  rig.service.AdvanceTo(NoonPlus(2.5));
+  rig.Drain();
+  EXPECT_EQ(rig.Count("no_checksum"), 1) << "its rest did not come";
+  add(2.6, line.substr(0, 5), "10.0.0.1 4000");
+  rig.service.Finish(NoonPlus(2.7));
+  rig.Drain();
+  EXPECT_EQ(rig.Count("no_checksum"), 2);
+  EXPECT_EQ(rig.Messages<nav_raw_t>(bus::kNavRaw).back().kind, nav_raw_t::KIND_END);
+}
+
+TEST(Service, CountsSentencesThatAreCutOff) {
+  Rig rig(TestParams(kFromSources));
+  rig.Datagram(0.0, "$GPRMC,1200" + HdtLine(10.0));
+  EXPECT_EQ(rig.Count("cut_off"), 1);
+  EXPECT_EQ(rig.Count("understood_sentence"), 1);
+}
+
 TEST(Service, SendsPosesOfTheDemoBoat) {
   Rig rig(TestParams(kFromSources));
   rig.service.AdvanceTo(NoonPlus(0));

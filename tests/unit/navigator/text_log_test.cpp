@@ -1,5 +1,6 @@
 // What a text log of sentences is told by, and the times at which its lines are taken.
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -244,6 +245,134 @@ TEST_F(TextLog, FindsSentencesBehindBinaryWithoutAnEndOfLine) {
   Write(std::string(1'000'000, '\x80') + Rmc("120000.000", "030414") + std::string(5000, '\x81') + Gga("120001.000"));
   const Utime start = kDay + 12h;
   EXPECT_EQ(Times(), (std::vector<Utime>{start, start + 1s}));
+}
+
+// Made of lines that end in spaces, tabs or nothing at all.
+TEST_F(TextLog, TakesSentencesWithBlanksBehindThemAndWithoutEndsOfLines) {
+  const std::string first = "$GPRMC,120000.000,A,5222.3215,N,00454.5778,E,0.58,251.34,030414,,,A*69";
+  const std::string second = "$GPRMC,120001.000,A,5222.3215,N,00454.5778,E,0.58,251.34,030414,,,A*68";
+  const Utime start = kDay + 12h;
+  for (const std::string end : {" \r\n", "\t\n", " \t\r", ""}) {
+    Write(first + end + second + end);
+    EXPECT_TRUE(IsTextLog(file_));
+    EXPECT_EQ(Times(), (std::vector<Utime>{start, start + 1s}));
+  }
+}
+
+std::string Utf16(const std::string& text, bool is_little_endian) {
+  std::string wide;
+  for (const char letter : text) wide += is_little_endian ? std::string({letter, '\0'}) : std::string({'\0', letter});
+  return wide;
+}
+
+// A shell of Windows writes UTF-16: "unknown file format".
+TEST_F(TextLog, MayBeInUtf16) {
+  const auto text = Rmc("120000.000", "030414") + "# \xE4\r\n" + Gga("120001.000");
+  const Utime start = kDay + 12h;
+  for (const bool is_little_endian : {true, false}) {
+    for (const bool has_mark : {true, false}) {
+      Write((has_mark ? (is_little_endian ? "\xFF\xFE" : "\xFE\xFF") : "") + Utf16(text, is_little_endian) + "x");
+      EXPECT_TRUE(IsTextLog(file_)) << is_little_endian << has_mark;
+      EXPECT_EQ(Times(), (std::vector<Utime>{start, start, start + 1s})) << is_little_endian << has_mark;
+    }
+  }
+}
+
+class Packed : public TextLog {
+ protected:
+  // By gzip, as two files that were put one behind the other.
+  void Pack(const std::string& text) const {
+    fs::remove(file_);
+    for (const auto& part : {text.substr(0, text.size() / 2), text.substr(text.size() / 2)}) {
+      const gzFile out = gzopen(file_.c_str(), "ab");
+      gzwrite(out, part.data(), static_cast<unsigned>(part.size()));
+      gzclose(out);
+    }
+  }
+};
+
+TEST_F(Packed, ByGzipIsReadAsItWas) {
+  const Utime start = kDay + 12h;
+  Pack(Rmc("120000.000", "030414") + Gga("120001.000"));
+  EXPECT_TRUE(IsTextLog(file_));
+  EXPECT_EQ(Times(), (std::vector<Utime>{start, start + 1s}));
+  Pack("\xFF\xFE" + Utf16(Rmc("120000.000", "030414"), true));
+  EXPECT_EQ(Times(), std::vector<Utime>{start});
+}
+
+TEST_F(Packed, AndCutShortIsReadAsFarAsItGoesAndSaysSo) {
+  std::string text;
+  for (int second = 0; second < 60; ++second) text += Rmc("1200" + std::to_string(100 + second).substr(1), "030414");
+  Pack(text);
+  fs::resize_file(file_, fs::file_size(file_) - 20);
+  TextLogReader reader(file_);
+  int num_lines = 0;
+  while (reader.Next()) ++num_lines;
+  EXPECT_GE(num_lines, 29);
+  EXPECT_LT(num_lines, 60);
+  EXPECT_EQ(reader.fault(), "what gzip packed is cut short");
+}
+
+// Sentences with right checksums stand in captures and logs, too.
+TEST_F(Packed, ByGzipIsNoTextLogWhereItIsACaptureOrALog) {
+  for (const std::string magic : {"\xD4\xC3\xB2\xA1", "\xED\xA1\xDA\x01", "\x0A\x0D\x0D\x0A"}) {
+    Pack(magic + "$GPHDT,12.0,T*06\r\n");
+    EXPECT_FALSE(IsTextLog(file_));
+  }
+}
+
+class Csv : public TextLog {
+ protected:
+  static constexpr Utime kTen = std::chrono::sys_days(std::chrono::year(2026) / 8 / 29) + 10h;
+  static constexpr char kHead[] = "timestamp,type,id,message\r\n";
+  std::vector<std::string> Lines() const {
+    TextLogReader reader(file_);
+    std::vector<std::string> lines;
+    while (const auto line = reader.Next()) lines.emplace_back(line->bytes.begin(), line->bytes.end());
+    return lines;
+  }
+};
+
+// Was refused: no sentence in it tells a time. The quotes made each checksum wrong.
+TEST_F(Csv, OfOpenCpnIsReadAtTheTimesOfItsRows) {
+  Write(std::string("\xEF\xBB\xBF# a note\r\n") + kHead + "2026-08-29T10:00:00.250Z,NMEA0183,,\"$HEHDT,90.0,T*16\"\r\n# a note\r\n\r\n" +
+        "2026-08-29T10:00:01.000Z,AIS,,\"!AIVDM,1,1,,A,1,0*26\"\r\n2026-08-29T10:00:00.900Z,NMEA0183,,$HEHDT,91.0,T*17\r\n");
+  EXPECT_TRUE(IsTextLog(file_));
+  EXPECT_EQ(Lines(), (std::vector<std::string>{"$HEHDT,90.0,T*16", "!AIVDM,1,1,,A,1,0*26", "$HEHDT,91.0,T*17"}));
+  EXPECT_EQ(Times(), (std::vector<Utime>{kTen + 250ms, kTen + 1s, kTen + 1s})) << "a row that is a little late takes the time before it";
+  EXPECT_TRUE(TextLogReader(file_).has_date());
+}
+
+TEST_F(Csv, CountsRowsThatItDoesNotRead) {
+  Write(kHead + std::string("2026-08-29T10:00:00Z,NMEA2000,129026,18EF0003FF0300DD\n2026-08-29T10:00:01Z,NMEA0183,,\"$HEHDT,90.0,T*16\"\n") +
+        "2026-08-29T10:00:02Z,SignalK,,\"{\"\"updates\"\":[" + std::string(10'000, 'x') + "]}\"\n?,NMEA0183,,\"$HEHDT,91.0,T*17\r\n\"\n" + kHead +
+        "2026-08-29T10:00:03Z,NMEA0183,,\"$HEHDT,92.0,T*14\"\n");
+  EXPECT_EQ(Times(), (std::vector<Utime>{kTen + 1s, kTen + 1s, kTen + 3s}));
+  TextLogPlayer player({{"day", file_, {}}}, 0.0);
+  while (!player.is_finished()) player.Play(std::chrono::steady_clock::time_point(), {[](Utime) {}, [](Utime, Bytes, const std::string&) {}});
+  std::map<std::string, std::int64_t> counts;
+  for (const auto& counter : player.counters()) counts[std::string(counter.name)] = counter.count;
+  EXPECT_EQ(counts, (std::map<std::string, std::int64_t>{{"day_lines", 3}, {"day_other_rows", 2}, {"day_rows_without_time", 1}}));
+}
+
+TEST_F(Csv, WithoutASentenceSaysWhatItIs) {
+  Write(kHead + std::string("2026-08-29T10:00:00Z,NMEA2000,129026,18EF0003FF0300DD\n"));
+  EXPECT_TRUE(IsTextLog(file_));
+  try {
+    TextLogReader reader(file_);
+    FAIL() << "was read";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("no row in it holds a sentence of NMEA 0183; rows of NMEA 2000 and Signal K are not read"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+// Seconds since 1970 or a local time: the sentences say it, as they did before rows were read.
+TEST_F(Csv, WhoseTimesCannotBeReadHasThoseOfItsSentences) {
+  Write("time,sentence\n1396526400.5," + Rmc("120000.000", "030414") + "1396526401.5," + Gga("120001.000"));
+  const Utime start = kDay + 12h;
+  EXPECT_EQ(Times(), (std::vector<Utime>{start, start, start + 1s}));
 }
 
 TEST_F(TextLog, TakesTheGivenDayOnlyWhereNoSentenceTellsADate) {

@@ -50,6 +50,16 @@ TEST(PositionPacket, LosesOnlyItsSentenceWhenThatIsNotText) {
   }
 }
 
+// With a tab the packet lost its sentence, with a space the navigator refused it.
+TEST(PositionPacket, HasItsSentenceWithoutBlanksBehind) {
+  for (const auto end : {" \r\n"sv, "\t\n"sv, " \t \0"sv}) {
+    const auto result = ParsePositionPacket(MakePositionPacket(0, 0, kValidRmc, end));
+    EXPECT_EQ(result.fault, PositionFault::kNone);
+    EXPECT_EQ(result.packet.sentence, kValidRmc);
+    EXPECT_TRUE(result.packet.time);
+  }
+}
+
 TEST(PositionPacket, LosesASentenceThatHasNoEnd) {
   const std::string endless = "$" + std::string(format::kPositionPacketSizeBytes - format::kSentenceOffset - 1, 'A');
   const auto result = ParsePositionPacket(MakePositionPacket(0, 0, endless, ""));
