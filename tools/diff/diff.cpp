@@ -15,7 +15,7 @@
 #include "common/core/printable.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
-#include "tools/log/time_text.hpp"
+#include "common/core/log_time.hpp"
 #include "tools/log/watch_alerts.hpp"
 
 namespace lookout::diff {
@@ -176,7 +176,7 @@ class ChannelComparison {
 
 std::string FirstText(const FirstDifference& first) {
   const auto& difference = first.difference;
-  return fmt::format("message {} at {}: {}{}", first.index, log::TimeText(first.time), difference.field,
+  return fmt::format("message {} at {}: {}{}", first.index, TimeText(first.time), difference.field,
                      difference.a.empty() && difference.b.empty() ? "" : ": " + difference.a + " | " + difference.b);
 }
 

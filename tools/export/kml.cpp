@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <iterator>
 #include <string_view>
+#include <vector>
 
 #include "tools/export/features.hpp"
 #include "tools/export/map_text.hpp"
@@ -26,6 +27,83 @@ constexpr std::array kKmlStyles{KmlStyle{"own_track", "ffb27200", 3, "00000000",
                                 KmlStyle{"way", "ff739e00", 2, "00000000", 0.0},       KmlStyle{"waterline", "ff7aa0b8", 3, "00000000", 0.0},
                                 KmlStyle{"alert", "ff0000c0", 2, "00000000", 0.8}};
 
+// The fields of each sort of feature with their types, so that numbers are read as numbers; `what` is one of each. Times in microseconds are whole
+// numbers beyond 32 bits, which a double holds exactly: KML has no longer whole number.
+struct KmlField {
+  std::string_view type;
+  std::string_view name;
+};
+struct KmlSchema {
+  std::string_view what;
+  std::vector<KmlField> fields;
+};
+const std::vector<KmlSchema>& Schemas() {
+  const KmlField scan_seq{"int", "scan_seq"};
+  const KmlField obstacle_id{"int", "obstacle_id"};
+  const KmlField track_id{"int", "track_id"};
+  const KmlField confidence{"string", "confidence"};
+  const KmlField status{"string", "status"};
+  const KmlField kind{"string", "kind"};
+  const KmlField range_m{"double", "range_m"};
+  const KmlField bearing_deg{"double", "bearing_deg"};
+  const KmlField length_m{"double", "length_m"};
+  const KmlField width_m{"double", "width_m"};
+  const KmlField top_above_water_m{"double", "top_above_water_m"};
+  const KmlField cpa_m{"double", "cpa_m"};
+  const KmlField tcpa_s{"double", "tcpa_s"};
+  const KmlField cov_ee_m2{"double", "cov_ee_m2"};
+  const KmlField cov_en_m2{"double", "cov_en_m2"};
+  const KmlField cov_nn_m2{"double", "cov_nn_m2"};
+  static const std::vector<KmlSchema> kSchemas{
+      {"own_track", {status}},
+      {"own_place", {}},
+      {"obstacle",
+       {scan_seq,
+        {"double", "scan_utime_us"},
+        {"double", "utime_us"},
+        obstacle_id,
+        confidence,
+        kind,
+        {"double", "thing_probability"},
+        range_m,
+        bearing_deg,
+        length_m,
+        width_m,
+        {"double", "height_m"},
+        top_above_water_m,
+        {"int", "num_points"},
+        cov_ee_m2,
+        cov_en_m2,
+        cov_nn_m2}},
+      {"track",
+       {track_id,
+        status,
+        kind,
+        {"double", "first_utime_us"},
+        {"double", "seen_utime_us"},
+        {"double", "existence_probability"},
+        {"double", "moving_probability"},
+        {"double", "speed_mps"},
+        {"double", "course_deg"},
+        length_m,
+        width_m,
+        top_above_water_m,
+        {"double", "seen_share"},
+        range_m,
+        bearing_deg,
+        cpa_m,
+        tcpa_s,
+        cov_ee_m2,
+        cov_en_m2,
+        cov_nn_m2}},
+      {"outline", {scan_seq, obstacle_id, track_id, confidence, status, kind}},
+      {"ellipse", {scan_seq, obstacle_id, track_id, confidence, status, kind}},
+      {"waterline", {scan_seq, obstacle_id, confidence, kind}},
+      {"way", {track_id, status, kind}},
+      {"alert", {{"int", "alert_id"}, {"string", "cause"}, {"string", "level"}, track_id, {"double", "distance_m"}, bearing_deg, cpa_m, tcpa_s}}};
+  return kSchemas;
+}
+
 class KmlWriter final : public MapWriter {
  public:
   void Begin(std::string& text) override {
@@ -38,19 +116,23 @@ class KmlWriter final : public MapWriter {
                      "<LineStyle><color>{}</color><width>{}</width></LineStyle><PolyStyle><color>{}</color></PolyStyle></Style>\n",
                      what, line, label_scale, line, width, area);
     }
+    for (const auto& [what, fields] : Schemas()) {
+      fmt::format_to(std::back_inserter(text), "<Schema name=\"{0}\" id=\"fields_{0}\"><SimpleField type=\"string\" name=\"what\"/>", what);
+      for (const auto& [type, name] : fields) fmt::format_to(std::back_inserter(text), "<SimpleField type=\"{}\" name=\"{}\"/>", type, name);
+      text += "</Schema>\n";
+    }
   }
 
   bool Append(const Feature& feature, std::string& text) override {
     fmt::format_to(std::back_inserter(text), "<Placemark><name>{}</name>", XmlText(feature.name));
     AppendTime(feature, text);
-    fmt::format_to(std::back_inserter(text), "<styleUrl>#{0}</styleUrl><ExtendedData><Data name=\"what\"><value>{0}</value></Data>",
-                   XmlText(feature.what));
+    fmt::format_to(std::back_inserter(text), "<styleUrl>#{0}</styleUrl><ExtendedData><SchemaData schemaUrl=\"#fields_{0}\">", XmlText(feature.what));
+    AppendField("what", feature.what, text);
     for (const auto& [name, value] : feature.properties) {
       const auto words = TextOf(value);
-      if (words.empty()) continue;
-      fmt::format_to(std::back_inserter(text), "<Data name=\"{}\"><value>{}</value></Data>", XmlText(name), XmlText(words));
+      if (!words.empty()) AppendField(name, words, text);
     }
-    text += "</ExtendedData>";
+    text += "</SchemaData></ExtendedData>";
     feature.geometry.HasTimes() ? AppendTracks(feature.geometry, text) : AppendGeometry(feature.geometry, text);
     text += "</Placemark>\n";
     return true;
@@ -68,6 +150,10 @@ class KmlWriter final : public MapWriter {
     } else {
       fmt::format_to(std::back_inserter(text), "<TimeStamp><when>{}</when></TimeStamp>", IsoTime(*feature.utime_us));
     }
+  }
+
+  static void AppendField(std::string_view name, std::string_view words, std::string& text) {
+    fmt::format_to(std::back_inserter(text), "<SimpleData name=\"{}\">{}</SimpleData>", XmlText(name), XmlText(words));
   }
 
   static void AppendTracks(const Geometry& geometry, std::string& text) {

@@ -9,33 +9,26 @@
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
 #include "tools/log/log_output.hpp"
-#include "tools/log/time_text.hpp"
+#include "tools/log/log_span.hpp"
+#include "common/core/log_time.hpp"
 
 namespace lookout::log {
 
 namespace {
 
-Utime FirstTime(const std::vector<std::filesystem::path>& files) {
-  for (const auto& file : files) {
-    EventReader reader(file);
-    if (const auto event = reader.Next()) return event->time;
-  }
-  throw std::runtime_error(files.front().string() + ": is no lcm-log: it holds no event");
-}
-
-std::optional<Utime> LimitOf(const std::string& option, const std::string& text, Utime start) {
+std::optional<Utime> LimitOf(const std::string& option, const std::string& text, const LogSpan& span) {
   if (text.empty()) return std::nullopt;
-  const auto time = ParseTime(text, start);
-  if (!time) throw UsageError(option + " " + text + ": is neither seconds from the start (12.5) nor UTC (2026-11-21T13:45:01.5Z)");
-  return time;
+  const auto found = FindTime(option, text, span);
+  if (!found.time) throw UsageError(found.fault);
+  return found.time;
 }
 
 }  // namespace
 
 void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors) {
-  const auto start = FirstTime(request.inputs);
-  const auto from = LimitOf("--from", request.from, start);
-  const auto to = LimitOf("--to", request.to, start);
+  const auto span = SpanOf(request.inputs);
+  const auto from = LimitOf("--from", request.from, span);
+  const auto to = LimitOf("--to", request.to, span);
   if (from && to && *from >= *to) throw UsageError("--from must be before --to");
 
   // All inputs are opened first: a mistyped name must not cost an hour of reading.

@@ -17,7 +17,7 @@
 #include "tools/log/event_reader.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
-#include "tools/log/time_text.hpp"
+#include "common/core/log_time.hpp"
 
 namespace lookout::log {
 

@@ -14,7 +14,7 @@
 #include "common/bus/stream_guard.hpp"
 #include "common/core/bytes.hpp"
 #include "common/core/utime.hpp"
-#include "tools/log/time_text.hpp"
+#include "common/core/log_time.hpp"
 
 namespace lookout::log {
 

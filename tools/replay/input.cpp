@@ -208,14 +208,18 @@ Inspection Inspect(const std::vector<std::filesystem::path>& files, const Reques
   Inspection inspection;
   std::set<std::string, std::less<>> present;
   std::size_t num_logs = 0;
+  std::size_t num_text_logs = 0;
   for (const auto& file : files) {
-    const bool is_log = KindOf(file) == InputKind::kLog;
+    const auto kind = KindOf(file);
+    const bool is_log = kind == InputKind::kLog;
+    num_text_logs += kind == InputKind::kTextLog ? 1 : 0;
     inspection.sizes_bytes.push_back(static_cast<std::int64_t>(std::filesystem::file_size(file)));
     if (is_log) Look(file, candidates, present, inspection.recorded);
     num_logs += is_log ? 1 : 0;
   }
   if (num_logs != 0 && num_logs != files.size()) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
   inspection.is_logs = num_logs != 0;
+  inspection.is_text_logs = num_text_logs == files.size();
   try {
     inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
     if (inspection.is_logs && inspection.plan.Runs(bus::kAlerts.publisher)) inspection.plan.script = ReadScript(files);
