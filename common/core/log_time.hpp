@@ -36,8 +36,8 @@ struct GivenTime {
   std::chrono::microseconds value{0};  // since the start of the log, 1970, or midnight UTC
 };
 
-/// From the start of the log: "10", "+10", "90.5", "1:30", "1:02:03.5". UTC: "2026-08-29T10:00:00Z"; a time of day, "10:00:05Z". Seconds may have up to
-/// six decimals. 16 digits: microseconds since 1970.
+/// From the start of the log: "10", "+10", "90.5", "1:30", "1:02:03.5". UTC: "2026-08-29T10:00:00Z"; a time of day, "10:00:05Z". Seconds may have up
+/// to six decimals. 16 digits: microseconds since 1970.
 ///
 /// @return nullopt when it is none of them
 std::optional<GivenTime> ParseGivenTime(std::string_view text);

@@ -27,7 +27,9 @@ std::string DurationText(double duration_s) {
 
 }  // namespace
 
-Progress::Progress(std::string program, std::FILE* out) : Progress(std::move(program), out, out != nullptr && isatty(fileno(out)) != 0) {}
+std::FILE* OnlyTerminal(std::FILE* out) { return out != nullptr && isatty(fileno(out)) != 0 ? out : nullptr; }
+
+Progress::Progress(std::string program, std::FILE* out) : Progress(std::move(program), out, OnlyTerminal(out) != nullptr) {}
 
 Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period,
                    std::function<Clock::time_point()> now)

@@ -9,6 +9,11 @@
 
 namespace lookout::runtime {
 
+/// For tools that tell how far they are to people alone, and nothing to what reads their standard error.
+///
+/// @return `out` where it is a terminal; else nullptr, with which Progress is silent
+std::FILE* OnlyTerminal(std::FILE* out);
+
 class Progress {
  public:
   using Clock = std::chrono::steady_clock;

@@ -15,6 +15,7 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/core/log_time.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/version.hpp"
@@ -279,6 +280,12 @@ int EvaluateAutoferry(const FerryOptions& options) {
     io::ThrowIfStopAsked();
     const auto scans = importer::ReadFerryScans(scenario.scans);
     const auto truth = importer::ReadFerryTruth(scenario.truth);
+    const auto has_truth = [&truth](const importer::FerryScan& scan) { return !TruthAt(truth, scan.utime_us).empty(); };
+    if (std::ranges::none_of(scans, has_truth)) {
+      throw std::runtime_error(fmt::format(
+          "{} and {} are not of one run: no scan lies in the time of the truth; the scans go {}", scenario.scans.string(), scenario.truth.string(),
+          SpanText({Utime(std::chrono::microseconds(scans.front().utime_us)), Utime(std::chrono::microseconds(scans.back().utime_us))})));
+    }
     trackers.clear();
     for (const auto& [tracker, tracks] : TrackFerry(config_folder, scans, MakeTrackers())) {
       trackers.push_back(tracker);

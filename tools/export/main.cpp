@@ -1,6 +1,4 @@
 // Logs in, a table, a map, a cloud or a picture out.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +9,7 @@
 
 #include "common/core/log_time.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/export/export.hpp"
 #include "tools/export/sinks.hpp"
@@ -65,7 +64,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? EXIT_SUCCESS : exporter::kExitUsage;
   }
   if (request.output == "") request.output = std::nullopt;
-  request.progress = isatty(STDERR_FILENO) != 0 ? stderr : nullptr;
+  request.progress = lookout::runtime::OnlyTerminal(stderr);
   lookout::io::CatchStopSignals();
   return exporter::Run(request, std::cerr);
 }

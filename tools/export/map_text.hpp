@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "common/core/utime.hpp"
-#include "common/core/log_time.hpp"
 
 namespace lookout::exporter {
 

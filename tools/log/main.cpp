@@ -1,5 +1,6 @@
 // lookout-log: what is in a log, a part of it, and a damaged one made readable.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +10,7 @@
 #include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/log/commands.hpp"
 
@@ -55,13 +57,14 @@ int main(int argc, char** argv) {
     // --help and --version come here too, with code 0.
     return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
   }
+  std::FILE* const progress = lookout::runtime::OnlyTerminal(stderr);
   try {
     if (info->parsed()) {
-      log::Info(logs, std::cout);
+      log::Info(logs, std::cout, progress);
     } else if (slice->parsed()) {
-      log::Slice(request, std::cout, std::cerr);
+      log::Slice(request, std::cout, std::cerr, progress);
     } else {
-      log::Repair(damaged, mended, force, std::cout, std::cerr);
+      log::Repair(damaged, mended, force, std::cout, std::cerr, progress);
     }
     std::cout.flush();
     if (!std::cout) throw std::runtime_error("standard output could not be written");

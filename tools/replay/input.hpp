@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -35,9 +36,11 @@ struct Inspection {
   std::optional<std::chrono::sys_days> day = {};  // of the first time in each text log in which no sentence tells a date
 };
 
-/// Reads as far as is needed to know what to run. @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the
+/// Reads as far as is needed to know what to run: of logs perhaps all of them.
+/// @param show_share  is told how much is done, 0 to 1; may be empty
+/// @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the
 /// logs do not hold what is needed
-Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request);
+Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request, const std::function<void(double)>& show_share = {});
 
 /// What was read and what was left out.
 struct InputSummary {

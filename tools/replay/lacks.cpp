@@ -70,7 +70,8 @@ std::string PortsText(const OtherPorts& ports) {
     const char* const looks = 2 * seen.num_lidar_packets > seen.num_datagrams ? ", as a lidar sends them"
                               : 2 * seen.num_sentences > seen.num_datagrams   ? ", sentences"
                                                                               : "";
-    text += fmt::format("{}{} ({} {}{})", text.empty() ? "" : ", ", port, seen.num_datagrams, seen.num_datagrams == 1 ? "datagram" : "datagrams", looks);
+    text +=
+        fmt::format("{}{} ({} {}{})", text.empty() ? "" : ", ", port, seen.num_datagrams, seen.num_datagrams == 1 ? "datagram" : "datagrams", looks);
   }
   if (busiest.size() > kMaxPortsNamed) text += fmt::format(" and {} more", busiest.size() - kMaxPortsNamed);
   return text;
@@ -87,18 +88,20 @@ std::vector<std::string> Lacks(const Seen& seen) {
     return lines;
   }
   if (poses.num_placed > 0 && poses.num_by_course == poses.num_placed) {
-    lines.push_back(fmt::format("heading is course over ground in all {} poses that have one (no compass): at rest, adrift and astern it is not where "
-                                "the bow points, and bearings and tracks are turned with it",
-                                poses.num_placed));
+    lines.push_back(
+        fmt::format("heading is course over ground in all {} poses that have one (no compass): at rest, adrift and astern it is not where "
+                    "the bow points, and bearings and tracks are turned with it",
+                    poses.num_placed));
   }
   if (!seen.wants_tracks || seen.num_scans == 0) return lines;
   const auto num_obstacles = seen.num_obstacles_placed + seen.num_obstacles_unplaced;
   if (num_obstacles > 0 && seen.num_obstacles_placed == 0) {
     lines.push_back(fmt::format("position and heading are known, but not at the time of a scan{}", NoPlaceMeans(seen)));
   } else if (static_cast<double>(seen.num_obstacles_unplaced) > kUsualShareWithoutPlace * static_cast<double>(num_obstacles)) {
-    lines.push_back(fmt::format("{} of {} obstacles have no place, as position or heading was not known at their time: while that is so there are no "
-                                "tracks; the guard zone works",
-                                seen.num_obstacles_unplaced, num_obstacles));
+    lines.push_back(
+        fmt::format("{} of {} obstacles have no place, as position or heading was not known at their time: while that is so there are no "
+                    "tracks; the guard zone works",
+                    seen.num_obstacles_unplaced, num_obstacles));
   }
   return lines;
 }

@@ -17,6 +17,7 @@
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/config/text_config.hpp"
+#include "common/core/log_time.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/process.hpp"
@@ -30,7 +31,6 @@
 #include "tools/log/log_output.hpp"
 #include "tools/log/pose_counts.hpp"
 #include "tools/log/run_marks.hpp"
-#include "common/core/log_time.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
 #include "tools/replay/lacks.hpp"
@@ -199,7 +199,10 @@ void Replay(const Options& options) {
       options.output,
       {.force = options.force, .inputs = std::move(config_and_inputs), .tell = [](const std::string& line) { spdlog::warn("{}", line); }});
   const auto start = std::chrono::steady_clock::now();
-  auto inspection = lookout::replay::Inspect(options.inputs, options.request);
+  lookout::runtime::Progress looking("replay", lookout::runtime::OnlyTerminal(stderr));
+  auto inspection = lookout::replay::Inspect(options.inputs, options.request,
+                                             [&looking](double share) { looking.Update(share, [] { return "looking what the logs hold"; }); });
+  looking.Clear();
   inspection.day = options.day;
   auto run_info = RunInfoOf(options, inspection);
   Watched watched;

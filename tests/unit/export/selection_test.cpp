@@ -22,15 +22,6 @@ TEST(Circle, IsLatitudeLongitudeAndRadius) {
   }
 }
 
-TEST(Time, IsACountOfMicrosecondsOrUtc) {
-  EXPECT_EQ(ParseUtimeUs("1700000000000000"), kStartUs);
-  EXPECT_EQ(ParseUtimeUs("2023-11-14T22:13:20Z"), kStartUs);
-  EXPECT_EQ(ParseUtimeUs("2023-11-14T22:13:20.25Z"), kStartUs + 250'000);
-  for (const auto* wrong : {"", "12.5", "yesterday", "2023-11-14", "2023-11-14T22:13:20", "2023-13-14T22:13:20Z", "99999999999999999", "1e15"}) {
-    EXPECT_FALSE(ParseUtimeUs(wrong)) << wrong;
-  }
-}
-
 pose_t PoseWithPlace(std::int64_t utime_us, double latitude_deg, double longitude_deg) {
   pose_t pose{};
   pose.utime_us = utime_us;
@@ -54,6 +45,47 @@ TEST_F(SelectionTest, SpanIsHalfOpenForTablesToo) {
   EXPECT_EQ(Export(request), kExitFailed);
   EXPECT_NE(errors_.find("holds no POSE before 2023-11-14T22:13:20.000000Z"), std::string::npos) << errors_;
   EXPECT_EQ(text_, "");
+}
+
+// "--from 10" once was 10 microseconds after 1970: the whole table came, and no word.
+TEST_F(SelectionTest, SpanIsGivenAsForEveryTool) {
+  for (int i = 0; i < 5; ++i) {
+    pose_t pose = PoseWithPlace(kStartUs + i * 1'000'000, 10.0, 20.0);
+    AddBytesAt(pose.utime_us + 5'000, bus::kPose.name, bus::Encode(pose));
+  }
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out", .force = true};
+  for (const auto* from : {"2.5", "0:02.5", "2023-11-14T22:13:22.5Z", "22:13:22.5Z", "1700000002500000"}) {
+    request.from = from;
+    ASSERT_EQ(Export(request), kExitFine) << from << errors_;
+    EXPECT_EQ(Rows().size(), 2U) << from;
+  }
+  request.to = "3.5";
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 1U);
+  for (const auto* wrong : {"10", "soon", "2023-11-14", "2023-11-13T22:13:22Z", "12345"}) {
+    request.from = wrong;
+    request.to = "";
+    EXPECT_EQ(Export(request), kExitUsage) << wrong;
+    EXPECT_NE(errors_.find("from 2023-11-14T22:13:20.005000Z to 2023-11-14T22:13:24.005000Z"), std::string::npos) << errors_;
+  }
+  request.from = "3";
+  request.to = "2";
+  EXPECT_EQ(Export(request), kExitUsage);
+  EXPECT_NE(errors_.find("--from is not before --to"), std::string::npos) << errors_;
+}
+
+// Live processes that play an old log: its times are those of measurement, the recorder's are those of the day.
+TEST_F(SelectionTest, SpanIsOfTheTimesOfMeasurementWhereTheyAreFarFromThoseOfTheLog) {
+  constexpr std::int64_t kDayUs = 86'400'000'000;
+  for (int i = 0; i < 5; ++i) {
+    AddBytesAt(kStartUs + kDayUs + i * 1'000'000, bus::kPose.name, bus::Encode(PoseWithPlace(kStartUs + i * 1'000'000, 10.0, 20.0)));
+  }
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out", .force = true, .from = "2.5"};
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 2U);
+  request.from = "2023-11-14T22:13:22.5Z";
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 2U);
 }
 
 TEST_F(SelectionTest, CircleLeavesOutRowsThatLieOutsideOrNowhere) {
