@@ -2,7 +2,7 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
+#include <cstddef>
 #include <cstdio>
 #include <functional>
 #include <string>
@@ -33,8 +33,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// To be called at each step, however short: looks at the clock now and then, and says no more often than is useful what part is done and how long
-  /// the rest will take at the speed so far.
+  /// To be called at each step, however short (it reads the clock) or long: says no more often than is useful what part is done and how long the rest
+  /// will take at the speed so far.
   ///
   /// @param share   done so far, 0 to 1
   /// @param remark  asked for when a line is made; stands between the part and the time left: "80 times real time"
@@ -52,7 +52,6 @@ class Progress {
   bool is_terminal_;
   Clock::duration period_;
   std::function<Clock::time_point()> now_;
-  std::int64_t num_calls_ = 0;
   std::size_t num_shown_ = 0;  // characters of the line on the terminal
   Clock::time_point start_;
   Clock::time_point next_;

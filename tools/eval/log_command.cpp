@@ -24,6 +24,7 @@
 #include "tools/export/boat_of_log.hpp"
 #include "tools/export/scans.hpp"
 #include "tools/export/selection.hpp"
+#include "tools/log/pose_counts.hpp"
 
 namespace lookout::eval {
 namespace {
@@ -55,6 +56,7 @@ int EvaluateLog(const LogOptions& options) {
   if (truth) match.emplace(*truth);
   Evaluation evaluation(truth.get(), options.min_num_returns);
   if (!options.true_boat_folder.empty()) evaluation.SetMounting(config::LoadBoat(options.true_boat_folder).T_vessel_lidar);
+  log::PoseCounts poses;
   Machine machine;
   std::int64_t num_incomplete = 0;
   messages::ScanCollector collector([](const messages::ScanMessages& scan) { return messages::HasAllParts(scan.obstacles); },
@@ -89,9 +91,12 @@ int EvaluateLog(const LogOptions& options) {
     } else if (truth && channel == bus::kRunInfo.name) {
       is_taken = exporter::TakeRunInfo(event->bytes, boat) == exporter::Taken::kOk;
       if (boat && options.true_boat_folder.empty()) evaluation.SetMounting(boat->T_vessel_lidar);
-    } else if (truth && channel == bus::kPose.name) {
-      is_taken = Take<pose_t>(*event, evaluation);
-      if (is_taken) Take<pose_t>(*event, *match);
+    } else if (channel == bus::kPose.name) {
+      is_taken = Take<pose_t>(*event, poses);
+      if (is_taken && match) {
+        Take<pose_t>(*event, evaluation);
+        Take<pose_t>(*event, *match);
+      }
     }
     // What it cannot decode of the channels above is counted there.
     if (tracks && !tracks->Add(channel, event->bytes) && channel == kTracksChannel) is_taken = false;
@@ -107,6 +112,9 @@ int EvaluateLog(const LogOptions& options) {
 
   if (const auto coverage = match ? match->Coverage() : ""; !coverage.empty()) std::cout << coverage << "\n\n";
   PrintObstacles(std::cout, evaluation, truth != nullptr);
+  if (const auto why = poses.WhyNotPlaced(); !why.empty() && !evaluation.num_by_status.contains(obstacle_t::STATUS_OK)) {
+    std::cout << "no obstacle has a place on the earth, and there are no tracks, as " << why << "\n\n";
+  }
   if (truth) {
     PrintAccuracy(std::cout, evaluation);
     PrintSeen(std::cout, evaluation);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -18,6 +19,7 @@
 #include "common/core/log_time.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/eval/figures.hpp"
 #include "tools/eval/track_assignment.hpp"
@@ -276,8 +278,12 @@ int EvaluateAutoferry(const FerryOptions& options) {
   std::vector<std::string> trackers;
   std::map<std::pair<std::string, std::string>, Sum> sums;  // by group and tracker
   const std::vector<std::string> groups{"open water", "channel", "all"};
-  for (const auto& scenario : ListScenarios(options.folder)) {
+  const auto scenarios = ListScenarios(options.folder);
+  runtime::Progress progress("lookout-eval", runtime::OnlyTerminal(stderr));
+  double num_done = 0.0;
+  for (const auto& scenario : scenarios) {
     io::ThrowIfStopAsked();
+    progress.Update(num_done++ / static_cast<double>(scenarios.size()), [&] { return fmt::format("scenario {}", scenario.number); });
     const auto scans = importer::ReadFerryScans(scenario.scans);
     const auto truth = importer::ReadFerryTruth(scenario.truth);
     const auto has_truth = [&truth](const importer::FerryScan& scan) { return !TruthAt(truth, scan.utime_us).empty(); };
@@ -298,6 +304,7 @@ int EvaluateAutoferry(const FerryOptions& options) {
       }
     }
   }
+  progress.Clear();
   for (const auto& group : groups) {
     for (const auto& tracker : trackers) {
       const auto sum = sums.find({group, tracker});

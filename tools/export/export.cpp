@@ -108,8 +108,8 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
   if (request.table == "map" && request.format == "geojson") return MakeMapSink(true);
   if (IsMap(request)) {
     const Scans scans{request.scan || request.is_last_scan, request.scan};
-    if (request.table == "obstacles") return MakeObstacleMapSink(MakeMapWriter(request.format), request.near, scans);
-    return MakeTrackMapSink(MakeMapWriter(request.format), request.table == "tracks", request.near, scans);
+    if (request.table == "obstacles") return MakeObstacleMapSink(MakeMapWriter(request.format, request.table), request.near, scans);
+    return MakeTrackMapSink(MakeMapWriter(request.format, request.table), request.table == "tracks", request.near, scans);
   }
   if (request.format == "ply") return MakePlySink(request.scan);
   if (request.format == "svg" && IsOneOf(request.table, {"pose", "tracks"})) return MakeTrackSvgSink(request.table == "tracks");

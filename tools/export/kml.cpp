@@ -27,8 +27,9 @@ constexpr std::array kKmlStyles{KmlStyle{"own_track", "ffb27200", 3, "00000000",
                                 KmlStyle{"way", "ff739e00", 2, "00000000", 0.0},       KmlStyle{"waterline", "ff7aa0b8", 3, "00000000", 0.0},
                                 KmlStyle{"alert", "ff0000c0", 2, "00000000", 0.8}};
 
-// The fields of each sort of feature with their types, so that numbers are read as numbers; `what` is one of each. Times in microseconds are whole
-// numbers beyond 32 bits, which a double holds exactly: KML has no longer whole number.
+// The fields of each sort of feature of a table with their types, so that numbers are read as numbers. Only those of the table: GDAL gives every
+// feature the fields of all schemas. Times in microseconds are whole numbers beyond 32 bits, which a double holds exactly: KML has no longer whole
+// number.
 struct KmlField {
   std::string_view type;
   std::string_view name;
@@ -37,75 +38,77 @@ struct KmlSchema {
   std::string_view what;
   std::vector<KmlField> fields;
 };
-const std::vector<KmlSchema>& Schemas() {
-  const KmlField scan_seq{"int", "scan_seq"};
-  const KmlField obstacle_id{"int", "obstacle_id"};
-  const KmlField track_id{"int", "track_id"};
-  const KmlField confidence{"string", "confidence"};
+std::vector<KmlSchema> SchemasOf(std::string_view table) {
   const KmlField status{"string", "status"};
   const KmlField kind{"string", "kind"};
-  const KmlField range_m{"double", "range_m"};
+  const KmlSchema own_track{"own_track", {status}};
+  if (table == "obstacles") {
+    const KmlField scan_seq{"int", "scan_seq"};
+    const KmlField obstacle_id{"int", "obstacle_id"};
+    const KmlField confidence{"string", "confidence"};
+    const std::vector<KmlField> few{scan_seq, obstacle_id, confidence, kind};
+    return {{"obstacle",
+             {scan_seq,
+              {"double", "scan_utime_us"},
+              {"double", "utime_us"},
+              obstacle_id,
+              confidence,
+              kind,
+              {"double", "thing_probability"},
+              {"double", "range_m"},
+              {"double", "bearing_deg"},
+              {"double", "length_m"},
+              {"double", "width_m"},
+              {"double", "height_m"},
+              {"double", "top_above_water_m"},
+              {"int", "num_points"},
+              {"double", "cov_ee_m2"},
+              {"double", "cov_en_m2"},
+              {"double", "cov_nn_m2"}}},
+            {"outline", few},
+            {"waterline", few},
+            {"ellipse", few}};
+  }
+  if (table == "pose") return {own_track};
+  const KmlField track_id{"int", "track_id"};
   const KmlField bearing_deg{"double", "bearing_deg"};
-  const KmlField length_m{"double", "length_m"};
-  const KmlField width_m{"double", "width_m"};
-  const KmlField top_above_water_m{"double", "top_above_water_m"};
   const KmlField cpa_m{"double", "cpa_m"};
   const KmlField tcpa_s{"double", "tcpa_s"};
-  const KmlField cov_ee_m2{"double", "cov_ee_m2"};
-  const KmlField cov_en_m2{"double", "cov_en_m2"};
-  const KmlField cov_nn_m2{"double", "cov_nn_m2"};
-  static const std::vector<KmlSchema> kSchemas{
-      {"own_track", {status}},
-      {"own_place", {}},
-      {"obstacle",
-       {scan_seq,
-        {"double", "scan_utime_us"},
-        {"double", "utime_us"},
-        obstacle_id,
-        confidence,
-        kind,
-        {"double", "thing_probability"},
-        range_m,
-        bearing_deg,
-        length_m,
-        width_m,
-        {"double", "height_m"},
-        top_above_water_m,
-        {"int", "num_points"},
-        cov_ee_m2,
-        cov_en_m2,
-        cov_nn_m2}},
-      {"track",
-       {track_id,
-        status,
-        kind,
-        {"double", "first_utime_us"},
-        {"double", "seen_utime_us"},
-        {"double", "existence_probability"},
-        {"double", "moving_probability"},
-        {"double", "speed_mps"},
-        {"double", "course_deg"},
-        length_m,
-        width_m,
-        top_above_water_m,
-        {"double", "seen_share"},
-        range_m,
-        bearing_deg,
-        cpa_m,
-        tcpa_s,
-        cov_ee_m2,
-        cov_en_m2,
-        cov_nn_m2}},
-      {"outline", {scan_seq, obstacle_id, track_id, confidence, status, kind}},
-      {"ellipse", {scan_seq, obstacle_id, track_id, confidence, status, kind}},
-      {"waterline", {scan_seq, obstacle_id, confidence, kind}},
-      {"way", {track_id, status, kind}},
-      {"alert", {{"int", "alert_id"}, {"string", "cause"}, {"string", "level"}, track_id, {"double", "distance_m"}, bearing_deg, cpa_m, tcpa_s}}};
-  return kSchemas;
+  const std::vector<KmlField> few{track_id, status, kind};
+  return {own_track,
+          {"own_place", {}},
+          {"track",
+           {track_id,
+            status,
+            kind,
+            {"double", "first_utime_us"},
+            {"double", "seen_utime_us"},
+            {"double", "existence_probability"},
+            {"double", "moving_probability"},
+            {"double", "speed_mps"},
+            {"double", "course_deg"},
+            {"double", "length_m"},
+            {"double", "width_m"},
+            {"double", "top_above_water_m"},
+            {"double", "seen_share"},
+            {"double", "range_m"},
+            bearing_deg,
+            cpa_m,
+            tcpa_s,
+            {"double", "cov_ee_m2"},
+            {"double", "cov_en_m2"},
+            {"double", "cov_nn_m2"}}},
+          {"outline", few},
+          {"ellipse", few},
+          {"way", few},
+          {"waterline", {}},
+          {"alert", {{"int", "alert_id"}, {"string", "cause"}, {"string", "level"}, track_id, {"double", "distance_m"}, bearing_deg, cpa_m, tcpa_s}}};
 }
 
 class KmlWriter final : public MapWriter {
  public:
+  explicit KmlWriter(std::string_view table) : schemas_(SchemasOf(table)) {}
+
   void Begin(std::string& text) override {
     text +=
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -116,7 +119,7 @@ class KmlWriter final : public MapWriter {
                      "<LineStyle><color>{}</color><width>{}</width></LineStyle><PolyStyle><color>{}</color></PolyStyle></Style>\n",
                      what, line, label_scale, line, width, area);
     }
-    for (const auto& [what, fields] : Schemas()) {
+    for (const auto& [what, fields] : schemas_) {
       fmt::format_to(std::back_inserter(text), "<Schema name=\"{0}\" id=\"fields_{0}\"><SimpleField type=\"string\" name=\"what\"/>", what);
       for (const auto& [type, name] : fields) fmt::format_to(std::back_inserter(text), "<SimpleField type=\"{}\" name=\"{}\"/>", type, name);
       text += "</Schema>\n";
@@ -201,10 +204,12 @@ class KmlWriter final : public MapWriter {
     }
     if (!is_one) text += "</MultiGeometry>";
   }
+
+  std::vector<KmlSchema> schemas_;
 };
 
 }  // namespace
 
-std::unique_ptr<MapWriter> MakeKmlWriter() { return std::make_unique<KmlWriter>(); }
+std::unique_ptr<MapWriter> MakeKmlWriter(std::string_view table) { return std::make_unique<KmlWriter>(table); }
 
 }  // namespace lookout::exporter

@@ -129,9 +129,9 @@ class ObstacleMapSink final : public Sink {
 
 }  // namespace
 
-std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format) {
+std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format, std::string_view table) {
   if (format == "geojson") return MakeGeoJsonWriter();
-  if (format == "kml") return MakeKmlWriter();
+  if (format == "kml") return MakeKmlWriter(table);
   return format == "gpx" ? MakeGpxWriter() : nullptr;
 }
 

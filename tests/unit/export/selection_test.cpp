@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lookout/tracks_t.hpp"
 #include "tests/unit/export/export_logs.hpp"
 
 namespace lookout::exporter {
@@ -86,6 +87,39 @@ TEST_F(SelectionTest, SpanIsOfTheTimesOfMeasurementWhereTheyAreFarFromThoseOfThe
   request.from = "2023-11-14T22:13:22.5Z";
   ASSERT_EQ(Export(request), kExitFine) << errors_;
   EXPECT_EQ(Rows().size(), 2U);
+}
+
+// Tables and maps of a log without a position once were empty, and nothing said why.
+TEST_F(SelectionTest, SaysWhyThereAreNoTracksAndNoPlaces) {
+  obstacles_t obstacles{};
+  obstacles.utime_us = kStartUs;
+  obstacles.num_obstacles = 1;
+  obstacles.obstacles.resize(1);
+  obstacles.obstacles[0].status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
+  Add(bus::kObstacles, obstacles);
+  tracks_t tracks{};
+  tracks.utime_us = tracks.end_utime_us = kStartUs;
+  Add(bus::kTracks, tracks);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("lookout-export: there are no tracks, as there is no POSE: "), std::string::npos) << errors_;
+  ASSERT_EQ(Export("obstacles"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("lookout-export: no obstacle has a place on the earth, as there is no POSE: "), std::string::npos) << errors_;
+  Export("obstacles", "geojson");
+  EXPECT_NE(errors_.find("as there is no POSE"), std::string::npos) << errors_;
+  writer_ = nullptr;
+  std::filesystem::remove(log_);
+  Add(bus::kTracks, tracks);
+  auto pose = PoseWithPlace(kStartUs, 10.0, 20.0);
+  pose.status = pose_t::STATUS_NO_HEADING;
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("as POSE knows no heading (1 of 1 messages)"), std::string::npos) << errors_;
+  pose.status = pose_t::STATUS_OK;
+  std::filesystem::remove(log_);
+  Add(bus::kTracks, tracks);
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  EXPECT_EQ(errors_, "") << "nothing was there";
 }
 
 TEST_F(SelectionTest, CircleLeavesOutRowsThatLieOutsideOrNowhere) {
