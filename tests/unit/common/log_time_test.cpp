@@ -59,6 +59,7 @@ TEST(LogTime, IsRefusedWhereItIsUnclear) {
                             "10:00.5Z",
                             "2026-08-29T10:00:00+02:00",
                             "99999999999999999999",
+                            "1787997610250",
                             "9999999999999999",
                             "1787997610250000.5"}) {
     EXPECT_FALSE(Found(wrong)) << wrong;
@@ -69,7 +70,7 @@ TEST(LogTime, IsRefusedWhereItIsUnclear) {
 
 TEST(LogTime, IsRefusedOutsideOfTheLog) {
   for (const auto* outside :
-       {"92", "1:32", "2:00:00", "2026-08-29T09:59:58Z", "2026-08-28T10:00:10Z", "11:00:00Z", "1787997610", "1788083000000000", "1787997610250"}) {
+       {"92", "1:32", "2:00:00", "2026-08-29T09:59:58Z", "2026-08-28T10:00:10Z", "11:00:00Z", "1787997610", "1788083000000000"}) {
     EXPECT_FALSE(Found(outside)) << outside;
     EXPECT_NE(FaultOf(outside).find("lies outside of the log, which goes from 2026-08-29T10:00:00.250000Z"), std::string::npos) << FaultOf(outside);
   }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::int64_t kScanPeriodUs = 100'000;
 
-// Ten scans a second of 90 columns of two rings, 40 degrees of which see a wall all along `wall_m`.
+// Ten scans a second of 900 columns of two rings, all round of which a wall stands at `wall_m`.
 messages::ScanMessages ScanOf(int index, double wall_m, std::int64_t shift_us = 0) {
   messages::ScanMessages messages;
   lidar_scan_t scan{};
@@ -23,14 +23,14 @@ messages::ScanMessages ScanOf(int index, double wall_m, std::int64_t shift_us = 
   scan.time_offset_ns = {0, 2304};
   scan.origin_height_m = {0.0F, 0.0F};
   scan.num_returns = 1;
-  scan.num_columns = 90;
+  scan.num_columns = 900;
   for (int column = 0; column < scan.num_columns; ++column) {
-    scan.azimuth_rad.push_back(static_cast<float>(column) * 0.0698F);
-    scan.time_ns.push_back(column * 1'111'000);
+    scan.azimuth_rad.push_back(static_cast<float>(column) * 0.00698F);
+    scan.time_ns.push_back(column * 111'000);
   }
-  scan.num_cells = 180;
-  scan.range.assign(180, static_cast<std::int16_t>(wall_m / scan.range_unit_m));
-  scan.reflectivity.assign(180, 7);
+  scan.num_cells = 1800;
+  scan.range.assign(1800, static_cast<std::int16_t>(wall_m / scan.range_unit_m));
+  scan.reflectivity.assign(1800, 7);
   messages.utime_us = scan.utime_us;
   messages.scans[0] = scan;
   return messages;
@@ -48,7 +48,7 @@ Truth TruthOfAWall(bool has_places = true) {
         const Eigen::Vector3d p_m =
             10.0 * BeamDirection(static_cast<double>(scan.azimuth_rad[k]), static_cast<double>(scan.elevation_rad[static_cast<std::size_t>(ring)]));
         const Eigen::Vector3f place = has_places ? Eigen::Vector3f(p_m.cast<float>()) : Eigen::Vector3f::Constant(std::nanf(""));
-        returns.push_back({scan.utime_us + column * 1111 + (ring == 0 ? 0 : 2), ring, 0, 1, place});
+        returns.push_back({scan.utime_us + column * 111 + (ring == 0 ? 0 : 2), ring, 0, 1, place});
       }
     }
     truth.AddReturns(std::move(returns));
@@ -91,7 +91,7 @@ TEST(TruthMatch, RefusesATruthOfAnotherTime) {
 TEST(TruthMatch, RefusesATruthInWhichReturnsLieElsewhere) {
   const auto truth = TruthOfAWall();
   const auto fault = Compare(truth, 0, 10, 14.0).fault;
-  EXPECT_NE(fault.find("not of one run: of 1800 returns of the log 100.0 % are in the truth, 0.0 % at their distance"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("not of one run: of 18000 returns of the log 100.0 % are in the truth, 0.0 % at their distance"), std::string::npos) << fault;
   // Of another beginning, so that no shot is at the time of one of the truth.
   EXPECT_NE(Compare(truth, 0, 10, 14.0, 500).fault.find("0.0 % at their distance"), std::string::npos);
 }
