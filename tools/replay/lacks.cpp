@@ -84,7 +84,7 @@ std::vector<std::string> Lacks(const Seen& seen) {
   const auto why = poses.WhyNotPlaced();
   if (!why.empty() && (seen.wants_poses || seen.wants_tracks)) {
     const bool has_no_sentence = seen.wants_poses && seen.num_sentences == 0;
-    lines.push_back(fmt::format("no position and heading, as {}{}", has_no_sentence ? NoSentences(seen) : why, NoPlaceMeans(seen)));
+    lines.push_back(fmt::format("nothing has a place on the earth, as {}{}", has_no_sentence ? NoSentences(seen) : why, NoPlaceMeans(seen)));
     return lines;
   }
   if (poses.num_placed > 0 && poses.num_by_course == poses.num_placed) {

@@ -39,10 +39,10 @@ TEST(Lacks, NamesWhatIsMissingWithoutAPositionAndWhatWorksAllTheSame) {
   auto seen = Whole();
   seen.poses = {};
   for (int i = 0; i < 50; ++i) seen.poses.Add(PoseOf(pose_t::STATUS_NO_POSITION));
-  EXPECT_EQ(
-      Said(seen),
-      "no position and heading, as POSE knows no position (50 of 50 messages): obstacles are known in the vessel frame alone (range and bearing), "
-      "there are no tracks and no closest approach; the guard zone works\n");
+  EXPECT_EQ(Said(seen),
+            "nothing has a place on the earth, as POSE knows no position (50 of 50 messages): obstacles are known in the vessel frame alone (range "
+            "and bearing), "
+            "there are no tracks and no closest approach; the guard zone works\n");
   seen.poses = {};
   for (int i = 0; i < 50; ++i) seen.poses.Add(PoseOf(pose_t::STATUS_NO_HEADING));
   EXPECT_NE(Said(seen).find("POSE knows no heading (50 of 50 messages)"), std::string::npos) << Said(seen);
