@@ -90,7 +90,7 @@ std::vector<std::string> Lacks(const Seen& seen) {
   if (poses.num_placed > 0 && poses.num_by_course == poses.num_placed) {
     lines.push_back(
         fmt::format("heading is course over ground in all {} poses that have one (no compass): at rest, adrift and astern it is not where "
-                    "the bow points, and bearings and tracks are turned with it",
+                    "the bow points",
                     poses.num_placed));
   }
   if (!seen.wants_tracks || seen.num_scans == 0) return lines;
