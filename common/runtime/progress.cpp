@@ -13,9 +13,8 @@ namespace lookout::runtime {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalPeriod(500);
-// A step is a matter of microseconds to a few milliseconds: the clock need not be read for each.
-constexpr std::int64_t kCallsPerLook = 64;
 constexpr std::size_t kUnknownColumns = 80;
+constexpr double kLeastToForetell = 0.001;
 
 // "3 h 12 min", "4 min 10 s", "7 s"
 std::string DurationText(double duration_s) {
@@ -27,7 +26,9 @@ std::string DurationText(double duration_s) {
 
 }  // namespace
 
-Progress::Progress(std::string program, std::FILE* out) : Progress(std::move(program), out, out != nullptr && isatty(fileno(out)) != 0) {}
+std::FILE* OnlyTerminal(std::FILE* out) { return out != nullptr && isatty(fileno(out)) != 0 ? out : nullptr; }
+
+Progress::Progress(std::string program, std::FILE* out) : Progress(std::move(program), out, OnlyTerminal(out) != nullptr) {}
 
 Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal, std::chrono::milliseconds line_period,
                    std::function<Clock::time_point()> now)
@@ -44,13 +45,17 @@ Progress::Progress(std::string program, std::FILE* out, bool as_on_terminal, std
 Progress::~Progress() { Clear(); }
 
 void Progress::Update(double share, const std::function<std::string()>& remark) {
-  if (out_ == nullptr || ++num_calls_ % kCallsPerLook != 0) return;
+  if (out_ == nullptr) return;
   const auto now = now_();
   if (now < next_) return;
   next_ = now + period_;
-  const double done = std::clamp(share, 1e-6, 1.0);
+  const double done = std::clamp(share, 0.0, 1.0);
+  auto line = fmt::format("{}: {:.0f} %", program_, 100.0 * done);
+  if (remark) line += ", " + remark();
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  Show(fmt::format("{}: {:.0f} %, {}{} left", program_, 100.0 * done, remark ? remark() + ", " : "", DurationText(elapsed_s * (1.0 - done) / done)));
+  // Before anything is done nobody knows.
+  if (done >= kLeastToForetell) line += fmt::format(", {} left", DurationText(elapsed_s * (1.0 - done) / done));
+  Show(std::move(line));
 }
 
 void Progress::Show(std::string line) {

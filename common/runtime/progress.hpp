@@ -2,12 +2,17 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
+#include <cstddef>
 #include <cstdio>
 #include <functional>
 #include <string>
 
 namespace lookout::runtime {
+
+/// For tools that tell how far they are to people alone, and nothing to what reads their standard error.
+///
+/// @return `out` where it is a terminal; else nullptr, with which Progress is silent
+std::FILE* OnlyTerminal(std::FILE* out);
 
 class Progress {
  public:
@@ -28,8 +33,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// To be called at each step, however short: looks at the clock now and then, and says no more often than is useful what part is done and how long
-  /// the rest will take at the speed so far.
+  /// To be called at each step, however short (it reads the clock) or long: says no more often than is useful what part is done and how long the rest
+  /// will take at the speed so far.
   ///
   /// @param share   done so far, 0 to 1
   /// @param remark  asked for when a line is made; stands between the part and the time left: "80 times real time"
@@ -47,7 +52,6 @@ class Progress {
   bool is_terminal_;
   Clock::duration period_;
   std::function<Clock::time_point()> now_;
-  std::int64_t num_calls_ = 0;
   std::size_t num_shown_ = 0;  // characters of the line on the terminal
   Clock::time_point start_;
   Clock::time_point next_;

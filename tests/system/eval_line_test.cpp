@@ -95,6 +95,42 @@ TEST_F(EvalLine, AutoferryNeedsAFolderOfScenarios) {
   EXPECT_NE(ReadFile(Path("page.md")).find("| open water | nearest neighbour | 2 |"), std::string::npos) << ReadFile(Path("page.md"));
 }
 
+TEST_F(EvalLine, ATruthOfAnotherScenarioOfAutoferryIsRefused) {
+  fs::create_directory(Path("ferry"));
+  WriteFile(Path("ferry") + "/scenario7_lidar_detections.json",
+            R"([{"ownshipPosition":[0,0],"time":1,"measurement":[10,0]},{"ownshipPosition":[0,0],"time":1.5,"measurement":[10,0]}])");
+  WriteFile(Path("ferry") + "/scenario7_ground_truth.json", R"([[{"targetID":1,"position":[10,0,0],"time":100}]])");
+  const auto result = Run({"--autoferry", Path("ferry")});
+  EXPECT_EQ(result.exit_code, 1) << result.output;
+  EXPECT_NE(result.output.find("are not of one run: no scan lies in the time of the truth"), std::string::npos) << result.output;
+}
+
+// The truth of another run once gave tables, exit code 0 and a MOTA of -106 %.
+TEST_F(EvalLine, ATruthOfAnotherRunIsRefused) {
+  const auto simulate = [&](const std::string& seed, const std::string& seconds) {
+    const auto run = RunProgram({Bin("sim"), "--config", kCatabotConfig.string(), "--scene", "lake", "--seed", seed, "--seconds", seconds, "--pcap",
+                                 Path(seed + ".pcap"), "--truth", Path(seed)},
+                                Path("out"));
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+  };
+  simulate("1", "3");
+  simulate("2", "3");
+  const auto replay = RunProgram({Bin("replay"), "--config", kCatabotConfig.string(), "--in", Path("1.pcap"), "--out", Path("log")}, Path("out"));
+  ASSERT_EQ(replay.exit_code, 0) << replay.output;
+  const auto own = RunProgram({Bin("eval"), "--in", Path("log"), "--truth", Path("1")}, Path("out"));
+  EXPECT_EQ(own.exit_code, 0) << own.output;
+  EXPECT_EQ(own.output.find("the log covers"), std::string::npos) << own.output;
+  const auto other = RunProgram({Bin("eval"), "--in", Path("log"), "--truth", Path("2")}, Path("out"));
+  EXPECT_EQ(other.exit_code, 1) << other.output;
+  EXPECT_NE(other.output.find("are not of one run: of "), std::string::npos) << other.output;
+  EXPECT_EQ(other.output.find("MOTA"), std::string::npos) << other.output;
+  const auto slice = RunProgram({Bin("log"), "slice", "--in", Path("log"), "--out", Path("part"), "--from", "1", "--to", "2"}, Path("out"));
+  ASSERT_EQ(slice.exit_code, 0) << slice.output;
+  const auto part = RunProgram({Bin("eval"), "--in", Path("part"), "--truth", Path("1")}, Path("out"));
+  EXPECT_EQ(part.exit_code, 0) << part.output;
+  EXPECT_NE(part.output.find("s of the 3.0 s of the truth"), std::string::npos) << part.output;
+}
+
 TEST_F(EvalLine, SeedsOfTuningCanBeLookedAtWithoutMakingATable) {
   const std::vector<std::string> line{"--tuning", "--scenes", "sparse", "--methods", "ours", "--seeds", "1", "--seconds", "0.3"};
   EXPECT_EQ(Run(line).exit_code, 0);

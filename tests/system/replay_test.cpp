@@ -309,6 +309,21 @@ TEST_F(Replay, OfALogThatWasCutAndHoldsNoNavigationGivesItsObstaclesAllTheSame) 
   EXPECT_EQ(again["OBSTACLES"].size(), again["SEGMENTS"].size()) << result.output;
 }
 
+// A replay of packets of another port once ended with counters alone.
+TEST_F(Replay, SaysWhatItsResultLacksAndWhy) {
+  MakeDay();
+  EXPECT_EQ(ReplayTo(Path("sim.pcap"), "whole").output.find("no lidar packet"), std::string::npos);
+  fs::copy(config_, Path("other"));
+  std::ofstream(Path("other/vlp16.txtpb"), std::ios::app) << "\ndata_port: 2399\n";
+  const auto result = ReplayWith(Path("other"), Path("sim.pcap"), "part");
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_NE(result.output.find("no lidar packet came to port 2399 (data_port of vlp16.txtpb): no scans, segments, obstacles, tracks and alerts are "
+                               "computed; datagrams came to other ports: 2368 ("),
+            std::string::npos)
+      << result.output;
+  EXPECT_NE(result.output.find("as a lidar sends them); set data_port to 2368"), std::string::npos) << result.output;
+}
+
 TEST_F(Replay, RefusesAnOutputThatExistsUnlessItIsForced) {
   MakeDay();
   std::ofstream(Path("old")) << "another recording";

@@ -5,17 +5,20 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <ostream>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
+#include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
+#include "common/runtime/progress.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
-#include "tools/log/time_text.hpp"
 #include "tools/log/watch_alerts.hpp"
 
 namespace lookout::diff {
@@ -41,8 +44,10 @@ struct ChannelResult {
 
 // One log, and where the events of each channel stand.
 struct IndexedLog {
-  explicit IndexedLog(const std::filesystem::path& file) : reader(file) {
+  /// @param show  is told where it reads
+  IndexedLog(const std::filesystem::path& file, const std::function<void(std::int64_t position_bytes)>& show) : reader(file) {
     for (std::int64_t number = 0; const auto event = reader.Next(); ++number) {
+      show(reader.position_bytes());
       if (log::IsWatchAlert(event->channel, event->bytes)) {
         ++num_watch_alerts;
         continue;
@@ -83,13 +88,16 @@ constexpr int kMaxSearchesInVain = 4;
 // The messages of one channel in both logs, in their order.
 class ChannelComparison {
  public:
-  ChannelComparison(const std::string& channel, const Tolerances& tolerances, IndexedLog& a, IndexedLog& b)
-      : tolerances_(tolerances), a_(a, channel), b_(b, channel) {}
+  /// @param show  is told how many messages of A are compared
+  ChannelComparison(const std::string& channel, const Tolerances& tolerances, IndexedLog& a, IndexedLog& b,
+                    const std::function<void(std::int64_t num_done)>& show)
+      : tolerances_(tolerances), a_(a, channel), b_(b, channel), show_(show) {}
 
   ChannelResult Compare() {
     result_.num_a = a_.NumLeft();
     result_.num_b = b_.NumLeft();
     while (a_.NumLeft() > 0 && b_.NumLeft() > 0) {
+      show_(static_cast<std::int64_t>(a_.next));
       const auto event_a = a_.Read(0);
       const auto event_b = b_.Read(0);
       auto difference = CompareMessages(tolerances_, event_a.bytes, event_b.bytes);
@@ -170,13 +178,14 @@ class ChannelComparison {
   const Tolerances& tolerances_;
   Side a_;
   Side b_;
+  const std::function<void(std::int64_t num_done)>& show_;
   ChannelResult result_;
   int num_in_vain_ = 0;
 };
 
 std::string FirstText(const FirstDifference& first) {
   const auto& difference = first.difference;
-  return fmt::format("message {} at {}: {}{}", first.index, log::TimeText(first.time), difference.field,
+  return fmt::format("message {} at {}: {}{}", first.index, TimeText(first.time), difference.field,
                      difference.a.empty() && difference.b.empty() ? "" : ": " + difference.a + " | " + difference.b);
 }
 
@@ -228,8 +237,21 @@ class Cuts {
 };
 
 int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
-  IndexedLog a(request.a);
-  IndexedLog b(request.b);
+  runtime::Progress progress("lookout-diff", request.progress);
+  // Reading both is about as long as comparing them.
+  std::int64_t total_bytes = 1;
+  for (const auto* file : {&request.a, &request.b}) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(*file, error);
+    total_bytes += error ? 0 : static_cast<std::int64_t>(size);
+  }
+  const auto show_read = [&](std::int64_t done_bytes) {
+    progress.Update(0.5 * static_cast<double>(done_bytes) / static_cast<double>(total_bytes), [] { return "reading"; });
+  };
+  IndexedLog a(request.a, show_read);
+  const auto size_a = a.reader.size_bytes();
+  IndexedLog b(request.b, [&](std::int64_t done_bytes) { show_read(size_a + done_bytes); });
+  progress.Clear();
   for (const auto& [log, file] : {std::pair(&a, &request.a), std::pair(&b, &request.b)}) {
     if (log->num_damaged > 0) errors << fmt::format("{}: {} damaged stretches were skipped\n", file->string(), log->num_damaged);
   }
@@ -255,11 +277,20 @@ int Compare(const Request& request, std::ostream& out, std::ostream& errors) {
   std::int64_t num_different = 0;
   std::int64_t num_messages = 0;
   Cuts cuts(a, b);
+  std::int64_t num_compared = 0;
+  std::int64_t num_all = 1;
+  for (const auto& [channel, places] : a.places) num_all += channels.contains(channel) ? static_cast<std::int64_t>(places.size()) : 0;
+  const auto show_compared = [&](std::int64_t num_done) {
+    progress.Update(0.5 + 0.5 * static_cast<double>(num_compared + num_done) / static_cast<double>(num_all), [] { return "comparing"; });
+  };
+  const std::function<void(std::int64_t)> show = show_compared;
   out << fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>9}  first difference\n", "channel", "A", "B", "differ", "only_A", "only_B");
   for (const auto& channel : channels) {
     const auto own = request.channel_tolerances.find(channel);
     const auto& tolerances = own == request.channel_tolerances.end() ? request.tolerances : own->second;
-    const auto result = ChannelComparison(channel, tolerances, a, b).Compare();
+    const auto result = ChannelComparison(channel, tolerances, a, b, show).Compare();
+    num_compared += result.num_a;
+    progress.Clear();  // lines of the table may go to the same terminal
     num_messages += std::max(result.num_a, result.num_b);
     cuts.Add(Printable(channel), result);
     if (result.first) ++num_different;

@@ -1,6 +1,7 @@
 // Two logs, message by message.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <iosfwd>
 #include <map>
@@ -21,6 +22,7 @@ struct Request {
   std::vector<std::string> channels;                     // empty = all but HEALTH, RUN_INFO and LCM_SELF_TEST
   Tolerances tolerances;                                 // on every channel
   std::map<std::string, Tolerances> channel_tolerances;  // instead of `tolerances`
+  std::FILE* progress = nullptr;                         // for people (runtime::OnlyTerminal); nullptr: silent
 };
 
 /// Takes "FIELD=VALUE" or "CHANNEL:FIELD=VALUE" into `request`, after all of the former.

@@ -1,11 +1,13 @@
 // Two logs in, what differs out.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <string>
 #include <vector>
 
 #include "common/core/printable.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/diff/diff.hpp"
 
@@ -41,6 +43,7 @@ int main(int argc, char** argv) {
     std::cerr << lookout::PrintableLines(error.what()) << "\n";
     return diff::kExitUnreadable;
   }
+  request.progress = lookout::runtime::OnlyTerminal(stderr);
   const int code = diff::Run(request, std::cout, std::cerr);
   std::cout.flush();
   if (!std::cout) {

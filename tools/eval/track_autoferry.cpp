@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -15,8 +16,10 @@
 
 #include "common/bus/channels.hpp"
 #include "common/bus/decode.hpp"
+#include "common/core/log_time.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/eval/figures.hpp"
 #include "tools/eval/track_assignment.hpp"
@@ -275,10 +278,20 @@ int EvaluateAutoferry(const FerryOptions& options) {
   std::vector<std::string> trackers;
   std::map<std::pair<std::string, std::string>, Sum> sums;  // by group and tracker
   const std::vector<std::string> groups{"open water", "channel", "all"};
-  for (const auto& scenario : ListScenarios(options.folder)) {
+  const auto scenarios = ListScenarios(options.folder);
+  runtime::Progress progress("lookout-eval", runtime::OnlyTerminal(stderr));
+  double num_done = 0.0;
+  for (const auto& scenario : scenarios) {
     io::ThrowIfStopAsked();
+    progress.Update(num_done++ / static_cast<double>(scenarios.size()), [&] { return fmt::format("scenario {}", scenario.number); });
     const auto scans = importer::ReadFerryScans(scenario.scans);
     const auto truth = importer::ReadFerryTruth(scenario.truth);
+    const auto has_truth = [&truth](const importer::FerryScan& scan) { return !TruthAt(truth, scan.utime_us).empty(); };
+    if (std::ranges::none_of(scans, has_truth)) {
+      throw std::runtime_error(fmt::format(
+          "{} and {} are not of one run: no scan lies in the time of the truth; the scans go {}", scenario.scans.string(), scenario.truth.string(),
+          SpanText({Utime(std::chrono::microseconds(scans.front().utime_us)), Utime(std::chrono::microseconds(scans.back().utime_us))})));
+    }
     trackers.clear();
     for (const auto& [tracker, tracks] : TrackFerry(config_folder, scans, MakeTrackers())) {
       trackers.push_back(tracker);
@@ -291,6 +304,7 @@ int EvaluateAutoferry(const FerryOptions& options) {
       }
     }
   }
+  progress.Clear();
   for (const auto& group : groups) {
     for (const auto& tracker : trackers) {
       const auto sum = sums.find({group, tracker});

@@ -57,7 +57,8 @@ std::vector<TrackRow> ScoreRun(const fs::path& config_folder, const std::string&
   run->Finish();
   if (run->num_scans() == 0) throw std::runtime_error(scene + ": no whole scan with a known position");
   if (!(run->JoinedShare() >= kLeastJoined)) {
-    throw std::runtime_error(fmt::format("{}: only {:.1f} % of the returns are in the truth", scene, 100.0 * run->JoinedShare()));
+    throw std::runtime_error(
+        fmt::format("{}: the truth is of another run: only {:.1f} % of the returns are in it", scene, 100.0 * run->JoinedShare()));
   }
   std::vector<TrackRow> rows;
   for (auto& row : run->Rows()) rows.push_back({scene, std::move(row)});

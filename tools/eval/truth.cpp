@@ -99,6 +99,33 @@ const Truth::Return* Truth::Find(std::int64_t utime_us, int ring, int return_ind
   return nullptr;
 }
 
+const Truth::Return* Truth::FindAlong(const Eigen::Vector3d& direction, double least_cosine, const TruthSpan& window, int ring,
+                                      int return_index) const {
+  const Return* nearest = nullptr;
+  double greatest_cosine = least_cosine;
+  for (auto made = std::ranges::lower_bound(returns_, window.begin_us, {}, &Return::utime_us);
+       made != returns_.end() && made->utime_us <= window.end_us; ++made) {
+    if (made->ring != ring || made->return_index != return_index) continue;
+    const Eigen::Vector3d p_m = made->p_lidar_m.cast<double>();
+    const double cosine = p_m.dot(direction) / p_m.norm();  // NaN without a place: not greater
+    if (!(cosine >= greatest_cosine)) continue;
+    greatest_cosine = cosine;
+    nearest = &*made;
+  }
+  return nearest;
+}
+
+std::optional<TruthSpan> Truth::Span() const {
+  std::optional<TruthSpan> span;
+  const auto add = [&span](std::int64_t begin_us, std::int64_t end_us) {
+    if (!span) span = TruthSpan{begin_us, end_us};
+    span = TruthSpan{std::min(span->begin_us, begin_us), std::max(span->end_us, end_us)};
+  };
+  if (!poses_.empty()) add(poses_.begin()->first, poses_.rbegin()->first);
+  if (!returns_.empty()) add(returns_.front().utime_us, returns_.back().utime_us);
+  return span;
+}
+
 Outlines Truth::OutlinesIn(const GeographicLib::LocalCartesian& map) const {
   Outlines result;
   for (const auto& [object_id, by_time] : outlines_) {

@@ -44,6 +44,12 @@ struct Geodetic {
   double longitude_deg;
 };
 
+/// From when to when a truth goes.
+struct TruthSpan {
+  std::int64_t begin_us = 0;
+  std::int64_t end_us = 0;
+};
+
 /// Outlines of the objects in one map frame.
 class Outlines {
  public:
@@ -86,6 +92,17 @@ class Truth {
 
   /// @return a return; times that differ by a microsecond are the same one (a laser fires every 55 us). nullptr = not in the truth
   const Return* Find(std::int64_t utime_us, int ring, int return_index) const;
+
+  /// @param window  times; both are in it
+  /// @return the return of this ring in this direction (the cosine of the angle between is `least_cosine` or more) that is nearest to it; nullptr =
+  /// none
+  const Return* FindAlong(const Eigen::Vector3d& direction, double least_cosine, const TruthSpan& window, int ring, int return_index) const;
+
+  /// Whether it says where returns lie.
+  bool HasPlaces() const { return !returns_.empty() && returns_.front().p_lidar_m.allFinite(); }
+
+  /// Of its poses and returns; nullopt where it has neither.
+  std::optional<TruthSpan> Span() const;
 
   Outlines OutlinesIn(const GeographicLib::LocalCartesian& map) const;
 

@@ -1,21 +1,33 @@
 #include "tools/export/export.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <chrono>
 #include <initializer_list>
 #include <memory>
 #include <ostream>
 #include <stdexcept>
 #include <system_error>
 
+#include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
+#include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
+#include "lookout/obstacles_t.hpp"
+#include "lookout/pose_t.hpp"
+#include "lookout/tracks_t.hpp"
 #include "tools/export/map_sinks.hpp"
 #include "tools/export/map_table.hpp"
 #include "tools/export/sinks.hpp"
+#include "tools/log/log_span.hpp"
+#include "tools/log/pose_counts.hpp"
 
 namespace lookout::exporter {
 
@@ -35,12 +47,15 @@ bool IsOneOf(const std::string& table, std::initializer_list<std::string_view> t
 
 bool IsMap(const Request& request) { return IsOneOf(request.format, {"geojson", "kml", "gpx"}); }
 
+std::string SpanFault(const Span& span) { return span.from_us && span.to_us && *span.from_us >= *span.to_us ? "--from is not before --to" : ""; }
+
 // @return what is wrong with the choice of a part of the log; empty when nothing
 std::string SelectionFault(const Request& request) {
   const bool is_csv_or_map = request.format == "csv" || IsMap(request);
-  if (!request.span.IsAll() && request.table == "map") return "--from and --to are not for --table map: it is of whole logs";
-  if (!request.span.IsAll() && !is_csv_or_map) return "--from and --to are not for --format " + request.format;
-  if (request.span.from_us && request.span.to_us && *request.span.from_us >= *request.span.to_us) return "--from is not before --to";
+  const bool is_part = !request.span.IsAll() || !request.from.empty() || !request.to.empty();
+  if (is_part && request.table == "map") return "--from and --to are not for --table map: it is of whole logs";
+  if (is_part && !is_csv_or_map) return "--from and --to are not for --format " + request.format;
+  if (auto fault = SpanFault(request.span); !fault.empty()) return fault;
   if (request.near && !(is_csv_or_map && IsOneOf(request.table, {"obstacles", "tracks", "pose"}))) {
     return "--near is for --table obstacles, tracks or pose only, as csv or a map";
   }
@@ -93,8 +108,8 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
   if (request.table == "map" && request.format == "geojson") return MakeMapSink(true);
   if (IsMap(request)) {
     const Scans scans{request.scan || request.is_last_scan, request.scan};
-    if (request.table == "obstacles") return MakeObstacleMapSink(MakeMapWriter(request.format), request.near, scans);
-    return MakeTrackMapSink(MakeMapWriter(request.format), request.table == "tracks", request.near, scans);
+    if (request.table == "obstacles") return MakeObstacleMapSink(MakeMapWriter(request.format, request.table), request.near, scans);
+    return MakeTrackMapSink(MakeMapWriter(request.format, request.table), request.table == "tracks", request.near, scans);
   }
   if (request.format == "ply") return MakePlySink(request.scan);
   if (request.format == "svg" && IsOneOf(request.table, {"pose", "tracks"})) return MakeTrackSvgSink(request.table == "tracks");
@@ -102,6 +117,46 @@ std::unique_ptr<Sink> MakeSink(const Request& request) {
     return MakeScanSvgSink(request.table == "returns" ? ChosenScan::Of::kReturns : ChosenScan::Of::kObstacles, request.scan);
   }
   return MakeCsvSink(request.table, request.near);
+}
+
+// How much later, by more than can be, events were logged than what they tell was measured: of a log that was recorded while an old one was played.
+// By the first message of the table.
+std::chrono::microseconds AgeOfMessages(const std::vector<std::filesystem::path>& inputs, const std::string& channel) {
+  constexpr std::chrono::minutes kUsual(1);
+  for (const auto& input : inputs) {
+    bus::LogReader reader(input, io::ThrowIfStopAsked);
+    while (const auto event = reader.NextHead([&](std::string_view name) { return name == channel ? kTimeEndBytes : 0; })) {
+      io::ThrowIfStopAsked();
+      const auto utime_us = event->channel == channel ? UtimeUsOf(event->bytes) : std::nullopt;
+      const auto time = utime_us ? UtimeFromWire(*utime_us) : std::nullopt;
+      if (!time) continue;
+      const auto age = event->time - *time;
+      return std::chrono::abs(age) > kUsual ? age : std::chrono::microseconds(0);
+    }
+  }
+  return std::chrono::microseconds(0);
+}
+
+// A command line that is wrong for this log.
+struct UsageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// @throws UsageError
+Span SpanOf(const Request& request, const std::string& channel) {
+  if (request.from.empty() && request.to.empty()) return request.span;
+  auto log = log::SpanOf(request.inputs);
+  const auto age = AgeOfMessages(request.inputs, channel);
+  log = {log.begin - age, log.end - age};
+  const auto time_of = [&](const char* option, const std::string& text) -> std::optional<std::int64_t> {
+    if (text.empty()) return std::nullopt;
+    const auto found = FindTime(option, text, log);
+    if (!found.time) throw UsageError(found.fault);
+    return ToUtimeUs(*found.time);
+  };
+  const Span span{time_of("--from", request.from), time_of("--to", request.to)};
+  if (const auto fault = SpanFault(span); !fault.empty()) throw UsageError(fault);
+  return span;
 }
 
 void Tell(std::ostream& errors, const Sink& sink, const std::vector<Tally>& tallies) {
@@ -113,6 +168,48 @@ void Tell(std::ostream& errors, const Sink& sink, const std::vector<Tally>& tall
   for (const auto& remark : sink.Remarks()) errors << kProgram << remark << '\n';
 }
 
+// Whether what is asked for has a place on the earth, and why not.
+class PlacedRows {
+ public:
+  explicit PlacedRows(const Request& request) : is_tracks_(request.table == "tracks"), is_asked_(is_tracks_ || request.table == "obstacles") {}
+
+  void Add(std::string_view channel, Bytes bytes) {
+    if (!is_asked_) return;
+    if (channel == bus::kPose.name) {
+      if (const auto pose = bus::Decode<pose_t>(bytes)) poses_.Add(*pose);
+    } else if (num_placed_ > 0) {
+      return;
+    } else if (is_tracks_ && channel == bus::kTracks.name) {
+      const auto message = bus::Decode<tracks_t>(bytes);
+      num_placed_ += message ? message->num_tracks : 0;
+    } else if (!is_tracks_ && channel == bus::kObstacles.name) {
+      const auto message = bus::Decode<obstacles_t>(bytes);
+      if (message) num_placed_ += std::ranges::count(message->obstacles, obstacle_t::STATUS_OK, &obstacle_t::status);
+    }
+  }
+
+  // Why there are none; empty where there are, or nobody knows why not.
+  std::string Remark() const {
+    const auto why = is_asked_ && num_placed_ == 0 ? poses_.WhyNotPlaced() : "";
+    if (why.empty()) return "";
+    return is_tracks_ ? "there are no tracks, as " + why + ": what is around the boat stands in the table obstacles, in the vessel frame"
+                      : "no obstacle has a place on the earth, as " + why + ": range, bearing and the outline in the vessel frame are all there is";
+  }
+
+ private:
+  bool is_tracks_;
+  bool is_asked_;
+  log::PoseCounts poses_;
+  std::int64_t num_placed_ = 0;
+};
+
+// For people: nothing where rows go to a terminal or to another program.
+std::FILE* ProgressOf(const Request& request) {
+  struct stat output {};
+  const bool is_file = request.output || (fstat(STDOUT_FILENO, &output) == 0 && S_ISREG(output.st_mode));
+  return is_file ? request.progress : nullptr;
+}
+
 int Export(const Request& request, std::ostream& errors) {
   constexpr std::size_t kBlockBytes = 1 << 18;
   const auto sink = MakeSink(request);
@@ -121,16 +218,25 @@ int Export(const Request& request, std::ostream& errors) {
   // All inputs are opened first: a mistyped name must not cost an hour of reading.
   std::vector<std::unique_ptr<bus::LogReader>> readers;
   for (const auto& input : request.inputs) readers.push_back(std::make_unique<bus::LogReader>(input, io::ThrowIfStopAsked));
+  const auto span = SpanOf(request, std::string(tallies.front().channel.name));
 
   io::OutputFile output(
       request.output.value_or("/dev/stdout"),
       {.force = request.force, .inputs = request.inputs, .tell = [&errors](const std::string& line) { errors << kProgram << line << '\n'; }});
   std::string text;
+  PlacedRows placed(request);
+  runtime::Progress progress("lookout-export", ProgressOf(request));
+  std::int64_t total_bytes = 1;
+  for (const auto& reader : readers) total_bytes += reader->size_bytes();
+  std::int64_t done_bytes = 0;
   for (std::size_t i = 0; i < readers.size(); ++i) {
     while (const auto event = sink->IsDone() ? std::nullopt : readers[i]->Next()) {
       io::ThrowIfStopAsked();
+      progress.Update(static_cast<double>(done_bytes + readers[i]->position_bytes()) / static_cast<double>(total_bytes));
       const auto tally = std::ranges::find(tallies, event->channel, [](const Tally& one) { return one.channel.name; });
-      if (tally == tallies.end() || !request.span.Holds(event->bytes)) continue;
+      if (!span.Holds(event->bytes)) continue;
+      placed.Add(event->channel, event->bytes);
+      if (tally == tallies.end()) continue;
       const auto taken = sink->Take(event->channel, event->bytes, text);
       // The header comes with the first message, so that nothing is written where there is nothing.
       const bool is_first = taken == Taken::kOk && tally == tallies.begin() && tally->num_taken == 0;
@@ -143,14 +249,20 @@ int Export(const Request& request, std::ostream& errors) {
         text.clear();
       }
     }
+    done_bytes += readers[i]->size_bytes();
     const auto num_damaged = readers[i]->num_damaged();
-    if (num_damaged > 0) errors << kProgram << request.inputs[i].string() << ": " << num_damaged << " damaged stretches skipped\n";
+    if (num_damaged == 0) continue;
+    progress.Clear();
+    errors << kProgram << request.inputs[i].string() << ": " << num_damaged << " damaged stretches skipped\n";
   }
+  progress.Clear();
   if (tallies.front().num_taken > 0) sink->Finish(text);
   Tell(errors, *sink, tallies);
+  const auto why = placed.Remark();
+  if (!why.empty() && !sink->IsDone()) errors << kProgram << why << '\n';
   if (tallies.front().num_taken == 0) {
-    const auto span = TextOf(request.span);
-    throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + (span.empty() ? "" : " " + span));
+    const auto when = TextOf(span);
+    throw std::runtime_error("the input holds no " + std::string(tallies.front().channel.name) + (when.empty() ? "" : " " + when));
   }
   if (request.format != "csv" && text.empty()) {  // the end of what was written before is not empty
     if (IsOneOf(request.table, {"pose", "tracks"}) && !request.scan) throw std::runtime_error("no pose knows its position");
@@ -173,6 +285,9 @@ int Run(const Request& request, std::ostream& errors) {
     return Export(request, errors);
   } catch (const io::BrokenPipe&) {  // no fault: `| head` ends quietly
     return kExitFine;
+  } catch (const UsageError& error) {
+    errors << kProgram << PrintableLines(error.what()) << '\n';
+    return kExitUsage;
   } catch (const config::ConfigError& error) {
     errors << PrintableLines(error.what()) << '\n';
     return kExitUsage;

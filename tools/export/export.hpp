@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <iosfwd>
 #include <optional>
@@ -23,8 +24,11 @@ struct Request {
   bool is_last_scan = false;                                   // maps: the last whole one
   bool all_scans = false;                                      // merges as csv: in place of one
   std::optional<std::filesystem::path> config = std::nullopt;  // merges: the boat's folder, by which scans are segmented again
-  Span span = {};                                              // csv and maps: what was measured within
+  std::string from = {};                                       // csv and maps: as FindTime; empty = the start
+  std::string to = {};                                         // the first time that is not in it; empty = the end
+  Span span = {};                                              // csv and maps: what was measured within; of `from` and `to` where they are given
   std::optional<Circle> near = std::nullopt;                   // csv and maps of obstacles, tracks, pose: what lies within
+  std::FILE* progress = nullptr;                               // for people, where the output is a file; nullptr: silent
 };
 
 inline constexpr int kExitFine = 0;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <iterator>
 #include <string_view>
+#include <vector>
 
 #include "tools/export/features.hpp"
 #include "tools/export/map_text.hpp"
@@ -26,8 +27,88 @@ constexpr std::array kKmlStyles{KmlStyle{"own_track", "ffb27200", 3, "00000000",
                                 KmlStyle{"way", "ff739e00", 2, "00000000", 0.0},       KmlStyle{"waterline", "ff7aa0b8", 3, "00000000", 0.0},
                                 KmlStyle{"alert", "ff0000c0", 2, "00000000", 0.8}};
 
+// The fields of each sort of feature of a table with their types, so that numbers are read as numbers. Only those of the table: GDAL gives every
+// feature the fields of all schemas. Times in microseconds are whole numbers beyond 32 bits, which a double holds exactly: KML has no longer whole
+// number.
+struct KmlField {
+  std::string_view type;
+  std::string_view name;
+};
+struct KmlSchema {
+  std::string_view what;
+  std::vector<KmlField> fields;
+};
+std::vector<KmlSchema> SchemasOf(std::string_view table) {
+  const KmlField status{"string", "status"};
+  const KmlField kind{"string", "kind"};
+  const KmlSchema own_track{"own_track", {status}};
+  if (table == "obstacles") {
+    const KmlField scan_seq{"int", "scan_seq"};
+    const KmlField obstacle_id{"int", "obstacle_id"};
+    const KmlField confidence{"string", "confidence"};
+    const std::vector<KmlField> few{scan_seq, obstacle_id, confidence, kind};
+    return {{"obstacle",
+             {scan_seq,
+              {"double", "scan_utime_us"},
+              {"double", "utime_us"},
+              obstacle_id,
+              confidence,
+              kind,
+              {"double", "thing_probability"},
+              {"double", "range_m"},
+              {"double", "bearing_deg"},
+              {"double", "length_m"},
+              {"double", "width_m"},
+              {"double", "height_m"},
+              {"double", "top_above_water_m"},
+              {"int", "num_points"},
+              {"double", "cov_ee_m2"},
+              {"double", "cov_en_m2"},
+              {"double", "cov_nn_m2"}}},
+            {"outline", few},
+            {"waterline", few},
+            {"ellipse", few}};
+  }
+  if (table == "pose") return {own_track};
+  const KmlField track_id{"int", "track_id"};
+  const KmlField bearing_deg{"double", "bearing_deg"};
+  const KmlField cpa_m{"double", "cpa_m"};
+  const KmlField tcpa_s{"double", "tcpa_s"};
+  const std::vector<KmlField> few{track_id, status, kind};
+  return {own_track,
+          {"own_place", {}},
+          {"track",
+           {track_id,
+            status,
+            kind,
+            {"double", "first_utime_us"},
+            {"double", "seen_utime_us"},
+            {"double", "existence_probability"},
+            {"double", "moving_probability"},
+            {"double", "speed_mps"},
+            {"double", "course_deg"},
+            {"double", "length_m"},
+            {"double", "width_m"},
+            {"double", "top_above_water_m"},
+            {"double", "seen_share"},
+            {"double", "range_m"},
+            bearing_deg,
+            cpa_m,
+            tcpa_s,
+            {"double", "cov_ee_m2"},
+            {"double", "cov_en_m2"},
+            {"double", "cov_nn_m2"}}},
+          {"outline", few},
+          {"ellipse", few},
+          {"way", few},
+          {"waterline", {}},
+          {"alert", {{"int", "alert_id"}, {"string", "cause"}, {"string", "level"}, track_id, {"double", "distance_m"}, bearing_deg, cpa_m, tcpa_s}}};
+}
+
 class KmlWriter final : public MapWriter {
  public:
+  explicit KmlWriter(std::string_view table) : schemas_(SchemasOf(table)) {}
+
   void Begin(std::string& text) override {
     text +=
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
@@ -38,19 +119,23 @@ class KmlWriter final : public MapWriter {
                      "<LineStyle><color>{}</color><width>{}</width></LineStyle><PolyStyle><color>{}</color></PolyStyle></Style>\n",
                      what, line, label_scale, line, width, area);
     }
+    for (const auto& [what, fields] : schemas_) {
+      fmt::format_to(std::back_inserter(text), "<Schema name=\"{0}\" id=\"fields_{0}\"><SimpleField type=\"string\" name=\"what\"/>", what);
+      for (const auto& [type, name] : fields) fmt::format_to(std::back_inserter(text), "<SimpleField type=\"{}\" name=\"{}\"/>", type, name);
+      text += "</Schema>\n";
+    }
   }
 
   bool Append(const Feature& feature, std::string& text) override {
     fmt::format_to(std::back_inserter(text), "<Placemark><name>{}</name>", XmlText(feature.name));
     AppendTime(feature, text);
-    fmt::format_to(std::back_inserter(text), "<styleUrl>#{0}</styleUrl><ExtendedData><Data name=\"what\"><value>{0}</value></Data>",
-                   XmlText(feature.what));
+    fmt::format_to(std::back_inserter(text), "<styleUrl>#{0}</styleUrl><ExtendedData><SchemaData schemaUrl=\"#fields_{0}\">", XmlText(feature.what));
+    AppendField("what", feature.what, text);
     for (const auto& [name, value] : feature.properties) {
       const auto words = TextOf(value);
-      if (words.empty()) continue;
-      fmt::format_to(std::back_inserter(text), "<Data name=\"{}\"><value>{}</value></Data>", XmlText(name), XmlText(words));
+      if (!words.empty()) AppendField(name, words, text);
     }
-    text += "</ExtendedData>";
+    text += "</SchemaData></ExtendedData>";
     feature.geometry.HasTimes() ? AppendTracks(feature.geometry, text) : AppendGeometry(feature.geometry, text);
     text += "</Placemark>\n";
     return true;
@@ -68,6 +153,10 @@ class KmlWriter final : public MapWriter {
     } else {
       fmt::format_to(std::back_inserter(text), "<TimeStamp><when>{}</when></TimeStamp>", IsoTime(*feature.utime_us));
     }
+  }
+
+  static void AppendField(std::string_view name, std::string_view words, std::string& text) {
+    fmt::format_to(std::back_inserter(text), "<SimpleData name=\"{}\">{}</SimpleData>", XmlText(name), XmlText(words));
   }
 
   static void AppendTracks(const Geometry& geometry, std::string& text) {
@@ -115,10 +204,12 @@ class KmlWriter final : public MapWriter {
     }
     if (!is_one) text += "</MultiGeometry>";
   }
+
+  std::vector<KmlSchema> schemas_;
 };
 
 }  // namespace
 
-std::unique_ptr<MapWriter> MakeKmlWriter() { return std::make_unique<KmlWriter>(); }
+std::unique_ptr<MapWriter> MakeKmlWriter(std::string_view table) { return std::make_unique<KmlWriter>(table); }
 
 }  // namespace lookout::exporter

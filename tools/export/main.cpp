@@ -1,34 +1,23 @@
 // Logs in, a table, a map, a cloud or a picture out.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "common/core/log_time.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/export/export.hpp"
 #include "tools/export/sinks.hpp"
-
-namespace {
-
-// @throws CLI::ValidationError
-std::optional<std::int64_t> UtimeOf(const CLI::Option& option, const std::string& text) {
-  if (option.count() == 0) return std::nullopt;
-  const auto utime_us = lookout::exporter::ParseUtimeUs(text);
-  if (!utime_us) throw CLI::ValidationError(option.get_name(), "must be microseconds since 1970, or UTC as 2026-07-01T10:00:00Z");
-  return utime_us;
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   namespace exporter = lookout::exporter;
   exporter::Request request;
   std::string scan = "last";
-  std::string from;
-  std::string to;
   std::string near;
 
   CLI::App app("Writes what lcm-logs hold as a CSV table, a map, a PLY cloud or an SVG picture.", "lookout-export");
@@ -47,9 +36,10 @@ int main(int argc, char** argv) {
                                      "ply, svg and table merges: seq of the scan, or \"last\": the last whole one; merges as csv: or \"all\"; "
                                      "maps: without it the whole log")
                           ->capture_default_str();
-  auto* from_option = app.add_option(
-      "--from", from, "csv and maps: what was measured at this time or later: microseconds since 1970, or UTC as 2026-07-01T10:00:00Z");
-  auto* to_option = app.add_option("--to", to, "the same; the first time that is not in it");
+  const CLI::Validator is_given([](std::string& text) { return text.empty() ? std::string("no time is given") : std::string(); }, "");
+  app.add_option("--from", request.from, std::string("csv and maps: what was measured at this time or later: ") + lookout::kTimeForms)
+      ->check(is_given);
+  app.add_option("--to", request.to, "the same; the first time that is not in it")->check(is_given);
   auto* near_option =
       app.add_option("--near", near, "csv and maps of obstacles, tracks and pose: LATITUDE,LONGITUDE,RADIUS in degrees and metres: what lies within");
   app.add_option("--config", request.config, "table merges: the boat's folder, by which LIDAR_SCAN is segmented again");
@@ -64,7 +54,6 @@ int main(int argc, char** argv) {
       request.scan = seq;
     }
     request.is_last_scan = scan == "last" && scan_option->count() > 0;
-    request.span = {UtimeOf(*from_option, from), UtimeOf(*to_option, to)};
     if (near_option->count() > 0) {
       request.near = exporter::ParseCircle(near);
       if (!request.near)
@@ -75,6 +64,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? EXIT_SUCCESS : exporter::kExitUsage;
   }
   if (request.output == "") request.output = std::nullopt;
+  request.progress = lookout::runtime::OnlyTerminal(stderr);
   lookout::io::CatchStopSignals();
   return exporter::Run(request, std::cerr);
 }

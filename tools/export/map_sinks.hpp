@@ -18,7 +18,7 @@ struct Scans {
 };
 
 /// @return what writes `format`: "geojson", "kml" or "gpx"; nullptr when it is none of them
-std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format);
+std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format, std::string_view table);
 
 /// OBSTACLES, message by message: needs as much memory for a day as for a scan. Each that has a place gives a point (`obstacle`), its outline
 /// (`outline`; of land `waterline`, an open line) and the ellipse of its place (`ellipse`, 95 %).

@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
+#include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "common/core/utime.hpp"
-#include "tools/log/time_text.hpp"
 
 namespace lookout::exporter {
 
@@ -37,6 +37,6 @@ inline std::string XmlText(std::string_view text) {
 }
 
 /// "2026-07-01T10:00:00.000000Z"
-inline std::string IsoTime(std::int64_t utime_us) { return log::TimeText(Utime(std::chrono::microseconds(utime_us))); }
+inline std::string IsoTime(std::int64_t utime_us) { return TimeText(Utime(std::chrono::microseconds(utime_us))); }
 
 }  // namespace lookout::exporter

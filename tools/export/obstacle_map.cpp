@@ -112,7 +112,10 @@ class ObstacleMapSink final : public Sink {
             {"width_m", Fixed{obstacle.width_m, 2}},
             {"height_m", Fixed{obstacle.height_m, 2}},
             {"top_above_water_m", Fixed{obstacle.top_above_water_m, 2}},
-            {"num_points", std::int64_t{obstacle.num_points}}};
+            {"num_points", std::int64_t{obstacle.num_points}},
+            {"cov_ee_m2", Shortest{obstacle.covariance_m2[0]}},
+            {"cov_en_m2", Shortest{obstacle.covariance_m2[1]}},
+            {"cov_nn_m2", Shortest{obstacle.covariance_m2[2]}}};
   }
 
   std::unique_ptr<MapWriter> writer_;
@@ -126,9 +129,9 @@ class ObstacleMapSink final : public Sink {
 
 }  // namespace
 
-std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format) {
+std::unique_ptr<MapWriter> MakeMapWriter(std::string_view format, std::string_view table) {
   if (format == "geojson") return MakeGeoJsonWriter();
-  if (format == "kml") return MakeKmlWriter();
+  if (format == "kml") return MakeKmlWriter(table);
   return format == "gpx" ? MakeGpxWriter() : nullptr;
 }
 

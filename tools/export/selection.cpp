@@ -10,7 +10,6 @@
 
 #include "common/core/utime.hpp"
 #include "tools/export/map_text.hpp"
-#include "tools/log/time_text.hpp"
 
 namespace lookout::exporter {
 
@@ -42,23 +41,16 @@ std::optional<Circle> ParseCircle(std::string_view text) {
   return Circle{{latitude_deg, longitude_deg, 0.0}, radius_m};
 }
 
-std::optional<std::int64_t> ParseUtimeUs(std::string_view text) {
-  if (text.find('T') == std::string_view::npos) {
-    const auto utime_us = ParseNumber<std::int64_t>(text);
-    return utime_us && UtimeFromWire(*utime_us) ? utime_us : std::nullopt;
-  }
-  const auto time = log::ParseTime(text, Utime());
-  return time ? std::optional(ToUtimeUs(*time)) : std::nullopt;
+std::optional<std::int64_t> UtimeUsOf(Bytes message) {
+  if (message.size() < kTimeEndBytes) return std::nullopt;
+  std::uint64_t bits = 0;
+  for (const auto byte : message.subspan(kTimeEndBytes - sizeof(bits), sizeof(bits))) bits = bits << 8U | static_cast<std::uint8_t>(byte);
+  return static_cast<std::int64_t>(bits);
 }
 
 bool Span::Holds(Bytes message) const {
-  // LCM: eight bytes that tell the type, then its members, the highest byte of a number first.
-  constexpr std::size_t kBegin = 8;
-  if (IsAll() || message.size() < kBegin + sizeof(std::int64_t)) return true;
-  std::uint64_t bits = 0;
-  for (const auto byte : message.subspan(kBegin, sizeof(bits))) bits = bits << 8U | static_cast<std::uint8_t>(byte);
-  const auto utime_us = static_cast<std::int64_t>(bits);
-  return (!from_us || utime_us >= *from_us) && (!to_us || utime_us < *to_us);
+  const auto utime_us = IsAll() ? std::nullopt : UtimeUsOf(message);
+  return !utime_us || ((!from_us || *utime_us >= *from_us) && (!to_us || *utime_us < *to_us));
 }
 
 std::string TextOf(const Span& span) {

@@ -1,6 +1,7 @@
 // Which part of a log is exported: a time, and what lies near a place.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,9 +23,11 @@ struct Circle {
 /// @return nullopt where it is not that, the latitude is beyond 90, the longitude beyond 180, or the radius is not above 0
 std::optional<Circle> ParseCircle(std::string_view text);
 
-/// @param text  microseconds since 1970 UTC, or UTC as "2026-07-01T10:00:00Z" with up to six decimals of the second
-/// @return nullopt where it is neither, or out of the bounds of Utime
-std::optional<std::int64_t> ParseUtimeUs(std::string_view text);
+/// So many bytes of a message of any type of the bus hold its time: LCM begins with eight bytes that tell the type, then come the members.
+inline constexpr std::size_t kTimeEndBytes = 16;
+
+/// @return the time with which a message of any type of the bus begins (of what belongs to a scan: its first shot); nullopt where it is too short
+std::optional<std::int64_t> UtimeUsOf(Bytes message);
 
 /// Times of measurement, half open.
 struct Span {
@@ -33,8 +36,7 @@ struct Span {
 
   bool IsAll() const { return !from_us && !to_us; }
 
-  /// @param message  of any type of the bus: each begins with its time (of what belongs to a scan: its first shot). One that is too short to have one
-  ///                 is held, so that it is counted as undecodable.
+  /// @param message  of any type of the bus. One that is too short to have a time is held, so that it is counted as undecodable.
   bool Holds(Bytes message) const;
 };
 

@@ -315,7 +315,10 @@ class TrackMapSink final : public Sink {
             {"range_m", Fixed{track.range_m, 2}},
             {"bearing_deg", Direction{track.bearing_rad}},
             {"cpa_m", Fixed{track.cpa_m, 2}},
-            {"tcpa_s", Fixed{track.tcpa_s, 1}}};
+            {"tcpa_s", Fixed{track.tcpa_s, 1}},
+            {"cov_ee_m2", Shortest{track.covariance[0][0]}},
+            {"cov_en_m2", Shortest{track.covariance[0][1]}},
+            {"cov_nn_m2", Shortest{track.covariance[1][1]}}};
   }
 
   void Write(const Warned& warned, std::string& text) {

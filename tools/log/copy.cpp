@@ -6,36 +6,29 @@
 #include <ostream>
 
 #include "common/bus/channels.hpp"
+#include "common/core/log_time.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
 #include "tools/log/log_output.hpp"
-#include "tools/log/time_text.hpp"
+#include "tools/log/log_span.hpp"
 
 namespace lookout::log {
 
 namespace {
 
-Utime FirstTime(const std::vector<std::filesystem::path>& files) {
-  for (const auto& file : files) {
-    EventReader reader(file);
-    if (const auto event = reader.Next()) return event->time;
-  }
-  throw std::runtime_error(files.front().string() + ": is no lcm-log: it holds no event");
-}
-
-std::optional<Utime> LimitOf(const std::string& option, const std::string& text, Utime start) {
+std::optional<Utime> LimitOf(const std::string& option, const std::string& text, const LogSpan& span) {
   if (text.empty()) return std::nullopt;
-  const auto time = ParseTime(text, start);
-  if (!time) throw UsageError(option + " " + text + ": is neither seconds from the start (12.5) nor UTC (2026-11-21T13:45:01.5Z)");
-  return time;
+  const auto found = FindTime(option, text, span);
+  if (!found.time) throw UsageError(found.fault);
+  return found.time;
 }
 
 }  // namespace
 
-void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors) {
-  const auto start = FirstTime(request.inputs);
-  const auto from = LimitOf("--from", request.from, start);
-  const auto to = LimitOf("--to", request.to, start);
+void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors, std::FILE* progress) {
+  const auto span = SpanOf(request.inputs);
+  const auto from = LimitOf("--from", request.from, span);
+  const auto to = LimitOf("--to", request.to, span);
   if (from && to && *from >= *to) throw UsageError("--from must be before --to");
 
   // All inputs are opened first: a mistyped name must not cost an hour of reading.
@@ -44,10 +37,12 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
   LogOutput output(request.output, {.force = request.force, .inputs = request.inputs});
   std::optional<bus::LogEvent> run_info;  // the last in front of the slice
   std::int64_t num_events = 0;            // of the slice
+  ReadProgress shown(progress, request.inputs);
   for (std::size_t i = 0; i < readers.size(); ++i) {
     auto& reader = readers[i];
     const auto& file = request.inputs[i];
     while (auto event = reader.Next()) {
+      shown.Show(reader.position_bytes());
       const bool is_run_info = event->channel == bus::kRunInfo.name;
       const bool is_wanted = request.channels.empty() || std::ranges::find(request.channels, event->channel) != request.channels.end();
       if (is_wanted && (!from || event->time >= *from) && (!to || event->time < *to)) {
@@ -58,6 +53,7 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
         run_info = std::move(event);
       }
     }
+    shown.EndFile(reader.size_bytes());
     if (!reader.damage().empty()) errors << fmt::format("{}: {} damaged stretches were skipped\n", file.string(), reader.damage().size());
   }
   if (num_events == 0) throw std::runtime_error("no event of that time and channel");
@@ -66,8 +62,10 @@ void Slice(const SliceRequest& request, std::ostream& out, std::ostream& errors)
   lines << fmt::format("{}: {} events\n", request.output.string(), output.num_events());
 }
 
-void Repair(const std::filesystem::path& input, const std::filesystem::path& output_file, bool force, std::ostream& out, std::ostream& errors) {
+void Repair(const std::filesystem::path& input, const std::filesystem::path& output_file, bool force, std::ostream& out, std::ostream& errors,
+            std::FILE* progress) {
   EventReader reader(input);
+  ReadProgress shown(progress, {input});
   LogOutput output(output_file, {.force = force, .inputs = {input}});
   auto& lines = output.IsStandardOutput() ? errors : out;  // a log that goes there is not mixed with lines
   std::optional<Utime> last;
@@ -75,15 +73,18 @@ void Repair(const std::filesystem::path& input, const std::filesystem::path& out
   const auto name_damage = [&](const std::string& next) {
     for (; num_named < reader.damage().size(); ++num_named) {
       const auto& stretch = reader.damage()[num_named];
+      shown.Clear();
       lines << fmt::format("lost: {} bytes at byte {}, between {} and {}\n", stretch.size_bytes, stretch.offset_bytes,
                            last ? TimeText(*last) : "the start", next);
     }
   };
   while (const auto event = reader.Next()) {
+    shown.Show(reader.position_bytes());
     name_damage(TimeText(event->time));
     output.Write(*event);
     last = event->time;
   }
+  shown.Clear();
   name_damage("the end");
   if (reader.num_events() == 0) throw std::runtime_error(input.string() + ": is no lcm-log: it holds no event");
   output.Commit();

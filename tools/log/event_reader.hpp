@@ -1,13 +1,17 @@
 // The events of a log, and the stretches between them that belong to none.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include "common/bus/log_file.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 
 namespace lookout::log {
 
@@ -16,6 +20,34 @@ struct DamagedStretch {
   std::int64_t offset_bytes = 0;
   std::int64_t size_bytes = 0;
   std::int64_t num_events_before = 0;
+};
+
+/// How far the reading of several files is.
+class ReadProgress {
+ public:
+  ReadProgress(std::FILE* out, const std::vector<std::filesystem::path>& files) : shown_("lookout-log", out) {
+    for (const auto& file : files) {
+      std::error_code error;
+      const auto size_bytes = std::filesystem::file_size(file, error);
+      if (!error) total_bytes_ += static_cast<std::int64_t>(size_bytes);
+    }
+  }
+
+  /// @param position_bytes  in the file that is read
+  void Show(std::int64_t position_bytes) {
+    shown_.Update(static_cast<double>(done_bytes_ + position_bytes) / static_cast<double>(std::max<std::int64_t>(1, total_bytes_)));
+  }
+  /// Before lines are written.
+  void Clear() { shown_.Clear(); }
+  void EndFile(std::int64_t size_bytes) {
+    Clear();
+    done_bytes_ += size_bytes;
+  }
+
+ private:
+  runtime::Progress shown_;
+  std::int64_t total_bytes_ = 0;
+  std::int64_t done_bytes_ = 0;
 };
 
 class EventReader {
@@ -36,6 +68,7 @@ class EventReader {
     return event;
   }
 
+  std::int64_t position_bytes() const { return reader_.position_bytes(); }
   std::int64_t size_bytes() const { return reader_.size_bytes(); }
   std::int64_t num_events() const { return num_events_; }
   const std::vector<DamagedStretch>& damage() const { return damage_; }

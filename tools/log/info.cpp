@@ -11,13 +11,13 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/schema.hpp"
 #include "common/bus/sequence.hpp"
+#include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "lookout/run_info_t.hpp"
 #include "tools/log/commands.hpp"
 #include "tools/log/event_reader.hpp"
 #include "tools/log/publishers.hpp"
 #include "tools/log/run_marks.hpp"
-#include "tools/log/time_text.hpp"
 
 namespace lookout::log {
 
@@ -200,11 +200,16 @@ void PrintDamage(const EventReader& reader, std::ostream& out) {
 
 }  // namespace
 
-void Info(const std::vector<std::filesystem::path>& files, std::ostream& out) {
+void Info(const std::vector<std::filesystem::path>& files, std::ostream& out, std::FILE* progress) {
   LogSummary summary;
+  ReadProgress shown(progress, files);
   for (const auto& file : files) {
     EventReader reader(file);
-    while (const auto event = reader.Next()) summary.Add(*event);
+    while (const auto event = reader.Next()) {
+      summary.Add(*event);
+      shown.Show(reader.position_bytes());
+    }
+    shown.EndFile(reader.size_bytes());
     out << fmt::format("{:<9} {}\n{:<9} {} bytes\n", "file", PrintableLines(file.string()), "size", reader.size_bytes());
     PrintDamage(reader, out);
   }

@@ -1,12 +1,16 @@
 // lookout-log: what is in a log, a part of it, and a damaged one made readable.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <string>
 #include <vector>
 
+#include "common/core/log_time.hpp"
 #include "common/core/printable.hpp"
 #include "common/io/stop_signal.hpp"
+#include "common/runtime/progress.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/log/commands.hpp"
 
@@ -29,13 +33,14 @@ int main(int argc, char** argv) {
   auto* info = app.add_subcommand("info", "channels, types, rates, gaps, size, span, version, damage");
   info->add_option("LOG", logs, "lcm-log; several are read in this order, as one")->required();
 
+  const CLI::Validator is_given([](std::string& text) { return text.empty() ? std::string("no time is given") : std::string(); }, "");
   log::SliceRequest request;
   auto* slice = app.add_subcommand("slice", "the events of a time and of some channels");
   slice->add_option("--in", request.inputs, "lcm-log; may be given several times, read in this order")->required()->allow_extra_args(false);
   slice->add_option("--out", request.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
   slice->add_flag("--force", request.force, "replace an existing --out");
-  slice->add_option("--from", request.from, "seconds from the start of the log, or UTC as 2026-11-21T13:45:01Z");
-  slice->add_option("--to", request.to, "the same; the first time that is not in it");
+  slice->add_option("--from", request.from, std::string("first time of the slice: ") + lookout::kTimeForms)->check(is_given);
+  slice->add_option("--to", request.to, "the same; the first time that is not in it")->check(is_given);
   slice->add_option("--channel", request.channels, "this channel only; may be given several times")->allow_extra_args(false);
 
   std::filesystem::path damaged;
@@ -52,13 +57,14 @@ int main(int argc, char** argv) {
     // --help and --version come here too, with code 0.
     return app.exit(error) == 0 ? EXIT_SUCCESS : kExitUsage;
   }
+  std::FILE* const progress = lookout::runtime::OnlyTerminal(stderr);
   try {
     if (info->parsed()) {
-      log::Info(logs, std::cout);
+      log::Info(logs, std::cout, progress);
     } else if (slice->parsed()) {
-      log::Slice(request, std::cout, std::cerr);
+      log::Slice(request, std::cout, std::cerr, progress);
     } else {
-      log::Repair(damaged, mended, force, std::cout, std::cerr);
+      log::Repair(damaged, mended, force, std::cout, std::cerr, progress);
     }
     std::cout.flush();
     if (!std::cout) throw std::runtime_error("standard output could not be written");

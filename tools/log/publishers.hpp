@@ -13,8 +13,8 @@
 
 #include "common/bus/stream_guard.hpp"
 #include "common/core/bytes.hpp"
+#include "common/core/log_time.hpp"
 #include "common/core/utime.hpp"
-#include "tools/log/time_text.hpp"
 
 namespace lookout::log {
 

@@ -5,6 +5,7 @@
 
 #include "common/config/text_config.hpp"
 #include "common/runtime/run_info.hpp"
+#include "services/vlp16/core/packet_format.hpp"
 
 namespace lookout::replay {
 
@@ -38,6 +39,13 @@ void Timed(std::chrono::nanoseconds& total, Call call) {
   const auto start = std::chrono::steady_clock::now();
   call();
   total += std::chrono::steady_clock::now() - start;
+}
+
+void CountOther(const Datagram& datagram, OtherPort& seen) {
+  const auto& payload = datagram.payload;
+  ++seen.num_datagrams;
+  seen.num_lidar_packets += payload.size() == vlp16::format::kDataPacketSizeBytes ? 1 : 0;
+  seen.num_sentences += !payload.empty() && (payload[0] == '$' || payload[0] == '!' || payload[0] == '\\') ? 1 : 0;
 }
 
 }  // namespace
@@ -97,7 +105,7 @@ void Chain::OnDatagram(const Datagram& datagram) {
   AdvanceTo(datagram.host_time);
   bool is_taken = false;
   ForEachStage([&](Stage& stage) { is_taken = is_taken || stage.OnDatagram(datagram); });
-  num_other_ports_ += is_taken ? 0 : 1;
+  if (!is_taken) CountOther(datagram, other_ports_[datagram.port]);
 }
 
 void Chain::OnTextLine(Utime time, Bytes line) {
@@ -154,7 +162,9 @@ std::vector<std::pair<std::string, std::int64_t>> Chain::Counters() const {
   }
   std::erase_if(of_channels, [](const auto& counter) { return counter.second == 0; });
   counters.insert(counters.end(), of_channels.begin(), of_channels.end());
-  if (num_other_ports_ != 0) counters.emplace_back("input.other_port", num_other_ports_);
+  std::int64_t num_other_ports = 0;
+  for (const auto& [port, seen] : other_ports_) num_other_ports += seen.num_datagrams;
+  if (num_other_ports != 0) counters.emplace_back("input.other_port", num_other_ports);
   return counters;
 }
 

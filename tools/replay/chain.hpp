@@ -12,6 +12,7 @@
 
 #include "common/bus/memory_bus.hpp"
 #include "common/bus/schema.hpp"
+#include "tools/replay/lacks.hpp"
 #include "tools/replay/plan.hpp"
 #include "tools/replay/stage.hpp"
 
@@ -75,6 +76,9 @@ class Chain {
   /// Messages that are missing in the input, by channel that is read; counts above 0.
   std::vector<std::pair<std::string, std::int64_t>> Gaps() const;
 
+  /// Datagrams for which no service has the port.
+  const OtherPorts& other_ports() const { return other_ports_; }
+
   /// nullptr: it does not run.
   const Stage* Find(std::string_view service) const;
 
@@ -93,7 +97,7 @@ class Chain {
   std::vector<std::string> read_;
   std::optional<Utime> first_time_;
   std::optional<Utime> time_;
-  std::int64_t num_other_ports_ = 0;
+  OtherPorts other_ports_;
   std::chrono::nanoseconds digest_time_{0};
   std::vector<std::unique_ptr<Running>> running_;  // in the order of the data
 };

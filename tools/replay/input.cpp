@@ -6,11 +6,13 @@
 #include <array>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
 #include <spdlog/spdlog.h>
 #include <stdexcept>
+#include <system_error>
 
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
@@ -178,11 +180,12 @@ class Feeder {
 
 // Reads until all that is looked for was found.
 void Look(const std::filesystem::path& file, const std::set<std::string, std::less<>>& candidates, std::set<std::string, std::less<>>& present,
-          std::optional<run_info_t>& recorded) {
+          std::optional<run_info_t>& recorded, const std::function<void(std::int64_t)>& show) {
   const auto is_found = [&] { return std::ranges::all_of(candidates, [&](const auto& channel) { return present.contains(channel); }); };
   bus::LogReader reader(file, io::ThrowIfStopAsked);
   while (!is_found()) {
     io::ThrowIfStopAsked();
+    if (show) show(reader.position_bytes());
     const auto event = reader.NextView([](std::string_view channel) { return channel == bus::kRunInfo.name; });
     if (!event) return;
     if (!recorded && event->channel == bus::kRunInfo.name) recorded = bus::Decode<run_info_t>(event->bytes);
@@ -206,22 +209,38 @@ InputKind KindOf(const std::filesystem::path& file) {
   return navigator::IsTextLog(file) ? InputKind::kTextLog : InputKind::kCapture;
 }
 
-Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request) {
+Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request, const std::function<void(double)>& show_share) {
   const auto candidates = Candidates(request);
   Inspection inspection;
   std::set<std::string, std::less<>> present;
   std::size_t num_logs = 0;
+  std::size_t num_text_logs = 0;
+  // Logs are looked at, and then read for what the tracker did.
+  std::int64_t total_bytes = 1;
   for (const auto& file : files) {
-    const bool is_log = KindOf(file) == InputKind::kLog;
+    std::error_code error;
+    const auto size_bytes = std::filesystem::file_size(file, error);
+    total_bytes += error ? 0 : 2 * static_cast<std::int64_t>(size_bytes);
+  }
+  std::int64_t done_bytes = 0;
+  const std::function<void(std::int64_t)> show = [&](std::int64_t position_bytes) {
+    if (show_share) show_share(static_cast<double>(done_bytes + position_bytes) / static_cast<double>(total_bytes));
+  };
+  for (const auto& file : files) {
+    const auto kind = KindOf(file);
+    const bool is_log = kind == InputKind::kLog;
+    num_text_logs += kind == InputKind::kTextLog ? 1 : 0;
     inspection.sizes_bytes.push_back(static_cast<std::int64_t>(std::filesystem::file_size(file)));
-    if (is_log) Look(file, candidates, present, inspection.recorded);
+    if (is_log) Look(file, candidates, present, inspection.recorded, show);
+    done_bytes += inspection.sizes_bytes.back();
     num_logs += is_log ? 1 : 0;
   }
   if (num_logs != 0 && num_logs != files.size()) throw std::runtime_error("captures and lcm-logs cannot be replayed together");
   inspection.is_logs = num_logs != 0;
+  inspection.is_text_logs = num_text_logs == files.size();
   try {
     inspection.plan = num_logs == 0 ? MakeCapturePlan(request) : MakeLogPlan(request, present);
-    if (inspection.is_logs && inspection.plan.Runs(bus::kAlerts.publisher)) inspection.plan.script = ReadScript(files);
+    if (inspection.is_logs && inspection.plan.Runs(bus::kAlerts.publisher)) inspection.plan.script = ReadScript(files, show);
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(files.front().string() + ": " + error.what());
   }

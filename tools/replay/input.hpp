@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,14 +30,17 @@ InputKind KindOf(const std::filesystem::path& file);
 struct Inspection {
   Plan plan;
   bool is_logs = false;                           // else captures
+  bool is_text_logs = false;                      // of the captures: nothing but text logs
   std::optional<run_info_t> recorded;             // the first RUN_INFO of the logs, if they hold one before all that is looked for was found
   std::vector<std::int64_t> sizes_bytes;          // of the files
   std::optional<std::chrono::sys_days> day = {};  // of the first time in each text log in which no sentence tells a date
 };
 
-/// Reads as far as is needed to know what to run. @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the
+/// Reads as far as is needed to know what to run: of logs perhaps all of them.
+/// @param show_share  is told how much is done, 0 to 1; may be empty
+/// @throws RequestError as MakeLogPlan; std::runtime_error when captures and logs are mixed, or the
 /// logs do not hold what is needed
-Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request);
+Inspection Inspect(const std::vector<std::filesystem::path>& files, const Request& request, const std::function<void(double)>& show_share = {});
 
 /// What was read and what was left out.
 struct InputSummary {

@@ -130,20 +130,23 @@ class GivenMaps {
 
 }  // namespace
 
-std::optional<tracker::Script> ReadScript(const std::vector<std::filesystem::path>& logs) {
+std::optional<tracker::Script> ReadScript(const std::vector<std::filesystem::path>& logs, const std::function<void(std::int64_t)>& show) {
   std::vector<Told> told;
   GivenMaps maps;
+  std::int64_t done_bytes = 0;
   for (const auto& log : logs) {
     bus::LogReader reader(log, io::ThrowIfStopAsked);
     const auto is_read = [](std::string_view channel) { return channel == bus::kAlerts.name || channel == bus::kMap.name; };
     while (const auto event = reader.NextView(is_read)) {
       io::ThrowIfStopAsked();
+      if (show) show(done_bytes + reader.position_bytes());
       if (event->channel == bus::kMap.name) {
         if (const auto message = bus::Decode<map_t>(event->bytes)) maps.Add(*message);
       }
       if (event->channel != bus::kAlerts.name) continue;
       if (const auto message = bus::Decode<alerts_t>(event->bytes)) Add(*message, told);
     }
+    done_bytes += reader.size_bytes();
   }
   if (told.empty()) return std::nullopt;
   auto script = ToScript(WithoutIntruders(std::move(told)));

@@ -15,19 +15,25 @@
 #include <vector>
 
 #include "common/bus/channels.hpp"
+#include "common/bus/decode.hpp"
 #include "common/config/text_config.hpp"
+#include "common/core/log_time.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "common/runtime/process.hpp"
 #include "common/runtime/progress.hpp"
 #include "common/runtime/run_info.hpp"
 #include "common/runtime/version.hpp"
+#include "lookout/nav_raw_t.hpp"
+#include "lookout/pose_t.hpp"
 #include "services/navigator/params.hpp"
+#include "services/vlp16/params.hpp"
 #include "tools/log/log_output.hpp"
+#include "tools/log/pose_counts.hpp"
 #include "tools/log/run_marks.hpp"
-#include "tools/log/time_text.hpp"
 #include "tools/replay/chain.hpp"
 #include "tools/replay/input.hpp"
+#include "tools/replay/lacks.hpp"
 #include "tools/replay/plan.hpp"
 
 namespace {
@@ -129,7 +135,7 @@ void PrintInterleavings(const std::vector<lookout::log::Interleaving>& interleav
     spdlog::warn(
         "{} has two publishers from event {} of the input on, {}: {} messages of the second are left out; what is computed from there on "
         "stands outside the proof and need not equal the live run",
-        interleaving.channel, interleaving.event, lookout::log::TimeText(interleaving.time), interleaving.num_messages);
+        interleaving.channel, interleaving.event, lookout::TimeText(interleaving.time), interleaving.num_messages);
   }
 }
 
@@ -147,6 +153,44 @@ void PrintMarks(const lookout::log::RunMarks& marks, std::int64_t num_left_out) 
   }
 }
 
+// What PrintLacks tells of.
+struct Watched {
+  lookout::log::PoseCounts poses;
+  std::int64_t num_sentences = 0;
+
+  void Add(std::string_view channel, lookout::Bytes bytes) {
+    if (channel == lookout::bus::kPose.name) {
+      if (const auto pose = lookout::bus::Decode<lookout::pose_t>(bytes)) poses.Add(*pose);
+    } else if (channel == lookout::bus::kNavRaw.name) {
+      const auto item = lookout::bus::Decode<lookout::nav_raw_t>(bytes);
+      num_sentences += item && item->kind == lookout::nav_raw_t::KIND_SENTENCE ? 1 : 0;
+    }
+  }
+};
+
+lookout::replay::Seen SeenIn(const Options& options, const lookout::replay::Inspection& inspection, Chain& chain, const Watched& watched) {
+  using lookout::replay::Seen;
+  Seen seen;
+  seen.input = inspection.is_logs ? Seen::Input::kLog : inspection.is_text_logs ? Seen::Input::kTextLog : Seen::Input::kCapture;
+  const auto& plan = inspection.plan;
+  seen.wants_scans = plan.Runs(lookout::bus::kLidarScan.publisher);
+  seen.wants_poses = plan.Runs(lookout::bus::kPose.publisher);
+  seen.wants_tracks = plan.Runs(lookout::bus::kTracks.publisher);
+  seen.data_port = lookout::vlp16::LoadParams(options.config_folder).data_port;
+  for (const auto& [port, source] : lookout::navigator::LoadParams(options.config_folder).source_of_port) seen.sentence_ports.push_back(port);
+  const auto* const lidar = chain.Find(lookout::bus::kLidarScan.publisher);
+  seen.num_lidar_packets = inspection.is_logs || lidar == nullptr ? CountOf(chain, lookout::bus::kLidarPackets) : lidar->num_measured();
+  seen.num_sentences = watched.num_sentences;
+  seen.num_scans = CountOf(chain, seen.wants_scans ? lookout::bus::kLidarClock : lookout::bus::kObstacles);
+  for (const auto& [name, count] : chain.Counters()) {
+    if (name == "georeferencer.obstacles_ok") seen.num_obstacles_placed = count;
+    if (name == "georeferencer.obstacles_vessel_frame_only") seen.num_obstacles_unplaced = count;
+  }
+  seen.poses = watched.poses;
+  seen.other_ports = chain.other_ports();
+  return seen;
+}
+
 void Replay(const Options& options) {
   auto config_and_inputs = lookout::io::FilesIn(options.config_folder);
   config_and_inputs.insert(config_and_inputs.end(), options.inputs.begin(), options.inputs.end());
@@ -155,14 +199,19 @@ void Replay(const Options& options) {
       options.output,
       {.force = options.force, .inputs = std::move(config_and_inputs), .tell = [](const std::string& line) { spdlog::warn("{}", line); }});
   const auto start = std::chrono::steady_clock::now();
-  auto inspection = lookout::replay::Inspect(options.inputs, options.request);
+  lookout::runtime::Progress looking("replay", lookout::runtime::OnlyTerminal(stderr));
+  auto inspection = lookout::replay::Inspect(options.inputs, options.request,
+                                             [&looking](double share) { looking.Update(share, [] { return "looking what the logs hold"; }); });
+  looking.Clear();
   inspection.day = options.day;
   auto run_info = RunInfoOf(options, inspection);
+  Watched watched;
   Chain chain(options.config_folder, inspection.plan, [&](lookout::Utime time, std::string_view channel, lookout::Bytes bytes) {
     if (output.num_events() == 0) {  // RUN_INFO first, with the time of the first event
       run_info.utime_us = lookout::ToUtimeUs(time);
       output.Write(time, lookout::bus::kRunInfo.name, lookout::bus::Encode(run_info));
     }
+    watched.Add(channel, bytes);
     output.Write(time, channel, bytes);
   });
 
@@ -188,11 +237,14 @@ void Replay(const Options& options) {
   const auto* const lidar = chain.Find(lookout::bus::kLidarScan.publisher);
   const auto* const navigation = chain.Find(lookout::bus::kPose.publisher);
   if (!inspection.is_logs && CountOf(chain, lookout::bus::kLidarPackets) == 0 && (navigation == nullptr || navigation->num_measured() == 0)) {
-    throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config");
+    const auto ports = lookout::replay::PortsText(chain.other_ports());
+    throw std::runtime_error("the input holds no lidar packet and no sentence on the ports of the config" +
+                             (ports.empty() ? "" : "; datagrams came to " + ports));
   }
   if (lidar != nullptr && lidar->num_measured() > 0 && num_scans == 0) {
     throw std::runtime_error("no scan came out of the lidar's packets, see the counts above. " + lidar->Report().reason);
   }
+  for (const auto& line : lookout::replay::Lacks(SeenIn(options, inspection, chain, watched))) spdlog::warn("{}", line);
   std::FILE* const out = output.IsStandardOutput() ? stderr : stdout;  // a log that goes there is not mixed with lines
   output.Commit();
   PrintDigests(chain, out);  // last: the log is there, whoever reads these

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "common/core/log_time.hpp"
 #include "common/runtime/version.hpp"
 #include "tools/sim/scene_file.hpp"
 
@@ -23,6 +24,13 @@ CLI::Validator Within(double min, double max) {
     return range(text);
   };
   return {check, range.get_description(), ""};
+}
+
+// UTC as microseconds since 1970. What is no UTC stays, for the checks behind it.
+std::string ToMicroseconds(std::string& text) {
+  const auto given = ParseGivenTime(text);
+  if (given && given->kind == GivenTime::Kind::kUtc) text = std::to_string(given->value.count());
+  return {};
 }
 
 std::string FaultHelp() {
@@ -54,7 +62,9 @@ void AddRun(CLI::App& app, Options& options) {
   pcap->excludes(udp);
   app.add_option("--truth", options.truth_folder, "write the truth to this folder; files in it that exist are refused");
   app.add_flag("--force", options.force, "replace existing files of --pcap and --truth");
-  app.add_option("--start-utime-us", options.start_utime_us, "with --pcap: time of the first shot")
+  app.add_option("--start-utime-us", options.start_utime_us,
+                 "with --pcap: time of the first shot, in microseconds since 1970 or as UTC (2026-08-29T10:00:00Z)")
+      ->transform(CLI::Validator(ToMicroseconds, ""))
       ->check(CLI::Range(std::int64_t{0}, kMaxUtimeUs))
       ->excludes(udp)
       ->capture_default_str();

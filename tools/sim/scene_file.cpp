@@ -24,15 +24,19 @@ using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
 constexpr std::string_view kExtension = ".txtpb";
+constexpr const char* kScenes = "scenes";
 constexpr std::string_view kFamilies = "families";  // the folder of theirs among the scenes
 
-// By name; what lies beside the boat hides a scene of the source tree, and that one of the package.
-std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder, const fs::path& subfolder) {
+// Empty where the kernel does not tell.
+fs::path ThisProgram() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error);
+}
+
+// By name; what lies in a folder hides a scene of that name in those behind it.
+std::map<std::string, fs::path> SceneFiles(const std::vector<fs::path>& scene_folders, const fs::path& subfolder) {
   std::map<std::string, fs::path> files;
-  // "config/demo/" has an empty last part.
-  const fs::path boat = (config_folder / "").lexically_normal().parent_path();
-  const fs::path beside_boat = boat.parent_path() / "scenes";
-  for (const auto& scenes : {beside_boat, fs::path(LOOKOUT_SCENE_FOLDER), fs::path(LOOKOUT_INSTALLED_SCENE_FOLDER)}) {
+  for (const auto& scenes : scene_folders) {
     const fs::path folder = subfolder.empty() ? scenes : scenes / subfolder;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -40,6 +44,10 @@ std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder, const 
     }
   }
   return files;
+}
+
+std::map<std::string, fs::path> SceneFiles(const fs::path& config_folder, const fs::path& subfolder) {
+  return SceneFiles(SceneFolders(config_folder, ThisProgram()), subfolder);
 }
 
 bool IsLand(File::Kind kind) {
@@ -288,16 +296,45 @@ const KindOfObject* FindKind(File::Kind kind) {
   return found == Kinds().end() ? nullptr : &*found;
 }
 
+std::vector<fs::path> SceneFolders(const fs::path& config_folder, const fs::path& program) {
+  std::vector<fs::path> folders;
+  const auto add = [&folders](const fs::path& folder) {
+    if (std::ranges::find(folders, folder) == folders.end()) folders.push_back(folder);
+  };
+  // "config/demo/" has an empty last part.
+  const fs::path boat = (config_folder / "").lexically_normal().parent_path();
+  add(boat / kScenes);
+  add(boat.parent_path() / kScenes);
+  std::error_code error;
+  for (auto parent = fs::absolute(boat, error).lexically_normal().parent_path(); parent.has_relative_path(); parent = parent.parent_path()) {
+    add(parent / kScenes);
+    add(parent / "config" / kScenes);
+  }
+  // A source tree that was moved after it was built, or a package elsewhere than below /usr.
+  for (auto parent = program.parent_path(); parent.has_relative_path(); parent = parent.parent_path()) {
+    add(parent / "config" / kScenes);
+    add(parent / "share/lookout/config" / kScenes);
+  }
+  add(LOOKOUT_SCENE_FOLDER);
+  add(LOOKOUT_INSTALLED_SCENE_FOLDER);
+  return folders;
+}
+
 fs::path FindScene(const std::string& name_or_path, const fs::path& config_folder) {
   if (name_or_path.ends_with(kExtension)) return name_or_path;
+  const auto folders = SceneFolders(config_folder, ThisProgram());
   std::string names;
   for (const auto& folder : {fs::path(), fs::path(kFamilies)}) {
-    const auto files = SceneFiles(config_folder, folder);
+    const auto files = SceneFiles(folders, folder);
     const auto found = files.find(name_or_path);
     if (found != files.end()) return found->second;
     for (const auto& [name, file] : files) names += (names.empty() ? "" : ", ") + name;
   }
-  throw config::ConfigError({"--scene: no such scene: " + name_or_path + " (there are: " + names + ")"});
+  std::string looked;
+  for (const auto& folder : folders) looked += (looked.empty() ? "" : ", ") + folder.string();
+  const auto there_are = names.empty() ? "there is no scene" : "there are: " + names;
+  throw config::ConfigError({"--scene: no such scene: " + name_or_path + " (" + there_are + "; looked in " + looked +
+                             "); give the path of a scene's file, NAME.txtpb, or put it into the folder scenes beside the boat's config"});
 }
 
 std::vector<SceneSummary> Summaries(const std::map<std::string, fs::path>& files) {

@@ -10,10 +10,17 @@
 
 namespace lookout::sim {
 
-/// A scene by name: in the folder `scenes` beside the boat's config folder, else among those of the source tree (config/scenes).
+/// Where scenes are looked for by name, in this order: the folder `scenes` in the boat's config folder and beside it; `scenes` and `config/scenes` in
+/// each folder above; `config/scenes` and `share/lookout/config/scenes` in each folder above the program; the source tree and the package of the
+/// build.
+///
+/// @param program  path of the program that runs; may be empty
+std::vector<std::filesystem::path> SceneFolders(const std::filesystem::path& config_folder, const std::filesystem::path& program);
+
+/// A scene by name, in the first of SceneFolders that holds it.
 ///
 /// @param name_or_path  a name, or the path of a file that ends in .txtpb
-/// @throws config::ConfigError when there is none; it names those that there are
+/// @throws config::ConfigError when there is none; it names those that there are, and where it looked
 std::filesystem::path FindScene(const std::string& name_or_path, const std::filesystem::path& config_folder);
 
 struct SceneSummary {

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/bus/channels.hpp"
+
 namespace lookout::page {
 
 std::string SourcesTextOf(const std::vector<std::pair<SourceFacts, const Timeline*>>& sources) {
@@ -12,6 +14,9 @@ std::string SourcesTextOf(const std::vector<std::pair<SourceFacts, const Timelin
                     {"name", facts.name},
                     {"begin_utime_us", has_times ? ToUtimeUs(timeline->begin()) : 0},
                     {"end_utime_us", has_times ? ToUtimeUs(timeline->end()) : 0},
+                    {"opens_utime_us", has_times ? ToUtimeUs(timeline->OpensAt()) : 0},
+                    {"has_pose", has_times && timeline->Holds(bus::kPose)},
+                    {"has_tracks", has_times && timeline->Holds(bus::kTracks)},
                     {"num_scans", timeline == nullptr ? 0 : timeline->scans().size()},
                     {"is_growing", facts.is_growing},
                     {"is_indexed", facts.is_indexed},

@@ -92,6 +92,25 @@ void Timeline::DropBefore(Utime time) {
   begin_ = std::min(time, end_);
 }
 
+const Timeline::Places& Timeline::Of(const bus::Channel& channel) const {
+  return channels_[static_cast<std::size_t>(bus::FindChannel(channel.name) - bus::kChannels.data())];
+}
+
+bool Timeline::Holds(const bus::Channel& channel) const { return !Of(channel).empty(); }
+
+Utime Timeline::OpensAt() const {
+  const auto& tracks = Of(bus::kTracks);
+  if (tracks.empty()) return begin();
+  const auto& poses = Of(bus::kPose);
+  auto first = tracks.begin();
+  if (!poses.empty()) {
+    first = std::ranges::find_if(tracks, [&](const Place& place) { return place.utime_us >= poses.front().utime_us; });
+    if (first == tracks.end()) first = tracks.begin();
+  }
+  const auto scan = std::ranges::find(scans_, first->utime_us, &Scan::utime_us);
+  return scan == scans_.end() ? begin() : std::max(scan->whole, begin());
+}
+
 Moment Timeline::Find(const At& request) const {
   if (request.scan_time) {
     Moment moment{.time = begin(), .scan = {}};

@@ -57,6 +57,13 @@ class Timeline {
   Utime begin() const { return *begin_; }
   Utime end() const { return end_; }
 
+  /// Whether there is a message of the channel.
+  bool Holds(const bus::Channel& channel) const;
+
+  /// Where a page begins to show it: when the first scan is whole that has TRACKS, with a POSE of its time or before it; else the first that has
+  /// TRACKS; else begin(). Precondition: not empty.
+  Utime OpensAt() const;
+
   const std::deque<Scan>& scans() const { return scans_; }
   const std::deque<SecondCell>& cells() const { return cells_; }
   const std::deque<FilmEvent>& events() const { return events_; }
@@ -73,6 +80,7 @@ class Timeline {
  private:
   using Places = std::deque<Place>;
 
+  const Places& Of(const bus::Channel& channel) const;
   void NoteScan(const Place& place);
   std::vector<Place> OfScan(const Places& places, const Scan& scan) const;
   std::vector<Place> OfPose(const Places& places, const Moment& moment) const;

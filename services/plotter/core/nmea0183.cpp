@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "common/core/angles.hpp"
 #include "common/core/sentence.hpp"
@@ -91,6 +93,27 @@ std::string NameWithin(const std::string& name, std::size_t max_bytes) {
   if (name.size() <= max_bytes) return FieldText(name, max_bytes);
   const auto last_word = name.rfind(' ');
   return FieldText(last_word == std::string::npos ? name : name.substr(last_word + 1), max_bytes);
+}
+
+// What an alert says within a sentence: the whole where it fits; else in short words, first those that cost least; else to the end of a word, since
+// what stands first (who, where, how far) matters most.
+std::string AlertWithin(std::string text, std::size_t max_bytes) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kShort{{{" in the guard zone", " in zone"},
+                                                                                 {"closest approach", "CPA"},
+                                                                                 {" deg to starboard", " deg stbd"},
+                                                                                 {" deg to port", " deg port"},
+                                                                                 {", ", " "}}};
+  for (const auto& [words, shorter] : kShort) {
+    for (auto place = text.find(words); text.size() > max_bytes && place != std::string::npos; place = text.find(words)) {
+      text.replace(place, words.size(), shorter);
+    }
+  }
+  if (text.size() > max_bytes) {
+    const auto end_of_word = text.rfind(' ', max_bytes);
+    text.resize(end_of_word == std::string::npos || end_of_word == 0 ? max_bytes : end_of_word);
+    while (!text.empty() && std::string_view(" ,;:-").find(text.back()) != std::string_view::npos) text.pop_back();
+  }
+  return FieldText(text, max_bytes);
 }
 
 int IdentifierOf(Cause cause) { return kFirstIdentifier + static_cast<int>(cause); }
@@ -193,7 +216,7 @@ std::string Alr(std::string_view talker, const Notice& notice, Utime time) {
   const bool is_acknowledged = notice.state == NoticeState::kAcknowledged || notice.state == NoticeState::kCleared;
   const auto before =
       fmt::format("{}ALR,{},{:03},{},{},", talker, TimeOfDay(time), AlarmNumber(notice), holds ? 'A' : 'V', is_acknowledged ? 'A' : 'V');
-  return Sentence(before + FieldText(notice.text, RoomFor(before, "")));
+  return Sentence(before + AlertWithin(notice.text, RoomFor(before, "")));
 }
 
 std::string Alf(std::string_view talker, const Notice& notice, Utime time, int sequence, int revision) {
@@ -201,7 +224,7 @@ std::string Alf(std::string_view talker, const Notice& notice, Utime time, int s
       fmt::format("{}ALF,2,1,{},{},B,{},{},{},{},{},{},0,{}", talker, sequence, TimeOfDay(time), notice.level == Level::kCaution ? 'C' : 'W',
                   AlfStateOf(notice), kMaker, IdentifierOf(notice.cause), InstanceOf(notice), revision, TitleOf(notice.cause));
   const auto before = fmt::format("{}ALF,2,2,{},,,,,,,,,,", talker, sequence);
-  return Sentence(title) + Sentence(before + FieldText(notice.text, RoomFor(before, "")));
+  return Sentence(title) + Sentence(before + AlertWithin(notice.text, RoomFor(before, "")));
 }
 
 LineKind ReadLine(std::string_view line, AcknowledgedNumber& acknowledged) {

@@ -110,9 +110,11 @@ class ExportTest : public ::testing::Test {
   void Add(const bus::Channel& channel, const T& message) {
     AddBytes(channel.name, bus::Encode(message));
   }
-  void AddBytes(std::string_view channel, const std::vector<std::uint8_t>& bytes) {
+  void AddBytes(std::string_view channel, const std::vector<std::uint8_t>& bytes) { AddBytesAt(kStartUs, channel, bytes); }
+  /// @param utime_us  of the event
+  void AddBytesAt(std::int64_t utime_us, std::string_view channel, const std::vector<std::uint8_t>& bytes) {
     if (!writer_) writer_ = std::make_unique<support::FileLog>(log_);
-    writer_->Write(Utime(std::chrono::microseconds(kStartUs)), channel, bytes);
+    writer_->Write(Utime(std::chrono::microseconds(utime_us)), channel, bytes);
   }
 
   /// Exports what was added so far.

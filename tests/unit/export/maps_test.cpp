@@ -1,6 +1,10 @@
 // Maps out of little logs: what stands in them, in each format.
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
 
 #include "common/core/angles.hpp"
 #include "lookout/alerts_t.hpp"
@@ -267,6 +271,64 @@ TEST_F(TrackMapTest, GpxHasTheBoatsTrackAndTheWayAsTracksBehindTheWaypoints) {
                        "<trkpt lat=\"60.000000000\" lon=\"10.000000000\"><time>2023-11-14T22:13:20.000000Z</time></trkpt>\n"),
             std::string::npos)
       << text_;
+}
+
+// The fields that a Schema declares, and those that its features have.
+void ExpectDeclaredFields(const std::string& kml) {
+  std::map<std::string, std::set<std::string>> declared;
+  const std::regex schema(R"re(<Schema name="\w+" id="(\w+)">(.*?)</Schema>)re");
+  const std::regex field(R"re(<SimpleField type="(int|double|string)" name="(\w+)"/>)re");
+  for (std::sregex_iterator one(kml.begin(), kml.end(), schema), end; one != end; ++one) {
+    const std::string fields = (*one)[2];
+    for (std::sregex_iterator name(fields.begin(), fields.end(), field); name != end; ++name) declared[(*one)[1]].insert((*name)[2]);
+  }
+  const std::regex data(R"re(<SchemaData schemaUrl="#(\w+)">(.*?)</SchemaData>)re");
+  const std::regex value(R"re(<SimpleData name="(\w+)">)re");
+  int num_values = 0;
+  for (std::sregex_iterator one(kml.begin(), kml.end(), data), end; one != end; ++one) {
+    const std::string values = (*one)[2];
+    for (std::sregex_iterator name(values.begin(), values.end(), value); name != end; ++name, ++num_values) {
+      EXPECT_TRUE(declared[(*one)[1]].contains((*name)[1])) << (*one)[1] << " has no field " << (*name)[1];
+    }
+  }
+  EXPECT_GT(num_values, 0);
+  EXPECT_EQ(kml.find("<Data "), std::string::npos);
+}
+
+// GIS once read every number of a KML file as text.
+TEST_F(ObstacleMapTest, KmlHasTypedFields) {
+  auto land = MakeObstacle(2, 50.0F);
+  land.kind = obstacle_t::KIND_LAND;
+  land.num_waterline = land.num_waterline_map = 2;
+  land.waterline_vessel_x_m = land.waterline_vessel_y_m = {0.0F, 0.0F};
+  land.waterline_east_m = {49.0F, 50.0F};
+  land.waterline_north_m = {0.0F, 1.0F};
+  Add(bus::kObstacles, MakeObstacles(0, {MakeObstacle(1, -50.0F), land}));
+  ASSERT_EQ(Export(MakeRequest("kml")), kExitFine) << errors_;
+  ExpectDeclaredFields(text_);
+  EXPECT_NE(text_.find("<SimpleField type=\"double\" name=\"range_m\"/>"), std::string::npos) << text_;
+  EXPECT_NE(text_.find("<SimpleField type=\"int\" name=\"obstacle_id\"/>"), std::string::npos) << text_;
+}
+
+TEST_F(TrackMapTest, KmlHasTypedFields) {
+  for (int seq = 0; seq < 3; ++seq) AddScan(seq, {MakeTrack(8, 0.002 + 1e-5 * seq, 1.1F)});
+  ASSERT_EQ(Export("tracks", "kml"), kExitFine) << errors_;
+  ExpectDeclaredFields(text_);
+}
+
+// Three decimals would make 0.000 of the covariance of a good receiver.
+TEST_F(ObstacleMapTest, CovariancesHaveTheDigitsThatTheyHave) {
+  auto obstacle = MakeObstacle(1, -50.0F);
+  obstacle.covariance_m2[0] = 0.000123456789;
+  obstacle.covariance_m2[1] = -2.5e-7;
+  obstacle.covariance_m2[2] = 0.25;
+  Add(bus::kObstacles, MakeObstacles(0, {obstacle}));
+  ASSERT_EQ(Export(MakeRequest("geojson")), kExitFine) << errors_;
+  EXPECT_NE(text_.find("\"cov_ee_m2\":0.000123456789,\"cov_en_m2\":-0.00000025,\"cov_nn_m2\":0.25}"), std::string::npos) << text_;
+  ASSERT_EQ(Export(MakeRequest("kml")), kExitFine) << errors_;
+  EXPECT_NE(text_.find("<SimpleData name=\"cov_ee_m2\">0.000123456789</SimpleData>"), std::string::npos) << text_;
+  ASSERT_EQ(Export(MakeRequest("gpx")), kExitFine) << errors_;
+  EXPECT_NE(text_.find("cov_ee_m2 0.000123456789, cov_en_m2 -0.00000025, cov_nn_m2 0.25"), std::string::npos) << text_;
 }
 
 TEST_F(TrackMapTest, KmlHasAPlaceForEachTime) {

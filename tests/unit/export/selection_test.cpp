@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lookout/tracks_t.hpp"
 #include "tests/unit/export/export_logs.hpp"
 
 namespace lookout::exporter {
@@ -19,15 +20,6 @@ TEST(Circle, IsLatitudeLongitudeAndRadius) {
   for (const auto* wrong :
        {"", "1,2", "1,2,3,4", "1,2,", "1,2,3m", " 1,2,3", "91,2,3", "1,181,3", "1,2,0", "1,2,-3", "nan,2,3", "1,2,inf", "1;2;3"}) {
     EXPECT_FALSE(ParseCircle(wrong)) << wrong;
-  }
-}
-
-TEST(Time, IsACountOfMicrosecondsOrUtc) {
-  EXPECT_EQ(ParseUtimeUs("1700000000000000"), kStartUs);
-  EXPECT_EQ(ParseUtimeUs("2023-11-14T22:13:20Z"), kStartUs);
-  EXPECT_EQ(ParseUtimeUs("2023-11-14T22:13:20.25Z"), kStartUs + 250'000);
-  for (const auto* wrong : {"", "12.5", "yesterday", "2023-11-14", "2023-11-14T22:13:20", "2023-13-14T22:13:20Z", "99999999999999999", "1e15"}) {
-    EXPECT_FALSE(ParseUtimeUs(wrong)) << wrong;
   }
 }
 
@@ -54,6 +46,80 @@ TEST_F(SelectionTest, SpanIsHalfOpenForTablesToo) {
   EXPECT_EQ(Export(request), kExitFailed);
   EXPECT_NE(errors_.find("holds no POSE before 2023-11-14T22:13:20.000000Z"), std::string::npos) << errors_;
   EXPECT_EQ(text_, "");
+}
+
+// "--from 10" once was 10 microseconds after 1970: the whole table came, and no word.
+TEST_F(SelectionTest, SpanIsGivenAsForEveryTool) {
+  for (int i = 0; i < 5; ++i) {
+    pose_t pose = PoseWithPlace(kStartUs + i * 1'000'000, 10.0, 20.0);
+    AddBytesAt(pose.utime_us + 5'000, bus::kPose.name, bus::Encode(pose));
+  }
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out", .force = true};
+  for (const auto* from : {"2.5", "0:02.5", "2023-11-14T22:13:22.5Z", "22:13:22.5Z", "1700000002500000"}) {
+    request.from = from;
+    ASSERT_EQ(Export(request), kExitFine) << from << errors_;
+    EXPECT_EQ(Rows().size(), 2U) << from;
+  }
+  request.to = "3.5";
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 1U);
+  for (const auto* wrong : {"10", "soon", "2023-11-14", "2023-11-13T22:13:22Z", "12345"}) {
+    request.from = wrong;
+    request.to = "";
+    EXPECT_EQ(Export(request), kExitUsage) << wrong;
+    EXPECT_NE(errors_.find("from 2023-11-14T22:13:20.005000Z to 2023-11-14T22:13:24.005000Z"), std::string::npos) << errors_;
+  }
+  request.from = "3";
+  request.to = "2";
+  EXPECT_EQ(Export(request), kExitUsage);
+  EXPECT_NE(errors_.find("--from is not before --to"), std::string::npos) << errors_;
+}
+
+// Live processes that play an old log: its times are those of measurement, the recorder's are those of the day.
+TEST_F(SelectionTest, SpanIsOfTheTimesOfMeasurementWhereTheyAreFarFromThoseOfTheLog) {
+  constexpr std::int64_t kDayUs = 86'400'000'000;
+  for (int i = 0; i < 5; ++i) {
+    AddBytesAt(kStartUs + kDayUs + i * 1'000'000, bus::kPose.name, bus::Encode(PoseWithPlace(kStartUs + i * 1'000'000, 10.0, 20.0)));
+  }
+  Request request{.inputs = {log_}, .table = "pose", .output = folder_ / "out", .force = true, .from = "2.5"};
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 2U);
+  request.from = "2023-11-14T22:13:22.5Z";
+  ASSERT_EQ(Export(request), kExitFine) << errors_;
+  EXPECT_EQ(Rows().size(), 2U);
+}
+
+// Tables and maps of a log without a position once were empty, and nothing said why.
+TEST_F(SelectionTest, SaysWhyThereAreNoTracksAndNoPlaces) {
+  obstacles_t obstacles{};
+  obstacles.utime_us = kStartUs;
+  obstacles.num_obstacles = 1;
+  obstacles.obstacles.resize(1);
+  obstacles.obstacles[0].status = obstacle_t::STATUS_VESSEL_FRAME_ONLY;
+  Add(bus::kObstacles, obstacles);
+  tracks_t tracks{};
+  tracks.utime_us = tracks.end_utime_us = kStartUs;
+  Add(bus::kTracks, tracks);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("lookout-export: there are no tracks, as there is no POSE: "), std::string::npos) << errors_;
+  ASSERT_EQ(Export("obstacles"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("lookout-export: no obstacle has a place on the earth, as there is no POSE: "), std::string::npos) << errors_;
+  Export("obstacles", "geojson");
+  EXPECT_NE(errors_.find("as there is no POSE"), std::string::npos) << errors_;
+  writer_ = nullptr;
+  std::filesystem::remove(log_);
+  Add(bus::kTracks, tracks);
+  auto pose = PoseWithPlace(kStartUs, 10.0, 20.0);
+  pose.status = pose_t::STATUS_NO_HEADING;
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  EXPECT_NE(errors_.find("as POSE knows no heading (1 of 1 messages)"), std::string::npos) << errors_;
+  pose.status = pose_t::STATUS_OK;
+  std::filesystem::remove(log_);
+  Add(bus::kTracks, tracks);
+  Add(bus::kPose, pose);
+  ASSERT_EQ(Export("tracks"), kExitFine) << errors_;
+  EXPECT_EQ(errors_, "") << "nothing was there";
 }
 
 TEST_F(SelectionTest, CircleLeavesOutRowsThatLieOutsideOrNowhere) {

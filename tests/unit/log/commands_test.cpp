@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/unit/log/small_log.hpp"
+#include "tools/log/log_span.hpp"
 
 namespace lookout::log {
 namespace {
@@ -247,6 +248,41 @@ TEST_F(LogCommands, SliceSaysWhatIsWrongWithItsRequest) {
   EXPECT_THROW(Slice(onto_itself, out_, errors_), std::runtime_error);
   EXPECT_EQ(Content(file), before);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(LogCommands, SliceTakesEveryNotationOfATimeAndRefusesWhatLiesOutside) {
+  auto request = Request(Write("log", TwoMinutes()));
+  for (const char* from : {"95", "+95", "1:35", "2027-01-15T08:01:35Z", "08:01:35Z", "1800000095000000"}) {
+    request.from = from;
+    EXPECT_EQ(Sliced(request),
+              (std::vector<std::string>{"RUN_INFO 100", "POSE 100", "NOISE 100", "POSE 110", "RUN_INFO 120", "POSE 120", "NOISE 120"}))
+        << from;
+  }
+  for (const char* from : {"122", "2027-01-15T07:00:00Z", "2027-01-16T08:01:35Z", "1800000195000000", "1800000095"}) {
+    request.from = from;
+    try {
+      Slice(request, out_, errors_);
+      FAIL() << from;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find("lies outside of the log, which goes from 2027-01-15T08:00:00.000000Z to 2027-01-15T08:02:00.000000Z"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
+TEST_F(LogCommands, SpanIsFoundWithoutReadingTheWholeLog) {
+  std::vector<bus::LogEvent> events;
+  for (int i = 0; i < 100; ++i) events.push_back(Event(start_ + std::chrono::seconds(i), "NOISE", std::vector<std::uint8_t>(100'000, 7)));
+  const auto file = Write("log", events);
+  EXPECT_EQ(SpanOf({file}).begin, start_);
+  EXPECT_EQ(SpanOf({file}).end, start_ + std::chrono::seconds(99));
+  // Damage at the end that is longer than what is looked at first.
+  const auto text = Content(file);
+  SetContent(file, text.substr(0, text.size() - text.size() / 100) + std::string(3'000'000, 'x'));
+  EXPECT_EQ(SpanOf({file}).end, start_ + std::chrono::seconds(98));
+  EXPECT_EQ(SpanOf({Write("empty", {}), file, Write("later", {Pose(500, 0)})}).end, start_ + std::chrono::seconds(500));
+  EXPECT_THROW(SpanOf({folder_ / "empty"}), std::runtime_error);
 }
 
 TEST_F(LogCommands, RepairKeepsEveryWholeEventAndTellsWhatWasLost) {

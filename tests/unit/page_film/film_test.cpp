@@ -107,6 +107,44 @@ TEST_F(OfFilm, BeforeTheFirstScanThereIsNone) {
   EXPECT_TRUE(UtimesOf(answer, bus::kLidarScan).empty());
 }
 
+// A page once opened a log on a scan of before the first POSE, and asked whether the tracker runs.
+TEST_F(OfFilm, OpensOnTheFirstScanThatHasTracksAndAPose) {
+  {
+    SceneLog log(a_);
+    for (std::int64_t seq = 0; seq < 3; ++seq) {
+      lidar_scan_t scan{};
+      scan.utime_us = UtimeOf(seq);
+      scan.end_utime_us = UtimeOf(seq) + kScanUs - 1;
+      scan.num_parts = 1;
+      log->Put(UtimeOf(seq) + kDelayUs, bus::kLidarScan, scan);
+    }
+    for (std::int64_t seq = 3; seq < 6; ++seq) log->Scan(seq);  // the first POSE is of the end of the first of them
+  }
+  const auto film = Open({a_});
+  const auto source = nlohmann::json::parse(film->SourcesText())[0];
+  EXPECT_EQ(source["opens_utime_us"].get<std::int64_t>(), WholeAt(4));
+  EXPECT_TRUE(source["has_pose"].get<bool>());
+  EXPECT_TRUE(source["has_tracks"].get<bool>());
+  const auto answer = film->Find(AtTime(WholeAt(4), {kTracksChannel, kPoseChannel}));
+  EXPECT_EQ(UtimesOf(answer, bus::kTracks), std::vector{UtimeOf(4)});
+  EXPECT_EQ(UtimesOf(answer, bus::kPose), std::vector{UtimeOf(4)});
+}
+
+TEST_F(OfFilm, OpensAtItsBeginWhereThereAreNoTracks) {
+  {
+    SceneLog log(a_);
+    lidar_scan_t scan{};
+    scan.utime_us = UtimeOf(0);
+    scan.num_parts = 1;
+    log->Put(UtimeOf(0) + kDelayUs, bus::kLidarScan, scan);
+  }
+  const auto film = Open({a_});
+  const auto source = nlohmann::json::parse(film->SourcesText())[0];
+  EXPECT_EQ(source["opens_utime_us"], source["begin_utime_us"]);
+  EXPECT_FALSE(source["has_pose"].get<bool>());
+  EXPECT_FALSE(source["has_tracks"].get<bool>());
+}
+
 TEST_F(OfFilm, GivesTheLastHealthOfEachProcessThatIsNotOld) {
   {
     SceneLog log(a_);

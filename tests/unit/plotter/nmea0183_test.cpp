@@ -119,13 +119,30 @@ TEST(PlotterNmea, NamesATargetByItsNumberWhereThereIsNoRoom) {
 // Cases written by hand after IEC 61162-1.
 TEST(PlotterNmea, SaysAnAlertAsAlr) {
   auto notice = MakeNotice();
-  EXPECT_EQ(Line(Alr("RA", notice, test::kTime)), "$RAALR,102030.45,003,A,V,boat 17: closest approach 3 m in 21 s  40 deg to sta");
+  EXPECT_EQ(Line(Alr("RA", notice, test::kTime)), "$RAALR,102030.45,003,A,V,boat 17: CPA 3 m in 21 s  40 deg to starboard");
   notice.state = NoticeState::kAcknowledged;
   EXPECT_NE(Alr("RA", notice, test::kTime).find(",003,A,A,"), std::string::npos);
   notice.state = NoticeState::kRectified;
   EXPECT_NE(Alr("RA", notice, test::kTime).find(",003,V,V,"), std::string::npos);
   notice.state = NoticeState::kCleared;
   EXPECT_NE(Alr("RA", notice, test::kTime).find(",003,V,A,"), std::string::npos);
+}
+
+// A plotter once showed "40 deg to sta": the text was cut in the middle of its most useful word.
+TEST(PlotterNmea, SaysAnAlertInShortWordsAndCutsNone) {
+  auto notice = MakeNotice();
+  const auto said = [&notice](const std::string& text) {
+    notice.text = text;
+    const auto alr = Line(Alr("RA", notice, test::kTime));
+    return alr.substr(alr.rfind(',') + 1);
+  };
+  EXPECT_EQ(said("structure 123 in the guard zone: 12.3 m, 123 deg to starboard"), "structure 123 in zone: 12.3 m  123 deg to starboard");
+  EXPECT_EQ(said("structure 1234567 in the guard zone: 12.3 m, 123 deg to starboard"), "structure 1234567 in zone: 12.3 m  123 deg stbd");
+  EXPECT_EQ(said("obstacle 123456: closest approach 12 m in 120 s, 123 deg to port"), "obstacle 123456: CPA 12 m in 120 s  123 deg to port");
+  EXPECT_EQ(said("land in the guard zone: 2.7 m, 10 deg to port"), "land in the guard zone: 2.7 m  10 deg to port");
+  EXPECT_EQ(said("no look-out: less than three of the whole scans came, within a time of 0.5 s"),
+            "no look-out: less than three of the whole scans came");
+  EXPECT_EQ(said(std::string(40, 'x') + " " + std::string(40, 'y')), std::string(40, 'x'));
 }
 
 TEST(PlotterNmea, SaysAnAlertAsAlf) {

@@ -25,6 +25,13 @@ TEST(Options, ReadsALine) {
   EXPECT_EQ(options.simulation.faults.size(), 1U);
 }
 
+TEST(Options, BeginAtMicrosecondsOrUtc) {
+  for (const auto* start : {"1787997610250000", "2026-08-29T10:00:10.25Z"}) {
+    EXPECT_EQ(Parse({"--seconds", "1", "--start-utime-us", start}).start_utime_us, 1787997610250000) << start;
+  }
+  EXPECT_EXIT(Parse({"--seconds", "1", "--start-utime-us", "2026-08-29"}), testing::ExitedWithCode(2), "--start-utime-us");
+}
+
 TEST(Options, OverrideTheEffectsOfTheSceneAlsoByZeroAndLeaveTheOthers) {
   Effects effects;
   effects.set_return_mode(config::Scene::DUAL);

@@ -277,6 +277,29 @@ TEST_F(SceneFolders, AnUnknownNameSaysWhichThereAre) {
   }
 }
 
+// A boat's folder elsewhere, and programs that were moved with their tree, once found no scene: "there are: ".
+TEST_F(SceneFolders, AreFoundAboveTheBoatAndAboveTheProgram) {
+  const auto folders = sim::SceneFolders(folder_ / "fleet/boat", folder_ / "opt/tree/build/release/bin/lookout-sim");
+  for (const auto* wanted : {"fleet/boat/scenes", "fleet/scenes", "scenes", "config/scenes", "opt/tree/config/scenes",
+                             "opt/tree/build/release/share/lookout/config/scenes"}) {
+    EXPECT_NE(std::ranges::find(folders, folder_ / wanted), folders.end()) << wanted;
+  }
+  EXPECT_LT(std::ranges::find(folders, folder_ / "fleet/scenes"), std::ranges::find(folders, folder_ / "opt/tree/config/scenes"));
+  Write("mine.txtpb", kHead);
+  EXPECT_EQ(FindScene("mine", folder_ / "fleet/boat"), folder_ / "scenes/mine.txtpb");
+}
+
+TEST_F(SceneFolders, AnUnknownNameSaysWhereItWasLookedFor) {
+  try {
+    FindScene("nowhere", folder_ / "boat");
+    FAIL();
+  } catch (const config::ConfigError& error) {
+    for (const auto& folder : sim::SceneFolders(folder_ / "boat", {})) {
+      EXPECT_NE(std::string(error.what()).find(folder.string()), std::string::npos) << folder << ": " << error.what();
+    }
+  }
+}
+
 TEST_F(SceneFolders, AFileThatIsNotThereIsAnError) { EXPECT_THROW(LoadScene(folder_ / "none.txtpb", 1), config::ConfigError); }
 
 }  // namespace

@@ -1,0 +1,26 @@
+#include "tools/log/pose_counts.hpp"
+
+namespace lookout::log {
+
+void PoseCounts::Add(const pose_t& pose) {
+  ++num_poses;
+  const bool knows_nothing = pose.status == pose_t::STATUS_UNKNOWN;
+  if (knows_nothing || pose.status == pose_t::STATUS_NO_HEADING) ++num_without_heading;
+  if (knows_nothing || pose.status == pose_t::STATUS_NO_POSITION) ++num_without_position;
+  if (pose.status != pose_t::STATUS_OK && pose.status != pose_t::STATUS_COASTING) return;
+  if (num_placed++ == 0) first_placed_us = pose.utime_us;
+  last_placed_us = pose.utime_us;
+  if (pose.heading_source == pose_t::HEADING_COURSE) ++num_by_course;
+}
+
+std::string PoseCounts::WhyNotPlaced() const {
+  if (num_placed > 0) return "";
+  if (num_poses == 0) return "there is no POSE";
+  const auto share = [this](std::int64_t count) { return " (" + std::to_string(count) + " of " + std::to_string(num_poses) + " messages)"; };
+  if (num_without_position == num_poses && num_without_heading == num_poses) return "POSE knows neither position nor heading" + share(num_poses);
+  if (num_without_position == num_poses) return "POSE knows no position" + share(num_poses);
+  if (num_without_heading == num_poses) return "POSE knows no heading" + share(num_poses);
+  return "POSE knows no position" + share(num_without_position) + " or no heading" + share(num_without_heading);
+}
+
+}  // namespace lookout::log

@@ -1,0 +1,26 @@
+// What POSE of a log or a run knew, and why there are no tracks where it knew nothing.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "lookout/pose_t.hpp"
+
+namespace lookout::log {
+
+struct PoseCounts {
+  std::int64_t num_poses = 0;
+  std::int64_t num_placed = 0;  // position and heading are known
+  std::int64_t num_without_heading = 0;
+  std::int64_t num_without_position = 0;
+  std::int64_t num_by_course = 0;  // placed, and the heading is course over ground
+  std::int64_t first_placed_us = 0;
+  std::int64_t last_placed_us = 0;
+
+  void Add(const pose_t& pose);
+
+  /// @return "no POSE came", "POSE knows no heading (3000 of 3000)", ...; empty where one knew position and heading
+  std::string WhyNotPlaced() const;
+};
+
+}  // namespace lookout::log
