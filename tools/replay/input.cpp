@@ -118,16 +118,12 @@ class Feeder {
   }
 
   void FeedCapture(const fs::path& file) {
-    // Of a frame beside its payload: headers of pcap, Ethernet, IPv4 and UDP. For the progress only.
-    constexpr std::size_t kFrameBytes = 16 + 14 + 20 + 8;
     vlp16::CaptureReader reader(file);
-    std::size_t num_bytes = 0;
     while (const auto datagram = reader.Next()) {
       CheckOrder(file, datagram->host_time);
       ++summary_.num_events;
       chain_.OnDatagram({datagram->host_time, datagram->destination_port, datagram->payload, {datagram->source_address, datagram->source_port}});
-      num_bytes += kFrameBytes + datagram->payload.size();
-      Show(static_cast<std::int64_t>(num_bytes));
+      Show(reader.position_bytes());
     }
     if (reader.num_damaged() > 0) Warn("{}: {}", file.string(), reader.damage());
     for (const auto& counter : reader.counters()) {
