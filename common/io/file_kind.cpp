@@ -116,6 +116,10 @@ bool MayBe(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
       return kind == FileKind::kLcmLog || kind == FileKind::kUnknown || kind == FileKind::kEmpty;
     case Wanted::kCapture:
       return IsCapture(kind) || kind == FileKind::kUnknown || (kind == FileKind::kGzip && IsCapture(PackedKindOf(file)));
+    case Wanted::kTextLog:
+      return IsText(kind) || kind == FileKind::kUnknown || kind == FileKind::kGzip;
+    case Wanted::kDetections:
+      return kind == FileKind::kText || kind == FileKind::kUnknown;
     case Wanted::kRecording:
       return kind == FileKind::kLcmLog || kind == FileKind::kUnknown || IsCapture(kind) || IsText(kind) || kind == FileKind::kGzip;
   }
@@ -124,6 +128,8 @@ bool MayBe(const std::filesystem::path& file, FileKind kind, Wanted wanted) {
 
 std::string_view NotOf(Wanted wanted) {
   if (wanted == Wanted::kLog) return ", no lcm-log";
+  if (wanted == Wanted::kTextLog) return ", no text log of NMEA 0183";
+  if (wanted == Wanted::kDetections) return ", no recording that is known here (lidar detections of Autoferry, scenarioN_lidar_detections.json)";
   return wanted == Wanted::kCapture ? ", no capture (pcap, pcapng)" : ", no capture, text log or lcm-log";
 }
 

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "common/bus/decode.hpp"
 #include "common/bus/log_file.hpp"
 #include "common/config/boat.hpp"
+#include "common/io/file_kind.hpp"
 #include "tools/eval/report.hpp"
 #include "tools/eval/track_command.hpp"
 #include "tools/eval/track_run.hpp"
@@ -56,7 +58,9 @@ int EvaluateLog(const LogOptions& options) {
   bus::LogReader reader(options.log_file);
   std::optional<config::BoatFacts> boat;
   std::int64_t num_unusable = 0;
+  bool holds_events = false;
   while (const auto event = reader.Next()) {
+    holds_events = true;
     bool is_taken = true;
     const auto& channel = event->channel;
     if (channel == bus::kObstacles.name || (truth && (channel == bus::kLidarScan.name || channel == bus::kSegments.name))) {
@@ -76,6 +80,7 @@ int EvaluateLog(const LogOptions& options) {
     if (!is_taken) ++num_unusable;
   }
   collector.Finish();
+  if (!holds_events) throw std::runtime_error(io::NoEventText(options.log_file));
   if (evaluation.num_scans == 0) {
     std::cerr << options.log_file << ": no scan of OBSTACLES\n";
     return EXIT_FAILURE;

@@ -11,6 +11,7 @@
 #include "common/config/boat.hpp"
 #include "common/config/text_config.hpp"
 #include "common/core/printable.hpp"
+#include "common/io/file_kind.hpp"
 #include "common/io/output_file.hpp"
 #include "common/io/stop_signal.hpp"
 #include "tools/export/map_sinks.hpp"
@@ -126,9 +127,11 @@ int Export(const Request& request, std::ostream& errors) {
       request.output.value_or("/dev/stdout"),
       {.force = request.force, .inputs = request.inputs, .tell = [&errors](const std::string& line) { errors << kProgram << line << '\n'; }});
   std::string text;
+  bool holds_events = false;
   for (std::size_t i = 0; i < readers.size(); ++i) {
     while (const auto event = sink->IsDone() ? std::nullopt : readers[i]->Next()) {
       io::ThrowIfStopAsked();
+      holds_events = true;
       const auto tally = std::ranges::find(tallies, event->channel, [](const Tally& one) { return one.channel.name; });
       if (tally == tallies.end() || !request.span.Holds(event->bytes)) continue;
       const auto taken = sink->Take(event->channel, event->bytes, text);
@@ -146,6 +149,7 @@ int Export(const Request& request, std::ostream& errors) {
     const auto num_damaged = readers[i]->num_damaged();
     if (num_damaged > 0) errors << kProgram << request.inputs[i].string() << ": " << num_damaged << " damaged stretches skipped\n";
   }
+  if (!holds_events) throw std::runtime_error(io::NoEventText(request.inputs.front()));
   if (tallies.front().num_taken > 0) sink->Finish(text);
   Tell(errors, *sink, tallies);
   if (tallies.front().num_taken == 0) {
