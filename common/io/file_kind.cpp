@@ -147,10 +147,12 @@ std::string HelpOf(const std::filesystem::path& file, FileKind kind, Wanted want
     case FileKind::kPcap:
     case FileKind::kPcapng:
       return "a log is made of it by: " + replay;
-    case FileKind::kNmea:
     case FileKind::kUtf16:
+      if (wanted == Wanted::kCapture) return "make it UTF-8 first: iconv -f UTF-16 -t UTF-8 " + word + " > NEW";
+      return "a log is made of its sentences by: " + replay;
+    case FileKind::kNmea:
     case FileKind::kText:
-      if (wanted == Wanted::kRecording) return "";
+      if (wanted == Wanted::kCapture) return "lookout-replay reads it as a text log if a sentence with a right checksum stands in its first MB";
       return (kind == FileKind::kText ? "if it holds sentences of NMEA 0183, a log is made of them by: " : "a log is made of its sentences by: ") +
              replay;
     case FileKind::kLcmLog:

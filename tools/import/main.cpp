@@ -43,7 +43,7 @@ Options ParseOptions(int argc, char** argv) {
       "of its ferry.",
       "lookout-import");
   app.add_option("--config", options.config_folder, "folder of the boat's *.txtpb files, for RUN_INFO")->required()->check(CLI::ExistingDirectory);
-  app.add_option("--in", options.input, "recording")->required()->check(CLI::ExistingFile);
+  app.add_option("--in", options.input, "recording")->required()->check(CLI::ExistingPath);
   app.add_option("--out", options.output, "lcm-log to write: as FILE.partial until it is whole; one that exists is refused")->required();
   app.add_flag("--force", options.force, "replace an existing --out");
   app.set_version_flag("--version", "lookout-import " + runtime::Version());

@@ -56,12 +56,11 @@ Frame ParseIpv4(Bytes bytes, bool is_cut) {
   const std::size_t header_size = 4U * (bytes[0] & 0x0FU);  // with options
   const auto total_size = static_cast<std::size_t>(ReadU16BigEndian(bytes, 2));
   if (bytes[0] >> 4 != 4 || header_size < kMinHeaderSizeBytes) return Refused(FrameFault::kBadIpHeader);
-  if (total_size < header_size) return Refused(FrameFault::kBadLength);
   constexpr int kMoreFragmentsAndOffset = 0x3FFF;
   if ((ReadU16BigEndian(bytes, 6) & kMoreFragmentsAndOffset) != 0) return Refused(FrameFault::kFragment);
   if (bytes[9] != kProtocolUdp) return Refused(FrameFault::kNotUdp);
   if (header_size > bytes.size()) return Refused(Short(is_cut));
-  return ParseUdp(bytes.subspan(header_size), total_size - header_size, is_cut, AddressText(AF_INET, bytes.subspan(12, 4)));
+  return ParseUdp(bytes.subspan(header_size), total_size - std::min(total_size, header_size), is_cut, AddressText(AF_INET, bytes.subspan(12, 4)));
 }
 
 Frame ParseIpv6(Bytes bytes, bool is_cut) {

@@ -110,7 +110,9 @@ bool PcapngReader::ReadBlock() {
   if (file_.Read(std::span(body_).subspan(header.size())) < length - header.size()) {
     return Fail(file_.fault().empty() ? "the last block is cut short" : file_.fault());
   }
-  if (U32(length - 4) != length) return Fail("the two lengths of a block differ: " + std::to_string(length) + ", " + std::to_string(U32(length - 4)));
+  // Of a section header libpcap does not look at it either.
+  if (block_type_ != kSectionHeader && U32(length - 4) != length)
+    return Fail("the two lengths of a block differ: " + std::to_string(length) + ", " + std::to_string(U32(length - 4)));
   body_.resize(length - 4);
   body_.erase(body_.begin(), body_.begin() + kBlockHeadBytes);
   return true;
